@@ -1,0 +1,1 @@
+"""Torquer flight software: what flies."""

@@ -1,0 +1,1 @@
+"""Adapters at the edge of the flight software: buses, tables, the runner."""

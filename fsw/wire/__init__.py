@@ -1,0 +1,1 @@
+"""The bus contract: frames, messages, CRC. The only part of fsw that other packages import."""

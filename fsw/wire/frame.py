@@ -1,0 +1,68 @@
+"""A CAN frame as plain data, and the CRC-8 that seals it."""
+
+from typing import NamedTuple
+
+EXTENDED_FLAG = 0x8000_0000
+REMOTE_FLAG = 0x4000_0000
+ERROR_FLAG = 0x2000_0000
+"""Flags above the identifier, as in SocketCAN's ``can_id``. A frame that bears one is never ours."""
+
+
+class Frame(NamedTuple):
+    """One classic CAN frame: identifier (with SocketCAN's flags) and at most 8 data bytes."""
+
+    can_id: int
+    data: bytes
+
+
+def _crc8_table(polynomial: int) -> bytes:
+    table = bytearray(256)
+    for index in range(256):
+        remainder = index
+        for _ in range(8):
+            remainder = (remainder << 1) ^ polynomial if remainder & 0x80 else remainder << 1
+            remainder &= 0xFF
+        table[index] = remainder
+    return bytes(table)
+
+
+_TABLE = _crc8_table(0x1D)
+
+
+def crc8(data: bytes, register: int = 0xFF) -> int:
+    """CRC-8 SAE J1850: polynomial 0x1D, initial value 0xFF, final XOR 0xFF.
+
+    Args:
+        data: the bytes to protect.
+        register: value of the register before ``data``, for a prefix that is already worked in.
+    """
+    table = _TABLE
+    for byte in data:
+        register = table[register ^ byte]
+    return register ^ 0xFF
+
+
+def id_register(can_id: int) -> int:
+    """The CRC register after the identifier, two bytes big-endian, has been worked in."""
+    return crc8(can_id.to_bytes(2, "big")) ^ 0xFF
+
+
+def seal(can_id: int, word: int, length: int, register: int) -> Frame:
+    """A frame of ``length`` bytes: ``word`` little-endian, its last byte replaced by the CRC."""
+    payload = word.to_bytes(length - 1, "little")
+    return Frame(can_id, payload + bytes((crc8(payload, register),)))
+
+
+def raw(value: float, scale: float, low: int, high: int) -> int:
+    """``value / scale`` as the nearest integer in ``[low, high]``; what is not a number becomes ``low``."""
+    scaled = value / scale
+    if not scaled > low:
+        return low
+    if scaled >= high:
+        return high
+    return round(scaled)
+
+
+def signed(bits: int, width: int) -> int:
+    """The two's complement value of ``width`` bits."""
+    return bits - (1 << width) if bits >> (width - 1) else bits

@@ -1,0 +1,1274 @@
+"""Messages of the bus: generated from torquer.dbc by tools/generate_messages.py. Do not edit.
+
+Each message is a named tuple of physical values. ``encode`` saturates quantities at the range of their
+signal, takes codes modulo their width, and seals the frame with its CRC. ``decode`` only unpacks: length
+and CRC are judged by ``intact``.
+"""
+
+from enum import IntEnum
+from typing import NamedTuple, Protocol
+
+from fsw.wire.frame import Frame, crc8, id_register, raw, seal
+
+
+class CoilRefusedReason(IntEnum):
+    """Values of ``reason``."""
+
+    MALFORMED = 1
+    WRONG_TICK = 2
+    REPEATED_SEQ = 3
+    BAD_COIL = 4
+    BAD_LEVEL = 5
+    BAD_DURATION = 6
+    COIL_ON = 7
+    LOCKOUT = 8
+
+
+class Mode(IntEnum):
+    """Values of ``mode``."""
+
+    SAFE = 0
+    DETUMBLE = 1
+    ACQUIRE = 2
+    POINT = 3
+
+
+class Severity(IntEnum):
+    """Values of ``severity``."""
+
+    INFO = 0
+    WARNING = 1
+    ERROR = 2
+    FATAL = 3
+
+
+_COIL_FIRE = id_register(0x080)
+_COIL_DIPOLE = id_register(0x088)
+_COIL_STATUS = id_register(0x100)
+_COIL_REFUSED = id_register(0x108)
+_MAG_FIELD = id_register(0x110)
+_SUN_VECTOR = id_register(0x118)
+_REF_ATTITUDE = id_register(0x120)
+_REF_RATE = id_register(0x121)
+_NAV_ATTITUDE = id_register(0x200)
+_NAV_RATE = id_register(0x201)
+_NAV_QUALITY = id_register(0x202)
+_PLANT_EVENT = id_register(0x400)
+_FSW_EVENT = id_register(0x410)
+_COIL_EVENT = id_register(0x420)
+_MAG_EVENT = id_register(0x430)
+_SUN_EVENT = id_register(0x440)
+_PLANT_BOOT = id_register(0x500)
+_FSW_BOOT = id_register(0x510)
+_COIL_BOOT = id_register(0x520)
+_MAG_BOOT = id_register(0x530)
+_SUN_BOOT = id_register(0x540)
+_PLANT_HEARTBEAT = id_register(0x600)
+_FSW_HEARTBEAT = id_register(0x610)
+_COIL_HEARTBEAT = id_register(0x620)
+_MAG_HEARTBEAT = id_register(0x630)
+_SUN_HEARTBEAT = id_register(0x640)
+_PLANT_END = id_register(0x700)
+
+
+class CoilFire(NamedTuple):
+    """One self-ending pulse, driven over [t_k, t_k + duration) in answer to tick k. There is no OFF message."""
+
+    level: int  # -3..3, zero is refused
+    coil: int
+    seq: int  # differs from the last accepted request
+    tick: int  # low 8 bits of the tick answered
+    duration_ms: int  # [ms]
+    counter: int = 0
+
+    ID = 0x080
+    LENGTH = 7
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.level & 0xF) << 4
+            | (self.coil & 0x3) << 8
+            | (self.seq & 0xFF) << 16
+            | (self.tick & 0xFF) << 24
+            | (raw(self.duration_ms, 1, 0, 65535)) << 32
+        )
+        return seal(0x080, word, 7, _COIL_FIRE)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "CoilFire":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            ((word >> 4 & 0xF ^ 0x8) - 0x8),
+            (word >> 8 & 0x3),
+            (word >> 16 & 0xFF),
+            (word >> 24 & 0xFF),
+            (word >> 32 & 0xFFFF),
+            (word & 0xF),
+        )
+
+
+class CoilDipole(NamedTuple):
+    """Continuous three-axis dipole for the continuous-driver board, as a fraction of that board's full scale."""
+
+    m_x: float  # [1]
+    m_y: float  # [1]
+    m_z: float  # [1]
+    counter: int = 0
+
+    ID = 0x088
+    LENGTH = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (raw(self.m_x, 1.52587890625e-05, -65536, 65535) & 0x1FFFF) << 4
+            | (raw(self.m_y, 1.52587890625e-05, -65536, 65535) & 0x1FFFF) << 21
+            | (raw(self.m_z, 1.52587890625e-05, -65536, 65535) & 0x1FFFF) << 38
+        )
+        return seal(0x088, word, 8, _COIL_DIPOLE)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "CoilDipole":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            ((word >> 4 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
+            ((word >> 21 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
+            ((word >> 38 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
+            (word & 0xF),
+        )
+
+
+class CoilStatus(NamedTuple):
+    """Exactly one a tick: what was driven in the interval that ends at this tick."""
+
+    level: int  # level driven in the interval that ends at this tick
+    coil: int  # coil driven; while all are off tick modulo 3
+    remaining_ms: int  # [ms]; rest of the pulse at this tick
+    current_ma: int  # [mA]; read-back of the coil current at this tick
+    lockout_ms: int  # [ms]; time until this coil may be fired again, rounded up
+    seq: int  # last accepted request
+    counter: int = 0
+
+    ID = 0x100
+    LENGTH = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.level & 0xF) << 4
+            | (self.coil & 0x3) << 8
+            | (raw(self.remaining_ms, 1, 0, 4095)) << 10
+            | (raw(self.current_ma, 1, -2048, 2047) & 0xFFF) << 22
+            | (raw(self.lockout_ms, 10, 0, 16383)) << 34
+            | (self.seq & 0xFF) << 48
+        )
+        return seal(0x100, word, 8, _COIL_STATUS)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "CoilStatus":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            ((word >> 4 & 0xF ^ 0x8) - 0x8),
+            (word >> 8 & 0x3),
+            (word >> 10 & 0xFFF),
+            ((word >> 22 & 0xFFF ^ 0x800) - 0x800),
+            (word >> 34 & 0x3FFF) * 10,
+            (word >> 48 & 0xFF),
+            (word & 0xF),
+        )
+
+
+class CoilRefused(NamedTuple):
+    """A request that was not carried out, and why."""
+
+    coil: int
+    seq: int
+    reason: int
+    tick: int  # low 8 bits of the tick in which it came
+    counter: int = 0
+
+    ID = 0x108
+    LENGTH = 5
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.coil & 0x3) << 4
+            | (self.seq & 0xFF) << 8
+            | (self.reason & 0xFF) << 16
+            | (self.tick & 0xFF) << 24
+        )
+        return seal(0x108, word, 5, _COIL_REFUSED)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "CoilRefused":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0x3),
+            (word >> 8 & 0xFF),
+            (word >> 16 & 0xFF),
+            (word >> 24 & 0xFF),
+            (word & 0xF),
+        )
+
+
+class MagField(NamedTuple):
+    """Magnetic field in body axes, every tick from tick 0."""
+
+    valid: int  # 0 when an axis is saturated or the self-test failed
+    b_x: float  # [nT]
+    b_y: float  # [nT]
+    b_z: float  # [nT]
+    counter: int = 0
+
+    ID = 0x110
+    LENGTH = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.valid & 0x1) << 4
+            | (raw(self.b_x, 2, -32768, 32767) & 0xFFFF) << 8
+            | (raw(self.b_y, 2, -32768, 32767) & 0xFFFF) << 24
+            | (raw(self.b_z, 2, -32768, 32767) & 0xFFFF) << 40
+        )
+        return seal(0x110, word, 8, _MAG_FIELD)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "MagField":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0x1),
+            ((word >> 8 & 0xFFFF ^ 0x8000) - 0x8000) * 2.0,
+            ((word >> 24 & 0xFFFF ^ 0x8000) - 0x8000) * 2.0,
+            ((word >> 40 & 0xFFFF ^ 0x8000) - 0x8000) * 2.0,
+            (word & 0xF),
+        )
+
+
+class SunVector(NamedTuple):
+    """Unit vector to the Sun in body axes, every tick from tick 0."""
+
+    valid: int  # 0 in eclipse or out of view
+    s_x: float  # [1]
+    s_y: float  # [1]
+    s_z: float  # [1]
+    counter: int = 0
+
+    ID = 0x118
+    LENGTH = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.valid & 0x1) << 4
+            | (raw(self.s_x, 6.103515625e-05, -32768, 32767) & 0xFFFF) << 8
+            | (raw(self.s_y, 6.103515625e-05, -32768, 32767) & 0xFFFF) << 24
+            | (raw(self.s_z, 6.103515625e-05, -32768, 32767) & 0xFFFF) << 40
+        )
+        return seal(0x118, word, 8, _SUN_VECTOR)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "SunVector":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0x1),
+            ((word >> 8 & 0xFFFF ^ 0x8000) - 0x8000) * 6.103515625e-05,
+            ((word >> 24 & 0xFFFF ^ 0x8000) - 0x8000) * 6.103515625e-05,
+            ((word >> 40 & 0xFFFF ^ 0x8000) - 0x8000) * 6.103515625e-05,
+            (word & 0xF),
+        )
+
+
+class RefAttitude(NamedTuple):
+    """True attitude, for scenarios with perfect knowledge: vector part of q_body_from_orbit, scalar part >= 0."""
+
+    valid: int
+    q_x: float  # [1]
+    q_y: float  # [1]
+    q_z: float  # [1]
+    counter: int = 0
+
+    ID = 0x120
+    LENGTH = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.valid & 0x1) << 4
+            | (raw(self.q_x, 1.52587890625e-05, -65536, 65535) & 0x1FFFF) << 5
+            | (raw(self.q_y, 1.52587890625e-05, -65536, 65535) & 0x1FFFF) << 22
+            | (raw(self.q_z, 1.52587890625e-05, -65536, 65535) & 0x1FFFF) << 39
+        )
+        return seal(0x120, word, 8, _REF_ATTITUDE)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "RefAttitude":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0x1),
+            ((word >> 5 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
+            ((word >> 22 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
+            ((word >> 39 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
+            (word & 0xF),
+        )
+
+
+class RefRate(NamedTuple):
+    """True rate, for scenarios with perfect knowledge: omega_body_orbit in body axes."""
+
+    valid: int
+    w_x: float  # [rad/s]
+    w_y: float  # [rad/s]
+    w_z: float  # [rad/s]
+    counter: int = 0
+
+    ID = 0x121
+    LENGTH = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.valid & 0x1) << 4
+            | (raw(self.w_x, 1.9073486328125e-06, -65536, 65535) & 0x1FFFF) << 5
+            | (raw(self.w_y, 1.9073486328125e-06, -65536, 65535) & 0x1FFFF) << 22
+            | (raw(self.w_z, 1.9073486328125e-06, -65536, 65535) & 0x1FFFF) << 39
+        )
+        return seal(0x121, word, 8, _REF_RATE)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "RefRate":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0x1),
+            ((word >> 5 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.9073486328125e-06,
+            ((word >> 22 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.9073486328125e-06,
+            ((word >> 39 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.9073486328125e-06,
+            (word & 0xF),
+        )
+
+
+class Sync(NamedTuple):
+    """Ends the inbox of a tick. unix_time_s = epoch + tick // tick_hz."""
+
+    tick: int
+    unix_time_s: int  # [s]
+
+    ID = 0x180
+    LENGTH = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (self.tick & 0xFFFFFFFF) | (raw(self.unix_time_s, 1, 0, 4294967295)) << 32
+        return Frame(0x180, word.to_bytes(8, "little"))
+
+    @classmethod
+    def decode(cls, data: bytes) -> "Sync":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word & 0xFFFFFFFF),
+            (word >> 32 & 0xFFFFFFFF),
+        )
+
+
+class NavAttitude(NamedTuple):
+    """Estimated attitude: vector part of q_body_from_orbit, scalar part >= 0."""
+
+    valid: int
+    q_x: float  # [1]
+    q_y: float  # [1]
+    q_z: float  # [1]
+    counter: int = 0
+
+    ID = 0x200
+    LENGTH = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.valid & 0x1) << 4
+            | (raw(self.q_x, 1.52587890625e-05, -65536, 65535) & 0x1FFFF) << 5
+            | (raw(self.q_y, 1.52587890625e-05, -65536, 65535) & 0x1FFFF) << 22
+            | (raw(self.q_z, 1.52587890625e-05, -65536, 65535) & 0x1FFFF) << 39
+        )
+        return seal(0x200, word, 8, _NAV_ATTITUDE)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "NavAttitude":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0x1),
+            ((word >> 5 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
+            ((word >> 22 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
+            ((word >> 39 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
+            (word & 0xF),
+        )
+
+
+class NavRate(NamedTuple):
+    """Estimated rate: omega_body_orbit in body axes."""
+
+    valid: int
+    w_x: float  # [rad/s]
+    w_y: float  # [rad/s]
+    w_z: float  # [rad/s]
+    counter: int = 0
+
+    ID = 0x201
+    LENGTH = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.valid & 0x1) << 4
+            | (raw(self.w_x, 1.9073486328125e-06, -65536, 65535) & 0x1FFFF) << 5
+            | (raw(self.w_y, 1.9073486328125e-06, -65536, 65535) & 0x1FFFF) << 22
+            | (raw(self.w_z, 1.9073486328125e-06, -65536, 65535) & 0x1FFFF) << 39
+        )
+        return seal(0x201, word, 8, _NAV_RATE)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "NavRate":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0x1),
+            ((word >> 5 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.9073486328125e-06,
+            ((word >> 22 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.9073486328125e-06,
+            ((word >> 39 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.9073486328125e-06,
+            (word & 0xF),
+        )
+
+
+class NavQuality(NamedTuple):
+    """Three sigma of the estimate (largest axis), mode and flags."""
+
+    mode: int
+    sigma3_attitude: float  # [rad]
+    sigma3_rate: float  # [rad/s]
+    mag_used: int
+    sun_used: int
+    mag_blanked: int
+    eclipse: int
+    estimate_valid: int
+    tripped: int  # a monitor has tripped since boot
+    trips: int  # monitor trips since boot, at most 255
+    counter: int = 0
+
+    ID = 0x202
+    LENGTH = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.mode & 0x7) << 4
+            | (raw(self.sigma3_attitude, 6.103515625e-05, 0, 65535)) << 8
+            | (raw(self.sigma3_rate, 2.384185791015625e-07, 0, 65535)) << 24
+            | (self.mag_used & 0x1) << 40
+            | (self.sun_used & 0x1) << 41
+            | (self.mag_blanked & 0x1) << 42
+            | (self.eclipse & 0x1) << 43
+            | (self.estimate_valid & 0x1) << 44
+            | (self.tripped & 0x1) << 45
+            | (self.trips & 0xFF) << 48
+        )
+        return seal(0x202, word, 8, _NAV_QUALITY)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "NavQuality":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0x7),
+            (word >> 8 & 0xFFFF) * 6.103515625e-05,
+            (word >> 24 & 0xFFFF) * 2.384185791015625e-07,
+            (word >> 40 & 0x1),
+            (word >> 41 & 0x1),
+            (word >> 42 & 0x1),
+            (word >> 43 & 0x1),
+            (word >> 44 & 0x1),
+            (word >> 45 & 0x1),
+            (word >> 48 & 0xFF),
+            (word & 0xF),
+        )
+
+
+class TickDone(NamedTuple):
+    """Last frame of fsw's answer to a tick. state_crc: CRC-32 of the whole flight state after this tick."""
+
+    tick: int
+    state_crc: int
+
+    ID = 0x280
+    LENGTH = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (self.tick & 0xFFFFFFFF) | (self.state_crc & 0xFFFFFFFF) << 32
+        return Frame(0x280, word.to_bytes(8, "little"))
+
+    @classmethod
+    def decode(cls, data: bytes) -> "TickDone":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word & 0xFFFFFFFF),
+            (word >> 32 & 0xFFFFFFFF),
+        )
+
+
+class PlantEvent(NamedTuple):
+    """Something worth knowing happened in PLANT."""
+
+    severity: int
+    event: int  # number of the event in this node's list
+    tick: int  # low 8 bits of the tick
+    argument: int
+    counter: int = 0
+
+    ID = 0x400
+    LENGTH = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.severity & 0xF) << 4
+            | (self.event & 0xFF) << 8
+            | (self.tick & 0xFF) << 16
+            | (self.argument & 0xFFFFFFFF) << 24
+        )
+        return seal(0x400, word, 8, _PLANT_EVENT)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "PlantEvent":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0xF),
+            (word >> 8 & 0xFF),
+            (word >> 16 & 0xFF),
+            ((word >> 24 & 0xFFFFFFFF ^ 0x80000000) - 0x80000000),
+            (word & 0xF),
+        )
+
+
+class FswEvent(NamedTuple):
+    """Something worth knowing happened in FSW."""
+
+    severity: int
+    event: int  # number of the event in this node's list
+    tick: int  # low 8 bits of the tick
+    argument: int
+    counter: int = 0
+
+    ID = 0x410
+    LENGTH = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.severity & 0xF) << 4
+            | (self.event & 0xFF) << 8
+            | (self.tick & 0xFF) << 16
+            | (self.argument & 0xFFFFFFFF) << 24
+        )
+        return seal(0x410, word, 8, _FSW_EVENT)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "FswEvent":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0xF),
+            (word >> 8 & 0xFF),
+            (word >> 16 & 0xFF),
+            ((word >> 24 & 0xFFFFFFFF ^ 0x80000000) - 0x80000000),
+            (word & 0xF),
+        )
+
+
+class CoilEvent(NamedTuple):
+    """Something worth knowing happened in COIL."""
+
+    severity: int
+    event: int  # number of the event in this node's list
+    tick: int  # low 8 bits of the tick
+    argument: int
+    counter: int = 0
+
+    ID = 0x420
+    LENGTH = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.severity & 0xF) << 4
+            | (self.event & 0xFF) << 8
+            | (self.tick & 0xFF) << 16
+            | (self.argument & 0xFFFFFFFF) << 24
+        )
+        return seal(0x420, word, 8, _COIL_EVENT)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "CoilEvent":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0xF),
+            (word >> 8 & 0xFF),
+            (word >> 16 & 0xFF),
+            ((word >> 24 & 0xFFFFFFFF ^ 0x80000000) - 0x80000000),
+            (word & 0xF),
+        )
+
+
+class MagEvent(NamedTuple):
+    """Something worth knowing happened in MAG."""
+
+    severity: int
+    event: int  # number of the event in this node's list
+    tick: int  # low 8 bits of the tick
+    argument: int
+    counter: int = 0
+
+    ID = 0x430
+    LENGTH = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.severity & 0xF) << 4
+            | (self.event & 0xFF) << 8
+            | (self.tick & 0xFF) << 16
+            | (self.argument & 0xFFFFFFFF) << 24
+        )
+        return seal(0x430, word, 8, _MAG_EVENT)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "MagEvent":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0xF),
+            (word >> 8 & 0xFF),
+            (word >> 16 & 0xFF),
+            ((word >> 24 & 0xFFFFFFFF ^ 0x80000000) - 0x80000000),
+            (word & 0xF),
+        )
+
+
+class SunEvent(NamedTuple):
+    """Something worth knowing happened in SUN."""
+
+    severity: int
+    event: int  # number of the event in this node's list
+    tick: int  # low 8 bits of the tick
+    argument: int
+    counter: int = 0
+
+    ID = 0x440
+    LENGTH = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.severity & 0xF) << 4
+            | (self.event & 0xFF) << 8
+            | (self.tick & 0xFF) << 16
+            | (self.argument & 0xFFFFFFFF) << 24
+        )
+        return seal(0x440, word, 8, _SUN_EVENT)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "SunEvent":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0xF),
+            (word >> 8 & 0xFF),
+            (word >> 16 & 0xFF),
+            ((word >> 24 & 0xFFFFFFFF ^ 0x80000000) - 0x80000000),
+            (word & 0xF),
+        )
+
+
+class PlantBoot(NamedTuple):
+    """PLANT has started."""
+
+    reason: int
+    version: int  # version of this bus contract
+    table_crc: int  # CRC-32 of the node's table
+    counter: int = 0
+
+    ID = 0x500
+    LENGTH = 7
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.reason & 0xF) << 4
+            | (self.version & 0xFF) << 8
+            | (self.table_crc & 0xFFFFFFFF) << 16
+        )
+        return seal(0x500, word, 7, _PLANT_BOOT)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "PlantBoot":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0xF),
+            (word >> 8 & 0xFF),
+            (word >> 16 & 0xFFFFFFFF),
+            (word & 0xF),
+        )
+
+
+class FswBoot(NamedTuple):
+    """FSW has started."""
+
+    reason: int
+    version: int  # version of this bus contract
+    table_crc: int  # CRC-32 of the node's table
+    counter: int = 0
+
+    ID = 0x510
+    LENGTH = 7
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.reason & 0xF) << 4
+            | (self.version & 0xFF) << 8
+            | (self.table_crc & 0xFFFFFFFF) << 16
+        )
+        return seal(0x510, word, 7, _FSW_BOOT)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "FswBoot":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0xF),
+            (word >> 8 & 0xFF),
+            (word >> 16 & 0xFFFFFFFF),
+            (word & 0xF),
+        )
+
+
+class CoilBoot(NamedTuple):
+    """COIL has started."""
+
+    reason: int
+    version: int  # version of this bus contract
+    table_crc: int  # CRC-32 of the node's table
+    counter: int = 0
+
+    ID = 0x520
+    LENGTH = 7
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.reason & 0xF) << 4
+            | (self.version & 0xFF) << 8
+            | (self.table_crc & 0xFFFFFFFF) << 16
+        )
+        return seal(0x520, word, 7, _COIL_BOOT)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "CoilBoot":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0xF),
+            (word >> 8 & 0xFF),
+            (word >> 16 & 0xFFFFFFFF),
+            (word & 0xF),
+        )
+
+
+class MagBoot(NamedTuple):
+    """MAG has started."""
+
+    reason: int
+    version: int  # version of this bus contract
+    table_crc: int  # CRC-32 of the node's table
+    counter: int = 0
+
+    ID = 0x530
+    LENGTH = 7
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.reason & 0xF) << 4
+            | (self.version & 0xFF) << 8
+            | (self.table_crc & 0xFFFFFFFF) << 16
+        )
+        return seal(0x530, word, 7, _MAG_BOOT)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "MagBoot":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0xF),
+            (word >> 8 & 0xFF),
+            (word >> 16 & 0xFFFFFFFF),
+            (word & 0xF),
+        )
+
+
+class SunBoot(NamedTuple):
+    """SUN has started."""
+
+    reason: int
+    version: int  # version of this bus contract
+    table_crc: int  # CRC-32 of the node's table
+    counter: int = 0
+
+    ID = 0x540
+    LENGTH = 7
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.reason & 0xF) << 4
+            | (self.version & 0xFF) << 8
+            | (self.table_crc & 0xFFFFFFFF) << 16
+        )
+        return seal(0x540, word, 7, _SUN_BOOT)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "SunBoot":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0xF),
+            (word >> 8 & 0xFF),
+            (word >> 16 & 0xFFFFFFFF),
+            (word & 0xF),
+        )
+
+
+class PlantHeartbeat(NamedTuple):
+    """PLANT is alive."""
+
+    state: int
+    rejects: int  # frames rejected since boot, at most 65535
+    slips: int  # missed deadlines since boot, at most 65535
+    tick: int  # low 16 bits of the tick
+    counter: int = 0
+
+    ID = 0x600
+    LENGTH = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.state & 0xF) << 4
+            | (self.rejects & 0xFFFF) << 8
+            | (self.slips & 0xFFFF) << 24
+            | (self.tick & 0xFFFF) << 40
+        )
+        return seal(0x600, word, 8, _PLANT_HEARTBEAT)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "PlantHeartbeat":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0xF),
+            (word >> 8 & 0xFFFF),
+            (word >> 24 & 0xFFFF),
+            (word >> 40 & 0xFFFF),
+            (word & 0xF),
+        )
+
+
+class FswHeartbeat(NamedTuple):
+    """FSW is alive."""
+
+    state: int
+    rejects: int  # frames rejected since boot, at most 65535
+    slips: int  # missed deadlines since boot, at most 65535
+    tick: int  # low 16 bits of the tick
+    counter: int = 0
+
+    ID = 0x610
+    LENGTH = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.state & 0xF) << 4
+            | (self.rejects & 0xFFFF) << 8
+            | (self.slips & 0xFFFF) << 24
+            | (self.tick & 0xFFFF) << 40
+        )
+        return seal(0x610, word, 8, _FSW_HEARTBEAT)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "FswHeartbeat":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0xF),
+            (word >> 8 & 0xFFFF),
+            (word >> 24 & 0xFFFF),
+            (word >> 40 & 0xFFFF),
+            (word & 0xF),
+        )
+
+
+class CoilHeartbeat(NamedTuple):
+    """COIL is alive."""
+
+    state: int
+    rejects: int  # frames rejected since boot, at most 65535
+    slips: int  # missed deadlines since boot, at most 65535
+    tick: int  # low 16 bits of the tick
+    counter: int = 0
+
+    ID = 0x620
+    LENGTH = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.state & 0xF) << 4
+            | (self.rejects & 0xFFFF) << 8
+            | (self.slips & 0xFFFF) << 24
+            | (self.tick & 0xFFFF) << 40
+        )
+        return seal(0x620, word, 8, _COIL_HEARTBEAT)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "CoilHeartbeat":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0xF),
+            (word >> 8 & 0xFFFF),
+            (word >> 24 & 0xFFFF),
+            (word >> 40 & 0xFFFF),
+            (word & 0xF),
+        )
+
+
+class MagHeartbeat(NamedTuple):
+    """MAG is alive."""
+
+    state: int
+    rejects: int  # frames rejected since boot, at most 65535
+    slips: int  # missed deadlines since boot, at most 65535
+    tick: int  # low 16 bits of the tick
+    counter: int = 0
+
+    ID = 0x630
+    LENGTH = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.state & 0xF) << 4
+            | (self.rejects & 0xFFFF) << 8
+            | (self.slips & 0xFFFF) << 24
+            | (self.tick & 0xFFFF) << 40
+        )
+        return seal(0x630, word, 8, _MAG_HEARTBEAT)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "MagHeartbeat":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0xF),
+            (word >> 8 & 0xFFFF),
+            (word >> 24 & 0xFFFF),
+            (word >> 40 & 0xFFFF),
+            (word & 0xF),
+        )
+
+
+class SunHeartbeat(NamedTuple):
+    """SUN is alive."""
+
+    state: int
+    rejects: int  # frames rejected since boot, at most 65535
+    slips: int  # missed deadlines since boot, at most 65535
+    tick: int  # low 16 bits of the tick
+    counter: int = 0
+
+    ID = 0x640
+    LENGTH = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.state & 0xF) << 4
+            | (self.rejects & 0xFFFF) << 8
+            | (self.slips & 0xFFFF) << 24
+            | (self.tick & 0xFFFF) << 40
+        )
+        return seal(0x640, word, 8, _SUN_HEARTBEAT)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "SunHeartbeat":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0xF),
+            (word >> 8 & 0xFFFF),
+            (word >> 24 & 0xFFFF),
+            (word >> 40 & 0xFFFF),
+            (word & 0xF),
+        )
+
+
+class PlantEnd(NamedTuple):
+    """The run is over: last frame of a complete log."""
+
+    ticks: int  # ticks flown, modulo 2^24
+    counter: int = 0
+
+    ID = 0x700
+    LENGTH = 5
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (self.counter & 0xF) | (self.ticks & 0xFFFFFF) << 8
+        return seal(0x700, word, 5, _PLANT_END)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "PlantEnd":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 8 & 0xFFFFFF),
+            (word & 0xF),
+        )
+
+
+_SHAPES: dict[int, tuple[int, int | None]] = {
+    0x080: (7, _COIL_FIRE),
+    0x088: (8, _COIL_DIPOLE),
+    0x100: (8, _COIL_STATUS),
+    0x108: (5, _COIL_REFUSED),
+    0x110: (8, _MAG_FIELD),
+    0x118: (8, _SUN_VECTOR),
+    0x120: (8, _REF_ATTITUDE),
+    0x121: (8, _REF_RATE),
+    0x180: (8, None),
+    0x200: (8, _NAV_ATTITUDE),
+    0x201: (8, _NAV_RATE),
+    0x202: (8, _NAV_QUALITY),
+    0x280: (8, None),
+    0x400: (8, _PLANT_EVENT),
+    0x410: (8, _FSW_EVENT),
+    0x420: (8, _COIL_EVENT),
+    0x430: (8, _MAG_EVENT),
+    0x440: (8, _SUN_EVENT),
+    0x500: (7, _PLANT_BOOT),
+    0x510: (7, _FSW_BOOT),
+    0x520: (7, _COIL_BOOT),
+    0x530: (7, _MAG_BOOT),
+    0x540: (7, _SUN_BOOT),
+    0x600: (8, _PLANT_HEARTBEAT),
+    0x610: (8, _FSW_HEARTBEAT),
+    0x620: (8, _COIL_HEARTBEAT),
+    0x630: (8, _MAG_HEARTBEAT),
+    0x640: (8, _SUN_HEARTBEAT),
+    0x700: (5, _PLANT_END),
+}
+
+NAMES: dict[int, str] = {
+    0x080: "COIL_FIRE",
+    0x088: "COIL_DIPOLE",
+    0x100: "COIL_STATUS",
+    0x108: "COIL_REFUSED",
+    0x110: "MAG_FIELD",
+    0x118: "SUN_VECTOR",
+    0x120: "REF_ATTITUDE",
+    0x121: "REF_RATE",
+    0x180: "SYNC",
+    0x200: "NAV_ATTITUDE",
+    0x201: "NAV_RATE",
+    0x202: "NAV_QUALITY",
+    0x280: "TICK_DONE",
+    0x400: "PLANT_EVENT",
+    0x410: "FSW_EVENT",
+    0x420: "COIL_EVENT",
+    0x430: "MAG_EVENT",
+    0x440: "SUN_EVENT",
+    0x500: "PLANT_BOOT",
+    0x510: "FSW_BOOT",
+    0x520: "COIL_BOOT",
+    0x530: "MAG_BOOT",
+    0x540: "SUN_BOOT",
+    0x600: "PLANT_HEARTBEAT",
+    0x610: "FSW_HEARTBEAT",
+    0x620: "COIL_HEARTBEAT",
+    0x630: "MAG_HEARTBEAT",
+    0x640: "SUN_HEARTBEAT",
+    0x700: "PLANT_END",
+}
+"""Name of each message in the DBC."""
+
+SENDERS: dict[int, str] = {
+    0x080: "FSW",
+    0x088: "FSW",
+    0x100: "COIL",
+    0x108: "COIL",
+    0x110: "MAG",
+    0x118: "SUN",
+    0x120: "PLANT",
+    0x121: "PLANT",
+    0x180: "PLANT",
+    0x200: "FSW",
+    0x201: "FSW",
+    0x202: "FSW",
+    0x280: "FSW",
+    0x400: "PLANT",
+    0x410: "FSW",
+    0x420: "COIL",
+    0x430: "MAG",
+    0x440: "SUN",
+    0x500: "PLANT",
+    0x510: "FSW",
+    0x520: "COIL",
+    0x530: "MAG",
+    0x540: "SUN",
+    0x600: "PLANT",
+    0x610: "FSW",
+    0x620: "COIL",
+    0x630: "MAG",
+    0x640: "SUN",
+    0x700: "PLANT",
+}
+"""Node that sends each message."""
+
+AnyMessage = (
+    CoilFire
+    | CoilDipole
+    | CoilStatus
+    | CoilRefused
+    | MagField
+    | SunVector
+    | RefAttitude
+    | RefRate
+    | Sync
+    | NavAttitude
+    | NavRate
+    | NavQuality
+    | TickDone
+    | PlantEvent
+    | FswEvent
+    | CoilEvent
+    | MagEvent
+    | SunEvent
+    | PlantBoot
+    | FswBoot
+    | CoilBoot
+    | MagBoot
+    | SunBoot
+    | PlantHeartbeat
+    | FswHeartbeat
+    | CoilHeartbeat
+    | MagHeartbeat
+    | SunHeartbeat
+    | PlantEnd
+)
+
+CLASSES: dict[int, type[AnyMessage]] = {
+    0x080: CoilFire,
+    0x088: CoilDipole,
+    0x100: CoilStatus,
+    0x108: CoilRefused,
+    0x110: MagField,
+    0x118: SunVector,
+    0x120: RefAttitude,
+    0x121: RefRate,
+    0x180: Sync,
+    0x200: NavAttitude,
+    0x201: NavRate,
+    0x202: NavQuality,
+    0x280: TickDone,
+    0x400: PlantEvent,
+    0x410: FswEvent,
+    0x420: CoilEvent,
+    0x430: MagEvent,
+    0x440: SunEvent,
+    0x500: PlantBoot,
+    0x510: FswBoot,
+    0x520: CoilBoot,
+    0x530: MagBoot,
+    0x540: SunBoot,
+    0x600: PlantHeartbeat,
+    0x610: FswHeartbeat,
+    0x620: CoilHeartbeat,
+    0x630: MagHeartbeat,
+    0x640: SunHeartbeat,
+    0x700: PlantEnd,
+}
+"""Class of each message."""
+
+
+class Message(Protocol):
+    """What all messages have in common."""
+
+    ID: int
+    LENGTH: int
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+
+
+def intact(frame: Frame) -> bool:
+    """Whether the frame is a known message of the right length whose CRC, if it has one, is right."""
+    shape = _SHAPES.get(frame.can_id)
+    if shape is None:
+        return False
+    length, register = shape
+    data = frame.data
+    if len(data) != length:
+        return False
+    return register is None or crc8(data[:-1], register) == data[-1]

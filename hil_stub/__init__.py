@@ -1,0 +1,1 @@
+"""Boards between the bus and the physics. They guard themselves; frames in, frames out."""

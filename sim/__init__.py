@@ -1,0 +1,1 @@
+"""The ground side of Torquer: plant, harness, scenarios."""

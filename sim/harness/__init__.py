@@ -1,0 +1,1 @@
+"""Composition root: command line, SIL run, replay, audit, report."""

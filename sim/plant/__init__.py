@@ -1,0 +1,1 @@
+"""Physics: orbit, field, Sun, rigid body, torques, sensors and coils."""
