@@ -1,0 +1,94 @@
+"""Algebra of 3-vectors and 3x3 matrices on plain floats.
+
+Plain floats give the same bits on every machine and cost a fraction of a numpy call at this size.
+"""
+
+from math import sqrt
+
+Vec3 = tuple[float, float, float]
+Mat3 = tuple[Vec3, Vec3, Vec3]
+"""Rows of a 3x3 matrix."""
+
+ZERO: Vec3 = (0.0, 0.0, 0.0)
+
+
+def add(a: Vec3, b: Vec3) -> Vec3:
+    """a + b."""
+    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
+
+
+def sub(a: Vec3, b: Vec3) -> Vec3:
+    """a - b."""
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
+
+
+def scale(factor: float, a: Vec3) -> Vec3:
+    """factor * a."""
+    return (factor * a[0], factor * a[1], factor * a[2])
+
+
+def dot(a: Vec3, b: Vec3) -> float:
+    """a . b."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def cross(a: Vec3, b: Vec3) -> Vec3:
+    """A x b."""
+    a1, a2, a3 = a
+    b1, b2, b3 = b
+    return (a2 * b3 - a3 * b2, a3 * b1 - a1 * b3, a1 * b2 - a2 * b1)
+
+
+def norm(a: Vec3) -> float:
+    """|a|."""
+    return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
+
+
+def unit(a: Vec3) -> Vec3:
+    """A / |a|, or zero for a zero vector."""
+    length = norm(a)
+    return scale(1.0 / length, a) if length > 0.0 else ZERO
+
+
+def transform(m: Mat3, a: Vec3) -> Vec3:
+    """M a."""
+    a1, a2, a3 = a
+    r1, r2, r3 = m
+    return (
+        r1[0] * a1 + r1[1] * a2 + r1[2] * a3,
+        r2[0] * a1 + r2[1] * a2 + r2[2] * a3,
+        r3[0] * a1 + r3[1] * a2 + r3[2] * a3,
+    )
+
+
+def transpose(m: Mat3) -> Mat3:
+    """M^T."""
+    (a, b, c), (d, e, f), (g, h, i) = m
+    return ((a, d, g), (b, e, h), (c, f, i))
+
+
+def product(m: Mat3, n: Mat3) -> Mat3:
+    """M N."""
+    columns = transpose(n)
+    return (
+        (dot(m[0], columns[0]), dot(m[0], columns[1]), dot(m[0], columns[2])),
+        (dot(m[1], columns[0]), dot(m[1], columns[1]), dot(m[1], columns[2])),
+        (dot(m[2], columns[0]), dot(m[2], columns[1]), dot(m[2], columns[2])),
+    )
+
+
+def skew(a: Vec3) -> Mat3:
+    """The matrix [a x], so that [a x] b = a x b."""
+    a1, a2, a3 = a
+    return ((0.0, -a3, a2), (a3, 0.0, -a1), (-a2, a1, 0.0))
+
+
+def inverse(m: Mat3) -> Mat3:
+    """The inverse of a regular matrix, by cofactors.
+
+    Raises:
+        ZeroDivisionError: the matrix is singular.
+    """
+    c1, c2, c3 = cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])
+    factor = 1.0 / dot(m[0], c1)
+    return transpose((scale(factor, c1), scale(factor, c2), scale(factor, c3)))
