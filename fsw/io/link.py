@@ -1,0 +1,152 @@
+"""One end of the loop bus: a TCP connection to the hub, which the first to come hosts itself."""
+
+import atexit
+import select
+import socket
+from collections import deque
+from collections.abc import Sequence
+from time import monotonic, sleep
+
+from fsw.io import record
+from fsw.io.bus import DEFAULT_LOOP_PORT, BusClosed, BusError
+from fsw.io.hub import GREETING, HOST, Hub
+from fsw.wire.frame import Frame
+
+_RETRY_S = 0.01
+_PARTING_S = 1.0
+_CHUNK = 2**16
+
+
+class LoopLink:
+    """A :class:`fsw.io.bus.Bus` on the loop bus of ``port``. Once open, it misses nothing that others send.
+
+    If nobody serves the port, this process does, in a daemon thread, until ``close``: that ends the bus for
+    all.
+
+    Args:
+        port: the hub's TCP port on 127.0.0.1.
+        timeout_s: how long to try.
+        may_host: whether to serve the port if nobody does.
+
+    Raises:
+        BusError: no hub came up in time, or something else listens there.
+    """
+
+    name = "loop"
+
+    def __init__(self, port: int = DEFAULT_LOOP_PORT, timeout_s: float = 10.0, may_host: bool = True) -> None:
+        self.spec = f"loop:{port}"
+        self._inbox: deque[Frame] = deque()
+        self._torn = b""  # beginning of a record whose end is still on its way
+        self._hub: Hub | None = None
+        self._socket = self._join(port, monotonic() + timeout_s, may_host)
+        atexit.register(self.close)
+
+    def send(self, frames: Sequence[Frame]) -> None:
+        """Send all frames at once, in order."""
+        try:
+            self._socket.sendall(record.pack_all(frames))
+        except OSError as error:
+            raise self._closed() from error
+
+    def receive(self, timeout_s: float | None) -> Frame | None:
+        """The next frame, or None if none came within ``timeout_s``."""
+        if not self._inbox and not self._fill(timeout_s):
+            return None
+        return self._inbox.popleft()
+
+    def close(self) -> None:
+        """Leave the bus; what has been sent still reaches the others."""
+        if self._socket.fileno() < 0:
+            return
+        atexit.unregister(self.close)
+        self._part()
+        self._socket.close()
+        if self._hub is not None:
+            self._hub.close()
+
+    def _fill(self, timeout_s: float | None) -> bool:
+        deadline = None if timeout_s is None else monotonic() + timeout_s
+        while True:
+            try:
+                if not select.select((self._socket,), (), (), timeout_s)[0]:
+                    return False
+                received = self._socket.recv(_CHUNK)
+            except (OSError, ValueError) as error:  # ValueError: closed on our side
+                raise self._closed() from error
+            if not received:
+                raise self._closed()
+            pending = self._torn + received if self._torn else received
+            whole = len(pending) - len(pending) % record.SIZE
+            self._torn = pending[whole:]
+            if whole:
+                self._inbox.extend(record.unpack(pending[:whole]))
+                return True
+            timeout_s = None if deadline is None else max(0.0, deadline - monotonic())
+
+    def _closed(self) -> BusClosed:
+        why = "its hub is gone" if self._socket.fileno() >= 0 else "this end has been closed"
+        return BusClosed(f"the bus {self.spec} is closed: {why}")
+
+    def _part(self) -> None:
+        """Say that nothing more follows, and read until the hub agrees.
+
+        Closing on unread data would reset the connection and could destroy what the hub has not read yet.
+        """
+        try:
+            self._socket.shutdown(socket.SHUT_WR)
+            deadline = monotonic() + _PARTING_S
+            while (left_s := deadline - monotonic()) > 0:
+                if not select.select((self._socket,), (), (), left_s)[0] or not self._socket.recv(_CHUNK):
+                    return
+        except OSError:
+            return
+
+    def _join(self, port: int, deadline: float, may_host: bool) -> socket.socket:
+        while True:
+            connection = _connect(port, deadline)
+            if connection is not None:
+                return connection
+            if may_host and self._hub is None:
+                self._hub = _host(port)
+            if monotonic() >= deadline:
+                raise BusError(f"no hub answers on port {port} of this machine")
+            if self._hub is None:
+                sleep(_RETRY_S)
+
+
+def _connect(port: int, deadline: float) -> socket.socket | None:
+    """A connection that the hub has greeted; None if nobody listens (yet, or any more)."""
+    connection = socket.socket()
+    try:
+        connection.settimeout(max(_RETRY_S, deadline - monotonic()))
+        connection.connect((HOST, port))
+        if connection.getsockname() == connection.getpeername():  # TCP may connect a free port to itself
+            raise ConnectionRefusedError
+        connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        greeting = b""
+        while len(greeting) < len(GREETING):
+            received = connection.recv(len(GREETING) - len(greeting))
+            if not received:
+                raise ConnectionResetError
+            greeting += received
+        if greeting != GREETING:
+            raise BusError(f"port {port} of this machine is taken by another program, which is no hub")
+        connection.settimeout(None)
+    except (ConnectionError, TimeoutError):
+        connection.close()
+        return None
+    except BaseException:
+        connection.close()
+        raise
+    return connection
+
+
+def _host(port: int) -> Hub | None:
+    """A hub serving in a thread; None if another opener was quicker."""
+    try:
+        hub = Hub(port)
+    except OSError:
+        return None
+    hub.start()
+    return hub
