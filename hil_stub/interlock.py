@@ -1,0 +1,153 @@
+"""The coil interlock: what may be driven, as a pure function of integers.
+
+Invariant, whatever is asked and however often the board restarts: no pulse lasts longer than ``pulse_ms``,
+no pulse starts earlier than ``backoff_ms`` after the end of the one before it (of any coil, or of the same
+coil), no more than one coil is on, and every level is one of -3..3.
+
+Time is counted in units of 1 / (1000 tick_hz) s: a tick is 1000 units and a millisecond is ``tick_hz`` units,
+so that every duration is exact at every tick rate. All timers run down to zero; none is ever set by anything
+but ``boot`` and an accepted request.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+from fsw.wire.messages import CoilRefusedReason
+
+UNITS_PER_TICK = 1000
+COILS = 3
+MAX_LEVEL = 3
+
+
+@dataclass(frozen=True, slots=True)
+class CoilLimits:
+    """What a coil driver board enforces.
+
+    Args:
+        tick_hz: ticks a second.
+        pulse_ms: longest pulse [ms].
+        backoff_ms: shortest time from the end of a pulse to the next start [ms].
+        shared: the back-off holds for all coils (True) or for each coil by itself.
+        table_crc: CRC-32 of the table these values come from, reported in ``COIL_BOOT``.
+
+    Raises:
+        ValueError: a value is not an integer of its range.
+    """
+
+    tick_hz: int
+    pulse_ms: int = 3000
+    backoff_ms: int = 100_000
+    shared: bool = True
+    table_crc: int = 0
+
+    def __post_init__(self) -> None:
+        for name, low, high in (
+            ("tick_hz", 1, 1000),
+            ("pulse_ms", 1, 65_535),
+            ("backoff_ms", 0, 10_000_000),
+            ("table_crc", 0, 0xFFFF_FFFF),
+        ):
+            value = getattr(self, name)
+            if type(value) is not int or not low <= value <= high:
+                raise ValueError(f"{name} must be an integer in [{low}, {high}], not {value!r}")
+
+    def units(self, milliseconds: int) -> int:
+        """Milliseconds as units of time."""
+        return milliseconds * self.tick_hz
+
+    def milliseconds(self, units: int, resolution_ms: int = 1) -> int:
+        """Units of time as milliseconds, rounded up to the resolution: 0 only when nothing is left."""
+        return -(-units // (self.tick_hz * resolution_ms)) * resolution_ms
+
+
+class Request(NamedTuple):
+    """What a ``COIL_FIRE`` asks; ``tick`` is the low byte of the tick that it answers."""
+
+    coil: int
+    level: int
+    duration_ms: int
+    seq: int
+    tick: int
+
+
+Lockouts = tuple[int, int, int]
+
+
+@dataclass(frozen=True, slots=True)
+class Interlock:
+    """State at a tick. Times are in units.
+
+    Args:
+        coil: coil that is on, or was on last.
+        level: its level in the tick that has just ended or in the one that begins; else 0.
+        remaining: rest of its pulse; a coil is on exactly while this is not 0.
+        lockout: for each coil, time until it may be fired again.
+        seq: sequence number of the last accepted request; None after boot.
+    """
+
+    coil: int
+    level: int
+    remaining: int
+    lockout: Lockouts
+    seq: int | None
+
+
+def boot(limits: CoilLimits) -> Interlock:
+    """All coils off and locked out in full: a restart costs a whole back-off, for nothing outlives it."""
+    full = limits.units(limits.backoff_ms)
+    return Interlock(coil=0, level=0, remaining=0, lockout=(full, full, full), seq=None)
+
+
+def elapse(state: Interlock, ticks: int) -> Interlock:
+    """The state ``ticks`` later. A level stays visible for the last tick in which it was driven."""
+    if ticks < 0:
+        raise ValueError("time does not run backwards")
+    units = ticks * UNITS_PER_TICK
+    driven = state.remaining > units - UNITS_PER_TICK
+    a, b, c = state.lockout
+    return Interlock(
+        coil=state.coil,
+        level=state.level if driven else 0,
+        remaining=max(0, state.remaining - units),
+        lockout=(max(0, a - units), max(0, b - units), max(0, c - units)),
+        seq=state.seq,
+    )
+
+
+_Rule = Callable[[Interlock, Request, int, CoilLimits], bool]
+
+_REFUSED_IF: tuple[tuple[CoilRefusedReason, _Rule], ...] = (
+    (CoilRefusedReason.WRONG_TICK, lambda state, asked, tick, limits: asked.tick != tick & 0xFF),
+    (CoilRefusedReason.REPEATED_SEQ, lambda state, asked, tick, limits: asked.seq == state.seq),
+    (CoilRefusedReason.BAD_COIL, lambda state, asked, tick, limits: not 0 <= asked.coil < COILS),
+    (CoilRefusedReason.BAD_LEVEL, lambda state, asked, tick, limits: not 1 <= abs(asked.level) <= MAX_LEVEL),
+    (
+        CoilRefusedReason.BAD_DURATION,
+        lambda state, asked, tick, limits: not 1 <= asked.duration_ms <= limits.pulse_ms,
+    ),
+    (CoilRefusedReason.COIL_ON, lambda state, asked, tick, limits: state.remaining > 0),
+    (CoilRefusedReason.LOCKOUT, lambda state, asked, tick, limits: state.lockout[asked.coil] > 0),
+)
+"""The rules in the order in which they are judged; the first that applies names the refusal."""
+
+
+def ask(
+    state: Interlock, asked: Request, tick: int, limits: CoilLimits
+) -> tuple[Interlock, CoilRefusedReason | None]:
+    """Judge a request at ``tick``: the state after it, and why it was refused (None: accepted).
+
+    A refused request changes nothing. An accepted one drives its coil from this tick on for its duration, and
+    locks out for that and the back-off after it.
+    """
+    for reason, applies in _REFUSED_IF:
+        if applies(state, asked, tick, limits):
+            return state, reason
+    duration = limits.units(asked.duration_ms)
+    until_next = duration + limits.units(limits.backoff_ms)
+    a, b, c = (
+        until_next if limits.shared or coil == asked.coil else left for coil, left in enumerate(state.lockout)
+    )
+    return replace(
+        state, coil=asked.coil, level=asked.level, remaining=duration, lockout=(a, b, c), seq=asked.seq
+    ), None
