@@ -20,22 +20,12 @@ and CRC are judged by ``intact``.
 """
 
 from enum import IntEnum
-from typing import NamedTuple, Protocol
+from typing import Final, NamedTuple
 
 from fsw.wire.frame import Frame, crc8, id_register, raw, seal
 '''
 
 FOOTER = '''
-
-class Message(Protocol):
-    """What all messages have in common."""
-
-    ID: int
-    LENGTH: int
-
-    def encode(self) -> Frame:
-        """The frame on the bus."""
-
 
 def intact(frame: Frame) -> bool:
     """Whether the frame is a known message of the right length whose CRC, if it has one, is right."""
@@ -105,13 +95,15 @@ def decode_term(signal: Signal) -> str:
 def message_class(message: Message) -> str:
     sealed = any(s.name == "crc" for s in message.signals)
     fields = payload_signals(message) + [s for s in message.signals if s.name == "counter"]
-    lines = ["", "", f"class {class_name(message.name)}(NamedTuple):", f'    """{message.comment}"""', ""]
+    name = class_name(message.name)
+    lines = ["", "", f"class _{name}(NamedTuple):"]
     for signal in fields:
         default = " = 0" if signal.name == "counter" else ""
         note = "; ".join(part for part in (f"[{signal.unit}]" if signal.unit else "", signal.comment or "") if part)
         comment = f"  # {note}" if note and signal.name != "counter" else ""
         lines.append(f"    {signal.name}: {python_type(signal)}{default}{comment}")
-    lines += ["", "    ID = " + f"{message.frame_id:#05x}  # type: ignore[misc]", f"    LENGTH = {message.length}  # type: ignore[misc]"]
+    lines += ["", "", f"class {name}(_{name}):", f'    """{message.comment}"""', "", "    __slots__ = ()"]
+    lines += ["", f"    ID: Final = {message.frame_id:#05x}", f"    LENGTH: Final = {message.length}"]
     word = "\n            | ".join(encode_term(s) for s in sorted(fields, key=lambda s: s.start))
     lines += ["", "    def encode(self) -> Frame:", '        """The frame on the bus."""', "        word = (", f"            {word}", "        )"]
     if sealed:
@@ -120,7 +112,7 @@ def message_class(message: Message) -> str:
         lines.append(f'        return Frame({message.frame_id:#05x}, word.to_bytes({message.length}, "little"))')
     values = "\n".join(f"            {decode_term(s)}," for s in fields)
     lines += ["", "    @classmethod", f'    def decode(cls, data: bytes) -> "{class_name(message.name)}":', '        """The values in the data bytes, unjudged."""', '        word = int.from_bytes(data, "little")', "        return cls(", values, "        )"]
-    return "\n".join(lines).replace("  # type: ignore[misc]", "")
+    return "\n".join(lines)
 
 
 def enum_class(name: str, signal: Signal) -> str:
@@ -147,8 +139,9 @@ def generate() -> str:
     names = [f"    {m.frame_id:#05x}: {class_name(m.name)}," for m in messages]
     parts.append("\nNAMES: dict[int, str] = {\n" + "\n".join(f'    {m.frame_id:#05x}: "{m.name}",' for m in messages) + '\n}\n"""Name of each message in the DBC."""\n')
     parts.append("\nSENDERS: dict[int, str] = {\n" + "\n".join(f'    {m.frame_id:#05x}: "{m.senders[0]}",' for m in messages) + '\n}\n"""Node that sends each message."""\n')
-    union = " | ".join(class_name(m.name) for m in messages)
-    parts.append(f"\nAnyMessage = {union}\n")
+    counted = " | ".join(class_name(m.name) for m in sealed)
+    parts.append(f"\nCountedMessage = {counted}\n")
+    parts.append("\nAnyMessage = CountedMessage | Sync | TickDone\n")
     parts.append("\nCLASSES: dict[int, type[AnyMessage]] = {\n" + "\n".join(names) + '\n}\n"""Class of each message."""\n')
     parts.append(FOOTER)
     return "".join(part if part.startswith(("\n", '"""')) else "\n" + part for part in parts)

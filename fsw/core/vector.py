@@ -13,22 +13,22 @@ ZERO: Vec3 = (0.0, 0.0, 0.0)
 
 
 def add(a: Vec3, b: Vec3) -> Vec3:
-    """a + b."""
+    """A + b."""
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
 def sub(a: Vec3, b: Vec3) -> Vec3:
-    """a - b."""
+    """A - b."""
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
 def scale(factor: float, a: Vec3) -> Vec3:
-    """factor * a."""
+    """Factor * a."""
     return (factor * a[0], factor * a[1], factor * a[2])
 
 
 def dot(a: Vec3, b: Vec3) -> float:
-    """a . b."""
+    """A . b."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 

@@ -6,7 +6,7 @@ and CRC are judged by ``intact``.
 """
 
 from enum import IntEnum
-from typing import NamedTuple, Protocol
+from typing import Final, NamedTuple
 
 from fsw.wire.frame import Frame, crc8, id_register, raw, seal
 
@@ -71,9 +71,7 @@ _SUN_HEARTBEAT = id_register(0x640)
 _PLANT_END = id_register(0x700)
 
 
-class CoilFire(NamedTuple):
-    """One self-ending pulse, driven over [t_k, t_k + duration) in answer to tick k. There is no OFF message."""
-
+class _CoilFire(NamedTuple):
     level: int  # -3..3, zero is refused
     coil: int
     seq: int  # differs from the last accepted request
@@ -81,8 +79,14 @@ class CoilFire(NamedTuple):
     duration_ms: int  # [ms]
     counter: int = 0
 
-    ID = 0x080
-    LENGTH = 7
+
+class CoilFire(_CoilFire):
+    """One self-ending pulse, driven over [t_k, t_k + duration) in answer to tick k. There is no OFF message."""
+
+    __slots__ = ()
+
+    ID: Final = 0x080
+    LENGTH: Final = 7
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -110,16 +114,20 @@ class CoilFire(NamedTuple):
         )
 
 
-class CoilDipole(NamedTuple):
-    """Continuous three-axis dipole for the continuous-driver board, as a fraction of that board's full scale."""
-
+class _CoilDipole(NamedTuple):
     m_x: float  # [1]
     m_y: float  # [1]
     m_z: float  # [1]
     counter: int = 0
 
-    ID = 0x088
-    LENGTH = 8
+
+class CoilDipole(_CoilDipole):
+    """Continuous three-axis dipole for the continuous-driver board, as a fraction of that board's full scale."""
+
+    __slots__ = ()
+
+    ID: Final = 0x088
+    LENGTH: Final = 8
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -143,9 +151,7 @@ class CoilDipole(NamedTuple):
         )
 
 
-class CoilStatus(NamedTuple):
-    """Exactly one a tick: what was driven in the interval that ends at this tick."""
-
+class _CoilStatus(NamedTuple):
     level: int  # level driven in the interval that ends at this tick
     coil: int  # coil driven; while all are off tick modulo 3
     remaining_ms: int  # [ms]; rest of the pulse at this tick
@@ -154,8 +160,14 @@ class CoilStatus(NamedTuple):
     seq: int  # last accepted request
     counter: int = 0
 
-    ID = 0x100
-    LENGTH = 8
+
+class CoilStatus(_CoilStatus):
+    """Exactly one a tick: what was driven in the interval that ends at this tick."""
+
+    __slots__ = ()
+
+    ID: Final = 0x100
+    LENGTH: Final = 8
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -185,17 +197,21 @@ class CoilStatus(NamedTuple):
         )
 
 
-class CoilRefused(NamedTuple):
-    """A request that was not carried out, and why."""
-
+class _CoilRefused(NamedTuple):
     coil: int
     seq: int
     reason: int
     tick: int  # low 8 bits of the tick in which it came
     counter: int = 0
 
-    ID = 0x108
-    LENGTH = 5
+
+class CoilRefused(_CoilRefused):
+    """A request that was not carried out, and why."""
+
+    __slots__ = ()
+
+    ID: Final = 0x108
+    LENGTH: Final = 5
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -221,17 +237,21 @@ class CoilRefused(NamedTuple):
         )
 
 
-class MagField(NamedTuple):
-    """Magnetic field in body axes, every tick from tick 0."""
-
+class _MagField(NamedTuple):
     valid: int  # 0 when an axis is saturated or the self-test failed
     b_x: float  # [nT]
     b_y: float  # [nT]
     b_z: float  # [nT]
     counter: int = 0
 
-    ID = 0x110
-    LENGTH = 8
+
+class MagField(_MagField):
+    """Magnetic field in body axes, every tick from tick 0."""
+
+    __slots__ = ()
+
+    ID: Final = 0x110
+    LENGTH: Final = 8
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -257,17 +277,21 @@ class MagField(NamedTuple):
         )
 
 
-class SunVector(NamedTuple):
-    """Unit vector to the Sun in body axes, every tick from tick 0."""
-
+class _SunVector(NamedTuple):
     valid: int  # 0 in eclipse or out of view
     s_x: float  # [1]
     s_y: float  # [1]
     s_z: float  # [1]
     counter: int = 0
 
-    ID = 0x118
-    LENGTH = 8
+
+class SunVector(_SunVector):
+    """Unit vector to the Sun in body axes, every tick from tick 0."""
+
+    __slots__ = ()
+
+    ID: Final = 0x118
+    LENGTH: Final = 8
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -293,17 +317,21 @@ class SunVector(NamedTuple):
         )
 
 
-class RefAttitude(NamedTuple):
-    """True attitude, for scenarios with perfect knowledge: vector part of q_body_from_orbit, scalar part >= 0."""
-
+class _RefAttitude(NamedTuple):
     valid: int
     q_x: float  # [1]
     q_y: float  # [1]
     q_z: float  # [1]
     counter: int = 0
 
-    ID = 0x120
-    LENGTH = 8
+
+class RefAttitude(_RefAttitude):
+    """True attitude, for scenarios with perfect knowledge: vector part of q_body_from_orbit, scalar part >= 0."""
+
+    __slots__ = ()
+
+    ID: Final = 0x120
+    LENGTH: Final = 8
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -329,17 +357,21 @@ class RefAttitude(NamedTuple):
         )
 
 
-class RefRate(NamedTuple):
-    """True rate, for scenarios with perfect knowledge: omega_body_orbit in body axes."""
-
+class _RefRate(NamedTuple):
     valid: int
     w_x: float  # [rad/s]
     w_y: float  # [rad/s]
     w_z: float  # [rad/s]
     counter: int = 0
 
-    ID = 0x121
-    LENGTH = 8
+
+class RefRate(_RefRate):
+    """True rate, for scenarios with perfect knowledge: omega_body_orbit in body axes."""
+
+    __slots__ = ()
+
+    ID: Final = 0x121
+    LENGTH: Final = 8
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -365,14 +397,18 @@ class RefRate(NamedTuple):
         )
 
 
-class Sync(NamedTuple):
-    """Ends the inbox of a tick. unix_time_s = epoch + tick // tick_hz."""
-
+class _Sync(NamedTuple):
     tick: int
     unix_time_s: int  # [s]
 
-    ID = 0x180
-    LENGTH = 8
+
+class Sync(_Sync):
+    """Ends the inbox of a tick. unix_time_s = epoch + tick // tick_hz."""
+
+    __slots__ = ()
+
+    ID: Final = 0x180
+    LENGTH: Final = 8
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -389,17 +425,21 @@ class Sync(NamedTuple):
         )
 
 
-class NavAttitude(NamedTuple):
-    """Estimated attitude: vector part of q_body_from_orbit, scalar part >= 0."""
-
+class _NavAttitude(NamedTuple):
     valid: int
     q_x: float  # [1]
     q_y: float  # [1]
     q_z: float  # [1]
     counter: int = 0
 
-    ID = 0x200
-    LENGTH = 8
+
+class NavAttitude(_NavAttitude):
+    """Estimated attitude: vector part of q_body_from_orbit, scalar part >= 0."""
+
+    __slots__ = ()
+
+    ID: Final = 0x200
+    LENGTH: Final = 8
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -425,17 +465,21 @@ class NavAttitude(NamedTuple):
         )
 
 
-class NavRate(NamedTuple):
-    """Estimated rate: omega_body_orbit in body axes."""
-
+class _NavRate(NamedTuple):
     valid: int
     w_x: float  # [rad/s]
     w_y: float  # [rad/s]
     w_z: float  # [rad/s]
     counter: int = 0
 
-    ID = 0x201
-    LENGTH = 8
+
+class NavRate(_NavRate):
+    """Estimated rate: omega_body_orbit in body axes."""
+
+    __slots__ = ()
+
+    ID: Final = 0x201
+    LENGTH: Final = 8
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -461,9 +505,7 @@ class NavRate(NamedTuple):
         )
 
 
-class NavQuality(NamedTuple):
-    """Three sigma of the estimate (largest axis), mode and flags."""
-
+class _NavQuality(NamedTuple):
     mode: int
     sigma3_attitude: float  # [rad]
     sigma3_rate: float  # [rad/s]
@@ -476,8 +518,14 @@ class NavQuality(NamedTuple):
     trips: int  # monitor trips since boot, at most 255
     counter: int = 0
 
-    ID = 0x202
-    LENGTH = 8
+
+class NavQuality(_NavQuality):
+    """Three sigma of the estimate (largest axis), mode and flags."""
+
+    __slots__ = ()
+
+    ID: Final = 0x202
+    LENGTH: Final = 8
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -515,14 +563,18 @@ class NavQuality(NamedTuple):
         )
 
 
-class TickDone(NamedTuple):
-    """Last frame of fsw's answer to a tick. state_crc: CRC-32 of the whole flight state after this tick."""
-
+class _TickDone(NamedTuple):
     tick: int
     state_crc: int
 
-    ID = 0x280
-    LENGTH = 8
+
+class TickDone(_TickDone):
+    """Last frame of fsw's answer to a tick. state_crc: CRC-32 of the whole flight state after this tick."""
+
+    __slots__ = ()
+
+    ID: Final = 0x280
+    LENGTH: Final = 8
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -539,17 +591,21 @@ class TickDone(NamedTuple):
         )
 
 
-class PlantEvent(NamedTuple):
-    """Something worth knowing happened in PLANT."""
-
+class _PlantEvent(NamedTuple):
     severity: int
     event: int  # number of the event in this node's list
     tick: int  # low 8 bits of the tick
     argument: int
     counter: int = 0
 
-    ID = 0x400
-    LENGTH = 8
+
+class PlantEvent(_PlantEvent):
+    """Something worth knowing happened in PLANT."""
+
+    __slots__ = ()
+
+    ID: Final = 0x400
+    LENGTH: Final = 8
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -575,17 +631,21 @@ class PlantEvent(NamedTuple):
         )
 
 
-class FswEvent(NamedTuple):
-    """Something worth knowing happened in FSW."""
-
+class _FswEvent(NamedTuple):
     severity: int
     event: int  # number of the event in this node's list
     tick: int  # low 8 bits of the tick
     argument: int
     counter: int = 0
 
-    ID = 0x410
-    LENGTH = 8
+
+class FswEvent(_FswEvent):
+    """Something worth knowing happened in FSW."""
+
+    __slots__ = ()
+
+    ID: Final = 0x410
+    LENGTH: Final = 8
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -611,17 +671,21 @@ class FswEvent(NamedTuple):
         )
 
 
-class CoilEvent(NamedTuple):
-    """Something worth knowing happened in COIL."""
-
+class _CoilEvent(NamedTuple):
     severity: int
     event: int  # number of the event in this node's list
     tick: int  # low 8 bits of the tick
     argument: int
     counter: int = 0
 
-    ID = 0x420
-    LENGTH = 8
+
+class CoilEvent(_CoilEvent):
+    """Something worth knowing happened in COIL."""
+
+    __slots__ = ()
+
+    ID: Final = 0x420
+    LENGTH: Final = 8
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -647,17 +711,21 @@ class CoilEvent(NamedTuple):
         )
 
 
-class MagEvent(NamedTuple):
-    """Something worth knowing happened in MAG."""
-
+class _MagEvent(NamedTuple):
     severity: int
     event: int  # number of the event in this node's list
     tick: int  # low 8 bits of the tick
     argument: int
     counter: int = 0
 
-    ID = 0x430
-    LENGTH = 8
+
+class MagEvent(_MagEvent):
+    """Something worth knowing happened in MAG."""
+
+    __slots__ = ()
+
+    ID: Final = 0x430
+    LENGTH: Final = 8
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -683,17 +751,21 @@ class MagEvent(NamedTuple):
         )
 
 
-class SunEvent(NamedTuple):
-    """Something worth knowing happened in SUN."""
-
+class _SunEvent(NamedTuple):
     severity: int
     event: int  # number of the event in this node's list
     tick: int  # low 8 bits of the tick
     argument: int
     counter: int = 0
 
-    ID = 0x440
-    LENGTH = 8
+
+class SunEvent(_SunEvent):
+    """Something worth knowing happened in SUN."""
+
+    __slots__ = ()
+
+    ID: Final = 0x440
+    LENGTH: Final = 8
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -719,16 +791,20 @@ class SunEvent(NamedTuple):
         )
 
 
-class PlantBoot(NamedTuple):
-    """PLANT has started."""
-
+class _PlantBoot(NamedTuple):
     reason: int
     version: int  # version of this bus contract
     table_crc: int  # CRC-32 of the node's table
     counter: int = 0
 
-    ID = 0x500
-    LENGTH = 7
+
+class PlantBoot(_PlantBoot):
+    """PLANT has started."""
+
+    __slots__ = ()
+
+    ID: Final = 0x500
+    LENGTH: Final = 7
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -752,16 +828,20 @@ class PlantBoot(NamedTuple):
         )
 
 
-class FswBoot(NamedTuple):
-    """FSW has started."""
-
+class _FswBoot(NamedTuple):
     reason: int
     version: int  # version of this bus contract
     table_crc: int  # CRC-32 of the node's table
     counter: int = 0
 
-    ID = 0x510
-    LENGTH = 7
+
+class FswBoot(_FswBoot):
+    """FSW has started."""
+
+    __slots__ = ()
+
+    ID: Final = 0x510
+    LENGTH: Final = 7
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -785,16 +865,20 @@ class FswBoot(NamedTuple):
         )
 
 
-class CoilBoot(NamedTuple):
-    """COIL has started."""
-
+class _CoilBoot(NamedTuple):
     reason: int
     version: int  # version of this bus contract
     table_crc: int  # CRC-32 of the node's table
     counter: int = 0
 
-    ID = 0x520
-    LENGTH = 7
+
+class CoilBoot(_CoilBoot):
+    """COIL has started."""
+
+    __slots__ = ()
+
+    ID: Final = 0x520
+    LENGTH: Final = 7
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -818,16 +902,20 @@ class CoilBoot(NamedTuple):
         )
 
 
-class MagBoot(NamedTuple):
-    """MAG has started."""
-
+class _MagBoot(NamedTuple):
     reason: int
     version: int  # version of this bus contract
     table_crc: int  # CRC-32 of the node's table
     counter: int = 0
 
-    ID = 0x530
-    LENGTH = 7
+
+class MagBoot(_MagBoot):
+    """MAG has started."""
+
+    __slots__ = ()
+
+    ID: Final = 0x530
+    LENGTH: Final = 7
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -851,16 +939,20 @@ class MagBoot(NamedTuple):
         )
 
 
-class SunBoot(NamedTuple):
-    """SUN has started."""
-
+class _SunBoot(NamedTuple):
     reason: int
     version: int  # version of this bus contract
     table_crc: int  # CRC-32 of the node's table
     counter: int = 0
 
-    ID = 0x540
-    LENGTH = 7
+
+class SunBoot(_SunBoot):
+    """SUN has started."""
+
+    __slots__ = ()
+
+    ID: Final = 0x540
+    LENGTH: Final = 7
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -884,17 +976,21 @@ class SunBoot(NamedTuple):
         )
 
 
-class PlantHeartbeat(NamedTuple):
-    """PLANT is alive."""
-
+class _PlantHeartbeat(NamedTuple):
     state: int
     rejects: int  # frames rejected since boot, at most 65535
     slips: int  # missed deadlines since boot, at most 65535
     tick: int  # low 16 bits of the tick
     counter: int = 0
 
-    ID = 0x600
-    LENGTH = 8
+
+class PlantHeartbeat(_PlantHeartbeat):
+    """PLANT is alive."""
+
+    __slots__ = ()
+
+    ID: Final = 0x600
+    LENGTH: Final = 8
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -920,17 +1016,21 @@ class PlantHeartbeat(NamedTuple):
         )
 
 
-class FswHeartbeat(NamedTuple):
-    """FSW is alive."""
-
+class _FswHeartbeat(NamedTuple):
     state: int
     rejects: int  # frames rejected since boot, at most 65535
     slips: int  # missed deadlines since boot, at most 65535
     tick: int  # low 16 bits of the tick
     counter: int = 0
 
-    ID = 0x610
-    LENGTH = 8
+
+class FswHeartbeat(_FswHeartbeat):
+    """FSW is alive."""
+
+    __slots__ = ()
+
+    ID: Final = 0x610
+    LENGTH: Final = 8
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -956,17 +1056,21 @@ class FswHeartbeat(NamedTuple):
         )
 
 
-class CoilHeartbeat(NamedTuple):
-    """COIL is alive."""
-
+class _CoilHeartbeat(NamedTuple):
     state: int
     rejects: int  # frames rejected since boot, at most 65535
     slips: int  # missed deadlines since boot, at most 65535
     tick: int  # low 16 bits of the tick
     counter: int = 0
 
-    ID = 0x620
-    LENGTH = 8
+
+class CoilHeartbeat(_CoilHeartbeat):
+    """COIL is alive."""
+
+    __slots__ = ()
+
+    ID: Final = 0x620
+    LENGTH: Final = 8
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -992,17 +1096,21 @@ class CoilHeartbeat(NamedTuple):
         )
 
 
-class MagHeartbeat(NamedTuple):
-    """MAG is alive."""
-
+class _MagHeartbeat(NamedTuple):
     state: int
     rejects: int  # frames rejected since boot, at most 65535
     slips: int  # missed deadlines since boot, at most 65535
     tick: int  # low 16 bits of the tick
     counter: int = 0
 
-    ID = 0x630
-    LENGTH = 8
+
+class MagHeartbeat(_MagHeartbeat):
+    """MAG is alive."""
+
+    __slots__ = ()
+
+    ID: Final = 0x630
+    LENGTH: Final = 8
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -1028,17 +1136,21 @@ class MagHeartbeat(NamedTuple):
         )
 
 
-class SunHeartbeat(NamedTuple):
-    """SUN is alive."""
-
+class _SunHeartbeat(NamedTuple):
     state: int
     rejects: int  # frames rejected since boot, at most 65535
     slips: int  # missed deadlines since boot, at most 65535
     tick: int  # low 16 bits of the tick
     counter: int = 0
 
-    ID = 0x640
-    LENGTH = 8
+
+class SunHeartbeat(_SunHeartbeat):
+    """SUN is alive."""
+
+    __slots__ = ()
+
+    ID: Final = 0x640
+    LENGTH: Final = 8
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -1064,14 +1176,18 @@ class SunHeartbeat(NamedTuple):
         )
 
 
-class PlantEnd(NamedTuple):
-    """The run is over: last frame of a complete log."""
-
+class _PlantEnd(NamedTuple):
     ticks: int  # ticks flown, modulo 2^24
     counter: int = 0
 
-    ID = 0x700
-    LENGTH = 5
+
+class PlantEnd(_PlantEnd):
+    """The run is over: last frame of a complete log."""
+
+    __slots__ = ()
+
+    ID: Final = 0x700
+    LENGTH: Final = 5
 
     def encode(self) -> Frame:
         """The frame on the bus."""
@@ -1186,7 +1302,7 @@ SENDERS: dict[int, str] = {
 }
 """Node that sends each message."""
 
-AnyMessage = (
+CountedMessage = (
     CoilFire
     | CoilDipole
     | CoilStatus
@@ -1195,11 +1311,9 @@ AnyMessage = (
     | SunVector
     | RefAttitude
     | RefRate
-    | Sync
     | NavAttitude
     | NavRate
     | NavQuality
-    | TickDone
     | PlantEvent
     | FswEvent
     | CoilEvent
@@ -1217,6 +1331,8 @@ AnyMessage = (
     | SunHeartbeat
     | PlantEnd
 )
+
+AnyMessage = CountedMessage | Sync | TickDone
 
 CLASSES: dict[int, type[AnyMessage]] = {
     0x080: CoilFire,
@@ -1250,16 +1366,6 @@ CLASSES: dict[int, type[AnyMessage]] = {
     0x700: PlantEnd,
 }
 """Class of each message."""
-
-
-class Message(Protocol):
-    """What all messages have in common."""
-
-    ID: int
-    LENGTH: int
-
-    def encode(self) -> Frame:
-        """The frame on the bus."""
 
 
 def intact(frame: Frame) -> bool:

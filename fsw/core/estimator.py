@@ -1,0 +1,167 @@
+"""From readings to an estimate: start by TRIAD, then the filter, gated, blanked and restarted when lost."""
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+from fsw.core import mekf
+from fsw.core.earth import MU_M3PS2
+from fsw.core.ephemeris import Reference
+from fsw.core.mekf import Estimate, MekfConfig
+from fsw.core.quaternion import canonical, conjugate, multiply, rotate
+from fsw.core.readings import Readings
+from fsw.core.triad import consistent, triad
+from fsw.core.vector import ZERO, Vec3, scale, sub
+
+TESLA_PER_NT = 1e-9
+MAX_ELAPSED_TICKS = 60
+"""After a longer silence the filter starts anew instead of predicting."""
+
+
+@dataclass(frozen=True, slots=True)
+class EstimatorConfig:
+    """Filter tuning and the tests around it. ``perfect`` takes the reference messages instead of filtering."""
+
+    mekf: MekfConfig
+    perfect: bool
+    max_field_error_t: float
+    max_angle_error_rad: float
+    min_separation_rad: float
+    restart_after_rejections: int
+    valid_sigma_rad: float
+
+
+@dataclass(frozen=True, slots=True)
+class EstimatorState:
+    """The estimate, or None before start-up, and the measurements the gate refused in a row."""
+
+    estimate: Estimate | None = None
+    rejected_in_a_row: int = 0
+    rejected_total: int = 0
+    restarts: int = 0
+
+
+class Attitude(NamedTuple):
+    """What control and telemetry use: body relative to the orbital frame, and how it came about."""
+
+    q_body_from_orbit: tuple[float, float, float, float]
+    omega_body_orbit_radps: Vec3
+    sigma3_attitude_rad: float
+    sigma3_rate_radps: float
+    valid: bool
+
+
+class Used(NamedTuple):
+    """Which measurements were taken in this tick."""
+
+    field: bool
+    sun: bool
+    blanked: bool
+
+
+NONE_USED = Used(False, False, False)
+UNKNOWN = Attitude((1.0, 0.0, 0.0, 0.0), ZERO, 4.0, 1.0, False)
+
+
+def usable_field(readings: Readings) -> Vec3 | None:
+    """The field sample in tesla, or None where a coil was driven or its current still flowed (or may have)."""
+    field, coil = readings.field, readings.coil
+    if field is None or not field.valid or coil is None or coil.level != 0 or coil.current_ma != 0:
+        return None
+    return (field.b_x * TESLA_PER_NT, field.b_y * TESLA_PER_NT, field.b_z * TESLA_PER_NT)
+
+
+def usable_sun(readings: Readings) -> Vec3 | None:
+    """The measured Sun direction, or None."""
+    sun = readings.sun
+    return (sun.s_x, sun.s_y, sun.s_z) if sun is not None and sun.valid else None
+
+
+def estimate(
+    state: EstimatorState,
+    readings: Readings,
+    reference: Reference,
+    m_body_am2: Vec3,
+    elapsed_ticks: int,
+    config: EstimatorConfig,
+) -> tuple[EstimatorState, Used]:
+    """Bring the estimate to this tick.
+
+    Args:
+        state: of the tick before.
+        readings: what the boards said.
+        reference: field, Sun and orbit at this tick.
+        m_body_am2: dipole driven over the tick that ends now, body axes.
+        elapsed_ticks: ticks since ``state``; more than one where a SYNC was lost.
+        config: tuning.
+    """
+    field, sun = usable_field(readings), usable_sun(readings)
+    blanked = field is None and readings.field is not None
+    if state.estimate is not None and (elapsed_ticks > MAX_ELAPSED_TICKS or not mekf.healthy(state.estimate)):
+        state = _restart(state)
+    if state.estimate is None:
+        started = _start(field, sun, reference, config)
+        return replace(state, estimate=started), Used(started is not None, started is not None, blanked)
+
+    gravity = 3.0 * MU_M3PS2 / reference.radius_m**3
+    e1_eci = scale(1.0 / reference.radius_m, reference.r_eci_m)
+    current = state.estimate
+    for remaining in range(elapsed_ticks, 0, -1):
+        dipole = m_body_am2 if remaining == 1 else ZERO
+        current = mekf.predict(current, e1_eci, reference.b_eci_t, gravity, dipole, config.mekf)
+    after_field = (
+        mekf.update_field(current, field, reference.b_eci_t, config.mekf) if field is not None else None
+    )
+    current = after_field or current
+    after_sun = mekf.update_sun(current, sun, reference.sun_eci, config.mekf) if sun is not None else None
+    current = after_sun or current
+
+    used = Used(after_field is not None, after_sun is not None, blanked)
+    rejected = (field is not None and not used.field) + (sun is not None and not used.sun)
+    in_a_row = (
+        state.rejected_in_a_row + rejected
+        if rejected
+        else 0
+        if used.field or used.sun
+        else state.rejected_in_a_row
+    )
+    moved = EstimatorState(current, in_a_row, state.rejected_total + rejected, state.restarts)
+    return (_restart(moved) if in_a_row >= config.restart_after_rejections else moved), used
+
+
+def attitude(state: EstimatorState, reference: Reference, config: EstimatorConfig) -> Attitude:
+    """The estimate as seen from the orbital frame."""
+    known = state.estimate
+    if known is None:
+        return UNKNOWN
+    q = canonical(multiply(conjugate(reference.q_orbit_from_eci), known.q_body_from_eci))
+    e3_body = rotate(q, (0.0, 0.0, 1.0))
+    omega = sub(known.omega_body_radps, scale(reference.orbit_rate_radps, e3_body))
+    variances = known.covariance.diagonal()
+    sigma3_attitude = 3.0 * float(variances[0:3].max()) ** 0.5
+    sigma3_rate = 3.0 * float(variances[3:6].max()) ** 0.5
+    return Attitude(q, omega, sigma3_attitude, sigma3_rate, sigma3_attitude <= 3.0 * config.valid_sigma_rad)
+
+
+def perfect_attitude(readings: Readings, before: Attitude) -> Attitude:
+    """The attitude the reference messages give; the one before, no longer valid, where they are missing."""
+    q, w = readings.ref_attitude, readings.ref_rate
+    if q is None or w is None or not q.valid or not w.valid:
+        return before._replace(valid=False)
+    scalar = max(0.0, 1.0 - q.q_x**2 - q.q_y**2 - q.q_z**2) ** 0.5
+    return Attitude((scalar, q.q_x, q.q_y, q.q_z), (w.w_x, w.w_y, w.w_z), 0.0, 0.0, True)
+
+
+def _start(
+    field: Vec3 | None, sun: Vec3 | None, reference: Reference, config: EstimatorConfig
+) -> Estimate | None:
+    if field is None or sun is None or not reference.lit:
+        return None
+    b, s = reference.b_eci_t, reference.sun_eci
+    limits = (config.max_field_error_t, config.max_angle_error_rad, config.min_separation_rad)
+    if not consistent(field, sun, b, s, *limits):
+        return None
+    return mekf.start(triad(sun, field, s, b), ZERO, config.mekf)
+
+
+def _restart(state: EstimatorState) -> EstimatorState:
+    return EstimatorState(None, 0, state.rejected_total, state.restarts + 1)

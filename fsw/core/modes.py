@@ -1,0 +1,107 @@
+"""The mode table: from where to where, on which condition, held for how long.
+
+Rows of the current mode are looked at in order; the first whose condition has held without a break for its
+dwell time is taken. Hysteresis lies in the conditions: what leads out of a mode is wider than what leads in.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from fsw.core.estimator import Attitude
+from fsw.core.vector import norm
+from fsw.wire.messages import Mode
+
+
+class Situation(NamedTuple):
+    """The conditions of the table, judged once a tick."""
+
+    tripped: bool
+    clear: bool
+    lost_attitude: bool
+    slow: bool
+    fast: bool
+    near: bool
+    far: bool
+
+
+class Row(NamedTuple):
+    """A transition: taken when ``condition`` has held for the dwell of that name."""
+
+    source: Mode
+    target: Mode
+    condition: str
+    dwell: str
+
+
+TABLE: tuple[Row, ...] = (
+    Row(Mode.SAFE, Mode.DETUMBLE, "clear", "recover_s"),
+    Row(Mode.DETUMBLE, Mode.SAFE, "tripped", "none_s"),
+    Row(Mode.DETUMBLE, Mode.ACQUIRE, "slow", "settle_s"),
+    Row(Mode.ACQUIRE, Mode.SAFE, "tripped", "none_s"),
+    Row(Mode.ACQUIRE, Mode.DETUMBLE, "fast", "settle_s"),
+    Row(Mode.ACQUIRE, Mode.DETUMBLE, "lost_attitude", "lose_s"),
+    Row(Mode.ACQUIRE, Mode.POINT, "near", "hold_s"),
+    Row(Mode.POINT, Mode.SAFE, "tripped", "none_s"),
+    Row(Mode.POINT, Mode.DETUMBLE, "fast", "settle_s"),
+    Row(Mode.POINT, Mode.DETUMBLE, "lost_attitude", "lose_s"),
+    Row(Mode.POINT, Mode.ACQUIRE, "far", "hold_s"),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class ModeConfig:
+    """Thresholds, and dwell ticks by row of ``TABLE``.
+
+    ``near_cosine`` and ``far_cosine`` are cosines of the angle from nominal; ``axis_only`` judges that
+    angle for body axis 1 alone, from the local vertical.
+    """
+
+    dwell_ticks: tuple[int, ...]
+    slow_radps: float
+    fast_radps: float
+    near_cosine: float
+    far_cosine: float
+    axis_only: bool
+    trips_to_stay_safe: int
+
+
+@dataclass(frozen=True, slots=True)
+class ModeState:
+    """The mode, since when, and since when each row's condition has held (-1: it does not)."""
+
+    mode: Mode = Mode.SAFE
+    since_tick: int = 0
+    held_since: tuple[int, ...] = (-1,) * len(TABLE)
+    trips: int = 0
+
+
+def judge(attitude: Attitude, tripped: bool, state: ModeState, config: ModeConfig) -> Situation:
+    """The conditions of the table at this tick."""
+    q0, q1, q2, q3 = attitude.q_body_from_orbit
+    cosine = q0 * q0 + q1 * q1 - q2 * q2 - q3 * q3 if config.axis_only else 2.0 * q0 * q0 - 1.0
+    rate = norm(attitude.omega_body_orbit_radps)
+    known = attitude.valid
+    return Situation(
+        tripped=tripped,
+        clear=not tripped and state.trips < config.trips_to_stay_safe,
+        lost_attitude=not known,
+        slow=known and rate < config.slow_radps,
+        fast=known and rate > config.fast_radps,
+        near=known and cosine > config.near_cosine,
+        far=known and cosine < config.far_cosine,
+    )
+
+
+def advance(state: ModeState, situation: Situation, tick: int, config: ModeConfig) -> ModeState:
+    """The mode after this tick. At most one transition a tick; every condition starts anew in a new mode."""
+    held = list(state.held_since)
+    trips = state.trips + (situation.tripped and state.mode is not Mode.SAFE)
+    for index, row in enumerate(TABLE):
+        if row.source is not state.mode or not getattr(situation, row.condition):
+            held[index] = -1
+            continue
+        if held[index] < 0:
+            held[index] = tick
+        if tick - held[index] >= config.dwell_ticks[index]:
+            return ModeState(row.target, tick, (-1,) * len(TABLE), trips)
+    return ModeState(state.mode, state.since_tick, tuple(held), trips)

@@ -1,0 +1,62 @@
+"""Requirements as monitors: each a name, a limit and a predicate over one tick. A violation trips to SAFE."""
+
+from collections.abc import Callable
+from enum import IntEnum
+from math import isfinite
+from typing import NamedTuple
+
+from fsw.core.estimator import Attitude
+from fsw.core.vector import Vec3
+
+
+class Monitor(IntEnum):
+    """Numbers of the monitors, as reported on the bus."""
+
+    ATTITUDE_FINITE = 1
+    QUATERNION_UNIT = 2
+    RATE_BOUNDED = 3
+    OWED_FINITE = 4
+    FIELD_FRESH = 5
+    COIL_STATUS_FRESH = 6
+    COIL_AS_COMMANDED = 7
+    ORBIT_KNOWN = 8
+
+
+class Watched(NamedTuple):
+    """What the monitors look at."""
+
+    attitude: Attitude
+    owed_impulse_body_nms: Vec3
+    field_age_ticks: int
+    status_age_ticks: int
+    unexpected_drive: bool
+    orbit_known: bool
+    stale_after_ticks: int
+
+
+RATE_LIMIT_RADPS = 0.5
+
+MONITORS: tuple[tuple[Monitor, Callable[[Watched], bool]], ...] = (
+    (
+        Monitor.ATTITUDE_FINITE,
+        lambda w: isfinite(sum(w.attitude.q_body_from_orbit) + sum(w.attitude.omega_body_orbit_radps)),
+    ),
+    (Monitor.QUATERNION_UNIT, lambda w: abs(sum(c * c for c in w.attitude.q_body_from_orbit) - 1.0) < 1e-6),
+    (
+        Monitor.RATE_BOUNDED,
+        lambda w: all(abs(c) < RATE_LIMIT_RADPS for c in w.attitude.omega_body_orbit_radps),
+    ),
+    (Monitor.OWED_FINITE, lambda w: isfinite(sum(w.owed_impulse_body_nms))),
+    (Monitor.FIELD_FRESH, lambda w: w.field_age_ticks < w.stale_after_ticks),
+    (Monitor.COIL_STATUS_FRESH, lambda w: w.status_age_ticks < w.stale_after_ticks),
+    (Monitor.COIL_AS_COMMANDED, lambda w: not w.unexpected_drive),
+    (Monitor.ORBIT_KNOWN, lambda w: w.orbit_known),
+)
+
+
+def first_violation(watched: Watched) -> Monitor | None:
+    """The first monitor that is violated, in the order of the list, or None."""
+    for monitor, holds in MONITORS:
+        if not holds(watched):
+            return monitor
+    return None

@@ -1,0 +1,115 @@
+"""The orbit: SGP4 on a two-line element set, or a circular Kepler orbit."""
+
+from dataclasses import dataclass, field
+from math import cos, isfinite, radians, sin, sqrt
+from typing import Any
+
+from sgp4.api import SGP4_ERRORS, Satrec
+
+from fsw.core.earth import MU_M3PS2, RADIUS_M
+from fsw.core.vector import Vec3
+
+State = tuple[Vec3, Vec3]
+"""Position (m) and velocity (m/s), both in eci."""
+
+_UNIX_EPOCH_JD = 2440587.5
+_DAY_S = 86400.0
+
+
+@dataclass(frozen=True, slots=True)
+class Sgp4Orbit:
+    """A two-line element set and the propagator initialised from it."""
+
+    line1: str
+    line2: str
+    satellite: Any = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class CircularOrbit:
+    """A circular Kepler orbit: r = radius (node cos u + ahead sin u), u = u0 + rate (t - epoch)."""
+
+    epoch_unix_s: float
+    radius_m: float
+    rate_radps: float
+    u0_rad: float
+    node_eci: Vec3
+    ahead_eci: Vec3
+
+
+Orbit = Sgp4Orbit | CircularOrbit
+
+
+def sgp4_orbit(line1: str, line2: str) -> Sgp4Orbit:
+    """The orbit of a two-line element set (Vallado et al. 2006, WGS-72 as the sets are made).
+
+    Raises:
+        ValueError: a line is malformed or its checksum wrong, the lines are of two satellites, or SGP4 refuses
+            the elements.
+    """
+    line1, line2 = line1.rstrip(), line2.rstrip()
+    _check_line(line1, "1")
+    _check_line(line2, "2")
+    if line1[2:7] != line2[2:7]:
+        raise ValueError(f"the element lines are of two satellites, {line1[2:7]} and {line2[2:7]}")
+    satellite = Satrec.twoline2rv(line1, line2)
+    error, _, _ = satellite.sgp4_tsince(0.0)
+    if error:
+        raise ValueError(f"SGP4 refuses the elements of {line1[2:7]}: {SGP4_ERRORS[error]}")
+    return Sgp4Orbit(line1, line2, satellite)
+
+
+def _check_line(line: str, number: str) -> None:
+    if len(line) != 69 or line[:2] != f"{number} " or not line[68].isdigit():
+        raise ValueError(f"element line {number} must be 69 characters beginning with '{number} ': {line!r}")
+    checksum = sum(int(c) if c.isdigit() else c == "-" for c in line[:68]) % 10
+    if checksum != int(line[68]):
+        raise ValueError(f"element line {number} has checksum {line[68]} but adds up to {checksum}: {line!r}")
+
+
+def circular_orbit(
+    altitude_km: float, inclination_deg: float, raan_deg: float, u0_deg: float, epoch_unix_s: float
+) -> CircularOrbit:
+    """The circular orbit at an altitude above 6378.137 km with the argument of latitude u0 at the epoch.
+
+    Raises:
+        ValueError: the orbit is not above the ground, or a number is not finite.
+    """
+    if not all(map(isfinite, (altitude_km, inclination_deg, raan_deg, u0_deg, epoch_unix_s))):
+        raise ValueError("the elements of a circular orbit must be finite numbers")
+    if altitude_km <= 0.0:
+        raise ValueError(f"a circular orbit needs an altitude above 0 km, not {altitude_km:g}")
+    radius_m = RADIUS_M + 1000.0 * altitude_km
+    raan, inclination = radians(raan_deg), radians(inclination_deg)
+    return CircularOrbit(
+        epoch_unix_s=epoch_unix_s,
+        radius_m=radius_m,
+        rate_radps=sqrt(MU_M3PS2 / radius_m) / radius_m,
+        u0_rad=radians(u0_deg),
+        node_eci=(cos(raan), sin(raan), 0.0),
+        ahead_eci=(-sin(raan) * cos(inclination), cos(raan) * cos(inclination), sin(inclination)),
+    )
+
+
+def state_eci(orbit: Orbit, unix_s: float) -> State | None:
+    """Position (m) and velocity (m/s) in eci, or None where SGP4 has no answer (a decayed orbit)."""
+    if isinstance(orbit, CircularOrbit):
+        return _circular_state(orbit, unix_s)
+    days, seconds = divmod(unix_s, _DAY_S)
+    error, r_km, v_kmps = orbit.satellite.sgp4(_UNIX_EPOCH_JD + days, seconds / _DAY_S)
+    if error:
+        return None
+    return (
+        (1000.0 * r_km[0], 1000.0 * r_km[1], 1000.0 * r_km[2]),
+        (1000.0 * v_kmps[0], 1000.0 * v_kmps[1], 1000.0 * v_kmps[2]),
+    )
+
+
+def _circular_state(orbit: CircularOrbit, unix_s: float) -> State:
+    u = orbit.u0_rad + orbit.rate_radps * (unix_s - orbit.epoch_unix_s)
+    x, y = orbit.radius_m * cos(u), orbit.radius_m * sin(u)
+    n, a, w0 = orbit.node_eci, orbit.ahead_eci, orbit.rate_radps
+    return (
+        (n[0] * x + a[0] * y, n[1] * x + a[1] * y, n[2] * x + a[2] * y),
+        (w0 * (a[0] * x - n[0] * y), w0 * (a[1] * x - n[1] * y), w0 * (a[2] * x - n[2] * y)),
+    )

@@ -1,0 +1,127 @@
+"""The PoSAT-1 actuation scheduler: short quantised pulses, one coil at a time, a long back-off.
+
+One coil at a time, three levels per polarity, pulses of 3 s, then at least 100 s off: counted from the end
+of the pulse, for that coil or for all of them (``shared``). After boot a full back-off passes first. All
+timing is in integer ticks, rounded so that the pulse is never longer and the gap never shorter.
+
+What the continuous law asks for is kept as a torque impulse that is still owed (a leaky sigma-delta
+modulator). The pulse that is fired is the one that brings the owed impulse, weighted by the inverse of the
+inertia, closest to zero; firing none is one of the choices and wins ties.
+
+Source: Tavares et al. (ConSat, PoSAT-1) for the limits; the modulator is this project's.
+"""
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+from fsw.core.vector import ZERO, Mat3, Vec3, cross, dot, scale, sub, transform
+
+AXES: Mat3 = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+@dataclass(frozen=True, slots=True)
+class PulseConfig:
+    """Limits and levels, in ticks and SI."""
+
+    pulse_ticks: int
+    backoff_ticks: int
+    duration_ms: int
+    shared: bool
+    levels_am2: Vec3
+    pulse_s: float
+    tick_s: float
+    leak_s: float
+    inertia_inverse: Mat3
+
+
+@dataclass(frozen=True, slots=True)
+class PulseState:
+    """Own timers and the impulse still owed.
+
+    ``ready_tick[coil]`` is the first tick in answer to which that coil may fire again; ``busy_until`` the
+    first in answer to which no own pulse is under way.
+    """
+
+    ready_tick: tuple[int, int, int]
+    busy_until: int
+    owed_impulse_body_nms: Vec3
+
+
+class Pulse(NamedTuple):
+    """A pulse to fire: coil 0..2, level -3..3 without zero."""
+
+    coil: int
+    level: int
+
+
+def pulse_timing(tick_hz: int, pulse_ms: int, backoff_ms: int) -> tuple[int, int, int]:
+    """(pulse ticks, back-off ticks, duration in ms): the pulse rounded down, the back-off rounded up.
+
+    Raises:
+        ValueError: a tick is longer than the pulse.
+    """
+    pulse_ticks = pulse_ms * tick_hz // 1000
+    if pulse_ticks < 1:
+        raise ValueError(f"a pulse of {pulse_ms} ms is shorter than one tick at {tick_hz} Hz")
+    return pulse_ticks, -(-backoff_ms * tick_hz // 1000), pulse_ticks * 1000 // tick_hz
+
+
+def boot(tick: int, config: PulseConfig) -> PulseState:
+    """The state at boot: nothing owed, a full back-off ahead."""
+    first = tick + config.backoff_ticks
+    return PulseState(ready_tick=(first, first, first), busy_until=tick, owed_impulse_body_nms=ZERO)
+
+
+def owe(state: PulseState, torque_body_nm: Vec3, config: PulseConfig) -> PulseState:
+    """Add one tick of the torque asked for: r <- (1 - h / tau) r + T h."""
+    keep, h = 1.0 - config.tick_s / config.leak_s, config.tick_s
+    r1, r2, r3 = state.owed_impulse_body_nms
+    t1, t2, t3 = torque_body_nm
+    owed = (keep * r1 + h * t1, keep * r2 + h * t2, keep * r3 + h * t3)
+    return replace(state, owed_impulse_body_nms=owed)
+
+
+def choose(state: PulseState, tick: int, b_body_t: Vec3, config: PulseConfig) -> Pulse | None:
+    """The pulse, among the coils whose own timer has run out, that leaves the least owed; None if none helps.
+
+    Minimises |J^-1 (r - T_p m x b)|^2 over coil and level, T_p the pulse length.
+    """
+    if tick < state.busy_until:
+        return None
+    owed = transform(config.inertia_inverse, state.owed_impulse_body_nms)
+    best: Pulse | None = None
+    least = 0.0
+    for coil in range(3):
+        if tick < state.ready_tick[coil]:
+            continue
+        gain = transform(config.inertia_inverse, scale(config.pulse_s, cross(AXES[coil], b_body_t)))
+        along, square = dot(owed, gain), dot(gain, gain)
+        for index, level_am2 in enumerate(config.levels_am2, start=1):
+            change = level_am2 * (level_am2 * square - 2.0 * abs(along))
+            if change < least:
+                least, best = change, Pulse(coil, index if along > 0.0 else -index)
+    return best
+
+
+def fire(state: PulseState, pulse: Pulse, tick: int, b_body_t: Vec3, config: PulseConfig) -> PulseState:
+    """The state once ``pulse`` has been requested in answer to ``tick``: timers set, impulse paid."""
+    end = tick + config.pulse_ticks
+    again = end + config.backoff_ticks
+    ready = tuple(
+        again if config.shared or coil == pulse.coil else before
+        for coil, before in enumerate(state.ready_tick)
+    )
+    dipole = scale(dipole_am2(pulse.level, config.levels_am2), AXES[pulse.coil])
+    paid = scale(config.pulse_s, cross(dipole, b_body_t))
+    return PulseState(
+        ready_tick=(ready[0], ready[1], ready[2]),
+        busy_until=end,
+        owed_impulse_body_nms=sub(state.owed_impulse_body_nms, paid),
+    )
+
+
+def dipole_am2(level: int, levels_am2: Vec3) -> float:
+    """The dipole of a level, A m^2, signed; zero for level 0."""
+    if level == 0:
+        return 0.0
+    return levels_am2[level - 1] if level > 0 else -levels_am2[-level - 1]

@@ -1,0 +1,34 @@
+"""Rate groups: slower work runs on the ticks where ``tick % divisor == offset``."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class RateGroup:
+    """A divisor and an offset in ticks.
+
+    Raises:
+        ValueError: the group would never run, or the divisor is not positive.
+    """
+
+    divisor: int
+    offset: int = 0
+
+    def __post_init__(self) -> None:
+        if self.divisor < 1:
+            raise ValueError(f"a rate group needs a divisor of at least 1, not {self.divisor}")
+        if not 0 <= self.offset < self.divisor:
+            raise ValueError(f"a rate group of divisor {self.divisor} never runs at offset {self.offset}")
+
+    def due(self, tick: int) -> bool:
+        """Whether the group runs in this tick."""
+        return tick % self.divisor == self.offset
+
+
+@dataclass(frozen=True, slots=True)
+class RateTable:
+    """When the slow reports are due."""
+
+    attitude: RateGroup
+    quality: RateGroup
+    heartbeat: RateGroup

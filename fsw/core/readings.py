@@ -1,0 +1,100 @@
+"""The decode gate: from raw frames to what the boards said in this tick.
+
+A frame is taken whole or not at all: known identifier, right length and CRC, a counter that moved, values
+in range. Everything else is counted and dropped.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from fsw.wire.frame import Frame
+from fsw.wire.messages import (
+    NAMES,
+    CoilRefused,
+    CoilStatus,
+    MagField,
+    RefAttitude,
+    RefRate,
+    SunVector,
+    intact,
+)
+
+INBOX_LIMIT = 64
+"""Frames looked at in one tick; a babbling node cannot cost more than that."""
+
+Listened = MagField | SunVector | CoilStatus | CoilRefused | RefAttitude | RefRate
+
+LISTENED: dict[int, type[Listened]] = {
+    MagField.ID: MagField,
+    SunVector.ID: SunVector,
+    CoilStatus.ID: CoilStatus,
+    CoilRefused.ID: CoilRefused,
+    RefAttitude.ID: RefAttitude,
+    RefRate.ID: RefRate,
+}
+_SLOT = {can_id: slot for slot, can_id in enumerate(LISTENED)}
+
+
+class Readings(NamedTuple):
+    """The last accepted message of each kind in this tick; None where there was none."""
+
+    field: MagField | None
+    sun: SunVector | None
+    coil: CoilStatus | None
+    refused: CoilRefused | None
+    ref_attitude: RefAttitude | None
+    ref_rate: RefRate | None
+
+
+NOTHING = Readings(None, None, None, None, None, None)
+
+
+@dataclass(frozen=True, slots=True)
+class GateState:
+    """Last counter of each listened message (-1: none yet) and counts since boot."""
+
+    counters: tuple[int, ...] = (-1,) * len(LISTENED)
+    rejected: int = 0
+    missed: int = 0
+    overrun: int = 0
+
+
+def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateState]:
+    """Judge the frames of one tick.
+
+    Returns:
+        The readings, and the gate's state with ``rejected`` (broken, unknown, repeated or out of range),
+        ``missed`` (jumps of a counter) and ``overrun`` (frames beyond the limit, unread) brought forward.
+    """
+    slots: list[object] = [None] * len(LISTENED)
+    counters = list(state.counters)
+    rejected, missed = state.rejected, state.missed
+    for frame in frames[:INBOX_LIMIT]:
+        message_class = LISTENED.get(frame.can_id)
+        if message_class is None:
+            rejected += frame.can_id not in NAMES
+            continue
+        if not intact(frame):
+            rejected += 1
+            continue
+        message = message_class.decode(frame.data)
+        slot = _SLOT[frame.can_id]
+        step = (message.counter - counters[slot]) & 0xF
+        if (counters[slot] >= 0 and step == 0) or not _in_range(message):
+            rejected += 1
+            continue
+        if counters[slot] >= 0:
+            missed += step - 1
+        counters[slot] = message.counter
+        slots[slot] = message
+    overrun = state.overrun + max(0, len(frames) - INBOX_LIMIT)
+    return Readings(*slots), GateState(tuple(counters), rejected, missed, overrun)  # type: ignore[arg-type]
+
+
+def _in_range(message: Listened) -> bool:
+    if isinstance(message, CoilStatus):
+        return -3 <= message.level <= 3 and message.coil <= 2
+    if isinstance(message, SunVector) and message.valid:
+        square = message.s_x**2 + message.s_y**2 + message.s_z**2
+        return 0.8 < square < 1.2
+    return True

@@ -1,0 +1,119 @@
+"""The whole flight state, what goes into a step and what comes out, and the state's checksum."""
+
+import struct
+import zlib
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from fsw.core.actuation import CoilView
+from fsw.core.control import FieldSample
+from fsw.core.ephemeris import EphemerisWindow, pack_values
+from fsw.core.estimator import UNKNOWN, Attitude, EstimatorState
+from fsw.core.modes import ModeState
+from fsw.core.pulses import PulseState
+from fsw.core.readings import GateState
+from fsw.wire.frame import Frame
+
+
+class Inbox(NamedTuple):
+    """What came between SYNC(k-1) and SYNC(k), and that SYNC's tick and time."""
+
+    tick: int
+    unix_time_s: int
+    frames: tuple[Frame, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class FlightState:
+    """Everything that fsw carries from one tick to the next.
+
+    ``tick`` is -1 before the first SYNC; ``field_tick`` and ``status_tick`` are the last ticks with an
+    intact MAG_FIELD and COIL_STATUS, ``time_error_s`` the last SYNC's time less the expected; ``sent`` are the counters of the messages that fsw sends.
+    """
+
+    tick: int
+    field_tick: int
+    status_tick: int
+    ignored_syncs: int
+    time_error_s: int
+    gate: GateState
+    ephemeris: EphemerisWindow | None
+    estimator: EstimatorState
+    attitude: Attitude
+    modes: ModeState
+    sample: FieldSample
+    pulses: PulseState
+    coil: CoilView
+    sent: tuple[int, ...]
+
+
+def checksum(state: FlightState) -> int:
+    """CRC-32 over every number of the state, little-endian: integers as 64 bit, floats as doubles."""
+    gate, modes, coil, pulses, attitude = state.gate, state.modes, state.coil, state.pulses, state.attitude
+    integers = (
+        state.tick,
+        state.field_tick,
+        state.status_tick,
+        state.ignored_syncs,
+        state.time_error_s,
+        *gate.counters,
+        gate.rejected,
+        gate.missed,
+        gate.overrun,
+        state.estimator.rejected_in_a_row,
+        state.estimator.rejected_total,
+        state.estimator.restarts,
+        attitude.valid,
+        modes.mode,
+        modes.since_tick,
+        *modes.held_since,
+        modes.trips,
+        state.sample.tick,
+        *pulses.ready_tick,
+        pulses.busy_until,
+        *coil.lockout_ms,
+        coil.driven_coil,
+        coil.driven_level,
+        coil.seq,
+        coil.refusals,
+        coil.fired_tick,
+        *coil.fired,
+        *state.sent,
+    )
+    floats: tuple[float, ...] = (
+        *attitude.q_body_from_orbit,
+        *attitude.omega_body_orbit_radps,
+        attitude.sigma3_attitude_rad,
+        attitude.sigma3_rate_radps,
+        *state.sample.b_body_t,
+        *pulses.owed_impulse_body_nms,
+    )
+    if state.ephemeris is not None:
+        floats += pack_values(state.ephemeris)
+    register = zlib.crc32(struct.pack(f"<{len(integers)}q{len(floats)}d", *integers, *floats))
+    known = state.estimator.estimate
+    if known is None:
+        return register
+    numbers = (*known.q_body_from_eci, *known.omega_body_radps, *known.mag_bias_t, *known.torque_body_nm)
+    register = zlib.crc32(struct.pack("<13d", *numbers), register)
+    return zlib.crc32(known.covariance.tobytes(), register)
+
+
+def initial_state(pulses: PulseState, sent: tuple[int, ...]) -> FlightState:
+    """The state at boot, before the first SYNC."""
+    return FlightState(
+        tick=-1,
+        field_tick=-1,
+        status_tick=-1,
+        ignored_syncs=0,
+        time_error_s=0,
+        gate=GateState(),
+        ephemeris=None,
+        estimator=EstimatorState(),
+        attitude=UNKNOWN,
+        modes=ModeState(),
+        sample=FieldSample(),
+        pulses=pulses,
+        coil=CoilView(),
+        sent=sent,
+    )

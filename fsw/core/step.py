@@ -1,0 +1,136 @@
+"""The flight loop as one pure function: gate, estimate, supervise, control, schedule, report."""
+
+from dataclasses import replace
+
+from fsw.core import control, pulses, telemetry
+from fsw.core.actuation import actuate, driven_dipole, hear
+from fsw.core.config import FlightConfig
+from fsw.core.control import FieldSample, Seen
+from fsw.core.ephemeris import Reference, advance, reference_at
+from fsw.core.estimator import (
+    NONE_USED,
+    UNKNOWN,
+    Used,
+    attitude,
+    estimate,
+    perfect_attitude,
+    usable_field,
+)
+from fsw.core.quaternion import rotate
+from fsw.core.readings import Readings, admit
+from fsw.core.state import FlightState, Inbox, checksum, initial_state
+from fsw.core.supervisor import Verdict, supervise
+from fsw.wire.frame import Frame
+from fsw.wire.messages import CoilFire, CountedMessage, TickDone
+
+Outbox = tuple[Frame, ...]
+
+
+def boot(config: FlightConfig) -> FlightState:
+    """The state before the first SYNC."""
+    return initial_state(pulses.boot(0, config.pulses), telemetry.FIRST_COUNTERS)
+
+
+def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[FlightState, Outbox]:
+    """One tick: (state, inbox, config) -> (state, outbox), the outbox closed by TICK_DONE.
+
+    A SYNC that does not move the tick forward is counted and answered with nothing.
+    """
+    if inbox.tick <= state.tick:
+        return replace(state, ignored_syncs=state.ignored_syncs + 1), ()
+    before, tick = state, inbox.tick
+    state, readings = _gate(state, inbox, config)
+    state, reference, used = _estimate(state, readings, tick - before.tick, config)
+    verdict = supervise(state, state.attitude, tick, config)
+    state, seen = _look(replace(state, modes=verdict.modes), readings, reference)
+    dipole = control.dipole(state.modes.mode, seen, config.control)
+    pulse_state, coil, request = actuate(
+        state.pulses,
+        state.coil,
+        state.modes.mode,
+        dipole,
+        seen.b_body_t,
+        state.status_tick == tick,
+        tick,
+        config.pulses,
+    )
+    state = replace(state, pulses=pulse_state, coil=coil)
+    return _report(before, state, readings, used, reference, verdict, request, config)
+
+
+def _gate(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[FlightState, Readings]:
+    """Take what the boards said; at the first tick start every timer in full."""
+    tick = inbox.tick
+    if state.tick < 0:
+        state = replace(state, pulses=pulses.boot(tick, config.pulses), field_tick=tick, status_tick=tick)
+    readings, gate = admit(inbox.frames, state.gate)
+    expected_s = config.epoch_unix_s + tick // config.tick_hz
+    heard = replace(
+        state,
+        tick=tick,
+        field_tick=tick if readings.field is not None else state.field_tick,
+        status_tick=tick if readings.coil is not None else state.status_tick,
+        time_error_s=inbox.unix_time_s - expected_s,
+        gate=gate,
+        ephemeris=advance(state.ephemeris, tick, config.ephemeris),
+        coil=hear(state.coil, readings),
+    )
+    return heard, readings
+
+
+def _estimate(
+    state: FlightState, readings: Readings, elapsed_ticks: int, config: FlightConfig
+) -> tuple[FlightState, Reference | None, Used]:
+    if state.ephemeris is None:
+        return replace(state, attitude=UNKNOWN), None, NONE_USED
+    reference = reference_at(state.ephemeris, state.tick, config.ephemeris)
+    if config.estimator.perfect:
+        return (
+            replace(state, attitude=perfect_attitude(readings, state.attitude)),
+            reference,
+            NONE_USED,
+        )
+    driven = driven_dipole(state.coil, config.pulses)
+    estimator, used = estimate(state.estimator, readings, reference, driven, elapsed_ticks, config.estimator)
+    seen = attitude(estimator, reference, config.estimator)
+    return replace(state, estimator=estimator, attitude=seen), reference, used
+
+
+def _look(state: FlightState, readings: Readings, reference: Reference | None) -> tuple[FlightState, Seen]:
+    """What the law sees: the modelled field where the attitude is known, else the measured one."""
+    usable = usable_field(readings)
+    sample = FieldSample(usable, state.tick) if usable is not None else state.sample
+    b_body_t = sample.b_body_t
+    if state.attitude.valid and reference is not None:
+        b_orbit_t = rotate(reference.q_orbit_from_eci, reference.b_eci_t)
+        b_body_t = rotate(state.attitude.q_body_from_orbit, b_orbit_t)
+    return replace(state, sample=sample), Seen(state.attitude, b_body_t, sample, state.sample)
+
+
+def _report(
+    before: FlightState,
+    state: FlightState,
+    readings: Readings,
+    used: Used,
+    reference: Reference | None,
+    verdict: Verdict,
+    request: CoilFire | None,
+    config: FlightConfig,
+) -> tuple[FlightState, Outbox]:
+    tick = state.tick
+    messages: list[CountedMessage] = [] if request is None else [request]
+    if config.rates.attitude.due(tick):
+        messages += telemetry.attitude_messages(state.attitude)
+    if config.rates.quality.due(tick):
+        messages.append(
+            telemetry.quality_message(
+                state.attitude, state.modes, used, reference is not None and reference.lit
+            )
+        )
+    happenings = telemetry.happenings(before, state, readings, verdict.violated)
+    messages += [telemetry.event_message(happening, tick) for happening in happenings]
+    if config.rates.heartbeat.due(tick):
+        messages.append(telemetry.heartbeat_message(tick, state.modes, state.gate.rejected))
+    frames, sent = telemetry.number(messages, state.sent)
+    state = replace(state, sent=sent)
+    return state, (*frames, TickDone(tick, checksum(state)).encode())

@@ -1,0 +1,125 @@
+"""What fsw reports: navigation, events, heartbeat. Every message has a counter of its own in the state."""
+
+from enum import IntEnum
+from typing import NamedTuple
+
+from fsw.core.estimator import Attitude, Used
+from fsw.core.modes import ModeState
+from fsw.core.monitors import Monitor
+from fsw.core.readings import Readings
+from fsw.core.state import FlightState
+from fsw.wire.frame import Frame
+from fsw.wire.messages import (
+    CoilFire,
+    CountedMessage,
+    FswBoot,
+    FswEvent,
+    FswHeartbeat,
+    NavAttitude,
+    NavQuality,
+    NavRate,
+    Severity,
+)
+
+CONTRACT_VERSION = 1
+COUNTED = (CoilFire.ID, NavAttitude.ID, NavRate.ID, NavQuality.ID, FswEvent.ID, FswHeartbeat.ID)
+_SLOT = {can_id: slot for slot, can_id in enumerate(COUNTED)}
+FIRST_COUNTERS = (0,) * len(COUNTED)
+
+
+class Event(IntEnum):
+    """Numbers of fsw's events, and what the argument tells."""
+
+    MODE_CHANGED = 1  # the new mode
+    FILTER_STARTED = 2  # restarts so far
+    FILTER_RESTARTED = 3  # restarts so far
+    MONITOR_TRIPPED = 4  # number of the monitor
+    REQUEST_REFUSED = 5  # reason
+    TIME_MISMATCH = 6  # SYNC's time less the expected, s
+
+
+SEVERITY: dict[Event, Severity] = {
+    Event.MODE_CHANGED: Severity.INFO,
+    Event.FILTER_STARTED: Severity.INFO,
+    Event.FILTER_RESTARTED: Severity.WARNING,
+    Event.MONITOR_TRIPPED: Severity.ERROR,
+    Event.REQUEST_REFUSED: Severity.WARNING,
+    Event.TIME_MISMATCH: Severity.WARNING,
+}
+
+
+class Happening(NamedTuple):
+    """An event to report, with its argument."""
+
+    event: Event
+    argument: int
+
+
+def boot_frame(table_crc: int) -> Frame:
+    """FSW_BOOT: sent once, before the first SYNC."""
+    return FswBoot(reason=0, version=CONTRACT_VERSION, table_crc=table_crc).encode()
+
+
+def attitude_messages(attitude: Attitude) -> list[CountedMessage]:
+    """NAV_ATTITUDE and NAV_RATE."""
+    _, q1, q2, q3 = attitude.q_body_from_orbit
+    valid = int(attitude.valid)
+    return [NavAttitude(valid, q1, q2, q3), NavRate(valid, *attitude.omega_body_orbit_radps)]
+
+
+def quality_message(attitude: Attitude, modes: ModeState, used: Used, lit: bool) -> CountedMessage:
+    """NAV_QUALITY."""
+    return NavQuality(
+        mode=modes.mode,
+        sigma3_attitude=attitude.sigma3_attitude_rad,
+        sigma3_rate=attitude.sigma3_rate_radps,
+        mag_used=int(used.field),
+        sun_used=int(used.sun),
+        mag_blanked=int(used.blanked),
+        eclipse=int(not lit),
+        estimate_valid=int(attitude.valid),
+        tripped=int(modes.trips > 0),
+        trips=min(modes.trips, 255),
+    )
+
+
+def heartbeat_message(tick: int, modes: ModeState, rejects: int) -> CountedMessage:
+    """FSW_HEARTBEAT."""
+    return FswHeartbeat(state=modes.mode, rejects=min(rejects, 0xFFFF), slips=0, tick=tick)
+
+
+def happenings(
+    before: FlightState, after: FlightState, readings: Readings, violated: Monitor | None
+) -> list[Happening]:
+    """What is worth an event in this tick: changes only, so that nothing repeats while it lasts."""
+    found = []
+    if after.modes.trips != before.modes.trips and violated is not None:
+        found.append(Happening(Event.MONITOR_TRIPPED, violated))
+    if after.modes.mode is not before.modes.mode:
+        found.append(Happening(Event.MODE_CHANGED, after.modes.mode))
+    if after.estimator.restarts != before.estimator.restarts:
+        found.append(Happening(Event.FILTER_RESTARTED, after.estimator.restarts))
+    if before.estimator.estimate is None and after.estimator.estimate is not None:
+        found.append(Happening(Event.FILTER_STARTED, after.estimator.restarts))
+    if readings.refused is not None:
+        found.append(Happening(Event.REQUEST_REFUSED, readings.refused.reason))
+    if after.time_error_s != before.time_error_s:
+        found.append(Happening(Event.TIME_MISMATCH, after.time_error_s))
+    return found
+
+
+def event_message(happening: Happening, tick: int) -> CountedMessage:
+    """FSW_EVENT."""
+    event, argument = happening
+    return FswEvent(severity=SEVERITY[event], event=event, tick=tick, argument=argument)
+
+
+def number(messages: list[CountedMessage], sent: tuple[int, ...]) -> tuple[list[Frame], tuple[int, ...]]:
+    """Give each message its counter and encode it; also the counters afterwards."""
+    counters = list(sent)
+    frames = []
+    for message in messages:
+        slot = _SLOT[message.ID]
+        frames.append(message._replace(counter=counters[slot]).encode())
+        counters[slot] = (counters[slot] + 1) & 0xF
+    return frames, tuple(counters)

@@ -1,0 +1,129 @@
+"""From a checked onboard table to the config the core uses: units of people to SI, seconds to ticks."""
+
+from math import ceil, cos, radians
+
+from fsw.core.config import FlightConfig
+from fsw.core.control import ControlConfig
+from fsw.core.ephemeris import ephemeris_model
+from fsw.core.estimator import EstimatorConfig
+from fsw.core.field import FieldKind
+from fsw.core.mekf import mekf_config
+from fsw.core.modes import TABLE, ModeConfig
+from fsw.core.orbit import Orbit, circular_orbit, sgp4_orbit
+from fsw.core.pulses import PulseConfig, pulse_timing
+from fsw.core.rates import RateGroup, RateTable
+from fsw.core.vector import inverse
+from fsw.io.table import CoilTable, FlightTable, ModesTable, OrbitTable, TableError, TelemetryTable
+
+NT = 1e-9
+
+
+def flight_config(table: FlightTable) -> FlightConfig:
+    """Prepare everything a step needs.
+
+    Raises:
+        TableError: the table is consistent in itself but cannot be flown (orbit decayed, pulse below a tick).
+    """
+    tick_hz = table.time.tick_hz
+    try:
+        return FlightConfig(
+            tick_hz=tick_hz,
+            epoch_unix_s=table.epoch_unix_s,
+            table_crc=table.crc,
+            ephemeris=ephemeris_model(
+                _orbit(table.orbit, table.epoch_unix_s),
+                table.epoch_unix_s,
+                tick_hz,
+                FieldKind(table.field.model),
+                table.field.degree,
+                table.telemetry.ephemeris_s,
+            ),
+            estimator=_estimator(table),
+            control=ControlConfig(table.control.law, table.control.k_w, table.control.k_a, 1.0 / tick_hz),
+            pulses=_pulses(table),
+            modes=_modes(table.modes, tick_hz),
+            rates=_rates(table.telemetry, tick_hz),
+            stale_after_ticks=ceil(table.modes.stale_after_s * tick_hz),
+        )
+    except ValueError as error:
+        raise TableError(f"flight table: {error}") from None
+
+
+def _orbit(orbit: OrbitTable, epoch_unix_s: int) -> Orbit:
+    if orbit.tle is not None:
+        return sgp4_orbit(*orbit.tle)
+    altitude_km = orbit.altitude_km or 0.0
+    return circular_orbit(altitude_km, orbit.inclination_deg, orbit.raan_deg, orbit.u0_deg, epoch_unix_s)
+
+
+def _estimator(table: FlightTable) -> EstimatorConfig:
+    tuning = table.estimator
+    return EstimatorConfig(
+        mekf=mekf_config(
+            table.body.inertia,
+            1.0 / table.time.tick_hz,
+            estimate_bias=tuning.bias,
+            estimate_torque=tuning.torque,
+            magnetometer_sigma_t=tuning.magnetometer_sigma_nt * NT,
+            sun_sigma_rad=radians(tuning.sun_sigma_deg),
+            attitude_sigma_rad=radians(tuning.attitude_sigma_deg),
+            rate_sigma_radps=radians(tuning.rate_sigma_degps),
+            bias_sigma_t=tuning.bias_sigma_nt * NT,
+            torque_sigma_nm=tuning.torque_sigma_nm,
+            torque_noise_nm_rts=tuning.torque_noise_nm_rts,
+            bias_walk_t_prts=tuning.bias_walk_nt_prts * NT,
+            torque_walk_nm_prts=tuning.torque_walk_nm_prts,
+            gate_nis=tuning.gate_nis,
+        ),
+        perfect=table.knowledge == "perfect",
+        max_field_error_t=tuning.max_field_error_nt * NT,
+        max_angle_error_rad=radians(tuning.max_angle_error_deg),
+        min_separation_rad=radians(tuning.min_separation_deg),
+        restart_after_rejections=tuning.restart_after_rejections,
+        valid_sigma_rad=radians(tuning.valid_sigma_deg),
+    )
+
+
+def _pulses(table: FlightTable) -> PulseConfig:
+    coils: CoilTable = table.coils
+    tick_hz = table.time.tick_hz
+    pulse_ticks, backoff_ticks, duration_ms = pulse_timing(
+        tick_hz, int(coils.pulse_s * 1000.0 + 1e-6), ceil(coils.backoff_s * 1000.0 - 1e-6)
+    )
+    return PulseConfig(
+        pulse_ticks=pulse_ticks,
+        backoff_ticks=backoff_ticks,
+        duration_ms=duration_ms,
+        shared=coils.backoff == "shared",
+        levels_am2=coils.levels_am2,
+        pulse_s=duration_ms / 1000.0,
+        tick_s=1.0 / tick_hz,
+        leak_s=table.control.leak_s,
+        inertia_inverse=inverse(table.body.inertia),
+    )
+
+
+def _modes(modes: ModesTable, tick_hz: int) -> ModeConfig:
+    dwell_s = {
+        "none_s": 0.0,
+        "recover_s": modes.recover_s,
+        "settle_s": modes.settle_s,
+        "lose_s": modes.lose_s,
+        "hold_s": modes.hold_s,
+    }
+    return ModeConfig(
+        dwell_ticks=tuple(ceil(dwell_s[row.dwell] * tick_hz) for row in TABLE),
+        slow_radps=radians(modes.slow_degps),
+        fast_radps=radians(modes.fast_degps),
+        near_cosine=cos(radians(modes.near_deg)),
+        far_cosine=cos(radians(modes.far_deg)),
+        axis_only=modes.axis_only,
+        trips_to_stay_safe=modes.trips_to_stay_safe,
+    )
+
+
+def _rates(telemetry: TelemetryTable, tick_hz: int) -> RateTable:
+    def every(period_s: float) -> RateGroup:
+        return RateGroup(max(1, round(period_s * tick_hz)))
+
+    return RateTable(every(telemetry.attitude_s), every(telemetry.quality_s), every(telemetry.heartbeat_s))

@@ -1,0 +1,317 @@
+"""The onboard table: what a flight table file may say, and its checks.
+
+A table is TOML with the units of people (deg, nT, km). Sections left out take the values
+of ``fsw/flight.toml``.
+"""
+
+import json
+import tomllib
+import zlib
+from datetime import UTC, datetime
+from decimal import Decimal
+from importlib import resources
+from math import ceil
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, Strict, ValidationError, model_validator
+
+from fsw.core.control import POINTING_LAWS
+from fsw.core.orbit import sgp4_orbit
+from fsw.core.vector import Mat3
+
+Triple = Annotated[tuple[float, float, float], Strict(False)]
+Square = Annotated[tuple[Triple, Triple, Triple], Strict(False)]
+Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
+
+Nested = dict[str, Any]
+Model = TypeVar("Model", bound=BaseModel)
+
+
+class TableError(Exception):
+    """A table that cannot be used; the message is one sentence for the user."""
+
+
+class Section(BaseModel):
+    """A section that knows its keys and takes no others."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+class TimeTable(Section):
+    """Tick rate and the time of tick 0; without ``epoch_utc`` the TLE's epoch, rounded up to a second."""
+
+    tick_hz: int = Field(ge=1, le=100)
+    epoch_utc: str | None = None
+
+    @model_validator(mode="after")
+    def _epoch_is_a_time(self) -> Self:
+        if self.epoch_utc is not None:
+            parse_utc(self.epoch_utc)
+        return self
+
+
+class OrbitTable(Section):
+    """Two TLE lines, or a circular orbit: altitude above 6378.137 km and angles at the epoch."""
+
+    tle: Annotated[tuple[str, str] | None, Strict(False)] = None
+    altitude_km: float | None = Field(default=None, ge=150.0, le=40000.0)
+    inclination_deg: float = Field(default=0.0, ge=0.0, le=180.0)
+    raan_deg: float = Field(default=0.0, ge=-360.0, le=360.0)
+    u0_deg: float = Field(default=0.0, ge=-360.0, le=360.0)
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> Self:
+        if (self.tle is None) == (self.altitude_km is None):
+            raise ValueError("an orbit needs either tle (two lines) or altitude_km (150 to 40000)")
+        if self.tle is not None:
+            sgp4_orbit(*self.tle)
+        return self
+
+
+class FieldTable(Section):
+    """Onboard field model; ``degree`` counts for igrf14."""
+
+    model: Literal["igrf14", "tilted_dipole", "direct_dipole"]
+    degree: int = Field(ge=1, le=10)
+
+
+class BodyTable(Section):
+    """Inertia tensor in body axes, kg m^2: three principal moments or 3 x 3."""
+
+    inertia_kgm2: Triple | Square
+
+    @model_validator(mode="after")
+    def _is_an_inertia(self) -> Self:
+        check_inertia(self.inertia)
+        return self
+
+    @property
+    def inertia(self) -> Mat3:
+        """The 3 x 3 tensor."""
+        given = self.inertia_kgm2
+        if isinstance(given[0], tuple):
+            return given  # type: ignore[return-value]
+        a, b, c = given
+        return ((a, 0.0, 0.0), (0.0, b, 0.0), (0.0, 0.0, c))  # type: ignore[return-value]
+
+
+class CoilTable(Section):
+    """Levels per polarity and the limits of the coil driver."""
+
+    levels_am2: Triple
+    pulse_s: float = Field(gt=0.0, le=3.0)
+    backoff_s: float = Field(ge=0.0, le=160.0)
+    backoff: Literal["shared", "per_coil"]
+
+    @model_validator(mode="after")
+    def _levels_rise(self) -> Self:
+        low, middle, high = self.levels_am2
+        if not 0.0 < low < middle < high:
+            raise ValueError("levels_am2 must be three positive, rising dipoles")
+        return self
+
+
+class ControlTable(Section):
+    """Pointing law, its gains (N m s/T^2, N m/T^2) and the leak of the owed impulse."""
+
+    law: Literal[tuple(POINTING_LAWS)]  # type: ignore[valid-type]
+    k_w: NotNegative
+    k_a: NotNegative
+    leak_s: Positive
+
+
+class EstimatorTable(Section):
+    """Filter tuning: standard deviations and random walks."""
+
+    bias: bool
+    torque: bool
+    magnetometer_sigma_nt: Positive
+    sun_sigma_deg: Positive
+    attitude_sigma_deg: Positive
+    rate_sigma_degps: Positive
+    bias_sigma_nt: Positive
+    torque_sigma_nm: Positive
+    torque_noise_nm_rts: NotNegative
+    bias_walk_nt_prts: NotNegative
+    torque_walk_nm_prts: NotNegative
+    gate_nis: Positive
+    max_field_error_nt: Positive
+    max_angle_error_deg: Positive
+    min_separation_deg: float = Field(gt=0.0, lt=90.0)
+    restart_after_rejections: int = Field(ge=1)
+    valid_sigma_deg: Positive
+
+
+class ModesTable(Section):
+    """Thresholds and dwell times of the mode table."""
+
+    slow_degps: Positive
+    fast_degps: Positive
+    near_deg: float = Field(gt=0.0, le=180.0)
+    far_deg: float = Field(gt=0.0, le=180.0)
+    axis_only: bool
+    recover_s: NotNegative
+    settle_s: NotNegative
+    lose_s: NotNegative
+    hold_s: NotNegative
+    trips_to_stay_safe: int = Field(ge=1)
+    stale_after_s: Positive
+
+    @model_validator(mode="after")
+    def _hysteresis(self) -> Self:
+        if not (self.slow_degps < self.fast_degps and self.near_deg < self.far_deg):
+            raise ValueError("slow_degps must lie under fast_degps and near_deg under far_deg")
+        return self
+
+
+class TelemetryTable(Section):
+    """Periods of the reports and of the ephemeris nodes, s; at least one tick."""
+
+    attitude_s: NotNegative
+    quality_s: NotNegative
+    heartbeat_s: NotNegative
+    ephemeris_s: int = Field(ge=10, le=30)
+
+
+class FlightTable(Section):
+    """A whole onboard table."""
+
+    knowledge: Literal["filter", "perfect"]
+    time: TimeTable
+    orbit: OrbitTable
+    field: FieldTable
+    body: BodyTable
+    coils: CoilTable
+    control: ControlTable
+    estimator: EstimatorTable
+    modes: ModesTable
+    telemetry: TelemetryTable
+
+    @property
+    def epoch_unix_s(self) -> int:
+        """Time of tick 0, Unix seconds."""
+        return epoch_unix_s(self.time, self.orbit)
+
+    @property
+    def crc(self) -> int:
+        """CRC-32 of the table in canonical JSON."""
+        return zlib.crc32(json.dumps(self.model_dump(mode="json"), sort_keys=True).encode())
+
+
+def parse_utc(text: str) -> int:
+    """Unix seconds of a UTC time such as 2025-03-20T12:00:00Z.
+
+    Raises:
+        ValueError: not a UTC time, or not a whole second.
+    """
+    try:
+        moment = datetime.fromisoformat(text)
+    except ValueError:
+        raise ValueError(f"'{text}' is not a time such as 2025-03-20T12:00:00Z") from None
+    moment = moment.replace(tzinfo=UTC) if moment.tzinfo is None else moment
+    if moment.microsecond:
+        raise ValueError(f"'{text}' is not a whole second")
+    return int(moment.timestamp())
+
+
+DEFAULT_EPOCH_UTC = "2025-03-20T09:00:00Z"
+"""Time of tick 0 for a circular orbit that names none: the March equinox of 2025, to the hour."""
+
+
+def epoch_unix_s(time: TimeTable, orbit: OrbitTable) -> int:
+    """Time of tick 0: as named, else the TLE's epoch rounded up to a whole second, else the default."""
+    if time.epoch_utc is not None:
+        return parse_utc(time.epoch_utc)
+    if orbit.tle is not None:
+        return tle_epoch_unix_s(orbit.tle[0])
+    return parse_utc(DEFAULT_EPOCH_UTC)
+
+
+def tle_epoch_unix_s(line1: str) -> int:
+    """The epoch in the first line of a TLE (columns 19 to 32: year, day of the year), rounded up to a second."""
+    year, day = int(line1[18:20]), Decimal(line1[20:32])
+    january = datetime(year + (1900 if year >= 57 else 2000), 1, 1, tzinfo=UTC)
+    return int(january.timestamp()) + ceil((day - 1) * 86400)
+
+
+def check_inertia(inertia_kgm2: Mat3) -> None:
+    """Check that a tensor can belong to a body.
+
+    Raises:
+        ValueError: not symmetric, or principal moments not positive or breaking the triangle inequality.
+    """
+    (a, h, g), (h2, b, f), (g2, f2, c) = inertia_kgm2
+    if (h, g, f) != (h2, g2, f2):
+        raise ValueError("inertia_kgm2 must be symmetric")
+    # J is possible exactly if tr(J)/2 I - J, the second moment of mass, has no negative eigenvalue, and J > 0
+    half = 0.5 * (a + b + c)
+    x, y, z = half - a, half - b, half - c
+    minors = (x, y, z, x * y - h * h, y * z - f * f, z * x - g * g)
+    determinant = x * (y * z - f * f) - h * (h * z + f * g) - g * (h * f + y * g)
+    slack = 1e-9 * half
+    if half <= 0.0 or min(minors) < -slack or determinant < -slack * half * half:
+        raise ValueError("inertia_kgm2 must be positive, no principal moment above the sum of the others")
+
+
+def merge(base: Nested, over: Nested) -> Nested:
+    """``base`` with the values of ``over`` laid over it, section by section."""
+    merged = dict(base)
+    for key, value in over.items():
+        below = merged.get(key)
+        merged[key] = merge(below, value) if isinstance(below, dict) and isinstance(value, dict) else value
+    return merged
+
+
+def read_toml(path: Path) -> Nested:
+    """The content of a TOML file.
+
+    Raises:
+        TableError: the file is missing, unreadable or not TOML.
+    """
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise TableError(f"{path}: cannot be read ({error.strerror or error})") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise TableError(f"{path}: not TOML: {error}") from None
+
+
+def default_values() -> Nested:
+    """The content of ``fsw/flight.toml``."""
+    return tomllib.loads(resources.files("fsw").joinpath("flight.toml").read_text(encoding="utf-8"))
+
+
+def validated(model: type[Model], values: Nested, source: str) -> Model:
+    """``values`` as a checked model.
+
+    Raises:
+        TableError: one sentence with the source and, for each key that is wrong, its path and what is allowed.
+    """
+    try:
+        return model.model_validate(values)
+    except ValidationError as error:
+        faults = "; ".join(_fault(dict(detail)) for detail in error.errors())
+        raise TableError(f"{source}: {faults}") from None
+
+
+def _fault(detail: Nested) -> str:
+    path = ".".join(str(part) for part in detail["loc"])
+    if detail["type"] == "extra_forbidden":
+        return f"{path} is not a known key"
+    if detail["type"] == "missing":
+        return f"{path} is missing"
+    message = str(detail["msg"]).removeprefix("Value error, ")
+    if detail["type"] == "value_error":
+        return f"{path}: {message}" if path else message
+    return f"{path} = {detail['input']!r} is not allowed: {message[0].lower()}{message[1:]}"
+
+
+def flight_table(values: Nested, source: str) -> FlightTable:
+    """A checked table from values laid over the defaults.
+
+    Raises:
+        TableError: naming ``source``, the keys and what is allowed.
+    """
+    return validated(FlightTable, merge(default_values(), values), source)

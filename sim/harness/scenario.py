@@ -1,0 +1,235 @@
+"""Scenarios: the schema of their TOML files, and how they are found, overridden and checked.
+
+A scenario says everything about one flight. The onboard table is derived from it: what plant and controller
+share (orbit, body, coils, control) is written once; ``[flight]`` lays further values over the onboard table,
+for instance an inertia that the controller believes and the plant does not have.
+"""
+
+import tomllib
+from importlib import resources
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, Strict, model_validator
+
+from fsw.io import table as onboard
+from fsw.io.table import (
+    BodyTable,
+    CoilTable,
+    ControlTable,
+    FlightTable,
+    Nested,
+    NotNegative,
+    OrbitTable,
+    Positive,
+    Section,
+    TableError,
+    TimeTable,
+    Triple,
+)
+
+CIRCULAR_KEYS = ("altitude_km", "inclination_deg", "raan_deg", "u0_deg")
+
+
+class ScenarioTime(TimeTable):
+    """Tick rate, epoch and how many orbits are flown."""
+
+    orbits: float = Field(gt=0.0, le=100000.0)
+
+
+class TruthField(Section):
+    """Field model of the plant; ``degree`` counts for igrf14. The onboard model is the same to degree 10."""
+
+    model: Literal["igrf14", "tilted_dipole", "direct_dipole"] = "igrf14"
+    degree: int = Field(default=13, ge=1, le=13)
+
+
+class InitialState(Section):
+    """Attitude, body from orbit, as a turn about an axis; rate relative to the orbital frame, body axes."""
+
+    axis: Triple = (1.0, 1.0, 1.0)
+    angle_deg: float = Field(default=0.0, ge=-180.0, le=180.0)
+    rate_degps: Triple = (0.0, 0.0, 0.0)
+
+    @model_validator(mode="after")
+    def _axis_has_a_direction(self) -> "InitialState":
+        if not any(self.axis):
+            raise ValueError("axis must not be zero")
+        return self
+
+
+class ScenarioCoils(CoilTable):
+    """Limits and levels, and the physics of coil and driver."""
+
+    pulse_s: float = Field(default=3.0, gt=0.0, le=3.0)
+    backoff_s: float = Field(default=100.0, ge=0.0, le=160.0)
+    backoff: Literal["shared", "per_coil"] = "shared"
+    dipole_per_ampere_am2: Positive
+    time_constant_s: Positive = 0.01
+    dipole_scale: Triple = (1.0, 1.0, 1.0)
+
+
+class MagnetometerSection(Section):
+    """Physics of the magnetometer, body axes."""
+
+    noise_nt: NotNegative = 200.0
+    bias_nt: Triple = (0.0, 0.0, 0.0)
+    scale: Triple = (1.0, 1.0, 1.0)
+    misalignment_deg: Triple = (0.0, 0.0, 0.0)
+    quantum_nt: NotNegative = 2.0
+    saturation_nt: Positive = 65000.0
+    coil_field_nt_per_am2: Annotated[tuple[Triple, Triple, Triple], Strict(False)] = (
+        (2000.0, 0.0, 0.0),
+        (0.0, 2000.0, 0.0),
+        (0.0, 0.0, 2000.0),
+    )
+
+
+class SunSensorSection(Section):
+    """Physics of the Sun sensor, body axes."""
+
+    noise_deg: NotNegative = 0.5
+    misalignment_deg: Triple = (0.0, 0.0, 0.0)
+    quantum: NotNegative = 0.0
+
+
+class SensorsSection(Section):
+    """Both sensors."""
+
+    magnetometer: MagnetometerSection = MagnetometerSection()
+    sun: SunSensorSection = SunSensorSection()
+
+
+class DisturbanceSection(Section):
+    """Constant torque and residual dipole, body axes."""
+
+    torque_nm: Triple = (0.0, 0.0, 0.0)
+    residual_dipole_am2: Triple = (0.0, 0.0, 0.0)
+
+
+class PlantSection(Section):
+    """Integration of the plant."""
+
+    max_substep_s: float = Field(default=1.0, gt=0.0, le=5.0)
+
+
+class Scenario(Section):
+    """A whole scenario, checked."""
+
+    name: str
+    summary: str
+    knowledge: Literal["filter", "perfect"] = "filter"
+    time: ScenarioTime
+    orbit: OrbitTable
+    field: TruthField = TruthField()
+    body: BodyTable
+    initial: InitialState = InitialState()
+    coils: ScenarioCoils
+    sensors: SensorsSection = SensorsSection()
+    disturbance: DisturbanceSection = DisturbanceSection()
+    control: ControlTable
+    plant: PlantSection = PlantSection()
+    flight: dict[str, Any] = Field(default_factory=dict)
+
+    @property
+    def epoch_unix_s(self) -> int:
+        """Time of tick 0, Unix seconds."""
+        return onboard.epoch_unix_s(self.time, self.orbit)
+
+
+def shipped() -> list[Scenario]:
+    """The scenarios that ship, by name."""
+    folder = resources.files("sim.scenarios")
+    names = sorted(entry.name for entry in folder.iterdir() if entry.name.endswith(".toml"))
+    return [load(name.removesuffix(".toml")) for name in names]
+
+
+def load(name_or_path: str, overrides: Nested | None = None) -> Scenario:
+    """A shipped scenario by its name, or a scenario file by its path, with overrides laid over it.
+
+    Raises:
+        TableError: not found, not TOML, or a key that is unknown, missing, of the wrong type or out of range.
+    """
+    values, source = _read(name_or_path)
+    overrides = overrides or {}
+    if set(overrides.get("orbit", {})) & set(CIRCULAR_KEYS):
+        values.get("orbit", {}).pop("tle", None)
+    scenario = onboard.validated(Scenario, onboard.merge(values, overrides), source)
+    flight_table(scenario, source)
+    return scenario
+
+
+def flight_table(scenario: Scenario, source: str = "scenario") -> FlightTable:
+    """The onboard table that this scenario flies with.
+
+    Raises:
+        TableError: ``[flight]`` holds a key or value the onboard table does not take.
+    """
+    shared = scenario.model_dump(
+        include={
+            "knowledge": True,
+            "orbit": {"tle", *CIRCULAR_KEYS},
+            "body": True,
+            "coils": {"levels_am2", "pulse_s", "backoff_s", "backoff"},
+            "control": True,
+        },
+        exclude_none=True,
+    )
+    shared["time"] = {"tick_hz": scenario.time.tick_hz, "epoch_utc": scenario.time.epoch_utc}
+    shared["field"] = {"model": scenario.field.model}
+    shared["estimator"] = {
+        "magnetometer_sigma_nt": _with_floor(scenario.sensors.magnetometer.noise_nt, FIELD_MODEL_ERROR_NT),
+        "sun_sigma_deg": _with_floor(scenario.sensors.sun.noise_deg, SUN_MODEL_ERROR_DEG),
+    }
+    defaults = onboard.default_values()
+    defaults.pop("orbit")
+    return onboard.validated(
+        FlightTable, onboard.merge(onboard.merge(defaults, shared), scenario.flight), f"{source}: [flight]"
+    )
+
+
+FIELD_MODEL_ERROR_NT = 20.0
+"""What degrees 11 to 13 of the field add at low orbits, and the wire's rounding."""
+SUN_MODEL_ERROR_DEG = 0.02
+"""Almanac Sun and the wire's rounding."""
+
+
+def parse_settings(settings: tuple[str, ...]) -> Nested:
+    """``KEY=VALUE`` settings as nested values; VALUE is TOML, or a bare word taken as a string.
+
+    Raises:
+        TableError: a setting without '=' or with an empty key.
+    """
+    values: Nested = {}
+    for setting in settings:
+        key, equals, text = setting.partition("=")
+        if not equals or not all(key.strip().split(".")):
+            raise TableError(f"--set {setting}: write KEY=VALUE, for instance time.tick_hz=10")
+        try:
+            value = tomllib.loads(f"value = {text}")["value"]
+        except tomllib.TOMLDecodeError:
+            value = text
+        for part in reversed(key.strip().split(".")):
+            value = {part: value}
+        values = onboard.merge(values, value)
+    return values
+
+
+def _with_floor(sigma: float, floor: float) -> float:
+    return float((sigma * sigma + floor * floor) ** 0.5)
+
+
+def _read(name_or_path: str) -> tuple[Nested, str]:
+    if name_or_path.endswith(".toml"):
+        return onboard.read_toml(Path(name_or_path)), name_or_path
+    shipped_file = resources.files("sim.scenarios").joinpath(f"{name_or_path}.toml")
+    if not shipped_file.is_file():
+        names = ", ".join(
+            sorted(
+                e.name[:-5] for e in resources.files("sim.scenarios").iterdir() if e.name.endswith(".toml")
+            )
+        )
+        raise TableError(
+            f"there is no scenario '{name_or_path}': choose one of {names}, or a path that ends in .toml"
+        )
+    return tomllib.loads(shipped_file.read_text(encoding="utf-8")), f"scenario {name_or_path}"
