@@ -34,6 +34,6 @@ def gmst82_rad(unix_s: float) -> float:
 
 
 def rotate_about_pole(angle_rad: float, v: Vec3) -> Vec3:
-    """R3(angle) v, components in axes turned by the angle: R3(gmst) is ecef from eci, R3(-gmst) the inverse."""
+    """R3(angle) v, in axes turned by the angle: R3(gmst) is ecef from eci, R3(-gmst) the inverse."""
     c, s = cos(angle_rad), sin(angle_rad)
     return (c * v[0] + s * v[1], c * v[1] - s * v[0], v[2])

@@ -65,6 +65,7 @@ def ephemeris_model(
     orbit: Orbit,
     epoch_unix_s: int,
     tick_hz: int,
+    *,
     field: FieldKind = FieldKind.IGRF14,
     degree: int = MAX_DEGREE,
     node_s: int = 20,
