@@ -61,7 +61,7 @@ class Hub:
         return len(self._clients)
 
     def poll(self, timeout_s: float | None) -> bool:
-        """Serve what is ready, waiting at most ``timeout_s`` for it (None: for ever); true if there was any."""
+        """Serve what is ready, waiting at most ``timeout_s`` for it (None: for ever); true if any was."""
         ready = self._selector.select(timeout_s)
         for key, events in ready:
             if isinstance(key.data, _Client):
