@@ -9,7 +9,9 @@ MODULE = ROOT / "fsw" / "core" / "igrf_coefficients.py"
 DEGREE = 10
 YEARS = (2015, 2020, 2025, 2030)
 
-HEADER = '''"""Gauss coefficients of IGRF-14 to degree {degree}: written by tools/generate_igrf_coefficients.py. Do not edit.
+HEADER = '''"""Gauss coefficients of IGRF-14 to degree {degree}.
+
+Written by tools/generate_igrf_coefficients.py. Do not edit.
 
 Source: IAGA Division V-MOD, International Geomagnetic Reference Field, 14th generation, file IGRF14.shc,
 doi 10.5281/zenodo.14012302. The last column is the 2025 model plus five years of its secular variation.

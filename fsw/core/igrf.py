@@ -41,8 +41,8 @@ class FieldModel:
 def prepare(epoch_unix_s: float, degree: int = MAX_DEGREE) -> FieldModel:
     """The field model of a flight that begins at the epoch.
 
-    Each coefficient is linear in elapsed time between the five-year models; the slope at the epoch is kept for
-    the whole flight.
+    Each coefficient is linear in elapsed time between the five-year models; the slope at the epoch is kept
+    for the whole flight.
 
     Raises:
         ValueError: the epoch is outside 2015 to 2030, or the degree outside 1 to ``MAX_DEGREE``.

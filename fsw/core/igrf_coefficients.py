@@ -1,4 +1,6 @@
-"""Gauss coefficients of IGRF-14 to degree 10: written by tools/generate_igrf_coefficients.py. Do not edit.
+"""Gauss coefficients of IGRF-14 to degree 10.
+
+Written by tools/generate_igrf_coefficients.py. Do not edit.
 
 Source: IAGA Division V-MOD, International Geomagnetic Reference Field, 14th generation, file IGRF14.shc,
 doi 10.5281/zenodo.14012302. The last column is the 2025 model plus five years of its secular variation.

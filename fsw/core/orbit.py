@@ -44,8 +44,8 @@ def sgp4_orbit(line1: str, line2: str) -> Sgp4Orbit:
     """The orbit of a two-line element set (Vallado et al. 2006, WGS-72 as the sets are made).
 
     Raises:
-        ValueError: a line is malformed or its checksum wrong, the lines are of two satellites, or SGP4 refuses
-            the elements.
+        ValueError: a line is malformed or its checksum wrong, the lines are of two satellites, or SGP4
+            refuses the elements.
     """
     line1, line2 = line1.rstrip(), line2.rstrip()
     _check_line(line1, "1")

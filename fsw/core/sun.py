@@ -22,6 +22,6 @@ def sun_eci(unix_s: float) -> Vec3:
 
 
 def lit(r_eci_m: Vec3, sun_eci: Vec3) -> bool:
-    """Whether a satellite is outside the Earth's cylindrical shadow, whose edge is the middle of the penumbra."""
+    """Whether the satellite is outside the Earth's cylindrical shadow, whose edge is mid-penumbra."""
     along = dot(r_eci_m, sun_eci)
     return along >= 0.0 or dot(r_eci_m, r_eci_m) - along * along > RADIUS_M * RADIUS_M
