@@ -61,11 +61,10 @@ class Reference:
     orbit_rate_radps: float
 
 
-def ephemeris_model(
+def ephemeris_model(  # noqa: PLR0917
     orbit: Orbit,
     epoch_unix_s: int,
     tick_hz: int,
-    *,
     field: FieldKind = FieldKind.IGRF14,
     degree: int = MAX_DEGREE,
     node_s: int = 20,
