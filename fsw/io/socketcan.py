@@ -12,8 +12,8 @@ from fsw.io import record
 from fsw.io.bus import BusClosed, BusError
 from fsw.wire.frame import Frame
 
-RECEIVE_BUFFER = 8 * 2**20
-"""The kernel's default holds some 278 frames and then drops without a word."""
+RECEIVE_BUFFER = 32 * 2**20
+"""The kernel's default holds some 278 frames and then drops without a word; this holds some 80 000."""
 
 SEND_PATIENCE_S = 0.5
 """A full transmit queue is waited for this long: at 125 kbit/s it is time for 500 frames."""
