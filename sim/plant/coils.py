@@ -1,0 +1,71 @@
+"""Three coils along the body axes: current, dipole and read-back."""
+
+from math import exp, expm1
+
+from sim.plant.config import CoilConfig
+from sim.plant.rotation import ZERO, Vec3
+
+_EXTINCT_A = 1e-15
+"""A current below this has died away."""
+
+
+class Coils:
+    """Currents that follow what is driven with a first-order lag: di/dt = (i_driven - i) / tau.
+
+    Args:
+        config: the coils.
+    """
+
+    def __init__(self, config: CoilConfig) -> None:
+        self._tau_s = config.time_constant_s
+        amperes = [dipole / config.dipole_per_ampere_am2 for dipole in config.levels_am2]
+        self._driven_a = [0.0, *amperes]
+        self._dipole_per_ampere = [config.dipole_per_ampere_am2 * scale for scale in config.dipole_scale]
+        self._current_a = [0.0, 0.0, 0.0]
+
+    @property
+    def dipole_body_am2(self) -> Vec3:
+        """The dipole at this instant."""
+        (x, y, z), (i, j, k) = self._dipole_per_ampere, self._current_a
+        return (x * i, y * j, z * k)
+
+    @property
+    def readback_a(self) -> float:
+        """The current at this instant in the supply that all coils share, signed like the level."""
+        x, y, z = self._current_a
+        return x + y + z
+
+    def advance(self, coil: int, level: int, on_s: float, step_s: float) -> Vec3:
+        """Go on by a step in which one coil is driven from the start for ``on_s``; exact mean dipole [A m^2].
+
+        The mean, not the end value, carries the impulse: the lag is far shorter than a step.
+
+        Args:
+            coil: coil that is driven, 0 to 2.
+            level: -3 to 3, 0 for none.
+            on_s: how long it is driven, 0 to ``step_s``.
+            step_s: length of the step.
+        """
+        if not (level and on_s) and self._current_a == [0.0, 0.0, 0.0]:
+            return ZERO
+        target_a = self._driven_a[level] if level >= 0 else -self._driven_a[-level]
+        x, y, z = (
+            self._mean_current(each, target_a if each == coil else 0.0, on_s, step_s) for each in range(3)
+        )
+        i, j, k = self._dipole_per_ampere
+        return (x * i, y * j, z * k)
+
+    def _mean_current(self, coil: int, target_a: float, on_s: float, step_s: float) -> float:
+        charge_on, turned_off_a = self._follow(self._current_a[coil], target_a, on_s)
+        charge_off, end_a = self._follow(turned_off_a, 0.0, step_s - on_s)
+        self._current_a[coil] = end_a if abs(end_a) > _EXTINCT_A else 0.0
+        return (charge_on + charge_off) / step_s
+
+    def _follow(self, start_a: float, target_a: float, time_s: float) -> tuple[float, float]:
+        """Integral [A s] and end value [A] of i(t) = target + (start - target) exp(-t / tau)."""
+        if time_s <= 0.0:
+            return 0.0, start_a
+        if self._tau_s == 0.0:
+            return target_a * time_s, target_a
+        gap_a, x = start_a - target_a, time_s / self._tau_s
+        return target_a * time_s - gap_a * self._tau_s * expm1(-x), target_a + gap_a * exp(-x)

@@ -1,0 +1,147 @@
+"""What surrounds the satellite along its orbit, whatever its attitude: computed ahead, read in plain floats.
+
+Orbit, field and Sun are computed at nodes, many at once, and interpolated to every instant at which the
+integration or the sensors look. All instants lie on one grid of integers, so no time is ever accumulated.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from sim.plant.config import PlantConfig
+from sim.plant.field import make_field
+from sim.plant.orbit import MU_M3PS2, Array, make_orbit
+from sim.plant.rotation import Mat3, Vec3
+from sim.plant.sun import illumination, sun_eci_m
+
+NODE_S = 10
+"""Seconds between nodes."""
+
+_BEFORE, _AFTER = 2, 3
+"""Nodes that the interpolation uses before and after an instant."""
+
+_SUBSTEPS_A_BLOCK = 1280
+"""About how many integration steps are computed ahead at once."""
+
+
+class Surroundings(NamedTuple):
+    """What the torques need at one instant."""
+
+    e_eci: Vec3
+    """Unit vector of the radius."""
+    gradient_ps2: float
+    """3 mu / r^3."""
+    b_eci_t: Vec3
+
+
+class Sample(NamedTuple):
+    """What sensors and truth need at one tick."""
+
+    r_eci_m: Vec3
+    orbit_from_eci: Mat3
+    """Rows: radius, along-track, normal."""
+    orbit_rate_radps: float
+    """Rate |r x v| / r^2 of the orbital frame, about its axis 3."""
+    b_eci_t: Vec3
+    sun_eci: Vec3
+    """Unit vector from the satellite to the Sun."""
+    lit: float
+    """Fraction of the Sun's disc that is seen."""
+
+
+class Environment:
+    """Surroundings at every half step of the integration, samples at every tick.
+
+    Nodes every 10 s, Lagrange interpolation over six of them: below 1e-4 nT and 1e-5 m from the models
+    themselves. The orbital frame turns about its normal alone: the slow turn of the orbit's plane within
+    the rate is left out, as everywhere in this project.
+
+    Args:
+        config: the plant.
+        substeps: integration steps a tick.
+    """
+
+    def __init__(self, config: PlantConfig, substeps: int) -> None:
+        self._orbit = make_orbit(config.orbit, config.epoch_unix_s)
+        self._field = make_field(config.field, config.epoch_unix_s)
+        self._epoch_unix_s = config.epoch_unix_s
+        self._stages_per_tick = 2 * substeps
+        ticks_per_node = NODE_S * config.tick_hz
+        self._nodes_per_block = max(1, _SUBSTEPS_A_BLOCK // (ticks_per_node * substeps))
+        self._ticks_per_block = self._nodes_per_block * ticks_per_node
+        self._weights = _lagrange_weights(ticks_per_node * self._stages_per_tick)
+        self._block: int | None = None
+        self._stages: list[Surroundings] = []
+        self._samples: list[Sample] = []
+
+    def stages(self, tick: int) -> list[Surroundings]:
+        """Start, middle, end of each substep of a tick, in time: 2 substeps + 1 of them."""
+        offset = self._enter(tick) * self._stages_per_tick
+        return self._stages[offset : offset + self._stages_per_tick + 1]
+
+    def sample(self, tick: int) -> Sample:
+        """The sample at a tick."""
+        place = self._enter(tick)
+        return self._samples[place]
+
+    def _enter(self, tick: int) -> int:
+        """See that the block of the tick is there; the tick's place in it."""
+        block, place = divmod(tick, self._ticks_per_block)
+        if block != self._block:
+            self._compute(block)
+            self._block = block
+        return place
+
+    def _compute(self, block: int) -> None:
+        count = self._nodes_per_block
+        first = block * count
+        t_s = NODE_S * np.arange(first - _BEFORE, first + count + _AFTER, dtype=np.float64)
+        r_m, v_mps = self._orbit.at(t_s)
+        nodes = np.hstack([r_m, v_mps, self._field.at(t_s, r_m), sun_eci_m(self._epoch_unix_s, t_s)])
+        inner = sum(
+            weight[:, None] * nodes[place : place + count, None, :]
+            for place, weight in enumerate(self._weights)
+        )
+        rows = np.vstack([np.reshape(inner, (-1, nodes.shape[1])), nodes[_BEFORE + count]])
+        self._stages = _surroundings(rows)
+        self._samples = _samples(rows[:: self._stages_per_tick])
+
+
+def _lagrange_weights(steps: int) -> Array:
+    """Weights of each node of the window at x = 0, 1/steps, ... < 1, shape (nodes, steps).
+
+    The k-th is the product over j != k of (x - x_j) / (x_k - x_j), nodes at x = -2, ..., 3.
+    """
+    x = np.arange(steps) / steps
+    places = np.arange(-_BEFORE, _AFTER + 1)
+    return np.array([np.prod([(x - j) / (k - j) for j in places if j != k], axis=0) for k in places])
+
+
+def _surroundings(rows: Array) -> list[Surroundings]:
+    r_m = rows[:, 0:3]
+    r_norm_m = np.sqrt((r_m * r_m).sum(axis=1))
+    gradient_ps2 = 3.0 * MU_M3PS2 / r_norm_m**3
+    columns = (_tuples(r_m / r_norm_m[:, None]), gradient_ps2.tolist(), _tuples(rows[:, 6:9]))
+    return [Surroundings(*row) for row in zip(*columns, strict=True)]
+
+
+def _samples(rows: Array) -> list[Sample]:
+    r_m, v_mps, b_t, sun_m = np.hsplit(rows, 4)
+    h_m2ps = np.cross(r_m, v_mps)
+    r_norm_m, h_norm_m2ps = np.linalg.norm(r_m, axis=1), np.linalg.norm(h_m2ps, axis=1)
+    e1, e3 = r_m / r_norm_m[:, None], h_m2ps / h_norm_m2ps[:, None]
+    frames = zip(_tuples(e1), _tuples(np.cross(e3, e1)), _tuples(e3), strict=True)
+    to_sun = sun_m - r_m
+    columns = (
+        _tuples(r_m),
+        frames,
+        (h_norm_m2ps / r_norm_m**2).tolist(),
+        _tuples(b_t),
+        _tuples(to_sun / np.linalg.norm(to_sun, axis=1)[:, None]),
+        illumination(r_m, sun_m).tolist(),
+    )
+    return [Sample(*row) for row in zip(*columns, strict=True)]
+
+
+def _tuples(vectors: Array) -> list[Vec3]:
+    return [(x, y, z) for x, y, z in vectors.tolist()]

@@ -1,0 +1,105 @@
+"""Orbits: position and velocity in the inertial frame ``eci`` (TEME of date) for many times at once."""
+
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+from sgp4.api import SGP4_ERRORS, Satrec
+from sgp4.io import verify_checksum
+
+from sim.plant.config import OrbitConfig
+
+Array = npt.NDArray[np.float64]
+
+MU_M3PS2 = 3.986004418e14
+EARTH_RADIUS_M = 6378.137e3
+DAY_S = 86400
+UNIX_EPOCH_JD = 2440587.5
+
+
+class Orbit(Protocol):
+    """A motion of the mass centre."""
+
+    def at(self, t_s: Array) -> tuple[Array, Array]:
+        """Position [m] and velocity [m/s], each (n, 3), frame ``eci``, at n times [s] since the epoch."""
+
+
+class CircularOrbit:
+    """Keplerian circle: r = a (p cos u + q sin u), u = u0 + sqrt(mu / a^3) t.
+
+    p points to the ascending node, q is normal to it in the direction of motion.
+    """
+
+    def __init__(self, config: OrbitConfig) -> None:
+        self._radius_m = EARTH_RADIUS_M + config.altitude_m
+        self._rate_radps = np.sqrt(MU_M3PS2 / self._radius_m**3)
+        self._u0_rad = config.u0_rad
+        ci, si = np.cos(config.inclination_rad), np.sin(config.inclination_rad)
+        co, so = np.cos(config.raan_rad), np.sin(config.raan_rad)
+        self._p = np.array([co, so, 0.0])
+        self._q = np.array([-so * ci, co * ci, si])
+
+    def at(self, t_s: Array) -> tuple[Array, Array]:
+        """Position and velocity, as in ``Orbit``."""
+        u = self._u0_rad + self._rate_radps * t_s
+        cos_u, sin_u = np.cos(u)[:, None], np.sin(u)[:, None]
+        r_eci_m = self._radius_m * (cos_u * self._p + sin_u * self._q)
+        v_eci_mps = self._radius_m * self._rate_radps * (cos_u * self._q - sin_u * self._p)
+        return r_eci_m, v_eci_mps
+
+
+class Sgp4Orbit:
+    """SGP4 over a two-line element set.
+
+    Args:
+        tle: the two lines.
+        epoch_unix_s: the time that t = 0 stands for.
+
+    Raises:
+        ValueError: a line is malformed or its checksum is wrong.
+    """
+
+    def __init__(self, tle: tuple[str, str], epoch_unix_s: int) -> None:
+        self._satellite = _satellite(tle)
+        days, self._second = divmod(epoch_unix_s, DAY_S)
+        self._day_jd = UNIX_EPOCH_JD + days
+
+    def at(self, t_s: Array) -> tuple[Array, Array]:
+        """Position and velocity, as in ``Orbit``.
+
+        Raises:
+            ValueError: SGP4 finds no orbit at one of the times, for instance after its decay.
+        """
+        fraction = (self._second + t_s) / DAY_S
+        errors, r_km, v_kmps = self._satellite.sgp4_array(np.full_like(t_s, self._day_jd), fraction)
+        if errors.any():
+            first = int(np.flatnonzero(errors)[0])
+            raise ValueError(f"SGP4 at {t_s[first]:.0f} s after the epoch: {SGP4_ERRORS[int(errors[first])]}")
+        return 1e3 * r_km, 1e3 * v_kmps
+
+
+def make_orbit(config: OrbitConfig, epoch_unix_s: int) -> Orbit:
+    """The orbit that the configuration asks for."""
+    if config.tle is None:
+        return CircularOrbit(config)
+    return Sgp4Orbit(config.tle, epoch_unix_s)
+
+
+def tle_epoch_unix_s(tle: tuple[str, str]) -> int:
+    """The epoch of the elements, UTC, rounded up to a whole second.
+
+    Raises:
+        ValueError: a line is malformed or its checksum is wrong.
+    """
+    satellite = _satellite(tle)
+    day_s: int = round((satellite.jdsatepoch - UNIX_EPOCH_JD) * DAY_S)
+    parts: int = round(satellite.jdsatepochF * 1e8)  # the elements give the day to eight decimals: exact
+    return day_s - (-parts * DAY_S // 10**8)
+
+
+def _satellite(tle: tuple[str, str]) -> Satrec:
+    for number, line in enumerate(tle, start=1):
+        if len(line) != 69 or not line.startswith(f"{number} "):
+            raise ValueError(f"line {number} of the TLE is malformed")
+    verify_checksum(*tle)
+    return Satrec.twoline2rv(*tle)

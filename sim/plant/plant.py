@@ -1,0 +1,206 @@
+"""The plant: physics and boards together, tick by tick, frames out and frames in."""
+
+from math import ceil
+from typing import NamedTuple
+from zlib import crc32
+
+from fsw.wire.frame import Frame
+from fsw.wire.messages import PlantBoot, PlantEnd, PlantHeartbeat, RefAttitude, RefRate, Sync
+from hil_stub.coil_driver import CoilDriver
+from hil_stub.magnetometer import Magnetometer
+from hil_stub.node import CONTRACT_VERSION, HEARTBEAT_S
+from hil_stub.sun_sensor import SunSensor
+from sim.plant import torques
+from sim.plant.coils import Coils
+from sim.plant.config import PlantConfig
+from sim.plant.environment import Environment, Surroundings
+from sim.plant.rigid_body import Motion, RigidBody
+from sim.plant.rotation import (
+    ZERO,
+    Quaternion,
+    Vec3,
+    canonical,
+    conjugate,
+    from_matrix,
+    matrix,
+    multiply,
+    normalise,
+    transform,
+)
+from sim.plant.sensors import MagnetometerPhysics, SunSensorPhysics
+
+_REF_RATE_RANGE_RADPS = 0.125
+"""What ``REF_RATE`` holds; beyond it the rate is sent as not valid."""
+
+
+class TruthRow(NamedTuple):
+    """The truth at a sampled instant t_k."""
+
+    t_s: float
+    q_body_from_orbit: Quaternion
+    """Scalar part >= 0."""
+    omega_body_orbit_radps: Vec3
+    b_body_t: Vec3
+    sun_body: Vec3
+    """Unit vector from the satellite to the Sun."""
+    lit: float
+    """Fraction of the Sun's disc that is seen."""
+    m_body_am2: Vec3
+    """Mean dipole of the coils that really flowed over the tick that ends at t_k."""
+    r_eci_m: Vec3
+    torque_body_nm: tuple[Vec3, Vec3, Vec3, Vec3]
+    """At t_k, by ``torques.SOURCES``; that of the coils is m x b of this row."""
+
+
+class Plant:
+    """Satellite, environment and boards.
+
+    In each tick: ``begin_tick`` and send its frames; ``receive`` each frame of the answer; ``end_tick``.
+    ``truth`` speaks of the instant of the tick that has begun. Same configuration, same frames and truth to
+    the last bit.
+
+    Args:
+        config: the plant.
+
+    Raises:
+        ValueError: the orbit elements are malformed, or no orbit or field is known at the epoch.
+    """
+
+    def __init__(self, config: PlantConfig) -> None:
+        self._config = config
+        self._substeps = ceil(1.0 / (config.tick_hz * config.max_substep_s))
+        self._step_s = 1.0 / (config.tick_hz * self._substeps)
+        self._environment = Environment(config, self._substeps)
+        self._body = RigidBody(config.body.inertia_kgm2)
+        self._coils = Coils(config.coils)
+        self._magnetometer = MagnetometerPhysics(config.magnetometer, config.seed)
+        self._sun_sensor = SunSensorPhysics(config.sun_sensor, config.seed)
+        self._coil_driver = CoilDriver(config.limits)
+        self._magnetometer_board = Magnetometer(config.tick_hz)
+        self._sun_sensor_board = SunSensor(config.tick_hz)
+        self._tick = 0
+        self._flowed_am2 = ZERO
+        self._motion = self._initial_motion()
+        self._observe()
+        self.slips = 0
+        """Deadlines missed since boot: counted by whoever paces the plant, reported in its heartbeat."""
+
+    @property
+    def tick(self) -> int:
+        """The tick that has begun or is about to begin."""
+        return self._tick
+
+    def begin_tick(self) -> list[Frame]:
+        """The frames of this tick, in the order in which they are sent.
+
+        Magnetometer, Sun sensor, coil driver, the plant itself, last ``SYNC``; each node says at tick 0 first
+        that it has booted.
+        """
+        tick, coils = self._tick, self._coils
+        b_t, b_valid = self._magnetometer.measure(self._b_body_t, coils.dipole_body_am2)
+        sun, sun_valid = self._sun_sensor.measure(self._sun_body, self._sample.lit)
+        return [
+            *self._magnetometer_board.begin_tick(tick, b_t, b_valid),
+            *self._sun_sensor_board.begin_tick(tick, sun, sun_valid),
+            *self._coil_driver.begin_tick(tick, coils.readback_a),
+            *self._own_frames(),
+            Sync(tick, self._config.epoch_unix_s + tick // self._config.tick_hz).encode(),
+        ]
+
+    def receive(self, frame: Frame) -> None:
+        """Hand a frame that answers this tick to the boards that listen."""
+        self._coil_driver.receive(frame)
+
+    def end_tick(self) -> None:
+        """Drive what the coil driver drives, and go on to the next tick."""
+        around = self._environment.stages(self._tick)
+        coil, level, fraction = self._coil_driver.drive()
+        inertia, disturbance = self._config.body.inertia_kgm2, self._config.disturbance
+        rx, ry, rz = disturbance.residual_dipole_body_am2
+        bias = disturbance.torque_body_nm
+        substeps, step_s, motion = self._substeps, self._step_s, self._motion
+        sx = sy = sz = 0.0
+        for substep in range(substeps):
+            on_s = step_s * min(max(fraction * substeps - substep, 0.0), 1.0)
+            mx, my, mz = self._coils.advance(coil, level, on_s, step_s)
+            dipole = (mx + rx, my + ry, mz + rz)
+            sx, sy, sz = sx + mx, sy + my, sz + mz
+
+            def torque(q: Quaternion, place: Surroundings, dipole: Vec3 = dipole) -> Vec3:
+                return torques.total(inertia, q, place, dipole, bias)
+
+            motion = self._body.step(motion, torque, around[2 * substep : 2 * substep + 3], step_s)
+        self._motion = motion
+        self._flowed_am2 = (sx / substeps, sy / substeps, sz / substeps)
+        self._tick += 1
+        self._observe()
+
+    def truth(self) -> TruthRow:
+        """The truth at t_k, k the tick that has begun."""
+        sample, disturbance = self._sample, self._config.disturbance
+        q_body_from_orbit, omega_body_orbit_radps = self._relative()
+        b_body_t, inertia = self._b_body_t, self._config.body.inertia_kgm2
+        around = self._environment.stages(self._tick)[0]
+        e_body = transform(self._body_from_eci, around.e_eci)
+        return TruthRow(
+            t_s=self._tick / self._config.tick_hz,
+            q_body_from_orbit=q_body_from_orbit,
+            omega_body_orbit_radps=omega_body_orbit_radps,
+            b_body_t=b_body_t,
+            sun_body=self._sun_body,
+            lit=sample.lit,
+            m_body_am2=self._flowed_am2,
+            r_eci_m=sample.r_eci_m,
+            torque_body_nm=(
+                torques.gravity_gradient(inertia, e_body, around.gradient_ps2),
+                torques.magnetic(self._flowed_am2, b_body_t),
+                torques.magnetic(disturbance.residual_dipole_body_am2, b_body_t),
+                disturbance.torque_body_nm,
+            ),
+        )
+
+    def end(self) -> Frame:
+        """The last frame of a complete run."""
+        return PlantEnd(self._tick).encode()
+
+    def _initial_motion(self) -> Motion:
+        sample, initial = self._environment.sample(0), self._config.initial
+        q_body_from_orbit = normalise(initial.q_body_from_orbit)
+        x, y, z = initial.omega_body_orbit_radps
+        nx, ny, nz = transform(matrix(q_body_from_orbit), (0.0, 0.0, sample.orbit_rate_radps))
+        return Motion(
+            multiply(from_matrix(sample.orbit_from_eci), q_body_from_orbit), (x + nx, y + ny, z + nz)
+        )
+
+    def _observe(self) -> None:
+        """Field and Sun in body axes at the instant of the tick."""
+        self._sample = sample = self._environment.sample(self._tick)
+        self._body_from_eci = matrix(self._motion.q_body_from_eci)
+        self._b_body_t = transform(self._body_from_eci, sample.b_eci_t)
+        self._sun_body = transform(self._body_from_eci, sample.sun_eci)
+
+    def _relative(self) -> tuple[Quaternion, Vec3]:
+        """Attitude and rate relative to the orbital frame."""
+        q_body_from_eci, (x, y, z) = self._motion
+        q_orbit_from_eci = from_matrix(self._sample.orbit_from_eci)
+        nx, ny, nz = transform(self._body_from_eci, self._sample.orbit_from_eci[2])
+        rate = self._sample.orbit_rate_radps
+        return (
+            canonical(multiply(conjugate(q_orbit_from_eci), q_body_from_eci)),
+            (x - rate * nx, y - rate * ny, z - rate * nz),
+        )
+
+    def _own_frames(self) -> list[Frame]:
+        tick, frames = self._tick, []
+        if tick == 0:
+            table_crc = crc32(repr(self._config).encode())
+            frames.append(PlantBoot(reason=0, version=CONTRACT_VERSION, table_crc=table_crc).encode())
+        if self._config.perfect_knowledge:
+            (_, x, y, z), omega = self._relative()
+            in_range = all(abs(rate) < _REF_RATE_RANGE_RADPS for rate in omega)
+            frames.append(RefAttitude(1, x, y, z, counter=tick).encode())
+            frames.append(RefRate(int(in_range), *omega, counter=tick).encode())
+        beats, rest = divmod(tick, HEARTBEAT_S * self._config.tick_hz)
+        if beats and not rest:
+            frames.append(PlantHeartbeat(0, 0, self.slips, tick, counter=beats - 1).encode())
+        return frames

@@ -1,0 +1,101 @@
+"""The rigid body: attitude and rate integrated by the classic Runge-Kutta method, on plain floats."""
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from sim.plant.environment import Surroundings
+from sim.plant.rotation import Mat3, Quaternion, Vec3, cross, normalise, transform
+
+Torque = Callable[[Quaternion, Surroundings], Vec3]
+"""Torque in body axes [N m] at an attitude q_body_from_eci and in surroundings."""
+
+
+class Motion(NamedTuple):
+    """State of the rotation."""
+
+    q_body_from_eci: Quaternion
+    omega_body_radps: Vec3
+    """Inertial rate, body axes."""
+
+
+class RigidBody:
+    """dq/dt = 1/2 q (x) (0, w), J dw/dt = T - w x J w.
+
+    Args:
+        inertia_kgm2: inertia tensor about the mass centre, body axes, regular.
+    """
+
+    def __init__(self, inertia_kgm2: Mat3) -> None:
+        self._inertia = inertia_kgm2
+        self._inverse = _inverse(inertia_kgm2)
+
+    def step(self, motion: Motion, torque: Torque, around: Sequence[Surroundings], step_s: float) -> Motion:
+        """One Runge-Kutta step of fourth order; the torque is evaluated anew at each of its four stages.
+
+        Args:
+            motion: state at the start.
+            torque: torque on the body.
+            around: surroundings at the start, the middle and the end of the step.
+            step_s: length of the step.
+        """
+        start, middle, end = around
+        half = 0.5 * step_s
+        k1 = self._rates(motion, torque, start)
+        k2 = self._rates(_advance(motion, k1, half), torque, middle)
+        k3 = self._rates(_advance(motion, k2, half), torque, middle)
+        k4 = self._rates(_advance(motion, k3, step_s), torque, end)
+        (a1, b1, c1, d1), (x1, y1, z1) = k1
+        (a2, b2, c2, d2), (x2, y2, z2) = k2
+        (a3, b3, c3, d3), (x3, y3, z3) = k3
+        (a4, b4, c4, d4), (x4, y4, z4) = k4
+        mean: _Rates = (
+            (
+                a1 + 2.0 * (a2 + a3) + a4,
+                b1 + 2.0 * (b2 + b3) + b4,
+                c1 + 2.0 * (c2 + c3) + c4,
+                d1 + 2.0 * (d2 + d3) + d4,
+            ),
+            (x1 + 2.0 * (x2 + x3) + x4, y1 + 2.0 * (y2 + y3) + y4, z1 + 2.0 * (z2 + z3) + z4),
+        )
+        q, w = _advance(motion, mean, step_s / 6.0)
+        return Motion(normalise(q), w)
+
+    def _rates(self, motion: Motion, torque: Torque, around: Surroundings) -> "_Rates":
+        q, w = motion
+        tx, ty, tz = torque(q, around)
+        gx, gy, gz = cross(w, transform(self._inertia, w))
+        q0, q1, q2, q3 = q
+        wx, wy, wz = 0.5 * w[0], 0.5 * w[1], 0.5 * w[2]
+        return (
+            (
+                -q1 * wx - q2 * wy - q3 * wz,
+                q0 * wx + q2 * wz - q3 * wy,
+                q0 * wy + q3 * wx - q1 * wz,
+                q0 * wz + q1 * wy - q2 * wx,
+            ),
+            transform(self._inverse, (tx - gx, ty - gy, tz - gz)),
+        )
+
+
+_Rates = tuple[Quaternion, Vec3]
+"""dq/dt and dw/dt."""
+
+
+def _advance(motion: Motion, rates: _Rates, step_s: float) -> Motion:
+    (q0, q1, q2, q3), (wx, wy, wz) = motion
+    (a, b, c, d), (x, y, z) = rates
+    return Motion(
+        (q0 + step_s * a, q1 + step_s * b, q2 + step_s * c, q3 + step_s * d),
+        (wx + step_s * x, wy + step_s * y, wz + step_s * z),
+    )
+
+
+def _inverse(m: Mat3) -> Mat3:
+    """Inverse by cofactors."""
+    (a, b, c), (d, e, f), (g, h, i) = m
+    columns = (cross((d, e, f), (g, h, i)), cross((g, h, i), (a, b, c)), cross((a, b, c), (d, e, f)))
+    determinant = a * columns[0][0] + b * columns[0][1] + c * columns[0][2]
+    (r, u, x), (s, v, y), (t, w, z) = (
+        (x / determinant, y / determinant, z / determinant) for x, y, z in columns
+    )
+    return ((r, s, t), (u, v, w), (x, y, z))

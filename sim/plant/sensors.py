@@ -1,0 +1,83 @@
+"""Sensor physics: what the boards' instruments read."""
+
+from math import sqrt
+
+from sim.plant.config import MagnetometerConfig, SunSensorConfig
+from sim.plant.random_streams import normals
+from sim.plant.rotation import ZERO, Vec3, from_vector, matrix, transform
+
+LIT_ENOUGH = 0.5
+"""Fraction of the Sun's disc below which the Sun sensor sees nothing."""
+
+
+class MagnetometerPhysics:
+    """b = scale (R (b_body + K m)) + bias + noise, then quantised and held within the range.
+
+    R turns body into sensor axes, K m is the coils' own field.
+
+    Args:
+        config: the errors.
+        seed: of the stream ``magnetometer``.
+    """
+
+    def __init__(self, config: MagnetometerConfig, seed: int) -> None:
+        self._config = config
+        self._sensor_from_body = matrix(from_vector(config.misalignment_rad))
+        self._noise = normals(seed, "magnetometer")
+
+    def measure(self, b_body_t: Vec3, m_body_am2: Vec3) -> tuple[Vec3, bool]:
+        """The reading [T] and whether it is valid: within the range on every axis.
+
+        Args:
+            b_body_t: the Earth's field at this instant.
+            m_body_am2: the coils' dipole at this instant.
+        """
+        config = self._config
+        (bx, by, bz), own = b_body_t, transform(config.coil_coupling_t_per_am2, m_body_am2)
+        sensed = transform(self._sensor_from_body, (bx + own[0], by + own[1], bz + own[2]))
+        x, y, z = (
+            _quantised(scale * b + bias + config.noise_t * next(self._noise), config.quantum_t)
+            for scale, b, bias in zip(config.scale, sensed, config.bias_t, strict=True)
+        )
+        most = config.saturation_t
+        if -most <= x <= most and -most <= y <= most and -most <= z <= most:
+            return (x, y, z), True
+        return (min(max(x, -most), most), min(max(y, -most), most), min(max(z, -most), most)), False
+
+
+class SunSensorPhysics:
+    """s = R s_body, turned about each axis by a small random angle, then quantised.
+
+    Args:
+        config: the errors.
+        seed: of the stream ``sun_sensor``.
+    """
+
+    def __init__(self, config: SunSensorConfig, seed: int) -> None:
+        self._config = config
+        self._sensor_from_body = matrix(from_vector(config.misalignment_rad))
+        self._noise = normals(seed, "sun_sensor")
+
+    def measure(self, sun_body: Vec3, lit: float) -> tuple[Vec3, bool]:
+        """The unit vector to the Sun and whether it is valid: at least half of the Sun is seen.
+
+        Args:
+            sun_body: true unit vector.
+            lit: fraction of the Sun's disc that is seen.
+        """
+        noise, sigma = self._noise, self._config.noise_rad
+        ax, ay, az = sigma * next(noise), sigma * next(noise), sigma * next(noise)
+        if lit < LIT_ENOUGH:
+            return ZERO, False
+        x, y, z = transform(self._sensor_from_body, sun_body)
+        x, y, z = x + ay * z - az * y, y + az * x - ax * z, z + ax * y - ay * x
+        factor, quantum = 1.0 / sqrt(x * x + y * y + z * z), self._config.quantum
+        return (
+            _quantised(x * factor, quantum),
+            _quantised(y * factor, quantum),
+            _quantised(z * factor, quantum),
+        ), True
+
+
+def _quantised(value: float, quantum: float) -> float:
+    return quantum * round(value / quantum) if quantum else value

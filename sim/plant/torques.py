@@ -1,0 +1,48 @@
+"""Torques on the body, in body axes."""
+
+from sim.plant.environment import Surroundings
+from sim.plant.rotation import Mat3, Quaternion, Vec3, cross, matrix, transform
+
+SOURCES = ("gravity_gradient", "coils", "residual_dipole", "bias")
+"""Names of what turns the body, in the order in which truth lists them."""
+
+
+def gravity_gradient(inertia_kgm2: Mat3, e_body: Vec3, gradient_ps2: float) -> Vec3:
+    """T = 3 mu / r^3 e x J e [N m], e the unit vector of the radius."""
+    x, y, z = cross(e_body, transform(inertia_kgm2, e_body))
+    return (gradient_ps2 * x, gradient_ps2 * y, gradient_ps2 * z)
+
+
+def magnetic(m_body_am2: Vec3, b_body_t: Vec3) -> Vec3:
+    """T = m x b [N m]."""
+    return cross(m_body_am2, b_body_t)
+
+
+def total(
+    inertia_kgm2: Mat3,
+    q_body_from_eci: Quaternion,
+    around: Surroundings,
+    m_body_am2: Vec3,
+    bias_body_nm: Vec3,
+) -> Vec3:
+    """T = 3 mu / r^3 e x J e + m x b + bias [N m]: the integration's inner loop, written out.
+
+    Args:
+        inertia_kgm2: inertia tensor.
+        q_body_from_eci: attitude; its norm may be off by what an integration step leaves.
+        around: radius, gradient and field, frame ``eci``.
+        m_body_am2: dipole of coils and residual together.
+        bias_body_nm: constant torque.
+    """
+    c = matrix(q_body_from_eci)
+    e_eci, gradient, b_eci = around
+    ex, ey, ez = transform(c, e_eci)
+    bx, by, bz = transform(c, b_eci)
+    mx, my, mz = m_body_am2
+    dx, dy, dz = bias_body_nm
+    fx, fy, fz = transform(inertia_kgm2, (ex, ey, ez))
+    return (
+        gradient * (ey * fz - ez * fy) + my * bz - mz * by + dx,
+        gradient * (ez * fx - ex * fz) + mz * bx - mx * bz + dy,
+        gradient * (ex * fy - ey * fx) + mx * by - my * bx + dz,
+    )
