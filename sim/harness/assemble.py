@@ -1,0 +1,95 @@
+"""From a scenario to the plant's configuration: units of people to SI."""
+
+from math import cos, hypot, radians, sin
+
+from hil_stub.coil_driver import CoilLimits
+from sim.harness.scenario import Scenario
+from sim.plant.config import (
+    BodyConfig,
+    CoilConfig,
+    DisturbanceConfig,
+    FieldConfig,
+    InitialConfig,
+    MagnetometerConfig,
+    OrbitConfig,
+    PlantConfig,
+    SunSensorConfig,
+)
+
+NT = 1e-9
+Vec3 = tuple[float, float, float]
+
+
+def plant_config(scenario: Scenario, seed: int) -> PlantConfig:
+    """The plant of a scenario, its random streams drawn from ``seed``."""
+    tick_hz, coils, disturbance = scenario.time.tick_hz, scenario.coils, scenario.disturbance
+    return PlantConfig(
+        epoch_unix_s=scenario.epoch_unix_s,
+        tick_hz=tick_hz,
+        seed=seed,
+        orbit=_orbit(scenario),
+        field=FieldConfig(scenario.field.model, scenario.field.degree),
+        body=BodyConfig(scenario.body.inertia),
+        initial=_initial(scenario),
+        disturbance=DisturbanceConfig(disturbance.torque_nm, disturbance.residual_dipole_am2),
+        magnetometer=_magnetometer(scenario),
+        sun_sensor=_sun_sensor(scenario),
+        coils=CoilConfig(
+            coils.levels_am2, coils.dipole_per_ampere_am2, coils.time_constant_s, coils.dipole_scale
+        ),
+        limits=CoilLimits(
+            tick_hz=tick_hz,
+            pulse_ms=round(coils.pulse_s * 1000.0),
+            backoff_ms=round(coils.backoff_s * 1000.0),
+            shared=coils.backoff == "shared",
+        ),
+        max_substep_s=scenario.plant.max_substep_s,
+        perfect_knowledge=scenario.knowledge == "perfect",
+    )
+
+
+def _orbit(scenario: Scenario) -> OrbitConfig:
+    orbit = scenario.orbit
+    if orbit.tle is not None:
+        return OrbitConfig(tle=orbit.tle)
+    return OrbitConfig(
+        altitude_m=1000.0 * (orbit.altitude_km or 0.0),
+        inclination_rad=radians(orbit.inclination_deg),
+        raan_rad=radians(orbit.raan_deg),
+        u0_rad=radians(orbit.u0_deg),
+    )
+
+
+def _initial(scenario: Scenario) -> InitialConfig:
+    initial = scenario.initial
+    half = 0.5 * radians(initial.angle_deg)
+    factor = sin(half) / hypot(*initial.axis)
+    x, y, z = initial.axis
+    return InitialConfig((cos(half), factor * x, factor * y, factor * z), _radians(initial.rate_degps))
+
+
+def _magnetometer(scenario: Scenario) -> MagnetometerConfig:
+    given = scenario.sensors.magnetometer
+    first, second, third = given.coil_field_nt_per_am2
+    return MagnetometerConfig(
+        noise_t=given.noise_nt * NT,
+        bias_t=_scaled(given.bias_nt, NT),
+        scale=given.scale,
+        misalignment_rad=_radians(given.misalignment_deg),
+        quantum_t=given.quantum_nt * NT,
+        saturation_t=given.saturation_nt * NT,
+        coil_coupling_t_per_am2=(_scaled(first, NT), _scaled(second, NT), _scaled(third, NT)),
+    )
+
+
+def _sun_sensor(scenario: Scenario) -> SunSensorConfig:
+    given = scenario.sensors.sun
+    return SunSensorConfig(radians(given.noise_deg), _radians(given.misalignment_deg), given.quantum)
+
+
+def _scaled(v: Vec3, factor: float) -> Vec3:
+    return (v[0] * factor, v[1] * factor, v[2] * factor)
+
+
+def _radians(v: Vec3) -> Vec3:
+    return (radians(v[0]), radians(v[1]), radians(v[2]))

@@ -1,0 +1,163 @@
+"""One flight: the plant's ticks exchanged with the flight software over a bus, recorded as they happen.
+
+In lockstep the plant waits for the TICK_DONE that names its tick. In real time it keeps to absolute deadlines;
+an answer that is not there by then is a counted slip, never a wait.
+"""
+
+import os
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from fsw.io.bus import Bus
+from fsw.wire.frame import Frame
+from fsw.wire.messages import FswBoot, PlantBoot, TickDone, intact
+from sim.harness.candump import format_line, format_time
+from sim.harness.errors import HarnessError
+from sim.harness.truth import TruthFile
+from sim.plant.plant import Plant
+
+BOOT_REQUEST_S = 1.0
+ANSWER_TIMEOUT_S = 20.0
+
+Watch = Callable[[int], None]
+"""Called now and then with the tick that is under way."""
+
+
+class FlightError(HarnessError):
+    """The flight ended before its time."""
+
+    exit_code = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Pace:
+    """``factor`` None: lockstep, as fast as it goes; else real time times the factor."""
+
+    factor: float | None = None
+
+
+LOCKSTEP = Pace()
+
+
+@dataclass(frozen=True, slots=True)
+class Flown:
+    """What became of a flight."""
+
+    ticks: int
+    slips: int
+    wall_s: float
+
+
+class BusLog:
+    """bus.log, written a whole tick at a time: a kill leaves whole ticks."""
+
+    def __init__(self, path: Path, channel: str) -> None:
+        self._descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
+        self._channel = channel
+
+    def write(self, timestamp_us: int, frames: list[Frame]) -> None:
+        """Append frames that all bear one time."""
+        stamp = format_time(timestamp_us)
+        channel = self._channel
+        text = "".join([format_line(stamp, channel, frame) for frame in frames]).encode("ascii")
+        while text:
+            text = text[os.write(self._descriptor, text) :]
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        os.close(self._descriptor)
+
+
+def fly(
+    plant: Plant,
+    bus: Bus,
+    log: BusLog,
+    truth: TruthFile,
+    ticks: int,
+    epoch_unix_s: int,
+    tick_hz: int,
+    pace: Pace = LOCKSTEP,
+    watch: Watch = lambda tick: None,
+) -> Flown:
+    """Fly ``ticks`` ticks.
+
+    Raises:
+        FlightError: the flight software gives no answer (lockstep).
+        BusError: the bus failed.
+    """
+    boot = _await_boot(bus)
+    epoch_us = epoch_unix_s * 1_000_000
+    log.write(epoch_us, [boot])
+    slips = 0
+    began = time.monotonic()
+    for tick in range(ticks):
+        timestamp_us = epoch_us + tick * 1_000_000 // tick_hz
+        sent = plant.begin_tick()
+        bus.send(sent)
+        if pace.factor is None:
+            answers = _lockstep_answers(bus, tick)
+        else:
+            answers, done = _answers_until(bus, tick, began + (tick + 1) / (tick_hz * pace.factor))
+            slips += not done
+        for frame in answers:
+            plant.receive(frame)
+        log.write(timestamp_us, sent + answers)
+        truth.append(plant.truth())
+        plant.end_tick()
+        if tick % WATCH_TICKS == 0:
+            watch(tick)
+    end = plant.end()
+    bus.send([end])
+    log.write(epoch_us + ticks * 1_000_000 // tick_hz, [end])
+    truth.flush()
+    return Flown(ticks, slips, time.monotonic() - began)
+
+
+WATCH_TICKS = 64
+
+
+def _await_boot(bus: Bus) -> Frame:
+    """FSW_BOOT. A flight software that started first and was not heard is asked to repeat it."""
+    while True:
+        bus.send([PlantBoot(reason=0, version=1, table_crc=0).encode()])
+        deadline = time.monotonic() + BOOT_REQUEST_S
+        while (remaining_s := deadline - time.monotonic()) > 0.0:
+            frame = bus.receive(remaining_s)
+            if frame is not None and frame.can_id == FswBoot.ID and intact(frame):
+                return frame
+
+
+def _lockstep_answers(bus: Bus, tick: int) -> list[Frame]:
+    """All frames up to the TICK_DONE that names ``tick``."""
+    answers: list[Frame] = []
+    while True:
+        frame = bus.receive(ANSWER_TIMEOUT_S)
+        if frame is None:
+            raise FlightError(f"no answer from the flight software to tick {tick} within {ANSWER_TIMEOUT_S:.0f} s")
+        answers.append(frame)
+        if _names(frame, tick):
+            return answers
+
+
+def _answers_until(bus: Bus, tick: int, deadline: float) -> tuple[list[Frame], bool]:
+    """All frames up to a deadline of the monotonic clock, and whether TICK_DONE was among them."""
+    answers: list[Frame] = []
+    done = False
+    while (remaining_s := deadline - time.monotonic()) > 0.0:
+        frame = bus.receive(remaining_s)
+        if frame is not None:
+            answers.append(frame)
+            done = done or _names(frame, tick)
+    return answers, done
+
+
+def _names(frame: Frame, tick: int) -> bool:
+    return frame.can_id == TickDone.ID and len(frame.data) == TickDone.LENGTH and TickDone.decode(frame.data).tick == tick

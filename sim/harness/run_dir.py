@@ -1,0 +1,153 @@
+"""The run directory: its files, and run.json, which is replaced atomically and complete only at the end."""
+
+import hashlib
+import json
+import os
+import platform
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tomli_w
+
+from fsw.io.table import TableError
+from sim.harness.errors import HarnessError
+from sim.harness.scenario import Scenario, flight_table, load
+
+SCHEMA_VERSION = 1
+RUN, SCENARIO, BUS_LOG, TRUTH, SUMMARY, REPORT = (
+    "run.json",
+    "scenario.toml",
+    "bus.log",
+    "truth.h5",
+    "summary.json",
+    "report.html",
+)
+
+Json = dict[str, Any]
+
+
+def default_path(scenario: Scenario) -> Path:
+    """``runs/<scenario>-<UTC time>``; a number is added where that exists."""
+    stem = f"{scenario.name}-{datetime.now(UTC):%Y%m%dT%H%M%SZ}"
+    path, number = Path("runs") / stem, 1
+    while path.exists():
+        number += 1
+        path = Path("runs") / f"{stem}-{number}"
+    return path
+
+
+def begin(path: Path, scenario: Scenario, seed: int, ticks: int, bus: str, pace: str) -> None:
+    """Make the directory with scenario.toml and a run.json that is not complete.
+
+    Raises:
+        HarnessError: the directory holds a run already, or cannot be written.
+    """
+    if (path / RUN).exists() or (path / BUS_LOG).exists():
+        raise HarnessError(f"{path} already holds a run: choose another --out")
+    values = scenario.model_dump(mode="json", exclude_none=True)
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        text = tomli_w.dumps(values)
+        (path / SCENARIO).write_text(text, encoding="utf-8")
+        write_json(
+            path / RUN,
+            {
+                "schema_version": SCHEMA_VERSION,
+                "torquer_version": version("torquer"),
+                "scenario": scenario.name,
+                "scenario_sha256": hashlib.sha256(text.encode()).hexdigest(),
+                "flight_table_crc": f"{flight_table(scenario).crc:08x}",
+                "seed": seed,
+                "ticks": ticks,
+                "bus": bus,
+                "pace": pace,
+                "platform": fingerprint(),
+                "complete": False,
+            },
+        )
+    except OSError as error:
+        raise HarnessError(f"{path}: cannot be written ({error.strerror})") from None
+
+
+def update(path: Path, **values: object) -> None:
+    """Replace run.json with these values changed."""
+    write_json(path / RUN, {**read_run(path), **values})
+
+
+def read_run(path: Path) -> Json:
+    """The content of run.json.
+
+    Raises:
+        HarnessError: missing or not JSON.
+    """
+    try:
+        content: Json = json.loads((path / RUN).read_text(encoding="utf-8"))
+    except OSError:
+        raise HarnessError(f"{path} is no run directory: it has no {RUN}") from None
+    except ValueError as error:
+        raise HarnessError(f"{path / RUN}: not JSON: {error}") from None
+    return content
+
+
+def read_scenario(path: Path) -> Scenario:
+    """The resolved scenario of a run.
+
+    Raises:
+        HarnessError: missing or no longer valid.
+    """
+    try:
+        return load(str(path / SCENARIO))
+    except TableError as error:
+        raise HarnessError(str(error)) from None
+
+
+def write_json(path: Path, content: Json) -> None:
+    """Replace a JSON file atomically."""
+    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    temporary.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
+    temporary.replace(path)
+
+
+def locate(run_or_log: Path) -> tuple[Path, Path]:
+    """(log, folder) of a run directory or of a log file.
+
+    Raises:
+        HarnessError: neither exists.
+    """
+    if run_or_log.is_dir():
+        log = run_or_log / BUS_LOG
+        if not log.is_file():
+            raise HarnessError(f"{run_or_log} has no {BUS_LOG}")
+        return log, run_or_log
+    if not run_or_log.is_file():
+        raise HarnessError(f"{run_or_log} does not exist")
+    return run_or_log, run_or_log.parent
+
+
+def fingerprint() -> Json:
+    """What decides about the last bit of a result: CPU, Python, numpy and its linear algebra."""
+    config: Any = np.show_config(mode="dicts")
+    blas = config["Build Dependencies"]["blas"]
+    return {
+        "machine": platform.machine(),
+        "cpu": _cpu_model(),
+        "system": platform.system(),
+        "libc": " ".join(platform.libc_ver()),
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "simd": config["SIMD Extensions"],
+        "blas": f"{blas.get('name')} {blas.get('version')}",
+        "blas_core": os.environ.get("OPENBLAS_CORETYPE", ""),
+    }
+
+
+def _cpu_model() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return platform.processor()
+    values = {key.strip(): value.strip() for key, _, value in (line.partition(":") for line in lines)}
+    return " ".join(values.get(key, "") for key in ("vendor_id", "model name", "cpu family", "model", "stepping")).strip()

@@ -1,0 +1,114 @@
+"""truth.h5: the plant's histories, one row a tick.
+
+All datasets get their full length when the file is made, contiguous and filled with NaN. From then on only
+rows change, never the structure, so that a process killed at any moment leaves a file that opens.
+"""
+
+from itertools import chain
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.harness.errors import HarnessError
+from sim.plant.plant import TruthRow
+
+BLOCK_ROWS = 256
+
+Histories = dict[str, NDArray[np.float64]]
+
+COLUMNS: tuple[tuple[str, int, str, str], ...] = (
+    ("t_s", 1, "s", "time since tick 0"),
+    ("q_body_from_orbit", 4, "1", "attitude, scalar first"),
+    ("omega_body_orbit_radps", 3, "rad/s", "rate of the body relative to the orbital frame, body axes"),
+    ("b_body_t", 3, "T", "geomagnetic field, body axes"),
+    ("sun_body", 3, "1", "unit vector to the Sun, body axes"),
+    ("lit", 1, "1", "visible fraction of the Sun"),
+    ("m_body_am2", 3, "A m^2", "mean coil dipole over the tick that ends here, body axes"),
+    ("r_eci_m", 3, "m", "position, TEME of date"),
+)
+"""Name, width, unit and meaning of the datasets; torques follow, one dataset a source."""
+
+
+class TruthFile:
+    """Writes one row a tick, in blocks."""
+
+    def __init__(self, path: Path, ticks: int, torque_sources: tuple[str, ...]) -> None:
+        self._file = h5py.File(path, "w", libver="earliest")
+        torques = tuple(
+            (f"torque_body_nm/{source}", 3, "N m", f"torque by {source}, body axes") for source in torque_sources
+        )
+        self._datasets = []
+        for name, width, unit, meaning in COLUMNS + torques:
+            shape = (ticks,) if width == 1 else (ticks, width)
+            dataset = self._file.create_dataset(name, shape, dtype="f8", fillvalue=np.nan)
+            dataset.attrs["unit"] = unit
+            dataset.attrs["meaning"] = meaning
+            dataset[0:1] = np.nan  # allocates the space now: the structure is final before the first row
+            self._datasets.append((dataset, width))
+        self._rows: list[tuple[float, ...]] = []
+        self._written = 0
+        self._file.flush()
+
+    def append(self, row: TruthRow) -> None:
+        """Add the row of the next tick."""
+        self._rows.append(_flat(row))
+        if len(self._rows) >= BLOCK_ROWS:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write the rows that wait."""
+        if not self._rows:
+            return
+        block = np.array(self._rows)
+        self._rows.clear()
+        here = slice(self._written, self._written + len(block))
+        column = 0
+        for dataset, width in self._datasets:
+            values = block[:, column : column + width]
+            dataset[here] = values[:, 0] if width == 1 else values
+            column += width
+        self._written = here.stop
+        self._file.flush()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.flush()
+        self._file.close()
+
+
+def read_truth(path: Path) -> Histories:
+    """The flown rows of every dataset, by name.
+
+    Raises:
+        HarnessError: missing or not a truth file.
+    """
+    try:
+        with h5py.File(path, "r") as file:
+            flown = int(np.count_nonzero(np.isfinite(file["t_s"][:])))
+            names = [name for name, *_ in COLUMNS]
+            names += [f"torque_body_nm/{source}" for source in file["torque_body_nm"]]
+            return {name: file[name][:flown] for name in names}
+    except (OSError, KeyError) as error:
+        raise HarnessError(f"{path}: cannot be read as plant histories ({error})") from None
+
+
+def _flat(row: TruthRow) -> tuple[float, ...]:
+    return (
+        row.t_s,
+        *row.q_body_from_orbit,
+        *row.omega_body_orbit_radps,
+        *row.b_body_t,
+        *row.sun_body,
+        row.lit,
+        *row.m_body_am2,
+        *row.r_eci_m,
+        *chain.from_iterable(row.torque_body_nm),
+    )

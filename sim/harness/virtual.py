@@ -1,0 +1,29 @@
+"""The virtual bus: plant and flight software in one process, the same frames in an in-process queue."""
+
+from collections import deque
+from collections.abc import Sequence
+
+from fsw.io.node import FlightNode
+from fsw.wire.frame import Frame
+
+
+class VirtualBus:
+    """The plant's end of a bus whose only other node is the flight software, answering at once."""
+
+    name = "virtual"
+
+    def __init__(self, node: FlightNode) -> None:
+        self._node = node
+        self._queue: deque[Frame] = deque((node.start(),))
+
+    def send(self, frames: Sequence[Frame]) -> None:
+        """Hand the frames to the flight software; its answers wait in the queue."""
+        for frame in frames:
+            self._queue.extend(self._node.receive(frame))
+
+    def receive(self, timeout_s: float | None) -> Frame | None:
+        """The next answer, or None: nothing more will come until something is sent."""
+        return self._queue.popleft() if self._queue else None
+
+    def close(self) -> None:
+        """Nothing to release."""
