@@ -15,6 +15,8 @@ from fsw.core.vector import Vec3, cross, dot, norm, scale
 
 NODE_S_RANGE = (10, 30)
 
+Weights = tuple[float, float, float, float]
+
 
 @dataclass(frozen=True, slots=True)
 class Node:
@@ -61,7 +63,7 @@ class Reference:
     orbit_rate_radps: float
 
 
-def ephemeris_model(  # noqa: PLR0917
+def ephemeris_model(
     orbit: Orbit,
     epoch_unix_s: int,
     tick_hz: int,
@@ -116,42 +118,18 @@ def node(number: int, model: EphemerisModel) -> Node | None:
 
 
 def reference_at(window: EphemerisWindow, tick: int, model: EphemerisModel) -> Reference:
-    """The reference at a tick that the window serves.
+    """The reference at a tick that the window serves: every vector by the cubic through its four nodes.
 
-    Position by the Hermite cubic on the two nodes around the tick, velocity as its derivative, field by the
-    Lagrange cubic on all four, Sun by a straight line; the radius to 1e-9, the field to 0.1 nT.
+    With nodes 20 s apart on a low orbit the field is good to 0.02 nT and the position to 0.05 m; 30 s apart
+    to 0.1 nT and 0.2 m.
     """
-    before, left, right, after = window.nodes
-    step_s = model.node_ticks / model.tick_hz
-    s = (tick - (window.first_node + 1) * model.node_ticks) / model.node_ticks
-
-    r0, r1, v0, v1 = left.r_eci_m, right.r_eci_m, left.v_eci_mps, right.v_eci_mps
-    t = 1.0 - s
-    h00, h10, h11 = t * t * (1.0 + 2.0 * s), s * t * t * step_s, -s * s * t * step_s
-    h01 = 1.0 - h00
-    r = (
-        h00 * r0[0] + h01 * r1[0] + h10 * v0[0] + h11 * v1[0],
-        h00 * r0[1] + h01 * r1[1] + h10 * v0[1] + h11 * v1[1],
-        h00 * r0[2] + h01 * r1[2] + h10 * v0[2] + h11 * v1[2],
-    )
-    d01, d10, d11 = 6.0 * s * t / step_s, t * (1.0 - 3.0 * s), s * (3.0 * s - 2.0)
-    v = (
-        d01 * (r1[0] - r0[0]) + d10 * v0[0] + d11 * v1[0],
-        d01 * (r1[1] - r0[1]) + d10 * v0[1] + d11 * v1[1],
-        d01 * (r1[2] - r0[2]) + d10 * v0[2] + d11 * v1[2],
-    )
-    b0, b1, b2, b3 = before.b_eci_t, left.b_eci_t, right.b_eci_t, after.b_eci_t
-    p, q = s * t, (1.0 + s) * (2.0 - s)
-    l0, l1, l2, l3 = -p * (2.0 - s) / 6.0, t * q / 2.0, s * q / 2.0, -p * (1.0 + s) / 6.0
-    b = (
-        l0 * b0[0] + l1 * b1[0] + l2 * b2[0] + l3 * b3[0],
-        l0 * b0[1] + l1 * b1[1] + l2 * b2[1] + l3 * b3[1],
-        l0 * b0[2] + l1 * b1[2] + l2 * b2[2] + l3 * b3[2],
-    )
-    s0, s1 = left.sun_eci, right.sun_eci
-    sun = (t * s0[0] + s * s1[0], t * s0[1] + s * s1[1], t * s0[2] + s * s1[2])
-
-    r2 = dot(r, r)
+    n0, n1, n2, n3 = window.nodes
+    past_left = tick - (window.first_node + 1) * model.node_ticks
+    weights = _lagrange(past_left / model.node_ticks)
+    r = _blend(weights, n0.r_eci_m, n1.r_eci_m, n2.r_eci_m, n3.r_eci_m)
+    v = _blend(weights, n0.v_eci_mps, n1.v_eci_mps, n2.v_eci_mps, n3.v_eci_mps)
+    b = _blend(weights, n0.b_eci_t, n1.b_eci_t, n2.b_eci_t, n3.b_eci_t)
+    sun = _blend(weights, n0.sun_eci, n1.sun_eci, n2.sun_eci, n3.sun_eci)
     radius_m = norm(r)
     normal = cross(r, v)
     momentum = norm(normal)
@@ -163,7 +141,28 @@ def reference_at(window: EphemerisWindow, tick: int, model: EphemerisModel) -> R
         sun_eci=sun,
         lit=lit(r, sun),
         q_orbit_from_eci=from_dcm((e1, cross(e3, e1), e3)),
-        orbit_rate_radps=momentum / r2,
+        orbit_rate_radps=momentum / dot(r, r),
+    )
+
+
+def _lagrange(s: float) -> Weights:
+    """Weights of the nodes at -1, 0, 1, 2 in the cubic through all four, at s in [0, 1]."""
+    past, left, right, ahead = 1.0 + s, s, 1.0 - s, 2.0 - s
+    return (
+        left * right * ahead / -6.0,
+        past * right * ahead / 2.0,
+        past * left * ahead / 2.0,
+        past * left * right / -6.0,
+    )
+
+
+def _blend(weights: Weights, a: Vec3, b: Vec3, c: Vec3, d: Vec3) -> Vec3:
+    """The weighted sum of four vectors."""
+    w0, w1, w2, w3 = weights
+    return (
+        w0 * a[0] + w1 * b[0] + w2 * c[0] + w3 * d[0],
+        w0 * a[1] + w1 * b[1] + w2 * c[1] + w3 * d[1],
+        w0 * a[2] + w1 * b[2] + w2 * c[2] + w3 * d[2],
     )
 
 
