@@ -83,7 +83,7 @@ def read_log(path: Path) -> Iterator[LogEntry]:
     """The frames of a candump log, one by one, in the order of the file.
 
     Raises:
-        LogTruncatedError: at the end, if the last line is cut short; every whole line has been yielded by then.
+        LogTruncatedError: at the end, if the last line is cut; every whole line has been yielded by then.
         LogError: the file cannot be read, its first line is no candump line, or a later one is not.
     """
     try:

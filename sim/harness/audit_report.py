@@ -1,0 +1,168 @@
+"""What an audit of the actuator limits has found, as values."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import StrEnum
+from fractions import Fraction
+from itertools import pairwise
+
+COILS = (0, 1, 2)
+
+
+class Kind(StrEnum):
+    """What a violation is of."""
+
+    PULSE = "pulse"
+    ANNOUNCED = "announced"
+    GAP = "gap"
+    BOOT = "boot"
+    LEVEL = "level"
+    COIL = "coil"
+    TWO_COILS = "two_coils"
+    FRAME = "frame"
+    TIMESTAMP = "timestamp"
+    SYNC = "sync"
+
+
+@dataclass(frozen=True, slots=True)
+class AuditLimits:
+    """The limits that the board must keep.
+
+    Attributes:
+        pulse_us: longest pulse [us].
+        backoff_us: least time from the end of a pulse to the start of the next [us].
+        max_level: largest magnitude of a level.
+        shared: the back-off is from a pulse of any coil; else from one of the same coil.
+        tick_hz: rate that the scenario states; the log's own SYNC overrules it.
+    """
+
+    pulse_us: int = 3_000_000
+    backoff_us: int = 100_000_000
+    max_level: int = 3
+    shared: bool = True
+    tick_hz: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Pulse:
+    """One coil driven without a break over [start_s, end_s)."""
+
+    coil: int
+    level: int
+    start_s: Fraction
+    end_s: Fraction
+
+    @property
+    def length_s(self) -> Fraction:
+        """How long the coil was driven."""
+        return self.end_s - self.start_s
+
+
+@dataclass(frozen=True, slots=True)
+class Violation:
+    """One limit broken: what, when, where.
+
+    Attributes:
+        kind: the limit.
+        time_s: seconds from tick 0, or from the first entry of a log without SYNC. For a pulse its start.
+        tick: the tick of that time, if the log has ticks.
+        coil: the coil, if it is known.
+        line: line of the log that gives it away.
+        sentence: what is wrong, without time and coil.
+    """
+
+    kind: Kind
+    time_s: Fraction
+    tick: int | None
+    coil: int | None
+    line: int
+    sentence: str
+
+    def __str__(self) -> str:
+        tick = "" if self.tick is None else f" (tick {self.tick})"
+        coil = "" if self.coil is None else f" coil {self.coil}"
+        return f"t={seconds_text(self.time_s)} s{tick}{coil}: {self.sentence} [line {self.line}]"
+
+
+@dataclass(frozen=True, slots=True)
+class AuditReport:
+    """The verdict on one log.
+
+    Attributes:
+        limits: what was judged by.
+        pulses: all pulses, by start.
+        violations: all violations, by time.
+        notes: what the reader should know besides, a sentence each.
+        statuses: number of COIL_STATUS judged.
+        span_s: time from the first to the last of them.
+        truncated_at: number of the line that is cut, if the log ends inside one.
+        complete: the log ends with a whole line, and with an end mark where one must be.
+    """
+
+    limits: AuditLimits
+    pulses: tuple[Pulse, ...]
+    violations: tuple[Violation, ...]
+    notes: tuple[str, ...]
+    statuses: int
+    span_s: Fraction
+    truncated_at: int | None
+    complete: bool
+
+    @property
+    def ok(self) -> bool:
+        """Something was judged, and no limit was broken."""
+        return self.statuses > 0 and not self.violations
+
+    @property
+    def exit_code(self) -> int:
+        """0 if the limits were kept over a complete log, else 1."""
+        return 0 if self.ok and self.complete else 1
+
+    @property
+    def pulses_per_coil(self) -> list[int]:
+        """Number of pulses of each coil."""
+        return [len(self._of(coil)) for coil in COILS]
+
+    @property
+    def duty_per_coil(self) -> list[float]:
+        """Fraction of the time for which each coil was driven."""
+        return [self._duty(self._of(coil)) for coil in COILS]
+
+    @property
+    def duty_total(self) -> float:
+        """Sum of the duties of all coils."""
+        return self._duty(self.pulses)
+
+    @property
+    def max_pulse_s(self) -> float | None:
+        """The longest pulse; None if there was none."""
+        return max((float(pulse.length_s) for pulse in self.pulses), default=None)
+
+    @property
+    def min_gap_any_s(self) -> float | None:
+        """Least time from a pulse to the next, of whatever coil; None with fewer than two pulses."""
+        return _min_gap(self.pulses)
+
+    @property
+    def min_gap_per_coil_s(self) -> list[float | None]:
+        """Least time from a pulse to the next of the same coil, for each coil."""
+        return [_min_gap(self._of(coil)) for coil in COILS]
+
+    def _of(self, coil: int) -> tuple[Pulse, ...]:
+        return tuple(pulse for pulse in self.pulses if pulse.coil == coil)
+
+    def _duty(self, pulses: Iterable[Pulse]) -> float:
+        driven_s = sum((pulse.length_s for pulse in pulses), Fraction(0))
+        return float(driven_s / self.span_s) if self.span_s > 0 else 0.0
+
+
+def seconds_text(time_s: Fraction | float) -> str:
+    """Seconds with at least three decimals, and as many more, up to six, as they need."""
+    text = f"{float(time_s):.6f}"
+    return text[:-3] + text[-3:].rstrip("0")
+
+
+def _min_gap(pulses: Iterable[Pulse]) -> float | None:
+    """Least gap of pulses in order of start; those that overlap have none: 0."""
+    gaps = (float(max(later.start_s - sooner.end_s, Fraction(0))) for sooner, later in pairwise(pulses))
+    return min(gaps, default=None)

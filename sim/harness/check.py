@@ -1,0 +1,133 @@
+"""``torquer check``: audit the actuator limits in a run directory or in any candump log."""
+
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+from sim.harness.audit import audit
+from sim.harness.audit_report import AuditLimits, AuditReport, seconds_text
+from sim.harness.candump import read_log
+from sim.harness.errors import HarnessError
+
+LOG_NAME = "bus.log"
+SCENARIO_NAME = "scenario.toml"
+_SHOWN = 50
+"""Violations that are printed one by one; a log of ours that broke loose may hold thousands."""
+
+
+def check(path: Path, backoff: str | None) -> AuditReport:
+    """Audit a log by the limits of the scenario beside it.
+
+    Args:
+        path: a run directory, or a log.
+        backoff: ``"shared"`` or ``"per_coil"``, overrules the scenario; without either it is shared.
+
+    Raises:
+        HarnessError: there is no such log, it is no candump log or an altered one, or the scenario beside it
+            cannot be used.
+    """
+    log = path / LOG_NAME if path.is_dir() else path
+    if not log.is_file():
+        raise HarnessError(f"{path}: no {LOG_NAME} in it" if path.is_dir() else f"{path}: no such file")
+    beside = limits_beside(log)
+    limits = beside or AuditLimits()
+    if backoff is not None:
+        limits = replace(limits, shared=_is_shared(backoff, "--backoff"))
+    return audit(read_log(log), limits, expect_end=beside is not None)
+
+
+def limits_beside(log: Path) -> AuditLimits | None:
+    """The limits in the ``scenario.toml`` of the log's folder; None without one.
+
+    Raises:
+        HarnessError: it cannot be read, or one of its limits makes no sense.
+    """
+    scenario = log.parent / SCENARIO_NAME
+    if not scenario.is_file():
+        return None
+    try:
+        tables = tomllib.loads(scenario.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise HarnessError(f"{scenario}: cannot be read: {error}") from None
+    coils, time = _table(tables, "coils", scenario), _table(tables, "time", scenario)
+    default = AuditLimits()
+    return AuditLimits(
+        pulse_us=_microseconds(coils.get("pulse_s", 3.0), f"{scenario}: coils.pulse_s"),
+        backoff_us=_microseconds(coils.get("backoff_s", 100.0), f"{scenario}: coils.backoff_s"),
+        max_level=default.max_level,
+        shared=_is_shared(coils.get("backoff", "shared"), f"{scenario}: coils.backoff"),
+        tick_hz=_tick_hz(time.get("tick_hz"), f"{scenario}: time.tick_hz"),
+    )
+
+
+def render(report: AuditReport) -> str:
+    """The verdict for people: what was judged, each violation with time and coil, and the notes."""
+    limits = report.limits
+    lines = [
+        f"limits: pulse <= {_microseconds_text(limits.pulse_us)} s, "
+        f"back-off >= {_microseconds_text(limits.backoff_us)} s {'shared' if limits.shared else 'per coil'}, "
+        f"level -{limits.max_level}..{limits.max_level}, one coil at a time"
+    ]
+    if report.statuses:
+        lines.append(_figures(report))
+    lines += [f"VIOLATION {violation}" for violation in report.violations[:_SHOWN]]
+    if len(report.violations) > _SHOWN:
+        lines.append(f"... and {len(report.violations) - _SHOWN} more")
+    lines += [f"note: {note}" for note in report.notes]
+    lines.append(_verdict(report))
+    return "\n".join(lines)
+
+
+def _figures(report: AuditReport) -> str:
+    text = f"{len(report.pulses)} pulses (coil 0, 1, 2: {', '.join(map(str, report.pulses_per_coil))})"
+    if report.max_pulse_s is not None:
+        text += f", longest {seconds_text(report.max_pulse_s)} s"
+    if report.min_gap_any_s is not None:
+        text += f", shortest gap {seconds_text(report.min_gap_any_s)} s"
+    return text + f", duty {100 * report.duty_total:.2f} % of {seconds_text(report.span_s)} s"
+
+
+def _verdict(report: AuditReport) -> str:
+    if not report.statuses:
+        return "FAIL: nothing to judge"
+    if report.violations:
+        count = len(report.violations)
+        return f"FAIL: {count} violation{'' if count == 1 else 's'} of the limits"
+    return (
+        "OK: limits kept"
+        if report.complete
+        else "FAIL: limits kept as far as the log goes, but it is incomplete"
+    )
+
+
+def _microseconds_text(microseconds: int) -> str:
+    whole, rest = divmod(microseconds, 1_000_000)
+    return f"{whole}.{rest:06d}"[:-3] if rest % 1000 == 0 else f"{whole}.{rest:06d}"
+
+
+def _is_shared(backoff: object, where: str) -> bool:
+    if backoff not in ("shared", "per_coil"):
+        raise HarnessError(f"{where} is {backoff!r}, not 'shared' or 'per_coil'")
+    return backoff == "shared"
+
+
+def _table(tables: dict[str, object], name: str, scenario: Path) -> dict[str, object]:
+    table = tables.get(name, {})
+    if not isinstance(table, dict):
+        raise HarnessError(f"{scenario}: {name} is not a table")
+    return table
+
+
+def _microseconds(value: object, where: str) -> int:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value < 1e9:
+        raise HarnessError(f"{where} is {value!r}, not a time in seconds")
+    return round(value * 1_000_000)
+
+
+def _tick_hz(value: object, where: str) -> int | None:
+    if value is None:
+        return None
+    whole = isinstance(value, int | float) and not isinstance(value, bool) and value == int(value)
+    if not whole or not isinstance(value, int | float) or not 1 <= value <= 1_000_000:
+        raise HarnessError(f"{where} is {value!r}, not a whole number of ticks a second")
+    return int(value)
