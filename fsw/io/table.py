@@ -315,3 +315,14 @@ def flight_table(values: Nested, source: str) -> FlightTable:
         TableError: naming ``source``, the keys and what is allowed.
     """
     return validated(FlightTable, merge(default_values(), values), source)
+
+
+def load_flight_table(path: str | None) -> FlightTable:
+    """The table in a file, or the default one.
+
+    Raises:
+        TableError: the file cannot be used.
+    """
+    if path is None:
+        return flight_table({}, "fsw/flight.toml")
+    return flight_table(read_toml(Path(path)), path)

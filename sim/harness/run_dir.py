@@ -14,6 +14,7 @@ import tomli_w
 
 from fsw.io.table import TableError
 from sim.harness.errors import HarnessError
+from sim.harness.flight import Pace
 from sim.harness.scenario import Scenario, flight_table, load
 
 SCHEMA_VERSION = 1
@@ -39,7 +40,7 @@ def default_path(scenario: Scenario) -> Path:
     return path
 
 
-def begin(path: Path, scenario: Scenario, seed: int, ticks: int, bus: str, pace: str) -> None:
+def begin(path: Path, scenario: Scenario, seed: int, ticks: int, bus: str, pace: Pace) -> None:
     """Make the directory with scenario.toml and a run.json that is not complete.
 
     Raises:
@@ -63,7 +64,8 @@ def begin(path: Path, scenario: Scenario, seed: int, ticks: int, bus: str, pace:
                 "seed": seed,
                 "ticks": ticks,
                 "bus": bus,
-                "pace": pace,
+                "pace": "lockstep" if pace.factor is None else "realtime",
+                "pace_factor": pace.factor,
                 "platform": fingerprint(),
                 "complete": False,
             },
@@ -150,4 +152,6 @@ def _cpu_model() -> str:
     except OSError:
         return platform.processor()
     values = {key.strip(): value.strip() for key, _, value in (line.partition(":") for line in lines)}
-    return " ".join(values.get(key, "") for key in ("vendor_id", "model name", "cpu family", "model", "stepping")).strip()
+    return " ".join(
+        values.get(key, "") for key in ("vendor_id", "model name", "cpu family", "model", "stepping")
+    ).strip()

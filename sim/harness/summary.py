@@ -1,6 +1,6 @@
 """summary.json: how well the flight went, all judged against the plant's truth."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import pi, sqrt
 from typing import Any
 
@@ -35,12 +35,11 @@ def orbit_period_s(scenario: Scenario) -> float:
 
 @dataclass(slots=True)
 class BusTally:
-    """What is counted on the bus: refusals and events, events as (tick, node, event, argument)."""
+    """What is counted on the bus: refusals and events, the first events in full."""
 
-    tick_hz: int
     epoch_us: int
-    refused: int
-    events: list[Json]
+    refused: int = 0
+    events: list[Json] = field(default_factory=list)
 
     def take(self, entry: LogEntry) -> None:
         """Count one frame."""
@@ -80,7 +79,11 @@ def summarise(
         "realtime_factor": sim_s / wall_s if wall_s else None,
         "ticks": ticks,
         "slips": flown.get("slips"),
-        "pulses": {"total": len(audit.pulses), "per_coil": audit.pulses_per_coil, "refused": tally.refused},
+        "pulses": {
+            "total": len(audit.pulses),
+            "per_coil": audit.pulses_per_coil,
+            "refused": tally.refused,
+        },
         "duty": {"per_coil": audit.duty_per_coil, "total": audit.duty_total},
         "min_gap_s": {"per_coil": audit.min_gap_per_coil_s, "any": audit.min_gap_any_s},
         "max_pulse_s": audit.max_pulse_s,
@@ -108,8 +111,12 @@ def nees(truth: Histories, estimates: Estimates) -> Array:
     """Normalised estimation error squared of attitude and rate (6 states) at each tick; NaN where unknown."""
     ticks = len(truth["t_s"])
     turn = estimate_error(truth, estimates)
-    orbit_rate = np.linalg.norm(estimates.omega_body_radps[:ticks] - estimates.omega_body_orbit_radps[:ticks], axis=1)
-    omega_true = truth["omega_body_orbit_radps"] + orbit_rate[:, None] * normal_in_body(truth["q_body_from_orbit"])
+    orbit_rate = np.linalg.norm(
+        estimates.omega_body_radps[:ticks] - estimates.omega_body_orbit_radps[:ticks], axis=1
+    )
+    omega_true = truth["omega_body_orbit_radps"] + orbit_rate[:, None] * normal_in_body(
+        truth["q_body_from_orbit"]
+    )
     error = np.hstack((2.0 * turn[:, 1:], omega_true - estimates.omega_body_radps[:ticks]))
     known = np.isfinite(error).all(axis=1)
     result = np.full(ticks, np.nan)
@@ -166,3 +173,31 @@ def _first_run(good: NDArray[np.bool_], length: int) -> int | None:
         if stop - start >= length:
             return int(start)
     return None
+
+
+def summary_text(summary: Json) -> str:
+    """The summary for a person, a few lines."""
+    pulses, axis = summary["pulses"], summary.get("pointing_deg", {})
+    estimate, gap = summary.get("estimate_deg", {}), summary["min_gap_s"]["any"]
+    lines = [
+        f"{summary['scenario']}, seed {summary['seed']}: {summary['sim_seconds']:.0f} s flown"
+        + (f" at {summary['realtime_factor']:.0f} times real time" if "realtime_factor" in summary else ""),
+        f"  limits     {'kept' if summary['limits_ok'] else 'BROKEN'}: {pulses['total']} pulses, {pulses['refused']} refused"
+        + (f", longest {summary['max_pulse_s']:.3f} s" if "max_pulse_s" in summary else "")
+        + (f", least gap {gap:.3f} s" if gap is not None else ""),
+    ]
+    if axis:
+        lines.append(
+            f"  pointing   {axis['rms_last_orbit']:.2f} deg RMS, {axis['max_last_orbit']:.2f} max over the last orbit"
+        )
+    if estimate:
+        parts = [f"{estimate[key]:.3f} deg {what}" for key, what in _ESTIMATE_TEXT if key in estimate]
+        lines.append(f"  estimate   {', '.join(parts)}, converged at {summary['converged_at_s']:.0f} s")
+    if "mode_final" in summary:
+        lines.append(f"  mode       {summary['mode_final']}")
+    if "replay" in summary:
+        lines.append(f"  replay     {'bit-exact' if summary['replay']['bit_exact'] else 'NOT bit-exact'}")
+    return "\n".join(lines)
+
+
+_ESTIMATE_TEXT = (("rms_sunlit", "RMS sunlit"), ("rms_eclipse", "RMS in eclipse"), ("max", "max"))

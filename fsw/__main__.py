@@ -1,0 +1,49 @@
+"""``python -m fsw``: the flight software as a process on a bus."""
+
+import os
+import sys
+
+import click
+
+from fsw.io.bus import BusError, open_bus
+from fsw.io.config import flight_config
+from fsw.io.node import FlightNode
+from fsw.io.runner import run
+from fsw.io.table import FlightTable, TableError, load_flight_table
+
+
+def _table(scenario: str | None, table: str | None, settings: tuple[str, ...]) -> FlightTable:
+    if scenario is None:
+        return load_flight_table(table)
+    from sim.harness.scenario import flight_table, load, parse_settings  # noqa: PLC0415  (not there on a target)
+
+    return flight_table(load(scenario, parse_settings(settings)))
+
+
+@click.command()
+@click.argument("scenario", required=False)
+@click.option("--table", metavar="FILE", help="Onboard table instead of a scenario's; default fsw/flight.toml.")
+@click.option("--bus", default="auto", show_default=True, help="socketcan:NAME, loop[:PORT], slcan:PORT or auto.")
+@click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help="Override a key of the scenario.")
+@click.option("--ends-with-parent", is_flag=True, hidden=True)
+def main(scenario: str | None, table: str | None, bus: str, settings: tuple[str, ...], ends_with_parent: bool) -> None:
+    """Fly on a bus: answer the SYNC of a plant, as SCENARIO or an onboard table says."""
+    try:
+        node = FlightNode(flight_config(_table(scenario, table, settings)))
+        link = open_bus(bus)
+    except (TableError, BusError) as error:
+        click.echo(f"fsw: {error}", err=True)
+        sys.exit(2)
+    try:
+        run(node, link, os.getppid() if ends_with_parent else None)
+    except BusError as error:
+        click.echo(f"fsw: {error}", err=True)
+        sys.exit(1)
+    except KeyboardInterrupt:
+        sys.exit(130)
+    finally:
+        link.close()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,145 @@
+"""The ``torquer`` command. Errors are one sentence and exit code 2; a failed verdict is exit code 1."""
+
+import sys
+from collections.abc import Callable
+from functools import wraps
+from pathlib import Path
+from typing import ParamSpec
+
+import click
+
+from fsw.io.bus import BusError
+from fsw.io.table import TableError
+from sim.harness.errors import HarnessError
+
+Parameters = ParamSpec("Parameters")
+
+RUN_OR_LOG = click.argument("run_or_log", metavar="RUN|LOG", type=click.Path(path_type=Path))
+SETTINGS = click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help="Override a key of the scenario.")
+
+
+def sentences(command: Callable[Parameters, int | None]) -> Callable[Parameters, None]:
+    """Turn what a user can mend into one sentence on stderr and an exit code."""
+
+    @wraps(command)
+    def run(*args: Parameters.args, **kwargs: Parameters.kwargs) -> None:
+        try:
+            code = command(*args, **kwargs)
+        except (TableError, BusError, HarnessError) as error:
+            click.echo(f"torquer: {error}", err=True)
+            code = getattr(error, "exit_code", 2)
+        except KeyboardInterrupt:
+            click.echo("torquer: interrupted; what was done so far is kept", err=True)
+            code = 130
+        sys.exit(code or 0)
+
+    return run
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="torquer", prog_name="torquer")
+def main() -> None:
+    """Magnetic attitude control as flight software: fly it, replay it, audit it."""
+
+
+@main.command()
+@sentences
+def scenarios() -> None:
+    """The scenarios that ship, one line each."""
+    from sim.harness.scenario import shipped
+
+    for scenario in shipped():
+        click.echo(f"{scenario.name:<14} {scenario.summary}")
+
+
+@main.command()
+@click.argument("scenario", default="microsat")
+@click.option("--bus", default="auto", show_default=True, help="auto, loop[:PORT], socketcan:NAME, slcan:PORT or virtual.")
+@click.option("--pace", default="lockstep", show_default=True, help="lockstep or realtime[:FACTOR].")
+@click.option("--orbits", type=click.FloatRange(min=0.0, min_open=True), help="How long to fly; default as the scenario says.")
+@click.option("--seed", default=1, show_default=True, type=click.IntRange(min=0), help="Of all random streams.")
+@click.option("--out", type=click.Path(path_type=Path), help="Run directory; default runs/<scenario>-<UTC time>.")
+@SETTINGS
+@sentences
+def sil(
+    scenario: str, bus: str, pace: str, orbits: float | None, seed: int, out: Path | None, settings: tuple[str, ...]
+) -> None:
+    """Fly SCENARIO: plant and flight software as two processes on a bus (virtual: in one)."""
+    from fsw.io.bus import resolve
+    from sim.harness import run_dir
+    from sim.harness.conclude import conclude
+    from sim.harness.options import parse_pace
+    from sim.harness.progress import progress
+    from sim.harness.scenario import load, parse_settings
+    from sim.harness.sil import fly_processes, fly_virtual, ticks_of
+    from sim.harness.summary import summary_text
+
+    chosen = load(scenario, parse_settings(settings))
+    chosen_pace = parse_pace(pace)
+    kind = bus if bus == "virtual" else resolve(bus)
+    path = out or run_dir.default_path(chosen)
+    ticks = ticks_of(chosen, orbits)
+    run_dir.begin(path, chosen, seed, ticks, kind.partition(":")[0], chosen_pace)
+    if bus == "auto":
+        click.echo(f"bus: {kind.partition(':')[0]} (auto)", err=True)
+    with progress(f"flying {chosen.name}", ticks) as watch:
+        if bus == "virtual":
+            fly_virtual(path, chosen, watch)
+        else:
+            fly_processes(path, chosen, bus, watch)
+    with progress("replaying", ticks) as watch:
+        summary = conclude(path, watch)
+    click.echo(summary_text(summary))
+    click.echo(f"report: {path / run_dir.REPORT}")
+
+
+@main.command()
+@RUN_OR_LOG
+@click.option("--scenario", help="What a bare log was flown with; default the scenario.toml beside it.")
+@click.option("--plant", is_flag=True, help="Put the recorded commands through the plant instead.")
+@click.option("--onto", metavar="BUS", help="Play the log on a bus instead, at its own pace.")
+@SETTINGS
+@sentences
+def replay(run_or_log: Path, scenario: str | None, plant: bool, onto: str | None, settings: tuple[str, ...]) -> int:
+    """Refly a log through the flight software and compare byte for byte."""
+    from sim.harness import replay_command as commands
+
+    log, chosen = commands.locate(run_or_log, scenario, settings)
+    if onto is not None:
+        return commands.play(log, onto)
+    if plant:
+        return commands.through_plant(log, chosen)
+    return commands.through_flight_software(log, chosen)
+
+
+@main.command()
+@RUN_OR_LOG
+@click.option("--backoff", type=click.Choice(["shared", "per_coil"]), help="Limits of a bare log.")
+@sentences
+def check(run_or_log: Path, backoff: str | None) -> int:
+    """Audit the actuator limits in a candump log, independently of the controller."""
+    from sim.harness.check import check, render
+
+    report = check(run_or_log, backoff)
+    click.echo(render(report))
+    return report.exit_code
+
+
+@main.command()
+@click.argument("run", type=click.Path(path_type=Path))
+@sentences
+def report(run: Path) -> None:
+    """Rebuild summary.json and report.html of a run, complete or not."""
+    from sim.harness import run_dir
+    from sim.harness.conclude import conclude
+    from sim.harness.progress import progress
+    from sim.harness.summary import summary_text
+
+    with progress("replaying", run_dir.read_run(run)["ticks"]) as watch:
+        summary = conclude(run, watch)
+    click.echo(summary_text(summary))
+    click.echo(f"report: {run / run_dir.REPORT}")
+
+
+if __name__ == "__main__":
+    main()

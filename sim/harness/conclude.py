@@ -1,0 +1,62 @@
+"""What is made of a flown run: audit, replay, summary, report; only then is the run complete."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from fsw.core.state import FlightState
+from fsw.io.config import flight_config
+from sim.harness import run_dir
+from sim.harness.audit import audit
+from sim.harness.check import limits_beside
+from sim.harness.candump import LogEntry, read_log
+from sim.harness.estimates import EstimateRecorder
+from sim.harness.replay import Replay, replay
+from sim.harness.report import write_report
+from sim.harness.run_dir import Json
+from sim.harness.scenario import flight_table
+from sim.harness.summary import BusTally, summarise
+from sim.harness.truth import read_truth
+
+Watch = Callable[[int], None]
+
+
+def conclude(path: Path, watch: Watch = lambda tick: None) -> Json:
+    """Write summary.json and report.html of a run, complete or not, and mark a whole run complete.
+
+    The log is replayed through the flight software: that gives its estimates at full precision, and shows
+    each time that the replay is exact.
+
+    Raises:
+        HarnessError: the directory is no run, or its log is damaged.
+    """
+    run, scenario = run_dir.read_run(path), run_dir.read_scenario(path)
+    log = path / run_dir.BUS_LOG
+    truth = read_truth(path / run_dir.TRUTH)
+    recorder = EstimateRecorder(len(truth["t_s"]))
+
+    def on_tick(state: FlightState) -> None:
+        recorder.take(state)
+        watch(state.tick)
+
+    shown = replay(log, flight_config(flight_table(scenario)), on_tick)
+    tally = BusTally(scenario.epoch_unix_s * 1_000_000)
+    limits = limits_beside(log)
+    assert limits is not None
+    audited = audit(_tallied(read_log(log), tally), limits)
+    summary = summarise(scenario, run, truth, recorder.estimates(), audited, tally)
+    summary["replay"] = _verdict(shown)
+    run_dir.write_json(path / run_dir.SUMMARY, summary)
+    write_report(path / run_dir.REPORT, scenario, summary, truth, recorder.estimates(), audited)
+    if "flown" in run and shown.ended:
+        run_dir.update(path, complete=True)
+    return summary
+
+
+def _tallied(entries: Iterator[LogEntry], tally: BusTally) -> Iterator[LogEntry]:
+    for entry in entries:
+        tally.take(entry)
+        yield entry
+
+
+def _verdict(shown: Replay) -> Json:
+    return {"bit_exact": shown.bit_exact, "command_exact": shown.command_exact, "ticks": shown.ticks}

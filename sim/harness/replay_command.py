@@ -1,0 +1,117 @@
+"""What ``torquer replay`` does: through the flight software, through the plant, or onto a bus."""
+
+import time
+from collections.abc import Iterator
+from contextlib import suppress
+from itertools import groupby, islice
+from pathlib import Path
+from typing import NamedTuple
+
+import click
+
+from fsw.io.bus import open_bus
+from fsw.io.config import flight_config
+from fsw.wire.messages import NAMES, SENDERS, PlantEnd
+from sim.harness import run_dir
+from sim.harness.assemble import plant_config
+from sim.harness.candump import LogEntry, LogTruncatedError, read_log
+from sim.harness.errors import HarnessError
+from sim.harness.progress import progress
+from sim.harness.replay import FROM_FSW, replay
+from sim.harness.scenario import Scenario, flight_table, load, parse_settings
+from sim.plant.plant import Plant
+
+
+class Flown(NamedTuple):
+    """What a log was flown with: scenario, and run.json where there is one."""
+
+    scenario: Scenario
+    run: run_dir.Json
+
+
+def locate(run_or_log: Path, scenario: str | None, settings: tuple[str, ...]) -> tuple[Path, Flown]:
+    """The log, and what it was flown with.
+
+    Raises:
+        HarnessError: no such log, or nothing tells the scenario.
+        TableError: the scenario is not valid.
+    """
+    log, folder = run_dir.locate(run_or_log)
+    next(iter(read_log(log)))  # a file that is no log is named first
+    run = run_dir.read_run(folder) if (folder / run_dir.RUN).is_file() else {}
+    beside = folder / run_dir.SCENARIO
+    if scenario is None and not beside.is_file():
+        raise HarnessError(f"{log}: no {run_dir.SCENARIO} beside it: name what it was flown with by --scenario")
+    return log, Flown(load(scenario or str(beside), parse_settings(settings)), run)
+
+
+def through_flight_software(log: Path, flown: Flown) -> int:
+    """Print the verdict; 0 if the replay is exact, as far as this platform must be, and the log whole."""
+    config = flight_config(flight_table(flown.scenario))
+    with progress("replaying", flown.run.get("ticks", 0)) as watch:
+        shown = replay(log, config, lambda state: watch(state.tick))
+    same_platform = flown.run.get("platform", run_dir.fingerprint()) == run_dir.fingerprint()
+    exact = shown.bit_exact or (shown.command_exact and not same_platform)
+    if shown.bit_exact:
+        click.echo(f"bit-exact: {shown.ticks} ticks, {shown.frames} frames, every state CRC equal")
+    elif shown.command_exact:
+        need = "bit-exact is required: the platform is the run's" if same_platform else "another platform than the run's"
+        click.echo(f"command-exact, not bit-exact ({need}): {shown.first_bit_difference}")
+    else:
+        click.echo(f"differs: {shown.first_bit_difference}")
+        if shown.first_command_difference != shown.first_bit_difference:
+            click.echo(f"first command that differs: {shown.first_command_difference}")
+    if shown.ended:
+        return 0 if exact else 1
+    how = "inside a line" if shown.cut else "without its end mark"
+    click.echo(f"incomplete: the log ends {how} after line {shown.end_line}, at tick {max(shown.last_tick, 0)}")
+    return 1
+
+
+def through_plant(log: Path, flown: Flown) -> int:
+    """The recorded commands through the plant: its frames must come out as logged."""
+    if "seed" not in flown.run:
+        raise HarnessError(f"{log}: --plant needs the seed: no {run_dir.RUN} beside it")
+    plant = Plant(plant_config(flown.scenario, flown.run["seed"]))
+    ticks = 0
+    with progress("replaying", flown.run.get("ticks", 0)) as watch:
+        for _, group in groupby(_after_boot(log), key=lambda entry: entry.timestamp_us):
+            entries = list(group)
+            if entries[0].frame.can_id == PlantEnd.ID:
+                click.echo(f"plant reproduced: {ticks} ticks, every frame equal")
+                return 0
+            expected = plant.begin_tick()
+            logged = [entry.frame for entry in entries if entry.frame.can_id not in FROM_FSW]
+            for index, (ours, theirs) in enumerate(zip(expected, logged, strict=False)):
+                if ours != theirs:
+                    name = NAMES.get(theirs.can_id, f"frame {index}")
+                    click.echo(f"differs: tick {ticks}: {name} is {theirs.data.hex()} in the log and {ours.data.hex()} from the plant")
+                    return 1
+            for entry in entries:
+                if SENDERS.get(entry.frame.can_id) == "FSW":
+                    plant.receive(entry.frame)
+            plant.end_tick()
+            ticks += 1
+            watch(ticks)
+    click.echo(f"incomplete: the log ends without its end mark at tick {ticks - 1}")
+    return 1
+
+
+def play(log: Path, spec: str) -> int:
+    """Send every frame of the log onto a bus, spaced as its timestamps are."""
+    bus = open_bus(spec)
+    try:
+        began, first_us = time.monotonic(), None
+        for stamp_us, group in groupby(read_log(log), key=lambda entry: entry.timestamp_us):
+            first_us = stamp_us if first_us is None else first_us
+            time.sleep(max(0.0, began + (stamp_us - first_us) / 1e6 - time.monotonic()))
+            bus.send([entry.frame for entry in group])
+    finally:
+        bus.close()
+    return 0
+
+
+def _after_boot(log: Path) -> Iterator[LogEntry]:
+    """The whole entries after FSW_BOOT, up to where the log is cut."""
+    with suppress(LogTruncatedError):
+        yield from islice(read_log(log), 1, None)

@@ -1,0 +1,150 @@
+"""Software in the loop: plant and flight software as two processes on a bus, or in one on the virtual bus."""
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+
+from fsw.io.bus import Bus, resolve
+from fsw.io.config import flight_config
+from fsw.io.hub import Hub
+from fsw.io.node import FlightNode
+from sim.harness import run_dir
+from sim.harness.assemble import plant_config
+from sim.harness.flight import BusLog, FlightError, Pace, fly
+from sim.harness.scenario import Scenario, flight_table
+from sim.harness.summary import orbit_period_s
+from sim.harness.truth import TruthFile
+from sim.harness.virtual import VirtualBus
+from sim.plant.plant import Plant
+from sim.plant.torques import SOURCES
+
+POLL_S = 0.1
+GRACE_S = 5.0
+
+Watch = Callable[[int], None]
+
+
+def ticks_of(scenario: Scenario, orbits: float | None) -> int:
+    """How many ticks a flight of so many orbits takes; None: as the scenario says. At least one."""
+    period_s = orbit_period_s(scenario)
+    return max(1, round((orbits or scenario.time.orbits) * period_s * scenario.time.tick_hz))
+
+
+def record(path: Path, scenario: Scenario, bus: Bus, watch: Watch = lambda tick: None) -> None:
+    """Fly the run that ``path`` was begun for, and keep its log and histories there.
+
+    Raises:
+        FlightError: the flight software gives no answer.
+        BusError: the bus failed.
+    """
+    run = run_dir.read_run(path)
+    plant = Plant(plant_config(scenario, run["seed"]))
+    pace = Pace(run["pace_factor"])
+    try:
+        with (
+            BusLog(path / run_dir.BUS_LOG, bus.name) as log,
+            TruthFile(path / run_dir.TRUTH, run["ticks"], SOURCES) as truth,
+        ):
+            flown = fly(
+                plant, bus, log, truth, run["ticks"], scenario.epoch_unix_s, scenario.time.tick_hz, pace, watch
+            )
+    finally:
+        bus.close()
+    run_dir.update(path, flown={"ticks": flown.ticks, "slips": flown.slips, "wall_s": flown.wall_s})
+
+
+def fly_virtual(path: Path, scenario: Scenario, watch: Watch) -> None:
+    """Fly in this process."""
+    node = FlightNode(flight_config(flight_table(scenario)))
+    record(path, scenario, VirtualBus(node), watch)
+
+
+def fly_processes(path: Path, scenario: Scenario, bus: str, watch: Watch) -> None:
+    """Fly with plant and flight software as two processes; a loop bus is hosted here.
+
+    Raises:
+        FlightError: one of the two ended before its time; the other has been ended too.
+        BusError: there is no such bus.
+    """
+    spec = resolve(bus)
+    hub = Hub(0 if bus in ("loop", "auto") else int(spec.partition(":")[2])) if spec.startswith("loop") else None
+    if hub is not None:
+        spec = f"loop:{hub.port}"
+    scenario_file = str(path / run_dir.SCENARIO)
+    plant = _start("sim.plant", scenario_file, "--bus", spec, "--into", str(path))
+    fsw = _start("fsw", scenario_file, "--bus", spec, "--ends-with-parent")
+    try:
+        while plant.poll() is None and fsw.poll() is None:
+            _serve(hub, POLL_S)
+            watch(last_tick(path, scenario))
+        deadline = time.monotonic() + GRACE_S
+        while (plant.poll() is None or fsw.poll() is None) and time.monotonic() < deadline and _well(plant, fsw):
+            _serve(hub, POLL_S / 10.0)
+    finally:
+        failed = [(name, process) for name, process in (("plant", plant), ("flight software", fsw)) if process.poll()]
+        for process in (plant, fsw):
+            _end(process, hub)
+        if hub is not None:
+            hub.close()
+    if failed or "flown" not in run_dir.read_run(path):
+        name, process = failed[0] if failed else ("flight software", fsw)
+        raise FlightError(
+            f"the {name} {_how(process.returncode)} at tick {last_tick(path, scenario)}: "
+            f"the run is not complete, what was flown is in {path}"
+        )
+
+
+def last_tick(path: Path, scenario: Scenario) -> int:
+    """The tick of the last line in the log so far; 0 while there is none."""
+    try:
+        with (path / run_dir.BUS_LOG).open("rb") as log:
+            log.seek(0, os.SEEK_END)
+            log.seek(max(0, log.tell() - 256))
+            tail = log.read()
+    except OSError:
+        return 0
+    stamps = [line[1:].partition(b")")[0] for line in tail.splitlines() if line.startswith(b"(")]
+    if not stamps:
+        return 0
+    return round((float(stamps[-1]) - scenario.epoch_unix_s) * scenario.time.tick_hz)
+
+
+def _start(module: str, *arguments: str) -> subprocess.Popen[bytes]:
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
+    return subprocess.Popen([sys.executable, "-m", module, *arguments], env=environment)
+
+
+def _serve(hub: Hub | None, seconds: float) -> None:
+    """Let time pass; where the bus is hosted here, by serving it."""
+    if hub is None:
+        time.sleep(seconds)
+        return
+    deadline = time.monotonic() + seconds
+    while (remaining_s := deadline - time.monotonic()) > 0.0:
+        hub.poll(remaining_s)
+
+
+def _well(*processes: subprocess.Popen[bytes]) -> bool:
+    return all(process.poll() in (None, 0) for process in processes)
+
+
+def _end(process: subprocess.Popen[bytes], hub: Hub | None) -> None:
+    if process.poll() is not None:
+        return
+    process.terminate()
+    deadline = time.monotonic() + GRACE_S
+    while process.poll() is None and time.monotonic() < deadline:
+        _serve(hub, POLL_S / 10.0)
+    with suppress(ProcessLookupError):
+        process.kill()
+    process.wait()
+
+
+def _how(code: int | None) -> str:
+    if code is not None and code < 0:
+        return f"was ended by signal {-code}"
+    return f"ended with exit code {code}"

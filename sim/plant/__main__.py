@@ -1,0 +1,65 @@
+"""``python -m sim.plant``: the plant as a process on a bus. It keeps the log and the plant's histories."""
+
+import signal
+import sys
+from pathlib import Path
+from types import FrameType
+
+import click
+
+from fsw.io.bus import BusError, open_bus
+from fsw.io.table import TableError
+from sim.harness import run_dir
+from sim.harness.conclude import conclude
+from sim.harness.errors import HarnessError
+from sim.harness.options import parse_pace
+from sim.harness.scenario import load, parse_settings
+from sim.harness.sil import record, ticks_of
+
+
+def _end(signum: int, frame: FrameType | None) -> None:
+    sys.exit(1)
+
+
+@click.command()
+@click.argument("scenario", default="microsat")
+@click.option("--bus", default="auto", show_default=True, help="socketcan:NAME, loop[:PORT], slcan:PORT or auto.")
+@click.option("--orbits", type=click.FloatRange(min=0.0, min_open=True), help="How long to fly; default as the scenario says.")
+@click.option("--seed", default=1, show_default=True, type=click.IntRange(min=0), help="Of all random streams.")
+@click.option("--pace", default="lockstep", show_default=True, help="lockstep or realtime[:FACTOR].")
+@click.option("--out", type=click.Path(path_type=Path), help="Run directory; default runs/<scenario>-<time>.")
+@click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help="Override a key of the scenario.")
+@click.option("--into", type=click.Path(path_type=Path), hidden=True)
+def main(
+    scenario: str,
+    bus: str,
+    orbits: float | None,
+    seed: int,
+    pace: str,
+    out: Path | None,
+    settings: tuple[str, ...],
+    into: Path | None,
+) -> None:
+    """Fly SCENARIO against a flight software on the same bus: waits for its FSW_BOOT, then begins tick 0."""
+    signal.signal(signal.SIGTERM, _end)
+    try:
+        chosen = load(scenario, parse_settings(settings))
+        if into is not None:
+            record(into, chosen, open_bus(bus))
+            return
+        link = open_bus(bus)
+        directory = out or run_dir.default_path(chosen)
+        run_dir.begin(directory, chosen, seed, ticks_of(chosen, orbits), link.name, parse_pace(pace))
+        click.echo(f"plant on {bus}: waiting for the flight software", err=True)
+        record(directory, chosen, link)
+        conclude(directory)
+        click.echo(f"flown: {directory}", err=True)
+    except (TableError, BusError, HarnessError) as error:
+        click.echo(f"plant: {error}", err=True)
+        sys.exit(getattr(error, "exit_code", 2))
+    except KeyboardInterrupt:
+        sys.exit(130)
+
+
+if __name__ == "__main__":
+    main()
