@@ -45,6 +45,7 @@ class Node:
         self._period = HEARTBEAT_S * tick_hz
         self._table_crc = table_crc
         self._boot_tick: int | None = None
+        self._periods = 0
         self._beats = 0
         self._slips = 0
         self.tick: int | None = None
@@ -77,16 +78,16 @@ class Node:
         """
         if self.tick is None or self._boot_tick is None:
             return []
-        due = (self.tick - self._boot_tick) // self._period
-        if due == self._beats:
+        periods = (self.tick - self._boot_tick) // self._period
+        if periods == self._periods:
             return []
-        self._beats = due
-        return [
-            self._heartbeat(
-                state=state,
-                rejects=min(rejects, _MOST),
-                slips=min(self._slips, _MOST),
-                tick=self.tick,
-                counter=due - 1,
-            ).encode()
-        ]
+        self._periods = periods
+        beat = self._heartbeat(
+            state=state,
+            rejects=min(rejects, _MOST),
+            slips=min(self._slips, _MOST),
+            tick=self.tick,
+            counter=self._beats,
+        )
+        self._beats += 1
+        return [beat.encode()]

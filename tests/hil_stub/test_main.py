@@ -1,0 +1,136 @@
+"""``python -m hil_stub``: one board on a bus, as a process."""
+
+import signal
+import socket
+import subprocess
+import sys
+
+import pytest
+
+from fsw.io.bus import open_bus
+from fsw.wire.messages import (
+    CLASSES,
+    CoilBoot,
+    CoilStatus,
+    MagBoot,
+    MagField,
+    PlantEnd,
+    SunBoot,
+    SunVector,
+    Sync,
+    TickDone,
+)
+from hil_stub.__main__ import main
+
+
+@pytest.fixture
+def spec():
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        return f"loop:{free.getsockname()[1]}"
+
+
+@pytest.fixture
+def bus(spec):
+    bus = open_bus(spec)
+    yield bus
+    bus.close()
+
+
+@pytest.fixture
+def start(spec, bus):
+    """Starts a board on the bus; a process that has not ended by itself is ended after the test."""
+    started = []
+
+    def run(*arguments):
+        command = [sys.executable, "-m", "hil_stub", arguments[0], "--bus", spec, *arguments[1:]]
+        process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+        started.append(process)
+        return process
+
+    yield run
+    for process in started:
+        process.kill()
+        process.communicate()
+
+
+def hear(bus, count):
+    frames = [bus.receive(20.0) for _ in range(count)]
+    assert None not in frames, f"the board fell silent after {frames.index(None)} of {count} frames"
+    return [CLASSES[frame.can_id].decode(frame.data) for frame in frames]
+
+
+BOARDS = [
+    (("coil", "--backoff", "per_coil"), CoilBoot, CoilStatus),
+    (("magnetometer", "--stimulus", "100", "-200", "300"), MagBoot, MagField),
+    (("sun", "--stimulus", "0", "0", "-5"), SunBoot, SunVector),
+]
+
+
+@pytest.mark.parametrize(("arguments", "boot", "sample"), BOARDS, ids=["coil", "magnetometer", "sun"])
+def test_it_follows_the_bus_and_ends_with_the_plant(bus, start, arguments, boot, sample):
+    process = start(*arguments)
+    assert [type(message) for message in hear(bus, 2)] == [boot, sample]
+    for tick in range(50):
+        bus.send([Sync(tick, 0).encode(), TickDone(tick, 0).encode()])
+        (message,) = hear(bus, 1)
+        assert (type(message), message.counter) == (sample, (tick + 1) % 16)
+    if sample is MagField:
+        assert message[:4] == (1, 100.0, -200.0, 300.0)
+    if sample is SunVector:
+        assert message[:4] == (1, 0.0, 0.0, -1.0)
+    bus.send([PlantEnd(50).encode()])
+    assert process.wait(20.0) == 0
+
+
+def test_it_says_which_bus_it_is_on_and_ctrl_c_ends_it_cleanly(bus, start, spec):
+    process = start("coil")
+    hear(bus, 2)
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=20.0)
+    assert process.returncode == 0
+    assert errors == f"on {spec}\n"
+
+
+def test_a_bus_that_goes_away_ends_it_with_one_sentence(bus, start, spec):
+    process = start("sun")
+    hear(bus, 2)
+    bus.close()
+    _, errors = process.communicate(timeout=20.0)
+    assert process.returncode == 1
+    (_, sentence) = errors.splitlines()
+    assert "Traceback" not in sentence
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        (["coil"], "--bus"),
+        (["coil", "--bus", "nowhere"], "nowhere"),
+        (["coil", "--bus", "loop:0"], "loop:0"),
+        (["coil", "--bus", "virtual"], "virtual"),
+        (["coil", "--bus", "loop", "--tick-hz", "0"], "--tick-hz"),
+        (["coil", "--bus", "loop", "--tick-hz", "2.5"], "--tick-hz"),
+        (["coil", "--bus", "loop", "--backoff", "none"], "--backoff"),
+        (["coil", "--bus", "loop", "--stimulus", "1", "0", "0"], "--stimulus"),
+        (["sun", "--bus", "loop", "--stimulus", "0", "0", "0"], "--stimulus"),
+        (["sun", "--bus", "loop", "--stimulus", "nan", "0", "0"], "--stimulus"),
+        (["magnetometer", "--bus", "loop", "--stimulus", "inf", "0", "0"], "--stimulus"),
+        (["magnetometer", "--bus", "loop", "--stimulus", "x", "0", "0"], "--stimulus"),
+        (["magnetometer", "--bus", "loop", "--stimulus", "1", "0"], "--stimulus"),
+        (["gyro", "--bus", "loop"], "gyro"),
+    ],
+)
+def test_bad_input_is_one_sentence_and_exit_code_2(capsys, arguments, named):
+    assert main(arguments) == 2
+    heard = capsys.readouterr()
+    assert heard.out == ""
+    (sentence,) = heard.err.splitlines()
+    assert named in sentence
+
+
+@pytest.mark.parametrize(
+    "arguments", [["--help"], ["coil", "--help"], ["magnetometer", "--help"], ["sun", "--help"]]
+)
+def test_help_names_the_options(capsys, arguments):
+    assert main(arguments) == 0
+    assert ("--bus" if len(arguments) > 1 else "coil") in capsys.readouterr().out
