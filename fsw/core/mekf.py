@@ -12,7 +12,8 @@ direction, m the dipole and b the field, all in body axes:
 Source: Lefferts, Markley, Shuster 1982; the dynamics as in Ovchinnikov, Penkov, Roldugin 2015.
 """
 
-from dataclasses import dataclass, replace
+from copy import copy
+from dataclasses import dataclass
 from math import isfinite
 
 import numpy as np
@@ -52,20 +53,24 @@ class Layout:
 class MekfConfig:
     """The filter's tuning and what is derived from it once.
 
-    ``process_noise`` is the covariance added per tick, ``transition`` the constant part of the system
-    matrix, both (n, n).
+    ``process_noise`` is the covariance added per tick and ``system`` the constant part of the system matrix,
+    both (n, n); ``field_sensitivity`` and ``sun_sensitivity`` are the constant parts of H, (3, n), and
+    ``field_noise`` and ``sun_noise`` the measurement covariances, (3, 3). ``blank`` is a filter to copy.
     """
 
     inertia_kgm2: Mat3
     inertia_inverse: Mat3
     tick_s: float
     layout: Layout
-    magnetometer_sigma_t: float
-    sun_sigma_rad: float
     initial_covariance: Matrix
     process_noise: Matrix
     system: Matrix
+    field_sensitivity: Matrix
+    sun_sensitivity: Matrix
+    field_noise: Matrix
+    sun_noise: Matrix
     gate_nis: float
+    blank: ExtendedKalmanFilter
 
 
 def layout(estimate_bias: bool, estimate_torque: bool) -> Layout:
@@ -121,8 +126,10 @@ def mekf_config(
     system = np.zeros((parts.size, parts.size))
     system[0:3, 3:6] = np.eye(3)
     variances = [attitude_sigma_rad**2] * 3 + [rate_sigma_radps**2] * 3
+    field_sensitivity = np.zeros((3, parts.size))
     if parts.bias is not None:
         here = slice(parts.bias, parts.bias + 3)
+        field_sensitivity[:, here] = np.eye(3)
         noise[here, here] = np.eye(3) * bias_walk_t_prts**2 * tick_s
         variances += [bias_sigma_t**2] * 3
     if parts.torque is not None:
@@ -135,12 +142,15 @@ def mekf_config(
         inertia_inverse=inverse_j,
         tick_s=tick_s,
         layout=parts,
-        magnetometer_sigma_t=magnetometer_sigma_t,
-        sun_sigma_rad=sun_sigma_rad,
         initial_covariance=np.diag(variances),
         process_noise=noise,
         system=system,
+        field_sensitivity=field_sensitivity,
+        sun_sensitivity=np.zeros((3, parts.size)),
+        field_noise=np.eye(3) * magnetometer_sigma_t**2,
+        sun_noise=np.eye(3) * sun_sigma_rad**2,
         gate_nis=gate_nis,
+        blank=_blank(parts.size),
     )
 
 
@@ -150,17 +160,18 @@ def start(q_body_from_eci: Quaternion, omega_body_radps: Vec3, config: MekfConfi
 
 
 def healthy(estimate: Estimate) -> bool:
-    """Whether every number is finite and every variance positive."""
-    diagonal = estimate.covariance.diagonal()
+    """Whether every number is finite and every variance positive.
+
+    A bad number off the diagonal of the covariance shows on the diagonal one tick later.
+    """
+    variances: list[float] = estimate.covariance.diagonal().tolist()
     numbers = (
         *estimate.q_body_from_eci,
         *estimate.omega_body_radps,
         *estimate.mag_bias_t,
         *estimate.torque_body_nm,
     )
-    return (
-        isfinite(sum(numbers)) and isfinite(float(estimate.covariance.sum())) and float(diagonal.min()) > 0.0
-    )
+    return isfinite(sum(numbers)) and isfinite(sum(variances)) and min(variances) > 0.0
 
 
 def predict(
@@ -193,8 +204,8 @@ def predict(
     e1_mid, b_mid = rotate(q_mid, e1_eci), rotate(q_mid, b_eci_t)
     alpha_mid = _acceleration(omega_mid, e1_mid, b_mid, gravity_per_s2, m_body_am2, torque, config)
 
-    ekf = _ekf(estimate.covariance, config)
-    ekf.F, ekf.Q = transition, config.process_noise
+    ekf = copy(config.blank)
+    ekf.P, ekf.F, ekf.Q = estimate.covariance, transition, config.process_noise
     ekf.predict()
     return Estimate(
         normalise(multiply(q, _turn(scale(h, omega_mid)))),
@@ -208,36 +219,36 @@ def predict(
 def update_field(estimate: Estimate, b_body_t: Vec3, b_eci_t: Vec3, config: MekfConfig) -> Estimate | None:
     """Take a magnetometer sample: z = b_measured - (C b_eci + bias). None when the gate rejects it."""
     predicted = rotate(estimate.q_body_from_eci, b_eci_t)
-    sensitivity = np.zeros((3, config.layout.size))
-    sensitivity[:, 0:3] = skew(predicted)
-    if config.layout.bias is not None:
-        sensitivity[:, config.layout.bias : config.layout.bias + 3] = np.eye(3)
     innovation = sub(sub(b_body_t, predicted), estimate.mag_bias_t)
-    return _update(estimate, innovation, sensitivity, config.magnetometer_sigma_t, config)
+    return _update(estimate, innovation, predicted, config.field_sensitivity, config.field_noise, config)
 
 
 def update_sun(estimate: Estimate, s_body: Vec3, s_eci: Vec3, config: MekfConfig) -> Estimate | None:
     """Take a Sun direction: z = s_measured - C s_eci. None when the gate rejects it."""
     predicted = rotate(estimate.q_body_from_eci, s_eci)
-    sensitivity = np.zeros((3, config.layout.size))
-    sensitivity[:, 0:3] = skew(predicted)
-    return _update(estimate, sub(s_body, predicted), sensitivity, config.sun_sigma_rad, config)
+    innovation = sub(s_body, predicted)
+    return _update(estimate, innovation, predicted, config.sun_sensitivity, config.sun_noise, config)
 
 
-def _ekf(covariance: Matrix, config: MekfConfig) -> ExtendedKalmanFilter:
-    size = config.layout.size
+_NO_ERROR = np.zeros(3)
+
+
+def _blank(size: int) -> ExtendedKalmanFilter:
+    """A filter whose error state is zero. Its methods replace arrays and change none, so copies may share."""
     ekf = ExtendedKalmanFilter(dim_x=size, dim_z=3)
     ekf.x = np.zeros(size)  # filterpy's (n, 1) default would broadcast a flat z to (n, n)
-    ekf.P = covariance
     return ekf
 
 
 def _update(
-    estimate: Estimate, innovation: Vec3, sensitivity: Matrix, sigma: float, config: MekfConfig
+    estimate: Estimate, innovation: Vec3, predicted: Vec3, constant: Matrix, noise: Matrix, config: MekfConfig
 ) -> Estimate | None:
-    ekf = _ekf(estimate.covariance, config)
-    ekf.R = np.eye(3) * (sigma * sigma)
-    ekf.update(np.array(innovation), lambda _: sensitivity, lambda _: np.zeros(3))
+    """Take a vector measurement: H = [predicted x] in the attitude columns beside its constant part."""
+    sensitivity = constant.copy()
+    sensitivity[:, 0:3] = skew(predicted)
+    ekf = copy(config.blank)
+    ekf.P = estimate.covariance
+    ekf.update(np.array(innovation), lambda _: sensitivity, lambda _: _NO_ERROR, R=noise)
     if not float(ekf.y @ ekf.SI @ ekf.y) <= config.gate_nis:
         return None
     return _fold(estimate, ekf.x, 0.5 * (ekf.P + ekf.P.T), config.layout)
@@ -251,13 +262,12 @@ def _fold(estimate: Estimate, error: Matrix, covariance: Matrix, parts: Layout) 
         bias = add(bias, _three(values, parts.bias))
     if parts.torque is not None:
         torque = add(torque, _three(values, parts.torque))
-    return replace(
-        estimate,
-        q_body_from_eci=normalise(multiply(estimate.q_body_from_eci, from_small_rotation(_three(values, 0)))),
-        omega_body_radps=add(estimate.omega_body_radps, _three(values, 3)),
-        mag_bias_t=bias,
-        torque_body_nm=torque,
-        covariance=covariance,
+    return Estimate(
+        normalise(multiply(estimate.q_body_from_eci, from_small_rotation(_three(values, 0)))),
+        add(estimate.omega_body_radps, _three(values, 3)),
+        bias,
+        torque,
+        covariance,
     )
 
 
@@ -279,12 +289,13 @@ def _transition(omega: Vec3, e1: Vec3, b: Vec3, gravity_per_s2: float, m: Vec3, 
     """I + A h + (A h)^2 / 2 of the error dynamics."""
     j, j_inverse = config.inertia_kgm2, config.inertia_inverse
     gyroscopic = _minus(skew(transform(j, omega)), product(skew(omega), j))
-    gradient = product(_minus(product(skew(e1), j), skew(transform(j, e1))), skew(e1))
-    magnetic = product(skew(m), skew(b))
-    stiffness = tuple(add(scale(gravity_per_s2, g), n) for g, n in zip(gradient, magnetic, strict=True))
+    pull = scale(gravity_per_s2, e1)
+    stiffness = product(_minus(product(skew(pull), j), skew(transform(j, pull))), skew(e1))
+    if m != ZERO:
+        stiffness = _plus(stiffness, product(skew(m), skew(b)))
     a = config.system.copy()
     a[0:3, 0:3] = skew(scale(-1.0, omega))
-    a[3:6, 0:3] = product(j_inverse, stiffness)  # type: ignore[arg-type]
+    a[3:6, 0:3] = product(j_inverse, stiffness)
     a[3:6, 3:6] = product(j_inverse, gyroscopic)
     a *= config.tick_s
     transition: Matrix = a + 0.5 * (a @ a)
@@ -292,12 +303,16 @@ def _transition(omega: Vec3, e1: Vec3, b: Vec3, gravity_per_s2: float, m: Vec3, 
     return transition
 
 
+def _plus(m: Mat3, n: Mat3) -> Mat3:
+    return (add(m[0], n[0]), add(m[1], n[1]), add(m[2], n[2]))
+
+
 def _minus(m: Mat3, n: Mat3) -> Mat3:
     return (sub(m[0], n[0]), sub(m[1], n[1]), sub(m[2], n[2]))
 
 
 def _turn(rotation_rad: Vec3) -> Quaternion:
-    """The quaternion of a rotation vector by the series of sine and cosine, good to 1e-9 rad below 0.5 rad."""
+    """The quaternion of a rotation vector by the series of sine and cosine: 1e-9 rad off at 0.5 rad."""
     r1, r2, r3 = rotation_rad
     square = 0.25 * (r1 * r1 + r2 * r2 + r3 * r3)
     half_sinc = 0.5 - square * (1.0 / 12.0 - square / 240.0)

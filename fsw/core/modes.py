@@ -47,6 +47,8 @@ TABLE: tuple[Row, ...] = (
     Row(Mode.POINT, Mode.ACQUIRE, "far", "hold_s"),
 )
 
+_ROWS_FROM = {mode: [(i, row) for i, row in enumerate(TABLE) if row.source is mode] for mode in Mode}
+
 
 @dataclass(frozen=True, slots=True)
 class ModeConfig:
@@ -94,12 +96,12 @@ def judge(attitude: Attitude, tripped: bool, state: ModeState, config: ModeConfi
 
 def advance(state: ModeState, situation: Situation, tick: int, config: ModeConfig) -> ModeState:
     """The mode after this tick. At most one transition a tick; every condition starts anew in a new mode."""
-    held = list(state.held_since)
+    held = [-1] * len(TABLE)
     trips = state.trips + (situation.tripped and state.mode is not Mode.SAFE)
-    for index, row in enumerate(TABLE):
-        if row.source is not state.mode or not getattr(situation, row.condition):
-            held[index] = -1
+    for index, row in _ROWS_FROM[state.mode]:
+        if not getattr(situation, row.condition):
             continue
+        held[index] = state.held_since[index]
         if held[index] < 0:
             held[index] = tick
         if tick - held[index] >= config.dwell_ticks[index]:

@@ -42,19 +42,14 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     state, readings = _gate(state, inbox, config)
     state, reference, used = _estimate(state, readings, tick - before.tick, config)
     verdict = supervise(state, state.attitude, tick, config)
-    state, seen = _look(replace(state, modes=verdict.modes), readings, reference)
-    dipole = control.dipole(state.modes.mode, seen, config.control)
+    mode = verdict.modes.mode
+    seen = _look(state, readings, reference)
+    dipole = control.dipole(mode, seen, config.control)
+    fresh = state.status_tick == tick
     pulse_state, coil, request = actuate(
-        state.pulses,
-        state.coil,
-        state.modes.mode,
-        dipole,
-        seen.b_body_t,
-        state.status_tick == tick,
-        tick,
-        config.pulses,
+        state.pulses, state.coil, mode, dipole, seen.b_body_t, fresh, tick, config.pulses
     )
-    state = replace(state, pulses=pulse_state, coil=coil)
+    state = replace(state, modes=verdict.modes, sample=seen.sample, pulses=pulse_state, coil=coil)
     return _report(before, state, readings, used, reference, verdict, request, config)
 
 
@@ -96,7 +91,7 @@ def _estimate(
     return replace(state, estimator=estimator, attitude=seen), reference, used
 
 
-def _look(state: FlightState, readings: Readings, reference: Reference | None) -> tuple[FlightState, Seen]:
+def _look(state: FlightState, readings: Readings, reference: Reference | None) -> Seen:
     """What the law sees: the modelled field where the attitude is known, else the measured one."""
     usable = usable_field(readings)
     sample = FieldSample(usable, state.tick) if usable is not None else state.sample
@@ -104,7 +99,7 @@ def _look(state: FlightState, readings: Readings, reference: Reference | None) -
     if state.attitude.valid and reference is not None:
         b_orbit_t = rotate(reference.q_orbit_from_eci, reference.b_eci_t)
         b_body_t = rotate(state.attitude.q_body_from_orbit, b_orbit_t)
-    return replace(state, sample=sample), Seen(state.attitude, b_body_t, sample, state.sample)
+    return Seen(state.attitude, b_body_t, sample, state.sample)
 
 
 def _report(

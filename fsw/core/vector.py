@@ -69,11 +69,12 @@ def transpose(m: Mat3) -> Mat3:
 
 def product(m: Mat3, n: Mat3) -> Mat3:
     """M N."""
-    columns = transpose(n)
+    (a1, a2, a3), (b1, b2, b3), (c1, c2, c3) = n
+    (p1, p2, p3), (q1, q2, q3), (r1, r2, r3) = m
     return (
-        (dot(m[0], columns[0]), dot(m[0], columns[1]), dot(m[0], columns[2])),
-        (dot(m[1], columns[0]), dot(m[1], columns[1]), dot(m[1], columns[2])),
-        (dot(m[2], columns[0]), dot(m[2], columns[1]), dot(m[2], columns[2])),
+        (p1 * a1 + p2 * b1 + p3 * c1, p1 * a2 + p2 * b2 + p3 * c2, p1 * a3 + p2 * b3 + p3 * c3),
+        (q1 * a1 + q2 * b1 + q3 * c1, q1 * a2 + q2 * b2 + q3 * c2, q1 * a3 + q2 * b3 + q3 * c3),
+        (r1 * a1 + r2 * b1 + r3 * c1, r1 * a2 + r2 * b2 + r3 * c2, r1 * a3 + r2 * b3 + r3 * c3),
     )
 
 
