@@ -168,7 +168,7 @@ class CoilConfig:
             raise ValueError("time_constant_s must not be negative")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class PlantConfig:
     """A whole plant.
 
@@ -189,21 +189,21 @@ class PlantConfig:
         perfect_knowledge: whether the plant sends its true attitude and rate.
 
     Raises:
-        ValueError: a tick rate, a substep or an epoch is out of range, or board and plant tick differently.
+        ValueError: a number is out of range, or board and plant do not tick alike.
     """
 
     epoch_unix_s: int
     tick_hz: int
     seed: int
     orbit: OrbitConfig
-    body: BodyConfig
-    coils: CoilConfig
-    limits: CoilLimits
     field: FieldConfig = FieldConfig()
+    body: BodyConfig
     initial: InitialConfig = InitialConfig()
     disturbance: DisturbanceConfig = DisturbanceConfig()
     magnetometer: MagnetometerConfig = MagnetometerConfig()
     sun_sensor: SunSensorConfig = SunSensorConfig()
+    coils: CoilConfig
+    limits: CoilLimits
     max_substep_s: float = 1.0
     perfect_knowledge: bool = False
 
@@ -214,5 +214,7 @@ class PlantConfig:
             raise ValueError("the coil driver's limits are for another tick_hz")
         if not self.max_substep_s > 0.0:
             raise ValueError("max_substep_s must be positive")
+        if self.seed < 0:
+            raise ValueError("seed must not be negative")
         if not 0 <= self.epoch_unix_s < 2**32:
             raise ValueError("epoch_unix_s must fit into 32 bits")

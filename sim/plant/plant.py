@@ -68,9 +68,10 @@ class Plant:
 
     def __init__(self, config: PlantConfig) -> None:
         self._config = config
-        self._substeps = ceil(1.0 / (config.tick_hz * config.max_substep_s))
-        self._step_s = 1.0 / (config.tick_hz * self._substeps)
-        self._environment = Environment(config, self._substeps)
+        self.substeps = ceil(1.0 / (config.tick_hz * config.max_substep_s))
+        """Integration steps a tick."""
+        self._step_s = 1.0 / (config.tick_hz * self.substeps)
+        self._environment = Environment(config, self.substeps)
         self._body = RigidBody(config.body.inertia_kgm2)
         self._coils = Coils(config.coils)
         self._magnetometer = MagnetometerPhysics(config.magnetometer, config.seed)
@@ -80,7 +81,8 @@ class Plant:
         self._sun_sensor_board = SunSensor(config.tick_hz)
         self._tick = 0
         self._flowed_am2 = ZERO
-        self._motion = self._initial_motion()
+        self.motion = self._initial_motion()
+        """Attitude and rate against the inertial frame at the instant of the tick."""
         self._observe()
         self.slips = 0
         """Deadlines missed since boot: counted by whoever paces the plant, reported in its heartbeat."""
@@ -118,7 +120,7 @@ class Plant:
         inertia, disturbance = self._config.body.inertia_kgm2, self._config.disturbance
         rx, ry, rz = disturbance.residual_dipole_body_am2
         bias = disturbance.torque_body_nm
-        substeps, step_s, motion = self._substeps, self._step_s, self._motion
+        substeps, step_s, motion = self.substeps, self._step_s, self.motion
         sx = sy = sz = 0.0
         for substep in range(substeps):
             on_s = step_s * min(max(fraction * substeps - substep, 0.0), 1.0)
@@ -130,7 +132,7 @@ class Plant:
                 return torques.total(inertia, q, place, dipole, bias)
 
             motion = self._body.step(motion, torque, around[2 * substep : 2 * substep + 3], step_s)
-        self._motion = motion
+        self.motion = motion
         self._flowed_am2 = (sx / substeps, sy / substeps, sz / substeps)
         self._tick += 1
         self._observe()
@@ -175,13 +177,13 @@ class Plant:
     def _observe(self) -> None:
         """Field and Sun in body axes at the instant of the tick."""
         self._sample = sample = self._environment.sample(self._tick)
-        self._body_from_eci = matrix(self._motion.q_body_from_eci)
+        self._body_from_eci = matrix(self.motion.q_body_from_eci)
         self._b_body_t = transform(self._body_from_eci, sample.b_eci_t)
         self._sun_body = transform(self._body_from_eci, sample.sun_eci)
 
     def _relative(self) -> tuple[Quaternion, Vec3]:
         """Attitude and rate relative to the orbital frame."""
-        q_body_from_eci, (x, y, z) = self._motion
+        q_body_from_eci, (x, y, z) = self.motion
         q_orbit_from_eci = from_matrix(self._sample.orbit_from_eci)
         nx, ny, nz = transform(self._body_from_eci, self._sample.orbit_from_eci[2])
         rate = self._sample.orbit_rate_radps

@@ -1,0 +1,96 @@
+from math import exp
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from sim.plant.coils import Coils
+from sim.plant.config import CoilConfig
+
+TAU = 0.4  # slow, so that every part of the curve counts
+CONFIG = CoilConfig((0.5, 2.0, 8.0), 11.0, TAU, (0.97, -1.02, 1.05))
+
+
+def test_current_rises_and_decays_exponentially():
+    coils = Coils(CONFIG)
+    coils.advance(1, 3, 1.0, 1.0)
+    full = 8.0 / 11.0
+    assert coils.readback_a == pytest.approx(full * (1.0 - exp(-1.0 / TAU)))
+    coils.advance(1, 0, 0.0, 1.0)
+    assert coils.readback_a == pytest.approx(full * (1.0 - exp(-1.0 / TAU)) * exp(-1.0 / TAU))
+
+
+def test_dipole_is_along_the_coil_with_its_sign_and_its_error():
+    for coil, scale in enumerate(CONFIG.dipole_scale):
+        for level in (-3, -2, -1, 1, 2, 3):
+            coils = Coils(CONFIG)
+            coils.advance(coil, level, 100.0, 100.0)
+            nominal = np.sign(level) * CONFIG.levels_am2[abs(level) - 1]
+            expected = [nominal * scale * (axis == coil) for axis in range(3)]
+            assert coils.dipole_body_am2 == pytest.approx(expected)
+            assert coils.readback_a == pytest.approx(nominal / 11.0)
+
+
+def test_mean_dipole_is_the_integral_of_the_curve_with_the_drive_ending_inside_the_step():
+    coils = Coils(CONFIG)
+    coils.advance(2, 1, 0.3, 1.0)  # starts from a rest of current
+    start = coils.readback_a
+    on_s, step_s, target = 0.7, 1.0, -2.0 / 11.0
+
+    def current(t):
+        rise = target + (start - target) * exp(-min(t, on_s) / TAU)
+        return rise * exp(-max(t - on_s, 0.0) / TAU)
+
+    mean = coils.advance(2, -2, on_s, step_s)
+    integral = quad(current, 0.0, step_s, points=[on_s])[0]
+    assert mean == pytest.approx((0.0, 0.0, 11.0 * 1.05 * integral / step_s), rel=1e-9)
+    assert coils.readback_a == pytest.approx(current(step_s))
+
+
+def test_steps_can_be_split_without_moving_the_impulse():
+    whole, split = Coils(CONFIG), Coils(CONFIG)
+    mean = np.array(whole.advance(0, 2, 0.6, 1.0))
+    parts = [split.advance(0, 2, on_s, 0.25) for on_s in (0.25, 0.25, 0.1, 0.0)]
+    assert np.mean(parts, axis=0) == pytest.approx(mean)
+    assert split.readback_a == pytest.approx(whole.readback_a)
+
+
+def test_a_coil_decays_while_the_next_is_driven():
+    coils = Coils(CONFIG)
+    coils.advance(0, 3, 1.0, 1.0)
+    before = coils.dipole_body_am2[0]
+    mean = coils.advance(1, 1, 1.0, 1.0)
+    assert coils.dipole_body_am2[0] == pytest.approx(before * exp(-1.0 / TAU))
+    assert mean[0] > 0.0
+    assert mean[1] < 0.0  # wired the wrong way round
+
+
+def test_impulse_of_a_whole_pulse_is_that_of_the_drive():
+    """What the rise lacks the decay gives back."""
+    coils = Coils(CONFIG)
+    impulse = sum(coils.advance(0, 2, float(step < 3), 1.0)[0] for step in range(100))
+    assert impulse == pytest.approx(3.0 * 2.0 * 0.97)
+
+
+def test_current_dies_away_and_stays_away():
+    coils = Coils(CONFIG)
+    coils.advance(0, 3, 1.0, 1.0)
+    for _ in range(60):
+        coils.advance(0, 0, 0.0, 1.0)
+    assert coils.readback_a == 0.0
+    assert coils.advance(0, 0, 0.0, 1.0) == (0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("drive", [(0, 0, 1.0), (1, 3, 0.0)])
+def test_nothing_flows_without_level_or_time(drive):
+    coils = Coils(CONFIG)
+    assert coils.advance(*drive, 1.0) == (0.0, 0.0, 0.0)
+    assert coils.dipole_body_am2 == (0.0, 0.0, 0.0)
+
+
+def test_without_lag_the_current_is_the_drive():
+    coils = Coils(CoilConfig((0.5, 2.0, 8.0), 11.0, 0.0))
+    assert coils.advance(0, 2, 0.25, 1.0) == pytest.approx((0.5, 0.0, 0.0))
+    assert coils.readback_a == 0.0
+    coils.advance(0, 2, 1.0, 1.0)
+    assert coils.readback_a == pytest.approx(2.0 / 11.0)

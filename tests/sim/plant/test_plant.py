@@ -1,0 +1,397 @@
+"""The plant as the bus sees it, and the truth behind it."""
+
+from dataclasses import replace
+from itertools import pairwise
+from math import pi, sqrt
+
+import numpy as np
+import pytest
+
+from fsw.wire import messages
+from fsw.wire.messages import (
+    CLASSES,
+    CoilFire,
+    CoilRefusedReason,
+    CoilStatus,
+    MagField,
+    RefAttitude,
+    RefRate,
+    Sync,
+)
+from sim.plant import torques
+from sim.plant.config import (
+    CoilConfig,
+    DisturbanceConfig,
+    FieldConfig,
+    InitialConfig,
+    MagnetometerConfig,
+    OrbitConfig,
+    SunSensorConfig,
+)
+from sim.plant.rotation import matrix
+
+DAY = 86400
+CIRCLE = OrbitConfig(None, 800e3, 1.72, 0.6, 0.35)
+
+
+def decode(frames):
+    assert all(messages.intact(frame) for frame in frames)
+    return [CLASSES[frame.can_id].decode(frame.data) for frame in frames]
+
+
+def only(kind, said):
+    (message,) = (message for message in said if isinstance(message, kind))
+    return message
+
+
+def fire(plant, coil=1, level=2, duration_ms=3000, seq=1):
+    plant.receive(CoilFire(level, coil, seq, plant.tick & 0xFF, duration_ms).encode())
+
+
+def fly(plant, ticks, commands=None):
+    """Messages and truth of some ticks; ``commands`` are called with the plant at their ticks."""
+    history = []
+    for _ in range(ticks):
+        said, truth = decode(plant.begin_tick()), plant.truth()
+        (commands or {}).get(plant.tick, lambda plant: None)(plant)
+        history.append((said, truth))
+        plant.end_tick()
+    return history
+
+
+# --- what is on the bus
+
+
+def test_frames_come_in_their_order_and_nodes_boot_at_tick_0(make_plant):
+    history = fly(make_plant(perfect_knowledge=True), 122)
+    names = [[type(message).__name__ for message in said] for said, _ in history]
+    usual = ["MagField", "SunVector", "CoilStatus", "RefAttitude", "RefRate", "Sync"]
+    assert names[0] == [
+        *("MagBoot", "MagField", "SunBoot", "SunVector", "CoilBoot", "CoilStatus"),
+        *("PlantBoot", "RefAttitude", "RefRate", "Sync"),
+    ]
+    for tick in range(1, 122):
+        beats = [name for name in names[tick] if name.endswith("Heartbeat")]
+        assert [name for name in names[tick] if name not in beats] == usual
+        assert bool(beats) == (tick in {60, 120})
+    assert {name for name in names[60] if name.endswith("Heartbeat")} == {
+        f"{node}Heartbeat" for node in ("Mag", "Sun", "Coil", "Plant")
+    }
+
+
+@pytest.mark.parametrize("tick_hz", [1, 4])
+def test_sync_ends_each_tick_and_bears_tick_and_time(make_plant, make_config, tick_hz):
+    epoch = make_config().epoch_unix_s
+    for tick, (said, truth) in enumerate(fly(make_plant(tick_hz=tick_hz), 30)):
+        assert said[-1] == Sync(tick, epoch + tick // tick_hz)
+        assert truth.t_s == tick / tick_hz
+
+
+def test_the_plant_counts_its_own_frames_and_the_slips_of_its_pacer(make_plant):
+    plant = make_plant(perfect_knowledge=True)
+    plant.slips = 3
+    history = fly(plant, 121)
+    assert [only(RefRate, said).counter for said, _ in history] == [tick % 16 for tick in range(121)]
+    beats = [only(messages.PlantHeartbeat, history[tick][0]) for tick in (60, 120)]
+    assert [(beat.counter, beat.tick, beat.slips) for beat in beats] == [(0, 60, 3), (1, 120, 3)]
+    assert decode([plant.end()]) == [messages.PlantEnd(121)]
+
+
+def test_without_perfect_knowledge_the_truth_is_not_on_the_bus(make_plant):
+    for said, _ in fly(make_plant(), 5):
+        assert not any(isinstance(message, RefAttitude | RefRate) for message in said)
+
+
+def test_perfect_knowledge_is_the_truth_of_the_tick(make_plant):
+    for said, truth in fly(make_plant(perfect_knowledge=True), 40):
+        attitude, rate = only(RefAttitude, said), only(RefRate, said)
+        assert (attitude.q_x, attitude.q_y, attitude.q_z) == pytest.approx(
+            truth.q_body_from_orbit[1:], abs=8e-6
+        )
+        assert (rate.w_x, rate.w_y, rate.w_z) == pytest.approx(truth.omega_body_orbit_radps, abs=1e-6)
+        assert attitude.valid == rate.valid == 1
+
+
+def test_a_rate_that_the_bus_cannot_hold_is_not_valid(make_plant):
+    fast = InitialConfig(omega_body_orbit_radps=(0.0, -0.2, 0.0))
+    said, _ = fly(make_plant(perfect_knowledge=True, initial=fast), 1)[0]
+    assert only(RefRate, said).valid == 0
+    assert only(RefAttitude, said).valid == 1
+
+
+def test_perfect_sensors_show_the_truth_on_the_bus(make_plant):
+    plant = make_plant(magnetometer=MagnetometerConfig(), sun_sensor=SunSensorConfig())
+    for said, truth in fly(plant, 20):
+        field, sun = only(MagField, said), only(messages.SunVector, said)
+        assert (field.b_x, field.b_y, field.b_z) == pytest.approx(1e9 * np.array(truth.b_body_t), abs=1.01)
+        assert (sun.s_x, sun.s_y, sun.s_z) == pytest.approx(truth.sun_body, abs=4e-5)
+        assert field.valid == sun.valid == 1
+
+
+def test_in_eclipse_the_sun_is_not_valid(make_plant):
+    valid = {}
+    for said, truth in fly(make_plant(), 6000):
+        valid.setdefault(truth.lit >= 0.5, set()).add(only(messages.SunVector, said).valid)
+    assert valid == {True: {1}, False: {0}}
+
+
+# --- same in, same out
+
+
+def test_same_configuration_same_frames_and_truth_to_the_last_bit(make_plant):
+    def run():
+        plant, log = make_plant(perfect_knowledge=True), []
+        for tick in range(400):
+            log.append((plant.begin_tick(), plant.truth()))
+            if tick % 9 == 5:
+                fire(plant, coil=tick % 3, level=-3, seq=tick)
+            plant.end_tick()
+        return log
+
+    assert run() == run()
+
+
+def test_another_seed_has_other_noise_and_the_same_truth(make_plant):
+    one, other = fly(make_plant(), 30), fly(make_plant(seed=8), 30)
+    assert [truth for _, truth in one] == [truth for _, truth in other]
+    assert not any(only(MagField, a) == only(MagField, b) for (a, _), (b, _) in zip(one, other, strict=True))
+
+
+def test_truth_can_be_left_unread(make_plant):
+    read, unread = make_plant(), make_plant()
+    fly(read, 50)
+    for _ in range(50):
+        unread.begin_tick()
+        unread.end_tick()
+    assert read.truth() == unread.truth()
+
+
+# --- coils
+
+
+def test_a_pulse_answered_to_tick_k_flows_over_k_to_k_plus_3(make_plant):
+    history = fly(make_plant(), 14, {5: lambda plant: fire(plant, coil=1, level=-2)})
+    flowed = [truth.m_body_am2[1] for _, truth in history]
+    full = -2.0 * 1.02
+    assert flowed[:6] == [0.0] * 6
+    assert flowed[6] == pytest.approx(full * 0.99)  # rise of 10 ms
+    assert flowed[7:9] == pytest.approx([full] * 2)
+    assert flowed[9] == pytest.approx(full * 0.01)  # decay
+    assert sum(flowed) == pytest.approx(3.0 * full)
+    assert flowed[11:] == [0.0] * 3
+    assert all(truth.m_body_am2[0] == truth.m_body_am2[2] == 0.0 for _, truth in history)
+    statuses = [only(CoilStatus, said) for said, _ in history]
+    assert [status.level for status in statuses] == [0] * 6 + [-2] * 3 + [0] * 5
+    assert [status.current_ma for status in statuses] == [0] * 6 + [-182] * 3 + [0] * 5
+    assert [status.remaining_ms for status in statuses[6:9]] == [2000, 1000, 0]
+
+
+def test_the_magnetometer_feels_the_coil_while_its_current_flows(make_plant):
+    coupling = MagnetometerConfig(
+        coil_coupling_t_per_am2=((0.0, 4e-6, 0.0), (0.0, -6e-6, 0.0), (0.0, 5e-6, 0.0))
+    )
+    history = fly(make_plant(magnetometer=coupling), 14, {5: lambda plant: fire(plant, coil=1, level=2)})
+    for tick, (said, truth) in enumerate(history):
+        field = only(MagField, said)
+        own_nt = np.array([field.b_x, field.b_y, field.b_z]) - 1e9 * np.array(truth.b_body_t)
+        expected = np.array([8160.0, -12240.0, 10200.0]) if tick in {6, 7, 8} else np.zeros(3)
+        assert own_nt == pytest.approx(expected, abs=1.1)
+
+
+def test_a_pulse_may_end_inside_a_tick(make_plant):
+    history = fly(
+        make_plant(pulse_ms=2300, max_substep_s=0.5),
+        14,
+        {5: lambda plant: fire(plant, coil=0, level=3, duration_ms=2300)},
+    )
+    flowed = [truth.m_body_am2[0] for _, truth in history]
+    full = 8.0 * 0.97
+    assert flowed[7] == pytest.approx(full)
+    assert flowed[8] == pytest.approx(full * 0.31)  # 0.3 and the decay, all inside the tick
+    assert sum(flowed) == pytest.approx(2.3 * full)
+    assert only(CoilStatus, history[8][0]).current_ma == 0
+
+
+@pytest.mark.parametrize("tick_hz", [1, 3, 7])
+def test_the_impulse_of_a_pulse_does_not_depend_on_the_tick_rate(make_plant, tick_hz):
+    history = fly(
+        make_plant(tick_hz=tick_hz), 14 * tick_hz, {5 * tick_hz: lambda plant: fire(plant, coil=2, level=1)}
+    )
+    flowed = np.array([truth.m_body_am2[2] for _, truth in history])
+    assert flowed.sum() / tick_hz == pytest.approx(3.0 * 0.5 * 1.05)
+    assert np.flatnonzero(flowed)[0] == 5 * tick_hz + 1
+
+
+def test_a_refused_request_drives_nothing_and_is_named(make_plant):
+    history = fly(make_plant(), 8, {2: lambda plant: fire(plant, seq=77)})
+    assert all(truth.m_body_am2 == (0.0, 0.0, 0.0) for _, truth in history)
+    refused = [m for said, _ in history for m in said if isinstance(m, messages.CoilRefused)]
+    assert [(m.seq, m.reason) for m in refused] == [(77, CoilRefusedReason.LOCKOUT)]
+    assert refused[0] in history[3][0]
+
+
+def test_frames_for_others_move_nothing(make_plant):
+    plant, alone = make_plant(), make_plant()
+    for _ in range(20):
+        assert plant.begin_tick() == alone.begin_tick()
+        for message in (messages.NavRate(1, 0.01, 0.02, 0.03), messages.TickDone(plant.tick, 5)):
+            plant.receive(message.encode())
+        plant.end_tick()
+        alone.end_tick()
+
+
+# --- motion
+
+
+def test_it_starts_as_configured(make_plant, make_config):
+    initial = make_config().initial
+    truth = make_plant().truth()
+    assert truth.q_body_from_orbit == pytest.approx(initial.q_body_from_orbit, abs=1e-14)
+    assert truth.omega_body_orbit_radps == pytest.approx(initial.omega_body_orbit_radps, abs=1e-16)
+
+
+def test_attitude_is_given_with_its_scalar_part_not_negative(make_plant):
+    q = tuple(-part for part in make_plant().truth().q_body_from_orbit)
+    history = fly(make_plant(initial=InitialConfig(q, (0.03, 0.05, -0.04))), 300)
+    scalars = np.array([truth.q_body_from_orbit[0] for _, truth in history])
+    assert scalars.min() >= 0.0
+    assert scalars.min() < 0.05  # it went all the way round
+
+
+def test_field_and_sun_turn_with_the_body(make_plant):
+    """Seen from the orbital frame they hardly move in a tick, whatever the body does."""
+    tumbling = InitialConfig((0.5, -0.5, 0.5, 0.5), (0.02, -0.03, 0.04))
+    rows = [truth for _, truth in fly(make_plant(initial=tumbling), 100)]
+    for name, most in (("b_body_t", 2e-7), ("sun_body", 2e-3)):
+        in_orbit = np.array([np.array(matrix(row.q_body_from_orbit)).T @ getattr(row, name) for row in rows])
+        assert np.linalg.norm(np.diff(in_orbit, axis=0), axis=1).max() < most
+
+
+def test_attitude_follows_the_rate(make_plant):
+    rows = [truth for _, truth in fly(make_plant(orbit=CIRCLE), 200)]
+    for before, after in pairwise(rows):
+        q, p = np.array(before.q_body_from_orbit), np.array(after.q_body_from_orbit)
+        w = 0.5 * (np.array(before.omega_body_orbit_radps) + after.omega_body_orbit_radps)
+        vector = q[0] * p[1:] - p[0] * q[1:] - np.cross(q[1:], p[1:])
+        assert 2.0 * vector == pytest.approx(w, abs=2e-8)
+
+
+def test_torques_by_source_are_those_that_turn_the_body(make_plant, make_config):
+    """J dw/dt = T - w x J w, with the inertial rate w and its change over a tick."""
+    inertia = np.array(make_config().body.inertia_kgm2)
+    plant, rows, omega = make_plant(tick_hz=10, backoff_ms=0), [], []
+    for tick in range(40):
+        plant.begin_tick()
+        rows.append(plant.truth())
+        omega.append(plant.motion.omega_body_radps)
+        if tick == 5:
+            fire(plant, coil=0, level=3)
+        plant.end_tick()
+    for k in range(10, 30):
+        w = np.array(omega[k])
+        change = (np.array(omega[k + 1]) - omega[k - 1]) / 0.2
+        torque = np.sum(rows[k].torque_body_nm, axis=0)
+        assert inertia @ change + np.cross(w, inertia @ w) == pytest.approx(torque, rel=1e-5, abs=1e-10)
+
+
+def test_each_source_speaks_for_itself(make_plant, make_config):
+    row = fly(make_plant(), 8, {5: fire})[7][1]
+    by_source = dict(zip(torques.SOURCES, row.torque_body_nm, strict=True))
+    disturbance = make_config().disturbance
+    assert by_source["bias"] == disturbance.torque_body_nm
+    residual = np.cross(disturbance.residual_dipole_body_am2, row.b_body_t)
+    assert by_source["residual_dipole"] == pytest.approx(residual)
+    assert by_source["coils"] == pytest.approx(np.cross(row.m_body_am2, row.b_body_t))
+    assert np.linalg.norm(by_source["coils"]) > 1e-5
+    e1 = np.array(matrix(row.q_body_from_orbit))[:, 0]
+    gradient = 3 * 3.986004418e14 / np.linalg.norm(row.r_eci_m) ** 3
+    inertia = np.array(make_config().body.inertia_kgm2)
+    assert by_source["gravity_gradient"] == pytest.approx(gradient * np.cross(e1, inertia @ e1))
+
+
+def test_the_jacobi_integral_is_conserved(make_plant, make_config):
+    """1/2 W J W + 3/2 w0^2 e1 J e1 - 1/2 w0^2 e3 J e3, uncontrolled on a circle, over three orbits."""
+    inertia = np.array(make_config().body.inertia_kgm2)
+    plant = make_plant(orbit=CIRCLE, disturbance=DisturbanceConfig())
+    a = 6378137.0 + 800e3
+    rate = sqrt(3.986004418e14 / a**3)
+    parts = []
+    for tick in range(int(3 * 2.0 * pi / rate)):
+        if tick % 60 == 0:
+            row = plant.truth()
+            c = np.array(matrix(row.q_body_from_orbit))
+            w, e1, e3 = np.array(row.omega_body_orbit_radps), c[:, 0], c[:, 2]
+            potential = rate**2 * (1.5 * e1 @ inertia @ e1 - 0.5 * e3 @ inertia @ e3)
+            parts.append((0.5 * w @ inertia @ w, potential))
+        plant.begin_tick()
+        plant.end_tick()
+    total = np.sum(parts, axis=1)
+    assert np.abs(total / total[0] - 1.0).max() < 1e-11
+    assert np.ptp(parts, axis=0).min() > 0.1 * total[0]  # they trade all the while
+
+
+def test_shorter_substeps_hardly_move_the_motion(make_plant, rotation_angle):
+    commands = {
+        5: lambda plant: fire(plant, coil=0, level=3),
+        40: lambda plant: fire(plant, coil=2, level=-3, seq=2),
+    }
+    whole = fly(make_plant(), 300, commands)[-1][1]
+    fine = fly(make_plant(max_substep_s=0.05), 300, commands)[-1][1]
+    assert rotation_angle(whole.q_body_from_orbit, fine.q_body_from_orbit) < 1e-5
+    assert whole.r_eci_m == pytest.approx(fine.r_eci_m, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("tick_hz", "max_substep_s", "steps"), [(1, 1.0, 1), (1, 0.3, 4), (4, 1.0, 1), (4, 0.1, 3), (10, 0.1, 1)]
+)
+def test_substeps_a_tick(make_plant, tick_hz, max_substep_s, steps):
+    assert make_plant(tick_hz=tick_hz, max_substep_s=max_substep_s).substeps == steps
+
+
+def test_nothing_is_known_of_the_field_after_the_table_ends(make_config, make_plant):
+    with pytest.raises(ValueError, match="1900 to 2030"):
+        make_plant(orbit=CIRCLE, epoch_unix_s=61 * 366 * DAY)
+    make_plant(orbit=CIRCLE, epoch_unix_s=61 * 366 * DAY, field=FieldConfig("direct_dipole"))
+
+
+# --- configurations that are none
+
+
+@pytest.mark.parametrize(
+    ("parts", "match"),
+    [
+        ({"tick_hz": 2, "limits": None}, "another tick_hz"),
+        ({"max_substep_s": 0.0}, "max_substep_s"),
+        ({"epoch_unix_s": -1}, "epoch_unix_s"),
+        ({"seed": -1}, "seed"),
+    ],
+)
+def test_a_plant_that_cannot_be_is_refused(make_config, parts, match):
+    if "limits" in parts:
+        parts = {**parts, "limits": make_config().limits}
+    with pytest.raises(ValueError, match=match):
+        make_config(**parts)
+
+
+@pytest.mark.parametrize(
+    ("inertia", "match"),
+    [
+        (((1.0, 0.1, 0.0), (0.2, 2.0, 0.0), (0.0, 0.0, 3.0)), "symmetric"),
+        (((1.0, 0.0, 0.0), (0.0, -2.0, 0.0), (0.0, 0.0, 3.0)), "positive definite"),
+        (((1.0, 3.0, 0.0), (3.0, 2.0, 0.0), (0.0, 0.0, 3.0)), "positive definite"),
+    ],
+)
+def test_an_inertia_tensor_that_no_body_has_is_refused(make_config, inertia, match):
+    with pytest.raises(ValueError, match=match):
+        replace(make_config().body, inertia_kgm2=inertia)
+
+
+@pytest.mark.parametrize("levels", [(2.0, 0.5, 8.0), (0.0, 1.0, 2.0), (1.0, 1.0, 2.0)])
+def test_levels_that_do_not_rise_are_refused(levels):
+    with pytest.raises(ValueError, match="levels_am2"):
+        CoilConfig(levels)
+
+
+def test_an_initial_attitude_that_is_none_is_refused():
+    with pytest.raises(ValueError, match="unit norm"):
+        InitialConfig((1.0, 1.0, 0.0, 0.0))
