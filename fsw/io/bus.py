@@ -46,7 +46,9 @@ class Bus(Protocol):
         """
 
     def receive(self, timeout_s: float | None) -> Frame | None:
-        """The next frame; None if none came within ``timeout_s`` (None: wait for ever, 0: do not wait).
+        """The next frame, or None if none came within ``timeout_s``.
+
+        A timeout of None waits for ever; 0, or a deadline already passed, does not wait.
 
         Raises:
             BusClosed: the bus is gone, and all that came before has been handed out.

@@ -71,6 +71,12 @@ class Hub:
                 handle()
         return bool(ready)
 
+    def attach(self) -> socket.socket:
+        """A socket on the bus as of now, without greeting; to be called before ``start`` or where ``poll`` is."""
+        inner, outer = socket.socketpair()
+        self._admit(inner)
+        return outer
+
     def start(self) -> None:
         """Serve in a daemon thread until ``close``."""
         self._thread = Thread(target=self._run, name=f"hub:{self.port}", daemon=True)
@@ -109,14 +115,17 @@ class Hub:
     def _accept(self) -> None:
         try:
             connection, _ = self._listener.accept()
+            connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         except OSError:  # gone again before it was taken
             return
+        self._deliver(self._admit(connection), GREETING)
+
+    def _admit(self, connection: socket.socket) -> _Client:
         connection.setblocking(False)
-        connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         client = _Client(connection)
         self._clients.add(client)
         self._selector.register(connection, selectors.EVENT_READ, client)
-        self._deliver(client, GREETING)
+        return client
 
     def _serve(self, client: _Client, events: int) -> None:
         if events & selectors.EVENT_WRITE and client in self._clients:

@@ -68,6 +68,7 @@ class LoopLink:
     def _fill(self, timeout_s: float | None) -> bool:
         deadline = None if timeout_s is None else monotonic() + timeout_s
         while True:
+            timeout_s = None if deadline is None else max(0.0, deadline - monotonic())
             try:
                 if not select.select((self._socket,), (), (), timeout_s)[0]:
                     return False
@@ -82,7 +83,6 @@ class LoopLink:
             if whole:
                 self._inbox.extend(record.unpack(pending[:whole]))
                 return True
-            timeout_s = None if deadline is None else max(0.0, deadline - monotonic())
 
     def _closed(self) -> BusClosed:
         why = "its hub is gone" if self._socket.fileno() >= 0 else "this end has been closed"
@@ -105,14 +105,24 @@ class LoopLink:
     def _join(self, port: int, deadline: float, may_host: bool) -> socket.socket:
         while True:
             connection = _connect(port, deadline)
+            if connection is None and may_host:
+                connection = self._host(port)
             if connection is not None:
                 return connection
-            if may_host and self._hub is None:
-                self._hub = _host(port)
             if monotonic() >= deadline:
                 raise BusError(f"no hub answers on port {port} of this machine")
-            if self._hub is None:
-                sleep(_RETRY_S)
+            sleep(_RETRY_S)
+
+    def _host(self, port: int) -> socket.socket | None:
+        """The host's own end, on the bus before any other; None if another opener was quicker."""
+        try:
+            hub = Hub(port)
+        except OSError:
+            return None
+        end = hub.attach()
+        hub.start()
+        self._hub = hub
+        return end
 
 
 def _connect(port: int, deadline: float) -> socket.socket | None:
@@ -140,13 +150,3 @@ def _connect(port: int, deadline: float) -> socket.socket | None:
         connection.close()
         raise
     return connection
-
-
-def _host(port: int) -> Hub | None:
-    """A hub serving in a thread; None if another opener was quicker."""
-    try:
-        hub = Hub(port)
-    except OSError:
-        return None
-    hub.start()
-    return hub

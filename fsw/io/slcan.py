@@ -32,7 +32,7 @@ class PythonCan:
     def receive(self, timeout_s: float | None) -> Frame | None:
         """The next frame, or None if none came within ``timeout_s``."""
         try:
-            message = self._bus.recv(timeout_s)
+            message = self._bus.recv(None if timeout_s is None else max(0.0, timeout_s))
         except can.CanError as error:
             raise self._failure(error) from error
         return None if message is None else frame_of(message)

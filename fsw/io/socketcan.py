@@ -65,7 +65,8 @@ class SocketCan:
             try:
                 received = self._socket.recv(record.SIZE, socket.MSG_DONTWAIT)
             except BlockingIOError:
-                if not select.select((self._socket,), (), (), timeout_s)[0]:
+                left_s = None if timeout_s is None else max(0.0, timeout_s)
+                if not select.select((self._socket,), (), (), left_s)[0]:
                     return None
                 received = self._socket.recv(record.SIZE)
         except (OSError, ValueError) as error:  # ValueError: closed on our side

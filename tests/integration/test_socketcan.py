@@ -67,6 +67,7 @@ def test_frames_that_are_not_ours_bear_their_flags(pair):
 def test_timeouts_are_kept(pair):
     began = time.monotonic()
     assert pair[0].receive(0) is None
+    assert pair[0].receive(-1.0) is None
     assert time.monotonic() - began < 0.1
     assert pair[0].receive(0.2) is None
     assert 0.2 <= time.monotonic() - began < 1.0

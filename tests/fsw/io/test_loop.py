@@ -138,10 +138,11 @@ class TestDelivery:
 
 
 class TestWaiting:
-    def test_zero_does_not_wait(self, open_link):
+    @pytest.mark.parametrize("timeout_s", [0, 0.0, -0.001, -5])
+    def test_zero_or_a_deadline_passed_does_not_wait(self, open_link, timeout_s):
         link = open_link()
         began = time.monotonic()
-        assert link.receive(0) is None
+        assert link.receive(timeout_s) is None
         assert time.monotonic() - began < 0.05
 
     def test_a_timeout_is_kept(self, open_link):
@@ -249,10 +250,11 @@ def run_node(port, deeds):
 def take_until_closed(link):
     frames = []
     try:
-        while True:
-            frames.append(link.receive(PATIENCE_S))
+        while (frame := link.receive(PATIENCE_S)) is not None:
+            frames.append(frame)
     except BusClosed:
         return frames
+    pytest.fail(f"the bus fell silent after {len(frames)} frames, but did not close")
 
 
 class TestLastWords:
@@ -385,6 +387,25 @@ class TestOpening:
             pytest.raises(BusError, match="no hub answers"),
         ):
             LoopLink(server.getsockname()[1], timeout_s=0.2)
+
+    def test_a_guest_never_comes_before_its_host(self):
+        """Else the first words of a guest that was waiting for the port would be lost on its host."""
+        hub = Hub()
+        guests = []
+
+        def come_and_talk():
+            guests.append(LoopLink(hub.port))
+            guests[0].send(numbered(1))
+
+        thread = threading.Thread(target=come_and_talk)
+        thread.start()
+        time.sleep(0.1)  # the guest stands at the door
+        with hub.attach() as host:
+            hub.start()
+            thread.join()
+            assert host.recv(record.SIZE) == record.pack(numbered(1)[0])
+        guests[0].close()
+        hub.close()
 
 
 class TestPolledHub:

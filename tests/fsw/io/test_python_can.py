@@ -128,6 +128,7 @@ class TestAdapter:
         assert [pair[1].receive(PATIENCE_S) for _ in sent] == sent
         assert pair[1].receive(0.05) is None
         assert pair[0].receive(0) is None
+        assert pair[0].receive(-1.0) is None
 
     def test_a_closed_end_says_so(self, pair):
         pair[0].close()

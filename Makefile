@@ -1,0 +1,41 @@
+# make sil    makes the environment .venv and flies the default scenario
+# make test   all tests; those on a CAN interface say so when there is none
+# make lint   style, types, layers, generated code
+# make test-vcan   the tests on a CAN interface, in a user-mode Linux guest where this kernel has no vcan
+
+PYTHON ?= python3
+PYTEST_FLAGS ?= -q -rs
+
+bin := .venv/bin
+installed := .venv/.installed
+export PATH := $(CURDIR)/$(bin):$(PATH)
+
+.PHONY: help venv sil test lint test-vcan
+
+help:
+	@sed -n 's/^# \(make .*\)/\1/p' Makefile
+
+venv: $(installed)
+
+$(installed): pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit("torquer needs Python 3.11 or newer: make PYTHON=python3.11 ..." if sys.version_info < (3, 11) else 0)'
+	@echo 'Making the environment .venv (a minute or two the first time)'
+	@$(PYTHON) -m venv .venv
+	@$(bin)/pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	@touch $@
+
+sil: venv
+	$(bin)/torquer sil
+
+test: venv
+	$(bin)/pytest $(PYTEST_FLAGS)
+
+lint: venv
+	$(bin)/ruff check
+	$(bin)/ruff format --check
+	$(bin)/mypy
+	$(bin)/lint-imports --no-logo
+	$(bin)/python tools/generate_messages.py --check
+
+test-vcan: venv
+	TORQUER_REQUIRE_VCAN=1 tests/with-vcan $(bin)/pytest $(PYTEST_FLAGS) -p no:cacheprovider -m vcan
