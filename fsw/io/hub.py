@@ -72,7 +72,7 @@ class Hub:
         return bool(ready)
 
     def attach(self) -> socket.socket:
-        """A socket that is on the bus as of now, ungreeted. Call it before ``start``, or where ``poll`` is."""
+        """A socket that is on the bus at once, ungreeted. Call it before ``start``, or where ``poll`` is."""
         inner, outer = socket.socketpair()
         self._admit(inner)
         return outer
