@@ -205,7 +205,7 @@ class _Auditor:
     # --- both
 
     def _stamped(self, boards: list[_Board]) -> int:
-        """The time that the timestamps give to statuses of one tick: until then at least a coil was driven."""
+        """The time that timestamps give to the statuses of a tick: until then at least a coil was driven."""
         times = [board.timestamp_us for board in boards if board.status is not None and board.status.level]
         return self._clock.of_timestamp(max(times, default=boards[0].timestamp_us))
 

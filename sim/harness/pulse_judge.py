@@ -87,7 +87,8 @@ class PulseJudge:
         self._announce(drive, status)
 
     def _go_on(self, drive: _Drive, status: CoilStatus, now: int) -> None:
-        ended_within = status.remaining_ms == 0 and drive.end < drive.announced < now
+        punctual = (now - drive.end) % self._clock.period == 0
+        ended_within = punctual and status.remaining_ms == 0 and drive.end < drive.announced < now
         drive.end = drive.announced if ended_within else max(drive.end, now)
         self._announce(drive, status)
 

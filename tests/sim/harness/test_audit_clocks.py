@@ -1,0 +1,184 @@
+"""Ticks and timestamps: which of them are judged, and that they agree."""
+
+from fractions import Fraction
+
+import pytest
+
+from fsw.wire.frame import Frame
+from fsw.wire.messages import Sync
+from sim.harness.audit import AuditLimits, Kind, audit
+from sim.harness.candump import LogEntry
+
+
+def found(report):
+    """Kind, time, tick and coil of each violation."""
+    return [(one.kind, one.time_s, one.tick, one.coil) for one in report.violations]
+
+
+def with_sync(log, change):
+    """The log's entries with each SYNC run through ``change``, which may give any frame."""
+    return [
+        entry._replace(frame=change(Sync.decode(entry.frame.data)))
+        if entry.frame.can_id == Sync.ID
+        else entry
+        for entry in log.entries()
+    ]
+
+
+# --- simulated time
+
+
+def test_a_gap_that_only_the_timestamps_show(judge, bus_log, fired):
+    log = bus_log(1, 400, [fired(0, 100), fired(1, 203)])
+    log.shifts_us = dict.fromkeys(range(150, 400), -100_000)
+    report = judge(log)
+    assert found(report) == [
+        (Kind.TIMESTAMP, 150, 150, None),
+        (Kind.GAP, Fraction("202.9"), 203, 1),
+    ]
+    assert "0.100 s early" in str(report.violations[0])
+    assert "99.900 s after" in str(report.violations[1])
+
+
+def test_a_pulse_that_only_the_timestamps_show(judge, bus_log, fired):
+    log = bus_log(1, 400, [fired(0, 100)])
+    log.shifts_us = {103: 100_000}
+    report = judge(log)
+    assert found(report) == [(Kind.PULSE, 100, 100, 0), (Kind.TIMESTAMP, 103, 103, None)]
+    assert "pulse of 3.100 s" in str(report.violations[0])
+
+
+def test_a_status_between_two_ticks_that_shows_a_coil_on_for_longer(bus_log, fired):
+    log = bus_log(1, 400, [fired(0, 100)])
+    entries = log.entries()
+    last_driven = entries[103 * 3]
+    assert last_driven.frame == log.statuses[103][0]
+    entries.insert(104 * 3, last_driven._replace(timestamp_us=last_driven.timestamp_us + 100_000))
+    assert (Kind.PULSE, 100, 100, 0) in found(audit(entries, AuditLimits()))
+
+
+def test_one_microsecond_off_simulated_time_is_named_once(judge, bus_log):
+    log = bus_log(10, 100)
+    log.shifts_us = dict.fromkeys(range(50, 100), 1)
+    assert found(judge(log)) == [(Kind.TIMESTAMP, 5, 50, None)]
+
+
+@pytest.mark.parametrize("tick_hz", [3, 7, 64])
+@pytest.mark.parametrize("up", [0, 1])
+@pytest.mark.parametrize("sync", [True, False])
+def test_the_rounding_of_timestamps_to_microseconds_is_no_violation(judge, bus_log, fired, tick_hz, up, sync):
+    log = bus_log(tick_hz, 220 * tick_hz, [fired(0, 101), fired(1, 101 + 103 * tick_hz)], sync=sync)
+    inexact = [tick for tick in range(log.ticks) if tick * 1_000_000 % tick_hz]
+    log.shifts_us = dict.fromkeys(inexact, up)
+    assert judge(log).ok
+
+
+# --- other timestamps
+
+
+def test_wall_clock_timestamps_do_not_count_where_ticks_do(judge, bus_log, fired):
+    log = bus_log(1, 400, [fired(0, 100), fired(1, 203)])
+    log.shifts_us = {tick: 86_400_000_000 - 999_000 * tick for tick in range(400)}
+    report = judge(log)
+    assert report.ok
+    assert "timestamps are not simulated time: judged by ticks alone" in report.notes
+
+
+def test_ticks_are_judged_where_timestamps_are_not_simulated(judge, bus_log, fired):
+    log = bus_log(10, 1500, [fired(1, 1234, 3100)])
+    log.shifts_us = {tick: 1000 - 90_000 * tick for tick in range(1500)}
+    assert found(judge(log)) == [(Kind.PULSE, Fraction("123.4"), 1234, 1)]
+
+
+def test_without_sync_time_counts_from_the_first_entry(judge, bus_log, fired):
+    report = judge(bus_log(1, 200, [fired(1, 100, 3100)], sync=False))
+    assert found(report) == [(Kind.PULSE, 100, None, 1)]
+    assert "no tick rate in the log: judged by timestamps, a COIL_STATUS every 1.000 s" in report.notes
+
+
+def test_without_sync_the_most_common_spacing_is_the_period(bus_log, fired):
+    log = bus_log(10, 1500, [fired(1, 1000, 3000)], sync=False)
+    log.statuses |= {tick: [] for tick in range(200, 260)}
+    report = audit(log.entries(), AuditLimits())
+    assert report.ok
+    assert (report.pulses[0].start_s, report.pulses[0].end_s) == (100, 103)
+
+
+# --- the tick rate
+
+
+@pytest.mark.parametrize("tick_hz", [1, 3, 10, 100])
+@pytest.mark.parametrize("first", [0, 1, 1234, 4321])
+def test_the_tick_rate_of_a_log_that_starts_anywhere(bus_log, fired, tick_hz, first):
+    log = bus_log(tick_hz, first + 12 * tick_hz, [fired(0, first + 5 * tick_hz, 3100)])
+    report = audit(log.entries(first), AuditLimits())
+    assert found(report) == [(Kind.PULSE, Fraction(first, tick_hz) + 5, first + 5 * tick_hz, 0)]
+
+
+def test_the_tick_rate_of_the_log_overrules_that_of_the_scenario(judge, bus_log, fired):
+    report = judge(bus_log(10, 1500, [fired(1, 1234, 3100)]), tick_hz=1)
+    assert found(report) == [(Kind.PULSE, Fraction("123.4"), 1234, 1)]
+    assert "the log has 10 ticks a second, its scenario says 1" in report.notes
+
+
+def test_lost_sync_frames_change_neither_the_tick_rate_nor_a_pulse(bus_log, fired):
+    log = bus_log(10, 1500, [fired(1, 1234)])
+    report = audit(log.entries(without_sync={10, 500, 501, 1235, 1264}), AuditLimits())
+    assert report.ok
+    assert (report.pulses[0].start_s, report.pulses[0].end_s) == (Fraction("123.4"), Fraction("126.4"))
+
+
+def test_a_log_too_short_to_tell_its_tick_rate_is_judged_by_the_scenarios(bus_log, fired):
+    log = bus_log(100, 50, [fired(1, 20, 100), fired(2, 40, 100)])
+    assert found(audit(log.entries(), AuditLimits(tick_hz=100))) == [(Kind.GAP, Fraction("0.4"), 40, 2)]
+    assert found(audit(log.entries(), AuditLimits())) == [(Kind.GAP, Fraction("0.4"), None, 2)]
+
+
+# --- SYNC itself
+
+
+def test_a_sync_whose_unix_time_contradicts_its_tick(bus_log):
+    log = bus_log(10, 200)
+    entries = with_sync(
+        log, lambda sync: sync._replace(unix_time_s=sync.unix_time_s + (sync.tick == 150)).encode()
+    )
+    assert found(audit(entries, AuditLimits())) == [(Kind.SYNC, 15, 150, None)]
+
+
+def test_ticks_that_jump_forward_to_hide_a_short_gap(bus_log, fired):
+    log = bus_log(1, 300, [fired(0, 100), fired(1, 202)])
+    entries = with_sync(
+        log, lambda sync: Sync(sync.tick + (sync.tick > 150), sync.unix_time_s + (sync.tick > 150)).encode()
+    )
+    assert not audit(entries, AuditLimits()).ok
+
+
+def test_ticks_that_go_back(bus_log):
+    entries = bus_log(1, 50).entries() + bus_log(1, 20).entries()
+    report = audit(entries, AuditLimits())
+    assert (Kind.SYNC, 0, 0, None) in found(report)
+    assert "SYNC goes back from tick 49 to tick 0" in "".join(map(str, report.violations))
+
+
+def test_a_sync_of_the_wrong_length(bus_log):
+    log = bus_log(1, 50)
+    entries = with_sync(log, lambda sync: Frame(Sync.ID, b"\0") if sync.tick == 30 else sync.encode())
+    assert found(audit(entries, AuditLimits())) == [(Kind.SYNC, 30, 30, None)]
+
+
+def test_syncs_that_fit_no_tick_rate(bus_log):
+    entries = with_sync(bus_log(1, 50), lambda sync: Sync(sync.tick, 1000 - sync.tick).encode())
+    for tick_hz in (None, 1):
+        report = audit(entries, AuditLimits(tick_hz=tick_hz))
+        assert {one.kind for one in report.violations} == {Kind.SYNC}
+
+
+def test_nothing_is_judged_of_nothing():
+    report = audit([], AuditLimits())
+    assert not report.ok
+    assert report.notes == ("the log has no end mark", "no COIL_STATUS in the log: nothing to judge")
+
+
+def test_a_lone_status_is_judged(bus_log):
+    status = bus_log(ticks=2).statuses[1][0]
+    assert audit([LogEntry(1, 0, "can0", status)], AuditLimits()).ok

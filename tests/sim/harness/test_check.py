@@ -1,0 +1,224 @@
+import pytest
+
+from sim.harness.audit import AuditLimits, Kind, audit
+from sim.harness.candump import LogError, read_log
+from sim.harness.check import check, limits_beside, render
+from sim.harness.errors import HarnessError
+
+
+@pytest.fixture
+def run(tmp_path):
+    """A run directory that holds a log and, unless it is None, a scenario."""
+
+    def make(log, scenario: str | None = ""):
+        log.write(tmp_path / "bus.log")
+        if scenario is not None:
+            (tmp_path / "scenario.toml").write_text(scenario)
+        return tmp_path
+
+    return make
+
+
+# --- what is checked, and by which limits
+
+
+def test_a_run_directory_is_checked_by_its_log(run, bus_log, fired):
+    folder = run(bus_log(1, 400, [fired(0, 100), fired(1, 203)], boots=[0]))
+    report = check(folder, None)
+    assert report == check(folder / "bus.log", None)
+    assert len(report.pulses) == 2
+    assert report.exit_code == 0
+
+
+def test_a_log_under_any_name_is_checked_by_the_scenario_beside_it(tmp_path, bus_log, fired):
+    log = bus_log(1, 200, [fired(0, 100), fired(1, 110)]).write(tmp_path / "recorded.log")
+    (tmp_path / "scenario.toml").write_text('[coils]\nbackoff = "per_coil"\n')
+    assert check(log, None).ok
+
+
+def test_without_a_scenario_the_back_off_is_shared(run, bus_log, fired):
+    folder = run(bus_log(1, 200, [fired(0, 100), fired(1, 110)]), scenario=None)
+    assert check(folder, None).limits == AuditLimits()
+    assert not check(folder, None).ok
+    assert not check(folder, "shared").ok
+    assert check(folder, "per_coil").ok
+
+
+def test_an_explicit_back_off_overrules_the_scenario(run, bus_log, fired):
+    folder = run(bus_log(1, 200, [fired(0, 100), fired(1, 110)]), '[coils]\nbackoff = "per_coil"\n')
+    assert check(folder, None).ok
+    assert not check(folder, "shared").ok
+
+
+def test_limits_come_from_the_scenario_and_other_keys_do_not_matter(tmp_path):
+    scenario = """
+        name = "other"
+        [time]
+        tick_hz = 10
+        epoch_utc = 2015-03-28T03:30:17Z
+        [coils]
+        levels_am2 = [0.5, 2.0, 8.0]
+        pulse_s = 2.5
+        backoff_s = 50
+        backoff = "per_coil"
+        [body]
+        inertia_kgm2 = [1.0, 2.0, 3.0]
+    """
+    (tmp_path / "scenario.toml").write_text(scenario)
+    limits = AuditLimits(2_500_000, 50_000_000, 3, shared=False, tick_hz=10)
+    assert limits_beside(tmp_path / "bus.log") == limits
+
+
+def test_an_empty_scenario_means_the_usual_limits(tmp_path):
+    (tmp_path / "scenario.toml").write_text("")
+    assert limits_beside(tmp_path / "bus.log") == AuditLimits()
+
+
+def test_no_scenario_means_no_limits(tmp_path):
+    assert limits_beside(tmp_path / "bus.log") is None
+
+
+@pytest.mark.parametrize(
+    ("scenario", "reason"),
+    [
+        ("coils = 3", "coils is not a table"),
+        ("[coils]\nbackoff = 'none'", "coils.backoff is 'none'"),
+        ("[coils]\nbackoff = 1", "coils.backoff is 1"),
+        ("[coils]\npulse_s = '3'", "coils.pulse_s is '3'"),
+        ("[coils]\npulse_s = true", "coils.pulse_s is True"),
+        ("[coils]\nbackoff_s = nan", "coils.backoff_s is nan"),
+        ("[coils]\nbackoff_s = -1.0", "coils.backoff_s is -1.0"),
+        ("[time]\ntick_hz = 0", "time.tick_hz is 0"),
+        ("[time]\ntick_hz = 1.5", "time.tick_hz is 1.5"),
+        ("[coils", "cannot be read"),
+    ],
+)
+def test_a_scenario_that_makes_no_sense_is_named_in_one_sentence(run, bus_log, scenario, reason):
+    folder = run(bus_log(ticks=5), scenario)
+    with pytest.raises(HarnessError, match=reason) as refusal:
+        check(folder, None)
+    assert str(folder / "scenario.toml") in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+    assert refusal.value.exit_code == 2
+
+
+def test_a_back_off_that_is_none_of_the_two_is_refused(run, bus_log):
+    with pytest.raises(HarnessError, match="--backoff is 'both'"):
+        check(run(bus_log(ticks=5)), "both")
+
+
+# --- what is no log
+
+
+def test_a_path_that_is_not_there(tmp_path):
+    with pytest.raises(HarnessError, match=r"nothing\.log: no such file"):
+        check(tmp_path / "nothing.log", None)
+
+
+def test_a_directory_without_a_log(tmp_path):
+    with pytest.raises(HarnessError, match=r"no bus\.log in it"):
+        check(tmp_path, None)
+
+
+@pytest.mark.parametrize("content", [b"", b"hello\n", b"\x00\xff" * 500])
+def test_a_file_that_is_no_log(tmp_path, content):
+    (tmp_path / "bus.log").write_bytes(content)
+    with pytest.raises(LogError):
+        check(tmp_path, None)
+
+
+def test_a_log_that_was_altered_in_the_middle(run, bus_log):
+    folder = run(bus_log(ticks=20))
+    lines = (folder / "bus.log").read_text().splitlines(keepends=True)
+    lines[30] = "garbage\n"
+    (folder / "bus.log").write_text("".join(lines))
+    with pytest.raises(LogError, match="line 31 "):
+        check(folder, None)
+
+
+# --- where a log ends
+
+
+def test_a_complete_log_ends_with_its_end_mark(run, bus_log):
+    report = check(run(bus_log(ticks=20)), None)
+    assert report.complete
+    assert report.notes == ()
+
+
+def test_a_log_of_ours_without_end_mark_is_incomplete(run, bus_log):
+    report = check(run(bus_log(ticks=20, end=False)), None)
+    assert report.ok
+    assert not report.complete
+    assert report.exit_code == 1
+    assert "the log has no end mark" in render(report)
+
+
+def test_a_foreign_log_without_end_mark_is_only_noted(run, bus_log):
+    report = check(run(bus_log(ticks=20, end=False), scenario=None), None)
+    assert report.complete
+    assert report.exit_code == 0
+    assert "note: the log has no end mark" in render(report)
+
+
+@pytest.mark.parametrize("scenario", ["", None])
+def test_a_log_cut_at_any_byte_is_judged_as_far_as_it_goes(run, bus_log, fired, scenario):
+    folder = run(bus_log(1, 5, [fired(0, 1, 2000)]), scenario)
+    log = folder / "bus.log"
+    content = log.read_bytes()
+    whole = audit(read_log(log), AuditLimits())
+    for length in range(1, len(content)):
+        log.write_bytes(content[:length])
+        report = check(folder, None)
+        lines = content[:length].count(b"\n")
+        cut = not content[:length].endswith(b"\n")
+        assert report.truncated_at == (lines + 1 if cut else None)
+        assert (f"truncated: line {lines + 1} is incomplete" in render(report)) == cut
+        assert report.violations == ()
+        assert len(report.pulses) <= len(whole.pulses)
+        if cut or scenario is not None:
+            assert report.exit_code == 1
+
+
+def test_violations_before_the_cut_are_found(run, bus_log, fired):
+    folder = run(bus_log(1, 200, [fired(0, 110, level=4)]))
+    log = folder / "bus.log"
+    log.write_bytes(log.read_bytes()[:-30])
+    report = check(folder, None)
+    assert [one.kind for one in report.violations] == [Kind.LEVEL]
+    assert report.truncated_at is not None
+
+
+# --- what is printed
+
+
+def test_a_violation_is_printed_with_time_tick_coil_and_line(run, bus_log, fired):
+    report = check(run(bus_log(10, 13_000, [fired(1, 12_340, 3100)])), None)
+    expected = "VIOLATION t=1234.000 s (tick 12340) coil 1: pulse of 3.100 s exceeds 3.000 s [line 37024]"
+    assert expected in render(report).splitlines()
+    assert render(report).splitlines()[-1] == "FAIL: 1 violation of the limits"
+
+
+def test_a_good_verdict_says_what_was_judged(run, bus_log, fired):
+    text = render(check(run(bus_log(1, 401, [fired(0, 100), fired(1, 203)])), None))
+    assert text.splitlines() == [
+        "limits: pulse <= 3.000 s, back-off >= 100.000 s shared, level -3..3, one coil at a time",
+        "2 pulses (coil 0, 1, 2: 1, 1, 0), longest 3.000 s, shortest gap 100.000 s, duty 1.50 % of 400.000 s",
+        "OK: limits kept",
+    ]
+
+
+def test_thousands_of_violations_are_not_all_printed(run, bus_log, fired):
+    report = check(run(bus_log(1, 400, [fired(0, start, 1000) for start in range(0, 400, 2)])), None)
+    assert len(report.violations) == 199
+    text = render(report)
+    assert text.count("VIOLATION") == 50
+    assert "... and 149 more" in text
+    assert "FAIL: 199 violations of the limits" in text
+
+
+def test_nothing_to_judge_is_no_good_verdict(run, bus_log):
+    log = bus_log(ticks=20)
+    log.statuses = {tick: [] for tick in range(20)}
+    report = check(run(log), None)
+    assert report.exit_code == 1
+    assert render(report).splitlines()[-1] == "FAIL: nothing to judge"
