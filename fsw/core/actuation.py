@@ -77,7 +77,7 @@ def actuate(
     """
     if mode is Mode.SAFE:
         return replace(state, owed_impulse_body_nms=ZERO), view, None
-    state = pulses.owe(state, cross(m_body_am2, b_body_t), config)
+    state = pulses.owe(state, cross(m_body_am2, b_body_t), b_body_t, config)
     pulse = pulses.choose(state, tick, b_body_t, config)
     if pulse is None or not status_fresh or view.lockout_ms[pulse.coil] != 0:
         return state, view, None

@@ -4,9 +4,10 @@ One coil at a time, three levels per polarity, pulses of 3 s, then at least 100 
 of the pulse, for that coil or for all of them (``shared``). After boot a full back-off passes first. All
 timing is in integer ticks, rounded so that the pulse is never longer and the gap never shorter.
 
-What the continuous law asks for is kept as a torque impulse that is still owed (a leaky sigma-delta
-modulator). The pulse that is fired is the one that brings the owed impulse, weighted by the inverse of the
-inertia, closest to zero; firing none is one of the choices and wins ties.
+What the continuous law asks for is kept as a torque impulse that is still owed: a leaky sigma-delta
+modulator, bounded by what one pulse can pay. The pulse that is fired is the one that brings the owed
+impulse, weighted by the inverse of the inertia, closest to zero; firing none is one of the choices and wins
+ties.
 
 Source: Tavares et al. (ConSat, PoSAT-1) for the limits; the modulator is this project's.
 """
@@ -14,7 +15,7 @@ Source: Tavares et al. (ConSat, PoSAT-1) for the limits; the modulator is this p
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from fsw.core.vector import ZERO, Mat3, Vec3, cross, dot, scale, sub, transform
+from fsw.core.vector import ZERO, Mat3, Vec3, cross, dot, norm, scale, sub, transform
 
 AXES: Mat3 = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -72,12 +73,18 @@ def boot(tick: int, config: PulseConfig) -> PulseState:
     return PulseState(ready_tick=(first, first, first), busy_until=tick, owed_impulse_body_nms=ZERO)
 
 
-def owe(state: PulseState, torque_body_nm: Vec3, config: PulseConfig) -> PulseState:
-    """Add one tick of the torque asked for: r <- (1 - h / tau) r + T h."""
+def owe(state: PulseState, torque_body_nm: Vec3, b_body_t: Vec3, config: PulseConfig) -> PulseState:
+    """Add one tick of the torque asked for: r <- (1 - h / tau) r + T h, |r| at most what one pulse can pay.
+
+    Without that bound a strong demand would go on being paid long after its cause is gone.
+    """
     keep, h = 1.0 - config.tick_s / config.leak_s, config.tick_s
     r1, r2, r3 = state.owed_impulse_body_nms
     t1, t2, t3 = torque_body_nm
     owed = (keep * r1 + h * t1, keep * r2 + h * t2, keep * r3 + h * t3)
+    size, limit = norm(owed), config.pulse_s * config.levels_am2[2] * norm(b_body_t)
+    if size > limit:
+        owed = scale(limit / size, owed)
     return replace(state, owed_impulse_body_nms=owed)
 
 
