@@ -61,8 +61,3 @@ def raw(value: float, scale: float, low: int, high: int) -> int:
     if scaled >= high:
         return high
     return round(scaled)
-
-
-def signed(bits: int, width: int) -> int:
-    """The two's complement value of ``width`` bits."""
-    return bits - (1 << width) if bits >> (width - 1) else bits
