@@ -1,5 +1,6 @@
 """The orbit: SGP4 on a two-line element set, or a circular Kepler orbit."""
 
+import re
 from dataclasses import dataclass, field
 from math import cos, isfinite, radians, sin, sqrt
 from typing import Any
@@ -14,6 +15,21 @@ State = tuple[Vec3, Vec3]
 
 _UNIX_EPOCH_JD = 2440587.5
 _DAY_S = 86400.0
+
+_SATELLITE = r"[ 0-9A-Z][ 0-9]{4}"
+_ANGLE = r"(?:[0-9]{3}| [0-9]{2}|  [0-9])\.[0-9]{4}"
+_EXPONENTIAL = r"[ +-][0-9]{5}[+-][0-9]"
+_COUNT = r" *[0-9]+"
+_FORMAT = {
+    "1": re.compile(
+        rf"(?=.{{69}}$)1 {_SATELLITE}[A-Z] [ 0-9A-Z]{{8}} [0-9]{{5}}\.[0-9]{{8}} [ +-]\.[0-9]{{8}}"
+        rf" {_EXPONENTIAL} {_EXPONENTIAL} [ 0-9] {_COUNT}"
+    ),
+    "2": re.compile(
+        rf"(?=.{{69}}$)2 {_SATELLITE} {_ANGLE} {_ANGLE} [0-9]{{7}} {_ANGLE} {_ANGLE}"
+        rf" (?:[0-9]{{2}}| [0-9])\.[0-9]{{8}}{_COUNT}"
+    ),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,8 +60,8 @@ def sgp4_orbit(line1: str, line2: str) -> Sgp4Orbit:
     """The orbit of a two-line element set (Vallado et al. 2006, WGS-72 as the sets are made).
 
     Raises:
-        ValueError: a line is malformed or its checksum wrong, the lines are of two satellites, or SGP4
-            refuses the elements.
+        ValueError: a line is malformed or its checksum wrong, the lines are of two satellites, SGP4 refuses
+            the elements, or they are of a deep-space orbit, whose propagator remembers earlier calls.
     """
     line1, line2 = line1.rstrip(), line2.rstrip()
     _check_line(line1, "1")
@@ -56,12 +72,14 @@ def sgp4_orbit(line1: str, line2: str) -> Sgp4Orbit:
     error, _, _ = satellite.sgp4_tsince(0.0)
     if error:
         raise ValueError(f"SGP4 refuses the elements of {line1[2:7]}: {SGP4_ERRORS[error]}")
+    if satellite.method != "n":
+        raise ValueError(f"{line1[2:7]} takes 225 minutes or more an orbit: the field is for low orbits")
     return Sgp4Orbit(line1, line2, satellite)
 
 
 def _check_line(line: str, number: str) -> None:
-    if len(line) != 69 or line[:2] != f"{number} " or not line[68].isdigit():
-        raise ValueError(f"element line {number} must be 69 characters beginning with '{number} ': {line!r}")
+    if not _FORMAT[number].fullmatch(line):
+        raise ValueError(f"element line {number} is not in the two-line format: {line!r}")
     checksum = sum(int(c) if c.isdigit() else c == "-" for c in line[:68]) % 10
     if checksum != int(line[68]):
         raise ValueError(f"element line {number} has checksum {line[68]} but adds up to {checksum}: {line!r}")

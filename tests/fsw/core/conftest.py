@@ -1,0 +1,106 @@
+import csv
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pytest
+
+from fsw.core.orbit import sgp4_orbit
+
+ROOT = Path(__file__).resolve().parents[3]
+REFERENCE = ROOT / "tests" / "reference"
+
+
+def unix_of(utc_iso):
+    moment = datetime.fromisoformat(utc_iso)
+    assert moment.tzinfo == UTC
+    return moment.timestamp()
+
+
+def with_checksum(line):
+    body = line[:68]
+    return body + str(sum(int(c) if c.isdigit() else c == "-" for c in body) % 10)
+
+
+@pytest.fixture(scope="session")
+def reference_rows():
+    """Rows of a reference table as dictionaries of text, with ``unix_s`` added."""
+
+    def rows(name):
+        lines = (REFERENCE / name).read_text(encoding="utf-8").splitlines()
+        table = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+        return [row | {"unix_s": unix_of(row["utc_iso"])} for row in table]
+
+    return rows
+
+
+@pytest.fixture(scope="session")
+def vector_of():
+    """A vector from the columns ``prefix`` + x, y, z + ``suffix`` of a row."""
+
+    def vector(row, prefix, suffix=""):
+        return tuple(float(row[f"{prefix}{axis}{suffix}"]) for axis in "xyz")
+
+    return vector
+
+
+@pytest.fixture(scope="session")
+def gauss_by_year():
+    """IGRF-14 of the plant's own table: {year: {(n, m): nT}}."""
+    text = (ROOT / "sim" / "plant" / "igrf14.shc").read_text(encoding="utf-8")
+    lines = [line.split() for line in text.splitlines() if not line.startswith("#")]
+    return {
+        int(float(year)): {(int(n), int(m)): float(values[column]) for n, m, *values in lines[2:]}
+        for column, year in enumerate(lines[1])
+    }
+
+
+@pytest.fixture(scope="session")
+def gauss_at(gauss_by_year):
+    """Coefficients at a time, linear in elapsed time between the models."""
+
+    def at(unix_s):
+        year = max(year for year in (2015, 2020, 2025) if unix_of(f"{year}-01-01T00:00:00Z") <= unix_s)
+        start_s, end_s = unix_of(f"{year}-01-01T00:00:00Z"), unix_of(f"{year + 5}-01-01T00:00:00Z")
+        part = (unix_s - start_s) / (end_s - start_s)
+        before, after = gauss_by_year[year], gauss_by_year[year + 5]
+        return {key: (1.0 - part) * before[key] + part * after[key] for key in before}
+
+    return at
+
+
+@pytest.fixture(scope="session")
+def tle():
+    """Element lines by satellite name."""
+    lines = [
+        line
+        for line in (REFERENCE / "tle.txt").read_text(encoding="utf-8").splitlines()
+        if line and not line.startswith("#")
+    ]
+    return {lines[i]: (lines[i + 1], lines[i + 2]) for i in range(0, len(lines), 3)}
+
+
+@pytest.fixture(scope="session")
+def itamsat(tle):
+    return sgp4_orbit(*tle["ITAMSAT"])
+
+
+ITAMSAT_EPOCH_UNIX_S = 1427424417
+"""The first whole second after the epoch of the elements: 2015, day 86.11593543."""
+
+
+@pytest.fixture(scope="session")
+def itamsat_epoch_unix_s():
+    return ITAMSAT_EPOCH_UNIX_S
+
+
+@pytest.fixture(scope="session")
+def decaying(tle):
+    """ITAMSAT with a drag term that brings it down within days."""
+    line1, line2 = tle["ITAMSAT"]
+    draggy = line1[:53] + " 99999+0" + line1[61:]
+    return with_checksum(draggy), line2
+
+
+@pytest.fixture(scope="session")
+def checksummed():
+    return with_checksum
