@@ -11,13 +11,13 @@ Comparisons are exact. Nothing here comes from the onboard scheduler or from the
 """
 
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
 
 from fsw.wire.messages import CoilBoot, CoilStatus, PlantEnd, Sync, intact
 from sim.harness.audit_report import AuditLimits, AuditReport, Kind, Pulse, Violation, seconds_text
 from sim.harness.candump import LogEntry, LogTruncatedError
 from sim.harness.log_clock import MICRO, LogClock, read_clock
 from sim.harness.pulse_judge import PulseJudge
+from sim.harness.status_ticks import BoardStatus, StatusTicks
 
 __all__ = ["AuditLimits", "AuditReport", "Kind", "Pulse", "Violation", "audit"]
 
@@ -63,14 +63,6 @@ class _WholeEntries:
         self.ended = can_id == PlantEnd.ID and self.truncated_at is None
 
 
-class _Board(NamedTuple):
-    """A frame of the board that waits for the SYNC of its tick; without status, it cannot be trusted."""
-
-    line: int
-    timestamp_us: int
-    status: CoilStatus | None
-
-
 class _Auditor:
     """Sorts the log into ticks and hands them to the judges."""
 
@@ -80,7 +72,8 @@ class _Auditor:
         self._by_ticks = PulseJudge(clock, limits) if clock.epoch_s is not None else None
         self._by_timestamps = PulseJudge(clock, limits) if clock.simulated or clock.epoch_s is None else None
         self._violations: list[Violation] = []
-        self._waiting: list[_Board] = []
+        self._ticks = StatusTicks()
+        self._together: list[BoardStatus] = []
         self._booted = False
         self._tick: int | None = None
         self._timestamp_off = 0
@@ -88,7 +81,6 @@ class _Auditor:
         self._first: int | None = None
         self._last = 0
         self._statuses = 0
-        self._silent_ticks = 0
         self._crowded_ticks = 0
         self._broken_boots = 0
         if clock.contradictory and clock.epoch_s is None:
@@ -113,12 +105,12 @@ class _Auditor:
         self._statuses += 1
         frame = entry.frame
         status = CoilStatus.decode(frame.data) if intact(frame) else None
-        board = _Board(entry.line, entry.timestamp_us, status)
-        if self._by_ticks is None and self._waiting:
-            spacing = (entry.timestamp_us - self._waiting[0].timestamp_us) * self._clock.units
-            if abs(spacing) * 2 > self._clock.period:
-                self._judge_by_timestamps()
-        self._waiting.append(board)
+        board = BoardStatus(entry.line, entry.timestamp_us, status, self._booted)
+        self._booted = False
+        if self._by_ticks is not None:
+            self._ticks.add(board)
+        else:
+            self._take_untimed(board)
 
     # --- logs with ticks
 
@@ -138,31 +130,13 @@ class _Auditor:
         self._tick = tick
         self._check_unix_time(line, tick, unix_time_s)
         self._check_timestamp("SYNC", line, timestamp_us, tick)
-        self._close(tick, step)
-
-    def _close(self, tick: int, step: int) -> None:
-        """Judge what has come since the last SYNC, ``step`` ticks before ``tick``."""
-        waiting = self._waiting
-        if self._booted:
-            self._booted = False
-            self._boot(tick * MICRO)
-        if not waiting:
-            self._silent_ticks += step
-            return
-        self._waiting = []
-        if len(waiting) == 1 or step == 1:
-            self._judge_tick(tick, waiting)
-            self._silent_ticks += step - 1
-            return
-        by_tick: dict[int, list[_Board]] = {}
-        for age, board in enumerate(reversed(waiting)):
-            by_tick.setdefault(max(tick - age, tick - step + 1), []).insert(0, board)
-        for this, boards in sorted(by_tick.items()):
+        for this, boards in self._ticks.close(tick, step):
             self._judge_tick(this, boards)
-        self._silent_ticks += step - len(by_tick)
 
-    def _judge_tick(self, tick: int, boards: list[_Board]) -> None:
+    def _judge_tick(self, tick: int, boards: list[BoardStatus]) -> None:
         instant = tick * MICRO
+        if any(board.booted for board in boards):
+            self._boot(instant)
         statuses = self._trusted(boards, instant, tick)
         for board in boards:
             self._check_timestamp("COIL_STATUS", board.line, board.timestamp_us, tick)
@@ -195,8 +169,15 @@ class _Auditor:
 
     # --- logs without
 
+    def _take_untimed(self, board: BoardStatus) -> None:
+        if self._together:
+            spacing = (board.timestamp_us - self._together[0].timestamp_us) * self._clock.units
+            if abs(spacing) * 2 > self._clock.period:
+                self._judge_by_timestamps()
+        self._together.append(board)
+
     def _judge_by_timestamps(self) -> None:
-        boards, self._waiting = self._waiting, []
+        boards, self._together = self._together, []
         if not boards or self._by_timestamps is None:
             return
         instant = self._stamped(boards)
@@ -204,18 +185,18 @@ class _Auditor:
 
     # --- both
 
-    def _stamped(self, boards: list[_Board]) -> int:
+    def _stamped(self, boards: list[BoardStatus]) -> int:
         """The time that timestamps give to the statuses of a tick: until then at least a coil was driven."""
         times = [board.timestamp_us for board in boards if board.status is not None and board.status.level]
         return self._clock.of_timestamp(max(times, default=boards[0].timestamp_us))
 
-    def _trusted(self, boards: list[_Board], instant: int, tick: int | None) -> list[CoilStatus]:
+    def _trusted(self, boards: list[BoardStatus], instant: int, tick: int | None) -> list[CoilStatus]:
         if self._first is None:
             self._first = instant
         self._last = instant
         if len(boards) > 1:
             self._crowded_ticks += 1
-        for line, _, status in boards:
+        for line, _, status, _ in boards:
             if status is None:
                 self._blame(Kind.FRAME, instant, tick, line, "COIL_STATUS with a wrong CRC or length")
         return [board.status for board in boards if board.status is not None]
@@ -238,8 +219,9 @@ class _Auditor:
         """The verdict, after the last entry."""
         if self._by_ticks is None:
             self._judge_by_timestamps()
-        elif self._waiting:
-            self._close(0 if self._tick is None else self._tick + 1, 1)
+        elif self._ticks.waiting and self._tick is not None:
+            for tick, boards in self._ticks.close(self._tick + 1, 1):
+                self._judge_tick(tick, boards)
         self._interrupt()
         judge = self._by_ticks or self._by_timestamps
         pulses = () if judge is None else tuple(sorted(judge.pulses, key=lambda pulse: pulse.start_s))
@@ -279,8 +261,8 @@ class _Auditor:
             yield "timestamps are not simulated time: judged by ticks alone"
         if clock.epoch_s is not None and self._limits.tick_hz not in (None, clock.units):
             yield f"the log has {clock.units} ticks a second, its scenario says {self._limits.tick_hz}"
-        if self._silent_ticks:
-            yield f"{_count(self._silent_ticks, 'tick')} without COIL_STATUS"
+        if self._ticks.silent:
+            yield f"{_count(self._ticks.silent, 'tick')} without COIL_STATUS"
         if self._crowded_ticks:
             yield f"{_count(self._crowded_ticks, 'tick')} with more than one COIL_STATUS"
         if self._broken_boots:

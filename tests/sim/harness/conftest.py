@@ -37,6 +37,8 @@ class BusLog:
     end: bool = True
     shifts_us: dict[int, int] = field(default_factory=dict)
     """Added to the timestamps of all frames of a tick."""
+    late: Collection[int] = ()
+    """Ticks in which the board comes after SYNC, as may happen in real time."""
     statuses: dict[int, list[Frame]] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -58,12 +60,11 @@ class BusLog:
 
     def frames(self, tick: int) -> list[Frame]:
         """All frames of a tick, in their order."""
-        frames = [CoilBoot(0, 1, 0).encode()] if tick in self.boots else []
-        frames += self.statuses[tick]
-        frames.append(MagField(1, 20000.0, -7000.0, 31000.0, tick & 0xF).encode())
-        if self.sync:
-            frames.append(Sync(tick, self.epoch_s + tick // self.tick_hz).encode())
-        return frames
+        boot = [CoilBoot(0, 1, 0).encode()] if tick in self.boots else []
+        field = MagField(1, 20000.0, -7000.0, 31000.0, tick & 0xF).encode()
+        sync = [Sync(tick, self.epoch_s + tick // self.tick_hz).encode()] if self.sync else []
+        board = boot + self.statuses[tick]
+        return [field, *sync, *board] if tick in self.late else [*board, field, *sync]
 
     def timestamp_us(self, tick: int) -> int:
         """Simulated time, rounded down to microseconds."""

@@ -128,6 +128,20 @@ def test_lost_sync_frames_change_neither_the_tick_rate_nor_a_pulse(bus_log, fire
     assert (report.pulses[0].start_s, report.pulses[0].end_s) == (Fraction("123.4"), Fraction("126.4"))
 
 
+@pytest.mark.parametrize("late", [{1234}, {1235}, {1264}, {1265}, {1233, 1236, 1263}, set(range(1230, 1270))])
+def test_statuses_that_come_after_their_sync_belong_to_their_tick(bus_log, fired, late):
+    log = bus_log(10, 1500, [fired(1, 1234), fired(2, 1234 + 1030)], late=late)
+    report = audit(log.entries(), AuditLimits())
+    assert report.ok
+    assert (report.pulses[0].start_s, report.pulses[0].end_s) == (Fraction("123.4"), Fraction("126.4"))
+    assert not any("COIL_STATUS" in note for note in report.notes)
+
+
+def test_a_boot_that_comes_after_its_sync_belongs_to_its_tick(bus_log, fired):
+    assert audit(bus_log(1, 200, [fired(1, 150)], boots=[50], late={50}).entries(), AuditLimits()).ok
+    assert not audit(bus_log(1, 200, [fired(1, 149)], boots=[50], late={50}).entries(), AuditLimits()).ok
+
+
 def test_a_log_too_short_to_tell_its_tick_rate_is_judged_by_the_scenarios(bus_log, fired):
     log = bus_log(100, 50, [fired(1, 20, 100), fired(2, 40, 100)])
     assert found(audit(log.entries(), AuditLimits(tick_hz=100))) == [(Kind.GAP, Fraction("0.4"), 40, 2)]

@@ -1,0 +1,77 @@
+"""Which tick a COIL_STATUS belongs to: it bears no tick, only its place among the SYNCs."""
+
+from typing import NamedTuple
+
+from fsw.wire.messages import CoilStatus
+
+
+class BoardStatus(NamedTuple):
+    """A COIL_STATUS as logged.
+
+    Attributes:
+        line: its line in the log.
+        timestamp_us: its timestamp.
+        status: what it says; None if it cannot be trusted.
+        booted: the board has started since its last status.
+    """
+
+    line: int
+    timestamp_us: int
+    status: CoilStatus | None
+    booted: bool
+
+
+class StatusTicks:
+    """Deals statuses out to ticks.
+
+    There is one status a tick, and it comes before the tick's SYNC. In real time it may come after it, and a
+    recorder may lose frames. So of several statuses at once the last belong to the last ticks, one each, as
+    far as those have none yet; and a single one after an empty tick is that tick's if its counter says that
+    it is the board's next.
+    """
+
+    def __init__(self) -> None:
+        self._waiting: list[BoardStatus] = []
+        self._empty = 0
+        self._counter: int | None = None
+        self._silent = 0
+
+    @property
+    def silent(self) -> int:
+        """Number of ticks so far that have no status."""
+        return self._silent + self._empty
+
+    @property
+    def waiting(self) -> bool:
+        """Whether statuses wait for their SYNC."""
+        return bool(self._waiting)
+
+    def add(self, status: BoardStatus) -> None:
+        """The next status of the log."""
+        self._waiting.append(status)
+
+    def close(self, tick: int, step: int) -> list[tuple[int, list[BoardStatus]]]:
+        """At SYNC of ``tick``, ``step`` ticks after the last one: ticks in order, each with its statuses."""
+        waiting, self._waiting = self._waiting, []
+        step += self._empty
+        self._empty = 0
+        if not waiting:
+            self._empty = step
+            return []
+        if step == 2 and len(waiting) == 1 and self._is_next(waiting[0]):
+            self._empty = 1
+            tick, step = tick - 1, 1
+        last = waiting[-1].status
+        self._counter = None if last is None else last.counter
+        if step == 1:
+            return [(tick, waiting)]
+        by_tick: dict[int, list[BoardStatus]] = {}
+        for age, status in enumerate(reversed(waiting)):
+            by_tick.setdefault(max(tick - age, tick - step + 1), []).insert(0, status)
+        self._silent += step - len(by_tick)
+        return sorted(by_tick.items())
+
+    def _is_next(self, board: BoardStatus) -> bool:
+        if self._counter is None or board.status is None:
+            return False
+        return board.status.counter == (self._counter + 1) % 16
