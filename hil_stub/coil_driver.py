@@ -58,7 +58,7 @@ class CoilDriver:
         self._limits = limits
         self._node = Node(CoilBoot, CoilHeartbeat, limits.tick_hz, limits.table_crc)
         self._state: Interlock = boot(limits)
-        self._open = False
+        self._answered: int | None = None  # the tick that requests may answer now
         self._refused: list[CoilRefused] = []
         self._refusals = 0
         self._statuses = 0
@@ -82,7 +82,7 @@ class CoilDriver:
         if elapsed is None:
             return []
         self._state = elapse(self._state, elapsed)
-        self._open = True
+        self._answered = tick
         frames = self._node.boot()
         frames.append(self._status(tick, current_a))
         frames += [message.encode() for message in self._refused]
@@ -105,18 +105,17 @@ class CoilDriver:
         if frame.can_id != CoilFire.ID:
             return
         fire = CoilFire.decode(frame.data)
-        tick = self._node.tick
-        if tick is None or not self._open:
+        if self._answered is None:
             self._refuse(fire, CoilRefusedReason.WRONG_TICK)
             return
         request = Request(fire.coil, fire.level, fire.duration_ms, fire.seq, fire.tick)
-        self._state, reason = ask(self._state, request, tick, self._limits)
+        self._state, reason = ask(self._state, request, self._answered, self._limits)
         if reason is not None:
             self._refuse(fire, reason)
 
     def drive(self) -> Drive:
         """What is driven over the tick that has begun; ends the time for requests that answer it."""
-        self._open = False
+        self._answered = None
         state = self._state
         if state.remaining == 0:
             return OFF

@@ -145,6 +145,16 @@ class TestLosingCount:
         assert (type(boot), status.coil, status.lockout_ms) == (CoilBoot, 0, 100_000)
         assert read(fly(bench, range(3)))[0].lockout_ms == 97_000
 
+    def test_also_in_the_second_tick(self, bench, read):
+        fly(bench, range(1))
+        assert isinstance(read(bench.receive(PlantBoot(0, 1, 0).encode()))[0], CoilBoot)
+
+    def test_a_new_board_remembers_no_strange_sync(self, bench):
+        fly(bench, range(9))
+        bench.receive(Sync(250, 0).encode())
+        bench.receive(PlantBoot(0, 1, 0).encode())
+        assert bench.receive(Sync(251, 0).encode()) == []
+
     def test_a_plant_that_starts_after_the_board_finds_it_in_tick_0(self, bench, read):
         assert bench.receive(PlantBoot(0, 1, 0).encode()) == []
         (status,) = read(fly(bench, range(1)))

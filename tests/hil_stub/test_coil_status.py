@@ -12,6 +12,10 @@ from hil_stub.coil_driver import OFF, CoilLimits, Drive
 RATES = (1, 2, 3, 7, 10, 50)
 
 
+def test_off_is_all_zero():
+    assert OFF == (0, 0, 0.0)
+
+
 class TestTheTableAt1Hz:
     """The contract's own numbers."""
 

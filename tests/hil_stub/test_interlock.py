@@ -67,6 +67,7 @@ class TestLimits:
             ("pulse_ms", 65_536),
             ("pulse_ms", 3000.0),
             ("backoff_ms", -1),
+            ("backoff_ms", 10_000_001),
             ("backoff_ms", 1e5),
             ("backoff_ms", float("nan")),
             ("table_crc", -1),
@@ -76,6 +77,19 @@ class TestLimits:
     def test_nonsense_is_refused_by_name(self, field, value):
         with pytest.raises(ValueError, match=field):
             CoilLimits(**{"tick_hz": 1} | {field: value})
+
+    @pytest.mark.parametrize(
+        ("field", "values"),
+        [
+            ("tick_hz", (1, 1000)),
+            ("pulse_ms", (1, 65_535)),
+            ("backoff_ms", (0, 10_000_000)),
+            ("table_crc", (0, 2**32 - 1)),
+        ],
+    )
+    def test_the_ends_of_each_range_are_in_it(self, field, values):
+        for value in values:
+            assert getattr(CoilLimits(**{"tick_hz": 1} | {field: value}), field) == value
 
     def test_nothing_can_be_changed_later(self, limits):
         with pytest.raises(FrozenInstanceError):

@@ -44,6 +44,14 @@ class TestBoth:
         ]
         assert beats == [7 + 60 * hz, 7 + 120 * hz]
 
+    def test_the_boot_message_and_the_heartbeat_have_nothing_to_complain_of(
+        self, read, make, boot, sample, heartbeat, vector
+    ):
+        board = make(1)
+        said = [message for tick in range(61) for message in read(board.begin_tick(tick, vector, True))]
+        assert said[0] == boot(reason=0, version=1, table_crc=0)
+        assert said[-1] == heartbeat(state=0, rejects=0, slips=0, tick=60)
+
     @pytest.mark.parametrize("backwards", [0, 1, 10**6])
     def test_a_tick_that_does_not_rise_is_ignored(
         self, read, make, boot, sample, heartbeat, vector, backwards
@@ -116,6 +124,17 @@ class TestSunSensor:
     def test_along_an_axis_it_is_exact(self, read, axis, sign):
         along = tuple(sign if other == axis else 0.0 for other in range(3))
         assert read(SunSensor(1).begin_tick(0, along, True))[-1][:4] == (1, *along)
+
+    @pytest.mark.parametrize(
+        ("component", "valid"), [(-2.0, 1), (-2.0001, 0), (2.0 - 2.0**-14, 1), (2.0, 0), (-2.1, 0), (2.1, 0)]
+    )
+    @pytest.mark.parametrize("axis", range(3))
+    def test_the_range_is_that_of_the_signal(self, read, axis, component, valid):
+        sun_body = [0.0, 0.0, 0.0]
+        sun_body[axis] = component
+        (_, sun) = read(SunSensor(1).begin_tick(0, tuple(sun_body), True))
+        assert sun.valid == valid
+        assert sun[1 + axis] == (component if valid else 0.0)
 
     def test_in_the_dark_no_direction_is_on_the_bus(self, read):
         assert read(SunSensor(1).begin_tick(0, DIAGONAL, False))[-1] == SunVector(0, 0.0, 0.0, 0.0)
