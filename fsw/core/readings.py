@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
-    NAMES,
     CoilRefused,
     CoilStatus,
     MagField,
@@ -72,7 +71,7 @@ def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateSt
     for frame in frames[:INBOX_LIMIT]:
         message_class = LISTENED.get(frame.can_id)
         if message_class is None:
-            rejected += frame.can_id not in NAMES
+            rejected += not intact(frame)
             continue
         if not intact(frame):
             rejected += 1
@@ -97,4 +96,6 @@ def _in_range(message: Listened) -> bool:
     if isinstance(message, SunVector) and message.valid:
         square = message.s_x**2 + message.s_y**2 + message.s_z**2
         return 0.8 < square < 1.2
+    if isinstance(message, RefAttitude):
+        return message.q_x**2 + message.q_y**2 + message.q_z**2 < 1.0001  # 1, and the wire's rounding
     return True
