@@ -1,0 +1,263 @@
+"""The decode gate: a frame is taken whole or not at all, and everything else is counted."""
+
+from random import Random
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from fsw.core.readings import INBOX_LIMIT, LISTENED, NOTHING, GateState, Readings, admit
+from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame
+from fsw.wire.messages import (
+    CLASSES,
+    CoilHeartbeat,
+    CoilRefused,
+    CoilStatus,
+    MagBoot,
+    MagField,
+    NavRate,
+    PlantBoot,
+    RefAttitude,
+    RefRate,
+    SunVector,
+    Sync,
+    TickDone,
+    intact,
+)
+
+FIELD = MagField(1, 20000.0, -7000.0, 31000.0, counter=5)
+SUN = SunVector(1, 0.599975586, -0.47998046875, 0.64001464, counter=6)
+COIL = CoilStatus(-2, 1, 2000, -150, 103000, 9, counter=7)
+REFUSED = CoilRefused(2, 9, 8, 0xC3, counter=8)
+ATTITUDE = RefAttitude(1, 0.5, -0.25, 0.125, counter=9)
+RATE = RefRate(1, 2.0**-7, -(2.0**-8), 2.0**-9, counter=10)
+EVERY_KIND = (FIELD, SUN, COIL, REFUSED, ATTITUDE, RATE)
+SLOT = {message.ID: slot for slot, message in enumerate(EVERY_KIND)}
+EVERY_MESSAGE = pytest.mark.parametrize("message", EVERY_KIND, ids=lambda m: type(m).__name__)
+
+
+def frames(*messages):
+    return tuple(message.encode() for message in messages)
+
+
+def broken(frame):
+    return frame._replace(data=bytes((frame.data[0] ^ 0x20,)) + frame.data[1:])
+
+
+def test_an_empty_inbox_tells_nothing_and_changes_nothing():
+    assert admit((), GateState()) == (NOTHING, GateState())
+
+
+def test_what_is_listened_to_is_what_this_test_sends():
+    assert list(LISTENED) == [message.ID for message in EVERY_KIND]
+
+
+def test_every_kind_is_taken_as_sent():
+    readings, state = admit(frames(*EVERY_KIND), GateState())
+    assert tuple(readings) == tuple(type(m).decode(m.encode().data) for m in EVERY_KIND)
+    assert readings.coil == COIL
+    assert readings.field == FIELD
+    assert state == GateState(counters=(5, 6, 7, 8, 9, 10))
+
+
+@EVERY_MESSAGE
+class TestEachMessage:
+    def admitted(self, *messages, state=None):
+        raw = tuple(m if isinstance(m, Frame) else m.encode() for m in messages)
+        return admit(raw, state or GateState())
+
+    def test_is_the_only_one_heard(self, message):
+        readings, _ = self.admitted(message)
+        assert [type(one) for one in readings if one is not None] == [type(message)]
+
+    def test_broken_crc(self, message):
+        assert self.admitted(broken(message.encode())) == (NOTHING, GateState(rejected=1))
+
+    @pytest.mark.parametrize("change", [lambda d: d[:-1], lambda d: d + b"\0", lambda d: b""])
+    def test_wrong_length(self, message, change):
+        frame = message.encode()
+        assert self.admitted(frame._replace(data=change(frame.data))) == (NOTHING, GateState(rejected=1))
+
+    @pytest.mark.parametrize("flag", [EXTENDED_FLAG, REMOTE_FLAG, ERROR_FLAG])
+    def test_flagged_frames_are_never_ours(self, message, flag):
+        frame = message.encode()
+        flagged = frame._replace(can_id=frame.can_id | flag)
+        assert self.admitted(flagged) == (NOTHING, GateState(rejected=1))
+
+    def test_repeated(self, message):
+        readings, state = self.admitted(message, message)
+        assert readings[SLOT[message.ID]] is not None
+        assert (state.rejected, state.missed) == (1, 0)
+
+    def test_repeated_in_the_next_tick(self, message):
+        _, state = self.admitted(message)
+        readings, state = self.admitted(message, state=state)
+        assert readings == NOTHING
+        assert (state.rejected, state.missed) == (1, 0)
+
+    def test_the_first_one_is_taken_whatever_its_counter(self, message):
+        for counter in range(16):
+            readings, state = self.admitted(message._replace(counter=counter))
+            assert readings != NOTHING
+            assert (state.rejected, state.missed) == (0, 0)
+
+    def test_forty_in_order_miss_nothing(self, message):
+        state = GateState()
+        for counter in range(40):
+            readings, state = self.admitted(message._replace(counter=counter), state=state)
+            assert readings != NOTHING
+        assert (state.rejected, state.missed) == (0, 0)
+
+    @pytest.mark.parametrize("jump", range(1, 16))
+    def test_a_jump_is_taken_and_what_is_missing_counted(self, message, jump):
+        _, state = self.admitted(message._replace(counter=13))
+        readings, state = self.admitted(message._replace(counter=13 + jump), state=state)
+        assert readings != NOTHING
+        assert (state.rejected, state.missed) == (0, jump - 1)
+
+    def test_a_broken_frame_does_not_move_the_counter(self, message):
+        """What was rejected is missed when the next one comes."""
+        _, state = self.admitted(message._replace(counter=1))
+        _, state = self.admitted(broken(message._replace(counter=2).encode()), state=state)
+        _, state = self.admitted(message._replace(counter=3), state=state)
+        assert (state.rejected, state.missed) == (1, 1)
+
+    def test_the_last_of_several_counts(self, message):
+        readings, _ = self.admitted(*(message._replace(counter=n) for n in (3, 4, 5)))
+        assert readings[SLOT[message.ID]].counter == 5
+
+    def test_a_broken_one_does_not_displace_a_good_one(self, message):
+        readings, _ = self.admitted(message._replace(counter=3), broken(message._replace(counter=4).encode()))
+        assert readings[SLOT[message.ID]].counter == 3
+
+    def test_the_counters_of_others_do_not_move(self, message):
+        _, state = admit(frames(*EVERY_KIND), GateState())
+        _, later = self.admitted(message._replace(counter=message.counter + 1), state=state)
+        changed = [a != b for a, b in zip(state.counters, later.counters, strict=True)]
+        assert changed == [other.ID == message.ID for other in EVERY_KIND]
+
+
+class TestRange:
+    @pytest.mark.parametrize("level", range(-8, 8))
+    def test_levels_of_a_coil(self, level):
+        readings, state = admit(frames(COIL._replace(level=level)), GateState())
+        assert (readings.coil is not None) is (-3 <= level <= 3)
+        assert state.rejected == (not -3 <= level <= 3)
+
+    def test_there_is_no_fourth_coil(self):
+        readings, state = admit(frames(COIL._replace(coil=3)), GateState())
+        assert readings == NOTHING
+        assert state == GateState(rejected=1)
+
+    @pytest.mark.parametrize(
+        ("length", "taken"), [(0.88, False), (0.91, True), (1.0, True), (1.09, True), (1.11, False)]
+    )
+    def test_a_direction_is_nearly_a_unit_vector(self, length, taken):
+        sun = SUN._replace(s_x=0.6 * length, s_y=-0.48 * length, s_z=0.64 * length)
+        readings, state = admit(frames(sun), GateState())
+        assert (readings.sun is not None) is taken
+        assert state.rejected == (not taken)
+
+    def test_a_sun_sensor_that_sees_nothing_may_say_zero(self):
+        readings, _ = admit(frames(SunVector(0, 0.0, 0.0, 0.0)), GateState())
+        assert readings.sun == SunVector(0, 0.0, 0.0, 0.0)
+
+    @pytest.mark.parametrize(
+        ("vector", "taken"),
+        [((0.6, -0.48, 0.64), True), ((0.999985, 0.0, 0.0), True), ((0.6, -0.48, 0.66), False)],
+    )
+    def test_a_reference_attitude_is_a_rotation(self, vector, taken):
+        """The vector part of a unit quaternion is no longer than one, up to the wire's rounding."""
+        readings, state = admit(frames(RefAttitude(1, *vector)), GateState())
+        assert (readings.ref_attitude is not None) is taken
+        assert state.rejected == (not taken)
+
+
+class TestTheRest:
+    @pytest.mark.parametrize("can_id", [0x000, 0x001, 0x111, 0x7FF, EXTENDED_FLAG, EXTENDED_FLAG | 0x110])
+    def test_unknown_identifiers_are_counted(self, can_id):
+        assert admit((Frame(can_id, bytes(8)),), GateState()) == (NOTHING, GateState(rejected=1))
+
+    @pytest.mark.parametrize(
+        "message",
+        [
+            PlantBoot(0, 1, 2),
+            MagBoot(0, 1, 2),
+            CoilHeartbeat(0, 0, 0, 60),
+            NavRate(1, 0.0, 0.0, 0.0),
+            TickDone(1, 2),
+        ],
+    )
+    def test_what_is_meant_for_others_passes_uncounted(self, message):
+        assert admit(frames(message), GateState()) == (NOTHING, GateState())
+
+    @pytest.mark.parametrize(
+        "frame",
+        [
+            broken(PlantBoot(0, 1, 2).encode()),
+            Frame(CoilHeartbeat.ID, b"\x01\x02"),
+            Frame(Sync.ID, bytes(7)),
+        ],
+    )
+    def test_what_is_broken_is_counted_whoever_it_was_meant_for(self, frame):
+        assert admit((frame,), GateState()) == (NOTHING, GateState(rejected=1))
+
+
+class TestOverrun:
+    def test_a_babbling_node_costs_no_more_than_the_limit(self):
+        flood = tuple(FIELD._replace(counter=n).encode() for n in range(INBOX_LIMIT + 9))
+        readings, state = admit(flood, GateState())
+        assert readings.field.counter == (INBOX_LIMIT - 1) % 16
+        assert (state.overrun, state.rejected, state.missed) == (9, 0, 0)
+
+    def test_exactly_the_limit_is_no_overrun(self):
+        _, state = admit(frames(*[FIELD._replace(counter=n) for n in range(INBOX_LIMIT)]), GateState())
+        assert state.overrun == 0
+
+    def test_what_lies_beyond_the_limit_is_not_read(self):
+        noise = (Frame(0x7FF, b""),) * INBOX_LIMIT
+        readings, state = admit((*noise, FIELD.encode()), GateState())
+        assert readings == NOTHING
+        assert (state.rejected, state.overrun) == (INBOX_LIMIT, 1)
+
+
+def random_frame(random):
+    """Nearly right: listened identifiers and right lengths often, flags and nonsense now and then."""
+    can_id = random.choice([*LISTENED, *CLASSES, random.getrandbits(11)])
+    if random.random() < 0.1:
+        can_id |= random.choice([EXTENDED_FLAG, REMOTE_FLAG, ERROR_FLAG])
+    known = CLASSES.get(can_id)
+    length = known.LENGTH if known is not None and random.random() < 0.8 else random.randrange(9)
+    return Frame(can_id, random.randbytes(length))
+
+
+def test_of_ten_thousand_random_frames_none_is_taken_unless_intact():
+    random, state, taken = Random(20000), GateState(), 0
+    for _ in range(10_000):
+        frame = random_frame(random)
+        readings, after = admit((frame,), state)
+        heard = [message for message in readings if message is not None]
+        if heard:
+            taken += 1
+            assert intact(frame)
+            assert heard == [CLASSES[frame.can_id].decode(frame.data)]
+            assert after.rejected == state.rejected
+        elif frame.can_id in LISTENED or not intact(frame):
+            assert after == GateState(state.counters, state.rejected + 1, state.missed, state.overrun)
+        state = after
+    assert 0 < taken < 10_000 / 100  # a CRC of 8 bits lets one in 256 pass
+
+
+@given(
+    st.lists(
+        st.builds(Frame, st.integers(0, 2**32 - 1) | st.sampled_from([*LISTENED]), st.binary(max_size=64)),
+        max_size=80,
+    )
+)
+@settings(max_examples=200, deadline=None)
+def test_no_content_raises_and_every_frame_is_accounted_for(inbox):
+    readings, state = admit(tuple(inbox), GateState())
+    assert isinstance(readings, Readings)
+    assert state.overrun == max(0, len(inbox) - INBOX_LIMIT)
+    assert state.rejected <= len(inbox)
+    assert all(-1 <= counter <= 15 for counter in state.counters)
