@@ -1,0 +1,212 @@
+"""How charts of the report look, and how they become small inline SVG."""
+
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from io import StringIO
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.path import Path
+from matplotlib.patches import PathPatch
+from matplotlib.ticker import FuncFormatter
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Span = tuple[float, float]
+
+INK, MUTED, LIMIT = "#1b2733", "#5b6b7b", "#b3261e"
+AXES_COLOURS = ("#0072b2", "#d55e00", "#009e73")
+"""Blue, vermilion, green of Okabe and Ito: told apart by all kinds of colour vision."""
+MORE_COLOURS = ("#cc79a7", "#e69f00", "#56b4e9")
+ECLIPSE = "#dde4ee"
+
+WIDTH_IN = 8.2
+BINS = 700
+"""Bins along a time axis; a longer history is drawn as the envelope of each."""
+
+_STYLE = {
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans"],
+    "font.size": 8.0,
+    "axes.titlesize": 8.5,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.titlepad": 7.0,
+    "axes.labelcolor": INK,
+    "axes.edgecolor": "#8a97a5",
+    "axes.linewidth": 0.6,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.axisbelow": True,
+    "axes.grid": True,
+    "grid.color": "#c9d2dc",
+    "grid.linewidth": 0.4,
+    "text.color": INK,
+    "xtick.color": "#8a97a5",
+    "ytick.color": "#8a97a5",
+    "xtick.labelcolor": INK,
+    "ytick.labelcolor": INK,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "lines.linewidth": 1.0,
+    "legend.frameon": False,
+    "legend.handlelength": 1.4,
+    "legend.columnspacing": 1.4,
+    "legend.borderaxespad": 0.2,
+    "figure.facecolor": "none",
+    "axes.facecolor": "none",
+    "savefig.facecolor": "none",
+    "path.simplify": True,
+    "svg.fonttype": "none",
+    "svg.hashsalt": "torquer",
+}
+
+
+@contextmanager
+def style() -> Iterator[None]:
+    """The look of the report, whatever the user's own matplotlib settings are; they are left as they were."""
+    base = {key: value for key, value in matplotlib.rcParamsDefault.items() if key != "backend"}
+    with matplotlib.rc_context({**base, **_STYLE}):
+        yield
+
+
+@dataclass(frozen=True, slots=True)
+class TimeAxis:
+    """A time axis in the unit that suits its length.
+
+    Attributes:
+        label: name and unit.
+        unit_s: seconds in one unit.
+        start_s: where it begins.
+        end_s: where it ends.
+        eclipses: spans of time without Sun, s.
+    """
+
+    label: str
+    unit_s: float
+    start_s: float
+    end_s: float
+    eclipses: tuple[Span, ...] = ()
+
+    def of(self, t_s: Array) -> Array:
+        """Times as numbers on this axis."""
+        return t_s / self.unit_s
+
+
+def stacked(time: TimeAxis, heights_in: Sequence[float]) -> tuple[Figure, list[Axes]]:
+    """A figure of panels one over the other on one time axis, eclipses shaded."""
+    figure = Figure(figsize=(WIDTH_IN, sum(heights_in) + 0.32 * len(heights_in) + 0.2), layout="constrained")
+    grid = figure.subplots(len(heights_in), 1, sharex=True, squeeze=False, height_ratios=list(heights_in))
+    panels = list(grid[:, 0])
+    for panel in panels:
+        panel.set_xlim(time.start_s / time.unit_s, time.end_s / time.unit_s)
+        panel.margins(x=0.0)
+        shade(panel, time, time.eclipses)
+    panels[-1].set_xlabel(time.label)
+    return figure, panels
+
+
+def shade(
+    panel: Axes,
+    time: TimeAxis,
+    spans: Sequence[Span],
+    low: float = 0.0,
+    high: float = 1.0,
+    colour: str = ECLIPSE,
+    name: str = "eclipse",
+) -> None:
+    """Bands over spans of time, between fractions ``low`` and ``high`` of the panel's height; one path for all."""
+    if not spans:
+        return
+    corners = []
+    for start_s, end_s in spans:
+        left = max(start_s, time.start_s) / time.unit_s
+        right = min(end_s, time.end_s) / time.unit_s
+        corners += [(left, low), (left, high), (right, high), (right, low), (left, low)]
+    codes = [Path.MOVETO, Path.LINETO, Path.LINETO, Path.LINETO, Path.CLOSEPOLY] * len(spans)
+    bands = PathPatch(Path(corners, codes), facecolor=colour, edgecolor="none", linewidth=0.0, zorder=0.2)
+    bands.set_transform(panel.get_xaxis_transform())
+    bands.set_gid(name)
+    panel.add_artist(bands)
+
+
+def envelope(t: Array, y: Array) -> tuple[Array, Array]:
+    """The history itself if it is short, else least and largest value of each of ``BINS`` bins in turn.
+
+    NaN are passed over; a bin of nothing else stays NaN.
+    """
+    if len(t) <= 2 * BINS:
+        return t, y
+    starts = np.linspace(0, len(t), BINS, endpoint=False).astype(int)
+    both = np.stack((np.fmin.reduceat(y, starts), np.fmax.reduceat(y, starts)), axis=1)
+    middles = (starts + np.append(starts[1:], len(t))) // 2
+    rising = y[starts] <= y[np.append(starts[1:], len(t)) - 1]
+    both[~rising] = both[~rising, ::-1]
+    return np.stack((t[starts], t[middles]), axis=1).ravel(), both.ravel()
+
+
+def trace(panel: Axes, time: TimeAxis, t_s: Array, y: Array, label: str, colour: str, **how: object) -> None:
+    """One history as a line; few values get a dot each, so that a single one shows."""
+    marker = "." if len(t_s) <= 60 else ""
+    x, drawn = envelope(time.of(t_s), y)
+    panel.plot(x, drawn, label=label, color=colour, marker=marker, **how)  # type: ignore[arg-type]
+
+
+def legend(panel: Axes) -> None:
+    """A legend in one line over the panel, right; the title is left."""
+    handles, labels = panel.get_legend_handles_labels()
+    panel.legend(handles, labels, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=max(1, len(labels)))
+
+
+def log_y(panel: Axes, *histories: Array, floor: float = 0.0) -> None:
+    """A logarithmic ordinate with plain numbers, down to ``floor`` of the largest value at most."""
+    values = np.concatenate([history[np.isfinite(history) & (history > 0.0)] for history in histories])
+    if len(values) == 0:
+        return
+    top, bottom = float(values.max()), float(values.min())
+    panel.set_yscale("log")
+    panel.set_ylim(max(bottom, floor * top) / 1.3, top * 1.5)
+    panel.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    panel.yaxis.set_minor_formatter(FuncFormatter(lambda value, _: ""))
+    panel.tick_params(axis="y", which="minor", length=0.0)
+
+
+def svg(figure: Figure, prefix: str) -> str:
+    """The figure as an SVG element for HTML: small, without metadata, its ids begin with ``prefix``.
+
+    What an artist was named by ``set_gid`` becomes the class of its group.
+    """
+    into = StringIO()
+    nothing = {"Date": None, "Creator": None, "Format": None, "Type": None}
+    figure.savefig(into, format="svg", metadata=nothing)
+    text = into.getvalue()
+    text = text[text.index("<svg") :]
+    for pattern, replacement in _SLIMMING:
+        text = pattern.sub(replacement, text)
+    text = re.sub(r'(id="|"#|url\(#)', rf"\g<1>{prefix}-", text)
+    return _DECIMALS.sub(_short, text).strip()
+
+
+_SLIMMING = tuple(
+    (re.compile(pattern, re.DOTALL), replacement)
+    for pattern, replacement in (
+        (r"<metadata>.*?</metadata>|<style.*?</style>|<!--.*?-->", ""),
+        (r' xmlns(?::xlink)?="[^"]*"| version="[^"]*"', ""),
+        (r' width="[\d.]+pt" height="[\d.]+pt"', ""),
+        (r'<g id="[\w.]+_\d+"', "<g"),
+        (r'<g id="', '<g class="'),
+        (r'font: (?:(\w+) )?([\d.]+px) [^;"]*', r"font-size: \2; font-weight: \1"),
+        (r"; font-weight: (?=[;\"])", ""),
+        (r"\s*\n\s*", "\n"),
+    )
+)
+_DECIMALS = re.compile(r"-?\d+\.\d+(?:e-?\d+)?")
+
+
+def _short(number: re.Match[str]) -> str:
+    text = f"{float(number[0]):.2f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
