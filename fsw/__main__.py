@@ -22,11 +22,15 @@ def _table(scenario: str | None, table: str | None, settings: tuple[str, ...]) -
 
 @click.command()
 @click.argument("scenario", required=False)
-@click.option("--table", metavar="FILE", help="Onboard table instead of a scenario's; default fsw/flight.toml.")
-@click.option("--bus", default="auto", show_default=True, help="socketcan:NAME, loop[:PORT], slcan:PORT or auto.")
-@click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help="Override a key of the scenario.")
+@click.option("--table", metavar="FILE", help="Onboard table to fly without a scenario.")
+@click.option(
+    "--bus", default="auto", show_default=True, help="auto, loop[:PORT], socketcan:NAME, slcan:PORT."
+)
+@click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help="Override a scenario's key.")
 @click.option("--ends-with-parent", is_flag=True, hidden=True)
-def main(scenario: str | None, table: str | None, bus: str, settings: tuple[str, ...], ends_with_parent: bool) -> None:
+def main(
+    scenario: str | None, table: str | None, bus: str, settings: tuple[str, ...], ends_with_parent: bool
+) -> None:
     """Fly on a bus: answer the SYNC of a plant, as SCENARIO or an onboard table says."""
     try:
         node = FlightNode(flight_config(_table(scenario, table, settings)))

@@ -8,6 +8,8 @@ from fsw.core.readings import Readings
 from fsw.core.vector import ZERO, Vec3, cross, scale
 from fsw.wire.messages import CoilFire, Mode
 
+NO_PULSE = Pulse(0, 0)
+
 
 @dataclass(frozen=True, slots=True)
 class CoilView:
@@ -23,7 +25,7 @@ class CoilView:
     seq: int = 0
     refusals: int = 0
     fired_tick: int = -1
-    fired: Pulse = Pulse(0, 0)
+    fired: Pulse = NO_PULSE
 
 
 def hear(view: CoilView, readings: Readings) -> CoilView:

@@ -7,7 +7,7 @@ from fsw.core import mekf
 from fsw.core.earth import MU_M3PS2
 from fsw.core.ephemeris import Reference
 from fsw.core.mekf import Estimate, MekfConfig
-from fsw.core.quaternion import canonical, conjugate, multiply, rotate
+from fsw.core.quaternion import canonical, conjugate, multiply, normalise, rotate
 from fsw.core.readings import Readings
 from fsw.core.triad import consistent, triad
 from fsw.core.vector import ZERO, Vec3, scale, sub
@@ -19,7 +19,7 @@ MAX_ELAPSED_TICKS = 60
 
 @dataclass(frozen=True, slots=True)
 class EstimatorConfig:
-    """Filter tuning and the tests around it. ``perfect`` takes the reference messages instead of filtering."""
+    """Filter tuning and the tests around it; ``perfect`` takes the reference messages instead."""
 
     mekf: MekfConfig
     perfect: bool
@@ -63,7 +63,7 @@ UNKNOWN = Attitude((1.0, 0.0, 0.0, 0.0), ZERO, 4.0, 1.0, False)
 
 
 def usable_field(readings: Readings) -> Vec3 | None:
-    """The field sample in tesla, or None where a coil was driven or its current still flowed (or may have)."""
+    """The field sample, T; None where a coil was driven, its current still flowed, or either may be."""
     field, coil = readings.field, readings.coil
     if field is None or not field.valid or coil is None or coil.level != 0 or coil.current_ma != 0:
         return None
@@ -148,7 +148,8 @@ def perfect_attitude(readings: Readings, before: Attitude) -> Attitude:
     if q is None or w is None or not q.valid or not w.valid:
         return before._replace(valid=False)
     scalar = max(0.0, 1.0 - q.q_x**2 - q.q_y**2 - q.q_z**2) ** 0.5
-    return Attitude((scalar, q.q_x, q.q_y, q.q_z), (w.w_x, w.w_y, w.w_z), 0.0, 0.0, True)
+    near_unit = (scalar, q.q_x, q.q_y, q.q_z)  # near 180 deg rounding makes the vector longer than 1
+    return Attitude(normalise(near_unit), (w.w_x, w.w_y, w.w_z), 0.0, 0.0, True)
 
 
 def _start(

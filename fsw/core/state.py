@@ -28,7 +28,8 @@ class FlightState:
     """Everything that fsw carries from one tick to the next.
 
     ``tick`` is -1 before the first SYNC; ``field_tick`` and ``status_tick`` are the last ticks with an
-    intact MAG_FIELD and COIL_STATUS, ``time_error_s`` the last SYNC's time less the expected; ``sent`` are the counters of the messages that fsw sends.
+    intact MAG_FIELD and COIL_STATUS, ``time_error_s`` the last SYNC's time less the expected; ``sent`` are
+    the counters of the messages that fsw sends.
     """
 
     tick: int

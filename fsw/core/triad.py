@@ -36,7 +36,7 @@ def consistent(
     max_angle_error_rad: float,
     min_separation_rad: float,
 ) -> bool:
-    """Whether a pair can start a filter: field strength and field-Sun angle as modelled, not nearly parallel."""
+    """Whether a pair can start a filter: strength and field-Sun angle as modelled, not nearly parallel."""
     if abs(norm(b_body_t) - norm(b_ref_t)) > max_field_error_t:
         return False
     angle_body, angle_ref = _angle(b_body_t, s_body), _angle(b_ref_t, s_ref)

@@ -92,9 +92,9 @@ class BodyTable(Section):
         """The 3 x 3 tensor."""
         given = self.inertia_kgm2
         if isinstance(given[0], tuple):
-            return given  # type: ignore[return-value]
+            return given
         a, b, c = given
-        return ((a, 0.0, 0.0), (0.0, b, 0.0), (0.0, 0.0, c))  # type: ignore[return-value]
+        return ((a, 0.0, 0.0), (0.0, b, 0.0), (0.0, 0.0, c))
 
 
 class CoilTable(Section):
@@ -230,7 +230,7 @@ def epoch_unix_s(time: TimeTable, orbit: OrbitTable) -> int:
 
 
 def tle_epoch_unix_s(line1: str) -> int:
-    """The epoch in the first line of a TLE (columns 19 to 32: year, day of the year), rounded up to a second."""
+    """The epoch in the first line of a TLE (year and day in columns 19 to 32), rounded up to a second."""
     year, day = int(line1[18:20]), Decimal(line1[20:32])
     january = datetime(year + (1900 if year >= 57 else 2000), 1, 1, tzinfo=UTC)
     return int(january.timestamp()) + ceil((day - 1) * 86400)
@@ -287,7 +287,7 @@ def validated(model: type[Model], values: Nested, source: str) -> Model:
     """``values`` as a checked model.
 
     Raises:
-        TableError: one sentence with the source and, for each key that is wrong, its path and what is allowed.
+        TableError: one sentence: the source and, for each wrong key, its path and what is allowed.
     """
     try:
         return model.model_validate(values)

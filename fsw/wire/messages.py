@@ -96,7 +96,7 @@ class CoilFire(_CoilFire):
             | (self.coil & 0x3) << 8
             | (self.seq & 0xFF) << 16
             | (self.tick & 0xFF) << 24
-            | (raw(self.duration_ms, 1, 0, 65535)) << 32
+            | raw(self.duration_ms, 1, 0, 65535) << 32
         )
         return seal(0x080, word, 7, _COIL_FIRE)
 
@@ -110,7 +110,7 @@ class CoilFire(_CoilFire):
             (word >> 16 & 0xFF),
             (word >> 24 & 0xFF),
             (word >> 32 & 0xFFFF),
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
@@ -147,7 +147,7 @@ class CoilDipole(_CoilDipole):
             ((word >> 4 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
             ((word >> 21 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
             ((word >> 38 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
@@ -175,9 +175,9 @@ class CoilStatus(_CoilStatus):
             (self.counter & 0xF)
             | (self.level & 0xF) << 4
             | (self.coil & 0x3) << 8
-            | (raw(self.remaining_ms, 1, 0, 4095)) << 10
+            | raw(self.remaining_ms, 1, 0, 4095) << 10
             | (raw(self.current_ma, 1, -2048, 2047) & 0xFFF) << 22
-            | (raw(self.lockout_ms, 10, 0, 16383)) << 34
+            | raw(self.lockout_ms, 10, 0, 16383) << 34
             | (self.seq & 0xFF) << 48
         )
         return seal(0x100, word, 8, _COIL_STATUS)
@@ -193,7 +193,7 @@ class CoilStatus(_CoilStatus):
             ((word >> 22 & 0xFFF ^ 0x800) - 0x800),
             (word >> 34 & 0x3FFF) * 10,
             (word >> 48 & 0xFF),
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
@@ -233,7 +233,7 @@ class CoilRefused(_CoilRefused):
             (word >> 8 & 0xFF),
             (word >> 16 & 0xFF),
             (word >> 24 & 0xFF),
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
@@ -273,7 +273,7 @@ class MagField(_MagField):
             ((word >> 8 & 0xFFFF ^ 0x8000) - 0x8000) * 2.0,
             ((word >> 24 & 0xFFFF ^ 0x8000) - 0x8000) * 2.0,
             ((word >> 40 & 0xFFFF ^ 0x8000) - 0x8000) * 2.0,
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
@@ -313,7 +313,7 @@ class SunVector(_SunVector):
             ((word >> 8 & 0xFFFF ^ 0x8000) - 0x8000) * 6.103515625e-05,
             ((word >> 24 & 0xFFFF ^ 0x8000) - 0x8000) * 6.103515625e-05,
             ((word >> 40 & 0xFFFF ^ 0x8000) - 0x8000) * 6.103515625e-05,
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
@@ -353,7 +353,7 @@ class RefAttitude(_RefAttitude):
             ((word >> 5 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
             ((word >> 22 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
             ((word >> 39 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
@@ -393,7 +393,7 @@ class RefRate(_RefRate):
             ((word >> 5 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.9073486328125e-06,
             ((word >> 22 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.9073486328125e-06,
             ((word >> 39 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.9073486328125e-06,
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
@@ -412,7 +412,7 @@ class Sync(_Sync):
 
     def encode(self) -> Frame:
         """The frame on the bus."""
-        word = (self.tick & 0xFFFFFFFF) | (raw(self.unix_time_s, 1, 0, 4294967295)) << 32
+        word = (self.tick & 0xFFFFFFFF) | raw(self.unix_time_s, 1, 0, 4294967295) << 32
         return Frame(0x180, word.to_bytes(8, "little"))
 
     @classmethod
@@ -420,7 +420,7 @@ class Sync(_Sync):
         """The values in the data bytes, unjudged."""
         word = int.from_bytes(data, "little")
         return cls(
-            (word & 0xFFFFFFFF),
+            (word >> 0 & 0xFFFFFFFF),
             (word >> 32 & 0xFFFFFFFF),
         )
 
@@ -461,7 +461,7 @@ class NavAttitude(_NavAttitude):
             ((word >> 5 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
             ((word >> 22 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
             ((word >> 39 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
@@ -501,7 +501,7 @@ class NavRate(_NavRate):
             ((word >> 5 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.9073486328125e-06,
             ((word >> 22 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.9073486328125e-06,
             ((word >> 39 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.9073486328125e-06,
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
@@ -532,8 +532,8 @@ class NavQuality(_NavQuality):
         word = (
             (self.counter & 0xF)
             | (self.mode & 0x7) << 4
-            | (raw(self.sigma3_attitude, 6.103515625e-05, 0, 65535)) << 8
-            | (raw(self.sigma3_rate, 2.384185791015625e-07, 0, 65535)) << 24
+            | raw(self.sigma3_attitude, 6.103515625e-05, 0, 65535) << 8
+            | raw(self.sigma3_rate, 2.384185791015625e-07, 0, 65535) << 24
             | (self.mag_used & 0x1) << 40
             | (self.sun_used & 0x1) << 41
             | (self.mag_blanked & 0x1) << 42
@@ -559,7 +559,7 @@ class NavQuality(_NavQuality):
             (word >> 44 & 0x1),
             (word >> 45 & 0x1),
             (word >> 48 & 0xFF),
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
@@ -586,7 +586,7 @@ class TickDone(_TickDone):
         """The values in the data bytes, unjudged."""
         word = int.from_bytes(data, "little")
         return cls(
-            (word & 0xFFFFFFFF),
+            (word >> 0 & 0xFFFFFFFF),
             (word >> 32 & 0xFFFFFFFF),
         )
 
@@ -627,7 +627,7 @@ class PlantEvent(_PlantEvent):
             (word >> 8 & 0xFF),
             (word >> 16 & 0xFF),
             ((word >> 24 & 0xFFFFFFFF ^ 0x80000000) - 0x80000000),
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
@@ -667,7 +667,7 @@ class FswEvent(_FswEvent):
             (word >> 8 & 0xFF),
             (word >> 16 & 0xFF),
             ((word >> 24 & 0xFFFFFFFF ^ 0x80000000) - 0x80000000),
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
@@ -707,7 +707,7 @@ class CoilEvent(_CoilEvent):
             (word >> 8 & 0xFF),
             (word >> 16 & 0xFF),
             ((word >> 24 & 0xFFFFFFFF ^ 0x80000000) - 0x80000000),
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
@@ -747,7 +747,7 @@ class MagEvent(_MagEvent):
             (word >> 8 & 0xFF),
             (word >> 16 & 0xFF),
             ((word >> 24 & 0xFFFFFFFF ^ 0x80000000) - 0x80000000),
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
@@ -787,7 +787,7 @@ class SunEvent(_SunEvent):
             (word >> 8 & 0xFF),
             (word >> 16 & 0xFF),
             ((word >> 24 & 0xFFFFFFFF ^ 0x80000000) - 0x80000000),
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
@@ -824,7 +824,7 @@ class PlantBoot(_PlantBoot):
             (word >> 4 & 0xF),
             (word >> 8 & 0xFF),
             (word >> 16 & 0xFFFFFFFF),
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
@@ -861,7 +861,7 @@ class FswBoot(_FswBoot):
             (word >> 4 & 0xF),
             (word >> 8 & 0xFF),
             (word >> 16 & 0xFFFFFFFF),
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
@@ -898,7 +898,7 @@ class CoilBoot(_CoilBoot):
             (word >> 4 & 0xF),
             (word >> 8 & 0xFF),
             (word >> 16 & 0xFFFFFFFF),
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
@@ -935,7 +935,7 @@ class MagBoot(_MagBoot):
             (word >> 4 & 0xF),
             (word >> 8 & 0xFF),
             (word >> 16 & 0xFFFFFFFF),
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
@@ -972,7 +972,7 @@ class SunBoot(_SunBoot):
             (word >> 4 & 0xF),
             (word >> 8 & 0xFF),
             (word >> 16 & 0xFFFFFFFF),
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
@@ -1012,7 +1012,7 @@ class PlantHeartbeat(_PlantHeartbeat):
             (word >> 8 & 0xFFFF),
             (word >> 24 & 0xFFFF),
             (word >> 40 & 0xFFFF),
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
@@ -1052,7 +1052,7 @@ class FswHeartbeat(_FswHeartbeat):
             (word >> 8 & 0xFFFF),
             (word >> 24 & 0xFFFF),
             (word >> 40 & 0xFFFF),
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
@@ -1092,7 +1092,7 @@ class CoilHeartbeat(_CoilHeartbeat):
             (word >> 8 & 0xFFFF),
             (word >> 24 & 0xFFFF),
             (word >> 40 & 0xFFFF),
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
@@ -1132,7 +1132,7 @@ class MagHeartbeat(_MagHeartbeat):
             (word >> 8 & 0xFFFF),
             (word >> 24 & 0xFFFF),
             (word >> 40 & 0xFFFF),
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
@@ -1172,7 +1172,7 @@ class SunHeartbeat(_SunHeartbeat):
             (word >> 8 & 0xFFFF),
             (word >> 24 & 0xFFFF),
             (word >> 40 & 0xFFFF),
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
@@ -1200,41 +1200,74 @@ class PlantEnd(_PlantEnd):
         word = int.from_bytes(data, "little")
         return cls(
             (word >> 8 & 0xFFFFFF),
-            (word & 0xF),
+            (word >> 0 & 0xF),
         )
 
 
-_SHAPES: dict[int, tuple[int, int | None]] = {
-    0x080: (7, _COIL_FIRE),
-    0x088: (8, _COIL_DIPOLE),
-    0x100: (8, _COIL_STATUS),
-    0x108: (5, _COIL_REFUSED),
-    0x110: (8, _MAG_FIELD),
-    0x118: (8, _SUN_VECTOR),
-    0x120: (8, _REF_ATTITUDE),
-    0x121: (8, _REF_RATE),
-    0x180: (8, None),
-    0x200: (8, _NAV_ATTITUDE),
-    0x201: (8, _NAV_RATE),
-    0x202: (8, _NAV_QUALITY),
-    0x280: (8, None),
-    0x400: (8, _PLANT_EVENT),
-    0x410: (8, _FSW_EVENT),
-    0x420: (8, _COIL_EVENT),
-    0x430: (8, _MAG_EVENT),
-    0x440: (8, _SUN_EVENT),
-    0x500: (7, _PLANT_BOOT),
-    0x510: (7, _FSW_BOOT),
-    0x520: (7, _COIL_BOOT),
-    0x530: (7, _MAG_BOOT),
-    0x540: (7, _SUN_BOOT),
-    0x600: (8, _PLANT_HEARTBEAT),
-    0x610: (8, _FSW_HEARTBEAT),
-    0x620: (8, _COIL_HEARTBEAT),
-    0x630: (8, _MAG_HEARTBEAT),
-    0x640: (8, _SUN_HEARTBEAT),
-    0x700: (5, _PLANT_END),
+CountedMessage = (
+    CoilFire
+    | CoilDipole
+    | CoilStatus
+    | CoilRefused
+    | MagField
+    | SunVector
+    | RefAttitude
+    | RefRate
+    | NavAttitude
+    | NavRate
+    | NavQuality
+    | PlantEvent
+    | FswEvent
+    | CoilEvent
+    | MagEvent
+    | SunEvent
+    | PlantBoot
+    | FswBoot
+    | CoilBoot
+    | MagBoot
+    | SunBoot
+    | PlantHeartbeat
+    | FswHeartbeat
+    | CoilHeartbeat
+    | MagHeartbeat
+    | SunHeartbeat
+    | PlantEnd
+)
+
+AnyMessage = CountedMessage | Sync | TickDone
+
+CLASSES: dict[int, type[AnyMessage]] = {
+    0x080: CoilFire,
+    0x088: CoilDipole,
+    0x100: CoilStatus,
+    0x108: CoilRefused,
+    0x110: MagField,
+    0x118: SunVector,
+    0x120: RefAttitude,
+    0x121: RefRate,
+    0x180: Sync,
+    0x200: NavAttitude,
+    0x201: NavRate,
+    0x202: NavQuality,
+    0x280: TickDone,
+    0x400: PlantEvent,
+    0x410: FswEvent,
+    0x420: CoilEvent,
+    0x430: MagEvent,
+    0x440: SunEvent,
+    0x500: PlantBoot,
+    0x510: FswBoot,
+    0x520: CoilBoot,
+    0x530: MagBoot,
+    0x540: SunBoot,
+    0x600: PlantHeartbeat,
+    0x610: FswHeartbeat,
+    0x620: CoilHeartbeat,
+    0x630: MagHeartbeat,
+    0x640: SunHeartbeat,
+    0x700: PlantEnd,
 }
+"""Class of each message."""
 
 NAMES: dict[int, str] = {
     0x080: "COIL_FIRE",
@@ -1302,70 +1335,37 @@ SENDERS: dict[int, str] = {
 }
 """Node that sends each message."""
 
-CountedMessage = (
-    CoilFire
-    | CoilDipole
-    | CoilStatus
-    | CoilRefused
-    | MagField
-    | SunVector
-    | RefAttitude
-    | RefRate
-    | NavAttitude
-    | NavRate
-    | NavQuality
-    | PlantEvent
-    | FswEvent
-    | CoilEvent
-    | MagEvent
-    | SunEvent
-    | PlantBoot
-    | FswBoot
-    | CoilBoot
-    | MagBoot
-    | SunBoot
-    | PlantHeartbeat
-    | FswHeartbeat
-    | CoilHeartbeat
-    | MagHeartbeat
-    | SunHeartbeat
-    | PlantEnd
-)
-
-AnyMessage = CountedMessage | Sync | TickDone
-
-CLASSES: dict[int, type[AnyMessage]] = {
-    0x080: CoilFire,
-    0x088: CoilDipole,
-    0x100: CoilStatus,
-    0x108: CoilRefused,
-    0x110: MagField,
-    0x118: SunVector,
-    0x120: RefAttitude,
-    0x121: RefRate,
-    0x180: Sync,
-    0x200: NavAttitude,
-    0x201: NavRate,
-    0x202: NavQuality,
-    0x280: TickDone,
-    0x400: PlantEvent,
-    0x410: FswEvent,
-    0x420: CoilEvent,
-    0x430: MagEvent,
-    0x440: SunEvent,
-    0x500: PlantBoot,
-    0x510: FswBoot,
-    0x520: CoilBoot,
-    0x530: MagBoot,
-    0x540: SunBoot,
-    0x600: PlantHeartbeat,
-    0x610: FswHeartbeat,
-    0x620: CoilHeartbeat,
-    0x630: MagHeartbeat,
-    0x640: SunHeartbeat,
-    0x700: PlantEnd,
+_SHAPES: dict[int, tuple[int, int | None]] = {
+    0x080: (7, _COIL_FIRE),
+    0x088: (8, _COIL_DIPOLE),
+    0x100: (8, _COIL_STATUS),
+    0x108: (5, _COIL_REFUSED),
+    0x110: (8, _MAG_FIELD),
+    0x118: (8, _SUN_VECTOR),
+    0x120: (8, _REF_ATTITUDE),
+    0x121: (8, _REF_RATE),
+    0x180: (8, None),
+    0x200: (8, _NAV_ATTITUDE),
+    0x201: (8, _NAV_RATE),
+    0x202: (8, _NAV_QUALITY),
+    0x280: (8, None),
+    0x400: (8, _PLANT_EVENT),
+    0x410: (8, _FSW_EVENT),
+    0x420: (8, _COIL_EVENT),
+    0x430: (8, _MAG_EVENT),
+    0x440: (8, _SUN_EVENT),
+    0x500: (7, _PLANT_BOOT),
+    0x510: (7, _FSW_BOOT),
+    0x520: (7, _COIL_BOOT),
+    0x530: (7, _MAG_BOOT),
+    0x540: (7, _SUN_BOOT),
+    0x600: (8, _PLANT_HEARTBEAT),
+    0x610: (8, _FSW_HEARTBEAT),
+    0x620: (8, _COIL_HEARTBEAT),
+    0x630: (8, _MAG_HEARTBEAT),
+    0x640: (8, _SUN_HEARTBEAT),
+    0x700: (5, _PLANT_END),
 }
-"""Class of each message."""
 
 
 def intact(frame: Frame) -> bool:

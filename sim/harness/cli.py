@@ -14,8 +14,11 @@ from sim.harness.errors import HarnessError
 
 Parameters = ParamSpec("Parameters")
 
+BUSES = "auto, loop[:PORT], socketcan:NAME, slcan:PORT"
 RUN_OR_LOG = click.argument("run_or_log", metavar="RUN|LOG", type=click.Path(path_type=Path))
-SETTINGS = click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help="Override a key of the scenario.")
+SETTINGS = click.option(
+    "--set", "settings", multiple=True, metavar="KEY=VALUE", help="Override a key of the scenario."
+)
 
 
 def sentences(command: Callable[Parameters, int | None]) -> Callable[Parameters, None]:
@@ -54,15 +57,25 @@ def scenarios() -> None:
 
 @main.command()
 @click.argument("scenario", default="microsat")
-@click.option("--bus", default="auto", show_default=True, help="auto, loop[:PORT], socketcan:NAME, slcan:PORT or virtual.")
+@click.option("--bus", default="auto", show_default=True, help=BUSES + " or virtual.")
 @click.option("--pace", default="lockstep", show_default=True, help="lockstep or realtime[:FACTOR].")
-@click.option("--orbits", type=click.FloatRange(min=0.0, min_open=True), help="How long to fly; default as the scenario says.")
-@click.option("--seed", default=1, show_default=True, type=click.IntRange(min=0), help="Of all random streams.")
-@click.option("--out", type=click.Path(path_type=Path), help="Run directory; default runs/<scenario>-<UTC time>.")
+@click.option(
+    "--orbits", type=click.FloatRange(min=0.0, min_open=True), help="Default: as the scenario says."
+)
+@click.option(
+    "--seed", default=1, show_default=True, type=click.IntRange(min=0), help="Of all random streams."
+)
+@click.option("--out", type=click.Path(path_type=Path), help="Default: runs/<scenario>-<UTC time>.")
 @SETTINGS
 @sentences
 def sil(
-    scenario: str, bus: str, pace: str, orbits: float | None, seed: int, out: Path | None, settings: tuple[str, ...]
+    scenario: str,
+    bus: str,
+    pace: str,
+    orbits: float | None,
+    seed: int,
+    out: Path | None,
+    settings: tuple[str, ...],
 ) -> None:
     """Fly SCENARIO: plant and flight software as two processes on a bus (virtual: in one)."""
     from fsw.io.bus import resolve
@@ -100,7 +113,9 @@ def sil(
 @click.option("--onto", metavar="BUS", help="Play the log on a bus instead, at its own pace.")
 @SETTINGS
 @sentences
-def replay(run_or_log: Path, scenario: str | None, plant: bool, onto: str | None, settings: tuple[str, ...]) -> int:
+def replay(
+    run_or_log: Path, scenario: str | None, plant: bool, onto: str | None, settings: tuple[str, ...]
+) -> int:
     """Refly a log through the flight software and compare byte for byte."""
     from sim.harness import replay_command as commands
 

@@ -1,7 +1,7 @@
 """One flight: the plant's ticks exchanged with the flight software over a bus, recorded as they happen.
 
-In lockstep the plant waits for the TICK_DONE that names its tick. In real time it keeps to absolute deadlines;
-an answer that is not there by then is a counted slip, never a wait.
+In lockstep the plant waits for the TICK_DONE that names its tick. In real time it keeps to absolute
+deadlines; an answer that is not there by then is a counted slip, never a wait.
 """
 
 import os
@@ -141,7 +141,9 @@ def _lockstep_answers(bus: Bus, tick: int) -> list[Frame]:
     while True:
         frame = bus.receive(ANSWER_TIMEOUT_S)
         if frame is None:
-            raise FlightError(f"no answer from the flight software to tick {tick} within {ANSWER_TIMEOUT_S:.0f} s")
+            raise FlightError(
+                f"no answer from the flight software to tick {tick} within {ANSWER_TIMEOUT_S:.0f} s"
+            )
         answers.append(frame)
         if _names(frame, tick):
             return answers
@@ -160,4 +162,8 @@ def _answers_until(bus: Bus, tick: int, deadline: float) -> tuple[list[Frame], b
 
 
 def _names(frame: Frame, tick: int) -> bool:
-    return frame.can_id == TickDone.ID and len(frame.data) == TickDone.LENGTH and TickDone.decode(frame.data).tick == tick
+    return (
+        frame.can_id == TickDone.ID
+        and len(frame.data) == TickDone.LENGTH
+        and TickDone.decode(frame.data).tick == tick
+    )

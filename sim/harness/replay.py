@@ -136,8 +136,10 @@ def _whole_entries(log: Path) -> Iterator[LogEntry | None]:
         yield None
 
 
-def _difference(frame: Frame, expected: deque[tuple[int, Frame]], tick: int) -> tuple[bool, Difference] | None:
-    """Compare a logged frame with the next reflown one: None if equal, else (is a command difference, where)."""
+def _difference(
+    frame: Frame, expected: deque[tuple[int, Frame]], tick: int
+) -> tuple[bool, Difference] | None:
+    """A logged frame against the next reflown one: None if equal, else (whether a command differs, where)."""
     if not expected:
         return True, Difference(tick, NAMES[frame.can_id], "there", "missing")
     tick, reflown = expected.popleft()
@@ -147,9 +149,15 @@ def _difference(frame: Frame, expected: deque[tuple[int, Frame]], tick: int) -> 
         return True, Difference(tick, "the next frame", NAMES[frame.can_id], NAMES[reflown.can_id])
     message = CLASSES[frame.can_id]
     if len(frame.data) != message.LENGTH or (frame.can_id != TickDone.ID and not intact(frame)):
-        return True, Difference(tick, f"{NAMES[frame.can_id]} as a whole", frame.data.hex(), reflown.data.hex())
+        return True, Difference(
+            tick, f"{NAMES[frame.can_id]} as a whole", frame.data.hex(), reflown.data.hex()
+        )
     logged_values, reflown_values = message.decode(frame.data), message.decode(reflown.data)
-    differing = [index for index, pair in enumerate(zip(logged_values, reflown_values, strict=True)) if pair[0] != pair[1]]
+    differing = [
+        index
+        for index, pair in enumerate(zip(logged_values, reflown_values, strict=True))
+        if pair[0] != pair[1]
+    ]
     first = differing[0]
     signal = f"{NAMES[frame.can_id]}.{message._fields[first]}"
     difference = Difference(tick, signal, logged_values[first], reflown_values[first])

@@ -3,7 +3,7 @@
 import time
 from collections.abc import Iterator
 from contextlib import suppress
-from itertools import groupby, islice
+from itertools import groupby, islice, zip_longest
 from pathlib import Path
 from typing import NamedTuple
 
@@ -11,7 +11,8 @@ import click
 
 from fsw.io.bus import open_bus
 from fsw.io.config import flight_config
-from fsw.wire.messages import NAMES, SENDERS, PlantEnd
+from fsw.wire.frame import Frame
+from fsw.wire.messages import NAMES, PlantEnd
 from sim.harness import run_dir
 from sim.harness.assemble import plant_config
 from sim.harness.candump import LogEntry, LogTruncatedError, read_log
@@ -41,7 +42,9 @@ def locate(run_or_log: Path, scenario: str | None, settings: tuple[str, ...]) ->
     run = run_dir.read_run(folder) if (folder / run_dir.RUN).is_file() else {}
     beside = folder / run_dir.SCENARIO
     if scenario is None and not beside.is_file():
-        raise HarnessError(f"{log}: no {run_dir.SCENARIO} beside it: name what it was flown with by --scenario")
+        raise HarnessError(
+            f"{log}: no {run_dir.SCENARIO} beside it: name what it was flown with by --scenario"
+        )
     return log, Flown(load(scenario or str(beside), parse_settings(settings)), run)
 
 
@@ -55,7 +58,11 @@ def through_flight_software(log: Path, flown: Flown) -> int:
     if shown.bit_exact:
         click.echo(f"bit-exact: {shown.ticks} ticks, {shown.frames} frames, every state CRC equal")
     elif shown.command_exact:
-        need = "bit-exact is required: the platform is the run's" if same_platform else "another platform than the run's"
+        need = (
+            "bit-exact is required: the platform is the run's"
+            if same_platform
+            else "another platform than the run's"
+        )
         click.echo(f"command-exact, not bit-exact ({need}): {shown.first_bit_difference}")
     else:
         click.echo(f"differs: {shown.first_bit_difference}")
@@ -64,7 +71,9 @@ def through_flight_software(log: Path, flown: Flown) -> int:
     if shown.ended:
         return 0 if exact else 1
     how = "inside a line" if shown.cut else "without its end mark"
-    click.echo(f"incomplete: the log ends {how} after line {shown.end_line}, at tick {max(shown.last_tick, 0)}")
+    click.echo(
+        f"incomplete: the log ends {how} after line {shown.end_line}, at tick {max(shown.last_tick, 0)}"
+    )
     return 1
 
 
@@ -80,21 +89,29 @@ def through_plant(log: Path, flown: Flown) -> int:
             if entries[0].frame.can_id == PlantEnd.ID:
                 click.echo(f"plant reproduced: {ticks} ticks, every frame equal")
                 return 0
-            expected = plant.begin_tick()
-            logged = [entry.frame for entry in entries if entry.frame.can_id not in FROM_FSW]
-            for index, (ours, theirs) in enumerate(zip(expected, logged, strict=False)):
-                if ours != theirs:
-                    name = NAMES.get(theirs.can_id, f"frame {index}")
-                    click.echo(f"differs: tick {ticks}: {name} is {theirs.data.hex()} in the log and {ours.data.hex()} from the plant")
-                    return 1
+            difference = _difference(plant.begin_tick(), [entry.frame for entry in entries])
+            if difference is not None:
+                click.echo(f"differs: tick {ticks}: {difference}")
+                return 1
             for entry in entries:
-                if SENDERS.get(entry.frame.can_id) == "FSW":
+                if entry.frame.can_id in FROM_FSW:
                     plant.receive(entry.frame)
             plant.end_tick()
             ticks += 1
             watch(ticks)
     click.echo(f"incomplete: the log ends without its end mark at tick {ticks - 1}")
     return 1
+
+
+def _difference(ours: list[Frame], logged: list[Frame]) -> str | None:
+    """The first frame of the boards that the plant does not send as logged."""
+    theirs = [frame for frame in logged if frame.can_id not in FROM_FSW]
+    for mine, other in zip_longest(ours, theirs):
+        if mine != other:
+            name = NAMES.get((mine or other).can_id, "a frame")
+            texts = [frame.data.hex() if frame else "missing" for frame in (other, mine)]
+            return f"{name} is {texts[0]} in the log and {texts[1]} from the plant"
+    return None
 
 
 def play(log: Path, spec: str) -> int:

@@ -50,7 +50,15 @@ def record(path: Path, scenario: Scenario, bus: Bus, watch: Watch = lambda tick:
             TruthFile(path / run_dir.TRUTH, run["ticks"], SOURCES) as truth,
         ):
             flown = fly(
-                plant, bus, log, truth, run["ticks"], scenario.epoch_unix_s, scenario.time.tick_hz, pace, watch
+                plant,
+                bus,
+                log,
+                truth,
+                run["ticks"],
+                scenario.epoch_unix_s,
+                scenario.time.tick_hz,
+                pace,
+                watch,
             )
     finally:
         bus.close()
@@ -71,7 +79,11 @@ def fly_processes(path: Path, scenario: Scenario, bus: str, watch: Watch) -> Non
         BusError: there is no such bus.
     """
     spec = resolve(bus)
-    hub = Hub(0 if bus in ("loop", "auto") else int(spec.partition(":")[2])) if spec.startswith("loop") else None
+    hub = (
+        Hub(0 if bus in ("loop", "auto") else int(spec.partition(":")[2]))
+        if spec.startswith("loop")
+        else None
+    )
     if hub is not None:
         spec = f"loop:{hub.port}"
     scenario_file = str(path / run_dir.SCENARIO)
@@ -82,10 +94,16 @@ def fly_processes(path: Path, scenario: Scenario, bus: str, watch: Watch) -> Non
             _serve(hub, POLL_S)
             watch(last_tick(path, scenario))
         deadline = time.monotonic() + GRACE_S
-        while (plant.poll() is None or fsw.poll() is None) and time.monotonic() < deadline and _well(plant, fsw):
+        while (
+            (plant.poll() is None or fsw.poll() is None) and time.monotonic() < deadline and _well(plant, fsw)
+        ):
             _serve(hub, POLL_S / 10.0)
     finally:
-        failed = [(name, process) for name, process in (("plant", plant), ("flight software", fsw)) if process.poll()]
+        failed = [
+            (name, process)
+            for name, process in (("plant", plant), ("flight software", fsw))
+            if process.poll()
+        ]
         for process in (plant, fsw):
             _end(process, hub)
         if hub is not None:

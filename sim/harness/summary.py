@@ -177,27 +177,28 @@ def _first_run(good: NDArray[np.bool_], length: int) -> int | None:
 
 def summary_text(summary: Json) -> str:
     """The summary for a person, a few lines."""
-    pulses, axis = summary["pulses"], summary.get("pointing_deg", {})
-    estimate, gap = summary.get("estimate_deg", {}), summary["min_gap_s"]["any"]
-    lines = [
-        f"{summary['scenario']}, seed {summary['seed']}: {summary['sim_seconds']:.0f} s flown"
-        + (f" at {summary['realtime_factor']:.0f} times real time" if "realtime_factor" in summary else ""),
-        f"  limits     {'kept' if summary['limits_ok'] else 'BROKEN'}: {pulses['total']} pulses, {pulses['refused']} refused"
-        + (f", longest {summary['max_pulse_s']:.3f} s" if "max_pulse_s" in summary else "")
-        + (f", least gap {gap:.3f} s" if gap is not None else ""),
-    ]
-    if axis:
-        lines.append(
-            f"  pointing   {axis['rms_last_orbit']:.2f} deg RMS, {axis['max_last_orbit']:.2f} max over the last orbit"
+    pulses, gap_s = summary["pulses"], summary["min_gap_s"]["any"]
+    flown = f"{summary['scenario']}, seed {summary['seed']}: {summary['sim_seconds']:.0f} s flown"
+    if "realtime_factor" in summary:
+        flown += f" at {summary['realtime_factor']:.0f} times real time"
+    verdict = "kept" if summary["limits_ok"] else "BROKEN"
+    limits = f"{verdict}: {pulses['total']} pulses, {pulses['refused']} refused"
+    if "max_pulse_s" in summary:
+        limits += f", longest {summary['max_pulse_s']:.3f} s"
+    if gap_s is not None:
+        limits += f", least gap {gap_s:.3f} s"
+    rows = {"limits": limits}
+    if "pointing_deg" in summary:
+        last = summary["pointing_deg"]
+        rows["pointing"] = (
+            f"{last['rms_last_orbit']:.2f} deg RMS, {last['max_last_orbit']:.2f} deg max over the last orbit"
         )
-    if estimate:
-        parts = [f"{estimate[key]:.3f} deg {what}" for key, what in _ESTIMATE_TEXT if key in estimate]
-        lines.append(f"  estimate   {', '.join(parts)}, converged at {summary['converged_at_s']:.0f} s")
+    if "estimate_deg" in summary:
+        named = {"rms_sunlit": "RMS sunlit", "rms_eclipse": "RMS in eclipse", "max": "max"}
+        parts = [f"{value:.3f} deg {named[key]}" for key, value in summary["estimate_deg"].items()]
+        rows["estimate"] = f"{', '.join(parts)}, converged at {summary['converged_at_s']:.0f} s"
     if "mode_final" in summary:
-        lines.append(f"  mode       {summary['mode_final']}")
+        rows["mode"] = summary["mode_final"]
     if "replay" in summary:
-        lines.append(f"  replay     {'bit-exact' if summary['replay']['bit_exact'] else 'NOT bit-exact'}")
-    return "\n".join(lines)
-
-
-_ESTIMATE_TEXT = (("rms_sunlit", "RMS sunlit"), ("rms_eclipse", "RMS in eclipse"), ("max", "max"))
+        rows["replay"] = "bit-exact" if summary["replay"]["bit_exact"] else "NOT bit-exact"
+    return "\n".join([flown, *(f"  {name:<10} {text}" for name, text in rows.items())])

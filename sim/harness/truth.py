@@ -39,7 +39,8 @@ class TruthFile:
     def __init__(self, path: Path, ticks: int, torque_sources: tuple[str, ...]) -> None:
         self._file = h5py.File(path, "w", libver="earliest")
         torques = tuple(
-            (f"torque_body_nm/{source}", 3, "N m", f"torque by {source}, body axes") for source in torque_sources
+            (f"torque_body_nm/{source}", 3, "N m", f"torque by {source}, body axes")
+            for source in torque_sources
         )
         self._datasets = []
         for name, width, unit, meaning in COLUMNS + torques:

@@ -23,9 +23,17 @@ def _end(signum: int, frame: FrameType | None) -> None:
 
 @click.command()
 @click.argument("scenario", default="microsat")
-@click.option("--bus", default="auto", show_default=True, help="socketcan:NAME, loop[:PORT], slcan:PORT or auto.")
-@click.option("--orbits", type=click.FloatRange(min=0.0, min_open=True), help="How long to fly; default as the scenario says.")
-@click.option("--seed", default=1, show_default=True, type=click.IntRange(min=0), help="Of all random streams.")
+@click.option(
+    "--bus", default="auto", show_default=True, help="socketcan:NAME, loop[:PORT], slcan:PORT or auto."
+)
+@click.option(
+    "--orbits",
+    type=click.FloatRange(min=0.0, min_open=True),
+    help="How long to fly; default as the scenario says.",
+)
+@click.option(
+    "--seed", default=1, show_default=True, type=click.IntRange(min=0), help="Of all random streams."
+)
 @click.option("--pace", default="lockstep", show_default=True, help="lockstep or realtime[:FACTOR].")
 @click.option("--out", type=click.Path(path_type=Path), help="Run directory; default runs/<scenario>-<time>.")
 @click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help="Override a key of the scenario.")
