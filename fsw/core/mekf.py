@@ -195,14 +195,13 @@ def predict(
     h = config.tick_s
     q, omega = estimate.q_body_from_eci, estimate.omega_body_radps
     e1, b = rotate(q, e1_eci), rotate(q, b_eci_t)
-    transition = _transition(omega, e1, b, gravity_per_s2, m_body_am2, config)
-
     torque = estimate.torque_body_nm
     alpha = _acceleration(omega, e1, b, gravity_per_s2, m_body_am2, torque, config)
     omega_mid = add(omega, scale(0.5 * h, alpha))
     q_mid = multiply(q, from_small_rotation(scale(0.5 * h, omega)))
     e1_mid, b_mid = rotate(q_mid, e1_eci), rotate(q_mid, b_eci_t)
     alpha_mid = _acceleration(omega_mid, e1_mid, b_mid, gravity_per_s2, m_body_am2, torque, config)
+    transition = _transition(omega_mid, e1_mid, b_mid, gravity_per_s2, m_body_am2, config)
 
     ekf = copy(config.blank)
     ekf.P, ekf.F, ekf.Q = estimate.covariance, transition, config.process_noise
@@ -286,7 +285,7 @@ def _acceleration(
 
 
 def _transition(omega: Vec3, e1: Vec3, b: Vec3, gravity_per_s2: float, m: Vec3, config: MekfConfig) -> Matrix:
-    """I + A h + (A h)^2 / 2 of the error dynamics."""
+    """I + A h + (A h)^2 / 2 of the error dynamics; with A of the middle of the tick good to second order."""
     j, j_inverse = config.inertia_kgm2, config.inertia_inverse
     gyroscopic = _minus(skew(transform(j, omega)), product(skew(omega), j))
     pull = scale(gravity_per_s2, e1)
