@@ -96,18 +96,12 @@ def estimate(
     """
     field, sun = usable_field(readings), usable_sun(readings)
     blanked = field is None and readings.field is not None
-    if state.estimate is not None and (elapsed_ticks > MAX_ELAPSED_TICKS or not mekf.healthy(state.estimate)):
-        state = _restart(state)
-    if state.estimate is None:
+    current = _carried(state.estimate, reference, m_body_am2, elapsed_ticks, config)
+    if current is None:
+        state = state if state.estimate is None else _restart(state)
         started = _start(field, sun, reference, config)
         return replace(state, estimate=started), Used(started is not None, started is not None, blanked)
 
-    gravity = 3.0 * MU_M3PS2 / reference.radius_m**3
-    e1_eci = scale(1.0 / reference.radius_m, reference.r_eci_m)
-    current = state.estimate
-    for remaining in range(elapsed_ticks, 0, -1):
-        dipole = m_body_am2 if remaining == 1 else ZERO
-        current = mekf.predict(current, e1_eci, reference.b_eci_t, gravity, dipole, config.mekf)
     after_field = (
         mekf.update_field(current, field, reference.b_eci_t, config.mekf) if field is not None else None
     )
@@ -150,6 +144,24 @@ def perfect_attitude(readings: Readings, before: Attitude) -> Attitude:
     scalar = max(0.0, 1.0 - q.q_x**2 - q.q_y**2 - q.q_z**2) ** 0.5
     near_unit = (scalar, q.q_x, q.q_y, q.q_z)  # near 180 deg rounding makes the vector longer than 1
     return Attitude(normalise(near_unit), (w.w_x, w.w_y, w.w_z), 0.0, 0.0, True)
+
+
+def _carried(
+    known: Estimate | None,
+    reference: Reference,
+    m_body_am2: Vec3,
+    elapsed_ticks: int,
+    config: EstimatorConfig,
+) -> Estimate | None:
+    """The estimate predicted to this tick; None where there is none, it is too old or no longer sound."""
+    if known is None or elapsed_ticks > MAX_ELAPSED_TICKS:
+        return None
+    gravity = 3.0 * MU_M3PS2 / reference.radius_m**3
+    e1_eci = scale(1.0 / reference.radius_m, reference.r_eci_m)
+    for remaining in range(elapsed_ticks, 0, -1):
+        dipole = m_body_am2 if remaining == 1 else ZERO
+        known = mekf.predict(known, e1_eci, reference.b_eci_t, gravity, dipole, config.mekf)
+    return known if mekf.healthy(known) else None
 
 
 def _start(

@@ -25,6 +25,9 @@ from fsw.core.vector import ZERO, Mat3, Vec3, add, cross, inverse, product, scal
 
 Matrix = NDArray[np.float64]
 
+MAX_VARIANCE = 1e6
+"""Beyond it an estimate says nothing (1000 rad), and the algebra comes near the end of the numbers."""
+
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
@@ -160,9 +163,9 @@ def start(q_body_from_eci: Quaternion, omega_body_radps: Vec3, config: MekfConfi
 
 
 def healthy(estimate: Estimate) -> bool:
-    """Whether every number is finite and every variance positive.
+    """Whether every number is finite and every variance positive and below ``MAX_VARIANCE``.
 
-    A bad number off the diagonal of the covariance shows on the diagonal one tick later.
+    Asked after a prediction, which brings a bad number off the diagonal of the covariance onto it.
     """
     variances: list[float] = estimate.covariance.diagonal().tolist()
     numbers = (
@@ -171,7 +174,7 @@ def healthy(estimate: Estimate) -> bool:
         *estimate.mag_bias_t,
         *estimate.torque_body_nm,
     )
-    return isfinite(sum(numbers)) and isfinite(sum(variances)) and min(variances) > 0.0
+    return isfinite(sum(numbers)) and min(variances) > 0.0 and sum(variances) < MAX_VARIANCE
 
 
 def predict(
@@ -248,7 +251,8 @@ def _update(
     ekf = copy(config.blank)
     ekf.P = estimate.covariance
     ekf.update(np.array(innovation), lambda _: sensitivity, lambda _: _NO_ERROR, R=noise)
-    if not float(ekf.y @ ekf.SI @ ekf.y) <= config.gate_nis:
+    nis = float(ekf.y @ ekf.SI @ ekf.y)
+    if not 0.0 <= nis <= config.gate_nis:  # overflow can make it -inf
         return None
     return _fold(estimate, ekf.x, 0.5 * (ekf.P + ekf.P.T), config.layout)
 
