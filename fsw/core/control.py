@@ -14,11 +14,15 @@ from fsw.wire.messages import Mode
 
 @dataclass(frozen=True, slots=True)
 class ControlConfig:
-    """The pointing law and its gains: ``k_w`` in N m s / T^2, ``k_a`` in N m / T^2."""
+    """The pointing law and its gains: ``k_w`` in N m s / T^2, ``k_a`` in N m / T^2.
+
+    ``spin_radps`` is the rate about body axis 1, relative to the orbital frame, that rate damping holds.
+    """
 
     law: str
     k_w: float
     k_a: float
+    spin_radps: float
     tick_s: float
 
 
@@ -60,10 +64,11 @@ def pd(seen: Seen, config: ControlConfig) -> Vec3:
 
 
 def rate_damping(seen: Seen, config: ControlConfig) -> Vec3:
-    """Damping of the rate relative to the orbital frame."""
+    """Damping of the rate relative to the orbital frame, down to the spin that is wanted."""
     if not seen.attitude.valid:
         return ZERO
-    return rate_damping_dipole(seen.b_body_t, seen.attitude.omega_body_orbit_radps, config.k_w)
+    w1, w2, w3 = seen.attitude.omega_body_orbit_radps
+    return rate_damping_dipole(seen.b_body_t, (w1 - config.spin_radps, w2, w3), config.k_w)
 
 
 def bdot(seen: Seen, config: ControlConfig) -> Vec3:

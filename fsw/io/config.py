@@ -13,7 +13,15 @@ from fsw.core.orbit import Orbit, circular_orbit, sgp4_orbit
 from fsw.core.pulses import PulseConfig, pulse_timing
 from fsw.core.rates import RateGroup, RateTable
 from fsw.core.vector import inverse
-from fsw.io.table import CoilTable, FlightTable, ModesTable, OrbitTable, TableError, TelemetryTable
+from fsw.io.table import (
+    CoilTable,
+    ControlTable,
+    FlightTable,
+    ModesTable,
+    OrbitTable,
+    TableError,
+    TelemetryTable,
+)
 
 NT = 1e-9
 
@@ -39,7 +47,7 @@ def flight_config(table: FlightTable) -> FlightConfig:
                 table.telemetry.ephemeris_s,
             ),
             estimator=_estimator(table),
-            control=ControlConfig(table.control.law, table.control.k_w, table.control.k_a, 1.0 / tick_hz),
+            control=_control(table.control, tick_hz),
             pulses=_pulses(table),
             modes=_modes(table.modes, tick_hz),
             rates=_rates(table.telemetry, tick_hz),
@@ -54,6 +62,10 @@ def _orbit(orbit: OrbitTable, epoch_unix_s: int) -> Orbit:
         return sgp4_orbit(*orbit.tle)
     altitude_km = orbit.altitude_km or 0.0
     return circular_orbit(altitude_km, orbit.inclination_deg, orbit.raan_deg, orbit.u0_deg, epoch_unix_s)
+
+
+def _control(control: ControlTable, tick_hz: int) -> ControlConfig:
+    return ControlConfig(control.law, control.k_w, control.k_a, control.spin_radps, 1.0 / tick_hz)
 
 
 def _estimator(table: FlightTable) -> EstimatorConfig:

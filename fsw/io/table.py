@@ -14,7 +14,7 @@ from math import ceil
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, Strict, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, Strict, ValidationError, field_validator, model_validator
 
 from fsw.core.control import POINTING_LAWS
 from fsw.core.orbit import sgp4_orbit
@@ -44,6 +44,11 @@ class TimeTable(Section):
 
     tick_hz: int = Field(ge=1, le=100)
     epoch_utc: str | None = None
+
+    @field_validator("epoch_utc", mode="before")
+    @classmethod
+    def _from_toml_time(cls, value: object) -> object:
+        return value.isoformat() if isinstance(value, datetime) else value
 
     @model_validator(mode="after")
     def _epoch_is_a_time(self) -> Self:
@@ -114,11 +119,12 @@ class CoilTable(Section):
 
 
 class ControlTable(Section):
-    """Pointing law, its gains (N m s/T^2, N m/T^2) and the leak of the owed impulse."""
+    """Pointing law, its gains (N m s/T^2, N m/T^2), spin about body axis 1, leak of the owed impulse."""
 
     law: Literal[tuple(POINTING_LAWS)]  # type: ignore[valid-type]
     k_w: NotNegative
     k_a: NotNegative
+    spin_radps: float = Field(default=0.0, ge=-0.1, le=0.1)
     leak_s: Positive
 
 
@@ -292,11 +298,11 @@ def validated(model: type[Model], values: Nested, source: str) -> Model:
     try:
         return model.model_validate(values)
     except ValidationError as error:
-        faults = "; ".join(_fault(dict(detail)) for detail in error.errors())
+        faults = "; ".join(_fault(model, dict(detail)) for detail in error.errors())
         raise TableError(f"{source}: {faults}") from None
 
 
-def _fault(detail: Nested) -> str:
+def _fault(model: type[BaseModel], detail: Nested) -> str:
     path = ".".join(str(part) for part in detail["loc"])
     if detail["type"] == "extra_forbidden":
         return f"{path} is not a known key"
@@ -305,7 +311,31 @@ def _fault(detail: Nested) -> str:
     message = str(detail["msg"]).removeprefix("Value error, ")
     if detail["type"] == "value_error":
         return f"{path}: {message}" if path else message
-    return f"{path} = {detail['input']!r} is not allowed: {message[0].lower()}{message[1:]}"
+    allowed = _allowed_range(model, detail["loc"])
+    hint = f"allowed is {allowed}" if allowed else f"{message[0].lower()}{message[1:]}"
+    return f"{path} = {detail['input']!r} is not allowed: {hint}"
+
+
+_BOUNDS = (("gt", "above"), ("ge", "at least"), ("lt", "below"), ("le", "at most"))
+
+
+def _allowed_range(model: type[BaseModel], location: tuple[int | str, ...]) -> str:
+    """What a number at this place may be, in words; empty where no bounds are known."""
+    owner: Any = model
+    for part in location[:-1]:
+        owner = getattr(owner, "model_fields", {}).get(part)
+        owner = getattr(owner, "annotation", None)
+    field = getattr(owner, "model_fields", {}).get(location[-1])
+    bounds = {
+        name: getattr(item, name)
+        for item in getattr(field, "metadata", ())
+        for name, _ in _BOUNDS
+        if hasattr(item, name)
+    }
+    if not bounds:
+        return ""
+    kind = "a whole number" if field.annotation is int else "a number"
+    return f"{kind} {' and '.join(f'{word} {bounds[name]:g}' for name, word in _BOUNDS if name in bounds)}"
 
 
 def flight_table(values: Nested, source: str) -> FlightTable:

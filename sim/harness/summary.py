@@ -21,6 +21,7 @@ Json = dict[str, Any]
 CONVERGED_DEG = 2.0
 CONVERGED_FOR_S = 600.0
 SETTLED_DEG = 5.0
+SPIN_SETTLED_RADPS = 1e-3
 EVENTS_KEPT = 200
 MU_M3PS2 = 3.986004418e14
 
@@ -96,6 +97,7 @@ def summarise(
         summary["pointing_deg"] = _angles(np.degrees(angle_rad(relative(upright, q))), last_orbit)
         summary["axis1_deg"] = _axis1(np.degrees(axis1_angle_rad(q)), last_orbit, tick_hz, scenario)
         summary |= _estimate(truth, estimates, tick_hz)
+        summary["spin_radps"] = _spin(scenario, truth, audit, last_orbit)
         summary["mode_final"] = Mode(int(estimates.mode[ticks - 1])).name
     summary["events"] = tally.events
     return {key: value for key, value in summary.items() if value is not None}
@@ -108,7 +110,7 @@ def estimate_error(truth: Histories, estimates: Estimates) -> Array:
 
 
 def nees(truth: Histories, estimates: Estimates) -> Array:
-    """Normalised estimation error squared of attitude and rate (6 states) at each tick; NaN where unknown."""
+    """Normalised estimation error squared of attitude and rate at each tick; NaN where unknown."""
     ticks = len(truth["t_s"])
     turn = estimate_error(truth, estimates)
     orbit_rate = np.linalg.norm(
@@ -163,6 +165,26 @@ def _estimate(truth: Histories, estimates: Estimates, tick_hz: int) -> Json:
     }
     if np.isfinite(consistency).any():
         result["nees_mean"] = float(np.nanmean(consistency))
+    return result
+
+
+def _spin(scenario: Scenario, truth: Histories, audit: AuditReport, last_orbit: slice) -> Json | None:
+    """How the spin about body axis 1 follows its reference; None where none is wanted."""
+    reference = scenario.control.spin_radps
+    if reference == 0.0:
+        return None
+    spin = truth["omega_body_orbit_radps"][:, 0]
+    deviation = np.abs(spin - reference)
+    result: Json = {
+        "reference": reference,
+        "mean_last_orbit": float(spin[last_orbit].mean()),
+        "max_dev_last_orbit": float(deviation[last_orbit].max()),
+    }
+    inside = np.flatnonzero(deviation < SPIN_SETTLED_RADPS)
+    if len(inside):
+        settle_s = int(inside[0]) / scenario.time.tick_hz
+        result["settle_s_1e-3"] = settle_s
+        result["pulses_to_settle"] = sum(pulse.start_s < settle_s for pulse in audit.pulses)
     return result
 
 
