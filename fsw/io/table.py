@@ -323,15 +323,10 @@ def _allowed_range(model: type[BaseModel], location: tuple[int | str, ...]) -> s
     """What a number at this place may be, in words; empty where no bounds are known."""
     owner: Any = model
     for part in location[:-1]:
-        owner = getattr(owner, "model_fields", {}).get(part)
-        owner = getattr(owner, "annotation", None)
-    field = getattr(owner, "model_fields", {}).get(location[-1])
-    bounds = {
-        name: getattr(item, name)
-        for item in getattr(field, "metadata", ())
-        for name, _ in _BOUNDS
-        if hasattr(item, name)
-    }
+        owner = getattr(getattr(owner, "model_fields", {}).get(part), "annotation", None)
+    field: Any = getattr(owner, "model_fields", {}).get(location[-1])
+    limits = getattr(field, "metadata", ())
+    bounds = {name: getattr(limit, name) for limit in limits for name, _ in _BOUNDS if hasattr(limit, name)}
     if not bounds:
         return ""
     kind = "a whole number" if field.annotation is int else "a number"

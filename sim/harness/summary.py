@@ -104,7 +104,7 @@ def summarise(
 
 
 def estimate_error(truth: Histories, estimates: Estimates) -> Array:
-    """The turn from the estimated to the true attitude at each tick, (n, 4); NaN before the first estimate."""
+    """The turn from the estimated to the true attitude at each tick, (n, 4); NaN before there is one."""
     ticks = len(truth["t_s"])
     return relative(estimates.q_body_from_orbit[:ticks], truth["q_body_from_orbit"])
 
