@@ -9,7 +9,8 @@ from fsw.io.bus import BusError, open_bus
 from fsw.io.config import flight_config
 from fsw.io.node import FlightNode
 from fsw.io.runner import run
-from fsw.io.table import FlightTable, TableError, load_flight_table
+from fsw.io.schema import TableError
+from fsw.io.table import FlightTable, load_flight_table
 
 
 def _table(scenario: str | None, table: str | None, settings: tuple[str, ...]) -> FlightTable:

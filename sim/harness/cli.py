@@ -9,7 +9,7 @@ from typing import ParamSpec
 import click
 
 from fsw.io.bus import BusError
-from fsw.io.table import TableError
+from fsw.io.schema import TableError
 from sim.harness.errors import HarnessError
 
 Parameters = ParamSpec("Parameters")

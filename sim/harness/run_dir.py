@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import tomli_w
 
-from fsw.io.table import TableError
+from fsw.io.schema import TableError
 from sim.harness.errors import HarnessError
 from sim.harness.flight import Pace
 from sim.harness.scenario import Scenario, flight_table, load

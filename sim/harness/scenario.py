@@ -13,20 +13,18 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, Strict, model_validator
 
 from fsw.io import table as onboard
-from fsw.io.table import (
-    BodyTable,
-    CoilTable,
-    ControlTable,
-    FlightTable,
+from fsw.io.schema import (
     Nested,
     NotNegative,
-    OrbitTable,
     Positive,
     Section,
     TableError,
-    TimeTable,
     Triple,
+    merge,
+    read_toml,
+    validated,
 )
+from fsw.io.table import BodyTable, CoilTable, ControlTable, FlightTable, OrbitTable, TimeTable
 
 CIRCULAR_KEYS = ("altitude_km", "inclination_deg", "raan_deg", "u0_deg")
 
@@ -154,7 +152,7 @@ def load(name_or_path: str, overrides: Nested | None = None) -> Scenario:
     overrides = overrides or {}
     if set(overrides.get("orbit", {})) & set(CIRCULAR_KEYS):
         values.get("orbit", {}).pop("tle", None)
-    scenario = onboard.validated(Scenario, onboard.merge(values, overrides), source)
+    scenario = validated(Scenario, merge(values, overrides), source)
     flight_table(scenario, source)
     return scenario
 
@@ -183,9 +181,7 @@ def flight_table(scenario: Scenario, source: str = "scenario") -> FlightTable:
     }
     defaults = onboard.default_values()
     defaults.pop("orbit")
-    return onboard.validated(
-        FlightTable, onboard.merge(onboard.merge(defaults, shared), scenario.flight), f"{source}: [flight]"
-    )
+    return validated(FlightTable, merge(merge(defaults, shared), scenario.flight), f"{source}: [flight]")
 
 
 FIELD_MODEL_ERROR_NT = 20.0
@@ -211,7 +207,7 @@ def parse_settings(settings: tuple[str, ...]) -> Nested:
             value = text
         for part in reversed(key.strip().split(".")):
             value = {part: value}
-        values = onboard.merge(values, value)
+        values = merge(values, value)
     return values
 
 
@@ -221,7 +217,7 @@ def _with_floor(sigma: float, floor: float) -> float:
 
 def _read(name_or_path: str) -> tuple[Nested, str]:
     if name_or_path.endswith(".toml"):
-        return onboard.read_toml(Path(name_or_path)), name_or_path
+        return read_toml(Path(name_or_path)), name_or_path
     shipped_file = resources.files("sim.scenarios").joinpath(f"{name_or_path}.toml")
     if not shipped_file.is_file():
         names = ", ".join(

@@ -8,7 +8,7 @@ from types import FrameType
 import click
 
 from fsw.io.bus import BusError, open_bus
-from fsw.io.table import TableError
+from fsw.io.schema import TableError
 from sim.harness import run_dir
 from sim.harness.conclude import conclude
 from sim.harness.errors import HarnessError

@@ -1,0 +1,92 @@
+"""Checked values from TOML: how a section is read, and how its faults are told in one sentence."""
+
+import tomllib
+from pathlib import Path
+from typing import Annotated, Any, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, Strict, ValidationError
+
+Triple = Annotated[tuple[float, float, float], Strict(False)]
+Square = Annotated[tuple[Triple, Triple, Triple], Strict(False)]
+Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
+
+Nested = dict[str, Any]
+Model = TypeVar("Model", bound=BaseModel)
+
+
+class TableError(Exception):
+    """A table that cannot be used; the message is one sentence for the user."""
+
+
+class Section(BaseModel):
+    """A section that knows its keys and takes no others."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+def merge(base: Nested, over: Nested) -> Nested:
+    """``base`` with the values of ``over`` laid over it, section by section."""
+    merged = dict(base)
+    for key, value in over.items():
+        below = merged.get(key)
+        merged[key] = merge(below, value) if isinstance(below, dict) and isinstance(value, dict) else value
+    return merged
+
+
+def read_toml(path: Path) -> Nested:
+    """The content of a TOML file.
+
+    Raises:
+        TableError: the file is missing, unreadable or not TOML.
+    """
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise TableError(f"{path}: cannot be read ({error.strerror or error})") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise TableError(f"{path}: not TOML: {error}") from None
+
+
+def validated(model: type[Model], values: Nested, source: str) -> Model:
+    """``values`` as a checked model.
+
+    Raises:
+        TableError: one sentence: the source and, for each wrong key, its path and what is allowed.
+    """
+    try:
+        return model.model_validate(values)
+    except ValidationError as error:
+        faults = "; ".join(_fault(model, dict(detail)) for detail in error.errors())
+        raise TableError(f"{source}: {faults}") from None
+
+
+def _fault(model: type[BaseModel], detail: Nested) -> str:
+    path = ".".join(str(part) for part in detail["loc"])
+    if detail["type"] == "extra_forbidden":
+        return f"{path} is not a known key"
+    if detail["type"] == "missing":
+        return f"{path} is missing"
+    message = str(detail["msg"]).removeprefix("Value error, ")
+    if detail["type"] == "value_error":
+        return f"{path}: {message}" if path else message
+    allowed = _allowed_range(model, detail["loc"])
+    hint = f"allowed is {allowed}" if allowed else f"{message[0].lower()}{message[1:]}"
+    return f"{path} = {detail['input']!r} is not allowed: {hint}"
+
+
+_BOUNDS = (("gt", "above"), ("ge", "at least"), ("lt", "below"), ("le", "at most"))
+
+
+def _allowed_range(model: type[BaseModel], location: tuple[int | str, ...]) -> str:
+    """What a number at this place may be, in words; empty where no bounds are known."""
+    owner: Any = model
+    for part in location[:-1]:
+        owner = getattr(getattr(owner, "model_fields", {}).get(part), "annotation", None)
+    field: Any = getattr(owner, "model_fields", {}).get(location[-1])
+    limits = getattr(field, "metadata", ())
+    bounds = {name: getattr(limit, name) for limit in limits for name, _ in _BOUNDS if hasattr(limit, name)}
+    if not bounds:
+        return ""
+    kind = "a whole number" if field.annotation is int else "a number"
+    return f"{kind} {' and '.join(f'{word} {bounds[name]:g}' for name, word in _BOUNDS if name in bounds)}"
