@@ -257,10 +257,10 @@ def test_no_random_frame_raises(frames):
 @pytest.mark.parametrize("hz", RATES)
 @pytest.mark.parametrize("shared", [True, False], ids=["shared", "per_coil"])
 def test_asked_in_every_tick_it_fires_as_often_as_the_limits_let_it(hz, shared):
-    """Requests in every tick for 1000 s: no pulse too many, and none too few."""
+    """Requests in every tick for 500 s: no pulse too many, and none too few."""
     limits = CoilLimits(hz, shared=shared)
     board, judge = CoilDriver(limits), Judge(hz, shared)
-    for tick in range(1000 * hz):
+    for tick in range(500 * hz):
         board.begin_tick(tick, 0.0)
         for coil in range(3):
             board.receive(CoilFire(3, coil, tick * 3 + coil & 0xFF, tick & 0xFF, 3000).encode())
@@ -268,6 +268,6 @@ def test_asked_in_every_tick_it_fires_as_often_as_the_limits_let_it(hz, shared):
     starts = [start for _, start, _ in judge.pulses]
     assert {end - start for _, start, end in judge.pulses} == {3}
     if shared:
-        assert starts == [100 + 103 * n for n in range(9)]
+        assert starts == [100 + 103 * n for n in range(4)]
     else:
-        assert starts == [100 + 103 * n + 3 * coil for n in range(9) for coil in range(3)]
+        assert starts == [100 + 103 * n + 3 * coil for n in range(4) for coil in range(3)]
