@@ -13,13 +13,13 @@ from fsw.core.orbit import Orbit, circular_orbit, sgp4_orbit
 from fsw.core.pulses import PulseConfig, pulse_timing
 from fsw.core.rates import RateGroup, RateTable
 from fsw.core.vector import inverse
+from fsw.io.schema import TableError
 from fsw.io.table import (
     CoilTable,
     ControlTable,
     FlightTable,
     ModesTable,
     OrbitTable,
-    TableError,
     TelemetryTable,
 )
 
