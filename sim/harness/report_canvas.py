@@ -5,14 +5,15 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from io import StringIO
+from typing import Any
 
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.path import Path
 from matplotlib.patches import PathPatch
-from matplotlib.ticker import FuncFormatter
+from matplotlib.path import Path
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -25,10 +26,13 @@ MORE_COLOURS = ("#cc79a7", "#e69f00", "#56b4e9")
 ECLIPSE = "#dde4ee"
 
 WIDTH_IN = 8.2
+LEFT_IN, RIGHT_IN, BOTTOM_IN = 0.72, 0.12, 0.42
+TITLE_IN, LEGEND_IN = 0.32, 0.19
+"""Margins: the same in all charts, so that their times stand under each other."""
 BINS = 700
 """Bins along a time axis; a longer history is drawn as the envelope of each."""
 
-_STYLE = {
+_STYLE: dict[Any, Any] = {
     "font.family": "sans-serif",
     "font.sans-serif": ["DejaVu Sans"],
     "font.size": 8.0,
@@ -57,6 +61,7 @@ _STYLE = {
     "legend.handlelength": 1.4,
     "legend.columnspacing": 1.4,
     "legend.borderaxespad": 0.2,
+    "legend.borderpad": 0.1,
     "figure.facecolor": "none",
     "axes.facecolor": "none",
     "savefig.facecolor": "none",
@@ -69,8 +74,9 @@ _STYLE = {
 @contextmanager
 def style() -> Iterator[None]:
     """The look of the report, whatever the user's own matplotlib settings are; they are left as they were."""
-    base = {key: value for key, value in matplotlib.rcParamsDefault.items() if key != "backend"}
-    with matplotlib.rc_context({**base, **_STYLE}):
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(_STYLE)
         yield
 
 
@@ -97,11 +103,28 @@ class TimeAxis:
         return t_s / self.unit_s
 
 
-def stacked(time: TimeAxis, heights_in: Sequence[float]) -> tuple[Figure, list[Axes]]:
-    """A figure of panels one over the other on one time axis, eclipses shaded."""
-    figure = Figure(figsize=(WIDTH_IN, sum(heights_in) + 0.32 * len(heights_in) + 0.2), layout="constrained")
-    grid = figure.subplots(len(heights_in), 1, sharex=True, squeeze=False, height_ratios=list(heights_in))
+def stacked(time: TimeAxis, heights_in: Sequence[float], legends: bool = True) -> tuple[Figure, list[Axes]]:
+    """A figure of panels one over the other on one time axis, eclipses shaded, with room for legends."""
+    count, inner_in = len(heights_in), sum(heights_in)
+    top_in = TITLE_IN + LEGEND_IN * legends
+    height_in = inner_in + top_in * count + BOTTOM_IN
+    figure = Figure(figsize=(WIDTH_IN, height_in))
+    grid = figure.subplots(
+        count,
+        1,
+        sharex=True,
+        squeeze=False,
+        height_ratios=list(heights_in),
+        gridspec_kw={
+            "left": LEFT_IN / WIDTH_IN,
+            "right": 1.0 - RIGHT_IN / WIDTH_IN,
+            "bottom": BOTTOM_IN / height_in,
+            "top": 1.0 - top_in / height_in,
+            "hspace": top_in * count / inner_in,
+        },
+    )
     panels = list(grid[:, 0])
+    figure.align_ylabels(panels)
     for panel in panels:
         panel.set_xlim(time.start_s / time.unit_s, time.end_s / time.unit_s)
         panel.margins(x=0.0)
@@ -119,7 +142,7 @@ def shade(
     colour: str = ECLIPSE,
     name: str = "eclipse",
 ) -> None:
-    """Bands over spans of time, between fractions ``low`` and ``high`` of the panel's height; one path for all."""
+    """Bands over spans of time, between two fractions of the panel's height; one path for all."""
     if not spans:
         return
     corners = []
@@ -157,22 +180,31 @@ def trace(panel: Axes, time: TimeAxis, t_s: Array, y: Array, label: str, colour:
 
 
 def legend(panel: Axes) -> None:
-    """A legend in one line over the panel, right; the title is left."""
+    """A legend in one line between panel and title; left, where a narrow screen shows it."""
     handles, labels = panel.get_legend_handles_labels()
-    panel.legend(handles, labels, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=max(1, len(labels)))
+    panel.legend(handles, labels, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=max(1, len(labels)))
+    panel.set_title(panel.get_title(loc="left"), pad=72.0 * LEGEND_IN + 6.0)
 
 
-def log_y(panel: Axes, *histories: Array, floor: float = 0.0) -> None:
-    """A logarithmic ordinate with plain numbers, down to ``floor`` of the largest value at most."""
+def log_y(panel: Axes, *histories: Array, decades: float) -> None:
+    """A logarithmic ordinate with plain numbers, over at most so many decades.
+
+    Without positive values, or with nearly equal ones, it stays linear. A short peak, such as when a filter
+    starts, may run out at the top.
+    """
     values = np.concatenate([history[np.isfinite(history) & (history > 0.0)] for history in histories])
     if len(values) == 0:
         return
-    top, bottom = float(values.max()), float(values.min())
+    top = min(float(values.max()), 5.0 * float(np.quantile(values, 0.995)))
+    bottom = max(float(values.min()), top / 10.0**decades)
+    if top / bottom < 4.0:
+        return
     panel.set_yscale("log")
-    panel.set_ylim(max(bottom, floor * top) / 1.3, top * 1.5)
+    panel.set_ylim(bottom / 1.3, top * 1.3)
+    few = top / bottom < 50.0
+    panel.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if few else (1.0,)))
     panel.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    panel.yaxis.set_minor_formatter(FuncFormatter(lambda value, _: ""))
-    panel.tick_params(axis="y", which="minor", length=0.0)
+    panel.yaxis.set_minor_locator(NullLocator())
 
 
 def svg(figure: Figure, prefix: str) -> str:
@@ -188,7 +220,7 @@ def svg(figure: Figure, prefix: str) -> str:
     for pattern, replacement in _SLIMMING:
         text = pattern.sub(replacement, text)
     text = re.sub(r'(id="|"#|url\(#)', rf"\g<1>{prefix}-", text)
-    return _DECIMALS.sub(_short, text).strip()
+    return _TAG.sub(lambda tag: _DECIMALS.sub(_short, tag[0]), text).strip()
 
 
 _SLIMMING = tuple(
@@ -204,6 +236,7 @@ _SLIMMING = tuple(
         (r"\s*\n\s*", "\n"),
     )
 )
+_TAG = re.compile(r"<[^>]*>")
 _DECIMALS = re.compile(r"-?\d+\.\d+(?:e-?\d+)?")
 
 

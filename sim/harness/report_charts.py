@@ -30,7 +30,7 @@ SETTLED_DEG = 5.0
 def modes(flown: Flown) -> Figure:
     """Which mode the controller was in."""
     time = flown.time
-    figure, (panel,) = stacked(time, (0.9,))
+    figure, (panel,) = stacked(time, (0.9,), legends=False)
     rows = len(Mode)
     for row, mode in enumerate(Mode):
         low, high = (row + 0.18) / rows, (row + 0.82) / rows
@@ -52,7 +52,7 @@ def pointing(flown: Flown) -> Figure:
     trace(panel, time, flown.t_s, axis1, "axis 1 from the vertical", AXES_COLOURS[0])
     trace(panel, time, flown.t_s, total, "whole attitude", INK, linewidth=1.2)
     panel.axhline(SETTLED_DEG, color=MUTED, linewidth=0.8, linestyle=(0, (4, 3)), label=f"{SETTLED_DEG:g}°")
-    log_y(panel, total, axis1, floor=2e-4)
+    log_y(panel, total, axis1, decades=3.5)
     panel.set_ylabel("angle [deg]")
     panel.set_title("Pointing error")
     legend(panel)
@@ -71,8 +71,9 @@ def rates(flown: Flown) -> Figure:
     legend(components)
     total = np.linalg.norm(omega, axis=1)
     trace(magnitude, time, flown.t_s, total, "magnitude", INK)
-    log_y(magnitude, total, floor=1e-4)
-    magnitude.set_ylabel("magnitude [mdeg/s]")
+    log_y(magnitude, total, decades=4.0)
+    magnitude.set_ylabel("rate [mdeg/s]")
+    magnitude.set_title("Their magnitude")
     return figure
 
 
@@ -87,7 +88,7 @@ def estimate(flown: Flown) -> Figure:
     for panel, (title, label, error, sigma3) in zip(panels, histories, strict=True):
         trace(panel, time, flown.t_s, error, "true error", AXES_COLOURS[0])
         trace(panel, time, flown.t_s, sigma3, "3σ of the filter", AXES_COLOURS[1], linewidth=1.3)
-        log_y(panel, error, sigma3, floor=1e-4)
+        log_y(panel, error, sigma3, decades=4.0)
         panel.set_ylabel(label)
         panel.set_title(title)
         legend(panel)
@@ -122,9 +123,8 @@ def torques(flown: Flown) -> Figure:
     for source, torque in found.items():
         label = source.replace("_", " ") + (", mean of 10 min" if source == "coils" else "")
         trace(panel, time, flown.t_s, torque, label, colours.get(source) or next(spare))
-    log_y(panel, *found.values(), floor=1e-5)
+    log_y(panel, *found.values(), decades=3.5)
     panel.set_ylabel("torque [µN m]")
     panel.set_title("Torques by source")
-    if found:
-        legend(panel)
+    legend(panel)
     return figure

@@ -5,15 +5,21 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.path import Path
 from matplotlib.patches import PathPatch
+from matplotlib.path import Path
+from matplotlib.ticker import MaxNLocator
 
 from sim.harness.audit_report import COILS, Pulse
 from sim.harness.report_canvas import (
     AXES_COLOURS,
     BINS,
+    BOTTOM_IN,
     INK,
+    LEFT_IN,
+    LEGEND_IN,
     LIMIT,
+    RIGHT_IN,
+    TITLE_IN,
     WIDTH_IN,
     Span,
     TimeAxis,
@@ -27,7 +33,7 @@ from sim.harness.report_flown import Flown
 ZOOM_S = 1200.0
 MARKS = 300
 """Marks of broken limits in a chart; a log of a board that broke loose may hold thousands."""
-BACKOFF = "#f3d9c4"
+BACKOFF = "#f7e3d3"
 _REACH = 0.42
 """Height of a bar of the highest level; lanes are 1 apart."""
 
@@ -35,7 +41,7 @@ _REACH = 0.42
 def raster(flown: Flown) -> Figure:
     """Every pulse of the flight: a lane a coil, a bar up or down by polarity, as high as its level."""
     time = flown.time
-    figure, (panel,) = stacked(time, (2.1,))
+    figure, (panel,) = stacked(time, (2.1,), legends=bool(flown.audit.violations))
     _lanes(panel, flown)
     bin_s = flown.length_s / (2 * BINS)
     for coil, colour in zip(COILS, AXES_COLOURS, strict=True):
@@ -46,15 +52,15 @@ def raster(flown: Flown) -> Figure:
         }
         centres = [(place * bin_s / time.unit_s, level) for place, level in sorted(bars)]
         _bars(panel, coil, [(x, x, level) for x, level in centres], colour, flown.audit.limits.max_level)
-    _violations(panel, flown, time)
     panel.set_title("Every pulse of the flight")
+    _violations(panel, flown, time)
     return figure
 
 
 def zoom(flown: Flown) -> Figure:
     """Twenty minutes with the most pulses: their lengths, and the back-off that each one starts."""
     time = flown.window(flown.busiest(ZOOM_S), min(ZOOM_S, flown.length_s))
-    figure, (panel,) = stacked(time, (2.3,))
+    figure, (panel,) = stacked(time, (2.3,), legends=bool(flown.audit.violations))
     _lanes(panel, flown)
     limits = flown.audit.limits
     backoff_s = limits.backoff_us / 1e6
@@ -77,8 +83,10 @@ def zoom(flown: Flown) -> Figure:
                 fontsize=6.5,
                 annotation_clip=True,
             )
+    panel.xaxis.set_major_locator(MaxNLocator(10, steps=[1, 2, 5, 10]))
+    part = f"The {ZOOM_S / 60.0:g} minutes with the most pulses" if flown.length_s > ZOOM_S else "The same"
+    panel.set_title(f"{part}, to scale, back-off shaded")
     _violations(panel, flown, time)
-    panel.set_title(f"{(time.end_s - time.start_s) / 60.0:.3g} minutes with the most pulses, back-off shaded")
     return figure
 
 
@@ -86,7 +94,8 @@ def duty(flown: Flown) -> Figure:
     """Duty over the orbit before each time, against what pulse length and back-off allow."""
     time, limits = flown.time, flown.audit.limits
     figure, (panel,) = stacked(time, (1.8,))
-    at_s = np.linspace(0.0, flown.length_s, 2 * BINS)
+    cycle_s = (limits.pulse_us + limits.backoff_us) / 1e6
+    at_s = np.linspace(min(5.0 * cycle_s, flown.length_s / 4.0), flown.length_s, 2 * BINS)
     coils = [100.0 * flown.duty(coil, at_s) for coil in COILS]
     for coil, colour in zip(COILS, AXES_COLOURS, strict=True):
         trace(panel, time, at_s, coils[coil], f"coil {coil}", colour)
@@ -106,8 +115,20 @@ def duty(flown: Flown) -> Figure:
 
 def gaps_and_levels(flown: Flown) -> Figure:
     """How long the gaps were against the back-off, and which levels were fired."""
-    figure = Figure(figsize=(WIDTH_IN, 2.5), layout="constrained")
-    gaps, levels = figure.subplots(1, 2, width_ratios=(3, 2))
+    height_in = 2.6
+    figure = Figure(figsize=(WIDTH_IN, height_in))
+    gaps, levels = figure.subplots(
+        1,
+        2,
+        width_ratios=(3, 2),
+        gridspec_kw={
+            "left": LEFT_IN / WIDTH_IN,
+            "right": 1.0 - RIGHT_IN / WIDTH_IN,
+            "bottom": BOTTOM_IN / height_in,
+            "top": 1.0 - (TITLE_IN + LEGEND_IN) / height_in,
+            "wspace": 0.18,
+        },
+    )
     _gaps(gaps, flown)
     _levels(levels, flown)
     return figure
@@ -119,7 +140,9 @@ def _gaps(panel: Axes, flown: Flown) -> None:
     least = float(np.clip(gaps_s.min(initial=limit_s / 2.0), 0.1, limit_s / 2.0))
     most = max(float(gaps_s.max(initial=0.0)), 2.0 * limit_s) * 1.001
     edges = np.unique((*np.geomspace(least, limit_s, 8)[:-1], limit_s, *np.geomspace(limit_s, most, 40)[1:]))
-    panel.hist(np.maximum(gaps_s, least), edges, color=AXES_COLOURS[0], edgecolor="white", linewidth=0.4)
+    counts, _ = np.histogram(np.maximum(gaps_s, least), edges)
+    panel.stairs(counts, edges, fill=True, color=AXES_COLOURS[0])
+    panel.yaxis.set_major_locator(MaxNLocator("auto", integer=True))
     panel.set_xscale("log")
     panel.set_xlim(edges[0], edges[-1])
     ticks = [t for t in (0.1, 1, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 1e4, 1e5) if least <= t <= most]
@@ -130,7 +153,7 @@ def _gaps(panel: Axes, flown: Flown) -> None:
     panel.grid(axis="x", visible=False)
     panel.set_xlabel("gap to the next pulse" + ("" if limits.shared else " of the same coil") + " [s]")
     panel.set_ylabel("count")
-    panel.set_title("Gaps")
+    panel.set_title(f"Gaps, least {gaps_s.min():.3f} s" if len(gaps_s) else "Gaps")
     legend(panel)
 
 
@@ -144,6 +167,7 @@ def _levels(panel: Axes, flown: Flown) -> None:
         panel.bar(places, heights, 0.27, color=colour, label=f"coil {coil}", linewidth=0.0)
     panel.set_xticks(list(shown), [f"{level:+d}" if level else "0" for level in shown])
     panel.grid(axis="x", visible=False)
+    panel.yaxis.set_major_locator(MaxNLocator("auto", integer=True))
     panel.set_xlabel("level")
     panel.set_ylabel("pulses")
     panel.set_title("Levels")

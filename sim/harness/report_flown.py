@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,8 @@ Array = NDArray[np.float64]
 
 DARK = 0.5
 """Less of the Sun than this is an eclipse."""
+ROUNDING = 1e-9
+"""What is left of a torque, by rounding of a mean, that is none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,18 +65,17 @@ class Flown:
     @property
     def time(self) -> TimeAxis:
         """The whole flight in orbits; a short one in minutes or seconds."""
-        eclipses = self.spans(self.truth["lit"] < DARK)
-        if self.length_s >= 0.75 * self.orbit_s:
-            label, unit_s = f"orbits of {self.orbit_s / 60.0:.1f} min", self.orbit_s
-        elif self.length_s >= 300.0:
-            label, unit_s = "minutes", 60.0
-        else:
-            label, unit_s = "seconds", 1.0
-        return TimeAxis(label, unit_s, 0.0, self.length_s, eclipses)
+        if self.length_s < 0.75 * self.orbit_s:
+            return self.window(0.0, self.length_s)
+        label = f"orbits of {self.orbit_s / 60.0:.1f} min"
+        return TimeAxis(label, self.orbit_s, 0.0, self.length_s, self.spans(self.truth["lit"] < DARK))
 
     def window(self, start_s: float, length_s: float) -> TimeAxis:
-        """A part of the flight, in minutes."""
-        return TimeAxis("minutes", 60.0, start_s, start_s + length_s, self.time.eclipses)
+        """A part of the flight, in minutes or seconds."""
+        label, unit_s = ("minutes", 60.0) if length_s >= 300.0 else ("seconds", 1.0)
+        eclipses = self.spans(self.truth["lit"] < DARK)
+        seen = tuple(span for span in eclipses if span[1] > start_s and span[0] < start_s + length_s)
+        return TimeAxis(f"{label} from the start", unit_s, start_s, start_s + length_s, seen)
 
     def spans(self, where: NDArray[np.bool_]) -> tuple[Span, ...]:
         """The spans of time, s, over which something is so at every tick."""
@@ -114,9 +116,10 @@ class Flown:
         return np.degrees(error)
 
     def sigma3_deg(self, first: int) -> Array:
-        """3 sqrt(tr P) of the three error states from ``first`` on: thrice the deviation the filter expects."""
+        """3 sqrt(tr P) of three error states, ``first`` and on: thrice the error the filter expects."""
         variances = [self.estimates.covariance[: self.ticks, i, i] for i in range(first, first + 3)]
-        return np.degrees(3.0 * np.sqrt(np.sum(variances, axis=0)))
+        result: Array = np.degrees(3.0 * np.sqrt(np.sum(variances, axis=0)))
+        return result
 
     def torques(self) -> dict[str, Array]:
         """Magnitude of the torque of each source that ever acts, N m.
@@ -128,11 +131,12 @@ class Flown:
             source = name.removeprefix("torque_body_nm/")
             if source != name and np.any(torque):
                 acts = _mean(torque, round(600.0 * self.tick_hz)) if source == "coils" else torque
-                found[source] = np.linalg.norm(acts, axis=1)
+                size = np.linalg.norm(acts, axis=1)
+                found[source] = np.where(size > ROUNDING * size.max(), size, np.nan)
         return found
 
     def duty(self, coil: int, at_s: Array) -> Array:
-        """Fraction of the orbit before each time, or of the time flown so far, for which a coil was driven."""
+        """Fraction of the orbit before each time, or of the flight so far, for which a coil was driven."""
         pulses = [pulse for pulse in self.audit.pulses if pulse.coil == coil]
         driven_s = _driven(pulses, at_s) - _driven(pulses, at_s - self.orbit_s)
         result: Array = driven_s / np.clip(at_s, 1.0 / self.tick_hz, self.orbit_s)
@@ -144,9 +148,7 @@ class Flown:
         gaps = []
         for group in groups:
             pulses = [pulse for pulse in self.audit.pulses if pulse.coil in group]
-            gaps += [
-                float(later.start_s - sooner.end_s) for sooner, later in zip(pulses, pulses[1:], strict=False)
-            ]
+            gaps += [float(later.start_s - sooner.end_s) for sooner, later in pairwise(pulses)]
         return np.array(gaps)
 
     def busiest(self, length_s: float) -> float:
@@ -154,7 +156,7 @@ class Flown:
         starts = np.array([float(pulse.start_s) for pulse in self.audit.pulses])
         if self.length_s <= length_s or len(starts) == 0:
             return 0.0
-        counts = np.searchsorted(starts, starts + 0.95 * length_s) - np.arange(len(starts))
+        counts = np.searchsorted(starts, starts + 0.9 * length_s) - np.arange(len(starts))
         begin = float(starts[int(np.argmax(counts))]) - 0.05 * length_s
         return min(max(begin, 0.0), self.length_s - length_s)
 
@@ -167,7 +169,8 @@ def _driven(pulses: Sequence[Pulse], at_s: Array) -> Array:
     lengths = edges[:, 1] - edges[:, 0]
     done = np.cumsum(lengths)
     known = np.stack((done - lengths, done), axis=1)
-    return np.interp(at_s, edges.ravel(), known.ravel())
+    result: Array = np.interp(at_s, edges.ravel(), known.ravel())
+    return result
 
 
 def _mean(vectors: Array, length: int) -> Array:

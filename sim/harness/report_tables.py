@@ -17,6 +17,8 @@ from sim.harness.summary import orbit_period_s
 Json = dict[str, Any]
 
 VIOLATIONS_SHOWN = 50
+EVENTS_OPEN = 12
+"""More events than these are folded away."""
 
 _TILES = (
     ("Pointing", ("pointing_deg", "rms_last_orbit"), "{:.2f}°", "RMS, last orbit"),
@@ -48,6 +50,12 @@ _FLIGHT = (
     ("Speed", ("realtime_factor",), "{:.0f} × real time"),
     ("Slips", ("slips",), "{:d}"),
 )
+_KNOWLEDGE = {"filter": "filter on the sensors", "perfect": "perfect, from the plant"}
+
+
+def section(anchor: str, title: str, content: str) -> str:
+    """A section of the page; the content is HTML."""
+    return f'<section id="{anchor}"><h2>{title}</h2>{content}</section>'
 
 
 def badges(summary: Json, run: Json, audit: AuditReport) -> str:
@@ -157,7 +165,8 @@ def events(summary: Json) -> str:
         for one in reported
     ]
     table = _table(("t [s]", "node", "severity", "event"), rows)
-    return f"<details{' open' if len(rows) <= 12 else ''}><summary>Events: {len(rows)}</summary>{table}</details>"
+    shown = " open" if len(rows) <= EVENTS_OPEN else ""
+    return f"<details{shown}><summary>Events: {len(rows)}</summary>{table}</details>"
 
 
 def versions(run: Json) -> str:
@@ -251,7 +260,7 @@ def _seconds(value: float | None) -> str:
     return "–" if value is None else seconds_text(value)
 
 
-def _find(summary: Json, keys: Sequence[str]) -> Any:
+def _find(summary: Json, keys: Sequence[str]) -> Any:  # noqa: ANN401
     found: Any = summary
     for key in keys:
         found = found.get(key) if isinstance(found, dict) else None
