@@ -426,6 +426,7 @@ def test_from_no_knowledge_both_vectors_give_the_covariance_of_the_q_method(row)
     np.testing.assert_allclose(ours, expected / np.outer(scale, scale), rtol=1e-6, atol=1e-6)
 
 
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # overflow is what is tried
 class TestGate:
     def boundary(self, config, before, sensitivity, sigma, direction):
         """The innovation along ``direction`` whose NIS is exactly one."""
@@ -507,6 +508,7 @@ class TestHealthy:
             covariance[index, index] = bad
             assert not mekf.healthy(make_estimate(make_config(), covariance))
 
+    @pytest.mark.filterwarnings("ignore::RuntimeWarning")
     def test_what_is_broken_off_the_diagonal_shows_after_one_prediction(self):
         config = make_config()
         for row, column in ((0, 1), (2, 7), (11, 3)):
