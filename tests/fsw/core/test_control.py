@@ -8,12 +8,12 @@ from fsw.core.estimator import UNKNOWN, Attitude
 from fsw.core.laws.damping import bdot_dipole, rate_damping_dipole
 from fsw.core.laws.pd import attitude_error, pd_dipole
 from fsw.core.quaternion import dcm, normalise
-from fsw.core.vector import ZERO
+from fsw.core.vector import ZERO, cross
 from fsw.wire.messages import Mode
 
 TICK_S = 0.25
-CONFIG = ControlConfig(law="pd", k_w=6.2694e6, k_a=1614.9, tick_s=TICK_S)
-DAMPING = ControlConfig(law="rate_damping", k_w=6.2694e6, k_a=1614.9, tick_s=TICK_S)
+CONFIG = ControlConfig(law="pd", k_w=6.2694e6, k_a=1614.9, spin_radps=0.0, tick_s=TICK_S)
+DAMPING = ControlConfig(law="rate_damping", k_w=6.2694e6, k_a=1614.9, spin_radps=0.0, tick_s=TICK_S)
 B_BODY_T = (1.7e-5, -2.3e-5, 3.1e-5)
 BEFORE = FieldSample((1.5e-5, -2.6e-5, 3.3e-5), tick=40)
 SAMPLE = FieldSample((1.6e-5, -2.4e-5, 3.2e-5), tick=44)
@@ -68,9 +68,31 @@ def test_law_by_mode(mode, config, attitude, expected):
 
 @pytest.mark.parametrize("law", POINTING_LAWS)
 def test_every_pointing_law_flies_and_is_silent_without_attitude(law):
-    config = ControlConfig(law, 1e6, 1e3, 1.0)
+    config = ControlConfig(law, k_w=1e6, k_a=1e3, spin_radps=0.0, tick_s=1.0)
     assert dipole(Mode.POINT, seen(), config) != ZERO
     assert dipole(Mode.POINT, seen(NOT_VALID), config) == ZERO
+
+
+class TestSpin:
+    """Rate damping holds a spin about body axis 1, relative to the orbital frame; other laws know of none."""
+
+    SPINNING = ControlConfig(law="rate_damping", k_w=6.2694e6, k_a=1614.9, spin_radps=0.02, tick_s=TICK_S)
+
+    def spinning_at(self, *omega):
+        return seen(KNOWN._replace(omega_body_orbit_radps=omega))
+
+    def test_the_rate_wanted_is_left_alone(self):
+        assert dipole(Mode.POINT, self.spinning_at(0.02, 0.0, 0.0), self.SPINNING) == pytest.approx(
+            ZERO, abs=1e-12
+        )
+
+    def test_the_difference_is_damped(self):
+        expected = rate_damping_dipole(B_BODY_T, (0.001 - 0.02, -0.002, 0.003), 6.2694e6)
+        assert dipole(Mode.POINT, self.spinning_at(0.001, -0.002, 0.003), self.SPINNING) == expected
+
+    def test_a_body_at_rest_is_spun_up(self):
+        m = dipole(Mode.POINT, self.spinning_at(0.0, 0.0, 0.0), self.SPINNING)
+        assert cross(m, B_BODY_T)[0] > 0.0
 
 
 class TestBdot:
