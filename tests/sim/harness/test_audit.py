@@ -87,12 +87,13 @@ def test_a_pulse_driven_one_tick_beyond_its_announced_end(judge, bus_log, fired)
     assert found(judge(log)) == [(Kind.PULSE, 110, 110, 0)]
 
 
-def test_a_pulse_that_announces_too_much_although_it_ends_in_time(judge, bus_log, fired):
+@pytest.mark.parametrize(("tick", "remaining_ms"), [(111, 2001), (112, 1001), (113, 1)])
+def test_a_pulse_that_announces_too_much_although_it_ends_in_time(judge, bus_log, fired, tick, remaining_ms):
     log = bus_log(1, 200, [fired(0, 110)])
-    log.change(111, remaining_ms=2001)
+    log.change(tick, remaining_ms=remaining_ms)
     report = judge(log)
     assert found(report) == [(Kind.ANNOUNCED, 110, 110, 0)]
-    assert "3.001 s" in str(report.violations[0])
+    assert "announces 3.001 s, which exceeds 3.000 s" in str(report.violations[0])
     assert report.max_pulse_s == 3.0
 
 
@@ -142,6 +143,14 @@ def test_a_second_request_that_follows_at_once_is_another_pulse(judge, bus_log, 
     assert found(report) == [(Kind.GAP, 101, 101, 0)]
 
 
+def test_a_second_request_shown_in_the_same_tick_is_another_pulse(judge, bus_log, fired):
+    log = bus_log(1, 200, [fired(0, 110)])
+    log.statuses[112].append(CoilStatus(1, 0, 0, 0, 0, 9).encode())
+    report = judge(log, shared=False)
+    assert found(report)[0] == (Kind.GAP, 111, 111, 0)
+    assert spans(report)[:2] == [(0, 110, 112), (0, 111, 112)]
+
+
 def test_limits_other_than_the_usual_are_judged_as_given(judge, bus_log, fired):
     log = bus_log(10, 500, [fired(0, 100, 1500), fired(1, 315, 1500)])
     assert judge(log, pulse_us=1_500_000, backoff_us=20_000_000).ok
@@ -156,9 +165,9 @@ def test_limits_other_than_the_usual_are_judged_as_given(judge, bus_log, fired):
 
 
 def test_a_pulse_99_s_after_a_boot_and_none_after_100_s(judge, bus_log, fired):
-    report = judge(bus_log(1, 400, [fired(0, 99), fired(1, 300)], boots=[0, 200]))
-    assert found(report) == [(Kind.BOOT, 99, 99, 0)]
-    assert "99.000 s after the boot" in str(report.violations[0])
+    report = judge(bus_log(1, 400, [fired(0, 199), fired(1, 350)], boots=[100, 250]))
+    assert found(report) == [(Kind.BOOT, 199, 199, 0)]
+    assert " 99.000 s after the boot" in str(report.violations[0])
 
 
 def test_without_a_boot_in_the_log_the_first_pulse_may_come_at_any_time(judge, bus_log, fired):
