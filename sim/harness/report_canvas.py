@@ -146,15 +146,26 @@ def shade(
     if not spans:
         return
     corners = []
-    for start_s, end_s in spans:
+    for start_s, end_s in _joined(spans, (time.end_s - time.start_s) / (4 * BINS)):
         left = max(start_s, time.start_s) / time.unit_s
         right = min(end_s, time.end_s) / time.unit_s
         corners += [(left, low), (left, high), (right, high), (right, low), (left, low)]
-    codes = [Path.MOVETO, Path.LINETO, Path.LINETO, Path.LINETO, Path.CLOSEPOLY] * len(spans)
+    codes = [Path.MOVETO, Path.LINETO, Path.LINETO, Path.LINETO, Path.CLOSEPOLY] * (len(corners) // 5)
     bands = PathPatch(Path(corners, codes), facecolor=colour, edgecolor="none", linewidth=0.0, zorder=0.2)
     bands.set_transform(panel.get_xaxis_transform())
     bands.set_gid(name)
     panel.add_artist(bands)
+
+
+def _joined(spans: Sequence[Span], least_s: float) -> list[Span]:
+    """Spans in order, those joined whose gap is too small to be seen."""
+    joined = [spans[0]]
+    for start_s, end_s in spans[1:]:
+        if start_s - joined[-1][1] < least_s:
+            joined[-1] = (joined[-1][0], max(end_s, joined[-1][1]))
+        else:
+            joined.append((start_s, end_s))
+    return joined
 
 
 def envelope(t: Array, y: Array) -> tuple[Array, Array]:

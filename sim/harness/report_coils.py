@@ -197,7 +197,7 @@ def _lanes(panel: Axes, flown: Flown) -> None:
 def _bars(
     panel: Axes, coil: int, edges: Iterable[tuple[float, float, int]], colour: str, max_level: int
 ) -> None:
-    """All bars of a coil as one path; an outline of 0.8 pt keeps the shortest visible."""
+    """All bars of a coil as one path; an outline, thin where there are many, keeps the shortest visible."""
     corners, codes = [], []
     for left, right, level in edges:
         low = _lane(coil)
@@ -209,7 +209,8 @@ def _bars(
             codes += [Path.LINETO, Path.LINETO, Path.CLOSEPOLY]
     if not corners:
         return
-    bars = PathPatch(Path(corners, codes), facecolor=colour, edgecolor=colour, linewidth=0.8, zorder=2)
+    width = 0.8 if len(corners) < 1000 else 0.4
+    bars = PathPatch(Path(corners, codes), facecolor=colour, edgecolor=colour, linewidth=width, zorder=2)
     bars.set_gid(f"pulses-{coil}")
     bars.set_clip_on(True)
     panel.add_patch(bars)

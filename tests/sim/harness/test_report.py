@@ -101,7 +101,7 @@ class Run:
     )
     violations: tuple[Violation, ...] = ()
     notes: tuple[str, ...] = ()
-    limits: AuditLimits = AuditLimits()
+    limits: AuditLimits = field(default_factory=AuditLimits)
     complete: bool = True
     refused: int = 0
     replay: dict[str, object] | None = field(
