@@ -1,0 +1,121 @@
+"""A satellite with its boards around the flight software: real frames, nothing zero, no two axes alike."""
+
+from dataclasses import fields, is_dataclass, replace
+from enum import Enum
+
+import numpy as np
+import pytest
+
+from fsw.core.state import Inbox
+from fsw.core.step import boot, step
+from fsw.io.config import flight_config
+from fsw.io.schema import merge
+from fsw.wire.messages import CLASSES, Sync
+from sim.harness.assemble import plant_config
+from sim.harness.scenario import flight_table, load
+from sim.plant.plant import Plant
+
+UNEVEN = {
+    "body": {"inertia_kgm2": [[1.02, 0.03, -0.02], [0.03, 1.85, 0.05], [-0.02, 0.05, 1.95]]},
+    "initial": {"axis": [0.5, -0.7, 0.4], "angle_deg": 25.0, "rate_degps": [0.05, -0.07, 0.04]},
+    "sensors": {
+        "magnetometer": {"bias_nt": [150.0, -250.0, 100.0], "misalignment_deg": [0.1, -0.2, 0.15]},
+        "sun": {"misalignment_deg": [0.1, 0.05, -0.1]},
+    },
+    "disturbance": {"torque_nm": [3e-8, -2e-8, 1e-8], "residual_dipole_am2": [0.003, 0.002, -0.004]},
+    "flight": {"modes": {"recover_s": 5.0, "settle_s": 20.0, "hold_s": 40.0, "lose_s": 30.0}},
+}
+
+
+class World:
+    """What the boards say at each tick, and what is answered them."""
+
+    def __init__(self, settings, seed):
+        scenario = load("microsat", merge(UNEVEN, settings))
+        self.config = flight_config(flight_table(scenario))
+        self.plant = Plant(plant_config(scenario, seed))
+        self.state = boot(self.config)
+
+    def inbox(self):
+        """Begins the next tick."""
+        *frames, sync = self.plant.begin_tick()
+        sync = Sync.decode(sync.data)
+        return Inbox(sync.tick, sync.unix_time_s, tuple(frames))
+
+    def step(self, change=lambda inbox: inbox):
+        """One tick, with what is changed between the boards and the flight software; its messages."""
+        self.state, outbox = step(self.state, change(self.inbox()), self.config)
+        for frame in outbox:
+            self.plant.receive(frame)
+        self.plant.end_tick()
+        return [CLASSES[frame.can_id].decode(frame.data) for frame in outbox]
+
+    def fly(self, ticks, change=lambda inbox: inbox):
+        """All messages of so many ticks, a list a tick."""
+        return [self.step(change) for _ in range(ticks)]
+
+
+@pytest.fixture(scope="session")
+def make_world():
+    """Makes a satellite; keywords are sections laid over the scenario."""
+
+    def make(seed=3, **settings):
+        return World(settings, seed)
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def without():
+    """Makes a change of inboxes that drops messages of some classes."""
+
+    def dropper(*classes):
+        ids = {message.ID for message in classes}
+        return lambda inbox: inbox._replace(frames=tuple(f for f in inbox.frames if f.can_id not in ids))
+
+    return dropper
+
+
+def leaves_of(value, path="state"):
+    """(path, leaf, rebuild) for every number in nested dataclasses, tuples and arrays.
+
+    ``rebuild(other)`` is the whole with that leaf replaced.
+    """
+    if is_dataclass(value):
+        for field in fields(value):
+            for name, leaf, rebuild in leaves_of(getattr(value, field.name), f"{path}.{field.name}"):
+                yield name, leaf, lambda new, f=field.name, r=rebuild: replace(value, **{f: r(new)})
+    elif isinstance(value, tuple):
+        names = getattr(value, "_fields", range(len(value)))
+        for index, name in enumerate(names):
+            for below, leaf, rebuild in leaves_of(value[index], f"{path}.{name}"):
+
+                def rebuilt(new, i=index, r=rebuild):
+                    parts = [*value[:i], r(new), *value[i + 1 :]]
+                    return type(value)(*parts) if hasattr(value, "_fields") else tuple(parts)
+
+                yield below, leaf, rebuilt
+    elif isinstance(value, np.ndarray):
+        for index in np.ndindex(value.shape):
+
+            def with_element(new, i=index):
+                changed = value.copy()
+                changed[i] = new
+                return changed
+
+            yield f"{path}{list(index)}", float(value[index]), with_element
+    else:
+        assert value is None or isinstance(value, bool | int | float | Enum), f"{path} is a {type(value)}"
+        yield path, value, lambda new: new
+
+
+@pytest.fixture(scope="session")
+def leaves():
+    """Every number in a nested value, with a way to replace it."""
+    return leaves_of
+
+
+@pytest.fixture(scope="session")
+def snapshot():
+    """Every number in a nested value by its path: compares what == cannot, arrays and nan included."""
+    return lambda value: {path: repr(leaf) for path, leaf, _ in leaves_of(value)}

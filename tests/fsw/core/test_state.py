@@ -1,0 +1,87 @@
+"""The checksum of the flight state: whatever bit of the state changes, it shows on the bus."""
+
+from copy import deepcopy
+from dataclasses import fields, replace
+from enum import Enum
+from math import nextafter
+
+import numpy as np
+import pytest
+
+from fsw.core.state import FlightState, checksum
+from fsw.core.step import boot
+
+
+@pytest.fixture(scope="module")
+def flown(make_world):
+    """A state in which everything has happened: ephemeris, estimate, a pulse, rejects."""
+    world = make_world()
+    world.fly(160)
+    state = world.state
+    assert state.estimator.estimate is not None
+    assert state.coil.fired_tick >= 0
+    assert any(state.pulses.owed_impulse_body_nms)
+    return state
+
+
+def nearest_other(leaf):
+    """The value that differs least: the last bit of a float, the next integer, the other truth."""
+    if isinstance(leaf, bool):
+        return not leaf
+    if isinstance(leaf, Enum):
+        return next(member for member in type(leaf) if member is not leaf)
+    return nextafter(leaf, 1e300) if isinstance(leaf, float) else leaf + 1
+
+
+def test_every_number_of_the_state_counts(flown, leaves):
+    before = checksum(flown)
+    blind = [
+        path for path, leaf, rebuild in leaves(flown) if checksum(rebuild(nearest_other(leaf))) == before
+    ]
+    assert blind == []
+
+
+def test_the_walk_reaches_every_field(flown, leaves):
+    """So that a field added to the state is in the test above by itself."""
+    paths = [path for path, *_ in leaves(flown)]
+    assert {path.split(".")[1] for path in paths} == {field.name for field in fields(FlightState)}
+    assert len(paths) == len(set(paths)) > 250
+
+
+def test_every_number_of_a_boot_state_counts_too(make_world, leaves):
+    state = boot(make_world().config)
+    before = checksum(state)
+    known = [(path, leaf, rebuild) for path, leaf, rebuild in leaves(state) if leaf is not None]
+    assert [path for path, leaf, rebuild in known if checksum(rebuild(nearest_other(leaf))) == before] == []
+
+
+def test_what_is_not_there_differs_from_what_is(flown):
+    without_estimate = replace(flown, estimator=replace(flown.estimator, estimate=None))
+    without_ephemeris = replace(flown, ephemeris=None)
+    sums = {checksum(state) for state in (flown, without_estimate, without_ephemeris)}
+    assert len(sums) == 3
+
+
+def test_numbers_that_change_places_are_noticed(flown):
+    """A sum over the numbers would not notice."""
+    one, other = ({"rejected": 7, "missed": 3}, {"rejected": 3, "missed": 7})
+    assert len({checksum(replace(flown, gate=replace(flown.gate, **counts))) for counts in (one, other)}) == 2
+
+
+def test_equal_states_have_equal_checksums(flown):
+    assert checksum(deepcopy(flown)) == checksum(flown)
+
+
+def test_the_layout_of_an_array_in_memory_does_not_count(flown):
+    known = flown.estimator.estimate
+    turned = replace(known, covariance=np.asfortranarray(known.covariance))
+    assert checksum(replace(flown, estimator=replace(flown.estimator, estimate=turned))) == checksum(flown)
+
+
+def test_it_has_32_bits(flown):
+    assert 0 <= checksum(flown) < 2**32
+
+
+def test_a_state_cannot_be_changed_in_place(flown):
+    with pytest.raises(AttributeError):
+        flown.tick = 5

@@ -1,0 +1,168 @@
+"""What fsw reports: values, saturation, counters, and events on changes alone."""
+
+from dataclasses import replace
+from math import nan
+
+import numpy as np
+import pytest
+
+from fsw.core import telemetry
+from fsw.core.estimator import UNKNOWN, Attitude, EstimatorState, Used
+from fsw.core.mekf import Estimate
+from fsw.core.modes import ModeState
+from fsw.core.monitors import Monitor
+from fsw.core.readings import NOTHING
+from fsw.core.step import boot
+from fsw.core.telemetry import COUNTED, FIRST_COUNTERS, SEVERITY, Event, Happening
+from fsw.wire.messages import (
+    CLASSES,
+    CoilFire,
+    CoilRefused,
+    FswBoot,
+    FswEvent,
+    FswHeartbeat,
+    Mode,
+    NavAttitude,
+    NavQuality,
+    NavRate,
+    Severity,
+    intact,
+)
+
+ATTITUDE = Attitude((0.8, 0.36, -0.288, 0.384), (0.011, -0.007, 0.005), 0.02, 3e-4, True)
+
+
+@pytest.fixture(scope="module")
+def state(make_world):
+    return replace(boot(make_world().config), modes=ModeState(Mode.POINT, trips=1))
+
+
+def decoded(message):
+    return type(message).decode(message.encode().data)
+
+
+class TestMessages:
+    def test_attitude_and_rate(self):
+        attitude, rate = (decoded(message) for message in telemetry.attitude_messages(ATTITUDE))
+        assert attitude[:4] == pytest.approx((1, 0.36, -0.288, 0.384), abs=2**-16)
+        assert rate[:4] == pytest.approx((1, 0.011, -0.007, 0.005), abs=2**-19)
+
+    def test_an_attitude_that_is_not_known_says_so(self):
+        attitude, rate = telemetry.attitude_messages(UNKNOWN)
+        assert (attitude.valid, rate.valid) == (0, 0)
+
+    @pytest.mark.parametrize("trips", [0, 1, 255, 256, 70000])
+    def test_quality(self, trips):
+        modes = ModeState(Mode.ACQUIRE, trips=trips)
+        message = decoded(telemetry.quality_message(ATTITUDE, modes, Used(True, False, True), lit=False))
+        assert message.mode == Mode.ACQUIRE
+        assert message.sigma3_attitude == pytest.approx(0.02, abs=2**-14)
+        assert message.sigma3_rate == pytest.approx(3e-4, abs=2**-22)
+        assert (message.mag_used, message.sun_used, message.mag_blanked) == (1, 0, 1)
+        assert (message.eclipse, message.estimate_valid) == (1, 1)
+        assert (message.tripped, message.trips) == (int(trips > 0), min(trips, 255))
+
+    def test_what_is_no_number_goes_out_as_the_end_of_the_range(self):
+        broken = Attitude((nan, nan, nan, nan), (nan, nan, nan), nan, nan, False)
+        attitude, rate = (decoded(message) for message in telemetry.attitude_messages(broken))
+        quality = decoded(telemetry.quality_message(broken, ModeState(), Used(False, False, False), lit=True))
+        assert attitude[:4] == (0, -1.0, -1.0, -1.0)
+        assert rate[:4] == (0, -0.125, -0.125, -0.125)
+        assert (quality.sigma3_attitude, quality.estimate_valid) == (0.0, 0)
+
+    @pytest.mark.parametrize(("rejects", "told"), [(0, 0), (65535, 65535), (65536, 65535), (10**9, 65535)])
+    def test_heartbeat(self, rejects, told):
+        message = decoded(telemetry.heartbeat_message(123456, ModeState(Mode.DETUMBLE), rejects))
+        assert (message.state, message.rejects) == (Mode.DETUMBLE, told)
+        assert (message.slips, message.tick) == (0, 123456 & 0xFFFF)
+
+    def test_boot(self):
+        frame = telemetry.boot_frame(0xCAFEF00D)
+        assert intact(frame)
+        assert FswBoot.decode(frame.data) == FswBoot(0, telemetry.CONTRACT_VERSION, 0xCAFEF00D, counter=0)
+
+
+class TestNumbering:
+    def test_each_message_counts_for_itself(self):
+        nav, rate, beat = NavAttitude(1, 0.1, 0.2, 0.3), NavRate(1, 0.0, 0.0, 0.0), FswHeartbeat(0, 0, 0, 0)
+        counters, seen = FIRST_COUNTERS, {NavAttitude.ID: [], NavRate.ID: [], FswHeartbeat.ID: []}
+        for tick in range(40):
+            frames, counters = telemetry.number([nav, rate] + [beat] * (tick % 5 == 0), counters)
+            for frame in frames:
+                assert intact(frame)
+                seen[frame.can_id].append(CLASSES[frame.can_id].decode(frame.data).counter)
+        assert seen[NavAttitude.ID] == seen[NavRate.ID] == [n % 16 for n in range(40)]
+        assert seen[FswHeartbeat.ID] == list(range(8))
+
+    def test_several_of_a_kind_in_one_tick(self):
+        event = FswEvent(0, 1, 2, 3)
+        frames, counters = telemetry.number([event] * 3, FIRST_COUNTERS)
+        assert [FswEvent.decode(frame.data).counter for frame in frames] == [0, 1, 2]
+        assert counters[COUNTED.index(FswEvent.ID)] == 3
+
+    def test_order_and_values_stay(self):
+        messages = [CoilFire(-2, 1, 5, 7, 3000), NavAttitude(1, 0.5, -0.25, 0.125)]
+        frames, _ = telemetry.number(messages, FIRST_COUNTERS)
+        assert [CLASSES[frame.can_id].decode(frame.data) for frame in frames] == messages
+
+    def test_all_that_fsw_sends_now_and_then_is_numbered(self):
+        assert len(set(COUNTED)) == len(COUNTED) == len(FIRST_COUNTERS)
+        assert set(COUNTED) == {
+            m.ID for m in (CoilFire, NavAttitude, NavRate, NavQuality, FswEvent, FswHeartbeat)
+        }
+
+
+class TestEvents:
+    def found(self, before, after, readings=NOTHING, violated=None):
+        return telemetry.happenings(before, after, readings, violated)
+
+    def test_nothing_happened(self, state):
+        assert self.found(state, replace(state, tick=7)) == []
+
+    def test_a_new_mode(self, state):
+        after = replace(state, modes=replace(state.modes, mode=Mode.ACQUIRE))
+        assert self.found(state, after) == [Happening(Event.MODE_CHANGED, Mode.ACQUIRE)]
+
+    def test_a_trip_is_told_with_its_monitor_before_the_mode_that_follows(self, state):
+        after = replace(state, modes=ModeState(Mode.SAFE, trips=2))
+        assert self.found(state, after, violated=Monitor.FIELD_FRESH) == [
+            Happening(Event.MONITOR_TRIPPED, Monitor.FIELD_FRESH),
+            Happening(Event.MODE_CHANGED, Mode.SAFE),
+        ]
+
+    def test_a_violation_that_lasts_is_told_once(self, state):
+        safe = replace(state, modes=ModeState(Mode.SAFE, trips=2))
+        assert self.found(safe, replace(safe, tick=8), violated=Monitor.FIELD_FRESH) == []
+
+    def test_the_filter_starts_and_restarts(self, state):
+        known = Estimate((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), np.eye(6))
+        running = replace(state, estimator=EstimatorState(known))
+        lost = replace(state, estimator=EstimatorState(None, restarts=1))
+        again = replace(state, estimator=EstimatorState(known, restarts=1))
+        assert self.found(state, running) == [Happening(Event.FILTER_STARTED, 0)]
+        assert self.found(running, running) == []
+        assert self.found(running, lost) == [Happening(Event.FILTER_RESTARTED, 1)]
+        assert self.found(lost, lost) == []
+        assert self.found(lost, again) == [Happening(Event.FILTER_STARTED, 1)]
+        assert self.found(running, again) == [Happening(Event.FILTER_RESTARTED, 1)]
+
+    def test_a_refusal_is_told_with_its_reason(self, state):
+        refused = NOTHING._replace(refused=CoilRefused(1, 9, 8, 0))
+        assert self.found(state, state, refused) == [Happening(Event.REQUEST_REFUSED, 8)]
+
+    @pytest.mark.parametrize("error_s", [1, -1, -86400])
+    def test_a_clock_that_is_off_is_told_when_it_changes(self, state, error_s):
+        off = replace(state, time_error_s=error_s)
+        assert self.found(state, off) == [Happening(Event.TIME_MISMATCH, error_s)]
+        assert self.found(off, off) == []
+        assert self.found(off, state) == [Happening(Event.TIME_MISMATCH, 0)]
+
+    def test_every_event_has_a_severity_and_fits_its_signal(self):
+        assert set(SEVERITY) == set(Event)
+        assert all(0 < event < 256 for event in Event)
+        assert SEVERITY[Event.MONITOR_TRIPPED] is Severity.ERROR
+
+    @pytest.mark.parametrize("argument", [0, 3, -1, -(2**31), 2**31 - 1])
+    def test_on_the_bus(self, argument):
+        message = decoded(telemetry.event_message(Happening(Event.TIME_MISMATCH, argument), tick=70003))
+        assert message == FswEvent(Severity.WARNING, Event.TIME_MISMATCH, 70003 & 0xFF, argument)
