@@ -1,0 +1,350 @@
+"""The flight loop: pure, ordered, bound to its tick, and safe when boards fall silent."""
+
+from copy import deepcopy
+
+import pytest
+
+from fsw.core.state import Inbox, checksum
+from fsw.core.step import boot, step
+from fsw.core.telemetry import Event
+from fsw.wire.messages import (
+    CLASSES,
+    CoilFire,
+    CoilRefused,
+    CoilStatus,
+    FswEvent,
+    FswHeartbeat,
+    MagField,
+    Mode,
+    NavAttitude,
+    NavQuality,
+    NavRate,
+    SunVector,
+    TickDone,
+    intact,
+)
+
+
+def of(kind, messages):
+    return [message for message in messages if isinstance(message, kind)]
+
+
+def events_of(ticks):
+    """(tick, event, argument) of every FSW_EVENT, by the tick in which it was sent."""
+    return [(tick, m.event, m.argument) for tick, said in enumerate(ticks) for m in of(FswEvent, said)]
+
+
+@pytest.fixture(scope="module")
+def flight(make_world):
+    """Three hundred undisturbed ticks: (config, inboxes, states before each, outboxes)."""
+    world, inboxes, states, outboxes = make_world(), [], [], []
+    for _ in range(300):
+        states.append(world.state)
+        inboxes.append(world.inbox())
+        world.state, outbox = step(world.state, inboxes[-1], world.config)
+        for frame in outbox:
+            world.plant.receive(frame)
+        world.plant.end_tick()
+        outboxes.append(outbox)
+    states.append(world.state)
+    return world.config, inboxes, states, outboxes
+
+
+class TestPurity:
+    def test_the_same_input_gives_the_same_output_twice(self, flight, snapshot):
+        config, inboxes, states, outboxes = flight
+        for tick in (0, 1, 99, 100, 101, 299):
+            again, outbox = step(states[tick], inboxes[tick], config)
+            assert outbox == outboxes[tick]
+            assert snapshot(again) == snapshot(states[tick + 1])
+
+    def test_what_goes_in_comes_out_unchanged(self, flight, snapshot):
+        """State, inbox and config, down to the arrays inside the filter."""
+        config, inboxes, states, _ = flight
+        estimator = config.estimator.mekf
+        arrays = {
+            name: getattr(estimator, name).copy()
+            for name in ("initial_covariance", "process_noise", "system")
+        }
+        for tick in (100, 250):
+            state, inbox = states[tick], inboxes[tick]
+            before, kept = snapshot(state), deepcopy(inbox)
+            step(state, inbox, config)
+            assert snapshot(state) == before
+            assert inbox == kept
+        for name, kept in arrays.items():
+            assert (getattr(estimator, name) == kept).all()
+
+    def test_a_whole_flight_can_be_flown_again_from_its_inboxes(self, flight, snapshot):
+        config, inboxes, states, outboxes = flight
+        state = boot(config)
+        for inbox, outbox in zip(inboxes, outboxes, strict=True):
+            state, again = step(state, inbox, config)
+            assert again == outbox
+        assert snapshot(state) == snapshot(states[-1])
+
+    def test_two_flights_at_once_do_not_disturb_each_other(self, flight, make_world):
+        config, inboxes, _, outboxes = flight
+        ours, other = boot(config), make_world(seed=11)
+        for inbox, outbox in zip(inboxes[:120], outboxes[:120], strict=True):
+            other.step()
+            ours, again = step(ours, inbox, config)
+            assert again == outbox
+
+
+class TestOutbox:
+    def test_tick_done_comes_last_once_and_names_tick_and_checksum(self, flight):
+        _, inboxes, states, outboxes = flight
+        for inbox, state, outbox in zip(inboxes, states[1:], outboxes, strict=True):
+            assert [frame.can_id == TickDone.ID for frame in outbox] == [False] * (len(outbox) - 1) + [True]
+            assert TickDone.decode(outbox[-1].data) == TickDone(inbox.tick, checksum(state))
+
+    def test_the_request_comes_first(self, flight):
+        *_, outboxes = flight
+        fires = [outbox for outbox in outboxes if any(frame.can_id == CoilFire.ID for frame in outbox)]
+        assert fires
+        assert all(outbox[0].can_id == CoilFire.ID for outbox in fires)
+
+    def test_every_frame_is_intact(self, flight):
+        *_, outboxes = flight
+        assert all(intact(frame) for outbox in outboxes for frame in outbox)
+
+    def test_reports_come_at_their_rates(self, flight):
+        *_, outboxes = flight
+        for tick, outbox in enumerate(outboxes):
+            ids = [frame.can_id for frame in outbox]
+            assert ids.count(NavAttitude.ID) == ids.count(NavRate.ID) == 1
+            assert ids.count(NavQuality.ID) == (tick % 10 == 0)
+            assert ids.count(FswHeartbeat.ID) == (tick % 60 == 0)
+
+    def test_each_message_s_counter_rises_by_one(self, flight):
+        *_, outboxes = flight
+        counters = {}
+        for outbox in outboxes:
+            for frame in outbox[:-1]:
+                counters.setdefault(frame.can_id, []).append(CLASSES[frame.can_id].decode(frame.data).counter)
+        assert len(counters) == 6
+        for counted in counters.values():
+            assert counted == [n % 16 for n in range(len(counted))]
+
+    def test_what_is_told_is_what_the_state_holds(self, flight):
+        _, _, states, outboxes = flight
+        for state, outbox in zip(states[1:], outboxes, strict=True):
+            messages = [CLASSES[frame.can_id].decode(frame.data) for frame in outbox]
+            (nav,), (rate,) = of(NavAttitude, messages), of(NavRate, messages)
+            assert nav[1:4] == pytest.approx(state.attitude.q_body_from_orbit[1:], abs=2**-16)
+            assert rate[1:4] == pytest.approx(state.attitude.omega_body_orbit_radps, abs=2**-19)
+            assert bool(nav.valid) is bool(rate.valid) is state.attitude.valid
+
+
+class TestTicks:
+    def test_a_tick_that_repeats_or_goes_back_is_counted_and_not_answered(self, flight):
+        config, inboxes, states, _ = flight
+        for tick in (150, 149, 0):
+            after, outbox = step(states[151], inboxes[tick], config)
+            assert outbox == ()
+            assert after.ignored_syncs == states[151].ignored_syncs + 1
+            assert after.tick == 150
+
+    def test_nothing_else_changes(self, flight, snapshot):
+        config, inboxes, states, _ = flight
+        after, _ = step(states[151], inboxes[150], config)
+        before, now = snapshot(states[151]), snapshot(after)
+        assert {path for path in before if before[path] != now[path]} == {"state.ignored_syncs"}
+
+    def test_the_flight_goes_on_after_it(self, flight):
+        """Only the count differs, and with it the checksum."""
+        config, inboxes, states, outboxes = flight
+        disturbed, _ = step(states[151], inboxes[150], config)
+        _, outbox = step(disturbed, inboxes[151], config)
+        assert outbox[:-1] == outboxes[151][:-1]
+        assert outbox[-1] != outboxes[151][-1]
+
+    def test_a_lost_sync_is_flown_over(self, make_world):
+        """The boards' frames of both ticks come with the second SYNC."""
+        world = make_world()
+        world.fly(150)
+        lost = world.inbox()
+        world.plant.end_tick()
+        said = world.step(lambda inbox: inbox._replace(frames=lost.frames + inbox.frames))
+        assert of(TickDone, said)[0].tick == 151
+        assert world.state.gate.rejected == world.state.gate.missed == 0
+        assert world.state.estimator.restarts == 0
+        assert world.state.attitude.valid
+        world.fly(20)
+        assert world.state.estimator.rejected_total == 0
+
+    def test_after_a_long_silence_the_filter_begins_anew(self, make_world):
+        world = make_world()
+        world.fly(150)
+        for _ in range(90):
+            world.inbox()
+            world.plant.end_tick()
+        said = world.step()
+        assert world.state.estimator.restarts == 1
+        assert (Event.FILTER_RESTARTED, 1) in [(m.event, m.argument) for m in of(FswEvent, said)]
+
+    def test_a_start_in_the_middle_of_a_flight_waits_out_a_full_back_off(self, make_world):
+        """fsw boots at tick 150 while the board is long ready: no request before tick 250."""
+        world = make_world()
+        for _ in range(150):
+            world.inbox()
+            world.plant.end_tick()
+        ticks = world.fly(160)
+        fires = [tick for tick, said in enumerate(ticks, 150) if of(CoilFire, said)]
+        assert fires
+        assert fires[0] >= 250
+
+    @pytest.mark.parametrize("error_s", [1, -3600])
+    def test_a_clock_that_is_off_is_an_event_and_nothing_more(self, flight, error_s):
+        config, inboxes, states, outboxes = flight
+        state, told, fires = states[100], [], []
+        for inbox in inboxes[100:130]:
+            state, outbox = step(state, inbox._replace(unix_time_s=inbox.unix_time_s + error_s), config)
+            told += [FswEvent.decode(f.data) for f in outbox if f.can_id == FswEvent.ID]
+            fires.append([f for f in outbox if f.can_id == CoilFire.ID])
+        assert [(m.event, m.argument) for m in told if m.event == Event.TIME_MISMATCH] == [
+            (Event.TIME_MISMATCH, error_s)
+        ]
+        assert fires == [[f for f in outbox if f.can_id == CoilFire.ID] for outbox in outboxes[100:130]]
+
+    def test_the_clock_at_a_higher_rate(self, make_world):
+        """unix_time_s = epoch + tick // tick_hz: at 4 Hz it stands for four ticks, and that is right."""
+        world = make_world(time={"tick_hz": 4})
+        assert [e for e in events_of(world.fly(41)) if e[1] == Event.TIME_MISMATCH] == []
+
+
+class TestEvents:
+    def test_of_an_undisturbed_flight(self, flight):
+        """Each change once, and nothing while it lasts."""
+        *_, outboxes = flight
+        told = [
+            (tick, message.event, message.argument)
+            for tick, outbox in enumerate(outboxes)
+            for message in (FswEvent.decode(f.data) for f in outbox if f.can_id == FswEvent.ID)
+        ]
+        assert told[0] == (0, Event.FILTER_STARTED, 0)
+        modes = [(tick, Mode(argument)) for tick, event, argument in told if event == Event.MODE_CHANGED]
+        assert modes[:2] == [(5, Mode.DETUMBLE), (26, Mode.ACQUIRE)]
+        assert len(told) == 1 + len(modes)
+
+    def test_a_refusal_is_told_with_its_reason(self, make_world):
+        world = make_world()
+        world.fly(10)
+        refused = CoilRefused(coil=1, seq=7, reason=8, tick=9, counter=4).encode()
+        said = world.step(lambda inbox: inbox._replace(frames=(*inbox.frames, refused)))
+        assert [(m.event, m.argument) for m in of(FswEvent, said)] == [(Event.REQUEST_REFUSED, 8)]
+        assert world.state.coil.refusals == 1
+        assert of(FswEvent, world.step()) == []
+
+
+class TestSilence:
+    STALE_S = 60
+
+    @pytest.mark.parametrize(
+        ("board", "monitor"), [(CoilStatus, 6), (MagField, 5)], ids=["coil driver", "magnetometer"]
+    )
+    def test_a_silent_board_leads_to_safe_and_no_pulse(self, make_world, without, board, monitor):
+        world = make_world()
+        world.fly(90)
+        assert world.state.modes.mode is not Mode.SAFE
+        ticks = world.fly(150, without(board))
+        after = [tick for tick, *_ in events_of(ticks)]
+        trips = [e for e in events_of(ticks) if e[1] == Event.MONITOR_TRIPPED]
+        assert trips == [(self.STALE_S - 1, Event.MONITOR_TRIPPED, monitor)]
+        assert (self.STALE_S - 1, Event.MODE_CHANGED, Mode.SAFE) in events_of(ticks)
+        assert max(after) == self.STALE_S - 1
+        assert world.state.modes.mode is Mode.SAFE
+        assert not any(of(CoilFire, said) for said in ticks[self.STALE_S - 1 :])
+
+    def test_without_coil_status_not_one_request_goes_out(self, make_world, without):
+        """Not even in the minute before the monitor trips, with both timers long run out."""
+        world = make_world()
+        world.fly(90)
+        assert not any(of(CoilFire, said) for said in world.fly(200, without(CoilStatus)))
+
+    def test_a_board_that_comes_back_is_trusted_again(self, make_world, without):
+        world = make_world()
+        world.fly(90)
+        world.fly(70, without(MagField))
+        assert world.state.modes.mode is Mode.SAFE
+        modes = [world.state.modes.mode for _ in range(40) if world.step()]
+        assert modes.index(Mode.DETUMBLE) == 5
+        assert world.state.modes.trips == 1
+
+    def test_the_third_time_it_stays_safe(self, make_world, without):
+        world = make_world()
+        world.fly(40)
+        for _ in range(3):
+            world.fly(70, without(MagField))
+            world.fly(40)
+        assert (world.state.modes.mode, world.state.modes.trips) == (Mode.SAFE, 3)
+        assert not any(of(CoilFire, said) for said in world.fly(200))
+        assert world.state.modes.mode is Mode.SAFE
+
+    def test_without_a_sun_sensor_the_flight_goes_on(self, make_world, without):
+        world = make_world()
+        world.fly(120)
+        world.fly(150, without(SunVector))
+        assert world.state.modes.trips == 0
+        assert world.state.attitude.valid
+
+    def test_without_any_board_from_the_start_nothing_is_ever_fired(self, make_world):
+        world = make_world()
+        ticks = world.fly(250, lambda inbox: inbox._replace(frames=()))
+        assert world.state.modes.mode is Mode.SAFE
+        assert world.state.estimator.estimate is None
+        assert not any(of(CoilFire, said) for said in ticks)
+        assert all(isinstance(said[-1], TickDone) for said in ticks)
+
+    def test_a_coil_that_drives_by_itself_leads_to_safe_at_once(self, make_world):
+        world = make_world()
+        world.fly(90)
+        rogue = CoilStatus(2, 1, 2000, 40, 103000, 0, counter=0)
+
+        def drive(inbox):
+            frames = [f for f in inbox.frames if f.can_id != CoilStatus.ID]
+            frames.append(rogue._replace(counter=inbox.tick & 0xF).encode())
+            return inbox._replace(frames=tuple(frames))
+
+        said = world.step(drive)
+        assert (Event.MONITOR_TRIPPED, 7) in [(m.event, m.argument) for m in of(FswEvent, said)]
+        assert world.state.modes.mode is Mode.SAFE
+
+
+class TestPerfectKnowledge:
+    def test_the_attitude_is_the_plant_s(self, make_world):
+        world = make_world(knowledge="perfect")
+        for _ in range(50):
+            truth = world.plant.truth()
+            world.step()
+            seen = world.state.attitude
+            assert seen.valid
+            assert seen.q_body_from_orbit == pytest.approx(truth.q_body_from_orbit, abs=3e-5)
+            assert seen.omega_body_orbit_radps == pytest.approx(truth.omega_body_orbit_radps, abs=2e-6)
+        assert world.state.estimator.estimate is None
+
+    def test_in_every_attitude_no_monitor_trips(self, make_world):
+        """Half turns too, where the wire's rounding makes the vector part longer than one."""
+        for axis in ([1.0, 1.0, 1.0], [0.6, -0.48, 0.64], [0.0, 0.0, 1.0], [-3.0, 1.0, 2.0]):
+            world = make_world(
+                knowledge="perfect", initial={"axis": axis, "angle_deg": 180.0, "rate_degps": [0.0, 0.0, 0.0]}
+            )
+            world.fly(30)
+            assert world.state.modes.trips == 0
+
+
+def test_an_orbit_that_has_decayed_leads_to_safe(make_world, decaying):
+    """A month on, SGP4 has no position for these elements any more: reported, safe, and no exception."""
+    world = make_world(orbit={"tle": list(decaying)})
+    world.fly(40)
+    assert world.state.modes.mode is not Mode.SAFE
+    tick = 30 * 86400
+    inbox = Inbox(tick, world.config.epoch_unix_s + tick, world.inbox().frames)
+    state, outbox = step(world.state, inbox, world.config)
+    assert state.modes.mode is Mode.SAFE
+    assert state.ephemeris is None
+    assert not state.attitude.valid
+    assert outbox[-1] == TickDone(tick, checksum(state)).encode()
+    told = [FswEvent.decode(frame.data) for frame in outbox if frame.can_id == FswEvent.ID]
+    assert (Event.MONITOR_TRIPPED, 8) in [(message.event, message.argument) for message in told]

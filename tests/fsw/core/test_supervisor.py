@@ -1,0 +1,75 @@
+"""Monitors and modes joined: what is watched comes from where it should, and its trip is carried out."""
+
+from dataclasses import replace
+
+import pytest
+
+from fsw.core.actuation import CoilView
+from fsw.core.estimator import UNKNOWN, Attitude
+from fsw.core.modes import ModeState
+from fsw.core.monitors import Monitor
+from fsw.core.pulses import Pulse
+from fsw.core.supervisor import supervise
+from fsw.wire.messages import Mode
+
+WELL = Attitude((0.5, -0.5, 0.5, 0.5), (0.01, -0.02, 0.03), 0.01, 1e-4, True)
+TICK = 159
+
+
+@pytest.fixture(scope="module")
+def world(make_world):
+    world = make_world()
+    world.fly(TICK + 1)
+    return world
+
+
+@pytest.fixture
+def supervised(world):
+    """The verdict on the flown state with changes, in POINT."""
+
+    def judge(attitude=WELL, tick=TICK, **changes):
+        state = replace(world.state, modes=ModeState(Mode.POINT), **changes)
+        return supervise(state, attitude, tick, world.config)
+
+    return judge
+
+
+def test_a_sound_state_stays_where_it_is(supervised):
+    assert supervised().violated is None
+    assert supervised().modes.mode is Mode.POINT
+    assert supervised(UNKNOWN).violated is None
+
+
+def test_the_attitude_is_the_one_of_this_tick(supervised):
+    spinning = WELL._replace(omega_body_orbit_radps=(0.0, 0.6, 0.0))
+    assert supervised(spinning).violated is Monitor.RATE_BOUNDED
+
+
+@pytest.mark.parametrize(
+    ("name", "monitor"), [("field_tick", Monitor.FIELD_FRESH), ("status_tick", Monitor.COIL_STATUS_FRESH)]
+)
+def test_freshness_is_counted_from_the_last_message(world, supervised, name, monitor):
+    stale = world.config.stale_after_ticks
+    assert supervised(tick=TICK, **{name: TICK - stale + 1}).violated is None
+    assert supervised(tick=TICK, **{name: TICK - stale}).violated is monitor
+
+
+def test_an_impulse_that_is_no_number_trips(world, supervised):
+    pulses = replace(world.state.pulses, owed_impulse_body_nms=(0.0, float("nan"), 0.0))
+    assert supervised(pulses=pulses).violated is Monitor.OWED_FINITE
+
+
+def test_a_coil_that_nobody_asked_for_trips(supervised):
+    driven = CoilView(driven_coil=1, driven_level=3)
+    assert supervised(coil=driven).violated is Monitor.COIL_AS_COMMANDED
+    asked = CoilView(driven_coil=1, driven_level=3, fired_tick=TICK - 1, fired=Pulse(1, 3))
+    assert supervised(coil=asked).violated is None
+
+
+def test_an_orbit_that_is_not_known_trips(supervised):
+    assert supervised(ephemeris=None).violated is Monitor.ORBIT_KNOWN
+
+
+def test_a_trip_leads_to_safe_in_the_same_tick_and_is_counted(supervised):
+    verdict = supervised(ephemeris=None)
+    assert (verdict.modes.mode, verdict.modes.trips, verdict.modes.since_tick) == (Mode.SAFE, 1, TICK)
