@@ -107,7 +107,7 @@ def what_was_flown(scenario: Scenario) -> str:
     left = (
         ("Orbit", _orbit(scenario)),
         ("Epoch", f"{datetime.fromtimestamp(scenario.epoch_unix_s, UTC):%Y-%m-%d %H:%M:%S} UTC"),
-        ("Geomagnetic field", f"{scenario.field.model}, degree {scenario.field.degree}"),
+        ("Geomagnetic field", _field(scenario)),
         ("Inertia", f"{_inertia(scenario)} kg m²"),
         ("Start", f"{scenario.initial.angle_deg:g}° about {_triple(scenario.initial.axis)}"),
         ("Start rate", f"{_triple(scenario.initial.rate_degps)} °/s"),
@@ -239,6 +239,11 @@ def _orbit(scenario: Scenario) -> str:
             f"elements of {orbit.tle[0][2:7].strip()}, inclination {float(orbit.tle[1][8:16]):.2f}°, {period}"
         )
     return f"circular, {orbit.altitude_km:g} km, inclination {orbit.inclination_deg:g}°, {period}"
+
+
+def _field(scenario: Scenario) -> str:
+    field = scenario.field
+    return f"igrf14, degree {field.degree}" if field.model == "igrf14" else field.model.replace("_", " ")
 
 
 def _inertia(scenario: Scenario) -> str:
