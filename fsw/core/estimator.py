@@ -6,7 +6,8 @@ from typing import NamedTuple
 from fsw.core import mekf
 from fsw.core.earth import MU_M3PS2
 from fsw.core.ephemeris import Reference
-from fsw.core.mekf import Estimate, MekfConfig
+from fsw.core.mekf import Estimate
+from fsw.core.mekf_config import MekfConfig
 from fsw.core.quaternion import canonical, conjugate, multiply, normalise, rotate
 from fsw.core.readings import Readings
 from fsw.core.triad import consistent, triad
@@ -102,24 +103,29 @@ def estimate(
         started = _start(field, sun, reference, config)
         return replace(state, estimate=started), Used(started is not None, started is not None, blanked)
 
-    after_field = (
-        mekf.update_field(current, field, reference.b_eci_t, config.mekf) if field is not None else None
-    )
-    current = after_field or current
-    after_sun = mekf.update_sun(current, sun, reference.sun_eci, config.mekf) if sun is not None else None
-    current = after_sun or current
-
-    used = Used(after_field is not None, after_sun is not None, blanked)
-    rejected = (field is not None and not used.field) + (sun is not None and not used.sun)
-    in_a_row = (
-        state.rejected_in_a_row + rejected
-        if rejected
-        else 0
-        if used.field or used.sun
-        else state.rejected_in_a_row
-    )
+    current, took_field, took_sun = _updated(current, field, sun, reference, config.mekf)
+    rejected = (field is not None and not took_field) + (sun is not None and not took_sun)
+    in_a_row = state.rejected_in_a_row + rejected
+    if not rejected and (took_field or took_sun):
+        in_a_row = 0
     moved = EstimatorState(current, in_a_row, state.rejected_total + rejected, state.restarts)
+    used = Used(took_field, took_sun, blanked)
     return (_restart(moved) if in_a_row >= config.restart_after_rejections else moved), used
+
+
+def _updated(
+    current: Estimate, field: Vec3 | None, sun: Vec3 | None, reference: Reference, config: MekfConfig
+) -> tuple[Estimate, bool, bool]:
+    """The estimate after what was measured, and whether field and Sun were taken."""
+    b, s = reference.b_eci_t, reference.sun_eci
+    if field is not None and sun is not None:
+        after_both = mekf.update_both(current, field, b, sun, s, config)
+        if after_both is not None:
+            return after_both, True, True
+    after_field = mekf.update_field(current, field, b, config) if field is not None else None
+    current = after_field or current
+    after_sun = mekf.update_sun(current, sun, s, config) if sun is not None else None
+    return after_sun or current, after_field is not None, after_sun is not None
 
 
 def attitude(state: EstimatorState, reference: Reference, config: EstimatorConfig) -> Attitude:

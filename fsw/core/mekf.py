@@ -17,13 +17,10 @@ from dataclasses import dataclass
 from math import isfinite
 
 import numpy as np
-from filterpy.kalman import ExtendedKalmanFilter
-from numpy.typing import NDArray
 
+from fsw.core.mekf_config import Layout, Matrix, MekfConfig
 from fsw.core.quaternion import Quaternion, from_small_rotation, multiply, normalise, rotate
-from fsw.core.vector import ZERO, Mat3, Vec3, add, cross, inverse, product, scale, skew, sub, transform
-
-Matrix = NDArray[np.float64]
+from fsw.core.vector import ZERO, Mat3, Vec3, add, cross, product, scale, skew, sub, transform
 
 MAX_VARIANCE = 1e6
 """Beyond it an estimate says nothing (1000 rad), and the algebra comes near the end of the numbers."""
@@ -41,120 +38,6 @@ class Estimate:
     mag_bias_t: Vec3
     torque_body_nm: Vec3
     covariance: Matrix
-
-
-@dataclass(frozen=True, slots=True)
-class Layout:
-    """Where the switchable parts of the error state begin; None where switched off."""
-
-    size: int
-    bias: int | None
-    torque: int | None
-
-
-@dataclass(frozen=True, slots=True)
-class MekfConfig:
-    """The filter's tuning and what is derived from it once.
-
-    ``process_noise`` is the covariance added per tick and ``system`` the constant part of the system matrix,
-    both (n, n); ``field_sensitivity`` and ``sun_sensitivity`` are the constant parts of H, (3, n), and
-    ``field_noise`` and ``sun_noise`` the measurement covariances, (3, 3). ``blank`` is a filter to copy.
-    """
-
-    inertia_kgm2: Mat3
-    inertia_inverse: Mat3
-    tick_s: float
-    layout: Layout
-    initial_covariance: Matrix
-    process_noise: Matrix
-    system: Matrix
-    field_sensitivity: Matrix
-    sun_sensitivity: Matrix
-    field_noise: Matrix
-    sun_noise: Matrix
-    gate_nis: float
-    blank: ExtendedKalmanFilter
-
-
-def layout(estimate_bias: bool, estimate_torque: bool) -> Layout:
-    """The layout of the error state with the parts that are switched on."""
-    bias = 6 if estimate_bias else None
-    torque = (9 if estimate_bias else 6) if estimate_torque else None
-    return Layout(size=6 + 3 * estimate_bias + 3 * estimate_torque, bias=bias, torque=torque)
-
-
-def mekf_config(
-    inertia_kgm2: Mat3,
-    tick_s: float,
-    *,
-    estimate_bias: bool,
-    estimate_torque: bool,
-    magnetometer_sigma_t: float,
-    sun_sigma_rad: float,
-    attitude_sigma_rad: float,
-    rate_sigma_radps: float,
-    bias_sigma_t: float,
-    torque_sigma_nm: float,
-    torque_noise_nm_rts: float,
-    bias_walk_t_prts: float,
-    torque_walk_nm_prts: float,
-    gate_nis: float,
-) -> MekfConfig:
-    """Prepare the filter.
-
-    Args:
-        inertia_kgm2: inertia tensor, body axes.
-        tick_s: length of a tick, s.
-        estimate_bias: carry the magnetometer bias.
-        estimate_torque: carry the disturbance torque.
-        magnetometer_sigma_t: standard deviation of a field component, T.
-        sun_sigma_rad: standard deviation of the Sun direction per tangential axis, rad.
-        attitude_sigma_rad: initial standard deviation, as are the next three.
-        rate_sigma_radps: rad/s.
-        bias_sigma_t: T.
-        torque_sigma_nm: N m.
-        torque_noise_nm_rts: white torque noise, N m sqrt(s).
-        bias_walk_t_prts: random walk of the bias, T / sqrt(s).
-        torque_walk_nm_prts: random walk of the torque, N m / sqrt(s).
-        gate_nis: largest normalised innovation squared that is taken.
-    """
-    parts = layout(estimate_bias, estimate_torque)
-    inverse_j = inverse(inertia_kgm2)
-    j_inverse = np.array(inverse_j)
-    rate_noise = torque_noise_nm_rts**2 * (j_inverse @ j_inverse.T)
-    noise = np.zeros((parts.size, parts.size))
-    noise[0:3, 0:3] = rate_noise * tick_s**3 / 3.0
-    noise[0:3, 3:6] = noise[3:6, 0:3] = rate_noise * tick_s**2 / 2.0
-    noise[3:6, 3:6] = rate_noise * tick_s
-    system = np.zeros((parts.size, parts.size))
-    system[0:3, 3:6] = np.eye(3)
-    variances = [attitude_sigma_rad**2] * 3 + [rate_sigma_radps**2] * 3
-    field_sensitivity = np.zeros((3, parts.size))
-    if parts.bias is not None:
-        here = slice(parts.bias, parts.bias + 3)
-        field_sensitivity[:, here] = np.eye(3)
-        noise[here, here] = np.eye(3) * bias_walk_t_prts**2 * tick_s
-        variances += [bias_sigma_t**2] * 3
-    if parts.torque is not None:
-        here = slice(parts.torque, parts.torque + 3)
-        noise[here, here] = np.eye(3) * torque_walk_nm_prts**2 * tick_s
-        system[3:6, here] = j_inverse
-        variances += [torque_sigma_nm**2] * 3
-    return MekfConfig(
-        inertia_kgm2=inertia_kgm2,
-        inertia_inverse=inverse_j,
-        tick_s=tick_s,
-        layout=parts,
-        initial_covariance=np.diag(variances),
-        process_noise=noise,
-        system=system,
-        field_sensitivity=field_sensitivity,
-        sun_sensitivity=np.zeros((3, parts.size)),
-        field_noise=np.eye(3) * magnetometer_sigma_t**2,
-        sun_noise=np.eye(3) * sun_sigma_rad**2,
-        gate_nis=gate_nis,
-        blank=_blank(parts.size),
-    )
 
 
 def start(q_body_from_eci: Quaternion, omega_body_radps: Vec3, config: MekfConfig) -> Estimate:
@@ -222,35 +105,42 @@ def update_field(estimate: Estimate, b_body_t: Vec3, b_eci_t: Vec3, config: Mekf
     """Take a magnetometer sample: z = b_measured - (C b_eci + bias). None when the gate rejects it."""
     predicted = rotate(estimate.q_body_from_eci, b_eci_t)
     innovation = sub(sub(b_body_t, predicted), estimate.mag_bias_t)
-    return _update(estimate, innovation, predicted, config.field_sensitivity, config.field_noise, config)
+    sensitivity = config.field_sensitivity.copy()
+    sensitivity[:, 0:3] = skew(predicted)
+    return _update(estimate, innovation, sensitivity, config.field_noise, config)
 
 
 def update_sun(estimate: Estimate, s_body: Vec3, s_eci: Vec3, config: MekfConfig) -> Estimate | None:
     """Take a Sun direction: z = s_measured - C s_eci. None when the gate rejects it."""
     predicted = rotate(estimate.q_body_from_eci, s_eci)
     innovation = sub(s_body, predicted)
-    return _update(estimate, innovation, predicted, config.sun_sensitivity, config.sun_noise, config)
+    sensitivity = config.sun_sensitivity.copy()
+    sensitivity[:, 0:3] = skew(predicted)
+    return _update(estimate, innovation, sensitivity, config.sun_noise, config)
 
 
-_NO_ERROR = np.zeros(3)
+def update_both(
+    estimate: Estimate, b_body_t: Vec3, b_eci_t: Vec3, s_body: Vec3, s_eci: Vec3, config: MekfConfig
+) -> Estimate | None:
+    """Take field and Sun in one update. None when it is in doubt that both pass the gate each by itself.
 
-
-def _blank(size: int) -> ExtendedKalmanFilter:
-    """A filter whose error state is zero. Its methods replace arrays and change none, so copies may share."""
-    ekf = ExtendedKalmanFilter(dim_x=size, dim_z=3)
-    ekf.x = np.zeros(size)  # filterpy's (n, 1) default would broadcast a flat z to (n, n)
-    return ekf
+    The NIS of a part is never above that of the whole, so the gate of one, applied to both, is the stricter.
+    """
+    q = estimate.q_body_from_eci
+    b_predicted, s_predicted = rotate(q, b_eci_t), rotate(q, s_eci)
+    innovation = (*sub(sub(b_body_t, b_predicted), estimate.mag_bias_t), *sub(s_body, s_predicted))
+    sensitivity = config.both_sensitivity.copy()
+    sensitivity[:, 0:3] = (*skew(b_predicted), *skew(s_predicted))
+    return _update(estimate, innovation, sensitivity, config.both_noise, config)
 
 
 def _update(
-    estimate: Estimate, innovation: Vec3, predicted: Vec3, constant: Matrix, noise: Matrix, config: MekfConfig
+    estimate: Estimate, innovation: tuple[float, ...], sensitivity: Matrix, noise: Matrix, config: MekfConfig
 ) -> Estimate | None:
-    """Take a vector measurement: H = [predicted x] in the attitude columns beside its constant part."""
-    sensitivity = constant.copy()
-    sensitivity[:, 0:3] = skew(predicted)
+    """The update of filterpy, judged by its own NIS and folded in."""
     ekf = copy(config.blank)
     ekf.P = estimate.covariance
-    ekf.update(np.array(innovation), lambda _: sensitivity, lambda _: _NO_ERROR, R=noise)
+    ekf.update(np.array(innovation), lambda _: sensitivity, lambda _: 0.0, R=noise)
     nis = float(ekf.y @ ekf.SI @ ekf.y)
     if not 0.0 <= nis <= config.gate_nis:  # overflow can make it -inf
         return None

@@ -7,7 +7,7 @@ from fsw.core.control import ControlConfig
 from fsw.core.ephemeris import ephemeris_model
 from fsw.core.estimator import EstimatorConfig
 from fsw.core.field import FieldKind
-from fsw.core.mekf import mekf_config
+from fsw.core.mekf_config import mekf_config
 from fsw.core.modes import TABLE, ModeConfig
 from fsw.core.orbit import Orbit, circular_orbit, sgp4_orbit
 from fsw.core.pulses import PulseConfig, pulse_timing

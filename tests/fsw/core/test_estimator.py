@@ -24,7 +24,7 @@ from fsw.core.estimator import (
     usable_field,
     usable_sun,
 )
-from fsw.core.mekf import mekf_config
+from fsw.core.mekf_config import mekf_config
 from fsw.core.quaternion import canonical, conjugate, multiply, normalise, rotate
 from fsw.core.readings import NOTHING
 from fsw.core.vector import ZERO, add, cross, norm, scale, unit

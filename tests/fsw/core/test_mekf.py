@@ -16,7 +16,8 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from fsw.core import mekf
-from fsw.core.mekf import Estimate, layout, mekf_config, predict, start, update_field, update_sun
+from fsw.core.mekf import Estimate, predict, start, update_both, update_field, update_sun
+from fsw.core.mekf_config import layout, mekf_config
 from fsw.core.quaternion import conjugate, multiply, normalise, rotate
 from fsw.core.vector import ZERO, norm, unit
 from sim.plant import torques
@@ -578,3 +579,34 @@ class TestObservability:
         assert np.linalg.norm(error) > radians(0.5)
         along = error / np.linalg.norm(error)
         assert np.linalg.norm(error) > 5.0 * np.sqrt(along @ estimate.covariance[0:3, 0:3] @ along)
+
+
+class TestBothAtOnce:
+    """Field and Sun in one update: what the two give one after the other, behind no laxer gate."""
+
+    @settings(max_examples=50)
+    @given(st.tuples(*[st.floats(-1.0, 1.0)] * 6))
+    def test_equals_one_after_the_other_to_first_order(self, offsets):
+        config = make_config()
+        estimate = start(Q, OMEGA, config)
+        b = np.array(rotate(Q, B_ECI_T)) + 2e-8 * np.array(offsets[:3])
+        s = np.array(rotate(Q, S_ECI)) + 1e-3 * np.array(offsets[3:])
+        both = update_both(estimate, tuple(b.tolist()), B_ECI_T, tuple(s.tolist()), S_ECI, config)
+        sooner = update_field(estimate, tuple(b.tolist()), B_ECI_T, config)
+        later = update_sun(sooner, tuple(s.tolist()), S_ECI, config)
+        turn = multiply(conjugate(both.q_body_from_eci), later.q_body_from_eci)
+        assert 2.0 * max(map(abs, turn[1:])) < 1e-5
+        np.testing.assert_allclose(both.mag_bias_t, later.mag_bias_t, atol=1e-3 * 3e-7)
+        sigma = np.sqrt(both.covariance.diagonal())
+        np.testing.assert_allclose(
+            both.covariance / np.outer(sigma, sigma), later.covariance / np.outer(sigma, sigma), atol=5e-3
+        )
+
+    @pytest.mark.parametrize("kind", ["neither", "field", "sun"])
+    def test_takes_neither_when_one_alone_is_far_off(self, kind):
+        config = make_config(attitude_sigma_rad=1e-4, rate_sigma_radps=1e-6)
+        estimate = start(Q, OMEGA, config)
+        b, s = rotate(Q, B_ECI_T), rotate(Q, S_ECI)
+        b = (b[0] + 5e-6, b[1], b[2]) if kind == "field" else b
+        s = (s[0], s[1] + 0.2, s[2]) if kind == "sun" else s
+        assert (update_both(estimate, b, B_ECI_T, s, S_ECI, config) is None) == (kind != "neither")
