@@ -36,13 +36,14 @@ def hear(view: CoilView, readings: Readings) -> CoilView:
         return replace(view, driven_level=0, refusals=refusals)
     lockout = list(view.lockout_ms)
     lockout[status.coil] = status.lockout_ms
-    return replace(
-        view,
+    return CoilView(
         lockout_ms=(lockout[0], lockout[1], lockout[2]),
         driven_coil=status.coil,
         driven_level=status.level,
         seq=status.seq,
         refusals=refusals,
+        fired_tick=view.fired_tick,
+        fired=view.fired,
     )
 
 

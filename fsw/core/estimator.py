@@ -136,10 +136,11 @@ def attitude(state: EstimatorState, reference: Reference, config: EstimatorConfi
     q = canonical(multiply(conjugate(reference.q_orbit_from_eci), known.q_body_from_eci))
     e3_body = rotate(q, (0.0, 0.0, 1.0))
     omega = sub(known.omega_body_radps, scale(reference.orbit_rate_radps, e3_body))
-    variances = known.covariance.diagonal()
-    sigma3_attitude = 3.0 * float(variances[0:3].max()) ** 0.5
-    sigma3_rate = 3.0 * float(variances[3:6].max()) ** 0.5
-    return Attitude(q, omega, sigma3_attitude, sigma3_rate, sigma3_attitude <= 3.0 * config.valid_sigma_rad)
+    variances: list[float] = known.covariance.diagonal().tolist()
+    sigma_attitude, sigma_rate = max(variances[0:3]) ** 0.5, max(variances[3:6]) ** 0.5
+    return Attitude(
+        q, omega, 3.0 * sigma_attitude, 3.0 * sigma_rate, sigma_attitude <= config.valid_sigma_rad
+    )
 
 
 def perfect_attitude(readings: Readings, before: Attitude) -> Attitude:

@@ -12,7 +12,7 @@ ties.
 Source: Tavares et al. (ConSat, PoSAT-1) for the limits; the modulator is this project's.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from fsw.core.vector import ZERO, Mat3, Vec3, cross, dot, norm, scale, sub, transform
@@ -85,7 +85,7 @@ def owe(state: PulseState, torque_body_nm: Vec3, b_body_t: Vec3, config: PulseCo
     size, limit = norm(owed), config.pulse_s * config.levels_am2[2] * norm(b_body_t)
     if size > limit:
         owed = scale(limit / size, owed)
-    return replace(state, owed_impulse_body_nms=owed)
+    return PulseState(state.ready_tick, state.busy_until, owed)
 
 
 def choose(state: PulseState, tick: int, b_body_t: Vec3, config: PulseConfig) -> Pulse | None:

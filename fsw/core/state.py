@@ -2,7 +2,6 @@
 
 import struct
 import zlib
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from fsw.core.actuation import CoilView
@@ -23,8 +22,7 @@ class Inbox(NamedTuple):
     frames: tuple[Frame, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class FlightState:
+class FlightState(NamedTuple):
     """Everything that fsw carries from one tick to the next.
 
     ``tick`` is -1 before the first SYNC; ``field_tick`` and ``status_tick`` are the last ticks with an

@@ -1,7 +1,5 @@
 """The flight loop as one pure function: gate, estimate, supervise, control, schedule, report."""
 
-from dataclasses import replace
-
 from fsw.core import control, pulses, telemetry
 from fsw.core.actuation import actuate, driven_dipole, hear
 from fsw.core.config import FlightConfig
@@ -37,7 +35,7 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     A SYNC that does not move the tick forward is counted and answered with nothing.
     """
     if inbox.tick <= state.tick:
-        return replace(state, ignored_syncs=state.ignored_syncs + 1), ()
+        return state._replace(ignored_syncs=state.ignored_syncs + 1), ()
     before, tick = state, inbox.tick
     state, readings = _gate(state, inbox, config)
     state, reference, used = _estimate(state, readings, tick - before.tick, config)
@@ -49,7 +47,7 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     pulse_state, coil, request = actuate(
         state.pulses, state.coil, mode, dipole, seen.b_body_t, fresh, tick, config.pulses
     )
-    state = replace(state, modes=verdict.modes, sample=seen.sample, pulses=pulse_state, coil=coil)
+    state = state._replace(modes=verdict.modes, sample=seen.sample, pulses=pulse_state, coil=coil)
     return _report(before, state, readings, used, reference, verdict, request, config)
 
 
@@ -57,11 +55,10 @@ def _gate(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Fligh
     """Take what the boards said; at the first tick start every timer in full."""
     tick = inbox.tick
     if state.tick < 0:
-        state = replace(state, pulses=pulses.boot(tick, config.pulses), field_tick=tick, status_tick=tick)
+        state = state._replace(pulses=pulses.boot(tick, config.pulses), field_tick=tick, status_tick=tick)
     readings, gate = admit(inbox.frames, state.gate)
     expected_s = config.epoch_unix_s + tick // config.tick_hz
-    heard = replace(
-        state,
+    heard = state._replace(
         tick=tick,
         field_tick=tick if readings.field is not None else state.field_tick,
         status_tick=tick if readings.coil is not None else state.status_tick,
@@ -77,18 +74,18 @@ def _estimate(
     state: FlightState, readings: Readings, elapsed_ticks: int, config: FlightConfig
 ) -> tuple[FlightState, Reference | None, Used]:
     if state.ephemeris is None:
-        return replace(state, attitude=UNKNOWN), None, NONE_USED
+        return state._replace(attitude=UNKNOWN), None, NONE_USED
     reference = reference_at(state.ephemeris, state.tick, config.ephemeris)
     if config.estimator.perfect:
         return (
-            replace(state, attitude=perfect_attitude(readings, state.attitude)),
+            state._replace(attitude=perfect_attitude(readings, state.attitude)),
             reference,
             NONE_USED,
         )
     driven = driven_dipole(state.coil, config.pulses)
     estimator, used = estimate(state.estimator, readings, reference, driven, elapsed_ticks, config.estimator)
     seen = attitude(estimator, reference, config.estimator)
-    return replace(state, estimator=estimator, attitude=seen), reference, used
+    return state._replace(estimator=estimator, attitude=seen), reference, used
 
 
 def _look(state: FlightState, readings: Readings, reference: Reference | None) -> Seen:
@@ -127,5 +124,5 @@ def _report(
     if config.rates.heartbeat.due(tick):
         messages.append(telemetry.heartbeat_message(tick, state.modes, state.gate.rejected))
     frames, sent = telemetry.number(messages, state.sent)
-    state = replace(state, sent=sent)
+    state = state._replace(sent=sent)
     return state, (*frames, TickDone(tick, checksum(state)).encode())

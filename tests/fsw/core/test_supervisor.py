@@ -28,7 +28,7 @@ def supervised(world):
     """The verdict on the flown state with changes, in POINT."""
 
     def judge(attitude=WELL, tick=TICK, **changes):
-        state = replace(world.state, modes=ModeState(Mode.POINT), **changes)
+        state = world.state._replace(modes=ModeState(Mode.POINT), **changes)
         return supervise(state, attitude, tick, world.config)
 
     return judge

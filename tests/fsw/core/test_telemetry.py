@@ -34,7 +34,7 @@ ATTITUDE = Attitude((0.8, 0.36, -0.288, 0.384), (0.011, -0.007, 0.005), 0.02, 3e
 
 @pytest.fixture(scope="module")
 def state(make_world):
-    return replace(boot(make_world().config), modes=ModeState(Mode.POINT, trips=1))
+    return boot(make_world().config)._replace(modes=ModeState(Mode.POINT, trips=1))
 
 
 def decoded(message):
@@ -117,28 +117,28 @@ class TestEvents:
         return telemetry.happenings(before, after, readings, violated)
 
     def test_nothing_happened(self, state):
-        assert self.found(state, replace(state, tick=7)) == []
+        assert self.found(state, state._replace(tick=7)) == []
 
     def test_a_new_mode(self, state):
-        after = replace(state, modes=replace(state.modes, mode=Mode.ACQUIRE))
+        after = state._replace(modes=replace(state.modes, mode=Mode.ACQUIRE))
         assert self.found(state, after) == [Happening(Event.MODE_CHANGED, Mode.ACQUIRE)]
 
     def test_a_trip_is_told_with_its_monitor_before_the_mode_that_follows(self, state):
-        after = replace(state, modes=ModeState(Mode.SAFE, trips=2))
+        after = state._replace(modes=ModeState(Mode.SAFE, trips=2))
         assert self.found(state, after, violated=Monitor.FIELD_FRESH) == [
             Happening(Event.MONITOR_TRIPPED, Monitor.FIELD_FRESH),
             Happening(Event.MODE_CHANGED, Mode.SAFE),
         ]
 
     def test_a_violation_that_lasts_is_told_once(self, state):
-        safe = replace(state, modes=ModeState(Mode.SAFE, trips=2))
-        assert self.found(safe, replace(safe, tick=8), violated=Monitor.FIELD_FRESH) == []
+        safe = state._replace(modes=ModeState(Mode.SAFE, trips=2))
+        assert self.found(safe, safe._replace(tick=8), violated=Monitor.FIELD_FRESH) == []
 
     def test_the_filter_starts_and_restarts(self, state):
         known = Estimate((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), np.eye(6))
-        running = replace(state, estimator=EstimatorState(known))
-        lost = replace(state, estimator=EstimatorState(None, restarts=1))
-        again = replace(state, estimator=EstimatorState(known, restarts=1))
+        running = state._replace(estimator=EstimatorState(known))
+        lost = state._replace(estimator=EstimatorState(None, restarts=1))
+        again = state._replace(estimator=EstimatorState(known, restarts=1))
         assert self.found(state, running) == [Happening(Event.FILTER_STARTED, 0)]
         assert self.found(running, running) == []
         assert self.found(running, lost) == [Happening(Event.FILTER_RESTARTED, 1)]
@@ -152,7 +152,7 @@ class TestEvents:
 
     @pytest.mark.parametrize("error_s", [1, -1, -86400])
     def test_a_clock_that_is_off_is_told_when_it_changes(self, state, error_s):
-        off = replace(state, time_error_s=error_s)
+        off = state._replace(time_error_s=error_s)
         assert self.found(state, off) == [Happening(Event.TIME_MISMATCH, error_s)]
         assert self.found(off, off) == []
         assert self.found(off, state) == [Happening(Event.TIME_MISMATCH, 0)]
