@@ -70,10 +70,21 @@ def _fault(model: type[BaseModel], detail: Nested) -> str:
     message = str(detail["msg"]).removeprefix("Value error, ")
     if detail["type"] == "value_error":
         return f"{path}: {message}" if path else message
-    allowed = _allowed_range(model, detail["loc"])
+    allowed = _allowed_range(model, detail["loc"]) or _KINDS.get(detail["type"], "")
     hint = f"allowed is {allowed}" if allowed else f"{message[0].lower()}{message[1:]}"
     return f"{path} = {detail['input']!r} is not allowed: {hint}"
 
+
+_KINDS = {
+    "model_type": "a section of keys",
+    "dict_type": "a section of keys",
+    "tuple_type": "a list",
+    "string_type": "a text",
+    "float_type": "a number",
+    "int_type": "a whole number",
+    "bool_type": "true or false",
+}
+"""What a value of the wrong type should have been."""
 
 _BOUNDS = (("gt", "above"), ("ge", "at least"), ("lt", "below"), ("le", "at most"))
 

@@ -7,7 +7,7 @@ of ``fsw/flight.toml``.
 import json
 import tomllib
 import zlib
-from datetime import UTC, datetime
+from datetime import UTC, date, datetime
 from decimal import Decimal
 from importlib import resources
 from math import ceil
@@ -19,6 +19,7 @@ from pydantic import Field, Strict, field_validator, model_validator
 from fsw.core.control import POINTING_LAWS
 from fsw.core.orbit import sgp4_orbit
 from fsw.core.vector import Mat3
+from fsw.io.inertia import check_inertia, three_numbers
 from fsw.io.schema import (
     Nested,
     NotNegative,
@@ -31,6 +32,9 @@ from fsw.io.schema import (
     validated,
 )
 
+CIRCULAR_KEYS = ("altitude_km", "inclination_deg", "raan_deg", "u0_deg")
+"""Keys of a circular orbit; the other kind has ``tle``."""
+
 
 class TimeTable(Section):
     """Tick rate and the time of tick 0; without ``epoch_utc`` the TLE's epoch, rounded up to a second."""
@@ -41,7 +45,7 @@ class TimeTable(Section):
     @field_validator("epoch_utc", mode="before")
     @classmethod
     def _from_toml_time(cls, value: object) -> object:
-        return value.isoformat() if isinstance(value, datetime) else value
+        return value.isoformat() if isinstance(value, date) else value
 
     @model_validator(mode="after")
     def _epoch_is_a_time(self) -> Self:
@@ -79,6 +83,14 @@ class BodyTable(Section):
     """Inertia tensor in body axes, kg m^2: three principal moments or 3 x 3."""
 
     inertia_kgm2: Triple | Square
+
+    @field_validator("inertia_kgm2", mode="before")
+    @classmethod
+    def _has_the_shape(cls, value: object) -> object:
+        rows = value if isinstance(value, list | tuple) else ()
+        if not (three_numbers(rows) or (len(rows) == 3 and all(three_numbers(row) for row in rows))):
+            raise ValueError("must be three principal moments or 3 x 3 numbers")
+        return value
 
     @model_validator(mode="after")
     def _is_an_inertia(self) -> Self:
@@ -235,25 +247,6 @@ def tle_epoch_unix_s(line1: str) -> int:
     return int(january.timestamp()) + ceil((day - 1) * 86400)
 
 
-def check_inertia(inertia_kgm2: Mat3) -> None:
-    """Check that a tensor can belong to a body.
-
-    Raises:
-        ValueError: not symmetric, or principal moments not positive or breaking the triangle inequality.
-    """
-    (a, h, g), (h2, b, f), (g2, f2, c) = inertia_kgm2
-    if (h, g, f) != (h2, g2, f2):
-        raise ValueError("inertia_kgm2 must be symmetric")
-    # J is possible exactly if tr(J)/2 I - J, the second moment of mass, has no negative eigenvalue, and J > 0
-    half = 0.5 * (a + b + c)
-    x, y, z = half - a, half - b, half - c
-    minors = (x, y, z, x * y - h * h, y * z - f * f, z * x - g * g)
-    determinant = x * (y * z - f * f) - h * (h * z + f * g) - g * (h * f + y * g)
-    slack = 1e-9 * half
-    if half <= 0.0 or min(minors) < -slack or determinant < -slack * half * half:
-        raise ValueError("inertia_kgm2 must be positive, no principal moment above the sum of the others")
-
-
 def default_values() -> Nested:
     """The content of ``fsw/flight.toml``."""
     return tomllib.loads(resources.files("fsw").joinpath("flight.toml").read_text(encoding="utf-8"))
@@ -265,7 +258,16 @@ def flight_table(values: Nested, source: str) -> FlightTable:
     Raises:
         TableError: naming ``source``, the keys and what is allowed.
     """
-    return validated(FlightTable, merge(default_values(), values), source)
+    return validated(FlightTable, lay_over(default_values(), values), source)
+
+
+def lay_over(base: Nested, over: Nested) -> Nested:
+    """``over`` laid over ``base`` section by section; an orbit of the other kind replaces the one below."""
+    below, above = base.get("orbit"), over.get("orbit")
+    if isinstance(below, dict) and isinstance(above, dict):
+        replaced = CIRCULAR_KEYS if "tle" in above else ("tle",) if above.keys() & set(CIRCULAR_KEYS) else ()
+        base = {**base, "orbit": {key: value for key, value in below.items() if key not in replaced}}
+    return merge(base, over)
 
 
 def load_flight_table(path: str | None) -> FlightTable:

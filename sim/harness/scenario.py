@@ -6,6 +6,7 @@ for instance an inertia that the controller believes and the plant does not have
 """
 
 import tomllib
+from datetime import UTC, datetime
 from importlib import resources
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -25,8 +26,6 @@ from fsw.io.schema import (
     validated,
 )
 from fsw.io.table import BodyTable, CoilTable, ControlTable, FlightTable, OrbitTable, TimeTable
-
-CIRCULAR_KEYS = ("altitude_km", "inclination_deg", "raan_deg", "u0_deg")
 
 
 class ScenarioTime(TimeTable):
@@ -149,10 +148,7 @@ def load(name_or_path: str, overrides: Nested | None = None) -> Scenario:
         TableError: not found, not TOML, or a key that is unknown, missing, of the wrong type or out of range.
     """
     values, source = _read(name_or_path)
-    overrides = overrides or {}
-    if set(overrides.get("orbit", {})) & set(CIRCULAR_KEYS):
-        values.get("orbit", {}).pop("tle", None)
-    scenario = validated(Scenario, merge(values, overrides), source)
+    scenario = validated(Scenario, onboard.lay_over(values, overrides or {}), source)
     flight_table(scenario, source)
     return scenario
 
@@ -166,14 +162,15 @@ def flight_table(scenario: Scenario, source: str = "scenario") -> FlightTable:
     shared = scenario.model_dump(
         include={
             "knowledge": True,
-            "orbit": {"tle", *CIRCULAR_KEYS},
+            "orbit": {"tle", *onboard.CIRCULAR_KEYS},
             "body": True,
             "coils": {"levels_am2", "pulse_s", "backoff_s", "backoff"},
             "control": True,
         },
         exclude_none=True,
     )
-    shared["time"] = {"tick_hz": scenario.time.tick_hz, "epoch_utc": scenario.time.epoch_utc}
+    epoch = datetime.fromtimestamp(scenario.epoch_unix_s, UTC)  # the plant's, whatever orbit is believed
+    shared["time"] = {"tick_hz": scenario.time.tick_hz, "epoch_utc": epoch.isoformat()}
     shared["field"] = {"model": scenario.field.model}
     shared["estimator"] = {
         "magnetometer_sigma_nt": _with_floor(scenario.sensors.magnetometer.noise_nt, FIELD_MODEL_ERROR_NT),
@@ -181,7 +178,8 @@ def flight_table(scenario: Scenario, source: str = "scenario") -> FlightTable:
     }
     defaults = onboard.default_values()
     defaults.pop("orbit")
-    return validated(FlightTable, merge(merge(defaults, shared), scenario.flight), f"{source}: [flight]")
+    values = onboard.lay_over(merge(defaults, shared), scenario.flight)
+    return validated(FlightTable, values, f"{source}: [flight]")
 
 
 FIELD_MODEL_ERROR_NT = 20.0

@@ -1,0 +1,41 @@
+"""Inertia tensors as a table may give them."""
+
+from math import isfinite
+
+from fsw.core.vector import Mat3, cross, dot, scale, transpose
+
+ROUNDING = 1e-9
+
+
+def three_numbers(value: object) -> bool:
+    """Whether a value from TOML is a list of three finite numbers."""
+    if not isinstance(value, list | tuple) or len(value) != 3:
+        return False
+    return all(isinstance(x, int | float) and not isinstance(x, bool) and isfinite(x) for x in value)
+
+
+def check_inertia(inertia_kgm2: Mat3) -> None:
+    """Check that a tensor can belong to a body.
+
+    J is possible exactly if tr(J)/2 I - J, the second moment of mass, has no negative eigenvalue, and J > 0.
+
+    Raises:
+        ValueError: not symmetric, or principal moments not positive or breaking the triangle inequality.
+    """
+    if inertia_kgm2 != transpose(inertia_kgm2):
+        raise ValueError("inertia_kgm2 must be symmetric")
+    first, second, third = inertia_kgm2
+    half = 0.5 * (first[0] + second[1] + third[2])
+    unit = 1.0 / half if half > 0.0 else 0.0
+    if not _possible((scale(unit, first), scale(unit, second), scale(unit, third))):
+        raise ValueError("inertia_kgm2 must be positive, no principal moment above the sum of the others")
+
+
+def _possible(inertia: Mat3) -> bool:
+    """Whether a symmetric tensor whose trace is 2 can belong to a body, up to rounding."""
+    (a, h, g), (_, b, f), (_, _, c) = inertia
+    x, y, z = 1.0 - a, 1.0 - b, 1.0 - c
+    minors = (x, y, z, x * y - h * h, y * z - f * f, z * x - g * g)
+    determinant = x * (y * z - f * f) - h * (h * z + f * g) - g * (h * f + y * g)
+    positive = dot(inertia[0], cross(inertia[1], inertia[2])) > ROUNDING
+    return positive and min(*minors, determinant) > -ROUNDING
