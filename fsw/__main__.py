@@ -5,9 +5,10 @@ import sys
 
 import click
 
-from fsw.io.bus import BusError, open_bus
+from fsw.io.bus import BusError
 from fsw.io.config import flight_config
 from fsw.io.node import FlightNode
+from fsw.io.open_bus import open_bus
 from fsw.io.runner import run
 from fsw.io.schema import TableError
 from fsw.io.table import FlightTable, load_flight_table

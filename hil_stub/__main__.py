@@ -5,7 +5,8 @@ from math import hypot, isfinite
 
 import click
 
-from fsw.io.bus import Bus, BusError, open_bus, resolve
+from fsw.io.bus import Bus, BusError
+from fsw.io.open_bus import open_bus, resolve
 from hil_stub.bench import Bench, CoilBoard, MagnetometerBoard, SunBoard, Vec3
 from hil_stub.coil_driver import CoilLimits
 

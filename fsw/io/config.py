@@ -51,7 +51,7 @@ def flight_config(table: FlightTable) -> FlightConfig:
             pulses=_pulses(table),
             modes=_modes(table.modes, tick_hz),
             rates=_rates(table.telemetry, tick_hz),
-            stale_after_ticks=ceil(table.modes.stale_after_s * tick_hz),
+            stale_after_ticks=_ticks(table.modes.stale_after_s, tick_hz),
         )
     except ValueError as error:
         raise TableError(f"flight table: {error}") from None
@@ -124,7 +124,7 @@ def _modes(modes: ModesTable, tick_hz: int) -> ModeConfig:
         "hold_s": modes.hold_s,
     }
     return ModeConfig(
-        dwell_ticks=tuple(ceil(dwell_s[row.dwell] * tick_hz) for row in TABLE),
+        dwell_ticks=tuple(_ticks(dwell_s[row.dwell], tick_hz) for row in TABLE),
         slow_radps=radians(modes.slow_degps),
         fast_radps=radians(modes.fast_degps),
         near_cosine=cos(radians(modes.near_deg)),
@@ -132,6 +132,11 @@ def _modes(modes: ModesTable, tick_hz: int) -> ModeConfig:
         axis_only=modes.axis_only,
         trips_to_stay_safe=modes.trips_to_stay_safe,
     )
+
+
+def _ticks(seconds: float, tick_hz: int) -> int:
+    """At least so long; 0.7 s at 10 Hz are 7 ticks, though 0.7 * 10 is a little more in floats."""
+    return ceil(seconds * tick_hz - 1e-9)
 
 
 def _rates(telemetry: TelemetryTable, tick_hz: int) -> RateTable:

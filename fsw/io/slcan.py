@@ -6,7 +6,7 @@ from pathlib import PurePath
 import can
 
 from fsw.io.bus import Bus, BusClosed, BusError
-from fsw.io.loop import frame_of, message_of
+from fsw.io.can_message import frame_of, message_of
 from fsw.wire.frame import Frame
 
 BITRATE = 500_000

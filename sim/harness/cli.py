@@ -78,7 +78,7 @@ def sil(
     settings: tuple[str, ...],
 ) -> None:
     """Fly SCENARIO: plant and flight software as two processes on a bus (virtual: in one)."""
-    from fsw.io.bus import resolve
+    from fsw.io.open_bus import resolve
     from sim.harness import run_dir
     from sim.harness.conclude import conclude
     from sim.harness.options import parse_pace

@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import click
 
-from fsw.io.bus import open_bus
 from fsw.io.config import flight_config
+from fsw.io.open_bus import open_bus
 from fsw.wire.frame import Frame
 from fsw.wire.messages import NAMES, PlantEnd
 from sim.harness import run_dir

@@ -8,10 +8,11 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
-from fsw.io.bus import Bus, resolve
+from fsw.io.bus import Bus
 from fsw.io.config import flight_config
 from fsw.io.hub import Hub
 from fsw.io.node import FlightNode
+from fsw.io.open_bus import resolve
 from sim.harness import run_dir
 from sim.harness.assemble import plant_config
 from sim.harness.flight import BusLog, FlightError, Pace, fly

@@ -7,7 +7,8 @@ from types import FrameType
 
 import click
 
-from fsw.io.bus import BusError, open_bus
+from fsw.io.bus import BusError
+from fsw.io.open_bus import open_bus
 from fsw.io.schema import TableError
 from sim.harness import run_dir
 from sim.harness.conclude import conclude

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from fsw.io.bus import open_bus
+from fsw.io.open_bus import open_bus
 from fsw.wire.messages import (
     CLASSES,
     CoilBoot,

@@ -14,9 +14,10 @@ from hypothesis import strategies as st
 
 from fsw.io import hub as hub_module
 from fsw.io import record
-from fsw.io.bus import BusClosed, BusError, open_bus
+from fsw.io.bus import BusClosed, BusError
 from fsw.io.hub import GREETING, Hub
 from fsw.io.link import LoopLink
+from fsw.io.open_bus import open_bus
 from fsw.wire.frame import Frame
 
 PATIENCE_S = 10.0
@@ -238,7 +239,7 @@ class TestEnding:
 def run_node(port, deeds):
     """A process that opens the bus and does ``deeds``."""
     program = (
-        "from fsw.io.bus import open_bus\n"
+        "from fsw.io.open_bus import open_bus\n"
         "from fsw.wire.frame import Frame\n"
         "numbered = lambda count: [Frame(0x123, n.to_bytes(4, 'big')) for n in range(count)]\n"
         f"bus = open_bus('loop:{port}')\n"

@@ -10,8 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fsw.io.bus import BusClosed, open_bus
-from fsw.io.loop import frame_of, message_of
+from fsw.io.bus import BusClosed
+from fsw.io.can_message import frame_of, message_of
+from fsw.io.open_bus import open_bus
 from fsw.io.slcan import PythonCan, open_slcan
 from fsw.wire.frame import Frame
 
