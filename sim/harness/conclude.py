@@ -11,7 +11,7 @@ from sim.harness.candump import LogEntry, read_log
 from sim.harness.check import limits_beside
 from sim.harness.estimates import EstimateRecorder
 from sim.harness.replay import Replay, replay
-from sim.harness.report import write_report
+from sim.harness.report.page import write_report
 from sim.harness.run_dir import Json
 from sim.harness.scenario import flight_table
 from sim.harness.summary import BusTally, summarise

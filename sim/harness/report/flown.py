@@ -11,7 +11,7 @@ from sim.harness.attitude_arrays import angle_rad, axis1_angle_rad, normal_in_bo
 from sim.harness.audit import AuditReport
 from sim.harness.audit_report import COILS, Pulse
 from sim.harness.estimates import Estimates
-from sim.harness.report_canvas import Span, TimeAxis
+from sim.harness.report.canvas import Span, TimeAxis
 from sim.harness.scenario import Scenario
 from sim.harness.summary import estimate_error, orbit_period_s
 from sim.harness.truth import Histories

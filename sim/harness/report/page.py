@@ -5,10 +5,10 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from sim.harness import report_tables as tables
 from sim.harness import run_dir
 from sim.harness.audit import AuditReport
 from sim.harness.estimates import Estimates
+from sim.harness.report import tables
 from sim.harness.scenario import Scenario
 from sim.harness.truth import Histories
 
@@ -26,7 +26,7 @@ def write_report(
     Raises:
         HarnessError: that ``run.json`` is damaged.
     """
-    from sim.harness.report_sections import charts  # noqa: PLC0415 matplotlib loads when something is drawn
+    from sim.harness.report.sections import charts  # noqa: PLC0415 matplotlib loads when something is drawn
 
     run = run_dir.read_run(path.parent) if (path.parent / run_dir.RUN).is_file() else {}
     sections = [
@@ -40,7 +40,7 @@ def write_report(
 
 
 def _page(header: str, sections: list[str], run: dict[str, Any]) -> str:
-    css = resources.files("sim.harness").joinpath("report.css").read_text(encoding="utf-8")
+    css = resources.files("sim.harness.report").joinpath("report.css").read_text(encoding="utf-8")
     title = header[header.index("<h1>") + 4 : header.index("</h1>")]
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'

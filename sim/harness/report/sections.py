@@ -5,14 +5,14 @@ from html import escape
 
 from matplotlib.figure import Figure
 
-from sim.harness import report_charts as charts_of
-from sim.harness import report_coils as coils
 from sim.harness.audit import AuditReport
 from sim.harness.audit_report import AuditLimits
 from sim.harness.estimates import Estimates
-from sim.harness.report_canvas import style, svg
-from sim.harness.report_flown import Flown
-from sim.harness.report_tables import section
+from sim.harness.report import charts as charts_of
+from sim.harness.report import coils
+from sim.harness.report.canvas import style, svg
+from sim.harness.report.flown import Flown
+from sim.harness.report.tables import section
 from sim.harness.scenario import Scenario
 from sim.harness.truth import Histories
 

@@ -16,9 +16,9 @@ from fsw.wire.messages import Mode
 from sim.harness.audit import AuditLimits, AuditReport, Kind
 from sim.harness.audit_report import Pulse, Violation
 from sim.harness.estimates import Estimates
-from sim.harness.report import write_report
-from sim.harness.report_canvas import BINS, envelope
-from sim.harness.report_flown import Flown
+from sim.harness.report.canvas import BINS, envelope
+from sim.harness.report.flown import Flown
+from sim.harness.report.page import write_report
 from sim.harness.scenario import Scenario, load
 from sim.harness.summary import BusTally, summarise
 from sim.harness.truth import Histories
@@ -568,9 +568,9 @@ def test_a_hundred_orbits_stay_small(tmp_path):
 
 def test_who_draws_nothing_does_not_wait_for_matplotlib():
     code = (
-        "import sys, sim.harness.report\n"
+        "import sys, sim.harness.report.page\n"
         "assert not [name for name in sys.modules if name.startswith('matplotlib')]\n"
-        "import sim.harness.report_sections\n"
+        "import sim.harness.report.sections\n"
         "assert 'matplotlib.pyplot' not in sys.modules\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True)

@@ -10,7 +10,7 @@ from matplotlib.path import Path
 from matplotlib.ticker import MaxNLocator
 
 from sim.harness.audit_report import COILS, Pulse
-from sim.harness.report_canvas import (
+from sim.harness.report.canvas import (
     AXES_COLOURS,
     BINS,
     BOTTOM_IN,
@@ -28,7 +28,7 @@ from sim.harness.report_canvas import (
     stacked,
     trace,
 )
-from sim.harness.report_flown import Flown
+from sim.harness.report.flown import Flown
 
 ZOOM_S = 1200.0
 MARKS = 300

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from fsw.wire.messages import Mode
-from sim.harness.report_canvas import (
+from sim.harness.report.canvas import (
     AXES_COLOURS,
     INK,
     LIMIT,
@@ -16,7 +16,7 @@ from sim.harness.report_canvas import (
     stacked,
     trace,
 )
-from sim.harness.report_flown import Flown
+from sim.harness.report.flown import Flown
 
 MODE_COLOURS = {
     Mode.SAFE: "#b3261e",
