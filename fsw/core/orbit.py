@@ -16,6 +16,9 @@ State = tuple[Vec3, Vec3]
 _UNIX_EPOCH_JD = 2440587.5
 _DAY_S = 86400.0
 
+MAX_KM = 50_000.0
+"""Far beyond any orbit of less than 225 minutes, where SGP4 goes without an error weeks past a decay."""
+
 _SATELLITE = r"[ 0-9A-Z][ 0-9]{4}"
 _ANGLE = r"(?:[0-9]{3}| [0-9]{2}|  [0-9])\.[0-9]{4}"
 _EXPONENTIAL = r"[ +-][0-9]{5}[+-][0-9]"
@@ -110,12 +113,12 @@ def circular_orbit(
 
 
 def state_eci(orbit: Orbit, unix_s: float) -> State | None:
-    """Position (m) and velocity (m/s) in eci, or None where SGP4 has no answer (a decayed orbit)."""
+    """Position (m) and velocity (m/s) in eci, or None where SGP4 has no sane answer (a decayed orbit)."""
     if isinstance(orbit, CircularOrbit):
         return _circular_state(orbit, unix_s)
     days, seconds = divmod(unix_s, _DAY_S)
     error, r_km, v_kmps = orbit.satellite.sgp4(_UNIX_EPOCH_JD + days, seconds / _DAY_S)
-    if error:
+    if error or not max(map(abs, r_km)) < MAX_KM:
         return None
     return (
         (1000.0 * r_km[0], 1000.0 * r_km[1], 1000.0 * r_km[2]),

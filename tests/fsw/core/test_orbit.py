@@ -53,6 +53,12 @@ def test_positions_do_not_depend_on_what_was_asked_before(tle):
     assert used == fresh
 
 
+@pytest.mark.parametrize("days", [60, 90, 400, 10_000])
+def test_long_after_its_decay_there_is_no_position_either(decaying, itamsat_epoch_unix_s, days):
+    """SGP4 itself reports no error there and gives 170 000 km and more."""
+    assert state_eci(sgp4_orbit(*decaying), itamsat_epoch_unix_s + 86400 * days) is None
+
+
 def test_a_decayed_orbit_has_no_position_and_says_so_without_raising(decaying):
     orbit = sgp4_orbit(*decaying)
     assert state_eci(orbit, TLE_EPOCH_UNIX_S + 86400.0) is not None
