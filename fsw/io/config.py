@@ -51,7 +51,7 @@ def flight_config(table: FlightTable) -> FlightConfig:
             pulses=_pulses(table),
             modes=_modes(table.modes, tick_hz),
             rates=_rates(table.telemetry, tick_hz),
-            stale_after_ticks=_ticks(table.modes.stale_after_s, tick_hz),
+            stale_after_ticks=max(1, _ticks(table.modes.stale_after_s, tick_hz)),
         )
     except ValueError as error:
         raise TableError(f"flight table: {error}") from None
@@ -135,7 +135,7 @@ def _modes(modes: ModesTable, tick_hz: int) -> ModeConfig:
 
 
 def _ticks(seconds: float, tick_hz: int) -> int:
-    """At least so long; 0.7 s at 10 Hz are 7 ticks, though 0.7 * 10 is a little more in floats."""
+    """At least so long; 1.1 s at 10 Hz are 11 ticks, though 1.1 * 10 is a little more in floats."""
     return ceil(seconds * tick_hz - 1e-9)
 
 
