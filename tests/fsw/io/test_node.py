@@ -1,0 +1,103 @@
+"""The flight node: collects what is on the bus, and answers each SYNC with one step."""
+
+import pytest
+
+from fsw.core.state import Inbox
+from fsw.core.step import boot, step
+from fsw.io.config import flight_config
+from fsw.io.node import KEPT_FRAMES, FlightNode
+from fsw.io.table import load_flight_table
+from fsw.wire.frame import EXTENDED_FLAG, Frame
+from fsw.wire.messages import FswBoot, MagField, PlantBoot, PlantEnd, SunVector, Sync, TickDone, intact
+
+FIELD = MagField(1, 20000.0, -7000.0, 31000.0).encode()
+SUN = SunVector(1, 0.6, -0.48, 0.64).encode()
+
+
+@pytest.fixture(scope="module")
+def config():
+    return flight_config(load_flight_table(None))
+
+
+@pytest.fixture
+def node(config):
+    return FlightNode(config)
+
+
+def sync(config, tick):
+    return Sync(tick, config.epoch_unix_s + tick).encode()
+
+
+def test_begins_with_fsw_boot_and_the_checksum_of_its_table(node, config):
+    frame = node.start()
+    assert intact(frame)
+    assert FswBoot.decode(frame.data).table_crc == config.table_crc
+
+
+def test_answers_nothing_before_sync(node):
+    assert node.receive(FIELD) == ()
+    assert node.receive(SUN) == ()
+    assert node.state.tick == -1
+
+
+def test_answers_sync_with_a_step_over_what_came_before_it(node, config):
+    node.receive(FIELD)
+    node.receive(SUN)
+    answer = node.receive(sync(config, 0))
+    state, expected = step(boot(config), Inbox(0, config.epoch_unix_s, (FIELD, SUN)), config)
+    assert answer == expected
+    assert node.state.gate == state.gate
+    assert TickDone.decode(answer[-1].data).tick == 0
+
+
+def test_what_came_before_one_sync_is_not_seen_at_the_next(node, config):
+    node.receive(FIELD)
+    node.receive(sync(config, 0))
+    node.receive(sync(config, 1))
+    assert node.state.field_tick == 0
+    assert node.state.tick == 1
+
+
+@pytest.mark.parametrize("change", [lambda f: f._replace(data=f.data[:-1]), lambda f: f._replace(data=b"")])
+def test_a_sync_of_the_wrong_length_is_no_sync(node, config, change):
+    assert node.receive(change(sync(config, 0))) == ()
+    node.receive(sync(config, 0))
+    assert node.state.gate.rejected == 1
+
+
+def test_an_extended_frame_under_sync_s_number_is_no_sync(node, config):
+    frame = sync(config, 0)
+    assert node.receive(frame._replace(can_id=frame.can_id | EXTENDED_FLAG)) == ()
+
+
+def test_a_sync_that_repeats_its_tick_is_answered_with_nothing(node, config):
+    assert node.receive(sync(config, 5))
+    assert node.receive(sync(config, 5)) == ()
+    assert node.receive(sync(config, 4)) == ()
+    assert node.state.ignored_syncs == 2
+
+
+def test_a_flood_is_bounded_and_counted(node, config):
+    for _ in range(KEPT_FRAMES + 500):
+        node.receive(Frame(0x7FF, b""))
+    assert len(node._inbox) == KEPT_FRAMES
+    node.receive(sync(config, 0))
+    assert node.state.gate.overrun == KEPT_FRAMES - 64
+    assert len(node._inbox) == 0
+
+
+def test_the_end_of_the_run_is_heard_when_it_is_intact(node):
+    end = PlantEnd(7).encode()
+    node.receive(end._replace(data=bytes((end.data[0] ^ 1,)) + end.data[1:]))
+    assert not node.ended
+    node.receive(end)
+    assert node.ended
+
+
+def test_a_plant_that_starts_is_heard_before_the_first_tick_alone(node, config):
+    start = PlantBoot(0, 1, 2).encode()
+    assert node.hears_plant_start(start)
+    assert not node.hears_plant_start(FIELD)
+    assert not node.hears_plant_start(start._replace(data=start.data[:-1] + b"\0"))
+    node.receive(sync(config, 0))
+    assert not node.hears_plant_start(start)
