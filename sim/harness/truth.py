@@ -93,12 +93,18 @@ def read_truth(path: Path) -> Histories:
     """
     try:
         with h5py.File(path, "r") as file:
-            flown = int(np.count_nonzero(np.isfinite(file["t_s"][:])))
             names = [name for name, *_ in COLUMNS]
             names += [f"torque_body_nm/{source}" for source in file["torque_body_nm"]]
-            return {name: file[name][:flown] for name in names}
+            histories = {name: file[name][:] for name in names}
     except (OSError, KeyError) as error:
         raise HarnessError(f"{path}: cannot be read as plant histories ({error})") from None
+    flown = min(map(_complete_rows, histories.values()))
+    return {name: history[:flown] for name, history in histories.items()}
+
+
+def _complete_rows(history: NDArray[np.float64]) -> int:
+    """Rows without NaN; where a flush was cut short, datasets differ in it."""
+    return int(np.isfinite(history.reshape(len(history), -1)).all(axis=1).sum())
 
 
 def _flat(row: TruthRow) -> tuple[float, ...]:
