@@ -97,9 +97,10 @@ def test_a_pulse_that_announces_too_much_although_it_ends_in_time(judge, bus_log
     assert report.max_pulse_s == 3.0
 
 
-def test_a_pulse_still_on_when_the_log_ends_is_judged_too(judge, bus_log, fired):
-    report = judge(bus_log(10, 1032, [fired(0, 1000, 3100)]))
-    assert found(report) == [(Kind.PULSE, 100, 1000, 0)]
+@pytest.mark.parametrize("sync", [True, False])
+def test_a_pulse_still_on_when_the_log_ends_is_judged_too(judge, bus_log, fired, sync):
+    report = judge(bus_log(10, 1032, [fired(0, 1000, 3100)], sync=sync))
+    assert found(report) == [(Kind.PULSE, 100, 1000 if sync else None, 0)]
 
 
 def test_a_pulse_cut_short_by_the_board_counts_only_as_driven(judge, bus_log, fired):
@@ -188,7 +189,13 @@ def test_a_boot_that_cannot_be_trusted_is_noted(judge, bus_log):
     log.statuses[5].insert(0, Frame(CoilBoot.ID, bytes(CoilBoot.LENGTH)))
     report = judge(log)
     assert report.ok
-    assert any("COIL_BOOT" in note for note in report.notes)
+    assert report.notes == ("1 COIL_BOOT with a wrong CRC or length: no boot",)
+
+
+def test_a_boot_counts_in_a_tick_with_two_statuses(judge, bus_log, fired):
+    log = bus_log(1, 200, [fired(0, 110)], boots=[50])
+    log.statuses[50] *= 2
+    assert found(judge(log)) == [(Kind.BOOT, 110, 110, 0)]
 
 
 # --- levels and coils

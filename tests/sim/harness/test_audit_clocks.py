@@ -5,9 +5,16 @@ from fractions import Fraction
 import pytest
 
 from fsw.wire.frame import Frame
-from fsw.wire.messages import Sync
+from fsw.wire.messages import NAMES, CoilStatus, Sync
 from sim.harness.audit import AuditLimits, Kind, audit
 from sim.harness.candump import LogEntry
+
+EPOCH_US = 1_427_513_417_000_000
+
+
+def every(period_us, statuses):
+    """The statuses as a log without SYNC."""
+    return [LogEntry(i + 1, i * period_us, "can0", status.encode()) for i, status in enumerate(statuses)]
 
 
 def found(report):
@@ -63,11 +70,25 @@ def test_one_microsecond_off_simulated_time_is_named_once(judge, bus_log):
     assert found(judge(log)) == [(Kind.TIMESTAMP, 5, 50, None)]
 
 
-@pytest.mark.parametrize("tick_hz", [3, 7, 64])
+@pytest.mark.parametrize("name", ["COIL_STATUS", "SYNC"])
+@pytest.mark.parametrize("first", [0, 1200])
+def test_a_single_frame_off_simulated_time_is_named(bus_log, name, first):
+    entries = [
+        entry._replace(timestamp_us=entry.timestamp_us + 20_000)
+        if entry.timestamp_us == EPOCH_US + 123_400_000 and NAMES[entry.frame.can_id] == name
+        else entry
+        for entry in bus_log(10, 1300).entries(first)
+    ]
+    report = audit(entries, AuditLimits())
+    assert found(report) == [(Kind.TIMESTAMP, Fraction("123.4"), 1234, None)]
+    assert f"timestamp of {name} is 0.020 s late" in str(report.violations[0])
+
+
+@pytest.mark.parametrize("tick_hz", [3, 6, 7, 64])
 @pytest.mark.parametrize("up", [0, 1])
 @pytest.mark.parametrize("sync", [True, False])
 def test_the_rounding_of_timestamps_to_microseconds_is_no_violation(judge, bus_log, fired, tick_hz, up, sync):
-    log = bus_log(tick_hz, 220 * tick_hz, [fired(0, 101), fired(1, 101 + 103 * tick_hz)], sync=sync)
+    log = bus_log(tick_hz, 220 * tick_hz, [fired(0, 102), fired(1, 102 + 103 * tick_hz)], sync=sync)
     inexact = [tick for tick in range(log.ticks) if tick * 1_000_000 % tick_hz]
     log.shifts_us = dict.fromkeys(inexact, up)
     assert judge(log).ok
@@ -104,6 +125,48 @@ def test_without_sync_the_most_common_spacing_is_the_period(bus_log, fired):
     assert (report.pulses[0].start_s, report.pulses[0].end_s) == (100, 103)
 
 
+@pytest.mark.parametrize("period_us", [400_000, 2_000_000, 999_000])
+def test_without_sync_the_period_need_not_be_a_whole_rate(period_us):
+    pulse = [CoilStatus(1, 2, 0, 0, 0, 1)] * (3_000_000 // period_us)
+    idle = CoilStatus(0, 0, 0, 0, 0, 1)
+    length_us = len(pulse) * period_us
+    statuses = [idle] * 5 + pulse + [idle] * 5
+    assert audit(every(period_us, statuses), AuditLimits(pulse_us=length_us)).ok
+    report = audit(every(period_us, statuses), AuditLimits(pulse_us=length_us - 1))
+    assert found(report) == [(Kind.PULSE, Fraction(4 * period_us, 1_000_000), None, 2)]
+
+
+def test_without_sync_statuses_within_half_a_period_are_of_one_tick():
+    idle, one, two = (CoilStatus(level, coil, 0, 0, 0, 1) for level, coil in [(0, 0), (1, 1), (1, 2)])
+    entries = every(1_000_000, [idle] * 5 + [one] + [idle] * 5)
+    for after_us, kinds in [
+        (0, [Kind.TWO_COILS]),
+        (500_000, [Kind.TWO_COILS]),
+        (500_001, [Kind.TWO_COILS, Kind.GAP]),
+    ]:
+        other = LogEntry(99, 5_000_000 + after_us, "can0", two.encode())
+        report = audit([*entries[:6], other, *entries[6:]], AuditLimits())
+        assert [one.kind for one in report.violations] == kinds
+        assert {one.coil for one in report.violations} == {2}
+
+
+def test_without_sync_a_coil_was_on_until_the_last_status_that_says_so():
+    idle, on = CoilStatus(0, 0, 0, 0, 0, 1), CoilStatus(1, 0, 0, 0, 0, 1)
+    entries = every(1_000_000, [idle] * 5 + [on] * 3 + [idle] * 5)
+    entries.insert(8, LogEntry(99, 7_100_000, "can0", on.encode()))
+    report = audit(entries, AuditLimits())
+    assert found(report) == [(Kind.PULSE, 4, None, 0)]
+    assert "pulse of 3.100 s" in str(report.violations[0])
+
+
+def test_without_sync_doubled_statuses_do_not_make_the_period_zero(bus_log, fired):
+    log = bus_log(1, 200, [fired(0, 110)], sync=False)
+    log.statuses = {tick: frames * 3 for tick, frames in log.statuses.items()}
+    report = audit(log.entries(), AuditLimits())
+    assert report.ok
+    assert (report.pulses[0].start_s, report.pulses[0].end_s) == (110, 113)
+
+
 # --- the tick rate
 
 
@@ -113,6 +176,8 @@ def test_the_tick_rate_of_a_log_that_starts_anywhere(bus_log, fired, tick_hz, fi
     log = bus_log(tick_hz, first + 12 * tick_hz, [fired(0, first + 5 * tick_hz, 3100)])
     report = audit(log.entries(first), AuditLimits())
     assert found(report) == [(Kind.PULSE, Fraction(first, tick_hz) + 5, first + 5 * tick_hz, 0)]
+    assert report.span_s == 12 - Fraction(1, tick_hz)
+    assert report.statuses == 12 * tick_hz
 
 
 def test_the_tick_rate_of_the_log_overrules_that_of_the_scenario(judge, bus_log, fired):
@@ -148,6 +213,24 @@ def test_a_log_too_short_to_tell_its_tick_rate_is_judged_by_the_scenarios(bus_lo
     assert found(audit(log.entries(), AuditLimits())) == [(Kind.GAP, Fraction("0.4"), None, 2)]
 
 
+@pytest.mark.parametrize(("stated", "tick_hz"), [(11, 11), (10, 10), (9, 10), (None, 10)])
+def test_of_several_tick_rates_that_fit_the_scenarios_is_taken_else_the_lowest(
+    bus_log, fired, stated, tick_hz
+):
+    log = bus_log(11, 13, [fired(1, 2, 100)])
+    report = audit(log.entries(without_sync={10}), AuditLimits(tick_hz=stated))
+    assert report.pulses[0].start_s == Fraction(2, tick_hz)
+
+
+@pytest.mark.parametrize("level", [3, 4])
+def test_what_comes_after_the_last_sync_is_judged(bus_log, fired, level):
+    entries = bus_log(1, 112, [fired(0, 110, level=level)]).entries()
+    assert NAMES[entries[-3].frame.can_id] == "COIL_STATUS"
+    report = audit(entries[:-2], AuditLimits())
+    assert found(report) == ([(Kind.LEVEL, 111, 111, 0)] if level == 4 else [])
+    assert len(report.pulses) == 1
+
+
 # --- SYNC itself
 
 
@@ -167,11 +250,12 @@ def test_ticks_that_jump_forward_to_hide_a_short_gap(bus_log, fired):
     assert not audit(entries, AuditLimits()).ok
 
 
-def test_ticks_that_go_back(bus_log):
-    entries = bus_log(1, 50).entries() + bus_log(1, 20).entries()
+def test_ticks_that_go_back(bus_log, fired):
+    entries = bus_log(1, 50, [fired(0, 48)]).entries() + bus_log(1, 20).entries(5)
     report = audit(entries, AuditLimits())
-    assert (Kind.SYNC, 0, 0, None) in found(report)
-    assert "SYNC goes back from tick 49 to tick 0" in "".join(map(str, report.violations))
+    assert (Kind.SYNC, 5, 5, None) in found(report)
+    assert "SYNC goes back from tick 49 to tick 5" in "".join(map(str, report.violations))
+    assert [(pulse.start_s, pulse.end_s) for pulse in report.pulses] == [(48, 49)]
 
 
 def test_a_sync_of_the_wrong_length(bus_log):
@@ -185,6 +269,9 @@ def test_syncs_that_fit_no_tick_rate(bus_log):
     for tick_hz in (None, 1):
         report = audit(entries, AuditLimits(tick_hz=tick_hz))
         assert {one.kind for one in report.violations} == {Kind.SYNC}
+    report = audit(entries, AuditLimits())
+    assert found(report) == [(Kind.SYNC, 0, None, None)]
+    assert "no tick rate" in str(report.violations[0])
 
 
 def test_nothing_is_judged_of_nothing():
