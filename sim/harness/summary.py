@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from fsw.wire.messages import CLASSES, NAMES, SENDERS, CoilRefused, Mode, intact
 from sim.harness.attitude_arrays import angle_rad, axis1_angle_rad, normal_in_body, relative
-from sim.harness.audit import AuditReport
+from sim.harness.audit.auditor import AuditReport
 from sim.harness.candump import LogEntry
 from sim.harness.estimates import Estimates
 from sim.harness.scenario import Scenario
@@ -153,14 +153,15 @@ def _estimate(truth: Histories, estimates: Estimates, tick_hz: int) -> Json:
     if first is None:
         return {}
     error_deg, lit = error_deg[first:], truth["lit"][first:] > 0.5
+    known = np.isfinite(error_deg)  # a filter that begins anew knows nothing for a while
     consistency = nees(truth, estimates)[first:]
     result: Json = {
         "estimate_deg": {
             key: float(np.sqrt(np.mean(error_deg[where] ** 2)))
-            for key, where in (("rms_sunlit", lit), ("rms_eclipse", ~lit))
+            for key, where in (("rms_sunlit", lit & known), ("rms_eclipse", ~lit & known))
             if where.any()
         }
-        | {"max": float(np.nanmax(error_deg))},
+        | {"max": float(error_deg[known].max())},
         "converged_at_s": first / tick_hz,
     }
     if np.isfinite(consistency).any():
