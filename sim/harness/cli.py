@@ -133,7 +133,7 @@ def replay(
 @sentences
 def check(run_or_log: Path, backoff: str | None) -> int:
     """Audit the actuator limits in a candump log, independently of the controller."""
-    from sim.harness.check import check, render
+    from sim.harness.audit.check import check, render
 
     report = check(run_or_log, backoff)
     click.echo(render(report))

@@ -6,9 +6,9 @@ from pathlib import Path
 from fsw.core.state import FlightState
 from fsw.io.config import flight_config
 from sim.harness import run_dir
-from sim.harness.audit import audit
+from sim.harness.audit.auditor import audit
+from sim.harness.audit.check import limits_beside
 from sim.harness.candump import LogEntry, read_log
-from sim.harness.check import limits_beside
 from sim.harness.estimates import EstimateRecorder
 from sim.harness.replay import Replay, replay
 from sim.harness.report.page import write_report

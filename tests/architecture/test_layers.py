@@ -235,7 +235,7 @@ PLANTED = {
     "fsw/io/node.py": ("import sim.plant.plant", "fsw.io.node -> sim.plant.plant"),
     "fsw/core/modes.py": ("def f():\n    import hil_stub.interlock", "fsw.core.modes -> hil_stub.interlock"),
     "hil_stub/interlock.py": ("from fsw.core import pulses", "hil_stub.interlock -> fsw.core.pulses"),
-    "sim/plant/plant.py": ("import sim.harness.audit", "sim.plant.plant -> sim.harness.audit"),
+    "sim/plant/plant.py": ("import sim.harness.audit.auditor", "sim.plant.plant -> sim.harness.audit"),
     "sim/plant/field.py": ("import fsw.core.igrf", "sim.plant.field -> fsw.core.igrf"),
 }
 

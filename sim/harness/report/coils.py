@@ -9,7 +9,7 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from matplotlib.ticker import MaxNLocator
 
-from sim.harness.audit_report import COILS, Pulse
+from sim.harness.audit.findings import COILS, Pulse
 from sim.harness.report.canvas import (
     AXES_COLOURS,
     BINS,

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.harness.attitude_arrays import angle_rad, axis1_angle_rad, normal_in_body
-from sim.harness.audit import AuditReport
-from sim.harness.audit_report import COILS, Pulse
+from sim.harness.audit.auditor import AuditReport
+from sim.harness.audit.findings import COILS, Pulse
 from sim.harness.estimates import Estimates
 from sim.harness.report.canvas import Span, TimeAxis
 from sim.harness.scenario import Scenario

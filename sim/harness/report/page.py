@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from sim.harness import run_dir
-from sim.harness.audit import AuditReport
+from sim.harness.audit.auditor import AuditReport
 from sim.harness.estimates import Estimates
 from sim.harness.report import tables
 from sim.harness.scenario import Scenario

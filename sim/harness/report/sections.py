@@ -5,8 +5,8 @@ from html import escape
 
 from matplotlib.figure import Figure
 
-from sim.harness.audit import AuditReport
-from sim.harness.audit_report import AuditLimits
+from sim.harness.audit.auditor import AuditReport
+from sim.harness.audit.findings import AuditLimits
 from sim.harness.estimates import Estimates
 from sim.harness.report import charts as charts_of
 from sim.harness.report import coils

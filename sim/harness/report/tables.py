@@ -9,8 +9,8 @@ import tomli_w
 
 from fsw.core.telemetry import Event
 from fsw.wire.messages import Mode, Severity
-from sim.harness.audit import AuditReport
-from sim.harness.audit_report import COILS, seconds_text
+from sim.harness.audit.auditor import AuditReport
+from sim.harness.audit.findings import COILS, seconds_text
 from sim.harness.scenario import Scenario
 from sim.harness.summary import orbit_period_s
 

@@ -9,7 +9,7 @@ import pytest
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilBoot, CoilStatus, MagField, PlantEnd, Sync
-from sim.harness.audit import AuditLimits, AuditReport, audit
+from sim.harness.audit.auditor import AuditLimits, AuditReport, audit
 from sim.harness.candump import LogEntry, format_line, format_time, read_log
 
 EPOCH_S = 1_427_513_417

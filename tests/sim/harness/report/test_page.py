@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from fsw.wire.messages import Mode
-from sim.harness.audit import AuditLimits, AuditReport, Kind
-from sim.harness.audit_report import Pulse, Violation
+from sim.harness.audit.auditor import AuditLimits, AuditReport, Kind
+from sim.harness.audit.findings import Pulse, Violation
 from sim.harness.estimates import Estimates
 from sim.harness.report.canvas import BINS, envelope
 from sim.harness.report.flown import Flown

@@ -1,7 +1,7 @@
 import pytest
 
 from fsw.wire.messages import CoilStatus
-from sim.harness.status_ticks import BoardStatus, StatusTicks
+from sim.harness.audit.status_ticks import BoardStatus, StatusTicks
 
 
 @pytest.fixture

@@ -3,8 +3,8 @@
 from dataclasses import dataclass, field
 
 from fsw.wire.messages import CoilStatus
-from sim.harness.audit_report import COILS, AuditLimits, Kind, Pulse, Violation, seconds_text
-from sim.harness.log_clock import LogClock
+from sim.harness.audit.findings import COILS, AuditLimits, Kind, Pulse, Violation, seconds_text
+from sim.harness.audit.log_clock import LogClock
 
 
 @dataclass(slots=True)

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilStatus
-from sim.harness.audit import AuditLimits, Kind, audit
+from sim.harness.audit.auditor import AuditLimits, Kind, audit
 
 BACKOFF_S = 7
 RATES = [1, 2, 3, 5, 7, 10]

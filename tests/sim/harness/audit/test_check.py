@@ -1,8 +1,8 @@
 import pytest
 
-from sim.harness.audit import AuditLimits, Kind, audit
+from sim.harness.audit.auditor import AuditLimits, Kind, audit
+from sim.harness.audit.check import check, limits_beside, render
 from sim.harness.candump import LogError, read_log
-from sim.harness.check import check, limits_beside, render
 from sim.harness.errors import HarnessError
 
 

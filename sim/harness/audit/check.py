@@ -4,8 +4,8 @@ import tomllib
 from dataclasses import replace
 from pathlib import Path
 
-from sim.harness.audit import audit
-from sim.harness.audit_report import AuditLimits, AuditReport, seconds_text
+from sim.harness.audit.auditor import audit
+from sim.harness.audit.findings import AuditLimits, AuditReport, seconds_text
 from sim.harness.candump import read_log
 from sim.harness.errors import HarnessError
 

@@ -4,7 +4,7 @@ import pytest
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilBoot, CoilStatus
-from sim.harness.audit import Kind
+from sim.harness.audit.auditor import Kind
 
 
 def found(report):

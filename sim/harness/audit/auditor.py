@@ -13,11 +13,11 @@ Comparisons are exact. Nothing here comes from the onboard scheduler or from the
 from collections.abc import Iterable, Iterator
 
 from fsw.wire.messages import CoilBoot, CoilStatus, PlantEnd, Sync, intact
-from sim.harness.audit_report import AuditLimits, AuditReport, Kind, Pulse, Violation, seconds_text
+from sim.harness.audit.findings import AuditLimits, AuditReport, Kind, Pulse, Violation, seconds_text
+from sim.harness.audit.log_clock import MICRO, LogClock, read_clock
+from sim.harness.audit.pulse_judge import PulseJudge
+from sim.harness.audit.status_ticks import BoardStatus, StatusTicks
 from sim.harness.candump import LogEntry, LogTruncatedError
-from sim.harness.log_clock import MICRO, LogClock, read_clock
-from sim.harness.pulse_judge import PulseJudge
-from sim.harness.status_ticks import BoardStatus, StatusTicks
 
 __all__ = ["AuditLimits", "AuditReport", "Kind", "Pulse", "Violation", "audit"]
 

@@ -6,7 +6,7 @@ import pytest
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import NAMES, CoilStatus, Sync
-from sim.harness.audit import AuditLimits, Kind, audit
+from sim.harness.audit.auditor import AuditLimits, Kind, audit
 from sim.harness.candump import LogEntry
 
 EPOCH_US = 1_427_513_417_000_000
