@@ -47,11 +47,12 @@ class TimeTable(Section):
     def _from_toml_time(cls, value: object) -> object:
         return value.isoformat() if isinstance(value, date) else value
 
-    @model_validator(mode="after")
-    def _epoch_is_a_time(self) -> Self:
-        if self.epoch_utc is not None:
-            parse_utc(self.epoch_utc)
-        return self
+    @field_validator("epoch_utc")
+    @classmethod
+    def _epoch_is_a_time(cls, value: str | None) -> str | None:
+        if value is not None:
+            parse_utc(value)
+        return value
 
 
 class OrbitTable(Section):
