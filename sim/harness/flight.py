@@ -22,6 +22,8 @@ from sim.plant.plant import Plant
 
 BOOT_REQUEST_S = 1.0
 ANSWER_TIMEOUT_S = 20.0
+LATE_TIMEOUT_S = 5.0
+"""After the last tick in real time: silence for so long, and no late answer is waited for any more."""
 
 Watch = Callable[[int], None]
 """Called now and then with the tick that is under way."""
@@ -94,9 +96,8 @@ def fly(
         BusError: the bus failed.
     """
     boot = _await_boot(bus)
-    epoch_us = epoch_unix_s * 1_000_000
+    epoch_us = timestamp_us = epoch_unix_s * 1_000_000
     log.write(epoch_us, [boot])
-    slips = 0
     began = time.monotonic()
     for tick in range(ticks):
         timestamp_us = epoch_us + tick * 1_000_000 // tick_hz
@@ -105,8 +106,8 @@ def fly(
         if pace.factor is None:
             answers = _lockstep_answers(bus, tick)
         else:
-            answers, done = _answers_until(bus, tick, began + (tick + 1) / (tick_hz * pace.factor))
-            slips += not done
+            answers = _answers_until(bus, began + (tick + 1) / (tick_hz * pace.factor))
+            plant.slips += not answered(answers, tick)
         for frame in answers:
             plant.receive(frame)
         log.write(timestamp_us, sent + answers)
@@ -114,11 +115,13 @@ def fly(
         plant.end_tick()
         if tick % WATCH_TICKS == 0:
             watch(tick)
+    if not answered(answers, ticks - 1):
+        log.write(timestamp_us, _late_answers(bus, ticks - 1))
     end = plant.end()
     bus.send([end])
     log.write(epoch_us + ticks * 1_000_000 // tick_hz, [end])
     truth.flush()
-    return Flown(ticks, slips, time.monotonic() - began)
+    return Flown(ticks, plant.slips, time.monotonic() - began)
 
 
 WATCH_TICKS = 64
@@ -149,16 +152,25 @@ def _lockstep_answers(bus: Bus, tick: int) -> list[Frame]:
             return answers
 
 
-def _answers_until(bus: Bus, tick: int, deadline: float) -> tuple[list[Frame], bool]:
-    """All frames up to a deadline of the monotonic clock, and whether TICK_DONE was among them."""
+def _answers_until(bus: Bus, deadline: float) -> list[Frame]:
+    """All frames up to a deadline of the monotonic clock, and what is there already if that has passed."""
     answers: list[Frame] = []
-    done = False
-    while (remaining_s := deadline - time.monotonic()) > 0.0:
-        frame = bus.receive(remaining_s)
-        if frame is not None:
-            answers.append(frame)
-            done = done or _names(frame, tick)
-    return answers, done
+    while (frame := bus.receive(max(0.0, deadline - time.monotonic()))) is not None:
+        answers.append(frame)
+    return answers
+
+
+def _late_answers(bus: Bus, tick: int) -> list[Frame]:
+    """What a flight software that has fallen behind still says, up to the TICK_DONE that names ``tick``."""
+    answers: list[Frame] = []
+    while not answered(answers[-1:], tick) and (frame := bus.receive(LATE_TIMEOUT_S)) is not None:
+        answers.append(frame)
+    return answers
+
+
+def answered(frames: list[Frame], tick: int) -> bool:
+    """Whether the TICK_DONE that names ``tick`` is among the frames."""
+    return any(_names(frame, tick) for frame in frames)
 
 
 def _names(frame: Frame, tick: int) -> bool:

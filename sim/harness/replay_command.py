@@ -17,8 +17,9 @@ from sim.harness import run_dir
 from sim.harness.assemble import plant_config
 from sim.harness.candump import LogEntry, LogTruncatedError, read_log
 from sim.harness.errors import HarnessError
+from sim.harness.flight import answered
 from sim.harness.progress import progress
-from sim.harness.replay import FROM_FSW, replay
+from sim.harness.replay import replay
 from sim.harness.scenario import Scenario, flight_table, load, parse_settings
 from sim.plant.plant import Plant
 
@@ -85,17 +86,18 @@ def through_plant(log: Path, flown: Flown) -> int:
     ticks = 0
     with progress("replaying", flown.run.get("ticks", 0)) as watch:
         for _, group in groupby(_after_boot(log), key=lambda entry: entry.timestamp_us):
-            entries = list(group)
-            if entries[0].frame.can_id == PlantEnd.ID:
+            logged = [entry.frame for entry in group]
+            if logged[0].can_id == PlantEnd.ID:
                 click.echo(f"plant reproduced: {ticks} ticks, every frame equal")
                 return 0
-            difference = _difference(plant.begin_tick(), [entry.frame for entry in entries])
+            sent = plant.begin_tick()
+            difference = _difference(sent, logged[: len(sent)])
             if difference is not None:
                 click.echo(f"differs: tick {ticks}: {difference}")
                 return 1
-            for entry in entries:
-                if entry.frame.can_id in FROM_FSW:
-                    plant.receive(entry.frame)
+            for frame in logged[len(sent) :]:
+                plant.receive(frame)
+            plant.slips += not answered(logged, ticks)
             plant.end_tick()
             ticks += 1
             watch(ticks)
@@ -104,9 +106,8 @@ def through_plant(log: Path, flown: Flown) -> int:
 
 
 def _difference(ours: list[Frame], logged: list[Frame]) -> str | None:
-    """The first frame of the boards that the plant does not send as logged."""
-    theirs = [frame for frame in logged if frame.can_id not in FROM_FSW]
-    for mine, other in zip_longest(ours, theirs):
+    """The first frame that the plant does not send as logged."""
+    for mine, other in zip_longest(ours, logged):
         if mine != other:
             name = NAMES.get((mine or other).can_id, "a frame")
             texts = [frame.data.hex() if frame else "missing" for frame in (other, mine)]
