@@ -1,6 +1,5 @@
 """``python -m fsw``: the flight software as a process on a bus."""
 
-import os
 import sys
 
 import click
@@ -29,9 +28,9 @@ def _table(scenario: str | None, table: str | None, settings: tuple[str, ...]) -
     "--bus", default="auto", show_default=True, help="auto, loop[:PORT], socketcan:NAME, slcan:PORT."
 )
 @click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help="Override a scenario's key.")
-@click.option("--ends-with-parent", is_flag=True, hidden=True)
+@click.option("--parent", type=int, hidden=True)
 def main(
-    scenario: str | None, table: str | None, bus: str, settings: tuple[str, ...], ends_with_parent: bool
+    scenario: str | None, table: str | None, bus: str, settings: tuple[str, ...], parent: int | None
 ) -> None:
     """Fly on a bus: answer the SYNC of a plant, as SCENARIO or an onboard table says."""
     try:
@@ -41,7 +40,7 @@ def main(
         click.echo(f"fsw: {error}", err=True)
         sys.exit(2)
     try:
-        run(node, link, os.getppid() if ends_with_parent else None)
+        run(node, link, parent)
     except BusError as error:
         click.echo(f"fsw: {error}", err=True)
         sys.exit(1)

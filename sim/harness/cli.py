@@ -4,7 +4,7 @@ import sys
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
-from typing import ParamSpec
+from typing import Any, ParamSpec
 
 import click
 
@@ -39,10 +39,30 @@ def sentences(command: Callable[Parameters, int | None]) -> Callable[Parameters,
     return run
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+class Commands(click.Group):
+    """The commands; a wrong option, like any other error, is one sentence, without the usage before it."""
+
+    def main(self, *args: Any, **kwargs: Any) -> Any:  # noqa: ANN401  (as in click)
+        """Run a command line and exit."""
+        try:
+            code = super().main(*args, **{**kwargs, "standalone_mode": False})
+        except click.ClickException as error:
+            click.echo(f"torquer: {error.format_message()}", err=True)
+            code = error.exit_code
+        except click.Abort:
+            code = 130
+        sys.exit(code)
+
+
+@click.group(
+    cls=Commands, invoke_without_command=True, context_settings={"help_option_names": ["-h", "--help"]}
+)
 @click.version_option(package_name="torquer", prog_name="torquer")
-def main() -> None:
+@click.pass_context
+def main(context: click.Context) -> None:
     """Magnetic attitude control as flight software: fly it, replay it, audit it."""
+    if context.invoked_subcommand is None:
+        click.echo(context.get_help())
 
 
 @main.command()
@@ -78,28 +98,29 @@ def sil(
     settings: tuple[str, ...],
 ) -> None:
     """Fly SCENARIO: plant and flight software as two processes on a bus (virtual: in one)."""
-    from fsw.io.open_bus import resolve
     from sim.harness import run_dir
     from sim.harness.conclude import conclude
     from sim.harness.options import parse_pace
     from sim.harness.progress import progress
     from sim.harness.scenario import load, parse_settings
-    from sim.harness.sil import fly_processes, fly_virtual, ticks_of
+    from sim.harness.sil import fly_processes, fly_virtual, served, ticks_of
     from sim.harness.summary import summary_text
 
-    chosen = load(scenario, parse_settings(settings))
-    chosen_pace = parse_pace(pace)
-    kind = bus if bus == "virtual" else resolve(bus)
-    path = out or run_dir.default_path(chosen)
-    ticks = ticks_of(chosen, orbits)
-    run_dir.begin(path, chosen, seed, ticks, kind.partition(":")[0], chosen_pace)
-    if bus == "auto":
-        click.echo(f"bus: {kind.partition(':')[0]} (auto)", err=True)
-    with progress(f"flying {chosen.name}", ticks) as watch:
-        if bus == "virtual":
+    chosen, chosen_pace = load(scenario, parse_settings(settings)), parse_pace(pace)
+    ticks, path = ticks_of(chosen, orbits), out or run_dir.default_path(chosen)
+    flying = f"flying {chosen.name}"
+    if bus == "virtual":
+        run_dir.begin(path, chosen, seed, ticks, bus, chosen_pace)
+        with progress(flying, ticks) as watch:
             fly_virtual(path, chosen, watch)
-        else:
-            fly_processes(path, chosen, bus, watch)
+    else:
+        with served(bus) as (spec, hub):
+            kind = spec.partition(":")[0]
+            run_dir.begin(path, chosen, seed, ticks, kind, chosen_pace)
+            if bus == "auto":
+                click.echo(f"bus: {kind} (auto)", err=True)
+            with progress(flying, ticks) as watch:
+                fly_processes(path, chosen, spec, hub, watch)
     with progress("replaying", ticks) as watch:
         summary = conclude(path, watch)
     click.echo(summary_text(summary))

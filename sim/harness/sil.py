@@ -4,17 +4,19 @@ import os
 import subprocess
 import sys
 import time
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from fsw.io.bus import Bus
 from fsw.io.config import flight_config
 from fsw.io.hub import Hub
+from fsw.io.link import LoopLink
 from fsw.io.node import FlightNode
-from fsw.io.open_bus import resolve
+from fsw.io.open_bus import open_bus, resolve
 from sim.harness import run_dir
 from sim.harness.assemble import plant_config
+from sim.harness.errors import HarnessError
 from sim.harness.flight import BusLog, FlightError, Pace, fly
 from sim.harness.scenario import Scenario, flight_table
 from sim.harness.summary import orbit_period_s
@@ -25,14 +27,25 @@ from sim.plant.torques import SOURCES
 
 POLL_S = 0.1
 GRACE_S = 5.0
+MOST_TICKS = 2**24 - 1
+"""What PLANT_END can tell."""
 
 Watch = Callable[[int], None]
 
 
 def ticks_of(scenario: Scenario, orbits: float | None) -> int:
-    """How many ticks a flight of so many orbits takes; None: as the scenario says. At least one."""
-    period_s = orbit_period_s(scenario)
-    return max(1, round((orbits or scenario.time.orbits) * period_s * scenario.time.tick_hz))
+    """How many ticks a flight of so many orbits takes; None: as the scenario says. At least one.
+
+    Raises:
+        HarnessError: more than a run can have.
+    """
+    ticks_per_orbit = orbit_period_s(scenario) * scenario.time.tick_hz
+    chosen = scenario.time.orbits if orbits is None else orbits
+    if not chosen * ticks_per_orbit <= MOST_TICKS:  # not a number, either
+        option = f"time.orbits={chosen:g}" if orbits is None else f"--orbits {chosen:g}"
+        most = MOST_TICKS / ticks_per_orbit
+        raise HarnessError(f"{option}: a run has at most {MOST_TICKS} ticks, here {most:.0f} orbits")
+    return max(1, round(chosen * ticks_per_orbit))
 
 
 def record(path: Path, scenario: Scenario, bus: Bus, watch: Watch = lambda tick: None) -> None:
@@ -72,24 +85,41 @@ def fly_virtual(path: Path, scenario: Scenario, watch: Watch) -> None:
     record(path, scenario, VirtualBus(node), watch)
 
 
-def fly_processes(path: Path, scenario: Scenario, bus: str, watch: Watch) -> None:
-    """Fly with plant and flight software as two processes; a loop bus is hosted here.
+@contextmanager
+def served(bus: str) -> Iterator[tuple[str, Hub | None]]:
+    """A bus for two processes: its spec in full, and the hub if it is a loop bus that is hosted here.
+
+    Raises:
+        BusError: the bus cannot be used.
+    """
+    spec = resolve(bus)
+    if not spec.startswith("loop:"):
+        open_bus(spec).close()
+        yield spec, None
+        return
+    port = int(spec.removeprefix("loop:"))
+    try:
+        hub = Hub(0 if bus in ("loop", "auto") else port)
+    except OSError:  # somebody else hosts it, or keeps the port for something else
+        LoopLink(port, timeout_s=1.0, may_host=False).close()
+        yield spec, None
+        return
+    try:
+        yield f"loop:{hub.port}", hub
+    finally:
+        hub.close()
+
+
+def fly_processes(path: Path, scenario: Scenario, spec: str, hub: Hub | None, watch: Watch) -> None:
+    """Fly with plant and flight software as two processes on a bus, as ``served`` gives it.
 
     Raises:
         FlightError: one of the two ended before its time; the other has been ended too.
-        BusError: there is no such bus.
     """
-    spec = resolve(bus)
-    hub = (
-        Hub(0 if bus in ("loop", "auto") else int(spec.partition(":")[2]))
-        if spec.startswith("loop")
-        else None
-    )
-    if hub is not None:
-        spec = f"loop:{hub.port}"
     scenario_file = str(path / run_dir.SCENARIO)
-    plant = _start("sim.plant", scenario_file, "--bus", spec, "--into", str(path))
-    fsw = _start("fsw", scenario_file, "--bus", spec, "--ends-with-parent")
+    parent = str(os.getpid())
+    plant = _start("sim.plant", scenario_file, "--bus", spec, "--into", str(path), "--parent", parent)
+    fsw = _start("fsw", scenario_file, "--bus", spec, "--parent", parent)
     try:
         while plant.poll() is None and fsw.poll() is None:
             _serve(hub, POLL_S)
@@ -107,8 +137,6 @@ def fly_processes(path: Path, scenario: Scenario, bus: str, watch: Watch) -> Non
         ]
         for process in (plant, fsw):
             _end(process, hub)
-        if hub is not None:
-            hub.close()
     if failed or "flown" not in run_dir.read_run(path):
         name, process = failed[0] if failed else ("flight software", fsw)
         raise FlightError(
@@ -133,8 +161,10 @@ def last_tick(path: Path, scenario: Scenario) -> int:
 
 
 def _start(module: str, *arguments: str) -> subprocess.Popen[bytes]:
+    """A node as a process. Ctrl-C is for this process alone: it ends its nodes itself."""
+    words = [sys.executable, "-m", module, *arguments]
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
-    return subprocess.Popen([sys.executable, "-m", module, *arguments], env=environment)
+    return subprocess.Popen(words, env=environment, start_new_session=True)
 
 
 def _serve(hub: Hub | None, seconds: float) -> None:
@@ -152,14 +182,11 @@ def _well(*processes: subprocess.Popen[bytes]) -> bool:
 
 
 def _end(process: subprocess.Popen[bytes], hub: Hub | None) -> None:
-    if process.poll() is not None:
-        return
     process.terminate()
     deadline = time.monotonic() + GRACE_S
     while process.poll() is None and time.monotonic() < deadline:
         _serve(hub, POLL_S / 10.0)
-    with suppress(ProcessLookupError):
-        process.kill()
+    process.kill()
     process.wait()
 
 

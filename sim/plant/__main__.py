@@ -1,8 +1,11 @@
 """``python -m sim.plant``: the plant as a process on a bus. It keeps the log and the plant's histories."""
 
+import os
 import signal
 import sys
+import time
 from pathlib import Path
+from threading import Thread
 from types import FrameType
 
 import click
@@ -22,6 +25,17 @@ def _end(signum: int, frame: FrameType | None) -> None:
     sys.exit(1)
 
 
+def _end_with(parent: int) -> None:
+    """End this process soon after the one that started it."""
+
+    def wait() -> None:
+        while os.getppid() == parent:
+            time.sleep(0.5)
+        os.kill(os.getpid(), signal.SIGTERM)
+
+    Thread(target=wait, daemon=True).start()
+
+
 @click.command()
 @click.argument("scenario", default="microsat")
 @click.option(
@@ -39,6 +53,7 @@ def _end(signum: int, frame: FrameType | None) -> None:
 @click.option("--out", type=click.Path(path_type=Path), help="Run directory; default runs/<scenario>-<time>.")
 @click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help="Override a key of the scenario.")
 @click.option("--into", type=click.Path(path_type=Path), hidden=True)
+@click.option("--parent", type=int, hidden=True)
 def main(
     scenario: str,
     bus: str,
@@ -48,9 +63,12 @@ def main(
     out: Path | None,
     settings: tuple[str, ...],
     into: Path | None,
+    parent: int | None,
 ) -> None:
     """Fly SCENARIO against a flight software on the same bus: waits for its FSW_BOOT, then begins tick 0."""
     signal.signal(signal.SIGTERM, _end)
+    if parent is not None:
+        _end_with(parent)
     try:
         chosen = load(scenario, parse_settings(settings))
         if into is not None:
