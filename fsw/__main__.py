@@ -7,7 +7,7 @@ import click
 from fsw.io.bus import BusError
 from fsw.io.config import flight_config
 from fsw.io.node import FlightNode
-from fsw.io.open_bus import open_bus
+from fsw.io.open_bus import open_bus, resolve
 from fsw.io.runner import run
 from fsw.io.schema import TableError
 from fsw.io.table import FlightTable, load_flight_table
@@ -39,6 +39,8 @@ def main(
     except (TableError, BusError) as error:
         click.echo(f"fsw: {error}", err=True)
         sys.exit(2)
+    if parent is None:
+        click.echo(f"fsw on {resolve(bus)}", err=True)
     try:
         run(node, link, parent)
     except BusError as error:

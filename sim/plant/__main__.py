@@ -11,7 +11,7 @@ from types import FrameType
 import click
 
 from fsw.io.bus import BusError
-from fsw.io.open_bus import open_bus
+from fsw.io.open_bus import open_bus, resolve
 from fsw.io.schema import TableError
 from sim.harness import run_dir
 from sim.harness.conclude import conclude
@@ -74,10 +74,11 @@ def main(
         if into is not None:
             record(into, chosen, open_bus(bus))
             return
-        link = open_bus(bus)
+        ticks, chosen_pace, spec = ticks_of(chosen, orbits), parse_pace(pace), resolve(bus)
+        link = open_bus(spec)
         directory = out or run_dir.default_path(chosen)
-        run_dir.begin(directory, chosen, seed, ticks_of(chosen, orbits), link.name, parse_pace(pace))
-        click.echo(f"plant on {bus}: waiting for the flight software", err=True)
+        run_dir.begin(directory, chosen, seed, ticks, spec.partition(":")[0], chosen_pace)
+        click.echo(f"plant on {spec}: waiting for the flight software", err=True)
         record(directory, chosen, link)
         conclude(directory)
         click.echo(f"flown: {directory}", err=True)
