@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from sim.harness.errors import HarnessError
 from sim.plant.plant import TruthRow
 
-BLOCK_ROWS = 512
+BLOCK_ROWS = 1024
 
 Histories = dict[str, NDArray[np.float64]]
 
