@@ -1,5 +1,6 @@
 """The virtual bus: plant and flight software in one process, the same frames in an in-process queue."""
 
+import time
 from collections import deque
 from collections.abc import Sequence
 
@@ -22,8 +23,12 @@ class VirtualBus:
             self._queue.extend(self._node.receive(frame))
 
     def receive(self, timeout_s: float | None) -> Frame | None:
-        """The next answer, or None: nothing more will come until something is sent."""
-        return self._queue.popleft() if self._queue else None
+        """The next answer, or None once the time has passed: nothing comes until something is sent."""
+        if self._queue:
+            return self._queue.popleft()
+        if timeout_s is not None:
+            time.sleep(timeout_s)
+        return None
 
     def close(self) -> None:
         """Nothing to release."""
