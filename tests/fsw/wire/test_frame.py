@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fsw.wire.frame import crc8, id_register, raw, seal
+from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, crc8, id_register, raw, seal
 
 
 def crc8_by_bits(data: bytes) -> int:
@@ -19,6 +19,10 @@ def crc8_by_bits(data: bytes) -> int:
             if out ^ bit:
                 register ^= 0x1D
     return register ^ 0xFF
+
+
+def test_flags_are_those_of_linux_can_h():
+    assert (EXTENDED_FLAG, REMOTE_FLAG, ERROR_FLAG) == (1 << 31, 1 << 30, 1 << 29)
 
 
 class TestCrc:
