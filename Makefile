@@ -1,6 +1,7 @@
 # make sil    makes the environment .venv and flies the default scenario
 # make test   all tests; those on a CAN interface say so when there is none
 # make lint   style, types, layers, generated code
+# make golden     record the golden logs anew: after a change that means to alter what fsw answers
 # make test-vcan   the tests on a CAN interface, in a user-mode Linux guest where this kernel has no vcan
 
 PYTHON ?= python3
@@ -10,7 +11,7 @@ bin := .venv/bin
 installed := .venv/.installed
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv sil test lint test-vcan
+.PHONY: help venv sil test lint test-vcan golden
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -39,3 +40,6 @@ lint: venv
 
 test-vcan: venv
 	TORQUER_REQUIRE_VCAN=1 tests/with-vcan $(bin)/pytest $(PYTEST_FLAGS) -p no:cacheprovider -m vcan
+
+golden: venv
+	$(bin)/python tests/golden/record.py
