@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from fsw.core.estimator import Attitude
+from fsw.core.attitude import Attitude
 from fsw.core.laws.damping import bdot_dipole, rate_damping_dipole
 from fsw.core.laws.pd import attitude_error, pd_dipole
 from fsw.core.quaternion import dcm

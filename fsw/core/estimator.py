@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from fsw.core import mekf
+from fsw.core.attitude import UNKNOWN, Attitude
 from fsw.core.earth import MU_M3PS2
 from fsw.core.ephemeris import Reference
 from fsw.core.mekf import Estimate
@@ -41,16 +42,6 @@ class EstimatorState:
     restarts: int = 0
 
 
-class Attitude(NamedTuple):
-    """What control and telemetry use: body relative to the orbital frame, and how it came about."""
-
-    q_body_from_orbit: tuple[float, float, float, float]
-    omega_body_orbit_radps: Vec3
-    sigma3_attitude_rad: float
-    sigma3_rate_radps: float
-    valid: bool
-
-
 class Used(NamedTuple):
     """Which measurements were taken in this tick."""
 
@@ -60,7 +51,6 @@ class Used(NamedTuple):
 
 
 NONE_USED = Used(False, False, False)
-UNKNOWN = Attitude((1.0, 0.0, 0.0, 0.0), ZERO, 4.0, 1.0, False)
 
 
 def usable_field(readings: Readings) -> Vec3 | None:

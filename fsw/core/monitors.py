@@ -5,7 +5,7 @@ from enum import IntEnum
 from math import isfinite
 from typing import NamedTuple
 
-from fsw.core.estimator import Attitude
+from fsw.core.attitude import Attitude
 from fsw.core.vector import Vec3
 
 

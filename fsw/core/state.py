@@ -5,9 +5,10 @@ import zlib
 from typing import NamedTuple
 
 from fsw.core.actuation import CoilView
+from fsw.core.attitude import UNKNOWN, Attitude
 from fsw.core.control import FieldSample
 from fsw.core.ephemeris import EphemerisWindow, pack_values
-from fsw.core.estimator import UNKNOWN, Attitude, EstimatorState
+from fsw.core.estimator import EstimatorState
 from fsw.core.modes import ModeState
 from fsw.core.pulses import PulseState
 from fsw.core.readings import GateState

@@ -2,12 +2,12 @@
 
 from fsw.core import control, pulses, telemetry
 from fsw.core.actuation import actuate, driven_dipole, hear
+from fsw.core.attitude import UNKNOWN
 from fsw.core.config import FlightConfig
 from fsw.core.control import FieldSample, Seen
 from fsw.core.ephemeris import Reference, advance, reference_at
 from fsw.core.estimator import (
     NONE_USED,
-    UNKNOWN,
     Used,
     attitude,
     estimate,

@@ -3,7 +3,8 @@
 from enum import IntEnum
 from typing import NamedTuple
 
-from fsw.core.estimator import Attitude, Used
+from fsw.core.attitude import Attitude
+from fsw.core.estimator import Used
 from fsw.core.modes import ModeState
 from fsw.core.monitors import Monitor
 from fsw.core.readings import Readings

@@ -99,17 +99,17 @@ def sil(
 ) -> None:
     """Fly SCENARIO: plant and flight software as two processes on a bus (virtual: in one)."""
     from sim.harness import run_dir
-    from sim.harness.conclude import conclude
     from sim.harness.options import parse_pace
     from sim.harness.progress import progress
     from sim.harness.scenario import load, parse_settings
-    from sim.harness.sil import fly_processes, fly_virtual, served, ticks_of
-    from sim.harness.summary import summary_text
+    from sim.harness.sil import fly_processes, served, ticks_of
 
     chosen, chosen_pace = load(scenario, parse_settings(settings)), parse_pace(pace)
     ticks, path = ticks_of(chosen, orbits), out or run_dir.default_path(chosen)
     flying = f"flying {chosen.name}"
     if bus == "virtual":
+        from sim.harness.virtual import fly_virtual
+
         run_dir.begin(path, chosen, seed, ticks, bus, chosen_pace)
         with progress(flying, ticks) as watch:
             fly_virtual(path, chosen, watch)
@@ -121,6 +121,9 @@ def sil(
                 click.echo(f"bus: {kind} (auto)", err=True)
             with progress(flying, ticks) as watch:
                 fly_processes(path, chosen, spec, hub, watch)
+    from sim.harness.conclude import conclude  # the flight does not wait for what it does not need
+    from sim.harness.summary import summary_text
+
     with progress("replaying", ticks) as watch:
         summary = conclude(path, watch)
     click.echo(summary_text(summary))

@@ -8,6 +8,7 @@ for instance an inertia that the controller believes and the plant does not have
 import tomllib
 from datetime import UTC, datetime
 from importlib import resources
+from math import pi, sqrt
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -26,6 +27,8 @@ from fsw.io.schema import (
     validated,
 )
 from fsw.io.table import BodyTable, CoilTable, ControlTable, FlightTable, OrbitTable, TimeTable
+
+MU_M3PS2 = 3.986004418e14
 
 
 class ScenarioTime(TimeTable):
@@ -132,6 +135,14 @@ class Scenario(Section):
     def epoch_unix_s(self) -> int:
         """Time of tick 0, Unix seconds."""
         return onboard.epoch_unix_s(self.time, self.orbit)
+
+
+def orbit_period_s(scenario: Scenario) -> float:
+    """The period of the scenario's orbit: from the mean motion of the TLE, or of the circle."""
+    if scenario.orbit.tle is not None:
+        return 86400.0 / float(scenario.orbit.tle[1][52:63])
+    radius_m = 6378137.0 + 1000.0 * (scenario.orbit.altitude_km or 0.0)
+    return 2.0 * pi * sqrt(radius_m**3 / MU_M3PS2)
 
 
 def shipped() -> list[Scenario]:

@@ -1,4 +1,4 @@
-"""Software in the loop: plant and flight software as two processes on a bus, or in one on the virtual bus."""
+"""Software in the loop: plant and flight software as two processes on a bus."""
 
 import os
 import subprocess
@@ -9,19 +9,15 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from fsw.io.bus import Bus
-from fsw.io.config import flight_config
 from fsw.io.hub import Hub
 from fsw.io.link import LoopLink
-from fsw.io.node import FlightNode
 from fsw.io.open_bus import open_bus, resolve
 from sim.harness import run_dir
 from sim.harness.assemble import plant_config
 from sim.harness.errors import HarnessError
 from sim.harness.flight import BusLog, FlightError, Pace, fly
-from sim.harness.scenario import Scenario, flight_table
-from sim.harness.summary import orbit_period_s
+from sim.harness.scenario import Scenario, orbit_period_s
 from sim.harness.truth import TruthFile
-from sim.harness.virtual import VirtualBus
 from sim.plant.plant import Plant
 from sim.plant.torques import SOURCES
 
@@ -77,12 +73,6 @@ def record(path: Path, scenario: Scenario, bus: Bus, watch: Watch = lambda tick:
     finally:
         bus.close()
     run_dir.update(path, flown={"ticks": flown.ticks, "slips": flown.slips, "wall_s": flown.wall_s})
-
-
-def fly_virtual(path: Path, scenario: Scenario, watch: Watch) -> None:
-    """Fly in this process."""
-    node = FlightNode(flight_config(flight_table(scenario)))
-    record(path, scenario, VirtualBus(node), watch)
 
 
 @contextmanager

@@ -1,7 +1,6 @@
 """summary.json: how well the flight went, all judged against the plant's truth."""
 
 from dataclasses import dataclass, field
-from math import pi, sqrt
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ from sim.harness.attitude_arrays import angle_rad, axis1_angle_rad, normal_in_bo
 from sim.harness.audit.auditor import AuditReport
 from sim.harness.candump import LogEntry
 from sim.harness.estimates import Estimates
-from sim.harness.scenario import Scenario
+from sim.harness.scenario import Scenario, orbit_period_s
 from sim.harness.truth import Histories
 
 Array = NDArray[np.float64]
@@ -23,15 +22,6 @@ CONVERGED_FOR_S = 600.0
 SETTLED_DEG = 5.0
 SPIN_SETTLED_RADPS = 1e-3
 EVENTS_KEPT = 200
-MU_M3PS2 = 3.986004418e14
-
-
-def orbit_period_s(scenario: Scenario) -> float:
-    """The period of the scenario's orbit: from the mean motion of the TLE, or of the circle."""
-    if scenario.orbit.tle is not None:
-        return 86400.0 / float(scenario.orbit.tle[1][52:63])
-    radius_m = 6378137.0 + 1000.0 * (scenario.orbit.altitude_km or 0.0)
-    return 2.0 * pi * sqrt(radius_m**3 / MU_M3PS2)
 
 
 @dataclass(slots=True)

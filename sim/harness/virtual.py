@@ -3,9 +3,13 @@
 import time
 from collections import deque
 from collections.abc import Sequence
+from pathlib import Path
 
+from fsw.io.config import flight_config
 from fsw.io.node import FlightNode
 from fsw.wire.frame import Frame
+from sim.harness.scenario import Scenario, flight_table
+from sim.harness.sil import Watch, record
 
 
 class VirtualBus:
@@ -32,3 +36,9 @@ class VirtualBus:
 
     def close(self) -> None:
         """Nothing to release."""
+
+
+def fly_virtual(path: Path, scenario: Scenario, watch: Watch) -> None:
+    """Fly with plant and flight software in this process."""
+    node = FlightNode(flight_config(flight_table(scenario)))
+    record(path, scenario, VirtualBus(node), watch)

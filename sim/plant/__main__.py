@@ -14,7 +14,6 @@ from fsw.io.bus import BusError
 from fsw.io.open_bus import open_bus, resolve
 from fsw.io.schema import TableError
 from sim.harness import run_dir
-from sim.harness.conclude import conclude
 from sim.harness.errors import HarnessError
 from sim.harness.options import parse_pace
 from sim.harness.scenario import load, parse_settings
@@ -80,6 +79,8 @@ def main(
         run_dir.begin(directory, chosen, seed, ticks, spec.partition(":")[0], chosen_pace)
         click.echo(f"plant on {spec}: waiting for the flight software", err=True)
         record(directory, chosen, link)
+        from sim.harness.conclude import conclude  # noqa: PLC0415  (the flight does not wait for it)
+
         conclude(directory)
         click.echo(f"flown: {directory}", err=True)
     except (TableError, BusError, HarnessError) as error:

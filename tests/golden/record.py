@@ -14,7 +14,7 @@ from pathlib import Path
 from sim.harness import run_dir
 from sim.harness.flight import Pace
 from sim.harness.scenario import load
-from sim.harness.sil import fly_virtual
+from sim.harness.virtual import fly_virtual
 
 HERE = Path(__file__).resolve().parent
 FLIGHTS: dict[str, tuple[str, int, dict[str, object]]] = {

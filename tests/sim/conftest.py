@@ -4,7 +4,7 @@ import pytest
 
 from fsw.io.config import flight_config
 from fsw.io.schema import merge
-from sim.harness import run_dir, sil
+from sim.harness import run_dir, virtual
 from sim.harness.flight import Pace
 from sim.harness.scenario import flight_table, load, parse_settings
 
@@ -29,7 +29,7 @@ def fly_run(tmp_path_factory):
         path = tmp_path_factory.mktemp("runs") / "run"
         flown = load(scenario, merge(UNEVEN, overrides))
         run_dir.begin(path, flown, seed, ticks, "virtual", Pace())
-        sil.fly_virtual(path, flown, lambda tick: None)
+        virtual.fly_virtual(path, flown, lambda tick: None)
         return path
 
     return fly

@@ -12,8 +12,8 @@ from sim.harness.audit.auditor import AuditReport
 from sim.harness.audit.findings import COILS, Pulse
 from sim.harness.estimates import Estimates
 from sim.harness.report.canvas import Span, TimeAxis
-from sim.harness.scenario import Scenario
-from sim.harness.summary import estimate_error, orbit_period_s
+from sim.harness.scenario import Scenario, orbit_period_s
+from sim.harness.summary import estimate_error
 from sim.harness.truth import Histories
 
 Array = NDArray[np.float64]

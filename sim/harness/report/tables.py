@@ -11,8 +11,7 @@ from fsw.core.telemetry import Event
 from fsw.wire.messages import Mode, Severity
 from sim.harness.audit.auditor import AuditReport
 from sim.harness.audit.findings import COILS, seconds_text
-from sim.harness.scenario import Scenario
-from sim.harness.summary import orbit_period_s
+from sim.harness.scenario import Scenario, orbit_period_s
 
 Json = dict[str, Any]
 

@@ -9,8 +9,7 @@ import pytest
 from fsw.io.config import flight_config
 from fsw.io.schema import TableError
 from sim.harness.assemble import plant_config
-from sim.harness.scenario import flight_table, load, parse_settings, shipped
-from sim.harness.summary import orbit_period_s
+from sim.harness.scenario import flight_table, load, orbit_period_s, parse_settings, shipped
 from sim.plant.plant import Plant
 
 NAMES = [scenario.name for scenario in shipped()]

@@ -14,8 +14,8 @@ from sim.harness.audit.check import check
 from sim.harness.candump import LogEntry, read_log
 from sim.harness.conclude import conclude
 from sim.harness.estimates import Estimates
-from sim.harness.scenario import load, parse_settings
-from sim.harness.summary import BusTally, nees, orbit_period_s, summarise, summary_text
+from sim.harness.scenario import load, orbit_period_s, parse_settings
+from sim.harness.summary import BusTally, nees, summarise, summary_text
 from sim.harness.truth import read_truth
 
 CONTRACT = {
