@@ -1,11 +1,17 @@
-"""Fixtures for tests on real CAN interfaces. Where there are none: ``tests/with-vcan pytest -m vcan``."""
+"""Flights by the command line; CAN interfaces. Where there are none: ``tests/with-vcan pytest -m vcan``."""
 
 import os
 import subprocess
+import sys
+from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
 from fsw.io.socketcan import interface_is_up
+from sim.harness import conclude
+from sim.harness.candump import read_log
+from sim.harness.cli import main
 
 CAN_FIXTURES = {"vcan0", "own_interface"}
 
@@ -41,3 +47,111 @@ def own_interface():
     subprocess.run(["ip", "link", "set", name, "up"], check=True)
     yield name
     subprocess.run(["ip", "link", "delete", name], check=False, capture_output=True)
+
+
+class Outcome(NamedTuple):
+    """What a command ended with."""
+
+    code: int
+    out: str
+    err: str
+
+    @property
+    def sentence(self):
+        """The one line on stderr, which is no traceback."""
+        assert self.err.count("\n") == 1, self.err
+        assert self.err.endswith("\n")
+        assert "Error" not in self.err
+        return self.err.strip()
+
+
+def run_torquer(arguments):
+    """The command line in this process; the processes that it starts are real."""
+    with pytest.raises(SystemExit) as ended:
+        main.main([str(argument) for argument in arguments], prog_name="torquer")
+    return ended.value.code or 0
+
+
+@pytest.fixture
+def torquer(capfd):
+    """Runs ``torquer ARGUMENTS...`` and tells how it ended and what it and its processes said."""
+
+    def run(*arguments):
+        capfd.readouterr()
+        code = run_torquer(arguments)
+        return Outcome(code, *capfd.readouterr())
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def flown(tmp_path_factory):
+    """The directory of a run that ``torquer sil ARGUMENTS...`` has flown; for reading only.
+
+    Its report is left blank: drawing it takes longer than the flight.
+    """
+    runs = {}
+
+    def fly(*arguments):
+        if arguments not in runs:
+            path = tmp_path_factory.mktemp("flown") / "run"
+            with pytest.MonkeyPatch.context() as patch:
+                patch.setattr(conclude, "write_report", lambda path, *rest: path.write_text(""))
+                assert run_torquer(("sil", *arguments, "--out", path)) == 0
+            runs[arguments] = path
+        return runs[arguments]
+
+    return fly
+
+
+class Bus(NamedTuple):
+    """What a log says was on the bus."""
+
+    times_us: list
+    frames: list
+
+
+def bus_of(run_or_log):
+    """Times and frames of a log, all of them or an error."""
+    log = Path(run_or_log)
+    entries = list(read_log(log / "bus.log" if log.is_dir() else log))
+    return Bus([entry.timestamp_us for entry in entries], [entry.frame for entry in entries])
+
+
+@pytest.fixture
+def bus():
+    """Reads the bus log of a run."""
+    return bus_of
+
+
+class Node:
+    """A process that the test started, and its children."""
+
+    def __init__(self, words, folder, **options):
+        self.stdout, self.stderr = folder / "stdout", folder / "stderr"
+        with self.stdout.open("w") as out, self.stderr.open("w") as err:
+            self.process = subprocess.Popen(words, cwd=folder, stdout=out, stderr=err, **options)
+
+    def wait(self, timeout_s=60):
+        """How it ended."""
+        code = self.process.wait(timeout_s)
+        return Outcome(code, self.stdout.read_text(), self.stderr.read_text())
+
+
+@pytest.fixture
+def start(tmp_path):
+    """Starts ``python -m MODULE ARGUMENTS...``; what still runs at the end of the test is ended."""
+    nodes = []
+
+    def start_module(module, *arguments, **options):
+        folder = tmp_path / f"process{len(nodes)}"
+        folder.mkdir()
+        words = [sys.executable, "-m", module, *map(str, arguments)]
+        nodes.append(Node(words, folder, **options))
+        return nodes[-1]
+
+    yield start_module
+    for node in nodes:
+        if node.process.poll() is None:
+            node.process.kill()
+            node.process.wait()

@@ -1,0 +1,107 @@
+"""Plant and flight software started by hand, in two terminals, in either order."""
+
+import json
+import signal
+import socket
+import time
+from importlib import import_module
+
+import can
+import pytest
+
+from fsw.io.link import LoopLink
+from fsw.io.loop import frame_of
+from fsw.wire.messages import FswBoot, PlantEnd
+
+OPTIONS = ("--seed", "7", "--orbits", "0.05")
+
+
+@pytest.fixture
+def port():
+    """A TCP port that nobody uses."""
+    with socket.create_server(("127.0.0.1", 0)) as probe:
+        return probe.getsockname()[1]
+
+
+def wait_for(node, text):
+    deadline = time.monotonic() + 30.0
+    while text not in node.stderr.read_text():
+        assert node.process.poll() is None, node.stderr.read_text()
+        assert time.monotonic() < deadline, f"it never said '{text}'"
+        time.sleep(0.02)
+
+
+@pytest.mark.parametrize("first", ["plant", "fsw"])
+def test_either_may_start_first(first, port, start, flown, tmp_path):
+    run = tmp_path / "run"
+    words = {
+        "plant": ("sim.plant", "microsat", "--bus", f"loop:{port}", *OPTIONS, "--out", run),
+        "fsw": ("fsw", "microsat", "--bus", f"loop:{port}"),
+    }
+    second = {"plant": "fsw", "fsw": "plant"}[first]
+    nodes = {first: start(*words[first])}
+    wait_for(nodes[first], f"{first} on loop:{port}")
+    time.sleep(1.0)  # whatever the first one says now, the other one misses
+    nodes[second] = start(*words[second])
+    plant, fsw = nodes["plant"].wait(), nodes["fsw"].wait()
+    assert (plant.code, plant.out) == (0, "")
+    assert plant.err.endswith(f"flown: {run}\n")
+    assert (fsw.code, fsw.out, fsw.err) == (0, "", f"fsw on loop:{port}\n")
+    whole = flown("microsat", *OPTIONS, "--bus", "loop")
+    assert (run / "bus.log").read_bytes() == (whole / "bus.log").read_bytes()
+    assert {path.name for path in run.iterdir()} == {path.name for path in whole.iterdir()}
+    ours, theirs = (json.loads((path / "run.json").read_text()) for path in (run, whole))
+    assert ours.pop("flown")["ticks"] == theirs.pop("flown")["ticks"]
+    assert ours == theirs
+    assert ours["complete"] is True
+
+
+def test_a_third_node_hears_what_the_log_keeps(port, start, bus, tmp_path):
+    run = tmp_path / "run"
+    with can.Bus(interface="loop", channel=port) as listener:  # which hosts the bus
+        fsw = start("fsw", "cubesat3u", "--bus", f"loop:{port}")
+        plant = start("sim.plant", "cubesat3u", "--bus", f"loop:{port}", "--orbits", "0.02", "--out", run)
+        heard = []
+        while not heard or heard[-1].can_id != PlantEnd.ID:
+            message = listener.recv(30.0)
+            assert message is not None, plant.stderr.read_text() + fsw.stderr.read_text()
+            heard.append(frame_of(message))
+        assert plant.wait().code == fsw.wait().code == 0
+    boots = [index for index, frame in enumerate(heard) if frame.can_id == FswBoot.ID]
+    assert heard[boots[-1] :] == bus(run).frames
+
+
+@pytest.mark.parametrize(
+    ("module", "words", "named"),
+    [
+        ("fsw", ("--bus", "can0"), "can0"),
+        ("fsw", ("nowhere",), "nowhere"),
+        ("fsw", ("--table", "nowhere.toml"), "nowhere.toml"),
+        ("sim.plant", ("--bus", "virtual"), "virtual"),
+        ("sim.plant", ("--set", "time.tick_hz=0"), "time.tick_hz"),
+        ("sim.plant", ("--pace", "fast"), "--pace fast"),
+        ("sim.plant", ("--orbits", "nan"), "--orbits nan"),
+    ],
+)
+def test_a_wrong_option_is_one_sentence(module, words, named, port, capfd):
+    before = signal.getsignal(signal.SIGTERM)
+    node = import_module(f"{module}.__main__").main
+    bus = () if "--bus" in words else ("--bus", f"loop:{port}")
+    with pytest.raises(SystemExit) as ended:
+        node.main([*words, *bus])
+    signal.signal(signal.SIGTERM, before)
+    out, err = capfd.readouterr()
+    assert (ended.value.code, out) == (2, "")
+    assert err.count("\n") == 1
+    assert err.startswith(f"{module.removeprefix('sim.')}: ")
+    assert named in err
+
+
+def test_without_a_plant_the_flight_software_waits_and_ends_with_the_bus(port, start):
+    listener = LoopLink(port)
+    fsw = start("fsw", "microsat", "--bus", f"loop:{port}")
+    assert listener.receive(30.0).can_id == FswBoot.ID
+    assert listener.receive(1.5) is None
+    assert fsw.process.poll() is None
+    listener.close()
+    assert fsw.wait().code == 0

@@ -1,0 +1,192 @@
+"""Killing one of the processes of ``torquer sil``: one sentence, the other gone, what was flown readable."""
+
+import json
+import os
+import random
+import signal
+import time
+from pathlib import Path
+
+import h5py
+import pytest
+
+from fsw.wire.messages import Sync, TickDone
+
+pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="finds processes in /proc")
+
+PATIENCE_S = 30.0
+
+
+def children_of(pid):
+    """Module and process id of the nodes that a process has started."""
+    found = {}
+    for entry in Path("/proc").iterdir():
+        if entry.name.isdigit():
+            try:
+                parent = int((entry / "stat").read_text().rpartition(")")[2].split()[1])
+                words = (entry / "cmdline").read_bytes().split(b"\0")
+            except (OSError, IndexError):
+                continue
+            if parent == pid and b"-m" in words:
+                found[words[words.index(b"-m") + 1].decode()] = int(entry.name)
+    return found
+
+
+def lives(pid):
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def wait_until(condition):
+    deadline = time.monotonic() + PATIENCE_S
+    while not (result := condition()):
+        assert time.monotonic() < deadline, "waited in vain"
+        time.sleep(0.02)
+    return result
+
+
+class Flight:
+    """A run of ``torquer sil`` that is under way."""
+
+    def __init__(self, start, run, *options):
+        self.run = run
+        words = ("sim.harness.cli", "sil", "--bus", "loop", "--out", run, *options)
+        self.sil = start(*words, start_new_session=True)
+        self.nodes = wait_until(self._two_nodes)
+
+    def _two_nodes(self):
+        assert self.sil.process.poll() is None, self.sil.stderr.read_text()
+        found = children_of(self.sil.process.pid)
+        return found if set(found) == {"sim.plant", "fsw"} else None
+
+    def reach(self, lines):
+        """Wait until so many lines have been logged."""
+        log = self.run / "bus.log"
+        wait_until(lambda: log.exists() and log.stat().st_size > 50 * lines)
+
+    def gone(self):
+        wait_until(lambda: not any(map(lives, self.nodes.values())))
+
+
+@pytest.fixture
+def flight(start, tmp_path):
+    """Starts a flight that lasts longer than the test."""
+
+    def begin(*options):
+        return Flight(start, tmp_path / "run", "--orbits", "3", *options)
+
+    return begin
+
+
+def readable(run, bus, torquer):
+    """What a flight that was cut short must leave; the last tick in the log."""
+    assert json.loads((run / "run.json").read_text())["complete"] is False
+    frames = bus(run).frames
+    assert frames[-1].can_id == TickDone.ID, "not a whole tick"
+    last = TickDone.decode(frames[-1].data).tick
+    assert [Sync.decode(f.data).tick for f in frames if f.can_id == Sync.ID] == list(range(last + 1))
+    with h5py.File(run / "truth.h5") as truth:
+        assert truth["q_body_from_orbit"].shape[0] > last
+    replayed = torquer("replay", run)
+    assert replayed.code == 1
+    assert replayed.out.startswith("bit-exact")
+    assert f"at tick {last}" in replayed.out.splitlines()[-1]
+    assert torquer("replay", run, "--plant").code == 1
+    checked = torquer("check", run)
+    assert checked.code == 1
+    assert "VIOLATION" not in checked.out
+    assert "incomplete" in checked.out
+    return last
+
+
+RANDOM = random.Random(20150327)
+
+
+@pytest.mark.parametrize(
+    ("victim", "signum", "lines"),
+    [
+        (victim, signum, RANDOM.randrange(20, 3000))
+        for victim in ("sim.plant", "fsw")
+        for signum in (signal.SIGKILL, signal.SIGTERM)
+    ],
+    ids=lambda value: getattr(value, "name", value),
+)
+def test_a_killed_node_ends_the_run(victim, signum, lines, flight, bus, torquer):
+    flown = flight()
+    flown.reach(lines)
+    os.kill(flown.nodes[victim], signum)
+    ended = flown.sil.wait()
+    assert ended.code == 1
+    assert ended.out == ""
+    name = {"sim.plant": "plant", "fsw": "flight software"}[victim]
+    assert ended.sentence.startswith(f"torquer: the {name} ")
+    flown.gone()
+    last = readable(flown.run, bus, torquer)
+    assert f"at tick {last}:" in ended.sentence
+    assert str(flown.run) in ended.sentence
+    if signum == signal.SIGTERM:
+        return  # one report of each will do
+    report = torquer("report", flown.run)
+    assert report.code == 0
+    assert "replay     bit-exact" in report.out
+    assert {path.name for path in flown.run.iterdir()} >= {"summary.json", "report.html"}
+    assert json.loads((flown.run / "run.json").read_text())["complete"] is False
+
+
+@pytest.mark.parametrize("victim", ["sim.plant", "fsw"])
+def test_a_node_killed_before_the_first_tick_ends_the_run(victim, flight, torquer):
+    flown = flight()
+    os.kill(flown.nodes[victim], signal.SIGKILL)
+    ended = flown.sil.wait()
+    assert ended.code == 1
+    assert "was ended by signal 9" in ended.sentence
+    flown.gone()
+    assert json.loads((flown.run / "run.json").read_text())["complete"] is False
+    for command in ("replay", "check", "report"):
+        done = torquer(command, flown.run)
+        assert done.code == 2
+        assert str(flown.run) in done.sentence
+
+
+def test_ctrl_c_is_one_sentence(flight, bus, torquer):
+    flown = flight()
+    flown.reach(500)
+    os.killpg(flown.sil.process.pid, signal.SIGINT)  # a terminal interrupts the whole group
+    ended = flown.sil.wait()
+    assert (ended.code, ended.out) == (130, "")
+    assert ended.sentence == "torquer: interrupted; what was done so far is kept"
+    flown.gone()
+    readable(flown.run, bus, torquer)
+
+
+@pytest.mark.parametrize("lines", [0, 500])
+def test_nodes_end_by_themselves_when_sil_is_gone(lines, flight, bus, torquer):
+    signum = signal.SIGTERM if lines else signal.SIGKILL
+    flown = flight()
+    if lines:
+        flown.reach(lines)
+    flown.sil.process.send_signal(signum)
+    ended = flown.sil.wait()
+    assert (ended.code, ended.out) == (-signum, "")
+    flown.gone()
+    assert "Traceback" not in flown.sil.stderr.read_text()
+    if lines:
+        readable(flown.run, bus, torquer)
+
+
+def test_flight_software_that_stands_still_for_a_second_is_waited_for(start, tmp_path, bus, torquer, flown):
+    options = ("--orbits", "0.08", "--seed", "3")
+    flight = Flight(start, tmp_path / "run", *options)
+    flight.reach(100)
+    os.kill(flight.nodes["fsw"], signal.SIGSTOP)
+    time.sleep(0.2)
+    stood = (flight.run / "bus.log").stat().st_size
+    time.sleep(0.8)
+    assert (flight.run / "bus.log").stat().st_size == stood
+    os.kill(flight.nodes["fsw"], signal.SIGCONT)
+    assert flight.sil.wait().code == 0
+    assert not any(map(lives, flight.nodes.values()))
+    assert bus(flight.run) == bus(flown("microsat", *options, "--bus", "virtual"))
+    assert torquer("replay", flight.run).code == 0
