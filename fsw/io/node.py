@@ -21,7 +21,8 @@ class FlightNode:
         self._inbox: list[Frame] = []
 
     def start(self) -> Frame:
-        """FSW_BOOT, the first frame this node sends."""
+        """FSW_BOOT, the first frame this node sends; what came before it does not count."""
+        self._inbox.clear()
         return boot_frame(self.config.table_crc)
 
     def receive(self, frame: Frame) -> tuple[Frame, ...]:

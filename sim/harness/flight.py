@@ -102,15 +102,16 @@ def fly(
     for tick in range(ticks):
         timestamp_us = epoch_us + tick * 1_000_000 // tick_hz
         sent = plant.begin_tick()
+        before = _waiting(bus)
         bus.send(sent)
         if pace.factor is None:
             answers = _lockstep_answers(bus, tick)
         else:
             answers = _answers_until(bus, began + (tick + 1) / (tick_hz * pace.factor))
             plant.slips += not answered(answers, tick)
-        for frame in answers:
+        for frame in before + answers:
             plant.receive(frame)
-        log.write(timestamp_us, sent + answers)
+        log.write(timestamp_us, before + sent + answers)
         truth.append(plant.truth())
         plant.end_tick()
         if tick % WATCH_TICKS == 0:
@@ -125,6 +126,8 @@ def fly(
 
 
 WATCH_TICKS = 64
+MOST_WAITING = 1024
+"""Frames of strangers taken before a tick: one that babbles without end does not stop the plant."""
 
 
 def _await_boot(bus: Bus) -> Frame:
@@ -136,6 +139,14 @@ def _await_boot(bus: Bus) -> Frame:
             frame = bus.receive(remaining_s)
             if frame is not None and frame.can_id == FswBoot.ID and intact(frame):
                 return frame
+
+
+def _waiting(bus: Bus) -> list[Frame]:
+    """What strangers have sent since: the flight software has it before this tick, so the log has too."""
+    frames: list[Frame] = []
+    while len(frames) < MOST_WAITING and (frame := bus.receive(0.0)) is not None:
+        frames.append(frame)
+    return frames
 
 
 def _lockstep_answers(bus: Bus, tick: int) -> list[Frame]:
