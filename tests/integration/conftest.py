@@ -29,7 +29,7 @@ def missing(what):
     pytest.skip(f"{what}: make test-vcan runs this test where there is one")
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def vcan0():
     """The name of an interface that is up, and that others may be talking on."""
     if not interface_is_up("vcan0"):

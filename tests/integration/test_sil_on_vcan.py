@@ -1,0 +1,144 @@
+"""The same flight on a real CAN interface: plant and flight software over vcan0, candump beside them."""
+
+import json
+import shutil
+import subprocess
+import sys
+import time
+
+import pytest
+
+from fsw.wire.messages import SENDERS, FswBoot, PlantBoot
+from sim.harness import conclude
+
+FLIGHT = ("microsat", "--seed", "5", "--orbits", "0.02")
+"""121 ticks: the first pulse is among them."""
+
+PLENTY = "8388608"
+"""Bytes of candump's receive buffer: the default one drops frames of a log that is played at full speed."""
+
+
+@pytest.fixture(autouse=True)
+def no_report(monkeypatch):
+    """A report takes longer to draw in the guest than the flight."""
+    monkeypatch.setattr(conclude, "write_report", lambda path, *rest: path.write_text(""))
+
+
+def tool(name):
+    """The path of a program of can-utils."""
+    path = shutil.which(name)
+    assert path is not None, f"{name} is missing: install can-utils"
+    return path
+
+
+class Candump:
+    """candump on an interface, its log kept in a file."""
+
+    def __init__(self, interface, kept):
+        self.kept = kept
+        with kept.open("w") as file:
+            words = [tool("candump"), "-r", PLENTY, "-L", interface]
+            self.process = subprocess.Popen(words, stdout=file, stdin=subprocess.DEVNULL)
+        time.sleep(0.5)  # until its socket is bound
+
+    def end(self):
+        """Its log, once it has written what it has heard."""
+        time.sleep(0.5)
+        self.process.terminate()
+        self.process.wait(10)
+        return self.kept
+
+
+@pytest.fixture(scope="session")
+def on_can(vcan0, flown, tmp_path_factory):
+    """(run directory, candump's own log) of one flight on vcan0."""
+    listener = Candump(vcan0, tmp_path_factory.mktemp("candump") / "candump.log")
+    try:
+        run = flown(*FLIGHT, "--bus", f"socketcan:{vcan0}")
+    finally:
+        kept = listener.end()
+    return run, kept
+
+
+def by_node(frames):
+    """The frames of each node, in its order."""
+    nodes = {}
+    for frame in frames:
+        nodes.setdefault(SENDERS[frame.can_id], []).append(frame)
+    return nodes
+
+
+def test_candump_keeps_the_same_frames_as_we_do(on_can, vcan0, bus):
+    run, kept = on_can
+    theirs, ours = bus(kept).frames, bus(run).frames
+    # candump also hears plant and flight software look for each other before the run begins
+    assert theirs[-len(ours) :] == ours
+    assert {frame.can_id for frame in theirs[: -len(ours)]} <= {PlantBoot.ID, FswBoot.ID}
+    assert json.loads((run / "run.json").read_text())["bus"] == "socketcan"
+    assert (run / "bus.log").read_text().split("\n")[0].split(" ")[1] == vcan0
+
+
+def test_every_bus_carries_the_same_frames(on_can, flown, bus):
+    runs = [on_can[0], flown(*FLIGHT, "--bus", "loop"), flown(*FLIGHT, "--bus", "virtual")]
+    nodes = [by_node(bus(run).frames) for run in runs]
+    assert nodes[0] == nodes[1] == nodes[2]
+    assert set(nodes[0]) == {"PLANT", "FSW", "COIL", "MAG", "SUN"}
+
+
+def test_a_run_on_can_replays_bit_for_bit_and_keeps_the_limits(on_can, torquer):
+    assert "bit-exact" in torquer("replay", on_can[0]).out
+    assert torquer("check", on_can[0]).code == 0
+
+
+def test_auto_takes_vcan0_and_says_so(torquer, vcan0, tmp_path):
+    outcome = torquer("sil", "microsat", "--orbits", "0.002", "--out", tmp_path / "run")
+    assert outcome.code == 0
+    assert "socketcan" in outcome.err
+    assert json.loads((tmp_path / "run" / "run.json").read_text())["bus"] == "socketcan"
+
+
+def test_canplayer_plays_our_log_back(flown, vcan0, bus, tmp_path):
+    run = flown(*FLIGHT, "--bus", "virtual")
+    log = tmp_path / "as-vcan0.log"
+    log.write_text((run / "bus.log").read_text().replace(" virtual ", f" {vcan0} "))
+    listener = Candump(vcan0, tmp_path / "candump.log")
+    try:
+        subprocess.run([tool("canplayer"), "-t", "-g", "1", "-I", str(log)], check=True, timeout=60)
+    finally:
+        kept = listener.end()
+    assert bus(kept).frames == bus(run).frames
+
+
+@pytest.mark.parametrize("first", ["sim.plant", "fsw"])
+def test_two_terminals_in_either_order(first, vcan0, start, bus, flown, tmp_path):
+    run, spec = tmp_path / "run", f"socketcan:{vcan0}"
+    words = {
+        "sim.plant": (*FLIGHT, "--bus", spec, "--out", run),
+        "fsw": ("microsat", "--bus", spec),
+    }
+    second = {"sim.plant": "fsw", "fsw": "sim.plant"}[first]
+    nodes = {first: start(first, *words[first])}
+    time.sleep(4.0)  # it has started and found nobody
+    nodes[second] = start(second, *words[second])
+    assert nodes["sim.plant"].wait().code == 0
+    assert nodes["fsw"].wait().code == 0
+    assert bus(run).frames == bus(flown(*FLIGHT, "--bus", "virtual")).frames
+
+
+def test_strangers_on_the_bus_do_not_end_a_run(torquer, vcan0, bus, tmp_path):
+    babble = (
+        "import subprocess, sys, time\n"
+        "while True:\n"
+        "    for frame in ('110#00', '7FF#DEADBEEF', '12345678#0102', '100#R', '080#0011223344556677'):\n"
+        "        subprocess.run([sys.argv[1], sys.argv[2], frame])\n"
+        "    time.sleep(0.05)\n"
+    )
+    run = tmp_path / "run"
+    stranger = subprocess.Popen([sys.executable, "-c", babble, tool("cansend"), vcan0])
+    try:
+        assert torquer("sil", *FLIGHT, "--bus", f"socketcan:{vcan0}", "--out", run).code == 0
+    finally:
+        stranger.kill()
+        stranger.wait()
+    assert any(frame.can_id == 0x7FF for frame in bus(run).frames)
+    assert torquer("check", run).code == 0
