@@ -12,7 +12,7 @@ import click
 from fsw.io.config import flight_config
 from fsw.io.open_bus import open_bus
 from fsw.wire.frame import Frame
-from fsw.wire.messages import NAMES, PlantEnd
+from fsw.wire.messages import NAMES, PlantEnd, Sync
 from sim.harness import run_dir
 from sim.harness.assemble import plant_config
 from sim.harness.candump import LogEntry, LogTruncatedError, read_log
@@ -91,18 +91,26 @@ def through_plant(log: Path, flown: Flown) -> int:
                 click.echo(f"plant reproduced: {ticks} ticks, every frame equal")
                 return 0
             sent = plant.begin_tick()
-            difference = _difference(sent, logged[: len(sent)])
+            begin = _beginning(logged, len(sent))
+            end = begin + len(sent)
+            difference = _difference(sent, logged[begin:end])
             if difference is not None:
                 click.echo(f"differs: tick {ticks}: {difference}")
                 return 1
-            for frame in logged[len(sent) :]:
+            for frame in logged[:begin] + logged[end:]:
                 plant.receive(frame)
             plant.slips += not answered(logged, ticks)
             plant.end_tick()
             ticks += 1
             watch(ticks)
-    click.echo(f"incomplete: the log ends without its end mark at tick {ticks - 1}")
+    click.echo(f"incomplete: the log ends without its end mark at tick {max(ticks - 1, 0)}")
     return 1
+
+
+def _beginning(logged: list[Frame], count: int) -> int:
+    """Where the ``count`` frames of the plant begin in a tick: SYNC is their last, strangers may be first."""
+    sync = next((index for index, frame in enumerate(logged) if frame.can_id == Sync.ID), count)
+    return max(0, sync + 1 - count)
 
 
 def _difference(ours: list[Frame], logged: list[Frame]) -> str | None:
