@@ -6,6 +6,7 @@ in range. Everything else is counted and dropped.
 
 from dataclasses import dataclass
 from typing import NamedTuple
+from zlib import crc32
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
@@ -50,12 +51,17 @@ NOTHING = Readings(None, None, None, None, None, None)
 
 @dataclass(frozen=True, slots=True)
 class GateState:
-    """Last counter of each listened message (-1: none yet) and counts since boot."""
+    """Last counter of each listened message (-1: none yet), counts since boot, and what was taken since boot.
+
+    ``heard`` is the CRC-32 of the data of all messages taken: nothing on the bus can be altered afterwards
+    without the state telling, not even a sample that had no use.
+    """
 
     counters: tuple[int, ...] = (-1,) * len(LISTENED)
     rejected: int = 0
     missed: int = 0
     overrun: int = 0
+    heard: int = 0
 
 
 def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateState]:
@@ -63,11 +69,12 @@ def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateSt
 
     Returns:
         The readings, and the gate's state with ``rejected`` (broken, unknown, repeated or out of range),
-        ``missed`` (jumps of a counter) and ``overrun`` (frames beyond the limit, unread) brought forward.
+        ``missed`` (jumps of a counter), ``overrun`` (frames beyond the limit, unread) and ``heard`` brought
+        forward.
     """
     slots: list[object] = [None] * len(LISTENED)
     counters = list(state.counters)
-    rejected, missed = state.rejected, state.missed
+    rejected, missed, heard = state.rejected, state.missed, state.heard
     for frame in frames[:INBOX_LIMIT]:
         message_class = LISTENED.get(frame.can_id)
         if message_class is None:
@@ -86,8 +93,9 @@ def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateSt
             missed += step - 1
         counters[slot] = message.counter
         slots[slot] = message
+        heard = crc32(frame.data, heard)
     overrun = state.overrun + max(0, len(frames) - INBOX_LIMIT)
-    return Readings(*slots), GateState(tuple(counters), rejected, missed, overrun)  # type: ignore[arg-type]
+    return Readings(*slots), GateState(tuple(counters), rejected, missed, overrun, heard)  # type: ignore[arg-type]
 
 
 def _in_range(message: Listened) -> bool:

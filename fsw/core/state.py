@@ -60,6 +60,7 @@ def checksum(state: FlightState) -> int:
         gate.rejected,
         gate.missed,
         gate.overrun,
+        gate.heard,
         state.estimator.rejected_in_a_row,
         state.estimator.rejected_total,
         state.estimator.restarts,
