@@ -5,7 +5,7 @@
 # make test-vcan   the tests on a CAN interface, in a user-mode Linux guest where this kernel has no vcan
 
 PYTHON ?= python3
-PYTEST_FLAGS ?= -q -rs
+PYTEST_FLAGS ?= -q -rs -n 2
 
 bin := .venv/bin
 installed := .venv/.installed
@@ -39,7 +39,7 @@ lint: venv
 	$(bin)/python tools/generate_messages.py --check
 
 test-vcan: venv
-	TORQUER_REQUIRE_VCAN=1 tests/with-vcan $(bin)/pytest $(PYTEST_FLAGS) -p no:cacheprovider -m vcan
+	TORQUER_REQUIRE_VCAN=1 tests/with-vcan $(bin)/pytest -q -rs -p no:cacheprovider -m vcan
 
 golden: venv
 	$(bin)/python tests/golden/record.py
