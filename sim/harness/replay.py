@@ -105,6 +105,9 @@ def replay(log: Path, config: FlightConfig, on_tick: OnTick = lambda state: None
         end_line = entry.line
         frame = entry.frame
         ended = frame.can_id == PlantEnd.ID and intact(frame)
+        if ended and (told := PlantEnd.decode(frame.data).ticks) != last_tick + 1:
+            differences[True] = Difference(max(last_tick, 0), "PLANT_END.ticks", told, last_tick + 1)
+            break
         if frame.can_id in FROM_FSW:
             frames += 1
             found = _difference(frame, expected, max(last_tick, 0))

@@ -12,7 +12,7 @@ import click
 from fsw.io.config import flight_config
 from fsw.io.open_bus import open_bus
 from fsw.wire.frame import Frame
-from fsw.wire.messages import NAMES, PlantEnd, Sync
+from fsw.wire.messages import NAMES, Sync
 from sim.harness import run_dir
 from sim.harness.assemble import plant_config
 from sim.harness.candump import LogEntry, LogTruncatedError, read_log
@@ -87,7 +87,7 @@ def through_plant(log: Path, flown: Flown) -> int:
     with progress("replaying", flown.run.get("ticks", 0)) as watch:
         for _, group in groupby(_after_boot(log), key=lambda entry: entry.timestamp_us):
             logged = [entry.frame for entry in group]
-            if logged[0].can_id == PlantEnd.ID:
+            if logged[0] == plant.end():
                 click.echo(f"plant reproduced: {ticks} ticks, every frame equal")
                 return 0
             sent = plant.begin_tick()
