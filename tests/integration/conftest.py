@@ -1,6 +1,7 @@
 """Flights by the command line; CAN interfaces. Where there are none: ``tests/with-vcan pytest -m vcan``."""
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -9,8 +10,9 @@ from typing import NamedTuple
 import pytest
 
 from fsw.io.socketcan import interface_is_up
+from fsw.wire.messages import CLASSES, Sync
 from sim.harness import conclude
-from sim.harness.candump import read_log
+from sim.harness.candump import format_line, format_time, read_log
 from sim.harness.cli import main
 
 CAN_FIXTURES = {"vcan0", "own_interface"}
@@ -122,6 +124,48 @@ def bus_of(run_or_log):
 def bus():
     """Reads the bus log of a run."""
     return bus_of
+
+
+class Copy:
+    """A copy of a run that may be altered: ``entries`` is its log, one (time, channel, frame) a line."""
+
+    def __init__(self, run, folder):
+        self.folder = Path(shutil.copytree(run, folder))
+        self.log = self.folder / "bus.log"
+        self.entries = [[entry.timestamp_us, entry.channel, entry.frame] for entry in read_log(self.log)]
+        assert self.text() == self.log.read_text()
+
+    def text(self):
+        return "".join(format_line(format_time(us), name, frame) for us, name, frame in self.entries)
+
+    def write(self):
+        """Put the altered entries into the log."""
+        self.log.write_text(self.text())
+        return self.folder
+
+    def where(self, message, **values):
+        """Indices of the entries that hold such a message with such values."""
+        return [
+            index
+            for index, (_, _, frame) in enumerate(self.entries)
+            if frame.can_id == message.ID and values.items() <= message.decode(frame.data)._asdict().items()
+        ]
+
+    def in_tick(self, tick, message):
+        """Index of the message of that kind in a tick."""
+        ends = self.where(Sync, tick=tick)[0]
+        return max(index for index in self.where(message) if index < ends)
+
+    def change(self, index, **values):
+        """Give a message other values, sealed anew."""
+        message = CLASSES[self.entries[index][2].can_id]
+        self.entries[index][2] = message.decode(self.entries[index][2].data)._replace(**values).encode()
+
+
+@pytest.fixture
+def copy_of(tmp_path):
+    """Copies a run that is then altered."""
+    return lambda run: Copy(run, tmp_path / f"copy{len(list(tmp_path.iterdir()))}")
 
 
 class Node:
