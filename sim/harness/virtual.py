@@ -30,7 +30,7 @@ class VirtualBus:
         """The next answer, or None once the time has passed: nothing comes until something is sent."""
         if self._queue:
             return self._queue.popleft()
-        if timeout_s is not None:
+        if timeout_s:
             time.sleep(timeout_s)
         return None
 
