@@ -6,6 +6,8 @@ Only ``make golden`` changes the logs.
 
 import gzip
 import json
+import runpy
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -18,6 +20,7 @@ from sim.harness.replay import replay
 from sim.harness.scenario import flight_table, load
 
 HERE = Path(__file__).resolve().parent
+FLIGHTS = runpy.run_path(str(HERE / "record.py"))["FLIGHTS"]
 NAMES = sorted(path.parent.name for path in HERE.glob("*/bus.log.gz"))
 
 
@@ -52,6 +55,23 @@ def test_every_bit_is_as_recorded_on_the_same_platform(golden, shown):
         assert shown.first_bit_difference is None
     else:
         assert shown.command_exact
+
+
+def leaves(values, path=""):
+    """Every value of nested tables by its full key."""
+    if not isinstance(values, dict):
+        return {path: values}
+    return {key: leaf for name in values for key, leaf in leaves(values[name], f"{path}.{name}").items()}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_they_fly_what_ships_today(name):
+    """Where a scenario has been changed on purpose: make golden."""
+    scenario, _, overrides = FLIGHTS[name]
+    today = leaves(load(scenario, overrides).model_dump(mode="json", exclude_none=True))
+    recorded = leaves(tomllib.loads((HERE / name / run_dir.SCENARIO).read_text()))
+    keys = sorted(today.keys() | recorded.keys())
+    assert [(k, recorded.get(k), today.get(k)) for k in keys if recorded.get(k) != today.get(k)] == []
 
 
 def test_something_happens_in_them(golden):

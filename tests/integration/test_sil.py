@@ -254,7 +254,7 @@ def test_perfect_knowledge_comes_over_the_bus(flown, run, bus):
 # --- real time
 
 
-@pytest.mark.parametrize("factor", [200, 100_000])
+@pytest.mark.parametrize("factor", [400, 100_000])
 def test_real_time_keeps_to_the_clock_and_counts_slips(factor, flown, bus, torquer):
     run = flown("microsat", "--orbits", "0.05", "--pace", f"realtime:{factor}", "--bus", "loop")
     summary = read(run, "summary.json")
@@ -266,7 +266,7 @@ def test_real_time_keeps_to_the_clock_and_counts_slips(factor, flown, bus, torqu
     assert summary["slips"] in (late, late + 1), "of the last tick one cannot tell"
     assert read(run, "run.json")["pace"] == "realtime"
     assert summary["wall_seconds"] >= TICKS / factor * 0.99
-    if factor == 200:
+    if factor == 400:
         assert summary["wall_seconds"] < TICKS / factor + 1.0
     else:
         assert late > 0

@@ -50,9 +50,9 @@ def wait_until(condition):
 class Flight:
     """A run of ``torquer sil`` that is under way."""
 
-    def __init__(self, start, run, *options):
+    def __init__(self, start, run, *options, bus="loop"):
         self.run = run
-        words = ("sim.harness.cli", "sil", "--bus", "loop", "--out", run, *options)
+        words = ("sim.harness.cli", "sil", "--bus", bus, "--out", run, *options)
         self.sil = start(*words, start_new_session=True)
         self.nodes = wait_until(self._two_nodes)
 
@@ -74,8 +74,8 @@ class Flight:
 def flight(start, tmp_path):
     """Starts a flight that lasts longer than the test."""
 
-    def begin(*options):
-        return Flight(start, tmp_path / "run", "--orbits", "3", *options)
+    def begin(*options, bus="loop"):
+        return Flight(start, tmp_path / "run", "--orbits", "3", *options, bus=bus)
 
     return begin
 
@@ -174,6 +174,16 @@ def test_nodes_end_by_themselves_when_sil_is_gone(lines, flight, bus, torquer):
     assert "Traceback" not in flown.sil.stderr.read_text()
     if lines:
         readable(flown.run, bus, torquer)
+
+
+def test_nodes_on_a_can_interface_end_with_sil(vcan0, flight, bus):
+    """The bus lives on, and nothing on it tells them."""
+    flown = flight("--orbits", "20", bus=f"socketcan:{vcan0}")
+    flown.reach(100)
+    flown.sil.process.kill()
+    flown.sil.wait()
+    flown.gone()
+    assert bus(flown.run).frames[-1].can_id == TickDone.ID
 
 
 def test_flight_software_that_stands_still_for_a_second_is_waited_for(start, tmp_path, bus, torquer, flown):
