@@ -69,6 +69,7 @@ def through_flight_software(log: Path, flown: Flown) -> int:
         click.echo(f"differs: {shown.first_bit_difference}")
         if shown.first_command_difference != shown.first_bit_difference:
             click.echo(f"first command that differs: {shown.first_command_difference}")
+        return 1
     if shown.ended:
         return 0 if exact else 1
     how = "inside a line" if shown.cut else "without its end mark"
