@@ -267,6 +267,15 @@ class TestRunning:
         expected = np.linalg.solve(np.array(MEKF.inertia_kgm2), np.cross((0.0, 0.0, 8.0), b_body))
         np.testing.assert_allclose(change, expected, rtol=1e-2)
 
+    def test_gravity_turns_it_too(self, settled):
+        """J dw/dt = 3 mu / r^3 e x J e - w x J w, with a body at rest and nothing else."""
+        still = replace(settled.estimate, omega_body_radps=ZERO, torque_body_nm=ZERO)
+        after, _ = step(replace(settled, estimate=still), NOTHING)
+        e = np.array(rotate(still.q_body_from_eci, REFERENCE.r_eci_m)) / REFERENCE.radius_m
+        j = np.array(MEKF.inertia_kgm2)
+        pull = 3.0 * 3.986004418e14 / REFERENCE.radius_m**3 * np.linalg.solve(j, np.cross(e, j @ e))
+        np.testing.assert_allclose(after.estimate.omega_body_radps, pull, rtol=1e-5)
+
 
 class TestElapsedTicks:
     QUIET = NOTHING
@@ -323,11 +332,12 @@ class TestRejections:
         state, _ = step(state, seen_from(sun=OFF_SUN, field=None))
         assert state == EstimatorState(None, 0, CONFIG.restart_after_rejections, 1)
 
-    def test_one_that_is_taken_ends_the_row(self, settled):
+    @pytest.mark.parametrize("changes", [{}, {"sun": None}, {"field": None}], ids=["both", "field", "Sun"])
+    def test_one_that_is_taken_ends_the_row(self, settled, changes):
         state = settled
         for _ in range(CONFIG.restart_after_rejections - 1):
             state, _ = step(state, seen_from(sun=OFF_SUN, field=None))
-        state, _ = step(state, seen_from())
+        state, _ = step(state, seen_from(**changes))
         assert (state.rejected_in_a_row, state.rejected_total) == (0, CONFIG.restart_after_rejections - 1)
 
     def test_silence_does_not_end_the_row(self, settled):
@@ -434,6 +444,15 @@ class TestAttitude:
             assert seen.valid is valid
             assert degrees(seen.sigma3_attitude_rad) == pytest.approx(3.0 * sigma_deg)
             assert seen.sigma3_rate_radps == pytest.approx(9e-5)
+
+    def test_the_sigmas_are_those_of_the_worst_axis_of_attitude_and_of_rate(self, settled):
+        for first, second in (([3.0, 1.0, 2.0], [40.0, 20.0, 30.0]), ([1.0, 2.0, 3.0], [20.0, 30.0, 40.0])):
+            covariance = 1e-6 * np.diag([*first, *second, *[500.0] * 6])
+            seen = attitude(
+                replace(settled, estimate=replace(settled.estimate, covariance=covariance)), REFERENCE, CONFIG
+            )
+            assert seen.sigma3_attitude_rad == pytest.approx(3.0 * (3e-6) ** 0.5)
+            assert seen.sigma3_rate_radps == pytest.approx(3.0 * (40e-6) ** 0.5)
 
 
 class TestPerfectKnowledge:

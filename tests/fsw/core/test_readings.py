@@ -102,9 +102,10 @@ class TestEachMessage:
         assert readings[SLOT[message.ID]] is not None
         assert (state.rejected, state.missed) == (1, 0)
 
-    def test_repeated_in_the_next_tick(self, message):
-        _, state = self.admitted(message)
-        readings, state = self.admitted(message, state=state)
+    @pytest.mark.parametrize("counter", [0, 5, 15])
+    def test_repeated_in_the_next_tick(self, message, counter):
+        _, state = self.admitted(message._replace(counter=counter))
+        readings, state = self.admitted(message._replace(counter=counter), state=state)
         assert readings == NOTHING
         assert (state.rejected, state.missed) == (1, 0)
 
@@ -121,10 +122,11 @@ class TestEachMessage:
             assert readings != NOTHING
         assert (state.rejected, state.missed) == (0, 0)
 
+    @pytest.mark.parametrize("first", [0, 13])
     @pytest.mark.parametrize("jump", range(1, 16))
-    def test_a_jump_is_taken_and_what_is_missing_counted(self, message, jump):
-        _, state = self.admitted(message._replace(counter=13))
-        readings, state = self.admitted(message._replace(counter=13 + jump), state=state)
+    def test_a_jump_is_taken_and_what_is_missing_counted(self, message, first, jump):
+        _, state = self.admitted(message._replace(counter=first))
+        readings, state = self.admitted(message._replace(counter=first + jump), state=state)
         assert readings != NOTHING
         assert (state.rejected, state.missed) == (0, jump - 1)
 
@@ -157,10 +159,11 @@ class TestRange:
         assert (readings.coil is not None) is (-3 <= level <= 3)
         assert state.rejected == (not -3 <= level <= 3)
 
-    def test_there_is_no_fourth_coil(self):
-        readings, state = admit(frames(COIL._replace(coil=3)), GateState())
-        assert readings == NOTHING
-        assert state == GateState(rejected=1)
+    @pytest.mark.parametrize("coil", range(4))
+    def test_there_is_no_fourth_coil(self, coil):
+        readings, state = admit(frames(COIL._replace(coil=coil)), GateState())
+        assert (readings.coil is not None) is (coil < 3)
+        assert state.rejected == (coil == 3)
 
     @pytest.mark.parametrize(
         ("length", "taken"), [(0.88, False), (0.91, True), (1.0, True), (1.09, True), (1.11, False)]
