@@ -1,12 +1,14 @@
 """The flight loop: pure, ordered, bound to its tick, and safe when boards fall silent."""
 
 from copy import deepcopy
+from itertools import pairwise
 
 import pytest
 
 from fsw.core.state import Inbox, checksum
 from fsw.core.step import boot, step
 from fsw.core.telemetry import Event
+from fsw.core.vector import dot, norm
 from fsw.wire.messages import (
     CLASSES,
     CoilFire,
@@ -104,6 +106,13 @@ class TestOutbox:
         fires = [outbox for outbox in outboxes if any(frame.can_id == CoilFire.ID for frame in outbox)]
         assert fires
         assert all(outbox[0].can_id == CoilFire.ID for outbox in fires)
+
+    def test_the_first_request_answers_tick_100(self, flight):
+        """A full back-off after the boot at tick 0, and not a tick more: the demand is there all along."""
+        *_, outboxes = flight
+        fires = [tick for tick, outbox in enumerate(outboxes) if outbox[0].can_id == CoilFire.ID]
+        assert fires[0] == 100
+        assert all(later - sooner >= 103 for sooner, later in pairwise(fires))
 
     def test_every_frame_is_intact(self, flight):
         *_, outboxes = flight
@@ -310,6 +319,19 @@ class TestSilence:
         said = world.step(drive)
         assert (Event.MONITOR_TRIPPED, 7) in [(m.event, m.argument) for m in of(FswEvent, said)]
         assert world.state.modes.mode is Mode.SAFE
+
+
+def test_without_an_attitude_the_measured_field_is_what_control_works_with(make_world, without):
+    """B-dot: the torque asked for is normal to the field that was measured in body axes."""
+    world = make_world(initial={"rate_degps": [0.5, -0.7, 0.4]})
+    for _ in range(40):
+        world.step(without(SunVector))
+        owed, b = world.state.pulses.owed_impulse_body_nms, world.state.sample.b_body_t
+        if any(owed):
+            break
+    assert world.state.modes.mode is Mode.DETUMBLE
+    assert not world.state.attitude.valid
+    assert abs(dot(owed, b)) < 1e-9 * norm(owed) * norm(b)
 
 
 class TestPerfectKnowledge:

@@ -157,6 +157,16 @@ class TestEvents:
         assert self.found(off, off) == []
         assert self.found(off, state) == [Happening(Event.TIME_MISMATCH, 0)]
 
+    def test_the_numbers_are_those_that_logs_hold(self):
+        assert {event.name: event.value for event in Event} == {
+            "MODE_CHANGED": 1,
+            "FILTER_STARTED": 2,
+            "FILTER_RESTARTED": 3,
+            "MONITOR_TRIPPED": 4,
+            "REQUEST_REFUSED": 5,
+            "TIME_MISMATCH": 6,
+        }
+
     def test_every_event_has_a_severity_and_fits_its_signal(self):
         assert set(SEVERITY) == set(Event)
         assert all(0 < event < 256 for event in Event)

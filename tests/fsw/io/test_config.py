@@ -39,6 +39,17 @@ class TestEstimator:
         np.testing.assert_allclose(config.mekf.field_noise, np.eye(3) * 150e-9**2, rtol=1e-12)
         np.testing.assert_allclose(config.mekf.sun_noise, np.eye(3) * radians(0.4) ** 2, rtol=1e-12)
 
+    @pytest.mark.parametrize("tick_hz", [1, 4])
+    def test_noise_of_a_tick(self, tick_hz):
+        tuning = {"torque_noise_nm_rts": 2e-7, "bias_walk_nt_prts": 0.3, "torque_walk_nm_prts": 5e-10}
+        config = configured(time={"tick_hz": tick_hz}, estimator=tuning).estimator.mekf
+        assert config.tick_s == 1.0 / tick_hz
+        diagonal = config.process_noise.diagonal()
+        np.testing.assert_allclose(diagonal[6:9], np.full(3, 0.3e-9**2 / tick_hz), rtol=1e-12)
+        np.testing.assert_allclose(diagonal[9:12], np.full(3, 5e-10**2 / tick_hz), rtol=1e-12)
+        rates = 2e-7**2 / tick_hz * np.linalg.inv(FULL) @ np.linalg.inv(FULL).T
+        np.testing.assert_allclose(config.process_noise[3:6, 3:6], rates, rtol=1e-9)
+
     def test_limits_of_the_start(self):
         config = configured().estimator
         assert config.max_field_error_t == pytest.approx(3e-6)
