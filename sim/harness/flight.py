@@ -4,6 +4,7 @@ In lockstep the plant waits for the TICK_DONE that names its tick. In real time 
 deadlines; an answer that is not there by then is a counted slip, never a wait.
 """
 
+import gc
 import os
 import time
 from collections.abc import Callable
@@ -98,6 +99,7 @@ def fly(
     boot = _await_boot(bus)
     epoch_us = timestamp_us = epoch_unix_s * 1_000_000
     log.write(epoch_us, [boot])
+    gc.freeze()  # what was loaded before the flight need not be searched for garbage during it
     began = time.monotonic()
     for tick in range(ticks):
         timestamp_us = epoch_us + tick * 1_000_000 // tick_hz
