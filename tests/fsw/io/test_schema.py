@@ -1,11 +1,26 @@
 """Values from TOML: laid over each other, checked, and every fault told in one sentence."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 import pytest
 from pydantic import Field, Strict
 
-from fsw.io.schema import NotNegative, Positive, Section, TableError, Triple, merge, read_toml, validated
+from fsw.io.schema import (
+    NotNegative,
+    Positive,
+    Section,
+    Square,
+    TableError,
+    Triple,
+    merge,
+    read_toml,
+    validated,
+)
+
+
+class Deep(Section):
+    share: float = Field(default=0.5, ge=0.0, le=1.0)
+    rows: Square = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 class Inner(Section):
@@ -15,6 +30,8 @@ class Inner(Section):
     on: bool = False
     name: str = "x"
     axes: Triple = (1.0, 0.0, 0.0)
+    kind: Literal["round", "square"] = "round"
+    deep: Deep = Deep()
     pair: Annotated[tuple[str, str] | None, Strict(False)] = None
 
 
@@ -104,6 +121,28 @@ class TestValidated:
 
     def test_an_unknown_key(self):
         assert fault(size=3) == "file.toml: inner.size is not a known key"
+
+    def test_a_choice(self):
+        assert (
+            fault(kind="oval")
+            == "file.toml: inner.kind = 'oval' is not allowed: input should be 'round' or 'square'"
+        )
+
+    def test_a_section_within_a_section(self):
+        assert fault(deep={"share": 1.5}) == (
+            "file.toml: inner.deep.share = 1.5 is not allowed: allowed is a number at least 0 and at most 1"
+        )
+
+    def test_rows_of_numbers(self):
+        rows = [[1, 2, 3], [4, 5, 6], [7, 8, 9.5]]
+        outer = validated(Outer, merge(GOOD, {"inner": {"deep": {"rows": rows}}}), "file.toml")
+        assert outer.inner.deep.rows == ((1.0, 2.0, 3.0), (4.0, 5.0, 6.0), (7.0, 8.0, 9.5))
+
+    @pytest.mark.parametrize("weight", [-0.5, float("nan"), float("inf"), "0"])
+    def test_a_quantity_that_cannot_be_negative(self, weight):
+        with pytest.raises(TableError, match=r"weight = .* is not allowed: allowed is a number at least 0"):
+            validated(Outer, merge(GOOD, {"weight": weight}), "file.toml")
+        assert validated(Outer, merge(GOOD, {"weight": 0.5}), "file.toml").weight == 0.5
 
     def test_a_missing_key(self):
         with pytest.raises(TableError) as caught:

@@ -78,6 +78,10 @@ PLANTED = [
     ("time.epoch_utc", 1_700_000_000, "time.epoch_utc = 1700000000 is not allowed: allowed is a text"),
     ("orbit.altitude_km", 149.0, "a number at least 150 and at most 40000"),
     ("orbit.inclination_deg", 181.0, "a number at least 0 and at most 180"),
+    ("orbit.raan_deg", 360.5, "a number at least -360 and at most 360"),
+    ("orbit.raan_deg", -360.5, "a number at least -360 and at most 360"),
+    ("orbit.u0_deg", 360.5, "a number at least -360 and at most 360"),
+    ("orbit.u0_deg", -360.5, "a number at least -360 and at most 360"),
     ("orbit.tle", list(TLE[:1]), "orbit.tle.1 is missing"),
     ("orbit.tle", [TLE[0][:-1] + "3", TLE[1]], "checksum"),
     ("orbit.tle", [TLE[1], TLE[0]], "element line 1"),
@@ -93,6 +97,7 @@ PLANTED = [
     ("coils.levels_am2", [1.0, 2.0], "coils.levels_am2.2 is missing"),
     ("coils.levels_am2", [1.0, 2.0, 2.0], "three positive, rising dipoles"),
     ("coils.levels_am2", [2.0, 1.0, 3.0], "three positive, rising dipoles"),
+    ("coils.levels_am2", [1.0, 1.0, 3.0], "three positive, rising dipoles"),
     ("coils.levels_am2", [0.0, 1.0, 3.0], "three positive, rising dipoles"),
     ("coils.levels_am2", [-1.0, 1.0, 3.0], "three positive, rising dipoles"),
     ("coils.pulse_s", 3.001, "a number above 0 and at most 3"),
@@ -104,6 +109,8 @@ PLANTED = [
     ("control.k_w", -1.0, "a number at least 0"),
     ("control.k_a", "1.0", "a number at least 0"),
     ("control.k_a", float("inf"), "a number at least 0"),
+    ("control.spin_radps", 0.11, "a number at least -0.1 and at most 0.1"),
+    ("control.spin_radps", -0.11, "a number at least -0.1 and at most 0.1"),
     ("control.leak_s", 0.0, "a number above 0"),
     ("estimator.bias", "yes", "true or false"),
     ("estimator.torque", 1, "true or false"),
@@ -113,6 +120,7 @@ PLANTED = [
     ("modes.near_deg", 40.0, "near_deg under far_deg"),
     ("modes.slow_degps", 0.6, "slow_degps must lie under fast_degps"),
     ("modes.near_deg", 181.0, "a number above 0 and at most 180"),
+    ("modes.far_deg", 180.5, "a number above 0 and at most 180"),
     ("modes.recover_s", -1.0, "a number at least 0"),
     ("modes.stale_after_s", 0.0, "a number above 0"),
     ("modes.trips_to_stay_safe", 0, "a whole number at least 1"),
@@ -148,6 +156,13 @@ class TestOrbit:
     def test_one_key_of_the_same_kind_leaves_the_others(self):
         base = lay_over(default_values(), CIRCULAR)
         assert lay_over(base, {"orbit": {"u0_deg": 5.0}})["orbit"] == {**CIRCULAR["orbit"], "u0_deg": 5.0}
+
+    def test_angles_that_are_not_given_are_zero(self):
+        orbit = flight_table({"orbit": {"altitude_km": 700.0}}, "x").orbit
+        assert (orbit.inclination_deg, orbit.raan_deg, orbit.u0_deg) == (0.0, 0.0, 0.0)
+
+    def test_a_section_that_says_nothing_changes_nothing(self):
+        assert flight_table({"orbit": {}}, "x").orbit.tle == TLE
 
     def test_both_kinds_at_once_are_refused(self):
         sentence = fault({"orbit": {"tle": list(TLE), "altitude_km": 700.0}})
@@ -213,6 +228,11 @@ class TestEpoch:
             file = tmp_path / "t.toml"
             file.write_text(f"[time]\nepoch_utc = {written}\n", encoding="utf-8")
             assert load_flight_table(str(file)).epoch_unix_s == self.unix(2025, 3, 20, 12)
+
+
+def test_no_spin_unless_it_is_asked_for():
+    assert flight_table({}, "x").control.spin_radps == 0.0
+    assert flight_table({"control": {"spin_radps": -0.1}}, "x").control.spin_radps == -0.1
 
 
 class TestInertia:
