@@ -92,7 +92,8 @@ def replay(log: Path, config: FlightConfig, on_tick: OnTick = lambda state: None
         LogError: the file is no candump log, or was altered so that it no longer is one.
     """
     node = FlightNode(config)
-    expected: deque[tuple[int, Frame]] = deque([(0, node.start())])
+    boot = node.start()
+    expected: deque[tuple[int, Frame]] = deque([(0, boot)])
     differences: dict[bool, Difference] = {}
     ticks = frames = end_line = 0
     last_tick = -1
@@ -110,6 +111,11 @@ def replay(log: Path, config: FlightConfig, on_tick: OnTick = lambda state: None
             break
         if frame.can_id in FROM_FSW:
             frames += 1
+            if (
+                frame == boot and not expected and node.state.tick < 0
+            ):  # asked for again by a plant that came late
+                node.start()
+                continue
             found = _difference(frame, expected, max(last_tick, 0))
             if found is not None:
                 exact, difference = found

@@ -151,9 +151,10 @@ def last_tick(path: Path, scenario: Scenario) -> int:
 
 
 def _start(module: str, *arguments: str) -> subprocess.Popen[bytes]:
-    """A node as a process. Ctrl-C is for this process alone: it ends its nodes itself."""
+    """A node as a process, of the same code. Ctrl-C is for this process alone: it ends its nodes itself."""
     words = [sys.executable, "-m", module, *arguments]
-    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
+    path = {"PYTHONPATH": os.pathsep.join(sys.path), "PYTHONSAFEPATH": "1"}  # not what lies in this directory
+    environment = {**os.environ, **path, "OPENBLAS_NUM_THREADS": "1"}
     return subprocess.Popen(words, env=environment, start_new_session=True)
 
 

@@ -155,6 +155,15 @@ def test_without_out_a_run_is_named_by_scenario_and_time(torquer, tmp_path, monk
     assert [path.name for path in tmp_path.iterdir()] == ["runs"]
 
 
+def test_the_nodes_run_the_same_code_whatever_lies_around(torquer, tmp_path, monkeypatch):
+    for package in ("fsw", "sim", "sim/plant", "can"):
+        (tmp_path / package).mkdir()
+        for module in ("__init__", "__main__"):
+            (tmp_path / package / f"{module}.py").write_text("raise SystemExit('the wrong code')\n")
+    monkeypatch.chdir(tmp_path)
+    assert torquer("sil", "--orbits", "0.001", "--bus", "loop", "--out", "run").code == 0
+
+
 # --- determinism
 
 
