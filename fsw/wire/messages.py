@@ -22,6 +22,8 @@ class CoilRefusedReason(IntEnum):
     BAD_DURATION = 6
     COIL_ON = 7
     LOCKOUT = 8
+    SECOND_DIPOLE = 9
+    WRONG_BOARD = 10
 
 
 class Mode(IntEnum):
@@ -45,6 +47,7 @@ class Severity(IntEnum):
 _COIL_FIRE = id_register(0x080)
 _COIL_DIPOLE = id_register(0x088)
 _COIL_STATUS = id_register(0x100)
+_COIL_DIPOLE_STATUS = id_register(0x101)
 _COIL_REFUSED = id_register(0x108)
 _MAG_FIELD = id_register(0x110)
 _SUN_VECTOR = id_register(0x118)
@@ -122,7 +125,7 @@ class _CoilDipole(NamedTuple):
 
 
 class CoilDipole(_CoilDipole):
-    """Continuous three-axis dipole for the continuous-driver board, as a fraction of that board's full scale."""
+    """Dipole by fractions of the continuous driver's full scale, for the tick it answers. There is no OFF."""
 
     __slots__ = ()
 
@@ -197,9 +200,46 @@ class CoilStatus(_CoilStatus):
         )
 
 
+class _CoilDipoleStatus(NamedTuple):
+    m_x: float  # [1]
+    m_y: float  # [1]
+    m_z: float  # [1]
+    counter: int = 0
+
+
+class CoilDipoleStatus(_CoilDipoleStatus):
+    """Exactly one a tick from a continuous driver: what was driven in the tick that ends at this tick."""
+
+    __slots__ = ()
+
+    ID: Final = 0x101
+    LENGTH: Final = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (raw(self.m_x, 1.52587890625e-05, -65536, 65535) & 0x1FFFF) << 4
+            | (raw(self.m_y, 1.52587890625e-05, -65536, 65535) & 0x1FFFF) << 21
+            | (raw(self.m_z, 1.52587890625e-05, -65536, 65535) & 0x1FFFF) << 38
+        )
+        return seal(0x101, word, 8, _COIL_DIPOLE_STATUS)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "CoilDipoleStatus":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            ((word >> 4 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
+            ((word >> 21 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
+            ((word >> 38 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
+            (word >> 0 & 0xF),
+        )
+
+
 class _CoilRefused(NamedTuple):
     coil: int
-    seq: int
+    seq: int  # of the request; of a COIL_DIPOLE its counter
     reason: int
     tick: int  # low 8 bits of the tick in which it came
     counter: int = 0
@@ -1208,6 +1248,7 @@ CountedMessage = (
     CoilFire
     | CoilDipole
     | CoilStatus
+    | CoilDipoleStatus
     | CoilRefused
     | MagField
     | SunVector
@@ -1240,6 +1281,7 @@ CLASSES: dict[int, type[AnyMessage]] = {
     0x080: CoilFire,
     0x088: CoilDipole,
     0x100: CoilStatus,
+    0x101: CoilDipoleStatus,
     0x108: CoilRefused,
     0x110: MagField,
     0x118: SunVector,
@@ -1273,6 +1315,7 @@ NAMES: dict[int, str] = {
     0x080: "COIL_FIRE",
     0x088: "COIL_DIPOLE",
     0x100: "COIL_STATUS",
+    0x101: "COIL_DIPOLE_STATUS",
     0x108: "COIL_REFUSED",
     0x110: "MAG_FIELD",
     0x118: "SUN_VECTOR",
@@ -1306,6 +1349,7 @@ SENDERS: dict[int, str] = {
     0x080: "FSW",
     0x088: "FSW",
     0x100: "COIL",
+    0x101: "COIL",
     0x108: "COIL",
     0x110: "MAG",
     0x118: "SUN",
@@ -1339,6 +1383,7 @@ _SHAPES: dict[int, tuple[int, int | None]] = {
     0x080: (7, _COIL_FIRE),
     0x088: (8, _COIL_DIPOLE),
     0x100: (8, _COIL_STATUS),
+    0x101: (8, _COIL_DIPOLE_STATUS),
     0x108: (5, _COIL_REFUSED),
     0x110: (8, _MAG_FIELD),
     0x118: (8, _SUN_VECTOR),
