@@ -1,4 +1,4 @@
-"""Run one board by hand on a named bus: ``python -m hil_stub coil|magnetometer|sun --bus BUS``."""
+"""Run one board by hand on a named bus: ``python -m hil_stub coil|dipole|magnetometer|sun --bus BUS``."""
 
 import sys
 from math import hypot, isfinite
@@ -7,7 +7,7 @@ import click
 
 from fsw.io.bus import Bus, BusError
 from fsw.io.open_bus import open_bus, resolve
-from hil_stub.bench import Bench, CoilBoard, MagnetometerBoard, SunBoard, Vec3
+from hil_stub.bench import Bench, CoilBoard, DipoleBoard, MagnetometerBoard, SunBoard, Vec3
 from hil_stub.coil_driver import CoilLimits
 
 EXIT_BAD_INPUT = 2
@@ -67,6 +67,14 @@ def coil(spec: str, tick_hz: int, backoff: str) -> None:
     """The coil driver with its interlock: pulses of 3 s, 100 s back-off, locked out at the start."""
     limits = CoilLimits(tick_hz, shared=backoff == "shared")
     _serve(spec, Bench(lambda: CoilBoard(limits)))
+
+
+@cli.command()
+@_bus
+@_tick_hz
+def dipole(spec: str, tick_hz: int) -> None:
+    """The continuous driver: all three coils at once, for a tick at a time."""
+    _serve(spec, Bench(lambda: DipoleBoard(tick_hz)))
 
 
 @cli.command()

@@ -6,6 +6,7 @@ from typing import Protocol
 from fsw.wire.frame import Frame
 from fsw.wire.messages import PlantBoot, PlantEnd, Sync, TickDone, intact
 from hil_stub.coil_driver import CoilDriver, CoilLimits
+from hil_stub.dipole_driver import DipoleDriver
 from hil_stub.interlock import MAX_LEVEL
 from hil_stub.magnetometer import Magnetometer
 from hil_stub.sun_sensor import SunSensor
@@ -37,6 +38,22 @@ class CoilBoard:
         drive = self._driver.drive()
         current_a = FULL_CURRENT_A * drive.level / MAX_LEVEL if drive.fraction == 1.0 else 0.0
         return self._driver.begin_tick(tick, current_a)
+
+    def receive(self, frame: Frame) -> None:
+        """Hear a frame of the bus."""
+        self._driver.receive(frame)
+
+
+class DipoleBoard:
+    """A continuous driver whose coils are without current when the sensors sample."""
+
+    def __init__(self, tick_hz: int) -> None:
+        self._driver = DipoleDriver(tick_hz)
+
+    def begin_tick(self, tick: int) -> list[Frame]:
+        """Enter ``tick``; the drive of the tick before has ended."""
+        self._driver.drive()
+        return self._driver.begin_tick(tick, 0.0)
 
     def receive(self, frame: Frame) -> None:
         """Hear a frame of the bus."""

@@ -8,18 +8,15 @@ from fsw.wire.messages import (
     CoilBoot,
     CoilFire,
     CoilHeartbeat,
-    CoilRefused,
     CoilRefusedReason,
     CoilStatus,
     intact,
 )
 from hil_stub.interlock import UNITS_PER_TICK, CoilLimits, Interlock, Request, ask, boot, elapse
 from hil_stub.node import Node
+from hil_stub.refusals import MAX_REFUSALS, Refusals
 
 __all__ = ["MAX_REFUSALS", "OFF", "BoardState", "CoilDriver", "CoilLimits", "Drive"]
-
-MAX_REFUSALS = 64
-"""Refusals named in one tick. A flood of requests is not answered by a flood of frames."""
 
 _SEQ_END = 3
 """Bytes that a ``COIL_FIRE`` must have for its ``coil`` and ``seq`` to be read."""
@@ -59,8 +56,7 @@ class CoilDriver:
         self._node = Node(CoilBoot, CoilHeartbeat, limits.tick_hz, limits.table_crc)
         self._state: Interlock = boot(limits)
         self._answered: int | None = None  # the tick that requests may answer now
-        self._refused: list[CoilRefused] = []
-        self._refusals = 0
+        self._refusals = Refusals()
         self._statuses = 0
         self.rejects = 0
         """Frames that failed the gate since boot."""
@@ -85,8 +81,7 @@ class CoilDriver:
         self._answered = tick
         frames = self._node.boot()
         frames.append(self._status(tick, current_a))
-        frames += [message.encode() for message in self._refused]
-        self._refused.clear()
+        frames += self._refusals.take()
         frames += self._node.heartbeat(self._board_state(), self.rejects)
         return frames
 
@@ -142,9 +137,4 @@ class CoilDriver:
         return BoardState.LOCKED_OUT if any(self._state.lockout) else BoardState.READY
 
     def _refuse(self, fire: CoilFire, reason: CoilRefusedReason) -> None:
-        if len(self._refused) == MAX_REFUSALS:
-            return
-        self._refused.append(
-            CoilRefused(fire.coil, fire.seq, reason, self._node.tick or 0, counter=self._refusals)
-        )
-        self._refusals += 1
+        self._refusals.add(fire.coil, fire.seq, reason, self._node.tick)

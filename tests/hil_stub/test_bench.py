@@ -5,7 +5,10 @@ import pytest
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
     CoilBoot,
+    CoilDipole,
+    CoilDipoleStatus,
     CoilFire,
+    CoilStatus,
     MagBoot,
     MagField,
     PlantBoot,
@@ -14,7 +17,7 @@ from fsw.wire.messages import (
     Sync,
     TickDone,
 )
-from hil_stub.bench import Bench, CoilBoard, MagnetometerBoard, SunBoard
+from hil_stub.bench import Bench, CoilBoard, DipoleBoard, MagnetometerBoard, SunBoard
 from hil_stub.coil_driver import CoilLimits
 
 
@@ -159,3 +162,22 @@ class TestLosingCount:
         assert bench.receive(PlantBoot(0, 1, 0).encode()) == []
         (status,) = read(fly(bench, range(1)))
         assert status.lockout_ms == 99_000
+
+
+def test_a_continuous_driver_tells_the_dipole_of_the_tick_that_has_ended(read):
+    bench = Bench(lambda: DipoleBoard(1))
+    assert [type(m) for m in read(bench.switch_on())] == [CoilBoot, CoilStatus, CoilDipoleStatus]
+    told = []
+    for tick, asked in enumerate([0.25, 0.5, None, -0.75, None]):
+        bench.receive(Sync(tick, 0).encode())
+        if asked is not None:
+            bench.receive(CoilDipole(asked, 0.0, -asked).encode())
+        _, status = read(bench.receive(TickDone(tick, 0).encode()))
+        told.append(status[:3])
+    assert told == [
+        (0.25, 0.0, -0.25),
+        (0.5, 0.0, -0.5),
+        (0.0, 0.0, 0.0),
+        (-0.75, 0.0, 0.75),
+        (0.0, 0.0, 0.0),
+    ]

@@ -227,7 +227,8 @@ def test_whatever_happens_the_limits_hold_and_what_may_be_fired_is():
         CoilDriverMachine, settings=settings(SETTINGS, max_examples=120, stateful_step_count=40)
     )
     assert SEEN[None] > 100, f"it fired: {SEEN}"
-    assert all(SEEN[reason] for reason in Reason), f"each refusal: {SEEN}"
+    of_other_boards = {Reason.SECOND_DIPOLE, Reason.WRONG_BOARD}
+    assert all(bool(SEEN[reason]) != (reason in of_other_boards) for reason in Reason), f"{SEEN}"
     assert SEEN["reboot in a pulse"]
 
 

@@ -129,7 +129,8 @@ def test_bad_input_is_one_sentence_and_exit_code_2(capsys, arguments, named):
 
 
 @pytest.mark.parametrize(
-    "arguments", [["--help"], ["coil", "--help"], ["magnetometer", "--help"], ["sun", "--help"]]
+    "arguments",
+    [["--help"], ["coil", "--help"], ["dipole", "--help"], ["magnetometer", "--help"], ["sun", "--help"]],
 )
 def test_help_names_the_options(capsys, arguments):
     assert main(arguments) == 0

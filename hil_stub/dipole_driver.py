@@ -1,0 +1,150 @@
+"""The continuous driver board: drives all three coils at once, for one tick at a time."""
+
+from enum import IntEnum
+from typing import NamedTuple
+
+from fsw.wire.frame import Frame, raw
+from fsw.wire.messages import (
+    CoilBoot,
+    CoilDipole,
+    CoilDipoleStatus,
+    CoilFire,
+    CoilHeartbeat,
+    CoilRefusedReason,
+    CoilStatus,
+    intact,
+)
+from hil_stub.node import Node
+from hil_stub.refusals import Refusals
+
+Vec3 = tuple[float, float, float]
+
+_NAMED = {CoilFire.ID: 3, CoilDipole.ID: 1}
+"""Requests, and the bytes they must have for what names them to be read."""
+
+
+class DipoleBoardState(IntEnum):
+    """``state`` of ``COIL_HEARTBEAT``."""
+
+    READY = 0
+    ON = 1
+
+
+class DipoleDrive(NamedTuple):
+    """What is driven over a tick, from its start for ``fraction`` of it."""
+
+    dipole: Vec3
+    """Of each coil, as a fraction of the full scale, -1 to 1."""
+    fraction: float
+
+
+_NONE: Vec3 = (0.0, 0.0, 0.0)
+
+
+class DipoleDriver:
+    """A board that drives what one ``COIL_DIPOLE`` asks, in the tick in which it is received and no longer.
+
+    A request ends by itself: a tick without one is a tick without drive. The coils are off at the end of every
+    tick, so that no current flows when the sensors sample. ``COIL_FIRE`` is refused: there are no levels.
+
+    In each tick: ``begin_tick``, then ``receive`` for each frame of the bus, then ``drive``. A request that
+    comes after ``drive``, or before the first tick, answers no tick and is refused as one of a wrong tick.
+
+    Args:
+        tick_hz: ticks a second.
+        on_fraction: part of a tick for which the coils are driven, above 0 and up to 1.
+        table_crc: CRC-32 of the table that these values come from, reported in ``COIL_BOOT``.
+
+    Raises:
+        ValueError: tick_hz is not a positive integer, or on_fraction out of range.
+    """
+
+    def __init__(self, tick_hz: int, on_fraction: float = 0.8, table_crc: int = 0) -> None:
+        if not 0.0 < on_fraction <= 1.0:
+            raise ValueError(f"on_fraction must be above 0 and not above 1, not {on_fraction!r}")
+        self._node = Node(CoilBoot, CoilHeartbeat, tick_hz, table_crc)
+        self._on_fraction = on_fraction
+        self._open = False  # whether a request may be taken
+        self._asked: Vec3 | None = None
+        self._refusals = Refusals()
+        self._statuses = 0
+        self.rejects = 0
+        """Frames that failed the gate since boot."""
+
+    def begin_tick(self, tick: int, current_a: float) -> list[Frame]:
+        """Enter ``tick`` and say what is to be said in it.
+
+        At the first tick ``COIL_BOOT``; always one ``COIL_STATUS``, of coils that are off, and one
+        ``COIL_DIPOLE_STATUS``; one ``COIL_REFUSED`` for each request refused since the last tick, at most 64;
+        every 60 s after boot ``COIL_HEARTBEAT``. A tick that does not rise is ignored.
+
+        Args:
+            tick: number of the tick that begins.
+            current_a: read-back of the coil current at this tick [A].
+        """
+        elapsed = self._node.advance(tick)
+        if elapsed is None:
+            return []
+        driven = self._asked if elapsed == 1 and self._asked is not None else _NONE
+        self._asked = None
+        self._open = True
+        frames = self._node.boot()
+        frames += self._status(tick, current_a, driven)
+        frames += self._refusals.take()
+        frames += self._node.heartbeat(
+            DipoleBoardState.ON if any(driven) else DipoleBoardState.READY, self.rejects
+        )
+        return frames
+
+    def receive(self, frame: Frame) -> None:
+        """Take a frame of the bus, whole or not at all; the first ``COIL_DIPOLE`` of a tick is driven.
+
+        A frame that fails the gate (unknown id, flags, length, CRC) is counted in ``rejects``. If its id is
+        that of a request and it is long enough to bear a name, it is also refused as malformed.
+        """
+        named = len(frame.data) >= _NAMED.get(frame.can_id, len(frame.data) + 1)
+        if not intact(frame):
+            self.rejects += 1
+            if named:
+                self._refuse(frame, CoilRefusedReason.MALFORMED)
+        elif frame.can_id == CoilFire.ID:
+            self._refuse(frame, CoilRefusedReason.WRONG_BOARD)
+        elif frame.can_id == CoilDipole.ID:
+            self._ask(frame)
+
+    def drive(self) -> DipoleDrive:
+        """What is driven over the tick that has begun; ends the time for requests that answer it."""
+        self._open = False
+        return DipoleDrive(self._asked or _NONE, self._on_fraction)
+
+    def _ask(self, frame: Frame) -> None:
+        if not self._open:
+            self._refuse(frame, CoilRefusedReason.WRONG_TICK)
+        elif self._asked is not None:
+            self._refuse(frame, CoilRefusedReason.SECOND_DIPOLE)
+        else:
+            asked = CoilDipole.decode(frame.data)
+            self._asked = (asked.m_x, asked.m_y, asked.m_z)
+
+    def _status(self, tick: int, current_a: float, driven: Vec3) -> list[Frame]:
+        off = CoilStatus(
+            level=0,
+            coil=tick % 3,
+            remaining_ms=0,
+            current_ma=raw(current_a, 0.001, -2048, 2047),
+            lockout_ms=0,
+            seq=0,
+            counter=self._statuses,
+        )
+        frames = [off.encode(), CoilDipoleStatus(*driven, counter=self._statuses).encode()]
+        self._statuses += 1
+        return frames
+
+    def _refuse(self, frame: Frame, reason: CoilRefusedReason) -> None:
+        coil, seq = 0, 0
+        if frame.can_id == CoilFire.ID:
+            fire = CoilFire.decode(frame.data[: CoilFire.LENGTH])
+            coil, seq = fire.coil, fire.seq
+        else:
+            seq = CoilDipole.decode(frame.data[: CoilDipole.LENGTH]).counter
+        self._refusals.add(coil, seq, reason, self._node.tick)
