@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 
-from fsw.core.control import ControlConfig
+from fsw.core.actuation import CoilConfig
 from fsw.core.ephemeris import EphemerisModel
 from fsw.core.estimator import EstimatorConfig
+from fsw.core.laws.interface import ControlConfig
 from fsw.core.modes import ModeConfig
-from fsw.core.pulses import PulseConfig
 from fsw.core.rates import RateTable
 
 
@@ -20,7 +20,7 @@ class FlightConfig:
     ephemeris: EphemerisModel
     estimator: EstimatorConfig
     control: ControlConfig
-    pulses: PulseConfig
+    coils: CoilConfig
     modes: ModeConfig
     rates: RateTable
     stale_after_ticks: int

@@ -77,11 +77,14 @@ class ModeState:
     trips: int = 0
 
 
-def judge(attitude: Attitude, tripped: bool, state: ModeState, config: ModeConfig) -> Situation:
-    """The conditions of the table at this tick."""
+def judge(
+    attitude: Attitude, spin_radps: float, tripped: bool, state: ModeState, config: ModeConfig
+) -> Situation:
+    """The conditions of the table at this tick; a rate is slow or fast beside the spin that is wanted."""
     q0, q1, q2, q3 = attitude.q_body_from_orbit
     cosine = q0 * q0 + q1 * q1 - q2 * q2 - q3 * q3 if config.axis_only else 2.0 * q0 * q0 - 1.0
-    rate = norm(attitude.omega_body_orbit_radps)
+    w1, w2, w3 = attitude.omega_body_orbit_radps
+    rate = norm((w1 - spin_radps, w2, w3))
     known = attitude.valid
     return Situation(
         tripped=tripped,

@@ -4,12 +4,12 @@ One coil at a time, three levels per polarity, pulses of 3 s, then at least 100 
 of the pulse, for that coil or for all of them (``shared``). After boot a full back-off passes first. All
 timing is in integer ticks, rounded so that the pulse is never longer and the gap never shorter.
 
-What the continuous law asks for is kept as a torque impulse that is still owed: a leaky sigma-delta
-modulator, bounded by what one pulse can pay. The pulse that is fired is the one that brings the owed
-impulse, weighted by the inverse of the inertia, closest to zero; firing none is one of the choices and wins
-ties.
+What a continuous law asks for is kept as a torque impulse that is still owed: a leaky sigma-delta
+modulator, bounded by what one pulse can pay. The pulse that is fired is the one that leaves the least of the
+impulse that is owed, or that a predictive law misses; firing none is one of the choices and wins ties. Least
+is told by a metric: the rate that is left, or its energy.
 
-Source: Tavares et al. (ConSat, PoSAT-1) for the limits; the modulator is this project's.
+Source: Tavares et al. (ConSat, PoSAT-1) for the limits and the choice; the modulator is this project's.
 """
 
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ AXES: Mat3 = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 @dataclass(frozen=True, slots=True)
 class PulseConfig:
-    """Limits and levels, in ticks and SI."""
+    """Limits and levels, in ticks and SI; J^-2 and J^-1 as the metrics of an impulse that is left."""
 
     pulse_ticks: int
     backoff_ticks: int
@@ -32,7 +32,8 @@ class PulseConfig:
     pulse_s: float
     tick_s: float
     leak_s: float
-    inertia_inverse: Mat3
+    rate_metric: Mat3
+    energy_metric: Mat3
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,12 +41,14 @@ class PulseState:
     """Own timers and the impulse still owed.
 
     ``ready_tick[coil]`` is the first tick in answer to which that coil may fire again; ``busy_until`` the
-    first in answer to which no own pulse is under way.
+    first in answer to which no own pulse is under way; ``held_am2`` is what a continuous driver holds
+    meanwhile, body axes.
     """
 
     ready_tick: tuple[int, int, int]
     busy_until: int
-    owed_impulse_body_nms: Vec3
+    owed_impulse_body_nms: Vec3 = ZERO
+    held_am2: Vec3 = ZERO
 
 
 class Pulse(NamedTuple):
@@ -70,7 +73,7 @@ def pulse_timing(tick_hz: int, pulse_ms: int, backoff_ms: int) -> tuple[int, int
 def boot(tick: int, config: PulseConfig) -> PulseState:
     """The state at boot: nothing owed, a full back-off ahead."""
     first = tick + config.backoff_ticks
-    return PulseState(ready_tick=(first, first, first), busy_until=tick, owed_impulse_body_nms=ZERO)
+    return PulseState(ready_tick=(first, first, first), busy_until=tick)
 
 
 def owe(state: PulseState, torque_body_nm: Vec3, b_body_t: Vec3, config: PulseConfig) -> PulseState:
@@ -88,21 +91,31 @@ def owe(state: PulseState, torque_body_nm: Vec3, b_body_t: Vec3, config: PulseCo
     return PulseState(state.ready_tick, state.busy_until, owed)
 
 
-def choose(state: PulseState, tick: int, b_body_t: Vec3, config: PulseConfig) -> Pulse | None:
-    """The pulse, among the coils whose own timer has run out, that leaves the least owed; None if none helps.
+def choose(
+    state: PulseState, impulse_body_nms: Vec3, metric: Mat3, tick: int, b_body_t: Vec3, config: PulseConfig
+) -> Pulse | None:
+    """The pulse, among the coils whose own timer has run out, that leaves the least; None if none helps.
 
-    Minimises |J^-1 (r - T_p m x b)|^2 over coil and level, T_p the pulse length.
+    Minimises (r - T_p m x b)^T W (r - T_p m x b) over coil and level, T_p the pulse length.
+
+    Args:
+        state: own timers.
+        impulse_body_nms: r, the impulse that is wanted.
+        metric: W, symmetric and positive.
+        tick: tick that is answered.
+        b_body_t: field, body axes, T.
+        config: limits and levels.
     """
     if tick < state.busy_until:
         return None
-    owed = transform(config.inertia_inverse, state.owed_impulse_body_nms)
+    weighted = transform(metric, impulse_body_nms)
     best: Pulse | None = None
     least = 0.0
     for coil in range(3):
         if tick < state.ready_tick[coil]:
             continue
-        gain = transform(config.inertia_inverse, scale(config.pulse_s, cross(AXES[coil], b_body_t)))
-        along, square = dot(owed, gain), dot(gain, gain)
+        gain = scale(config.pulse_s, cross(AXES[coil], b_body_t))
+        along, square = dot(weighted, gain), dot(gain, transform(metric, gain))
         for index, level_am2 in enumerate(config.levels_am2, start=1):
             change = level_am2 * (level_am2 * square - 2.0 * abs(along))
             if change < least:
@@ -110,7 +123,7 @@ def choose(state: PulseState, tick: int, b_body_t: Vec3, config: PulseConfig) ->
     return best
 
 
-def fire(state: PulseState, pulse: Pulse, tick: int, b_body_t: Vec3, config: PulseConfig) -> PulseState:
+def fire(state: PulseState, pulse: Pulse, paid_body_nms: Vec3, tick: int, config: PulseConfig) -> PulseState:
     """The state once ``pulse`` has been requested in answer to ``tick``: timers set, impulse paid."""
     end = tick + config.pulse_ticks
     again = end + config.backoff_ticks
@@ -118,13 +131,17 @@ def fire(state: PulseState, pulse: Pulse, tick: int, b_body_t: Vec3, config: Pul
         again if config.shared or coil == pulse.coil else before
         for coil, before in enumerate(state.ready_tick)
     )
-    dipole = scale(dipole_am2(pulse.level, config.levels_am2), AXES[pulse.coil])
-    paid = scale(config.pulse_s, cross(dipole, b_body_t))
     return PulseState(
         ready_tick=(ready[0], ready[1], ready[2]),
         busy_until=end,
-        owed_impulse_body_nms=sub(state.owed_impulse_body_nms, paid),
+        owed_impulse_body_nms=sub(state.owed_impulse_body_nms, paid_body_nms),
     )
+
+
+def impulse(pulse: Pulse, b_body_t: Vec3, config: PulseConfig) -> Vec3:
+    """The impulse of a pulse, T_p m x b, body axes, N m s."""
+    dipole = scale(dipole_am2(pulse.level, config.levels_am2), AXES[pulse.coil])
+    return scale(config.pulse_s, cross(dipole, b_body_t))
 
 
 def dipole_am2(level: int, levels_am2: Vec3) -> float:

@@ -10,6 +10,8 @@ from zlib import crc32
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
+    CoilBoot,
+    CoilDipoleStatus,
     CoilRefused,
     CoilStatus,
     MagField,
@@ -22,7 +24,9 @@ from fsw.wire.messages import (
 INBOX_LIMIT = 64
 """Frames looked at in one tick; a babbling node cannot cost more than that."""
 
-Listened = MagField | SunVector | CoilStatus | CoilRefused | RefAttitude | RefRate
+Listened = (
+    MagField | SunVector | CoilStatus | CoilRefused | RefAttitude | RefRate | CoilDipoleStatus | CoilBoot
+)
 
 LISTENED: dict[int, type[Listened]] = {
     MagField.ID: MagField,
@@ -31,6 +35,8 @@ LISTENED: dict[int, type[Listened]] = {
     CoilRefused.ID: CoilRefused,
     RefAttitude.ID: RefAttitude,
     RefRate.ID: RefRate,
+    CoilDipoleStatus.ID: CoilDipoleStatus,
+    CoilBoot.ID: CoilBoot,
 }
 _SLOT = {can_id: slot for slot, can_id in enumerate(LISTENED)}
 
@@ -44,6 +50,8 @@ class Readings(NamedTuple):
     refused: CoilRefused | None
     ref_attitude: RefAttitude | None
     ref_rate: RefRate | None
+    dipole: CoilDipoleStatus | None = None
+    coil_boot: CoilBoot | None = None
 
 
 NOTHING = Readings(None, None, None, None, None, None)
@@ -86,10 +94,11 @@ def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateSt
         message = message_class.decode(frame.data)
         slot = _SLOT[frame.can_id]
         step = (message.counter - counters[slot]) & 0xF
-        if (counters[slot] >= 0 and step == 0) or not _in_range(message):
+        known = counters[slot] >= 0 and message_class is not CoilBoot  # a board that starts counts anew
+        if (known and step == 0) or not _in_range(message):
             rejected += 1
             continue
-        if counters[slot] >= 0:
+        if known:
             missed += step - 1
         counters[slot] = message.counter
         slots[slot] = message

@@ -6,9 +6,10 @@ from typing import NamedTuple
 
 from fsw.core.actuation import CoilView
 from fsw.core.attitude import UNKNOWN, Attitude
-from fsw.core.control import FieldSample
 from fsw.core.ephemeris import EphemerisWindow, pack_values
 from fsw.core.estimator import EstimatorState
+from fsw.core.laws.interface import FieldSample, Memory, Setpoint
+from fsw.core.laws.table import LAWS
 from fsw.core.modes import ModeState
 from fsw.core.pulses import PulseState
 from fsw.core.readings import GateState
@@ -27,8 +28,8 @@ class FlightState(NamedTuple):
     """Everything that fsw carries from one tick to the next.
 
     ``tick`` is -1 before the first SYNC; ``field_tick`` and ``status_tick`` are the last ticks with an
-    intact MAG_FIELD and COIL_STATUS, ``time_error_s`` the last SYNC's time less the expected; ``sent`` are
-    the counters of the messages that fsw sends.
+    intact MAG_FIELD and COIL_STATUS, ``time_error_s`` the last SYNC's time less the expected; ``setpoint``
+    and ``memory`` are the control law's; ``sent`` are the counters of the messages that fsw sends.
     """
 
     tick: int
@@ -42,6 +43,8 @@ class FlightState(NamedTuple):
     attitude: Attitude
     modes: ModeState
     sample: FieldSample
+    setpoint: Setpoint
+    memory: Memory
     pulses: PulseState
     coil: CoilView
     sent: tuple[int, ...]
@@ -70,6 +73,7 @@ def checksum(state: FlightState) -> int:
         *modes.held_since,
         modes.trips,
         state.sample.tick,
+        LAWS[state.setpoint.law].number,
         *pulses.ready_tick,
         pulses.busy_until,
         *coil.lockout_ms,
@@ -88,6 +92,11 @@ def checksum(state: FlightState) -> int:
         attitude.sigma3_rate_radps,
         *state.sample.b_body_t,
         *pulses.owed_impulse_body_nms,
+        *pulses.held_am2,
+        *coil.driven_am2,
+        *coil.paid_body_nms,
+        *state.setpoint[1:],
+        *state.memory,
     )
     if state.ephemeris is not None:
         floats += pack_values(state.ephemeris)
@@ -100,7 +109,7 @@ def checksum(state: FlightState) -> int:
     return zlib.crc32(known.covariance.tobytes(), register)
 
 
-def initial_state(pulses: PulseState, sent: tuple[int, ...]) -> FlightState:
+def initial_state(pulses: PulseState, setpoint: Setpoint, sent: tuple[int, ...]) -> FlightState:
     """The state at boot, before the first SYNC."""
     return FlightState(
         tick=-1,
@@ -114,6 +123,8 @@ def initial_state(pulses: PulseState, sent: tuple[int, ...]) -> FlightState:
         attitude=UNKNOWN,
         modes=ModeState(),
         sample=FieldSample(),
+        setpoint=setpoint,
+        memory=(),
         pulses=pulses,
         coil=CoilView(),
         sent=sent,

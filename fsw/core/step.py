@@ -1,10 +1,9 @@
 """The flight loop as one pure function: gate, estimate, supervise, control, schedule, report."""
 
 from fsw.core import control, pulses, telemetry
-from fsw.core.actuation import actuate, driven_dipole, hear
+from fsw.core.actuation import actuate, hear
 from fsw.core.attitude import UNKNOWN
 from fsw.core.config import FlightConfig
-from fsw.core.control import FieldSample, Seen
 from fsw.core.ephemeris import Reference, advance, reference_at
 from fsw.core.estimator import (
     NONE_USED,
@@ -13,20 +12,25 @@ from fsw.core.estimator import (
     estimate,
     perfect_attitude,
     usable_field,
+    usable_sun,
 )
+from fsw.core.laws.interface import FieldSample, Seen
 from fsw.core.quaternion import rotate
 from fsw.core.readings import Readings, admit
 from fsw.core.state import FlightState, Inbox, checksum, initial_state
 from fsw.core.supervisor import Verdict, supervise
+from fsw.core.vector import ZERO
 from fsw.wire.frame import Frame
-from fsw.wire.messages import CoilFire, CountedMessage, TickDone
+from fsw.wire.messages import CoilDipole, CoilFire, CountedMessage, TickDone
 
 Outbox = tuple[Frame, ...]
 
 
 def boot(config: FlightConfig) -> FlightState:
     """The state before the first SYNC."""
-    return initial_state(pulses.boot(0, config.pulses), telemetry.FIRST_COUNTERS)
+    return initial_state(
+        pulses.boot(0, config.coils.pulses), config.control.setpoint, telemetry.FIRST_COUNTERS
+    )
 
 
 def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[FlightState, Outbox]:
@@ -42,12 +46,17 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     verdict = supervise(state, state.attitude, tick, config)
     mode = verdict.modes.mode
     seen = _look(state, readings, reference)
-    dipole = control.dipole(mode, seen, config.control)
-    fresh = state.status_tick == tick
+    demand = control.demand(mode, seen, state.memory, state.setpoint, config.control)
     pulse_state, coil, request = actuate(
-        state.pulses, state.coil, mode, dipole, seen.b_body_t, fresh, tick, config.pulses
+        state.pulses, state.coil, demand, seen.b_body_t, readings, tick, config.coils
     )
-    state = state._replace(modes=verdict.modes, sample=seen.sample, pulses=pulse_state, coil=coil)
+    state = state._replace(
+        modes=verdict.modes,
+        sample=seen.sample,
+        memory=demand.memory if demand is not None else (),
+        pulses=pulse_state,
+        coil=coil,
+    )
     return _report(before, state, readings, used, reference, verdict, request, config)
 
 
@@ -55,7 +64,9 @@ def _gate(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Fligh
     """Take what the boards said; at the first tick start every timer in full."""
     tick = inbox.tick
     if state.tick < 0:
-        state = state._replace(pulses=pulses.boot(tick, config.pulses), field_tick=tick, status_tick=tick)
+        state = state._replace(
+            pulses=pulses.boot(tick, config.coils.pulses), field_tick=tick, status_tick=tick
+        )
     readings, gate = admit(inbox.frames, state.gate)
     expected_s = config.epoch_unix_s + tick // config.tick_hz
     heard = state._replace(
@@ -65,7 +76,7 @@ def _gate(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Fligh
         time_error_s=inbox.unix_time_s - expected_s,
         gate=gate,
         ephemeris=advance(state.ephemeris, tick, config.ephemeris),
-        coil=hear(state.coil, readings),
+        coil=hear(state.coil, readings, tick, config.coils),
     )
     return heard, readings
 
@@ -82,8 +93,9 @@ def _estimate(
             reference,
             NONE_USED,
         )
-    driven = driven_dipole(state.coil, config.pulses)
-    estimator, used = estimate(state.estimator, readings, reference, driven, elapsed_ticks, config.estimator)
+    estimator, used = estimate(
+        state.estimator, readings, reference, state.coil.driven_am2, elapsed_ticks, config.estimator
+    )
     seen = attitude(estimator, reference, config.estimator)
     return state._replace(estimator=estimator, attitude=seen), reference, used
 
@@ -96,7 +108,11 @@ def _look(state: FlightState, readings: Readings, reference: Reference | None) -
     if state.attitude.valid and reference is not None:
         b_orbit_t = rotate(reference.q_orbit_from_eci, reference.b_eci_t)
         b_body_t = rotate(state.attitude.q_body_from_orbit, b_orbit_t)
-    return Seen(state.attitude, b_body_t, sample, state.sample)
+    known = state.estimator.estimate
+    torque_body_nm = known.torque_body_nm if known is not None else ZERO
+    return Seen(
+        state.attitude, b_body_t, sample, state.sample, usable_sun(readings), reference, torque_body_nm
+    )
 
 
 def _report(
@@ -106,7 +122,7 @@ def _report(
     used: Used,
     reference: Reference | None,
     verdict: Verdict,
-    request: CoilFire | None,
+    request: CoilFire | CoilDipole | None,
     config: FlightConfig,
 ) -> tuple[FlightState, Outbox]:
     tick = state.tick

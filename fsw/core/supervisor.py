@@ -25,10 +25,12 @@ def supervise(state: FlightState, attitude: Attitude, tick: int, config: FlightC
         owed_impulse_body_nms=state.pulses.owed_impulse_body_nms,
         field_age_ticks=tick - state.field_tick,
         status_age_ticks=tick - state.status_tick,
-        unexpected_drive=unexpected(state.coil, tick, config.pulses),
+        unexpected_drive=unexpected(state.coil, tick, config.coils.pulses),
         orbit_known=state.ephemeris is not None,
         stale_after_ticks=config.stale_after_ticks,
     )
     violated = first_violation(watched)
-    situation = modes.judge(attitude, violated is not None, state.modes, config.modes)
+    situation = modes.judge(
+        attitude, state.setpoint.spin_radps, violated is not None, state.modes, config.modes
+    )
     return Verdict(modes.advance(state.modes, situation, tick, config.modes), violated)

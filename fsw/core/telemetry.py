@@ -11,6 +11,7 @@ from fsw.core.readings import Readings
 from fsw.core.state import FlightState
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
+    CoilDipole,
     CoilFire,
     CountedMessage,
     FswBoot,
@@ -23,7 +24,15 @@ from fsw.wire.messages import (
 )
 
 CONTRACT_VERSION = 1
-COUNTED = (CoilFire.ID, NavAttitude.ID, NavRate.ID, NavQuality.ID, FswEvent.ID, FswHeartbeat.ID)
+COUNTED = (
+    CoilFire.ID,
+    CoilDipole.ID,
+    NavAttitude.ID,
+    NavRate.ID,
+    NavQuality.ID,
+    FswEvent.ID,
+    FswHeartbeat.ID,
+)
 _SLOT = {can_id: slot for slot, can_id in enumerate(COUNTED)}
 FIRST_COUNTERS = (0,) * len(COUNTED)
 

@@ -2,21 +2,23 @@
 
 from math import ceil, cos, radians
 
+from fsw.core.actuation import CoilConfig
 from fsw.core.config import FlightConfig
-from fsw.core.control import ControlConfig
+from fsw.core.dipoles import DipoleConfig
 from fsw.core.ephemeris import ephemeris_model
 from fsw.core.estimator import EstimatorConfig
 from fsw.core.field import FieldKind
+from fsw.core.laws.interface import ControlConfig, Setpoint
+from fsw.core.laws.table import LAWS
 from fsw.core.mekf_config import mekf_config
 from fsw.core.modes import TABLE, ModeConfig
 from fsw.core.orbit import Orbit, circular_orbit, sgp4_orbit
 from fsw.core.pulses import PulseConfig, pulse_timing
 from fsw.core.rates import RateGroup, RateTable
-from fsw.core.vector import inverse
+from fsw.core.vector import ZERO, inverse, product
 from fsw.io.schema import TableError
 from fsw.io.table import (
     CoilTable,
-    ControlTable,
     FlightTable,
     ModesTable,
     OrbitTable,
@@ -47,8 +49,8 @@ def flight_config(table: FlightTable) -> FlightConfig:
                 table.telemetry.ephemeris_s,
             ),
             estimator=_estimator(table),
-            control=_control(table.control, tick_hz),
-            pulses=_pulses(table),
+            control=_control(table),
+            coils=CoilConfig(_pulses(table), _dipoles(table)),
             modes=_modes(table.modes, tick_hz),
             rates=_rates(table.telemetry, tick_hz),
             stale_after_ticks=max(1, _ticks(table.modes.stale_after_s, tick_hz)),
@@ -64,8 +66,38 @@ def _orbit(orbit: OrbitTable, epoch_unix_s: int) -> Orbit:
     return circular_orbit(altitude_km, orbit.inclination_deg, orbit.raan_deg, orbit.u0_deg, epoch_unix_s)
 
 
-def _control(control: ControlTable, tick_hz: int) -> ControlConfig:
-    return ControlConfig(control.law, control.k_w, control.k_a, control.spin_radps, 1.0 / tick_hz)
+def _control(table: FlightTable) -> ControlConfig:
+    control, coils, inertia = table.control, table.coils, table.body.inertia
+    if coils.driver == "continuous":
+        mean_dipole_am2 = _full_scale(coils)
+    else:
+        mean_dipole_am2 = coils.levels_am2[2] * coils.pulse_s / (coils.pulse_s + coils.backoff_s)
+    return ControlConfig(
+        setpoint=Setpoint(control.law, control.k_w, control.k_a, control.k_i, control.spin_radps),
+        gains={
+            name: law.gains(**control.gains.get(name, {}))
+            for name, law in LAWS.items()
+            if law.gains is not None
+        },
+        inertia_kgm2=inertia,
+        inertia_inverse=inverse(inertia),
+        wheel_body_nms=ZERO,
+        tick_s=1.0 / table.time.tick_hz,
+        horizon_s=coils.pulse_s,
+        mean_dipole_am2=mean_dipole_am2,
+    )
+
+
+def _dipoles(table: FlightTable) -> DipoleConfig | None:
+    if table.coils.driver == "pulsed":
+        return None
+    genetic = table.control.minimiser == "genetic"
+    return DipoleConfig(_full_scale(table.coils), table.body.inertia, genetic)
+
+
+def _full_scale(coils: CoilTable) -> float:
+    """The largest mean dipole over a tick of a continuous driver, A m^2."""
+    return (coils.max_dipole_am2 or 0.0) * coils.on_fraction
 
 
 def _estimator(table: FlightTable) -> EstimatorConfig:
@@ -97,7 +129,7 @@ def _estimator(table: FlightTable) -> EstimatorConfig:
 
 
 def _pulses(table: FlightTable) -> PulseConfig:
-    coils: CoilTable = table.coils
+    coils, inverse_j = table.coils, inverse(table.body.inertia)
     tick_hz = table.time.tick_hz
     pulse_ticks, backoff_ticks, duration_ms = pulse_timing(
         tick_hz, int(coils.pulse_s * 1000.0 + 1e-6), ceil(coils.backoff_s * 1000.0 - 1e-6)
@@ -111,7 +143,8 @@ def _pulses(table: FlightTable) -> PulseConfig:
         pulse_s=duration_ms / 1000.0,
         tick_s=1.0 / tick_hz,
         leak_s=table.control.leak_s,
-        inertia_inverse=inverse(table.body.inertia),
+        rate_metric=product(inverse_j, inverse_j),
+        energy_metric=inverse_j,
     )
 
 

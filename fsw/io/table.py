@@ -7,6 +7,7 @@ of ``fsw/flight.toml``.
 import json
 import tomllib
 import zlib
+from dataclasses import fields
 from datetime import UTC, date, datetime
 from decimal import Decimal
 from importlib import resources
@@ -16,7 +17,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, Strict, field_validator, model_validator
 
-from fsw.core.control import POINTING_LAWS
+from fsw.core.laws.table import LAWS
 from fsw.core.orbit import sgp4_orbit
 from fsw.core.vector import Mat3
 from fsw.io.inertia import check_inertia, three_numbers
@@ -109,8 +110,14 @@ class BodyTable(Section):
 
 
 class CoilTable(Section):
-    """Levels per polarity and the limits of the coil driver."""
+    """The coil driver: levels per polarity and limits, or the full scale of a continuous one.
 
+    ``on_fraction`` is the part of a tick over which a continuous driver drives.
+    """
+
+    driver: Literal["pulsed", "continuous"] = "pulsed"
+    max_dipole_am2: Positive | None = None
+    on_fraction: float = Field(default=0.8, gt=0.0, le=1.0)
     levels_am2: Triple
     pulse_s: float = Field(gt=0.0, le=3.0)
     backoff_s: float = Field(ge=0.0, le=160.0)
@@ -121,17 +128,39 @@ class CoilTable(Section):
         low, middle, high = self.levels_am2
         if not 0.0 < low < middle < high:
             raise ValueError("levels_am2 must be three positive, rising dipoles")
+        if self.driver == "continuous" and self.max_dipole_am2 is None:
+            raise ValueError("a continuous driver needs max_dipole_am2")
         return self
 
 
 class ControlTable(Section):
-    """Pointing law, its gains (N m s/T^2, N m/T^2), spin about body axis 1, leak of the owed impulse."""
+    """Pointing law and its gains, spin about body axis 1, leak of the owed impulse.
 
-    law: Literal[tuple(POINTING_LAWS)]  # type: ignore[valid-type]
+    Units: ``k_w`` N m s/T^2, ``k_a`` N m/T^2, ``k_i`` N m/(T^2 s). ``gains`` holds, by law, that law's own
+    parameters. ``minimiser`` is how a continuous driver finds the dipole of a predictive law.
+    """
+
+    law: Literal[tuple(LAWS)]  # type: ignore[valid-type]
     k_w: NotNegative
     k_a: NotNegative
+    k_i: NotNegative = 0.0
     spin_radps: float = Field(default=0.0, ge=-0.1, le=0.1)
     leak_s: Positive
+    minimiser: Literal["closed_form", "genetic"] = "closed_form"
+    gains: dict[str, dict[str, float]] = Field(default_factory=dict)
+
+    @model_validator(mode="after")
+    def _gains_are_known(self) -> Self:
+        for law, given in self.gains.items():
+            own = LAWS[law].gains if law in LAWS else None
+            known = [field.name for field in fields(own)] if own is not None else []
+            strange = sorted(set(given) - set(known))
+            if strange or not known:
+                allowed = ", ".join(known) or "none"
+                raise ValueError(
+                    f"gains.{law}: {', '.join(strange) or 'no law'} is not known (allowed: {allowed})"
+                )
+        return self
 
 
 class EstimatorTable(Section):

@@ -1,6 +1,10 @@
 """Damping laws: from a known rate, and from the change of the measured field alone."""
 
+from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
 from fsw.core.vector import Vec3, cross, scale, sub
+
+MAX_DIFFERENCE_S = 10.0
+"""Field samples further apart than this tell nothing of the rate."""
 
 
 def rate_damping_dipole(b_body_t: Vec3, omega_body_radps: Vec3, k_w: float) -> Vec3:
@@ -14,7 +18,8 @@ def rate_damping_dipole(b_body_t: Vec3, omega_body_radps: Vec3, k_w: float) -> V
     Returns:
         Dipole in body axes, A m^2.
 
-    Source: Ovchinnikov, Roldugin 2019, eq. 1.
+    Source: Ovchinnikov, Roldugin 2019, eq. 1; with the rate relative to the orbital frame it is the energy
+    law of Wisniewski (Tavares et al. use it as their reference).
     """
     return scale(k_w, cross(omega_body_radps, b_body_t))
 
@@ -34,3 +39,25 @@ def bdot_dipole(b_body_t: Vec3, b_previous_body_t: Vec3, interval_s: float, k_w:
     Source: Ovchinnikov, Roldugin 2019, eq. 2.
     """
     return scale(-k_w / interval_s, sub(b_body_t, b_previous_body_t))
+
+
+def rate_damping(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """Damping of the rate relative to the orbital frame, down to the spin that is wanted."""
+    if not seen.attitude.valid:
+        return Demand()
+    w1, w2, w3 = seen.attitude.omega_body_orbit_radps
+    return Demand(rate_damping_dipole(seen.b_body_t, (w1 - setpoint.spin_radps, w2, w3), setpoint.k_w))
+
+
+def bdot(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """B-dot from the last two usable field samples."""
+    interval_s = difference_s(seen, config.tick_s)
+    if interval_s == 0.0:
+        return Demand()
+    return Demand(bdot_dipole(seen.sample.b_body_t, seen.before.b_body_t, interval_s, setpoint.k_w))
+
+
+def difference_s(seen: Seen, tick_s: float) -> float:
+    """Time between the last two usable field samples, s; zero where they tell nothing of the rate."""
+    interval_s = (seen.sample.tick - seen.before.tick) * tick_s
+    return interval_s if seen.before.tick >= 0 and interval_s <= MAX_DIFFERENCE_S else 0.0

@@ -1,12 +1,24 @@
-"""PD dipole law for three-axis pointing in the orbital frame."""
+"""PD dipole law for three-axis pointing in the orbital frame, with an integral against constant torques."""
 
-from fsw.core.vector import Mat3, Vec3, cross
+from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
+from fsw.core.quaternion import Quaternion, dcm
+from fsw.core.vector import ZERO, Mat3, Vec3, add, cross, norm, scale
 
 
 def attitude_error(c_body_from_orbit: Mat3) -> Vec3:
     """S = (a23 - a32, a31 - a13, a12 - a21), about +2 theta near zero and zero again at 180 deg."""
     (_, a12, a13), (a21, _, a23), (a31, a32, _) = c_body_from_orbit
     return (a23 - a32, a31 - a13, a12 - a21)
+
+
+def far_error(q_body_from_orbit: Quaternion) -> Vec3:
+    """E = 4 qv for a scalar part >= 0: about +2 theta near zero, largest at 180 deg.
+
+    There S vanishes and the gravity gradient holds a satellite upside down; this error does not let it.
+    """
+    q0, q1, q2, q3 = q_body_from_orbit
+    factor = 4.0 if q0 >= 0.0 else -4.0
+    return (factor * q1, factor * q2, factor * q3)
 
 
 def pd_dipole(b_body_t: Vec3, omega_body_orbit_radps: Vec3, error: Vec3, k_w: float, k_a: float) -> Vec3:
@@ -27,3 +39,43 @@ def pd_dipole(b_body_t: Vec3, omega_body_orbit_radps: Vec3, error: Vec3, k_w: fl
     w1, w2, w3 = omega_body_orbit_radps
     s1, s2, s3 = error
     return cross((k_w * w1 + k_a * s1, k_w * w2 + k_a * s2, k_w * w3 + k_a * s3), b_body_t)
+
+
+def integrated(
+    integral_s: Vec3, error: Vec3, b_body_t: Vec3, k_i: float, tick_s: float, mean_dipole_am2: float
+) -> Vec3:
+    """I <- I + S h, held where k_i |b| |I| stays below the dipole that the coils can give for good."""
+    grown = add(integral_s, scale(tick_s, error))
+    asked_am2 = k_i * norm(b_body_t) * norm(grown)
+    return grown if asked_am2 <= mean_dipole_am2 else scale(mean_dipole_am2 / asked_am2, grown)
+
+
+def pd(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """M = -k_w b x Omega - k_a b x S - k_i b x I, I the integral of S."""
+    integral_s = _integral(memory)
+    if not seen.attitude.valid:
+        return Demand(memory=integral_s)
+    error = attitude_error(dcm(seen.attitude.q_body_from_orbit))
+    if setpoint.k_i > 0.0:
+        integral_s = integrated(
+            integral_s, error, seen.b_body_t, setpoint.k_i, config.tick_s, config.mean_dipole_am2
+        )
+    return _demand(seen, error, integral_s, setpoint)
+
+
+def pd_far(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """The same law far from the goal: an error that does not vanish upside down, the integral held."""
+    integral_s = _integral(memory)
+    if not seen.attitude.valid:
+        return Demand(memory=integral_s)
+    return _demand(seen, far_error(seen.attitude.q_body_from_orbit), integral_s, setpoint)
+
+
+def _demand(seen: Seen, error: Vec3, integral_s: Vec3, setpoint: Setpoint) -> Demand:
+    held = cross(scale(setpoint.k_i, integral_s), seen.b_body_t)
+    dipole = pd_dipole(seen.b_body_t, seen.attitude.omega_body_orbit_radps, error, setpoint.k_w, setpoint.k_a)
+    return Demand(add(dipole, held), memory=integral_s)
+
+
+def _integral(memory: Memory) -> Vec3:
+    return (memory[0], memory[1], memory[2]) if memory else ZERO

@@ -1,0 +1,92 @@
+"""What a control law sees, what it may ask for, and what it is tuned by."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from fsw.core.attitude import Attitude
+from fsw.core.ephemeris import Reference
+from fsw.core.vector import ZERO, Mat3, Vec3
+
+Memory = tuple[float, ...]
+"""What a law carries from one tick to the next; empty when it begins."""
+
+
+@dataclass(frozen=True, slots=True)
+class FieldSample:
+    """The last usable field sample, body axes, and its tick (-1: none)."""
+
+    b_body_t: Vec3 = ZERO
+    tick: int = -1
+
+
+class Seen(NamedTuple):
+    """What a law may look at in one tick.
+
+    ``b_body_t`` is the modelled field where the attitude is known, else the last measured one; ``sample``
+    and ``before`` are the last usable field sample of this tick and of the tick before; ``sun_body`` is the
+    measured Sun direction, None where there is none; ``reference`` is orbit, field and Sun as modelled, None
+    where no orbit is known; ``torque_body_nm`` is the estimated disturbance.
+    """
+
+    attitude: Attitude
+    b_body_t: Vec3
+    sample: FieldSample
+    before: FieldSample
+    sun_body: Vec3 | None = None
+    reference: Reference | None = None
+    torque_body_nm: Vec3 = ZERO
+
+
+class Setpoint(NamedTuple):
+    """What the ground may change in flight: law, gains, and the spin about body axis 1.
+
+    Units: ``k_w`` N m s/T^2, ``k_a`` N m/T^2, ``k_i`` N m/(T^2 s), ``spin_radps`` rad/s, relative to the
+    orbital frame.
+    """
+
+    law: str
+    k_w: float
+    k_a: float
+    k_i: float
+    spin_radps: float
+
+
+@dataclass(frozen=True, slots=True)
+class ControlConfig:
+    """What the table fixes.
+
+    Attributes:
+        setpoint: what holds from boot on.
+        gains: by law, the parameters that are that law's alone.
+        inertia_kgm2: inertia tensor, body axes, as the controller believes it.
+        inertia_inverse: its inverse.
+        wheel_body_nms: constant momentum of a wheel, body axes.
+        tick_s: length of a tick.
+        horizon_s: length of a pulse: how far a predictive law looks.
+        mean_dipole_am2: dipole per axis that the coils can give for good.
+    """
+
+    setpoint: Setpoint
+    gains: dict[str, Any]
+    inertia_kgm2: Mat3
+    inertia_inverse: Mat3
+    wheel_body_nms: Vec3
+    tick_s: float
+    horizon_s: float
+    mean_dipole_am2: float
+
+
+class Demand(NamedTuple):
+    """What a law asks for: a mean dipole, or an angular impulse to be given at the next opportunity.
+
+    An impulse law leaves the dipole to the actuator, which gives what it can with the least energy left.
+    """
+
+    m_body_am2: Vec3 = ZERO
+    impulse_body_nms: Vec3 | None = None
+    memory: Memory = ()
+
+
+Law = Callable[[Seen, Memory, Setpoint, ControlConfig], Demand]
+"""One control law: pure, called once a tick."""

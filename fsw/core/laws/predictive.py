@@ -1,0 +1,89 @@
+"""The predictive law of PoSAT-1: the impulse that would bring the rate to its reference by the pulse's end.
+
+At each opportunity the rate one pulse ahead is predicted without control,
+
+    Omega+ = Omega + dt (domega/dt + w0 Omega x e3),
+    J domega/dt = 3 mu/r^3 e1 x J e1 - omega x (J omega + h),
+
+and what is missing, r = J (Omega_ref - Omega+), is the impulse asked for. The cost of giving m for dt,
+1/2 (Omega+ - Omega_ref)^T J (Omega+ - Omega_ref), is then 1/2 (r - dt m x b)^T J^-1 (r - dt m x b): the
+actuator looks for its least value, over the 18 pulses and none, or over all dipoles.
+
+Source: Tavares et al. (ConSat, PoSAT-1), eq. 5 and 18.
+"""
+
+from fsw.core.earth import MU_M3PS2
+from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
+from fsw.core.quaternion import dcm
+from fsw.core.vector import Mat3, Vec3, add, cross, dot, scale, sub, transform, transpose
+
+
+def free_rate_change(
+    omega_body_orbit_radps: Vec3,
+    c_body_from_orbit: Mat3,
+    orbit_rate_radps: float,
+    radius_m: float,
+    inertia_kgm2: Mat3,
+    inertia_inverse: Mat3,
+    wheel_body_nms: Vec3,
+) -> Vec3:
+    """dOmega/dt without control, body axes, rad/s^2.
+
+    Args:
+        omega_body_orbit_radps: Omega, rate relative to the orbital frame, body axes.
+        c_body_from_orbit: attitude.
+        orbit_rate_radps: w0.
+        radius_m: distance from the Earth's centre.
+        inertia_kgm2: J, body axes.
+        inertia_inverse: J^-1.
+        wheel_body_nms: h, constant momentum of a wheel, body axes.
+    """
+    e1, _, e3 = transpose(c_body_from_orbit)
+    omega = add(omega_body_orbit_radps, scale(orbit_rate_radps, e3))
+    gravity = scale(3.0 * MU_M3PS2 / radius_m**3, cross(e1, transform(inertia_kgm2, e1)))
+    gyroscopic = cross(omega, add(transform(inertia_kgm2, omega), wheel_body_nms))
+    turning = scale(orbit_rate_radps, cross(omega_body_orbit_radps, e3))
+    return add(transform(inertia_inverse, sub(gravity, gyroscopic)), turning)
+
+
+def missing_impulse(
+    omega_body_orbit_radps: Vec3,
+    free_change_radps2: Vec3,
+    reference_radps: Vec3,
+    horizon_s: float,
+    inertia_kgm2: Mat3,
+) -> Vec3:
+    """R = J (Omega_ref - Omega - dt dOmega/dt), body axes, N m s."""
+    predicted = add(omega_body_orbit_radps, scale(horizon_s, free_change_radps2))
+    return transform(inertia_kgm2, sub(reference_radps, predicted))
+
+
+def best_impulse(impulse_body_nms: Vec3, b_body_t: Vec3, inertia_kgm2: Mat3) -> Vec3:
+    """The impulse p normal to b with the least (r - p)^T J^-1 (r - p): p = r - J b (b . r) / (b . J b).
+
+    The closed-form minimiser for coils without limits; ``b_body_t`` must not be zero.
+    """
+    weighted = transform(inertia_kgm2, b_body_t)
+    return sub(impulse_body_nms, scale(dot(b_body_t, impulse_body_nms) / dot(b_body_t, weighted), weighted))
+
+
+def predictive(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """The impulse that is missing at the end of a pulse fired now."""
+    attitude, reference = seen.attitude, seen.reference
+    if not attitude.valid or reference is None:
+        return Demand()
+    change = free_rate_change(
+        attitude.omega_body_orbit_radps,
+        dcm(attitude.q_body_from_orbit),
+        reference.orbit_rate_radps,
+        reference.radius_m,
+        config.inertia_kgm2,
+        config.inertia_inverse,
+        config.wheel_body_nms,
+    )
+    wanted = (setpoint.spin_radps, 0.0, 0.0)
+    return Demand(
+        impulse_body_nms=missing_impulse(
+            attitude.omega_body_orbit_radps, change, wanted, config.horizon_s, config.inertia_kgm2
+        )
+    )
