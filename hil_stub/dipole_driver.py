@@ -44,8 +44,8 @@ _NONE: Vec3 = (0.0, 0.0, 0.0)
 class DipoleDriver:
     """A board that drives what one ``COIL_DIPOLE`` asks, in the tick in which it is received and no longer.
 
-    A request ends by itself: a tick without one is a tick without drive. The coils are off at the end of every
-    tick, so that no current flows when the sensors sample. ``COIL_FIRE`` is refused: there are no levels.
+    A request ends by itself: a tick without one is a tick without drive. The coils are off at the end of
+    every tick, so that no current flows when the sensors sample. ``COIL_FIRE`` is refused.
 
     In each tick: ``begin_tick``, then ``receive`` for each frame of the bus, then ``drive``. A request that
     comes after ``drive``, or before the first tick, answers no tick and is refused as one of a wrong tick.
