@@ -19,7 +19,6 @@ from sim.harness.flight import BusLog, FlightError, Pace, fly
 from sim.harness.scenario import Scenario, orbit_period_s
 from sim.harness.truth import TruthFile
 from sim.plant.plant import Plant
-from sim.plant.torques import SOURCES
 
 POLL_S = 0.1
 GRACE_S = 5.0
@@ -57,7 +56,7 @@ def record(path: Path, scenario: Scenario, bus: Bus, watch: Watch = lambda tick:
     try:
         with (
             BusLog(path / run_dir.BUS_LOG, bus.name) as log,
-            TruthFile(path / run_dir.TRUTH, run["ticks"], SOURCES) as truth,
+            TruthFile(path / run_dir.TRUTH, run["ticks"], plant.torque_sources) as truth,
         ):
             flown = fly(
                 plant,

@@ -18,8 +18,6 @@ class Coils:
 
     def __init__(self, config: CoilConfig) -> None:
         self._tau_s = config.time_constant_s
-        amperes = [dipole / config.dipole_per_ampere_am2 for dipole in config.levels_am2]
-        self._driven_a = [0.0, *amperes]
         self._dipole_per_ampere = [config.dipole_per_ampere_am2 * scale for scale in config.dipole_scale]
         self._current_a = [0.0, 0.0, 0.0]
 
@@ -35,23 +33,19 @@ class Coils:
         x, y, z = self._current_a
         return x + y + z
 
-    def advance(self, coil: int, level: int, on_s: float, step_s: float) -> Vec3:
-        """Go on by a step in which one coil is driven from the start for ``on_s``; exact mean dipole [A m^2].
+    def advance(self, driven_a: Vec3, on_s: float, step_s: float) -> Vec3:
+        """Go on by a step in which coils are driven from its start for ``on_s``; exact mean dipole [A m^2].
 
         The mean, not the end value, carries the impulse: the lag is far shorter than a step.
 
         Args:
-            coil: coil that is driven, 0 to 2.
-            level: -3 to 3, 0 for none.
-            on_s: how long it is driven, 0 to ``step_s``.
+            driven_a: current that each coil is driven to, 0 for none.
+            on_s: how long, 0 to ``step_s``; then to 0.
             step_s: length of the step.
         """
-        if not (level and on_s) and self._current_a == [0.0, 0.0, 0.0]:
+        if self._current_a == [0.0, 0.0, 0.0] and not (on_s and any(driven_a)):
             return ZERO
-        target_a = self._driven_a[level] if level >= 0 else -self._driven_a[-level]
-        x, y, z = (
-            self._mean_current(each, target_a if each == coil else 0.0, on_s, step_s) for each in range(3)
-        )
+        x, y, z = (self._mean_current(coil, driven_a[coil], on_s, step_s) for coil in range(3))
         i, j, k = self._dipole_per_ampere
         return (x * i, y * j, z * k)
 

@@ -1,7 +1,7 @@
 """What a plant is made of: every number the physics needs, in SI, as frozen values."""
 
 from dataclasses import dataclass
-from math import isclose
+from math import isclose, pi
 from typing import Literal
 
 from hil_stub.coil_driver import CoilLimits
@@ -46,17 +46,55 @@ class FieldConfig:
 
 
 @dataclass(frozen=True, slots=True)
+class PlateConfig:
+    """A flat plate of the surface, which feels air and light on one side.
+
+    Attributes:
+        area_m2: its area.
+        normal_body: unit normal, outward, body axes.
+        centre_body_m: centre of pressure from the mass centre, body axes.
+        drag_coefficient: C_D.
+        specular: part of the light that is reflected as by a mirror.
+        diffuse: part of the light that is scattered; the rest is absorbed.
+
+    Raises:
+        ValueError: the normal is not of unit length, or another quantity is out of range.
+    """
+
+    area_m2: float
+    normal_body: Vec3
+    centre_body_m: Vec3 = ZERO
+    drag_coefficient: float = 2.2
+    specular: float = 0.0
+    diffuse: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not self.area_m2 > 0.0:
+            raise ValueError("area_m2 must be positive")
+        if not isclose(sum(part * part for part in self.normal_body), 1.0, abs_tol=1e-9):
+            raise ValueError("normal_body is not of unit length")
+        if not self.drag_coefficient >= 0.0:
+            raise ValueError("drag_coefficient must not be negative")
+        if not (self.specular >= 0.0 and self.diffuse >= 0.0 and self.specular + self.diffuse <= 1.0):
+            raise ValueError("specular and diffuse must not be negative, nor together above 1")
+
+
+@dataclass(frozen=True, slots=True)
 class BodyConfig:
     """The rigid body.
 
     Attributes:
         inertia_kgm2: rows of the inertia tensor about the mass centre, body axes.
+        wheel_body_nms: constant angular momentum of wheels relative to the body, body axes.
+        plates: its surface, convex: no plate shades another.
 
     Raises:
         ValueError: the tensor is not symmetric and positive definite.
     """
 
     inertia_kgm2: Mat3
+    wheel_body_nms: Vec3 = ZERO
+    plates: tuple[PlateConfig, ...] = ()
 
     def __post_init__(self) -> None:
         (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = self.inertia_kgm2
@@ -95,10 +133,26 @@ class DisturbanceConfig:
     Attributes:
         torque_body_nm: constant torque, body axes.
         residual_dipole_body_am2: constant magnetic dipole, body axes.
+        density_scale: air density over that of the model, None for no drag on the plates.
+        solar_flux_wpm2: of sunlight at 1 au, None for no pressure of it on the plates.
+        eddy_nms_per_t2: k_e of the eddy currents' torque k_e (omega x b) x b, 0 for none.
+        torque_noise_nm_rts: root of the spectral density of a white torque per axis [N m s^(1/2)].
+
+    Raises:
+        ValueError: a quantity that cannot be negative is.
     """
 
     torque_body_nm: Vec3 = ZERO
     residual_dipole_body_am2: Vec3 = ZERO
+    density_scale: float | None = None
+    solar_flux_wpm2: float | None = None
+    eddy_nms_per_t2: float = 0.0
+    torque_noise_nm_rts: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("density_scale", "solar_flux_wpm2", "eddy_nms_per_t2", "torque_noise_nm_rts"):
+            if not (getattr(self, name) or 0.0) >= 0.0:
+                raise ValueError(f"{name} must not be negative")
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,6 +167,7 @@ class MagnetometerConfig:
         quantum_t: step of the reading, 0 for none.
         saturation_t: largest magnitude of an axis; beyond it the sample is not valid.
         coil_coupling_t_per_am2: column j is the field at the sensor, body axes, per dipole of coil j.
+        latency_s: age of what a sample shows.
     """
 
     noise_t: float = 0.0
@@ -122,6 +177,7 @@ class MagnetometerConfig:
     quantum_t: float = 0.0
     saturation_t: float = 65e-6
     coil_coupling_t_per_am2: Mat3 = NO_COUPLING
+    latency_s: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,11 +188,30 @@ class SunSensorConfig:
         noise_rad: standard deviation of a small rotation about each axis, per sample.
         misalignment_rad: rotation vector that turns the body axes into the sensor's.
         quantum: step of a component of the unit vector, 0 for none.
+        latency_s: age of what a sample shows.
+        fov_half_rad: half the opening angle of each cone of view.
+        boresights_body: unit axes of the cones, body axes; none: it sees all around.
     """
 
     noise_rad: float = 0.0
     misalignment_rad: Vec3 = ZERO
     quantum: float = 0.0
+    latency_s: float = 0.0
+    fov_half_rad: float = pi
+    boresights_body: tuple[Vec3, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class ContinuousConfig:
+    """A continuous driver.
+
+    Attributes:
+        max_dipole_am2: nominal full scale of each coil.
+        on_fraction: part of a tick for which it drives.
+    """
+
+    max_dipole_am2: float
+    on_fraction: float = 0.8
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,6 +223,7 @@ class CoilConfig:
         dipole_per_ampere_am2: nominal dipole of one ampere.
         time_constant_s: of the current's rise and decay, 0 for none.
         dipole_scale: true over nominal dipole of each coil: 1 is right, -1 is wired the wrong way round.
+        continuous: the continuous driver; None: one that gives pulses of the levels.
 
     Raises:
         ValueError: the levels do not rise from above zero, or a quantity is out of range.
@@ -157,6 +233,7 @@ class CoilConfig:
     dipole_per_ampere_am2: float = 10.0
     time_constant_s: float = 0.01
     dipole_scale: Vec3 = ONES
+    continuous: ContinuousConfig | None = None
 
     def __post_init__(self) -> None:
         low, middle, high = self.levels_am2

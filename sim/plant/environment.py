@@ -4,24 +4,44 @@ Orbit, field and Sun are computed at nodes, many at once, and interpolated to ev
 integration or the sensors look. All instants lie on one grid of integers, so no time is ever accumulated.
 """
 
+from collections.abc import Iterable
+from itertools import repeat
 from typing import NamedTuple
 
 import numpy as np
 
-from sim.plant.config import PlantConfig
+from sim.plant.atmosphere import altitude_m, density_kgpm3, flow_mps
+from sim.plant.config import DisturbanceConfig, PlantConfig
 from sim.plant.field import make_field
 from sim.plant.orbit import MU_M3PS2, Array, make_orbit
-from sim.plant.rotation import Mat3, Vec3
-from sim.plant.sun import illumination, sun_eci_m
+from sim.plant.rotation import ZERO, Mat3, Vec3
+from sim.plant.sun import AU_M, illumination, sun_eci_m
 
 NODE_S = 10
 """Seconds between nodes."""
+
+LIGHT_MPS = 299792458.0
 
 _BEFORE, _AFTER = 2, 3
 """Nodes that the interpolation uses before and after an instant."""
 
 _SUBSTEPS_A_BLOCK = 320
 """About how many integration steps are computed ahead at once."""
+
+
+class Exposure(NamedTuple):
+    """Air and light at one instant."""
+
+    flow_eci_mps: Vec3
+    """Velocity relative to the air."""
+    density_kgpm3: float
+    sun_eci: Vec3
+    """Unit vector from the satellite to the Sun."""
+    sunlight_pa: float
+    """Pressure of the light on a black plate that faces the Sun."""
+
+
+VACUUM = Exposure(ZERO, 0.0, ZERO, 0.0)
 
 
 class Surroundings(NamedTuple):
@@ -32,6 +52,8 @@ class Surroundings(NamedTuple):
     gradient_ps2: float
     """3 mu / r^3."""
     b_eci_t: Vec3
+    exposure: Exposure = VACUUM
+    """Where drag or the pressure of light is asked for."""
 
 
 class Sample(NamedTuple):
@@ -65,6 +87,7 @@ class Environment:
         self._orbit = make_orbit(config.orbit, config.epoch_unix_s)
         self._field = make_field(config.field, config.epoch_unix_s)
         self._epoch_unix_s = config.epoch_unix_s
+        self._disturbance = config.disturbance
         self._stages_per_tick = 2 * substeps
         ticks_per_node = NODE_S * config.tick_hz
         self._nodes_per_block = max(1, _SUBSTEPS_A_BLOCK // (ticks_per_node * substeps))
@@ -103,7 +126,7 @@ class Environment:
             for place, weight in enumerate(self._weights)
         )
         rows = np.vstack([np.reshape(inner, (-1, nodes.shape[1])), nodes[_BEFORE + count]])
-        self._stages = _surroundings(rows)
+        self._stages = _surroundings(rows, _exposures(rows, self._disturbance))
         self._samples = _samples(rows[:: self._stages_per_tick])
 
 
@@ -117,12 +140,29 @@ def _lagrange_weights(steps: int) -> Array:
     return np.array([np.prod([(x - j) / (k - j) for j in places if j != k], axis=0) for k in places])
 
 
-def _surroundings(rows: Array) -> list[Surroundings]:
+def _surroundings(rows: Array, exposures: Iterable[Exposure]) -> list[Surroundings]:
     r_m = rows[:, 0:3]
     r_norm_m = np.sqrt((r_m * r_m).sum(axis=1))
     gradient_ps2 = 3.0 * MU_M3PS2 / r_norm_m**3
     columns = (_tuples(r_m / r_norm_m[:, None]), gradient_ps2.tolist(), _tuples(rows[:, 6:9]))
-    return [Surroundings(*row) for row in zip(*columns, strict=True)]
+    return [Surroundings(*row) for row in zip(*columns, exposures, strict=False)]
+
+
+def _exposures(rows: Array, disturbance: DisturbanceConfig) -> Iterable[Exposure]:
+    density_scale, flux_wpm2 = disturbance.density_scale, disturbance.solar_flux_wpm2
+    if density_scale is None and flux_wpm2 is None:
+        return repeat(VACUUM)
+    r_m, v_mps, _, sun_m = np.hsplit(rows, 4)
+    to_sun = sun_m - r_m
+    distance_m = np.linalg.norm(to_sun, axis=1)
+    sunlight_pa = (flux_wpm2 or 0.0) / LIGHT_MPS * (AU_M / distance_m) ** 2 * illumination(r_m, sun_m)
+    columns = (
+        _tuples(flow_mps(r_m, v_mps)),
+        ((density_scale or 0.0) * density_kgpm3(altitude_m(r_m))).tolist(),
+        _tuples(to_sun / distance_m[:, None]),
+        sunlight_pa.tolist(),
+    )
+    return [Exposure(*row) for row in zip(*columns, strict=True)]
 
 
 def _samples(rows: Array) -> list[Sample]:

@@ -6,15 +6,16 @@ from zlib import crc32
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import PlantBoot, PlantEnd, PlantHeartbeat, RefAttitude, RefRate, Sync
-from hil_stub.coil_driver import CoilDriver
 from hil_stub.magnetometer import Magnetometer
 from hil_stub.node import CONTRACT_VERSION, HEARTBEAT_S
 from hil_stub.sun_sensor import SunSensor
 from sim.plant import torques
+from sim.plant.actuators import make_actuator
 from sim.plant.coils import Coils
 from sim.plant.config import PlantConfig
+from sim.plant.disturbances import effects, torque_noise
 from sim.plant.environment import Environment, Surroundings
-from sim.plant.rigid_body import Motion, RigidBody
+from sim.plant.rigid_body import Motion, RigidBody, Torque
 from sim.plant.rotation import (
     ZERO,
     Quaternion,
@@ -48,8 +49,8 @@ class TruthRow(NamedTuple):
     m_body_am2: Vec3
     """Mean dipole of the coils that really flowed over the tick that ends at t_k."""
     r_eci_m: Vec3
-    torque_body_nm: tuple[Vec3, Vec3, Vec3, Vec3]
-    """At t_k, by ``torques.SOURCES``; that of the coils is m x b of this row."""
+    torque_body_nm: tuple[Vec3, ...]
+    """At t_k, by ``Plant.torque_sources``; that of the coils is m x b of this row, noise that before t_k."""
 
 
 class Plant:
@@ -72,15 +73,20 @@ class Plant:
         """Integration steps a tick."""
         self._step_s = 1.0 / (config.tick_hz * self.substeps)
         self._environment = Environment(config, self.substeps)
-        self._body = RigidBody(config.body.inertia_kgm2)
+        self._body = RigidBody(config.body.inertia_kgm2, config.body.wheel_body_nms)
+        effects_by_name, self._noise = effects(config), torque_noise(config)
+        self._effects = tuple(effects_by_name.values())
+        self.torque_sources = (*torques.SOURCES, *effects_by_name, *(("noise",) if self._noise else ()))
+        """Names of what turns the body, in the order in which truth lists them."""
         self._coils = Coils(config.coils)
-        self._magnetometer = MagnetometerPhysics(config.magnetometer, config.seed)
-        self._sun_sensor = SunSensorPhysics(config.sun_sensor, config.seed)
-        self._coil_driver = CoilDriver(config.limits)
+        self._magnetometer = MagnetometerPhysics(config.magnetometer, config.seed, config.tick_hz)
+        self._sun_sensor = SunSensorPhysics(config.sun_sensor, config.seed, config.tick_hz)
+        self._actuator = make_actuator(config)
         self._magnetometer_board = Magnetometer(config.tick_hz)
         self._sun_sensor_board = SunSensor(config.tick_hz)
         self._tick = 0
         self._flowed_am2 = ZERO
+        self._noise_body_nm = ZERO
         self.motion = self._initial_motion()
         """Attitude and rate against the inertial frame at the instant of the tick."""
         self._observe()
@@ -104,33 +110,28 @@ class Plant:
         return [
             *self._magnetometer_board.begin_tick(tick, b_t, b_valid),
             *self._sun_sensor_board.begin_tick(tick, sun, sun_valid),
-            *self._coil_driver.begin_tick(tick, coils.readback_a),
+            *self._actuator.board.begin_tick(tick, coils.readback_a),
             *self._own_frames(),
             Sync(tick, self._config.epoch_unix_s + tick // self._config.tick_hz).encode(),
         ]
 
     def receive(self, frame: Frame) -> None:
         """Hand a frame that answers this tick to the boards that listen."""
-        self._coil_driver.receive(frame)
+        self._actuator.board.receive(frame)
 
     def end_tick(self) -> None:
         """Drive what the coil driver drives, and go on to the next tick."""
         around = self._environment.stages(self._tick)
-        coil, level, fraction = self._coil_driver.drive()
-        inertia, disturbance = self._config.body.inertia_kgm2, self._config.disturbance
-        rx, ry, rz = disturbance.residual_dipole_body_am2
-        bias = disturbance.torque_body_nm
+        driven_a, fraction = self._actuator.drive()
+        if self._noise:
+            self._noise_body_nm = next(self._noise)
         substeps, step_s, motion = self.substeps, self._step_s, self.motion
         sx = sy = sz = 0.0
         for substep in range(substeps):
             on_s = step_s * min(max(fraction * substeps - substep, 0.0), 1.0)
-            mx, my, mz = self._coils.advance(coil, level, on_s, step_s)
-            dipole = (mx + rx, my + ry, mz + rz)
+            mx, my, mz = self._coils.advance(driven_a, on_s, step_s)
             sx, sy, sz = sx + mx, sy + my, sz + mz
-
-            def torque(q: Quaternion, place: Surroundings, dipole: Vec3 = dipole) -> Vec3:
-                return torques.total(inertia, q, place, dipole, bias)
-
+            torque = self._torque((mx, my, mz))
             motion = self._body.step(motion, torque, around[2 * substep : 2 * substep + 3], step_s)
         self.motion = motion
         self._flowed_am2 = (sx / substeps, sy / substeps, sz / substeps)
@@ -158,12 +159,37 @@ class Plant:
                 torques.magnetic(self._flowed_am2, b_body_t),
                 torques.magnetic(disturbance.residual_dipole_body_am2, b_body_t),
                 disturbance.torque_body_nm,
+                *(
+                    effect(self._body_from_eci, self.motion.omega_body_radps, around)
+                    for effect in self._effects
+                ),
+                *((self._noise_body_nm,) if self._noise else ()),
             ),
         )
 
     def end(self) -> Frame:
         """The last frame of a complete run."""
         return PlantEnd(self._tick).encode()
+
+    def _torque(self, m_body_am2: Vec3) -> Torque:
+        """The torque over an integration step in which the coils' mean dipole is ``m_body_am2``."""
+        inertia, disturbance, found = self._config.body.inertia_kgm2, self._config.disturbance, self._effects
+        (mx, my, mz), (rx, ry, rz) = m_body_am2, disturbance.residual_dipole_body_am2
+        dipole = (mx + rx, my + ry, mz + rz)
+        (bx, by, bz), (nx, ny, nz) = disturbance.torque_body_nm, self._noise_body_nm
+        bias = (bx + nx, by + ny, bz + nz)
+        if not found:
+            return lambda q, omega, around: torques.total(inertia, q, around, dipole, bias)
+
+        def torque(q: Quaternion, omega: Vec3, around: Surroundings) -> Vec3:
+            c = matrix(q)
+            x, y, z = torques.total(inertia, q, around, dipole, bias)
+            for effect in found:
+                dx, dy, dz = effect(c, omega, around)
+                x, y, z = x + dx, y + dy, z + dz
+            return (x, y, z)
+
+        return torque
 
     def _initial_motion(self) -> Motion:
         sample, initial = self._environment.sample(0), self._config.initial

@@ -4,10 +4,10 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from sim.plant.environment import Surroundings
-from sim.plant.rotation import Mat3, Quaternion, Vec3, cross, normalise, transform
+from sim.plant.rotation import ZERO, Mat3, Quaternion, Vec3, cross, normalise, transform
 
-Torque = Callable[[Quaternion, Surroundings], Vec3]
-"""Torque in body axes [N m] at an attitude q_body_from_eci and in surroundings."""
+Torque = Callable[[Quaternion, Vec3, Surroundings], Vec3]
+"""Torque in body axes [N m]: of q_body_from_eci, the inertial rate in body axes, surroundings."""
 
 
 class Motion(NamedTuple):
@@ -19,14 +19,16 @@ class Motion(NamedTuple):
 
 
 class RigidBody:
-    """dq/dt = 1/2 q (x) (0, w), J dw/dt = T - w x J w.
+    """dq/dt = 1/2 q (x) (0, w), J dw/dt = T - w x (J w + h).
 
     Args:
         inertia_kgm2: inertia tensor about the mass centre, body axes, regular.
+        wheel_body_nms: constant angular momentum h of wheels relative to the body, body axes.
     """
 
-    def __init__(self, inertia_kgm2: Mat3) -> None:
+    def __init__(self, inertia_kgm2: Mat3, wheel_body_nms: Vec3 = ZERO) -> None:
         self._inertia = inertia_kgm2
+        self._wheel = wheel_body_nms
         self._inverse = _inverse(inertia_kgm2)
 
     def step(self, motion: Motion, torque: Torque, around: Sequence[Surroundings], step_s: float) -> Motion:
@@ -62,8 +64,9 @@ class RigidBody:
 
     def _rates(self, motion: Motion, torque: Torque, around: Surroundings) -> "_Rates":
         q, w = motion
-        tx, ty, tz = torque(q, around)
-        gx, gy, gz = cross(w, transform(self._inertia, w))
+        tx, ty, tz = torque(q, w, around)
+        (x, y, z), (hx, hy, hz) = transform(self._inertia, w), self._wheel
+        gx, gy, gz = cross(w, (x + hx, y + hy, z + hz))
         q0, q1, q2, q3 = q
         wx, wy, wz = 0.5 * w[0], 0.5 * w[1], 0.5 * w[2]
         return (

@@ -1,6 +1,7 @@
 """Sensor physics: what the boards' instruments read."""
 
-from math import sqrt
+from collections import deque
+from math import cos, sqrt
 
 from sim.plant.config import MagnetometerConfig, SunSensorConfig
 from sim.plant.random_streams import normals
@@ -10,18 +11,44 @@ LIT_ENOUGH = 0.5
 """Fraction of the Sun's disc below which the Sun sensor sees nothing."""
 
 
+_Values = tuple[float, ...]
+
+
+class Delay:
+    """What was there ``latency_s`` ago: linear between samples; before the first, the first.
+
+    Args:
+        latency_s: age of what is given back.
+        tick_hz: samples a second.
+    """
+
+    def __init__(self, latency_s: float, tick_hz: int) -> None:
+        ticks, self._part = divmod(latency_s * tick_hz, 1.0)
+        self._kept: deque[_Values] = deque(maxlen=int(ticks) + 2)
+
+    def __call__(self, now: _Values) -> _Values:
+        """The values of back then, those of the next sample being ``now``."""
+        kept, part = self._kept, self._part
+        while not kept or len(kept) < (kept.maxlen or 0) - 1:
+            kept.append(now)
+        kept.append(now)
+        return tuple(late + part * (early - late) for early, late in zip(kept[0], kept[1], strict=True))
+
+
 class MagnetometerPhysics:
     """b = scale (R (b_body + K m)) + bias + noise, then quantised and held within the range.
 
-    R turns body into sensor axes, K m is the coils' own field.
+    R turns body into sensor axes, K m is the coils' own field; both are those of ``latency_s`` ago.
 
     Args:
         config: the errors.
         seed: of the stream ``magnetometer``.
+        tick_hz: samples a second.
     """
 
-    def __init__(self, config: MagnetometerConfig, seed: int) -> None:
+    def __init__(self, config: MagnetometerConfig, seed: int, tick_hz: int = 1) -> None:
         self._config = config
+        self._delay = Delay(config.latency_s, tick_hz) if config.latency_s else None
         self._sensor_from_body = matrix(from_vector(config.misalignment_rad))
         self._noise = normals(seed, "magnetometer")
 
@@ -34,7 +61,9 @@ class MagnetometerPhysics:
         """
         config = self._config
         (bx, by, bz), own = b_body_t, transform(config.coil_coupling_t_per_am2, m_body_am2)
-        sensed = transform(self._sensor_from_body, (bx + own[0], by + own[1], bz + own[2]))
+        sensed: _Values = transform(self._sensor_from_body, (bx + own[0], by + own[1], bz + own[2]))
+        if self._delay:
+            sensed = self._delay(sensed)
         x, y, z = (
             _quantised(scale * b + bias + config.noise_t * next(self._noise), config.quantum_t)
             for scale, b, bias in zip(config.scale, sensed, config.bias_t, strict=True)
@@ -48,18 +77,24 @@ class MagnetometerPhysics:
 class SunSensorPhysics:
     """s = R s_body, turned about each axis by a small random angle, then quantised.
 
+    Light and direction are those of ``latency_s`` ago. The Sun is in view within ``fov_half_rad`` of a
+    boresight.
+
     Args:
         config: the errors.
         seed: of the stream ``sun_sensor``.
+        tick_hz: samples a second.
     """
 
-    def __init__(self, config: SunSensorConfig, seed: int) -> None:
+    def __init__(self, config: SunSensorConfig, seed: int, tick_hz: int = 1) -> None:
         self._config = config
+        self._delay = Delay(config.latency_s, tick_hz) if config.latency_s else None
+        self._cos_half = cos(config.fov_half_rad)
         self._sensor_from_body = matrix(from_vector(config.misalignment_rad))
         self._noise = normals(seed, "sun_sensor")
 
     def measure(self, sun_body: Vec3, lit: float) -> tuple[Vec3, bool]:
-        """The unit vector to the Sun and whether it is valid: at least half of the Sun is seen.
+        """The unit vector to the Sun and whether it is valid: in view, and at least half of the Sun is seen.
 
         Args:
             sun_body: true unit vector.
@@ -67,7 +102,10 @@ class SunSensorPhysics:
         """
         noise, sigma = self._noise, self._config.noise_rad
         ax, ay, az = sigma * next(noise), sigma * next(noise), sigma * next(noise)
-        if lit < LIT_ENOUGH:
+        if self._delay:
+            *then, lit = self._delay((*sun_body, lit))
+            sun_body = (then[0], then[1], then[2])
+        if lit < LIT_ENOUGH or not self._in_view(sun_body):
             return ZERO, False
         x, y, z = transform(self._sensor_from_body, sun_body)
         x, y, z = x + ay * z - az * y, y + az * x - ax * z, z + ax * y - ay * x
@@ -77,6 +115,14 @@ class SunSensorPhysics:
             _quantised(y * factor, quantum),
             _quantised(z * factor, quantum),
         ), True
+
+    def _in_view(self, sun_body: Vec3) -> bool:
+        boresights = self._config.boresights_body
+        if not boresights:
+            return True
+        x, y, z = sun_body
+        least = self._cos_half * sqrt(x * x + y * y + z * z)
+        return any(x * bx + y * by + z * bz >= least for bx, by, bz in boresights)
 
 
 def _quantised(value: float, quantum: float) -> float:

@@ -4,7 +4,7 @@ from sim.plant.environment import Surroundings
 from sim.plant.rotation import Mat3, Quaternion, Vec3, cross, matrix, transform
 
 SOURCES = ("gravity_gradient", "coils", "residual_dipole", "bias")
-"""Names of what turns the body, in the order in which truth lists them."""
+"""What turns every body, in the order in which truth lists it; ``disturbances`` has what may come after."""
 
 
 def gravity_gradient(inertia_kgm2: Mat3, e_body: Vec3, gradient_ps2: float) -> Vec3:
@@ -16,6 +16,21 @@ def gravity_gradient(inertia_kgm2: Mat3, e_body: Vec3, gradient_ps2: float) -> V
 def magnetic(m_body_am2: Vec3, b_body_t: Vec3) -> Vec3:
     """T = m x b [N m]."""
     return cross(m_body_am2, b_body_t)
+
+
+def eddy(k_nms_per_t2: float, omega_body_radps: Vec3, b_body_t: Vec3) -> Vec3:
+    """T = k (omega x b) x b [N m] of the currents that the field induces in a turning conductor.
+
+    It brakes omega across the field, and not along it (Wertz 1978, section 17.2). The slow turn of the field
+    along the orbit is left out.
+
+    Args:
+        k_nms_per_t2: k, of the conductor's shape and conductivity; 2/3 pi r^4 sigma d for a thin sphere.
+        omega_body_radps: inertial rate.
+        b_body_t: field.
+    """
+    x, y, z = cross(cross(omega_body_radps, b_body_t), b_body_t)
+    return (k_nms_per_t2 * x, k_nms_per_t2 * y, k_nms_per_t2 * z)
 
 
 def total(
@@ -35,7 +50,7 @@ def total(
         bias_body_nm: constant torque.
     """
     c = matrix(q_body_from_eci)
-    e_eci, gradient, b_eci = around
+    e_eci, gradient, b_eci, _ = around
     ex, ey, ez = transform(c, e_eci)
     bx, by, bz = transform(c, b_eci)
     mx, my, mz = m_body_am2

@@ -8,15 +8,22 @@ from sim.plant.coils import Coils
 from sim.plant.config import CoilConfig
 
 TAU = 0.4  # slow, so that every part of the curve counts
-CONFIG = CoilConfig((0.5, 2.0, 8.0), 11.0, TAU, (0.97, -1.02, 1.05))
+LEVELS = (0.5, 2.0, 8.0)
+CONFIG = CoilConfig(LEVELS, 11.0, TAU, (0.97, -1.02, 1.05))
+
+
+def one(coil, level):
+    """Currents that drive one coil at a level."""
+    amperes = np.sign(level) * (0.0, *LEVELS)[abs(level)] / 11.0
+    return tuple(amperes if each == coil else 0.0 for each in range(3))
 
 
 def test_current_rises_and_decays_exponentially():
     coils = Coils(CONFIG)
-    coils.advance(1, 3, 1.0, 1.0)
+    coils.advance(one(1, 3), 1.0, 1.0)
     full = 8.0 / 11.0
     assert coils.readback_a == pytest.approx(full * (1.0 - exp(-1.0 / TAU)))
-    coils.advance(1, 0, 0.0, 1.0)
+    coils.advance(one(1, 0), 0.0, 1.0)
     assert coils.readback_a == pytest.approx(full * (1.0 - exp(-1.0 / TAU)) * exp(-1.0 / TAU))
 
 
@@ -24,7 +31,7 @@ def test_dipole_is_along_the_coil_with_its_sign_and_its_error():
     for coil, scale in enumerate(CONFIG.dipole_scale):
         for level in (-3, -2, -1, 1, 2, 3):
             coils = Coils(CONFIG)
-            coils.advance(coil, level, 100.0, 100.0)
+            coils.advance(one(coil, level), 100.0, 100.0)
             nominal = np.sign(level) * CONFIG.levels_am2[abs(level) - 1]
             expected = [nominal * scale * (axis == coil) for axis in range(3)]
             assert coils.dipole_body_am2 == pytest.approx(expected)
@@ -33,7 +40,7 @@ def test_dipole_is_along_the_coil_with_its_sign_and_its_error():
 
 def test_mean_dipole_is_the_integral_of_the_curve_with_the_drive_ending_inside_the_step():
     coils = Coils(CONFIG)
-    coils.advance(2, 1, 0.3, 1.0)  # starts from a rest of current
+    coils.advance(one(2, 1), 0.3, 1.0)  # starts from a rest of current
     start = coils.readback_a
     on_s, step_s, target = 0.7, 1.0, -2.0 / 11.0
 
@@ -41,7 +48,7 @@ def test_mean_dipole_is_the_integral_of_the_curve_with_the_drive_ending_inside_t
         rise = target + (start - target) * exp(-min(t, on_s) / TAU)
         return rise * exp(-max(t - on_s, 0.0) / TAU)
 
-    mean = coils.advance(2, -2, on_s, step_s)
+    mean = coils.advance(one(2, -2), on_s, step_s)
     integral = quad(current, 0.0, step_s, points=[on_s])[0]
     assert mean == pytest.approx((0.0, 0.0, 11.0 * 1.05 * integral / step_s), rel=1e-9)
     assert coils.readback_a == pytest.approx(current(step_s))
@@ -49,17 +56,17 @@ def test_mean_dipole_is_the_integral_of_the_curve_with_the_drive_ending_inside_t
 
 def test_steps_can_be_split_without_moving_the_impulse():
     whole, split = Coils(CONFIG), Coils(CONFIG)
-    mean = np.array(whole.advance(0, 2, 0.6, 1.0))
-    parts = [split.advance(0, 2, on_s, 0.25) for on_s in (0.25, 0.25, 0.1, 0.0)]
+    mean = np.array(whole.advance(one(0, 2), 0.6, 1.0))
+    parts = [split.advance(one(0, 2), on_s, 0.25) for on_s in (0.25, 0.25, 0.1, 0.0)]
     assert np.mean(parts, axis=0) == pytest.approx(mean)
     assert split.readback_a == pytest.approx(whole.readback_a)
 
 
 def test_a_coil_decays_while_the_next_is_driven():
     coils = Coils(CONFIG)
-    coils.advance(0, 3, 1.0, 1.0)
+    coils.advance(one(0, 3), 1.0, 1.0)
     before = coils.dipole_body_am2[0]
-    mean = coils.advance(1, 1, 1.0, 1.0)
+    mean = coils.advance(one(1, 1), 1.0, 1.0)
     assert coils.dipole_body_am2[0] == pytest.approx(before * exp(-1.0 / TAU))
     assert mean[0] > 0.0
     assert mean[1] < 0.0  # wired the wrong way round
@@ -68,29 +75,47 @@ def test_a_coil_decays_while_the_next_is_driven():
 def test_impulse_of_a_whole_pulse_is_that_of_the_drive():
     """What the rise lacks the decay gives back."""
     coils = Coils(CONFIG)
-    impulse = sum(coils.advance(0, 2, float(step < 3), 1.0)[0] for step in range(100))
+    impulse = sum(coils.advance(one(0, 2), float(step < 3), 1.0)[0] for step in range(100))
     assert impulse == pytest.approx(3.0 * 2.0 * 0.97)
 
 
 def test_current_dies_away_and_stays_away():
     coils = Coils(CONFIG)
-    coils.advance(0, 3, 1.0, 1.0)
+    coils.advance(one(0, 3), 1.0, 1.0)
     for _ in range(60):
-        coils.advance(0, 0, 0.0, 1.0)
+        coils.advance(one(0, 0), 0.0, 1.0)
     assert coils.readback_a == 0.0
-    assert coils.advance(0, 0, 0.0, 1.0) == (0.0, 0.0, 0.0)
+    assert coils.advance(one(0, 0), 0.0, 1.0) == (0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize("drive", [(0, 0, 1.0), (1, 3, 0.0)])
 def test_nothing_flows_without_level_or_time(drive):
     coils = Coils(CONFIG)
-    assert coils.advance(*drive, 1.0) == (0.0, 0.0, 0.0)
+    assert coils.advance(one(*drive[:2]), drive[2], 1.0) == (0.0, 0.0, 0.0)
     assert coils.dipole_body_am2 == (0.0, 0.0, 0.0)
 
 
 def test_without_lag_the_current_is_the_drive():
     coils = Coils(CoilConfig((0.5, 2.0, 8.0), 11.0, 0.0))
-    assert coils.advance(0, 2, 0.25, 1.0) == pytest.approx((0.5, 0.0, 0.0))
+    assert coils.advance(one(0, 2), 0.25, 1.0) == pytest.approx((0.5, 0.0, 0.0))
     assert coils.readback_a == 0.0
-    coils.advance(0, 2, 1.0, 1.0)
+    coils.advance(one(0, 2), 1.0, 1.0)
     assert coils.readback_a == pytest.approx(2.0 / 11.0)
+
+
+def test_three_coils_at_once_are_three_coils_one_at_a_time():
+    """Each has its own current; the supply reads their sum."""
+    driven_a, on_s = (0.05, -0.4, 0.3), 0.7
+    together, apart = Coils(CONFIG), [Coils(CONFIG) for _ in range(3)]
+    for step in range(4):
+        mean = together.advance(driven_a, on_s if step < 2 else 0.0, 1.0)
+        means = [
+            coils.advance(
+                tuple(a * (axis == coil) for axis, a in enumerate(driven_a)), on_s * (step < 2), 1.0
+            )
+            for coil, coils in enumerate(apart)
+        ]
+        assert mean == pytest.approx(np.sum(means, axis=0), rel=1e-14)
+        assert all(mean)
+        assert together.readback_a == pytest.approx(sum(coils.readback_a for coils in apart), rel=1e-14)
+        assert together.dipole_body_am2 == tuple(coils.dipole_body_am2[i] for i, coils in enumerate(apart))

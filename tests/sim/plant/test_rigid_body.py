@@ -57,7 +57,7 @@ class Case:
         body, motion = RigidBody(self.inertia), self.start
         _, around = self.around(step_s, rows)
 
-        def torque(q, place):
+        def torque(q, omega, place):
             return torques.total(self.inertia, q, place, self.dipole, ZERO)
 
         history = [motion]
@@ -142,7 +142,7 @@ def test_a_constant_torque_about_a_principal_axis_spins_it_up():
     nowhere = Surroundings((1.0, 0.0, 0.0), 0.0, ZERO)
     motion = Motion((1.0, 0.0, 0.0, 0.0), ZERO)
     for _ in range(100):
-        motion = body.step(motion, lambda q, place: (0.0, 0.0, 0.02), [nowhere] * 3, 0.1)
+        motion = body.step(motion, lambda q, omega, place: (0.0, 0.0, 0.02), [nowhere] * 3, 0.1)
     assert motion.omega_body_radps == pytest.approx((0.0, 0.0, 0.04))
     assert motion.q_body_from_eci == pytest.approx((np.cos(0.1), 0.0, 0.0, np.sin(0.1)))  # angle 0.2
 
@@ -157,6 +157,6 @@ def test_the_inverse_of_a_full_inertia_tensor():
     torque = np.array([0.03, -0.01, 0.02])
     step_s = 1e-6
     motion = RigidBody(inertia).step(
-        Motion((1.0, 0.0, 0.0, 0.0), ZERO), lambda q, place: tuple(torque), [nowhere] * 3, step_s
+        Motion((1.0, 0.0, 0.0, 0.0), ZERO), lambda q, omega, place: tuple(torque), [nowhere] * 3, step_s
     )
     assert np.array(motion.omega_body_radps) / step_s == pytest.approx(np.linalg.solve(inertia, torque))

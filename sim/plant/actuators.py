@@ -1,0 +1,81 @@
+"""Board and coils together: what the coil driver drives, as currents."""
+
+from typing import NamedTuple, Protocol
+
+from fsw.wire.frame import Frame
+from hil_stub.coil_driver import CoilDriver
+from hil_stub.dipole_driver import DipoleDriver
+from sim.plant.config import CoilConfig, ContinuousConfig, PlantConfig
+from sim.plant.rotation import ZERO, Vec3
+
+
+class Driven(NamedTuple):
+    """What is driven over a tick, from its start for ``fraction`` of it."""
+
+    current_a: Vec3
+    """That each coil is driven to."""
+    fraction: float
+
+
+_OFF = Driven(ZERO, 0.0)
+
+
+class Board(Protocol):
+    """A coil driver board on the bus."""
+
+    def begin_tick(self, tick: int, current_a: float) -> list[Frame]:
+        """Enter a tick, the coil current being read back: the frames to send."""
+
+    def receive(self, frame: Frame) -> None:
+        """Hear a frame of the bus."""
+
+
+class Actuator(Protocol):
+    """A board, and the currents that it drives."""
+
+    board: Board
+
+    def drive(self) -> Driven:
+        """What is driven over the tick that has begun."""
+
+
+class PulsedActuator:
+    """One coil at a time, at one of three levels, as the interlock allows."""
+
+    def __init__(self, config: PlantConfig) -> None:
+        self._driver = CoilDriver(config.limits)
+        self.board: Board = self._driver
+        coils = config.coils
+        self._level_a = [0.0, *(dipole / coils.dipole_per_ampere_am2 for dipole in coils.levels_am2)]
+
+    def drive(self) -> Driven:
+        """What is driven over the tick that has begun."""
+        coil, level, fraction = self._driver.drive()
+        if not level:
+            return _OFF
+        current_a = self._level_a[level] if level > 0 else -self._level_a[-level]
+        x, y, z = (current_a if each == coil else 0.0 for each in range(3))
+        return Driven((x, y, z), fraction)
+
+
+class ContinuousActuator:
+    """All three coils at once, for a part of the tick in which they are asked for."""
+
+    def __init__(self, tick_hz: int, coils: CoilConfig, continuous: ContinuousConfig) -> None:
+        self._driver = DipoleDriver(tick_hz, continuous.on_fraction)
+        self.board: Board = self._driver
+        self._full_a = continuous.max_dipole_am2 / coils.dipole_per_ampere_am2
+
+    def drive(self) -> Driven:
+        """What is driven over the tick that has begun."""
+        (x, y, z), fraction = self._driver.drive()
+        full_a = self._full_a
+        return Driven((x * full_a, y * full_a, z * full_a), fraction)
+
+
+def make_actuator(config: PlantConfig) -> Actuator:
+    """The one that the configuration asks for."""
+    continuous = config.coils.continuous
+    if continuous is None:
+        return PulsedActuator(config)
+    return ContinuousActuator(config.tick_hz, config.coils, continuous)

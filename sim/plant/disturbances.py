@@ -1,0 +1,43 @@
+"""The torques that act only where the configuration asks for them."""
+
+from collections.abc import Callable, Iterator
+from math import sqrt
+
+from sim.plant import surfaces, torques
+from sim.plant.config import PlantConfig
+from sim.plant.environment import Surroundings
+from sim.plant.random_streams import normals
+from sim.plant.rotation import Mat3, Vec3, transform
+
+Effect = Callable[[Mat3, Vec3, Surroundings], Vec3]
+"""Torque in body axes [N m]: of the turn body from ``eci``, the inertial rate in body axes, surroundings."""
+
+
+def effects(config: PlantConfig) -> dict[str, Effect]:
+    """Those that follow from attitude, rate and surroundings, by the name that truth gives them."""
+    found: dict[str, Effect] = {}
+    disturbance, plates = config.disturbance, config.body.plates
+    if disturbance.density_scale is not None:
+        found["drag"] = lambda c, omega, around: surfaces.drag(
+            plates, transform(c, around.exposure.flow_eci_mps), around.exposure.density_kgpm3
+        )
+    if disturbance.solar_flux_wpm2 is not None:
+        found["solar_pressure"] = lambda c, omega, around: surfaces.solar_pressure(
+            plates, transform(c, around.exposure.sun_eci), around.exposure.sunlight_pa
+        )
+    if eddy := disturbance.eddy_nms_per_t2:
+        found["eddy"] = lambda c, omega, around: torques.eddy(eddy, omega, transform(c, around.b_eci_t))
+    return found
+
+
+def torque_noise(config: PlantConfig) -> Iterator[Vec3] | None:
+    """A torque for each tick, constant over it, white from tick to tick; None where there is none.
+
+    Its standard deviation per axis is sqrt(q tick_hz), q the spectral density of the white torque that it
+    stands for: over many ticks the integral of both has the variance q t. Stream ``torque_noise``.
+    """
+    root_density = config.disturbance.torque_noise_nm_rts
+    if not root_density:
+        return None
+    sigma_nm, noise = root_density * sqrt(config.tick_hz), normals(config.seed, "torque_noise")
+    return ((sigma_nm * x, sigma_nm * y, sigma_nm * z) for x, y, z in zip(noise, noise, noise, strict=False))
