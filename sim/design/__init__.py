@@ -1,0 +1,1 @@
+"""Gain design on the ground: linearisation, Floquet analysis, search, pulses, robustness, periodic LQR."""
