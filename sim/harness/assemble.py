@@ -7,12 +7,14 @@ from sim.harness.scenario import Scenario
 from sim.plant.config import (
     BodyConfig,
     CoilConfig,
+    ContinuousConfig,
     DisturbanceConfig,
     FieldConfig,
     InitialConfig,
     MagnetometerConfig,
     OrbitConfig,
     PlantConfig,
+    PlateConfig,
     SunSensorConfig,
 )
 
@@ -22,21 +24,19 @@ Vec3 = tuple[float, float, float]
 
 def plant_config(scenario: Scenario, seed: int) -> PlantConfig:
     """The plant of a scenario, its random streams drawn from ``seed``."""
-    tick_hz, coils, disturbance = scenario.time.tick_hz, scenario.coils, scenario.disturbance
+    tick_hz, coils = scenario.time.tick_hz, scenario.coils
     return PlantConfig(
         epoch_unix_s=scenario.epoch_unix_s,
         tick_hz=tick_hz,
         seed=seed,
         orbit=_orbit(scenario),
         field=FieldConfig(scenario.field.model, scenario.field.degree),
-        body=BodyConfig(scenario.body.inertia),
+        body=_body(scenario),
         initial=_initial(scenario),
-        disturbance=DisturbanceConfig(disturbance.torque_nm, disturbance.residual_dipole_am2),
+        disturbance=_disturbance(scenario),
         magnetometer=_magnetometer(scenario),
         sun_sensor=_sun_sensor(scenario),
-        coils=CoilConfig(
-            coils.levels_am2, coils.dipole_per_ampere_am2, coils.time_constant_s, coils.dipole_scale
-        ),
+        coils=_coils(scenario),
         limits=CoilLimits(
             tick_hz=tick_hz,
             pulse_ms=round(coils.pulse_s * 1000.0),
@@ -60,6 +60,48 @@ def _orbit(scenario: Scenario) -> OrbitConfig:
     )
 
 
+def _body(scenario: Scenario) -> BodyConfig:
+    body = scenario.body
+    plates = tuple(
+        PlateConfig(
+            plate.area_m2,
+            _unit(plate.normal),
+            plate.centre_m,
+            plate.drag_coefficient,
+            plate.specular,
+            plate.diffuse,
+        )
+        for plate in body.plates
+    )
+    return BodyConfig(body.inertia, body.wheel_nms, plates)
+
+
+def _disturbance(scenario: Scenario) -> DisturbanceConfig:
+    given = scenario.disturbance
+    return DisturbanceConfig(
+        torque_body_nm=given.torque_nm,
+        residual_dipole_body_am2=given.residual_dipole_am2,
+        density_scale=given.drag.density_scale if given.drag else None,
+        solar_flux_wpm2=given.solar_pressure.flux_wpm2 if given.solar_pressure else None,
+        eddy_nms_per_t2=given.eddy_nms_per_t2,
+        torque_noise_nm_rts=given.torque_noise_nm_rts,
+    )
+
+
+def _coils(scenario: Scenario) -> CoilConfig:
+    coils = scenario.coils
+    continuous = None
+    if coils.driver == "continuous" and coils.max_dipole_am2 is not None:
+        continuous = ContinuousConfig(coils.max_dipole_am2, coils.on_fraction)
+    return CoilConfig(
+        coils.levels_am2,
+        coils.dipole_per_ampere_am2,
+        coils.time_constant_s,
+        coils.dipole_scale,
+        continuous,
+    )
+
+
 def _initial(scenario: Scenario) -> InitialConfig:
     initial = scenario.initial
     half = 0.5 * radians(initial.angle_deg)
@@ -79,16 +121,28 @@ def _magnetometer(scenario: Scenario) -> MagnetometerConfig:
         quantum_t=given.quantum_nt * NT,
         saturation_t=given.saturation_nt * NT,
         coil_coupling_t_per_am2=(_scaled(first, NT), _scaled(second, NT), _scaled(third, NT)),
+        latency_s=given.latency_s,
     )
 
 
 def _sun_sensor(scenario: Scenario) -> SunSensorConfig:
     given = scenario.sensors.sun
-    return SunSensorConfig(radians(given.noise_deg), _radians(given.misalignment_deg), given.quantum)
+    return SunSensorConfig(
+        noise_rad=radians(given.noise_deg),
+        misalignment_rad=_radians(given.misalignment_deg),
+        quantum=given.quantum,
+        latency_s=given.latency_s,
+        fov_half_rad=radians(given.fov_half_deg or 180.0),
+        boresights_body=tuple(_unit(axis) for axis in given.boresights),
+    )
 
 
 def _scaled(v: Vec3, factor: float) -> Vec3:
     return (v[0] * factor, v[1] * factor, v[2] * factor)
+
+
+def _unit(v: Vec3) -> Vec3:
+    return _scaled(v, 1.0 / hypot(*v))
 
 
 def _radians(v: Vec3) -> Vec3:

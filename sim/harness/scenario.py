@@ -10,14 +10,13 @@ from datetime import UTC, datetime
 from importlib import resources
 from math import pi, sqrt
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Any, Literal, Self
 
-from pydantic import Field, Strict, model_validator
+from pydantic import Field, model_validator
 
 from fsw.io import table as onboard
 from fsw.io.schema import (
     Nested,
-    NotNegative,
     Positive,
     Section,
     TableError,
@@ -26,9 +25,12 @@ from fsw.io.schema import (
     read_toml,
     validated,
 )
-from fsw.io.table import BodyTable, CoilTable, ControlTable, FlightTable, OrbitTable, TimeTable
+from fsw.io.table import CoilTable, ControlTable, FlightTable, OrbitTable, TimeTable
+from sim.harness.physics import DisturbanceSection, ScenarioBody, SensorsSection
 
 MU_M3PS2 = 3.986004418e14
+DECAY_TIME_CONSTANTS = 5.0
+"""After so many a coil's field is below 1 % of what it was."""
 
 
 class ScenarioTime(TimeTable):
@@ -69,44 +71,6 @@ class ScenarioCoils(CoilTable):
     dipole_scale: Triple = (1.0, 1.0, 1.0)
 
 
-class MagnetometerSection(Section):
-    """Physics of the magnetometer, body axes."""
-
-    noise_nt: NotNegative = 200.0
-    bias_nt: Triple = (0.0, 0.0, 0.0)
-    scale: Triple = (1.0, 1.0, 1.0)
-    misalignment_deg: Triple = (0.0, 0.0, 0.0)
-    quantum_nt: NotNegative = 2.0
-    saturation_nt: Positive = 65000.0
-    coil_field_nt_per_am2: Annotated[tuple[Triple, Triple, Triple], Strict(False)] = (
-        (2000.0, 0.0, 0.0),
-        (0.0, 2000.0, 0.0),
-        (0.0, 0.0, 2000.0),
-    )
-
-
-class SunSensorSection(Section):
-    """Physics of the Sun sensor, body axes."""
-
-    noise_deg: NotNegative = 0.5
-    misalignment_deg: Triple = (0.0, 0.0, 0.0)
-    quantum: NotNegative = 0.0
-
-
-class SensorsSection(Section):
-    """Both sensors."""
-
-    magnetometer: MagnetometerSection = MagnetometerSection()
-    sun: SunSensorSection = SunSensorSection()
-
-
-class DisturbanceSection(Section):
-    """Constant torque and residual dipole, body axes."""
-
-    torque_nm: Triple = (0.0, 0.0, 0.0)
-    residual_dipole_am2: Triple = (0.0, 0.0, 0.0)
-
-
 class PlantSection(Section):
     """Integration of the plant."""
 
@@ -122,7 +86,7 @@ class Scenario(Section):
     time: ScenarioTime
     orbit: OrbitTable
     field: TruthField = TruthField()
-    body: BodyTable
+    body: ScenarioBody
     initial: InitialState = InitialState()
     coils: ScenarioCoils
     sensors: SensorsSection = SensorsSection()
@@ -130,6 +94,25 @@ class Scenario(Section):
     control: ControlTable
     plant: PlantSection = PlantSection()
     flight: dict[str, Any] = Field(default_factory=dict)
+
+    @model_validator(mode="after")
+    def _parts_fit(self) -> Self:
+        for name in ("drag", "solar_pressure"):
+            if getattr(self.disturbance, name) is not None and not self.body.plates:
+                raise ValueError(f"disturbance.{name} needs body.plates, the flat parts of the surface")
+        if self.coils.driver == "continuous" and self.knowledge == "filter":
+            self._check_decay()
+        return self
+
+    def _check_decay(self) -> None:
+        off_s = (1.0 - self.coils.on_fraction) / self.time.tick_hz
+        decay_s = DECAY_TIME_CONSTANTS * self.coils.time_constant_s
+        if off_s < decay_s * (1.0 - 1e-9):
+            raise ValueError(
+                f"coils.on_fraction = {self.coils.on_fraction:g} leaves the coils {1000.0 * off_s:g} ms to "
+                f"lose their current before the sensors sample, which takes {1000.0 * decay_s:g} ms: lower "
+                "it, coils.time_constant_s or time.tick_hz"
+            )
 
     @property
     def epoch_unix_s(self) -> int:
@@ -174,7 +157,7 @@ def flight_table(scenario: Scenario, source: str = "scenario") -> FlightTable:
         include={
             "knowledge": True,
             "orbit": {"tle", *onboard.CIRCULAR_KEYS},
-            "body": True,
+            "body": {"inertia_kgm2"},
             "coils": {
                 "driver",
                 "max_dipole_am2",

@@ -1,12 +1,13 @@
 """From a scenario to the plant: units of people to SI, nothing left behind."""
 
-from math import radians
+from math import pi, radians
 
 import pytest
 from scipy.spatial.transform import Rotation
 
 from sim.harness.assemble import plant_config
 from sim.harness.scenario import load, parse_settings
+from sim.plant.config import ContinuousConfig, DisturbanceConfig, PlateConfig
 
 SETTINGS = parse_settings(
     (
@@ -35,12 +36,23 @@ SETTINGS = parse_settings(
         "sensors.magnetometer.misalignment_deg=[0.1, 0.2, -0.3]",
         "sensors.magnetometer.quantum_nt=4",
         "sensors.magnetometer.saturation_nt=60000",
+        "sensors.magnetometer.latency_s=0.3",
         "sensors.magnetometer.coil_field_nt_per_am2=[[1, 2, 3], [4, 5, 6], [7, 8, 9]]",
         "sensors.sun.noise_deg=0.4",
         "sensors.sun.misalignment_deg=[0.3, -0.1, 0.2]",
         "sensors.sun.quantum=0.001",
+        "sensors.sun.latency_s=0.7",
+        "sensors.sun.fov_half_deg=60",
+        "sensors.sun.boresights=[[3, 0, -4], [0, 0.5, 0]]",
         "disturbance.torque_nm=[1e-8, -2e-8, 3e-8]",
         "disturbance.residual_dipole_am2=[0.01, -0.02, 0.03]",
+        "disturbance.eddy_nms_per_t2=30",
+        "disturbance.torque_noise_nm_rts=2e-9",
+        "disturbance.drag.density_scale=1.5",
+        "disturbance.solar_pressure={}",
+        "body.wheel_nms=[0.01, 0.02, -0.03]",
+        "body.plates=[{area_m2=0.3, normal=[0, -2, 0], centre_m=[0.01, -0.2, 0.03]}, "
+        "{area_m2=0.4, normal=[3, 0, 4], drag_coefficient=2.5, specular=0.3, diffuse=0.6}]",
         "plant.max_substep_s=0.5",
     )
 )
@@ -76,6 +88,16 @@ def test_body_and_start(plant):
     assert plant.initial.omega_body_orbit_radps == pytest.approx(tuple(map(radians, (0.1, -0.2, 0.3))))
 
 
+def test_surface_and_wheel(plant):
+    body = plant.body
+    assert body.wheel_body_nms == (0.01, 0.02, -0.03)
+    front, oblique = body.plates
+    assert front == PlateConfig(0.3, (0.0, -1.0, 0.0), (0.01, -0.2, 0.03), 2.2, 0.0, 0.0)
+    assert oblique.normal_body == pytest.approx((0.6, 0.0, 0.8))
+    assert (oblique.area_m2, oblique.centre_body_m) == (0.4, (0.0, 0.0, 0.0))
+    assert (oblique.drag_coefficient, oblique.specular, oblique.diffuse) == (2.5, 0.3, 0.6)
+
+
 def test_coils_and_their_limits(plant):
     coils, limits = plant.coils, plant.limits
     assert coils.levels_am2 == (0.4, 1.6, 6.4)
@@ -90,6 +112,7 @@ def test_magnetometer(plant):
     assert sensor.bias_t == pytest.approx((100e-9, -200e-9, 300e-9))
     assert sensor.scale == (1.01, 0.99, 1.02)
     assert sensor.misalignment_rad == pytest.approx(tuple(map(radians, (0.1, 0.2, -0.3))))
+    assert sensor.latency_s == 0.3
     assert (sensor.quantum_t, sensor.saturation_t) == pytest.approx((4e-9, 60000e-9))
     for row, expected in zip(sensor.coil_coupling_t_per_am2, ((1, 2, 3), (4, 5, 6), (7, 8, 9)), strict=True):
         assert row == pytest.approx(tuple(1e-9 * c for c in expected))
@@ -100,11 +123,34 @@ def test_sun_sensor(plant):
     assert sensor.noise_rad == pytest.approx(radians(0.4))
     assert sensor.misalignment_rad == pytest.approx(tuple(map(radians, (0.3, -0.1, 0.2))))
     assert sensor.quantum == 0.001
+    assert (sensor.latency_s, sensor.fov_half_rad) == (0.7, pytest.approx(radians(60.0)))
+    assert sensor.boresights_body == (pytest.approx((0.6, 0.0, -0.8)), (0.0, 1.0, 0.0))
 
 
 def test_disturbances(plant):
     assert plant.disturbance.torque_body_nm == (1e-8, -2e-8, 3e-8)
     assert plant.disturbance.residual_dipole_body_am2 == (0.01, -0.02, 0.03)
+    assert (plant.disturbance.density_scale, plant.disturbance.solar_flux_wpm2) == (1.5, 1361.0)
+    assert (plant.disturbance.eddy_nms_per_t2, plant.disturbance.torque_noise_nm_rts) == (30.0, 2e-9)
+
+
+def test_what_a_scenario_does_not_speak_of_is_not_there():
+    plain = plant_config(load("microsat"), 1)
+    assert (plain.body.plates, plain.body.wheel_body_nms) == ((), (0.0, 0.0, 0.0))
+    assert plain.disturbance == DisturbanceConfig((3e-8, 3e-8, 3e-8))
+    assert (plain.magnetometer.latency_s, plain.sun_sensor.latency_s) == (0.0, 0.0)
+    assert (plain.sun_sensor.fov_half_rad, plain.sun_sensor.boresights_body) == (pi, ())
+    assert plain.coils.continuous is None
+
+
+def test_the_continuous_driver():
+    given = ("coils.driver=continuous", "coils.max_dipole_am2=12")
+    coils = plant_config(load("microsat", parse_settings(given)), 1).coils
+    assert coils.continuous == ContinuousConfig(12.0, 0.8)
+    shorter = parse_settings((*given, "coils.on_fraction=0.5"))
+    assert plant_config(load("microsat", shorter), 1).coils.continuous == ContinuousConfig(12.0, 0.5)
+    pulsed = parse_settings(("coils.max_dipole_am2=12",))
+    assert plant_config(load("microsat", pulsed), 1).coils.continuous is None
 
 
 @pytest.mark.parametrize(("knowledge", "perfect"), [("filter", False), ("perfect", True)])

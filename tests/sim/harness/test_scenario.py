@@ -226,7 +226,7 @@ class TestOnboardTable:
         assert table.coils.backoff == "per_coil"
         assert table.control.k_a == 1000.0
         assert table.field.model == "direct_dipole"
-        assert table.body == scenario.body
+        assert table.body.inertia_kgm2 == scenario.body.inertia_kgm2
 
     def test_the_plant_gets_the_same_limits(self):
         scenario = load(
