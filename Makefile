@@ -1,6 +1,7 @@
 # make sil    makes the environment .venv and flies the default scenario
 # make test   all tests; those on a CAN interface say so when there is none
 # make lint   style, types, layers, generated code
+# make validate   every claim and reference figure anew, into docs/validation.md: minutes to half an hour
 # make golden     record the golden logs anew: after a change that means to alter what fsw answers
 # make test-vcan   the tests on a CAN interface, in a user-mode Linux guest where this kernel has no vcan
 
@@ -11,7 +12,7 @@ bin := .venv/bin
 installed := .venv/.installed
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv sil test lint test-vcan golden
+.PHONY: help venv sil test lint test-vcan golden validate
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -43,3 +44,6 @@ test-vcan: venv
 
 golden: venv
 	$(bin)/python tests/golden/record.py
+
+validate: venv
+	$(bin)/torquer validate

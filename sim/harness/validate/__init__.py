@@ -1,0 +1,1 @@
+"""``torquer validate``: every claim and reference figure, reproduced and judged."""

@@ -1,0 +1,92 @@
+"""Runs studies, their tasks side by side on the machine's cores; the outcome does not depend on how many."""
+
+import multiprocessing
+import os
+import time
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from typing import Any
+
+from sim.harness.validate.claim import Outcome, Study, Task
+
+Watch = Callable[[int], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Finished:
+    """A study that is done: outcomes, what its tasks gave, and how long these took together."""
+
+    study: Study
+    outcomes: tuple[Outcome, ...]
+    results: tuple[Any, ...]
+    wall_s: float
+
+
+def run(
+    studies: Sequence[Study], workers: int, watch: Watch, report: Callable[[Finished], None]
+) -> list[Finished]:
+    """Run all tasks and conclude every study.
+
+    Args:
+        studies: what to do.
+        workers: processes; 1 for this one alone.
+        watch: called with the number of tasks done.
+        report: called with each study when it is done.
+
+    Returns:
+        The studies in their order.
+
+    Raises:
+        HarnessError: a task met what a user can mend; the rest is given up.
+    """
+    waiting = {place: len(study.tasks) for place, study in enumerate(studies)}
+    results: dict[tuple[int, int], tuple[float, Any]] = {}
+    finished: dict[int, Finished] = {}
+
+    def conclude(place: int) -> None:
+        study = studies[place]
+        mine = [results.pop((place, number)) for number in range(len(study.tasks))]
+        given = tuple(result for _, result in mine)
+        wall_s = sum(wall_s for wall_s, _ in mine)
+        finished[place] = Finished(study, tuple(study.conclude(given)), given, wall_s)
+        report(finished[place])
+
+    for place in [place for place, count in waiting.items() if not count]:
+        conclude(place)
+    for done, (place, number, result) in enumerate(_results(studies, workers), start=1):
+        results[place, number] = result
+        watch(done)
+        waiting[place] -= 1
+        if not waiting[place]:
+            conclude(place)
+    return [finished[place] for place in range(len(studies))]
+
+
+def _results(studies: Sequence[Study], workers: int) -> Iterator[tuple[int, int, tuple[float, Any]]]:
+    """(study, task, (wall seconds, result)), as they come."""
+    tasks = [
+        (place, number, task)
+        for place, study in enumerate(studies)
+        for number, task in enumerate(study.tasks)
+    ]
+    if workers == 1 or len(tasks) < 2:
+        for place, number, task in tasks:
+            yield place, number, _timed(task)
+        return
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # one task, one core
+    with ProcessPoolExecutor(min(workers, len(tasks)), multiprocessing.get_context("spawn")) as pool:
+        places: dict[Future[tuple[float, Any]], tuple[int, int]] = {
+            pool.submit(_timed, task): (place, number) for place, number, task in tasks
+        }
+        try:
+            for future in as_completed(places):
+                yield *places[future], future.result()
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _timed(task: Task) -> tuple[float, Any]:
+    began = time.monotonic()
+    result = task()
+    return time.monotonic() - began, result
