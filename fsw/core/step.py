@@ -111,7 +111,14 @@ def _look(state: FlightState, readings: Readings, reference: Reference | None) -
     known = state.estimator.estimate
     torque_body_nm = known.torque_body_nm if known is not None else ZERO
     return Seen(
-        state.attitude, b_body_t, sample, state.sample, usable_sun(readings), reference, torque_body_nm
+        state.attitude,
+        b_body_t,
+        sample,
+        state.sample,
+        usable_sun(readings),
+        reference,
+        torque_body_nm,
+        state.tick,
     )
 
 

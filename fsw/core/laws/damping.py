@@ -1,10 +1,25 @@
 """Damping laws: from a known rate, and from the change of the measured field alone."""
 
+from dataclasses import dataclass
+
 from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
-from fsw.core.vector import Vec3, cross, scale, sub
+from fsw.core.vector import Vec3, cross, norm, scale, sub
 
 MAX_DIFFERENCE_S = 10.0
 """Field samples further apart than this tell nothing of the rate."""
+
+
+@dataclass(frozen=True, slots=True)
+class SwitchedGains:
+    """When the gain of B-dot changes, and how much.
+
+    Attributes:
+        below_radps: apparent rate |db/dt| / |b| under which the gain is ``factor`` k_w, rad/s.
+        factor: of the gain below that rate.
+    """
+
+    below_radps: float = 0.01
+    factor: float = 5.0
 
 
 def rate_damping_dipole(b_body_t: Vec3, omega_body_radps: Vec3, k_w: float) -> Vec3:
@@ -41,6 +56,25 @@ def bdot_dipole(b_body_t: Vec3, b_previous_body_t: Vec3, interval_s: float, k_w:
     return scale(-k_w / interval_s, sub(b_body_t, b_previous_body_t))
 
 
+def switched_gain(b_dot_tps: Vec3, b_body_t: Vec3, k_w: float, below_radps: float, factor: float) -> float:
+    """K = k_w while |db/dt| > w_s |b|, and factor k_w below: the dipole does not fade with the rate.
+
+    Args:
+        b_dot_tps: change of the field seen from the body, T/s.
+        b_body_t: field in body axes, T.
+        k_w: gain, N m s / T^2.
+        below_radps: w_s, rad/s.
+        factor: of the gain below it.
+
+    Returns:
+        The gain of this tick, N m s / T^2.
+
+    Source: Semkin, Lyubimov, Malyshev, as in Ovchinnikov, Roldugin 2019, section 1: two values of the gain,
+    changed when the rate falls below a value. There the rate is known; here the field stands in for it.
+    """
+    return k_w if norm(b_dot_tps) > below_radps * norm(b_body_t) else factor * k_w
+
+
 def rate_damping(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """Damping of the rate relative to the orbital frame, down to the spin that is wanted."""
     if not seen.attitude.valid:
@@ -55,6 +89,18 @@ def bdot(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) 
     if interval_s == 0.0:
         return Demand()
     return Demand(bdot_dipole(seen.sample.b_body_t, seen.before.b_body_t, interval_s, setpoint.k_w))
+
+
+def bdot_switched(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """B-dot whose gain is switched by the apparent rate."""
+    gains: SwitchedGains = config.gains["bdot_switched"]
+    interval_s = difference_s(seen, config.tick_s)
+    if interval_s == 0.0:
+        return Demand()
+    now, before = seen.sample.b_body_t, seen.before.b_body_t
+    b_dot = scale(1.0 / interval_s, sub(now, before))
+    k_w = switched_gain(b_dot, now, setpoint.k_w, gains.below_radps, gains.factor)
+    return Demand(bdot_dipole(now, before, interval_s, k_w))
 
 
 def difference_s(seen: Seen, tick_s: float) -> float:

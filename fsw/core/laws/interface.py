@@ -26,7 +26,7 @@ class Seen(NamedTuple):
     ``b_body_t`` is the modelled field where the attitude is known, else the last measured one; ``sample``
     and ``before`` are the last usable field sample of this tick and of the tick before; ``sun_body`` is the
     measured Sun direction, None where there is none; ``reference`` is orbit, field and Sun as modelled, None
-    where no orbit is known; ``torque_body_nm`` is the estimated disturbance.
+    where no orbit is known; ``torque_body_nm`` is the estimated disturbance; ``tick`` is this tick.
     """
 
     attitude: Attitude
@@ -36,6 +36,7 @@ class Seen(NamedTuple):
     sun_body: Vec3 | None = None
     reference: Reference | None = None
     torque_body_nm: Vec3 = ZERO
+    tick: int = 0
 
 
 class Setpoint(NamedTuple):

@@ -1,0 +1,59 @@
+"""Field tracking: the measured field turned onto that expected in the nominal attitude; none is estimated."""
+
+from fsw.core.laws.damping import MAX_DIFFERENCE_S
+from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
+from fsw.core.laws.pd import pd
+from fsw.core.quaternion import rotate
+from fsw.core.vector import Vec3, add, scale, sub
+
+TRACKED = 4
+"""Numbers that field tracking remembers."""
+
+
+def field_tracking_dipole(error_t: Vec3, error_rate_tps: Vec3, k_w: float, k_a: float) -> Vec3:
+    """M = -k1 (b - B) - k2 (db/dt - dB/dt), k1 = 2 k_a and k2 = k_w.
+
+    A small turn theta from nominal gives b - B = B x theta, so the law is then the PD law
+    m = -k_w b x Omega - k_a b x S with S = 2 theta: gains found for the one serve the other.
+
+    Args:
+        error_t: b - B, field in body axes less field in orbit axes, component by component, T.
+        error_rate_tps: its derivative, T/s.
+        k_w: N m s / T^2.
+        k_a: N m / T^2.
+
+    Returns:
+        Dipole in body axes, A m^2.
+
+    Source: Martel, Pal, Psiaki 1988; Guelman et al. 2005; Ovchinnikov, Roldugin 2019, eq. 7.
+    """
+    return add(scale(-2.0 * k_a, error_t), scale(-k_w, error_rate_tps))
+
+
+def field_tracking(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """Field tracking from magnetometer and orbit alone. Memory: tick of the last sample and b - B then."""
+    sample, reference = seen.sample, seen.reference
+    if reference is None or sample.tick < 0:
+        return Demand()
+    if memory and sample.tick == memory[0]:
+        return Demand(memory=memory)
+    expected_t = rotate(reference.q_orbit_from_eci, reference.b_eci_t)
+    error_t = sub(sample.b_body_t, expected_t)
+    kept = (float(sample.tick), *error_t)
+    if not memory:
+        return Demand(memory=kept)
+    interval_s = (sample.tick - memory[0]) * config.tick_s
+    if interval_s > MAX_DIFFERENCE_S:
+        return Demand(memory=kept)
+    rate_tps = scale(1.0 / interval_s, sub(error_t, (memory[1], memory[2], memory[3])))
+    return Demand(field_tracking_dipole(error_t, rate_tps, setpoint.k_w, setpoint.k_a), memory=kept)
+
+
+def tracking_before_pd(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """Field tracking far from the goal, before the hand-over; begins afresh where it comes back from PD."""
+    return field_tracking(seen, memory if len(memory) == TRACKED else (), setpoint, config)
+
+
+def pd_after_tracking(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """The PD law near the goal (the review's eq. 8 in the plane the coils reach), after the hand-over."""
+    return pd(seen, memory if len(memory) != TRACKED else (), setpoint, config)

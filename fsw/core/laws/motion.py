@@ -1,0 +1,26 @@
+"""What the laws of a spinning satellite ask first: absolute rate, momentum, where inertial axes lie."""
+
+from typing import NamedTuple
+
+from fsw.core.laws.interface import ControlConfig, Seen
+from fsw.core.quaternion import Quaternion, multiply, rotate
+from fsw.core.vector import Vec3, add, scale, transform
+
+
+class Motion(NamedTuple):
+    """Rotation against the stars: rate and momentum in body axes, wheel included, and attitude."""
+
+    omega_body_radps: Vec3
+    momentum_body_nms: Vec3
+    q_body_from_eci: Quaternion
+
+
+def motion(seen: Seen, config: ControlConfig) -> Motion | None:
+    """Omega = Omega_rel + w0 e3 and h = J omega + h_wheel; None where attitude or orbit is not known."""
+    attitude, reference = seen.attitude, seen.reference
+    if not attitude.valid or reference is None:
+        return None
+    normal_body = rotate(attitude.q_body_from_orbit, (0.0, 0.0, 1.0))
+    omega = add(attitude.omega_body_orbit_radps, scale(reference.orbit_rate_radps, normal_body))
+    momentum = add(transform(config.inertia_kgm2, omega), config.wheel_body_nms)
+    return Motion(omega, momentum, multiply(reference.q_orbit_from_eci, attitude.q_body_from_orbit))
