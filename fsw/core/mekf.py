@@ -3,10 +3,10 @@
 The attitude lives outside the filter as a unit quaternion. The filter carries the error state
 (dtheta, domega, then magnetometer bias and disturbance torque where switched on); after each update the
 error is folded into the estimate, q <- q (x) (1, dtheta / 2), and reset to zero. With e1 the radius
-direction, m the dipole and b the field, all in body axes:
+direction, m the dipole, b the field and h the momentum of a wheel, all in body axes:
 
     d(dtheta)/dt = -omega x dtheta + domega
-    J d(domega)/dt = ([J omega x] - [omega x] J) domega
+    J d(domega)/dt = ([(J omega + h) x] - [omega x] J) domega
                    + (3 mu/r^3 ([e1 x] J - [J e1 x]) [e1 x] + [m x][b x]) dtheta + dtorque
 
 Source: Lefferts, Markley, Shuster 1982; the dynamics as in Ovchinnikov, Penkov, Roldugin 2015.
@@ -171,17 +171,17 @@ def _three(values: list[float], first: int) -> Vec3:
 def _acceleration(
     omega: Vec3, e1: Vec3, b: Vec3, gravity_per_s2: float, m: Vec3, torque: Vec3, config: MekfConfig
 ) -> Vec3:
-    """J domega/dt = m x b + 3 mu/r^3 e1 x J e1 - omega x J omega + torque, all in body axes."""
+    """J domega/dt = m x b + 3 mu/r^3 e1 x J e1 - omega x (J omega + h) + torque, all in body axes."""
     j = config.inertia_kgm2
     gravity = scale(gravity_per_s2, cross(e1, transform(j, e1)))
-    gyroscopic = cross(omega, transform(j, omega))
+    gyroscopic = cross(omega, add(transform(j, omega), config.wheel_body_nms))
     return transform(config.inertia_inverse, sub(add(add(cross(m, b), gravity), torque), gyroscopic))
 
 
 def _transition(omega: Vec3, e1: Vec3, b: Vec3, gravity_per_s2: float, m: Vec3, config: MekfConfig) -> Matrix:
     """I + A h + (A h)^2 / 2 of the error dynamics; with A of the middle of the tick good to second order."""
     j, j_inverse = config.inertia_kgm2, config.inertia_inverse
-    gyroscopic = _minus(skew(transform(j, omega)), product(skew(omega), j))
+    gyroscopic = _minus(skew(add(transform(j, omega), config.wheel_body_nms)), product(skew(omega), j))
     pull = scale(gravity_per_s2, e1)
     stiffness = product(_minus(product(skew(pull), j), skew(transform(j, pull))), skew(e1))
     if m != ZERO:

@@ -6,7 +6,7 @@ import numpy as np
 from filterpy.kalman import ExtendedKalmanFilter
 from numpy.typing import NDArray
 
-from fsw.core.vector import Mat3, inverse
+from fsw.core.vector import ZERO, Mat3, Vec3, inverse
 
 Matrix = NDArray[np.float64]
 
@@ -31,6 +31,7 @@ class MekfConfig:
 
     inertia_kgm2: Mat3
     inertia_inverse: Mat3
+    wheel_body_nms: Vec3
     tick_s: float
     layout: Layout
     initial_covariance: Matrix
@@ -57,6 +58,7 @@ def mekf_config(
     inertia_kgm2: Mat3,
     tick_s: float,
     *,
+    wheel_body_nms: Vec3 = ZERO,
     estimate_bias: bool,
     estimate_torque: bool,
     magnetometer_sigma_t: float,
@@ -75,6 +77,7 @@ def mekf_config(
     Args:
         inertia_kgm2: inertia tensor, body axes.
         tick_s: length of a tick, s.
+        wheel_body_nms: constant momentum of a wheel, body axes.
         estimate_bias: carry the magnetometer bias.
         estimate_torque: carry the disturbance torque.
         magnetometer_sigma_t: standard deviation of a field component, T.
@@ -114,6 +117,7 @@ def mekf_config(
     return MekfConfig(
         inertia_kgm2=inertia_kgm2,
         inertia_inverse=inverse_j,
+        wheel_body_nms=wheel_body_nms,
         tick_s=tick_s,
         layout=parts,
         initial_covariance=np.diag(variances),

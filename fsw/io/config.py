@@ -15,7 +15,7 @@ from fsw.core.modes import TABLE, ModeConfig
 from fsw.core.orbit import Orbit, circular_orbit, sgp4_orbit
 from fsw.core.pulses import PulseConfig, pulse_timing
 from fsw.core.rates import RateGroup, RateTable
-from fsw.core.vector import ZERO, inverse, product
+from fsw.core.vector import inverse, product
 from fsw.io.schema import TableError
 from fsw.io.table import (
     CoilTable,
@@ -81,7 +81,7 @@ def _control(table: FlightTable) -> ControlConfig:
         },
         inertia_kgm2=inertia,
         inertia_inverse=inverse(inertia),
-        wheel_body_nms=ZERO,
+        wheel_body_nms=table.body.wheel_nms,
         tick_s=1.0 / table.time.tick_hz,
         horizon_s=coils.pulse_s,
         mean_dipole_am2=mean_dipole_am2,
@@ -106,6 +106,7 @@ def _estimator(table: FlightTable) -> EstimatorConfig:
         mekf=mekf_config(
             table.body.inertia,
             1.0 / table.time.tick_hz,
+            wheel_body_nms=table.body.wheel_nms,
             estimate_bias=tuning.bias,
             estimate_torque=tuning.torque,
             magnetometer_sigma_t=tuning.magnetometer_sigma_nt * NT,

@@ -82,9 +82,10 @@ class FieldTable(Section):
 
 
 class BodyTable(Section):
-    """Inertia tensor in body axes, kg m^2: three principal moments or 3 x 3."""
+    """Inertia tensor in body axes, kg m^2: three principal moments or 3 x 3; momentum of a wheel, N m s."""
 
     inertia_kgm2: Triple | Square
+    wheel_nms: Triple = (0.0, 0.0, 0.0)
 
     @field_validator("inertia_kgm2", mode="before")
     @classmethod

@@ -34,9 +34,8 @@ class PlateSection(Section):
 
 
 class ScenarioBody(BodyTable):
-    """Inertia; constant momentum of wheels relative to the body, body axes; the surface."""
+    """Inertia, momentum of a wheel, and the surface."""
 
-    wheel_nms: Triple = (0.0, 0.0, 0.0)
     plates: Annotated[tuple[PlateSection, ...], Strict(False)] = ()
 
 

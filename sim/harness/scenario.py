@@ -157,7 +157,7 @@ def flight_table(scenario: Scenario, source: str = "scenario") -> FlightTable:
         include={
             "knowledge": True,
             "orbit": {"tle", *onboard.CIRCULAR_KEYS},
-            "body": {"inertia_kgm2"},
+            "body": {"inertia_kgm2", "wheel_nms"},
             "coils": {
                 "driver",
                 "max_dipole_am2",
