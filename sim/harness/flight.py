@@ -11,15 +11,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import Protocol, Self
 
 from fsw.io.bus import Bus
 from fsw.wire.frame import Frame
 from fsw.wire.messages import FswBoot, PlantBoot, TickDone, intact
 from sim.harness.candump import format_line, format_time
 from sim.harness.errors import HarnessError
-from sim.harness.truth import TruthFile
-from sim.plant.plant import Plant
+from sim.plant.plant import Plant, TruthRow
 
 BOOT_REQUEST_S = 1.0
 ANSWER_TIMEOUT_S = 20.0
@@ -55,6 +54,23 @@ class Flown:
     wall_s: float
 
 
+class FrameLog(Protocol):
+    """Takes the frames of a flight."""
+
+    def write(self, timestamp_us: int, frames: list[Frame]) -> None:
+        """Append frames that all bear one time."""
+
+
+class TruthLog(Protocol):
+    """Takes the plant's truth."""
+
+    def append(self, row: TruthRow) -> None:
+        """Add the row of the next tick."""
+
+    def flush(self) -> None:
+        """No row follows."""
+
+
 class BusLog:
     """bus.log, written a whole tick at a time: a kill leaves whole ticks."""
 
@@ -82,8 +98,8 @@ class BusLog:
 def fly(
     plant: Plant,
     bus: Bus,
-    log: BusLog,
-    truth: TruthFile,
+    log: FrameLog,
+    truth: TruthLog,
     ticks: int,
     epoch_unix_s: int,
     tick_hz: int,
