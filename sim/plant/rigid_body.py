@@ -42,15 +42,15 @@ class RigidBody:
         """
         start, middle, end = around
         half = 0.5 * step_s
-        k1 = self._rates(motion, torque, start)
-        k2 = self._rates(_advance(motion, k1, half), torque, middle)
-        k3 = self._rates(_advance(motion, k2, half), torque, middle)
-        k4 = self._rates(_advance(motion, k3, step_s), torque, end)
+        k1 = self.rates(motion, torque, start)
+        k2 = self.rates(_advance(motion, k1, half), torque, middle)
+        k3 = self.rates(_advance(motion, k2, half), torque, middle)
+        k4 = self.rates(_advance(motion, k3, step_s), torque, end)
         (a1, b1, c1, d1), (x1, y1, z1) = k1
         (a2, b2, c2, d2), (x2, y2, z2) = k2
         (a3, b3, c3, d3), (x3, y3, z3) = k3
         (a4, b4, c4, d4), (x4, y4, z4) = k4
-        mean: _Rates = (
+        mean: Rates = (
             (
                 a1 + 2.0 * (a2 + a3) + a4,
                 b1 + 2.0 * (b2 + b3) + b4,
@@ -62,7 +62,8 @@ class RigidBody:
         q, w = _advance(motion, mean, step_s / 6.0)
         return Motion(normalise(q), w)
 
-    def _rates(self, motion: Motion, torque: Torque, around: Surroundings) -> "_Rates":
+    def rates(self, motion: Motion, torque: Torque, around: Surroundings) -> "Rates":
+        """dq/dt [1/s] and dw/dt [rad/s^2], the right-hand side that ``step`` integrates."""
         q, w = motion
         tx, ty, tz = torque(q, w, around)
         (x, y, z), (hx, hy, hz) = transform(self._inertia, w), self._wheel
@@ -80,11 +81,11 @@ class RigidBody:
         )
 
 
-_Rates = tuple[Quaternion, Vec3]
+Rates = tuple[Quaternion, Vec3]
 """dq/dt and dw/dt."""
 
 
-def _advance(motion: Motion, rates: _Rates, step_s: float) -> Motion:
+def _advance(motion: Motion, rates: Rates, step_s: float) -> Motion:
     (q0, q1, q2, q3), (wx, wy, wz) = motion
     (a, b, c, d), (x, y, z) = rates
     return Motion(
