@@ -6,7 +6,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from sim.plant.config import MagnetometerConfig, SunSensorConfig
-from sim.plant.sensors import MagnetometerPhysics, SunSensorPhysics
+from sim.plant.sensors import Delay, MagnetometerPhysics, SunSensorPhysics
 
 B = (1.1e-5, -2.3e-5, 3.1e-5)
 S = (0.6, -0.48, 0.64)
@@ -131,3 +131,114 @@ def test_sensors_of_one_seed_have_their_own_noise():
 def test_configuration_can_be_replaced_in_part():
     config = replace(MagnetometerConfig(noise_t=2e-7), noise_t=0.0)
     assert read_field(config)[0] == pytest.approx(B)
+
+
+class TestLatency:
+    @pytest.mark.parametrize("tick_hz", [1, 4, 10])
+    @pytest.mark.parametrize("latency_s", [0.05, 0.3, 0.5, 1.0, 2.5, 3.7])
+    def test_a_steady_change_is_shown_late_by_just_that_time(self, latency_s, tick_hz):
+        """A straight line is its own interpolation, at whole ticks and between them."""
+        delay = Delay(latency_s, tick_hz)
+        slope, start = np.array([2.0, -3.0, 0.5]), np.array([7.0, 1.0, -4.0])
+        for tick in range(60):
+            t = tick / tick_hz
+            shown = delay(tuple(start + slope * t))
+            assert shown == pytest.approx(start + slope * max(0.0, t - latency_s), abs=0.51 / tick_hz * 3.0)
+            if t >= latency_s + 1.0 / tick_hz:
+                assert shown == pytest.approx(start + slope * (t - latency_s), abs=1e-9)
+
+    def test_before_the_first_sample_there_is_the_first(self):
+        delay = Delay(3.0, 1)
+        assert [delay((float(k), 1.0)) for k in range(6)] == [
+            *[(0.0, 1.0)] * 4,
+            (1.0, 1.0),
+            (2.0, 1.0),
+        ]
+
+    def test_between_samples_a_jump_is_shared_out(self):
+        delay = Delay(0.25, 1)
+        assert [delay((value,)) for value in (0.0, 0.0, 8.0, 8.0)] == [(0.0,), (0.0,), (6.0,), (8.0,)]
+
+    def test_the_field_is_late_and_the_noise_is_not(self):
+        """What is read is the field of then under the errors of now."""
+        errors = {"noise_t": 2e-7, "bias_t": (3e-7, -2e-7, 1e-7), "scale": (1.01, 0.98, 1.03)}
+        late = MagnetometerPhysics(MagnetometerConfig(**errors, latency_s=2.0), 5, 4)
+        prompt = MagnetometerPhysics(MagnetometerConfig(**errors), 5, 4)
+        fields = [tuple((1.0 + 0.01 * k) * np.array(B)) for k in range(40)]
+        for k, field in enumerate(fields):
+            now, _ = late.measure(field, (0.0, 0.0, 0.0))
+            then, _ = prompt.measure(fields[max(0, k - 8)], (0.0, 0.0, 0.0))
+            assert now == pytest.approx(then, rel=1e-12)
+
+    def test_the_coils_field_is_late_with_it(self):
+        coupling = ((2e-5, 0.0, 0.0), (0.0, 2e-5, 0.0), (0.0, 0.0, 2e-5))
+        sensor = MagnetometerPhysics(
+            MagnetometerConfig(coil_coupling_t_per_am2=coupling, latency_s=1.0), 1, 1
+        )
+        on = (0.1, 0.0, 0.0)
+        readings = [sensor.measure(B, m)[0][0] for m in (OFF, OFF, on, on, OFF, OFF)]
+        assert np.array(readings) - B[0] == pytest.approx([0.0, 0.0, 0.0, 2e-6, 2e-6, 0.0])
+
+    def test_the_sun_is_late_in_direction_and_in_light(self):
+        sensor = SunSensorPhysics(SunSensorConfig(latency_s=2.0), 1, 1)
+        suns = [(np.cos(0.01 * k), np.sin(0.01 * k), 0.0) for k in range(10)]
+        lights = [1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0]
+        seen = [sensor.measure(sun, lit) for sun, lit in zip(suns, lights, strict=True)]
+        assert [valid for _, valid in seen] == [True] * 6 + [False] * 3 + [True]
+        for k in (3, 4, 5, 9):
+            assert seen[k][0] == pytest.approx(suns[k - 2])
+        assert seen[6][0] == OFF
+
+    def test_a_sun_between_samples_is_a_unit_vector(self):
+        sensor = SunSensorPhysics(SunSensorConfig(latency_s=0.4), 1, 1)
+        suns = [(np.cos(0.3 * k), np.sin(0.3 * k), 0.0) for k in range(4)]
+        for sun in suns:
+            reading, _ = sensor.measure(sun, 1.0)
+        assert np.linalg.norm(reading) == pytest.approx(1.0, abs=1e-15)
+        assert np.arctan2(reading[1], reading[0]) == pytest.approx(0.3 * 2.6, abs=2e-3)
+
+
+class TestFieldOfView:
+    CONES = ((0.0, 0.0, 1.0), (0.0, -1.0, 0.0))
+
+    @pytest.mark.parametrize("half_deg", [10.0, 60.0, 89.0, 120.0])
+    def test_the_sun_is_seen_within_a_cone_and_not_outside(self, half_deg):
+        config = SunSensorConfig(fov_half_rad=radians(half_deg), boresights_body=((0.0, 0.6, 0.8),))
+        turn = Rotation.from_rotvec([1.0, 0.0, 0.0])
+        for phase in np.linspace(0.0, 2.0 * np.pi, 7):
+            for off_deg, seen in ((half_deg - 0.1, True), (half_deg + 0.1, False)):
+                tilt, axis = radians(off_deg), np.array([0.0, 0.6, 0.8])
+                side = Rotation.from_rotvec(phase * axis).apply(turn.apply(np.cross(axis, [1.0, 0.0, 0.0])))
+                side -= axis * (side @ axis)
+                sun = np.cos(tilt) * axis + np.sin(tilt) * side / np.linalg.norm(side)
+                reading, valid = SunSensorPhysics(config, 1).measure(tuple(sun), 1.0)
+                assert valid is seen
+                assert reading == (pytest.approx(sun) if seen else OFF)
+
+    def test_any_of_the_cones_will_do(self):
+        config = SunSensorConfig(fov_half_rad=radians(40.0), boresights_body=self.CONES)
+        seen = {
+            sun: SunSensorPhysics(config, 1).measure(sun, 1.0)[1]
+            for sun in ((0.0, 0.0, 1.0), (0.0, -1.0, 0.0), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, -0.6, 0.8))
+        }
+        assert list(seen.values()) == [True, True, False, False, True]
+
+    def test_without_cones_it_sees_all_around_and_none_sees_in_the_dark(self):
+        wide = SunSensorConfig(fov_half_rad=radians(180.0), boresights_body=self.CONES)
+        for axis in np.vstack([np.eye(3), -np.eye(3)]):
+            assert SunSensorPhysics(SunSensorConfig(), 1).measure(tuple(axis), 1.0)[1]
+            assert SunSensorPhysics(wide, 1).measure(tuple(axis), 1.0)[1]
+            assert not SunSensorPhysics(wide, 1).measure(tuple(axis), 0.0)[1]
+
+    def test_the_cone_is_the_body_s_whatever_the_sensor_s_misalignment(self):
+        config = SunSensorConfig(
+            misalignment_rad=(0.3, 0.0, 0.0), fov_half_rad=radians(5.0), boresights_body=((0.0, 0.0, 1.0),)
+        )
+        assert SunSensorPhysics(config, 1).measure((0.0, 0.0, 1.0), 1.0)[1]
+
+    def test_what_is_out_of_view_draws_its_noise_all_the_same(self):
+        config = SunSensorConfig(noise_rad=0.01, fov_half_rad=1.0, boresights_body=((0.0, 0.0, 1.0),))
+        away, towards = SunSensorPhysics(config, 1), SunSensorPhysics(config, 1)
+        away.measure((0.0, 0.0, -1.0), 1.0)
+        towards.measure((0.0, 0.0, 1.0), 1.0)
+        assert away.measure(S, 1.0) == towards.measure(S, 1.0)
