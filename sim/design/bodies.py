@@ -23,12 +23,14 @@ class Body:
             radius, 2 along-track, 3 the orbit's normal.
         altitude_km: above 6378.137 km.
         inclination_deg: to the equator.
+        wheel_nms: constant angular momentum of wheels, body axes.
     """
 
     name: str
     inertia_kgm2: Mat3
     altitude_km: float
     inclination_deg: float
+    wheel_nms: Vec3 = (0.0, 0.0, 0.0)
 
     @property
     def rate_radps(self) -> float:

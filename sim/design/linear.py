@@ -1,16 +1,18 @@
 """The attitude equations linearised about body = orbit, over the argument of latitude u.
 
 With x = (w, theta): w = Omega / w0 the rate relative to the orbital frame and theta the small rotation vector
-that turns the orbital axes into the body's, both in body axes; J the inertia tensor, diagonal or not:
+that turns the orbital axes into the body's, both in body axes; J the inertia tensor, diagonal or not; h the
+momentum of wheels:
 
-    w' = J^-1 { ([J e3 x] - [e3 x] J)(w + e3 x theta) + 3 ([e1 x] J - [J e1 x])(e1 x theta) + T / w0^2 }
-         - e3 x w
+    w' = J^-1 { ([(J e3 + h / w0) x] - [e3 x] J)(w + e3 x theta)
+                + 3 ([e1 x] J - [J e1 x])(e1 x theta) + T / w0^2 } - e3 x w
     theta' = w,   xi' = theta (with an integral term)
     T / w0^2 = -G(u) { k_w B0^2 / w0 w + 2 k_a B0^2 / w0^2 theta + 2 k_i B0^2 / w0^3 xi }
 
 G = |B|^2 I - B B^T with B = (-2 sin u sin i, cos u sin i, cos i), the direct dipole's field in units of B0.
-The factor 2 comes from S = 2 theta. Where J is not diagonal, a constant torque is left on the nominal
-attitude (``resting_torque``): it is then no equilibrium, and the linearisation is about it nonetheless.
+The factor 2 comes from S = 2 theta. Where J is not diagonal, or h not along axis 3, a constant torque is left
+on the nominal attitude (``resting_torque``): it is then no equilibrium, and the linearisation is about it
+nonetheless.
 
 Source: Ovchinnikov, Penkov, Roldugin 2015, eq. 4, derived anew: for principal axes it is their equation with
 B0^2 in all three rows and the kinematics psi' = w1, phi' = w2, theta' = w3.
@@ -63,7 +65,7 @@ def closed_loop(body: Body, gains: Gains, inertia_kgm2: ArrayLike | None = None)
     """
     inertia = np.asarray(body.inertia_kgm2 if inertia_kgm2 is None else inertia_kgm2, dtype=np.float64)
     size = 6 if gains.k_i is None else 9
-    free = free_motion(inertia, size)[..., None, :, :]
+    free = free_motion(body, size, inertia)[..., None, :, :]
     inverse = np.linalg.inv(inertia)[..., None, :, :]
     feedback = feedback_scales(body, gains)[..., None, None, :]
 
@@ -86,16 +88,17 @@ def feedback_scales(body: Body, gains: Gains) -> Array:
     return np.stack([f * np.asarray(g, dtype=np.float64) for f, g in zip(factors, given, strict=False)], -1)
 
 
-def free_motion(inertia_kgm2: ArrayLike, size: int = 6) -> Array:
-    """The constant matrix (..., n, n) of the uncontrolled motion for inertias (..., 3, 3).
+def free_motion(body: Body, size: int = 6, inertia_kgm2: ArrayLike | None = None) -> Array:
+    """The constant matrix (..., n, n) of the uncontrolled motion.
 
     Args:
-        inertia_kgm2: the tensor, body axes.
+        body: the satellite and its orbit.
         size: n = 6, or 9 with the integral of theta behind.
+        inertia_kgm2: (..., 3, 3) in place of the body's own.
     """
-    j = np.asarray(inertia_kgm2, dtype=np.float64)
+    j = np.asarray(body.inertia_kgm2 if inertia_kgm2 is None else inertia_kgm2, dtype=np.float64)
     e1, e3 = skew(E1), skew(E3)
-    gyroscopic = skew(j @ E3) - e3 @ j
+    gyroscopic = skew(j @ E3 + np.asarray(body.wheel_nms) / body.rate_radps) - e3 @ j
     gravity = 3.0 * (e1 @ j - skew(j @ E1)) @ e1
     inverse = np.linalg.inv(j)
     matrix = np.zeros((*j.shape[:-2], size, size))
@@ -106,9 +109,10 @@ def free_motion(inertia_kgm2: ArrayLike, size: int = 6) -> Array:
 
 
 def resting_torque(body: Body) -> Array:
-    """Torque on the nominal attitude, w0^2 (3 e1 x J e1 - e3 x J e3) [N m]; zero if J is diagonal."""
-    j = np.asarray(body.inertia_kgm2)
-    torque: Array = body.rate_radps**2 * (3.0 * skew(E1) @ j @ E1 - skew(E3) @ j @ E3)
+    """Torque on the nominal attitude, w0^2 (3 e1 x J e1 - e3 x (J e3 + h / w0)), body axes, N m."""
+    j, w0 = np.asarray(body.inertia_kgm2), body.rate_radps
+    held = 3.0 * skew(E1) @ j @ E1 - skew(E3) @ (j @ E3 + np.asarray(body.wheel_nms) / w0)
+    torque: Array = w0**2 * held
     return torque
 
 

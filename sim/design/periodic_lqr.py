@@ -130,7 +130,7 @@ def closed_loop(body: Body, law: PeriodicLaw) -> System:
     Six states, or nine with the integral of theta; what is known of a disturbance does not change stability.
     """
     size = 9 if law.augmented is Augmented.INTEGRAL else 6
-    free = free_motion(body.inertia_kgm2, size)
+    free = free_motion(body, size)
     w0, scale = body.rate_radps, body.field_t / body.rate_radps**2
     to_si = np.repeat([w0, 1.0, 1.0 / w0], 3)[:size]
     nodes = len(law.u_rad)
@@ -149,9 +149,9 @@ def closed_loop(body: Body, law: PeriodicLaw) -> System:
 def _motion(body: Body, augmented: Augmented) -> Array:
     """The constant matrix of the motion and of what is known beside it."""
     if augmented is not Augmented.TORQUE:
-        return free_motion(body.inertia_kgm2, 9 if augmented is Augmented.INTEGRAL else 6)
+        return free_motion(body, 9 if augmented is Augmented.INTEGRAL else 6)
     matrix = np.zeros((9, 9))
-    matrix[:6, :6] = free_motion(body.inertia_kgm2)
+    matrix[:6, :6] = free_motion(body)
     matrix[:3, 6:] = np.linalg.inv(np.asarray(body.inertia_kgm2))
     return matrix
 

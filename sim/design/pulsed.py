@@ -69,7 +69,7 @@ class PulsedLoop:
     def __init__(self, body: Body, pulsing: Pulsing, size: int = 6) -> None:
         self.body, self.periods = body, pulsing.periods_per_orbit(body)
         inertia = np.asarray(body.inertia_kgm2)
-        free = free_motion(inertia, size)
+        free = free_motion(body, size)
         period = 2.0 * pi / self.periods
         pulse, leak = period * pulsing.duty, pulsing.leak_s * body.rate_radps
         starts = period * np.arange(self.periods, dtype=np.float64)

@@ -2,10 +2,10 @@
 
 The law does not know the inertia, so its gains stay while the body's tensor is another one. May be wrong:
 
-- the moments, J = D J_believed D with D^2 = diag(1 + e); moments that no body has (one greater than the sum of
-  the others) are left out;
-- the spread of mass along each body axis, S = D S_believed D with S = tr(J) / 2 I - J, the integral of r r^T dm:
-  every error of it is a body, however slender;
+- the moments, J = D J_believed D with D^2 = diag(1 + e); moments that no body has (one greater than the sum
+  of the others) are left out;
+- the spread of mass along each body axis, S = D S_believed D with S = tr(J) / 2 I - J, the integral of
+  r r^T dm: every error of it is a body, however slender;
 - the directions of the principal axes.
 """
 
