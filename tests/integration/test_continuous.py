@@ -1,0 +1,71 @@
+"""A flight with the continuous driver and every disturbance: flown, audited, replayed through both."""
+
+import h5py
+import numpy as np
+import pytest
+
+from fsw.wire.messages import CoilDipole, CoilDipoleStatus, CoilFire, CoilRefused, CoilStatus, Sync
+
+SETTINGS = (
+    "coils.driver=continuous",
+    "coils.max_dipole_am2=12",
+    "body.plates=[{area_m2=0.3, normal=[0, 1, 0], centre_m=[0.01, 0.02, 0.03]}]",
+    "disturbance.drag={}",
+    "disturbance.solar_pressure={}",
+    "disturbance.eddy_nms_per_t2=100",
+    "disturbance.torque_noise_nm_rts=1e-8",
+    "sensors.sun.fov_half_deg=100",
+    "sensors.sun.boresights=[[1, 0, 0], [0, 1, 0]]",
+    "sensors.magnetometer.latency_s=0.05",
+)
+
+
+@pytest.fixture
+def flight(flown):
+    settings = [word for setting in SETTINGS for word in ("--set", setting)]
+    return flown("microsat", "--orbits", "0.08", "--bus", "virtual", *settings)
+
+
+def test_what_is_asked_in_a_tick_is_told_at_the_next_and_has_flowed(flight, copy_of):
+    log = copy_of(flight)
+    asked, told, ticks, last = [], [], 0, None
+    for _, _, frame in log.entries:
+        if frame.can_id == CoilDipoleStatus.ID:
+            told.append(CoilDipoleStatus.decode(frame.data)[:3])
+        elif frame.can_id == Sync.ID:
+            asked.append(last)
+            last, ticks = None, ticks + 1
+        elif frame.can_id == CoilDipole.ID:
+            assert last is None
+            last = CoilDipole.decode(frame.data)[:3]
+    assert len(told) == ticks == len(log.where(CoilStatus))
+    asked = [m or (0.0, 0.0, 0.0) for m in asked]
+    assert told == asked
+    assert sum(map(any, told)) > 100
+    assert log.where(CoilFire) == log.where(CoilRefused) == []
+    with h5py.File(flight / "truth.h5") as truth:
+        flowed = truth["m_body_am2"][:]
+        assert {"drag", "solar_pressure", "eddy", "noise", "coils"} <= set(truth["torque_body_nm"])
+    assert flowed == pytest.approx(9.6 * np.array(told), rel=1e-7, abs=1e-7)
+
+
+def test_the_audit_finds_no_pulse_and_no_violation(flight, torquer):
+    done = torquer("check", flight)
+    assert (done.code, done.err) == (0, "")
+    assert "0 pulses" in done.out
+    assert done.out.splitlines()[-1].startswith("OK")
+
+
+def test_a_level_on_such_a_board_is_a_pulse_to_the_audit(flight, torquer, copy_of):
+    copy = copy_of(flight)
+    copy.change(copy.where(CoilStatus)[30], level=2)
+    done = torquer("check", copy.write())
+    assert done.code == 1
+    assert "the boot of the board" in done.out
+
+
+def test_it_replays_through_controller_and_plant(flight, torquer):
+    assert "bit-exact" in torquer("replay", flight).out
+    done = torquer("replay", "--plant", flight)
+    assert (done.code, done.err) == (0, "")
+    assert "every frame equal" in done.out
