@@ -1,6 +1,6 @@
 """Which law each mode flies."""
 
-from fsw.core.laws.damping import bdot
+from fsw.core.laws.damping import bdot, rate_damping
 from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
 from fsw.core.laws.predictive import predictive
 from fsw.core.laws.table import LAWS
@@ -8,8 +8,10 @@ from fsw.wire.messages import Mode
 
 
 def detumble(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The predictive law by the estimated rate where it is known, else B-dot."""
-    law = predictive if seen.attitude.valid else bdot
+    """By the estimated rate where it is known: predictive with pulses, else proportional. B-dot where not."""
+    if not seen.attitude.valid:
+        return bdot(seen, memory, setpoint, config)
+    law = predictive if config.pulsed else rate_damping
     return law(seen, memory, setpoint, config)
 
 

@@ -82,6 +82,7 @@ def _control(table: FlightTable) -> ControlConfig:
         inertia_kgm2=inertia,
         inertia_inverse=inverse(inertia),
         wheel_body_nms=table.body.wheel_nms,
+        pulsed=coils.driver == "pulsed",
         tick_s=1.0 / table.time.tick_hz,
         horizon_s=coils.pulse_s,
         mean_dipole_am2=mean_dipole_am2,

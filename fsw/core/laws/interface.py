@@ -63,6 +63,7 @@ class ControlConfig:
         inertia_kgm2: inertia tensor, body axes, as the controller believes it.
         inertia_inverse: its inverse.
         wheel_body_nms: constant momentum of a wheel, body axes.
+        pulsed: whether the coils give pulses, or any dipole each tick.
         tick_s: length of a tick.
         horizon_s: length of a pulse: how far a predictive law looks.
         mean_dipole_am2: dipole per axis that the coils can give for good.
@@ -73,6 +74,7 @@ class ControlConfig:
     inertia_kgm2: Mat3
     inertia_inverse: Mat3
     wheel_body_nms: Vec3
+    pulsed: bool
     tick_s: float
     horizon_s: float
     mean_dipole_am2: float
