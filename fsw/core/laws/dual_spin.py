@@ -26,9 +26,9 @@ class DualSpinGains:
 
 
 def wheel_axis_dipole(
-    b_body_t: Vec3, omega_body_orbit_radps: Vec3, roll: float, wheel_nms: float, k_w: float, k_a: float
+    b_body_t: Vec3, omega_body_orbit_radps: Vec3, roll: float, k_w: float, k_a: float
 ) -> Vec3:
-    """m3 = k1 b2 phi2 sign(h) - k2 (b1 Omega2 - b2 Omega1), k1 = 2 k_a and k2 = k_w.
+    """m3 = k1 b2 phi2 - k2 (b1 Omega2 - b2 Omega1), k1 = 2 k_a and k2 = k_w, for a wheel along +e3.
 
     A turn phi2 about axis 2 tilts the momentum h e3 by h phi2 along axis 1; the torque -m3 b2 takes it away.
     A turn about axis 1 becomes one about axis 2 a quarter of an orbit later. The second term is minus the
@@ -38,7 +38,6 @@ def wheel_axis_dipole(
         b_body_t: field in body axes, T.
         omega_body_orbit_radps: rate relative to the orbital frame, body axes.
         roll: 2 phi2 (second component of S of the PD law).
-        wheel_nms: h, momentum of the wheel along axis 3; its sign counts.
         k_w: N m s / T^2.
         k_a: N m / T^2.
 
@@ -50,8 +49,7 @@ def wheel_axis_dipole(
     """
     b1, b2, _ = b_body_t
     w1, w2, _ = omega_body_orbit_radps
-    sign = (wheel_nms > 0.0) - (wheel_nms < 0.0)
-    return (0.0, 0.0, k_a * b2 * roll * sign - k_w * (b1 * w2 - b2 * w1))
+    return (0.0, 0.0, k_a * b2 * roll - k_w * (b1 * w2 - b2 * w1))
 
 
 def pitch_dipole(b_body_t: Vec3, torque_gain: float) -> Vec3:
@@ -77,15 +75,17 @@ def pitch(c_body_from_orbit: Mat3) -> float:
 
 
 def dual_spin(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The wheel held to the orbit normal, the body turned to its pitch."""
+    """The wheel held to the orbit normal, the body turned to its pitch.
+
+    Without a wheel, or with one against the orbit normal, nothing: there the drag relative to the orbital
+    frame would drive the satellite away.
+    """
     gains: DualSpinGains = config.gains["dual_spin"]
-    if not seen.attitude.valid:
+    if not seen.attitude.valid or config.wheel_body_nms[2] <= 0.0:
         return Demand()
     c = dcm(seen.attitude.q_body_from_orbit)
     omega = seen.attitude.omega_body_orbit_radps
-    holding = wheel_axis_dipole(
-        seen.b_body_t, omega, attitude_error(c)[1], config.wheel_body_nms[2], setpoint.k_w, setpoint.k_a
-    )
+    holding = wheel_axis_dipole(seen.b_body_t, omega, attitude_error(c)[1], setpoint.k_w, setpoint.k_a)
     stiff = 2.0 * setpoint.k_a * gains.stiffness
     turning = pitch_dipole(seen.b_body_t, stiff * sin(gains.pitch_rad - pitch(c)) - setpoint.k_w * omega[2])
     return Demand(add(holding, turning))

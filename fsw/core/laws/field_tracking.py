@@ -1,5 +1,7 @@
 """Field tracking: the measured field turned onto that expected in the nominal attitude; none is estimated."""
 
+from dataclasses import dataclass
+
 from fsw.core.laws.damping import MAX_DIFFERENCE_S
 from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
 from fsw.core.laws.pd import pd
@@ -10,11 +12,26 @@ TRACKED = 4
 """Numbers that field tracking remembers."""
 
 
+@dataclass(frozen=True, slots=True)
+class HandOverGains:
+    """Gains of field tracking against those of the PD law it hands over to.
+
+    Attributes:
+        share_w: of k_w.
+        share_a: of k_a.
+    """
+
+    share_w: float = 1.0
+    share_a: float = 1.0
+
+
 def field_tracking_dipole(error_t: Vec3, error_rate_tps: Vec3, k_w: float, k_a: float) -> Vec3:
     """M = -k1 (b - B) - k2 (db/dt - dB/dt), k1 = 2 k_a and k2 = k_w.
 
     A small turn theta from nominal gives b - B = B x theta, so the law is then the PD law
-    m = -k_w b x Omega - k_a b x S with S = 2 theta: gains found for the one serve the other.
+    m = -k_w b x Omega - k_a b x S, S = 2 theta, less k_w dB/dt x theta. That term is as large as the one of
+    k_a where k_w w0 ~ k_a: gains found for PD do not serve, and a body that neither a wheel nor the gravity
+    gradient holds firmly is driven away (50 kg, 1.02/1.85/1.95 kg m^2: at most 0.005 per rad of u gained).
 
     Args:
         error_t: b - B, field in body axes less field in orbit axes, component by component, T.
@@ -51,7 +68,9 @@ def field_tracking(seen: Seen, memory: Memory, setpoint: Setpoint, config: Contr
 
 def tracking_before_pd(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """Field tracking far from the goal, before the hand-over; begins afresh where it comes back from PD."""
-    return field_tracking(seen, memory if len(memory) == TRACKED else (), setpoint, config)
+    gains: HandOverGains = config.gains["field_tracking_pd"]
+    own = setpoint._replace(k_w=gains.share_w * setpoint.k_w, k_a=gains.share_a * setpoint.k_a)
+    return field_tracking(seen, memory if len(memory) == TRACKED else (), own, config)
 
 
 def pd_after_tracking(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:

@@ -4,7 +4,12 @@ from typing import NamedTuple
 
 from fsw.core.laws.damping import SwitchedGains, bdot, bdot_switched, rate_damping
 from fsw.core.laws.dual_spin import DualSpinGains, dual_spin
-from fsw.core.laws.field_tracking import field_tracking, pd_after_tracking, tracking_before_pd
+from fsw.core.laws.field_tracking import (
+    HandOverGains,
+    field_tracking,
+    pd_after_tracking,
+    tracking_before_pd,
+)
 from fsw.core.laws.interface import Law
 from fsw.core.laws.pd import pd, pd_far
 from fsw.core.laws.predictive import predictive
@@ -39,6 +44,6 @@ LAWS: dict[str, Row] = {
     "three_term": Row(16, three_term, three_term, ThreeTermGains),
     "dual_spin": Row(20, dual_spin, dual_spin, DualSpinGains),
     "field_tracking": Row(21, field_tracking, field_tracking),
-    "field_tracking_pd": Row(22, tracking_before_pd, pd_after_tracking),
+    "field_tracking_pd": Row(22, tracking_before_pd, pd_after_tracking, HandOverGains),
     "sun_pointing": Row(30, sun_pointing, sun_pointing),
 }
