@@ -105,7 +105,9 @@ def leaves_of(value, path="state"):
 
             yield f"{path}{list(index)}", float(value[index]), with_element
     else:
-        assert value is None or isinstance(value, bool | int | float | Enum), f"{path} is a {type(value)}"
+        assert value is None or isinstance(value, bool | int | float | str | Enum), (
+            f"{path} is a {type(value)}"
+        )
         yield path, value, lambda new: new
 
 

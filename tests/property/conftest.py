@@ -10,7 +10,8 @@ from typing import NamedTuple
 import pytest
 
 from fsw.core import pulses
-from fsw.core.actuation import CoilView, actuate, hear
+from fsw.core.actuation import CoilConfig, CoilView, actuate, hear
+from fsw.core.laws.interface import Demand as Asked
 from fsw.core.pulses import PulseConfig
 from fsw.core.readings import GateState, admit
 from fsw.wire.frame import Frame
@@ -82,18 +83,19 @@ class Flight:
     """The scheduler as it flies: frames in, at most one frame out."""
 
     def __init__(self, config):
-        self.config = config
+        self.config = CoilConfig(config, dipoles=None)
         self.gate, self.view, self.sent = GateState(), CoilView(), 0
         self.state = None
 
     def step(self, tick, frames, demand, mode=Mode.POINT):
         if self.state is None:
-            self.state = pulses.boot(tick, self.config)
+            self.state = pulses.boot(tick, self.config.pulses)
         readings, self.gate = admit(tuple(frames), self.gate)
-        self.view = hear(self.view, readings)
-        fresh = readings.coil is not None
+        self.view = hear(self.view, readings, tick, self.config)
+        m_body_am2, b_body_t = demand
+        asked = Asked(m_body_am2) if mode is not Mode.SAFE else None
         self.state, self.view, request = actuate(
-            self.state, self.view, mode, *demand, fresh, tick, self.config
+            self.state, self.view, asked, b_body_t, readings, tick, self.config
         )
         if request is None:
             return []
@@ -115,7 +117,8 @@ class Bench:
             pulse_s=duration_ms / 1000.0,
             tick_s=1.0 / tick_hz,
             leak_s=300.0,
-            inertia_inverse=IDENTITY,
+            rate_metric=IDENTITY,
+            energy_metric=IDENTITY,
         )
         self.limits = CoilLimits(tick_hz, *timing_ms, shared)
         self.judge = Judge(tick_hz, shared, *timing_ms)

@@ -150,7 +150,7 @@ class TestTrips:
             attitude = Attitude((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0, 0.0, True)
             modes = set()
             for tick in range(START * trip + 1, START * trip + 900):
-                state = advance(state, judge(attitude, False, state, CONFIG), tick, CONFIG)
+                state = advance(state, judge(attitude, 0.0, False, state, CONFIG), tick, CONFIG)
                 modes.add(state.mode)
             assert (Mode.DETUMBLE in modes) is (trip < 3)
         assert modes == {Mode.SAFE}
@@ -162,8 +162,8 @@ def known(angle_deg=0.0, rate_degps=0.0, axis=(0.48, 0.64, 0.6)):
     return Attitude((cos(half), *(sin(half) * c for c in axis)), omega, 0.01, 1e-4, True)
 
 
-def judged(attitude, tripped=False, config=CONFIG, **state):
-    situation = judge(attitude, tripped, ModeState(**state), config)
+def judged(attitude, tripped=False, config=CONFIG, spin_radps=0.0, **state):
+    situation = judge(attitude, spin_radps, tripped, ModeState(**state), config)
     return {name for name, holds in situation._asdict().items() if holds}
 
 
@@ -182,6 +182,24 @@ class TestConditions:
     )
     def test_rate(self, rate_degps, expected):
         assert judged(known(30.0, rate_degps)) - {"clear"} == set(expected.split())
+
+    @pytest.mark.parametrize(
+        ("omega_degps", "expected"),
+        [
+            ((1.2, 0.0, 0.0), "slow"),
+            ((1.0, 0.0, 0.0), "slow"),
+            ((1.4, 0.25, -0.05), ""),
+            ((0.5, 0.0, 0.0), "fast"),
+            ((0.0, 0.0, 0.0), "fast"),
+            ((-1.2, 0.0, 0.0), "fast"),
+            ((0.0, 1.2, 0.0), "fast"),
+            ((1.2, 0.0, 0.7), "fast"),
+        ],
+    )
+    def test_a_rate_counts_beside_the_spin_that_is_wanted(self, omega_degps, expected):
+        """Wanted are 1.2 deg/s about body axis 1: that alone is no rate, none is too much of one."""
+        turning = known(30.0, 0.0)._replace(omega_body_orbit_radps=tuple(radians(w) for w in omega_degps))
+        assert judged(turning, spin_radps=radians(1.2)) - {"clear"} == set(expected.split())
 
     @pytest.mark.parametrize(
         ("angle_deg", "expected"),
@@ -226,7 +244,7 @@ class TestHysteresis:
     def test_a_rate_that_wavers_about_one_threshold_changes_nothing(self, mode):
         for threshold_degps in (0.3, 0.6):
             wavering = [
-                judge(known(30.0, threshold_degps + 0.01 * sin(n)), False, ModeState(), CONFIG)
+                judge(known(30.0, threshold_degps + 0.01 * sin(n)), 0.0, False, ModeState(), CONFIG)
                 for n in range(3000)
             ]
             assert set(fly(ModeState(mode), wavering)) == {mode}
@@ -235,18 +253,19 @@ class TestHysteresis:
     def test_an_angle_that_wavers_about_one_threshold_changes_nothing(self, mode):
         for threshold_deg in (20.0, 40.0):
             wavering = [
-                judge(known(threshold_deg + sin(n), 0.1), False, ModeState(), CONFIG) for n in range(3000)
+                judge(known(threshold_deg + sin(n), 0.1), 0.0, False, ModeState(), CONFIG)
+                for n in range(3000)
             ]
             assert set(fly(ModeState(mode), wavering)) == {mode}
 
     def test_between_the_thresholds_every_mode_stays(self):
-        between = judge(known(30.0, 0.45), False, ModeState(), CONFIG)
+        between = judge(known(30.0, 0.45), 0.0, False, ModeState(), CONFIG)
         for mode in (Mode.DETUMBLE, Mode.ACQUIRE, Mode.POINT):
             assert set(fly(ModeState(mode), [between] * 3000)) == {mode}
 
     def test_a_slow_swing_through_both_thresholds_goes_there_and_back_once(self):
         swing = [
-            judge(known(30.0 - 30.0 * cos(pi * n / 5000.0), 0.1), False, ModeState(), CONFIG)
+            judge(known(30.0 - 30.0 * cos(pi * n / 5000.0), 0.1), 0.0, False, ModeState(), CONFIG)
             for n in range(10000)
         ]
         modes = fly(ModeState(Mode.ACQUIRE), swing)

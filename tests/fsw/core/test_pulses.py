@@ -16,6 +16,7 @@ SHARED_OR_NOT = pytest.mark.parametrize("shared", [True, False], ids=["shared", 
 IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 TICK = 10_000
 DIAGONAL_T = (3e-5, 3e-5, 3e-5)
+PAID_NMS = (1e-5, -2e-5, 3e-5)
 
 
 def make_config(tick_hz=1, shared=True, leak_s=300.0):
@@ -29,7 +30,8 @@ def make_config(tick_hz=1, shared=True, leak_s=300.0):
         duration_ms / 1000.0,
         1.0 / tick_hz,
         leak_s,
-        IDENTITY,
+        rate_metric=IDENTITY,
+        energy_metric=IDENTITY,
     )
 
 
@@ -118,7 +120,7 @@ WANTED = {coil: tuple(impulse(make_config(), coil, 3, DIAGONAL_T)) for coil in r
 def may_fire(state, tick, config):
     """The coils that are fired at ``tick`` when each in its turn would pay all that is owed."""
     chosen = (
-        pulses.choose(replace(state, owed_impulse_body_nms=wanted), tick, DIAGONAL_T, config)
+        pulses.choose(state, wanted, config.rate_metric, tick, DIAGONAL_T, config)
         for wanted in WANTED.values()
     )
     return {pulse.coil for pulse in chosen if pulse is not None}
@@ -141,7 +143,7 @@ def test_after_boot_a_whole_back_off_passes_first(tick_hz, shared, boot_tick):
 @pytest.mark.parametrize("coil", [0, 1, 2])
 def test_shared_no_coil_fires_again_before_a_back_off_after_the_end_of_the_pulse(tick_hz, coil):
     config = make_config(tick_hz, shared=True)
-    state = pulses.fire(pulses.boot(0, config), Pulse(coil, -2), TICK, DIAGONAL_T, config)
+    state = pulses.fire(pulses.boot(0, config), Pulse(coil, -2), PAID_NMS, TICK, config)
     free = TICK + 103 * tick_hz
     assert all(may_fire(state, tick, config) == set() for tick in range(TICK, free))
     assert may_fire(state, free, config) == {0, 1, 2}
@@ -151,7 +153,7 @@ def test_shared_no_coil_fires_again_before_a_back_off_after_the_end_of_the_pulse
 @pytest.mark.parametrize("coil", [0, 1, 2])
 def test_per_coil_the_others_wait_for_the_end_of_the_pulse_alone(tick_hz, coil):
     config = make_config(tick_hz, shared=False)
-    state = pulses.fire(pulses.boot(0, config), Pulse(coil, 1), TICK, DIAGONAL_T, config)
+    state = pulses.fire(pulses.boot(0, config), Pulse(coil, 1), PAID_NMS, TICK, config)
     end, free = TICK + 3 * tick_hz, TICK + 103 * tick_hz
     assert all(may_fire(state, tick, config) == set() for tick in range(TICK, end))
     assert all(may_fire(state, tick, config) == {0, 1, 2} - {coil} for tick in range(end, free))
@@ -161,7 +163,7 @@ def test_per_coil_the_others_wait_for_the_end_of_the_pulse_alone(tick_hz, coil):
 def test_per_coil_a_pulse_leaves_the_timers_of_the_other_coils_as_they_were():
     config = make_config(shared=False)
     state = owing(config, (0.0, 0.0, 0.0), ready_tick=(TICK, TICK - 7, TICK + 55))
-    after = pulses.fire(state, Pulse(0, 1), TICK, DIAGONAL_T, config)
+    after = pulses.fire(state, Pulse(0, 1), PAID_NMS, TICK, config)
     assert after.ready_tick == (TICK + 103, TICK - 7, TICK + 55)
     assert after.busy_until == TICK + 3
 
@@ -230,12 +232,23 @@ def test_without_a_field_nothing_is_owed():
 
 @pytest.mark.parametrize("level", [-3, -2, -1, 1, 2, 3])
 @pytest.mark.parametrize("coil", [0, 1, 2])
+def test_the_impulse_of_a_pulse(coil, level):
+    """T m x b, with the sign of the level."""
+    config = make_config(tick_hz=7)
+    b_body_t = (2e-5, -3e-5, 1e-5)
+    expected = tuple(impulse(config, coil, level, b_body_t))
+    assert pulses.impulse(Pulse(coil, level), b_body_t, config) == pytest.approx(expected, abs=1e-18)
+
+
+@pytest.mark.parametrize("level", [-3, -2, -1, 1, 2, 3])
+@pytest.mark.parametrize("coil", [0, 1, 2])
 def test_a_pulse_pays_its_impulse(coil, level):
     """r <- r - T m x b, whatever is left."""
     config = make_config()
     b_body_t = (2e-5, -3e-5, 1e-5)
     owed = (1e-5, 2e-5, 3e-5)
-    after = pulses.fire(owing(config, owed), Pulse(coil, level), TICK, b_body_t, config)
+    pulse = Pulse(coil, level)
+    after = pulses.fire(owing(config, owed), pulse, pulses.impulse(pulse, b_body_t, config), TICK, config)
     expected = np.array(owed) - impulse(config, coil, level, b_body_t)
     assert after.owed_impulse_body_nms == pytest.approx(tuple(expected), abs=1e-18)
 

@@ -12,6 +12,8 @@ from fsw.core.readings import INBOX_LIMIT, LISTENED, NOTHING, GateState, Reading
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame
 from fsw.wire.messages import (
     CLASSES,
+    CoilBoot,
+    CoilDipoleStatus,
     CoilHeartbeat,
     CoilRefused,
     CoilStatus,
@@ -33,13 +35,22 @@ COIL = CoilStatus(-2, 1, 2000, -150, 103000, 9, counter=7)
 REFUSED = CoilRefused(2, 9, 8, 0xC3, counter=8)
 ATTITUDE = RefAttitude(1, 0.5, -0.25, 0.125, counter=9)
 RATE = RefRate(1, 2.0**-7, -(2.0**-8), 2.0**-9, counter=10)
-EVERY_KIND = (FIELD, SUN, COIL, REFUSED, ATTITUDE, RATE)
+DIPOLE = CoilDipoleStatus(0.5, -0.25, 2.0**-16, counter=11)
+BOOT = CoilBoot(1, 1, 0x89ABCDEF, counter=12)
+COUNTED = (FIELD, SUN, COIL, REFUSED, ATTITUDE, RATE, DIPOLE)
+EVERY_KIND = (*COUNTED, BOOT)
 SLOT = {message.ID: slot for slot, message in enumerate(EVERY_KIND)}
 EVERY_MESSAGE = pytest.mark.parametrize("message", EVERY_KIND, ids=lambda m: type(m).__name__)
+EVERY_COUNTED = pytest.mark.parametrize("message", COUNTED, ids=lambda m: type(m).__name__)
 
 
 def frames(*messages):
     return tuple(message.encode() for message in messages)
+
+
+def admitted(*messages, state=None):
+    raw = tuple(m if isinstance(m, Frame) else m.encode() for m in messages)
+    return admit(raw, state or GateState())
 
 
 def broken(frame):
@@ -60,96 +71,110 @@ def test_every_kind_is_taken_as_sent():
     assert readings.coil == COIL
     assert readings.field == FIELD
     heard = crc32(b"".join(message.encode().data for message in EVERY_KIND))
-    assert state == GateState(counters=(5, 6, 7, 8, 9, 10), heard=heard)
+    assert state == GateState(counters=(5, 6, 7, 8, 9, 10, 11, 12), heard=heard)
 
 
 @EVERY_MESSAGE
 class TestEachMessage:
-    def admitted(self, *messages, state=None):
-        raw = tuple(m if isinstance(m, Frame) else m.encode() for m in messages)
-        return admit(raw, state or GateState())
-
     def test_is_the_only_one_heard(self, message):
-        readings, _ = self.admitted(message)
+        readings, _ = admitted(message)
         assert [type(one) for one in readings if one is not None] == [type(message)]
 
     def test_broken_crc(self, message):
-        assert self.admitted(broken(message.encode())) == (NOTHING, GateState(rejected=1))
+        assert admitted(broken(message.encode())) == (NOTHING, GateState(rejected=1))
 
     @pytest.mark.parametrize("change", [lambda d: d[:-1], lambda d: d + b"\0", lambda d: b""])
     def test_wrong_length(self, message, change):
         frame = message.encode()
-        assert self.admitted(frame._replace(data=change(frame.data))) == (NOTHING, GateState(rejected=1))
+        assert admitted(frame._replace(data=change(frame.data))) == (NOTHING, GateState(rejected=1))
 
     @pytest.mark.parametrize("flag", [EXTENDED_FLAG, REMOTE_FLAG, ERROR_FLAG])
     def test_flagged_frames_are_never_ours(self, message, flag):
         frame = message.encode()
         flagged = frame._replace(can_id=frame.can_id | flag)
-        assert self.admitted(flagged) == (NOTHING, GateState(rejected=1))
+        assert admitted(flagged) == (NOTHING, GateState(rejected=1))
 
     def test_every_bit_that_is_taken_shows_in_the_state(self, message):
         """Also where nobody has a use for it."""
-        _, state = self.admitted(message)
+        _, state = admitted(message)
         data = message.encode().data
         for bit in range(8 * (len(data) - 1)):
             altered = bytes(byte ^ (bit // 8 == index) << bit % 8 for index, byte in enumerate(data))
             again = type(message).decode(altered).encode()  # sealed anew; bits that mean nothing are 0 again
-            _, other = self.admitted(again)
+            _, other = admitted(again)
             assert again.data == data or other != state
-
-    def test_repeated(self, message):
-        readings, state = self.admitted(message, message)
-        assert readings[SLOT[message.ID]] is not None
-        assert (state.rejected, state.missed) == (1, 0)
-
-    @pytest.mark.parametrize("counter", [0, 5, 15])
-    def test_repeated_in_the_next_tick(self, message, counter):
-        _, state = self.admitted(message._replace(counter=counter))
-        readings, state = self.admitted(message._replace(counter=counter), state=state)
-        assert readings == NOTHING
-        assert (state.rejected, state.missed) == (1, 0)
 
     def test_the_first_one_is_taken_whatever_its_counter(self, message):
         for counter in range(16):
-            readings, state = self.admitted(message._replace(counter=counter))
+            readings, state = admitted(message._replace(counter=counter))
             assert readings != NOTHING
             assert (state.rejected, state.missed) == (0, 0)
 
     def test_forty_in_order_miss_nothing(self, message):
         state = GateState()
         for counter in range(40):
-            readings, state = self.admitted(message._replace(counter=counter), state=state)
+            readings, state = admitted(message._replace(counter=counter), state=state)
             assert readings != NOTHING
         assert (state.rejected, state.missed) == (0, 0)
+
+    def test_the_last_of_several_counts(self, message):
+        readings, _ = admitted(*(message._replace(counter=n) for n in (3, 4, 5)))
+        assert readings[SLOT[message.ID]].counter == 5
+
+    def test_a_broken_one_does_not_displace_a_good_one(self, message):
+        readings, _ = admitted(message._replace(counter=3), broken(message._replace(counter=4).encode()))
+        assert readings[SLOT[message.ID]].counter == 3
+
+    def test_the_counters_of_others_do_not_move(self, message):
+        _, state = admit(frames(*EVERY_KIND), GateState())
+        _, later = admitted(message._replace(counter=message.counter + 1), state=state)
+        changed = [a != b for a, b in zip(state.counters, later.counters, strict=True)]
+        assert changed == [other.ID == message.ID for other in EVERY_KIND]
+
+
+@EVERY_COUNTED
+class TestEachCounter:
+    def test_repeated(self, message):
+        readings, state = admitted(message, message)
+        assert readings[SLOT[message.ID]] is not None
+        assert (state.rejected, state.missed) == (1, 0)
+
+    @pytest.mark.parametrize("counter", [0, 5, 15])
+    def test_repeated_in_the_next_tick(self, message, counter):
+        _, state = admitted(message._replace(counter=counter))
+        readings, state = admitted(message._replace(counter=counter), state=state)
+        assert readings == NOTHING
+        assert (state.rejected, state.missed) == (1, 0)
 
     @pytest.mark.parametrize("first", [0, 13])
     @pytest.mark.parametrize("jump", range(1, 16))
     def test_a_jump_is_taken_and_what_is_missing_counted(self, message, first, jump):
-        _, state = self.admitted(message._replace(counter=first))
-        readings, state = self.admitted(message._replace(counter=first + jump), state=state)
+        _, state = admitted(message._replace(counter=first))
+        readings, state = admitted(message._replace(counter=first + jump), state=state)
         assert readings != NOTHING
         assert (state.rejected, state.missed) == (0, jump - 1)
 
     def test_a_broken_frame_does_not_move_the_counter(self, message):
         """What was rejected is missed when the next one comes."""
-        _, state = self.admitted(message._replace(counter=1))
-        _, state = self.admitted(broken(message._replace(counter=2).encode()), state=state)
-        _, state = self.admitted(message._replace(counter=3), state=state)
+        _, state = admitted(message._replace(counter=1))
+        _, state = admitted(broken(message._replace(counter=2).encode()), state=state)
+        _, state = admitted(message._replace(counter=3), state=state)
         assert (state.rejected, state.missed) == (1, 1)
 
-    def test_the_last_of_several_counts(self, message):
-        readings, _ = self.admitted(*(message._replace(counter=n) for n in (3, 4, 5)))
-        assert readings[SLOT[message.ID]].counter == 5
 
-    def test_a_broken_one_does_not_displace_a_good_one(self, message):
-        readings, _ = self.admitted(message._replace(counter=3), broken(message._replace(counter=4).encode()))
-        assert readings[SLOT[message.ID]].counter == 3
+class TestBoot:
+    """A board that starts counts anew: its first word is news whatever its counter, and none was missed."""
 
-    def test_the_counters_of_others_do_not_move(self, message):
-        _, state = admit(frames(*EVERY_KIND), GateState())
-        _, later = self.admitted(message._replace(counter=message.counter + 1), state=state)
-        changed = [a != b for a, b in zip(state.counters, later.counters, strict=True)]
-        assert changed == [other.ID == message.ID for other in EVERY_KIND]
+    @pytest.mark.parametrize("before", [0, 7, 15])
+    @pytest.mark.parametrize("counter", range(16))
+    def test_is_taken_whatever_was_heard_before(self, before, counter):
+        _, state = admitted(BOOT._replace(counter=before))
+        readings, state = admitted(BOOT._replace(counter=counter), state=state)
+        assert readings.coil_boot == BOOT._replace(counter=counter)
+        assert (state.rejected, state.missed) == (0, 0)
+
+    def test_a_broken_one_is_no_boot(self):
+        assert admitted(broken(BOOT.encode())) == (NOTHING, GateState(rejected=1))
 
 
 class TestRange:

@@ -8,19 +8,21 @@ from math import nextafter
 import numpy as np
 import pytest
 
+from fsw.core.laws.table import LAWS
 from fsw.core.state import FlightState, checksum
 from fsw.core.step import boot
 
 
 @pytest.fixture(scope="module")
 def flown(make_world):
-    """A state in which everything has happened: ephemeris, estimate, a pulse, rejects."""
+    """A state in which everything has happened: ephemeris, estimate, a pulse, a law that remembers."""
     world = make_world()
     world.fly(160)
     state = world.state
     assert state.estimator.estimate is not None
     assert state.coil.fired_tick >= 0
     assert any(state.pulses.owed_impulse_body_nms)
+    assert state.memory
     return state
 
 
@@ -28,6 +30,8 @@ def nearest_other(leaf):
     """The value that differs least: the last bit of a float, the next integer, the other truth."""
     if isinstance(leaf, bool):
         return not leaf
+    if isinstance(leaf, str):
+        return next(law for law in LAWS if law != leaf)
     if isinstance(leaf, Enum):
         return next(member for member in type(leaf) if member is not leaf)
     return nextafter(leaf, 1e300) if isinstance(leaf, float) else leaf + 1

@@ -16,6 +16,7 @@ from fsw.core.step import boot
 from fsw.core.telemetry import COUNTED, FIRST_COUNTERS, SEVERITY, Event, Happening
 from fsw.wire.messages import (
     CLASSES,
+    CoilDipole,
     CoilFire,
     CoilRefused,
     FswBoot,
@@ -108,7 +109,7 @@ class TestNumbering:
     def test_all_that_fsw_sends_now_and_then_is_numbered(self):
         assert len(set(COUNTED)) == len(COUNTED) == len(FIRST_COUNTERS)
         assert set(COUNTED) == {
-            m.ID for m in (CoilFire, NavAttitude, NavRate, NavQuality, FswEvent, FswHeartbeat)
+            m.ID for m in (CoilFire, CoilDipole, NavAttitude, NavRate, NavQuality, FswEvent, FswHeartbeat)
         }
 
 

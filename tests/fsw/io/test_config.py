@@ -5,6 +5,7 @@ from math import cos, pi, radians
 import numpy as np
 import pytest
 
+from fsw.core.laws.interface import Setpoint
 from fsw.core.modes import TABLE
 from fsw.core.orbit import CircularOrbit, Sgp4Orbit
 from fsw.core.rates import RateGroup
@@ -69,7 +70,14 @@ class TestEstimator:
         config = configured()
         np.testing.assert_allclose(config.estimator.mekf.inertia_kgm2, FULL)
         np.testing.assert_allclose(config.estimator.mekf.inertia_inverse, np.linalg.inv(FULL), rtol=1e-12)
-        np.testing.assert_allclose(config.pulses.inertia_inverse, np.linalg.inv(FULL), rtol=1e-12)
+        np.testing.assert_allclose(config.control.inertia_kgm2, FULL)
+        np.testing.assert_allclose(config.control.inertia_inverse, np.linalg.inv(FULL), rtol=1e-12)
+
+    def test_metrics_of_what_a_pulse_leaves(self):
+        """The square of the rate that is left, and twice its energy."""
+        config, inverse = configured().coils.pulses, np.linalg.inv(FULL)
+        np.testing.assert_allclose(config.rate_metric, inverse.T @ inverse, rtol=1e-12)
+        np.testing.assert_allclose(config.energy_metric, inverse, rtol=1e-12)
 
     @pytest.mark.parametrize(("knowledge", "perfect"), [("filter", False), ("perfect", True)])
     def test_knowledge(self, knowledge, perfect):
@@ -103,7 +111,7 @@ class TestTicks:
         ],
     )
     def test_pulse_and_back_off(self, tick_hz, pulse_ticks, backoff_ticks, duration_ms):
-        config = configured(time={"tick_hz": tick_hz}).pulses
+        config = configured(time={"tick_hz": tick_hz}).coils.pulses
         assert (config.pulse_ticks, config.backoff_ticks) == (pulse_ticks, backoff_ticks)
         assert (config.duration_ms, config.pulse_s) == (duration_ms, duration_ms / 1000.0)
         assert config.tick_s == 1.0 / tick_hz
@@ -113,7 +121,7 @@ class TestTicks:
         for tick_hz in (3, 7, 10, 100):
             config = configured(
                 time={"tick_hz": tick_hz}, coils={"pulse_s": pulse_s, "backoff_s": backoff_s}
-            ).pulses
+            ).coils.pulses
             assert 0 < config.pulse_ticks / tick_hz <= pulse_s
             assert config.duration_ms <= pulse_s * 1000.0
             assert config.backoff_ticks / tick_hz >= backoff_s
@@ -143,16 +151,44 @@ def test_thresholds_of_the_modes():
 def test_control_and_coils():
     config = configured(
         time={"tick_hz": 5},
-        control={"law": "rate_damping", "k_w": 1e6, "k_a": 7.0, "spin_radps": 0.02, "leak_s": 250.0},
+        control={
+            "law": "rate_damping",
+            "k_w": 1e6,
+            "k_a": 7.0,
+            "k_i": 3e-3,
+            "spin_radps": 0.02,
+            "leak_s": 250.0,
+        },
         coils={"backoff": "per_coil", "levels_am2": [1.0, 2.5, 9.0]},
     )
-    assert (config.control.law, config.control.k_w, config.control.k_a) == ("rate_damping", 1e6, 7.0)
-    assert (config.control.spin_radps, config.control.tick_s) == (0.02, 0.2)
-    assert (config.pulses.shared, config.pulses.levels_am2, config.pulses.leak_s) == (
-        False,
-        (1.0, 2.5, 9.0),
-        250.0,
+    assert config.control.setpoint == Setpoint("rate_damping", k_w=1e6, k_a=7.0, k_i=3e-3, spin_radps=0.02)
+    assert (config.control.tick_s, config.control.horizon_s) == (0.2, 3.0)
+    assert config.control.mean_dipole_am2 == pytest.approx(9.0 * 3.0 / 103.0)
+    pulses = config.coils.pulses
+    assert (pulses.shared, pulses.levels_am2, pulses.leak_s) == (False, (1.0, 2.5, 9.0), 250.0)
+    assert config.coils.dipoles is None
+    assert config.control.pulsed
+    assert config.control.wheel_body_nms == config.estimator.mekf.wheel_body_nms == (0.0, 0.0, 0.0)
+
+
+def test_a_wheel_is_known_to_filter_and_law():
+    config = configured(body={"wheel_nms": [0.01, -0.02, 0.03]})
+    assert config.control.wheel_body_nms == config.estimator.mekf.wheel_body_nms == (0.01, -0.02, 0.03)
+
+
+@pytest.mark.parametrize("minimiser", ["closed_form", "genetic"])
+def test_a_continuous_driver(minimiser):
+    """Full scale is a mean over the tick, of which it drives a part."""
+    config = configured(
+        coils={"driver": "continuous", "max_dipole_am2": 12.0, "on_fraction": 0.75},
+        control={"minimiser": minimiser},
     )
+    assert config.coils.dipoles.full_scale_am2 == pytest.approx(9.0)
+    assert config.coils.dipoles.genetic is (minimiser == "genetic")
+    np.testing.assert_allclose(config.coils.dipoles.inertia_kgm2, FULL)
+    assert config.control.mean_dipole_am2 == pytest.approx(9.0)
+    assert not config.control.pulsed
+    assert config.coils.pulses == configured().coils.pulses, "the timing of pulses stays"
 
 
 def test_identity_of_the_table_goes_along():

@@ -44,7 +44,7 @@ class TestDefault:
     def test_every_key_of_the_schema_is_written_in_it(self):
         """So that who reads the file sees all that can be set."""
         values = default_values()
-        optional = {"time.epoch_utc", "control.spin_radps"} | {
+        optional = {"time.epoch_utc", "control.spin_radps", "control.gains", "coils.max_dipole_am2"} | {
             f"orbit.{key}" for key in ("altitude_km", "inclination_deg", "raan_deg", "u0_deg")
         }
         for name, field in FlightTable.model_fields.items():

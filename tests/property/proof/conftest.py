@@ -22,9 +22,10 @@ from typing import NamedTuple
 import pytest
 
 from fsw.core import actuation, pulses
+from fsw.core.laws.interface import Demand
 from fsw.core.readings import NOTHING
 from fsw.core.vector import ZERO
-from fsw.wire.messages import CoilFire, CoilStatus, Mode
+from fsw.wire.messages import CoilFire, CoilStatus
 from hil_stub import interlock
 
 EPOCH = 768
@@ -154,8 +155,10 @@ class Search:
             pulse_s=1.0,
             tick_s=1.0,
             leak_s=inf,
-            inertia_inverse=identity,
+            rate_metric=identity,
+            energy_metric=identity,
         )
+        self.coils = actuation.CoilConfig(self.config, dipoles=None)
         self.limits = setup.rules.CoilLimits(1, duration_ms, 1000 * setup.backoff_ticks, setup.shared)
         self.words, self.decide, self.ask = cache(self._words), cache(self._decide), cache(self._ask)
         self.drive = cache(self._drive)
@@ -222,18 +225,18 @@ class Search:
         """Each outcome, the scheduler afterwards and what it asks, with the demands that lead to it."""
         act, tick = self.setup.scheduler, EPOCH + phase
         timers = pulses.PulseState(tuple(tick + left for left in own.ready), tick + own.busy, ZERO)
-        view = act.hear(act.CoilView(lockout_ms=own.word), NOTHING._replace(coil=status))
+        readings = NOTHING._replace(coil=status)
+        view = act.hear(act.CoilView(lockout_ms=own.word), readings, tick, self.coils)
         outcomes: dict[tuple[Own, CoilFire | None], list[int | None]] = {}
         for demand, (owed, b_body_t) in DEMANDS.items():
             state, after, request = act.actuate(
                 replace(timers, owed_impulse_body_nms=owed),
                 view,
-                Mode.POINT,
-                ZERO,
+                Demand(),
                 b_body_t,
-                status is not None,
+                readings,
                 tick,
-                self.config,
+                self.coils,
             )
             outcomes.setdefault((relative(state, after, tick + 1), request), []).append(demand)
         return list(outcomes.items())

@@ -205,7 +205,7 @@ INEXACT = {
     "per coil taken for shared": ((WHICH, "True"), (PER_COIL,)),
     "busy for a tick too long": (("busy_until=end", "busy_until=end + 1"), BOTH),
     "seq repeated": (("(view.seq + 1) & 0xFF", "view.seq"), BOTH),
-    "another tick answered": (("seq, tick, config", "seq, tick - 1, config"), BOTH),
+    "another tick answered": (("0xFF, tick, config", "0xFF, tick - 1, config"), BOTH),
     "a coil left out": (("for coil in range(3)", "for coil in range(2)"), BOTH),
     "word never good": (("ms[pulse.coil] != 0", "ms[pulse.coil] != -2"), BOTH),
     "word on one coil kept for another": (("lockout[status.coil] =", "lockout[0] ="), BOTH),

@@ -274,7 +274,9 @@ class TestOtherTable:
         )
 
     def test_so_does_the_flight_under_other_gains(self, flown_run, config):
-        stronger = replace(config, control=replace(config.control, k_a=3.0 * config.control.k_a))
+        setpoint = config.control.setpoint
+        tripled = setpoint._replace(k_a=3.0 * setpoint.k_a)
+        stronger = replace(config, control=replace(config.control, setpoint=tripled))
         shown = replay(flown_run / BUS_LOG, stronger)
         assert not shown.bit_exact
 
