@@ -98,8 +98,10 @@ def natural_gains(body: Body) -> Gains:
     return Gains(mean * w0 / b0**2, 0.5 * mean * w0**2 / b0**2, 0.5 * mean * w0**3 / b0**2)
 
 
-def gain_map(degree: Degree, k_w: Array, k_a: Array, watch: Watch) -> GainMap:
-    """Degrees over a grid, a row at a time; ``watch`` is told how many rows there are."""
+def gain_map(body: Body, degree: Degree, watch: Watch = lambda done: None) -> GainMap:
+    """Degrees over the whole span of gains; ``watch`` is told how many of ``GRID`` rows there are."""
+    natural = natural_gains(body)
+    k_w, k_a = natural.k_w * np.geomspace(*SPAN_W, GRID), natural.k_a * np.geomspace(*SPAN_A, GRID)
     rows = []
     for done, gain in enumerate(k_a, start=1):
         rows.append(degree(Gains(k_w, np.full_like(k_w, gain))))
@@ -116,13 +118,7 @@ def search(body: Body, fine: Degree, rough: Degree, watch: Watch = lambda done: 
         rough: the same, not as exact, for the grid and the ways down.
         watch: told how far it is, of ``SEARCH_STEPS``.
     """
-    natural = natural_gains(body)
-    found = gain_map(
-        rough,
-        natural.k_w * np.geomspace(*SPAN_W, GRID),
-        natural.k_a * np.geomspace(*SPAN_A, GRID),
-        watch,
-    )
+    found = gain_map(body, rough, watch)
     bounds = [(np.log(gains[0]), np.log(gains[-1])) for gains in (found.k_w, found.k_a)]
     lows: list[Array] = []
     for done, start in enumerate(_basins(found), start=1):

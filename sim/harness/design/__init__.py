@@ -1,0 +1,1 @@
+"""``torquer design``: gains for a scenario from Floquet theory."""
