@@ -29,7 +29,8 @@ def jacobi_integral(
     e3 = np.stack([2.0 * (x * z - w * y), 2.0 * (y * z + w * x), w * w - x * x - y * y + z * z], axis=1)
 
     def form(v: Array) -> Array:
-        return np.einsum("ni,ij,nj->n", v, np.asarray(inertia_kgm2), v)
+        values: Array = np.einsum("ni,ij,nj->n", v, np.asarray(inertia_kgm2), v)
+        return values
 
     kinetic = 0.5 * form(np.asarray(omega_body_orbit_radps))
     potential = orbit_rate_radps**2 * (1.5 * form(e1) - 0.5 * form(e3))

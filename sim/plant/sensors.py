@@ -24,14 +24,15 @@ class Delay:
 
     def __init__(self, latency_s: float, tick_hz: int) -> None:
         ticks, self._part = divmod(latency_s * tick_hz, 1.0)
-        self._kept: deque[_Values] = deque(maxlen=int(ticks) + 2)
+        self._length = int(ticks) + 2
+        self._kept: deque[_Values] = deque(maxlen=self._length)
 
     def __call__(self, now: _Values) -> _Values:
         """The values of back then, those of the next sample being ``now``."""
         kept, part = self._kept, self._part
-        while not kept or len(kept) < (kept.maxlen or 0) - 1:
-            kept.append(now)
         kept.append(now)
+        while len(kept) < self._length:
+            kept.append(now)
         return tuple(late + part * (early - late) for early, late in zip(kept[0], kept[1], strict=True))
 
 
