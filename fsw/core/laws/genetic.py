@@ -15,7 +15,9 @@ from fsw.core.vector import ZERO, Mat3, Vec3, add, cross, dot, scale, sub, trans
 POPULATION = 24
 GENERATIONS = 40
 _SPREAD = 0.5
-"""First spread of a move against the size of the search; halved every five generations."""
+"""First spread of a move against the size of the search."""
+_NARROWING = 0.8705505632961241
+"""Of the spread from one generation to the next: half after five. A number, since pow differs by machine."""
 
 Point = tuple[float, float]
 
@@ -55,9 +57,10 @@ def search(
         (2.0 * next(random) - 1.0, 2.0 * next(random) - 1.0) for _ in range(POPULATION - 1)
     ]
     ranked = sorted((cost(point), point) for point in population)
-    for generation in range(GENERATIONS):
-        spread = _SPREAD * 0.5 ** (generation / 5.0)
+    spread = _SPREAD
+    for _ in range(GENERATIONS):
         children = [_child(ranked, spread, random) for _ in range(POPULATION - 2)]
+        spread *= _NARROWING
         kept = [ranked[0][1], (0.0, 0.0)]
         ranked = sorted((cost(point), point) for point in kept + children)
     best_cost, best = ranked[0]

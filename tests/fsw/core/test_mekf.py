@@ -226,7 +226,7 @@ class TestPropagation:
         place = Surroundings(E1_ECI, GRAVITY_PS2, B_ECI_T)
         for _ in range(seconds * 20):
             motion = body.step(
-                motion, lambda q, *at: torques.total(INERTIA, q, at[-1], dipole, TORQUE_NM), [place] * 3, 0.05
+                motion, lambda q, _, at: torques.total(INERTIA, q, at, dipole, TORQUE_NM), [place] * 3, 0.05
             )
         return motion
 
@@ -528,7 +528,7 @@ class TestObservability:
             b = tuple(2.2e-5 * c for c in (-2.0 * sin(u), 0.3 + cos(u), 0.4 - 0.5 * sin(u)))
             place = Surroundings(e1, GRAVITY_PS2, b)
             motion = body.step(
-                motion, lambda q, *at: torques.total(INERTIA, q, at[-1], ZERO, push), [place] * 3, 1.0
+                motion, lambda q, _, at: torques.total(INERTIA, q, at, ZERO, push), [place] * 3, 1.0
             )
             estimate = predict(estimate, e1, b, GRAVITY_PS2, ZERO, config)
             measured_b = np.array(rotate(motion.q_body_from_eci, b)) + true_bias + random.normal(0.0, 2e-7, 3)
