@@ -74,6 +74,11 @@ def at(key: str, missing: float = nan) -> Pick:
     return lambda flight: number(flight, key, missing)
 
 
+def measured(name: str) -> Pick:
+    """Picks a figure that the flight's measure gave."""
+    return lambda flight: flight.figures.get(name, nan)
+
+
 def label(order: Order) -> str:
     """Which flight this is, for a person."""
     words = [f"{key}={value}" for key, value in _flat(order.overrides)]

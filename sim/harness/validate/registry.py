@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from sim.harness.errors import HarnessError
-from sim.harness.validate import computed, posat1, reference
+from sim.harness.validate import computed, microsat, posat1, reference
 from sim.harness.validate.claim import Study
 
 REFERENCE_FOLDER = Path("tests", "reference")
@@ -14,7 +14,7 @@ def all_studies(repository: Path | None) -> list[Study]:
     """Every study; the reference data lie in the repository only."""
     folder = None if repository is None else repository / REFERENCE_FOLDER
     checks = reference.studies(folder) if folder is not None and folder.is_dir() else reference.absent()
-    return [*checks, *computed.studies(), *posat1.studies()]
+    return [*checks, *computed.studies(), *posat1.studies(), *microsat.studies()]
 
 
 def chosen(studies: Sequence[Study], only: Sequence[str], quick: bool) -> list[Study]:
