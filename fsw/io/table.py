@@ -117,7 +117,7 @@ class CoilTable(Section):
     """
 
     driver: Literal["pulsed", "continuous"] = "pulsed"
-    max_dipole_am2: Positive | None = None
+    max_dipole_am2: float | None = Field(default=None, gt=0.0)
     on_fraction: float = Field(default=0.8, gt=0.0, le=1.0)
     levels_am2: Triple
     pulse_s: float = Field(gt=0.0, le=3.0)
@@ -154,12 +154,14 @@ class ControlTable(Section):
     def _gains_are_known(self) -> Self:
         for law, given in self.gains.items():
             own = LAWS[law].gains if law in LAWS else None
-            known = [field.name for field in fields(own)] if own is not None else []
+            if own is None:
+                allowed = ", ".join(name for name, row in LAWS.items() if row.gains is not None)
+                raise ValueError(f"gains.{law}: no such law has gains of its own (allowed: {allowed})")
+            known = [field.name for field in fields(own)]
             strange = sorted(set(given) - set(known))
-            if strange or not known:
-                allowed = ", ".join(known) or "none"
+            if strange:
                 raise ValueError(
-                    f"gains.{law}: {', '.join(strange) or 'no law'} is not known (allowed: {allowed})"
+                    f"gains.{law}: {', '.join(strange)} is not known (allowed: {', '.join(known)})"
                 )
         return self
 

@@ -1,9 +1,12 @@
 """The onboard table: the default one is sound, every planted error is told, the epoch is the right one."""
 
+from dataclasses import asdict, fields
 from datetime import UTC, datetime
 
 import pytest
 
+from fsw.core.laws.table import LAWS
+from fsw.io.config import flight_config
 from fsw.io.schema import TableError, merge
 from fsw.io.table import (
     DEFAULT_EPOCH_UTC,
@@ -65,6 +68,9 @@ class TestDefault:
             load_flight_table(str(file))
 
 
+WITH_GAINS = "allowed: " + ", ".join(name for name, row in LAWS.items() if row.gains is not None)
+OF_THREE_TERM = "allowed: " + ", ".join(field.name for field in fields(LAWS["three_term"].gains))
+
 PLANTED = [
     ("tick_hz", 5, "tick_hz is not a known key"),
     ("time.rate", 5, "time.rate is not a known key"),
@@ -105,13 +111,26 @@ PLANTED = [
     ("coils.backoff_s", -1.0, "a number at least 0"),
     ("coils.backoff_s", 161.0, "at most 160"),
     ("coils.backoff", "none", "'shared' or 'per_coil'"),
-    ("control.law", "lqr", "'pd'"),
+    ("control.law", "magic", "'pd'"),
     ("control.k_w", -1.0, "a number at least 0"),
     ("control.k_a", "1.0", "a number at least 0"),
     ("control.k_a", float("inf"), "a number at least 0"),
     ("control.spin_radps", 0.11, "a number at least -0.1 and at most 0.1"),
     ("control.spin_radps", -0.11, "a number at least -0.1 and at most 0.1"),
+    ("control.k_i", -1.0, "a number at least 0"),
+    ("control.minimiser", "simplex", "'closed_form' or 'genetic'"),
+    ("control.gains", {"magic": {"r": 1.0}}, f"gains.magic: no such law has gains of its own ({WITH_GAINS})"),
+    ("control.gains", {"magic": {}}, f"gains.magic: no such law has gains of its own ({WITH_GAINS})"),
+    ("control.gains", {"pd": {"k_w": 1.0}}, f"gains.pd: no such law has gains of its own ({WITH_GAINS})"),
+    ("control.gains", {"three_term": {"k_x": 1.0}}, f"gains.three_term: k_x is not known ({OF_THREE_TERM})"),
+    ("control.gains", {"three_term": {"k_x": "1"}}, "a number"),
+    ("control.gains", {"three_term": 1.0}, "a section of keys"),
     ("control.leak_s", 0.0, "a number above 0"),
+    ("coils.driver", "analog", "'pulsed' or 'continuous'"),
+    ("coils.driver", "continuous", "a continuous driver needs max_dipole_am2"),
+    ("coils.max_dipole_am2", 0.0, "a number above 0"),
+    ("coils.on_fraction", 0.0, "a number above 0 and at most 1"),
+    ("coils.on_fraction", 1.1, "a number above 0 and at most 1"),
     ("estimator.bias", "yes", "true or false"),
     ("estimator.torque", 1, "true or false"),
     ("estimator.sun_sigma_deg", 0.0, "a number above 0"),
@@ -140,6 +159,24 @@ def test_a_planted_error_is_told_in_one_sentence(key, value, allowed):
     assert allowed in sentence
     assert "\n" not in sentence
     assert ";" not in sentence
+
+
+class TestGains:
+    def test_of_a_law_are_taken_and_the_others_keep_their_defaults(self):
+        table = flight_table({"control": {"gains": {"three_term": {"k_spin": 7.0}}}}, "x")
+        gains = flight_config(table).control.gains
+        defaults = LAWS["three_term"].gains()
+        assert asdict(gains["three_term"]) == asdict(defaults) | {"k_spin": 7.0}
+        assert defaults.k_spin != 7.0
+
+    def test_every_law_that_has_some_has_them_without_a_word(self):
+        gains = flight_config(flight_table({}, "x")).control.gains
+        assert gains == {name: row.gains() for name, row in LAWS.items() if row.gains is not None}
+        assert gains
+
+    def test_they_count_in_the_checksum(self):
+        other = flight_table({"control": {"gains": {"three_term": {"k_spin": 7.0}}}}, "x")
+        assert other.crc != flight_table({}, "x").crc
 
 
 class TestOrbit:
