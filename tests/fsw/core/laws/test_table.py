@@ -1,0 +1,144 @@
+"""The table of laws: complete, unmistakable, and no law asks for what it cannot know."""
+
+from dataclasses import fields, is_dataclass, replace
+from math import isfinite
+
+import pytest
+
+from fsw.core.attitude import UNKNOWN, Attitude
+from fsw.core.laws.interface import Demand, FieldSample, Seen
+from fsw.core.laws.table import LAWS
+from fsw.core.quaternion import normalise
+from fsw.core.state import checksum
+from fsw.core.step import boot
+from fsw.core.vector import ZERO
+from fsw.io.config import flight_config
+from fsw.io.table import flight_table
+
+CONFIG = flight_config(flight_table({"body": {"wheel_nms": [0.01, -0.02, 0.03]}}, "table"))
+CONTROL = CONFIG.control
+SETPOINT = CONTROL.setpoint._replace(k_i=0.05, spin_radps=0.01)
+KNOWN = Attitude(normalise((0.9, 0.1, -0.2, 0.3)), (0.001, -0.002, 0.003), 0.01, 1e-4, True)
+NOT_VALID = KNOWN._replace(valid=False)
+B_BODY_T = (1.7e-5, -2.3e-5, 3.1e-5)
+SAMPLE = FieldSample((1.6e-5, -2.4e-5, 3.2e-5), tick=44)
+BEFORE = FieldSample((1.5e-5, -2.6e-5, 3.3e-5), tick=43)
+
+MEASURED = {"bdot", "bdot_switched", "nutation", "y_thomson", "spin_up"}
+"""Laws that fly on the magnetometer alone, and may speak before the attitude is known."""
+
+EVERY_LAW = pytest.mark.parametrize("name", LAWS)
+BOTH = pytest.mark.parametrize("mode", ["acquire", "point"])
+
+
+def blind(attitude):
+    """Nothing is known or measured."""
+    return Seen(attitude, ZERO, FieldSample(), FieldSample())
+
+
+def asked(name, mode, seen, memory=()):
+    return getattr(LAWS[name], mode)(seen, memory, SETPOINT._replace(law=name), CONTROL)
+
+
+def test_numbers_are_unique_and_fit_a_telecommand():
+    numbers = [row.number for row in LAWS.values()]
+    assert len(set(numbers)) == len(numbers)
+    assert all(0 <= number <= 255 for number in numbers)
+
+
+def test_the_numbers_of_the_first_laws_stay_what_they_were():
+    """Who has written them down relies on them."""
+    first = {"pd": 0, "rate_damping": 1, "bdot": 2, "predictive": 3}
+    assert {name: LAWS[name].number for name in first} == first
+
+
+@EVERY_LAW
+def test_own_gains_are_a_frozen_dataclass_of_floats_with_defaults(name):
+    gains = LAWS[name].gains
+    if gains is None:
+        assert name not in CONTROL.gains
+        return
+    assert is_dataclass(gains)
+    values = gains()
+    assert fields(values)
+    for field in fields(values):
+        assert isfinite(getattr(values, field.name))
+        with pytest.raises(AttributeError):
+            setattr(values, field.name, 0.0)
+
+
+@EVERY_LAW
+@BOTH
+@pytest.mark.parametrize("attitude", [UNKNOWN, NOT_VALID], ids=["unknown", "not valid"])
+def test_a_law_that_knows_and_measures_nothing_asks_for_nothing(name, mode, attitude):
+    demand = asked(name, mode, blind(attitude))
+    assert demand._replace(memory=()) == Demand()
+
+
+@EVERY_LAW
+@BOTH
+def test_an_attitude_that_is_not_valid_is_not_looked_at(name, mode):
+    """Whatever it says: as if it were another one."""
+    other = Attitude(normalise((0.2, -0.5, 0.7, 0.1)), (0.1, 0.2, -0.3), 1.0, 1.0, False)
+    first, second = (
+        asked(name, mode, Seen(attitude, B_BODY_T, SAMPLE, BEFORE)) for attitude in (NOT_VALID, other)
+    )
+    assert first == second
+    if name not in MEASURED:
+        assert first._replace(memory=()) == Demand()
+
+
+@EVERY_LAW
+@BOTH
+def test_without_a_field_no_dipole_is_asked_for(name, mode):
+    """There is nothing to push against; and nothing is divided by it."""
+    demand = asked(name, mode, blind(KNOWN))
+    assert demand.m_body_am2 == ZERO
+    assert all(isfinite(c) for c in demand.memory)
+
+
+@EVERY_LAW
+@BOTH
+def test_a_law_is_a_function_and_takes_back_what_it_remembered(name, mode):
+    seen = Seen(KNOWN, B_BODY_T, SAMPLE, BEFORE, (0.6, 0.0, 0.8))
+    once, again = asked(name, mode, seen), asked(name, mode, seen)
+    assert once == again
+    later = asked(name, mode, seen, once.memory)
+    assert len(later.memory) == len(once.memory)
+    assert all(isinstance(c, float) and isfinite(c) for c in later.memory)
+
+
+def test_every_law_has_its_own_place_in_the_checksum():
+    state = boot(CONFIG)
+    sums = {checksum(state._replace(setpoint=SETPOINT._replace(law=name))) for name in LAWS}
+    assert len(sums) == len(LAWS)
+
+
+@pytest.mark.parametrize("field", ["k_w", "k_a", "k_i", "spin_radps"])
+def test_every_number_of_the_setpoint_shows_in_the_checksum(field):
+    state = boot(CONFIG)._replace(setpoint=SETPOINT)
+    changed = SETPOINT._replace(**{field: getattr(SETPOINT, field) * (1.0 + 2.0**-52)})
+    assert checksum(state._replace(setpoint=changed)) != checksum(state)
+
+
+@pytest.mark.parametrize("memory", [(), (0.0,), (1.0,), (0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (0.0, 5e-324)])
+def test_memory_shows_in_the_checksum_by_value_place_and_length(memory):
+    state = boot(CONFIG)
+    others = [(), (0.0,), (1.0,), (0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (0.0, 5e-324)]
+    same = [
+        other
+        for other in others
+        if checksum(state._replace(memory=other)) == checksum(state._replace(memory=memory))
+    ]
+    assert same == [memory]
+
+
+def test_what_is_held_and_paid_and_driven_shows_in_the_checksum():
+    state = boot(CONFIG)
+    one = (0.0, 5e-324, 0.0)
+    changed = [
+        state._replace(pulses=replace(state.pulses, held_am2=one)),
+        state._replace(coil=replace(state.coil, paid_body_nms=one)),
+        state._replace(coil=replace(state.coil, driven_am2=one)),
+    ]
+    assert len({checksum(each) for each in (state, *changed)}) == 4
