@@ -45,7 +45,7 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     state, reference, used = _estimate(state, readings, tick - before.tick, config)
     verdict = supervise(state, state.attitude, tick, config)
     mode = verdict.modes.mode
-    seen = _look(state, readings, reference)
+    seen = _look(state, readings, reference, config)
     demand = control.demand(mode, seen, state.memory, state.setpoint, config.control)
     pulse_state, coil, request = actuate(
         state.pulses, state.coil, demand, seen.b_body_t, readings, tick, config.coils
@@ -100,7 +100,7 @@ def _estimate(
     return state._replace(estimator=estimator, attitude=seen), reference, used
 
 
-def _look(state: FlightState, readings: Readings, reference: Reference | None) -> Seen:
+def _look(state: FlightState, readings: Readings, reference: Reference | None, config: FlightConfig) -> Seen:
     """What the law sees: the modelled field where the attitude is known, else the measured one."""
     usable = usable_field(readings)
     sample = FieldSample(usable, state.tick) if usable is not None else state.sample
@@ -119,6 +119,7 @@ def _look(state: FlightState, readings: Readings, reference: Reference | None) -
         reference,
         torque_body_nm,
         state.tick,
+        config.ephemeris,
     )
 
 

@@ -16,6 +16,7 @@ from fsw.core.orbit import Orbit, circular_orbit, sgp4_orbit
 from fsw.core.pulses import PulseConfig, pulse_timing
 from fsw.core.rates import RateGroup, RateTable
 from fsw.core.vector import inverse, product
+from fsw.io.schedules import schedules
 from fsw.io.schema import TableError
 from fsw.io.table import (
     CoilTable,
@@ -36,12 +37,13 @@ def flight_config(table: FlightTable) -> FlightConfig:
     """
     tick_hz = table.time.tick_hz
     try:
+        orbit = _orbit(table.orbit, table.epoch_unix_s)
         return FlightConfig(
             tick_hz=tick_hz,
             epoch_unix_s=table.epoch_unix_s,
             table_crc=table.crc,
             ephemeris=ephemeris_model(
-                _orbit(table.orbit, table.epoch_unix_s),
+                orbit,
                 table.epoch_unix_s,
                 tick_hz,
                 FieldKind(table.field.model),
@@ -49,7 +51,7 @@ def flight_config(table: FlightTable) -> FlightConfig:
                 table.telemetry.ephemeris_s,
             ),
             estimator=_estimator(table),
-            control=_control(table),
+            control=_control(table, orbit),
             coils=CoilConfig(_pulses(table), _dipoles(table)),
             modes=_modes(table.modes, tick_hz),
             rates=_rates(table.telemetry, tick_hz),
@@ -66,19 +68,18 @@ def _orbit(orbit: OrbitTable, epoch_unix_s: int) -> Orbit:
     return circular_orbit(altitude_km, orbit.inclination_deg, orbit.raan_deg, orbit.u0_deg, epoch_unix_s)
 
 
-def _control(table: FlightTable) -> ControlConfig:
+def _control(table: FlightTable, orbit: Orbit) -> ControlConfig:
     control, coils, inertia = table.control, table.coils, table.body.inertia
+    gains = {
+        name: law.gains(**control.gains.get(name, {})) for name, law in LAWS.items() if law.gains is not None
+    }
     if coils.driver == "continuous":
         mean_dipole_am2 = _full_scale(coils)
     else:
         mean_dipole_am2 = coils.levels_am2[2] * coils.pulse_s / (coils.pulse_s + coils.backoff_s)
     return ControlConfig(
         setpoint=Setpoint(control.law, control.k_w, control.k_a, control.k_i, control.spin_radps),
-        gains={
-            name: law.gains(**control.gains.get(name, {}))
-            for name, law in LAWS.items()
-            if law.gains is not None
-        },
+        gains=gains,
         inertia_kgm2=inertia,
         inertia_inverse=inverse(inertia),
         wheel_body_nms=table.body.wheel_nms,
@@ -86,6 +87,7 @@ def _control(table: FlightTable) -> ControlConfig:
         tick_s=1.0 / table.time.tick_hz,
         horizon_s=coils.pulse_s,
         mean_dipole_am2=mean_dipole_am2,
+        schedules=schedules(table, orbit, gains),
     )
 
 

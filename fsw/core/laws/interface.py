@@ -1,11 +1,12 @@
 """What a control law sees, what it may ask for, and what it is tuned by."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from fsw.core.attitude import Attitude
-from fsw.core.ephemeris import Reference
+from fsw.core.ephemeris import EphemerisModel, Reference
+from fsw.core.laws.riccati import Schedule
 from fsw.core.vector import ZERO, Mat3, Vec3
 
 Memory = tuple[float, ...]
@@ -26,7 +27,8 @@ class Seen(NamedTuple):
     ``b_body_t`` is the modelled field where the attitude is known, else the last measured one; ``sample``
     and ``before`` are the last usable field sample of this tick and of the tick before; ``sun_body`` is the
     measured Sun direction, None where there is none; ``reference`` is orbit, field and Sun as modelled, None
-    where no orbit is known; ``torque_body_nm`` is the estimated disturbance; ``tick`` is this tick.
+    where no orbit is known; ``torque_body_nm`` is the estimated disturbance; ``tick`` is this tick;
+    ``ephemeris`` tells orbit and field of times to come.
     """
 
     attitude: Attitude
@@ -37,6 +39,7 @@ class Seen(NamedTuple):
     reference: Reference | None = None
     torque_body_nm: Vec3 = ZERO
     tick: int = 0
+    ephemeris: EphemerisModel | None = None
 
 
 class Setpoint(NamedTuple):
@@ -67,6 +70,7 @@ class ControlConfig:
         tick_s: length of a tick.
         horizon_s: length of a pulse: how far a predictive law looks.
         mean_dipole_am2: dipole per axis that the coils can give for good.
+        schedules: by law, what was tabulated over an orbit for the periodic laws.
     """
 
     setpoint: Setpoint
@@ -78,6 +82,7 @@ class ControlConfig:
     tick_s: float
     horizon_s: float
     mean_dipole_am2: float
+    schedules: dict[str, Schedule] = field(default_factory=dict)
 
 
 class Demand(NamedTuple):

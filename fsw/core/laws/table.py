@@ -11,6 +11,8 @@ from fsw.core.laws.field_tracking import (
     tracking_before_pd,
 )
 from fsw.core.laws.interface import Law
+from fsw.core.laws.lqr import LqrGains, lqr, without_memory
+from fsw.core.laws.mpc import MpcGains, mpc
 from fsw.core.laws.pd import pd, pd_far
 from fsw.core.laws.predictive import predictive
 from fsw.core.laws.spin import SpinGains, nutation, spin_up, y_thomson
@@ -46,4 +48,6 @@ LAWS: dict[str, Row] = {
     "field_tracking": Row(21, field_tracking, field_tracking),
     "field_tracking_pd": Row(22, tracking_before_pd, pd_after_tracking, HandOverGains),
     "sun_pointing": Row(30, sun_pointing, sun_pointing),
+    "lqr": Row(40, without_memory, lqr, LqrGains),
+    "mpc": Row(41, without_memory, mpc, MpcGains),
 }

@@ -1,0 +1,122 @@
+"""Periodic linear-quadratic regulator: the dipole that costs least for ever on the direct dipole's field.
+
+The gain M(u) is tabulated over the argument of latitude u of an orbit, from the controller's own inertia and
+orbit, once, when the onboard table is loaded. The law knows the constant torque that the filter estimates: a
+dipole cannot cancel it, but there is a periodic motion with the least error, and the law leads there.
+
+Source: Ovchinnikov, Roldugin 2019, section 3.2; the equations stand in ``riccati``.
+"""
+
+from dataclasses import dataclass
+from math import atan2, cos, pi, sin
+
+import numpy as np
+
+from fsw.core.attitude import Attitude
+from fsw.core.ephemeris import Reference
+from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
+from fsw.core.laws.pd import pd_far
+from fsw.core.laws.riccati import Array, Schedule, periodic, problem
+from fsw.core.quaternion import Quaternion, dcm
+from fsw.core.vector import Mat3, Vec3, add, scale, transform, transpose
+
+STEPS = 96
+"""Steps an orbit: about a minute each."""
+
+
+@dataclass(frozen=True, slots=True)
+class LqrGains:
+    """Weights of rate and dipole against that of attitude, as in ``riccati.problem``."""
+
+    rate: float = 0.0
+    effort: float = 0.1
+
+
+def schedule(
+    inertia_kgm2: Mat3,
+    wheel_body_nms: Vec3,
+    orbit_rate_radps: float,
+    inclination_rad: float,
+    field_t: float,
+    weights: LqrGains,
+) -> Schedule:
+    """The periodic solution on the direct dipole's field of a circular orbit.
+
+    Args:
+        inertia_kgm2: J, body axes.
+        wheel_body_nms: momentum of a wheel, body axes.
+        orbit_rate_radps: w0.
+        inclination_rad: of the orbit.
+        field_t: B0 = mu_e / r^3, the field above the equator.
+        weights: of the cost.
+
+    Raises:
+        ValueError: no periodic dipole holds this body, for instance on an equatorial orbit.
+    """
+    u = 2.0 * pi / STEPS * (np.arange(STEPS) + 0.5)
+    across, along = sin(inclination_rad), np.full(STEPS, cos(inclination_rad))
+    b_orbit_t = field_t * np.stack([-2.0 * across * np.sin(u), across * np.cos(u), along], axis=-1)
+    step_s = 2.0 * pi / STEPS / orbit_rate_radps
+    given = problem(
+        inertia_kgm2, wheel_body_nms, orbit_rate_radps, field_t, step_s, weights.rate, weights.effort
+    )
+    return Schedule(given, *periodic(given, b_orbit_t))
+
+
+def latitude_argument(reference: Reference) -> float:
+    """The argument of latitude u, rad, -pi to pi: axes 1 and 2 rise by sin u sin i and cos u sin i."""
+    (_, _, rise), (_, _, climb), _ = dcm(reference.q_orbit_from_eci)
+    return atan2(rise, climb)
+
+
+def node(u_rad: float) -> int:
+    """The step of the table in which an argument of latitude lies."""
+    return int(u_rad % (2.0 * pi) * STEPS / (2.0 * pi)) % STEPS
+
+
+def dipole(gain: Array, attitude: Attitude, torque_body_nm: Vec3) -> Vec3:
+    """The dipole M (Omega, theta, d), body axes, A m^2.
+
+    Args:
+        gain: M, shape (3, 9), orbital axes.
+        attitude: theta is 2 qv of its quaternion.
+        torque_body_nm: d, body axes.
+    """
+    c = dcm(attitude.q_body_from_orbit)
+    back = transpose(c)
+    omega = transform(back, attitude.omega_body_orbit_radps)
+    state = (*omega, *rotation(attitude.q_body_from_orbit), *transform(back, torque_body_nm))
+    m1, m2, m3 = (float(row) for row in gain @ np.array(state))
+    return transform(c, (m1, m2, m3))
+
+
+def rotation(q_body_from_orbit: Quaternion) -> Vec3:
+    """Theta = 2 qv for a scalar part >= 0, rad: of one turn from orbit to body the same in both axes."""
+    q0, q1, q2, q3 = q_body_from_orbit
+    factor = 2.0 if q0 >= 0.0 else -2.0
+    return (factor * q1, factor * q2, factor * q3)
+
+
+def within(m_body_am2: Vec3, most_am2: float) -> Vec3:
+    """The dipole, shortened until no component exceeds ``most_am2``."""
+    largest = max(abs(component) for component in m_body_am2)
+    return scale(most_am2 / largest, m_body_am2) if largest > most_am2 else m_body_am2
+
+
+def lqr(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """M = M(u) (Omega, theta, d), d the estimated torque and what rests on the nominal attitude."""
+    table = config.schedules.get("lqr")
+    if not seen.attitude.valid or seen.reference is None or table is None:
+        return Demand()
+    gain = table.gains[node(latitude_argument(seen.reference))]
+    return Demand(within(dipole(gain, seen.attitude, known_torque(seen, table)), config.mean_dipole_am2))
+
+
+def known_torque(seen: Seen, table: Schedule) -> Vec3:
+    """The torque that the plan may reckon with, body axes, N m."""
+    return add(seen.torque_body_nm, table.problem.resting_nm)
+
+
+def without_memory(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """Far from the goal: the PD law's far form; nothing is kept for the law near it."""
+    return pd_far(seen, (), setpoint, config)._replace(memory=())

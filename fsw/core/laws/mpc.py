@@ -1,0 +1,96 @@
+"""Linear predictive control over the period of the field: a plan for the orbit ahead, soon made anew.
+
+Orbit and field model tell the field along the coming orbit: not the direct dipole's, which comes again each
+orbit, but the one that the satellite will meet. The plan costs least along it, and at its end what the
+periodic regulator (``lqr``) expects from there on. Its first steps are flown, by feedback; then it is made
+anew. On the direct dipole's field it is the periodic regulator.
+
+The plan knows no bound of the dipole: what is asked is shortened to what the coils can give for good.
+
+Source: Ovchinnikov, Roldugin 2019, section 3.3 (after Silani, Lovera 2005); equations: ``riccati``.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fsw.core.ephemeris import EphemerisModel
+from fsw.core.field import field_eci_t
+from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
+from fsw.core.laws.lqr import STEPS, dipole, known_torque, latitude_argument, node, within
+from fsw.core.laws.riccati import Array, Schedule, backward
+from fsw.core.orbit import state_eci
+
+FLOWN = 5
+"""Steps of a plan that are flown."""
+_NUMBERS = 3 * 9
+"""Of a gain."""
+
+
+@dataclass(frozen=True, slots=True)
+class MpcGains:
+    """Weights as for ``lqr``, and how far the plan reaches, in orbits."""
+
+    rate: float = 0.0
+    effort: float = 0.1
+    horizon_orbits: float = 1.0
+
+
+def field_ahead(model: EphemerisModel, unix_s: float, step_s: float, steps: int) -> Array | None:
+    """The field in the middle of each coming step, orbital axes then, T, shape (steps, 3).
+
+    None where the orbit has no position.
+    """
+    times = [unix_s + (k + 0.5) * step_s for k in range(steps)]
+    states = [state for state in (state_eci(model.orbit, t) for t in times) if state is not None]
+    if len(states) < steps:
+        return None
+    r, v = (np.array(part) for part in zip(*states, strict=True))
+    b = np.array([field_eci_t(model.field, r_m, t) for (r_m, _), t in zip(states, times, strict=True)])
+    normal = np.cross(r, v)
+    e1 = r / np.linalg.norm(r, axis=-1, keepdims=True)
+    e3 = normal / np.linalg.norm(normal, axis=-1, keepdims=True)
+    axes = np.stack([e1, np.cross(e3, e1), e3], axis=1)
+    return np.asarray(np.einsum("kij,kj->ki", axes, b), dtype=np.float64)
+
+
+def plan(table: Schedule, b_orbit_t: Array, end_node: int) -> Array:
+    """Gains of the first steps, shape (FLOWN, 3, 9), at the end of the plan the periodic regulator's cost.
+
+    Args:
+        table: the periodic regulator.
+        b_orbit_t: field in the middle of each step of the plan, orbital axes, T, shape (steps, 3).
+        end_node: step of the table in which the plan ends.
+    """
+    gains, _ = backward(table.problem, b_orbit_t, table.costs[end_node])
+    return gains[:FLOWN]
+
+
+def mpc(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """The step of the plan in memory (tick of its making, its gains); a new plan where it has ended."""
+    table = config.schedules.get("mpc")
+    if not seen.attitude.valid or seen.reference is None or seen.ephemeris is None or table is None:
+        return Demand(memory=memory)
+    step = _step(memory, seen.tick, config.tick_s / table.problem.step_s)
+    if step is None:
+        steps = max(FLOWN, round(config.gains["mpc"].horizon_orbits * STEPS))
+        model, step_s = seen.ephemeris, table.problem.step_s
+        unix_s = model.epoch_unix_s + seen.tick * config.tick_s
+        b_orbit_t = field_ahead(model, unix_s, step_s, steps)
+        if b_orbit_t is None:
+            return Demand()
+        end = node(latitude_argument(seen.reference)) + steps
+        gains = plan(table, b_orbit_t, end % STEPS)
+        memory, step = (float(seen.tick), *gains.ravel().tolist()), 0
+    first = 1 + step * _NUMBERS
+    gain = np.array(memory[first : first + _NUMBERS]).reshape(3, 9)
+    wanted = dipole(gain, seen.attitude, known_torque(seen, table))
+    return Demand(within(wanted, config.mean_dipole_am2), memory=memory)
+
+
+def _step(memory: Memory, tick: int, steps_per_tick: float) -> int | None:
+    """The step of the plan in memory that this tick belongs to; None where there is none."""
+    if len(memory) != 1 + FLOWN * _NUMBERS or tick < memory[0]:
+        return None
+    step = int((tick - memory[0]) * steps_per_tick)
+    return step if step < FLOWN else None
