@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from fsw.core.sun import lit
-from sim.harness.validate.comparison import Comparison, mismatch
+from sim.harness.validate.comparison import Array, Comparison, mismatch
 from sim.harness.validate.reference_table import ReferenceTable, names_of
 from sim.plant.sun import illumination
 
@@ -39,18 +39,29 @@ def check(table: ReferenceTable) -> Iterator[Comparison]:
         mismatch([_kind(value) for value in fraction], [_MEANS.get(name, "partial") for name in classes]),
         0.0,
     )
-    directions = sun_m / np.linalg.norm(sun_m, axis=1)[:, None]
-    cylinder = [
-        float(lit((x, y, z), (sx, sy, sz)))
-        for (x, y, z), (sx, sy, sz) in zip(r_m.tolist(), directions.tolist(), strict=True)
-    ]
     yield Comparison(
         "cylinder",
         "Rows where the onboard cylindrical shadow differs",
         "row",
-        mismatch(cylinder, table.column("lit_cylinder")),
+        _cylinder_mismatch(r_m, sun_m, table.column("lit_cylinder")),
         0.0,
     )
+
+
+def _cylinder_mismatch(r_m: Array, sun_m: Array, reference: Array) -> Array:
+    """1 where it differs whether the cylinder points to the Sun from the Earth or from the satellite.
+
+    The two are 0.3 km apart at the shadow's edge in low orbits, and a reference may mean either.
+    """
+    differs = np.ones(len(r_m))
+    for towards_m in (sun_m, sun_m - r_m):
+        directions = towards_m / np.linalg.norm(towards_m, axis=1)[:, None]
+        ours = [
+            lit((x, y, z), (sx, sy, sz))
+            for (x, y, z), (sx, sy, sz) in zip(r_m.tolist(), directions.tolist(), strict=True)
+        ]
+        differs *= mismatch(ours, reference)
+    return differs
 
 
 _MEANS = {"sunlit": "sunlit", "umbra": "umbra"}

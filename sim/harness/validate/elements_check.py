@@ -16,6 +16,8 @@ POSITION_M = 1e-3
 VELOCITY_MPS = 1e-6
 """The same propagator; the two tell it the time in different parts of a day, 1e-11 days apart."""
 SPAN_S, STEP_S = 86400, 60
+SLOWEST_REVOLUTIONS_A_DAY = 6.4
+"""225 minutes: SGP4 has another theory for slower orbits, and this project is for low ones."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +35,9 @@ def check(path: Path) -> Iterator[Outcome]:
     Raises:
         HarnessError: the file holds no elements, or malformed ones.
     """
-    found = read_elements(path)
+    found = [elements for elements in read_elements(path) if not _slow(path, elements)]
+    if not found:
+        raise HarnessError(f"{path}: no elements of an orbit under 225 minutes")
     apart = [_apart(path, elements) for elements in found]
     names = [f"{path.name} line {elements.line} ({elements.name})" for elements in found]
     rows = (
@@ -71,6 +75,15 @@ def read_elements(path: Path) -> list[Elements]:
     if name:
         raise HarnessError(f"{path}, line {number}: no elements follow the name {name}")
     return found
+
+
+def _slow(path: Path, elements: Elements) -> bool:
+    try:
+        return float(elements.lines[1][52:63]) < SLOWEST_REVOLUTIONS_A_DAY
+    except ValueError:
+        raise HarnessError(
+            f"{path}, line {elements.line + 1}, column 53: no mean motion in element line 2"
+        ) from None
 
 
 def _apart(path: Path, elements: Elements) -> tuple[float, float]:

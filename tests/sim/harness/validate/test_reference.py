@@ -187,6 +187,38 @@ def top_rows(times):
     return rows
 
 
+def test_elements_of_slow_orbits_are_left_out(folder):
+    path = folder.copy("tle.txt")
+    geostationary = (
+        "1 25544U 98067A   15086.11593543  .00000000  00000-0  00000-0 0  9991",
+        "2 25544   0.0100  36.4208 0008932 173.8349 186.2944  1.00270000121353",
+    )
+    path.write_text("\n".join(["FAR", *geostationary, path.read_text()]))
+    assert {outcome.verdict for outcome in check(folder, "tle.txt")} == {Verdict.PASS}
+    path.write_text("\n".join(["FAR", *geostationary]))
+    with pytest.raises(HarnessError, match="no elements of an orbit under 225 minutes"):
+        check(folder, "tle.txt")
+
+
+def test_the_edge_of_the_cylinder_may_be_meant_either_way(folder):
+    """A satellite that grazes it within 0.3 km is lit or not; one further in is not."""
+    folder.copy("eclipse.csv", rows=1)
+    path = folder.path / "eclipse.csv"
+    *head, row = path.read_text().splitlines()
+    names, fields = head[-1].split(","), row.split(",")
+    for behind_km, aside_km, known in (
+        (7000.0, 6378.3, (0, 1)),
+        (7000.0, 6377.0, (0,)),
+        (7000.0, 6379.0, (1,)),
+    ):
+        place = {"sat_x_km": -behind_km, "sat_y_km": aside_km, "sat_z_km": 0.0}
+        place |= {"sun_x_km": 149.6e6, "sun_y_km": 0.0, "sun_z_km": 0.0}
+        for lit in (0, 1):
+            values = {**dict(zip(names, fields, strict=True)), **place, "lit_cylinder": lit}
+            path.write_text("\n".join([*head, ",".join(str(values[name]) for name in names)]))
+            assert ("cylinder" not in failures(folder, "eclipse.csv")) == (lit in known)
+
+
 class TestMalformed:
     """One sentence that names file, line and column."""
 
