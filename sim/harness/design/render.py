@@ -149,6 +149,7 @@ def _extensions(analysis: Analysis) -> str:
     if pulsed is not None:
         pulsing = pulsed.pulsing
         ways = ("one coil a pulse, in turn", "all coils in each pulse")
+        k_i_pulsed = _number(pulsed.integral.gains.k_i)
         held = "these gains" if pulsed.search is None else "pulses: steady"
         own, other = ways if pulsing.in_turn else ways[::-1]
         rows += [
@@ -157,7 +158,7 @@ def _extensions(analysis: Analysis) -> str:
             f"  averaged {pulsed.averaged:+.4f} (with the law's own dipole, not raised by "
             f"{1.0 / pulsing.duty:.1f}: {pulsed.unraised:+.4f})",
             f"  sampled {pulsed.sampled:+.4f} ({own}); {pulsed.other:+.4f} ({other})",
-            f"  {held} with an integral, k_i {_number(pulsed.integral.gains.k_i)}: {pulsed.integral.degree:+.4f}",
+            f"  {held} with an integral of S, k_i {k_i_pulsed}: {pulsed.integral.degree:+.4f}",
         ]
     return "\n".join(rows)
 
