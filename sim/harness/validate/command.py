@@ -1,6 +1,7 @@
 """What ``torquer validate`` does."""
 
 import os
+import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -44,8 +45,12 @@ def validate(
     studies = chosen(studies, only, quick)
     whole = folder is None and not only and not quick
     page = out or (_default_page(repository) if whole else None)
+    bar = sys.stderr.isatty()  # then the outcomes wait until it is gone; else they are the progress
     with progress("validating", sum(len(study.tasks) for study in studies)) as watch:
-        finished = run(studies, workers or os.cpu_count() or 1, watch, _print)
+        finished = run(studies, workers or os.cpu_count() or 1, watch, _quiet if bar else _print)
+    if bar:
+        for study in finished:
+            _print(study)
     outcomes = [outcome for study in finished for outcome in study.outcomes]
     wall_s = time.monotonic() - began
     if page is not None:
@@ -62,6 +67,10 @@ def _default_page(repository: Path | None) -> Path:
 def _print(finished: Finished) -> None:
     for outcome in finished.outcomes:
         click.echo(line(outcome))
+
+
+def _quiet(finished: Finished) -> None:
+    """Nothing yet."""
 
 
 def _write(page: Path, text: str) -> None:

@@ -42,7 +42,8 @@ class Comparison:
             unit=self.unit,
             high=float(tolerance[worst]),
         )
-        return claim.judge(float(self.deviation[worst]), table.label(worst))
+        where = "" if claim.high == self.deviation[worst] == 0.0 else table.label(worst)
+        return claim.judge(float(self.deviation[worst]), where)
 
 
 def largest(differences: Array) -> Array:

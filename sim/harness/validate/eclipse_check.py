@@ -35,14 +35,14 @@ def check(table: ReferenceTable) -> Iterator[Comparison]:
     yield Comparison(
         "class",
         "Rows where the plant's fraction is not of the class sunlit, umbra or between",
-        "row",
+        "rows",
         mismatch([_kind(value) for value in fraction], [_MEANS.get(name, "partial") for name in classes]),
         0.0,
     )
     yield Comparison(
         "cylinder",
         "Rows where the onboard cylindrical shadow differs",
-        "row",
+        "rows",
         _cylinder_mismatch(r_m, sun_m, table.column("lit_cylinder")),
         0.0,
     )

@@ -59,7 +59,7 @@ def check(table: ReferenceTable) -> Iterator[Comparison]:
     yield Comparison(
         "stable",
         "Cases called stable, neutral or unstable otherwise",
-        "row",
+        "rows",
         np.array(
             [not _called(*row) for row in zip(degrees, table.column("stable"), strict=True)], dtype=float
         ),
@@ -73,7 +73,7 @@ def check(table: ReferenceTable) -> Iterator[Comparison]:
     a, b, c = moments.T
     held = np.where((c > b) & (b > a), "stable", "unstable")
     yield Comparison(
-        "gravity", "Bodies that the gravity gradient holds", "row", mismatch(held, table.texts("gg")), 0.0
+        "gravity", "Bodies that the gravity gradient holds", "rows", mismatch(held, table.texts("gg")), 0.0
     )
 
 
