@@ -6,13 +6,12 @@ import shutil
 import tomllib
 from pathlib import Path
 
-from sim.design.linear import Gains
+from sim.design.linear import Gains, Number
 from sim.harness.errors import HarnessError
 
 DIGITS = 9
 """Significant digits of a gain: beside a kink the sixth still shows in the degree of stability."""
 
-_KEYS = ("k_w", "k_a")
 _HEADER = re.compile(r"^\s*\[+\s*(?P<name>[^\]]+?)\s*\]+")
 _VALUE = re.compile(
     r"^(?P<key>\s*(?:control\s*\.\s*)?(?P<name>k_w|k_a)\s*=\s*)(?P<value>[^\s#]+)(?P<rest>.*)$", re.S
@@ -20,17 +19,19 @@ _VALUE = re.compile(
 
 
 def check_writable(scenario: str) -> Path:
-    """The file that gains can be written to.
+    """The file that gains can be written to, asked before anything is computed.
 
     Raises:
-        HarnessError: the scenario is one that ships, given by its name.
+        HarnessError: the scenario is one that ships, given by its name, or as for ``write_gains``.
     """
     if not scenario.endswith(".toml"):
         raise HarnessError(
             f"--write {scenario}: gains are not written into a scenario that ships; copy it into a file and "
             f"give the path, which ends in .toml"
         )
-    return Path(scenario)
+    path = Path(scenario)
+    _edited(path, Gains(1.0, 1.0))
+    return path
 
 
 def write_gains(path: Path, gains: Gains) -> None:
@@ -39,16 +40,24 @@ def write_gains(path: Path, gains: Gains) -> None:
     Raises:
         HarnessError: the file cannot be read or written, or does not give both keys a line of their own.
     """
-    values = {key: _written(gain) for key, gain in zip(_KEYS, gains, strict=False)}
+    after = _edited(path, gains)
     try:
-        before = path.read_bytes().decode("utf-8")
-        after = _with_values(before, values)
-        if after is None:
-            wanted = ", ".join(f"{key} = {value}" for key, value in values.items())
-            raise HarnessError(f"{path}: [control] does not give k_w and k_a a line each; write {wanted}")
         _replace(path.resolve(), after)
     except OSError as error:
         raise HarnessError(f"{path}: cannot be written ({error.strerror or error})") from None
+
+
+def _edited(path: Path, gains: Gains) -> str:
+    values = {"k_w": _written(gains.k_w), "k_a": _written(gains.k_a)}
+    try:
+        after = _with_values(path.read_bytes().decode("utf-8"), values)
+    except OSError as error:
+        raise HarnessError(f"{path}: cannot be read ({error.strerror or error})") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise HarnessError(f"{path}: not TOML: {error}") from None
+    if after is None:
+        raise HarnessError(f"{path}: gains can be written only where [control] gives k_w and k_a a line each")
+    return after
 
 
 def _with_values(text: str, values: dict[str, str]) -> str | None:
@@ -66,8 +75,8 @@ def _with_values(text: str, values: dict[str, str]) -> str | None:
     return after if tomllib.loads(after) == wanted else None
 
 
-def _written(gain: object) -> str:
-    return repr(float(f"{gain:.{DIGITS}g}"))
+def _written(gain: Number) -> str:
+    return repr(float(f"{float(gain):.{DIGITS}g}"))
 
 
 def _replace(path: Path, text: str) -> None:
