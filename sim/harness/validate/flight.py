@@ -15,7 +15,7 @@ from fsw.io.schema import Nested
 from fsw.wire.frame import Frame
 from fsw.wire.messages import NAMES, CoilBoot, CoilRefused, CoilStatus, PlantEnd, Sync
 from sim.harness.assemble import plant_config
-from sim.harness.audit.auditor import audit
+from sim.harness.audit.auditor import AuditReport, audit
 from sim.harness.audit.findings import AuditLimits
 from sim.harness.candump import LogEntry
 from sim.harness.estimates import EstimateRecorder, Estimates
@@ -36,7 +36,7 @@ _KEPT = frozenset({CoilStatus.ID, CoilBoot.ID, CoilRefused.ID, Sync.ID, PlantEnd
 }
 """What audit and tally look at."""
 
-_COLUMNS = {"t_s": 1, "q_body_from_orbit": 4, "omega_body_orbit_radps": 3, "lit": 1}
+_COLUMNS = {"t_s": 1, "q_body_from_orbit": 4, "omega_body_orbit_radps": 3, "lit": 1, "m_body_am2": 3}
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,8 +67,33 @@ class Flight:
     figures: Figures
 
 
+@dataclass(frozen=True, slots=True)
+class Record:
+    """All that is kept of a flight: ``run`` is what ``run.json`` would say of it, as far as it is judged."""
+
+    scenario: Scenario
+    run: Json
+    truth: Histories
+    estimates: Estimates
+    audit: AuditReport
+    tally: BusTally
+
+
 def fly_order(order: Order) -> Flight:
     """Fly, audit and summarise.
+
+    Raises:
+        TableError: the scenario or an override is not valid.
+        HarnessError: the flight cannot be flown.
+    """
+    kept = record_order(order)
+    summary = summarise(kept.scenario, kept.run, kept.truth, kept.estimates, kept.audit, kept.tally)
+    figures = {} if order.measure is None else order.measure(kept.scenario, kept.truth, kept.estimates)
+    return Flight(order, summary, figures)
+
+
+def record_order(order: Order) -> Record:
+    """Fly and audit; ``measure`` is left to others.
 
     Raises:
         TableError: the scenario or an override is not valid.
@@ -80,15 +105,12 @@ def fly_order(order: Order) -> Flight:
     log, truth = _Frames(), _Truth(ticks, node)
     plant = Plant(plant_config(scenario, order.seed))
     flown = fly(plant, VirtualBus(node), log, truth, ticks, scenario.epoch_unix_s, scenario.time.tick_hz)
-    estimates = truth.recorder.estimates()
     tally = BusTally(scenario.epoch_unix_s * 1_000_000)
     for entry in log.entries:
         tally.take(entry)
     run = {"seed": order.seed, "flown": {"wall_s": flown.wall_s, "slips": flown.slips}}
     audited = audit(log.entries, _limits(scenario))
-    summary = summarise(scenario, run, truth.histories, estimates, audited, tally)
-    figures = {} if order.measure is None else order.measure(scenario, truth.histories, estimates)
-    return Flight(order, summary, figures)
+    return Record(scenario, run, truth.histories, truth.recorder.estimates(), audited, tally)
 
 
 class _Frames:
