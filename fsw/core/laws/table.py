@@ -13,8 +13,18 @@ from fsw.core.laws.field_tracking import (
 from fsw.core.laws.interface import Law
 from fsw.core.laws.lqr import LqrGains, lqr, without_memory
 from fsw.core.laws.mpc import MpcGains, mpc
+from fsw.core.laws.output_feedback import FilterGains, output_feedback
 from fsw.core.laws.pd import pd, pd_far
 from fsw.core.laws.predictive import predictive
+from fsw.core.laws.projection import (
+    RegularGains,
+    WeightGains,
+    regularised,
+    regularised_far,
+    weighted,
+    weighted_far,
+)
+from fsw.core.laws.sliding import SlidingGains, SlidingIntegralGains, sliding, sliding_integral
 from fsw.core.laws.spin import SpinGains, nutation, spin_up, y_thomson
 from fsw.core.laws.spin_axis import SpinAxisGains, ThreeTermGains, reorientation, spin_relay, three_term
 from fsw.core.laws.sun_pointing import sun_pointing
@@ -50,4 +60,9 @@ LAWS: dict[str, Row] = {
     "sun_pointing": Row(30, sun_pointing, sun_pointing),
     "lqr": Row(40, without_memory, lqr, LqrGains),
     "mpc": Row(41, without_memory, mpc, MpcGains),
+    "pd_weighted": Row(50, weighted_far, weighted, WeightGains),
+    "pd_regularised": Row(51, regularised_far, regularised, RegularGains),
+    "output_feedback": Row(52, output_feedback, output_feedback, FilterGains),
+    "sliding": Row(60, sliding, sliding, SlidingGains),
+    "sliding_integral": Row(61, sliding_integral, sliding_integral, SlidingIntegralGains),
 }

@@ -66,6 +66,7 @@ class Body:
     wheel: tuple = (0.0, 0.0, 0.0)
     most_am2: float = 1e9
     gravity: bool = True
+    torque: tuple = (0.0, 0.0, 0.0)  # constant, body axes
 
 
 @dataclass
@@ -163,13 +164,16 @@ def fly(
     sun_eci=None,
     known=True,
     switch=None,
+    look=lambda seen: seen,
+    settings=None,
 ):
     """Fly a law from an attitude and an absolute rate; the dipole holds over a step.
 
-    ``switch`` is (time, law): the law flown from that time on.
+    ``switch`` is (time, law): the law flown from that time on; ``look`` changes what the law sees, and
+    ``settings`` stand for those of the body.
     """
     body = body or Body()
-    settings = config(body, step_s, gains)
+    settings = settings or config(body, step_s, gains)
     inverse, wheel = np.linalg.inv(body.inertia), np.array(body.wheel)
     pull = 3.0 * orbit.rate_radps**2 if body.gravity else 0.0
     sun = None if sun_eci is None else np.array(sun_eci) / np.linalg.norm(sun_eci)
@@ -187,7 +191,8 @@ def fly(
         w1, w2, w3 = (inverse @ (state[:, 3] - wheel)).tolist()
         out = np.array([[0.0, w3, -w2], [-w3, 0.0, w1], [w2, -w1, 0.0]]) @ state
         gravity = cross(vertical, (body.inertia @ vertical).tolist())
-        out[:, 3] += [magnetic + pull * g for magnetic, g in zip(cross(m, b), gravity, strict=True)]
+        parts = zip(cross(m, b), gravity, body.torque, strict=True)
+        out[:, 3] += [magnetic + pull * g + constant for magnetic, g, constant in parts]
         return out
 
     for tick in range(ticks):
@@ -196,7 +201,7 @@ def fly(
         c_body_from_eci, omega = state[:, :3], inverse @ (state[:, 3] - wheel)
         now = c_orbit[2 * tick], b_eci[2 * tick]
         seen = seen_in(orbit, tick, *now, c_body_from_eci, omega, before, sun, known)
-        demand = law(seen, memory, law_setpoint, settings)
+        demand = law(look(seen), memory, law_setpoint, settings)
         before, memory = seen.sample, demand.memory
         m = [max(-body.most_am2, min(body.most_am2, part)) for part in demand.m_body_am2]
         rows.append((tick * step_s, omega, c_body_from_eci @ now[0].T, state, m))

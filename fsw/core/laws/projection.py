@@ -1,0 +1,127 @@
+"""Torques that no coil can give, made dipoles: the weighted projection and the regularised inverse.
+
+A law asks for a torque M_ref; coils give M = m x b, normal to the field. The reference is that of the PD law,
+M_ref = -|b|^2 (k_w Omega + k_a S), whose plain projection is the PD dipole.
+
+Source: Ovchinnikov, Roldugin 2019, section 3.1. The scan damages both formulas; they were derived anew.
+"""
+
+from dataclasses import dataclass
+
+from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
+from fsw.core.laws.pd import attitude_error, far_error
+from fsw.core.quaternion import dcm
+from fsw.core.vector import ZERO, Vec3, add, cross, dot, scale, sub
+
+NT = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class WeightGains:
+    """Weights of the torque error about the body axes; where one is zero, all are 1 / J_ii."""
+
+    q1: float = 0.0
+    q2: float = 0.0
+    q3: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class RegularGains:
+    """Square root of lambda, nT."""
+
+    floor_nt: float = 5000.0
+
+
+def weighted_projection(torque_body_nm: Vec3, b_body_t: Vec3, weights: Vec3) -> Vec3:
+    """The torque normal to b nearest to the one asked for: M = M_ref - Q^-1 b (b^T Q^-1 b)^-1 b^T M_ref.
+
+    It minimises (M_ref - M)^T Q (M_ref - M) under M . b = 0: a heavy weight keeps the error off that axis.
+
+    Args:
+        torque_body_nm: M_ref, body axes, N m.
+        b_body_t: field, body axes, T; without a field there is no torque.
+        weights: diagonal of Q, positive.
+
+    Returns:
+        M, body axes, N m.
+    """
+    (b1, b2, b3), (q1, q2, q3) = b_body_t, weights
+    eased = (b1 / q1, b2 / q2, b3 / q3)
+    size = dot(b_body_t, eased)
+    return sub(torque_body_nm, scale(dot(b_body_t, torque_body_nm) / size, eased)) if size > 0.0 else ZERO
+
+
+def torque_dipole(torque_body_nm: Vec3, b_body_t: Vec3) -> Vec3:
+    """M = b x M / |b|^2: the shortest dipole for a torque normal to b; it loses what lies along b."""
+    square = dot(b_body_t, b_body_t)
+    return scale(1.0 / square, cross(b_body_t, torque_body_nm)) if square > 0.0 else ZERO
+
+
+def regularised_dipole(torque_body_nm: Vec3, b_body_t: Vec3, floor_t: float) -> Vec3:
+    """M = (B^T B + lambda E)^-1 B^T M_ref with M = B m, B = -[b x], and lambda = floor^2.
+
+    B^T B = |b|^2 E - b b^T has no inverse; with lambda it has, and as B^T M_ref = b x M_ref is normal to b,
+
+        m = b x M_ref / (|b|^2 + lambda):
+
+    the projection, shortened, and the more so the weaker the field.
+
+    Args:
+        torque_body_nm: M_ref, body axes, N m.
+        b_body_t: field, body axes, T.
+        floor_t: square root of lambda, T, positive.
+
+    Returns:
+        Dipole in body axes, A m^2.
+    """
+    return scale(1.0 / (dot(b_body_t, b_body_t) + floor_t * floor_t), cross(b_body_t, torque_body_nm))
+
+
+def reference_torque(b_body_t: Vec3, omega_body_orbit_radps: Vec3, error: Vec3, setpoint: Setpoint) -> Vec3:
+    """M_ref = -|b|^2 (k_w Omega + k_a S), body axes, N m."""
+    wanted = add(scale(setpoint.k_w, omega_body_orbit_radps), scale(setpoint.k_a, error))
+    return scale(-dot(b_body_t, b_body_t), wanted)
+
+
+def weighted(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """The PD torque by the weighted projection."""
+    if not seen.attitude.valid:
+        return Demand()
+    return _weighted(seen, attitude_error(dcm(seen.attitude.q_body_from_orbit)), setpoint, config)
+
+
+def weighted_far(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """The same far from the goal, by the error that does not vanish upside down."""
+    if not seen.attitude.valid:
+        return Demand()
+    return _weighted(seen, far_error(seen.attitude.q_body_from_orbit), setpoint, config)
+
+
+def regularised(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """The PD torque by the regularised inverse."""
+    if not seen.attitude.valid:
+        return Demand()
+    return _regularised(seen, attitude_error(dcm(seen.attitude.q_body_from_orbit)), setpoint, config)
+
+
+def regularised_far(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """The same far from the goal, by the error that does not vanish upside down."""
+    if not seen.attitude.valid:
+        return Demand()
+    return _regularised(seen, far_error(seen.attitude.q_body_from_orbit), setpoint, config)
+
+
+def _weighted(seen: Seen, error: Vec3, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    given: WeightGains = config.gains["pd_weighted"]
+    (j1, _, _), (_, j2, _), (_, _, j3) = config.inertia_kgm2
+    weights = (given.q1, given.q2, given.q3)
+    if min(weights) <= 0.0:
+        weights = (1.0 / j1, 1.0 / j2, 1.0 / j3)
+    torque = reference_torque(seen.b_body_t, seen.attitude.omega_body_orbit_radps, error, setpoint)
+    return Demand(torque_dipole(weighted_projection(torque, seen.b_body_t, weights), seen.b_body_t))
+
+
+def _regularised(seen: Seen, error: Vec3, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    given: RegularGains = config.gains["pd_regularised"]
+    torque = reference_torque(seen.b_body_t, seen.attitude.omega_body_orbit_radps, error, setpoint)
+    return Demand(regularised_dipole(torque, seen.b_body_t, given.floor_nt * NT))
