@@ -67,7 +67,7 @@ def _row(outcome: Outcome) -> str:
 
 
 def _figure(outcome: Outcome) -> str:
-    return f"{outcome.ours:.3g} {_unit(outcome.claim.unit)}".strip()
+    return f"{outcome.ours:.4g} {_unit(outcome.claim.unit)}".strip()
 
 
 def _unit(unit: str) -> str:
