@@ -5,6 +5,7 @@ samples while it is off. An impulse law keeps the timing of the pulses, so that 
 """
 
 from dataclasses import dataclass, replace
+from math import isfinite
 
 from fsw.core.laws.genetic import search
 from fsw.core.laws.interface import Demand
@@ -73,7 +74,12 @@ def _begin(
 
 
 def saturated(m_body_am2: Vec3, config: DipoleConfig) -> CoilDipole:
-    """The request: the dipole as fractions of full scale, shortened to fit but not turned."""
+    """The request: the dipole as fractions of full scale, shortened to fit but not turned.
+
+    What is not a number asks for nothing: on the wire it would be full scale.
+    """
     fractions = scale(1.0 / config.full_scale_am2, m_body_am2)
+    if not isfinite(sum(fractions)):
+        return CoilDipole(0.0, 0.0, 0.0)
     most = max(abs(fractions[0]), abs(fractions[1]), abs(fractions[2]))
     return CoilDipole(*(scale(MOST / most, fractions) if most > MOST else fractions))

@@ -1,6 +1,7 @@
 """The continuous driver: a dipole a tick as asked for, and an impulse in the timing of the pulses."""
 
 from dataclasses import replace
+from math import inf, nan
 
 import numpy as np
 import pytest
@@ -70,6 +71,13 @@ class TestSaturation:
         heard = CoilDipole.decode(sent.encode().data)
         np.testing.assert_allclose(am2(heard), am2(sent), atol=LSB * FULL_SCALE_AM2)
         assert max(abs(c) for c in heard[:3]) == MOST
+
+    @pytest.mark.parametrize("axis", [0, 1, 2])
+    @pytest.mark.parametrize("value", [nan, inf, -inf])
+    def test_what_is_not_a_number_asks_for_nothing(self, axis, value):
+        """On the wire it would be full scale."""
+        m_body_am2 = tuple(value if i == axis else 1.0 for i in range(3))
+        assert saturated(m_body_am2, CONFIG) == CoilDipole(0.0, 0.0, 0.0)
 
     def test_none_is_none(self):
         assert saturated(ZERO, CONFIG) == CoilDipole(0.0, 0.0, 0.0)
