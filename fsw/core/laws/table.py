@@ -1,5 +1,6 @@
 """The laws that fly, by name: far from the goal and near it."""
 
+from enum import StrEnum
 from typing import NamedTuple
 
 from fsw.core.laws.damping import SwitchedGains, bdot, bdot_switched, rate_damping
@@ -30,39 +31,55 @@ from fsw.core.laws.spin_axis import SpinAxisGains, ThreeTermGains, reorientation
 from fsw.core.laws.sun_pointing import sun_pointing
 
 
-class Row(NamedTuple):
-    """A law: its number in telecommands, what ACQUIRE and POINT fly, and the class of its own parameters.
+class Aim(StrEnum):
+    """What a law is for; laws of one aim can be compared."""
 
-    That class is a frozen dataclass of floats with defaults, or None for a law with none.
+    THREE_AXIS = "three_axis"
+    """The whole attitude is held to the orbital frame."""
+    AXIS = "axis"
+    """A body axis with a wheel is held to its direction, the body turned about it."""
+    RATE = "rate"
+    """The rate is taken away, or down to the spin that is wanted."""
+    SPIN = "spin"
+    """A spin is built up, or the axis of one is turned."""
+    SUN = "sun"
+    """An axis is turned to the Sun."""
+
+
+class Row(NamedTuple):
+    """A law: its number in telecommands, its aim, what ACQUIRE and POINT fly, and its own parameters.
+
+    Those are a class, a frozen dataclass of floats with defaults, or None for a law with none.
     """
 
     number: int
+    aim: Aim
     acquire: Law
     point: Law
     gains: type | None = None
 
 
 LAWS: dict[str, Row] = {
-    "pd": Row(0, pd_far, pd),
-    "rate_damping": Row(1, rate_damping, rate_damping),
-    "bdot": Row(2, bdot, bdot),
-    "predictive": Row(3, predictive, predictive),
-    "bdot_switched": Row(10, bdot_switched, bdot_switched, SwitchedGains),
-    "nutation": Row(11, nutation, nutation, SpinGains),
-    "spin_up": Row(12, spin_up, spin_up, SpinGains),
-    "y_thomson": Row(13, y_thomson, y_thomson, SpinGains),
-    "spin_relay": Row(14, spin_relay, spin_relay, SpinAxisGains),
-    "reorientation": Row(15, reorientation, reorientation, SpinAxisGains),
-    "three_term": Row(16, three_term, three_term, ThreeTermGains),
-    "dual_spin": Row(20, dual_spin, dual_spin, DualSpinGains),
-    "field_tracking": Row(21, field_tracking, field_tracking),
-    "field_tracking_pd": Row(22, tracking_before_pd, pd_after_tracking, HandOverGains),
-    "sun_pointing": Row(30, sun_pointing, sun_pointing),
-    "lqr": Row(40, without_memory, lqr, LqrGains),
-    "mpc": Row(41, without_memory, mpc, MpcGains),
-    "pd_weighted": Row(50, weighted_far, weighted, WeightGains),
-    "pd_regularised": Row(51, regularised_far, regularised, RegularGains),
-    "output_feedback": Row(52, output_feedback, output_feedback, FilterGains),
-    "sliding": Row(60, sliding, sliding, SlidingGains),
-    "sliding_integral": Row(61, sliding_integral, sliding_integral, SlidingIntegralGains),
+    "pd": Row(0, Aim.THREE_AXIS, pd_far, pd),
+    "rate_damping": Row(1, Aim.RATE, rate_damping, rate_damping),
+    "bdot": Row(2, Aim.RATE, bdot, bdot),
+    "predictive": Row(3, Aim.RATE, predictive, predictive),
+    "bdot_switched": Row(10, Aim.RATE, bdot_switched, bdot_switched, SwitchedGains),
+    "nutation": Row(11, Aim.SPIN, nutation, nutation, SpinGains),
+    "spin_up": Row(12, Aim.SPIN, spin_up, spin_up, SpinGains),
+    "y_thomson": Row(13, Aim.SPIN, y_thomson, y_thomson, SpinGains),
+    "spin_relay": Row(14, Aim.SPIN, spin_relay, spin_relay, SpinAxisGains),
+    "reorientation": Row(15, Aim.SPIN, reorientation, reorientation, SpinAxisGains),
+    "three_term": Row(16, Aim.SPIN, three_term, three_term, ThreeTermGains),
+    "dual_spin": Row(20, Aim.AXIS, dual_spin, dual_spin, DualSpinGains),
+    "field_tracking": Row(21, Aim.THREE_AXIS, field_tracking, field_tracking),
+    "field_tracking_pd": Row(22, Aim.THREE_AXIS, tracking_before_pd, pd_after_tracking, HandOverGains),
+    "sun_pointing": Row(30, Aim.SUN, sun_pointing, sun_pointing),
+    "lqr": Row(40, Aim.THREE_AXIS, without_memory, lqr, LqrGains),
+    "mpc": Row(41, Aim.THREE_AXIS, without_memory, mpc, MpcGains),
+    "pd_weighted": Row(50, Aim.THREE_AXIS, weighted_far, weighted, WeightGains),
+    "pd_regularised": Row(51, Aim.THREE_AXIS, regularised_far, regularised, RegularGains),
+    "output_feedback": Row(52, Aim.THREE_AXIS, output_feedback, output_feedback, FilterGains),
+    "sliding": Row(60, Aim.THREE_AXIS, sliding, sliding, SlidingGains),
+    "sliding_integral": Row(61, Aim.THREE_AXIS, sliding_integral, sliding_integral, SlidingIntegralGains),
 }
