@@ -81,7 +81,7 @@ def measured(name: str) -> Pick:
 
 def label(order: Order) -> str:
     """Which flight this is, for a person."""
-    words = [f"{key}={value}" for key, value in _flat(order.overrides)]
+    words = [f"{key}={_text(value)}" for key, value in _flat(order.overrides)]
     return ", ".join([order.scenario, f"seed {order.seed}", *words])
 
 
@@ -103,3 +103,10 @@ def _flat(values: Nested, prefix: str = "") -> Iterator[tuple[str, object]]:
             yield from _flat(value, f"{prefix}{key}.")
         else:
             yield f"{prefix}{key}", value
+
+
+def _text(value: object) -> str:
+    """A value with its numbers cut short."""
+    if isinstance(value, list):
+        return f"[{', '.join(map(_text, value))}]"
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

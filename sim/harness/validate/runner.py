@@ -2,10 +2,13 @@
 
 import multiprocessing
 import os
+import signal
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
 from dataclasses import dataclass
+from multiprocessing.process import BaseProcess
 from typing import Any
 
 from sim.harness.validate.claim import Outcome, Study, Task
@@ -74,16 +77,39 @@ def _results(studies: Sequence[Study], workers: int) -> Iterator[tuple[int, int,
         for place, number, task in tasks:
             yield place, number, _timed(task)
         return
+    others = multiprocessing.active_children()
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # one task, one core
     with ProcessPoolExecutor(min(workers, len(tasks)), multiprocessing.get_context("spawn")) as pool:
-        places: dict[Future[tuple[float, Any]], tuple[int, int]] = {
-            pool.submit(_timed, task): (place, number) for place, number, task in tasks
-        }
+        with _deaf_children():
+            places: dict[Future[tuple[float, Any]], tuple[int, int]] = {
+                pool.submit(_timed, task): (place, number) for place, number, task in tasks
+            }
         try:
             for future in as_completed(places):
                 yield *places[future], future.result()
-        finally:
-            pool.shutdown(wait=True, cancel_futures=True)
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            _end(others)
+            raise
+
+
+@contextmanager
+def _deaf_children() -> Iterator[None]:
+    """Processes started meanwhile leave Ctrl-C to this one, which ends them."""
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _end(others: Sequence[BaseProcess]) -> None:
+    """End the processes of this one that are not among the others."""
+    mine = [process for process in multiprocessing.active_children() if process not in others]
+    for process in mine:
+        process.terminate()
+    for process in mine:
+        process.join()
 
 
 def _timed(task: Task) -> tuple[float, Any]:

@@ -64,8 +64,8 @@ def test_numbers_of_a_summary():
 
 
 def test_a_label_tells_what_is_special():
-    order = Order("posat1", {"orbit": {"raan_deg": 60.0}, "initial": {"axis": [0, 1, 0]}}, seed=3)
-    assert label(order) == "posat1, seed 3, orbit.raan_deg=60.0, initial.axis=[0, 1, 0]"
+    order = Order("posat1", {"orbit": {"raan_deg": 60.0}, "initial": {"axis": [0, 1.23456, 0]}}, seed=3)
+    assert label(order) == "posat1, seed 3, orbit.raan_deg=60, initial.axis=[0, 1.235, 0]"
 
 
 class TestFigures:

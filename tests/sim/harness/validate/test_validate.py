@@ -1,5 +1,7 @@
 """The framework: verdicts, which studies run, the page, exit codes."""
 
+import multiprocessing
+import time
 from functools import partial
 
 import pytest
@@ -60,6 +62,14 @@ class TestRunner:
 
         with pytest.raises(HarnessError, match="no"):
             run([Study("x", (refuse,), lambda results: [])], 1, lambda done: None, lambda done: None)
+
+    def test_one_that_fails_does_not_wait_for_the_others(self):
+        tasks = (partial(time.sleep, 60.0), partial(int, "no number"))
+        began = time.monotonic()
+        with pytest.raises(ValueError, match="no number"):
+            run([Study("x", tasks, lambda results: [])], 2, lambda done: None, lambda done: None)
+        assert time.monotonic() - began < 30.0
+        assert not multiprocessing.active_children()
 
 
 class TestChoice:
