@@ -1,0 +1,169 @@
+"""Predictive control over the orbit ahead: the regulator on its own field, better than it on the real one."""
+
+from dataclasses import replace
+from math import radians
+
+import numpy as np
+import pytest
+
+from fsw.core.attitude import UNKNOWN
+from fsw.core.ephemeris import ephemeris_model
+from fsw.core.field import FieldKind, field_eci_t
+from fsw.core.laws.lqr import STEPS, LqrGains, lqr, schedule
+from fsw.core.laws.mpc import FLOWN, MpcGains, field_ahead, mpc, plan
+from fsw.core.orbit import circular_orbit
+
+EPOCH = 1742461200
+MOST_AM2 = 2.0
+STEP_S = 10.0
+INERTIA = np.diag([1.02, 1.85, 1.95])
+TORQUE = (1e-7, 1e-7, 1e-7)
+
+
+def model_of(kind, orbit):
+    circle = circular_orbit(orbit.altitude_km, orbit.inclination_deg, 0.0, 0.0, EPOCH)
+    return ephemeris_model(circle, EPOCH, 1, kind, degree=4)
+
+
+@pytest.fixture(scope="module")
+def settings(bench):
+    orbit = bench.Orbit()
+    ready = bench.config(bench.Body(INERTIA, most_am2=MOST_AM2), STEP_S, {"mpc": MpcGains()})
+    table = schedule(
+        ready.inertia_kgm2,
+        (0.0, 0.0, 0.0),
+        orbit.rate_radps,
+        radians(orbit.inclination_deg),
+        7.812e15 / orbit.radius_m**3,
+        LqrGains(),
+    )
+    return replace(ready, schedules={"lqr": table, "mpc": table})
+
+
+@pytest.fixture
+def seen(bench, turned):
+    """Tick 3 of a satellite on the direct dipole's field, 15 deg off."""
+    orbit = bench.Orbit()
+    c_body_from_eci = turned((1, -2, 3), 15.0) @ orbit.c_orbit_from_eci(30.0)
+    given = bench.seen_at(orbit, 3, STEP_S, c_body_from_eci, np.array([1e-4, 2e-4, 1.3e-3]), None)
+    return given._replace(ephemeris=model_of(FieldKind.DIRECT_DIPOLE, orbit))
+
+
+def test_the_field_ahead_is_that_of_the_orbit_to_come(bench):
+    orbit = bench.Orbit()
+    ahead = field_ahead(model_of(FieldKind.DIRECT_DIPOLE, orbit), EPOCH + 500.0, 60.0, 100)
+    times = 500.0 + 60.0 * (np.arange(100) + 0.5)
+    expected = [orbit.c_orbit_from_eci(t) @ orbit.b_eci_t(t) for t in times]
+    assert ahead == pytest.approx(np.array(expected), abs=1e-10)
+
+
+def test_no_field_ahead_where_the_orbit_has_no_position(bench, monkeypatch):
+    monkeypatch.setattr("fsw.core.laws.mpc.state_eci", lambda orbit, unix_s: None)
+    assert field_ahead(model_of(FieldKind.DIRECT_DIPOLE, bench.Orbit()), EPOCH, 60.0, 10) is None
+
+
+@pytest.mark.parametrize("steps", [FLOWN, STEPS // 3, STEPS, 2 * STEPS])
+def test_on_the_field_of_the_regulator_the_plan_is_the_regulator(settings, steps):
+    """However far it looks, as its end is worth what the regulator makes of it."""
+    table, start = settings.schedules["mpc"], 17
+    u = 2.0 * np.pi / STEPS * (start + np.arange(steps) + 0.5)
+    i, b0 = radians(98.6), 7.812e15 / (7178137.0**3)
+    field = b0 * np.stack([-2 * np.sin(u) * np.sin(i), np.cos(u) * np.sin(i), np.full(steps, np.cos(i))], -1)
+    expected = table.gains[(start + np.arange(FLOWN)) % STEPS]
+    gains = plan(table, field, (start + steps) % STEPS)
+    assert gains == pytest.approx(expected, rel=1e-6, abs=1e-7 * np.abs(expected).min(axis=(0, 1)).max())
+
+
+def test_on_that_field_both_laws_ask_for_nearly_the_same(bench, settings, seen):
+    """Not the same: the steps of the one begin with the plan, those of the other at the node."""
+    by_lqr, by_mpc = (np.array(law(seen, (), bench.setpoint(), settings).m_body_am2) for law in (lqr, mpc))
+    assert by_mpc == pytest.approx(by_lqr, abs=0.05 * np.linalg.norm(by_lqr))
+
+
+def test_on_a_tilted_field_with_a_constant_torque_the_plan_points_better(bench, settings, turned):
+    """What the regulator's own field does not have: the tilt, which turns with the Earth."""
+    model = model_of(FieldKind.IGRF14, bench.Orbit())
+
+    class Real(bench.Orbit):
+        def b_eci_t(self, t_s):
+            r = self.radius_m * self.c_orbit_from_eci(t_s)[..., 0, :]
+            times = np.broadcast_to(t_s, r.shape[:-1])
+            b = [
+                field_eci_t(model.field, tuple(place), EPOCH + float(t))
+                for place, t in zip(r.reshape(-1, 3).tolist(), times.reshape(-1), strict=True)
+            ]
+            return np.array(b).reshape(r.shape)
+
+    orbit = Real()
+
+    def rms_deg(law):
+        flown = bench.fly(
+            law,
+            bench.setpoint(),
+            orbit=orbit,
+            body=bench.Body(INERTIA, most_am2=MOST_AM2, torque=TORQUE),
+            c_body_from_orbit=turned((1, 2, 3), 10.0),
+            omega_body=(0.0, 0.0, orbit.rate_radps),
+            seconds=6.0 * orbit.period_s,
+            step_s=STEP_S,
+            look=lambda seen: seen._replace(torque_body_nm=TORQUE, ephemeris=model),
+            settings=settings,
+        )
+        return float(np.sqrt(np.mean(flown.angle_deg[-len(flown.t_s) // 2 :] ** 2)))
+
+    by_lqr, by_mpc = rms_deg(lqr), rms_deg(mpc)
+    assert by_mpc < 2.2
+    assert by_mpc < 0.8 * by_lqr
+
+
+def test_a_plan_is_flown_for_its_steps_and_then_made_anew(bench, settings, seen):
+    step_ticks = settings.schedules["mpc"].problem.step_s / STEP_S
+    memory = mpc(seen, (), bench.setpoint(), settings).memory
+    last, first = int(FLOWN * step_ticks), int(FLOWN * step_ticks) + 1
+    still = mpc(seen._replace(tick=3 + last), memory, bench.setpoint(), settings).memory
+    anew = mpc(seen._replace(tick=3 + first), memory, bench.setpoint(), settings).memory
+    assert still == memory
+    assert anew[0] == 3 + first
+    assert anew[1:] != memory[1:]
+
+
+def test_each_step_of_a_plan_has_its_gain(bench, settings, seen):
+    step_ticks = settings.schedules["mpc"].problem.step_s / STEP_S
+    memory = mpc(seen, (), bench.setpoint(), settings).memory
+    ticks = [3 + int(step * step_ticks) + 1 for step in range(FLOWN)]
+    asked = [mpc(seen._replace(tick=tick), memory, bench.setpoint(), settings) for tick in ticks]
+    assert len({demand.m_body_am2 for demand in asked}) == FLOWN
+    assert {demand.memory for demand in asked} == {memory}
+
+
+@pytest.mark.parametrize("foreign", [(1.0, 2.0, 3.0), (900.0,) + (7.0,) * 135, (0.0,) * 136])
+def test_what_is_not_a_plan_of_now_is_replaced(bench, settings, seen, foreign):
+    """Another law's memory, a plan of the future, and one long gone."""
+    late = seen._replace(tick=500)
+    assert mpc(late, foreign, bench.setpoint(), settings) == mpc(late, (), bench.setpoint(), settings)
+
+
+def test_the_bound_of_the_coils_holds(bench, settings, seen):
+    tight = replace(settings, mean_dipole_am2=1e-3)
+    m = mpc(seen, (), bench.setpoint(), tight).m_body_am2
+    free = mpc(seen, (), bench.setpoint(), settings).m_body_am2
+    assert max(map(abs, m)) == pytest.approx(1e-3)
+    assert np.cross(m, free) == pytest.approx(np.zeros(3), abs=1e-15)
+
+
+def test_without_a_bound_in_reach_it_changes_nothing(bench, settings, seen):
+    wide = replace(settings, mean_dipole_am2=1e6)
+    assert mpc(seen, (), bench.setpoint(), wide) == mpc(seen, (), bench.setpoint(), settings)
+
+
+@pytest.mark.parametrize("missing", ["attitude", "reference", "ephemeris", "schedule"])
+def test_without_knowledge_nothing_is_asked_for(bench, settings, seen, missing):
+    given = settings if missing != "schedule" else replace(settings, schedules={})
+    if missing != "schedule":
+        seen = seen._replace(**{missing: UNKNOWN if missing == "attitude" else None})
+    assert mpc(seen, (), bench.setpoint(), given).m_body_am2 == (0.0, 0.0, 0.0)
+
+
+def test_a_gap_in_the_attitude_keeps_the_plan(bench, settings, seen):
+    memory = mpc(seen, (), bench.setpoint(), settings).memory
+    assert mpc(seen._replace(attitude=UNKNOWN), memory, bench.setpoint(), settings).memory == memory
