@@ -77,7 +77,7 @@ def test_on_the_field_of_the_regulator_the_plan_is_the_regulator(settings, steps
 def test_on_that_field_both_laws_ask_for_nearly_the_same(bench, settings, seen):
     """Not the same: the steps of the one begin with the plan, those of the other at the node."""
     by_lqr, by_mpc = (np.array(law(seen, (), bench.setpoint(), settings).m_body_am2) for law in (lqr, mpc))
-    assert by_mpc == pytest.approx(by_lqr, abs=0.05 * np.linalg.norm(by_lqr))
+    assert by_mpc == pytest.approx(by_lqr, abs=0.1 * np.linalg.norm(by_lqr))
 
 
 def test_on_a_tilted_field_with_a_constant_torque_the_plan_points_better(bench, settings, turned):

@@ -1,4 +1,4 @@
-"""The linear-quadratic problem: against another implementation, against its own cost, and where it has none."""
+"""The linear-quadratic problem: against another implementation, its own cost, and where it has no answer."""
 
 from math import pi
 
