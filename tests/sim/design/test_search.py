@@ -21,53 +21,78 @@ from sim.design.search import (
 MICROSAT = BODIES[2]
 
 
-def found_for(body):
-    heard = []
-    found = search(body, continuous(body), continuous(body, ROUGH_STEPS), heard.append)
-    return found, heard
+PLACE_W, PLACE_A = 3.0, 0.5
+"""Where ``kinked`` has its minimum, in natural gains."""
+
+
+def kinked(gains):
+    """A landscape like a real one: two slopes that meet in a valley, and a second, higher basin."""
+    natural = natural_gains(MICROSAT)
+    w, a = np.log(gains.k_w / natural.k_w / PLACE_W), np.log(gains.k_a / natural.k_a / PLACE_A)
+    valley = np.maximum(np.sqrt(np.abs(w - 0.3 * a)), 0.3 * np.abs(a)) - 0.6
+    other = 0.2 * np.hypot(w + 3.0, a - 3.0) - 0.3
+    return np.minimum(valley, other)
 
 
 @pytest.fixture(scope="module")
 def microsat():
-    return found_for(MICROSAT)
+    return search(MICROSAT, continuous(MICROSAT), continuous(MICROSAT, ROUGH_STEPS))
 
 
 def test_it_finds_the_known_optimum(microsat):
-    best = microsat[0].best
+    best = microsat.best
     assert best.degree < -0.5185
     assert best.gains.k_w == pytest.approx(6.2694e6, rel=2e-3)
     assert best.gains.k_a == pytest.approx(1614.9, rel=2e-3)
-    assert microsat[0].stabilised
+    assert microsat.stabilised
 
 
 def test_the_best_gains_are_better_than_all_beside_them(microsat):
-    best = microsat[0].best
+    best = microsat.best
     around = np.exp(np.linspace(-0.2, 0.2, 11))
     beside = continuous(MICROSAT)(Gains(best.gains.k_w * around[:, None], best.gains.k_a * around))
     assert beside.min() >= best.degree - 1e-6
 
 
 def test_the_steady_gains_are_surer_than_the_best(microsat):
-    best, steady = microsat[0].best, microsat[0].steady
+    best, steady = microsat.best, microsat.steady
     assert steady.sure < best.sure - 0.05
     assert best.degree < steady.degree < 0.0
 
 
-def test_it_tells_how_far_it_is(microsat):
-    heard = microsat[1]
-    assert heard == sorted(heard)
-    assert heard[0] == 1
-    assert heard[-1] == SEARCH_STEPS
-
-
-def test_it_finds_the_same_again(microsat):
-    assert found_for(MICROSAT)[0].best == microsat[0].best
-
-
 def test_it_says_when_no_gains_stabilise():
-    found, _ = found_for(UNSTABLE_BODIES[1])
+    body = UNSTABLE_BODIES[1]
+    found = search(body, continuous(body), continuous(body, ROUGH_STEPS))
     assert not found.stabilised
     assert found.best.sure > 0.0
+
+
+def test_it_goes_down_to_the_kink_of_the_lower_basin():
+    best, natural = search(MICROSAT, kinked, kinked).best, natural_gains(MICROSAT)
+    assert best.degree == pytest.approx(-0.6, abs=0.02)
+    assert best.gains.k_w / natural.k_w == pytest.approx(PLACE_W, rel=0.05)
+    assert best.gains.k_a / natural.k_a == pytest.approx(PLACE_A, rel=0.1)
+
+
+def test_the_wide_basin_is_steadier_than_the_kink():
+    found = search(MICROSAT, kinked, kinked)
+    assert found.steady.sure < found.best.sure
+    assert found.steady.degree == pytest.approx(-0.3, abs=0.02)
+
+
+def test_it_finds_the_same_again_and_tells_how_far_it_is():
+    heard = []
+    once = search(MICROSAT, kinked, kinked, heard.append)
+    again = search(MICROSAT, kinked, kinked)
+    assert (once.best, once.steady) == (again.best, again.steady)
+    assert heard == sorted(heard)
+    assert (heard[0], heard[-1]) == (1, SEARCH_STEPS)
+
+
+def test_gains_stay_within_what_was_searched():
+    found = search(MICROSAT, *[lambda gains: -np.log(gains.k_w) - np.log(gains.k_a)] * 2)
+    assert found.best.gains.k_w <= found.map.k_w[-1] * (1.0 + 1e-9)
+    assert found.best.gains.k_a <= found.map.k_a[-1] * (1.0 + 1e-9)
 
 
 def test_sure_is_the_worst_of_gains_that_are_off():

@@ -5,9 +5,10 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
+from matplotlib.image import imread
 
-from sim.design.bodies import Body, diagonal
 from sim.design.floquet import degree_of_stability, monodromy
 from sim.design.linear import Gains, closed_loop
 from sim.harness.cli import main
@@ -33,11 +34,16 @@ def design(capsys, tmp_path, monkeypatch):
 
 @pytest.fixture
 def as_searched(monkeypatch, searched):
-    """The command with the search already done; a function to change what it found."""
+    """The command with its analysis already done; a function to change what it found."""
     analysis = searched[1]
 
     def found(**changes):
-        monkeypatch.setattr(command, "analyse", lambda *rest: replace(analysis, **changes))
+        def analyse(body, pulsing, given, watch):
+            if given is None:
+                return replace(analysis, **changes)
+            return replace(analysis, search=None, chosen=replace(analysis.chosen, gains=given))
+
+        monkeypatch.setattr(command, "analyse", analyse)
 
     found()
     return found
@@ -48,9 +54,8 @@ def reference_case(name):
     return next(row for row in csv.DictReader(lines) if row["name"] == name)
 
 
-@pytest.mark.parametrize("name", ["3U_gg_stable_nearopt", "micro50_gg_unstable_notstabilised"])
-def test_given_gains_as_json_are_those_of_the_reference(design, name):
-    row = reference_case(name)
+def test_given_gains_as_json_are_those_of_the_reference(design):
+    row = reference_case("1U_gg_unstable_weak")
     code, out, err = design(
         "microsat", "--gains", row["k_omega"], row["k_a"], "--json",
         "--set", f"body.inertia_kgm2=[{row['A']}, {row['B']}, {row['C']}]",
@@ -71,12 +76,12 @@ def test_the_best_gains_are_printed_and_drawn(design, as_searched):
     code, out, _ = design("microsat", "--out", "here")
     assert code == 0
     assert "pictures: here/gains.png, here/robustness.png" in out
-    assert sorted(path.name for path in Path("here").iterdir()) == [
-        "design.json",
-        "gains.png",
-        "robustness.png",
-    ]
     assert json.loads(Path("here/design.json").read_text())["stabilised"]
+    for name in ("gains.png", "robustness.png"):
+        pixels = imread(Path("here") / name)
+        assert min(pixels.shape[:2]) > 500
+        assert len(np.unique(pixels.reshape(-1, pixels.shape[2]), axis=0)) > 100
+    assert len(list(Path("here").iterdir())) == 3
 
 
 def test_what_is_written_flies_with_the_degree_that_was_printed(design, as_searched, searched, scenario_file):
@@ -88,7 +93,7 @@ def test_what_is_written_flies_with_the_degree_that_was_printed(design, as_searc
     assert float(degree_of_stability(monodromy(loop))) == pytest.approx(printed, abs=1e-3)
 
 
-def test_given_gains_are_written_as_they_are(design, scenario_file):
+def test_given_gains_are_written_as_they_are(design, as_searched, scenario_file):
     code, _, err = design(scenario_file, "--gains", "5.5e6", "1200", "--write", "--json")
     assert (code, err) == (0, f"written: k_w and k_a of {scenario_file}\n")
     control = load(str(scenario_file)).control
@@ -132,12 +137,3 @@ def test_a_folder_that_cannot_be_made_is_one_sentence(design, as_searched):
     code, _, err = design("microsat", "--out", "file/here")
     assert code == 2
     assert "file/here: cannot be written" in err
-
-
-def test_the_body_of_the_reference_is_the_one_that_was_analysed(design):
-    _, out, _ = design("microsat", "--gains", "0", "0", "--json")
-    said = json.loads(out)
-    body = Body("free", diagonal((1.02, 1.85, 1.95)), said["altitude_km"], said["inclination_deg"])
-    loop = closed_loop(body, Gains(0.0, 0.0))
-    assert said["degree_of_stability"] == pytest.approx(float(degree_of_stability(monodromy(loop))), abs=1e-9)
-    assert said["stabilised"] is False
