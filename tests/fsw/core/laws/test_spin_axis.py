@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fsw.core.laws.interface import FieldSample
 from fsw.core.laws.spin_axis import (
     SpinAxisGains,
     ThreeTermGains,
@@ -15,6 +16,7 @@ from fsw.core.laws.spin_axis import (
     three_term,
     three_term_dipole,
 )
+from fsw.core.laws.table import LAWS
 
 TARGET = (0.3, -0.5, 0.8)
 INERTIA = np.diag([2.0, 1.0, 1.0])
@@ -97,6 +99,22 @@ class TestFlights:
         assert flown.omega_body[-1, 0] == pytest.approx(0.1, rel=3e-3)
         assert np.linalg.norm(flown.omega_body[-1, 1:]) < 5e-4
 
+    def test_three_terms_about_the_third_axis_of_a_body_that_is_not_symmetric(self, bench):
+        """With a wheel along that axis and gravity gradient."""
+        orbit, body = bench.Orbit(), bench.Body(np.diag([1.02, 1.85, 1.95]), (0.0, 0.0, 0.03), 5.0)
+        flown = bench.fly(
+            three_term,
+            bench.setpoint(k_w=3e6, spin_radps=0.06),
+            gains={"three_term": ThreeTermGains(3.0, *TARGET)},
+            orbit=orbit,
+            body=body,
+            omega_body=(0.02, 0.01, -0.01),
+            seconds=1.5 * orbit.period_s,
+        )
+        assert flown.angle_to_deg(TARGET)[-1] < 1.0
+        assert flown.axis_to_deg(2, TARGET)[-1] < 1.0
+        assert flown.omega_body[-1] == pytest.approx((0.0, 0.0, 0.06), abs=6e-4)
+
     def test_the_relay_does_the_same_with_coils_fully_on(self, spinning):
         flown = spinning(spin_relay, (0.02, 0.04, -0.05), orbits=2.5, most_am2=1.0)
         assert set(np.abs(flown.m_body).ravel()) == {1.0}
@@ -114,6 +132,22 @@ class TestFlights:
         value = np.sum(in_space**2, axis=1) + np.sum(in_body**2, axis=1)
         assert np.all(np.diff(value) < 1e-4 * value[0])
         assert value[-1] < 0.5 * value[0]
+
+
+@pytest.mark.parametrize("name", ["reorientation", "three_term"])
+@pytest.mark.parametrize("axis", [1, 2, 3])
+def test_at_the_goal_nothing_is_left_to_do(bench, turned, name, axis):
+    """Spin and momentum about the axis, wheel included, along the target."""
+    e = np.eye(3)[axis - 1]
+    target = turned((1, -2, 3), 70.0).T @ e
+    gains = (
+        ThreeTermGains(float(axis), *target) if name == "three_term" else SpinAxisGains(float(axis), *target)
+    )
+    body = bench.Body(inertia=np.diag([1.02, 1.85, 1.95]), wheel=tuple(0.3 * e))
+    seen = bench.seen_at(bench.Orbit(), 700, 1.0, turned((1, -2, 3), 70.0), 0.04 * e, FieldSample())
+    point, settings = bench.setpoint(spin_radps=0.04), bench.config(body, 1.0, {name: gains})
+    reached = LAWS[name].point(seen, (), point, settings).m_body_am2
+    assert reached == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
 
 
 class TestGains:
