@@ -1,0 +1,126 @@
+"""What ``torquer compare`` does: choose, fly side by side, say, write, draw."""
+
+import os
+import sys
+from datetime import UTC, datetime
+from functools import partial
+from pathlib import Path
+
+import click
+
+from sim.harness.compare.case import Driver, cases, chosen_laws
+from sim.harness.compare.picture import picture
+from sim.harness.compare.score import Result, Score, by_axis1, fly_case
+from sim.harness.compare.table import as_csv, as_json, as_text, ranked
+from sim.harness.errors import HarnessError
+from sim.harness.progress import progress
+from sim.harness.run_dir import write_json
+from sim.harness.scenario import Scenario, load, parse_settings
+from sim.harness.sil import ticks_of
+from sim.harness.validate.claim import Study
+from sim.harness.validate.runner import Finished, run
+
+JSON, CSV, PICTURE = "compare.json", "compare.csv", "compare.png"
+
+
+def compare(
+    name: str,
+    settings: tuple[str, ...],
+    laws: str | None,
+    driver: str,
+    orbits: float | None,
+    seed: int,
+    workers: int | None,
+    out: Path | None,
+) -> int:
+    """Fly every law by every driver and compare.
+
+    Args:
+        name: of the scenario, or its path.
+        settings: ``KEY=VALUE``, laid over the scenario.
+        laws: as ``chosen_laws`` takes them.
+        driver: one of ``Driver``, or ``both``.
+        orbits: None: as the scenario says.
+        seed: of the plant's random streams, the same in all flights.
+        workers: processes; None: as many as there are cores.
+        out: folder of the files; None: ``compare/<scenario>-<UTC time>``.
+
+    Returns:
+        The exit code, 0: how a law does is a result.
+
+    Raises:
+        TableError: the scenario is not known or not valid.
+        HarnessError: a law is not known, or the folder cannot be used.
+    """
+    values = parse_settings(settings)
+    scenario = load(name, values)
+    chosen = chosen_laws(scenario, laws)
+    drivers = tuple(Driver) if driver == "both" else (Driver(driver),)
+    to_fly = cases(name, values, chosen, drivers, seed, orbits)
+    ticks = ticks_of(scenario, orbits)
+    folder = _made(out or _default_folder(scenario))
+    studies = [
+        Study(f"{case.law}-{case.driver}", (partial(fly_case, case),), lambda results: [], flown=True)
+        for case in to_fly
+    ]
+    bar = sys.stderr.isatty()  # else each flight's line is the progress
+    with progress(f"comparing {len(chosen)} laws on {scenario.name}", len(studies)) as watch:
+        finished = run(studies, workers or os.cpu_count() or 1, watch, _quiet if bar else _say)
+    results: list[Result] = [one.results[0] for one in finished]
+    scores = ranked(result.score for result in results)
+    flown = {
+        "scenario": scenario.name,
+        "seed": seed,
+        "settings": list(settings),
+        "ticks": ticks,
+        "pointing": "axis1" if by_axis1(scenario) else "attitude",
+    }
+    _write(folder, scores, flown, scenario.name, results)
+    click.echo(_heading(scenario, seed, ticks))
+    click.echo(as_text(scores))
+    click.echo(f"files: {folder / JSON}, {CSV}, {PICTURE}")
+    return 0
+
+
+def _heading(scenario: Scenario, seed: int, ticks: int) -> str:
+    what = "axis 1 from the vertical" if by_axis1(scenario) else "the whole attitude"
+    return (
+        f"{scenario.name}, seed {seed}, {ticks / scenario.time.tick_hz:.0f} s: {what}, under 5 deg for good "
+        "after; RMS, max and rate over the last orbit"
+    )
+
+
+def _write(
+    folder: Path, scores: list[Score], flown: dict[str, object], title: str, results: list[Result]
+) -> None:
+    try:
+        write_json(folder / JSON, as_json(scores, flown))
+        (folder / CSV).write_text(as_csv(scores), encoding="utf-8")
+        picture(folder / PICTURE, title, results)
+    except OSError as error:
+        raise HarnessError(f"{folder}: cannot be written ({error.strerror or error})") from None
+
+
+def _made(folder: Path) -> Path:
+    """The folder, there before anything is flown."""
+    if (folder / JSON).exists():
+        raise HarnessError(f"{folder} already holds a comparison: choose another --out")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise HarnessError(f"{folder}: cannot be made ({error.strerror or error})") from None
+    return folder
+
+
+def _default_folder(scenario: Scenario) -> Path:
+    return Path("compare") / f"{scenario.name}-{datetime.now(UTC):%Y%m%dT%H%M%SZ}"
+
+
+def _say(finished: Finished) -> None:
+    score = finished.results[0].score
+    figure = score.failure or f"{score.pointing_rms_deg:.2f} deg RMS over the last orbit"
+    click.echo(f"{score.law}, {score.driver}: {figure} ({finished.wall_s:.0f} s)", err=True)
+
+
+def _quiet(finished: Finished) -> None:
+    """Nothing yet."""
