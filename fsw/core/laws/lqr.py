@@ -31,6 +31,26 @@ class LqrGains:
     rate: float = 0.0
     effort: float = 0.1
 
+    def __post_init__(self) -> None:
+        """Check what the equations need.
+
+        Raises:
+            ValueError: a weight out of range.
+        """
+        check_weights(self.rate, self.effort)
+
+
+def check_weights(rate: float, effort: float) -> None:
+    """Refuse weights that make no problem.
+
+    Raises:
+        ValueError: a weight out of range.
+    """
+    if not (0.0 <= rate <= 1e6 and 1e-6 <= effort <= 1e6):
+        raise ValueError(
+            f"control.gains: rate must be 0 to 1e6 and effort 1e-6 to 1e6, not {rate:g} and {effort:g}"
+        )
+
 
 def schedule(
     inertia_kgm2: Mat3,

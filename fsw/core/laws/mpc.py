@@ -17,7 +17,7 @@ import numpy as np
 from fsw.core.ephemeris import EphemerisModel
 from fsw.core.field import field_eci_t
 from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
-from fsw.core.laws.lqr import STEPS, dipole, known_torque, latitude_argument, node, within
+from fsw.core.laws.lqr import STEPS, check_weights, dipole, known_torque, latitude_argument, node, within
 from fsw.core.laws.riccati import Array, Schedule, backward
 from fsw.core.orbit import state_eci
 
@@ -34,6 +34,18 @@ class MpcGains:
     rate: float = 0.0
     effort: float = 0.1
     horizon_orbits: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Check what the equations need, and that a plan is soon made.
+
+        Raises:
+            ValueError: a weight or the horizon out of range.
+        """
+        check_weights(self.rate, self.effort)
+        if not 0.1 <= self.horizon_orbits <= 4.0:
+            raise ValueError(
+                f"control.gains.mpc.horizon_orbits must be 0.1 to 4, not {self.horizon_orbits:g}"
+            )
 
 
 def field_ahead(model: EphemerisModel, unix_s: float, step_s: float, steps: int) -> Array | None:
@@ -73,7 +85,7 @@ def mpc(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -
         return Demand(memory=memory)
     step = _step(memory, seen.tick, config.tick_s / table.problem.step_s)
     if step is None:
-        steps = max(FLOWN, round(config.gains["mpc"].horizon_orbits * STEPS))
+        steps = round(config.gains["mpc"].horizon_orbits * STEPS)
         model, step_s = seen.ephemeris, table.problem.step_s
         unix_s = model.epoch_unix_s + seen.tick * config.tick_s
         b_orbit_t = field_ahead(model, unix_s, step_s, steps)

@@ -69,12 +69,13 @@ def regularised_dipole(torque_body_nm: Vec3, b_body_t: Vec3, floor_t: float) -> 
     Args:
         torque_body_nm: M_ref, body axes, N m.
         b_body_t: field, body axes, T.
-        floor_t: square root of lambda, T, positive.
+        floor_t: square root of lambda, T.
 
     Returns:
         Dipole in body axes, A m^2.
     """
-    return scale(1.0 / (dot(b_body_t, b_body_t) + floor_t * floor_t), cross(b_body_t, torque_body_nm))
+    size = dot(b_body_t, b_body_t) + floor_t * floor_t
+    return scale(1.0 / size, cross(b_body_t, torque_body_nm)) if size > 0.0 else ZERO
 
 
 def reference_torque(b_body_t: Vec3, omega_body_orbit_radps: Vec3, error: Vec3, setpoint: Setpoint) -> Vec3:

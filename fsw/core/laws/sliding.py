@@ -7,8 +7,7 @@ s, M_ref = -c s, and the coils give its projection normal to the field. With int
 
 the first remembers the mean error and so answers a constant torque; the second is the impulse that the coils
 could not give: with it ds/dt is what full control would make it, the surface is one that the coils can reach.
-That brings the surface to zero sooner and the attitude later, and a constant torque winds it up: its part is
-zero unless asked for.
+Flown, it brings the attitude later, and a constant torque winds it up: its part is zero unless asked for.
 
 Source: Ovchinnikov, Roldugin 2019, eq. 10 and the surface with integrals after it. The scan damages the
 latter: the second integral is given as one of b b^T alone; what it integrates was derived anew, by asking
