@@ -21,8 +21,8 @@ class HandOverGains:
         share_a: of k_a.
     """
 
-    share_w: float = 1.0
-    share_a: float = 1.0
+    share_w: float = 0.15
+    share_a: float = 0.3
 
 
 def field_tracking_dipole(error_t: Vec3, error_rate_tps: Vec3, k_w: float, k_a: float) -> Vec3:
