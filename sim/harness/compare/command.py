@@ -75,7 +75,7 @@ def compare(
         "ticks": ticks,
         "pointing": "axis1" if by_axis1(scenario) else "attitude",
     }
-    _write(folder, scores, flown, scenario.name, results)
+    _write(folder, scores, flown, f"{scenario.name}, seed {seed}", results)
     click.echo(_heading(scenario, seed, ticks))
     click.echo(as_text(scores))
     click.echo(f"files: {folder / JSON}, {CSV}, {PICTURE}")

@@ -103,8 +103,13 @@ class TimeAxis:
         return t_s / self.unit_s
 
 
-def stacked(time: TimeAxis, heights_in: Sequence[float], legends: bool = True) -> tuple[Figure, list[Axes]]:
-    """A figure of panels one over the other on one time axis, eclipses shaded, with room for legends."""
+def stacked(
+    time: TimeAxis, heights_in: Sequence[float], legends: bool = True, right_in: float = RIGHT_IN
+) -> tuple[Figure, list[Axes]]:
+    """A figure of panels one over the other on one time axis, eclipses shaded, with room for legends.
+
+    ``right_in`` is the margin beside the panels, wider where something stands there.
+    """
     count, inner_in = len(heights_in), sum(heights_in)
     top_in = TITLE_IN + LEGEND_IN * legends
     height_in = inner_in + top_in * count + BOTTOM_IN
@@ -117,7 +122,7 @@ def stacked(time: TimeAxis, heights_in: Sequence[float], legends: bool = True) -
         height_ratios=list(heights_in),
         gridspec_kw={
             "left": LEFT_IN / WIDTH_IN,
-            "right": 1.0 - RIGHT_IN / WIDTH_IN,
+            "right": 1.0 - right_in / WIDTH_IN,
             "bottom": BOTTOM_IN / height_in,
             "top": 1.0 - top_in / height_in,
             "hspace": top_in * count / inner_in,
