@@ -109,13 +109,13 @@ def actuate(
         Scheduler state, view, and the request to send or None.
     """
     if demand is None:
-        return replace(state, owed_impulse_body_nms=ZERO), view, None
+        return replace(state, owed_impulse_body_nms=ZERO, held_am2=ZERO), view, None
     if config.dipoles is not None:
         state, request = dipoles.request(state, demand, b_body_t, tick, config.dipoles, config.pulses)
         return state, view, request if readings.dipole is not None else None
     if _refused(view, readings, tick):
         state = replace(state, owed_impulse_body_nms=add(state.owed_impulse_body_nms, view.paid_body_nms))
-        view = replace(view, paid_body_nms=ZERO)
+        view = replace(view, fired=NO_PULSE, paid_body_nms=ZERO)
     return _pulse(state, view, demand, b_body_t, readings.coil is not None, tick, config.pulses)
 
 

@@ -10,6 +10,7 @@ from zlib import crc32
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
+    SENDERS,
     CoilBoot,
     CoilDipoleStatus,
     CoilRefused,
@@ -39,6 +40,7 @@ LISTENED: dict[int, type[Listened]] = {
     CoilBoot.ID: CoilBoot,
 }
 _SLOT = {can_id: slot for slot, can_id in enumerate(LISTENED)}
+_COIL_SLOTS = [slot for can_id, slot in _SLOT.items() if SENDERS[can_id] == "COIL"]
 
 
 class Readings(NamedTuple):
@@ -94,7 +96,10 @@ def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateSt
         message = message_class.decode(frame.data)
         slot = _SLOT[frame.can_id]
         step = (message.counter - counters[slot]) & 0xF
-        known = counters[slot] >= 0 and message_class is not CoilBoot  # a board that starts counts anew
+        if message_class is CoilBoot:  # a board that starts counts anew
+            for its in _COIL_SLOTS:
+                counters[its] = -1
+        known = counters[slot] >= 0
         if (known and step == 0) or not _in_range(message):
             rejected += 1
             continue

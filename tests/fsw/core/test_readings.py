@@ -66,11 +66,12 @@ def test_what_is_listened_to_is_what_this_test_sends():
 
 
 def test_every_kind_is_taken_as_sent():
-    readings, state = admit(frames(*EVERY_KIND), GateState())
+    as_sent = (BOOT, *COUNTED)  # a board that starts says so first
+    readings, state = admit(frames(*as_sent), GateState())
     assert tuple(readings) == tuple(type(m).decode(m.encode().data) for m in EVERY_KIND)
     assert readings.coil == COIL
     assert readings.field == FIELD
-    heard = crc32(b"".join(message.encode().data for message in EVERY_KIND))
+    heard = crc32(b"".join(message.encode().data for message in as_sent))
     assert state == GateState(counters=(5, 6, 7, 8, 9, 10, 11, 12), heard=heard)
 
 
@@ -172,6 +173,15 @@ class TestBoot:
         readings, state = admitted(BOOT._replace(counter=counter), state=state)
         assert readings.coil_boot == BOOT._replace(counter=counter)
         assert (state.rejected, state.missed) == (0, 0)
+
+    def test_the_board_that_sent_it_counts_anew_and_the_others_go_on(self):
+        _, before = admitted(*COUNTED)
+        _, state = admitted(BOOT, COIL, FIELD, state=before)
+        assert state.rejected == before.rejected + 1  # the field's counter did not move
+        assert state.missed == before.missed
+        assert state.counters[SLOT[COIL.ID]] == COIL.counter
+        assert state.counters[SLOT[REFUSED.ID]] == state.counters[SLOT[DIPOLE.ID]] == -1
+        assert state.counters[SLOT[SUN.ID]] == SUN.counter
 
     def test_a_broken_one_is_no_boot(self):
         assert admitted(broken(BOOT.encode())) == (NOTHING, GateState(rejected=1))
