@@ -16,7 +16,7 @@ from fsw.core.attitude import Attitude
 from fsw.core.ephemeris import Reference
 from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
 from fsw.core.laws.pd import pd_far
-from fsw.core.laws.riccati import Array, Schedule, periodic, problem
+from fsw.core.laws.riccati import Array, NotHeldError, Schedule, backward, periodic, problem
 from fsw.core.quaternion import Quaternion, dcm
 from fsw.core.vector import Mat3, Vec3, add, scale, transform, transpose
 
@@ -62,6 +62,9 @@ def schedule(
 ) -> Schedule:
     """The periodic solution on the direct dipole's field of a circular orbit.
 
+    Where none holds the body, as on an equatorial orbit with its steady field, the schedule looks one to two
+    orbits ahead: what can be held is, and the rest is let go.
+
     Args:
         inertia_kgm2: J, body axes.
         wheel_body_nms: momentum of a wheel, body axes.
@@ -69,9 +72,6 @@ def schedule(
         inclination_rad: of the orbit.
         field_t: B0 = mu_e / r^3, the field above the equator.
         weights: of the cost.
-
-    Raises:
-        ValueError: no periodic dipole holds this body, for instance on an equatorial orbit.
     """
     u = 2.0 * pi / STEPS * (np.arange(STEPS) + 0.5)
     across, along = sin(inclination_rad), np.full(STEPS, cos(inclination_rad))
@@ -80,7 +80,11 @@ def schedule(
     given = problem(
         inertia_kgm2, wheel_body_nms, orbit_rate_radps, field_t, step_s, weights.rate, weights.effort
     )
-    return Schedule(given, *periodic(given, b_orbit_t))
+    try:
+        gains, costs = periodic(given, b_orbit_t)
+    except NotHeldError:
+        gains, costs = backward(given, np.concatenate([b_orbit_t, b_orbit_t]), np.zeros((6, 9)))
+    return Schedule(given, gains[:STEPS], costs[:STEPS])
 
 
 def latitude_argument(reference: Reference) -> float:

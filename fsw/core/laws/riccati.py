@@ -37,6 +37,10 @@ TAYLOR = 14
 """Terms of the exponential of a step, which is short against the free motion."""
 
 
+class NotHeldError(Exception):
+    """The problem has no periodic solution that is stable."""
+
+
 @dataclass(frozen=True, slots=True)
 class Problem:
     """Steps of equal length with one cost, ready to be solved for any field.
@@ -159,7 +163,7 @@ def periodic(given: Problem, b_orbit_t: Array) -> tuple[Array, Array]:
         As ``backward``.
 
     Raises:
-        ValueError: no periodic dipole holds the attitude.
+        NotHeldError: no periodic dipole holds the attitude.
     """
     f, pushes = given.free[:, :6], _pushes(given, b_orbit_t)
     try:
@@ -176,7 +180,7 @@ def periodic(given: Problem, b_orbit_t: Array) -> tuple[Array, Array]:
     except np.linalg.LinAlgError:
         settled = False
     if not settled:
-        raise ValueError("no periodic dipole holds this body on this orbit")
+        raise NotHeldError("no periodic dipole holds this body on this orbit")
     return gains, costs
 
 
