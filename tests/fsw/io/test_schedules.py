@@ -32,7 +32,7 @@ def test_a_circular_orbit_gives_the_regulator_of_the_design():
     expected = design(body, Weights(rate=1.0, effort=30.0), Augmented.TORQUE, nodes=96).gain
     assert found.problem.step_s == pytest.approx(2.0 * np.pi / body.rate_radps / 96, rel=1e-9)
     size = np.abs(expected).max(axis=(0, 1))
-    assert (np.abs(found.gains - expected).max(axis=(0, 1)) / size).max() < 0.1
+    assert (np.abs(found.gains - expected).max(axis=(0, 1)) / size).max() < 0.15
 
 
 def test_each_law_has_its_own_weights():
