@@ -63,19 +63,29 @@ def compare(
         Study(f"{case.law}-{case.driver}", (partial(fly_case, case),), lambda results: [], flown=True)
         for case in to_fly
     ]
-    bar = sys.stderr.isatty()  # else each flight's line is the progress
-    with progress(f"comparing {len(chosen)} laws on {scenario.name}", len(studies)) as watch:
-        finished = run(studies, workers or os.cpu_count() or 1, watch, _quiet if bar else _say)
-    results: list[Result] = [one.results[0] for one in finished]
-    scores = ranked(result.score for result in results)
     flown = {
         "scenario": scenario.name,
         "seed": seed,
         "settings": list(settings),
         "ticks": ticks,
+        "sim_seconds": ticks / scenario.time.tick_hz,
         "pointing": "axis1" if by_axis1(scenario) else "attitude",
     }
-    _write(folder, scores, flown, f"{scenario.name}, seed {seed}", results)
+    results: list[Result] = []
+    bar = sys.stderr.isatty()  # else each flight's line is the progress
+
+    def take(finished: Finished) -> None:
+        results.append(finished.results[0])
+        if not bar:
+            click.echo(_line(finished), err=True)
+
+    try:
+        with progress(f"comparing {len(chosen)} laws on {scenario.name}", len(studies)) as watch:
+            run(studies, workers or os.cpu_count() or 1, watch, take)
+    finally:  # what has flown is kept when the rest is given up
+        scores = ranked(result.score for result in results)
+        flown["complete"] = len(results) == len(studies)
+        _write(folder, scores, flown, f"{scenario.name}, seed {seed}", results)
     click.echo(_heading(scenario, seed, ticks))
     click.echo(as_text(scores))
     click.echo(f"files: {folder / JSON}, {CSV}, {PICTURE}")
@@ -116,11 +126,7 @@ def _default_folder(scenario: Scenario) -> Path:
     return Path("compare") / f"{scenario.name}-{datetime.now(UTC):%Y%m%dT%H%M%SZ}"
 
 
-def _say(finished: Finished) -> None:
+def _line(finished: Finished) -> str:
     score = finished.results[0].score
     figure = score.failure or f"{score.pointing_rms_deg:.2f} deg RMS over the last orbit"
-    click.echo(f"{score.law}, {score.driver}: {figure} ({finished.wall_s:.0f} s)", err=True)
-
-
-def _quiet(finished: Finished) -> None:
-    """Nothing yet."""
+    return f"{score.law}, {score.driver}: {figure} ({finished.wall_s:.0f} s)"

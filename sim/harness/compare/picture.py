@@ -6,6 +6,7 @@ from pathlib import Path
 
 from matplotlib.axes import Axes
 
+from fsw.core.laws.table import LAWS
 from sim.harness.compare.case import Driver
 from sim.harness.compare.score import Result
 from sim.harness.report.canvas import (
@@ -36,7 +37,7 @@ def picture(path: Path, title: str, results: Sequence[Result]) -> None:
     if not flown:
         return
     drivers = [driver for driver in Driver if any(result.score.driver is driver for result in flown)]
-    laws = list(dict.fromkeys(result.score.law for result in flown))
+    laws = [law for law in LAWS if any(result.score.law == law for result in flown)]
     errors = [result.history.error_deg for result in flown if result.history is not None]
     assert flown[0].history is not None
     with style():

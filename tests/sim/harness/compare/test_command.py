@@ -6,6 +6,7 @@ import pytest
 from click.testing import CliRunner
 
 from sim.harness.cli import main
+from sim.harness.compare import command
 
 SHORT = ("--laws", "predictive,rate_damping", "--orbits", "0.05", "--workers", "1")
 
@@ -22,6 +23,7 @@ def test_two_laws_with_perfect_knowledge(torquer, tmp_path):
     assert result.exit_code == 0, result.output
     read = json.loads((tmp_path / "a" / "compare.json").read_text())
     assert (read["scenario"], read["seed"], read["ticks"], read["pointing"]) == ("posat1", 1, 303, "axis1")
+    assert read["complete"] is True
     rows = {(row["law"], row["driver"]): row for row in read["rows"]}
     assert set(rows) == {
         (law, driver) for law in ("predictive", "rate_damping") for driver in ("pulsed", "continuous")
@@ -72,3 +74,19 @@ def test_a_comparison_is_not_overwritten(torquer, tmp_path):
     assert result.exit_code == 2
     assert "already holds a comparison" in result.stderr
     assert (tmp_path / "old" / "compare.json").read_text() == "{}"
+
+
+def test_what_has_flown_is_kept_when_the_rest_is_given_up(torquer, tmp_path, monkeypatch):
+    fly = command.fly_case
+
+    def interrupted(case):
+        if case.law == "rate_damping":
+            raise KeyboardInterrupt
+        return fly(case)
+
+    monkeypatch.setattr(command, "fly_case", interrupted)
+    result = torquer("posat1", "--laws", "predictive,pd,rate_damping", *SHORT[2:], "--out", "a")
+    assert result.exit_code == 130
+    read = json.loads((tmp_path / "a" / "compare.json").read_text())
+    assert read["complete"] is False
+    assert [row["law"] for row in read["rows"]] == ["pd"]
