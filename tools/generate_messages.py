@@ -14,7 +14,9 @@ from cantools.database.can import Message, Signal
 WIRE = Path(__file__).resolve().parent.parent / "fsw" / "wire"
 TARGET = WIRE / "messages.py"
 WHOLE_UNITS = (None, "", "ms", "s", "mA")
-ENUM_SIGNALS = ("mode", "severity", "reason")
+ENUM_SIGNALS = ("mode", "severity", "reason", "result", "gain", "element")
+OF_ITS_MESSAGE = ("reason", "result")
+"""Enums that are named after the message too."""
 
 MODULE = '''"""Messages of the bus: generated from torquer.dbc by tools/generate_messages.py. Do not edit.
 
@@ -168,7 +170,8 @@ def enum_texts(messages: list[Message]) -> list[str]:
         for signal in message.signals:
             if signal.name not in ENUM_SIGNALS or not signal.choices or message.name.endswith("_BOOT"):
                 continue
-            name = camel(message.name) + "Reason" if signal.name == "reason" else camel(signal.name)
+            owner = camel(message.name) if signal.name in OF_ITS_MESSAGE else ""
+            name = owner + camel(signal.name)
             members = (
                 f"    {str(label).upper()} = {value}" for value, label in sorted(signal.choices.items())
             )

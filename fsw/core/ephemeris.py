@@ -4,11 +4,12 @@ A node stands every ``node_ticks`` ticks and depends on its number alone, so tha
 around a tick is the same however it was reached.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from fsw.core.elements import Elements
 from fsw.core.field import Field, FieldKind, field_eci_t, prepare_field
 from fsw.core.igrf_coefficients import MAX_DEGREE
-from fsw.core.orbit import Orbit, state_eci
+from fsw.core.orbit import Orbit, element_orbit, state_eci
 from fsw.core.quaternion import Quaternion, from_dcm
 from fsw.core.sun import lit, sun_eci
 from fsw.core.vector import Vec3, cross, dot, norm, scale
@@ -87,6 +88,15 @@ def ephemeris_model(
         )
     prepared = prepare_field(field, epoch_unix_s, degree)
     return EphemerisModel(orbit, prepared, epoch_unix_s, tick_hz, node_ticks=node_s * tick_hz)
+
+
+def fly_orbit(model: EphemerisModel, elements: Elements | None) -> EphemerisModel:
+    """The model with the orbit of elements from the ground; None: with its own.
+
+    Raises:
+        ValueError: the elements are no orbit that can be flown.
+    """
+    return model if elements is None else replace(model, orbit=element_orbit(elements))
 
 
 def advance(window: EphemerisWindow | None, tick: int, model: EphemerisModel) -> EphemerisWindow | None:

@@ -4,7 +4,7 @@ Rows of the current mode are looked at in order; the first whose condition has h
 dwell time is taken. Hysteresis lies in the conditions: what leads out of a mode is wider than what leads in.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from fsw.core.attitude import Attitude
@@ -69,12 +69,16 @@ class ModeConfig:
 
 @dataclass(frozen=True, slots=True)
 class ModeState:
-    """The mode, since when, and since when each row's condition has held (-1: it does not)."""
+    """The mode, since when, and since when each row's condition has held (-1: it does not).
+
+    ``held``: the ground asked for SAFE, and the table does not lead out of it.
+    """
 
     mode: Mode = Mode.SAFE
     since_tick: int = 0
     held_since: tuple[int, ...] = (-1,) * len(TABLE)
     trips: int = 0
+    held: bool = False
 
 
 def judge(
@@ -88,7 +92,7 @@ def judge(
     known = attitude.valid
     return Situation(
         tripped=tripped,
-        clear=not tripped and state.trips < config.trips_to_stay_safe,
+        clear=not tripped and not state.held and state.trips < config.trips_to_stay_safe,
         lost_attitude=not known,
         slow=known and rate < config.slow_radps,
         fast=known and rate > config.fast_radps,
@@ -109,4 +113,12 @@ def advance(state: ModeState, situation: Situation, tick: int, config: ModeConfi
             held[index] = tick
         if tick - held[index] >= config.dwell_ticks[index]:
             return ModeState(row.target, tick, (-1,) * len(TABLE), trips)
-    return ModeState(state.mode, state.since_tick, tuple(held), trips)
+    return ModeState(state.mode, state.since_tick, tuple(held), trips, state.held)
+
+
+def ask(state: ModeState, mode: Mode, tick: int) -> ModeState:
+    """The mode that the ground asks for; a SAFE that it asks for is held."""
+    held = mode is Mode.SAFE
+    if mode is state.mode:
+        return replace(state, held=held)
+    return ModeState(mode, tick, trips=state.trips, held=held)

@@ -1,13 +1,14 @@
-"""The orbit: SGP4 on a two-line element set, or a circular Kepler orbit."""
+"""The orbit: SGP4 on a two-line element set or on elements from the ground, or a circular Kepler orbit."""
 
 import re
 from dataclasses import dataclass, field
-from math import cos, isfinite, radians, sin, sqrt
+from math import cos, isfinite, pi, radians, sin, sqrt
 from typing import Any
 
-from sgp4.api import SGP4_ERRORS, Satrec
+from sgp4.api import SGP4_ERRORS, WGS72, Satrec
 
 from fsw.core.earth import MU_M3PS2, RADIUS_M
+from fsw.core.elements import Elements
 from fsw.core.vector import Vec3
 
 State = tuple[Vec3, Vec3]
@@ -15,6 +16,9 @@ State = tuple[Vec3, Vec3]
 
 _UNIX_EPOCH_JD = 2440587.5
 _DAY_S = 86400.0
+_SGP4_EPOCH_DAY = -7306.0
+"""1949-12-31 in days since 1970-01-01."""
+_DAY_MIN = 1440.0
 
 MAX_KM = 50_000.0
 """Far beyond any orbit of less than 225 minutes, where SGP4 goes without an error weeks past a decay."""
@@ -45,6 +49,14 @@ class Sgp4Orbit:
 
 
 @dataclass(frozen=True, slots=True)
+class ElementOrbit:
+    """Elements from the ground and the propagator initialised from them."""
+
+    elements: Elements
+    satellite: Any = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class CircularOrbit:
     """A circular Kepler orbit: r = radius (node cos u + ahead sin u), u = u0 + rate (t - epoch)."""
 
@@ -56,7 +68,7 @@ class CircularOrbit:
     ahead_eci: Vec3
 
 
-Orbit = Sgp4Orbit | CircularOrbit
+Orbit = Sgp4Orbit | ElementOrbit | CircularOrbit
 
 
 def sgp4_orbit(line1: str, line2: str) -> Sgp4Orbit:
@@ -72,12 +84,44 @@ def sgp4_orbit(line1: str, line2: str) -> Sgp4Orbit:
     if line1[2:7] != line2[2:7]:
         raise ValueError(f"the element lines are of two satellites, {line1[2:7]} and {line2[2:7]}")
     satellite = Satrec.twoline2rv(line1, line2)
+    _check_propagator(satellite, line1[2:7])
+    return Sgp4Orbit(line1, line2, satellite)
+
+
+def element_orbit(elements: Elements) -> ElementOrbit:
+    """The orbit of elements from the ground (Vallado et al. 2006, WGS-72).
+
+    Raises:
+        ValueError: SGP4 refuses the elements, or they are of a deep-space orbit or lead through the Earth.
+    """
+    satellite = Satrec()
+    satellite.sgp4init(
+        WGS72,
+        "i",
+        0,
+        elements.epoch_day - _SGP4_EPOCH_DAY + elements.epoch_fraction,
+        elements.bstar,
+        0.0,
+        0.0,
+        elements.eccentricity,
+        radians(elements.perigee_deg),
+        radians(elements.inclination_deg),
+        radians(elements.anomaly_deg),
+        elements.motion_revpday * 2.0 * pi / _DAY_MIN,
+        radians(elements.raan_deg),
+    )
+    _check_propagator(satellite, "the ground")
+    if satellite.altp <= 0.0:
+        raise ValueError(f"the perigee is {-satellite.altp:.3f} Earth radii below the ground")
+    return ElementOrbit(elements, satellite)
+
+
+def _check_propagator(satellite: Any, name: str) -> None:  # noqa: ANN401  (of a library without types)
     error, _, _ = satellite.sgp4_tsince(0.0)
     if error:
-        raise ValueError(f"SGP4 refuses the elements of {line1[2:7]}: {SGP4_ERRORS[error]}")
+        raise ValueError(f"SGP4 refuses the elements of {name}: {SGP4_ERRORS[error]}")
     if satellite.method != "n":
-        raise ValueError(f"{line1[2:7]} takes 225 minutes or more an orbit: the field is for low orbits")
-    return Sgp4Orbit(line1, line2, satellite)
+        raise ValueError(f"{name} takes 225 minutes or more an orbit: the field is for low orbits")
 
 
 def _check_line(line: str, number: str) -> None:

@@ -19,6 +19,13 @@ from fsw.wire.messages import (
     RefAttitude,
     RefRate,
     SunVector,
+    TcClear,
+    TcGain,
+    TcLaw,
+    TcMode,
+    TcOrbitElement,
+    TcOrbitLoad,
+    TcSpin,
     intact,
 )
 
@@ -39,12 +46,30 @@ LISTENED: dict[int, type[Listened]] = {
     CoilDipoleStatus.ID: CoilDipoleStatus,
     CoilBoot.ID: CoilBoot,
 }
-_SLOT = {can_id: slot for slot, can_id in enumerate(LISTENED)}
+
+Telecommand = TcMode | TcClear | TcLaw | TcSpin | TcGain | TcOrbitElement | TcOrbitLoad
+
+TELECOMMANDS: dict[int, type[Telecommand]] = {
+    TcMode.ID: TcMode,
+    TcClear.ID: TcClear,
+    TcLaw.ID: TcLaw,
+    TcSpin.ID: TcSpin,
+    TcGain.ID: TcGain,
+    TcOrbitElement.ID: TcOrbitElement,
+    TcOrbitLoad.ID: TcOrbitLoad,
+}
+
+_HEARD: dict[int, type[Listened | Telecommand]] = {**LISTENED, **TELECOMMANDS}
+_SLOT = {can_id: slot for slot, can_id in enumerate(_HEARD)}
 _COIL_SLOTS = [slot for can_id, slot in _SLOT.items() if SENDERS[can_id] == "COIL"]
 
 
 class Readings(NamedTuple):
-    """The last accepted message of each kind in this tick; None where there was none."""
+    """The last accepted message of each kind in this tick; None where there was none.
+
+    Of telecommands all count, in the order in which they came; ``repeated`` are those that bore the counter
+    of the one before.
+    """
 
     field: MagField | None
     sun: SunVector | None
@@ -54,6 +79,8 @@ class Readings(NamedTuple):
     ref_rate: RefRate | None
     dipole: CoilDipoleStatus | None = None
     coil_boot: CoilBoot | None = None
+    telecommands: tuple[Telecommand, ...] = ()
+    repeated: tuple[Telecommand, ...] = ()
 
 
 NOTHING = Readings(None, None, None, None, None, None)
@@ -67,7 +94,7 @@ class GateState:
     without the state telling, not even a sample that had no use.
     """
 
-    counters: tuple[int, ...] = (-1,) * len(LISTENED)
+    counters: tuple[int, ...] = (-1,) * len(_HEARD)
     rejected: int = 0
     missed: int = 0
     overrun: int = 0
@@ -83,10 +110,12 @@ def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateSt
         forward.
     """
     slots: list[object] = [None] * len(LISTENED)
+    telecommands: list[Telecommand] = []
+    repeated: list[Telecommand] = []
     counters = list(state.counters)
     rejected, missed, heard = state.rejected, state.missed, state.heard
     for frame in frames[:INBOX_LIMIT]:
-        message_class = LISTENED.get(frame.can_id)
+        message_class = _HEARD.get(frame.can_id)
         if message_class is None:
             rejected += not intact(frame)
             continue
@@ -102,17 +131,24 @@ def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateSt
         known = counters[slot] >= 0
         if (known and step == 0) or not _in_range(message):
             rejected += 1
+            if isinstance(message, Telecommand):
+                repeated.append(message)
             continue
         if known:
             missed += step - 1
         counters[slot] = message.counter
-        slots[slot] = message
+        if isinstance(message, Telecommand):
+            telecommands.append(message)
+        else:
+            slots[slot] = message
         heard = crc32(frame.data, heard)
     overrun = state.overrun + max(0, len(frames) - INBOX_LIMIT)
-    return Readings(*slots), GateState(tuple(counters), rejected, missed, overrun, heard)  # type: ignore[arg-type]
+    readings = Readings(*slots, telecommands=tuple(telecommands), repeated=tuple(repeated))  # type: ignore[arg-type, misc]
+    return readings, GateState(tuple(counters), rejected, missed, overrun, heard)
 
 
-def _in_range(message: Listened) -> bool:
+def _in_range(message: Listened | Telecommand) -> bool:
+    """Whether the values can be; of telecommands, ``commands`` judges them and gives an answer."""
     if isinstance(message, CoilStatus):
         return -3 <= message.level <= 3 and message.coil <= 2
     if isinstance(message, SunVector) and message.valid:

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from fsw.core.actuation import CoilView
 from fsw.core.attitude import UNKNOWN, Attitude
+from fsw.core.elements import Elements, Upload
 from fsw.core.ephemeris import EphemerisWindow, pack_values
 from fsw.core.estimator import EstimatorState
 from fsw.core.laws.interface import FieldSample, Memory, Setpoint
@@ -29,7 +30,8 @@ class FlightState(NamedTuple):
 
     ``tick`` is -1 before the first SYNC; ``field_tick`` and ``status_tick`` are the last ticks with an
     intact MAG_FIELD and COIL_STATUS, ``time_error_s`` the last SYNC's time less the expected; ``setpoint``
-    and ``memory`` are the control law's; ``sent`` are the counters of the messages that fsw sends.
+    and ``memory`` are the control law's; ``orbit`` and ``upload`` are elements from the ground, those flown
+    (None: the table's orbit) and those kept aside; ``sent`` are the counters of the messages that fsw sends.
     """
 
     tick: int
@@ -38,6 +40,8 @@ class FlightState(NamedTuple):
     ignored_syncs: int
     time_error_s: int
     gate: GateState
+    orbit: Elements | None
+    upload: Upload
     ephemeris: EphemerisWindow | None
     estimator: EstimatorState
     attitude: Attitude
@@ -64,6 +68,8 @@ def checksum(state: FlightState) -> int:
         gate.missed,
         gate.overrun,
         gate.heard,
+        state.upload.come,
+        state.orbit is not None,
         state.estimator.rejected_in_a_row,
         state.estimator.rejected_total,
         state.estimator.restarts,
@@ -72,6 +78,7 @@ def checksum(state: FlightState) -> int:
         modes.since_tick,
         *modes.held_since,
         modes.trips,
+        modes.held,
         state.sample.tick,
         LAWS[state.setpoint.law].number,
         *pulses.ready_tick,
@@ -97,6 +104,8 @@ def checksum(state: FlightState) -> int:
         *coil.paid_body_nms,
         *state.setpoint[1:],
         *state.memory,
+        *state.upload.values,
+        *(state.orbit or ()),
     )
     if state.ephemeris is not None:
         floats += pack_values(state.ephemeris)
@@ -118,6 +127,8 @@ def initial_state(pulses: PulseState, setpoint: Setpoint, sent: tuple[int, ...])
         ignored_syncs=0,
         time_error_s=0,
         gate=GateState(),
+        orbit=None,
+        upload=Upload(),
         ephemeris=None,
         estimator=EstimatorState(),
         attitude=UNKNOWN,

@@ -1,10 +1,11 @@
-"""The flight loop as one pure function: gate, estimate, supervise, control, schedule, report."""
+"""The flight loop as one pure function: gate, estimate, supervise, obey, control, schedule, report."""
 
 from fsw.core import control, pulses, telemetry
 from fsw.core.actuation import actuate, hear
 from fsw.core.attitude import UNKNOWN
+from fsw.core.commands import command
 from fsw.core.config import FlightConfig
-from fsw.core.ephemeris import Reference, advance, reference_at
+from fsw.core.ephemeris import EphemerisModel, Reference, advance, fly_orbit, reference_at
 from fsw.core.estimator import (
     NONE_USED,
     Used,
@@ -21,7 +22,7 @@ from fsw.core.state import FlightState, Inbox, checksum, initial_state
 from fsw.core.supervisor import Verdict, supervise
 from fsw.core.vector import ZERO
 from fsw.wire.frame import Frame
-from fsw.wire.messages import CoilDipole, CoilFire, CountedMessage, TickDone
+from fsw.wire.messages import CoilDipole, CoilFire, CountedMessage, TcAck, TickDone
 
 Outbox = tuple[Frame, ...]
 
@@ -41,26 +42,28 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     if inbox.tick <= state.tick:
         return state._replace(ignored_syncs=state.ignored_syncs + 1), ()
     before, tick = state, inbox.tick
-    state, readings = _gate(state, inbox, config)
+    model = fly_orbit(config.ephemeris, state.orbit)
+    state, readings = _gate(state, inbox, model, config)
     state, reference, used = _estimate(state, readings, tick - before.tick, config)
     verdict = supervise(state, state.attitude, tick, config)
-    mode = verdict.modes.mode
-    seen = _look(state, readings, reference, config)
-    demand = control.demand(mode, seen, state.memory, state.setpoint, config.control)
+    state, acks = command(state._replace(modes=verdict.modes), readings, verdict.violated is not None, config)
+    seen = _look(state, readings, reference, model)
+    demand = control.demand(state.modes.mode, seen, state.memory, state.setpoint, config.control)
     pulse_state, coil, request = actuate(
         state.pulses, state.coil, demand, seen.b_body_t, readings, tick, config.coils
     )
     state = state._replace(
-        modes=verdict.modes,
         sample=seen.sample,
         memory=demand.memory if demand is not None else (),
         pulses=pulse_state,
         coil=coil,
     )
-    return _report(before, state, readings, used, reference, verdict, request, config)
+    return _report(before, state, readings, used, reference, verdict, acks, request, config)
 
 
-def _gate(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[FlightState, Readings]:
+def _gate(
+    state: FlightState, inbox: Inbox, model: EphemerisModel, config: FlightConfig
+) -> tuple[FlightState, Readings]:
     """Take what the boards said; at the first tick start every timer in full."""
     tick = inbox.tick
     if state.tick < 0:
@@ -75,7 +78,7 @@ def _gate(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Fligh
         status_tick=tick if readings.coil is not None else state.status_tick,
         time_error_s=inbox.unix_time_s - expected_s,
         gate=gate,
-        ephemeris=advance(state.ephemeris, tick, config.ephemeris),
+        ephemeris=advance(state.ephemeris, tick, model),
         coil=hear(state.coil, readings, tick, config.coils),
     )
     return heard, readings
@@ -100,7 +103,7 @@ def _estimate(
     return state._replace(estimator=estimator, attitude=seen), reference, used
 
 
-def _look(state: FlightState, readings: Readings, reference: Reference | None, config: FlightConfig) -> Seen:
+def _look(state: FlightState, readings: Readings, reference: Reference | None, model: EphemerisModel) -> Seen:
     """What the law sees: the modelled field where the attitude is known, else the measured one."""
     usable = usable_field(readings)
     sample = FieldSample(usable, state.tick) if usable is not None else state.sample
@@ -119,7 +122,7 @@ def _look(state: FlightState, readings: Readings, reference: Reference | None, c
         reference,
         torque_body_nm,
         state.tick,
-        config.ephemeris,
+        model,
     )
 
 
@@ -130,11 +133,13 @@ def _report(
     used: Used,
     reference: Reference | None,
     verdict: Verdict,
+    acks: list[TcAck],
     request: CoilFire | CoilDipole | None,
     config: FlightConfig,
 ) -> tuple[FlightState, Outbox]:
     tick = state.tick
     messages: list[CountedMessage] = [] if request is None else [request]
+    messages += acks
     if config.rates.attitude.due(tick):
         messages += telemetry.attitude_messages(state.attitude)
     if config.rates.quality.due(tick):

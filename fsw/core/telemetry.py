@@ -21,6 +21,7 @@ from fsw.wire.messages import (
     NavQuality,
     NavRate,
     Severity,
+    TcAck,
 )
 
 CONTRACT_VERSION = 1
@@ -30,6 +31,7 @@ COUNTED = (
     NavAttitude.ID,
     NavRate.ID,
     NavQuality.ID,
+    TcAck.ID,
     FswEvent.ID,
     FswHeartbeat.ID,
 )
@@ -103,7 +105,7 @@ def happenings(
 ) -> list[Happening]:
     """What is worth an event in this tick: changes only, so that nothing repeats while it lasts."""
     found = []
-    if after.modes.trips != before.modes.trips and violated is not None:
+    if after.modes.trips > before.modes.trips and violated is not None:
         found.append(Happening(Event.MONITOR_TRIPPED, violated))
     if after.modes.mode is not before.modes.mode:
         found.append(Happening(Event.MODE_CHANGED, after.modes.mode))

@@ -17,6 +17,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, Strict, field_validator, model_validator
 
+from fsw.core.laws.interface import MAX_SPIN_RADPS
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit import sgp4_orbit
 from fsw.core.vector import Mat3
@@ -145,7 +146,7 @@ class ControlTable(Section):
     k_w: NotNegative
     k_a: NotNegative
     k_i: NotNegative = 0.0
-    spin_radps: float = Field(default=0.0, ge=-0.1, le=0.1)
+    spin_radps: float = Field(default=0.0, ge=-MAX_SPIN_RADPS, le=MAX_SPIN_RADPS)
     leak_s: Positive
     minimiser: Literal["closed_form", "genetic"] = "closed_form"
     gains: dict[str, dict[str, float]] = Field(default_factory=dict)

@@ -11,6 +11,37 @@ from typing import Final, NamedTuple
 from fsw.wire.frame import Frame, crc8, id_register, raw, seal
 
 
+class Mode(IntEnum):
+    """Values of ``mode``."""
+
+    SAFE = 0
+    DETUMBLE = 1
+    ACQUIRE = 2
+    POINT = 3
+
+
+class Gain(IntEnum):
+    """Values of ``gain``."""
+
+    K_W = 0
+    K_A = 1
+    K_I = 2
+
+
+class Element(IntEnum):
+    """Values of ``element``."""
+
+    EPOCH_DAY = 0
+    EPOCH_FRACTION = 1
+    INCLINATION_DEG = 2
+    RAAN_DEG = 3
+    ECCENTRICITY = 4
+    PERIGEE_DEG = 5
+    ANOMALY_DEG = 6
+    MOTION_REVPDAY = 7
+    BSTAR = 8
+
+
 class CoilRefusedReason(IntEnum):
     """Values of ``reason``."""
 
@@ -26,13 +57,15 @@ class CoilRefusedReason(IntEnum):
     WRONG_BOARD = 10
 
 
-class Mode(IntEnum):
-    """Values of ``mode``."""
+class TcAckResult(IntEnum):
+    """Values of ``result``."""
 
-    SAFE = 0
-    DETUMBLE = 1
-    ACQUIRE = 2
-    POINT = 3
+    ACCEPTED = 0
+    UNKNOWN = 1
+    OUT_OF_RANGE = 2
+    INCOMPLETE = 3
+    NOT_ALLOWED = 4
+    REPEATED = 5
 
 
 class Severity(IntEnum):
@@ -46,6 +79,13 @@ class Severity(IntEnum):
 
 _COIL_FIRE = id_register(0x080)
 _COIL_DIPOLE = id_register(0x088)
+_TC_MODE = id_register(0x0A0)
+_TC_CLEAR = id_register(0x0A1)
+_TC_LAW = id_register(0x0A2)
+_TC_SPIN = id_register(0x0A3)
+_TC_GAIN = id_register(0x0A4)
+_TC_ORBIT_ELEMENT = id_register(0x0A5)
+_TC_ORBIT_LOAD = id_register(0x0A6)
 _COIL_STATUS = id_register(0x100)
 _COIL_DIPOLE_STATUS = id_register(0x101)
 _COIL_REFUSED = id_register(0x108)
@@ -56,6 +96,7 @@ _REF_RATE = id_register(0x121)
 _NAV_ATTITUDE = id_register(0x200)
 _NAV_RATE = id_register(0x201)
 _NAV_QUALITY = id_register(0x202)
+_TC_ACK = id_register(0x208)
 _PLANT_EVENT = id_register(0x400)
 _FSW_EVENT = id_register(0x410)
 _COIL_EVENT = id_register(0x420)
@@ -150,6 +191,216 @@ class CoilDipole(_CoilDipole):
             ((word >> 4 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
             ((word >> 21 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
             ((word >> 38 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
+            (word >> 0 & 0xF),
+        )
+
+
+class _TcMode(NamedTuple):
+    mode: int
+    counter: int = 0
+
+
+class TcMode(_TcMode):
+    """Fly this mode; the mode table goes on from there. A SAFE that the ground asked for lasts until it asks for another mode."""
+
+    __slots__ = ()
+
+    ID: Final = 0x0A0
+    LENGTH: Final = 2
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (self.counter & 0xF) | (self.mode & 0x7) << 4
+        return seal(0x0A0, word, 2, _TC_MODE)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "TcMode":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0x7),
+            (word >> 0 & 0xF),
+        )
+
+
+class _TcClear(NamedTuple):
+    counter: int = 0
+
+
+class TcClear(_TcClear):
+    """Forget the monitor trips, so that SAFE may be left."""
+
+    __slots__ = ()
+
+    ID: Final = 0x0A1
+    LENGTH: Final = 2
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = self.counter & 0xF
+        return seal(0x0A1, word, 2, _TC_CLEAR)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "TcClear":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 0 & 0xF),
+        )
+
+
+class _TcLaw(NamedTuple):
+    law: int  # its number in the table of the laws
+    counter: int = 0
+
+
+class TcLaw(_TcLaw):
+    """Fly this control law, which begins without a memory."""
+
+    __slots__ = ()
+
+    ID: Final = 0x0A2
+    LENGTH: Final = 3
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (self.counter & 0xF) | (self.law & 0xFF) << 8
+        return seal(0x0A2, word, 3, _TC_LAW)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "TcLaw":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 8 & 0xFF),
+            (word >> 0 & 0xF),
+        )
+
+
+class _TcSpin(NamedTuple):
+    spin: float  # [rad/s]; about body axis 1, relative to the orbital frame
+    counter: int = 0
+
+
+class TcSpin(_TcSpin):
+    """The spin that is wanted."""
+
+    __slots__ = ()
+
+    ID: Final = 0x0A3
+    LENGTH: Final = 4
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (self.counter & 0xF) | (raw(self.spin, 1.9073486328125e-06, -65536, 65535) & 0x1FFFF) << 5
+        return seal(0x0A3, word, 4, _TC_SPIN)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "TcSpin":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            ((word >> 5 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.9073486328125e-06,
+            (word >> 0 & 0xF),
+        )
+
+
+class _TcGain(NamedTuple):
+    gain: int  # k_w N m s/T^2, k_a N m/T^2, k_i N m/(T^2 s)
+    exponent: int
+    mantissa: int
+    counter: int = 0
+
+
+class TcGain(_TcGain):
+    """Fly with this gain: mantissa times 10^exponent."""
+
+    __slots__ = ()
+
+    ID: Final = 0x0A4
+    LENGTH: Final = 7
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.gain & 0xF) << 4
+            | (self.exponent & 0xFF) << 8
+            | (self.mantissa & 0xFFFFFFFF) << 16
+        )
+        return seal(0x0A4, word, 7, _TC_GAIN)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "TcGain":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0xF),
+            ((word >> 8 & 0xFF ^ 0x80) - 0x80),
+            ((word >> 16 & 0xFFFFFFFF ^ 0x80000000) - 0x80000000),
+            (word >> 0 & 0xF),
+        )
+
+
+class _TcOrbitElement(NamedTuple):
+    element: int  # as in a two-line element set; epoch: days since 1970 and the part of that day
+    exponent: int
+    mantissa: int
+    counter: int = 0
+
+
+class TcOrbitElement(_TcOrbitElement):
+    """One element of an orbit, mantissa times 10^exponent: kept aside until TC_ORBIT_LOAD."""
+
+    __slots__ = ()
+
+    ID: Final = 0x0A5
+    LENGTH: Final = 7
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.element & 0xF) << 4
+            | (self.exponent & 0xFF) << 8
+            | (self.mantissa & 0xFFFFFFFF) << 16
+        )
+        return seal(0x0A5, word, 7, _TC_ORBIT_ELEMENT)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "TcOrbitElement":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0xF),
+            ((word >> 8 & 0xFF ^ 0x80) - 0x80),
+            ((word >> 16 & 0xFFFFFFFF ^ 0x80000000) - 0x80000000),
+            (word >> 0 & 0xF),
+        )
+
+
+class _TcOrbitLoad(NamedTuple):
+    counter: int = 0
+
+
+class TcOrbitLoad(_TcOrbitLoad):
+    """Fly with the elements kept aside, all of them at once."""
+
+    __slots__ = ()
+
+    ID: Final = 0x0A6
+    LENGTH: Final = 2
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = self.counter & 0xF
+        return seal(0x0A6, word, 2, _TC_ORBIT_LOAD)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "TcOrbitLoad":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
             (word >> 0 & 0xF),
         )
 
@@ -554,8 +805,8 @@ class _NavQuality(NamedTuple):
     mag_blanked: int
     eclipse: int
     estimate_valid: int
-    tripped: int  # a monitor has tripped since boot
-    trips: int  # monitor trips since boot, at most 255
+    tripped: int  # a monitor has tripped since boot or TC_CLEAR
+    trips: int  # monitor trips since boot or TC_CLEAR, at most 255
     counter: int = 0
 
 
@@ -599,6 +850,46 @@ class NavQuality(_NavQuality):
             (word >> 44 & 0x1),
             (word >> 45 & 0x1),
             (word >> 48 & 0xFF),
+            (word >> 0 & 0xF),
+        )
+
+
+class _TcAck(NamedTuple):
+    result: int
+    command: int  # identifier of the telecommand
+    command_counter: int  # counter of the telecommand
+    tick: int  # tick that is answered
+    counter: int = 0
+
+
+class TcAck(_TcAck):
+    """What became of a telecommand: one for each that came intact."""
+
+    __slots__ = ()
+
+    ID: Final = 0x208
+    LENGTH: Final = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.result & 0xF) << 4
+            | (self.command & 0x7FF) << 8
+            | (self.command_counter & 0xF) << 19
+            | (self.tick & 0xFFFFFFFF) << 24
+        )
+        return seal(0x208, word, 8, _TC_ACK)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "TcAck":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0xF),
+            (word >> 8 & 0x7FF),
+            (word >> 19 & 0xF),
+            (word >> 24 & 0xFFFFFFFF),
             (word >> 0 & 0xF),
         )
 
@@ -1247,6 +1538,13 @@ class PlantEnd(_PlantEnd):
 CountedMessage = (
     CoilFire
     | CoilDipole
+    | TcMode
+    | TcClear
+    | TcLaw
+    | TcSpin
+    | TcGain
+    | TcOrbitElement
+    | TcOrbitLoad
     | CoilStatus
     | CoilDipoleStatus
     | CoilRefused
@@ -1257,6 +1555,7 @@ CountedMessage = (
     | NavAttitude
     | NavRate
     | NavQuality
+    | TcAck
     | PlantEvent
     | FswEvent
     | CoilEvent
@@ -1280,6 +1579,13 @@ AnyMessage = CountedMessage | Sync | TickDone
 CLASSES: dict[int, type[AnyMessage]] = {
     0x080: CoilFire,
     0x088: CoilDipole,
+    0x0A0: TcMode,
+    0x0A1: TcClear,
+    0x0A2: TcLaw,
+    0x0A3: TcSpin,
+    0x0A4: TcGain,
+    0x0A5: TcOrbitElement,
+    0x0A6: TcOrbitLoad,
     0x100: CoilStatus,
     0x101: CoilDipoleStatus,
     0x108: CoilRefused,
@@ -1291,6 +1597,7 @@ CLASSES: dict[int, type[AnyMessage]] = {
     0x200: NavAttitude,
     0x201: NavRate,
     0x202: NavQuality,
+    0x208: TcAck,
     0x280: TickDone,
     0x400: PlantEvent,
     0x410: FswEvent,
@@ -1314,6 +1621,13 @@ CLASSES: dict[int, type[AnyMessage]] = {
 NAMES: dict[int, str] = {
     0x080: "COIL_FIRE",
     0x088: "COIL_DIPOLE",
+    0x0A0: "TC_MODE",
+    0x0A1: "TC_CLEAR",
+    0x0A2: "TC_LAW",
+    0x0A3: "TC_SPIN",
+    0x0A4: "TC_GAIN",
+    0x0A5: "TC_ORBIT_ELEMENT",
+    0x0A6: "TC_ORBIT_LOAD",
     0x100: "COIL_STATUS",
     0x101: "COIL_DIPOLE_STATUS",
     0x108: "COIL_REFUSED",
@@ -1325,6 +1639,7 @@ NAMES: dict[int, str] = {
     0x200: "NAV_ATTITUDE",
     0x201: "NAV_RATE",
     0x202: "NAV_QUALITY",
+    0x208: "TC_ACK",
     0x280: "TICK_DONE",
     0x400: "PLANT_EVENT",
     0x410: "FSW_EVENT",
@@ -1348,6 +1663,13 @@ NAMES: dict[int, str] = {
 SENDERS: dict[int, str] = {
     0x080: "FSW",
     0x088: "FSW",
+    0x0A0: "GROUND",
+    0x0A1: "GROUND",
+    0x0A2: "GROUND",
+    0x0A3: "GROUND",
+    0x0A4: "GROUND",
+    0x0A5: "GROUND",
+    0x0A6: "GROUND",
     0x100: "COIL",
     0x101: "COIL",
     0x108: "COIL",
@@ -1359,6 +1681,7 @@ SENDERS: dict[int, str] = {
     0x200: "FSW",
     0x201: "FSW",
     0x202: "FSW",
+    0x208: "FSW",
     0x280: "FSW",
     0x400: "PLANT",
     0x410: "FSW",
@@ -1382,6 +1705,13 @@ SENDERS: dict[int, str] = {
 _SHAPES: dict[int, tuple[int, int | None]] = {
     0x080: (7, _COIL_FIRE),
     0x088: (8, _COIL_DIPOLE),
+    0x0A0: (2, _TC_MODE),
+    0x0A1: (2, _TC_CLEAR),
+    0x0A2: (3, _TC_LAW),
+    0x0A3: (4, _TC_SPIN),
+    0x0A4: (7, _TC_GAIN),
+    0x0A5: (7, _TC_ORBIT_ELEMENT),
+    0x0A6: (2, _TC_ORBIT_LOAD),
     0x100: (8, _COIL_STATUS),
     0x101: (8, _COIL_DIPOLE_STATUS),
     0x108: (5, _COIL_REFUSED),
@@ -1393,6 +1723,7 @@ _SHAPES: dict[int, tuple[int, int | None]] = {
     0x200: (8, _NAV_ATTITUDE),
     0x201: (8, _NAV_RATE),
     0x202: (8, _NAV_QUALITY),
+    0x208: (8, _TC_ACK),
     0x280: (8, None),
     0x400: (8, _PLANT_EVENT),
     0x410: (8, _FSW_EVENT),

@@ -42,6 +42,10 @@ class Seen(NamedTuple):
     ephemeris: EphemerisModel | None = None
 
 
+MAX_SPIN_RADPS = 0.1
+"""Largest spin that may be asked for."""
+
+
 class Setpoint(NamedTuple):
     """What the ground may change in flight: law, gains, and the spin about body axis 1.
 

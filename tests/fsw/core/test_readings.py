@@ -8,10 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fsw.core.readings import INBOX_LIMIT, LISTENED, NOTHING, GateState, Readings, admit
+from fsw.core.readings import INBOX_LIMIT, LISTENED, NOTHING, TELECOMMANDS, GateState, Readings, admit
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame
 from fsw.wire.messages import (
     CLASSES,
+    SENDERS,
     CoilBoot,
     CoilDipoleStatus,
     CoilHeartbeat,
@@ -25,6 +26,13 @@ from fsw.wire.messages import (
     RefRate,
     SunVector,
     Sync,
+    TcClear,
+    TcGain,
+    TcLaw,
+    TcMode,
+    TcOrbitElement,
+    TcOrbitLoad,
+    TcSpin,
     TickDone,
     intact,
 )
@@ -68,18 +76,18 @@ def test_what_is_listened_to_is_what_this_test_sends():
 def test_every_kind_is_taken_as_sent():
     as_sent = (BOOT, *COUNTED)  # a board that starts says so first
     readings, state = admit(frames(*as_sent), GateState())
-    assert tuple(readings) == tuple(type(m).decode(m.encode().data) for m in EVERY_KIND)
+    assert tuple(readings[: len(EVERY_KIND)]) == tuple(type(m).decode(m.encode().data) for m in EVERY_KIND)
     assert readings.coil == COIL
     assert readings.field == FIELD
     heard = crc32(b"".join(message.encode().data for message in as_sent))
-    assert state == GateState(counters=(5, 6, 7, 8, 9, 10, 11, 12), heard=heard)
+    assert state == GateState(counters=(5, 6, 7, 8, 9, 10, 11, 12, *(-1,) * len(TELECOMMANDS)), heard=heard)
 
 
 @EVERY_MESSAGE
 class TestEachMessage:
     def test_is_the_only_one_heard(self, message):
         readings, _ = admitted(message)
-        assert [type(one) for one in readings if one is not None] == [type(message)]
+        assert [type(one) for one in readings if one] == [type(message)]
 
     def test_broken_crc(self, message):
         assert admitted(broken(message.encode())) == (NOTHING, GateState(rejected=1))
@@ -130,7 +138,7 @@ class TestEachMessage:
         _, state = admit(frames(*EVERY_KIND), GateState())
         _, later = admitted(message._replace(counter=message.counter + 1), state=state)
         changed = [a != b for a, b in zip(state.counters, later.counters, strict=True)]
-        assert changed == [other.ID == message.ID for other in EVERY_KIND]
+        assert changed == [can_id == message.ID for can_id in (*LISTENED, *TELECOMMANDS)]
 
 
 @EVERY_COUNTED
@@ -272,9 +280,68 @@ class TestOverrun:
         assert (state.rejected, state.overrun) == (INBOX_LIMIT, 1)
 
 
+TELECOMMAND_OF = {
+    TcMode.ID: TcMode(2, counter=3),
+    TcClear.ID: TcClear(counter=3),
+    TcLaw.ID: TcLaw(10, counter=3),
+    TcSpin.ID: TcSpin(-(2.0**-9), counter=3),
+    TcGain.ID: TcGain(1, -1, 16149, counter=3),
+    TcOrbitElement.ID: TcOrbitElement(4, -7, 8932, counter=3),
+    TcOrbitLoad.ID: TcOrbitLoad(counter=3),
+}
+
+
+@pytest.mark.parametrize("message", TELECOMMAND_OF.values(), ids=lambda m: type(m).__name__)
+class TestTelecommands:
+    """None is lost: all of one tick count, in their order, and a repeated one is told from a new one."""
+
+    def test_is_the_only_one_heard(self, message):
+        readings, state = admitted(message)
+        assert readings == NOTHING._replace(telecommands=(message,))
+        assert state.heard == crc32(message.encode().data)
+        assert (state.rejected, state.missed) == (0, 0)
+
+    def test_all_of_one_kind_count(self, message):
+        sent = tuple(message._replace(counter=n & 0xF) for n in range(14, 20))
+        readings, state = admitted(*sent)
+        assert readings.telecommands == sent
+        assert (state.rejected, state.missed) == (0, 0)
+
+    def test_one_with_the_counter_of_the_one_before_is_told_apart(self, message):
+        readings, state = admitted(message, message)
+        assert (readings.telecommands, readings.repeated) == ((message,), (message,))
+        assert state.rejected == 1
+        readings, later = admitted(message, state=state)
+        assert (readings.telecommands, readings.repeated) == ((), (message,))
+        assert (later.rejected, later.heard) == (2, state.heard)
+
+    def test_gaps_are_counted(self, message):
+        readings, state = admitted(message, message._replace(counter=9))
+        assert len(readings.telecommands) == 2
+        assert state.missed == 5
+
+    @pytest.mark.parametrize(
+        "change", [lambda d: bytes((d[0] ^ 0x20,)) + d[1:], lambda d: d[:-1], lambda d: b""]
+    )
+    def test_a_broken_one_is_counted_and_nothing_else(self, message, change):
+        frame = message.encode()
+        assert admitted(frame._replace(data=change(frame.data))) == (NOTHING, GateState(rejected=1))
+
+
+def test_telecommands_of_all_kinds_stay_in_their_order():
+    sent = tuple(TELECOMMAND_OF[can_id] for can_id in reversed(TELECOMMANDS))
+    readings, _ = admitted(FIELD, *sent[:3], COIL, *sent[3:])
+    assert readings == NOTHING._replace(field=FIELD, coil=COIL, telecommands=sent)
+
+
+def test_every_telecommand_is_listened_to():
+    assert set(TELECOMMANDS) == {can_id for can_id, sender in SENDERS.items() if sender == "GROUND"}
+    assert {can_id: CLASSES[can_id] for can_id in TELECOMMANDS} == TELECOMMANDS
+
+
 def random_frame(random):
     """Nearly right: listened identifiers and right lengths often, flags and nonsense now and then."""
-    can_id = random.choice([*LISTENED, *CLASSES, random.getrandbits(11)])
+    can_id = random.choice([*LISTENED, *TELECOMMANDS, *CLASSES, random.getrandbits(11)])
     if random.random() < 0.1:
         can_id |= random.choice([EXTENDED_FLAG, REMOTE_FLAG, ERROR_FLAG])
     known = CLASSES.get(can_id)
@@ -287,13 +354,13 @@ def test_of_ten_thousand_random_frames_none_is_taken_unless_intact():
     for _ in range(10_000):
         frame = random_frame(random)
         readings, after = admit((frame,), state)
-        heard = [message for message in readings if message is not None]
+        heard = [message for message in (*readings[:-2], *readings.telecommands) if message is not None]
         if heard:
             taken += 1
             assert intact(frame)
             assert heard == [CLASSES[frame.can_id].decode(frame.data)]
             assert after.rejected == state.rejected
-        elif frame.can_id in LISTENED or not intact(frame):
+        elif frame.can_id in (*LISTENED, *TELECOMMANDS) or not intact(frame):
             assert after == replace(state, rejected=state.rejected + 1)
         state = after
     assert 0 < taken < 10_000 / 100  # a CRC of 8 bits lets one in 256 pass
@@ -301,7 +368,11 @@ def test_of_ten_thousand_random_frames_none_is_taken_unless_intact():
 
 @given(
     st.lists(
-        st.builds(Frame, st.integers(0, 2**32 - 1) | st.sampled_from([*LISTENED]), st.binary(max_size=64)),
+        st.builds(
+            Frame,
+            st.integers(0, 2**32 - 1) | st.sampled_from([*LISTENED, *TELECOMMANDS]),
+            st.binary(max_size=64),
+        ),
         max_size=80,
     )
 )

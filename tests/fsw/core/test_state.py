@@ -8,17 +8,23 @@ from math import nextafter
 import numpy as np
 import pytest
 
+from fsw.core.elements import Elements, Upload
 from fsw.core.laws.table import LAWS
 from fsw.core.state import FlightState, checksum
 from fsw.core.step import boot
+from fsw.wire.messages import Element
+
+ELEMENTS = Elements(
+    16521.0, 0.11593543, 98.6946, 36.4208, 0.0008932, 173.8349, 186.2944, 14.30166407, 1.1414e-4
+)
 
 
 @pytest.fixture(scope="module")
 def flown(make_world):
     """A state in which everything has happened: ephemeris, estimate, a pulse, a law that remembers."""
-    world = make_world()
+    world = make_world(control={"law": "pd"})
     world.fly(160)
-    state = world.state
+    state = world.state._replace(orbit=ELEMENTS, upload=Upload().kept(Element.BSTAR, 1e-5))
     assert state.estimator.estimate is not None
     assert state.coil.fired_tick >= 0
     assert any(state.pulses.owed_impulse_body_nms)
@@ -62,8 +68,9 @@ def test_every_number_of_a_boot_state_counts_too(make_world, leaves):
 def test_what_is_not_there_differs_from_what_is(flown):
     without_estimate = flown._replace(estimator=replace(flown.estimator, estimate=None))
     without_ephemeris = flown._replace(ephemeris=None)
-    sums = {checksum(state) for state in (flown, without_estimate, without_ephemeris)}
-    assert len(sums) == 3
+    without_orbit = flown._replace(orbit=None)
+    sums = {checksum(state) for state in (flown, without_estimate, without_ephemeris, without_orbit)}
+    assert len(sums) == 4
 
 
 def test_numbers_that_change_places_are_noticed(flown):

@@ -27,6 +27,7 @@ from fsw.wire.messages import (
     NavQuality,
     NavRate,
     Severity,
+    TcAck,
     intact,
 )
 
@@ -109,7 +110,8 @@ class TestNumbering:
     def test_all_that_fsw_sends_now_and_then_is_numbered(self):
         assert len(set(COUNTED)) == len(COUNTED) == len(FIRST_COUNTERS)
         assert set(COUNTED) == {
-            m.ID for m in (CoilFire, CoilDipole, NavAttitude, NavRate, NavQuality, FswEvent, FswHeartbeat)
+            m.ID
+            for m in (CoilFire, CoilDipole, NavAttitude, NavRate, NavQuality, TcAck, FswEvent, FswHeartbeat)
         }
 
 

@@ -8,7 +8,18 @@ from pathlib import Path
 
 import pytest
 
-from fsw.wire.messages import CLASSES, NAMES, SENDERS, CoilRefusedReason, CountedMessage, Mode, Severity
+from fsw.wire.messages import (
+    CLASSES,
+    NAMES,
+    SENDERS,
+    CoilRefusedReason,
+    CountedMessage,
+    Element,
+    Gain,
+    Mode,
+    Severity,
+    TcAckResult,
+)
 
 ROOT = Path(__file__).parents[3]
 FULL = {"SYNC", "TICK_DONE"}
@@ -30,6 +41,14 @@ CONTRACT = {
     "NAV_QUALITY": ("FSW", {"mode": 3}),
     "TICK_DONE": ("FSW", {"tick": 32, "state_crc": 32}),
     "FSW_BOOT": ("FSW", {"table_crc": 32}),
+    "TC_MODE": ("GROUND", {"mode": 3}),
+    "TC_CLEAR": ("GROUND", {}),
+    "TC_LAW": ("GROUND", {"law": 8}),
+    "TC_SPIN": ("GROUND", {"spin": -17}),
+    "TC_GAIN": ("GROUND", {"gain": 4, "exponent": -8, "mantissa": -32}),
+    "TC_ORBIT_ELEMENT": ("GROUND", {"element": 4, "exponent": -8, "mantissa": -32}),
+    "TC_ORBIT_LOAD": ("GROUND", {}),
+    "TC_ACK": ("FSW", {"result": 4, "command": 11, "command_counter": 4, "tick": 32}),
 }
 """Sender, and the width of the signals that others rely on; negative: signed."""
 
@@ -110,7 +129,7 @@ def test_units_that_others_rely_on(dbc):
 
 
 def test_every_node_boots_beats_and_tells_events_under_ids_of_its_own(dbc):
-    nodes = {node.name for node in dbc.nodes}
+    nodes = {node.name for node in dbc.nodes} - {"GROUND"}  # it has no clock on board
     assert nodes == {"PLANT", "FSW", "COIL", "MAG", "SUN"}
     for node in nodes:
         for kind in ("BOOT", "EVENT", "HEARTBEAT"):
@@ -121,6 +140,7 @@ def test_requests_come_before_reports_in_arbitration(dbc):
     """The lower the identifier, the sooner it gets the bus."""
     order = [m.name for m in sorted(dbc.messages, key=lambda m: m.frame_id)]
     assert order.index("COIL_FIRE") == 0
+    assert order.index("COIL_FIRE") < order.index("TC_MODE") < order.index("COIL_STATUS")
     assert order.index("COIL_STATUS") < order.index("SYNC") < order.index("NAV_ATTITUDE")
     assert order.index("TICK_DONE") < order.index("FSW_EVENT") < order.index("FSW_HEARTBEAT")
 
@@ -138,11 +158,22 @@ def test_the_codec_knows_the_dbc_s_messages_and_senders(dbc):
         (Mode, "NAV_QUALITY", "mode"),
         (Severity, "FSW_EVENT", "severity"),
         (CoilRefusedReason, "COIL_REFUSED", "reason"),
+        (Mode, "TC_MODE", "mode"),
+        (Gain, "TC_GAIN", "gain"),
+        (Element, "TC_ORBIT_ELEMENT", "element"),
+        (TcAckResult, "TC_ACK", "result"),
     ],
 )
 def test_enums_are_the_dbc_s_choices(dbc, enum, message, signal):
     choices = dbc.get_message_by_name(message).get_signal_by_name(signal).choices
     assert {member.value: member.name for member in enum} == {k: str(v).upper() for k, v in choices.items()}
+
+
+def test_an_acknowledgement_names_telecommands_by_their_identifiers(dbc):
+    choices = dbc.get_message_by_name("TC_ACK").get_signal_by_name("command").choices
+    sent = {m.frame_id: m.name for m in dbc.messages if m.senders == ["GROUND"]}
+    assert {number: str(name) for number, name in choices.items()} == sent
+    assert all(name.startswith("TC_") for name in sent.values())
 
 
 def generate(root, *arguments):

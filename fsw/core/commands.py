@@ -1,0 +1,165 @@
+"""Telecommands: what the ground may change in flight.
+
+Each is carried out whole or refused whole, in the order in which they came, and answered by one TC_ACK. One
+that bears the counter of the one before it is not carried out again, but answered too.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+from fsw.core import modes
+from fsw.core.config import FlightConfig
+from fsw.core.elements import RANGES, Upload
+from fsw.core.ephemeris import advance, fly_orbit
+from fsw.core.laws.interface import MAX_SPIN_RADPS
+from fsw.core.laws.table import LAWS
+from fsw.core.orbit import element_orbit
+from fsw.core.readings import Readings, Telecommand
+from fsw.core.state import FlightState
+from fsw.wire.messages import (
+    Element,
+    Gain,
+    Mode,
+    TcAck,
+    TcAckResult,
+    TcClear,
+    TcGain,
+    TcLaw,
+    TcMode,
+    TcOrbitElement,
+    TcOrbitLoad,
+    TcSpin,
+)
+
+
+class Situation(NamedTuple):
+    """What a telecommand is judged by besides the state."""
+
+    violated: bool
+    config: FlightConfig
+
+
+Outcome = FlightState | TcAckResult
+"""The state after a telecommand that was carried out, or why it was not."""
+
+LAW_NAMES = {law.number: name for name, law in LAWS.items()}
+
+
+def command(
+    state: FlightState, readings: Readings, violated: bool, config: FlightConfig
+) -> tuple[FlightState, list[TcAck]]:
+    """Carry out the telecommands of this tick.
+
+    Args:
+        state: of this tick, its mode as the mode table left it.
+        readings: what came through the gate.
+        violated: whether a monitor is violated in this tick.
+        config: the onboard tables.
+
+    Returns:
+        The state, and an acknowledgement of each telecommand.
+    """
+    situation = Situation(violated, config)
+    acks = []
+    for message in readings.telecommands:
+        outcome = HANDLERS[type(message)](state, message, situation)
+        if isinstance(outcome, FlightState):
+            state, outcome = outcome, TcAckResult.ACCEPTED
+        acks.append(_ack(message, outcome, state.tick))
+    acks += [_ack(message, TcAckResult.REPEATED, state.tick) for message in readings.repeated]
+    return state, acks
+
+
+def decimal(mantissa: int, exponent: int) -> float:
+    """The float nearest to mantissa times 10^exponent, on every machine."""
+    return float(f"{mantissa}e{exponent}")
+
+
+def _ack(message: Telecommand, result: TcAckResult, tick: int) -> TcAck:
+    return TcAck(result=result, command=message.ID, command_counter=message.counter, tick=tick)
+
+
+def _mode(state: FlightState, message: TcMode, situation: Situation) -> Outcome:
+    """SAFE at any time; out of SAFE when all is well; to a law that needs the attitude when that is known."""
+    if message.mode not in list(Mode):
+        return TcAckResult.UNKNOWN
+    mode, now = Mode(message.mode), state.modes
+    well = not situation.violated and now.trips < situation.config.modes.trips_to_stay_safe
+    allowed = {
+        Mode.SAFE: True,
+        Mode.DETUMBLE: well,
+        Mode.ACQUIRE: well and state.attitude.valid,
+        Mode.POINT: well and state.attitude.valid,
+    }
+    if not allowed[mode]:
+        return TcAckResult.NOT_ALLOWED
+    return state._replace(modes=modes.ask(now, mode, state.tick))
+
+
+def _clear(state: FlightState, message: TcClear, situation: Situation) -> Outcome:
+    return state._replace(modes=replace(state.modes, trips=0))
+
+
+def _law(state: FlightState, message: TcLaw, situation: Situation) -> Outcome:
+    """A law begins without a memory; the one that flies already goes on with its own."""
+    name = LAW_NAMES.get(message.law)
+    if name is None:
+        return TcAckResult.UNKNOWN
+    if name == state.setpoint.law:
+        return state
+    return state._replace(setpoint=state.setpoint._replace(law=name), memory=())
+
+
+def _spin(state: FlightState, message: TcSpin, situation: Situation) -> Outcome:
+    if abs(message.spin) > MAX_SPIN_RADPS:
+        return TcAckResult.OUT_OF_RANGE
+    return state._replace(setpoint=state.setpoint._replace(spin_radps=message.spin))
+
+
+def _gain(state: FlightState, message: TcGain, situation: Situation) -> Outcome:
+    if message.gain not in list(Gain):
+        return TcAckResult.UNKNOWN
+    if message.mantissa < 0:
+        return TcAckResult.OUT_OF_RANGE
+    value = decimal(message.mantissa, message.exponent)
+    changed: dict[str, Any] = {Gain(message.gain).name.lower(): value}
+    return state._replace(setpoint=state.setpoint._replace(**changed))
+
+
+def _element(state: FlightState, message: TcOrbitElement, situation: Situation) -> Outcome:
+    if message.element not in list(Element):
+        return TcAckResult.UNKNOWN
+    element, value = Element(message.element), decimal(message.mantissa, message.exponent)
+    low, high = RANGES[element]
+    if not low <= value <= high:
+        return TcAckResult.OUT_OF_RANGE
+    return state._replace(upload=state.upload.kept(element, value))
+
+
+def _load(state: FlightState, message: TcOrbitLoad, situation: Situation) -> Outcome:
+    """Together the elements must be a low orbit that has a position around this tick."""
+    if not state.upload.complete:
+        return TcAckResult.INCOMPLETE
+    elements = state.upload.values
+    try:
+        element_orbit(elements)
+    except ValueError:
+        return TcAckResult.OUT_OF_RANGE
+    window = advance(None, state.tick, fly_orbit(situation.config.ephemeris, elements))
+    if window is None:
+        return TcAckResult.OUT_OF_RANGE
+    return state._replace(orbit=elements, upload=Upload(), ephemeris=window)
+
+
+Handler = Callable[[FlightState, Any, Situation], Outcome]
+
+HANDLERS: dict[type[Telecommand], Handler] = {
+    TcMode: _mode,
+    TcClear: _clear,
+    TcLaw: _law,
+    TcSpin: _spin,
+    TcGain: _gain,
+    TcOrbitElement: _element,
+    TcOrbitLoad: _load,
+}

@@ -1,0 +1,54 @@
+"""Orbit elements from the ground: kept aside one by one, flown all at once."""
+
+from typing import NamedTuple
+
+from fsw.wire.messages import Element
+
+
+class Elements(NamedTuple):
+    """Mean elements as in a two-line element set, in its units, in the order of ``Element``.
+
+    The epoch is in days since 1970-01-01 UTC, whole days and the part of the day apart; ``bstar`` is in 1 per
+    Earth radius, ``motion_revpday`` is Kozai's mean motion in revolutions a day.
+    """
+
+    epoch_day: float
+    epoch_fraction: float
+    inclination_deg: float
+    raan_deg: float
+    eccentricity: float
+    perigee_deg: float
+    anomaly_deg: float
+    motion_revpday: float
+    bstar: float
+
+
+RANGES: dict[Element, tuple[float, float]] = {
+    Element.EPOCH_DAY: (0.0, 100_000.0),
+    Element.EPOCH_FRACTION: (0.0, 1.0),
+    Element.INCLINATION_DEG: (0.0, 180.0),
+    Element.RAAN_DEG: (0.0, 360.0),
+    Element.ECCENTRICITY: (0.0, 0.9999999),
+    Element.PERIGEE_DEG: (0.0, 360.0),
+    Element.ANOMALY_DEG: (0.0, 360.0),
+    Element.MOTION_REVPDAY: (6.4, 20.0),
+    Element.BSTAR: (-1.0, 1.0),
+}
+"""What each element alone may be; whether they are an orbit together is judged when they are loaded."""
+
+
+class Upload(NamedTuple):
+    """Elements kept aside, and which of them have come: bit n for element n."""
+
+    values: Elements = Elements(*(0.0,) * len(Element))
+    come: int = 0
+
+    @property
+    def complete(self) -> bool:
+        """Whether every element has come."""
+        return self.come == (1 << len(Element)) - 1
+
+    def kept(self, element: Element, value: float) -> "Upload":
+        """With one more element, or one replaced."""
+        values = (*self.values[:element], value, *self.values[element + 1 :])
+        return Upload(Elements(*values), self.come | 1 << element)

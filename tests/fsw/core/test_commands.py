@@ -1,0 +1,455 @@
+"""Telecommands: each is carried out whole or refused whole, and acknowledged once."""
+
+from collections import Counter
+from dataclasses import replace
+from math import dist
+from random import Random
+
+import pytest
+
+from fsw.core.commands import HANDLERS, LAW_NAMES, command, decimal
+from fsw.core.elements import RANGES, Elements, Upload
+from fsw.core.ephemeris import advance, fly_orbit
+from fsw.core.laws.table import LAWS
+from fsw.core.modes import ModeState
+from fsw.core.orbit import element_orbit, sgp4_orbit, state_eci
+from fsw.core.readings import NOTHING, TELECOMMANDS
+from fsw.core.state import checksum
+from fsw.core.step import boot
+from fsw.wire.messages import (
+    CoilFire,
+    CoilRefused,
+    Element,
+    FswEvent,
+    Gain,
+    Mode,
+    NavQuality,
+    TcAck,
+    TcAckResult,
+    TcClear,
+    TcGain,
+    TcLaw,
+    TcMode,
+    TcOrbitElement,
+    TcOrbitLoad,
+    TcSpin,
+    TickDone,
+)
+
+TICK = 40
+DIGITS = {
+    Element.EPOCH_DAY: (16521, 0),
+    Element.EPOCH_FRACTION: (11593543, -8),
+    Element.INCLINATION_DEG: (986946, -4),
+    Element.RAAN_DEG: (364208, -4),
+    Element.ECCENTRICITY: (8932, -7),
+    Element.PERIGEE_DEG: (1738349, -4),
+    Element.ANOMALY_DEG: (1862944, -4),
+    Element.MOTION_REVPDAY: (1430166407, -8),
+    Element.BSTAR: (11414, -8),
+}
+"""ITAMSAT: the numbers of its two-line elements, whose epoch is 2015, day 86.11593543."""
+
+
+def elements(**changed):
+    """TC_ORBIT_ELEMENT for each, in order, with some digits changed or left out (None)."""
+    digits = {e: changed.get(e.name.lower(), d) for e, d in DIGITS.items()}
+    kept = [(e, d) for e, d in digits.items() if d is not None]
+    return [TcOrbitElement(e, d[1], d[0], counter=n & 0xF) for n, (e, d) in enumerate(kept)]
+
+
+ITAMSAT = Elements(*(decimal(*digits) for digits in DIGITS.values()))
+
+
+@pytest.fixture(scope="module")
+def config(make_world):
+    return make_world().config
+
+
+@pytest.fixture(scope="module")
+def state(config):
+    """All is well: the attitude is known, the law has a memory, the orbit a window."""
+    booted = boot(config)
+    return booted._replace(
+        tick=TICK,
+        attitude=booted.attitude._replace(valid=True),
+        modes=ModeState(Mode.ACQUIRE, 11, trips=1),
+        memory=(0.25, -0.5),
+        ephemeris=advance(None, TICK, config.ephemeris),
+    )
+
+
+@pytest.fixture(scope="module")
+def obey(config):
+    """Carries out telecommands: the state, and the results."""
+
+    def through(state, *telecommands, violated=False, config=config):
+        after, acks = command(state, NOTHING._replace(telecommands=telecommands), violated, config)
+        assert [(ack.command, ack.command_counter, ack.tick) for ack in acks] == [
+            (message.ID, message.counter, TICK) for message in telecommands
+        ]
+        return after, [TcAckResult(ack.result) for ack in acks]
+
+    return through
+
+
+@pytest.fixture
+def refused(obey, state, leaves):
+    """Whether the last of the telecommands is refused for this reason, and changes nothing."""
+
+    def check(reason, *telecommands, start=state, **circumstances):
+        before, _ = obey(start, *telecommands[:-1], **circumstances)
+        after, results = obey(before, telecommands[-1], **circumstances)
+        assert results == [reason]
+        assert after is before
+
+    return check
+
+
+def test_there_is_a_handler_for_each_telecommand():
+    assert set(HANDLERS) == set(TELECOMMANDS.values())
+
+
+class TestMode:
+    @pytest.mark.parametrize("mode", [Mode.DETUMBLE, Mode.ACQUIRE, Mode.POINT])
+    def test_begins_anew(self, obey, state, mode):
+        after, results = obey(state._replace(modes=ModeState(Mode.SAFE, 3, trips=2)), TcMode(mode))
+        assert results == [TcAckResult.ACCEPTED]
+        assert after.modes == ModeState(mode, TICK, trips=2)
+
+    @pytest.mark.parametrize("violated", [False, True])
+    @pytest.mark.parametrize("trips", [0, 3, 200])
+    @pytest.mark.parametrize("before", Mode)
+    def test_safe_is_given_always_and_held(self, obey, state, before, trips, violated):
+        start = state._replace(modes=ModeState(before, 7, trips=trips))
+        start = start._replace(attitude=start.attitude._replace(valid=False))
+        after, results = obey(start, TcMode(Mode.SAFE), violated=violated)
+        assert results == [TcAckResult.ACCEPTED]
+        assert (after.modes.mode, after.modes.held, after.modes.trips) == (Mode.SAFE, True, trips)
+        assert after.modes.since_tick == (7 if before is Mode.SAFE else TICK)
+
+    @pytest.mark.parametrize("mode", [Mode.DETUMBLE, Mode.ACQUIRE, Mode.POINT])
+    def test_safe_is_not_left_while_a_monitor_is_violated(self, refused, state, mode):
+        safe = state._replace(modes=ModeState(Mode.SAFE))
+        refused(TcAckResult.NOT_ALLOWED, TcMode(mode), start=safe, violated=True)
+
+    @pytest.mark.parametrize("mode", [Mode.DETUMBLE, Mode.ACQUIRE, Mode.POINT])
+    def test_safe_is_not_left_before_the_trips_are_cleared(self, refused, obey, state, config, mode):
+        safe = state._replace(modes=ModeState(Mode.SAFE, trips=config.modes.trips_to_stay_safe))
+        refused(TcAckResult.NOT_ALLOWED, TcMode(mode), start=safe)
+        after, results = obey(safe, TcClear(), TcMode(mode))
+        assert results == [TcAckResult.ACCEPTED] * 2
+        assert after.modes == ModeState(mode, TICK)
+
+    @pytest.mark.parametrize("mode", [Mode.ACQUIRE, Mode.POINT])
+    def test_a_law_that_needs_the_attitude_waits_until_it_is_known(self, refused, state, mode):
+        lost = state._replace(attitude=state.attitude._replace(valid=False), modes=ModeState(Mode.DETUMBLE))
+        refused(TcAckResult.NOT_ALLOWED, TcMode(mode), start=lost)
+
+    def test_detumbling_needs_no_attitude(self, obey, state):
+        lost = state._replace(attitude=state.attitude._replace(valid=False))
+        after, _ = obey(lost, TcMode(Mode.DETUMBLE))
+        assert after.modes.mode is Mode.DETUMBLE
+
+    def test_the_mode_that_is_flown_already_goes_on(self, obey, state):
+        assert obey(state, TcMode(Mode.ACQUIRE)) == (state, [TcAckResult.ACCEPTED])
+
+    @pytest.mark.parametrize("mode", range(4, 8))
+    def test_there_are_four(self, refused, mode):
+        refused(TcAckResult.UNKNOWN, TcMode(mode))
+
+
+def test_clearing_forgets_the_trips_and_nothing_else(obey, state):
+    after, results = obey(state, TcClear())
+    assert results == [TcAckResult.ACCEPTED]
+    assert after == state._replace(modes=replace(state.modes, trips=0))
+
+
+class TestLaw:
+    def test_every_law_has_a_number_of_its_own_that_fits(self):
+        assert {LAWS[name].number: name for name in LAWS} == LAW_NAMES
+        assert len(LAW_NAMES) == len(LAWS)
+        assert all(0 <= number < 256 for number in LAW_NAMES)
+
+    @pytest.mark.parametrize("name", LAWS)
+    def test_begins_without_a_memory(self, obey, state, name):
+        start = state._replace(setpoint=state.setpoint._replace(law="bdot" if name == "pd" else "pd"))
+        after, results = obey(start, TcLaw(LAWS[name].number))
+        assert results == [TcAckResult.ACCEPTED]
+        assert after == start._replace(setpoint=start.setpoint._replace(law=name), memory=())
+
+    def test_the_law_that_flies_already_goes_on_with_its_memory(self, obey, state):
+        assert obey(state, TcLaw(LAWS[state.setpoint.law].number)) == (state, [TcAckResult.ACCEPTED])
+
+    @pytest.mark.parametrize("number", [*sorted(set(range(256)) - set(LAW_NAMES))[::23], 255])
+    def test_that_is_not_there(self, refused, number):
+        refused(TcAckResult.UNKNOWN, TcLaw(number))
+
+
+class TestSpin:
+    @pytest.mark.parametrize("spin", [0.02, -0.05, 0.1, -0.1, 0.0])
+    def test_is_the_new_one(self, obey, state, spin):
+        sent = TcSpin.decode(TcSpin(spin).encode().data)
+        after, results = obey(state, sent)
+        on_the_wire = round(spin * 2**19) / 2**19
+        if abs(on_the_wire) > 0.1:
+            assert results == [TcAckResult.OUT_OF_RANGE]
+        else:
+            assert results == [TcAckResult.ACCEPTED]
+            assert after == state._replace(setpoint=state.setpoint._replace(spin_radps=on_the_wire))
+
+    @pytest.mark.parametrize("spin", [0.1 + 2**-19, -0.1 - 2**-19, 0.125, -0.125])
+    def test_beyond_what_may_be_asked_for(self, refused, spin):
+        refused(TcAckResult.OUT_OF_RANGE, TcSpin(spin))
+
+
+class TestGain:
+    @pytest.mark.parametrize("gain", Gain)
+    @pytest.mark.parametrize(
+        ("mantissa", "exponent", "value"), [(62694, 2, 6.2694e6), (16149, -1, 1614.9), (0, 0, 0.0)]
+    )
+    def test_is_exactly_the_decimal_number(self, obey, state, gain, mantissa, exponent, value):
+        after, results = obey(state, TcGain(gain, exponent, mantissa))
+        assert results == [TcAckResult.ACCEPTED]
+        assert after == state._replace(setpoint=state.setpoint._replace(**{gain.name.lower(): value}))
+
+    @pytest.mark.parametrize("gain", range(3, 16))
+    def test_that_is_not_there(self, refused, gain):
+        refused(TcAckResult.UNKNOWN, TcGain(gain, 0, 1))
+
+    @pytest.mark.parametrize("mantissa", [-1, -(2**31)])
+    def test_that_is_negative(self, refused, mantissa):
+        refused(TcAckResult.OUT_OF_RANGE, TcGain(Gain.K_A, -5, mantissa))
+
+
+class TestOrbit:
+    def test_elements_are_kept_aside_and_fly_nothing(self, obey, state):
+        after, results = obey(state, *elements())
+        assert results == [TcAckResult.ACCEPTED] * 9
+        assert after == state._replace(upload=Upload(ITAMSAT, 0x1FF))
+
+    def test_are_loaded_at_once(self, obey, state, config):
+        after, results = obey(state, *elements(raan_deg=(500000, -4)), TcOrbitLoad())
+        wanted = ITAMSAT._replace(raan_deg=50.0)
+        assert results[-1] is TcAckResult.ACCEPTED
+        assert (after.orbit, after.upload) == (wanted, Upload())
+        assert after.ephemeris == advance(None, TICK, fly_orbit(config.ephemeris, wanted))
+        assert after.ephemeris != state.ephemeris
+        assert after == state._replace(orbit=wanted, ephemeris=after.ephemeris)
+
+    @pytest.mark.parametrize("missing", Element)
+    def test_not_before_all_have_come(self, refused, missing):
+        sent = elements(**{missing.name.lower(): None})
+        refused(TcAckResult.INCOMPLETE, *sent, TcOrbitLoad())
+
+    def test_a_second_load_needs_all_of_them_again(self, refused):
+        refused(TcAckResult.INCOMPLETE, *elements(), TcOrbitLoad(), TcOrbitLoad(1))
+
+    @pytest.mark.parametrize(
+        "wrong",
+        [
+            {"eccentricity": (9, -1)},  # through the Earth
+            {"motion_revpday": (199, -1)},  # below the ground
+            {"bstar": (9, -1), "epoch_day": (10_000, 0)},  # decayed long ago
+        ],
+    )
+    def test_that_is_none_keeps_the_old_one_and_can_be_mended(self, obey, refused, state, wrong):
+        refused(TcAckResult.OUT_OF_RANGE, *elements(**wrong), TcOrbitLoad())
+        mended = [
+            TcOrbitElement(Element[name.upper()], *reversed(DIGITS[Element[name.upper()]])) for name in wrong
+        ]
+        after, results = obey(state, *elements(**wrong), TcOrbitLoad(), *mended, TcOrbitLoad(1))
+        assert results[-1] is TcAckResult.ACCEPTED
+        assert after.orbit == ITAMSAT
+
+    @pytest.mark.parametrize("element", Element)
+    def test_an_element_that_cannot_be_is_refused_alone(self, obey, refused, state, element):
+        low, high = RANGES[element]
+        for mantissa in (-(2**31), 2**31 - 1):
+            refused(TcAckResult.OUT_OF_RANGE, TcOrbitElement(element, 0, mantissa))
+        middle = round(1000.0 * (low + high) / 2.0)
+        assert obey(state, TcOrbitElement(element, -3, middle))[1] == [TcAckResult.ACCEPTED]
+
+    @pytest.mark.parametrize("element", range(9, 16))
+    def test_there_are_nine(self, refused, element):
+        refused(TcAckResult.UNKNOWN, TcOrbitElement(element, 0, 0))
+
+    def test_the_same_numbers_are_the_same_orbit_as_two_lines(self, tle):
+        lines, numbers = sgp4_orbit(*tle["ITAMSAT"]), element_orbit(ITAMSAT)
+        for hours in (0, 1, 24, 240):
+            unix_s = 1427424416 + 3600 * hours
+            (r, v), (r2, v2) = state_eci(lines, unix_s), state_eci(numbers, unix_s)
+            assert dist(r, r2) < 0.01
+            assert dist(v, v2) < 1e-5
+
+    @pytest.mark.parametrize("slow", [6.39, 1.0, 0.0])
+    def test_deep_space_is_no_orbit_for_this_field(self, slow):
+        with pytest.raises(ValueError, match=r"225 minutes|refuses"):
+            element_orbit(ITAMSAT._replace(motion_revpday=slow))
+
+
+class TestAcknowledgement:
+    def test_each_in_its_order_and_by_its_own_counter(self, obey, state):
+        sent = (TcSpin(0.01, 5), TcSpin(0.12, 6), TcSpin(-0.02, 7), TcLaw(99, 1))
+        after, results = obey(state, *sent)
+        assert results == [
+            TcAckResult.ACCEPTED,
+            TcAckResult.OUT_OF_RANGE,
+            TcAckResult.ACCEPTED,
+            TcAckResult.UNKNOWN,
+        ]
+        assert after.setpoint.spin_radps == -0.02
+
+    def test_a_repeated_one_is_not_carried_out_again_but_answered(self, state, config):
+        repeated = NOTHING._replace(repeated=(TcMode(Mode.SAFE, 4),))
+        assert command(state, repeated, False, config) == (
+            state,
+            [TcAck(TcAckResult.REPEATED, TcMode.ID, 4, TICK)],
+        )
+
+    def test_no_telecommand_no_answer(self, state, config):
+        assert command(state, NOTHING, True, config) == (state, [])
+
+    @pytest.mark.parametrize(
+        "sent",
+        [TcMode(Mode.SAFE), TcClear(), TcLaw(2), TcSpin(2**-9), TcGain(Gain.K_I, 0, 7), elements()[3]],
+        ids=lambda message: type(message).__name__,
+    )
+    def test_what_was_carried_out_shows_in_the_checksum(self, obey, state, sent):
+        after, _ = obey(state, sent)
+        assert checksum(after) != checksum(state)
+
+
+def with_telecommands(*messages):
+    frames = tuple(message.encode() for message in messages)
+    return lambda inbox: inbox._replace(frames=(*frames, *inbox.frames))
+
+
+def of(kind, messages):
+    return [message for message in messages if type(message) is kind]
+
+
+class TestInTheLoop:
+    def test_the_answer_to_the_tick_tells_before_it_is_done(self, make_world):
+        world = make_world()
+        world.fly(5)
+        said = world.step(with_telecommands(TcSpin(2**-7, 3), TcMode(7, 4)))
+        assert of(TcAck, said) == [
+            TcAck(TcAckResult.ACCEPTED, TcSpin.ID, 3, 5, counter=0),
+            TcAck(TcAckResult.UNKNOWN, TcMode.ID, 4, 5, counter=1),
+        ]
+        assert type(said[-1]) is TickDone
+        assert world.state.setpoint.spin_radps == 2**-7
+        assert of(TcAck, world.step()) == []
+
+    def test_a_broken_one_has_no_answer_and_no_effect(self, make_world):
+        world, other = make_world(), make_world()
+        frame = TcMode(Mode.SAFE).encode()
+        broken = frame._replace(data=bytes((frame.data[0] ^ 0x20,)) + frame.data[1:])
+        said = world.step(lambda inbox: inbox._replace(frames=(broken, *inbox.frames)))
+        assert of(TcAck, said) == []
+        other.step()
+        expected = other.state._replace(gate=replace(other.state.gate, rejected=1))
+        assert checksum(world.state) == checksum(expected)
+
+    def test_a_safe_that_the_ground_asked_for_lasts_until_it_asks_for_more(self, make_world):
+        world = make_world()
+        world.fly(60)
+        assert world.state.modes.mode is not Mode.SAFE
+        said = world.step(with_telecommands(TcMode(Mode.SAFE)))
+        assert [(e.event, e.argument) for e in of(FswEvent, said)] == [(1, Mode.SAFE)]
+        quiet = [message for said in world.fly(150) for message in said]
+        assert of(CoilFire, quiet) == []
+        assert {quality.mode for quality in of(NavQuality, quiet)} == {Mode.SAFE}
+        said = world.step(with_telecommands(TcMode(Mode.DETUMBLE, 1)))
+        assert of(CoilFire, said)  # the coils have long been ready, and the same tick obeys
+        assert world.state.modes.mode is Mode.DETUMBLE
+
+    def test_trips_that_keep_it_safe_are_forgotten_by_the_ground(self, make_world, without):
+        world = make_world()
+        world.fly(10)
+        stuck = ModeState(Mode.SAFE, trips=world.config.modes.trips_to_stay_safe)
+        world.state = world.state._replace(modes=stuck)
+        world.fly(30)
+        assert world.state.modes.mode is Mode.SAFE
+        said = world.step(with_telecommands(TcClear()))
+        assert of(FswEvent, said) == []
+        world.fly(30)
+        assert world.state.modes.mode is not Mode.SAFE
+
+    def test_an_orbit_is_flown_from_the_next_tick_on(self, make_world):
+        world, other = make_world(), make_world()
+        for one in (world, other):
+            one.fly(25)
+        turned = elements(raan_deg=(374208, -4))
+        said = world.step(with_telecommands(*turned, TcOrbitLoad()))
+        other.step()
+        assert [ack.result for ack in of(TcAck, said)] == [TcAckResult.ACCEPTED] * 10
+        assert world.state.attitude == other.state.attitude
+        model = fly_orbit(world.config.ephemeris, world.state.orbit)
+        for _ in range(60):
+            world.step()
+            other.step()
+            assert world.state.ephemeris == advance(None, world.state.tick, model)
+        assert world.state.attitude != other.state.attitude
+
+    def test_telecommands_beyond_what_the_gate_looks_at_are_counted_as_unread(self, make_world):
+        world = make_world()
+        said = world.step(with_telecommands(*(TcClear(n & 0xF) for n in range(80))))
+        assert len(of(TcAck, said)) == 64
+        assert world.state.gate.overrun > 0
+
+
+def random_telecommand(random, counter):
+    """Intact, its values anything; now and then the sensible ones."""
+    kind = random.choice([*TELECOMMANDS.values()])
+    message = kind.decode(random.randbytes(kind.LENGTH))._replace(counter=counter)
+    if kind is TcOrbitElement and random.random() < 0.7:
+        element = random.choice([*Element])
+        mantissa, exponent = DIGITS[element]
+        message = TcOrbitElement(element, exponent, mantissa + random.randrange(-3, 4), counter)
+    if kind is TcLaw and random.random() < 0.9:
+        message = TcLaw(random.choice([*LAW_NAMES]), counter)
+    if kind is TcGain and random.random() < 0.5:
+        message = TcGain(random.randrange(3), random.randrange(-3, 5), random.randrange(2**20), counter)
+    return message
+
+
+@pytest.mark.parametrize(
+    ("seed", "settings"),
+    [
+        (1, {}),
+        (2, {}),
+        (3, {"knowledge": "perfect"}),
+        (4, {"knowledge": "perfect", "coils": {"backoff": "per_coil"}}),
+        (5, {"coils": {"driver": "continuous", "max_dipole_am2": 0.2}}),
+    ],
+)
+def test_whatever_the_ground_sends_the_limits_are_kept(make_world, seed, settings):
+    """Five hundred ticks of random telecommands against the boards' own interlock."""
+    world, random = make_world(seed=seed, **settings), Random(seed)
+    counters, answers, refusals, fires = Counter(), Counter(), 0, 0
+    for _ in range(500):
+        sent = []
+        for _ in range(random.choice([0, 0, 1, 2, 12])):
+            message = random_telecommand(random, 0)
+            counters[message.ID] += 1
+            sent.append(message._replace(counter=counters[message.ID] & 0xF))
+
+        def told(inbox, sent=sent):
+            nonlocal refusals
+            refusals += any(frame.can_id == CoilRefused.ID for frame in inbox.frames)
+            return with_telecommands(*sent)(inbox)
+
+        said = world.step(told)
+        acks = of(TcAck, said)
+        assert [(ack.command, ack.command_counter) for ack in acks] == [(m.ID, m.counter) for m in sent]
+        answers.update(TcAckResult(ack.result) for ack in acks)
+        fires += len(of(CoilFire, said))
+        assert world.state.modes.mode is not Mode.SAFE or not of(CoilFire, said)
+        for fire in of(CoilFire, said):
+            assert fire.duration_ms == 3000
+            assert 1 <= abs(fire.level) <= 3
+    assert refusals == 0
+    assert fires > 0 or "driver" in settings.get("coils", {})
+    assert set(answers) | {TcAckResult.NOT_ALLOWED} == {*TcAckResult} - {TcAckResult.REPEATED}
