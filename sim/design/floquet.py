@@ -22,6 +22,9 @@ STEPS = 64
 ROUGH_STEPS = 24
 """Steps an orbit for pictures and for the start of a search: degree of stability to 1e-6."""
 
+NEUTRAL = 1e-9
+"""A degree of stability within it of zero is neither stable nor unstable."""
+
 SETTLED = 0.05
 """A deviation has settled once it has fallen to this part of itself."""
 
@@ -50,7 +53,8 @@ def product(matrices: Array) -> Array:
     """The product of (..., k, n, n) over k, the last one leftmost, by halves."""
     while (count := matrices.shape[-3]) > 1:
         even = count - count % 2
-        pairs = matrices[..., 1:even:2, :, :] @ matrices[..., 0:even:2, :, :]
+        with np.errstate(over="ignore", invalid="ignore"):
+            pairs = matrices[..., 1:even:2, :, :] @ matrices[..., 0:even:2, :, :]
         matrices = np.concatenate([pairs, matrices[..., even:, :, :]], axis=-3)
     return matrices[..., 0, :, :]
 
@@ -63,14 +67,18 @@ def multipliers(monodromy_matrix: Array) -> NDArray[np.complex128]:
 
 
 def degree_of_stability(monodromy_matrix: Array) -> Array:
-    """Largest ln|multiplier| / (2 pi), per radian of u, shape (...); negative: asymptotically stable."""
-    largest = np.abs(np.linalg.eigvals(monodromy_matrix)).max(axis=-1)
-    return np.asarray(np.log(largest) / (2.0 * pi), dtype=np.float64)
+    """Largest ln|multiplier| / (2 pi), per radian of u, shape (...); negative: asymptotically stable.
+
+    Infinite where the motion of one orbit is beyond the range of numbers.
+    """
+    finite = np.asarray(np.isfinite(monodromy_matrix).all(axis=(-2, -1)))
+    largest = np.abs(np.linalg.eigvals(np.where(finite[..., None, None], monodromy_matrix, 0.0))).max(axis=-1)
+    return np.where(finite, np.log(np.where(finite, largest, 1.0)) / (2.0 * pi), np.inf)
 
 
 def settling_orbits(degree: float) -> float | None:
     """Orbits after which the slowest mode has fallen to ``SETTLED`` of itself; None if it does not."""
-    return log(SETTLED) / (2.0 * pi * degree) if degree < 0.0 else None
+    return log(SETTLED) / (2.0 * pi * degree) if degree < -NEUTRAL else None
 
 
 def _radau_table(stages: int) -> tuple[Array, Array]:

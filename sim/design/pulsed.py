@@ -28,6 +28,9 @@ from sim.design.bodies import Body
 from sim.design.floquet import degree_of_stability, product
 from sim.design.linear import Array, Gains, dipole_field, feedback_scales, free_motion, projection
 
+PARALLEL = 1e-6
+"""A coil whose torque is this part of what it can be lies along the field, and pays nothing."""
+
 
 @dataclass(frozen=True, slots=True)
 class Pulsing:
@@ -112,7 +115,8 @@ def _payable(field: Array, inertia: Array, in_turn: bool) -> Array:
         return whole
     axes = np.eye(3)[np.arange(len(field)) % 3]
     along = np.cross(axes, field) @ inverse
-    along /= np.linalg.norm(along, axis=-1, keepdims=True)
+    size = np.linalg.norm(along, axis=-1, keepdims=True)
+    along = np.where(size > PARALLEL * size.max(), along / np.maximum(size, PARALLEL * size.max()), 0.0)
     chosen: Array = inertia @ (along[:, :, None] * along[:, None, :]) @ inverse
     return chosen
 

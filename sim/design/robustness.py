@@ -16,7 +16,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from sim.design.bodies import Body
-from sim.design.floquet import ROUGH_STEPS, degree_of_stability, monodromy
+from sim.design.floquet import NEUTRAL, ROUGH_STEPS, degree_of_stability, monodromy
 from sim.design.linear import Array, Gains, closed_loop
 from sim.design.search import Degree
 
@@ -134,10 +134,10 @@ def margins(body: Body, gains: Gains, degree: Degree) -> Margins:
         for axis in range(3)
     ]
     return Margins(
-        _factors(k_w, 0.0),
-        _factors(k_a, 0.0),
-        _factors(both, 0.0),
-        _factors(both, min(0.0, 0.5 * now)),
+        _factors(k_w, -NEUTRAL),
+        _factors(k_a, -NEUTRAL),
+        _factors(both, -NEUTRAL),
+        _factors(both, min(-NEUTRAL, 0.5 * now)),
         _first(SCAN, moments),
         _first(SCAN, spreads),
         _first(angles, np.nanmax(turned, axis=0)),
@@ -150,8 +150,8 @@ def _worst(body: Body, gains: Gains, tensors: Array) -> float:
 
 
 def _first(places: Array, values: Array) -> float | None:
-    """The first place at which a value is not negative."""
-    lost = np.flatnonzero(values >= 0.0)
+    """The first place at which a degree is no longer stable."""
+    lost = np.flatnonzero(values >= -NEUTRAL)
     return float(places[lost[0]]) if lost.size else None
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from sim.design.bodies import Body
-from sim.design.floquet import STEPS, degree_of_stability, monodromy
+from sim.design.floquet import NEUTRAL, STEPS, degree_of_stability, monodromy
 from sim.design.linear import Array, Gains, closed_loop
 
 Degree = Callable[[Gains], Array]
@@ -84,7 +84,7 @@ class Search:
     @property
     def stabilised(self) -> bool:
         """Whether there are gains that stabilise although they are off by ``MARGIN``."""
-        return self.steady.sure < -1e-6
+        return self.steady.sure < -NEUTRAL
 
 
 def continuous(body: Body, steps: int = STEPS) -> Degree:

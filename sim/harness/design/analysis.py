@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.design.bodies import Body
-from sim.design.floquet import ROUGH_STEPS, monodromy, multipliers, settling_orbits
+from sim.design.floquet import NEUTRAL, ROUGH_STEPS, monodromy, multipliers, settling_orbits
 from sim.design.linear import Array, Gains, closed_loop, resting_torque
 from sim.design.periodic_lqr import NotConvergedError, best_effort
 from sim.design.pulsed import PulsedLoop, Pulsing
@@ -98,7 +98,7 @@ class Analysis:
     @property
     def stabilised(self) -> bool:
         """Whether the search found gains that stabilise, or the given gains do."""
-        return self.search.stabilised if self.search is not None else self.chosen.degree < 0.0
+        return self.search.stabilised if self.search is not None else self.chosen.degree < -NEUTRAL
 
 
 @dataclass(frozen=True, slots=True)

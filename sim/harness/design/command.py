@@ -1,12 +1,13 @@
 """``torquer design``: search or evaluate, say, draw, write."""
 
 import json
-from math import isfinite
 from pathlib import Path
 
 import click
 
+from sim.design.bodies import Body
 from sim.design.linear import Gains
+from sim.design.search import natural_gains
 from sim.harness.design.analysis import ANALYSIS_STEPS, Analysis, analyse, drawn
 from sim.harness.design.pictures import gain_picture, robustness_picture
 from sim.harness.design.render import as_json, as_text
@@ -18,6 +19,9 @@ from sim.harness.run_dir import write_json
 from sim.harness.scenario import Scenario, load, parse_settings
 
 GAIN_PICTURE, ROBUSTNESS_PICTURE, RESULT = "gains.png", "robustness.png", "design.json"
+
+MOST = 1e6
+"""Gains are taken up to this multiple of the natural ones; beyond, numbers end before stability does."""
 
 
 def design(
@@ -35,9 +39,12 @@ def design(
         TableError: a scenario that cannot be used.
     """
     target = check_writable(name) if write else None
-    scenario, given = load(name, parse_settings(settings)), _given(gains)
+    scenario = load(name, parse_settings(settings))
+    body, given = body_of(scenario), None if gains is None else Gains(*gains)
+    if given is not None:
+        _check(given, body)
     with progress(f"gains for {scenario.name}", ANALYSIS_STEPS) as watch:
-        analysis = analyse(body_of(scenario), pulsing_of(scenario), given, watch)
+        analysis = analyse(body, pulsing_of(scenario), given, watch)
     click.echo(json.dumps(as_json(analysis), indent=2) if as_json_only else as_text(analysis, scenario))
     if out is not None or not as_json_only:
         folder = out or Path("runs") / f"design-{scenario.name}"
@@ -51,12 +58,12 @@ def design(
     return 0
 
 
-def _given(gains: tuple[float, float] | None) -> Gains | None:
-    if gains is None:
-        return None
-    if not all(isfinite(gain) and gain >= 0.0 for gain in gains):
-        raise HarnessError(f"--gains {gains[0]:g} {gains[1]:g}: both must be finite and not negative")
-    return Gains(*gains)
+def _check(gains: Gains, body: Body) -> None:
+    natural = natural_gains(body)
+    for name, gain, scale in (("K_W", gains.k_w, natural.k_w), ("K_A", gains.k_a, natural.k_a)):
+        most = MOST * float(scale)
+        if not 0.0 <= gain <= most:
+            raise HarnessError(f"--gains: {name} = {gain:g} is not allowed: for this body 0 to {most:.1g}")
 
 
 def _draw(folder: Path, analysis: Analysis, scenario: Scenario) -> None:

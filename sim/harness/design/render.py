@@ -1,9 +1,9 @@
 """What ``torquer design`` says: as text and as JSON."""
 
-from math import log, pi
+from math import isfinite, log, pi
 from typing import Any
 
-from sim.design.floquet import settling_orbits
+from sim.design.floquet import NEUTRAL, settling_orbits
 from sim.design.linear import Gains, Number
 from sim.design.search import MARGIN, Candidate
 from sim.harness.design.analysis import Analysis, Integral, Pulsed
@@ -48,7 +48,20 @@ def as_json(analysis: Analysis) -> Json:
         said["steady"] = _candidate(found.steady)
     if pulsed is not None:
         said["pulsed"] = _pulsed_json(pulsed)
-    return said
+    finite: Json = _finite(said)
+    return finite
+
+
+def _finite(value: Any) -> Any:  # noqa: ANN401  (any value of JSON)
+    """The same with null for what JSON has no number for: a degree beyond all bounds."""
+    match value:
+        case dict():
+            return {key: _finite(one) for key, one in value.items()}
+        case list() | tuple():
+            return [_finite(one) for one in value]
+        case float() if not isfinite(value):
+            return None
+    return value
 
 
 def as_text(analysis: Analysis, scenario: Scenario) -> str:
@@ -83,14 +96,14 @@ def _verdict(analysis: Analysis) -> str:
     best = found.best
     sharp = (
         f", and off by {MARGIN:.0%} they give {best.sure:+.3f}: a strip that no model of the field hits"
-        if best.degree < -1e-6
+        if best.degree < -NEUTRAL
         else ""
     )
     said = (
         f"no gains stabilise this body: the best degree of stability found is {best.degree:+.4f} at "
         f"k_w {best.gains.k_w:.4g}, k_a {best.gains.k_a:.4g}{sharp}"
     )
-    if analysis.periodic_lqr is not None and analysis.periodic_lqr < 0.0:
+    if analysis.periodic_lqr is not None and analysis.periodic_lqr < -NEUTRAL:
         said += f"\na periodic regulator does, with a degree of {analysis.periodic_lqr:+.3f}"
     return said
 
@@ -129,6 +142,8 @@ def _exponents(analysis: Analysis) -> str:
 
 def _margins(analysis: Analysis) -> str:
     given = analysis.margins
+    if not analysis.chosen.degree < -NEUTRAL:
+        return "the first row is not stable: it has no margins"
     return "\n".join(
         (
             "the first row stays stable while, alone,",

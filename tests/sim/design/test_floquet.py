@@ -85,3 +85,11 @@ def test_a_mode_that_falls_by_e_each_radian_settles_in_half_an_orbit():
     assert settling_orbits(-1.0) == pytest.approx(log(20.0) / (2.0 * pi))
     assert settling_orbits(0.0) is None
     assert settling_orbits(0.3) is None
+    assert settling_orbits(-1e-12) is None
+
+
+def test_a_motion_beyond_all_numbers_is_infinitely_unstable():
+    matrices = np.stack([np.diag([np.inf, 1.0]), np.diag([0.5, 0.25]), np.diag([np.nan, 1.0])])
+    degrees = degree_of_stability(matrices)
+    assert degrees[[0, 2]].tolist() == [np.inf, np.inf]
+    assert degrees[1] == pytest.approx(log(0.5) / (2.0 * pi))

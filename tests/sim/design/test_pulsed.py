@@ -1,5 +1,6 @@
 """The pulsed loop against a direct integration of its pulses, and against the continuous loop it tends to."""
 
+from dataclasses import replace
 from math import exp, pi
 
 import numpy as np
@@ -100,3 +101,9 @@ def test_many_gains_at_once_are_the_same_one_by_one():
     k_w, k_a = np.array([2e6, 6e6]), np.array([700.0, 1500.0])
     alone = [float(loop.degree(Gains(w, a))) for w, a in zip(k_w, k_a, strict=True)]
     assert loop.degree(Gains(k_w, k_a)) == pytest.approx(alone, abs=1e-12)
+
+
+def test_a_coil_along_the_field_pays_nothing():
+    equator = replace(MICROSAT, inclination_deg=0.0)
+    loop = PulsedLoop(equator, Pulsing(in_turn=True))
+    assert float(loop.degree(Gains(1e6, 300.0))) == pytest.approx(0.0, abs=1e-6)

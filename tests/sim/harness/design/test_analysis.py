@@ -70,6 +70,24 @@ def test_text_says_when_no_gains_stabilise_and_the_best_it_found(searched):
     assert f"{analysis.search.best.degree:+.4f}" in said
 
 
+def test_gains_that_do_not_stabilise_have_no_margins(searched):
+    scenario, analysis, _ = searched
+    unstable = replace(analysis, search=None, chosen=replace(analysis.chosen, degree=0.2))
+    said = as_text(unstable, scenario)
+    assert "the first row is not stable: it has no margins" in said
+    assert "never" in said
+    assert as_json(unstable)["settling_orbits"] is None
+    assert "it has no margins" not in as_text(analysis, scenario)
+
+
+def test_a_degree_beyond_all_numbers_is_null_in_json(searched):
+    analysis = searched[1]
+    beyond = replace(analysis, pulsed=replace(analysis.pulsed, sampled=np.inf))
+    said = json.loads(json.dumps(as_json(beyond), allow_nan=False))
+    assert said["pulsed"]["sampled"] is None
+    assert said["pulsed"]["averaged"] == analysis.pulsed.averaged
+
+
 def test_the_orbit_of_a_tle_is_the_circle_of_its_mean_motion():
     scenario = load("microsat")
     body = body_of(scenario)

@@ -117,8 +117,9 @@ def test_where_no_gains_stabilise_that_is_the_verdict_and_nothing_is_written(
     [
         (("nowhere",), "there is no scenario 'nowhere'"),
         (("microsat", "--write"), "--write microsat: gains are not written into a scenario that ships"),
-        (("microsat", "--gains", "nan", "1"), "--gains nan 1: both must be finite and not negative"),
-        (("microsat", "--gains", "1e6", "-1"), "both must be finite and not negative"),
+        (("microsat", "--gains", "nan", "1"), "--gains: K_W = nan is not allowed: for this body 0 to "),
+        (("microsat", "--gains", "1e6", "-1"), "--gains: K_A = -1 is not allowed: for this body 0 to "),
+        (("microsat", "--gains", "1e30", "1"), "--gains: K_W = 1e+30 is not allowed"),
         (("microsat", "--gains", "1e6"), "--gains"),
         (("microsat", "--gains", "x", "1"), "'x' is not a valid float"),
         (("microsat", "--set", "body.inertia_kgm2=[1.0, 2.0, 9.0]"), "inertia"),
