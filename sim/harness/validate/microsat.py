@@ -117,7 +117,7 @@ def consistency() -> Study:
 def magnetometer_bias() -> Study:
     """A magnetometer bias that the filter has to find."""
     bias = {"sensors": {"magnetometer": {"bias_nt": [BIAS_NT, -BIAS_NT, BIAS_NT]}}}
-    orders = tuple(Order(SCENARIO, bias, seed=seed, orbits=4.0) for seed in range(1, BIASED_RUNS + 1))
+    orders = tuple(Order(SCENARIO, bias, seed=seed) for seed in range(1, BIASED_RUNS + 1))
     figure = Figure(
         "sunlit",
         f"RMS attitude error of the filter, sunlit, magnetometer bias {BIAS_NT:g} nT per axis, all seeds",
