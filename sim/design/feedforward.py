@@ -1,10 +1,10 @@
 """The least attitude error that a constant torque leaves: over all periodic dipoles, by least squares.
 
 A dipole gives no torque along the field, so a constant torque d can only be answered on the mean, by a
-periodic motion. With x' = A x + J^-1 (v x B + d / w0^2) as in ``linear``, v = m B0 / w0^2, all of period 2 pi,
-Fourier collocation at N nodes makes the motion linear in the dipoles at the nodes; their least squares is the
-answer.
-No law does better for long, on the direct dipole's field and for small angles.
+periodic motion. With x' = A x + J^-1 (v x B + d / w0^2) as in ``linear``, v = m B0 / w0^2, all of period
+2 pi, Fourier collocation at N nodes makes the motion linear in the dipoles at the nodes; their least squares
+is the answer. No law does better for long, on the direct dipole's field and for small
+angles.
 """
 
 from typing import NamedTuple
