@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from fsw.core.attitude import UNKNOWN
-from fsw.core.laws.lqr import LqrGains, latitude_argument, lqr, node, schedule, within, without_memory
+from fsw.core.laws.lqr import STEPS, LqrGains, latitude_argument, lqr, node, schedule, within, without_memory
 from fsw.core.laws.pd import pd, pd_far
 from sim.design.bodies import Body
 from sim.design.feedforward import least_error
@@ -126,10 +126,12 @@ def test_the_argument_of_latitude_is_read_off_the_orbital_axes(bench, t_s):
 
 
 @pytest.mark.parametrize(
-    ("u_rad", "expected"), [(0.0, 0), (-1e-12, 95), (0.0655, 1), (np.pi, 48), (6.2831, 95)]
+    ("part", "expected"),
+    [(0.0, 0), (-1e-12, STEPS - 1), (1.01 / STEPS, 1), (0.5, STEPS // 2), (1.0 - 1e-5, STEPS - 1), (1.01, 0)],
 )
-def test_each_argument_of_latitude_has_its_step(u_rad, expected):
-    assert node(u_rad) == expected
+def test_each_argument_of_latitude_has_its_step(part, expected):
+    """The argument as a part of an orbit."""
+    assert node(2.0 * np.pi * part) == expected
 
 
 def test_a_dipole_beyond_the_bound_is_shortened_and_keeps_its_direction():
