@@ -7,6 +7,7 @@ dipole cannot cancel it, but there is a periodic motion with the least error, an
 Source: Ovchinnikov, Roldugin 2019, section 3.2; the equations stand in ``riccati``.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import atan2, cos, pi, sin
 
@@ -16,12 +17,12 @@ from fsw.core.attitude import Attitude
 from fsw.core.ephemeris import Reference
 from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
 from fsw.core.laws.pd import pd_far
-from fsw.core.laws.riccati import Array, NotHeldError, Schedule, backward, periodic, problem
+from fsw.core.laws.riccati import NotHeldError, Schedule, backward, periodic, problem
 from fsw.core.quaternion import Quaternion, dcm
 from fsw.core.vector import Mat3, Vec3, add, scale, transform, transpose
 
-STEPS = 96
-"""Steps an orbit: about a minute each."""
+STEPS = 48
+"""Steps an orbit: about two minutes each, little more than the pulses are apart."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,11 +99,11 @@ def node(u_rad: float) -> int:
     return int(u_rad % (2.0 * pi) * STEPS / (2.0 * pi)) % STEPS
 
 
-def dipole(gain: Array, attitude: Attitude, torque_body_nm: Vec3) -> Vec3:
+def dipole(gain: Sequence[float], attitude: Attitude, torque_body_nm: Vec3) -> Vec3:
     """The dipole M (Omega, theta, d), body axes, A m^2.
 
     Args:
-        gain: M, shape (3, 9), orbital axes.
+        gain: M, three rows of nine one after the other, orbital axes.
         attitude: theta is 2 qv of its quaternion.
         torque_body_nm: d, body axes.
     """
@@ -110,8 +111,16 @@ def dipole(gain: Array, attitude: Attitude, torque_body_nm: Vec3) -> Vec3:
     back = transpose(c)
     omega = transform(back, attitude.omega_body_orbit_radps)
     state = (*omega, *rotation(attitude.q_body_from_orbit), *transform(back, torque_body_nm))
-    m1, m2, m3 = (float(row) for row in gain @ np.array(state))
-    return transform(c, (m1, m2, m3))
+    return transform(
+        c, (_product(gain[0:9], state), _product(gain[9:18], state), _product(gain[18:27], state))
+    )
+
+
+def _product(row: Sequence[float], state: tuple[float, ...]) -> float:
+    total = 0.0
+    for factor, value in zip(row, state, strict=True):
+        total += factor * value
+    return total
 
 
 def rotation(q_body_from_orbit: Quaternion) -> Vec3:
@@ -132,7 +141,7 @@ def lqr(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -
     table = config.schedules.get("lqr")
     if not seen.attitude.valid or seen.reference is None or table is None:
         return Demand()
-    gain = table.gains[node(latitude_argument(seen.reference))]
+    gain = table.gains[node(latitude_argument(seen.reference))].ravel().tolist()
     return Demand(within(dipole(gain, seen.attitude, known_torque(seen, table)), config.mean_dipole_am2))
 
 

@@ -95,8 +95,7 @@ def mpc(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -
         gains = plan(table, b_orbit_t, end % STEPS)
         memory, step = (float(seen.tick), *gains.ravel().tolist()), 0
     first = 1 + step * _NUMBERS
-    gain = np.array(memory[first : first + _NUMBERS]).reshape(3, 9)
-    wanted = dipole(gain, seen.attitude, known_torque(seen, table))
+    wanted = dipole(memory[first : first + _NUMBERS], seen.attitude, known_torque(seen, table))
     return Demand(within(wanted, config.mean_dipole_am2), memory=memory)
 
 
