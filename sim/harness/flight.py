@@ -18,6 +18,7 @@ from fsw.wire.frame import Frame
 from fsw.wire.messages import FswBoot, PlantBoot, TickDone, intact
 from sim.harness.candump import format_line, format_time
 from sim.harness.errors import HarnessError
+from sim.harness.telecommands import Uplink
 from sim.plant.plant import Plant, TruthRow
 
 BOOT_REQUEST_S = 1.0
@@ -105,8 +106,9 @@ def fly(
     tick_hz: int,
     pace: Pace = LOCKSTEP,
     watch: Watch = lambda tick: None,
+    uplink: Uplink = lambda tick: [],
 ) -> Flown:
-    """Fly ``ticks`` ticks.
+    """Fly ``ticks`` ticks; what the ground sends in a tick goes before what the boards say.
 
     Raises:
         FlightError: the flight software gives no answer (lockstep).
@@ -119,7 +121,7 @@ def fly(
     began = time.monotonic()
     for tick in range(ticks):
         timestamp_us = epoch_us + tick * 1_000_000 // tick_hz
-        sent = plant.begin_tick()
+        sent = uplink(tick) + plant.begin_tick()
         before = _waiting(bus)
         bus.send(sent)
         if pace.factor is None:

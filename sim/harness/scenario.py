@@ -27,6 +27,7 @@ from fsw.io.schema import (
 )
 from fsw.io.table import CoilTable, ControlTable, FlightTable, OrbitTable, TimeTable
 from sim.harness.physics import DisturbanceSection, ScenarioBody, SensorsSection
+from sim.harness.telecommands import Telecommands
 
 MU_M3PS2 = 3.986004418e14
 DECAY_TIME_CONSTANTS = 5.0
@@ -93,6 +94,7 @@ class Scenario(Section):
     disturbance: DisturbanceSection = DisturbanceSection()
     control: ControlTable
     plant: PlantSection = PlantSection()
+    telecommand: Telecommands = ()
     flight: dict[str, Any] = Field(default_factory=dict)
 
     @model_validator(mode="after")

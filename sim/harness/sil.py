@@ -17,6 +17,7 @@ from sim.harness.assemble import plant_config
 from sim.harness.errors import HarnessError
 from sim.harness.flight import BusLog, FlightError, Pace, fly
 from sim.harness.scenario import Scenario, orbit_period_s
+from sim.harness.telecommands import uplink
 from sim.harness.truth import TruthFile
 from sim.plant.plant import Plant
 
@@ -68,6 +69,7 @@ def record(path: Path, scenario: Scenario, bus: Bus, watch: Watch = lambda tick:
                 scenario.time.tick_hz,
                 pace,
                 watch,
+                uplink(scenario.telecommand, scenario.time.tick_hz),
             )
     finally:
         bus.close()

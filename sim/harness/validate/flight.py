@@ -24,6 +24,7 @@ from sim.harness.run_dir import Json
 from sim.harness.scenario import Scenario, flight_table, load
 from sim.harness.sil import ticks_of
 from sim.harness.summary import BusTally, summarise
+from sim.harness.telecommands import uplink
 from sim.harness.truth import Histories
 from sim.harness.virtual import VirtualBus
 from sim.plant.plant import Plant, TruthRow
@@ -104,7 +105,16 @@ def record_order(order: Order) -> Record:
     node = FlightNode(flight_config(flight_table(scenario)))
     log, truth = _Frames(), _Truth(ticks, node)
     plant = Plant(plant_config(scenario, order.seed))
-    flown = fly(plant, VirtualBus(node), log, truth, ticks, scenario.epoch_unix_s, scenario.time.tick_hz)
+    flown = fly(
+        plant,
+        VirtualBus(node),
+        log,
+        truth,
+        ticks,
+        scenario.epoch_unix_s,
+        scenario.time.tick_hz,
+        uplink=uplink(scenario.telecommand, scenario.time.tick_hz),
+    )
     tally = BusTally(scenario.epoch_unix_s * 1_000_000)
     for entry in log.entries:
         tally.take(entry)

@@ -1,0 +1,201 @@
+"""Telecommands of a scenario: what the ground sends, when, and as which frames.
+
+``[[telecommand]]`` names the message and, in the units of people, what it says. Ranges are those of the wire,
+not those that the flight software accepts: a scenario may show a refusal.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from datetime import date
+from decimal import Decimal
+from math import ceil
+from typing import Annotated, Literal
+
+from pydantic import Field, Strict, field_validator
+
+from fsw.core.laws.table import LAWS
+from fsw.core.orbit import sgp4_orbit
+from fsw.io.schema import Section
+from fsw.wire.frame import Frame
+from fsw.wire.messages import (
+    CountedMessage,
+    Element,
+    Gain,
+    Mode,
+    TcClear,
+    TcGain,
+    TcLaw,
+    TcMode,
+    TcOrbitElement,
+    TcOrbitLoad,
+    TcSpin,
+)
+
+Uplink = Callable[[int], list[Frame]]
+"""The frames that the ground sends before the SYNC of a tick."""
+
+MOST_DIGITS = 2**31 - 1
+
+
+class Sent(Section):
+    """When it is sent: before the first SYNC at or after this time since the epoch."""
+
+    at_s: float = Field(ge=0.0)
+
+    def messages(self) -> list[CountedMessage]:
+        """What goes out, counters left at 0."""
+        raise NotImplementedError
+
+
+class SendMode(Sent):
+    """TC_MODE."""
+
+    message: Literal["TC_MODE"]
+    mode: Literal[tuple(Mode.__members__)]  # type: ignore[valid-type]
+
+    def messages(self) -> list[CountedMessage]:
+        """One message."""
+        return [TcMode(Mode[self.mode])]
+
+
+class SendClear(Sent):
+    """TC_CLEAR."""
+
+    message: Literal["TC_CLEAR"]
+
+    def messages(self) -> list[CountedMessage]:
+        """One message."""
+        return [TcClear()]
+
+
+class SendLaw(Sent):
+    """TC_LAW: the law by its name."""
+
+    message: Literal["TC_LAW"]
+    law: Literal[tuple(LAWS)]  # type: ignore[valid-type]
+
+    def messages(self) -> list[CountedMessage]:
+        """One message."""
+        return [TcLaw(LAWS[self.law].number)]
+
+
+class SendSpin(Sent):
+    """TC_SPIN."""
+
+    message: Literal["TC_SPIN"]
+    spin_radps: float = Field(ge=-0.125, lt=0.125)
+
+    def messages(self) -> list[CountedMessage]:
+        """One message."""
+        return [TcSpin(self.spin_radps)]
+
+
+class SendGain(Sent):
+    """TC_GAIN, in the units of the control table."""
+
+    message: Literal["TC_GAIN"]
+    gain: Literal["k_w", "k_a", "k_i"]
+    value: float
+
+    @field_validator("value")
+    @classmethod
+    def _fits(cls, value: float) -> float:
+        digits_of(Decimal(repr(value)))
+        return value
+
+    def messages(self) -> list[CountedMessage]:
+        """One message."""
+        mantissa, exponent = digits_of(Decimal(repr(self.value)))
+        return [TcGain(Gain[self.gain.upper()], exponent, mantissa)]
+
+
+class SendElement(Sent):
+    """TC_ORBIT_ELEMENT."""
+
+    message: Literal["TC_ORBIT_ELEMENT"]
+    element: Literal[tuple(name.lower() for name in Element.__members__)]  # type: ignore[valid-type]
+    value: float
+
+    @field_validator("value")
+    @classmethod
+    def _fits(cls, value: float) -> float:
+        digits_of(Decimal(repr(value)))
+        return value
+
+    def messages(self) -> list[CountedMessage]:
+        """One message."""
+        return [_element(Element[self.element.upper()], Decimal(repr(self.value)))]
+
+
+class SendOrbit(Sent):
+    """TC_ORBIT_LOAD; where ``tle`` is given, with all its elements before it."""
+
+    message: Literal["TC_ORBIT_LOAD"]
+    tle: Annotated[tuple[str, str] | None, Strict(False)] = None
+
+    @field_validator("tle")
+    @classmethod
+    def _is_one(cls, value: tuple[str, str] | None) -> tuple[str, str] | None:
+        if value is not None:
+            sgp4_orbit(*value)
+        return value
+
+    def messages(self) -> list[CountedMessage]:
+        """One message, or nine elements and it."""
+        elements = [] if self.tle is None else [_element(*pair) for pair in elements_of(*self.tle).items()]
+        return [*elements, TcOrbitLoad()]
+
+
+Telecommand = Annotated[
+    SendMode | SendClear | SendLaw | SendSpin | SendGain | SendElement | SendOrbit,
+    Field(discriminator="message"),
+]
+Telecommands = Annotated[tuple[Telecommand, ...], Strict(False)]
+
+
+def uplink(telecommands: Sequence[Sent], tick_hz: int) -> Uplink:
+    """The frames of each tick, each kind of message counted for itself."""
+    frames: dict[int, list[Frame]] = {}
+    counters: Counter[int] = Counter()
+    for sent in sorted(telecommands, key=lambda sent: sent.at_s):
+        tick = ceil(sent.at_s * tick_hz - 1e-9)
+        for message in sent.messages():
+            frames.setdefault(tick, []).append(message._replace(counter=counters[message.ID] & 0xF).encode())
+            counters[message.ID] += 1
+    return lambda tick: frames.get(tick, [])
+
+
+def digits_of(value: Decimal) -> tuple[int, int]:
+    """Mantissa and exponent of a decimal number as on the wire.
+
+    Raises:
+        ValueError: it has more digits than 32 bits hold, or is too large or too small.
+    """
+    sign, digits, exponent = value.normalize().as_tuple()
+    mantissa = int("".join(map(str, digits)))
+    if not isinstance(exponent, int) or mantissa > MOST_DIGITS or not -128 <= exponent <= 127:
+        raise ValueError(f"{value} does not fit: at most {MOST_DIGITS} times a power of ten from -128 to 127")
+    return -mantissa if sign else mantissa, exponent
+
+
+def elements_of(line1: str, line2: str) -> dict[Element, Decimal]:
+    """The numbers of a two-line element set, digit by digit."""
+    year, day = int(line1[18:20]), Decimal(line1[20:32])
+    january = date(year + (1900 if year >= 57 else 2000), 1, 1) - date(1970, 1, 1)
+    bstar = Decimal(f"{line1[53]}0.{line1[54:59]}e{line1[59:61]}".strip())
+    return {
+        Element.EPOCH_DAY: Decimal(january.days + int(day) - 1),
+        Element.EPOCH_FRACTION: day % 1,
+        Element.INCLINATION_DEG: Decimal(line2[8:16].strip()),
+        Element.RAAN_DEG: Decimal(line2[17:25].strip()),
+        Element.ECCENTRICITY: Decimal(f"0.{line2[26:33]}"),
+        Element.PERIGEE_DEG: Decimal(line2[34:42].strip()),
+        Element.ANOMALY_DEG: Decimal(line2[43:51].strip()),
+        Element.MOTION_REVPDAY: Decimal(line2[52:63].strip()),
+        Element.BSTAR: bstar,
+    }
+
+
+def _element(element: Element, value: Decimal) -> CountedMessage:
+    mantissa, exponent = digits_of(value)
+    return TcOrbitElement(element, exponent, mantissa)
