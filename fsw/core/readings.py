@@ -91,7 +91,8 @@ class GateState:
     """Last counter of each listened message (-1: none yet), counts since boot, and what was taken since boot.
 
     ``heard`` is the CRC-32 of the data of all messages taken: nothing on the bus can be altered afterwards
-    without the state telling, not even a sample that had no use.
+    without the state telling, not even a sample that had no use. ``commanded`` is the same of telecommands,
+    which may come between the boards' messages in any order.
     """
 
     counters: tuple[int, ...] = (-1,) * len(_HEARD)
@@ -99,6 +100,7 @@ class GateState:
     missed: int = 0
     overrun: int = 0
     heard: int = 0
+    commanded: int = 0
 
 
 def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateState]:
@@ -106,14 +108,14 @@ def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateSt
 
     Returns:
         The readings, and the gate's state with ``rejected`` (broken, unknown, repeated or out of range),
-        ``missed`` (jumps of a counter), ``overrun`` (frames beyond the limit, unread) and ``heard`` brought
-        forward.
+        ``missed`` (jumps of a counter), ``overrun`` (frames beyond the limit, unread), ``heard`` and
+        ``commanded`` brought forward.
     """
     slots: list[object] = [None] * len(LISTENED)
     telecommands: list[Telecommand] = []
     repeated: list[Telecommand] = []
     counters = list(state.counters)
-    rejected, missed, heard = state.rejected, state.missed, state.heard
+    rejected, missed, heard, commanded = state.rejected, state.missed, state.heard, state.commanded
     for frame in frames[:INBOX_LIMIT]:
         message_class = _HEARD.get(frame.can_id)
         if message_class is None:
@@ -139,12 +141,13 @@ def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateSt
         counters[slot] = message.counter
         if isinstance(message, Telecommand):
             telecommands.append(message)
+            commanded = crc32(frame.data, commanded)
         else:
             slots[slot] = message
-        heard = crc32(frame.data, heard)
+            heard = crc32(frame.data, heard)
     overrun = state.overrun + max(0, len(frames) - INBOX_LIMIT)
     readings = Readings(*slots, telecommands=tuple(telecommands), repeated=tuple(repeated))  # type: ignore[arg-type, misc]
-    return readings, GateState(tuple(counters), rejected, missed, overrun, heard)
+    return readings, GateState(tuple(counters), rejected, missed, overrun, heard, commanded)
 
 
 def _in_range(message: Listened | Telecommand) -> bool:

@@ -68,6 +68,7 @@ def checksum(state: FlightState) -> int:
         gate.missed,
         gate.overrun,
         gate.heard,
+        gate.commanded,
         state.upload.come,
         state.orbit is not None,
         state.estimator.rejected_in_a_row,

@@ -18,6 +18,7 @@ from fsw.wire.frame import Frame
 from fsw.wire.messages import FswBoot, PlantBoot, TickDone, intact
 from sim.harness.candump import format_line, format_time
 from sim.harness.errors import HarnessError
+from sim.harness.heard import heard_before_sync
 from sim.harness.telecommands import Uplink
 from sim.plant.plant import Plant, TruthRow
 
@@ -119,16 +120,19 @@ def fly(
     log.write(epoch_us, [boot])
     gc.freeze()  # what was loaded before the flight need not be searched for garbage during it
     began = time.monotonic()
+    answers: list[Frame] = []
     for tick in range(ticks):
         timestamp_us = epoch_us + tick * 1_000_000 // tick_hz
         sent = uplink(tick) + plant.begin_tick()
-        before = _waiting(bus)
+        known = answers + (before := _waiting(bus)) + sent
         bus.send(sent)
         if pace.factor is None:
             answers = _lockstep_answers(bus, tick)
         else:
             answers = _answers_until(bus, began + (tick + 1) / (tick_hz * pace.factor))
             plant.slips += not answered(answers, tick)
+        heard, answers = heard_before_sync(known, answers, tick)
+        before += heard
         for frame in before + answers:
             plant.receive(frame)
         log.write(timestamp_us, before + sent + answers)

@@ -298,7 +298,7 @@ class TestTelecommands:
     def test_is_the_only_one_heard(self, message):
         readings, state = admitted(message)
         assert readings == NOTHING._replace(telecommands=(message,))
-        assert state.heard == crc32(message.encode().data)
+        assert (state.heard, state.commanded) == (0, crc32(message.encode().data))
         assert (state.rejected, state.missed) == (0, 0)
 
     def test_all_of_one_kind_count(self, message):
@@ -313,7 +313,7 @@ class TestTelecommands:
         assert state.rejected == 1
         readings, later = admitted(message, state=state)
         assert (readings.telecommands, readings.repeated) == ((), (message,))
-        assert (later.rejected, later.heard) == (2, state.heard)
+        assert (later.rejected, later.commanded) == (2, state.commanded)
 
     def test_gaps_are_counted(self, message):
         readings, state = admitted(message, message._replace(counter=9))
@@ -332,6 +332,13 @@ def test_telecommands_of_all_kinds_stay_in_their_order():
     sent = tuple(TELECOMMAND_OF[can_id] for can_id in reversed(TELECOMMANDS))
     readings, _ = admitted(FIELD, *sent[:3], COIL, *sent[3:])
     assert readings == NOTHING._replace(field=FIELD, coil=COIL, telecommands=sent)
+
+
+def test_where_a_telecommand_stands_among_the_boards_messages_does_not_count():
+    one = (TELECOMMAND_OF[TcSpin.ID], TELECOMMAND_OF[TcLaw.ID])
+    orders = [(*one, FIELD, COIL), (one[0], FIELD, one[1], COIL), (FIELD, COIL, *one)]
+    assert len({admitted(*order) for order in orders}) == 1
+    assert admitted(*reversed(one), FIELD, COIL) != admitted(*orders[0])
 
 
 def test_every_telecommand_is_listened_to():

@@ -5,6 +5,7 @@ import tomllib
 from decimal import Decimal
 from math import dist
 from pathlib import Path
+from random import Random
 
 import pytest
 
@@ -12,6 +13,7 @@ from fsw.core.elements import RANGES, Elements
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit import element_orbit, sgp4_orbit, state_eci
 from fsw.io.config import flight_config
+from fsw.io.node import FlightNode
 from fsw.io.schema import TableError
 from fsw.wire.messages import (
     CLASSES,
@@ -39,8 +41,9 @@ from sim.harness.flight import Pace
 from sim.harness.replay import replay
 from sim.harness.run_dir import BUS_LOG
 from sim.harness.scenario import flight_table, load
+from sim.harness.sil import record
 from sim.harness.telecommands import digits_of, elements_of, uplink
-from sim.harness.virtual import fly_virtual
+from sim.harness.virtual import VirtualBus, fly_virtual
 
 ITAMSAT = (
     "1 22826U 93061D   15086.11593543  .00000251  00000-0  11414-3 0  9992",
@@ -255,3 +258,34 @@ class TestFlight:
         assert not shown.command_exact
         assert shown.first_bit_difference.tick == tick
         assert "TC_ACK" in str(shown.first_bit_difference)
+
+
+class RacingBus(VirtualBus):
+    """A hand at another terminal: its commands meet the plant's frames of each tick, at every place."""
+
+    def __init__(self, node):
+        super().__init__(node)
+        self.random, self.count = Random(3), 0
+
+    def send(self, frames):
+        places = [self.random.randrange(len(frames) + 1) for _ in range(self.random.choice([0, 0, 1, 2]))]
+        for place, frame in enumerate([*frames, None]):
+            for _ in range(places.count(place)):
+                self.count += 1
+                spin = TcSpin(self.count * 2.0**-19, counter=self.count & 0xF).encode()
+                self._queue.append(spin)
+                super().send([spin])
+            if frame is not None:
+                super().send([frame])
+
+
+def test_commands_by_hand_replay_too_wherever_they_meet_the_tick(tmp_path):
+    scenario = load("microsat", {"control": {"law": "pd"}})
+    run_dir.begin(tmp_path, scenario, 5, TICKS, "virtual", Pace())
+    config = flight_config(flight_table(scenario))
+    bus = RacingBus(FlightNode(config))
+    record(tmp_path, scenario, bus)
+    shown = replay(tmp_path / BUS_LOG, config)
+    assert bus.count > 150
+    assert shown.bit_exact, shown.first_bit_difference
+    assert shown.ended
