@@ -32,7 +32,7 @@ class MpcGains:
     """Weights as for ``lqr``, and how far the plan reaches, in orbits."""
 
     rate: float = 0.0
-    effort: float = 0.1
+    effort: float = 0.05
     horizon_orbits: float = 1.0
 
     def __post_init__(self) -> None:
