@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 
 from fsw.core.laws.table import LAWS
 from sim.harness.compare.case import Driver
-from sim.harness.compare.score import Result
+from sim.harness.compare.score import WINDOW_ORBITS, Result
 from sim.harness.report.canvas import (
     AXES_COLOURS,
     INK,
@@ -43,8 +43,9 @@ def picture(path: Path, title: str, results: Sequence[Result]) -> None:
     with style():
         heights_in = [PANEL_IN] * len(drivers)
         figure, panels = stacked(flown[0].history.time, heights_in, legends=False, right_in=NAMES_IN)
-        if flown[0].history.time.eclipses:
-            panels[-1].set_xlabel(f"{flown[0].history.time.label}, eclipses shaded")
+        shaded = "; eclipses shaded" if flown[0].history.time.eclipses else ""
+        smoothed = f"RMS of {WINDOW_ORBITS:g} orbits about each time"
+        panels[-1].set_xlabel(f"{flown[0].history.time.label}; {smoothed}{shaded}")
         for panel, driver in zip(panels, drivers, strict=True):
             log_y(panel, *errors, decades=3.5)
             _settled(panel)

@@ -20,8 +20,9 @@ from sim.harness.validate.flight import Record, record_order
 
 Array = NDArray[np.float64]
 
-BINS_AN_ORBIT = 60
-MOST_BINS = 1200
+POINTS_AN_ORBIT = 60
+MOST_POINTS = 1200
+WINDOW_ORBITS = 0.25
 RESIDUAL = 1e-5
 """Part of full scale under which a coil is not driven: less than the least dipole on the wire."""
 
@@ -63,7 +64,7 @@ class Score:
 
 
 class History(NamedTuple):
-    """The pointing error of a flight, root mean square over bins, on its time axis."""
+    """The running root mean square of the pointing error of a flight, on its time axis."""
 
     time: TimeAxis
     t_s: Array
@@ -112,14 +113,18 @@ def judge(case: Case, record: Record) -> Score:
 
 
 def history(record: Record) -> History:
-    """The pointing error in bins of a sixtieth of an orbit, wider in a long flight."""
+    """The running root mean square of the pointing error, sixty points an orbit, fewer in a long flight.
+
+    The window of a quarter of an orbit takes out the dips where the error passes zero.
+    """
     flown = Flown.of(record.scenario, record.truth, record.estimates, record.audit)
-    error_deg, ticks = pointing_error_deg(record), flown.ticks
-    bins = max(1, min(ticks, MOST_BINS, round(BINS_AN_ORBIT * flown.length_s / flown.orbit_s)))
-    starts = np.linspace(0, ticks, bins, endpoint=False).astype(int)
-    sizes = np.diff(np.append(starts, ticks))
-    rms = np.sqrt(np.add.reduceat(error_deg**2, starts) / sizes)
-    return History(flown.time, flown.t_s[starts] + 0.5 * sizes / flown.tick_hz, rms)
+    ticks, orbits = flown.ticks, flown.length_s / flown.orbit_s
+    points = min(ticks, MOST_POINTS, max(2, round(POINTS_AN_ORBIT * orbits)))
+    at = np.linspace(0, ticks - 1, points).round().astype(int)
+    half = round(0.5 * WINDOW_ORBITS * flown.orbit_s * flown.tick_hz)
+    first, past = np.maximum(at - half, 0), np.minimum(at + half + 1, ticks)
+    total = np.concatenate(([0.0], np.cumsum(pointing_error_deg(record) ** 2)))
+    return History(flown.time, flown.t_s[at], np.sqrt((total[past] - total[first]) / (past - first)))
 
 
 def by_axis1(scenario: Scenario) -> bool:

@@ -79,25 +79,28 @@ def test_limits_that_were_broken_are_told(plant_record, case_of):
     assert judge(case_of(), too_soon).pulses == 2
 
 
-def test_history_is_the_mean_square_of_bins_over_the_whole_flight(plant_record):
-    orbits = 1
-    errors = np.linspace(1.0, 9.0, round(orbits * ORBIT_S))
+def test_history_is_the_mean_square_over_a_quarter_of_an_orbit_about_each_time(plant_record):
+    ticks, half = round(1.5 * ORBIT_S), ORBIT_S / 8
+    errors = np.where(np.arange(ticks) < 4000, 3.0, 1.0)
     got = history(plant_record(errors))
-    assert len(got.t_s) == len(got.error_deg) == 60 * orbits
-    assert got.error_deg == pytest.approx(np.interp(got.t_s, np.arange(len(errors)), errors), rel=1e-3)
-    assert np.mean(got.error_deg**2) == pytest.approx(np.mean(errors**2), rel=1e-3)
+    assert len(got.t_s) == len(got.error_deg) == 90
+    assert (got.t_s[0], got.t_s[-1]) == (0.0, ticks - 1)
+    share = np.clip((4000 - (got.t_s - half)) / (2 * half), 0.0, 1.0)
+    inside = (got.t_s > half) & (got.t_s < ticks - half)
+    assert got.error_deg[inside] == pytest.approx(np.sqrt(9.0 * share + 1.0 - share)[inside], rel=2e-3)
+    assert got.error_deg[[0, -1]] == pytest.approx([3.0, 1.0])
     assert got.time.eclipses[0] == (120.0, 200.0)
 
 
 def test_history_of_a_long_flight_stays_small(plant_record, monkeypatch):
-    monkeypatch.setattr("sim.harness.compare.score.MOST_BINS", 15)
+    monkeypatch.setattr("sim.harness.compare.score.MOST_POINTS", 15)
     assert len(history(plant_record([1.0] * round(0.5 * ORBIT_S))).t_s) == 15
 
 
 def test_history_of_a_few_ticks(plant_record):
     got = history(plant_record([3.0, 4.0]))
-    assert got.error_deg == pytest.approx([sqrt(12.5)])
-    assert got.t_s == pytest.approx([1.0])
+    assert got.error_deg == pytest.approx([sqrt(12.5)] * 2)
+    assert got.t_s == pytest.approx([0.0, 1.0])
 
 
 def test_a_law_that_cannot_be_flown_is_a_line():
