@@ -1,6 +1,6 @@
 # make sil    makes the environment .venv and flies the default scenario
 # make test   all tests; those on a CAN interface say so when there is none
-# make lint   style, types, layers, generated code
+# make lint   style, types, layers, generated code and pages
 # make validate   every claim and reference figure anew, into docs/validation.md: minutes to half an hour
 # make golden     record the golden logs anew: after a change that means to alter what fsw answers
 # make test-vcan   the tests on a CAN interface, in a user-mode Linux guest where this kernel has no vcan
@@ -38,6 +38,7 @@ lint: venv
 	$(bin)/mypy
 	$(bin)/lint-imports --no-logo
 	$(bin)/python tools/generate_messages.py --check
+	$(bin)/python tools/generate_icd.py --check
 
 test-vcan: venv
 	TORQUER_REQUIRE_VCAN=1 tests/with-vcan $(bin)/pytest -q -rs -p no:cacheprovider -m vcan

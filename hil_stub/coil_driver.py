@@ -18,7 +18,7 @@ from hil_stub.refusals import MAX_REFUSALS, Refusals
 
 __all__ = ["MAX_REFUSALS", "OFF", "BoardState", "CoilDriver", "CoilLimits", "Drive"]
 
-_SEQ_END = 3
+NAMED_BYTES = 3
 """Bytes that a ``COIL_FIRE`` must have for its ``coil`` and ``seq`` to be read."""
 
 
@@ -94,7 +94,7 @@ class CoilDriver:
         """
         if not intact(frame):
             self.rejects += 1
-            if frame.can_id == CoilFire.ID and len(frame.data) >= _SEQ_END:
+            if frame.can_id == CoilFire.ID and len(frame.data) >= NAMED_BYTES:
                 self._refuse(CoilFire.decode(frame.data[: CoilFire.LENGTH]), CoilRefusedReason.MALFORMED)
             return
         if frame.can_id != CoilFire.ID:

@@ -131,6 +131,9 @@ _REFUSED_IF: tuple[tuple[CoilRefusedReason, _Rule], ...] = (
 )
 """The rules in the order in which they are judged; the first that applies names the refusal."""
 
+REFUSAL_ORDER = tuple(reason for reason, _ in _REFUSED_IF)
+"""The reasons in that order, for the specification of the board."""
+
 
 def ask(
     state: Interlock, asked: Request, tick: int, limits: CoilLimits

@@ -1,0 +1,122 @@
+"""docs/icd.md is what the DBC, the rules and the boards say, and a page that is not is noticed."""
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import cantools
+import pytest
+
+from fsw.wire.messages import CoilFire, CoilRefusedReason
+from hil_stub import interlock
+from hil_stub.coil_driver import CoilDriver, CoilLimits
+
+ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "docs" / "icd.md"
+
+
+def generate(root, *arguments):
+    return subprocess.run(
+        [sys.executable, "-P", str(root / "tools" / "generate_icd.py"), *arguments],
+        cwd=root,
+        check=False,
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+
+
+@pytest.fixture
+def copy(tmp_path):
+    """A copy of all that the page is made of, and of the page."""
+    for name in ("tools/icd.md.in", "tools/generate_icd.py", "docs/icd.md"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        shutil.copy(ROOT / name, tmp_path / name)
+    for package in ("fsw", "hil_stub"):
+        shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__"))
+    return tmp_path
+
+
+def test_the_page_is_fresh():
+    shown = generate(ROOT, "--check")
+    assert shown.returncode == 0, shown.stdout + shown.stderr
+
+
+def test_make_lint_checks_it():
+    recipe = (ROOT / "Makefile").read_text().partition("\nlint:")[2].partition("\n\n")[0]
+    assert "tools/generate_icd.py --check" in recipe
+
+
+CHANGES = {
+    "a signal of the DBC": ("fsw/wire/torquer.dbc", "duration_ms : 32|16", "duration_ms : 32|15"),
+    "a limit": ("hil_stub/interlock.py", "backoff_ms: int = 100_000", "backoff_ms: int = 90_000"),
+    "a rule's text": ("hil_stub/rules.toml", "a coil is on", "one is on"),
+    "the prose": ("tools/icd.md.in", "A gap in", "Some gap in"),
+    "what the board tells": ("hil_stub/coil_driver.py", "else tick % 3", "else 0"),
+    "the CRC": ("fsw/wire/frame.py", "_crc8_table(0x1D)", "_crc8_table(0x1F)"),
+    "the order of refusals": (
+        "hil_stub/interlock.py",
+        "REFUSAL_ORDER = tuple(reason for reason, _ in _REFUSED_IF)",
+        "REFUSAL_ORDER = tuple(reason for reason, _ in _REFUSED_IF[::-1])",
+    ),
+}
+
+
+@pytest.mark.parametrize(("name", "old", "new"), CHANGES.values(), ids=CHANGES)
+def test_a_stale_page_is_noticed(copy, name, old, new):
+    changed = copy / name
+    assert old in changed.read_text()
+    changed.write_text(changed.read_text().replace(old, new))
+    shown = generate(copy, "--check")
+    assert (shown.returncode, "stale" in shown.stdout) == (1, True), shown.stderr
+
+
+@pytest.mark.parametrize(
+    ("old", "new"), [("wrong_tick", "wrong_tock"), ('[state]\nREADY = "', '[state]\nX = "')]
+)
+def test_a_rule_without_a_text_is_an_error(copy, old, new):
+    rules = copy / "hil_stub" / "rules.toml"
+    rules.write_text(rules.read_text().replace(old, new, 1))
+    shown = generate(copy)
+    assert shown.returncode != 0
+    assert "rules.toml" in shown.stderr
+
+
+def test_the_worked_example_is_what_another_codec_makes():
+    (can_id, data) = re.search(r"as candump writes it, `(\w{3})#(\w+)`", PAGE.read_text()).groups()
+    decoded = cantools.database.load_file(ROOT / "fsw/wire/torquer.dbc").decode_message(
+        int(can_id, 16), bytes.fromhex(data), decode_choices=False
+    )
+    shown = {"level": -2, "coil": 1, "seq": 7, "tick": 100, "duration_ms": 3000, "counter": 5}
+    assert {name: decoded[name] for name in shown} == shown
+    register = 0xFF
+    for byte in bytes.fromhex(f"0{can_id}{data}")[:-1]:
+        register ^= byte
+        for _ in range(8):
+            register = (register << 1 ^ 0x1D if register & 0x80 else register << 1) & 0xFF
+    assert register ^ 0xFF == decoded["crc"]
+
+
+def test_the_order_of_refusals_is_how_the_board_judges():
+    """A request that breaks rule n and all that follow is refused for n."""
+    limits = CoilLimits(1)
+    board = CoilDriver(limits)
+    board.begin_tick(0, 0.0)
+    board.begin_tick(300, 0.0)
+    board.receive(CoilFire(1, 0, 5, 300 & 0xFF, 3000).encode())
+    state = board._state
+    asked = interlock.Request(coil=3, level=7, duration_ms=0, seq=5, tick=0)
+    mended = [{"tick": 300 & 0xFF}, {"seq": 6}, {"coil": 0}, {"level": 1}, {"duration_ms": 1}]
+    found = []
+    for mend in [{}, *mended]:
+        asked = asked._replace(**mend)
+        found.append(interlock.ask(state, asked, 300, limits)[1])
+    found.append(interlock.ask(interlock.elapse(state, 3), asked, 300, limits)[1])
+    assert tuple(found) == interlock.REFUSAL_ORDER
+    listed = re.findall(r"^\| \d \| (\d+) \| `(\w+)`", PAGE.read_text(), re.MULTILINE)
+    assert [(int(n), name.upper()) for n, name in listed] == [
+        (r.value, r.name) for r in interlock.REFUSAL_ORDER
+    ]
+    assert set(CoilRefusedReason) > set(interlock.REFUSAL_ORDER)
