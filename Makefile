@@ -39,6 +39,7 @@ lint: venv
 	$(bin)/lint-imports --no-logo
 	$(bin)/python tools/generate_messages.py --check
 	$(bin)/python tools/generate_icd.py --check
+	$(bin)/python tools/write_requirements.py --check
 
 test-vcan: venv
 	TORQUER_REQUIRE_VCAN=1 tests/with-vcan $(bin)/pytest -q -rs -p no:cacheprovider -m vcan

@@ -1,4 +1,7 @@
-"""Requirements as monitors: each a name, a limit and a predicate over one tick. A violation trips to SAFE."""
+"""Monitors: each a name, a limit and a predicate over one tick. A violation trips to SAFE.
+
+What each of them is for stands in ``requirements``.
+"""
 
 from collections.abc import Callable
 from enum import IntEnum
@@ -35,13 +38,18 @@ class Watched(NamedTuple):
 
 
 RATE_LIMIT_RADPS = 0.5
+UNIT_TOLERANCE = 1e-6
+"""How far the square of the quaternion's norm may be off."""
 
 MONITORS: tuple[tuple[Monitor, Callable[[Watched], bool]], ...] = (
     (
         Monitor.ATTITUDE_FINITE,
         lambda w: isfinite(sum(w.attitude.q_body_from_orbit) + sum(w.attitude.omega_body_orbit_radps)),
     ),
-    (Monitor.QUATERNION_UNIT, lambda w: abs(sum(c * c for c in w.attitude.q_body_from_orbit) - 1.0) < 1e-6),
+    (
+        Monitor.QUATERNION_UNIT,
+        lambda w: abs(sum(c * c for c in w.attitude.q_body_from_orbit) - 1.0) < UNIT_TOLERANCE,
+    ),
     (
         Monitor.RATE_BOUNDED,
         lambda w: all(abs(c) < RATE_LIMIT_RADPS for c in w.attitude.omega_body_orbit_radps),

@@ -69,6 +69,16 @@ TRIPS = [
 ]
 
 
+@pytest.mark.requirement(
+    "REQ-TRIP-01",
+    "REQ-TRIP-02",
+    "REQ-TRIP-03",
+    "REQ-TRIP-04",
+    "REQ-TRIP-05",
+    "REQ-TRIP-06",
+    "REQ-TRIP-07",
+    "REQ-TRIP-08",
+)
 @pytest.mark.parametrize(("monitor", "watched"), TRIPS, ids=[monitor.name for monitor, _ in TRIPS])
 def test_trips_and_is_named(monitor, watched):
     assert first_violation(watched) is monitor

@@ -1,0 +1,22 @@
+"""Write docs/requirements.md from fsw/core/requirements.py; with --check, exit 1 when the file is stale."""
+
+import sys
+from pathlib import Path
+
+from fsw.core.requirements import document
+
+TARGET = Path(__file__).resolve().parent.parent / "docs" / "requirements.md"
+
+
+def main() -> int:
+    if "--check" in sys.argv[1:]:
+        stale = not TARGET.is_file() or TARGET.read_text(encoding="utf-8") != document()
+        if stale:
+            print(f"{TARGET} is stale: run tools/write_requirements.py")
+        return int(stale)
+    TARGET.write_text(document(), encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
