@@ -90,7 +90,7 @@ def predict(
     transition = _transition(omega_mid, e1_mid, b_mid, gravity_per_s2, m_body_am2, config)
 
     ekf = _filter(config)
-    ekf.P, ekf.F, ekf.Q = estimate.covariance, transition, config.process_noise
+    ekf.P, ekf.F, ekf.Q = estimate.covariance, transition, _process_noise(m_body_am2, b_mid, config)
     ekf.predict()
     return Estimate(
         normalise(multiply(q, _turn(scale(h, omega_mid)))),
@@ -99,6 +99,17 @@ def predict(
         torque,
         ekf.P,
     )
+
+
+def _process_noise(m_body_am2: Vec3, b_body_t: Vec3, config: MekfConfig) -> Matrix:
+    """The noise of a tick; while a coil is driven also that of its dipole, known to ``dipole_sigma`` only."""
+    if m_body_am2 == ZERO:
+        return config.process_noise
+    turn = scale(config.dipole_sigma * config.tick_s, cross(m_body_am2, b_body_t))
+    kick = np.array(transform(config.inertia_inverse, turn))
+    noise = config.process_noise.copy()
+    noise[3:6, 3:6] += np.outer(kick, kick)
+    return noise
 
 
 def update_field(estimate: Estimate, b_body_t: Vec3, b_eci_t: Vec3, config: MekfConfig) -> Estimate | None:

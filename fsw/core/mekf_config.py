@@ -43,6 +43,7 @@ class MekfConfig:
     field_noise: Matrix
     sun_noise: Matrix
     both_noise: Matrix
+    dipole_sigma: float
     gate_nis: float
     blank: ExtendedKalmanFilter
 
@@ -70,6 +71,7 @@ def mekf_config(
     torque_noise_nm_rts: float,
     bias_walk_t_prts: float,
     torque_walk_nm_prts: float,
+    dipole_sigma: float = 0.0,
     gate_nis: float,
 ) -> MekfConfig:
     """Prepare the filter.
@@ -89,6 +91,7 @@ def mekf_config(
         torque_noise_nm_rts: white torque noise, N m sqrt(s).
         bias_walk_t_prts: random walk of the bias, T / sqrt(s).
         torque_walk_nm_prts: random walk of the torque, N m / sqrt(s).
+        dipole_sigma: relative error of a driven dipole.
         gate_nis: largest normalised innovation squared that is taken.
     """
     parts = layout(estimate_bias, estimate_torque)
@@ -129,6 +132,7 @@ def mekf_config(
         field_noise=np.diag(field_variances),
         sun_noise=np.diag(sun_variances),
         both_noise=np.diag(field_variances + sun_variances),
+        dipole_sigma=dipole_sigma,
         gate_nis=gate_nis,
         blank=_blank(parts.size),
     )

@@ -121,6 +121,7 @@ def _estimator(table: FlightTable) -> EstimatorConfig:
             torque_noise_nm_rts=tuning.torque_noise_nm_rts,
             bias_walk_t_prts=tuning.bias_walk_nt_prts * NT,
             torque_walk_nm_prts=tuning.torque_walk_nm_prts,
+            dipole_sigma=tuning.dipole_sigma,
             gate_nis=tuning.gate_nis,
         ),
         perfect=table.knowledge == "perfect",

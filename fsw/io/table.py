@@ -181,6 +181,7 @@ class EstimatorTable(Section):
     torque_noise_nm_rts: NotNegative
     bias_walk_nt_prts: NotNegative
     torque_walk_nm_prts: NotNegative
+    dipole_sigma: float = Field(ge=0.0, le=1.0)
     gate_nis: Positive
     max_field_error_nt: Positive
     max_angle_error_deg: Positive
