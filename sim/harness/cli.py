@@ -10,7 +10,7 @@ import click
 
 from fsw.io.bus import BusError
 from fsw.io.schema import TableError
-from sim.harness.errors import HarnessError
+from sim.harness.errors import DISK_FULL, HarnessError
 
 Parameters = ParamSpec("Parameters")
 
@@ -31,6 +31,11 @@ def sentences(command: Callable[Parameters, int | None]) -> Callable[Parameters,
         except (TableError, BusError, HarnessError) as error:
             click.echo(f"torquer: {error}", err=True)
             code = getattr(error, "exit_code", 2)
+        except OSError as error:
+            if error.errno not in DISK_FULL:
+                raise
+            click.echo(f"torquer: the disk takes no more ({error.strerror}); what was done is kept", err=True)
+            code = 1
         except KeyboardInterrupt:
             click.echo("torquer: interrupted; what was done so far is kept", err=True)
             code = 130

@@ -10,6 +10,7 @@ from sim.harness.audit.auditor import audit
 from sim.harness.audit.check import limits_beside
 from sim.harness.candump import LogEntry, read_log
 from sim.harness.estimates import EstimateRecorder
+from sim.harness.log_index import vouch
 from sim.harness.replay import Replay, replay
 from sim.harness.report.page import write_report
 from sim.harness.run_dir import Json
@@ -47,7 +48,7 @@ def conclude(path: Path, watch: Watch = lambda tick: None) -> Json:
     summary["replay"] = _verdict(shown)
     run_dir.write_json(path / run_dir.SUMMARY, summary)
     write_report(path / run_dir.REPORT, scenario, summary, truth, recorder.estimates(), audited)
-    if "flown" in run and shown.ended:
+    if "flown" in run and shown.ended and vouch(log).holds:
         run_dir.update(path, complete=True)
     return summary
 

@@ -1,5 +1,10 @@
 """What ends a command with a sentence instead of a traceback."""
 
+import errno
+
+DISK_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+"""Of an OSError: nothing is wrong but that there is no room."""
+
 
 class HarnessError(Exception):
     """The message is one sentence for the user; ``exit_code`` is what the process ends with."""

@@ -18,6 +18,7 @@ from sim.harness.assemble import plant_config
 from sim.harness.candump import LogEntry, LogTruncatedError, read_log
 from sim.harness.errors import HarnessError
 from sim.harness.flight import answered
+from sim.harness.log_index import vouch
 from sim.harness.progress import progress
 from sim.harness.replay import replay
 from sim.harness.scenario import Scenario, flight_table, load, parse_settings
@@ -69,9 +70,11 @@ def through_flight_software(log: Path, flown: Flown) -> int:
         click.echo(f"differs: {shown.first_bit_difference}")
         if shown.first_command_difference != shown.first_bit_difference:
             click.echo(f"first command that differs: {shown.first_command_difference}")
+        _vouched(log)
         return 1
+    holds = _vouched(log)
     if shown.ended:
-        return 0 if exact else 1
+        return 0 if exact and holds else 1
     how = "inside a line" if shown.cut else "without its end mark"
     click.echo(
         f"incomplete: the log ends {how} after line {shown.end_line}, at tick {max(shown.last_tick, 0)}"
@@ -90,13 +93,14 @@ def through_plant(log: Path, flown: Flown) -> int:
             logged = [entry.frame for entry in group]
             if logged[0] == plant.end():
                 click.echo(f"plant reproduced: {ticks} ticks, every frame equal")
-                return 0
+                return 0 if _vouched(log) else 1
             sent = plant.begin_tick()
             begin = _beginning(logged, len(sent))
             end = begin + len(sent)
             difference = _difference(sent, logged[begin:end])
             if difference is not None:
                 click.echo(f"differs: tick {ticks}: {difference}")
+                _vouched(log)
                 return 1
             for frame in logged[:begin] + logged[end:]:
                 plant.receive(frame)
@@ -104,8 +108,17 @@ def through_plant(log: Path, flown: Flown) -> int:
             plant.end_tick()
             ticks += 1
             watch(ticks)
+    _vouched(log)
     click.echo(f"incomplete: the log ends without its end mark at tick {max(ticks - 1, 0)}")
     return 1
+
+
+def _vouched(log: Path) -> bool:
+    """Print what the log's index says of it; whether the log may pass for complete."""
+    voucher = vouch(log)
+    if voucher.sentence:
+        click.echo(f"{'note' if voucher.holds else 'index'}: {voucher.sentence}")
+    return voucher.holds
 
 
 def _beginning(logged: list[Frame], count: int) -> int:

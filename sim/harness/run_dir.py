@@ -83,7 +83,7 @@ def read_run(path: Path) -> Json:
     """The content of run.json.
 
     Raises:
-        HarnessError: missing or not JSON.
+        HarnessError: missing, not JSON, or of another version.
     """
     try:
         content: Json = json.loads((path / RUN).read_text(encoding="utf-8"))
@@ -91,6 +91,9 @@ def read_run(path: Path) -> Json:
         raise HarnessError(f"{path} is no run directory: it has no {RUN}") from None
     except ValueError as error:
         raise HarnessError(f"{path / RUN}: not JSON: {error}") from None
+    told = content.get("schema_version") if isinstance(content, dict) else None
+    if told != SCHEMA_VERSION:
+        raise HarnessError(f"{path / RUN}: schema_version is {told}, and only {SCHEMA_VERSION} can be read")
     return content
 
 

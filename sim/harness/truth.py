@@ -1,9 +1,11 @@
 """truth.h5: the plant's histories, one row a tick.
 
 All datasets get their full length when the file is made, contiguous and filled with NaN. From then on only
-rows change, never the structure, so that a process killed at any moment leaves a file that opens.
+rows change, never the structure, so that a process killed at any moment leaves a file that opens; and the
+space is taken at once, so that a disk that cannot hold the histories is known before the flight.
 """
 
+import os
 from itertools import chain
 from pathlib import Path
 from types import TracebackType
@@ -17,6 +19,7 @@ from sim.harness.errors import HarnessError
 from sim.plant.plant import TruthRow
 
 BLOCK_ROWS = 1024
+ROOM_FOR_STRUCTURE = 8192
 
 Histories = dict[str, NDArray[np.float64]]
 
@@ -34,9 +37,15 @@ COLUMNS: tuple[tuple[str, int, str, str], ...] = (
 
 
 class TruthFile:
-    """Writes one row a tick, in blocks."""
+    """Writes one row a tick, in blocks.
+
+    Raises:
+        HarnessError: the disk cannot hold the histories of so many ticks.
+    """
 
     def __init__(self, path: Path, ticks: int, torque_sources: tuple[str, ...]) -> None:
+        columns = sum(width for _, width, *_ in COLUMNS) + 3 * len(torque_sources)
+        _take_space(path, 8 * ticks * columns + ROOM_FOR_STRUCTURE)
         self._file = h5py.File(path, "w", libver="earliest")
         torques = tuple(
             (f"torque_body_nm/{source}", 3, "N m", f"torque by {source}, body axes")
@@ -53,6 +62,7 @@ class TruthFile:
         self._rows: list[tuple[float, ...]] = []
         self._written = 0
         self._file.flush()
+        _take_space(path, path.stat().st_size)
 
     def append(self, row: TruthRow) -> None:
         """Add the row of the next tick."""
@@ -83,6 +93,21 @@ class TruthFile:
     ) -> None:
         self.flush()
         self._file.close()
+
+
+def _take_space(path: Path, size: int) -> None:
+    """Make a file take its space on the disk.
+
+    Raises:
+        HarnessError: there is not so much.
+    """
+    try:
+        with path.open("ab") as file:
+            os.posix_fallocate(file.fileno(), 0, size)
+    except OSError as error:
+        raise HarnessError(
+            f"{path}: histories of this length need {size / 1e6:.1f} MB: {error.strerror}"
+        ) from None
 
 
 def read_truth(path: Path) -> Histories:

@@ -14,7 +14,7 @@ from fsw.io.bus import BusError
 from fsw.io.open_bus import open_bus, resolve
 from fsw.io.schema import TableError
 from sim.harness import run_dir
-from sim.harness.errors import HarnessError
+from sim.harness.errors import DISK_FULL, HarnessError
 from sim.harness.options import parse_pace
 from sim.harness.scenario import load, parse_settings
 from sim.harness.sil import record, ticks_of
@@ -86,6 +86,11 @@ def main(
     except (TableError, BusError, HarnessError) as error:
         click.echo(f"plant: {error}", err=True)
         sys.exit(getattr(error, "exit_code", 2))
+    except OSError as error:
+        if error.errno not in DISK_FULL:
+            raise
+        click.echo(f"plant: the disk takes no more ({error.strerror}); what was done is kept", err=True)
+        sys.exit(1)
     except KeyboardInterrupt:
         sys.exit(130)
 

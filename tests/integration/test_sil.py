@@ -21,7 +21,7 @@ from fsw.wire.messages import (
     TickDone,
 )
 
-FILES = {"run.json", "scenario.toml", "bus.log", "truth.h5", "summary.json", "report.html"}
+FILES = {"run.json", "scenario.toml", "bus.log", "bus.log.index", "truth.h5", "summary.json", "report.html"}
 RUN_KEYS = {
     "schema_version", "torquer_version", "scenario", "scenario_sha256", "flight_table_crc", "seed", "bus",
     "pace", "platform", "complete",
@@ -170,7 +170,7 @@ def test_the_nodes_run_the_same_code_whatever_lies_around(torquer, tmp_path, mon
 def test_the_same_seed_gives_the_same_bytes(run, flown):
     again = flown("--seed", "7", "--orbits", "0.05", "microsat", "--bus", "loop")
     assert again != run
-    for name in ("bus.log", "scenario.toml"):
+    for name in ("bus.log", "bus.log.index", "scenario.toml"):
         assert (again / name).read_bytes() == (run / name).read_bytes()
     with h5py.File(run / "truth.h5") as one, h5py.File(again / "truth.h5") as other:
         assert all(np.array_equal(one[name], other[name]) for name in TRUTH)

@@ -1,16 +1,22 @@
 """``torquer check``: audit the actuator limits in a run directory or in any candump log."""
 
 import tomllib
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
+from fsw.wire.messages import CoilBoot, FswBoot, MagBoot, PlantBoot, SunBoot, intact
 from sim.harness.audit.auditor import audit
 from sim.harness.audit.findings import AuditLimits, AuditReport, seconds_text
-from sim.harness.candump import read_log
+from sim.harness.candump import LogEntry, read_log
 from sim.harness.errors import HarnessError
+from sim.harness.log_index import Standing, vouch
 
 LOG_NAME = "bus.log"
 SCENARIO_NAME = "scenario.toml"
+CONTRACT_VERSION = 1
+"""Of the bus contract that is judged here; each node tells its own when it boots."""
+_BOOTS = {boot.ID: boot for boot in (PlantBoot, FswBoot, CoilBoot, MagBoot, SunBoot)}
 _SHOWN = 50
 """Violations that are printed one by one; a log of ours that broke loose may hold thousands."""
 
@@ -33,7 +39,28 @@ def check(path: Path, backoff: str | None) -> AuditReport:
     limits = beside or AuditLimits()
     if backoff is not None:
         limits = replace(limits, shared=_is_shared(backoff, "--backoff"))
-    return audit(read_log(log), limits, expect_end=beside is not None)
+    report = audit(_of_this_contract(log), limits, expect_end=beside is not None)
+    voucher = vouch(log)
+    notes = (*report.notes, voucher.sentence) if voucher.sentence else report.notes
+    return replace(
+        report,
+        notes=notes,
+        complete=report.complete and voucher.standing is not Standing.OPEN,
+        genuine=voucher.standing is not Standing.BROKEN,
+    )
+
+
+def _of_this_contract(log: Path) -> Iterator[LogEntry]:
+    """The entries of a log whose nodes, where they tell, speak as this version does."""
+    for entry in read_log(log):
+        if entry.frame.can_id in _BOOTS and intact(entry.frame):
+            version = _BOOTS[entry.frame.can_id].decode(entry.frame.data).version
+            if version != CONTRACT_VERSION:
+                raise HarnessError(
+                    f"{log}: line {entry.line} is of version {version} of the bus contract, "
+                    f"and only version {CONTRACT_VERSION} can be read"
+                )
+        yield entry
 
 
 def limits_beside(log: Path) -> AuditLimits | None:
@@ -93,6 +120,8 @@ def _verdict(report: AuditReport) -> str:
     if report.violations:
         count = len(report.violations)
         return f"FAIL: {count} violation{'' if count == 1 else 's'} of the limits"
+    if not report.genuine:
+        return "FAIL: limits kept as far as the log goes, but its index contradicts it"
     return (
         "OK: limits kept"
         if report.complete

@@ -97,6 +97,7 @@ class AuditReport:
         span_s: time from the first to the last of them.
         truncated_at: number of the line that is cut, if the log ends inside one.
         complete: the log ends with a whole line, and with an end mark where one must be.
+        genuine: the index of the log, if it has one, does not contradict it.
     """
 
     limits: AuditLimits
@@ -107,6 +108,7 @@ class AuditReport:
     span_s: Fraction
     truncated_at: int | None
     complete: bool
+    genuine: bool = True
 
     @property
     def ok(self) -> bool:
@@ -115,8 +117,8 @@ class AuditReport:
 
     @property
     def exit_code(self) -> int:
-        """0 if the limits were kept over a complete log, else 1."""
-        return 0 if self.ok and self.complete else 1
+        """0 if the limits were kept over a complete log that is as it was flown, else 1."""
+        return 0 if self.ok and self.complete and self.genuine else 1
 
     @property
     def pulses_per_coil(self) -> list[int]:

@@ -75,6 +75,7 @@ class TestRealFlight:
             "run.json",
             "scenario.toml",
             "bus.log",
+            "bus.log.index",
             "truth.h5",
             "summary.json",
             "report.html",
