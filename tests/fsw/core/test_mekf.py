@@ -212,6 +212,26 @@ class TestProcessNoise:
         expected[9:12, 9:12] = np.eye(3) * 3e-10**2 * h
         np.testing.assert_allclose(noise, expected, rtol=1e-12, atol=0.0)
 
+    def test_a_driven_dipole_adds_its_own_along_the_kick_it_gives(self):
+        """Q_rate += (J^-1 (m x b) sigma h)(...)^T, at the attitude of the middle of the tick."""
+        sigma, h = 0.05, 0.5
+        exact, unsure = (make_config(tick_s=h, dipole_sigma=given) for given in (0.0, sigma))
+        still = Estimate((1.0, 0.0, 0.0, 0.0), ZERO, ZERO, ZERO, np.zeros((12, 12)))
+        added = (
+            predict(still, E1_ECI, B_ECI_T, 0.0, DIPOLE_AM2, unsure).covariance
+            - predict(still, E1_ECI, B_ECI_T, 0.0, DIPOLE_AM2, exact).covariance
+        )
+        kick = sigma * h * J_INVERSE @ np.cross(DIPOLE_AM2, B_ECI_T)
+        expected = np.zeros((12, 12))
+        expected[3:6, 3:6] = np.outer(kick, kick)
+        np.testing.assert_allclose(added, expected, rtol=0.0, atol=1e-6 * kick @ kick)
+
+    def test_an_unsure_dipole_that_is_not_driven_adds_nothing(self):
+        still = make_estimate(make_config())
+        unsure = predict(still, E1_ECI, B_ECI_T, GRAVITY_PS2, ZERO, make_config(dipole_sigma=0.05))
+        exact = predict(still, E1_ECI, B_ECI_T, GRAVITY_PS2, ZERO, make_config())
+        assert np.array_equal(unsure.covariance, exact.covariance)
+
 
 class TestPropagation:
     def flown(self, tick_s, seconds, omega=OMEGA, dipole=DIPOLE_AM2):
