@@ -1,37 +1,68 @@
-"""Run one board by hand on a named bus: ``python -m hil_stub coil|dipole|magnetometer|sun --bus BUS``."""
+"""Run one board on a named bus: ``python -m hil_stub coil|dipole|magnetometer|sun --bus BUS``."""
 
+import os
+import select
 import sys
-from math import hypot, isfinite
+import time
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
 
 import click
 
 from fsw.io.bus import Bus, BusError
 from fsw.io.open_bus import open_bus, resolve
-from hil_stub.bench import Bench, CoilBoard, DipoleBoard, MagnetometerBoard, SunBoard, Vec3
+from fsw.wire.messages import MagField, SunVector
+from hil_stub.bench import DEADMAN_MS, Bench, Board, CoilBoard, DipoleBoard, MagnetometerBoard, SunBoard
 from hil_stub.coil_driver import CoilLimits
+from hil_stub.stimulus import (
+    NOTHING,
+    Reading,
+    Stimulus,
+    StimulusError,
+    Vec3,
+    constant,
+    direction,
+    recorded,
+    scaled,
+    scripted,
+    three_numbers,
+)
 
 EXIT_BAD_INPUT = 2
 POLL_S = 0.5
 """How often a silent bus lets Ctrl-C in, where waiting cannot be interrupted."""
+PIPE_PATIENCE_S = 1.0
+"""How long a sensor waits for what it is shown over stdin; after that it reads nothing."""
+NT = 1e-9
 
 
-def run(bench: Bench, bus: Bus) -> None:
+def now_ms() -> int:
+    """A clock that never runs back [ms]."""
+    return time.monotonic_ns() // 1_000_000
+
+
+def run(bench: Bench, bus: Bus, poll_s: float = POLL_S) -> None:
     """Serve the bus until the plant says that the run is over."""
-    bus.send(bench.switch_on())
+    bus.send(bench.switch_on(now_ms=now_ms()))
     while not bench.ended:
-        frame = bus.receive(POLL_S)
-        if frame is not None and (answer := bench.receive(frame)):
+        frame = bus.receive(poll_s)
+        if frame is None:
+            bench.watch(now_ms())
+        elif answer := bench.receive(frame, now_ms()):
             bus.send(answer)
 
 
-def _serve(spec: str, bench: Bench) -> None:
+def _serve(spec: str, make_board: Callable[[], Board], deadman_s: float = 0.0, clock: str = "ticks") -> None:
+    deadman_ms = round(1000.0 * deadman_s) or None
+    bench = Bench(make_board, deadman_ms, has_clock=clock == "own")
     try:
         bus = open_bus(spec)
     except BusError as error:
         raise click.UsageError(str(error)) from error
     click.echo(f"on {resolve(spec)}", err=True)
     try:
-        run(bench, bus)
+        run(bench, bus, min(POLL_S, deadman_s / 4.0) if deadman_ms else POLL_S)
     except BusError as error:
         raise click.ClickException(str(error)) from error
     except KeyboardInterrupt:
@@ -40,17 +71,105 @@ def _serve(spec: str, bench: Bench) -> None:
         bus.close()
 
 
+class PipedStimulus:
+    """Readings as lines on stdin, ``tick x y z valid``: waits for the tick asked for, but not for ever.
+
+    Args:
+        scale: from the numbers of the lines to the reading.
+        descriptor: where the lines come from.
+    """
+
+    def __init__(self, scale: float, descriptor: int = 0) -> None:
+        self._scale = scale
+        self._descriptor = descriptor
+        self._torn = b""
+        self._readings: dict[int, Reading] = {}
+
+    def __call__(self, tick: int) -> Reading:
+        """The reading at ``tick``; nothing, if it does not come."""
+        deadline = time.monotonic() + PIPE_PATIENCE_S
+        while tick not in self._readings:
+            left_s = deadline - time.monotonic()
+            if left_s <= 0.0 or not self._fill(left_s):
+                return NOTHING
+        self._readings = {known: shown for known, shown in self._readings.items() if known >= tick}
+        return self._readings[tick]
+
+    def _fill(self, timeout_s: float) -> bool:
+        if not select.select((self._descriptor,), (), (), timeout_s)[0]:
+            return False
+        text = os.read(self._descriptor, 65536)
+        *lines, self._torn = (self._torn + text).split(b"\n")
+        for line in lines:
+            number, x, y, z, valid = line.split()
+            vector = scaled((float(x), float(y), float(z)), self._scale)
+            self._readings[int(number)] = Reading(vector, valid == b"1")
+        return bool(text)
+
+
+def _stimulus(
+    words: tuple[str, ...],
+    key: str,
+    message: type[MagField] | type[SunVector],
+    tick_hz: int,
+    scale: float,
+    convert: Callable[[Vec3], Vec3],
+) -> Stimulus:
+    """What ``--stimulus`` asks for: three numbers, a log or a run, a script, or ``-`` for stdin."""
+    try:
+        if len(words) == 3:
+            return constant(convert(three_numbers([_number(word) for word in words])))
+        if words == ("-",):
+            return PipedStimulus(scale)
+        if len(words) != 1:
+            raise StimulusError("must be three numbers, a run, a log, a script that ends in .toml, or -")
+        path = Path(words[0])
+        if path.suffix == ".toml":
+            return scripted(_toml(path).get("step"), key, tick_hz, convert)
+        log = path / "bus.log" if path.is_dir() else path
+        with log.open(encoding="ascii", errors="replace") as lines:
+            return recorded(lines, message, scale)
+    except StimulusError as error:
+        raise click.UsageError(f"--stimulus {' '.join(words)}: {error}") from None
+    except OSError as error:
+        raise click.UsageError(f"--stimulus {' '.join(words)}: cannot be read: {error.strerror}") from None
+
+
+def _words(first: str | None, rest: tuple[str, ...], default: str) -> tuple[str, ...]:
+    """The words after ``--stimulus``; without it the default, and nothing may be left over."""
+    if first is not None:
+        return (first, *rest)
+    if rest:
+        raise click.UsageError(f"No such option or argument: {rest[0]}")
+    return tuple(default.split())
+
+
+def _number(word: str) -> float:
+    try:
+        return float(word)
+    except ValueError:
+        raise StimulusError("must be three finite numbers") from None
+
+
+def _toml(path: Path) -> dict[str, object]:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise StimulusError(f"is not TOML: {error}") from None
+
+
 _bus = click.option(
     "--bus", "spec", required=True, help="socketcan:NAME, loop, loop:PORT, slcan:PORT or auto."
 )
 _tick_hz = click.option(
     "--tick-hz", type=click.IntRange(1, 1000), default=1, show_default=True, help="Ticks a second."
 )
+_SHOWN = {"ignore_unknown_options": True}  # so that --stimulus takes negative numbers
 
 
 @click.group()
 def cli() -> None:
-    """Run one board on a bus, with a fixed stimulus. Ends when the plant does, or on Ctrl-C."""
+    """Run one board on a bus. Ends when the plant does, or on Ctrl-C."""
 
 
 @cli.command()
@@ -63,10 +182,36 @@ def cli() -> None:
     show_default=True,
     help="What a pulse locks out: all coils, or its own.",
 )
-def coil(spec: str, tick_hz: int, backoff: str) -> None:
-    """The coil driver with its interlock: pulses of 3 s, 100 s back-off, locked out at the start."""
-    limits = CoilLimits(tick_hz, shared=backoff == "shared")
-    _serve(spec, Bench(lambda: CoilBoard(limits)))
+@click.option(
+    "--pulse-s", type=click.FloatRange(0.001, 3.0), default=3.0, show_default=True, help="Longest pulse."
+)
+@click.option(
+    "--backoff-s",
+    type=click.FloatRange(0.0, 160.0),
+    default=100.0,
+    show_default=True,
+    help="From the end of a pulse to the next start.",
+)
+@click.option(
+    "--deadman-s",
+    type=click.FloatRange(0.0, 3600.0),
+    default=DEADMAN_MS / 1000.0,
+    show_default=True,
+    help="Silence of SYNC after which all is off and locked out in full; 0: no dead-man.",
+)
+@click.option(
+    "--clock",
+    type=click.Choice(["own", "ticks"]),
+    default="own",
+    show_default=True,
+    help="own: a clock beside the ticks of the bus; ticks: none, where ticks are not real time.",
+)
+def coil(
+    spec: str, tick_hz: int, backoff: str, pulse_s: float, backoff_s: float, deadman_s: float, clock: str
+) -> None:
+    """The coil driver with its interlock, locked out at the start."""
+    limits = CoilLimits(tick_hz, round(1000.0 * pulse_s), round(1000.0 * backoff_s), backoff == "shared")
+    _serve(spec, lambda: CoilBoard(limits), deadman_s, clock)
 
 
 @cli.command()
@@ -74,50 +219,37 @@ def coil(spec: str, tick_hz: int, backoff: str) -> None:
 @_tick_hz
 def dipole(spec: str, tick_hz: int) -> None:
     """The continuous driver: all three coils at once, for a tick at a time."""
-    _serve(spec, Bench(lambda: DipoleBoard(tick_hz)))
+    _serve(spec, lambda: DipoleBoard(tick_hz))
 
 
-@cli.command()
+@cli.command(context_settings=_SHOWN)
 @_bus
 @_tick_hz
-@click.option(
-    "--stimulus",
-    type=(float, float, float),
-    default=(20_000.0, 0.0, -30_000.0),
-    show_default=True,
-    help="Field in body axes [nT].",
-)
-def magnetometer(spec: str, tick_hz: int, stimulus: Vec3) -> None:
-    """The magnetometer, in a constant field."""
-    x_nt, y_nt, z_nt = _finite(stimulus)
-    b_body_t = (x_nt * 1e-9, y_nt * 1e-9, z_nt * 1e-9)
-    _serve(spec, Bench(lambda: MagnetometerBoard(tick_hz, b_body_t)))
+@click.option("--stimulus", help="Field in body axes [nT]. Default: 20000 0 -30000.")
+@click.argument("rest", nargs=-1, type=click.UNPROCESSED, metavar="")
+def magnetometer(spec: str, tick_hz: int, stimulus: str | None, rest: tuple[str, ...]) -> None:
+    """The magnetometer, shown a field.
+
+    --stimulus X Y Z is a constant; RUN or LOG what it said then, tick by tick; FILE.toml a script.
+    """
+    shown = _stimulus(
+        _words(stimulus, rest, "20000 0 -30000"), "field_nt", MagField, tick_hz, NT, lambda v: scaled(v, NT)
+    )
+    _serve(spec, lambda: MagnetometerBoard(tick_hz, shown))
 
 
-@cli.command()
+@cli.command(context_settings=_SHOWN)
 @_bus
 @_tick_hz
-@click.option(
-    "--stimulus",
-    type=(float, float, float),
-    default=(1.0, 0.0, 0.0),
-    show_default=True,
-    help="Direction of the Sun in body axes.",
-)
-def sun(spec: str, tick_hz: int, stimulus: Vec3) -> None:
-    """The Sun sensor, before a lamp that stands still."""
-    x, y, z = _finite(stimulus)
-    length = hypot(x, y, z)
-    if length == 0.0:
-        raise click.UsageError("--stimulus is no direction: give three numbers that are not all 0")
-    sun_body = (x / length, y / length, z / length)
-    _serve(spec, Bench(lambda: SunBoard(tick_hz, sun_body)))
+@click.option("--stimulus", help="Direction of the Sun in body axes. Default: 1 0 0.")
+@click.argument("rest", nargs=-1, type=click.UNPROCESSED, metavar="")
+def sun(spec: str, tick_hz: int, stimulus: str | None, rest: tuple[str, ...]) -> None:
+    """The Sun sensor, shown a lamp.
 
-
-def _finite(stimulus: Vec3) -> Vec3:
-    if not all(map(isfinite, stimulus)):
-        raise click.UsageError("--stimulus must be three finite numbers")
-    return stimulus
+    --stimulus X Y Z is a constant; RUN or LOG what it said then, tick by tick; FILE.toml a script.
+    """
+    shown = _stimulus(_words(stimulus, rest, "1 0 0"), "sun", SunVector, tick_hz, 1.0, direction)
+    _serve(spec, lambda: SunBoard(tick_hz, shown))
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -1,4 +1,4 @@
-"""A board on a bench: follows the ticks of a bus by itself, with a fixed stimulus instead of a plant."""
+"""A board on a bench: follows the ticks of a bus by itself, with a stimulus of its own instead of a plant."""
 
 from collections.abc import Callable
 from typing import Protocol
@@ -9,9 +9,12 @@ from hil_stub.coil_driver import CoilDriver, CoilLimits
 from hil_stub.dipole_driver import DipoleDriver
 from hil_stub.interlock import MAX_LEVEL
 from hil_stub.magnetometer import Magnetometer
+from hil_stub.read_back import ReadBack
+from hil_stub.stimulus import Stimulus, Vec3
 from hil_stub.sun_sensor import SunSensor
 
-Vec3 = tuple[float, float, float]
+DEADMAN_MS = 5000
+"""Silence of ``SYNC`` after which a board on a bench is silenced, unless it is told otherwise."""
 
 FULL_CURRENT_A = 0.3
 """Current read-back at the highest level: the coil on the bench is nominal."""
@@ -20,28 +23,36 @@ FULL_CURRENT_A = 0.3
 class Board(Protocol):
     """A board with its stimulus: enters ticks, hears frames."""
 
-    def begin_tick(self, tick: int) -> list[Frame]:
-        """Enter ``tick``: the frames to send."""
+    def begin_tick(self, tick: int, clock_ms: int | None) -> list[Frame]:
+        """Enter ``tick``, the board's own clock reading ``clock_ms``: the frames to send."""
 
     def receive(self, frame: Frame) -> None:
         """Hear a frame of the bus."""
+
+    def silence(self) -> None:
+        """There has been no ``SYNC`` for too long."""
 
 
 class CoilBoard:
     """A coil driver whose coils draw their nominal current at once: level / 3 of 0.3 A while on."""
 
     def __init__(self, limits: CoilLimits) -> None:
-        self._driver = CoilDriver(limits)
+        low, middle, high = (FULL_CURRENT_A * level / MAX_LEVEL for level in range(1, MAX_LEVEL + 1))
+        self._driver = CoilDriver(limits, ReadBack((low, middle, high)))
 
-    def begin_tick(self, tick: int) -> list[Frame]:
+    def begin_tick(self, tick: int, clock_ms: int | None) -> list[Frame]:
         """Enter ``tick``; the current is that at the end of the tick before."""
         drive = self._driver.drive()
         current_a = FULL_CURRENT_A * drive.level / MAX_LEVEL if drive.fraction == 1.0 else 0.0
-        return self._driver.begin_tick(tick, current_a)
+        return self._driver.begin_tick(tick, current_a, clock_ms)
 
     def receive(self, frame: Frame) -> None:
         """Hear a frame of the bus."""
         self._driver.receive(frame)
+
+    def silence(self) -> None:
+        """All off, and a full back-off from now on."""
+        self._driver.silence()
 
 
 class DipoleBoard:
@@ -50,7 +61,7 @@ class DipoleBoard:
     def __init__(self, tick_hz: int) -> None:
         self._driver = DipoleDriver(tick_hz)
 
-    def begin_tick(self, tick: int) -> list[Frame]:
+    def begin_tick(self, tick: int, clock_ms: int | None) -> list[Frame]:
         """Enter ``tick``; the drive of the tick before has ended."""
         self._driver.drive()
         return self._driver.begin_tick(tick, 0.0)
@@ -59,35 +70,41 @@ class DipoleBoard:
         """Hear a frame of the bus."""
         self._driver.receive(frame)
 
+    def silence(self) -> None:
+        """What it drives ends by itself with the tick."""
 
-class MagnetometerBoard:
-    """A magnetometer in a constant field [T]."""
 
-    def __init__(self, tick_hz: int, b_body_t: Vec3) -> None:
-        self._sensor = Magnetometer(tick_hz)
-        self._b_body_t = b_body_t
+class SensorBoard:
+    """A sensor: what it hears, and that it is left alone, is nothing to it."""
 
-    def begin_tick(self, tick: int) -> list[Frame]:
+    def __init__(self, begin_tick: Callable[[int, Vec3, bool], list[Frame]], stimulus: Stimulus) -> None:
+        self._begin_tick = begin_tick
+        self._stimulus = stimulus
+
+    def begin_tick(self, tick: int, clock_ms: int | None) -> list[Frame]:
         """Enter ``tick``."""
-        return self._sensor.begin_tick(tick, self._b_body_t, True)
+        vector, valid = self._stimulus(tick)
+        return self._begin_tick(tick, vector, valid)
 
     def receive(self, frame: Frame) -> None:
         """A sensor hears nothing."""
 
+    def silence(self) -> None:
+        """A sensor guards nothing."""
 
-class SunBoard:
-    """A Sun sensor before a lamp that stands still."""
 
-    def __init__(self, tick_hz: int, sun_body: Vec3) -> None:
-        self._sensor = SunSensor(tick_hz)
-        self._sun_body = sun_body
+class MagnetometerBoard(SensorBoard):
+    """A magnetometer that is shown a field [T]."""
 
-    def begin_tick(self, tick: int) -> list[Frame]:
-        """Enter ``tick``."""
-        return self._sensor.begin_tick(tick, self._sun_body, True)
+    def __init__(self, tick_hz: int, stimulus: Stimulus) -> None:
+        super().__init__(Magnetometer(tick_hz).begin_tick, stimulus)
 
-    def receive(self, frame: Frame) -> None:
-        """A sensor hears nothing."""
+
+class SunBoard(SensorBoard):
+    """A Sun sensor that is shown a direction."""
+
+    def __init__(self, tick_hz: int, stimulus: Stimulus) -> None:
+        super().__init__(SunSensor(tick_hz).begin_tick, stimulus)
 
 
 class Bench:
@@ -97,27 +114,43 @@ class Bench:
     in a row name consecutive ticks that are not its own), or when the plant has started anew, it is replaced
     by a new one, which boots: for the coil driver a full lockout. One strange ``SYNC`` alone moves nothing.
 
+    The dead-man: when ``SYNC`` has stayed away for ``deadman_ms`` the board is silenced, until it is back.
+
     Args:
         make_board: makes a board that has just been switched on.
+        deadman_ms: longest silence, above 0; None: there is no dead-man.
+        has_clock: whether the board has a clock of its own beside the ticks.
     """
 
-    def __init__(self, make_board: Callable[[], Board]) -> None:
+    def __init__(
+        self, make_board: Callable[[], Board], deadman_ms: int | None = None, has_clock: bool = False
+    ) -> None:
         self._make_board = make_board
+        self._deadman_ms = deadman_ms
+        self._has_clock = has_clock
         self._board = make_board()
         self._tick = 0
         self._strange_sync: int | None = None
+        self._now_ms = self._synced_ms = 0
         self.ended = False
         """The plant has said that the run is over."""
 
-    def switch_on(self, tick: int = 0) -> list[Frame]:
-        """A new board, its first tick being ``tick``: the frames to send."""
+    def switch_on(self, tick: int = 0, now_ms: int = 0) -> list[Frame]:
+        """A new board, its first tick being ``tick``: the frames to send.
+
+        Args:
+            tick: the tick it wakes up in.
+            now_ms: the time on a clock that never runs back [ms].
+        """
         self._board = self._make_board()
         self._tick = tick
         self._strange_sync = None
-        return self._board.begin_tick(tick)
+        self._now_ms = self._synced_ms = now_ms
+        return self._enter()
 
-    def receive(self, frame: Frame) -> list[Frame]:
+    def receive(self, frame: Frame, now_ms: int = 0) -> list[Frame]:
         """Hear a frame of the bus: the frames to send because of it."""
+        self.watch(now_ms)
         self._board.receive(frame)
         if not intact(frame):
             return []
@@ -127,22 +160,33 @@ class Bench:
             case Sync.ID:
                 return self._follow(Sync.decode(frame.data).tick)
             case PlantBoot.ID if self._tick > 0:
-                return self.switch_on()
+                return self.switch_on(now_ms=now_ms)
             case PlantEnd.ID:
                 self.ended = True
         return []
 
+    def watch(self, now_ms: int) -> None:
+        """Time goes on: the dead-man, where nothing is heard too."""
+        self._now_ms = now_ms
+        if self._deadman_ms is not None and now_ms - self._synced_ms > self._deadman_ms:
+            self._board.silence()
+
     def _follow(self, tick: int) -> list[Frame]:
         strange, self._strange_sync = self._strange_sync, None
         if tick == self._tick:
+            self._synced_ms = self._now_ms
             return []
         if tick == self._tick + 1:
+            self._synced_ms = self._now_ms
             return self._next_tick()
         if strange is not None and tick == strange + 1:
-            return self.switch_on(tick)
+            return self.switch_on(tick, self._now_ms)
         self._strange_sync = tick
         return []
 
     def _next_tick(self) -> list[Frame]:
         self._tick += 1
-        return self._board.begin_tick(self._tick)
+        return self._enter()
+
+    def _enter(self) -> list[Frame]:
+        return self._board.begin_tick(self._tick, self._now_ms if self._has_clock else None)

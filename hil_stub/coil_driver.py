@@ -12,8 +12,11 @@ from fsw.wire.messages import (
     CoilStatus,
     intact,
 )
-from hil_stub.interlock import UNITS_PER_TICK, CoilLimits, Interlock, Request, ask, boot, elapse
+from hil_stub.events import CoilEventCode, Events
+from hil_stub.guard import Guard
+from hil_stub.interlock import UNITS_PER_TICK, CoilLimits, Request
 from hil_stub.node import Node
+from hil_stub.read_back import ReadBack
 from hil_stub.refusals import MAX_REFUSALS, Refusals
 
 __all__ = ["MAX_REFUSALS", "OFF", "BoardState", "CoilDriver", "CoilLimits", "Drive"]
@@ -28,6 +31,7 @@ class BoardState(IntEnum):
     READY = 0
     ON = 1
     LOCKED_OUT = 2
+    FAULT = 3
 
 
 class Drive(NamedTuple):
@@ -47,25 +51,37 @@ class CoilDriver:
     In each tick: ``begin_tick``, then ``receive`` for each frame of the bus, then ``drive``. A request that
     comes after ``drive``, or before the first tick, answers no tick and is refused as one of a wrong tick.
 
+    With a read-back the current is checked against what is driven. The first check after boot is the
+    self-test: with all coils off no current flows. As long as one does, every request is refused.
+
     Args:
         limits: what the interlock enforces.
+        read_back: what the currents should be; None: they are told, and not judged.
     """
 
-    def __init__(self, limits: CoilLimits) -> None:
+    def __init__(self, limits: CoilLimits, read_back: ReadBack | None = None) -> None:
         self._limits = limits
+        self._read_back = read_back
         self._node = Node(CoilBoot, CoilHeartbeat, limits.tick_hz, limits.table_crc)
-        self._state: Interlock = boot(limits)
+        self._guard = Guard(limits)
         self._answered: int | None = None  # the tick that requests may answer now
         self._refusals = Refusals()
+        self._events = Events()
         self._statuses = 0
+        self._silenced = False
+        self._held = OFF  # what has been driven without a change, and for how many ticks
+        self._held_ticks = 0
+        self._tested = False
+        self._finding: CoilEventCode | None = None
         self.rejects = 0
         """Frames that failed the gate since boot."""
 
-    def begin_tick(self, tick: int, current_a: float) -> list[Frame]:
+    def begin_tick(self, tick: int, current_a: float, clock_ms: int | None = None) -> list[Frame]:
         """Enter ``tick`` and say what is to be said in it.
 
         At the first tick ``COIL_BOOT``; always one ``COIL_STATUS``; one ``COIL_REFUSED`` for each request
-        refused since the last tick, at most 64; every 60 s after boot ``COIL_HEARTBEAT``.
+        refused since the last tick, at most 64; one ``COIL_EVENT`` for each finding; every 60 s after boot
+        ``COIL_HEARTBEAT``.
 
         A tick that does not rise is ignored: nothing happens and nothing is sent. Over skipped ticks a pulse
         ends by its own time and the lockout runs on.
@@ -73,17 +89,28 @@ class CoilDriver:
         Args:
             tick: number of the tick that begins.
             current_a: read-back of the coil current at this tick [A].
+            clock_ms: the board's own clock, if it has one [ms]. Then a pulse ends when the first of clock and
+                ticks says so, a back-off when the last does.
         """
         elapsed = self._node.advance(tick)
         if elapsed is None:
             return []
-        self._state = elapse(self._state, elapsed)
+        self._guard.elapse(elapsed, clock_ms)
         self._answered = tick
         frames = self._node.boot()
         frames.append(self._status(tick, current_a))
         frames += self._refusals.take()
+        frames += self._found(tick, elapsed, current_a)
         frames += self._node.heartbeat(self._board_state(), self.rejects)
         return frames
+
+    def silence(self) -> None:
+        """The dead-man: no ``SYNC`` for too long. All off, and a full back-off that begins now.
+
+        Called on and on as long as it is silent. ``COIL_EVENT`` tells it when the board next enters a tick.
+        """
+        self._guard.silence()
+        self._silenced = True
 
     def receive(self, frame: Frame) -> None:
         """Take a frame of the bus, whole or not at all; only ``COIL_FIRE`` matters.
@@ -103,38 +130,67 @@ class CoilDriver:
         if self._answered is None:
             self._refuse(fire, CoilRefusedReason.WRONG_TICK)
             return
+        if self._shorted:
+            self._refuse(fire, CoilRefusedReason.COIL_ON)
+            return
         request = Request(fire.coil, fire.level, fire.duration_ms, fire.seq, fire.tick)
-        self._state, reason = ask(self._state, request, self._answered, self._limits)
-        if reason is not None:
+        if reason := self._guard.ask(request, self._answered):
             self._refuse(fire, reason)
 
     def drive(self) -> Drive:
         """What is driven over the tick that has begun; ends the time for requests that answer it."""
         self._answered = None
-        state = self._state
-        if state.remaining == 0:
-            return OFF
-        return Drive(state.coil, state.level, min(state.remaining, UNITS_PER_TICK) / UNITS_PER_TICK)
+        guard = self._guard
+        return Drive(guard.coil, guard.level, guard.fraction) if guard.on else OFF
+
+    @property
+    def _shorted(self) -> bool:
+        """A current flows that the board does not drive: a coil is on, whatever the interlock says."""
+        return self._finding is CoilEventCode.CURRENT_WHILE_OFF
+
+    def _found(self, tick: int, elapsed: int, current_a: float) -> list[Frame]:
+        """The events of this tick."""
+        frames = []
+        if self._silenced:
+            self._silenced = False
+            frames.append(self._events.frame(CoilEventCode.DEAD_MAN, tick))
+        guard = self._guard
+        driven = Drive(guard.coil, guard.level, 1.0) if guard.on else OFF
+        if driven == self._held:
+            self._held_ticks += elapsed
+        else:  # a pulse begins with a tick, but may end within one
+            self._held, self._held_ticks = driven, elapsed if driven is not OFF else 0
+        settle_ms = self._read_back.settle_ms if self._read_back else 0
+        if self._read_back is None or self._held_ticks * UNITS_PER_TICK < self._limits.units(settle_ms):
+            return frames
+        before, self._finding = self._finding, self._read_back.judge(driven.level, current_a)
+        if self._finding not in (None, before):
+            code = self._finding if self._tested else CoilEventCode.SELF_TEST_FAILED
+            frames.append(self._events.frame(code, tick, raw(current_a, 0.001, -(2**31), 2**31 - 1)))
+        self._tested = True
+        return frames
 
     def _status(self, tick: int, current_a: float) -> Frame:
-        state = self._state
-        coil = state.coil if state.level else tick % 3
+        guard = self._guard
+        coil = guard.coil if guard.level else tick % 3
         status = CoilStatus(
-            level=state.level,
+            level=guard.level,
             coil=coil,
-            remaining_ms=self._limits.milliseconds(state.remaining),
+            remaining_ms=guard.remaining_ms(),
             current_ma=raw(current_a, 0.001, -2048, 2047),
-            lockout_ms=self._limits.milliseconds(state.lockout[coil], 10),
-            seq=state.seq or 0,
+            lockout_ms=guard.lockout_ms(coil),
+            seq=guard.seq or 0,
             counter=self._statuses,
         )
         self._statuses += 1
         return status.encode()
 
     def _board_state(self) -> BoardState:
-        if self._state.remaining:
+        if self._shorted:
+            return BoardState.FAULT
+        if self._guard.on:
             return BoardState.ON
-        return BoardState.LOCKED_OUT if any(self._state.lockout) else BoardState.READY
+        return BoardState.LOCKED_OUT if self._guard.locked_out else BoardState.READY
 
     def _refuse(self, fire: CoilFire, reason: CoilRefusedReason) -> None:
         self._refusals.add(fire.coil, fire.seq, reason, self._node.tick)

@@ -6,7 +6,7 @@ coil), no more than one coil is on, and every level is one of -3..3.
 
 Time is counted in units of 1 / (1000 tick_hz) s: a tick is 1000 units and a millisecond is ``tick_hz`` units,
 so that every duration is exact at every tick rate. All timers run down to zero; none is ever set by anything
-but ``boot`` and an accepted request.
+but ``boot``, ``silence`` and an accepted request.
 """
 
 from collections.abc import Callable
@@ -97,6 +97,14 @@ def boot(limits: CoilLimits) -> Interlock:
     """All coils off and locked out in full: a restart costs a whole back-off, for nothing outlives it."""
     full = limits.units(limits.backoff_ms)
     return Interlock(coil=0, level=0, remaining=0, lockout=(full, full, full), seq=None)
+
+
+def silence(state: Interlock, limits: CoilLimits) -> Interlock:
+    """The dead-man: nobody is heard, so all is off and locked out in full, as after boot.
+
+    The sequence number stays known: a request that was carried out before is still a repeated one.
+    """
+    return replace(boot(limits), seq=state.seq)
 
 
 def elapse(state: Interlock, ticks: int) -> Interlock:

@@ -19,7 +19,7 @@ sys.path.insert(0, str(ROOT))
 
 from fsw.wire.frame import crc8  # noqa: E402
 from fsw.wire.messages import CoilFire, CoilRefusedReason, CoilStatus  # noqa: E402
-from hil_stub import coil_driver, interlock, node  # noqa: E402
+from hil_stub import bench, coil_driver, events, interlock, node, read_back  # noqa: E402
 
 DBC = ROOT / "fsw" / "wire" / "torquer.dbc"
 TEMPLATE = ROOT / "tools" / "icd.md.in"
@@ -34,6 +34,9 @@ VALUES = {
     "units_per_tick": interlock.UNITS_PER_TICK,
     "max_refusals": coil_driver.MAX_REFUSALS,
     "heartbeat_s": node.HEARTBEAT_S,
+    "deadman_ms": bench.DEADMAN_MS,
+    "settle_ms": read_back.ReadBack((0.1, 0.2, 0.3)).settle_ms,
+    "current_while_off": f"`{events.CoilEventCode.CURRENT_WHILE_OFF.name.lower()}`",
 }
 
 
@@ -140,6 +143,15 @@ def states() -> str:
     return table(("`state`", "name", "meaning"), rows)
 
 
+def coil_events() -> str:
+    given = texts("event", [code.name for code in events.CoilEventCode])
+    rows = [
+        (code.value, f"`{code.name.lower()}`", events.SEVERITY[code].name, given[code.name])
+        for code in events.CoilEventCode
+    ]
+    return table(("`event`", "name", "severity", "if"), rows)
+
+
 def identifiers() -> str:
     kinds = ("BOOT", "HEARTBEAT", "EVENT")
     ids = {m.name: f"0x{m.frame_id:03X}" for m in database().messages}
@@ -193,6 +205,7 @@ PIECES = {
     "refusals": refusals,
     "refusals_elsewhere": refusals_elsewhere,
     "states": states,
+    "events": coil_events,
     "identifiers": identifiers,
     "pulse_table": pulse_table,
     "skip_table": skip_table,

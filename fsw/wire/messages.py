@@ -1006,7 +1006,7 @@ class _CoilEvent(NamedTuple):
     severity: int
     event: int  # number of the event in this node's list
     tick: int  # low 8 bits of the tick
-    argument: int
+    argument: int  # of what concerns the current: the read-back in mA
     counter: int = 0
 
 

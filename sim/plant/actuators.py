@@ -1,12 +1,17 @@
 """Board and coils together: what the coil driver drives, as currents."""
 
+from math import ceil
 from typing import NamedTuple, Protocol
 
 from fsw.wire.frame import Frame
 from hil_stub.coil_driver import CoilDriver
 from hil_stub.dipole_driver import DipoleDriver
+from hil_stub.read_back import ReadBack
 from sim.plant.config import CoilConfig, ContinuousConfig, PlantConfig
 from sim.plant.rotation import ZERO, Vec3
+
+SETTLED_TIME_CONSTANTS = 10.0
+"""After so many the read-back of a coil is judged: less than 0.01 % of the change is left."""
 
 
 class Driven(NamedTuple):
@@ -43,10 +48,12 @@ class PulsedActuator:
     """One coil at a time, at one of three levels, as the interlock allows."""
 
     def __init__(self, config: PlantConfig) -> None:
-        self._driver = CoilDriver(config.limits)
-        self.board: Board = self._driver
         coils = config.coils
-        self._level_a = [0.0, *(dipole / coils.dipole_per_ampere_am2 for dipole in coils.levels_am2)]
+        low_a, middle_a, high_a = (dipole / coils.dipole_per_ampere_am2 for dipole in coils.levels_am2)
+        settle_ms = ceil(1000.0 * SETTLED_TIME_CONSTANTS * coils.time_constant_s)
+        self._driver = CoilDriver(config.limits, ReadBack((low_a, middle_a, high_a), settle_ms))
+        self.board: Board = self._driver
+        self._level_a = [0.0, low_a, middle_a, high_a]
 
     def drive(self) -> Driven:
         """What is driven over the tick that has begun."""

@@ -13,12 +13,16 @@ from fsw.wire.messages import (
     MagField,
     PlantBoot,
     PlantEnd,
+    Severity,
     SunVector,
     Sync,
     TickDone,
 )
+from fsw.wire.messages import CoilRefusedReason as Reason
 from hil_stub.bench import Bench, CoilBoard, DipoleBoard, MagnetometerBoard, SunBoard
 from hil_stub.coil_driver import CoilLimits
+from hil_stub.events import CoilEventCode
+from hil_stub.stimulus import constant
 
 
 @pytest.fixture
@@ -39,7 +43,7 @@ def fly(bench, ticks):
 
 class TestLockstep:
     def test_the_frames_of_the_first_tick_come_at_the_start(self, read):
-        bench = Bench(lambda: MagnetometerBoard(1, (2e-5, 0.0, -3e-5)))
+        bench = Bench(lambda: MagnetometerBoard(1, constant((2e-5, 0.0, -3e-5))))
         assert [type(m) for m in read(bench.switch_on())] == [MagBoot, MagField]
 
     def test_those_of_the_next_when_fsw_has_answered(self, bench, read):
@@ -69,7 +73,7 @@ class TestLockstep:
         ],
     )
     def test_a_sensor_shows_its_stimulus_and_ignores_requests(self, read, make, stimulus, kind, shown):
-        bench = Bench(lambda: make(1, stimulus))
+        bench = Bench(lambda: make(1, constant(stimulus)))
         bench.switch_on()
         bench.receive(CoilFire(3, 0, 1, 0, 3000).encode())
         (sample,) = read(fly(bench, range(50)))
@@ -181,3 +185,121 @@ def test_a_continuous_driver_tells_the_dipole_of_the_tick_that_has_ended(read):
         (-0.75, 0.0, 0.75),
         (0.0, 0.0, 0.0),
     ]
+
+
+class TestTheDeadMan:
+    """SYNC stays away: off, and nothing is accepted until it is back and a full back-off has passed."""
+
+    @pytest.fixture
+    def watched(self):
+        bench = Bench(lambda: CoilBoard(CoilLimits(1)), deadman_ms=5000)
+        bench.switch_on(now_ms=1000)
+        return bench
+
+    def fly(self, bench, ticks, *frames):
+        """In real time: SYNC of tick k at k + 2 s, frames in the middle of the tick, then the answer."""
+        sent = []
+        for tick in ticks:
+            now_ms = 2000 + 1000 * tick
+            bench.receive(Sync(tick, 0).encode(), now_ms)
+            for frame in frames:
+                bench.receive(frame, now_ms + 1)
+            sent = bench.receive(TickDone(tick, 0).encode(), now_ms + 2)
+        return sent
+
+    def fire(self, tick, seq=5):
+        return CoilFire(-2, 1, seq, tick & 0xFF, 3000).encode()
+
+    def test_ticks_in_time_never_wake_it(self, watched, read):
+        self.fly(watched, range(100))
+        (status,) = read(self.fly(watched, [100], self.fire(100)))
+        assert (status.level, status.remaining_ms) == (-2, 2000)
+
+    def test_it_switches_off_and_locks_out_in_full_from_the_sync_on(self, watched, read):
+        self.fly(watched, range(150))
+        self.fly(watched, [150], self.fire(150))
+        watched.watch(152_000 + 5001)
+        watched.watch(152_000 + 60_000)
+        assert watched.receive(Sync(151, 0).encode(), 300_000) == []
+        status, event = read(watched.receive(TickDone(151, 0).encode(), 300_002))
+        assert (status.level, status.remaining_ms, status.lockout_ms) == (0, 0, 99_000)
+        assert (event.event, event.severity, event.argument) == (CoilEventCode.DEAD_MAN, Severity.ERROR, 0)
+        (status,) = read(watched.receive(Sync(153, 0).encode(), 301_000))
+        assert status.lockout_ms == 98_000
+
+    def test_just_in_time_is_in_time(self, watched, read):
+        self.fly(watched, range(10))
+        watched.watch(11_000 + 5000)
+        watched.receive(Sync(10, 0).encode(), 11_000 + 5000)
+        (status,) = read(watched.receive(TickDone(10, 0).encode(), 16_001))
+        assert status.lockout_ms == 89_000
+
+    def test_a_millisecond_later_is_too_late(self, watched, read):
+        self.fly(watched, range(10))
+        watched.receive(Sync(10, 0).encode(), 11_000 + 5001)
+        status, event = read(watched.receive(TickDone(10, 0).encode(), 16_002))
+        assert (status.lockout_ms, event.event) == (99_000, CoilEventCode.DEAD_MAN)
+
+    def test_answers_alone_do_not_keep_it_awake(self, watched, read):
+        self.fly(watched, range(200))
+        for tick in range(200, 400):
+            frames = watched.receive(TickDone(tick, 0).encode(), 203_000 + 1000 * (tick - 200))
+        assert read(frames)[0].lockout_ms == 99_000, "it begins anew as long as it is silent"
+        assert not any(m.level for m in read(frames) if isinstance(m, CoilStatus))
+
+    @pytest.mark.parametrize("strange", [0, 77, 149, 152, 2**31])
+    def test_nor_does_a_sync_of_another_tick(self, watched, read, strange):
+        self.fly(watched, range(150))
+        watched.receive(Sync(strange, 0).encode(), 153_000)
+        watched.receive(Sync(150, 0).encode(), 151_000 + 5001)
+        status, event = read(watched.receive(TickDone(150, 0).encode(), 157_000))
+        assert (status.lockout_ms, event.event) == (99_000, CoilEventCode.DEAD_MAN)
+
+    def test_a_request_while_it_is_silent_is_refused(self, watched, read):
+        self.fly(watched, range(150))
+        watched.watch(160_000)
+        watched.receive(self.fire(150), 160_001)
+        status, refused, event = read(watched.receive(Sync(151, 0).encode(), 160_002))
+        assert (status.level, refused.reason, event.event) == (0, Reason.LOCKOUT, CoilEventCode.DEAD_MAN)
+
+    def test_it_is_told_once(self, watched, read):
+        self.fly(watched, range(10))
+        watched.watch(60_000)
+        assert len(read(watched.receive(Sync(11, 0).encode(), 60_001))) == 2
+        assert len(read(watched.receive(Sync(12, 0).encode(), 61_000))) == 1
+
+    def test_without_one_nothing_happens(self, bench, read):
+        fly(bench, range(10))
+        bench.watch(10**9)
+        assert read(fly(bench, [10]))[0].lockout_ms == 89_000
+
+    def test_sensors_go_on(self, read):
+        bench = Bench(lambda: SunBoard(1, constant((1.0, 0.0, 0.0))), deadman_ms=5000)
+        bench.switch_on()
+        bench.watch(10**6)
+        assert len(read(bench.receive(Sync(1, 0).encode(), 10**6))) == 1
+
+
+class TestAClockOfItsOwn:
+    @pytest.fixture
+    def clocked(self):
+        bench = Bench(lambda: CoilBoard(CoilLimits(1)), has_clock=True)
+        bench.switch_on(now_ms=5_000_000)
+        return bench
+
+    def test_ticks_too_fast_do_not_shorten_the_lockout(self, clocked, read):
+        """A hundred ticks in a tenth of a second."""
+        for tick in range(100):
+            frames = clocked.receive(TickDone(tick, 0).encode(), 5_000_000 + tick)
+        assert read(frames)[0].lockout_ms == 99_910, "100 s less 99 ms, in steps of 10 ms"
+
+    def test_ticks_that_stand_still_do_not_stretch_the_pulse(self, clocked, read):
+        for tick in range(100):
+            clocked.receive(TickDone(tick, 0).encode(), 5_001_000 + 1000 * tick)
+        clocked.receive(CoilFire(-2, 1, 5, 100, 3000).encode(), 5_100_500)
+        (status,) = read(clocked.receive(TickDone(100, 0).encode(), 5_101_000))
+        assert (status.level, status.remaining_ms) == (-2, 2000)
+        (status,) = read(clocked.receive(TickDone(101, 0).encode(), 5_104_000))
+        assert (status.level, status.remaining_ms, status.current_ma) == (-2, 0, -200)
+        (status,) = read(clocked.receive(TickDone(102, 0).encode(), 5_105_000))
+        assert (status.level, status.current_ma) == (0, 0)

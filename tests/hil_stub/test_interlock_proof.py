@@ -1,7 +1,8 @@
 """Proof of the interlock by exhaustion: every state that requests, ticks and restarts can reach.
 
 The interlock is run beside a judge that sees only what is driven and keeps its own stopwatches. From each
-reachable pair of states every request, one and several ticks, and a restart are tried. The judge demands
+reachable pair of states every request, one and several ticks, a restart and the dead-man are tried. The
+judge demands
 
 - safety: pulses, gaps and levels keep the limits on what was really driven;
 - exactness: a request is accepted if and only if it is proper and the judge's stopwatches allow it, a
@@ -66,6 +67,10 @@ class Judge(NamedTuple):
     def reboot(self) -> "Judge":
         return self._replace(since_boot=0, last_seq=None, due=None)
 
+    def silence(self) -> "Judge":
+        """The dead-man: what is on goes off, and the wait begins anew, but what was asked stays known."""
+        return self._replace(since_boot=0, due=None)
+
     def expect(self, coil: int, level: int, driven: int, span: int) -> None:
         """Exactness: over ``span`` the accepted request is driven, no less and no more."""
         rest = self.due[2] if self.due else 0
@@ -107,6 +112,7 @@ class Proof:
     refused: Counter = field(default_factory=Counter)
     pulses: set[int] = field(default_factory=set)
     restarts_in_pulse: int = 0
+    silences_in_pulse: int = 0
 
 
 def prove(rules: ModuleType, shared: bool, exact: bool = True) -> Proof:
@@ -124,8 +130,12 @@ def prove(rules: ModuleType, shared: bool, exact: bool = True) -> Proof:
     proof = Proof()
     while queue:
         state, judge = queue.popleft()
-        reached = [(rules.boot(limits), judge.reboot())]
+        reached = [
+            (rules.boot(limits), judge.reboot()),
+            (rules.silence(state, limits), judge.silence()),
+        ]
         proof.restarts_in_pulse += state.remaining > 0
+        proof.silences_in_pulse += state.remaining > 0
         for asked in REQUESTS:
             after, reason = rules.ask(state, asked, TICK, limits)
             if exact:
@@ -170,6 +180,7 @@ def test_no_reachable_state_breaks_a_limit_or_refuses_what_it_may_not(shared):
     assert set(proof.refused) == set(CoilRefusedReason) - NOT_OF_THE_INTERLOCK, "for every reason"
     assert proof.pulses >= {0, 1000, 2000}, "pulses went on over ticks"
     assert proof.restarts_in_pulse > 0
+    assert proof.silences_in_pulse > 0
 
 
 def planted(old: str, new: str) -> ModuleType:
@@ -220,7 +231,20 @@ UNSAFE = {
     "level 0": ("1 <= abs(asked.level)", "0 <= abs(asked.level)", BOTH),
 }
 
+SILENCE = "replace(boot(limits), seq=state.seq)"
+"""What the dead-man does."""
+
+UNSAFE |= {
+    "no back-off after the dead-man": (SILENCE, "replace(state, remaining=0, lockout=(0, 0, 0))", BOTH),
+    "a coil forgotten by the dead-man": (SILENCE, "replace(state, lockout=(*state.lockout[:2], 0))", BOTH),
+    "the dead-man switches on": (SILENCE, "replace(boot(limits), seq=state.seq, level=1, remaining=1)", BOTH),
+}
+
 INEXACT = {
+    "a dead-man that does nothing": (SILENCE, "state", BOTH),
+    "a dead-man that leaves the coil on": (SILENCE, "replace(boot(limits), remaining=state.remaining)", BOTH),
+    "a dead-man that only switches off": (SILENCE, "replace(state, level=0, remaining=0)", BOTH),
+    "a dead-man that forgets seq": (SILENCE, "boot(limits)", BOTH),
     "a second request while a coil is on": ("state.remaining > 0)", "False)", (False,)),
     "a late request": ("asked.tick != tick & 0xFF", "False", BOTH),
     "a repeated request": ("asked.seq == state.seq", "False", BOTH),

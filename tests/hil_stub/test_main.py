@@ -4,6 +4,8 @@ import signal
 import socket
 import subprocess
 import sys
+import time
+from pathlib import Path
 
 import pytest
 
@@ -11,6 +13,7 @@ from fsw.io.open_bus import open_bus
 from fsw.wire.messages import (
     CLASSES,
     CoilBoot,
+    CoilEvent,
     CoilStatus,
     MagBoot,
     MagField,
@@ -21,6 +24,8 @@ from fsw.wire.messages import (
     TickDone,
 )
 from hil_stub.__main__ import main
+
+ROOT = Path(__file__).parents[2]
 
 
 @pytest.fixture
@@ -101,6 +106,52 @@ def test_a_bus_that_goes_away_ends_it_with_one_sentence(bus, start, spec):
     assert "Traceback" not in sentence
 
 
+def exchange(bus, tick):
+    """A tick on the bus: what the board says in the next."""
+    bus.send([Sync(tick, 0).encode(), TickDone(tick, 0).encode()])
+    return hear(bus, 1)[0]
+
+
+def test_a_sensor_shows_a_recorded_run_and_a_script(bus, start, tmp_path):
+    log = [f"(0.0) x {f.can_id:03X}#{f.data.hex()}\n" for f in recorded_frames()]
+    (tmp_path / "bus.log").write_text("".join(log))
+    process = start("magnetometer", "--stimulus", str(tmp_path))
+    assert hear(bus, 2)[1][:4] == (1, 0.0, 100.0, -200.0)
+    assert exchange(bus, 0)[:4] == (1, 2.0, 100.0, -200.0)
+    process.kill()
+    script = tmp_path / "script.toml"
+    script.write_text("[[step]]\nt_s = 0.0\nsun = [0, -2, 0]\n[[step]]\nt_s = 0.1\nsun = false\n")
+    start("sun", "--tick-hz", "10", "--stimulus", str(script))
+    assert hear(bus, 2)[1][:4] == (1, 0.0, -1.0, 0.0)
+    assert exchange(bus, 0)[:4] == (0, 0.0, 0.0, 0.0)
+
+
+def recorded_frames():
+    for tick in range(3):
+        yield MagField(1, 2.0 * tick, 100.0, -200.0).encode()
+        yield Sync(tick, 0).encode()
+
+
+def test_the_dead_man_wakes_when_the_bus_falls_silent(bus, start):
+    start("coil", "--deadman-s", "0.2", "--clock", "ticks")
+    hear(bus, 2)
+    for tick in range(20):
+        status = exchange(bus, tick)
+    assert status.lockout_ms == 80_000
+    time.sleep(0.5)
+    bus.send([Sync(20, 0).encode(), TickDone(20, 0).encode()])
+    status, event = hear(bus, 2)
+    assert (status.lockout_ms, type(event)) == (99_000, CoilEvent)
+
+
+def test_with_a_clock_of_its_own_fast_ticks_do_not_end_the_lockout(bus, start):
+    start("coil")
+    hear(bus, 2)
+    for tick in range(110):
+        status = exchange(bus, tick)
+    assert status.lockout_ms > 60_000
+
+
 @pytest.mark.parametrize(
     ("arguments", "named"),
     [
@@ -117,10 +168,19 @@ def test_a_bus_that_goes_away_ends_it_with_one_sentence(bus, start, spec):
         (["magnetometer", "--bus", "loop", "--stimulus", "inf", "0", "0"], "--stimulus"),
         (["magnetometer", "--bus", "loop", "--stimulus", "x", "0", "0"], "--stimulus"),
         (["magnetometer", "--bus", "loop", "--stimulus", "1", "0"], "--stimulus"),
+        (["sun", "--bus", "loop", "--stimulus", "no/such/run"], "no/such/run"),
+        (["sun", "--bus", "loop", "--stimulus", "LICENSE"], "LICENSE"),
+        (["magnetometer", "--bus", "loop", "--stimulus", "pyproject.toml"], "pyproject.toml"),
+        (["magnetometer", "--bus", "loop", "--wind", "3"], "--wind"),
+        (["coil", "--bus", "loop", "--deadman-s", "-1"], "--deadman-s"),
+        (["coil", "--bus", "loop", "--pulse-s", "3.1"], "--pulse-s"),
+        (["coil", "--bus", "loop", "--backoff-s", "200"], "--backoff-s"),
+        (["coil", "--bus", "loop", "--clock", "none"], "--clock"),
         (["gyro", "--bus", "loop"], "gyro"),
     ],
 )
-def test_bad_input_is_one_sentence_and_exit_code_2(capsys, arguments, named):
+def test_bad_input_is_one_sentence_and_exit_code_2(capsys, monkeypatch, arguments, named):
+    monkeypatch.chdir(ROOT)
     assert main(arguments) == 2
     heard = capsys.readouterr()
     assert heard.out == ""

@@ -9,9 +9,9 @@ from pathlib import Path
 import cantools
 import pytest
 
-from fsw.wire.messages import CoilFire, CoilRefusedReason
+from fsw.wire.messages import CoilRefusedReason
 from hil_stub import interlock
-from hil_stub.coil_driver import CoilDriver, CoilLimits
+from hil_stub.coil_driver import CoilLimits
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "icd.md"
@@ -55,6 +55,8 @@ CHANGES = {
     "a rule's text": ("hil_stub/rules.toml", "a coil is on", "one is on"),
     "the prose": ("tools/icd.md.in", "A gap in", "Some gap in"),
     "what the board tells": ("hil_stub/coil_driver.py", "else tick % 3", "else 0"),
+    "an event's severity": ("hil_stub/events.py", "NO_CURRENT: Severity.ERROR", "NO_CURRENT: Severity.FATAL"),
+    "the dead-man": ("hil_stub/bench.py", "DEADMAN_MS = 5000", "DEADMAN_MS = 4000"),
     "the CRC": ("fsw/wire/frame.py", "_crc8_table(0x1D)", "_crc8_table(0x1F)"),
     "the order of refusals": (
         "hil_stub/interlock.py",
@@ -102,11 +104,9 @@ def test_the_worked_example_is_what_another_codec_makes():
 def test_the_order_of_refusals_is_how_the_board_judges():
     """A request that breaks rule n and all that follow is refused for n."""
     limits = CoilLimits(1)
-    board = CoilDriver(limits)
-    board.begin_tick(0, 0.0)
-    board.begin_tick(300, 0.0)
-    board.receive(CoilFire(1, 0, 5, 300 & 0xFF, 3000).encode())
-    state = board._state
+    fired = interlock.Request(coil=0, level=1, duration_ms=3000, seq=5, tick=300 & 0xFF)
+    state, refused = interlock.ask(interlock.elapse(interlock.boot(limits), 100), fired, 300, limits)
+    assert refused is None
     asked = interlock.Request(coil=3, level=7, duration_ms=0, seq=5, tick=0)
     mended = [{"tick": 300 & 0xFF}, {"seq": 6}, {"coil": 0}, {"level": 1}, {"duration_ms": 1}]
     found = []

@@ -2,7 +2,8 @@
 
 The scheduler (``hear`` and ``actuate``, as they fly) and the interlock are run beside a judge that sees only
 what is driven and keeps its own stopwatches. In each reachable world every demand is made (each coil, or
-none), COIL_STATUS is heard or lost, COIL_FIRE is lost, comes once or twice, and either side restarts.
+none), COIL_STATUS is heard or lost, COIL_FIRE is lost, comes once or twice, either side restarts, and the
+board's dead-man wakes.
 
 Only the choice of a pulse hangs on floats. What is owed is set anew in each tick so that each coil in its
 turn, or none, is the best: that makes every choice there is. Timers are compared with the present tick alone,
@@ -179,11 +180,12 @@ class Search:
         return self.proof
 
     def _reached_from(self, world: World) -> Iterator[World]:
-        """Restarts, which take no time, and one tick with every demand and every fate of the messages."""
+        """Restarts, the dead-man, which take no time, and a tick with every demand and fate of messages."""
         own, board, judge, phase = world
         faults, proof = self.setup.faults, self.proof
         if faults:
             yield world._replace(board=self.setup.rules.boot(self.limits))
+            yield world._replace(board=self.setup.rules.silence(board, self.limits))
             if self.setup.restart_in_pulse or judge.on is None:
                 proof.restarts_in_pulse += judge.on is not None
                 yield world._replace(own=self._boot(phase))

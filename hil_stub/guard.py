@@ -1,0 +1,113 @@
+"""The interlock twice over: by the ticks of the bus, and by a clock of the board's own where it has one.
+
+Ticks come over the bus, and the bus may lie: a SYNC that comes too often would shorten a back-off, one that
+stays away would stretch a pulse. So a pulse is over when the first of the two says so, a back-off when the
+last does, and a request is accepted only if both accept it.
+"""
+
+from dataclasses import replace
+
+from fsw.wire.messages import CoilRefusedReason
+from hil_stub.interlock import (
+    COILS,
+    UNITS_PER_TICK,
+    CoilLimits,
+    Interlock,
+    Request,
+    ask,
+    boot,
+    elapse,
+    silence,
+)
+
+CLOCK_HZ = 1000
+"""The board's own clock counts milliseconds."""
+
+
+class Guard:
+    """What may be driven, and for how long still. Boots off with a full lockout.
+
+    Args:
+        limits: what is enforced.
+    """
+
+    def __init__(self, limits: CoilLimits) -> None:
+        self._limits = limits
+        self._clock_limits = replace(limits, tick_hz=CLOCK_HZ)
+        self._by_ticks: Interlock = boot(limits)
+        self._by_clock: Interlock | None = None
+        self._clock_ms = 0
+        self.level = 0
+        """Driven in the tick that has ended, or just accepted."""
+
+    def elapse(self, ticks: int, clock_ms: int | None = None) -> None:
+        """So many ticks have passed, and the board's own clock now reads ``clock_ms`` (None: it has none)."""
+        was_on = self.on
+        self._by_ticks = elapse(self._by_ticks, ticks)
+        if clock_ms is not None:
+            if self._by_clock is None:
+                self._by_clock, self._clock_ms = boot(self._clock_limits), clock_ms
+            self._by_clock = elapse(self._by_clock, max(0, clock_ms - self._clock_ms))
+            self._clock_ms = max(self._clock_ms, clock_ms)
+        self.level = self._by_ticks.level if was_on else 0
+
+    def silence(self) -> None:
+        """Nobody is heard: off, and locked out in full."""
+        self._by_ticks = silence(self._by_ticks, self._limits)
+        if self._by_clock is not None:
+            self._by_clock = silence(self._by_clock, self._clock_limits)
+        self.level = 0
+
+    def ask(self, request: Request, tick: int) -> CoilRefusedReason | None:
+        """Judge a request at ``tick``: why it is refused (None: accepted). A refused one changes nothing."""
+        by_ticks, reason = ask(self._by_ticks, request, tick, self._limits)
+        by_clock = self._by_clock
+        if reason is None and by_clock is not None:
+            by_clock, reason = ask(by_clock, request, tick, self._clock_limits)
+        if reason is None:
+            self._by_ticks, self._by_clock, self.level = by_ticks, by_clock, by_ticks.level
+        return reason
+
+    @property
+    def coil(self) -> int:
+        """The coil that is on, or was on last."""
+        return self._by_ticks.coil
+
+    @property
+    def seq(self) -> int | None:
+        """Sequence number of the last accepted request; None after boot."""
+        return self._by_ticks.seq
+
+    @property
+    def remaining_units(self) -> int:
+        """Rest of the pulse, in units of a tick."""
+        by_ticks, by_clock = self._by_ticks, self._by_clock
+        if by_clock is None:
+            return by_ticks.remaining
+        return min(by_ticks.remaining, by_clock.remaining * self._limits.tick_hz // CLOCK_HZ)
+
+    @property
+    def on(self) -> bool:
+        """Whether a coil is on at this instant."""
+        return self.remaining_units > 0
+
+    @property
+    def fraction(self) -> float:
+        """Part of the tick that begins for which the pulse still lasts."""
+        return min(self.remaining_units, UNITS_PER_TICK) / UNITS_PER_TICK
+
+    def remaining_ms(self) -> int:
+        """Rest of the pulse, rounded up."""
+        return self._limits.milliseconds(self.remaining_units)
+
+    def lockout_ms(self, coil: int) -> int:
+        """Time until the coil may be fired again, rounded up to 10 ms."""
+        by_ticks = self._limits.milliseconds(self._by_ticks.lockout[coil], 10)
+        if self._by_clock is None:
+            return by_ticks
+        return max(by_ticks, self._clock_limits.milliseconds(self._by_clock.lockout[coil], 10))
+
+    @property
+    def locked_out(self) -> bool:
+        """Whether the back-off of any coil runs."""
+        return any(self.lockout_ms(coil) for coil in range(COILS))

@@ -1,0 +1,49 @@
+"""Current read-back: what is measured in the supply of the coils, against what is driven."""
+
+from dataclasses import dataclass
+
+from hil_stub.events import CoilEventCode
+
+_NONE = 0.1
+"""A current below this part of the nominal one is none."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReadBack:
+    """What the currents should be.
+
+    Args:
+        nominal_a: at levels 1, 2, 3 [A].
+        settle_ms: time that a current takes to follow a change [ms]; sooner it is not judged.
+        tolerance: part of the nominal current by which it may differ from it.
+
+    Raises:
+        ValueError: the currents do not rise from above zero, or another value is out of range.
+    """
+
+    nominal_a: tuple[float, float, float]
+    settle_ms: int = 100
+    tolerance: float = 0.2
+
+    def __post_init__(self) -> None:
+        low, middle, high = self.nominal_a
+        if not 0.0 < low < middle < high:
+            raise ValueError(f"nominal_a must be three rising currents above 0, not {self.nominal_a}")
+        if self.settle_ms < 0 or not 0.0 < self.tolerance < 1.0:
+            raise ValueError("settle_ms must not be negative, and tolerance lie between 0 and 1")
+
+    def judge(self, level: int, current_a: float) -> CoilEventCode | None:
+        """What is wrong with a settled current at a level (0: all coils are off); None when nothing is.
+
+        A read-back that is not a number is wrong at every level.
+        """
+        if level == 0:
+            in_order = abs(current_a) <= _NONE * self.nominal_a[0]
+            return None if in_order else CoilEventCode.CURRENT_WHILE_OFF
+        nominal_a = self.nominal_a[abs(level) - 1]
+        part = current_a / (nominal_a if level > 0 else -nominal_a)
+        if abs(part - 1.0) <= self.tolerance:
+            return None
+        if abs(part) <= _NONE:
+            return CoilEventCode.NO_CURRENT
+        return CoilEventCode.CURRENT_REVERSED if part < 0.0 else CoilEventCode.CURRENT_WRONG

@@ -1,0 +1,128 @@
+"""Two clocks: a pulse is over when the first says so, a back-off when the last does."""
+
+import pytest
+
+from fsw.wire.messages import CoilRefusedReason as Reason
+from hil_stub.guard import Guard
+from hil_stub.interlock import CoilLimits, Request
+
+PULSE_MS, BACKOFF_MS = 3000, 100_000
+
+
+def asking(tick, seq=1, coil=1, level=-2, duration_ms=PULSE_MS):
+    return Request(coil, level, duration_ms, seq, tick & 0xFF)
+
+
+class Timers:
+    """A guard whose ticks and clock are moved apart at will."""
+
+    def __init__(self, hz=1, shared=True):
+        self.hz = hz
+        self.guard = Guard(CoilLimits(hz, PULSE_MS, BACKOFF_MS, shared))
+        self.tick, self.clock_ms = 0, 70_000
+        self.guard.elapse(0, self.clock_ms)
+
+    def go(self, ticks, milliseconds=None):
+        self.tick += ticks
+        self.clock_ms += 1000 * ticks // self.hz if milliseconds is None else milliseconds
+        self.guard.elapse(ticks, self.clock_ms)
+
+    def ask(self, **changes):
+        return self.guard.ask(asking(self.tick, **changes), self.tick)
+
+
+@pytest.fixture(params=[1, 10])
+def timers(request):
+    return Timers(request.param)
+
+
+def test_where_both_agree_it_is_the_interlock(timers):
+    hz = timers.hz
+    timers.go(100 * hz - 1)
+    assert timers.ask() is Reason.LOCKOUT
+    timers.go(1)
+    assert timers.ask() is None
+    assert (timers.guard.coil, timers.guard.level, timers.guard.seq) == (1, -2, 1)
+    for tick in range(3 * hz):
+        assert timers.guard.remaining_ms() == PULSE_MS - tick * 1000 // hz
+        assert (timers.guard.on, timers.guard.fraction) == (True, 1.0)
+        timers.go(1)
+    assert (timers.guard.on, timers.guard.level, timers.guard.fraction) == (False, -2, 0.0)
+    assert timers.guard.lockout_ms(0) == BACKOFF_MS
+    timers.go(1)
+    assert timers.guard.level == 0
+
+
+def test_ticks_that_come_too_often_shorten_no_back_off(timers):
+    timers.go(100 * timers.hz, milliseconds=10_000)
+    assert timers.guard.lockout_ms(2) == 90_000
+    assert timers.guard.locked_out
+    assert timers.ask() is Reason.LOCKOUT
+    timers.go(1, milliseconds=89_999)
+    assert timers.ask() is Reason.LOCKOUT
+    timers.go(1, milliseconds=1)
+    assert timers.ask() is None
+
+
+def test_nor_does_a_clock_that_runs_too_fast(timers):
+    timers.go(1, milliseconds=10**6)
+    assert timers.ask() is Reason.LOCKOUT
+    timers.go(100 * timers.hz - 1, milliseconds=0)
+    assert timers.ask() is None
+
+
+def test_ticks_that_stay_away_stretch_no_pulse(timers):
+    timers.go(100 * timers.hz)
+    timers.ask()
+    timers.go(1, milliseconds=2999)
+    assert 0 < timers.guard.remaining_ms() <= 1
+    timers.go(1, milliseconds=1)
+    assert (timers.guard.on, timers.guard.remaining_ms(), timers.guard.level) == (False, 0, -2)
+    timers.go(1, milliseconds=1)
+    assert timers.guard.level == 0
+
+
+def test_a_pulse_that_one_of_them_has_ended_is_refused_for_the_other(timers):
+    timers.go(100 * timers.hz)
+    timers.ask()
+    timers.go(1, milliseconds=10**6)
+    assert not timers.guard.on
+    assert timers.ask(seq=2) is Reason.COIL_ON
+    assert timers.guard.lockout_ms(1) == 103_000 - 1000 // timers.hz
+
+
+def test_a_request_that_one_of_them_refuses_changes_neither(timers):
+    timers.go(100 * timers.hz, milliseconds=10_000)
+    assert timers.ask() is Reason.LOCKOUT
+    assert (timers.guard.on, timers.guard.level, timers.guard.seq) == (False, 0, None)
+    timers.go(0, milliseconds=90_000)
+    assert timers.ask() is None, "it is no repetition: it was never carried out"
+
+
+def test_a_clock_that_runs_back_stands_still(timers):
+    timers.go(100 * timers.hz, milliseconds=99_000)
+    timers.go(1, milliseconds=-50_000)
+    assert timers.guard.lockout_ms(0) == 1000
+    timers.go(1, milliseconds=50_000)
+    assert timers.guard.lockout_ms(0) == 1000
+
+
+def test_silence_is_off_and_a_full_lockout_on_both(timers):
+    timers.go(100 * timers.hz)
+    timers.ask()
+    timers.guard.silence()
+    assert (timers.guard.on, timers.guard.level, timers.guard.remaining_ms()) == (False, 0, 0)
+    assert [timers.guard.lockout_ms(coil) for coil in range(3)] == [BACKOFF_MS] * 3
+    timers.go(100 * timers.hz)
+    assert timers.ask() is Reason.REPEATED_SEQ, "what was carried out before is still known"
+    assert timers.ask(seq=2) is None
+
+
+def test_without_a_clock_the_ticks_decide():
+    guard = Guard(CoilLimits(1))
+    guard.elapse(100)
+    assert (guard.locked_out, guard.ask(asking(100), 100)) == (False, None)
+    guard.elapse(2)
+    assert guard.remaining_ms() == 1000
+    guard.silence()
+    assert guard.lockout_ms(0) == BACKOFF_MS
