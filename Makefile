@@ -4,6 +4,8 @@
 # make validate   every claim and reference figure anew, into docs/validation.md: minutes to half an hour
 # make golden     record the golden logs anew: after a change that means to alter what fsw answers
 # make test-vcan   the tests on a CAN interface, in a user-mode Linux guest where this kernel has no vcan
+# make fuzz         a million random frames into codec, boards and flight loop: some minutes
+# make differential scheduler against interlock over 100 orbits of whole flights: some minutes
 
 PYTHON ?= python3
 PYTEST_FLAGS ?= -q -rs -n 2
@@ -12,7 +14,7 @@ bin := .venv/bin
 installed := .venv/.installed
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv sil test lint test-vcan golden validate
+.PHONY: help venv sil test lint test-vcan golden validate fuzz differential
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -49,3 +51,9 @@ golden: venv
 
 validate: venv
 	$(bin)/torquer validate
+
+fuzz: venv
+	TORQUER_FUZZ_FRAMES=1000000 $(bin)/pytest -q --timeout 3600 tests/fuzz
+
+differential: venv
+	TORQUER_DIFFERENTIAL_ORBITS=100 $(bin)/pytest -q --timeout 3600 tests/differential
