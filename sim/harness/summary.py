@@ -206,6 +206,16 @@ def summary_text(summary: Json) -> str:
         rows["pointing"] = (
             f"{last['rms_last_orbit']:.2f} deg RMS, {last['max_last_orbit']:.2f} deg max over the last orbit"
         )
+        axis1 = summary["axis1_deg"]
+        settled = axis1.get("settle_orbits_5deg")
+        after = f"under 5 deg for good after {settled:.2f} orbits" if settled is not None else "not settled"
+        rows["axis 1"] = f"{axis1['rms_last_orbit']:.2f} deg RMS off the vertical, {after}"
+    if "spin_radps" in summary:
+        spin = summary["spin_radps"]
+        rows["spin"] = (
+            f"{spin['mean_last_orbit']:.5f} rad/s in the mean of the last orbit, "
+            f"{spin['max_dev_last_orbit']:.5f} at most off {spin['reference']:g}"
+        )
     if "estimate_deg" in summary:
         named = {"rms_sunlit": "RMS sunlit", "rms_eclipse": "RMS in eclipse", "max": "max"}
         parts = [f"{value:.3f} deg {named[key]}" for key, value in summary["estimate_deg"].items()]

@@ -149,8 +149,17 @@ class TestRealFlight:
     def test_the_text_for_people(self, summary):
         text = summary_text(summary)
         assert text.startswith("microsat, seed 5: 300 s flown at ")
-        for part in ("kept", "pulses", "deg RMS", "bit-exact", summary["mode_final"]):
+        for part in ("kept", "pulses", "deg RMS", "off the vertical, not settled", "bit-exact"):
             assert part in text
+        assert summary["mode_final"] in text
+        assert "spin" not in text
+
+    def test_the_text_tells_settling_and_spin_where_there_are_some(self, summary):
+        axis1 = summary["axis1_deg"] | {"settle_orbits_5deg": 1.594}
+        spin = {"reference": 0.02, "mean_last_orbit": 0.019871, "max_dev_last_orbit": 0.000312}
+        text = summary_text(summary | {"axis1_deg": axis1, "spin_radps": spin})
+        assert "under 5 deg for good after 1.59 orbits" in text
+        assert "0.01987 rad/s in the mean of the last orbit, 0.00031 at most off 0.02" in text
 
 
 TICKS = 2400
