@@ -17,9 +17,15 @@ class Coils:
     """
 
     def __init__(self, config: CoilConfig) -> None:
+        self._config = config
         self._tau_s = config.time_constant_s
         self._dipole_per_ampere = [config.dipole_per_ampere_am2 * scale for scale in config.dipole_scale]
         self._current_a = [0.0, 0.0, 0.0]
+
+    def rescale(self, coil: int, scale: float) -> None:
+        """Let a coil give ``scale`` of its true dipole from now on."""
+        config = self._config
+        self._dipole_per_ampere[coil] = config.dipole_per_ampere_am2 * config.dipole_scale[coil] * scale
 
     @property
     def dipole_body_am2(self) -> Vec3:

@@ -1,7 +1,7 @@
 """The plant: physics and boards together, tick by tick, frames out and frames in."""
 
 from math import ceil
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 from zlib import crc32
 
 from fsw.wire.frame import Frame
@@ -10,11 +10,12 @@ from hil_stub.magnetometer import Magnetometer
 from hil_stub.node import CONTRACT_VERSION, HEARTBEAT_S
 from hil_stub.sun_sensor import SunSensor
 from sim.plant import torques
-from sim.plant.actuators import make_actuator
+from sim.plant.actuators import Driven, make_actuator
 from sim.plant.coils import Coils
 from sim.plant.config import PlantConfig
 from sim.plant.disturbances import effects, torque_noise
 from sim.plant.environment import Environment, Surroundings
+from sim.plant.interference import NO_INTERFERENCE, Interference
 from sim.plant.rigid_body import Motion, RigidBody, Torque
 from sim.plant.rotation import (
     ZERO,
@@ -84,6 +85,10 @@ class Plant:
         self._actuator = make_actuator(config)
         self._magnetometer_board = Magnetometer(config.tick_hz)
         self._sun_sensor_board = SunSensor(config.tick_hz)
+        self.interference: Interference = NO_INTERFERENCE
+        """What a fault does between physics and boards."""
+        self.driven = Driven(ZERO, 0.0)
+        """What was really driven over the tick that has ended last."""
         self._tick = 0
         self._flowed_am2 = ZERO
         self._noise_body_nm = ZERO
@@ -105,8 +110,9 @@ class Plant:
         that it has booted.
         """
         tick, coils = self._tick, self._coils
-        b_t, b_valid = self._magnetometer.measure(self._b_body_t, coils.dipole_body_am2)
-        sun, sun_valid = self._sun_sensor.measure(self._sun_body, self._sample.lit)
+        faulty = self.interference
+        b_t, b_valid = faulty.field(*self._magnetometer.measure(self._b_body_t, coils.dipole_body_am2))
+        sun, sun_valid = faulty.sun(*self._sun_sensor.measure(self._sun_body, self._sample.lit))
         return [
             *self._magnetometer_board.begin_tick(tick, b_t, b_valid),
             *self._sun_sensor_board.begin_tick(tick, sun, sun_valid),
@@ -119,10 +125,26 @@ class Plant:
         """Hand a frame that answers this tick to the boards that listen."""
         self._actuator.board.receive(frame)
 
+    def restart(self, board: Literal["magnetometer", "sun", "coil"]) -> None:
+        """Switch a board off and on before a tick begins: it boots in that tick, and has forgotten all."""
+        config = self._config
+        match board:
+            case "magnetometer":
+                self._magnetometer_board = Magnetometer(config.tick_hz)
+            case "sun":
+                self._sun_sensor_board = SunSensor(config.tick_hz)
+            case "coil":
+                self._actuator = make_actuator(config)
+
+    def wire(self, coil: int, scale: float) -> None:
+        """Let a coil give so much of its dipole for the same current; -1 is wired the wrong way round."""
+        self._coils.rescale(coil, scale)
+
     def end_tick(self) -> None:
         """Drive what the coil driver drives, and go on to the next tick."""
         around = self._environment.stages(self._tick)
-        driven_a, fraction = self._actuator.drive()
+        self.driven = self.interference.driven(self._actuator.drive())
+        driven_a, fraction = self.driven
         if self._noise:
             self._noise_body_nm = next(self._noise)
         substeps, step_s, motion = self.substeps, self._step_s, self.motion

@@ -1,0 +1,208 @@
+"""What is expected of a flight with a fault, one function a check; the table says which row expects which."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+
+from fsw.wire.messages import Mode
+from sim.harness.audit.auditor import audit
+from sim.harness.audit.findings import AuditLimits
+from sim.harness.faults import currents
+from sim.harness.faults.currents import CurrentLimits
+from sim.harness.faults.naming import can_name, isolated, tripped
+from sim.harness.faults.record import Record
+from sim.harness.faults.row import Outcome, Row, Verdict
+from sim.harness.scenario import Scenario, orbit_period_s
+
+GOOD_DEG = 2.0
+GOOD_FOR_S = 600.0
+MOST_FRAMES = 64
+"""In one answer; a step says a dozen things at most."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """What a flight is judged by."""
+
+    audit: AuditLimits
+    currents: CurrentLimits
+    orbit_s: float
+    backoff_s: float
+
+
+Check = Callable[[Row, Record, Bounds], tuple[bool | None, str]]
+"""Whether it holds (None: not yet to be expected) and what was found."""
+
+
+def bounds_of(scenario: Scenario) -> Bounds:
+    """What the flights of a scenario are judged by: its own limits, from the table of its coils."""
+    coils, hz = scenario.coils, scenario.time.tick_hz
+    shared = coils.backoff == "shared"
+    low, middle, high = (level / coils.dipole_per_ampere_am2 for level in coils.levels_am2)
+    return Bounds(
+        AuditLimits(round(coils.pulse_s * 1e6), round(coils.backoff_s * 1e6), 3, shared, hz),
+        CurrentLimits(
+            hz,
+            (low, middle, high),
+            Fraction(str(coils.pulse_s)),
+            Fraction(str(coils.backoff_s)),
+            shared,
+        ),
+        orbit_period_s(scenario),
+        coils.backoff_s,
+    )
+
+
+def limits(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
+    """Invariant I by both audits: of what the board has said, and of what the plant has driven."""
+    report = audit(record.entries, bounds.audit)
+    found = [str(violation) for violation in report.violations]
+    if "stuck" not in row.expect:  # a switch that does not open is beyond every guard
+        found += currents.violations(record.driven, bounds.currents)
+    return not found and report.statuses > 0, found[0] if found else ""
+
+
+def no_exception(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
+    """Nothing comes out of a step but its answer."""
+    return record.crash is None, record.crash or ""
+
+
+def finite(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
+    """All numbers that fsw acts on are numbers."""
+    tick = record.not_finite
+    return tick is None, "" if tick is None else f"NaN in the flight state at tick {tick}"
+
+
+def answered(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
+    """Every SYNC that moved time forward was answered, with a bounded number of frames."""
+    if record.unanswered:
+        return False, f"no TICK_DONE at tick {record.unanswered[0]}"
+    most = record.worst_answer
+    stopped = row.kind == "stopped"  # then it answers many ticks at once
+    return stopped or most <= MOST_FRAMES, f"{most} frames in one answer"
+
+
+def no_extra_pulse(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
+    """Each pulse began in a tick in which fsw asked for it."""
+    asked = set(record.asked)
+    for pulse in currents.pulses(record.driven, record.tick_hz):
+        tick = int(pulse.start_s * record.tick_hz)
+        if tick not in asked:
+            return False, f"a pulse began in tick {tick}, which nobody asked for"
+    return True, ""
+
+
+def boots_locked(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
+    """Nothing is asked for until a full back-off after a boot of fsw."""
+    full = bounds.backoff_s * record.tick_hz
+    for boot in record.boots:
+        for tick in record.asked:
+            if boot <= tick < boot + full:
+                return False, f"asked in tick {tick} after a boot in tick {boot}"
+    return True, ""
+
+
+def goes_on(row: Row, record: Record, bounds: Bounds) -> tuple[bool | None, str]:
+    """At the end control goes on (a pulse in the last two cycles), or fsw is in SAFE.
+
+    A fault that stays can only be answered so once it can be named.
+    """
+    cycle = (bounds.backoff_s + 10.0) * record.tick_hz
+    fired = any(tick > record.ticks - 2.0 * cycle for tick in record.asked)
+    safe = record.modes[-1] is Mode.SAFE
+    if fired or safe:
+        return True, ""
+    return None if row.stays and not can_name(row.unit) else False, "neither pulses nor SAFE at the end"
+
+
+def dropped(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
+    """What was broken was counted."""
+    return record.rejected > 0, "" if record.rejected else "nothing was counted as rejected"
+
+
+def recovers(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
+    """Within an orbit after the fault the true error stays below 2 deg for 600 s."""
+    after_s = recovered_s(record)
+    if after_s is None:
+        return False, "the estimate does not recover"
+    return after_s <= bounds.orbit_s, f"estimate recovers after {after_s:.0f} s"
+
+
+def recovered_s(record: Record) -> float | None:
+    """Seconds after the fault until the error stays below 2 deg for 600 s; None: never."""
+    if record.end is None:
+        return None
+    good = 0
+    for tick in range(record.end, record.ticks):
+        error_deg = record.error_deg[tick]
+        good = good + 1 if error_deg is not None and error_deg < GOOD_DEG else 0
+        if good >= GOOD_FOR_S * record.tick_hz:
+            return (tick + 1 - good - record.end) / record.tick_hz
+    return None
+
+
+def quiet(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
+    """No sensor, coil or monitor is blamed where nothing is wrong."""
+    units = isolated(record) + tripped(record)
+    return not units, f"{units[0][1]} blamed in tick {units[0][0]}" if units else ""
+
+
+def blamed_rightly(row: Row, record: Record, bounds: Bounds) -> tuple[bool | None, str]:
+    """The unit that is faulty is named, and no other."""
+    if not can_name(row.unit):
+        return None, f"fsw cannot name {row.unit} yet"
+    onset = record.onset or 0
+    units = [(tick, unit) for tick, unit in isolated(record) if tick >= onset]
+    wrong = [(tick, unit) for tick, unit in units if unit != row.unit]
+    right = [tick for tick, unit in units if unit == row.unit]
+    if wrong:
+        return False, f"{wrong[0][1]} named in place of {row.unit} in tick {wrong[0][0]}"
+    if not right:
+        return False, f"{row.unit} is not named"
+    return True, f"named after {(right[0] - onset) / record.tick_hz:.0f} s"
+
+
+def silence_named(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
+    """The monitor of the board that is silent trips, and no other."""
+    onset = record.onset or 0
+    units = [unit for tick, unit in tripped(record) if tick >= onset]
+    return set(units) == {row.unit}, f"tripped for {', '.join(units) or 'nothing'}"
+
+
+def stuck(row: Row, record: Record, bounds: Bounds) -> tuple[bool | None, str]:
+    """A driver that is stuck on is answered with SAFE."""
+    if not can_name(row.unit):
+        return None, "fsw cannot tell a driver that is stuck on yet"
+    onset = record.onset or 0
+    safe = [tick for tick in range(onset, record.ticks) if record.modes[tick] is Mode.SAFE]
+    return bool(safe), f"SAFE after {(safe[0] - onset) / record.tick_hz:.0f} s" if safe else "no SAFE"
+
+
+ALWAYS: dict[str, Check] = {
+    "limits": limits,
+    "no exception": no_exception,
+    "no NaN": finite,
+    "answered": answered,
+}
+CHECKS: dict[str, Check] = {
+    **ALWAYS,
+    "no extra pulse": no_extra_pulse,
+    "boots locked": boots_locked,
+    "goes on": goes_on,
+    "dropped": dropped,
+    "recovers": recovers,
+    "quiet": quiet,
+    "silence named": silence_named,
+    "named": blamed_rightly,
+    "stuck": stuck,
+}
+
+
+def judge(row: Row, record: Record, bounds: Bounds) -> tuple[Outcome, ...]:
+    """All checks of a row on one flight."""
+    outcomes = []
+    for name in (*ALWAYS, *row.expect):
+        holds, said = CHECKS[name](row, record, bounds)
+        verdict = Verdict.OPEN if holds is None else Verdict.PASS if holds else Verdict.FAIL
+        outcomes.append(Outcome(name, verdict, said))
+    return tuple(outcomes)

@@ -1,0 +1,90 @@
+"""Second audit of invariant I: on what the plant drove through its coils, not on what the board says of it.
+
+It shares nothing with the auditor of COIL_STATUS: it knows neither sequence numbers nor announcements, only
+which current flowed for which part of which tick.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import isclose
+
+from sim.plant.actuators import Driven
+
+PER_TICK = 1_000_000
+"""Parts of a tick are told to a millionth of it."""
+
+
+@dataclass(frozen=True, slots=True)
+class CurrentLimits:
+    """What the currents must keep to; ``levels_a`` are the three magnitudes."""
+
+    tick_hz: int
+    levels_a: tuple[float, float, float]
+    pulse_s: Fraction
+    backoff_s: Fraction
+    shared: bool
+
+
+@dataclass(frozen=True, slots=True)
+class CurrentPulse:
+    """A coil through which a current flowed without a break over [start_s, end_s)."""
+
+    coil: int
+    start_s: Fraction
+    end_s: Fraction
+
+
+def pulses(driven: Sequence[Driven], tick_hz: int) -> list[CurrentPulse]:
+    """The pulses in the plant's record, by start."""
+    found: list[CurrentPulse] = []
+    under_way: dict[int, Fraction] = {}
+    for tick, (current_a, fraction) in enumerate(driven):
+        now, part = Fraction(tick, tick_hz), Fraction(round(fraction * PER_TICK), PER_TICK * tick_hz)
+        for coil in range(3):
+            on = bool(current_a[coil]) and part > 0
+            start = under_way.pop(coil, None)
+            if start is not None and not on:
+                found.append(CurrentPulse(coil, start, now))
+            elif on and part * tick_hz < 1:
+                found.append(CurrentPulse(coil, now if start is None else start, now + part))
+            elif on:
+                under_way[coil] = now if start is None else start
+    last = Fraction(len(driven), tick_hz)
+    found += [CurrentPulse(coil, start, last) for coil, start in under_way.items()]
+    return sorted(found, key=lambda pulse: pulse.start_s)
+
+
+def violations(driven: Sequence[Driven], limits: CurrentLimits) -> list[str]:
+    """Each breach of invariant I, a sentence each."""
+    return [*_momentary(driven, limits), *_lasting(pulses(driven, limits.tick_hz), limits)]
+
+
+def _momentary(driven: Sequence[Driven], limits: CurrentLimits) -> list[str]:
+    found = []
+    for tick, (current_a, fraction) in enumerate(driven):
+        flowing = [current for current in current_a if current and fraction]
+        if len(flowing) > 1:
+            found.append(f"tick {tick}: {len(flowing)} coils at once")
+        for current in flowing:
+            if not any(isclose(abs(current), level, rel_tol=1e-9) for level in limits.levels_a):
+                found.append(f"tick {tick}: {current:g} A is no level")
+    return found
+
+
+def _lasting(found: list[CurrentPulse], limits: CurrentLimits) -> list[str]:
+    sentences = [
+        f"coil {pulse.coil} on for {float(pulse.end_s - pulse.start_s):g} s at {float(pulse.start_s):g} s"
+        for pulse in found
+        if pulse.end_s - pulse.start_s > limits.pulse_s
+    ]
+    ended: dict[int, Fraction] = {}
+    for pulse in found:
+        before = max(
+            (end for coil, end in ended.items() if limits.shared or coil == pulse.coil), default=None
+        )
+        if before is not None and pulse.start_s - before < limits.backoff_s:
+            gap = float(pulse.start_s - before)
+            sentences.append(f"coil {pulse.coil} on {gap:g} s after a pulse, at {float(pulse.start_s):g} s")
+        ended[pulse.coil] = max(pulse.end_s, ended.get(pulse.coil, pulse.end_s))
+    return sentences

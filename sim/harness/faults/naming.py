@@ -1,0 +1,47 @@
+"""Which unit the flight software blames, as its events tell: units by the names that rows give them."""
+
+from collections.abc import Callable
+
+from fsw.core.monitors import Monitor
+from fsw.core.telemetry import Event as Number
+from sim.harness.faults.record import Event, Record
+
+Blame = Callable[[Event], str]
+
+_SILENT = {
+    Monitor.FIELD_FRESH: "magnetometer",
+    Monitor.COIL_STATUS_FRESH: "coil board",
+    Monitor.COIL_AS_COMMANDED: "coil board",
+}
+
+
+def _tripped(event: Event) -> str:
+    monitor = Monitor(event.argument)
+    return _SILENT.get(monitor, monitor.name)
+
+
+MONITORS: dict[int, Blame] = {Number.MONITOR_TRIPPED: _tripped}
+"""What monitors say: that a board is silent or does what it was not asked."""
+
+ISOLATED: dict[int, tuple[frozenset[str], Blame]] = {}
+"""What fault isolation says, by event: the units that it can name, and the one that it does name."""
+
+
+def can_name(unit: str) -> bool:
+    """Whether the flight software has an event by which it could name this unit as faulty."""
+    return any(unit in units for units, _ in ISOLATED.values())
+
+
+def isolated(record: Record) -> list[tuple[int, str]]:
+    """(tick, unit) for each time that a unit was named as faulty."""
+    blames = {number: blame for number, (_, blame) in ISOLATED.items()}
+    return _told(record, blames)
+
+
+def tripped(record: Record) -> list[tuple[int, str]]:
+    """(tick, unit) for each time that a monitor tripped."""
+    return _told(record, MONITORS)
+
+
+def _told(record: Record, blames: dict[int, Blame]) -> list[tuple[int, str]]:
+    return [(event.tick, blames[event.number](event)) for event in record.events if event.number in blames]

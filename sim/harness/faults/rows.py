@@ -1,0 +1,187 @@
+"""The fault table: every row, what is injected, and what is expected."""
+
+from collections.abc import Sequence
+from math import inf
+
+from sim.harness.errors import HarnessError
+from sim.harness.faults.row import Row, When
+
+BUS = ("no extra pulse", "goes on")
+BROKEN = (*BUS, "dropped", "recovers")
+COIL_NAMES = ("coil 0", "coil 1", "coil 2")
+
+NOTHING = "nothing: false alarms"
+LOSS = "loss 1/10/50 %, bursts; duplicates; reordering; delay, jitter"
+CORRUPT = "corrupt payload, wrong length, unknown id, RTR, extended id, error frames"
+FLOOD = "flood by a babbling node"
+SECOND = "a second sender on fsw's id"
+INTERFACE = "interface down and up; ENOBUFS"
+PROCESS = "fsw killed, stopped, restarted at every phase of a pulse; reboot storms"
+BOARD = "board killed and restarted; both reset"
+CLOCK = "clock jumps, tick going backwards, SYNC lost or repeated"
+SENSOR = "a sensor: NaN and infinity, saturation, frozen, bias, scale, swapped axis, wrong sign"
+LIGHT = "eclipse; Sun sensor blinded by albedo or without Sun"
+COIL = "coil open, reversed, weak, stuck on"
+UPSET = "bit flip in any double of the flight state"
+
+
+def _field(name: str, kind: str, **parameters: float) -> tuple[Row, Row]:
+    """A fault of the magnetometer that goes away, and one that stays."""
+    return _sensor("magnetometer", name, kind, parameters)
+
+
+def _sun(name: str, kind: str, **parameters: float) -> tuple[Row, Row]:
+    return _sensor("sun sensor", name, kind, parameters)
+
+
+def _sensor(unit: str, name: str, kind: str, parameters: dict[str, float]) -> tuple[Row, Row]:
+    return (
+        Row(f"{name}-passing", SENSOR, kind, parameters, 300.0, When.SUNLIT, ("goes on", "recovers")),
+        Row(name, SENSOR, kind, parameters, inf, When.SUNLIT, ("goes on", "named"), unit, watch_s=900.0),
+    )
+
+
+def _coil(name: str, kind: str, coil: int, **parameters: float) -> Row:
+    parameters = {"axis": coil, **parameters}
+    return Row(
+        f"{name}-{coil}",
+        COIL,
+        kind,
+        parameters,
+        inf,
+        expect=("named",),
+        unit=COIL_NAMES[coil],
+        watch_s=1100.0,
+    )
+
+
+def _coils(name: str, kind: str, **parameters: float) -> tuple[Row, ...]:
+    return tuple(_coil(name, kind, coil, **parameters) for coil in range(3))
+
+
+ROWS: tuple[Row, ...] = (
+    Row("none", NOTHING, "none", {}, 1.0, expect=(*BUS, "quiet", "recovers"), watch_s=1500.0),
+    Row("loss-1", LOSS, "loss", {"part": 0.01}, 300.0, expect=(*BUS, "recovers")),
+    Row("loss-10", LOSS, "loss", {"part": 0.1}, 300.0, expect=(*BUS, "recovers")),
+    Row("loss-50", LOSS, "loss", {"part": 0.5}, 300.0, expect=(*BUS, "recovers")),
+    Row("bursts", LOSS, "bursts", {"ticks": 30.0}, 300.0, expect=(*BUS, "recovers")),
+    Row("duplicates", LOSS, "duplicates", {"part": 0.5}, 300.0, expect=(*BUS, "recovers")),
+    Row("reordering", LOSS, "reordering", {}, 300.0, expect=(*BUS, "recovers")),
+    Row("delay", LOSS, "delay", {"ticks": 2.0}, 300.0, expect=(*BUS, "recovers")),
+    Row("jitter", LOSS, "delay", {"ticks": 3.0, "jitter": 1.0}, 300.0, expect=(*BUS, "recovers")),
+    Row("corruption", CORRUPT, "corruption", {"part": 0.3}, 300.0, expect=BROKEN),
+    Row("wrong-length", CORRUPT, "wrong_length", {"part": 0.3}, 300.0, expect=BROKEN),
+    Row("unknown-id", CORRUPT, "unknown_id", {"part": 0.3}, 300.0, expect=BROKEN),
+    Row("rtr", CORRUPT, "rtr", {"part": 0.3}, 300.0, expect=BROKEN),
+    Row("extended-id", CORRUPT, "extended_id", {"part": 0.3}, 300.0, expect=BROKEN),
+    Row("error-frames", CORRUPT, "error_frames", {"part": 0.3}, 300.0, expect=BROKEN),
+    Row("random-frames", CORRUPT, "random_frames", {"frames": 100.0}, 200.0, expect=BROKEN),
+    Row("flood", FLOOD, "flood", {"frames": 500.0}, 200.0, expect=(*BUS, "recovers")),
+    Row(
+        "second-sender",
+        SECOND,
+        "second_sender",
+        {"frames": 1.0},
+        300.0,
+        expect=("goes on", "named"),
+        unit="second sender",
+    ),
+    Row("link-down", INTERFACE, "link_down", {}, 90.0, expect=(*BUS, "recovers")),
+    Row("link-down-mid-pulse", INTERFACE, "link_down", {}, 2.0, expect=(*BUS, "recovers")),
+    Row("queue-full", INTERFACE, "queue_full", {}, 300.0, expect=(*BUS, "recovers")),
+    Row("fsw-killed", PROCESS, "killed", {}, 1.0, expect=(*BUS, "boots locked", "recovers")),
+    Row("fsw-killed-long", PROCESS, "killed", {}, 40.0, expect=(*BUS, "boots locked", "recovers")),
+    Row("fsw-stopped", PROCESS, "stopped", {}, 4.0, expect=(*BUS, "recovers")),
+    Row("fsw-stopped-long", PROCESS, "stopped", {}, 256.0, expect=(*BUS, "recovers")),
+    Row(
+        "fsw-storm",
+        PROCESS,
+        "storm",
+        {"up": 150.0, "down": 20.0},
+        900.0,
+        expect=(*BUS, "boots locked", "recovers"),
+    ),
+    Row(
+        "fsw-storm-fast",
+        PROCESS,
+        "storm",
+        {"up": 3.0, "down": 3.0},
+        120.0,
+        expect=(*BUS, "boots locked", "recovers"),
+    ),
+    Row("coil-board-restarts", BOARD, "coil_board_restarts", {}, 1.0, expect=(*BUS, "recovers")),
+    Row(
+        "coil-board-dead",
+        BOARD,
+        "coil_board_dead",
+        {},
+        90.0,
+        expect=(*BUS, "recovers", "silence named"),
+        unit="coil board",
+    ),
+    Row("mag-board-restarts", BOARD, "mag_board_restarts", {}, 1.0, expect=(*BUS, "recovers")),
+    Row(
+        "mag-board-dead",
+        BOARD,
+        "mag_board_dead",
+        {},
+        90.0,
+        expect=(*BUS, "recovers", "silence named"),
+        unit="magnetometer",
+    ),
+    Row("sun-board-restarts", BOARD, "sun_board_restarts", {}, 1.0, expect=(*BUS, "recovers")),
+    Row("sun-board-dead", BOARD, "sun_board_dead", {}, 90.0, expect=(*BUS, "recovers")),
+    Row("all-restart", BOARD, "all_restart", {}, 5.0, expect=(*BUS, "boots locked", "recovers")),
+    Row("sync-lost", CLOCK, "sync_lost", {"part": 0.3}, 300.0, expect=(*BUS, "recovers")),
+    Row("sync-repeated", CLOCK, "sync_repeated", {"times": 3.0}, 300.0, expect=(*BUS, "recovers")),
+    Row("tick-ahead", CLOCK, "tick_jumps", {"ticks": 1000.0}, 1.0, expect=(*BUS, "recovers")),
+    Row("tick-back", CLOCK, "tick_jumps", {"ticks": -100.0}, 20.0, expect=(*BUS, "recovers")),
+    Row("time-jumps", CLOCK, "time_jumps", {"seconds": 3600.0}, 60.0, expect=(*BUS, "recovers")),
+    *_field("mag-nan", "mag_nan"),
+    *_field("mag-infinite", "mag_infinite", axis=1.0),
+    *_field("mag-saturated", "mag_saturated", nt=15_000.0),
+    *_field("mag-frozen", "mag_frozen"),
+    *_field("mag-bias", "mag_bias", axis=1.0, nt=10_000.0),
+    *_field("mag-scale", "mag_scale", axis=2.0, scale=1.5),
+    *_field("mag-swapped", "mag_swapped", axis=1.0),
+    *_field("mag-sign", "mag_scale", axis=2.0, scale=-1.0),
+    *_field("extreme-codes", "extreme_codes"),
+    *_sun("sun-nan", "sun_nan"),
+    *_sun("sun-frozen", "sun_frozen"),
+    *_sun("sun-swapped", "sun_swapped"),
+    *_sun("sun-sign", "sun_scale", axis=0.0, scale=-1.0),
+    Row("eclipse", LIGHT, "none", {}, 1.0, When.ECLIPSE, ("goes on", "quiet", "recovers"), watch_s=2400.0),
+    Row("sun-unseen", LIGHT, "sun_unseen", {}, 1200.0, When.SUNLIT, ("goes on", "quiet", "recovers")),
+    Row("albedo", LIGHT, "albedo", {"part": 0.4}, 600.0, When.SUNLIT, ("goes on", "recovers")),
+    Row("albedo-eclipse", LIGHT, "albedo", {"part": 0.4}, 600.0, When.ECLIPSE, ("goes on", "recovers")),
+    *_coils("coil-open", "coil_open"),
+    *_coils("coil-reversed", "coil_wired", scale=-1.0),
+    *_coils("coil-weak", "coil_wired", scale=0.3),
+    Row(
+        "coil-stuck-on",
+        COIL,
+        "coil_stuck_on",
+        {"axis": 1.0, "ampere": 0.4},
+        inf,
+        expect=("named", "stuck"),
+        unit="coil 1",
+    ),
+    Row("bit-flip", UPSET, "bit_flip", {}, 1.0, expect=(*BUS, "recovers")),
+)
+"""All rows, in the order of the page."""
+
+
+def chosen(names: Sequence[str]) -> list[Row]:
+    """The rows of these names, or that begin with them; without a name all.
+
+    Raises:
+        HarnessError: a name that is none.
+    """
+    for name in names:
+        if not any(_is(row, name) for row in ROWS):
+            raise HarnessError(f"--row {name}: there is no such row; `torquer faults --list` names them")
+    return [row for row in ROWS if not names or any(_is(row, name) for name in names)]
+
+
+def _is(row: Row, name: str) -> bool:
+    return row.name == name or row.name.startswith(name + "-")
