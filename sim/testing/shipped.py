@@ -1,0 +1,97 @@
+"""The scheduler that ships, as one of those that may be tested; and a law of your own before it."""
+
+from collections.abc import Sequence
+from math import isfinite
+
+from fsw.core import pulses
+from fsw.core.actuation import CoilConfig, CoilView, actuate, hear
+from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, Law, Memory, Seen
+from fsw.core.pulses import AXES, PulseConfig, PulseState
+from fsw.core.readings import NOTHING
+from fsw.wire.messages import CoilBoot, CoilFire
+from sim.testing.bench import Fire, Heard, Limits, MakeScheduler, Scheduler
+
+LEVELS_AM2 = (0.5, 2.0, 8.0)
+LEAK_S = 300.0
+_BOOTED = CoilBoot(reason=0, version=1, table_crc=0)
+
+
+class UnsoundLawError(AssertionError):
+    """A law has asked for something that is not a number."""
+
+
+class ShippedScheduler:
+    """``fsw.core``'s scheduler, at given limits.
+
+    Raises:
+        ValueError: a pulse is shorter than a tick.
+    """
+
+    def __init__(self, limits: Limits) -> None:
+        timing = pulses.pulse_timing(limits.tick_hz, limits.pulse_ms, limits.backoff_ms)
+        pulse_ticks, backoff_ticks, duration_ms = timing
+        self._config = CoilConfig(
+            PulseConfig(
+                pulse_ticks=pulse_ticks,
+                backoff_ticks=backoff_ticks,
+                duration_ms=duration_ms,
+                shared=limits.shared,
+                levels_am2=LEVELS_AM2,
+                pulse_s=duration_ms / 1000.0,
+                tick_s=1.0 / limits.tick_hz,
+                leak_s=LEAK_S,
+                rate_metric=AXES,
+                energy_metric=AXES,
+            ),
+            dipoles=None,
+        )
+        self._state: PulseState | None = None
+        self._view = CoilView()
+
+    def step(self, heard: Heard) -> Sequence[Fire]:
+        """As in flight: what is owed grows by the demand, and is paid by a pulse when there may be one."""
+        return self.meet(heard, Demand(heard.m_body_am2))
+
+    def meet(self, heard: Heard, demand: Demand) -> Sequence[Fire]:
+        """The same for a demand of another origin."""
+        if self._state is None:
+            self._state = pulses.boot(heard.tick, self._config.pulses)
+        readings = NOTHING._replace(coil=heard.status, coil_boot=_BOOTED if heard.booted else None)
+        self._view = hear(self._view, readings, heard.tick, self._config)
+        self._state, self._view, request = actuate(
+            self._state, self._view, demand, heard.b_body_t, readings, heard.tick, self._config
+        )
+        if not isinstance(request, CoilFire):
+            return ()
+        return (Fire(request.coil, request.level, request.duration_ms),)
+
+
+class _UnderLaw:
+    """The shipped scheduler, asked by a law."""
+
+    def __init__(self, limits: Limits, law: Law, control: ControlConfig) -> None:
+        self._scheduler = ShippedScheduler(limits)
+        self._law = law
+        self._control = control
+        self._memory: Memory = ()
+        self._sample = FieldSample()
+
+    def step(self, heard: Heard) -> Sequence[Fire]:
+        """Ask the law, and the scheduler for what it wants."""
+        before, self._sample = self._sample, FieldSample(heard.b_body_t, heard.tick)
+        seen = Seen(heard.attitude, heard.b_body_t, self._sample, before, tick=heard.tick)
+        demand = self._law(seen, self._memory, self._control.setpoint, self._control)
+        wanted = (*demand.m_body_am2, *(demand.impulse_body_nms or ()), *demand.memory)
+        if not all(map(isfinite, wanted)):
+            raise UnsoundLawError(f"tick {heard.tick}: {demand} is not of numbers, for {seen}")
+        self._memory = demand.memory
+        return self._scheduler.meet(heard, demand)
+
+
+def scheduler_under(law: Law, control: ControlConfig) -> MakeScheduler:
+    """Makes the shipped scheduler with a law before it, which may be tested as one."""
+
+    def make(limits: Limits) -> Scheduler:
+        return _UnderLaw(limits, law, control)
+
+    return make
