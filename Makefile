@@ -2,6 +2,7 @@
 # make test   all tests; those on a CAN interface say so when there is none
 # make lint   style, types, layers, generated code and pages
 # make validate   every claim and reference figure anew, into docs/validation.md: minutes to half an hour
+# make replay-elsewhere   does a log of 20 orbits replay with other processor features, into docs/replay.md
 # make golden     record the golden logs anew: after a change that means to alter what fsw answers
 # make test-vcan   the tests on a CAN interface, in a user-mode Linux guest where this kernel has no vcan
 # make fuzz         a million random frames into codec, boards and flight loop: some minutes
@@ -9,12 +10,13 @@
 
 PYTHON ?= python3
 PYTEST_FLAGS ?= -q -rs -n 2
+PYTHONS ?=
 
 bin := .venv/bin
 installed := .venv/.installed
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv sil test lint test-vcan golden validate fuzz differential
+.PHONY: help venv sil test lint test-vcan golden validate fuzz differential replay-elsewhere
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -57,3 +59,6 @@ fuzz: venv
 
 differential: venv
 	TORQUER_DIFFERENTIAL_ORBITS=100 $(bin)/pytest -q --timeout 3600 tests/differential
+
+replay-elsewhere: venv
+	$(bin)/python tools/replay_elsewhere.py $(foreach other,$(PYTHONS),--python $(other))

@@ -1,0 +1,138 @@
+"""Does a log replay where the processor can do other things? Flies one, replays it so, writes docs/replay.md.
+
+Each variant is this machine with something switched off, or another Python: the nearest to another machine
+that one machine can be. Commands must be the same everywhere; where telemetry and state end to be the same to
+the last bit is told.
+"""
+
+import argparse
+import os
+import platform
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGE = ROOT / "docs" / "replay.md"
+NO_FMA = "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4,-AVX2_Usable,-FMA_Usable"
+NO_AVX512 = "AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL AVX512_SPR"
+NO_AVX2 = f"AVX2 FMA3 {NO_AVX512}"
+
+
+@dataclass(frozen=True, slots=True)
+class Variant:
+    """A way to replay: what is changed in the environment, or another interpreter."""
+
+    name: str
+    environment: dict[str, str] = field(default_factory=dict)
+    python: str = sys.executable
+
+
+VARIANTS = (
+    Variant("as flown"),
+    Variant("OpenBLAS for Prescott (SSE3)", {"OPENBLAS_CORETYPE": "Prescott"}),
+    Variant("OpenBLAS for Haswell (AVX2)", {"OPENBLAS_CORETYPE": "Haswell"}),
+    Variant("OpenBLAS for Zen", {"OPENBLAS_CORETYPE": "Zen"}),
+    Variant("OpenBLAS for SkylakeX (AVX-512)", {"OPENBLAS_CORETYPE": "SkylakeX"}),
+    Variant("numpy without AVX-512", {"NPY_DISABLE_CPU_FEATURES": NO_AVX512}),
+    Variant("numpy without AVX2 and FMA", {"NPY_DISABLE_CPU_FEATURES": NO_AVX2}),
+    Variant("C library without FMA", {"GLIBC_TUNABLES": NO_FMA}),
+    Variant(
+        "all of it: SSE only",
+        {
+            "OPENBLAS_CORETYPE": "Prescott",
+            "NPY_DISABLE_CPU_FEATURES": NO_AVX2,
+            "GLIBC_TUNABLES": NO_FMA,
+        },
+    ),
+)
+
+
+def main() -> int:
+    """Fly, replay in every way, write the page; 1 if a command differs anywhere."""
+    arguments = _arguments()
+    variants = VARIANTS + tuple(Variant(_version(path), python=path) for path in arguments.python)
+    began = time.monotonic()
+    rows: list[tuple[str, str, str, str]] = []
+    with tempfile.TemporaryDirectory() as folder:
+        for scenario in arguments.scenario:
+            run = Path(folder) / scenario
+            _torquer(
+                Variant("as flown"),
+                "sil", scenario, "--bus", "virtual", "--orbits", str(arguments.orbits), "--out", str(run),
+            )  # fmt: skip
+            for variant in variants:
+                print(f"{scenario}: {variant.name}", file=sys.stderr)
+                done = _torquer(variant, "replay", str(run))
+                verdict, detail = _verdict(done)
+                rows.append((scenario, variant.name, verdict, detail))
+    page = _page(rows, arguments.orbits, time.monotonic() - began)
+    arguments.out.write_text(page, encoding="utf-8")
+    print(page)
+    return int(any(verdict not in ("bit-exact", "command-exact") for _, _, verdict, _ in rows))
+
+
+def _arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--scenario", action="append", help="default: microsat and posat1-ekf")
+    parser.add_argument("--orbits", type=float, default=20.0)
+    parser.add_argument(
+        "--python", action="append", default=[], help="another interpreter with torquer in it"
+    )
+    parser.add_argument("--out", type=Path, default=PAGE)
+    arguments = parser.parse_args()
+    arguments.scenario = arguments.scenario or ["microsat", "posat1-ekf"]
+    return arguments
+
+
+def _torquer(variant: Variant, *words: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [variant.python, "-m", "sim.harness.cli", *words],
+        env=os.environ | variant.environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def _verdict(done: subprocess.CompletedProcess[str]) -> tuple[str, str]:
+    """The verdict of ``torquer replay`` and what it tells beside; its error where it gave none."""
+    told = done.stdout.strip().splitlines()
+    if not told:
+        return "failed", (done.stderr.strip().splitlines() or ["no word"])[-1]
+    first = told[0]
+    if first.startswith("bit-exact"):
+        return "bit-exact", ""
+    if first.startswith("command-exact"):
+        return "command-exact", f"first bit: {first.rpartition('): ')[2]}"
+    return "differs", "; ".join(told)
+
+
+def _version(python: str) -> str:
+    versions = "platform.python_version(), numpy.__version__, scipy.__version__"
+    text = f"import numpy, platform, scipy; print({versions})"
+    done = subprocess.run([python, "-c", text], capture_output=True, text=True, check=True)
+    return "Python {}, numpy {}, scipy {}".format(*done.stdout.split())
+
+
+def _page(rows: list[tuple[str, str, str, str]], orbits: float, wall_s: float) -> str:
+    head = [
+        "# Replay on other machines",
+        "",
+        "Written by `make replay-elsewhere`. Flights on the virtual bus, each replayed with parts of the",
+        "processor switched off for the libraries, and by other versions of Python. Bit-exact: every frame",
+        "and every state CRC. Command-exact: every `COIL_FIRE`, telemetry within one step of the wire.",
+        "",
+        f"{orbits:g} orbits each; {platform.machine()}, {_version(sys.executable)}; {wall_s:.0f} s in all.",
+        "",
+        "| flight | replayed with | verdict | |",
+        "|---|---|---|---|",
+    ]
+    return "\n".join(head + [f"| {' | '.join(row)} |" for row in rows]) + "\n"
+
+
+if __name__ == "__main__":
+    sys.exit(main())
