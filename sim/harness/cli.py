@@ -276,6 +276,7 @@ def compare(
 @click.option("--list", "listing", is_flag=True, help="Print the rows and what they expect.")
 @click.option("--out", type=click.Path(path_type=Path), help="Folder of faults.xml (JUnit), .html and .json.")
 @click.option("--workers", type=click.IntRange(min=1), help="Processes. Default: one a core.")
+@click.option("--slow", is_flag=True, help="Also rows that fly real processes: minutes.")
 @click.option("--write-docs", is_flag=True, help="Write docs/faults.md of the repository.")
 @sentences
 def faults(
@@ -286,6 +287,7 @@ def faults(
     listing: bool,
     out: Path | None,
     workers: int | None,
+    slow: bool,
     write_docs: bool,
 ) -> int:
     """Inject every fault of the table, in several phases and seeds: verdict per row."""
@@ -293,7 +295,7 @@ def faults(
 
     if listing:
         return command.list_rows(rows)
-    return command.faults(rows, phases, seeds, as_json, out, workers, write_docs)
+    return command.faults(rows, phases, seeds, as_json, out, workers, write_docs, slow)
 
 
 if __name__ == "__main__":

@@ -109,8 +109,8 @@ def fly_processes(path: Path, scenario: Scenario, spec: str, hub: Hub | None, wa
     """
     scenario_file = str(path / run_dir.SCENARIO)
     parent = str(os.getpid())
-    plant = _start("sim.plant", scenario_file, "--bus", spec, "--into", str(path), "--parent", parent)
-    fsw = _start("fsw", scenario_file, "--bus", spec, "--parent", parent)
+    plant = start_node("sim.plant", scenario_file, "--bus", spec, "--into", str(path), "--parent", parent)
+    fsw = start_node("fsw", scenario_file, "--bus", spec, "--parent", parent)
     try:
         while plant.poll() is None and fsw.poll() is None:
             _serve(hub, POLL_S)
@@ -151,7 +151,7 @@ def last_tick(path: Path, scenario: Scenario) -> int:
     return round((float(stamps[-1]) - scenario.epoch_unix_s) * scenario.time.tick_hz)
 
 
-def _start(module: str, *arguments: str) -> subprocess.Popen[bytes]:
+def start_node(module: str, *arguments: str) -> subprocess.Popen[bytes]:
     """A node as a process, of the same code. Ctrl-C is for this process alone: it ends its nodes itself."""
     words = [sys.executable, "-m", module, *arguments]
     path = {"PYTHONPATH": os.pathsep.join(sys.path), "PYTHONSAFEPATH": "1"}  # not what lies in this directory

@@ -5,10 +5,12 @@ from math import inf
 from random import Random
 
 from sim.harness.faults import checks, currents
-from sim.harness.faults.kinds import make
+from sim.harness.faults.kinds import KINDS, make
+from sim.harness.faults.processes import ProcessRig, strikes
 from sim.harness.faults.record import Record
 from sim.harness.faults.rig import Rig, prepared
 from sim.harness.faults.row import CaseResult, Row, When
+from sim.harness.scenario import Scenario
 
 SCENARIO = "microsat"
 ARMED_S = 180.0
@@ -32,9 +34,19 @@ def fly(row: Row, phase: int, seed: int) -> CaseResult:
     began = time.perf_counter()
     scenario, config = prepared(SCENARIO, settings_of(row))
     bounds = checks.bounds_of(scenario)
-    record = _flown(row, phase, seed, Rig(scenario, config, seed), bounds.orbit_s)
+    if KINDS[row.kind].by_signal:
+        record = _struck(row, phase, seed, scenario)
+    else:
+        record = _flown(row, phase, seed, Rig(scenario, config, seed), bounds.orbit_s)
     outcomes = checks.judge(row, record, bounds)
     return CaseResult(row.name, phase, seed, outcomes, _measured(row, record), time.perf_counter() - began)
+
+
+def _struck(row: Row, phase: int, seed: int, scenario: Scenario) -> Record:
+    times = round(row.parameters["times"])
+    planned = strikes(times, Random(f"{row.name}/{phase}/{seed}"))
+    rig = ProcessRig(SCENARIO, settings_of(row), scenario, seed, stop=row.kind == "sigstop")
+    return rig.fly(planned)
 
 
 def _flown(row: Row, phase: int, seed: int, rig: Rig, orbit_s: float) -> Record:

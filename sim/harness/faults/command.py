@@ -20,7 +20,7 @@ PAGE, JUNIT, HTML, JSON = "faults.md", "faults.xml", "faults.html", "faults.json
 
 def list_rows(names: Sequence[str]) -> int:
     """Print what there is to inject."""
-    for row in chosen(names):
+    for row in chosen(names, slow=True):
         click.echo(render.listed(row))
     return 0
 
@@ -33,6 +33,7 @@ def faults(
     out: Path | None,
     workers: int | None,
     write_docs: bool,
+    slow: bool = False,
 ) -> int:
     """Fly the rows, print each, write what is asked for.
 
@@ -43,6 +44,7 @@ def faults(
         as_json: print JSON alone.
         out: folder of faults.xml, faults.html and faults.json; None: they are not written.
         workers: processes; None: one a core.
+        slow: also rows that fly real processes.
         write_docs: write docs/faults.md of the repository.
 
     Returns:
@@ -51,7 +53,7 @@ def faults(
     Raises:
         HarnessError: there is no such row, or a file cannot be written.
     """
-    rows = chosen(names)
+    rows = chosen(names, slow)
     page = _docs_page(len(rows)) if write_docs else None
     quiet = as_json or sys.stderr.isatty()  # then the rows wait until the bar is gone
     count = len(rows) * phases * seeds
@@ -79,7 +81,7 @@ def _docs_page(rows: int) -> Path:
     repository = find_repository(Path.cwd())
     if repository is None:
         raise HarnessError("--write-docs: this is no checkout of torquer, so that there is no docs/faults.md")
-    if rows < len(ROWS):
+    if rows < sum(not row.slow for row in ROWS):
         raise HarnessError("--write-docs: the page is of all rows: leave out --row")
     return repository / "docs" / PAGE
 

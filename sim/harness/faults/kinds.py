@@ -23,16 +23,19 @@ class Kind(NamedTuple):
     """A kind of fault.
 
     ``in_plant``: the plant's process can inject it by itself, so that a scenario may schedule it.
+    ``by_signal``: it needs the flight software as a process of its own.
     """
 
     make: Callable[[Random, Parameters], Fault]
     parameters: Mapping[str, Parameter] = {}
     in_plant: bool = True
+    by_signal: bool = False
 
 
 PART = {"part": Parameter(0.1, 0.0, 1.0)}
 ALWAYS = {"part": Parameter(1.0, 0.0, 1.0)}
 AXIS = {"axis": Parameter(0.0, 0.0, 2.0)}
+STRIKES = Parameter(5.0, 1.0, 1000.0)
 A_FEW = Parameter(3.0, 1.0, 1000.0)
 
 KINDS: dict[str, Kind] = {
@@ -93,6 +96,8 @@ KINDS: dict[str, Kind] = {
     ),
     "time_jumps": Kind(node.TimeJumps, {"seconds": Parameter(3600.0, -1e9, 1e9)}, in_plant=False),
     "bit_flip": Kind(node.BitFlip, in_plant=False),
+    "sigkill": Kind(Fault, {"times": STRIKES}, in_plant=False, by_signal=True),
+    "sigstop": Kind(Fault, {"times": STRIKES}, in_plant=False, by_signal=True),
 }
 
 

@@ -39,6 +39,7 @@ class Row:
         expect: names of the checks beside those that every row must pass.
         unit: the sensor or coil that must be named, for the check ``named``.
         settings: of the scenario.
+        slow: it flies a real process, which takes seconds.
         watch_s: flown after the fault, at least; ``recovers`` flies on until it is decided.
     """
 
@@ -52,6 +53,7 @@ class Row:
     unit: str = ""
     settings: tuple[str, ...] = ()
     watch_s: float = 330.0
+    slow: bool = False
 
     @property
     def stays(self) -> bool:

@@ -109,6 +109,15 @@ ROWS: tuple[Row, ...] = (
         120.0,
         expect=(*BUS, "boots locked", "recovers"),
     ),
+    Row(
+        "process-killed",
+        PROCESS,
+        "sigkill",
+        {"times": 5.0},
+        expect=("no extra pulse", "boots locked"),
+        slow=True,
+    ),
+    Row("process-stopped", PROCESS, "sigstop", {"times": 5.0}, expect=("no extra pulse",), slow=True),
     Row("coil-board-restarts", BOARD, "coil_board_restarts", {}, 1.0, expect=(*BUS, "recovers")),
     Row(
         "coil-board-dead",
@@ -171,8 +180,8 @@ ROWS: tuple[Row, ...] = (
 """All rows, in the order of the page."""
 
 
-def chosen(names: Sequence[str]) -> list[Row]:
-    """The rows of these names, or that begin with them; without a name all.
+def chosen(names: Sequence[str], slow: bool = False) -> list[Row]:
+    """The rows of these names, or that begin with them; without a name all, slow ones if asked for.
 
     Raises:
         HarnessError: a name that is none.
@@ -180,7 +189,9 @@ def chosen(names: Sequence[str]) -> list[Row]:
     for name in names:
         if not any(_is(row, name) for row in ROWS):
             raise HarnessError(f"--row {name}: there is no such row; `torquer faults --list` names them")
-    return [row for row in ROWS if not names or any(_is(row, name) for name in names)]
+    if not names:
+        return [row for row in ROWS if slow or not row.slow]
+    return [row for row in ROWS if any(_is(row, name) for name in names)]
 
 
 def _is(row: Row, name: str) -> bool:
