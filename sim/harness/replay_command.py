@@ -17,12 +17,12 @@ from sim.harness import run_dir
 from sim.harness.assemble import plant_config
 from sim.harness.candump import LogEntry, LogTruncatedError, read_log
 from sim.harness.errors import HarnessError
+from sim.harness.faults.section import make_plant
 from sim.harness.flight import answered
 from sim.harness.log_index import vouch
 from sim.harness.progress import progress
 from sim.harness.replay import replay
 from sim.harness.scenario import Scenario, flight_table, load, parse_settings
-from sim.plant.plant import Plant
 
 
 class Flown(NamedTuple):
@@ -86,7 +86,7 @@ def through_plant(log: Path, flown: Flown) -> int:
     """The recorded commands through the plant: its frames must come out as logged."""
     if "seed" not in flown.run:
         raise HarnessError(f"{log}: --plant needs the seed: no {run_dir.RUN} beside it")
-    plant = Plant(plant_config(flown.scenario, flown.run["seed"]))
+    plant = make_plant(plant_config(flown.scenario, flown.run["seed"]), flown.scenario.fault)
     ticks = 0
     with progress("replaying", flown.run.get("ticks", 0)) as watch:
         for _, group in groupby(_after_boot(log), key=lambda entry: entry.timestamp_us):

@@ -26,6 +26,7 @@ from fsw.io.schema import (
     validated,
 )
 from fsw.io.table import CoilTable, ControlTable, FlightTable, OrbitTable, TimeTable
+from sim.harness.faults.section import Faults
 from sim.harness.physics import DisturbanceSection, ScenarioBody, SensorsSection
 from sim.harness.telecommands import Telecommands
 
@@ -95,6 +96,7 @@ class Scenario(Section):
     control: ControlTable
     plant: PlantSection = PlantSection()
     telecommand: Telecommands = ()
+    fault: Faults = ()
     flight: dict[str, Any] = Field(default_factory=dict)
 
     @model_validator(mode="after")

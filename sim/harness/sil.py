@@ -15,11 +15,11 @@ from fsw.io.open_bus import open_bus, resolve
 from sim.harness import run_dir
 from sim.harness.assemble import plant_config
 from sim.harness.errors import HarnessError
+from sim.harness.faults.section import make_plant
 from sim.harness.flight import BusLog, FlightError, Pace, fly
 from sim.harness.scenario import Scenario, orbit_period_s
 from sim.harness.telecommands import uplink
 from sim.harness.truth import TruthFile
-from sim.plant.plant import Plant
 
 POLL_S = 0.1
 GRACE_S = 5.0
@@ -52,7 +52,7 @@ def record(path: Path, scenario: Scenario, bus: Bus, watch: Watch = lambda tick:
         BusError: the bus failed.
     """
     run = run_dir.read_run(path)
-    plant = Plant(plant_config(scenario, run["seed"]))
+    plant = make_plant(plant_config(scenario, run["seed"]), scenario.fault)
     pace = Pace(run["pace_factor"])
     try:
         with (

@@ -5,11 +5,12 @@ from functools import partial
 from random import Random
 
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame
-from fsw.wire.messages import CLASSES, CoilFire, Sync
+from fsw.wire.messages import CLASSES, SENDERS, CoilFire, Sync
 from sim.harness.faults.fault import Fault, Parameters
 
 FULL = 8
 IDS = 0x800
+_OF_FSW = {can_id for can_id, sender in SENDERS.items() if sender == "FSW"}
 Tamper = Callable[[list[Frame], Random, Parameters], list[Frame]]
 
 
@@ -154,7 +155,16 @@ class QueueFull(Fault):
 
 
 class RandomFrames(Fault):
-    """A stranger sends ``frames`` random frames a tick: any identifier but SYNC's, any flags, any data."""
+    """A stranger sends ``frames`` random frames a tick: any identifier but SYNC's, any flags, any data.
+
+    With ``as_fsw`` 0 it keeps off the identifiers of fsw, so that a log still tells who said what.
+    """
+
+    def __init__(self, rng: Random, parameters: Parameters) -> None:
+        super().__init__(rng, parameters)
+        taken = {Sync.ID} | (set() if parameters["as_fsw"] else _OF_FSW)
+        self._known = [can_id for can_id in CLASSES if can_id not in taken]
+        self._any = [can_id for can_id in range(IDS) if can_id not in taken]
 
     def strangers(self, tick: int) -> list[Frame]:
         """Random frames."""
@@ -164,11 +174,16 @@ class RandomFrames(Fault):
         rng = self.rng
         data = rng.randbytes(rng.randint(0, FULL))
         if rng.random() < 0.5:  # half of them on identifiers that somebody listens to
-            can_id = rng.choice([can_id for can_id in CLASSES if can_id != Sync.ID])
-            return Frame(can_id, data)
-        flags = rng.choice([0, 0, EXTENDED_FLAG, REMOTE_FLAG, ERROR_FLAG])
-        can_id = rng.randrange(1 << 29) if flags & EXTENDED_FLAG else rng.randrange(IDS)
-        return Frame((can_id if can_id != Sync.ID else 0) | flags, data)
+            return Frame(rng.choice(self._known), data)
+        match rng.choice((0, 0, EXTENDED_FLAG, REMOTE_FLAG, ERROR_FLAG)):
+            case 0:
+                return Frame(rng.choice(self._any), data)
+            case flag if flag == EXTENDED_FLAG:
+                return Frame(rng.randrange(1 << 29) | flag, data)
+            case flag if flag == REMOTE_FLAG:
+                return Frame(rng.choice(self._any) | flag, b"")
+            case flag:
+                return Frame(rng.choice(self._any) | flag, data)
 
 
 class Flood(Fault):

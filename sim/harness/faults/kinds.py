@@ -51,7 +51,10 @@ KINDS: dict[str, Kind] = {
     "rtr": Kind(bus.on_flag(REMOTE_FLAG), PART),
     "extended_id": Kind(bus.on_flag(EXTENDED_FLAG), PART),
     "error_frames": Kind(bus.on_flag(ERROR_FLAG), PART),
-    "random_frames": Kind(bus.RandomFrames, {"frames": Parameter(100.0, 0.0, 10_000.0)}),
+    "random_frames": Kind(
+        bus.RandomFrames,
+        {"frames": Parameter(100.0, 0.0, 10_000.0), "as_fsw": Parameter(1.0, 0.0, 1.0)},
+    ),
     "flood": Kind(bus.Flood, {"frames": Parameter(500.0, 0.0, 10_000.0)}),
     "second_sender": Kind(bus.SecondSender, {"frames": Parameter(1.0, 0.0, 1000.0)}),
     "link_down": Kind(bus.LinkDown, in_plant=False),
