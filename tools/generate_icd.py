@@ -20,6 +20,7 @@ sys.path.insert(0, str(ROOT))
 from fsw.wire.frame import crc8  # noqa: E402
 from fsw.wire.messages import CoilFire, CoilRefusedReason, CoilStatus  # noqa: E402
 from hil_stub import bench, coil_driver, events, interlock, node, read_back  # noqa: E402
+from sim.harness.hil.conformance import CHECKS  # noqa: E402
 
 DBC = ROOT / "fsw" / "wire" / "torquer.dbc"
 TEMPLATE = ROOT / "tools" / "icd.md.in"
@@ -198,7 +199,16 @@ def skip_table() -> str:
     return status_table("", rows)
 
 
+def checks() -> str:
+    rows = [
+        (f"`{check.run.__name__}`", " ".join(check.run.__doc__.split()), "yes" if check.power else "no")
+        for check in CHECKS
+    ]
+    return table(("check", "demands", "drives coils"), rows)
+
+
 PIECES = {
+    "checks": checks,
     "frame": frame,
     "value": lambda name: str(VALUES[name]),
     "crc_example": crc_example,

@@ -298,5 +298,46 @@ def faults(
     return command.faults(rows, phases, seeds, as_json, out, workers, write_docs, slow)
 
 
+@main.command()
+@click.argument("scenario", default="microsat")
+@click.option("--bus", default="auto", show_default=True, help=BUSES)
+@click.option("--arm", is_flag=True, help="Let coils be driven; without it no request reaches the bus.")
+@click.option("--tick-hz", type=click.IntRange(1, 100), help="Ticks a second. Default: the scenario's.")
+@click.option(
+    "--conformance",
+    type=click.Choice(["coil", "magnetometer", "sun"]),
+    help="Check one board, alone on the bus, against docs/icd.md; its limits are SCENARIO's.",
+)
+@click.option(
+    "--deadman-s",
+    default=5.0,
+    show_default=True,
+    type=click.FloatRange(0.1, 3600.0),
+    help="The coil board's dead-man.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print JSON alone.")
+@SETTINGS
+@sentences
+def hil(
+    scenario: str,
+    bus: str,
+    arm: bool,
+    tick_hz: int | None,
+    conformance: str | None,
+    deadman_s: float,
+    as_json: bool,
+    settings: tuple[str, ...],
+) -> int:
+    """SCENARIO in real time: flight software against boards, each its own process or real hardware."""
+    from sim.harness.hil.conformance_command import conformance as conform
+    from sim.harness.scenario import load, parse_settings
+
+    rate = (f"time.tick_hz={tick_hz}",) if tick_hz is not None else ()
+    chosen = load(scenario, parse_settings((*settings, *rate)))
+    if conformance is not None:
+        return conform(chosen, conformance, bus, arm, deadman_s, as_json)
+    raise HarnessError("hil: name the board to check with --conformance")
+
+
 if __name__ == "__main__":
     main()

@@ -34,7 +34,7 @@ def copy(tmp_path):
     for name in ("tools/icd.md.in", "tools/generate_icd.py", "docs/icd.md"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         shutil.copy(ROOT / name, tmp_path / name)
-    for package in ("fsw", "hil_stub"):
+    for package in ("fsw", "hil_stub", "sim"):
         shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__"))
     return tmp_path
 

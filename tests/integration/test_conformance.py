@@ -1,0 +1,119 @@
+"""``torquer hil --conformance`` against boards that are processes of their own: on loop, over serial.
+
+They take their time, and wait for most of it: all of them run at once.
+"""
+
+import importlib.util
+import json
+import os
+import select
+import socket
+import subprocess
+import sys
+import threading
+from contextlib import contextmanager
+
+import pytest
+
+LIMITS = (
+    "--set",
+    "coils.pulse_s=0.5",
+    "--set",
+    "coils.backoff_s=1.5",
+    "--tick-hz",
+    "10",
+    "--deadman-s",
+    "0.5",
+)
+BOARD = ("coil", "--pulse-s", "0.5", "--backoff-s", "1.5", "--tick-hz", "10", "--deadman-s", "0.5")
+SHORT = (*BOARD, "--backoff-s", "1.2")
+
+
+def start(*words):
+    command = [sys.executable, "-m", *words]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def loop():
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        return f"loop:{free.getsockname()[1]}"
+
+
+@contextmanager
+def cable():
+    """Two serial adapters on one CAN cable: what one is told to send, the other tells its host."""
+    ends = [os.openpty() for _ in range(2)]
+    masters = [master for master, _ in ends]
+    running = True
+
+    def carry():
+        torn = {master: b"" for master in masters}
+        while running:
+            for master in select.select(masters, (), (), 0.1)[0]:
+                *lines, torn[master] = (torn[master] + os.read(master, 4096)).split(b"\r")
+                frames = b"".join(line + b"\r" for line in lines if line[:1] in (b"t", b"T", b"r", b"R"))
+                os.write(masters[1 - masters.index(master)], frames)
+
+    carrier = threading.Thread(target=carry)
+    carrier.start()
+    try:
+        yield tuple(f"slcan:{os.ttyname(slave)}" for _, slave in ends)
+    finally:
+        running = False
+        carrier.join()
+        for descriptor in (descriptor for pair in ends for descriptor in pair):
+            os.close(descriptor)
+
+
+def conformance(bus, *options):
+    return start("sim.harness.cli", "hil", "--conformance", "coil", "--bus", bus, *LIMITS, *options)
+
+
+@pytest.fixture(scope="module")
+def ended():
+    """Exit code, output and errors of each suite, by name."""
+    serial = importlib.util.find_spec("serial") is not None
+    boards, suites = [], {}
+    with cable() as (bench_port, board_port):
+        ways = {"loop": (bus := loop(), bus, BOARD, ("--arm", "--json"))}
+        ways["short"] = (bus := loop(), bus, SHORT, ())
+        if serial:
+            ways["slcan"] = (bench_port, board_port, BOARD, ("--arm", "--json"))
+        try:
+            for name, (bench_bus, board_bus, board, options) in ways.items():
+                boards.append(start("hil_stub", *board, "--bus", board_bus))
+                assert boards[-1].stderr.readline().startswith("on ")
+                suites[name] = conformance(bench_bus, *options)
+            suites["nobody"] = conformance(loop())
+            shown = {
+                name: (*suite.communicate(timeout=120), suite.returncode) for name, suite in suites.items()
+            }
+        finally:
+            for process in (*boards, *suites.values()):
+                process.kill()
+                process.communicate()
+    return shown
+
+
+@pytest.mark.parametrize("way", ["loop", "slcan"])
+def test_the_stub_conforms(ended, way):
+    if way not in ended:
+        pytest.skip("pyserial, which serial adapters need, is not installed")
+    output, errors, code = ended[way]
+    assert errors == ""
+    shown = json.loads(output)
+    assert {check["name"]: check["failure"] for check in shown["checks"] if check["failure"]} == {}
+    assert code == 0
+    assert all(check["ran"] for check in shown["checks"])
+
+
+def test_without_arm_what_needs_power_is_not_run_and_a_short_lockout_is_found_all_the_same(ended):
+    output, errors, code = ended["short"]
+    assert (errors, code) == ("", 1)
+    assert "FAILED  boot " in output
+    assert "5 not run: they drive coils and need --arm" in output
+
+
+def test_nobody_there_is_one_sentence(ended):
+    _, errors, code = ended["nobody"]
+    assert (errors, code) == ("torquer: no COIL board answers on this bus\n", 2)

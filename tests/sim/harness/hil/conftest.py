@@ -1,0 +1,50 @@
+"""A board on a simulated bench: the same conversation as over a bus, in simulated time."""
+
+from collections import deque
+
+import pytest
+
+from hil_stub.bench import Bench
+from sim.harness.hil.session import KINDS, Session
+
+
+class SimulatedBus:
+    """A bus with one board; waiting makes time pass, and nothing else does."""
+
+    name = "simulated"
+
+    def __init__(self, bench):
+        self.bench = bench
+        self.now_s = 1000.0
+        self.queue = deque(bench.switch_on(now_ms=self.now_ms))
+
+    @property
+    def now_ms(self):
+        return round(1000.0 * self.now_s)
+
+    def send(self, frames):
+        for frame in frames:
+            self.queue.extend(self.bench.receive(frame, self.now_ms))
+
+    def receive(self, timeout_s):
+        if self.queue:
+            return self.queue.popleft()
+        self.now_s += timeout_s
+        self.bench.watch(self.now_ms)
+        return None
+
+    def close(self):
+        pass
+
+
+@pytest.fixture
+def session_with():
+    """Makes a session with a board (made anew at each restart) in simulated time."""
+
+    def make(
+        make_board, tick_hz=1, kind="coil", deadman_ms=5000, has_clock=True, bench=Bench, bus=SimulatedBus
+    ):
+        link = bus(bench(make_board, deadman_ms, has_clock))
+        return Session(link, KINDS[kind], tick_hz, clock=lambda: link.now_s)
+
+    return make
