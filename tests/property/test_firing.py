@@ -13,7 +13,7 @@ DEMANDS = st.tuples(st.tuples(*[st.floats(-50.0, 50.0)] * 3), st.tuples(*[st.flo
 
 @settings(max_examples=60)
 @given(
-    tick_hz=st.sampled_from(RATES),
+    tick_hz=st.one_of(st.sampled_from(RATES), st.integers(1, 128)),
     shared=st.booleans(),
     timing_ms=st.sampled_from(TIMINGS_MS),
     first_tick=st.integers(0, 1000),

@@ -16,6 +16,7 @@ from fsw.wire.messages import CoilRefusedReason as Reason
 from fsw.wire.messages import Mode
 
 RATES = (1, 2, 3, 7, 10, 50)
+MOST_HZ = 64
 TIMINGS_MS = ((3000, 100_000), (3000, 10_000), (2900, 7301), (2000, 4000))
 """Pulse and back-off: as flown; and short ones, that are not whole ticks at every rate."""
 
@@ -40,7 +41,7 @@ def machine(bench_with, only):
         """Random demands, fates of messages, missed ticks and restarts of either side."""
 
         @initialize(
-            tick_hz=st.sampled_from(RATES),
+            tick_hz=st.one_of(st.sampled_from(RATES), st.integers(1, MOST_HZ)),
             shared=st.booleans(),
             timing_ms=st.sampled_from(TIMINGS_MS),
             first_tick=st.integers(0, 1000),
@@ -51,6 +52,7 @@ def machine(bench_with, only):
         def teardown(self):
             if hasattr(self, "bench"):
                 SEEN["pulses"] += len(self.bench.judge.starts)
+                SEEN[f"{self.bench.limits.tick_hz} Hz"] += 1
                 SEEN.update(self.bench.refused)
 
         @rule(ticks=ticks_with_fates)
@@ -134,4 +136,5 @@ def test_whatever_happens_the_limits_hold_and_what_is_demanded_on_and_on_is_fire
     assert all(SEEN[reason] for reason in needed), f"the interlock was needed: {SEEN}"
     assert all(SEEN[f"restart of {who} in a pulse"] for who in ("flight", "board", "both")), SEEN
     assert SEEN["persisted"] > 30, SEEN
+    assert sum(name.endswith(" Hz") for name in SEEN if isinstance(name, str)) > 20, f"rates: {SEEN}"
     assert SEEN["old requests that answer the tick"] > 10, SEEN

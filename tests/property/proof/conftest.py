@@ -16,6 +16,7 @@ from collections import Counter, deque
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cache, lru_cache
+from itertools import product
 from math import inf
 from types import ModuleType
 from typing import NamedTuple
@@ -26,7 +27,7 @@ from fsw.core import actuation, pulses
 from fsw.core.laws.interface import Demand
 from fsw.core.readings import NOTHING
 from fsw.core.vector import ZERO
-from fsw.wire.messages import CoilFire, CoilStatus
+from fsw.wire.messages import CoilBoot, CoilFire, CoilStatus
 from hil_stub import interlock
 
 EPOCH = 768
@@ -44,6 +45,9 @@ DEMANDS = {
 """Impulse owed and field, body axes: one pulse of that coil pays all of it, and no other coil helps."""
 
 
+Heard = tuple[CoilStatus | None, CoilBoot | None]
+
+
 class Setup(NamedTuple):
     """What is proven: for which limits, by whose rules, and what may go wrong."""
 
@@ -53,6 +57,7 @@ class Setup(NamedTuple):
     scheduler: ModuleType = actuation
     rules: ModuleType = interlock
     faults: bool = True
+    board_restarts: bool = True
     restart_in_pulse: bool = True
 
 
@@ -91,12 +96,16 @@ class Judge(NamedTuple):
 
 
 class World(NamedTuple):
-    """A state of everything, the present tick being zero; ``phase`` is the tick modulo three."""
+    """A state of everything, the present tick being zero; ``phase`` is the tick modulo three.
+
+    ``new``: the board has restarted and not said so yet.
+    """
 
     own: Own
     board: interlock.Interlock
     judge: Judge
     phase: int
+    new: bool = False
 
 
 class Step(NamedTuple):
@@ -167,7 +176,7 @@ class Search:
 
     def run(self) -> Proof:
         """Everything that can be reached from boot; AssertionError at the first world that breaks a limit."""
-        first = World(self._boot(0), self.setup.rules.boot(self.limits), Judge(), 0)
+        first = World(self._boot(0), self.setup.rules.boot(self.limits), Judge(), 0, new=True)
         seen = {first}
         queue = deque(seen)
         while queue:
@@ -181,16 +190,17 @@ class Search:
 
     def _reached_from(self, world: World) -> Iterator[World]:
         """Restarts, the dead-man, which take no time, and a tick with every demand and fate of messages."""
-        own, board, judge, phase = world
+        own, board, judge, phase, new = world
         faults, proof = self.setup.faults, self.proof
+        if self.setup.board_restarts:
+            yield world._replace(board=self.setup.rules.boot(self.limits), new=True)
         if faults:
-            yield world._replace(board=self.setup.rules.boot(self.limits))
             yield world._replace(board=self.setup.rules.silence(board, self.limits))
             if self.setup.restart_in_pulse or judge.on is None:
                 proof.restarts_in_pulse += judge.on is not None
                 yield world._replace(own=self._boot(phase))
-        for status in self.words(board, phase):
-            for (then, request), demands in self.decide(own, phase, status):
+        for status, boot in self.words(board, phase, new):
+            for (then, request), demands in self.decide(own, phase, status, boot):
                 fired, asked = None, board
                 if request is not None:
                     asked, reason = self.ask(board, request, phase)
@@ -204,7 +214,7 @@ class Search:
                         yield self._next(world, then, self.ask(asked, request, phase)[0])
                 after = self._next(world, then, asked)
                 yield after
-                if status is not None:
+                if status is not None and (boot is not None) == new:
                     proof.clean.update({(world, demand): Step(fired, after) for demand in demands})
 
     def _next(self, world: World, own: Own, board: interlock.Interlock) -> World:
@@ -215,19 +225,22 @@ class Search:
         act, tick = self.setup.scheduler, EPOCH + phase
         return relative(act.pulses.boot(tick, self.config), act.CoilView(), tick)
 
-    def _words(self, board: interlock.Interlock, phase: int) -> list[CoilStatus | None]:
-        """What the scheduler may hear in this tick; None where the status is lost."""
+    def _words(self, board: interlock.Interlock, phase: int, new: bool) -> list[Heard]:
+        """What the scheduler may hear in this tick; None where it is lost."""
         coil = board.coil if board.level else phase
         remaining_ms = self.limits.milliseconds(board.remaining)
         lockout_ms = self.limits.milliseconds(board.lockout[coil], 10)
         said = CoilStatus(board.level, coil, remaining_ms, 0, lockout_ms, board.seq or 0)
-        return [said, None] if self.setup.faults else [said]
+        boot = CoilBoot(0, 1, 0) if new else None
+        if not self.setup.faults:
+            return [(said, boot)]
+        return list(product((said, None), (boot, None) if new else (None,)))
 
-    def _decide(self, own: Own, phase: int, status: CoilStatus | None) -> list[tuple]:
+    def _decide(self, own: Own, phase: int, status: CoilStatus | None, boot: CoilBoot | None) -> list[tuple]:
         """Each outcome, the scheduler afterwards and what it asks, with the demands that lead to it."""
         act, tick = self.setup.scheduler, EPOCH + phase
         timers = pulses.PulseState(tuple(tick + left for left in own.ready), tick + own.busy, ZERO)
-        readings = NOTHING._replace(coil=status)
+        readings = NOTHING._replace(coil=status, coil_boot=boot)
         view = act.hear(act.CoilView(lockout_ms=own.word), readings, tick, self.coils)
         outcomes: dict[tuple[Own, CoilFire | None], list[int | None]] = {}
         for demand, (owed, b_body_t) in DEMANDS.items():

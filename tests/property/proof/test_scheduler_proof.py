@@ -82,6 +82,11 @@ def both_together(setup, *bugs):
 
 
 def without_faults(setup, *bugs):
+    return setup._replace(scheduler=scheduler(*bugs), faults=False, board_restarts=False)
+
+
+def with_restarts_of_the_board(setup, *bugs):
+    """It restarts at any time, and all that it says is heard."""
     return setup._replace(scheduler=scheduler(*bugs), faults=False)
 
 
@@ -157,6 +162,23 @@ def test_without_faults_nothing_is_refused_the_clocks_agree_and_every_coil_fires
     limits = small[shared]._replace(pulse_ticks=pulse_ticks, backoff_ticks=backoff_ticks)
     setup = without_faults(limits)
     demand_exactness(setup, search(setup))
+
+
+@pytest.mark.parametrize("shared", BOTH, ids=["shared", "per coil"])
+def test_a_board_that_restarts_and_is_heard_refuses_nothing_and_fires_again(search, small, shared):
+    """Within a back-off after it, and at most two ticks until it tells of the coil."""
+    setup = with_restarts_of_the_board(small[shared])
+    proof = search(setup)
+    assert not proof.refused
+    assert len({world.board.lockout for world in proof.worlds if world.new}) == 1, "locked out in full"
+    longest = setup.pulse_ticks + setup.backoff_ticks + 1
+    assert all(proof.wait(coil) <= longest for coil in range(3))
+
+
+@pytest.mark.parametrize("shared", BOTH, ids=["shared", "per coil"])
+def test_a_scheduler_that_does_not_hear_of_the_restart_is_refused(search, small, shared):
+    setup = with_restarts_of_the_board(small[shared], ("if readings.coil_boot is None else UNHEARD", ""))
+    assert search(setup).refused
 
 
 AGAIN, FIRST = "again = end + config.backoff_ticks", "first = tick + config.backoff_ticks"
