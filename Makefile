@@ -3,6 +3,7 @@
 # make lint   style, types, layers, generated code and pages
 # make validate   every claim and reference figure anew, into docs/validation.md: minutes to half an hour
 # make replay-elsewhere   does a log of 20 orbits replay with other processor features, into docs/replay.md
+# make faults     every fault in ten phases and with five seeds, into docs/faults.md: up to an hour
 # make golden     record the golden logs anew: after a change that means to alter what fsw answers
 # make test-vcan   the tests on a CAN interface, in a user-mode Linux guest where this kernel has no vcan
 # make fuzz         a million random frames into codec, boards and flight loop: some minutes
@@ -16,7 +17,7 @@ bin := .venv/bin
 installed := .venv/.installed
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv sil test lint test-vcan golden validate fuzz differential replay-elsewhere
+.PHONY: help venv sil test lint test-vcan golden validate fuzz differential replay-elsewhere faults
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -62,3 +63,6 @@ differential: venv
 
 replay-elsewhere: venv
 	$(bin)/python tools/replay_elsewhere.py $(foreach other,$(PYTHONS),--python $(other))
+
+faults: venv
+	$(bin)/torquer faults --phases 10 --seeds 5 --write-docs

@@ -16,6 +16,7 @@ from sim.harness.scenario import Scenario, orbit_period_s
 
 GOOD_DEG = 2.0
 GOOD_FOR_S = 600.0
+FAR_DEG, LAST_S = 10.0, 300.0
 MOST_FRAMES = 64
 """In one answer; a step says a dozen things at most."""
 
@@ -162,6 +163,16 @@ def blamed_rightly(row: Row, record: Record, bounds: Bounds) -> tuple[bool | Non
     return True, f"named after {(right[0] - onset) / record.tick_hz:.0f} s"
 
 
+def bounded(row: Row, record: Record, bounds: Bounds) -> tuple[bool | None, str]:
+    """At the end what fsw calls valid is not far off, though the sensor is still faulty."""
+    last = record.error_deg[-round(LAST_S * record.tick_hz) :]
+    worst_deg = max((error for error in last if error is not None), default=0.0)
+    if worst_deg <= FAR_DEG:
+        return True, ""
+    said = f"an estimate called valid is {worst_deg:.0f} deg off"
+    return (False if can_name(row.unit) else None), said
+
+
 def silence_named(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
     """The monitor of the board that is silent trips, and no other."""
     onset = record.onset or 0
@@ -192,6 +203,7 @@ CHECKS: dict[str, Check] = {
     "dropped": dropped,
     "recovers": recovers,
     "quiet": quiet,
+    "bounded": bounded,
     "silence named": silence_named,
     "named": blamed_rightly,
     "stuck": stuck,

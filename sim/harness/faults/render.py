@@ -24,6 +24,24 @@ the unit. Figures are the worst over all cases.
 """
 
 
+_KINDS_HEAD = """## Faults in a scenario
+
+A scenario schedules faults of its own; without `lasts_s` one stays. The log holds what was on the bus of the
+flight software, so that such a run replays to the last bit. `torquer check` judges what stands in the log: a
+COIL_STATUS that was corrupted on its way is a violation there. Frames of a stranger that bear identifiers of
+the flight software (`second_sender`, `random_frames` with `as_fsw = 1`) cannot be told from its answers in a
+log: such a run does not replay.
+
+    [[fault]]
+    kind = "mag_bias"
+    at_s = 600.0
+    lasts_s = 300.0
+    parameters = {axis = 1, nt = 10000}
+
+| kind | parameters: default (range) | in a scenario |
+|---|---|---|"""
+
+
 def tally(results: Sequence[RowResult]) -> str:
     """How many rows and cases there were, and how many failed."""
     cases = [case for result in results for case in result.cases]
@@ -143,7 +161,16 @@ def markdown(results: Sequence[RowResult], phases: int, seeds: int) -> str:
             )
             lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
         lines.append("")
-    return "\n".join(lines)
+    return "\n".join([*lines, _KINDS_HEAD, *map(_kind_row, KINDS), ""])
+
+
+def _kind_row(name: str) -> str:
+    kind = KINDS[name]
+    parameters = ", ".join(
+        f"{parameter} = {default:g} ({low:g} to {high:g})"
+        for parameter, (default, low, high) in kind.parameters.items()
+    )
+    return f"| `{name}` | {parameters} | {'yes' if kind.in_plant else 'no'} |"
 
 
 def injected(row: Row) -> str:

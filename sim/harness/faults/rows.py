@@ -20,9 +20,18 @@ PROCESS = "fsw killed, stopped, restarted at every phase of a pulse; reboot stor
 BOARD = "board killed and restarted; both reset"
 CLOCK = "clock jumps, tick going backwards, SYNC lost or repeated"
 SENSOR = "a sensor: NaN and infinity, saturation, frozen, bias, scale, swapped axis, wrong sign"
-LIGHT = "eclipse; Sun sensor blinded by albedo or without Sun"
+LIGHT = "eclipse; Sun parallel to the field; Sun sensor blinded by albedo or without Sun"
 COIL = "coil open, reversed, weak, stuck on"
 UPSET = "bit flip in any double of the flight state"
+
+NOON_ORBIT = (
+    "orbit.altitude_km=800.0",
+    "orbit.inclination_deg=98.7",
+    "orbit.raan_deg=6.0",
+    "orbit.u0_deg=20.0",
+    'time.epoch_utc="2015-03-27T02:46:57Z"',
+)
+"""An orbit over noon: from 200 to 430 s after its start the Sun is within 20 deg of the field's direction."""
 
 
 def _field(name: str, kind: str, **parameters: float) -> tuple[Row, Row]:
@@ -37,7 +46,17 @@ def _sun(name: str, kind: str, **parameters: float) -> tuple[Row, Row]:
 def _sensor(unit: str, name: str, kind: str, parameters: dict[str, float]) -> tuple[Row, Row]:
     return (
         Row(f"{name}-passing", SENSOR, kind, parameters, 300.0, When.SUNLIT, ("goes on", "recovers")),
-        Row(name, SENSOR, kind, parameters, inf, When.SUNLIT, ("goes on", "named"), unit, watch_s=900.0),
+        Row(
+            name,
+            SENSOR,
+            kind,
+            parameters,
+            inf,
+            When.SUNLIT,
+            ("goes on", "bounded", "named"),
+            unit,
+            watch_s=900.0,
+        ),
     )
 
 
@@ -160,6 +179,16 @@ ROWS: tuple[Row, ...] = (
     *_sun("sun-swapped", "sun_swapped"),
     *_sun("sun-sign", "sun_scale", axis=0.0, scale=-1.0),
     Row("eclipse", LIGHT, "none", {}, 1.0, When.ECLIPSE, ("goes on", "quiet", "recovers"), watch_s=2400.0),
+    Row(
+        "sun-parallel",
+        LIGHT,
+        "killed",
+        {},
+        1.0,
+        When.SUNLIT,
+        ("boots locked", "recovers"),
+        settings=NOON_ORBIT,
+    ),
     Row("sun-unseen", LIGHT, "sun_unseen", {}, 1200.0, When.SUNLIT, ("goes on", "quiet", "recovers")),
     Row("albedo", LIGHT, "albedo", {"part": 0.4}, 600.0, When.SUNLIT, ("goes on", "recovers")),
     Row("albedo-eclipse", LIGHT, "albedo", {"part": 0.4}, 600.0, When.ECLIPSE, ("goes on", "recovers")),
