@@ -16,6 +16,7 @@ from fsw.core.laws.interface import MAX_SPIN_RADPS
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit import element_orbit
 from fsw.core.readings import Readings, Telecommand
+from fsw.core.sensor_health import SensorHealth
 from fsw.core.state import FlightState
 from fsw.wire.messages import (
     Element,
@@ -98,7 +99,8 @@ def _mode(state: FlightState, message: TcMode, situation: Situation) -> Outcome:
 
 
 def _clear(state: FlightState, message: TcClear, situation: Situation) -> Outcome:
-    return state._replace(modes=replace(state.modes, trips=0))
+    """Trips are forgotten, and every sensor is believed again."""
+    return state._replace(modes=replace(state.modes, trips=0), sensors=SensorHealth())
 
 
 def _law(state: FlightState, message: TcLaw, situation: Situation) -> Outcome:

@@ -8,6 +8,7 @@ from fsw.core.estimator import EstimatorConfig
 from fsw.core.laws.interface import ControlConfig
 from fsw.core.modes import ModeConfig
 from fsw.core.rates import RateTable
+from fsw.core.sensor_health import SensorHealthConfig
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,6 +20,7 @@ class FlightConfig:
     table_crc: int
     ephemeris: EphemerisModel
     estimator: EstimatorConfig
+    sensors: SensorHealthConfig
     control: ControlConfig
     coils: CoilConfig
     modes: ModeConfig

@@ -89,7 +89,7 @@ def estimate(
     blanked = field is None and readings.field is not None
     current = _carried(state.estimate, reference, m_body_am2, elapsed_ticks, config)
     if current is None:
-        state = state if state.estimate is None else _restart(state)
+        state = state if state.estimate is None else restart(state)
         started = _start(field, sun, reference, config)
         return replace(state, estimate=started), Used(started is not None, started is not None, blanked)
 
@@ -100,7 +100,7 @@ def estimate(
         in_a_row = 0
     moved = EstimatorState(current, in_a_row, state.rejected_total + rejected, state.restarts)
     used = Used(took_field, took_sun, blanked)
-    return (_restart(moved) if in_a_row >= config.restart_after_rejections else moved), used
+    return (restart(moved) if in_a_row >= config.restart_after_rejections else moved), used
 
 
 def _updated(
@@ -173,5 +173,6 @@ def _start(
     return mekf.start(triad(sun, field, s, b), ZERO, config.mekf)
 
 
-def _restart(state: EstimatorState) -> EstimatorState:
+def restart(state: EstimatorState) -> EstimatorState:
+    """Without an estimate: the next pair of good samples starts the filter anew."""
     return EstimatorState(None, 0, state.rejected_total, state.restarts + 1)

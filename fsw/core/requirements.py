@@ -8,6 +8,7 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from fsw.core.monitors import RATE_LIMIT_RADPS, UNIT_TOLERANCE, Monitor
+from fsw.core.sensor_health import AGAINST_ESTIMATE, SensorFault
 from fsw.core.telemetry import Event
 
 
@@ -23,6 +24,10 @@ class Requirement(NamedTuple):
 
 def _trip(number: int, watch: Monitor, text: str, limit: str) -> Requirement:
     return Requirement(f"REQ-TRIP-{number:02}", text, limit, watch, Event.MONITOR_TRIPPED)
+
+
+def _sensor(number: int, watch: SensorFault, text: str, limit: str) -> Requirement:
+    return Requirement(f"REQ-SENSOR-{number:02}", text, limit, watch, Event.SENSOR_ISOLATED)
 
 
 REQUIREMENTS: tuple[Requirement, ...] = (
@@ -54,6 +59,54 @@ REQUIREMENTS: tuple[Requirement, ...] = (
         "coil and level of the own request, for the time of a pulse",
     ),
     _trip(8, Monitor.ORBIT_KNOWN, "The orbit has a position at this tick.", "the ephemeris has one"),
+    _sensor(
+        1,
+        SensorFault.SATURATED,
+        "A magnetometer that calls its samples not valid while no coil drives is named and left out.",
+        "`fdir.name_s`",
+    ),
+    _sensor(
+        2,
+        SensorFault.STRENGTH,
+        "A field of the wrong strength or a Sun vector of the wrong length is named and left out.",
+        "`fdir.max_field_error_nt`, `fdir.max_sun_norm_error` for `fdir.name_s`",
+    ),
+    _sensor(
+        3,
+        SensorFault.FROZEN,
+        "A sensor whose sample stands still while the other's moves, or sees nothing, is named and left out.",
+        "`fdir.frozen_s`",
+    ),
+    _sensor(
+        4,
+        SensorFault.REFUSED,
+        "A sensor that the filter refuses while it takes the other, or that is alone, is named and left out.",
+        "`estimator.gate_nis` for `fdir.name_s` where the angle of field and Sun is not the modelled one, by "
+        "more than `fdir.max_angle_error_deg`, else for 1.5 times as long",
+    ),
+    _sensor(5, SensorFault.SILENT, "A sensor without acceptable samples is named.", "`modes.stale_after_s`"),
+    Requirement(
+        "REQ-SENSOR-06",
+        "A sensor that is left out is believed again once it is consistent with the estimate, or for longer "
+        "with the other sensor, whereupon the filter begins anew.",
+        f"`fdir.readmit_s`; against the estimate {AGAINST_ESTIMATE} times as long",
+        None,
+        Event.SENSOR_READMITTED,
+    ),
+    Requirement(
+        "REQ-SENSOR-07",
+        "Without an estimate, sensors that contradict each other do not start the filter, and this is said.",
+        "`fdir.max_angle_error_deg` for `fdir.name_s`",
+        None,
+        Event.SENSORS_DISAGREE,
+    ),
+    Requirement(
+        "REQ-SENSOR-08",
+        "Noise, eclipse, a driven coil, field and Sun nearly parallel, or a tumble name no sensor.",
+        "0.001 false alarms an hour",
+        None,
+        Event.SENSOR_ISOLATED,
+    ),
 )
 
 
@@ -74,7 +127,8 @@ _HEAD = """# Requirements on fault detection
 
 Written from `fsw/core/requirements.py` by `python tools/write_requirements.py`; a test fails when it is stale
 or when no test cites one of its requirements. The number after what watches is the one that the event's
-argument names. A violated `REQ-TRIP` requirement leads to SAFE in the same tick.
+argument names. A violated `REQ-TRIP` requirement leads to SAFE in the same tick. A sensor is named as 100
+times its number (1: magnetometer, 2: Sun sensor) and the number of the fault.
 
 | id | requirement | limit | watched by | event |
 |---|---|---|---|---|"""

@@ -14,6 +14,7 @@ from fsw.core.laws.table import LAWS
 from fsw.core.modes import ModeState
 from fsw.core.pulses import PulseState
 from fsw.core.readings import GateState
+from fsw.core.sensor_health import SensorHealth
 from fsw.wire.frame import Frame
 
 
@@ -44,6 +45,7 @@ class FlightState(NamedTuple):
     upload: Upload
     ephemeris: EphemerisWindow | None
     estimator: EstimatorState
+    sensors: SensorHealth
     attitude: Attitude
     modes: ModeState
     sample: FieldSample
@@ -57,6 +59,7 @@ class FlightState(NamedTuple):
 def checksum(state: FlightState) -> int:
     """CRC-32 over every number of the state, little-endian: integers as 64 bit, floats as doubles."""
     gate, modes, coil, pulses, attitude = state.gate, state.modes, state.coil, state.pulses, state.attitude
+    field_watch, sun_watch, *apart = state.sensors
     integers = (
         state.tick,
         state.field_tick,
@@ -74,6 +77,9 @@ def checksum(state: FlightState) -> int:
         state.estimator.rejected_in_a_row,
         state.estimator.rejected_total,
         state.estimator.restarts,
+        *field_watch[:-1],
+        *sun_watch[:-1],
+        *apart,
         attitude.valid,
         modes.mode,
         modes.since_tick,
@@ -98,6 +104,8 @@ def checksum(state: FlightState) -> int:
         *attitude.omega_body_orbit_radps,
         attitude.sigma3_attitude_rad,
         attitude.sigma3_rate_radps,
+        *field_watch.sample,
+        *sun_watch.sample,
         *state.sample.b_body_t,
         *pulses.owed_impulse_body_nms,
         *pulses.held_am2,
@@ -132,6 +140,7 @@ def initial_state(pulses: PulseState, setpoint: Setpoint, sent: tuple[int, ...])
         upload=Upload(),
         ephemeris=None,
         estimator=EstimatorState(),
+        sensors=SensorHealth(),
         attitude=UNKNOWN,
         modes=ModeState(),
         sample=FieldSample(),

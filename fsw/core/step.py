@@ -1,6 +1,6 @@
 """The flight loop as one pure function: gate, estimate, supervise, obey, control, schedule, report."""
 
-from fsw.core import control, pulses, telemetry
+from fsw.core import control, pulses, sensor_health, telemetry
 from fsw.core.actuation import actuate, hear
 from fsw.core.attitude import UNKNOWN
 from fsw.core.commands import command
@@ -12,6 +12,7 @@ from fsw.core.estimator import (
     attitude,
     estimate,
     perfect_attitude,
+    restart,
     usable_field,
     usable_sun,
 )
@@ -44,7 +45,7 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     before, tick = state, inbox.tick
     model = fly_orbit(config.ephemeris, state.orbit)
     state, readings = _gate(state, inbox, model, config)
-    state, reference, used = _estimate(state, readings, tick - before.tick, config)
+    state, readings, reference, used = _estimate(state, readings, tick - before.tick, config)
     verdict = supervise(state, state.attitude, tick, config)
     state, acks = command(state._replace(modes=verdict.modes), readings, verdict.violated is not None, config)
     seen = _look(state, readings, reference, model)
@@ -86,21 +87,34 @@ def _gate(
 
 def _estimate(
     state: FlightState, readings: Readings, elapsed_ticks: int, config: FlightConfig
-) -> tuple[FlightState, Reference | None, Used]:
+) -> tuple[FlightState, Readings, Reference | None, Used]:
+    """The estimate of this tick, the readings that may be trusted, what was expected and what was taken."""
     if state.ephemeris is None:
-        return state._replace(attitude=UNKNOWN), None, NONE_USED
+        return state._replace(attitude=UNKNOWN), readings, None, NONE_USED
     reference = reference_at(state.ephemeris, state.tick, config.ephemeris)
     if config.estimator.perfect:
-        return (
-            state._replace(attitude=perfect_attitude(readings, state.attitude)),
-            reference,
-            NONE_USED,
-        )
+        known = perfect_attitude(readings, state.attitude)
+        return state._replace(attitude=known), readings, reference, NONE_USED
+    trusted = sensor_health.trusted(readings, state.sensors)
     estimator, used = estimate(
-        state.estimator, readings, reference, state.coil.driven_am2, elapsed_ticks, config.estimator
+        state.estimator, trusted, reference, state.coil.driven_am2, elapsed_ticks, config.estimator
     )
     seen = attitude(estimator, reference, config.estimator)
-    return state._replace(estimator=estimator, attitude=seen), reference, used
+    sensors = sensor_health.judge(
+        state.sensors,
+        readings,
+        usable_field(readings),
+        usable_sun(readings),
+        reference,
+        used,
+        estimator.estimate,
+        seen.sigma3_attitude_rad,
+        config.sensors,
+    )
+    if sensors.doubted:
+        estimator, seen = restart(estimator), UNKNOWN
+    state = state._replace(estimator=estimator, sensors=sensors, attitude=seen)
+    return state, trusted, reference, used
 
 
 def _look(state: FlightState, readings: Readings, reference: Reference | None, model: EphemerisModel) -> Seen:

@@ -8,6 +8,7 @@ from fsw.core.estimator import Used
 from fsw.core.modes import ModeState
 from fsw.core.monitors import Monitor
 from fsw.core.readings import Readings
+from fsw.core.sensor_health import Sensor
 from fsw.core.state import FlightState
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
@@ -48,6 +49,9 @@ class Event(IntEnum):
     MONITOR_TRIPPED = 4  # number of the monitor
     REQUEST_REFUSED = 5  # reason
     TIME_MISMATCH = 6  # SYNC's time less the expected, s
+    SENSOR_ISOLATED = 7  # 100 times the number of the sensor, and of its fault
+    SENSOR_READMITTED = 8  # as when it was isolated
+    SENSORS_DISAGREE = 9  # 0: there is no estimate to tell by which of them is wrong
 
 
 SEVERITY: dict[Event, Severity] = {
@@ -57,6 +61,9 @@ SEVERITY: dict[Event, Severity] = {
     Event.MONITOR_TRIPPED: Severity.ERROR,
     Event.REQUEST_REFUSED: Severity.WARNING,
     Event.TIME_MISMATCH: Severity.WARNING,
+    Event.SENSOR_ISOLATED: Severity.ERROR,
+    Event.SENSOR_READMITTED: Severity.INFO,
+    Event.SENSORS_DISAGREE: Severity.WARNING,
 }
 
 
@@ -113,11 +120,24 @@ def happenings(
         found.append(Happening(Event.FILTER_RESTARTED, after.estimator.restarts))
     if before.estimator.estimate is None and after.estimator.estimate is not None:
         found.append(Happening(Event.FILTER_STARTED, after.estimator.restarts))
+    if after.sensors.field.fault != before.sensors.field.fault:
+        found += _sensor(Sensor.MAGNETOMETER, before.sensors.field.fault, after.sensors.field.fault)
+    if after.sensors.sun.fault != before.sensors.sun.fault:
+        found += _sensor(Sensor.SUN_SENSOR, before.sensors.sun.fault, after.sensors.sun.fault)
+    if after.sensors.contradictory and not before.sensors.contradictory:
+        found.append(Happening(Event.SENSORS_DISAGREE, 0))
     if readings.refused is not None:
         found.append(Happening(Event.REQUEST_REFUSED, readings.refused.reason))
     if after.time_error_s != before.time_error_s:
         found.append(Happening(Event.TIME_MISMATCH, after.time_error_s))
     return found
+
+
+def _sensor(sensor: Sensor, before: int, after: int) -> list[Happening]:
+    """A sensor whose fault has changed."""
+    if after:
+        return [Happening(Event.SENSOR_ISOLATED, 100 * sensor + after)]
+    return [Happening(Event.SENSOR_READMITTED, 100 * sensor + before)]
 
 
 def event_message(happening: Happening, tick: int) -> CountedMessage:

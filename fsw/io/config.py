@@ -1,6 +1,6 @@
 """From a checked onboard table to the config the core uses: units of people to SI, seconds to ticks."""
 
-from math import ceil, cos, radians
+from math import ceil, cos, radians, sqrt
 
 from fsw.core.actuation import CoilConfig
 from fsw.core.config import FlightConfig
@@ -15,6 +15,7 @@ from fsw.core.modes import TABLE, ModeConfig
 from fsw.core.orbit import Orbit, circular_orbit, sgp4_orbit
 from fsw.core.pulses import PulseConfig, pulse_timing
 from fsw.core.rates import RateGroup, RateTable
+from fsw.core.sensor_health import FULL, SensorHealthConfig
 from fsw.core.vector import inverse, product
 from fsw.io.schedules import schedules
 from fsw.io.schema import TableError
@@ -51,6 +52,7 @@ def flight_config(table: FlightTable) -> FlightConfig:
                 table.telemetry.ephemeris_s,
             ),
             estimator=_estimator(table),
+            sensors=_sensors(table),
             control=_control(table, orbit),
             coils=CoilConfig(_pulses(table), _dipoles(table)),
             modes=_modes(table.modes, tick_hz),
@@ -130,6 +132,22 @@ def _estimator(table: FlightTable) -> EstimatorConfig:
         min_separation_rad=radians(tuning.min_separation_deg),
         restart_after_rejections=tuning.restart_after_rejections,
         valid_sigma_rad=radians(tuning.valid_sigma_deg),
+    )
+
+
+def _sensors(table: FlightTable) -> SensorHealthConfig:
+    fdir, tick_hz, tuning = table.fdir, table.time.tick_hz, table.estimator
+    sigmas = sqrt(tuning.gate_nis)
+    return SensorHealthConfig(
+        max_field_error_t=fdir.max_field_error_nt * NT,
+        max_norm_error=fdir.max_sun_norm_error,
+        max_angle_error_rad=radians(fdir.max_angle_error_deg),
+        field_noise_t=sigmas * tuning.magnetometer_sigma_nt * NT,
+        sun_noise_rad=sigmas * radians(tuning.sun_sigma_deg),
+        frozen_ticks=max(1, _ticks(fdir.frozen_s, tick_hz)),
+        silent_ticks=max(1, _ticks(table.modes.stale_after_s, tick_hz)),
+        name_suspicion=FULL * max(1, _ticks(fdir.name_s, tick_hz)),
+        readmit_ticks=max(1, _ticks(fdir.readmit_s, tick_hz)),
     )
 
 

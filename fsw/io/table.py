@@ -212,6 +212,17 @@ class ModesTable(Section):
         return self
 
 
+class FdirTable(Section):
+    """Limits of the checks of the sensors, and how long before one is named and believed again."""
+
+    max_field_error_nt: Positive
+    max_sun_norm_error: float = Field(gt=0.0, le=0.5)
+    max_angle_error_deg: float = Field(gt=0.0, lt=90.0)
+    frozen_s: Positive
+    name_s: Positive
+    readmit_s: Positive
+
+
 class TelemetryTable(Section):
     """Periods of the reports and of the ephemeris nodes, s; at least one tick."""
 
@@ -233,6 +244,7 @@ class FlightTable(Section):
     control: ControlTable
     estimator: EstimatorTable
     modes: ModesTable
+    fdir: FdirTable
     telemetry: TelemetryTable
 
     @property

@@ -14,6 +14,7 @@ from fsw.core.laws.table import LAWS
 from fsw.core.modes import ModeState
 from fsw.core.orbit import element_orbit, sgp4_orbit, state_eci
 from fsw.core.readings import NOTHING, TELECOMMANDS
+from fsw.core.sensor_health import SensorHealth, Watch
 from fsw.core.state import checksum
 from fsw.core.step import boot
 from fsw.wire.messages import (
@@ -159,10 +160,11 @@ class TestMode:
         refused(TcAckResult.UNKNOWN, TcMode(mode))
 
 
-def test_clearing_forgets_the_trips_and_nothing_else(obey, state):
-    after, results = obey(state, TcClear())
+def test_clearing_forgets_trips_and_faults_and_nothing_else(obey, state):
+    faulty = state._replace(sensors=SensorHealth(Watch(fault=3), Watch(fault=2)))
+    after, results = obey(faulty, TcClear())
     assert results == [TcAckResult.ACCEPTED]
-    assert after == state._replace(modes=replace(state.modes, trips=0))
+    assert after == state._replace(modes=replace(state.modes, trips=0), sensors=SensorHealth())
 
 
 class TestLaw:

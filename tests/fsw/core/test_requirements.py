@@ -8,9 +8,11 @@ import pytest
 
 from fsw.core.monitors import Monitor
 from fsw.core.requirements import REQUIREMENTS, document
+from fsw.core.sensor_health import SensorFault
 from fsw.core.telemetry import Event
 
 ROOT = Path(__file__).resolve().parents[3]
+NAMED = [(Event.MONITOR_TRIPPED, Monitor), (Event.SENSOR_ISOLATED, SensorFault)]
 IDS = [requirement.id for requirement in REQUIREMENTS]
 
 
@@ -51,9 +53,10 @@ def test_ids_are_unique_and_of_one_form():
     assert all(re.fullmatch(r"REQ-[A-Z]+-\d\d", name) for name in IDS)
 
 
-def test_whatever_can_trip_has_a_requirement():
-    watched = [r.watch for r in REQUIREMENTS if r.event is Event.MONITOR_TRIPPED]
-    assert sorted(watched) == sorted(Monitor)
+@pytest.mark.parametrize(("event", "kinds"), NAMED, ids=[event.name for event, _ in NAMED])
+def test_whatever_can_be_named_has_one_requirement(event, kinds):
+    watched = [r.watch for r in REQUIREMENTS if r.event is event and r.watch is not None]
+    assert sorted(watched) == sorted(kinds)
 
 
 def test_the_document_is_up_to_date():

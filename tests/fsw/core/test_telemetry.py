@@ -168,6 +168,9 @@ class TestEvents:
             "MONITOR_TRIPPED": 4,
             "REQUEST_REFUSED": 5,
             "TIME_MISMATCH": 6,
+            "SENSOR_ISOLATED": 7,
+            "SENSOR_READMITTED": 8,
+            "SENSORS_DISAGREE": 9,
         }
 
     def test_every_event_has_a_severity_and_fits_its_signal(self):

@@ -9,6 +9,8 @@ from fsw.core.laws.interface import Setpoint
 from fsw.core.modes import TABLE
 from fsw.core.orbit import CircularOrbit, Sgp4Orbit
 from fsw.core.rates import RateGroup
+from fsw.core.sensor_health import FULL as BAD_TICK
+from fsw.core.sensor_health import SensorHealthConfig
 from fsw.io.config import flight_config
 from fsw.io.schema import TableError, merge
 from fsw.io.table import flight_table
@@ -99,6 +101,31 @@ class TestTicks:
         config = configured(time={"tick_hz": 10}, modes={"recover_s": 1.1, "stale_after_s": 2.2})
         assert config.modes.dwell_ticks[0] == 11
         assert config.stale_after_ticks == 22
+
+    def test_limits_of_the_sensors(self):
+        fdir = {
+            "max_field_error_nt": 2500.0,
+            "max_sun_norm_error": 0.04,
+            "max_angle_error_deg": 6.0,
+            "frozen_s": 12.0,
+            "name_s": 21.0,
+            "readmit_s": 250.0,
+        }
+        tuning = {"gate_nis": 16.0, "magnetometer_sigma_nt": 150.0, "sun_sigma_deg": 0.3}
+        config = configured(
+            time={"tick_hz": 10}, modes={"stale_after_s": 50.0}, estimator=tuning, fdir=fdir
+        ).sensors
+        assert config == SensorHealthConfig(
+            max_field_error_t=pytest.approx(2.5e-6),
+            max_norm_error=0.04,
+            max_angle_error_rad=pytest.approx(radians(6.0)),
+            field_noise_t=pytest.approx(6e-7),
+            sun_noise_rad=pytest.approx(radians(1.2)),
+            frozen_ticks=120,
+            silent_ticks=500,
+            name_suspicion=210 * BAD_TICK,
+            readmit_ticks=2500,
+        )
 
     @pytest.mark.parametrize(
         ("tick_hz", "pulse_ticks", "backoff_ticks", "duration_ms"),

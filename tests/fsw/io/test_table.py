@@ -146,6 +146,13 @@ PLANTED = [
     ("telemetry.ephemeris_s", 9, "a whole number at least 10 and at most 30"),
     ("telemetry.ephemeris_s", 31, "a whole number at least 10 and at most 30"),
     ("telemetry.attitude_s", -0.1, "a number at least 0"),
+    ("fdir.max_field_error_nt", 0.0, "a number above 0"),
+    ("fdir.max_sun_norm_error", 0.51, "a number above 0 and at most 0.5"),
+    ("fdir.max_angle_error_deg", 90.0, "a number above 0 and below 90"),
+    ("fdir.frozen_s", 0.0, "a number above 0"),
+    ("fdir.name_s", -1.0, "a number above 0"),
+    ("fdir.readmit_s", float("inf"), "fdir.readmit_s"),
+    ("fdir.silent_s", 60.0, "fdir.silent_s is not a known key"),
     ("knowledge", "guess", "'filter' or 'perfect'"),
     ("coils", 3, "coils = 3 is not allowed: allowed is a section of keys"),
 ]

@@ -1,0 +1,260 @@
+"""Which sensor is wrong, and when it may be believed again.
+
+Four checks need no attitude: the field's strength against the model, the Sun's unit norm, the angle between
+field and Sun against the model, and a reading that does not move. The fifth is the filter's: it refuses one
+sensor tick after tick while it takes the other, or while there is no other. Each bad tick raises the
+suspicion against a sensor and each good one lowers it, so that noise and the filter's transients name nobody.
+What the filter refuses counts in full where field and Sun contradict each other, and less where the filter
+itself may be what is wrong.
+
+A sensor that is named is left out of the filter until it has been consistent for a time.
+"""
+
+from dataclasses import dataclass
+from enum import IntEnum
+from math import acos
+from typing import NamedTuple
+
+from fsw.core.ephemeris import Reference
+from fsw.core.estimator import Used
+from fsw.core.mekf import Estimate
+from fsw.core.quaternion import rotate
+from fsw.core.readings import Readings
+from fsw.core.vector import ZERO, Vec3, add, dot, norm, sub
+from fsw.wire.messages import MagField, SunVector
+
+
+class Sensor(IntEnum):
+    """Numbers of the sensors, as named on the bus."""
+
+    MAGNETOMETER = 1
+    SUN_SENSOR = 2
+
+
+class SensorFault(IntEnum):
+    """What is wrong with a sensor, as named on the bus."""
+
+    SATURATED = 1
+    STRENGTH = 2
+    FROZEN = 3
+    REFUSED = 4
+    SILENT = 5
+
+
+FULL, SLIGHT = 3, 2
+"""Suspicion of a bad tick: of a check, and of the filter alone. A good tick takes ``FULL`` back."""
+
+MISFIT = 20
+"""Good samples that a bad one undoes while a sensor is left out."""
+
+DARK: Vec3 = (0.0, 0.0, 0.0)
+"""The sample of a Sun sensor that sees nothing."""
+
+AGAINST_ESTIMATE = 4
+"""So many times longer both sensors must agree before they are believed against the estimate."""
+
+
+@dataclass(frozen=True, slots=True)
+class SensorHealthConfig:
+    """Limits of the checks; ``name_suspicion`` names a sensor, ``readmit_ticks`` good samples bring it back.
+
+    ``field_noise_t`` and ``sun_noise_rad`` are the largest deviations that are noise.
+    """
+
+    max_field_error_t: float
+    max_norm_error: float
+    max_angle_error_rad: float
+    field_noise_t: float
+    sun_noise_rad: float
+    frozen_ticks: int
+    silent_ticks: int
+    name_suspicion: int
+    readmit_ticks: int
+
+
+class Watch(NamedTuple):
+    """One sensor: its fault (0: none), what it is suspected of and how much, and its last sample.
+
+    ``same``: ticks for which the valid sample has not moved; ``missing``: ticks without a sample; ``good``:
+    samples that the estimate foretold while it is left out, ``agreed`` those that the other sensor bears out.
+    """
+
+    fault: int = 0
+    cause: int = 0
+    suspicion: int = 0
+    same: int = 0
+    missing: int = 0
+    good: int = 0
+    agreed: int = 0
+    sample: Vec3 = ZERO
+
+
+class SensorHealth(NamedTuple):
+    """Both sensors; ``apart`` grows while they contradict each other and no estimate tells which is wrong.
+
+    ``contradictory``: they have done so for long enough to say so. ``doubted``: they agree, but not with the
+    estimate, and have done so for long enough to begin it anew in this tick.
+    """
+
+    field: Watch = Watch()
+    sun: Watch = Watch()
+    apart: int = 0
+    contradictory: bool = False
+    doubted: bool = False
+
+
+def trusted(readings: Readings, health: SensorHealth) -> Readings:
+    """The readings without those of a sensor that is left out."""
+    if health.field.fault:
+        readings = readings._replace(field=None)
+    if health.sun.fault:
+        readings = readings._replace(sun=None)
+    return readings
+
+
+def judge(
+    health: SensorHealth,
+    readings: Readings,
+    field: Vec3 | None,
+    sun: Vec3 | None,
+    reference: Reference,
+    used: Used,
+    known: Estimate | None,
+    sigma3_rad: float,
+    config: SensorHealthConfig,
+) -> SensorHealth:
+    """Judge the samples of this tick.
+
+    Args:
+        health: of the tick before.
+        readings: all that the boards said, of sensors left out too.
+        field: the sample while no coil drives, T, body axes.
+        sun: the sample, body axes.
+        reference: field and Sun as modelled.
+        used: what the filter took.
+        known: the estimate of this tick.
+        sigma3_rad: three standard deviations of its attitude.
+        config: limits.
+    """
+    b_cause, s_cause, apart = _plain_checks(field, sun, reference, config)
+    if readings.field is not None and not readings.field.valid and _idle(readings):
+        b_cause = SensorFault.SATURATED
+    b_before, s_before = health.field, health.sun
+    b_refused = field is not None and not (used.field or b_cause or b_before.fault) and known is not None
+    s_refused = sun is not None and not (used.sun or s_cause or s_before.fault) and known is not None
+    doubt = FULL if apart else SLIGHT
+    b_weight = s_weight = FULL
+    if b_refused and (used.sun or sun is None):
+        b_cause, b_weight = SensorFault.REFUSED, doubt
+    elif s_refused and used.field:
+        s_cause, s_weight = SensorFault.REFUSED, doubt
+    b_watch = _watched(b_before, _of_field(readings.field), s_before, b_cause, b_weight, config)
+    s_watch = _watched(s_before, _of_sun(readings.sun), b_before, s_cause, s_weight, config)
+    doubted = False
+    if b_watch.fault or s_watch.fault:
+        agree = field is not None and sun is not None and not (apart or b_cause or s_cause)
+        if b_watch.fault and field is not None:
+            foretold = (
+                None
+                if known is None
+                else add(rotate(known.q_body_from_eci, reference.b_eci_t), known.mag_bias_t)
+            )
+            fits = not b_cause and _fits(field, agree, foretold, config.field_noise_t, sigma3_rad)
+            b_watch, doubted = _probed(b_watch, fits, agree, config)
+        if s_watch.fault and sun is not None:
+            foretold = None if known is None else rotate(known.q_body_from_eci, reference.sun_eci)
+            fits = not s_cause and _fits(sun, agree, foretold, config.sun_noise_rad, sigma3_rad)
+            s_watch, s_doubted = _probed(s_watch, fits, agree, config)
+            doubted = doubted or s_doubted
+    if apart and known is None:
+        against = min(health.apart + FULL, config.name_suspicion)
+    else:
+        against = max(health.apart - FULL, 0)
+    contradictory = against == config.name_suspicion or (health.contradictory and against > 0)
+    return SensorHealth(b_watch, s_watch, against, contradictory, doubted)
+
+
+def _plain_checks(
+    field: Vec3 | None, sun: Vec3 | None, reference: Reference, config: SensorHealthConfig
+) -> tuple[int, int, bool]:
+    """What speaks against field and Sun by themselves, and whether their angle is not the modelled one."""
+    b_cause = s_cause = 0
+    if field is not None:
+        strength, modelled = norm(field), norm(reference.b_eci_t)
+        if not abs(strength - modelled) <= config.max_field_error_t:
+            b_cause = SensorFault.STRENGTH
+    if sun is None:
+        return b_cause, s_cause, False
+    size = norm(sun)
+    if not abs(size - 1.0) <= config.max_norm_error:
+        s_cause = SensorFault.STRENGTH
+    if field is None or strength * size == 0.0:
+        return b_cause, s_cause, False
+    seen = dot(field, sun) / (strength * size)
+    expected = dot(reference.b_eci_t, reference.sun_eci) / modelled
+    return b_cause, s_cause, abs(_angle(seen) - _angle(expected)) > config.max_angle_error_rad
+
+
+def _watched(
+    watch: Watch, said: Vec3 | None, other: Watch, cause: int, weight: int, config: SensorHealthConfig
+) -> Watch:
+    """The watch after a tick, ``said`` being the raw sample, ``DARK`` where there was nothing to be seen."""
+    if said is None:
+        return _unheard(watch, config)
+    fault, before, suspicion, same, _, good, agreed, sample = watch
+    same = same + 1 if said == sample and said is not DARK else 0
+    if fault:
+        return Watch(fault, before, 0, same, 0, good, agreed, said)
+    if same >= config.frozen_ticks > 2 * other.same:
+        return Watch(SensorFault.FROZEN, same=same, sample=said)
+    if not cause:
+        return Watch(0, before, suspicion - FULL if suspicion > FULL else 0, same, 0, 0, 0, said)
+    suspicion += weight
+    if suspicion >= config.name_suspicion:
+        return Watch(cause, same=same, sample=said)
+    return Watch(0, cause, suspicion, same, 0, 0, 0, said)
+
+
+def _unheard(watch: Watch, config: SensorHealthConfig) -> Watch:
+    missing = watch.missing + 1
+    if missing < config.silent_ticks or watch.fault:
+        return watch._replace(missing=missing)
+    return Watch(SensorFault.SILENT, missing=missing, sample=watch.sample)
+
+
+def _probed(watch: Watch, fits: bool, agree: bool, config: SensorHealthConfig) -> tuple[Watch, bool]:
+    """A sensor that is left out, back when enough samples were good; and whether the estimate is doubted."""
+    good = watch.good + 1 if fits and watch.same == 0 else max(0, watch.good - MISFIT)
+    agreed = watch.agreed + 1 if agree and watch.same == 0 else max(0, watch.agreed - MISFIT)
+    if good >= config.readmit_ticks:
+        return Watch(sample=watch.sample), False
+    if agreed >= AGAINST_ESTIMATE * config.readmit_ticks:
+        return Watch(sample=watch.sample), True
+    return watch._replace(good=good, agreed=agreed), False
+
+
+def _fits(sample: Vec3, agree: bool, foretold: Vec3 | None, noise: float, sigma3_rad: float) -> bool:
+    """Whether a sample is what the estimate foretells; without one, whether both sensors agree."""
+    if foretold is None:
+        return agree
+    return norm(sub(sample, foretold)) < noise + sigma3_rad * norm(foretold)
+
+
+def _of_field(said: MagField | None) -> Vec3 | None:
+    return None if said is None else (said.b_x, said.b_y, said.b_z)
+
+
+def _of_sun(said: SunVector | None) -> Vec3 | None:
+    if said is None:
+        return None
+    return (said.s_x, said.s_y, said.s_z) if said.valid else DARK
+
+
+def _angle(cosine: float) -> float:
+    return acos(max(-1.0, min(1.0, cosine)))
+
+
+def _idle(readings: Readings) -> bool:
+    """Whether no coil adds its own field to what the magnetometer senses."""
+    coil = readings.coil
+    return coil is not None and coil.level == 0 and coil.current_ma == 0
