@@ -5,7 +5,7 @@ import pytest
 from fsw.core.state import Inbox
 from fsw.core.step import boot, step
 from fsw.io.config import flight_config
-from fsw.io.node import KEPT_FRAMES, FlightNode
+from fsw.io.node import KEPT_FRAMES, LEAP_TICKS, FlightNode
 from fsw.io.table import load_flight_table
 from fsw.wire.frame import EXTENDED_FLAG, Frame
 from fsw.wire.messages import FswBoot, MagField, PlantBoot, PlantEnd, SunVector, Sync, TickDone, intact
@@ -101,3 +101,31 @@ def test_a_plant_that_starts_is_heard_before_the_first_tick_alone(node, config):
     assert not node.hears_plant_start(start._replace(data=start.data[:-1] + b"\0"))
     node.receive(sync(config, 0))
     assert not node.hears_plant_start(start)
+
+
+def test_one_sync_from_far_ahead_moves_nothing(node, config):
+    node.receive(sync(config, 0))
+    assert node.receive(sync(config, LEAP_TICKS + 1)) == ()
+    assert node.state.ignored_syncs == 1
+    assert TickDone.decode(node.receive(sync(config, 1))[-1].data).tick == 1
+    assert TickDone.decode(node.receive(sync(config, 1 + LEAP_TICKS))[-1].data).tick == 1 + LEAP_TICKS
+
+
+def test_a_leap_is_believed_when_the_next_sync_goes_on_from_it(node, config):
+    node.receive(sync(config, 5))
+    assert node.receive(sync(config, 1000)) == ()
+    assert node.receive(sync(config, 1002)) == ()
+    assert TickDone.decode(node.receive(sync(config, 1003))[-1].data).tick == 1003
+    assert node.state.ignored_syncs == 2
+
+
+def test_a_leap_is_forgotten_once_time_goes_on_as_before(node, config):
+    node.receive(sync(config, 5))
+    node.receive(sync(config, 1000))
+    node.receive(sync(config, 6))
+    assert node.receive(sync(config, 1001)) == ()
+    assert node.state.tick == 6
+
+
+def test_the_first_sync_may_be_any_tick(node, config):
+    assert TickDone.decode(node.receive(sync(config, 90_000))[-1].data).tick == 90_000
