@@ -5,7 +5,7 @@ from functools import cache
 
 from fsw.core.config import FlightConfig
 from fsw.io.config import flight_config
-from fsw.io.node import FlightNode
+from fsw.io.node import LEAP_TICKS, FlightNode
 from fsw.wire.frame import Frame
 from fsw.wire.messages import Sync, TickDone, intact
 from sim.harness.assemble import plant_config
@@ -119,8 +119,11 @@ class Rig:
 
 
 def _asks(frame: Frame, before: int) -> bool:
-    """Whether a frame is a SYNC that moves time forward."""
-    return frame.can_id == Sync.ID and intact(frame) and Sync.decode(frame.data).tick > before
+    """Whether a frame is a SYNC that moves time forward, and not so far that it must be doubted."""
+    if frame.can_id != Sync.ID or not intact(frame):
+        return False
+    tick = Sync.decode(frame.data).tick
+    return tick > before and (before < 0 or tick <= before + LEAP_TICKS)
 
 
 def _names(answer: tuple[Frame, ...], tick: int) -> bool:

@@ -163,6 +163,8 @@ ROWS: tuple[Row, ...] = (
     Row("sync-lost", CLOCK, "sync_lost", {"part": 0.3}, 300.0, expect=(*BUS, "recovers")),
     Row("sync-repeated", CLOCK, "sync_repeated", {"times": 3.0}, 300.0, expect=(*BUS, "recovers")),
     Row("tick-ahead", CLOCK, "tick_jumps", {"ticks": 1000.0}, 1.0, expect=(*BUS, "recovers")),
+    Row("tick-far-ahead", CLOCK, "tick_jumps", {"ticks": 1e9}, 1.0, expect=(*BUS, "recovers")),
+    Row("tick-ahead-lasting", CLOCK, "tick_jumps", {"ticks": 1000.0}, 20.0, expect=(*BUS, "recovers")),
     Row("tick-back", CLOCK, "tick_jumps", {"ticks": -100.0}, 20.0, expect=(*BUS, "recovers")),
     Row("time-jumps", CLOCK, "time_jumps", {"seconds": 3600.0}, 60.0, expect=(*BUS, "recovers")),
     *_field("mag-nan", "mag_nan"),
