@@ -9,14 +9,15 @@ from sim.harness.audit.auditor import audit
 from sim.harness.audit.findings import AuditLimits
 from sim.harness.faults import currents
 from sim.harness.faults.currents import CurrentLimits
-from sim.harness.faults.naming import can_name, isolated, tripped
+from sim.harness.faults.naming import can_name, isolated, named_by_board, tripped
 from sim.harness.faults.record import Record
 from sim.harness.faults.row import Outcome, Row, Verdict
 from sim.harness.scenario import Scenario, orbit_period_s
 
 GOOD_DEG = 2.0
 GOOD_FOR_S = 600.0
-FAR_DEG, LAST_S = 10.0, 300.0
+FAR_DEG, LAST_S = 15.0, 300.0
+"""Three times the standard deviation up to which fsw calls an estimate valid."""
 MOST_FRAMES = 64
 """In one answer; a step says a dozen things at most."""
 
@@ -173,6 +174,17 @@ def bounded(row: Row, record: Record, bounds: Bounds) -> tuple[bool | None, str]
     return (False if can_name(row.unit) else None), said
 
 
+def board_names(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
+    """The coil driver board names the coil by its read-back; of a current that nobody drives, itself."""
+    unit = "coil driver" if "stuck" in row.expect else row.unit
+    onset = record.onset or 0
+    units = [(tick, named) for tick, named in named_by_board(record) if tick >= onset]
+    if not units:
+        return False, f"the board does not name {unit}"
+    tick, first = units[0]
+    return first == unit, f"board names {first} after {(tick - onset) / record.tick_hz:.0f} s"
+
+
 def silence_named(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
     """The monitor of the board that is silent trips, and no other."""
     onset = record.onset or 0
@@ -204,6 +216,7 @@ CHECKS: dict[str, Check] = {
     "recovers": recovers,
     "quiet": quiet,
     "bounded": bounded,
+    "board names": board_names,
     "silence named": silence_named,
     "named": blamed_rightly,
     "stuck": stuck,

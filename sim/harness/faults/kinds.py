@@ -74,7 +74,7 @@ KINDS: dict[str, Kind] = {
     "sun_swapped": Kind(plant.sun_reads(plant.swapped), AXIS),
     "sun_unseen": Kind(plant.SunUnseen),
     "albedo": Kind(plant.SunTilted, {"part": Parameter(0.4, 0.0, 1.0)}),
-    "extreme_codes": Kind(plant.ExtremeCodes),
+    "extreme_codes": Kind(plant.ExtremeCodes, {"sun": Parameter(0.0, 0.0, 1.0)}),
     "coil_open": Kind(plant.CoilOpen, AXIS),
     "coil_wired": Kind(plant.CoilWired, {**AXIS, "scale": Parameter(-1.0, -2.0, 2.0)}),
     "coil_stuck_on": Kind(plant.StuckOn, {**AXIS, "ampere": Parameter(0.4, -10.0, 10.0)}),

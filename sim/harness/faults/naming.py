@@ -3,7 +3,9 @@
 from collections.abc import Callable
 
 from fsw.core.monitors import Monitor
+from fsw.core.sensor_health import Sensor
 from fsw.core.telemetry import Event as Number
+from hil_stub.events import CoilEventCode
 from sim.harness.faults.record import Event, Record
 
 Blame = Callable[[Event], str]
@@ -23,7 +25,16 @@ def _tripped(event: Event) -> str:
 MONITORS: dict[int, Blame] = {Number.MONITOR_TRIPPED: _tripped}
 """What monitors say: that a board is silent or does what it was not asked."""
 
-ISOLATED: dict[int, tuple[frozenset[str], Blame]] = {}
+_SENSORS = {Sensor.MAGNETOMETER: "magnetometer", Sensor.SUN_SENSOR: "sun sensor"}
+
+
+def _sensor(event: Event) -> str:
+    return _SENSORS[Sensor(event.argument // 100)]
+
+
+ISOLATED: dict[int, tuple[frozenset[str], Blame]] = {
+    Number.SENSOR_ISOLATED: (frozenset(_SENSORS.values()), _sensor),
+}
 """What fault isolation says, by event: the units that it can name, and the one that it does name."""
 
 
@@ -41,6 +52,21 @@ def isolated(record: Record) -> list[tuple[int, str]]:
 def tripped(record: Record) -> list[tuple[int, str]]:
     """(tick, unit) for each time that a monitor tripped."""
     return _told(record, MONITORS)
+
+
+_WITHOUT_A_COIL = {
+    CoilEventCode.DEAD_MAN: "plant",
+    CoilEventCode.CURRENT_WHILE_OFF: "coil driver",
+    CoilEventCode.SELF_TEST_FAILED: "coil driver",
+}
+
+
+def named_by_board(record: Record) -> list[tuple[int, str]]:
+    """(tick, unit) for each time that the coil driver board has named a unit by its read-back."""
+    return [
+        (event.tick, _WITHOUT_A_COIL.get(CoilEventCode(event.number), f"coil {event.coil}"))
+        for event in record.board_events
+    ]
 
 
 def _told(record: Record, blames: dict[int, Blame]) -> list[tuple[int, str]]:

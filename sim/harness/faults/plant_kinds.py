@@ -133,7 +133,7 @@ class SunUnseen(Fault):
 
 
 class ExtremeCodes(Fault):
-    """Sensor frames bear the extremes of their raw codes, called valid, with a right CRC."""
+    """Frames of one sensor (``sun`` 0 or 1) bear the extremes of their codes, called valid, the CRC right."""
 
     def from_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
         """Whole frames with impossible values."""
@@ -141,10 +141,11 @@ class ExtremeCodes(Fault):
 
     def _extreme(self, frame: Frame) -> Frame:
         a, b, c = (self.rng.choice((-1.0, 1.0)) for _ in range(3))
-        if frame.can_id == MagField.ID:
+        sun = bool(self.parameters["sun"])
+        if frame.can_id == MagField.ID and not sun:
             counter = MagField.decode(frame.data).counter
             return MagField(1, a * FULL_FIELD_NT, b * FULL_FIELD_NT, c * FULL_FIELD_NT, counter).encode()
-        if frame.can_id == SunVector.ID:
+        if frame.can_id == SunVector.ID and sun:
             counter = SunVector.decode(frame.data).counter
             return SunVector(1, a * FULL_SUN, b * FULL_SUN, c * FULL_SUN, counter).encode()
         return frame

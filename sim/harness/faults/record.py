@@ -5,7 +5,17 @@ from math import acos, degrees, isfinite
 
 from fsw.core.state import FlightState
 from fsw.wire.frame import Frame
-from fsw.wire.messages import CoilBoot, CoilFire, CoilRefused, CoilStatus, FswEvent, Mode, Sync, intact
+from fsw.wire.messages import (
+    CoilBoot,
+    CoilEvent,
+    CoilFire,
+    CoilRefused,
+    CoilStatus,
+    FswEvent,
+    Mode,
+    Sync,
+    intact,
+)
 from sim.harness.candump import LogEntry
 from sim.plant.actuators import Driven
 from sim.plant.plant import TruthRow
@@ -21,6 +31,15 @@ class Event:
     tick: int
     number: int
     argument: int
+
+
+@dataclass(frozen=True, slots=True)
+class BoardEvent:
+    """A COIL_EVENT, with the coil that was on; None: all were off."""
+
+    tick: int
+    number: int
+    coil: int | None
 
 
 @dataclass(slots=True)
@@ -39,6 +58,7 @@ class Record:
         error_deg: true error of the estimate; None where fsw has none that it calls valid.
         modes: by tick; None while fsw is not there.
         events: FSW_EVENT.
+        board_events: COIL_EVENT.
         crash: what came out of a step, if anything did.
         not_finite: first tick with a number in the state that is none.
         unanswered: ticks whose SYNC reached a running fsw and was not answered.
@@ -58,6 +78,7 @@ class Record:
     error_deg: list[float | None] = field(default_factory=list)
     modes: list[Mode | None] = field(default_factory=list)
     events: list[Event] = field(default_factory=list)
+    board_events: list[BoardEvent] = field(default_factory=list)
     crash: str | None = None
     not_finite: int | None = None
     unanswered: list[int] = field(default_factory=list)
@@ -73,7 +94,13 @@ class Record:
     def note_said(self, tick: int, epoch_us: int, frames: list[Frame]) -> None:
         """What plant and boards have said in a tick."""
         stamp = epoch_us + tick * US // self.tick_hz
+        on: int | None = None
         for frame in frames:
+            if frame.can_id == CoilStatus.ID:
+                status = CoilStatus.decode(frame.data)
+                on = status.coil if status.level else None
+            elif frame.can_id == CoilEvent.ID:
+                self.board_events.append(BoardEvent(tick, CoilEvent.decode(frame.data).event, on))
             if frame.can_id in _AUDITED:
                 self.entries.append(LogEntry(len(self.entries) + 1, stamp, "virtual", frame))
             self.refused += frame.can_id == CoilRefused.ID

@@ -60,22 +60,21 @@ def _sensor(unit: str, name: str, kind: str, parameters: dict[str, float]) -> tu
     )
 
 
-def _coil(name: str, kind: str, coil: int, **parameters: float) -> Row:
-    parameters = {"axis": coil, **parameters}
-    return Row(
-        f"{name}-{coil}",
-        COIL,
-        kind,
-        parameters,
-        inf,
-        expect=("named",),
-        unit=COIL_NAMES[coil],
-        watch_s=1100.0,
+def _coils(name: str, kind: str, *expect: str, **parameters: float) -> tuple[Row, ...]:
+    """A fault of each coil."""
+    return tuple(
+        Row(
+            f"{name}-{coil}",
+            COIL,
+            kind,
+            {"axis": coil, **parameters},
+            inf,
+            expect=("named", *expect),
+            unit=COIL_NAMES[coil],
+            watch_s=1100.0,
+        )
+        for coil in range(3)
     )
-
-
-def _coils(name: str, kind: str, **parameters: float) -> tuple[Row, ...]:
-    return tuple(_coil(name, kind, coil, **parameters) for coil in range(3))
 
 
 ROWS: tuple[Row, ...] = (
@@ -175,8 +174,9 @@ ROWS: tuple[Row, ...] = (
     *_field("mag-scale", "mag_scale", axis=2.0, scale=1.5),
     *_field("mag-swapped", "mag_swapped", axis=1.0),
     *_field("mag-sign", "mag_scale", axis=2.0, scale=-1.0),
-    *_field("extreme-codes", "extreme_codes"),
+    *_field("mag-extreme-codes", "extreme_codes"),
     *_sun("sun-nan", "sun_nan"),
+    *_sun("sun-extreme-codes", "extreme_codes", sun=1.0),
     *_sun("sun-frozen", "sun_frozen"),
     *_sun("sun-swapped", "sun_swapped"),
     *_sun("sun-sign", "sun_scale", axis=0.0, scale=-1.0),
@@ -194,7 +194,7 @@ ROWS: tuple[Row, ...] = (
     Row("sun-unseen", LIGHT, "sun_unseen", {}, 1200.0, When.SUNLIT, ("goes on", "quiet", "recovers")),
     Row("albedo", LIGHT, "albedo", {"part": 0.4}, 600.0, When.SUNLIT, ("goes on", "recovers")),
     Row("albedo-eclipse", LIGHT, "albedo", {"part": 0.4}, 600.0, When.ECLIPSE, ("goes on", "recovers")),
-    *_coils("coil-open", "coil_open"),
+    *_coils("coil-open", "coil_open", "board names"),
     *_coils("coil-reversed", "coil_wired", scale=-1.0),
     *_coils("coil-weak", "coil_wired", scale=0.3),
     Row(
@@ -203,7 +203,7 @@ ROWS: tuple[Row, ...] = (
         "coil_stuck_on",
         {"axis": 1.0, "ampere": 0.4},
         inf,
-        expect=("named", "stuck"),
+        expect=("named", "stuck", "board names"),
         unit="coil 1",
     ),
     Row("bit-flip", UPSET, "bit_flip", {}, 1.0, expect=(*BUS, "recovers")),
