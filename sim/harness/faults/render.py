@@ -24,7 +24,13 @@ the unit. Figures are the worst over all cases.
 """
 
 
-_KINDS_HEAD = """## Faults in a scenario
+_KINDS_HEAD = """## Faults of files and processes
+
+Faults that need no flight are tests: the plant killed (`tests/integration/test_sil_ended.py`), disk full and
+logs that are cut, altered or of another version (`test_logs_that_lie.py`), tables and scenarios that are
+wrong (`test_sil_refuses.py`). `torquer faults --slow` has two more rows, which kill and stop a real process.
+
+## Faults in a scenario
 
 A scenario schedules faults of its own; without `lasts_s` one stays. The log holds what was on the bus of the
 flight software, so that such a run replays to the last bit. `torquer check` judges what stands in the log: a
