@@ -7,6 +7,7 @@ from random import Random
 
 from sim.harness.faults import checks, currents
 from sim.harness.faults.kinds import KINDS, make
+from sim.harness.faults.naming import isolated
 from sim.harness.faults.processes import ProcessRig, strikes
 from sim.harness.faults.record import Record
 from sim.harness.faults.rig import Rig, prepared
@@ -115,4 +116,7 @@ def _measured(row: Row, record: Record) -> dict[str, float]:
     after_s = checks.recovered_s(record)
     if after_s is not None and "recovers" in row.expect:
         found["recovered s"] = after_s
+    right = [tick for tick, unit in isolated(record) if unit == row.unit and tick >= onset]
+    if right:
+        found["named s"] = (right[0] - onset) / record.tick_hz
     return found

@@ -26,32 +26,39 @@ MONITORS: dict[int, Blame] = {Number.MONITOR_TRIPPED: _tripped}
 """What monitors say: that a board is silent or does what it was not asked."""
 
 _SENSORS = {Sensor.MAGNETOMETER: "magnetometer", Sensor.SUN_SENSOR: "sun sensor"}
+_COILS = {number: f"coil {number - 1}" for number in (1, 2, 3)}
 
-
-def _sensor(event: Event) -> str:
-    return _SENSORS[Sensor(event.argument // 100)]
-
-
-ISOLATED: dict[int, tuple[frozenset[str], Blame]] = {
-    Number.SENSOR_ISOLATED: (frozenset(_SENSORS.values()), _sensor),
+_ISOLATING: dict[str, dict[int, str]] = {
+    "SENSOR_ISOLATED": {int(sensor): unit for sensor, unit in _SENSORS.items()},
+    "COIL_FAULT": _COILS,
 }
-"""What fault isolation says, by event: the units that it can name, and the one that it does name."""
+"""Units by the hundreds of the argument, by event: one that fsw does not know yet names nobody."""
+
+ISOLATED: dict[int, dict[int, str]] = {
+    int(Number[name]): units for name, units in _ISOLATING.items() if name in Number.__members__
+}
+"""The same by the number of the event."""
 
 
 def can_name(unit: str) -> bool:
     """Whether the flight software has an event by which it could name this unit as faulty."""
-    return any(unit in units for units, _ in ISOLATED.values())
+    return any(unit in units.values() for units in ISOLATED.values())
 
 
 def isolated(record: Record) -> list[tuple[int, str]]:
     """(tick, unit) for each time that a unit was named as faulty."""
-    blames = {number: blame for number, (_, blame) in ISOLATED.items()}
-    return _told(record, blames)
+    return [
+        (event.tick, ISOLATED[event.number].get(event.argument // 100, f"unit {event.argument}"))
+        for event in record.events
+        if event.number in ISOLATED
+    ]
 
 
 def tripped(record: Record) -> list[tuple[int, str]]:
     """(tick, unit) for each time that a monitor tripped."""
-    return _told(record, MONITORS)
+    return [
+        (event.tick, MONITORS[event.number](event)) for event in record.events if event.number in MONITORS
+    ]
 
 
 _WITHOUT_A_COIL = {
@@ -67,7 +74,3 @@ def named_by_board(record: Record) -> list[tuple[int, str]]:
         (event.tick, _WITHOUT_A_COIL.get(CoilEventCode(event.number), f"coil {event.coil}"))
         for event in record.board_events
     ]
-
-
-def _told(record: Record, blames: dict[int, Blame]) -> list[tuple[int, str]]:
-    return [(event.tick, blames[event.number](event)) for event in record.events if event.number in blames]

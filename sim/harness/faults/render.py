@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 from sim.harness.faults.kinds import KINDS
 from sim.harness.faults.row import CaseResult, Row, RowResult, Verdict
 
-_TOLD = ("pulses", "refused", "rejected", "worst error deg", "recovered s")
+_TOLD = ("pulses", "refused", "rejected", "worst error deg", "recovered s", "named s")
 """Figures that are the same on every run; times on the wall are not."""
 _HEAD = """# Faults
 

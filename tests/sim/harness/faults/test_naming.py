@@ -1,0 +1,62 @@
+"""Whom the flight software blames, as its events tell."""
+
+from fsw.core.monitors import Monitor
+from fsw.core.sensor_health import Sensor, SensorFault
+from fsw.core.telemetry import Event as Number
+from hil_stub.events import CoilEventCode
+from sim.harness.faults import checks, naming
+from sim.harness.faults.record import BoardEvent, Event, Record
+from sim.harness.faults.row import Row
+
+
+def record(*events, board=()):
+    return Record(1, onset=100, events=list(events), board_events=list(board))
+
+
+def isolated(tick, sensor):
+    return Event(tick, Number.SENSOR_ISOLATED, 100 * sensor + SensorFault.REFUSED)
+
+
+def test_sensors_are_named_by_isolation_and_boards_by_monitors():
+    flown = record(
+        isolated(120, Sensor.SUN_SENSOR),
+        Event(130, Number.MONITOR_TRIPPED, Monitor.FIELD_FRESH),
+        Event(131, Number.MODE_CHANGED, 0),
+    )
+    assert naming.isolated(flown) == [(120, "sun sensor")]
+    assert naming.tripped(flown) == [(130, "magnetometer")]
+
+
+def test_the_right_unit_must_be_named_and_no_other(bounds):
+    row = Row("planted", "", "none", unit="magnetometer")
+    right, wrong = isolated(130, Sensor.MAGNETOMETER), isolated(125, Sensor.SUN_SENSOR)
+    assert checks.blamed_rightly(row, record(right), bounds) == (True, "named after 30 s")
+    assert checks.blamed_rightly(row, record(), bounds)[0] is False
+    assert checks.blamed_rightly(row, record(wrong), bounds)[0] is False
+    assert checks.blamed_rightly(row, record(wrong, right), bounds)[0] is False
+    before = isolated(99, Sensor.SUN_SENSOR)
+    assert checks.blamed_rightly(row, record(before, right), bounds)[0] is True
+
+
+def test_a_unit_that_nobody_can_name_is_not_held_against_fsw(bounds):
+    row = Row("planted", "", "none", unit="the cat")
+    assert checks.blamed_rightly(row, record(), bounds)[0] is None
+
+
+def test_any_blame_is_a_false_alarm_where_nothing_is_wrong(bounds):
+    row = Row("planted", "", "none")
+    assert checks.quiet(row, record(), bounds)[0]
+    assert not checks.quiet(row, record(isolated(120, Sensor.SUN_SENSOR)), bounds)[0]
+    assert not checks.quiet(row, record(Event(9, Number.MONITOR_TRIPPED, Monitor.RATE_BOUNDED)), bounds)[0]
+
+
+def test_the_board_names_the_coil_that_is_on(bounds):
+    row = Row("planted", "", "none", unit="coil 2")
+    cut = BoardEvent(101, CoilEventCode.NO_CURRENT, 2)
+    other = BoardEvent(101, CoilEventCode.NO_CURRENT, 0)
+    assert checks.board_names(row, record(board=[cut]), bounds)[0]
+    assert not checks.board_names(row, record(board=[other, cut]), bounds)[0]
+    assert not checks.board_names(row, record(), bounds)[0]
+    stuck = Row("planted", "", "none", unit="coil 2", expect=("stuck",))
+    shorted = BoardEvent(101, CoilEventCode.CURRENT_WHILE_OFF, None)
+    assert checks.board_names(stuck, record(board=[shorted]), bounds)[0]
