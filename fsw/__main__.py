@@ -4,8 +4,9 @@ import sys
 
 import click
 
-from fsw.io.bus import BusError
+from fsw.io.bus import Bus, BusError
 from fsw.io.config import flight_config
+from fsw.io.disarmed import Disarmed
 from fsw.io.node import FlightNode
 from fsw.io.open_bus import open_bus, resolve
 from fsw.io.runner import run
@@ -28,14 +29,21 @@ def _table(scenario: str | None, table: str | None, settings: tuple[str, ...]) -
     "--bus", default="auto", show_default=True, help="auto, loop[:PORT], socketcan:NAME, slcan:PORT."
 )
 @click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help="Override a scenario's key.")
+@click.option("--disarmed", is_flag=True, help="Let no request to drive a coil get on the bus.")
 @click.option("--parent", type=int, hidden=True)
 def main(
-    scenario: str | None, table: str | None, bus: str, settings: tuple[str, ...], parent: int | None
+    scenario: str | None,
+    table: str | None,
+    bus: str,
+    settings: tuple[str, ...],
+    disarmed: bool,
+    parent: int | None,
 ) -> None:
     """Fly on a bus: answer the SYNC of a plant, as SCENARIO or an onboard table says."""
     try:
         node = FlightNode(flight_config(_table(scenario, table, settings)))
-        link = open_bus(bus)
+        link: Bus = open_bus(bus)
+        link = Disarmed(link) if disarmed else link
     except (TableError, BusError) as error:
         click.echo(f"fsw: {error}", err=True)
         sys.exit(2)

@@ -13,7 +13,16 @@ import click
 from fsw.io.bus import Bus, BusError
 from fsw.io.open_bus import open_bus, resolve
 from fsw.wire.messages import MagField, SunVector
-from hil_stub.bench import DEADMAN_MS, Bench, Board, CoilBoard, DipoleBoard, MagnetometerBoard, SunBoard
+from hil_stub.bench import (
+    DEADMAN_MS,
+    LEVEL_A,
+    Bench,
+    Board,
+    CoilBoard,
+    DipoleBoard,
+    MagnetometerBoard,
+    SunBoard,
+)
 from hil_stub.coil_driver import CoilLimits
 from hil_stub.stimulus import (
     NOTHING,
@@ -193,6 +202,13 @@ def cli() -> None:
     help="From the end of a pulse to the next start.",
 )
 @click.option(
+    "--levels-ma",
+    type=(float, float, float),
+    default=tuple(1000.0 * level_a for level_a in LEVEL_A),
+    show_default=True,
+    help="Currents at levels 1, 2, 3.",
+)
+@click.option(
     "--deadman-s",
     type=click.FloatRange(0.0, 3600.0),
     default=DEADMAN_MS / 1000.0,
@@ -207,11 +223,21 @@ def cli() -> None:
     help="own: a clock beside the ticks of the bus; ticks: none, where ticks are not real time.",
 )
 def coil(
-    spec: str, tick_hz: int, backoff: str, pulse_s: float, backoff_s: float, deadman_s: float, clock: str
+    spec: str,
+    tick_hz: int,
+    backoff: str,
+    pulse_s: float,
+    backoff_s: float,
+    levels_ma: Vec3,
+    deadman_s: float,
+    clock: str,
 ) -> None:
     """The coil driver with its interlock, locked out at the start."""
     limits = CoilLimits(tick_hz, round(1000.0 * pulse_s), round(1000.0 * backoff_s), backoff == "shared")
-    _serve(spec, lambda: CoilBoard(limits), deadman_s, clock)
+    if not 0.0 < levels_ma[0] < levels_ma[1] < levels_ma[2]:
+        raise click.UsageError("--levels-ma must be three rising currents above 0")
+    level_a = scaled(levels_ma, 1e-3)
+    _serve(spec, lambda: CoilBoard(limits, level_a), deadman_s, clock)
 
 
 @cli.command()

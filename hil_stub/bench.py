@@ -7,7 +7,6 @@ from fsw.wire.frame import Frame
 from fsw.wire.messages import PlantBoot, PlantEnd, Sync, TickDone, intact
 from hil_stub.coil_driver import CoilDriver, CoilLimits
 from hil_stub.dipole_driver import DipoleDriver
-from hil_stub.interlock import MAX_LEVEL
 from hil_stub.magnetometer import Magnetometer
 from hil_stub.read_back import ReadBack
 from hil_stub.stimulus import Stimulus, Vec3
@@ -16,8 +15,8 @@ from hil_stub.sun_sensor import SunSensor
 DEADMAN_MS = 5000
 """Silence of ``SYNC`` after which a board on a bench is silenced, unless it is told otherwise."""
 
-FULL_CURRENT_A = 0.3
-"""Current read-back at the highest level: the coil on the bench is nominal."""
+LEVEL_A = (0.1, 0.2, 0.3)
+"""Current read-back at levels 1, 2, 3, unless the board is told otherwise."""
 
 
 class Board(Protocol):
@@ -34,17 +33,22 @@ class Board(Protocol):
 
 
 class CoilBoard:
-    """A coil driver whose coils draw their nominal current at once: level / 3 of 0.3 A while on."""
+    """A coil driver whose coils draw their nominal current at once.
 
-    def __init__(self, limits: CoilLimits) -> None:
-        low, middle, high = (FULL_CURRENT_A * level / MAX_LEVEL for level in range(1, MAX_LEVEL + 1))
-        self._driver = CoilDriver(limits, ReadBack((low, middle, high)))
+    Args:
+        limits: what its interlock enforces.
+        level_a: currents at levels 1, 2, 3 [A].
+    """
+
+    def __init__(self, limits: CoilLimits, level_a: Vec3 = LEVEL_A) -> None:
+        self._driver = CoilDriver(limits, ReadBack(level_a))
+        self._level_a = (0.0, *level_a)
 
     def begin_tick(self, tick: int, clock_ms: int | None) -> list[Frame]:
         """Enter ``tick``; the current is that at the end of the tick before."""
         drive = self._driver.drive()
-        current_a = FULL_CURRENT_A * drive.level / MAX_LEVEL if drive.fraction == 1.0 else 0.0
-        return self._driver.begin_tick(tick, current_a, clock_ms)
+        current_a = self._level_a[abs(drive.level)] if drive.fraction == 1.0 else 0.0
+        return self._driver.begin_tick(tick, current_a if drive.level > 0 else -current_a, clock_ms)
 
     def receive(self, frame: Frame) -> None:
         """Hear a frame of the bus."""

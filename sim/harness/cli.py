@@ -301,13 +301,23 @@ def faults(
 @main.command()
 @click.argument("scenario", default="microsat")
 @click.option("--bus", default="auto", show_default=True, help=BUSES)
+@click.option("--real", metavar="A,B", help="Boards that are hardware: of coil, magnetometer, sun.")
 @click.option("--arm", is_flag=True, help="Let coils be driven; without it no request reaches the bus.")
+@click.option(
+    "--seconds",
+    default=60.0,
+    show_default=True,
+    type=click.FloatRange(0.0, 1e6, min_open=True),
+    help="How long.",
+)
 @click.option("--tick-hz", type=click.IntRange(1, 100), help="Ticks a second. Default: the scenario's.")
 @click.option(
-    "--conformance",
-    type=click.Choice(["coil", "magnetometer", "sun"]),
-    help="Check one board, alone on the bus, against docs/icd.md; its limits are SCENARIO's.",
+    "--stimulus", default="plant", show_default=True, help="What sensors see: plant, RUN, LOG or FILE.toml."
 )
+@click.option("--jitter-ms", default=10.0, show_default=True, help="Budget of SYNC's jitter, p99.")
+@click.option("--latency-ms", type=float, help="Budget of SYNC to TICK_DONE, p99. Default: half a tick.")
+@click.option("--slips", default=0, show_default=True, help="Budget of ticks without answer or sample.")
+@click.option("--load-percent", default=50.0, show_default=True, help="Budget of the bus load, mean.")
 @click.option(
     "--deadman-s",
     default=5.0,
@@ -315,28 +325,52 @@ def faults(
     type=click.FloatRange(0.1, 3600.0),
     help="The coil board's dead-man.",
 )
+@click.option(
+    "--conformance",
+    type=click.Choice(["coil", "magnetometer", "sun"]),
+    help="Instead, check one board, alone on the bus, against docs/icd.md; its limits are SCENARIO's.",
+)
+@click.option("--seed", default=1, show_default=True, type=click.IntRange(min=0), help="Of the plant.")
+@click.option("--out", type=click.Path(path_type=Path), help="Keep log and numbers in this folder.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON alone.")
 @SETTINGS
 @sentences
 def hil(
     scenario: str,
     bus: str,
+    real: str | None,
     arm: bool,
+    seconds: float,
     tick_hz: int | None,
-    conformance: str | None,
+    stimulus: str,
+    jitter_ms: float,
+    latency_ms: float | None,
+    slips: int,
+    load_percent: float,
     deadman_s: float,
+    conformance: str | None,
+    seed: int,
+    out: Path | None,
     as_json: bool,
     settings: tuple[str, ...],
 ) -> int:
     """SCENARIO in real time: flight software against boards, each its own process or real hardware."""
-    from sim.harness.hil.conformance_command import conformance as conform
     from sim.harness.scenario import load, parse_settings
 
     rate = (f"time.tick_hz={tick_hz}",) if tick_hz is not None else ()
     chosen = load(scenario, parse_settings((*settings, *rate)))
     if conformance is not None:
+        from sim.harness.hil.conformance_command import conformance as conform
+
         return conform(chosen, conformance, bus, arm, deadman_s, as_json)
-    raise HarnessError("hil: name the board to check with --conformance")
+    from sim.harness.hil import command
+    from sim.harness.hil.verdict import Budgets
+
+    half_ms = 500.0 / chosen.time.tick_hz
+    budgets = Budgets(jitter_ms, half_ms if latency_ms is None else latency_ms, slips, load_percent)
+    boards = command.real_boards(real)
+    bench = command.Bench(chosen, bus, boards, arm, seconds, stimulus, deadman_s, budgets, seed, out)
+    return command.hil(bench, as_json)
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ from hil_stub.magnetometer import Magnetometer
 from hil_stub.node import CONTRACT_VERSION, HEARTBEAT_S
 from hil_stub.sun_sensor import SunSensor
 from sim.plant import torques
-from sim.plant.actuators import Driven, make_actuator
+from sim.plant.actuators import Actuator, Driven, make_actuator
 from sim.plant.coils import Coils
 from sim.plant.config import PlantConfig
 from sim.plant.disturbances import effects, torque_noise
@@ -63,12 +63,13 @@ class Plant:
 
     Args:
         config: the plant.
+        actuator: what drives the coils, where that is not a board of the plant's own.
 
     Raises:
         ValueError: the orbit elements are malformed, or no orbit or field is known at the epoch.
     """
 
-    def __init__(self, config: PlantConfig) -> None:
+    def __init__(self, config: PlantConfig, actuator: Actuator | None = None) -> None:
         self._config = config
         self.substeps = ceil(1.0 / (config.tick_hz * config.max_substep_s))
         """Integration steps a tick."""
@@ -82,7 +83,7 @@ class Plant:
         self._coils = Coils(config.coils)
         self._magnetometer = MagnetometerPhysics(config.magnetometer, config.seed, config.tick_hz)
         self._sun_sensor = SunSensorPhysics(config.sun_sensor, config.seed, config.tick_hz)
-        self._actuator = make_actuator(config)
+        self._actuator = actuator or make_actuator(config)
         self._magnetometer_board = Magnetometer(config.tick_hz)
         self._sun_sensor_board = SunSensor(config.tick_hz)
         self.interference: Interference = NO_INTERFERENCE

@@ -176,6 +176,7 @@ def test_with_a_clock_of_its_own_fast_ticks_do_not_end_the_lockout(bus, start):
         (["coil", "--bus", "loop", "--pulse-s", "3.1"], "--pulse-s"),
         (["coil", "--bus", "loop", "--backoff-s", "200"], "--backoff-s"),
         (["coil", "--bus", "loop", "--clock", "none"], "--clock"),
+        (["coil", "--bus", "loop", "--levels-ma", "1", "3", "2"], "--levels-ma"),
         (["gyro", "--bus", "loop"], "gyro"),
     ],
 )

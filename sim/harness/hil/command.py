@@ -1,0 +1,236 @@
+"""``torquer hil``: the flight software in real time against boards, each its own process or real hardware."""
+
+import json
+import os
+import time
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import click
+import tomli_w
+
+from fsw.io.bus import Bus
+from fsw.io.open_bus import open_bus
+from fsw.wire.frame import Frame
+from fsw.wire.messages import PlantBoot
+from sim.harness import run_dir
+from sim.harness.assemble import plant_config
+from sim.harness.errors import HarnessError
+from sim.harness.flight import BusLog, Pace
+from sim.harness.hil.conductor import Conductor, is_boot
+from sim.harness.hil.nodes import Node, Nodes, hub_of
+from sim.harness.hil.verdict import Budgets, Json, judge, render
+from sim.harness.hil.world import PlantWorld, SyncAlone, World, line_to
+from sim.harness.progress import progress
+from sim.harness.scenario import Scenario
+
+BOARDS = {"coil": "COIL", "magnetometer": "MAG", "sun": "SUN"}
+SENSORS = ("magnetometer", "sun")
+BOOT_S = 30.0
+ASK_AGAIN_S = 0.5
+SETTLED = 0.1
+"""Part of the run after which memory is first looked at."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bench:
+    """What is asked for.
+
+    Args:
+        scenario: the scenario, its tick rate included.
+        bus: where all meet.
+        real: boards that are hardware, and not started here.
+        armed: coils may be driven.
+        seconds: how long.
+        stimulus: "plant", or what the sensors are shown instead: a run, a log, a script.
+        deadman_s: the coil board's dead-man.
+        budgets: what must be kept.
+        seed: of the plant.
+        out: run directory to be written; None: no log is kept.
+    """
+
+    scenario: Scenario
+    bus: str
+    real: frozenset[str]
+    armed: bool
+    seconds: float
+    stimulus: str
+    deadman_s: float
+    budgets: Budgets
+    seed: int
+    out: Path | None
+
+
+def real_boards(names: str | None) -> frozenset[str]:
+    """``--real coil,sun`` as a set.
+
+    Raises:
+        HarnessError: a name that is no board.
+    """
+    given = frozenset(name.strip() for name in names.split(",")) if names else frozenset()
+    if strange := sorted(given - set(BOARDS)):
+        raise HarnessError(f"--real {names}: {strange[0]!r} is no board: choose of {', '.join(BOARDS)}")
+    return given
+
+
+def hil(bench: Bench, as_json: bool = False) -> int:
+    """Run the bench: exit code 1 when a budget is broken or a node has ended before its time.
+
+    Raises:
+        BusError: the bus cannot be used.
+        HarnessError: a node does not start, or the scenario does not fit the bench.
+    """
+    if bench.stimulus != "plant" and bench.scenario.knowledge == "perfect":
+        raise HarnessError("a scenario with knowledge = 'perfect' needs the plant: --stimulus plant")
+    with hub_of(bench.bus) as spec, TemporaryDirectory() as scratch, Nodes() as nodes:
+        folder = bench.out or Path(scratch)
+        scenario_file = _begin(bench, folder, spec)
+        if not as_json:
+            click.echo(_said(bench, spec))
+        bus = open_bus(spec)
+        try:
+            numbers, kept = _run(bench, spec, bus, nodes, folder, scenario_file, as_json)
+        finally:
+            bus.close()
+        lost = [node for node in nodes.by_name.values() if node.process.poll()]
+        numbers["ended"] = {node.name: node.said() for node in lost}
+    if bench.out is not None:
+        run_dir.write_json(bench.out / "hil.json", numbers)
+    if as_json:
+        click.echo(json.dumps(numbers, indent=2))
+    for name, said in numbers["ended"].items():
+        click.echo(f"torquer: {name} ended before its time: {said}", err=True)
+    return int(not kept or bool(lost))
+
+
+def _begin(bench: Bench, folder: Path, spec: str) -> Path:
+    """The scenario as a file for the flight software."""
+    scenario, ticks = bench.scenario, _ticks(bench)
+    if bench.out is not None:
+        run_dir.begin(folder, scenario, bench.seed, ticks, spec.partition(":")[0], Pace(1.0))
+        return folder / run_dir.SCENARIO
+    path = folder / run_dir.SCENARIO
+    path.write_text(tomli_w.dumps(scenario.model_dump(mode="json", exclude_none=True)), encoding="utf-8")
+    return path
+
+
+def _ticks(bench: Bench) -> int:
+    return max(1, round(bench.seconds * bench.scenario.time.tick_hz))
+
+
+def _run(
+    bench: Bench, spec: str, bus: Bus, nodes: Nodes, folder: Path, scenario_file: Path, as_json: bool
+) -> tuple[Json, bool]:
+    scenario, ticks = bench.scenario, _ticks(bench)
+    tick_hz, memory = scenario.time.tick_hz, Memory(nodes, round(SETTLED * ticks))
+    arming = () if bench.armed else ("--disarmed",)
+    fsw = nodes.start("fsw", "fsw", str(scenario_file), "--bus", spec, "--parent", str(os.getpid()), *arming)
+    booted = _await(bus, {"FSW": fsw}, ask=True)[-1:]
+    stubs = {name: _board(bench, nodes, name, spec) for name in BOARDS if name not in bench.real}
+    world = _world(bench, stubs)
+    booted += _await(bus, {BOARDS[name]: node for name, node in stubs.items()})
+    keeping: BusLog | NoLog = BusLog(folder / run_dir.BUS_LOG, bus.name) if bench.out else NoLog()
+    with progress(f"bench with {scenario.name}", ticks) as watch, keeping as log:
+
+        def on_tick(tick: int) -> None:
+            memory.look(tick)
+            watch(tick)
+
+        measured = Conductor(bus, world, log, scenario.epoch_unix_s, tick_hz, on_tick).run(ticks, booted)
+    memory.look(memory.settled)
+    numbers, lines = judge(measured, bench.budgets, tuple(BOARDS), tick_hz)
+    numbers |= {"scenario": scenario.name, "bus": spec, "tick_hz": tick_hz, "armed": bench.armed}
+    numbers |= {"real": sorted(bench.real), "memory_kib": memory.kib}
+    numbers["budgets"] = [{**line._asdict(), "kept": line.kept} for line in lines]
+    if not as_json:
+        click.echo(render(numbers, lines))
+    return numbers, all(line.kept for line in lines)
+
+
+def _board(bench: Bench, nodes: Nodes, name: str, spec: str) -> Node:
+    """Start the stub of a board."""
+    scenario = bench.scenario
+    common = ("--bus", spec, "--tick-hz", str(scenario.time.tick_hz))
+    if name in SENSORS:
+        stimulus = "-" if bench.stimulus == "plant" else bench.stimulus
+        return nodes.start(name, "hil_stub", name, *common, "--stimulus", stimulus, piped=stimulus == "-")
+    coils = scenario.coils
+    if coils.driver == "continuous":
+        return nodes.start(name, "hil_stub", "dipole", *common)
+    levels_ma = [f"{1000.0 * level / coils.dipole_per_ampere_am2!r}" for level in coils.levels_am2]
+    limits = (
+        "--pulse-s",
+        str(coils.pulse_s),
+        "--backoff-s",
+        str(coils.backoff_s),
+        "--backoff",
+        coils.backoff,
+    )
+    guard = ("--levels-ma", *levels_ma, "--deadman-s", str(bench.deadman_s))
+    return nodes.start(name, "hil_stub", "coil", *common, *limits, *guard)
+
+
+def _world(bench: Bench, stubs: dict[str, Node]) -> World:
+    scenario = bench.scenario
+    if bench.stimulus != "plant":
+        return SyncAlone(scenario.epoch_unix_s, scenario.time.tick_hz)
+    pipes = {name: stubs[name].process.stdin for name in SENSORS if name in stubs}
+    lines = {name: line_to(pipe.fileno()) for name, pipe in pipes.items() if pipe is not None}
+    return PlantWorld(plant_config(scenario, bench.seed), lines.get("magnetometer"), lines.get("sun"))
+
+
+def _await(bus: Bus, waited: dict[str, Node], ask: bool = False) -> list[Frame]:
+    """Until each of the nodes has said that it has booted: what was heard; ``ask``: with PLANT_BOOT."""
+    heard: list[Frame] = []
+    missing = set(waited)
+    deadline_s = time.monotonic() + BOOT_S
+    asked_s = 0.0
+    while missing:
+        now_s = time.monotonic()
+        for name in missing:
+            if not waited[name].alive or now_s > deadline_s:
+                raise HarnessError(f"the {name} node does not start: {waited[name].said()}")
+        if ask and now_s - asked_s > ASK_AGAIN_S:
+            bus.send([PlantBoot(0, 1, 0).encode()])
+            asked_s = now_s
+        frame = bus.receive(0.1)
+        if frame is not None:
+            heard.append(frame)
+            missing -= {name for name in missing if is_boot(frame, name)}
+    return heard
+
+
+class NoLog(AbstractContextManager["NoLog"]):
+    """Keeps nothing."""
+
+    def write(self, timestamp_us: int, frames: list[Frame]) -> None:
+        """Nothing."""
+
+    def __exit__(self, *error: object) -> None:
+        """Nothing to close."""
+
+
+class Memory:
+    """Resident memory of each node, once the run has settled and at its end."""
+
+    def __init__(self, nodes: Nodes, settled: int) -> None:
+        self._nodes = nodes
+        self.settled = settled
+        self.kib: dict[str, list[int | None]] = {}
+
+    def look(self, tick: int) -> None:
+        """Look, if it is time."""
+        if tick == self.settled:
+            for name, node in self._nodes.by_name.items():
+                self.kib.setdefault(name, []).append(node.memory_kib())
+
+
+def _said(bench: Bench, spec: str) -> str:
+    boards = ", ".join(f"{name} ({'real' if name in bench.real else 'stub'})" for name in BOARDS)
+    arming = "ARMED: coils are driven" if bench.armed else "not armed: no request reaches the bus"
+    return (
+        f"{bench.scenario.name} at {bench.scenario.time.tick_hz} Hz for {bench.seconds:g} s on {spec}\n"
+        f"boards: {boards}; stimuli: {bench.stimulus}; {arming}"
+    )

@@ -1,0 +1,117 @@
+"""The processes of a bench: hub, flight software and boards, started and ended together."""
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from tempfile import TemporaryFile
+from types import TracebackType
+from typing import IO, Self
+
+from fsw.io.link import LoopLink
+from fsw.io.open_bus import resolve
+
+GRACE_S = 3.0
+PAGE_KIB = os.sysconf("SC_PAGE_SIZE") // 1024
+
+
+@dataclass
+class Node:
+    """One process, and where its errors go."""
+
+    name: str
+    process: subprocess.Popen[bytes]
+    errors: IO[bytes]
+
+    @property
+    def alive(self) -> bool:
+        """Whether it still runs."""
+        return self.process.poll() is None
+
+    def said(self) -> str:
+        """The last line of its errors."""
+        self.errors.seek(0)
+        lines = self.errors.read().decode(errors="replace").strip().splitlines()
+        return lines[-1] if lines else "it said nothing"
+
+    def memory_kib(self) -> int | None:
+        """Resident memory; None where the system does not tell."""
+        try:
+            with open(f"/proc/{self.process.pid}/statm", encoding="ascii") as file:
+                return int(file.read().split()[1]) * PAGE_KIB
+        except (OSError, IndexError):
+            return None
+
+
+class Nodes:
+    """Starts nodes by name, and ends those that have not ended by themselves."""
+
+    def __init__(self) -> None:
+        self.by_name: dict[str, Node] = {}
+
+    def start(self, name: str, *words: str, piped: bool = False) -> Node:
+        """``python -m`` words, in the environment of this process; ``piped``: standard input is a pipe."""
+        errors = TemporaryFile()  # noqa: SIM115  (open as long as the node)
+        process = subprocess.Popen(
+            [sys.executable, "-m", *words],
+            env=_environment(),
+            stdin=subprocess.PIPE if piped else subprocess.DEVNULL,
+            stderr=errors,
+            start_new_session=True,  # Ctrl-C is for this process, which ends its nodes itself
+        )
+        if process.stdin is not None:
+            os.set_blocking(process.stdin.fileno(), False)
+        self.by_name[name] = Node(name, process, errors)
+        return self.by_name[name]
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        for node in self.by_name.values():
+            node.process.terminate()
+        for node in self.by_name.values():
+            try:
+                node.process.wait(GRACE_S)
+            except subprocess.TimeoutExpired:
+                node.process.kill()
+                node.process.wait()
+            if node.process.stdin is not None:
+                node.process.stdin.close()
+            node.errors.close()
+
+
+@contextmanager
+def hub_of(bus: str) -> Iterator[str]:
+    """The bus in full; a loop bus that nobody serves is served by a process of its own meanwhile.
+
+    Raises:
+        BusError: something else listens on the port of the loop bus.
+    """
+    spec = resolve(bus)
+    if not spec.startswith("loop:"):
+        yield spec
+        return
+    port = "0" if bus in ("loop", "auto") else spec.removeprefix("loop:")
+    words = [sys.executable, "-m", "sim.harness.hil.hub_process", port]
+    with subprocess.Popen(
+        words, env=_environment(), stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True
+    ) as hub:
+        assert hub.stdout is not None
+        served = hub.stdout.readline().strip()
+        if not served:  # somebody else serves it, or keeps the port for something else
+            LoopLink(int(port), timeout_s=1.0, may_host=False).close()
+        yield f"loop:{served.decode()}" if served else spec
+
+
+def _environment() -> dict[str, str]:
+    return {
+        **os.environ,
+        "PYTHONPATH": os.pathsep.join(sys.path),
+        "PYTHONSAFEPATH": "1",  # not what lies in this directory
+        "OPENBLAS_NUM_THREADS": "1",
+    }

@@ -1,0 +1,174 @@
+"""What paces the bench and shows the sensors something: the plant in real time, or SYNC alone."""
+
+import os
+from collections.abc import Callable
+from typing import Protocol
+
+from fsw.wire.frame import Frame
+from fsw.wire.messages import (
+    SENDERS,
+    CoilDipoleStatus,
+    CoilFire,
+    CoilStatus,
+    MagField,
+    PlantBoot,
+    SunVector,
+    Sync,
+    intact,
+)
+from sim.plant.actuators import Board, Driven
+from sim.plant.config import PlantConfig
+from sim.plant.plant import Plant
+from sim.plant.rotation import ZERO
+
+OFF = Driven(ZERO, 0.0)
+Line = Callable[[bytes], None]
+"""Takes a line for a sensor's standard input."""
+
+
+class World(Protocol):
+    """Tick by tick: ``frames``; then ``hear`` what is on the bus; then ``advance`` to the next tick."""
+
+    def frames(self) -> list[Frame]:
+        """The frames of this tick, SYNC last."""
+
+    def hear(self, frame: Frame) -> bool:
+        """A frame of the bus: whether it is the board's word on this tick, so that the world can go on."""
+
+    def advance(self) -> None:
+        """Go on to the next tick, with what the board has told or else without."""
+
+
+class SyncAlone:
+    """No physics: the sensors have stimuli of their own."""
+
+    def __init__(self, epoch_unix_s: int, tick_hz: int) -> None:
+        self._epoch_unix_s = epoch_unix_s
+        self._tick_hz = tick_hz
+        self._tick = 0
+
+    def frames(self) -> list[Frame]:
+        """SYNC."""
+        return [Sync(self._tick, self._epoch_unix_s + self._tick // self._tick_hz).encode()]
+
+    def hear(self, frame: Frame) -> bool:
+        """Nothing depends on it."""
+        return False
+
+    def advance(self) -> None:
+        """The next tick."""
+        self._tick += 1
+
+
+class ToldDrive:
+    """The plant's actuator where the board is somebody else's: what COIL_STATUS says was driven.
+
+    Args:
+        config: the plant.
+    """
+
+    def __init__(self, config: PlantConfig) -> None:
+        coils = config.coils
+        self.board: Board = self
+        self._tick_ms = 1000.0 / config.tick_hz
+        self._level_a = [0.0, *(dipole / coils.dipole_per_ampere_am2 for dipole in coils.levels_am2)]
+        self._continuous = coils.continuous
+        self._dipole_per_ampere = coils.dipole_per_ampere_am2
+        self._asked_ms = 0
+        self._left_ms = 0
+        self._driven = OFF
+
+    def begin_tick(self, tick: int, current_a: float) -> list[Frame]:
+        """The board speaks for itself."""
+        return []
+
+    def receive(self, frame: Frame) -> None:
+        """Nothing is taken from the plant."""
+
+    def drive(self) -> Driven:
+        """What the board told of this tick, once; off where it has told nothing."""
+        driven, self._driven = self._driven, OFF
+        return driven
+
+    def hear(self, frame: Frame) -> bool:
+        """Take what concerns the coils: whether it was the board's word on a tick."""
+        if not intact(frame):
+            return False
+        if frame.can_id == CoilFire.ID:
+            self._asked_ms = CoilFire.decode(frame.data).duration_ms
+        elif frame.can_id == CoilStatus.ID and self._continuous is None:
+            self._driven = self._pulse(CoilStatus.decode(frame.data))
+            return True
+        elif frame.can_id == CoilDipoleStatus.ID and self._continuous is not None:
+            told, full_a = CoilDipoleStatus.decode(frame.data), self._full_a
+            current_a = (told.m_x * full_a, told.m_y * full_a, told.m_z * full_a)
+            self._driven = Driven(current_a, self._continuous.on_fraction)
+            return True
+        return False
+
+    @property
+    def _full_a(self) -> float:
+        return self._continuous.max_dipole_am2 / self._dipole_per_ampere if self._continuous else 0.0
+
+    def _pulse(self, status: CoilStatus) -> Driven:
+        """The last tick of a pulse is driven for the rest of it: as told a tick ago, or as asked."""
+        before_ms, self._left_ms = self._left_ms, status.remaining_ms
+        if not status.level or abs(status.level) >= len(self._level_a):
+            return OFF
+        part_ms = self._tick_ms if status.remaining_ms else before_ms or self._asked_ms
+        current_a = self._level_a[abs(status.level)] * (1.0 if status.level > 0 else -1.0)
+        x, y, z = (current_a if coil == status.coil else 0.0 for coil in range(3))
+        return Driven((x, y, z), min(1.0, part_ms / self._tick_ms))
+
+
+class PlantWorld:
+    """The plant, its sensors being shown what it computes.
+
+    Args:
+        config: the plant.
+        magnetometer: takes the lines for the magnetometer; None: it is real, and so is its field.
+        sun: the same for the Sun sensor.
+    """
+
+    def __init__(self, config: PlantConfig, magnetometer: Line | None, sun: Line | None) -> None:
+        self._drive = ToldDrive(config)
+        self._plant = Plant(config, self._drive)
+        self._shown = {MagField.ID: magnetometer, SunVector.ID: sun}
+        self._own: list[Frame] = []
+        self._show()
+
+    def frames(self) -> list[Frame]:
+        """The plant's own frames of this tick, SYNC last."""
+        return self._own
+
+    def hear(self, frame: Frame) -> bool:
+        """A frame of the bus: whether the board has told what was driven in this tick."""
+        return self._drive.hear(frame)
+
+    def advance(self) -> None:
+        """Integrate over this tick, and show the sensors the instant of the next."""
+        self._plant.end_tick()
+        self._show()
+
+    def _show(self) -> None:
+        tick = self._plant.tick
+        self._own = []
+        for frame in self._plant.begin_tick():
+            if SENDERS[frame.can_id] == "PLANT":
+                self._own += [frame] if frame.can_id != PlantBoot.ID else []  # all have booted by now
+            elif take := self._shown.get(frame.can_id):
+                message = MagField if frame.can_id == MagField.ID else SunVector
+                valid, x, y, z, _ = message.decode(frame.data)
+                take(f"{tick} {x!r} {y!r} {z!r} {valid}\n".encode())
+
+
+def line_to(descriptor: int) -> Line:
+    """Lines into a pipe that must not block; one that nobody reads any more takes none."""
+
+    def write(line: bytes) -> None:
+        try:
+            os.write(descriptor, line)
+        except (BlockingIOError, BrokenPipeError):
+            return
+
+    return write

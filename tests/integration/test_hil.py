@@ -1,0 +1,170 @@
+"""``torquer hil``: everything in real time, each node a process of its own. Several benches run at once."""
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+
+import pytest
+
+from fsw.io.open_bus import open_bus
+from fsw.wire.messages import MagField, SunVector
+from sim.harness.cli import main
+
+SHORT = ("--set", "coils.pulse_s=0.5", "--set", "coils.backoff_s=1.0", "--tick-hz", "10")
+LOOSE = ("--jitter-ms", "1000", "--latency-ms", "1000", "--slips", "15")
+"""What is tested is the bench, not how busy this machine is."""
+
+SCRIPT = """
+[[step]]
+t_s = 0.0
+field_nt = [20000, 0, -30000]
+sun = [0.0, 1.0, 0.0]
+[[step]]
+t_s = 1.0
+sun = false
+"""
+
+
+def start(*words):
+    command = [sys.executable, "-m", *words]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def torquer(*words):
+    return subprocess.run(
+        [sys.executable, "-m", "sim.harness.cli", *words], capture_output=True, text=True, check=False
+    )
+
+
+def free_loop():
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        return f"loop:{free.getsockname()[1]}"
+
+
+def bench(*words):
+    return start("sim.harness.cli", "hil", *SHORT, "--json", *words)
+
+
+def children(pid):
+    """Process ids of the children, by what they run."""
+    with open(f"/proc/{pid}/task/{pid}/children", encoding="ascii") as file:
+        pids = file.read().split()
+    found = {}
+    for child in pids:
+        with open(f"/proc/{child}/cmdline", encoding="utf-8") as file:
+            found[file.read().split("\0")[2]] = int(child)
+    return found
+
+
+def kill_its_fsw(process, log):
+    """When a bench has run for two seconds, its flight software is killed."""
+    while process.poll() is None and not (log.exists() and log.read_text().count(" 180#") > 20):
+        time.sleep(0.05)
+    os.kill(children(process.pid)["fsw"], signal.SIGKILL)
+
+
+@pytest.fixture(scope="module")
+def benches(tmp_path_factory):
+    """Each bench: numbers, errors, exit code, run directory."""
+    path = tmp_path_factory.mktemp("hil")
+    script = path / "script.toml"
+    script.write_text(SCRIPT)
+    runs = {name: path / name for name in ("armed", "real", "killed")}
+    bus = free_loop()
+    hub = open_bus(bus)  # so that the board that is not there finds nobody, and the one that is, a bus
+    running = {
+        "armed": bench("--arm", "--seconds", "6", "--out", str(runs["armed"]), *LOOSE),
+        "real": bench(
+            *("--seconds", "4", "--bus", bus, "--real", "coil,sun", "--stimulus", str(script)),
+            *("--out", str(runs["real"]), *LOOSE),
+        ),
+        "killed": bench("--seconds", "6", "--out", str(runs["killed"]), *LOOSE),
+    }
+    sun = start("hil_stub", "sun", "--bus", bus, "--tick-hz", "10", "--stimulus", str(script))
+    try:
+        kill_its_fsw(running["killed"], runs["killed"] / "bus.log")
+        ended = {name: (*bench.communicate(timeout=150), bench.returncode) for name, bench in running.items()}
+    finally:
+        for process in (*running.values(), sun):
+            process.kill()
+            process.communicate()
+        hub.close()
+    return {name: (json.loads(out), errors, code, runs[name]) for name, (out, errors, code) in ended.items()}
+
+
+def test_an_armed_bench_flies_in_real_time_and_its_log_is_as_good_as_any(benches):
+    numbers, errors, code, run = benches["armed"]
+    assert (errors, code) == ("", 0)
+    assert (numbers["ticks"], numbers["armed"], numbers["real"]) == (60, True, [])
+    assert 0.0 < numbers["latency_ms"]["p50"] <= numbers["latency_ms"]["p99"] <= numbers["latency_ms"]["max"]
+    assert 2.0 < numbers["bus_load_percent"]["mean"] < 20.0
+    assert numbers["messages"]["TICK_DONE"] >= 45
+    assert json.loads((run / "hil.json").read_text()) == numbers
+    audited = torquer("check", str(run))
+    assert audited.returncode == 0, audited.stdout + audited.stderr
+    reflown = torquer("replay", str(run))
+    assert reflown.stdout.startswith("bit-exact: 60 ticks"), reflown.stdout + reflown.stderr
+
+
+def test_a_real_board_is_not_started_and_one_that_is_silent_breaks_its_budget(benches):
+    numbers, _, code, _ = benches["real"]
+    assert code == 1
+    assert numbers["real"] == ["coil", "sun"]
+    assert set(numbers["memory_kib"]) == {"fsw", "magnetometer"}
+    broken = [line["name"] for line in numbers["budgets"] if not line["kept"]]
+    assert broken == ["ticks without one coil sample"], "the Sun sensor of another shell is on the bus"
+
+
+def test_not_armed_nothing_is_asked_and_a_script_is_shown(benches):
+    numbers, _, _, run = benches["real"]
+    assert not numbers["armed"]
+    frames = [line.split()[2].partition("#") for line in (run / "bus.log").read_text().splitlines()]
+    assert not any(can_id == "080" for can_id, _, _ in frames)
+    sun = [SunVector.decode(bytes.fromhex(data)) for can_id, _, data in frames if can_id == "118"]
+    lit = [sample[:4] for sample in sun if sample.valid]
+    assert set(lit) == {(1, 0.0, 1.0, 0.0)}
+    assert 8 <= len(lit) <= 11
+    assert len(sun) >= 25
+    fields = {MagField.decode(bytes.fromhex(data))[:4] for can_id, _, data in frames if can_id == "110"}
+    assert fields == {(1, 20_000.0, 0.0, -30_000.0)}
+
+
+def test_the_bench_goes_on_without_its_flight_software_and_says_so(benches):
+    numbers, errors, code, _ = benches["killed"]
+    assert code == 1
+    assert numbers["ticks"] == 60
+    assert numbers["slips"] > 15
+    assert set(numbers["ended"]) == {"fsw"}
+    assert errors.startswith("torquer: fsw ended before its time")
+    assert numbers["missing_samples"]["coil"] <= 15, "the boards go on"
+
+
+@pytest.mark.parametrize(
+    ("words", "named"),
+    [
+        (("--real", "coil,gyro"), "gyro"),
+        (("--stimulus", "x.log", "--set", "knowledge=perfect"), "perfect"),
+        (("--bus", "nowhere"), "nowhere"),
+        (("--seconds", "0"), "--seconds"),
+        (("nonesuch",), "nonesuch"),
+    ],
+)
+def test_what_cannot_be_is_one_sentence(capsys, words, named):
+    with pytest.raises(SystemExit) as ended:
+        main(["hil", *words])
+    heard = capsys.readouterr()
+    assert (ended.value.code, heard.out) == (2, "")
+    (sentence,) = heard.err.splitlines()
+    assert named in sentence
+
+
+def test_a_node_that_does_not_start_is_named_with_what_it_said():
+    shown = torquer("hil", "--stimulus", "no.such.log", "--seconds", "1")
+    assert shown.returncode == 2
+    (sentence,) = shown.stderr.splitlines()
+    assert "node does not start" in sentence
+    assert "no.such.log" in sentence
