@@ -16,6 +16,8 @@ from sim.harness.scenario import Scenario, orbit_period_s
 
 GOOD_DEG = 2.0
 GOOD_FOR_S = 600.0
+A_FEW = 5
+"""Pulses of a coil by which it is named if it is faulty."""
 FAR_DEG, LAST_S = 15.0, 300.0
 """Three times the standard deviation up to which fsw calls an estimate valid."""
 MOST_FRAMES = 64
@@ -160,8 +162,17 @@ def blamed_rightly(row: Row, record: Record, bounds: Bounds) -> tuple[bool | Non
     if wrong:
         return False, f"{wrong[0][1]} named in place of {row.unit} in tick {wrong[0][0]}"
     if not right:
-        return False, f"{row.unit} is not named"
+        return _not_named(row, record, onset)
     return True, f"named after {(right[0] - onset) / record.tick_hz:.0f} s"
+
+
+def _not_named(row: Row, record: Record, onset: int) -> tuple[bool | None, str]:
+    """A coil shows what is wrong with it only while it is on: less than a few pulses are no evidence."""
+    if not row.unit.startswith("coil "):
+        return False, f"{row.unit} is not named"
+    requests = zip(record.asked, record.asked_coils, strict=True)
+    count = sum(tick >= onset and f"coil {coil}" == row.unit for tick, coil in requests)
+    return None if count < A_FEW else False, f"{row.unit} is not named in {count} pulses of its own"
 
 
 def bounded(row: Row, record: Record, bounds: Bounds) -> tuple[bool | None, str]:

@@ -53,6 +53,7 @@ class Record:
         entries: SYNC, COIL_STATUS and COIL_BOOT as plant and board themselves have said them.
         driven: what really flowed in each tick, as the plant drove it.
         asked: ticks in which fsw's process sent COIL_FIRE.
+        asked_coils: the coils of these.
         boots: ticks in which fsw booted.
         refused: COIL_REFUSED, counted.
         error_deg: true error of the estimate; None where fsw has none that it calls valid.
@@ -73,6 +74,7 @@ class Record:
     entries: list[LogEntry] = field(default_factory=list)
     driven: list[Driven] = field(default_factory=list)
     asked: list[int] = field(default_factory=list)
+    asked_coils: list[int] = field(default_factory=list)
     boots: list[int] = field(default_factory=list)
     refused: int = 0
     error_deg: list[float | None] = field(default_factory=list)
@@ -111,6 +113,7 @@ class Record:
         for frame in frames:
             if frame.can_id == CoilFire.ID and intact(frame):
                 self.asked.append(tick)
+                self.asked_coils.append(CoilFire.decode(frame.data).coil)
             elif frame.can_id == FswEvent.ID:
                 event = FswEvent.decode(frame.data)
                 self.events.append(Event(tick, event.event, event.argument))

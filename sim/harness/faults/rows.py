@@ -71,7 +71,7 @@ def _coils(name: str, kind: str, *expect: str, **parameters: float) -> tuple[Row
             inf,
             expect=("named", *expect),
             unit=COIL_NAMES[coil],
-            watch_s=1100.0,
+            watch_s=2000.0,
         )
         for coil in range(3)
     )

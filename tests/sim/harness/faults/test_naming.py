@@ -1,5 +1,7 @@
 """Whom the flight software blames, as its events tell."""
 
+import pytest
+
 from fsw.core.monitors import Monitor
 from fsw.core.sensor_health import Sensor, SensorFault
 from fsw.core.telemetry import Event as Number
@@ -60,3 +62,13 @@ def test_the_board_names_the_coil_that_is_on(bounds):
     stuck = Row("planted", "", "none", unit="coil 2", expect=("stuck",))
     shorted = BoardEvent(101, CoilEventCode.CURRENT_WHILE_OFF, None)
     assert checks.board_names(stuck, record(board=[shorted]), bounds)[0]
+
+
+@pytest.mark.parametrize(("pulses", "holds"), [(4, None), (5, False)])
+def test_a_coil_that_was_hardly_used_need_not_be_named(pulses, holds, bounds, monkeypatch):
+    monkeypatch.setitem(naming.ISOLATED, 99, {3: "coil 2"})
+    flown = record()
+    flown.asked = [50, *range(100, 100 + 2 * pulses)]
+    flown.asked_coils = [2, *[2, 1] * pulses]
+    row = Row("planted", "", "none", unit="coil 2")
+    assert checks.blamed_rightly(row, flown, bounds)[0] is holds
