@@ -51,13 +51,22 @@ def now_ms() -> int:
     return time.monotonic_ns() // 1_000_000
 
 
-def run(bench: Bench, bus: Bus, poll_s: float = POLL_S) -> None:
-    """Serve the bus until the plant says that the run is over."""
+def run(bench: Bench, bus: Bus, poll_s: float = POLL_S, parent: int | None = None) -> None:
+    """Serve the bus until the plant says that the run is over.
+
+    Args:
+        bench: the board.
+        bus: where it lives.
+        poll_s: how often time is looked at while the bus is silent.
+        parent: process that started this one; when it is gone the run is over.
+    """
     bus.send(bench.switch_on(now_ms=now_ms()))
     while not bench.ended:
         frame = bus.receive(poll_s)
         if frame is None:
             bench.watch(now_ms())
+            if parent is not None and os.getppid() != parent:
+                return
         elif answer := bench.receive(frame, now_ms()):
             bus.send(answer)
 
@@ -71,7 +80,8 @@ def _serve(spec: str, make_board: Callable[[], Board], deadman_s: float = 0.0, c
         raise click.UsageError(str(error)) from error
     click.echo(f"on {resolve(spec)}", err=True)
     try:
-        run(bench, bus, min(POLL_S, deadman_s / 4.0) if deadman_ms else POLL_S)
+        parent = click.get_current_context().find_root().params["parent"]
+        run(bench, bus, min(POLL_S, deadman_s / 4.0) if deadman_ms else POLL_S, parent)
     except BusError as error:
         raise click.ClickException(str(error)) from error
     except KeyboardInterrupt:
@@ -177,7 +187,8 @@ _SHOWN = {"ignore_unknown_options": True}  # so that --stimulus takes negative n
 
 
 @click.group()
-def cli() -> None:
+@click.option("--parent", type=int, hidden=True)
+def cli(parent: int | None) -> None:
     """Run one board on a bus. Ends when the plant does, or on Ctrl-C."""
 
 

@@ -106,6 +106,16 @@ def test_a_bus_that_goes_away_ends_it_with_one_sentence(bus, start, spec):
     assert "Traceback" not in sentence
 
 
+def test_a_board_whose_starter_is_gone_ends(bus, spec):
+    command = [sys.executable, "-m", "hil_stub", "--parent", "1", "sun", "--bus", spec]
+    process = subprocess.Popen(command, stderr=subprocess.DEVNULL)
+    try:
+        assert process.wait(20.0) == 0
+    finally:
+        process.kill()
+        process.wait()
+
+
 def exchange(bus, tick):
     """A tick on the bus: what the board says in the next."""
     bus.send([Sync(tick, 0).encode(), TickDone(tick, 0).encode()])

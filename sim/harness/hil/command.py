@@ -151,14 +151,14 @@ def _run(
 
 def _board(bench: Bench, nodes: Nodes, name: str, spec: str) -> Node:
     """Start the stub of a board."""
-    scenario = bench.scenario
+    scenario, stub = bench.scenario, ("hil_stub", "--parent", str(os.getpid()))
     common = ("--bus", spec, "--tick-hz", str(scenario.time.tick_hz))
     if name in SENSORS:
         stimulus = "-" if bench.stimulus == "plant" else bench.stimulus
-        return nodes.start(name, "hil_stub", name, *common, "--stimulus", stimulus, piped=stimulus == "-")
+        return nodes.start(name, *stub, name, *common, "--stimulus", stimulus, piped=stimulus == "-")
     coils = scenario.coils
     if coils.driver == "continuous":
-        return nodes.start(name, "hil_stub", "dipole", *common)
+        return nodes.start(name, *stub, "dipole", *common)
     levels_ma = [f"{1000.0 * level / coils.dipole_per_ampere_am2!r}" for level in coils.levels_am2]
     limits = (
         "--pulse-s",
@@ -169,7 +169,7 @@ def _board(bench: Bench, nodes: Nodes, name: str, spec: str) -> Node:
         coils.backoff,
     )
     guard = ("--levels-ma", *levels_ma, "--deadman-s", str(bench.deadman_s))
-    return nodes.start(name, "hil_stub", "coil", *common, *limits, *guard)
+    return nodes.start(name, *stub, "coil", *common, *limits, *guard)
 
 
 def _world(bench: Bench, stubs: dict[str, Node]) -> World:
