@@ -8,6 +8,8 @@
 # make test-vcan   the tests on a CAN interface, in a user-mode Linux guest where this kernel has no vcan
 # make fuzz         a million random frames into codec, boards and flight loop: some minutes
 # make differential scheduler against interlock over 100 orbits of whole flights: some minutes
+# make mutation     change scheduler, interlock, auditor and codec a thing at a time: do the tests notice? an hour
+# make coverage     branch coverage of the same modules, which must be whole: a minute
 
 PYTHON ?= python3
 PYTEST_FLAGS ?= -q -rs -n 2
@@ -17,7 +19,7 @@ bin := .venv/bin
 installed := .venv/.installed
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv sil test lint test-vcan golden validate fuzz differential replay-elsewhere faults
+.PHONY: help venv sil test lint test-vcan golden validate fuzz differential replay-elsewhere faults mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -66,3 +68,14 @@ replay-elsewhere: venv
 
 faults: venv
 	$(bin)/torquer faults --phases 10 --seeds 5 --write-docs
+
+mutation: venv
+	$(bin)/python tools/mutate.py $(MUTATE)
+
+coverage: venv
+	$(bin)/coverage erase
+	$(bin)/coverage run -m pytest -q -p no:cacheprovider tests/fsw/wire tests/fsw/core/test_pulses.py \
+		tests/fsw/core/test_pulse_choice.py tests/fsw/core/test_actuation.py tests/fsw/core/test_dipoles.py \
+		tests/hil_stub/test_interlock.py tests/hil_stub/test_guard.py tests/hil_stub/test_coil_driver.py \
+		tests/sim/harness/audit tests/sim/harness/test_log_index.py
+	$(bin)/coverage report

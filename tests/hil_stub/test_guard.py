@@ -126,3 +126,7 @@ def test_without_a_clock_the_ticks_decide():
     assert guard.remaining_ms() == 1000
     guard.silence()
     assert guard.lockout_ms(0) == BACKOFF_MS
+
+
+def test_a_guard_that_has_just_booted_shows_no_level():
+    assert Guard(CoilLimits(1)).level == 0

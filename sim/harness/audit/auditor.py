@@ -140,10 +140,9 @@ class _Auditor:
         statuses = self._trusted(boards, instant, tick)
         for board in boards:
             self._check_timestamp("COIL_STATUS", board.line, board.timestamp_us, tick)
-        if self._by_ticks is not None:
-            self._by_ticks.observe(instant, tick, boards[0].line, statuses)
-        if self._by_timestamps is not None:
-            self._by_timestamps.observe(self._stamped(boards), tick, boards[0].line, statuses)
+        for judge in self._judges():
+            when = instant if judge is self._by_ticks else self._stamped(boards)
+            judge.observe(when, tick, boards[0].line, statuses)
 
     def _check_timestamp(self, name: str, line: int, timestamp_us: int, tick: int) -> None:
         if not self._clock.simulated:

@@ -1,9 +1,13 @@
 import pytest
 
+from fsw.core import telemetry
+from fsw.wire.messages import CoilBoot
+from hil_stub import node
 from sim.harness.audit.auditor import AuditLimits, Kind, audit
-from sim.harness.audit.check import check, limits_beside, render
+from sim.harness.audit.check import CONTRACT_VERSION, check, limits_beside, render
 from sim.harness.candump import LogError, read_log
 from sim.harness.errors import HarnessError
+from sim.harness.log_index import LogIndex
 
 
 @pytest.fixture
@@ -134,6 +138,31 @@ def test_a_log_that_was_altered_in_the_middle(run, bus_log):
     (folder / "bus.log").write_text("".join(lines))
     with pytest.raises(LogError, match="line 31 "):
         check(folder, None)
+
+
+def test_a_log_of_another_bus_contract(run, bus_log):
+    log = bus_log(ticks=20)
+    log.statuses[7].insert(0, CoilBoot(0, CONTRACT_VERSION + 1, 0).encode())
+    with pytest.raises(HarnessError, match="line 22 is of version 2 of the bus contract, and only version 1"):
+        check(run(log), None)
+
+
+def test_the_contract_that_is_judged_is_that_of_the_nodes():
+    assert CONTRACT_VERSION == telemetry.CONTRACT_VERSION == node.CONTRACT_VERSION
+
+
+@pytest.mark.parametrize("broken", [False, True])
+def test_a_log_that_its_index_contradicts(run, bus_log, fired, broken):
+    folder = run(bus_log(1, 200, [fired(0, 110)]))
+    log = folder / "bus.log"
+    index = LogIndex(log)
+    index.add(log.read_bytes().replace(b"vcan0", b"vcan1" if broken else b"vcan0"), 600)
+    index.close(ended=True)
+    report = check(folder, None)
+    assert (report.exit_code, report.genuine) == ((1, False) if broken else (0, True))
+    last = "FAIL: limits kept as far as the log goes, but its index contradicts it"
+    assert (render(report).splitlines()[-1] == last) is broken
+    assert ("note: altered: lines 1 to 600 are not what was flown" in render(report)) is broken
 
 
 # --- where a log ends

@@ -283,3 +283,13 @@ def test_nothing_is_judged_of_nothing():
 def test_a_lone_status_is_judged(bus_log):
     status = bus_log(ticks=2).statuses[1][0]
     assert audit([LogEntry(1, 0, "can0", status)], AuditLimits()).ok
+
+
+def test_without_sync_the_rate_of_the_scenario_tells_the_time(bus_log, fired):
+    """Every other status is lost: by their spacing alone the rate would be half of it."""
+    log = bus_log(10, 2500, [fired(0, 1001), fired(1, 2035)], sync=False)
+    kept = [entry for entry in log.entries() if entry.frame.can_id == CoilStatus.ID][::2]
+    report = audit(kept, AuditLimits(tick_hz=10))
+    assert report.violations == ()
+    assert not any("a COIL_STATUS every 0.200 s" in note for note in report.notes)
+    assert any("a COIL_STATUS every 0.100 s" in note for note in report.notes)

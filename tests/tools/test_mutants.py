@@ -1,0 +1,121 @@
+"""Mutants: one change each, every kind of change, nothing that is not code."""
+
+import ast
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
+from mutants import mutants  # noqa: E402
+
+MODULES = [
+    module
+    for table in tomllib.loads((ROOT / "tests/mutation/targets.toml").read_text()).values()
+    for module in table["modules"]
+]
+
+
+def changes(source):
+    return [mutant.change for mutant in mutants(source)]
+
+
+@pytest.mark.parametrize(
+    ("line", "after"),
+    [
+        ("a < b", {"a <= b"}),
+        ("a >= b", {"a > b"}),
+        ("a == b", {"a != b"}),
+        ("a is not b", {"a is b"}),
+        ("a not in b", {"a in b"}),
+        ("x < y < z", {"x <= y < z", "x < y <= z"}),
+        ("a + b - c", {"a - b - c", "a + b + c"}),
+        ("(a + b) * c", {"(a - b) * c", "(a + b) / c"}),
+        ("a // b % c", {"a * b % c", "a // b // c"}),
+        ("a & b | c ^ d", {"a | b | c ^ d", "a & b & c ^ d", "a & b | c & d"}),
+        ("a << b", {"a >> b"}),
+        ("a and b or c", {"a or b or c", "a and b and c"}),
+        ("not a", {"a"}),
+        ("-a", {"a"}),
+        ("-(-a // b)", {"(-a // b)", "-(a // b)", "-(-a * b)"}),
+        ("7", {"8"}),
+        ("True", {"False"}),
+        ("2.0", {"3.001"}),
+        ("a if b else c", {"a if not (b) else c"}),
+        ("[a for a in b if c]", {"[a for a in b if True]"}),
+        ('"text"', set()),
+        ("a", set()),
+    ],
+)
+def test_in_an_expression(line, after):
+    assert set(changes(f"x = {line}\n")) == {f"x = {line} -> x = {one}" for one in after}
+
+
+@pytest.mark.parametrize(
+    ("source", "expected"),
+    [
+        ("if a:\n    b()\n", ["if a: -> if not (a):", "b() -> pass"]),
+        ("while a:\n    break\n", ["while a: -> while not (a):", "break -> continue"]),
+        ("while a:\n    continue\n", ["while a: -> while not (a):", "continue -> break"]),
+        ("a += b\n", ["a += b -> pass", "a += b -> a -= b"]),
+        ("raise a\n", ["raise a -> pass"]),
+    ],
+)
+def test_of_a_statement(source, expected):
+    assert sorted(changes(source)) == sorted(expected)
+
+
+def test_what_is_not_executed_is_left():
+    source = (
+        '"""2 + 2."""\nfrom a import b\n\n\n@c(1)\ndef f(x: d[2]) -> e[3]:\n    """4."""\n    y: g[5] = x\n'
+    )
+    assert changes(source) == []
+
+
+def test_operators_between_brackets_and_comments_are_found():
+    assert changes("x = (a)  \\\n    + (b)\n") == ["+ (b) -> - (b)"]
+    assert changes("x = (a +  # and - too\n     b)\n") == ["x = (a +  # and - too -> x = (a -  # and - too"]
+
+
+@pytest.mark.parametrize("module", [module for module in MODULES if module != "fsw/wire/messages.py"])
+def test_every_mutant_of_the_modules_is_a_module_that_differs_in_one_line(module):
+    source = (ROOT / module).read_text()
+    made = list(mutants(source))
+    assert made
+    for mutant in made:
+        ast.parse(mutant.source)
+        assert mutant.source.count("\n") <= source.count("\n")
+        assert mutant.before in source
+        assert mutant.source != source
+    assert len({mutant.source for mutant in made}) == len(made)
+
+
+def test_every_module_and_test_that_is_named_is_there():
+    for table in tomllib.loads((ROOT / "tests/mutation/targets.toml").read_text()).values():
+        for name in (*table["modules"], *table["quick"], *table["slow"]):
+            assert (ROOT / name).exists(), name
+
+
+def test_every_survivor_that_is_listed_is_a_mutant_that_there_is_and_has_a_reason():
+    listed = tomllib.loads((ROOT / "tests/mutation/survivors.toml").read_text()).get("survivor", [])
+    for one in listed:
+        assert one["module"] in MODULES
+        assert one["change"] in changes((ROOT / one["module"]).read_text()), one["change"]
+        assert len(one["reason"]) > 20
+
+
+def test_the_command_counts_mutants():
+    done = subprocess.run(
+        [sys.executable, str(ROOT / "tools" / "mutate.py"), "--list", "interlock"],
+        check=True,
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+    )
+    assert [line.split()[:2] for line in done.stdout.splitlines()] == [
+        ["interlock", "hil_stub/interlock.py"],
+        ["interlock", "hil_stub/guard.py"],
+    ]

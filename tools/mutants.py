@@ -1,0 +1,150 @@
+"""Mutants of a module: its source with one small thing changed, as text, line by line the same otherwise."""
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+COMPARED = {
+    ast.Lt: "<=",
+    ast.LtE: "<",
+    ast.Gt: ">=",
+    ast.GtE: ">",
+    ast.Eq: "!=",
+    ast.NotEq: "==",
+    ast.Is: "is not",
+    ast.IsNot: "is",
+    ast.In: "not in",
+    ast.NotIn: "in",
+}
+COMBINED = {
+    ast.Add: ("+", "-"),
+    ast.Sub: ("-", "+"),
+    ast.Mult: ("*", "/"),
+    ast.Div: ("/", "*"),
+    ast.FloorDiv: ("//", "*"),
+    ast.Mod: ("%", "//"),
+    ast.LShift: ("<<", ">>"),
+    ast.RShift: (">>", "<<"),
+    ast.BitAnd: ("&", "|"),
+    ast.BitOr: ("|", "&"),
+    ast.BitXor: ("^", "&"),
+    ast.Pow: ("**", "*"),
+}
+Span = tuple[int, int]
+"""Where a piece of source begins and ends."""
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """One change: the line it is in, that line before and after, and the whole source with it."""
+
+    line: int
+    before: str
+    after: str
+    source: str
+
+    @property
+    def change(self) -> str:
+        """The change in words that outlast other changes of the file: the line before and after."""
+        return f"{self.before} -> {self.after}"
+
+
+def mutants(source: str) -> Iterator[Mutant]:
+    """Every mutant of a module, in the order of the source, each one once."""
+    seen = {source}
+    for (begin, end), text in sorted(_changes(source)):
+        mutated = source[:begin] + text + source[end:]
+        if mutated in seen:
+            continue
+        seen.add(mutated)
+        line = source.count("\n", 0, begin) + 1
+        yield Mutant(line, _line(source, begin), _line(mutated, begin), mutated)
+
+
+def _line(source: str, place: int) -> str:
+    begin = source.rfind("\n", 0, place) + 1
+    end = source.find("\n", place)
+    return source[begin : end if end >= 0 else None].strip()
+
+
+def _changes(source: str) -> Iterator[tuple[Span, str]]:  # noqa: PLR0912  (a case for each kind of node)
+    """(where, what stands there instead)."""
+    lines = source.splitlines(keepends=True)
+    starts = [0]
+    for line in lines:
+        starts.append(starts[-1] + len(line.encode()))
+    text = source.encode()
+
+    def at(line: int, column: int) -> int:
+        return len(text[: starts[line - 1] + column].decode())
+
+    def span(node: ast.AST) -> Span:
+        return at(node.lineno, node.col_offset), at(node.end_lineno, node.end_col_offset)
+
+    for node in _executed(ast.parse(source)):
+        match node:
+            case ast.Compare(ops=[op]) if type(op) in COMPARED:
+                between = (span(node.left)[1], span(node.comparators[0])[0])
+                yield _swapped(source, between, COMPARED[type(op)])
+            case ast.Compare():
+                for left, op, right in zip(
+                    [node.left, *node.comparators], node.ops, node.comparators, strict=False
+                ):
+                    yield _swapped(source, (span(left)[1], span(right)[0]), COMPARED[type(op)])
+            case ast.BoolOp(values=[*values]):
+                other = "or" if isinstance(node.op, ast.And) else "and"
+                for left, right in pairwise(values):
+                    yield _swapped(source, (span(left)[1], span(right)[0]), other)
+            case ast.BinOp() if type(node.op) in COMBINED:
+                between = (span(node.left)[1], span(node.right)[0])
+                yield _swapped(source, between, COMBINED[type(node.op)][1])
+            case ast.AugAssign() if type(node.op) in COMBINED:
+                between = (span(node.target)[1], span(node.value)[0])
+                yield _swapped(source, between, COMBINED[type(node.op)][1] + "=")
+            case ast.UnaryOp(op=ast.Not() | ast.USub() as op):
+                begin = span(node)[0]
+                yield (begin, begin + len("not " if isinstance(op, ast.Not) else "-")), ""
+            case ast.Constant(value=bool() as value):
+                yield span(node), str(not value)
+            case ast.Constant(value=int() as value):
+                yield span(node), str(value + 1)
+            case ast.Constant(value=float() as value):
+                yield span(node), repr(value * 1.5 + 1e-3)
+            case ast.If() | ast.IfExp() | ast.While():
+                begin, end = span(node.test)
+                yield (begin, end), f"not ({source[begin:end]})"
+            case ast.comprehension(ifs=[*conditions]):
+                for condition in conditions:
+                    yield span(condition), "True"
+            case ast.Continue():
+                yield span(node), "break"
+            case ast.Break():
+                yield span(node), "continue"
+        if isinstance(node, ast.Raise | ast.AugAssign | ast.Expr):
+            yield span(node), "pass"
+
+
+def _swapped(source: str, between: Span, operator: str) -> tuple[Span, str]:
+    """Another operator between two operands, whatever brackets and line ends are there too."""
+    begin, end = between
+    gap = source[begin:end]
+    old = gap.strip("() \t\n\\")
+    comment = old.find("#")
+    old = old if comment < 0 else old[:comment].strip()
+    place = gap.index(old)
+    return (begin + place, begin + place + len(old)), operator
+
+
+def _executed(tree: ast.AST) -> Iterator[ast.AST]:
+    """Every node but annotations, docstrings, decorators and imports."""
+    for name, value in ast.iter_fields(tree):
+        if name in ("annotation", "returns", "decorator_list", "type_comment"):
+            continue
+        for child in value if isinstance(value, list) else [value]:
+            if not isinstance(child, ast.AST) or isinstance(child, ast.Import | ast.ImportFrom):
+                continue
+            if isinstance(child, ast.Expr) and isinstance(child.value, ast.Constant):
+                continue
+            yield child
+            yield from _executed(child)
