@@ -40,6 +40,9 @@ class Fault(Interference):
     def end(self, plant: Plant) -> None:
         """The fault goes, before the tick begins."""
 
+    def before(self, tick: int, plant: Plant) -> None:
+        """A tick with the fault is about to begin."""
+
     def from_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
         """What fsw receives of what the boards sent in this tick; SYNC is not among it."""
         return frames

@@ -88,6 +88,8 @@ class FaultyPlant(Plant):
         if over or due:
             self.active = tuple(one.fault for one in self._scheduled)
             self.interference = _Chain(self.active)
+        for fault in self.active:
+            fault.before(tick, self)
 
 
 class _Chain(Interference):

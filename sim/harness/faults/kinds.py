@@ -79,6 +79,7 @@ KINDS: dict[str, Kind] = {
     "coil_wired": Kind(plant.CoilWired, {**AXIS, "scale": Parameter(-1.0, -2.0, 2.0)}),
     "coil_stuck_on": Kind(plant.StuckOn, {**AXIS, "ampere": Parameter(0.4, -10.0, 10.0)}),
     "coil_board_restarts": Kind(plant.board(plant.BoardRestarts, "coil")),
+    "coil_board_storm": Kind(plant.board(plant.BoardStorm, "coil"), {"ticks": Parameter(150.0, 1.0, 1e6)}),
     "coil_board_dead": Kind(plant.board(plant.BoardDead, "coil")),
     "mag_board_restarts": Kind(plant.board(plant.BoardRestarts, "magnetometer")),
     "mag_board_dead": Kind(plant.board(plant.BoardDead, "magnetometer")),

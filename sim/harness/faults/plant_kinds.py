@@ -192,6 +192,21 @@ class BoardRestarts(Fault):
         plant.restart(self._board)
 
 
+class BoardStorm(Fault):
+    """A board restarts over and over, each time up to ``ticks`` ticks after the last."""
+
+    def __init__(self, board: BoardName, rng: Random, parameters: Parameters) -> None:
+        super().__init__(rng, parameters)
+        self._board: BoardName = board
+        self._next = -1
+
+    def before(self, tick: int, plant: Plant) -> None:
+        """It may be time."""
+        if tick >= self._next:
+            plant.restart(self._board)
+            self._next = tick + self.rng.randint(1, round(self.parameters["ticks"]))
+
+
 class BoardDead(Fault):
     """A board says and does nothing; when the fault is over it boots."""
 
@@ -223,7 +238,7 @@ def sun_reads(reading: Reading) -> Callable[[Random, Parameters], Fault]:
 
 
 def board(
-    kind: type[BoardRestarts] | type[BoardDead], name: BoardName
+    kind: type[BoardRestarts] | type[BoardStorm] | type[BoardDead], name: BoardName
 ) -> Callable[[Random, Parameters], Fault]:
     """A fault of a board."""
     return partial(kind, name)

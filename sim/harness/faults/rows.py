@@ -137,6 +137,8 @@ ROWS: tuple[Row, ...] = (
     ),
     Row("process-stopped", PROCESS, "sigstop", {"times": 5.0}, expect=("no extra pulse",), slow=True),
     Row("coil-board-restarts", BOARD, "coil_board_restarts", {}, 1.0, expect=(*BUS, "recovers")),
+    Row("coil-board-storm", BOARD, "coil_board_storm", {"ticks": 150.0}, 900.0, expect=(*BUS, "recovers")),
+    Row("coil-board-storm-fast", BOARD, "coil_board_storm", {"ticks": 4.0}, 200.0, expect=(*BUS, "recovers")),
     Row(
         "coil-board-dead",
         BOARD,

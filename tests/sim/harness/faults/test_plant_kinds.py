@@ -1,5 +1,6 @@
 """Faults of sensors, coils and boards: what they do to what the boards say and what flows."""
 
+from itertools import pairwise
 from math import inf, isnan
 from random import Random
 
@@ -146,3 +147,15 @@ def test_every_double_of_a_flight_state_can_be_reached(rig):
     assert places > 100
     for place in range(0, places, 7):
         assert count_doubles(flip(state, place, 3)) == places
+
+
+def test_a_storm_restarts_a_board_over_and_over_and_nothing_flows():
+    bench = Bench(Scheduled(fault("coil_board_storm", ticks=60.0), 10, 400))
+    for start in range(0, 400, 40):
+        bench.fly(40, fire_at=start + 20)
+    boots = [
+        tick for tick, frames in enumerate(bench.said) for frame in frames if frame.can_id == CoilBoot.ID
+    ]
+    assert len(boots) > 6
+    assert max(later - sooner for sooner, later in pairwise(boots[1:])) <= 60
+    assert not any(bench.plant.driven.current_a)
