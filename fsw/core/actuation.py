@@ -93,6 +93,7 @@ def actuate(
     readings: Readings,
     tick: int,
     config: CoilConfig,
+    faults: tuple[int, int, int] = (0, 0, 0),
 ) -> tuple[PulseState, CoilView, CoilFire | CoilDipole | None]:
     """Turn what the law asks for into at most one request.
 
@@ -104,6 +105,7 @@ def actuate(
         readings: what was heard in this tick; without a word of the coil driver nothing is sent.
         tick: tick that is answered.
         config: the coils.
+        faults: by coil; one with a fault is not fired.
 
     Returns:
         Scheduler state, view, and the request to send or None.
@@ -116,7 +118,7 @@ def actuate(
     if _refused(view, readings, tick):
         state = replace(state, owed_impulse_body_nms=add(state.owed_impulse_body_nms, view.paid_body_nms))
         view = replace(view, fired=NO_PULSE, paid_body_nms=ZERO)
-    return _pulse(state, view, demand, b_body_t, readings.coil is not None, tick, config.pulses)
+    return _pulse(state, view, demand, b_body_t, readings.coil is not None, tick, config.pulses, faults)
 
 
 def _refused(view: CoilView, readings: Readings, tick: int) -> bool:
@@ -135,6 +137,7 @@ def _pulse(
     status_fresh: bool,
     tick: int,
     config: PulseConfig,
+    faults: tuple[int, int, int],
 ) -> tuple[PulseState, CoilView, CoilFire | None]:
     """At most one pulse: only when the own timer and the board's last word on that coil agree."""
     if demand.impulse_body_nms is None:
@@ -143,7 +146,7 @@ def _pulse(
     else:
         state = replace(state, owed_impulse_body_nms=ZERO)
         wanted, metric = demand.impulse_body_nms, config.energy_metric
-    pulse = pulses.choose(state, wanted, metric, tick, b_body_t, config)
+    pulse = pulses.choose(state, wanted, metric, tick, b_body_t, config, faults)
     if pulse is None or not status_fresh or view.lockout_ms[pulse.coil] != 0:
         return state, view, None
     request = CoilFire(pulse.level, pulse.coil, (view.seq + 1) & 0xFF, tick, config.duration_ms)

@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from fsw.core import modes
+from fsw.core.coil_health import CoilHealth
 from fsw.core.config import FlightConfig
 from fsw.core.elements import RANGES, Upload
 from fsw.core.ephemeris import advance, fly_orbit
@@ -99,8 +100,8 @@ def _mode(state: FlightState, message: TcMode, situation: Situation) -> Outcome:
 
 
 def _clear(state: FlightState, message: TcClear, situation: Situation) -> Outcome:
-    """Trips are forgotten, and every sensor is believed again."""
-    return state._replace(modes=replace(state.modes, trips=0), sensors=SensorHealth())
+    """Trips are forgotten, every sensor is believed again, and every coil used."""
+    return state._replace(modes=replace(state.modes, trips=0), sensors=SensorHealth(), coils=CoilHealth())
 
 
 def _law(state: FlightState, message: TcLaw, situation: Situation) -> Outcome:

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from fsw.core.actuation import CoilConfig
+from fsw.core.coil_health import CoilHealthConfig
 from fsw.core.ephemeris import EphemerisModel
 from fsw.core.estimator import EstimatorConfig
 from fsw.core.laws.interface import ControlConfig
@@ -23,6 +24,7 @@ class FlightConfig:
     sensors: SensorHealthConfig
     control: ControlConfig
     coils: CoilConfig
+    coil_health: CoilHealthConfig
     modes: ModeConfig
     rates: RateTable
     stale_after_ticks: int

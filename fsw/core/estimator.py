@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from fsw.core import mekf
 from fsw.core.attitude import UNKNOWN, Attitude
+from fsw.core.coil_health import Correction
 from fsw.core.earth import MU_M3PS2
 from fsw.core.ephemeris import Reference
 from fsw.core.mekf import Estimate
@@ -74,8 +75,8 @@ def estimate(
     m_body_am2: Vec3,
     elapsed_ticks: int,
     config: EstimatorConfig,
-) -> tuple[EstimatorState, Used]:
-    """Bring the estimate to this tick.
+) -> tuple[EstimatorState, Used, Estimate | None]:
+    """Bring the estimate to this tick; also which measurements were taken, and what was predicted.
 
     Args:
         state: of the tick before.
@@ -91,8 +92,9 @@ def estimate(
     if current is None:
         state = state if state.estimate is None else restart(state)
         started = _start(field, sun, reference, config)
-        return replace(state, estimate=started), Used(started is not None, started is not None, blanked)
+        return replace(state, estimate=started), Used(started is not None, started is not None, blanked), None
 
+    predicted = current
     current, took_field, took_sun = _updated(current, field, sun, reference, config.mekf)
     rejected = (field is not None and not took_field) + (sun is not None and not took_sun)
     in_a_row = state.rejected_in_a_row + rejected
@@ -100,7 +102,7 @@ def estimate(
         in_a_row = 0
     moved = EstimatorState(current, in_a_row, state.rejected_total + rejected, state.restarts)
     used = Used(took_field, took_sun, blanked)
-    return (restart(moved) if in_a_row >= config.restart_after_rejections else moved), used
+    return (restart(moved) if in_a_row >= config.restart_after_rejections else moved), used, predicted
 
 
 def _updated(
@@ -171,6 +173,16 @@ def _start(
     if not consistent(field, sun, b, s, *limits):
         return None
     return mekf.start(triad(sun, field, s, b), ZERO, config.mekf)
+
+
+def set_right(state: EstimatorState, correction: Correction) -> EstimatorState:
+    """With what a pulse that was not the one it was taken for did to attitude and rate."""
+    if state.estimate is None:
+        return state
+    deviation = correction.variance**0.5
+    spread = (*scale(deviation, correction.reach_rad), *scale(deviation, correction.kick_radps))
+    estimate = mekf.corrected(state.estimate, correction.turn_rad, correction.change_radps, spread)
+    return replace(state, estimate=estimate)
 
 
 def restart(state: EstimatorState) -> EstimatorState:

@@ -45,6 +45,26 @@ def start(q_body_from_eci: Quaternion, omega_body_radps: Vec3, config: MekfConfi
     return Estimate(q_body_from_eci, omega_body_radps, ZERO, ZERO, config.initial_covariance)
 
 
+def corrected(estimate: Estimate, turn_rad: Vec3, change_radps: Vec3, spread: tuple[float, ...]) -> Estimate:
+    """The estimate with attitude and rate set right, and less certain along ``spread``.
+
+    Args:
+        estimate: before.
+        turn_rad: small rotation that the attitude lacks, body axes.
+        change_radps: what the rate lacks, body axes.
+        spread: one standard deviation of both, laid out as the error state begins.
+    """
+    covariance = estimate.covariance.copy()
+    covariance[0:6, 0:6] += np.outer(spread, spread)
+    return Estimate(
+        normalise(multiply(estimate.q_body_from_eci, from_small_rotation(turn_rad))),
+        add(estimate.omega_body_radps, change_radps),
+        estimate.mag_bias_t,
+        estimate.torque_body_nm,
+        covariance,
+    )
+
+
 def healthy(estimate: Estimate) -> bool:
     """Whether every number is finite and every variance positive and below ``MAX_VARIANCE``.
 

@@ -92,7 +92,13 @@ def owe(state: PulseState, torque_body_nm: Vec3, b_body_t: Vec3, config: PulseCo
 
 
 def choose(
-    state: PulseState, impulse_body_nms: Vec3, metric: Mat3, tick: int, b_body_t: Vec3, config: PulseConfig
+    state: PulseState,
+    impulse_body_nms: Vec3,
+    metric: Mat3,
+    tick: int,
+    b_body_t: Vec3,
+    config: PulseConfig,
+    faults: tuple[int, int, int] = (0, 0, 0),
 ) -> Pulse | None:
     """The pulse, among the coils whose own timer has run out, that leaves the least; None if none helps.
 
@@ -105,6 +111,7 @@ def choose(
         tick: tick that is answered.
         b_body_t: field, body axes, T.
         config: limits and levels.
+        faults: by coil; one with a fault is not chosen.
     """
     if tick < state.busy_until:
         return None
@@ -112,7 +119,7 @@ def choose(
     best: Pulse | None = None
     least = 0.0
     for coil in range(3):
-        if tick < state.ready_tick[coil]:
+        if tick < state.ready_tick[coil] or faults[coil]:
             continue
         gain = scale(config.pulse_s, cross(AXES[coil], b_body_t))
         along, square = dot(weighted, gain), dot(gain, transform(metric, gain))

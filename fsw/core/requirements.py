@@ -7,6 +7,7 @@ cited by a test, and every number that an event can name stands in it.
 from enum import IntEnum
 from typing import NamedTuple
 
+from fsw.core.coil_health import CoilFault
 from fsw.core.monitors import RATE_LIMIT_RADPS, UNIT_TOLERANCE, Monitor
 from fsw.core.sensor_health import AGAINST_ESTIMATE, SensorFault
 from fsw.core.telemetry import Event
@@ -28,6 +29,14 @@ def _trip(number: int, watch: Monitor, text: str, limit: str) -> Requirement:
 
 def _sensor(number: int, watch: SensorFault, text: str, limit: str) -> Requirement:
     return Requirement(f"REQ-SENSOR-{number:02}", text, limit, watch, Event.SENSOR_ISOLATED)
+
+
+def _coil(number: int, watch: CoilFault, text: str) -> Requirement:
+    limit = (
+        "`fdir.weak_coil_part`, `fdir.open_coil_part`; current: `fdir.name_pulses` in a row; "
+        "effect on the rate: `fdir.name_sigmas`"
+    )
+    return Requirement(f"REQ-COIL-{number:02}", text, limit, watch, Event.COIL_FAULT)
 
 
 REQUIREMENTS: tuple[Requirement, ...] = (
@@ -107,6 +116,25 @@ REQUIREMENTS: tuple[Requirement, ...] = (
         None,
         Event.SENSOR_ISOLATED,
     ),
+    _coil(
+        1, CoilFault.OPEN, "A coil without current, or whose pulses have no effect, is named and left out."
+    ),
+    _coil(2, CoilFault.WEAK, "A coil of too small a current or effect is named and left out."),
+    _coil(3, CoilFault.REVERSED, "A coil whose current or effect is the other way is named and left out."),
+    Requirement(
+        "REQ-COIL-04",
+        "A level or current that nobody asked for leads to SAFE, and its coil is named when it lasts.",
+        "level: at once; more than half of the least level's current, and name: `fdir.stuck_s` beyond",
+        CoilFault.STUCK,
+        Event.COIL_FAULT,
+    ),
+    Requirement(
+        "REQ-COIL-05",
+        "A coil that is named is not fired until the ground sends TC_CLEAR; sound coils are not named.",
+        "no pulse",
+        None,
+        Event.COIL_FAULT,
+    ),
 )
 
 
@@ -128,7 +156,7 @@ _HEAD = """# Requirements on fault detection
 Written from `fsw/core/requirements.py` by `python tools/write_requirements.py`; a test fails when it is stale
 or when no test cites one of its requirements. The number after what watches is the one that the event's
 argument names. A violated `REQ-TRIP` requirement leads to SAFE in the same tick. A sensor is named as 100
-times its number (1: magnetometer, 2: Sun sensor) and the number of the fault.
+times its number (1: magnetometer, 2: Sun sensor) and the number of the fault; a coil likewise, by its axis.
 
 | id | requirement | limit | watched by | event |
 |---|---|---|---|---|"""

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from fsw.core.actuation import CoilView
 from fsw.core.attitude import UNKNOWN, Attitude
+from fsw.core.coil_health import CoilHealth
 from fsw.core.elements import Elements, Upload
 from fsw.core.ephemeris import EphemerisWindow, pack_values
 from fsw.core.estimator import EstimatorState
@@ -46,6 +47,7 @@ class FlightState(NamedTuple):
     ephemeris: EphemerisWindow | None
     estimator: EstimatorState
     sensors: SensorHealth
+    coils: CoilHealth
     attitude: Attitude
     modes: ModeState
     sample: FieldSample
@@ -60,6 +62,7 @@ def checksum(state: FlightState) -> int:
     """CRC-32 over every number of the state, little-endian: integers as 64 bit, floats as doubles."""
     gate, modes, coil, pulses, attitude = state.gate, state.modes, state.coil, state.pulses, state.attitude
     field_watch, sun_watch, *apart = state.sensors
+    faults, wrong, gathered, weight, pulsed, unexplained, *strange = state.coils
     integers = (
         state.tick,
         state.field_tick,
@@ -80,6 +83,11 @@ def checksum(state: FlightState) -> int:
         *field_watch[:-1],
         *sun_watch[:-1],
         *apart,
+        *faults,
+        *wrong,
+        *strange,
+        pulsed.coil,
+        pulsed.end_tick,
         attitude.valid,
         modes.mode,
         modes.since_tick,
@@ -106,6 +114,14 @@ def checksum(state: FlightState) -> int:
         attitude.sigma3_rate_radps,
         *field_watch.sample,
         *sun_watch.sample,
+        *gathered,
+        *weight,
+        *pulsed.kick_radps,
+        *pulsed.reach_rad,
+        *pulsed.turned_rad,
+        *pulsed.changed_radps,
+        *pulsed[6:],
+        *unexplained,
         *state.sample.b_body_t,
         *pulses.owed_impulse_body_nms,
         *pulses.held_am2,
@@ -141,6 +157,7 @@ def initial_state(pulses: PulseState, setpoint: Setpoint, sent: tuple[int, ...])
         ephemeris=None,
         estimator=EstimatorState(),
         sensors=SensorHealth(),
+        coils=CoilHealth(),
         attitude=UNKNOWN,
         modes=ModeState(),
         sample=FieldSample(),

@@ -1,7 +1,7 @@
 """The flight loop as one pure function: gate, estimate, supervise, obey, control, schedule, report."""
 
-from fsw.core import control, pulses, sensor_health, telemetry
-from fsw.core.actuation import actuate, hear
+from fsw.core import coil_health, control, pulses, sensor_health, telemetry
+from fsw.core.actuation import actuate, hear, unexpected
 from fsw.core.attitude import UNKNOWN
 from fsw.core.commands import command
 from fsw.core.config import FlightConfig
@@ -13,6 +13,7 @@ from fsw.core.estimator import (
     estimate,
     perfect_attitude,
     restart,
+    set_right,
     usable_field,
     usable_sun,
 )
@@ -51,7 +52,7 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     seen = _look(state, readings, reference, model)
     demand = control.demand(state.modes.mode, seen, state.memory, state.setpoint, config.control)
     pulse_state, coil, request = actuate(
-        state.pulses, state.coil, demand, seen.b_body_t, readings, tick, config.coils
+        state.pulses, state.coil, demand, seen.b_body_t, readings, tick, config.coils, state.coils.faults
     )
     state = state._replace(
         sample=seen.sample,
@@ -72,6 +73,8 @@ def _gate(
             pulses=pulses.boot(tick, config.coils.pulses), field_tick=tick, status_tick=tick
         )
     readings, gate = admit(inbox.frames, state.gate)
+    view = hear(state.coil, readings, tick, config.coils)
+    unasked = unexpected(view, tick, config.coils.pulses)
     expected_s = config.epoch_unix_s + tick // config.tick_hz
     heard = state._replace(
         tick=tick,
@@ -80,7 +83,10 @@ def _gate(
         time_error_s=inbox.unix_time_s - expected_s,
         gate=gate,
         ephemeris=advance(state.ephemeris, tick, model),
-        coil=hear(state.coil, readings, tick, config.coils),
+        coil=view,
+        coils=coil_health.judge_current(
+            state.coils, view, readings, unasked, tick, config.coils.pulses, config.coil_health
+        ),
     )
     return heard, readings
 
@@ -96,7 +102,7 @@ def _estimate(
         known = perfect_attitude(readings, state.attitude)
         return state._replace(attitude=known), readings, reference, NONE_USED
     trusted = sensor_health.trusted(readings, state.sensors)
-    estimator, used = estimate(
+    estimator, used, predicted = estimate(
         state.estimator, trusted, reference, state.coil.driven_am2, elapsed_ticks, config.estimator
     )
     seen = attitude(estimator, reference, config.estimator)
@@ -111,9 +117,24 @@ def _estimate(
         seen.sigma3_attitude_rad,
         config.sensors,
     )
+    coils, correction = coil_health.judge_rate(
+        state.coils,
+        state.coil,
+        usable_field(trusted) if not sensors.field.suspicion else None,
+        usable_sun(trusted) if not sensors.sun.suspicion else None,
+        reference,
+        predicted,
+        estimator.estimate,
+        seen.sigma3_rate_radps,
+        state.tick,
+        config.coils.pulses,
+        config.coil_health,
+    )
+    if correction is not None:
+        estimator = set_right(estimator, correction)
     if sensors.doubted:
         estimator, seen = restart(estimator), UNKNOWN
-    state = state._replace(estimator=estimator, sensors=sensors, attitude=seen)
+    state = state._replace(estimator=estimator, sensors=sensors, coils=coils, attitude=seen)
     return state, trusted, reference, used
 
 

@@ -3,7 +3,6 @@
 from typing import NamedTuple
 
 from fsw.core import modes
-from fsw.core.actuation import unexpected
 from fsw.core.attitude import Attitude
 from fsw.core.config import FlightConfig
 from fsw.core.modes import ModeState
@@ -25,7 +24,7 @@ def supervise(state: FlightState, attitude: Attitude, tick: int, config: FlightC
         owed_impulse_body_nms=state.pulses.owed_impulse_body_nms,
         field_age_ticks=tick - state.field_tick,
         status_age_ticks=tick - state.status_tick,
-        unexpected_drive=unexpected(state.coil, tick, config.coils.pulses),
+        unexpected_drive=state.coils.stuck,
         orbit_known=state.ephemeris is not None,
         stale_after_ticks=config.stale_after_ticks,
     )

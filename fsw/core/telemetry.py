@@ -4,6 +4,7 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from fsw.core.attitude import Attitude
+from fsw.core.coil_health import CoilHealth
 from fsw.core.estimator import Used
 from fsw.core.modes import ModeState
 from fsw.core.monitors import Monitor
@@ -52,6 +53,7 @@ class Event(IntEnum):
     SENSOR_ISOLATED = 7  # 100 times the number of the sensor, and of its fault
     SENSOR_READMITTED = 8  # as when it was isolated
     SENSORS_DISAGREE = 9  # 0: there is no estimate to tell by which of them is wrong
+    COIL_FAULT = 10  # 100 times the number of the coil (1 to 3), and of its fault
 
 
 SEVERITY: dict[Event, Severity] = {
@@ -64,6 +66,7 @@ SEVERITY: dict[Event, Severity] = {
     Event.SENSOR_ISOLATED: Severity.ERROR,
     Event.SENSOR_READMITTED: Severity.INFO,
     Event.SENSORS_DISAGREE: Severity.WARNING,
+    Event.COIL_FAULT: Severity.ERROR,
 }
 
 
@@ -126,6 +129,8 @@ def happenings(
         found += _sensor(Sensor.SUN_SENSOR, before.sensors.sun.fault, after.sensors.sun.fault)
     if after.sensors.contradictory and not before.sensors.contradictory:
         found.append(Happening(Event.SENSORS_DISAGREE, 0))
+    if after.coils is not before.coils:
+        found += _coils(before.coils, after.coils)
     if readings.refused is not None:
         found.append(Happening(Event.REQUEST_REFUSED, readings.refused.reason))
     if after.time_error_s != before.time_error_s:
@@ -138,6 +143,15 @@ def _sensor(sensor: Sensor, before: int, after: int) -> list[Happening]:
     if after:
         return [Happening(Event.SENSOR_ISOLATED, 100 * sensor + after)]
     return [Happening(Event.SENSOR_READMITTED, 100 * sensor + before)]
+
+
+def _coils(before: CoilHealth, after: CoilHealth) -> list[Happening]:
+    """Coils whose fault is new."""
+    return [
+        Happening(Event.COIL_FAULT, 100 * number + fault)
+        for number, (was, fault) in enumerate(zip(before.faults, after.faults, strict=True), start=1)
+        if fault and fault != was
+    ]
 
 
 def event_message(happening: Happening, tick: int) -> CountedMessage:

@@ -3,6 +3,7 @@
 from math import ceil, cos, radians, sqrt
 
 from fsw.core.actuation import CoilConfig
+from fsw.core.coil_health import CoilHealthConfig
 from fsw.core.config import FlightConfig
 from fsw.core.dipoles import DipoleConfig
 from fsw.core.ephemeris import ephemeris_model
@@ -28,6 +29,8 @@ from fsw.io.table import (
 )
 
 NT = 1e-9
+WATCH_SAMPLE_S, WATCH_PULSE_S = 5.0, 120.0
+"""How often, and for how long at most, the effect of a pulse is looked at."""
 
 
 def flight_config(table: FlightTable) -> FlightConfig:
@@ -55,6 +58,7 @@ def flight_config(table: FlightTable) -> FlightConfig:
             sensors=_sensors(table),
             control=_control(table, orbit),
             coils=CoilConfig(_pulses(table), _dipoles(table)),
+            coil_health=_coil_health(table),
             modes=_modes(table.modes, tick_hz),
             rates=_rates(table.telemetry, tick_hz),
             stale_after_ticks=max(1, _ticks(table.modes.stale_after_s, tick_hz)),
@@ -148,6 +152,26 @@ def _sensors(table: FlightTable) -> SensorHealthConfig:
         silent_ticks=max(1, _ticks(table.modes.stale_after_s, tick_hz)),
         name_suspicion=FULL * max(1, _ticks(fdir.name_s, tick_hz)),
         readmit_ticks=max(1, _ticks(fdir.readmit_s, tick_hz)),
+    )
+
+
+def _coil_health(table: FlightTable) -> CoilHealthConfig:
+    fdir, tick_hz, tuning = table.fdir, table.time.tick_hz, table.estimator
+    first, second, third = (1000.0 * m / table.coils.dipole_per_ampere_am2 for m in table.coils.levels_am2)
+    return CoilHealthConfig(
+        current_ma=(first, second, third),
+        weak_part=fdir.weak_coil_part,
+        open_part=fdir.open_coil_part,
+        name_pulses=fdir.name_pulses,
+        name_sigmas=fdir.name_sigmas,
+        stuck_ma=max(1.0, 0.5 * first),
+        stuck_ticks=_ticks(table.coils.pulse_s + fdir.stuck_s, tick_hz) + 1,
+        sample_ticks=max(1, _ticks(WATCH_SAMPLE_S, tick_hz)),
+        watch_ticks=max(1, _ticks(WATCH_PULSE_S, tick_hz)),
+        tick_s=1.0 / tick_hz,
+        field_sigma_t=tuning.magnetometer_sigma_nt * NT,
+        sun_sigma_rad=radians(tuning.sun_sigma_deg),
+        inertia_inverse=inverse(table.body.inertia),
     )
 
 

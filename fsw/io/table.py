@@ -114,12 +114,14 @@ class BodyTable(Section):
 class CoilTable(Section):
     """The coil driver: levels per polarity and limits, or the full scale of a continuous one.
 
-    ``on_fraction`` is the part of a tick over which a continuous driver drives.
+    ``on_fraction`` is the part of a tick over which a continuous driver drives, ``dipole_per_ampere_am2``
+    what a sound coil gives, in A m^2 per A.
     """
 
     driver: Literal["pulsed", "continuous"] = "pulsed"
     max_dipole_am2: float | None = Field(default=None, gt=0.0)
     on_fraction: float = Field(default=0.8, gt=0.0, le=1.0)
+    dipole_per_ampere_am2: Positive
     levels_am2: Triple
     pulse_s: float = Field(gt=0.0, le=3.0)
     backoff_s: float = Field(ge=0.0, le=160.0)
@@ -213,7 +215,11 @@ class ModesTable(Section):
 
 
 class FdirTable(Section):
-    """Limits of the checks of the sensors, and how long before one is named and believed again."""
+    """Limits of the checks of sensors and coils, how long before one is named, and believed again.
+
+    Of its nominal current or effect, less than ``weak_coil_part`` is a weak coil's, less than
+    ``open_coil_part`` an open one's.
+    """
 
     max_field_error_nt: Positive
     max_sun_norm_error: float = Field(gt=0.0, le=0.5)
@@ -221,6 +227,17 @@ class FdirTable(Section):
     frozen_s: Positive
     name_s: Positive
     readmit_s: Positive
+    weak_coil_part: float = Field(gt=0.0, lt=1.0)
+    open_coil_part: float = Field(gt=0.0, lt=1.0)
+    name_pulses: int = Field(ge=1)
+    name_sigmas: Positive
+    stuck_s: Positive
+
+    @model_validator(mode="after")
+    def _open_is_less_than_weak(self) -> Self:
+        if not self.open_coil_part < self.weak_coil_part:
+            raise ValueError("open_coil_part must lie under weak_coil_part")
+        return self
 
 
 class TelemetryTable(Section):

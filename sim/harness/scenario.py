@@ -68,7 +68,6 @@ class ScenarioCoils(CoilTable):
     pulse_s: float = Field(default=3.0, gt=0.0, le=3.0)
     backoff_s: float = Field(default=100.0, ge=0.0, le=160.0)
     backoff: Literal["shared", "per_coil"] = "shared"
-    dipole_per_ampere_am2: Positive
     time_constant_s: Positive = 0.01
     dipole_scale: Triple = (1.0, 1.0, 1.0)
 
@@ -166,6 +165,7 @@ def flight_table(scenario: Scenario, source: str = "scenario") -> FlightTable:
                 "driver",
                 "max_dipole_am2",
                 "on_fraction",
+                "dipole_per_ampere_am2",
                 "levels_am2",
                 "pulse_s",
                 "backoff_s",

@@ -7,6 +7,7 @@ from random import Random
 
 import pytest
 
+from fsw.core.coil_health import CoilHealth
 from fsw.core.commands import HANDLERS, LAW_NAMES, command, decimal
 from fsw.core.elements import RANGES, Elements, Upload
 from fsw.core.ephemeris import advance, fly_orbit
@@ -161,10 +162,14 @@ class TestMode:
 
 
 def test_clearing_forgets_trips_and_faults_and_nothing_else(obey, state):
-    faulty = state._replace(sensors=SensorHealth(Watch(fault=3), Watch(fault=2)))
+    faulty = state._replace(
+        sensors=SensorHealth(Watch(fault=3), Watch(fault=2)), coils=CoilHealth(faults=(1, 2, 3))
+    )
     after, results = obey(faulty, TcClear())
     assert results == [TcAckResult.ACCEPTED]
-    assert after == state._replace(modes=replace(state.modes, trips=0), sensors=SensorHealth())
+    assert after == state._replace(
+        modes=replace(state.modes, trips=0), sensors=SensorHealth(), coils=CoilHealth()
+    )
 
 
 class TestLaw:

@@ -83,7 +83,7 @@ def seen_from(q_body_from_eci=Q_BODY_FROM_ECI, reference=REFERENCE, **changes):
 
 
 def step(state, readings, reference=REFERENCE, dipole=ZERO, elapsed=1, config=CONFIG):
-    return estimate(state, readings, reference, dipole, elapsed, config)
+    return estimate(state, readings, reference, dipole, elapsed, config)[:2]
 
 
 @pytest.fixture(scope="module")

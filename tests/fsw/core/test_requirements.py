@@ -6,13 +6,18 @@ from pathlib import Path
 
 import pytest
 
+from fsw.core.coil_health import CoilFault
 from fsw.core.monitors import Monitor
 from fsw.core.requirements import REQUIREMENTS, document
 from fsw.core.sensor_health import SensorFault
 from fsw.core.telemetry import Event
 
 ROOT = Path(__file__).resolve().parents[3]
-NAMED = [(Event.MONITOR_TRIPPED, Monitor), (Event.SENSOR_ISOLATED, SensorFault)]
+NAMED = [
+    (Event.MONITOR_TRIPPED, Monitor),
+    (Event.SENSOR_ISOLATED, SensorFault),
+    (Event.COIL_FAULT, CoilFault),
+]
 IDS = [requirement.id for requirement in REQUIREMENTS]
 
 

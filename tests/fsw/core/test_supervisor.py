@@ -4,11 +4,10 @@ from dataclasses import replace
 
 import pytest
 
-from fsw.core.actuation import CoilView
+from fsw.core.coil_health import CoilHealth
 from fsw.core.estimator import UNKNOWN, Attitude
 from fsw.core.modes import ModeState
 from fsw.core.monitors import Monitor
-from fsw.core.pulses import Pulse
 from fsw.core.supervisor import supervise
 from fsw.wire.messages import Mode
 
@@ -60,10 +59,8 @@ def test_an_impulse_that_is_no_number_trips(world, supervised):
 
 
 def test_a_coil_that_nobody_asked_for_trips(supervised):
-    driven = CoilView(driven_coil=1, driven_level=3)
-    assert supervised(coil=driven).violated is Monitor.COIL_AS_COMMANDED
-    asked = CoilView(driven_coil=1, driven_level=3, fired_tick=TICK - 1, fired=Pulse(1, 3))
-    assert supervised(coil=asked).violated is None
+    assert supervised(coils=CoilHealth(stuck=True)).violated is Monitor.COIL_AS_COMMANDED
+    assert supervised(coils=CoilHealth(faults=(4, 1, 2), strange_ticks=1)).violated is None
 
 
 def test_an_orbit_that_is_not_known_trips(supervised):

@@ -171,6 +171,7 @@ class TestEvents:
             "SENSOR_ISOLATED": 7,
             "SENSOR_READMITTED": 8,
             "SENSORS_DISAGREE": 9,
+            "COIL_FAULT": 10,
         }
 
     def test_every_event_has_a_severity_and_fits_its_signal(self):

@@ -1,0 +1,173 @@
+"""Coil faults in closed loop: named by current or by what pulses do, left out, SAFE where one is stuck."""
+
+from math import acos, degrees
+
+import pytest
+
+from fsw.core.telemetry import Event
+from fsw.wire.messages import CoilFire, CoilStatus, FswEvent, Mode, TcClear
+
+SETTLED = 620
+
+
+def events(said, event):
+    return [
+        (tick, m.argument) for tick, ms in said for m in ms if isinstance(m, FswEvent) and m.event == event
+    ]
+
+
+def fires(said):
+    return [(tick, m.coil) for tick, ms in said for m in ms if isinstance(m, CoilFire)]
+
+
+def fly(world, ticks, change=lambda inbox: inbox):
+    return [(tick, world.step(change)) for tick in range(ticks)]
+
+
+def current_times(coil, factor):
+    """The read-back of one coil, altered as a broken wire or a reversed plug would."""
+
+    def change(inbox):
+        frames = []
+        for frame in inbox.frames:
+            if frame.can_id == CoilStatus.ID:
+                status = CoilStatus.decode(frame.data)
+                if status.level and status.coil == coil:
+                    frames.append(status._replace(current_ma=round(factor * status.current_ma)).encode())
+                    continue
+            frames.append(frame)
+        return inbox._replace(frames=tuple(frames))
+
+    return change
+
+
+def told_by_driver(**values):
+    def change(inbox):
+        frames = [
+            CoilStatus.decode(f.data)._replace(**values).encode() if f.can_id == CoilStatus.ID else f
+            for f in inbox.frames
+        ]
+        return inbox._replace(frames=tuple(frames))
+
+    return change
+
+
+@pytest.mark.requirement("REQ-COIL-01", "REQ-COIL-02", "REQ-COIL-03")
+@pytest.mark.parametrize(("factor", "kind"), [(0.0, 1), (0.1, 1), (0.5, 2), (-1.0, 3)])
+def test_a_wrong_current_names_the_coil_at_its_second_pulse(make_world, factor, kind):
+    world = make_world()
+    world.fly(90)
+    first = None
+    said = []
+    while first is None:
+        said += fly(world, 1)
+        first = next((coil for _, coil in fires(said)), None)
+    said = fly(world, 900, current_times(first, factor))
+    ((named, argument),) = events(said, Event.COIL_FAULT)
+    assert argument == 100 * (first + 1) + kind
+    own = [tick for tick, coil in fires(said) if coil == first]
+    assert len(own) == 1  # the first pulse went out before
+    assert named == own[0] + 3
+    assert world.state.coils.faults[first] == kind
+    assert fires(said)[-1][0] > named
+    assert world.state.modes.trips == 0
+
+
+def test_a_single_wrong_current_names_nobody(make_world):
+    world = make_world()
+    world.fly(90)
+    said = []
+    while not fires(said):
+        said = fly(world, 1)
+    coil = fires(said)[0][1]
+    assert events(fly(world, 10, current_times(coil, 0.0)), Event.COIL_FAULT) == []
+    assert world.state.coils.wrong[coil] == 1
+    said = fly(world, 900)
+    assert events(said, Event.COIL_FAULT) == []
+    assert world.state.coils.wrong == (0, 0, 0)
+
+
+@pytest.mark.requirement("REQ-COIL-05")
+def test_a_coil_that_is_named_is_not_fired_until_the_ground_clears_it(make_world):
+    world = make_world()
+    world.fly(SETTLED)
+    health = world.state.coils._replace(faults=(1, 0, 3))
+    world.state = world.state._replace(coils=health)
+    said = fly(world, 900)
+    assert {coil for _, coil in fires(said)} == {1}
+    world.step(lambda inbox: inbox._replace(frames=(*inbox.frames, TcClear(counter=3).encode())))
+    assert world.state.coils.faults == (0, 0, 0)
+    assert {coil for _, coil in fires(fly(world, 900))} & {0, 2}
+
+
+class TestStuck:
+    @pytest.mark.requirement("REQ-COIL-04")
+    def test_a_current_that_goes_on_leads_to_safe_and_is_named(self, make_world):
+        world = make_world()
+        world.fly(90)
+        said = fly(world, 60, told_by_driver(level=0, current_ma=400))
+        stuck_ticks = world.config.coil_health.stuck_ticks
+        assert events(said, Event.COIL_FAULT) == [(stuck_ticks - 1, 104)]
+        assert events(said, Event.MONITOR_TRIPPED) == [(stuck_ticks - 1, 7)]
+        assert world.state.modes.mode is Mode.SAFE
+
+    @pytest.mark.requirement("REQ-COIL-04")
+    def test_a_level_that_nobody_asked_for_trips_at_once_and_is_named_when_it_lasts(self, make_world):
+        world = make_world()
+        world.fly(90)
+        said = fly(world, 60, told_by_driver(level=2, coil=1, current_ma=100))
+        assert events(said, Event.MONITOR_TRIPPED) == [(0, 7)]
+        assert events(said, Event.COIL_FAULT) == [(world.config.coil_health.stuck_ticks - 1, 204)]
+        assert world.state.modes.mode is Mode.SAFE
+
+    def test_it_stays_safe_while_it_lasts_and_not_for_ever(self, make_world):
+        world = make_world()
+        world.fly(90)
+        fly(world, 200, told_by_driver(level=0, current_ma=-30))
+        assert world.state.modes.mode is Mode.SAFE
+        fly(world, 20)
+        assert world.state.modes.mode is not Mode.SAFE
+        assert world.state.modes.trips == 1
+
+    def test_the_rest_of_a_pulse_of_an_earlier_boot_is_not_a_stuck_driver(self, make_world):
+        world = make_world()
+        world.fly(30)
+        said = fly(world, 3, told_by_driver(level=3, coil=2, current_ma=400))
+        said += fly(world, 60)
+        assert events(said, Event.COIL_FAULT) == []
+
+    def test_a_current_that_decays_is_not_stuck(self, make_world):
+        world = make_world()
+        world.fly(90)
+        said = []
+        for _ in range(20):
+            said += fly(world, 2, told_by_driver(level=0, current_ma=60))
+            said += fly(world, 2)
+        assert events(said, Event.COIL_FAULT) == events(said, Event.MONITOR_TRIPPED) == []
+
+
+class TestByTheRate:
+    """The current is right, the torque is not: turns shorted, or a plug turned round behind the shunt."""
+
+    @pytest.mark.requirement("REQ-COIL-01", "REQ-COIL-03")
+    @pytest.mark.parametrize(("scale", "named"), [(-1.0, 103), (0.0, 101)])
+    def test_the_coil_is_named_and_the_estimate_set_right(self, make_world, scale, named):
+        world = make_world()
+        world.fly(SETTLED)
+        world.plant._coils._dipole_per_ampere[0] *= scale
+        said = fly(world, 500)
+        ((tick, argument),) = events(said, Event.COIL_FAULT)
+        assert argument == named
+        assert len([t for t, coil in fires(said) if coil == 0 and t < tick]) <= 2
+        assert events(said, Event.SENSOR_ISOLATED) == events(said, Event.FILTER_RESTARTED) == []
+        q, known = world.plant.truth().q_body_from_orbit, world.state.attitude.q_body_from_orbit
+        cosine = abs(sum(a * b for a, b in zip(q, known, strict=True)))
+        assert 2.0 * degrees(acos(min(1.0, cosine))) < 1.0
+
+    @pytest.mark.requirement("REQ-COIL-05")
+    def test_sound_coils_are_not(self, make_world):
+        world = make_world(seed=5)
+        said = fly(world, 3000)
+        assert len(fires(said)) > 15
+        assert events(said, Event.COIL_FAULT) == []
+        assert sum(weight > 0.0 for weight in world.state.coils.weight) >= 2
