@@ -3,11 +3,14 @@
 from collections.abc import Mapping
 from enum import Enum, auto
 from random import Random
+from typing import TYPE_CHECKING
 
-from fsw.core.state import FlightState
 from fsw.wire.frame import Frame
 from sim.plant.interference import Interference
 from sim.plant.plant import Plant
+
+if TYPE_CHECKING:  # the plant's process, which loads the faults of a scenario, has no flight software
+    from fsw.core.state import FlightState
 
 Parameters = Mapping[str, float]
 
@@ -63,6 +66,6 @@ class Fault(Interference):
         """How fsw's process is in this tick."""
         return Condition.RUNNING
 
-    def upset(self, state: FlightState) -> FlightState:
+    def upset(self, state: "FlightState") -> "FlightState":
         """What becomes of the flight state in memory, before this tick's step."""
         return state

@@ -3,15 +3,17 @@
 import struct
 from dataclasses import fields, is_dataclass, replace
 from random import Random
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fsw.core.state import FlightState
 from fsw.wire.frame import Frame
 from fsw.wire.messages import Sync
 from sim.harness.faults.fault import Condition, Fault, Parameters
 from sim.plant.plant import Plant
+
+if TYPE_CHECKING:  # the plant's process, which loads the faults of a scenario, has no flight software
+    from fsw.core.state import FlightState
 
 
 class Killed(Fault):
@@ -96,13 +98,13 @@ class BitFlip(Fault):
 
     _done = False
 
-    def upset(self, state: FlightState) -> FlightState:
+    def upset(self, state: "FlightState") -> "FlightState":
         """The state with one bit flipped."""
         if self._done:
             return state
         self._done = True
         places = count_doubles(state)
-        flipped: FlightState = flip(state, self.rng.randrange(places), self.rng.randrange(64))
+        flipped: "FlightState" = flip(state, self.rng.randrange(places), self.rng.randrange(64))
         return flipped
 
 
