@@ -104,7 +104,7 @@ class BitFlip(Fault):
             return state
         self._done = True
         places = count_doubles(state)
-        flipped: "FlightState" = flip(state, self.rng.randrange(places), self.rng.randrange(64))
+        flipped: FlightState = flip(state, self.rng.randrange(places), self.rng.randrange(64))
         return flipped
 
 
