@@ -8,8 +8,8 @@
 # make test-vcan   the tests on a CAN interface, in a user-mode Linux guest where this kernel has no vcan
 # make fuzz         a million random frames into codec, boards and flight loop: some minutes
 # make differential scheduler against interlock over 100 orbits of whole flights: some minutes
-# make mutation     change scheduler, interlock, auditor and codec a thing at a time: do the tests notice? an hour
-# make coverage     branch coverage of the same modules, which must be whole: a minute
+# make mutation     change scheduler, interlock, auditor and codec a thing at a time: do the tests notice? hours
+# make coverage     branch coverage of the same modules, which must be whole: some minutes
 
 PYTHON ?= python3
 PYTEST_FLAGS ?= -q -rs -n 2
