@@ -28,3 +28,4 @@ class FlightConfig:
     modes: ModeConfig
     rates: RateTable
     stale_after_ticks: int
+    event_spacing_ticks: int

@@ -8,9 +8,9 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from fsw.core.coil_health import CoilFault
+from fsw.core.events import Event
 from fsw.core.monitors import RATE_LIMIT_RADPS, UNIT_TOLERANCE, Monitor
 from fsw.core.sensor_health import AGAINST_ESTIMATE, SensorFault
-from fsw.core.telemetry import Event
 
 
 class Requirement(NamedTuple):
@@ -134,6 +134,13 @@ REQUIREMENTS: tuple[Requirement, ...] = (
         "no pulse",
         None,
         Event.COIL_FAULT,
+    ),
+    Requirement(
+        "REQ-EVENT-01",
+        "No event floods the bus: of one kind there is one in a time at most; those held back are counted.",
+        "`fdir.event_spacing_s`",
+        None,
+        Event.TIME_MISMATCH,
     ),
 )
 

@@ -10,18 +10,22 @@ itself may be what is wrong.
 A sensor that is named is left out of the filter until it has been consistent for a time.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from enum import IntEnum
 from math import acos
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from fsw.core.ephemeris import Reference
-from fsw.core.estimator import Used
-from fsw.core.mekf import Estimate
 from fsw.core.quaternion import rotate
 from fsw.core.readings import Readings
 from fsw.core.vector import ZERO, Vec3, add, dot, norm, sub
 from fsw.wire.messages import MagField, SunVector
+
+if TYPE_CHECKING:  # who only wants the names of sensors and faults need not load the filter
+    from fsw.core.ephemeris import Reference
+    from fsw.core.estimator import Used
+    from fsw.core.mekf import Estimate
 
 
 class Sensor(IntEnum):

@@ -16,6 +16,7 @@ from fsw.core.modes import ModeState
 from fsw.core.pulses import PulseState
 from fsw.core.readings import GateState
 from fsw.core.sensor_health import SensorHealth
+from fsw.core.throttle import Throttle
 from fsw.wire.frame import Frame
 
 
@@ -55,6 +56,7 @@ class FlightState(NamedTuple):
     memory: Memory
     pulses: PulseState
     coil: CoilView
+    events: Throttle
     sent: tuple[int, ...]
 
 
@@ -105,6 +107,8 @@ def checksum(state: FlightState) -> int:
         coil.refusals,
         coil.fired_tick,
         *coil.fired,
+        *(number for told in state.events.told for number in told),
+        state.events.held_back,
         *state.sent,
     )
     floats: tuple[float, ...] = (
@@ -165,5 +169,6 @@ def initial_state(pulses: PulseState, setpoint: Setpoint, sent: tuple[int, ...])
         memory=(),
         pulses=pulses,
         coil=CoilView(),
+        events=Throttle(),
         sent=sent,
     )

@@ -22,6 +22,7 @@ from fsw.core.quaternion import rotate
 from fsw.core.readings import Readings, admit
 from fsw.core.state import FlightState, Inbox, checksum, initial_state
 from fsw.core.supervisor import Verdict, supervise
+from fsw.core.throttle import throttled
 from fsw.core.vector import ZERO
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilDipole, CoilFire, CountedMessage, TcAck, TickDone
@@ -183,10 +184,11 @@ def _report(
                 state.attitude, state.modes, used, reference is not None and reference.lit
             )
         )
-    happenings = telemetry.happenings(before, state, readings, verdict.violated)
+    happened = telemetry.happenings(before, state, readings, verdict.violated)
+    events, happenings = throttled(state.events, happened, tick, config.event_spacing_ticks)
     messages += [telemetry.event_message(happening, tick) for happening in happenings]
     if config.rates.heartbeat.due(tick):
         messages.append(telemetry.heartbeat_message(tick, state.modes, state.gate.rejected))
     frames, sent = telemetry.number(messages, state.sent)
-    state = state._replace(sent=sent)
+    state = state._replace(events=events, sent=sent)
     return state, (*frames, TickDone(tick, checksum(state)).encode())

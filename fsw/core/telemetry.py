@@ -1,11 +1,9 @@
 """What fsw reports: navigation, events, heartbeat. Every message has a counter of its own in the state."""
 
-from enum import IntEnum
-from typing import NamedTuple
-
 from fsw.core.attitude import Attitude
 from fsw.core.coil_health import CoilHealth
 from fsw.core.estimator import Used
+from fsw.core.events import SEVERITY, Event, Happening
 from fsw.core.modes import ModeState
 from fsw.core.monitors import Monitor
 from fsw.core.readings import Readings
@@ -22,7 +20,6 @@ from fsw.wire.messages import (
     NavAttitude,
     NavQuality,
     NavRate,
-    Severity,
     TcAck,
 )
 
@@ -39,42 +36,6 @@ COUNTED = (
 )
 _SLOT = {can_id: slot for slot, can_id in enumerate(COUNTED)}
 FIRST_COUNTERS = (0,) * len(COUNTED)
-
-
-class Event(IntEnum):
-    """Numbers of fsw's events, and what the argument tells."""
-
-    MODE_CHANGED = 1  # the new mode
-    FILTER_STARTED = 2  # restarts so far
-    FILTER_RESTARTED = 3  # restarts so far
-    MONITOR_TRIPPED = 4  # number of the monitor
-    REQUEST_REFUSED = 5  # reason
-    TIME_MISMATCH = 6  # SYNC's time less the expected, s
-    SENSOR_ISOLATED = 7  # 100 times the number of the sensor, and of its fault
-    SENSOR_READMITTED = 8  # as when it was isolated
-    SENSORS_DISAGREE = 9  # 0: there is no estimate to tell by which of them is wrong
-    COIL_FAULT = 10  # 100 times the number of the coil (1 to 3), and of its fault
-
-
-SEVERITY: dict[Event, Severity] = {
-    Event.MODE_CHANGED: Severity.INFO,
-    Event.FILTER_STARTED: Severity.INFO,
-    Event.FILTER_RESTARTED: Severity.WARNING,
-    Event.MONITOR_TRIPPED: Severity.ERROR,
-    Event.REQUEST_REFUSED: Severity.WARNING,
-    Event.TIME_MISMATCH: Severity.WARNING,
-    Event.SENSOR_ISOLATED: Severity.ERROR,
-    Event.SENSOR_READMITTED: Severity.INFO,
-    Event.SENSORS_DISAGREE: Severity.WARNING,
-    Event.COIL_FAULT: Severity.ERROR,
-}
-
-
-class Happening(NamedTuple):
-    """An event to report, with its argument."""
-
-    event: Event
-    argument: int
 
 
 def boot_frame(table_crc: int) -> Frame:

@@ -61,6 +61,7 @@ def flight_config(table: FlightTable) -> FlightConfig:
             coil_health=_coil_health(table),
             modes=_modes(table.modes, tick_hz),
             rates=_rates(table.telemetry, tick_hz),
+            event_spacing_ticks=_ticks(table.fdir.event_spacing_s, tick_hz),
             stale_after_ticks=max(1, _ticks(table.modes.stale_after_s, tick_hz)),
         )
     except ValueError as error:

@@ -232,6 +232,7 @@ class FdirTable(Section):
     name_pulses: int = Field(ge=1)
     name_sigmas: Positive
     stuck_s: Positive
+    event_spacing_s: NotNegative
 
     @model_validator(mode="after")
     def _open_is_less_than_weak(self) -> Self:

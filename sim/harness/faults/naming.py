@@ -2,9 +2,9 @@
 
 from collections.abc import Callable
 
+from fsw.core.events import Event as Number
 from fsw.core.monitors import Monitor
 from fsw.core.sensor_health import Sensor
-from fsw.core.telemetry import Event as Number
 from hil_stub.events import CoilEventCode
 from sim.harness.faults.record import Event, Record
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import tomli_w
 
-from fsw.core.telemetry import Event
+from fsw.core.events import Event
 from fsw.wire.messages import Mode, Severity
 from sim.harness.audit.auditor import AuditReport
 from sim.harness.audit.findings import COILS, seconds_text

@@ -1,0 +1,42 @@
+"""What may happen that is worth telling: numbers, severities, arguments."""
+
+from enum import IntEnum
+from typing import NamedTuple
+
+from fsw.wire.messages import Severity
+
+
+class Event(IntEnum):
+    """Numbers of fsw's events, and what the argument tells."""
+
+    MODE_CHANGED = 1  # the new mode
+    FILTER_STARTED = 2  # restarts so far
+    FILTER_RESTARTED = 3  # restarts so far
+    MONITOR_TRIPPED = 4  # number of the monitor
+    REQUEST_REFUSED = 5  # reason
+    TIME_MISMATCH = 6  # SYNC's time less the expected, s
+    SENSOR_ISOLATED = 7  # 100 times the number of the sensor, and of its fault
+    SENSOR_READMITTED = 8  # as when it was isolated
+    SENSORS_DISAGREE = 9  # 0: there is no estimate to tell by which of them is wrong
+    COIL_FAULT = 10  # 100 times the number of the coil (1 to 3), and of its fault
+
+
+SEVERITY: dict[Event, Severity] = {
+    Event.MODE_CHANGED: Severity.INFO,
+    Event.FILTER_STARTED: Severity.INFO,
+    Event.FILTER_RESTARTED: Severity.WARNING,
+    Event.MONITOR_TRIPPED: Severity.ERROR,
+    Event.REQUEST_REFUSED: Severity.WARNING,
+    Event.TIME_MISMATCH: Severity.WARNING,
+    Event.SENSOR_ISOLATED: Severity.ERROR,
+    Event.SENSOR_READMITTED: Severity.INFO,
+    Event.SENSORS_DISAGREE: Severity.WARNING,
+    Event.COIL_FAULT: Severity.ERROR,
+}
+
+
+class Happening(NamedTuple):
+    """An event to report, with its argument."""
+
+    event: Event
+    argument: int
