@@ -255,8 +255,10 @@ def main() -> int:
                 source = (ROOT / module).read_text(encoding="utf-8")
                 print(f"{target.name:<10} {module:<36} {len(list(mutants(source)))} mutants")
                 continue
-            with ProcessPoolExecutor(chosen.workers, initializer=warm_up) as pool:
-                results[module] = measure(module, target, pool)
+            with tempfile.TemporaryDirectory(prefix="mutation-") as folder:
+                tempfile.tempdir = folder  # of the copies, and of what the tests leave
+                with ProcessPoolExecutor(chosen.workers, initializer=warm_up) as pool:
+                    results[module] = measure(module, target, pool)
             store.write_text(json.dumps(results, indent=2, sort_keys=True) + "\n", encoding="utf-8")
             (ROOT / PAGE).write_text(page(results, listed), encoding="utf-8")
     if chosen.list:
