@@ -129,7 +129,12 @@ def test_whatever_happens_the_limits_hold_and_what_is_demanded_on_and_on_is_fire
     SEEN.clear()
     run_state_machine_as_test(
         machine(bench_with, only),
-        settings=settings(max_examples=200, stateful_step_count=30, suppress_health_check=list(HealthCheck)),
+        settings=settings(
+            max_examples=200,
+            stateful_step_count=30,
+            suppress_health_check=list(HealthCheck),
+            derandomize=True,  # what is counted below is the same each time
+        ),
     )
     assert SEEN["pulses"] > 300, f"it fired: {SEEN}"
     needed = (Reason.LOCKOUT, Reason.COIL_ON, Reason.WRONG_TICK, Reason.REPEATED_SEQ)

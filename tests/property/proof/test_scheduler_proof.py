@@ -182,7 +182,7 @@ def test_a_scheduler_that_does_not_hear_of_the_restart_is_refused(search, small,
 
 
 AGAIN, FIRST = "again = end + config.backoff_ticks", "first = tick + config.backoff_ticks"
-READY = "if tick < state.ready_tick[coil]:"
+READY = "if tick < state.ready_tick[coil] or"
 WHICH = "config.shared or coil == pulse.coil"
 PULSE_A_TICK_LONG = ("config.duration_ms)", "config.duration_ms + 1000)")
 
@@ -193,7 +193,7 @@ UNSAFE = {
     "a coil forgotten at boot": (own_timers_alone, ("(first, first, first)", "(first, first, tick)"), BOTH),
     "shared taken for per coil": (own_timers_alone, (WHICH, "coil == pulse.coil"), (SHARED,)),
     "another coil backs off": (own_timers_alone, (WHICH, "coil != pulse.coil"), (PER_COIL,)),
-    "own timers not asked": (own_timers_alone, (READY, "if False:"), BOTH),
+    "own timers not asked": (own_timers_alone, (READY, "if"), BOTH),
     "own timers asked a tick early": (own_timers_alone, (READY, READY.replace("tick <", "tick + 1 <")), BOTH),
     "a pulse into another": (own_timers_alone, ("if tick < state.busy_until:", "if False:"), (PER_COIL,)),
     "a pulse a tick long": (own_timers_alone, PULSE_A_TICK_LONG, BOTH),

@@ -19,6 +19,7 @@ from sim.harness.estimates import Estimates
 from sim.harness.report.canvas import BINS, envelope
 from sim.harness.report.flown import Flown
 from sim.harness.report.page import write_report
+from sim.harness.run_dir import SCHEMA_VERSION
 from sim.harness.scenario import Scenario, load
 from sim.harness.summary import BusTally, summarise
 from sim.harness.truth import Histories
@@ -241,6 +242,7 @@ def test_bus_and_versions_come_from_the_run_beside_the_report(tmp_path):
     (tmp_path / "run.json").write_text(
         json.dumps(
             {
+                "schema_version": SCHEMA_VERSION,
                 "torquer_version": "4.5.6",
                 "bus": "loop",
                 "pace": "lockstep",
@@ -457,7 +459,9 @@ def test_refusals_are_counted(tmp_path):
 
 
 def test_an_unfinished_flight_is_called_so(tmp_path):
-    (tmp_path / "run.json").write_text(json.dumps({"ticks": 18124, "bus": "loop", "pace": "lockstep"}))
+    (tmp_path / "run.json").write_text(
+        json.dumps({"schema_version": SCHEMA_VERSION, "ticks": 18124, "bus": "loop", "pace": "lockstep"})
+    )
     page = Run(complete=False).write(tmp_path)
     assert "✗ incomplete: 7000 of 18124 ticks" in page.text
 
