@@ -10,8 +10,6 @@ itself may be what is wrong.
 A sensor that is named is left out of the filter until it has been consistent for a time.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from enum import IntEnum
 from math import acos
@@ -121,9 +119,9 @@ def judge(
     readings: Readings,
     field: Vec3 | None,
     sun: Vec3 | None,
-    reference: Reference,
-    used: Used,
-    known: Estimate | None,
+    reference: "Reference",
+    used: "Used",
+    known: "Estimate | None",
     sigma3_rad: float,
     config: SensorHealthConfig,
 ) -> SensorHealth:
@@ -179,7 +177,7 @@ def judge(
 
 
 def _plain_checks(
-    field: Vec3 | None, sun: Vec3 | None, reference: Reference, config: SensorHealthConfig
+    field: Vec3 | None, sun: Vec3 | None, reference: "Reference", config: SensorHealthConfig
 ) -> tuple[int, int, bool]:
     """What speaks against field and Sun by themselves, and whether their angle is not the modelled one."""
     b_cause = s_cause = 0

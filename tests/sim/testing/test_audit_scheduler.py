@@ -31,7 +31,7 @@ from sim.testing import (
 
 SOME = settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 FOUND = settings(
-    max_examples=1000,
+    max_examples=5000,
     deadline=None,
     derandomize=True,
     phases=[Phase.generate],
