@@ -102,7 +102,7 @@ def _take_space(path: Path, size: int) -> None:
         HarnessError: there is not so much.
     """
     try:
-        with path.open("ab") as file:
+        with path.open("r+b") as file:  # where the file system cannot, the C library reads and writes each block
             os.posix_fallocate(file.fileno(), 0, size)
     except OSError as error:
         raise HarnessError(
