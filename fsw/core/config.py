@@ -9,6 +9,7 @@ from fsw.core.estimator import EstimatorConfig
 from fsw.core.laws.interface import ControlConfig
 from fsw.core.modes import ModeConfig
 from fsw.core.rates import RateTable
+from fsw.core.second_sender import SecondSenderConfig
 from fsw.core.sensor_health import SensorHealthConfig
 
 
@@ -27,5 +28,6 @@ class FlightConfig:
     coil_health: CoilHealthConfig
     modes: ModeConfig
     rates: RateTable
+    second_sender: SecondSenderConfig
     stale_after_ticks: int
     event_spacing_ticks: int

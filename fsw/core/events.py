@@ -19,6 +19,7 @@ class Event(IntEnum):
     SENSOR_READMITTED = 8  # as when it was isolated
     SENSORS_DISAGREE = 9  # 0: there is no estimate to tell by which of them is wrong
     COIL_FAULT = 10  # 100 times the number of the coil (1 to 3), and of its fault
+    SECOND_SENDER = 11  # the identifier of fsw under which another sends
 
 
 SEVERITY: dict[Event, Severity] = {
@@ -32,6 +33,7 @@ SEVERITY: dict[Event, Severity] = {
     Event.SENSOR_READMITTED: Severity.INFO,
     Event.SENSORS_DISAGREE: Severity.WARNING,
     Event.COIL_FAULT: Severity.ERROR,
+    Event.SECOND_SENDER: Severity.ERROR,
 }
 
 

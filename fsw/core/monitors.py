@@ -23,6 +23,7 @@ class Monitor(IntEnum):
     COIL_STATUS_FRESH = 6
     COIL_AS_COMMANDED = 7
     ORBIT_KNOWN = 8
+    NO_SECOND_SENDER = 9
 
 
 class Watched(NamedTuple):
@@ -34,6 +35,7 @@ class Watched(NamedTuple):
     status_age_ticks: int
     unexpected_drive: bool
     orbit_known: bool
+    second_sender: bool
     stale_after_ticks: int
 
 
@@ -59,6 +61,7 @@ MONITORS: tuple[tuple[Monitor, Callable[[Watched], bool]], ...] = (
     (Monitor.COIL_STATUS_FRESH, lambda w: w.status_age_ticks < w.stale_after_ticks),
     (Monitor.COIL_AS_COMMANDED, lambda w: not w.unexpected_drive),
     (Monitor.ORBIT_KNOWN, lambda w: w.orbit_known),
+    (Monitor.NO_SECOND_SENDER, lambda w: not w.second_sender),
 )
 
 

@@ -26,6 +26,7 @@ from fsw.wire.messages import (
     TcOrbitElement,
     TcOrbitLoad,
     TcSpin,
+    TickDone,
     intact,
 )
 
@@ -61,6 +62,8 @@ TELECOMMANDS: dict[int, type[Telecommand]] = {
 
 _HEARD: dict[int, type[Listened | Telecommand]] = {**LISTENED, **TELECOMMANDS}
 _SLOT = {can_id: slot for slot, can_id in enumerate(_HEARD)}
+_OWN = frozenset(can_id for can_id, sender in SENDERS.items() if sender == "FSW" and can_id != TickDone.ID)
+"""Identifiers of fsw whose frames bear a CRC: nobody else is to use them."""
 _COIL_SLOTS = [slot for can_id, slot in _SLOT.items() if SENDERS[can_id] == "COIL"]
 
 
@@ -68,7 +71,8 @@ class Readings(NamedTuple):
     """The last accepted message of each kind in this tick; None where there was none.
 
     Of telecommands all count, in the order in which they came; ``repeated`` are those that bore the counter
-    of the one before.
+    of the one before. ``under_own_id`` is the lowest identifier of fsw itself under which a whole frame came,
+    0 if there is none.
     """
 
     field: MagField | None
@@ -81,6 +85,7 @@ class Readings(NamedTuple):
     coil_boot: CoilBoot | None = None
     telecommands: tuple[Telecommand, ...] = ()
     repeated: tuple[Telecommand, ...] = ()
+    under_own_id: int = 0
 
 
 NOTHING = Readings(None, None, None, None, None, None)
@@ -116,10 +121,14 @@ def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateSt
     repeated: list[Telecommand] = []
     counters = list(state.counters)
     rejected, missed, heard, commanded = state.rejected, state.missed, state.heard, state.commanded
+    under_own_id = 0
     for frame in frames[:INBOX_LIMIT]:
         message_class = _HEARD.get(frame.can_id)
         if message_class is None:
-            rejected += not intact(frame)
+            if not intact(frame):
+                rejected += 1
+            elif frame.can_id in _OWN:
+                under_own_id = min(under_own_id or frame.can_id, frame.can_id)
             continue
         if not intact(frame):
             rejected += 1
@@ -146,7 +155,7 @@ def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateSt
             slots[slot] = message
             heard = crc32(frame.data, heard)
     overrun = state.overrun + max(0, len(frames) - INBOX_LIMIT)
-    readings = Readings(*slots, telecommands=tuple(telecommands), repeated=tuple(repeated))  # type: ignore[arg-type, misc]
+    readings = Readings(*slots, tuple(telecommands), tuple(repeated), under_own_id)  # type: ignore[arg-type, call-arg]
     return readings, GateState(tuple(counters), rejected, missed, overrun, heard, commanded)
 
 

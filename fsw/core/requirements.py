@@ -10,6 +10,7 @@ from typing import NamedTuple
 from fsw.core.coil_health import CoilFault
 from fsw.core.events import Event
 from fsw.core.monitors import RATE_LIMIT_RADPS, UNIT_TOLERANCE, Monitor
+from fsw.core.second_sender import SIGNS
 from fsw.core.sensor_health import AGAINST_ESTIMATE, SensorFault
 
 
@@ -68,6 +69,12 @@ REQUIREMENTS: tuple[Requirement, ...] = (
         "coil and level of the own request, for the time of a pulse",
     ),
     _trip(8, Monitor.ORBIT_KNOWN, "The orbit has a position at this tick.", "the ephemeris has one"),
+    _trip(
+        9,
+        Monitor.NO_SECOND_SENDER,
+        "Nobody else sends in the place of the flight software; while somebody does, it asks for no pulse.",
+        "until `fdir.second_sender_s` after the last sign",
+    ),
     _sensor(
         1,
         SensorFault.SATURATED,
@@ -134,6 +141,22 @@ REQUIREMENTS: tuple[Requirement, ...] = (
         "no pulse",
         None,
         Event.COIL_FAULT,
+    ),
+    Requirement(
+        "REQ-BUS-01",
+        "Another node that sends under an identifier of the flight software, or whose requests the coil "
+        "driver refuses, is named by that identifier.",
+        f"{SIGNS} ticks with a whole frame or a refusal, `fdir.second_sender_s` apart at most, or 10 s where "
+        "no pulse was asked for",
+        None,
+        Event.SECOND_SENDER,
+    ),
+    Requirement(
+        "REQ-BUS-02",
+        "Own requests refused, late or repeated, broken frames, and restarts are no second sender.",
+        "fewer signs",
+        None,
+        Event.SECOND_SENDER,
     ),
     Requirement(
         "REQ-EVENT-01",

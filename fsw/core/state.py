@@ -15,6 +15,7 @@ from fsw.core.laws.table import LAWS
 from fsw.core.modes import ModeState
 from fsw.core.pulses import PulseState
 from fsw.core.readings import GateState
+from fsw.core.second_sender import NOBODY, SecondSender
 from fsw.core.sensor_health import SensorHealth
 from fsw.core.throttle import Throttle
 from fsw.wire.frame import Frame
@@ -43,6 +44,7 @@ class FlightState(NamedTuple):
     ignored_syncs: int
     time_error_s: int
     gate: GateState
+    second_sender: SecondSender
     orbit: Elements | None
     upload: Upload
     ephemeris: EphemerisWindow | None
@@ -77,6 +79,7 @@ def checksum(state: FlightState) -> int:
         gate.overrun,
         gate.heard,
         gate.commanded,
+        *state.second_sender,
         state.upload.come,
         state.orbit is not None,
         state.estimator.rejected_in_a_row,
@@ -156,6 +159,7 @@ def initial_state(pulses: PulseState, setpoint: Setpoint, sent: tuple[int, ...])
         ignored_syncs=0,
         time_error_s=0,
         gate=GateState(),
+        second_sender=NOBODY,
         orbit=None,
         upload=Upload(),
         ephemeris=None,

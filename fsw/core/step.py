@@ -1,6 +1,6 @@
 """The flight loop as one pure function: gate, estimate, supervise, obey, control, schedule, report."""
 
-from fsw.core import coil_health, control, pulses, sensor_health, telemetry
+from fsw.core import coil_health, control, pulses, second_sender, sensor_health, telemetry
 from fsw.core.actuation import actuate, hear, unexpected
 from fsw.core.attitude import UNKNOWN
 from fsw.core.commands import command
@@ -83,6 +83,9 @@ def _gate(
         status_tick=tick if readings.coil is not None else state.status_tick,
         time_error_s=inbox.unix_time_s - expected_s,
         gate=gate,
+        second_sender=second_sender.watch(
+            state.second_sender, readings, view.seq, config.coils.dipoles is None, tick, config.second_sender
+        ),
         ephemeris=advance(state.ephemeris, tick, model),
         coil=view,
         coils=coil_health.judge_current(

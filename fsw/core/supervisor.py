@@ -26,6 +26,7 @@ def supervise(state: FlightState, attitude: Attitude, tick: int, config: FlightC
         status_age_ticks=tick - state.status_tick,
         unexpected_drive=state.coils.stuck,
         orbit_known=state.ephemeris is not None,
+        second_sender=state.second_sender.named,
         stale_after_ticks=config.stale_after_ticks,
     )
     violated = first_violation(watched)

@@ -92,6 +92,8 @@ def happenings(
         found.append(Happening(Event.SENSORS_DISAGREE, 0))
     if after.coils is not before.coils:
         found += _coils(before.coils, after.coils)
+    if after.second_sender.named and not before.second_sender.named:
+        found.append(Happening(Event.SECOND_SENDER, after.second_sender.can_id))
     if readings.refused is not None:
         found.append(Happening(Event.REQUEST_REFUSED, readings.refused.reason))
     if after.time_error_s != before.time_error_s:

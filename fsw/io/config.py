@@ -16,6 +16,7 @@ from fsw.core.modes import TABLE, ModeConfig
 from fsw.core.orbit import Orbit, circular_orbit, sgp4_orbit
 from fsw.core.pulses import PulseConfig, pulse_timing
 from fsw.core.rates import RateGroup, RateTable
+from fsw.core.second_sender import SecondSenderConfig
 from fsw.core.sensor_health import FULL, SensorHealthConfig
 from fsw.core.vector import inverse, product
 from fsw.io.schedules import schedules
@@ -31,6 +32,8 @@ from fsw.io.table import (
 NT = 1e-9
 WATCH_SAMPLE_S, WATCH_PULSE_S = 5.0, 120.0
 """How often, and for how long at most, the effect of a pulse is looked at."""
+CHATTER_S = 10.0
+"""Between signs of another that reports in the place of the flight software."""
 
 
 def flight_config(table: FlightTable) -> FlightConfig:
@@ -62,6 +65,7 @@ def flight_config(table: FlightTable) -> FlightConfig:
             modes=_modes(table.modes, tick_hz),
             rates=_rates(table.telemetry, tick_hz),
             event_spacing_ticks=_ticks(table.fdir.event_spacing_s, tick_hz),
+            second_sender=_second_sender(table),
             stale_after_ticks=max(1, _ticks(table.modes.stale_after_s, tick_hz)),
         )
     except ValueError as error:
@@ -173,6 +177,13 @@ def _coil_health(table: FlightTable) -> CoilHealthConfig:
         field_sigma_t=tuning.magnetometer_sigma_nt * NT,
         sun_sigma_rad=radians(tuning.sun_sigma_deg),
         inertia_inverse=inverse(table.body.inertia),
+    )
+
+
+def _second_sender(table: FlightTable) -> SecondSenderConfig:
+    longest_s = table.fdir.second_sender_s
+    return SecondSenderConfig(
+        _ticks(longest_s, table.time.tick_hz), _ticks(min(CHATTER_S, longest_s), table.time.tick_hz)
     )
 
 

@@ -215,7 +215,7 @@ class ModesTable(Section):
 
 
 class FdirTable(Section):
-    """Limits of the checks of sensors and coils, how long before one is named, and believed again.
+    """Limits of the checks of sensors, coils and bus, how long before one is named, and believed again.
 
     Of its nominal current or effect, less than ``weak_coil_part`` is a weak coil's, less than
     ``open_coil_part`` an open one's.
@@ -232,6 +232,7 @@ class FdirTable(Section):
     name_pulses: int = Field(ge=1)
     name_sigmas: Positive
     stuck_s: Positive
+    second_sender_s: Positive
     event_spacing_s: NotNegative
 
     @model_validator(mode="after")

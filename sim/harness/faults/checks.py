@@ -9,7 +9,7 @@ from sim.harness.audit.auditor import audit
 from sim.harness.audit.findings import AuditLimits
 from sim.harness.faults import currents
 from sim.harness.faults.currents import CurrentLimits
-from sim.harness.faults.naming import can_name, isolated, named_by_board, tripped
+from sim.harness.faults.naming import SECOND_SENDER, can_name, isolated, named_by_board, tripped
 from sim.harness.faults.record import Record
 from sim.harness.faults.row import Outcome, Row, Verdict
 from sim.harness.scenario import Scenario, orbit_period_s
@@ -119,6 +119,25 @@ def goes_on(row: Row, record: Record, bounds: Bounds) -> tuple[bool | None, str]
     return None if row.stays and not can_name(row.unit) else False, "neither pulses nor SAFE at the end"
 
 
+def no_request(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
+    """Nothing is asked for from when the unit is named until the fault has gone, and something later."""
+    end = record.end if record.end is not None else record.ticks
+    named = min((tick for tick, unit in isolated(record) if unit == row.unit), default=record.onset or 0)
+    early = [tick for tick in record.asked if named <= tick < end]
+    if early:
+        return False, f"asked in tick {early[0]} though {row.unit} is there"
+    later = [tick for tick in record.asked if tick >= end]
+    return bool(later), f"asks again {(later[0] - end) / record.tick_hz:.0f} s after" if later else "for ever"
+
+
+def nobody_invented(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
+    """A second sender is named only where somebody sends in the place of fsw."""
+    if row.kind in ("second_sender", "random_frames"):
+        return True, ""
+    named = [tick for tick, unit in isolated(record) if unit == SECOND_SENDER]
+    return not named, f"a second sender named in tick {named[0]}" if named else ""
+
+
 def dropped(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
     """What was broken was counted."""
     return record.rejected > 0, "" if record.rejected else "nothing was counted as rejected"
@@ -217,11 +236,13 @@ ALWAYS: dict[str, Check] = {
     "no exception": no_exception,
     "no NaN": finite,
     "answered": answered,
+    "nobody invented": nobody_invented,
 }
 CHECKS: dict[str, Check] = {
     **ALWAYS,
     "no extra pulse": no_extra_pulse,
     "boots locked": boots_locked,
+    "no request": no_request,
     "goes on": goes_on,
     "dropped": dropped,
     "recovers": recovers,

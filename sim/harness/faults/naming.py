@@ -9,11 +9,14 @@ from hil_stub.events import CoilEventCode
 from sim.harness.faults.record import Event, Record
 
 Blame = Callable[[Event], str]
+SECOND_SENDER = "second sender"
+_IDENTIFIERS = 0x800
 
 _SILENT = {
     Monitor.FIELD_FRESH: "magnetometer",
     Monitor.COIL_STATUS_FRESH: "coil board",
     Monitor.COIL_AS_COMMANDED: "coil board",
+    Monitor.NO_SECOND_SENDER: SECOND_SENDER,
 }
 
 
@@ -31,6 +34,7 @@ _COILS = {number: f"coil {number - 1}" for number in (1, 2, 3)}
 _ISOLATING: dict[str, dict[int, str]] = {
     "SENSOR_ISOLATED": {int(sensor): unit for sensor, unit in _SENSORS.items()},
     "COIL_FAULT": _COILS,
+    "SECOND_SENDER": dict.fromkeys(range(1 + _IDENTIFIERS // 100), SECOND_SENDER),
 }
 """Units by the hundreds of the argument, by event: one that fsw does not know yet names nobody."""
 

@@ -16,6 +16,7 @@ WELL = Watched(
     status_age_ticks=59,
     unexpected_drive=False,
     orbit_known=True,
+    second_sender=False,
     stale_after_ticks=60,
 )
 
@@ -66,6 +67,7 @@ TRIPS = [
     (Monitor.COIL_STATUS_FRESH, WELL._replace(status_age_ticks=60)),
     (Monitor.COIL_AS_COMMANDED, WELL._replace(unexpected_drive=True)),
     (Monitor.ORBIT_KNOWN, WELL._replace(orbit_known=False)),
+    (Monitor.NO_SECOND_SENDER, WELL._replace(second_sender=True)),
 ]
 
 
@@ -78,6 +80,7 @@ TRIPS = [
     "REQ-TRIP-06",
     "REQ-TRIP-07",
     "REQ-TRIP-08",
+    "REQ-TRIP-09",
 )
 @pytest.mark.parametrize(("monitor", "watched"), TRIPS, ids=[monitor.name for monitor, _ in TRIPS])
 def test_trips_and_is_named(monitor, watched):
@@ -100,6 +103,7 @@ def test_of_several_violations_the_first_of_the_list_is_named():
         99,
         True,
         False,
+        True,
         60,
     )
     assert first_violation(everything) is Monitor.ATTITUDE_FINITE

@@ -20,6 +20,7 @@ from fsw.wire.messages import (
     CoilStatus,
     MagBoot,
     MagField,
+    NavQuality,
     NavRate,
     PlantBoot,
     RefAttitude,
@@ -243,12 +244,18 @@ class TestTheRest:
             PlantBoot(0, 1, 2),
             MagBoot(0, 1, 2),
             CoilHeartbeat(0, 0, 0, 60),
-            NavRate(1, 0.0, 0.0, 0.0),
             TickDone(1, 2),
         ],
     )
     def test_what_is_meant_for_others_passes_uncounted(self, message):
         assert admit(frames(message), GateState()) == (NOTHING, GateState())
+
+    def test_of_whole_frames_under_own_identifiers_the_lowest_is_told(self):
+        rate, quality = NavRate(1, 0.0, 0.0, 0.0), NavQuality(0, 0.0, 0.0, 0, 0, 0, 0, 0, 0, 0)
+        readings, state = admit(frames(quality, rate, quality, TickDone(1, 2)), GateState())
+        assert readings == NOTHING._replace(under_own_id=NavRate.ID)
+        assert state == GateState()
+        assert admitted(broken(rate.encode())) == (NOTHING, GateState(rejected=1))
 
     @pytest.mark.parametrize(
         "frame",
@@ -361,7 +368,7 @@ def test_of_ten_thousand_random_frames_none_is_taken_unless_intact():
     for _ in range(10_000):
         frame = random_frame(random)
         readings, after = admit((frame,), state)
-        heard = [message for message in (*readings[:-2], *readings.telecommands) if message is not None]
+        heard = [message for message in (*readings[:-3], *readings.telecommands) if message is not None]
         if heard:
             taken += 1
             assert intact(frame)

@@ -8,6 +8,7 @@ from fsw.core.coil_health import CoilHealth
 from fsw.core.estimator import UNKNOWN, Attitude
 from fsw.core.modes import ModeState
 from fsw.core.monitors import Monitor
+from fsw.core.second_sender import SIGNS, SecondSender
 from fsw.core.supervisor import supervise
 from fsw.wire.messages import Mode
 
@@ -65,6 +66,12 @@ def test_a_coil_that_nobody_asked_for_trips(supervised):
 
 def test_an_orbit_that_is_not_known_trips(supervised):
     assert supervised(ephemeris=None).violated is Monitor.ORBIT_KNOWN
+
+
+def test_a_second_sender_trips_once_it_is_named(supervised):
+    signs = SecondSender(SIGNS, TICK, 0x080)
+    assert supervised(second_sender=signs).violated is Monitor.NO_SECOND_SENDER
+    assert supervised(second_sender=signs._replace(signs=SIGNS - 1)).violated is None
 
 
 def test_a_trip_leads_to_safe_in_the_same_tick_and_is_counted(supervised):

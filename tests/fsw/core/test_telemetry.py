@@ -172,6 +172,7 @@ class TestEvents:
             "SENSOR_READMITTED": 8,
             "SENSORS_DISAGREE": 9,
             "COIL_FAULT": 10,
+            "SECOND_SENDER": 11,
         }
 
     def test_every_event_has_a_severity_and_fits_its_signal(self):

@@ -2,6 +2,7 @@
 
 import pytest
 
+from fsw.core.second_sender import SIGNS
 from fsw.core.state import Inbox
 from fsw.core.step import boot, step
 from fsw.io.config import flight_config
@@ -129,3 +130,23 @@ def test_a_leap_is_forgotten_once_time_goes_on_as_before(node, config):
 
 def test_the_first_sync_may_be_any_tick(node, config):
     assert TickDone.decode(node.receive(sync(config, 90_000))[-1].data).tick == 90_000
+
+
+@pytest.mark.requirement("REQ-BUS-01", "REQ-BUS-02")
+@pytest.mark.parametrize("count", [1, 2])
+def test_on_the_loop_bus_a_node_hears_the_others_of_its_kind_and_never_itself(open_link, config, count):
+    clock = open_link()
+    ends = [(open_link(), FlightNode(config)) for _ in range(count)]
+    for link, node in ends:
+        link.send([node.start()])
+    for tick in range(SIGNS + 1):
+        clock.send([sync(config, tick)])
+        for link, node in ends:
+            answer = ()
+            while not answer:
+                answer = node.receive(link.receive(10.0))
+            link.send(answer)
+        for _ in ends:
+            while clock.receive(10.0).can_id != TickDone.ID:
+                pass
+    assert [node.state.second_sender.named for _, node in ends] == [count > 1] * count

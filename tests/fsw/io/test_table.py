@@ -158,6 +158,7 @@ PLANTED = [
     ("fdir.name_sigmas", 0.0, "a number above 0"),
     ("fdir.stuck_s", 0.0, "a number above 0"),
     ("coils.dipole_per_ampere_am2", 0.0, "a number above 0"),
+    ("fdir.second_sender_s", 0.0, "a number above 0"),
     ("fdir.event_spacing_s", -1.0, "a number at least 0"),
     ("fdir.silent_s", 60.0, "fdir.silent_s is not a known key"),
     ("knowledge", "guess", "'filter' or 'perfect'"),

@@ -29,6 +29,12 @@ def test_sensors_are_named_by_isolation_and_boards_by_monitors():
     assert naming.tripped(flown) == [(130, "magnetometer")]
 
 
+@pytest.mark.parametrize("identifier", [0x080, 0x088, 0x200, 0x610, 0x7FF])
+def test_a_second_sender_is_named_by_any_identifier(identifier):
+    flown = record(Event(120, Number.SECOND_SENDER, identifier))
+    assert naming.isolated(flown) == [(120, "second sender")]
+
+
 def test_the_right_unit_must_be_named_and_no_other(bounds):
     row = Row("planted", "", "none", unit="magnetometer")
     right, wrong = isolated(130, Sensor.MAGNETOMETER), isolated(125, Sensor.SUN_SENSOR)
