@@ -319,6 +319,16 @@ def faults(
 @click.option("--slips", default=0, show_default=True, help="Budget of ticks without answer or sample.")
 @click.option("--load-percent", default=50.0, show_default=True, help="Budget of the bus load, mean.")
 @click.option(
+    "--memory-percent", default=2.0, show_default=True, help="Budget of each process' growth once warm."
+)
+@click.option(
+    "--warm-s",
+    default=60.0,
+    show_default=True,
+    type=click.FloatRange(0.0),
+    help="Memory is judged from then on, if the run is longer.",
+)
+@click.option(
     "--deadman-s",
     default=5.0,
     show_default=True,
@@ -347,6 +357,8 @@ def hil(
     latency_ms: float | None,
     slips: int,
     load_percent: float,
+    memory_percent: float,
+    warm_s: float,
     deadman_s: float,
     conformance: str | None,
     seed: int,
@@ -367,9 +379,10 @@ def hil(
     from sim.harness.hil.verdict import Budgets
 
     half_ms = 500.0 / chosen.time.tick_hz
-    budgets = Budgets(jitter_ms, half_ms if latency_ms is None else latency_ms, slips, load_percent)
+    latency = half_ms if latency_ms is None else latency_ms
+    budgets = Budgets(jitter_ms, latency, slips, load_percent, memory_percent)
     boards = command.real_boards(real)
-    bench = command.Bench(chosen, bus, boards, arm, seconds, stimulus, deadman_s, budgets, seed, out)
+    bench = command.Bench(chosen, bus, boards, arm, seconds, stimulus, deadman_s, budgets, warm_s, seed, out)
     return command.hil(bench, as_json)
 
 

@@ -114,7 +114,7 @@ def test_a_real_board_is_not_started_and_one_that_is_silent_breaks_its_budget(be
     numbers, _, code, _ = benches["real"]
     assert code == 1
     assert numbers["real"] == ["coil", "sun"]
-    assert set(numbers["memory_kib"]) == {"fsw", "magnetometer"}
+    assert set(numbers["memory"]["kib"]) == {"bench", "fsw", "magnetometer"}
     broken = [line["name"] for line in numbers["budgets"] if not line["kept"]]
     assert broken == ["ticks without one coil sample"], "the Sun sensor of another shell is on the bus"
 

@@ -20,6 +20,7 @@ from sim.harness.assemble import plant_config
 from sim.harness.errors import HarnessError
 from sim.harness.flight import BusLog, Pace
 from sim.harness.hil.conductor import Conductor, is_boot
+from sim.harness.hil.memory import Memory, scheduling
 from sim.harness.hil.nodes import Node, Nodes, hub_of
 from sim.harness.hil.verdict import Budgets, Json, judge, render
 from sim.harness.hil.world import PlantWorld, SyncAlone, World, line_to
@@ -30,8 +31,6 @@ BOARDS = {"coil": "COIL", "magnetometer": "MAG", "sun": "SUN"}
 SENSORS = ("magnetometer", "sun")
 BOOT_S = 30.0
 ASK_AGAIN_S = 0.5
-SETTLED = 0.1
-"""Part of the run after which memory is first looked at."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +46,7 @@ class Bench:
         stimulus: "plant", or what the sensors are shown instead: a run, a log, a script.
         deadman_s: the coil board's dead-man.
         budgets: what must be kept.
+        warm_s: memory is judged from then on.
         seed: of the plant.
         out: run directory to be written; None: no log is kept.
     """
@@ -59,6 +59,7 @@ class Bench:
     stimulus: str
     deadman_s: float
     budgets: Budgets
+    warm_s: float
     seed: int
     out: Path | None
 
@@ -84,14 +85,14 @@ def hil(bench: Bench, as_json: bool = False) -> int:
     """
     if bench.stimulus != "plant" and bench.scenario.knowledge == "perfect":
         raise HarnessError("a scenario with knowledge = 'perfect' needs the plant: --stimulus plant")
-    with hub_of(bench.bus) as spec, TemporaryDirectory() as scratch, Nodes() as nodes:
+    with hub_of(bench.bus) as (spec, hub_pid), TemporaryDirectory() as scratch, Nodes() as nodes:
         folder = bench.out or Path(scratch)
         scenario_file = _begin(bench, folder, spec)
         if not as_json:
             click.echo(_said(bench, spec))
         bus = open_bus(spec)
         try:
-            numbers, kept = _run(bench, spec, bus, nodes, folder, scenario_file, as_json)
+            numbers, kept = _run(bench, spec, hub_pid, bus, nodes, folder, scenario_file, as_json)
         finally:
             bus.close()
         lost = [node for node in nodes.by_name.values() if node.process.poll()]
@@ -121,16 +122,24 @@ def _ticks(bench: Bench) -> int:
 
 
 def _run(
-    bench: Bench, spec: str, bus: Bus, nodes: Nodes, folder: Path, scenario_file: Path, as_json: bool
+    bench: Bench,
+    spec: str,
+    hub_pid: int | None,
+    bus: Bus,
+    nodes: Nodes,
+    folder: Path,
+    scenario_file: Path,
+    as_json: bool,
 ) -> tuple[Json, bool]:
     scenario, ticks = bench.scenario, _ticks(bench)
-    tick_hz, memory = scenario.time.tick_hz, Memory(nodes, round(SETTLED * ticks))
+    tick_hz = scenario.time.tick_hz
     arming = () if bench.armed else ("--disarmed",)
     fsw = nodes.start("fsw", "fsw", str(scenario_file), "--bus", spec, "--parent", str(os.getpid()), *arming)
     booted = _await(bus, {"FSW": fsw}, ask=True)[-1:]
     stubs = {name: _board(bench, nodes, name, spec) for name in BOARDS if name not in bench.real}
     world = _world(bench, stubs)
     booted += _await(bus, {BOARDS[name]: node for name, node in stubs.items()})
+    memory = Memory(_pids(nodes, hub_pid), ticks, tick_hz, bench.warm_s)
     keeping: BusLog | NoLog = BusLog(folder / run_dir.BUS_LOG, bus.name) if bench.out else NoLog()
     with progress(f"bench with {scenario.name}", ticks) as watch, keeping as log:
 
@@ -139,14 +148,19 @@ def _run(
             watch(tick)
 
         measured = Conductor(bus, world, log, scenario.epoch_unix_s, tick_hz, on_tick).run(ticks, booted)
-    memory.look(memory.settled)
-    numbers, lines = judge(measured, bench.budgets, tuple(BOARDS), tick_hz)
+    numbers, lines = judge(measured, bench.budgets, tuple(BOARDS), tick_hz, memory.growth_percent())
     numbers |= {"scenario": scenario.name, "bus": spec, "tick_hz": tick_hz, "armed": bench.armed}
-    numbers |= {"real": sorted(bench.real), "memory_kib": memory.kib}
+    numbers |= {"real": sorted(bench.real), "memory": memory.history(), "scheduling": scheduling()}
     numbers["budgets"] = [{**line._asdict(), "kept": line.kept} for line in lines]
     if not as_json:
         click.echo(render(numbers, lines))
     return numbers, all(line.kept for line in lines)
+
+
+def _pids(nodes: Nodes, hub_pid: int | None) -> dict[str, int]:
+    """Every process of the bench."""
+    hub = {} if hub_pid is None else {"hub": hub_pid}
+    return {"bench": os.getpid()} | hub | {node.name: node.process.pid for node in nodes.by_name.values()}
 
 
 def _board(bench: Bench, nodes: Nodes, name: str, spec: str) -> Node:
@@ -210,21 +224,6 @@ class NoLog(AbstractContextManager["NoLog"]):
 
     def __exit__(self, *error: object) -> None:
         """Nothing to close."""
-
-
-class Memory:
-    """Resident memory of each node, once the run has settled and at its end."""
-
-    def __init__(self, nodes: Nodes, settled: int) -> None:
-        self._nodes = nodes
-        self.settled = settled
-        self.kib: dict[str, list[int | None]] = {}
-
-    def look(self, tick: int) -> None:
-        """Look, if it is time."""
-        if tick == self.settled:
-            for name, node in self._nodes.by_name.items():
-                self.kib.setdefault(name, []).append(node.memory_kib())
 
 
 def _said(bench: Bench, spec: str) -> str:

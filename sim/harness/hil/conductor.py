@@ -2,7 +2,6 @@
 
 import gc
 import time
-from array import array
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -12,6 +11,7 @@ from fsw.wire.frame import Frame
 from fsw.wire.messages import NAMES, SENDERS, CoilStatus, MagField, PlantEnd, SunVector, TickDone, intact
 from sim.harness.flight import FrameLog
 from sim.harness.hil.bus_load import frame_bits
+from sim.harness.hil.times import Times
 from sim.harness.hil.world import World
 
 SAMPLES = {CoilStatus.ID: "coil", MagField.ID: "magnetometer", SunVector.ID: "sun"}
@@ -29,8 +29,8 @@ class Measured:
 
     Args:
         ticks: SYNCs sent.
-        jitter_s: how late each SYNC was.
-        latency_s: from SYNC to the TICK_DONE that answers it, where it came before the next SYNC.
+        jitter: how late each SYNC was.
+        latency: from SYNC to the TICK_DONE that answers it, where it came before the next SYNC.
         slips: ticks without that.
         bits: on the bus, in all and in the busiest tick.
         busiest_bits: in the busiest tick.
@@ -39,8 +39,8 @@ class Measured:
     """
 
     ticks: int = 0
-    jitter_s: "array[float]" = field(default_factory=lambda: array("d"))
-    latency_s: "array[float]" = field(default_factory=lambda: array("d"))
+    jitter: Times = field(default_factory=Times)
+    latency: Times = field(default_factory=Times)
     slips: int = 0
     bits: int = 0
     busiest_bits: int = 0
@@ -76,6 +76,7 @@ class Conductor:
         self._tick_hz = tick_hz
         self._watch = watch
         self._heard: list[Frame] = []
+        self._sent: list[Frame] = []
         self._answered = 0  # how many of them came up to TICK_DONE
         self.measured = Measured()
 
@@ -99,15 +100,21 @@ class Conductor:
             sent = self._world.frames()
             self._bus.send(sent)
             sent_s = time.monotonic()
-            self.measured.jitter_s.append(sent_s - due_s)
-            self._keep(tick, sent)
+            self.measured.jitter.add(sent_s - due_s)
+            self._settle(tick, sent)
             self._listen(tick, due_s + period_s, sent_s)
-            self._tally(sent)
-            self._watch(tick)
         end = PlantEnd(ticks).encode()
         self._bus.send([end])
-        self._keep(ticks, [end])
+        self._settle(ticks, [end])
         return self.measured
+
+    def _settle(self, tick: int, sent: list[Frame]) -> None:
+        """What the tick before has left to do, once the SYNC of this one is sent: that is not late for it."""
+        if tick:
+            self._tally()
+            self._watch(tick - 1)
+        self._keep(tick, sent)
+        self._sent = sent
 
     def _listen(self, tick: int, until_s: float, sent_s: float) -> None:
         """Until the next SYNC is due: answers are timed, and the world goes on when the board has spoken."""
@@ -125,7 +132,7 @@ class Conductor:
                 continue
             self._heard.append(frame)
             if frame.can_id == TickDone.ID and TickDone.decode(frame.data).tick == tick:
-                self.measured.latency_s.append(time.monotonic() - sent_s)
+                self.measured.latency.add(time.monotonic() - sent_s)
                 self._answered = len(self._heard)
             elif self._world.hear(frame) and waits:
                 self._world.advance()
@@ -135,11 +142,11 @@ class Conductor:
         if waits:
             self._world.advance()
 
-    def _tally(self, sent: list[Frame]) -> None:
+    def _tally(self) -> None:
         measured, heard = self.measured, self._heard
         measured.ticks += 1
         measured.slips += not self._answered
-        bits = sum(map(frame_bits, sent + heard))
+        bits = sum(map(frame_bits, self._sent + heard))
         measured.bits += bits
         measured.busiest_bits = max(measured.busiest_bits, bits)
         count = Counter(frame.can_id for frame in heard if intact(frame))

@@ -8,13 +8,12 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from tempfile import TemporaryFile
 from types import TracebackType
-from typing import IO, Self
+from typing import IO, NamedTuple, Self
 
 from fsw.io.link import LoopLink
 from fsw.io.open_bus import resolve
 
 GRACE_S = 3.0
-PAGE_KIB = os.sysconf("SC_PAGE_SIZE") // 1024
 
 
 @dataclass
@@ -35,14 +34,6 @@ class Node:
         self.errors.seek(0)
         lines = self.errors.read().decode(errors="replace").strip().splitlines()
         return lines[-1] if lines else "it said nothing"
-
-    def memory_kib(self) -> int | None:
-        """Resident memory; None where the system does not tell."""
-        try:
-            with open(f"/proc/{self.process.pid}/statm", encoding="ascii") as file:
-                return int(file.read().split()[1]) * PAGE_KIB
-        except (OSError, IndexError):
-            return None
 
 
 class Nodes:
@@ -85,16 +76,23 @@ class Nodes:
             node.errors.close()
 
 
+class Served(NamedTuple):
+    """A bus in full, and the process that serves it, if that was started for it."""
+
+    spec: str
+    hub_pid: int | None
+
+
 @contextmanager
-def hub_of(bus: str) -> Iterator[str]:
-    """The bus in full; a loop bus that nobody serves is served by a process of its own meanwhile.
+def hub_of(bus: str) -> Iterator[Served]:
+    """The bus; a loop bus that nobody serves is served by a process of its own meanwhile.
 
     Raises:
         BusError: something else listens on the port of the loop bus.
     """
     spec = resolve(bus)
     if not spec.startswith("loop:"):
-        yield spec
+        yield Served(spec, None)
         return
     port = "0" if bus in ("loop", "auto") else spec.removeprefix("loop:")
     words = [sys.executable, "-m", "sim.harness.hil.hub_process", port]
@@ -105,7 +103,7 @@ def hub_of(bus: str) -> Iterator[str]:
         served = hub.stdout.readline().strip()
         if not served:  # somebody else serves it, or keeps the port for something else
             LoopLink(int(port), timeout_s=1.0, may_host=False).close()
-        yield f"loop:{served.decode()}" if served else spec
+        yield Served(f"loop:{served.decode()}", hub.pid) if served else Served(spec, None)
 
 
 def _environment() -> dict[str, str]:

@@ -1,26 +1,29 @@
 """What was measured on a bench against its budgets, as text and as JSON."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from sim.harness.hil.bus_load import BITRATE
 from sim.harness.hil.conductor import Measured
+from sim.harness.hil.times import Times
 
 Json = dict[str, Any]
 
 
 @dataclass(frozen=True, slots=True)
 class Budgets:
-    """What must be kept: 99 % of the times [ms], all of the ticks, the mean load of the bus [%].
+    """What must be kept: 99 % of the times [ms], all of the ticks, the mean load of the bus [%], memory [%].
 
-    ``slips`` is allowed of unanswered ticks, and of ticks without the sample of a board, each.
+    ``slips`` is allowed of unanswered ticks, and of ticks without the sample of a board, each;
+    ``memory_percent`` is how far the memory of each process may rise once it is warm.
     """
 
     jitter_ms: float
     latency_ms: float
     slips: int
     load_percent: float
+    memory_percent: float
 
 
 class Line(NamedTuple):
@@ -36,21 +39,20 @@ class Line(NamedTuple):
         return self.measured <= self.allowed
 
 
-def percentiles(seconds: Sequence[float]) -> Json:
-    """p50, p99 and max in ms, each an observed value; infinite where nothing was observed."""
-    ranked = sorted(seconds)
-    if not ranked:
-        return {name: float("inf") for name in ("p50", "p99", "max")}
-    last = len(ranked) - 1
-    parts = {"p50": 0.5, "p99": 0.99, "max": 1.0}
-    return {name: 1000.0 * ranked[min(last, int(part * len(ranked)))] for name, part in parts.items()}
+def percentiles(times: Times) -> Json:
+    """p50, p99 and max in ms; infinite where nothing was observed."""
+    return {name: 1000.0 * times.at(part) for name, part in (("p50", 0.5), ("p99", 0.99), ("max", 1.0))}
 
 
 def judge(
-    measured: Measured, budgets: Budgets, boards: Sequence[str], tick_hz: int
+    measured: Measured,
+    budgets: Budgets,
+    boards: Sequence[str],
+    tick_hz: int,
+    growth_percent: Mapping[str, float],
 ) -> tuple[Json, list[Line]]:
-    """The numbers and, by them, the budgets."""
-    jitter, latency = percentiles(measured.jitter_s), percentiles(measured.latency_s)
+    """The numbers and, by them, the budgets; ``growth_percent``: of the memory of each process."""
+    jitter, latency = percentiles(measured.jitter), percentiles(measured.latency)
     seconds = measured.ticks / tick_hz
     load = 100.0 * measured.bits / (BITRATE * seconds) if seconds else 0.0
     busiest = 100.0 * measured.busiest_bits * tick_hz / BITRATE
@@ -73,6 +75,10 @@ def judge(
             for board, number in missing.items()
         ),
         Line(f"bus load at {BITRATE // 1000} kbit/s, mean [%]", load, budgets.load_percent),
+        *(
+            Line(f"memory of {name}, growth [%]", growth, budgets.memory_percent)
+            for name, growth in growth_percent.items()
+        ),
     ]
     return numbers, lines
 
