@@ -4,6 +4,7 @@
 # make validate   every claim and reference figure anew, into docs/validation.md: minutes to half an hour
 # make replay-elsewhere   does a log of 20 orbits replay with other processor features, into docs/replay.md
 # make faults     every fault in ten phases and with five seeds, into docs/faults.md: up to an hour
+# make soak       72 simulated hours, and an hour on the bench in real time, into docs/soak.md
 # make golden     record the golden logs anew: after a change that means to alter what fsw answers
 # make test-vcan   the tests on a CAN interface, in a user-mode Linux guest where this kernel has no vcan
 # make fuzz         a million random frames into codec, boards and flight loop: some minutes
@@ -19,7 +20,7 @@ bin := .venv/bin
 installed := .venv/.installed
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv sil test lint test-vcan golden validate fuzz differential replay-elsewhere faults mutation coverage
+.PHONY: help venv sil test lint test-vcan golden validate fuzz differential replay-elsewhere faults soak mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -68,6 +69,9 @@ replay-elsewhere: venv
 
 faults: venv
 	$(bin)/torquer faults --phases 10 --seeds 5 --write-docs
+
+soak: venv
+	$(bin)/python tools/soak.py $(SOAK)
 
 mutation: venv
 	$(bin)/python tools/mutate.py $(MUTATE)
