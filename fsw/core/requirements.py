@@ -8,10 +8,11 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from fsw.core.coil_health import CoilFault
+from fsw.core.earth import RADIUS_M
 from fsw.core.events import Event
 from fsw.core.monitors import RATE_LIMIT_RADPS, UNIT_TOLERANCE, Monitor
 from fsw.core.second_sender import SIGNS
-from fsw.core.sensor_health import AGAINST_ESTIMATE, SensorFault
+from fsw.core.sensor_health import AGAINST_ESTIMATE, SHADOW_M, SensorFault
 
 
 class Requirement(NamedTuple):
@@ -122,6 +123,12 @@ REQUIREMENTS: tuple[Requirement, ...] = (
         "0.001 false alarms an hour",
         None,
         Event.SENSOR_ISOLATED,
+    ),
+    _sensor(
+        9,
+        SensorFault.UNLIT,
+        "What a Sun sensor sees in the Earth's shadow is not used, and a sensor that goes on so is named.",
+        f"{(RADIUS_M - SHADOW_M) / 1000.0:g} km inside the shadow's edge; `fdir.name_s`",
     ),
     _coil(
         1, CoilFault.OPEN, "A coil without current, or whose pulses have no effect, is named and left out."

@@ -1,9 +1,10 @@
 """Which sensor is wrong, and when it may be believed again.
 
-Four checks need no attitude: the field's strength against the model, the Sun's unit norm, the angle between
-field and Sun against the model, and a reading that does not move. The fifth is the filter's: it refuses one
-sensor tick after tick while it takes the other, or while there is no other. Each bad tick raises the
-suspicion against a sensor and each good one lowers it, so that noise and the filter's transients name nobody.
+Five checks need no attitude: the field's strength against the model, the Sun's unit norm, a Sun that is seen
+in the Earth's shadow, the angle between field and Sun against the model, and a reading that stands still. The
+sixth is the filter's: it refuses one sensor tick after tick while it takes the other, or while there is no
+other. Each bad tick raises the suspicion against a sensor and each good one lowers it, so that noise and the
+filter's transients name nobody.
 What the filter refuses counts in full where field and Sun contradict each other, and less where the filter
 itself may be what is wrong.
 
@@ -15,8 +16,10 @@ from enum import IntEnum
 from math import acos
 from typing import TYPE_CHECKING, NamedTuple
 
+from fsw.core.earth import RADIUS_M
 from fsw.core.quaternion import rotate
 from fsw.core.readings import Readings
+from fsw.core.sun import lit
 from fsw.core.vector import ZERO, Vec3, add, dot, norm, sub
 from fsw.wire.messages import MagField, SunVector
 
@@ -41,6 +44,7 @@ class SensorFault(IntEnum):
     FROZEN = 3
     REFUSED = 4
     SILENT = 5
+    UNLIT = 6
 
 
 FULL, SLIGHT = 3, 2
@@ -51,6 +55,10 @@ MISFIT = 20
 
 DARK: Vec3 = (0.0, 0.0, 0.0)
 """The sample of a Sun sensor that sees nothing."""
+
+SHADOW_M = RADIUS_M - 100e3
+"""Radius of what is shadow for certain: the Earth is flattened by 21 km, half the penumbra of a low orbit is
+15 km wide, and the position may be off by tens of km."""
 
 AGAINST_ESTIMATE = 4
 """So many times longer both sensors must agree before they are believed against the estimate."""
@@ -105,11 +113,12 @@ class SensorHealth(NamedTuple):
     doubted: bool = False
 
 
-def trusted(readings: Readings, health: SensorHealth) -> Readings:
-    """The readings without those of a sensor that is left out."""
+def trusted(readings: Readings, health: SensorHealth, reference: "Reference") -> Readings:
+    """The readings without those of a sensor that is left out, and without a Sun where none can be."""
     if health.field.fault:
         readings = readings._replace(field=None)
-    if health.sun.fault:
+    sun = readings.sun
+    if sun is not None and (health.sun.fault or (sun.valid and _unlit(reference))):
         readings = readings._replace(sun=None)
     return readings
 
@@ -138,7 +147,12 @@ def judge(
         sigma3_rad: three standard deviations of its attitude.
         config: limits.
     """
+    lamp = sun  # what is called the Sun
+    if sun is not None and _unlit(reference):
+        sun = None
     b_cause, s_cause, apart = _plain_checks(field, sun, reference, config)
+    if lamp is not sun:
+        s_cause = SensorFault.UNLIT
     if readings.field is not None and not readings.field.valid and _idle(readings):
         b_cause = SensorFault.SATURATED
     b_before, s_before = health.field, health.sun
@@ -163,9 +177,9 @@ def judge(
             )
             fits = not b_cause and _fits(field, agree, foretold, config.field_noise_t, sigma3_rad)
             b_watch, doubted = _probed(b_watch, fits, agree, config)
-        if s_watch.fault and sun is not None:
+        if s_watch.fault and lamp is not None:
             foretold = None if known is None else rotate(known.q_body_from_eci, reference.sun_eci)
-            fits = not s_cause and _fits(sun, agree, foretold, config.sun_noise_rad, sigma3_rad)
+            fits = not s_cause and _fits(lamp, agree, foretold, config.sun_noise_rad, sigma3_rad)
             s_watch, s_doubted = _probed(s_watch, fits, agree, config)
             doubted = doubted or s_doubted
     if apart and known is None:
@@ -174,6 +188,11 @@ def judge(
         against = max(health.apart - FULL, 0)
     contradictory = against == config.name_suspicion or (health.contradictory and against > 0)
     return SensorHealth(b_watch, s_watch, against, contradictory, doubted)
+
+
+def _unlit(reference: "Reference") -> bool:
+    """Whether no Sun can be seen, whatever the model does not know."""
+    return not (reference.lit or lit(reference.r_eci_m, reference.sun_eci, SHADOW_M))
 
 
 def _plain_checks(

@@ -105,7 +105,7 @@ def _estimate(
     if config.estimator.perfect:
         known = perfect_attitude(readings, state.attitude)
         return state._replace(attitude=known), readings, reference, NONE_USED
-    trusted = sensor_health.trusted(readings, state.sensors)
+    trusted = sensor_health.trusted(readings, state.sensors, reference)
     estimator, used, predicted = estimate(
         state.estimator, trusted, reference, state.coil.driven_am2, elapsed_ticks, config.estimator
     )

@@ -21,7 +21,10 @@ def sun_eci(unix_s: float) -> Vec3:
     return (cos(longitude), cos(obliquity) * across, sin(obliquity) * across)
 
 
-def lit(r_eci_m: Vec3, sun_eci: Vec3) -> bool:
-    """Whether the satellite is outside the Earth's cylindrical shadow, whose edge is mid-penumbra."""
+def lit(r_eci_m: Vec3, sun_eci: Vec3, radius_m: float = RADIUS_M) -> bool:
+    """Whether the satellite is outside the Earth's cylindrical shadow, whose edge is mid-penumbra.
+
+    With a smaller radius: whether it may be, for all that is not known of the edge.
+    """
     along = dot(r_eci_m, sun_eci)
-    return along >= 0.0 or dot(r_eci_m, r_eci_m) - along * along > RADIUS_M * RADIUS_M
+    return along >= 0.0 or dot(r_eci_m, r_eci_m) - along * along > radius_m * radius_m

@@ -185,6 +185,12 @@ def blamed_rightly(row: Row, record: Record, bounds: Bounds) -> tuple[bool | Non
     return True, f"named after {(right[0] - onset) / record.tick_hz:.0f} s"
 
 
+def no_other_named(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
+    """If any unit is named it is the one that is disturbed, which need not be."""
+    others = [(tick, unit) for tick, unit in isolated(record) if unit != row.unit]
+    return not others, f"{others[0][1]} named in tick {others[0][0]}" if others else ""
+
+
 def _not_named(row: Row, record: Record, onset: int) -> tuple[bool | None, str]:
     """A coil shows what is wrong with it only while it is on: less than a few pulses are no evidence."""
     if not row.unit.startswith("coil "):
@@ -251,6 +257,7 @@ CHECKS: dict[str, Check] = {
     "board names": board_names,
     "silence named": silence_named,
     "named": blamed_rightly,
+    "no other named": no_other_named,
     "stuck": stuck,
 }
 

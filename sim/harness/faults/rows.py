@@ -8,6 +8,7 @@ from sim.harness.faults.row import Row, When
 
 BUS = ("no extra pulse", "goes on")
 BROKEN = (*BUS, "dropped", "recovers")
+BLINDED = ("goes on", "no other named", "recovers")
 COIL_NAMES = ("coil 0", "coil 1", "coil 2")
 
 NOTHING = "nothing: false alarms"
@@ -197,8 +198,22 @@ ROWS: tuple[Row, ...] = (
         settings=NOON_ORBIT,
     ),
     Row("sun-unseen", LIGHT, "sun_unseen", {}, 1200.0, When.SUNLIT, ("goes on", "quiet", "recovers")),
-    Row("albedo", LIGHT, "albedo", {"part": 0.4}, 600.0, When.SUNLIT, ("goes on", "recovers")),
-    Row("albedo-eclipse", LIGHT, "albedo", {"part": 0.4}, 600.0, When.ECLIPSE, ("goes on", "recovers")),
+    Row("albedo", LIGHT, "albedo", {"part": 0.4}, 600.0, When.SUNLIT, BLINDED, "sun sensor"),
+    Row("albedo-eclipse", LIGHT, "albedo", {"part": 0.4}, 600.0, When.ECLIPSE, BLINDED, "sun sensor"),
+    Row(
+        "lamp-in-eclipse-passing", LIGHT, "albedo", {"part": 0.0}, 600.0, When.ECLIPSE, BLINDED, "sun sensor"
+    ),
+    Row(
+        "lamp-in-eclipse",
+        LIGHT,
+        "albedo",
+        {"part": 0.0},
+        inf,
+        When.ECLIPSE,
+        ("goes on", "bounded", "named"),
+        "sun sensor",
+        watch_s=900.0,
+    ),
     *_coils("coil-open", "coil_open", "board names"),
     *_coils("coil-reversed", "coil_wired", scale=-1.0),
     *_coils("coil-weak", "coil_wired", scale=0.3),

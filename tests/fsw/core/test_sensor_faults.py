@@ -128,6 +128,28 @@ def test_in_eclipse_the_attitude_is_kept(make_world, name):
     assert max(watcher.errors_deg[began:]) < 6.0
 
 
+@pytest.mark.requirement("REQ-SENSOR-09")
+def test_a_lamp_in_the_earth_s_shadow_is_no_sun(make_world):
+    """It shows the direction in which the Sun is: the filter would take it."""
+    watcher = Watcher(make_world(time={"epoch_utc": "2015-03-27T03:21:11Z"}))
+    world = watcher.world
+
+    def lamp(frame):
+        if frame.can_id != SunVector.ID:
+            return frame
+        said, plant = SunVector.decode(frame.data), world.plant.truth()
+        return SunVector(1, *plant.sun_body, counter=said.counter).encode()
+
+    while world.plant.truth().lit > 0.0:
+        watcher.fly(1)
+    began = watcher.tick
+    watcher.fly(80, lamp)
+    ((tick, argument),) = watcher.of(Event.SENSOR_ISOLATED)
+    assert argument == 206
+    assert 30 <= tick - began <= 70, "some seconds inside the edge, and half a minute"
+    assert watcher.errors_deg[-1] < 2.0
+
+
 def test_a_fault_from_the_first_tick_on_does_not_start_the_filter(make_world):
     watcher = Watcher(make_world())
     watcher.fly(60, of_field(lambda x, y, z: (y, z, x)))

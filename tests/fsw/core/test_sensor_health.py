@@ -1,10 +1,12 @@
 """Which sensor is named for what, when not, and when it is believed again."""
 
+from dataclasses import replace
 from math import acos, cos, degrees, nan, radians, sin
 
 import numpy as np
 import pytest
 
+from fsw.core.earth import RADIUS_M
 from fsw.core.ephemeris import Reference
 from fsw.core.estimator import Used, usable_field, usable_sun
 from fsw.core.mekf import Estimate
@@ -47,6 +49,12 @@ BOTH, NEITHER, FIELD_ONLY, SUN_ONLY = (
     Used(False, True, False),
 )
 REFERENCE = Reference((7e6, 0.0, 0.0), 7e6, B_ECI_T, SUN_ECI, True, (1.0, 0.0, 0.0, 0.0), 1e-3)
+BEFORE_THE_EARTH = REFERENCE
+NEAR_THE_EDGE, IN_SHADOW = (
+    replace(REFERENCE, r_eci_m=sub(scale(offset_m, (0.0, 0.8575, -0.5145)), scale(3e6, SUN_ECI)), lit=False)
+    for offset_m in (RADIUS_M - 99e3, RADIUS_M - 101e3)
+)
+"""Behind the Earth, 99 and 101 km from the edge of its shadow."""
 B_BODY_T, S_BODY = rotate(Q, B_ECI_T), rotate(Q, SUN_ECI)
 
 
@@ -63,7 +71,16 @@ def flight():
         tick = 0
 
         def step(
-            self, b=B_BODY_T, s=S_BODY, used=BOTH, known=KNOWN, valid=1, coil=IDLE, moves="bs", sigma3=0.01
+            self,
+            b=B_BODY_T,
+            s=S_BODY,
+            used=BOTH,
+            known=KNOWN,
+            valid=1,
+            coil=IDLE,
+            moves="bs",
+            sigma3=0.01,
+            reference=REFERENCE,
         ):
             self.tick += 1
             wobble = 1e-8 * (self.tick % 7 + 1)
@@ -74,7 +91,7 @@ def flight():
             if s is not None:
                 s = add(s, (wobble, 0.0, 0.0)) if "s" in moves and s != DARK else s
                 readings = readings._replace(sun=SunVector(int(s != DARK), *s))
-            seen = trusted(readings, self.health)
+            seen = trusted(readings, self.health, reference)
             used = Used(
                 used.field and usable_field(seen) is not None,
                 used.sun and usable_sun(seen) is not None,
@@ -85,7 +102,7 @@ def flight():
                 readings,
                 usable_field(readings),
                 usable_sun(readings),
-                REFERENCE,
+                reference,
                 used,
                 known,
                 sigma3,
@@ -104,12 +121,13 @@ def flight():
 
 
 DARK = (0.0, 0.0, 0.0)
-STRENGTH, SATURATED, FROZEN, REFUSED, SILENT = (
+STRENGTH, SATURATED, FROZEN, REFUSED, SILENT, UNLIT = (
     SensorFault.STRENGTH,
     SensorFault.SATURATED,
     SensorFault.FROZEN,
     SensorFault.REFUSED,
     SensorFault.SILENT,
+    SensorFault.UNLIT,
 )
 LONGER = scale((norm(B_BODY_T) + 3.1e-6) / norm(B_BODY_T), B_BODY_T)
 SHORTER = scale((norm(B_BODY_T) - 3.1e-6) / norm(B_BODY_T), B_BODY_T)
@@ -202,6 +220,25 @@ class TestNaming:
     def test_darkness_is_not_silence(self, flight):
         assert flight.until_named(s=DARK) is None
 
+    @pytest.mark.requirement("REQ-SENSOR-09")
+    def test_a_sun_in_the_shadow_though_it_is_as_foretold(self, flight):
+        assert flight.until_named(reference=IN_SHADOW) == (10, (0, UNLIT))
+
+    @pytest.mark.requirement("REQ-SENSOR-08", "REQ-SENSOR-09")
+    @pytest.mark.parametrize("reference", [NEAR_THE_EDGE, BEFORE_THE_EARTH], ids=["penumbra", "day side"])
+    def test_a_sun_that_may_be_there(self, flight, reference):
+        assert flight.until_named(reference=reference) is None
+
+    @pytest.mark.requirement("REQ-SENSOR-08")
+    def test_a_glimpse_in_the_shadow(self, flight):
+        for tick in range(200):
+            assert flight.step(s=S_BODY if tick % 2 else DARK, reference=IN_SHADOW) == (0, 0)
+
+    def test_a_field_that_is_refused_while_there_is_a_sun_in_the_shadow(self, flight):
+        """What is no Sun excuses no magnetometer."""
+        named = [flight.step(b=MIRRORED, used=NEITHER, reference=IN_SHADOW) for _ in range(15)]
+        assert named == [(0, 0)] * 9 + [(0, UNLIT)] * 5 + [(REFUSED, UNLIT)]
+
     def test_a_field_that_is_no_number_is_named(self, flight):
         """It cannot be coded on the wire; whoever calls with it must not get it believed."""
         assert flight.until_named(b=(nan, 0.0, 0.0), used=SUN_ONLY) == (10, (STRENGTH, 0))
@@ -222,8 +259,23 @@ class TestLeftOut:
         readings = NOTHING._replace(
             field=MagField(1, 1.0, 2.0, 3.0), sun=SunVector(1, 0.0, 0.6, 0.8), coil=IDLE
         )
-        assert trusted(readings, isolated.health) == readings._replace(field=None)
-        assert trusted(readings, SensorHealth()) is readings
+        assert trusted(readings, isolated.health, REFERENCE) == readings._replace(field=None)
+        assert trusted(readings, SensorHealth(), REFERENCE) is readings
+
+    @pytest.mark.requirement("REQ-SENSOR-09")
+    def test_nor_is_a_sun_in_the_shadow(self):
+        readings = NOTHING._replace(sun=SunVector(1, 0.0, 0.6, 0.8), coil=IDLE)
+        dark = readings._replace(sun=SunVector(0, 0.0, 0.0, 0.0))
+        assert trusted(readings, SensorHealth(), IN_SHADOW) == readings._replace(sun=None)
+        assert trusted(readings, SensorHealth(), NEAR_THE_EDGE) is readings
+        assert trusted(dark, SensorHealth(), IN_SHADOW) is dark
+
+    @pytest.mark.requirement("REQ-SENSOR-06", "REQ-SENSOR-09")
+    def test_a_lamp_stays_out_until_after_the_shadow_it_is_the_sun_again(self, flight):
+        flight.until_named(reference=IN_SHADOW)
+        assert {flight.step(reference=IN_SHADOW) for _ in range(100)} == {(0, UNLIT)}
+        assert {flight.step(s=DARK, reference=IN_SHADOW) for _ in range(100)} == {(0, UNLIT)}
+        assert [flight.step()[1] for _ in range(25)] == [UNLIT] * 24 + [0]
 
     @pytest.mark.requirement("REQ-SENSOR-06")
     def test_it_comes_back_when_it_is_as_foretold(self, isolated):

@@ -46,6 +46,33 @@ def test_the_right_unit_must_be_named_and_no_other(bounds):
     assert checks.blamed_rightly(row, record(before, right), bounds)[0] is True
 
 
+def test_a_sensor_that_is_disturbed_may_be_named_but_no_other(bounds):
+    row = Row("planted", "", "none", unit="sun sensor")
+    right, wrong = isolated(130, Sensor.SUN_SENSOR), isolated(135, Sensor.MAGNETOMETER)
+    assert checks.no_other_named(row, record(), bounds)[0]
+    assert checks.no_other_named(row, record(right), bounds)[0]
+    assert checks.no_other_named(row, record(right, wrong), bounds) == (
+        False,
+        "magnetometer named in tick 135",
+    )
+
+
+def test_a_second_sender_that_is_none_is_found(bounds):
+    flown = record(Event(120, Number.SECOND_SENDER, 0x080))
+    assert not checks.nobody_invented(Row("planted", "", "none"), flown, bounds)[0]
+    assert checks.nobody_invented(Row("planted", "", "second_sender"), flown, bounds)[0]
+    assert checks.nobody_invented(Row("planted", "", "none"), record(), bounds)[0]
+
+
+def test_while_a_second_sender_is_there_nothing_is_asked_for_and_later_something(bounds):
+    row = Row("planted", "", "second_sender", unit="second sender")
+    flown = record(Event(120, Number.SECOND_SENDER, 0x080))
+    flown.end = 200
+    for asked, holds in (([90, 119, 200], True), ([119], False), ([120, 300], False), ([199, 300], False)):
+        flown.asked = asked
+        assert checks.no_request(row, flown, bounds)[0] is holds
+
+
 def test_a_unit_that_nobody_can_name_is_not_held_against_fsw(bounds):
     row = Row("planted", "", "none", unit="the cat")
     assert checks.blamed_rightly(row, record(), bounds)[0] is None
