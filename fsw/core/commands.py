@@ -5,7 +5,6 @@ that bears the counter of the one before it is not carried out again, but answer
 """
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any, NamedTuple
 
 from fsw.core import modes
@@ -101,7 +100,7 @@ def _mode(state: FlightState, message: TcMode, situation: Situation) -> Outcome:
 
 def _clear(state: FlightState, message: TcClear, situation: Situation) -> Outcome:
     """Trips are forgotten, every sensor is believed again, and every coil used."""
-    return state._replace(modes=replace(state.modes, trips=0), sensors=SensorHealth(), coils=CoilHealth())
+    return state._replace(modes=state.modes._replace(trips=0), sensors=SensorHealth(), coils=CoilHealth())
 
 
 def _law(state: FlightState, message: TcLaw, situation: Situation) -> Outcome:

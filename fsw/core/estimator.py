@@ -1,6 +1,6 @@
 """From readings to an estimate: start by TRIAD, then the filter, gated, blanked and restarted when lost."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from fsw.core import mekf
@@ -33,8 +33,7 @@ class EstimatorConfig:
     valid_sigma_rad: float
 
 
-@dataclass(frozen=True, slots=True)
-class EstimatorState:
+class EstimatorState(NamedTuple):
     """The estimate, or None before start-up, and the measurements the gate refused in a row."""
 
     estimate: Estimate | None = None
@@ -92,7 +91,7 @@ def estimate(
     if current is None:
         state = state if state.estimate is None else restart(state)
         started = _start(field, sun, reference, config)
-        return replace(state, estimate=started), Used(started is not None, started is not None, blanked), None
+        return state._replace(estimate=started), Used(started is not None, started is not None, blanked), None
 
     predicted = current
     current, took_field, took_sun = _updated(current, field, sun, reference, config.mekf)
@@ -182,7 +181,7 @@ def set_right(state: EstimatorState, correction: Correction) -> EstimatorState:
     deviation = correction.variance**0.5
     spread = (*scale(deviation, correction.reach_rad), *scale(deviation, correction.kick_radps))
     estimate = mekf.corrected(state.estimate, correction.turn_rad, correction.change_radps, spread)
-    return replace(state, estimate=estimate)
+    return state._replace(estimate=estimate)
 
 
 def restart(state: EstimatorState) -> EstimatorState:

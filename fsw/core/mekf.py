@@ -12,22 +12,21 @@ direction, m the dipole, b the field and h the momentum of a wheel, all in body 
 Source: Lefferts, Markley, Shuster 1982; the dynamics as in Ovchinnikov, Penkov, Roldugin 2015.
 """
 
-from dataclasses import dataclass
 from math import isfinite
+from typing import NamedTuple
 
 import numpy as np
-from filterpy.kalman import ExtendedKalmanFilter
+from filterpy.kalman import KalmanFilter
 
 from fsw.core.mekf_config import Layout, Matrix, MekfConfig
 from fsw.core.quaternion import Quaternion, from_small_rotation, multiply, normalise, rotate
-from fsw.core.vector import ZERO, Mat3, Vec3, add, cross, product, scale, skew, sub, transform
+from fsw.core.vector import ZERO, Vec3, add, cross, scale, skew, sub, transform
 
 MAX_VARIANCE = 1e6
 """Beyond it an estimate says nothing (1000 rad), and the algebra comes near the end of the numbers."""
 
 
-@dataclass(frozen=True, slots=True)
-class Estimate:
+class Estimate(NamedTuple):
     """Attitude, inertial rate, biases, and the covariance of the error state.
 
     Units: rad, rad/s, T, N m. The covariance is (n, n) with n = 6, 9 or 12, laid out as ``Layout`` says.
@@ -109,15 +108,15 @@ def predict(
     alpha_mid = _acceleration(omega_mid, e1_mid, b_mid, gravity_per_s2, m_body_am2, torque, config)
     transition = _transition(omega_mid, e1_mid, b_mid, gravity_per_s2, m_body_am2, config)
 
-    ekf = _filter(config)
-    ekf.P, ekf.F, ekf.Q = estimate.covariance, transition, _process_noise(m_body_am2, b_mid, config)
-    ekf.predict()
+    kalman = _filter(config)
+    kalman.P, kalman.F, kalman.Q = estimate.covariance, transition, _process_noise(m_body_am2, b_mid, config)
+    kalman.predict()
     return Estimate(
         normalise(multiply(q, _turn(scale(h, omega_mid)))),
         add(omega, scale(h, alpha_mid)),
         estimate.mag_bias_t,
         torque,
-        ekf.P,
+        kalman.P,
     )
 
 
@@ -169,20 +168,20 @@ def _update(
     estimate: Estimate, innovation: tuple[float, ...], sensitivity: Matrix, noise: Matrix, config: MekfConfig
 ) -> Estimate | None:
     """The update of filterpy, judged by its own NIS and folded in."""
-    ekf = _filter(config)
-    ekf.P = estimate.covariance
-    ekf.update(np.array(innovation), lambda _: sensitivity, lambda _: 0.0, R=noise)
-    nis = float(ekf.y @ ekf.SI @ ekf.y)
+    kalman = _filter(config)
+    kalman.P = estimate.covariance
+    kalman.update(np.array(innovation), noise, sensitivity)
+    nis = float(kalman.y @ kalman.SI @ kalman.y)
     if not 0.0 <= nis <= config.gate_nis:  # overflow can make it -inf
         return None
-    return _fold(estimate, ekf.x, 0.5 * (ekf.P + ekf.P.T), config.layout)
+    return _fold(estimate, kalman.x, 0.5 * (kalman.P + kalman.P.T), config.layout)
 
 
-def _filter(config: MekfConfig) -> ExtendedKalmanFilter:
+def _filter(config: MekfConfig) -> KalmanFilter:
     """A copy of the blank filter, made by hand: ``copy.copy`` takes as long as the prediction."""
-    ekf = object.__new__(ExtendedKalmanFilter)
-    ekf.__dict__.update(config.blank.__dict__)
-    return ekf
+    kalman = object.__new__(KalmanFilter)
+    kalman.__dict__.update(config.blank.__dict__)
+    return kalman
 
 
 def _fold(estimate: Estimate, error: Matrix, covariance: Matrix, parts: Layout) -> Estimate:
@@ -218,28 +217,22 @@ def _acceleration(
 
 def _transition(omega: Vec3, e1: Vec3, b: Vec3, gravity_per_s2: float, m: Vec3, config: MekfConfig) -> Matrix:
     """I + A h + (A h)^2 / 2 of the error dynamics; with A of the middle of the tick good to second order."""
-    j, j_inverse = config.inertia_kgm2, config.inertia_inverse
-    gyroscopic = _minus(skew(add(transform(j, omega), config.wheel_body_nms)), product(skew(omega), j))
-    pull = scale(gravity_per_s2, e1)
-    stiffness = product(_minus(product(skew(pull), j), skew(transform(j, pull))), skew(e1))
-    if m != ZERO:
-        stiffness = _plus(stiffness, product(skew(m), skew(b)))
+    g1, g2, g3 = scale(gravity_per_s2, e1)
+    m1, m2, m3 = m
+    components = (
+        *omega,
+        *scale(g1, e1),
+        *scale(g2, e1),
+        *scale(g3, e1),
+        *scale(m1, b),
+        *scale(m2, b),
+        *scale(m3, b),
+    )
     a = config.system.copy()
-    a[0:3, 0:3] = skew(scale(-1.0, omega))
-    a[3:6, 0:3] = product(j_inverse, stiffness)
-    a[3:6, 3:6] = product(j_inverse, gyroscopic)
-    a *= config.tick_s
+    a[0:6, 0:6] += (config.varying @ components).reshape(6, 6)
     transition: Matrix = a + 0.5 * (a @ a)
     transition.flat[:: config.layout.size + 1] += 1.0
     return transition
-
-
-def _plus(m: Mat3, n: Mat3) -> Mat3:
-    return (add(m[0], n[0]), add(m[1], n[1]), add(m[2], n[2]))
-
-
-def _minus(m: Mat3, n: Mat3) -> Mat3:
-    return (sub(m[0], n[0]), sub(m[1], n[1]), sub(m[2], n[2]))
 
 
 def _turn(rotation_rad: Vec3) -> Quaternion:

@@ -4,7 +4,7 @@ Rows of the current mode are looked at in order; the first whose condition has h
 dwell time is taken. Hysteresis lies in the conditions: what leads out of a mode is wider than what leads in.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from fsw.core.attitude import Attitude
@@ -67,8 +67,7 @@ class ModeConfig:
     trips_to_stay_safe: int
 
 
-@dataclass(frozen=True, slots=True)
-class ModeState:
+class ModeState(NamedTuple):
     """The mode, since when, and since when each row's condition has held (-1: it does not).
 
     ``held``: the ground asked for SAFE, and the table does not lead out of it.
@@ -120,5 +119,5 @@ def ask(state: ModeState, mode: Mode, tick: int) -> ModeState:
     """The mode that the ground asks for; a SAFE that it asks for is held."""
     held = mode is Mode.SAFE
     if mode is state.mode:
-        return replace(state, held=held)
+        return state._replace(held=held)
     return ModeState(mode, tick, trips=state.trips, held=held)

@@ -43,6 +43,11 @@ RATE_LIMIT_RADPS = 0.5
 UNIT_TOLERANCE = 1e-6
 """How far the square of the quaternion's norm may be off."""
 
+
+def _square(q0: float, q1: float, q2: float, q3: float) -> float:
+    return q0 * q0 + q1 * q1 + q2 * q2 + q3 * q3
+
+
 MONITORS: tuple[tuple[Monitor, Callable[[Watched], bool]], ...] = (
     (
         Monitor.ATTITUDE_FINITE,
@@ -50,11 +55,11 @@ MONITORS: tuple[tuple[Monitor, Callable[[Watched], bool]], ...] = (
     ),
     (
         Monitor.QUATERNION_UNIT,
-        lambda w: abs(sum(c * c for c in w.attitude.q_body_from_orbit) - 1.0) < UNIT_TOLERANCE,
+        lambda w: abs(_square(*w.attitude.q_body_from_orbit) - 1.0) < UNIT_TOLERANCE,
     ),
     (
         Monitor.RATE_BOUNDED,
-        lambda w: all(abs(c) < RATE_LIMIT_RADPS for c in w.attitude.omega_body_orbit_radps),
+        lambda w: max(map(abs, w.attitude.omega_body_orbit_radps)) < RATE_LIMIT_RADPS,
     ),
     (Monitor.OWED_FINITE, lambda w: isfinite(sum(w.owed_impulse_body_nms))),
     (Monitor.FIELD_FRESH, lambda w: w.field_age_ticks < w.stale_after_ticks),

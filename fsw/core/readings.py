@@ -4,7 +4,6 @@ A frame is taken whole or not at all: known identifier, right length and CRC, a 
 in range. Everything else is counted and dropped.
 """
 
-from dataclasses import dataclass
 from typing import NamedTuple
 from zlib import crc32
 
@@ -91,8 +90,7 @@ class Readings(NamedTuple):
 NOTHING = Readings(None, None, None, None, None, None)
 
 
-@dataclass(frozen=True, slots=True)
-class GateState:
+class GateState(NamedTuple):
     """Last counter of each listened message (-1: none yet), counts since boot, and what was taken since boot.
 
     ``heard`` is the CRC-32 of the data of all messages taken: nothing on the bus can be altered afterwards

@@ -1,7 +1,6 @@
 """Telecommands: each is carried out whole or refused whole, and acknowledged once."""
 
 from collections import Counter
-from dataclasses import replace
 from math import dist
 from random import Random
 
@@ -168,7 +167,7 @@ def test_clearing_forgets_trips_and_faults_and_nothing_else(obey, state):
     after, results = obey(faulty, TcClear())
     assert results == [TcAckResult.ACCEPTED]
     assert after == state._replace(
-        modes=replace(state.modes, trips=0), sensors=SensorHealth(), coils=CoilHealth()
+        modes=state.modes._replace(trips=0), sensors=SensorHealth(), coils=CoilHealth()
     )
 
 
@@ -356,7 +355,7 @@ class TestInTheLoop:
         said = world.step(lambda inbox: inbox._replace(frames=(broken, *inbox.frames)))
         assert of(TcAck, said) == []
         other.step()
-        expected = other.state._replace(gate=replace(other.state.gate, rejected=1))
+        expected = other.state._replace(gate=other.state.gate._replace(rejected=1))
         assert checksum(world.state) == checksum(expected)
 
     def test_a_safe_that_the_ground_asked_for_lasts_until_it_asks_for_more(self, make_world):

@@ -269,8 +269,8 @@ class TestRunning:
 
     def test_gravity_turns_it_too(self, settled):
         """J dw/dt = 3 mu / r^3 e x J e - w x J w, with a body at rest and nothing else."""
-        still = replace(settled.estimate, omega_body_radps=ZERO, torque_body_nm=ZERO)
-        after, _ = step(replace(settled, estimate=still), NOTHING)
+        still = settled.estimate._replace(omega_body_radps=ZERO, torque_body_nm=ZERO)
+        after, _ = step(settled._replace(estimate=still), NOTHING)
         e = np.array(rotate(still.q_body_from_eci, REFERENCE.r_eci_m)) / REFERENCE.radius_m
         j = np.array(MEKF.inertia_kgm2)
         pull = 3.0 * 3.986004418e14 / REFERENCE.radius_m**3 * np.linalg.solve(j, np.cross(e, j @ e))
@@ -363,7 +363,7 @@ class TestSoundness:
     def test_a_broken_estimate_is_replaced_and_nothing_is_raised(self, settled, field, readings, bad):
         values = list(getattr(settled.estimate, field))
         values[-1] = bad
-        broken = replace(settled, estimate=replace(settled.estimate, **{field: tuple(values)}))
+        broken = settled._replace(estimate=settled.estimate._replace(**{field: tuple(values)}))
         state, _ = step(broken, readings)
         assert state.estimate is None or mekf.healthy(state.estimate)
         if not np.isfinite(bad):
@@ -378,16 +378,16 @@ class TestSoundness:
     def test_so_is_a_broken_covariance(self, settled, at, bad):
         covariance = settled.estimate.covariance.copy()
         covariance[at] = covariance[at[::-1]] = bad
-        broken = replace(settled, estimate=replace(settled.estimate, covariance=covariance))
+        broken = settled._replace(estimate=settled.estimate._replace(covariance=covariance))
         for readings in (seen_from(), NOTHING):
             state, _ = step(broken, readings)
             assert state.estimate is None or mekf.healthy(state.estimate)
 
     def test_a_covariance_that_overflows_in_the_prediction_is_caught_before_the_update(self, settled):
-        spinning = replace(
-            settled.estimate, omega_body_radps=(1e60, -2e60, 3e60), covariance=1e100 * np.eye(12)
+        spinning = settled.estimate._replace(
+            omega_body_radps=(1e60, -2e60, 3e60), covariance=1e100 * np.eye(12)
         )
-        state, used = step(replace(settled, estimate=spinning), seen_from())
+        state, used = step(settled._replace(estimate=spinning), seen_from())
         assert state.restarts == 1
         assert used == Used(True, True, False)
 
@@ -411,8 +411,8 @@ class TestAttitude:
 
     def test_is_seen_from_the_orbital_frame(self, settled):
         """q_body_from_eci = q_orbit_from_eci (x) q_body_from_orbit, and the orbit turns about its normal."""
-        moving = replace(settled.estimate, omega_body_radps=(0.011, -0.007, 0.005))
-        seen = attitude(replace(settled, estimate=moving), REFERENCE, CONFIG)
+        moving = settled.estimate._replace(omega_body_radps=(0.011, -0.007, 0.005))
+        seen = attitude(settled._replace(estimate=moving), REFERENCE, CONFIG)
         chained = multiply(REFERENCE.q_orbit_from_eci, seen.q_body_from_orbit)
         assert canonical(chained) == pytest.approx(canonical(moving.q_body_from_eci), abs=1e-14)
         assert seen.q_body_from_orbit[0] >= 0.0
@@ -423,12 +423,11 @@ class TestAttitude:
 
     def test_a_body_at_rest_in_the_orbital_frame_is(self, settled):
         normal_eci = rotate(conjugate(REFERENCE.q_orbit_from_eci), (0.0, 0.0, 1.0))
-        carried = replace(
-            settled.estimate,
+        carried = settled.estimate._replace(
             q_body_from_eci=REFERENCE.q_orbit_from_eci,
             omega_body_radps=scale(1.04e-3, rotate(REFERENCE.q_orbit_from_eci, normal_eci)),
         )
-        seen = attitude(replace(settled, estimate=carried), REFERENCE, CONFIG)
+        seen = attitude(settled._replace(estimate=carried), REFERENCE, CONFIG)
         assert seen.q_body_from_orbit == pytest.approx((1.0, 0.0, 0.0, 0.0), abs=1e-15)
         assert seen.omega_body_orbit_radps == pytest.approx(ZERO, abs=1e-17)
 
@@ -439,8 +438,8 @@ class TestAttitude:
         for axis in range(3):
             covariance = np.diag([radians(0.05) ** 2] * 3 + [1e-10, 4e-10, 9e-10] + [1e-14] * 6)
             covariance[axis, axis] = radians(sigma_deg) ** 2
-            estimated = replace(settled.estimate, covariance=covariance)
-            seen = attitude(replace(settled, estimate=estimated), REFERENCE, CONFIG)
+            estimated = settled.estimate._replace(covariance=covariance)
+            seen = attitude(settled._replace(estimate=estimated), REFERENCE, CONFIG)
             assert seen.valid is valid
             assert degrees(seen.sigma3_attitude_rad) == pytest.approx(3.0 * sigma_deg)
             assert seen.sigma3_rate_radps == pytest.approx(9e-5)
@@ -449,7 +448,7 @@ class TestAttitude:
         for first, second in (([3.0, 1.0, 2.0], [40.0, 20.0, 30.0]), ([1.0, 2.0, 3.0], [20.0, 30.0, 40.0])):
             covariance = 1e-6 * np.diag([*first, *second, *[500.0] * 6])
             seen = attitude(
-                replace(settled, estimate=replace(settled.estimate, covariance=covariance)), REFERENCE, CONFIG
+                settled._replace(estimate=settled.estimate._replace(covariance=covariance)), REFERENCE, CONFIG
             )
             assert seen.sigma3_attitude_rad == pytest.approx(3.0 * (3e-6) ** 0.5)
             assert seen.sigma3_rate_radps == pytest.approx(3.0 * (40e-6) ** 0.5)

@@ -5,7 +5,6 @@ all axes, and, for the linearisation, a field, dipole and gravity gradient of or
 """
 
 import csv
-from dataclasses import replace
 from math import cos, inf, nan, radians, sin
 from pathlib import Path
 
@@ -236,7 +235,7 @@ class TestProcessNoise:
 class TestPropagation:
     def flown(self, tick_s, seconds, omega=OMEGA, dipole=DIPOLE_AM2):
         config = make_config(tick_s=tick_s)
-        estimate = replace(make_estimate(config), omega_body_radps=omega)
+        estimate = make_estimate(config)._replace(omega_body_radps=omega)
         for _ in range(round(seconds / tick_s)):
             estimate = predict(estimate, E1_ECI, B_ECI_T, GRAVITY_PS2, dipole, config)
         return estimate
@@ -463,8 +462,8 @@ class TestGate:
     def test_an_outlier_is_refused_where_the_filter_is_sure_and_taken_where_it_is_not(self):
         config = make_config()
         off = tuple(c + 5e-6 for c in rotate(Q, B_ECI_T))
-        sure = replace(make_estimate(config), covariance=np.diag(scales(12, config.layout) ** 2))
-        unsure = replace(sure, covariance=config.initial_covariance * 100.0)
+        sure = make_estimate(config)._replace(covariance=np.diag(scales(12, config.layout) ** 2))
+        unsure = sure._replace(covariance=config.initial_covariance * 100.0)
         assert update_field(sure, off, B_ECI_T, config) is None
         assert update_field(unsure, off, B_ECI_T, config) is not None
 
@@ -509,7 +508,7 @@ class TestHealthy:
         for index in range(len(values)):
             broken = values.copy()
             broken[index] = bad
-            assert not mekf.healthy(replace(sound, **{field: tuple(broken)}))
+            assert not mekf.healthy(sound._replace(**{field: tuple(broken)}))
 
     @pytest.mark.parametrize("bad", [nan, inf, 0.0, -1e-12, 2e6, 1e300])
     def test_a_variance_that_is_none_is_not(self, bad):

@@ -130,7 +130,7 @@ def test_being_fast_wins_over_being_near():
 
 class TestTrips:
     def trip(self, state, tick):
-        return advance(replace(state, mode=Mode.POINT), only("tripped"), tick, CONFIG)
+        return advance(state._replace(mode=Mode.POINT), only("tripped"), tick, CONFIG)
 
     def test_a_trip_is_counted_once_while_it_lasts(self):
         state = ModeState(Mode.POINT)

@@ -1,6 +1,5 @@
 """What fsw reports: values, saturation, counters, and events on changes alone."""
 
-from dataclasses import replace
 from math import nan
 
 import numpy as np
@@ -123,7 +122,7 @@ class TestEvents:
         assert self.found(state, state._replace(tick=7)) == []
 
     def test_a_new_mode(self, state):
-        after = state._replace(modes=replace(state.modes, mode=Mode.ACQUIRE))
+        after = state._replace(modes=state.modes._replace(mode=Mode.ACQUIRE))
         assert self.found(state, after) == [Happening(Event.MODE_CHANGED, Mode.ACQUIRE)]
 
     def test_a_trip_is_told_with_its_monitor_before_the_mode_that_follows(self, state):
