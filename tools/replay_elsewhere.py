@@ -12,6 +12,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -56,19 +57,11 @@ def main() -> int:
     arguments = _arguments()
     variants = VARIANTS + tuple(Variant(_version(path), python=path) for path in arguments.python)
     began = time.monotonic()
-    rows: list[tuple[str, str, str, str]] = []
-    with tempfile.TemporaryDirectory() as folder:
-        for scenario in arguments.scenario:
-            run = Path(folder) / scenario
-            _torquer(
-                Variant("as flown"),
-                "sil", scenario, "--bus", "virtual", "--orbits", str(arguments.orbits), "--out", str(run),
-            )  # fmt: skip
-            for variant in variants:
-                print(f"{scenario}: {variant.name}", file=sys.stderr)
-                done = _torquer(variant, "replay", str(run))
-                verdict, detail = _verdict(done)
-                rows.append((scenario, variant.name, verdict, detail))
+    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(arguments.workers) as pool:
+        runs = {name: Path(folder) / name for name in arguments.scenario}
+        list(pool.map(lambda name: _fly(name, arguments.orbits, runs[name]), runs))
+        order = [(name, variant) for name in runs for variant in variants]
+        rows = list(pool.map(lambda one: _replay(one[0], runs[one[0]], one[1]), order))
     page = _page(rows, arguments.orbits, time.monotonic() - began)
     arguments.out.write_text(page, encoding="utf-8")
     print(page)
@@ -82,10 +75,25 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument(
         "--python", action="append", default=[], help="another interpreter with torquer in it"
     )
+    parser.add_argument("--workers", type=int, default=os.cpu_count(), help="default: one a core")
     parser.add_argument("--out", type=Path, default=PAGE)
     arguments = parser.parse_args()
     arguments.scenario = arguments.scenario or ["microsat", "posat1-ekf"]
     return arguments
+
+
+def _fly(scenario: str, orbits: float, run: Path) -> None:
+    print(f"{scenario}: flying", file=sys.stderr)
+    words = ("sil", scenario, "--bus", "virtual", "--orbits", str(orbits), "--out", str(run))
+    if (done := _torquer(Variant("as flown"), *words)).returncode:
+        sys.exit(f"{scenario} is not flown: {done.stderr.strip()}")
+
+
+def _replay(scenario: str, run: Path, variant: Variant) -> tuple[str, str, str, str]:
+    """A row of the page."""
+    verdict, detail = _verdict(_torquer(variant, "replay", str(run)))
+    print(f"{scenario}: {variant.name}: {verdict}", file=sys.stderr)
+    return scenario, variant.name, verdict, detail
 
 
 def _torquer(variant: Variant, *words: str) -> subprocess.CompletedProcess[str]:
