@@ -17,15 +17,15 @@ import pytest
 
 LIMITS = (
     "--set",
-    "coils.pulse_s=0.5",
+    "coils.pulse_s=0.6",
     "--set",
-    "coils.backoff_s=1.5",
+    "coils.backoff_s=1.6",
     "--tick-hz",
-    "10",
+    "5",
     "--deadman-s",
     "0.5",
 )
-BOARD = ("coil", "--pulse-s", "0.5", "--backoff-s", "1.5", "--tick-hz", "10", "--deadman-s", "0.5")
+BOARD = ("coil", "--pulse-s", "0.6", "--backoff-s", "1.6", "--tick-hz", "5", "--deadman-s", "0.5")
 SHORT = (*BOARD, "--backoff-s", "1.2")
 
 
