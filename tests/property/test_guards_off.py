@@ -1,0 +1,74 @@
+"""Each guard earns its place: switched off, a fault that it is there for is seen. The other guards stay on.
+
+Guards of boards by themselves are switched off in ``tests/sim/harness/hil/test_conformance.py``, scheduler
+and interlock thing by thing in ``tests/property/proof``; without the decode gate ``tests/fuzz`` fails.
+"""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import pytest
+
+from fsw.core.monitors import MONITORS, Monitor
+from fsw.core.pulses import PulseState
+from sim.harness.faults.case import fly
+from sim.harness.faults.row import Verdict
+from sim.harness.faults.rows import ROWS
+
+
+class Off(NamedTuple):
+    """How a guard is switched off, the row that shows it, and the check of the row that fails then."""
+
+    row: str
+    fails: str
+    patch: tuple[str, object]
+    phase: int = 0
+    watch_s: float = 330.0
+
+
+def ready_at_once(tick, config):
+    return PulseState(ready_tick=(tick, tick, tick), busy_until=tick)
+
+
+HALFWAY = 5
+"""The phase that is in the middle of a back-off: the board's own word is not enough then."""
+WITHOUT_FRESHNESS = tuple(row for row in MONITORS if row[0] is not Monitor.FIELD_FRESH)
+
+GUARDS = {
+    "scheduler: back-off after boot": Off(
+        "fsw-killed", "boots locked", ("fsw.core.pulses.boot", ready_at_once), phase=HALFWAY
+    ),
+    "interlock": Off("second-sender", "limits", ("hil_stub.interlock._REFUSED_IF", ())),
+    "ticks that leap": Off("tick-far-ahead", "recovers", ("fsw.io.node.LEAP_TICKS", 2**31)),
+    "freshness": Off("mag-board-dead", "silence named", ("fsw.core.monitors.MONITORS", WITHOUT_FRESHNESS)),
+    "monitors": Off("coil-stuck-on", "stuck", ("fsw.core.supervisor.first_violation", lambda watched: None)),
+    "second sender": Off(
+        "second-sender", "no request", ("fsw.core.step.second_sender.watch", lambda before, *seen: before)
+    ),
+    "sensor health": Off(
+        "mag-bias",
+        "named",
+        ("fsw.core.step.sensor_health.judge", lambda health, *seen: health),
+        watch_s=100.0,
+    ),
+    "coil health: current": Off(
+        "coil-stuck-on", "stuck", ("fsw.core.step.coil_health.judge_current", lambda health, *seen: health)
+    ),
+    "coil health: rate": Off(
+        "coil-reversed-1",
+        "named",
+        ("fsw.core.step.coil_health.judge_rate", lambda health, *seen: (health, None)),
+        watch_s=2000.0,
+    ),
+    "read-back of the board": Off(
+        "coil-open-1", "board names", ("hil_stub.read_back.ReadBack.judge", lambda *seen: None)
+    ),
+}
+
+
+@pytest.mark.parametrize("off", GUARDS.values(), ids=GUARDS)
+def test_without_the_guard_the_fault_is_seen(off, monkeypatch):
+    row = next(row for row in ROWS if row.name == off.row)
+    monkeypatch.setattr(*off.patch)
+    outcomes = fly(replace(row, watch_s=off.watch_s), off.phase, seed=1).outcomes
+    assert off.fails in {outcome.check for outcome in outcomes if outcome.verdict is Verdict.FAIL}
