@@ -5,6 +5,7 @@ around a tick is the same however it was reached.
 """
 
 from dataclasses import dataclass, replace
+from math import isfinite
 
 from fsw.core.elements import Elements
 from fsw.core.field import Field, FieldKind, field_eci_t, prepare_field
@@ -152,6 +153,17 @@ def reference_at(window: EphemerisWindow, tick: int, model: EphemerisModel) -> R
         lit=lit(r, sun),
         q_orbit_from_eci=from_dcm((e1, cross(e3, e1), e3)),
         orbit_rate_radps=momentum / dot(r, r),
+    )
+
+
+def sound(reference: Reference) -> bool:
+    """Whether it is numbers that can be worked with; a window that gives none is to be made anew."""
+    return isfinite(
+        reference.radius_m
+        + sum(reference.q_orbit_from_eci)
+        + sum(reference.b_eci_t)
+        + sum(reference.sun_eci)
+        + reference.orbit_rate_radps
     )
 
 

@@ -101,7 +101,8 @@ def estimate(
         in_a_row = 0
     moved = EstimatorState(current, in_a_row, state.rejected_total + rejected, state.restarts)
     used = Used(took_field, took_sun, blanked)
-    return (restart(moved) if in_a_row >= config.restart_after_rejections else moved), used, predicted
+    lost = in_a_row >= config.restart_after_rejections or not mekf.healthy(current)
+    return (restart(moved) if lost else moved), used, predicted
 
 
 def _updated(

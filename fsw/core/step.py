@@ -5,7 +5,7 @@ from fsw.core.actuation import actuate, hear, unexpected
 from fsw.core.attitude import UNKNOWN
 from fsw.core.commands import command
 from fsw.core.config import FlightConfig
-from fsw.core.ephemeris import EphemerisModel, Reference, advance, fly_orbit, reference_at
+from fsw.core.ephemeris import EphemerisModel, Reference, advance, fly_orbit, reference_at, sound
 from fsw.core.estimator import (
     NONE_USED,
     Used,
@@ -102,6 +102,9 @@ def _estimate(
     if state.ephemeris is None:
         return state._replace(attitude=UNKNOWN), readings, None, NONE_USED
     reference = reference_at(state.ephemeris, state.tick, config.ephemeris)
+    if not sound(reference):
+        lost = state._replace(ephemeris=None, estimator=restart(state.estimator), attitude=UNKNOWN)
+        return lost, readings, None, NONE_USED
     if config.estimator.perfect:
         known = perfect_attitude(readings, state.attitude)
         return state._replace(attitude=known), readings, reference, NONE_USED

@@ -383,6 +383,16 @@ class TestSoundness:
             state, _ = step(broken, readings)
             assert state.estimate is None or mekf.healthy(state.estimate)
 
+    def test_a_variance_that_the_update_makes_negative_is_lost(self, settled):
+        """What ties attitude and bias together has grown in one place alone: the two no longer agree."""
+        for value in (1e-2, -1e-2, 1.0, -1.0):
+            covariance = settled.estimate.covariance.copy()
+            covariance[2, 6] = value
+            broken = settled._replace(estimate=settled.estimate._replace(covariance=covariance))
+            state, _ = step(broken, seen_from())
+            assert state.estimate is None or mekf.healthy(state.estimate)
+            attitude(state, REFERENCE, CONFIG)
+
     def test_a_covariance_that_overflows_in_the_prediction_is_caught_before_the_update(self, settled):
         spinning = settled.estimate._replace(
             omega_body_radps=(1e60, -2e60, 3e60), covariance=1e100 * np.eye(12)

@@ -1,7 +1,9 @@
 """The flight loop: pure, ordered, bound to its tick, and safe when boards fall silent."""
 
 from copy import deepcopy
+from dataclasses import replace
 from itertools import pairwise
+from math import inf, nan
 
 import pytest
 
@@ -370,3 +372,22 @@ def test_an_orbit_that_has_decayed_leads_to_safe(make_world, decaying):
     assert outbox[-1] == TickDone(tick, checksum(state)).encode()
     told = [FswEvent.decode(frame.data) for frame in outbox if frame.can_id == FswEvent.ID]
     assert (Event.MONITOR_TRIPPED, 8) in [(message.event, message.argument) for message in told]
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+@pytest.mark.parametrize("vector", ["r_eci_m", "v_eci_mps", "b_eci_t", "sun_eci"])
+@pytest.mark.parametrize("broken", [nan, inf])
+def test_an_ephemeris_of_what_is_no_number_is_made_anew(make_world, vector, broken):
+    world = make_world()
+    world.fly(150)
+    whole = world.state.ephemeris
+    spoiled = replace(whole.nodes[1], **{vector: (broken, 1.0, 1.0)})
+    world.state = world.state._replace(
+        ephemeris=replace(whole, nodes=(whole.nodes[0], spoiled, *whole.nodes[2:]))
+    )
+    said = world.step()
+    assert not world.state.attitude.valid
+    assert not of(CoilFire, said)
+    world.fly(2)
+    assert world.state.ephemeris.nodes[1] == whole.nodes[1]
+    assert world.state.attitude.valid
