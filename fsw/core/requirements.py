@@ -13,6 +13,7 @@ from fsw.core.events import Event
 from fsw.core.monitors import RATE_LIMIT_RADPS, UNIT_TOLERANCE, Monitor
 from fsw.core.second_sender import SIGNS
 from fsw.core.sensor_health import AGAINST_ESTIMATE, SHADOW_M, SensorFault
+from fsw.core.sensor_pair import MISFIT
 
 
 class Requirement(NamedTuple):
@@ -97,9 +98,10 @@ REQUIREMENTS: tuple[Requirement, ...] = (
     _sensor(
         4,
         SensorFault.REFUSED,
-        "A sensor that the filter refuses while it takes the other, or that is alone, is named and left out.",
-        "`estimator.gate_nis` for `fdir.name_s` where the angle of field and Sun is not the modelled one, by "
-        "more than `fdir.max_angle_error_deg`, else for 1.5 times as long",
+        "A sensor that the filter refuses while it takes the other, or that is alone, is named and left out, "
+        "if the filter has taken both before.",
+        "both for `fdir.prove_s`; then `estimator.gate_nis` for `fdir.name_s` where the angle of field and "
+        "Sun is not the modelled one, by more than `fdir.max_angle_error_deg`, else for 1.5 times as long",
     ),
     _sensor(5, SensorFault.SILENT, "A sensor without acceptable samples is named.", "`modes.stale_after_s`"),
     Requirement(
@@ -112,8 +114,10 @@ REQUIREMENTS: tuple[Requirement, ...] = (
     ),
     Requirement(
         "REQ-SENSOR-07",
-        "Without an estimate, sensors that contradict each other do not start the filter, and this is said.",
-        "`fdir.max_angle_error_deg` for `fdir.name_s`",
+        "Before the filter has taken both for long, sensors that contradict each other name nobody: this is "
+        "said, the filter ends, and does not begin before they have agreed for longer.",
+        f"`fdir.max_angle_error_deg` for `fdir.name_s`; agreed for {AGAINST_ESTIMATE} times `fdir.readmit_s`,"
+        f" a bad sample undoing {MISFIT}",
         None,
         Event.SENSORS_DISAGREE,
     ),

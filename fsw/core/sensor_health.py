@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from fsw.core.earth import RADIUS_M
 from fsw.core.quaternion import rotate
 from fsw.core.readings import Readings
+from fsw.core.sensor_pair import MISFIT, Compared, Pair, PairConfig, judge_pair, proven
 from fsw.core.sun import lit
 from fsw.core.vector import ZERO, Vec3, add, dot, norm, sub
 from fsw.wire.messages import MagField, SunVector
@@ -50,9 +51,6 @@ class SensorFault(IntEnum):
 FULL, SLIGHT = 3, 2
 """Suspicion of a bad tick: of a check, and of the filter alone. A good tick takes ``FULL`` back."""
 
-MISFIT = 20
-"""Good samples that a bad one undoes while a sensor is left out."""
-
 DARK: Vec3 = (0.0, 0.0, 0.0)
 """The sample of a Sun sensor that sees nothing."""
 
@@ -80,6 +78,7 @@ class SensorHealthConfig:
     silent_ticks: int
     name_suspicion: int
     readmit_ticks: int
+    pair: PairConfig
 
 
 class Watch(NamedTuple):
@@ -100,25 +99,27 @@ class Watch(NamedTuple):
 
 
 class SensorHealth(NamedTuple):
-    """Both sensors; ``apart`` grows while they contradict each other and no estimate tells which is wrong.
+    """Both sensors, by themselves and as a pair.
 
-    ``contradictory``: they have done so for long enough to say so. ``doubted``: they agree, but not with the
-    estimate, and have done so for long enough to begin it anew in this tick.
+    ``doubted``: the estimate is to begin anew in this tick. Both sensors agree for long, but not with it; or
+    they contradict each other before it has proved itself.
     """
 
     field: Watch = Watch()
     sun: Watch = Watch()
-    apart: int = 0
-    contradictory: bool = False
+    pair: Pair = Pair()
     doubted: bool = False
 
 
 def trusted(readings: Readings, health: SensorHealth, reference: "Reference") -> Readings:
-    """The readings without those of a sensor that is left out, and without a Sun where none can be."""
+    """The readings without those of a sensor that is left out, and without a Sun where none can be.
+
+    Without the Sun too while the pair has to agree: no estimate begins then.
+    """
     if health.field.fault:
         readings = readings._replace(field=None)
     sun = readings.sun
-    if sun is not None and (health.sun.fault or (sun.valid and _unlit(reference))):
+    if sun is not None and (health.sun.fault or health.pair.proof < 0 or (sun.valid and _unlit(reference))):
         readings = readings._replace(sun=None)
     return readings
 
@@ -158,17 +159,30 @@ def judge(
     b_before, s_before = health.field, health.sun
     b_refused = field is not None and not (used.field or b_cause or b_before.fault) and known is not None
     s_refused = sun is not None and not (used.sun or s_cause or s_before.fault) and known is not None
-    doubt = FULL if apart else SLIGHT
+    seen, pair, sure = field is not None and sun is not None, health.pair, proven(health.pair, config.pair)
+    if not sure or known is None or pair.apart:
+        flawed = bool(b_cause or s_cause)
+        compared = Compared(
+            seen=seen,
+            agree=not (apart or flawed),
+            unexplained=apart and not (flawed or b_before.fault or s_before.fault),
+            known=known is not None,
+            took_both=used.field and used.sun,
+            refused=b_refused or s_refused,
+        )
+        pair = judge_pair(pair, compared, config.pair)
     b_weight = s_weight = FULL
-    if b_refused and (used.sun or sun is None):
-        b_cause, b_weight = SensorFault.REFUSED, doubt
-    elif s_refused and used.field:
-        s_cause, s_weight = SensorFault.REFUSED, doubt
+    if sure and (b_refused or s_refused):
+        doubt = FULL if apart else SLIGHT
+        if b_refused and (used.sun or sun is None):
+            b_cause, b_weight = SensorFault.REFUSED, doubt
+        elif s_refused and used.field and not b_cause:
+            s_cause, s_weight = SensorFault.REFUSED, doubt
     b_watch = _watched(b_before, _of_field(readings.field), s_before, b_cause, b_weight, config)
     s_watch = _watched(s_before, _of_sun(readings.sun), b_before, s_cause, s_weight, config)
-    doubted = False
+    doubted = known is not None and pair.contradictory and not health.pair.contradictory
     if b_watch.fault or s_watch.fault:
-        agree = field is not None and sun is not None and not (apart or b_cause or s_cause)
+        agree = seen and not (apart or b_cause or s_cause)
         if b_watch.fault and field is not None:
             foretold = (
                 None
@@ -176,18 +190,14 @@ def judge(
                 else add(rotate(known.q_body_from_eci, reference.b_eci_t), known.mag_bias_t)
             )
             fits = not b_cause and _fits(field, agree, foretold, config.field_noise_t, sigma3_rad)
-            b_watch, doubted = _probed(b_watch, fits, agree, config)
+            b_watch, b_doubted = _probed(b_watch, fits, agree, config)
+            doubted = doubted or b_doubted
         if s_watch.fault and lamp is not None:
             foretold = None if known is None else rotate(known.q_body_from_eci, reference.sun_eci)
             fits = not s_cause and _fits(lamp, agree, foretold, config.sun_noise_rad, sigma3_rad)
             s_watch, s_doubted = _probed(s_watch, fits, agree, config)
             doubted = doubted or s_doubted
-    if apart and known is None:
-        against = min(health.apart + FULL, config.name_suspicion)
-    else:
-        against = max(health.apart - FULL, 0)
-    contradictory = against == config.name_suspicion or (health.contradictory and against > 0)
-    return SensorHealth(b_watch, s_watch, against, contradictory, doubted)
+    return SensorHealth(b_watch, s_watch, pair, doubted)
 
 
 def _unlit(reference: "Reference") -> bool:

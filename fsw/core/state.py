@@ -65,7 +65,7 @@ class FlightState(NamedTuple):
 def checksum(state: FlightState) -> int:
     """CRC-32 over every number of the state, little-endian: integers as 64 bit, floats as doubles."""
     gate, modes, coil, pulses, attitude = state.gate, state.modes, state.coil, state.pulses, state.attitude
-    field_watch, sun_watch, *apart = state.sensors
+    field_watch, sun_watch, pair, doubted = state.sensors
     faults, wrong, gathered, weight, pulsed, unexplained, *strange = state.coils
     integers = (
         state.tick,
@@ -87,7 +87,8 @@ def checksum(state: FlightState) -> int:
         state.estimator.restarts,
         *field_watch[:-1],
         *sun_watch[:-1],
-        *apart,
+        *pair,
+        doubted,
         *faults,
         *wrong,
         *strange,

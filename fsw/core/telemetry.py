@@ -88,7 +88,7 @@ def happenings(
         found += _sensor(Sensor.MAGNETOMETER, before.sensors.field.fault, after.sensors.field.fault)
     if after.sensors.sun.fault != before.sensors.sun.fault:
         found += _sensor(Sensor.SUN_SENSOR, before.sensors.sun.fault, after.sensors.sun.fault)
-    if after.sensors.contradictory and not before.sensors.contradictory:
+    if after.sensors.pair.contradictory and not before.sensors.pair.contradictory:
         found.append(Happening(Event.SENSORS_DISAGREE, 0))
     if after.coils is not before.coils:
         found += _coils(before.coils, after.coils)

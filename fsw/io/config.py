@@ -17,7 +17,8 @@ from fsw.core.orbit import Orbit, circular_orbit, sgp4_orbit
 from fsw.core.pulses import PulseConfig, pulse_timing
 from fsw.core.rates import RateGroup, RateTable
 from fsw.core.second_sender import SecondSenderConfig
-from fsw.core.sensor_health import FULL, SensorHealthConfig
+from fsw.core.sensor_health import AGAINST_ESTIMATE, FULL, SensorHealthConfig
+from fsw.core.sensor_pair import PairConfig
 from fsw.core.vector import inverse, product
 from fsw.io.schedules import schedules
 from fsw.io.schema import TableError
@@ -157,6 +158,11 @@ def _sensors(table: FlightTable) -> SensorHealthConfig:
         silent_ticks=max(1, _ticks(table.modes.stale_after_s, tick_hz)),
         name_suspicion=FULL * max(1, _ticks(fdir.name_s, tick_hz)),
         readmit_ticks=max(1, _ticks(fdir.readmit_s, tick_hz)),
+        pair=PairConfig(
+            say_ticks=max(1, _ticks(fdir.name_s, tick_hz)),
+            prove_ticks=max(1, _ticks(fdir.prove_s, tick_hz)),
+            agree_ticks=AGAINST_ESTIMATE * max(1, _ticks(fdir.readmit_s, tick_hz)),
+        ),
     )
 
 

@@ -227,6 +227,7 @@ class FdirTable(Section):
     frozen_s: Positive
     name_s: Positive
     readmit_s: Positive
+    prove_s: Positive
     weak_coil_part: float = Field(gt=0.0, lt=1.0)
     open_coil_part: float = Field(gt=0.0, lt=1.0)
     name_pulses: int = Field(ge=1)

@@ -24,17 +24,22 @@ CYCLE_S = 103.0
 ORDER = (1.0, 0.0, 2.0, 3.0, 102.0, 50.0, 4.0, 101.0, 99.0, 25.0, 100.0, 75.0)
 """Phases of a pulse and its back-off that come first [s]; beyond them any."""
 SPACING_S = 37.0
+TURNED = ("initial.axis=[0.9, 0.3, -0.2]", "initial.rate_degps=[0.05, -0.07, 0.04]")
+FIRST_DEG, STEP_DEG = 75.0, 47.0
+"""Attitude from which a flight begins that is faulty from its first tick on."""
 
 
-def settings_of(row: Row) -> tuple[str, ...]:
+def settings_of(row: Row, phase: int) -> tuple[str, ...]:
     """Settings of the scenario for this row."""
+    if row.when is When.BOOT:
+        return (*row.settings, *TURNED, f"initial.angle_deg={(FIRST_DEG + phase * STEP_DEG) % 180.0}")
     return (*row.settings, BEFORE_ECLIPSE) if row.when is When.ECLIPSE else row.settings
 
 
 def fly(row: Row, phase: int, seed: int) -> CaseResult:
     """Fly one case and judge it."""
     began = time.perf_counter()
-    scenario, config = prepared(SCENARIO, settings_of(row))
+    scenario, config = prepared(SCENARIO, settings_of(row, phase))
     bounds = checks.bounds_of(scenario)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the algebra's, of a state whose bits have flipped
@@ -49,7 +54,7 @@ def fly(row: Row, phase: int, seed: int) -> CaseResult:
 def _struck(row: Row, phase: int, seed: int, scenario: Scenario) -> Record:
     times = round(row.parameters["times"])
     planned = strikes(times, Random(f"{row.name}/{phase}/{seed}"))
-    rig = ProcessRig(SCENARIO, settings_of(row), scenario, seed, stop=row.kind == "sigstop")
+    rig = ProcessRig(SCENARIO, settings_of(row, phase), scenario, seed, stop=row.kind == "sigstop")
     return rig.fly(planned)
 
 
@@ -82,12 +87,14 @@ def phase_s(when: When, phase: int, rng: Random) -> float:
     """When the fault comes, from what its phases are counted from."""
     if when is When.PULSE:
         return ORDER[phase] if phase < len(ORDER) else rng.uniform(0.0, CYCLE_S)
-    return phase * SPACING_S
+    return 0.0 if when is When.BOOT else phase * SPACING_S
 
 
 def _anchor(when: When, rig: Rig, hz: int) -> int:
     """Fly until the tick that phases are counted from: the next one to be flown, or one before."""
-    if when is When.SUNLIT:
+    if when is When.BOOT:
+        until_s = 0.0
+    elif when is When.SUNLIT:
         until_s = ARMED_S
     elif when is When.ECLIPSE:
         until_s = ECLIPSE_S

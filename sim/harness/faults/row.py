@@ -21,6 +21,8 @@ class When(StrEnum):
     """The tick in which a pulse begins; phases go through the pulse and the back-off after it."""
     SUNLIT = "sunlit"
     """Well after the start, in sunlight."""
+    BOOT = "boot"
+    """The first tick; each phase begins with another attitude."""
     ECLIPSE = "eclipse"
     """The last minutes of sunlight before an eclipse, and the first of it."""
 

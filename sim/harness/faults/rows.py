@@ -21,6 +21,7 @@ PROCESS = "fsw killed, stopped, restarted at every phase of a pulse; reboot stor
 BOARD = "board killed and restarted; both reset"
 CLOCK = "clock jumps, tick going backwards, SYNC lost or repeated"
 SENSOR = "a sensor: NaN and infinity, saturation, frozen, bias, scale, swapped axis, wrong sign"
+BOOT = "a sensor that is wrong from the first tick on"
 LIGHT = "eclipse; Sun parallel to the field; Sun sensor blinded by albedo or without Sun"
 COIL = "coil open, reversed, weak, stuck on"
 UPSET = "bit flip in any double of the flight state"
@@ -57,6 +58,25 @@ def _sensor(unit: str, name: str, kind: str, parameters: dict[str, float]) -> tu
             ("goes on", "bounded", "named"),
             unit,
             watch_s=900.0,
+        ),
+    )
+
+
+def _from_boot(name: str, kind: str, unit: str, **parameters: float) -> tuple[Row, ...]:
+    """A fault that has always been there: who is wrong cannot always be told."""
+    passing = ("goes on", "no other named", "recovers")
+    return (
+        Row(f"{name}-boot-passing", BOOT, kind, parameters, 300.0, When.BOOT, passing, unit),
+        Row(
+            f"{name}-boot",
+            BOOT,
+            kind,
+            parameters,
+            inf,
+            When.BOOT,
+            ("no other named", "bounded"),
+            unit,
+            watch_s=1500.0,
         ),
     )
 
@@ -186,6 +206,10 @@ ROWS: tuple[Row, ...] = (
     *_sun("sun-frozen", "sun_frozen"),
     *_sun("sun-swapped", "sun_swapped"),
     *_sun("sun-sign", "sun_scale", axis=0.0, scale=-1.0),
+    *_from_boot("mag-bias", "mag_bias", "magnetometer", axis=1.0, nt=10_000.0),
+    *_from_boot("mag-swapped", "mag_swapped", "magnetometer", axis=1.0),
+    *_from_boot("sun-swapped", "sun_swapped", "sun sensor"),
+    *_from_boot("sun-sign", "sun_scale", "sun sensor", axis=0.0, scale=-1.0),
     Row("eclipse", LIGHT, "none", {}, 1.0, When.ECLIPSE, ("goes on", "quiet", "recovers"), watch_s=2400.0),
     Row(
         "sun-parallel",

@@ -4,10 +4,13 @@ from math import acos, degrees, hypot
 
 import pytest
 
+from fsw.core.sensor_health import AGAINST_ESTIMATE
 from fsw.core.telemetry import Event
 from fsw.wire.messages import FswEvent, MagField, Mode, SunVector
 
 BEFORE_S, FAULT_S, AFTER_S = 300, 120, 420
+BEFORE_ECLIPSE = {"epoch_utc": "2015-03-27T03:21:11Z"}
+"""Two minutes before it begins."""
 
 
 def of_field(rule, valid=None):
@@ -131,7 +134,7 @@ def test_in_eclipse_the_attitude_is_kept(make_world, name):
 @pytest.mark.requirement("REQ-SENSOR-09")
 def test_a_lamp_in_the_earth_s_shadow_is_no_sun(make_world):
     """It shows the direction in which the Sun is: the filter would take it."""
-    watcher = Watcher(make_world(time={"epoch_utc": "2015-03-27T03:21:11Z"}))
+    watcher = Watcher(make_world(time=BEFORE_ECLIPSE))
     world = watcher.world
 
     def lamp(frame):
@@ -150,13 +153,45 @@ def test_a_lamp_in_the_earth_s_shadow_is_no_sun(make_world):
     assert watcher.errors_deg[-1] < 2.0
 
 
+@pytest.mark.requirement("REQ-SENSOR-07")
 def test_a_fault_from_the_first_tick_on_does_not_start_the_filter(make_world):
-    watcher = Watcher(make_world())
+    """Nor does it begin at once when it has gone: a pair that was wrong may be right by chance."""
+    watcher = Watcher(make_world(flight={"fdir": {"readmit_s": 20.0}}))
     watcher.fly(60, of_field(lambda x, y, z: (y, z, x)))
     assert watcher.world.state.estimator.estimate is None
     assert [argument for _, argument in watcher.of(Event.SENSORS_DISAGREE)] == [0]
-    watcher.fly(60)
+    watcher.fly(AGAINST_ESTIMATE * 20)
+    assert watcher.world.state.estimator.estimate is None
+    watcher.fly(10)
     assert watcher.world.state.estimator.estimate is not None
+    assert watcher.of(Event.SENSOR_ISOLATED) == []
+
+
+FROM_BOOT = {
+    "field of wrong sign": of_field(lambda x, y, z: (x, -y, z)),
+    "field axes swapped": of_field(lambda x, y, z: (x, z, y)),
+    "sun of wrong sign": of_sun(lambda x, y, z: (-x, y, z)),
+    "sun axes swapped": of_sun(lambda x, y, z: (y, x, z)),
+}
+
+
+@pytest.mark.requirement("REQ-SENSOR-04", "REQ-SENSOR-07")
+@pytest.mark.parametrize("name", FROM_BOOT)
+def test_of_a_pair_that_was_never_right_nobody_is_named(make_world, name):
+    """For minutes the wrong angle is the modelled one by chance, in a tumble again and again."""
+    watcher = Watcher(make_world(initial={"axis": [0.9, 0.3, -0.2], "angle_deg": 75.0}))
+    watcher.fly(800, FROM_BOOT[name])
+    assert watcher.of(Event.SENSOR_ISOLATED) == []
+    assert watcher.of(Event.SENSORS_DISAGREE)
+    assert watcher.world.state.estimator.estimate is None
+
+
+def test_a_field_that_was_never_of_the_right_strength_is_named(make_world):
+    watcher = Watcher(make_world())
+    watcher.fly(100, of_field(lambda x, y, z: (1.3 * x, 1.3 * y, 1.3 * z)))
+    assert [argument for _, argument in watcher.of(Event.SENSOR_ISOLATED)] == [102]
+    assert watcher.of(Event.SENSORS_DISAGREE) == []
+    assert watcher.of(Event.FILTER_STARTED) == []
 
 
 @pytest.mark.requirement("REQ-SENSOR-08")

@@ -15,7 +15,6 @@ from fsw.core.readings import NOTHING
 from fsw.core.sensor_health import (
     AGAINST_ESTIMATE,
     FULL,
-    MISFIT,
     SLIGHT,
     SensorFault,
     SensorHealth,
@@ -23,6 +22,7 @@ from fsw.core.sensor_health import (
     judge,
     trusted,
 )
+from fsw.core.sensor_pair import MISFIT, Pair, PairConfig
 from fsw.core.vector import norm, scale, sub
 from fsw.wire.messages import CoilStatus, MagField, SunVector
 
@@ -36,6 +36,7 @@ CONFIG = SensorHealthConfig(
     silent_ticks=17,
     name_suspicion=FULL * 10,
     readmit_ticks=25,
+    pair=PairConfig(say_ticks=10, prove_ticks=15, agree_ticks=100),
 )
 B_ECI_T, SUN_ECI = (2.1e-5, -1.3e-5, 1.7e-5), (0.36, 0.48, 0.8)
 Q = normalise((0.7, 0.3, -0.5, 0.4))
@@ -67,7 +68,7 @@ def flight():
     """Judges tick after tick; each sample differs from the one before by a little."""
 
     class Flight:
-        health = SensorHealth()
+        health = SensorHealth(pair=Pair(proof=CONFIG.pair.prove_ticks))
         tick = 0
 
         def step(
@@ -342,12 +343,17 @@ class TestLeftOut:
 
 
 class TestContradiction:
+    @pytest.fixture
+    def flight(self, flight):
+        flight.health = SensorHealth()
+        return flight
+
     @pytest.mark.requirement("REQ-SENSOR-07")
     def test_without_an_estimate_it_is_said_after_a_while(self, flight):
         said = []
         for _ in range(30):
             flight.step(b=MIRRORED, used=NEITHER, known=None)
-            said.append(flight.health.contradictory)
+            said.append(flight.health.pair.contradictory)
         assert said == [False] * 9 + [True] * 21
 
     def test_it_ends_when_they_agree_for_as_long(self, flight):
@@ -356,12 +362,72 @@ class TestContradiction:
         said = []
         for _ in range(15):
             flight.step(known=None, used=NEITHER)
-            said.append(flight.health.contradictory)
+            said.append(flight.health.pair.contradictory)
         assert said == [True] * 9 + [False] * 6
 
-    def test_with_an_estimate_there_is_a_name_instead(self, flight):
-        flight.until_named(b=MIRRORED, used=SUN_ONLY)
-        assert not flight.health.contradictory
+    def test_with_a_proven_estimate_there_is_a_name_instead(self, flight):
+        for _ in range(CONFIG.pair.prove_ticks):
+            flight.step()
+        assert flight.until_named(b=MIRRORED, used=SUN_ONLY) == (10, (REFUSED, 0))
+        assert not flight.health.pair.contradictory
+
+    @pytest.mark.requirement("REQ-SENSOR-04", "REQ-SENSOR-07")
+    @pytest.mark.parametrize("used", [SUN_ONLY, FIELD_ONLY])
+    def test_with_one_that_is_not_proven_nobody_is_named_and_it_begins_anew(self, flight, used):
+        for _ in range(CONFIG.pair.prove_ticks - 1):
+            flight.step()
+        doubted = []
+        for _ in range(12):
+            assert flight.step(b=MIRRORED, used=used) == (0, 0)
+            doubted.append(flight.health.doubted)
+        assert doubted == [False] * 9 + [True] + [False] * 2
+
+    @pytest.mark.parametrize("said", [{"b": LONGER}, {"s": scale(1.06, S_BODY)}], ids=["field", "Sun"])
+    def test_what_is_wrong_by_itself_needs_no_other_to_blame(self, flight, said):
+        assert flight.until_named(**said, used=NEITHER, known=None) is not None
+        turned = {"b": (-LONGER[0], LONGER[1], LONGER[2])} if "b" in said else said | {"b": MIRRORED}
+        for _ in range(30):
+            flight.step(**turned, used=NEITHER, known=None)
+        assert not flight.health.pair.contradictory
+
+    def test_a_sun_is_not_accused_by_a_field_of_the_wrong_strength(self, flight):
+        for _ in range(CONFIG.pair.prove_ticks):
+            flight.step()
+        assert flight.until_named(b=LONGER, used=FIELD_ONLY) == (10, (STRENGTH, 0))
+
+    @pytest.mark.parametrize(("good", "bad", "owed"), [(30, 0, 0), (30, 2, 40), (0, 3, 60), (0, 30, 100)])
+    def test_a_pair_that_was_wrong_must_agree_for_as_long_as_it_cost(self, flight, good, bad, owed):
+        for b in [B_BODY_T] * good + [MIRRORED] * bad:
+            flight.step(b=b, used=NEITHER, known=None)
+        assert flight.health.pair.proof == -owed
+        for _ in range(owed):
+            assert flight.health.pair.proof < 0
+            flight.step(used=NEITHER, known=None)
+        assert flight.health.pair.proof == 0
+        flight.step(s=DARK, used=NEITHER, known=None)
+        assert flight.health.pair.proof == 0
+
+    def test_meanwhile_there_is_no_sun_to_begin_with(self):
+        readings = NOTHING._replace(
+            field=MagField(1, 1.0, 2.0, 3.0), sun=SunVector(1, 0.0, 0.6, 0.8), coil=IDLE
+        )
+        assert trusted(readings, SensorHealth(pair=Pair(proof=-1)), REFERENCE) == readings._replace(sun=None)
+        assert trusted(readings, SensorHealth(pair=Pair(proof=0)), REFERENCE) is readings
+
+    def test_what_an_estimate_refuses_undoes_its_proof_until_that_is_complete(self, flight):
+        for used, proof in ((BOTH, 1), (SUN_ONLY, 0), (BOTH, 1), (BOTH, 2), (Used(False, False, True), 0)):
+            flight.step(used=used)
+            assert flight.health.pair.proof == proof
+        for _ in range(CONFIG.pair.prove_ticks):
+            flight.step()
+        flight.step(used=SUN_ONLY)
+        assert flight.health.pair.proof == CONFIG.pair.prove_ticks
+
+    def test_what_an_estimate_has_proved_is_lost_with_it(self, flight):
+        for _ in range(CONFIG.pair.prove_ticks):
+            flight.step()
+        flight.step(used=NEITHER, known=None)
+        assert flight.health.pair.proof == 0
 
 
 def test_the_geometry_of_these_tests_hides_nothing():

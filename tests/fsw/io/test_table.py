@@ -152,6 +152,7 @@ PLANTED = [
     ("fdir.frozen_s", 0.0, "a number above 0"),
     ("fdir.name_s", -1.0, "a number above 0"),
     ("fdir.readmit_s", float("inf"), "fdir.readmit_s"),
+    ("fdir.prove_s", 0.0, "a number above 0"),
     ("fdir.weak_coil_part", 1.0, "a number above 0 and below 1"),
     ("fdir.open_coil_part", 0.7, "open_coil_part must lie under weak_coil_part"),
     ("fdir.name_pulses", 0, "a whole number at least 1"),
