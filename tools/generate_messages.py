@@ -136,7 +136,8 @@ def encode_term(signal: Signal) -> str:
 
 
 def decode_term(signal: Signal) -> str:
-    bits = f"word >> {signal.start} & {(1 << signal.length) - 1:#x}"
+    shifted = f"word >> {signal.start}" if signal.start else "word"
+    bits = f"{shifted} & {(1 << signal.length) - 1:#x}"
     if signal.is_signed:
         half = 1 << (signal.length - 1)
         bits = f"(({bits} ^ {half:#x}) - {half:#x})"

@@ -31,6 +31,7 @@ COMBINED = {
     ast.BitXor: ("^", "&"),
     ast.Pow: ("**", "*"),
 }
+CALLED = {"min": "max", "max": "min", "any": "all", "all": "any"}
 Span = tuple[int, int]
 """Where a piece of source begins and ends."""
 
@@ -68,7 +69,7 @@ def _line(source: str, place: int) -> str:
     return source[begin : end if end >= 0 else None].strip()
 
 
-def _changes(source: str) -> Iterator[tuple[Span, str]]:  # noqa: PLR0912  (a case for each kind of node)
+def _changes(source: str) -> Iterator[tuple[Span, str]]:  # noqa: PLR0912, PLR0915  (a case for each kind of node)
     """(where, what stands there instead)."""
     lines = source.splitlines(keepends=True)
     starts = [0]
@@ -117,12 +118,26 @@ def _changes(source: str) -> Iterator[tuple[Span, str]]:  # noqa: PLR0912  (a ca
             case ast.comprehension(ifs=[*conditions]):
                 for condition in conditions:
                     yield span(condition), "True"
+            case ast.Call(func=ast.Name(id=name) as called) if name in CALLED:
+                yield span(called), CALLED[name]
+            case ast.For():
+                yield span(node.iter), "()"
+            case ast.Return(value=None):
+                yield span(node), "pass"
+            case ast.Return(value=value) if not isinstance(value, ast.Constant):
+                yield span(value), "None"
+            case ast.Assign(targets=[target]) if _is_kept(target):
+                yield span(node), "pass"
             case ast.Continue():
                 yield span(node), "break"
             case ast.Break():
                 yield span(node), "continue"
         if isinstance(node, ast.Raise | ast.AugAssign | ast.Expr):
             yield span(node), "pass"
+        if isinstance(node, ast.Call):
+            for keyword in node.keywords:
+                if keyword.arg:
+                    yield _left_out(source, span(keyword)), ""
 
 
 def _swapped(source: str, between: Span, operator: str) -> tuple[Span, str]:
@@ -134,6 +149,18 @@ def _swapped(source: str, between: Span, operator: str) -> tuple[Span, str]:
     old = old if comment < 0 else old[:comment].strip()
     place = gap.index(old)
     return (begin + place, begin + place + len(old)), operator
+
+
+def _is_kept(target: ast.expr) -> bool:
+    """Whether what is assigned outlasts the function: an attribute, or an element."""
+    return any(isinstance(node, ast.Attribute | ast.Subscript) for node in ast.walk(target))
+
+
+def _left_out(source: str, argument: Span) -> Span:
+    """An argument with the comma after it."""
+    begin, end = argument
+    after = source[end:].lstrip()
+    return begin, len(source) - len(after) + 1 if after.startswith(",") else end
 
 
 def _executed(tree: ast.AST) -> Iterator[ast.AST]:

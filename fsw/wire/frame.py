@@ -55,9 +55,4 @@ def seal(can_id: int, word: int, length: int, register: int) -> Frame:
 
 def raw(value: float, scale: float, low: int, high: int) -> int:
     """``value / scale`` as the nearest integer in ``[low, high]``; what is not a number becomes ``low``."""
-    scaled = value / scale
-    if not scaled > low:
-        return low
-    if scaled >= high:
-        return high
-    return round(scaled)
+    return round(min(max(low, value / scale), high))  # max gives its first where the second is no number

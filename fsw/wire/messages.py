@@ -154,7 +154,7 @@ class CoilFire(_CoilFire):
             (word >> 16 & 0xFF),
             (word >> 24 & 0xFF),
             (word >> 32 & 0xFFFF),
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -191,7 +191,7 @@ class CoilDipole(_CoilDipole):
             ((word >> 4 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
             ((word >> 21 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
             ((word >> 38 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -219,7 +219,7 @@ class TcMode(_TcMode):
         word = int.from_bytes(data, "little")
         return cls(
             (word >> 4 & 0x7),
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -245,7 +245,7 @@ class TcClear(_TcClear):
         """The values in the data bytes, unjudged."""
         word = int.from_bytes(data, "little")
         return cls(
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -273,7 +273,7 @@ class TcLaw(_TcLaw):
         word = int.from_bytes(data, "little")
         return cls(
             (word >> 8 & 0xFF),
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -301,7 +301,7 @@ class TcSpin(_TcSpin):
         word = int.from_bytes(data, "little")
         return cls(
             ((word >> 5 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.9073486328125e-06,
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -338,7 +338,7 @@ class TcGain(_TcGain):
             (word >> 4 & 0xF),
             ((word >> 8 & 0xFF ^ 0x80) - 0x80),
             ((word >> 16 & 0xFFFFFFFF ^ 0x80000000) - 0x80000000),
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -375,7 +375,7 @@ class TcOrbitElement(_TcOrbitElement):
             (word >> 4 & 0xF),
             ((word >> 8 & 0xFF ^ 0x80) - 0x80),
             ((word >> 16 & 0xFFFFFFFF ^ 0x80000000) - 0x80000000),
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -401,7 +401,7 @@ class TcOrbitLoad(_TcOrbitLoad):
         """The values in the data bytes, unjudged."""
         word = int.from_bytes(data, "little")
         return cls(
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -447,7 +447,7 @@ class CoilStatus(_CoilStatus):
             ((word >> 22 & 0xFFF ^ 0x800) - 0x800),
             (word >> 34 & 0x3FFF) * 10,
             (word >> 48 & 0xFF),
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -484,7 +484,7 @@ class CoilDipoleStatus(_CoilDipoleStatus):
             ((word >> 4 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
             ((word >> 21 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
             ((word >> 38 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -524,7 +524,7 @@ class CoilRefused(_CoilRefused):
             (word >> 8 & 0xFF),
             (word >> 16 & 0xFF),
             (word >> 24 & 0xFF),
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -564,7 +564,7 @@ class MagField(_MagField):
             ((word >> 8 & 0xFFFF ^ 0x8000) - 0x8000) * 2.0,
             ((word >> 24 & 0xFFFF ^ 0x8000) - 0x8000) * 2.0,
             ((word >> 40 & 0xFFFF ^ 0x8000) - 0x8000) * 2.0,
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -604,7 +604,7 @@ class SunVector(_SunVector):
             ((word >> 8 & 0xFFFF ^ 0x8000) - 0x8000) * 6.103515625e-05,
             ((word >> 24 & 0xFFFF ^ 0x8000) - 0x8000) * 6.103515625e-05,
             ((word >> 40 & 0xFFFF ^ 0x8000) - 0x8000) * 6.103515625e-05,
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -644,7 +644,7 @@ class RefAttitude(_RefAttitude):
             ((word >> 5 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
             ((word >> 22 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
             ((word >> 39 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -684,7 +684,7 @@ class RefRate(_RefRate):
             ((word >> 5 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.9073486328125e-06,
             ((word >> 22 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.9073486328125e-06,
             ((word >> 39 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.9073486328125e-06,
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -711,7 +711,7 @@ class Sync(_Sync):
         """The values in the data bytes, unjudged."""
         word = int.from_bytes(data, "little")
         return cls(
-            (word >> 0 & 0xFFFFFFFF),
+            (word & 0xFFFFFFFF),
             (word >> 32 & 0xFFFFFFFF),
         )
 
@@ -752,7 +752,7 @@ class NavAttitude(_NavAttitude):
             ((word >> 5 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
             ((word >> 22 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
             ((word >> 39 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -792,7 +792,7 @@ class NavRate(_NavRate):
             ((word >> 5 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.9073486328125e-06,
             ((word >> 22 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.9073486328125e-06,
             ((word >> 39 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.9073486328125e-06,
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -850,7 +850,7 @@ class NavQuality(_NavQuality):
             (word >> 44 & 0x1),
             (word >> 45 & 0x1),
             (word >> 48 & 0xFF),
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -890,7 +890,7 @@ class TcAck(_TcAck):
             (word >> 8 & 0x7FF),
             (word >> 19 & 0xF),
             (word >> 24 & 0xFFFFFFFF),
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -917,7 +917,7 @@ class TickDone(_TickDone):
         """The values in the data bytes, unjudged."""
         word = int.from_bytes(data, "little")
         return cls(
-            (word >> 0 & 0xFFFFFFFF),
+            (word & 0xFFFFFFFF),
             (word >> 32 & 0xFFFFFFFF),
         )
 
@@ -958,7 +958,7 @@ class PlantEvent(_PlantEvent):
             (word >> 8 & 0xFF),
             (word >> 16 & 0xFF),
             ((word >> 24 & 0xFFFFFFFF ^ 0x80000000) - 0x80000000),
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -998,7 +998,7 @@ class FswEvent(_FswEvent):
             (word >> 8 & 0xFF),
             (word >> 16 & 0xFF),
             ((word >> 24 & 0xFFFFFFFF ^ 0x80000000) - 0x80000000),
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -1038,7 +1038,7 @@ class CoilEvent(_CoilEvent):
             (word >> 8 & 0xFF),
             (word >> 16 & 0xFF),
             ((word >> 24 & 0xFFFFFFFF ^ 0x80000000) - 0x80000000),
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -1078,7 +1078,7 @@ class MagEvent(_MagEvent):
             (word >> 8 & 0xFF),
             (word >> 16 & 0xFF),
             ((word >> 24 & 0xFFFFFFFF ^ 0x80000000) - 0x80000000),
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -1118,7 +1118,7 @@ class SunEvent(_SunEvent):
             (word >> 8 & 0xFF),
             (word >> 16 & 0xFF),
             ((word >> 24 & 0xFFFFFFFF ^ 0x80000000) - 0x80000000),
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -1155,7 +1155,7 @@ class PlantBoot(_PlantBoot):
             (word >> 4 & 0xF),
             (word >> 8 & 0xFF),
             (word >> 16 & 0xFFFFFFFF),
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -1192,7 +1192,7 @@ class FswBoot(_FswBoot):
             (word >> 4 & 0xF),
             (word >> 8 & 0xFF),
             (word >> 16 & 0xFFFFFFFF),
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -1229,7 +1229,7 @@ class CoilBoot(_CoilBoot):
             (word >> 4 & 0xF),
             (word >> 8 & 0xFF),
             (word >> 16 & 0xFFFFFFFF),
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -1266,7 +1266,7 @@ class MagBoot(_MagBoot):
             (word >> 4 & 0xF),
             (word >> 8 & 0xFF),
             (word >> 16 & 0xFFFFFFFF),
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -1303,7 +1303,7 @@ class SunBoot(_SunBoot):
             (word >> 4 & 0xF),
             (word >> 8 & 0xFF),
             (word >> 16 & 0xFFFFFFFF),
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -1343,7 +1343,7 @@ class PlantHeartbeat(_PlantHeartbeat):
             (word >> 8 & 0xFFFF),
             (word >> 24 & 0xFFFF),
             (word >> 40 & 0xFFFF),
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -1383,7 +1383,7 @@ class FswHeartbeat(_FswHeartbeat):
             (word >> 8 & 0xFFFF),
             (word >> 24 & 0xFFFF),
             (word >> 40 & 0xFFFF),
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -1423,7 +1423,7 @@ class CoilHeartbeat(_CoilHeartbeat):
             (word >> 8 & 0xFFFF),
             (word >> 24 & 0xFFFF),
             (word >> 40 & 0xFFFF),
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -1463,7 +1463,7 @@ class MagHeartbeat(_MagHeartbeat):
             (word >> 8 & 0xFFFF),
             (word >> 24 & 0xFFFF),
             (word >> 40 & 0xFFFF),
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -1503,7 +1503,7 @@ class SunHeartbeat(_SunHeartbeat):
             (word >> 8 & 0xFFFF),
             (word >> 24 & 0xFFFF),
             (word >> 40 & 0xFFFF),
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 
@@ -1531,7 +1531,7 @@ class PlantEnd(_PlantEnd):
         word = int.from_bytes(data, "little")
         return cls(
             (word >> 8 & 0xFFFFFF),
-            (word >> 0 & 0xF),
+            (word & 0xF),
         )
 
 

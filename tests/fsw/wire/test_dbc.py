@@ -148,7 +148,8 @@ def test_requests_come_before_reports_in_arbitration(dbc):
 def test_the_codec_knows_the_dbc_s_messages_and_senders(dbc):
     assert {m.frame_id: m.name for m in dbc.messages} == NAMES
     assert {m.frame_id: m.senders[0] for m in dbc.messages} == SENDERS
-    assert {i: c.ID for i, c in CLASSES.items()} == {m.frame_id: m.frame_id for m in dbc.messages}
+    shapes = {m.frame_id: (m.frame_id, m.length) for m in dbc.messages}
+    assert {can_id: (c.ID, c.LENGTH) for can_id, c in CLASSES.items()} == shapes
     assert {c.ID for c in CLASSES.values()} - {c.ID for c in CountedMessage.__args__} == {0x180, 0x280}
 
 

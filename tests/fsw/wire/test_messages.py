@@ -174,6 +174,12 @@ class TestGoldenBytes:
         counters = [MagField.decode(field._replace(counter=n).encode().data).counter for n in range(33)]
         assert counters == [n % 16 for n in range(33)]
 
+    @pytest.mark.parametrize("name", SEALED)
+    def test_a_message_that_nobody_has_counted_bears_zero(self, dbc, name):
+        fields = [field for field in BY_NAME[name]._fields if field != "counter"]
+        frame = BY_NAME[name](**dict.fromkeys(fields, 1)).encode()
+        assert dbc.get_message_by_name(name).decode(frame.data)["counter"] == 0
+
     def test_negative_levels_come_back_negative(self):
         for level in range(-8, 8):
             assert CoilStatus.decode(CoilStatus(level, 0, 0, 0, 0, 0).encode().data).level == level

@@ -1,0 +1,139 @@
+"""The page of mutation testing, docs/mutation.md: from what has been measured, and what is known of it."""
+
+import hashlib
+import json
+import tomllib
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from mutants import mutants
+
+ROOT = Path(__file__).resolve().parents[1]
+HERE = ROOT / "tests" / "mutation"
+PAGE = ROOT / "docs" / "mutation.md"
+RESULTS, COVERAGE = HERE / "results.json", HERE / "coverage.json"
+
+TEXT = """# Mutation testing
+
+Each module is changed in one small thing at a time, and its tests are run: one must fail. Changed are
+operators, comparisons, constants, conditions and loops; left out are statements, assignments to what lasts,
+named arguments and what is given back. `make mutation` measures and writes this page; the tests of each
+module stand in `tests/mutation/targets.toml`, the reasons for what survives in
+`tests/mutation/survivors.toml`. Tests that run too long count as failed. A module that has been changed
+since it was measured is told as such, and measured anew by `make mutation`.
+
+| part | module | mutants | noticed | too long | survived, listed | survived, not listed |
+|---|---|---|---|---|---|---|
+{rows}
+
+## Survivors
+
+{survivors}
+
+## Branch coverage
+
+By the tests that mirror the modules, without flights and proofs; measured by `make coverage`, which fails
+below 100 %.
+
+| module | statements | branches | covered |
+|---|---|---|---|
+{coverage}
+"""
+
+
+class Target(NamedTuple):
+    """A group of modules, and the tests for it."""
+
+    name: str
+    modules: list[str]
+    quick: list[str]
+    slow: list[str]
+
+
+def targets() -> list[Target]:
+    tables = tomllib.loads((HERE / "targets.toml").read_text(encoding="utf-8"))
+    return [Target(name, table["modules"], table["quick"], table["slow"]) for name, table in tables.items()]
+
+
+def survivors() -> dict[tuple[str, str], str]:
+    """The reason for each (module, change)."""
+    listed = tomllib.loads((HERE / "survivors.toml").read_text(encoding="utf-8"))
+    return {(one["module"], one["change"]): one["reason"] for one in listed.get("survivor", [])}
+
+
+def stored(path: Path) -> dict[str, Any]:
+    return json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+
+
+def store(path: Path, results: dict[str, Any]) -> None:
+    path.write_text(json.dumps(results, indent=2, sort_keys=True) + "\n", encoding="utf-8")
+
+
+def digest(module: str) -> str:
+    """Of the module, and of the mutants that it would have now."""
+    source = (ROOT / module).read_text(encoding="utf-8")
+    made = "".join(f"{mutant.line} {mutant.change}\n" for mutant in mutants(source))
+    return hashlib.sha256((source + made).encode()).hexdigest()
+
+
+def outdated(results: dict[str, Any]) -> list[str]:
+    """Modules that have not been measured as they are now."""
+    modules = [module for target in targets() for module in target.modules]
+    return [module for module in modules if results.get(module, {}).get("sha256") != digest(module)]
+
+
+def unlisted(results: dict[str, Any]) -> list[tuple[str, str]]:
+    """(module, change) that survives without a reason."""
+    listed = survivors()
+    made = [(m, change) for target in targets() for m in target.modules for change in _survived(results, m)]
+    return [one for one in made if one not in listed]
+
+
+def write_page() -> None:
+    results, listed = stored(RESULTS), survivors()
+    old = outdated(results)
+    rows, reasons = [], []
+    for target in targets():
+        for module in target.modules:
+            rows.append(_row(target.name, module, results.get(module), listed, module in old))
+            for change in _survived(results, module):
+                reasons.append(
+                    f"- `{module}`: `{change}`  \n  {listed.get((module, change), '**not listed**')}"
+                )
+    coverage = [
+        f"| `{module}` | {one['statements']} | {one['branches']} | {one['percent']} % |"
+        for module, one in sorted(stored(COVERAGE).items())
+    ]
+    text = TEXT.format(
+        rows="\n".join(rows), survivors="\n".join(reasons) or "None.", coverage="\n".join(coverage)
+    )
+    PAGE.write_text(text, encoding="utf-8")
+
+
+def note_coverage(measured: dict[str, Any]) -> None:
+    """Keep what ``coverage json`` has measured."""
+    kept = {}
+    for module, one in measured["files"].items():
+        summary = one["summary"]
+        if summary["num_statements"]:
+            kept[Path(module).as_posix()] = {
+                "statements": summary["num_statements"],
+                "branches": summary["num_branches"],
+                "percent": summary["percent_covered_display"],
+            }
+    store(COVERAGE, kept)
+
+
+def _survived(results: dict[str, Any], module: str) -> list[str]:
+    return results.get(module, {}).get("survived", [])
+
+
+def _row(
+    part: str, module: str, result: dict[str, Any] | None, listed: dict[tuple[str, str], str], old: bool
+) -> str:
+    if result is None:
+        return f"| {part} | `{module}` | not measured | | | | |"
+    known = [change for change in result["survived"] if (module, change) in listed]
+    numbers = (result["mutants"], result["killed"], result["timeouts"], len(known))
+    cells = " | ".join(map(str, (*numbers, len(result["survived"]) - len(known))))
+    return f"| {part} | `{module}`{' (changed since)' if old else ''} | {cells} |"
