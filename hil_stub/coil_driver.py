@@ -69,7 +69,8 @@ class CoilDriver:
         self._events = Events()
         self._statuses = 0
         self._silenced = False
-        self._held = OFF  # what has been driven without a change, and for how many ticks
+        # coil and level that have been driven without a change, and for how many ticks
+        self._held: tuple[int, int] | None = None
         self._held_ticks = 0
         self._tested = False
         self._finding: CoilEventCode | None = None
@@ -154,19 +155,19 @@ class CoilDriver:
         if self._silenced:
             self._silenced = False
             frames.append(self._events.frame(CoilEventCode.DEAD_MAN, tick))
-        guard = self._guard
-        driven = Drive(guard.coil, guard.level, 1.0) if guard.on else OFF
+        guard, read_back = self._guard, self._read_back
+        driven = (guard.coil, guard.level) if guard.on else None
         if driven == self._held:
             self._held_ticks += elapsed
         else:  # a pulse begins with a tick, but may end within one
-            self._held, self._held_ticks = driven, elapsed if driven is not OFF else 0
-        settle_ms = self._read_back.settle_ms if self._read_back else 0
-        if self._read_back is None or self._held_ticks * UNITS_PER_TICK < self._limits.units(settle_ms):
+            self._held, self._held_ticks = driven, elapsed if driven else 0
+        if read_back is None or self._held_ticks * UNITS_PER_TICK < self._limits.units(read_back.settle_ms):
             return frames
-        before, self._finding = self._finding, self._read_back.judge(driven.level, current_a)
+        level = guard.level if guard.on else 0
+        before, self._finding = self._finding, read_back.judge(level, current_a)
         if self._finding not in (None, before):
             code = self._finding if self._tested else CoilEventCode.SELF_TEST_FAILED
-            frames.append(self._events.frame(code, tick, raw(current_a, 0.001, -(2**31), 2**31 - 1)))
+            frames.append(self._events.frame(code, tick, _milliamperes(current_a)))
         self._tested = True
         return frames
 
@@ -177,7 +178,7 @@ class CoilDriver:
             level=guard.level,
             coil=coil,
             remaining_ms=guard.remaining_ms(),
-            current_ma=raw(current_a, 0.001, -2048, 2047),
+            current_ma=_milliamperes(current_a),
             lockout_ms=guard.lockout_ms(coil),
             seq=guard.seq or 0,
             counter=self._statuses,
@@ -194,3 +195,8 @@ class CoilDriver:
 
     def _refuse(self, fire: CoilFire, reason: CoilRefusedReason) -> None:
         self._refusals.add(fire.coil, fire.seq, reason, self._node.tick)
+
+
+def _milliamperes(current_a: float) -> int:
+    """Whole mA within 32 bits; what is not a number is the lowest. A narrower signal saturates by itself."""
+    return raw(current_a, 0.001, -(2**31), 2**31 - 1)

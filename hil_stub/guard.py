@@ -36,7 +36,7 @@ class Guard:
         self._clock_limits = replace(limits, tick_hz=CLOCK_HZ)
         self._by_ticks: Interlock = boot(limits)
         self._by_clock: Interlock | None = None
-        self._clock_ms = 0
+        self._clock_ms: int  # its last reading; there is one as soon as there is an interlock by it
         self.level = 0
         """Driven in the tick that has ended, or just accepted."""
 

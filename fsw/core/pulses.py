@@ -13,6 +13,7 @@ Source: Tavares et al. (ConSat, PoSAT-1) for the limits and the choice; the modu
 """
 
 from dataclasses import dataclass
+from math import copysign
 from typing import NamedTuple
 
 from fsw.core.vector import ZERO, Mat3, Vec3, cross, dot, norm, scale, sub, transform
@@ -153,6 +154,4 @@ def impulse(pulse: Pulse, b_body_t: Vec3, config: PulseConfig) -> Vec3:
 
 def dipole_am2(level: int, levels_am2: Vec3) -> float:
     """The dipole of a level, A m^2, signed; zero for level 0."""
-    if level == 0:
-        return 0.0
-    return levels_am2[level - 1] if level > 0 else -levels_am2[-level - 1]
+    return copysign(levels_am2[abs(level) - 1], level) if level else 0.0

@@ -3,9 +3,20 @@
 import pytest
 
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame
-from fsw.wire.messages import CoilBoot, CoilDipole, CoilFire, CoilRefused, CoilStatus, Sync, TickDone
+from fsw.wire.messages import (
+    CoilBoot,
+    CoilDipole,
+    CoilEvent,
+    CoilFire,
+    CoilRefused,
+    CoilStatus,
+    Severity,
+    Sync,
+    TickDone,
+)
 from fsw.wire.messages import CoilRefusedReason as Reason
 from hil_stub.coil_driver import OFF, BoardState, CoilDriver, CoilLimits, Drive
+from hil_stub.events import CoilEventCode
 
 
 @pytest.fixture
@@ -187,6 +198,41 @@ class TestTicks:
         first = rig.step(rig.fire()).drive
         assert [rig.board.drive() for _ in range(10)] == [first] * 10
         assert rig.step().status.remaining_ms == 2000
+
+
+class TestDeadMan:
+    """Nobody is heard: the board is told so again and again, until it next enters a tick."""
+
+    def fall_silent(self, rig, times=3):
+        for _ in range(times):
+            rig.board.silence()
+            assert rig.board.drive() == OFF
+
+    def test_a_pulse_ends_at_once_and_a_full_back_off_begins(self, rig):
+        assert rig.step(rig.fire()).drive == Drive(1, 3, 1.0)
+        self.fall_silent(rig)
+        heard = rig.step().status
+        assert (heard.level, heard.remaining_ms, heard.lockout_ms) == (0, 0, 99_000)
+        rig.skip_to(399)
+        assert rig.step(rig.fire(seq=2)).drive == OFF
+        assert rig.step(rig.fire(seq=3)).drive == Drive(1, 3, 1.0)
+
+    def test_it_costs_a_full_back_off_also_when_all_was_off(self, rig):
+        self.fall_silent(rig)
+        assert rig.step(rig.fire()).drive == OFF
+        refused = rig.step()
+        assert (refused.reasons, refused.status.lockout_ms) == ([Reason.LOCKOUT], 98_000)
+
+    def test_it_is_told_once_when_it_is_over(self, rig):
+        self.fall_silent(rig)
+        events = [m for _ in range(5) for m in rig.step().only(CoilEvent)]
+        assert events == [CoilEvent(Severity.ERROR, CoilEventCode.DEAD_MAN, 300 & 0xFF, argument=0)]
+        self.fall_silent(rig)
+        (again,) = rig.step().only(CoilEvent)
+        assert (again.event, again.counter) == (CoilEventCode.DEAD_MAN, 1)
+
+    def test_a_bus_that_is_heard_is_never_called_silent(self, rig):
+        assert not any(rig.step(rig.fire(seq=tick)).only(CoilEvent) for tick in range(200))
 
 
 class TestHeartbeat:

@@ -130,3 +130,16 @@ def test_without_a_clock_the_ticks_decide():
 
 def test_a_guard_that_has_just_booted_shows_no_level():
     assert Guard(CoilLimits(1)).level == 0
+
+
+@pytest.mark.parametrize("coil", [0, 1, 2])
+def test_the_back_off_of_one_coil_is_told_even_when_the_others_are_free(coil):
+    timers = Timers(shared=False)
+    timers.go(100)
+    assert not timers.guard.locked_out
+    assert timers.ask(coil=coil) is None
+    timers.go(3)
+    assert [timers.guard.lockout_ms(other) > 0 for other in range(3)] == [other == coil for other in range(3)]
+    assert timers.guard.locked_out
+    timers.go(100)
+    assert not timers.guard.locked_out

@@ -191,6 +191,16 @@ def test_the_first_tick_of_a_pulse_is_judged_as_soon_as_the_current_has_settled(
     assert rig.events == [(5005, OPEN, 0)], "100 ms are five ticks"
 
 
+@pytest.mark.parametrize(
+    ("current_a", "argument"),
+    [(1e9, 2**31 - 1), (inf, 2**31 - 1), (-1e9, -(2**31)), (-inf, -(2**31)), (nan, -(2**31)), (1e6, 10**9)],
+)
+def test_a_current_beyond_the_argument_of_an_event_is_told_as_its_end(rig, current_a, argument):
+    rig.run_to(2)
+    rig.step(physics=lambda nominal_a: current_a)
+    assert rig.events == [(2, OFF, argument)]
+
+
 def test_severity_and_counter(rig, fire):
     rig.run_to(100)
     rig.step(fire(100))

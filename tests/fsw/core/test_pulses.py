@@ -226,8 +226,9 @@ def test_up_to_the_bound_nothing_is_taken_away():
 
 def test_without_a_field_nothing_is_owed():
     config = make_config()
-    state = pulses.owe(owing(config, (1.0, 1.0, 1.0)), (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), config)
-    assert state.owed_impulse_body_nms == (0.0, 0.0, 0.0)
+    for owed in ((1.0, 1.0, 1.0), (0.0, 0.0, 0.0)):
+        state = pulses.owe(owing(config, owed), owed, (0.0, 0.0, 0.0), config)
+        assert state.owed_impulse_body_nms == (0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize("level", [-3, -2, -1, 1, 2, 3])
