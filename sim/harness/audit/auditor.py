@@ -49,7 +49,7 @@ class _WholeEntries:
     def __init__(self, entries: Iterable[LogEntry]) -> None:
         self._entries = entries
         self.truncated_at: int | None = None
-        self.ended = False
+        self.ended: bool  # known after the last entry
 
     def __iter__(self) -> Iterator[LogEntry]:
         can_id = None
@@ -76,8 +76,8 @@ class _Auditor:
         self._together: list[BoardStatus] = []
         self._booted = False
         self._tick: int | None = None
-        self._timestamp_off = 0
-        self._unix_off = 0
+        self._timestamp_off: int | None = None
+        self._unix_off: int | None = None
         self._first: int | None = None
         self._last = 0
         self._statuses = 0

@@ -4,7 +4,8 @@ import pytest
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilBoot, CoilStatus
-from sim.harness.audit.auditor import Kind
+from sim.harness.audit.auditor import AuditLimits, Kind, audit
+from sim.harness.candump import read_log
 
 
 def found(report):
@@ -316,3 +317,21 @@ def test_a_log_without_status_is_not_ok(judge, bus_log):
     assert not report.ok
     assert report.exit_code == 1
     assert "no COIL_STATUS in the log: nothing to judge" in report.notes
+    assert report.span_s == 0
+
+
+def test_a_log_that_is_cut_is_judged_as_far_as_it_goes_and_is_not_complete(bus_log, fired, tmp_path):
+    text = bus_log(1, 200, [fired(0, 110, 3100)]).text()
+    path = tmp_path / "bus.log"
+    path.write_text(text[: text.index(")", len(text) // 4 * 3)])
+    line = path.read_text().count("\n") + 1
+    report = audit(read_log(path), AuditLimits())
+    assert found(report) == [(Kind.PULSE, 110, 110, 0)]
+    assert (report.truncated_at, report.complete) == (line, False)
+    assert f"truncated: line {line} is incomplete; judged is what stands before it" in report.notes
+
+
+def test_a_log_is_complete_without_an_end_mark_unless_one_is_expected(bus_log):
+    entries = bus_log(ticks=20).entries()
+    assert audit(entries, AuditLimits()).complete
+    assert not audit(entries, AuditLimits(), expect_end=True).complete

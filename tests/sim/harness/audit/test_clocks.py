@@ -94,6 +94,15 @@ def test_the_rounding_of_timestamps_to_microseconds_is_no_violation(judge, bus_l
     assert judge(log).ok
 
 
+@pytest.mark.parametrize(("shift_us", "said"), [(1, "0.000001 s late"), (-1, "0.000001 s early")])
+def test_a_microsecond_is_one_at_1_hz_too(judge, bus_log, shift_us, said):
+    log = bus_log(1, 20)
+    log.shifts_us = dict.fromkeys(range(10, 20), shift_us)
+    (violation,) = judge(log).violations
+    assert (violation.kind, violation.tick) == (Kind.TIMESTAMP, 10)
+    assert said in violation.sentence
+
+
 # --- other timestamps
 
 
@@ -234,12 +243,15 @@ def test_what_comes_after_the_last_sync_is_judged(bus_log, fired, level):
 # --- SYNC itself
 
 
-def test_a_sync_whose_unix_time_contradicts_its_tick(bus_log):
-    log = bus_log(10, 200)
+@pytest.mark.parametrize("last", [150, 157, 199])
+def test_a_unix_time_that_contradicts_its_tick_is_named_once(bus_log, last):
     entries = with_sync(
-        log, lambda sync: sync._replace(unix_time_s=sync.unix_time_s + (sync.tick == 150)).encode()
+        bus_log(10, 200),
+        lambda sync: sync._replace(unix_time_s=sync.unix_time_s + (150 <= sync.tick <= last)).encode(),
     )
-    assert found(audit(entries, AuditLimits())) == [(Kind.SYNC, 15, 150, None)]
+    report = audit(entries, AuditLimits())
+    assert found(report) == [(Kind.SYNC, 15, 150, None)]
+    assert f"unix_time_s {EPOCH_US // 10**6 + 16}, its tick says {EPOCH_US // 10**6 + 15}" in str(report)
 
 
 def test_ticks_that_jump_forward_to_hide_a_short_gap(bus_log, fired):
@@ -258,6 +270,23 @@ def test_ticks_that_go_back(bus_log, fired):
     assert [(pulse.start_s, pulse.end_s) for pulse in report.pulses] == [(48, 49)]
 
 
+def test_a_pulse_does_not_last_from_one_run_into_the_next(bus_log, fired):
+    """Both show the same coil and the same request."""
+    entries = bus_log(1, 50, [fired(0, 48)]).entries() + bus_log(1, 20, [fired(0, 5)]).entries(6)
+    report = audit(entries, AuditLimits())
+    assert [(pulse.start_s, pulse.end_s) for pulse in report.pulses] == [(5, 8), (48, 49)]
+    assert not any("without COIL_STATUS" in note for note in report.notes)
+
+
+def test_a_log_whose_clock_begins_in_1970(judge, bus_log, fired):
+    assert judge(bus_log(10, 1500, [fired(1, 1234)], epoch_s=0)).violations == ()
+
+
+def test_a_first_sync_of_the_wrong_length_has_no_tick(bus_log):
+    entries = with_sync(bus_log(1, 50), lambda sync: sync.encode() if sync.tick else Frame(Sync.ID, b"\0"))
+    assert found(audit(entries, AuditLimits()))[0] == (Kind.SYNC, 0, None, None)
+
+
 def test_a_sync_of_the_wrong_length(bus_log):
     log = bus_log(1, 50)
     entries = with_sync(log, lambda sync: Frame(Sync.ID, b"\0") if sync.tick == 30 else sync.encode())
@@ -272,6 +301,7 @@ def test_syncs_that_fit_no_tick_rate(bus_log):
     report = audit(entries, AuditLimits())
     assert found(report) == [(Kind.SYNC, 0, None, None)]
     assert "no tick rate" in str(report.violations[0])
+    assert report.violations[0].line == 0, "it is of no line, but of all"
 
 
 def test_nothing_is_judged_of_nothing():
