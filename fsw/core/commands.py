@@ -12,6 +12,7 @@ from fsw.core.coil_health import CoilHealth
 from fsw.core.config import FlightConfig
 from fsw.core.elements import RANGES, Upload
 from fsw.core.ephemeris import advance, fly_orbit
+from fsw.core.estimator import untraced
 from fsw.core.laws.interface import MAX_SPIN_RADPS
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit import element_orbit
@@ -100,7 +101,12 @@ def _mode(state: FlightState, message: TcMode, situation: Situation) -> Outcome:
 
 def _clear(state: FlightState, message: TcClear, situation: Situation) -> Outcome:
     """Trips are forgotten, every sensor is believed again, and every coil used."""
-    return state._replace(modes=state.modes._replace(trips=0), sensors=SensorHealth(), coils=CoilHealth())
+    return state._replace(
+        modes=state.modes._replace(trips=0),
+        sensors=SensorHealth(),
+        coils=CoilHealth(),
+        estimator=untraced(state.estimator),
+    )
 
 
 def _law(state: FlightState, message: TcLaw, situation: Situation) -> Outcome:

@@ -5,7 +5,6 @@ from typing import NamedTuple
 
 from fsw.core import mekf
 from fsw.core.attitude import UNKNOWN, Attitude
-from fsw.core.coil_health import Correction
 from fsw.core.earth import MU_M3PS2
 from fsw.core.ephemeris import Reference
 from fsw.core.mekf import Estimate
@@ -74,8 +73,8 @@ def estimate(
     m_body_am2: Vec3,
     elapsed_ticks: int,
     config: EstimatorConfig,
-) -> tuple[EstimatorState, Used, Estimate | None]:
-    """Bring the estimate to this tick; also which measurements were taken, and what was predicted.
+) -> tuple[EstimatorState, Used]:
+    """Bring the estimate to this tick; also which measurements were taken.
 
     Args:
         state: of the tick before.
@@ -91,9 +90,8 @@ def estimate(
     if current is None:
         state = state if state.estimate is None else restart(state)
         started = _start(field, sun, reference, config)
-        return state._replace(estimate=started), Used(started is not None, started is not None, blanked), None
+        return state._replace(estimate=started), Used(started is not None, started is not None, blanked)
 
-    predicted = current
     current, took_field, took_sun = _updated(current, field, sun, reference, config.mekf)
     rejected = (field is not None and not took_field) + (sun is not None and not took_sun)
     in_a_row = state.rejected_in_a_row + rejected
@@ -102,7 +100,7 @@ def estimate(
     moved = EstimatorState(current, in_a_row, state.rejected_total + rejected, state.restarts)
     used = Used(took_field, took_sun, blanked)
     lost = in_a_row >= config.restart_after_rejections or not mekf.healthy(current)
-    return (restart(moved) if lost else moved), used, predicted
+    return (restart(moved) if lost else moved), used
 
 
 def _updated(
@@ -175,14 +173,10 @@ def _start(
     return mekf.start(triad(sun, field, s, b), ZERO, config.mekf)
 
 
-def set_right(state: EstimatorState, correction: Correction) -> EstimatorState:
-    """With what a pulse that was not the one it was taken for did to attitude and rate."""
-    if state.estimate is None:
-        return state
-    deviation = correction.variance**0.5
-    spread = (*scale(deviation, correction.reach_rad), *scale(deviation, correction.kick_radps))
-    estimate = mekf.corrected(state.estimate, correction.turn_rad, correction.change_radps, spread)
-    return state._replace(estimate=estimate)
+def untraced(state: EstimatorState) -> EstimatorState:
+    """Without what tells of deviations."""
+    known = state.estimate
+    return state if known is None else state._replace(estimate=known._replace(trace=None))
 
 
 def restart(state: EstimatorState) -> EstimatorState:

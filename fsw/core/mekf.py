@@ -26,6 +26,21 @@ MAX_VARIANCE = 1e6
 """Beyond it an estimate says nothing (1000 rad), and the algebra comes near the end of the numbers."""
 
 
+class Trace(NamedTuple):
+    """What deviations that the filter does not know of would do to its errors and innovations.
+
+    ``causes``: of each of k deviations a number that tells what it is of. ``effect`` (n, k + 1): what a unit
+    of each leaves in the error state; the last column only makes room for the innovation. ``sums``
+    (k + 1, k + 1): t^T S^-1 t over all updates, t being the effects as measured, and the innovation last;
+    ``measured``: of how many numbers.
+    """
+
+    causes: tuple[int, ...]
+    effect: Matrix
+    sums: Matrix
+    measured: int
+
+
 class Estimate(NamedTuple):
     """Attitude, inertial rate, biases, and the covariance of the error state.
 
@@ -37,6 +52,7 @@ class Estimate(NamedTuple):
     mag_bias_t: Vec3
     torque_body_nm: Vec3
     covariance: Matrix
+    trace: Trace | None = None
 
 
 def start(q_body_from_eci: Quaternion, omega_body_radps: Vec3, config: MekfConfig) -> Estimate:
@@ -44,24 +60,16 @@ def start(q_body_from_eci: Quaternion, omega_body_radps: Vec3, config: MekfConfi
     return Estimate(q_body_from_eci, omega_body_radps, ZERO, ZERO, config.initial_covariance)
 
 
-def corrected(estimate: Estimate, turn_rad: Vec3, change_radps: Vec3, spread: tuple[float, ...]) -> Estimate:
-    """The estimate with attitude and rate set right, and less certain along ``spread``.
+def corrected(estimate: Estimate, error: Matrix, uncertainty: Matrix, config: MekfConfig) -> Estimate:
+    """The estimate set right by something else than a measurement.
 
     Args:
         estimate: before.
-        turn_rad: small rotation that the attitude lacks, body axes.
-        change_radps: what the rate lacks, body axes.
-        spread: one standard deviation of both, laid out as the error state begins.
+        error: what it lacks, (n), laid out as the error state.
+        uncertainty: covariance that this adds, (n, n).
+        config: the filter.
     """
-    covariance = estimate.covariance.copy()
-    covariance[0:6, 0:6] += np.outer(spread, spread)
-    return Estimate(
-        normalise(multiply(estimate.q_body_from_eci, from_small_rotation(turn_rad))),
-        add(estimate.omega_body_radps, change_radps),
-        estimate.mag_bias_t,
-        estimate.torque_body_nm,
-        covariance,
-    )
+    return _fold(estimate, error, estimate.covariance + uncertainty, config.layout, estimate.trace)
 
 
 def healthy(estimate: Estimate) -> bool:
@@ -100,7 +108,7 @@ def predict(
     h = config.tick_s
     q, omega = estimate.q_body_from_eci, estimate.omega_body_radps
     e1, b = rotate(q, e1_eci), rotate(q, b_eci_t)
-    torque = estimate.torque_body_nm
+    torque, trace = estimate.torque_body_nm, estimate.trace
     alpha = _acceleration(omega, e1, b, gravity_per_s2, m_body_am2, torque, config)
     omega_mid = add(omega, scale(0.5 * h, alpha))
     q_mid = multiply(q, from_small_rotation(scale(0.5 * h, omega)))
@@ -117,7 +125,12 @@ def predict(
         estimate.mag_bias_t,
         torque,
         kalman.P,
+        trace if trace is None else _carried(trace, transition),
     )
+
+
+def _carried(trace: Trace, transition: Matrix) -> Trace:
+    return Trace(trace.causes, transition.dot(trace.effect), trace.sums, trace.measured)
 
 
 def _process_noise(m_body_am2: Vec3, b_body_t: Vec3, config: MekfConfig) -> Matrix:
@@ -174,7 +187,14 @@ def _update(
     nis = float(kalman.y @ kalman.SI @ kalman.y)
     if not 0.0 <= nis <= config.gate_nis:  # overflow can make it -inf
         return None
-    return _fold(estimate, kalman.x, 0.5 * (kalman.P + kalman.P.T), config.layout)
+    trace = estimate.trace
+    if trace is not None:
+        causes, effect, sums, measured = trace
+        seen = sensitivity.dot(effect)  # the operator @ takes twice as long for so small arrays
+        seen[:, -1] = kalman.y
+        sums = sums + seen.T.dot(kalman.SI.dot(seen))
+        trace = Trace(causes, effect - kalman.K.dot(seen), sums, measured + len(seen))
+    return _fold(estimate, kalman.x, 0.5 * (kalman.P + kalman.P.T), config.layout, trace)
 
 
 def _filter(config: MekfConfig) -> KalmanFilter:
@@ -184,7 +204,9 @@ def _filter(config: MekfConfig) -> KalmanFilter:
     return kalman
 
 
-def _fold(estimate: Estimate, error: Matrix, covariance: Matrix, parts: Layout) -> Estimate:
+def _fold(
+    estimate: Estimate, error: Matrix, covariance: Matrix, parts: Layout, trace: Trace | None
+) -> Estimate:
     """Fold the error state into the estimate."""
     values: list[float] = error.tolist()
     bias, torque = estimate.mag_bias_t, estimate.torque_body_nm
@@ -198,6 +220,7 @@ def _fold(estimate: Estimate, error: Matrix, covariance: Matrix, parts: Layout) 
         bias,
         torque,
         covariance,
+        trace,
     )
 
 

@@ -66,7 +66,7 @@ def checksum(state: FlightState) -> int:
     """CRC-32 over every number of the state, little-endian: integers as 64 bit, floats as doubles."""
     gate, modes, coil, pulses, attitude = state.gate, state.modes, state.coil, state.pulses, state.attitude
     field_watch, sun_watch, pair, doubted = state.sensors
-    faults, wrong, gathered, weight, pulsed, unexplained, *strange = state.coils
+    faults, wrong, *strange = state.coils
     integers = (
         state.tick,
         state.field_tick,
@@ -92,8 +92,6 @@ def checksum(state: FlightState) -> int:
         *faults,
         *wrong,
         *strange,
-        pulsed.coil,
-        pulsed.end_tick,
         attitude.valid,
         modes.mode,
         modes.since_tick,
@@ -122,14 +120,6 @@ def checksum(state: FlightState) -> int:
         attitude.sigma3_rate_radps,
         *field_watch.sample,
         *sun_watch.sample,
-        *gathered,
-        *weight,
-        *pulsed.kick_radps,
-        *pulsed.reach_rad,
-        *pulsed.turned_rad,
-        *pulsed.changed_radps,
-        *pulsed[6:],
-        *unexplained,
         *state.sample.b_body_t,
         *pulses.owed_impulse_body_nms,
         *pulses.held_am2,
@@ -148,7 +138,12 @@ def checksum(state: FlightState) -> int:
         return register
     numbers = (*known.q_body_from_eci, *known.omega_body_radps, *known.mag_bias_t, *known.torque_body_nm)
     register = zlib.crc32(struct.pack("<13d", *numbers), register)
-    return zlib.crc32(known.covariance.tobytes(), register)
+    register = zlib.crc32(known.covariance.tobytes(), register)
+    if known.trace is None:
+        return register
+    causes, effect, sums, count = known.trace
+    register = zlib.crc32(struct.pack(f"<{1 + len(causes)}q", count, *causes), register)
+    return zlib.crc32(sums.tobytes(), zlib.crc32(effect.tobytes(), register))
 
 
 def initial_state(pulses: PulseState, setpoint: Setpoint, sent: tuple[int, ...]) -> FlightState:

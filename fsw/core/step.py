@@ -13,7 +13,6 @@ from fsw.core.estimator import (
     estimate,
     perfect_attitude,
     restart,
-    set_right,
     usable_field,
     usable_sun,
 )
@@ -109,7 +108,7 @@ def _estimate(
         known = perfect_attitude(readings, state.attitude)
         return state._replace(attitude=known), readings, reference, NONE_USED
     trusted = sensor_health.trusted(readings, state.sensors, reference)
-    estimator, used, predicted = estimate(
+    estimator, used = estimate(
         state.estimator, trusted, reference, state.coil.driven_am2, elapsed_ticks, config.estimator
     )
     seen = attitude(estimator, reference, config.estimator)
@@ -124,21 +123,16 @@ def _estimate(
         seen.sigma3_attitude_rad,
         config.sensors,
     )
-    coils, correction = coil_health.judge_rate(
+    coils, estimator = coil_health.judge_rate(
         state.coils,
         state.coil,
-        usable_field(trusted) if not sensors.field.suspicion else None,
-        usable_sun(trusted) if not sensors.sun.suspicion else None,
-        reference,
-        predicted,
-        estimator.estimate,
-        seen.sigma3_rate_radps,
+        reference.b_eci_t,
+        estimator,
         state.tick,
         config.coils.pulses,
         config.coil_health,
+        config.estimator.mekf,
     )
-    if correction is not None:
-        estimator = set_right(estimator, correction)
     if sensors.doubted:
         estimator, seen = restart(estimator), UNKNOWN
     state = state._replace(estimator=estimator, sensors=sensors, coils=coils, attitude=seen)

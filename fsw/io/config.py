@@ -31,8 +31,6 @@ from fsw.io.table import (
 )
 
 NT = 1e-9
-WATCH_SAMPLE_S, WATCH_PULSE_S = 5.0, 120.0
-"""How often, and for how long at most, the effect of a pulse is looked at."""
 CHATTER_S = 10.0
 """Between signs of another that reports in the place of the flight software."""
 
@@ -167,7 +165,7 @@ def _sensors(table: FlightTable) -> SensorHealthConfig:
 
 
 def _coil_health(table: FlightTable) -> CoilHealthConfig:
-    fdir, tick_hz, tuning = table.fdir, table.time.tick_hz, table.estimator
+    fdir, tick_hz = table.fdir, table.time.tick_hz
     first, second, third = (1000.0 * m / table.coils.dipole_per_ampere_am2 for m in table.coils.levels_am2)
     return CoilHealthConfig(
         current_ma=(first, second, third),
@@ -177,11 +175,6 @@ def _coil_health(table: FlightTable) -> CoilHealthConfig:
         name_sigmas=fdir.name_sigmas,
         stuck_ma=max(1.0, 0.5 * first),
         stuck_ticks=_ticks(table.coils.pulse_s + fdir.stuck_s, tick_hz) + 1,
-        sample_ticks=max(1, _ticks(WATCH_SAMPLE_S, tick_hz)),
-        watch_ticks=max(1, _ticks(WATCH_PULSE_S, tick_hz)),
-        tick_s=1.0 / tick_hz,
-        field_sigma_t=tuning.magnetometer_sigma_nt * NT,
-        sun_sigma_rad=radians(tuning.sun_sigma_deg),
         inertia_inverse=inverse(table.body.inertia),
     )
 

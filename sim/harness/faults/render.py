@@ -20,7 +20,7 @@ man in the middle between the nodes, or in boards, plant or process. Every case 
 at most 3 s, 100 s of back-off, one coil, three levels: judged from COIL_STATUS and, by other code, from the
 current that the plant drove), let no exception out of a step, have no NaN in the flight state, and answer
 every SYNC; beside that what the row expects. `not yet`: the flight software has no event that could name
-the unit, or is known not to name it in every case. Figures are the worst over all cases.
+the unit. Figures are the worst over all cases.
 """
 
 

@@ -41,7 +41,6 @@ class Row:
         expect: names of the checks beside those that every row must pass.
         unit: the sensor or coil that must be named, for the check ``named``.
         settings: of the scenario.
-        gaps: checks that are known not to hold in every case; they count as not yet, and are told.
         slow: it flies a real process, which takes seconds.
         watch_s: flown after the fault, at least; ``recovers`` flies on until it is decided.
     """
@@ -57,7 +56,6 @@ class Row:
     settings: tuple[str, ...] = ()
     watch_s: float = 330.0
     slow: bool = False
-    gaps: tuple[str, ...] = ()
 
     @property
     def stays(self) -> bool:

@@ -93,7 +93,6 @@ def _coils(name: str, kind: str, *expect: str, **parameters: float) -> tuple[Row
             expect=("named", *expect),
             unit=COIL_NAMES[coil],
             watch_s=2000.0,
-            gaps=("named",) if name == "coil-weak" else (),
         )
         for coil in range(3)
     )

@@ -8,7 +8,7 @@ from fsw.core.telemetry import Event as Number
 from hil_stub.events import CoilEventCode
 from sim.harness.faults import checks, naming
 from sim.harness.faults.record import BoardEvent, Event, Record
-from sim.harness.faults.row import Row, Verdict
+from sim.harness.faults.row import Row
 
 
 def record(*events, board=()):
@@ -105,11 +105,3 @@ def test_a_coil_that_was_hardly_used_need_not_be_named(pulses, holds, bounds, mo
     flown.asked_coils = [2, *[2, 1] * pulses]
     row = Row("planted", "", "none", unit="coil 2")
     assert checks.blamed_rightly(row, flown, bounds)[0] is holds
-
-
-def test_a_known_gap_is_told_but_no_other_check_is_excused(bounds):
-    flown = record(isolated(125, Sensor.SUN_SENSOR))
-    row = Row("planted", "", "none", expect=("named",), unit="magnetometer", gaps=("named",))
-    verdicts = {one.check: one.verdict for one in checks.judge(row, flown, bounds)}
-    assert verdicts["named"] is Verdict.OPEN
-    assert verdicts["limits"] is Verdict.FAIL, "nothing was judged"
