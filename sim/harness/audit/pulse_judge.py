@@ -18,8 +18,8 @@ class _Drive:
     end: int  # driven until then at least
     tick: int | None
     line: int
-    announced: int = 0  # the end that the last status announces
-    latest: int = 0  # the latest end announced so far
+    announced: int  # the end that the last status announces
+    latest: int  # the latest end announced so far
     blamed_levels: set[int] = field(default_factory=set)
 
 
@@ -64,8 +64,11 @@ class PulseJudge:
                 if known is not None:
                     self._stop(known, before)
                 start_tick = None if tick is None else tick - 1
-                drive = _Drive(status.coil, status.seq, status.level, before, now, start_tick, line)
-                self._start(drive, status, stopped)
+                announced = self._announced(before, now, status)
+                drive = _Drive(
+                    status.coil, status.seq, status.level, before, now, start_tick, line, announced, announced
+                )
+                self._start(drive, stopped)
             if abs(status.level) > self._limits.max_level and status.level not in drive.blamed_levels:
                 drive.blamed_levels.add(status.level)
                 highest = self._limits.max_level
@@ -77,26 +80,24 @@ class PulseJudge:
         for drive in list(self._drives.values()):
             self._stop(drive, drive.end)
 
-    def _start(self, drive: _Drive, status: CoilStatus, stopped: list[_Drive]) -> None:
+    def _start(self, drive: _Drive, stopped: list[_Drive]) -> None:
         self._judge_overlap(drive, stopped)
         self._judge_gap(drive)
         self._judge_boot(drive)
         if drive.coil not in COILS:
             self._blame_start(Kind.COIL, drive, "there is no such coil")
         self._drives[drive.coil] = drive
-        self._announce(drive, status)
 
     def _go_on(self, drive: _Drive, status: CoilStatus, now: int) -> None:
         punctual = (now - drive.end) % self._clock.period == 0
-        ended_within = punctual and status.remaining_ms == 0 and drive.end < drive.announced < now
-        drive.end = drive.announced if ended_within else max(drive.end, now)
-        self._announce(drive, status)
-
-    def _announce(self, drive: _Drive, status: CoilStatus) -> None:
-        """What remains comes in whole milliseconds, so what has passed is counted in whole ones too."""
-        passed = (drive.end - drive.start) // self._millisecond + status.remaining_ms
-        drive.announced = drive.start + passed * self._millisecond
+        last = punctual and status.remaining_ms == 0 and drive.end < drive.announced
+        drive.end = min(drive.announced, now) if last else max(drive.end, now)
+        drive.announced = self._announced(drive.start, drive.end, status)
         drive.latest = max(drive.latest, drive.announced)
+
+    def _announced(self, start: int, end: int, status: CoilStatus) -> int:
+        """What remains comes in whole milliseconds, so what has passed is counted in whole ones too."""
+        return start + ((end - start) // self._millisecond + status.remaining_ms) * self._millisecond
 
     def _stop(self, drive: _Drive, until: int) -> None:
         """Close a pulse that is known to be over at ``until``, or when it was announced to be if sooner."""

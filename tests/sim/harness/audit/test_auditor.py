@@ -136,6 +136,14 @@ def test_a_shared_back_off_holds_for_any_coil_and_one_per_coil_for_the_same(judg
     assert found(judge(log, shared=False)) == [(Kind.GAP, 212, 212, 1)]
 
 
+@pytest.mark.parametrize("before", [(0, 1), (1, 0), (0, 2), (2, 0), (1, 2), (2, 1)])
+def test_a_shared_back_off_is_from_the_pulse_that_ended_last(judge, bus_log, fired, before):
+    third = 3 - sum(before)
+    report = judge(bus_log(1, 400, [fired(before[0], 100), fired(before[1], 203), fired(third, 250)]))
+    assert found(report) == [(Kind.GAP, 250, 250, third)]
+    assert f"starts 44.000 s after the end of the pulse of coil {before[1]}" in str(report.violations[0])
+
+
 def test_one_coil_may_follow_another_at_once_where_the_back_off_is_per_coil(judge, bus_log, fired):
     assert judge(bus_log(1, 200, [fired(0, 100), fired(1, 103)]), shared=False).ok
 
@@ -150,6 +158,7 @@ def test_a_second_request_shown_in_the_same_tick_is_another_pulse(judge, bus_log
     log.statuses[112].append(CoilStatus(1, 0, 0, 0, 0, 9).encode())
     report = judge(log, shared=False)
     assert found(report)[0] == (Kind.GAP, 111, 111, 0)
+    assert "starts 0.000 s after the end of its own pulse" in str(report.violations[0])
     assert spans(report)[:2] == [(0, 110, 112), (0, 111, 112)]
 
 
@@ -170,6 +179,12 @@ def test_a_pulse_99_s_after_a_boot_and_none_after_100_s(judge, bus_log, fired):
     report = judge(bus_log(1, 400, [fired(0, 199), fired(1, 350)], boots=[100, 250]))
     assert found(report) == [(Kind.BOOT, 199, 199, 0)]
     assert " 99.000 s after the boot" in str(report.violations[0])
+
+
+def test_a_pulse_in_the_very_tick_of_a_boot(judge, bus_log, fired):
+    report = judge(bus_log(1, 200, [fired(0, 100)], boots=[100]))
+    assert found(report) == [(Kind.BOOT, 100, 100, 0)]
+    assert " 0.000 s after the boot" in str(report.violations[0])
 
 
 def test_without_a_boot_in_the_log_the_first_pulse_may_come_at_any_time(judge, bus_log, fired):

@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 
 from fsw.wire.frame import Frame
-from fsw.wire.messages import NAMES, CoilStatus, Sync
+from fsw.wire.messages import NAMES, CoilBoot, CoilStatus, Sync
 from sim.harness.audit.auditor import AuditLimits, Kind, audit
 from sim.harness.candump import LogEntry
 
@@ -166,6 +166,14 @@ def test_without_sync_a_coil_was_on_until_the_last_status_that_says_so():
     report = audit(entries, AuditLimits())
     assert found(report) == [(Kind.PULSE, 4, None, 0)]
     assert "pulse of 3.100 s" in str(report.violations[0])
+
+
+@pytest.mark.parametrize("sooner_us", [0, 300_000, 999_000])
+def test_without_sync_a_pulse_may_end_within_a_tick_wherever_time_begins(bus_log, fired, sooner_us):
+    log = bus_log(1, 200, [fired(1, 150, 2500)], sync=False)
+    boot = LogEntry(0, log.timestamp_us(0) - sooner_us, "can0", CoilBoot(0, 1, 0).encode())
+    (pulse,) = audit([boot, *log.entries()], AuditLimits()).pulses
+    assert pulse.length_s == Fraction("2.5")
 
 
 def test_without_sync_doubled_statuses_do_not_make_the_period_zero(bus_log, fired):
