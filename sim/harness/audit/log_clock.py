@@ -35,15 +35,17 @@ class LogClock:
     period: int
     epoch_s: int | None
     origin_us: int
-    simulated: bool = False
-    contradictory: bool = False
+    simulated: bool
+    contradictory: bool
 
     def of_timestamp(self, timestamp_us: int) -> int:
         """The instant of a timestamp; one that is a tick's, rounded to microseconds, is that tick's."""
         instant = timestamp_us * self.units
-        tick = (instant + MICRO // 2) // MICRO * MICRO
-        if abs(instant - tick) < self.units:
-            instant = tick
+        since = instant % MICRO
+        if since < self.units:
+            instant -= since
+        elif MICRO - since < self.units:
+            instant += MICRO - since
         return instant - self.origin_us * self.units
 
     def seconds(self, instant: int) -> Fraction:
@@ -59,68 +61,60 @@ def read_clock(entries: Iterator[LogEntry], tick_hz: int | None) -> tuple[LogClo
         tick_hz: the rate that a scenario beside the log states. SYNC overrules it.
     """
     peeked: list[LogEntry] = []
-    syncs: list[tuple[int, int]] = []
     first: LogEntry | None = None
+    seconds: dict[int, tuple[int, int]] = {}
     rates: list[int] | None = None
     for entry in islice(entries, _PEEK):
         peeked.append(entry)
         if entry.frame.can_id != Sync.ID or len(entry.frame.data) != Sync.LENGTH:
             continue
         first = first or entry
-        if _note(syncs, Sync.decode(entry.frame.data)):
-            rates = _rates(syncs)
+        tick, unix = Sync.decode(entry.frame.data)
+        known = unix in seconds
+        seconds[unix] = (seconds[unix][0] if known else tick, tick)
+        if len(seconds) > 1 and not known:
+            rates = _rates(seconds)
             if rates is not None and len(rates) <= 1:
                 break
-    clock = _tick_clock(first, syncs[0], rates, tick_hz) if first is not None else None
+    clock = None if first is None else _tick_clock(first, rates, tick_hz)
     if clock is None:
         clock = _timestamp_clock(peeked, tick_hz, contradictory=rates == [])
     return clock, chain(peeked, entries)
 
 
-def _note(syncs: list[tuple[int, int]], sync: Sync) -> bool:
-    """Keep the SYNCs on both sides of each change of ``unix_time_s``; whether this is such a change."""
-    this = (sync.tick, sync.unix_time_s)
-    changed = bool(syncs) and syncs[-1][1] != this[1]
-    if len(syncs) > 1 and not changed and syncs[-2][1] == this[1]:
-        syncs[-1] = this
-    else:
-        syncs.append(this)
-    return changed
+def _rates(seconds: dict[int, tuple[int, int]]) -> list[int] | None:
+    """The tick rates that give unix_time_s - tick // tick_hz one value; None if it is too early to say.
 
-
-def _rates(syncs: list[tuple[int, int]]) -> list[int] | None:
-    """The tick rates that give unix_time_s - tick // tick_hz one value; None if it is too early to say."""
-    (tick, unix), (last_tick, last_unix) = syncs[0], syncs[-1]
-    ticks, seconds = last_tick - tick, last_unix - unix
-    if ticks <= 0 or seconds <= 0:
-        return []
-    if seconds == 1 and tick > 0:
+    Args:
+        seconds: first and last tick of each unix_time_s so far.
+    """
+    (unix, (tick, _)), *_, (last_unix, (last_tick, _)) = seconds.items()
+    if last_unix - unix == 1 and tick > 0:
         return None
-    lowest = max(1, ticks // (seconds + 1))
-    highest = last_tick if seconds == 1 else (ticks - 1) // (seconds - 1)
-    return [hz for hz in range(lowest, highest + 1) if len({u - t // hz for t, u in syncs}) == 1]
+    ends = [(tick, unix) for unix, ticks in seconds.items() for tick in ticks]
+    return [
+        hz for hz in range(last_tick - tick, 0, -1) if len({unix - tick // hz for tick, unix in ends}) == 1
+    ]
 
 
-def _tick_clock(
-    first: LogEntry, sync: tuple[int, int], rates: list[int] | None, tick_hz: int | None
-) -> LogClock | None:
-    hz = rates[0] if rates and (len(rates) == 1 or tick_hz not in rates) else tick_hz
+def _tick_clock(first: LogEntry, rates: list[int] | None, tick_hz: int | None) -> LogClock | None:
+    hz = tick_hz if not rates or tick_hz in rates else min(rates)
     if hz is None:
         return None
-    tick, unix = sync
+    tick, unix = Sync.decode(first.frame.data)
     epoch_s = unix - tick // hz
-    clock = LogClock(units=hz, period=MICRO, epoch_s=epoch_s, origin_us=epoch_s * MICRO)
+    clock = LogClock(hz, MICRO, epoch_s, epoch_s * MICRO, simulated=False, contradictory=False)
     return replace(clock, simulated=clock.of_timestamp(first.timestamp_us) == tick * MICRO)
 
 
 def _timestamp_clock(entries: list[LogEntry], tick_hz: int | None, contradictory: bool) -> LogClock:
     origin_us = entries[0].timestamp_us if entries else 0
     if tick_hz is not None:
-        return LogClock(tick_hz, MICRO, None, origin_us, contradictory=contradictory)
+        return LogClock(tick_hz, MICRO, None, origin_us, simulated=False, contradictory=contradictory)
     times = [entry.timestamp_us for entry in entries if entry.frame.can_id == CoilStatus.ID]
     spacings = Counter(later - sooner for sooner, later in pairwise(times) if later > sooner)
     period_us = max(spacings, key=lambda spacing: (spacings[spacing], -spacing), default=MICRO)
     hz = round(MICRO / period_us)
-    if hz > 0 and abs(MICRO - period_us * hz) < hz:
-        return LogClock(hz, MICRO, None, origin_us, contradictory=contradictory)
-    return LogClock(1, period_us, None, origin_us, contradictory=contradictory)
+    if abs(MICRO - period_us * hz) < hz:
+        return LogClock(hz, MICRO, None, origin_us, simulated=False, contradictory=contradictory)
+    return LogClock(1, period_us, None, origin_us, simulated=False, contradictory=contradictory)
