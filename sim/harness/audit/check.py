@@ -73,15 +73,13 @@ def limits_beside(log: Path) -> AuditLimits | None:
     if not scenario.is_file():
         return None
     try:
-        tables = tomllib.loads(scenario.read_text(encoding="utf-8"))
+        tables = tomllib.loads(scenario.read_bytes().decode())
     except (OSError, ValueError) as error:
         raise HarnessError(f"{scenario}: cannot be read: {error}") from None
     coils, time = _table(tables, "coils", scenario), _table(tables, "time", scenario)
-    default = AuditLimits()
     return AuditLimits(
         pulse_us=_microseconds(coils.get("pulse_s", 3.0), f"{scenario}: coils.pulse_s"),
         backoff_us=_microseconds(coils.get("backoff_s", 100.0), f"{scenario}: coils.backoff_s"),
-        max_level=default.max_level,
         shared=_is_shared(coils.get("backoff", "shared"), f"{scenario}: coils.backoff"),
         tick_hz=_tick_hz(time.get("tick_hz"), f"{scenario}: time.tick_hz"),
     )
@@ -90,9 +88,10 @@ def limits_beside(log: Path) -> AuditLimits | None:
 def render(report: AuditReport) -> str:
     """The verdict for people: what was judged, each violation with time and coil, and the notes."""
     limits = report.limits
+    pulse_s, backoff_s = (seconds_text(us / 1_000_000) for us in (limits.pulse_us, limits.backoff_us))
     lines = [
-        f"limits: pulse <= {_microseconds_text(limits.pulse_us)} s, "
-        f"back-off >= {_microseconds_text(limits.backoff_us)} s {'shared' if limits.shared else 'per coil'}, "
+        f"limits: pulse <= {pulse_s} s, "
+        f"back-off >= {backoff_s} s {'shared' if limits.shared else 'per coil'}, "
         f"level -{limits.max_level}..{limits.max_level}, one coil at a time"
     ]
     if report.statuses:
@@ -127,11 +126,6 @@ def _verdict(report: AuditReport) -> str:
         if report.complete
         else "FAIL: limits kept as far as the log goes, but it is incomplete"
     )
-
-
-def _microseconds_text(microseconds: int) -> str:
-    whole, rest = divmod(microseconds, 1_000_000)
-    return f"{whole}.{rest:06d}"[:-3] if rest % 1000 == 0 else f"{whole}.{rest:06d}"
 
 
 def _is_shared(backoff: object, where: str) -> bool:

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import pytest
 
 from fsw.core import telemetry
@@ -106,6 +108,29 @@ def test_a_scenario_that_makes_no_sense_is_named_in_one_sentence(run, bus_log, s
     assert refusal.value.exit_code == 2
 
 
+@pytest.mark.parametrize(
+    ("key", "kept", "refused"),
+    [
+        ("coils.pulse_s", (0, 0.0, 0.5, 999_999_999), (-1, -1e-9, 1e9, "nan", "true")),
+        ("coils.backoff_s", (0, 0.5, 999_999_999.5), (-1, 1_000_000_000, "inf", '"100"')),
+        ("time.tick_hz", (1, 1_000_000), (0, 1_000_001, 1.0, "true")),
+    ],
+)
+def test_the_ends_of_each_range_are_in_it(tmp_path, key, kept, refused):
+    scenario, (table, name) = tmp_path / "scenario.toml", key.split(".")
+    for value in kept:
+        scenario.write_text(f"[{table}]\n{name} = {value}\n")
+        limits = limits_beside(tmp_path / "bus.log")
+        field, unit = {"pulse_s": ("pulse_us", 10**6), "backoff_s": ("backoff_us", 10**6)}.get(
+            name, (name, 1)
+        )
+        assert getattr(limits, field) == value * unit
+    for value in refused:
+        scenario.write_text(f"[{table}]\n{name} = {value}\n")
+        with pytest.raises(HarnessError, match=key):
+            limits_beside(tmp_path / "bus.log")
+
+
 def test_a_back_off_that_is_none_of_the_two_is_refused(run, bus_log):
     with pytest.raises(HarnessError, match="--backoff is 'both'"):
         check(run(bus_log(ticks=5)), "both")
@@ -163,6 +188,17 @@ def test_a_log_that_its_index_contradicts(run, bus_log, fired, broken):
     last = "FAIL: limits kept as far as the log goes, but its index contradicts it"
     assert (render(report).splitlines()[-1] == last) is broken
     assert ("note: altered: lines 1 to 600 are not what was flown" in render(report)) is broken
+
+
+@pytest.mark.parametrize(("ended", "exit_code"), [(True, 0), (False, 1)])
+def test_a_log_that_its_index_does_not_vouch_for_to_the_end_is_incomplete(run, bus_log, ended, exit_code):
+    folder = run(bus_log(ticks=20))
+    index = LogIndex(folder / "bus.log")
+    index.add((folder / "bus.log").read_bytes(), 61)
+    index.close(ended)
+    report = check(folder, None)
+    assert (report.exit_code, report.complete, report.genuine) == (exit_code, ended, True)
+    assert ("has no end mark" in render(report)) is not ended
 
 
 # --- where a log ends
@@ -235,6 +271,29 @@ def test_a_good_verdict_says_what_was_judged(run, bus_log, fired):
         "note: nothing vouches for the log: there is no bus.log.index beside it",
         "OK: limits kept",
     ]
+
+
+@pytest.mark.parametrize("starts", [50, 51, 52])
+def test_violations_are_printed_up_to_fifty(run, bus_log, fired, starts):
+    pulses = [fired(0, start, 1000) for start in range(0, 2 * starts, 2)]
+    text = render(check(run(bus_log(1, 120, pulses)), None))
+    assert text.count("VIOLATION") == min(50, starts - 1)
+    assert ("... and" in text) == (starts == 52)
+
+
+@pytest.mark.parametrize(
+    ("limits", "text"),
+    [
+        (AuditLimits(), "pulse <= 3.000 s, back-off >= 100.000 s shared,"),
+        (
+            AuditLimits(2_500_001, 99_900_000, shared=False),
+            "pulse <= 2.500001 s, back-off >= 99.900 s per coil,",
+        ),
+    ],
+)
+def test_the_limits_are_printed(run, bus_log, limits, text):
+    report = replace(check(run(bus_log(ticks=20)), None), limits=limits)
+    assert text in render(report)
 
 
 def test_thousands_of_violations_are_not_all_printed(run, bus_log, fired):
