@@ -64,9 +64,10 @@ def begin(known: Estimate, coil: int, kick_radps: Vec3, pulse_s: float) -> Estim
     own = _pulses_of(coil, trace)
     if len(own) == PULSES:
         trace = _forgotten(trace, own[-1])
-    made = np.zeros(len(known.covariance))
-    made[:6] = (*scale(0.5 * pulse_s, kick_radps), *kick_radps)
-    effect, sums = np.column_stack((made, trace.effect)), np.pad(trace.sums, ((1, 0), (1, 0)))
+    count = len(trace.sums)
+    effect, sums = np.zeros((len(known.covariance), 1 + count)), np.zeros((1 + count, 1 + count))
+    effect[:6, 0] = (*scale(0.5 * pulse_s, kick_radps), *kick_radps)
+    effect[:, 1:], sums[1:, 1:] = trace.effect, trace.sums
     return known._replace(trace=Trace((coil, *trace.causes), effect, sums, 0))
 
 
@@ -85,12 +86,8 @@ def _forgotten(trace: Trace, pulse: int) -> Trace:
     causes, effect, sums, measured = trace
     row = sums[pulse]
     sums = sums - np.outer(row, row) / (row[pulse] + 1.0)
-    return Trace(
-        causes[:pulse] + causes[pulse + 1 :],
-        np.delete(effect, pulse, axis=1),
-        np.delete(np.delete(sums, pulse, axis=0), pulse, axis=1),
-        measured,
-    )
+    kept = [index for index in range(len(sums)) if index != pulse]
+    return Trace(causes[:pulse] + causes[pulse + 1 :], effect[:, kept], sums[kept][:, kept], measured)
 
 
 def judge(
