@@ -258,6 +258,23 @@ def test_a_full_disk_keeps_whole_ticks(tmp_path, monkeypatch, room):
         assert written[1:] == [frame for tick in range(len(written) // 2) for frame in frames(tick)]
 
 
+def test_half_a_line_of_the_index_is_taken_back(tmp_path, monkeypatch):
+    """So that what is written when there is room again is not spoiled by it."""
+    log = tmp_path / "bus.log"
+    log.write_bytes(b"x\n" * 64)
+    index = LogIndex(log)
+    before = index_of(log).read_bytes()
+    for _ in range(63):
+        index.add(b"x\n", 1)
+    monkeypatch.setattr(flight.os, "write", FullDisk(10))
+    with pytest.raises(OSError, match="No space left on device"):
+        index.add(b"x\n", 1)
+    monkeypatch.undo()
+    assert index_of(log).read_bytes() == before
+    index.close(ended=True)
+    assert vouch(log).standing is Standing.VOUCHED
+
+
 @pytest.mark.parametrize("room", [0, 20])
 def test_a_disk_that_is_full_before_the_flight_is_named(tmp_path, monkeypatch, room):
     monkeypatch.setattr(flight.os, "write", FullDisk(room))
@@ -282,6 +299,27 @@ def test_what_it_costs_grows_by_blocks_alone(tmp_path, monkeypatch):
         for tick in range(10 * BLOCK_WRITES):
             log.write(tick, frames(tick))
         assert len(written) == 1 + 10 * BLOCK_WRITES + 10
+
+
+def test_of_a_flight_that_is_killed_at_most_the_last_64_writes_are_not_vouched_for(tmp_path):
+    index = LogIndex(tmp_path / "bus.log")
+    vouched = []
+    for _ in range(200):
+        index.add(b"x\n", 1)
+        _, *blocks = index_of(tmp_path / "bus.log").read_text().splitlines()
+        vouched.append(int(blocks[-1].split()[0]) if blocks else 0)
+    index.close(ended=False)
+    assert vouched == [64 * (writes // 64) for writes in range(1, 201)]
+
+
+def test_the_file_of_an_index_is_everybodys_to_read_and_is_closed(tmp_path):
+    before, mask = len(os.listdir("/proc/self/fd")), os.umask(0)
+    try:
+        LogIndex(tmp_path / "bus.log").close(ended=True)
+    finally:
+        os.umask(mask)
+    assert index_of(tmp_path / "bus.log").stat().st_mode & 0o777 == 0o644
+    assert len(os.listdir("/proc/self/fd")) == before
 
 
 def test_an_index_can_be_made_for_any_log(log):
