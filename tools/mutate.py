@@ -1,6 +1,7 @@
 """Mutation testing: change one small thing, run the tests that should notice, tell of each that none did.
 
-    python tools/mutate.py [TARGET or MODULE ...] [--stale] [--workers N] [--list] [--page] [--coverage FILE]
+    python tools/mutate.py [TARGET or MODULE ...] [--stale | --again | --quick] [--workers N] [--verbose]
+    python tools/mutate.py --list | --page | --coverage FILE
 
 Writes docs/mutation.md from tests/mutation/results.json, which keeps what has been measured with the digest
 of the module it was measured on. Survivors that change nothing anybody can see stand in
@@ -18,10 +19,10 @@ from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 sys.path.insert(0, str(Path(__file__).parent))
-from mutants import mutants
+from mutants import Mutant, mutants
 from mutation_page import (
     RESULTS,
     ROOT,
@@ -48,46 +49,64 @@ def judge_mutant(module: str, target: Target, source: str) -> tuple[str, str]:
     return _judge.judge(source)
 
 
-def measure(module: str, target: Target, pool: ProcessPoolExecutor, verbose: bool) -> dict[str, Any]:
-    made = list(mutants((ROOT / module).read_text(encoding="utf-8")))
-    measured, counts, survived = digest(module), Counter[str](), []
-    began = time.monotonic()
-    outcomes = pool.map(partial(judge_mutant, module, target), [mutant.source for mutant in made])
-    for number, (mutant, (outcome, test)) in enumerate(zip(made, outcomes, strict=True), 1):
-        counts[outcome] += 1
-        if outcome == SURVIVED:
-            survived.append(mutant.change)
-        if verbose or outcome == SURVIVED:
-            print(f"{module}:{mutant.line}: {outcome}: {mutant.change}  {test}", flush=True)
-        if number % 25 == 0:
-            print(f"{module}: {number} of {len(made)}", file=sys.stderr, flush=True)
-    return {
-        "sha256": measured,
-        "mutants": len(made),
-        "killed": counts[KILLED],
-        "timeouts": counts[TIMEOUT],
-        "survived": survived,
-        "wall_s": round(time.monotonic() - began),
-    }
+class Measuring(NamedTuple):
+    """How to measure.
+
+    Args:
+        workers: processes.
+        verbose: tell of every mutant, not only of those that survive.
+    """
+
+    workers: int
+    verbose: bool
+
+    def judge_all(self, module: str, target: Target, made: list[Mutant]) -> dict[str, Any]:
+        """What becomes of the mutants, in processes that see this module only."""
+        counts, survived = Counter[str](), []
+        with tempfile.TemporaryDirectory(prefix="mutation-") as folder:
+            tempfile.tempdir = folder  # of the copies, and of what the tests leave
+            with ProcessPoolExecutor(self.workers) as pool:
+                outcomes = pool.map(partial(judge_mutant, module, target), [one.source for one in made])
+                for number, (mutant, (outcome, test)) in enumerate(zip(made, outcomes, strict=True), 1):
+                    counts[outcome] += 1
+                    if outcome == SURVIVED:
+                        survived.append(mutant.change)
+                    if self.verbose or outcome == SURVIVED:
+                        print(f"{module}:{mutant.line}: {outcome}: {mutant.change}  {test}", flush=True)
+                    if number % 25 == 0:
+                        print(f"{module}: {number} of {len(made)}", file=sys.stderr, flush=True)
+        tempfile.tempdir = None
+        return {"killed": counts[KILLED], "timeouts": counts[TIMEOUT], "survived": survived}
+
+    def measure(self, module: str, target: Target) -> None:
+        """All mutants of a module; the result is kept."""
+        measured, made = digest(module), mutants_of(module)
+        began = time.monotonic()
+        outcome = self.judge_all(module, target, made)
+        wall_s = round(time.monotonic() - began)
+        keep(module, outcome | {"sha256": measured, "mutants": len(made), "wall_s": wall_s})
+
+    def measure_again(self, module: str, target: Target) -> None:
+        """Those that have survived, of a module that is as it was: tests may have been added."""
+        result = stored(RESULTS)[module]
+        doubtful = [change for one, change in unlisted(stored(RESULTS)) if one == module]
+        made = [mutant for mutant in mutants_of(module) if mutant.change in doubtful]
+        if not made or module in outdated(stored(RESULTS)):
+            return
+        outcome = self.judge_all(module, target, made)
+        survived = [one for one in result["survived"] if one not in doubtful or one in outcome["survived"]]
+        timeouts = result["timeouts"] + outcome["timeouts"]
+        killed = result["mutants"] - timeouts - len(survived)
+        keep(module, result | {"survived": survived, "timeouts": timeouts, "killed": killed})
 
 
-def measure_alone(target: Target, module: str, workers: int, verbose: bool) -> dict[str, Any]:
-    """In processes that see this module only; copies, and what tests leave, in a folder of their own."""
-    with tempfile.TemporaryDirectory(prefix="mutation-") as folder:
-        tempfile.tempdir = folder
-        try:
-            with ProcessPoolExecutor(workers) as pool:
-                return measure(module, target, pool, verbose)
-        finally:
-            tempfile.tempdir = None
+def mutants_of(module: str) -> list[Mutant]:
+    return list(mutants((ROOT / module).read_text(encoding="utf-8")))
 
 
-def measure_all(chosen: list[tuple[Target, str]], workers: int, verbose: bool) -> None:
-    """Results are kept as they come."""
-    for target, module in chosen:
-        result = measure_alone(target, module, workers, verbose)
-        store(RESULTS, stored(RESULTS) | {module: result})
-        write_page()
+def keep(module: str, result: dict[str, Any]) -> None:
+    store(RESULTS, stored(RESULTS) | {module: result})
+    write_page()
 
 
 def main() -> int:
@@ -96,6 +115,7 @@ def main() -> int:
     parser.add_argument("--stale", action="store_true", help="only modules not measured as they are now")
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--verbose", action="store_true", help="tell every mutant, and the test that noticed")
+    parser.add_argument("--again", action="store_true", help="only what has survived and is not listed")
     parser.add_argument("--quick", action="store_true", help="only the quick tests; the outcome is not kept")
     parser.add_argument("--list", action="store_true", help="count mutants, run nothing")
     parser.add_argument("--page", action="store_true", help="write the page anew, run nothing")
@@ -109,23 +129,22 @@ def main() -> int:
         if not options.only or target.name in options.only or module in options.only
         if old is None or module in old
     ]
+    measuring = Measuring(options.workers, options.verbose)
     if options.list:
         for target, module in chosen:
-            count = sum(1 for _ in mutants((ROOT / module).read_text(encoding="utf-8")))
-            print(f"{target.name:<10} {module:<36} {count} mutants")
-        return 0
-    if options.coverage:
-        note_coverage(json.loads(options.coverage.read_text(encoding="utf-8")))
-        write_page()
+            print(f"{target.name:<16} {module:<36} {len(mutants_of(module))} mutants")
         return 0
     if options.quick:
         for target, module in chosen:
-            measure_alone(target._replace(slow=[]), module, options.workers, options.verbose)
+            measuring.judge_all(module, target._replace(slow=[]), mutants_of(module))
         return 0
-    if options.page:
+    if options.coverage:
+        note_coverage(json.loads(options.coverage.read_text(encoding="utf-8")))
+    if options.coverage or options.page:
         write_page()
     else:
-        measure_all(chosen, options.workers, options.verbose)
+        for target, module in chosen:
+            (measuring.measure_again if options.again else measuring.measure)(module, target)
     results = stored(RESULTS)
     for module in outdated(results):
         print(f"{module}: not measured as it is now")

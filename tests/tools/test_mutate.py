@@ -109,6 +109,13 @@ def test_a_survivor_with_a_reason_is_none(repository):
     assert "equal is the limit too" in (repository.root / "docs/mutation.md").read_text()
 
 
+def test_tests_that_have_been_added_are_tried_on_what_survived(repository):
+    tests = (repository.root / "tests/test_limit.py").read_text()
+    repository.write("tests/test_limit.py", tests + "    assert type(clipped(3.0)) is float\n")
+    assert repository.mutate("--again").returncode == 0
+    assert repository.row == "| limits | `fsw/limit.py` | 5 | 5 | 0 | 0 | 0 |"
+
+
 def test_a_module_that_has_changed_since_is_told_and_is_a_failure(repository):
     list_survivor(repository)
     repository.write("fsw/limit.py", MODULE.replace("LIMIT = 3", "LIMIT = 4"))
@@ -135,5 +142,6 @@ def test_tests_that_fail_by_themselves_measure_nothing(repository):
 def test_branch_coverage_is_taken_over_into_the_page(repository):
     summary = {"num_statements": 7, "num_branches": 2, "percent_covered_display": "100"}
     repository.write("coverage.json", json.dumps({"files": {"fsw/limit.py": {"summary": summary}}}))
+    list_survivor(repository)
     assert repository.mutate("--coverage", str(repository.root / "coverage.json")).returncode == 0
     assert "| `fsw/limit.py` | 7 | 2 | 100 % |" in (repository.root / "docs/mutation.md").read_text()
