@@ -9,8 +9,8 @@
 # make test-vcan   the tests on a CAN interface, in a user-mode Linux guest where this kernel has no vcan
 # make fuzz         a million random frames into codec, boards and flight loop: some minutes
 # make differential scheduler against interlock over 100 orbits of whole flights: some minutes
-# make mutation     change scheduler, interlock, auditor and codec a thing at a time: do the tests notice? hours
-# make coverage     branch coverage of the same modules, which must be whole: some minutes
+# make mutation     change scheduler, interlock, auditor and codec a thing at a time: do the tests notice? an hour
+# make coverage     branch coverage of the same modules, which must be whole, into the same page: a minute
 
 PYTHON ?= python3
 PYTEST_FLAGS ?= -q -rs -n 2
@@ -81,5 +81,8 @@ coverage: venv
 	$(bin)/coverage run -m pytest -q -p no:cacheprovider tests/fsw/wire tests/fsw/core/test_pulses.py \
 		tests/fsw/core/test_pulse_choice.py tests/fsw/core/test_actuation.py tests/fsw/core/test_dipoles.py \
 		tests/hil_stub/test_interlock.py tests/hil_stub/test_guard.py tests/hil_stub/test_coil_driver.py \
-		tests/sim/harness/audit tests/sim/harness/test_log_index.py
+		tests/hil_stub/test_read_back.py tests/sim/harness/audit tests/sim/harness/test_log_index.py
+	@mkdir -p build
+	$(bin)/coverage json -q --fail-under 0 -o build/coverage.json
+	$(bin)/python tools/mutate.py --coverage build/coverage.json
 	$(bin)/coverage report

@@ -140,7 +140,9 @@ def main() -> int:
         return 0
     if options.coverage:
         note_coverage(json.loads(options.coverage.read_text(encoding="utf-8")))
-    if options.coverage or options.page:
+        write_page()
+        return 0
+    if options.page:
         write_page()
     else:
         for target, module in chosen:

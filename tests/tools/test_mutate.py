@@ -142,6 +142,5 @@ def test_tests_that_fail_by_themselves_measure_nothing(repository):
 def test_branch_coverage_is_taken_over_into_the_page(repository):
     summary = {"num_statements": 7, "num_branches": 2, "percent_covered_display": "100"}
     repository.write("coverage.json", json.dumps({"files": {"fsw/limit.py": {"summary": summary}}}))
-    list_survivor(repository)
     assert repository.mutate("--coverage", str(repository.root / "coverage.json")).returncode == 0
     assert "| `fsw/limit.py` | 7 | 2 | 100 % |" in (repository.root / "docs/mutation.md").read_text()
