@@ -184,7 +184,7 @@ def _update(
     kalman = _filter(config)
     kalman.P = estimate.covariance
     kalman.update(np.array(innovation), noise, sensitivity)
-    nis = float(kalman.y @ kalman.SI @ kalman.y)
+    nis = float(kalman.y.dot(kalman.SI).dot(kalman.y))
     if not 0.0 <= nis <= config.gate_nis:  # overflow can make it -inf
         return None
     trace = estimate.trace
@@ -241,20 +241,15 @@ def _acceleration(
 def _transition(omega: Vec3, e1: Vec3, b: Vec3, gravity_per_s2: float, m: Vec3, config: MekfConfig) -> Matrix:
     """I + A h + (A h)^2 / 2 of the error dynamics; with A of the middle of the tick good to second order."""
     g1, g2, g3 = scale(gravity_per_s2, e1)
-    m1, m2, m3 = m
-    components = (
-        *omega,
-        *scale(g1, e1),
-        *scale(g2, e1),
-        *scale(g3, e1),
-        *scale(m1, b),
-        *scale(m2, b),
-        *scale(m3, b),
-    )
-    a = config.system.copy()
-    a[0:6, 0:6] += (config.varying @ components).reshape(6, 6)
-    transition: Matrix = a + 0.5 * (a @ a)
-    transition.flat[:: config.layout.size + 1] += 1.0
+    change = config.moving.dot((*omega, *scale(g1, e1), *scale(g2, e1), *scale(g3, e1)))
+    if m != ZERO:
+        m1, m2, m3 = m
+        change += config.driven.dot((*scale(m1, b), *scale(m2, b), *scale(m3, b)))
+    step = config.constant.copy()
+    step[0:6, 0:6] += change.reshape(6, 6)
+    transition: Matrix = step.dot(step)  # (1 + A h)^2, so that half of it and 1 is the series
+    transition += config.identity
+    transition *= 0.5
     return transition
 
 

@@ -25,11 +25,11 @@ class Layout:
 class MekfConfig:
     """The filter's tuning and what is derived from it once.
 
-    ``process_noise`` is the covariance added per tick and ``system`` the constant part of A h, A being the
-    system matrix and h the tick, both (n, n); ``varying`` (36, 21) is what the upper left 6x6 of A h changes
-    with each component of the rate, of 3 mu/r^3 e1 e1^T and of m b^T. By measurement, field, Sun or both at
-    once: ``..._sensitivity`` is the constant part of H, (3 or 6, n), and ``..._noise`` the covariance,
-    (3, 3) or (6, 6). ``blank`` is a filter to copy.
+    ``process_noise`` is the covariance added per tick, (n, n). A being the system matrix and h the tick,
+    ``constant`` is the constant part of 1 + A h, (n, n); ``moving`` (36, 12) is what its upper left 6x6 gains
+    by each component of the rate and of 3 mu/r^3 e1 e1^T, ``driven`` (36, 9) by each of m b^T. By measurement,
+    field, Sun or both at once: ``..._sensitivity`` is the constant part of H, (3 or 6, n), and ``..._noise``
+    the covariance, (3, 3) or (6, 6). ``blank`` is a filter to copy.
     """
 
     inertia_kgm2: Mat3
@@ -39,8 +39,10 @@ class MekfConfig:
     layout: Layout
     initial_covariance: Matrix
     process_noise: Matrix
-    system: Matrix
-    varying: Matrix
+    constant: Matrix
+    moving: Matrix
+    driven: Matrix
+    identity: Matrix
     field_sensitivity: Matrix
     sun_sensitivity: Matrix
     both_sensitivity: Matrix
@@ -122,6 +124,7 @@ def mekf_config(
         noise[here, here] = np.eye(3) * torque_walk_nm_prts**2 * tick_s
         system[3:6, here] = j_inverse
         variances += [torque_sigma_nm**2] * 3
+    moving, driven = np.split(tick_s * _varying(np.array(inertia_kgm2), j_inverse), [12], axis=1)
     return MekfConfig(
         inertia_kgm2=inertia_kgm2,
         inertia_inverse=inverse_j,
@@ -130,8 +133,10 @@ def mekf_config(
         layout=parts,
         initial_covariance=np.diag(variances),
         process_noise=noise,
-        system=tick_s * system,
-        varying=tick_s * _varying(np.array(inertia_kgm2), j_inverse),
+        constant=np.eye(parts.size) + tick_s * system,
+        moving=moving,
+        driven=driven,
+        identity=np.eye(parts.size),
         field_sensitivity=field_sensitivity,
         sun_sensitivity=sun_sensitivity,
         both_sensitivity=np.vstack((field_sensitivity, sun_sensitivity)),
