@@ -27,9 +27,9 @@ class MekfConfig:
 
     ``process_noise`` is the covariance added per tick, (n, n). A being the system matrix and h the tick,
     ``constant`` is the constant part of 1 + A h, (n, n); ``moving`` (36, 12) is what its upper left 6x6 gains
-    by each component of the rate and of 3 mu/r^3 e1 e1^T, ``driven`` (36, 9) by each of m b^T. By measurement,
-    field, Sun or both at once: ``..._sensitivity`` is the constant part of H, (3 or 6, n), and ``..._noise``
-    the covariance, (3, 3) or (6, 6). ``blank`` is a filter to copy.
+    by each component of the rate and of 3 mu/r^3 e1 e1^T, ``driven`` (36, 9) by each of m b^T. By
+    measurement, field, Sun or both at once: ``..._sensitivity`` is the constant part of H, (3 or 6, n), and
+    ``..._noise`` the covariance, (3, 3) or (6, 6). ``blank`` is a filter to copy.
     """
 
     inertia_kgm2: Mat3

@@ -57,7 +57,7 @@ GUARDS = {
     "coil health: rate": Off(
         "coil-reversed-1",
         "named",
-        ("fsw.core.step.coil_health.judge_rate", lambda health, *seen: (health, None)),
+        ("fsw.core.step.coil_health.judge_rate", lambda health, view, field, state, *seen: (health, state)),
         watch_s=2000.0,
     ),
     "read-back of the board": Off(

@@ -68,7 +68,7 @@ class TestPurity:
         estimator = config.estimator.mekf
         arrays = {
             name: getattr(estimator, name).copy()
-            for name in ("initial_covariance", "process_noise", "system")
+            for name in ("initial_covariance", "process_noise", "constant", "moving", "driven", "identity")
         }
         for tick in (100, 250):
             state, inbox = states[tick], inboxes[tick]
