@@ -42,7 +42,7 @@ SLOWER = 8.0
 
 KILLED, SURVIVED, TIMEOUT = "killed", "survived", "timeout"
 
-SPARED = ("cacheprovider", "xdist", "timeout", "warnings", "unraisableexception", "hypothesispytest")
+SPARED = ("cacheprovider", "xdist", "unraisableexception", "hypothesispytest")
 OPTIONS = ["-x", "-q", "--tb=no", "--assert=plain", *(f"-pno:{plugin}" for plugin in SPARED)]
 
 

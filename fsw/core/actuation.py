@@ -74,7 +74,7 @@ def hear(view: CoilView, readings: Readings, tick: int, config: CoilConfig) -> C
 
 def _asked_level(view: CoilView, tick: int, config: PulseConfig) -> int:
     """The level that the own request drives over the tick that just ended, 0 if it does not."""
-    asked = 0 <= view.fired_tick < tick <= view.fired_tick + config.pulse_ticks
+    asked = view.fired_tick < tick <= view.fired_tick + config.pulse_ticks
     return view.fired.level if asked else 0
 
 
@@ -124,7 +124,7 @@ def actuate(
 def _refused(view: CoilView, readings: Readings, tick: int) -> bool:
     """Whether the request of the tick before, or of the one before that, came to nothing."""
     refused = readings.refused
-    if refused is None or not 0 <= view.fired_tick < tick <= view.fired_tick + 2:
+    if refused is None or tick > view.fired_tick + 2:
         return False
     return refused.tick == view.fired_tick & 0xFF
 

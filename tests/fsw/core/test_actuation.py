@@ -81,6 +81,14 @@ def refusal(tick):
 # What is heard
 
 
+def test_before_the_board_is_heard_and_asked_nothing_is_known():
+    view = CoilView()
+    assert view.lockout_ms == (-1, -1, -1)
+    assert (view.driven_coil, view.driven_level, view.driven_am2) == (0, 0, ZERO)
+    assert (view.seq, view.refusals) == (0, 0)
+    assert (view.fired_tick, view.fired, view.paid_body_nms) == (-1, Pulse(0, 0), ZERO)
+
+
 @pytest.mark.parametrize("coil", [0, 1, 2])
 def test_a_status_is_the_word_on_its_coil_alone(coil):
     before = CoilView(lockout_ms=(10, -1, 30), refusals=4)
@@ -203,6 +211,17 @@ def test_the_request_names_pulse_answer_and_length_and_is_remembered(kind):
     assert state.busy_until == 0x1234 + 3
 
 
+@pytest.mark.parametrize("coil", [0, 1, 2])
+def test_every_coil_is_fired_unless_it_has_a_fault(coil):
+    b_body_t = (2e-5, 2e-5, 2e-5)
+    owed = pulses.impulse(Pulse(coil, 3), b_body_t, CONFIG)
+    asked = (ready(owed), ALL_FREE, Demand(), b_body_t, BOARD_IS_THERE, TICK, COILS)
+    _, _, request = actuate(*asked)
+    assert request.coil == coil
+    _, _, other = actuate(*asked, tuple(int(number == coil) for number in range(3)))
+    assert other is None or other.coil != coil
+
+
 def test_the_length_is_that_of_the_table():
     config = replace(CONFIG, pulse_ticks=2, duration_ms=1900)
     state, _, request = run(config=config)
@@ -295,6 +314,24 @@ def test_what_a_refused_request_paid_is_owed_again_and_only_once(ticks_later):
     assert again.owed_impulse_body_nms == state.owed_impulse_body_nms
 
 
+def test_a_refusal_that_is_heard_twice_gives_back_once():
+    """Of a pulse that pays less than may be owed."""
+    config = replace(CONFIG, leak_s=inf)
+    owed = (0.0, -3.0 * 0.5 * 2e-5, 0.0)
+    state, view, request = run(ready(owed), config=config)
+    assert abs(request.level) == 1
+    readings = BOARD_IS_THERE._replace(refused=refusal(TICK))
+    for tick in (TICK + 1, TICK + 2):
+        state, view, _ = run(state, view, readings=readings, tick=tick, config=config)
+        assert state.owed_impulse_body_nms == pytest.approx(owed)
+
+
+def test_a_request_that_was_refused_does_not_count_as_driven():
+    _, view, _ = refused_at(1)
+    after = hear(view, NOTHING, TICK + 2, COILS)
+    assert (after.driven_level, after.driven_am2) == (0, ZERO)
+
+
 @pytest.mark.parametrize(
     ("ticks_later", "of_tick"), [(1, TICK - 1), (1, TICK + 1), (2, TICK + 2), (3, TICK), (256, TICK + 256)]
 )
@@ -324,11 +361,12 @@ def test_a_refused_impulse_is_not_owed():
 @pytest.mark.parametrize("lockout_ms", [(0, 0, 0), (10, -1, 0)])
 def test_without_a_law_nothing_is_fired_and_nothing_owed(fresh, lockout_ms):
     """Nor what was owed before; the timers run on."""
-    before = replace(ready(), ready_tick=(TICK - 5, TICK, TICK + 9), busy_until=TICK - 20)
+    timers = replace(ready(), ready_tick=(TICK - 5, TICK, TICK + 9), busy_until=TICK - 20)
+    before = replace(timers, held_am2=(1.0, -2.0, 3.0))
     view = replace(ALL_FREE, lockout_ms=lockout_ms)
     after, seen, request = run_safe(before, view, BOARD_IS_THERE if fresh else NOTHING)
     assert request is None
-    assert after == replace(before, owed_impulse_body_nms=ZERO)
+    assert after == replace(timers, owed_impulse_body_nms=ZERO)
     assert seen == view
 
 
