@@ -240,7 +240,7 @@ class _Auditor:
         """Those of both judges, but what both have found only once."""
         found = list(self._violations)
         for judge in self._judges():
-            known = {(one.kind, one.tick, one.coil) for one in found if one.tick is not None}
+            known = {(one.kind, one.tick, one.coil) for one in found}
             found += [one for one in judge.violations if (one.kind, one.tick, one.coil) not in known]
         return tuple(sorted(found, key=lambda one: (one.time_s, one.line)))
 
