@@ -227,7 +227,7 @@ def test_a_foreign_log_without_end_mark_is_only_noted(run, bus_log):
 
 @pytest.mark.parametrize("scenario", ["", None])
 def test_a_log_cut_at_any_byte_is_judged_as_far_as_it_goes(run, bus_log, fired, scenario):
-    folder = run(bus_log(1, 5, [fired(0, 1, 2000)]), scenario)
+    folder = run(bus_log(1, 3, [fired(0, 1, 1000)]), scenario)
     log = folder / "bus.log"
     content = log.read_bytes()
     whole = audit(read_log(log), AuditLimits())
