@@ -6,7 +6,7 @@ All instants are integers in units of 1 / (10^6 tick_hz) s. In them a tick is 10
 
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import chain, islice, pairwise
 
@@ -40,17 +40,21 @@ class LogClock:
 
     def of_timestamp(self, timestamp_us: int) -> int:
         """The instant of a timestamp; one that is a tick's, rounded to microseconds, is that tick's."""
-        instant = timestamp_us * self.units
-        since = instant % MICRO
-        if since < self.units:
-            instant -= since
-        elif MICRO - since < self.units:
-            instant += MICRO - since
-        return instant - self.origin_us * self.units
+        return _instant(timestamp_us, self.units) - self.origin_us * self.units
 
     def seconds(self, instant: int) -> Fraction:
         """The instant in seconds from t = 0."""
         return Fraction(instant, MICRO * self.units)
+
+
+def _instant(timestamp_us: int, units: int) -> int:
+    instant = timestamp_us * units
+    since = instant % MICRO
+    if since < units:
+        return instant - since
+    if MICRO - since < units:
+        return instant - since + MICRO
+    return instant
 
 
 def read_clock(entries: Iterator[LogEntry], tick_hz: int | None) -> tuple[LogClock, Iterator[LogEntry]]:
@@ -103,8 +107,8 @@ def _tick_clock(first: LogEntry, rates: list[int] | None, tick_hz: int | None) -
         return None
     tick, unix = Sync.decode(first.frame.data)
     epoch_s = unix - tick // hz
-    clock = LogClock(hz, MICRO, epoch_s, epoch_s * MICRO, simulated=False, contradictory=False)
-    return replace(clock, simulated=clock.of_timestamp(first.timestamp_us) == tick * MICRO)
+    simulated = _instant(first.timestamp_us, hz) == (epoch_s * hz + tick) * MICRO
+    return LogClock(hz, MICRO, epoch_s, epoch_s * MICRO, simulated, contradictory=False)
 
 
 def _timestamp_clock(entries: list[LogEntry], tick_hz: int | None, contradictory: bool) -> LogClock:

@@ -70,7 +70,7 @@ def test_without_sync_time_begins_with_the_first_entry():
 )
 def test_without_sync_the_spacing_of_statuses_is_a_rate_where_that_is_whole(period_us, units, period):
     clock = clock_of(at(*range(0, 5 * period_us, period_us)))
-    assert (clock.units, clock.period) == (units, period)
+    assert clock == LogClock(units, period, None, 0, False, False)
 
 
 def test_without_sync_what_is_no_status_has_no_spacing():
