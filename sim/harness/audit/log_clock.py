@@ -77,7 +77,7 @@ def read_clock(entries: Iterator[LogEntry], tick_hz: int | None) -> tuple[LogClo
         known = unix in seconds
         seconds[unix] = (seconds[unix][0] if known else tick, tick)
         if len(seconds) > 1 and not known:
-            rates = _rates(seconds)
+            rates = _rates(seconds, rates)
             if rates is not None and len(rates) <= 1:
                 break
     clock = None if first is None else _tick_clock(first, rates, tick_hz)
@@ -86,19 +86,19 @@ def read_clock(entries: Iterator[LogEntry], tick_hz: int | None) -> tuple[LogClo
     return clock, chain(peeked, entries)
 
 
-def _rates(seconds: dict[int, tuple[int, int]]) -> list[int] | None:
+def _rates(seconds: dict[int, tuple[int, int]], before: list[int] | None) -> list[int] | None:
     """The tick rates that give unix_time_s - tick // tick_hz one value; None if it is too early to say.
 
     Args:
         seconds: first and last tick of each unix_time_s so far.
+        before: the rates that have fitted until now; None if it was too early to say.
     """
     (unix, (tick, _)), *_, (last_unix, (last_tick, _)) = seconds.items()
     if last_unix - unix == 1 and tick > 0:
         return None
     ends = [(tick, unix) for unix, ticks in seconds.items() for tick in ticks]
-    return [
-        hz for hz in range(last_tick - tick, 0, -1) if len({unix - tick // hz for tick, unix in ends}) == 1
-    ]
+    tried = range(last_tick - tick, 0, -1) if before is None else before
+    return [hz for hz in tried if len({unix - tick // hz for tick, unix in ends}) == 1]
 
 
 def _tick_clock(first: LogEntry, rates: list[int] | None, tick_hz: int | None) -> LogClock | None:
