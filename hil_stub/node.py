@@ -44,7 +44,7 @@ class Node:
         self._heartbeat = heartbeat
         self._period = HEARTBEAT_S * tick_hz
         self._table_crc = table_crc
-        self._boot_tick: int | None = None
+        self._since_boot = 0
         self._periods = 0
         self._beats = 0
         self._slips = 0
@@ -54,18 +54,19 @@ class Node:
     def advance(self, tick: int) -> int | None:
         """Go on to ``tick``: ticks since the last one (0 at the first), None when it does not rise."""
         if self.tick is None:
-            self.tick = self._boot_tick = tick
+            self.tick = tick
             return 0
         elapsed = tick - self.tick
         if elapsed < 1:
             return None
         self.tick = tick
+        self._since_boot += elapsed
         self._slips += elapsed - 1
         return elapsed
 
     def boot(self) -> list[Frame]:
         """The boot message, in the first tick only."""
-        if self.tick is None or self.tick != self._boot_tick:
+        if self.tick is None or self._since_boot:
             return []
         return [self._boot(reason=0, version=CONTRACT_VERSION, table_crc=self._table_crc).encode()]
 
@@ -76,9 +77,9 @@ class Node:
             state: state of the node, four bits.
             rejects: frames rejected since boot.
         """
-        if self.tick is None or self._boot_tick is None:
+        if self.tick is None:
             return []
-        periods = (self.tick - self._boot_tick) // self._period
+        periods = self._since_boot // self._period
         if periods == self._periods:
             return []
         self._periods = periods

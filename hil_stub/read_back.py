@@ -1,6 +1,7 @@
 """Current read-back: what is measured in the supply of the coils, against what is driven."""
 
 from dataclasses import dataclass
+from math import copysign
 
 from hil_stub.events import CoilEventCode
 
@@ -40,10 +41,9 @@ class ReadBack:
         if level == 0:
             in_order = abs(current_a) <= _NONE * self.nominal_a[0]
             return None if in_order else CoilEventCode.CURRENT_WHILE_OFF
-        nominal_a = self.nominal_a[abs(level) - 1]
-        part = current_a / (nominal_a if level > 0 else -nominal_a)
+        part = current_a / copysign(self.nominal_a[abs(level) - 1], level)
         if abs(part - 1.0) <= self.tolerance:
             return None
-        if abs(part) <= _NONE:
-            return CoilEventCode.NO_CURRENT
-        return CoilEventCode.CURRENT_REVERSED if part < 0.0 else CoilEventCode.CURRENT_WRONG
+        if part < -_NONE:
+            return CoilEventCode.CURRENT_REVERSED
+        return CoilEventCode.NO_CURRENT if part <= _NONE else CoilEventCode.CURRENT_WRONG

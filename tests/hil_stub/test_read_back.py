@@ -59,6 +59,8 @@ def test_what_is_found(level, current_a, found):
     [
         {"nominal_a": (0.0, 0.1, 0.2)},
         {"nominal_a": (0.2, 0.1, 0.3)},
+        {"nominal_a": (0.1, 0.1, 0.3)},
+        {"nominal_a": (0.1, 0.3, 0.3)},
         {"nominal_a": (0.1, nan, 0.3)},
         {"settle_ms": -1},
         {"tolerance": 0.0},
@@ -68,6 +70,32 @@ def test_what_is_found(level, current_a, found):
 def test_what_cannot_be_judged_by_is_refused(wrong):
     with pytest.raises(ValueError, match=next(iter(wrong))):
         ReadBack(**{"nominal_a": NOMINAL_A, **wrong})
+
+
+def test_what_is_judged_by_unless_it_is_told():
+    assert (ReadBack(NOMINAL_A).settle_ms, ReadBack(NOMINAL_A).tolerance) == (100, 0.2)
+
+
+def test_small_currents_and_tolerances_are_judged_by_too():
+    fine = ReadBack((0.0005, 0.001, 0.002), tolerance=0.0005)
+    assert fine.judge(1, 0.0005) is None
+    assert fine.judge(1, 0.000501) is WRONG
+
+
+@pytest.mark.parametrize(
+    ("level", "current_a", "found"),
+    [
+        (0, 0.1, None),
+        (0, -0.1, None),
+        (2, 2.5, None),
+        (2, 1.5, None),
+        (1, 0.1, OPEN),
+        (1, -0.1, OPEN),
+        (-1, 0.1, OPEN),
+    ],
+)
+def test_the_edges_belong_to_what_is_better(level, current_a, found):
+    assert ReadBack((1.0, 2.0, 4.0), tolerance=0.25).judge(level, current_a) is found
 
 
 def test_events_have_the_names_of_the_dbc():

@@ -131,4 +131,7 @@ def test_the_command_counts_mutants():
         ["interlock", "hil_stub/guard.py"],
         ["interlock", "hil_stub/coil_driver.py"],
         ["interlock", "hil_stub/refusals.py"],
+        ["interlock", "hil_stub/read_back.py"],
+        ["interlock", "hil_stub/node.py"],
+        ["interlock", "hil_stub/events.py"],
     ]
