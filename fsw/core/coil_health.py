@@ -1,7 +1,8 @@
 """Which coil is faulty, told by its current and by what its pulses do to the rate.
 
-At the end of a pulse the current that is read back is held against that of the level; the supply that all
-coils share names the coil that was fired last. What pulses did to the rate ``coil_rate`` solves for.
+At the end of a pulse the current that is read back is held against that of the level. All coils share the
+supply: a current that nobody asked for is a coil's only if it has not ceased since the coil's pulse. What
+pulses did to the rate ``coil_rate`` solves for.
 """
 
 from dataclasses import dataclass
@@ -52,13 +53,14 @@ class CoilHealthConfig:
 class CoilHealth(NamedTuple):
     """By coil: its fault (0: none) and pulses in a row with a wrong current.
 
-    ``strange_ticks``: ticks in a row with a level or current that nobody asked for; ``stuck``: the level is
-    there, or the current for too long.
+    ``strange_ticks``: ticks in a row with a level or current that nobody asked for, ``strange_coil``: whose,
+    -1 where nothing tells; ``stuck``: the level is there, or the current for too long.
     """
 
     faults: tuple[int, int, int] = HEALTHY
     wrong: tuple[int, int, int] = HEALTHY
     strange_ticks: int = 0
+    strange_coil: int = -1
     stuck: bool = False
 
 
@@ -86,9 +88,9 @@ def judge_current(
     if status is None:
         return health
     if unasked or (status.level == 0 and abs(status.current_ma) > config.stuck_ma):
-        return _strange(health, status.coil if unasked else view.fired.coil, unasked, config)
+        return _strange(health, status.coil if unasked else _just_ended(view, tick, timing), unasked, config)
     if health.strange_ticks:
-        health = health._replace(strange_ticks=0, stuck=False)
+        health = health._replace(strange_ticks=0, strange_coil=-1, stuck=False)
     fired = view.fired
     if tick != view.fired_tick + timing.pulse_ticks or (status.coil, status.level) != fired:
         return health
@@ -101,12 +103,24 @@ def judge_current(
     return _named(health, fired.coil, kind) if wrong >= config.name_pulses else health
 
 
+def _just_ended(view: CoilView, tick: int, timing: PulseConfig) -> int:
+    """The coil whose pulse has ended so lately that its current may not have ceased since; -1: none."""
+    since = tick - view.fired_tick - timing.pulse_ticks
+    return view.fired.coil if view.fired.level and since <= CEASED_TICKS else -1
+
+
+CEASED_TICKS = 2
+"""After a pulse, by then a status has told of no current; one of two may be lost."""
+
+
 def _strange(health: CoilHealth, coil: int, unasked: bool, config: CoilHealthConfig) -> CoilHealth:
     """Something flows unasked: stuck when for longer than a pulse that an earlier boot may have begun."""
     ticks = health.strange_ticks + 1
     lasts = ticks >= config.stuck_ticks
-    health = health._replace(strange_ticks=ticks, stuck=unasked or lasts)
-    return _named(health, coil, CoilFault.STUCK) if ticks == config.stuck_ticks else health
+    whose = coil if unasked or ticks == 1 else health.strange_coil
+    health = health._replace(strange_ticks=ticks, strange_coil=whose, stuck=unasked or lasts)
+    named = ticks == config.stuck_ticks and whose >= 0
+    return _named(health, whose, CoilFault.STUCK) if named else health
 
 
 def judge_rate(

@@ -51,6 +51,9 @@ class SensorFault(IntEnum):
 FULL, SLIGHT = 3, 2
 """Suspicion of a bad tick: of a check, and of the filter alone. A good tick takes ``FULL`` back."""
 
+STILL = 10
+"""A sample counts as still after this part of the time in which it counts as frozen."""
+
 DARK: Vec3 = (0.0, 0.0, 0.0)
 """The sample of a Sun sensor that sees nothing."""
 
@@ -122,6 +125,12 @@ def trusted(readings: Readings, health: SensorHealth, reference: "Reference") ->
     if sun is not None and (health.sun.fault or health.pair.proof < 0 or (sun.valid and _unlit(reference))):
         readings = readings._replace(sun=None)
     return readings
+
+
+def in_doubt(health: SensorHealth, config: SensorHealthConfig) -> bool:
+    """Whether what the filter did not expect may be a sensor's doing: one is left out, or stands still."""
+    still = STILL * max(health.field.same, health.sun.same) >= config.frozen_ticks
+    return still or bool(health.field.fault or health.sun.fault)
 
 
 def judge(

@@ -13,6 +13,7 @@ from fsw.core.estimator import (
     estimate,
     perfect_attitude,
     restart,
+    untraced,
     usable_field,
     usable_sun,
 )
@@ -123,16 +124,20 @@ def _estimate(
         seen.sigma3_attitude_rad,
         config.sensors,
     )
-    coils, estimator = coil_health.judge_rate(
-        state.coils,
-        state.coil,
-        reference.b_eci_t,
-        estimator,
-        state.tick,
-        config.coils.pulses,
-        config.coil_health,
-        config.estimator.mekf,
-    )
+    coils = state.coils
+    if sensor_health.in_doubt(sensors, config.sensors):
+        estimator = untraced(estimator)
+    else:
+        coils, estimator = coil_health.judge_rate(
+            coils,
+            state.coil,
+            reference.b_eci_t,
+            estimator,
+            state.tick,
+            config.coils.pulses,
+            config.coil_health,
+            config.estimator.mekf,
+        )
     if sensors.doubted:
         estimator, seen = restart(estimator), UNKNOWN
     state = state._replace(estimator=estimator, sensors=sensors, coils=coils, attitude=seen)

@@ -102,13 +102,26 @@ def test_a_coil_that_is_named_is_not_fired_until_the_ground_clears_it(make_world
 
 class TestStuck:
     @pytest.mark.requirement("REQ-COIL-04")
-    def test_a_current_that_goes_on_leads_to_safe_and_is_named(self, make_world):
+    def test_a_current_that_goes_on_after_a_pulse_leads_to_safe_and_its_coil_is_named(self, make_world):
         world = make_world()
-        world.fly(90)
+        while not world.state.coil.driven_level:
+            world.fly(1)
+        pulse = world.state.coil.fired
+        rest = world.state.coil.fired_tick + world.config.coils.pulses.pulse_ticks - world.state.tick
+        fly(world, rest)
         said = fly(world, 60, told_by_driver(level=0, current_ma=400))
         stuck_ticks = world.config.coil_health.stuck_ticks
-        assert events(said, Event.COIL_FAULT) == [(stuck_ticks - 1, 104)]
-        assert events(said, Event.MONITOR_TRIPPED) == [(stuck_ticks - 1, 7)]
+        assert events(said, Event.COIL_FAULT) == [(stuck_ticks - 1, 100 * (pulse.coil + 1) + 4)]
+        assert world.state.modes.mode is Mode.SAFE
+
+    @pytest.mark.requirement("REQ-COIL-04")
+    @pytest.mark.parametrize("flown", [90, 120], ids=["before any pulse", "long after one"])
+    def test_a_current_out_of_nothing_leads_to_safe_and_names_nobody(self, make_world, flown):
+        world = make_world()
+        world.fly(flown)
+        said = fly(world, 60, told_by_driver(level=0, current_ma=400))
+        assert events(said, Event.MONITOR_TRIPPED) == [(world.config.coil_health.stuck_ticks - 1, 7)]
+        assert events(said, Event.COIL_FAULT) == []
         assert world.state.modes.mode is Mode.SAFE
 
     @pytest.mark.requirement("REQ-COIL-04")
