@@ -277,6 +277,7 @@ def compare(
 @click.option("--out", type=click.Path(path_type=Path), help="Folder of faults.xml (JUnit), .html and .json.")
 @click.option("--workers", type=click.IntRange(min=1), help="Processes. Default: one a core.")
 @click.option("--slow", is_flag=True, help="Also rows that fly real processes: minutes.")
+@click.option("--keep", type=click.Path(path_type=Path), help="Rows not flown now: from this faults.json.")
 @click.option("--write-docs", is_flag=True, help="Write docs/faults.md of the repository.")
 @sentences
 def faults(
@@ -288,6 +289,7 @@ def faults(
     out: Path | None,
     workers: int | None,
     slow: bool,
+    keep: Path | None,
     write_docs: bool,
 ) -> int:
     """Inject every fault of the table, in several phases and seeds: verdict per row."""
@@ -295,7 +297,7 @@ def faults(
 
     if listing:
         return command.list_rows(rows)
-    return command.faults(rows, phases, seeds, as_json, out, workers, write_docs, slow)
+    return command.faults(rows, phases, seeds, as_json, out, workers, write_docs, slow, keep)
 
 
 @main.command()

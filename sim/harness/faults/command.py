@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from sim.harness.errors import HarnessError
-from sim.harness.faults import render
+from sim.harness.faults import kept, render
 from sim.harness.faults.campaign import fly_rows
 from sim.harness.faults.row import RowResult, Verdict
 from sim.harness.faults.rows import ROWS, chosen
@@ -34,6 +34,7 @@ def faults(
     workers: int | None,
     write_docs: bool,
     slow: bool = False,
+    keep: Path | None = None,
 ) -> int:
     """Fly the rows, print each, write what is asked for.
 
@@ -45,6 +46,7 @@ def faults(
         out: folder of faults.xml, faults.html and faults.json; None: they are not written.
         workers: processes; None: one a core.
         slow: also rows that fly real processes.
+        keep: faults.json of an earlier run, for the rows that are not flown in this one.
         write_docs: write docs/faults.md of the repository.
 
     Returns:
@@ -54,13 +56,16 @@ def faults(
         HarnessError: there is no such row, or a file cannot be written.
     """
     rows = chosen(names, slow)
-    page = _docs_page(len(rows)) if write_docs else None
+    earlier = {} if keep is None else kept.read(keep)
+    page = _docs_page({*earlier, *(row.name for row in rows)}) if write_docs else None
     quiet = as_json or sys.stderr.isatty()  # then the rows wait until the bar is gone
     count = len(rows) * phases * seeds
     with progress("injecting faults", count) as watch:
         results = fly_rows(
             rows, phases, seeds, workers or os.cpu_count() or 1, watch, _silent if quiet else _print
         )
+    by_name = earlier | {result.row.name: result for result in results}
+    results = [by_name[row.name] for row in ROWS if row.name in by_name]
     if as_json:
         click.echo(render.as_json(results))
     else:
@@ -77,12 +82,12 @@ def faults(
     return int(any(result.verdict is Verdict.FAIL for result in results))
 
 
-def _docs_page(rows: int) -> Path:
+def _docs_page(names: set[str]) -> Path:
     repository = find_repository(Path.cwd())
     if repository is None:
         raise HarnessError("--write-docs: this is no checkout of torquer, so that there is no docs/faults.md")
-    if rows < sum(not row.slow for row in ROWS):
-        raise HarnessError("--write-docs: the page is of all rows: leave out --row")
+    if not names >= {row.name for row in ROWS if not row.slow}:
+        raise HarnessError("--write-docs: the page is of all rows: leave out --row, or --keep the others")
     return repository / "docs" / PAGE
 
 

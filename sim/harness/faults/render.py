@@ -153,6 +153,8 @@ def _html_group(group: str, results: list[RowResult]) -> str:
 def markdown(results: Sequence[RowResult], phases: int, seeds: int) -> str:
     """docs/faults.md."""
     lines = [_HEAD, f"{tally(results)}. Phases {phases}, seeds {seeds} each.", ""]
+    if any(result.kept for result in results):
+        lines += ["\\*: flown by an earlier run, and kept.", ""]
     for group, rows in _groups(results):
         lines += [f"## {group}", "", "| row | injected | expected | cases | measured | verdict |"]
         lines.append("|---|---|---|---|---|---|")
@@ -163,7 +165,7 @@ def markdown(results: Sequence[RowResult], phases: int, seeds: int) -> str:
                 expected(result.row),
                 str(len(result.cases)),
                 _found(result),
-                result.verdict.value,
+                result.verdict.value + (" \\*" if result.kept else ""),
             )
             lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
         lines.append("")

@@ -102,10 +102,11 @@ class CaseResult:
 
 @dataclass(frozen=True, slots=True)
 class RowResult:
-    """All cases of a row."""
+    """All cases of a row; ``kept``: an earlier run has flown them."""
 
     row: Row
     cases: tuple[CaseResult, ...]
+    kept: bool = False
 
     @property
     def verdict(self) -> Verdict:

@@ -8,7 +8,7 @@ import pytest
 
 from sim.harness.cli import main
 from sim.harness.errors import HarnessError
-from sim.harness.faults import command, render
+from sim.harness.faults import command, kept, render
 from sim.harness.faults.kinds import KINDS
 from sim.harness.faults.row import CaseResult, Outcome, RowResult, Verdict
 from sim.harness.faults.rows import ROWS, chosen
@@ -88,6 +88,7 @@ def test_the_list_names_every_row(capsys):
         (("--row", "gremlins"), "--row gremlins: there is no such row"),
         (("--phases", "0"), "--phases"),
         (("--row", "none", "--write-docs"), "--write-docs: the page is of all rows"),
+        (("--row", "none", "--keep", "none.json"), "--keep none.json: not the faults.json of a campaign"),
     ],
 )
 def test_what_a_user_can_mend_is_a_sentence(arguments, said, capsys):
@@ -95,6 +96,29 @@ def test_what_a_user_can_mend_is_a_sentence(arguments, said, capsys):
     error = capsys.readouterr().err
     assert said in error
     assert error.count("\n") == 1
+
+
+def test_rows_of_an_earlier_run_are_kept_and_count(planted, monkeypatch, capsys, tmp_path):
+    (tmp_path / "faults.json").write_text(render.as_json(planted))
+    now = [RowResult(planted[0].row, planted[0].cases * 3)]
+    monkeypatch.setattr(command, "fly_rows", lambda *_: now)
+    assert run("--row", "none", "--keep", tmp_path / "faults.json", "--out", tmp_path / "both") == 1
+    assert "3 rows, 6 cases: 1 rows pass, 1 fail, 1 not yet" in capsys.readouterr().out
+    both = kept.read(tmp_path / "both" / "faults.json")
+    assert both == {one.row.name: replace(one, kept=True) for one in (*now, *planted[1:])}
+
+
+def test_the_page_tells_which_rows_were_kept(planted):
+    page = render.markdown([planted[0], replace(planted[1], kept=True)], 1, 1)
+    assert "flown by an earlier run" in page
+    assert page.count("\\* |") == 1
+    assert "earlier" not in render.markdown(planted, 1, 1)
+
+
+def test_a_row_that_has_another_fault_now_is_not_kept(planted, tmp_path):
+    (tmp_path / "faults.json").write_text(render.as_json(planted).replace("part 0.5", "part 0.4"))
+    with pytest.raises(HarnessError, match="loss-50 was flown with another fault"):
+        kept.read(tmp_path / "faults.json")
 
 
 def test_junit_counts_failures_and_what_is_open(planted):
