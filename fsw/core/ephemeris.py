@@ -157,14 +157,18 @@ def reference_at(window: EphemerisWindow, tick: int, model: EphemerisModel) -> R
 
 
 def sound(reference: Reference) -> bool:
-    """Whether it is numbers that can be worked with; a window that gives none is to be made anew."""
-    return isfinite(
-        reference.radius_m
-        + sum(reference.q_orbit_from_eci)
-        + sum(reference.b_eci_t)
-        + sum(reference.sun_eci)
-        + reference.orbit_rate_radps
+    """Whether it can be: no damaged node, whose window is to be made anew."""
+    return (
+        LEAST_RADIUS_M < reference.radius_m < MOST_RADIUS_M
+        and norm(reference.b_eci_t) < MOST_FIELD_T
+        and 0.9 < norm(reference.sun_eci) < 1.1
+        and isfinite(sum(reference.q_orbit_from_eci) + reference.orbit_rate_radps)
     )
+
+
+LEAST_RADIUS_M, MOST_RADIUS_M = 6.3e6, 1e9
+MOST_FIELD_T = 1e-4
+"""The Earth's field is nowhere stronger than 0.07 mT."""
 
 
 def _lagrange(s: float) -> Weights:

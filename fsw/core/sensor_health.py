@@ -128,9 +128,12 @@ def trusted(readings: Readings, health: SensorHealth, reference: "Reference") ->
 
 
 def in_doubt(health: SensorHealth, config: SensorHealthConfig) -> bool:
-    """Whether what the filter did not expect may be a sensor's doing: one is left out, or stands still."""
+    """Whether what the filter did not expect may be a sensor's doing.
+
+    One is left out, or stands still, or the estimate has not yet proved that it is right about both.
+    """
     still = STILL * max(health.field.same, health.sun.same) >= config.frozen_ticks
-    return still or bool(health.field.fault or health.sun.fault)
+    return still or bool(health.field.fault or health.sun.fault) or not proven(health.pair, config.pair)
 
 
 def judge(
@@ -187,6 +190,8 @@ def judge(
             b_cause, b_weight = SensorFault.REFUSED, doubt
         elif s_refused and used.field and not b_cause:
             s_cause, s_weight = SensorFault.REFUSED, doubt
+        elif b_refused and s_refused:  # which of them is wrong this tick does not tell: all stays as it was
+            (b_cause, b_weight), (s_cause, s_weight) = (b_before.cause, 0), (s_before.cause, 0)
     b_watch = _watched(b_before, _of_field(readings.field), s_before, b_cause, b_weight, config)
     s_watch = _watched(s_before, _of_sun(readings.sun), b_before, s_cause, s_weight, config)
     doubted = known is not None and pair.contradictory and not health.pair.contradictory
