@@ -17,7 +17,7 @@ import pytest
 
 LIMITS = (
     "--set",
-    "coils.pulse_s=0.6",
+    "coils.pulse_s=0.5",
     "--set",
     "coils.backoff_s=1.6",
     "--tick-hz",
@@ -25,7 +25,7 @@ LIMITS = (
     "--deadman-s",
     "0.5",
 )
-BOARD = ("coil", "--pulse-s", "0.6", "--backoff-s", "1.6", "--tick-hz", "5", "--deadman-s", "0.5")
+BOARD = ("coil", "--pulse-s", "0.5", "--backoff-s", "1.6", "--tick-hz", "5", "--deadman-s", "0.5")
 SHORT = (*BOARD, "--backoff-s", "1.2")
 
 

@@ -11,6 +11,7 @@ from fsw.core.orbit import CircularOrbit, Sgp4Orbit
 from fsw.core.rates import RateGroup
 from fsw.core.sensor_health import FULL as BAD_TICK
 from fsw.core.sensor_health import SensorHealthConfig
+from fsw.core.sensor_pair import PairConfig
 from fsw.io.config import flight_config
 from fsw.io.schema import TableError, merge
 from fsw.io.table import flight_table
@@ -110,6 +111,7 @@ class TestTicks:
             "frozen_s": 12.0,
             "name_s": 21.0,
             "readmit_s": 250.0,
+            "prove_s": 140.0,
         }
         tuning = {"gate_nis": 16.0, "magnetometer_sigma_nt": 150.0, "sun_sigma_deg": 0.3}
         config = configured(
@@ -125,6 +127,7 @@ class TestTicks:
             silent_ticks=500,
             name_suspicion=210 * BAD_TICK,
             readmit_ticks=2500,
+            pair=PairConfig(say_ticks=210, prove_ticks=1400, agree_ticks=4 * 2500),
         )
 
     @pytest.mark.parametrize(
