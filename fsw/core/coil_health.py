@@ -1,22 +1,24 @@
 """Which coil is faulty, told by its current and by what its pulses do to the rate.
 
-At the end of a pulse the current that is read back is held against that of the level. All coils share the
-supply: a current that nobody asked for is a coil's only if it has not ceased since the coil's pulse. What
-pulses did to the rate ``coil_rate`` solves for.
+At the end of a pulse the current that is read back is held against that of the level. What pulses did to the
+rate ``coil_rate`` solves for; and what a current does that nobody asked for, of which the supply, shared by
+all coils, does not tell in which it flows.
 """
 
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import NamedTuple
 
-from fsw.core import coil_rate, pulses
+from fsw.core import coil_blame, coil_rate, pulses
 from fsw.core.actuation import CoilView
+from fsw.core.coil_rate import Solution
 from fsw.core.estimator import EstimatorState
 from fsw.core.mekf_config import MekfConfig
-from fsw.core.pulses import PulseConfig
+from fsw.core.pulses import AXES, PulseConfig
 from fsw.core.quaternion import rotate
 from fsw.core.readings import Readings
-from fsw.core.vector import Mat3, Vec3, transform
+from fsw.core.vector import Mat3, Vec3, cross, scale, transform
+from fsw.wire.messages import CoilStatus
 
 
 class CoilFault(IntEnum):
@@ -53,14 +55,14 @@ class CoilHealthConfig:
 class CoilHealth(NamedTuple):
     """By coil: its fault (0: none) and pulses in a row with a wrong current.
 
-    ``strange_ticks``: ticks in a row with a level or current that nobody asked for, ``strange_coil``: whose,
-    -1 where nothing tells; ``stuck``: the level is there, or the current for too long.
+    ``strange_ticks``: ticks in a row with a level or current that nobody asked for, ``stray_ma``: the current
+    of which no level tells; ``stuck``: the level is there, or the current for too long.
     """
 
     faults: tuple[int, int, int] = HEALTHY
     wrong: tuple[int, int, int] = HEALTHY
     strange_ticks: int = 0
-    strange_coil: int = -1
+    stray_ma: int = 0
     stuck: bool = False
 
 
@@ -88,9 +90,9 @@ def judge_current(
     if status is None:
         return health
     if unasked or (status.level == 0 and abs(status.current_ma) > config.stuck_ma):
-        return _strange(health, status.coil if unasked else _just_ended(view, tick, timing), unasked, config)
+        return _strange(health, status, unasked, config)
     if health.strange_ticks:
-        health = health._replace(strange_ticks=0, strange_coil=-1, stuck=False)
+        health = health._replace(strange_ticks=0, stray_ma=0, stuck=False)
     fired = view.fired
     if tick != view.fired_tick + timing.pulse_ticks or (status.coil, status.level) != fired:
         return health
@@ -103,24 +105,13 @@ def judge_current(
     return _named(health, fired.coil, kind) if wrong >= config.name_pulses else health
 
 
-def _just_ended(view: CoilView, tick: int, timing: PulseConfig) -> int:
-    """The coil whose pulse has ended so lately that its current may not have ceased since; -1: none."""
-    since = tick - view.fired_tick - timing.pulse_ticks
-    return view.fired.coil if view.fired.level and since <= CEASED_TICKS else -1
-
-
-CEASED_TICKS = 2
-"""After a pulse, by then a status has told of no current; one of two may be lost."""
-
-
-def _strange(health: CoilHealth, coil: int, unasked: bool, config: CoilHealthConfig) -> CoilHealth:
+def _strange(health: CoilHealth, status: CoilStatus, unasked: bool, config: CoilHealthConfig) -> CoilHealth:
     """Something flows unasked: stuck when for longer than a pulse that an earlier boot may have begun."""
     ticks = health.strange_ticks + 1
     lasts = ticks >= config.stuck_ticks
-    whose = coil if unasked or ticks == 1 else health.strange_coil
-    health = health._replace(strange_ticks=ticks, strange_coil=whose, stuck=unasked or lasts)
-    named = ticks == config.stuck_ticks and whose >= 0
-    return _named(health, whose, CoilFault.STUCK) if named else health
+    stray_ma = 0 if status.level else status.current_ma
+    health = health._replace(strange_ticks=ticks, stray_ma=stray_ma, stuck=unasked or lasts)
+    return _named(health, status.coil, CoilFault.STUCK) if unasked and ticks == config.stuck_ticks else health
 
 
 def judge_rate(
@@ -150,12 +141,17 @@ def judge_rate(
     """
     known, age = state.estimate, tick - view.fired_tick
     ended = age == timing.pulse_ticks and view.driven_level != 0
-    due = age == timing.backoff_ticks or (state.rejected_in_a_row > 0 and age % REFUSED_TICKS == 0)
-    if known is None or not (ended or due):
+    early = age % EARLY_TICKS == 0 and (state.rejected_in_a_row > 0 or health.stray_ma != 0)
+    due = ended or early or age == timing.backoff_ticks
+    if known is None or not (due or health.stray_ma):
         return health, state
-    known, accused = coil_rate.judge(known, config.weak_part, config.name_sigmas, tuning)
-    if accused is not None:
-        health = _named(health, accused.coil, _kind(accused.part, config))
+    if health.stray_ma:
+        b_body_t = rotate(known.q_body_from_eci, b_eci_t)
+        kicks_radps = _stray_kicks(health.stray_ma, b_body_t, timing, config)
+        known = coil_rate.carry(known, kicks_radps, timing.tick_s, begins=health.strange_ticks == 1)
+    if due:
+        known, solution = coil_rate.solve(known, tuning)
+        health = _accused(health, solution, config) if solution is not None else health
     if ended and (view.driven_coil, view.driven_level) == view.fired:
         b_body_t = rotate(known.q_body_from_eci, b_eci_t)
         kick_radps = transform(config.inertia_inverse, pulses.impulse(view.fired, b_body_t, timing))
@@ -163,8 +159,29 @@ def judge_rate(
     return health, state._replace(estimate=known)
 
 
-REFUSED_TICKS = 5
-"""So often pulses are judged while the filter refuses measurements; else when the next one is due."""
+EARLY_TICKS = 5
+"""So often coils are judged while the filter refuses measurements or a stray current flows; else when the
+next pulse is due."""
+
+
+def _stray_kicks(current_ma: int, b_body_t: Vec3, timing: PulseConfig, config: CoilHealthConfig) -> Mat3:
+    """What the current would do to the rate in a tick, by coil."""
+    m_am2 = current_ma / config.current_ma[-1] * timing.levels_am2[-1]
+    first, second, third = (
+        transform(config.inertia_inverse, scale(timing.tick_s * m_am2, cross(axis, b_body_t)))
+        for axis in AXES
+    )
+    return first, second, third
+
+
+def _accused(health: CoilHealth, solution: Solution, config: CoilHealthConfig) -> CoilHealth:
+    accused = coil_blame.too_little(solution, config.weak_part, config.name_sigmas)
+    if accused is not None:
+        health = _named(health, accused.coil, _kind(accused.part, config))
+    conducting = coil_blame.conducting(solution) if health.stuck else None
+    return health if conducting is None else _named(health, conducting, CoilFault.STUCK)
+
+
 REVERSED_PART = -0.5
 
 

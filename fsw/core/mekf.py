@@ -12,7 +12,7 @@ direction, m the dipole, b the field and h the momentum of a wheel, all in body 
 Source: Lefferts, Markley, Shuster 1982; the dynamics as in Ovchinnikov, Penkov, Roldugin 2015.
 """
 
-from math import isfinite
+from math import isfinite, nan
 from typing import NamedTuple
 
 import numpy as np
@@ -184,17 +184,30 @@ def _update(
     kalman = _filter(config)
     kalman.P = estimate.covariance
     kalman.update(np.array(innovation), noise, sensitivity)
-    nis = float(kalman.y.dot(kalman.SI).dot(kalman.y))
+    nis, trace = float(kalman.y.dot(kalman.SI).dot(kalman.y)), estimate.trace
+    if trace is not None:
+        seen = sensitivity.dot(trace.effect)  # the operator @ takes twice as long for so small arrays
+        seen[:, -1] = kalman.y
+        sums = trace.sums + seen.T.dot(kalman.SI.dot(seen))
+        if nis > config.gate_nis:
+            nis = unexplained(sums) - unexplained(trace.sums)
+        trace = Trace(trace.causes, trace.effect - kalman.K.dot(seen), sums, trace.measured + len(seen))
     if not 0.0 <= nis <= config.gate_nis:  # overflow can make it -inf
         return None
-    trace = estimate.trace
-    if trace is not None:
-        causes, effect, sums, measured = trace
-        seen = sensitivity.dot(effect)  # the operator @ takes twice as long for so small arrays
-        seen[:, -1] = kalman.y
-        sums = sums + seen.T.dot(kalman.SI.dot(seen))
-        trace = Trace(causes, effect - kalman.K.dot(seen), sums, measured + len(seen))
     return _fold(estimate, kalman.x, 0.5 * (kalman.P + kalman.P.T), config.layout, trace)
+
+
+def unexplained(sums: Matrix) -> float:
+    """The part of the squares of the innovations that no deviation explains, each being 0 +- 1 beforehand.
+
+    What an update adds is its NIS in a filter that solves for the deviations too. NaN of damaged sums.
+    """
+    evidence = sums[:-1, -1]
+    try:
+        explained = evidence.dot(np.linalg.solve(sums[:-1, :-1] + np.eye(len(evidence)), evidence))
+    except np.linalg.LinAlgError:
+        return nan
+    return float(sums[-1, -1] - explained)
 
 
 def _filter(config: MekfConfig) -> KalmanFilter:

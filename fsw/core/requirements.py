@@ -141,8 +141,8 @@ REQUIREMENTS: tuple[Requirement, ...] = (
     _coil(3, CoilFault.REVERSED, "A coil whose current or effect is the other way is named and left out."),
     Requirement(
         "REQ-COIL-04",
-        "A level or current that nobody asked for leads to SAFE; when it lasts its coil is named, if the "
-        "driver tells it or the current has not ceased since its pulse.",
+        "A level or current that nobody asked for leads to SAFE; when it lasts its coil is named, as the "
+        "driver tells it or as the torque tells in sunlight.",
         "level: at once; more than half of the least level's current, and name: `fdir.stuck_s` beyond",
         CoilFault.STUCK,
         Event.COIL_FAULT,

@@ -23,7 +23,6 @@ ECLIPSE_S = 500.0
 CYCLE_S = 103.0
 ORDER = (1.0, 0.0, 2.0, 3.0, 102.0, 50.0, 4.0, 101.0, 99.0, 25.0, 100.0, 75.0)
 """Phases of a pulse and its back-off that come first [s]; beyond them any."""
-WITHIN_S = 3
 SPACING_S = 37.0
 TURNED = ("initial.axis=[0.9, 0.3, -0.2]", "initial.rate_degps=[0.05, -0.07, 0.04]")
 FIRST_DEG, STEP_DEG = 75.0, 47.0
@@ -86,8 +85,6 @@ def _flown(row: Row, phase: int, seed: int, rig: Rig, orbit_s: float) -> Record:
 
 def phase_s(when: When, phase: int, rng: Random) -> float:
     """When the fault comes, from what its phases are counted from."""
-    if when is When.DRIVEN:
-        return float(phase % WITHIN_S)
     if when is When.PULSE:
         return ORDER[phase] if phase < len(ORDER) else rng.uniform(0.0, CYCLE_S)
     return 0.0 if when is When.BOOT else phase * SPACING_S
@@ -106,7 +103,7 @@ def _anchor(when: When, rig: Rig, hz: int) -> int:
     while rig.plant.tick < until_s * hz:
         rig.tick()
         tick = rig.plant.tick
-        if when in (When.PULSE, When.DRIVEN) and tick > ARMED_S * hz and any(rig.record.driven[-1].current_a):
+        if when is When.PULSE and tick > ARMED_S * hz and any(rig.record.driven[-1].current_a):
             return tick - 1
     return rig.plant.tick
 

@@ -193,7 +193,7 @@ def no_other_named(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]
 
 def _not_named(row: Row, record: Record, onset: int) -> tuple[bool | None, str]:
     """A coil shows what is wrong with it only while it is on: less than a few pulses are no evidence."""
-    if not row.unit.startswith("coil "):
+    if not row.unit.startswith("coil ") or "stuck" in row.expect:
         return False, f"{row.unit} is not named"
     requests = zip(record.asked, record.asked_coils, strict=True)
     count = sum(tick >= onset and f"coil {coil}" == row.unit for tick, coil in requests)

@@ -68,6 +68,7 @@ def tripped(record: Record) -> list[tuple[int, str]]:
 _WITHOUT_A_COIL = {
     CoilEventCode.DEAD_MAN: "plant",
     CoilEventCode.CURRENT_WHILE_OFF: "coil driver",
+    CoilEventCode.CURRENT_WRONG: "coil driver",  # the coil that is driven, or another beside it
     CoilEventCode.SELF_TEST_FAILED: "coil driver",
 }
 

@@ -19,8 +19,6 @@ class When(StrEnum):
 
     PULSE = "pulse"
     """The tick in which a pulse begins; phases go through the pulse and the back-off after it."""
-    DRIVEN = "driven"
-    """The same tick; phases go through the pulse alone."""
     SUNLIT = "sunlit"
     """Well after the start, in sunlight."""
     BOOT = "boot"

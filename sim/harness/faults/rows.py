@@ -240,25 +240,7 @@ ROWS: tuple[Row, ...] = (
     *_coils("coil-open", "coil_open", "board names"),
     *_coils("coil-reversed", "coil_wired", scale=-1.0),
     *_coils("coil-weak", "coil_wired", scale=0.3),
-    Row(
-        "coil-stuck-on",
-        COIL,
-        "coil_stuck_on",
-        {"axis": 1.0, "ampere": 0.4},
-        inf,
-        When.DRIVEN,
-        ("named", "stuck", "board names"),
-        "coil 1",
-    ),
-    Row(
-        "coil-on-by-itself",
-        COIL,
-        "coil_stuck_on",
-        {"axis": 1.0, "ampere": 0.4},
-        inf,
-        expect=("no other named", "stuck", "board names"),
-        unit="coil 1",
-    ),
+    *_coils("coil-stuck-on", "coil_stuck_on", "stuck", "board names", ampere=0.4),
     Row("bit-flip", UPSET, "bit_flip", {}, 1.0, expect=(*BUS, "recovers")),
 )
 """All rows, in the order of the page."""

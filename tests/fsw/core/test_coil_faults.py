@@ -52,6 +52,18 @@ def told_by_driver(**values):
     return change
 
 
+def conduct(plant, coil, ampere):
+    """Let a coil carry this current all the time."""
+    advance = plant._coils.advance
+
+    def stuck(driven_a, on_s, step_s):
+        current_a = list(driven_a if on_s else (0.0, 0.0, 0.0))
+        current_a[coil] = ampere
+        return advance(tuple(current_a), step_s, step_s)
+
+    plant._coils.advance = stuck
+
+
 @pytest.mark.requirement("REQ-COIL-01", "REQ-COIL-02", "REQ-COIL-03")
 @pytest.mark.parametrize(("factor", "kind"), [(0.0, 1), (0.1, 1), (0.5, 2), (-1.0, 3)])
 def test_a_wrong_current_names_the_coil_at_its_second_pulse(make_world, factor, kind):
@@ -102,25 +114,41 @@ def test_a_coil_that_is_named_is_not_fired_until_the_ground_clears_it(make_world
 
 class TestStuck:
     @pytest.mark.requirement("REQ-COIL-04")
-    def test_a_current_that_goes_on_after_a_pulse_leads_to_safe_and_its_coil_is_named(self, make_world):
+    @pytest.mark.parametrize(("coil", "ampere"), [(0, 0.4), (1, -0.4), (2, 0.4), (1, 0.05)])
+    def test_a_coil_that_conducts_by_itself_leads_to_safe_and_its_torque_names_it(
+        self, make_world, coil, ampere
+    ):
         world = make_world()
-        while not world.state.coil.driven_level:
-            world.fly(1)
-        pulse = world.state.coil.fired
-        rest = world.state.coil.fired_tick + world.config.coils.pulses.pulse_ticks - world.state.tick
-        fly(world, rest)
-        said = fly(world, 60, told_by_driver(level=0, current_ma=400))
-        stuck_ticks = world.config.coil_health.stuck_ticks
-        assert events(said, Event.COIL_FAULT) == [(stuck_ticks - 1, 100 * (pulse.coil + 1) + 4)]
+        world.fly(SETTLED)
+        conduct(world.plant, coil, ampere)
+        said = fly(world, 240)
+        ((tripped, monitor),) = events(said, Event.MONITOR_TRIPPED)
+        ((named, argument),) = events(said, Event.COIL_FAULT)
+        assert (monitor, argument) == (7, 100 * (coil + 1) + 4)
+        assert tripped < 8
+        assert named <= (60 if abs(ampere) == 0.4 else 120)
         assert world.state.modes.mode is Mode.SAFE
 
+    @pytest.mark.requirement("REQ-COIL-04", "REQ-COIL-05")
+    def test_it_is_named_too_if_it_begins_in_the_pulse_of_another(self, make_world):
+        world = make_world()
+        world.fly(SETTLED)
+        while not world.state.coil.driven_level:
+            world.fly(1)
+        coil = (world.state.coil.fired.coil + 1) % 3
+        conduct(world.plant, coil, 0.4)
+        assert [argument for _, argument in events(fly(world, 240), Event.COIL_FAULT)] == [
+            100 * (coil + 1) + 4
+        ]
+
     @pytest.mark.requirement("REQ-COIL-04")
-    @pytest.mark.parametrize("flown", [90, 120], ids=["before any pulse", "long after one"])
-    def test_a_current_out_of_nothing_leads_to_safe_and_names_nobody(self, make_world, flown):
+    @pytest.mark.parametrize("flown", [90, 106, 700], ids=["before any pulse", "after one", "settled"])
+    def test_a_current_that_turns_nothing_leads_to_safe_and_names_nobody(self, make_world, flown):
         world = make_world()
         world.fly(flown)
-        said = fly(world, 60, told_by_driver(level=0, current_ma=400))
-        assert events(said, Event.MONITOR_TRIPPED) == [(world.config.coil_health.stuck_ticks - 1, 7)]
+        said = fly(world, 120, told_by_driver(level=0, current_ma=400))
+        ((tripped, monitor),) = events(said, Event.MONITOR_TRIPPED)
+        assert (tripped, monitor) == (world.config.coil_health.stuck_ticks - 1, 7)
         assert events(said, Event.COIL_FAULT) == []
         assert world.state.modes.mode is Mode.SAFE
 

@@ -94,7 +94,15 @@ def test_the_board_names_the_coil_that_is_on(bounds):
     assert not checks.board_names(row, record(), bounds)[0]
     stuck = Row("planted", "", "none", unit="coil 2", expect=("stuck",))
     shorted = BoardEvent(101, CoilEventCode.CURRENT_WHILE_OFF, None)
+    beside = BoardEvent(101, CoilEventCode.CURRENT_WRONG, 0)
     assert checks.board_names(stuck, record(board=[shorted]), bounds)[0]
+    assert checks.board_names(stuck, record(board=[beside, shorted]), bounds)[0]
+    assert not checks.board_names(stuck, record(board=[other, shorted]), bounds)[0]
+
+
+def test_a_coil_that_conducts_by_itself_must_be_named_without_any_pulse_of_its_own(bounds):
+    row = Row("planted", "", "none", unit="coil 2", expect=("named", "stuck"))
+    assert checks.blamed_rightly(row, record(), bounds)[0] is False
 
 
 @pytest.mark.parametrize(("pulses", "holds"), [(4, None), (5, False)])
