@@ -41,7 +41,9 @@ GUARDS = {
     "interlock": Off("second-sender", "limits", ("hil_stub.interlock._REFUSED_IF", ())),
     "ticks that leap": Off("tick-far-ahead", "recovers", ("fsw.io.node.LEAP_TICKS", 2**31)),
     "freshness": Off("mag-board-dead", "silence named", ("fsw.core.monitors.MONITORS", WITHOUT_FRESHNESS)),
-    "monitors": Off("coil-stuck-on-1", "stuck", ("fsw.core.supervisor.first_violation", lambda watched: None)),
+    "monitors": Off(
+        "coil-stuck-on-1", "stuck", ("fsw.core.supervisor.first_violation", lambda watched: None)
+    ),
     "second sender": Off(
         "second-sender", "no request", ("fsw.core.step.second_sender.watch", lambda before, *seen: before)
     ),
