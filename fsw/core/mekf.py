@@ -182,8 +182,8 @@ def _update(
 ) -> Estimate | None:
     """The update of filterpy, judged by its own NIS and folded in."""
     kalman = _filter(config)
-    kalman.P = estimate.covariance
-    kalman.update(np.array(innovation), noise, sensitivity)
+    kalman.P, kalman.R = estimate.covariance, noise
+    kalman.update(np.array(innovation), H=sensitivity)
     nis, trace = float(kalman.y.dot(kalman.SI).dot(kalman.y)), estimate.trace
     if trace is not None:
         seen = sensitivity.dot(trace.effect)  # the operator @ takes twice as long for so small arrays
@@ -213,7 +213,7 @@ def unexplained(sums: Matrix) -> float:
 def _filter(config: MekfConfig) -> KalmanFilter:
     """A copy of the blank filter, made by hand: ``copy.copy`` takes as long as the prediction."""
     kalman = object.__new__(KalmanFilter)
-    kalman.__dict__.update(config.blank.__dict__)
+    kalman.__dict__ = config.blank.__dict__.copy()
     return kalman
 
 
