@@ -22,7 +22,7 @@ from fsw.core.quaternion import rotate
 from fsw.core.readings import Readings, admit
 from fsw.core.state import FlightState, Inbox, checksum, initial_state
 from fsw.core.supervisor import Verdict, supervise
-from fsw.core.throttle import throttled
+from fsw.core.throttle import Throttle, throttled
 from fsw.core.vector import ZERO
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilDipole, CoilFire, CountedMessage, TcAck, TickDone
@@ -55,13 +55,16 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     pulse_state, coil, request = actuate(
         state.pulses, state.coil, demand, seen.b_body_t, readings, tick, config.coils, state.coils.faults
     )
+    frames, events, sent = _report(before, state, readings, used, reference, verdict, acks, request, config)
     state = state._replace(
         sample=seen.sample,
         memory=demand.memory if demand is not None else (),
         pulses=pulse_state,
         coil=coil,
+        events=events,
+        sent=sent,
     )
-    return _report(before, state, readings, used, reference, verdict, acks, request, config)
+    return state, (*frames, TickDone(tick, checksum(state)).encode())
 
 
 def _gate(
@@ -177,7 +180,8 @@ def _report(
     acks: list[TcAck],
     request: CoilFire | CoilDipole | None,
     config: FlightConfig,
-) -> tuple[FlightState, Outbox]:
+) -> tuple[list[Frame], Throttle, tuple[int, ...]]:
+    """The frames of this tick without TICK_DONE, what events were told, and the counters of what was sent."""
     tick = state.tick
     messages: list[CountedMessage] = [] if request is None else [request]
     messages += acks
@@ -195,5 +199,4 @@ def _report(
     if config.rates.heartbeat.due(tick):
         messages.append(telemetry.heartbeat_message(tick, state.modes, state.gate.rejected))
     frames, sent = telemetry.number(messages, state.sent)
-    state = state._replace(events=events, sent=sent)
-    return state, (*frames, TickDone(tick, checksum(state)).encode())
+    return frames, events, sent
