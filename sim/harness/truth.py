@@ -7,6 +7,7 @@ space is taken at once, so that a disk that cannot hold the histories is known b
 
 import errno
 import os
+from array import array
 from itertools import chain
 from pathlib import Path
 from types import TracebackType
@@ -45,8 +46,8 @@ class TruthFile:
     """
 
     def __init__(self, path: Path, ticks: int, torque_sources: tuple[str, ...]) -> None:
-        columns = sum(width for _, width, *_ in COLUMNS) + 3 * len(torque_sources)
-        _take_space(path, 8 * ticks * columns + ROOM_FOR_STRUCTURE)
+        self._columns = sum(width for _, width, *_ in COLUMNS) + 3 * len(torque_sources)
+        _take_space(path, 8 * ticks * self._columns + ROOM_FOR_STRUCTURE)
         self._file = h5py.File(path, "w", libver="earliest")
         torques = tuple(
             (f"torque_body_nm/{source}", 3, "N m", f"torque by {source}, body axes")
@@ -60,23 +61,23 @@ class TruthFile:
             dataset.attrs["meaning"] = meaning
             dataset[0:1] = np.nan  # allocates the space now: the structure is final before the first row
             self._datasets.append((dataset, width))
-        self._rows: list[tuple[float, ...]] = []
+        self._waiting = array("d")
         self._written = 0
         self._file.flush()
         _take_space(path, path.stat().st_size)
 
     def append(self, row: TruthRow) -> None:
         """Add the row of the next tick."""
-        self._rows.append(_flat(row))
-        if len(self._rows) >= BLOCK_ROWS:
+        self._waiting.fromlist(_flat(row))
+        if len(self._waiting) >= BLOCK_ROWS * self._columns:
             self.flush()
 
     def flush(self) -> None:
         """Write the rows that wait."""
-        if not self._rows:
+        if not self._waiting:
             return
-        block = np.array(self._rows)
-        self._rows.clear()
+        block = np.array(self._waiting).reshape(-1, self._columns)
+        self._waiting = array("d")
         here = slice(self._written, self._written + len(block))
         column = 0
         for dataset, width in self._datasets:
@@ -139,8 +140,8 @@ def _complete_rows(history: NDArray[np.float64]) -> int:
     return int(np.isfinite(history.reshape(len(history), -1)).all(axis=1).sum())
 
 
-def _flat(row: TruthRow) -> tuple[float, ...]:
-    return (
+def _flat(row: TruthRow) -> list[float]:
+    return [
         row.t_s,
         *row.q_body_from_orbit,
         *row.omega_body_orbit_radps,
@@ -150,4 +151,4 @@ def _flat(row: TruthRow) -> tuple[float, ...]:
         *row.m_body_am2,
         *row.r_eci_m,
         *chain.from_iterable(row.torque_body_nm),
-    )
+    ]
