@@ -184,4 +184,5 @@ def _samples(rows: Array) -> list[Sample]:
 
 
 def _tuples(vectors: Array) -> list[Vec3]:
-    return [(x, y, z) for x, y, z in vectors.tolist()]
+    x, y, z = vectors.T.tolist()
+    return list(zip(x, y, z, strict=True))

@@ -62,7 +62,7 @@ class RigidBody:
         q, w = _advance(motion, mean, step_s / 6.0)
         return Motion(normalise(q), w)
 
-    def rates(self, motion: Motion, torque: Torque, around: Surroundings) -> "Rates":
+    def rates(self, motion: "Stage", torque: Torque, around: Surroundings) -> "Rates":
         """dq/dt [1/s] and dw/dt [rad/s^2], the right-hand side that ``step`` integrates."""
         q, w = motion
         tx, ty, tz = torque(q, w, around)
@@ -81,14 +81,17 @@ class RigidBody:
         )
 
 
+Stage = tuple[Quaternion, Vec3]
+"""Attitude and rate within a step; ``Motion`` is one."""
+
 Rates = tuple[Quaternion, Vec3]
 """dq/dt and dw/dt."""
 
 
-def _advance(motion: Motion, rates: Rates, step_s: float) -> Motion:
+def _advance(motion: Stage, rates: Rates, step_s: float) -> Stage:
     (q0, q1, q2, q3), (wx, wy, wz) = motion
     (a, b, c, d), (x, y, z) = rates
-    return Motion(
+    return (
         (q0 + step_s * a, q1 + step_s * b, q2 + step_s * c, q3 + step_s * d),
         (wx + step_s * x, wy + step_s * y, wz + step_s * z),
     )
