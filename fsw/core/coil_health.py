@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 from fsw.core import coil_blame, coil_rate, pulses
 from fsw.core.actuation import CoilView
-from fsw.core.coil_rate import Solution
 from fsw.core.estimator import EstimatorState
+from fsw.core.mekf import Estimate
 from fsw.core.mekf_config import MekfConfig
 from fsw.core.pulses import AXES, PulseConfig
 from fsw.core.quaternion import rotate
@@ -64,6 +64,29 @@ class CoilHealth(NamedTuple):
     strange_ticks: int = 0
     stray_ma: int = 0
     stuck: bool = False
+
+
+def driven_am2(health: CoilHealth, view: CoilView, timing: PulseConfig, config: CoilHealthConfig) -> Vec3:
+    """Dipole over the tick that has ended, body axes, a current included for which a coil is named.
+
+    Args:
+        health: of this tick.
+        view: after what was heard in this tick.
+        timing: of the pulses.
+        config: limits.
+    """
+    if not health.stray_ma or CoilFault.STUCK not in health.faults:
+        return view.driven_am2
+    return scale(_stray_am2(health, timing, config), AXES[health.faults.index(CoilFault.STUCK)])
+
+
+def turned_unawares(health: CoilHealth) -> bool:
+    """Whether a current turns the satellite, and nothing has told yet in which coil it flows."""
+    return health.stuck and health.stray_ma != 0 and CoilFault.STUCK not in health.faults
+
+
+def _stray_am2(health: CoilHealth, timing: PulseConfig, config: CoilHealthConfig) -> float:
+    return health.stray_ma / config.current_ma[-1] * timing.levels_am2[-1]
 
 
 def judge_current(
@@ -141,17 +164,16 @@ def judge_rate(
     """
     known, age = state.estimate, tick - view.fired_tick
     ended = age == timing.pulse_ticks and view.driven_level != 0
-    early = age % EARLY_TICKS == 0 and (state.rejected_in_a_row > 0 or health.stray_ma != 0)
+    stray = health.stray_ma != 0 and CoilFault.STUCK not in health.faults
+    early = age % EARLY_TICKS == 0 and (state.rejected_in_a_row > 0 or stray)
     due = ended or early or age == timing.backoff_ticks
-    if known is None or not (due or health.stray_ma):
+    if known is None or not (due or stray):
         return health, state
-    if health.stray_ma:
-        b_body_t = rotate(known.q_body_from_eci, b_eci_t)
-        kicks_radps = _stray_kicks(health.stray_ma, b_body_t, timing, config)
+    if stray:
+        kicks_radps = _stray_kicks(health, rotate(known.q_body_from_eci, b_eci_t), timing, config)
         known = coil_rate.carry(known, kicks_radps, timing.tick_s, begins=health.strange_ticks == 1)
     if due:
-        known, solution = coil_rate.solve(known, tuning)
-        health = _accused(health, solution, config) if solution is not None else health
+        health, known = _blamed(health, known, config, tuning)
     if ended and (view.driven_coil, view.driven_level) == view.fired:
         b_body_t = rotate(known.q_body_from_eci, b_eci_t)
         kick_radps = transform(config.inertia_inverse, pulses.impulse(view.fired, b_body_t, timing))
@@ -164,9 +186,9 @@ EARLY_TICKS = 5
 next pulse is due."""
 
 
-def _stray_kicks(current_ma: int, b_body_t: Vec3, timing: PulseConfig, config: CoilHealthConfig) -> Mat3:
-    """What the current would do to the rate in a tick, by coil."""
-    m_am2 = current_ma / config.current_ma[-1] * timing.levels_am2[-1]
+def _stray_kicks(health: CoilHealth, b_body_t: Vec3, timing: PulseConfig, config: CoilHealthConfig) -> Mat3:
+    """What the current that nobody asked for would do to the rate in a tick, by coil."""
+    m_am2 = _stray_am2(health, timing, config)
     first, second, third = (
         transform(config.inertia_inverse, scale(timing.tick_s * m_am2, cross(axis, b_body_t)))
         for axis in AXES
@@ -174,12 +196,20 @@ def _stray_kicks(current_ma: int, b_body_t: Vec3, timing: PulseConfig, config: C
     return first, second, third
 
 
-def _accused(health: CoilHealth, solution: Solution, config: CoilHealthConfig) -> CoilHealth:
-    accused = coil_blame.too_little(solution, config.weak_part, config.name_sigmas)
-    if accused is not None:
-        health = _named(health, accused.coil, _kind(accused.part, config))
-    conducting = coil_blame.conducting(solution) if health.stuck else None
-    return health if conducting is None else _named(health, conducting, CoilFault.STUCK)
+def _blamed(
+    health: CoilHealth, known: Estimate, config: CoilHealthConfig, tuning: MekfConfig
+) -> tuple[CoilHealth, Estimate]:
+    """With the coil named that the filter accuses, if any, and the estimate set right."""
+    known, solution = coil_rate.solve(known, tuning)
+    if solution is None:
+        return health, known
+    weak = coil_blame.too_little(solution, config.weak_part, config.name_sigmas)
+    if weak is not None:
+        health = _named(health, weak.coil, _kind(weak.part, config))
+    conducting = coil_blame.conducting(solution) if turned_unawares(health) else None
+    if conducting is None:
+        return health, known
+    return _named(health, conducting, CoilFault.STUCK), coil_rate.settle(known, conducting, tuning)
 
 
 REVERSED_PART = -0.5

@@ -96,6 +96,34 @@ def carry(known: Estimate, kicks_radps: Mat3, tick_s: float, begins: bool) -> Es
     return known._replace(trace=trace._replace(effect=effect))
 
 
+def settle(known: Estimate, coil: int, tuning: MekfConfig) -> Estimate:
+    """The estimate set right by a current that is known to flow in this coil, and that is carried no longer.
+
+    Args:
+        known: the estimate, which carries a current.
+        coil: in which it flows.
+        tuning: of the filter.
+
+    Raises:
+        ValueError: it carries no current.
+    """
+    trace = known.trace
+    if trace is None or STRAY not in trace.causes:
+        raise ValueError("no current is carried")
+    flows = trace.causes.index(STRAY + coil)
+    lacks = trace.effect[:, flows]
+    known = mekf.corrected(known, lacks, MODEL_ERROR**2 * np.outer(lacks, lacks), tuning)
+    known_effect = np.eye(len(trace.sums))
+    known_effect[flows, -1] = -1.0  # the innovations without what it has done to them
+    sums = known_effect.T @ trace.sums @ known_effect
+    kept = [index for index, cause in enumerate(trace.causes) if cause < STRAY]
+    places = [*kept, -1]
+    causes = tuple(trace.causes[index] for index in kept)
+    return known._replace(
+        trace=Trace(causes, trace.effect[:, places], sums[places][:, places], trace.measured)
+    )
+
+
 def _nothing(known: Estimate) -> Trace:
     return Trace((), np.zeros((len(known.covariance), 1)), np.zeros((1, 1)), 0)
 

@@ -112,8 +112,9 @@ def _estimate(
         known = perfect_attitude(readings, state.attitude)
         return state._replace(attitude=known), readings, reference, NONE_USED
     trusted = sensor_health.trusted(readings, state.sensors, reference)
+    driven_am2 = coil_health.driven_am2(state.coils, state.coil, config.coils.pulses, config.coil_health)
     estimator, used = estimate(
-        state.estimator, trusted, reference, state.coil.driven_am2, elapsed_ticks, config.estimator
+        state.estimator, trusted, reference, driven_am2, elapsed_ticks, config.estimator
     )
     seen = attitude(estimator, reference, config.estimator)
     sensors = sensor_health.judge(
@@ -143,6 +144,8 @@ def _estimate(
         )
     if sensors.doubted:
         estimator, seen = restart(estimator), UNKNOWN
+    if coil_health.turned_unawares(coils):
+        seen = seen._replace(valid=False)
     state = state._replace(estimator=estimator, sensors=sensors, coils=coils, attitude=seen)
     return state, trusted, reference, used
 

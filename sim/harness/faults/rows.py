@@ -240,7 +240,17 @@ ROWS: tuple[Row, ...] = (
     *_coils("coil-open", "coil_open", "board names"),
     *_coils("coil-reversed", "coil_wired", scale=-1.0),
     *_coils("coil-weak", "coil_wired", scale=0.3),
-    *_coils("coil-stuck-on", "coil_stuck_on", "stuck", "board names", ampere=0.4),
+    *_coils("coil-stuck-on", "coil_stuck_on", "bounded", "stuck", "board names", ampere=0.4),
+    Row(
+        "coil-stuck-on-in-eclipse",
+        COIL,
+        "coil_stuck_on",
+        {"axis": 2.0, "ampere": -0.4},
+        inf,
+        When.ECLIPSE,
+        ("no other named", "bounded", "stuck", "board names"),
+        "coil 2",
+    ),
     Row("bit-flip", UPSET, "bit_flip", {}, 1.0, expect=(*BUS, "recovers")),
 )
 """All rows, in the order of the page."""

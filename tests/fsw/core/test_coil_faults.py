@@ -52,6 +52,12 @@ def told_by_driver(**values):
     return change
 
 
+def error_deg(world):
+    q, known = world.plant.truth().q_body_from_orbit, world.state.attitude.q_body_from_orbit
+    cosine = abs(sum(a * b for a, b in zip(q, known, strict=True)))
+    return 2.0 * degrees(acos(min(1.0, cosine)))
+
+
 def conduct(plant, coil, ampere):
     """Let a coil carry this current all the time."""
     advance = plant._coils.advance
@@ -128,6 +134,24 @@ class TestStuck:
         assert tripped < 8
         assert named <= (60 if abs(ampere) == 0.4 else 120)
         assert world.state.modes.mode is Mode.SAFE
+        assert world.state.attitude.valid
+        assert error_deg(world) < 4.0
+        assert events(said, Event.FILTER_RESTARTED) == []
+
+    def test_until_then_no_attitude_is_called_valid_and_after_it_the_current_is_reckoned_with(
+        self, make_world
+    ):
+        world = make_world()
+        world.fly(SETTLED)
+        conduct(world.plant, 2, -0.4)
+        valid = []
+        while not any(world.state.coils.faults):
+            valid.append(world.state.attitude.valid)
+            world.fly(1)
+        assert valid == [True] * 6 + [False] * (len(valid) - 6)
+        world.fly(400)
+        assert world.state.attitude.valid
+        assert error_deg(world) < 4.0
 
     @pytest.mark.requirement("REQ-COIL-04", "REQ-COIL-05")
     def test_it_is_named_too_if_it_begins_in_the_pulse_of_another(self, make_world):
@@ -151,6 +175,7 @@ class TestStuck:
         assert (tripped, monitor) == (world.config.coil_health.stuck_ticks - 1, 7)
         assert events(said, Event.COIL_FAULT) == []
         assert world.state.modes.mode is Mode.SAFE
+        assert not world.state.attitude.valid
 
     @pytest.mark.requirement("REQ-COIL-04")
     def test_a_level_that_nobody_asked_for_trips_at_once_and_is_named_when_it_lasts(self, make_world):
@@ -201,9 +226,7 @@ class TestByTheRate:
         assert argument == named
         assert len([t for t, coil in fires(said) if coil == 0 and t < tick]) <= 2
         assert events(said, Event.SENSOR_ISOLATED) == events(said, Event.FILTER_RESTARTED) == []
-        q, known = world.plant.truth().q_body_from_orbit, world.state.attitude.q_body_from_orbit
-        cosine = abs(sum(a * b for a, b in zip(q, known, strict=True)))
-        assert 2.0 * degrees(acos(min(1.0, cosine))) < 1.0
+        assert error_deg(world) < 1.0
 
     @pytest.mark.requirement("REQ-COIL-05")
     def test_sound_coils_are_not(self, make_world):

@@ -8,7 +8,7 @@ import pytest
 
 from fsw.core import mekf
 from fsw.core.coil_blame import Accused, conducting, too_little
-from fsw.core.coil_rate import PULSES, STRAY, begin, carry, solve
+from fsw.core.coil_rate import PULSES, STRAY, begin, carry, settle, solve
 from fsw.core.mekf_config import mekf_config
 from fsw.core.pulses import AXES
 from fsw.core.quaternion import conjugate, multiply, normalise, rotate
@@ -199,10 +199,10 @@ def test_damaged_sums_accuse_nobody_and_raise_nothing(place, value):
         assert after.trace is None
 
 
-def fly_stray(flows, tuning=CONFIG, ticks=30):
+def fly_stray(flows, tuning=CONFIG, ticks=30, start=START, actual=START):
     """The estimate that reckons with 8 A m^2 in any of the coils, ``flows`` being the part in each."""
     random = np.random.default_rng(5)
-    truth = known = START
+    truth, known = actual, start
     for tick in range(ticks):
         truth = mekf.predict(truth, E1_ECI, B_ECI_T, 3e-6, scale(LEVEL_AM2, flows), tuning)
         known = mekf.predict(known, E1_ECI, B_ECI_T, 3e-6, ZERO, tuning)
@@ -252,3 +252,24 @@ def test_a_new_current_is_not_taken_for_the_one_before():
     assert again.trace.causes == (STRAY, STRAY + 1, STRAY + 2, 2)
     assert deviation(again) == pytest.approx([0.0] * 4, abs=1e-12)
     assert carry(again, (ZERO, ZERO, ZERO), 1.0, begins=False).trace.causes == again.trace.causes
+
+
+def test_a_current_that_is_known_at_last_sets_the_estimate_right_and_leaves_the_pulses_to_be_judged():
+    weak, moving = fly([0], [0.3])
+    known, truth = fly_stray(AXES[1], start=weak, actual=moving)
+    before = np.abs(error_state(known, truth))
+    settled = settle(known, 1, CONFIG)
+    after, accused = judged(settled)
+    assert np.abs(error_state(after, truth)).max() < 0.1 * before.max()
+    assert accused == Accused(0, pytest.approx(0.3, abs=0.15))
+    assert (settled.covariance.diagonal()[:6] > known.covariance.diagonal()[:6]).all()
+    assert settled.trace.causes == (0,)
+    assert left(settled) < 1.3 * settled.trace.measured, "what the current did is no longer unexplained"
+    assert left(settle(known, 0, CONFIG)) > 2.0 * settled.trace.measured
+
+
+def test_a_current_that_was_never_carried_cannot_be_settled():
+    known, _ = fly([0], [1.0])
+    for other in (START, known):
+        with pytest.raises(ValueError, match="no current is carried"):
+            settle(other, 1, CONFIG)
