@@ -134,7 +134,7 @@ def _strange(health: CoilHealth, status: CoilStatus, unasked: bool, config: Coil
     lasts = ticks >= config.stuck_ticks
     stray_ma = 0 if status.level else status.current_ma
     health = health._replace(strange_ticks=ticks, stray_ma=stray_ma, stuck=unasked or lasts)
-    return _named(health, status.coil, CoilFault.STUCK) if unasked and ticks == config.stuck_ticks else health
+    return _named(health, status.coil, CoilFault.STUCK) if unasked and lasts else health
 
 
 def judge_rate(

@@ -172,7 +172,7 @@ def solve(known: Estimate, tuning: MekfConfig) -> tuple[Estimate, Solution | Non
 def _solved(known: Estimate, trace: Trace, tuning: MekfConfig) -> tuple[Estimate, Solution | None]:
     covariance: Matrix = np.asarray(np.linalg.inv(trace.sums[:-1, :-1] + np.eye(len(trace.causes))), float)
     covariance = 0.5 * (covariance + covariance.T)
-    np.linalg.cholesky(covariance)  # raises where it is none: so does no inverse of a part of it later
+    np.linalg.cholesky(covariance)  # raises if it is not positive, lest an inverse of a part of it does later
     deviation = covariance @ trace.sums[:-1, -1]
     if mekf.unexplained(trace.sums) > UNEXPLAINED * trace.measured:
         return known, None
