@@ -2,6 +2,7 @@
 
 import struct
 import zlib
+from itertools import chain
 from typing import NamedTuple
 
 from fsw.core.actuation import CoilView
@@ -67,6 +68,7 @@ def checksum(state: FlightState) -> int:
     gate, modes, coil, pulses, attitude = state.gate, state.modes, state.coil, state.pulses, state.attitude
     field_watch, sun_watch, pair, doubted = state.sensors
     faults, wrong, *strange = state.coils
+    known, *refusals = state.estimator
     integers = (
         state.tick,
         state.field_tick,
@@ -74,17 +76,11 @@ def checksum(state: FlightState) -> int:
         state.ignored_syncs,
         state.time_error_s,
         *gate.counters,
-        gate.rejected,
-        gate.missed,
-        gate.overrun,
-        gate.heard,
-        gate.commanded,
+        *gate[1:],
         *state.second_sender,
         state.upload.come,
         state.orbit is not None,
-        state.estimator.rejected_in_a_row,
-        state.estimator.rejected_total,
-        state.estimator.restarts,
+        *refusals,
         *field_watch[:-1],
         *sun_watch[:-1],
         *pair,
@@ -109,7 +105,7 @@ def checksum(state: FlightState) -> int:
         coil.refusals,
         coil.fired_tick,
         *coil.fired,
-        *(number for told in state.events.told for number in told),
+        *chain.from_iterable(state.events.told),
         state.events.held_back,
         *state.sent,
     )
@@ -132,12 +128,11 @@ def checksum(state: FlightState) -> int:
     )
     if state.ephemeris is not None:
         floats += pack_values(state.ephemeris)
+    if known is not None:
+        floats += (*known.q_body_from_eci, *known.omega_body_radps, *known.mag_bias_t, *known.torque_body_nm)
     register = zlib.crc32(struct.pack(f"<{len(integers)}q{len(floats)}d", *integers, *floats))
-    known = state.estimator.estimate
     if known is None:
         return register
-    numbers = (*known.q_body_from_eci, *known.omega_body_radps, *known.mag_bias_t, *known.torque_body_nm)
-    register = zlib.crc32(struct.pack("<13d", *numbers), register)
     register = zlib.crc32(known.covariance.tobytes(), register)
     if known.trace is None:
         return register
