@@ -55,4 +55,7 @@ def seal(can_id: int, word: int, length: int, register: int) -> Frame:
 
 def raw(value: float, scale: float, low: int, high: int) -> int:
     """``value / scale`` as the nearest integer in ``[low, high]``; what is not a number becomes ``low``."""
-    return round(min(max(low, value / scale), high))  # max gives its first where the second is no number
+    units = value / scale
+    if units >= high:
+        return high
+    return round(units) if units > low else low
