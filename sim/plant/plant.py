@@ -143,7 +143,6 @@ class Plant:
 
     def end_tick(self) -> None:
         """Drive what the coil driver drives, and go on to the next tick."""
-        around = self._environment.stages(self._tick)
         self.driven = self.interference.driven(self._actuator.drive())
         driven_a, fraction = self.driven
         if self._noise:
@@ -155,7 +154,7 @@ class Plant:
             mx, my, mz = self._coils.advance(driven_a, on_s, step_s)
             sx, sy, sz = sx + mx, sy + my, sz + mz
             torque = self._torque((mx, my, mz))
-            motion = self._body.step(motion, torque, around[2 * substep : 2 * substep + 3], step_s)
+            motion = self._body.step(motion, torque, self._around[2 * substep : 2 * substep + 3], step_s)
         self.motion = motion
         self._flowed_am2 = (sx / substeps, sy / substeps, sz / substeps)
         self._tick += 1
@@ -166,7 +165,7 @@ class Plant:
         sample, disturbance = self._sample, self._config.disturbance
         q_body_from_orbit, omega_body_orbit_radps = self._relative()
         b_body_t, inertia = self._b_body_t, self._config.body.inertia_kgm2
-        around = self._environment.stages(self._tick)[0]
+        around = self._around[0]
         e_body = transform(self._body_from_eci, around.e_eci)
         return TruthRow(
             t_s=self._tick / self._config.tick_hz,
@@ -224,8 +223,9 @@ class Plant:
         )
 
     def _observe(self) -> None:
-        """Field and Sun in body axes at the instant of the tick."""
+        """What surrounds the satellite in this tick; field and Sun in body axes at its instant."""
         self._sample = sample = self._environment.sample(self._tick)
+        self._around = self._environment.stages(self._tick)
         self._body_from_eci = matrix(self.motion.q_body_from_eci)
         self._b_body_t = transform(self._body_from_eci, sample.b_eci_t)
         self._sun_body = transform(self._body_from_eci, sample.sun_eci)
