@@ -6,7 +6,8 @@ sixth is the filter's: it refuses one sensor tick after tick while it takes the 
 other. Each bad tick raises the suspicion against a sensor and each good one lowers it, so that noise and the
 filter's transients name nobody.
 What the filter refuses counts in full where field and Sun contradict each other, and less where the filter
-itself may be what is wrong.
+itself may be what is wrong. That it is, its other states tell: a filter that began with a wrong sensor can
+explain it for minutes, by a bias or a disturbance that cannot be. Such a one names nobody, but begins anew.
 
 A sensor that is named is left out of the filter until it has been consistent for a time.
 """
@@ -69,7 +70,8 @@ AGAINST_ESTIMATE = 4
 class SensorHealthConfig:
     """Limits of the checks; ``name_suspicion`` names a sensor, ``readmit_ticks`` good samples bring it back.
 
-    ``field_noise_t`` and ``sun_noise_rad`` are the largest deviations that are noise.
+    ``field_noise_t`` and ``sun_noise_rad`` are the largest deviations that are noise, ``max_bias_t`` and
+    ``max_torque_nm`` the largest bias and disturbance with which an estimate is believed against a sensor.
     """
 
     max_field_error_t: float
@@ -77,6 +79,8 @@ class SensorHealthConfig:
     max_angle_error_rad: float
     field_noise_t: float
     sun_noise_rad: float
+    max_bias_t: float
+    max_torque_nm: float
     frozen_ticks: int
     silent_ticks: int
     name_suspicion: int
@@ -105,7 +109,7 @@ class SensorHealth(NamedTuple):
     """Both sensors, by themselves and as a pair.
 
     ``doubted``: the estimate is to begin anew in this tick. Both sensors agree for long, but not with it; or
-    they contradict each other before it has proved itself.
+    they contradict each other before it has proved itself; or it would name one, or has, and is not credible.
     """
 
     field: Watch = Watch()
@@ -171,20 +175,22 @@ def judge(
     b_before, s_before = health.field, health.sun
     b_refused = field is not None and not (used.field or b_cause or b_before.fault) and known is not None
     s_refused = sun is not None and not (used.sun or s_cause or s_before.fault) and known is not None
-    seen, pair, sure = field is not None and sun is not None, health.pair, proven(health.pair, config.pair)
+    refused, seen = b_refused or s_refused, field is not None and sun is not None
+    pair, sure = health.pair, proven(health.pair, config.pair)
     if not sure or known is None or pair.apart:
         flawed = bool(b_cause or s_cause)
+        wrong = apart or (refused and not _credible(known, config))
         compared = Compared(
             seen=seen,
             agree=not (apart or flawed),
-            unexplained=apart and not (flawed or b_before.fault or s_before.fault),
+            unexplained=wrong and not (flawed or b_before.fault or s_before.fault),
             known=known is not None,
             took_both=used.field and used.sun,
-            refused=b_refused or s_refused,
+            refused=refused,
         )
         pair = judge_pair(pair, compared, config.pair)
     b_weight = s_weight = FULL
-    if sure and (b_refused or s_refused):
+    if sure and refused:
         doubt = FULL if apart else SLIGHT
         if b_refused and (used.sun or sun is None):
             b_cause, b_weight = SensorFault.REFUSED, doubt
@@ -194,6 +200,9 @@ def judge(
             (b_cause, b_weight), (s_cause, s_weight) = (b_before.cause, 0), (s_before.cause, 0)
     b_watch = _watched(b_before, _of_field(readings.field), s_before, b_cause, b_weight, config)
     s_watch = _watched(s_before, _of_sun(readings.sun), b_before, s_cause, s_weight, config)
+    if SensorFault.REFUSED in (b_watch.fault, s_watch.fault) and not _credible(known, config):
+        again = Pair(config.pair.say_ticks, True, -config.pair.agree_ticks)
+        return SensorHealth(_unnamed(b_watch), _unnamed(s_watch), again, True)
     doubted = known is not None and pair.contradictory and not health.pair.contradictory
     if b_watch.fault or s_watch.fault:
         agree = seen and not (apart or b_cause or s_cause)
@@ -238,6 +247,18 @@ def _plain_checks(
     seen = dot(field, sun) / (strength * size)
     expected = dot(reference.b_eci_t, reference.sun_eci) / modelled
     return b_cause, s_cause, abs(_angle(seen) - _angle(expected)) > config.max_angle_error_rad
+
+
+def _credible(known: "Estimate | None", config: SensorHealthConfig) -> bool:
+    """Whether the estimate, if there is one, needs no bias or disturbance that cannot be."""
+    if known is None:
+        return True
+    return norm(known.mag_bias_t) <= config.max_bias_t and norm(known.torque_body_nm) <= config.max_torque_nm
+
+
+def _unnamed(watch: Watch) -> Watch:
+    """The watch without what only the estimate said."""
+    return Watch(sample=watch.sample) if watch.fault == SensorFault.REFUSED else watch
 
 
 def _watched(

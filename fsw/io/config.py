@@ -152,6 +152,8 @@ def _sensors(table: FlightTable) -> SensorHealthConfig:
         max_angle_error_rad=radians(fdir.max_angle_error_deg),
         field_noise_t=sigmas * tuning.magnetometer_sigma_nt * NT,
         sun_noise_rad=sigmas * radians(tuning.sun_sigma_deg),
+        max_bias_t=sigmas * tuning.bias_sigma_nt * NT,
+        max_torque_nm=sigmas * tuning.torque_sigma_nm,
         frozen_ticks=max(1, _ticks(fdir.frozen_s, tick_hz)),
         silent_ticks=max(1, _ticks(table.modes.stale_after_s, tick_hz)),
         name_suspicion=FULL * max(1, _ticks(fdir.name_s, tick_hz)),

@@ -32,6 +32,8 @@ CONFIG = SensorHealthConfig(
     max_angle_error_rad=radians(5.0),
     field_noise_t=8e-7,
     sun_noise_rad=0.035,
+    max_bias_t=2e-6,
+    max_torque_nm=4e-7,
     frozen_ticks=12,
     silent_ticks=17,
     name_suspicion=FULL * 10,
@@ -428,6 +430,63 @@ class TestContradiction:
             flight.step()
         flight.step(used=NEITHER, known=None)
         assert flight.health.pair.proof == 0
+
+
+class TestCredibility:
+    """An estimate that began with a wrong sensor explains it by what cannot be."""
+
+    BIASED = KNOWN._replace(mag_bias_t=(1.3e-6, -1.2e-6, 1.1e-6))
+    TURNED = KNOWN._replace(torque_body_nm=(-2.6e-7, 2.4e-7, 2.2e-7))
+    AT_THE_LIMITS = KNOWN._replace(mag_bias_t=(1.2e-6, -1.2e-6, 1.0e-6), torque_body_nm=(-2e-7, 2e-7, 2.5e-7))
+    again = Pair(CONFIG.pair.say_ticks, True, -CONFIG.pair.agree_ticks)
+
+    @pytest.mark.requirement("REQ-SENSOR-04", "REQ-SENSOR-07")
+    @pytest.mark.parametrize("known", [BIASED, TURNED], ids=["bias", "disturbance"])
+    @pytest.mark.parametrize("used", [SUN_ONLY, FIELD_ONLY])
+    def test_it_names_nobody_and_begins_anew(self, flight, known, used):
+        for _ in range(9):
+            assert flight.step(b=MIRRORED, used=used, known=known) == (0, 0)
+            assert not flight.health.doubted
+        assert flight.step(b=MIRRORED, used=used, known=known) == (0, 0)
+        assert flight.health.doubted
+        assert flight.health.pair == self.again
+
+    @pytest.mark.parametrize("used", [SUN_ONLY, FIELD_ONLY])
+    def test_up_to_the_limits_it_names(self, flight, used):
+        _, (field, sun) = flight.until_named(b=MIRRORED, used=used, known=self.AT_THE_LIMITS)
+        assert (field, sun) == ((REFUSED, 0) if used is SUN_ONLY else (0, REFUSED))
+        assert not flight.health.doubted
+
+    @pytest.mark.requirement("REQ-SENSOR-07")
+    @pytest.mark.parametrize("known", [BIASED, TURNED], ids=["bias", "disturbance"])
+    def test_a_name_does_not_outlive_it(self, flight, known):
+        assert flight.until_named(b=MIRRORED, used=SUN_ONLY) == (10, (REFUSED, 0))
+        assert flight.step(b=MIRRORED, used=SUN_ONLY) == (REFUSED, 0)
+        assert flight.step(b=MIRRORED, used=SUN_ONLY, known=known) == (0, 0)
+        assert flight.health.doubted
+        assert flight.health.pair == self.again
+
+    def test_what_is_wrong_by_itself_stays_named(self, flight):
+        assert flight.until_named(b=LONGER, used=SUN_ONLY, known=self.BIASED) == (10, (STRENGTH, 0))
+        for _ in range(30):
+            assert flight.step(b=LONGER, used=SUN_ONLY, known=self.BIASED) == (STRENGTH, 0)
+            assert not flight.health.doubted
+
+    def test_without_a_refusal_nothing_speaks_against_it(self, flight):
+        for _ in range(3 * CONFIG.pair.prove_ticks):
+            assert flight.step(known=self.BIASED) == (0, 0)
+            assert not flight.health.doubted
+        assert flight.health.pair == Pair(proof=CONFIG.pair.prove_ticks)
+
+    @pytest.mark.requirement("REQ-SENSOR-07")
+    @pytest.mark.parametrize(("known", "ends"), [(TURNED, True), (AT_THE_LIMITS, False)])
+    def test_unproven_it_ends_by_refusals_though_the_angle_is_right(self, flight, known, ends):
+        flight.health = SensorHealth()
+        doubted = []
+        for _ in range(CONFIG.pair.say_ticks):
+            assert flight.step(used=SUN_ONLY, known=known) == (0, 0)
+            doubted.append(flight.health.doubted)
+        assert doubted == [False] * (CONFIG.pair.say_ticks - 1) + [ends]
 
 
 def test_the_geometry_of_these_tests_hides_nothing():

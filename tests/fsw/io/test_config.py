@@ -113,7 +113,13 @@ class TestTicks:
             "readmit_s": 250.0,
             "prove_s": 140.0,
         }
-        tuning = {"gate_nis": 16.0, "magnetometer_sigma_nt": 150.0, "sun_sigma_deg": 0.3}
+        tuning = {
+            "gate_nis": 16.0,
+            "magnetometer_sigma_nt": 150.0,
+            "sun_sigma_deg": 0.3,
+            "bias_sigma_nt": 350.0,
+            "torque_sigma_nm": 2e-7,
+        }
         config = configured(
             time={"tick_hz": 10}, modes={"stale_after_s": 50.0}, estimator=tuning, fdir=fdir
         ).sensors
@@ -123,6 +129,8 @@ class TestTicks:
             max_angle_error_rad=pytest.approx(radians(6.0)),
             field_noise_t=pytest.approx(6e-7),
             sun_noise_rad=pytest.approx(radians(1.2)),
+            max_bias_t=pytest.approx(1.4e-6),
+            max_torque_nm=pytest.approx(8e-7),
             frozen_ticks=120,
             silent_ticks=500,
             name_suspicion=210 * BAD_TICK,
