@@ -10,7 +10,7 @@ from fsw.core.laws.interface import ControlConfig
 from fsw.core.modes import ModeConfig
 from fsw.core.rates import RateTable
 from fsw.core.second_sender import SecondSenderConfig
-from fsw.core.sensor_health import SensorHealthConfig
+from fsw.core.sensor_watch import SensorHealthConfig
 
 
 @dataclass(frozen=True, slots=True)

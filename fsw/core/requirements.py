@@ -12,8 +12,9 @@ from fsw.core.earth import RADIUS_M
 from fsw.core.events import Event
 from fsw.core.monitors import RATE_LIMIT_RADPS, UNIT_TOLERANCE, Monitor
 from fsw.core.second_sender import SIGNS
-from fsw.core.sensor_health import AGAINST_ESTIMATE, SHADOW_M, SensorFault
+from fsw.core.sensor_health import SHADOW_M
 from fsw.core.sensor_pair import MISFIT
+from fsw.core.sensor_watch import AGAINST_ESTIMATE, SensorFault
 
 
 class Requirement(NamedTuple):

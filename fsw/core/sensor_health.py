@@ -12,97 +12,35 @@ explain it for minutes, by a bias or a disturbance that cannot be. Such a one na
 A sensor that is named is left out of the filter until it has been consistent for a time.
 """
 
-from dataclasses import dataclass
-from enum import IntEnum
 from math import acos
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from fsw.core.earth import RADIUS_M
+from fsw.core.ephemeris import Reference
+from fsw.core.estimator import Used
+from fsw.core.mekf import Estimate
 from fsw.core.quaternion import rotate
 from fsw.core.readings import Readings
-from fsw.core.sensor_pair import MISFIT, Compared, Pair, PairConfig, judge_pair, proven
+from fsw.core.sensor_pair import Compared, Pair, judge_pair, proven
+from fsw.core.sensor_watch import (
+    DARK,
+    FULL,
+    SLIGHT,
+    STILL,
+    SensorFault,
+    SensorHealthConfig,
+    Watch,
+    as_foretold,
+    probed,
+    watched,
+)
 from fsw.core.sun import lit
-from fsw.core.vector import ZERO, Vec3, add, dot, norm, sub
+from fsw.core.vector import Vec3, add, dot, norm
 from fsw.wire.messages import MagField, SunVector
-
-if TYPE_CHECKING:  # who only wants the names of sensors and faults need not load the filter
-    from fsw.core.ephemeris import Reference
-    from fsw.core.estimator import Used
-    from fsw.core.mekf import Estimate
-
-
-class Sensor(IntEnum):
-    """Numbers of the sensors, as named on the bus."""
-
-    MAGNETOMETER = 1
-    SUN_SENSOR = 2
-
-
-class SensorFault(IntEnum):
-    """What is wrong with a sensor, as named on the bus."""
-
-    SATURATED = 1
-    STRENGTH = 2
-    FROZEN = 3
-    REFUSED = 4
-    SILENT = 5
-    UNLIT = 6
-
-
-FULL, SLIGHT = 3, 2
-"""Suspicion of a bad tick: of a check, and of the filter alone. A good tick takes ``FULL`` back."""
-
-STILL = 10
-"""A sample counts as still after this part of the time in which it counts as frozen."""
-
-DARK: Vec3 = (0.0, 0.0, 0.0)
-"""The sample of a Sun sensor that sees nothing."""
 
 SHADOW_M = RADIUS_M - 100e3
 """Radius of what is shadow for certain: the Earth is flattened by 21 km, half the penumbra of a low orbit is
 15 km wide, and the position may be off by tens of km."""
-
-AGAINST_ESTIMATE = 4
-"""So many times longer both sensors must agree before they are believed against the estimate."""
-
-
-@dataclass(frozen=True, slots=True)
-class SensorHealthConfig:
-    """Limits of the checks; ``name_suspicion`` names a sensor, ``readmit_ticks`` good samples bring it back.
-
-    ``field_noise_t`` and ``sun_noise_rad`` are the largest deviations that are noise, ``max_bias_t`` and
-    ``max_torque_nm`` the largest bias and disturbance with which an estimate is believed against a sensor.
-    """
-
-    max_field_error_t: float
-    max_norm_error: float
-    max_angle_error_rad: float
-    field_noise_t: float
-    sun_noise_rad: float
-    max_bias_t: float
-    max_torque_nm: float
-    frozen_ticks: int
-    silent_ticks: int
-    name_suspicion: int
-    readmit_ticks: int
-    pair: PairConfig
-
-
-class Watch(NamedTuple):
-    """One sensor: its fault (0: none), what it is suspected of and how much, and its last sample.
-
-    ``same``: ticks for which the valid sample has not moved; ``missing``: ticks without a sample; ``good``:
-    samples that the estimate foretold while it is left out, ``agreed`` those that the other sensor bears out.
-    """
-
-    fault: int = 0
-    cause: int = 0
-    suspicion: int = 0
-    same: int = 0
-    missing: int = 0
-    good: int = 0
-    agreed: int = 0
-    sample: Vec3 = ZERO
 
 
 class SensorHealth(NamedTuple):
@@ -118,7 +56,7 @@ class SensorHealth(NamedTuple):
     doubted: bool = False
 
 
-def trusted(readings: Readings, health: SensorHealth, reference: "Reference") -> Readings:
+def trusted(readings: Readings, health: SensorHealth, reference: Reference) -> Readings:
     """The readings without those of a sensor that is left out, and without a Sun where none can be.
 
     Without the Sun too while the pair has to agree: no estimate begins then.
@@ -145,9 +83,9 @@ def judge(
     readings: Readings,
     field: Vec3 | None,
     sun: Vec3 | None,
-    reference: "Reference",
-    used: "Used",
-    known: "Estimate | None",
+    reference: Reference,
+    used: Used,
+    known: Estimate | None,
     sigma3_rad: float,
     config: SensorHealthConfig,
 ) -> SensorHealth:
@@ -198,8 +136,8 @@ def judge(
             s_cause, s_weight = SensorFault.REFUSED, doubt
         elif b_refused and s_refused:  # which of them is wrong this tick does not tell: all stays as it was
             (b_cause, b_weight), (s_cause, s_weight) = (b_before.cause, 0), (s_before.cause, 0)
-    b_watch = _watched(b_before, _of_field(readings.field), s_before, b_cause, b_weight, config)
-    s_watch = _watched(s_before, _of_sun(readings.sun), b_before, s_cause, s_weight, config)
+    b_watch = watched(b_before, _of_field(readings.field), s_before, b_cause, b_weight, config)
+    s_watch = watched(s_before, _of_sun(readings.sun), b_before, s_cause, s_weight, config)
     if SensorFault.REFUSED in (b_watch.fault, s_watch.fault) and not _credible(known, config):
         again = Pair(config.pair.say_ticks, True, -config.pair.agree_ticks)
         return SensorHealth(_unnamed(b_watch), _unnamed(s_watch), again, True)
@@ -212,24 +150,24 @@ def judge(
                 if known is None
                 else add(rotate(known.q_body_from_eci, reference.b_eci_t), known.mag_bias_t)
             )
-            fits = not b_cause and _fits(field, agree, foretold, config.field_noise_t, sigma3_rad)
-            b_watch, b_doubted = _probed(b_watch, fits, agree, config)
+            fits = not b_cause and as_foretold(field, agree, foretold, config.field_noise_t, sigma3_rad)
+            b_watch, b_doubted = probed(b_watch, fits, agree, config)
             doubted = doubted or b_doubted
         if s_watch.fault and lamp is not None:
             foretold = None if known is None else rotate(known.q_body_from_eci, reference.sun_eci)
-            fits = not s_cause and _fits(lamp, agree, foretold, config.sun_noise_rad, sigma3_rad)
-            s_watch, s_doubted = _probed(s_watch, fits, agree, config)
+            fits = not s_cause and as_foretold(lamp, agree, foretold, config.sun_noise_rad, sigma3_rad)
+            s_watch, s_doubted = probed(s_watch, fits, agree, config)
             doubted = doubted or s_doubted
     return SensorHealth(b_watch, s_watch, pair, doubted)
 
 
-def _unlit(reference: "Reference") -> bool:
+def _unlit(reference: Reference) -> bool:
     """Whether no Sun can be seen, whatever the model does not know."""
     return not (reference.lit or lit(reference.r_eci_m, reference.sun_eci, SHADOW_M))
 
 
 def _plain_checks(
-    field: Vec3 | None, sun: Vec3 | None, reference: "Reference", config: SensorHealthConfig
+    field: Vec3 | None, sun: Vec3 | None, reference: Reference, config: SensorHealthConfig
 ) -> tuple[int, int, bool]:
     """What speaks against field and Sun by themselves, and whether their angle is not the modelled one."""
     b_cause = s_cause = 0
@@ -249,7 +187,7 @@ def _plain_checks(
     return b_cause, s_cause, abs(_angle(seen) - _angle(expected)) > config.max_angle_error_rad
 
 
-def _credible(known: "Estimate | None", config: SensorHealthConfig) -> bool:
+def _credible(known: Estimate | None, config: SensorHealthConfig) -> bool:
     """Whether the estimate, if there is one, needs no bias or disturbance that cannot be."""
     if known is None:
         return True
@@ -259,51 +197,6 @@ def _credible(known: "Estimate | None", config: SensorHealthConfig) -> bool:
 def _unnamed(watch: Watch) -> Watch:
     """The watch without what only the estimate said."""
     return Watch(sample=watch.sample) if watch.fault == SensorFault.REFUSED else watch
-
-
-def _watched(
-    watch: Watch, said: Vec3 | None, other: Watch, cause: int, weight: int, config: SensorHealthConfig
-) -> Watch:
-    """The watch after a tick, ``said`` being the raw sample, ``DARK`` where there was nothing to be seen."""
-    if said is None:
-        return _unheard(watch, config)
-    fault, before, suspicion, same, _, good, agreed, sample = watch
-    same = same + 1 if said == sample and said is not DARK else 0
-    if fault:
-        return Watch(fault, before, 0, same, 0, good, agreed, said)
-    if same >= config.frozen_ticks > 2 * other.same:
-        return Watch(SensorFault.FROZEN, same=same, sample=said)
-    if not cause:
-        return Watch(0, before, suspicion - FULL if suspicion > FULL else 0, same, 0, 0, 0, said)
-    suspicion += weight
-    if suspicion >= config.name_suspicion:
-        return Watch(cause, same=same, sample=said)
-    return Watch(0, cause, suspicion, same, 0, 0, 0, said)
-
-
-def _unheard(watch: Watch, config: SensorHealthConfig) -> Watch:
-    missing = watch.missing + 1
-    if missing < config.silent_ticks or watch.fault:
-        return watch._replace(missing=missing)
-    return Watch(SensorFault.SILENT, missing=missing, sample=watch.sample)
-
-
-def _probed(watch: Watch, fits: bool, agree: bool, config: SensorHealthConfig) -> tuple[Watch, bool]:
-    """A sensor that is left out, back when enough samples were good; and whether the estimate is doubted."""
-    good = watch.good + 1 if fits and watch.same == 0 else max(0, watch.good - MISFIT)
-    agreed = watch.agreed + 1 if agree and watch.same == 0 else max(0, watch.agreed - MISFIT)
-    if good >= config.readmit_ticks:
-        return Watch(sample=watch.sample), False
-    if agreed >= AGAINST_ESTIMATE * config.readmit_ticks:
-        return Watch(sample=watch.sample), True
-    return watch._replace(good=good, agreed=agreed), False
-
-
-def _fits(sample: Vec3, agree: bool, foretold: Vec3 | None, noise: float, sigma3_rad: float) -> bool:
-    """Whether a sample is what the estimate foretells; without one, whether both sensors agree."""
-    if foretold is None:
-        return agree
-    return norm(sub(sample, foretold)) < noise + sigma3_rad * norm(foretold)
 
 
 def _of_field(said: MagField | None) -> Vec3 | None:

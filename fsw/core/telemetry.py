@@ -7,7 +7,7 @@ from fsw.core.events import SEVERITY, Event, Happening
 from fsw.core.modes import ModeState
 from fsw.core.monitors import Monitor
 from fsw.core.readings import Readings
-from fsw.core.sensor_health import Sensor
+from fsw.core.sensor_watch import Sensor
 from fsw.core.state import FlightState
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (

@@ -17,8 +17,8 @@ from fsw.core.orbit import Orbit, circular_orbit, sgp4_orbit
 from fsw.core.pulses import PulseConfig, pulse_timing
 from fsw.core.rates import RateGroup, RateTable
 from fsw.core.second_sender import SecondSenderConfig
-from fsw.core.sensor_health import AGAINST_ESTIMATE, FULL, SensorHealthConfig
 from fsw.core.sensor_pair import PairConfig
+from fsw.core.sensor_watch import AGAINST_ESTIMATE, FULL, SensorHealthConfig
 from fsw.core.vector import inverse, product
 from fsw.io.schedules import schedules
 from fsw.io.schema import TableError

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from fsw.core.events import Event as Number
 from fsw.core.monitors import Monitor
-from fsw.core.sensor_health import Sensor
+from fsw.core.sensor_watch import Sensor
 from hil_stub.events import CoilEventCode
 from sim.harness.faults.record import Event, Record
 

@@ -14,7 +14,8 @@ from fsw.core.laws.table import LAWS
 from fsw.core.modes import ModeState
 from fsw.core.orbit import element_orbit, sgp4_orbit, state_eci
 from fsw.core.readings import NOTHING, TELECOMMANDS
-from fsw.core.sensor_health import SensorHealth, Watch
+from fsw.core.sensor_health import SensorHealth
+from fsw.core.sensor_watch import Watch
 from fsw.core.state import checksum
 from fsw.core.step import boot
 from fsw.wire.messages import (

@@ -4,7 +4,7 @@ from math import acos, degrees, hypot
 
 import pytest
 
-from fsw.core.sensor_health import AGAINST_ESTIMATE
+from fsw.core.sensor_watch import AGAINST_ESTIMATE
 from fsw.core.telemetry import Event
 from fsw.wire.messages import FswEvent, MagField, Mode, SunVector
 

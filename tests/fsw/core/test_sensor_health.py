@@ -12,17 +12,9 @@ from fsw.core.estimator import Used, usable_field, usable_sun
 from fsw.core.mekf import Estimate
 from fsw.core.quaternion import normalise, rotate
 from fsw.core.readings import NOTHING
-from fsw.core.sensor_health import (
-    AGAINST_ESTIMATE,
-    FULL,
-    SLIGHT,
-    SensorFault,
-    SensorHealth,
-    SensorHealthConfig,
-    judge,
-    trusted,
-)
+from fsw.core.sensor_health import SensorHealth, judge, trusted
 from fsw.core.sensor_pair import MISFIT, Pair, PairConfig
+from fsw.core.sensor_watch import AGAINST_ESTIMATE, FULL, SLIGHT, SensorFault, SensorHealthConfig
 from fsw.core.vector import norm, scale, sub
 from fsw.wire.messages import CoilStatus, MagField, SunVector
 

@@ -9,9 +9,9 @@ from fsw.core.laws.interface import Setpoint
 from fsw.core.modes import TABLE
 from fsw.core.orbit import CircularOrbit, Sgp4Orbit
 from fsw.core.rates import RateGroup
-from fsw.core.sensor_health import FULL as BAD_TICK
-from fsw.core.sensor_health import SensorHealthConfig
 from fsw.core.sensor_pair import PairConfig
+from fsw.core.sensor_watch import FULL as BAD_TICK
+from fsw.core.sensor_watch import SensorHealthConfig
 from fsw.io.config import flight_config
 from fsw.io.schema import TableError, merge
 from fsw.io.table import flight_table
