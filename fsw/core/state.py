@@ -2,7 +2,6 @@
 
 import struct
 import zlib
-from itertools import chain
 from typing import NamedTuple
 
 from fsw.core.actuation import CoilView
@@ -105,7 +104,7 @@ def checksum(state: FlightState) -> int:
         coil.refusals,
         coil.fired_tick,
         *coil.fired,
-        *chain.from_iterable(state.events.told),
+        *(number for told in state.events.told for number in told),
         state.events.held_back,
         *state.sent,
     )
