@@ -117,7 +117,7 @@ REQUIREMENTS: tuple[Requirement, ...] = (
         "REQ-SENSOR-07",
         "Before the filter has taken both for long, sensors that contradict each other name nobody: this is "
         "said, the filter ends, and does not begin before they have agreed for longer. Likewise when a "
-        "filter refuses one that finds a larger bias or disturbance than there can be.",
+        "filter that finds a larger bias or disturbance than there can be refuses one; it proves nothing.",
         f"`fdir.max_angle_error_deg` for `fdir.name_s`; agreed for {AGAINST_ESTIMATE} times `fdir.readmit_s`,"
         f" a bad sample undoing {MISFIT}; the square root of `estimator.gate_nis` times "
         "`estimator.bias_sigma_nt`, `estimator.torque_sigma_nm`",

@@ -7,7 +7,7 @@ other. Each bad tick raises the suspicion against a sensor and each good one low
 filter's transients name nobody.
 What the filter refuses counts in full where field and Sun contradict each other, and less where the filter
 itself may be what is wrong. That it is, its other states tell: a filter that began with a wrong sensor can
-explain it for minutes, by a bias or a disturbance that cannot be. Such a one names nobody, but begins anew.
+explain it for minutes, by a bias or a disturbance that cannot be. That proves nothing.
 
 A sensor that is named is left out of the filter until it has been consistent for a time.
 """
@@ -47,7 +47,7 @@ class SensorHealth(NamedTuple):
     """Both sensors, by themselves and as a pair.
 
     ``doubted``: the estimate is to begin anew in this tick. Both sensors agree for long, but not with it; or
-    they contradict each other before it has proved itself; or it would name one, or has, and is not credible.
+    they contradict each other before it has proved itself.
     """
 
     field: Watch = Watch()
@@ -117,13 +117,14 @@ def judge(
     pair, sure = health.pair, proven(health.pair, config.pair)
     if not sure or known is None or pair.apart:
         flawed = bool(b_cause or s_cause)
-        wrong = apart or (refused and not _credible(known, config))
+        credible = _credible(known, config)
+        wrong = apart or (refused and not credible)
         compared = Compared(
             seen=seen,
             agree=not (apart or flawed),
             unexplained=wrong and not (flawed or b_before.fault or s_before.fault),
             known=known is not None,
-            took_both=used.field and used.sun,
+            took_both=used.field and used.sun and credible,
             refused=refused,
         )
         pair = judge_pair(pair, compared, config.pair)
@@ -138,9 +139,6 @@ def judge(
             (b_cause, b_weight), (s_cause, s_weight) = (b_before.cause, 0), (s_before.cause, 0)
     b_watch = watched(b_before, _of_field(readings.field), s_before, b_cause, b_weight, config)
     s_watch = watched(s_before, _of_sun(readings.sun), b_before, s_cause, s_weight, config)
-    if SensorFault.REFUSED in (b_watch.fault, s_watch.fault) and not _credible(known, config):
-        again = Pair(config.pair.say_ticks, True, -config.pair.agree_ticks)
-        return SensorHealth(_unnamed(b_watch), _unnamed(s_watch), again, True)
     doubted = known is not None and pair.contradictory and not health.pair.contradictory
     if b_watch.fault or s_watch.fault:
         agree = seen and not (apart or b_cause or s_cause)
@@ -192,11 +190,6 @@ def _credible(known: Estimate | None, config: SensorHealthConfig) -> bool:
     if known is None:
         return True
     return norm(known.mag_bias_t) <= config.max_bias_t and norm(known.torque_body_nm) <= config.max_torque_nm
-
-
-def _unnamed(watch: Watch) -> Watch:
-    """The watch without what only the estimate said."""
-    return Watch(sample=watch.sample) if watch.fault == SensorFault.REFUSED else watch
 
 
 def _of_field(said: MagField | None) -> Vec3 | None:

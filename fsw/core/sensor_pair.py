@@ -28,8 +28,8 @@ class Compared(NamedTuple):
     """One tick.
 
     ``seen``: there are both; ``agree``: nothing speaks against them; ``unexplained``: their angle is wrong,
-    or an estimate that is not credible refuses one, and neither is known to be wrong. ``took_both`` and
-    ``refused`` (any) tell of the estimate, if it is ``known``.
+    or an estimate that is not credible refuses one, and neither is known to be wrong. ``took_both`` (and is
+    credible) and ``refused`` (any) tell of the estimate, if it is ``known``.
     """
 
     seen: bool

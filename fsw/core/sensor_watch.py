@@ -44,7 +44,7 @@ class SensorHealthConfig:
     """Limits of the checks; ``name_suspicion`` names a sensor, ``readmit_ticks`` good samples bring it back.
 
     ``field_noise_t`` and ``sun_noise_rad`` are the largest deviations that are noise, ``max_bias_t`` and
-    ``max_torque_nm`` the largest bias and disturbance with which an estimate is believed against a sensor.
+    ``max_torque_nm`` the largest bias and disturbance with which an estimate proves itself.
     """
 
     max_field_error_t: float

@@ -430,45 +430,30 @@ class TestCredibility:
     BIASED = KNOWN._replace(mag_bias_t=(1.3e-6, -1.2e-6, 1.1e-6))
     TURNED = KNOWN._replace(torque_body_nm=(-2.6e-7, 2.4e-7, 2.2e-7))
     AT_THE_LIMITS = KNOWN._replace(mag_bias_t=(1.2e-6, -1.2e-6, 1.0e-6), torque_body_nm=(-2e-7, 2e-7, 2.5e-7))
-    again = Pair(CONFIG.pair.say_ticks, True, -CONFIG.pair.agree_ticks)
-
-    @pytest.mark.requirement("REQ-SENSOR-04", "REQ-SENSOR-07")
-    @pytest.mark.parametrize("known", [BIASED, TURNED], ids=["bias", "disturbance"])
-    @pytest.mark.parametrize("used", [SUN_ONLY, FIELD_ONLY])
-    def test_it_names_nobody_and_begins_anew(self, flight, known, used):
-        for _ in range(9):
-            assert flight.step(b=MIRRORED, used=used, known=known) == (0, 0)
-            assert not flight.health.doubted
-        assert flight.step(b=MIRRORED, used=used, known=known) == (0, 0)
-        assert flight.health.doubted
-        assert flight.health.pair == self.again
-
-    @pytest.mark.parametrize("used", [SUN_ONLY, FIELD_ONLY])
-    def test_up_to_the_limits_it_names(self, flight, used):
-        _, (field, sun) = flight.until_named(b=MIRRORED, used=used, known=self.AT_THE_LIMITS)
-        assert (field, sun) == ((REFUSED, 0) if used is SUN_ONLY else (0, REFUSED))
-        assert not flight.health.doubted
 
     @pytest.mark.requirement("REQ-SENSOR-07")
-    @pytest.mark.parametrize("known", [BIASED, TURNED], ids=["bias", "disturbance"])
-    def test_a_name_does_not_outlive_it(self, flight, known):
-        assert flight.until_named(b=MIRRORED, used=SUN_ONLY) == (10, (REFUSED, 0))
-        assert flight.step(b=MIRRORED, used=SUN_ONLY) == (REFUSED, 0)
-        assert flight.step(b=MIRRORED, used=SUN_ONLY, known=known) == (0, 0)
-        assert flight.health.doubted
-        assert flight.health.pair == self.again
-
-    def test_what_is_wrong_by_itself_stays_named(self, flight):
-        assert flight.until_named(b=LONGER, used=SUN_ONLY, known=self.BIASED) == (10, (STRENGTH, 0))
-        for _ in range(30):
-            assert flight.step(b=LONGER, used=SUN_ONLY, known=self.BIASED) == (STRENGTH, 0)
-            assert not flight.health.doubted
-
-    def test_without_a_refusal_nothing_speaks_against_it(self, flight):
+    @pytest.mark.parametrize(
+        ("known", "proof"),
+        [(BIASED, 0), (TURNED, 0), (AT_THE_LIMITS, CONFIG.pair.prove_ticks)],
+        ids=["bias", "disturbance", "at the limits"],
+    )
+    def test_what_it_takes_proves_nothing(self, flight, known, proof):
+        flight.health = SensorHealth()
         for _ in range(3 * CONFIG.pair.prove_ticks):
-            assert flight.step(known=self.BIASED) == (0, 0)
+            assert flight.step(known=known) == (0, 0)
             assert not flight.health.doubted
-        assert flight.health.pair == Pair(proof=CONFIG.pair.prove_ticks)
+        assert flight.health.pair == Pair(proof=proof)
+
+    @pytest.mark.requirement("REQ-SENSOR-04")
+    @pytest.mark.parametrize("known", [BIASED, TURNED], ids=["bias", "disturbance"])
+    @pytest.mark.parametrize("used", [SUN_ONLY, FIELD_ONLY])
+    def test_one_that_was_credible_until_a_sensor_drew_it_away_names_the_sensor(self, flight, known, used):
+        """As a magnetometer that saturates little by little does."""
+        assert flight.until_named(b=MIRRORED, used=used, known=known) == (
+            10,
+            (REFUSED, 0) if used is SUN_ONLY else (0, REFUSED),
+        )
+        assert not flight.health.doubted
 
     @pytest.mark.requirement("REQ-SENSOR-07")
     @pytest.mark.parametrize(("known", "ends"), [(TURNED, True), (AT_THE_LIMITS, False)])
