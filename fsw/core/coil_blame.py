@@ -1,10 +1,10 @@
-"""Whom what was solved for accuses: a coil whose pulses did too little, or one that conducts by itself."""
+"""Which coil the solution accuses: one whose pulses did too little, or one that conducts by itself."""
 
 from typing import NamedTuple
 
 import numpy as np
 
-from fsw.core.coil_rate import CERTAIN, MODEL_ERROR, STRAY, Solution
+from fsw.core.coil_rate import CERTAIN, MODEL_ERROR, STRAY, Solution, indices_of
 
 CLEAR = 0.25
 """Standard deviation of what a coil does from which on one fault can be told from another."""
@@ -28,7 +28,7 @@ def too_little(solution: Solution, weak_part: float, name_sigmas: float) -> Accu
     causes, deviation, covariance = solution
     weak = {causes[index] for index in np.flatnonzero(deviation < weak_part - 1.0)}
     for coil in sorted(weak & {0, 1, 2}):
-        own = solution.of(coil)
+        own = indices_of(coil, causes)
         for count in range(1, len(own) + 1):
             latest = own[:count]
             noise = covariance[np.ix_(latest, latest)] + MODEL_ERROR**2 * np.eye(count)

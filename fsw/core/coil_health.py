@@ -82,7 +82,12 @@ def driven_am2(health: CoilHealth, view: CoilView, timing: PulseConfig, config: 
 
 def turned_unawares(health: CoilHealth) -> bool:
     """Whether a current turns the satellite, and nothing has told yet in which coil it flows."""
-    return health.stuck and health.stray_ma != 0 and CoilFault.STUCK not in health.faults
+    return health.stuck and _flows_somewhere(health)
+
+
+def _flows_somewhere(health: CoilHealth) -> bool:
+    """Whether there is a current that nobody asked for, and no coil is named for it."""
+    return health.stray_ma != 0 and CoilFault.STUCK not in health.faults
 
 
 def _stray_am2(health: CoilHealth, timing: PulseConfig, config: CoilHealthConfig) -> float:
@@ -147,7 +152,7 @@ def judge_rate(
     config: CoilHealthConfig,
     tuning: MekfConfig,
 ) -> tuple[CoilHealth, EstimatorState]:
-    """Hold what the filter had to correct after pulses against what these should have done.
+    """Hold what the filter had to correct against what pulses, and a current unasked for, should have done.
 
     Args:
         health: of the tick before.
@@ -160,11 +165,11 @@ def judge_rate(
         tuning: of the filter.
 
     Returns:
-        The health, and the estimator, set right where a pulse was certainly not what it was taken for.
+        The health, and the estimator, set right where a coil certainly did not what it was taken to do.
     """
     known, age = state.estimate, tick - view.fired_tick
     ended = age == timing.pulse_ticks and view.driven_level != 0
-    stray = health.stray_ma != 0 and CoilFault.STUCK not in health.faults
+    stray = _flows_somewhere(health)
     early = age % EARLY_TICKS == 0 and (state.rejected_in_a_row > 0 or stray)
     due = ended or early or age == timing.backoff_ticks
     if known is None or not (due or stray):

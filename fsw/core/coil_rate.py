@@ -52,9 +52,10 @@ class Solution(NamedTuple):
     deviation: Matrix
     covariance: Matrix
 
-    def of(self, cause: int) -> list[int]:
-        """The indices of what is of this cause, the latest first."""
-        return [index for index, other in enumerate(self.causes) if other == cause]
+
+def indices_of(cause: int, causes: tuple[int, ...]) -> list[int]:
+    """Where this cause stands, the latest first."""
+    return [index for index, other in enumerate(causes) if other == cause]
 
 
 def begin(known: Estimate, coil: int, kick_radps: Vec3, pulse_s: float) -> Estimate:
@@ -67,7 +68,7 @@ def begin(known: Estimate, coil: int, kick_radps: Vec3, pulse_s: float) -> Estim
         pulse_s: its length.
     """
     trace = known.trace or _nothing(known)
-    own = [index for index, cause in enumerate(trace.causes) if cause == coil]
+    own = indices_of(coil, trace.causes)
     if len(own) == PULSES:
         trace = _forgotten(trace, own[-1])
     effect = np.array((*scale(0.5 * pulse_s, kick_radps), *kick_radps))
@@ -113,9 +114,9 @@ def settle(known: Estimate, coil: int, tuning: MekfConfig) -> Estimate:
     flows = trace.causes.index(STRAY + coil)
     lacks = trace.effect[:, flows]
     known = mekf.corrected(known, lacks, MODEL_ERROR**2 * np.outer(lacks, lacks), tuning)
-    known_effect = np.eye(len(trace.sums))
-    known_effect[flows, -1] = -1.0  # the innovations without what it has done to them
-    sums = known_effect.T @ trace.sums @ known_effect
+    without = np.eye(len(trace.sums))
+    without[flows, -1] = -1.0  # the innovations less what the current has done to them
+    sums = without.T @ trace.sums @ without
     kept = [index for index, cause in enumerate(trace.causes) if cause < STRAY]
     places = [*kept, -1]
     causes = tuple(trace.causes[index] for index in kept)

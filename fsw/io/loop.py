@@ -27,7 +27,7 @@ class LoopBus(can.BusABC):
         can.CanInitializationError: the bus cannot be opened.
     """
 
-    def __init__(self, channel: int | str | None = None, **kwargs: Any) -> None:  # noqa: ANN401
+    def __init__(self, channel: int | str | None = None, **kwargs: Any) -> None:  # noqa: ANN401  (as in python-can)
         try:
             spec = resolve(f"loop:{DEFAULT_LOOP_PORT if channel is None else channel}")
             self._link = LoopLink(int(spec.removeprefix("loop:")))

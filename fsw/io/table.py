@@ -144,7 +144,7 @@ class ControlTable(Section):
     parameters. ``minimiser`` is how a continuous driver finds the dipole of a predictive law.
     """
 
-    law: Literal[tuple(LAWS)]  # type: ignore[valid-type]
+    law: Literal[tuple(LAWS)]  # type: ignore[valid-type]  # names that are known when it is loaded
     k_w: NotNegative
     k_a: NotNegative
     k_i: NotNegative = 0.0

@@ -148,7 +148,8 @@ class TestStuck:
         while not any(world.state.coils.faults):
             valid.append(world.state.attitude.valid)
             world.fly(1)
-        assert valid == [True] * 6 + [False] * (len(valid) - 6)
+        stuck_ticks = world.config.coil_health.stuck_ticks
+        assert valid == [True] * (stuck_ticks + 1) + [False] * (len(valid) - stuck_ticks - 1)
         world.fly(400)
         assert world.state.attitude.valid
         assert error_deg(world) < 4.0
