@@ -7,6 +7,7 @@ import time
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
+from typing import TextIO
 
 import click
 
@@ -23,7 +24,7 @@ from hil_stub.bench import (
     MagnetometerBoard,
     SunBoard,
 )
-from hil_stub.coil_driver import CoilLimits
+from hil_stub.coil_driver import CoilLimits, Pin
 from hil_stub.stimulus import (
     NOTHING,
     Reading,
@@ -51,27 +52,64 @@ def now_ms() -> int:
     return time.monotonic_ns() // 1_000_000
 
 
-def run(bench: Bench, bus: Bus, poll_s: float = POLL_S, parent: int | None = None) -> None:
-    """Serve the bus until the plant says that the run is over.
+class PinLog:
+    """Each change of the coil outputs as a line: what a logic analyser would show of a real board.
+
+    ``1234 on 2 -3 until 4234``: since 1234 ms of this machine's monotonic clock coil 2 is on at level -3, and
+    the timer that was armed with it ends that at 4234 ms. ``2345 off``: something else has ended it before.
+
+    Args:
+        file: where the lines go; each is handed over at once.
+    """
+
+    def __init__(self, file: TextIO) -> None:
+        self._file = file
+        self._shown: Pin | None = None
+
+    def note(self, at_ms: int, pin: Pin | None) -> None:
+        """What is on at this instant."""
+        if pin == self._shown:
+            return
+        said = "off" if pin is None else f"on {pin.coil} {pin.level}"
+        timer = "" if pin is None or pin.until_ms is None else f" until {pin.until_ms}"
+        self._file.write(f"{at_ms} {said}{timer}\n")
+        self._file.flush()
+        self._shown = pin
+
+
+def run(bench: Bench, bus: Bus, pins: PinLog | None = None, parent: int | None = None) -> None:
+    """Serve the bus until the process is ended.
 
     Args:
         bench: the board.
         bus: where it lives.
-        poll_s: how often time is looked at while the bus is silent.
-        parent: process that started this one; when it is gone the run is over.
+        pins: takes each change of the outputs.
+        parent: process that started this one; when it is gone there is nobody to serve.
     """
     bus.send(bench.switch_on(now_ms=now_ms()))
-    while not bench.ended:
-        frame = bus.receive(poll_s)
+    while parent is None or os.getppid() == parent:
+        frame = bus.receive(_patience_s(bench.due_ms()))
+        at_ms = now_ms()
         if frame is None:
-            bench.watch(now_ms())
-            if parent is not None and os.getppid() != parent:
-                return
-        elif answer := bench.receive(frame, now_ms()):
+            bench.watch(at_ms)
+        elif answer := bench.receive(frame, at_ms):
             bus.send(answer)
+        if pins is not None:
+            pins.note(at_ms, bench.pin)
 
 
-def _serve(spec: str, make_board: Callable[[], Board], deadman_s: float = 0.0, clock: str = "ticks") -> None:
+def _patience_s(due_ms: int | None) -> float:
+    """How long to wait for a frame: no longer than until something is due without one."""
+    return POLL_S if due_ms is None else min(POLL_S, max(0.0, (due_ms - now_ms()) / 1000.0))
+
+
+def _serve(
+    spec: str,
+    make_board: Callable[[], Board],
+    deadman_s: float = 0.0,
+    clock: str = "ticks",
+    pins: TextIO | None = None,
+) -> None:
     deadman_ms = round(1000.0 * deadman_s) or None
     bench = Bench(make_board, deadman_ms, has_clock=clock == "own")
     try:
@@ -81,7 +119,7 @@ def _serve(spec: str, make_board: Callable[[], Board], deadman_s: float = 0.0, c
     click.echo(f"on {resolve(spec)}", err=True)
     try:
         parent = click.get_current_context().find_root().params["parent"]
-        run(bench, bus, min(POLL_S, deadman_s / 4.0) if deadman_ms else POLL_S, parent)
+        run(bench, bus, PinLog(pins) if pins is not None else None, parent)
     except BusError as error:
         raise click.ClickException(str(error)) from error
     except KeyboardInterrupt:
@@ -189,7 +227,7 @@ _SHOWN = {"ignore_unknown_options": True}  # so that --stimulus takes negative n
 @click.group()
 @click.option("--parent", type=int, hidden=True)
 def cli(parent: int | None) -> None:
-    """Run one board on a bus. Ends when the plant does, or on Ctrl-C."""
+    """Run one board on a bus, until Ctrl-C: a bench is not over when a plant says so."""
 
 
 @cli.command()
@@ -233,6 +271,11 @@ def cli(parent: int | None) -> None:
     show_default=True,
     help="own: a clock beside the ticks of the bus; ticks: none, where ticks are not real time.",
 )
+@click.option(
+    "--pins",
+    type=click.File("w", lazy=False),
+    help="Write each change of the coil outputs here, with its time (-: stdout).",
+)
 def coil(
     spec: str,
     tick_hz: int,
@@ -242,13 +285,14 @@ def coil(
     levels_ma: Vec3,
     deadman_s: float,
     clock: str,
+    pins: TextIO | None,
 ) -> None:
     """The coil driver with its interlock, locked out at the start."""
     limits = CoilLimits(tick_hz, round(1000.0 * pulse_s), round(1000.0 * backoff_s), backoff == "shared")
     if not 0.0 < levels_ma[0] < levels_ma[1] < levels_ma[2]:
         raise click.UsageError("--levels-ma must be three rising currents above 0")
     level_a = scaled(levels_ma, 1e-3)
-    _serve(spec, lambda: CoilBoard(limits, level_a), deadman_s, clock)
+    _serve(spec, lambda: CoilBoard(limits, level_a), deadman_s, clock, pins)
 
 
 @cli.command()

@@ -4,8 +4,8 @@ from collections.abc import Callable
 from typing import Protocol
 
 from fsw.wire.frame import Frame
-from fsw.wire.messages import PlantBoot, PlantEnd, Sync, TickDone, intact
-from hil_stub.coil_driver import CoilDriver, CoilLimits
+from fsw.wire.messages import PlantBoot, Sync, TickDone, intact
+from hil_stub.coil_driver import CoilDriver, CoilLimits, Pin
 from hil_stub.dipole_driver import DipoleDriver
 from hil_stub.magnetometer import Magnetometer
 from hil_stub.read_back import ReadBack
@@ -20,16 +20,26 @@ LEVEL_A = (0.1, 0.2, 0.3)
 
 
 class Board(Protocol):
-    """A board with its stimulus: enters ticks, hears frames."""
+    """A board with its stimulus: enters ticks, hears frames.
+
+    ``clock_ms`` is what its own clock reads; None: it has none.
+    """
 
     def begin_tick(self, tick: int, clock_ms: int | None) -> list[Frame]:
-        """Enter ``tick``, the board's own clock reading ``clock_ms``: the frames to send."""
+        """Enter ``tick``: the frames to send."""
 
-    def receive(self, frame: Frame) -> None:
+    def receive(self, frame: Frame, clock_ms: int | None) -> None:
         """Hear a frame of the bus."""
 
-    def silence(self) -> None:
+    def pass_time(self, clock_ms: int | None) -> None:
+        """Nothing has come."""
+
+    def silence(self, clock_ms: int | None) -> None:
         """There has been no ``SYNC`` for too long."""
+
+    @property
+    def pin(self) -> Pin | None:
+        """The coil that is on at the instant that the board was last told of."""
 
 
 class CoilBoard:
@@ -45,21 +55,43 @@ class CoilBoard:
         self._level_a = (0.0, *level_a)
 
     def begin_tick(self, tick: int, clock_ms: int | None) -> list[Frame]:
-        """Enter ``tick``; the current is that at the end of the tick before."""
+        """Enter ``tick``; the current is that at this instant, for ticks alone the end of the tick before."""
         drive = self._driver.drive()
-        current_a = self._level_a[abs(drive.level)] if drive.fraction == 1.0 else 0.0
+        flows = drive.fraction == 1.0 or clock_ms is not None
+        current_a = self._level_a[abs(drive.level)] if flows else 0.0
         return self._driver.begin_tick(tick, current_a if drive.level > 0 else -current_a, clock_ms)
 
-    def receive(self, frame: Frame) -> None:
+    def receive(self, frame: Frame, clock_ms: int | None) -> None:
         """Hear a frame of the bus."""
-        self._driver.receive(frame)
+        self._driver.receive(frame, clock_ms)
 
-    def silence(self) -> None:
+    def pass_time(self, clock_ms: int | None) -> None:
+        """A pulse may end."""
+        self._driver.pass_time(clock_ms)
+
+    def silence(self, clock_ms: int | None) -> None:
         """All off, and a full back-off from now on."""
-        self._driver.silence()
+        self._driver.silence(clock_ms)
+
+    @property
+    def pin(self) -> Pin | None:
+        """The coil that is on."""
+        return self._driver.pin
 
 
-class DipoleBoard:
+class Unguarded:
+    """What a board that drives no pulses does about time and silence: nothing."""
+
+    pin = None
+
+    def pass_time(self, clock_ms: int | None) -> None:
+        """Nothing of it depends on time."""
+
+    def silence(self, clock_ms: int | None) -> None:
+        """Nothing of it goes on for longer than a tick."""
+
+
+class DipoleBoard(Unguarded):
     """A continuous driver whose coils are without current when the sensors sample."""
 
     def __init__(self, tick_hz: int) -> None:
@@ -70,15 +102,12 @@ class DipoleBoard:
         self._driver.drive()
         return self._driver.begin_tick(tick, 0.0)
 
-    def receive(self, frame: Frame) -> None:
+    def receive(self, frame: Frame, clock_ms: int | None) -> None:
         """Hear a frame of the bus."""
         self._driver.receive(frame)
 
-    def silence(self) -> None:
-        """What it drives ends by itself with the tick."""
 
-
-class SensorBoard:
+class SensorBoard(Unguarded):
     """A sensor: what it hears, and that it is left alone, is nothing to it."""
 
     def __init__(self, begin_tick: Callable[[int, Vec3, bool], list[Frame]], stimulus: Stimulus) -> None:
@@ -90,11 +119,8 @@ class SensorBoard:
         vector, valid = self._stimulus(tick)
         return self._begin_tick(tick, vector, valid)
 
-    def receive(self, frame: Frame) -> None:
+    def receive(self, frame: Frame, clock_ms: int | None) -> None:
         """A sensor hears nothing."""
-
-    def silence(self) -> None:
-        """A sensor guards nothing."""
 
 
 class MagnetometerBoard(SensorBoard):
@@ -114,11 +140,13 @@ class SunBoard(SensorBoard):
 class Bench:
     """Enters the ticks of the bus: k + 1 when ``TICK_DONE(k)`` has come, or ``SYNC(k + 1)`` at the latest.
 
-    The board vouches for its timers only while it counts every tick. When it has lost count (two ``SYNC``
-    in a row name consecutive ticks that are not its own), or when the plant has started anew, it is replaced
+    The board vouches for its timers only while it counts every tick. When it has lost count (two strange
+    ``SYNC`` in a row, of one tick or of one and the next), or when the plant has started anew, it is replaced
     by a new one, which boots: for the coil driver a full lockout. One strange ``SYNC`` alone moves nothing.
+    ``PLANT_END`` is nothing to it: a bench is switched off, not told that it is over.
 
-    The dead-man: when ``SYNC`` has stayed away for ``deadman_ms`` the board is silenced, until it is back.
+    The dead-man: when no ``SYNC`` has gone on in the count of ticks for ``deadman_ms``, the board is silenced
+    until one does. One that only repeats the tick of the last is no sign of life.
 
     Args:
         make_board: makes a board that has just been switched on.
@@ -134,10 +162,14 @@ class Bench:
         self._has_clock = has_clock
         self._board = make_board()
         self._tick = 0
+        self._synced_tick: int | None = None
         self._strange_sync: int | None = None
         self._now_ms = self._synced_ms = 0
-        self.ended = False
-        """The plant has said that the run is over."""
+
+    @property
+    def pin(self) -> Pin | None:
+        """The coil that is on at the time that the bench was last told of; None: all are off."""
+        return self._board.pin
 
     def switch_on(self, tick: int = 0, now_ms: int = 0) -> list[Frame]:
         """A new board, its first tick being ``tick``: the frames to send.
@@ -148,14 +180,14 @@ class Bench:
         """
         self._board = self._make_board()
         self._tick = tick
-        self._strange_sync = None
+        self._synced_tick = self._strange_sync = None
         self._now_ms = self._synced_ms = now_ms
         return self._enter()
 
     def receive(self, frame: Frame, now_ms: int = 0) -> list[Frame]:
         """Hear a frame of the bus: the frames to send because of it."""
         self.watch(now_ms)
-        self._board.receive(frame)
+        self._board.receive(frame, self._clock_ms)
         if not intact(frame):
             return []
         match frame.can_id:
@@ -165,26 +197,33 @@ class Bench:
                 return self._follow(Sync.decode(frame.data).tick)
             case PlantBoot.ID if self._tick > 0:
                 return self.switch_on(now_ms=now_ms)
-            case PlantEnd.ID:
-                self.ended = True
         return []
 
     def watch(self, now_ms: int) -> None:
-        """Time goes on: the dead-man, where nothing is heard too."""
+        """Time goes on, also where nothing is heard: pulses end, and the dead-man wakes."""
         self._now_ms = now_ms
+        self._board.pass_time(self._clock_ms)
         if self._deadman_ms is not None and now_ms - self._synced_ms > self._deadman_ms:
-            self._board.silence()
+            self._board.silence(self._clock_ms)
+
+    def due_ms(self) -> int | None:
+        """When ``watch`` is due next although nothing is heard; None: whenever."""
+        pin = self.pin
+        due_ms = [] if pin is None or pin.until_ms is None else [pin.until_ms]
+        if self._deadman_ms is not None and self._now_ms - self._synced_ms <= self._deadman_ms:
+            due_ms.append(self._synced_ms + self._deadman_ms + 1)
+        return min(due_ms, default=None)
 
     def _follow(self, tick: int) -> list[Frame]:
         strange, self._strange_sync = self._strange_sync, None
-        if tick == self._tick:
-            self._synced_ms = self._now_ms
-            return []
-        if tick == self._tick + 1:
-            self._synced_ms = self._now_ms
-            return self._next_tick()
-        if strange is not None and tick == strange + 1:
-            return self.switch_on(tick, self._now_ms)
+        if tick in (self._tick, self._tick + 1):
+            if tick != self._synced_tick:
+                self._synced_tick, self._synced_ms = tick, self._now_ms
+            return self._next_tick() if tick > self._tick else []
+        if strange is not None and tick in (strange, strange + 1):
+            frames = self.switch_on(tick, self._now_ms)
+            self._synced_tick = tick
+            return frames
         self._strange_sync = tick
         return []
 
@@ -193,4 +232,8 @@ class Bench:
         return self._enter()
 
     def _enter(self) -> list[Frame]:
-        return self._board.begin_tick(self._tick, self._now_ms if self._has_clock else None)
+        return self._board.begin_tick(self._tick, self._clock_ms)
+
+    @property
+    def _clock_ms(self) -> int | None:
+        return self._now_ms if self._has_clock else None

@@ -19,7 +19,7 @@ from hil_stub.node import Node
 from hil_stub.read_back import ReadBack
 from hil_stub.refusals import MAX_REFUSALS, Refusals
 
-__all__ = ["MAX_REFUSALS", "OFF", "BoardState", "CoilDriver", "CoilLimits", "Drive"]
+__all__ = ["MAX_REFUSALS", "OFF", "BoardState", "CoilDriver", "CoilLimits", "Drive", "Pin"]
 
 NAMED_BYTES = 3
 """Bytes that a ``COIL_FIRE`` must have for its ``coil`` and ``seq`` to be read."""
@@ -45,11 +45,26 @@ class Drive(NamedTuple):
 OFF = Drive(0, 0, 0.0)
 
 
+class Pin(NamedTuple):
+    """The output that is on at this instant: ``level`` on ``coil``.
+
+    ``until_ms``: when the board's own clock ends it, whatever comes or does not come by then; None: the board
+    has no clock. A board arms a timer with it when the pulse begins, and needs nothing more to end it.
+    """
+
+    coil: int
+    level: int
+    until_ms: int | None
+
+
 class CoilDriver:
     """A board that drives at most one coil at a time, and only as the interlock allows.
 
     In each tick: ``begin_tick``, then ``receive`` for each frame of the bus, then ``drive``. A request that
     comes after ``drive``, or before the first tick, answers no tick and is refused as one of a wrong tick.
+
+    A board with a clock of its own is told the time with each of these, and by ``pass_time`` when nothing
+    comes: then a pulse ends when the first of clock and ticks says so, a back-off when the last does.
 
     With a read-back the current is checked against what is driven. The first check after boot is the
     self-test: with all coils off no current flows. As long as one does, every request is refused.
@@ -90,13 +105,13 @@ class CoilDriver:
         Args:
             tick: number of the tick that begins.
             current_a: read-back of the coil current at this tick [A].
-            clock_ms: the board's own clock, if it has one [ms]. Then a pulse ends when the first of clock and
-                ticks says so, a back-off when the last does.
+            clock_ms: the board's own clock, if it has one [ms].
         """
+        self._guard.pass_time(clock_ms)
         elapsed = self._node.advance(tick)
         if elapsed is None:
             return []
-        self._guard.elapse(elapsed, clock_ms)
+        self._guard.elapse(elapsed)
         self._answered = tick
         frames = self._node.boot()
         frames.append(self._status(tick, current_a))
@@ -105,21 +120,27 @@ class CoilDriver:
         frames += self._node.heartbeat(self._board_state(), self.rejects)
         return frames
 
-    def silence(self) -> None:
+    def pass_time(self, clock_ms: int | None) -> None:
+        """Nothing has come, and the board's own clock reads ``clock_ms``; None: it has none."""
+        self._guard.pass_time(clock_ms)
+
+    def silence(self, clock_ms: int | None = None) -> None:
         """The dead-man: no ``SYNC`` for too long. All off, and a full back-off that begins now.
 
         Called on and on as long as it is silent. ``COIL_EVENT`` tells it when the board next enters a tick.
         """
+        self._guard.pass_time(clock_ms)
         self._guard.silence()
         self._silenced = True
 
-    def receive(self, frame: Frame) -> None:
+    def receive(self, frame: Frame, clock_ms: int | None = None) -> None:
         """Take a frame of the bus, whole or not at all; only ``COIL_FIRE`` matters.
 
         A frame that fails the gate (unknown id, flags, length, CRC) is counted in ``rejects``. If its id is
         that of ``COIL_FIRE`` and it is long enough to name a coil and a sequence number, it is also refused
         as malformed, under the names that it bears.
         """
+        self._guard.pass_time(clock_ms)
         if not intact(frame):
             self.rejects += 1
             if frame.can_id == CoilFire.ID and len(frame.data) >= NAMED_BYTES:
@@ -143,6 +164,12 @@ class CoilDriver:
         self._answered = None
         guard = self._guard
         return Drive(guard.coil, guard.level, guard.fraction) if guard.on else OFF
+
+    @property
+    def pin(self) -> Pin | None:
+        """What is on at the instant that the board was last told of; None: all coils are off."""
+        guard = self._guard
+        return Pin(guard.coil, guard.level, guard.ends_ms) if guard.on else None
 
     @property
     def _shorted(self) -> bool:

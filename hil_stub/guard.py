@@ -3,6 +3,10 @@
 Ticks come over the bus, and the bus may lie: a SYNC that comes too often would shorten a back-off, one that
 stays away would stretch a pulse. So a pulse is over when the first of the two says so, a back-off when the
 last does, and a request is accepted only if both accept it.
+
+The two need not agree, and neither waits for the other: time passes while no tick comes, and ticks may come
+in no time. ``pass_time`` goes before whatever is asked of the guard, else its clock would stand still until
+the next tick, and the time that had passed by then would be taken from the back-off.
 """
 
 from dataclasses import replace
@@ -37,26 +41,32 @@ class Guard:
         self._by_ticks: Interlock = boot(limits)
         self._by_clock: Interlock | None = None
         self._clock_ms: int  # its last reading; there is one as soon as there is an interlock by it
+        self._driven = False  # whether a coil was on at some instant since the last tick
         self.level = 0
         """Driven in the tick that has ended, or just accepted."""
 
-    def elapse(self, ticks: int, clock_ms: int | None = None) -> None:
-        """So many ticks have passed, and the board's own clock now reads ``clock_ms`` (None: it has none)."""
-        was_on = self.on
+    def pass_time(self, clock_ms: int | None) -> None:
+        """The board's own clock reads ``clock_ms`` (None: it has none). One that runs back stands still."""
+        if clock_ms is None:
+            return
+        if self._by_clock is None:
+            self._by_clock, self._clock_ms = boot(self._clock_limits), clock_ms
+        if clock_ms > self._clock_ms:
+            self._by_clock = elapse(self._by_clock, clock_ms - self._clock_ms)
+            self._clock_ms = clock_ms
+
+    def elapse(self, ticks: int) -> None:
+        """So many ticks have passed."""
         self._by_ticks = elapse(self._by_ticks, ticks)
-        if clock_ms is not None:
-            if self._by_clock is None:
-                self._by_clock, self._clock_ms = boot(self._clock_limits), clock_ms
-            self._by_clock = elapse(self._by_clock, max(0, clock_ms - self._clock_ms))
-            self._clock_ms = max(self._clock_ms, clock_ms)
-        self.level = self._by_ticks.level if was_on else 0
+        self.level = self._by_ticks.level if self._driven else 0
+        self._driven = self.on
 
     def silence(self) -> None:
         """Nobody is heard: off, and locked out in full."""
         self._by_ticks = silence(self._by_ticks, self._limits)
         if self._by_clock is not None:
             self._by_clock = silence(self._by_clock, self._clock_limits)
-        self.level = 0
+        self.level, self._driven = 0, False
 
     def ask(self, request: Request, tick: int) -> CoilRefusedReason | None:
         """Judge a request at ``tick``: why it is refused (None: accepted). A refused one changes nothing."""
@@ -65,7 +75,8 @@ class Guard:
         if reason is None and by_clock is not None:
             by_clock, reason = ask(by_clock, request, tick, self._clock_limits)
         if reason is None:
-            self._by_ticks, self._by_clock, self.level = by_ticks, by_clock, by_ticks.level
+            self._by_ticks, self._by_clock = by_ticks, by_clock
+            self.level, self._driven = by_ticks.level, True
         return reason
 
     @property
@@ -90,6 +101,13 @@ class Guard:
     def on(self) -> bool:
         """Whether a coil is on at this instant."""
         return self.remaining_units > 0
+
+    @property
+    def ends_ms(self) -> int | None:
+        """When the pulse ends at the latest, by the board's own clock; None: all off, or it has none."""
+        if self._by_clock is None or not self.on:
+            return None
+        return self._clock_ms + self._by_clock.remaining // UNITS_PER_TICK
 
     @property
     def fraction(self) -> float:

@@ -2,12 +2,13 @@
 
 import pytest
 
-from fsw.wire.frame import Frame
 from fsw.wire.messages import (
     CoilBoot,
     CoilDipole,
     CoilDipoleStatus,
+    CoilEvent,
     CoilFire,
+    CoilRefused,
     CoilStatus,
     MagBoot,
     MagField,
@@ -20,7 +21,7 @@ from fsw.wire.messages import (
 )
 from fsw.wire.messages import CoilRefusedReason as Reason
 from hil_stub.bench import Bench, CoilBoard, DipoleBoard, MagnetometerBoard, SunBoard
-from hil_stub.coil_driver import CoilLimits
+from hil_stub.coil_driver import CoilLimits, Pin
 from hil_stub.events import CoilEventCode
 from hil_stub.stimulus import constant
 
@@ -80,16 +81,11 @@ class TestLockstep:
         assert isinstance(sample, kind)
         assert sample[:4] == (1, *shown)
 
-    def test_the_end_of_the_run_is_noticed(self, bench):
-        assert not bench.ended
-        assert bench.receive(PlantEnd(3).encode()) == []
-        assert bench.ended
-
-    def test_a_broken_end_is_none(self, bench):
-        frame = PlantEnd(3).encode()
-        bench.receive(Frame(frame.can_id, frame.data[:-1] + b"\0"))
-        bench.receive(Frame(frame.can_id, frame.data[:-1]))
-        assert not bench.ended
+    @pytest.mark.parametrize("told", [0, 3, 10, 2**24 - 1])
+    def test_an_end_that_the_plant_tells_of_is_nothing_to_it(self, bench, read, told):
+        fly(bench, range(10))
+        assert bench.receive(PlantEnd(told).encode()) == []
+        assert read(fly(bench, [10]))[0].lockout_ms == 89_000
 
 
 class TestTheCoilDriver:
@@ -139,6 +135,22 @@ class TestLosingCount:
         assert bench.receive(Sync(strange, 0).encode()) == []
         (status,) = read(fly(bench, [10]))
         assert status.lockout_ms == 89_000
+
+    @pytest.mark.parametrize(("first", "second"), [(250, 250), (7, 7), (7, 8), (2**32 - 2, 2**32 - 1)])
+    def test_so_are_two_of_one_tick_and_two_backwards(self, bench, read, first, second):
+        fly(bench, range(200))
+        assert bench.receive(Sync(first, 0).encode()) == []
+        boot, status = read(bench.receive(Sync(second, 0).encode()))
+        assert isinstance(boot, CoilBoot)
+        assert (status.coil, status.lockout_ms) == (second % 3, 100_000)
+        assert bench.receive(Sync(second, 0).encode()) == [], "it is in that tick now"
+
+    def test_two_with_a_good_one_between_them_move_nothing(self, bench, read):
+        fly(bench, range(10))
+        for tick in range(10, 20):
+            bench.receive(Sync(500 + tick, 0).encode())
+            (status,) = read(fly(bench, [tick]))
+        assert status.lockout_ms == 80_000
 
     def test_two_that_do_not_follow_each_other_move_nothing(self, bench, read):
         fly(bench, range(10))
@@ -268,8 +280,28 @@ class TestTheDeadMan:
         assert len(read(watched.receive(Sync(11, 0).encode(), 60_001))) == 2
         assert len(read(watched.receive(Sync(12, 0).encode(), 61_000))) == 1
 
+    @pytest.mark.parametrize(("last_ms", "silent"), [(157_000, False), (157_001, True)])
+    def test_a_sync_that_only_repeats_its_tick_does_not_keep_it_awake(self, watched, read, last_ms, silent):
+        self.fly(watched, range(150))
+        for now_ms in (*range(152_000, 157_000, 100), last_ms):
+            watched.receive(Sync(150, 0).encode(), now_ms)
+        status, *events = read(watched.receive(TickDone(150, 0).encode(), last_ms))
+        assert [event.event for event in events] == [CoilEventCode.DEAD_MAN] * silent
+        assert status.lockout_ms == 99_000 * silent
+
+    def test_it_tells_when_it_will_wake(self, watched):
+        watched.receive(Sync(0, 0).encode(), 2000)
+        assert watched.due_ms() == 7001
+        watched.receive(Sync(0, 0).encode(), 3000)
+        assert watched.due_ms() == 7001
+        watched.watch(7001)
+        assert watched.due_ms() is None, "it is awake"
+        watched.receive(Sync(1, 0).encode(), 8000)
+        assert watched.due_ms() == 13_001
+
     def test_without_one_nothing_happens(self, bench, read):
         fly(bench, range(10))
+        assert bench.due_ms() is None
         bench.watch(10**9)
         assert read(fly(bench, [10]))[0].lockout_ms == 89_000
 
@@ -300,6 +332,82 @@ class TestAClockOfItsOwn:
         (status,) = read(clocked.receive(TickDone(100, 0).encode(), 5_101_000))
         assert (status.level, status.remaining_ms) == (-2, 2000)
         (status,) = read(clocked.receive(TickDone(101, 0).encode(), 5_104_000))
-        assert (status.level, status.remaining_ms, status.current_ma) == (-2, 0, -200)
+        assert (status.level, status.remaining_ms, status.current_ma) == (-2, 0, 0)
         (status,) = read(clocked.receive(TickDone(102, 0).encode(), 5_105_000))
         assert (status.level, status.current_ma) == (0, 0)
+
+
+class TestTimeThatPassesWithoutTicks:
+    """A board's clock is the time that passes, not the ticks that it hears."""
+
+    @pytest.fixture
+    def free(self):
+        """In tick 150, all back-offs over; the last thing heard is its SYNC, at 151 s."""
+        bench = Bench(lambda: CoilBoard(CoilLimits(1)), deadman_ms=5000, has_clock=True)
+        bench.switch_on(now_ms=1000)
+        for tick in range(150):
+            bench.receive(Sync(tick, 0).encode(), 1000 + 1000 * tick)
+            bench.receive(TickDone(tick, 0).encode(), 1000 + 1000 * tick)
+        bench.receive(Sync(150, 0).encode(), 151_000)
+        return bench
+
+    def fire(self, bench, tick, now_ms, seq=5):
+        bench.receive(CoilFire(-2, 1, seq, tick & 0xFF, 3000).encode(), now_ms)
+        return bench.pin
+
+    def rush(self, bench, ticks, now_ms):
+        """Ticks in no time; what the board says in the last."""
+        for tick in ticks:
+            bench.receive(Sync(tick, 0).encode(), now_ms)
+            said = bench.receive(TickDone(tick, 0).encode(), now_ms)
+        return said
+
+    def test_a_request_late_in_a_held_tick_is_timed_from_when_it_came(self, free, read):
+        assert self.fire(free, 150, 155_900) == Pin(1, -2, 158_900)
+        said = self.rush(free, range(150, 260), 156_000)
+        assert free.pin is None
+        assert read(said)[0].lockout_ms == 102_900
+        assert self.fire(free, 260, 258_890, seq=6) is None, "99.99 s after the end that it was armed for"
+
+    def test_after_a_held_tick_and_a_rush_the_gap_is_whole(self, free):
+        assert self.fire(free, 150, 155_800) == Pin(1, -2, 158_800)
+        tick, on_at_ms = 150, []
+        for now_ms in range(155_900, 262_000, 10):
+            free.receive(Sync(tick, 0).encode(), now_ms)
+            free.receive(TickDone(tick, 0).encode(), now_ms)
+            tick += 1
+            if self.fire(free, tick, now_ms, seq=tick & 0xFF) is not None:
+                on_at_ms.append(now_ms)
+        assert on_at_ms[:2] == [155_900, 155_910], "the rush ends the pulse early"
+        assert on_at_ms[2] == 155_800 + 3000 + 100_000
+
+    def test_a_pulse_ends_with_no_bus_at_all(self, free):
+        self.fire(free, 150, 151_500)
+        assert free.due_ms() == 154_500
+        free.watch(154_499)
+        assert free.pin == Pin(1, -2, 154_500)
+        free.watch(154_500)
+        assert free.pin is None
+
+    def test_one_sync_repeated_for_seven_seconds_is_silence(self, free, read):
+        for now_ms in range(151_000, 158_001, 100):
+            free.receive(Sync(150, 0).encode(), now_ms)
+        assert self.fire(free, 150, 158_000) is None
+        said = read(free.receive(TickDone(150, 0).encode(), 158_000))
+        assert [m.event for m in said if isinstance(m, CoilEvent)] == [CoilEventCode.DEAD_MAN]
+        assert [m.reason for m in said if isinstance(m, CoilRefused)] == [Reason.LOCKOUT]
+
+    def test_the_back_off_after_silence_runs_from_when_it_ended(self, free):
+        free.watch(200_000)
+        self.rush(free, range(150, 300), 210_000)
+        for tick in range(300, 324):
+            self.rush(free, [tick], 210_000 + (tick - 300) * 4300)
+        assert self.fire(free, 324, 309_999) is None
+        assert self.fire(free, 324, 310_000, seq=6) is not None
+
+    def test_the_status_of_a_held_tick_tells_what_was_driven_in_it(self, free, read):
+        self.fire(free, 150, 151_500)
+        (status,) = read(free.receive(TickDone(150, 0).encode(), 155_900))
+        assert (status.level, status.remaining_ms, status.current_ma) == (-2, 0, 0)
+        (status,) = read(free.receive(TickDone(151, 0).encode(), 155_950))
+        assert status.level == 0

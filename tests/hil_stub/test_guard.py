@@ -20,12 +20,14 @@ class Timers:
         self.hz = hz
         self.guard = Guard(CoilLimits(hz, PULSE_MS, BACKOFF_MS, shared))
         self.tick, self.clock_ms = 0, 70_000
-        self.guard.elapse(0, self.clock_ms)
+        self.guard.pass_time(self.clock_ms)
 
     def go(self, ticks, milliseconds=None):
         self.tick += ticks
         self.clock_ms += 1000 * ticks // self.hz if milliseconds is None else milliseconds
-        self.guard.elapse(ticks, self.clock_ms)
+        self.guard.pass_time(self.clock_ms)
+        if ticks:
+            self.guard.elapse(ticks)
 
     def ask(self, **changes):
         return self.guard.ask(asking(self.tick, **changes), self.tick)

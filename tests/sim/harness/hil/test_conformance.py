@@ -232,9 +232,11 @@ def take_broken(patch):
 
 def take_flagged(patch):
     receive = coil_driver.CoilDriver.receive
-    patch.setattr(
-        coil_driver.CoilDriver, "receive", lambda self, f: receive(self, Frame(f.can_id & 0x7FF, f.data))
-    )
+
+    def unflagged(self, frame, clock_ms):
+        receive(self, Frame(frame.can_id & 0x7FF, frame.data), clock_ms)
+
+    patch.setattr(coil_driver.CoilDriver, "receive", unflagged)
 
 
 def take_any_coil(patch):
