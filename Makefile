@@ -8,6 +8,7 @@
 # make golden     record the golden logs anew: after a change that means to alter what fsw answers
 # make test-vcan   the tests on a CAN interface, in a user-mode Linux guest where this kernel has no vcan
 # make fuzz         a million random frames into codec, boards and flight loop: some minutes
+# make attack       a million requests and lies on the bus of a coil board, and ten minutes on the real process: half an hour
 # make differential scheduler against interlock over 100 orbits of whole flights: some minutes
 # make mutation     change scheduler, interlock, auditor and codec a thing at a time: do the tests notice? an hour
 # make coverage     branch coverage of the same modules, which must be whole, into the same page: a minute
@@ -20,7 +21,7 @@ bin := .venv/bin
 installed := .venv/.installed
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv sil test lint test-vcan golden validate fuzz differential replay-elsewhere faults soak mutation coverage
+.PHONY: help venv sil test lint test-vcan golden validate fuzz attack differential replay-elsewhere faults soak mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -60,6 +61,9 @@ validate: venv
 
 fuzz: venv
 	TORQUER_FUZZ_FRAMES=1000000 $(bin)/pytest -q --timeout 3600 tests/fuzz
+
+attack: venv
+	TORQUER_ATTACK_REQUESTS=1000000 TORQUER_ATTACK_SECONDS=600 $(bin)/pytest -q -s tests/attack
 
 differential: venv
 	TORQUER_DIFFERENTIAL_ORBITS=100 $(bin)/pytest -q --timeout 3600 tests/differential
