@@ -261,7 +261,7 @@ class Attacker:
             self.target.wait(self.random.randint(0, self.setup.period_ms))
 
     def aim(self) -> None:
-        """Good ticks, slow enough and fast enough, until a back-off ends; requests all around that instant."""
+        """Good ticks in time until a back-off ends; requests all around that instant."""
         self._wait_for_the_end(self.setup.period_ms)
         for _ in range(self.random.randint(1, 4)):
             self.fire()

@@ -62,7 +62,7 @@ class SimulatedTarget:
             self._look()
 
     def _sights_ms(self):
-        """Instants at which a pin that is on is worth a look: around when it should, and when it must be off."""
+        """When a pin that is on is worth a look: when its timer ends it, and when it must be off."""
         pin = self._bench.pin
         if pin is None:
             return ()

@@ -1,7 +1,7 @@
 """The real board process keeps invariant I under attack in real time, judged by what it logs of its pins.
 
-Some seconds as a rule; ``make attack`` takes ten minutes. Beside what is done to a board on the bus, the process
-is killed and started anew, and stopped in the middle of a pulse.
+Some seconds as a rule; ``make attack`` takes ten minutes. Beside what is done to a board on the bus, the
+process is killed and started anew, and stopped in the middle of a pulse.
 """
 
 import os
