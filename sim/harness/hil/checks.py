@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from itertools import pairwise
-from math import ceil
 
 from fsw.wire.frame import EXTENDED_FLAG, REMOTE_FLAG, Frame
 from fsw.wire.messages import AnyMessage, CoilEvent, CoilRefusedReason, CoilStatus, Sync
@@ -12,10 +11,6 @@ from sim.harness.hil.subject import Subject, reasons
 DEAD_MAN = 2
 """``event`` of COIL_EVENT: written down here anew, as everything that is judged by."""
 HEARTBEAT_S = 60
-FAST = 4.0
-"""Ticks that come too fast come so many times too fast."""
-SLACK_MS = 20.0
-"""What is allowed to a board's own clock over some seconds, and to the way to it."""
 
 
 def boot(subject: Subject) -> None:
@@ -148,15 +143,23 @@ def dead_man_in_a_pulse(subject: Subject) -> None:
 
 
 def _fall_silent(subject: Subject) -> None:
-    session = subject.session
-    during = session.silence(1.5 * subject.limits.deadman_s + session.period_s)
+    during = subject.session.silence(1.5 * subject.limits.deadman_s + subject.session.period_s)
     if during.messages:
         raise BrokenError(f"it speaks without being spoken to: {names(during.messages)}")
-    heard = session.step()
+    silenced(subject, "no SYNC")
+
+
+def silenced(subject: Subject, why: str) -> None:
+    """The dead-man is told in the next tick, with a full lockout.
+
+    Raises:
+        BrokenError: it is not.
+    """
+    heard = subject.session.step()
     events = [message.event for message in heard.messages if isinstance(message, CoilEvent)]
     if events != [DEAD_MAN]:
         raise BrokenError(
-            f"no SYNC for {1.5 * subject.limits.deadman_s:g} s: events {events}, not the dead-man"
+            f"{why} for {1.5 * subject.limits.deadman_s:g} s: events {events}, not the dead-man"
         )
     subject.locked_out(heard, 1)
 
@@ -167,36 +170,6 @@ def restart_in_a_pulse(subject: Subject) -> None:
     subject.accept()
     subject.locked_out(subject.session.restart())
     subject.off(subject.refuse(subject.fire(), CoilRefusedReason.LOCKOUT))
-
-
-def lost_count(subject: Subject) -> None:
-    """Two strange SYNCs of consecutive ticks are believed: it restarts in the second."""
-    session = subject.session
-    ahead = session.tick + 1000
-    if session.sync(ahead).messages:
-        raise BrokenError("one strange SYNC alone moved it")
-    heard = session.sync(ahead + 1)
-    if not heard.only(session.kind.boot):
-        raise BrokenError("two strange SYNCs of consecutive ticks: it did not restart")
-    session.tick = ahead + 1
-    if session.kind.sample is CoilStatus:
-        subject.locked_out(heard)
-
-
-def own_clock(subject: Subject) -> None:
-    """Ticks that come four times too fast do not shorten a lockout."""
-    session = subject.session
-    since = session.restart()
-    since_s, seconds = since.at_s, min(10.0, subject.limits.backoff_ms / 8000.0)
-    heard = since
-    for _ in range(ceil(seconds * session.tick_hz * FAST)):
-        heard = session.step(period_s=session.period_s / FAST)
-    least_ms = subject.limits.backoff_ms - 1000.0 * (session.clock() - since_s) - SLACK_MS
-    if subject.off(heard).lockout_ms < least_ms:
-        raise BrokenError(
-            f"lockout_ms fell to {heard.status.lockout_ms}, and not even to {least_ms:.0f} by the clock"
-        )
-    session.restart()
 
 
 def all_along(subject: Subject) -> None:

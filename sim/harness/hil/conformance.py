@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from fsw.wire.messages import CoilStatus
 from sim.harness.errors import HarnessError
-from sim.harness.hil import checks
+from sim.harness.hil import checks, clock_checks
 from sim.harness.hil.session import BrokenError, Session
 from sim.harness.hil.subject import Limits, Subject
 
@@ -31,8 +31,10 @@ CHECKS = (
     Check(checks.dead_man_in_a_pulse, power=True),
     Check(checks.restart_in_a_pulse, power=True),
     Check(checks.dead_man),
-    Check(checks.lost_count, coil=False),
-    Check(checks.own_clock),
+    Check(clock_checks.lost_count, coil=False),
+    Check(clock_checks.repeated_tick),
+    Check(clock_checks.own_clock),
+    Check(clock_checks.held_tick, power=True),
     Check(checks.all_along, coil=False),
 )
 

@@ -41,7 +41,7 @@ def test_the_stub_conforms(session_with, hz, shared, has_clock):
     assert [verdict.name for verdict in verdicts] == NAMES
     assert all(verdict.ran and verdict.what for verdict in verdicts)
     found = failures(verdicts)
-    assert set(found) == (set() if has_clock else {"own_clock"})
+    assert set(found) == (set() if has_clock else {"own_clock", "held_tick"})
 
 
 @pytest.mark.parametrize(("pulse_ms", "backoff_ms", "deadman_s"), [(2500, 7300, 5.0), (500, 1500, 0.5)])
@@ -147,6 +147,27 @@ def believes_one(self, tick):
 
 follow = Bench._follow
 
+
+def fed_by_any(self, tick):
+    self._synced_tick = None
+    return follow(self, tick)
+
+
+def deaf_to_equals(self, tick):
+    return [] if tick == self._strange_sync else follow(self, tick)
+
+
+def never_back(self, tick):
+    return [] if tick < self._tick else follow(self, tick)
+
+
+def never_forgets(self, tick):
+    kept = self._strange_sync
+    frames = follow(self, tick)
+    self._strange_sync = self._strange_sync or kept
+    return frames
+
+
 ON_THE_BUS = {
     "no boot message": (changed(CoilBoot, lambda m, tick: None), "boot"),
     "no status now and then": (times(0), None),
@@ -176,6 +197,10 @@ ON_THE_BUS = {
         "lost_count",
     ),
     "one strange SYNC is believed": ({"_follow": believes_one}, "noise"),
+    "two of one tick are not believed": ({"_follow": deaf_to_equals}, "lost_count"),
+    "two backwards are not believed": ({"_follow": never_back}, "lost_count"),
+    "a good SYNC does not end a row of strange ones": ({"_follow": never_forgets}, "lost_count"),
+    "a SYNC that repeats its tick feeds the dead-man": ({"_follow": fed_by_any}, "repeated_tick"),
     "the dead-man is not told": (
         {"outward": staticmethod(lambda frames, tick: [f for f in frames if f.can_id != 0x420])},
         "dead_man",
@@ -259,6 +284,27 @@ def faint_at_boot(patch):
     patch.setattr(coil_driver.CoilDriver, "_found", and_one_more)
 
 
+def told_of_time_by_ticks_alone(patch):
+    told = {}
+    pass_time, elapse = guard.Guard.pass_time, guard.Guard.elapse
+
+    def late(self, clock_ms):
+        told[id(self)] = clock_ms
+        if self._by_clock is None:
+            pass_time(self, clock_ms)
+
+    def tick(self, ticks):
+        pass_time(self, told[id(self)])
+        elapse(self, ticks)
+
+    patch.setattr(guard.Guard, "pass_time", late)
+    patch.setattr(guard.Guard, "elapse", tick)
+
+
+def clock_ends_no_pulse(patch):
+    patch.setattr(guard.Guard, "remaining_units", property(lambda self: self._by_ticks.remaining))
+
+
 Reason = CoilRefusedReason
 
 IN_THE_BOARD = {
@@ -302,6 +348,8 @@ IN_THE_BOARD = {
         "dead_man",
     ),
     "a self-test that fails": (faint_at_boot, "boot"),
+    "a clock that is told of time by ticks alone": (told_of_time_by_ticks_alone, "held_tick"),
+    "a clock that ends no pulse": (clock_ends_no_pulse, "held_tick"),
 }
 
 
