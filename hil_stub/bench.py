@@ -34,6 +34,9 @@ class Board(Protocol):
     def pass_time(self, clock_ms: int | None) -> None:
         """Nothing has come."""
 
+    def sync(self) -> None:
+        """The ``SYNC`` of this tick has come."""
+
     def silence(self, clock_ms: int | None) -> None:
         """There has been no ``SYNC`` for too long."""
 
@@ -69,6 +72,10 @@ class CoilBoard:
         """A pulse may end."""
         self._driver.pass_time(clock_ms)
 
+    def sync(self) -> None:
+        """The tick before is over."""
+        self._driver.sync()
+
     def silence(self, clock_ms: int | None) -> None:
         """All off, and a full back-off from now on."""
         self._driver.silence(clock_ms)
@@ -80,9 +87,12 @@ class CoilBoard:
 
 
 class Unguarded:
-    """What a board that drives no pulses does about time and silence: nothing."""
+    """What a board that drives no pulses does about time, SYNC and silence: nothing."""
 
     pin = None
+
+    def sync(self) -> None:
+        """Nothing of it goes on beyond a tick."""
 
     def pass_time(self, clock_ms: int | None) -> None:
         """Nothing of it depends on time."""
@@ -219,7 +229,9 @@ class Bench:
         if tick in (self._tick, self._tick + 1):
             if tick != self._synced_tick:
                 self._synced_tick, self._synced_ms = tick, self._now_ms
-            return self._next_tick() if tick > self._tick else []
+            frames = self._next_tick() if tick > self._tick else []
+            self._board.sync()
+            return frames
         if strange is not None and tick in (strange, strange + 1):
             frames = self.switch_on(tick, self._now_ms)
             self._synced_tick = tick

@@ -124,6 +124,10 @@ class CoilDriver:
         """Nothing has come, and the board's own clock reads ``clock_ms``; None: it has none."""
         self._guard.pass_time(clock_ms)
 
+    def sync(self) -> None:
+        """The ``SYNC`` of this tick: what was told of it in advance is so now."""
+        self._guard.sync()
+
     def silence(self, clock_ms: int | None = None) -> None:
         """The dead-man: no ``SYNC`` for too long. All off, and a full back-off that begins now.
 
@@ -169,7 +173,7 @@ class CoilDriver:
     def pin(self) -> Pin | None:
         """What is on at the instant that the board was last told of; None: all coils are off."""
         guard = self._guard
-        return Pin(guard.coil, guard.level, guard.ends_ms) if guard.on else None
+        return Pin(guard.coil, guard.level, guard.ends_ms) if guard.drives else None
 
     @property
     def _shorted(self) -> bool:

@@ -7,6 +7,10 @@ last does, and a request is accepted only if both accept it.
 The two need not agree, and neither waits for the other: time passes while no tick comes, and ticks may come
 in no time. ``pass_time`` goes before whatever is asked of the guard, else its clock would stand still until
 the next tick, and the time that had passed by then would be taken from the back-off.
+
+A board enters a tick as soon as fsw has answered the one before, to tell of it before its SYNC comes. Timers
+by ticks are of the instant that is told of; a pulse whose last tick that is stays on until the SYNC, or until
+the clock ends it.
 """
 
 from dataclasses import replace
@@ -42,6 +46,7 @@ class Guard:
         self._by_clock: Interlock | None = None
         self._clock_ms: int  # its last reading; there is one as soon as there is an interlock by it
         self._driven = False  # whether a coil was on at some instant since the last tick
+        self._tick_under_way = False  # the last tick was entered, and its SYNC is still to come
         self.level = 0
         """Driven in the tick that has ended, or just accepted."""
 
@@ -56,17 +61,22 @@ class Guard:
             self._clock_ms = clock_ms
 
     def elapse(self, ticks: int) -> None:
-        """So many ticks have passed."""
+        """So many ticks on; the SYNC of the last is still to come."""
+        self._tick_under_way = self.on
         self._by_ticks = elapse(self._by_ticks, ticks)
         self.level = self._by_ticks.level if self._driven else 0
         self._driven = self.on
+
+    def sync(self) -> None:
+        """The SYNC of this tick: the one before is over."""
+        self._tick_under_way = False
 
     def silence(self) -> None:
         """Nobody is heard: off, and locked out in full."""
         self._by_ticks = silence(self._by_ticks, self._limits)
         if self._by_clock is not None:
             self._by_clock = silence(self._by_clock, self._clock_limits)
-        self.level, self._driven = 0, False
+        self.level, self._driven, self._tick_under_way = 0, False, False
 
     def ask(self, request: Request, tick: int) -> CoilRefusedReason | None:
         """Judge a request at ``tick``: why it is refused (None: accepted). A refused one changes nothing."""
@@ -99,13 +109,21 @@ class Guard:
 
     @property
     def on(self) -> bool:
-        """Whether a coil is on at this instant."""
+        """Whether a coil is on at the instant of this tick."""
         return self.remaining_units > 0
 
     @property
+    def drives(self) -> bool:
+        """Whether a coil is on now."""
+        if self._by_clock is None:
+            return self.on
+        by_ticks = self._by_ticks.remaining > 0 or self._tick_under_way
+        return by_ticks and self._by_clock.remaining > 0
+
+    @property
     def ends_ms(self) -> int | None:
-        """When the pulse ends at the latest, by the board's own clock; None: all off, or it has none."""
-        if self._by_clock is None or not self.on:
+        """When what is on now goes off at the latest, by the board's own clock; None: it has none."""
+        if self._by_clock is None:
             return None
         return self._clock_ms + self._by_clock.remaining // UNITS_PER_TICK
 

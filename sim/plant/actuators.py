@@ -22,7 +22,7 @@ class Driven(NamedTuple):
     fraction: float
 
 
-_OFF = Driven(ZERO, 0.0)
+OFF = Driven(ZERO, 0.0)
 
 
 class Board(Protocol):
@@ -59,7 +59,7 @@ class PulsedActuator:
         """What is driven over the tick that has begun."""
         coil, level, fraction = self._driver.drive()
         if not level:
-            return _OFF
+            return OFF
         current_a = self._level_a[level] if level > 0 else -self._level_a[-level]
         x, y, z = (current_a if each == coil else 0.0 for each in range(3))
         return Driven((x, y, z), fraction)

@@ -378,8 +378,30 @@ class TestTimeThatPassesWithoutTicks:
             tick += 1
             if self.fire(free, tick, now_ms, seq=tick & 0xFF) is not None:
                 on_at_ms.append(now_ms)
-        assert on_at_ms[:2] == [155_900, 155_910], "the rush ends the pulse early"
-        assert on_at_ms[2] == 155_800 + 3000 + 100_000
+        assert on_at_ms[:3] == [155_900, 155_910, 155_920], "the rush ends the pulse early"
+        assert on_at_ms[3] == 155_800 + 3000 + 100_000
+
+    def test_a_pulse_lasts_as_long_as_was_asked_though_ticks_are_told_of_ahead(self, free, read):
+        """fsw answers at once: the board enters each tick nearly a second before its SYNC."""
+        self.fire(free, 150, 151_010)
+        told, on = [], []
+        for tick in range(150, 155):
+            (status,) = read(free.receive(TickDone(tick, 0).encode(), 1020 + 1000 * tick))
+            told.append((status.level, status.remaining_ms))
+            free.watch(2000 + 1000 * tick - 1)
+            on.append(free.pin is not None)
+            free.receive(Sync(tick + 1, 0).encode(), 2000 + 1000 * tick)
+        assert told == [(-2, 2000), (-2, 1000), (-2, 0), (0, 0), (0, 0)]
+        assert on == [True, True, True, False, False]
+
+    def test_a_pulse_that_the_ticks_end_ends_with_sync(self, free):
+        self.fire(free, 150, 151_010)
+        for tick in (150, 151, 152):
+            free.receive(Sync(tick, 0).encode(), 151_020)
+            free.receive(TickDone(tick, 0).encode(), 151_020)
+        assert free.pin == Pin(1, -2, 154_010), "in the last of its ticks"
+        free.receive(Sync(153, 0).encode(), 151_030)
+        assert free.pin is None
 
     def test_a_pulse_ends_with_no_bus_at_all(self, free):
         self.fire(free, 150, 151_500)

@@ -1,9 +1,9 @@
 """Proof of the guard by exhaustion: time and ticks are two things that need not agree.
 
-From every state that can be reached time passes without a tick, ticks come in no time, one or several, every
-request is made, the board restarts, and the dead-man wakes. A judge that is told of time alone demands
-invariant I over it, and that a request is accepted if and only if both interlocks accept it. That it has
-teeth is shown by planting bugs in copies of the guard: each must be found.
+From every state that can be reached time passes without a tick, ticks come in no time, one or several, with
+their SYNC or without, every request is made, the board restarts, and the dead-man wakes. A judge that is told
+of time alone demands invariant I over it, and that a request is accepted if and only if both interlocks
+accept it. That it has teeth is shown by planting bugs in copies of the guard: each must be found.
 
 The constants are small so that the search ends; no rule depends on them.
 """
@@ -89,17 +89,17 @@ def passed(board, judge, now_ms, span_ms):
     later = copy.copy(board)
     later.pass_time(now_ms + span_ms)
     driven_ms = 0
-    if board.on:
-        driven_ms = span_ms if later.on else board.ends_ms - now_ms
+    if board.drives:
+        driven_ms = span_ms if later.drives else board.ends_ms - now_ms
         assert 0 < driven_ms <= span_ms
-    return later, judge.watch(board.coil, driven_ms, span_ms), now_ms + span_ms
+    return later, judge.watch(board.coil, driven_ms, span_ms).cut(later.drives), now_ms + span_ms
 
 
 def changed(board, judge, now_ms, change):
     """Something happens in no time."""
     other = copy.copy(board)
     change(other)
-    return other, judge.cut(other.on), now_ms
+    return other, judge.cut(other.drives), now_ms
 
 
 def both_accept(board, asked):
@@ -116,7 +116,7 @@ def prove(module: ModuleType, shared: bool) -> Proof:
     seen = set()
     while queue:
         board, judge, now_ms = queue.popleft()
-        state = (board._by_ticks, board._by_clock, now_ms - board._clock_ms, judge)
+        state = (board._by_ticks, board._by_clock, board._tick_under_way, now_ms - board._clock_ms, judge)
         if state in seen:
             continue
         seen.add(state)
@@ -125,6 +125,7 @@ def prove(module: ModuleType, shared: bool) -> Proof:
         proof.apart += (board._by_ticks.remaining == 0) != (board._by_clock.remaining == 0)
         queue += [passed(board, judge, now_ms, span_ms) for span_ms in JUMPS_MS]
         queue += [changed(board, judge, now_ms, lambda one, n=n: one.elapse(n)) for n in TICKS]
+        queue.append(changed(board, judge, now_ms, lambda one: one.sync()))
         queue.append(changed(board, judge, now_ms, lambda one: one.silence()))
         queue.append((fresh(module, limits, now_ms), judge.cut(still_on=False), now_ms))
         for asked in REQUESTS[shared]:
@@ -133,7 +134,7 @@ def prove(module: ModuleType, shared: bool) -> Proof:
             assert (reason is None) == both_accept(board, asked), f"{asked}: {reason}"
             if reason is None:
                 proof.accepted[asked.coil] += 1
-                assert answered.on
+                assert answered.drives
                 queue.append((answered, judge, now_ms))
             else:
                 proof.refused[reason] += 1

@@ -6,6 +6,7 @@ from math import inf
 from random import Random
 
 from sim.harness.faults import checks, currents
+from sim.harness.faults.clock_rig import ClockRig
 from sim.harness.faults.kinds import KINDS, make
 from sim.harness.faults.naming import isolated
 from sim.harness.faults.processes import ProcessRig, strikes
@@ -46,7 +47,8 @@ def fly(row: Row, phase: int, seed: int) -> CaseResult:
         if KINDS[row.kind].by_signal:
             record = _struck(row, phase, seed, scenario)
         else:
-            record = _flown(row, phase, seed, Rig(scenario, config, seed), bounds.orbit_s)
+            rig = ClockRig if KINDS[row.kind].by_clock else Rig
+            record = _flown(row, phase, seed, rig(scenario, config, seed), bounds.orbit_s)
     outcomes = checks.judge(row, record, bounds)
     return CaseResult(row.name, phase, seed, outcomes, _measured(row, record), time.perf_counter() - began)
 

@@ -66,6 +66,12 @@ def limits(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
     return not found and report.statuses > 0, found[0] if found else ""
 
 
+def limits_by_time(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
+    """Invariant I over true time, where ticks do not keep to it."""
+    found = currents.lasting(record.pulses_by_time, bounds.currents)
+    return not found and bool(record.pulses_by_time), found[0] if found else "nothing was driven"
+
+
 def no_exception(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
     """Nothing comes out of a step but its answer."""
     return record.crash is None, record.crash or ""
@@ -246,6 +252,7 @@ ALWAYS: dict[str, Check] = {
 }
 CHECKS: dict[str, Check] = {
     **ALWAYS,
+    "limits by time": limits_by_time,
     "no extra pulse": no_extra_pulse,
     "boots locked": boots_locked,
     "no request": no_request,

@@ -57,7 +57,7 @@ def pulses(driven: Sequence[Driven], tick_hz: int) -> list[CurrentPulse]:
 
 def violations(driven: Sequence[Driven], limits: CurrentLimits) -> list[str]:
     """Each breach of invariant I, a sentence each."""
-    return [*_momentary(driven, limits), *_lasting(pulses(driven, limits.tick_hz), limits)]
+    return [*_momentary(driven, limits), *lasting(pulses(driven, limits.tick_hz), limits)]
 
 
 def _momentary(driven: Sequence[Driven], limits: CurrentLimits) -> list[str]:
@@ -72,7 +72,8 @@ def _momentary(driven: Sequence[Driven], limits: CurrentLimits) -> list[str]:
     return found
 
 
-def _lasting(found: list[CurrentPulse], limits: CurrentLimits) -> list[str]:
+def lasting(found: Sequence[CurrentPulse], limits: CurrentLimits) -> list[str]:
+    """Each pulse that is too long or too soon, of pulses by their start."""
     sentences = [
         f"coil {pulse.coil} on for {float(pulse.end_s - pulse.start_s):g} s at {float(pulse.start_s):g} s"
         for pulse in found

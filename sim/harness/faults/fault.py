@@ -62,6 +62,13 @@ class Fault(Interference):
         """What the boards receive of fsw's answers to this tick."""
         return frames
 
+    repeats_sync = False
+    """Whether SYNC comes again and again while a tick is held."""
+
+    def held_ms(self, tick: int) -> int:
+        """True time from SYNC to fsw's answer, where a board has a clock of its own [ms]."""
+        return 0
+
     def condition(self, tick: int) -> Condition:
         """How fsw's process is in this tick."""
         return Condition.RUNNING

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from fsw.wire.frame import Frame
 from sim.harness.faults.fault import Fault
-from sim.plant.actuators import Driven
+from sim.plant.actuators import Actuator, Driven
 from sim.plant.config import PlantConfig
 from sim.plant.interference import Interference
 from sim.plant.plant import Plant
@@ -29,10 +29,13 @@ class FaultyPlant(Plant):
     Args:
         config: the plant.
         faults: what is scheduled from the start.
+        actuator: what drives the coils, where that is not a board of the plant's own.
     """
 
-    def __init__(self, config: PlantConfig, faults: Sequence[Scheduled] = ()) -> None:
-        super().__init__(config)
+    def __init__(
+        self, config: PlantConfig, faults: Sequence[Scheduled] = (), actuator: Actuator | None = None
+    ) -> None:
+        super().__init__(config, actuator)
         self._waiting = list(faults)
         self._scheduled: list[Scheduled] = []
         self._heard: list[Frame] = []

@@ -24,12 +24,14 @@ class Kind(NamedTuple):
 
     ``in_plant``: the plant's process can inject it by itself, so that a scenario may schedule it.
     ``by_signal``: it needs the flight software as a process of its own.
+    ``by_clock``: it needs a coil board with a clock of its own.
     """
 
     make: Callable[[Random, Parameters], Fault]
     parameters: Mapping[str, Parameter] = {}
     in_plant: bool = True
     by_signal: bool = False
+    by_clock: bool = False
 
 
 PART = {"part": Parameter(0.1, 0.0, 1.0)}
@@ -37,6 +39,7 @@ ALWAYS = {"part": Parameter(1.0, 0.0, 1.0)}
 AXIS = {"axis": Parameter(0.0, 0.0, 2.0)}
 STRIKES = Parameter(5.0, 1.0, 1000.0)
 A_FEW = Parameter(3.0, 1.0, 1000.0)
+HELD = {"seconds": Parameter(4.9, 0.0, 1000.0), "rushed": Parameter(0.0, 0.0, 1000.0)}
 
 KINDS: dict[str, Kind] = {
     "none": Kind(Fault),
@@ -93,6 +96,8 @@ KINDS: dict[str, Kind] = {
     "all_restart": Kind(node.AllRestart, in_plant=False),
     "sync_lost": Kind(node.SyncLost, PART, in_plant=False),
     "sync_repeated": Kind(node.SyncRepeated, {"times": A_FEW}, in_plant=False),
+    "ticks_held": Kind(node.TicksHeld, HELD, in_plant=False, by_clock=True),
+    "ticks_repeated": Kind(node.TicksRepeated, HELD, in_plant=False, by_clock=True),
     "tick_jumps": Kind(
         node.TickJumps,
         {"ticks": Parameter(1000.0, -1e9, 1e9), "with_time": Parameter(1.0, 0.0, 1.0)},

@@ -73,6 +73,22 @@ class SyncRepeated(Fault):
         return [frame] * (1 + self.rng.randint(1, round(self.parameters["times"])))
 
 
+class TicksHeld(Fault):
+    """Every so often a tick is held for ``seconds``; ``rushed`` ticks after it come in no time."""
+
+    def held_ms(self, tick: int) -> int:
+        """The whole time, or none of it."""
+        return (
+            0 if tick % (1 + round(self.parameters["rushed"])) else round(1000 * self.parameters["seconds"])
+        )
+
+
+class TicksRepeated(TicksHeld):
+    """The same, and SYNC comes again and again while a tick is held."""
+
+    repeats_sync = True
+
+
 class TickJumps(Fault):
     """SYNC names a tick that is off by ``ticks``; its time goes with it if ``with_time`` is not 0."""
 

@@ -17,6 +17,7 @@ from fsw.wire.messages import (
     intact,
 )
 from sim.harness.candump import LogEntry
+from sim.harness.faults.currents import CurrentPulse
 from sim.plant.actuators import Driven
 from sim.plant.plant import TruthRow
 
@@ -52,6 +53,7 @@ class Record:
         end: first tick without it; None if it stays.
         entries: SYNC, COIL_STATUS and COIL_BOOT as plant and board themselves have said them.
         driven: what really flowed in each tick, as the plant drove it.
+        pulses_by_time: what a board with a clock of its own has driven, over true time; else none.
         asked: ticks in which fsw's process sent COIL_FIRE.
         asked_coils: the coils of these.
         boots: ticks in which fsw booted.
@@ -73,6 +75,7 @@ class Record:
     end: int | None = None
     entries: list[LogEntry] = field(default_factory=list)
     driven: list[Driven] = field(default_factory=list)
+    pulses_by_time: list[CurrentPulse] = field(default_factory=list)
     asked: list[int] = field(default_factory=list)
     asked_coils: list[int] = field(default_factory=list)
     boots: list[int] = field(default_factory=list)

@@ -59,6 +59,7 @@ class Rig:
         frames += syncs
         record.note_said(tick, self._epoch_us, plant.said)
         self._be(self._wanted(tick), tick)
+        self.pace(tick, syncs)
         answers = self._answers(tick, frames)
         record.note_answer(tick, answers)
         for frame in answers:
@@ -66,6 +67,9 @@ class Rig:
         record.note_state(tick, self._node.state if self._node is not None else None, plant.truth())
         plant.end_tick()
         record.driven.append(plant.driven)
+
+    def pace(self, tick: int, syncs: list[Frame]) -> None:
+        """True time until fsw answers: here ticks are the time."""
 
     def finish(self) -> Record:
         """The record, its counts complete."""

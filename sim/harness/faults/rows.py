@@ -7,6 +7,7 @@ from sim.harness.errors import HarnessError
 from sim.harness.faults.row import Row, When
 
 BUS = ("no extra pulse", "goes on")
+TIMED = ("limits by time", *BUS, "quiet", "recovers")
 BROKEN = (*BUS, "dropped", "recovers")
 BLINDED = ("goes on", "no other named", "recovers")
 COIL_NAMES = ("coil 0", "coil 1", "coil 2")
@@ -19,7 +20,7 @@ SECOND = "a second sender on fsw's id"
 INTERFACE = "interface down and up; ENOBUFS"
 PROCESS = "fsw killed, stopped, restarted at every phase of a pulse; reboot storms"
 BOARD = "board killed and restarted; both reset"
-CLOCK = "clock jumps, tick going backwards, SYNC lost or repeated"
+CLOCK = "clock jumps, tick going backwards, SYNC lost, held, repeated or forged; ticks in a rush"
 SENSOR = "a sensor: NaN and infinity, saturation, frozen, bias, scale, swapped axis, wrong sign"
 BOOT = "a sensor that is wrong from the first tick on"
 LIGHT = "eclipse; Sun parallel to the field; Sun sensor blinded by albedo or without Sun"
@@ -185,6 +186,18 @@ ROWS: tuple[Row, ...] = (
     Row("all-restart", BOARD, "all_restart", {}, 5.0, expect=(*BUS, "boots locked", "recovers")),
     Row("sync-lost", CLOCK, "sync_lost", {"part": 0.3}, 300.0, expect=(*BUS, "recovers")),
     Row("sync-repeated", CLOCK, "sync_repeated", {"times": 3.0}, 300.0, expect=(*BUS, "recovers")),
+    Row("ticks-held", CLOCK, "ticks_held", {}, 300.0, expect=TIMED),
+    Row("ticks-held-then-rushed", CLOCK, "ticks_held", {"rushed": 110.0}, 600.0, expect=TIMED),
+    Row("ticks-rushed", CLOCK, "ticks_held", {"seconds": 0.0}, 300.0, expect=TIMED),
+    Row("ticks-repeated", CLOCK, "ticks_repeated", {"seconds": 7.0}, 300.0, expect=TIMED),
+    Row(
+        "ticks-repeated-then-rushed",
+        CLOCK,
+        "ticks_repeated",
+        {"seconds": 7.0, "rushed": 110.0},
+        600.0,
+        expect=TIMED,
+    ),
     Row("tick-ahead", CLOCK, "tick_jumps", {"ticks": 1000.0}, 1.0, expect=(*BUS, "recovers")),
     Row("tick-far-ahead", CLOCK, "tick_jumps", {"ticks": 1e9}, 1.0, expect=(*BUS, "recovers")),
     Row("tick-ahead-lasting", CLOCK, "tick_jumps", {"ticks": 1000.0}, 20.0, expect=(*BUS, "recovers")),
