@@ -8,7 +8,7 @@
 # make golden     record the golden logs anew: after a change that means to alter what fsw answers
 # make test-vcan   the tests on a CAN interface, in a user-mode Linux guest where this kernel has no vcan
 # make fuzz         a million random frames into codec, boards and flight loop: some minutes
-# make attack       a million requests and lies on the bus of a coil board, and ten minutes on the real process: half an hour
+# make attack     a million requests and lies on the bus of a coil board, ten minutes on the real process: half an hour
 # make differential scheduler against interlock over 100 orbits of whole flights: some minutes
 # make mutation     change scheduler, interlock, auditor and codec a thing at a time: do the tests notice? an hour
 # make coverage     branch coverage of the same modules, which must be whole, into the same page: a minute
