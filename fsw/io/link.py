@@ -9,7 +9,8 @@ from time import monotonic, sleep
 
 from fsw.io import record
 from fsw.io.bus import DEFAULT_LOOP_PORT, BusClosed, BusError
-from fsw.io.hub import GREETING, HOST, Hub
+from fsw.io.door import FULL, GREETING, HOST
+from fsw.io.hub import Hub
 from fsw.wire.frame import Frame
 
 _RETRY_S = 0.01
@@ -29,7 +30,7 @@ class LoopLink:
         may_host: whether to serve the port if nobody does.
 
     Raises:
-        BusError: no hub came up in time, or something else listens there.
+        BusError: no hub came up in time, it takes no more clients, or something else listens there.
     """
 
     name = "loop"
@@ -39,7 +40,10 @@ class LoopLink:
         self._inbox: deque[Frame] = deque()
         self._torn = b""  # beginning of a record whose end is still on its way
         self._hub: Hub | None = None
-        self._socket = self._join(port, monotonic() + timeout_s, may_host)
+        try:
+            self._socket = self._join(port, monotonic() + timeout_s, may_host)
+        except OSError as error:  # no descriptor or no port left, say
+            raise BusError(f"the bus {self.spec} cannot be opened: {error.strerror}") from error
         atexit.register(self.close)
 
     def send(self, frames: Sequence[Frame]) -> None:
@@ -85,8 +89,11 @@ class LoopLink:
                 return True
 
     def _closed(self) -> BusClosed:
-        why = "its hub is gone" if self._socket.fileno() >= 0 else "this end has been closed"
-        return BusClosed(f"the bus {self.spec} is closed: {why}")
+        if self._socket.fileno() < 0:
+            return BusClosed(f"the bus {self.spec} is closed: this end has been closed")
+        return BusClosed(
+            f"the bus {self.spec} is closed: its hub is gone, or dropped this end, which read too slowly"
+        )
 
     def _part(self) -> None:
         """Say that nothing more follows, and read until the hub agrees.
@@ -140,6 +147,8 @@ def _connect(port: int, deadline: float) -> socket.socket | None:
             if not received:
                 raise ConnectionResetError
             greeting += received
+        if greeting == FULL:
+            raise BusError(f"the loop bus on port {port} is full: its hub takes no more clients")
         if greeting != GREETING:
             raise BusError(f"port {port} of this machine is taken by another program, which is no hub")
         connection.settimeout(None)

@@ -15,7 +15,8 @@ from hypothesis import strategies as st
 from fsw.io import hub as hub_module
 from fsw.io import record
 from fsw.io.bus import BusClosed, BusError
-from fsw.io.hub import GREETING, Hub
+from fsw.io.door import GREETING
+from fsw.io.hub import Hub
 from fsw.io.link import LoopLink
 from fsw.io.open_bus import open_bus
 from fsw.wire.frame import Frame

@@ -1,0 +1,127 @@
+"""The hub's door: lets in who comes to the bus, or tells them that there is no room."""
+
+import os
+import socket
+from collections.abc import Callable
+from contextlib import suppress
+
+GREETING = b"torquer-loop/1\r\n"
+"""First bytes from the hub: the client is on the bus, and what follows is for it."""
+
+FULL = b"torquer-full/1\r\n"
+"""First and last bytes from a hub that takes no more clients; as many as in the greeting."""
+
+HOST = "127.0.0.1"
+_SEND_BUFFER = 2**18
+"""Bytes. Left to itself the kernel would keep 4 MiB for each client that does not read."""
+
+
+class DoorStuckError(OSError):
+    """There is not even a descriptor left to turn somebody away: whoever stands at the door stays there."""
+
+
+class Door:
+    """A listening socket on 127.0.0.1, and a descriptor kept back to turn somebody away when none is left.
+
+    Args:
+        port: TCP port; 0 takes a free one.
+        tell: called with a sentence about who was turned away, at the first, tenth, hundredth ... of them.
+
+    Raises:
+        OSError: the port is taken.
+    """
+
+    def __init__(self, port: int, tell: Callable[[str], None]) -> None:
+        self._listener = _listen(port)
+        self._spare: int | None = _descriptor()
+        self._tell = tell
+        self._turned_away = 0
+        self._tell_at = 1
+        self.port: int = self._listener.getsockname()[1]
+
+    def fileno(self) -> int:
+        """The descriptor to wait on; negative once closed."""
+        return self._listener.fileno()
+
+    def answer(self, has_room: bool) -> tuple[socket.socket, int] | None:
+        """Answer the next who stands there: its connection, greeted, and its port; None if it was not let in.
+
+        Raises:
+            DoorStuckError: it cannot be answered, for now.
+        """
+        try:
+            connection, (_, port) = self._listener.accept()
+        except (BlockingIOError, ConnectionError):  # gone again before it was taken
+            return None
+        except OSError as error:
+            self._turn_away_with_spare(error)
+            return None
+        if not has_room:
+            self._turn_away(connection, "it has as many clients as it takes")
+            return None
+        return (connection, port) if _greet(connection) else None
+
+    def close(self) -> None:
+        """Let nobody in any more."""
+        self._listener.close()
+        if self._spare is not None:
+            os.close(self._spare)
+            self._spare = None
+
+    def _turn_away_with_spare(self, why: OSError) -> None:
+        if self._spare is not None:
+            os.close(self._spare)
+        try:
+            connection, _ = self._listener.accept()
+        except (BlockingIOError, ConnectionError):
+            return
+        except OSError as error:
+            raise DoorStuckError(error.errno, error.strerror) from error
+        else:
+            self._turn_away(connection, str(why.strerror))
+        finally:
+            self._spare = _descriptor()
+
+    def _turn_away(self, connection: socket.socket, why: str) -> None:
+        with connection, suppress(OSError):  # gone already
+            connection.setblocking(False)
+            connection.send(FULL)
+        self._turned_away += 1
+        if self._turned_away == self._tell_at:
+            self._tell_at *= 10
+            self._tell(
+                f"the loop bus on port {self.port} takes nobody more ({why}): {self._turned_away} refused"
+            )
+
+
+def _greet(connection: socket.socket) -> bool:
+    try:
+        connection.setblocking(False)
+        connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        connection.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SEND_BUFFER)
+        connection.send(GREETING)
+    except OSError:  # gone again
+        connection.close()
+        return False
+    return True
+
+
+def _descriptor() -> int | None:
+    try:
+        return os.open(os.devnull, os.O_RDONLY)
+    except OSError:
+        return None
+
+
+def _listen(port: int) -> socket.socket:
+    listener = socket.socket()
+    try:
+        if os.name == "posix":  # elsewhere this option would let two hubs share a port
+            listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listener.bind((HOST, port))
+        listener.listen(1024)
+        listener.setblocking(False)
+    except OSError:
+        listener.close()
+        raise
+    return listener
