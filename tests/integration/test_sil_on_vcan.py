@@ -42,8 +42,10 @@ class Candump:
         time.sleep(0.5)  # until its socket is bound
 
     def end(self):
-        """Its log, once it has written what it has heard."""
-        time.sleep(0.5)
+        """Its log, once it has written what it has heard: in a guest that may take a while."""
+        size = -1
+        while size != (size := self.kept.stat().st_size):
+            time.sleep(1.0)
         self.process.terminate()
         self.process.wait(10)
         return self.kept
