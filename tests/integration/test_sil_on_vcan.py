@@ -134,14 +134,18 @@ def test_two_terminals_in_either_order(first, vcan0, start, bus, flown, tmp_path
 
 def test_strangers_on_the_bus_do_not_end_a_run(torquer, vcan0, bus, tmp_path):
     babble = (
-        "import subprocess, sys, time\n"
+        "import socket, struct, sys, time\n"
+        "bus = socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW)\n"
+        "bus.bind((sys.argv[1],))\n"
+        "strange = {0x110: '00', 0x7FF: 'DEADBEEF', 0x080: '0011223344556677',\n"
+        "           0x92345678: '0102', 0x40000100: ''}  # extended, remote\n"
         "while True:\n"
-        "    for frame in ('110#00', '7FF#DEADBEEF', '12345678#0102', '100#R', '080#0011223344556677'):\n"
-        "        subprocess.run([sys.argv[1], sys.argv[2], frame])\n"
+        "    for can_id, data in strange.items():\n"
+        "        bus.send(struct.pack('=IB3x8s', can_id, len(data) // 2, bytes.fromhex(data)))\n"
         "    time.sleep(0.05)\n"
     )
     run = tmp_path / "run"
-    stranger = subprocess.Popen([sys.executable, "-c", babble, tool("cansend"), vcan0])
+    stranger = subprocess.Popen([sys.executable, "-c", babble, vcan0])
     try:
         assert torquer("sil", *FLIGHT, "--bus", f"socketcan:{vcan0}", "--out", run).code == 0
     finally:
