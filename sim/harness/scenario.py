@@ -27,6 +27,7 @@ from fsw.io.schema import (
 )
 from fsw.io.table import CoilTable, ControlTable, FlightTable, OrbitTable, TimeTable
 from sim.harness.faults.section import Faults
+from sim.harness.names import Name, is_name
 from sim.harness.physics import DisturbanceSection, ScenarioBody, SensorsSection
 from sim.harness.telecommands import Telecommands
 
@@ -81,7 +82,7 @@ class PlantSection(Section):
 class Scenario(Section):
     """A whole scenario, checked."""
 
-    name: str
+    name: Name
     summary: str
     knowledge: Literal["filter", "perfect"] = "filter"
     time: ScenarioTime
@@ -223,13 +224,13 @@ def _read(name_or_path: str) -> tuple[Nested, str]:
     if name_or_path.endswith(".toml"):
         return read_toml(Path(name_or_path)), name_or_path
     shipped_file = resources.files("sim.scenarios").joinpath(f"{name_or_path}.toml")
-    if not shipped_file.is_file():
+    if not is_name(name_or_path) or not shipped_file.is_file():
         names = ", ".join(
             sorted(
                 e.name[:-5] for e in resources.files("sim.scenarios").iterdir() if e.name.endswith(".toml")
             )
         )
         raise TableError(
-            f"there is no scenario '{name_or_path}': choose one of {names}, or a path that ends in .toml"
+            f"there is no scenario {name_or_path!r}: choose one of {names}, or a path that ends in .toml"
         )
     return tomllib.loads(shipped_file.read_text(encoding="utf-8")), f"scenario {name_or_path}"

@@ -1,6 +1,7 @@
 """What ``torquer sil`` refuses: one sentence on stderr, exit code 2, nothing written."""
 
 import socket
+from importlib import resources
 
 import pytest
 
@@ -70,6 +71,12 @@ def refused(torquer, tmp_path, monkeypatch):
         (("--set", "initial.axis=[0,0,0]"), ["initial", "axis"]),
         (("--set", "flight.modes.near_deg=500"), ["[flight]", "modes.near_deg", "500", "180"]),
         (("--set", "knowledge=some"), ["knowledge", "some", "filter", "perfect"]),
+        (("--set", "name=../../x"), ["name", "../../x", "letters, digits, '.', '_' and '-'"]),
+        (("--set", "name=/tmp/x"), ["name", "/tmp/x"]),
+        (("--set", r'name="a\u0000b"'), ["name", r"a\x00b"]),
+        (("--set", "name=.."), ["name", ".."]),
+        (("--set", f"name={'a' * 300}"), ["name", "at most 100"]),
+        (("../scenarios/microsat",), ["no scenario", "../scenarios/microsat"]),
         (("--nothing",), ["--nothing"]),
         (("microsat", "posat1"), ["posat1"]),
     ],
@@ -95,6 +102,17 @@ def test_all_faults_of_a_scenario_file_are_named(refused, tmp_path):
 def test_a_scenario_that_is_no_toml_is_named(refused, tmp_path):
     (tmp_path / "mine.toml").write_text("[time\n")
     assert "mine.toml" in refused(*SIL, "mine.toml")
+
+
+@pytest.mark.parametrize(
+    "words", [SIL, ("compare", "--orbits", "0.001"), ("design",), ("hil", "--seconds", "1")]
+)
+def test_a_name_that_leads_elsewhere_is_named_with_its_file(words, refused, tmp_path):
+    """It becomes a part of the path of what is written."""
+    scenario = resources.files("sim.scenarios").joinpath("microsat.toml").read_text(encoding="utf-8")
+    (tmp_path / "mine.toml").write_text(scenario.replace('name = "microsat"', 'name = "../../x"'))
+    sentence = refused(*words, "mine.toml")
+    assert "mine.toml: name: '../../x' is not allowed: allowed are letters, digits" in sentence
 
 
 @pytest.mark.parametrize("content", ["run.json", "bus.log"])
