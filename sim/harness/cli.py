@@ -20,6 +20,19 @@ SETTINGS = click.option(
     "--set", "settings", multiple=True, metavar="KEY=VALUE", help="Override a key of the scenario."
 )
 
+SIGN = click.option(
+    "--sign",
+    metavar="KEY",
+    type=click.Path(path_type=Path),
+    help="Sign the run: a private Ed25519 key in PEM. Needs torquer[sign].",
+)
+VERIFY = click.option(
+    "--verify",
+    metavar="PUBLIC_KEY",
+    type=click.Path(path_type=Path),
+    help="The run must be signed: its public Ed25519 key in PEM. Needs torquer[sign].",
+)
+
 
 def sentences(command: Callable[Parameters, int | None]) -> Callable[Parameters, None]:
     """Turn what a user can mend into one sentence on stderr and an exit code."""
@@ -91,6 +104,7 @@ def scenarios() -> None:
     "--seed", default=1, show_default=True, type=click.IntRange(min=0), help="Of all random streams."
 )
 @click.option("--out", type=click.Path(path_type=Path), help="Default: runs/<scenario>-<UTC time>.")
+@SIGN
 @SETTINGS
 @sentences
 def sil(
@@ -100,6 +114,7 @@ def sil(
     orbits: float | None,
     seed: int,
     out: Path | None,
+    sign: Path | None,
     settings: tuple[str, ...],
 ) -> None:
     """Fly SCENARIO: plant and flight software as two processes on a bus (virtual: in one)."""
@@ -107,8 +122,10 @@ def sil(
     from sim.harness.options import parse_pace
     from sim.harness.progress import progress
     from sim.harness.scenario import load, parse_settings
+    from sim.harness.signature import private_key
     from sim.harness.sil import fly_processes, served, ticks_of
 
+    key = None if sign is None else private_key(sign)
     chosen, chosen_pace = load(scenario, parse_settings(settings)), parse_pace(pace)
     ticks, path = ticks_of(chosen, orbits), out or run_dir.default_path(chosen)
     flying = f"flying {chosen.name}"
@@ -126,11 +143,14 @@ def sil(
                 click.echo(f"bus: {kind} (auto)", err=True)
             with progress(flying, ticks) as watch:
                 fly_processes(path, chosen, spec, hub, watch)
-    from sim.harness.conclude import conclude  # the flight does not wait for what it does not need
+    from sim.harness.binding import sign_run  # the flight does not wait for what it does not need
+    from sim.harness.conclude import conclude
     from sim.harness.summary import summary_text
 
     with progress("replaying", ticks) as watch:
         summary = conclude(path, watch)
+    if key is not None:
+        sign_run(path, key)
     click.echo(summary_text(summary))
     click.echo(f"report: {path / run_dir.REPORT}")
 
@@ -140,49 +160,74 @@ def sil(
 @click.option("--scenario", help="What a bare log was flown with; default the scenario.toml beside it.")
 @click.option("--plant", is_flag=True, help="Put the recorded commands through the plant instead.")
 @click.option("--onto", metavar="BUS", help="Play the log on a bus instead, at its own pace.")
+@VERIFY
 @SETTINGS
 @sentences
 def replay(
-    run_or_log: Path, scenario: str | None, plant: bool, onto: str | None, settings: tuple[str, ...]
+    run_or_log: Path,
+    scenario: str | None,
+    plant: bool,
+    onto: str | None,
+    verify: Path | None,
+    settings: tuple[str, ...],
 ) -> int:
     """Refly a log through the flight software and compare byte for byte."""
     from sim.harness import replay_command as commands
+    from sim.harness.signature import public_key
 
-    log, chosen = commands.locate(run_or_log, scenario, settings)
-    if onto is not None:
-        return commands.play(log, onto)
-    if plant:
-        return commands.through_plant(log, chosen)
-    return commands.through_flight_software(log, chosen)
+    key = None if verify is None else public_key(verify)
+    log, chosen = commands.locate(run_or_log, scenario, settings, key)
+    with chosen.binding.beside_errors():
+        if onto is not None:
+            return commands.play(log, chosen, onto)
+        if plant:
+            return commands.through_plant(log, chosen)
+        return commands.through_flight_software(log, chosen)
 
 
 @main.command()
 @RUN_OR_LOG
 @click.option("--backoff", type=click.Choice(["shared", "per_coil"]), help="Limits of a bare log.")
+@VERIFY
 @sentences
-def check(run_or_log: Path, backoff: str | None) -> int:
+def check(run_or_log: Path, backoff: str | None, verify: Path | None) -> int:
     """Audit the actuator limits in a candump log, independently of the controller."""
     from sim.harness.audit.check import check, render
+    from sim.harness.signature import public_key
 
-    report = check(run_or_log, backoff)
+    report = check(run_or_log, backoff, None if verify is None else public_key(verify))
     click.echo(render(report))
     return report.exit_code
 
 
 @main.command()
 @click.argument("run", type=click.Path(path_type=Path))
+@SIGN
+@VERIFY
 @sentences
-def report(run: Path) -> None:
+def report(run: Path, sign: Path | None, verify: Path | None) -> int:
     """Rebuild summary.json and report.html of a run, complete or not."""
     from sim.harness import run_dir
+    from sim.harness.binding import require_sources, sign_run
     from sim.harness.conclude import conclude
     from sim.harness.progress import progress
+    from sim.harness.signature import private_key, public_key, signature_of
     from sim.harness.summary import summary_text
 
+    key = None if sign is None else private_key(sign)
+    binding = require_sources(run, None if verify is None else public_key(verify))
+    bound_before = (run / run_dir.RUN).read_bytes()
     with progress("replaying", run_dir.read_run(run)["ticks"]) as watch:
         summary = conclude(run, watch)
+    if key is not None:
+        sign_run(run, key)
+    elif signature_of(run / run_dir.RUN).exists() and (run / run_dir.RUN).read_bytes() != bound_before:
+        click.echo(f"note: {run_dir.RUN} is not what was signed any more: --sign KEY signs it anew", err=True)
+    for line in binding.lines:
+        click.echo(line)
     click.echo(summary_text(summary))
     click.echo(f"report: {run / run_dir.REPORT}")
+    return 0 if binding.holds else 1
 
 
 @main.command()

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from fsw.core.state import FlightState
 from fsw.io.config import flight_config
-from sim.harness import run_dir
+from sim.harness import binding, run_dir
 from sim.harness.audit.auditor import audit
 from sim.harness.audit.check import limits_beside
 from sim.harness.candump import LogEntry, read_log
@@ -22,7 +22,7 @@ Watch = Callable[[int], None]
 
 
 def conclude(path: Path, watch: Watch = lambda tick: None) -> Json:
-    """Write summary.json and report.html of a run, complete or not, and mark a whole run complete.
+    """Write summary.json and report.html of a run, complete or not; bind and mark complete a whole one.
 
     The log is replayed through the flight software: that gives its estimates at full precision, and shows
     each time that the replay is exact.
@@ -46,8 +46,13 @@ def conclude(path: Path, watch: Watch = lambda tick: None) -> Json:
     audited = audit(_tallied(read_log(log), tally), limits)
     summary = summarise(scenario, run, truth, recorder.estimates(), audited, tally)
     summary["replay"] = _verdict(shown)
+    flight_is_bound = run_dir.BUS_LOG in binding.digests(run)
+    if flight_is_bound:
+        binding.release(path, run_dir.SUMMARY)
     run_dir.write_json(path / run_dir.SUMMARY, summary)
     write_report(path / run_dir.REPORT, scenario, summary, truth, recorder.estimates(), audited)
+    if flight_is_bound:
+        binding.bind(path, run_dir.TRUTH, run_dir.SUMMARY)
     if "flown" in run and shown.ended and vouch(log).holds:
         run_dir.update(path, complete=True)
     return summary

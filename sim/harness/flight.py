@@ -5,6 +5,7 @@ deadlines; an answer that is not there by then is a counted slip, never a wait.
 """
 
 import gc
+import hashlib
 import os
 import time
 from collections.abc import Callable
@@ -85,6 +86,7 @@ class BusLog:
         self._path = path
         self._channel = channel
         self._size = 0
+        self._sha256 = hashlib.sha256()
         try:
             self._descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
             self._index = LogIndex(path)
@@ -109,6 +111,12 @@ class BusLog:
                 "what was flown until then is kept"
             ) from None
         self._size += len(text)
+        self._sha256.update(text)
+
+    @property
+    def sha256(self) -> str:
+        """Of all that was written, in hex."""
+        return self._sha256.hexdigest()
 
     def __enter__(self) -> Self:
         return self

@@ -15,6 +15,7 @@ from fsw.wire.frame import Frame
 from fsw.wire.messages import NAMES, Sync
 from sim.harness import run_dir
 from sim.harness.assemble import plant_config
+from sim.harness.binding import Binding, compare
 from sim.harness.candump import LogEntry, LogTruncatedError, read_log
 from sim.harness.errors import HarnessError
 from sim.harness.faults.section import make_plant
@@ -23,31 +24,37 @@ from sim.harness.log_index import vouch
 from sim.harness.progress import progress
 from sim.harness.replay import replay
 from sim.harness.scenario import Scenario, flight_table, load, parse_settings
+from sim.harness.signature import PublicKey
 
 
 class Flown(NamedTuple):
-    """What a log was flown with: scenario, and run.json where there is one."""
+    """What a log was flown with: scenario, run.json where there is one, and what that says of the files."""
 
     scenario: Scenario
     run: run_dir.Json
+    binding: Binding
 
 
-def locate(run_or_log: Path, scenario: str | None, settings: tuple[str, ...]) -> tuple[Path, Flown]:
-    """The log, and what it was flown with.
+def locate(
+    run_or_log: Path, scenario: str | None, settings: tuple[str, ...], key: PublicKey | None = None
+) -> tuple[Path, Flown]:
+    """The log, and what it was flown with; with a key, the run must be signed by its private half.
 
     Raises:
         HarnessError: no such log, or nothing tells the scenario.
         TableError: the scenario is not valid.
     """
     log, folder = run_dir.locate(run_or_log)
-    next(iter(read_log(log)))  # a file that is no log is named first
-    run = run_dir.read_run(folder) if (folder / run_dir.RUN).is_file() else {}
-    beside = folder / run_dir.SCENARIO
-    if scenario is None and not beside.is_file():
-        raise HarnessError(
-            f"{log}: no {run_dir.SCENARIO} beside it: name what it was flown with by --scenario"
-        )
-    return log, Flown(load(scenario or str(beside), parse_settings(settings)), run)
+    binding = compare(folder, log, key)
+    with binding.beside_errors():
+        next(iter(read_log(log)))  # a file that is no log is named first
+        run = run_dir.read_run(folder) if (folder / run_dir.RUN).is_file() else {}
+        beside = folder / run_dir.SCENARIO
+        if scenario is None and not beside.is_file():
+            raise HarnessError(
+                f"{log}: no {run_dir.SCENARIO} beside it: name what it was flown with by --scenario"
+            )
+        return log, Flown(load(scenario or str(beside), parse_settings(settings)), run, binding)
 
 
 def through_flight_software(log: Path, flown: Flown) -> int:
@@ -70,9 +77,9 @@ def through_flight_software(log: Path, flown: Flown) -> int:
         click.echo(f"differs: {shown.first_bit_difference}")
         if shown.first_command_difference != shown.first_bit_difference:
             click.echo(f"first command that differs: {shown.first_command_difference}")
-        _vouched(log)
+        _vouched(log, flown)
         return 1
-    holds = _vouched(log)
+    holds = _vouched(log, flown)
     if shown.ended:
         return 0 if exact and holds else 1
     how = "inside a line" if shown.cut else "without its end mark"
@@ -93,14 +100,14 @@ def through_plant(log: Path, flown: Flown) -> int:
             logged = [entry.frame for entry in group]
             if logged[0] == plant.end():
                 click.echo(f"plant reproduced: {ticks} ticks, every frame equal")
-                return 0 if _vouched(log) else 1
+                return 0 if _vouched(log, flown) else 1
             sent = plant.begin_tick()
             begin = _beginning(logged, len(sent))
             end = begin + len(sent)
             difference = _difference(sent, logged[begin:end])
             if difference is not None:
                 click.echo(f"differs: tick {ticks}: {difference}")
-                _vouched(log)
+                _vouched(log, flown)
                 return 1
             for frame in logged[:begin] + logged[end:]:
                 plant.receive(frame)
@@ -108,17 +115,19 @@ def through_plant(log: Path, flown: Flown) -> int:
             plant.end_tick()
             ticks += 1
             watch(ticks)
-    _vouched(log)
+    _vouched(log, flown)
     click.echo(f"incomplete: the log ends without its end mark at tick {max(ticks - 1, 0)}")
     return 1
 
 
-def _vouched(log: Path) -> bool:
-    """Print what the log's index says of it; whether the log may pass for complete."""
+def _vouched(log: Path, flown: Flown) -> bool:
+    """Print what index and run.json say of the log; whether it may pass for a complete one of its run."""
     voucher = vouch(log)
     if voucher.sentence:
         click.echo(f"{'note' if voucher.holds else 'index'}: {voucher.sentence}")
-    return voucher.holds
+    for line in flown.binding.lines:
+        click.echo(line)
+    return voucher.holds and flown.binding.holds
 
 
 def _beginning(logged: list[Frame], count: int) -> int:
@@ -137,8 +146,8 @@ def _difference(ours: list[Frame], logged: list[Frame]) -> str | None:
     return None
 
 
-def play(log: Path, spec: str) -> int:
-    """Send every frame of the log onto a bus, spaced as its timestamps are."""
+def play(log: Path, flown: Flown, spec: str) -> int:
+    """Send every frame of the log onto a bus, spaced as its timestamps are; 0 if it is that of its run."""
     bus = open_bus(spec)
     try:
         began, first_us = time.monotonic(), None
@@ -148,7 +157,9 @@ def play(log: Path, spec: str) -> int:
             bus.send([entry.frame for entry in group])
     finally:
         bus.close()
-    return 0
+    for line in flown.binding.lines:
+        click.echo(line)
+    return 0 if flown.binding.holds else 1
 
 
 def _after_boot(log: Path) -> Iterator[LogEntry]:

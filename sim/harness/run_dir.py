@@ -26,6 +26,8 @@ RUN, SCENARIO, BUS_LOG, TRUTH, SUMMARY, REPORT = (
     "summary.json",
     "report.html",
 )
+SCENARIO_DIGEST, DIGESTS = "scenario_sha256", "digests"
+"""Keys of run.json: SHA-256 of the scenario, and of further files by name, added when each is finished."""
 
 Json = dict[str, Any]
 
@@ -59,7 +61,7 @@ def begin(path: Path, scenario: Scenario, seed: int, ticks: int, bus: str, pace:
                 "schema_version": SCHEMA_VERSION,
                 "torquer_version": version("torquer"),
                 "scenario": scenario.name,
-                "scenario_sha256": hashlib.sha256(text.encode()).hexdigest(),
+                SCENARIO_DIGEST: hashlib.sha256(text.encode()).hexdigest(),
                 "flight_table_crc": f"{flight_table(scenario).crc:08x}",
                 "seed": seed,
                 "ticks": ticks,
@@ -67,6 +69,7 @@ def begin(path: Path, scenario: Scenario, seed: int, ticks: int, bus: str, pace:
                 "pace": "lockstep" if pace.factor is None else "realtime",
                 "pace_factor": pace.factor,
                 "platform": fingerprint(),
+                DIGESTS: {},
                 "complete": False,
             },
         )
@@ -111,8 +114,13 @@ def read_scenario(path: Path) -> Scenario:
 
 def write_json(path: Path, content: Json) -> None:
     """Replace a JSON file atomically."""
+    replace_file(path, (json.dumps(content, indent=2) + "\n").encode())
+
+
+def replace_file(path: Path, content: bytes) -> None:
+    """Replace a file atomically."""
     temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    temporary.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
+    temporary.write_bytes(content)
     temporary.replace(path)
 
 

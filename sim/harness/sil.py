@@ -73,7 +73,11 @@ def record(path: Path, scenario: Scenario, bus: Bus, watch: Watch = lambda tick:
             )
     finally:
         bus.close()
-    run_dir.update(path, flown={"ticks": flown.ticks, "slips": flown.slips, "wall_s": flown.wall_s})
+    run_dir.update(
+        path,
+        flown={"ticks": flown.ticks, "slips": flown.slips, "wall_s": flown.wall_s},
+        **{run_dir.DIGESTS: {run_dir.BUS_LOG: log.sha256}},
+    )
 
 
 @contextmanager

@@ -1,5 +1,7 @@
 """Flights by the command line; CAN interfaces. Where there are none: ``tests/with-vcan pytest -m vcan``."""
 
+import hashlib
+import json
 import os
 import shutil
 import subprocess
@@ -140,11 +142,14 @@ class Copy:
         return "".join(format_line(format_time(us), name, frame) for us, name, frame in self.entries)
 
     def write(self):
-        """Put the altered entries into the log, and vouch for them anew: what is in it must give it away."""
+        """Write the altered log, vouched for and bound anew: what is in it must give it away."""
         self.log.write_text(self.text())
         index = LogIndex(self.log)
         index.add(self.text().encode(), len(self.entries))
         index.close(ended=True)
+        run = json.loads((self.folder / "run.json").read_text())
+        run["digests"]["bus.log"] = hashlib.sha256(self.log.read_bytes()).hexdigest()
+        (self.folder / "run.json").write_text(json.dumps(run))
         return self.folder
 
     def where(self, message, **values):

@@ -8,9 +8,11 @@ from pathlib import Path
 from fsw.wire.messages import CoilBoot, FswBoot, MagBoot, PlantBoot, SunBoot, intact
 from sim.harness.audit.auditor import audit
 from sim.harness.audit.findings import AuditLimits, AuditReport, seconds_text
+from sim.harness.binding import compare
 from sim.harness.candump import LogEntry, read_log
 from sim.harness.errors import HarnessError
 from sim.harness.log_index import Standing, vouch
+from sim.harness.signature import PublicKey
 
 LOG_NAME = "bus.log"
 SCENARIO_NAME = "scenario.toml"
@@ -21,32 +23,40 @@ _SHOWN = 50
 """Violations that are printed one by one; a log of ours that broke loose may hold thousands."""
 
 
-def check(path: Path, backoff: str | None) -> AuditReport:
-    """Audit a log by the limits of the scenario beside it.
+def check(path: Path, backoff: str | None, key: PublicKey | None = None) -> AuditReport:
+    """Audit a log by the limits of the scenario beside it, and compare what lies beside it with its run.json.
+
+    A scenario that is not the run's tells nothing of its limits: then they are the usual ones.
 
     Args:
         path: a run directory, or a log.
         backoff: ``"shared"`` or ``"per_coil"``, overrules the scenario; without either it is shared.
+        key: the run must be signed by its private half.
 
     Raises:
-        HarnessError: there is no such log, it is no candump log or an altered one, or the scenario beside it
+        HarnessError: there is no such log, it is no candump log or an altered one, or what lies beside it
             cannot be used.
     """
     log = path / LOG_NAME if path.is_dir() else path
     if not log.is_file():
         raise HarnessError(f"{path}: no {LOG_NAME} in it" if path.is_dir() else f"{path}: no such file")
-    beside = limits_beside(log)
+    binding = compare(log.parent, log, key)
+    foreign = SCENARIO_NAME in binding.mismatches
+    beside = AuditLimits() if foreign else limits_beside(log)
     limits = beside or AuditLimits()
     if backoff is not None:
         limits = replace(limits, shared=_is_shared(backoff, "--backoff"))
-    report = audit(_of_this_contract(log), limits, expect_end=beside is not None)
+    with binding.beside_errors():
+        report = audit(_of_this_contract(log), limits, expect_end=beside is not None)
     voucher = vouch(log)
-    notes = (*report.notes, voucher.sentence) if voucher.sentence else report.notes
+    usual = f"judged by the usual limits: {SCENARIO_NAME} is not the run's" if foreign else ""
+    notes = (voucher.sentence, binding.note, usual)
     return replace(
         report,
-        notes=notes,
+        notes=(*report.notes, *(note for note in notes if note)),
         complete=report.complete and voucher.standing is not Standing.OPEN,
         genuine=voucher.standing is not Standing.BROKEN,
+        mismatches=tuple(binding.mismatches.values()),
     )
 
 
@@ -100,6 +110,7 @@ def render(report: AuditReport) -> str:
     if len(report.violations) > _SHOWN:
         lines.append(f"... and {len(report.violations) - _SHOWN} more")
     lines += [f"note: {note}" for note in report.notes]
+    lines += [f"MISMATCH {sentence}" for sentence in report.mismatches]
     lines.append(_verdict(report))
     return "\n".join(lines)
 
@@ -121,6 +132,8 @@ def _verdict(report: AuditReport) -> str:
         return f"FAIL: {count} violation{'' if count == 1 else 's'} of the limits"
     if not report.genuine:
         return "FAIL: limits kept as far as the log goes, but its index contradicts it"
+    if report.mismatches:
+        return "FAIL: limits kept as far as the log goes, but not all files are its run's own"
     return (
         "OK: limits kept"
         if report.complete

@@ -98,6 +98,7 @@ class AuditReport:
         truncated_at: number of the line that is cut, if the log ends inside one.
         complete: the log ends with a whole line, and with an end mark where one must be.
         genuine: the index of the log, if it has one, does not contradict it.
+        mismatches: what run.json contradicts, if the log has one beside it, a sentence each.
     """
 
     limits: AuditLimits
@@ -109,6 +110,7 @@ class AuditReport:
     truncated_at: int | None
     complete: bool
     genuine: bool = True
+    mismatches: tuple[str, ...] = ()
 
     @property
     def ok(self) -> bool:
@@ -117,8 +119,8 @@ class AuditReport:
 
     @property
     def exit_code(self) -> int:
-        """0 if the limits were kept over a complete log that is as it was flown, else 1."""
-        return 0 if self.ok and self.complete and self.genuine else 1
+        """0 if the limits were kept over a complete log that is as it was flown, of its own run, else 1."""
+        return 0 if self.ok and self.complete and self.genuine and not self.mismatches else 1
 
     @property
     def pulses_per_coil(self) -> list[int]:

@@ -17,6 +17,7 @@ from fsw.wire.frame import Frame
 from fsw.wire.messages import PlantBoot
 from sim.harness import run_dir
 from sim.harness.assemble import plant_config
+from sim.harness.binding import bind
 from sim.harness.errors import HarnessError
 from sim.harness.flight import BusLog, Pace
 from sim.harness.hil.conductor import Conductor, is_boot
@@ -29,6 +30,7 @@ from sim.harness.scenario import Scenario
 
 BOARDS = {"coil": "COIL", "magnetometer": "MAG", "sun": "SUN"}
 SENSORS = ("magnetometer", "sun")
+NUMBERS = "hil.json"
 BOOT_S = 30.0
 ASK_AGAIN_S = 0.5
 
@@ -98,7 +100,8 @@ def hil(bench: Bench, as_json: bool = False) -> int:
         lost = [node for node in nodes.by_name.values() if node.process.poll()]
         numbers["ended"] = {node.name: node.said() for node in lost}
     if bench.out is not None:
-        run_dir.write_json(bench.out / "hil.json", numbers)
+        run_dir.write_json(bench.out / NUMBERS, numbers)
+        bind(bench.out, run_dir.BUS_LOG, NUMBERS)
     if as_json:
         click.echo(json.dumps(numbers, indent=2))
     for name, said in numbers["ended"].items():

@@ -5,11 +5,15 @@ import pytest
 from fsw.core import telemetry
 from fsw.wire.messages import CoilBoot
 from hil_stub import node
+from sim.harness import run_dir
 from sim.harness.audit.auditor import AuditLimits, Kind, audit
 from sim.harness.audit.check import CONTRACT_VERSION, check, limits_beside, render
+from sim.harness.binding import bind
 from sim.harness.candump import LogError, read_log
 from sim.harness.errors import HarnessError
+from sim.harness.flight import Pace
 from sim.harness.log_index import LogIndex
+from sim.harness.scenario import load, parse_settings
 
 
 @pytest.fixture
@@ -199,6 +203,55 @@ def test_a_log_that_its_index_does_not_vouch_for_to_the_end_is_incomplete(run, b
     report = check(folder, None)
     assert (report.exit_code, report.complete, report.genuine) == (exit_code, ended, True)
     assert ("has no end mark" in render(report)) is not ended
+
+
+# --- the run that a log belongs to
+
+
+@pytest.fixture
+def bound(tmp_path, bus_log, fired):
+    """A run whose coils back off for 10 s by its scenario, and its log, with digests of both."""
+    scenario = load("microsat", parse_settings(("coils.backoff_s=10.0",)))
+    run_dir.begin(tmp_path, scenario, 1, 200, "virtual", Pace())
+    bus_log(1, 200, [fired(0, 100), fired(1, 120)]).write(tmp_path / "bus.log")
+    bind(tmp_path, "bus.log")
+    return tmp_path
+
+
+def test_a_log_with_its_run_is_judged_by_the_scenario_of_that(bound):
+    report = check(bound, None)
+    assert (report.limits.backoff_us, report.mismatches, report.exit_code) == (10_000_000, (), 0)
+    assert check(bound / "bus.log", None) == report
+
+
+def test_a_scenario_that_is_not_the_runs_widens_no_limit(bound):
+    scenario = bound / "scenario.toml"
+    scenario.write_text(scenario.read_text().replace("backoff_s = 10.0", "backoff_s = 5.0"))
+    report = check(bound, None)
+    assert report.limits == AuditLimits()
+    assert [violation.kind for violation in report.violations] == [Kind.GAP]
+    assert "judged by the usual limits: scenario.toml is not the run's" in report.notes
+    (sentence,) = report.mismatches
+    assert f"MISMATCH {sentence}" in render(report).splitlines()
+    assert report.exit_code == 1
+
+
+def test_a_log_that_is_not_the_runs_fails_though_it_keeps_the_limits(bound, bus_log, fired):
+    bus_log(1, 200, [fired(0, 100), fired(1, 130)]).write(bound / "bus.log")
+    report = check(bound, None)
+    assert (report.ok, report.complete, report.genuine, report.exit_code) == (True, True, True, 1)
+    assert (
+        render(report)
+        .splitlines()[-1]
+        .startswith("FAIL: limits kept as far as the log goes, but not all files")
+    )
+
+
+def test_an_error_in_a_log_that_is_not_the_runs_tells_both(bound):
+    with (bound / "bus.log").open("a") as log:
+        log.write("nothing\n")
+    with pytest.raises(LogError, match=r"is no candump line.*; bus\.log is not the run's own"):
+        check(bound, None)
 
 
 # --- where a log ends
