@@ -133,7 +133,7 @@ def _verdict(report: AuditReport) -> str:
     if not report.genuine:
         return "FAIL: limits kept as far as the log goes, but its index contradicts it"
     if report.mismatches:
-        return "FAIL: limits kept as far as the log goes, but not all files are its run's own"
+        return "FAIL: limits kept as far as the log goes, but the files are not shown to be its run's own"
     return (
         "OK: limits kept"
         if report.complete

@@ -243,7 +243,7 @@ def test_a_log_that_is_not_the_runs_fails_though_it_keeps_the_limits(bound, bus_
     assert (
         render(report)
         .splitlines()[-1]
-        .startswith("FAIL: limits kept as far as the log goes, but not all files")
+        .startswith("FAIL: limits kept as far as the log goes, but the files are not")
     )
 
 
