@@ -93,12 +93,14 @@ def compare(folder: Path, log: Path | None = None, key: PublicKey | None = None)
         return Binding({} if key is None else {RUN: f"{folder} has no {RUN}, so that nothing is signed"})
     run = run_dir.read_run(folder)
     kept = digests(run)
+    paths = {name: folder / name for name in (*FILES, *kept)}
+    if log is not None:
+        paths[BUS_LOG] = log
     mismatches = {}
     for name, digest in kept.items():
-        path = log if log is not None and name == BUS_LOG else folder / name
-        if sentence := _mismatch(path, digest):
+        if sentence := _mismatch(paths[name], digest):
             mismatches[name] = sentence
-    unbound = [name for name in FILES if name not in kept and (folder / name).is_file()]
+    unbound = [name for name in FILES if name not in kept and paths[name].is_file()]
     if key is not None:
         mismatches |= {name: f"{name} is not signed: {RUN} has no digest of it" for name in unbound}
         if sentence := fault_of(folder / RUN, key):

@@ -111,6 +111,12 @@ class TestMismatch:
         )
         assert compare(run).holds
 
+    def test_a_log_of_another_name_is_not_bound_where_the_runs_log_is_not(self, run):
+        told(run, digests={})
+        (run / BUS_LOG).rename(run / "moved.log")
+        assert "bus.log" not in compare(run).note
+        assert "no digests of bus.log, " in compare(run, run / "moved.log").note
+
     def test_long_files_are_read_with_a_bar(self, run, monkeypatch):
         shown = []
 
