@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fsw.wire.frame import Frame
-from fsw.wire.messages import Sync
+from fsw.wire.messages import CoilFire, Sync
 from sim.harness.faults.fault import Condition, Fault, Parameters
 from sim.plant.plant import Plant
 
@@ -74,13 +74,21 @@ class SyncRepeated(Fault):
 
 
 class TicksHeld(Fault):
-    """Every so often a tick is held for ``seconds``; ``rushed`` ticks after it come in no time."""
+    """Each tick is held for ``seconds``; after one with a request, ``rushed`` ticks come in no time."""
+
+    def __init__(self, rng: Random, parameters: Parameters) -> None:
+        super().__init__(rng, parameters)
+        self._rush = 0
 
     def held_ms(self, tick: int) -> int:
         """The whole time, or none of it."""
-        return (
-            0 if tick % (1 + round(self.parameters["rushed"])) else round(1000 * self.parameters["seconds"])
-        )
+        return 0 if self._rush else round(1000 * self.parameters["seconds"])
+
+    def to_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
+        """A request begins a rush."""
+        asked = any(frame.can_id == CoilFire.ID for frame in frames)
+        self._rush = round(self.parameters["rushed"]) if asked else max(0, self._rush - 1)
+        return frames
 
 
 class TicksRepeated(TicksHeld):
