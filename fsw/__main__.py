@@ -4,6 +4,7 @@ import sys
 
 import click
 
+from fsw.io import command_line
 from fsw.io.bus import Bus, BusError
 from fsw.io.config import flight_config
 from fsw.io.disarmed import Disarmed
@@ -11,6 +12,7 @@ from fsw.io.node import FlightNode
 from fsw.io.open_bus import open_bus, resolve
 from fsw.io.runner import run
 from fsw.io.schema import TableError
+from fsw.io.sentence import sentence
 from fsw.io.table import FlightTable, load_flight_table
 
 
@@ -45,14 +47,14 @@ def main(
         link: Bus = open_bus(bus)
         link = Disarmed(link) if disarmed else link
     except (TableError, BusError) as error:
-        click.echo(f"fsw: {error}", err=True)
+        click.echo(f"fsw: {sentence(error)}", err=True)
         sys.exit(2)
     if parent is None:
         click.echo(f"fsw on {resolve(bus)}", err=True)
     try:
         run(node, link, parent)
     except BusError as error:
-        click.echo(f"fsw: {error}", err=True)
+        click.echo(f"fsw: {sentence(error)}", err=True)
         sys.exit(1)
     except KeyboardInterrupt:
         sys.exit(130)
@@ -61,4 +63,4 @@ def main(
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(command_line.run(main, "fsw"))

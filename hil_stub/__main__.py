@@ -4,8 +4,7 @@ import os
 import select
 import sys
 import time
-import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TextIO
 
@@ -13,6 +12,9 @@ import click
 
 from fsw.io.bus import Bus, BusError
 from fsw.io.open_bus import open_bus, resolve
+from fsw.io.regular_file import check_regular
+from fsw.io.sentence import sentence
+from fsw.io.toml_text import load_toml
 from fsw.wire.messages import MagField, SunVector
 from hil_stub.bench import (
     DEADMAN_MS,
@@ -44,6 +46,7 @@ POLL_S = 0.5
 """How often a silent bus lets Ctrl-C in, where waiting cannot be interrupted."""
 PIPE_PATIENCE_S = 1.0
 """How long a sensor waits for what it is shown over stdin; after that it reads nothing."""
+LONGEST_LINE = 256
 NT = 1e-9
 
 
@@ -183,9 +186,9 @@ def _stimulus(
         path = Path(words[0])
         if path.suffix == ".toml":
             return scripted(_toml(path).get("step"), key, tick_hz, convert)
-        log = path / "bus.log" if path.is_dir() else path
-        with log.open(encoding="ascii", errors="replace") as lines:
-            return recorded(lines, message, scale)
+        log = path / "bus.log" if os.path.isdir(path) else path
+        check_regular(log)
+        return recorded(_lines(log), message, scale)
     except StimulusError as error:
         raise click.UsageError(f"--stimulus {' '.join(words)}: {error}") from None
     except OSError as error:
@@ -210,9 +213,16 @@ def _number(word: str) -> float:
 
 def _toml(path: Path) -> dict[str, object]:
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise StimulusError(f"is not TOML: {error}") from None
+        return load_toml(path)
+    except ValueError as error:
+        raise StimulusError(f"cannot be read as TOML: {error}") from None
+
+
+def _lines(log: Path) -> Iterator[str]:
+    """The lines of a log; what is longer than any frame's comes in pieces, which are none."""
+    with log.open(encoding="ascii", errors="replace") as file:
+        while line := file.readline(LONGEST_LINE):
+            yield line
 
 
 _bus = click.option(
@@ -338,10 +348,10 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         cli.main(arguments, prog_name="python -m hil_stub", standalone_mode=False)
     except click.UsageError as error:
-        click.echo(error.format_message(), err=True)
+        click.echo(sentence(error.format_message()), err=True)
         return EXIT_BAD_INPUT
     except click.ClickException as error:
-        click.echo(error.format_message(), err=True)
+        click.echo(sentence(error.format_message()), err=True)
         return error.exit_code
     except click.Abort:
         pass

@@ -16,6 +16,9 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from sim.harness.destination import check_file
+from sim.harness.errors import HarnessError
+
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "replay.md"
 NO_FMA = "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4,-AVX2_Usable,-FMA_Usable"
@@ -55,6 +58,11 @@ VARIANTS = (
 def main() -> int:
     """Fly, replay in every way, write the page; 1 if a command differs anywhere."""
     arguments = _arguments()
+    try:
+        check_file(arguments.out)
+    except HarnessError as error:
+        print(f"replay-elsewhere: {error}", file=sys.stderr)
+        return 2
     variants = VARIANTS + tuple(Variant(_version(path), python=path) for path in arguments.python)
     began = time.monotonic()
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(arguments.workers) as pool:

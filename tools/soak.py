@@ -24,6 +24,7 @@ from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilRefused
 from sim.harness import run_dir
 from sim.harness.audit.check import check
+from sim.harness.destination import check_file
 from sim.harness.errors import HarnessError
 from sim.harness.flight import WATCH_TICKS, Pace
 from sim.harness.hil.memory import Memory
@@ -274,6 +275,8 @@ def main(words: Sequence[str] | None = None) -> int:
         runs = arguments.keep or Path(scratch)
         flight, hil = arguments.flight or runs / "flight", arguments.hil or runs / "hil"
         try:
+            check_file(arguments.out)
+            check_file(arguments.out.with_suffix(".svg"))
             if arguments.flight is None:
                 fly(flight, arguments.scenario, arguments.hours)
             if arguments.hil is None:

@@ -1,10 +1,13 @@
 """Checked values from TOML: how a section is read, and how its faults are told in one sentence."""
 
 import tomllib
+from itertools import islice
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, Strict, ValidationError
+
+from fsw.io.toml_text import BoundsError, load_toml
 
 Triple = Annotated[tuple[float, float, float], Strict(False)]
 Square = Annotated[tuple[Triple, Triple, Triple], Strict(False)]
@@ -17,6 +20,11 @@ Model = TypeVar("Model", bound=BaseModel)
 
 class TableError(Exception):
     """A table that cannot be used; the message is one sentence for the user."""
+
+
+FAULTS_TOLD = 12
+LONGEST_VALUE = 80
+"""Of what is wrong, so much is told that the sentence can still be read."""
 
 
 class Section(BaseModel):
@@ -38,12 +46,14 @@ def read_toml(path: Path) -> Nested:
     """The content of a TOML file.
 
     Raises:
-        TableError: the file is missing, unreadable or not TOML.
+        TableError: the file is missing, unreadable, not TOML or beyond what is read of it.
     """
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        return load_toml(path)
     except OSError as error:
         raise TableError(f"{path}: cannot be read ({error.strerror or error})") from None
+    except BoundsError as error:
+        raise TableError(f"{path}: {error}") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise TableError(f"{path}: not TOML: {error}") from None
 
@@ -57,22 +67,33 @@ def validated(model: type[Model], values: Nested, source: str) -> Model:
     try:
         return model.model_validate(values)
     except ValidationError as error:
-        faults = "; ".join(_fault(model, dict(detail)) for detail in error.errors())
-        raise TableError(f"{source}: {faults}") from None
+        raise TableError(f"{source}: {faults(model, error)}") from None
 
 
-def _fault(model: type[BaseModel], detail: Nested) -> str:
+def faults(model: type[Any], error: ValidationError) -> str:
+    """The first wrong keys, each with what is allowed, and how many there are beside them."""
+    told = "; ".join(_fault(model, dict(detail)) for detail in islice(error.errors(), FAULTS_TOLD))
+    others = error.error_count() - FAULTS_TOLD
+    return f"{told}; and {others} more" if others > 0 else told
+
+
+def _fault(model: type[Any], detail: Nested) -> str:
     path = ".".join(str(part) for part in detail["loc"])
     if detail["type"] == "extra_forbidden":
         return f"{path} is not a known key"
     if detail["type"] == "missing":
         return f"{path} is missing"
     message = str(detail["msg"]).removeprefix("Value error, ")
-    if detail["type"] == "value_error":
+    if detail["type"] in ("value_error", "json_invalid"):
         return f"{path}: {message}" if path else message
     allowed = _allowed_range(model, detail["loc"]) or _KINDS.get(detail["type"], "")
     hint = f"allowed is {allowed}" if allowed else f"{message[0].lower()}{message[1:]}"
-    return f"{path} = {detail['input']!r} is not allowed: {hint}"
+    return f"{path} = {_shown(detail['input'])} is not allowed: {hint}"
+
+
+def _shown(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= LONGEST_VALUE else f"{text[:LONGEST_VALUE]}..."
 
 
 _KINDS = {
@@ -89,8 +110,10 @@ _KINDS = {
 _BOUNDS = (("gt", "above"), ("ge", "at least"), ("lt", "below"), ("le", "at most"))
 
 
-def _allowed_range(model: type[BaseModel], location: tuple[int | str, ...]) -> str:
+def _allowed_range(model: type[Any], location: tuple[int | str, ...]) -> str:
     """What a number at this place may be, in words; empty where no bounds are known."""
+    if not location:
+        return ""
     owner: Any = model
     for part in location[:-1]:
         owner = getattr(getattr(owner, "model_fields", {}).get(part), "annotation", None)

@@ -2,6 +2,7 @@
 
 from math import cos, hypot, radians, sin
 
+from fsw.io.schema import TableError
 from hil_stub.coil_driver import CoilLimits
 from sim.harness.scenario import Scenario
 from sim.plant.config import (
@@ -23,7 +24,18 @@ Vec3 = tuple[float, float, float]
 
 
 def plant_config(scenario: Scenario, seed: int) -> PlantConfig:
-    """The plant of a scenario, its random streams drawn from ``seed``."""
+    """The plant of a scenario, its random streams drawn from ``seed``.
+
+    Raises:
+        TableError: the scenario is consistent in itself, but no plant has such numbers.
+    """
+    try:
+        return _config(scenario, seed)
+    except ValueError as error:
+        raise TableError(f"the scenario's plant: {error}") from None
+
+
+def _config(scenario: Scenario, seed: int) -> PlantConfig:
     tick_hz, coils = scenario.time.tick_hz, scenario.coils
     return PlantConfig(
         epoch_unix_s=scenario.epoch_unix_s,

@@ -13,9 +13,9 @@ from typing import NamedTuple
 from fsw.io.schema import TableError
 from sim.harness import run_dir
 from sim.harness.errors import HarnessError
-from sim.harness.names import is_name
 from sim.harness.progress import Watch, progress
-from sim.harness.run_dir import BUS_LOG, DIGESTS, RUN, SCENARIO, SCENARIO_DIGEST, SUMMARY, TRUTH, Json
+from sim.harness.run_dir import BUS_LOG, DIGESTS, RUN, SCENARIO, SCENARIO_DIGEST, SUMMARY, TRUTH
+from sim.harness.run_record import RunRecord
 from sim.harness.signature import PrivateKey, PublicKey, fault_of, sign
 
 FILES = (SCENARIO, BUS_LOG, TRUTH, SUMMARY)
@@ -108,20 +108,9 @@ def compare(folder: Path, log: Path | None = None, key: PublicKey | None = None)
     return Binding(mismatches, _note(run, unbound))
 
 
-def digests(run: Json) -> dict[str, str]:
-    """The SHA-256 of each file that a run.json binds, by name.
-
-    Raises:
-        HarnessError: these are no digests of files beside it.
-    """
-    kept = run.get(DIGESTS, {})
-    if SCENARIO_DIGEST in run and isinstance(kept, dict):
-        kept = {SCENARIO: run[SCENARIO_DIGEST], **kept}
-    if not isinstance(kept, dict) or not all(
-        is_name(name) and isinstance(digest, str) for name, digest in kept.items()
-    ):
-        raise HarnessError(f"{RUN}: {DIGESTS} is not a table of file names with their SHA-256")
-    return kept
+def digests(run: RunRecord) -> dict[str, str]:
+    """The SHA-256 of each file that a run.json binds, by name."""
+    return {SCENARIO: run[SCENARIO_DIGEST], **run.get(DIGESTS, {})}
 
 
 def bind(folder: Path, *names: str) -> None:
@@ -186,7 +175,7 @@ def _mismatch(path: Path, digest: str) -> str:
     return f"{path.name} is not the run's own: its SHA-256 begins with {found[:12]}, in {RUN} {digest[:12]}"
 
 
-def _note(run: Json, unbound: list[str]) -> str:
+def _note(run: RunRecord, unbound: list[str]) -> str:
     if not unbound:
         return ""
     names = ", ".join(unbound)

@@ -11,8 +11,9 @@ import re
 from binascii import unhexlify
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
+from fsw.io.regular_file import check_regular
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame
 from sim.harness.errors import HarnessError
 
@@ -24,6 +25,9 @@ _LINE = re.compile(
 _FD_LINE = re.compile(rb"\(\d{1,12}\.\d{6}(?:\d{3})?\) +\S{1,64} [0-9A-Fa-f]{3,8}##")
 _LONGEST = 256
 """No line of a candump log is longer; what is longer need not be read to its end to be refused."""
+
+MOST_KNOWN = 4096
+_Value = TypeVar("_Value")
 
 _TEMPLATES = (b"(0.000000) c 000#00\n", b"(0.000000) c 00000000#00\n", b"_9\n", b" R\n")
 _ENDINGS = frozenset(template[cut:] for template in _TEMPLATES for cut in range(len(template)))
@@ -87,6 +91,7 @@ def read_log(path: Path) -> Iterator[LogEntry]:
         LogError: the file cannot be read, its first line is no candump line, or a later one is not.
     """
     try:
+        check_regular(path)
         with path.open("rb") as file:
             yield from _entries(path, file.readline)
     except OSError as error:
@@ -111,14 +116,22 @@ def _entries(path: Path, readline: Callable[[int], bytes]) -> Iterator[LogEntry]
             timestamp_us = int(seconds) * 1_000_000 + int(microseconds)
         channel = channels.get(name)
         if channel is None:
-            channel = channels[name] = name.decode("latin-1")
+            channel = _remember(channels, name, name.decode("latin-1"))
         can_id = identifiers.get(digits)
         if can_id is None:
-            can_id = identifiers[digits] = _identifier(digits)
+            can_id = _remember(identifiers, digits, _identifier(digits))
         frame = Frame(can_id, unhexlify(data)) if remote is None else Frame(can_id | REMOTE_FLAG, b"")
         yield LogEntry(number, timestamp_us, channel, frame)
     if number == 0:
         raise LogError(f"{path}: not a candump log: the file is empty")
+
+
+def _remember(known: dict[bytes, _Value], name: bytes, value: _Value) -> _Value:
+    """What a word means, kept for its next time; a log in which every line has another is forgotten."""
+    if len(known) >= MOST_KNOWN:
+        known.clear()
+    known[name] = value
+    return value
 
 
 def _identifier(digits: bytes) -> int:

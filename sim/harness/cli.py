@@ -1,8 +1,13 @@
-"""The ``torquer`` command. Errors are one sentence and exit code 2; a failed verdict is exit code 1."""
+"""The ``torquer`` command. Errors are one sentence and exit code 2; a failed verdict is exit code 1.
+
+Each kind of input is checked where it enters, and told of there. What comes out of a command as any other
+exception is a defect of this program: it stays a traceback (exit code 1), which says where to look.
+"""
 
 import sys
 from collections.abc import Callable
 from functools import wraps
+from io import TextIOWrapper
 from pathlib import Path
 from typing import Any, ParamSpec
 
@@ -10,10 +15,13 @@ import click
 
 from fsw.io.bus import BusError
 from fsw.io.schema import TableError
+from fsw.io.sentence import sentence
 from sim.harness.errors import DISK_FULL, HarnessError
+from sim.plant.errors import PlantError
 
 Parameters = ParamSpec("Parameters")
 
+SEEDS = click.IntRange(0, 2**64 - 1)
 BUSES = "auto, loop[:PORT], socketcan:NAME, slcan:PORT"
 RUN_OR_LOG = click.argument("run_or_log", metavar="RUN|LOG", type=click.Path(path_type=Path))
 SETTINGS = click.option(
@@ -41,14 +49,9 @@ def sentences(command: Callable[Parameters, int | None]) -> Callable[Parameters,
     def run(*args: Parameters.args, **kwargs: Parameters.kwargs) -> None:
         try:
             code = command(*args, **kwargs)
-        except (TableError, BusError, HarnessError) as error:
-            click.echo(f"torquer: {error}", err=True)
+        except (TableError, BusError, HarnessError, PlantError) as error:
+            click.echo(f"torquer: {sentence(error)}", err=True)
             code = getattr(error, "exit_code", 2)
-        except OSError as error:
-            if error.errno not in DISK_FULL:
-                raise
-            click.echo(f"torquer: the disk takes no more ({error.strerror}); what was done is kept", err=True)
-            code = 1
         except KeyboardInterrupt:
             click.echo("torquer: interrupted; what was done so far is kept", err=True)
             code = 130
@@ -60,13 +63,26 @@ def sentences(command: Callable[Parameters, int | None]) -> Callable[Parameters,
 class Commands(click.Group):
     """The commands; a wrong option, like any other error, is one sentence, without the usage before it."""
 
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """No name of anything holds a NUL."""
+        if any("\0" in word for word in args):
+            raise click.UsageError("an argument holds a NUL character")
+        return super().parse_args(ctx, args)
+
     def main(self, *args: Any, **kwargs: Any) -> Any:  # noqa: ANN401  (as in click)
         """Run a command line and exit."""
+        if isinstance(sys.stdout, TextIOWrapper):
+            sys.stdout.reconfigure(errors="backslashreplace")  # a path may hold what is no text
         try:
             code = super().main(*args, **{**kwargs, "standalone_mode": False})
         except click.ClickException as error:
-            click.echo(f"torquer: {error.format_message()}", err=True)
+            click.echo(f"torquer: {sentence(error.format_message())}", err=True)
             code = error.exit_code
+        except OSError as error:
+            if error.errno not in DISK_FULL:
+                raise
+            click.echo(f"torquer: the disk takes no more ({error.strerror}); what was done is kept", err=True)
+            code = 1
         except click.Abort:
             code = 130
         sys.exit(code)
@@ -100,9 +116,7 @@ def scenarios() -> None:
 @click.option(
     "--orbits", type=click.FloatRange(min=0.0, min_open=True), help="Default: as the scenario says."
 )
-@click.option(
-    "--seed", default=1, show_default=True, type=click.IntRange(min=0), help="Of all random streams."
-)
+@click.option("--seed", default=1, show_default=True, type=SEEDS, help="Of all random streams.")
 @click.option("--out", type=click.Path(path_type=Path), help="Default: runs/<scenario>-<UTC time>.")
 @SIGN
 @SETTINGS
@@ -123,11 +137,12 @@ def sil(
     from sim.harness.progress import progress
     from sim.harness.scenario import load, parse_settings
     from sim.harness.signature import private_key
-    from sim.harness.sil import fly_processes, served, ticks_of
+    from sim.harness.sil import check_flyable, fly_processes, served, ticks_of
 
     key = None if sign is None else private_key(sign)
     chosen, chosen_pace = load(scenario, parse_settings(settings)), parse_pace(pace)
     ticks, path = ticks_of(chosen, orbits), out or run_dir.default_path(chosen)
+    check_flyable(chosen, seed)
     flying = f"flying {chosen.name}"
     if bus == "virtual":
         from sim.harness.virtual import fly_virtual
@@ -288,9 +303,7 @@ def design(
 @click.option(
     "--orbits", type=click.FloatRange(min=0.0, min_open=True), help="Default: as the scenario says."
 )
-@click.option(
-    "--seed", default=1, show_default=True, type=click.IntRange(min=0), help="Of all random streams."
-)
+@click.option("--seed", default=1, show_default=True, type=SEEDS, help="Of all random streams.")
 @click.option("--workers", type=click.IntRange(min=1), help="Processes. Default: one a core.")
 @click.option(
     "--out", type=click.Path(path_type=Path), help="Folder. Default: compare/<scenario>-<UTC time>."
@@ -387,7 +400,7 @@ def faults(
     type=click.Choice(["coil", "magnetometer", "sun"]),
     help="Instead, check one board, alone on the bus, against docs/icd.md; its limits are SCENARIO's.",
 )
-@click.option("--seed", default=1, show_default=True, type=click.IntRange(min=0), help="Of the plant.")
+@click.option("--seed", default=1, show_default=True, type=SEEDS, help="Of the plant.")
 @click.option("--out", type=click.Path(path_type=Path), help="Keep log and numbers in this folder.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON alone.")
 @SETTINGS
@@ -418,6 +431,8 @@ def hil(
 
     rate = (f"time.tick_hz={tick_hz}",) if tick_hz is not None else ()
     chosen = load(scenario, parse_settings((*settings, *rate)))
+    if conformance is not None and out is not None:
+        raise HarnessError("--out: a conformance run keeps no log")
     if conformance is not None:
         from sim.harness.hil.conformance_command import conformance as conform
 

@@ -9,6 +9,8 @@ from sim.harness import binding, run_dir
 from sim.harness.audit.auditor import audit
 from sim.harness.audit.check import limits_beside
 from sim.harness.candump import LogEntry, read_log
+from sim.harness.destination import check_folder
+from sim.harness.errors import HarnessError
 from sim.harness.estimates import EstimateRecorder
 from sim.harness.log_index import vouch
 from sim.harness.replay import Replay, replay
@@ -28,11 +30,17 @@ def conclude(path: Path, watch: Watch = lambda tick: None) -> Json:
     each time that the replay is exact.
 
     Raises:
-        HarnessError: the directory is no run, or its log is damaged.
+        HarnessError: the directory is no run or cannot be written, or one of its files is damaged.
     """
     run, scenario = run_dir.read_run(path), run_dir.read_scenario(path)
+    check_folder(path, run_dir.RESULTS)
     log = path / run_dir.BUS_LOG
     truth = read_truth(path / run_dir.TRUTH)
+    flown = run.get("flown")
+    if flown is not None and len(truth["t_s"]) != flown["ticks"]:
+        raise HarnessError(
+            f"{path / run_dir.TRUTH}: {len(truth['t_s'])} whole rows, but {flown['ticks']} ticks were flown"
+        )
     recorder = EstimateRecorder(len(truth["t_s"]))
 
     def on_tick(state: FlightState) -> None:

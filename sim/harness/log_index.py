@@ -25,6 +25,8 @@ from pathlib import Path
 from typing import BinaryIO, NamedTuple
 from zlib import crc32
 
+from fsw.io.regular_file import read_regular
+
 VERSION = 1
 SUFFIX = ".index"
 BLOCK_WRITES = 64
@@ -67,6 +69,9 @@ class Block(NamedTuple):
     end: bool
 
 
+_PIECE_BYTES = 1 << 20
+_MOST_INDEX_BYTES = 64_000_000
+"""An index of 2^24 ticks has 30 MB."""
 _FIRST = Block(0, 0, b"", end=False)
 
 
@@ -129,7 +134,7 @@ def vouch(log: Path) -> Voucher:
     """Compare a log with the index beside it; never an error, whatever the files hold."""
     name = index_of(log).name
     try:
-        content = index_of(log).read_bytes()
+        content = read_regular(index_of(log), _MOST_INDEX_BYTES)
         with log.open("rb") as file:
             return _compare(name, file, _blocks(name, content))
     except FileNotFoundError:
@@ -146,8 +151,7 @@ def _compare(name: str, file: BinaryIO, blocks: Iterator[Block]) -> Voucher:
     for block in blocks:
         if there < block.size:
             raise _BrokenError(f"truncated: the log has {there} bytes, its index tells of {block.size}")
-        text = file.read(block.size - last.size)
-        if hashlib.sha256(last.digest + text).digest() != block.digest:
+        if _digest(file, block.size - last.size, last.digest) != block.digest:
             raise _BrokenError(f"altered: lines {last.lines + 1} to {block.lines} are not what was flown")
         last = block
     if last.end and there > last.size:
@@ -160,6 +164,15 @@ def _compare(name: str, file: BinaryIO, blocks: Iterator[Block]) -> Voucher:
         else "the flight did not come to its end"
     )
     return Voucher(Standing.OPEN, f"{name} has no end mark: {rest}")
+
+
+def _digest(file: BinaryIO, size: int, before: bytes) -> bytes:
+    """SHA-256 over the digest before and the next so many bytes: a block is as large as its index says."""
+    digest = hashlib.sha256(before)
+    while size and (piece := file.read(min(size, _PIECE_BYTES))):
+        digest.update(piece)
+        size -= len(piece)
+    return digest.digest()
 
 
 def _blocks(name: str, content: bytes) -> Iterator[Block]:

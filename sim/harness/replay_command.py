@@ -16,23 +16,32 @@ from fsw.wire.messages import NAMES, Sync
 from sim.harness import run_dir
 from sim.harness.assemble import plant_config
 from sim.harness.binding import Binding, compare
-from sim.harness.candump import LogEntry, LogTruncatedError, read_log
+from sim.harness.candump import LogEntry, LogTruncatedError, format_time, read_log
 from sim.harness.errors import HarnessError
 from sim.harness.faults.section import make_plant
 from sim.harness.flight import answered
 from sim.harness.log_index import vouch
 from sim.harness.progress import progress
 from sim.harness.replay import replay
+from sim.harness.run_record import RunRecord
 from sim.harness.scenario import Scenario, flight_table, load, parse_settings
 from sim.harness.signature import PublicKey
+
+LONGEST_PAUSE_S = 86_400.0
+"""In a log that is played: what pauses for longer was not recorded in one piece."""
 
 
 class Flown(NamedTuple):
     """What a log was flown with: scenario, run.json where there is one, and what that says of the files."""
 
     scenario: Scenario
-    run: run_dir.Json
+    run: RunRecord | None
     binding: Binding
+
+    @property
+    def ticks(self) -> int:
+        """How many are in the log, as far as that is known."""
+        return self.run["ticks"] if self.run else 0
 
 
 def locate(
@@ -48,7 +57,7 @@ def locate(
     binding = compare(folder, log, key)
     with binding.beside_errors():
         next(iter(read_log(log)))  # a file that is no log is named first
-        run = run_dir.read_run(folder) if (folder / run_dir.RUN).is_file() else {}
+        run = run_dir.read_run(folder) if (folder / run_dir.RUN).is_file() else None
         beside = folder / run_dir.SCENARIO
         if scenario is None and not beside.is_file():
             raise HarnessError(
@@ -60,9 +69,9 @@ def locate(
 def through_flight_software(log: Path, flown: Flown) -> int:
     """Print the verdict; 0 if the replay is exact, as far as this platform must be, and the log whole."""
     config = flight_config(flight_table(flown.scenario))
-    with progress("replaying", flown.run.get("ticks", 0)) as watch:
+    with progress("replaying", flown.ticks) as watch:
         shown = replay(log, config, lambda state: watch(state.tick))
-    same_platform = flown.run.get("platform", run_dir.fingerprint()) == run_dir.fingerprint()
+    same_platform = flown.run is None or flown.run["platform"] == run_dir.fingerprint()
     exact = shown.bit_exact or (shown.command_exact and not same_platform)
     if shown.bit_exact:
         click.echo(f"bit-exact: {shown.ticks} ticks, {shown.frames} frames, every state CRC equal")
@@ -91,11 +100,11 @@ def through_flight_software(log: Path, flown: Flown) -> int:
 
 def through_plant(log: Path, flown: Flown) -> int:
     """The recorded commands through the plant: its frames must come out as logged."""
-    if "seed" not in flown.run:
+    if flown.run is None:
         raise HarnessError(f"{log}: --plant needs the seed: no {run_dir.RUN} beside it")
     plant = make_plant(plant_config(flown.scenario, flown.run["seed"]), flown.scenario.fault)
     ticks = 0
-    with progress("replaying", flown.run.get("ticks", 0)) as watch:
+    with progress("replaying", flown.ticks) as watch:
         for _, group in groupby(_after_boot(log), key=lambda entry: entry.timestamp_us):
             logged = [entry.frame for entry in group]
             if logged[0] == plant.end():
@@ -153,7 +162,10 @@ def play(log: Path, flown: Flown, spec: str) -> int:
         began, first_us = time.monotonic(), None
         for stamp_us, group in groupby(read_log(log), key=lambda entry: entry.timestamp_us):
             first_us = stamp_us if first_us is None else first_us
-            time.sleep(max(0.0, began + (stamp_us - first_us) / 1e6 - time.monotonic()))
+            wait_s = began + (stamp_us - first_us) / 1e6 - time.monotonic()
+            if wait_s > LONGEST_PAUSE_S:
+                raise HarnessError(f"{log}: at {format_time(stamp_us)} it pauses for {wait_s:.0f} s")
+            time.sleep(max(0.0, wait_s))
             bus.send([entry.frame for entry in group])
     finally:
         bus.close()

@@ -7,17 +7,19 @@ import platform
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import tomli_w
 
 from fsw.io.schema import TableError
+from sim.harness.destination import check_folder
 from sim.harness.errors import HarnessError
 from sim.harness.flight import Pace
+from sim.harness.log_index import SUFFIX
+from sim.harness.run_record import SCHEMA_VERSION, RunRecord, read_record
 from sim.harness.scenario import Scenario, flight_table, load
 
-SCHEMA_VERSION = 1
 RUN, SCENARIO, BUS_LOG, TRUTH, SUMMARY, REPORT = (
     "run.json",
     "scenario.toml",
@@ -26,8 +28,12 @@ RUN, SCENARIO, BUS_LOG, TRUTH, SUMMARY, REPORT = (
     "summary.json",
     "report.html",
 )
-SCENARIO_DIGEST, DIGESTS = "scenario_sha256", "digests"
+SCENARIO_DIGEST: Final = "scenario_sha256"
+DIGESTS: Final = "digests"
 """Keys of run.json: SHA-256 of the scenario, and of further files by name, added when each is finished."""
+FILES = (RUN, SCENARIO, BUS_LOG, BUS_LOG + SUFFIX, TRUTH, SUMMARY, REPORT)
+RESULTS = (RUN, SUMMARY, REPORT)
+"""What is written when a flight is over, and again by ``torquer report``."""
 
 Json = dict[str, Any]
 
@@ -48,11 +54,11 @@ def begin(path: Path, scenario: Scenario, seed: int, ticks: int, bus: str, pace:
     Raises:
         HarnessError: the directory holds a run already, or cannot be written.
     """
-    if (path / RUN).exists() or (path / BUS_LOG).exists():
+    check_folder(path)
+    if any((path / name).exists() for name in FILES):
         raise HarnessError(f"{path} already holds a run: choose another --out")
     values = scenario.model_dump(mode="json", exclude_none=True)
     try:
-        path.mkdir(parents=True, exist_ok=True)
         text = tomli_w.dumps(values)
         (path / SCENARIO).write_text(text, encoding="utf-8")
         write_json(
@@ -82,22 +88,18 @@ def update(path: Path, **values: object) -> None:
     write_json(path / RUN, {**read_run(path), **values})
 
 
-def read_run(path: Path) -> Json:
+def read_run(path: Path) -> RunRecord:
     """The content of run.json.
 
     Raises:
-        HarnessError: missing, not JSON, or of another version.
+        HarnessError: missing, not JSON, of another version, or a key is missing or not what it should be.
     """
     try:
-        content: Json = json.loads((path / RUN).read_text(encoding="utf-8"))
-    except OSError:
+        return read_record(path / RUN)
+    except (FileNotFoundError, NotADirectoryError):
         raise HarnessError(f"{path} is no run directory: it has no {RUN}") from None
-    except ValueError as error:
-        raise HarnessError(f"{path / RUN}: not JSON: {error}") from None
-    told = content.get("schema_version") if isinstance(content, dict) else None
-    if told != SCHEMA_VERSION:
-        raise HarnessError(f"{path / RUN}: schema_version is {told}, and only {SCHEMA_VERSION} can be read")
-    return content
+    except OSError as error:
+        raise HarnessError(f"{path / RUN}: cannot be read ({error.strerror})") from None
 
 
 def read_scenario(path: Path) -> Scenario:
@@ -130,12 +132,12 @@ def locate(run_or_log: Path) -> tuple[Path, Path]:
     Raises:
         HarnessError: neither exists.
     """
-    if run_or_log.is_dir():
+    if os.path.isdir(run_or_log):  # unlike Path's, never an error, whatever the name
         log = run_or_log / BUS_LOG
         if not log.is_file():
             raise HarnessError(f"{run_or_log} has no {BUS_LOG}")
         return log, run_or_log
-    if not run_or_log.is_file():
+    if not os.path.isfile(run_or_log):
         raise HarnessError(f"{run_or_log} does not exist")
     return run_or_log, run_or_log.parent
 

@@ -26,8 +26,9 @@ from fsw.io.schema import (
     validated,
 )
 from fsw.io.table import CoilTable, ControlTable, FlightTable, OrbitTable, TimeTable
+from fsw.io.toml_text import MOST_LEVELS, BoundsError, parse_toml
 from sim.harness.faults.section import Faults
-from sim.harness.names import Name, is_name
+from sim.harness.names import Name
 from sim.harness.physics import DisturbanceSection, ScenarioBody, SensorsSection
 from sim.harness.telecommands import Telecommands
 
@@ -76,7 +77,7 @@ class ScenarioCoils(CoilTable):
 class PlantSection(Section):
     """Integration of the plant."""
 
-    max_substep_s: float = Field(default=1.0, gt=0.0, le=5.0)
+    max_substep_s: float = Field(default=1.0, ge=0.001, le=5.0)
 
 
 class Scenario(Section):
@@ -134,9 +135,7 @@ def orbit_period_s(scenario: Scenario) -> float:
 
 def shipped() -> list[Scenario]:
     """The scenarios that ship, by name."""
-    folder = resources.files("sim.scenarios")
-    names = sorted(entry.name for entry in folder.iterdir() if entry.name.endswith(".toml"))
-    return [load(name.removesuffix(".toml")) for name in names]
+    return [load(name) for name in _names()]
 
 
 def load(name_or_path: str, overrides: Nested | None = None) -> Scenario:
@@ -199,18 +198,23 @@ def parse_settings(settings: tuple[str, ...]) -> Nested:
     """``KEY=VALUE`` settings as nested values; VALUE is TOML, or a bare word taken as a string.
 
     Raises:
-        TableError: a setting without '=' or with an empty key.
+        TableError: a setting without '=' or with an empty key, or beyond what is read of TOML.
     """
     values: Nested = {}
     for setting in settings:
         key, equals, text = setting.partition("=")
-        if not equals or not all(key.strip().split(".")):
+        parts = key.strip().split(".")
+        if not equals or not all(parts):
             raise TableError(f"--set {setting}: write KEY=VALUE, for instance time.tick_hz=10")
+        if len(parts) > MOST_LEVELS:
+            raise TableError(f"--set {key[:40]}...: a key has more than {MOST_LEVELS} parts")
         try:
-            value = tomllib.loads(f"value = {text}")["value"]
+            value = parse_toml(f"value = {text}")["value"]
         except tomllib.TOMLDecodeError:
             value = text
-        for part in reversed(key.strip().split(".")):
+        except BoundsError as error:
+            raise TableError(f"--set {key}: {error}") from None
+        for part in reversed(parts):
             value = {part: value}
         values = merge(values, value)
     return values
@@ -223,14 +227,19 @@ def _with_floor(sigma: float, floor: float) -> float:
 def _read(name_or_path: str) -> tuple[Nested, str]:
     if name_or_path.endswith(".toml"):
         return read_toml(Path(name_or_path)), name_or_path
-    shipped_file = resources.files("sim.scenarios").joinpath(f"{name_or_path}.toml")
-    if not is_name(name_or_path) or not shipped_file.is_file():
-        names = ", ".join(
-            sorted(
-                e.name[:-5] for e in resources.files("sim.scenarios").iterdir() if e.name.endswith(".toml")
-            )
-        )
+    names = _names()
+    if name_or_path not in names:
         raise TableError(
-            f"there is no scenario {name_or_path!r}: choose one of {names}, or a path that ends in .toml"
+            f"there is no scenario {name_or_path!r}: choose one of {', '.join(names)}, "
+            "or a path that ends in .toml"
         )
+    shipped_file = resources.files("sim.scenarios").joinpath(f"{name_or_path}.toml")
     return tomllib.loads(shipped_file.read_text(encoding="utf-8")), f"scenario {name_or_path}"
+
+
+def _names() -> list[str]:
+    """The names of the scenarios that ship."""
+    folder = resources.files("sim.scenarios")
+    return sorted(
+        entry.name.removesuffix(".toml") for entry in folder.iterdir() if entry.name.endswith(".toml")
+    )

@@ -17,7 +17,7 @@ from sim.harness.assemble import plant_config
 from sim.harness.errors import HarnessError
 from sim.harness.faults.section import make_plant
 from sim.harness.flight import BusLog, FlightError, Pace, fly
-from sim.harness.scenario import Scenario, orbit_period_s
+from sim.harness.scenario import Scenario, flight_table, orbit_period_s
 from sim.harness.telecommands import uplink
 from sim.harness.truth import TruthFile
 
@@ -42,6 +42,23 @@ def ticks_of(scenario: Scenario, orbits: float | None) -> int:
         most = MOST_TICKS / ticks_per_orbit
         raise HarnessError(f"{option}: a run has at most {MOST_TICKS} ticks, here {most:.0f} orbits")
     return max(1, round(chosen * ticks_per_orbit))
+
+
+def check_flyable(scenario: Scenario, seed: int) -> None:
+    """Build plant and flight software once, before a run is begun that one of them could not fly.
+
+    Raises:
+        TableError: why not.
+    """
+    from fsw.io.config import flight_config  # noqa: PLC0415  (the plant's process has no flight software)
+
+    flight_config(flight_table(scenario))
+    check_plant(scenario, seed)
+
+
+def check_plant(scenario: Scenario, seed: int) -> None:
+    """The same of the plant alone."""
+    make_plant(plant_config(scenario, seed), scenario.fault)
 
 
 def record(path: Path, scenario: Scenario, bus: Bus, watch: Watch = lambda tick: None) -> None:

@@ -11,6 +11,7 @@ from sim.harness.attitude_arrays import angle_rad, axis1_angle_rad, normal_in_bo
 from sim.harness.audit.auditor import AuditReport
 from sim.harness.candump import LogEntry
 from sim.harness.estimates import Estimates
+from sim.harness.run_record import FlightRecord
 from sim.harness.scenario import Scenario, orbit_period_s
 from sim.harness.truth import Histories
 
@@ -53,15 +54,20 @@ class BusTally:
 
 
 def summarise(
-    scenario: Scenario, run: Json, truth: Histories, estimates: Estimates, audit: AuditReport, tally: BusTally
+    scenario: Scenario,
+    run: FlightRecord,
+    truth: Histories,
+    estimates: Estimates,
+    audit: AuditReport,
+    tally: BusTally,
 ) -> Json:
     """All keys of summary.json that make sense for this flight."""
     tick_hz = scenario.time.tick_hz
     ticks = len(truth["t_s"])
     sim_s = ticks / tick_hz
     last_orbit = slice(max(0, ticks - round(orbit_period_s(scenario) * tick_hz)), ticks)
-    flown = run.get("flown", {})
-    wall_s = flown.get("wall_s")
+    flown = run.get("flown")
+    wall_s = flown.get("wall_s") if flown else None
     summary: Json = {
         "scenario": scenario.name,
         "seed": run["seed"],
@@ -69,7 +75,7 @@ def summarise(
         "wall_seconds": wall_s,
         "realtime_factor": sim_s / wall_s if wall_s else None,
         "ticks": ticks,
-        "slips": flown.get("slips"),
+        "slips": flown.get("slips") if flown else None,
         "pulses": {
             "total": len(audit.pulses),
             "per_coil": audit.pulses_per_coil,

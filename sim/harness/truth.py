@@ -7,8 +7,9 @@ space is taken at once, so that a disk that cannot hold the histories is known b
 
 import errno
 import os
+import re
 from array import array
-from itertools import chain
+from itertools import chain, islice
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -17,6 +18,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from fsw.io.regular_file import check_regular
 from sim.harness.errors import HarnessError
 from sim.plant.plant import TruthRow
 
@@ -118,6 +120,14 @@ def _take_space(path: Path, size: int) -> None:
         ) from None
 
 
+LARGEST = 1e15
+"""No history has a greater magnitude, in SI."""
+MOST_SOURCES = 16
+_SOURCE = re.compile("[a-z][a-z0-9_]{0,39}")
+_DAMAGE = (OSError, KeyError, RuntimeError, TypeError, ValueError)
+"""What h5py raises over a file that is none, or is damaged."""
+
+
 def read_truth(path: Path) -> Histories:
     """The flown rows of every dataset, by name.
 
@@ -125,19 +135,55 @@ def read_truth(path: Path) -> Histories:
         HarnessError: missing or not a truth file.
     """
     try:
+        check_regular(path)
         with h5py.File(path, "r") as file:
-            names = [name for name, *_ in COLUMNS]
-            names += [f"torque_body_nm/{source}" for source in file["torque_body_nm"]]
-            histories = {name: file[name][:] for name in names}
-    except (OSError, KeyError) as error:
+            widths = {name: width for name, width, *_ in COLUMNS}
+            widths |= {f"torque_body_nm/{source}": 3 for source in _sources(file)}
+            _check_layout(file, widths, path.stat().st_size)
+            histories = {name: file[name][:] for name in widths}
+    except _DAMAGE as error:
         raise HarnessError(f"{path}: cannot be read as plant histories ({error})") from None
+    for name, history in histories.items():
+        if (np.abs(history) > LARGEST).any():
+            raise HarnessError(f"{path}: {name} holds a magnitude above {LARGEST:g}")
     flown = min(map(_complete_rows, histories.values()))
     return {name: history[:flown] for name, history in histories.items()}
 
 
+def _sources(file: h5py.File) -> list[str]:
+    """What turns the body, as the file names it.
+
+    Raises:
+        ValueError: a name that is none of ours, or very many.
+    """
+    names = list(islice(file["torque_body_nm"], MOST_SOURCES + 1))
+    if len(names) > MOST_SOURCES or not all(_SOURCE.fullmatch(name) for name in names):
+        raise ValueError(f"torque_body_nm is no group of at most {MOST_SOURCES} torques by name")
+    return names
+
+
+def _check_layout(file: h5py.File, widths: dict[str, int], size: int) -> None:
+    """Doubles in the shapes that ``TruthFile`` makes, in one piece and in this file: so many bytes at most.
+
+    Raises:
+        ValueError: something else.
+    """
+    rows = (*getattr(file["t_s"], "shape", ()), 0)[0]
+    for name, width in widths.items():
+        dataset, shape = file[name], (rows,) if width == 1 else (rows, width)
+        if not isinstance(dataset, h5py.Dataset) or (dataset.shape, dataset.dtype) != (shape, np.dtype("f8")):
+            raise ValueError(f"{name} is no table of {' x '.join(map(str, shape))} doubles")
+        elsewhere = dataset.is_virtual or dataset.external or dataset.file.filename != file.filename
+        if dataset.chunks or elsewhere:
+            raise ValueError(f"{name} is not stored in one piece in this file")
+    if 8 * rows * sum(widths.values()) > size:
+        raise ValueError(f"{rows} rows do not fit into its {size} bytes")
+
+
 def _complete_rows(history: NDArray[np.float64]) -> int:
-    """Rows without NaN; where a flush was cut short, datasets differ in it."""
-    return int(np.isfinite(history.reshape(len(history), -1)).all(axis=1).sum())
+    """Rows before the first with a NaN; where a flush was cut short, datasets differ in it."""
+    broken = np.flatnonzero(~np.isfinite(history.reshape(len(history), -1)).all(axis=1))
+    return int(broken[0]) if len(broken) else len(history)
 
 
 def _flat(row: TruthRow) -> list[float]:

@@ -10,14 +10,17 @@ from types import FrameType
 
 import click
 
+from fsw.io import command_line
 from fsw.io.bus import BusError
 from fsw.io.open_bus import open_bus, resolve
 from fsw.io.schema import TableError
+from fsw.io.sentence import sentence
 from sim.harness import run_dir
 from sim.harness.errors import DISK_FULL, HarnessError
 from sim.harness.options import parse_pace
 from sim.harness.scenario import load, parse_settings
-from sim.harness.sil import record, ticks_of
+from sim.harness.sil import check_plant, record, ticks_of
+from sim.plant.errors import PlantError
 
 
 def _end(signum: int, frame: FrameType | None) -> None:
@@ -46,7 +49,7 @@ def _end_with(parent: int) -> None:
     help="How long to fly; default as the scenario says.",
 )
 @click.option(
-    "--seed", default=1, show_default=True, type=click.IntRange(min=0), help="Of all random streams."
+    "--seed", default=1, show_default=True, type=click.IntRange(0, 2**64 - 1), help="Of all random streams."
 )
 @click.option("--pace", default="lockstep", show_default=True, help="lockstep or realtime[:FACTOR].")
 @click.option("--out", type=click.Path(path_type=Path), help="Run directory; default runs/<scenario>-<time>.")
@@ -74,6 +77,7 @@ def main(
             record(into, chosen, open_bus(bus))
             return
         ticks, chosen_pace, spec = ticks_of(chosen, orbits), parse_pace(pace), resolve(bus)
+        check_plant(chosen, seed)
         link = open_bus(spec)
         directory = out or run_dir.default_path(chosen)
         run_dir.begin(directory, chosen, seed, ticks, spec.partition(":")[0], chosen_pace)
@@ -83,8 +87,8 @@ def main(
 
         conclude(directory)
         click.echo(f"flown: {directory}", err=True)
-    except (TableError, BusError, HarnessError) as error:
-        click.echo(f"plant: {error}", err=True)
+    except (TableError, BusError, HarnessError, PlantError) as error:
+        click.echo(f"plant: {sentence(error)}", err=True)
         sys.exit(getattr(error, "exit_code", 2))
     except OSError as error:
         if error.errno not in DISK_FULL:
@@ -96,4 +100,4 @@ def main(
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(command_line.run(main, "sim.plant"))

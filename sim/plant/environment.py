@@ -12,6 +12,7 @@ import numpy as np
 
 from sim.plant.atmosphere import altitude_m, density_kgpm3, flow_mps
 from sim.plant.config import DisturbanceConfig, PlantConfig
+from sim.plant.errors import PlantError
 from sim.plant.field import make_field
 from sim.plant.orbit import MU_M3PS2, Array, make_orbit
 from sim.plant.rotation import ZERO, Mat3, Vec3
@@ -119,8 +120,12 @@ class Environment:
         count = self._nodes_per_block
         first = block * count
         t_s = NODE_S * np.arange(first - _BEFORE, first + count + _AFTER, dtype=np.float64)
-        r_m, v_mps = self._orbit.at(t_s)
-        nodes = np.hstack([r_m, v_mps, self._field.at(t_s, r_m), sun_eci_m(self._epoch_unix_s, t_s)])
+        try:
+            r_m, v_mps = self._orbit.at(t_s)
+            b_t = self._field.at(t_s, r_m)
+        except ValueError as error:
+            raise PlantError(str(error)) from None
+        nodes = np.hstack([r_m, v_mps, b_t, sun_eci_m(self._epoch_unix_s, t_s)])
         inner = sum(
             weight[:, None] * nodes[place : place + count, None, :]
             for place, weight in enumerate(self._weights)

@@ -1,6 +1,6 @@
 """The plant: physics and boards together, tick by tick, frames out and frames in."""
 
-from math import ceil
+from math import ceil, isfinite
 from typing import Literal, NamedTuple
 from zlib import crc32
 
@@ -15,6 +15,7 @@ from sim.plant.coils import Coils
 from sim.plant.config import PlantConfig
 from sim.plant.disturbances import effects, torque_noise
 from sim.plant.environment import Environment, Surroundings
+from sim.plant.errors import PlantError
 from sim.plant.interference import NO_INTERFERENCE, Interference
 from sim.plant.rigid_body import Motion, RigidBody, Torque
 from sim.plant.rotation import (
@@ -142,7 +143,11 @@ class Plant:
         self._coils.rescale(coil, scale)
 
     def end_tick(self) -> None:
-        """Drive what the coil driver drives, and go on to the next tick."""
+        """Drive what the coil driver drives, and go on to the next tick.
+
+        Raises:
+            PlantError: the motion is no longer one of numbers, or orbit or field are known no further.
+        """
         self.driven = self.interference.driven(self._actuator.drive())
         driven_a, fraction = self.driven
         if self._noise:
@@ -155,6 +160,8 @@ class Plant:
             sx, sy, sz = sx + mx, sy + my, sz + mz
             torque = self._torque((mx, my, mz))
             motion = self._body.step(motion, torque, self._around[2 * substep : 2 * substep + 3], step_s)
+            if not _is_motion(motion):
+                raise PlantError(f"the motion is lost in tick {self._tick}: too fast for the integration")
         self.motion = motion
         self._flowed_am2 = (sx / substeps, sy / substeps, sz / substeps)
         self._tick += 1
@@ -255,3 +262,9 @@ class Plant:
         if beats and not rest:
             frames.append(PlantHeartbeat(0, 0, self.slips, tick, counter=beats - 1).encode())
         return frames
+
+
+def _is_motion(motion: Motion) -> bool:
+    """Whether attitude and rate are still numbers, and the attitude one."""
+    (q0, q1, q2, q3), (x, y, z) = motion
+    return isfinite(x + y + z) and 0.5 < q0 * q0 + q1 * q1 + q2 * q2 + q3 * q3 < 2.0

@@ -340,3 +340,13 @@ def test_a_bus_that_is_none_is_named(copy, torquer):
     done = torquer("replay", copy.folder, "--onto", "can0")
     assert (done.code, done.out) == (2, "")
     assert "can0" in done.sentence
+
+
+def test_a_log_that_pauses_for_longer_than_anybody_waits_is_not_played(copy, torquer):
+    copy.entries[1][0] += 10**13
+    copy.write()
+    with socket.create_server(("127.0.0.1", 0)) as probe:
+        port = probe.getsockname()[1]
+    done = torquer("replay", copy.folder, "--onto", f"loop:{port}")
+    assert done.code == 2
+    assert "it pauses for 1" in done.sentence

@@ -1,10 +1,11 @@
 """``torquer check``: audit the actuator limits in a run directory or in any candump log."""
 
-import tomllib
+import os
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
+from fsw.io.toml_text import load_toml
 from fsw.wire.messages import CoilBoot, FswBoot, MagBoot, PlantBoot, SunBoot, intact
 from sim.harness.audit.auditor import audit
 from sim.harness.audit.findings import AuditLimits, AuditReport, seconds_text
@@ -37,9 +38,10 @@ def check(path: Path, backoff: str | None, key: PublicKey | None = None) -> Audi
         HarnessError: there is no such log, it is no candump log or an altered one, or what lies beside it
             cannot be used.
     """
-    log = path / LOG_NAME if path.is_dir() else path
-    if not log.is_file():
-        raise HarnessError(f"{path}: no {LOG_NAME} in it" if path.is_dir() else f"{path}: no such file")
+    folder = os.path.isdir(path)  # unlike Path's, never an error, whatever the name
+    log = path / LOG_NAME if folder else path
+    if not os.path.isfile(log):
+        raise HarnessError(f"{path}: no {LOG_NAME} in it" if folder else f"{path}: no such file")
     binding = compare(log.parent, log, key)
     foreign = SCENARIO_NAME in binding.mismatches
     beside = AuditLimits() if foreign else limits_beside(log)
@@ -83,8 +85,10 @@ def limits_beside(log: Path) -> AuditLimits | None:
     if not scenario.is_file():
         return None
     try:
-        tables = tomllib.loads(scenario.read_bytes().decode())
-    except (OSError, ValueError) as error:
+        tables = load_toml(scenario)
+    except OSError as error:
+        raise HarnessError(f"{scenario}: cannot be read: {error.strerror}") from None
+    except ValueError as error:
         raise HarnessError(f"{scenario}: cannot be read: {error}") from None
     coils, time = _table(tables, "coils", scenario), _table(tables, "time", scenario)
     return AuditLimits(

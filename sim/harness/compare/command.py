@@ -12,6 +12,7 @@ from sim.harness.compare.case import Driver, cases, chosen_laws
 from sim.harness.compare.picture import picture
 from sim.harness.compare.score import Result, Score, by_axis1, fly_case
 from sim.harness.compare.table import as_csv, as_json, as_text, ranked
+from sim.harness.destination import check_folder
 from sim.harness.errors import HarnessError
 from sim.harness.progress import progress
 from sim.harness.run_dir import write_json
@@ -113,12 +114,9 @@ def _write(
 
 def _made(folder: Path) -> Path:
     """The folder, there before anything is flown."""
+    check_folder(folder, (JSON, CSV, PICTURE))
     if (folder / JSON).exists():
         raise HarnessError(f"{folder} already holds a comparison: choose another --out")
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise HarnessError(f"{folder}: cannot be made ({error.strerror or error})") from None
     return folder
 
 

@@ -13,6 +13,7 @@ from sim.harness.design.pictures import gain_picture, robustness_picture
 from sim.harness.design.render import as_json, as_text
 from sim.harness.design.subject import body_of, pulsing_of
 from sim.harness.design.write import check_writable, write_gains
+from sim.harness.destination import check_folder
 from sim.harness.errors import HarnessError
 from sim.harness.progress import progress
 from sim.harness.run_dir import write_json
@@ -40,14 +41,17 @@ def design(
     """
     target = check_writable(name) if write else None
     scenario = load(name, parse_settings(settings))
+    folder = out or Path("runs") / f"design-{scenario.name}"
+    drawing = out is not None or not as_json_only
+    if drawing:
+        check_folder(folder, (GAIN_PICTURE, ROBUSTNESS_PICTURE, RESULT))
     body, given = body_of(scenario), None if gains is None else Gains(*gains)
     if given is not None:
         _check(given, body)
     with progress(f"gains for {scenario.name}", ANALYSIS_STEPS) as watch:
         analysis = analyse(body, pulsing_of(scenario), given, watch)
     click.echo(json.dumps(as_json(analysis), indent=2) if as_json_only else as_text(analysis, scenario))
-    if out is not None or not as_json_only:
-        folder = out or Path("runs") / f"design-{scenario.name}"
+    if drawing:
         _draw(folder, analysis, scenario)
         click.echo(f"pictures: {folder / GAIN_PICTURE}, {folder / ROBUSTNESS_PICTURE}", err=as_json_only)
     if not analysis.stabilised and given is None:

@@ -6,13 +6,16 @@ import shutil
 import tomllib
 from pathlib import Path
 
+from fsw.io.regular_file import read_regular
+from fsw.io.toml_text import MOST_BYTES, BoundsError, parse_toml
 from sim.design.linear import Gains, Number
+from sim.harness.destination import check_file
 from sim.harness.errors import HarnessError
 
 DIGITS = 9
 """Significant digits of a gain: beside a kink the sixth still shows in the degree of stability."""
 
-_HEADER = re.compile(r"^\s*\[+\s*(?P<name>[^\]]+?)\s*\]+")
+_HEADER = re.compile(r"^\s*\[+(?P<name>[^\[\]]+)\]")
 _VALUE = re.compile(
     r"^(?P<key>\s*(?:control\s*\.\s*)?(?P<name>k_w|k_a)\s*=\s*)(?P<value>[^\s#]+)(?P<rest>.*)$", re.S
 )
@@ -31,6 +34,7 @@ def check_writable(scenario: str) -> Path:
         )
     path = Path(scenario)
     _edited(path, Gains(1.0, 1.0))
+    check_file(path.resolve())
     return path
 
 
@@ -50,9 +54,11 @@ def write_gains(path: Path, gains: Gains) -> None:
 def _edited(path: Path, gains: Gains) -> str:
     values = {"k_w": _written(gains.k_w), "k_a": _written(gains.k_a)}
     try:
-        after = _with_values(path.read_bytes().decode("utf-8"), values)
+        after = _with_values(read_regular(path, MOST_BYTES).decode("utf-8"), values)
     except OSError as error:
         raise HarnessError(f"{path}: cannot be read ({error.strerror or error})") from None
+    except BoundsError as error:
+        raise HarnessError(f"{path}: {error}") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise HarnessError(f"{path}: not TOML: {error}") from None
     if after is None:
@@ -65,13 +71,16 @@ def _with_values(text: str, values: dict[str, str]) -> str | None:
     lines, section = text.splitlines(keepends=True), ""
     for place, line in enumerate(lines):
         if header := _HEADER.match(line):
-            section = header["name"]
+            section = header["name"].strip()
         found = _VALUE.match(line)
         if found and (section == "control" or (section == "" and "control" in found["key"])):
             lines[place] = found["key"] + values[found["name"]] + found["rest"]
     after = "".join(lines)
-    wanted = tomllib.loads(text)
-    wanted["control"] = {**wanted.get("control", {}), **{key: float(value) for key, value in values.items()}}
+    wanted = parse_toml(text)
+    control = wanted.get("control")
+    if not isinstance(control, dict):
+        return None
+    wanted["control"] = {**control, **{key: float(value) for key, value in values.items()}}
     return after if tomllib.loads(after) == wanted else None
 
 

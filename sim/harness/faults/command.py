@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from sim.harness.destination import check_file, check_folder
 from sim.harness.errors import HarnessError
 from sim.harness.faults import kept, render
 from sim.harness.faults.campaign import fly_rows
@@ -58,6 +59,10 @@ def faults(
     rows = chosen(names, slow)
     earlier = {} if keep is None else kept.read(keep)
     page = _docs_page({*earlier, *(row.name for row in rows)}) if write_docs else None
+    if page is not None:
+        check_file(page)
+    if out is not None:
+        check_folder(out, (JUNIT, HTML, JSON))
     quiet = as_json or sys.stderr.isatty()  # then the rows wait until the bar is gone
     count = len(rows) * phases * seeds
     with progress("injecting faults", count) as watch:

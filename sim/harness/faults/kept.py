@@ -1,13 +1,37 @@
 """Rows that an earlier run has flown, from its faults.json: a long campaign may be flown in parts."""
 
-import json
 from pathlib import Path
-from typing import Any
+from typing import Annotated
 
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from fsw.io.regular_file import read_regular
+from fsw.io.schema import faults
 from sim.harness.errors import HarnessError
 from sim.harness.faults.render import injected
-from sim.harness.faults.row import CaseResult, Outcome, RowResult, Verdict
+from sim.harness.faults.row import CaseResult, RowResult
 from sim.harness.faults.rows import ROWS
+
+MOST_BYTES = 64_000_000
+"""A whole campaign of ten phases and five seeds takes 3 MB."""
+
+
+class KeptRow(BaseModel):
+    """What is read of a row: a row without a case has shown nothing."""
+
+    model_config = ConfigDict(strict=True)
+
+    row: str
+    injected: str
+    cases: Annotated[tuple[CaseResult, ...], Field(min_length=1)]
+
+
+class Campaign(BaseModel):
+    """A faults.json."""
+
+    model_config = ConfigDict(strict=True)
+
+    rows: tuple[KeptRow, ...]
 
 
 def read(path: Path) -> dict[str, RowResult]:
@@ -18,18 +42,17 @@ def read(path: Path) -> dict[str, RowResult]:
     """
     by_name = {row.name: row for row in ROWS}
     try:
-        flown = {one["row"]: one for one in json.loads(path.read_text(encoding="utf-8"))["rows"]}
-        cases = {name: tuple(map(_case, one["cases"])) for name, one in flown.items() if name in by_name}
-        other = [name for name in cases if flown[name]["injected"] != injected(by_name[name])]
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise HarnessError(f"--keep {path}: not the faults.json of a campaign ({error!r})") from None
+        campaign = Campaign.model_validate_json(read_regular(path, MOST_BYTES))
+    except OSError as error:
+        raise _none(path, f"cannot be read: {error.strerror}") from None
+    except ValidationError as error:
+        raise _none(path, faults(Campaign, error)) from None
+    flown = [one for one in campaign.rows if one.row in by_name]
+    other = [one.row for one in flown if one.injected != injected(by_name[one.row])]
     if other:
         raise HarnessError(f"--keep {path}: row {other[0]} was flown with another fault than it has now")
-    return {name: RowResult(by_name[name], own, kept=True) for name, own in cases.items()}
+    return {one.row: RowResult(by_name[one.row], one.cases, kept=True) for one in flown}
 
 
-def _case(told: dict[str, Any]) -> CaseResult:
-    outcomes = tuple(Outcome(one["check"], Verdict(one["verdict"]), one["said"]) for one in told["outcomes"])
-    return CaseResult(
-        told["row"], told["phase"], told["seed"], outcomes, dict(told["measured"]), told["wall_s"]
-    )
+def _none(path: Path, why: str) -> HarnessError:
+    return HarnessError(f"--keep {path}: not the faults.json of a campaign ({why})")

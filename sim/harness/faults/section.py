@@ -7,7 +7,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, Strict, model_validator
 
-from fsw.io.schema import Positive, Section
+from fsw.io.schema import Positive, Section, TableError
 from sim.harness.faults.faulty_plant import FaultyPlant, Scheduled
 from sim.harness.faults.kinds import KINDS, make
 from sim.plant.config import PlantConfig
@@ -44,10 +44,18 @@ Faults = Annotated[tuple[FaultSection, ...], Strict(False)]
 
 
 def make_plant(config: PlantConfig, faults: Sequence[FaultSection]) -> Plant:
-    """The plant of a flight with its faults scheduled; what is random in them comes from the plant's seed."""
-    if not faults:
-        return Plant(config)
-    return FaultyPlant(config, [_scheduled(number, fault, config) for number, fault in enumerate(faults)])
+    """The plant of a flight with its faults scheduled; what is random in them comes from the plant's seed.
+
+    Raises:
+        TableError: the scenario is consistent in itself, but orbit or field are not known at its epoch, or a
+            part cannot be built with its numbers.
+    """
+    try:
+        if not faults:
+            return Plant(config)
+        return FaultyPlant(config, [_scheduled(number, fault, config) for number, fault in enumerate(faults)])
+    except ValueError as error:
+        raise TableError(f"the scenario's plant: {error}") from None
 
 
 def _scheduled(number: int, fault: FaultSection, config: PlantConfig) -> Scheduled:

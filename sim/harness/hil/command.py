@@ -18,6 +18,7 @@ from fsw.wire.messages import PlantBoot
 from sim.harness import run_dir
 from sim.harness.assemble import plant_config
 from sim.harness.binding import bind
+from sim.harness.destination import check_folder
 from sim.harness.errors import HarnessError
 from sim.harness.flight import BusLog, Pace
 from sim.harness.hil.conductor import Conductor, is_boot
@@ -85,6 +86,8 @@ def hil(bench: Bench, as_json: bool = False) -> int:
         BusError: the bus cannot be used.
         HarnessError: a node does not start, or the scenario does not fit the bench.
     """
+    if bench.out is not None:
+        check_folder(bench.out, (NUMBERS,))
     if bench.stimulus != "plant" and bench.scenario.knowledge == "perfect":
         raise HarnessError("a scenario with knowledge = 'perfect' needs the plant: --stimulus plant")
     with hub_of(bench.bus) as (spec, hub_pid), TemporaryDirectory() as scratch, Nodes() as nodes:

@@ -9,6 +9,7 @@ from sim.harness import run_dir
 from sim.harness.audit.auditor import AuditReport
 from sim.harness.estimates import Estimates
 from sim.harness.report import tables
+from sim.harness.run_record import RunRecord
 from sim.harness.scenario import Scenario
 from sim.harness.truth import Histories
 
@@ -28,7 +29,7 @@ def write_report(
     """
     from sim.harness.report.sections import charts  # noqa: PLC0415 matplotlib loads when something is drawn
 
-    run = run_dir.read_run(path.parent) if (path.parent / run_dir.RUN).is_file() else {}
+    run = run_dir.read_run(path.parent) if (path.parent / run_dir.RUN).is_file() else None
     sections = [
         tables.section(
             "figures", "Key figures", tables.violations(audit) + tables.key_figures(summary, audit)
@@ -39,7 +40,7 @@ def write_report(
     path.write_text(_page(_header(scenario, summary, run, audit), sections, run), encoding="utf-8")
 
 
-def _page(header: str, sections: list[str], run: dict[str, Any]) -> str:
+def _page(header: str, sections: list[str], run: RunRecord | None) -> str:
     css = resources.files("sim.harness.report").joinpath("report.css").read_text(encoding="utf-8")
     title = header[header.index("<h1>") + 4 : header.index("</h1>")]
     return (
@@ -50,12 +51,12 @@ def _page(header: str, sections: list[str], run: dict[str, Any]) -> str:
     )
 
 
-def _header(scenario: Scenario, summary: dict[str, Any], run: dict[str, Any], audit: AuditReport) -> str:
+def _header(scenario: Scenario, summary: dict[str, Any], run: RunRecord | None, audit: AuditReport) -> str:
     facts = [f"seed {summary['seed']}"]
-    if "bus" in run:
+    if run:
         facts.append(f"bus {run['bus']}, {run['pace']}")
     facts.append(f"{summary['ticks']} ticks, {summary['sim_seconds']:.0f} s")
-    if "torquer_version" in run:
+    if run:
         facts.append(f"torquer {run['torquer_version']}")
     return (
         f'<header><p class="over">Flight report</p><h1>{escape(scenario.name)}</h1>'

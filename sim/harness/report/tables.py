@@ -11,6 +11,7 @@ from fsw.core.events import Event
 from fsw.wire.messages import Mode, Severity
 from sim.harness.audit.auditor import AuditReport
 from sim.harness.audit.findings import COILS, seconds_text
+from sim.harness.run_record import RunRecord
 from sim.harness.scenario import Scenario, orbit_period_s
 
 Json = dict[str, Any]
@@ -57,7 +58,7 @@ def section(anchor: str, title: str, content: str) -> str:
     return f'<section id="{anchor}"><h2>{title}</h2>{content}</section>'
 
 
-def badges(summary: Json, run: Json, audit: AuditReport) -> str:
+def badges(summary: Json, run: RunRecord | None, audit: AuditReport) -> str:
     """The verdicts: limits, refusals, replay, mode, and whether the flight is whole."""
     shown = [_limits_badge(audit)]
     refused = summary["pulses"]["refused"]
@@ -67,15 +68,15 @@ def badges(summary: Json, run: Json, audit: AuditReport) -> str:
     if mode is not None:
         shown.append(("good" if mode == Mode.POINT.name else "note", f"mode {mode}"))
     if not whole(run, audit):
-        planned = f" of {run['ticks']}" if "ticks" in run else ""
+        planned = f" of {run['ticks']}" if run else ""
         shown.append(("bad", f"✗ incomplete: {summary['ticks']}{planned} ticks"))
     items = "".join(f'<li class="{kind}">{escape(text)}</li>' for kind, text in shown)
     return f'<ul class="badges">{items}</ul>'
 
 
-def whole(run: Json, audit: AuditReport) -> bool:
+def whole(run: RunRecord | None, audit: AuditReport) -> bool:
     """The flight ran to its end, and its log is whole."""
-    return audit.complete and ("flown" in run or not run)
+    return audit.complete and (run is None or "flown" in run)
 
 
 def tiles(summary: Json) -> str:
@@ -168,17 +169,19 @@ def events(summary: Json) -> str:
     return f"<details{shown}><summary>Events: {len(rows)}</summary>{table}</details>"
 
 
-def versions(run: Json) -> str:
+def versions(run: RunRecord | None) -> str:
     """What wrote the run, for the foot of the page."""
-    platform = run.get("platform", {})
-    parts = [
-        f"torquer {run['torquer_version']}" if "torquer_version" in run else "torquer",
-        f"scenario {run['scenario_sha256'][:12]}" if "scenario_sha256" in run else "",
-        f"flight table {run['flight_table_crc']}" if "flight_table_crc" in run else "",
-        f"Python {platform['python']}, numpy {platform['numpy']}" if platform else "",
-        f"{platform['system']} {platform['machine']}" if platform else "",
-    ]
-    return escape(" · ".join(part for part in parts if part))
+    if run is None:
+        return "torquer"
+    platform = run["platform"]
+    parts = (
+        f"torquer {run['torquer_version']}",
+        f"scenario {run['scenario_sha256'][:12]}",
+        f"flight table {run['flight_table_crc']}",
+        f"Python {platform['python']}, numpy {platform['numpy']}",
+        f"{platform['system']} {platform['machine']}",
+    )
+    return escape(" · ".join(parts))
 
 
 def _limits_badge(audit: AuditReport) -> tuple[str, str]:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import click
 
+from sim.harness.destination import check_file
 from sim.harness.errors import HarnessError
 from sim.harness.progress import progress
 from sim.harness.validate import reference
@@ -45,6 +46,8 @@ def validate(
     studies = chosen(studies, only, quick)
     whole = folder is None and not only and not quick
     page = out or (_default_page(repository) if whole else None)
+    if page is not None:
+        check_file(page)
     bar = sys.stderr.isatty()  # then the outcomes wait until it is gone; else they are the progress
     with progress("validating", sum(len(study.tasks) for study in studies)) as watch:
         finished = run(studies, workers or os.cpu_count() or 1, watch, _quiet if bar else _print)

@@ -21,6 +21,7 @@ from sim.harness.candump import LogEntry
 from sim.harness.estimates import EstimateRecorder, Estimates
 from sim.harness.flight import fly
 from sim.harness.run_dir import Json
+from sim.harness.run_record import FlightRecord
 from sim.harness.scenario import Scenario, flight_table, load
 from sim.harness.sil import ticks_of
 from sim.harness.summary import BusTally, summarise
@@ -73,7 +74,7 @@ class Record:
     """All that is kept of a flight: ``run`` is what ``run.json`` would say of it, as far as it is judged."""
 
     scenario: Scenario
-    run: Json
+    run: FlightRecord
     truth: Histories
     estimates: Estimates
     audit: AuditReport
@@ -118,7 +119,9 @@ def record_order(order: Order) -> Record:
     tally = BusTally(scenario.epoch_unix_s * 1_000_000)
     for entry in log.entries:
         tally.take(entry)
-    run = {"seed": order.seed, "flown": {"wall_s": flown.wall_s, "slips": flown.slips}}
+    run = FlightRecord(
+        seed=order.seed, flown={"ticks": flown.ticks, "slips": flown.slips, "wall_s": flown.wall_s}
+    )
     audited = audit(log.entries, _limits(scenario))
     return Record(scenario, run, truth.histories, truth.recorder.estimates(), audited, tally)
 

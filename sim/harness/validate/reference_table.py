@@ -9,9 +9,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from fsw.io.regular_file import read_regular
 from sim.harness.errors import HarnessError
 
 Array = NDArray[np.float64]
+
+MOST_BYTES = 16_000_000
 
 _LABELS = ("case", "name", "kind", "utc_iso", "t_s")
 """Columns that tell a person which row is meant."""
@@ -32,9 +35,9 @@ class ReferenceTable:
         lines = read_lines(path)
         self.comments = [line.lstrip("#").strip() for _, line in lines if line.startswith("#")]
         rows = [(number, line) for number, line in lines if line.strip() and not line.startswith("#")]
-        fields = [[field.strip() for field in row] for row in csv.reader(line for _, line in rows)]
-        if len(fields) < 2:
+        if len(rows) < 2:
             raise HarnessError(f"{path}: no rows of data")
+        fields = [_fields(path, number, line) for number, line in rows]
         self._names_line, self.names = rows[0][0], fields[0]
         self.lines = [number for number, _ in rows[1:]]
         self._rows = fields[1:]
@@ -145,7 +148,7 @@ def read_lines(path: Path) -> list[tuple[int, str]]:
         HarnessError: it cannot be read as text.
     """
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = read_regular(path, MOST_BYTES).decode("utf-8-sig")
     except OSError as error:
         raise HarnessError(f"{path}: cannot be read ({error.strerror})") from None
     except UnicodeDecodeError as error:
@@ -157,6 +160,15 @@ def read_lines(path: Path) -> list[tuple[int, str]]:
 def names_of(stem: str, parts: Sequence[object], end: str = "") -> list[str]:
     """Column names that differ in one part: ``stem`` + part + ``end``."""
     return [f"{stem}{part}{end}" for part in parts]
+
+
+def _fields(path: Path, number: int, line: str) -> list[str]:
+    """The fields of a line; a quoted one ends in its line."""
+    try:
+        (fields,) = csv.reader([line], strict=True)
+    except csv.Error as error:
+        raise HarnessError(f"{path}, line {number}: {error}") from None
+    return [field.strip() for field in fields]
 
 
 def _number(text: str) -> float | None:

@@ -1,4 +1,5 @@
 import tempfile
+import tracemalloc
 from pathlib import Path
 
 import pytest
@@ -6,7 +7,15 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame
-from sim.harness.candump import LogEntry, LogError, LogTruncatedError, format_line, format_time, read_log
+from sim.harness.candump import (
+    MOST_KNOWN,
+    LogEntry,
+    LogError,
+    LogTruncatedError,
+    format_line,
+    format_time,
+    read_log,
+)
 
 STAMP = "1427513417.000000"
 TIME_US = 1_427_513_417_000_000
@@ -120,6 +129,18 @@ def test_entries_come_one_by_one(tmp_path):
     log = tmp_path / "bus.log"
     log.write_text(LINE + "no candump line\n")
     assert next(read_log(log)).frame.can_id == 0x110
+
+
+def test_a_log_in_which_every_line_has_words_of_its_own_takes_no_memory(tmp_path):
+    lines = 3 * MOST_KNOWN
+    with (tmp_path / "bus.log").open("w") as log:
+        log.writelines(f"(0000000000.000000) {n:064d} {n:08X}#\n" for n in range(lines))
+    tracemalloc.start()
+    read = [(entry.channel[-8:], entry.frame.can_id & 0xFFFFFF) for entry in read_log(tmp_path / "bus.log")]
+    kept, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert read == [(f"{n:08d}", n) for n in range(lines)]
+    assert peak - kept < 400 * MOST_KNOWN
 
 
 # --- what is no log

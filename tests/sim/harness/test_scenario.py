@@ -148,7 +148,7 @@ class TestSettings:
             ("orbit=5", "orbit = 5 is not allowed: allowed is a section of keys"),
             ("coils=shared", "coils = 'shared' is not allowed: allowed is a section of keys"),
             ("field.degree=14", "a whole number at least 1 and at most 13"),
-            ("plant.max_substep_s=0", "a number above 0 and at most 5"),
+            ("plant.max_substep_s=0", "a number at least 0.001 and at most 5"),
             ("coils.time_constant_s=0", "a number above 0"),
             ("knowledge=none", "'filter' or 'perfect'"),
             ("flight.modes.near=1", "[flight]: modes.near is not a known key"),

@@ -28,6 +28,7 @@ from sim.plant.config import (
     OrbitConfig,
     SunSensorConfig,
 )
+from sim.plant.errors import PlantError
 from sim.plant.rotation import matrix
 
 DAY = 86400
@@ -395,3 +396,10 @@ def test_levels_that_do_not_rise_are_refused(levels):
 def test_an_initial_attitude_that_is_none_is_refused():
     with pytest.raises(ValueError, match="unit norm"):
         InitialConfig((1.0, 1.0, 0.0, 0.0))
+
+
+def test_a_motion_that_the_integration_loses_ends_the_plant(make_plant):
+    plant = make_plant(initial=InitialConfig(omega_body_orbit_radps=(1e12, 1e11, 0.0)))
+    plant.begin_tick()
+    with pytest.raises(PlantError, match="the motion is lost in tick 0"):
+        plant.end_tick()

@@ -112,6 +112,12 @@ def test_a_scenario_that_makes_no_sense_is_named_in_one_sentence(run, bus_log, s
     assert refusal.value.exit_code == 2
 
 
+def test_a_scenario_that_cannot_be_read_is_named(run, bus_log):
+    folder = run(bus_log(ticks=5), "#" * 1_000_001)
+    with pytest.raises(HarnessError, match=r"scenario\.toml: cannot be read: it is larger than 1 MB"):
+        check(folder, None)
+
+
 @pytest.mark.parametrize(
     ("key", "kept", "refused"),
     [

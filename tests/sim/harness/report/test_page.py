@@ -238,24 +238,31 @@ def test_key_figures_are_those_of_the_summary(page):
     assert "all 12 0.51% 107.000 limit of all ≤ 2.91% ≥ 100" in text
 
 
+def write_run(folder, **values):
+    """The run.json of a run, these values changed."""
+    known = {
+        "schema_version": SCHEMA_VERSION,
+        "torquer_version": "4.5.6",
+        "scenario": "microsat",
+        "scenario_sha256": "f00d" * 16,
+        "flight_table_crc": "0badcafe",
+        "seed": 7,
+        "ticks": 7000,
+        "bus": "loop",
+        "pace": "lockstep",
+        "pace_factor": None,
+        "platform": {"machine": "x86_64", "system": "Linux", "python": "3.11.7", "numpy": "2.0.0"},
+        "complete": False,
+    }
+    (folder / "run.json").write_text(json.dumps(known | values))
+
+
 def test_bus_and_versions_come_from_the_run_beside_the_report(tmp_path):
-    (tmp_path / "run.json").write_text(
-        json.dumps(
-            {
-                "schema_version": SCHEMA_VERSION,
-                "torquer_version": "4.5.6",
-                "bus": "loop",
-                "pace": "lockstep",
-                "flight_table_crc": "0badcafe",
-                "scenario_sha256": "f00d" * 16,
-                "ticks": 7000,
-                "flown": {"ticks": 7000},
-            }
-        )
-    )
+    write_run(tmp_path, flown={"ticks": 7000})
     page = Run().write(tmp_path)
     assert "seed 7 · bus loop, lockstep · 7000 ticks, 7000 s · torquer 4.5.6" in page.text
-    assert "torquer 4.5.6 · scenario f00df00df00d · flight table 0badcafe" in page.text
+    facts = ("torquer 4.5.6", "scenario f00df00df00d", "flight table 0badcafe")
+    assert " · ".join((*facts, "Python 3.11.7, numpy 2.0.0", "Linux x86_64")) in page.text
     assert not [words for words in page.text if "incomplete" in words]
 
 
@@ -459,9 +466,7 @@ def test_refusals_are_counted(tmp_path):
 
 
 def test_an_unfinished_flight_is_called_so(tmp_path):
-    (tmp_path / "run.json").write_text(
-        json.dumps({"schema_version": SCHEMA_VERSION, "ticks": 18124, "bus": "loop", "pace": "lockstep"})
-    )
+    write_run(tmp_path, ticks=18124)
     page = Run(complete=False).write(tmp_path)
     assert "✗ incomplete: 7000 of 18124 ticks" in page.text
 

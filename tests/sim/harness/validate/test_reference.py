@@ -87,6 +87,20 @@ def test_one_spoiled_number_fails_and_its_line_is_named(folder, name, row, colum
     assert all(f"{name} line {line} " in outcome.where for outcome in failed.values())
 
 
+def test_times_that_no_integration_reaches_are_named(folder):
+    folder.copy("attitude_c_dipole.csv", rows=6)
+    folder.put("attitude_c_dipole.csv", 5, "t_s", lambda text: "1e15")
+    with pytest.raises(HarnessError, match=r"column t_s: the 1e\+15 s before it take more than 10000"):
+        failures(folder, "attitude_c_dipole.csv")
+
+
+def test_a_quote_without_its_end_is_named(folder):
+    folder.copy("eclipse.csv")
+    folder.put("eclipse.csv", 3, "class", lambda text: '"umbra')
+    with pytest.raises(HarnessError, match="line "):
+        failures(folder, "eclipse.csv")
+
+
 def test_words_count_too(folder):
     for name in ("eclipse.csv", "floquet.csv"):
         folder.copy(name)

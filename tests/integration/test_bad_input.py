@@ -1,0 +1,448 @@
+"""Files and options that no command can use: one sentence and exit code 2, soon and in little memory."""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from contextlib import contextmanager
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from sim.harness import run_dir
+
+TINY = ("microsat", "--seed", "7", "--orbits", "0.005", "--bus", "virtual")
+LONGEST_S, MOST_MB = 5.0, 500.0
+DEEP = 50_000
+NOBODY = 65534
+
+
+@pytest.fixture
+def run(flown, tmp_path):
+    """A copy of a run of 30 ticks, to be altered; no digest tells of that before the file is read."""
+    folder = tmp_path / "run"
+    folder.mkdir()
+    for file in flown(*TINY).iterdir():
+        (folder / file.name).write_bytes(file.read_bytes())
+    told = json.loads((folder / "run.json").read_text())
+    (folder / "run.json").write_text(json.dumps({**told, "digests": {}}))
+    return folder
+
+
+# --- in a process of its own: what it takes
+
+
+def measured(*words, cwd):
+    """(exit code, stderr) of a command that took less than it may of processor time and memory."""
+    code = "import sys; from sim.harness.cli import main; main(sys.argv[1:], prog_name='torquer')"
+    process = subprocess.Popen(
+        [sys.executable, "-c", code, *map(str, words)],
+        cwd=cwd,
+        stdout=subprocess.DEVNULL,
+        stderr=(cwd / "stderr").open("w"),
+    )
+    _, status, used = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    assert used.ru_utime + used.ru_stime < LONGEST_S
+    assert used.ru_maxrss / 1024.0 < MOST_MB
+    return process.returncode, (cwd / "stderr").read_text()
+
+
+def deep_list(folder):
+    (folder / "x.toml").write_text("a = " + "[" * DEEP + "]" * DEEP)
+    return ("sil", "x.toml"), "x.toml: it is nested deeper than 32 levels"
+
+
+def deep_table(folder):
+    (folder / "x.toml").write_text("a = " + "{a = " * DEEP + "1" + "}" * DEEP)
+    return ("design", "x.toml"), "x.toml: it is nested deeper than 32 levels"
+
+
+def deep_key(folder):
+    (folder / "x.toml").write_text("a." * DEEP + "a = 1")
+    return ("compare", "x.toml"), "x.toml: a key has more than 32 parts"
+
+
+def deep_setting(folder):
+    return ("sil", "--set", "a=" + "[" * DEEP), "--set a: it is nested deeper than 32 levels"
+
+
+def many_digits(folder):
+    (folder / "x.toml").write_text("[time]\ntick_hz = " + "9" * 6000)
+    return ("hil", "x.toml"), "x.toml: an integer is not allowed"
+
+
+def endless_file(folder):
+    (folder / "x.toml").symlink_to("/dev/zero")
+    return ("sil", "x.toml"), "x.toml: cannot be read (it is no regular file)"
+
+
+def pipe_that_nobody_writes(folder):
+    os.mkfifo(folder / "x.toml")
+    return ("sil", "x.toml"), "x.toml: cannot be read (it is no regular file)"
+
+
+def large_file(folder):
+    (folder / "x.toml").touch()
+    os.truncate(folder / "x.toml", 10**10)
+    return ("sil", "x.toml"), "x.toml: cannot be read (it is larger than 1 MB)"
+
+
+def large_log(folder):
+    (folder / "x.log").touch()
+    os.truncate(folder / "x.log", 10**10)
+    return ("check", "x.log"), "x.log: not a candump log"
+
+
+def large_run_json(folder):
+    os.truncate(folder / "run" / "run.json", 10**10)
+    return ("report", "run"), "run.json: cannot be read (it is larger than 1 MB)"
+
+
+def large_campaign(folder):
+    (folder / "x.json").touch()
+    os.truncate(folder / "x.json", 10**10)
+    return ("faults", "--keep", "x.json"), "--keep x.json: not the faults.json of a campaign"
+
+
+def rows_without_end(folder):
+    """A file of a few kB that declares 10^11 rows of each table."""
+    declared = tables(folder)
+    with h5py.File(folder / "run" / "truth.h5", "w") as file:
+        for name, width in declared:
+            shape = (10**11,) if width == 1 else (10**11, width)
+            file.create_dataset(name, shape, "f8", chunks=(1024, *shape[1:]))
+    return ("report", "run"), "t_s is not stored in one piece in this file"
+
+
+def rows_that_are_not_there(folder):
+    """As many as a run can have, none of them in the file."""
+    declared = tables(folder)
+    with h5py.File(folder / "run" / "truth.h5", "w") as file:
+        for name, width in declared:
+            file.create_dataset(name, (2**24,) if width == 1 else (2**24, width), "f8")
+    return ("report", "run"), "16777216 rows do not fit into its"
+
+
+def tables(folder):
+    """Name and width of each table of the run's histories."""
+    found = []
+    with h5py.File(folder / "run" / "truth.h5") as file:
+        file.visititems(
+            lambda name, item: found.append((name, (*item.shape, 1)[1])) if hasattr(item, "shape") else None
+        )
+    return found
+
+
+SAMPLES = (
+    deep_list, deep_table, deep_key, deep_setting, many_digits, endless_file, pipe_that_nobody_writes,
+    large_file, large_log, large_run_json, large_campaign, rows_without_end, rows_that_are_not_there,
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("sample", SAMPLES, ids=lambda sample: sample.__name__)
+@pytest.mark.usefixtures("run")
+def test_it_is_refused_soon_and_in_little_memory(sample, tmp_path):
+    words, told = sample(tmp_path)
+    code, said = measured(*words, cwd=tmp_path)
+    assert code == 2
+    assert said.startswith("torquer: ")
+    assert told in said
+    assert said.count("\n") == 1
+
+
+# --- histories that are none
+
+
+def replace(run, name, **dataset):
+    with h5py.File(run / "truth.h5", "r+") as file:
+        del file[name]
+        if dataset:
+            file.create_dataset(name, **dataset)
+
+
+@pytest.mark.parametrize(
+    "dataset",
+    [
+        {},
+        {"data": "text"},
+        {"data": 1.0},
+        {"data": ["text"] * 30},
+        {"data": np.zeros((30, 3))},
+        {"data": np.zeros((30, 4, 2))},
+        {"data": np.zeros((29, 4))},
+        {"data": np.zeros((30, 4), "f4")},
+        {"data": np.zeros((30, 4), "i8")},
+        {"data": np.zeros((30, 4), "c16")},
+        {"data": np.zeros((30, 4)), "chunks": (10, 4)},
+        {"data": np.zeros((30, 4)), "compression": "gzip"},
+        {"data": np.full((30, 4), 1e16)},
+        {"shape": (0, 4), "dtype": "f8"},
+        {"shape": (), "dtype": "f8"},
+        {"dtype": h5py.Empty("f8").dtype, "shape": None},
+    ],
+    ids=str,
+)
+def test_a_table_of_the_wrong_kind_is_named(run, torquer, dataset):
+    replace(run, "q_body_from_orbit", **dataset)
+    done = torquer("report", run)
+    assert done.code == 2
+    assert "truth.h5" in done.sentence
+    assert "q_body_from_orbit" in done.sentence
+
+
+def test_a_group_in_the_place_of_a_table(run, torquer):
+    replace(run, "t_s")
+    with h5py.File(run / "truth.h5", "r+") as file:
+        file.create_group("t_s")
+    assert "t_s" in torquer("report", run).sentence
+
+
+@pytest.mark.parametrize("link", [h5py.SoftLink("/nowhere"), h5py.ExternalLink("other.h5", "/x")], ids=str)
+def test_a_table_that_is_elsewhere(run, torquer, link):
+    with h5py.File(run / "other.h5", "w") as file:
+        file["x"] = np.zeros((30, 4))
+    replace(run, "q_body_from_orbit")
+    with h5py.File(run / "truth.h5", "r+") as file:
+        file["q_body_from_orbit"] = link
+    done = torquer("report", run)
+    assert done.code == 2
+    assert "truth.h5" in done.sentence
+
+
+@pytest.mark.parametrize("name", ["Coils", "a b", "$\\frac{1}{", "x" * 50])
+def test_a_torque_of_a_strange_name(run, torquer, name):
+    with h5py.File(run / "truth.h5", "r+") as file:
+        file[f"torque_body_nm/{name}"] = np.zeros((30, 3))
+    assert "torque_body_nm is no group" in torquer("report", run).sentence
+
+
+def test_a_hole_in_the_histories_of_a_whole_flight(run, torquer):
+    with h5py.File(run / "truth.h5", "r+") as file:
+        file["b_body_t"][12, 1] = np.nan
+    assert "truth.h5: 12 whole rows, but 30 ticks were flown" in torquer("report", run).sentence
+
+
+# --- run.json
+
+
+@pytest.mark.parametrize("command", [("report",), ("replay",), ("replay", "--plant")], ids=" ".join)
+@pytest.mark.parametrize(
+    ("key", "value", "told"),
+    [
+        ("ticks", None, "ticks = None is not allowed"),
+        ("ticks", "many", "ticks = 'many' is not allowed"),
+        ("ticks", 0, "ticks = 0 is not allowed"),
+        ("seed", -1, "seed = -1 is not allowed"),
+        ("seed", 2**64, "seed = 18446744073709551616 is not allowed"),
+        ("pace_factor", "fast", "pace_factor"),
+        ("platform", {}, "platform.machine is missing"),
+        ("platform", "mine", "platform = 'mine' is not allowed"),
+        ("flown", {"ticks": "30"}, "flown.ticks = '30' is not allowed"),
+        ("flown", [], "flown = [] is not allowed"),
+        ("complete", 1, "complete = 1 is not allowed: allowed is true or false"),
+        ("schema_version", "1", "schema_version is 1, and only 1 can be read"),
+    ],
+)
+def test_a_key_of_the_wrong_type_is_named(run, torquer, command, key, value, told):
+    content = json.loads((run / "run.json").read_text())
+    (run / "run.json").write_text(json.dumps({**content, key: value}))
+    done = torquer(*command[:1], run, *command[1:])
+    assert done.code == 2
+    assert "run.json: " in done.sentence
+    assert told in done.sentence
+
+
+def test_keys_of_a_later_version_are_kept(run, torquer):
+    content = json.loads((run / "run.json").read_text())
+    (run / "run.json").write_text(json.dumps({**content, "weather": {"sky": "clear"}, "complete": False}))
+    assert torquer("report", run).code == 0
+    now = run_dir.read_run(run)
+    assert (now["weather"], now["complete"]) == ({"sky": "clear"}, True)
+
+
+# --- names
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("sil", "a\0b"),
+        ("sil", "a\0b.toml"),
+        ("sil", "--out", "a\0b"),
+        ("sil", "--set", "name=a\0b"),
+        ("check", "a\0b"),
+        ("hil", "--stimulus", "a\0b"),
+        ("validate", "--reference", "a\0b"),
+        ("a\0b",),
+    ],
+)
+def test_a_nul_in_a_name(words, torquer):
+    done = torquer(*words)
+    assert done.code == 2
+    assert "NUL" in done.sentence or "\\x00" in done.sentence
+    assert "\0" not in done.sentence
+
+
+LONG = "x" * 5000
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("sil", LONG),
+        ("sil", f"{LONG}.toml"),
+        ("sil", "--out", LONG),
+        ("design", "microsat", "--json", "--out", LONG),
+        ("check", LONG),
+        ("replay", LONG),
+        ("report", LONG),
+        ("validate", "--reference", LONG),
+        ("validate", "--quick", "--out", LONG),
+        ("faults", "--keep", LONG),
+        ("check", "a\nb\x1b[31m"),
+    ],
+    ids=lambda words: " ".join(words)[:40],
+)
+def test_a_name_that_no_file_can_have(words, torquer):
+    done = torquer(*words)
+    assert done.code == 2
+    assert len(done.sentence) < 1100
+    assert done.sentence.isprintable()
+
+
+# --- numbers that a flight cannot be flown with
+
+
+@pytest.mark.parametrize(
+    ("setting", "told"),
+    [
+        ("time.epoch_utc=2100-01-01T00:00:00Z", "IGRF-14 holds from 2015 to 2030"),
+        ("plant.max_substep_s=1e-15", "plant.max_substep_s"),
+        ("coils.pulse_s=1e-12", "pulse"),
+        ("initial.rate_degps=[1e30, 0, 0]", "--set initial.rate_degps: value.0 is not allowed"),
+    ],
+)
+def test_what_cannot_be_flown_is_refused_before_a_run_is_begun(setting, told, torquer, tmp_path):
+    done = torquer("sil", *TINY[:-2], "--bus", "virtual", "--set", setting, "--out", tmp_path / "new")
+    assert done.code == 2
+    assert told in done.sentence
+    assert not (tmp_path / "new").exists()
+
+
+def test_a_motion_that_is_lost_ends_the_flight_in_one_sentence(torquer, tmp_path):
+    words = ("--set", "initial.rate_degps=[1e14, 1e13, 0]", "--out", tmp_path / "new")
+    done = torquer("sil", *TINY, *words)
+    assert done.code == 1
+    assert "the motion is lost in tick 0" in done.sentence
+    assert torquer("check", tmp_path / "new").code == 1
+
+
+# --- places that cannot be written
+
+
+@pytest.fixture(params=["below a file", "proc", "a device"])
+def nowhere(request, tmp_path):
+    """A place where no folder can be made, not even by root."""
+    (tmp_path / "file").write_text("kept")
+    return {"below a file": tmp_path / "file" / "x", "proc": Path("/proc/x"), "a device": Path("/dev/full")}[
+        request.param
+    ]
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("sil", "--bus", "virtual"),
+        ("validate", "--quick"),
+        ("design", "microsat"),
+        ("design", "microsat", "--json"),
+        ("compare",),
+        ("faults",),
+        ("hil", "--seconds", "2"),
+    ],
+    ids=" ".join,
+)
+def test_an_out_that_cannot_be_written_is_refused_before_any_work(words, nowhere, torquer):
+    began = time.process_time()
+    done = torquer(*words, "--out", nowhere)
+    assert time.process_time() - began < LONGEST_S
+    assert (done.code, done.out) == (2, "")
+    assert str(nowhere) in done.sentence or str(nowhere.parent) in done.sentence
+    assert "cannot be written" in done.sentence
+
+
+@pytest.mark.parametrize(
+    ("words", "name"),
+    [
+        (("compare", "--out", "out"), "compare.png"),
+        (("faults", "--out", "out"), "faults.html"),
+        (("design", "microsat", "--out", "out"), "robustness.png"),
+        (("hil", "--out", "out"), "hil.json"),
+        (("validate", "--quick", "--out", "out/page.md"), "page.md"),
+        (("sil", "--bus", "virtual", "--out", "out"), "bus.log.index"),
+    ],
+)
+def test_so_is_a_folder_in_the_way_of_a_file(words, name, torquer, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "out" / name).mkdir(parents=True)
+    done = torquer(*words)
+    assert (done.code, done.out) == (2, "")
+    assert "out" in done.sentence
+
+
+@pytest.mark.parametrize("name", ["summary.json", "report.html"])
+def test_a_report_that_cannot_be_written(run, torquer, name):
+    (run / name).unlink()
+    (run / name).mkdir()
+    before = (run / "run.json").read_bytes()
+    done = torquer("report", run)
+    assert done.code == 2
+    assert f"{name}: cannot be written (Is a directory)" in done.sentence
+    assert (run / "run.json").read_bytes() == before
+
+
+@contextmanager
+def read_only(folder):
+    """For root, which may write everywhere, another user."""
+    folder.chmod(0o555)
+    is_root = os.geteuid() == 0
+    if is_root:
+        os.seteuid(NOBODY)
+    try:
+        yield
+    finally:
+        if is_root:
+            os.seteuid(0)
+        folder.chmod(0o755)
+
+
+def test_a_report_in_a_folder_that_is_read_only(run, torquer):
+    assert torquer("report", run).code == 0  # everything is imported, which nobody may not do
+    with tempfile.TemporaryDirectory(dir="/tmp") as place:
+        os.chmod(place, 0o755)
+        copy = Path(place) / "run"
+        copy.mkdir()
+        for file in run.iterdir():
+            (copy / file.name).write_bytes(file.read_bytes())
+        with read_only(copy):
+            done = torquer("report", copy)
+    assert done.code == 2
+    assert f"{copy}: cannot be written (Permission denied)" in done.sentence
+
+
+def test_gains_into_a_scenario_that_is_read_only(torquer):
+    with tempfile.TemporaryDirectory(dir="/tmp") as place:
+        os.chmod(place, 0o755)
+        folder = Path(place) / "mine"
+        folder.mkdir()
+        shipped = Path(run_dir.__file__).parents[1] / "scenarios" / "microsat.toml"
+        (folder / "mine.toml").write_bytes(shipped.read_bytes())
+        with read_only(folder):
+            done = torquer("design", folder / "mine.toml", "--json", "--write")
+    assert (done.code, done.out) == (2, "")
+    assert "cannot be written (Permission denied)" in done.sentence
