@@ -29,9 +29,10 @@ def run(whole, tmp_path):
 
 
 def told(run, **changes):
-    """Change run.json, a key with None is taken out."""
+    """Change run.json; a key that is changed to None is taken out."""
     content = json.loads((run / RUN).read_text()) | changes
-    (run / RUN).write_text(json.dumps({key: value for key, value in content.items() if value is not None}))
+    gone = {key for key, value in changes.items() if value is None}
+    (run / RUN).write_text(json.dumps({key: value for key, value in content.items() if key not in gone}))
 
 
 class TestWhatIsBound:
