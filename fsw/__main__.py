@@ -32,6 +32,7 @@ def _table(scenario: str | None, table: str | None, settings: tuple[str, ...]) -
 )
 @click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help="Override a scenario's key.")
 @click.option("--disarmed", is_flag=True, help="Let no request to drive a coil get on the bus.")
+@click.option("--bench", is_flag=True, help="On a bench: no PLANT_END ends it.")
 @click.option("--parent", type=int, hidden=True)
 def main(
     scenario: str | None,
@@ -39,6 +40,7 @@ def main(
     bus: str,
     settings: tuple[str, ...],
     disarmed: bool,
+    bench: bool,
     parent: int | None,
 ) -> None:
     """Fly on a bus: answer the SYNC of a plant, as SCENARIO or an onboard table says."""
@@ -52,7 +54,7 @@ def main(
     if parent is None:
         click.echo(f"fsw on {resolve(bus)}", err=True)
     try:
-        run(node, link, parent)
+        run(node, link, parent, bench)
     except BusError as error:
         click.echo(f"fsw: {sentence(error)}", err=True)
         sys.exit(1)

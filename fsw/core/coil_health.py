@@ -122,7 +122,11 @@ def judge_current(
     if health.strange_ticks:
         health = health._replace(strange_ticks=0, stray_ma=0, stuck=False)
     fired = view.fired
-    if tick != view.fired_tick + timing.pulse_ticks or (status.coil, status.level) != fired:
+    if (
+        tick != view.fired_tick + timing.pulse_ticks
+        or not status.level
+        or (status.coil, status.level) != fired
+    ):
         return health
     nominal_ma = config.current_ma[abs(status.level) - 1]
     kind = _kind(status.current_ma / (nominal_ma if status.level > 0 else -nominal_ma), config)

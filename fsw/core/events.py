@@ -20,6 +20,9 @@ class Event(IntEnum):
     SENSORS_DISAGREE = 9  # 0: there is no estimate to tell by which of them is wrong
     COIL_FAULT = 10  # 100 times the number of the coil (1 to 3), and of its fault
     SECOND_SENDER = 11  # the identifier of fsw under which another sends
+    STRANGE_SYNC = 12  # the tick that it named; of several, that of the last
+    PLANT_RESTARTED = 13  # the last tick of the old count
+    FALSE_END = 14  # the ticks that PLANT_END named
 
 
 SEVERITY: dict[Event, Severity] = {
@@ -34,6 +37,9 @@ SEVERITY: dict[Event, Severity] = {
     Event.SENSORS_DISAGREE: Severity.WARNING,
     Event.COIL_FAULT: Severity.ERROR,
     Event.SECOND_SENDER: Severity.ERROR,
+    Event.STRANGE_SYNC: Severity.WARNING,
+    Event.PLANT_RESTARTED: Severity.WARNING,
+    Event.FALSE_END: Severity.WARNING,
 }
 
 

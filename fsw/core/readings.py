@@ -15,6 +15,7 @@ from fsw.wire.messages import (
     CoilRefused,
     CoilStatus,
     MagField,
+    PlantEnd,
     RefAttitude,
     RefRate,
     SunVector,
@@ -25,7 +26,6 @@ from fsw.wire.messages import (
     TcOrbitElement,
     TcOrbitLoad,
     TcSpin,
-    TickDone,
     intact,
 )
 
@@ -33,7 +33,15 @@ INBOX_LIMIT = 64
 """Frames looked at in one tick; a babbling node cannot cost more than that."""
 
 Listened = (
-    MagField | SunVector | CoilStatus | CoilRefused | RefAttitude | RefRate | CoilDipoleStatus | CoilBoot
+    MagField
+    | SunVector
+    | CoilStatus
+    | CoilRefused
+    | RefAttitude
+    | RefRate
+    | CoilDipoleStatus
+    | CoilBoot
+    | PlantEnd
 )
 
 LISTENED: dict[int, type[Listened]] = {
@@ -45,6 +53,7 @@ LISTENED: dict[int, type[Listened]] = {
     RefRate.ID: RefRate,
     CoilDipoleStatus.ID: CoilDipoleStatus,
     CoilBoot.ID: CoilBoot,
+    PlantEnd.ID: PlantEnd,
 }
 
 Telecommand = TcMode | TcClear | TcLaw | TcSpin | TcGain | TcOrbitElement | TcOrbitLoad
@@ -61,8 +70,10 @@ TELECOMMANDS: dict[int, type[Telecommand]] = {
 
 _HEARD: dict[int, type[Listened | Telecommand]] = {**LISTENED, **TELECOMMANDS}
 _SLOT = {can_id: slot for slot, can_id in enumerate(_HEARD)}
-_OWN = frozenset(can_id for can_id, sender in SENDERS.items() if sender == "FSW" and can_id != TickDone.ID)
-"""Identifiers of fsw whose frames bear a CRC: nobody else is to use them."""
+_IN_ANY_PLACE = frozenset({*TELECOMMANDS, PlantEnd.ID})
+"""Identifiers of what others may send between the boards' messages."""
+_OWN = frozenset(can_id for can_id, sender in SENDERS.items() if sender == "FSW")
+"""Identifiers of fsw: nobody else is to use them."""
 _COIL_SLOTS = [slot for can_id, slot in _SLOT.items() if SENDERS[can_id] == "COIL"]
 
 
@@ -71,7 +82,7 @@ class Readings(NamedTuple):
 
     Of telecommands all count, in the order in which they came; ``repeated`` are those that bore the counter
     of the one before. ``under_own_id`` is the lowest identifier of fsw itself under which a whole frame came,
-    0 if there is none.
+    0 if there is none. ``end`` is a PLANT_END after which the flight has gone on.
     """
 
     field: MagField | None
@@ -82,6 +93,7 @@ class Readings(NamedTuple):
     ref_rate: RefRate | None
     dipole: CoilDipoleStatus | None = None
     coil_boot: CoilBoot | None = None
+    end: PlantEnd | None = None
     telecommands: tuple[Telecommand, ...] = ()
     repeated: tuple[Telecommand, ...] = ()
     under_own_id: int = 0
@@ -94,8 +106,8 @@ class GateState(NamedTuple):
     """Last counter of each listened message (-1: none yet), counts since boot, and what was taken since boot.
 
     ``heard`` is the CRC-32 of the data of all messages taken: nothing on the bus can be altered afterwards
-    without the state telling, not even a sample that had no use. ``commanded`` is the same of telecommands,
-    which may come between the boards' messages in any order.
+    without the state telling, not even a sample that had no use. ``commanded`` is the same of telecommands
+    and PLANT_END, which may come between the boards' messages in any order.
     """
 
     counters: tuple[int, ...] = (-1,) * len(_HEARD)
@@ -118,7 +130,8 @@ def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateSt
     telecommands: list[Telecommand] = []
     repeated: list[Telecommand] = []
     counters = list(state.counters)
-    rejected, missed, heard, commanded = state.rejected, state.missed, state.heard, state.commanded
+    rejected, missed = state.rejected, state.missed
+    digests = [state.heard, state.commanded]
     under_own_id = 0
     for frame in frames[:INBOX_LIMIT]:
         message_class = _HEARD.get(frame.can_id)
@@ -148,13 +161,13 @@ def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateSt
         counters[slot] = message.counter
         if isinstance(message, Telecommand):
             telecommands.append(message)
-            commanded = crc32(frame.data, commanded)
         else:
             slots[slot] = message
-            heard = crc32(frame.data, heard)
+        which = frame.can_id in _IN_ANY_PLACE
+        digests[which] = crc32(frame.data, digests[which])
     overrun = state.overrun + max(0, len(frames) - INBOX_LIMIT)
     readings = Readings(*slots, tuple(telecommands), tuple(repeated), under_own_id)  # type: ignore[arg-type, call-arg]
-    return readings, GateState(tuple(counters), rejected, missed, overrun, heard, commanded)
+    return readings, GateState(tuple(counters), rejected, missed, overrun, *digests)
 
 
 def _in_range(message: Listened | Telecommand) -> bool:

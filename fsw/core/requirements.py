@@ -15,6 +15,7 @@ from fsw.core.second_sender import SIGNS
 from fsw.core.sensor_health import SHADOW_M
 from fsw.core.sensor_pair import MISFIT
 from fsw.core.sensor_watch import AGAINST_ESTIMATE, SensorFault
+from fsw.core.sync_watch import LEAP_TICKS
 
 
 class Requirement(NamedTuple):
@@ -172,6 +173,28 @@ REQUIREMENTS: tuple[Requirement, ...] = (
         "fewer signs",
         None,
         Event.SECOND_SENDER,
+    ),
+    Requirement(
+        "REQ-BUS-03",
+        "A SYNC that names neither the tick that was answered nor one near ahead moves nothing, and is told.",
+        f"up to {LEAP_TICKS} ticks ahead",
+        None,
+        Event.STRANGE_SYNC,
+    ),
+    Requirement(
+        "REQ-BUS-04",
+        "Two of them, the second naming the tick of the first or the next one, mean that the plant has "
+        "started anew: the estimate is lost, all timers start in full, and SYNC is answered again.",
+        "two in a row: with no settled count going on by a tick between them",
+        None,
+        Event.PLANT_RESTARTED,
+    ),
+    Requirement(
+        "REQ-BUS-05",
+        "A PLANT_END that does not fit the ticks that were answered ends nothing, and is told.",
+        f"the ticks answered; up to {LEAP_TICKS} more where silence follows",
+        None,
+        Event.FALSE_END,
     ),
     Requirement(
         "REQ-EVENT-01",

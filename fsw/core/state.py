@@ -17,12 +17,13 @@ from fsw.core.pulses import PulseState
 from fsw.core.readings import GateState
 from fsw.core.second_sender import NOBODY, SecondSender
 from fsw.core.sensor_health import SensorHealth
+from fsw.core.sync_watch import SyncWatch
 from fsw.core.throttle import Throttle
 from fsw.wire.frame import Frame
 
 
 class Inbox(NamedTuple):
-    """What came between SYNC(k-1) and SYNC(k), and that SYNC's tick and time."""
+    """A SYNC's tick and time, and what came since the last one that took what had come."""
 
     tick: int
     unix_time_s: int
@@ -32,7 +33,8 @@ class Inbox(NamedTuple):
 class FlightState(NamedTuple):
     """Everything that fsw carries from one tick to the next.
 
-    ``tick`` is -1 before the first SYNC; ``field_tick`` and ``status_tick`` are the last ticks with an
+    ``tick`` is -1 before the first SYNC; ``ignored_syncs`` counts those that were not answered, and ``syncs``
+    tells which are in doubt; ``field_tick`` and ``status_tick`` are the last ticks with an
     intact MAG_FIELD and COIL_STATUS, ``time_error_s`` the last SYNC's time less the expected; ``setpoint``
     and ``memory`` are the control law's; ``orbit`` and ``upload`` are elements from the ground, those flown
     (None: the table's orbit) and those kept aside; ``sent`` are the counters of the messages that fsw sends.
@@ -42,6 +44,7 @@ class FlightState(NamedTuple):
     field_tick: int
     status_tick: int
     ignored_syncs: int
+    syncs: SyncWatch
     time_error_s: int
     gate: GateState
     second_sender: SecondSender
@@ -73,6 +76,8 @@ def checksum(state: FlightState) -> int:
         state.field_tick,
         state.status_tick,
         state.ignored_syncs,
+        *state.syncs.doubted,
+        *state.syncs[1:],
         state.time_error_s,
         *gate.counters,
         *gate[1:],
@@ -147,6 +152,7 @@ def initial_state(pulses: PulseState, setpoint: Setpoint, sent: tuple[int, ...])
         field_tick=-1,
         status_tick=-1,
         ignored_syncs=0,
+        syncs=SyncWatch(),
         time_error_s=0,
         gate=GateState(),
         second_sender=NOBODY,

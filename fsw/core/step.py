@@ -20,8 +20,10 @@ from fsw.core.estimator import (
 from fsw.core.laws.interface import FieldSample, Seen
 from fsw.core.quaternion import rotate
 from fsw.core.readings import Readings, admit
+from fsw.core.restart import restarted
 from fsw.core.state import FlightState, Inbox, checksum, initial_state
 from fsw.core.supervisor import Verdict, supervise
+from fsw.core.sync_watch import Belief, judge, near
 from fsw.core.throttle import Throttle, throttled
 from fsw.core.vector import ZERO
 from fsw.wire.frame import Frame
@@ -40,11 +42,17 @@ def boot(config: FlightConfig) -> FlightState:
 def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[FlightState, Outbox]:
     """One tick: (state, inbox, config) -> (state, outbox), the outbox closed by TICK_DONE.
 
-    A SYNC that does not move the tick forward is counted and answered with nothing.
+    A SYNC that is not believed is counted and answered with nothing; one that is repeated because the answer
+    was not heard, with TICK_DONE alone. Only the first and one that goes on take what is in the inbox.
     """
-    if inbox.tick <= state.tick:
-        return state._replace(ignored_syncs=state.ignored_syncs + 1), ()
     before, tick = state, inbox.tick
+    belief, syncs = judge(state.syncs, state.tick, tick)
+    if belief is Belief.IGNORED or belief is Belief.UNHEARD:
+        state = state._replace(ignored_syncs=state.ignored_syncs + 1, syncs=syncs)
+        return state, (TickDone(tick, checksum(state)).encode(),) if belief is Belief.UNHEARD else ()
+    if belief is Belief.RESTARTED:
+        state, inbox = restarted(state, tick, config), inbox._replace(frames=())
+    state = state._replace(syncs=syncs._replace(strange_tick=-1))
     model = fly_orbit(config.ephemeris, state.orbit)
     state, readings = _gate(state, inbox, model, config)
     state, readings, reference, used = _estimate(state, readings, tick - before.tick, config)
@@ -67,10 +75,15 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     return state, (*frames, TickDone(tick, checksum(state)).encode())
 
 
+def takes_inbox(before: FlightState, after: FlightState) -> bool:
+    """Whether a step has looked at what came: the SYNC was the first, or went on."""
+    return after.tick != before.tick and (before.tick < 0 or near(before.tick, after.tick))
+
+
 def _gate(
     state: FlightState, inbox: Inbox, model: EphemerisModel, config: FlightConfig
 ) -> tuple[FlightState, Readings]:
-    """Take what the boards said; at the first tick start every timer in full."""
+    """Take what the boards said; at the first tick of a count start every timer in full."""
     tick = inbox.tick
     if state.tick < 0:
         state = state._replace(

@@ -9,6 +9,7 @@ from fsw.core.monitors import Monitor
 from fsw.core.readings import Readings
 from fsw.core.sensor_watch import Sensor
 from fsw.core.state import FlightState
+from fsw.core.sync_watch import near
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
     CoilDipole,
@@ -75,7 +76,7 @@ def happenings(
     before: FlightState, after: FlightState, readings: Readings, violated: Monitor | None
 ) -> list[Happening]:
     """What is worth an event in this tick: changes only, so that nothing repeats while it lasts."""
-    found = []
+    found = _plant(before, after, readings) if before.tick >= 0 else []
     if after.modes.trips > before.modes.trips and violated is not None:
         found.append(Happening(Event.MONITOR_TRIPPED, violated))
     if after.modes.mode is not before.modes.mode:
@@ -98,6 +99,18 @@ def happenings(
         found.append(Happening(Event.REQUEST_REFUSED, readings.refused.reason))
     if after.time_error_s != before.time_error_s:
         found.append(Happening(Event.TIME_MISMATCH, after.time_error_s))
+    return found
+
+
+def _plant(before: FlightState, after: FlightState, readings: Readings) -> list[Happening]:
+    """What has come under the plant's identifiers and cannot be, or what it has done."""
+    found = []
+    if not near(before.tick, after.tick):
+        found.append(Happening(Event.PLANT_RESTARTED, before.tick))
+    elif before.syncs.strange_tick >= 0:
+        found.append(Happening(Event.STRANGE_SYNC, before.syncs.strange_tick))
+    if readings.end is not None:
+        found.append(Happening(Event.FALSE_END, readings.end.ticks))
     return found
 
 

@@ -8,7 +8,16 @@ from typing import NamedTuple
 
 from fsw.core.events import Event, Happening
 
-QUANTITIES = frozenset({Event.TIME_MISMATCH, Event.FILTER_STARTED, Event.FILTER_RESTARTED})
+QUANTITIES = frozenset(
+    {
+        Event.TIME_MISMATCH,
+        Event.FILTER_STARTED,
+        Event.FILTER_RESTARTED,
+        Event.STRANGE_SYNC,
+        Event.PLANT_RESTARTED,
+        Event.FALSE_END,
+    }
+)
 MOST_KINDS = 32
 """Kinds remembered at once; beyond, events are held back."""
 

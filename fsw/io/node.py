@@ -1,17 +1,34 @@
 """The flight node: collects frames into inboxes and runs a step at each SYNC. No I/O of its own."""
 
+from copy import copy
+from enum import Enum, auto
+from typing import Self
+
 from fsw.core.config import FlightConfig
 from fsw.core.state import FlightState, Inbox
-from fsw.core.step import boot, step
+from fsw.core.step import boot, step, takes_inbox
+from fsw.core.sync_watch import LEAP_TICKS
 from fsw.core.telemetry import boot_frame
 from fsw.wire.frame import Frame
 from fsw.wire.messages import PlantBoot, PlantEnd, Sync, intact
 
 KEPT_FRAMES = 1024
-"""Frames kept between two SYNCs: bounds memory under a flood, far above what the gate looks at."""
+"""Frames kept between two answers: bounds memory under a flood, far above what the gate looks at."""
 
-LEAP_TICKS = 60
-"""A SYNC further ahead is believed when the next one goes on from it: one alone must not end the count."""
+ASKED_AGAIN = 2
+"""PLANT_BOOT so often, no SYNC answered between: a plant waits for FSW_BOOT. In its tick 0 it sends one."""
+
+TICKS_MODULO = 1 << 24
+"""As PLANT_END counts."""
+
+
+class End(Enum):
+    """Whether the run is over."""
+
+    NO = auto()
+    DOUBTED = auto()
+    """The plant says so, but of a tick near ahead: it is if silence follows."""
+    YES = auto()
 
 
 class FlightNode:
@@ -20,39 +37,58 @@ class FlightNode:
     def __init__(self, config: FlightConfig) -> None:
         self.config = config
         self.state: FlightState = boot(config)
-        self.ended = False
+        self.end = End.NO
         self._inbox: list[Frame] = []
-        self._leapt_to: int | None = None
+        self._asked = 0
 
     def start(self) -> Frame:
-        """FSW_BOOT, the first frame this node sends; what came before it does not count."""
-        self._inbox.clear()
+        """FSW_BOOT, the first frame this node sends: a flight begins, and what came before does not count."""
+        self.state, self.end, self._asked = boot(self.config), End.NO, 0
+        self._inbox = []
         return boot_frame(self.config.table_crc)
 
+    @property
+    def ended(self) -> bool:
+        """Whether the run is certainly over."""
+        return self.end is End.YES
+
     def receive(self, frame: Frame) -> tuple[Frame, ...]:
-        """Take one frame; the answer, TICK_DONE last, when it is a SYNC, else nothing."""
+        """Take one frame; the answer, TICK_DONE last, when it is a SYNC that is believed, else nothing."""
         if frame.can_id == Sync.ID and intact(frame):
-            sync = Sync.decode(frame.data)
-            inbox = Inbox(sync.tick, sync.unix_time_s, tuple(self._inbox))
-            self._inbox.clear()
-            if not self._believes(sync.tick):
-                self.state = self.state._replace(ignored_syncs=self.state.ignored_syncs + 1)
-                return ()
-            self.state, outbox = step(self.state, inbox, self.config)
-            return outbox
+            return self._answer(Sync.decode(frame.data))
         if frame.can_id == PlantEnd.ID and intact(frame):
-            self.ended = True
+            self.end = self._judged(PlantEnd.decode(frame.data).ticks)
+        elif frame.can_id == PlantBoot.ID and intact(frame):
+            self._asked += 1
         if len(self._inbox) < KEPT_FRAMES:
             self._inbox.append(frame)
         return ()
 
     def hears_plant_start(self, frame: Frame) -> bool:
-        """Whether the plant asks for FSW_BOOT: it started after this node did."""
-        return self.state.tick < 0 and frame.can_id == PlantBoot.ID and intact(frame)
+        """Whether the plant asks for FSW_BOOT: it started after this node did, or once more."""
+        waits = self.state.tick < 0 or self._asked >= ASKED_AGAIN
+        return waits and frame.can_id == PlantBoot.ID and intact(frame)
 
-    def _believes(self, tick: int) -> bool:
-        """Whether a SYNC may be this tick's: the first one, one near, or one that goes on from a leap."""
-        goes_on = self._leapt_to is not None and tick == self._leapt_to + 1
-        near = self.state.tick < 0 or tick <= self.state.tick + LEAP_TICKS
-        self._leapt_to = None if near else tick
-        return near or goes_on
+    def copy(self) -> Self:
+        """A node that goes on from here by itself."""
+        other = copy(self)
+        other._inbox = self._inbox.copy()
+        return other
+
+    def _answer(self, sync: Sync) -> tuple[Frame, ...]:
+        """One step; what the boards said is kept until a SYNC takes it."""
+        before = self.state
+        inbox = Inbox(sync.tick, sync.unix_time_s, tuple(self._inbox))
+        self.state, outbox = step(before, inbox, self.config)
+        if takes_inbox(before, self.state):
+            self._inbox = []
+        if outbox:
+            self._asked, self.end = 0, End.NO
+        return outbox
+
+    def _judged(self, ticks: int) -> End:
+        """What is to be made of a PLANT_END: none is believed before the first tick."""
+        ahead = (ticks - self.state.tick - 1) % TICKS_MODULO
+        if self.state.tick < 0 or ahead > LEAP_TICKS:
+            return self.end
+        return End.DOUBTED if ahead else End.YES

@@ -4,35 +4,41 @@ import os
 import time
 
 from fsw.io.bus import Bus, BusClosed
-from fsw.io.node import FlightNode
+from fsw.io.node import End, FlightNode
 
 IDLE_S = 1.0
 REPEAT_BOOT_AFTER_S = 0.5
 """A plant that asks for FSW_BOOT sooner than this has been answered by the one just sent."""
+SILENCE_S = 5.0
+"""An end that is in doubt is believed when nothing has come for so long."""
 
 
-def run(node: FlightNode, bus: Bus, parent: int | None = None) -> None:
+def run(node: FlightNode, bus: Bus, parent: int | None = None, bench: bool = False) -> None:
     """Send FSW_BOOT, then answer every SYNC.
 
     Args:
         node: the flight node.
         bus: where it lives.
         parent: process that started this one; when it is gone the run is over.
+        bench: no PLANT_END ends it.
     """
     bus.send([node.start()])
-    booted = time.monotonic()
-    while not node.ended:
+    booted = heard = time.monotonic()
+    while bench or not node.ended:
         try:
             frame = bus.receive(IDLE_S)
         except BusClosed:
             return
+        now = time.monotonic()
         if frame is None:
-            if parent is not None and os.getppid() != parent:
+            over = node.end is End.DOUBTED and now - heard > SILENCE_S and not bench
+            if over or (parent is not None and os.getppid() != parent):
                 return
             continue
+        heard = now
         answer = node.receive(frame)
         if answer:
             bus.send(answer)
-        elif node.hears_plant_start(frame) and time.monotonic() - booted > REPEAT_BOOT_AFTER_S:
+        elif node.hears_plant_start(frame) and now - booted > REPEAT_BOOT_AFTER_S:
             bus.send([node.start()])
-            booted = time.monotonic()
+            booted = now

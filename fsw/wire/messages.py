@@ -966,7 +966,7 @@ class _FswEvent(NamedTuple):
     severity: int
     event: int  # number of the event in this node's list
     tick: int  # low 8 bits of the tick
-    argument: int
+    argument: int  # what the event tells of; a tick as it is, from 2^31 on less 2^32
     counter: int = 0
 
 

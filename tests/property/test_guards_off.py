@@ -42,7 +42,7 @@ GUARDS = {
     "clock of the board": Off(
         "ticks-rushed", "limits by time", ("hil_stub.guard.Guard.pass_time", lambda self, clock_ms: None)
     ),
-    "ticks that leap": Off("tick-far-ahead", "recovers", ("fsw.io.node.LEAP_TICKS", 2**31)),
+    "ticks that leap": Off("tick-far-ahead", "recovers", ("fsw.core.sync_watch.LEAP_TICKS", 2**31)),
     "freshness": Off("mag-board-dead", "silence named", ("fsw.core.monitors.MONITORS", WITHOUT_FRESHNESS)),
     "monitors": Off(
         "coil-stuck-on-1", "stuck", ("fsw.core.supervisor.first_violation", lambda watched: None)

@@ -4,8 +4,9 @@ import time
 from functools import cache
 
 from fsw.core.config import FlightConfig
+from fsw.core.sync_watch import near
 from fsw.io.config import flight_config
-from fsw.io.node import LEAP_TICKS, FlightNode
+from fsw.io.node import FlightNode
 from fsw.wire.frame import Frame
 from fsw.wire.messages import Sync, TickDone, intact
 from sim.harness.assemble import plant_config
@@ -127,7 +128,7 @@ def _asks(frame: Frame, before: int) -> bool:
     if frame.can_id != Sync.ID or not intact(frame):
         return False
     tick = Sync.decode(frame.data).tick
-    return tick > before and (before < 0 or tick <= before + LEAP_TICKS)
+    return before < 0 or near(before, tick)
 
 
 def _names(answer: tuple[Frame, ...], tick: int) -> bool:

@@ -22,6 +22,7 @@ from fsw.wire.messages import (
     NavQuality,
     NavRate,
     PlantBoot,
+    PlantEnd,
     RefAttitude,
     RefRate,
     SunVector,
@@ -46,7 +47,8 @@ RATE = RefRate(1, 2.0**-7, -(2.0**-8), 2.0**-9, counter=10)
 DIPOLE = CoilDipoleStatus(0.5, -0.25, 2.0**-16, counter=11)
 BOOT = CoilBoot(1, 1, 0x89ABCDEF, counter=12)
 COUNTED = (FIELD, SUN, COIL, REFUSED, ATTITUDE, RATE, DIPOLE)
-EVERY_KIND = (*COUNTED, BOOT)
+END = PlantEnd(9000, counter=13)
+EVERY_KIND = (*COUNTED, BOOT, END)
 SLOT = {message.ID: slot for slot, message in enumerate(EVERY_KIND)}
 EVERY_MESSAGE = pytest.mark.parametrize("message", EVERY_KIND, ids=lambda m: type(m).__name__)
 EVERY_COUNTED = pytest.mark.parametrize("message", COUNTED, ids=lambda m: type(m).__name__)
@@ -74,13 +76,14 @@ def test_what_is_listened_to_is_what_this_test_sends():
 
 
 def test_every_kind_is_taken_as_sent():
-    as_sent = (BOOT, *COUNTED)  # a board that starts says so first
+    as_sent = (BOOT, *COUNTED, END)  # a board that starts says so first
     readings, state = admit(frames(*as_sent), GateState())
     assert tuple(readings[: len(EVERY_KIND)]) == tuple(type(m).decode(m.encode().data) for m in EVERY_KIND)
     assert readings.coil == COIL
     assert readings.field == FIELD
-    heard = crc32(b"".join(message.encode().data for message in as_sent))
-    assert state == GateState(counters=(5, 6, 7, 8, 9, 10, 11, 12, *(-1,) * len(TELECOMMANDS)), heard=heard)
+    heard = crc32(b"".join(message.encode().data for message in as_sent[:-1]))
+    counters = (*range(5, 14), *(-1,) * len(TELECOMMANDS))
+    assert state == GateState(counters, heard=heard, commanded=crc32(END.encode().data))
 
 
 @EVERY_MESSAGE
@@ -243,7 +246,6 @@ class TestTheRest:
             PlantBoot(0, 1, 2),
             MagBoot(0, 1, 2),
             CoilHeartbeat(0, 0, 0, 60),
-            TickDone(1, 2),
         ],
     )
     def test_what_is_meant_for_others_passes_uncounted(self, message):

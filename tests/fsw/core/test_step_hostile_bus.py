@@ -13,6 +13,7 @@ from fsw.core import mekf
 from fsw.core.readings import INBOX_LIMIT
 from fsw.core.state import Inbox, checksum
 from fsw.core.step import boot, step
+from fsw.core.sync_watch import near
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame
 from fsw.wire.messages import (
     CLASSES,
@@ -206,7 +207,7 @@ def test_saboteur(make_world, seed):
 def test_a_clock_that_jumps(make_world, seed):
     """Ticks repeat, go back, leap by seconds and by years; boards go on as if nothing were."""
     world, random = make_world(seed=seed), Random(seed)
-    watch, clock = Watch(world.config), 0
+    watch, clock, unanswered = Watch(world.config), 0, 0
     for _ in range(TICKS):
         honest = world.inbox()
         world.plant.end_tick()
@@ -215,5 +216,7 @@ def test_a_clock_that_jumps(make_world, seed):
         inbox = Inbox(clock, random.getrandbits(32), honest.frames)
         before = world.state
         world.state, outbox = step(before, inbox, world.config)
-        assert (outbox == ()) is (clock <= before.tick)
+        assert outbox or not near(before.tick, clock)
+        unanswered = 0 if outbox else unanswered + 1
+        assert unanswered < 5
         watch.judge(inbox, world.state, outbox)

@@ -172,6 +172,9 @@ class TestEvents:
             "SENSORS_DISAGREE": 9,
             "COIL_FAULT": 10,
             "SECOND_SENDER": 11,
+            "STRANGE_SYNC": 12,
+            "PLANT_RESTARTED": 13,
+            "FALSE_END": 14,
         }
 
     def test_every_event_has_a_severity_and_fits_its_signal(self):

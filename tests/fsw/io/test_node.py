@@ -5,11 +5,22 @@ import pytest
 from fsw.core.second_sender import SIGNS
 from fsw.core.state import Inbox
 from fsw.core.step import boot, step
+from fsw.core.sync_watch import LEAP_TICKS
 from fsw.io.config import flight_config
-from fsw.io.node import KEPT_FRAMES, LEAP_TICKS, FlightNode
+from fsw.io.node import KEPT_FRAMES, End, FlightNode
 from fsw.io.table import load_flight_table
 from fsw.wire.frame import EXTENDED_FLAG, Frame
-from fsw.wire.messages import FswBoot, MagField, PlantBoot, PlantEnd, SunVector, Sync, TickDone, intact
+from fsw.wire.messages import (
+    FswBoot,
+    FswEvent,
+    MagField,
+    PlantBoot,
+    PlantEnd,
+    SunVector,
+    Sync,
+    TickDone,
+    intact,
+)
 
 FIELD = MagField(1, 20000.0, -7000.0, 31000.0).encode()
 SUN = SunVector(1, 0.6, -0.48, 0.64).encode()
@@ -87,12 +98,45 @@ def test_a_flood_is_bounded_and_counted(node, config):
     assert len(node._inbox) == 0
 
 
-def test_the_end_of_the_run_is_heard_when_it_is_intact(node):
-    end = PlantEnd(7).encode()
-    node.receive(end._replace(data=bytes((end.data[0] ^ 1,)) + end.data[1:]))
-    assert not node.ended
-    node.receive(end)
-    assert node.ended
+@pytest.mark.requirement("REQ-BUS-05")
+class TestEnd:
+    @pytest.fixture
+    def flown(self, node, config):
+        """A node that has answered tick 6."""
+        node.receive(sync(config, 6))
+        return node
+
+    def test_is_heard_when_it_is_intact(self, flown):
+        end = PlantEnd(7).encode()
+        flown.receive(end._replace(data=bytes((end.data[0] ^ 1,)) + end.data[1:]))
+        assert flown.end is End.NO
+        flown.receive(end)
+        assert flown.ended
+
+    @pytest.mark.parametrize("ticks", [0, 6, 8 + LEAP_TICKS, 1000, 2**24 - 1])
+    def test_of_another_count_is_none(self, flown, ticks):
+        flown.receive(PlantEnd(ticks).encode())
+        assert flown.end is End.NO
+
+    @pytest.mark.parametrize("ticks", [8, 7 + LEAP_TICKS])
+    def test_of_a_tick_near_ahead_is_in_doubt_until_a_sync_is_answered(self, flown, config, ticks):
+        flown.receive(PlantEnd(ticks).encode())
+        flown.receive(PlantEnd(1000).encode())
+        assert flown.end is End.DOUBTED
+        flown.receive(sync(config, 3))
+        assert flown.end is End.DOUBTED
+        flown.receive(sync(config, 7))
+        assert flown.end is End.NO
+
+    def test_before_the_first_tick_is_of_another_run(self, node):
+        for ticks in (0, 7):
+            node.receive(PlantEnd(ticks).encode())
+        assert node.end is End.NO
+
+    def test_of_a_long_run_is_told_modulo_2_to_the_24(self, node, config):
+        node.receive(sync(config, 2**24 + 6))
+        node.receive(PlantEnd(7).encode())
+        assert node.ended
 
 
 def test_a_plant_that_starts_is_heard_before_the_first_tick_alone(node, config):
@@ -102,6 +146,72 @@ def test_a_plant_that_starts_is_heard_before_the_first_tick_alone(node, config):
     assert not node.hears_plant_start(start._replace(data=start.data[:-1] + b"\0"))
     node.receive(sync(config, 0))
     assert not node.hears_plant_start(start)
+
+
+def test_a_plant_that_starts_anew_is_heard_when_it_asks_again(node, config):
+    """In its tick 0 a plant says once that it has started; one that waits for FSW_BOOT says so again."""
+    start = PlantBoot(0, 1, 2).encode()
+    node.receive(sync(config, 500))
+    node.receive(start)
+    assert not node.hears_plant_start(start)
+    node.receive(sync(config, 501))
+    node.receive(start)
+    node.receive(sync(config, 0))
+    assert not node.hears_plant_start(start)
+    node.receive(start)
+    assert node.hears_plant_start(start)
+
+
+def test_after_fsw_boot_nothing_is_left_of_the_flight_before(node, config):
+    """So that a log that begins with it can be flown again."""
+    for tick in (500, 501, 3):
+        node.receive(FIELD)
+        node.receive(sync(config, tick))
+    node.receive(PlantEnd(502).encode())
+    node.start()
+    node.receive(FIELD)
+    new = FlightNode(config)
+    new.start()
+    new.receive(FIELD)
+    assert node.end is End.NO
+    assert node.receive(sync(config, 0)) == new.receive(sync(config, 0))
+
+
+@pytest.mark.requirement("REQ-BUS-03")
+@pytest.mark.parametrize("strange", [0, 5, 10**9])
+def test_what_came_before_a_sync_that_is_not_answered_counts_for_the_next(node, config, strange):
+    node.receive(sync(config, 5))
+    undisturbed = node.copy()
+    for one in (node, undisturbed):
+        one.receive(FIELD)
+        if one is node:
+            assert one.receive(sync(config, strange)) == ()
+        one.receive(SUN)
+    answers = [one.receive(sync(config, 6)) for one in (node, undisturbed)]
+    assert node.state.field_tick == undisturbed.state.field_tick == 6
+    assert [frame for frame in answers[0][:-1] if frame.can_id != FswEvent.ID] == list(answers[1][:-1])
+
+
+def test_a_flood_of_strange_syncs_is_bounded(node, config):
+    node.receive(sync(config, 5))
+    for i in range(3 * KEPT_FRAMES):
+        node.receive(Frame(0x7FF, b""))
+        node.receive(sync(config, 10**9 + 7 * i))
+    assert len(node._inbox) == KEPT_FRAMES
+    node.receive(sync(config, 6))
+    assert node.state.tick == 6
+    assert not node._inbox
+
+
+@pytest.mark.requirement("REQ-BUS-04")
+@pytest.mark.parametrize("first", [10**9, 500, 0])
+def test_a_wrong_sync_does_not_deafen(node, config, first):
+    """A wrong first one, and two forged ones: the true ones are answered from the next but one on."""
+    done = []
+    for tick in (first, first + 1, *range(3, 50)):
+        answer = node.receive(sync(config, tick))
+        done += [TickDone.decode(frame.data).tick for frame in answer if frame.can_id == TickDone.ID]
+    assert done[-46:] == list(range(4, 50))
 
 
 def test_one_sync_from_far_ahead_moves_nothing(node, config):

@@ -48,9 +48,9 @@ def config():
 def run(config):
     """Runs a new node through a script; the messages it sent."""
 
-    def through(*happenings, parent=None):
+    def through(*happenings, parent=None, bench=False):
         bus = Script(*happenings)
-        runner.run(FlightNode(config), bus, parent)
+        runner.run(FlightNode(config), bus, parent, bench)
         through.left = bus.happenings
         return bus.sent
 
@@ -80,6 +80,32 @@ def test_ends_with_the_run(run, config):
     assert run.left == [sync(config, 1)]
 
 
+class TestEnd:
+    def test_that_does_not_fit_ends_nothing(self, run, config):
+        sent = run(sync(config, 0), PlantEnd(7200).encode(), NOTHING_CAME, sync(config, 1))
+        assert [message.tick for message in sent if isinstance(message, TickDone)] == [0, 1]
+
+    def test_on_a_bench_none_ends_it(self, run, config):
+        sent = run(sync(config, 0), END, NOTHING_CAME, sync(config, 1), bench=True)
+        assert [message.tick for message in sent if isinstance(message, TickDone)] == [0, 1]
+
+    def test_where_the_last_sync_was_lost_silence_confirms_it(self, run, config, monkeypatch):
+        monkeypatch.setattr(runner, "SILENCE_S", -1.0)
+        run(sync(config, 0), PlantEnd(3).encode(), NOTHING_CAME, sync(config, 1))
+        assert run.left == [sync(config, 1)]
+
+    @pytest.mark.parametrize("bench", [False, True])
+    def test_a_short_silence_or_a_bench_does_not(self, run, config, monkeypatch, bench):
+        monkeypatch.setattr(runner, "SILENCE_S", -1.0 if bench else 5.0)
+        run(sync(config, 0), PlantEnd(3).encode(), NOTHING_CAME, sync(config, 1), bench=bench)
+        assert run.left == []
+
+    def test_a_doubted_one_is_forgotten_when_the_flight_goes_on(self, run, config, monkeypatch):
+        monkeypatch.setattr(runner, "SILENCE_S", -1.0)
+        run(sync(config, 0), PlantEnd(3).encode(), sync(config, 1), NOTHING_CAME, sync(config, 2))
+        assert run.left == []
+
+
 def test_ends_when_the_bus_is_gone(run):
     assert kinds(run(FIELD, FIELD)) == [FswBoot]
 
@@ -105,6 +131,12 @@ class TestBootAgain:
 
     def test_not_at_once_since_the_first_may_still_be_on_its_way(self, run, config):
         assert kinds(run(START, START, sync(config, 0), END)).count(FswBoot) == 1
+
+    def test_a_plant_that_starts_anew_and_asks_again_is_told(self, run, config, monkeypatch):
+        monkeypatch.setattr(runner, "REPEAT_BOOT_AFTER_S", -1.0)
+        sent = run(sync(config, 700), START, START, sync(config, 0), sync(config, 1), END)
+        assert kinds(sent).count(FswBoot) == 2
+        assert [message.tick for message in sent if isinstance(message, TickDone)] == [700, 0, 1]
 
     def test_not_once_the_ticks_run(self, run, config, monkeypatch):
         """The plant says at tick 0 itself that it has booted: one FSW_BOOT a run."""

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from fsw.core.events import Event
 from fsw.wire.messages import (
     CLASSES,
     NAMES,
@@ -158,6 +159,7 @@ def test_the_codec_knows_the_dbc_s_messages_and_senders(dbc):
     [
         (Mode, "NAV_QUALITY", "mode"),
         (Severity, "FSW_EVENT", "severity"),
+        (Event, "FSW_EVENT", "event"),
         (CoilRefusedReason, "COIL_REFUSED", "reason"),
         (Mode, "TC_MODE", "mode"),
         (Gain, "TC_GAIN", "gain"),

@@ -1,0 +1,42 @@
+"""What is left of the flight state when the plant has started anew, or somebody makes believe that it has.
+
+As after a boot every timer starts in full and nothing is known of the attitude: what hangs on the count of
+ticks is worth nothing under another count. But fsw has not booted. What the ground has set, which units were
+found faulty, how often a monitor has tripped, that there is a second sender, and what is counted since boot
+stay: a forged SYNC must not bring back a coil or a sensor that was named, nor lead out of a SAFE that lasts.
+"""
+
+from fsw.core.actuation import UNHEARD, CoilView
+from fsw.core.attitude import UNKNOWN
+from fsw.core.config import FlightConfig
+from fsw.core.estimator import restart
+from fsw.core.laws.interface import FieldSample
+from fsw.core.modes import ModeState
+from fsw.core.pulses import boot
+from fsw.core.second_sender import SecondSender
+from fsw.core.state import FlightState
+from fsw.core.throttle import Throttle
+
+
+def restarted(state: FlightState, tick: int, config: FlightConfig) -> FlightState:
+    """The state of which ``tick`` is the first of a new count.
+
+    A throttled event stays so for what is left of its time, a second sender for all of its time.
+    """
+    other, pair, events = state.second_sender, state.sensors.pair, state.events
+    told = tuple(kind._replace(tick=tick - (state.tick - kind.tick)) for kind in events.told)
+    known = state.estimator.estimate is not None
+    return state._replace(
+        tick=-1,
+        second_sender=SecondSender(other.signs, tick, other.can_id) if other.signs else other,
+        ephemeris=None,
+        estimator=restart(state.estimator) if known else state.estimator._replace(rejected_in_a_row=0),
+        sensors=state.sensors._replace(pair=pair._replace(proof=min(pair.proof, 0))),
+        attitude=UNKNOWN,
+        modes=ModeState(since_tick=tick, trips=state.modes.trips, held=state.modes.held),
+        sample=FieldSample(),
+        memory=(),
+        pulses=boot(tick, config.coils.pulses),
+        coil=CoilView(UNHEARD, seq=state.coil.seq, refusals=state.coil.refusals),
+        events=Throttle(told, events.held_back),
+    )

@@ -1,0 +1,87 @@
+"""Which SYNC is believed: time comes over the bus, and the bus may lie.
+
+A SYNC of a tick near ahead is believed at once. One of the tick that was answered last is a duplicate, or
+comes from a plant that has not had its answer and repeats it. Any other is strange. One strange SYNC moves
+nothing; a second one that names the same tick or the next one means that the plant has started anew: in
+lockstep it repeats its SYNC until it is answered, in real time it goes on.
+
+Others may stand between the two. What is in doubt is forgotten when a settled count goes on by a tick, so
+that strange SYNCs between true ones never add up. A count that has been skipped or begun anew settles in
+``LEAP_TICKS``; until then one that has been left for it may be believed again. Of two plants that both go on
+tick by tick nothing here can tell which is the false one.
+"""
+
+from enum import Enum, auto
+from typing import NamedTuple
+
+LEAP_TICKS = 60
+"""A SYNC no further ahead is believed at once: those between were lost. A new count settles in as many."""
+
+MOST_DOUBTED = 64
+"""Ticks remembered as in doubt, the latest."""
+
+
+class Belief(Enum):
+    """What a SYNC is taken for."""
+
+    IGNORED = auto()
+    UNHEARD = auto()
+    """Of the tick that was answered, again and again: the answer has not been heard."""
+    NEXT = auto()
+    """The next tick; where SYNCs were lost, one near ahead."""
+    RESTARTED = auto()
+    """A tick of a plant that has started anew."""
+
+
+class SyncWatch(NamedTuple):
+    """SYNCs in doubt.
+
+    ``doubted``: their ticks, the latest last; ``settled_tick``: from which on the count is settled;
+    ``strange_tick``: the latest strange one that has not been told yet, -1 if there is none.
+    """
+
+    doubted: tuple[int, ...] = ()
+    settled_tick: int = 0
+    strange_tick: int = -1
+
+
+def judge(watch: SyncWatch, current: int, tick: int) -> tuple[Belief, SyncWatch]:
+    """What a SYNC is taken for, and what is in doubt after it.
+
+    Args:
+        watch: what was in doubt.
+        current: the tick that was answered last; -1: none yet, and any is believed.
+        tick: the one that SYNC names.
+    """
+    if current < 0:
+        return Belief.NEXT, watch
+    if near(current, tick):
+        return Belief.NEXT, _gone_on(watch, current, tick)
+    if tick == current:
+        if tick in watch.doubted:
+            return Belief.UNHEARD, watch._replace(doubted=_without(watch.doubted, tick))
+        return Belief.IGNORED, watch._replace(doubted=_with(watch.doubted, tick))
+    if tick in watch.doubted or tick - 1 in watch.doubted:
+        doubted = _with(_without(watch.doubted, tick, tick - 1), current)
+        return Belief.RESTARTED, SyncWatch(doubted, settled_tick=tick + LEAP_TICKS)
+    return Belief.IGNORED, watch._replace(doubted=_with(watch.doubted, tick), strange_tick=tick)
+
+
+def near(current: int, tick: int) -> bool:
+    """Whether a tick is ahead of the current one, and not far."""
+    return current < tick <= current + LEAP_TICKS
+
+
+def _gone_on(watch: SyncWatch, current: int, tick: int) -> SyncWatch:
+    """After a tick that is near: by a skip the count may have been led astray."""
+    if tick > current + 1:
+        return watch._replace(settled_tick=tick + LEAP_TICKS)
+    return watch._replace(doubted=()) if watch.doubted and current >= watch.settled_tick else watch
+
+
+def _with(doubted: tuple[int, ...], tick: int) -> tuple[int, ...]:
+    return (*_without(doubted, tick), tick)[-MOST_DOUBTED:]
+
+
+def _without(doubted: tuple[int, ...], *ticks: int) -> tuple[int, ...]:
+    return tuple(other for other in doubted if other not in ticks)

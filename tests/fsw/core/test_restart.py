@@ -1,0 +1,251 @@
+"""A plant that has started anew, or somebody who makes believe so: timers in full, no estimate, and on."""
+
+from random import Random
+
+import pytest
+
+from fsw.core.coil_health import CoilFault
+from fsw.core.events import Event
+from fsw.core.modes import ask
+from fsw.core.restart import restarted
+from fsw.core.second_sender import SIGNS, SecondSender
+from fsw.core.sensor_watch import SensorFault, Watch
+from fsw.core.state import Inbox
+from fsw.core.step import step, takes_inbox
+from fsw.core.sync_watch import LEAP_TICKS
+from fsw.wire.messages import CLASSES, CoilFire, FswEvent, Mode, PlantEnd, TickDone
+
+FAR = 10**9
+LAST = 2**32 - 1
+BACKOFF = 100
+
+
+def decoded(outbox):
+    return [CLASSES[frame.can_id].decode(frame.data) for frame in outbox]
+
+
+def of(kind, messages):
+    return [message for message in messages if isinstance(message, kind)]
+
+
+def told(messages):
+    return [(Event(m.event), m.argument) for m in of(FswEvent, messages)]
+
+
+def forge(world, tick, frames=()):
+    """A SYNC of nobody's: what is answered."""
+    inbox = Inbox(tick, world.config.epoch_unix_s + tick, tuple(frames))
+    world.state, outbox = step(world.state, inbox, world.config)
+    return decoded(outbox)
+
+
+@pytest.fixture
+def world(make_world):
+    """150 ticks into a flight: the first pulse has been fired, and the attitude is known."""
+    world = make_world()
+    world.fly(150)
+    assert world.state.attitude.valid
+    assert world.state.coil.fired_tick >= BACKOFF
+    return world
+
+
+class TestOneStrange:
+    @pytest.mark.requirement("REQ-BUS-03")
+    @pytest.mark.parametrize("strange", [0, 149 - 60, FAR, LAST])
+    def test_is_told_with_the_next_answer_and_moves_nothing(self, world, strange):
+        estimate, pulses = world.state.estimator, world.state.pulses
+        assert forge(world, strange) == []
+        assert world.state.ignored_syncs == 1
+        assert (world.state.estimator, world.state.pulses) == (estimate, pulses)
+        said = world.step()
+        assert of(TickDone, said)[0].tick == 150
+        signed = strange if strange < 2**31 else strange - 2**32
+        assert told(said) == [(Event.STRANGE_SYNC, signed)]
+        assert told(world.step()) == []
+        assert world.state.estimator.restarts == 0
+
+    def test_in_each_tick_is_told_once_in_a_time(self, world):
+        said = []
+        for i in range(30):
+            forge(world, FAR + i)
+            said += world.step()
+        assert len([one for one in told(said) if one[0] is Event.STRANGE_SYNC]) == 3
+        assert world.state.estimator.restarts == 0
+
+    @pytest.mark.parametrize("first", [FAR, 3])
+    def test_in_each_tick_changes_no_request(self, make_world, first):
+        """From boot on, though they go on tick by tick."""
+        quiet, world = make_world(), make_world()
+        honest = [of(CoilFire, said) for said in quiet.fly(260)]
+        flown = []
+        for i in range(260):
+            flown.append(of(CoilFire, world.step()))
+            forge(world, first + 1000 + i)
+        assert flown == honest
+        assert any(honest)
+
+
+@pytest.mark.requirement("REQ-BUS-04")
+class TestTwoStrange:
+    @pytest.mark.parametrize(
+        ("first", "second"), [(FAR, FAR + 1), (FAR, FAR), (0, 1), (20, 20), (LAST, LAST)]
+    )
+    def test_are_answered_and_told(self, world, first, second):
+        forge(world, first)
+        said = forge(world, second)
+        assert of(TickDone, said)[0].tick == second
+        assert (Event.PLANT_RESTARTED, 149) in told(said)
+        assert (Event.FILTER_RESTARTED, 1) in told(said)
+        assert (Event.MODE_CHANGED, Mode.SAFE) in told(said)
+        assert not world.state.attitude.valid
+        assert world.state.estimator.estimate is None
+        assert world.state.pulses.ready_tick == (second + BACKOFF,) * 3
+
+    def test_the_first_request_comes_a_full_back_off_later(self, make_world):
+        world = make_world()
+        world.fly(240)
+        world.plant = make_world().plant
+        fires = [tick for tick, said in enumerate(world.fly(210)) if of(CoilFire, said)]
+        assert fires
+        assert fires[0] >= 1 + BACKOFF
+        assert world.state.attitude.valid
+        assert world.state.tick == 209
+
+    def test_the_true_plant_is_followed_at_its_next_sync(self, world):
+        forge(world, FAR)
+        forge(world, FAR + 1)
+        said = world.step()
+        assert of(TickDone, said)[0].tick == 150
+        assert world.state.pulses.ready_tick == (150 + BACKOFF,) * 3
+
+    def test_a_restart_in_mid_pulse_is_no_trip(self, make_world):
+        world = make_world()
+        while not of(CoilFire, world.step()):
+            pass
+        forge(world, FAR)
+        forge(world, FAR)
+        world.fly(20)
+        assert world.state.modes.trips == 0
+        assert world.state.modes.mode is not Mode.SAFE
+
+    def test_a_first_sync_that_was_wrong_costs_a_tick(self, make_world):
+        world = make_world()
+        assert of(TickDone, forge(world, FAR))[0].tick == FAR
+        answered = [of(TickDone, said) for said in world.fly(60)]
+        assert [done[0].tick for done in answered[1:]] == list(range(1, 60))
+        assert answered[0] == []
+        assert world.state.attitude.valid
+
+    def test_a_skip_that_was_forged_costs_a_tick(self, world):
+        assert of(TickDone, forge(world, 149 + 50))[0].tick == 199
+        answered = [[done.tick for done in of(TickDone, said)] for said in world.fly(30)]
+        assert answered == [[], *([tick] for tick in range(151, 180))]
+        assert world.state.pulses.ready_tick == (151 + BACKOFF,) * 3
+
+    def test_takes_nothing_of_what_came(self, world):
+        """It may be of the plant before or of the new one, in part: it is kept for the next SYNC."""
+        inbox = world.inbox()
+        forge(world, 0)
+        before = world.state
+        with_frames, answer = step(before, inbox._replace(tick=1), world.config)
+        assert with_frames.gate == before.gate
+        assert step(before, Inbox(1, inbox.unix_time_s, ()), world.config)[1] == answer
+        assert not takes_inbox(before, with_frames)
+        assert takes_inbox(with_frames, step(with_frames, inbox._replace(tick=2), world.config)[0])
+
+
+class TestRepeated:
+    def test_once_is_a_duplicate_and_nothing_is_told(self, world):
+        assert forge(world, 149) == []
+        assert told(world.step()) == []
+
+    def test_again_gives_tick_done_alone_and_nothing_starts_anew(self, world):
+        """To a plant in lockstep that lost it, and to one that starts anew in this very tick."""
+        assert forge(world, 149) == []
+        ready, estimate = world.state.pulses, world.state.estimator
+        (done,) = forge(world, 149)
+        assert done.tick == 149
+        assert (world.state.pulses, world.state.estimator) == (ready, estimate)
+        assert of(TickDone, world.step())[0].tick == 150
+
+
+class TestWhatStays:
+    def test_what_the_ground_has_set_and_what_was_found(self, world, snapshot):
+        coils = world.state.coils._replace(faults=(0, CoilFault.OPEN, 0))
+        sensors = world.state.sensors._replace(sun=Watch(SensorFault.FROZEN))
+        modes = ask(world.state.modes, Mode.SAFE, 149)._replace(trips=2)
+        state = world.state._replace(
+            coils=coils,
+            sensors=sensors,
+            modes=modes,
+            second_sender=SecondSender(SIGNS, 140, CoilFire.ID),
+            orbit=world.state.upload.values,
+            ignored_syncs=7,
+        )
+        after = restarted(state, 3, world.config)
+        for kept in ("gate", "orbit", "upload", "coils", "setpoint", "sent", "ignored_syncs", "time_error_s"):
+            assert snapshot(getattr(after, kept)) == snapshot(getattr(state, kept))
+        assert after.sensors.sun == sensors.sun
+        assert after.sensors.pair.proof <= 0
+        assert (after.modes.mode, after.modes.trips, after.modes.held) == (Mode.SAFE, 2, True)
+        assert after.second_sender == SecondSender(SIGNS, 3, CoilFire.ID)
+
+    def test_a_second_sender_is_not_forgotten_for_a_forged_pair(self, world):
+        world.state = world.state._replace(second_sender=SecondSender(SIGNS, 149, CoilFire.ID))
+        forge(world, FAR)
+        forge(world, FAR + 1)
+        fired = [of(CoilFire, said) for said in world.fly(115)]
+        assert not any(fired)
+        assert world.state.second_sender.named
+
+    @pytest.mark.requirement("REQ-EVENT-01")
+    def test_events_are_held_back_under_the_new_count_too(self, world):
+        said = []
+        for i in range(40):
+            said += forge(world, FAR + 10 * i)
+            said += forge(world, FAR + 10 * i + 1)
+            said += world.step()
+        kinds = [event for event, _ in told(said)]
+        assert kinds.count(Event.PLANT_RESTARTED) <= 5
+        assert world.state.events.held_back > 60
+
+
+class TestAttack:
+    @pytest.mark.parametrize("seed", range(4))
+    def test_by_pairs_again_and_again_no_pulse_comes_early_and_every_tick_is_answered(self, make_world, seed):
+        random, world, began = Random(seed), make_world(seed=seed), 0
+        for tick in range(400):
+            if random.random() < 0.02:
+                first = random.choice([random.randrange(LAST), max(0, tick - random.randrange(1, 200))])
+                forge(world, first)
+                forge(world, first + random.randrange(2))
+            before = world.state.tick
+            said = world.step()
+            if not before < tick <= before + LEAP_TICKS:
+                began = tick
+            assert [done.tick for done in of(TickDone, said)] == [tick]
+            assert not of(CoilFire, said) or tick >= began + BACKOFF
+
+    @pytest.mark.parametrize("seed", range(3))
+    def test_by_any_tick_raises_nothing(self, make_world, seed):
+        random, world = Random(seed), make_world(seed=seed)
+        for _ in range(150):
+            tick = random.choice([random.randrange(2**32), LAST, 0, world.state.tick + 1])
+            forge(world, max(0, tick))
+            forge(world, min(LAST, max(0, tick) + random.randrange(3)))
+        world.fly(60)
+        assert world.state.tick == 59
+
+
+class TestEnd:
+    @pytest.mark.requirement("REQ-BUS-05")
+    def test_after_which_the_flight_goes_on_is_told(self, world):
+        end = PlantEnd(7, counter=3).encode()
+        said = world.step(lambda inbox: inbox._replace(frames=(end, *inbox.frames)))
+        assert told(said) == [(Event.FALSE_END, 7)]
+        assert told(world.step()) == []
+
+    def test_of_the_run_before_is_not(self, make_world):
+        world, end = make_world(), PlantEnd(7, counter=3).encode()
+        said = world.step(lambda inbox: inbox._replace(frames=(end, *inbox.frames)))
+        assert Event.FALSE_END not in dict(told(said))
