@@ -26,6 +26,8 @@ from sim.plant.plant import Plant, TruthRow
 
 BOOT_REQUEST_S = 1.0
 ANSWER_TIMEOUT_S = 20.0
+REPEAT_SYNC_S = 2.0
+"""In lockstep: silence after which SYNC is sent again; a flight software that doubts it believes it then."""
 LATE_TIMEOUT_S = 5.0
 """After the last tick in real time: silence for so long, and no late answer is waited for any more."""
 
@@ -162,7 +164,7 @@ def fly(
         known = answers + (before := _waiting(bus)) + sent
         bus.send(sent)
         if pace.factor is None:
-            answers = _lockstep_answers(bus, tick)
+            answers = _lockstep_answers(bus, tick, sent[-1])
         else:
             answers = _answers_until(bus, began + (tick + 1) / (tick_hz * pace.factor))
             plant.slips += not answered(answers, tick)
@@ -208,15 +210,23 @@ def _waiting(bus: Bus) -> list[Frame]:
     return frames
 
 
-def _lockstep_answers(bus: Bus, tick: int) -> list[Frame]:
-    """All frames up to the TICK_DONE that names ``tick``."""
+def _lockstep_answers(bus: Bus, tick: int, sync: Frame) -> list[Frame]:
+    """All frames up to the TICK_DONE that names ``tick``, with SYNC where it had to be sent again."""
     answers: list[Frame] = []
+    timeout_s = min(REPEAT_SYNC_S, ANSWER_TIMEOUT_S)
+    silent_s = 0.0
     while True:
-        frame = bus.receive(ANSWER_TIMEOUT_S)
+        frame = bus.receive(timeout_s)
         if frame is None:
-            raise FlightError(
-                f"no answer from the flight software to tick {tick} within {ANSWER_TIMEOUT_S:.0f} s"
-            )
+            silent_s += timeout_s
+            if silent_s >= ANSWER_TIMEOUT_S:
+                raise FlightError(
+                    f"no answer from the flight software to tick {tick} within {ANSWER_TIMEOUT_S:.0f} s"
+                )
+            bus.send([sync])
+            frame = sync
+        else:
+            silent_s = 0.0
         answers.append(frame)
         if _names(frame, tick):
             return answers

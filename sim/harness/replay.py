@@ -5,13 +5,12 @@ command-exact (every COIL_FIRE and event equal, navigation within one unit of it
 """
 
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from fsw.core.config import FlightConfig
-from fsw.core.state import FlightState
-from fsw.io.node import FlightNode
+from fsw.io.node import TICKS_MODULO
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
     CLASSES,
@@ -22,11 +21,11 @@ from fsw.wire.messages import (
     NavQuality,
     NavRate,
     PlantEnd,
-    Sync,
     TickDone,
     intact,
 )
 from sim.harness.candump import LogEntry, LogTruncatedError, read_log
+from sim.harness.reflight import OnTick, Reflight
 
 FROM_FSW = frozenset(can_id for can_id, sender in SENDERS.items() if sender == "FSW")
 UNITS: dict[int, tuple[float, ...]] = {
@@ -35,8 +34,6 @@ UNITS: dict[int, tuple[float, ...]] = {
     NavQuality.ID: (0.0, 2.0**-14, 2.0**-22),
 }
 """What one unit of each signal is, for the messages whose last bit may differ; 0 and absent: exact."""
-
-OnTick = Callable[[FlightState], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +54,8 @@ class Difference:
 class Replay:
     """What a replay showed.
 
-    ``ended``: the log has its end mark. ``end_line`` is the last line read, ``cut`` says it was cut short.
+    ``ended``: the log ends with a PLANT_END that fits. ``end_line`` is the last line read, ``cut`` says that
+    it was cut short.
     """
 
     ticks: int
@@ -83,6 +81,9 @@ class Replay:
 def replay(log: Path, config: FlightConfig, on_tick: OnTick = lambda state: None) -> Replay:
     """Refly a log.
 
+    Only a PLANT_END that is the last frame and fits the ticks that were flown is the end of the run: one with
+    which the flight goes on is a stranger's.
+
     Args:
         log: a candump log.
         config: what the flight software flew with.
@@ -91,50 +92,47 @@ def replay(log: Path, config: FlightConfig, on_tick: OnTick = lambda state: None
     Raises:
         LogError: the file is no candump log, or was altered so that it no longer is one.
     """
-    node = FlightNode(config)
-    boot = node.start()
-    expected: deque[tuple[int, Frame]] = deque([(0, boot)])
+    flight = Reflight(config, on_tick)
     differences: dict[bool, Difference] = {}
-    ticks = frames = end_line = 0
-    last_tick = -1
-    ended = cut = False
-    entries = _whole_entries(log)
-    for entry in entries:
+    frames = end_line = 0
+    end: int | None = None
+    cut = False
+    for entry in _whole_entries(log):
         if entry is None:
             cut = True
             break
         end_line = entry.line
         frame = entry.frame
-        ended = frame.can_id == PlantEnd.ID and intact(frame)
-        if ended and (told := PlantEnd.decode(frame.data).ticks) != last_tick + 1:
-            differences[True] = Difference(max(last_tick, 0), "PLANT_END.ticks", told, last_tick + 1)
-            break
-        if frame.can_id in FROM_FSW:
-            frames += 1
-            if (
-                frame == boot and not expected and node.state.tick < 0
-            ):  # asked for again by a plant that came late
-                node.start()
-                continue
-            found = _difference(frame, expected, max(last_tick, 0))
-            if found is not None:
-                exact, difference = found
-                differences.setdefault(exact, difference)
-                if exact:
-                    break
+        end = PlantEnd.decode(frame.data).ticks if frame.can_id == PlantEnd.ID and intact(frame) else None
+        if frame.can_id not in FROM_FSW:
+            flight.hear(frame)
             continue
-        before = node.state.tick
-        answers = node.receive(frame)
-        if frame.can_id == Sync.ID and node.state.tick != before:
-            last_tick = node.state.tick
-            ticks += 1
-            expected.extend((last_tick, answer) for answer in answers)
-            on_tick(node.state)
-    if ended and expected and True not in differences:
-        tick, frame = expected[0]
-        differences[True] = Difference(tick, NAMES[frame.can_id], "missing", "there")
+        frames += 1
+        if frame == flight.boot and not flight.expected:  # asked for again by a plant that came late
+            flight.reboot()
+        elif not flight.explains(frame):
+            exact, difference = _difference(frame, flight.expected, max(flight.last_tick, 0))
+            differences.setdefault(exact, difference)
+            if exact:
+                break
+    ticks = (flight.last_tick + 1) % TICKS_MODULO
+    tick = max(flight.last_tick, 0)
+    if end is not None and end != ticks and True not in differences:
+        differences[True] = Difference(tick, "PLANT_END.ticks", end, ticks)
+    elif end is not None and flight.expected and True not in differences:
+        tick, said = flight.expected[0]
+        differences[True] = Difference(tick, NAMES[said.can_id], "missing", "there")
     first = min(differences.values(), key=lambda d: d.tick, default=None)
-    return Replay(ticks, frames, first, differences.get(True), ended, cut, end_line, last_tick)
+    return Replay(
+        flight.ticks,
+        frames,
+        first,
+        differences.get(True),
+        end == ticks,
+        cut,
+        end_line,
+        flight.last_tick,
+    )
 
 
 def _whole_entries(log: Path) -> Iterator[LogEntry | None]:
@@ -145,15 +143,11 @@ def _whole_entries(log: Path) -> Iterator[LogEntry | None]:
         yield None
 
 
-def _difference(
-    frame: Frame, expected: deque[tuple[int, Frame]], tick: int
-) -> tuple[bool, Difference] | None:
-    """A logged frame against the next reflown one: None if equal, else (whether a command differs, where)."""
+def _difference(frame: Frame, expected: deque[tuple[int, Frame]], tick: int) -> tuple[bool, Difference]:
+    """A logged frame that is not the next reflown one: whether a command differs, and where."""
     if not expected:
         return True, Difference(tick, NAMES[frame.can_id], "there", "missing")
     tick, reflown = expected.popleft()
-    if frame == reflown:
-        return None
     if frame.can_id != reflown.can_id:
         return True, Difference(tick, "the next frame", NAMES[frame.can_id], NAMES[reflown.can_id])
     message = CLASSES[frame.can_id]

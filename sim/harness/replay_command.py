@@ -105,13 +105,12 @@ def through_plant(log: Path, flown: Flown) -> int:
     plant = make_plant(plant_config(flown.scenario, flown.run["seed"]), flown.scenario.fault)
     ticks = 0
     with progress("replaying", flown.ticks) as watch:
-        for _, group in groupby(_after_boot(log), key=lambda entry: entry.timestamp_us):
-            logged = [entry.frame for entry in group]
-            if logged[0] == plant.end():
+        for logged, is_last in _by_time(log):
+            if is_last and logged == [plant.end()]:
                 click.echo(f"plant reproduced: {ticks} ticks, every frame equal")
                 return 0 if _vouched(log, flown) else 1
             sent = plant.begin_tick()
-            begin = _beginning(logged, len(sent))
+            begin = _beginning(logged, sent)
             end = begin + len(sent)
             difference = _difference(sent, logged[begin:end])
             if difference is not None:
@@ -139,10 +138,12 @@ def _vouched(log: Path, flown: Flown) -> bool:
     return voucher.holds and flown.binding.holds
 
 
-def _beginning(logged: list[Frame], count: int) -> int:
-    """Where the ``count`` frames of the plant begin in a tick: SYNC is their last, strangers may be first."""
-    sync = next((index for index, frame in enumerate(logged) if frame.can_id == Sync.ID), count)
-    return max(0, sync + 1 - count)
+def _beginning(logged: list[Frame], sent: list[Frame]) -> int:
+    """Where the frames of the plant begin in a tick: SYNC is their last, strangers may be first."""
+    own = [index for index, frame in enumerate(logged) if frame == sent[-1]]
+    any_sync = [index for index, frame in enumerate(logged) if frame.can_id == Sync.ID]
+    sync = next(iter(own + any_sync), len(sent))
+    return max(0, sync + 1 - len(sent))
 
 
 def _difference(ours: list[Frame], logged: list[Frame]) -> str | None:
@@ -172,6 +173,19 @@ def play(log: Path, flown: Flown, spec: str) -> int:
     for line in flown.binding.lines:
         click.echo(line)
     return 0 if flown.binding.holds else 1
+
+
+def _by_time(log: Path) -> Iterator[tuple[list[Frame], bool]]:
+    """The frames after FSW_BOOT, those of one time together, and whether they are the last of the log."""
+    groups = groupby(_after_boot(log), key=lambda entry: entry.timestamp_us)
+    frames = ([entry.frame for entry in group] for _, group in groups)
+    before = next(frames, None)
+    for after in frames:
+        assert before is not None
+        yield before, False
+        before = after
+    if before is not None:
+        yield before, True
 
 
 def _after_boot(log: Path) -> Iterator[LogEntry]:

@@ -49,18 +49,36 @@ class _WholeEntries:
     def __init__(self, entries: Iterable[LogEntry]) -> None:
         self._entries = entries
         self.truncated_at: int | None = None
-        self.ended: bool  # known after the last entry
+        self.ended = False
+        """Whether its last frame is an intact PLANT_END that fits its last SYNC."""
+        self.wrong_end: str | None = None
+        """What is wrong with a PLANT_END that is its last frame."""
 
     def __iter__(self) -> Iterator[LogEntry]:
-        can_id = None
+        last = sync = None
         try:
             for entry in self._entries:
-                can_id = entry.frame.can_id
-                if can_id in _JUDGED:
+                last = entry.frame
+                if last.can_id == Sync.ID and intact(last):
+                    sync = last
+                if last.can_id in _JUDGED:
                     yield entry
         except LogTruncatedError as cut:
             self.truncated_at = cut.line
-        self.ended = can_id == PlantEnd.ID and self.truncated_at is None
+            return
+        if last is None or last.can_id != PlantEnd.ID:
+            return
+        if not intact(last):
+            self.wrong_end = "its last frame is a PLANT_END with a wrong CRC or length"
+        elif sync is not None and not _fits(PlantEnd.decode(last.data), Sync.decode(sync.data)):
+            ticks, tick = PlantEnd.decode(last.data).ticks, Sync.decode(sync.data).tick
+            self.wrong_end = f"its PLANT_END tells of {ticks} ticks, its last SYNC is of tick {tick}"
+        self.ended = self.wrong_end is None
+
+
+def _fits(end: PlantEnd, sync: Sync) -> bool:
+    """Whether the ticks that were flown, modulo 2^24, are those up to the last."""
+    return (sync.tick + 1 - end.ticks) % (1 << 24) == 0
 
 
 class _Auditor:
@@ -121,6 +139,9 @@ class _Auditor:
             self._blame(Kind.SYNC, (tick or 0) * MICRO, tick, line, f"SYNC of {len(frame.data)} bytes")
             return
         tick, unix_time_s = Sync.decode(frame.data)
+        if tick == self._tick:  # sent again: no time has passed by it
+            self._check_unix_time(line, tick, unix_time_s)
+            return
         step = 1 if self._tick is None else tick - self._tick
         if step < 1:
             sentence = f"SYNC goes back from tick {self._tick} to tick {tick}: two runs in one log?"
@@ -249,7 +270,7 @@ class _Auditor:
         if log.truncated_at is not None:
             yield f"truncated: line {log.truncated_at} is incomplete; judged is what stands before it"
         elif not log.ended:
-            yield "the log has no end mark"
+            yield f"the log has no end mark{f': {log.wrong_end}' if log.wrong_end else ''}"
         if self._statuses == 0:
             yield "no COIL_STATUS in the log: nothing to judge"
             return

@@ -140,7 +140,8 @@ def _run(
     scenario, ticks = bench.scenario, _ticks(bench)
     tick_hz = scenario.time.tick_hz
     arming = () if bench.armed else ("--disarmed",)
-    fsw = nodes.start("fsw", "fsw", str(scenario_file), "--bus", spec, "--parent", str(os.getpid()), *arming)
+    words = (str(scenario_file), "--bench", "--bus", spec, "--parent", str(os.getpid()), *arming)
+    fsw = nodes.start("fsw", "fsw", *words)
     booted = _await(bus, {"FSW": fsw}, ask=True)[-1:]
     stubs = {name: _board(bench, nodes, name, spec) for name in BOARDS if name not in bench.real}
     world = _world(bench, stubs)
