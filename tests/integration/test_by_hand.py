@@ -5,13 +5,14 @@ import signal
 import socket
 import time
 from importlib import import_module
+from random import Random
 
 import can
 import pytest
 
 from fsw.io.link import LoopLink
 from fsw.io.loop import frame_of
-from fsw.wire.messages import FswBoot, PlantEnd
+from fsw.wire.messages import FswBoot, PlantEnd, Sync, TickDone
 
 OPTIONS = ("--seed", "7", "--orbits", "0.05")
 
@@ -56,6 +57,44 @@ def test_either_may_start_first(first, port, start, flown, tmp_path):
         del run["digests"]["summary.json"]  # it tells how long the flight took
     assert ours == theirs
     assert ours["complete"] is True
+
+
+def test_on_a_bench_one_flight_software_flies_run_after_run(port, start, tmp_path):
+    """No PLANT_END ends it; it boots for the plant that comes next, so that both runs have the same log."""
+    fsw = start("fsw", "microsat", "--bus", f"loop:{port}", "--bench")
+    wait_for(fsw, f"fsw on loop:{port}")
+    runs = [tmp_path / "one", tmp_path / "two"]
+    for run in runs:
+        plant = start("sim.plant", "microsat", "--bus", f"loop:{port}", *OPTIONS, "--out", run).wait()
+        assert plant.code == 0, plant.err
+    assert fsw.process.poll() is None
+    assert (runs[0] / "bus.log").read_bytes() == (runs[1] / "bus.log").read_bytes()
+
+
+def test_a_stranger_who_forges_sync_and_the_end_does_not_stop_the_flight(port, start, torquer, bus, tmp_path):
+    """One that is strange, two that are not, and ends of any count: every tick is flown, and replays."""
+    run, random = tmp_path / "run", Random(4)
+    forged = [
+        lambda: [Sync(random.getrandbits(32), 0).encode()],
+        lambda: [Sync(at := random.getrandbits(31), 0).encode(), Sync(at + 1, 0).encode()],
+        lambda: [PlantEnd(random.getrandbits(24), counter=random.getrandbits(4)).encode()],
+    ]
+    stranger = LoopLink(port)
+    fsw = start("fsw", "microsat", "--bus", f"loop:{port}")
+    plant = start("sim.plant", "microsat", "--bus", f"loop:{port}", *OPTIONS, "--out", run)
+    tick = 0
+    while tick < 270:
+        frame = stranger.receive(30.0)
+        assert frame is not None, "the flight has stopped"
+        if frame.can_id == TickDone.ID and TickDone.decode(frame.data).tick == tick + 1:
+            tick += 1
+            if tick > 10 and random.random() < 0.2:
+                stranger.send(random.choice(forged)())
+    assert plant.wait().code == 0
+    assert fsw.wait().code == 0
+    assert torquer("replay", run).out.startswith("bit-exact: ")
+    done = {TickDone.decode(frame.data).tick for frame in bus(run).frames if frame.can_id == TickDone.ID}
+    assert done >= set(range(270))
 
 
 def test_sil_is_a_guest_where_others_host_the_bus(port, torquer, bus, tmp_path):

@@ -132,6 +132,18 @@ def test_last_ticks_that_are_missing_before_the_end_mark_are_found(copy, torquer
     assert torquer("replay", copy.folder, "--plant").code == 1
 
 
+def test_an_end_in_the_middle_is_not_the_end(copy, torquer):
+    """Though it fits: through the plant the flight goes on, and the flight software would have told of it."""
+    last = copy.where(PlantEnd)[0]
+    ticks = PlantEnd.decode(copy.entries[last][2].data).ticks
+    index = copy.in_tick(150, MagField)
+    stamp, channel, _ = copy.entries[index]
+    copy.entries.insert(index, [stamp, channel, PlantEnd(150).encode()])
+    done = torquer("replay", copy.write(), "--plant")
+    assert f"plant reproduced: {ticks} ticks" in done.out
+    assert torquer("replay", copy.folder).out.startswith("differs: tick 150: the next frame is ")
+
+
 def test_a_command_that_was_altered_is_told_as_one(copy, torquer):
     index = copy.where(CoilFire)[0]
     fired = CoilFire.decode(copy.entries[index][2].data)

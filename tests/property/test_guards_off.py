@@ -11,6 +11,7 @@ import pytest
 
 from fsw.core.monitors import MONITORS, Monitor
 from fsw.core.pulses import PulseState
+from fsw.core.sync_watch import Belief
 from sim.harness.faults.case import fly
 from sim.harness.faults.row import Verdict
 from sim.harness.faults.rows import ROWS
@@ -30,6 +31,11 @@ def ready_at_once(tick, config):
     return PulseState(ready_tick=(tick, tick, tick), busy_until=tick)
 
 
+def believing(watch, current, tick):
+    """Every tick ahead is believed at once, and none behind ever."""
+    return Belief.NEXT if tick > current else Belief.IGNORED, watch
+
+
 HALFWAY = 5
 """The phase that is in the middle of a back-off: the board's own word is not enough then."""
 WITHOUT_FRESHNESS = tuple(row for row in MONITORS if row[0] is not Monitor.FIELD_FRESH)
@@ -42,7 +48,9 @@ GUARDS = {
     "clock of the board": Off(
         "ticks-rushed", "limits by time", ("hil_stub.guard.Guard.pass_time", lambda self, clock_ms: None)
     ),
-    "ticks that leap": Off("tick-far-ahead", "recovers", ("fsw.core.sync_watch.LEAP_TICKS", 2**31)),
+    "ticks that leap": Off(
+        "sync-forged-going-on", "undisturbed", ("fsw.core.step.judge", believing), watch_s=100.0
+    ),
     "freshness": Off("mag-board-dead", "silence named", ("fsw.core.monitors.MONITORS", WITHOUT_FRESHNESS)),
     "monitors": Off(
         "coil-stuck-on-1", "stuck", ("fsw.core.supervisor.first_violation", lambda watched: None)

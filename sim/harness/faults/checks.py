@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 
+from fsw.core.events import Event
 from fsw.wire.messages import Mode
 from sim.harness.audit.auditor import audit
 from sim.harness.audit.findings import AuditLimits
@@ -20,6 +21,9 @@ A_FEW = 5
 """Pulses of a coil by which it is named if it is faulty."""
 FAR_DEG, LAST_S = 15.0, 300.0
 """Three times the standard deviation up to which fsw calls an estimate valid."""
+OF_THE_PLANT = (Event.STRANGE_SYNC, Event.PLANT_RESTARTED, Event.FALSE_END)
+MOST_DEAF = 3
+"""Ticks: a SYNC that is strange, and one that confirms it."""
 MOST_FRAMES = 64
 """In one answer; a step says a dozen things at most."""
 
@@ -84,7 +88,9 @@ def finite(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
 
 
 def answered(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
-    """Every SYNC that moved time forward was answered, with a bounded number of frames."""
+    """Every SYNC that moved time forward was answered, with a bounded number of frames, to the end."""
+    if record.ended is not None:
+        return False, f"fsw took the run for over in tick {record.ended}"
     if record.unanswered:
         return False, f"no TICK_DONE at tick {record.unanswered[0]}"
     most = record.worst_answer
@@ -103,12 +109,12 @@ def no_extra_pulse(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]
 
 
 def boots_locked(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
-    """Nothing is asked for until a full back-off after a boot of fsw."""
+    """Nothing is asked for until a full back-off after a boot of fsw, or what it takes for the plant's."""
     full = bounds.backoff_s * record.tick_hz
-    for boot in record.boots:
+    for boot in record.boots + record.restarts:
         for tick in record.asked:
             if boot <= tick < boot + full:
-                return False, f"asked in tick {tick} after a boot in tick {boot}"
+                return False, f"asked in tick {tick} after a start in tick {boot}"
     return True, ""
 
 
@@ -138,7 +144,7 @@ def no_request(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
 
 def nobody_invented(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
     """A second sender is named only where somebody sends in the place of fsw."""
-    if row.kind in ("second_sender", "random_frames"):
+    if row.kind in ("second_sender", "random_frames", "done_forged"):
         return True, ""
     named = [tick for tick, unit in isolated(record) if unit == SECOND_SENDER]
     return not named, f"a second sender named in tick {named[0]}" if named else ""
@@ -168,6 +174,30 @@ def recovered_s(record: Record) -> float | None:
         if good >= GOOD_FOR_S * record.tick_hz:
             return (tick + 1 - good - record.end) / record.tick_hz
     return None
+
+
+def hears(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
+    """From the first tick with the fault on, no more than a few ticks in a row are not answered."""
+    deaf = most = 0
+    for done in record.done[record.onset :]:
+        deaf = 0 if done else deaf + 1
+        most = max(most, deaf)
+    return most <= MOST_DEAF, f"at most {most} ticks in a row not answered"
+
+
+def undisturbed(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
+    """The plant is not taken for one that has started anew, and the filter does not begin again."""
+    onset = record.onset or 0
+    again = [one.tick for one in record.events if one.number == Event.FILTER_RESTARTED and one.tick >= onset]
+    found = record.restarts + again
+    return not found, f"begins anew in tick {found[0]}" if found else ""
+
+
+def told(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
+    """An event tells of what was forged under the plant's identifiers."""
+    onset = record.onset or 0
+    ticks = [one.tick for one in record.events if one.number in OF_THE_PLANT and one.tick >= onset]
+    return bool(ticks), f"told after {(ticks[0] - onset) / record.tick_hz:.0f} s" if ticks else "not told"
 
 
 def quiet(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
@@ -255,6 +285,9 @@ CHECKS: dict[str, Check] = {
     "limits by time": limits_by_time,
     "no extra pulse": no_extra_pulse,
     "boots locked": boots_locked,
+    "hears": hears,
+    "undisturbed": undisturbed,
+    "told": told,
     "no request": no_request,
     "goes on": goes_on,
     "dropped": dropped,

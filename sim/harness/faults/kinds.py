@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG
 from sim.harness.faults import bus_kinds as bus
+from sim.harness.faults import forged_kinds as forged
 from sim.harness.faults import node_kinds as node
 from sim.harness.faults import plant_kinds as plant
 from sim.harness.faults.fault import Fault, Parameters
@@ -60,6 +61,17 @@ KINDS: dict[str, Kind] = {
     ),
     "flood": Kind(bus.Flood, {"frames": Parameter(500.0, 0.0, 10_000.0)}),
     "second_sender": Kind(bus.SecondSender, {"frames": Parameter(1.0, 0.0, 1000.0)}),
+    "sync_forged": Kind(
+        forged.SyncForged,
+        {
+            **ALWAYS,
+            "ticks": Parameter(0.0, -1e9, 1e9),
+            "count": Parameter(1.0, 1.0, 10.0),
+            "step": Parameter(1.0, 0.0, 1.0),
+        },
+    ),
+    "end_forged": Kind(forged.EndForged),
+    "done_forged": Kind(forged.DoneForged, ALWAYS),
     "link_down": Kind(bus.LinkDown, in_plant=False),
     "queue_full": Kind(bus.QueueFull),
     "mag_nan": Kind(plant.field_reads(plant.not_a_number), AXIS),

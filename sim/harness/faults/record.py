@@ -14,6 +14,7 @@ from fsw.wire.messages import (
     FswEvent,
     Mode,
     Sync,
+    TickDone,
     intact,
 )
 from sim.harness.candump import LogEntry
@@ -57,6 +58,8 @@ class Record:
         asked: ticks in which fsw's process sent COIL_FIRE.
         asked_coils: the coils of these.
         boots: ticks in which fsw booted.
+        restarts: ticks in which fsw took the plant for one that has started anew.
+        ended: tick in which fsw took the run for over; None if it never did.
         refused: COIL_REFUSED, counted.
         error_deg: true error of the estimate; None where fsw has none that it calls valid.
         modes: by tick; None while fsw is not there.
@@ -65,6 +68,7 @@ class Record:
         crash: what came out of a step, if anything did.
         not_finite: first tick with a number in the state that is none.
         unanswered: ticks whose SYNC reached a running fsw and was not answered.
+        done: by tick, whether fsw has answered it with the TICK_DONE that names it.
         worst_answer: most frames in one answer.
         worst_step_s: longest time that one answer took.
         rejected: frames that fsw's gate and the coil driver have dropped.
@@ -79,6 +83,8 @@ class Record:
     asked: list[int] = field(default_factory=list)
     asked_coils: list[int] = field(default_factory=list)
     boots: list[int] = field(default_factory=list)
+    restarts: list[int] = field(default_factory=list)
+    ended: int | None = None
     refused: int = 0
     error_deg: list[float | None] = field(default_factory=list)
     modes: list[Mode | None] = field(default_factory=list)
@@ -87,6 +93,7 @@ class Record:
     crash: str | None = None
     not_finite: int | None = None
     unanswered: list[int] = field(default_factory=list)
+    done: list[bool] = field(default_factory=list)
     worst_answer: int = 0
     worst_step_s: float = 0.0
     rejected: int = 0
@@ -113,6 +120,8 @@ class Record:
     def note_answer(self, tick: int, frames: list[Frame]) -> None:
         """What fsw has said in a tick."""
         self.worst_answer = max(self.worst_answer, len(frames))
+        done = [TickDone.decode(frame.data).tick for frame in frames if frame.can_id == TickDone.ID]
+        self.done.append(tick in done)
         for frame in frames:
             if frame.can_id == CoilFire.ID and intact(frame):
                 self.asked.append(tick)

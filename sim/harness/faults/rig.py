@@ -116,6 +116,10 @@ class Rig:
                 answers += answer
                 if _asks(frame, before) and not _names(answer, Sync.decode(frame.data).tick):
                     record.unanswered.append(tick)
+                if node.state.tick != before >= 0 and not near(before, node.state.tick):
+                    record.restarts.append(tick)
+                if node.ended and record.ended is None:
+                    record.ended = tick
         except Exception as error:  # whatever comes out of a step is a finding, for the check "no exception"
             record.crash = f"tick {tick}: {type(error).__name__}: {error}"
             self._node = None

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from math import inf
 
 from sim.harness.errors import HarnessError
+from sim.harness.faults.forged_rows import FORGED_ROWS
 from sim.harness.faults.row import Row, When
 
 BUS = ("no extra pulse", "goes on")
@@ -203,6 +204,7 @@ ROWS: tuple[Row, ...] = (
     Row("tick-ahead-lasting", CLOCK, "tick_jumps", {"ticks": 1000.0}, 20.0, expect=(*BUS, "recovers")),
     Row("tick-back", CLOCK, "tick_jumps", {"ticks": -100.0}, 20.0, expect=(*BUS, "recovers")),
     Row("time-jumps", CLOCK, "time_jumps", {"seconds": 3600.0}, 60.0, expect=(*BUS, "recovers")),
+    *FORGED_ROWS,
     *_field("mag-nan", "mag_nan"),
     *_field("mag-infinite", "mag_infinite", axis=1.0),
     *_field("mag-saturated", "mag_saturated", nt=15_000.0),

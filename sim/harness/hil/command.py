@@ -100,7 +100,7 @@ def hil(bench: Bench, as_json: bool = False) -> int:
             numbers, kept = _run(bench, spec, hub_pid, bus, nodes, folder, scenario_file, as_json)
         finally:
             bus.close()
-        lost = [node for node in nodes.by_name.values() if node.process.poll()]
+        lost = [node for node in nodes.by_name.values() if not node.alive]
         numbers["ended"] = {node.name: node.said() for node in lost}
     if bench.out is not None:
         run_dir.write_json(bench.out / NUMBERS, numbers)

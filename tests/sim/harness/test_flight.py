@@ -90,6 +90,21 @@ def virtual():
 
 
 class TestLockstep:
+    def test_sync_is_sent_again_to_a_flight_software_that_is_silent(self, flown, monkeypatch):
+        """As one that a forged SYNC has led astray, which believes the second."""
+        monkeypatch.setattr(flight, "REPEAT_SYNC_S", 0.01)
+        asked = []
+
+        def second_time(tick):
+            asked.append(tick)
+            return [done(tick)] if asked.count(tick) == 2 else []
+
+        result, entries, *_ = flown(ScriptedBus(second_time), 5)
+        assert result.slips == 0
+        assert asked == [0, 0, 1, 1, 2, 2, 3, 3, 4, 4]
+        logged = [Sync.decode(e.frame.data).tick for e in entries if e.frame.can_id == Sync.ID]
+        assert logged == asked
+
     def test_every_tick_is_flown_and_recorded(self, flown, virtual):
         result, entries, truth, plant = flown(virtual(), 50)
         assert (result.ticks, result.slips) == (50, 0)

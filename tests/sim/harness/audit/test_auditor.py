@@ -3,7 +3,7 @@ from fractions import Fraction
 import pytest
 
 from fsw.wire.frame import Frame
-from fsw.wire.messages import CoilBoot, CoilStatus
+from fsw.wire.messages import CoilBoot, CoilStatus, PlantEnd
 from sim.harness.audit.auditor import AuditLimits, Kind, audit
 from sim.harness.candump import read_log
 
@@ -344,6 +344,30 @@ def test_a_log_that_is_cut_is_judged_as_far_as_it_goes_and_is_not_complete(bus_l
     assert found(report) == [(Kind.PULSE, 110, 110, 0)]
     assert (report.truncated_at, report.complete) == (line, False)
     assert f"truncated: line {line} is incomplete; judged is what stands before it" in report.notes
+
+
+@pytest.mark.parametrize(
+    ("end", "said"),
+    [
+        (PlantEnd(50).encode(), None),
+        (PlantEnd(9999).encode(), "its PLANT_END tells of 9999 ticks, its last SYNC is of tick 49"),
+        (PlantEnd(49).encode(), "its PLANT_END tells of 49 ticks, its last SYNC is of tick 49"),
+        (Frame(PlantEnd.ID, b"\0\1\2\3\4"), "its last frame is a PLANT_END with a wrong CRC or length"),
+    ],
+    ids=["fits", "of another run", "one too few", "broken"],
+)
+def test_only_an_end_mark_that_fits_makes_a_log_complete(bus_log, end, said):
+    entries = bus_log(1, 50).entries()
+    entries.append(entries[-1]._replace(line=len(entries) + 1, frame=end))
+    report = audit(entries, AuditLimits(), expect_end=True)
+    assert report.complete is (said is None)
+    assert report.notes == (() if said is None else (f"the log has no end mark: {said}",))
+
+
+def test_an_end_mark_in_the_middle_is_none(bus_log):
+    entries = bus_log(1, 50).entries()
+    entries.insert(60, entries[60]._replace(frame=PlantEnd(20).encode()))
+    assert not audit(entries, AuditLimits(), expect_end=True).complete
 
 
 def test_a_log_is_complete_without_an_end_mark_unless_one_is_expected(bus_log):

@@ -278,6 +278,25 @@ def test_ticks_that_go_back(bus_log, fired):
     assert [(pulse.start_s, pulse.end_s) for pulse in report.pulses] == [(48, 49)]
 
 
+def test_a_sync_that_is_sent_again_is_no_time(bus_log, fired):
+    """In lockstep, to a flight software that is silent: neither a violation, nor a tick."""
+    log = bus_log(1, 300, [fired(0, 100)])
+    entries = [entry for one in log.entries() for entry in [one] * (1 + 2 * (one.frame.can_id == Sync.ID))]
+    report = audit(entries, AuditLimits())
+    assert report.ok
+    assert [(pulse.start_s, pulse.end_s) for pulse in report.pulses] == [(100, 103)]
+
+
+def test_a_sync_that_is_sent_again_with_another_time_is_a_violation(bus_log):
+    entries = bus_log(1, 50).entries()
+    last = next(e for e in entries if e.frame.can_id == Sync.ID and Sync.decode(e.frame.data).tick == 40)
+    sync = Sync.decode(last.frame.data)
+    entries.insert(
+        entries.index(last) + 1, last._replace(frame=sync._replace(unix_time_s=sync.unix_time_s + 9).encode())
+    )
+    assert (Kind.SYNC, 40, 40, None) in found(audit(entries, AuditLimits()))
+
+
 def test_a_pulse_does_not_last_from_one_run_into_the_next(bus_log, fired):
     """Both show the same coil and the same request."""
     entries = bus_log(1, 50, [fired(0, 48)]).entries() + bus_log(1, 20, [fired(0, 5)]).entries(6)

@@ -5,7 +5,7 @@ from random import Random
 import pytest
 
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame
-from fsw.wire.messages import CoilFire, MagField, SunVector, intact
+from fsw.wire.messages import CoilFire, MagField, PlantEnd, SunVector, Sync, TickDone, intact
 from sim.harness.faults import kinds
 from sim.harness.faults.kinds import KINDS, make
 
@@ -92,3 +92,24 @@ def test_every_default_is_in_its_range():
     for kind in kinds.KINDS.values():
         for parameter in kind.parameters.values():
             assert parameter.low <= parameter.default <= parameter.high
+
+
+class TestForged:
+    @pytest.mark.parametrize(("step", "count"), [(0.0, 2), (1.0, 1), (1.0, 5)])
+    @pytest.mark.parametrize("ticks", [0.0, 50.0, -500.0, 1e9])
+    def test_syncs_stand_as_told(self, ticks, step, count):
+        forger = fault("sync_forged", ticks=ticks, count=float(count), step=step)
+        for tick in (0, 1000):
+            forged = [Sync.decode(frame.data).tick for frame in forger.strangers(tick)]
+            assert forged == [forged[0] + round(step) * i for i in range(count)]
+            assert ticks == 0.0 or forged[0] == max(0, tick + round(ticks))
+
+    def test_an_end_never_fits(self):
+        forger = fault("end_forged")
+        for tick in range(3000):
+            (frame,) = forger.strangers(tick)
+            assert intact(frame)
+            assert 100 <= (PlantEnd.decode(frame.data).ticks - tick) % 2**24 < 2**24 - 100
+
+    def test_an_answer_names_the_tick(self):
+        assert [TickDone.decode(f.data).tick for f in fault("done_forged").strangers(77)] == [77]

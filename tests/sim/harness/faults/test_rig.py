@@ -5,12 +5,14 @@ from random import Random
 
 import pytest
 
-from fsw.wire.messages import CoilStatus
+from fsw.core.events import Event as Number
+from fsw.wire.messages import CoilStatus, PlantEnd
 from sim.harness.errors import HarnessError
 from sim.harness.faults import case, checks, currents
 from sim.harness.faults.case import fly
 from sim.harness.faults.fault import Condition, Fault
 from sim.harness.faults.kinds import make
+from sim.harness.faults.record import Event, Record
 from sim.harness.faults.row import Row, When
 from sim.harness.faults.rows import ROWS, chosen
 
@@ -114,6 +116,8 @@ def test_the_same_case_is_the_same_flight():
         "fsw-killed",
         "coil-board-restarts",
         "tick-back",
+        "sync-forged-pair",
+        "end-forged",
         "mag-nan-passing",
         "bit-flip",
     ],
@@ -121,6 +125,50 @@ def test_the_same_case_is_the_same_flight():
 def test_a_sample_of_the_table_holds(name):
     result = fly(chosen([name])[0], 1, 2)
     assert not result.failed, result.outcomes
+
+
+class TestForgery:
+    """What the checks of forged SYNC, PLANT_END and TICK_DONE find."""
+
+    @pytest.fixture
+    def record(self):
+        return Record(1, onset=2, end=9)
+
+    def test_a_few_ticks_may_go_unanswered_and_no_more(self, record, bounds):
+        record.done = [False] * 5 + [True] + [False] * checks.MOST_DEAF + [True]
+        assert checks.hears(None, record, bounds)[0]
+        record.done += [False] * (checks.MOST_DEAF + 1)
+        assert not checks.hears(None, record, bounds)[0]
+
+    def test_a_filter_that_begins_again_or_a_plant_that_does_is_disturbance(self, record, bounds):
+        record.events = [Event(1, Number.FILTER_RESTARTED, 1), Event(5, Number.STRANGE_SYNC, 7)]
+        assert checks.undisturbed(None, record, bounds)[0]
+        record.events.append(Event(5, Number.FILTER_RESTARTED, 2))
+        assert not checks.undisturbed(None, record, bounds)[0]
+        record.events, record.restarts = [], [5]
+        assert not checks.undisturbed(None, record, bounds)[0]
+
+    @pytest.mark.parametrize("number", [Number.STRANGE_SYNC, Number.PLANT_RESTARTED, Number.FALSE_END])
+    def test_any_event_of_the_plant_tells(self, record, bounds, number):
+        record.events = [Event(1, number, 0)]
+        assert not checks.told(None, record, bounds)[0]
+        record.events = [Event(2, number, 0)]
+        assert checks.told(None, record, bounds)[0]
+
+    def test_a_request_soon_after_a_restart_is_found(self, record, bounds):
+        record.restarts, record.asked = [50], [149]
+        assert not checks.boots_locked(None, record, bounds)[0]
+        record.asked = [150]
+        assert checks.boots_locked(None, record, bounds)[0]
+
+    def test_an_end_that_is_believed_is_found(self, flown, bounds):
+        class End(Fault):
+            def strangers(self, tick):
+                return [PlantEnd(tick).encode()]
+
+        record = flown(End(Random(1), {}), 20, first=10, end=11)
+        assert record.ended == 10
+        assert not checks.answered(None, record, bounds)[0]
 
 
 def test_rows_have_names_of_their_own_and_known_checks():
