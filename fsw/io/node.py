@@ -15,8 +15,8 @@ from fsw.wire.messages import PlantBoot, PlantEnd, Sync, intact
 KEPT_FRAMES = 1024
 """Frames kept between two answers: bounds memory under a flood, far above what the gate looks at."""
 
-ASKED_AGAIN = 2
-"""PLANT_BOOT so often, no SYNC answered between: a plant waits for FSW_BOOT. In its tick 0 it sends one."""
+NO_PLANT_S = 2.0
+"""No SYNC answered for so long: a PLANT_BOOT is of a plant that waits for FSW_BOOT."""
 
 TICKS_MODULO = 1 << 24
 """As PLANT_END counts."""
@@ -39,11 +39,10 @@ class FlightNode:
         self.state: FlightState = boot(config)
         self.end = End.NO
         self._inbox: list[Frame] = []
-        self._asked = 0
 
     def start(self) -> Frame:
         """FSW_BOOT, the first frame this node sends: a flight begins, and what came before does not count."""
-        self.state, self.end, self._asked = boot(self.config), End.NO, 0
+        self.state, self.end = boot(self.config), End.NO
         self._inbox = []
         return boot_frame(self.config.table_crc)
 
@@ -58,15 +57,18 @@ class FlightNode:
             return self._answer(Sync.decode(frame.data))
         if frame.can_id == PlantEnd.ID and intact(frame):
             self.end = self._judged(PlantEnd.decode(frame.data).ticks)
-        elif frame.can_id == PlantBoot.ID and intact(frame):
-            self._asked += 1
         if len(self._inbox) < KEPT_FRAMES:
             self._inbox.append(frame)
         return ()
 
-    def hears_plant_start(self, frame: Frame) -> bool:
-        """Whether the plant asks for FSW_BOOT: it started after this node did, or once more."""
-        waits = self.state.tick < 0 or self._asked >= ASKED_AGAIN
+    def hears_plant_start(self, frame: Frame, idle_s: float = 0.0) -> bool:
+        """Whether the plant asks for FSW_BOOT: it started after this node did, or once more.
+
+        Args:
+            frame: what came.
+            idle_s: time since a SYNC was answered.
+        """
+        waits = self.state.tick < 0 or idle_s > NO_PLANT_S
         return waits and frame.can_id == PlantBoot.ID and intact(frame)
 
     def copy(self) -> Self:
@@ -83,7 +85,7 @@ class FlightNode:
         if takes_inbox(before, self.state):
             self._inbox = []
         if outbox:
-            self._asked, self.end = 0, End.NO
+            self.end = End.NO
         return outbox
 
     def _judged(self, ticks: int) -> End:

@@ -23,7 +23,7 @@ def run(node: FlightNode, bus: Bus, parent: int | None = None, bench: bool = Fal
         bench: no PLANT_END ends it.
     """
     bus.send([node.start()])
-    booted = heard = time.monotonic()
+    booted = heard = answered = time.monotonic()
     while bench or not node.ended:
         try:
             frame = bus.receive(IDLE_S)
@@ -39,6 +39,7 @@ def run(node: FlightNode, bus: Bus, parent: int | None = None, bench: bool = Fal
         answer = node.receive(frame)
         if answer:
             bus.send(answer)
-        elif node.hears_plant_start(frame) and now - booted > REPEAT_BOOT_AFTER_S:
+            answered = now
+        elif node.hears_plant_start(frame, now - answered) and now - booted > REPEAT_BOOT_AFTER_S:
             bus.send([node.start()])
             booted = now

@@ -4,6 +4,9 @@ from math import acos, degrees
 
 import pytest
 
+from fsw.core.actuation import CoilView
+from fsw.core.coil_health import CoilHealth, judge_current
+from fsw.core.readings import NOTHING
 from fsw.core.telemetry import Event
 from fsw.wire.messages import CoilFire, CoilStatus, FswEvent, Mode, TcClear
 
@@ -89,6 +92,17 @@ def test_a_wrong_current_names_the_coil_at_its_second_pulse(make_world, factor, 
     assert world.state.coils.faults[first] == kind
     assert fires(said)[-1][0] > named
     assert world.state.modes.trips == 0
+
+
+@pytest.mark.requirement("REQ-COIL-05")
+def test_a_coil_that_was_not_fired_is_not_judged(make_world):
+    """Before the first request, after one that was refused, and after a plant has started anew."""
+    config = make_world().config
+    pulses, health = config.coils.pulses, CoilHealth()
+    off = NOTHING._replace(coil=CoilStatus(0, 0, 0, 0, 0, 0))
+    for view in (CoilView(), CoilView(fired_tick=700)):
+        tick = view.fired_tick + pulses.pulse_ticks
+        assert judge_current(health, view, off, False, tick, pulses, config.coil_health) == health
 
 
 def test_a_single_wrong_current_names_nobody(make_world):

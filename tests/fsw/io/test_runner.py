@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from fsw.io import runner
+from fsw.io import node, runner
 from fsw.io.bus import BusClosed
 from fsw.io.config import flight_config
 from fsw.io.node import FlightNode
@@ -132,9 +132,12 @@ class TestBootAgain:
     def test_not_at_once_since_the_first_may_still_be_on_its_way(self, run, config):
         assert kinds(run(START, START, sync(config, 0), END)).count(FswBoot) == 1
 
-    def test_a_plant_that_starts_anew_and_asks_again_is_told(self, run, config, monkeypatch):
+    def test_a_plant_that_starts_anew_is_told_where_there_was_none_for_a_while(
+        self, run, config, monkeypatch
+    ):
         monkeypatch.setattr(runner, "REPEAT_BOOT_AFTER_S", -1.0)
-        sent = run(sync(config, 700), START, START, sync(config, 0), sync(config, 1), END)
+        monkeypatch.setattr(node, "NO_PLANT_S", -1.0)
+        sent = run(sync(config, 700), START, sync(config, 0), sync(config, 1), END)
         assert kinds(sent).count(FswBoot) == 2
         assert [message.tick for message in sent if isinstance(message, TickDone)] == [700, 0, 1]
 
