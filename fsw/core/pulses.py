@@ -12,7 +12,7 @@ is told by a metric: the rate that is left, or its energy.
 Source: Tavares et al. (ConSat, PoSAT-1) for the limits and the choice; the modulator is this project's.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import copysign
 from typing import NamedTuple
 
@@ -75,6 +75,17 @@ def boot(tick: int, config: PulseConfig) -> PulseState:
     """The state at boot: nothing owed, a full back-off ahead."""
     first = tick + config.backoff_ticks
     return PulseState(ready_tick=(first, first, first), busy_until=tick)
+
+
+def delay(state: PulseState, tick: int, skipped: int) -> PulseState:
+    """The state after a skip of the count to ``tick``: timers that ran go on by as much, whoever skipped it.
+
+    Nothing tells lost ticks from ticks that never were, and a back-off must not end early.
+    """
+    before = tick - skipped - 1
+    a, b, c = (ready + skipped if ready > before else ready for ready in state.ready_tick)
+    busy = state.busy_until
+    return replace(state, ready_tick=(a, b, c), busy_until=busy + skipped if busy > before else busy)
 
 
 def owe(state: PulseState, torque_body_nm: Vec3, b_body_t: Vec3, config: PulseConfig) -> PulseState:

@@ -52,6 +52,8 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
         return state, (TickDone(tick, checksum(state)).encode(),) if belief is Belief.UNHEARD else ()
     if belief is Belief.RESTARTED:
         state, inbox = restarted(state, tick, config), inbox._replace(frames=())
+    elif 0 <= state.tick < tick - 1:
+        state = state._replace(pulses=pulses.delay(state.pulses, tick, tick - state.tick - 1))
     state = state._replace(syncs=syncs._replace(strange_tick=-1))
     model = fly_orbit(config.ephemeris, state.orbit)
     state, readings = _gate(state, inbox, model, config)

@@ -259,3 +259,11 @@ def test_a_pulse_pays_its_impulse(coil, level):
 )
 def test_the_dipole_of_a_level(level, dipole_am2):
     assert pulses.dipole_am2(level, (0.5, 2.0, 8.0)) == dipole_am2
+
+
+def test_a_skip_of_the_count_delays_the_timers_that_run_and_no_other():
+    state = pulses.PulseState(ready_tick=(150, 90, 101), busy_until=102)
+    later = pulses.delay(state, tick=121, skipped=20)
+    assert (later.ready_tick, later.busy_until) == ((170, 90, 121), 122)
+    done = pulses.delay(state, tick=171, skipped=20)
+    assert (done.ready_tick, done.busy_until) == ((150, 90, 101), 102)

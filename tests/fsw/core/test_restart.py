@@ -1,5 +1,6 @@
 """A plant that has started anew, or somebody who makes believe so: timers in full, no estimate, and on."""
 
+from itertools import pairwise
 from random import Random
 
 import pytest
@@ -249,3 +250,17 @@ class TestEnd:
         world, end = make_world(), PlantEnd(7, counter=3).encode()
         said = world.step(lambda inbox: inbox._replace(frames=(end, *inbox.frames)))
         assert Event.FALSE_END not in dict(told(said))
+
+
+@pytest.mark.parametrize("ahead", [2, 30])
+def test_skips_do_not_shorten_a_back_off(make_world, ahead):
+    """Whether ticks were lost or never were nothing tells: those that are answered count."""
+    world, fires = make_world(), []
+    for count in range(330):
+        inbox = world.inbox()._replace(tick=count * ahead)
+        world.state, outbox = step(world.state, inbox, world.config)
+        world.plant.end_tick()
+        fires += [count for _ in of(CoilFire, decoded(outbox))]
+    assert fires
+    assert fires[0] >= BACKOFF
+    assert all(later - sooner >= BACKOFF for sooner, later in pairwise(fires))
