@@ -15,6 +15,8 @@ from fsw.io.schema import TableError
 from fsw.io.sentence import sentence
 from fsw.io.table import FlightTable, load_flight_table
 
+MOST_PASSED_OVER = 10_000
+
 
 def _table(scenario: str | None, table: str | None, settings: tuple[str, ...]) -> FlightTable:
     if scenario is None:
@@ -22,6 +24,13 @@ def _table(scenario: str | None, table: str | None, settings: tuple[str, ...]) -
     from sim.harness.scenario import flight_table, load, parse_settings  # noqa: PLC0415  (not there on a target)
 
     return flight_table(load(scenario, parse_settings(settings)))
+
+
+def _pass_over(bus: Bus) -> None:
+    """What was sent before FSW_BOOT does not count; not all of it, if others babble without end."""
+    for _ in range(MOST_PASSED_OVER):
+        if bus.receive(0.0) is None:
+            return
 
 
 @click.command()
@@ -54,6 +63,7 @@ def main(
     if parent is None:
         click.echo(f"fsw on {resolve(bus)}", err=True)
     try:
+        _pass_over(link)
         run(node, link, parent, bench)
     except BusError as error:
         click.echo(f"fsw: {sentence(error)}", err=True)

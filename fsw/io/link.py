@@ -15,6 +15,8 @@ from fsw.wire.frame import Frame
 
 _RETRY_S = 0.01
 _PARTING_S = 1.0
+SEND_PATIENCE_S = 20.0
+"""A hub that takes nothing for so long stands still."""
 _CHUNK = 2**16
 
 
@@ -44,12 +46,16 @@ class LoopLink:
             self._socket = self._join(port, monotonic() + timeout_s, may_host)
         except OSError as error:  # no descriptor or no port left, say
             raise BusError(f"the bus {self.spec} cannot be opened: {error.strerror}") from error
+        self._socket.settimeout(SEND_PATIENCE_S)  # of sending: what is received has been waited for
         atexit.register(self.close)
 
     def send(self, frames: Sequence[Frame]) -> None:
         """Send all frames at once, in order."""
         try:
             self._socket.sendall(record.pack_all(frames))
+        except TimeoutError as error:
+            still = f"the bus {self.spec} takes nothing any more: its hub stands still"
+            raise BusError(still) from error
         except OSError as error:
             raise self._closed() from error
 
@@ -151,7 +157,6 @@ def _connect(port: int, deadline: float) -> socket.socket | None:
             raise BusError(f"the loop bus on port {port} is full: its hub takes no more clients")
         if greeting != GREETING:
             raise BusError(f"port {port} of this machine is taken by another program, which is no hub")
-        connection.settimeout(None)
     except (ConnectionError, TimeoutError):
         connection.close()
         return None

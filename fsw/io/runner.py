@@ -7,6 +7,7 @@ from fsw.io.bus import Bus, BusClosed
 from fsw.io.node import End, FlightNode
 
 IDLE_S = 1.0
+"""How often a parent is looked for, whatever others say on the bus."""
 REPEAT_BOOT_AFTER_S = 0.5
 """A plant that asks for FSW_BOOT sooner than this has been answered by the one just sent."""
 SILENCE_S = 5.0
@@ -23,16 +24,19 @@ def run(node: FlightNode, bus: Bus, parent: int | None = None, bench: bool = Fal
         bench: no PLANT_END ends it.
     """
     bus.send([node.start()])
-    booted = heard = answered = time.monotonic()
+    booted = heard = answered = looked = time.monotonic()
     while bench or not node.ended:
         try:
             frame = bus.receive(IDLE_S)
         except BusClosed:
             return
         now = time.monotonic()
+        if parent is not None and (frame is None or now - looked > IDLE_S):
+            if os.getppid() != parent:
+                return
+            looked = now
         if frame is None:
-            over = node.end is End.DOUBTED and now - heard > SILENCE_S and not bench
-            if over or (parent is not None and os.getppid() != parent):
+            if node.end is End.DOUBTED and now - heard > SILENCE_S and not bench:
                 return
             continue
         heard = now

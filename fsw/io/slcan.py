@@ -10,6 +10,8 @@ from fsw.io.can_message import frame_of, message_of
 from fsw.wire.frame import Frame
 
 BITRATE = 500_000
+SEND_PATIENCE_S = 5.0
+"""An adapter that takes nothing for so long stands still."""
 
 
 class PythonCan:
@@ -25,7 +27,7 @@ class PythonCan:
         """Send all frames, in order."""
         try:
             for frame in frames:
-                self._bus.send(message_of(frame))
+                self._bus.send(message_of(frame), SEND_PATIENCE_S)
         except can.CanError as error:
             raise self._failure(error) from error
 

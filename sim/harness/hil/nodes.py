@@ -1,6 +1,7 @@
 """The processes of a bench: hub, flight software and boards, started and ended together."""
 
 import os
+import select
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -10,10 +11,12 @@ from tempfile import TemporaryFile
 from types import TracebackType
 from typing import IO, NamedTuple, Self
 
+from fsw.io.bus import BusError
 from fsw.io.link import LoopLink
 from fsw.io.open_bus import resolve
 
 GRACE_S = 3.0
+HUB_S = 30.0
 
 
 @dataclass
@@ -66,11 +69,7 @@ class Nodes:
         for node in self.by_name.values():
             node.process.terminate()
         for node in self.by_name.values():
-            try:
-                node.process.wait(GRACE_S)
-            except subprocess.TimeoutExpired:
-                node.process.kill()
-                node.process.wait()
+            wait_or_kill(node.process)
             if node.process.stdin is not None:
                 node.process.stdin.close()
             node.errors.close()
@@ -96,14 +95,31 @@ def hub_of(bus: str) -> Iterator[Served]:
         return
     port = "0" if bus in ("loop", "auto") else spec.removeprefix("loop:")
     words = [sys.executable, "-m", "sim.harness.hil.hub_process", port]
-    with subprocess.Popen(
+    hub = subprocess.Popen(
         words, env=_environment(), stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True
-    ) as hub:
-        assert hub.stdout is not None
+    )
+    assert hub.stdin is not None
+    assert hub.stdout is not None
+    try:
+        if not select.select((hub.stdout,), (), (), HUB_S)[0]:
+            raise BusError(f"the hub of {bus} does not start: it has said nothing for {HUB_S:.0f} s")
         served = hub.stdout.readline().strip()
         if not served:  # somebody else serves it, or keeps the port for something else
             LoopLink(int(port), timeout_s=1.0, may_host=False).close()
         yield Served(f"loop:{served.decode()}", hub.pid) if served else Served(spec, None)
+    finally:
+        hub.stdin.close()  # it hands over what it has, and ends
+        hub.stdout.close()
+        wait_or_kill(hub)
+
+
+def wait_or_kill(process: subprocess.Popen[bytes]) -> None:
+    """Wait for a process that has been told to end; one that stands still is killed."""
+    try:
+        process.wait(GRACE_S)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
 
 
 def _environment() -> dict[str, str]:

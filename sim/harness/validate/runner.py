@@ -6,14 +6,22 @@ import signal
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing.process import BaseProcess
 from typing import Any
 
+from sim.harness.errors import HarnessError
 from sim.harness.validate.claim import Outcome, Study, Task
 
 Watch = Callable[[int], None]
+
+
+class WorkerLostError(HarnessError):
+    """Not all was done, and through no fault of what was asked for."""
+
+    exit_code = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +49,7 @@ def run(
         The studies in their order.
 
     Raises:
-        HarnessError: a task met what a user can mend; the rest is given up.
+        HarnessError: a task met what a user can mend, or a worker was ended; the rest is given up.
     """
     waiting = {place: len(study.tasks) for place, study in enumerate(studies)}
     results: dict[tuple[int, int], tuple[float, Any]] = {}
@@ -87,6 +95,12 @@ def _results(studies: Sequence[Study], workers: int) -> Iterator[tuple[int, int,
         try:
             for future in as_completed(places):
                 yield *places[future], future.result()
+        except BrokenProcessPool:
+            _end(others)
+            done = sum(future.done() and future.exception() is None for future in places)
+            raise WorkerLostError(
+                f"a worker process was ended from outside: {done} of {len(places)} tasks were done"
+            ) from None
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             _end(others)

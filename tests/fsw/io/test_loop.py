@@ -13,6 +13,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from fsw.io import hub as hub_module
+from fsw.io import link as link_module
 from fsw.io import record
 from fsw.io.bus import BusClosed, BusError
 from fsw.io.door import GREETING
@@ -442,3 +443,23 @@ class TestPolledHub:
         with pytest.raises(OSError, match="in use"):
             Hub(hub.port)
         hub.close()
+
+
+def test_a_hub_that_stands_still_is_not_waited_for_for_ever(monkeypatch):
+    """It has greeted, and then takes nothing."""
+    monkeypatch.setattr(link_module, "SEND_PATIENCE_S", 0.2)
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        taken = []
+
+        def greet():
+            taken.append(server.accept()[0])
+            taken[0].sendall(GREETING)
+
+        greeter = threading.Thread(target=greet)
+        greeter.start()
+        link = LoopLink(server.getsockname()[1], may_host=False)
+        greeter.join()
+        with pytest.raises(BusError, match="takes nothing any more: its hub stands still"):
+            link.send(numbered(1_000_000))
+        taken[0].close()
+        link.close()

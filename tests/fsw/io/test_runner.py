@@ -120,6 +120,12 @@ def test_ends_when_its_parent_is_gone(run, config):
     assert run.left == [sync(config, 0)]
 
 
+def test_ends_also_when_others_never_stop_talking(run, config, monkeypatch):
+    monkeypatch.setattr(runner, "IDLE_S", -1.0)
+    run(FIELD, FIELD, sync(config, 0), parent=os.getppid() + 1)
+    assert run.left == [FIELD, sync(config, 0)]
+
+
 def test_without_a_parent_it_waits_for_ever(run, config):
     assert TickDone in kinds(run(*[NOTHING_CAME] * 50, sync(config, 0), END))
 

@@ -1,6 +1,8 @@
 """The framework: verdicts, which studies run, the page, exit codes."""
 
 import multiprocessing
+import os
+import signal
 import time
 from functools import partial
 
@@ -101,6 +103,19 @@ class TestChoice:
     def test_ids_are_unique_and_begin_with_their_study(self, pytestconfig):
         studies = all_studies(pytestconfig.rootpath)
         assert len({s.id for s in studies}) == len(studies) > 10
+
+
+def ended_from_outside():
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def test_a_worker_that_is_killed_is_one_sentence():
+    others = multiprocessing.active_children()
+    studies = [Study(f"s{number}", (ended_from_outside,), lambda results: []) for number in range(3)]
+    with pytest.raises(HarnessError, match="a worker process was ended from outside: 0 of 3 ") as caught:
+        run(studies, 2, lambda done: None, lambda done: None)
+    assert caught.value.exit_code == 1
+    assert multiprocessing.active_children() == others
 
 
 def test_the_repository_is_found_from_within(tmp_path, pytestconfig):
