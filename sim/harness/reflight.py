@@ -12,7 +12,7 @@ from fsw.wire.messages import Sync
 
 OnTick = Callable[[FlightState], None]
 
-MOST_ORDERS = 500
+MOST_ORDERS = 1000
 """Orders that are tried for one answer."""
 
 MOST_KEPT = 1024
@@ -99,14 +99,15 @@ class Reflight:
 def orders(heard: list[Frame]) -> Iterator[list[Frame]]:
     """Orders in which frames may have come: the plant has sent those up to a SYNC, and heard the others.
 
-    First those in which the others, or the first of them, came just before that SYNC; then all in which both
-    parts keep their own order. Which SYNC is the plant's is not known.
+    First those in which the others, or the first of them, came together, just before that SYNC or sooner;
+    then all in which both parts keep their own order. Which SYNC is the plant's is not known.
     """
     ends = [index + 1 for index, frame in enumerate(heard) if frame.can_id == Sync.ID]
     parts = [(heard[:end], heard[end:]) for end in ends if end < len(heard)]
     for sent, others in parts:
-        for count in range(1, len(others) + 1):
-            yield [*sent[:-1], *others[:count], sent[-1], *others[count:]]
+        for place in range(len(sent) - 1, -1, -1):
+            for count in range(1, len(others) + 1):
+                yield [*sent[:place], *others[:count], *sent[place:], *others[count:]]
     for sent, others in parts:
         for places in combinations_with_replacement(range(len(sent), -1, -1), len(others)):
             yield _merged(sent, others, places[::-1])

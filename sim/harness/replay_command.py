@@ -18,7 +18,7 @@ from sim.harness.assemble import plant_config
 from sim.harness.binding import Binding, compare
 from sim.harness.candump import LogEntry, LogTruncatedError, format_time, read_log
 from sim.harness.errors import HarnessError
-from sim.harness.faults.section import make_plant
+from sim.harness.faults.section import forge_answers, make_plant
 from sim.harness.flight import answered
 from sim.harness.log_index import vouch
 from sim.harness.progress import progress
@@ -70,7 +70,9 @@ def through_flight_software(log: Path, flown: Flown) -> int:
     """Print the verdict; 0 if the replay is exact, as far as this platform must be, and the log whole."""
     config = flight_config(flight_table(flown.scenario))
     with progress("replaying", flown.ticks) as watch:
-        shown = replay(log, config, lambda state: watch(state.tick))
+        shown = replay(
+            log, config, lambda state: watch(state.tick), forged=forge_answers(flown.scenario.fault)
+        )
     same_platform = flown.run is None or flown.run["platform"] == run_dir.fingerprint()
     exact = shown.bit_exact or (shown.command_exact and not same_platform)
     if shown.bit_exact:
@@ -157,17 +159,21 @@ def _difference(ours: list[Frame], logged: list[Frame]) -> str | None:
 
 
 def play(log: Path, flown: Flown, spec: str) -> int:
-    """Send every frame of the log onto a bus, spaced as its timestamps are; 0 if it is that of its run."""
+    """Send every frame of the log onto a bus, spaced as its timestamps are; 0 if it is that of its run.
+
+    Raises:
+        HarnessError: it would take for ever.
+        BusError: the bus cannot be used.
+    """
+    first_us, last_us = _playable(log)
     bus = open_bus(spec)
     try:
-        began, first_us = time.monotonic(), None
-        for stamp_us, group in groupby(read_log(log), key=lambda entry: entry.timestamp_us):
-            first_us = stamp_us if first_us is None else first_us
-            wait_s = began + (stamp_us - first_us) / 1e6 - time.monotonic()
-            if wait_s > LONGEST_PAUSE_S:
-                raise HarnessError(f"{log}: at {format_time(stamp_us)} it pauses for {wait_s:.0f} s")
-            time.sleep(max(0.0, wait_s))
-            bus.send([entry.frame for entry in group])
+        with progress(f"playing onto {spec}", last_us - first_us) as watch:
+            began = time.monotonic()
+            for stamp_us, group in groupby(read_log(log), key=lambda entry: entry.timestamp_us):
+                watch(stamp_us - first_us)
+                time.sleep(max(0.0, began + (stamp_us - first_us) / 1e6 - time.monotonic()))
+                bus.send([entry.frame for entry in group])
     finally:
         bus.close()
     for line in flown.binding.lines:
@@ -186,6 +192,20 @@ def _by_time(log: Path) -> Iterator[tuple[list[Frame], bool]]:
         before = after
     if before is not None:
         yield before, True
+
+
+def _playable(log: Path) -> tuple[int, int]:
+    """First and last timestamp [us] of a log that can be played."""
+    first_us = last_us = next(iter(read_log(log))).timestamp_us
+    with suppress(LogTruncatedError):
+        for entry in read_log(log):
+            pause_s = (entry.timestamp_us - last_us) / 1e6
+            if pause_s > LONGEST_PAUSE_S:
+                raise HarnessError(
+                    f"{log}: at {format_time(entry.timestamp_us)} it pauses for {pause_s:.0f} s"
+                )
+            last_us = entry.timestamp_us
+    return first_us, last_us
 
 
 def _after_boot(log: Path) -> Iterator[LogEntry]:

@@ -26,6 +26,8 @@ class Kind(NamedTuple):
     ``in_plant``: the plant's process can inject it by itself, so that a scenario may schedule it.
     ``by_signal``: it needs the flight software as a process of its own.
     ``by_clock``: it needs a coil board with a clock of its own.
+    ``breaks``: COIL_STATUS may come broken, though the board keeps its limits.
+    ``forges``: a stranger sends whole frames under identifiers of the flight software.
     """
 
     make: Callable[[Random, Parameters], Fault]
@@ -33,6 +35,8 @@ class Kind(NamedTuple):
     in_plant: bool = True
     by_signal: bool = False
     by_clock: bool = False
+    breaks: bool = False
+    forges: bool = False
 
 
 PART = {"part": Parameter(0.1, 0.0, 1.0)}
@@ -49,8 +53,8 @@ KINDS: dict[str, Kind] = {
     "duplicates": Kind(bus.on_frames(bus.duplicated), PART),
     "reordering": Kind(bus.on_frames(bus.reordered)),
     "delay": Kind(bus.Late, {"ticks": A_FEW, "jitter": Parameter(0.0, 0.0, 1.0)}),
-    "corruption": Kind(bus.on_frames(bus.corrupted), PART),
-    "wrong_length": Kind(bus.on_frames(bus.resized), PART),
+    "corruption": Kind(bus.on_frames(bus.corrupted), PART, breaks=True),
+    "wrong_length": Kind(bus.on_frames(bus.resized), PART, breaks=True),
     "unknown_id": Kind(bus.on_frames(bus.readdressed), PART),
     "rtr": Kind(bus.on_flag(REMOTE_FLAG), PART),
     "extended_id": Kind(bus.on_flag(EXTENDED_FLAG), PART),
@@ -58,9 +62,11 @@ KINDS: dict[str, Kind] = {
     "random_frames": Kind(
         bus.RandomFrames,
         {"frames": Parameter(100.0, 0.0, 10_000.0), "as_fsw": Parameter(1.0, 0.0, 1.0)},
+        breaks=True,
+        forges=True,
     ),
     "flood": Kind(bus.Flood, {"frames": Parameter(500.0, 0.0, 10_000.0)}),
-    "second_sender": Kind(bus.SecondSender, {"frames": Parameter(1.0, 0.0, 1000.0)}),
+    "second_sender": Kind(bus.SecondSender, {"frames": Parameter(1.0, 0.0, 1000.0)}, forges=True),
     "sync_forged": Kind(
         forged.SyncForged,
         {
@@ -71,7 +77,7 @@ KINDS: dict[str, Kind] = {
         },
     ),
     "end_forged": Kind(forged.EndForged),
-    "done_forged": Kind(forged.DoneForged, ALWAYS),
+    "done_forged": Kind(forged.DoneForged, ALWAYS, forges=True),
     "link_down": Kind(bus.LinkDown, in_plant=False),
     "queue_full": Kind(bus.QueueFull),
     "mag_nan": Kind(plant.field_reads(plant.not_a_number), AXIS),

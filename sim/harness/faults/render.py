@@ -34,9 +34,9 @@ wrong (`test_sil_refuses.py`). `torquer faults --slow` has two more rows, which 
 
 A scenario schedules faults of its own; without `lasts_s` one stays. The log holds what was on the bus of the
 flight software, so that such a run replays to the last bit. `torquer check` judges what stands in the log: a
-COIL_STATUS that was corrupted on its way is a violation there. Frames of a stranger that bear identifiers of
-the flight software (`second_sender`, `random_frames` with `as_fsw = 1`) cannot be told from its answers in a
-log: such a run does not replay.
+COIL_STATUS that was corrupted on its way is a violation there. A fault that was asked for is no reason by
+itself for `torquer sil` to fail: of such a scenario it does not count broken frames, and takes no stranger of
+the fault for a second sender, but limits, replay and completeness must hold.
 
     [[fault]]
     kind = "mag_bias"

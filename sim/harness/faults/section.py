@@ -43,6 +43,16 @@ class FaultSection(Section):
 Faults = Annotated[tuple[FaultSection, ...], Strict(False)]
 
 
+def break_frames(faults: Sequence[FaultSection]) -> bool:
+    """Whether frames of the coil driver may come broken because the scenario asks for it."""
+    return any(KINDS[fault.kind].breaks for fault in faults)
+
+
+def forge_answers(faults: Sequence[FaultSection]) -> bool:
+    """Whether the scenario asks for a stranger that sends under identifiers of the flight software."""
+    return any(KINDS[fault.kind].forges for fault in faults)
+
+
 def make_plant(config: PlantConfig, faults: Sequence[FaultSection]) -> Plant:
     """The plant of a flight with its faults scheduled; what is random in them comes from the plant's seed.
 
