@@ -17,6 +17,7 @@ from fsw.io.bus import BusError
 from fsw.io.schema import TableError
 from fsw.io.sentence import sentence
 from sim.harness.errors import DISK_FULL, HarnessError
+from sim.harness.signals import EndedBySignal, endings_raised
 from sim.plant.errors import PlantError
 
 Parameters = ParamSpec("Parameters")
@@ -48,13 +49,17 @@ def sentences(command: Callable[Parameters, int | None]) -> Callable[Parameters,
     @wraps(command)
     def run(*args: Parameters.args, **kwargs: Parameters.kwargs) -> None:
         try:
-            code = command(*args, **kwargs)
+            with endings_raised():
+                code = command(*args, **kwargs)
         except (TableError, BusError, HarnessError, PlantError) as error:
             click.echo(f"torquer: {sentence(error)}", err=True)
             code = getattr(error, "exit_code", 2)
         except KeyboardInterrupt:
             click.echo("torquer: interrupted; what was done so far is kept", err=True)
             code = 130
+        except EndedBySignal as end:
+            click.echo(f"torquer: {end}", err=True)
+            code = end.exit_code
         sys.exit(code or 0)
 
     return run
@@ -130,7 +135,7 @@ def sil(
     out: Path | None,
     sign: Path | None,
     settings: tuple[str, ...],
-) -> None:
+) -> int:
     """Fly SCENARIO: plant and flight software as two processes on a bus (virtual: in one)."""
     from sim.harness import run_dir
     from sim.harness.options import parse_pace
@@ -168,6 +173,7 @@ def sil(
         sign_run(path, key)
     click.echo(summary_text(summary))
     click.echo(f"report: {path / run_dir.REPORT}")
+    return _told(summary.get("failures", {}))
 
 
 @main.command()
@@ -221,13 +227,14 @@ def check(run_or_log: Path, backoff: str | None, verify: Path | None) -> int:
 @VERIFY
 @sentences
 def report(run: Path, sign: Path | None, verify: Path | None) -> int:
-    """Rebuild summary.json and report.html of a run, complete or not."""
+    """Rebuild summary.json and report.html of a run; that it was cut short is said, and no failure."""
     from sim.harness import run_dir
     from sim.harness.binding import require_sources, sign_run
     from sim.harness.conclude import conclude
     from sim.harness.progress import progress
     from sim.harness.signature import private_key, public_key, signature_of
     from sim.harness.summary import summary_text
+    from sim.harness.verdict import Verdict
 
     key = None if sign is None else private_key(sign)
     binding = require_sources(run, None if verify is None else public_key(verify))
@@ -242,7 +249,18 @@ def report(run: Path, sign: Path | None, verify: Path | None) -> int:
         click.echo(line)
     click.echo(summary_text(summary))
     click.echo(f"report: {run / run_dir.REPORT}")
-    return 0 if binding.holds else 1
+    failed: dict[str, str] = summary.get("failures", {})
+    flown_badly = {name: clause for name, clause in failed.items() if name != Verdict.COMPLETE}
+    return _told(flown_badly) or int(not binding.holds)
+
+
+def _told(failures: dict[str, str]) -> int:
+    """Say what failed, in one sentence; the exit code."""
+    from sim.harness.verdict import flight_failed
+
+    if failures:
+        click.echo(f"torquer: {flight_failed(failures)}", err=True)
+    return int(bool(failures))
 
 
 @main.command()

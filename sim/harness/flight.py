@@ -8,15 +8,16 @@ import gc
 import hashlib
 import os
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from math import inf
 from pathlib import Path
 from types import TracebackType
 from typing import Protocol, Self
 
 from fsw.io.bus import Bus
 from fsw.wire.frame import Frame
-from fsw.wire.messages import FswBoot, PlantBoot, TickDone, intact
+from fsw.wire.messages import NAMES, SENDERS, FswBoot, PlantBoot, TickDone, intact
 from sim.harness.candump import format_line, format_time
 from sim.harness.errors import HarnessError
 from sim.harness.heard import heard_before_sync
@@ -33,12 +34,31 @@ LATE_TIMEOUT_S = 5.0
 
 Watch = Callable[[int], None]
 """Called now and then with the tick that is under way."""
+Overhear = Callable[[int, list[Frame], list[Frame], bool], object]
+"""Called in each tick with what came before its SYNC and after it, and whether SYNC was sent again."""
 
 
 class FlightError(HarnessError):
     """The flight ended before its time."""
 
     exit_code = 1
+
+
+class CounterpartError(FlightError):
+    """The flight software has said nothing for too long, or another plant speaks in this one's place."""
+
+
+@dataclass(frozen=True, slots=True)
+class Patience:
+    """How long the flight software is waited for [s].
+
+    ``boot_s``: until it boots. ``answer_s``: in lockstep for the answer to a tick. ``silence_s``: in real
+    time, where no answer is waited for, for any at all.
+    """
+
+    boot_s: float = inf
+    answer_s: float = field(default_factory=lambda: ANSWER_TIMEOUT_S)
+    silence_s: float = inf
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,29 +165,54 @@ def fly(
     pace: Pace = LOCKSTEP,
     watch: Watch = lambda tick: None,
     uplink: Uplink = lambda tick: [],
+    patience: Patience | None = None,
+    overhear: Overhear = lambda tick, before, answers, again: None,
+    waiting: Callable[[float], None] = lambda waited_s: None,
 ) -> Flown:
     """Fly ``ticks`` ticks; what the ground sends in a tick goes before what the boards say.
 
+    Args:
+        plant: to be flown.
+        bus: its end.
+        log: takes every frame.
+        truth: takes the plant's truth.
+        ticks: how many.
+        epoch_unix_s: time of tick 0.
+        tick_hz: ticks a second.
+        pace: lockstep or real time.
+        watch: told the tick, now and then.
+        uplink: what the ground sends in a tick.
+        patience: how long the flight software is waited for; None: the default.
+        overhear: told what others have sent.
+        waiting: told every second how long the flight software has been waited for until it boots [s].
+
     Raises:
-        FlightError: the flight software gives no answer (lockstep).
+        CounterpartError: the flight software is silent, or another plant speaks.
+        FlightError: the disk takes no more.
         BusError: the bus failed.
     """
-    boot = _await_boot(bus)
+    patience = patience or Patience()
+    boot = _await_boot(bus, patience.boot_s, overhear, waiting)
     epoch_us = timestamp_us = epoch_unix_s * 1_000_000
     log.write(epoch_us, [boot])
     gc.freeze()  # what was loaded before the flight need not be searched for garbage during it
     began = time.monotonic()
     answers: list[Frame] = []
+    period_s = 1.0 / (tick_hz * (pace.factor or inf))
+    silence = _Silence(patience.silence_s, period_s, began)
     for tick in range(ticks):
         timestamp_us = epoch_us + tick * 1_000_000 // tick_hz
         sent = uplink(tick) + plant.begin_tick()
         known = answers + (before := _waiting(bus)) + sent
         bus.send(sent)
         if pace.factor is None:
-            answers = _lockstep_answers(bus, tick, sent[-1])
+            answers = _lockstep_answers(bus, tick, sent[-1], patience.answer_s)
         else:
-            answers = _answers_until(bus, began + (tick + 1) / (tick_hz * pace.factor))
+            answers = list(_heard_until(bus, began + (tick + 1) * period_s))
             plant.slips += not answered(answers, tick)
+            silence.end(before + answers, tick)
+        from_others = [frame for frame in answers if frame is not sent[-1]]
+        overhear(tick, before, from_others, len(from_others) < len(answers))
         heard, answers = heard_before_sync(known, answers, tick)
         before += heard
         for frame in before + answers:
@@ -191,15 +236,23 @@ MOST_WAITING = 1024
 """Frames of strangers taken before a tick: one that babbles without end does not stop the plant."""
 
 
-def _await_boot(bus: Bus) -> Frame:
+def _await_boot(bus: Bus, boot_s: float, overhear: Overhear, waiting: Callable[[float], None]) -> Frame:
     """FSW_BOOT. A flight software that started first and was not heard is asked to repeat it."""
-    while True:
+    began = time.monotonic()
+    while (waited_s := time.monotonic() - began) < boot_s:
+        waiting(waited_s)
         bus.send([PlantBoot(reason=0, version=1, table_crc=0).encode()])
-        deadline = time.monotonic() + BOOT_REQUEST_S
+        deadline = min(time.monotonic() + BOOT_REQUEST_S, began + boot_s)
         while (remaining_s := deadline - time.monotonic()) > 0.0:
             frame = bus.receive(remaining_s)
-            if frame is not None and frame.can_id == FswBoot.ID and intact(frame):
+            if frame is None or not intact(frame):
+                continue
+            if frame.can_id == FswBoot.ID:
                 return frame
+            if SENDERS[frame.can_id] == "PLANT":
+                overhear(0, [frame], [], False)
+                raise CounterpartError(f"another plant sent {NAMES[frame.can_id]} before the flight began")
+    raise CounterpartError(f"the flight software has not booted within {boot_s:.0f} s")
 
 
 def _waiting(bus: Bus) -> list[Frame]:
@@ -210,42 +263,83 @@ def _waiting(bus: Bus) -> list[Frame]:
     return frames
 
 
-def _lockstep_answers(bus: Bus, tick: int, sync: Frame) -> list[Frame]:
-    """All frames up to the TICK_DONE that names ``tick``, with SYNC where it had to be sent again."""
-    answers: list[Frame] = []
-    timeout_s = min(REPEAT_SYNC_S, ANSWER_TIMEOUT_S)
-    silent_s = 0.0
-    while True:
-        frame = bus.receive(timeout_s)
-        if frame is None:
-            silent_s += timeout_s
-            if silent_s >= ANSWER_TIMEOUT_S:
-                raise FlightError(
-                    f"no answer from the flight software to tick {tick} within {ANSWER_TIMEOUT_S:.0f} s"
-                )
-            bus.send([sync])
-            frame = sync
-        else:
-            silent_s = 0.0
-        answers.append(frame)
-        if _names(frame, tick):
-            return answers
-
-
-def _answers_until(bus: Bus, deadline: float) -> list[Frame]:
+def _heard_until(bus: Bus, deadline: float) -> Iterator[Frame]:
     """All frames up to a deadline of the monotonic clock, and what is there already if that has passed."""
+    late = 0
+    while late < MOST_WAITING:
+        left_s = max(0.0, deadline - time.monotonic())
+        frame = bus.receive(left_s)
+        if frame is None:
+            return
+        yield frame
+        late += left_s == 0.0
+
+
+def _lockstep_answers(bus: Bus, tick: int, sync: Frame, answer_s: float) -> list[Frame]:
+    """All frames up to the TICK_DONE that names ``tick``, with SYNC where it had to be sent again.
+
+    What others say does not stretch the time for it.
+    """
     answers: list[Frame] = []
-    while (frame := bus.receive(max(0.0, deadline - time.monotonic()))) is not None:
-        answers.append(frame)
-    return answers
+    deadline = time.monotonic() + answer_s
+    while True:
+        for frame in _heard_until(bus, min(deadline, time.monotonic() + REPEAT_SYNC_S)):
+            answers.append(frame)
+            if _names(frame, tick):
+                return answers
+        if time.monotonic() >= deadline:
+            raise CounterpartError(
+                f"no answer from the flight software to tick {tick} within {answer_s:.0f} s"
+            )
+        bus.send([sync])
+        answers.append(sync)
 
 
 def _late_answers(bus: Bus, tick: int) -> list[Frame]:
-    """What a flight software that has fallen behind still says, up to the TICK_DONE that names ``tick``."""
+    """What a flight software that has fallen behind still says, up to the TICK_DONE that names ``tick``.
+
+    It is over when no tick is answered for ``LATE_TIMEOUT_S``, whatever others say.
+    """
     answers: list[Frame] = []
-    while not answered(answers[-1:], tick) and (frame := bus.receive(LATE_TIMEOUT_S)) is not None:
+    left_s, answered_s = LATE_TIMEOUT_S, time.monotonic()
+    while left_s > 0.0 and not answered(answers[-1:], tick) and (frame := bus.receive(left_s)) is not None:
         answers.append(frame)
+        now = time.monotonic()
+        if frame.can_id == TickDone.ID:
+            answered_s = now
+        left_s = LATE_TIMEOUT_S - (now - answered_s)
     return answers
+
+
+class _Silence:
+    """In real time: how long the flight software has answered no tick.
+
+    Time for which this process was stopped itself does not count.
+    """
+
+    def __init__(self, most_s: float, period_s: float, began: float) -> None:
+        self._most_s = most_s
+        self._longest_s = period_s + 1.0
+        self._before = began
+        self._silent_s = 0.0
+        self._answered = -1
+
+    def end(self, heard: list[Frame], tick: int) -> None:
+        """A tick has ended, with what was heard in it.
+
+        Raises:
+            CounterpartError: too long without an answer, and over more than one tick.
+        """
+        now = time.monotonic()
+        self._silent_s += min(now - self._before, self._longest_s)
+        self._before = now
+        if any(frame.can_id == TickDone.ID for frame in heard):
+            self._silent_s, self._answered = 0.0, tick
+        elif self._silent_s > self._most_s and tick > self._answered + 1:
+            raise CounterpartError(
+                f"no answer from the flight software since tick {max(self._answered, 0)} "
+                f"for {self._most_s:.0f} s"
+            )
 
 
 def answered(frames: list[Frame], tick: int) -> bool:

@@ -50,8 +50,18 @@ class FlightRecord(TypedDict):
 
 
 @with_config(_OPEN)
+class SenderRecord(TypedDict):
+    """Frames of another under one identifier; ``tick`` is that of the first."""
+
+    message: Text
+    id: Text
+    tick: Count
+    frames: Count
+
+
+@with_config(_OPEN)
 class RunRecord(FlightRecord):
-    """What run.json says."""
+    """What run.json says. ``ended``: why a flight came to no end, where the plant knows."""
 
     schema_version: int
     torquer_version: Text
@@ -65,6 +75,8 @@ class RunRecord(FlightRecord):
     platform: Platform
     complete: bool
     digests: NotRequired[dict[Name, Digest]]
+    second_senders: NotRequired[list[SenderRecord]]
+    ended: NotRequired[Text]
 
 
 _RECORD = TypeAdapter(RunRecord)

@@ -4,7 +4,7 @@ import os
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -12,12 +12,16 @@ from fsw.io.bus import Bus
 from fsw.io.hub import Hub
 from fsw.io.link import LoopLink
 from fsw.io.open_bus import open_bus, resolve
+from fsw.wire.frame import Frame
 from sim.harness import run_dir
 from sim.harness.assemble import plant_config
+from sim.harness.bus_taken import refuse_taken
 from sim.harness.errors import HarnessError
 from sim.harness.faults.section import make_plant
-from sim.harness.flight import BusLog, FlightError, Pace, fly
+from sim.harness.flight import ANSWER_TIMEOUT_S, BusLog, FlightError, Pace, Patience, fly
 from sim.harness.scenario import Scenario, flight_table, orbit_period_s
+from sim.harness.second_senders import SenderWatch, said
+from sim.harness.standstill import Standstill
 from sim.harness.telecommands import uplink
 from sim.harness.truth import TruthFile
 
@@ -25,6 +29,9 @@ POLL_S = 0.1
 GRACE_S = 5.0
 MOST_TICKS = 2**24 - 1
 """What PLANT_END can tell."""
+PATIENCE = Patience(boot_s=60.0, answer_s=ANSWER_TIMEOUT_S, silence_s=ANSWER_TIMEOUT_S)
+MARGIN_S = 5.0
+"""The plant tells of a silent flight software by itself; only if it does not in time, it stands still."""
 
 Watch = Callable[[int], None]
 
@@ -61,8 +68,23 @@ def check_plant(scenario: Scenario, seed: int) -> None:
     make_plant(plant_config(scenario, seed), scenario.fault)
 
 
-def record(path: Path, scenario: Scenario, bus: Bus, watch: Watch = lambda tick: None) -> None:
-    """Fly the run that ``path`` was begun for, and keep its log and histories there.
+def record(
+    path: Path,
+    scenario: Scenario,
+    bus: Bus,
+    watch: Watch = lambda tick: None,
+    patience: Patience | None = None,
+    waiting: Callable[[float], None] = lambda waited_s: None,
+) -> None:
+    """Fly the run that ``path`` was begun for, and keep there its log, its histories, and who else spoke.
+
+    Args:
+        path: of the run.
+        scenario: its own.
+        bus: to fly on; it is closed.
+        watch: told the tick, now and then.
+        patience: how long the flight software is waited for; None: until it boots for ever.
+        waiting: told every second how long that has lasted.
 
     Raises:
         FlightError: the flight software gives no answer.
@@ -71,6 +93,15 @@ def record(path: Path, scenario: Scenario, bus: Bus, watch: Watch = lambda tick:
     run = run_dir.read_run(path)
     plant = make_plant(plant_config(scenario, run["seed"]), scenario.fault)
     pace = Pace(run["pace_factor"])
+    senders = SenderWatch(lockstep=pace.factor is None)
+
+    def keep_senders() -> None:
+        run_dir.update(path, second_senders=[sender.as_json() for sender in senders.found])
+
+    def overhear(tick: int, before: list[Frame], answers: list[Frame], again: bool) -> None:
+        if senders.take(tick, before, answers, again):
+            keep_senders()
+
     try:
         with (
             BusLog(path / run_dir.BUS_LOG, bus.name) as log,
@@ -87,9 +118,14 @@ def record(path: Path, scenario: Scenario, bus: Bus, watch: Watch = lambda tick:
                 pace,
                 watch,
                 uplink(scenario.telecommand, scenario.time.tick_hz),
+                patience,
+                overhear,
+                waiting,
             )
     finally:
         bus.close()
+        if senders.found:  # how many frames, in the end
+            keep_senders()
     run_dir.update(
         path,
         flown={"ticks": flown.ticks, "slips": flown.slips, "wall_s": flown.wall_s},
@@ -102,18 +138,18 @@ def served(bus: str) -> Iterator[tuple[str, Hub | None]]:
     """A bus for two processes: its spec in full, and the hub if it is a loop bus that is hosted here.
 
     Raises:
-        BusError: the bus cannot be used.
+        BusError: the bus cannot be used, or somebody flies on it already.
     """
     spec = resolve(bus)
     if not spec.startswith("loop:"):
-        open_bus(spec).close()
+        _refuse_taken(open_bus(spec), spec)
         yield spec, None
         return
     port = int(spec.removeprefix("loop:"))
     try:
         hub = Hub(0 if bus in ("loop", "auto") else port)
     except OSError:  # somebody else hosts it, or keeps the port for something else
-        LoopLink(port, timeout_s=1.0, may_host=False).close()
+        _refuse_taken(LoopLink(port, timeout_s=1.0, may_host=False), spec)
         yield spec, None
         return
     try:
@@ -122,21 +158,33 @@ def served(bus: str) -> Iterator[tuple[str, Hub | None]]:
         hub.close()
 
 
-def fly_processes(path: Path, scenario: Scenario, spec: str, hub: Hub | None, watch: Watch) -> None:
+def _refuse_taken(bus: Bus, spec: str) -> None:
+    try:
+        refuse_taken(bus, spec)
+    finally:
+        bus.close()
+
+
+def fly_processes(
+    path: Path, scenario: Scenario, spec: str, hub: Hub | None, watch: Watch, patience: Patience = PATIENCE
+) -> None:
     """Fly with plant and flight software as two processes on a bus, as ``served`` gives it.
 
     Raises:
-        FlightError: one of the two ended before its time; the other has been ended too.
+        FlightError: one of the two ended before its time, or stands still; both have been ended.
     """
     scenario_file = str(path / run_dir.SCENARIO)
-    parent = str(os.getpid())
-    plant = start_node("sim.plant", scenario_file, "--bus", spec, "--into", str(path), "--parent", parent)
-    fsw = start_node("fsw", scenario_file, "--bus", spec, "--parent", parent)
+    common = ("--bus", spec, "--parent", str(os.getpid()))
+    waits = (str(patience.boot_s), str(patience.answer_s))
+    plant = start_node("sim.plant", scenario_file, *common, "--into", str(path), "--patience", *waits)
+    fsw = start_node("fsw", scenario_file, *common)
+    standstill = _standstill(path, scenario, patience)
+    stood_s = 0.0
     try:
-        while plant.poll() is None and fsw.poll() is None:
+        while plant.poll() is None and fsw.poll() is None and not (stood_s := standstill.lasts_s()):
             _serve(hub, POLL_S)
             watch(last_tick(path, scenario))
-        deadline = time.monotonic() + GRACE_S
+        deadline = time.monotonic() + (0.0 if stood_s else GRACE_S)
         while (
             (plant.poll() is None or fsw.poll() is None) and time.monotonic() < deadline and _well(plant, fsw)
         ):
@@ -147,14 +195,25 @@ def fly_processes(path: Path, scenario: Scenario, spec: str, hub: Hub | None, wa
             for name, process in (("plant", plant), ("flight software", fsw))
             if process.poll()
         ]
-        for process in (plant, fsw):
-            _end(process, hub)
-    if failed or "flown" not in run_dir.read_run(path):
-        name, process = failed[0] if failed else ("flight software", fsw)
-        raise FlightError(
-            f"the {name} {_how(process.returncode)} at tick {last_tick(path, scenario)}: "
-            f"the run is not complete, what was flown is in {path}"
-        )
+        _end((plant, fsw), hub)
+    run = run_dir.read_run(path)
+    if not failed and "flown" in run:
+        return
+    tick = last_tick(path, scenario)
+    name, process = failed[0] if failed else ("flight software", fsw)
+    why = run.get("ended") or f"the {name} {_how(process.returncode)} at tick {tick}"
+    if stood_s:
+        why = f"the plant stands still: nothing has been flown for {stood_s:.0f} s after tick {tick}"
+    if run.get("second_senders"):
+        why += f"; {said(run['second_senders'])}"
+    raise FlightError(f"{why}: the run is not complete, what was flown is in {path}")
+
+
+def _standstill(path: Path, scenario: Scenario, patience: Patience) -> Standstill:
+    factor = run_dir.read_run(path)["pace_factor"]
+    two_ticks_s = 2.0 / (scenario.time.tick_hz * factor) if factor else 0.0
+    longest_s = patience.answer_s + MARGIN_S + two_ticks_s
+    return Standstill(path / run_dir.BUS_LOG, patience.boot_s + MARGIN_S, longest_s)
 
 
 def last_tick(path: Path, scenario: Scenario) -> int:
@@ -194,13 +253,16 @@ def _well(*processes: subprocess.Popen[bytes]) -> bool:
     return all(process.poll() in (None, 0) for process in processes)
 
 
-def _end(process: subprocess.Popen[bytes], hub: Hub | None) -> None:
-    process.terminate()
+def _end(processes: Sequence[subprocess.Popen[bytes]], hub: Hub | None) -> None:
+    """End what still runs, with time to close its files; what stands still is killed."""
+    for process in processes:
+        process.terminate()
     deadline = time.monotonic() + GRACE_S
-    while process.poll() is None and time.monotonic() < deadline:
+    while any(process.poll() is None for process in processes) and time.monotonic() < deadline:
         _serve(hub, POLL_S / 10.0)
-    process.kill()
-    process.wait()
+    for process in processes:
+        process.kill()
+        process.wait()
 
 
 def _how(code: int | None) -> str:

@@ -230,4 +230,8 @@ def summary_text(summary: Json) -> str:
         rows["mode"] = summary["mode_final"]
     if "replay" in summary:
         rows["replay"] = "bit-exact" if summary["replay"]["bit_exact"] else "NOT bit-exact"
+    failed = summary.get("failures", {})
+    rows |= {
+        name.replace("_", " "): failed[name] for name in ("second_senders", "complete") if name in failed
+    }
     return "\n".join([flown, *(f"  {name:<10} {text}" for name, text in rows.items())])

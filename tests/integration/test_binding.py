@@ -254,12 +254,16 @@ def test_a_kill_while_the_summary_is_replaced_leaves_none_that_is_wrong(run, tor
     assert "note" not in torquer("check", run).out
 
 
+LOOSE_BENCH = (
+    *("hil", "microsat", "--tick-hz", "10", "--seconds", "1"),
+    *("--jitter-ms", "1000", "--latency-ms", "1000", "--slips", "15"),
+)
+"""What is tested is not how busy this machine is."""
+
+
 def test_the_bench_binds_its_log_and_its_numbers(torquer, tmp_path):
     run = tmp_path / "run"
-    assert (
-        torquer("hil", "microsat", "--tick-hz", "10", "--seconds", "1", "--bus", "loop", "--out", run).err
-        == ""
-    )
+    assert torquer(*LOOSE_BENCH, "--bus", "loop", "--out", run).err == ""
     assert set(json.loads((run / "run.json").read_text())["digests"]) == {"bus.log", "hil.json"}
     before = torquer("check", run)
     assert "MISMATCH" not in before.out + before.err

@@ -90,7 +90,9 @@ def test_a_stranger_who_forges_sync_and_the_end_does_not_stop_the_flight(port, s
             tick += 1
             if tick > 10 and random.random() < 0.2:
                 stranger.send(random.choice(forged)())
-    assert plant.wait().code == 0
+    ended = plant.wait()
+    assert ended.code == 1, "all is flown, but not alone"
+    assert "a second sender is on the bus: SYNC (180) from tick " in ended.err
     assert fsw.wait().code == 0
     assert torquer("replay", run).out.startswith("bit-exact: ")
     done = {TickDone.decode(frame.data).tick for frame in bus(run).frames if frame.can_id == TickDone.ID}

@@ -161,19 +161,27 @@ def test_ctrl_c_is_one_sentence(flight, bus, torquer):
     readable(flown.run, bus, torquer)
 
 
-@pytest.mark.parametrize("lines", [0, 500])
-def test_nodes_end_by_themselves_when_sil_is_gone(lines, flight, bus, torquer):
-    signum = signal.SIGTERM if lines else signal.SIGKILL
+@pytest.mark.parametrize(
+    ("signum", "code"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129)], ids=["SIGTERM", "SIGHUP"]
+)
+def test_who_is_asked_to_end_says_so_and_ends_its_nodes(signum, code, flight, bus, torquer):
     flown = flight()
-    if lines:
-        flown.reach(lines)
+    flown.reach(500)
     flown.sil.process.send_signal(signum)
     ended = flown.sil.wait()
-    assert (ended.code, ended.out) == (-signum, "")
+    assert (ended.code, ended.out) == (code, "")
+    assert ended.sentence == f"torquer: ended by {signum.name}; what was done so far is kept"
+    assert not any(map(lives, flown.nodes.values()))
+    readable(flown.run, bus, torquer)
+
+
+def test_nodes_end_by_themselves_when_sil_is_gone(flight):
+    flown = flight()
+    flown.sil.process.kill()
+    ended = flown.sil.wait()
+    assert (ended.code, ended.out) == (-signal.SIGKILL, "")
     flown.gone()
     assert "Traceback" not in flown.sil.stderr.read_text()
-    if lines:
-        readable(flown.run, bus, torquer)
 
 
 def test_nodes_on_a_can_interface_end_with_sil(vcan0, flight, bus):

@@ -47,7 +47,7 @@ def compare(
         out: folder of the files; None: ``compare/<scenario>-<UTC time>``.
 
     Returns:
-        The exit code, 0: how a law does is a result.
+        The exit code: how a law does is a result, that a flight broke the limits is a failure, 1.
 
     Raises:
         TableError: the scenario is not known or not valid.
@@ -90,7 +90,10 @@ def compare(
     click.echo(_heading(scenario, seed, ticks))
     click.echo(as_text(scores))
     click.echo(f"files: {folder / JSON}, {CSV}, {PICTURE}")
-    return 0
+    broken = [f"{score.law} ({score.driver})" for score in scores if score.limits_ok is False]
+    if broken:
+        click.echo(f"torquer: the limits are broken by {', '.join(broken)}", err=True)
+    return int(bool(broken))
 
 
 def _heading(scenario: Scenario, seed: int, ticks: int) -> str:

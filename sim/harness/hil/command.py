@@ -18,6 +18,7 @@ from fsw.wire.messages import PlantBoot
 from sim.harness import run_dir
 from sim.harness.assemble import plant_config
 from sim.harness.binding import bind
+from sim.harness.bus_taken import FLYING, refuse_taken
 from sim.harness.destination import check_folder
 from sim.harness.errors import HarnessError
 from sim.harness.flight import BusLog, Pace
@@ -28,6 +29,7 @@ from sim.harness.hil.verdict import Budgets, Json, judge, render
 from sim.harness.hil.world import PlantWorld, SyncAlone, World, line_to
 from sim.harness.progress import progress
 from sim.harness.scenario import Scenario
+from sim.harness.second_senders import said
 
 BOARDS = {"coil": "COIL", "magnetometer": "MAG", "sun": "SUN"}
 SENSORS = ("magnetometer", "sun")
@@ -80,10 +82,10 @@ def real_boards(names: str | None) -> frozenset[str]:
 
 
 def hil(bench: Bench, as_json: bool = False) -> int:
-    """Run the bench: exit code 1 when a budget is broken or a node has ended before its time.
+    """Run the bench: exit code 1 when a budget is broken, a node has ended, or there is a second sender.
 
     Raises:
-        BusError: the bus cannot be used.
+        BusError: the bus cannot be used, or somebody flies on it already.
         HarnessError: a node does not start, or the scenario does not fit the bench.
     """
     if bench.out is not None:
@@ -91,13 +93,15 @@ def hil(bench: Bench, as_json: bool = False) -> int:
     if bench.stimulus != "plant" and bench.scenario.knowledge == "perfect":
         raise HarnessError("a scenario with knowledge = 'perfect' needs the plant: --stimulus plant")
     with hub_of(bench.bus) as (spec, hub_pid), TemporaryDirectory() as scratch, Nodes() as nodes:
-        folder = bench.out or Path(scratch)
-        scenario_file = _begin(bench, folder, spec)
-        if not as_json:
-            click.echo(_said(bench, spec))
         bus = open_bus(spec)
         try:
-            numbers, kept = _run(bench, spec, hub_pid, bus, nodes, folder, scenario_file, as_json)
+            if hub_pid is None:
+                refuse_taken(bus, spec, FLYING)
+            folder = bench.out or Path(scratch)
+            scenario_file = _begin(bench, folder, spec)
+            if not as_json:
+                click.echo(_said(bench, spec))
+            numbers = _run(bench, spec, hub_pid, bus, nodes, folder, scenario_file, as_json)
         finally:
             bus.close()
         lost = [node for node in nodes.by_name.values() if not node.alive]
@@ -107,9 +111,13 @@ def hil(bench: Bench, as_json: bool = False) -> int:
         bind(bench.out, run_dir.BUS_LOG, NUMBERS)
     if as_json:
         click.echo(json.dumps(numbers, indent=2))
-    for name, said in numbers["ended"].items():
-        click.echo(f"torquer: {name} ended before its time: {said}", err=True)
-    return int(not kept or bool(lost))
+    failures = [f"{name} ended before its time: {last}" for name, last in numbers["ended"].items()]
+    failures += [said(numbers["second_senders"])] if numbers["second_senders"] else []
+    broken = [line["name"] for line in numbers["budgets"] if not line["kept"]]
+    failures += [f"over budget: {', '.join(broken)}"] if broken else []
+    if failures:
+        click.echo(f"torquer: {'; '.join(failures)}", err=True)
+    return int(bool(failures))
 
 
 def _begin(bench: Bench, folder: Path, spec: str) -> Path:
@@ -136,7 +144,7 @@ def _run(
     folder: Path,
     scenario_file: Path,
     as_json: bool,
-) -> tuple[Json, bool]:
+) -> Json:
     scenario, ticks = bench.scenario, _ticks(bench)
     tick_hz = scenario.time.tick_hz
     arming = () if bench.armed else ("--disarmed",)
@@ -158,10 +166,11 @@ def _run(
     numbers, lines = judge(measured, bench.budgets, tuple(BOARDS), tick_hz, memory.growth_percent())
     numbers |= {"scenario": scenario.name, "bus": spec, "tick_hz": tick_hz, "armed": bench.armed}
     numbers |= {"real": sorted(bench.real), "memory": memory.history(), "scheduling": scheduling()}
+    numbers["second_senders"] = [sender.as_json() for sender in measured.second_senders]
     numbers["budgets"] = [{**line._asdict(), "kept": line.kept} for line in lines]
     if not as_json:
         click.echo(render(numbers, lines))
-    return numbers, all(line.kept for line in lines)
+    return numbers
 
 
 def _pids(nodes: Nodes, hub_pid: int | None) -> dict[str, int]:

@@ -13,6 +13,7 @@ from sim.harness.flight import FrameLog
 from sim.harness.hil.bus_load import frame_bits
 from sim.harness.hil.times import Times
 from sim.harness.hil.world import World
+from sim.harness.second_senders import ALONE, SecondSender, SenderWatch
 
 SAMPLES = {CoilStatus.ID: "coil", MagField.ID: "magnetometer", SunVector.ID: "sun"}
 """What each board sends exactly once a tick."""
@@ -36,6 +37,7 @@ class Measured:
         busiest_bits: in the busiest tick.
         samples: of each board, ticks in which exactly one came.
         seen: messages by name.
+        second_senders: who else sends in the place of plant or flight software.
     """
 
     ticks: int = 0
@@ -46,6 +48,7 @@ class Measured:
     busiest_bits: int = 0
     samples: Counter[str] = field(default_factory=Counter)
     seen: Counter[str] = field(default_factory=Counter)
+    second_senders: list[SecondSender] = field(default_factory=list)
 
 
 class Conductor:
@@ -77,6 +80,7 @@ class Conductor:
         self._watch = watch
         self._heard: list[Frame] = []
         self._sent: list[Frame] = []
+        self._senders = SenderWatch(lockstep=False, own=ALONE)
         self._answered = 0  # how many of them came up to TICK_DONE
         self.measured = Measured()
 
@@ -112,6 +116,8 @@ class Conductor:
         """What the tick before has left to do, once the SYNC of this one is sent: that is not late for it."""
         if tick:
             self._tally()
+            self._senders.take(tick - 1, [], self._heard)
+            self.measured.second_senders = self._senders.found
             self._watch(tick - 1)
         self._keep(tick, sent)
         self._sent = sent

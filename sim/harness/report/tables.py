@@ -13,6 +13,7 @@ from sim.harness.audit.auditor import AuditReport
 from sim.harness.audit.findings import COILS, seconds_text
 from sim.harness.run_record import RunRecord
 from sim.harness.scenario import Scenario, orbit_period_s
+from sim.harness.second_senders import said
 
 Json = dict[str, Any]
 
@@ -70,6 +71,8 @@ def badges(summary: Json, run: RunRecord | None, audit: AuditReport) -> str:
     if not whole(run, audit):
         planned = f" of {run['ticks']}" if run else ""
         shown.append(("bad", f"✗ incomplete: {summary['ticks']}{planned} ticks"))
+    if summary.get("second_senders"):
+        shown.append(("bad", f"✗ {said(summary['second_senders'])}"))
     items = "".join(f'<li class="{kind}">{escape(text)}</li>' for kind, text in shown)
     return f'<ul class="badges">{items}</ul>'
 

@@ -1,12 +1,13 @@
 """``torquer compare`` as a user meets it."""
 
 import json
+from dataclasses import replace
 
 import pytest
 from click.testing import CliRunner
 
 from sim.harness.cli import main
-from sim.harness.compare import command
+from sim.harness.compare import command, score
 
 SHORT = ("--laws", "predictive,rate_damping", "--orbits", "0.05", "--workers", "1")
 
@@ -47,6 +48,16 @@ def test_the_same_again_is_the_same_to_the_byte(torquer, tmp_path):
     assert a == b
     assert a != c
     assert (tmp_path / "a" / "compare.json").read_bytes() == (tmp_path / "b" / "compare.json").read_bytes()
+
+
+def test_a_flight_that_breaks_the_limits_is_no_result(torquer, monkeypatch):
+    judge = score.judge
+    monkeypatch.setattr(score, "judge", lambda case, record: replace(judge(case, record), limits_ok=False))
+    result = torquer(
+        "posat1", "--laws", "predictive", "--driver", "pulsed", "--orbits", "0.01", "--workers", "1"
+    )
+    assert result.exit_code == 1
+    assert result.stderr.splitlines()[-1] == "torquer: the limits are broken by predictive (pulsed)"
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,118 @@
+"""A plant or flight software that stands still: one sentence after a deadline, nothing left running."""
+
+import json
+import os
+import signal
+import time
+from pathlib import Path
+from threading import Thread
+
+import pytest
+
+from sim.harness import run_dir, sil
+from sim.harness.flight import FlightError, Pace, Patience
+from sim.harness.scenario import load
+from sim.harness.sil import fly_processes, served
+
+pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks at processes in /proc")
+
+PATIENCE = Patience(boot_s=30.0, answer_s=1.5, silence_s=1.5)
+LOCKSTEP, REAL_TIME = Pace(), Pace(50.0)
+
+
+def runs(pid):
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+@pytest.fixture
+def flight(tmp_path, monkeypatch):
+    """Flies, and stops a node once so many lines are logged: what the flight says, how long it took."""
+    nodes = {}
+
+    def start(module, *arguments):
+        nodes[module] = real_start(module, *arguments)
+        return nodes[module]
+
+    real_start = sil.start_node
+    monkeypatch.setattr(sil, "start_node", start)
+    monkeypatch.setattr(sil, "MARGIN_S", 1.0)
+    monkeypatch.setattr(sil, "GRACE_S", 0.5)
+
+    def fly(victim, lines, pace, patience=PATIENCE):
+        path, scenario = tmp_path / "run", load("microsat")
+        run_dir.begin(path, scenario, 1, 50_000, "loop", pace)
+        stopped_at = []
+
+        def stop():
+            log = path / run_dir.BUS_LOG
+            while victim not in nodes or (lines and not (log.exists() and log.stat().st_size > 50 * lines)):
+                time.sleep(0.02)
+            nodes[victim].send_signal(signal.SIGSTOP)
+            stopped_at.append(time.monotonic())
+
+        stopper = Thread(target=stop)
+        stopper.start()
+        with pytest.raises(FlightError) as caught, served("loop") as (spec, hub):
+            fly_processes(path, scenario, spec, hub, lambda tick: None, patience)
+        stopper.join()
+        took_s = time.monotonic() - stopped_at[0]
+        assert not any(runs(node.pid) for node in nodes.values()), "something is left running"
+        assert caught.value.exit_code == 1
+        assert json.loads((path / run_dir.RUN).read_text())["complete"] is False
+        return str(caught.value), took_s
+
+    yield fly
+    for node in nodes.values():
+        node.kill()
+        node.wait()
+
+
+@pytest.mark.parametrize("pace", [LOCKSTEP, REAL_TIME], ids=["lockstep", "real time"])
+@pytest.mark.parametrize(
+    ("victim", "says"),
+    [("fsw", "no answer from the flight software"), ("sim.plant", "the plant stands still")],
+)
+def test_one_that_stands_still_in_flight_ends_it(victim, says, pace, flight, tmp_path, torquer, bus):
+    sentence, took_s = flight(victim, 500, pace)
+    assert sentence.startswith(says)
+    assert str(tmp_path / "run") in sentence
+    assert "\n" not in sentence
+    assert took_s < 10.0
+    assert len(bus(tmp_path / "run").frames) >= 400
+    replayed = torquer("replay", tmp_path / "run")
+    assert replayed.code == 1
+    assert "incomplete" in replayed.out
+
+
+def test_flight_software_that_never_boots_ends_it(flight):
+    sentence, _ = flight("fsw", 0, LOCKSTEP, Patience(boot_s=5.0, answer_s=1.5))
+    assert sentence.startswith("the flight software has not booted within 5 s")
+
+
+def test_a_plant_that_never_begins_ends_it(flight):
+    sentence, _ = flight("sim.plant", 0, LOCKSTEP, Patience(boot_s=2.0, answer_s=1.5))
+    assert sentence.startswith("the plant stands still: nothing has been flown for")
+
+
+def test_the_deadlines_of_the_command_are_long_enough_for_a_loaded_machine():
+    assert sil.PATIENCE.boot_s >= 60.0
+    assert sil.PATIENCE.answer_s == sil.PATIENCE.silence_s == 20.0
+
+
+@pytest.mark.skipif(os.environ.get("TORQUER_REAL_DEADLINES") != "1", reason="takes half a minute")
+def test_so_does_the_command_itself(start, tmp_path):
+    """With the deadlines that it has."""
+    words = ("sim.harness.cli", "sil", "--bus", "loop", "--orbits", "10", "--out", tmp_path / "run")
+    flown = start(*words, start_new_session=True)
+    log = tmp_path / "run" / "bus.log"
+    while not (log.exists() and log.stat().st_size > 10_000):
+        time.sleep(0.05)
+    children = Path(f"/proc/{flown.process.pid}/task/{flown.process.pid}/children").read_text().split()
+    os.kill(int(children[0]), signal.SIGSTOP)
+    ended = flown.wait(90)
+    assert (ended.code, ended.out) == (1, "")
+    assert "the run is not complete" in ended.sentence
+    assert not any(runs(child) for child in children)
