@@ -33,7 +33,7 @@ def test_a_rush_of_strangers_does_not_hold_up_a_flight(torquer, tmp_path):
     words = [sys.executable, "-c", RUSH, str(run), str(port), str(CONNECTS)]
     with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as rush:
         try:
-            outcome = torquer("sil", "--orbits", "0.6", "--bus", f"loop:{port}", "--out", run)
+            outcome = torquer("sil", "--orbits", "1.5", "--bus", f"loop:{port}", "--out", run)
             assert rush.stdout.readline() == "False\n", "the flight was over before the rush was"
         finally:
             rush.kill()
