@@ -10,6 +10,7 @@
 # make fuzz       a million random frames, a thousand mutations of each kind of file that is read: half an hour
 # make attack     a million requests and lies on the bus of a coil board, ten minutes on the real process: half an hour
 # make differential scheduler against interlock over 100 orbits of whole flights: some minutes
+# make planted    schedulers with planted faults, and correct ones, through sim.testing as a user would run it: some minutes
 # make mutation     change scheduler, interlock, auditor and codec a thing at a time: do the tests notice? an hour
 # make coverage     branch coverage of the same modules, which must be whole, into the same page: a minute
 
@@ -21,7 +22,7 @@ bin := .venv/bin
 installed := .venv/.installed
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv sil test lint test-vcan golden validate fuzz attack differential replay-elsewhere faults soak mutation coverage
+.PHONY: help venv sil test lint test-vcan golden validate fuzz attack differential replay-elsewhere faults soak planted mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -76,6 +77,9 @@ faults: venv
 
 soak: venv
 	$(bin)/python tools/soak.py $(SOAK)
+
+planted: venv
+	$(bin)/python tools/planted.py $(PLANTED)
 
 mutation: venv
 	$(bin)/python tools/mutate.py $(MUTATE)

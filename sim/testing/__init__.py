@@ -4,20 +4,22 @@ A scheduler is any object with ``step(heard) -> requests``; what makes one from 
 boot of it, so that nothing outlives a reboot. It is flown over a board that drives whatever it is asked, and
 what was driven is judged by the auditor that ``torquer check`` uses. Ten lines::
 
-    from hypothesis import given
+    from hypothesis import given, settings
     from sim.testing import Fire, audit_scheduler, flights
 
     class MyScheduler:
         def __init__(self, limits): ...
         def step(self, heard): return [Fire(coil=0, level=3, duration_ms=3000)] if ... else []
 
+    @settings(deadline=None)
     @given(flights())
     def test_it_keeps_the_limits(flight):
         report = audit_scheduler(MyScheduler, flight)
         assert report.ok, report.violations
 
-``flights()`` gives demands, fields, tick rates, lost messages and reboots of scheduler and board; a failing
-flight is shrunk to a short one. A law in the form of ``fsw.core.laws.interface.Law`` is flown through the
+``flights()`` gives demands, fields, tick rates, lost messages and reboots of scheduler and board, in flights
+of few pulses and of many; a failing flight is shrunk to a short one. What is found, and what is not, stands
+in docs/testing.md. A law in the form of ``fsw.core.laws.interface.Law`` is flown through the
 shipped scheduler by ``audit_law``. The strategies need hypothesis: ``pip install torquer[testing]``.
 """
 
@@ -25,7 +27,17 @@ from sim.harness.audit.findings import AuditReport, Violation
 from sim.testing.bench import Fire, Flight, Heard, Limits, MakeScheduler, Reboot, Scheduler, Stretch, fly
 from sim.testing.judge import audit_law, audit_scheduler
 from sim.testing.shipped import ShippedScheduler, UnsoundLawError, scheduler_under
-from sim.testing.strategies import attitudes, dipoles, fields, flights, limits, stretches, tick_rates
+from sim.testing.strategies import (
+    attitudes,
+    dipoles,
+    fields,
+    flights,
+    limits,
+    stretches,
+    tick_rates,
+    timings_ms,
+    unsound_dipoles,
+)
 
 __all__ = [
     "AuditReport",
@@ -51,4 +63,6 @@ __all__ = [
     "scheduler_under",
     "stretches",
     "tick_rates",
+    "timings_ms",
+    "unsound_dipoles",
 ]

@@ -9,6 +9,7 @@ COIL_STATUS and requests; COIL_BOOT always arrives.
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import Flag
+from itertools import chain, repeat
 from typing import NamedTuple, Protocol
 
 from fsw.core.attitude import UNKNOWN, Attitude
@@ -19,8 +20,10 @@ from sim.harness.candump import LogEntry
 EPOCH_S = 1_427_513_417
 PATTERN_TICKS = 8
 UNITS_PER_TICK = 1000
-MOST_LOCKOUT_MS = 655_350
-"""What COIL_STATUS can tell."""
+MOST_LEVEL = 3
+MOST_LOCKOUT_MS = 163_830
+MOST_REMAINING_MS = 4095
+"""What COIL_STATUS can tell of its lockout and of the rest of a pulse."""
 
 Vec3 = tuple[float, float, float]
 
@@ -95,103 +98,141 @@ class Stretch(NamedTuple):
 
 
 class Flight(NamedTuple):
-    """What is flown: the limits, the first tick, and the stretches, at whose begin reboots happen."""
+    """What is flown: the limits, the first tick, and the stretches, at whose begin reboots happen.
+
+    After the last stretch comes the first again, until all have been flown ``laps`` times.
+    """
 
     limits: Limits
     first_tick: int
     stretches: tuple[Stretch, ...]
+    laps: int = 1
+
+
+class FlownTick(NamedTuple):
+    """A tick as it was flown.
+
+    Attributes:
+        tick: its number.
+        line: that of its first frame in the log.
+        booted: the board has just started.
+        said: its COIL_STATUS, of every coil that was driven or of one that was not.
+        requests: what was requested in it, lost or not.
+        harmed: the board has driven, since it booted, what one with an interlock would have refused.
+    """
+
+    tick: int
+    line: int
+    booted: bool
+    said: tuple[CoilStatus, ...]
+    requests: Sequence[Fire]
+    harmed: bool
 
 
 class _On(NamedTuple):
-    """A coil that is driven: its level, and the rest in units of 1 / (1000 tick_hz) s."""
+    """A coil that is driven: its level, and until when in units of 1 / (1000 tick_hz) s."""
 
     level: int
-    rest: int
+    end: int
 
 
 class _Board:
-    """Drives each coil as it was last asked."""
+    """Drives each coil as it was last asked. Instants are units of 1 / (1000 tick_hz) s from tick 0."""
 
-    def __init__(self, limits: Limits) -> None:
+    def __init__(self, limits: Limits, tick: int) -> None:
         self._limits = limits
+        self._now = tick * UNITS_PER_TICK
         self._on: dict[int, _On] = {}
-        self._lockout = [limits.backoff_ms * limits.tick_hz] * 3
+        self._backoff = limits.backoff_ms * limits.tick_hz
+        self._ready = [self._now + self._backoff] * 3
         self._statuses = 0
         self._seq = 0
-        self._boots: list[Frame] = [CoilBoot(reason=0, version=1, table_crc=0).encode()]
+        self.harmed = False
 
-    def begin_tick(self, tick: int, elapsed: bool) -> list[Frame]:
-        """COIL_BOOT in its first tick, and a COIL_STATUS for each coil that was driven, or for one."""
-        frames, self._boots = self._boots, []
-        step = UNITS_PER_TICK if elapsed else 0
-        self._lockout = [max(0, units - step) for units in self._lockout]
-        driven = [(coil, on.level, max(0, on.rest - step)) for coil, on in self._on.items()]
-        self._on = {coil: _On(level, rest) for coil, level, rest in driven if rest > 0}
-        frames += [self._status(*one) for one in driven or [(tick % 3, 0, 0)]]
-        self._statuses += 1
-        return frames
+    def begin_tick(self, tick: int) -> tuple[CoilStatus, ...]:
+        """A COIL_STATUS of each coil that was driven in the tick that ends now, or of one that was not."""
+        self._now = now = tick * UNITS_PER_TICK
+        if self._on:
+            said = tuple(self._status(coil, on.level, on.end) for coil, on in self._on.items())
+            self._on = {coil: on for coil, on in self._on.items() if on.end > now}
+        else:
+            said = (self._status(tick % 3, 0, now),)
+        self._statuses = (self._statuses + 1) & 0xF
+        return said
 
     def fire(self, request: CoilFire) -> None:
-        """Drive it, whatever else is driven."""
+        """Drive it, whatever else is driven; ``harmed`` tells that no interlock would have let it."""
         duration = request.duration_ms * self._limits.tick_hz
+        self.harmed = self.harmed or not self._allows(request)
         if duration == 0 or request.level == 0:
             return
-        self._on[request.coil] = _On(request.level, duration)
+        end = self._now + duration
+        self._on[request.coil] = _On(request.level, end)
         self._seq = request.seq
-        again = duration + self._limits.backoff_ms * self._limits.tick_hz
         for coil in range(3):
             if self._limits.shared or coil == request.coil:
-                self._lockout[coil] = max(self._lockout[coil], again)
+                self._ready[coil] = max(self._ready[coil], end + self._backoff)
 
-    def _status(self, coil: int, level: int, rest: int) -> Frame:
-        lockout = self._lockout[coil] if coil < len(self._lockout) else 0
-        hz = self._limits.tick_hz
+    def _allows(self, request: CoilFire) -> bool:
+        coil, level = request.coil, request.level
+        sound = coil < len(self._ready) and level != 0 and abs(level) <= MOST_LEVEL
+        timely = sound and not self._on and self._ready[coil] <= self._now
+        return timely and 0 < request.duration_ms <= self._limits.pulse_ms
+
+    def _status(self, coil: int, level: int, end: int) -> CoilStatus:
+        """As it comes off the bus."""
+        hz, now = self._limits.tick_hz, self._now
+        lockout = max(0, self._ready[coil] - now) if coil < len(self._ready) else 0
         return CoilStatus(
             level=level,
             coil=coil,
-            remaining_ms=-(-rest // hz),
+            remaining_ms=min(max(0, -((now - end) // hz)), MOST_REMAINING_MS),
             current_ma=0,
             lockout_ms=min(-(-lockout // (10 * hz)) * 10, MOST_LOCKOUT_MS),
             seq=self._seq,
             counter=self._statuses,
-        ).encode()
+        )
 
 
 def fly(make: MakeScheduler, flight: Flight) -> Iterator[LogEntry]:
     """Fly a scheduler: the log of the board, as it would stand in bus.log."""
-    limits, tick, line, seq = flight.limits, flight.first_tick, 0, 0
-    board, scheduler = _Board(limits), make(limits)
-    began = tick
-    for stretch in flight.stretches:
-        if Reboot.BOARD in stretch.reboot:
-            board, began = _Board(limits), tick
-        if Reboot.SCHEDULER in stretch.reboot:
+    hz = flight.limits.tick_hz
+    for flown in fly_ticks(make, flight):
+        stamp_us = EPOCH_S * 1_000_000 + flown.tick * 1_000_000 // hz
+        for line, frame in enumerate(on_the_bus(flown, hz), start=flown.line):
+            yield LogEntry(line, stamp_us, "bench", frame)
+
+
+def on_the_bus(flown: FlownTick, tick_hz: int) -> Iterator[Frame]:
+    """The frames of a tick: what the board said, and SYNC."""
+    if flown.booted:
+        yield CoilBoot(reason=0, version=1, table_crc=0).encode()
+    for status in flown.said:
+        yield status.encode()
+    yield Sync(flown.tick, EPOCH_S + flown.tick // tick_hz).encode()
+
+
+def fly_ticks(make: MakeScheduler, flight: Flight) -> Iterator[FlownTick]:
+    """Fly a scheduler, tick by tick."""
+    limits, tick, line, seq = flight.limits, flight.first_tick, 1, 0
+    board, scheduler, boots = _Board(limits, tick), make(limits), True
+    for stretch in chain.from_iterable(repeat(flight.stretches, flight.laps)):
+        ticks, m_body_am2, b_body_t, attitude, reboot, lost_statuses, lost_requests = stretch
+        if Reboot.BOARD in reboot:
+            board, boots = _Board(limits, tick), True
+        if Reboot.SCHEDULER in reboot:
             scheduler = make(limits)
-        for index in range(stretch.ticks):
-            said = board.begin_tick(tick, elapsed=tick > began)
-            sync = Sync(tick, EPOCH_S + tick // limits.tick_hz).encode()
-            stamp_us = EPOCH_S * 1_000_000 + tick * 1_000_000 // limits.tick_hz
-            for frame in (*said, sync):
-                line += 1
-                yield LogEntry(line, stamp_us, "bench", frame)
-            for request in scheduler.step(_heard(stretch, tick, index, said)):
+        for index in range(ticks):
+            said = board.begin_tick(tick)
+            bit = index % PATTERN_TICKS
+            status = None if lost_statuses >> bit & 1 else said[-1]
+            requests = scheduler.step(Heard(tick, m_body_am2, b_body_t, attitude, status, boots))
+            yield FlownTick(tick, line, boots, said, requests, board.harmed)
+            for request in requests:
                 seq += 1
-                if not stretch.lost_requests >> index % PATTERN_TICKS & 1:
+                if not lost_requests >> bit & 1:
                     board.fire(_as_sent(request, seq, tick))
-            tick += 1
-
-
-def _heard(stretch: Stretch, tick: int, index: int, said: list[Frame]) -> Heard:
-    statuses = [CoilStatus.decode(frame.data) for frame in said if frame.can_id == CoilStatus.ID]
-    lost = stretch.lost_statuses >> index % PATTERN_TICKS & 1
-    return Heard(
-        tick=tick,
-        m_body_am2=stretch.m_body_am2,
-        b_body_t=stretch.b_body_t,
-        attitude=stretch.attitude,
-        status=None if lost else statuses[-1],
-        booted=any(frame.can_id == CoilBoot.ID for frame in said),
-    )
+            tick, line, boots = tick + 1, line + boots + len(said) + 1, False
 
 
 def _as_sent(request: Fire, seq: int, tick: int) -> CoilFire:

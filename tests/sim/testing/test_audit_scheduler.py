@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from fsw.core.laws.interface import Demand
 from fsw.core.laws.table import LAWS
-from fsw.wire.messages import Sync, intact
+from fsw.wire.messages import CoilStatus, Sync, intact
 from sim.harness.audit.findings import Kind
 from sim.testing import (
     Fire,
@@ -120,6 +120,45 @@ def test_each_planted_fault_is_found(scheduler, kinds, within):
         keeps_the_limits()
 
 
+class Asks:
+    """Makes the same requests once, in tick 110."""
+
+    def __init__(self, *requests):
+        self.requests = requests
+
+    def __call__(self, limits):
+        return self
+
+    def step(self, heard):
+        return self.requests if heard.tick == 110 else ()
+
+
+@pytest.mark.parametrize(
+    ("requests", "kind"),
+    [
+        ([Fire(1, 0, 3000)], Kind.LEVEL),
+        ([Fire(1, 16, 3000)], Kind.LEVEL),
+        ([Fire(1, -9, 3000)], Kind.LEVEL),
+        ([Fire(1, 3, 0)], Kind.PULSE),
+        ([Fire(1, 3, -1)], Kind.PULSE),
+        ([Fire(1, 3, 65_536)], Kind.PULSE),
+        ([Fire(-1, 3, 3000)], Kind.COIL),
+        ([Fire(4, 3, 3000)], Kind.COIL),
+        ([Fire(1, 3, 3000), Fire(1, 3, 3000)], Kind.GAP),
+    ],
+)
+@pytest.mark.parametrize("lost_requests", [0, 0xFF])
+def test_a_request_is_blamed_that_no_board_could_drive(requests, kind, lost_requests):
+    flight = Flight(Limits(), 0, (Stretch(120, STRONG, FIELD, lost_requests=lost_requests),))
+    violations = audit_scheduler(Asks(*requests), flight).violations
+    assert (kind, 110) in {(violation.kind, violation.tick) for violation in violations}
+
+
+def test_a_request_as_it_should_be_is_not_blamed():
+    flight = Flight(Limits(), 0, (Stretch(120, STRONG, FIELD),))
+    assert audit_scheduler(Asks(Fire(1, 3, 3000)), flight).ok
+
+
 def test_nothing_at_all_for_a_coil_that_there_is_not():
     flight = Flight(Limits(), 0, (Stretch(120, STRONG, FIELD),))
 
@@ -203,6 +242,22 @@ class Listener:
         return [Fire(0, 1, 1000)] if heard.tick in (3, 4) else []
 
 
+class Long:
+    """Asks for more than a status can tell."""
+
+    def __init__(self):
+        Long.heard = []
+
+    def step(self, heard):
+        Long.heard.append(heard.status)
+        return [Fire(0, 1, 6000)] if heard.tick == 3 else []
+
+
+def listen_to(flight):
+    list(fly(Listener, flight))
+    return Listener.last.heard
+
+
 def listen(*stretches, first_tick=0, **limits):
     Listener.boots = 0
     entries = list(fly(Listener, Flight(Limits(**limits), first_tick, stretches)))
@@ -215,6 +270,41 @@ def test_ticks_rise_by_one_and_statuses_tell_of_each_coil_in_turn():
     assert [one.tick for one in heard] == list(range(300, 306))
     assert [one.status.coil for one in heard] == [0, 1, 2] * 2
     assert [one.status.lockout_ms for one in heard] == [1000 * s for s in range(100, 94, -1)]
+
+
+def test_the_stretches_are_flown_lap_after_lap():
+    stretches = (Stretch(3, STRONG, FIELD), Stretch(2, FIELD, FIELD))
+    heard = list(listen_to(Flight(Limits(), 7, stretches, laps=3)))
+    assert [one.tick for one in heard] == list(range(7, 22))
+    assert [one.m_body_am2 for one in heard] == ([STRONG] * 3 + [FIELD] * 2) * 3
+
+
+def test_what_is_heard_is_what_stands_in_the_log():
+    """Rest and lockout are too long for their fields, and a tick is no whole number of ms."""
+    flight = Flight(Limits(7, 3000, 700_000), 0, (Stretch(60, STRONG, FIELD),))
+    entries = list(fly(lambda limits: Long(), flight))
+    logged = [CoilStatus.decode(one.frame.data) for one in entries if one.frame.can_id == CoilStatus.ID]
+    assert Long.heard == logged
+    assert {4095} < {status.remaining_ms for status in logged}
+    assert max(status.lockout_ms for status in logged) == 163_830
+
+
+def test_a_violation_names_its_line_of_the_log():
+    flight = Flight(Limits(), 0, (Stretch(400, STRONG, FIELD),))
+    scheduler = planted(level=4)
+    log = list(fly(scheduler, flight))
+    assert [entry.line for entry in log] == list(range(1, len(log) + 1))
+    for violation in audit_scheduler(scheduler, flight).violations:
+        frame = log[violation.line - 1].frame
+        assert (frame.can_id, CoilStatus.decode(frame.data).level) == (CoilStatus.ID, 4)
+
+
+def test_a_flight_ends_soon_after_a_limit_was_broken():
+    """What comes after it would say nothing new, and would be flown at every step of shrinking."""
+    flight = Flight(Limits(), 0, (Stretch(10_000, STRONG, FIELD),))
+    report = audit_scheduler(planted(pulse_more_ticks=1), flight)
+    assert not report.ok
+    assert report.statuses < 150
 
 
 def test_a_message_is_lost_in_the_ticks_whose_bit_is_set():

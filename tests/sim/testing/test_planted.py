@@ -1,0 +1,43 @@
+"""Each planted fault is found by flights as they are drawn, and no correct scheduler is blamed.
+
+From one seed, and without shrinking. ``make planted`` runs it as a user would, from four.
+"""
+
+import sys
+from pathlib import Path
+
+import pytest
+from hypothesis import Phase
+
+ROOT = Path(__file__).parents[3]
+sys.path.insert(0, str(ROOT / "tools"))
+
+from planted import Run, row, run  # noqa: E402
+from planted_schedulers import CORRECT, PLANTED  # noqa: E402
+
+SEED = 1
+UNSHRUNK = (Phase.generate,)
+
+
+@pytest.mark.parametrize("scheduler", PLANTED, ids=lambda one: one.__name__)
+def test_a_planted_fault_is_found(scheduler):
+    assert run(scheduler.__name__, SEED, UNSHRUNK).blamed
+
+
+@pytest.mark.parametrize("scheduler", CORRECT, ids=lambda one: one.__name__)
+def test_a_correct_scheduler_is_not_blamed(scheduler):
+    assert run(scheduler.__name__, SEED, UNSHRUNK, examples=30).blamed is None
+
+
+@pytest.mark.parametrize(
+    ("name", "runs", "as_wanted"),
+    [
+        ("EveryNinth", [Run("EveryNinth", 9.0, "too long"), Run("EveryNinth", 9.0, "too long")], True),
+        ("EveryNinth", [Run("EveryNinth", 9.0, "too long"), Run("EveryNinth", 9.0, None)], False),
+        ("EveryNinth", [Run("EveryNinth", 60.0, "too long")], False),
+        ("Timers", [Run("Timers", 9.0, None)], True),
+        ("Timers", [Run("Timers", 9.0, None), Run("Timers", 9.0, "too long")], False),
+    ],
+)
+def test_the_table_fails_by_a_fault_that_is_missed_a_correct_one_blamed_or_a_long_run(name, runs, as_wanted):
+    assert row(name, runs)[1] is as_wanted

@@ -1,0 +1,399 @@
+"""Schedulers as others might write them: some that keep the limits, and many with one fault each.
+
+``tools/planted.py`` measures on them what ``sim.testing`` finds. They know its public interface alone.
+"""
+
+from math import ceil
+
+import numpy as np
+
+from sim.testing import Fire, ShippedScheduler
+
+
+class Timers:
+    """timers of its own; of the board it hears only the boots"""
+
+    def __init__(self, limits):
+        self.limits = limits
+        self.pulse = limits.pulse_ms * limits.tick_hz // 1000
+        self.backoff = ceil(limits.backoff_ms * limits.tick_hz / 1000)
+        self.ready = self.busy_until = None
+        self.fired = 0
+
+    def step(self, heard):
+        if self.ready is None or heard.booted:
+            self.ready, self.busy_until = [heard.tick + self.boot_ticks()] * 3, heard.tick
+        demand = heard.m_body_am2
+        coil = self.coil(demand)
+        if not any(demand) or not self.free(coil, heard):
+            return []
+        self.fired += 1
+        level = self.level(demand[coil])
+        self.busy_until = heard.tick + self.pulse_ticks(coil)
+        again = self.busy_until + self.backoff_ticks(level)
+        for one in range(3):
+            if self.locks(coil, one):
+                self.ready[one] = again
+        return [Fire(one, level, self.duration_ms(coil)) for one in self.fires(coil, demand)]
+
+    def boot_ticks(self):
+        """A pulse may be under way when it boots."""
+        return self.pulse + self.backoff
+
+    def coil(self, demand):
+        return max(range(3), key=lambda axis: abs(demand[axis]))
+
+    def free(self, coil, heard):
+        return heard.tick >= max(self.ready[coil], self.busy_until)
+
+    def level(self, m_am2):
+        return 3 if m_am2 > 0.0 else -3
+
+    def pulse_ticks(self, coil):
+        return self.pulse
+
+    def duration_ms(self, coil):
+        return self.pulse_ticks(coil) * 1000 // self.limits.tick_hz
+
+    def backoff_ticks(self, level):
+        return self.backoff
+
+    def locks(self, fired, coil):
+        return self.limits.shared or coil == fired
+
+    def fires(self, coil, demand):
+        return [coil]
+
+
+class ByTheBoard(Timers):
+    """timers, and the board's word on its lockout"""
+
+    def boot_ticks(self):
+        return self.backoff
+
+    def free(self, coil, heard):
+        word = heard.status
+        told = word is not None and word.coil == coil and word.lockout_ms == 0
+        return told and super().free(coil, heard)
+
+
+class ByMilliseconds:
+    """levels and durations by the demand, all times in parts of a tick"""
+
+    def __init__(self, limits):
+        self.limits, self.ready, self.end = limits, None, None
+
+    def step(self, heard):
+        hz, limits = self.limits.tick_hz, self.limits
+        now = heard.tick * 1000
+        if self.ready is None or heard.booted:
+            self.end = now
+            self.ready = [now + (limits.pulse_ms + limits.backoff_ms) * hz] * 3
+        size, coil = max((abs(m), axis) for axis, m in enumerate(heard.m_body_am2))
+        if size < 0.1 or now < max(self.ready[coil], self.end):
+            return []
+        level = 1 + (size > 1.0) + (size > 4.0)
+        wanted_ms = round(min(1.0, size / 8.0) * limits.pulse_ms)
+        duration_ms = max(ceil(1000 / hz), wanted_ms)  # shorter than a tick no status can tell
+        self.end = now + duration_ms * hz
+        for one in range(3):
+            if limits.shared or one == coil:
+                self.ready[one] = self.end + limits.backoff_ms * hz
+        return [Fire(coil, level if heard.m_body_am2[coil] > 0.0 else -level, duration_ms)]
+
+
+CORRECT = (Timers, ByTheBoard, ByMilliseconds, ShippedScheduler)
+
+
+class _EveryNth(Timers):
+    n: int
+
+    def pulse_ticks(self, coil):
+        return self.pulse + (self.fired % self.n == 0)
+
+
+class EveryThird(_EveryNth):
+    """every 3rd pulse a tick too long"""
+
+    n = 3
+
+
+class EveryNinth(_EveryNth):
+    """every 9th pulse a tick too long"""
+
+    n = 9
+
+
+class EveryFiveHundredth(_EveryNth):
+    """every 500th pulse a tick too long"""
+
+    n = 500
+
+
+class TwoOnEqual(Timers):
+    """two coils on demands of equal size"""
+
+    def fires(self, coil, demand):
+        return [one for one in range(3) if abs(demand[one]) == abs(demand[coil])]
+
+
+class TwoOnEqualValues(Timers):
+    """two coils on demands of equal value"""
+
+    def fires(self, coil, demand):
+        return [one for one in range(3) if demand[one] == demand[coil]]
+
+
+class BelowCoilZero(Timers):
+    """coil -1 where two are asked for alike"""
+
+    def fires(self, coil, demand):
+        return [coil if sum(abs(m) == abs(demand[coil]) for m in demand) == 1 else -1]
+
+
+class AboveCoilTwo(Timers):
+    """coil 3 where all are asked for alike"""
+
+    def fires(self, coil, demand):
+        return [coil if len({abs(m) for m in demand}) > 1 else 3]
+
+
+class LevelFour(Timers):
+    """level 4 where more is asked than the coils have"""
+
+    def level(self, m_am2):
+        level = min(4, ceil(abs(m_am2) / 8.0 * 3))
+        return level if m_am2 > 0.0 else -level
+
+
+class LevelZero(Timers):
+    """level 0 on a small demand"""
+
+    def level(self, m_am2):
+        return max(-3, min(3, round(m_am2 / 8.0 * 3)))
+
+
+class ShortAfterNegative(Timers):
+    """back-off a tick short after a negative pulse"""
+
+    def backoff_ticks(self, level):
+        return self.backoff - (level < 0)
+
+
+class FromTheStart(Timers):
+    """back-off counted from the start of the pulse"""
+
+    def backoff_ticks(self, level):
+        return self.backoff - self.pulse
+
+
+class ShortAfterLost(Timers):
+    """no back-off after a pulse that no status shows"""
+
+    asked = shown = None
+
+    def step(self, heard):
+        status = heard.status
+        if self.asked == heard.tick - 1 and not (status is not None and status.level):
+            self.ready, self.busy_until = [heard.tick] * 3, heard.tick
+        requests = super().step(heard)
+        if requests:
+            self.asked = heard.tick
+        return requests
+
+
+class ShortAfterTwoLost(Timers):
+    """half a back-off once two requests in a row were lost"""
+
+    asked, lost = None, 0
+
+    def step(self, heard):
+        if self.asked == heard.tick - 1 and heard.status is not None:
+            self.lost = 0 if heard.status.level else self.lost + 1
+        requests = super().step(heard)
+        if requests:
+            self.asked = heard.tick
+        return requests
+
+    def backoff_ticks(self, level):
+        return self.backoff // 2 if self.lost >= 2 else self.backoff
+
+
+class ForgetsAtReboot(Timers):
+    """fires at once after a boot of its own"""
+
+    def boot_ticks(self):
+        return 0
+
+
+class ForgetsThePulse(Timers):
+    """forgets at a boot that a pulse may be under way"""
+
+    def boot_ticks(self):
+        return self.backoff
+
+
+class DeafToBoots(Timers):
+    """does not hear that the board has booted"""
+
+    def step(self, heard):
+        return super().step(heard._replace(booted=False))
+
+
+class PerCoil(Timers):
+    """back-off of each coil for itself where it is shared"""
+
+    def locks(self, fired, coil):
+        return coil == fired
+
+
+class PulseRoundedUp(Timers):
+    """a pulse that is no whole number of ticks rounded up"""
+
+    def __init__(self, limits):
+        super().__init__(limits)
+        self.pulse = ceil(limits.pulse_ms * limits.tick_hz / 1000)
+
+
+class BackoffRoundedDown(Timers):
+    """a back-off that is no whole number of ticks rounded down"""
+
+    def __init__(self, limits):
+        super().__init__(limits)
+        self.backoff = limits.backoff_ms * limits.tick_hz // 1000
+
+
+class WholeMilliseconds(Timers):
+    """counts in ticks of whole milliseconds"""
+
+    def __init__(self, limits):
+        super().__init__(limits)
+        self.backoff = ceil(limits.backoff_ms / ceil(1000 / limits.tick_hz))
+
+
+class SixteenBits(Timers):
+    """keeps ticks in 16 bits, in which they start anew"""
+
+    def step(self, heard):
+        return super().step(heard._replace(tick=heard.tick & 0xFFFF))
+
+    def free(self, coil, heard):
+        return heard.tick >= max(self.ready[coil], self.busy_until) & 0xFFFF
+
+
+class ShortFloats(Timers):
+    """keeps times in floats of 32 bits"""
+
+    def free(self, coil, heard):
+        return np.float32(heard.tick) >= np.float32(max(self.ready[coil], self.busy_until))
+
+
+class CountsInAByte(Timers):
+    """counts pulses in a byte, and is free when the count is nought"""
+
+    def backoff_ticks(self, level):
+        return self.backoff if self.fired & 0xFF else 0
+
+
+class SendsAgain(Timers):
+    """sends a request again where the status after it is lost"""
+
+    last = ()
+
+    def step(self, heard):
+        if heard.status is None and self.last:
+            again, self.last = self.last, ()
+            return again
+        self.last = super().step(heard)
+        return self.last
+
+
+class SeesOneCoil(Timers):
+    """does not see that another coil is on where the back-off is of each coil"""
+
+    def free(self, coil, heard):
+        return heard.tick >= self.ready[coil]
+
+
+class Credit(Timers):
+    """no back-off after a pulse that was long waited for"""
+
+    fired_at = 0
+
+    def step(self, heard):
+        requests = super().step(heard)
+        if requests:
+            if self.fired > 1 and heard.tick - self.fired_at > 3 * (self.pulse + self.backoff):
+                self.ready = [self.busy_until] * 3
+            self.fired_at = heard.tick
+        return requests
+
+
+class DurationRoundedUp(Timers):
+    """a duration rounded up to whole milliseconds, and so past the tick it ends with"""
+
+    def duration_ms(self, coil):
+        return ceil(self.pulse * 1000 / self.limits.tick_hz)
+
+
+class TickZero(Timers):
+    """takes a boot in tick 0 for none"""
+
+    def step(self, heard):
+        if self.ready is None and heard.tick == 0:
+            self.ready, self.busy_until = [0] * 3, 0
+            heard = heard._replace(booted=False)
+        return super().step(heard)
+
+
+class HearsBootsLate(Timers):
+    """hears a tick late that the board has booted"""
+
+    booted = False
+
+    def step(self, heard):
+        before, self.booted = self.booted, heard.booted
+        return super().step(heard._replace(booted=before))
+
+
+class NoNumber(Timers):
+    """level 0 for a demand that is no number"""
+
+    def level(self, m_am2):
+        return (m_am2 > 0.0) * 3 - (m_am2 < 0.0) * 3
+
+
+PLANTED = (
+    EveryThird,
+    EveryNinth,
+    EveryFiveHundredth,
+    TwoOnEqual,
+    TwoOnEqualValues,
+    BelowCoilZero,
+    AboveCoilTwo,
+    LevelFour,
+    LevelZero,
+    ShortAfterNegative,
+    FromTheStart,
+    ShortAfterLost,
+    ShortAfterTwoLost,
+    ForgetsAtReboot,
+    ForgetsThePulse,
+    DeafToBoots,
+    PerCoil,
+    PulseRoundedUp,
+    BackoffRoundedDown,
+    WholeMilliseconds,
+    SixteenBits,
+    ShortFloats,
+    CountsInAByte,
+    SendsAgain,
+    SeesOneCoil,
+    Credit,
+    DurationRoundedUp,
+    TickZero,
+    HearsBootsLate,
+    NoNumber,
+)
+UNSOUND = frozenset({"NoNumber"})
+"""Flown with demands that are no numbers besides."""
