@@ -15,7 +15,7 @@ from fsw.wire.messages import (
     TickDone,
 )
 from fsw.wire.messages import CoilRefusedReason as Reason
-from hil_stub.coil_driver import OFF, BoardState, CoilDriver, CoilLimits, Drive
+from hil_stub.coil_driver import OFF, BoardState, CoilDriver, CoilLimits, Drive, Pin
 from hil_stub.events import CoilEventCode
 
 
@@ -279,3 +279,53 @@ class TestHeartbeat:
         (beat,) = rig.step().beats
         assert (beat.state, beat.rejects, beat.slips) == (BoardState.READY, 65_535, 65_535)
         assert beat.tick == 70_001 & 0xFFFF
+
+
+class TestAClockOfItsOwn:
+    """It is told the time with whatever comes, and when nothing comes."""
+
+    @pytest.fixture
+    def board(self):
+        """Free since a second: in tick 101, at 101 s of its clock."""
+        board = CoilDriver(CoilLimits(1))
+        board.begin_tick(0, 0.0, 0)
+        board.begin_tick(101, 0.0, 101_000)
+        return board
+
+    def fire(self, seq=7, tick=101):
+        return CoilFire(-3, 2, seq, tick & 0xFF, 3000).encode()
+
+    def test_the_pin_is_on_from_the_request_until_the_clock_ends_it(self, board):
+        assert board.pin is None
+        board.receive(self.fire(), 101_400)
+        assert board.pin == Pin(2, -3, 104_400)
+        board.pass_time(104_399)
+        assert board.pin == Pin(2, -3, 104_400)
+        board.pass_time(104_400)
+        assert board.pin is None
+
+    def test_its_last_tick_ends_with_sync(self, board):
+        board.receive(self.fire(), 101_000)
+        for tick in (102, 103, 104):
+            board.sync()
+            board.begin_tick(tick, 0.0, 101_010)
+        assert board.pin == Pin(2, -3, 104_000)
+        board.sync()
+        assert board.pin is None
+
+    def test_silence_is_timed_from_when_it_is_told(self, board):
+        board.receive(self.fire(), 101_000)
+        board.silence(150_000)
+        assert board.pin is None
+        board.begin_tick(250, 0.0, 249_999)
+        board.receive(self.fire(8, 250), 249_999)
+        assert board.pin is None
+        board.receive(self.fire(9, 250), 250_000)
+        assert board.pin == Pin(2, -3, 253_000)
+
+    def test_without_one_the_pin_has_no_timer(self):
+        board = CoilDriver(CoilLimits(1))
+        board.begin_tick(0, 0.0)
+        board.begin_tick(101, 0.0)
+        board.receive(self.fire())
+        assert board.pin == Pin(2, -3, None)

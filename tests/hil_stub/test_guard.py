@@ -120,6 +120,70 @@ def test_silence_is_off_and_a_full_lockout_on_both(timers):
     assert timers.ask(seq=2) is None
 
 
+class TestWhatIsDrivenNow:
+    """A board enters a tick ahead of its SYNC: what it tells of that instant is not so yet."""
+
+    @pytest.fixture
+    def firing(self, timers):
+        timers.go(100 * timers.hz)
+        assert not timers.guard.drives
+        assert timers.ask() is None
+        return timers
+
+    def test_from_when_it_was_asked_until_its_time_is_over(self, firing):
+        guard, began_ms = firing.guard, firing.clock_ms
+        assert (guard.drives, guard.ends_ms) == (True, began_ms + PULSE_MS)
+        guard.pass_time(began_ms + PULSE_MS - 1)
+        assert (guard.drives, guard.ends_ms) == (True, began_ms + PULSE_MS)
+        guard.pass_time(began_ms + PULSE_MS)
+        assert not guard.drives
+
+    def test_the_last_tick_lasts_until_sync(self, firing):
+        firing.go(3 * firing.hz - 1, milliseconds=10)
+        firing.guard.sync()
+        assert firing.guard.drives, "a tick is left"
+        firing.go(1, milliseconds=10)
+        assert (firing.guard.on, firing.guard.drives) == (False, True)
+        firing.guard.sync()
+        assert not firing.guard.drives
+
+    def test_a_tick_on_without_sync_it_is_over_too(self, firing):
+        firing.go(3 * firing.hz, milliseconds=10)
+        assert firing.guard.drives
+        firing.go(1, milliseconds=10)
+        assert not firing.guard.drives
+
+    def test_the_clock_ends_it_in_the_middle_of_a_tick(self, firing):
+        firing.guard.pass_time(firing.clock_ms + PULSE_MS)
+        assert (firing.guard.on, firing.guard.drives) == (False, False)
+        firing.guard.sync()
+        assert not firing.guard.drives
+
+    def test_silence_ends_it_at_once(self, firing):
+        firing.go(3 * firing.hz, milliseconds=10)
+        firing.guard.silence()
+        assert not firing.guard.drives
+
+    def test_a_request_is_timed_from_when_it_comes(self, timers):
+        timers.go(100 * timers.hz)
+        timers.guard.pass_time(timers.clock_ms + 700)
+        assert timers.ask() is None
+        assert timers.guard.ends_ms == timers.clock_ms + 700 + PULSE_MS
+        timers.go(103 * timers.hz, milliseconds=700 + PULSE_MS + BACKOFF_MS - 1)
+        assert timers.ask(seq=2) is Reason.LOCKOUT
+        timers.go(0, milliseconds=1)
+        assert timers.ask(seq=2) is None
+
+    def test_without_a_clock_it_is_what_the_ticks_say(self):
+        guard = Guard(CoilLimits(1))
+        guard.pass_time(None)
+        guard.elapse(100)
+        assert guard.ask(asking(100), 100) is None
+        assert (guard.drives, guard.ends_ms) == (True, None)
+        guard.elapse(3)
+        assert not guard.drives
+
+
 def test_without_a_clock_the_ticks_decide():
     guard = Guard(CoilLimits(1))
     guard.elapse(100)
