@@ -71,7 +71,7 @@ def row(name: str, runs: list[Run]) -> tuple[str, bool]:
     as_wanted = len(found) == (0 if SCHEDULERS[name] in CORRECT else len(runs)) and longest_s < LONGEST_S
     shown = min((one.blamed for one in found), key=len, default="")
     what = SCHEDULERS[name].__doc__.splitlines()[0]
-    text = f"{what:58} {len(found)} of {len(runs)}  {longest_s:5.1f} s  {shown}"
+    text = f"{what:62} {len(found)} of {len(runs)}  {longest_s:5.1f} s  {shown}"
     return text + ("" if as_wanted else "  <-- WRONG"), as_wanted
 
 
@@ -89,7 +89,7 @@ def main() -> int:
     names = asked.names or list(SCHEDULERS)
     seeds = range(1, asked.runs + 1)
     wanted = [(name, number) for name in names for number in seeds]
-    print(f"{'what is wrong with it':58} blamed in, longest run, and the shortest that is said of it")
+    print(f"{'what is wrong with it':62} blamed in, longest run, and the shortest that is said of it")
     right = True
     with ProcessPoolExecutor(asked.workers) as pool:
         done = pool.map(run, *zip(*wanted, strict=True))

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from fsw.core.laws.interface import Demand
 from fsw.core.laws.table import LAWS
 from fsw.wire.messages import CoilStatus, Sync, intact
-from sim.harness.audit.findings import Kind
+from sim.harness.audit.auditor import audit
+from sim.harness.audit.findings import AuditLimits, Kind
 from sim.testing import (
     Fire,
     Flight,
@@ -297,6 +298,27 @@ def test_a_violation_names_its_line_of_the_log():
     for violation in audit_scheduler(scheduler, flight).violations:
         frame = log[violation.line - 1].frame
         assert (frame.can_id, CoilStatus.decode(frame.data).level) == (CoilStatus.ID, 4)
+
+
+@pytest.mark.parametrize(
+    "scheduler",
+    [Good, planted(hears_lockout=False), planted(hears_board_boot=False, **WITHOUT_WORD), planted(coils=2)],
+    ids=["without a fault", "its own reboot", "the board's reboot", "two coils"],
+)
+def test_the_first_violation_is_that_of_the_whole_log(scheduler):
+    """Though a flight that is judged is cut short, and its quiet ticks are left out."""
+
+    @settings(SOME, max_examples=10)
+    @given(flights())
+    def the_same(flight):
+        limits = flight.limits
+        bounds = AuditLimits(
+            1000 * limits.pulse_ms, 1000 * limits.backoff_ms, shared=limits.shared, tick_hz=limits.tick_hz
+        )
+        whole = audit(fly(scheduler, flight), bounds).violations[:1]
+        assert audit_scheduler(scheduler, flight).violations[:1] == whole
+
+    the_same()
 
 
 def test_a_flight_ends_soon_after_a_limit_was_broken():
