@@ -154,7 +154,8 @@ def markdown(results: Sequence[RowResult], phases: int, seeds: int) -> str:
     """docs/faults.md."""
     lines = [_HEAD, f"{tally(results)}. Phases {phases}, seeds {seeds} each.", ""]
     if any(result.kept for result in results):
-        lines += ["\\*: flown by an earlier run, maybe of an earlier version, and kept.", ""]
+        kept = "flown by an earlier run, maybe of an earlier version, with phases and seeds of its own"
+        lines += [f"But \\*: {kept}.", ""]
     for group, rows in _groups(results):
         lines += [f"## {group}", "", "| row | injected | expected | cases | measured | verdict |"]
         lines.append("|---|---|---|---|---|---|")
