@@ -18,7 +18,7 @@ import pytest
 
 from fsw.io.open_bus import open_bus
 
-SECONDS = float(os.environ.get("TORQUER_ATTACK_SECONDS", "6"))
+SECONDS = float(os.environ.get("TORQUER_ATTACK_SECONDS", "3"))
 SEED = int(os.environ.get("TORQUER_ATTACK_SEED", "20150327"))
 STARTS_WITHIN_S = 20.0
 STOP, KILL = 0.03, 0.01

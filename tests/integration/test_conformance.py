@@ -17,16 +17,16 @@ import pytest
 
 LIMITS = (
     "--set",
-    "coils.pulse_s=0.5",
+    "coils.pulse_s=0.8",
     "--set",
-    "coils.backoff_s=1.6",
+    "coils.backoff_s=2.6",
     "--tick-hz",
-    "5",
+    "3",
     "--deadman-s",
-    "0.5",
+    "0.8",
 )
-BOARD = ("coil", "--pulse-s", "0.5", "--backoff-s", "1.6", "--tick-hz", "5", "--deadman-s", "0.5")
-SHORT = (*BOARD, "--backoff-s", "1.2")
+BOARD = ("coil", "--pulse-s", "0.8", "--backoff-s", "2.6", "--tick-hz", "3", "--deadman-s", "0.8")
+SHORT = (*BOARD, "--backoff-s", "2.0")
 
 
 def start(*words):
