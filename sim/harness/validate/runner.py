@@ -102,8 +102,7 @@ def _results(studies: Sequence[Study], workers: int) -> Iterator[tuple[int, int,
                 f"a worker process was ended from outside: {done} of {len(places)} tasks were done"
             ) from None
         except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            _end(others)
+            _end(others)  # that breaks the pool, which then gives up what waits, and is waited for
             raise
 
 
