@@ -61,7 +61,7 @@ def own_clock(subject: Subject) -> None:
     since_s, seconds = since.at_s, min(10.0, subject.limits.backoff_ms / 8000.0)
     heard = since
     for _ in range(ceil(seconds * session.tick_hz * FAST)):
-        heard = session.step(period_s=session.period_s / FAST)
+        heard = session.step(early_s=session.period_s / FAST)
     _still_locked_out(subject, heard, subject.limits.backoff_ms - 1000.0 * (session.clock() - since_s))
     session.restart()
 
@@ -85,9 +85,9 @@ def held_tick(subject: Subject) -> None:
             raise BrokenError(f"a pulse of {duration_ms} ms goes on in a tick that is held for longer")
     rush_s = min(RUSH_S, session.period_s / 10.0)
     for _ in range(ceil((limits.pulse_ms + limits.backoff_ms) / subject.tick_ms) + 3):
-        heard = session.step(period_s=rush_s)
+        heard = session.step(early_s=rush_s)
     while heard.tick % 3 != asked.coil:  # the tick that tells of its back-off
-        heard = session.step(period_s=rush_s)
+        heard = session.step(early_s=rush_s)
     left_ms = duration_ms + limits.backoff_ms - 1000.0 * (session.clock() - from_s)
     if left_ms > SLACK_MS:
         _still_locked_out(subject, heard, left_ms)

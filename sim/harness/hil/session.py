@@ -122,13 +122,16 @@ class Session:
         self.record: list[Heard] = []
         """All that was heard, and when."""
 
-    def step(self, *frames: Frame, period_s: float | None = None) -> Heard:
-        """SYNC of this tick, ``frames``, TICK_DONE; then what the board says of the next tick, until that."""
+    def step(self, *frames: Frame, early_s: float | None = None) -> Heard:
+        """SYNC of this tick, ``frames``, TICK_DONE; then what the board says of the next tick, until that.
+
+        With ``early_s`` the next tick comes so long after the answer, and not when it is due.
+        """
         tick, self.tick = self.tick, self.tick + 1
         at_s = self.due_s()
         sync = Sync(tick, self._epoch_unix_s + tick // self.tick_hz).encode()
         self._bus.send([sync, *frames, TickDone(tick, 0).encode()])
-        return self._listen(tick + 1, at_s, self.period_s if period_s is None else period_s, due=True)
+        return self._listen(tick + 1, at_s, self.period_s, due=True, early_s=early_s)
 
     def sync(self, tick: int) -> Heard:
         """A SYNC alone, of any tick, and a tick's time to listen."""
@@ -156,7 +159,9 @@ class Session:
             self._due_s = self.clock()
         return self._due_s
 
-    def _listen(self, tick: int, at_s: float, seconds: float, due: bool = False) -> Heard:
+    def _listen(
+        self, tick: int, at_s: float, seconds: float, due: bool = False, early_s: float | None = None
+    ) -> Heard:
         self._watch()
         self._due_s += seconds
         heard = Heard(tick, at_s, due)
@@ -164,6 +169,8 @@ class Session:
             frame = self._bus.receive(left_s)
             if frame is not None:
                 self._take(frame, heard)
+            if early_s is not None and heard.only(self.kind.sample):
+                self._due_s = min(self._due_s, self.clock() + early_s)
         self.record.append(heard)
         return heard
 

@@ -37,6 +37,34 @@ class SimulatedBus:
         pass
 
 
+class SlowBus(SimulatedBus):
+    """A bus on which what a board says takes 60 ms, as from a busy computer."""
+
+    def __init__(self, bench):
+        self.on_the_way = deque()
+        super().__init__(bench)
+
+    def send(self, frames):
+        super().send(frames)
+        self.on_the_way.extend((self.now_s + 0.06, frame) for frame in self.queue)
+        self.queue.clear()
+
+    def receive(self, timeout_s):
+        if self.queue:
+            return super().receive(timeout_s)
+        until_s = self.now_s + timeout_s
+        if self.on_the_way and self.on_the_way[0][0] <= until_s:
+            arrives_s, frame = self.on_the_way.popleft()
+            super().receive(max(0.0, arrives_s - self.now_s))
+            return frame
+        return super().receive(timeout_s)
+
+
+@pytest.fixture
+def slow_bus():
+    return SlowBus
+
+
 @pytest.fixture
 def session_with():
     """Makes a session with a board (made anew at each restart) in simulated time."""

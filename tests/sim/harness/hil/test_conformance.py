@@ -44,6 +44,12 @@ def test_the_stub_conforms(session_with, hz, shared, has_clock):
     assert set(found) == (set() if has_clock else {"own_clock", "held_tick"})
 
 
+def test_a_board_has_a_whole_tick_for_its_answer(session_with, slow_bus):
+    """Also when ticks come early: they come no sooner than it answers."""
+    session = session_with(lambda: CoilBoard(CoilLimits(10)), 10, bus=slow_bus)
+    assert failures(conform(session, Limits(), armed=True)) == {}
+
+
 @pytest.mark.parametrize(("pulse_ms", "backoff_ms", "deadman_s"), [(2500, 7300, 5.0), (500, 1500, 0.5)])
 def test_it_conforms_with_other_limits(session_with, pulse_ms, backoff_ms, deadman_s):
     limits = CoilLimits(10, pulse_ms, backoff_ms)
