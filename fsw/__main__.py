@@ -4,16 +4,16 @@ import sys
 
 import click
 
-from fsw.io import command_line
-from fsw.io.bus import Bus, BusError
-from fsw.io.config import flight_config
-from fsw.io.disarmed import Disarmed
-from fsw.io.node import FlightNode
-from fsw.io.open_bus import open_bus, resolve
-from fsw.io.runner import run
-from fsw.io.schema import TableError
-from fsw.io.sentence import sentence
-from fsw.io.table import FlightTable, load_flight_table
+from fsw.bus.disarmed import Disarmed
+from fsw.bus.interface import Bus, BusError
+from fsw.bus.open_bus import open_bus, resolve
+from fsw.input import command_line
+from fsw.input.schema import TableError
+from fsw.input.sentence import sentence
+from fsw.node import FlightNode
+from fsw.runner import run
+from fsw.table.config import flight_config
+from fsw.table.table import FlightTable, load_flight_table
 
 MOST_PASSED_OVER = 10_000
 

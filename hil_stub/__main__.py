@@ -10,11 +10,11 @@ from typing import TextIO
 
 import click
 
-from fsw.io.bus import Bus, BusError
-from fsw.io.open_bus import open_bus, resolve
-from fsw.io.regular_file import check_regular
-from fsw.io.sentence import sentence
-from fsw.io.toml_text import load_toml
+from fsw.bus.interface import Bus, BusError
+from fsw.bus.open_bus import open_bus, resolve
+from fsw.input.regular_file import check_regular
+from fsw.input.sentence import sentence
+from fsw.input.toml_text import load_toml
 from fsw.wire.messages import MagField, SunVector
 from hil_stub.bench import (
     DEADMAN_MS,

@@ -17,9 +17,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from fsw.io.config import flight_config
-from fsw.io.node import FlightNode
-from fsw.io.schema import TableError
+from fsw.input.schema import TableError
+from fsw.node import FlightNode
+from fsw.table.config import flight_config
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilRefused
 from sim.harness import run_dir

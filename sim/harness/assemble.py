@@ -2,7 +2,7 @@
 
 from math import cos, hypot, radians, sin
 
-from fsw.io.schema import TableError
+from fsw.input.schema import TableError
 from hil_stub.coil_driver import CoilLimits
 from sim.harness.scenario import Scenario
 from sim.plant.config import (

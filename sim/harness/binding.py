@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
-from fsw.io.schema import TableError
+from fsw.input.schema import TableError
 from sim.harness import run_dir
 from sim.harness.errors import HarnessError
 from sim.harness.progress import Watch, progress

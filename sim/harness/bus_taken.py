@@ -2,7 +2,7 @@
 
 import time
 
-from fsw.io.bus import Bus, BusError
+from fsw.bus.interface import Bus, BusError
 from fsw.wire.frame import Frame
 from fsw.wire.messages import NAMES, SENDERS, PlantBoot, Sync, TickDone, intact
 

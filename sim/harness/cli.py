@@ -13,9 +13,9 @@ from typing import Any, ParamSpec
 
 import click
 
-from fsw.io.bus import BusError
-from fsw.io.schema import TableError
-from fsw.io.sentence import sentence
+from fsw.bus.interface import BusError
+from fsw.input.schema import TableError
+from fsw.input.sentence import sentence
 from sim.harness.errors import DISK_FULL, HarnessError
 from sim.harness.signals import EndedBySignal, endings_raised
 from sim.plant.errors import PlantError

@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from fsw.core.state import FlightState
-from fsw.io.config import flight_config
+from fsw.table.config import flight_config
 from sim.harness import binding, run_dir
 from sim.harness.audit.auditor import AuditReport, Kind, audit
 from sim.harness.audit.check import limits_beside

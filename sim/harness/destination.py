@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryFile
 
-from fsw.io.regular_file import check_regular
+from fsw.input.regular_file import check_regular
 from sim.harness.errors import HarnessError
 
 

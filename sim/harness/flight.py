@@ -15,7 +15,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Protocol, Self
 
-from fsw.io.bus import Bus
+from fsw.bus.interface import Bus
 from fsw.wire.frame import Frame
 from fsw.wire.messages import NAMES, SENDERS, FswBoot, PlantBoot, TickDone, intact
 from sim.harness.candump import format_line, format_time

@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import BinaryIO, NamedTuple
 from zlib import crc32
 
-from fsw.io.regular_file import read_regular
+from fsw.input.regular_file import read_regular
 
 VERSION = 1
 SUFFIX = ".index"

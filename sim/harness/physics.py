@@ -4,8 +4,8 @@ from typing import Annotated, Self
 
 from pydantic import Field, Strict, model_validator
 
-from fsw.io.schema import NotNegative, Positive, Section, Triple
-from fsw.io.table import BodyTable
+from fsw.input.schema import NotNegative, Positive, Section, Triple
+from fsw.table.table import BodyTable
 
 Part = Annotated[float, Field(ge=0.0, le=1.0)]
 Latency = Annotated[float, Field(ge=0.0, le=60.0)]

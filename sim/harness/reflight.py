@@ -6,7 +6,7 @@ from itertools import combinations_with_replacement, islice
 
 from fsw.core.config import FlightConfig
 from fsw.core.state import FlightState
-from fsw.io.node import FlightNode
+from fsw.node import FlightNode
 from fsw.wire.frame import Frame
 from fsw.wire.messages import Sync
 

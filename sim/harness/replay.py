@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fsw.core.config import FlightConfig
-from fsw.io.node import TICKS_MODULO
+from fsw.node import TICKS_MODULO
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
     CLASSES,

@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import click
 
-from fsw.io.config import flight_config
-from fsw.io.open_bus import open_bus
+from fsw.bus.open_bus import open_bus
+from fsw.table.config import flight_config
 from fsw.wire.frame import Frame
 from fsw.wire.messages import NAMES, Sync
 from sim.harness import run_dir

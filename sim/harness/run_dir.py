@@ -12,7 +12,7 @@ from typing import Any, Final
 import numpy as np
 import tomli_w
 
-from fsw.io.schema import TableError
+from fsw.input.schema import TableError
 from sim.harness.destination import check_folder
 from sim.harness.errors import HarnessError
 from sim.harness.flight import Pace

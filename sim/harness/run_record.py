@@ -7,8 +7,8 @@ from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, with_confi
 from pydantic_core import from_json
 from typing_extensions import TypedDict
 
-from fsw.io.regular_file import read_regular
-from fsw.io.schema import faults
+from fsw.input.regular_file import read_regular
+from fsw.input.schema import faults
 from sim.harness.errors import HarnessError
 from sim.harness.names import Name
 

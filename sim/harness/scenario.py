@@ -14,19 +14,10 @@ from typing import Any, Literal, Self
 
 from pydantic import Field, model_validator
 
-from fsw.io import table as onboard
-from fsw.io.schema import (
-    Nested,
-    Positive,
-    Section,
-    TableError,
-    Triple,
-    merge,
-    read_toml,
-    validated,
-)
-from fsw.io.table import CoilTable, ControlTable, FlightTable, OrbitTable, TimeTable
-from fsw.io.toml_text import MOST_LEVELS, BoundsError, parse_toml
+from fsw.input.schema import Nested, Positive, Section, TableError, Triple, merge, read_toml, validated
+from fsw.input.toml_text import MOST_LEVELS, BoundsError, parse_toml
+from fsw.table import table as onboard
+from fsw.table.table import CoilTable, ControlTable, FlightTable, OrbitTable, TimeTable
 from sim.harness.faults.section import Faults
 from sim.harness.names import Name
 from sim.harness.physics import DisturbanceSection, ScenarioBody, SensorsSection

@@ -8,10 +8,10 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from fsw.io.bus import Bus
-from fsw.io.hub import Hub
-from fsw.io.link import LoopLink
-from fsw.io.open_bus import open_bus, resolve
+from fsw.bus.hub import Hub
+from fsw.bus.interface import Bus
+from fsw.bus.link import LoopLink
+from fsw.bus.open_bus import open_bus, resolve
 from fsw.wire.frame import Frame
 from sim.harness import run_dir
 from sim.harness.assemble import plant_config
@@ -57,7 +57,7 @@ def check_flyable(scenario: Scenario, seed: int) -> None:
     Raises:
         TableError: why not.
     """
-    from fsw.io.config import flight_config  # noqa: PLC0415  (the plant's process has no flight software)
+    from fsw.table.config import flight_config  # noqa: PLC0415  (the plant's process has no flight software)
 
     flight_config(flight_table(scenario))
     check_plant(scenario, seed)

@@ -15,7 +15,7 @@ from pydantic import Field, Strict, field_validator
 
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit import sgp4_orbit
-from fsw.io.schema import Section
+from fsw.input.schema import Section
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
     CountedMessage,

@@ -18,7 +18,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from fsw.io.regular_file import check_regular
+from fsw.input.regular_file import check_regular
 from sim.harness.errors import HarnessError
 from sim.plant.plant import TruthRow
 

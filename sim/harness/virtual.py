@@ -5,8 +5,8 @@ from collections import deque
 from collections.abc import Sequence
 from pathlib import Path
 
-from fsw.io.config import flight_config
-from fsw.io.node import FlightNode
+from fsw.node import FlightNode
+from fsw.table.config import flight_config
 from fsw.wire.frame import Frame
 from sim.harness.scenario import Scenario, flight_table
 from sim.harness.sil import Watch, record

@@ -10,11 +10,11 @@ from threading import Thread
 
 import click
 
-from fsw.io import command_line
-from fsw.io.bus import BusError
-from fsw.io.open_bus import open_bus, resolve
-from fsw.io.schema import TableError
-from fsw.io.sentence import sentence
+from fsw.bus.interface import BusError
+from fsw.bus.open_bus import open_bus, resolve
+from fsw.input import command_line
+from fsw.input.schema import TableError
+from fsw.input.sentence import sentence
 from sim.harness import run_dir
 from sim.harness.errors import DISK_FULL, HarnessError
 from sim.harness.flight import CounterpartError, FlightError, Patience

@@ -7,7 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from fsw.core.laws.interface import ControlConfig, Law
-from fsw.io.config import flight_config
+from fsw.table.config import flight_config
 from sim.harness.audit.auditor import audit
 from sim.harness.audit.findings import AuditLimits, AuditReport, Kind, Violation
 from sim.harness.candump import LogEntry

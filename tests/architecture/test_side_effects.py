@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from fsw.io.config import flight_config
-from fsw.io.node import FlightNode
+from fsw.node import FlightNode
+from fsw.table.config import flight_config
 from hil_stub.coil_driver import CoilDriver, CoilLimits
 from hil_stub.magnetometer import Magnetometer
 from hil_stub.sun_sensor import SunSensor
@@ -98,12 +98,12 @@ def test_what_an_import_does_would_be_seen(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("module", "strangers"),
     [
-        ("fsw.wire.messages", ("fsw.core", "fsw.io", "hil_stub", "sim")),
-        ("fsw.core.step", ("fsw.io", "hil_stub", "sim")),
+        ("fsw.wire.messages", ("fsw.core", "fsw.bus", "fsw.table", "hil_stub", "sim")),
+        ("fsw.core.step", ("fsw.bus", "fsw.table", "hil_stub", "sim")),
         ("fsw.__main__", ("hil_stub", "sim")),
-        ("hil_stub.coil_driver", ("fsw.core", "fsw.io", "sim")),
+        ("hil_stub.coil_driver", ("fsw.core", "fsw.bus", "fsw.table", "sim")),
         ("hil_stub.__main__", ("fsw.core", "sim")),
-        ("sim.plant.plant", ("fsw.core", "fsw.io", "sim.harness")),
+        ("sim.plant.plant", ("fsw.core", "fsw.bus", "fsw.table", "sim.harness")),
         ("sim.plant.__main__", ("filterpy", "scipy", "matplotlib", "can")),
         ("sim.harness.cli", ("filterpy", "scipy", "matplotlib", "can", "numpy", "h5py")),
     ],

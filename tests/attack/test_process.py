@@ -16,7 +16,7 @@ from threading import Thread
 
 import pytest
 
-from fsw.io.open_bus import open_bus
+from fsw.bus.open_bus import open_bus
 
 SECONDS = float(os.environ.get("TORQUER_ATTACK_SECONDS", "3"))
 SEED = int(os.environ.get("TORQUER_ATTACK_SEED", "20150327"))

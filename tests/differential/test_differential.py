@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import pytest
 
-from fsw.io.config import flight_config
-from fsw.io.node import FlightNode
+from fsw.node import FlightNode
+from fsw.table.config import flight_config
 from fsw.wire.messages import CoilFire, CoilRefused, CoilStatus
 from sim.harness.assemble import plant_config
 from sim.harness.scenario import flight_table, load, orbit_period_s

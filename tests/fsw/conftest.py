@@ -1,15 +1,18 @@
 """A satellite with its boards around the flight software: real frames, nothing zero, no two axes alike."""
 
+import socket
 from dataclasses import fields, is_dataclass, replace
 from enum import Enum
 
 import numpy as np
 import pytest
 
+from fsw.bus.hub import Hub
+from fsw.bus.link import LoopLink
 from fsw.core.state import Inbox
 from fsw.core.step import boot, step
-from fsw.io.config import flight_config
-from fsw.io.schema import merge
+from fsw.input.schema import merge
+from fsw.table.config import flight_config
 from fsw.wire.messages import CLASSES, Sync
 from sim.harness.assemble import plant_config
 from sim.harness.scenario import flight_table, load
@@ -121,3 +124,34 @@ def leaves():
 def snapshot():
     """Every number in a nested value by its path: compares what == cannot, arrays and nan included."""
     return lambda value: {path: repr(leaf) for path, leaf, _ in leaves_of(value)}
+
+
+@pytest.fixture
+def hub():
+    """A hub that serves in a thread."""
+    served = Hub()
+    served.start()
+    yield served
+    served.close()
+
+
+@pytest.fixture
+def open_link(hub):
+    """Opens one more end of the hub's bus at each call."""
+    links = []
+
+    def open_one():
+        links.append(LoopLink(hub.port, may_host=False))
+        return links[-1]
+
+    yield open_one
+    for link in links:
+        link.close()
+
+
+@pytest.fixture
+def free_port():
+    """A TCP port on which nobody listens."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]

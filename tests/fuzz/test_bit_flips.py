@@ -10,7 +10,7 @@ import pytest
 
 from fsw.core.state import Inbox
 from fsw.core.step import boot, step
-from fsw.io.config import flight_config
+from fsw.table.config import flight_config
 from fsw.wire.messages import CLASSES, CoilFire, Sync, TickDone
 from sim.harness.assemble import plant_config
 from sim.harness.faults.node_kinds import count_doubles, flip

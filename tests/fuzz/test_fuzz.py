@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 
 from fsw.core.state import checksum
-from fsw.io.config import flight_config
-from fsw.io.node import FlightNode
+from fsw.node import FlightNode
+from fsw.table.config import flight_config
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame
 from fsw.wire.messages import CLASSES, SENDERS, CoilDipole, CoilFire, Mode, Sync, TickDone, intact
 from hil_stub.coil_driver import OFF, CoilDriver, CoilLimits

@@ -22,7 +22,7 @@ from hypothesis import strategies as st
 
 import fsw.__main__
 import hil_stub.__main__
-from fsw.io import command_line
+from fsw.input import command_line
 from sim.harness import conclude
 from sim.harness.cli import main
 from sim.harness.faults import command as faults_command

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from fsw.io.config import flight_config
+from fsw.table.config import flight_config
 from fsw.wire.messages import CoilFire, FswEvent
 from sim.harness import run_dir
 from sim.harness.candump import read_log

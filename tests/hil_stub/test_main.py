@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from fsw.io.open_bus import open_bus
+from fsw.bus.open_bus import open_bus
 from fsw.wire.messages import (
     CLASSES,
     CoilBoot,

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import pytest
 
-from fsw.io.socketcan import interface_is_up
+from fsw.bus.socketcan import interface_is_up
 from fsw.wire.messages import CLASSES, Sync
 from sim.harness import conclude
 from sim.harness.candump import format_line, format_time, read_log

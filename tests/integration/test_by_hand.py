@@ -10,8 +10,8 @@ from random import Random
 import can
 import pytest
 
-from fsw.io.link import LoopLink
-from fsw.io.loop import frame_of
+from fsw.bus.link import LoopLink
+from fsw.bus.loop import frame_of
 from fsw.wire.messages import FswBoot, PlantEnd, Sync, TickDone
 
 OPTIONS = ("--seed", "7", "--orbits", "0.05")

@@ -10,7 +10,7 @@ import time
 
 import pytest
 
-from fsw.io.open_bus import open_bus
+from fsw.bus.open_bus import open_bus
 from fsw.wire.messages import MagField, SunVector
 from sim.harness.cli import main
 

@@ -9,7 +9,7 @@ from threading import Thread
 
 import pytest
 
-from fsw.io.link import LoopLink
+from fsw.bus.link import LoopLink
 from fsw.wire.frame import Frame, crc8, id_register
 from fsw.wire.messages import (
     NAMES,

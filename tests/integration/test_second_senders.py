@@ -6,7 +6,7 @@ from threading import Event, Thread
 
 import pytest
 
-from fsw.io.link import LoopLink
+from fsw.bus.link import LoopLink
 from fsw.wire.frame import EXTENDED_FLAG, REMOTE_FLAG, Frame
 from fsw.wire.messages import (
     CLASSES,

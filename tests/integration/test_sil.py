@@ -7,7 +7,7 @@ import h5py
 import numpy as np
 import pytest
 
-from fsw.io.open_bus import resolve
+from fsw.bus.open_bus import resolve
 from fsw.wire.messages import (
     CoilFire,
     CoilStatus,

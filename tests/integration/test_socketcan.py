@@ -7,8 +7,8 @@ from contextlib import closing
 import can
 import pytest
 
-from fsw.io.bus import BusClosed, BusError
-from fsw.io.open_bus import open_bus, resolve
+from fsw.bus.interface import BusClosed, BusError
+from fsw.bus.open_bus import open_bus, resolve
 from fsw.wire.frame import Frame
 
 PATIENCE_S = 10.0

@@ -2,8 +2,8 @@
 
 import pytest
 
-from fsw.io.config import flight_config
-from fsw.io.schema import merge
+from fsw.input.schema import merge
+from fsw.table.config import flight_config
 from sim.harness import run_dir, virtual
 from sim.harness.flight import Pace
 from sim.harness.scenario import flight_table, load, parse_settings

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from fsw.io.toml_text import load_toml
+from fsw.input.toml_text import load_toml
 from fsw.wire.messages import CoilBoot, FswBoot, MagBoot, PlantBoot, SunBoot, intact
 from sim.harness.audit.auditor import audit
 from sim.harness.audit.findings import AuditLimits, AuditReport, seconds_text

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from fsw.core.laws.table import LAWS, Aim
-from fsw.io.schema import Nested, merge
+from fsw.input.schema import Nested, merge
 from sim.harness.errors import HarnessError
 from sim.harness.scenario import Scenario, load
 from sim.harness.validate.flight import Order

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fsw.core.laws.table import Aim
-from fsw.io.schema import TableError
+from fsw.input.schema import TableError
 from fsw.wire.messages import Mode
 from sim.harness.compare.case import Case, Driver
 from sim.harness.errors import HarnessError

@@ -6,8 +6,8 @@ import shutil
 import tomllib
 from pathlib import Path
 
-from fsw.io.regular_file import read_regular
-from fsw.io.toml_text import MOST_BYTES, BoundsError, parse_toml
+from fsw.input.regular_file import read_regular
+from fsw.input.toml_text import MOST_BYTES, BoundsError, parse_toml
 from sim.design.linear import Gains, Number
 from sim.harness.destination import check_file
 from sim.harness.errors import HarnessError

@@ -5,8 +5,8 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from fsw.io.regular_file import read_regular
-from fsw.io.schema import faults
+from fsw.input.regular_file import read_regular
+from fsw.input.schema import faults
 from sim.harness.errors import HarnessError
 from sim.harness.faults.render import injected
 from sim.harness.faults.row import CaseResult, RowResult

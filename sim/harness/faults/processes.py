@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from random import Random
 from subprocess import Popen
 
-from fsw.io.hub import Hub
-from fsw.io.link import LoopLink
+from fsw.bus.hub import Hub
+from fsw.bus.link import LoopLink
 from fsw.wire.frame import Frame
 from fsw.wire.messages import FswBoot, intact
 from sim.harness.assemble import plant_config

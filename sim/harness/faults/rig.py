@@ -5,8 +5,8 @@ from functools import cache
 
 from fsw.core.config import FlightConfig
 from fsw.core.sync_watch import near
-from fsw.io.config import flight_config
-from fsw.io.node import FlightNode
+from fsw.node import FlightNode
+from fsw.table.config import flight_config
 from fsw.wire.frame import Frame
 from fsw.wire.messages import Sync, TickDone, intact
 from sim.harness.assemble import plant_config

@@ -7,7 +7,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, Strict, model_validator
 
-from fsw.io.schema import Positive, Section, TableError
+from fsw.input.schema import Positive, Section, TableError
 from sim.harness.faults.faulty_plant import FaultyPlant, Scheduled
 from sim.harness.faults.kinds import KINDS, make
 from sim.plant.config import PlantConfig

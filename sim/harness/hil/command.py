@@ -11,8 +11,8 @@ from tempfile import TemporaryDirectory
 import click
 import tomli_w
 
-from fsw.io.bus import Bus
-from fsw.io.open_bus import open_bus
+from fsw.bus.interface import Bus
+from fsw.bus.open_bus import open_bus
 from fsw.wire.frame import Frame
 from fsw.wire.messages import PlantBoot
 from sim.harness import run_dir

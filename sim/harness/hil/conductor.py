@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
-from fsw.io.bus import Bus
+from fsw.bus.interface import Bus
 from fsw.wire.frame import Frame
 from fsw.wire.messages import NAMES, SENDERS, CoilStatus, MagField, PlantEnd, SunVector, TickDone, intact
 from sim.harness.flight import FrameLog

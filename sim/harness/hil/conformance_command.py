@@ -5,7 +5,7 @@ import time
 
 import click
 
-from fsw.io.open_bus import open_bus, resolve
+from fsw.bus.open_bus import open_bus, resolve
 from sim.harness.hil.conformance import Verdict, conform
 from sim.harness.hil.session import KINDS, Session
 from sim.harness.hil.subject import Limits

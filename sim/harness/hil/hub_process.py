@@ -2,7 +2,7 @@
 
 import sys
 
-from fsw.io.hub import Hub
+from fsw.bus.hub import Hub
 
 
 def main() -> int:

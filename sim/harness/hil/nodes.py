@@ -11,9 +11,9 @@ from tempfile import TemporaryFile
 from types import TracebackType
 from typing import IO, NamedTuple, Self
 
-from fsw.io.bus import BusError
-from fsw.io.link import LoopLink
-from fsw.io.open_bus import resolve
+from fsw.bus.interface import BusError
+from fsw.bus.link import LoopLink
+from fsw.bus.open_bus import resolve
 
 GRACE_S = 3.0
 HUB_S = 30.0

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from fsw.io.bus import Bus
+from fsw.bus.interface import Bus
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
     CLASSES,

@@ -6,7 +6,7 @@ from functools import partial
 from math import inf, isnan, nan
 from statistics import fmean, median
 
-from fsw.io.schema import Nested
+from fsw.input.schema import Nested
 from sim.harness.validate.claim import Claim, Outcome, Study
 from sim.harness.validate.flight import Flight, Order, fly_order
 

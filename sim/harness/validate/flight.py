@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from fsw.io.config import flight_config
-from fsw.io.node import FlightNode
-from fsw.io.schema import Nested
+from fsw.input.schema import Nested
+from fsw.node import FlightNode
+from fsw.table.config import flight_config
 from fsw.wire.frame import Frame
 from fsw.wire.messages import NAMES, CoilBoot, CoilRefused, CoilStatus, PlantEnd, Sync
 from sim.harness.assemble import plant_config

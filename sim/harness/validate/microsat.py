@@ -6,7 +6,7 @@ from math import inf
 import numpy as np
 from scipy.stats import chi2
 
-from fsw.io.schema import Nested
+from fsw.input.schema import Nested
 from fsw.wire.messages import Mode
 from sim.harness.attitude_arrays import angle_rad, relative
 from sim.harness.estimates import Estimates

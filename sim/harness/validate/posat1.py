@@ -4,7 +4,7 @@ from math import inf
 from statistics import median
 from typing import Any
 
-from fsw.io.schema import Nested, merge
+from fsw.input.schema import Nested, merge
 from sim.harness.estimates import Estimates
 from sim.harness.scenario import Scenario
 from sim.harness.truth import Histories

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from fsw.io.regular_file import read_regular
+from fsw.input.regular_file import read_regular
 from sim.harness.errors import HarnessError
 
 Array = NDArray[np.float64]

@@ -5,7 +5,7 @@ from collections import deque
 
 import pytest
 
-from fsw.io.bus import BusError
+from fsw.bus.interface import BusError
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilBoot, CoilStatus, FswBoot, MagField, PlantBoot, Sync, TcClear, TickDone
 from sim.harness import bus_taken

@@ -5,8 +5,8 @@ from collections import deque
 
 import pytest
 
-from fsw.io.config import flight_config
-from fsw.io.node import FlightNode
+from fsw.node import FlightNode
+from fsw.table.config import flight_config
 from fsw.wire.messages import (
     CoilFire,
     FswBoot,

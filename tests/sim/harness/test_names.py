@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fsw.io.schema import TableError
+from fsw.input.schema import TableError
 from sim.harness.names import is_name
 from sim.harness.scenario import load, shipped
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fsw.io.schema import TableError
+from fsw.input.schema import TableError
 from sim.harness.scenario import flight_table, load, parse_settings
 
 PLATE = "body.plates=[{area_m2=0.3, normal=[0, -1, 0]}]"

@@ -5,8 +5,8 @@ from random import Random
 
 import pytest
 
-from fsw.io.config import flight_config
-from fsw.io.node import FlightNode
+from fsw.node import FlightNode
+from fsw.table.config import flight_config
 from fsw.wire.frame import Frame
 from fsw.wire.messages import FswEvent, PlantEnd, Sync, TickDone
 from sim.harness import flight, run_dir

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from fsw.io.config import flight_config
+from fsw.table.config import flight_config
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
     CoilFire,

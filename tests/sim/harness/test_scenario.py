@@ -6,8 +6,8 @@ from math import hypot
 
 import pytest
 
-from fsw.io.config import flight_config
-from fsw.io.schema import TableError
+from fsw.input.schema import TableError
+from fsw.table.config import flight_config
 from sim.harness.assemble import plant_config
 from sim.harness.scenario import flight_table, load, orbit_period_s, parse_settings, shipped
 from sim.plant.plant import Plant

@@ -12,9 +12,9 @@ import pytest
 from fsw.core.elements import RANGES, Elements
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit import element_orbit, sgp4_orbit, state_eci
-from fsw.io.config import flight_config
-from fsw.io.node import FlightNode
-from fsw.io.schema import TableError
+from fsw.input.schema import TableError
+from fsw.node import FlightNode
+from fsw.table.config import flight_config
 from fsw.wire.messages import (
     CLASSES,
     NAMES,

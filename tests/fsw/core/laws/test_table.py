@@ -12,8 +12,8 @@ from fsw.core.quaternion import normalise
 from fsw.core.state import checksum
 from fsw.core.step import boot
 from fsw.core.vector import ZERO
-from fsw.io.config import flight_config
-from fsw.io.table import flight_table
+from fsw.table.config import flight_config
+from fsw.table.table import flight_table
 
 CONFIG = flight_config(flight_table({"body": {"wheel_nms": [0.01, -0.02, 0.03]}}, "table"))
 CONTROL = CONFIG.control

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fsw.io.schema import TableError
+from fsw.input.schema import TableError
 from fsw.wire.messages import MagField
 from sim.harness.assemble import plant_config
 from sim.harness.faults.faulty_plant import FaultyPlant

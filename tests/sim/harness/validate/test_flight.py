@@ -6,7 +6,7 @@ from math import inf, nan
 import numpy as np
 import pytest
 
-from fsw.io.schema import merge
+from fsw.input.schema import merge
 from sim.harness import run_dir
 from sim.harness.conclude import conclude
 from sim.harness.validate.campaign import Figure, Group, at, campaign, label, number

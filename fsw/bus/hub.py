@@ -1,0 +1,223 @@
+"""The hub of the loop bus: hands every record that a client sends to all other clients.
+
+The hub listens on 127.0.0.1 and speaks 16-byte records (``fsw.bus.record``) after one greeting. It never
+drops a record: what a slow client has not taken yet waits in memory. When that is more than ``BACKLOG_LIMIT``
+for all clients together, the slowest is disconnected, which it notices, instead of losing frames, which it
+would not. More than ``MOST_CLIENTS`` are not let in.
+"""
+
+import selectors
+import socket
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, field
+from threading import Thread
+from time import monotonic
+
+from fsw.bus import record
+from fsw.bus.door import Door, DoorStuckError
+
+MOST_CLIENTS = 64
+"""Each of them gets a copy of every record: more would slow the bus for all."""
+
+BACKLOG_LIMIT = 64 * 2**20
+"""Bytes that are kept for all clients together."""
+
+_DOOR_REST_S = 0.1
+_CHUNK = 2**16
+_BOTH = selectors.EVENT_READ | selectors.EVENT_WRITE
+
+
+@dataclass(slots=True, eq=False)
+class _Client:
+    socket: socket.socket
+    name: str
+    torn: bytes = b""  # beginning of a record whose end is still on its way
+    backlog: bytearray = field(default_factory=bytearray)
+
+
+def tell_on_stderr(sentence: str) -> None:
+    """Say it on standard error, if that is open: the bus does not depend on who listens there."""
+    with suppress(OSError, ValueError):
+        print(f"hub: {sentence}", file=sys.stderr, flush=True)
+
+
+class Hub:
+    """A hub that serves when told to by ``poll``, or by itself in a daemon thread after ``start``.
+
+    Opening a bus waits for the hub's greeting: whoever serves by ``poll`` opens none in that same thread.
+
+    Args:
+        port: TCP port on 127.0.0.1; 0 takes a free one.
+        tell: called with a sentence about each client that is dropped for being slow, and about some of those
+            that are not let in. It must not block: the bus waits for it.
+
+    Raises:
+        OSError: the port is taken.
+    """
+
+    def __init__(self, port: int = 0, tell: Callable[[str], None] = tell_on_stderr) -> None:
+        self._clients: set[_Client] = set()
+        self._thread: Thread | None = None
+        self._selector = selectors.DefaultSelector()
+        self._tell = tell
+        self._door = Door(port, tell)
+        self._door_rests_until: float | None = None
+        self._waker, self._wake = socket.socketpair()
+        self._stopping = False
+        self.port: int = self._door.port
+        self._selector.register(self._door, selectors.EVENT_READ, self._answer_door)
+        self._selector.register(self._wake, selectors.EVENT_READ, self._stop)
+
+    @property
+    def clients(self) -> int:
+        """How many are on the bus."""
+        return len(self._clients)
+
+    def poll(self, timeout_s: float | None) -> bool:
+        """Serve what is ready, waiting at most ``timeout_s`` for it (None: for ever); true if any was."""
+        if self._door_rests_until is not None:
+            timeout_s = self._rest(self._door_rests_until, timeout_s)
+        ready = self._selector.select(timeout_s)
+        for key, events in ready:
+            if isinstance(key.data, _Client):
+                self._serve(key.data, events)
+            else:
+                handle: Callable[[], None] = key.data
+                handle()
+        return bool(ready)
+
+    def attach(self) -> socket.socket:
+        """A socket that is on the bus at once, ungreeted. Call it before ``start``, or where ``poll`` is."""
+        inner, outer = socket.socketpair()
+        self._admit(inner, "this process's own end")
+        return outer
+
+    def start(self) -> None:
+        """Serve in a daemon thread until ``close``."""
+        self._thread = Thread(target=self._run, name=f"hub:{self.port}", daemon=True)
+        self._thread.start()
+
+    def close(self, linger_s: float = 1.0) -> None:
+        """Hand over what has been sent so far, for at most ``linger_s``, then disconnect all."""
+        if self._door.fileno() < 0:
+            return
+        if self._thread is not None:
+            self._waker.send(b"\0")
+            self._thread.join()
+        if self._door_rests_until is None:
+            self._selector.unregister(self._door)
+        self._door_rests_until = None
+        self._door.close()
+        deadline = monotonic() + linger_s
+        while (self.poll(0.0) or self._backlogged()) and monotonic() < deadline:
+            if self._backlogged():
+                self.poll(0.01)
+        for client in tuple(self._clients):
+            self._drop(client)
+        self._selector.close()
+        self._wake.close()
+        self._waker.close()
+
+    def _run(self) -> None:
+        while not self._stopping:
+            self.poll(None)
+
+    def _stop(self) -> None:
+        self._wake.recv(1)
+        self._stopping = True
+
+    def _backlogged(self) -> bool:
+        return any(client.backlog for client in self._clients)
+
+    def _answer_door(self) -> None:
+        try:
+            let_in = self._door.answer(has_room=len(self._clients) < MOST_CLIENTS)
+        except DoorStuckError:  # whoever stands there would be told of again and again
+            self._selector.unregister(self._door)
+            self._door_rests_until = monotonic() + _DOOR_REST_S
+            return
+        if let_in is not None:
+            connection, port = let_in
+            self._admit(connection, f"the client on port {port}")
+
+    def _rest(self, until: float, timeout_s: float | None) -> float | None:
+        """How long to wait for traffic while nobody is let in; the timeout as it was once that is over."""
+        left_s = until - monotonic()
+        if left_s > 0.0:
+            return left_s if timeout_s is None else min(left_s, timeout_s)
+        self._selector.register(self._door, selectors.EVENT_READ, self._answer_door)
+        self._door_rests_until = None
+        return timeout_s
+
+    def _admit(self, connection: socket.socket, name: str) -> None:
+        connection.setblocking(False)
+        client = _Client(connection, name)
+        self._clients.add(client)
+        self._selector.register(connection, selectors.EVENT_READ, client)
+
+    def _serve(self, client: _Client, events: int) -> None:
+        if events & selectors.EVENT_WRITE and client in self._clients:
+            self._catch_up(client)
+        if events & selectors.EVENT_READ and client in self._clients:
+            self._forward(client)
+
+    def _forward(self, sender: _Client) -> None:
+        try:
+            received = sender.socket.recv(_CHUNK)
+        except BlockingIOError:
+            return
+        except OSError:
+            received = b""
+        if not received:
+            self._drop(sender)
+            return
+        pending = sender.torn + received if sender.torn else received
+        whole = len(pending) - len(pending) % record.SIZE
+        records, sender.torn = pending[:whole], pending[whole:]
+        if records and max(records[record.LENGTH_OFFSET :: record.SIZE]) > record.MAX_DATA:
+            self._drop(sender)  # a stranger: these are no records
+            return
+        for client in tuple(self._clients):
+            if client is not sender and records:
+                self._deliver(client, records)
+        self._shed()
+
+    def _deliver(self, client: _Client, records: bytes) -> None:
+        if not client.backlog:
+            records = records[self._send(client, records) :]
+            if not records or client not in self._clients:
+                return
+            self._selector.modify(client.socket, _BOTH, client)
+        client.backlog += records
+
+    def _shed(self) -> None:
+        """Drop the slowest, until no more is kept than may be."""
+        while sum(len(client.backlog) for client in self._clients) > BACKLOG_LIMIT:
+            slowest = max(self._clients, key=lambda client: len(client.backlog))
+            self._tell(
+                f"{slowest.name} is dropped from the loop bus on port {self.port}: it reads too slowly, "
+                f"{len(slowest.backlog) / 2**20:.1f} MiB wait for it"
+            )
+            self._drop(slowest)
+
+    def _catch_up(self, client: _Client) -> None:
+        del client.backlog[: self._send(client, client.backlog)]
+        if not client.backlog and client in self._clients:
+            self._selector.modify(client.socket, selectors.EVENT_READ, client)
+
+    def _send(self, client: _Client, records: bytes | bytearray) -> int:
+        try:
+            return client.socket.send(records)
+        except BlockingIOError:
+            return 0
+        except OSError:
+            self._drop(client)
+            return 0
+
+    def _drop(self, client: _Client) -> None:
+        self._clients.discard(client)
+        with suppress(KeyError):
+            self._selector.unregister(client.socket)
+        client.socket.close()

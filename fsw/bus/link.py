@@ -1,0 +1,166 @@
+"""One end of the loop bus: a TCP connection to the hub, which the first to come hosts itself."""
+
+import atexit
+import select
+import socket
+from collections import deque
+from collections.abc import Sequence
+from time import monotonic, sleep
+
+from fsw.bus import record
+from fsw.bus.door import FULL, GREETING, HOST
+from fsw.bus.hub import Hub
+from fsw.bus.interface import DEFAULT_LOOP_PORT, BusClosed, BusError
+from fsw.wire.frame import Frame
+
+_RETRY_S = 0.01
+_PARTING_S = 1.0
+SEND_PATIENCE_S = 20.0
+"""A hub that takes nothing for so long stands still."""
+_CHUNK = 2**16
+
+
+class LoopLink:
+    """A :class:`~fsw.bus.interface.Bus` on the loop bus of ``port``. Once open, it misses nothing.
+
+    If nobody serves the port, this process does, in a daemon thread, until ``close``: that ends the bus for
+    all.
+
+    Args:
+        port: the hub's TCP port on 127.0.0.1.
+        timeout_s: how long to try.
+        may_host: whether to serve the port if nobody does.
+
+    Raises:
+        BusError: no hub came up in time, it takes no more clients, or something else listens there.
+    """
+
+    name = "loop"
+
+    def __init__(self, port: int = DEFAULT_LOOP_PORT, timeout_s: float = 10.0, may_host: bool = True) -> None:
+        self.spec = f"loop:{port}"
+        self._inbox: deque[Frame] = deque()
+        self._torn = b""  # beginning of a record whose end is still on its way
+        self._hub: Hub | None = None
+        try:
+            self._socket = self._join(port, monotonic() + timeout_s, may_host)
+        except OSError as error:  # no descriptor or no port left, say
+            raise BusError(f"the bus {self.spec} cannot be opened: {error.strerror}") from error
+        self._socket.settimeout(SEND_PATIENCE_S)  # of sending: what is received has been waited for
+        atexit.register(self.close)
+
+    def send(self, frames: Sequence[Frame]) -> None:
+        """Send all frames at once, in order."""
+        try:
+            self._socket.sendall(record.pack_all(frames))
+        except TimeoutError as error:
+            still = f"the bus {self.spec} takes nothing any more: its hub stands still"
+            raise BusError(still) from error
+        except OSError as error:
+            raise self._closed() from error
+
+    def receive(self, timeout_s: float | None) -> Frame | None:
+        """The next frame, or None if none came within ``timeout_s``."""
+        if not self._inbox and not self._fill(timeout_s):
+            return None
+        return self._inbox.popleft()
+
+    def close(self) -> None:
+        """Leave the bus; what has been sent still reaches the others."""
+        if self._socket.fileno() < 0:
+            return
+        atexit.unregister(self.close)
+        self._part()
+        self._socket.close()
+        if self._hub is not None:
+            self._hub.close()
+
+    def _fill(self, timeout_s: float | None) -> bool:
+        deadline = None if timeout_s is None else monotonic() + timeout_s
+        while True:
+            timeout_s = None if deadline is None else max(0.0, deadline - monotonic())
+            try:
+                if not select.select((self._socket,), (), (), timeout_s)[0]:
+                    return False
+                received = self._socket.recv(_CHUNK)
+            except (OSError, ValueError) as error:  # ValueError: closed on our side
+                raise self._closed() from error
+            if not received:
+                raise self._closed()
+            pending = self._torn + received if self._torn else received
+            whole = len(pending) - len(pending) % record.SIZE
+            self._torn = pending[whole:]
+            if whole:
+                self._inbox.extend(record.unpack(pending[:whole]))
+                return True
+
+    def _closed(self) -> BusClosed:
+        if self._socket.fileno() < 0:
+            return BusClosed(f"the bus {self.spec} is closed: this end has been closed")
+        return BusClosed(
+            f"the bus {self.spec} is closed: its hub is gone, or dropped this end, which read too slowly"
+        )
+
+    def _part(self) -> None:
+        """Say that nothing more follows, and read until the hub agrees.
+
+        Closing on unread data would reset the connection and could destroy what the hub has not read yet.
+        """
+        try:
+            self._socket.shutdown(socket.SHUT_WR)
+            deadline = monotonic() + _PARTING_S
+            while (left_s := deadline - monotonic()) > 0:
+                if not select.select((self._socket,), (), (), left_s)[0] or not self._socket.recv(_CHUNK):
+                    return
+        except OSError:
+            return
+
+    def _join(self, port: int, deadline: float, may_host: bool) -> socket.socket:
+        while True:
+            connection = _connect(port, deadline)
+            if connection is None and may_host:
+                connection = self._host(port)
+            if connection is not None:
+                return connection
+            if monotonic() >= deadline:
+                raise BusError(f"no hub answers on port {port} of this machine")
+            sleep(_RETRY_S)
+
+    def _host(self, port: int) -> socket.socket | None:
+        """The host's own end, on the bus before any other; None if another opener was quicker."""
+        try:
+            hub = Hub(port)
+        except OSError:
+            return None
+        end = hub.attach()
+        hub.start()
+        self._hub = hub
+        return end
+
+
+def _connect(port: int, deadline: float) -> socket.socket | None:
+    """A connection that the hub has greeted; None if nobody listens (yet, or any more)."""
+    connection = socket.socket()
+    try:
+        connection.settimeout(max(_RETRY_S, deadline - monotonic()))
+        connection.connect((HOST, port))
+        if connection.getsockname() == connection.getpeername():  # TCP may connect a free port to itself
+            raise ConnectionRefusedError
+        connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        greeting = b""
+        while len(greeting) < len(GREETING):
+            received = connection.recv(len(GREETING) - len(greeting))
+            if not received:
+                raise ConnectionResetError
+            greeting += received
+        if greeting == FULL:
+            raise BusError(f"the loop bus on port {port} is full: its hub takes no more clients")
+        if greeting != GREETING:
+            raise BusError(f"port {port} of this machine is taken by another program, which is no hub")
+    except (ConnectionError, TimeoutError):
+        connection.close()
+        return None
+    except BaseException:
+        connection.close()
+        raise
+    return connection

@@ -1,0 +1,74 @@
+"""Buses: one small interface over SocketCAN, the loop bus and serial adapters, opened by a spec.
+
+| spec | bus | ``name`` |
+|---|---|---|
+| ``socketcan:NAME`` | a CAN interface of this Linux machine, such as vcan0 | NAME |
+| ``loop``, ``loop:PORT`` | frames over TCP on 127.0.0.1; whoever opens first hosts it | ``loop`` |
+| ``slcan:PORT`` | a serial CAN adapter (needs pyserial) | the port's last component |
+| ``auto`` | ``socketcan:vcan0`` where it is up, else ``loop`` | |
+"""
+
+from fsw.bus.interface import DEFAULT_LOOP_PORT, Bus, BusError
+
+_AUTO_INTERFACE = "vcan0"
+
+
+def resolve(spec: str) -> str:
+    """The spec in full: ``auto`` becomes what it stands for here, ``loop`` gets its port.
+
+    Raises:
+        BusError: no such kind of bus, or its argument is missing or wrong.
+    """
+    kind, _, argument = spec.partition(":")
+    match kind:
+        case "auto" if not argument:
+            return resolve(f"socketcan:{_AUTO_INTERFACE}" if _interface_is_up(_AUTO_INTERFACE) else "loop")
+        case "loop":
+            return f"loop:{_port(argument, spec)}"
+        case "socketcan" | "slcan" if argument:
+            return spec
+        case "socketcan":
+            raise BusError(f"bus '{spec}' names no interface: write for example socketcan:vcan0")
+        case "slcan":
+            raise BusError(f"bus '{spec}' names no serial port: write for example slcan:/dev/ttyACM0")
+        case "virtual":
+            raise BusError(
+                "bus 'virtual' joins nodes of one process: it cannot be opened by a node of its own"
+            )
+        case _:
+            raise BusError(f"unknown bus '{spec}': use socketcan:NAME, loop, loop:PORT, slcan:PORT or auto")
+
+
+def open_bus(spec: str) -> Bus:
+    """Open the bus that ``spec`` names.
+
+    Raises:
+        BusError: the spec is wrong, or the bus cannot be opened here.
+    """
+    kind, _, argument = resolve(spec).partition(":")
+    # Each kind is imported when it is opened: python-can alone takes longer than all the rest.
+    if kind == "loop":
+        from fsw.bus.link import LoopLink  # noqa: PLC0415
+
+        return LoopLink(int(argument))
+    if kind == "socketcan":
+        from fsw.bus.socketcan import SocketCan  # noqa: PLC0415
+
+        return SocketCan(argument)
+    from fsw.bus.slcan import open_slcan  # noqa: PLC0415
+
+    return open_slcan(argument)
+
+
+def _port(argument: str, spec: str) -> int:
+    if not argument and ":" not in spec:
+        return DEFAULT_LOOP_PORT
+    if argument.isascii() and argument.isdigit() and 0 < int(argument) < 2**16:
+        return int(argument)
+    raise BusError(f"bus '{spec}' names no TCP port: write loop or loop:PORT with a port from 1 to 65535")
+
+
+def _interface_is_up(name: str) -> bool:
+    from fsw.bus.socketcan import interface_is_up  # noqa: PLC0415
+
+    return interface_is_up(name)

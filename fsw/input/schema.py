@@ -1,0 +1,126 @@
+"""Checked values from TOML: how a section is read, and how its faults are told in one sentence."""
+
+import tomllib
+from itertools import islice
+from pathlib import Path
+from typing import Annotated, Any, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, Strict, ValidationError
+
+from fsw.input.toml_text import BoundsError, load_toml
+
+Triple = Annotated[tuple[float, float, float], Strict(False)]
+Square = Annotated[tuple[Triple, Triple, Triple], Strict(False)]
+Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
+
+Nested = dict[str, Any]
+Model = TypeVar("Model", bound=BaseModel)
+
+
+class TableError(Exception):
+    """A table that cannot be used; the message is one sentence for the user."""
+
+
+FAULTS_TOLD = 12
+LONGEST_VALUE = 80
+"""Of what is wrong, so much is told that the sentence can still be read."""
+
+
+class Section(BaseModel):
+    """A section that knows its keys and takes no others."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+def merge(base: Nested, over: Nested) -> Nested:
+    """``base`` with the values of ``over`` laid over it, section by section."""
+    merged = dict(base)
+    for key, value in over.items():
+        below = merged.get(key)
+        merged[key] = merge(below, value) if isinstance(below, dict) and isinstance(value, dict) else value
+    return merged
+
+
+def read_toml(path: Path) -> Nested:
+    """The content of a TOML file.
+
+    Raises:
+        TableError: the file is missing, unreadable, not TOML or beyond what is read of it.
+    """
+    try:
+        return load_toml(path)
+    except OSError as error:
+        raise TableError(f"{path}: cannot be read ({error.strerror or error})") from None
+    except BoundsError as error:
+        raise TableError(f"{path}: {error}") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise TableError(f"{path}: not TOML: {error}") from None
+
+
+def validated(model: type[Model], values: Nested, source: str) -> Model:
+    """``values`` as a checked model.
+
+    Raises:
+        TableError: one sentence: the source and, for each wrong key, its path and what is allowed.
+    """
+    try:
+        return model.model_validate(values)
+    except ValidationError as error:
+        raise TableError(f"{source}: {faults(model, error)}") from None
+
+
+def faults(model: type[Any], error: ValidationError) -> str:
+    """The first wrong keys, each with what is allowed, and how many there are beside them."""
+    told = "; ".join(_fault(model, dict(detail)) for detail in islice(error.errors(), FAULTS_TOLD))
+    others = error.error_count() - FAULTS_TOLD
+    return f"{told}; and {others} more" if others > 0 else told
+
+
+def _fault(model: type[Any], detail: Nested) -> str:
+    path = ".".join(str(part) for part in detail["loc"])
+    if detail["type"] == "extra_forbidden":
+        return f"{path} is not a known key"
+    if detail["type"] == "missing":
+        return f"{path} is missing"
+    message = str(detail["msg"]).removeprefix("Value error, ")
+    if detail["type"] in ("value_error", "json_invalid"):
+        return f"{path}: {message}" if path else message
+    allowed = _allowed_range(model, detail["loc"]) or _KINDS.get(detail["type"], "")
+    hint = f"allowed is {allowed}" if allowed else f"{message[0].lower()}{message[1:]}"
+    return f"{path} = {_shown(detail['input'])} is not allowed: {hint}"
+
+
+def _shown(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= LONGEST_VALUE else f"{text[:LONGEST_VALUE]}..."
+
+
+_KINDS = {
+    "model_type": "a section of keys",
+    "dict_type": "a section of keys",
+    "tuple_type": "a list",
+    "string_type": "a text",
+    "float_type": "a number",
+    "int_type": "a whole number",
+    "bool_type": "true or false",
+}
+"""What a value of the wrong type should have been."""
+
+_BOUNDS = (("gt", "above"), ("ge", "at least"), ("lt", "below"), ("le", "at most"))
+
+
+def _allowed_range(model: type[Any], location: tuple[int | str, ...]) -> str:
+    """What a number at this place may be, in words; empty where no bounds are known."""
+    if not location:
+        return ""
+    owner: Any = model
+    for part in location[:-1]:
+        owner = getattr(getattr(owner, "model_fields", {}).get(part), "annotation", None)
+    field: Any = getattr(owner, "model_fields", {}).get(location[-1])
+    limits = getattr(field, "metadata", ())
+    bounds = {name: getattr(limit, name) for limit in limits for name, _ in _BOUNDS if hasattr(limit, name)}
+    if not bounds:
+        return ""
+    kind = "a whole number" if field.annotation is int else "a number"
+    return f"{kind} {' and '.join(f'{word} {bounds[name]:g}' for name, word in _BOUNDS if name in bounds)}"

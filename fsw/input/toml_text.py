@@ -1,0 +1,75 @@
+"""TOML as far as it is read here: bounded in size, in depth and in the magnitude of its numbers.
+
+Python's own reader has no bounds: nesting ends its stack, a long key takes hours, an integer may have any
+number of digits. What no scenario, table or script needs is refused before anything is computed with it.
+"""
+
+import re
+import tomllib
+from math import inf
+from pathlib import Path
+from typing import Any
+
+from fsw.input.regular_file import read_regular
+
+MOST_BYTES = 1_000_000
+MOST_LEVELS = 32
+"""Of tables and lists inside each other."""
+LEAST, MOST = 1e-18, 1e15
+"""Between them lies the magnitude of every number, in the units of people, that is not 0."""
+
+_PART = r"""(?:[A-Za-z0-9_-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')"""
+_LONG_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{MOST_LEVELS}}}")
+
+
+class BoundsError(ValueError):
+    """TOML, but more of it than is read here; the message is a clause that says of what."""
+
+
+def load_toml(path: Path) -> dict[str, Any]:
+    """The content of a TOML file.
+
+    Raises:
+        OSError: it cannot be read, or is larger than ``MOST_BYTES``.
+        ValueError: as for ``parse_toml``, or it is no UTF-8.
+    """
+    return parse_toml(read_regular(path, MOST_BYTES).decode("utf-8"))
+
+
+def parse_toml(text: str) -> dict[str, Any]:
+    """The values of a TOML document.
+
+    Raises:
+        TOMLDecodeError: it is none.
+        BoundsError: it is nested deeper than ``MOST_LEVELS``, or a number is beyond ``LEAST`` and ``MOST``.
+    """
+    if _LONG_KEY.search(text):
+        raise BoundsError(f"a key has more than {MOST_LEVELS} parts")
+    try:
+        values = tomllib.loads(text)
+    except RecursionError:
+        raise BoundsError(_TOO_DEEP) from None
+    except tomllib.TOMLDecodeError:
+        raise
+    except ValueError:  # of int(), which counts digits
+        raise BoundsError(f"an integer is {_BEYOND}") from None
+    _check(values, "", 0)
+    return values
+
+
+_TOO_DEEP = f"it is nested deeper than {MOST_LEVELS} levels"
+_BEYOND = f"not allowed: a number is 0, or from {LEAST:g} to {MOST:g} in magnitude"
+
+
+def _check(value: object, key: str, level: int) -> None:
+    """Depth and numbers of a value; infinity and NaN are left to what knows the key."""
+    if level > MOST_LEVELS:
+        raise BoundsError(_TOO_DEEP)
+    if isinstance(value, dict):
+        for name, below in value.items():
+            _check(below, f"{key}.{name}" if key else name, level + 1)
+    elif isinstance(value, list):
+        for number, below in enumerate(value):
+            _check(below, f"{key}.{number}", level + 1)
+    elif isinstance(value, int | float) and (0 < abs(value) < LEAST or MOST < abs(value) < inf):
+        raise BoundsError(f"{key} is {_BEYOND}")

@@ -1,1 +1,0 @@
-"""Adapters at the edge of the flight software: buses, tables, the runner."""

@@ -1,0 +1,233 @@
+"""From a checked onboard table to the config the core uses: units of people to SI, seconds to ticks."""
+
+from math import ceil, cos, radians, sqrt
+
+from fsw.core.actuation import CoilConfig
+from fsw.core.coil_health import CoilHealthConfig
+from fsw.core.config import FlightConfig
+from fsw.core.dipoles import DipoleConfig
+from fsw.core.ephemeris import ephemeris_model
+from fsw.core.estimator import EstimatorConfig
+from fsw.core.field import FieldKind
+from fsw.core.laws.interface import ControlConfig, Setpoint
+from fsw.core.laws.table import LAWS
+from fsw.core.mekf_config import mekf_config
+from fsw.core.modes import TABLE, ModeConfig
+from fsw.core.orbit import Orbit, circular_orbit, sgp4_orbit
+from fsw.core.pulses import PulseConfig, pulse_timing
+from fsw.core.rates import RateGroup, RateTable
+from fsw.core.second_sender import SecondSenderConfig
+from fsw.core.sensor_pair import PairConfig
+from fsw.core.sensor_watch import AGAINST_ESTIMATE, FULL, SensorHealthConfig
+from fsw.core.vector import inverse, product
+from fsw.input.schema import TableError
+from fsw.table.schedules import schedules
+from fsw.table.table import CoilTable, FlightTable, ModesTable, OrbitTable, TelemetryTable
+
+NT = 1e-9
+CHATTER_S = 10.0
+"""Between signs of another that reports in the place of the flight software."""
+
+
+def flight_config(table: FlightTable) -> FlightConfig:
+    """Prepare everything a step needs.
+
+    Raises:
+        TableError: the table is consistent in itself but cannot be flown (orbit decayed, pulse below a tick).
+    """
+    tick_hz = table.time.tick_hz
+    try:
+        orbit = _orbit(table.orbit, table.epoch_unix_s)
+        return FlightConfig(
+            tick_hz=tick_hz,
+            epoch_unix_s=table.epoch_unix_s,
+            table_crc=table.crc,
+            ephemeris=ephemeris_model(
+                orbit,
+                table.epoch_unix_s,
+                tick_hz,
+                FieldKind(table.field.model),
+                table.field.degree,
+                table.telemetry.ephemeris_s,
+            ),
+            estimator=_estimator(table),
+            sensors=_sensors(table),
+            control=_control(table, orbit),
+            coils=CoilConfig(_pulses(table), _dipoles(table)),
+            coil_health=_coil_health(table),
+            modes=_modes(table.modes, tick_hz),
+            rates=_rates(table.telemetry, tick_hz),
+            event_spacing_ticks=_ticks(table.fdir.event_spacing_s, tick_hz),
+            second_sender=_second_sender(table),
+            stale_after_ticks=max(1, _ticks(table.modes.stale_after_s, tick_hz)),
+        )
+    except ValueError as error:
+        raise TableError(f"flight table: {error}") from None
+
+
+def _orbit(orbit: OrbitTable, epoch_unix_s: int) -> Orbit:
+    if orbit.tle is not None:
+        return sgp4_orbit(*orbit.tle)
+    altitude_km = orbit.altitude_km or 0.0
+    return circular_orbit(altitude_km, orbit.inclination_deg, orbit.raan_deg, orbit.u0_deg, epoch_unix_s)
+
+
+def _control(table: FlightTable, orbit: Orbit) -> ControlConfig:
+    control, coils, inertia = table.control, table.coils, table.body.inertia
+    gains = {
+        name: law.gains(**control.gains.get(name, {})) for name, law in LAWS.items() if law.gains is not None
+    }
+    if coils.driver == "continuous":
+        mean_dipole_am2 = _full_scale(coils)
+    else:
+        mean_dipole_am2 = coils.levels_am2[2] * coils.pulse_s / (coils.pulse_s + coils.backoff_s)
+    return ControlConfig(
+        setpoint=Setpoint(control.law, control.k_w, control.k_a, control.k_i, control.spin_radps),
+        gains=gains,
+        inertia_kgm2=inertia,
+        inertia_inverse=inverse(inertia),
+        wheel_body_nms=table.body.wheel_nms,
+        pulsed=coils.driver == "pulsed",
+        tick_s=1.0 / table.time.tick_hz,
+        horizon_s=coils.pulse_s,
+        mean_dipole_am2=mean_dipole_am2,
+        schedules=schedules(table, orbit, gains),
+    )
+
+
+def _dipoles(table: FlightTable) -> DipoleConfig | None:
+    if table.coils.driver == "pulsed":
+        return None
+    genetic = table.control.minimiser == "genetic"
+    return DipoleConfig(_full_scale(table.coils), table.body.inertia, genetic)
+
+
+def _full_scale(coils: CoilTable) -> float:
+    """The largest mean dipole over a tick of a continuous driver, A m^2."""
+    return (coils.max_dipole_am2 or 0.0) * coils.on_fraction
+
+
+def _estimator(table: FlightTable) -> EstimatorConfig:
+    tuning = table.estimator
+    return EstimatorConfig(
+        mekf=mekf_config(
+            table.body.inertia,
+            1.0 / table.time.tick_hz,
+            wheel_body_nms=table.body.wheel_nms,
+            estimate_bias=tuning.bias,
+            estimate_torque=tuning.torque,
+            magnetometer_sigma_t=tuning.magnetometer_sigma_nt * NT,
+            sun_sigma_rad=radians(tuning.sun_sigma_deg),
+            attitude_sigma_rad=radians(tuning.attitude_sigma_deg),
+            rate_sigma_radps=radians(tuning.rate_sigma_degps),
+            bias_sigma_t=tuning.bias_sigma_nt * NT,
+            torque_sigma_nm=tuning.torque_sigma_nm,
+            torque_noise_nm_rts=tuning.torque_noise_nm_rts,
+            bias_walk_t_prts=tuning.bias_walk_nt_prts * NT,
+            torque_walk_nm_prts=tuning.torque_walk_nm_prts,
+            dipole_sigma=tuning.dipole_sigma,
+            gate_nis=tuning.gate_nis,
+        ),
+        perfect=table.knowledge == "perfect",
+        max_field_error_t=tuning.max_field_error_nt * NT,
+        max_angle_error_rad=radians(tuning.max_angle_error_deg),
+        min_separation_rad=radians(tuning.min_separation_deg),
+        restart_after_rejections=tuning.restart_after_rejections,
+        valid_sigma_rad=radians(tuning.valid_sigma_deg),
+    )
+
+
+def _sensors(table: FlightTable) -> SensorHealthConfig:
+    fdir, tick_hz, tuning = table.fdir, table.time.tick_hz, table.estimator
+    sigmas = sqrt(tuning.gate_nis)
+    return SensorHealthConfig(
+        max_field_error_t=fdir.max_field_error_nt * NT,
+        max_norm_error=fdir.max_sun_norm_error,
+        max_angle_error_rad=radians(fdir.max_angle_error_deg),
+        field_noise_t=sigmas * tuning.magnetometer_sigma_nt * NT,
+        sun_noise_rad=sigmas * radians(tuning.sun_sigma_deg),
+        max_bias_t=sigmas * tuning.bias_sigma_nt * NT,
+        max_torque_nm=sigmas * tuning.torque_sigma_nm,
+        frozen_ticks=max(1, _ticks(fdir.frozen_s, tick_hz)),
+        silent_ticks=max(1, _ticks(table.modes.stale_after_s, tick_hz)),
+        name_suspicion=FULL * max(1, _ticks(fdir.name_s, tick_hz)),
+        readmit_ticks=max(1, _ticks(fdir.readmit_s, tick_hz)),
+        pair=PairConfig(
+            say_ticks=max(1, _ticks(fdir.name_s, tick_hz)),
+            prove_ticks=max(1, _ticks(fdir.prove_s, tick_hz)),
+            agree_ticks=AGAINST_ESTIMATE * max(1, _ticks(fdir.readmit_s, tick_hz)),
+        ),
+    )
+
+
+def _coil_health(table: FlightTable) -> CoilHealthConfig:
+    fdir, tick_hz = table.fdir, table.time.tick_hz
+    first, second, third = (1000.0 * m / table.coils.dipole_per_ampere_am2 for m in table.coils.levels_am2)
+    return CoilHealthConfig(
+        current_ma=(first, second, third),
+        weak_part=fdir.weak_coil_part,
+        open_part=fdir.open_coil_part,
+        name_pulses=fdir.name_pulses,
+        name_sigmas=fdir.name_sigmas,
+        stuck_ma=max(1.0, 0.5 * first),
+        stuck_ticks=_ticks(table.coils.pulse_s + fdir.stuck_s, tick_hz) + 1,
+        inertia_inverse=inverse(table.body.inertia),
+    )
+
+
+def _second_sender(table: FlightTable) -> SecondSenderConfig:
+    longest_s = table.fdir.second_sender_s
+    return SecondSenderConfig(
+        _ticks(longest_s, table.time.tick_hz), _ticks(min(CHATTER_S, longest_s), table.time.tick_hz)
+    )
+
+
+def _pulses(table: FlightTable) -> PulseConfig:
+    coils, inverse_j = table.coils, inverse(table.body.inertia)
+    tick_hz = table.time.tick_hz
+    pulse_ticks, backoff_ticks, duration_ms = pulse_timing(
+        tick_hz, int(coils.pulse_s * 1000.0 + 1e-6), ceil(coils.backoff_s * 1000.0 - 1e-6)
+    )
+    return PulseConfig(
+        pulse_ticks=pulse_ticks,
+        backoff_ticks=backoff_ticks,
+        duration_ms=duration_ms,
+        shared=coils.backoff == "shared",
+        levels_am2=coils.levels_am2,
+        pulse_s=duration_ms / 1000.0,
+        tick_s=1.0 / tick_hz,
+        leak_s=table.control.leak_s,
+        rate_metric=product(inverse_j, inverse_j),
+        energy_metric=inverse_j,
+    )
+
+
+def _modes(modes: ModesTable, tick_hz: int) -> ModeConfig:
+    dwell_s = {
+        "none_s": 0.0,
+        "recover_s": modes.recover_s,
+        "settle_s": modes.settle_s,
+        "lose_s": modes.lose_s,
+        "hold_s": modes.hold_s,
+    }
+    return ModeConfig(
+        dwell_ticks=tuple(_ticks(dwell_s[row.dwell], tick_hz) for row in TABLE),
+        slow_radps=radians(modes.slow_degps),
+        fast_radps=radians(modes.fast_degps),
+        near_cosine=cos(radians(modes.near_deg)),
+        far_cosine=cos(radians(modes.far_deg)),
+        axis_only=modes.axis_only,
+        trips_to_stay_safe=modes.trips_to_stay_safe,
+    )
+
+
+def _ticks(seconds: float, tick_hz: int) -> int:
+    """At least so long; 1.1 s at 10 Hz are 11 ticks, though 1.1 * 10 is a little more in floats."""
+    return ceil(seconds * tick_hz - 1e-9)
+
+
+def _rates(telemetry: TelemetryTable, tick_hz: int) -> RateTable:
+    def every(period_s: float) -> RateGroup:
+        return RateGroup(max(1, round(period_s * tick_hz)))
+
+    return RateTable(every(telemetry.attitude_s), every(telemetry.quality_s), every(telemetry.heartbeat_s))

@@ -1,0 +1,32 @@
+"""An error is told on one line, whatever the names in it hold."""
+
+import pytest
+
+from fsw.input.sentence import LONGEST, sentence
+
+
+@pytest.mark.parametrize("text", ["a.toml: x = 'ü' is not allowed", "", "→ 5 µT"])
+def test_what_can_be_read_stays(text):
+    assert sentence(ValueError(text)) == text
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("a\nb", r"a\nb"),
+        ("a\0b", r"a\x00b"),
+        ("\x1b[31m", r"\x1b[31m"),
+        ("\udcff", r"\udcff"),
+        ("\u2028", r"\u2028"),
+    ],
+)
+def test_what_cannot_is_escaped(text, told):
+    assert sentence(text) == told
+
+
+def test_what_is_too_long_is_cut_in_its_middle():
+    told = sentence("begin" + "x" * 10**6 + "end")
+    assert told.startswith("begin")
+    assert told.endswith("end")
+    assert " ... " in told
+    assert len(told) == LONGEST + 5

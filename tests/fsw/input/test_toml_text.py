@@ -1,0 +1,72 @@
+"""TOML is read within bounds of size, depth and magnitude; what is beyond them is told in a clause."""
+
+import time
+import tomllib
+
+import pytest
+
+from fsw.input.toml_text import LEAST, MOST, MOST_BYTES, MOST_LEVELS, BoundsError, load_toml, parse_toml
+
+DEEP = 50_000
+
+
+def fault(text):
+    with pytest.raises(BoundsError) as caught:
+        parse_toml(text)
+    return str(caught.value)
+
+
+def test_what_is_within_the_bounds_is_what_python_reads():
+    text = 'a.b = 1\n[c]\nd = [1.5, {e = "a.b"}]\n[[f]]\ng = 1979-05-27T07:32:00Z\nh = -0.0\ni = [inf, nan]\n'
+    assert repr(parse_toml(text)) == repr(tomllib.loads(text))
+
+
+def test_what_is_not_toml_is_said_by_python():
+    with pytest.raises(tomllib.TOMLDecodeError):
+        parse_toml("a = = 1")
+
+
+@pytest.mark.parametrize("text", ["[" * DEEP, "[" * 400 + "]" * 400, "{a = " * DEEP + "1" + "}" * DEEP])
+def test_nesting_has_an_end(text):
+    assert fault(f"a = {text}") == f"it is nested deeper than {MOST_LEVELS} levels"
+
+
+def test_as_deep_as_allowed_and_a_level_more():
+    assert parse_toml("a = " + "[" * MOST_LEVELS + "]" * MOST_LEVELS)
+    assert "nested deeper" in fault("a = " + "[" * (MOST_LEVELS + 1) + "]" * (MOST_LEVELS + 1))
+
+
+@pytest.mark.parametrize("part", ["a", '"a.b"', "'a b'", "a-1"])
+@pytest.mark.parametrize("line", ["{} = 1", "[{}]", "[[{}]]", "x = {{{} = 1}}"])
+def test_so_has_a_key(part, line):
+    began = time.process_time()
+    assert fault(line.format(" . ".join([part] * DEEP))) == f"a key has more than {MOST_LEVELS} parts"
+    assert parse_toml(line.format(".".join([part] * (MOST_LEVELS - 2))))
+    assert time.process_time() - began < 2.0
+
+
+@pytest.mark.parametrize("number", ["9" * 6000, "-" + "9" * 6000])
+def test_digits_are_counted(number):
+    assert fault(f"a = {number}").startswith(
+        "an integer is not allowed: a number is 0, or from 1e-18 to 1e+15"
+    )
+
+
+@pytest.mark.parametrize(
+    "number", ["1e16", "-1e16", "1e308", "1e-19", "5e-324", "10000000000000000", "0xfffffffffffffffff"]
+)
+def test_a_number_beyond_all_quantities_is_named(number):
+    assert fault(f"[s]\na = [0.0, {{b = {number}}}]").startswith("s.a.1.b is not allowed: a number is 0, or")
+
+
+@pytest.mark.parametrize("number", [0, 0.0, LEAST, -LEAST, MOST, -MOST, 1, True, float("inf")])
+def test_the_bounds_themselves_are_allowed(number):
+    assert parse_toml(f"a = {str(number).lower()}")["a"] == number
+
+
+def test_a_file(tmp_path):
+    (tmp_path / "a.toml").write_text("a = 1\n")
+    assert load_toml(tmp_path / "a.toml") == {"a": 1}
+    (tmp_path / "a.toml").write_text("#" * (MOST_BYTES + 1))
+    with pytest.raises(OSError, match="larger than 1 MB"):
+        load_toml(tmp_path / "a.toml")

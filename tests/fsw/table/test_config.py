@@ -1,0 +1,268 @@
+"""From the onboard table to what the core flies on: degrees, nanotesla and seconds to SI and ticks."""
+
+from math import cos, pi, radians
+
+import numpy as np
+import pytest
+
+from fsw.core.laws.interface import Setpoint
+from fsw.core.modes import TABLE
+from fsw.core.orbit import CircularOrbit, Sgp4Orbit
+from fsw.core.rates import RateGroup
+from fsw.core.sensor_pair import PairConfig
+from fsw.core.sensor_watch import FULL as BAD_TICK
+from fsw.core.sensor_watch import SensorHealthConfig
+from fsw.input.schema import TableError, merge
+from fsw.table.config import flight_config
+from fsw.table.table import flight_table
+
+FULL = [[1.02, 0.03, -0.02], [0.03, 1.85, 0.05], [-0.02, 0.05, 1.95]]
+CIRCULAR = {"altitude_km": 700.0, "inclination_deg": 98.2, "raan_deg": 10.0, "u0_deg": 20.0}
+
+
+def configured(**sections):
+    values = merge({"body": {"inertia_kgm2": FULL}}, sections)
+    return flight_config(flight_table(values, "table.toml"))
+
+
+class TestEstimator:
+    def test_deviations(self):
+        config = configured(
+            estimator={
+                "magnetometer_sigma_nt": 150.0,
+                "sun_sigma_deg": 0.4,
+                "attitude_sigma_deg": 6.0,
+                "rate_sigma_degps": 1.5,
+                "bias_sigma_nt": 350.0,
+                "torque_sigma_nm": 2e-7,
+            }
+        ).estimator
+        prior = np.sqrt(config.mekf.initial_covariance.diagonal())
+        expected = np.repeat([radians(6.0), radians(1.5), 350e-9, 2e-7], 3)
+        np.testing.assert_allclose(prior, expected, rtol=1e-12)
+        np.testing.assert_allclose(config.mekf.field_noise, np.eye(3) * 150e-9**2, rtol=1e-12)
+        np.testing.assert_allclose(config.mekf.sun_noise, np.eye(3) * radians(0.4) ** 2, rtol=1e-12)
+
+    @pytest.mark.parametrize("tick_hz", [1, 4])
+    def test_noise_of_a_tick(self, tick_hz):
+        tuning = {"torque_noise_nm_rts": 2e-7, "bias_walk_nt_prts": 0.3, "torque_walk_nm_prts": 5e-10}
+        config = configured(time={"tick_hz": tick_hz}, estimator=tuning).estimator.mekf
+        assert config.tick_s == 1.0 / tick_hz
+        diagonal = config.process_noise.diagonal()
+        np.testing.assert_allclose(diagonal[6:9], np.full(3, 0.3e-9**2 / tick_hz), rtol=1e-12)
+        np.testing.assert_allclose(diagonal[9:12], np.full(3, 5e-10**2 / tick_hz), rtol=1e-12)
+        rates = 2e-7**2 / tick_hz * np.linalg.inv(FULL) @ np.linalg.inv(FULL).T
+        np.testing.assert_allclose(config.process_noise[3:6, 3:6], rates, rtol=1e-9)
+
+    def test_limits_of_the_start(self):
+        config = configured().estimator
+        assert config.max_field_error_t == pytest.approx(3e-6)
+        assert config.max_angle_error_rad == pytest.approx(radians(5.0))
+        assert config.min_separation_rad == pytest.approx(radians(15.0))
+        assert config.valid_sigma_rad == pytest.approx(radians(5.0))
+        assert config.restart_after_rejections == 60
+
+    @pytest.mark.parametrize(
+        ("bias", "torque", "size"), [(True, True, 12), (False, True, 9), (False, False, 6)]
+    )
+    def test_states(self, bias, torque, size):
+        config = configured(estimator={"bias": bias, "torque": torque}).estimator
+        assert config.mekf.layout.size == size
+
+    def test_inertia_and_its_inverse(self):
+        config = configured()
+        np.testing.assert_allclose(config.estimator.mekf.inertia_kgm2, FULL)
+        np.testing.assert_allclose(config.estimator.mekf.inertia_inverse, np.linalg.inv(FULL), rtol=1e-12)
+        np.testing.assert_allclose(config.control.inertia_kgm2, FULL)
+        np.testing.assert_allclose(config.control.inertia_inverse, np.linalg.inv(FULL), rtol=1e-12)
+
+    def test_metrics_of_what_a_pulse_leaves(self):
+        """The square of the rate that is left, and twice its energy."""
+        config, inverse = configured().coils.pulses, np.linalg.inv(FULL)
+        np.testing.assert_allclose(config.rate_metric, inverse.T @ inverse, rtol=1e-12)
+        np.testing.assert_allclose(config.energy_metric, inverse, rtol=1e-12)
+
+    @pytest.mark.parametrize(("knowledge", "perfect"), [("filter", False), ("perfect", True)])
+    def test_knowledge(self, knowledge, perfect):
+        assert configured(knowledge=knowledge).estimator.perfect is perfect
+
+
+class TestTicks:
+    @pytest.mark.parametrize("tick_hz", [1, 2, 7, 10, 100])
+    def test_dwell_times_by_row(self, tick_hz):
+        """Different for each name, so that none can stand in for another."""
+        dwell_s = {"recover_s": 31.0, "settle_s": 62.5, "lose_s": 303.0, "hold_s": 600.7}
+        config = configured(time={"tick_hz": tick_hz}, modes=dwell_s).modes
+        for row, ticks in zip(TABLE, config.dwell_ticks, strict=True):
+            seconds = {**dwell_s, "none_s": 0.0}[row.dwell]
+            assert ticks - 1 < seconds * tick_hz <= ticks + 1e-6
+
+    def test_seconds_that_are_whole_ticks_are_exactly_those(self):
+        """1.1 * 10 is a little more than 11 in floats."""
+        config = configured(time={"tick_hz": 10}, modes={"recover_s": 1.1, "stale_after_s": 2.2})
+        assert config.modes.dwell_ticks[0] == 11
+        assert config.stale_after_ticks == 22
+
+    def test_limits_of_the_sensors(self):
+        fdir = {
+            "max_field_error_nt": 2500.0,
+            "max_sun_norm_error": 0.04,
+            "max_angle_error_deg": 6.0,
+            "frozen_s": 12.0,
+            "name_s": 21.0,
+            "readmit_s": 250.0,
+            "prove_s": 140.0,
+        }
+        tuning = {
+            "gate_nis": 16.0,
+            "magnetometer_sigma_nt": 150.0,
+            "sun_sigma_deg": 0.3,
+            "bias_sigma_nt": 350.0,
+            "torque_sigma_nm": 2e-7,
+        }
+        config = configured(
+            time={"tick_hz": 10}, modes={"stale_after_s": 50.0}, estimator=tuning, fdir=fdir
+        ).sensors
+        assert config == SensorHealthConfig(
+            max_field_error_t=pytest.approx(2.5e-6),
+            max_norm_error=0.04,
+            max_angle_error_rad=pytest.approx(radians(6.0)),
+            field_noise_t=pytest.approx(6e-7),
+            sun_noise_rad=pytest.approx(radians(1.2)),
+            max_bias_t=pytest.approx(1.4e-6),
+            max_torque_nm=pytest.approx(8e-7),
+            frozen_ticks=120,
+            silent_ticks=500,
+            name_suspicion=210 * BAD_TICK,
+            readmit_ticks=2500,
+            pair=PairConfig(say_ticks=210, prove_ticks=1400, agree_ticks=4 * 2500),
+        )
+
+    @pytest.mark.parametrize(
+        ("tick_hz", "pulse_ticks", "backoff_ticks", "duration_ms"),
+        [
+            (1, 3, 100, 3000),
+            (2, 6, 200, 3000),
+            (7, 21, 700, 3000),
+            (10, 30, 1000, 3000),
+            (64, 192, 6400, 3000),
+        ],
+    )
+    def test_pulse_and_back_off(self, tick_hz, pulse_ticks, backoff_ticks, duration_ms):
+        config = configured(time={"tick_hz": tick_hz}).coils.pulses
+        assert (config.pulse_ticks, config.backoff_ticks) == (pulse_ticks, backoff_ticks)
+        assert (config.duration_ms, config.pulse_s) == (duration_ms, duration_ms / 1000.0)
+        assert config.tick_s == 1.0 / tick_hz
+
+    @pytest.mark.parametrize(("pulse_s", "backoff_s"), [(2.9999, 99.9999), (2.55, 100.0001), (0.35, 0.0)])
+    def test_a_pulse_is_never_longer_and_a_gap_never_shorter_than_written(self, pulse_s, backoff_s):
+        for tick_hz in (3, 7, 10, 100):
+            config = configured(
+                time={"tick_hz": tick_hz}, coils={"pulse_s": pulse_s, "backoff_s": backoff_s}
+            ).coils.pulses
+            assert 0 < config.pulse_ticks / tick_hz <= pulse_s
+            assert config.duration_ms <= pulse_s * 1000.0
+            assert config.backoff_ticks / tick_hz >= backoff_s
+
+    def test_reports(self):
+        config = configured(
+            time={"tick_hz": 4}, telemetry={"attitude_s": 0.0, "quality_s": 10.0, "heartbeat_s": 60.0}
+        ).rates
+        assert (config.attitude, config.quality, config.heartbeat) == (
+            RateGroup(1),
+            RateGroup(40),
+            RateGroup(240),
+        )
+
+    def test_nodes_of_the_ephemeris(self):
+        assert configured(time={"tick_hz": 4}, telemetry={"ephemeris_s": 30}).ephemeris.node_ticks == 120
+
+
+def test_thresholds_of_the_modes():
+    config = configured(modes={"slow_degps": 0.2, "fast_degps": 0.7, "near_deg": 18.0, "far_deg": 44.0}).modes
+    assert config.slow_radps == pytest.approx(0.2 * pi / 180.0)
+    assert config.fast_radps == pytest.approx(0.7 * pi / 180.0)
+    assert config.near_cosine == pytest.approx(cos(radians(18.0)))
+    assert config.far_cosine == pytest.approx(cos(radians(44.0)))
+
+
+def test_control_and_coils():
+    config = configured(
+        time={"tick_hz": 5},
+        control={
+            "law": "rate_damping",
+            "k_w": 1e6,
+            "k_a": 7.0,
+            "k_i": 3e-3,
+            "spin_radps": 0.02,
+            "leak_s": 250.0,
+        },
+        coils={"backoff": "per_coil", "levels_am2": [1.0, 2.5, 9.0]},
+    )
+    assert config.control.setpoint == Setpoint("rate_damping", k_w=1e6, k_a=7.0, k_i=3e-3, spin_radps=0.02)
+    assert (config.control.tick_s, config.control.horizon_s) == (0.2, 3.0)
+    assert config.control.mean_dipole_am2 == pytest.approx(9.0 * 3.0 / 103.0)
+    pulses = config.coils.pulses
+    assert (pulses.shared, pulses.levels_am2, pulses.leak_s) == (False, (1.0, 2.5, 9.0), 250.0)
+    assert config.coils.dipoles is None
+    assert config.control.pulsed
+    assert config.control.wheel_body_nms == config.estimator.mekf.wheel_body_nms == (0.0, 0.0, 0.0)
+
+
+def test_a_wheel_is_known_to_filter_and_law():
+    config = configured(body={"wheel_nms": [0.01, -0.02, 0.03]})
+    assert config.control.wheel_body_nms == config.estimator.mekf.wheel_body_nms == (0.01, -0.02, 0.03)
+
+
+@pytest.mark.parametrize("minimiser", ["closed_form", "genetic"])
+def test_a_continuous_driver(minimiser):
+    """Full scale is a mean over the tick, of which it drives a part."""
+    config = configured(
+        coils={"driver": "continuous", "max_dipole_am2": 12.0, "on_fraction": 0.75},
+        control={"minimiser": minimiser},
+    )
+    assert config.coils.dipoles.full_scale_am2 == pytest.approx(9.0)
+    assert config.coils.dipoles.genetic is (minimiser == "genetic")
+    np.testing.assert_allclose(config.coils.dipoles.inertia_kgm2, FULL)
+    assert config.control.mean_dipole_am2 == pytest.approx(9.0)
+    assert not config.control.pulsed
+    assert config.coils.pulses == configured().coils.pulses, "the timing of pulses stays"
+
+
+def test_identity_of_the_table_goes_along():
+    table = flight_table({}, "x")
+    config = flight_config(table)
+    assert (config.table_crc, config.epoch_unix_s, config.tick_hz) == (table.crc, table.epoch_unix_s, 1)
+
+
+def test_both_kinds_of_orbit():
+    assert isinstance(configured().ephemeris.orbit, Sgp4Orbit)
+    orbit = configured(orbit=CIRCULAR).ephemeris.orbit
+    assert isinstance(orbit, CircularOrbit)
+    assert orbit.radius_m == pytest.approx(6378137.0 + 700e3)
+    assert orbit.u0_rad == pytest.approx(radians(20.0))
+
+
+@pytest.mark.parametrize(
+    ("sections", "told"),
+    [
+        ({"coils": {"pulse_s": 0.9}}, "a pulse of 900 ms is shorter than one tick at 1 Hz"),
+        ({"time": {"epoch_utc": "2031-01-01T00:00:00Z"}}, "IGRF-14 holds from 2015 to 2030"),
+        (
+            {"time": {"epoch_utc": "2010-01-01T00:00:00Z"}, "orbit": CIRCULAR},
+            "IGRF-14 holds from 2015 to 2030",
+        ),
+    ],
+)
+def test_a_table_that_cannot_be_flown_is_told_in_one_sentence(sections, told):
+    with pytest.raises(TableError, match=told) as caught:
+        configured(**sections)
+    assert "\n" not in str(caught.value)
+
+
+def test_elements_that_have_decayed_at_the_epoch_are_told():
+    draggy = "1 22826U 93061D   15086.11593543  .00000251  00000-0  99999+0 0  9992"
+    second = "2 22826  98.6946  36.4208 0008932 173.8349 186.2944 14.30166407121352"
+    sections = {"orbit": {"tle": [draggy, second]}, "time": {"epoch_utc": "2015-06-01T00:00:00Z"}}
+    with pytest.raises(TableError, match="decayed"):
+        configured(**sections)
