@@ -5,9 +5,9 @@ from enum import Enum, auto
 from typing import Self
 
 from fsw.core.config import FlightConfig
+from fsw.core.gate.sync_watch import LEAP_TICKS
 from fsw.core.state import FlightState, Inbox
 from fsw.core.step import boot, step, takes_inbox
-from fsw.core.sync_watch import LEAP_TICKS
 from fsw.core.telemetry import boot_frame
 from fsw.wire.frame import Frame
 from fsw.wire.messages import PlantBoot, PlantEnd, Sync, intact

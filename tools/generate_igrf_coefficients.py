@@ -1,11 +1,11 @@
-"""Write fsw/core/igrf_coefficients.py from the IGRF-14 table; with --check, exit 1 when the file is stale."""
+"""Write igrf_coefficients.py of the core from the IGRF-14 table; --check: exit 1 when the file is stale."""
 
 import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 TABLE = ROOT / "sim" / "plant" / "igrf14.shc"
-MODULE = ROOT / "fsw" / "core" / "igrf_coefficients.py"
+MODULE = ROOT / "fsw" / "core" / "orbit" / "igrf_coefficients.py"
 DEGREE = 10
 YEARS = (2015, 2020, 2025, 2030)
 

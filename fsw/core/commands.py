@@ -8,16 +8,16 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from fsw.core import modes
-from fsw.core.coil_health import CoilHealth
 from fsw.core.config import FlightConfig
-from fsw.core.elements import RANGES, Upload
-from fsw.core.ephemeris import advance, fly_orbit
-from fsw.core.estimator import untraced
+from fsw.core.estimation.estimator import untraced
+from fsw.core.fdir.coil_health import CoilHealth
+from fsw.core.fdir.sensor_health import SensorHealth
+from fsw.core.gate.readings import Readings, Telecommand
 from fsw.core.laws.interface import MAX_SPIN_RADPS
 from fsw.core.laws.table import LAWS
-from fsw.core.orbit import element_orbit
-from fsw.core.readings import Readings, Telecommand
-from fsw.core.sensor_health import SensorHealth
+from fsw.core.orbit.elements import RANGES, Upload
+from fsw.core.orbit.ephemeris import advance, fly_orbit
+from fsw.core.orbit.propagation import element_orbit
 from fsw.core.state import FlightState
 from fsw.wire.messages import (
     Element,

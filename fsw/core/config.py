@@ -2,15 +2,15 @@
 
 from dataclasses import dataclass
 
-from fsw.core.actuation import CoilConfig
-from fsw.core.coil_health import CoilHealthConfig
-from fsw.core.ephemeris import EphemerisModel
-from fsw.core.estimator import EstimatorConfig
+from fsw.core.actuation.actuator import CoilConfig
+from fsw.core.estimation.estimator import EstimatorConfig
+from fsw.core.fdir.coil_health import CoilHealthConfig
+from fsw.core.fdir.sensor_watch import SensorHealthConfig
+from fsw.core.gate.second_sender import SecondSenderConfig
 from fsw.core.laws.interface import ControlConfig
 from fsw.core.modes import ModeConfig
+from fsw.core.orbit.ephemeris import EphemerisModel
 from fsw.core.rates import RateTable
-from fsw.core.second_sender import SecondSenderConfig
-from fsw.core.sensor_watch import SensorHealthConfig
 
 
 @dataclass(frozen=True, slots=True)

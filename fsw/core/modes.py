@@ -7,8 +7,8 @@ dwell time is taken. Hysteresis lies in the conditions: what leads out of a mode
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from fsw.core.attitude import Attitude
-from fsw.core.vector import norm
+from fsw.core.algebra.vector import norm
+from fsw.core.estimation.attitude import Attitude
 from fsw.wire.messages import Mode
 
 

@@ -8,8 +8,8 @@ from enum import IntEnum
 from math import isfinite
 from typing import NamedTuple
 
-from fsw.core.attitude import Attitude
-from fsw.core.vector import Vec3
+from fsw.core.algebra.vector import Vec3
+from fsw.core.estimation.attitude import Attitude
 
 
 class Monitor(IntEnum):

@@ -7,15 +7,15 @@ cited by a test, and every number that an event can name stands in it.
 from enum import IntEnum
 from typing import NamedTuple
 
-from fsw.core.coil_health import CoilFault
-from fsw.core.earth import RADIUS_M
 from fsw.core.events import Event
+from fsw.core.fdir.coil_health import CoilFault
+from fsw.core.fdir.sensor_health import SHADOW_M
+from fsw.core.fdir.sensor_pair import MISFIT
+from fsw.core.fdir.sensor_watch import AGAINST_ESTIMATE, SensorFault
+from fsw.core.gate.second_sender import SIGNS
+from fsw.core.gate.sync_watch import LEAP_TICKS
 from fsw.core.monitors import RATE_LIMIT_RADPS, UNIT_TOLERANCE, Monitor
-from fsw.core.second_sender import SIGNS
-from fsw.core.sensor_health import SHADOW_M
-from fsw.core.sensor_pair import MISFIT
-from fsw.core.sensor_watch import AGAINST_ESTIMATE, SensorFault
-from fsw.core.sync_watch import LEAP_TICKS
+from fsw.core.orbit.earth import RADIUS_M
 
 
 class Requirement(NamedTuple):

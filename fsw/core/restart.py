@@ -6,14 +6,14 @@ found faulty, how often a monitor has tripped, that there is a second sender, an
 stay: a forged SYNC must not bring back a coil or a sensor that was named, nor lead out of a SAFE that lasts.
 """
 
-from fsw.core.actuation import UNHEARD, CoilView
-from fsw.core.attitude import UNKNOWN
+from fsw.core.actuation.actuator import UNHEARD, CoilView
+from fsw.core.actuation.pulses import boot
 from fsw.core.config import FlightConfig
-from fsw.core.estimator import restart
+from fsw.core.estimation.attitude import UNKNOWN
+from fsw.core.estimation.estimator import restart
+from fsw.core.gate.second_sender import SecondSender
 from fsw.core.laws.interface import FieldSample
 from fsw.core.modes import ModeState
-from fsw.core.pulses import boot
-from fsw.core.second_sender import SecondSender
 from fsw.core.state import FlightState
 from fsw.core.throttle import Throttle
 

@@ -4,20 +4,20 @@ import struct
 import zlib
 from typing import NamedTuple
 
-from fsw.core.actuation import CoilView
-from fsw.core.attitude import UNKNOWN, Attitude
-from fsw.core.coil_health import CoilHealth
-from fsw.core.elements import Elements, Upload
-from fsw.core.ephemeris import EphemerisWindow, pack_values
-from fsw.core.estimator import EstimatorState
+from fsw.core.actuation.actuator import CoilView
+from fsw.core.actuation.pulses import PulseState
+from fsw.core.estimation.attitude import UNKNOWN, Attitude
+from fsw.core.estimation.estimator import EstimatorState
+from fsw.core.fdir.coil_health import CoilHealth
+from fsw.core.fdir.sensor_health import SensorHealth
+from fsw.core.gate.readings import GateState
+from fsw.core.gate.second_sender import NOBODY, SecondSender
+from fsw.core.gate.sync_watch import SyncWatch
 from fsw.core.laws.interface import FieldSample, Memory, Setpoint
 from fsw.core.laws.table import LAWS
 from fsw.core.modes import ModeState
-from fsw.core.pulses import PulseState
-from fsw.core.readings import GateState
-from fsw.core.second_sender import NOBODY, SecondSender
-from fsw.core.sensor_health import SensorHealth
-from fsw.core.sync_watch import SyncWatch
+from fsw.core.orbit.elements import Elements, Upload
+from fsw.core.orbit.ephemeris import EphemerisWindow, pack_values
 from fsw.core.throttle import Throttle
 from fsw.wire.frame import Frame
 

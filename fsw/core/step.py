@@ -1,12 +1,14 @@
 """The flight loop as one pure function: gate, estimate, supervise, obey, control, schedule, report."""
 
-from fsw.core import coil_health, control, pulses, second_sender, sensor_health, telemetry
-from fsw.core.actuation import actuate, hear, unexpected
-from fsw.core.attitude import UNKNOWN
+from fsw.core import telemetry
+from fsw.core.actuation import pulses
+from fsw.core.actuation.actuator import actuate, hear, unexpected
+from fsw.core.algebra.quaternion import rotate
+from fsw.core.algebra.vector import ZERO
 from fsw.core.commands import command
 from fsw.core.config import FlightConfig
-from fsw.core.ephemeris import EphemerisModel, Reference, advance, fly_orbit, reference_at, sound
-from fsw.core.estimator import (
+from fsw.core.estimation.attitude import UNKNOWN
+from fsw.core.estimation.estimator import (
     NONE_USED,
     Used,
     attitude,
@@ -17,15 +19,17 @@ from fsw.core.estimator import (
     usable_field,
     usable_sun,
 )
+from fsw.core.fdir import coil_health, sensor_health
+from fsw.core.gate import second_sender
+from fsw.core.gate.readings import Readings, admit
+from fsw.core.gate.sync_watch import Belief, judge, near
+from fsw.core.laws import by_mode
 from fsw.core.laws.interface import FieldSample, Seen
-from fsw.core.quaternion import rotate
-from fsw.core.readings import Readings, admit
+from fsw.core.orbit.ephemeris import EphemerisModel, Reference, advance, fly_orbit, reference_at, sound
 from fsw.core.restart import restarted
 from fsw.core.state import FlightState, Inbox, checksum, initial_state
 from fsw.core.supervisor import Verdict, supervise
-from fsw.core.sync_watch import Belief, judge, near
 from fsw.core.throttle import Throttle, throttled
-from fsw.core.vector import ZERO
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilDipole, CoilFire, CountedMessage, TcAck, TickDone
 
@@ -61,7 +65,7 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     verdict = supervise(state, state.attitude, tick, config)
     state, acks = command(state._replace(modes=verdict.modes), readings, verdict.violated is not None, config)
     seen = _look(state, readings, reference, model)
-    demand = control.demand(state.modes.mode, seen, state.memory, state.setpoint, config.control)
+    demand = by_mode.demand(state.modes.mode, seen, state.memory, state.setpoint, config.control)
     pulse_state, coil, request = actuate(
         state.pulses, state.coil, demand, seen.b_body_t, readings, tick, config.coils, state.coils.faults
     )

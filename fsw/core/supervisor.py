@@ -3,8 +3,8 @@
 from typing import NamedTuple
 
 from fsw.core import modes
-from fsw.core.attitude import Attitude
 from fsw.core.config import FlightConfig
+from fsw.core.estimation.attitude import Attitude
 from fsw.core.modes import ModeState
 from fsw.core.monitors import Monitor, Watched, first_violation
 from fsw.core.state import FlightState

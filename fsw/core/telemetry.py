@@ -1,15 +1,15 @@
 """What fsw reports: navigation, events, heartbeat. Every message has a counter of its own in the state."""
 
-from fsw.core.attitude import Attitude
-from fsw.core.coil_health import CoilHealth
-from fsw.core.estimator import Used
+from fsw.core.estimation.attitude import Attitude
+from fsw.core.estimation.estimator import Used
 from fsw.core.events import SEVERITY, Event, Happening
+from fsw.core.fdir.coil_health import CoilHealth
+from fsw.core.fdir.sensor_watch import Sensor
+from fsw.core.gate.readings import Readings
+from fsw.core.gate.sync_watch import near
 from fsw.core.modes import ModeState
 from fsw.core.monitors import Monitor
-from fsw.core.readings import Readings
-from fsw.core.sensor_watch import Sensor
 from fsw.core.state import FlightState
-from fsw.core.sync_watch import near
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
     CoilDipole,

@@ -2,24 +2,24 @@
 
 from math import ceil, cos, radians, sqrt
 
-from fsw.core.actuation import CoilConfig
-from fsw.core.coil_health import CoilHealthConfig
+from fsw.core.actuation.actuator import CoilConfig
+from fsw.core.actuation.dipoles import DipoleConfig
+from fsw.core.actuation.pulses import PulseConfig, pulse_timing
+from fsw.core.algebra.vector import inverse, product
 from fsw.core.config import FlightConfig
-from fsw.core.dipoles import DipoleConfig
-from fsw.core.ephemeris import ephemeris_model
-from fsw.core.estimator import EstimatorConfig
-from fsw.core.field import FieldKind
+from fsw.core.estimation.estimator import EstimatorConfig
+from fsw.core.estimation.mekf_config import mekf_config
+from fsw.core.fdir.coil_health import CoilHealthConfig
+from fsw.core.fdir.sensor_pair import PairConfig
+from fsw.core.fdir.sensor_watch import AGAINST_ESTIMATE, FULL, SensorHealthConfig
+from fsw.core.gate.second_sender import SecondSenderConfig
 from fsw.core.laws.interface import ControlConfig, Setpoint
 from fsw.core.laws.table import LAWS
-from fsw.core.mekf_config import mekf_config
 from fsw.core.modes import TABLE, ModeConfig
-from fsw.core.orbit import Orbit, circular_orbit, sgp4_orbit
-from fsw.core.pulses import PulseConfig, pulse_timing
+from fsw.core.orbit.ephemeris import ephemeris_model
+from fsw.core.orbit.field import FieldKind
+from fsw.core.orbit.propagation import Orbit, circular_orbit, sgp4_orbit
 from fsw.core.rates import RateGroup, RateTable
-from fsw.core.second_sender import SecondSenderConfig
-from fsw.core.sensor_pair import PairConfig
-from fsw.core.sensor_watch import AGAINST_ESTIMATE, FULL, SensorHealthConfig
-from fsw.core.vector import inverse, product
 from fsw.input.schema import TableError
 from fsw.table.schedules import schedules
 from fsw.table.table import CoilTable, FlightTable, ModesTable, OrbitTable, TelemetryTable

@@ -2,7 +2,7 @@
 
 from math import isfinite
 
-from fsw.core.vector import Mat3, cross, dot, scale, transpose
+from fsw.core.algebra.vector import Mat3, cross, dot, scale, transpose
 
 ROUNDING = 1e-9
 

@@ -4,11 +4,11 @@ from functools import lru_cache
 from math import atan2, hypot, sqrt
 from typing import Any
 
-from fsw.core.earth import DIPOLE_TM3, MU_M3PS2
+from fsw.core.algebra.vector import cross, dot, norm
 from fsw.core.laws.lqr import LqrGains, schedule
 from fsw.core.laws.riccati import Schedule
-from fsw.core.orbit import Orbit, state_eci
-from fsw.core.vector import cross, dot, norm
+from fsw.core.orbit.earth import DIPOLE_TM3, MU_M3PS2
+from fsw.core.orbit.propagation import Orbit, state_eci
 from fsw.table.table import FlightTable
 
 SCHEDULED = ("lqr", "mpc")

@@ -17,10 +17,10 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, Strict, field_validator, model_validator
 
+from fsw.core.algebra.vector import Mat3
 from fsw.core.laws.interface import MAX_SPIN_RADPS
 from fsw.core.laws.table import LAWS
-from fsw.core.orbit import sgp4_orbit
-from fsw.core.vector import Mat3
+from fsw.core.orbit.propagation import sgp4_orbit
 from fsw.input.schema import (
     Nested,
     NotNegative,

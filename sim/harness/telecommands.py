@@ -14,7 +14,7 @@ from typing import Annotated, Literal
 from pydantic import Field, Strict, field_validator
 
 from fsw.core.laws.table import LAWS
-from fsw.core.orbit import sgp4_orbit
+from fsw.core.orbit.propagation import sgp4_orbit
 from fsw.input.schema import Section
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (

@@ -12,7 +12,7 @@ from enum import Flag
 from itertools import chain, repeat
 from typing import NamedTuple, Protocol
 
-from fsw.core.attitude import UNKNOWN, Attitude
+from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilBoot, CoilFire, CoilStatus, Sync
 from sim.harness.candump import LogEntry

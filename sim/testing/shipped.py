@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from math import isfinite
 
-from fsw.core import pulses
-from fsw.core.actuation import CoilConfig, CoilView, actuate, hear
+from fsw.core.actuation import pulses
+from fsw.core.actuation.actuator import CoilConfig, CoilView, actuate, hear
+from fsw.core.actuation.pulses import AXES, PulseConfig, PulseState
+from fsw.core.gate.readings import NOTHING
 from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, Law, Memory, Seen
-from fsw.core.pulses import AXES, PulseConfig, PulseState
-from fsw.core.readings import NOTHING
 from fsw.wire.messages import CoilBoot, CoilFire
 from sim.testing.bench import Fire, Heard, Limits, MakeScheduler, Scheduler
 

@@ -7,8 +7,8 @@ from math import cos, inf, nan, sin, sqrt
 from hypothesis import strategies as st
 from hypothesis.strategies import DrawFn, SearchStrategy
 
-from fsw.core.attitude import UNKNOWN, Attitude
-from fsw.core.vector import ZERO, Vec3
+from fsw.core.algebra.vector import ZERO, Vec3
+from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from sim.testing.bench import Flight, Limits, Reboot, Stretch
 
 WHOLE_RATES = (1, 2, 5, 10, 1000)

@@ -243,9 +243,12 @@ PLANTED = {
     "fsw/core/step.py": ("from fsw.bus import interface", "fsw.core.step -> fsw.bus.interface"),
     "fsw/node.py": ("import sim.plant.plant", "fsw.node -> sim.plant.plant"),
     "fsw/core/modes.py": ("def f():\n    import hil_stub.interlock", "fsw.core.modes -> hil_stub.interlock"),
-    "hil_stub/interlock.py": ("from fsw.core import pulses", "hil_stub.interlock -> fsw.core.pulses"),
+    "hil_stub/interlock.py": (
+        "from fsw.core.actuation import pulses",
+        "hil_stub.interlock -> fsw.core.actuation.pulses",
+    ),
     "sim/plant/plant.py": ("import sim.harness.audit.auditor", "sim.plant.plant -> sim.harness.audit"),
-    "sim/plant/field.py": ("import fsw.core.igrf", "sim.plant.field -> fsw.core.igrf"),
+    "sim/plant/field.py": ("import fsw.core.orbit.igrf", "sim.plant.field -> fsw.core.orbit.igrf"),
 }
 
 

@@ -2,10 +2,10 @@
 
 import pytest
 
-from fsw.core.second_sender import SIGNS
+from fsw.core.gate.second_sender import SIGNS
+from fsw.core.gate.sync_watch import LEAP_TICKS
 from fsw.core.state import Inbox
 from fsw.core.step import boot, step
-from fsw.core.sync_watch import LEAP_TICKS
 from fsw.node import KEPT_FRAMES, NO_PLANT_S, End, FlightNode
 from fsw.table.config import flight_config
 from fsw.table.table import load_flight_table

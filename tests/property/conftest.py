@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 import pytest
 
-from fsw.core import pulses
-from fsw.core.actuation import CoilConfig, CoilView, actuate, hear
+from fsw.core.actuation import pulses
+from fsw.core.actuation.actuator import CoilConfig, CoilView, actuate, hear
+from fsw.core.actuation.pulses import PulseConfig
+from fsw.core.gate.readings import GateState, admit
 from fsw.core.laws.interface import Demand as Asked
-from fsw.core.pulses import PulseConfig
-from fsw.core.readings import GateState, admit
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilRefused, CoilStatus, Mode
 from hil_stub.coil_driver import CoilDriver, CoilLimits

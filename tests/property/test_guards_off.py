@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import pytest
 
+from fsw.core.actuation.pulses import PulseState
+from fsw.core.gate.sync_watch import Belief
 from fsw.core.monitors import MONITORS, Monitor
-from fsw.core.pulses import PulseState
-from fsw.core.sync_watch import Belief
 from sim.harness.faults.case import fly
 from sim.harness.faults.row import Verdict
 from sim.harness.faults.rows import ROWS
@@ -42,7 +42,7 @@ WITHOUT_FRESHNESS = tuple(row for row in MONITORS if row[0] is not Monitor.FIELD
 
 GUARDS = {
     "scheduler: back-off after boot": Off(
-        "fsw-killed", "boots locked", ("fsw.core.pulses.boot", ready_at_once), phase=HALFWAY
+        "fsw-killed", "boots locked", ("fsw.core.actuation.pulses.boot", ready_at_once), phase=HALFWAY
     ),
     "interlock": Off("second-sender", "limits", ("hil_stub.interlock._REFUSED_IF", ())),
     "clock of the board": Off(

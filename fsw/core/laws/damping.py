@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
+from fsw.core.algebra.vector import Vec3, cross, norm, scale, sub
 from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
-from fsw.core.vector import Vec3, cross, norm, scale, sub
 
 MAX_DIFFERENCE_S = 10.0
 """Field samples further apart than this tell nothing of the rate."""

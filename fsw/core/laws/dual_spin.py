@@ -6,10 +6,10 @@ The review has the wheel along its second axis; its axes 1, 2, 3 are 2, 3, 1 her
 from dataclasses import dataclass
 from math import atan2, sin
 
+from fsw.core.algebra.quaternion import dcm
+from fsw.core.algebra.vector import Mat3, Vec3, add
 from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
 from fsw.core.laws.pd import attitude_error
-from fsw.core.quaternion import dcm
-from fsw.core.vector import Mat3, Vec3, add
 
 
 @dataclass(frozen=True, slots=True)

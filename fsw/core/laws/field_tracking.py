@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 
+from fsw.core.algebra.quaternion import rotate
+from fsw.core.algebra.vector import Vec3, add, scale, sub
 from fsw.core.laws.damping import MAX_DIFFERENCE_S
 from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
 from fsw.core.laws.pd import pd
-from fsw.core.quaternion import rotate
-from fsw.core.vector import Vec3, add, scale, sub
 
 TRACKED = 4
 """Numbers that field tracking remembers."""

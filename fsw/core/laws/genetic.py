@@ -10,7 +10,7 @@ Source: Tavares et al. (ConSat, PoSAT-1), after Goldberg 1989.
 
 from collections.abc import Iterator
 
-from fsw.core.vector import ZERO, Mat3, Vec3, add, cross, dot, scale, sub, transform, unit
+from fsw.core.algebra.vector import ZERO, Mat3, Vec3, add, cross, dot, scale, sub, transform, unit
 
 POPULATION = 24
 GENERATIONS = 40

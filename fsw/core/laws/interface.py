@@ -4,10 +4,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from fsw.core.attitude import Attitude
-from fsw.core.ephemeris import EphemerisModel, Reference
+from fsw.core.algebra.vector import ZERO, Mat3, Vec3
+from fsw.core.estimation.attitude import Attitude
 from fsw.core.laws.riccati import Schedule
-from fsw.core.vector import ZERO, Mat3, Vec3
+from fsw.core.orbit.ephemeris import EphemerisModel, Reference
 
 Memory = tuple[float, ...]
 """What a law carries from one tick to the next; empty when it begins."""

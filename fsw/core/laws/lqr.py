@@ -13,13 +13,13 @@ from math import atan2, cos, pi, sin
 
 import numpy as np
 
-from fsw.core.attitude import Attitude
-from fsw.core.ephemeris import Reference
+from fsw.core.algebra.quaternion import Quaternion, dcm
+from fsw.core.algebra.vector import Mat3, Vec3, add, scale, transform, transpose
+from fsw.core.estimation.attitude import Attitude
 from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
 from fsw.core.laws.pd import pd_far
 from fsw.core.laws.riccati import NotHeldError, Schedule, backward, periodic, problem
-from fsw.core.quaternion import Quaternion, dcm
-from fsw.core.vector import Mat3, Vec3, add, scale, transform, transpose
+from fsw.core.orbit.ephemeris import Reference
 
 STEPS = 48
 """Steps an orbit: about two minutes each, little more than the pulses are apart."""

@@ -2,9 +2,9 @@
 
 from typing import NamedTuple
 
+from fsw.core.algebra.quaternion import Quaternion, multiply, rotate
+from fsw.core.algebra.vector import Vec3, add, scale, transform
 from fsw.core.laws.interface import ControlConfig, Seen
-from fsw.core.quaternion import Quaternion, multiply, rotate
-from fsw.core.vector import Vec3, add, scale, transform
 
 
 class Motion(NamedTuple):

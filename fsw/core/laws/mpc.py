@@ -14,12 +14,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fsw.core.ephemeris import EphemerisModel
-from fsw.core.field import field_eci_t
 from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
 from fsw.core.laws.lqr import STEPS, check_weights, dipole, known_torque, latitude_argument, node, within
 from fsw.core.laws.riccati import Array, Schedule, backward
-from fsw.core.orbit import state_eci
+from fsw.core.orbit.ephemeris import EphemerisModel
+from fsw.core.orbit.field import field_eci_t
+from fsw.core.orbit.propagation import state_eci
 
 FLOWN = 5
 """Steps of a plan that are flown."""

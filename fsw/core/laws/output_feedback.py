@@ -14,10 +14,10 @@ z = eps lambda delta, a = alpha eps lambda, and the gains are those of the PD la
 
 from dataclasses import dataclass
 
+from fsw.core.algebra.quaternion import Quaternion
+from fsw.core.algebra.vector import Vec3, cross
 from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
 from fsw.core.laws.pd import far_error, pd_dipole
-from fsw.core.quaternion import Quaternion
-from fsw.core.vector import Vec3, cross
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,8 +1,8 @@
 """PD dipole law for three-axis pointing in the orbital frame, with an integral against constant torques."""
 
+from fsw.core.algebra.quaternion import Quaternion, dcm
+from fsw.core.algebra.vector import ZERO, Mat3, Vec3, add, cross, norm, scale
 from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
-from fsw.core.quaternion import Quaternion, dcm
-from fsw.core.vector import ZERO, Mat3, Vec3, add, cross, norm, scale
 
 
 def attitude_error(c_body_from_orbit: Mat3) -> Vec3:

@@ -12,10 +12,10 @@ actuator looks for its least value, over the 18 pulses and none, or over all dip
 Source: Tavares et al. (ConSat, PoSAT-1), eq. 5 and 18.
 """
 
-from fsw.core.earth import MU_M3PS2
+from fsw.core.algebra.quaternion import dcm
+from fsw.core.algebra.vector import Mat3, Vec3, add, cross, dot, scale, sub, transform, transpose
 from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
-from fsw.core.quaternion import dcm
-from fsw.core.vector import Mat3, Vec3, add, cross, dot, scale, sub, transform, transpose
+from fsw.core.orbit.earth import MU_M3PS2
 
 
 def free_rate_change(

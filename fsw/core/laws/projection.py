@@ -8,10 +8,10 @@ Source: Ovchinnikov, Roldugin 2019, section 3.1. The scan damages both formulas;
 
 from dataclasses import dataclass
 
+from fsw.core.algebra.quaternion import dcm
+from fsw.core.algebra.vector import ZERO, Vec3, add, cross, dot, scale, sub
 from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
 from fsw.core.laws.pd import attitude_error, far_error
-from fsw.core.quaternion import dcm
-from fsw.core.vector import ZERO, Vec3, add, cross, dot, scale, sub
 
 NT = 1e-9
 

@@ -24,7 +24,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fsw.core.vector import Mat3, Vec3, add, cross, scale, skew, sub, transform
+from fsw.core.algebra.vector import Mat3, Vec3, add, cross, scale, skew, sub, transform
 
 Array = NDArray[np.float64]
 E1: Vec3 = (1.0, 0.0, 0.0)

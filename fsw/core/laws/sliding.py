@@ -16,9 +16,9 @@ that the lost torque drop out of ds/dt.
 
 from dataclasses import dataclass
 
+from fsw.core.algebra.vector import ZERO, Vec3, add, dot, norm, scale, transform
 from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
 from fsw.core.laws.projection import torque_dipole
-from fsw.core.vector import ZERO, Vec3, add, dot, norm, scale, transform
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,10 +6,10 @@ e, with e, u, v in cyclic order. The rate wanted is the spin of the setpoint, ag
 
 from dataclasses import dataclass
 
+from fsw.core.algebra.vector import Vec3, add, cross, dot, scale
 from fsw.core.laws.damping import difference_s
 from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
 from fsw.core.laws.motion import motion
-from fsw.core.vector import Vec3, add, cross, dot, scale
 
 AXES: tuple[Vec3, Vec3, Vec3] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 

@@ -13,11 +13,11 @@ Source of the errors: Avanzini, de Angelis, Giulietti 2014, as in Ovchinnikov, R
 
 from dataclasses import dataclass
 
+from fsw.core.algebra.quaternion import rotate
+from fsw.core.algebra.vector import Vec3, add, cross, dot, norm, scale, sub, transform, unit
 from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
 from fsw.core.laws.motion import Motion, motion
 from fsw.core.laws.spin import AXES, SpinGains
-from fsw.core.quaternion import rotate
-from fsw.core.vector import Vec3, add, cross, dot, norm, scale, sub, transform, unit
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,9 +1,9 @@
 """Sun pointing: the rate across the Sun line is damped; momentum and axis of most inertia turn to it."""
 
+from fsw.core.algebra.vector import Vec3, cross, dot, norm, scale, sub, unit
 from fsw.core.laws.damping import MAX_DIFFERENCE_S
 from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
 from fsw.core.laws.motion import motion
-from fsw.core.vector import Vec3, cross, dot, norm, scale, sub, unit
 
 
 def sun_dipole(sun_change_radps: Vec3, cos_alpha: float, k: float) -> Vec3:

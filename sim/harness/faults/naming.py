@@ -3,8 +3,8 @@
 from collections.abc import Callable
 
 from fsw.core.events import Event as Number
+from fsw.core.fdir.sensor_watch import Sensor
 from fsw.core.monitors import Monitor
-from fsw.core.sensor_watch import Sensor
 from hil_stub.events import CoilEventCode
 from sim.harness.faults.record import Event, Record
 

@@ -4,7 +4,7 @@ import time
 from functools import cache
 
 from fsw.core.config import FlightConfig
-from fsw.core.sync_watch import near
+from fsw.core.gate.sync_watch import near
 from fsw.node import FlightNode
 from fsw.table.config import flight_config
 from fsw.wire.frame import Frame

@@ -7,7 +7,7 @@ from math import ceil
 
 import numpy as np
 
-from fsw.core import quaternion as onboard
+from fsw.core.algebra import quaternion as onboard
 from sim.harness.attitude_arrays import angle_rad, relative
 from sim.harness.errors import HarnessError
 from sim.harness.validate.comparison import Array, Comparison, largest

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from fsw.core import earth as onboard_earth
-from fsw.core import sun as onboard_sun
+from fsw.core.orbit import earth as onboard_earth
+from fsw.core.orbit import sun as onboard_sun
 from sim.harness.validate.comparison import Array, Comparison, angle_rad, largest
 from sim.harness.validate.reference_table import ReferenceTable, names_of
 from sim.plant import earth as plant_earth

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from fsw.core.sun import lit
+from fsw.core.orbit.sun import lit
 from sim.harness.validate.comparison import Array, Comparison, mismatch
 from sim.harness.validate.reference_table import ReferenceTable, names_of
 from sim.plant.sun import illumination

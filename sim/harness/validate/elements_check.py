@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fsw.core.orbit import sgp4_orbit, state_eci
+from fsw.core.orbit.propagation import sgp4_orbit, state_eci
 from sim.harness.errors import HarnessError
 from sim.harness.validate.claim import Claim, Outcome
 from sim.harness.validate.reference_table import read_lines

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from fsw.core import igrf as onboard
-from fsw.core.igrf_coefficients import EPOCHS_UNIX_S, MAX_DEGREE
+from fsw.core.orbit import igrf as onboard
+from fsw.core.orbit.igrf_coefficients import EPOCHS_UNIX_S, MAX_DEGREE
 from sim.harness.errors import HarnessError
 from sim.harness.validate.comparison import Array, Comparison, largest
 from sim.harness.validate.reference_table import ReferenceTable, names_of

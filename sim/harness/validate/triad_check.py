@@ -6,11 +6,11 @@ from math import inf
 
 import numpy as np
 
-from fsw.core.mekf import Estimate, start, update_both
-from fsw.core.mekf_config import mekf_config
-from fsw.core.quaternion import normalise
-from fsw.core.triad import triad
-from fsw.core.vector import ZERO, Vec3
+from fsw.core.algebra.quaternion import normalise
+from fsw.core.algebra.vector import ZERO, Vec3
+from fsw.core.estimation.mekf import Estimate, start, update_both
+from fsw.core.estimation.mekf_config import mekf_config
+from fsw.core.estimation.triad import triad
 from sim.harness.attitude_arrays import angle_rad, relative
 from sim.harness.errors import HarnessError
 from sim.harness.validate.comparison import Array, Comparison

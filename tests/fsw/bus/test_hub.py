@@ -225,6 +225,7 @@ class TestRoom:
     @pytest.fixture
     def full(self, hub):
         clients = [come(hub.port) for _ in range(MOST_CLIENTS)]
+        wait_until(lambda: hub.clients == MOST_CLIENTS)  # it greets before it counts
         yield clients
         for client in clients:
             client.close()

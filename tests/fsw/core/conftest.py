@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from fsw.core.orbit import sgp4_orbit
+from fsw.core.orbit.propagation import sgp4_orbit
 
 ROOT = Path(__file__).resolve().parents[3]
 REFERENCE = ROOT / "tests" / "reference"

@@ -6,16 +6,16 @@ from random import Random
 
 import pytest
 
-from fsw.core.coil_health import CoilHealth
 from fsw.core.commands import HANDLERS, LAW_NAMES, command, decimal
-from fsw.core.elements import RANGES, Elements, Upload
-from fsw.core.ephemeris import advance, fly_orbit
+from fsw.core.fdir.coil_health import CoilHealth
+from fsw.core.fdir.sensor_health import SensorHealth
+from fsw.core.fdir.sensor_watch import Watch
+from fsw.core.gate.readings import NOTHING, TELECOMMANDS
 from fsw.core.laws.table import LAWS
 from fsw.core.modes import ModeState
-from fsw.core.orbit import element_orbit, sgp4_orbit, state_eci
-from fsw.core.readings import NOTHING, TELECOMMANDS
-from fsw.core.sensor_health import SensorHealth
-from fsw.core.sensor_watch import Watch
+from fsw.core.orbit.elements import RANGES, Elements, Upload
+from fsw.core.orbit.ephemeris import advance, fly_orbit
+from fsw.core.orbit.propagation import element_orbit, sgp4_orbit, state_eci
 from fsw.core.state import checksum
 from fsw.core.step import boot
 from fsw.wire.messages import (

@@ -5,7 +5,7 @@ from math import cos, pi, radians, sin
 
 import pytest
 
-from fsw.core.estimator import Attitude
+from fsw.core.estimation.estimator import Attitude
 from fsw.core.modes import TABLE, ModeConfig, ModeState, Situation, advance, judge
 from fsw.table.table import ModesTable
 from fsw.wire.messages import Mode

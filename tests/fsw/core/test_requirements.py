@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from fsw.core.coil_health import CoilFault
+from fsw.core.fdir.coil_health import CoilFault
+from fsw.core.fdir.sensor_watch import SensorFault
 from fsw.core.monitors import Monitor
 from fsw.core.requirements import REQUIREMENTS, document
-from fsw.core.sensor_watch import SensorFault
 from fsw.core.telemetry import Event
 
 ROOT = Path(__file__).resolve().parents[3]

@@ -5,15 +5,15 @@ from random import Random
 
 import pytest
 
-from fsw.core.coil_health import CoilFault
 from fsw.core.events import Event
+from fsw.core.fdir.coil_health import CoilFault
+from fsw.core.fdir.sensor_watch import SensorFault, Watch
+from fsw.core.gate.second_sender import SIGNS, SecondSender
+from fsw.core.gate.sync_watch import LEAP_TICKS
 from fsw.core.modes import ask
 from fsw.core.restart import restarted
-from fsw.core.second_sender import SIGNS, SecondSender
-from fsw.core.sensor_watch import SensorFault, Watch
 from fsw.core.state import Inbox
 from fsw.core.step import step, takes_inbox
-from fsw.core.sync_watch import LEAP_TICKS
 from fsw.wire.messages import CLASSES, CoilFire, FswEvent, Mode, PlantEnd, TickDone
 
 FAR = 10**9

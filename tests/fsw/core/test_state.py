@@ -7,8 +7,8 @@ from math import nextafter
 import numpy as np
 import pytest
 
-from fsw.core.elements import Elements, Upload
 from fsw.core.laws.table import LAWS
+from fsw.core.orbit.elements import Elements, Upload
 from fsw.core.state import FlightState, checksum
 from fsw.core.step import boot
 from fsw.wire.messages import Element

@@ -7,10 +7,10 @@ from math import inf, nan
 
 import pytest
 
+from fsw.core.algebra.vector import dot, norm
 from fsw.core.state import Inbox, checksum
 from fsw.core.step import boot, step
 from fsw.core.telemetry import Event
-from fsw.core.vector import dot, norm
 from fsw.wire.messages import (
     CLASSES,
     CoilFire,

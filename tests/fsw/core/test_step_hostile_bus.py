@@ -9,11 +9,11 @@ from random import Random
 
 import pytest
 
-from fsw.core import mekf
-from fsw.core.readings import INBOX_LIMIT
+from fsw.core.estimation import mekf
+from fsw.core.gate.readings import INBOX_LIMIT
+from fsw.core.gate.sync_watch import near
 from fsw.core.state import Inbox, checksum
 from fsw.core.step import boot, step
-from fsw.core.sync_watch import near
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame
 from fsw.wire.messages import (
     CLASSES,

@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-from fsw.core.coil_health import CoilHealth
-from fsw.core.estimator import UNKNOWN, Attitude
+from fsw.core.estimation.estimator import UNKNOWN, Attitude
+from fsw.core.fdir.coil_health import CoilHealth
+from fsw.core.gate.second_sender import SIGNS, SecondSender
 from fsw.core.modes import ModeState
 from fsw.core.monitors import Monitor
-from fsw.core.second_sender import SIGNS, SecondSender
 from fsw.core.supervisor import supervise
 from fsw.wire.messages import Mode
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from fsw.core import telemetry
-from fsw.core.estimator import UNKNOWN, Attitude, EstimatorState, Used
-from fsw.core.mekf import Estimate
+from fsw.core.estimation.estimator import UNKNOWN, Attitude, EstimatorState, Used
+from fsw.core.estimation.mekf import Estimate
+from fsw.core.gate.readings import NOTHING
 from fsw.core.modes import ModeState
 from fsw.core.monitors import Monitor
-from fsw.core.readings import NOTHING
 from fsw.core.step import boot
 from fsw.core.telemetry import COUNTED, FIRST_COUNTERS, SEVERITY, Event, Happening
 from fsw.wire.messages import (

@@ -5,13 +5,13 @@ from math import cos, pi, radians
 import numpy as np
 import pytest
 
+from fsw.core.fdir.sensor_pair import PairConfig
+from fsw.core.fdir.sensor_watch import FULL as BAD_TICK
+from fsw.core.fdir.sensor_watch import SensorHealthConfig
 from fsw.core.laws.interface import Setpoint
 from fsw.core.modes import TABLE
-from fsw.core.orbit import CircularOrbit, Sgp4Orbit
+from fsw.core.orbit.propagation import CircularOrbit, Sgp4Orbit
 from fsw.core.rates import RateGroup
-from fsw.core.sensor_pair import PairConfig
-from fsw.core.sensor_watch import FULL as BAD_TICK
-from fsw.core.sensor_watch import SensorHealthConfig
 from fsw.input.schema import TableError, merge
 from fsw.table.config import flight_config
 from fsw.table.table import flight_table

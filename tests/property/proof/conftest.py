@@ -23,10 +23,10 @@ from typing import NamedTuple
 
 import pytest
 
-from fsw.core import actuation, pulses
+from fsw.core.actuation import actuator, pulses
+from fsw.core.algebra.vector import ZERO
+from fsw.core.gate.readings import NOTHING
 from fsw.core.laws.interface import Demand
-from fsw.core.readings import NOTHING
-from fsw.core.vector import ZERO
 from fsw.wire.messages import CoilBoot, CoilFire, CoilStatus
 from hil_stub import interlock
 
@@ -54,7 +54,7 @@ class Setup(NamedTuple):
     shared: bool
     pulse_ticks: int
     backoff_ticks: int
-    scheduler: ModuleType = actuation
+    scheduler: ModuleType = actuator
     rules: ModuleType = interlock
     faults: bool = True
     board_restarts: bool = True
@@ -143,7 +143,7 @@ class Proof:
         return max(known.values())
 
 
-def relative(state: pulses.PulseState, view: actuation.CoilView, now: int) -> Own:
+def relative(state: pulses.PulseState, view: actuator.CoilView, now: int) -> Own:
     first, second, third = (max(0, ready - now) for ready in state.ready_tick)
     word = tuple(min(lockout_ms, 1) for lockout_ms in view.lockout_ms)
     return Own((first, second, third), max(0, state.busy_until - now), word)
@@ -168,7 +168,7 @@ class Search:
             rate_metric=identity,
             energy_metric=identity,
         )
-        self.coils = actuation.CoilConfig(self.config, dipoles=None)
+        self.coils = actuator.CoilConfig(self.config, dipoles=None)
         self.limits = setup.rules.CoilLimits(1, duration_ms, 1000 * setup.backoff_ticks, setup.shared)
         self.words, self.decide, self.ask = cache(self._words), cache(self._decide), cache(self._ask)
         self.drive = cache(self._drive)

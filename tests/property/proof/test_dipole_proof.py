@@ -9,11 +9,11 @@ from itertools import product
 
 import pytest
 
-from fsw.core import pulses
-from fsw.core.actuation import CoilConfig, CoilView, actuate, hear
-from fsw.core.dipoles import DipoleConfig
+from fsw.core.actuation import pulses
+from fsw.core.actuation.actuator import CoilConfig, CoilView, actuate, hear
+from fsw.core.actuation.dipoles import DipoleConfig
+from fsw.core.gate.readings import GateState, admit
 from fsw.core.laws.interface import Demand
-from fsw.core.readings import GateState, admit
 from fsw.wire.messages import CoilBoot, CoilDipole, CoilDipoleStatus
 from hil_stub.dipole_driver import DipoleDriver
 

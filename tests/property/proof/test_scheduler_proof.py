@@ -13,7 +13,7 @@ from types import ModuleType
 
 import pytest
 
-from fsw.core import actuation, pulses
+from fsw.core.actuation import actuator, pulses
 from hil_stub import interlock
 
 SHARED, PER_COIL = True, False
@@ -38,10 +38,10 @@ def planted(module: ModuleType, swaps: list[tuple[str, str]]) -> ModuleType:
 def scheduler(*swaps: tuple[str, str]) -> ModuleType:
     """The scheduler with bugs planted in either of its modules."""
     for old, _ in swaps:
-        assert sum(inspect.getsource(module).count(old) for module in (actuation, pulses)) == 1, old
+        assert sum(inspect.getsource(module).count(old) for module in (actuator, pulses)) == 1, old
     if not swaps:
-        return actuation
-    copy = planted(actuation, swaps)
+        return actuator
+    copy = planted(actuator, swaps)
     copy.pulses = planted(pulses, swaps)
     return copy
 

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from fsw.core.quaternion import canonical, conjugate, dcm, multiply, rotate
+from fsw.core.algebra.quaternion import canonical, conjugate, dcm, multiply, rotate
 from sim.harness.attitude_arrays import angle_rad, axis1_angle_rad, normal_in_body, relative
 
 seeds = st.integers(0, 2**32 - 1)

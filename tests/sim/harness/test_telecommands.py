@@ -9,9 +9,9 @@ from random import Random
 
 import pytest
 
-from fsw.core.elements import RANGES, Elements
 from fsw.core.laws.table import LAWS
-from fsw.core.orbit import element_orbit, sgp4_orbit, state_eci
+from fsw.core.orbit.elements import RANGES, Elements
+from fsw.core.orbit.propagation import element_orbit, sgp4_orbit, state_eci
 from fsw.input.schema import TableError
 from fsw.node import FlightNode
 from fsw.table.config import flight_config

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from fsw.core.attitude import UNKNOWN, Attitude
-from fsw.core.ephemeris import Reference
+from fsw.core.algebra.quaternion import from_dcm
+from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.laws.interface import ControlConfig, FieldSample, Seen, Setpoint
-from fsw.core.quaternion import from_dcm
+from fsw.core.orbit.ephemeris import Reference
 
 MU = 3.986004418e14
 MU_E = 7.812e15

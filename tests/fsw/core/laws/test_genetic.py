@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from fsw.core.algebra.vector import ZERO
 from fsw.core.laws.genetic import search
 from fsw.core.laws.predictive import best_impulse
-from fsw.core.vector import ZERO
 
 PULSE_S = 3.0
 MOST_AM2 = 60.0

@@ -6,7 +6,7 @@ from math import isfinite, radians
 import numpy as np
 import pytest
 
-from fsw.core.attitude import UNKNOWN
+from fsw.core.estimation.attitude import UNKNOWN
 from fsw.core.laws.lqr import STEPS, LqrGains, latitude_argument, lqr, node, schedule, within, without_memory
 from fsw.core.laws.pd import pd, pd_far
 from sim.design.bodies import Body

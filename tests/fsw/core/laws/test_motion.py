@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from fsw.core.algebra.quaternion import dcm
 from fsw.core.laws.interface import FieldSample
 from fsw.core.laws.motion import motion
-from fsw.core.quaternion import dcm
 
 INERTIA = np.array([[1.3, 0.2, -0.1], [0.2, 2.4, 0.3], [-0.1, 0.3, 1.9]])
 

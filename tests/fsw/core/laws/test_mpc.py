@@ -6,12 +6,12 @@ from math import radians
 import numpy as np
 import pytest
 
-from fsw.core.attitude import UNKNOWN
-from fsw.core.ephemeris import ephemeris_model
-from fsw.core.field import FieldKind, field_eci_t
+from fsw.core.estimation.attitude import UNKNOWN
 from fsw.core.laws.lqr import STEPS, LqrGains, lqr, schedule
 from fsw.core.laws.mpc import FLOWN, MpcGains, field_ahead, mpc, plan
-from fsw.core.orbit import circular_orbit
+from fsw.core.orbit.ephemeris import ephemeris_model
+from fsw.core.orbit.field import FieldKind, field_eci_t
+from fsw.core.orbit.propagation import circular_orbit
 
 EPOCH = 1742461200
 MOST_AM2 = 2.0

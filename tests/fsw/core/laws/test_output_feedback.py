@@ -5,10 +5,10 @@ from math import nan
 import numpy as np
 import pytest
 
-from fsw.core.attitude import UNKNOWN
+from fsw.core.algebra.quaternion import multiply, normalise
+from fsw.core.estimation.attitude import UNKNOWN
 from fsw.core.laws.output_feedback import FilterGains, follow, lagged_rate, output_feedback
 from fsw.core.laws.pd import pd, pd_far
-from fsw.core.quaternion import multiply, normalise
 
 K_W, K_A = 6.2694e6, 1614.9
 BANDWIDTH_RADPS = 0.02

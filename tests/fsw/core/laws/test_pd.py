@@ -8,11 +8,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from fsw.core.attitude import UNKNOWN, Attitude
+from fsw.core.algebra.quaternion import IDENTITY, dcm
+from fsw.core.algebra.vector import ZERO
+from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, Seen, Setpoint
 from fsw.core.laws.pd import attitude_error, far_error, integrated, pd, pd_dipole, pd_far
-from fsw.core.quaternion import IDENTITY, dcm
-from fsw.core.vector import ZERO
 
 K_W, K_A = 6.2694e6, 1614.9
 component = st.floats(-1.0, 1.0, allow_subnormal=False)

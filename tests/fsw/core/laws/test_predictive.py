@@ -8,10 +8,10 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
-from fsw.core.attitude import UNKNOWN, Attitude
-from fsw.core.ephemeris import Reference
+from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, Seen, Setpoint
 from fsw.core.laws.predictive import best_impulse, free_rate_change, missing_impulse, predictive
+from fsw.core.orbit.ephemeris import Reference
 
 J = np.array([[1.02, 0.13, -0.09], [0.13, 1.85, 0.21], [-0.09, 0.21, 1.55]])
 J_INVERSE = np.linalg.inv(J)

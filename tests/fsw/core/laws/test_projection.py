@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fsw.core.attitude import UNKNOWN
+from fsw.core.estimation.attitude import UNKNOWN
 from fsw.core.laws.pd import pd
 from fsw.core.laws.projection import (
     RegularGains,

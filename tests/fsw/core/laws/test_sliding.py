@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fsw.core.attitude import UNKNOWN
+from fsw.core.estimation.attitude import UNKNOWN
 from fsw.core.laws.projection import torque_dipole
 from fsw.core.laws.sliding import SlidingGains, SlidingIntegralGains, lost_torque, surface
 from fsw.core.laws.table import LAWS

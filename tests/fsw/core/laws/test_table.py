@@ -5,13 +5,13 @@ from math import isfinite
 
 import pytest
 
-from fsw.core.attitude import UNKNOWN, Attitude
+from fsw.core.algebra.quaternion import normalise
+from fsw.core.algebra.vector import ZERO
+from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.laws.interface import Demand, FieldSample, Seen
 from fsw.core.laws.table import LAWS
-from fsw.core.quaternion import normalise
 from fsw.core.state import checksum
 from fsw.core.step import boot
-from fsw.core.vector import ZERO
 from fsw.table.config import flight_config
 from fsw.table.table import flight_table
 

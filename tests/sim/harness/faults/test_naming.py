@@ -2,8 +2,8 @@
 
 import pytest
 
+from fsw.core.fdir.sensor_watch import Sensor, SensorFault
 from fsw.core.monitors import Monitor
-from fsw.core.sensor_watch import Sensor, SensorFault
 from fsw.core.telemetry import Event as Number
 from hil_stub.events import CoilEventCode
 from sim.harness.faults import checks, naming

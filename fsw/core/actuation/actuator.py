@@ -1,0 +1,155 @@
+"""From what a law asks for to what is sent to the coil driver, and what the coil driver says of it."""
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+from fsw.core.actuation import dipoles, pulses
+from fsw.core.actuation.dipoles import DipoleConfig
+from fsw.core.actuation.pulses import AXES, Pulse, PulseConfig, PulseState
+from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale
+from fsw.core.gate.readings import Readings
+from fsw.core.laws.interface import Demand
+from fsw.wire.messages import CoilDipole, CoilFire
+
+NO_PULSE = Pulse(0, 0)
+UNHEARD = (-1, -1, -1)
+
+
+@dataclass(frozen=True, slots=True)
+class CoilView:
+    """What the coil driver last said, and what was last asked of it.
+
+    ``lockout_ms`` by coil, -1 where the board has not told yet; ``driven_coil`` and ``driven_level`` over
+    the tick that just ended, ``driven_am2`` the mean dipole over it, body axes; ``fired_tick`` is -1 before
+    the first request; ``paid_body_nms`` is the impulse of the last request.
+    """
+
+    lockout_ms: tuple[int, int, int] = UNHEARD
+    driven_coil: int = 0
+    driven_level: int = 0
+    driven_am2: Vec3 = ZERO
+    seq: int = 0
+    refusals: int = 0
+    fired_tick: int = -1
+    fired: Pulse = NO_PULSE
+    paid_body_nms: Vec3 = ZERO
+
+
+class CoilConfig(NamedTuple):
+    """The limits of the pulses, and the continuous driver that is there instead, if any."""
+
+    pulses: PulseConfig
+    dipoles: DipoleConfig | None
+
+
+def hear(view: CoilView, readings: Readings, tick: int, config: CoilConfig) -> CoilView:
+    """The view after what the coil driver said in this tick.
+
+    A board that has just booted has not told its lockouts. Without a status the own request, if one is under
+    way, counts as driven.
+    """
+    lockout = list(view.lockout_ms if readings.coil_boot is None else UNHEARD)
+    status = readings.coil
+    if status is not None:
+        lockout[status.coil] = status.lockout_ms
+        coil, level, seq = status.coil, status.level, status.seq
+    else:
+        coil, level, seq = view.fired.coil, _asked_level(view, tick, config.pulses), view.seq
+    if config.dipoles is None:
+        driven_am2 = scale(pulses.dipole_am2(level, config.pulses.levels_am2), AXES[coil])
+    else:
+        driven_am2 = dipoles.driven(readings.dipole, config.dipoles)
+    return CoilView(
+        lockout_ms=(lockout[0], lockout[1], lockout[2]),
+        driven_coil=coil,
+        driven_level=level,
+        driven_am2=driven_am2,
+        seq=seq,
+        refusals=view.refusals + (readings.refused is not None),
+        fired_tick=view.fired_tick,
+        fired=view.fired,
+        paid_body_nms=view.paid_body_nms,
+    )
+
+
+def _asked_level(view: CoilView, tick: int, config: PulseConfig) -> int:
+    """The level that the own request drives over the tick that just ended, 0 if it does not."""
+    asked = view.fired_tick < tick <= view.fired_tick + config.pulse_ticks
+    return view.fired.level if asked else 0
+
+
+def unexpected(view: CoilView, tick: int, config: PulseConfig) -> bool:
+    """Whether the board drove something that was not asked for."""
+    if view.driven_level == 0:
+        return False
+    return (view.driven_coil, view.driven_level) != (view.fired.coil, _asked_level(view, tick, config))
+
+
+def actuate(
+    state: PulseState,
+    view: CoilView,
+    demand: Demand | None,
+    b_body_t: Vec3,
+    readings: Readings,
+    tick: int,
+    config: CoilConfig,
+    faults: tuple[int, int, int] = (0, 0, 0),
+) -> tuple[PulseState, CoilView, CoilFire | CoilDipole | None]:
+    """Turn what the law asks for into at most one request.
+
+    Args:
+        state: scheduler state.
+        view: as ``hear`` left it.
+        demand: what the law asks for; None: nothing is owed and nothing is sent.
+        b_body_t: field, body axes, T.
+        readings: what was heard in this tick; without a word of the coil driver nothing is sent.
+        tick: tick that is answered.
+        config: the coils.
+        faults: by coil; one with a fault is not fired.
+
+    Returns:
+        Scheduler state, view, and the request to send or None.
+    """
+    if demand is None:
+        return replace(state, owed_impulse_body_nms=ZERO, held_am2=ZERO), view, None
+    if config.dipoles is not None:
+        state, request = dipoles.request(state, demand, b_body_t, tick, config.dipoles, config.pulses)
+        return state, view, request if readings.dipole is not None else None
+    if _refused(view, readings, tick):
+        state = replace(state, owed_impulse_body_nms=add(state.owed_impulse_body_nms, view.paid_body_nms))
+        view = replace(view, fired=NO_PULSE, paid_body_nms=ZERO)
+    return _pulse(state, view, demand, b_body_t, readings.coil is not None, tick, config.pulses, faults)
+
+
+def _refused(view: CoilView, readings: Readings, tick: int) -> bool:
+    """Whether the request of the tick before, or of the one before that, came to nothing."""
+    refused = readings.refused
+    if refused is None or tick > view.fired_tick + 2:
+        return False
+    return refused.tick == view.fired_tick & 0xFF
+
+
+def _pulse(
+    state: PulseState,
+    view: CoilView,
+    demand: Demand,
+    b_body_t: Vec3,
+    status_fresh: bool,
+    tick: int,
+    config: PulseConfig,
+    faults: tuple[int, int, int],
+) -> tuple[PulseState, CoilView, CoilFire | None]:
+    """At most one pulse: only when the own timer and the board's last word on that coil agree."""
+    if demand.impulse_body_nms is None:
+        state = pulses.owe(state, cross(demand.m_body_am2, b_body_t), b_body_t, config)
+        wanted, metric = state.owed_impulse_body_nms, config.rate_metric
+    else:
+        state = replace(state, owed_impulse_body_nms=ZERO)
+        wanted, metric = demand.impulse_body_nms, config.energy_metric
+    pulse = pulses.choose(state, wanted, metric, tick, b_body_t, config, faults)
+    if pulse is None or not status_fresh or view.lockout_ms[pulse.coil] != 0:
+        return state, view, None
+    request = CoilFire(pulse.level, pulse.coil, (view.seq + 1) & 0xFF, tick, config.duration_ms)
+    paid = ZERO if demand.impulse_body_nms is not None else pulses.impulse(pulse, b_body_t, config)
+    view = replace(view, fired_tick=tick, fired=pulse, paid_body_nms=paid)
+    return pulses.fire(state, pulse, paid, tick, config), view, request

@@ -1,0 +1,85 @@
+"""The continuous driver: a dipole each tick; for a law of impulses the best one, held for a pulse.
+
+The board drives each request over the first part of one tick and nothing without a request; the magnetometer
+samples while it is off. An impulse law keeps the timing of the pulses, so that only the choice is freed.
+"""
+
+from dataclasses import dataclass, replace
+from math import isfinite
+
+from fsw.core.actuation.pulses import PulseConfig, PulseState
+from fsw.core.algebra.vector import ZERO, Mat3, Vec3, cross, dot, scale
+from fsw.core.laws.genetic import search
+from fsw.core.laws.interface import Demand
+from fsw.core.laws.predictive import best_impulse
+from fsw.wire.messages import CoilDipole, CoilDipoleStatus
+
+MOST = 1.0 - 2.0**-16
+"""Largest fraction of full scale on the wire."""
+
+
+@dataclass(frozen=True, slots=True)
+class DipoleConfig:
+    """Mean dipole over a tick at full scale, A m^2, the inertia, and whether the best one is searched for."""
+
+    full_scale_am2: float
+    inertia_kgm2: Mat3
+    genetic: bool
+
+
+def driven(status: CoilDipoleStatus | None, config: DipoleConfig) -> Vec3:
+    """The mean dipole over the tick that just ended, body axes, A m^2; zero without a word of the board."""
+    if status is None:
+        return ZERO
+    return scale(config.full_scale_am2, (status.m_x, status.m_y, status.m_z))
+
+
+def request(
+    state: PulseState, demand: Demand, b_body_t: Vec3, tick: int, config: DipoleConfig, timing: PulseConfig
+) -> tuple[PulseState, CoilDipole]:
+    """The dipole of this tick."""
+    if demand.impulse_body_nms is None:
+        return state, saturated(demand.m_body_am2, config)
+    if tick >= state.busy_until:
+        state = replace(state, held_am2=ZERO)
+        if tick >= max(state.ready_tick) and dot(b_body_t, b_body_t) > 0.0:
+            state = _begin(state, demand.impulse_body_nms, b_body_t, tick, config, timing)
+    return state, saturated(state.held_am2, config)
+
+
+def _begin(
+    state: PulseState,
+    impulse_body_nms: Vec3,
+    b_body_t: Vec3,
+    tick: int,
+    config: DipoleConfig,
+    timing: PulseConfig,
+) -> PulseState:
+    """Hold the best dipole for the length of a pulse, then none for the back-off."""
+    if config.genetic:
+        m_body_am2 = search(
+            impulse_body_nms,
+            b_body_t,
+            timing.pulse_s,
+            config.full_scale_am2,
+            timing.energy_metric,
+            seed=tick,
+        )
+    else:
+        paid = best_impulse(impulse_body_nms, b_body_t, config.inertia_kgm2)
+        m_body_am2 = scale(1.0 / (timing.pulse_s * dot(b_body_t, b_body_t)), cross(b_body_t, paid))
+    end = tick + timing.pulse_ticks
+    again = end + timing.backoff_ticks
+    return replace(state, ready_tick=(again, again, again), busy_until=end, held_am2=m_body_am2)
+
+
+def saturated(m_body_am2: Vec3, config: DipoleConfig) -> CoilDipole:
+    """The request: the dipole as fractions of full scale, shortened to fit but not turned.
+
+    What is not a number asks for nothing: on the wire it would be full scale.
+    """
+    fractions = scale(1.0 / config.full_scale_am2, m_body_am2)
+    if not isfinite(sum(fractions)):
+        return CoilDipole(0.0, 0.0, 0.0)
+    most = max(abs(fractions[0]), abs(fractions[1]), abs(fractions[2]))
+    return CoilDipole(*(scale(MOST / most, fractions) if most > MOST else fractions))

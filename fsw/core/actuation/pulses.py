@@ -1,0 +1,168 @@
+"""The PoSAT-1 actuation scheduler: short quantised pulses, one coil at a time, a long back-off.
+
+One coil at a time, three levels per polarity, pulses of 3 s, then at least 100 s off: counted from the end
+of the pulse, for that coil or for all of them (``shared``). After boot a full back-off passes first. All
+timing is in integer ticks, rounded so that the pulse is never longer and the gap never shorter.
+
+What a continuous law asks for is kept as a torque impulse that is still owed: a leaky sigma-delta
+modulator, bounded by what one pulse can pay. The pulse that is fired is the one that leaves the least of the
+impulse that is owed, or that a predictive law misses; firing none is one of the choices and wins ties. Least
+is told by a metric: the rate that is left, or its energy.
+
+Source: Tavares et al. (ConSat, PoSAT-1) for the limits and the choice; the modulator is this project's.
+"""
+
+from dataclasses import dataclass, replace
+from math import copysign
+from typing import NamedTuple
+
+from fsw.core.algebra.vector import ZERO, Mat3, Vec3, cross, dot, norm, scale, sub, transform
+
+AXES: Mat3 = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+@dataclass(frozen=True, slots=True)
+class PulseConfig:
+    """Limits and levels, in ticks and SI; J^-2 and J^-1 as the metrics of an impulse that is left."""
+
+    pulse_ticks: int
+    backoff_ticks: int
+    duration_ms: int
+    shared: bool
+    levels_am2: Vec3
+    pulse_s: float
+    tick_s: float
+    leak_s: float
+    rate_metric: Mat3
+    energy_metric: Mat3
+
+
+@dataclass(frozen=True, slots=True)
+class PulseState:
+    """Own timers and the impulse still owed.
+
+    ``ready_tick[coil]`` is the first tick in answer to which that coil may fire again; ``busy_until`` the
+    first in answer to which no own pulse is under way; ``held_am2`` is what a continuous driver holds
+    meanwhile, body axes.
+    """
+
+    ready_tick: tuple[int, int, int]
+    busy_until: int
+    owed_impulse_body_nms: Vec3 = ZERO
+    held_am2: Vec3 = ZERO
+
+
+class Pulse(NamedTuple):
+    """A pulse to fire: coil 0..2, level -3..3 without zero."""
+
+    coil: int
+    level: int
+
+
+def pulse_timing(tick_hz: int, pulse_ms: int, backoff_ms: int) -> tuple[int, int, int]:
+    """(pulse ticks, back-off ticks, duration in ms): the pulse rounded down, the back-off rounded up.
+
+    Raises:
+        ValueError: a tick is longer than the pulse.
+    """
+    pulse_ticks = pulse_ms * tick_hz // 1000
+    if pulse_ticks < 1:
+        raise ValueError(f"a pulse of {pulse_ms} ms is shorter than one tick at {tick_hz} Hz")
+    return pulse_ticks, -(-backoff_ms * tick_hz // 1000), pulse_ticks * 1000 // tick_hz
+
+
+def boot(tick: int, config: PulseConfig) -> PulseState:
+    """The state at boot: nothing owed, a full back-off ahead."""
+    first = tick + config.backoff_ticks
+    return PulseState(ready_tick=(first, first, first), busy_until=tick)
+
+
+def delay(state: PulseState, tick: int, skipped: int) -> PulseState:
+    """The state after a skip of the count to ``tick``: timers that ran go on by as much, whoever skipped it.
+
+    Nothing tells lost ticks from ticks that never were, and a back-off must not end early.
+    """
+    before = tick - skipped - 1
+    a, b, c = (ready + skipped if ready > before else ready for ready in state.ready_tick)
+    busy = state.busy_until
+    return replace(state, ready_tick=(a, b, c), busy_until=busy + skipped if busy > before else busy)
+
+
+def owe(state: PulseState, torque_body_nm: Vec3, b_body_t: Vec3, config: PulseConfig) -> PulseState:
+    """Add one tick of the torque asked for: r <- (1 - h / tau) r + T h, |r| at most what one pulse can pay.
+
+    Without that bound a strong demand would go on being paid long after its cause is gone.
+    """
+    keep, h = 1.0 - config.tick_s / config.leak_s, config.tick_s
+    r1, r2, r3 = state.owed_impulse_body_nms
+    t1, t2, t3 = torque_body_nm
+    owed = (keep * r1 + h * t1, keep * r2 + h * t2, keep * r3 + h * t3)
+    size, limit = norm(owed), config.pulse_s * config.levels_am2[2] * norm(b_body_t)
+    if size > limit:
+        owed = scale(limit / size, owed)
+    return PulseState(state.ready_tick, state.busy_until, owed)
+
+
+def choose(
+    state: PulseState,
+    impulse_body_nms: Vec3,
+    metric: Mat3,
+    tick: int,
+    b_body_t: Vec3,
+    config: PulseConfig,
+    faults: tuple[int, int, int] = (0, 0, 0),
+) -> Pulse | None:
+    """The pulse, among the coils whose own timer has run out, that leaves the least; None if none helps.
+
+    Minimises (r - T_p m x b)^T W (r - T_p m x b) over coil and level, T_p the pulse length.
+
+    Args:
+        state: own timers.
+        impulse_body_nms: r, the impulse that is wanted.
+        metric: W, symmetric and positive.
+        tick: tick that is answered.
+        b_body_t: field, body axes, T.
+        config: limits and levels.
+        faults: by coil; one with a fault is not chosen.
+    """
+    if tick < state.busy_until:
+        return None
+    weighted = transform(metric, impulse_body_nms)
+    best: Pulse | None = None
+    least = 0.0
+    for coil in range(3):
+        if tick < state.ready_tick[coil] or faults[coil]:
+            continue
+        gain = scale(config.pulse_s, cross(AXES[coil], b_body_t))
+        along, square = dot(weighted, gain), dot(gain, transform(metric, gain))
+        for index, level_am2 in enumerate(config.levels_am2, start=1):
+            change = level_am2 * (level_am2 * square - 2.0 * abs(along))
+            if change < least:
+                least, best = change, Pulse(coil, index if along > 0.0 else -index)
+    return best
+
+
+def fire(state: PulseState, pulse: Pulse, paid_body_nms: Vec3, tick: int, config: PulseConfig) -> PulseState:
+    """The state once ``pulse`` has been requested in answer to ``tick``: timers set, impulse paid."""
+    end = tick + config.pulse_ticks
+    again = end + config.backoff_ticks
+    ready = tuple(
+        again if config.shared or coil == pulse.coil else before
+        for coil, before in enumerate(state.ready_tick)
+    )
+    return PulseState(
+        ready_tick=(ready[0], ready[1], ready[2]),
+        busy_until=end,
+        owed_impulse_body_nms=sub(state.owed_impulse_body_nms, paid_body_nms),
+    )
+
+
+def impulse(pulse: Pulse, b_body_t: Vec3, config: PulseConfig) -> Vec3:
+    """The impulse of a pulse, T_p m x b, body axes, N m s."""
+    dipole = scale(dipole_am2(pulse.level, config.levels_am2), AXES[pulse.coil])
+    return scale(config.pulse_s, cross(dipole, b_body_t))
+
+
+def dipole_am2(level: int, levels_am2: Vec3) -> float:
+    """The dipole of a level, A m^2, signed; zero for level 0."""
+    return copysign(levels_am2[abs(level) - 1], level) if level else 0.0

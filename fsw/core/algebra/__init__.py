@@ -1,0 +1,1 @@
+"""3-vectors, 3x3 matrices and quaternions on plain floats."""

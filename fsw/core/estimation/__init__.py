@@ -1,0 +1,1 @@
+"""From field and Sun to attitude, rate, bias and disturbance torque."""

@@ -1,0 +1,18 @@
+"""The attitude as the controller sees it."""
+
+from typing import NamedTuple
+
+from fsw.core.algebra.vector import ZERO, Vec3
+
+
+class Attitude(NamedTuple):
+    """What control and telemetry use: body relative to the orbital frame, and how it came about."""
+
+    q_body_from_orbit: tuple[float, float, float, float]
+    omega_body_orbit_radps: Vec3
+    sigma3_attitude_rad: float
+    sigma3_rate_radps: float
+    valid: bool
+
+
+UNKNOWN = Attitude((1.0, 0.0, 0.0, 0.0), ZERO, 4.0, 1.0, False)

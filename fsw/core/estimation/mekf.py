@@ -1,0 +1,275 @@
+"""Multiplicative extended Kalman filter for attitude, rate, magnetometer bias and disturbance torque.
+
+The attitude lives outside the filter as a unit quaternion. The filter carries the error state
+(dtheta, domega, then magnetometer bias and disturbance torque where switched on); after each update the
+error is folded into the estimate, q <- q (x) (1, dtheta / 2), and reset to zero. With e1 the radius
+direction, m the dipole, b the field and h the momentum of a wheel, all in body axes:
+
+    d(dtheta)/dt = -omega x dtheta + domega
+    J d(domega)/dt = ([(J omega + h) x] - [omega x] J) domega
+                   + (3 mu/r^3 ([e1 x] J - [J e1 x]) [e1 x] + [m x][b x]) dtheta + dtorque
+
+Source: Lefferts, Markley, Shuster 1982; the dynamics as in Ovchinnikov, Penkov, Roldugin 2015.
+"""
+
+from math import isfinite, nan
+from typing import NamedTuple
+
+import numpy as np
+from filterpy.kalman import KalmanFilter
+
+from fsw.core.algebra.quaternion import Quaternion, from_small_rotation, multiply, normalise, rotate
+from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale, skew, sub, transform
+from fsw.core.estimation.mekf_config import Layout, Matrix, MekfConfig
+
+MAX_VARIANCE = 1e6
+"""Beyond it an estimate says nothing (1000 rad), and the algebra comes near the end of the numbers."""
+
+
+class Trace(NamedTuple):
+    """What deviations that the filter does not know of would do to its errors and innovations.
+
+    ``causes``: of each of k deviations a number that tells what it is of. ``effect`` (n, k + 1): what a unit
+    of each leaves in the error state; the last column only makes room for the innovation. ``sums``
+    (k + 1, k + 1): t^T S^-1 t over all updates, t being the effects as measured, and the innovation last;
+    ``measured``: of how many numbers.
+    """
+
+    causes: tuple[int, ...]
+    effect: Matrix
+    sums: Matrix
+    measured: int
+
+
+class Estimate(NamedTuple):
+    """Attitude, inertial rate, biases, and the covariance of the error state.
+
+    Units: rad, rad/s, T, N m. The covariance is (n, n) with n = 6, 9 or 12, laid out as ``Layout`` says.
+    """
+
+    q_body_from_eci: Quaternion
+    omega_body_radps: Vec3
+    mag_bias_t: Vec3
+    torque_body_nm: Vec3
+    covariance: Matrix
+    trace: Trace | None = None
+
+
+def start(q_body_from_eci: Quaternion, omega_body_radps: Vec3, config: MekfConfig) -> Estimate:
+    """The estimate at start-up: a known attitude, everything else at its prior."""
+    return Estimate(q_body_from_eci, omega_body_radps, ZERO, ZERO, config.initial_covariance)
+
+
+def corrected(estimate: Estimate, error: Matrix, uncertainty: Matrix, config: MekfConfig) -> Estimate:
+    """The estimate set right by something else than a measurement.
+
+    Args:
+        estimate: before.
+        error: what it lacks, (n), laid out as the error state.
+        uncertainty: covariance that this adds, (n, n).
+        config: the filter.
+    """
+    return _fold(estimate, error, estimate.covariance + uncertainty, config.layout, estimate.trace)
+
+
+def healthy(estimate: Estimate) -> bool:
+    """Whether every number is finite and every variance positive and below ``MAX_VARIANCE``.
+
+    Asked after a prediction, which brings a bad number off the diagonal of the covariance onto it.
+    """
+    variances: list[float] = estimate.covariance.diagonal().tolist()
+    numbers = (
+        *estimate.q_body_from_eci,
+        *estimate.omega_body_radps,
+        *estimate.mag_bias_t,
+        *estimate.torque_body_nm,
+    )
+    return isfinite(sum(numbers)) and min(variances) > 0.0 and sum(variances) < MAX_VARIANCE
+
+
+def predict(
+    estimate: Estimate,
+    e1_eci: Vec3,
+    b_eci_t: Vec3,
+    gravity_per_s2: float,
+    m_body_am2: Vec3,
+    config: MekfConfig,
+) -> Estimate:
+    """Carry estimate and covariance over one tick.
+
+    Args:
+        estimate: at the tick before.
+        e1_eci: radius direction, inertial axes, unit.
+        b_eci_t: field, inertial axes, T.
+        gravity_per_s2: 3 mu / r^3, 1/s^2.
+        m_body_am2: dipole driven over the tick, body axes, A m^2.
+        config: the filter.
+    """
+    h = config.tick_s
+    q, omega = estimate.q_body_from_eci, estimate.omega_body_radps
+    e1, b = rotate(q, e1_eci), rotate(q, b_eci_t)
+    torque, trace = estimate.torque_body_nm, estimate.trace
+    alpha = _acceleration(omega, e1, b, gravity_per_s2, m_body_am2, torque, config)
+    omega_mid = add(omega, scale(0.5 * h, alpha))
+    q_mid = multiply(q, from_small_rotation(scale(0.5 * h, omega)))
+    e1_mid, b_mid = rotate(q_mid, e1_eci), rotate(q_mid, b_eci_t)
+    alpha_mid = _acceleration(omega_mid, e1_mid, b_mid, gravity_per_s2, m_body_am2, torque, config)
+    transition = _transition(omega_mid, e1_mid, b_mid, gravity_per_s2, m_body_am2, config)
+
+    kalman = _filter(config)
+    kalman.P, kalman.F, kalman.Q = estimate.covariance, transition, _process_noise(m_body_am2, b_mid, config)
+    kalman.predict()
+    return Estimate(
+        normalise(multiply(q, _turn(scale(h, omega_mid)))),
+        add(omega, scale(h, alpha_mid)),
+        estimate.mag_bias_t,
+        torque,
+        kalman.P,
+        trace if trace is None else _carried(trace, transition),
+    )
+
+
+def _carried(trace: Trace, transition: Matrix) -> Trace:
+    return Trace(trace.causes, transition.dot(trace.effect), trace.sums, trace.measured)
+
+
+def _process_noise(m_body_am2: Vec3, b_body_t: Vec3, config: MekfConfig) -> Matrix:
+    """The noise of a tick; while a coil is driven also that of its dipole, known to ``dipole_sigma`` only."""
+    if m_body_am2 == ZERO:
+        return config.process_noise
+    turn = scale(config.dipole_sigma * config.tick_s, cross(m_body_am2, b_body_t))
+    kick = np.array(transform(config.inertia_inverse, turn))
+    noise = config.process_noise.copy()
+    noise[3:6, 3:6] += np.outer(kick, kick)
+    return noise
+
+
+def update_field(estimate: Estimate, b_body_t: Vec3, b_eci_t: Vec3, config: MekfConfig) -> Estimate | None:
+    """Take a magnetometer sample: z = b_measured - (C b_eci + bias). None when the gate rejects it."""
+    predicted = rotate(estimate.q_body_from_eci, b_eci_t)
+    innovation = sub(sub(b_body_t, predicted), estimate.mag_bias_t)
+    sensitivity = config.field_sensitivity.copy()
+    sensitivity[:, 0:3] = skew(predicted)
+    return _update(estimate, innovation, sensitivity, config.field_noise, config)
+
+
+def update_sun(estimate: Estimate, s_body: Vec3, s_eci: Vec3, config: MekfConfig) -> Estimate | None:
+    """Take a Sun direction: z = s_measured - C s_eci. None when the gate rejects it."""
+    predicted = rotate(estimate.q_body_from_eci, s_eci)
+    innovation = sub(s_body, predicted)
+    sensitivity = config.sun_sensitivity.copy()
+    sensitivity[:, 0:3] = skew(predicted)
+    return _update(estimate, innovation, sensitivity, config.sun_noise, config)
+
+
+def update_both(
+    estimate: Estimate, b_body_t: Vec3, b_eci_t: Vec3, s_body: Vec3, s_eci: Vec3, config: MekfConfig
+) -> Estimate | None:
+    """Take field and Sun in one update. None when it is in doubt that both pass the gate each by itself.
+
+    The NIS of a part is never above that of the whole, so the gate of one, applied to both, is the stricter.
+    """
+    q = estimate.q_body_from_eci
+    b_predicted, s_predicted = rotate(q, b_eci_t), rotate(q, s_eci)
+    innovation = (*sub(sub(b_body_t, b_predicted), estimate.mag_bias_t), *sub(s_body, s_predicted))
+    sensitivity = config.both_sensitivity.copy()
+    sensitivity[:, 0:3] = (*skew(b_predicted), *skew(s_predicted))
+    return _update(estimate, innovation, sensitivity, config.both_noise, config)
+
+
+def _update(
+    estimate: Estimate, innovation: tuple[float, ...], sensitivity: Matrix, noise: Matrix, config: MekfConfig
+) -> Estimate | None:
+    """The update of filterpy, judged by its own NIS and folded in."""
+    kalman = _filter(config)
+    kalman.P, kalman.R = estimate.covariance, noise
+    kalman.update(np.array(innovation), H=sensitivity)
+    nis, trace = float(kalman.y.dot(kalman.SI).dot(kalman.y)), estimate.trace
+    if trace is not None:
+        seen = sensitivity.dot(trace.effect)  # the operator @ takes twice as long for so small arrays
+        seen[:, -1] = kalman.y
+        sums = trace.sums + seen.T.dot(kalman.SI.dot(seen))
+        if nis > config.gate_nis:
+            nis = unexplained(sums) - unexplained(trace.sums)
+        trace = Trace(trace.causes, trace.effect - kalman.K.dot(seen), sums, trace.measured + len(seen))
+    if not 0.0 <= nis <= config.gate_nis:  # overflow can make it -inf
+        return None
+    return _fold(estimate, kalman.x, 0.5 * (kalman.P + kalman.P.T), config.layout, trace)
+
+
+def unexplained(sums: Matrix) -> float:
+    """The part of the squares of the innovations that no deviation explains, each being 0 +- 1 beforehand.
+
+    What an update adds is its NIS in a filter that solves for the deviations too. NaN of damaged sums.
+    """
+    evidence = sums[:-1, -1]
+    try:
+        explained = evidence.dot(np.linalg.solve(sums[:-1, :-1] + np.eye(len(evidence)), evidence))
+    except np.linalg.LinAlgError:
+        return nan
+    return float(sums[-1, -1] - explained)
+
+
+def _filter(config: MekfConfig) -> KalmanFilter:
+    """A copy of the blank filter, made by hand: ``copy.copy`` takes as long as the prediction."""
+    kalman = object.__new__(KalmanFilter)
+    kalman.__dict__ = config.blank.__dict__.copy()
+    return kalman
+
+
+def _fold(
+    estimate: Estimate, error: Matrix, covariance: Matrix, parts: Layout, trace: Trace | None
+) -> Estimate:
+    """Fold the error state into the estimate."""
+    values: list[float] = error.tolist()
+    bias, torque = estimate.mag_bias_t, estimate.torque_body_nm
+    if parts.bias is not None:
+        bias = add(bias, _three(values, parts.bias))
+    if parts.torque is not None:
+        torque = add(torque, _three(values, parts.torque))
+    return Estimate(
+        normalise(multiply(estimate.q_body_from_eci, from_small_rotation(_three(values, 0)))),
+        add(estimate.omega_body_radps, _three(values, 3)),
+        bias,
+        torque,
+        covariance,
+        trace,
+    )
+
+
+def _three(values: list[float], first: int) -> Vec3:
+    return (values[first], values[first + 1], values[first + 2])
+
+
+def _acceleration(
+    omega: Vec3, e1: Vec3, b: Vec3, gravity_per_s2: float, m: Vec3, torque: Vec3, config: MekfConfig
+) -> Vec3:
+    """J domega/dt = m x b + 3 mu/r^3 e1 x J e1 - omega x (J omega + h) + torque, all in body axes."""
+    j = config.inertia_kgm2
+    gravity = scale(gravity_per_s2, cross(e1, transform(j, e1)))
+    gyroscopic = cross(omega, add(transform(j, omega), config.wheel_body_nms))
+    return transform(config.inertia_inverse, sub(add(add(cross(m, b), gravity), torque), gyroscopic))
+
+
+def _transition(omega: Vec3, e1: Vec3, b: Vec3, gravity_per_s2: float, m: Vec3, config: MekfConfig) -> Matrix:
+    """I + A h + (A h)^2 / 2 of the error dynamics; with A of the middle of the tick good to second order."""
+    g1, g2, g3 = scale(gravity_per_s2, e1)
+    change = config.moving.dot((*omega, *scale(g1, e1), *scale(g2, e1), *scale(g3, e1)))
+    if m != ZERO:
+        m1, m2, m3 = m
+        change += config.driven.dot((*scale(m1, b), *scale(m2, b), *scale(m3, b)))
+    step = config.constant.copy()
+    step[0:6, 0:6] += change.reshape(6, 6)
+    transition: Matrix = step.dot(step)  # (1 + A h)^2, so that half of it and 1 is the series
+    transition += config.identity
+    transition *= 0.5
+    return transition
+
+
+def _turn(rotation_rad: Vec3) -> Quaternion:
+    """The quaternion of a rotation vector by the series of sine and cosine: 1e-9 rad off at 0.5 rad."""
+    r1, r2, r3 = rotation_rad
+    square = 0.25 * (r1 * r1 + r2 * r2 + r3 * r3)
+    half_sinc = 0.5 - square * (1.0 / 12.0 - square / 240.0)
+    cosine = 1.0 - square * (0.5 - square * (1.0 / 24.0 - square / 720.0))
+    return (cosine, half_sinc * r1, half_sinc * r2, half_sinc * r3)

@@ -1,0 +1,71 @@
+"""Whether another node sends in fsw's place.
+
+fsw does not hear what it sends itself. A whole frame under one of its own identifiers, and the refusal of a
+request that it never made, are signs of a second sender. One alone may be a frame of an earlier boot that was
+still on its way, or noise with the right CRC: only several of them, soon after one another, name it.
+"""
+
+from typing import NamedTuple
+
+from fsw.core.gate.readings import Readings
+from fsw.wire.messages import CoilDipole, CoilFire, CoilRefused, CoilRefusedReason
+
+SIGNS = 3
+"""Ticks with a sign that name a second sender."""
+
+REQUESTS = frozenset({CoilFire.ID, CoilDipole.ID})
+
+
+class SecondSenderConfig(NamedTuple):
+    """A sign counts with the one before while they are no further apart than this.
+
+    ``request_ticks`` for requests, of which there may be one a back-off; ``other_ticks`` for what else fsw
+    sends, some of it in each tick. A second sender of which there is no sign for ``request_ticks`` has gone.
+    """
+
+    request_ticks: int
+    other_ticks: int
+
+
+class SecondSender(NamedTuple):
+    """Ticks with a sign, ``SIGNS`` at most; the last of them, and the identifier that it was seen under."""
+
+    signs: int = 0
+    tick: int = -1
+    can_id: int = 0
+
+    @property
+    def named(self) -> bool:
+        """Whether there are enough signs."""
+        return self.signs >= SIGNS
+
+
+NOBODY = SecondSender()
+
+
+def watch(
+    before: SecondSender, readings: Readings, seq: int, pulsed: bool, tick: int, config: SecondSenderConfig
+) -> SecondSender:
+    """What is known of a second sender after this tick.
+
+    Args:
+        before: what was known.
+        readings: what was heard.
+        seq: number of the request that the coil driver accepted last; an own one bears this or the next.
+        pulsed: the coil driver numbers its refusals so, and is no continuous one.
+        tick: this one.
+        config: limits.
+    """
+    can_id = readings.under_own_id
+    if not can_id and readings.refused is not None and pulsed and _of_another(readings.refused, seq):
+        can_id = CoilFire.ID
+    if not can_id:
+        return NOBODY if before.signs and tick - before.tick > config.request_ticks else before
+    apart = config.request_ticks if can_id in REQUESTS or before.named else config.other_ticks
+    signs = before.signs if before.signs and tick - before.tick <= apart else 0
+    return SecondSender(min(signs + 1, SIGNS), tick, can_id)
+
+
+def _of_another(refused: CoilRefused, seq: int) -> bool:
+    """Whether a request that fsw has not made was refused; what was malformed may bear any number."""
+    return refused.reason != CoilRefusedReason.MALFORMED and (refused.seq - seq) & 0xFF > 1

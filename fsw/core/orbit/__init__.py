@@ -1,0 +1,1 @@
+"""Where the satellite is, and what field and Sun it meets there."""

@@ -1,0 +1,468 @@
+"""The scheduler joined to the coil driver's word: what is heard, and when a pulse goes out."""
+
+from dataclasses import replace
+from itertools import product
+from math import inf
+
+import pytest
+from hypothesis import event, given, settings
+from hypothesis import strategies as st
+
+from fsw.core.actuation import pulses
+from fsw.core.actuation.actuator import UNHEARD, CoilConfig, CoilView, actuate, hear, unexpected
+from fsw.core.actuation.pulses import Pulse, PulseConfig
+from fsw.core.gate.readings import NOTHING
+from fsw.core.laws.interface import Demand
+from fsw.wire.messages import CoilBoot, CoilFire, CoilRefused, CoilRefusedReason, CoilStatus
+
+IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+UNEVEN = ((9.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+ZERO = (0.0, 0.0, 0.0)
+TICK = 10_000
+
+B_BODY_T = (0.0, 0.0, 2e-5)
+"""Along axis 3: coil 0 turns about axis 2, coil 1 about axis 1, coil 2 does nothing."""
+
+OWED_FOR = {0: (0.0, -3.0 * 8.0 * 2e-5, 0.0), 1: (3.0 * 8.0 * 2e-5, 0.0, 0.0)}
+"""Impulses that the highest level of that coil pays in full."""
+
+
+def make_config(shared=True, tick_hz=1):
+    pulse_ticks, backoff_ticks, duration_ms = pulses.pulse_timing(tick_hz, 3000, 100_000)
+    return PulseConfig(
+        pulse_ticks=pulse_ticks,
+        backoff_ticks=backoff_ticks,
+        duration_ms=duration_ms,
+        shared=shared,
+        levels_am2=(0.5, 2.0, 8.0),
+        pulse_s=3.0,
+        tick_s=1.0 / tick_hz,
+        leak_s=300.0,
+        rate_metric=IDENTITY,
+        energy_metric=UNEVEN,
+    )
+
+
+CONFIG = make_config()
+COILS = CoilConfig(CONFIG, dipoles=None)
+
+
+def ready(owed=OWED_FOR[0]):
+    """All own timers ran out long ago."""
+    return replace(pulses.boot(0, CONFIG), ready_tick=(0, 0, 0), owed_impulse_body_nms=owed)
+
+
+def status(coil, lockout_ms=0, level=0, seq=0):
+    return CoilStatus(level, coil, 0, 0, lockout_ms, seq)
+
+
+ALL_FREE = CoilView(lockout_ms=(0, 0, 0))
+
+
+BOARD_IS_THERE = NOTHING._replace(coil=status(0))
+
+
+def run(state=None, view=ALL_FREE, demand=None, readings=BOARD_IS_THERE, tick=TICK, config=CONFIG):
+    """Under a law that asks for nothing more, unless told otherwise."""
+    asked = Demand() if demand is None else demand
+    coils = CoilConfig(config, dipoles=None)
+    return actuate(ready() if state is None else state, view, asked, B_BODY_T, readings, tick, coils)
+
+
+def run_safe(state, view, readings=BOARD_IS_THERE, tick=TICK):
+    """While no law flies."""
+    return actuate(state, view, None, B_BODY_T, readings, tick, COILS)
+
+
+def refusal(tick):
+    return CoilRefused(0, 9, CoilRefusedReason.LOCKOUT, tick & 0xFF)
+
+
+# What is heard
+
+
+def test_before_the_board_is_heard_and_asked_nothing_is_known():
+    view = CoilView()
+    assert view.lockout_ms == (-1, -1, -1)
+    assert (view.driven_coil, view.driven_level, view.driven_am2) == (0, 0, ZERO)
+    assert (view.seq, view.refusals) == (0, 0)
+    assert (view.fired_tick, view.fired, view.paid_body_nms) == (-1, Pulse(0, 0), ZERO)
+
+
+@pytest.mark.parametrize("coil", [0, 1, 2])
+def test_a_status_is_the_word_on_its_coil_alone(coil):
+    before = CoilView(lockout_ms=(10, -1, 30), refusals=4)
+    after = hear(before, NOTHING._replace(coil=status(coil, 99_990, level=-2, seq=17)), TICK, COILS)
+    expected = [10, -1, 30]
+    expected[coil] = 99_990
+    assert after.lockout_ms == tuple(expected)
+    assert (after.driven_coil, after.driven_level, after.seq, after.refusals) == (coil, -2, 17, 4)
+
+
+FIRED = CoilView((0, 10, -1), seq=9, fired_tick=TICK, fired=Pulse(1, -3), paid_body_nms=(1e-5, 2e-5, 3e-5))
+
+
+@pytest.mark.parametrize(
+    ("ticks_after", "level"), [(0, 0), (1, -3), (2, -3), (3, -3), (4, 0), (100, 0), (TICK, 0)]
+)
+def test_without_a_status_the_last_word_stands_and_the_own_request_counts_as_driven(ticks_after, level):
+    """For as long as it was asked for: a status that was lost is no reason to think the coil was off."""
+    after = hear(FIRED, NOTHING, TICK + ticks_after, COILS)
+    dipole_am2 = (0.0, -8.0 if level else 0.0, 0.0)
+    assert after == replace(FIRED, driven_coil=1, driven_level=level, driven_am2=dipole_am2)
+    assert not unexpected(after, TICK + ticks_after, CONFIG)
+
+
+@pytest.mark.parametrize("tick", [0, 1, 3, TICK])
+def test_without_a_status_and_a_request_nothing_counts_as_driven(tick):
+    assert hear(CoilView(), NOTHING, tick, COILS) == CoilView()
+
+
+@pytest.mark.parametrize("level", [0, 1])
+def test_what_the_board_says_goes_before_the_own_request(level):
+    after = hear(FIRED, NOTHING._replace(coil=status(2, level=level)), TICK + 1, COILS)
+    assert (after.driven_coil, after.driven_level, after.driven_am2) == (2, level, (0.0, 0.0, 0.5 * level))
+
+
+@pytest.mark.parametrize("coil", [None, 0, 1, 2])
+def test_a_board_that_has_booted_has_not_told_its_lockouts(coil):
+    """But of the coil that it tells of in the same tick."""
+    booted = NOTHING._replace(coil_boot=CoilBoot(1, 1, 7))
+    if coil is not None:
+        booted = booted._replace(coil=status(coil, 99_000, seq=9))
+    expected = [99_000 if coil == told else -1 for told in range(3)]
+    assert hear(replace(FIRED, lockout_ms=(0, 10, 0)), booted, TICK + 50, COILS) == replace(
+        FIRED, lockout_ms=tuple(expected), driven_coil=1 if coil is None else coil
+    )
+    assert CoilView().lockout_ms == UNHEARD
+
+
+def test_after_a_boot_of_the_board_nothing_goes_out_before_its_word_is_heard():
+    view = hear(ALL_FREE, NOTHING._replace(coil_boot=CoilBoot(1, 1, 7), coil=status(1)), TICK, COILS)
+    state, view, request = run(view=view)
+    assert request is None, "coil 0 is what is wanted"
+    view = hear(view, NOTHING._replace(coil=status(0)), TICK + 1, COILS)
+    assert run(state, view, tick=TICK + 1)[2].coil == 0
+
+
+@pytest.mark.parametrize("said", [None, status(1)], ids=["status lost", "status heard"])
+def test_a_refusal_is_counted_with_or_without_a_status(said):
+    view = CoilView(refusals=2)
+    refused = NOTHING._replace(coil=said, refused=refusal(TICK))
+    assert hear(view, refused, TICK, COILS).refusals == 3
+    assert hear(view, NOTHING._replace(coil=said), TICK, COILS).refusals == 2
+
+
+@pytest.mark.parametrize(
+    ("coil", "level", "dipole_am2"),
+    [(0, 1, (0.5, 0, 0)), (1, -2, (0, -2.0, 0)), (2, 3, (0, 0, 8.0)), (1, 0, (0, 0, 0))],
+)
+def test_the_driven_dipole_is_that_of_the_status(coil, level, dipole_am2):
+    view = hear(CoilView(), NOTHING._replace(coil=status(coil, level=level)), TICK, COILS)
+    assert view.driven_am2 == dipole_am2
+
+
+@pytest.mark.parametrize(
+    ("ticks_after", "coil", "level", "is_unexpected"),
+    [
+        (0, 1, -2, True),  # driven before it was asked for
+        (1, 1, -2, False),
+        (3, 1, -2, False),
+        (4, 1, -2, True),  # longer than a pulse
+        (2, 1, 2, True),  # the wrong sign
+        (2, 1, -3, True),
+        (2, 0, -2, True),
+        (4, 1, 0, False),
+        (0, 0, 0, False),
+    ],
+)
+def test_only_the_pulse_that_was_asked_for_is_expected_and_only_for_its_time(
+    ticks_after, coil, level, is_unexpected
+):
+    view = CoilView(driven_coil=coil, driven_level=level, fired_tick=TICK, fired=Pulse(1, -2))
+    assert unexpected(view, TICK + ticks_after, CONFIG) is is_unexpected
+
+
+@pytest.mark.parametrize("tick", [0, 1, 2, 3, TICK])
+def test_before_the_first_request_any_drive_is_unexpected(tick):
+    assert unexpected(CoilView(driven_coil=0, driven_level=1), tick, CONFIG)
+    assert not unexpected(CoilView(), tick, CONFIG)
+
+
+# When a pulse goes out
+
+
+WANTED = {
+    "owed": (ready(), Demand(), OWED_FOR[0]),
+    "missed": (ready(ZERO), Demand(impulse_body_nms=OWED_FOR[0]), ZERO),
+}
+"""What leads to the highest pulse of coil 0: state, demand, and what of it is owed and then paid."""
+
+
+@pytest.mark.parametrize("kind", WANTED)
+def test_the_request_names_pulse_answer_and_length_and_is_remembered(kind):
+    state, demand, paid = WANTED[kind]
+    state, view, request = run(state, replace(ALL_FREE, seq=41), demand, tick=0x1234)
+    assert request == CoilFire(level=3, coil=0, seq=42, tick=0x1234, duration_ms=3000)
+    assert CoilFire.decode(request.encode().data).tick == 0x34
+    assert (view.fired_tick, view.fired) == (0x1234, Pulse(0, 3))
+    assert view.paid_body_nms == pytest.approx(paid)
+    assert state.ready_tick == (0x1234 + 103,) * 3
+    assert state.busy_until == 0x1234 + 3
+
+
+@pytest.mark.parametrize("coil", [0, 1, 2])
+def test_every_coil_is_fired_unless_it_has_a_fault(coil):
+    b_body_t = (2e-5, 2e-5, 2e-5)
+    owed = pulses.impulse(Pulse(coil, 3), b_body_t, CONFIG)
+    asked = (ready(owed), ALL_FREE, Demand(), b_body_t, BOARD_IS_THERE, TICK, COILS)
+    _, _, request = actuate(*asked)
+    assert request.coil == coil
+    _, _, other = actuate(*asked, tuple(int(number == coil) for number in range(3)))
+    assert other is None or other.coil != coil
+
+
+def test_the_length_is_that_of_the_table():
+    config = replace(CONFIG, pulse_ticks=2, duration_ms=1900)
+    state, _, request = run(config=config)
+    assert request.duration_ms == 1900
+    assert state.busy_until == TICK + 2
+
+
+def test_a_pulse_is_paid_when_it_is_asked_for():
+    state, _, request = run()
+    assert request is not None
+    keep = 1.0 - 1.0 / 300.0
+    assert state.owed_impulse_body_nms == pytest.approx((0.0, (1.0 - keep) * 4.8e-4, 0.0))
+
+
+def test_the_torque_of_the_demanded_dipole_is_owed():
+    """T = m x b: 0.5 A m^2 along axis 1 in 20 uT along axis 3 turn about axis 2."""
+    state, _, request = run(ready(ZERO), demand=Demand((0.5, 0.0, 5.0)))
+    assert request is None
+    assert state.owed_impulse_body_nms == pytest.approx((0.0, -1e-5, 0.0))
+
+
+@pytest.mark.parametrize(("coil", "lockout_ms"), list(product((0, 1), product((-1, 0, 163_830), repeat=3))))
+def test_a_pulse_goes_out_only_if_the_word_on_exactly_its_coil_is_zero(coil, lockout_ms):
+    """Whatever the word on the others; and no other coil is taken in its place."""
+    owed = OWED_FOR[coil]
+    state, view, request = run(ready(owed), replace(ALL_FREE, lockout_ms=lockout_ms))
+    if lockout_ms[coil] == 0:
+        assert request.coil == coil
+    else:
+        assert request is None
+        assert state == pulses.owe(ready(owed), ZERO, B_BODY_T, CONFIG), "it stays owed, and no timer is set"
+        assert view.fired_tick == -1
+
+
+def test_a_pulse_waits_for_a_tick_with_a_status():
+    state, view, request = run(readings=NOTHING)
+    assert request is None
+    assert state == pulses.owe(ready(), ZERO, B_BODY_T, CONFIG)
+    assert view == ALL_FREE
+
+
+def test_a_board_that_is_free_does_not_shorten_the_own_timers():
+    locked = replace(ready(), ready_tick=(TICK + 1,) * 3)
+    assert run(locked)[2] is None
+    assert run(locked, tick=TICK + 1)[2] is not None
+
+
+# Impulses
+
+
+def test_an_impulse_is_met_anew_in_each_tick_and_nothing_of_it_is_owed():
+    """Neither what was owed before nor what no pulse could pay: the law will ask again."""
+    beyond = Demand(impulse_body_nms=(0.0, -4.0 * 8.0 * 2e-5, 0.0))
+    state, _, request = run(ready(OWED_FOR[1]), demand=beyond)
+    assert (request.coil, request.level) == (0, 3)
+    assert state.owed_impulse_body_nms == ZERO
+    state, _, request = run(ready(OWED_FOR[1]), demand=Demand(impulse_body_nms=ZERO))
+    assert request is None
+    assert state.owed_impulse_body_nms == ZERO
+
+
+def test_the_energy_chooses_where_an_impulse_is_missed_and_the_rate_where_it_is_owed():
+    """By the energy a turn about axis 1 weighs nine times as much; by the rate of this body both alike."""
+    impulse = (0.7 * 3.0 * 8.0 * 2e-5, -3.0 * 8.0 * 2e-5, 0.0)
+    assert run(ready(impulse))[2].coil == 0
+    assert run(ready(ZERO), demand=Demand(impulse_body_nms=impulse))[2].coil == 1
+
+
+# Refusals
+
+
+def refused_at(ticks_later, of_tick=TICK):
+    """What is owed, and the view, after a request that was refused as one of ``of_tick``; nothing leaks."""
+    config = replace(CONFIG, leak_s=inf)
+    state, view, request = run(config=config)
+    assert request is not None
+    assert state.owed_impulse_body_nms == pytest.approx(ZERO, abs=1e-18)
+    readings = BOARD_IS_THERE._replace(refused=refusal(of_tick))
+    state, view, again = run(state, view, readings=readings, tick=TICK + ticks_later, config=config)
+    assert again is None, "the own timers run whatever the board did"
+    return state, view, config
+
+
+@pytest.mark.parametrize("ticks_later", [1, 2])
+def test_what_a_refused_request_paid_is_owed_again_and_only_once(ticks_later):
+    state, view, config = refused_at(ticks_later)
+    assert state.owed_impulse_body_nms == pytest.approx(OWED_FOR[0])
+    readings = BOARD_IS_THERE._replace(refused=refusal(TICK))
+    again, _, _ = run(state, view, readings=readings, tick=TICK + ticks_later + 1, config=config)
+    assert again.owed_impulse_body_nms == state.owed_impulse_body_nms
+
+
+def test_a_refusal_that_is_heard_twice_gives_back_once():
+    """Of a pulse that pays less than may be owed."""
+    config = replace(CONFIG, leak_s=inf)
+    owed = (0.0, -3.0 * 0.5 * 2e-5, 0.0)
+    state, view, request = run(ready(owed), config=config)
+    assert abs(request.level) == 1
+    readings = BOARD_IS_THERE._replace(refused=refusal(TICK))
+    for tick in (TICK + 1, TICK + 2):
+        state, view, _ = run(state, view, readings=readings, tick=tick, config=config)
+        assert state.owed_impulse_body_nms == pytest.approx(owed)
+
+
+def test_a_request_that_was_refused_does_not_count_as_driven():
+    _, view, _ = refused_at(1)
+    after = hear(view, NOTHING, TICK + 2, COILS)
+    assert (after.driven_level, after.driven_am2) == (0, ZERO)
+
+
+@pytest.mark.parametrize(
+    ("ticks_later", "of_tick"), [(1, TICK - 1), (1, TICK + 1), (2, TICK + 2), (3, TICK), (256, TICK + 256)]
+)
+def test_a_refusal_of_another_request_or_one_that_comes_too_late_gives_nothing_back(ticks_later, of_tick):
+    state, view, _ = refused_at(ticks_later, of_tick)
+    assert state.owed_impulse_body_nms == pytest.approx(ZERO, abs=1e-18)
+    assert view.paid_body_nms == pytest.approx(OWED_FOR[0])
+
+
+def test_a_refusal_before_the_first_request_gives_nothing_back():
+    state, _, _ = run(ready(ZERO), readings=BOARD_IS_THERE._replace(refused=refusal(255)), tick=1)
+    assert state.owed_impulse_body_nms == ZERO
+
+
+def test_a_refused_impulse_is_not_owed():
+    """It was never: the law that missed it asks anew."""
+    state, view, _ = run(ready(ZERO), demand=Demand(impulse_body_nms=OWED_FOR[0]))
+    readings = BOARD_IS_THERE._replace(refused=refusal(TICK))
+    state, _, _ = run(state, view, readings=readings, tick=TICK + 1)
+    assert state.owed_impulse_body_nms == ZERO
+
+
+# Without a law
+
+
+@pytest.mark.parametrize("fresh", [True, False])
+@pytest.mark.parametrize("lockout_ms", [(0, 0, 0), (10, -1, 0)])
+def test_without_a_law_nothing_is_fired_and_nothing_owed(fresh, lockout_ms):
+    """Nor what was owed before; the timers run on."""
+    timers = replace(ready(), ready_tick=(TICK - 5, TICK, TICK + 9), busy_until=TICK - 20)
+    before = replace(timers, held_am2=(1.0, -2.0, 3.0))
+    view = replace(ALL_FREE, lockout_ms=lockout_ms)
+    after, seen, request = run_safe(before, view, BOARD_IS_THERE if fresh else NOTHING)
+    assert request is None
+    assert after == replace(timers, owed_impulse_body_nms=ZERO)
+    assert seen == view
+
+
+def test_a_refusal_that_comes_while_no_law_flies_is_not_owed_either():
+    state, view, _ = run()
+    state, view, _ = run_safe(state, view, BOARD_IS_THERE._replace(refused=refusal(TICK)), TICK + 1)
+    assert state.owed_impulse_body_nms == ZERO
+
+
+STRONG = Demand((8.0, 0.0, 0.0))
+
+
+def test_a_pulse_asked_for_before_safe_still_locks_out_after_it():
+    state, view, request = run()
+    assert request is not None
+    for tick in range(TICK + 1, TICK + 50):
+        state, view, request = run_safe(state, view, tick=tick)
+        assert request is None
+    for tick in range(TICK + 50, TICK + 103):
+        state, view, request = run(state, view, STRONG, tick=tick)
+        assert request is None
+    assert run(state, view, STRONG, tick=TICK + 103)[2] is not None
+
+
+def test_seq_never_repeats_the_last_accepted_one():
+    for accepted in range(256):
+        view = hear(ALL_FREE, NOTHING._replace(coil=status(0, seq=accepted)), TICK, COILS)
+        _, _, request = run(view=view)
+        assert request.seq == (accepted + 1) % 256
+        assert CoilFire.decode(request.encode().data).seq != accepted
+
+
+def test_seq_follows_what_the_board_accepted_not_what_was_asked():
+    """A lost request leaves no gap: its number comes again, and the board has never seen it."""
+    state, view, request = run(view=replace(ALL_FREE, seq=7))
+    assert request.seq == 8
+    view = hear(view, NOTHING._replace(coil=status(0, seq=7)), TICK + 1, COILS)
+    _, _, again = run(replace(state, owed_impulse_body_nms=OWED_FOR[0]), view, tick=TICK + 103)
+    assert again.seq == 8
+
+
+# Flown by itself over a board that always says that all is free
+
+
+def starts(shared, tick_hz, coils, ticks):
+    """(tick, coil) of each request when each of ``coils`` is demanded in turn, from boot at tick 0."""
+    config = make_config(shared, tick_hz)
+    state, view, asked = pulses.boot(0, config), ALL_FREE, []
+    for tick in range(ticks):
+        for coil in coils:
+            state = replace(state, owed_impulse_body_nms=OWED_FOR[coil])
+            state, view, request = run(state, view, tick=tick, config=config)
+            if request is not None:
+                asked.append((tick, request.coil))
+    return asked
+
+
+@pytest.mark.parametrize("tick_hz", [1, 2, 3, 7, 10, 50])
+def test_with_a_lasting_demand_it_fires_as_often_as_the_limits_let_it(tick_hz):
+    """One coil in 103 s: after the boot lockout at 100 s, 203 s, 306 s."""
+    for shared in (True, False):
+        times = [tick / tick_hz for tick, _ in starts(shared, tick_hz, (0,), 310 * tick_hz)]
+        assert times == [100.0, 203.0, 306.0]
+    shared = [(tick / tick_hz, coil) for tick, coil in starts(True, tick_hz, (0, 1), 310 * tick_hz)]
+    assert shared == [(100.0, 0), (203.0, 0), (306.0, 0)]
+    per_coil = [(tick / tick_hz, coil) for tick, coil in starts(False, tick_hz, (0, 1), 310 * tick_hz)]
+    assert per_coil == [(100.0, 0), (103.0, 1), (203.0, 0), (206.0, 1), (306.0, 0), (309.0, 1)]
+
+
+@settings(max_examples=300)
+@given(
+    ready_in=st.tuples(*[st.sampled_from((-500, -1, 0, 0, 1, 200))] * 3),
+    busy_in=st.sampled_from((-500, -1, 0, 0, 2)),
+    lockout_ms=st.tuples(*[st.sampled_from((-1, 0, 0, 10, 100_000))] * 3),
+    owed=st.tuples(*[st.floats(-1e-3, 1e-3)] * 3),
+    shared=st.booleans(),
+    shift=st.integers(1, 2**32 - 20_000),
+)
+def test_only_how_long_the_timers_still_run_matters(ready_in, busy_in, lockout_ms, owed, shared, shift):
+    """Not the tick itself, not how long ago a timer ran out, not how long the board's lockout is."""
+    config = make_config(shared)
+
+    def answer(tick, ready_in, busy_in, lockout_ms):
+        state = replace(
+            ready(owed), ready_tick=tuple(tick + left for left in ready_in), busy_until=tick + busy_in
+        )
+        view = CoilView(lockout_ms=lockout_ms)
+        after, _, request = run(state, view, tick=tick, config=config)
+        timers = [max(0, t - tick) for t in (*after.ready_tick, after.busy_until)]
+        return timers, after.owed_impulse_body_nms, request and request._replace(tick=0)
+
+    once = answer(TICK, ready_in, busy_in, lockout_ms)
+    event("fired" if once[2] else "waited")
+    assert once == answer(
+        TICK + shift,
+        tuple(max(0, left) for left in ready_in),
+        max(0, busy_in),
+        tuple(min(left, 1) for left in lockout_ms),
+    )

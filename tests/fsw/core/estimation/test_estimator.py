@@ -1,0 +1,498 @@
+"""From readings to an estimate: when the filter starts, what it takes, and when it begins anew."""
+
+from dataclasses import replace
+from math import degrees, inf, nan, radians
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from fsw.core.algebra.quaternion import canonical, conjugate, multiply, normalise, rotate
+from fsw.core.algebra.vector import ZERO, add, cross, norm, scale, unit
+from fsw.core.estimation import mekf
+from fsw.core.estimation.estimator import (
+    MAX_ELAPSED_TICKS,
+    NONE_USED,
+    UNKNOWN,
+    Attitude,
+    EstimatorConfig,
+    EstimatorState,
+    Used,
+    attitude,
+    estimate,
+    perfect_attitude,
+    usable_field,
+    usable_sun,
+)
+from fsw.core.estimation.mekf_config import mekf_config
+from fsw.core.gate.readings import NOTHING
+from fsw.core.orbit.ephemeris import Reference
+from fsw.wire.messages import CoilStatus, MagField, RefAttitude, RefRate, SunVector
+
+MEKF = mekf_config(
+    ((1.02, 0.07, -0.05), (0.07, 1.85, 0.11), (-0.05, 0.11, 1.45)),
+    1.0,
+    estimate_bias=True,
+    estimate_torque=True,
+    magnetometer_sigma_t=2e-7,
+    sun_sigma_rad=radians(0.5),
+    attitude_sigma_rad=radians(5.0),
+    rate_sigma_radps=radians(2.0),
+    bias_sigma_t=3e-7,
+    torque_sigma_nm=1e-7,
+    torque_noise_nm_rts=1e-7,
+    bias_walk_t_prts=1e-10,
+    torque_walk_nm_prts=3e-10,
+    gate_nis=16.27,
+)
+CONFIG = EstimatorConfig(
+    mekf=MEKF,
+    perfect=False,
+    max_field_error_t=3e-6,
+    max_angle_error_rad=radians(5.0),
+    min_separation_rad=radians(15.0),
+    restart_after_rejections=6,
+    valid_sigma_rad=radians(5.0),
+)
+REFERENCE = Reference(
+    r_eci_m=(4.0e6, -5.0e6, 3.0e6),
+    radius_m=norm((4.0e6, -5.0e6, 3.0e6)),
+    b_eci_t=(1.7e-5, -2.3e-5, 3.1e-5),
+    sun_eci=unit((-0.8, 0.35, 0.4)),
+    lit=True,
+    q_orbit_from_eci=normalise((0.3, 0.5, -0.7, 0.4)),
+    orbit_rate_radps=1.04e-3,
+)
+Q_BODY_FROM_ECI = normalise((0.6, -0.4, 0.5, 0.3))
+IDLE = CoilStatus(0, 2, 0, 0, 98000, 0)
+
+
+def field_message(b_body_t, valid=1):
+    return MagField(valid, *(c * 1e9 for c in b_body_t))
+
+
+def seen_from(q_body_from_eci=Q_BODY_FROM_ECI, reference=REFERENCE, **changes):
+    """What ideal sensors of a body in this attitude say, with changes."""
+    readings = NOTHING._replace(
+        field=field_message(rotate(q_body_from_eci, reference.b_eci_t)),
+        sun=SunVector(1, *rotate(q_body_from_eci, reference.sun_eci)),
+        coil=IDLE,
+    )
+    return readings._replace(**changes)
+
+
+def step(state, readings, reference=REFERENCE, dipole=ZERO, elapsed=1, config=CONFIG):
+    return estimate(state, readings, reference, dipole, elapsed, config)[:2]
+
+
+@pytest.fixture(scope="module")
+def settled():
+    """A filter that has seen a body at rest for two minutes."""
+    state = EstimatorState()
+    for _ in range(120):
+        state, used = step(state, seen_from())
+    assert used == Used(True, True, False)
+    assert (state.rejected_total, state.restarts) == (0, 0)
+    return state
+
+
+def angle_rad(p, q):
+    turn = multiply(conjugate(p), q)
+    return 2.0 * np.arctan2(norm(turn[1:]), abs(turn[0]))
+
+
+OFF_SUN = SunVector(1, *unit(rotate(Q_BODY_FROM_ECI, add(REFERENCE.sun_eci, scale(9e3, REFERENCE.b_eci_t)))))
+"""About 20 deg nearer to the field than it should be."""
+OFF_FIELD = field_message(scale(1.3, rotate(Q_BODY_FROM_ECI, REFERENCE.b_eci_t)))
+
+
+class TestUsable:
+    def test_a_quiet_sample_is_taken_in_tesla(self):
+        readings = seen_from(field=MagField(1, 20000.0, -7000.0, 31000.0))
+        assert usable_field(readings) == pytest.approx((2.0e-5, -7.0e-6, 3.1e-5), rel=1e-12)
+
+    @pytest.mark.parametrize(
+        "changes",
+        [
+            {"field": None},
+            {"field": MagField(0, 20000.0, -7000.0, 31000.0)},
+            {"coil": None},
+            {"coil": IDLE._replace(level=1)},
+            {"coil": IDLE._replace(level=-3)},
+            {"coil": IDLE._replace(current_ma=1)},
+            {"coil": IDLE._replace(current_ma=-1)},
+        ],
+        ids=[
+            "none",
+            "not valid",
+            "no coil status",
+            "driven",
+            "driven backwards",
+            "current",
+            "current backwards",
+        ],
+    )
+    def test_a_sample_that_a_coil_may_have_spoilt_is_not(self, changes):
+        assert usable_field(seen_from(**changes)) is None
+
+    def test_what_remains_of_a_pulse_does_not_count_before_it_is_driven(self):
+        """Level is what was driven until now; the sample is good if nothing was."""
+        assert usable_field(seen_from(coil=IDLE._replace(remaining_ms=3000))) is not None
+
+    def test_sun(self):
+        assert usable_sun(seen_from(sun=SunVector(1, 0.6, -0.48, 0.64))) == (0.6, -0.48, 0.64)
+        assert usable_sun(seen_from(sun=SunVector(0, 0.6, -0.48, 0.64))) is None
+        assert usable_sun(seen_from(sun=None)) is None
+
+
+class TestStart:
+    def test_from_field_and_sun_in_one_tick(self):
+        state, used = step(EstimatorState(), seen_from())
+        assert used == Used(True, True, False)
+        assert angle_rad(state.estimate.q_body_from_eci, Q_BODY_FROM_ECI) < 1e-6
+        assert state.estimate.omega_body_radps == ZERO
+        assert (state.restarts, state.rejected_total) == (0, 0)
+
+    @pytest.mark.parametrize("q", [(1.0, 0.0, 0.0, 0.0), (0.0, 0.6, -0.48, 0.64), (-0.5, 0.5, 0.5, -0.5)])
+    def test_in_any_attitude(self, q):
+        state, _ = step(EstimatorState(), seen_from(q))
+        assert angle_rad(state.estimate.q_body_from_eci, q) < 1e-6
+
+    @pytest.mark.parametrize(
+        "changes",
+        [
+            {"field": None},
+            {"sun": None},
+            {"field": None, "sun": None},
+            {"field": seen_from().field._replace(valid=0)},
+            {"sun": seen_from().sun._replace(valid=0)},
+            {"coil": None},
+            {"coil": IDLE._replace(level=2)},
+            {"coil": IDLE._replace(current_ma=17)},
+            {"field": field_message(scale(1.1, rotate(Q_BODY_FROM_ECI, REFERENCE.b_eci_t)))},
+            {"sun": OFF_SUN},
+        ],
+        ids=[
+            "no field",
+            "no Sun",
+            "nothing",
+            "field not valid",
+            "Sun not valid",
+            "no coil status",
+            "coil driven",
+            "coil current",
+            "strength not as modelled",
+            "angle not as modelled",
+        ],
+    )
+    def test_not_without_all_that_it_takes(self, changes):
+        state, used = step(EstimatorState(), seen_from(**changes))
+        assert state == EstimatorState()
+        assert not used.field
+        assert not used.sun
+
+    def test_not_in_eclipse(self):
+        """The sensor may be fooled by the Earth's limb; the model says there is no Sun to see."""
+        state, _ = step(EstimatorState(), seen_from(), replace(REFERENCE, lit=False))
+        assert state == EstimatorState()
+
+    def test_not_with_field_and_sun_nearly_parallel(self):
+        toward = unit(REFERENCE.b_eci_t)
+        aside = unit(cross(toward, (0.0, 0.0, 1.0)))
+        for separation_deg, starts in ((10.0, False), (20.0, True)):
+            sun = tuple(
+                np.cos(radians(separation_deg)) * np.array(toward)
+                + np.sin(radians(separation_deg)) * np.array(aside)
+            )
+            reference = replace(REFERENCE, sun_eci=tuple(map(float, sun)))
+            state, _ = step(EstimatorState(), seen_from(reference=reference), reference)
+            assert (state.estimate is not None) is starts
+
+    def test_says_when_it_was_blanked_while_waiting(self):
+        _, used = step(EstimatorState(), seen_from(coil=IDLE._replace(level=1)))
+        assert used == Used(False, False, True)
+
+
+class TestRunning:
+    def test_settles_on_what_the_sensors_say(self, settled):
+        """The filter believes in gravity and in no other torque; the ideal body here stands still."""
+        assert angle_rad(settled.estimate.q_body_from_eci, Q_BODY_FROM_ECI) < radians(0.2)
+        assert norm(settled.estimate.omega_body_radps) < 1e-4
+
+    @pytest.mark.parametrize(
+        ("changes", "used"),
+        [
+            ({}, Used(True, True, False)),
+            ({"sun": None}, Used(True, False, False)),
+            ({"field": None}, Used(False, True, False)),
+            ({"coil": IDLE._replace(level=1)}, Used(False, True, True)),
+            ({"coil": IDLE._replace(current_ma=5)}, Used(False, True, True)),
+            ({"coil": None}, Used(False, True, True)),
+            ({"field": None, "sun": None, "coil": None}, Used(False, False, False)),
+        ],
+    )
+    def test_takes_what_is_usable(self, settled, changes, used):
+        state, said = step(settled, seen_from(**changes))
+        assert said == used
+        assert state.rejected_total == 0
+        silent, _ = step(settled, NOTHING)
+        without, after = (s.estimate.covariance[0:3, 0:3].trace() for s in (silent, state))
+        assert bool(after < without) is (used.field or used.sun)
+
+    def test_the_coil_s_own_field_never_gets_in(self, settled):
+        """A sample spoilt by 20 uT while a pulse is on leaves no trace at all."""
+        pulse = IDLE._replace(level=3)
+        spoilt = field_message(tuple(c + 2e-5 for c in rotate(Q_BODY_FROM_ECI, REFERENCE.b_eci_t)))
+        with_sample, _ = step(settled, seen_from(field=spoilt, coil=pulse))
+        without, _ = step(settled, seen_from(field=None, coil=pulse))
+        assert with_sample.estimate.q_body_from_eci == without.estimate.q_body_from_eci
+        np.testing.assert_array_equal(with_sample.estimate.covariance, without.estimate.covariance)
+
+    def test_in_eclipse_the_magnetometer_alone_carries_on(self, settled):
+        eclipse = replace(REFERENCE, lit=False)
+        state = settled
+        for _ in range(300):
+            state, used = step(state, seen_from(sun=SunVector(0, 0.0, 0.0, 0.0)), eclipse)
+        assert used == Used(True, False, False)
+        assert state.restarts == 0
+        assert mekf.healthy(state.estimate)
+
+    def test_the_driven_dipole_turns_the_estimate(self, settled):
+        pulse = seen_from(field=None, sun=None, coil=IDLE._replace(level=3))
+        pushed, _ = step(settled, pulse, dipole=(0.0, 0.0, 8.0))
+        left, _ = step(settled, pulse)
+        change = np.subtract(pushed.estimate.omega_body_radps, left.estimate.omega_body_radps)
+        b_body = rotate(settled.estimate.q_body_from_eci, REFERENCE.b_eci_t)
+        expected = np.linalg.solve(np.array(MEKF.inertia_kgm2), np.cross((0.0, 0.0, 8.0), b_body))
+        np.testing.assert_allclose(change, expected, rtol=1e-2)
+
+    def test_gravity_turns_it_too(self, settled):
+        """J dw/dt = 3 mu / r^3 e x J e - w x J w, with a body at rest and nothing else."""
+        still = settled.estimate._replace(omega_body_radps=ZERO, torque_body_nm=ZERO)
+        after, _ = step(settled._replace(estimate=still), NOTHING)
+        e = np.array(rotate(still.q_body_from_eci, REFERENCE.r_eci_m)) / REFERENCE.radius_m
+        j = np.array(MEKF.inertia_kgm2)
+        pull = 3.0 * 3.986004418e14 / REFERENCE.radius_m**3 * np.linalg.solve(j, np.cross(e, j @ e))
+        np.testing.assert_allclose(after.estimate.omega_body_radps, pull, rtol=1e-5)
+
+
+class TestElapsedTicks:
+    QUIET = NOTHING
+
+    def test_three_ticks_at_once_are_three_ticks(self, settled):
+        at_once, _ = step(settled, self.QUIET, elapsed=3)
+        state = settled
+        for _ in range(3):
+            state, _ = step(state, self.QUIET)
+        assert at_once.estimate.q_body_from_eci == state.estimate.q_body_from_eci
+        np.testing.assert_array_equal(at_once.estimate.covariance, state.estimate.covariance)
+
+    def test_the_dipole_counts_for_the_last_of_them_alone(self, settled):
+        at_once, _ = step(settled, self.QUIET, dipole=(0.0, 0.0, 8.0), elapsed=3)
+        state = settled
+        for dipole in (ZERO, ZERO, (0.0, 0.0, 8.0)):
+            state, _ = step(state, self.QUIET, dipole=dipole)
+        assert at_once.estimate.omega_body_radps == state.estimate.omega_body_radps
+
+    @pytest.mark.parametrize(
+        ("elapsed", "survives"),
+        [(1, True), (MAX_ELAPSED_TICKS, True), (MAX_ELAPSED_TICKS + 1, False), (10**9, False)],
+    )
+    def test_after_a_longer_silence_it_begins_anew(self, settled, elapsed, survives):
+        state, used = step(settled, self.QUIET, elapsed=elapsed)
+        assert (state.estimate is not None) is survives
+        assert state.restarts == (not survives)
+        assert used == NONE_USED
+
+    def test_it_begins_anew_in_the_same_tick_if_it_can(self, settled):
+        state, used = step(settled, seen_from(), elapsed=MAX_ELAPSED_TICKS + 1)
+        assert (state.restarts, used) == (1, Used(True, True, False))
+        np.testing.assert_array_equal(state.estimate.covariance, MEKF.initial_covariance)
+
+
+class TestRejections:
+    def test_an_outlier_leaves_no_trace_but_a_count(self, settled):
+        with_outlier, used = step(settled, seen_from(sun=OFF_SUN))
+        without, _ = step(settled, seen_from(sun=None))
+        assert used == Used(True, False, False)
+        assert with_outlier.estimate.q_body_from_eci == without.estimate.q_body_from_eci
+        assert (with_outlier.rejected_in_a_row, with_outlier.rejected_total) == (1, 1)
+
+    def test_both_in_one_tick_count_twice(self, settled):
+        state, used = step(settled, seen_from(sun=OFF_SUN, field=OFF_FIELD))
+        assert used == NONE_USED
+        assert (state.rejected_in_a_row, state.rejected_total) == (2, 2)
+
+    def test_it_begins_anew_after_as_many_in_a_row_as_the_table_says(self, settled):
+        state = settled
+        for rejected in range(1, CONFIG.restart_after_rejections):
+            state, _ = step(state, seen_from(sun=OFF_SUN, field=None))
+            assert (state.rejected_in_a_row, state.restarts) == (rejected, 0)
+        state, _ = step(state, seen_from(sun=OFF_SUN, field=None))
+        assert state == EstimatorState(None, 0, CONFIG.restart_after_rejections, 1)
+
+    @pytest.mark.parametrize("changes", [{}, {"sun": None}, {"field": None}], ids=["both", "field", "Sun"])
+    def test_one_that_is_taken_ends_the_row(self, settled, changes):
+        state = settled
+        for _ in range(CONFIG.restart_after_rejections - 1):
+            state, _ = step(state, seen_from(sun=OFF_SUN, field=None))
+        state, _ = step(state, seen_from(**changes))
+        assert (state.rejected_in_a_row, state.rejected_total) == (0, CONFIG.restart_after_rejections - 1)
+
+    def test_silence_does_not_end_the_row(self, settled):
+        state, _ = step(settled, seen_from(sun=OFF_SUN, field=None))
+        state, _ = step(state, NOTHING)
+        assert state.rejected_in_a_row == 1
+
+    def test_a_body_that_was_turned_unseen_is_found_again(self, settled):
+        """All measurements disagree; after the row the filter starts from them and believes them."""
+        turned = normalise(multiply(Q_BODY_FROM_ECI, (0.2, 0.6, -0.7, 0.3)))
+        state = settled
+        for _ in range(CONFIG.restart_after_rejections // 2 + 1):
+            state, _ = step(state, seen_from(turned))
+        assert state.restarts == 1
+        assert angle_rad(state.estimate.q_body_from_eci, turned) < radians(0.1)
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # overflow is what is tried
+class TestSoundness:
+    @pytest.mark.parametrize("bad", [nan, inf, -inf, 1e200])
+    @pytest.mark.parametrize("readings", [NOTHING, seen_from()], ids=["silent", "speaking"])
+    @pytest.mark.parametrize("field", ["q_body_from_eci", "omega_body_radps", "mag_bias_t", "torque_body_nm"])
+    def test_a_broken_estimate_is_replaced_and_nothing_is_raised(self, settled, field, readings, bad):
+        values = list(getattr(settled.estimate, field))
+        values[-1] = bad
+        broken = settled._replace(estimate=settled.estimate._replace(**{field: tuple(values)}))
+        state, _ = step(broken, readings)
+        assert state.estimate is None or mekf.healthy(state.estimate)
+        if not np.isfinite(bad):
+            assert state.restarts == 1
+            assert (state.estimate is not None) is (readings is not NOTHING)
+
+    @pytest.mark.parametrize(
+        ("at", "bad"),
+        [(at, bad) for at in ((0, 0), (0, 1), (4, 4), (3, 8), (11, 11)) for bad in (nan, inf, -1.0)]
+        + [((0, 0), 1e300), ((4, 4), 1e300), ((11, 11), 1e300)],
+    )
+    def test_so_is_a_broken_covariance(self, settled, at, bad):
+        covariance = settled.estimate.covariance.copy()
+        covariance[at] = covariance[at[::-1]] = bad
+        broken = settled._replace(estimate=settled.estimate._replace(covariance=covariance))
+        for readings in (seen_from(), NOTHING):
+            state, _ = step(broken, readings)
+            assert state.estimate is None or mekf.healthy(state.estimate)
+
+    def test_a_variance_that_the_update_makes_negative_is_lost(self, settled):
+        """What ties attitude and bias together has grown in one place alone: the two no longer agree."""
+        for value in (1e-2, -1e-2, 1.0, -1.0):
+            covariance = settled.estimate.covariance.copy()
+            covariance[2, 6] = value
+            broken = settled._replace(estimate=settled.estimate._replace(covariance=covariance))
+            state, _ = step(broken, seen_from())
+            assert state.estimate is None or mekf.healthy(state.estimate)
+            attitude(state, REFERENCE, CONFIG)
+
+    def test_a_covariance_that_overflows_in_the_prediction_is_caught_before_the_update(self, settled):
+        spinning = settled.estimate._replace(
+            omega_body_radps=(1e60, -2e60, 3e60), covariance=1e100 * np.eye(12)
+        )
+        state, used = step(settled._replace(estimate=spinning), seen_from())
+        assert state.restarts == 1
+        assert used == Used(True, True, False)
+
+    @given(
+        st.tuples(*[st.floats(-65536.0, 65534.0)] * 3),
+        st.tuples(*[st.floats(-1.1, 1.1)] * 3),
+        st.integers(1, 100),
+        st.floats(-8.0, 8.0),
+    )
+    @settings(max_examples=150, deadline=None)
+    def test_no_reading_breaks_it(self, settled, b_nt, sun, elapsed, m):
+        readings = seen_from(field=MagField(1, *b_nt), sun=SunVector(1, *sun))
+        state, _ = step(settled, readings, dipole=(m, -m, m), elapsed=elapsed)
+        assert state.estimate is None or mekf.healthy(state.estimate)
+
+
+class TestAttitude:
+    def test_unknown_before_the_start(self):
+        assert attitude(EstimatorState(), REFERENCE, CONFIG) is UNKNOWN
+        assert not UNKNOWN.valid
+
+    def test_is_seen_from_the_orbital_frame(self, settled):
+        """q_body_from_eci = q_orbit_from_eci (x) q_body_from_orbit, and the orbit turns about its normal."""
+        moving = settled.estimate._replace(omega_body_radps=(0.011, -0.007, 0.005))
+        seen = attitude(settled._replace(estimate=moving), REFERENCE, CONFIG)
+        chained = multiply(REFERENCE.q_orbit_from_eci, seen.q_body_from_orbit)
+        assert canonical(chained) == pytest.approx(canonical(moving.q_body_from_eci), abs=1e-14)
+        assert seen.q_body_from_orbit[0] >= 0.0
+        normal_eci = rotate(conjugate(REFERENCE.q_orbit_from_eci), (0.0, 0.0, 1.0))
+        normal_body = rotate(moving.q_body_from_eci, normal_eci)
+        expected = np.array(moving.omega_body_radps) - 1.04e-3 * np.array(normal_body)
+        np.testing.assert_allclose(seen.omega_body_orbit_radps, expected, atol=1e-15)
+
+    def test_a_body_at_rest_in_the_orbital_frame_is(self, settled):
+        normal_eci = rotate(conjugate(REFERENCE.q_orbit_from_eci), (0.0, 0.0, 1.0))
+        carried = settled.estimate._replace(
+            q_body_from_eci=REFERENCE.q_orbit_from_eci,
+            omega_body_radps=scale(1.04e-3, rotate(REFERENCE.q_orbit_from_eci, normal_eci)),
+        )
+        seen = attitude(settled._replace(estimate=carried), REFERENCE, CONFIG)
+        assert seen.q_body_from_orbit == pytest.approx((1.0, 0.0, 0.0, 0.0), abs=1e-15)
+        assert seen.omega_body_orbit_radps == pytest.approx(ZERO, abs=1e-17)
+
+    @pytest.mark.parametrize(
+        ("sigma_deg", "valid"), [(0.1, True), (4.999, True), (5.001, False), (60.0, False)]
+    )
+    def test_it_serves_control_while_its_worst_axis_is_known_well_enough(self, settled, sigma_deg, valid):
+        for axis in range(3):
+            covariance = np.diag([radians(0.05) ** 2] * 3 + [1e-10, 4e-10, 9e-10] + [1e-14] * 6)
+            covariance[axis, axis] = radians(sigma_deg) ** 2
+            estimated = settled.estimate._replace(covariance=covariance)
+            seen = attitude(settled._replace(estimate=estimated), REFERENCE, CONFIG)
+            assert seen.valid is valid
+            assert degrees(seen.sigma3_attitude_rad) == pytest.approx(3.0 * sigma_deg)
+            assert seen.sigma3_rate_radps == pytest.approx(9e-5)
+
+    def test_the_sigmas_are_those_of_the_worst_axis_of_attitude_and_of_rate(self, settled):
+        for first, second in (([3.0, 1.0, 2.0], [40.0, 20.0, 30.0]), ([1.0, 2.0, 3.0], [20.0, 30.0, 40.0])):
+            covariance = 1e-6 * np.diag([*first, *second, *[500.0] * 6])
+            seen = attitude(
+                settled._replace(estimate=settled.estimate._replace(covariance=covariance)), REFERENCE, CONFIG
+            )
+            assert seen.sigma3_attitude_rad == pytest.approx(3.0 * (3e-6) ** 0.5)
+            assert seen.sigma3_rate_radps == pytest.approx(3.0 * (40e-6) ** 0.5)
+
+
+class TestPerfectKnowledge:
+    BEFORE = Attitude((0.8, 0.6, 0.0, 0.0), (0.1, 0.2, 0.3), 0.0, 0.0, True)
+    Q = RefAttitude(1, 0.5, -0.25, 0.125)
+    W = RefRate(1, 0.01, -0.02, 0.03)
+
+    def test_is_what_the_plant_says(self):
+        seen = perfect_attitude(NOTHING._replace(ref_attitude=self.Q, ref_rate=self.W), self.BEFORE)
+        assert seen.q_body_from_orbit[1:] == pytest.approx((0.5, -0.25, 0.125), rel=1e-12)
+        assert sum(c * c for c in seen.q_body_from_orbit) == pytest.approx(1.0, abs=1e-15)
+        assert seen.q_body_from_orbit[0] > 0.0
+        assert seen.omega_body_orbit_radps == (0.01, -0.02, 0.03)
+        assert (seen.sigma3_attitude_rad, seen.sigma3_rate_radps, seen.valid) == (0.0, 0.0, True)
+
+    @pytest.mark.parametrize(
+        "changes",
+        [
+            {},
+            {"ref_attitude": Q},
+            {"ref_rate": W},
+            {"ref_attitude": Q._replace(valid=0), "ref_rate": W},
+            {"ref_attitude": Q, "ref_rate": W._replace(valid=0)},
+        ],
+    )
+    def test_without_both_the_one_before_is_kept_and_not_valid(self, changes):
+        seen = perfect_attitude(NOTHING._replace(**changes), self.BEFORE)
+        assert seen == self.BEFORE._replace(valid=False)
+
+    def test_upside_down_the_wire_s_rounding_still_gives_a_unit_quaternion(self):
+        for vector in ((0.6, -0.48, 0.64), (0.57735027, 0.57735027, 0.57735027), (0.999985, 0.0, 0.0)):
+            decoded = RefAttitude.decode(RefAttitude(1, *vector).encode().data)
+            seen = perfect_attitude(NOTHING._replace(ref_attitude=decoded, ref_rate=self.W), self.BEFORE)
+            assert sum(c * c for c in seen.q_body_from_orbit) == pytest.approx(1.0, abs=1e-15)

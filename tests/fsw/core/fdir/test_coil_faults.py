@@ -1,0 +1,252 @@
+"""Coil faults in closed loop: named by current or by what pulses do, left out, SAFE where one is stuck."""
+
+from math import acos, degrees
+
+import pytest
+
+from fsw.core.actuation.actuator import CoilView
+from fsw.core.fdir.coil_health import CoilHealth, judge_current
+from fsw.core.gate.readings import NOTHING
+from fsw.core.telemetry import Event
+from fsw.wire.messages import CoilFire, CoilStatus, FswEvent, Mode, TcClear
+
+SETTLED = 620
+
+
+def events(said, event):
+    return [
+        (tick, m.argument) for tick, ms in said for m in ms if isinstance(m, FswEvent) and m.event == event
+    ]
+
+
+def fires(said):
+    return [(tick, m.coil) for tick, ms in said for m in ms if isinstance(m, CoilFire)]
+
+
+def fly(world, ticks, change=lambda inbox: inbox):
+    return [(tick, world.step(change)) for tick in range(ticks)]
+
+
+def current_times(coil, factor):
+    """The read-back of one coil, altered as a broken wire or a reversed plug would."""
+
+    def change(inbox):
+        frames = []
+        for frame in inbox.frames:
+            if frame.can_id == CoilStatus.ID:
+                status = CoilStatus.decode(frame.data)
+                if status.level and status.coil == coil:
+                    frames.append(status._replace(current_ma=round(factor * status.current_ma)).encode())
+                    continue
+            frames.append(frame)
+        return inbox._replace(frames=tuple(frames))
+
+    return change
+
+
+def told_by_driver(**values):
+    def change(inbox):
+        frames = [
+            CoilStatus.decode(f.data)._replace(**values).encode() if f.can_id == CoilStatus.ID else f
+            for f in inbox.frames
+        ]
+        return inbox._replace(frames=tuple(frames))
+
+    return change
+
+
+def error_deg(world):
+    q, known = world.plant.truth().q_body_from_orbit, world.state.attitude.q_body_from_orbit
+    cosine = abs(sum(a * b for a, b in zip(q, known, strict=True)))
+    return 2.0 * degrees(acos(min(1.0, cosine)))
+
+
+def conduct(plant, coil, ampere):
+    """Let a coil carry this current all the time."""
+    advance = plant._coils.advance
+
+    def stuck(driven_a, on_s, step_s):
+        current_a = list(driven_a if on_s else (0.0, 0.0, 0.0))
+        current_a[coil] = ampere
+        return advance(tuple(current_a), step_s, step_s)
+
+    plant._coils.advance = stuck
+
+
+@pytest.mark.requirement("REQ-COIL-01", "REQ-COIL-02", "REQ-COIL-03")
+@pytest.mark.parametrize(("factor", "kind"), [(0.0, 1), (0.1, 1), (0.5, 2), (-1.0, 3)])
+def test_a_wrong_current_names_the_coil_at_its_second_pulse(make_world, factor, kind):
+    world = make_world()
+    world.fly(90)
+    first = None
+    said = []
+    while first is None:
+        said += fly(world, 1)
+        first = next((coil for _, coil in fires(said)), None)
+    said = fly(world, 900, current_times(first, factor))
+    ((named, argument),) = events(said, Event.COIL_FAULT)
+    assert argument == 100 * (first + 1) + kind
+    own = [tick for tick, coil in fires(said) if coil == first]
+    assert len(own) == 1  # the first pulse went out before
+    assert named == own[0] + 3
+    assert world.state.coils.faults[first] == kind
+    assert fires(said)[-1][0] > named
+    assert world.state.modes.trips == 0
+
+
+@pytest.mark.requirement("REQ-COIL-05")
+def test_a_coil_that_was_not_fired_is_not_judged(make_world):
+    """Before the first request, after one that was refused, and after a plant has started anew."""
+    config = make_world().config
+    pulses, health = config.coils.pulses, CoilHealth()
+    off = NOTHING._replace(coil=CoilStatus(0, 0, 0, 0, 0, 0))
+    for view in (CoilView(), CoilView(fired_tick=700)):
+        tick = view.fired_tick + pulses.pulse_ticks
+        assert judge_current(health, view, off, False, tick, pulses, config.coil_health) == health
+
+
+def test_a_single_wrong_current_names_nobody(make_world):
+    world = make_world()
+    world.fly(90)
+    said = []
+    while not fires(said):
+        said = fly(world, 1)
+    coil = fires(said)[0][1]
+    assert events(fly(world, 10, current_times(coil, 0.0)), Event.COIL_FAULT) == []
+    assert world.state.coils.wrong[coil] == 1
+    said = fly(world, 900)
+    assert events(said, Event.COIL_FAULT) == []
+    assert world.state.coils.wrong == (0, 0, 0)
+
+
+@pytest.mark.requirement("REQ-COIL-05")
+def test_a_coil_that_is_named_is_not_fired_until_the_ground_clears_it(make_world):
+    world = make_world()
+    world.fly(SETTLED)
+    health = world.state.coils._replace(faults=(1, 0, 3))
+    world.state = world.state._replace(coils=health)
+    said = fly(world, 900)
+    assert {coil for _, coil in fires(said)} == {1}
+    world.step(lambda inbox: inbox._replace(frames=(*inbox.frames, TcClear(counter=3).encode())))
+    assert world.state.coils.faults == (0, 0, 0)
+    assert {coil for _, coil in fires(fly(world, 900))} & {0, 2}
+
+
+class TestStuck:
+    @pytest.mark.requirement("REQ-COIL-04")
+    @pytest.mark.parametrize(("coil", "ampere"), [(0, 0.4), (1, -0.4), (2, 0.4), (1, 0.05)])
+    def test_a_coil_that_conducts_by_itself_leads_to_safe_and_its_torque_names_it(
+        self, make_world, coil, ampere
+    ):
+        world = make_world()
+        world.fly(SETTLED)
+        conduct(world.plant, coil, ampere)
+        said = fly(world, 240)
+        ((tripped, monitor),) = events(said, Event.MONITOR_TRIPPED)
+        ((named, argument),) = events(said, Event.COIL_FAULT)
+        assert (monitor, argument) == (7, 100 * (coil + 1) + 4)
+        assert tripped < 8
+        assert named <= (60 if abs(ampere) == 0.4 else 120)
+        assert world.state.modes.mode is Mode.SAFE
+        assert world.state.attitude.valid
+        assert error_deg(world) < 4.0
+        assert events(said, Event.FILTER_RESTARTED) == []
+
+    def test_until_then_no_attitude_is_called_valid_and_after_it_the_current_is_reckoned_with(
+        self, make_world
+    ):
+        world = make_world()
+        world.fly(SETTLED)
+        conduct(world.plant, 2, -0.4)
+        valid = []
+        while not any(world.state.coils.faults):
+            valid.append(world.state.attitude.valid)
+            world.fly(1)
+        stuck_ticks = world.config.coil_health.stuck_ticks
+        assert valid == [True] * (stuck_ticks + 1) + [False] * (len(valid) - stuck_ticks - 1)
+        world.fly(400)
+        assert world.state.attitude.valid
+        assert error_deg(world) < 4.0
+
+    @pytest.mark.requirement("REQ-COIL-04", "REQ-COIL-05")
+    def test_it_is_named_too_if_it_begins_in_the_pulse_of_another(self, make_world):
+        world = make_world()
+        world.fly(SETTLED)
+        while not world.state.coil.driven_level:
+            world.fly(1)
+        coil = (world.state.coil.fired.coil + 1) % 3
+        conduct(world.plant, coil, 0.4)
+        assert [argument for _, argument in events(fly(world, 240), Event.COIL_FAULT)] == [
+            100 * (coil + 1) + 4
+        ]
+
+    @pytest.mark.requirement("REQ-COIL-04")
+    @pytest.mark.parametrize("flown", [90, 106, 700], ids=["before any pulse", "after one", "settled"])
+    def test_a_current_that_turns_nothing_leads_to_safe_and_names_nobody(self, make_world, flown):
+        world = make_world()
+        world.fly(flown)
+        said = fly(world, 120, told_by_driver(level=0, current_ma=400))
+        ((tripped, monitor),) = events(said, Event.MONITOR_TRIPPED)
+        assert (tripped, monitor) == (world.config.coil_health.stuck_ticks - 1, 7)
+        assert events(said, Event.COIL_FAULT) == []
+        assert world.state.modes.mode is Mode.SAFE
+        assert not world.state.attitude.valid
+
+    @pytest.mark.requirement("REQ-COIL-04")
+    def test_a_level_that_nobody_asked_for_trips_at_once_and_is_named_when_it_lasts(self, make_world):
+        world = make_world()
+        world.fly(90)
+        said = fly(world, 60, told_by_driver(level=2, coil=1, current_ma=100))
+        assert events(said, Event.MONITOR_TRIPPED) == [(0, 7)]
+        assert events(said, Event.COIL_FAULT) == [(world.config.coil_health.stuck_ticks - 1, 204)]
+        assert world.state.modes.mode is Mode.SAFE
+
+    def test_it_stays_safe_while_it_lasts_and_not_for_ever(self, make_world):
+        world = make_world()
+        world.fly(90)
+        fly(world, 200, told_by_driver(level=0, current_ma=-30))
+        assert world.state.modes.mode is Mode.SAFE
+        fly(world, 20)
+        assert world.state.modes.mode is not Mode.SAFE
+        assert world.state.modes.trips == 1
+
+    def test_the_rest_of_a_pulse_of_an_earlier_boot_is_not_a_stuck_driver(self, make_world):
+        world = make_world()
+        world.fly(30)
+        said = fly(world, 3, told_by_driver(level=3, coil=2, current_ma=400))
+        said += fly(world, 60)
+        assert events(said, Event.COIL_FAULT) == []
+
+    def test_a_current_that_decays_is_not_stuck(self, make_world):
+        world = make_world()
+        world.fly(90)
+        said = []
+        for _ in range(20):
+            said += fly(world, 2, told_by_driver(level=0, current_ma=60))
+            said += fly(world, 2)
+        assert events(said, Event.COIL_FAULT) == events(said, Event.MONITOR_TRIPPED) == []
+
+
+class TestByTheRate:
+    """The current is right, the torque is not: turns shorted, or a plug turned round behind the shunt."""
+
+    @pytest.mark.requirement("REQ-COIL-01", "REQ-COIL-03")
+    @pytest.mark.parametrize(("scale", "named"), [(-1.0, 103), (0.0, 101), (0.3, 102)])
+    def test_the_coil_is_named_and_the_estimate_set_right(self, make_world, scale, named):
+        world = make_world()
+        world.fly(SETTLED)
+        world.plant._coils._dipole_per_ampere[0] *= scale
+        said = fly(world, 500)
+        ((tick, argument),) = events(said, Event.COIL_FAULT)
+        assert argument == named
+        assert len([t for t, coil in fires(said) if coil == 0 and t < tick]) <= 2
+        assert events(said, Event.SENSOR_ISOLATED) == events(said, Event.FILTER_RESTARTED) == []
+        assert error_deg(world) < 1.0
+
+    @pytest.mark.requirement("REQ-COIL-05")
+    def test_sound_coils_are_not(self, make_world):
+        world = make_world(seed=5)
+        said = fly(world, 3000)
+        assert len(fires(said)) > 15
+        assert events(said, Event.COIL_FAULT) == []
+        assert set(world.state.estimator.estimate.trace.causes) == {0, 1, 2}

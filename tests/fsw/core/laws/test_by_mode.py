@@ -1,0 +1,197 @@
+"""Which law each mode flies, and that no law speaks without knowledge."""
+
+from dataclasses import replace
+
+import pytest
+
+from fsw.core.algebra.quaternion import dcm, normalise
+from fsw.core.algebra.vector import ZERO, Mat3, cross, inverse
+from fsw.core.estimation.attitude import UNKNOWN, Attitude
+from fsw.core.laws import by_mode
+from fsw.core.laws.damping import bdot, bdot_dipole, rate_damping, rate_damping_dipole
+from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, Seen, Setpoint
+from fsw.core.laws.pd import attitude_error, far_error, pd_dipole
+from fsw.core.laws.predictive import predictive
+from fsw.core.laws.table import LAWS
+from fsw.core.orbit.ephemeris import Reference
+from fsw.wire.messages import Mode
+
+TICK_S = 0.25
+INERTIA: Mat3 = ((1.02, 0.03, -0.02), (0.03, 1.85, 0.05), (-0.02, 0.05, 1.95))
+K_W, K_A = 6.2694e6, 1614.9
+PD = Setpoint("pd", K_W, K_A, k_i=0.0, spin_radps=0.0)
+DAMPING = PD._replace(law="rate_damping")
+PREDICTIVE = PD._replace(law="predictive")
+CONFIG = ControlConfig(
+    setpoint=PD,
+    gains={name: law.gains() for name, law in LAWS.items() if law.gains is not None},
+    inertia_kgm2=INERTIA,
+    inertia_inverse=inverse(INERTIA),
+    wheel_body_nms=(0.01, -0.02, 0.03),
+    pulsed=True,
+    tick_s=TICK_S,
+    horizon_s=3.0,
+    mean_dipole_am2=0.25,
+)
+B_BODY_T = (1.7e-5, -2.3e-5, 3.1e-5)
+BEFORE = FieldSample((1.5e-5, -2.6e-5, 3.3e-5), tick=40)
+SAMPLE = FieldSample((1.6e-5, -2.4e-5, 3.2e-5), tick=44)
+KNOWN = Attitude(normalise((0.9, 0.1, -0.2, 0.3)), (0.001, -0.002, 0.003), 0.01, 1e-4, True)
+NOT_VALID = KNOWN._replace(valid=False)
+REFERENCE = Reference(
+    r_eci_m=(4.302e6, -3.4416e6, 4.5888e6),
+    radius_m=7.17e6,
+    b_eci_t=(2.1e-5, -1.2e-5, 2.6e-5),
+    sun_eci=(0.6, -0.48, 0.64),
+    lit=True,
+    q_orbit_from_eci=normalise((0.6, -0.5, 0.4, 0.3)),
+    orbit_rate_radps=1.04e-3,
+)
+EVERY_LAW = pytest.mark.parametrize("law", LAWS)
+
+
+def seen(attitude=KNOWN, sample=SAMPLE, before=BEFORE):
+    return Seen(attitude, B_BODY_T, sample, before, (0.6, 0.0, 0.8), REFERENCE, (1e-7, -2e-7, 3e-7))
+
+
+def flown(mode, setpoint=PD, attitude=KNOWN, memory=(), config=CONFIG):
+    return by_mode.demand(mode, seen(attitude), memory, setpoint, config)
+
+
+def pd_with(error):
+    return Demand(pd_dipole(B_BODY_T, KNOWN.omega_body_orbit_radps, error, K_W, K_A), memory=ZERO)
+
+
+BY_PD = pd_with(attitude_error(dcm(KNOWN.q_body_from_orbit)))
+BY_FAR_PD = pd_with(far_error(KNOWN.q_body_from_orbit))
+BY_RATE = Demand(rate_damping_dipole(B_BODY_T, KNOWN.omega_body_orbit_radps, K_W))
+BY_BDOT = Demand(bdot_dipole(SAMPLE.b_body_t, BEFORE.b_body_t, 1.0, K_W))
+BY_PREDICTION = predictive(seen(), (), PD, CONFIG)
+NOTHING = Demand()
+NOTHING_BUT_MEMORY = Demand(memory=ZERO)
+
+
+def test_the_demands_of_this_test_all_differ():
+    assert len({BY_PD, BY_FAR_PD, BY_RATE, BY_BDOT, BY_PREDICTION, NOTHING, NOTHING_BUT_MEMORY}) == 7
+    assert BY_PREDICTION.impulse_body_nms is not None
+
+
+@pytest.mark.parametrize(
+    ("mode", "setpoint", "attitude", "expected"),
+    [
+        (Mode.SAFE, PD, KNOWN, None),
+        (Mode.SAFE, DAMPING, KNOWN, None),
+        (Mode.SAFE, PD, UNKNOWN, None),
+        (Mode.DETUMBLE, PD, KNOWN, BY_PREDICTION),
+        (Mode.DETUMBLE, DAMPING, KNOWN, BY_PREDICTION),
+        (Mode.DETUMBLE, PD, NOT_VALID, BY_BDOT),
+        (Mode.DETUMBLE, PD, UNKNOWN, BY_BDOT),
+        (Mode.DETUMBLE, PREDICTIVE, UNKNOWN, BY_BDOT),
+        (Mode.ACQUIRE, PD, KNOWN, BY_FAR_PD),
+        (Mode.ACQUIRE, DAMPING, KNOWN, BY_RATE),
+        (Mode.ACQUIRE, PREDICTIVE, KNOWN, BY_PREDICTION),
+        (Mode.ACQUIRE, PD, NOT_VALID, NOTHING_BUT_MEMORY),
+        (Mode.ACQUIRE, DAMPING, NOT_VALID, NOTHING),
+        (Mode.POINT, PD, KNOWN, BY_PD),
+        (Mode.POINT, DAMPING, KNOWN, BY_RATE),
+        (Mode.POINT, PREDICTIVE, KNOWN, BY_PREDICTION),
+        (Mode.POINT, PD, UNKNOWN, NOTHING_BUT_MEMORY),
+        (Mode.POINT, PREDICTIVE, UNKNOWN, NOTHING),
+    ],
+)
+def test_law_by_mode(mode, setpoint, attitude, expected):
+    assert flown(mode, setpoint, attitude) == expected
+
+
+@pytest.mark.parametrize(
+    ("attitude", "expected"), [(KNOWN, BY_RATE), (NOT_VALID, BY_BDOT), (UNKNOWN, BY_BDOT)]
+)
+def test_detumble_with_a_continuous_driver_is_proportional(attitude, expected):
+    assert flown(Mode.DETUMBLE, PD, attitude, config=replace(CONFIG, pulsed=False)) == expected
+
+
+@EVERY_LAW
+@pytest.mark.parametrize("mode", [Mode.ACQUIRE, Mode.POINT])
+def test_acquire_and_point_fly_the_law_of_the_setpoint(law, mode):
+    row = LAWS[law]
+    flies = row.acquire if mode is Mode.ACQUIRE else row.point
+    setpoint = PD._replace(law=law)
+    assert flown(mode, setpoint) == flies(seen(), (), setpoint, CONFIG)
+
+
+@EVERY_LAW
+def test_safe_asks_for_nothing_whatever_the_law(law):
+    """Not even for no dipole: what was owed is forgotten."""
+    assert flown(Mode.SAFE, PD._replace(law=law)) is None
+
+
+@EVERY_LAW
+@pytest.mark.parametrize("attitude", [KNOWN, NOT_VALID, UNKNOWN])
+def test_detumble_flies_the_same_whatever_the_law_and_forgets(law, attitude):
+    with_memory = flown(Mode.DETUMBLE, PD._replace(law=law), attitude, memory=(1.0, 2.0, 3.0))
+    assert with_memory == flown(Mode.DETUMBLE, PD, attitude)
+    assert with_memory.memory == ()
+
+
+class TestSpin:
+    """A spin about body axis 1, relative to the orbital frame, is what damping and prediction leave alone."""
+
+    SPINNING = DAMPING._replace(spin_radps=0.02)
+
+    def spinning_at(self, *omega):
+        return seen(KNOWN._replace(omega_body_orbit_radps=omega))
+
+    def test_the_rate_wanted_is_left_alone(self):
+        m = rate_damping(self.spinning_at(0.02, 0.0, 0.0), (), self.SPINNING, CONFIG).m_body_am2
+        assert m == pytest.approx(ZERO, abs=1e-12)
+
+    def test_the_difference_is_damped(self):
+        expected = rate_damping_dipole(B_BODY_T, (0.001 - 0.02, -0.002, 0.003), K_W)
+        got = rate_damping(self.spinning_at(0.001, -0.002, 0.003), (), self.SPINNING, CONFIG)
+        assert got == Demand(expected)
+
+    def test_a_body_at_rest_is_spun_up(self):
+        m = rate_damping(self.spinning_at(0.0, 0.0, 0.0), (), self.SPINNING, CONFIG).m_body_am2
+        assert cross(m, B_BODY_T)[0] > 0.0
+
+    def test_prediction_misses_the_momentum_of_the_spin_that_is_wanted(self):
+        without, wanting = (
+            predictive(seen(), (), setpoint, CONFIG).impulse_body_nms
+            for setpoint in (PREDICTIVE, PREDICTIVE._replace(spin_radps=0.02))
+        )
+        momentum = tuple(0.02 * row[0] for row in INERTIA)
+        more = tuple(b - a for a, b in zip(without, wanting, strict=True))
+        assert more == pytest.approx(momentum, rel=1e-9)
+
+
+class TestBdot:
+    """Two usable samples, neither the same nor too far apart; else nothing."""
+
+    def by_bdot(self, sample=SAMPLE, before=BEFORE):
+        return bdot(seen(sample=sample, before=before), (), PD, CONFIG)
+
+    def test_before_the_first_sample(self):
+        assert self.by_bdot(sample=FieldSample(), before=FieldSample()) == NOTHING
+
+    def test_after_the_first_sample_alone(self):
+        assert self.by_bdot(before=FieldSample()) == NOTHING
+
+    def test_a_tick_without_a_sample_says_nothing_twice(self):
+        assert self.by_bdot(before=SAMPLE) == NOTHING
+
+    def test_the_interval_counts_in_seconds(self):
+        assert self.by_bdot() == BY_BDOT
+        twice = self.by_bdot(before=FieldSample(BEFORE.b_body_t, 36))
+        assert twice.m_body_am2 == pytest.approx(tuple(0.5 * c for c in BY_BDOT.m_body_am2))
+
+    @pytest.mark.parametrize(
+        ("apart_ticks", "speaks"), [(1, True), (39, True), (40, True), (41, False), (4000, False)]
+    )
+    def test_samples_further_apart_than_ten_seconds_tell_nothing(self, apart_ticks, speaks):
+        sample = FieldSample(SAMPLE.b_body_t, 5000)
+        before = FieldSample(BEFORE.b_body_t, 5000 - apart_ticks)
+        assert (self.by_bdot(sample, before) != NOTHING) is speaks
+
+    def test_a_sample_of_tick_zero_counts(self):
+        before = FieldSample(BEFORE.b_body_t, 0)
+        assert self.by_bdot(FieldSample(SAMPLE.b_body_t, 4), before) == BY_BDOT
