@@ -26,8 +26,8 @@ from hil_stub.bench import (
     MagnetometerBoard,
     SunBoard,
 )
-from hil_stub.coil_driver import CoilLimits, Pin
-from hil_stub.stimulus import (
+from hil_stub.coils.coil_driver import CoilLimits, Pin
+from hil_stub.sensors.stimulus import (
     NOTHING,
     Reading,
     Stimulus,

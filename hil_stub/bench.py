@@ -5,12 +5,12 @@ from typing import Protocol
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import PlantBoot, Sync, TickDone, intact
-from hil_stub.coil_driver import CoilDriver, CoilLimits, Pin
-from hil_stub.dipole_driver import DipoleDriver
-from hil_stub.magnetometer import Magnetometer
-from hil_stub.read_back import ReadBack
-from hil_stub.stimulus import Stimulus, Vec3
-from hil_stub.sun_sensor import SunSensor
+from hil_stub.coils.coil_driver import CoilDriver, CoilLimits, Pin
+from hil_stub.coils.dipole_driver import DipoleDriver
+from hil_stub.coils.read_back import ReadBack
+from hil_stub.sensors.magnetometer import Magnetometer
+from hil_stub.sensors.stimulus import Stimulus, Vec3
+from hil_stub.sensors.sun_sensor import SunSensor
 
 DEADMAN_MS = 5000
 """Silence of ``SYNC`` after which a board on a bench is silenced, unless it is told otherwise."""

@@ -19,7 +19,8 @@ sys.path.insert(0, str(ROOT))
 
 from fsw.wire.frame import crc8  # noqa: E402
 from fsw.wire.messages import CoilFire, CoilRefusedReason, CoilStatus  # noqa: E402
-from hil_stub import bench, coil_driver, events, interlock, node, read_back  # noqa: E402
+from hil_stub import bench, node  # noqa: E402
+from hil_stub.coils import coil_driver, events, interlock, read_back  # noqa: E402
 from sim.harness.hil.conformance import CHECKS  # noqa: E402
 
 DBC = ROOT / "fsw" / "wire" / "torquer.dbc"

@@ -3,7 +3,7 @@
 from math import cos, hypot, radians, sin
 
 from fsw.input.schema import TableError
-from hil_stub.coil_driver import CoilLimits
+from hil_stub.coils.coil_driver import CoilLimits
 from sim.harness.scenario import Scenario
 from sim.plant.config import (
     BodyConfig,

@@ -4,9 +4,9 @@ from math import ceil
 from typing import NamedTuple, Protocol
 
 from fsw.wire.frame import Frame
-from hil_stub.coil_driver import CoilDriver
-from hil_stub.dipole_driver import DipoleDriver
-from hil_stub.read_back import ReadBack
+from hil_stub.coils.coil_driver import CoilDriver
+from hil_stub.coils.dipole_driver import DipoleDriver
+from hil_stub.coils.read_back import ReadBack
 from sim.plant.config import CoilConfig, ContinuousConfig, PlantConfig
 from sim.plant.rotation import ZERO, Vec3
 

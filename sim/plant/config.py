@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import isclose, pi
 from typing import Literal
 
-from hil_stub.coil_driver import CoilLimits
+from hil_stub.coils.coil_driver import CoilLimits
 from sim.plant.rotation import ZERO, Mat3, Quaternion, Vec3
 
 FieldModel = Literal["igrf14", "tilted_dipole", "direct_dipole"]

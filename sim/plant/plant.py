@@ -6,9 +6,9 @@ from zlib import crc32
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import PlantBoot, PlantEnd, PlantHeartbeat, RefAttitude, RefRate, Sync
-from hil_stub.magnetometer import Magnetometer
 from hil_stub.node import CONTRACT_VERSION, HEARTBEAT_S
-from hil_stub.sun_sensor import SunSensor
+from hil_stub.sensors.magnetometer import Magnetometer
+from hil_stub.sensors.sun_sensor import SunSensor
 from sim.plant import torques
 from sim.plant.actuators import Actuator, Driven, make_actuator
 from sim.plant.coils import Coils

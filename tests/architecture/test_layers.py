@@ -242,10 +242,13 @@ PLANTED = {
     "fsw/wire/frame.py": ("import fsw.core.step", "fsw.wire.frame -> fsw.core.step"),
     "fsw/core/step.py": ("from fsw.bus import interface", "fsw.core.step -> fsw.bus.interface"),
     "fsw/node.py": ("import sim.plant.plant", "fsw.node -> sim.plant.plant"),
-    "fsw/core/modes.py": ("def f():\n    import hil_stub.interlock", "fsw.core.modes -> hil_stub.interlock"),
-    "hil_stub/interlock.py": (
+    "fsw/core/modes.py": (
+        "def f():\n    import hil_stub.coils.interlock",
+        "fsw.core.modes -> hil_stub.coils.interlock",
+    ),
+    "hil_stub/coils/interlock.py": (
         "from fsw.core.actuation import pulses",
-        "hil_stub.interlock -> fsw.core.actuation.pulses",
+        "hil_stub.coils.interlock -> fsw.core.actuation.pulses",
     ),
     "sim/plant/plant.py": ("import sim.harness.audit.auditor", "sim.plant.plant -> sim.harness.audit"),
     "sim/plant/field.py": ("import fsw.core.orbit.igrf", "sim.plant.field -> fsw.core.orbit.igrf"),

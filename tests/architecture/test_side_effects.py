@@ -11,9 +11,9 @@ import pytest
 
 from fsw.node import FlightNode
 from fsw.table.config import flight_config
-from hil_stub.coil_driver import CoilDriver, CoilLimits
-from hil_stub.magnetometer import Magnetometer
-from hil_stub.sun_sensor import SunSensor
+from hil_stub.coils.coil_driver import CoilDriver, CoilLimits
+from hil_stub.sensors.magnetometer import Magnetometer
+from hil_stub.sensors.sun_sensor import SunSensor
 from sim.harness.assemble import plant_config
 from sim.harness.scenario import flight_table, load
 from sim.plant.plant import Plant
@@ -101,7 +101,7 @@ def test_what_an_import_does_would_be_seen(tmp_path, monkeypatch):
         ("fsw.wire.messages", ("fsw.core", "fsw.bus", "fsw.table", "hil_stub", "sim")),
         ("fsw.core.step", ("fsw.bus", "fsw.table", "hil_stub", "sim")),
         ("fsw.__main__", ("hil_stub", "sim")),
-        ("hil_stub.coil_driver", ("fsw.core", "fsw.bus", "fsw.table", "sim")),
+        ("hil_stub.coils.coil_driver", ("fsw.core", "fsw.bus", "fsw.table", "sim")),
         ("hil_stub.__main__", ("fsw.core", "sim")),
         ("sim.plant.plant", ("fsw.core", "fsw.bus", "fsw.table", "sim.harness")),
         ("sim.plant.__main__", ("filterpy", "scipy", "matplotlib", "can")),

@@ -8,10 +8,10 @@ from random import Random
 
 import pytest
 
-from hil_stub import guard
 from hil_stub.bench import Bench, CoilBoard
-from hil_stub.coil_driver import CoilDriver, CoilLimits
-from hil_stub.interlock import boot
+from hil_stub.coils import guard
+from hil_stub.coils.coil_driver import CoilDriver, CoilLimits
+from hil_stub.coils.interlock import boot
 
 REQUESTS = int(os.environ.get("TORQUER_ATTACK_REQUESTS", "20000"))
 SEED = int(os.environ.get("TORQUER_ATTACK_SEED", "20150327"))

@@ -19,10 +19,10 @@ from fsw.node import FlightNode
 from fsw.table.config import flight_config
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame
 from fsw.wire.messages import CLASSES, SENDERS, CoilDipole, CoilFire, Mode, Sync, TickDone, intact
-from hil_stub.coil_driver import OFF, CoilDriver, CoilLimits
-from hil_stub.dipole_driver import DipoleDriver
-from hil_stub.magnetometer import Magnetometer
-from hil_stub.sun_sensor import SunSensor
+from hil_stub.coils.coil_driver import OFF, CoilDriver, CoilLimits
+from hil_stub.coils.dipole_driver import DipoleDriver
+from hil_stub.sensors.magnetometer import Magnetometer
+from hil_stub.sensors.sun_sensor import SunSensor
 from sim.harness.scenario import flight_table, load
 
 FRAMES = int(os.environ.get("TORQUER_FUZZ_FRAMES", "10000"))

@@ -12,7 +12,7 @@ from fsw.wire.messages import (
     CoilStatus,
     intact,
 )
-from hil_stub.coil_driver import CoilDriver, Drive
+from hil_stub.coils.coil_driver import CoilDriver, Drive
 
 
 def read_frames(frames):

@@ -21,9 +21,9 @@ from fsw.wire.messages import (
 )
 from fsw.wire.messages import CoilRefusedReason as Reason
 from hil_stub.bench import Bench, CoilBoard, DipoleBoard, MagnetometerBoard, SunBoard
-from hil_stub.coil_driver import CoilLimits, Pin
-from hil_stub.events import CoilEventCode
-from hil_stub.stimulus import constant
+from hil_stub.coils.coil_driver import CoilLimits, Pin
+from hil_stub.coils.events import CoilEventCode
+from hil_stub.sensors.stimulus import constant
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import pytest
 
 import hil_stub
 
-SOURCES = sorted(path for path in Path(hil_stub.__file__).parent.glob("*.py") if path.name != "__main__.py")
+SOURCES = sorted(path for path in Path(hil_stub.__file__).parent.rglob("*.py") if path.name != "__main__.py")
 ALLOWED = {"collections", "dataclasses", "enum", "typing", "math", "fsw.wire", "hil_stub"}
 
 

@@ -16,7 +16,7 @@ from fsw.core.gate.readings import GateState, admit
 from fsw.core.laws.interface import Demand as Asked
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilRefused, CoilStatus, Mode
-from hil_stub.coil_driver import CoilDriver, CoilLimits
+from hil_stub.coils.coil_driver import CoilDriver, CoilLimits
 
 FLOWN_MS = (3000, 100_000)
 """Pulse and back-off."""

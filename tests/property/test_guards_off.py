@@ -44,9 +44,11 @@ GUARDS = {
     "scheduler: back-off after boot": Off(
         "fsw-killed", "boots locked", ("fsw.core.actuation.pulses.boot", ready_at_once), phase=HALFWAY
     ),
-    "interlock": Off("second-sender", "limits", ("hil_stub.interlock._REFUSED_IF", ())),
+    "interlock": Off("second-sender", "limits", ("hil_stub.coils.interlock._REFUSED_IF", ())),
     "clock of the board": Off(
-        "ticks-rushed", "limits by time", ("hil_stub.guard.Guard.pass_time", lambda self, clock_ms: None)
+        "ticks-rushed",
+        "limits by time",
+        ("hil_stub.coils.guard.Guard.pass_time", lambda self, clock_ms: None),
     ),
     "ticks that leap": Off(
         "sync-forged-going-on", "undisturbed", ("fsw.core.step.judge", believing), watch_s=100.0
@@ -74,7 +76,7 @@ GUARDS = {
         watch_s=2000.0,
     ),
     "read-back of the board": Off(
-        "coil-open-1", "board names", ("hil_stub.read_back.ReadBack.judge", lambda *seen: None)
+        "coil-open-1", "board names", ("hil_stub.coils.read_back.ReadBack.judge", lambda *seen: None)
     ),
 }
 

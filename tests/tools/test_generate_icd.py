@@ -10,8 +10,8 @@ import cantools
 import pytest
 
 from fsw.wire.messages import CoilRefusedReason
-from hil_stub import interlock
-from hil_stub.coil_driver import CoilLimits
+from hil_stub.coils import interlock
+from hil_stub.coils.coil_driver import CoilLimits
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "icd.md"
@@ -51,15 +51,19 @@ def test_make_lint_checks_it():
 
 CHANGES = {
     "a signal of the DBC": ("fsw/wire/torquer.dbc", "duration_ms : 32|16", "duration_ms : 32|15"),
-    "a limit": ("hil_stub/interlock.py", "backoff_ms: int = 100_000", "backoff_ms: int = 90_000"),
+    "a limit": ("hil_stub/coils/interlock.py", "backoff_ms: int = 100_000", "backoff_ms: int = 90_000"),
     "a rule's text": ("hil_stub/rules.toml", "a coil is on", "one is on"),
     "the prose": ("tools/icd.md.in", "A gap in", "Some gap in"),
-    "what the board tells": ("hil_stub/coil_driver.py", "else tick % 3", "else 0"),
-    "an event's severity": ("hil_stub/events.py", "NO_CURRENT: Severity.ERROR", "NO_CURRENT: Severity.FATAL"),
+    "what the board tells": ("hil_stub/coils/coil_driver.py", "else tick % 3", "else 0"),
+    "an event's severity": (
+        "hil_stub/coils/events.py",
+        "NO_CURRENT: Severity.ERROR",
+        "NO_CURRENT: Severity.FATAL",
+    ),
     "the dead-man": ("hil_stub/bench.py", "DEADMAN_MS = 5000", "DEADMAN_MS = 4000"),
     "the CRC": ("fsw/wire/frame.py", "_crc8_table(0x1D)", "_crc8_table(0x1F)"),
     "the order of refusals": (
-        "hil_stub/interlock.py",
+        "hil_stub/coils/interlock.py",
         "REFUSAL_ORDER = tuple(reason for reason, _ in _REFUSED_IF)",
         "REFUSAL_ORDER = tuple(reason for reason, _ in _REFUSED_IF[::-1])",
     ),

@@ -127,11 +127,11 @@ def test_the_command_counts_mutants():
         cwd=ROOT,
     )
     assert [line.split()[:2] for line in done.stdout.splitlines()] == [
-        ["interlock", "hil_stub/interlock.py"],
-        ["interlock", "hil_stub/guard.py"],
-        ["interlock", "hil_stub/coil_driver.py"],
-        ["interlock", "hil_stub/refusals.py"],
-        ["interlock", "hil_stub/read_back.py"],
+        ["interlock", "hil_stub/coils/interlock.py"],
+        ["interlock", "hil_stub/coils/guard.py"],
+        ["interlock", "hil_stub/coils/coil_driver.py"],
+        ["interlock", "hil_stub/coils/refusals.py"],
+        ["interlock", "hil_stub/coils/read_back.py"],
         ["interlock", "hil_stub/node.py"],
-        ["interlock", "hil_stub/events.py"],
+        ["interlock", "hil_stub/coils/events.py"],
     ]

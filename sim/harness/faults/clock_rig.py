@@ -6,7 +6,7 @@ from fsw.core.config import FlightConfig
 from fsw.wire.frame import Frame
 from fsw.wire.messages import TickDone
 from hil_stub.bench import DEADMAN_MS, Bench, CoilBoard
-from hil_stub.coil_driver import Pin
+from hil_stub.coils.coil_driver import Pin
 from sim.harness.assemble import plant_config
 from sim.harness.faults.currents import CurrentPulse
 from sim.harness.faults.faulty_plant import FaultyPlant

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from fsw.core.events import Event as Number
 from fsw.core.fdir.sensor_watch import Sensor
 from fsw.core.monitors import Monitor
-from hil_stub.events import CoilEventCode
+from hil_stub.coils.events import CoilEventCode
 from sim.harness.faults.record import Event, Record
 
 Blame = Callable[[Event], str]

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from hil_stub.coil_driver import CoilLimits
+from hil_stub.coils.coil_driver import CoilLimits
 from sim.design.bodies import BODIES, UNSTABLE_BODIES, Body
 from sim.design.floquet import degree_of_stability, monodromy
 from sim.design.linear import Gains, closed_loop

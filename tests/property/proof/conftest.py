@@ -28,7 +28,7 @@ from fsw.core.algebra.vector import ZERO
 from fsw.core.gate.readings import NOTHING
 from fsw.core.laws.interface import Demand
 from fsw.wire.messages import CoilBoot, CoilFire, CoilStatus
-from hil_stub import interlock
+from hil_stub.coils import interlock
 
 EPOCH = 768
 """A tick that is a multiple of three coils and of the 256 that a request can tell apart."""

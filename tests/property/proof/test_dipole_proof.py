@@ -15,7 +15,7 @@ from fsw.core.actuation.dipoles import DipoleConfig
 from fsw.core.gate.readings import GateState, admit
 from fsw.core.laws.interface import Demand
 from fsw.wire.messages import CoilBoot, CoilDipole, CoilDipoleStatus
-from hil_stub.dipole_driver import DipoleDriver
+from hil_stub.coils.dipole_driver import DipoleDriver
 
 TICKS = 3
 FIELD = (2e-5, -1e-5, 3e-5)

@@ -14,7 +14,7 @@ from types import ModuleType
 import pytest
 
 from fsw.core.actuation import actuator, pulses
-from hil_stub import interlock
+from hil_stub.coils import interlock
 
 SHARED, PER_COIL = True, False
 BOTH = (SHARED, PER_COIL)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from hil_stub.coil_driver import CoilLimits
+from hil_stub.coils.coil_driver import CoilLimits
 from sim.plant.config import (
     BodyConfig,
     CoilConfig,

@@ -5,7 +5,7 @@ import pytest
 from fsw.core.fdir.sensor_watch import Sensor, SensorFault
 from fsw.core.monitors import Monitor
 from fsw.core.telemetry import Event as Number
-from hil_stub.events import CoilEventCode
+from hil_stub.coils.events import CoilEventCode
 from sim.harness.faults import checks, naming
 from sim.harness.faults.record import BoardEvent, Event, Record
 from sim.harness.faults.row import Row

@@ -75,7 +75,7 @@ def test_an_exception_out_of_a_step_is_noted_and_ends_fsw(flown):
 
 
 def test_a_board_without_guards_is_found_out(rig, bounds, monkeypatch):
-    monkeypatch.setattr("hil_stub.guard.ask", lenient)
+    monkeypatch.setattr("hil_stub.coils.guard.ask", lenient)
     bench = rig()
     bench.inject(make("second_sender", {"frames": 1.0}, Random(3)), 5, None)
     for _ in range(60):

@@ -15,11 +15,11 @@ from fsw.wire.messages import (
     PlantBoot,
     Sync,
 )
-from hil_stub import coil_driver, guard, interlock
 from hil_stub.bench import Bench, CoilBoard, MagnetometerBoard, SunBoard
-from hil_stub.coil_driver import CoilLimits
-from hil_stub.events import CoilEventCode
-from hil_stub.stimulus import constant
+from hil_stub.coils import coil_driver, guard, interlock
+from hil_stub.coils.coil_driver import CoilLimits
+from hil_stub.coils.events import CoilEventCode
+from hil_stub.sensors.stimulus import constant
 from sim.harness.errors import HarnessError
 from sim.harness.hil import checks
 from sim.harness.hil.conformance import CHECKS, conform

@@ -11,8 +11,8 @@ from fsw.wire.messages import (
     SunVector,
     Sync,
 )
-from hil_stub.coil_driver import CoilDriver
-from hil_stub.dipole_driver import DipoleDriver
+from hil_stub.coils.coil_driver import CoilDriver
+from hil_stub.coils.dipole_driver import DipoleDriver
 from sim.harness.assemble import plant_config
 from sim.harness.hil.world import PlantWorld, SyncAlone
 from sim.harness.scenario import load

@@ -14,8 +14,8 @@ from fsw.wire.messages import (
     CoilStatus,
     intact,
 )
+from hil_stub.coils.refusals import Refusals
 from hil_stub.node import Node
-from hil_stub.refusals import Refusals
 
 Vec3 = tuple[float, float, float]
 

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fsw.wire.messages import MagBoot, MagField, MagHeartbeat, SunBoot, SunHeartbeat, SunVector
-from hil_stub.magnetometer import Magnetometer
-from hil_stub.sun_sensor import SunSensor
+from hil_stub.sensors.magnetometer import Magnetometer
+from hil_stub.sensors.sun_sensor import SunSensor
 
 FIELD_T = (21.4e-6, -3.2e-6, 40.002e-6)
 DIAGONAL = (1 / sqrt(3), -1 / sqrt(3), 1 / sqrt(3))

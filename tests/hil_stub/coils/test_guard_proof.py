@@ -19,8 +19,8 @@ from typing import NamedTuple
 
 import pytest
 
-from hil_stub import guard, interlock
-from hil_stub.interlock import CoilLimits, Request
+from hil_stub.coils import guard, interlock
+from hil_stub.coils.interlock import CoilLimits, Request
 
 TICK = 300
 JUMPS_MS = (500, 2500)

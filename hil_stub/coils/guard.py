@@ -16,7 +16,7 @@ the clock ends it.
 from dataclasses import replace
 
 from fsw.wire.messages import CoilRefusedReason
-from hil_stub.interlock import (
+from hil_stub.coils.interlock import (
     COILS,
     UNITS_PER_TICK,
     CoilLimits,

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from math import copysign
 
-from hil_stub.events import CoilEventCode
+from hil_stub.coils.events import CoilEventCode
 
 _NONE = 0.1
 """A current below this part of the nominal one is none."""

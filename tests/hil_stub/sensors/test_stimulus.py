@@ -6,7 +6,7 @@ import pytest
 
 from fsw.wire.messages import CoilBoot, MagField, SunVector, Sync
 from hil_stub.__main__ import PipedStimulus
-from hil_stub.stimulus import (
+from hil_stub.sensors.stimulus import (
     NOTHING,
     Reading,
     StimulusError,

@@ -3,8 +3,8 @@
 import pytest
 
 from fsw.wire.messages import CoilRefusedReason as Reason
-from hil_stub.guard import Guard
-from hil_stub.interlock import CoilLimits, Request
+from hil_stub.coils.guard import Guard
+from hil_stub.coils.interlock import CoilLimits, Request
 
 PULSE_MS, BACKOFF_MS = 3000, 100_000
 

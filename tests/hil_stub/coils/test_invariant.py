@@ -21,7 +21,7 @@ from hypothesis.stateful import (
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CLASSES, CoilFire, CoilRefused, CoilStatus
 from fsw.wire.messages import CoilRefusedReason as Reason
-from hil_stub.coil_driver import CoilDriver, CoilLimits
+from hil_stub.coils.coil_driver import CoilDriver, CoilLimits
 
 PULSE_S, BACKOFF_S = 3, 100
 RATES = (1, 2, 3, 7, 10, 50)

@@ -7,7 +7,7 @@ import pytest
 
 from fsw.wire.messages import CoilBoot, CoilStatus
 from fsw.wire.messages import CoilRefusedReason as Reason
-from hil_stub.coil_driver import OFF, CoilLimits, Drive
+from hil_stub.coils.coil_driver import OFF, CoilLimits, Drive
 
 RATES = (1, 2, 3, 7, 10, 50)
 

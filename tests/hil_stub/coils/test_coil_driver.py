@@ -15,8 +15,8 @@ from fsw.wire.messages import (
     TickDone,
 )
 from fsw.wire.messages import CoilRefusedReason as Reason
-from hil_stub.coil_driver import OFF, BoardState, CoilDriver, CoilLimits, Drive, Pin
-from hil_stub.events import CoilEventCode
+from hil_stub.coils.coil_driver import OFF, BoardState, CoilDriver, CoilLimits, Drive, Pin
+from hil_stub.coils.events import CoilEventCode
 
 
 @pytest.fixture

@@ -12,12 +12,12 @@ from fsw.wire.messages import (
     CoilStatus,
     intact,
 )
-from hil_stub.events import CoilEventCode, Events
-from hil_stub.guard import Guard
-from hil_stub.interlock import UNITS_PER_TICK, CoilLimits, Request
+from hil_stub.coils.events import CoilEventCode, Events
+from hil_stub.coils.guard import Guard
+from hil_stub.coils.interlock import UNITS_PER_TICK, CoilLimits, Request
+from hil_stub.coils.read_back import ReadBack
+from hil_stub.coils.refusals import MAX_REFUSALS, Refusals
 from hil_stub.node import Node
-from hil_stub.read_back import ReadBack
-from hil_stub.refusals import MAX_REFUSALS, Refusals
 
 __all__ = ["MAX_REFUSALS", "OFF", "BoardState", "CoilDriver", "CoilLimits", "Drive", "Pin"]
 

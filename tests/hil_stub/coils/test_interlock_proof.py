@@ -23,7 +23,7 @@ from typing import NamedTuple
 import pytest
 
 from fsw.wire.messages import CoilRefusedReason
-from hil_stub import interlock
+from hil_stub.coils import interlock
 
 TICK = 300
 LOW = TICK % 256

@@ -9,9 +9,9 @@ import pytest
 import fsw.wire
 from fsw.wire.messages import CoilEvent, CoilHeartbeat, Severity
 from fsw.wire.messages import CoilRefusedReason as Reason
-from hil_stub.coil_driver import BoardState, CoilDriver, CoilLimits, Drive
-from hil_stub.events import SEVERITY, CoilEventCode
-from hil_stub.read_back import ReadBack
+from hil_stub.coils.coil_driver import BoardState, CoilDriver, CoilLimits, Drive
+from hil_stub.coils.events import SEVERITY, CoilEventCode
+from hil_stub.coils.read_back import ReadBack
 
 NOMINAL_A = (0.05, 0.2, 0.3)
 OFF, OPEN, REVERSED, WRONG = (

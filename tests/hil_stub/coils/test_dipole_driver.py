@@ -21,8 +21,8 @@ from fsw.wire.messages import (
     intact,
 )
 from fsw.wire.messages import CoilRefusedReason as Reason
-from hil_stub.coil_driver import MAX_REFUSALS, OFF, CoilDriver, CoilLimits
-from hil_stub.dipole_driver import DipoleBoardState, DipoleDrive, DipoleDriver
+from hil_stub.coils.coil_driver import MAX_REFUSALS, OFF, CoilDriver, CoilLimits
+from hil_stub.coils.dipole_driver import DipoleBoardState, DipoleDrive, DipoleDriver
 
 STEP = 2.0**-16
 ASKED = (0.25, -0.5, 0.75)

@@ -5,7 +5,7 @@ from dataclasses import FrozenInstanceError, replace
 import pytest
 
 from fsw.wire.messages import CoilRefusedReason as Reason
-from hil_stub.interlock import UNITS_PER_TICK, CoilLimits, Interlock, Request, ask, boot, elapse
+from hil_stub.coils.interlock import UNITS_PER_TICK, CoilLimits, Interlock, Request, ask, boot, elapse
 
 TICK = 1234
 LOW = TICK & 0xFF

@@ -1,0 +1,1 @@
+"""The sensor boards, and what their sensors are shown on a bench."""
