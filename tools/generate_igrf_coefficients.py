@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-TABLE = ROOT / "sim" / "plant" / "igrf14.shc"
+TABLE = ROOT / "sim" / "plant" / "environment" / "igrf14.shc"
 MODULE = ROOT / "fsw" / "core" / "orbit" / "igrf_coefficients.py"
 DEGREE = 10
 YEARS = (2015, 2020, 2025, 2030)

@@ -1,6 +1,6 @@
 """Where a fault may reach into the plant: between physics and boards."""
 
-from sim.plant.actuators import Driven
+from sim.plant.hardware.actuators import Driven
 from sim.plant.rotation import Vec3
 
 

@@ -9,15 +9,16 @@ from fsw.wire.messages import PlantBoot, PlantEnd, PlantHeartbeat, RefAttitude, 
 from hil_stub.node import CONTRACT_VERSION, HEARTBEAT_S
 from hil_stub.sensors.magnetometer import Magnetometer
 from hil_stub.sensors.sun_sensor import SunSensor
-from sim.plant import torques
-from sim.plant.actuators import Actuator, Driven, make_actuator
-from sim.plant.coils import Coils
 from sim.plant.config import PlantConfig
-from sim.plant.disturbances import effects, torque_noise
-from sim.plant.environment import Environment, Surroundings
+from sim.plant.dynamics import torques
+from sim.plant.dynamics.disturbances import effects, torque_noise
+from sim.plant.dynamics.rigid_body import Motion, RigidBody, Torque
+from sim.plant.environment.surroundings import Environment, Surroundings
 from sim.plant.errors import PlantError
+from sim.plant.hardware.actuators import Actuator, Driven, make_actuator
+from sim.plant.hardware.coils import Coils
+from sim.plant.hardware.sensors import MagnetometerPhysics, SunSensorPhysics
 from sim.plant.interference import NO_INTERFERENCE, Interference
-from sim.plant.rigid_body import Motion, RigidBody, Torque
 from sim.plant.rotation import (
     ZERO,
     Quaternion,
@@ -30,7 +31,6 @@ from sim.plant.rotation import (
     normalise,
     transform,
 )
-from sim.plant.sensors import MagnetometerPhysics, SunSensorPhysics
 
 _REF_RATE_RANGE_RADPS = 0.125
 """What ``REF_RATE`` holds; beyond it the rate is sent as not valid."""

@@ -251,7 +251,10 @@ PLANTED = {
         "hil_stub.coils.interlock -> fsw.core.actuation.pulses",
     ),
     "sim/plant/plant.py": ("import sim.harness.audit.auditor", "sim.plant.plant -> sim.harness.audit"),
-    "sim/plant/field.py": ("import fsw.core.orbit.igrf", "sim.plant.field -> fsw.core.orbit.igrf"),
+    "sim/plant/environment/field.py": (
+        "import fsw.core.orbit.igrf",
+        "sim.plant.environment.field -> fsw.core.orbit.igrf",
+    ),
 }
 
 

@@ -12,8 +12,8 @@ from sim.harness.faults.currents import CurrentPulse
 from sim.harness.faults.faulty_plant import FaultyPlant
 from sim.harness.faults.rig import Rig
 from sim.harness.scenario import Scenario
-from sim.plant.actuators import OFF, Board, Driven
 from sim.plant.config import PlantConfig
+from sim.plant.hardware.actuators import OFF, Board, Driven
 
 REPEATED_EVERY_MS = 500
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import isclose
 
-from sim.plant.actuators import Driven
+from sim.plant.hardware.actuators import Driven
 
 PER_TICK = 1_000_000
 """Parts of a tick are told to a millionth of it."""

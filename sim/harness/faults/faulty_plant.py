@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 from fsw.wire.frame import Frame
 from sim.harness.faults.fault import Fault
-from sim.plant.actuators import Actuator, Driven
 from sim.plant.config import PlantConfig
+from sim.plant.hardware.actuators import Actuator, Driven
 from sim.plant.interference import Interference
 from sim.plant.plant import Plant
 from sim.plant.rotation import Vec3

@@ -9,7 +9,7 @@ from typing import Literal
 from fsw.wire.frame import Frame
 from fsw.wire.messages import SENDERS, MagField, SunVector
 from sim.harness.faults.fault import Fault, Parameters
-from sim.plant.actuators import Driven
+from sim.plant.hardware.actuators import Driven
 from sim.plant.plant import Plant
 from sim.plant.rotation import ZERO, Vec3, matrix, transform
 

@@ -19,7 +19,7 @@ from fsw.wire.messages import (
 )
 from sim.harness.candump import LogEntry
 from sim.harness.faults.currents import CurrentPulse
-from sim.plant.actuators import Driven
+from sim.plant.hardware.actuators import Driven
 from sim.plant.plant import TruthRow
 
 _AUDITED = frozenset((CoilStatus.ID, CoilBoot.ID, Sync.ID))

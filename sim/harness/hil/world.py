@@ -16,8 +16,8 @@ from fsw.wire.messages import (
     Sync,
     intact,
 )
-from sim.plant.actuators import Board, Driven
 from sim.plant.config import PlantConfig
+from sim.plant.hardware.actuators import Board, Driven
 from sim.plant.plant import Plant
 from sim.plant.rotation import ZERO
 

@@ -13,9 +13,9 @@ from sim.harness.errors import HarnessError
 from sim.harness.validate.comparison import Array, Comparison, largest
 from sim.harness.validate.reference_table import ReferenceTable, names_of
 from sim.harness.validate.two_body import two_body
-from sim.plant import torques
-from sim.plant.environment import Surroundings
-from sim.plant.rigid_body import Motion, RigidBody
+from sim.plant.dynamics import torques
+from sim.plant.dynamics.rigid_body import Motion, RigidBody
+from sim.plant.environment.surroundings import Surroundings
 from sim.plant.rotation import ZERO, Mat3, Quaternion, Vec3, matrix, normalise
 
 ATTITUDE_RAD = 1e-7

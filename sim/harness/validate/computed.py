@@ -16,8 +16,8 @@ from sim.design.search import continuous, search
 from sim.harness.validate.claim import Claim, Outcome, Study
 from sim.harness.validate.controlled_plant import ControlledPlant
 from sim.plant.config import BodyConfig, CoilConfig, FieldConfig, InitialConfig, OrbitConfig, PlantConfig
-from sim.plant.jacobi import jacobi_integral
-from sim.plant.orbit import EARTH_RADIUS_M, MU_M3PS2
+from sim.plant.dynamics.jacobi import jacobi_integral
+from sim.plant.environment.orbit import EARTH_RADIUS_M, MU_M3PS2
 from sim.plant.plant import Plant
 from sim.plant.rotation import Mat3, from_vector
 

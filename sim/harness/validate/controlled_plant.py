@@ -14,12 +14,12 @@ from fsw.core.laws.pd import attitude_error, pd_dipole
 from sim.design.bodies import Body
 from sim.design.linear import Gains
 from sim.harness.validate.comparison import Array
-from sim.plant import torques
 from sim.plant.config import OrbitConfig
-from sim.plant.environment import Surroundings
-from sim.plant.field import DirectDipole
-from sim.plant.orbit import CircularOrbit
-from sim.plant.rigid_body import Motion, RigidBody
+from sim.plant.dynamics import torques
+from sim.plant.dynamics.rigid_body import Motion, RigidBody
+from sim.plant.environment.field import DirectDipole
+from sim.plant.environment.orbit import CircularOrbit
+from sim.plant.environment.surroundings import Surroundings
 from sim.plant.rotation import (
     ZERO,
     Quaternion,

@@ -8,9 +8,9 @@ from fsw.core.orbit import earth as onboard_earth
 from fsw.core.orbit import sun as onboard_sun
 from sim.harness.validate.comparison import Array, Comparison, angle_rad, largest
 from sim.harness.validate.reference_table import ReferenceTable, names_of
-from sim.plant import earth as plant_earth
-from sim.plant.orbit import DAY_S, UNIX_EPOCH_JD
-from sim.plant.sun import sun_eci_m
+from sim.plant.environment import earth as plant_earth
+from sim.plant.environment.orbit import DAY_S, UNIX_EPOCH_JD
+from sim.plant.environment.sun import sun_eci_m
 
 ROTATION_RAD = 1e-9
 """Both are the same closed formula; a double holds the time to 2e-11 rad."""

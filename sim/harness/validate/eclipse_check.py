@@ -7,7 +7,7 @@ import numpy as np
 from fsw.core.orbit.sun import lit
 from sim.harness.validate.comparison import Array, Comparison, mismatch
 from sim.harness.validate.reference_table import ReferenceTable, names_of
-from sim.plant.sun import illumination
+from sim.plant.environment.sun import illumination
 
 SAME_MODEL = 1e-7
 """The planar two-circle formula; arccos near full shadow costs half the digits."""

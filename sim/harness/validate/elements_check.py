@@ -10,7 +10,7 @@ from fsw.core.orbit.propagation import sgp4_orbit, state_eci
 from sim.harness.errors import HarnessError
 from sim.harness.validate.claim import Claim, Outcome
 from sim.harness.validate.reference_table import read_lines
-from sim.plant.orbit import Sgp4Orbit, tle_epoch_unix_s
+from sim.plant.environment.orbit import Sgp4Orbit, tle_epoch_unix_s
 
 POSITION_M = 1e-3
 VELOCITY_MPS = 1e-6

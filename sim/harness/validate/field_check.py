@@ -9,7 +9,7 @@ from fsw.core.orbit.igrf_coefficients import EPOCHS_UNIX_S, MAX_DEGREE
 from sim.harness.errors import HarnessError
 from sim.harness.validate.comparison import Array, Comparison, largest
 from sim.harness.validate.reference_table import ReferenceTable, names_of
-from sim.plant.igrf import Igrf
+from sim.plant.environment.igrf import Igrf
 
 SAME_EPOCHS_NT = 1e-3
 """Rounding of other software near the poles; the formulas agree to 1e-10 nT."""

@@ -17,8 +17,8 @@ from sim.harness.validate.campaign import Figure, Group, at, campaign, measured
 from sim.harness.validate.claim import Study
 from sim.harness.validate.comparison import Array
 from sim.harness.validate.flight import Figures, Order
-from sim.plant.orbit import Sgp4Orbit
-from sim.plant.sun import illumination, sun_eci_m
+from sim.plant.environment.orbit import Sgp4Orbit
+from sim.plant.environment.sun import illumination, sun_eci_m
 
 SCENARIO = "microsat"
 SOURCE = "50 kg satellite with PoSAT-1's actuation limits; laws of Ovchinnikov, Penkov, Roldugin 2015"

@@ -46,7 +46,7 @@ def vector_of():
 @pytest.fixture(scope="session")
 def gauss_by_year():
     """IGRF-14 of the plant's own table: {year: {(n, m): nT}}."""
-    text = (ROOT / "sim" / "plant" / "igrf14.shc").read_text(encoding="utf-8")
+    text = (ROOT / "sim" / "plant" / "environment" / "igrf14.shc").read_text(encoding="utf-8")
     lines = [line.split() for line in text.splitlines() if not line.startswith("#")]
     return {
         int(float(year)): {(int(n), int(m)): float(values[column]) for n, m, *values in lines[2:]}

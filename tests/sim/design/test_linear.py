@@ -18,10 +18,11 @@ from sim.design.linear import (
     skew,
 )
 from sim.plant.config import OrbitConfig
-from sim.plant.environment import Surroundings
-from sim.plant.field import DirectDipole
-from sim.plant.orbit import CircularOrbit
-from sim.plant.rigid_body import Motion, RigidBody
+from sim.plant.dynamics.rigid_body import Motion, RigidBody
+from sim.plant.dynamics.torques import gravity_gradient, magnetic
+from sim.plant.environment.field import DirectDipole
+from sim.plant.environment.orbit import CircularOrbit
+from sim.plant.environment.surroundings import Surroundings
 from sim.plant.rotation import (
     canonical,
     conjugate,
@@ -32,7 +33,6 @@ from sim.plant.rotation import (
     multiply,
     transform,
 )
-from sim.plant.torques import gravity_gradient, magnetic
 
 RAAN_RAD = 0.7
 STEP = 1e-30

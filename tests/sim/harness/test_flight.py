@@ -24,8 +24,8 @@ from sim.harness.flight import LOCKSTEP, BusLog, FlightError, Pace, fly
 from sim.harness.scenario import flight_table, load, parse_settings
 from sim.harness.truth import TruthFile, read_truth
 from sim.harness.virtual import VirtualBus
+from sim.plant.dynamics.torques import SOURCES
 from sim.plant.plant import Plant
-from sim.plant.torques import SOURCES
 
 BOOT = FswBoot(0, 1, 2).encode()
 

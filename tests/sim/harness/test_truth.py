@@ -11,8 +11,8 @@ import pytest
 
 from sim.harness.errors import HarnessError
 from sim.harness.truth import BLOCK_ROWS, COLUMNS, TruthFile, read_truth
+from sim.plant.dynamics.torques import SOURCES
 from sim.plant.plant import TruthRow
-from sim.plant.torques import SOURCES
 
 
 def row(tick):

@@ -20,7 +20,7 @@ from sim.plant.config import (
     PlantConfig,
     SunSensorConfig,
 )
-from sim.plant.orbit import tle_epoch_unix_s
+from sim.plant.environment.orbit import tle_epoch_unix_s
 from sim.plant.plant import Plant
 from sim.plant.rotation import from_vector
 

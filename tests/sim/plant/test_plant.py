@@ -18,7 +18,6 @@ from fsw.wire.messages import (
     RefRate,
     Sync,
 )
-from sim.plant import torques
 from sim.plant.config import (
     CoilConfig,
     DisturbanceConfig,
@@ -28,6 +27,7 @@ from sim.plant.config import (
     OrbitConfig,
     SunSensorConfig,
 )
+from sim.plant.dynamics import torques
 from sim.plant.errors import PlantError
 from sim.plant.rotation import matrix
 

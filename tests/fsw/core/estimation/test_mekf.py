@@ -19,9 +19,9 @@ from fsw.core.algebra.vector import ZERO, norm, unit
 from fsw.core.estimation import mekf
 from fsw.core.estimation.mekf import Estimate, predict, start, update_both, update_field, update_sun
 from fsw.core.estimation.mekf_config import layout, mekf_config
-from sim.plant import torques
-from sim.plant.environment import Surroundings
-from sim.plant.rigid_body import Motion, RigidBody
+from sim.plant.dynamics import torques
+from sim.plant.dynamics.rigid_body import Motion, RigidBody
+from sim.plant.environment.surroundings import Surroundings
 
 INERTIA = ((1.02, 0.07, -0.05), (0.07, 1.85, 0.11), (-0.05, 0.11, 1.45))
 J = np.array(INERTIA)

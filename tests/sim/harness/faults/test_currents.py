@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 
 from sim.harness.faults.currents import CurrentLimits, CurrentPulse, pulses, violations
-from sim.plant.actuators import Driven
+from sim.plant.hardware.actuators import Driven
 
 OFF = Driven((0.0, 0.0, 0.0), 0.0)
 LEVELS_A = (0.025, 0.1, 0.4)

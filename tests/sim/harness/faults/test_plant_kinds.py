@@ -12,7 +12,7 @@ from sim.harness.faults.faulty_plant import FaultyPlant, Scheduled
 from sim.harness.faults.kinds import make
 from sim.harness.faults.node_kinds import count_doubles, flip, flip_bit
 from sim.harness.scenario import load
-from sim.plant.actuators import Driven
+from sim.plant.hardware.actuators import Driven
 
 B_T = (20e-6, -7e-6, 31e-6)
 SUN = (0.6, -0.64, 0.48)

@@ -12,8 +12,8 @@ from sim.harness.scenario import load, orbit_period_s
 from sim.harness.validate import microsat, posat1
 from sim.harness.validate.claim import Verdict
 from sim.harness.validate.flight import Flight
-from sim.plant.orbit import Sgp4Orbit
-from sim.plant.sun import illumination, sun_eci_m
+from sim.plant.environment.orbit import Sgp4Orbit
+from sim.plant.environment.sun import illumination, sun_eci_m
 
 ORBIT = 6041
 

@@ -12,7 +12,7 @@ from sim.harness.validate.claim import Verdict
 from sim.harness.validate.floquet_check import apart
 from sim.harness.validate.reference_table import ReferenceTable
 from sim.harness.validate.two_body import two_body
-from sim.plant.orbit import MU_M3PS2
+from sim.plant.environment.orbit import MU_M3PS2
 
 ROWS = {"attitude_d_offdiag.csv": 6, "attitude_c_dipole.csv": 6, "floquet.csv": 7}
 

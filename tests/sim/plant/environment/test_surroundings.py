@@ -2,10 +2,10 @@ import numpy as np
 import pytest
 
 from sim.plant.config import FieldConfig, OrbitConfig
-from sim.plant.environment import Environment
-from sim.plant.field import make_field
-from sim.plant.orbit import MU_M3PS2, make_orbit
-from sim.plant.sun import illumination, sun_eci_m
+from sim.plant.environment.field import make_field
+from sim.plant.environment.orbit import MU_M3PS2, make_orbit
+from sim.plant.environment.sun import illumination, sun_eci_m
+from sim.plant.environment.surroundings import Environment
 
 
 def instants(config, substeps, ticks):

@@ -6,7 +6,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from sim.plant.config import MagnetometerConfig, SunSensorConfig
-from sim.plant.sensors import Delay, MagnetometerPhysics, SunSensorPhysics
+from sim.plant.hardware.sensors import Delay, MagnetometerPhysics, SunSensorPhysics
 
 B = (1.1e-5, -2.3e-5, 3.1e-5)
 S = (0.6, -0.48, 0.64)

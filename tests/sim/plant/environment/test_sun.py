@@ -3,7 +3,7 @@ from datetime import datetime
 import numpy as np
 import pytest
 
-from sim.plant.sun import AU_M, illumination, sun_eci_m
+from sim.plant.environment.sun import AU_M, illumination, sun_eci_m
 
 
 @pytest.fixture(scope="module")

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from sim.plant import torques
-from sim.plant.environment import Surroundings
-from sim.plant.orbit import MU_M3PS2
-from sim.plant.rigid_body import Motion, RigidBody
+from sim.plant.dynamics import torques
+from sim.plant.dynamics.rigid_body import Motion, RigidBody
+from sim.plant.environment.orbit import MU_M3PS2
+from sim.plant.environment.surroundings import Surroundings
 from sim.plant.rotation import ZERO, normalise
 
 DIPOLE_TM3 = 7.812e15

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from sim.plant import torques
-from sim.plant.environment import Surroundings
+from sim.plant.dynamics import torques
+from sim.plant.environment.surroundings import Surroundings
 from sim.plant.rotation import from_vector, matrix, transform
 
 J = ((1.02, 0.03, -0.02), (0.03, 1.85, 0.05), (-0.02, 0.05, 1.95))

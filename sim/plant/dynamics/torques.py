@@ -1,6 +1,6 @@
 """Torques on the body, in body axes."""
 
-from sim.plant.environment import Surroundings
+from sim.plant.environment.surroundings import Surroundings
 from sim.plant.rotation import Mat3, Quaternion, Vec3, cross, matrix, transform
 
 SOURCES = ("gravity_gradient", "coils", "residual_dipole", "bias")

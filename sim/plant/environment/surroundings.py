@@ -10,13 +10,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim.plant.atmosphere import altitude_m, density_kgpm3, flow_mps
 from sim.plant.config import DisturbanceConfig, PlantConfig
+from sim.plant.environment.atmosphere import altitude_m, density_kgpm3, flow_mps
+from sim.plant.environment.field import make_field
+from sim.plant.environment.orbit import MU_M3PS2, Array, make_orbit
+from sim.plant.environment.sun import AU_M, illumination, sun_eci_m
 from sim.plant.errors import PlantError
-from sim.plant.field import make_field
-from sim.plant.orbit import MU_M3PS2, Array, make_orbit
 from sim.plant.rotation import ZERO, Mat3, Vec3
-from sim.plant.sun import AU_M, illumination, sun_eci_m
 
 NODE_S = 10
 """Seconds between nodes."""

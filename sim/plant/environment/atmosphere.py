@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sim.plant.orbit import EARTH_RADIUS_M, Array
+from sim.plant.environment.orbit import EARTH_RADIUS_M, Array
 
 EARTH_RATE_RADPS = 7.2921159e-5
 FLATTENING = 1.0 / 298.257223563

@@ -7,8 +7,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from sim.plant.config import BodyConfig, DisturbanceConfig, FieldConfig, InitialConfig, OrbitConfig
-from sim.plant.jacobi import jacobi_integral
-from sim.plant.orbit import EARTH_RADIUS_M, MU_M3PS2
+from sim.plant.dynamics.jacobi import jacobi_integral
+from sim.plant.environment.orbit import EARTH_RADIUS_M, MU_M3PS2
 from sim.plant.rotation import from_vector
 
 ALTITUDE_M = 800e3

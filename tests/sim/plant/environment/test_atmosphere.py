@@ -3,8 +3,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from sim.plant.atmosphere import _LAYERS, EARTH_RATE_RADPS, altitude_m, density_kgpm3, flow_mps
-from sim.plant.earth import gmst82_rad
+from sim.plant.environment.atmosphere import _LAYERS, EARTH_RATE_RADPS, altitude_m, density_kgpm3, flow_mps
+from sim.plant.environment.earth import gmst82_rad
 
 EPOCH = 1_427_424_417
 

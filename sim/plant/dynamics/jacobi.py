@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sim.plant.orbit import Array
+from sim.plant.environment.orbit import Array
 
 
 def jacobi_integral(

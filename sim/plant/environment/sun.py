@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from sim.plant.earth import J2000_UNIX_S
-from sim.plant.orbit import DAY_S, EARTH_RADIUS_M, Array
+from sim.plant.environment.earth import J2000_UNIX_S
+from sim.plant.environment.orbit import DAY_S, EARTH_RADIUS_M, Array
 
 AU_M = 149597870.7e3
 SUN_RADIUS_M = 695700e3

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from sim.plant.coils import Coils
 from sim.plant.config import CoilConfig
+from sim.plant.hardware.coils import Coils
 
 TAU = 0.4  # slow, so that every part of the curve counts
 LEVELS = (0.5, 2.0, 8.0)

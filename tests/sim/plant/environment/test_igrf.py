@@ -3,7 +3,7 @@ from datetime import UTC, datetime
 import numpy as np
 import pytest
 
-from sim.plant.igrf import REFERENCE_RADIUS_M, Igrf
+from sim.plant.environment.igrf import REFERENCE_RADIUS_M, Igrf
 
 Y2020 = datetime(2020, 1, 1, tzinfo=UTC).timestamp()
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from sim.plant.config import OrbitConfig
-from sim.plant.orbit import (
+from sim.plant.environment.orbit import (
     EARTH_RADIUS_M,
     MU_M3PS2,
     CircularOrbit,

@@ -3,7 +3,7 @@ from datetime import datetime
 import numpy as np
 import pytest
 
-from sim.plant.earth import gmst82_rad, turn_about_pole
+from sim.plant.environment.earth import gmst82_rad, turn_about_pole
 
 
 @pytest.fixture(scope="module")

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from sim.plant.config import FieldConfig, OrbitConfig
-from sim.plant.field import DIPOLE_TM3, DirectDipole, make_field
-from sim.plant.orbit import CircularOrbit
+from sim.plant.environment.field import DIPOLE_TM3, DirectDipole, make_field
+from sim.plant.environment.orbit import CircularOrbit
 
 EPOCH = 1_427_424_417
 INCLINATION = radians(98.6)

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Iterator
 from math import sqrt
 
-from sim.plant import surfaces, torques
 from sim.plant.config import PlantConfig
-from sim.plant.environment import Surroundings
+from sim.plant.dynamics import surfaces, torques
+from sim.plant.environment.surroundings import Surroundings
 from sim.plant.random_streams import normals
 from sim.plant.rotation import Mat3, Vec3, transform
 

@@ -6,7 +6,6 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from fsw.wire.messages import CoilDipole
-from sim.plant.atmosphere import altitude_m, density_kgpm3
 from sim.plant.config import (
     BodyConfig,
     CoilConfig,
@@ -16,9 +15,10 @@ from sim.plant.config import (
     OrbitConfig,
     PlateConfig,
 )
-from sim.plant.field import make_field
-from sim.plant.orbit import make_orbit
-from sim.plant.sun import AU_M, illumination, sun_eci_m
+from sim.plant.environment.atmosphere import altitude_m, density_kgpm3
+from sim.plant.environment.field import make_field
+from sim.plant.environment.orbit import make_orbit
+from sim.plant.environment.sun import AU_M, illumination, sun_eci_m
 
 J = np.array([[1.02, 0.03, -0.02], [0.03, 1.85, 0.05], [-0.02, 0.05, 1.95]])
 WHEEL = (0.02, -0.01, 0.03)

@@ -5,9 +5,9 @@ from typing import Protocol
 import numpy as np
 
 from sim.plant.config import FieldConfig
-from sim.plant.earth import gmst82_rad, turn_about_pole
-from sim.plant.igrf import Igrf
-from sim.plant.orbit import Array
+from sim.plant.environment.earth import gmst82_rad, turn_about_pole
+from sim.plant.environment.igrf import Igrf
+from sim.plant.environment.orbit import Array
 
 DIPOLE_TM3 = 7.812e15
 

@@ -5,12 +5,12 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from fsw.wire.messages import MagField, SunVector
-from sim.plant import torques
-from sim.plant.atmosphere import altitude_m, density_kgpm3
 from sim.plant.config import BodyConfig, DisturbanceConfig, InitialConfig, OrbitConfig, PlateConfig
-from sim.plant.disturbances import torque_noise
-from sim.plant.orbit import make_orbit
-from sim.plant.sun import AU_M, sun_eci_m
+from sim.plant.dynamics import torques
+from sim.plant.dynamics.disturbances import torque_noise
+from sim.plant.environment.atmosphere import altitude_m, density_kgpm3
+from sim.plant.environment.orbit import make_orbit
+from sim.plant.environment.sun import AU_M, sun_eci_m
 
 INERTIA = ((1.02, 0.03, -0.02), (0.03, 1.85, 0.05), (-0.02, 0.05, 1.95))
 LOW = OrbitConfig(None, 400e3, 1.1, 0.6, 0.35)

@@ -7,7 +7,7 @@ from math import factorial, sqrt
 import numpy as np
 import numpy.typing as npt
 
-from sim.plant.orbit import Array
+from sim.plant.environment.orbit import Array
 
 Complex = npt.NDArray[np.complex128]
 
@@ -105,7 +105,7 @@ def _schmidt(n: int, m: int) -> float:
 
 def _read_table() -> tuple[list[float], dict[tuple[int, int], Array]]:
     """Years, and by (n, m) the coefficients g (m >= 0) and h (m < 0) [nT] of each year."""
-    text = files("sim.plant").joinpath("igrf14.shc").read_text(encoding="ascii")
+    text = files("sim.plant.environment").joinpath("igrf14.shc").read_text(encoding="ascii")
     _, years, *rows = (line for line in text.splitlines() if not line.startswith("#"))
     table: dict[tuple[int, int], Array] = {}
     for row in rows:

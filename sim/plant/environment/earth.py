@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sim.plant.orbit import DAY_S, Array
+from sim.plant.environment.orbit import DAY_S, Array
 
 J2000_UNIX_S = 946728000
 

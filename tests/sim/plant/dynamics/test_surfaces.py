@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from sim.plant import surfaces
 from sim.plant.config import BodyConfig, PlateConfig
+from sim.plant.dynamics import surfaces
 from sim.plant.rotation import ZERO
 
 P = 4.54e-6

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from sim.plant.environment import Surroundings
+from sim.plant.environment.surroundings import Surroundings
 from sim.plant.rotation import ZERO, Mat3, Quaternion, Vec3, cross, normalise, transform
 
 Torque = Callable[[Quaternion, Vec3, Surroundings], Vec3]

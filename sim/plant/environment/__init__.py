@@ -1,0 +1,1 @@
+"""What surrounds the satellite: orbit, Earth, field, Sun, air, whatever its attitude."""

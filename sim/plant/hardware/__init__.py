@@ -1,0 +1,1 @@
+"""The instruments on board: sensors and coils as physics."""
