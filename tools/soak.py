@@ -26,9 +26,10 @@ from sim.harness import run_dir
 from sim.harness.audit.check import check
 from sim.harness.destination import check_file
 from sim.harness.errors import HarnessError
-from sim.harness.flight import WATCH_TICKS, Pace
+from sim.harness.flight import WATCH_TICKS
 from sim.harness.hil.memory import Memory
 from sim.harness.hil.verdict import Line
+from sim.harness.pace import Pace
 from sim.harness.progress import progress
 from sim.harness.replay import replay
 from sim.harness.scenario import flight_table, load

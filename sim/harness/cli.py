@@ -138,7 +138,7 @@ def sil(
 ) -> int:
     """Fly SCENARIO: plant and flight software as two processes on a bus (virtual: in one)."""
     from sim.harness import run_dir
-    from sim.harness.options import parse_pace
+    from sim.harness.pace import parse_pace
     from sim.harness.progress import progress
     from sim.harness.scenario import load, parse_settings
     from sim.harness.signature import private_key

@@ -10,3 +10,9 @@ class HarnessError(Exception):
     """The message is one sentence for the user; ``exit_code`` is what the process ends with."""
 
     exit_code = 2
+
+
+class FlightError(HarnessError):
+    """The flight ended before its time."""
+
+    exit_code = 1

@@ -14,12 +14,12 @@ from fsw.table.config import flight_config
 from fsw.wire.frame import Frame
 from fsw.wire.messages import NAMES, Sync
 from sim.harness import run_dir
+from sim.harness.answers import answered
 from sim.harness.assemble import plant_config
 from sim.harness.binding import Binding, compare
 from sim.harness.candump import LogEntry, LogTruncatedError, format_time, read_log
 from sim.harness.errors import HarnessError
 from sim.harness.faults.section import forge_answers, make_plant
-from sim.harness.flight import answered
 from sim.harness.log_index import vouch
 from sim.harness.progress import progress
 from sim.harness.replay import replay

@@ -15,8 +15,8 @@ import tomli_w
 from fsw.input.schema import TableError
 from sim.harness.destination import check_folder
 from sim.harness.errors import HarnessError
-from sim.harness.flight import Pace
 from sim.harness.log_index import SUFFIX
+from sim.harness.pace import Pace
 from sim.harness.run_record import SCHEMA_VERSION, RunRecord, read_record
 from sim.harness.scenario import Scenario, flight_table, load
 

@@ -14,11 +14,14 @@ from fsw.bus.link import LoopLink
 from fsw.bus.open_bus import open_bus, resolve
 from fsw.wire.frame import Frame
 from sim.harness import run_dir
+from sim.harness.answers import ANSWER_TIMEOUT_S, Patience
 from sim.harness.assemble import plant_config
+from sim.harness.bus_log import BusLog
 from sim.harness.bus_taken import refuse_taken
-from sim.harness.errors import HarnessError
+from sim.harness.errors import FlightError, HarnessError
 from sim.harness.faults.section import make_plant
-from sim.harness.flight import ANSWER_TIMEOUT_S, BusLog, FlightError, Pace, Patience, fly
+from sim.harness.flight import fly
+from sim.harness.pace import Pace
 from sim.harness.scenario import Scenario, flight_table, orbit_period_s
 from sim.harness.second_senders import SenderWatch, said
 from sim.harness.standstill import Standstill

@@ -16,9 +16,9 @@ from fsw.input import command_line
 from fsw.input.schema import TableError
 from fsw.input.sentence import sentence
 from sim.harness import run_dir
-from sim.harness.errors import DISK_FULL, HarnessError
-from sim.harness.flight import CounterpartError, FlightError, Patience
-from sim.harness.options import parse_pace
+from sim.harness.answers import CounterpartError, Patience
+from sim.harness.errors import DISK_FULL, FlightError, HarnessError
+from sim.harness.pace import parse_pace
 from sim.harness.progress import progress
 from sim.harness.scenario import Scenario, load, parse_settings
 from sim.harness.signals import EndedBySignal, endings_raised

@@ -12,7 +12,7 @@ import tempfile
 from pathlib import Path
 
 from sim.harness import run_dir
-from sim.harness.flight import Pace
+from sim.harness.pace import Pace
 from sim.harness.scenario import load
 from sim.harness.virtual import fly_virtual
 

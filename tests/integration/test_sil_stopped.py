@@ -10,7 +10,9 @@ from threading import Thread
 import pytest
 
 from sim.harness import run_dir, sil
-from sim.harness.flight import FlightError, Pace, Patience
+from sim.harness.answers import Patience
+from sim.harness.errors import FlightError
+from sim.harness.pace import Pace
 from sim.harness.scenario import load
 from sim.harness.sil import fly_processes, served
 

@@ -5,7 +5,7 @@ import pytest
 from fsw.input.schema import merge
 from fsw.table.config import flight_config
 from sim.harness import run_dir, virtual
-from sim.harness.flight import Pace
+from sim.harness.pace import Pace
 from sim.harness.scenario import flight_table, load, parse_settings
 
 UNEVEN = parse_settings(

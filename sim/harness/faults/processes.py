@@ -17,11 +17,11 @@ from fsw.bus.hub import Hub
 from fsw.bus.link import LoopLink
 from fsw.wire.frame import Frame
 from fsw.wire.messages import FswBoot, intact
+from sim.harness.answers import answered
 from sim.harness.assemble import plant_config
 from sim.harness.errors import HarnessError
 from sim.harness.faults.faulty_plant import FaultyPlant
 from sim.harness.faults.record import Record
-from sim.harness.flight import answered
 from sim.harness.scenario import Scenario
 from sim.harness.sil import start_node
 

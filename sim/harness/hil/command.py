@@ -18,15 +18,16 @@ from fsw.wire.messages import PlantBoot
 from sim.harness import run_dir
 from sim.harness.assemble import plant_config
 from sim.harness.binding import bind
+from sim.harness.bus_log import BusLog
 from sim.harness.bus_taken import FLYING, refuse_taken
 from sim.harness.destination import check_folder
 from sim.harness.errors import HarnessError
-from sim.harness.flight import BusLog, Pace
 from sim.harness.hil.conductor import Conductor, is_boot
 from sim.harness.hil.memory import Memory, scheduling
 from sim.harness.hil.nodes import Node, Nodes, hub_of
 from sim.harness.hil.verdict import Budgets, Json, judge, render
 from sim.harness.hil.world import PlantWorld, SyncAlone, World, line_to
+from sim.harness.pace import Pace
 from sim.harness.progress import progress
 from sim.harness.scenario import Scenario
 from sim.harness.second_senders import said

@@ -17,10 +17,13 @@ from fsw.wire.messages import (
     Sync,
     TickDone,
 )
-from sim.harness import flight
+from sim.harness import answers
 from sim.harness.assemble import plant_config
+from sim.harness.bus_log import BusLog
 from sim.harness.candump import read_log
-from sim.harness.flight import LOCKSTEP, BusLog, FlightError, Pace, fly
+from sim.harness.errors import FlightError
+from sim.harness.flight import fly
+from sim.harness.pace import LOCKSTEP, Pace
 from sim.harness.scenario import flight_table, load, parse_settings
 from sim.harness.truth import TruthFile, read_truth
 from sim.harness.virtual import VirtualBus
@@ -92,7 +95,7 @@ def virtual():
 class TestLockstep:
     def test_sync_is_sent_again_to_a_flight_software_that_is_silent(self, flown, monkeypatch):
         """As one that a forged SYNC has led astray, which believes the second."""
-        monkeypatch.setattr(flight, "REPEAT_SYNC_S", 0.01)
+        monkeypatch.setattr(answers, "REPEAT_SYNC_S", 0.01)
         asked = []
 
         def second_time(tick):
@@ -167,7 +170,7 @@ class TestLockstep:
         assert sum(entry.frame.can_id == TickDone.ID for entry in entries) == 4 * 5 - 1
 
     def test_without_an_answer_it_ends_with_a_sentence_and_exit_code_1(self, flown, monkeypatch):
-        monkeypatch.setattr(flight, "ANSWER_TIMEOUT_S", 0.0)
+        monkeypatch.setattr(answers, "ANSWER_TIMEOUT_S", 0.0)
         with pytest.raises(
             FlightError, match="no answer from the flight software to tick 3 within"
         ) as caught:
@@ -175,7 +178,7 @@ class TestLockstep:
         assert caught.value.exit_code == 1
 
     def test_what_was_flown_by_then_is_kept(self, flown, monkeypatch, tmp_path):
-        monkeypatch.setattr(flight, "ANSWER_TIMEOUT_S", 0.0)
+        monkeypatch.setattr(answers, "ANSWER_TIMEOUT_S", 0.0)
         with pytest.raises(FlightError):
             flown(ScriptedBus(lambda tick: [done(tick)] if tick < 3 else []))
         assert len(read_truth(tmp_path / "truth.h5")["t_s"]) == 3
@@ -204,7 +207,7 @@ class TestBoot:
         assert [e.frame.can_id for e in entries].count(TickDone.ID) == 3
 
     def test_asks_again_until_it_is_answered(self, flown, monkeypatch):
-        monkeypatch.setattr(flight, "BOOT_REQUEST_S", 0.01)
+        monkeypatch.setattr(answers, "BOOT_REQUEST_S", 0.01)
         bus = ScriptedBus(lambda tick: [done(tick)], first=())
         receive = bus.receive
 
@@ -248,7 +251,7 @@ class TestRealTime:
 
         def slow(timeout_s):
             asked = [Sync.decode(f.data).tick for f in bus.sent if f.can_id == Sync.ID]
-            if timeout_s == flight.LATE_TIMEOUT_S and asked[-1] == 19:
+            if timeout_s == answers.LATE_TIMEOUT_S and asked[-1] == 19:
                 bus.queue.append(done(19))
             return receive(timeout_s)
 

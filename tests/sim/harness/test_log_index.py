@@ -12,9 +12,10 @@ from random import Random
 import pytest
 
 from fsw.wire.messages import FswBoot, MagField, TickDone
-from sim.harness import flight
+from sim.harness import bus_log
+from sim.harness.bus_log import BusLog
 from sim.harness.candump import LogTruncatedError, read_log
-from sim.harness.flight import BusLog, FlightError
+from sim.harness.errors import FlightError
 from sim.harness.log_index import BLOCK_WRITES, SUFFIX, LogIndex, Standing, index_of, vouch
 
 TICKS = 3 * BLOCK_WRITES + 11
@@ -257,7 +258,7 @@ TICK_BYTES = 2 * BLOCK_WRITES * 45
 def test_a_full_disk_keeps_whole_ticks(tmp_path, monkeypatch, room):
     """Room for so many bytes, of log and index together."""
     log = tmp_path / "bus.log"
-    monkeypatch.setattr(flight.os, "write", FullDisk(room))
+    monkeypatch.setattr(bus_log.os, "write", FullDisk(room))
     with pytest.raises(FlightError, match=r"bus\.log: .*No space left on device") as caught:
         write(log)
     monkeypatch.undo()
@@ -278,7 +279,7 @@ def test_half_a_line_of_the_index_is_taken_back(tmp_path, monkeypatch):
     before = index_of(log).read_bytes()
     for _ in range(63):
         index.add(b"x\n", 1)
-    monkeypatch.setattr(flight.os, "write", FullDisk(10))
+    monkeypatch.setattr(bus_log.os, "write", FullDisk(10))
     with pytest.raises(OSError, match="No space left on device"):
         index.add(b"x\n", 1)
     monkeypatch.undo()
@@ -289,7 +290,7 @@ def test_half_a_line_of_the_index_is_taken_back(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("room", [0, 20])
 def test_a_disk_that_is_full_before_the_flight_is_named(tmp_path, monkeypatch, room):
-    monkeypatch.setattr(flight.os, "write", FullDisk(room))
+    monkeypatch.setattr(bus_log.os, "write", FullDisk(room))
     with pytest.raises(FlightError, match="cannot be written: No space left on device"):
         write(tmp_path / "bus.log")
 
@@ -298,7 +299,7 @@ def test_a_disk_that_is_full_at_the_very_end_is_named(tmp_path, monkeypatch):
     log = tmp_path / "bus.log"
     write(log, 5)
     room = log.stat().st_size + index_of(log).stat().st_size - 1
-    monkeypatch.setattr(flight.os, "write", FullDisk(room))
+    monkeypatch.setattr(bus_log.os, "write", FullDisk(room))
     with pytest.raises(FlightError, match="its index cannot be written"):
         write(log, 5)
 
@@ -306,7 +307,7 @@ def test_a_disk_that_is_full_at_the_very_end_is_named(tmp_path, monkeypatch):
 def test_what_it_costs_grows_by_blocks_alone(tmp_path, monkeypatch):
     """One write for the log a tick, and one for the index every ``BLOCK_WRITES`` ticks."""
     written = []
-    monkeypatch.setattr(flight.os, "write", lambda descriptor, text: written.append(descriptor) or len(text))
+    monkeypatch.setattr(bus_log.os, "write", lambda descriptor, text: written.append(descriptor) or len(text))
     with BusLog(tmp_path / "bus.log", "vcan0") as log:
         for tick in range(10 * BLOCK_WRITES):
             log.write(tick, frames(tick))

@@ -9,10 +9,10 @@ from fsw.node import FlightNode
 from fsw.table.config import flight_config
 from fsw.wire.frame import Frame
 from fsw.wire.messages import FswEvent, PlantEnd, Sync, TickDone
-from sim.harness import flight, run_dir
+from sim.harness import answers, run_dir
 from sim.harness.candump import format_line, format_time, read_log
 from sim.harness.conclude import conclude
-from sim.harness.flight import Pace
+from sim.harness.pace import Pace
 from sim.harness.replay import replay
 from sim.harness.run_dir import BUS_LOG
 from sim.harness.scenario import flight_table, load
@@ -82,7 +82,7 @@ STRANGERS = {
 @pytest.fixture
 def fly_with(tmp_path, monkeypatch):
     """A flight with a stranger: its bus and configuration; the log is in the run directory."""
-    monkeypatch.setattr(flight, "REPEAT_SYNC_S", 0.01)
+    monkeypatch.setattr(answers, "REPEAT_SYNC_S", 0.01)
 
     def fly(frames_of, ticks=TICKS):
         scenario = load("microsat")

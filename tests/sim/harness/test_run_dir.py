@@ -9,7 +9,7 @@ import pytest
 
 from sim.harness import run_dir
 from sim.harness.errors import HarnessError
-from sim.harness.flight import Pace
+from sim.harness.pace import Pace
 from sim.harness.scenario import flight_table, load, parse_settings
 
 

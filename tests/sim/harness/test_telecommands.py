@@ -37,7 +37,7 @@ from fsw.wire.messages import (
 )
 from sim.harness import run_dir
 from sim.harness.candump import format_line, format_time, read_log
-from sim.harness.flight import Pace
+from sim.harness.pace import Pace
 from sim.harness.replay import replay
 from sim.harness.run_dir import BUS_LOG
 from sim.harness.scenario import flight_table, load

@@ -131,7 +131,7 @@ from pathlib import Path
 sys.path.insert(0, {folder!r})
 from test_truth import row
 from sim.harness.truth import TruthFile
-from sim.plant.torques import SOURCES
+from sim.plant.dynamics.torques import SOURCES
 with TruthFile(Path({path!r}), 100_000, SOURCES) as truth:
     for tick in range(100_000):
         print(tick, flush=True)

@@ -11,8 +11,8 @@ from sim.harness.audit.check import CONTRACT_VERSION, check, limits_beside, rend
 from sim.harness.binding import bind
 from sim.harness.candump import LogError, read_log
 from sim.harness.errors import HarnessError
-from sim.harness.flight import Pace
 from sim.harness.log_index import LogIndex
+from sim.harness.pace import Pace
 from sim.harness.scenario import load, parse_settings
 
 

@@ -3,8 +3,7 @@
 import pytest
 
 from sim.harness.errors import HarnessError
-from sim.harness.flight import LOCKSTEP, Pace
-from sim.harness.options import parse_pace
+from sim.harness.pace import LOCKSTEP, Pace, parse_pace
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,18 @@
-"""Options that more than one command takes."""
+"""How a run is paced: in lockstep, or in real time times a factor."""
+
+from dataclasses import dataclass
 
 from sim.harness.errors import HarnessError
-from sim.harness.flight import Pace
+
+
+@dataclass(frozen=True, slots=True)
+class Pace:
+    """``factor`` None: lockstep, as fast as it goes; else real time times the factor."""
+
+    factor: float | None = None
+
+
+LOCKSTEP = Pace()
 
 
 def parse_pace(text: str) -> Pace:
