@@ -89,7 +89,7 @@ coverage: venv
 	$(bin)/coverage run -m pytest -q -p no:cacheprovider tests/fsw/wire tests/fsw/core/test_pulses.py \
 		tests/fsw/core/test_pulse_choice.py tests/fsw/core/test_actuation.py tests/fsw/core/test_dipoles.py \
 		tests/hil_stub/coils/test_interlock.py tests/hil_stub/coils/test_guard.py tests/hil_stub/coils/test_coil_driver.py \
-		tests/hil_stub/coils/test_read_back.py tests/hil_stub/test_node.py tests/sim/harness/audit tests/sim/harness/test_log_index.py
+		tests/hil_stub/coils/test_read_back.py tests/hil_stub/test_node.py tests/sim/audit tests/sim/record/test_log_index.py
 	@mkdir -p build
 	$(bin)/coverage json -q --fail-under 0 -o build/coverage.json
 	$(bin)/python tools/mutate.py --coverage build/coverage.json

@@ -1,1 +1,1 @@
-"""The ground side of Torquer: plant, harness, scenarios."""
+"""The ground side of Torquer: the plant, and all that flies, judges and shows a flight."""

@@ -16,8 +16,8 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from sim.harness.destination import check_file
-from sim.harness.errors import HarnessError
+from sim.errors import HarnessError
+from sim.record.destination import check_file
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "replay.md"
@@ -106,7 +106,7 @@ def _replay(scenario: str, run: Path, variant: Variant) -> tuple[str, str, str, 
 
 def _torquer(variant: Variant, *words: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        [variant.python, "-m", "sim.harness.cli", *words],
+        [variant.python, "-m", "torquer.cli.main", *words],
         env=os.environ | variant.environment,
         capture_output=True,
         text=True,

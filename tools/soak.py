@@ -22,19 +22,19 @@ from fsw.node import FlightNode
 from fsw.table.config import flight_config
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilRefused
-from sim.harness import run_dir
-from sim.harness.audit.check import check
-from sim.harness.destination import check_file
-from sim.harness.errors import HarnessError
-from sim.harness.flight import WATCH_TICKS
-from sim.harness.hil.memory import Memory
-from sim.harness.hil.verdict import Line
-from sim.harness.pace import Pace
-from sim.harness.progress import progress
-from sim.harness.replay import replay
-from sim.harness.scenario import flight_table, load
-from sim.harness.sil import MOST_TICKS, record
-from sim.harness.virtual import VirtualBus
+from sim.audit.check import check
+from sim.bench.memory import Memory
+from sim.bench.verdict import Line
+from sim.errors import HarnessError
+from sim.flight.flight import WATCH_TICKS
+from sim.flight.recorded import MOST_TICKS, record
+from sim.flight.virtual import VirtualBus
+from sim.progress import progress
+from sim.record import run_dir
+from sim.record.destination import check_file
+from sim.record.pace import Pace
+from sim.replay.replay import replay
+from sim.scenario.schema import flight_table, load
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "soak.md"
@@ -99,7 +99,7 @@ def fly(folder: Path, name: str, hours: float) -> None:
 def bench(folder: Path, name: str, wall_s: float, priority: int | None, words: Sequence[str]) -> None:
     """Wall time on the bench: every node a process; its verdict is in hil.json, whatever its exit code."""
     warm_s = min(WARM_MOST_S, WARM_PART * wall_s)
-    command = [sys.executable, "-m", "sim.harness.cli", "hil", name, "--tick-hz", str(BENCH_HZ), "--arm"]
+    command = [sys.executable, "-m", "torquer.cli.main", "hil", name, "--tick-hz", str(BENCH_HZ), "--arm"]
     command += ["--seconds", str(wall_s), "--warm-s", str(warm_s), "--out", str(folder), "--json", *words]
     try:
         subprocess.run(
@@ -223,7 +223,7 @@ def draw(parts: Sequence[Part], path: Path) -> None:
     """Memory of each process relative to when it was warm."""
     from matplotlib.figure import Figure  # noqa: PLC0415  (not loaded while memory is looked at)
 
-    from sim.harness.report.canvas import style  # noqa: PLC0415
+    from sim.drawing.canvas import style  # noqa: PLC0415
 
     with style():
         figure = Figure(figsize=(8.2, 2.4), layout="constrained")

@@ -1,9 +1,9 @@
-"""Write docs/requirements.md from fsw/core/requirements.py; with --check, exit 1 when the file is stale."""
+"""Write docs/requirements.md from the table of requirements; with --check, exit 1 when the file is stale."""
 
 import sys
 from pathlib import Path
 
-from fsw.core.requirements import document
+from sim.fault_table.requirements import document
 
 TARGET = Path(__file__).resolve().parent.parent / "docs" / "requirements.md"
 

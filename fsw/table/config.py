@@ -22,7 +22,8 @@ from fsw.core.orbit.propagation import Orbit, circular_orbit, sgp4_orbit
 from fsw.core.rates import RateGroup, RateTable
 from fsw.input.schema import TableError
 from fsw.table.schedules import schedules
-from fsw.table.table import CoilTable, FlightTable, ModesTable, OrbitTable, TelemetryTable
+from fsw.table.sections import CoilTable, ModesTable, OrbitTable, TelemetryTable
+from fsw.table.table import FlightTable
 
 NT = 1e-9
 CHATTER_S = 10.0

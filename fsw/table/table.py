@@ -7,249 +7,34 @@ of ``fsw/flight.toml``.
 import json
 import tomllib
 import zlib
-from dataclasses import fields
-from datetime import UTC, date, datetime
+from datetime import UTC, datetime
 from decimal import Decimal
 from importlib import resources
 from math import ceil
 from pathlib import Path
-from typing import Annotated, Literal, Self
+from typing import Literal
 
-from pydantic import Field, Strict, field_validator, model_validator
-
-from fsw.core.algebra.vector import Mat3
-from fsw.core.laws.interface import MAX_SPIN_RADPS
-from fsw.core.laws.table import LAWS
-from fsw.core.orbit.propagation import sgp4_orbit
 from fsw.input.schema import (
     Nested,
-    NotNegative,
-    Positive,
     Section,
-    Square,
-    Triple,
     merge,
     read_toml,
     validated,
 )
-from fsw.table.inertia import check_inertia, three_numbers
-
-CIRCULAR_KEYS = ("altitude_km", "inclination_deg", "raan_deg", "u0_deg")
-"""Keys of a circular orbit; the other kind has ``tle``."""
-
-
-class TimeTable(Section):
-    """Tick rate and the time of tick 0; without ``epoch_utc`` the TLE's epoch, rounded up to a second."""
-
-    tick_hz: int = Field(ge=1, le=100)
-    epoch_utc: str | None = None
-
-    @field_validator("epoch_utc", mode="before")
-    @classmethod
-    def _from_toml_time(cls, value: object) -> object:
-        return value.isoformat() if isinstance(value, date) else value
-
-    @field_validator("epoch_utc")
-    @classmethod
-    def _epoch_is_a_time(cls, value: str | None) -> str | None:
-        if value is not None:
-            parse_utc(value)
-        return value
-
-
-class OrbitTable(Section):
-    """Two TLE lines, or a circular orbit: altitude above 6378.137 km and angles at the epoch."""
-
-    tle: Annotated[tuple[str, str] | None, Strict(False)] = None
-    altitude_km: float | None = Field(default=None, ge=150.0, le=40000.0)
-    inclination_deg: float = Field(default=0.0, ge=0.0, le=180.0)
-    raan_deg: float = Field(default=0.0, ge=-360.0, le=360.0)
-    u0_deg: float = Field(default=0.0, ge=-360.0, le=360.0)
-
-    @model_validator(mode="after")
-    def _one_kind(self) -> Self:
-        if (self.tle is None) == (self.altitude_km is None):
-            raise ValueError("an orbit needs either tle (two lines) or altitude_km (150 to 40000)")
-        if self.tle is not None:
-            sgp4_orbit(*self.tle)
-        return self
-
-
-class FieldTable(Section):
-    """Onboard field model; ``degree`` counts for igrf14."""
-
-    model: Literal["igrf14", "tilted_dipole", "direct_dipole"]
-    degree: int = Field(ge=1, le=10)
-
-
-class BodyTable(Section):
-    """Inertia tensor in body axes, kg m^2: three principal moments or 3 x 3; momentum of a wheel, N m s."""
-
-    inertia_kgm2: Triple | Square
-    wheel_nms: Triple = (0.0, 0.0, 0.0)
-
-    @field_validator("inertia_kgm2", mode="before")
-    @classmethod
-    def _has_the_shape(cls, value: object) -> object:
-        rows = value if isinstance(value, list | tuple) else ()
-        if not (three_numbers(rows) or (len(rows) == 3 and all(three_numbers(row) for row in rows))):
-            raise ValueError("must be three principal moments or 3 x 3 numbers")
-        return value
-
-    @model_validator(mode="after")
-    def _is_an_inertia(self) -> Self:
-        check_inertia(self.inertia)
-        return self
-
-    @property
-    def inertia(self) -> Mat3:
-        """The 3 x 3 tensor."""
-        given = self.inertia_kgm2
-        if isinstance(given[0], tuple):
-            return given
-        a, b, c = given
-        return ((a, 0.0, 0.0), (0.0, b, 0.0), (0.0, 0.0, c))
-
-
-class CoilTable(Section):
-    """The coil driver: levels per polarity and limits, or the full scale of a continuous one.
-
-    ``on_fraction`` is the part of a tick over which a continuous driver drives, ``dipole_per_ampere_am2``
-    what a sound coil gives, in A m^2 per A.
-    """
-
-    driver: Literal["pulsed", "continuous"] = "pulsed"
-    max_dipole_am2: float | None = Field(default=None, gt=0.0)
-    on_fraction: float = Field(default=0.8, gt=0.0, le=1.0)
-    dipole_per_ampere_am2: Positive
-    levels_am2: Triple
-    pulse_s: float = Field(gt=0.0, le=3.0)
-    backoff_s: float = Field(ge=0.0, le=160.0)
-    backoff: Literal["shared", "per_coil"]
-
-    @model_validator(mode="after")
-    def _levels_rise(self) -> Self:
-        low, middle, high = self.levels_am2
-        if not 0.0 < low < middle < high:
-            raise ValueError("levels_am2 must be three positive, rising dipoles")
-        if self.driver == "continuous" and self.max_dipole_am2 is None:
-            raise ValueError("a continuous driver needs max_dipole_am2")
-        return self
-
-
-class ControlTable(Section):
-    """Pointing law and its gains, spin about body axis 1, leak of the owed impulse.
-
-    Units: ``k_w`` N m s/T^2, ``k_a`` N m/T^2, ``k_i`` N m/(T^2 s). ``gains`` holds, by law, that law's own
-    parameters. ``minimiser`` is how a continuous driver finds the dipole of a predictive law.
-    """
-
-    law: Literal[tuple(LAWS)]  # type: ignore[valid-type]  # names that are known when it is loaded
-    k_w: NotNegative
-    k_a: NotNegative
-    k_i: NotNegative = 0.0
-    spin_radps: float = Field(default=0.0, ge=-MAX_SPIN_RADPS, le=MAX_SPIN_RADPS)
-    leak_s: Positive
-    minimiser: Literal["closed_form", "genetic"] = "closed_form"
-    gains: dict[str, dict[str, float]] = Field(default_factory=dict)
-
-    @model_validator(mode="after")
-    def _gains_are_known(self) -> Self:
-        for law, given in self.gains.items():
-            own = LAWS[law].gains if law in LAWS else None
-            if own is None:
-                allowed = ", ".join(name for name, row in LAWS.items() if row.gains is not None)
-                raise ValueError(f"gains.{law}: no such law has gains of its own (allowed: {allowed})")
-            known = [field.name for field in fields(own)]
-            strange = sorted(set(given) - set(known))
-            if strange:
-                raise ValueError(
-                    f"gains.{law}: {', '.join(strange)} is not known (allowed: {', '.join(known)})"
-                )
-        return self
-
-
-class EstimatorTable(Section):
-    """Filter tuning: standard deviations and random walks."""
-
-    bias: bool
-    torque: bool
-    magnetometer_sigma_nt: Positive
-    sun_sigma_deg: Positive
-    attitude_sigma_deg: Positive
-    rate_sigma_degps: Positive
-    bias_sigma_nt: Positive
-    torque_sigma_nm: Positive
-    torque_noise_nm_rts: NotNegative
-    bias_walk_nt_prts: NotNegative
-    torque_walk_nm_prts: NotNegative
-    dipole_sigma: float = Field(ge=0.0, le=1.0)
-    gate_nis: Positive
-    max_field_error_nt: Positive
-    max_angle_error_deg: Positive
-    min_separation_deg: float = Field(gt=0.0, lt=90.0)
-    restart_after_rejections: int = Field(ge=1)
-    valid_sigma_deg: Positive
-
-
-class ModesTable(Section):
-    """Thresholds and dwell times of the mode table."""
-
-    slow_degps: Positive
-    fast_degps: Positive
-    near_deg: float = Field(gt=0.0, le=180.0)
-    far_deg: float = Field(gt=0.0, le=180.0)
-    axis_only: bool
-    recover_s: NotNegative
-    settle_s: NotNegative
-    lose_s: NotNegative
-    hold_s: NotNegative
-    trips_to_stay_safe: int = Field(ge=1)
-    stale_after_s: Positive
-
-    @model_validator(mode="after")
-    def _hysteresis(self) -> Self:
-        if not (self.slow_degps < self.fast_degps and self.near_deg < self.far_deg):
-            raise ValueError("slow_degps must lie under fast_degps and near_deg under far_deg")
-        return self
-
-
-class FdirTable(Section):
-    """Limits of the checks of sensors, coils and bus, how long before one is named, and believed again.
-
-    Of its nominal current or effect, less than ``weak_coil_part`` is a weak coil's, less than
-    ``open_coil_part`` an open one's.
-    """
-
-    max_field_error_nt: Positive
-    max_sun_norm_error: float = Field(gt=0.0, le=0.5)
-    max_angle_error_deg: float = Field(gt=0.0, lt=90.0)
-    frozen_s: Positive
-    name_s: Positive
-    readmit_s: Positive
-    prove_s: Positive
-    weak_coil_part: float = Field(gt=0.0, lt=1.0)
-    open_coil_part: float = Field(gt=0.0, lt=1.0)
-    name_pulses: int = Field(ge=1)
-    name_sigmas: Positive
-    stuck_s: Positive
-    second_sender_s: Positive
-    event_spacing_s: NotNegative
-
-    @model_validator(mode="after")
-    def _open_is_less_than_weak(self) -> Self:
-        if not self.open_coil_part < self.weak_coil_part:
-            raise ValueError("open_coil_part must lie under weak_coil_part")
-        return self
-
-
-class TelemetryTable(Section):
-    """Periods of the reports and of the ephemeris nodes, s; at least one tick."""
-
-    attitude_s: NotNegative
-    quality_s: NotNegative
-    heartbeat_s: NotNegative
-    ephemeris_s: int = Field(ge=10, le=30)
+from fsw.table.sections import (
+    CIRCULAR_KEYS,
+    BodyTable,
+    CoilTable,
+    ControlTable,
+    EstimatorTable,
+    FdirTable,
+    FieldTable,
+    ModesTable,
+    OrbitTable,
+    TelemetryTable,
+    TimeTable,
+    parse_utc,
+)
 
 
 class FlightTable(Section):
@@ -276,22 +61,6 @@ class FlightTable(Section):
     def crc(self) -> int:
         """CRC-32 of the table in canonical JSON."""
         return zlib.crc32(json.dumps(self.model_dump(mode="json"), sort_keys=True).encode())
-
-
-def parse_utc(text: str) -> int:
-    """Unix seconds of a UTC time such as 2025-03-20T12:00:00Z.
-
-    Raises:
-        ValueError: not a UTC time, or not a whole second.
-    """
-    try:
-        moment = datetime.fromisoformat(text)
-    except ValueError:
-        raise ValueError(f"'{text}' is not a time such as 2025-03-20T12:00:00Z") from None
-    moment = moment.replace(tzinfo=UTC) if moment.tzinfo is None else moment
-    if moment.microsecond:
-        raise ValueError(f"'{text}' is not a whole second")
-    return int(moment.timestamp())
 
 
 DEFAULT_EPOCH_UTC = "2025-03-20T09:00:00Z"

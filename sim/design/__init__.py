@@ -1,1 +1,1 @@
-"""Gain design on the ground: linearisation, Floquet analysis, search, pulses, robustness, periodic LQR."""
+"""``torquer design``: gains for a scenario from Floquet theory."""

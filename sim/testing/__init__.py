@@ -23,7 +23,7 @@ in docs/testing.md. A law in the form of ``fsw.core.laws.interface.Law`` is flow
 shipped scheduler by ``audit_law``. The strategies need hypothesis: ``pip install torquer[testing]``.
 """
 
-from sim.harness.audit.findings import AuditReport, Violation
+from sim.audit.findings import AuditReport, Violation
 from sim.testing.bench import Fire, Flight, Heard, Limits, MakeScheduler, Reboot, Scheduler, Stretch, fly
 from sim.testing.judge import audit_law, audit_scheduler
 from sim.testing.shipped import ShippedScheduler, UnsoundLawError, scheduler_under

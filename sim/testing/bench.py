@@ -15,7 +15,7 @@ from typing import NamedTuple, Protocol
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilBoot, CoilFire, CoilStatus, Sync
-from sim.harness.candump import LogEntry
+from sim.record.candump import LogEntry
 
 EPOCH_S = 1_427_513_417
 PATTERN_TICKS = 8

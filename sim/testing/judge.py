@@ -8,10 +8,10 @@ from fractions import Fraction
 
 from fsw.core.laws.interface import ControlConfig, Law
 from fsw.table.config import flight_config
-from sim.harness.audit.auditor import audit
-from sim.harness.audit.findings import AuditLimits, AuditReport, Kind, Violation
-from sim.harness.candump import LogEntry
-from sim.harness.scenario import flight_table, load
+from sim.audit.auditor import audit
+from sim.audit.findings import AuditLimits, AuditReport, Kind, Violation
+from sim.record.candump import LogEntry
+from sim.scenario.schema import flight_table, load
 from sim.testing.bench import Fire, Flight, FlownTick, Limits, MakeScheduler, fly_ticks, on_the_bus
 from sim.testing.shipped import scheduler_under
 

@@ -14,9 +14,9 @@ from fsw.table.config import flight_config
 from hil_stub.coils.coil_driver import CoilDriver, CoilLimits
 from hil_stub.sensors.magnetometer import Magnetometer
 from hil_stub.sensors.sun_sensor import SunSensor
-from sim.harness.assemble import plant_config
-from sim.harness.scenario import flight_table, load
 from sim.plant.plant import Plant
+from sim.scenario.assemble import plant_config
+from sim.scenario.schema import flight_table, load
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -99,13 +99,13 @@ def test_what_an_import_does_would_be_seen(tmp_path, monkeypatch):
     ("module", "strangers"),
     [
         ("fsw.wire.messages", ("fsw.core", "fsw.bus", "fsw.table", "hil_stub", "sim")),
-        ("fsw.core.step", ("fsw.bus", "fsw.table", "hil_stub", "sim")),
-        ("fsw.__main__", ("hil_stub", "sim")),
+        ("fsw.core.step", ("fsw.bus", "fsw.table", "fsw.input", "hil_stub", "sim", "torquer")),
+        ("fsw.__main__", ("hil_stub", "sim", "torquer")),
         ("hil_stub.coils.coil_driver", ("fsw.core", "fsw.bus", "fsw.table", "sim")),
-        ("hil_stub.__main__", ("fsw.core", "sim")),
-        ("sim.plant.plant", ("fsw.core", "fsw.bus", "fsw.table", "sim.harness")),
-        ("sim.plant.__main__", ("filterpy", "scipy", "matplotlib", "can")),
-        ("sim.harness.cli", ("filterpy", "scipy", "matplotlib", "can", "numpy", "h5py")),
+        ("hil_stub.__main__", ("fsw.core", "sim", "torquer")),
+        ("sim.plant.plant", ("fsw.core", "fsw.bus", "fsw.table", "sim.flight", "torquer")),
+        ("sim.flight.plant_process", ("filterpy", "scipy", "matplotlib", "can")),
+        ("torquer.cli.main", ("filterpy", "scipy", "matplotlib", "can", "numpy", "h5py")),
     ],
 )
 def test_a_layer_loads_no_other(module, strangers):

@@ -13,9 +13,9 @@ import pytest
 from fsw.node import FlightNode
 from fsw.table.config import flight_config
 from fsw.wire.messages import CoilFire, CoilRefused, CoilStatus
-from sim.harness.assemble import plant_config
-from sim.harness.scenario import flight_table, load, orbit_period_s
 from sim.plant.plant import Plant
+from sim.scenario.assemble import plant_config
+from sim.scenario.schema import flight_table, load, orbit_period_s
 
 ORBITS = float(os.environ.get("TORQUER_DIFFERENTIAL_ORBITS", "0.5"))
 

@@ -14,9 +14,9 @@ from fsw.core.step import boot, step
 from fsw.input.schema import merge
 from fsw.table.config import flight_config
 from fsw.wire.messages import CLASSES, Sync
-from sim.harness.assemble import plant_config
-from sim.harness.scenario import flight_table, load
 from sim.plant.plant import Plant
+from sim.scenario.assemble import plant_config
+from sim.scenario.schema import flight_table, load
 
 UNEVEN = {
     "body": {"inertia_kgm2": [[1.02, 0.03, -0.02], [0.03, 1.85, 0.05], [-0.02, 0.05, 1.95]]},

@@ -12,11 +12,11 @@ from fsw.core.state import Inbox
 from fsw.core.step import boot, step
 from fsw.table.config import flight_config
 from fsw.wire.messages import CLASSES, CoilFire, Sync, TickDone
-from sim.harness.assemble import plant_config
-from sim.harness.faults.node_kinds import count_doubles, flip
-from sim.harness.faults.record import finite
-from sim.harness.scenario import flight_table, load
+from sim.fault_rig.record import finite
+from sim.faults.node_kinds import count_doubles, flip
 from sim.plant.plant import Plant
+from sim.scenario.assemble import plant_config
+from sim.scenario.schema import flight_table, load
 
 EVERY_ONE = int(os.environ.get("TORQUER_FUZZ_FRAMES", "10000")) >= 1_000_000
 STRIDE = 1 if EVERY_ONE else 97

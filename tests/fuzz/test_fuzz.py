@@ -23,7 +23,7 @@ from hil_stub.coils.coil_driver import OFF, CoilDriver, CoilLimits
 from hil_stub.coils.dipole_driver import DipoleDriver
 from hil_stub.sensors.magnetometer import Magnetometer
 from hil_stub.sensors.sun_sensor import SunSensor
-from sim.harness.scenario import flight_table, load
+from sim.scenario.schema import flight_table, load
 
 FRAMES = int(os.environ.get("TORQUER_FUZZ_FRAMES", "10000"))
 SEED = int(os.environ.get("TORQUER_FUZZ_SEED", "20150327"))

@@ -23,14 +23,14 @@ from hypothesis import strategies as st
 import fsw.__main__
 import hil_stub.__main__
 from fsw.input import command_line
-from sim.harness import conclude
-from sim.harness.cli import main
-from sim.harness.faults import command as faults_command
-from sim.harness.faults import kept
-from sim.harness.faults.row import CaseResult, Outcome, RowResult, Verdict
-from sim.harness.faults.rows import ROWS
-from sim.harness.scenario import load
-from sim.harness.validate.reference import CHECKS, ELEMENTS
+from sim.fault_table import command as faults_command
+from sim.fault_table import kept
+from sim.fault_table.row import CaseResult, Outcome, RowResult, Verdict
+from sim.fault_table.rows import ROWS
+from sim.report import conclude
+from sim.scenario.schema import load
+from sim.validate.reference.reference import CHECKS, ELEMENTS
+from torquer.cli.main import main
 
 ROOT = Path(__file__).resolve().parents[2]
 MUTATIONS = int(os.environ.get("TORQUER_FUZZ_MUTATIONS", "40"))
@@ -86,7 +86,7 @@ def run(flown, tmp_path):
 @pytest.fixture
 def no_charts(monkeypatch):
     """They take a second."""
-    monkeypatch.setattr("sim.harness.report.sections.charts", lambda *given: [])
+    monkeypatch.setattr("sim.report.sections.charts", lambda *given: [])
 
 
 CHECK, REPLAY, PLANT, REPORT = ("check",), ("replay",), ("replay", "--plant"), ("report",)
@@ -179,7 +179,7 @@ def test_histories_that_no_plant_has(run, flown):
 @given(st.data())
 def test_a_scenario(mutated, scenario_file, data):
     name = data.draw(st.sampled_from(["microsat", "cubesat3u", "posat1", "kalman-1u"]))
-    whole = (ROOT / "sim" / "scenarios" / f"{name}.toml").read_bytes()
+    whole = (ROOT / "sim" / "scenario" / "shipped" / f"{name}.toml").read_bytes()
     scenario_file.write_bytes(data.draw(mutated(whole)))
     fly(scenario_file, scenario_file)
 

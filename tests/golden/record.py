@@ -11,10 +11,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-from sim.harness import run_dir
-from sim.harness.pace import Pace
-from sim.harness.scenario import load
-from sim.harness.virtual import fly_virtual
+from sim.flight.virtual import fly_virtual
+from sim.record import run_dir
+from sim.record.pace import Pace
+from sim.scenario.schema import load
 
 HERE = Path(__file__).resolve().parent
 FLIGHTS: dict[str, tuple[str, int, dict[str, object]]] = {

@@ -14,10 +14,10 @@ import pytest
 
 from fsw.table.config import flight_config
 from fsw.wire.messages import CoilFire, FswEvent
-from sim.harness import run_dir
-from sim.harness.candump import read_log
-from sim.harness.replay import replay
-from sim.harness.scenario import flight_table, load
+from sim.record import run_dir
+from sim.record.candump import read_log
+from sim.replay.replay import replay
+from sim.scenario.schema import flight_table, load
 
 HERE = Path(__file__).resolve().parent
 FLIGHTS = runpy.run_path(str(HERE / "record.py"))["FLIGHTS"]

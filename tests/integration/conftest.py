@@ -13,10 +13,10 @@ import pytest
 
 from fsw.bus.socketcan import interface_is_up
 from fsw.wire.messages import CLASSES, Sync
-from sim.harness import conclude
-from sim.harness.candump import format_line, format_time, read_log
-from sim.harness.cli import main
-from sim.harness.log_index import LogIndex
+from sim.record.candump import format_line, format_time, read_log
+from sim.record.log_index import LogIndex
+from sim.report import conclude
+from torquer.cli.main import main
 
 CAN_FIXTURES = {"vcan0", "own_interface"}
 

@@ -13,7 +13,7 @@ import h5py
 import numpy as np
 import pytest
 
-from sim.harness import run_dir
+from sim.record import run_dir
 
 TINY = ("microsat", "--seed", "7", "--orbits", "0.005", "--bus", "virtual")
 LONGEST_S, MOST_MB = 5.0, 500.0
@@ -45,7 +45,7 @@ def keep_peak():
     Path("peak").write_text(told["VmHWM"].removesuffix("kB"))
 
 atexit.register(keep_peak)
-from sim.harness.cli import main
+from torquer.cli.main import main
 main(sys.argv[1:], prog_name="torquer")
 """
 """Its own peak in kB: what wait4 tells of a child begins with the memory of its parent."""
@@ -454,7 +454,7 @@ def test_gains_into_a_scenario_that_is_read_only(torquer):
         os.chmod(place, 0o755)
         folder = Path(place) / "mine"
         folder.mkdir()
-        shipped = Path(run_dir.__file__).parents[1] / "scenarios" / "microsat.toml"
+        shipped = Path(run_dir.__file__).parents[1] / "scenario" / "shipped" / "microsat.toml"
         (folder / "mine.toml").write_bytes(shipped.read_bytes())
         with read_only(folder):
             done = torquer("design", folder / "mine.toml", "--json", "--write")

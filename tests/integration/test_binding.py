@@ -9,7 +9,7 @@ import sys
 import pytest
 
 from fsw.wire.messages import MagField
-from sim.harness.log_index import index_of
+from sim.record.log_index import index_of
 
 TINY = ("microsat", "--seed", "7", "--orbits", "0.005", "--bus", "virtual")
 OTHER = (
@@ -170,7 +170,10 @@ def test_a_run_of_before_there_were_digests_is_judged_as_it_was(run, torquer):
 KILLED_AT_EACH_STEP = """
 import os, signal, sys
 from pathlib import Path
-from sim.harness import binding, cli, conclude, run_dir, sil, virtual
+from sim.flight import sil, virtual
+from sim.record import binding, run_dir
+from sim.report import conclude
+from torquer.cli.main import main
 
 base, words = Path(sys.argv[1]), sys.argv[2:]
 conclude.write_report = lambda path, *rest: path.write_text("")
@@ -193,7 +196,7 @@ for step in range(1000):
 
         sys.addaudithook(count)
         sys.stdout = open(os.devnull, "w")
-        cli.main([*words, "--out", str(folder)], prog_name="torquer")
+        main.main([*words, "--out", str(folder)], prog_name="torquer")
     status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
     print(step, status, flush=True)
     if status != -signal.SIGKILL:
@@ -229,7 +232,8 @@ def test_a_kill_before_any_step_leaves_a_run_that_contradicts_nothing(tmp_path, 
 
 def test_a_kill_while_the_summary_is_replaced_leaves_none_that_is_wrong(run, torquer, monkeypatch):
     """As when another version of the program makes another summary of the same flight."""
-    from sim.harness import conclude, run_dir
+    from sim.record import run_dir
+    from sim.report import conclude
 
     bound = json.loads((run / "run.json").read_text())
     bound["flown"]["wall_s"] = 1.25
@@ -332,7 +336,7 @@ def test_a_run_without_signature_is_not_verified(run, torquer, keys):
 
 
 def test_a_signature_that_does_not_cover_a_file_is_not_enough(run, torquer, keys):
-    from sim.harness.signature import private_key, sign
+    from sim.record.signature import private_key, sign
 
     told = json.loads((run / "run.json").read_text())
     del told["digests"]["truth.h5"]

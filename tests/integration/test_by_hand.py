@@ -1,10 +1,8 @@
 """Plant and flight software started by hand, in two terminals, in either order."""
 
 import json
-import signal
 import socket
 import time
-from importlib import import_module
 from random import Random
 
 import can
@@ -36,8 +34,8 @@ def wait_for(node, text):
 def test_either_may_start_first(first, port, start, flown, tmp_path):
     run = tmp_path / "run"
     words = {
-        "plant": ("sim.plant", "microsat", "--bus", f"loop:{port}", *OPTIONS, "--out", run),
-        "fsw": ("fsw", "microsat", "--bus", f"loop:{port}"),
+        "plant": ("torquer", "plant", "microsat", "--bus", f"loop:{port}", *OPTIONS, "--out", run),
+        "fsw": ("torquer", "fsw", "microsat", "--bus", f"loop:{port}"),
     }
     second = {"plant": "fsw", "fsw": "plant"}[first]
     nodes = {first: start(*words[first])}
@@ -61,11 +59,11 @@ def test_either_may_start_first(first, port, start, flown, tmp_path):
 
 def test_on_a_bench_one_flight_software_flies_run_after_run(port, start, tmp_path):
     """No PLANT_END ends it; it boots for the plant that comes next, so that both runs have the same log."""
-    fsw = start("fsw", "microsat", "--bus", f"loop:{port}", "--bench")
+    fsw = start("torquer", "fsw", "microsat", "--bus", f"loop:{port}", "--bench")
     wait_for(fsw, f"fsw on loop:{port}")
     runs = [tmp_path / "one", tmp_path / "two"]
     for run in runs:
-        plant = start("sim.plant", "microsat", "--bus", f"loop:{port}", *OPTIONS, "--out", run).wait()
+        plant = start("torquer", "plant", "microsat", "--bus", f"loop:{port}", *OPTIONS, "--out", run).wait()
         assert plant.code == 0, plant.err
     assert fsw.process.poll() is None
     assert (runs[0] / "bus.log").read_bytes() == (runs[1] / "bus.log").read_bytes()
@@ -80,8 +78,8 @@ def test_a_stranger_who_forges_sync_and_the_end_does_not_stop_the_flight(port, s
         lambda: [PlantEnd(random.getrandbits(24), counter=random.getrandbits(4)).encode()],
     ]
     stranger = LoopLink(port)
-    fsw = start("fsw", "microsat", "--bus", f"loop:{port}")
-    plant = start("sim.plant", "microsat", "--bus", f"loop:{port}", *OPTIONS, "--out", run)
+    fsw = start("torquer", "fsw", "microsat", "--bus", f"loop:{port}")
+    plant = start("torquer", "plant", "microsat", "--bus", f"loop:{port}", *OPTIONS, "--out", run)
     tick = 0
     while tick < 270:
         frame = stranger.receive(30.0)
@@ -113,34 +111,36 @@ def test_sil_is_a_guest_where_others_host_the_bus(port, torquer, bus, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("module", "words", "named"),
+    ("words", "named"),
     [
-        ("fsw", ("--bus", "can0"), "can0"),
-        ("fsw", ("nowhere",), "nowhere"),
-        ("fsw", ("--table", "nowhere.toml"), "nowhere.toml"),
-        ("sim.plant", ("--bus", "virtual"), "virtual"),
-        ("sim.plant", ("--set", "time.tick_hz=0"), "time.tick_hz"),
-        ("sim.plant", ("--pace", "fast"), "--pace fast"),
-        ("sim.plant", ("--orbits", "nan"), "--orbits nan"),
+        (("fsw", "--bus", "can0"), "can0"),
+        (("fsw", "nowhere"), "nowhere"),
+        (("plant", "--bus", "virtual"), "virtual"),
+        (("plant", "--set", "time.tick_hz=0"), "time.tick_hz"),
+        (("plant", "--pace", "fast"), "--pace fast"),
+        (("plant", "--orbits", "nan"), "--orbits nan"),
+        (("board", "coil", "--bus", "can0"), "can0"),
+        (("board", "coil", "--levels-ma", "3", "2", "1", "--bus", "loop"), "--levels-ma"),
+        (("board", "wheel", "--bus", "loop"), "wheel"),
     ],
 )
-def test_a_wrong_option_is_one_sentence(module, words, named, port, capfd):
-    before = signal.getsignal(signal.SIGTERM)
-    node = import_module(f"{module}.__main__").main
+def test_a_wrong_option_is_one_sentence(words, named, port, torquer):
     bus = () if "--bus" in words else ("--bus", f"loop:{port}")
-    with pytest.raises(SystemExit) as ended:
-        node.main([*words, *bus])
-    signal.signal(signal.SIGTERM, before)
-    out, err = capfd.readouterr()
-    assert (ended.value.code, out) == (2, "")
-    assert err.count("\n") == 1
-    assert err.startswith(f"{module.removeprefix('sim.')}: ")
-    assert named in err
+    done = torquer(*words, *bus)
+    assert (done.code, done.out) == (2, "")
+    assert named in done.sentence
+
+
+def test_a_table_that_is_not_there_is_one_sentence(port, start):
+    done = start("fsw", "--table", "nowhere.toml", "--bus", f"loop:{port}").wait()
+    assert (done.code, done.out) == (2, "")
+    assert done.sentence.startswith("fsw: ")
+    assert "nowhere.toml" in done.sentence
 
 
 def test_without_a_plant_the_flight_software_waits_and_ends_with_the_bus(port, start):
     listener = LoopLink(port)
-    fsw = start("fsw", "microsat", "--bus", f"loop:{port}")
+    fsw = start("torquer", "fsw", "microsat", "--bus", f"loop:{port}")
     assert listener.receive(30.0).can_id == FswBoot.ID
     assert listener.receive(1.5) is None
     assert fsw.process.poll() is None

@@ -66,7 +66,7 @@ def cable():
 
 
 def conformance(bus, *options):
-    return start("sim.harness.cli", "hil", "--conformance", "coil", "--bus", bus, *LIMITS, *options)
+    return start("torquer", "hil", "--conformance", "coil", "--bus", bus, *LIMITS, *options)
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,7 @@ import pytest
 
 from fsw.bus.open_bus import open_bus
 from fsw.wire.messages import MagField, SunVector
-from sim.harness.cli import main
+from torquer.cli.main import main
 
 SHORT = ("--set", "coils.pulse_s=0.5", "--set", "coils.backoff_s=1.0", "--tick-hz", "10")
 LOOSE = ("--jitter-ms", "1000", "--latency-ms", "1000", "--slips", "15")
@@ -36,7 +36,7 @@ def start(*words):
 
 def torquer(*words):
     return subprocess.run(
-        [sys.executable, "-m", "sim.harness.cli", *words], capture_output=True, text=True, check=False
+        [sys.executable, "-m", "torquer", *words], capture_output=True, text=True, check=False
     )
 
 
@@ -46,7 +46,7 @@ def free_loop():
 
 
 def bench(*words):
-    return start("sim.harness.cli", "hil", *SHORT, "--json", *words)
+    return start("torquer", "hil", *SHORT, "--json", *words)
 
 
 def children(pid):

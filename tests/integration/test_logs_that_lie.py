@@ -9,8 +9,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from fsw.wire.messages import CoilBoot
-from sim.harness.audit.check import CONTRACT_VERSION
-from sim.harness.log_index import index_of
+from sim.audit.check import CONTRACT_VERSION
+from sim.record.log_index import index_of
 
 TINY = ("microsat", "--seed", "7", "--orbits", "0.005", "--bus", "virtual")
 COMMANDS = (("replay",), ("replay", "--plant"), ("check",))
@@ -131,7 +131,7 @@ def with_files_of_at_most(size):
 @pytest.mark.parametrize("bus", ["virtual", "loop"])
 def test_a_full_disk_ends_the_flight_with_what_was_flown_kept(bus, start, tmp_path, torquer, flown):
     folder, limit = tmp_path / "run", with_files_of_at_most(180_000)
-    words = ("sim.harness.cli", "sil", "microsat", *LONGER, "--bus", bus, "--out", folder)
+    words = ("torquer", "sil", "microsat", *LONGER, "--bus", bus, "--out", folder)
     ended = start(*words, **limit).wait()
     assert ended.code == 1
     assert "bus.log: cannot be written at " in ended.err
@@ -155,7 +155,7 @@ def test_a_full_disk_ends_the_flight_with_what_was_flown_kept(bus, start, tmp_pa
 
 
 def test_a_disk_too_small_for_the_histories_is_known_before_the_flight(start, tmp_path):
-    words = ("sim.harness.cli", "sil", "microsat", *LONGER, "--bus", "virtual", "--out", tmp_path / "run")
+    words = ("torquer", "sil", "microsat", *LONGER, "--bus", "virtual", "--out", tmp_path / "run")
     ended = start(*words, **with_files_of_at_most(100_000)).wait()
     assert ended.code == 2
     assert "truth.h5: histories of this length need 0.2 MB: File too large" in ended.sentence.replace(
@@ -165,7 +165,7 @@ def test_a_disk_too_small_for_the_histories_is_known_before_the_flight(start, tm
 
 def test_a_disk_that_is_full_after_the_flight_loses_the_report_alone(start, tmp_path, torquer):
     """The report of a short flight is longer than its log and histories."""
-    words = ("sim.harness.cli", "sil", "microsat", "--orbits", "0.02", "--bus", "virtual")
+    words = ("torquer", "sil", "microsat", "--orbits", "0.02", "--bus", "virtual")
     ended = start(*words, "--out", tmp_path / "run", **with_files_of_at_most(75_000)).wait()
     assert ended.code == 1
     assert "the disk takes no more (File too large)" in ended.sentence

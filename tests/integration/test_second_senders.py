@@ -22,7 +22,7 @@ from fsw.wire.messages import (
     TcSpin,
     TickDone,
 )
-from sim.harness import conclude
+from sim.report import conclude
 
 EPOCH = 1_427_424_417
 AT = 40
@@ -135,10 +135,10 @@ def test_noise_fails_nothing_and_the_log_replays_with_it(port, torquer, bus, tmp
     assert torquer("replay", run).code == torquer("replay", run, "--plant").code == 0
 
 
-@pytest.mark.parametrize(("module", "heard"), [("sim.plant", "PLANT_BOOT (500)"), ("fsw", "FSW_BOOT (510)")])
-def test_a_bus_on_which_a_node_waits_is_refused(module, heard, port, start, torquer, tmp_path):
+@pytest.mark.parametrize(("command", "heard"), [("plant", "PLANT_BOOT (500)"), ("fsw", "FSW_BOOT (510)")])
+def test_a_bus_on_which_a_node_waits_is_refused(command, heard, port, start, torquer, tmp_path):
     hub = LoopLink(port)
-    node = start(module, "microsat", "--bus", f"loop:{port}")
+    node = start("torquer", command, "microsat", "--bus", f"loop:{port}")
     assert hub.receive(30.0) is not None, "it is there"
     done = torquer("sil", *FLIGHT, "--bus", f"loop:{port}", "--out", tmp_path / "run")
     hub.close()
@@ -160,7 +160,7 @@ def test_a_board_that_waits_there_is_named_in_the_flight(port, start, torquer, t
 
 
 def test_of_two_flights_at_once_no_two_succeed(port, start, torquer, tmp_path):
-    words = ("sim.harness.cli", "sil", "microsat", "--orbits", "0.1", "--bus", f"loop:{port}", "--out")
+    words = ("torquer", "sil", "microsat", "--orbits", "0.1", "--bus", f"loop:{port}", "--out")
     flights = [start(*words, tmp_path / name) for name in ("one", "other")]
     ended = [flight.wait() for flight in flights]
     for flight in ended:
@@ -172,10 +172,10 @@ def test_of_two_flights_at_once_no_two_succeed(port, start, torquer, tmp_path):
 
 def test_a_plant_by_hand_ends_at_once_where_another_flies(port, start, tmp_path):
     hub = LoopLink(port)
-    plant = start("sim.plant", "--bus", f"loop:{port}", "--out", tmp_path / "run")
+    plant = start("torquer", "plant", "--bus", f"loop:{port}", "--out", tmp_path / "run")
     assert hub.receive(30.0).can_id == PlantBoot.ID
     hub.send([Sync(701, EPOCH + 701).encode()])
     ended = plant.wait()
     hub.close()
     assert ended.code == 1
-    assert "plant: another plant sent SYNC before the flight began" in ended.err
+    assert "torquer: another plant sent SYNC before the flight began" in ended.err

@@ -52,14 +52,14 @@ class Flight:
 
     def __init__(self, start, run, *options, bus="loop"):
         self.run = run
-        words = ("sim.harness.cli", "sil", "--bus", bus, "--out", run, *options)
+        words = ("torquer", "sil", "--bus", bus, "--out", run, *options)
         self.sil = start(*words, start_new_session=True)
         self.nodes = wait_until(self._two_nodes)
 
     def _two_nodes(self):
         assert self.sil.process.poll() is None, self.sil.stderr.read_text()
         found = children_of(self.sil.process.pid)
-        return found if set(found) == {"sim.plant", "fsw"} else None
+        return found if set(found) == {"sim.flight.plant_process", "fsw"} else None
 
     def reach(self, lines):
         """Wait until so many lines have been logged."""
@@ -108,7 +108,7 @@ RANDOM = random.Random(20150327)
     ("victim", "signum", "lines"),
     [
         (victim, signum, RANDOM.randrange(20, 3000))
-        for victim in ("sim.plant", "fsw")
+        for victim in ("sim.flight.plant_process", "fsw")
         for signum in (signal.SIGKILL, signal.SIGTERM)
     ],
     ids=lambda value: getattr(value, "name", value),
@@ -120,7 +120,7 @@ def test_a_killed_node_ends_the_run(victim, signum, lines, flight, bus, torquer)
     ended = flown.sil.wait()
     assert ended.code == 1
     assert ended.out == ""
-    name = {"sim.plant": "plant", "fsw": "flight software"}[victim]
+    name = {"sim.flight.plant_process": "plant", "fsw": "flight software"}[victim]
     assert ended.sentence.startswith(f"torquer: the {name} ")
     flown.gone()
     last = readable(flown.run, bus, torquer)
@@ -135,7 +135,7 @@ def test_a_killed_node_ends_the_run(victim, signum, lines, flight, bus, torquer)
     assert json.loads((flown.run / "run.json").read_text())["complete"] is False
 
 
-@pytest.mark.parametrize("victim", ["sim.plant", "fsw"])
+@pytest.mark.parametrize("victim", ["sim.flight.plant_process", "fsw"])
 def test_a_node_killed_before_the_first_tick_ends_the_run(victim, flight, torquer):
     flown = flight()
     os.kill(flown.nodes[victim], signal.SIGKILL)

@@ -9,7 +9,7 @@ import time
 import pytest
 
 from fsw.wire.messages import SENDERS, FswBoot, PlantBoot
-from sim.harness import conclude
+from sim.report import conclude
 
 FLIGHT = ("microsat", "--seed", "5", "--orbits", "0.02")
 """121 ticks: the first pulse is among them."""
@@ -116,18 +116,18 @@ def test_canplayer_plays_our_log_back(flown, vcan0, bus, tmp_path):
     assert bus(kept).frames == bus(run).frames
 
 
-@pytest.mark.parametrize("first", ["sim.plant", "fsw"])
+@pytest.mark.parametrize("first", ["plant", "fsw"])
 def test_two_terminals_in_either_order(first, vcan0, start, bus, flown, tmp_path):
     run, spec = tmp_path / "run", f"socketcan:{vcan0}"
     words = {
-        "sim.plant": (*FLIGHT, "--bus", spec, "--out", run),
+        "plant": (*FLIGHT, "--bus", spec, "--out", run),
         "fsw": ("microsat", "--bus", spec),
     }
-    second = {"sim.plant": "fsw", "fsw": "sim.plant"}[first]
-    nodes = {first: start(first, *words[first])}
+    second = {"plant": "fsw", "fsw": "plant"}[first]
+    nodes = {first: start("torquer", first, *words[first])}
     time.sleep(4.0)  # it has started and found nobody
-    nodes[second] = start(second, *words[second])
-    assert nodes["sim.plant"].wait().code == 0
+    nodes[second] = start("torquer", second, *words[second])
+    assert nodes["plant"].wait().code == 0
     assert nodes["fsw"].wait().code == 0
     assert bus(run).frames == bus(flown(*FLIGHT, "--bus", "virtual")).frames
 

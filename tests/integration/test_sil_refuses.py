@@ -109,7 +109,7 @@ def test_a_scenario_that_is_no_toml_is_named(refused, tmp_path):
 )
 def test_a_name_that_leads_elsewhere_is_named_with_its_file(words, refused, tmp_path):
     """It becomes a part of the path of what is written."""
-    scenario = resources.files("sim.scenarios").joinpath("microsat.toml").read_text(encoding="utf-8")
+    scenario = resources.files("sim.scenario.shipped").joinpath("microsat.toml").read_text(encoding="utf-8")
     (tmp_path / "mine.toml").write_text(scenario.replace('name = "microsat"', 'name = "../../x"'))
     sentence = refused(*words, "mine.toml")
     assert "mine.toml: name: '../../x' is not allowed: allowed are letters, digits" in sentence

@@ -9,12 +9,13 @@ from threading import Thread
 
 import pytest
 
-from sim.harness import run_dir, sil
-from sim.harness.answers import Patience
-from sim.harness.errors import FlightError
-from sim.harness.pace import Pace
-from sim.harness.scenario import load
-from sim.harness.sil import fly_processes, served
+from sim.errors import FlightError
+from sim.flight import sil
+from sim.flight.answers import Patience
+from sim.flight.sil import fly_processes, served
+from sim.record import run_dir
+from sim.record.pace import Pace
+from sim.scenario.schema import load
 
 pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks at processes in /proc")
 
@@ -75,7 +76,7 @@ def flight(tmp_path, monkeypatch):
 @pytest.mark.parametrize("pace", [LOCKSTEP, REAL_TIME], ids=["lockstep", "real time"])
 @pytest.mark.parametrize(
     ("victim", "says"),
-    [("fsw", "no answer from the flight software"), ("sim.plant", "the plant stands still")],
+    [("fsw", "no answer from the flight software"), ("sim.flight.plant_process", "the plant stands still")],
 )
 def test_one_that_stands_still_in_flight_ends_it(victim, says, pace, flight, tmp_path, torquer, bus):
     sentence, took_s = flight(victim, 500, pace)
@@ -95,7 +96,7 @@ def test_flight_software_that_never_boots_ends_it(flight):
 
 
 def test_a_plant_that_never_begins_ends_it(flight):
-    sentence, _ = flight("sim.plant", 0, LOCKSTEP, Patience(boot_s=2.0, answer_s=1.5))
+    sentence, _ = flight("sim.flight.plant_process", 0, LOCKSTEP, Patience(boot_s=2.0, answer_s=1.5))
     assert sentence.startswith("the plant stands still: nothing has been flown for")
 
 
@@ -107,7 +108,7 @@ def test_the_deadlines_of_the_command_are_long_enough_for_a_loaded_machine():
 @pytest.mark.skipif(os.environ.get("TORQUER_REAL_DEADLINES") != "1", reason="takes half a minute")
 def test_so_does_the_command_itself(start, tmp_path):
     """With the deadlines that it has."""
-    words = ("sim.harness.cli", "sil", "--bus", "loop", "--orbits", "10", "--out", tmp_path / "run")
+    words = ("torquer", "sil", "--bus", "loop", "--orbits", "10", "--out", tmp_path / "run")
     flown = start(*words, start_new_session=True)
     log = tmp_path / "run" / "bus.log"
     while not (log.exists() and log.stat().st_size > 10_000):

@@ -31,7 +31,7 @@ parameters = {frames = 10, as_fsw = 0}
 
 @pytest.fixture(scope="module")
 def scenario(tmp_path_factory):
-    shipped = resources.files("sim.scenarios").joinpath("microsat.toml").read_text()
+    shipped = resources.files("sim.scenario.shipped").joinpath("microsat.toml").read_text()
     path = tmp_path_factory.mktemp("scenario") / "faulty.toml"
     path.write_text(shipped + FAULTS)
     return path

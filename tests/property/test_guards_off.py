@@ -1,6 +1,6 @@
 """Each guard earns its place: switched off, a fault that it is there for is seen. The other guards stay on.
 
-Guards of boards by themselves are switched off in ``tests/sim/harness/hil/test_conformance.py``, scheduler
+Guards of boards by themselves are switched off in ``tests/sim/conformance/test_conformance.py``, scheduler
 and interlock thing by thing in ``tests/property/proof``; without the decode gate ``tests/fuzz`` fails.
 """
 
@@ -12,9 +12,9 @@ import pytest
 from fsw.core.actuation.pulses import PulseState
 from fsw.core.gate.sync_watch import Belief
 from fsw.core.monitors import MONITORS, Monitor
-from sim.harness.faults.case import fly
-from sim.harness.faults.row import Verdict
-from sim.harness.faults.rows import ROWS
+from sim.fault_table.case import fly
+from sim.fault_table.row import Verdict
+from sim.fault_table.rows import ROWS
 
 
 class Off(NamedTuple):

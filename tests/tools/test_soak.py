@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 
 from fsw.wire.messages import CoilRefused
-from sim.harness import cli
-from sim.harness.hil import command
-from sim.harness.hil.conductor import Measured
-from sim.harness.hil.times import Times
-from sim.harness.hil.verdict import Budgets, judge
+from sim.bench import command
+from sim.bench.conductor import Measured
+from sim.bench.times import Times
+from sim.bench.verdict import Budgets, judge
+from torquer.cli import main as cli
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tools"))

@@ -19,7 +19,8 @@ import numpy as np
 from filterpy.kalman import KalmanFilter
 
 from fsw.core.algebra.quaternion import Quaternion, from_small_rotation, multiply, normalise, rotate
-from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale, skew, sub, transform
+from fsw.core.algebra.vector import ZERO, Vec3, add, scale, skew, sub
+from fsw.core.estimation.error_dynamics import acceleration, process_noise, transition_matrix, turn
 from fsw.core.estimation.mekf_config import Layout, Matrix, MekfConfig
 
 MAX_VARIANCE = 1e6
@@ -109,18 +110,18 @@ def predict(
     q, omega = estimate.q_body_from_eci, estimate.omega_body_radps
     e1, b = rotate(q, e1_eci), rotate(q, b_eci_t)
     torque, trace = estimate.torque_body_nm, estimate.trace
-    alpha = _acceleration(omega, e1, b, gravity_per_s2, m_body_am2, torque, config)
+    alpha = acceleration(omega, e1, b, gravity_per_s2, m_body_am2, torque, config)
     omega_mid = add(omega, scale(0.5 * h, alpha))
     q_mid = multiply(q, from_small_rotation(scale(0.5 * h, omega)))
     e1_mid, b_mid = rotate(q_mid, e1_eci), rotate(q_mid, b_eci_t)
-    alpha_mid = _acceleration(omega_mid, e1_mid, b_mid, gravity_per_s2, m_body_am2, torque, config)
-    transition = _transition(omega_mid, e1_mid, b_mid, gravity_per_s2, m_body_am2, config)
+    alpha_mid = acceleration(omega_mid, e1_mid, b_mid, gravity_per_s2, m_body_am2, torque, config)
+    transition = transition_matrix(omega_mid, e1_mid, b_mid, gravity_per_s2, m_body_am2, config)
 
     kalman = _filter(config)
-    kalman.P, kalman.F, kalman.Q = estimate.covariance, transition, _process_noise(m_body_am2, b_mid, config)
+    kalman.P, kalman.F, kalman.Q = estimate.covariance, transition, process_noise(m_body_am2, b_mid, config)
     kalman.predict()
     return Estimate(
-        normalise(multiply(q, _turn(scale(h, omega_mid)))),
+        normalise(multiply(q, turn(scale(h, omega_mid)))),
         add(omega, scale(h, alpha_mid)),
         estimate.mag_bias_t,
         torque,
@@ -131,17 +132,6 @@ def predict(
 
 def _carried(trace: Trace, transition: Matrix) -> Trace:
     return Trace(trace.causes, transition.dot(trace.effect), trace.sums, trace.measured)
-
-
-def _process_noise(m_body_am2: Vec3, b_body_t: Vec3, config: MekfConfig) -> Matrix:
-    """The noise of a tick; while a coil is driven also that of its dipole, known to ``dipole_sigma`` only."""
-    if m_body_am2 == ZERO:
-        return config.process_noise
-    turn = scale(config.dipole_sigma * config.tick_s, cross(m_body_am2, b_body_t))
-    kick = np.array(transform(config.inertia_inverse, turn))
-    noise = config.process_noise.copy()
-    noise[3:6, 3:6] += np.outer(kick, kick)
-    return noise
 
 
 def update_field(estimate: Estimate, b_body_t: Vec3, b_eci_t: Vec3, config: MekfConfig) -> Estimate | None:
@@ -239,37 +229,3 @@ def _fold(
 
 def _three(values: list[float], first: int) -> Vec3:
     return (values[first], values[first + 1], values[first + 2])
-
-
-def _acceleration(
-    omega: Vec3, e1: Vec3, b: Vec3, gravity_per_s2: float, m: Vec3, torque: Vec3, config: MekfConfig
-) -> Vec3:
-    """J domega/dt = m x b + 3 mu/r^3 e1 x J e1 - omega x (J omega + h) + torque, all in body axes."""
-    j = config.inertia_kgm2
-    gravity = scale(gravity_per_s2, cross(e1, transform(j, e1)))
-    gyroscopic = cross(omega, add(transform(j, omega), config.wheel_body_nms))
-    return transform(config.inertia_inverse, sub(add(add(cross(m, b), gravity), torque), gyroscopic))
-
-
-def _transition(omega: Vec3, e1: Vec3, b: Vec3, gravity_per_s2: float, m: Vec3, config: MekfConfig) -> Matrix:
-    """I + A h + (A h)^2 / 2 of the error dynamics; with A of the middle of the tick good to second order."""
-    g1, g2, g3 = scale(gravity_per_s2, e1)
-    change = config.moving.dot((*omega, *scale(g1, e1), *scale(g2, e1), *scale(g3, e1)))
-    if m != ZERO:
-        m1, m2, m3 = m
-        change += config.driven.dot((*scale(m1, b), *scale(m2, b), *scale(m3, b)))
-    step = config.constant.copy()
-    step[0:6, 0:6] += change.reshape(6, 6)
-    transition: Matrix = step.dot(step)  # (1 + A h)^2, so that half of it and 1 is the series
-    transition += config.identity
-    transition *= 0.5
-    return transition
-
-
-def _turn(rotation_rad: Vec3) -> Quaternion:
-    """The quaternion of a rotation vector by the series of sine and cosine: 1e-9 rad off at 0.5 rad."""
-    r1, r2, r3 = rotation_rad
-    square = 0.25 * (r1 * r1 + r2 * r2 + r3 * r3)
-    half_sinc = 0.5 - square * (1.0 / 12.0 - square / 240.0)
-    cosine = 1.0 - square * (0.5 - square * (1.0 / 24.0 - square / 720.0))
-    return (cosine, half_sinc * r1, half_sinc * r2, half_sinc * r3)

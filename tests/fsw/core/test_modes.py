@@ -7,7 +7,7 @@ import pytest
 
 from fsw.core.estimation.estimator import Attitude
 from fsw.core.modes import TABLE, ModeConfig, ModeState, Situation, advance, judge
-from fsw.table.table import ModesTable
+from fsw.table.sections import ModesTable
 from fsw.wire.messages import Mode
 
 DWELL_TICKS = (30, 0, 60, 0, 61, 300, 600, 0, 62, 301, 601)

@@ -11,8 +11,8 @@ from fsw.input.schema import TableError
 from fsw.table.config import flight_config
 from fsw.table.schedules import SCHEDULED
 from fsw.table.table import flight_table
-from sim.design.bodies import Body
-from sim.design.periodic_lqr import Augmented, Weights, design
+from sim.design.theory.bodies import Body
+from sim.design.theory.periodic_lqr import Augmented, Weights, design
 
 CIRCLE = {"altitude_km": 800.0, "inclination_deg": 98.6, "raan_deg": 30.0, "u0_deg": 70.0}
 INERTIA = ((1.02, 0.05, -0.03), (0.05, 1.85, 0.1), (-0.03, 0.1, 1.95))

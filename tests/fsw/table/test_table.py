@@ -8,6 +8,7 @@ import pytest
 from fsw.core.laws.table import LAWS
 from fsw.input.schema import TableError, merge
 from fsw.table.config import flight_config
+from fsw.table.sections import parse_utc
 from fsw.table.table import (
     DEFAULT_EPOCH_UTC,
     FlightTable,
@@ -15,7 +16,6 @@ from fsw.table.table import (
     flight_table,
     lay_over,
     load_flight_table,
-    parse_utc,
     tle_epoch_unix_s,
 )
 

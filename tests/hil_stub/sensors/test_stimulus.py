@@ -5,7 +5,7 @@ import os
 import pytest
 
 from fsw.wire.messages import CoilBoot, MagField, SunVector, Sync
-from hil_stub.__main__ import PipedStimulus
+from hil_stub.process.stimulus_option import PipedStimulus
 from hil_stub.sensors.stimulus import (
     NOTHING,
     Reading,
@@ -120,7 +120,7 @@ def test_three_numbers_may_be_whole_ones():
 class TestPipe:
     @pytest.fixture
     def pipe(self, monkeypatch):
-        monkeypatch.setattr("hil_stub.__main__.PIPE_PATIENCE_S", 0.05)
+        monkeypatch.setattr("hil_stub.process.stimulus_option.PIPE_PATIENCE_S", 0.05)
         reading, writing = os.pipe()
         yield PipedStimulus(1e-9, reading), writing
         os.close(reading)

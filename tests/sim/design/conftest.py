@@ -1,41 +1,54 @@
-"""Bodies and reference multipliers for the design tests."""
-
-import csv
-from pathlib import Path
+"""One search of the default scenario's gains, and a scenario file to write into."""
 
 import pytest
 
-from sim.design.bodies import Body, diagonal
+from sim.design.analysis import ANALYSIS_STEPS, analyse
+from sim.design.subject import body_of, pulsing_of
+from sim.scenario.schema import load
 
-REFERENCE = Path(__file__).parents[2] / "reference" / "floquet.csv"
+SCENARIO_FILE = """\
+# my satellite
+name = "mine"
+summary = "k_w = 5 [control]"
+knowledge = "perfect"
 
+[time]
+tick_hz = 1
+orbits = 1.0
 
-def reference_rows():
-    """The rows of the reference file, as numbers where they are numbers."""
-    lines = REFERENCE.read_text(encoding="utf-8").splitlines()
-    rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
-    assert len(rows) == 12
-    return [
-        {key: value if key in ("name", "gg") else float(value) for key, value in row.items()} for row in rows
-    ]
+[orbit]
+altitude_km = 800.0
+inclination_deg = 98.6
 
+[body]
+inertia_kgm2 = [1.02, 1.85, 1.95]
 
-def pytest_generate_tests(metafunc):
-    if "row" in metafunc.fixturenames:
-        rows = reference_rows()
-        metafunc.parametrize("row", rows, ids=[row["name"] for row in rows])
+[coils]
+levels_am2 = [0.5, 2.0, 8.0]
+dipole_per_ampere_am2 = 20.0
+
+[control]   # how it points
+law = "pd"
+  k_w= 6.2e6   # not k_w = 1
+k_a =1615     # N m/T^2
+leak_s = 300.0
+
+[flight.modes]
+axis_only = false
+"""
 
 
 @pytest.fixture
-def reference_body(row):
-    """The satellite of a row."""
-    return Body(
-        row["name"], diagonal((row["A"], row["B"], row["C"])), row["altitude_km"], row["inclination_deg"]
-    )
+def scenario_file(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text(SCENARIO_FILE, encoding="utf-8")
+    return path
 
 
 @pytest.fixture(scope="session")
-def skewed():
-    """A body with three different moments and all products of inertia, on an inclined orbit."""
-    tensor = ((1.02, 0.11, -0.07), (0.11, 1.85, 0.05), (-0.07, 0.05, 2.35))
-    return Body("skewed", tensor, 731.0, 63.0)
+def searched():
+    """(scenario, analysis, what the progress bar heard) of a search for the default scenario."""
+    scenario, heard = load("microsat"), []
+    analysis = analyse(body_of(scenario), pulsing_of(scenario), None, heard.append)
+    assert heard[-1] == ANALYSIS_STEPS
+    return scenario, analysis, heard

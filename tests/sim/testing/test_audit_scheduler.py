@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from fsw.core.laws.interface import Demand
 from fsw.core.laws.table import LAWS
 from fsw.wire.messages import CoilStatus, Sync, intact
-from sim.harness.audit.auditor import audit
-from sim.harness.audit.findings import AuditLimits, Kind
+from sim.audit.auditor import audit
+from sim.audit.findings import AuditLimits, Kind
 from sim.testing import (
     Fire,
     Flight,
@@ -376,6 +376,6 @@ def test_all_names_are_there_and_documented():
 def test_no_other_part_needs_hypothesis():
     code = (
         "import sys; sys.modules['hypothesis'] = None\n"
-        "import sim.harness.cli, sim.harness.conclude, sim.harness.virtual, fsw.node, hil_stub.bench\n"
+        "import torquer.cli.main, sim.report.conclude, sim.flight.virtual, fsw.node, hil_stub.bench\n"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

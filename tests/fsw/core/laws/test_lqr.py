@@ -9,8 +9,8 @@ import pytest
 from fsw.core.estimation.attitude import UNKNOWN
 from fsw.core.laws.lqr import STEPS, LqrGains, latitude_argument, lqr, node, schedule, within, without_memory
 from fsw.core.laws.pd import pd, pd_far
-from sim.design.bodies import Body
-from sim.design.feedforward import least_error
+from sim.design.theory.bodies import Body
+from sim.design.theory.feedforward import least_error
 
 K_W, K_A = 6.2694e6, 1614.9
 MOST_AM2 = 2.0

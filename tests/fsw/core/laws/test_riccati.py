@@ -7,9 +7,9 @@ import pytest
 from scipy.linalg import expm
 
 from fsw.core.laws.riccati import NotHeldError, backward, free_step, periodic, problem, resting_torque
-from sim.design import linear
-from sim.design.bodies import Body
-from sim.design.periodic_lqr import Augmented, Weights, design
+from sim.design.theory import linear
+from sim.design.theory.bodies import Body
+from sim.design.theory.periodic_lqr import Augmented, Weights, design
 
 INERTIA = ((1.02, 0.05, -0.03), (0.05, 1.85, 0.1), (-0.03, 0.1, 1.95))
 BODY = Body("off-diagonal", INERTIA, 800.0, 98.6)

@@ -1,0 +1,59 @@
+"""The flight software as a process: its node on a bus, faults told in one sentence, an exit code."""
+
+import click
+
+from fsw.bus.disarmed import Disarmed
+from fsw.bus.interface import Bus, BusError
+from fsw.bus.open_bus import open_bus, resolve
+from fsw.input.schema import TableError
+from fsw.input.sentence import sentence
+from fsw.node import FlightNode
+from fsw.runner import run
+from fsw.table.config import flight_config
+from fsw.table.table import FlightTable
+
+MOST_PASSED_OVER = 10_000
+
+
+def fly(
+    table: FlightTable, spec: str, disarmed: bool = False, bench: bool = False, parent: int | None = None
+) -> int:
+    """Fly on a bus until the run ends: the exit code.
+
+    Args:
+        table: the onboard table.
+        spec: of the bus.
+        disarmed: let no request to drive a coil get on the bus.
+        bench: no PLANT_END ends it.
+        parent: process that started this one; when it is gone the run is over.
+    """
+    try:
+        node = FlightNode(flight_config(table))
+        link: Bus = open_bus(spec)
+        link = Disarmed(link) if disarmed else link
+    except (TableError, BusError) as error:
+        return _failed(error, 2)
+    if parent is None:
+        click.echo(f"fsw on {resolve(spec)}", err=True)
+    try:
+        _pass_over(link)
+        run(node, link, parent, bench)
+    except BusError as error:
+        return _failed(error, 1)
+    except KeyboardInterrupt:
+        return 130
+    finally:
+        link.close()
+    return 0
+
+
+def _failed(error: Exception, exit_code: int) -> int:
+    click.echo(f"fsw: {sentence(error)}", err=True)
+    return exit_code
+
+
+def _pass_over(bus: Bus) -> None:
+    """What was sent before FSW_BOOT does not count; not all of it, if others babble without end."""
+    for _ in range(MOST_PASSED_OVER):
+        if bus.receive(0.0) is None:
+            return

@@ -1,0 +1,1 @@
+"""A board as a process on a bus: its command line, its loop, and what its sensor is shown."""

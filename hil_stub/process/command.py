@@ -1,0 +1,180 @@
+"""The command line of a board: which one, on which bus, with what limits, shown what."""
+
+from collections.abc import Callable
+from typing import TextIO
+
+import click
+
+from fsw.bus.interface import BusError
+from fsw.bus.open_bus import open_bus, resolve
+from fsw.wire.messages import MagField, SunVector
+from hil_stub.bench import (
+    DEADMAN_MS,
+    LEVEL_A,
+    Bench,
+    Board,
+    CoilBoard,
+    DipoleBoard,
+    MagnetometerBoard,
+    SunBoard,
+)
+from hil_stub.coils.coil_driver import CoilLimits
+from hil_stub.process.runner import PinLog, run
+from hil_stub.process.stimulus_option import stimulus_of, stimulus_words
+from hil_stub.sensors.stimulus import Vec3, direction, scaled
+
+NT = 1e-9
+
+_bus = click.option(
+    "--bus", "spec", required=True, help="socketcan:NAME, loop, loop:PORT, slcan:PORT or auto."
+)
+_tick_hz = click.option(
+    "--tick-hz", type=click.IntRange(1, 1000), default=1, show_default=True, help="Ticks a second."
+)
+_SHOWN = {"ignore_unknown_options": True}  # so that --stimulus takes negative numbers
+
+
+@click.group()
+@click.option("--parent", type=int, hidden=True)
+def board(parent: int | None) -> None:
+    """Run one board on a bus, until Ctrl-C: a bench is not over when a plant says so."""
+
+
+@board.command()
+@_bus
+@_tick_hz
+@click.option(
+    "--backoff",
+    type=click.Choice(["shared", "per_coil"]),
+    default="shared",
+    show_default=True,
+    help="What a pulse locks out: all coils, or its own.",
+)
+@click.option(
+    "--pulse-s", type=click.FloatRange(0.001, 3.0), default=3.0, show_default=True, help="Longest pulse."
+)
+@click.option(
+    "--backoff-s",
+    type=click.FloatRange(0.0, 160.0),
+    default=100.0,
+    show_default=True,
+    help="From the end of a pulse to the next start.",
+)
+@click.option(
+    "--levels-ma",
+    type=(float, float, float),
+    default=tuple(1000.0 * level_a for level_a in LEVEL_A),
+    show_default=True,
+    help="Currents at levels 1, 2, 3.",
+)
+@click.option(
+    "--deadman-s",
+    type=click.FloatRange(0.0, 3600.0),
+    default=DEADMAN_MS / 1000.0,
+    show_default=True,
+    help="Silence of SYNC after which all is off and locked out in full; 0: no dead-man.",
+)
+@click.option(
+    "--clock",
+    type=click.Choice(["own", "ticks"]),
+    default="own",
+    show_default=True,
+    help="own: a clock beside the ticks of the bus; ticks: none, where ticks are not real time.",
+)
+@click.option(
+    "--pins",
+    type=click.File("w", lazy=False),
+    help="Write each change of the coil outputs here, with its time (-: stdout).",
+)
+def coil(
+    spec: str,
+    tick_hz: int,
+    backoff: str,
+    pulse_s: float,
+    backoff_s: float,
+    levels_ma: Vec3,
+    deadman_s: float,
+    clock: str,
+    pins: TextIO | None,
+) -> None:
+    """The coil driver with its interlock, locked out at the start."""
+    limits = CoilLimits(tick_hz, round(1000.0 * pulse_s), round(1000.0 * backoff_s), backoff == "shared")
+    if not 0.0 < levels_ma[0] < levels_ma[1] < levels_ma[2]:
+        raise click.UsageError("--levels-ma must be three rising currents above 0")
+    level_a = scaled(levels_ma, 1e-3)
+    _serve(spec, lambda: CoilBoard(limits, level_a), deadman_s, clock, pins)
+
+
+@board.command()
+@_bus
+@_tick_hz
+def dipole(spec: str, tick_hz: int) -> None:
+    """The continuous driver: all three coils at once, for a tick at a time."""
+    _serve(spec, lambda: DipoleBoard(tick_hz))
+
+
+@board.command(context_settings=_SHOWN)
+@_bus
+@_tick_hz
+@click.option("--stimulus", help="Field in body axes [nT]. Default: 20000 0 -30000.")
+@click.argument("rest", nargs=-1, type=click.UNPROCESSED, metavar="")
+def magnetometer(spec: str, tick_hz: int, stimulus: str | None, rest: tuple[str, ...]) -> None:
+    """The magnetometer, shown a field.
+
+    --stimulus X Y Z is a constant; RUN or LOG what it said then, tick by tick; FILE.toml a script.
+    """
+    shown = stimulus_of(
+        stimulus_words(stimulus, rest, "20000 0 -30000"),
+        "field_nt",
+        MagField,
+        tick_hz,
+        NT,
+        lambda v: scaled(v, NT),
+    )
+    _serve(spec, lambda: MagnetometerBoard(tick_hz, shown))
+
+
+@board.command(context_settings=_SHOWN)
+@_bus
+@_tick_hz
+@click.option("--stimulus", help="Direction of the Sun in body axes. Default: 1 0 0.")
+@click.argument("rest", nargs=-1, type=click.UNPROCESSED, metavar="")
+def sun(spec: str, tick_hz: int, stimulus: str | None, rest: tuple[str, ...]) -> None:
+    """The Sun sensor, shown a lamp.
+
+    --stimulus X Y Z is a constant; RUN or LOG what it said then, tick by tick; FILE.toml a script.
+    """
+    shown = stimulus_of(stimulus_words(stimulus, rest, "1 0 0"), "sun", SunVector, tick_hz, 1.0, direction)
+    _serve(spec, lambda: SunBoard(tick_hz, shown))
+
+
+def _serve(
+    spec: str,
+    make_board: Callable[[], Board],
+    deadman_s: float = 0.0,
+    clock: str = "ticks",
+    pins: TextIO | None = None,
+) -> None:
+    deadman_ms = round(1000.0 * deadman_s) or None
+    bench = Bench(make_board, deadman_ms, has_clock=clock == "own")
+    try:
+        bus = open_bus(spec)
+    except BusError as error:
+        raise click.UsageError(str(error)) from error
+    click.echo(f"on {resolve(spec)}", err=True)
+    try:
+        parent = _parent()
+        run(bench, bus, PinLog(pins) if pins is not None else None, parent)
+    except BusError as error:
+        raise click.ClickException(str(error)) from error
+    except KeyboardInterrupt:
+        pass
+    finally:
+        bus.close()
+
+
+def _parent() -> int | None:
+    """What was given to the group of commands."""
+    group = click.get_current_context().parent
+    parent: int | None = group.params["parent"] if group is not None else None
+    return parent

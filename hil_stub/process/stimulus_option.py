@@ -1,0 +1,123 @@
+"""What ``--stimulus`` says: three numbers, a log or a run, a script, or readings on standard input."""
+
+import os
+import select
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import click
+
+from fsw.input.regular_file import check_regular
+from fsw.input.toml_text import load_toml
+from fsw.wire.messages import MagField, SunVector
+from hil_stub.sensors.stimulus import (
+    NOTHING,
+    Reading,
+    Stimulus,
+    StimulusError,
+    Vec3,
+    constant,
+    recorded,
+    scaled,
+    scripted,
+    three_numbers,
+)
+
+PIPE_PATIENCE_S = 1.0
+"""How long a sensor waits for what it is shown over stdin; after that it reads nothing."""
+LONGEST_LINE = 256
+
+
+class PipedStimulus:
+    """Readings as lines on stdin, ``tick x y z valid``: waits for the tick asked for, but not for ever.
+
+    Args:
+        scale: from the numbers of the lines to the reading.
+        descriptor: where the lines come from.
+    """
+
+    def __init__(self, scale: float, descriptor: int = 0) -> None:
+        self._scale = scale
+        self._descriptor = descriptor
+        self._torn = b""
+        self._readings: dict[int, Reading] = {}
+
+    def __call__(self, tick: int) -> Reading:
+        """The reading at ``tick``; nothing, if it does not come."""
+        deadline = time.monotonic() + PIPE_PATIENCE_S
+        while tick not in self._readings:
+            left_s = deadline - time.monotonic()
+            if left_s <= 0.0 or not self._fill(left_s):
+                return NOTHING
+        self._readings = {known: shown for known, shown in self._readings.items() if known >= tick}
+        return self._readings[tick]
+
+    def _fill(self, timeout_s: float) -> bool:
+        if not select.select((self._descriptor,), (), (), timeout_s)[0]:
+            return False
+        text = os.read(self._descriptor, 65536)
+        *lines, self._torn = (self._torn + text).split(b"\n")
+        for line in lines:
+            number, x, y, z, valid = line.split()
+            vector = scaled((float(x), float(y), float(z)), self._scale)
+            self._readings[int(number)] = Reading(vector, valid == b"1")
+        return bool(text)
+
+
+def stimulus_of(
+    words: tuple[str, ...],
+    key: str,
+    message: type[MagField] | type[SunVector],
+    tick_hz: int,
+    scale: float,
+    convert: Callable[[Vec3], Vec3],
+) -> Stimulus:
+    """What ``--stimulus`` asks for: three numbers, a log or a run, a script, or ``-`` for stdin."""
+    try:
+        if len(words) == 3:
+            return constant(convert(three_numbers([_number(word) for word in words])))
+        if words == ("-",):
+            return PipedStimulus(scale)
+        if len(words) != 1:
+            raise StimulusError("must be three numbers, a run, a log, a script that ends in .toml, or -")
+        path = Path(words[0])
+        if path.suffix == ".toml":
+            return scripted(_toml(path).get("step"), key, tick_hz, convert)
+        log = path / "bus.log" if os.path.isdir(path) else path
+        check_regular(log)
+        return recorded(_lines(log), message, scale)
+    except StimulusError as error:
+        raise click.UsageError(f"--stimulus {' '.join(words)}: {error}") from None
+    except OSError as error:
+        raise click.UsageError(f"--stimulus {' '.join(words)}: cannot be read: {error.strerror}") from None
+
+
+def stimulus_words(first: str | None, rest: tuple[str, ...], default: str) -> tuple[str, ...]:
+    """The words after ``--stimulus``; without it the default, and nothing may be left over."""
+    if first is not None:
+        return (first, *rest)
+    if rest:
+        raise click.UsageError(f"No such option or argument: {rest[0]}")
+    return tuple(default.split())
+
+
+def _number(word: str) -> float:
+    try:
+        return float(word)
+    except ValueError:
+        raise StimulusError("must be three finite numbers") from None
+
+
+def _toml(path: Path) -> dict[str, object]:
+    try:
+        return load_toml(path)
+    except ValueError as error:
+        raise StimulusError(f"cannot be read as TOML: {error}") from None
+
+
+def _lines(log: Path) -> Iterator[str]:
+    """The lines of a log; what is longer than any frame's comes in pieces, which are none."""
+    with log.open(encoding="ascii", errors="replace") as file:
+        while line := file.readline(LONGEST_LINE):
+            yield line

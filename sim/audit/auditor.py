@@ -1,0 +1,293 @@
+"""Independent audit of the actuator limits, from what the coil driver board says it really drove.
+
+Judged are the COIL_STATUS frames of a log: no pulse longer than allowed; no pulse sooner after another one,
+or after a boot of the board, than the back-off; no level out of range; never two coils at once; nothing
+announced that would break a limit; no COIL_STATUS that cannot be trusted. The status of tick k tells what was
+driven in the interval that ends at k, so a pulse begins one tick before the first status that shows it.
+
+Two clocks tell the time: the ticks of SYNC, and the timestamps, where they are simulated time or where the
+log has no usable SYNC. A limit must be kept by each of them, and where both count they must agree.
+Comparisons are exact. Nothing here comes from the onboard scheduler or from the boards.
+"""
+
+from collections.abc import Iterable, Iterator
+
+from fsw.wire.messages import CoilBoot, CoilStatus, PlantEnd, Sync, intact
+from sim.audit.findings import AuditLimits, AuditReport, Kind, Pulse, Violation, seconds_text
+from sim.audit.log_clock import MICRO, LogClock, read_clock
+from sim.audit.pulse_judge import PulseJudge
+from sim.audit.status_ticks import BoardStatus, StatusTicks
+from sim.record.candump import LogEntry, LogTruncatedError
+
+__all__ = ["AuditLimits", "AuditReport", "Kind", "Pulse", "Violation", "audit"]
+
+_JUDGED = frozenset((CoilStatus.ID, CoilBoot.ID, Sync.ID))
+
+
+def audit(entries: Iterable[LogEntry], limits: AuditLimits, expect_end: bool = False) -> AuditReport:
+    """Judge a log in one pass, without holding it.
+
+    Args:
+        entries: the log, as ``read_log`` yields it.
+        limits: what to judge by.
+        expect_end: the log is one of ours, so that it is complete only if PLANT_END is its last frame.
+
+    Raises:
+        LogError: the log has been altered; passed on from ``entries``.
+    """
+    log = _WholeEntries(entries)
+    clock, judged = read_clock(iter(log), limits.tick_hz)
+    auditor = _Auditor(clock, limits)
+    for entry in judged:
+        auditor.take(entry)
+    return auditor.report(log, expect_end)
+
+
+class _WholeEntries:
+    """The entries that matter, up to where the log is cut; what it ended with is known afterwards."""
+
+    def __init__(self, entries: Iterable[LogEntry]) -> None:
+        self._entries = entries
+        self.truncated_at: int | None = None
+        self.ended = False
+        """Whether its last frame is an intact PLANT_END that fits its last SYNC."""
+        self.wrong_end: str | None = None
+        """What is wrong with a PLANT_END that is its last frame."""
+
+    def __iter__(self) -> Iterator[LogEntry]:
+        last = sync = None
+        try:
+            for entry in self._entries:
+                last = entry.frame
+                if last.can_id == Sync.ID and intact(last):
+                    sync = last
+                if last.can_id in _JUDGED:
+                    yield entry
+        except LogTruncatedError as cut:
+            self.truncated_at = cut.line
+            return
+        if last is None or last.can_id != PlantEnd.ID:
+            return
+        if not intact(last):
+            self.wrong_end = "its last frame is a PLANT_END with a wrong CRC or length"
+        elif sync is not None and not _fits(PlantEnd.decode(last.data), Sync.decode(sync.data)):
+            ticks, tick = PlantEnd.decode(last.data).ticks, Sync.decode(sync.data).tick
+            self.wrong_end = f"its PLANT_END tells of {ticks} ticks, its last SYNC is of tick {tick}"
+        self.ended = self.wrong_end is None
+
+
+def _fits(end: PlantEnd, sync: Sync) -> bool:
+    """Whether the ticks that were flown, modulo 2^24, are those up to the last."""
+    return (sync.tick + 1 - end.ticks) % (1 << 24) == 0
+
+
+class _Auditor:
+    """Sorts the log into ticks and hands them to the judges."""
+
+    def __init__(self, clock: LogClock, limits: AuditLimits) -> None:
+        self._clock = clock
+        self._limits = limits
+        self._by_ticks = PulseJudge(clock, limits) if clock.epoch_s is not None else None
+        self._by_timestamps = PulseJudge(clock, limits) if clock.simulated or clock.epoch_s is None else None
+        self._violations: list[Violation] = []
+        self._ticks = StatusTicks()
+        self._together: list[BoardStatus] = []
+        self._booted = False
+        self._tick: int | None = None
+        self._timestamp_off: int | None = None
+        self._unix_off: int | None = None
+        self._first: int | None = None
+        self._last = 0
+        self._statuses = 0
+        self._crowded_ticks = 0
+        self._broken_boots = 0
+        if clock.contradictory and clock.epoch_s is None:
+            self._blame(Kind.SYNC, 0, None, 0, "no tick rate makes unix_time_s = epoch + tick // tick_hz")
+
+    def take(self, entry: LogEntry) -> None:
+        """The next SYNC, COIL_STATUS or COIL_BOOT of the log."""
+        can_id = entry.frame.can_id
+        if can_id == CoilStatus.ID:
+            self._take_status(entry)
+        elif can_id == Sync.ID:
+            if self._by_ticks is not None:
+                self._take_sync(entry)
+        elif not intact(entry.frame):
+            self._broken_boots += 1
+        elif self._by_ticks is not None:
+            self._booted = True
+        else:
+            self._boot(self._clock.of_timestamp(entry.timestamp_us))
+
+    def _take_status(self, entry: LogEntry) -> None:
+        self._statuses += 1
+        frame = entry.frame
+        status = CoilStatus.decode(frame.data) if intact(frame) else None
+        board = BoardStatus(entry.line, entry.timestamp_us, status, self._booted)
+        self._booted = False
+        if self._by_ticks is not None:
+            self._ticks.add(board)
+        else:
+            self._take_untimed(board)
+
+    # --- logs with ticks
+
+    def _take_sync(self, entry: LogEntry) -> None:
+        line, timestamp_us, _, frame = entry
+        if len(frame.data) != Sync.LENGTH:
+            tick = None if self._tick is None else self._tick + 1
+            self._blame(Kind.SYNC, (tick or 0) * MICRO, tick, line, f"SYNC of {len(frame.data)} bytes")
+            return
+        tick, unix_time_s = Sync.decode(frame.data)
+        if tick == self._tick:  # sent again: no time has passed by it
+            self._check_unix_time(line, tick, unix_time_s)
+            return
+        step = 1 if self._tick is None else tick - self._tick
+        if step < 1:
+            sentence = f"SYNC goes back from tick {self._tick} to tick {tick}: two runs in one log?"
+            self._blame(Kind.SYNC, tick * MICRO, tick, line, sentence)
+            self._interrupt()
+            step = 1
+        self._tick = tick
+        self._check_unix_time(line, tick, unix_time_s)
+        self._check_timestamp("SYNC", line, timestamp_us, tick)
+        for this, boards in self._ticks.close(tick, step):
+            self._judge_tick(this, boards)
+
+    def _judge_tick(self, tick: int, boards: list[BoardStatus]) -> None:
+        instant = tick * MICRO
+        if any(board.booted for board in boards):
+            self._boot(instant)
+        statuses = self._trusted(boards, instant, tick)
+        for board in boards:
+            self._check_timestamp("COIL_STATUS", board.line, board.timestamp_us, tick)
+        for judge in self._judges():
+            when = instant if judge is self._by_ticks else self._stamped(boards)
+            judge.observe(when, tick, boards[0].line, statuses)
+
+    def _check_timestamp(self, name: str, line: int, timestamp_us: int, tick: int) -> None:
+        if not self._clock.simulated:
+            return
+        off = self._clock.of_timestamp(timestamp_us) - tick * MICRO
+        if off != self._timestamp_off:
+            self._timestamp_off = off
+            if off:
+                off_s = self._clock.seconds(off)
+                sentence = (
+                    f"timestamp of {name} is {seconds_text(abs(off_s))} s {'late' if off > 0 else 'early'}"
+                )
+                self._blame(Kind.TIMESTAMP, tick * MICRO, tick, line, sentence)
+
+    def _check_unix_time(self, line: int, tick: int, unix_time_s: int) -> None:
+        expected = (self._clock.epoch_s or 0) + tick // self._clock.units
+        off = unix_time_s - expected
+        if off != self._unix_off:
+            self._unix_off = off
+            if off:
+                sentence = f"SYNC says unix_time_s {unix_time_s}, its tick says {expected}"
+                self._blame(Kind.SYNC, tick * MICRO, tick, line, sentence)
+
+    # --- logs without
+
+    def _take_untimed(self, board: BoardStatus) -> None:
+        if self._together:
+            spacing = (board.timestamp_us - self._together[0].timestamp_us) * self._clock.units
+            if abs(spacing) * 2 > self._clock.period:
+                self._judge_by_timestamps()
+        self._together.append(board)
+
+    def _judge_by_timestamps(self) -> None:
+        boards, self._together = self._together, []
+        if not boards or self._by_timestamps is None:
+            return
+        instant = self._stamped(boards)
+        self._by_timestamps.observe(instant, None, boards[0].line, self._trusted(boards, instant, None))
+
+    # --- both
+
+    def _stamped(self, boards: list[BoardStatus]) -> int:
+        """The time that timestamps give to the statuses of a tick: until then at least a coil was driven."""
+        times = [board.timestamp_us for board in boards if board.status is not None and board.status.level]
+        return self._clock.of_timestamp(max(times, default=boards[0].timestamp_us))
+
+    def _trusted(self, boards: list[BoardStatus], instant: int, tick: int | None) -> list[CoilStatus]:
+        if self._first is None:
+            self._first = instant
+        self._last = instant
+        if len(boards) > 1:
+            self._crowded_ticks += 1
+        for line, _, status, _ in boards:
+            if status is None:
+                self._blame(Kind.FRAME, instant, tick, line, "COIL_STATUS with a wrong CRC or length")
+        return [board.status for board in boards if board.status is not None]
+
+    def _boot(self, instant: int) -> None:
+        for judge in self._judges():
+            judge.boot(instant)
+
+    def _interrupt(self) -> None:
+        for judge in self._judges():
+            judge.finish()
+
+    def _judges(self) -> list[PulseJudge]:
+        return [judge for judge in (self._by_ticks, self._by_timestamps) if judge is not None]
+
+    def _blame(self, kind: Kind, instant: int, tick: int | None, line: int, sentence: str) -> None:
+        self._violations.append(Violation(kind, self._clock.seconds(instant), tick, None, line, sentence))
+
+    def report(self, log: _WholeEntries, expect_end: bool) -> AuditReport:
+        """The verdict, after the last entry."""
+        if self._by_ticks is None:
+            self._judge_by_timestamps()
+        elif self._ticks.waiting and self._tick is not None:
+            for tick, boards in self._ticks.close(self._tick + 1, 1):
+                self._judge_tick(tick, boards)
+        self._interrupt()
+        judge = self._by_ticks or self._by_timestamps
+        pulses = () if judge is None else tuple(sorted(judge.pulses, key=lambda pulse: pulse.start_s))
+        seconds = self._clock.seconds
+        return AuditReport(
+            limits=self._limits,
+            pulses=pulses,
+            violations=self._all_violations(),
+            notes=tuple(self._notes(log)),
+            statuses=self._statuses,
+            span_s=seconds(self._last - (self._first or 0)),
+            truncated_at=log.truncated_at,
+            complete=log.ended or (log.truncated_at is None and not expect_end),
+        )
+
+    def _all_violations(self) -> tuple[Violation, ...]:
+        """Those of both judges, but what both have found only once."""
+        found = list(self._violations)
+        for judge in self._judges():
+            known = {(one.kind, one.tick, one.coil) for one in found}
+            found += [one for one in judge.violations if (one.kind, one.tick, one.coil) not in known]
+        return tuple(sorted(found, key=lambda one: (one.time_s, one.line)))
+
+    def _notes(self, log: _WholeEntries) -> Iterator[str]:
+        clock = self._clock
+        if log.truncated_at is not None:
+            yield f"truncated: line {log.truncated_at} is incomplete; judged is what stands before it"
+        elif not log.ended:
+            yield f"the log has no end mark{f': {log.wrong_end}' if log.wrong_end else ''}"
+        if self._statuses == 0:
+            yield "no COIL_STATUS in the log: nothing to judge"
+            return
+        if clock.epoch_s is None:
+            period = seconds_text(clock.seconds(clock.period))
+            yield f"no tick rate in the log: judged by timestamps, a COIL_STATUS every {period} s"
+        elif not clock.simulated:
+            yield "timestamps are not simulated time: judged by ticks alone"
+        if clock.epoch_s is not None and self._limits.tick_hz not in (None, clock.units):
+            yield f"the log has {clock.units} ticks a second, its scenario says {self._limits.tick_hz}"
+        if self._ticks.silent:
+            yield f"{_count(self._ticks.silent, 'tick')} without COIL_STATUS"
+        if self._crowded_ticks:
+            yield f"{_count(self._crowded_ticks, 'tick')} with more than one COIL_STATUS"
+        if self._broken_boots:
+            yield f"{_count(self._broken_boots, 'COIL_BOOT')} with a wrong CRC or length: no boot"
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number} {what}{'' if number == 1 else 's'}"

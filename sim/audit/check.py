@@ -1,0 +1,172 @@
+"""``torquer check``: audit the actuator limits in a run directory or in any candump log."""
+
+import os
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+from fsw.input.toml_text import load_toml
+from fsw.wire.messages import CoilBoot, FswBoot, MagBoot, PlantBoot, SunBoot, intact
+from sim.audit.auditor import audit
+from sim.audit.findings import AuditLimits, AuditReport, seconds_text
+from sim.errors import HarnessError
+from sim.record.binding import compare
+from sim.record.candump import LogEntry, read_log
+from sim.record.log_index import Standing, vouch
+from sim.record.signature import PublicKey
+
+LOG_NAME = "bus.log"
+SCENARIO_NAME = "scenario.toml"
+CONTRACT_VERSION = 1
+"""Of the bus contract that is judged here; each node tells its own when it boots."""
+_BOOTS = {boot.ID: boot for boot in (PlantBoot, FswBoot, CoilBoot, MagBoot, SunBoot)}
+_SHOWN = 50
+"""Violations that are printed one by one; a log of ours that broke loose may hold thousands."""
+
+
+def check(path: Path, backoff: str | None, key: PublicKey | None = None) -> AuditReport:
+    """Audit a log by the limits of the scenario beside it, and compare what lies beside it with its run.json.
+
+    A scenario that is not the run's tells nothing of its limits: then they are the usual ones.
+
+    Args:
+        path: a run directory, or a log.
+        backoff: ``"shared"`` or ``"per_coil"``, overrules the scenario; without either it is shared.
+        key: the run must be signed by its private half.
+
+    Raises:
+        HarnessError: there is no such log, it is no candump log or an altered one, or what lies beside it
+            cannot be used.
+    """
+    folder = os.path.isdir(path)  # unlike Path's, never an error, whatever the name
+    log = path / LOG_NAME if folder else path
+    if not os.path.isfile(log):
+        raise HarnessError(f"{path}: no {LOG_NAME} in it" if folder else f"{path}: no such file")
+    binding = compare(log.parent, log, key)
+    foreign = SCENARIO_NAME in binding.mismatches
+    beside = AuditLimits() if foreign else limits_beside(log)
+    limits = beside or AuditLimits()
+    if backoff is not None:
+        limits = replace(limits, shared=_is_shared(backoff, "--backoff"))
+    with binding.beside_errors():
+        report = audit(_of_this_contract(log), limits, expect_end=beside is not None)
+    voucher = vouch(log)
+    usual = f"judged by the usual limits: {SCENARIO_NAME} is not the run's" if foreign else ""
+    notes = (voucher.sentence, binding.note, usual)
+    return replace(
+        report,
+        notes=(*report.notes, *(note for note in notes if note)),
+        complete=report.complete and voucher.standing is not Standing.OPEN,
+        genuine=voucher.standing is not Standing.BROKEN,
+        mismatches=tuple(binding.mismatches.values()),
+    )
+
+
+def _of_this_contract(log: Path) -> Iterator[LogEntry]:
+    """The entries of a log whose nodes, where they tell, speak as this version does."""
+    for entry in read_log(log):
+        if entry.frame.can_id in _BOOTS and intact(entry.frame):
+            version = _BOOTS[entry.frame.can_id].decode(entry.frame.data).version
+            if version != CONTRACT_VERSION:
+                raise HarnessError(
+                    f"{log}: line {entry.line} is of version {version} of the bus contract, "
+                    f"and only version {CONTRACT_VERSION} can be read"
+                )
+        yield entry
+
+
+def limits_beside(log: Path) -> AuditLimits | None:
+    """The limits in the ``scenario.toml`` of the log's folder; None without one.
+
+    Raises:
+        HarnessError: it cannot be read, or one of its limits makes no sense.
+    """
+    scenario = log.parent / SCENARIO_NAME
+    if not scenario.is_file():
+        return None
+    try:
+        tables = load_toml(scenario)
+    except OSError as error:
+        raise HarnessError(f"{scenario}: cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        raise HarnessError(f"{scenario}: cannot be read: {error}") from None
+    coils, time = _table(tables, "coils", scenario), _table(tables, "time", scenario)
+    return AuditLimits(
+        pulse_us=_microseconds(coils.get("pulse_s", 3.0), f"{scenario}: coils.pulse_s"),
+        backoff_us=_microseconds(coils.get("backoff_s", 100.0), f"{scenario}: coils.backoff_s"),
+        shared=_is_shared(coils.get("backoff", "shared"), f"{scenario}: coils.backoff"),
+        tick_hz=_tick_hz(time.get("tick_hz"), f"{scenario}: time.tick_hz"),
+    )
+
+
+def render(report: AuditReport) -> str:
+    """The verdict for people: what was judged, each violation with time and coil, and the notes."""
+    limits = report.limits
+    pulse_s, backoff_s = (seconds_text(us / 1_000_000) for us in (limits.pulse_us, limits.backoff_us))
+    lines = [
+        f"limits: pulse <= {pulse_s} s, "
+        f"back-off >= {backoff_s} s {'shared' if limits.shared else 'per coil'}, "
+        f"level -{limits.max_level}..{limits.max_level}, one coil at a time"
+    ]
+    if report.statuses:
+        lines.append(_figures(report))
+    lines += [f"VIOLATION {violation}" for violation in report.violations[:_SHOWN]]
+    if len(report.violations) > _SHOWN:
+        lines.append(f"... and {len(report.violations) - _SHOWN} more")
+    lines += [f"note: {note}" for note in report.notes]
+    lines += [f"MISMATCH {sentence}" for sentence in report.mismatches]
+    lines.append(_verdict(report))
+    return "\n".join(lines)
+
+
+def _figures(report: AuditReport) -> str:
+    text = f"{len(report.pulses)} pulses (coil 0, 1, 2: {', '.join(map(str, report.pulses_per_coil))})"
+    if report.max_pulse_s is not None:
+        text += f", longest {seconds_text(report.max_pulse_s)} s"
+    if report.min_gap_any_s is not None:
+        text += f", shortest gap {seconds_text(report.min_gap_any_s)} s"
+    return text + f", duty {100 * report.duty_total:.2f} % of {seconds_text(report.span_s)} s"
+
+
+def _verdict(report: AuditReport) -> str:
+    if not report.statuses:
+        return "FAIL: nothing to judge"
+    if report.violations:
+        count = len(report.violations)
+        return f"FAIL: {count} violation{'' if count == 1 else 's'} of the limits"
+    if not report.genuine:
+        return "FAIL: limits kept as far as the log goes, but its index contradicts it"
+    if report.mismatches:
+        return "FAIL: limits kept as far as the log goes, but the files are not shown to be its run's own"
+    return (
+        "OK: limits kept"
+        if report.complete
+        else "FAIL: limits kept as far as the log goes, but it is incomplete"
+    )
+
+
+def _is_shared(backoff: object, where: str) -> bool:
+    if backoff not in ("shared", "per_coil"):
+        raise HarnessError(f"{where} is {backoff!r}, not 'shared' or 'per_coil'")
+    return backoff == "shared"
+
+
+def _table(tables: dict[str, object], name: str, scenario: Path) -> dict[str, object]:
+    table = tables.get(name, {})
+    if not isinstance(table, dict):
+        raise HarnessError(f"{scenario}: {name} is not a table")
+    return table
+
+
+def _microseconds(value: object, where: str) -> int:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value < 1e9:
+        raise HarnessError(f"{where} is {value!r}, not a time in seconds")
+    return round(value * 1_000_000)
+
+
+def _tick_hz(value: object, where: str) -> int | None:
+    if value is None:
+        return None
+    if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= 1_000_000:
+        raise HarnessError(f"{where} is {value!r}, not a whole number of ticks a second")
+    return value

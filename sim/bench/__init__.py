@@ -1,0 +1,1 @@
+"""``torquer hil``: the flight software in real time against boards."""

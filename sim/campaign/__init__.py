@@ -1,0 +1,1 @@
+"""Studies made of many flights, side by side on the machine's cores."""

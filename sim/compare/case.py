@@ -1,0 +1,89 @@
+"""What is flown: which laws are comparable on a scenario, and by which coil drivers."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from fsw.core.laws.table import LAWS, Aim
+from fsw.input.schema import Nested, merge
+from sim.campaign.flight import Order
+from sim.errors import HarnessError
+from sim.scenario.schema import Scenario, load
+
+
+class Driver(StrEnum):
+    """How a law's demand gets to the coils."""
+
+    PULSED = "pulsed"
+    """By the scheduler, within the scenario's limits of pulse and back-off."""
+    CONTINUOUS = "continuous"
+    """Any dipole each tick, up to full scale."""
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """One flight of a comparison."""
+
+    law: str
+    driver: Driver
+    order: Order
+
+    @property
+    def aim(self) -> Aim:
+        """What its law is for."""
+        return LAWS[self.law].aim
+
+
+def chosen_laws(scenario: Scenario, text: str | None) -> tuple[str, ...]:
+    """The laws to compare, in the order of the table of laws.
+
+    Args:
+        scenario: without ``text``, all laws with the aim of its own.
+        text: names of laws or aims, or ``all``, with commas between.
+
+    Raises:
+        HarnessError: a name that is neither.
+    """
+    words = [LAWS[scenario.control.law].aim.value]
+    if text is not None:
+        words = [word.strip() for word in text.split(",")]
+    aims = [aim.value for aim in Aim]
+    for word in words:
+        if word not in {*LAWS, *aims, "all"}:
+            raise HarnessError(
+                f"--laws {text}: there is no law '{word}': choose among {', '.join(LAWS)}, "
+                f"all laws of an aim ({', '.join(aims)}), or all"
+            )
+    return tuple(name for name, row in LAWS.items() if {name, row.aim.value, "all"} & set(words))
+
+
+def cases(
+    name_or_path: str,
+    settings: Nested,
+    laws: tuple[str, ...],
+    drivers: tuple[Driver, ...],
+    seed: int,
+    orbits: float | None,
+) -> tuple[Case, ...]:
+    """Every law by every driver, all else the same.
+
+    Raises:
+        TableError: the scenario is not valid, or not with one of the drivers.
+    """
+    found = []
+    for driver in drivers:
+        values = merge(settings, _coils(load(name_or_path, settings), driver))
+        load(name_or_path, values)
+        for law in laws:
+            flown = merge(values, {"control": {"law": law}})
+            found.append(Case(law, driver, Order(name_or_path, flown, seed, orbits)))
+    return tuple(found)
+
+
+def _coils(scenario: Scenario, driver: Driver) -> Nested:
+    """The keys of a driver; full scale of a continuous one is the highest level if the scenario has none."""
+    if driver is Driver.PULSED:
+        return {"coils": {"driver": driver.value}}
+    coils = scenario.coils
+    return {
+        "coils": {"driver": driver.value, "max_dipole_am2": coils.max_dipole_am2 or max(coils.levels_am2)}
+    }

@@ -1,0 +1,133 @@
+"""What ``torquer compare`` does: choose, fly side by side, say, write, draw."""
+
+import os
+import sys
+from datetime import UTC, datetime
+from functools import partial
+from pathlib import Path
+
+import click
+
+from sim.campaign.claim import Study
+from sim.campaign.runner import Finished, run
+from sim.compare.case import Driver, cases, chosen_laws
+from sim.compare.picture import picture
+from sim.compare.score import Result, Score, by_axis1, fly_case
+from sim.compare.table import as_csv, as_json, as_text, ranked
+from sim.errors import HarnessError
+from sim.flight.recorded import ticks_of
+from sim.progress import progress
+from sim.record.destination import check_folder
+from sim.record.run_dir import write_json
+from sim.scenario.schema import Scenario, load, parse_settings
+
+JSON, CSV, PICTURE = "compare.json", "compare.csv", "compare.png"
+
+
+def compare(
+    name: str,
+    settings: tuple[str, ...],
+    laws: str | None,
+    driver: str,
+    orbits: float | None,
+    seed: int,
+    workers: int | None,
+    out: Path | None,
+) -> int:
+    """Fly every law by every driver and compare.
+
+    Args:
+        name: of the scenario, or its path.
+        settings: ``KEY=VALUE``, laid over the scenario.
+        laws: as ``chosen_laws`` takes them.
+        driver: one of ``Driver``, or ``both``.
+        orbits: None: as the scenario says.
+        seed: of the plant's random streams, the same in all flights.
+        workers: processes; None: as many as there are cores.
+        out: folder of the files; None: ``compare/<scenario>-<UTC time>``.
+
+    Returns:
+        The exit code: how a law does is a result, that a flight broke the limits is a failure, 1.
+
+    Raises:
+        TableError: the scenario is not known or not valid.
+        HarnessError: a law is not known, or the folder cannot be used.
+    """
+    values = parse_settings(settings)
+    scenario = load(name, values)
+    chosen = chosen_laws(scenario, laws)
+    drivers = tuple(Driver) if driver == "both" else (Driver(driver),)
+    to_fly = cases(name, values, chosen, drivers, seed, orbits)
+    ticks = ticks_of(scenario, orbits)
+    folder = _made(out or _default_folder(scenario))
+    studies = [
+        Study(f"{case.law}-{case.driver}", (partial(fly_case, case),), lambda results: [], flown=True)
+        for case in to_fly
+    ]
+    flown = {
+        "scenario": scenario.name,
+        "seed": seed,
+        "settings": list(settings),
+        "ticks": ticks,
+        "sim_seconds": ticks / scenario.time.tick_hz,
+        "pointing": "axis1" if by_axis1(scenario) else "attitude",
+    }
+    results: list[Result] = []
+    bar = sys.stderr.isatty()  # else each flight's line is the progress
+
+    def take(finished: Finished) -> None:
+        results.append(finished.results[0])
+        if not bar:
+            click.echo(_line(finished), err=True)
+
+    try:
+        with progress(f"comparing {len(chosen)} laws on {scenario.name}", len(studies)) as watch:
+            run(studies, workers or os.cpu_count() or 1, watch, take)
+    finally:  # what has flown is kept when the rest is given up
+        scores = ranked(result.score for result in results)
+        flown["complete"] = len(results) == len(studies)
+        _write(folder, scores, flown, f"{scenario.name}, seed {seed}", results)
+    click.echo(_heading(scenario, seed, ticks))
+    click.echo(as_text(scores))
+    click.echo(f"files: {folder / JSON}, {CSV}, {PICTURE}")
+    broken = [f"{score.law} ({score.driver})" for score in scores if score.limits_ok is False]
+    if broken:
+        click.echo(f"torquer: the limits are broken by {', '.join(broken)}", err=True)
+    return int(bool(broken))
+
+
+def _heading(scenario: Scenario, seed: int, ticks: int) -> str:
+    what = "axis 1 from the vertical" if by_axis1(scenario) else "the whole attitude"
+    return (
+        f"{scenario.name}, seed {seed}, {ticks / scenario.time.tick_hz:.0f} s: {what}, under 5 deg for good "
+        "after; RMS, max and rate over the last orbit"
+    )
+
+
+def _write(
+    folder: Path, scores: list[Score], flown: dict[str, object], title: str, results: list[Result]
+) -> None:
+    try:
+        write_json(folder / JSON, as_json(scores, flown))
+        (folder / CSV).write_text(as_csv(scores), encoding="utf-8")
+        picture(folder / PICTURE, title, results)
+    except OSError as error:
+        raise HarnessError(f"{folder}: cannot be written ({error.strerror or error})") from None
+
+
+def _made(folder: Path) -> Path:
+    """The folder, there before anything is flown."""
+    check_folder(folder, (JSON, CSV, PICTURE))
+    if (folder / JSON).exists():
+        raise HarnessError(f"{folder} already holds a comparison: choose another --out")
+    return folder
+
+
+def _default_folder(scenario: Scenario) -> Path:
+    return Path("compare") / f"{scenario.name}-{datetime.now(UTC):%Y%m%dT%H%M%SZ}"
+
+
+def _line(finished: Finished) -> str:
+    score = finished.results[0].score
+    figure = score.failure or f"{score.pointing_rms_deg:.2f} deg RMS over the last orbit"
+    return f"{score.law}, {score.driver}: {figure} ({finished.wall_s:.0f} s)"

@@ -1,0 +1,166 @@
+"""What a flight of a comparison comes to: its line of the table, and its history for the picture."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fsw.core.laws.table import Aim
+from fsw.input.schema import TableError
+from fsw.wire.messages import Mode
+from sim.campaign.flight import Record, record_order
+from sim.compare.case import Case, Driver
+from sim.drawing.canvas import TimeAxis
+from sim.errors import HarnessError
+from sim.record.truth import Histories
+from sim.report.histories import Flown
+from sim.report.summary import SETTLED_DEG
+from sim.scenario.schema import Scenario, flight_table, orbit_period_s
+
+Array = NDArray[np.float64]
+
+POINTS_AN_ORBIT = 60
+MOST_POINTS = 1200
+WINDOW_ORBITS = 0.25
+RESIDUAL = 1e-5
+"""Part of full scale under which a coil is not driven: less than the least dipole on the wire."""
+
+
+@dataclass(frozen=True, slots=True)
+class Score:
+    """A line of the table; its fields are the columns of the files.
+
+    Attributes:
+        law: that flew.
+        aim: what it is for.
+        driver: of the coils.
+        settle_orbits_5deg: when the pointing error fell under 5 deg for good; None: never.
+        pointing_rms_deg: pointing error over the last orbit.
+        pointing_max_deg: its largest.
+        rate_rms_degps: rate relative to the orbital frame, less the spin that is wanted, over the last orbit.
+        dipole_squared_a2m4s: integral of |m|^2 over the flight; times resistance over (dipole an ampere)^2
+            it is the energy lost in the coils.
+        pulses: None for a continuous driver, which has none.
+        duty: fraction of time for which any coil was driven.
+        mode_final: of the controller.
+        limits_ok: whether the coil driver kept its limits.
+        failure: why there was no flight, then all figures are None; else empty.
+    """
+
+    law: str
+    aim: Aim
+    driver: Driver
+    settle_orbits_5deg: float | None = None
+    pointing_rms_deg: float | None = None
+    pointing_max_deg: float | None = None
+    rate_rms_degps: float | None = None
+    dipole_squared_a2m4s: float | None = None
+    pulses: int | None = None
+    duty: float | None = None
+    mode_final: str | None = None
+    limits_ok: bool | None = None
+    failure: str = ""
+
+
+class History(NamedTuple):
+    """The running root mean square of the pointing error of a flight, on its time axis."""
+
+    time: TimeAxis
+    t_s: Array
+    error_deg: Array
+
+
+class Result(NamedTuple):
+    """What became of a case; no history without a flight."""
+
+    score: Score
+    history: History | None
+
+
+def fly_case(case: Case) -> Result:
+    """Fly and judge. A law that cannot be flown on this scenario has a line that says so."""
+    try:
+        record = record_order(case.order)
+    except (TableError, HarnessError) as error:
+        return Result(Score(case.law, case.aim, case.driver, failure=str(error)), None)
+    return Result(judge(case, record), history(record))
+
+
+def judge(case: Case, record: Record) -> Score:
+    """The line of a flight, from the plant's truth and the audit."""
+    scenario, truth, audit = record.scenario, record.truth, record.audit
+    tick_hz, orbit_s = scenario.time.tick_hz, orbit_period_s(scenario)
+    error_deg = pointing_error_deg(record)
+    last_orbit = slice(-round(orbit_s * tick_hz), None)
+    outside = np.flatnonzero(error_deg >= SETTLED_DEG)
+    settled = int(outside[-1]) + 1 if len(outside) else 0
+    continuous = case.driver is Driver.CONTINUOUS
+    return Score(
+        law=case.law,
+        aim=case.aim,
+        driver=case.driver,
+        settle_orbits_5deg=settled / tick_hz / orbit_s if settled < len(error_deg) else None,
+        pointing_rms_deg=_rms(error_deg[last_orbit]),
+        pointing_max_deg=float(error_deg[last_orbit].max()),
+        rate_rms_degps=_rms(_rate_error_degps(scenario, truth)[last_orbit]),
+        dipole_squared_a2m4s=_dipole_squared_a2m4s(scenario, truth),
+        pulses=None if continuous else len(audit.pulses),
+        duty=_continuous_duty(scenario, truth) if continuous else float(audit.duty_total),
+        mode_final=Mode(int(record.estimates.mode[len(error_deg) - 1])).name,
+        limits_ok=audit.ok,
+    )
+
+
+def history(record: Record) -> History:
+    """The running root mean square of the pointing error, sixty points an orbit, fewer in a long flight.
+
+    The window of a quarter of an orbit takes out the dips where the error passes zero.
+    """
+    flown = Flown.of(record.scenario, record.truth, record.estimates, record.audit)
+    ticks, orbits = flown.ticks, flown.length_s / flown.orbit_s
+    points = min(ticks, MOST_POINTS, max(2, round(POINTS_AN_ORBIT * orbits)))
+    at = np.linspace(0, ticks - 1, points).round().astype(int)
+    half = round(0.5 * WINDOW_ORBITS * flown.orbit_s * flown.tick_hz)
+    first, past = np.maximum(at - half, 0), np.minimum(at + half + 1, ticks)
+    total = np.concatenate(([0.0], np.cumsum(pointing_error_deg(record) ** 2)))
+    return History(flown.time, flown.t_s[at], np.sqrt((total[past] - total[first]) / (past - first)))
+
+
+def by_axis1(scenario: Scenario) -> bool:
+    """Whether pointing is judged by body axis 1 against the vertical alone, as the scenario's modes do."""
+    return flight_table(scenario).modes.axis_only
+
+
+def pointing_error_deg(record: Record) -> Array:
+    """The angle from nominal at each tick."""
+    flown = Flown.of(record.scenario, record.truth, record.estimates, record.audit)
+    return flown.axis1_deg if by_axis1(record.scenario) else flown.pointing_deg
+
+
+def _rate_error_degps(scenario: Scenario, truth: Histories) -> Array:
+    wanted = np.array([scenario.control.spin_radps, 0.0, 0.0])
+    result: Array = np.degrees(np.linalg.norm(truth["omega_body_orbit_radps"] - wanted, axis=1))
+    return result
+
+
+def _dipole_squared_a2m4s(scenario: Scenario, truth: Histories) -> float:
+    """Integral of |m|^2 from the mean dipole of each tick.
+
+    A continuous driver drives 1 / f times the mean over the fraction f of a tick. The rise of the current is
+    passed over: it is short beside a tick.
+    """
+    coils = scenario.coils
+    fraction = coils.on_fraction if coils.driver == "continuous" else 1.0
+    return float(np.sum(truth["m_body_am2"] ** 2)) / fraction / scenario.time.tick_hz
+
+
+def _continuous_duty(scenario: Scenario, truth: Histories) -> float:
+    """Fraction of ticks in which the dipole is more than a current that dies away, times that of a tick."""
+    full_scale_am2 = scenario.coils.on_fraction * (scenario.coils.max_dipole_am2 or 0.0)
+    driven = np.abs(truth["m_body_am2"]).max(axis=1) > RESIDUAL * full_scale_am2
+    return scenario.coils.on_fraction * float(np.mean(driven))
+
+
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.mean(values**2)))

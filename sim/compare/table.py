@@ -1,0 +1,83 @@
+"""The table of a comparison: as text, CSV and JSON, none of which depends on how long the flights took."""
+
+import csv
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import asdict, fields
+from importlib.metadata import version
+from io import StringIO
+from math import inf
+from typing import Any
+
+from fsw.core.laws.table import Aim
+from sim.compare.score import Score
+
+SCHEMA_VERSION = 1
+BY_RATE = frozenset({Aim.RATE, Aim.SPIN, Aim.SUN})
+"""Laws of these aims do not point: the rate tells them apart."""
+
+_ABSENT = "-"
+_COLUMNS: tuple[tuple[str, str, str, Callable[[Any], str]], ...] = (
+    ("law", "law", "", str),
+    ("driver", "driver", "", str),
+    ("settle_orbits_5deg", "settle", "orbits", "{:.2f}".format),
+    ("pointing_rms_deg", "RMS", "deg", "{:.2f}".format),
+    ("pointing_max_deg", "max", "deg", "{:.2f}".format),
+    ("rate_rms_degps", "rate RMS", "deg/s", "{:.4f}".format),
+    ("dipole_squared_a2m4s", "int m^2", "A^2 m^4 s", "{:.4g}".format),
+    ("pulses", "pulses", "", str),
+    ("duty", "duty", "%", lambda duty: f"{100.0 * duty:.2f}"),
+    ("mode_final", "mode", "", str),
+    ("limits_ok", "limits", "", lambda ok: "kept" if ok else "BROKEN"),
+)
+"""Field of a score, heading, unit, and how it is written."""
+_LEFT = frozenset({"law", "driver", "mode_final", "limits_ok"})
+
+
+def ranked(scores: Iterable[Score]) -> list[Score]:
+    """Best first: by pointing over the last orbit, or by rate; aim after aim, what did not fly last."""
+    aims = list(Aim)
+
+    def place(score: Score) -> tuple[int, float, str, str]:
+        figure = score.rate_rms_degps if score.aim in BY_RATE else score.pointing_rms_deg
+        return aims.index(score.aim), inf if figure is None else figure, score.law, score.driver
+
+    return sorted(scores, key=place)
+
+
+def as_text(scores: Sequence[Score]) -> str:
+    """The table for a person; under it why a law did not fly."""
+    rows = [[heading for _, heading, _, _ in _COLUMNS], [unit for _, _, unit, _ in _COLUMNS]]
+    rows += [[_cell(getattr(score, name), write) for name, _, _, write in _COLUMNS] for score in scores]
+    widths = [max(len(row[column]) for row in rows) for column in range(len(_COLUMNS))]
+    lines = []
+    for row in rows:
+        cells = [
+            text.ljust(width) if name in _LEFT else text.rjust(width)
+            for text, width, (name, *_) in zip(row, widths, _COLUMNS, strict=True)
+        ]
+        lines.append("  ".join(cells).rstrip())
+    lines += [f"{score.law}, {score.driver}: {score.failure}" for score in scores if score.failure]
+    return "\n".join(lines)
+
+
+def as_csv(scores: Sequence[Score]) -> str:
+    """A line a score under the names of its fields; empty where there is nothing."""
+    into = StringIO()
+    writer = csv.DictWriter(into, [field.name for field in fields(Score)], lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(asdict(score) for score in scores)
+    return into.getvalue()
+
+
+def as_json(scores: Sequence[Score], flown: dict[str, Any]) -> dict[str, Any]:
+    """All scores, and what was flown."""
+    return {
+        "schema_version": SCHEMA_VERSION,
+        "torquer_version": version("torquer"),
+        **flown,
+        "rows": [asdict(score) for score in scores],
+    }
+
+
+def _cell(value: object, write: Callable[[Any], str]) -> str:
+    return _ABSENT if value is None else write(value)

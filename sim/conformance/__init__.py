@@ -1,0 +1,1 @@
+"""Whether a board, stub or hardware, does what docs/icd.md says."""

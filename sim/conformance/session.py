@@ -1,0 +1,185 @@
+"""Talks to one board as plant and flight software would, in real time, and listens to all that it says."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from fsw.bus.interface import Bus
+from fsw.wire.frame import Frame
+from fsw.wire.messages import (
+    CLASSES,
+    SENDERS,
+    AnyMessage,
+    CoilBoot,
+    CoilHeartbeat,
+    CoilRefused,
+    CoilStatus,
+    MagBoot,
+    MagField,
+    MagHeartbeat,
+    PlantBoot,
+    SunBoot,
+    SunHeartbeat,
+    SunVector,
+    Sync,
+    TickDone,
+    intact,
+)
+from sim.errors import HarnessError
+
+
+class BrokenError(Exception):
+    """The board does not do what the specification says; the message is one sentence for people."""
+
+
+class Kind(NamedTuple):
+    """The messages of a kind of board; ``sample`` is the one that it sends exactly once a tick."""
+
+    node: str
+    boot: type[CoilBoot] | type[MagBoot] | type[SunBoot]
+    sample: type[CoilStatus] | type[MagField] | type[SunVector]
+    heartbeat: type[CoilHeartbeat] | type[MagHeartbeat] | type[SunHeartbeat]
+
+
+KINDS = {
+    "coil": Kind("COIL", CoilBoot, CoilStatus, CoilHeartbeat),
+    "magnetometer": Kind("MAG", MagBoot, MagField, MagHeartbeat),
+    "sun": Kind("SUN", SunBoot, SunVector, SunHeartbeat),
+}
+
+
+@dataclass
+class Heard:
+    """What the board says in a tick.
+
+    Args:
+        tick: the tick that it is of.
+        at_s: when that was due which it follows: the SYNC of the tick before.
+        due: the board has to speak: exactly one sample.
+        messages: all its intact messages.
+        broken: frames under its identifiers that are not intact.
+    """
+
+    tick: int
+    at_s: float
+    due: bool
+    messages: list[AnyMessage] = field(default_factory=list)
+    broken: list[Frame] = field(default_factory=list)
+
+    def only(self, kind: type[AnyMessage]) -> list[AnyMessage]:
+        """The messages of a kind."""
+        return [message for message in self.messages if isinstance(message, kind)]
+
+    @property
+    def status(self) -> CoilStatus:
+        """The COIL_STATUS of the tick.
+
+        Raises:
+            BrokenError: there is none.
+        """
+        for message in self.messages:
+            if isinstance(message, CoilStatus):
+                return message
+        raise BrokenError(f"no COIL_STATUS of tick {self.tick}")
+
+    @property
+    def refused(self) -> list[CoilRefused]:
+        """The refusals told in the tick."""
+        return [message for message in self.messages if isinstance(message, CoilRefused)]
+
+
+class Session:
+    """The bus with one board on it, driven tick by tick.
+
+    Args:
+        bus: where the board lives; nobody else may send SYNC there.
+        kind: of the board.
+        tick_hz: ticks a second.
+        clock: seconds on a clock that never runs back, as ``bus.receive`` counts its timeouts.
+        watch: called in each tick.
+    """
+
+    def __init__(
+        self,
+        bus: Bus,
+        kind: Kind,
+        tick_hz: int,
+        clock: Callable[[], float] = time.monotonic,
+        watch: Callable[[], None] = lambda: None,
+    ) -> None:
+        self._bus = bus
+        self.kind = kind
+        self.tick_hz = tick_hz
+        self.period_s = 1.0 / tick_hz
+        self.clock = clock
+        self._watch = watch
+        self._due_s = clock()
+        self._epoch_unix_s = 1_700_000_000
+        self._boots = 0
+        self.tick = 0
+        """The tick whose SYNC comes next; the board is in it."""
+        self.record: list[Heard] = []
+        """All that was heard, and when."""
+
+    def step(self, *frames: Frame, early_s: float | None = None) -> Heard:
+        """SYNC of this tick, ``frames``, TICK_DONE; then what the board says of the next tick, until that.
+
+        With ``early_s`` the next tick comes so long after the answer, and not when it is due.
+        """
+        tick, self.tick = self.tick, self.tick + 1
+        at_s = self.due_s()
+        sync = Sync(tick, self._epoch_unix_s + tick // self.tick_hz).encode()
+        self._bus.send([sync, *frames, TickDone(tick, 0).encode()])
+        return self._listen(tick + 1, at_s, self.period_s, due=True, early_s=early_s)
+
+    def sync(self, tick: int) -> Heard:
+        """A SYNC alone, of any tick, and a tick's time to listen."""
+        at_s = self.due_s()
+        self._bus.send([Sync(tick, self._epoch_unix_s).encode()])
+        return self._listen(tick, at_s, self.period_s)
+
+    def restart(self) -> Heard:
+        """PLANT_BOOT, which restarts a board that is in a later tick than 0; what it says then."""
+        self.tick = 0
+        at_s = self.clock()
+        self._bus.send([PlantBoot(0, 1, 0, counter=self._boots).encode()])
+        self._boots += 1
+        self._due_s = at_s
+        return self._listen(0, at_s, self.period_s)
+
+    def silence(self, seconds: float) -> Heard:
+        """Nothing is sent for a while: what the board says all the same."""
+        self._due_s = at_s = self.clock()
+        return self._listen(self.tick, at_s, seconds)
+
+    def due_s(self) -> float:
+        """When the next SYNC is due, by the clock; one that is far too late is due now, not in a rush."""
+        if self.clock() > self._due_s + self.period_s:
+            self._due_s = self.clock()
+        return self._due_s
+
+    def _listen(
+        self, tick: int, at_s: float, seconds: float, due: bool = False, early_s: float | None = None
+    ) -> Heard:
+        self._watch()
+        self._due_s += seconds
+        heard = Heard(tick, at_s, due)
+        while (left_s := self._due_s - self.clock()) > 0.0:
+            frame = self._bus.receive(left_s)
+            if frame is not None:
+                self._take(frame, heard)
+            if early_s is not None and heard.only(self.kind.sample):
+                self._due_s = min(self._due_s, self.clock() + early_s)
+        self.record.append(heard)
+        return heard
+
+    def _take(self, frame: Frame, heard: Heard) -> None:
+        sender = SENDERS.get(frame.can_id)
+        if sender == self.kind.node:
+            if intact(frame):
+                heard.messages.append(CLASSES[frame.can_id].decode(frame.data))
+            else:
+                heard.broken.append(frame)
+        elif frame.can_id in (Sync.ID, TickDone.ID):
+            raise HarnessError("somebody else sends SYNC or TICK_DONE on this bus: a board is tested alone")

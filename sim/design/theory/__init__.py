@@ -1,0 +1,1 @@
+"""Gain design as theory: linearisation, Floquet analysis, search, pulses, robustness, periodic LQR."""

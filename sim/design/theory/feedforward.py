@@ -1,0 +1,64 @@
+"""The least attitude error that a constant torque leaves: over all periodic dipoles, by least squares.
+
+A dipole gives no torque along the field, so a constant torque d can only be answered on the mean, by a
+periodic motion. With x' = A x + J^-1 (v x B + d / w0^2) as in ``linear``, v = m B0 / w0^2, all of period
+2 pi, Fourier collocation at N nodes makes the motion linear in the dipoles at the nodes; their least squares
+is the answer. No law does better for long, on the direct dipole's field and for small
+angles.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from sim.design.theory.bodies import Body, Vec3
+from sim.design.theory.linear import Array, dipole_field, free_motion, skew
+
+NODES = 32
+"""Nodes an orbit: the field has two harmonics, the answer a few more."""
+TOLERANCE = 1e-9
+"""Dipoles that do less than this part of the most effective one are not used."""
+
+
+class Answer(NamedTuple):
+    """The best periodic answer to a constant torque, at the nodes u = 2 pi k / N.
+
+    Attributes:
+        rms_rad: root mean square of |theta| over an orbit.
+        theta_rad: small rotation vector, (N, 3).
+        dipole_am2: the dipole, (N, 3).
+    """
+
+    rms_rad: float
+    theta_rad: Array
+    dipole_am2: Array
+
+
+def least_error(body: Body, torque_nm: Vec3, nodes: int = NODES) -> Answer:
+    """The periodic dipole with the least mean square of theta under a constant torque.
+
+    Args:
+        body: the satellite and its orbit.
+        torque_nm: constant torque, body axes, beside what rests on the nominal attitude.
+        nodes: an even number of them.
+    """
+    u = 2.0 * np.pi / nodes * np.arange(nodes, dtype=np.float64)
+    w0, inverse = body.rate_radps, np.linalg.inv(np.asarray(body.inertia_kgm2))
+    motion = np.kron(_derivative(nodes), np.eye(6)) - np.kron(np.eye(nodes), free_motion(body))
+    response = np.linalg.inv(motion).reshape(nodes, 6, nodes, 6)[:, 3:, :, :3]
+    by_torque = np.einsum("kilj,jm->kilm", response, inverse)
+    turned = by_torque.sum(axis=2) @ np.asarray(torque_nm) / w0**2
+    by_dipole = np.einsum("kilm,lmn->kiln", by_torque, -skew(dipole_field(u, body)))
+    rows = by_dipole.reshape(3 * nodes, 3 * nodes)
+    dipoles = np.linalg.lstsq(rows, -turned.ravel(), rcond=TOLERANCE)[0]
+    theta = turned + (rows @ dipoles).reshape(nodes, 3)
+    rms = float(np.sqrt(np.mean(np.sum(theta**2, axis=1))))
+    return Answer(rms, theta, dipoles.reshape(nodes, 3) * w0**2 / body.field_t)
+
+
+def _derivative(nodes: int) -> Array:
+    """The matrix that differentiates a function of period 2 pi given at equal nodes."""
+    waves = np.fft.fftfreq(nodes, 1.0 / nodes)
+    waves[nodes // 2] = 0.0  # the highest wave of an even number of nodes has no derivative
+    matrix: Array = np.fft.ifft(1j * waves[:, None] * np.fft.fft(np.eye(nodes), axis=0), axis=0).real
+    return matrix

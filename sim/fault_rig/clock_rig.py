@@ -1,0 +1,111 @@
+"""The rig with a coil board on a bench: the board's clock goes by true time, which ticks need not keep to."""
+
+from fractions import Fraction
+
+from fsw.core.config import FlightConfig
+from fsw.wire.frame import Frame
+from fsw.wire.messages import TickDone
+from hil_stub.bench import DEADMAN_MS, Bench, CoilBoard
+from hil_stub.coils.coil_driver import Pin
+from sim.fault_rig.currents import CurrentPulse
+from sim.fault_rig.rig import Rig
+from sim.faults.faulty_plant import FaultyPlant
+from sim.plant.config import PlantConfig
+from sim.plant.hardware.actuators import OFF, Board, Driven
+from sim.scenario.assemble import plant_config
+from sim.scenario.schema import Scenario
+
+REPEATED_EVERY_MS = 500
+
+
+class BenchActuator:
+    """A coil driver on a bench in the place of the plant's own. Currents are the nominal ones.
+
+    Args:
+        config: the plant's.
+    """
+
+    def __init__(self, config: PlantConfig) -> None:
+        coils, limits = config.coils, config.limits
+        low_a, middle_a, high_a = (dipole / coils.dipole_per_ampere_am2 for dipole in coils.levels_am2)
+        self.board: Board = self
+        self._level_a = (0.0, low_a, middle_a, high_a)
+        self._period_ms = Fraction(1000, config.tick_hz)
+        self._bench = Bench(lambda: CoilBoard(limits, (low_a, middle_a, high_a)), DEADMAN_MS, has_clock=True)
+        self._said = self._bench.switch_on()
+        self._pin: Pin | None = None
+        self._driven = OFF
+        self._on_ms = self.now_ms = 0
+        self.pulses: list[CurrentPulse] = []
+        """What was on, over true time; what is on still is not among it."""
+
+    def begin_tick(self, tick: int, current_a: float) -> list[Frame]:
+        """What the bench has said since; it enters ticks by itself, and reads its own current back."""
+        said, self._said = self._said, []
+        return said
+
+    def receive(self, frame: Frame) -> None:
+        """Hear a frame of the bus at this instant."""
+        if frame.can_id == TickDone.ID:
+            self._driven = self._over_the_tick()
+        self._said += self._bench.receive(frame, self.now_ms)
+        self._note(self.now_ms)
+
+    def wait(self, milliseconds: int) -> None:
+        """True time passes; the pin is looked at when its timer ends it."""
+        end_ms = self.now_ms + milliseconds
+        while self.now_ms < end_ms:
+            due_ms = self._bench.due_ms()
+            self.now_ms = end_ms if due_ms is None else min(end_ms, max(due_ms, self.now_ms + 1))
+            self._bench.watch(self.now_ms)
+            self._note(self.now_ms)
+
+    def drive(self) -> Driven:
+        """What was driven over the tick that fsw has answered."""
+        driven, self._driven = self._driven, OFF
+        return driven
+
+    def _over_the_tick(self) -> Driven:
+        pin = self._bench.pin
+        if pin is None:
+            return OFF
+        current_a = self._level_a[abs(pin.level)] * (1 if pin.level > 0 else -1)
+        x, y, z = (current_a if coil == pin.coil else 0.0 for coil in range(3))
+        left_ms = self._period_ms if pin.until_ms is None else pin.until_ms - self.now_ms
+        return Driven((x, y, z), float(min(Fraction(1), left_ms / self._period_ms)))
+
+    def _note(self, at_ms: int) -> None:
+        pin = self._bench.pin
+        if pin == self._pin:
+            return
+        if self._pin is not None:
+            self.pulses.append(
+                CurrentPulse(self._pin.coil, Fraction(self._on_ms, 1000), Fraction(at_ms, 1000))
+            )
+        self._pin, self._on_ms = pin, at_ms
+
+
+class ClockRig(Rig):
+    """A flight in which a fault says how long each tick lasts."""
+
+    def __init__(self, scenario: Scenario, config: FlightConfig, seed: int) -> None:
+        super().__init__(scenario, config, seed)
+        flown = plant_config(scenario, seed)
+        self._actuator = BenchActuator(flown)
+        self._period_ms = 1000 // flown.tick_hz
+        self.plant = FaultyPlant(flown, actuator=self._actuator)
+        self.record.pulses_by_time = self._actuator.pulses
+
+    def pace(self, tick: int, syncs: list[Frame]) -> None:
+        """The board hears SYNC, and time passes until fsw answers; while a tick is held SYNC is repeated."""
+        board = self._actuator
+        board.wait(self._period_ms if not self.plant.active else 0)
+        for sync in syncs:
+            board.receive(sync)
+        for fault in self.plant.active:
+            held_ms = fault.held_ms(tick)
+            while held_ms > 0:
+                board.wait(min(held_ms, REPEATED_EVERY_MS))
+                held_ms -= REPEATED_EVERY_MS
+                if fault.repeats_sync:
+                    board.receive(syncs[0])

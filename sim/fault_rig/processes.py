@@ -1,0 +1,175 @@
+"""The flight software as a process of its own that is killed or stopped by signals, in the middle of pulses.
+
+While it lives the plant waits for its answers; while it is gone the plant ticks on. Signals come at random
+moments of the wall clock within a tick: what the process was doing then, nobody knows.
+"""
+
+import os
+import signal
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from random import Random
+from subprocess import Popen
+from tempfile import TemporaryDirectory
+
+from fsw.bus.hub import Hub
+from fsw.bus.link import LoopLink
+from fsw.wire.frame import Frame
+from fsw.wire.messages import FswBoot, intact
+from sim.errors import HarnessError
+from sim.fault_rig.record import Record
+from sim.faults.faulty_plant import FaultyPlant
+from sim.flight.answers import answered
+from sim.flight.sil import start_node
+from sim.flight.table_file import write_flight_table
+from sim.scenario.assemble import plant_config
+from sim.scenario.schema import Scenario
+
+ALONE_S = 0.01
+"""What a tick takes while nobody answers."""
+ANSWER_S = 5.0
+BOOT_S = 60.0
+WITHIN_TICK_S = 0.003
+"""A signal comes up to so long after SYNC; a step takes about a third of it."""
+CYCLE_TICKS = 103
+MOST_STOPPED_TICKS = 8
+
+
+@dataclass(frozen=True, slots=True)
+class Struck:
+    """When the process is struck: so many ticks after the next pulse's start, so long after that SYNC."""
+
+    ticks: int
+    delay_s: float
+
+
+class ProcessRig:
+    """One flight with a real process.
+
+    Args:
+        scenario: what is flown.
+        seed: of the plant.
+        stop: SIGSTOP and SIGCONT in place of SIGKILL.
+    """
+
+    def __init__(self, scenario: Scenario, seed: int, stop: bool = False) -> None:
+        self._scenario = scenario
+        self._epoch_us = scenario.epoch_unix_s * 1_000_000
+        self._stop = stop
+        self._stopped_until = -1
+        self._present = True
+        self.plant = FaultyPlant(plant_config(scenario, seed))
+        self.record = Record(scenario.time.tick_hz)
+
+    def fly(self, strikes: list[Struck]) -> Record:
+        """Fly until the process has been struck as often as asked, and its last successor has fired."""
+        with self._bus():
+            self._await_boot()
+            for struck in strikes:
+                self._until_pulse()
+                for _ in range(struck.ticks):
+                    self._tick()
+                self._tick(struck)
+            self._until_pulse()
+            for _ in range(CYCLE_TICKS):
+                self._tick()
+        return self.record
+
+    @contextmanager
+    def _bus(self) -> Iterator[None]:
+        hub = Hub()
+        hub.start()
+        scratch = TemporaryDirectory()
+        self._table = str(write_flight_table(Path(scratch.name), self._scenario))
+        self._link = LoopLink(hub.port, may_host=False)
+        self._spec = f"loop:{hub.port}"
+        self._process = self._start()
+        try:
+            yield
+        finally:
+            self._process.kill()
+            self._process.wait()
+            self._link.close()
+            hub.close()
+            scratch.cleanup()
+
+    def _start(self) -> Popen[bytes]:
+        words = ("--table", self._table, "--bus", self._spec, "--parent", str(os.getpid()))
+        return start_node("fsw", *words)
+
+    def _await_boot(self) -> None:
+        deadline = time.monotonic() + BOOT_S
+        while time.monotonic() < deadline:
+            frame = self._link.receive(1.0)
+            if frame is not None and frame.can_id == FswBoot.ID and intact(frame):
+                self.record.boots.append(0)
+                return
+        raise HarnessError("the flight software's process does not boot")
+
+    def _until_pulse(self) -> None:
+        """Tick until a pulse begins: the tick that follows is its second."""
+        patience = self.plant.tick + 40 * CYCLE_TICKS
+        before = True
+        while self.plant.tick < patience:
+            self._tick()
+            now = any(self.record.driven[-1].current_a)
+            if now and not before:
+                return
+            before = now
+        raise HarnessError("the flight software's process does not fire")
+
+    def _tick(self, struck: Struck | None = None) -> None:
+        plant, record = self.plant, self.record
+        tick = plant.tick
+        frames = plant.begin_tick()
+        record.note_said(tick, self._epoch_us, plant.said)
+        self._link.send(frames)
+        if struck is not None:
+            self._strike(struck, tick)
+        elif 0 <= self._stopped_until <= tick:
+            self._process.send_signal(signal.SIGCONT)
+            self._stopped_until = -1
+        answers = self._answers(tick)
+        record.note_answer(tick, answers)
+        record.boots += [tick for frame in answers if frame.can_id == FswBoot.ID and intact(frame)]
+        for frame in answers:
+            plant.receive(frame)
+        record.modes.append(None)
+        record.error_deg.append(None)
+        plant.end_tick()
+        record.driven.append(plant.driven)
+
+    def _strike(self, struck: Struck, tick: int) -> None:
+        time.sleep(struck.delay_s)
+        self._present = False
+        if self._stop:
+            self._process.send_signal(signal.SIGSTOP)
+            self._stopped_until = tick + 1 + struck.ticks % MOST_STOPPED_TICKS
+            return
+        self._process.kill()
+        self._process.wait()
+        self._process = self._start()
+
+    def _answers(self, tick: int) -> list[Frame]:
+        """All that is said until the answer to this tick is whole, or the time is over."""
+        deadline = time.monotonic() + (ANSWER_S if self._present else ALONE_S)
+        answers: list[Frame] = []
+        while (frame := self._link.receive(max(0.0, deadline - time.monotonic()))) is not None:
+            answers.append(frame)
+            if answered([frame], tick):
+                self._present = True
+                return answers
+        self._present = False
+        return answers
+
+
+def strikes(count: int, rng: Random) -> list[Struck]:
+    """Half of them within the pulse, half anywhere in the cycle."""
+
+    def ticks() -> int:
+        return rng.randrange(3 if rng.random() < 0.5 else CYCLE_TICKS - 3)
+
+    return [Struck(ticks(), rng.uniform(0.0, WITHIN_TICK_S)) for _ in range(count)]

@@ -1,0 +1,158 @@
+"""What is kept of a flight with a fault, for the verdict."""
+
+from dataclasses import dataclass, field
+from math import acos, degrees, isfinite
+
+from fsw.core.state import FlightState
+from fsw.wire.frame import Frame
+from fsw.wire.messages import (
+    CoilBoot,
+    CoilEvent,
+    CoilFire,
+    CoilRefused,
+    CoilStatus,
+    FswEvent,
+    Mode,
+    Sync,
+    TickDone,
+    intact,
+)
+from sim.fault_rig.currents import CurrentPulse
+from sim.plant.hardware.actuators import Driven
+from sim.plant.plant import TruthRow
+from sim.record.candump import LogEntry
+
+_AUDITED = frozenset((CoilStatus.ID, CoilBoot.ID, Sync.ID))
+US = 1_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """An FSW_EVENT."""
+
+    tick: int
+    number: int
+    argument: int
+
+
+@dataclass(frozen=True, slots=True)
+class BoardEvent:
+    """A COIL_EVENT, with the coil that was on; None: all were off."""
+
+    tick: int
+    number: int
+    coil: int | None
+
+
+@dataclass(slots=True)
+class Record:
+    """A flight, tick by tick.
+
+    Attributes:
+        tick_hz: ticks a second.
+        onset: tick in which the fault comes; None if it never came.
+        end: first tick without it; None if it stays.
+        entries: SYNC, COIL_STATUS and COIL_BOOT as plant and board themselves have said them.
+        driven: what really flowed in each tick, as the plant drove it.
+        pulses_by_time: what a board with a clock of its own has driven, over true time; else none.
+        asked: ticks in which fsw's process sent COIL_FIRE.
+        asked_coils: the coils of these.
+        boots: ticks in which fsw booted.
+        restarts: ticks in which fsw took the plant for one that has started anew.
+        ended: tick in which fsw took the run for over; None if it never did.
+        refused: COIL_REFUSED, counted.
+        error_deg: true error of the estimate; None where fsw has none that it calls valid.
+        modes: by tick; None while fsw is not there.
+        events: FSW_EVENT.
+        board_events: COIL_EVENT.
+        crash: what came out of a step, if anything did.
+        not_finite: first tick with a number in the state that is none.
+        unanswered: ticks whose SYNC reached a running fsw and was not answered.
+        done: by tick, whether fsw has answered it with the TICK_DONE that names it.
+        worst_answer: most frames in one answer.
+        worst_step_s: longest time that one answer took.
+        rejected: frames that fsw's gate and the coil driver have dropped.
+    """
+
+    tick_hz: int
+    onset: int | None = None
+    end: int | None = None
+    entries: list[LogEntry] = field(default_factory=list)
+    driven: list[Driven] = field(default_factory=list)
+    pulses_by_time: list[CurrentPulse] = field(default_factory=list)
+    asked: list[int] = field(default_factory=list)
+    asked_coils: list[int] = field(default_factory=list)
+    boots: list[int] = field(default_factory=list)
+    restarts: list[int] = field(default_factory=list)
+    ended: int | None = None
+    refused: int = 0
+    error_deg: list[float | None] = field(default_factory=list)
+    modes: list[Mode | None] = field(default_factory=list)
+    events: list[Event] = field(default_factory=list)
+    board_events: list[BoardEvent] = field(default_factory=list)
+    crash: str | None = None
+    not_finite: int | None = None
+    unanswered: list[int] = field(default_factory=list)
+    done: list[bool] = field(default_factory=list)
+    worst_answer: int = 0
+    worst_step_s: float = 0.0
+    rejected: int = 0
+
+    @property
+    def ticks(self) -> int:
+        """How many were flown."""
+        return len(self.driven)
+
+    def note_said(self, tick: int, epoch_us: int, frames: list[Frame]) -> None:
+        """What plant and boards have said in a tick."""
+        stamp = epoch_us + tick * US // self.tick_hz
+        on: int | None = None
+        for frame in frames:
+            if frame.can_id == CoilStatus.ID:
+                status = CoilStatus.decode(frame.data)
+                on = status.coil if status.level else None
+            elif frame.can_id == CoilEvent.ID:
+                self.board_events.append(BoardEvent(tick, CoilEvent.decode(frame.data).event, on))
+            if frame.can_id in _AUDITED:
+                self.entries.append(LogEntry(len(self.entries) + 1, stamp, "virtual", frame))
+            self.refused += frame.can_id == CoilRefused.ID
+
+    def note_answer(self, tick: int, frames: list[Frame]) -> None:
+        """What fsw has said in a tick."""
+        self.worst_answer = max(self.worst_answer, len(frames))
+        done = [TickDone.decode(frame.data).tick for frame in frames if frame.can_id == TickDone.ID]
+        self.done.append(tick in done)
+        for frame in frames:
+            if frame.can_id == CoilFire.ID and intact(frame):
+                self.asked.append(tick)
+                self.asked_coils.append(CoilFire.decode(frame.data).coil)
+            elif frame.can_id == FswEvent.ID:
+                event = FswEvent.decode(frame.data)
+                self.events.append(Event(tick, event.event, event.argument))
+
+    def note_state(self, tick: int, state: FlightState | None, truth: TruthRow) -> None:
+        """What fsw believes in a tick, and what is true."""
+        known = state is not None and state.tick >= 0
+        self.modes.append(state.modes.mode if state is not None and known else None)
+        valid = state is not None and known and state.attitude.valid
+        self.error_deg.append(_error_deg(state, truth) if state is not None and valid else None)
+        if state is not None and self.not_finite is None and not finite(state):
+            self.not_finite = tick
+
+
+def finite(state: FlightState) -> bool:
+    """Whether the numbers that fsw acts on are numbers."""
+    numbers = (
+        *state.attitude.q_body_from_orbit,
+        *state.attitude.omega_body_orbit_radps,
+        *state.pulses.owed_impulse_body_nms,
+        *state.sample.b_body_t,
+        *state.coil.driven_am2,
+    )
+    return isfinite(sum(numbers))
+
+
+def _error_deg(state: FlightState, truth: TruthRow) -> float:
+    pairs = zip(state.attitude.q_body_from_orbit, truth.q_body_from_orbit, strict=True)
+    cosine = abs(sum(a * b for a, b in pairs))
+    return degrees(2.0 * acos(min(1.0, cosine)))

@@ -1,0 +1,232 @@
+"""What a fault campaign found: for the terminal, as JSON, JUnit XML, one HTML page and docs/faults.md."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from html import escape
+from importlib import resources
+from itertools import groupby
+from xml.etree import ElementTree
+
+from sim.fault_table.row import CaseResult, Row, RowResult, Verdict
+from sim.faults.kinds import KINDS
+
+_TOLD = ("pulses", "refused", "rejected", "worst error deg", "recovered s", "named s")
+"""Figures that are the same on every run; times on the wall are not."""
+_HEAD = """# Faults
+
+Written by `torquer faults --write-docs`; do not edit. Each row is injected anew by that command, by a seeded
+man in the middle between the nodes, or in boards, plant or process. Every case must keep invariant I (pulse
+at most 3 s, 100 s of back-off, one coil, three levels: judged from COIL_STATUS and, by other code, from the
+current that the plant drove), let no exception out of a step, have no NaN in the flight state, and answer
+every SYNC; beside that what the row expects. `not yet`: the flight software has no event that could name
+the unit. Figures are the worst over all cases.
+"""
+
+
+_KINDS_HEAD = """## Faults of files and processes
+
+Faults that need no flight are tests: the plant killed (`tests/integration/test_sil_ended.py`), disk full and
+logs that are cut, altered or of another version (`test_logs_that_lie.py`), tables and scenarios that are
+wrong (`test_sil_refuses.py`). `torquer faults --slow` has two more rows, which kill and stop a real process.
+
+## Faults in a scenario
+
+A scenario schedules faults of its own; without `lasts_s` one stays. The log holds what was on the bus of the
+flight software, so that such a run replays to the last bit. `torquer check` judges what stands in the log: a
+COIL_STATUS that was corrupted on its way is a violation there. A fault that was asked for is no reason by
+itself for `torquer sil` to fail: of such a scenario it does not count broken frames, and takes no stranger of
+the fault for a second sender, but limits, replay and completeness must hold.
+
+    [[fault]]
+    kind = "mag_bias"
+    at_s = 600.0
+    lasts_s = 300.0
+    parameters = {axis = 1, nt = 10000}
+
+| kind | parameters: default (range) | in a scenario |
+|---|---|---|"""
+
+
+def tally(results: Sequence[RowResult]) -> str:
+    """How many rows and cases there were, and how many failed."""
+    cases = [case for result in results for case in result.cases]
+    rows = {verdict: sum(result.verdict is verdict for result in results) for verdict in Verdict}
+    broken = sum(not _holds(case, "limits") for case in cases)
+    text = (
+        f"{len(results)} rows, {len(cases)} cases: {rows[Verdict.PASS]} rows pass, {rows[Verdict.FAIL]} fail"
+    )
+    if rows[Verdict.OPEN]:
+        text += f", {rows[Verdict.OPEN]} not yet"
+    return f"{text}; {broken} violations of the coil limits"
+
+
+def line(result: RowResult) -> str:
+    """One row for the terminal."""
+    return f"{result.verdict.value:<8} {result.row.name:<24} {len(result.cases):>4} cases  {_found(result)}"
+
+
+def listed(row: Row) -> str:
+    """One row for ``--list``."""
+    return f"{row.name:<24} {injected(row)}; expected: {expected(row)}"
+
+
+def as_json(results: Sequence[RowResult]) -> str:
+    """Everything, for programs."""
+    rows = [
+        {
+            "row": result.row.name,
+            "group": result.row.group,
+            "injected": injected(result.row),
+            "expected": ["limits", "no exception", "no NaN", "answered", *result.row.expect],
+            "verdict": result.verdict.value,
+            "measured": result.measured,
+            "cases": [asdict(case) for case in result.cases],
+        }
+        for result in results
+    ]
+    return json.dumps({"tally": tally(results), "rows": rows}, indent=1)
+
+
+def junit(results: Sequence[RowResult]) -> str:
+    """JUnit XML: a suite a row, a test a case; what is not yet to be expected counts as skipped."""
+    root = ElementTree.Element("testsuites", name="torquer faults")
+    for result in results:
+        cases = result.cases
+        suite = ElementTree.SubElement(
+            root,
+            "testsuite",
+            name=result.row.name,
+            tests=str(len(cases)),
+            failures=str(sum(case.failed for case in cases)),
+            skipped=str(sum(not case.failed and bool(_with(case, Verdict.OPEN)) for case in cases)),
+            time=f"{sum(case.wall_s for case in cases):.3f}",
+        )
+        for case in cases:
+            _junit_case(suite, case)
+    return ElementTree.tostring(root, encoding="unicode", xml_declaration=True)
+
+
+def _junit_case(suite: ElementTree.Element, case: CaseResult) -> None:
+    name = f"phase {case.phase} seed {case.seed}"
+    test = ElementTree.SubElement(
+        suite, "testcase", classname=f"faults.{case.row}", name=name, time=f"{case.wall_s:.3f}"
+    )
+    failed, waiting = _with(case, Verdict.FAIL), _with(case, Verdict.OPEN)
+    if failed:
+        ElementTree.SubElement(test, "failure", message="; ".join(failed))
+    elif waiting:
+        ElementTree.SubElement(test, "skipped", message="; ".join(waiting))
+
+
+def html(results: Sequence[RowResult]) -> str:
+    """One self-contained page without scripts."""
+    css = resources.files("sim.drawing").joinpath("report.css").read_text(encoding="utf-8")
+    sections = "\n".join(_html_group(group, list(rows)) for group, rows in _groups(results))
+    bad = any(result.verdict is Verdict.FAIL for result in results)
+    badge = f'<ul class="badges"><li class="{"bad" if bad else "good"}">{escape(tally(results))}</li></ul>'
+    return (
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f"<title>Fault campaign</title>\n<style>\n{css}</style>\n</head>\n<body>\n<main>\n"
+        f'<header><p class="over">Fault campaign</p><h1>The guards under every fault</h1>{badge}</header>\n'
+        f"{sections}\n</main>\n</body>\n</html>\n"
+    )
+
+
+def _html_group(group: str, results: list[RowResult]) -> str:
+    colour = {Verdict.PASS: "good", Verdict.FAIL: "bad", Verdict.OPEN: "note"}
+    rows = "".join(
+        f"<tr><td>{escape(result.row.name)}</td><td>{escape(injected(result.row))}</td>"
+        f"<td>{escape(expected(result.row))}</td><td>{len(result.cases)}</td><td>{escape(_found(result))}</td>"
+        f'<td class="{colour[result.verdict]}">{result.verdict.value}</td></tr>\n'
+        for result in results
+    )
+    return (
+        f'<section><h2>{escape(group)}</h2><div class="scroll"><table><thead><tr><th>row</th>'
+        "<th>injected</th><th>expected</th><th>cases</th><th>measured</th><th>verdict</th>"
+        f"</tr></thead><tbody>\n{rows}"
+        "</tbody></table></div></section>"
+    )
+
+
+def markdown(results: Sequence[RowResult], phases: int, seeds: int) -> str:
+    """docs/faults.md."""
+    lines = [_HEAD, f"{tally(results)}. Phases {phases}, seeds {seeds} each.", ""]
+    if any(result.kept for result in results):
+        kept = "flown by an earlier run, maybe of an earlier version, with phases and seeds of its own"
+        lines += [f"But \\*: {kept}.", ""]
+    for group, rows in _groups(results):
+        lines += [f"## {group}", "", "| row | injected | expected | cases | measured | verdict |"]
+        lines.append("|---|---|---|---|---|---|")
+        for result in rows:
+            cells = (
+                f"`{result.row.name}`",
+                injected(result.row),
+                expected(result.row),
+                str(len(result.cases)),
+                _found(result),
+                result.verdict.value + (" \\*" if result.kept else ""),
+            )
+            lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
+        lines.append("")
+    return "\n".join([*lines, _KINDS_HEAD, *map(_kind_row, KINDS), ""])
+
+
+def _kind_row(name: str) -> str:
+    kind = KINDS[name]
+    parameters = ", ".join(
+        f"{parameter} = {default:g} ({low:g} to {high:g})"
+        for parameter, (default, low, high) in kind.parameters.items()
+    )
+    return f"| `{name}` | {parameters} | {'yes' if kind.in_plant else 'no'} |"
+
+
+def injected(row: Row) -> str:
+    """What is injected, for a person."""
+    said = [f"{name} {value:g}" for name, value in _all_parameters(row).items()]
+    lasts = "stays" if row.stays else f"{row.lasts_s:g} s"
+    return ", ".join([row.kind.replace("_", " "), *said, lasts])
+
+
+def expected(row: Row) -> str:
+    """What is expected beside what every row must keep."""
+    names = [f"{name} ({row.unit})" if "named" in name else name for name in row.expect]
+    return ", ".join(names) or "the limits"
+
+
+def _all_parameters(row: Row) -> dict[str, float]:
+    defaults = {name: parameter.default for name, parameter in KINDS[row.kind].parameters.items()}
+    return {**defaults, **row.parameters}
+
+
+def _found(result: RowResult) -> str:
+    for verdict in (Verdict.FAIL, Verdict.OPEN):
+        worst = result.first(verdict)
+        if worst is not None:
+            case, outcome = worst
+            count = sum(bool(_with(case, verdict)) for case in result.cases)
+            where = f"phase {case.phase} seed {case.seed}" if verdict is Verdict.FAIL else ""
+            parts = [f"{count} of {len(result.cases)}: {outcome.check}", outcome.said, where]
+            return "; ".join([", ".join(part for part in parts if part), _figures(result)])
+    return _figures(result)
+
+
+def _figures(result: RowResult) -> str:
+    return ", ".join(f"{name} {value:.4g}" for name, value in result.measured.items() if name in _TOLD)
+
+
+def _with(case: CaseResult, verdict: Verdict) -> list[str]:
+    return [
+        f"{outcome.check}: {outcome.said}" if outcome.said else outcome.check
+        for outcome in case.outcomes
+        if outcome.verdict is verdict
+    ]
+
+
+def _holds(case: CaseResult, check: str) -> bool:
+    return all(outcome.verdict is Verdict.PASS for outcome in case.outcomes if outcome.check == check)
+
+
+def _groups(results: Sequence[RowResult]) -> list[tuple[str, list[RowResult]]]:
+    return [(group, list(rows)) for group, rows in groupby(results, lambda result: result.row.group)]

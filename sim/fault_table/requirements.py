@@ -1,0 +1,231 @@
+"""What the flight software has to notice, each with its limit, who watches it and what it says then.
+
+The one list of requirements on fault detection. ``docs/requirements.md`` is written from it, every id is
+cited by a test, and every number that an event can name stands in it.
+"""
+
+from enum import IntEnum
+from typing import NamedTuple
+
+from fsw.core.events import Event
+from fsw.core.fdir.coil_health import CoilFault
+from fsw.core.fdir.sensor_health import SHADOW_M
+from fsw.core.fdir.sensor_pair import MISFIT
+from fsw.core.fdir.sensor_watch import AGAINST_ESTIMATE, SensorFault
+from fsw.core.gate.second_sender import SIGNS
+from fsw.core.gate.sync_watch import LEAP_TICKS
+from fsw.core.monitors import RATE_LIMIT_RADPS, UNIT_TOLERANCE, Monitor
+from fsw.core.orbit.earth import RADIUS_M
+
+
+class Requirement(NamedTuple):
+    """A requirement; ``watch`` is the number that the event's argument names, ``limit`` says from when on."""
+
+    id: str
+    text: str
+    limit: str
+    watch: IntEnum | None
+    event: Event
+
+
+def _trip(number: int, watch: Monitor, text: str, limit: str) -> Requirement:
+    return Requirement(f"REQ-TRIP-{number:02}", text, limit, watch, Event.MONITOR_TRIPPED)
+
+
+def _sensor(number: int, watch: SensorFault, text: str, limit: str) -> Requirement:
+    return Requirement(f"REQ-SENSOR-{number:02}", text, limit, watch, Event.SENSOR_ISOLATED)
+
+
+def _coil(number: int, watch: CoilFault, text: str) -> Requirement:
+    limit = (
+        "`fdir.weak_coil_part`, `fdir.open_coil_part`; current: `fdir.name_pulses` in a row; "
+        "effect on the rate: `fdir.name_sigmas`"
+    )
+    return Requirement(f"REQ-COIL-{number:02}", text, limit, watch, Event.COIL_FAULT)
+
+
+REQUIREMENTS: tuple[Requirement, ...] = (
+    _trip(1, Monitor.ATTITUDE_FINITE, "Attitude and rate that control works with are numbers.", "finite"),
+    _trip(
+        2,
+        Monitor.QUATERNION_UNIT,
+        "The quaternion of the attitude has unit norm.",
+        f"square of the norm within {UNIT_TOLERANCE:g} of 1",
+    ),
+    _trip(
+        3,
+        Monitor.RATE_BOUNDED,
+        "The rate is one that the satellite can have.",
+        f"below {RATE_LIMIT_RADPS:g} rad/s about each axis",
+    ),
+    _trip(4, Monitor.OWED_FINITE, "The impulse that is still owed is a number.", "finite"),
+    _trip(5, Monitor.FIELD_FRESH, "The magnetometer speaks.", "an intact MAG_FIELD in `modes.stale_after_s`"),
+    _trip(
+        6,
+        Monitor.COIL_STATUS_FRESH,
+        "The coil driver speaks.",
+        "an intact COIL_STATUS in `modes.stale_after_s`",
+    ),
+    _trip(
+        7,
+        Monitor.COIL_AS_COMMANDED,
+        "The coil driver drives what was asked for and nothing else.",
+        "coil and level of the own request, for the time of a pulse",
+    ),
+    _trip(8, Monitor.ORBIT_KNOWN, "The orbit has a position at this tick.", "the ephemeris has one"),
+    _trip(
+        9,
+        Monitor.NO_SECOND_SENDER,
+        "Nobody else sends in the place of the flight software; while somebody does, it asks for no pulse.",
+        "until `fdir.second_sender_s` after the last sign",
+    ),
+    _sensor(
+        1,
+        SensorFault.SATURATED,
+        "A magnetometer that calls its samples not valid while no coil drives is named and left out.",
+        "`fdir.name_s`",
+    ),
+    _sensor(
+        2,
+        SensorFault.STRENGTH,
+        "A field of the wrong strength or a Sun vector of the wrong length is named and left out.",
+        "`fdir.max_field_error_nt`, `fdir.max_sun_norm_error` for `fdir.name_s`",
+    ),
+    _sensor(
+        3,
+        SensorFault.FROZEN,
+        "A sensor whose sample stands still while the other's moves, or sees nothing, is named and left out.",
+        "`fdir.frozen_s`",
+    ),
+    _sensor(
+        4,
+        SensorFault.REFUSED,
+        "A sensor that the filter refuses while it takes the other, or that is alone, is named and left out, "
+        "if the filter has taken both before.",
+        "both for `fdir.prove_s`; then `estimator.gate_nis` for `fdir.name_s` where the angle of field and "
+        "Sun is not the modelled one, by more than `fdir.max_angle_error_deg`, else for 1.5 times as long",
+    ),
+    _sensor(5, SensorFault.SILENT, "A sensor without acceptable samples is named.", "`modes.stale_after_s`"),
+    Requirement(
+        "REQ-SENSOR-06",
+        "A sensor that is left out is believed again once it is consistent with the estimate, or for longer "
+        "with the other sensor, whereupon the filter begins anew.",
+        f"`fdir.readmit_s`; against the estimate {AGAINST_ESTIMATE} times as long",
+        None,
+        Event.SENSOR_READMITTED,
+    ),
+    Requirement(
+        "REQ-SENSOR-07",
+        "Before the filter has taken both for long, sensors that contradict each other name nobody: this is "
+        "said, the filter ends, and does not begin before they have agreed for longer. Likewise when a "
+        "filter that finds a larger bias or disturbance than there can be refuses one; it proves nothing.",
+        f"`fdir.max_angle_error_deg` for `fdir.name_s`; agreed for {AGAINST_ESTIMATE} times `fdir.readmit_s`,"
+        f" a bad sample undoing {MISFIT}; the square root of `estimator.gate_nis` times "
+        "`estimator.bias_sigma_nt`, `estimator.torque_sigma_nm`",
+        None,
+        Event.SENSORS_DISAGREE,
+    ),
+    Requirement(
+        "REQ-SENSOR-08",
+        "Noise, eclipse, a driven coil, field and Sun nearly parallel, or a tumble name no sensor.",
+        "0.001 false alarms an hour",
+        None,
+        Event.SENSOR_ISOLATED,
+    ),
+    _sensor(
+        9,
+        SensorFault.UNLIT,
+        "What a Sun sensor sees in the Earth's shadow is not used, and a sensor that goes on so is named.",
+        f"{(RADIUS_M - SHADOW_M) / 1000.0:g} km inside the shadow's edge; `fdir.name_s`",
+    ),
+    _coil(
+        1, CoilFault.OPEN, "A coil without current, or whose pulses have no effect, is named and left out."
+    ),
+    _coil(2, CoilFault.WEAK, "A coil of too small a current or effect is named and left out."),
+    _coil(3, CoilFault.REVERSED, "A coil whose current or effect is the other way is named and left out."),
+    Requirement(
+        "REQ-COIL-04",
+        "A level or current that nobody asked for leads to SAFE; when it lasts its coil is named, as the "
+        "driver tells it or as the torque tells in sunlight.",
+        "level: at once; more than half of the least level's current, and name: `fdir.stuck_s` beyond",
+        CoilFault.STUCK,
+        Event.COIL_FAULT,
+    ),
+    Requirement(
+        "REQ-COIL-05",
+        "A coil that is named is not fired until the ground sends TC_CLEAR; sound coils are not named.",
+        "no pulse",
+        None,
+        Event.COIL_FAULT,
+    ),
+    Requirement(
+        "REQ-BUS-01",
+        "Another node that sends under an identifier of the flight software, or whose requests the coil "
+        "driver refuses, is named by that identifier.",
+        f"{SIGNS} ticks with a whole frame or a refusal, `fdir.second_sender_s` apart at most, or 10 s where "
+        "no pulse was asked for",
+        None,
+        Event.SECOND_SENDER,
+    ),
+    Requirement(
+        "REQ-BUS-02",
+        "Own requests refused, late or repeated, broken frames, and restarts are no second sender.",
+        "fewer signs",
+        None,
+        Event.SECOND_SENDER,
+    ),
+    Requirement(
+        "REQ-BUS-03",
+        "A SYNC that names neither the tick that was answered nor one near ahead moves nothing, and is told.",
+        f"up to {LEAP_TICKS} ticks ahead",
+        None,
+        Event.STRANGE_SYNC,
+    ),
+    Requirement(
+        "REQ-BUS-04",
+        "Two of them, the second naming the tick of the first or the next one, mean that the plant has "
+        "started anew: the estimate is lost, all timers start in full, and SYNC is answered again.",
+        "two in a row: with no settled count going on by a tick between them",
+        None,
+        Event.PLANT_RESTARTED,
+    ),
+    Requirement(
+        "REQ-BUS-05",
+        "A PLANT_END that does not fit the ticks that were answered ends nothing, and is told.",
+        f"the ticks answered; up to {LEAP_TICKS} more where silence follows",
+        None,
+        Event.FALSE_END,
+    ),
+    Requirement(
+        "REQ-EVENT-01",
+        "No event floods the bus: of one kind there is one in a time at most; those held back are counted.",
+        "`fdir.event_spacing_s`",
+        None,
+        Event.TIME_MISMATCH,
+    ),
+)
+
+
+def document() -> str:
+    """The text of ``docs/requirements.md``."""
+    rows = "\n".join(
+        f"| {r.id} | {r.text} | {r.limit} | {_watch(r)} | `{r.event.name}` |" for r in REQUIREMENTS
+    )
+    return f"{_HEAD}\n{rows}\n"
+
+
+def _watch(requirement: Requirement) -> str:
+    watch = requirement.watch
+    return "" if watch is None else f"`{watch.name}` ({watch.value})"
+
+
+_HEAD = """# Requirements on fault detection
+
+Written from `sim/fault_table/requirements.py` by `python tools/write_requirements.py`; a test fails when it
+is stale or when no test cites one of its requirements. The number after what watches is the one that the
+event's argument names. A violated `REQ-TRIP` requirement leads to SAFE in the same tick. A sensor is named
+as 100 times its number (1: magnetometer, 2: Sun sensor) and the number of the fault; a coil likewise, by
+its axis.
+
+| id | requirement | limit | watched by | event |
+|---|---|---|---|---|"""

@@ -1,0 +1,289 @@
+"""The fault table: every row, what is injected, and what is expected."""
+
+from collections.abc import Sequence
+from math import inf
+
+from sim.errors import HarnessError
+from sim.fault_table.forged_rows import FORGED_ROWS
+from sim.fault_table.row import Row, When
+
+BUS = ("no extra pulse", "goes on")
+TIMED = ("limits by time", *BUS, "quiet", "recovers")
+BROKEN = (*BUS, "dropped", "recovers")
+BLINDED = ("goes on", "no other named", "recovers")
+COIL_NAMES = ("coil 0", "coil 1", "coil 2")
+
+NOTHING = "nothing: false alarms"
+LOSS = "loss 1/10/50 %, bursts; duplicates; reordering; delay, jitter"
+CORRUPT = "corrupt payload, wrong length, unknown id, RTR, extended id, error frames"
+FLOOD = "flood by a babbling node"
+SECOND = "a second sender on fsw's id"
+INTERFACE = "interface down and up; ENOBUFS"
+PROCESS = "fsw killed, stopped, restarted at every phase of a pulse; reboot storms"
+BOARD = "board killed and restarted; both reset"
+CLOCK = "clock jumps, tick going backwards, SYNC lost, held, repeated or forged; ticks in a rush"
+SENSOR = "a sensor: NaN and infinity, saturation, frozen, bias, scale, swapped axis, wrong sign"
+BOOT = "a sensor that is wrong from the first tick on"
+LIGHT = "eclipse; Sun parallel to the field; Sun sensor blinded by albedo or without Sun"
+COIL = "coil open, reversed, weak, stuck on"
+UPSET = "bit flip in any double of the flight state"
+
+NOON_ORBIT = (
+    "orbit.altitude_km=800.0",
+    "orbit.inclination_deg=98.7",
+    "orbit.raan_deg=6.0",
+    "orbit.u0_deg=20.0",
+    'time.epoch_utc="2015-03-27T02:46:57Z"',
+)
+"""An orbit over noon: from 200 to 430 s after its start the Sun is within 20 deg of the field's direction."""
+
+
+def _field(name: str, kind: str, **parameters: float) -> tuple[Row, Row]:
+    """A fault of the magnetometer that goes away, and one that stays."""
+    return _sensor("magnetometer", name, kind, parameters)
+
+
+def _sun(name: str, kind: str, **parameters: float) -> tuple[Row, Row]:
+    return _sensor("sun sensor", name, kind, parameters)
+
+
+def _sensor(unit: str, name: str, kind: str, parameters: dict[str, float]) -> tuple[Row, Row]:
+    return (
+        Row(f"{name}-passing", SENSOR, kind, parameters, 300.0, When.SUNLIT, ("goes on", "recovers")),
+        Row(
+            name,
+            SENSOR,
+            kind,
+            parameters,
+            inf,
+            When.SUNLIT,
+            ("goes on", "bounded", "named"),
+            unit,
+            watch_s=900.0,
+        ),
+    )
+
+
+def _from_boot(name: str, kind: str, unit: str, **parameters: float) -> tuple[Row, ...]:
+    """A fault that has always been there: who is wrong cannot always be told."""
+    passing = ("goes on", "no other named", "recovers")
+    return (
+        Row(f"{name}-boot-passing", BOOT, kind, parameters, 300.0, When.BOOT, passing, unit),
+        Row(
+            f"{name}-boot",
+            BOOT,
+            kind,
+            parameters,
+            inf,
+            When.BOOT,
+            ("no other named", "bounded"),
+            unit,
+            watch_s=1500.0,
+        ),
+    )
+
+
+def _coils(name: str, kind: str, *expect: str, **parameters: float) -> tuple[Row, ...]:
+    """A fault of each coil."""
+    return tuple(
+        Row(
+            f"{name}-{coil}",
+            COIL,
+            kind,
+            {"axis": coil, **parameters},
+            inf,
+            expect=("named", *expect),
+            unit=COIL_NAMES[coil],
+            watch_s=2000.0,
+        )
+        for coil in range(3)
+    )
+
+
+ROWS: tuple[Row, ...] = (
+    Row("none", NOTHING, "none", {}, 1.0, expect=(*BUS, "quiet", "recovers"), watch_s=1500.0),
+    Row("loss-1", LOSS, "loss", {"part": 0.01}, 300.0, expect=(*BUS, "recovers")),
+    Row("loss-10", LOSS, "loss", {"part": 0.1}, 300.0, expect=(*BUS, "recovers")),
+    Row("loss-50", LOSS, "loss", {"part": 0.5}, 300.0, expect=(*BUS, "recovers")),
+    Row("bursts", LOSS, "bursts", {"ticks": 30.0}, 300.0, expect=(*BUS, "recovers")),
+    Row("duplicates", LOSS, "duplicates", {"part": 0.5}, 300.0, expect=(*BUS, "recovers")),
+    Row("reordering", LOSS, "reordering", {}, 300.0, expect=(*BUS, "recovers")),
+    Row("delay", LOSS, "delay", {"ticks": 2.0}, 300.0, expect=(*BUS, "recovers")),
+    Row("jitter", LOSS, "delay", {"ticks": 3.0, "jitter": 1.0}, 300.0, expect=(*BUS, "recovers")),
+    Row("corruption", CORRUPT, "corruption", {"part": 0.3}, 300.0, expect=BROKEN),
+    Row("wrong-length", CORRUPT, "wrong_length", {"part": 0.3}, 300.0, expect=BROKEN),
+    Row("unknown-id", CORRUPT, "unknown_id", {"part": 0.3}, 300.0, expect=BROKEN),
+    Row("rtr", CORRUPT, "rtr", {"part": 0.3}, 300.0, expect=BROKEN),
+    Row("extended-id", CORRUPT, "extended_id", {"part": 0.3}, 300.0, expect=BROKEN),
+    Row("error-frames", CORRUPT, "error_frames", {"part": 0.3}, 300.0, expect=BROKEN),
+    Row("random-frames", CORRUPT, "random_frames", {"frames": 100.0}, 200.0, expect=BROKEN),
+    Row("flood", FLOOD, "flood", {"frames": 500.0}, 200.0, expect=(*BUS, "recovers")),
+    Row(
+        "second-sender",
+        SECOND,
+        "second_sender",
+        {"frames": 1.0},
+        300.0,
+        expect=("no request", "goes on", "named", "recovers"),
+        unit="second sender",
+        watch_s=480.0,
+    ),
+    Row("link-down", INTERFACE, "link_down", {}, 90.0, expect=(*BUS, "recovers")),
+    Row("link-down-mid-pulse", INTERFACE, "link_down", {}, 2.0, expect=(*BUS, "recovers")),
+    Row("queue-full", INTERFACE, "queue_full", {}, 300.0, expect=(*BUS, "recovers")),
+    Row("fsw-killed", PROCESS, "killed", {}, 1.0, expect=(*BUS, "boots locked", "recovers")),
+    Row("fsw-killed-long", PROCESS, "killed", {}, 40.0, expect=(*BUS, "boots locked", "recovers")),
+    Row("fsw-stopped", PROCESS, "stopped", {}, 4.0, expect=(*BUS, "recovers")),
+    Row("fsw-stopped-long", PROCESS, "stopped", {}, 256.0, expect=(*BUS, "recovers")),
+    Row(
+        "fsw-storm",
+        PROCESS,
+        "storm",
+        {"up": 150.0, "down": 20.0},
+        900.0,
+        expect=(*BUS, "boots locked", "recovers"),
+    ),
+    Row(
+        "fsw-storm-fast",
+        PROCESS,
+        "storm",
+        {"up": 3.0, "down": 3.0},
+        120.0,
+        expect=(*BUS, "boots locked", "recovers"),
+    ),
+    Row(
+        "process-killed",
+        PROCESS,
+        "sigkill",
+        {"times": 5.0},
+        expect=("no extra pulse", "boots locked"),
+        slow=True,
+    ),
+    Row("process-stopped", PROCESS, "sigstop", {"times": 5.0}, expect=("no extra pulse",), slow=True),
+    Row("coil-board-restarts", BOARD, "coil_board_restarts", {}, 1.0, expect=(*BUS, "recovers")),
+    Row("coil-board-storm", BOARD, "coil_board_storm", {"ticks": 150.0}, 900.0, expect=(*BUS, "recovers")),
+    Row("coil-board-storm-fast", BOARD, "coil_board_storm", {"ticks": 4.0}, 200.0, expect=(*BUS, "recovers")),
+    Row(
+        "coil-board-dead",
+        BOARD,
+        "coil_board_dead",
+        {},
+        90.0,
+        expect=(*BUS, "recovers", "silence named"),
+        unit="coil board",
+    ),
+    Row("mag-board-restarts", BOARD, "mag_board_restarts", {}, 1.0, expect=(*BUS, "recovers")),
+    Row(
+        "mag-board-dead",
+        BOARD,
+        "mag_board_dead",
+        {},
+        90.0,
+        expect=(*BUS, "recovers", "silence named"),
+        unit="magnetometer",
+    ),
+    Row("sun-board-restarts", BOARD, "sun_board_restarts", {}, 1.0, expect=(*BUS, "recovers")),
+    Row("sun-board-dead", BOARD, "sun_board_dead", {}, 90.0, expect=(*BUS, "recovers")),
+    Row("all-restart", BOARD, "all_restart", {}, 5.0, expect=(*BUS, "boots locked", "recovers")),
+    Row("sync-lost", CLOCK, "sync_lost", {"part": 0.3}, 300.0, expect=(*BUS, "recovers")),
+    Row("sync-repeated", CLOCK, "sync_repeated", {"times": 3.0}, 300.0, expect=(*BUS, "recovers")),
+    Row("ticks-held", CLOCK, "ticks_held", {}, 300.0, expect=TIMED),
+    Row("ticks-held-then-rushed", CLOCK, "ticks_held", {"rushed": 110.0}, 600.0, expect=TIMED),
+    Row("ticks-rushed", CLOCK, "ticks_held", {"seconds": 0.0}, 300.0, expect=TIMED),
+    Row("ticks-repeated", CLOCK, "ticks_repeated", {"seconds": 7.0}, 300.0, expect=TIMED),
+    Row(
+        "ticks-repeated-then-rushed",
+        CLOCK,
+        "ticks_repeated",
+        {"seconds": 7.0, "rushed": 110.0},
+        600.0,
+        expect=TIMED,
+    ),
+    Row("tick-ahead", CLOCK, "tick_jumps", {"ticks": 1000.0}, 1.0, expect=(*BUS, "recovers")),
+    Row("tick-far-ahead", CLOCK, "tick_jumps", {"ticks": 1e9}, 1.0, expect=(*BUS, "recovers")),
+    Row("tick-ahead-lasting", CLOCK, "tick_jumps", {"ticks": 1000.0}, 20.0, expect=(*BUS, "recovers")),
+    Row("tick-back", CLOCK, "tick_jumps", {"ticks": -100.0}, 20.0, expect=(*BUS, "recovers")),
+    Row("time-jumps", CLOCK, "time_jumps", {"seconds": 3600.0}, 60.0, expect=(*BUS, "recovers")),
+    *FORGED_ROWS,
+    *_field("mag-nan", "mag_nan"),
+    *_field("mag-infinite", "mag_infinite", axis=1.0),
+    *_field("mag-saturated", "mag_saturated", nt=15_000.0),
+    *_field("mag-frozen", "mag_frozen"),
+    *_field("mag-bias", "mag_bias", axis=1.0, nt=10_000.0),
+    *_field("mag-scale", "mag_scale", axis=2.0, scale=1.5),
+    *_field("mag-swapped", "mag_swapped", axis=1.0),
+    *_field("mag-sign", "mag_scale", axis=2.0, scale=-1.0),
+    *_field("mag-extreme-codes", "extreme_codes"),
+    Row("sun-nan-passing", SENSOR, "sun_nan", {}, 300.0, When.SUNLIT, ("goes on", "recovers")),
+    Row("sun-nan", SENSOR, "sun_nan", {}, inf, When.SUNLIT, ("goes on", "bounded", "quiet"), watch_s=900.0),
+    *_sun("sun-extreme-codes", "extreme_codes", sun=1.0),
+    *_sun("sun-frozen", "sun_frozen"),
+    *_sun("sun-swapped", "sun_swapped"),
+    *_sun("sun-sign", "sun_scale", axis=0.0, scale=-1.0),
+    *_from_boot("mag-bias", "mag_bias", "magnetometer", axis=1.0, nt=10_000.0),
+    *_from_boot("mag-swapped", "mag_swapped", "magnetometer", axis=1.0),
+    *_from_boot("sun-swapped", "sun_swapped", "sun sensor"),
+    *_from_boot("sun-sign", "sun_scale", "sun sensor", axis=0.0, scale=-1.0),
+    Row("eclipse", LIGHT, "none", {}, 1.0, When.ECLIPSE, ("goes on", "quiet", "recovers"), watch_s=2400.0),
+    Row(
+        "sun-parallel",
+        LIGHT,
+        "killed",
+        {},
+        1.0,
+        When.SUNLIT,
+        ("boots locked", "recovers"),
+        settings=NOON_ORBIT,
+    ),
+    Row("sun-unseen", LIGHT, "sun_unseen", {}, 1200.0, When.SUNLIT, ("goes on", "quiet", "recovers")),
+    Row("albedo", LIGHT, "albedo", {"part": 0.4}, 600.0, When.SUNLIT, BLINDED, "sun sensor"),
+    Row("albedo-eclipse", LIGHT, "albedo", {"part": 0.4}, 600.0, When.ECLIPSE, BLINDED, "sun sensor"),
+    Row(
+        "lamp-in-eclipse-passing", LIGHT, "albedo", {"part": 0.0}, 600.0, When.ECLIPSE, BLINDED, "sun sensor"
+    ),
+    Row(
+        "lamp-in-eclipse",
+        LIGHT,
+        "albedo",
+        {"part": 0.0},
+        inf,
+        When.ECLIPSE,
+        ("goes on", "bounded", "named"),
+        "sun sensor",
+        watch_s=900.0,
+    ),
+    *_coils("coil-open", "coil_open", "board names"),
+    *_coils("coil-reversed", "coil_wired", scale=-1.0),
+    *_coils("coil-weak", "coil_wired", scale=0.3),
+    *_coils("coil-stuck-on", "coil_stuck_on", "bounded", "stuck", "board names", ampere=0.4),
+    Row(
+        "coil-stuck-on-in-eclipse",
+        COIL,
+        "coil_stuck_on",
+        {"axis": 2.0, "ampere": -0.4},
+        inf,
+        When.ECLIPSE,
+        ("no other named", "bounded", "stuck", "board names"),
+        "coil 2",
+    ),
+    Row("bit-flip", UPSET, "bit_flip", {}, 1.0, expect=(*BUS, "recovers")),
+)
+"""All rows, in the order of the page."""
+
+
+def chosen(names: Sequence[str], slow: bool = False) -> list[Row]:
+    """The rows of these names, or that begin with them; without a name all, slow ones if asked for.
+
+    Raises:
+        HarnessError: a name that is none.
+    """
+    for name in names:
+        if not any(_is(row, name) for row in ROWS):
+            raise HarnessError(f"--row {name}: there is no such row; `torquer faults --list` names them")
+    if not names:
+        return [row for row in ROWS if slow or not row.slow]
+    return [row for row in ROWS if any(_is(row, name) for name in names)]
+
+
+def _is(row: Row, name: str) -> bool:
+    return row.name == name or row.name.startswith(name + "-")

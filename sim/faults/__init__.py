@@ -1,0 +1,1 @@
+"""Faults as data, and their injection into plant, boards, bus and flight software."""

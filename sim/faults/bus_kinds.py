@@ -1,0 +1,223 @@
+"""Faults of the bus: what a man in the middle does to frames, and what strangers send."""
+
+from collections.abc import Callable
+from functools import partial
+from random import Random
+
+from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame
+from fsw.wire.messages import CLASSES, SENDERS, CoilFire, Sync
+from sim.faults.fault import Fault, Parameters
+
+FULL = 8
+IDS = 0x800
+_OF_FSW = {can_id for can_id, sender in SENDERS.items() if sender == "FSW"}
+Tamper = Callable[[list[Frame], Random, Parameters], list[Frame]]
+
+
+def lost(frames: list[Frame], rng: Random, parameters: Parameters) -> list[Frame]:
+    """Each frame is lost with probability ``part``."""
+    return [frame for frame in frames if rng.random() >= parameters["part"]]
+
+
+def duplicated(frames: list[Frame], rng: Random, parameters: Parameters) -> list[Frame]:
+    """Each frame comes a second time with probability ``part``."""
+    return [copy for frame in frames for copy in [frame] * (1 + (rng.random() < parameters["part"]))]
+
+
+def reordered(frames: list[Frame], rng: Random, parameters: Parameters) -> list[Frame]:
+    """The frames of a tick come in any order."""
+    return rng.sample(frames, len(frames))
+
+
+def corrupted(frames: list[Frame], rng: Random, parameters: Parameters) -> list[Frame]:
+    """Bits of the data are flipped, in each frame with probability ``part``."""
+    return [_flipped(frame, rng) if rng.random() < parameters["part"] else frame for frame in frames]
+
+
+def resized(frames: list[Frame], rng: Random, parameters: Parameters) -> list[Frame]:
+    """Each frame has a wrong length with probability ``part``."""
+    return [_resized(frame, rng) if rng.random() < parameters["part"] else frame for frame in frames]
+
+
+def readdressed(frames: list[Frame], rng: Random, parameters: Parameters) -> list[Frame]:
+    """Each frame bears an identifier that nobody knows with probability ``part``."""
+    unknown = [can_id for can_id in range(IDS) if can_id not in CLASSES]
+    return [
+        Frame(rng.choice(unknown), frame.data) if rng.random() < parameters["part"] else frame
+        for frame in frames
+    ]
+
+
+def flagged(flag: int, frames: list[Frame], rng: Random, parameters: Parameters) -> list[Frame]:
+    """Each frame bears a flag that makes it none of ours with probability ``part``."""
+    return [
+        Frame(frame.can_id | flag, b"" if flag == REMOTE_FLAG else frame.data)
+        if rng.random() < parameters["part"]
+        else frame
+        for frame in frames
+    ]
+
+
+def _flipped(frame: Frame, rng: Random) -> Frame:
+    data = bytearray(frame.data)
+    for _ in range(rng.randint(1, 4)):
+        data[rng.randrange(len(data))] ^= 1 << rng.randrange(8)
+    return Frame(frame.can_id, bytes(data))
+
+
+def _resized(frame: Frame, rng: Random) -> Frame:
+    length = rng.choice([length for length in range(FULL + 1) if length != len(frame.data)])
+    return Frame(frame.can_id, (frame.data + rng.randbytes(FULL))[:length])
+
+
+class OnFrames(Fault):
+    """Does the same to the frames of both directions."""
+
+    def __init__(self, tamper: Tamper, rng: Random, parameters: Parameters) -> None:
+        super().__init__(rng, parameters)
+        self._tamper = tamper
+
+    def from_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
+        """Tamper."""
+        return self._tamper(frames, self.rng, self.parameters)
+
+    def to_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
+        """Tamper."""
+        return self._tamper(frames, self.rng, self.parameters)
+
+
+class Bursts(Fault):
+    """Nothing gets through for some ticks, then all for some ticks, each up to ``ticks``."""
+
+    def __init__(self, rng: Random, parameters: Parameters) -> None:
+        super().__init__(rng, parameters)
+        self._open, self._until = True, -1
+
+    def from_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
+        """All or nothing."""
+        if tick >= self._until:
+            self._open = not self._open
+            self._until = tick + self.rng.randint(1, round(self.parameters["ticks"]))
+        return frames if self._open else []
+
+    def to_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
+        """All or nothing."""
+        return frames if self._open else []
+
+
+class Late(Fault):
+    """Each frame of either direction comes 0 to ``ticks`` ticks late, at random if ``jitter`` is not 0."""
+
+    def __init__(self, rng: Random, parameters: Parameters) -> None:
+        super().__init__(rng, parameters)
+        self._inward: list[tuple[int, Frame]] = []
+        self._outward: list[tuple[int, Frame]] = []
+
+    def from_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
+        """What is due."""
+        return self._due(self._inward, tick, frames)
+
+    def to_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
+        """What is due."""
+        return self._due(self._outward, tick, frames)
+
+    def _due(self, kept: list[tuple[int, Frame]], tick: int, frames: list[Frame]) -> list[Frame]:
+        most = round(self.parameters["ticks"])
+        jitter = bool(self.parameters["jitter"])
+        kept += [(tick + (self.rng.randint(0, most) if jitter else most), frame) for frame in frames]
+        due = [frame for at, frame in kept if at <= tick]
+        kept[:] = [(at, frame) for at, frame in kept if at > tick]
+        return due
+
+
+class LinkDown(Fault):
+    """The interface is down: nothing gets through, not even SYNC."""
+
+    def from_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
+        """Nothing."""
+        return []
+
+    def to_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
+        """Nothing."""
+        return []
+
+    def sync(self, tick: int, frame: Frame) -> list[Frame]:
+        """Nothing."""
+        return []
+
+
+class QueueFull(Fault):
+    """ENOBUFS: of each answer of fsw only some first frames find room in the interface's queue."""
+
+    def to_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
+        """The first frames."""
+        return frames[: self.rng.randint(0, len(frames))]
+
+
+class RandomFrames(Fault):
+    """A stranger sends ``frames`` random frames a tick: any identifier but SYNC's, any flags, any data.
+
+    With ``as_fsw`` 0 it keeps off the identifiers of fsw, so that a log still tells who said what.
+    """
+
+    def __init__(self, rng: Random, parameters: Parameters) -> None:
+        super().__init__(rng, parameters)
+        taken = {Sync.ID} | (set() if parameters["as_fsw"] else _OF_FSW)
+        self._known = [can_id for can_id in CLASSES if can_id not in taken]
+        self._any = [can_id for can_id in range(IDS) if can_id not in taken]
+
+    def strangers(self, tick: int) -> list[Frame]:
+        """Random frames."""
+        return [self._frame() for _ in range(round(self.parameters["frames"]))]
+
+    def _frame(self) -> Frame:
+        rng = self.rng
+        data = rng.randbytes(rng.randint(0, FULL))
+        if rng.random() < 0.5:  # half of them on identifiers that somebody listens to
+            return Frame(rng.choice(self._known), data)
+        match rng.choice((0, 0, EXTENDED_FLAG, REMOTE_FLAG, ERROR_FLAG)):
+            case 0:
+                return Frame(rng.choice(self._any), data)
+            case flag if flag == EXTENDED_FLAG:
+                return Frame(rng.randrange(1 << 29) | flag, data)
+            case flag if flag == REMOTE_FLAG:
+                return Frame(rng.choice(self._any) | flag, b"")
+            case flag:
+                return Frame(rng.choice(self._any) | flag, data)
+
+
+class Flood(Fault):
+    """A babbling node sends ``frames`` frames a tick with identifiers of its own and of others."""
+
+    def strangers(self, tick: int) -> list[Frame]:
+        """The same frame over and over."""
+        return [Frame(0x001, bytes(FULL))] * round(self.parameters["frames"])
+
+
+class SecondSender(Fault):
+    """Another node sends well-formed COIL_FIRE on fsw's identifier, ``frames`` a tick."""
+
+    def strangers(self, tick: int) -> list[Frame]:
+        """Requests that answer this tick."""
+        rng = self.rng
+        return [
+            CoilFire(
+                rng.choice((-3, -2, -1, 1, 2, 3)),
+                rng.randrange(3),
+                rng.randrange(256),
+                tick & 0xFF,
+                rng.choice((3000, 1500, 3001, 40000)),
+                rng.randrange(16),
+            ).encode()
+            for _ in range(round(self.parameters["frames"]))
+        ]
+
+
+def on_frames(tamper: Tamper) -> Callable[[Random, Parameters], Fault]:
+    """A fault that tampers with frames."""
+    return partial(OnFrames, tamper)
+
+
+def on_flag(flag: int) -> Callable[[Random, Parameters], Fault]:
+    """A fault that sets a flag of SocketCAN."""
+    return partial(OnFrames, partial(flagged, flag))

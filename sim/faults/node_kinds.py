@@ -1,0 +1,180 @@
+"""Faults of the flight software's process, of its memory, and of its clock, which is SYNC."""
+
+import struct
+from dataclasses import fields, is_dataclass, replace
+from random import Random
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fsw.wire.frame import Frame
+from fsw.wire.messages import CoilFire, Sync
+from sim.faults.fault import Condition, Fault, Parameters
+from sim.plant.plant import Plant
+
+if TYPE_CHECKING:  # the plant's process, which loads the faults of a scenario, has no flight software
+    from fsw.core.state import FlightState
+
+
+class Killed(Fault):
+    """fsw's process is killed; it boots when the fault is over."""
+
+    def condition(self, tick: int) -> Condition:
+        """Dead."""
+        return Condition.DEAD
+
+
+class Stopped(Fault):
+    """fsw's process is stopped; when it goes on, it finds all that it was sent meanwhile."""
+
+    def condition(self, tick: int) -> Condition:
+        """Stopped."""
+        return Condition.STOPPED
+
+
+class Storm(Fault):
+    """fsw is killed over and over: runs up to ``up`` ticks, is dead up to ``down`` ticks."""
+
+    def __init__(self, rng: Random, parameters: Parameters) -> None:
+        super().__init__(rng, parameters)
+        self._running, self._until = True, -1
+
+    def condition(self, tick: int) -> Condition:
+        """Dead or running."""
+        if tick >= self._until:
+            self._running = not self._running
+            most = self.parameters["up" if self._running else "down"]
+            self._until = tick + self.rng.randint(1, round(most))
+        return Condition.RUNNING if self._running else Condition.DEAD
+
+
+class AllRestart(Killed):
+    """Everything is switched off and on: fsw and the boards."""
+
+    def end(self, plant: Plant) -> None:
+        """The boards boot in the same tick as fsw."""
+        for board in ("magnetometer", "sun", "coil"):
+            plant.restart(board)
+
+
+class SyncLost(Fault):
+    """SYNC is lost with probability ``part``."""
+
+    def sync(self, tick: int, frame: Frame) -> list[Frame]:
+        """Nothing, or SYNC."""
+        return [] if self.rng.random() < self.parameters["part"] else [frame]
+
+
+class SyncRepeated(Fault):
+    """SYNC comes up to ``times`` times more."""
+
+    def sync(self, tick: int, frame: Frame) -> list[Frame]:
+        """SYNC, again and again."""
+        return [frame] * (1 + self.rng.randint(1, round(self.parameters["times"])))
+
+
+class TicksHeld(Fault):
+    """Each tick is held for ``seconds``; after one with a request, ``rushed`` ticks come in no time."""
+
+    def __init__(self, rng: Random, parameters: Parameters) -> None:
+        super().__init__(rng, parameters)
+        self._rush = 0
+
+    def held_ms(self, tick: int) -> int:
+        """The whole time, or none of it."""
+        return 0 if self._rush else round(1000 * self.parameters["seconds"])
+
+    def to_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
+        """A request begins a rush."""
+        asked = any(frame.can_id == CoilFire.ID for frame in frames)
+        self._rush = round(self.parameters["rushed"]) if asked else max(0, self._rush - 1)
+        return frames
+
+
+class TicksRepeated(TicksHeld):
+    """The same, and SYNC comes again and again while a tick is held."""
+
+    repeats_sync = True
+
+
+class TickJumps(Fault):
+    """SYNC names a tick that is off by ``ticks``; its time goes with it if ``with_time`` is not 0."""
+
+    def sync(self, tick: int, frame: Frame) -> list[Frame]:
+        """A wrong SYNC."""
+        true = Sync.decode(frame.data)
+        off = round(self.parameters["ticks"])
+        off_s = off if self.parameters["with_time"] else 0
+        return [Sync(max(0, true.tick + off), max(0, true.unix_time_s + off_s)).encode()]
+
+
+class TimeJumps(Fault):
+    """SYNC's time is off by ``seconds``; its tick is right."""
+
+    def sync(self, tick: int, frame: Frame) -> list[Frame]:
+        """A SYNC with a wrong time."""
+        true = Sync.decode(frame.data)
+        return [true._replace(unix_time_s=true.unix_time_s + round(self.parameters["seconds"])).encode()]
+
+
+class BitFlip(Fault):
+    """One bit of one double of the flight state flips, once."""
+
+    _done = False
+
+    def upset(self, state: "FlightState") -> "FlightState":
+        """The state with one bit flipped."""
+        if self._done:
+            return state
+        self._done = True
+        places = count_doubles(state)
+        flipped: FlightState = flip(state, self.rng.randrange(places), self.rng.randrange(64))
+        return flipped
+
+
+def flip_bit(value: float, bit: int) -> float:
+    """The double with one bit of its 64 flipped."""
+    (word,) = struct.unpack("<Q", struct.pack("<d", value))
+    (flipped,) = struct.unpack("<d", struct.pack("<Q", word ^ (1 << bit)))
+    return float(flipped)
+
+
+def count_doubles(value: Any) -> int:  # noqa: ANN401  (whatever a state is made of)
+    """How many doubles there are in a value of named tuples, dataclasses, tuples and arrays."""
+    if isinstance(value, float):
+        return 1
+    if isinstance(value, np.ndarray):
+        return int(value.size)
+    return sum(map(count_doubles, _parts(value)))
+
+
+def flip(value: Any, place: int, bit: int) -> Any:  # noqa: ANN401
+    """The value with one bit of its double number ``place`` flipped."""
+    if isinstance(value, float):
+        return flip_bit(value, bit)
+    if isinstance(value, np.ndarray):
+        flipped = value.copy()
+        flipped.flat[place] = flip_bit(float(flipped.flat[place]), bit)
+        return flipped
+    parts = _parts(value)
+    for index, part in enumerate(parts):
+        inside = count_doubles(part)
+        if place < inside:
+            return _with_part(value, parts, index, flip(part, place, bit))
+        place -= inside
+    raise IndexError(place)
+
+
+def _parts(value: Any) -> list[Any]:  # noqa: ANN401
+    if isinstance(value, tuple):
+        return list(value)
+    if is_dataclass(value) and not isinstance(value, type):
+        return [getattr(value, field.name) for field in fields(value)]
+    return []
+
+
+def _with_part(value: Any, parts: list[Any], index: int, part: Any) -> Any:  # noqa: ANN401
+    if isinstance(value, tuple):
+        changed = [*parts[:index], part, *parts[index + 1 :]]
+        return value._make(changed) if hasattr(value, "_make") else tuple(changed)
+    return replace(value, **{fields(value)[index].name: part})

@@ -1,0 +1,76 @@
+"""Faults of a scenario: ``[[fault]]`` says which kind comes when, for how long, with which parameters."""
+
+from collections.abc import Sequence
+from math import ceil
+from random import Random
+from typing import Annotated, Self
+
+from pydantic import Field, Strict, model_validator
+
+from fsw.input.schema import Positive, Section, TableError
+from sim.faults.faulty_plant import FaultyPlant, Scheduled
+from sim.faults.kinds import KINDS, make
+from sim.plant.config import PlantConfig
+from sim.plant.plant import Plant
+
+
+class FaultSection(Section):
+    """One fault. It comes with the first tick at or after ``at_s``; without ``lasts_s`` it stays."""
+
+    kind: str
+    at_s: float = Field(ge=0.0)
+    lasts_s: Positive | None = None
+    parameters: dict[str, float] = Field(default_factory=dict)
+
+    @model_validator(mode="after")
+    def _is_of_the_table(self) -> Self:
+        kind = KINDS.get(self.kind)
+        if kind is None or not kind.in_plant:
+            names = ", ".join(name for name, kind in KINDS.items() if kind.in_plant)
+            raise ValueError(f"kind '{self.kind}' is none of {names}")
+        for name, value in self.parameters.items():
+            allowed = kind.parameters.get(name)
+            if allowed is None:
+                names = ", ".join(kind.parameters) or "none"
+                raise ValueError(f"parameters.{name}: {self.kind} has no such parameter, but {names}")
+            if not allowed.low <= value <= allowed.high:
+                raise ValueError(
+                    f"parameters.{name} = {value:g} is outside {allowed.low:g} to {allowed.high:g}"
+                )
+        return self
+
+
+Faults = Annotated[tuple[FaultSection, ...], Strict(False)]
+
+
+def break_frames(faults: Sequence[FaultSection]) -> bool:
+    """Whether frames of the coil driver may come broken because the scenario asks for it."""
+    return any(KINDS[fault.kind].breaks for fault in faults)
+
+
+def forge_answers(faults: Sequence[FaultSection]) -> bool:
+    """Whether the scenario asks for a stranger that sends under identifiers of the flight software."""
+    return any(KINDS[fault.kind].forges for fault in faults)
+
+
+def make_plant(config: PlantConfig, faults: Sequence[FaultSection]) -> Plant:
+    """The plant of a flight with its faults scheduled; what is random in them comes from the plant's seed.
+
+    Raises:
+        TableError: the scenario is consistent in itself, but orbit or field are not known at its epoch, or a
+            part cannot be built with its numbers.
+    """
+    try:
+        if not faults:
+            return Plant(config)
+        return FaultyPlant(config, [_scheduled(number, fault, config) for number, fault in enumerate(faults)])
+    except ValueError as error:
+        raise TableError(f"the scenario's plant: {error}") from None
+
+
+def _scheduled(number: int, fault: FaultSection, config: PlantConfig) -> Scheduled:
+    first = ceil(fault.at_s * config.tick_hz)
+    lasts = None if fault.lasts_s is None else max(1, round(fault.lasts_s * config.tick_hz))
+    rng = Random(f"fault {number}/{config.seed}")
+    end = None if lasts is None else first + lasts
+    return Scheduled(make(fault.kind, fault.parameters, rng), first, end)

@@ -1,0 +1,1 @@
+"""A flight: plant and flight software over a bus, as two processes or in one."""

@@ -1,0 +1,139 @@
+"""One flight: the plant's ticks exchanged with the flight software over a bus, recorded as they happen.
+
+In lockstep the plant waits for the TICK_DONE that names its tick. In real time it keeps to absolute
+deadlines; an answer that is not there by then is a counted slip, never a wait.
+"""
+
+import gc
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import inf
+from typing import Protocol
+
+from fsw.bus.interface import Bus
+from fsw.wire.frame import Frame
+from sim.flight.answers import (
+    Overhear,
+    Patience,
+    Silence,
+    answered,
+    await_boot,
+    heard_until,
+    late_answers,
+    lockstep_answers,
+    waiting_frames,
+)
+from sim.plant.plant import Plant, TruthRow
+from sim.record.heard import heard_before_sync
+from sim.record.pace import LOCKSTEP, Pace
+from sim.scenario.telecommands import Uplink
+
+Watch = Callable[[int], None]
+"""Called now and then with the tick that is under way."""
+
+
+@dataclass(frozen=True, slots=True)
+class Flown:
+    """What became of a flight."""
+
+    ticks: int
+    slips: int
+    wall_s: float
+
+
+class FrameLog(Protocol):
+    """Takes the frames of a flight."""
+
+    def write(self, timestamp_us: int, frames: list[Frame]) -> None:
+        """Append frames that all bear one time."""
+
+
+class TruthLog(Protocol):
+    """Takes the plant's truth."""
+
+    def append(self, row: TruthRow) -> None:
+        """Add the row of the next tick."""
+
+    def flush(self) -> None:
+        """No row follows."""
+
+
+def fly(
+    plant: Plant,
+    bus: Bus,
+    log: FrameLog,
+    truth: TruthLog,
+    ticks: int,
+    epoch_unix_s: int,
+    tick_hz: int,
+    pace: Pace = LOCKSTEP,
+    watch: Watch = lambda tick: None,
+    uplink: Uplink = lambda tick: [],
+    patience: Patience | None = None,
+    overhear: Overhear = lambda tick, before, answers, again: None,
+    waiting: Callable[[float], None] = lambda waited_s: None,
+) -> Flown:
+    """Fly ``ticks`` ticks; what the ground sends in a tick goes before what the boards say.
+
+    Args:
+        plant: to be flown.
+        bus: its end.
+        log: takes every frame.
+        truth: takes the plant's truth.
+        ticks: how many.
+        epoch_unix_s: time of tick 0.
+        tick_hz: ticks a second.
+        pace: lockstep or real time.
+        watch: told the tick, now and then.
+        uplink: what the ground sends in a tick.
+        patience: how long the flight software is waited for; None: the default.
+        overhear: told what others have sent.
+        waiting: told every second how long the flight software has been waited for until it boots [s].
+
+    Raises:
+        CounterpartError: the flight software is silent, or another plant speaks.
+        FlightError: the disk takes no more.
+        BusError: the bus failed.
+    """
+    patience = patience or Patience()
+    boot = await_boot(bus, patience.boot_s, overhear, waiting)
+    epoch_us = timestamp_us = epoch_unix_s * 1_000_000
+    log.write(epoch_us, [boot])
+    gc.freeze()  # what was loaded before the flight need not be searched for garbage during it
+    began = time.monotonic()
+    answers: list[Frame] = []
+    period_s = 1.0 / (tick_hz * (pace.factor or inf))
+    silence = Silence(patience.silence_s, period_s, began)
+    for tick in range(ticks):
+        timestamp_us = epoch_us + tick * 1_000_000 // tick_hz
+        sent = uplink(tick) + plant.begin_tick()
+        known = answers + (before := waiting_frames(bus)) + sent
+        bus.send(sent)
+        if pace.factor is None:
+            answers = lockstep_answers(bus, tick, sent[-1], patience.answer_s)
+        else:
+            answers = list(heard_until(bus, began + (tick + 1) * period_s))
+            plant.slips += not answered(answers, tick)
+            silence.end(before + answers, tick)
+        from_others = [frame for frame in answers if frame is not sent[-1]]
+        overhear(tick, before, from_others, len(from_others) < len(answers))
+        heard, answers = heard_before_sync(known, answers, tick)
+        before += heard
+        for frame in before + answers:
+            plant.receive(frame)
+        log.write(timestamp_us, before + sent + answers)
+        truth.append(plant.truth())
+        plant.end_tick()
+        if tick % WATCH_TICKS == 0:
+            watch(tick)
+    if not answered(answers, ticks - 1):
+        log.write(timestamp_us, late_answers(bus, ticks - 1))
+    end = plant.end()
+    bus.send([end])
+    log.write(epoch_us + ticks * 1_000_000 // tick_hz, [end])
+    truth.flush()
+    return Flown(ticks, plant.slips, time.monotonic() - began)
+
+
+WATCH_TICKS = 64

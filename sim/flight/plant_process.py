@@ -1,0 +1,62 @@
+"""``python -m sim.flight.plant_process RUN``: the plant as a process that ``torquer sil`` starts."""
+
+import os
+import signal
+import sys
+import time
+from pathlib import Path
+from threading import Thread
+
+import click
+
+from fsw.bus.interface import BusError
+from fsw.bus.open_bus import open_bus
+from fsw.input import command_line
+from fsw.input.schema import TableError
+from fsw.input.sentence import sentence
+from sim.errors import HarnessError
+from sim.flight.answers import CounterpartError, Patience
+from sim.flight.recorded import record
+from sim.plant.errors import PlantError
+from sim.record import run_dir
+from sim.signals import EndedBySignal, endings_raised
+
+
+@click.command()
+@click.argument("path", metavar="RUN", type=click.Path(path_type=Path))
+@click.option("--bus", required=True)
+@click.option("--patience", type=(float, float), required=True, help="For the boot, for an answer [s].")
+@click.option("--parent", type=int, required=True, help="Process whose end ends this one.")
+def main(path: Path, bus: str, patience: tuple[float, float], parent: int) -> None:
+    """Fly the run that was begun there; what is wrong with the flight software run.json tells the parent."""
+    _end_with(parent)
+    boot_s, answer_s = patience
+    try:
+        with endings_raised():
+            link = open_bus(bus)
+            record(path, run_dir.read_scenario(path), link, patience=Patience(boot_s, answer_s, answer_s))
+    except CounterpartError as error:
+        run_dir.update(path, ended=str(error))
+        sys.exit(1)
+    except (TableError, BusError, HarnessError, PlantError) as error:
+        click.echo(f"plant: {sentence(error)}", err=True)
+        sys.exit(getattr(error, "exit_code", 2))
+    except KeyboardInterrupt:
+        sys.exit(130)
+    except EndedBySignal:
+        sys.exit(1)
+
+
+def _end_with(parent: int) -> None:
+    """End this process soon after the one that started it."""
+
+    def wait() -> None:
+        while os.getppid() == parent:
+            time.sleep(0.5)
+        os.kill(os.getpid(), signal.SIGTERM)
+
+    Thread(target=wait, daemon=True).start()
+
+
+if __name__ == "__main__":
+    sys.exit(command_line.run(main, "sim.flight.plant_process"))

@@ -1,0 +1,181 @@
+"""Software in the loop: plant and flight software as two processes on a bus."""
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from fsw.bus.hub import Hub
+from fsw.bus.interface import Bus
+from fsw.bus.link import LoopLink
+from fsw.bus.open_bus import open_bus, resolve
+from sim.errors import FlightError
+from sim.flight.answers import ANSWER_TIMEOUT_S, Patience
+from sim.flight.bus_taken import refuse_taken
+from sim.flight.flight import Watch
+from sim.flight.second_senders import said
+from sim.flight.standstill import Standstill
+from sim.flight.table_file import write_flight_table
+from sim.record import run_dir
+from sim.scenario.schema import Scenario
+
+POLL_S = 0.1
+GRACE_S = 5.0
+PATIENCE = Patience(boot_s=60.0, answer_s=ANSWER_TIMEOUT_S, silence_s=ANSWER_TIMEOUT_S)
+MARGIN_S = 5.0
+"""The plant tells of a silent flight software by itself; only if it does not in time, it stands still."""
+
+
+@contextmanager
+def served(bus: str) -> Iterator[tuple[str, Hub | None]]:
+    """A bus for two processes: its spec in full, and the hub if it is a loop bus that is hosted here.
+
+    Raises:
+        BusError: the bus cannot be used, or somebody flies on it already.
+    """
+    spec = resolve(bus)
+    if not spec.startswith("loop:"):
+        _refuse_taken(open_bus(spec), spec)
+        yield spec, None
+        return
+    port = int(spec.removeprefix("loop:"))
+    try:
+        hub = Hub(0 if bus in ("loop", "auto") else port)
+    except OSError:  # somebody else hosts it, or keeps the port for something else
+        _refuse_taken(LoopLink(port, timeout_s=1.0, may_host=False), spec)
+        yield spec, None
+        return
+    try:
+        yield f"loop:{hub.port}", hub
+    finally:
+        hub.close()
+
+
+def _refuse_taken(bus: Bus, spec: str) -> None:
+    try:
+        refuse_taken(bus, spec)
+    finally:
+        bus.close()
+
+
+def fly_processes(
+    path: Path, scenario: Scenario, spec: str, hub: Hub | None, watch: Watch, patience: Patience = PATIENCE
+) -> None:
+    """Fly with plant and flight software as two processes on a bus, as ``served`` gives it.
+
+    Raises:
+        FlightError: one of the two ended before its time, or stands still; both have been ended.
+    """
+    with TemporaryDirectory() as scratch:
+        table = write_flight_table(Path(scratch), scenario)
+        _fly_processes(path, scenario, table, spec, hub, watch, patience)
+
+
+def _fly_processes(
+    path: Path,
+    scenario: Scenario,
+    table: Path,
+    spec: str,
+    hub: Hub | None,
+    watch: Watch,
+    patience: Patience,
+) -> None:
+    common = ("--bus", spec, "--parent", str(os.getpid()))
+    waits = (str(patience.boot_s), str(patience.answer_s))
+    plant = start_node("sim.flight.plant_process", str(path), *common, "--patience", *waits)
+    fsw = start_node("fsw", "--table", str(table), *common)
+    standstill = _standstill(path, scenario, patience)
+    stood_s = 0.0
+    try:
+        while plant.poll() is None and fsw.poll() is None and not (stood_s := standstill.lasts_s()):
+            _serve(hub, POLL_S)
+            watch(last_tick(path, scenario))
+        deadline = time.monotonic() + (0.0 if stood_s else GRACE_S)
+        while (
+            (plant.poll() is None or fsw.poll() is None) and time.monotonic() < deadline and _well(plant, fsw)
+        ):
+            _serve(hub, POLL_S / 10.0)
+    finally:
+        failed = [
+            (name, process)
+            for name, process in (("plant", plant), ("flight software", fsw))
+            if process.poll()
+        ]
+        _end((plant, fsw), hub)
+    run = run_dir.read_run(path)
+    if not failed and "flown" in run:
+        return
+    tick = last_tick(path, scenario)
+    name, process = failed[0] if failed else ("flight software", fsw)
+    why = run.get("ended") or f"the {name} {_how(process.returncode)} at tick {tick}"
+    if stood_s:
+        why = f"the plant stands still: nothing has been flown for {stood_s:.0f} s after tick {tick}"
+    if run.get("second_senders"):
+        why += f"; {said(run['second_senders'])}"
+    raise FlightError(f"{why}: the run is not complete, what was flown is in {path}")
+
+
+def _standstill(path: Path, scenario: Scenario, patience: Patience) -> Standstill:
+    factor = run_dir.read_run(path)["pace_factor"]
+    two_ticks_s = 2.0 / (scenario.time.tick_hz * factor) if factor else 0.0
+    longest_s = patience.answer_s + MARGIN_S + two_ticks_s
+    return Standstill(path / run_dir.BUS_LOG, patience.boot_s + MARGIN_S, longest_s)
+
+
+def last_tick(path: Path, scenario: Scenario) -> int:
+    """The tick of the last line in the log so far; 0 while there is none."""
+    try:
+        with (path / run_dir.BUS_LOG).open("rb") as log:
+            log.seek(0, os.SEEK_END)
+            log.seek(max(0, log.tell() - 256))
+            tail = log.read()
+    except OSError:
+        return 0
+    stamps = [line[1:].partition(b")")[0] for line in tail.splitlines() if line.startswith(b"(")]
+    if not stamps:
+        return 0
+    return round((float(stamps[-1]) - scenario.epoch_unix_s) * scenario.time.tick_hz)
+
+
+def start_node(module: str, *arguments: str) -> subprocess.Popen[bytes]:
+    """A node as a process, of the same code. Ctrl-C is for this process alone: it ends its nodes itself."""
+    words = [sys.executable, "-m", module, *arguments]
+    path = {"PYTHONPATH": os.pathsep.join(sys.path), "PYTHONSAFEPATH": "1"}  # not what lies in this directory
+    environment = {**os.environ, **path, "OPENBLAS_NUM_THREADS": "1"}
+    return subprocess.Popen(words, env=environment, start_new_session=True)
+
+
+def _serve(hub: Hub | None, seconds: float) -> None:
+    """Let time pass; where the bus is hosted here, by serving it."""
+    if hub is None:
+        time.sleep(seconds)
+        return
+    deadline = time.monotonic() + seconds
+    while (remaining_s := deadline - time.monotonic()) > 0.0:
+        hub.poll(remaining_s)
+
+
+def _well(*processes: subprocess.Popen[bytes]) -> bool:
+    return all(process.poll() in (None, 0) for process in processes)
+
+
+def _end(processes: Sequence[subprocess.Popen[bytes]], hub: Hub | None) -> None:
+    """End what still runs, with time to close its files; what stands still is killed."""
+    for process in processes:
+        process.terminate()
+    deadline = time.monotonic() + GRACE_S
+    while any(process.poll() is None for process in processes) and time.monotonic() < deadline:
+        _serve(hub, POLL_S / 10.0)
+    for process in processes:
+        process.kill()
+        process.wait()
+
+
+def _how(code: int | None) -> str:
+    if code is not None and code < 0:
+        return f"was ended by signal {-code}"
+    return f"ended with exit code {code}"

@@ -1,1 +1,0 @@
-"""Composition root: command line, SIL run, replay, audit, report."""

@@ -1,1 +1,0 @@
-"""``torquer design``: gains for a scenario from Floquet theory."""

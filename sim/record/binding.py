@@ -1,0 +1,184 @@
+"""What binds the files of a run to each other: their SHA-256 in run.json, written as each is finished.
+
+That tells a file that was exchanged, edited or lost. It guards against mishap, not against somebody who
+rewrites run.json too: against that stands its signature (``sim.record.signature``).
+"""
+
+import hashlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+from fsw.input.schema import TableError
+from sim.errors import HarnessError
+from sim.progress import Watch, progress
+from sim.record import run_dir
+from sim.record.run_dir import BUS_LOG, DIGESTS, RUN, SCENARIO, SCENARIO_DIGEST, SUMMARY, TRUTH
+from sim.record.run_record import RunRecord
+from sim.record.signature import PrivateKey, PublicKey, fault_of, sign
+
+FILES = (SCENARIO, BUS_LOG, TRUTH, SUMMARY)
+"""What is bound of a run once it is finished."""
+CHUNK = 1 << 20
+BAR_FROM = 400_000_000
+"""So many bytes take a second or two."""
+
+
+class BindingError(HarnessError):
+    """Files are not those of their run."""
+
+    exit_code = 1
+
+
+class Binding(NamedTuple):
+    """What run.json says of the files beside it.
+
+    Attributes:
+        mismatches: a sentence for each file that is not the run's own, by its name.
+        note: what is not bound, in a sentence; empty where there is nothing to tell.
+    """
+
+    mismatches: dict[str, str]
+    note: str = ""
+
+    @property
+    def holds(self) -> bool:
+        """Whether nothing contradicts run.json."""
+        return not self.mismatches
+
+    @property
+    def lines(self) -> list[str]:
+        """What a command prints of it."""
+        notes = [f"note: {self.note}"] if self.note else []
+        return [f"MISMATCH {sentence}" for sentence in self.mismatches.values()] + notes
+
+    @contextmanager
+    def beside_errors(self) -> Iterator[None]:
+        """An error in the block tells of the mismatches too: one of them may be its cause."""
+        try:
+            yield
+        except (HarnessError, TableError) as error:
+            error.args = ("; ".join([str(error), *self.mismatches.values()]),)
+            raise
+
+
+def require_sources(folder: Path, key: PublicKey | None) -> Binding:
+    """What ``compare`` says, if all that a summary is made from is the run's own.
+
+    Raises:
+        BindingError: it is not, or not signed.
+        HarnessError: run.json or a file that it binds cannot be read.
+    """
+    run_dir.read_run(folder)  # here it must be one
+    binding = compare(folder, key=key)
+    faults = [sentence for name, sentence in binding.mismatches.items() if name != SUMMARY]
+    if faults:
+        raise BindingError(f"{folder}: {'; '.join(faults)}")
+    return binding
+
+
+def compare(folder: Path, log: Path | None = None, key: PublicKey | None = None) -> Binding:
+    """Compare the files of a run with the digests in its run.json.
+
+    Args:
+        folder: of the run; without a run.json nothing is bound.
+        log: a log that is to be the run's; None: its bus.log.
+        key: run.json must be signed by its private half, and have a digest of every file.
+
+    Raises:
+        HarnessError: run.json or a file that it binds cannot be read.
+    """
+    if not (folder / RUN).is_file():
+        return Binding({} if key is None else {RUN: f"{folder} has no {RUN}, so that nothing is signed"})
+    run = run_dir.read_run(folder)
+    kept = digests(run)
+    paths = {name: folder / name for name in (*FILES, *kept)}
+    if log is not None:
+        paths[BUS_LOG] = log
+    mismatches = {}
+    for name, digest in kept.items():
+        if sentence := _mismatch(paths[name], digest):
+            mismatches[name] = sentence
+    unbound = [name for name in FILES if name not in kept and paths[name].is_file()]
+    if key is not None:
+        mismatches |= {name: f"{name} is not signed: {RUN} has no digest of it" for name in unbound}
+        if sentence := fault_of(folder / RUN, key):
+            mismatches[RUN] = sentence
+    return Binding(mismatches, _note(run, unbound))
+
+
+def digests(run: RunRecord) -> dict[str, str]:
+    """The SHA-256 of each file that a run.json binds, by name."""
+    return {SCENARIO: run[SCENARIO_DIGEST], **run.get(DIGESTS, {})}
+
+
+def bind(folder: Path, *names: str) -> None:
+    """Add the digests of files that are finished; what is bound already stays bound as it is."""
+    kept = run_dir.read_run(folder)[DIGESTS]
+    added = {name: sha256_of(folder / name) for name in names if name not in kept}
+    run_dir.update(folder, **{DIGESTS: {**kept, **added}})
+
+
+def release(folder: Path, name: str) -> None:
+    """Unbind a file that is about to be written anew: a kill in between leaves it without digest."""
+    kept = run_dir.read_run(folder)[DIGESTS]
+    if kept.pop(name, None) is not None:
+        run_dir.update(folder, **{DIGESTS: kept})
+
+
+def sign_run(folder: Path, key: PrivateKey) -> None:
+    """Sign the run.json of a finished run, and with it every file that it binds.
+
+    Raises:
+        BindingError: a file is not bound, or not the run's own.
+        HarnessError: run.json or a file that it binds cannot be read.
+    """
+    faults = list(compare(folder).mismatches.values())
+    kept = digests(run_dir.read_run(folder))
+    if missing := [name for name in FILES if name not in kept]:
+        faults.append(f"{RUN} has no digests of {', '.join(missing)}")
+    if faults:
+        raise BindingError(f"{folder} is not signed: {'; '.join(faults)}")
+    sign(folder / RUN, key)
+
+
+def sha256_of(path: Path, watch: Watch = lambda size: None) -> str:
+    """The digest of a file in hex; ``watch`` is told how many bytes have been read.
+
+    Raises:
+        HarnessError: it cannot be read.
+    """
+    sha256 = hashlib.sha256()
+    try:
+        with path.open("rb") as file:
+            while chunk := file.read(CHUNK):
+                sha256.update(chunk)
+                watch(file.tell())
+    except OSError as error:
+        raise HarnessError(f"{path}: cannot be read: {error.strerror}") from None
+    return sha256.hexdigest()
+
+
+def _mismatch(path: Path, digest: str) -> str:
+    """What is wrong with a file of the run; empty if nothing is."""
+    if not path.is_file():
+        return f"{path.name} is missing, and {RUN} has its digest"
+    size = path.stat().st_size
+    if size < BAR_FROM:
+        found = sha256_of(path)
+    else:
+        with progress(f"reading {path.name}", size) as watch:
+            found = sha256_of(path, watch)
+    if found == digest:
+        return ""
+    return f"{path.name} is not the run's own: its SHA-256 begins with {found[:12]}, in {RUN} {digest[:12]}"
+
+
+def _note(run: RunRecord, unbound: list[str]) -> str:
+    if not unbound:
+        return ""
+    names = ", ".join(unbound)
+    if DIGESTS not in run:
+        return f"{RUN} is of an older version: no digests of {names}"
+    return f"the run was not finished: no digests of {names}"

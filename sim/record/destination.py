@@ -1,0 +1,54 @@
+"""Where results go: asked for before anything is computed, so that no work is lost for want of a place."""
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from tempfile import TemporaryFile
+
+from fsw.input.regular_file import check_regular
+from sim.errors import HarnessError
+
+
+def check_folder(folder: Path, names: Sequence[str] = ()) -> None:
+    """Make a folder if it is not there, and be sure that these files can be written into it.
+
+    Raises:
+        HarnessError: they cannot; the message says which, and why.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with TemporaryFile(dir=folder):
+            pass
+    except (OSError, ValueError) as error:  # of a NUL, ValueError
+        raise HarnessError(f"{folder}: cannot be written ({_why(error)})") from None
+    for name in names:
+        _check_target(folder / name)
+
+
+def check_file(path: Path) -> None:
+    """Make the folder of a file if it is not there, and be sure that the file can be written.
+
+    Raises:
+        HarnessError: it cannot.
+    """
+    check_folder(path.parent)
+    _check_target(path)
+
+
+def _check_target(path: Path) -> None:
+    """Nothing is in the way of a file: a folder, a device, or a file that may not be changed."""
+    try:
+        if os.path.lexists(path):
+            check_regular(path)
+            with path.open("ab"):
+                pass
+        else:
+            path.stat()
+    except FileNotFoundError:
+        return
+    except (OSError, ValueError) as error:
+        raise HarnessError(f"{path}: cannot be written ({_why(error)})") from None
+
+
+def _why(error: OSError | ValueError) -> str:
+    return getattr(error, "strerror", None) or str(error)

@@ -1,0 +1,34 @@
+"""How a run is paced: in lockstep, or in real time times a factor."""
+
+from dataclasses import dataclass
+
+from sim.errors import HarnessError
+
+
+@dataclass(frozen=True, slots=True)
+class Pace:
+    """``factor`` None: lockstep, as fast as it goes; else real time times the factor."""
+
+    factor: float | None = None
+
+
+LOCKSTEP = Pace()
+
+
+def parse_pace(text: str) -> Pace:
+    """``lockstep`` or ``realtime[:FACTOR]``.
+
+    Raises:
+        HarnessError: anything else, or a factor that is not positive.
+    """
+    kind, colon, factor = text.partition(":")
+    if kind == "lockstep" and not colon:
+        return Pace()
+    if kind == "realtime":
+        try:
+            value = float(factor) if colon else 1.0
+        except ValueError:
+            value = 0.0
+        if 0.0 < value < 1e6:
+            return Pace(value)
+    raise HarnessError(f"--pace {text}: write lockstep, realtime or realtime:FACTOR with a positive factor")

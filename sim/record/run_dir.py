@@ -1,0 +1,170 @@
+"""The run directory: its files, and run.json, which is replaced atomically and complete only at the end."""
+
+import hashlib
+import json
+import os
+import platform
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+import tomli_w
+
+from fsw.input.schema import TableError
+from sim.errors import HarnessError
+from sim.record.destination import check_folder
+from sim.record.log_index import SUFFIX
+from sim.record.pace import Pace
+from sim.record.run_record import SCHEMA_VERSION, RunRecord, read_record
+from sim.scenario.schema import Scenario, flight_table, load
+
+RUN, SCENARIO, BUS_LOG, TRUTH, SUMMARY, REPORT = (
+    "run.json",
+    "scenario.toml",
+    "bus.log",
+    "truth.h5",
+    "summary.json",
+    "report.html",
+)
+SCENARIO_DIGEST: Final = "scenario_sha256"
+DIGESTS: Final = "digests"
+"""Keys of run.json: SHA-256 of the scenario, and of further files by name, added when each is finished."""
+FILES = (RUN, SCENARIO, BUS_LOG, BUS_LOG + SUFFIX, TRUTH, SUMMARY, REPORT)
+RESULTS = (RUN, SUMMARY, REPORT)
+"""What is written when a flight is over, and again by ``torquer report``."""
+
+Json = dict[str, Any]
+
+
+def default_path(scenario: Scenario) -> Path:
+    """``runs/<scenario>-<UTC time>``; a number is added where that exists."""
+    stem = f"{scenario.name}-{datetime.now(UTC):%Y%m%dT%H%M%SZ}"
+    path, number = Path("runs") / stem, 1
+    while path.exists():
+        number += 1
+        path = Path("runs") / f"{stem}-{number}"
+    return path
+
+
+def begin(path: Path, scenario: Scenario, seed: int, ticks: int, bus: str, pace: Pace) -> None:
+    """Make the directory with scenario.toml and a run.json that is not complete.
+
+    Raises:
+        HarnessError: the directory holds a run already, or cannot be written.
+    """
+    check_folder(path)
+    if any((path / name).exists() for name in FILES):
+        raise HarnessError(f"{path} already holds a run: choose another --out")
+    values = scenario.model_dump(mode="json", exclude_none=True)
+    try:
+        text = tomli_w.dumps(values)
+        (path / SCENARIO).write_text(text, encoding="utf-8")
+        write_json(
+            path / RUN,
+            {
+                "schema_version": SCHEMA_VERSION,
+                "torquer_version": version("torquer"),
+                "scenario": scenario.name,
+                SCENARIO_DIGEST: hashlib.sha256(text.encode()).hexdigest(),
+                "flight_table_crc": f"{flight_table(scenario).crc:08x}",
+                "seed": seed,
+                "ticks": ticks,
+                "bus": bus,
+                "pace": "lockstep" if pace.factor is None else "realtime",
+                "pace_factor": pace.factor,
+                "platform": fingerprint(),
+                DIGESTS: {},
+                "complete": False,
+            },
+        )
+    except OSError as error:
+        raise HarnessError(f"{path}: cannot be written ({error.strerror})") from None
+
+
+def update(path: Path, **values: object) -> None:
+    """Replace run.json with these values changed."""
+    write_json(path / RUN, {**read_run(path), **values})
+
+
+def read_run(path: Path) -> RunRecord:
+    """The content of run.json.
+
+    Raises:
+        HarnessError: missing, not JSON, of another version, or a key is missing or not what it should be.
+    """
+    try:
+        return read_record(path / RUN)
+    except (FileNotFoundError, NotADirectoryError):
+        raise HarnessError(f"{path} is no run directory: it has no {RUN}") from None
+    except OSError as error:
+        raise HarnessError(f"{path / RUN}: cannot be read ({error.strerror})") from None
+
+
+def read_scenario(path: Path) -> Scenario:
+    """The resolved scenario of a run.
+
+    Raises:
+        HarnessError: missing or no longer valid.
+    """
+    try:
+        return load(str(path / SCENARIO))
+    except TableError as error:
+        raise HarnessError(str(error)) from None
+
+
+def write_json(path: Path, content: Json) -> None:
+    """Replace a JSON file atomically."""
+    replace_file(path, (json.dumps(content, indent=2) + "\n").encode())
+
+
+def replace_file(path: Path, content: bytes) -> None:
+    """Replace a file atomically."""
+    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    temporary.write_bytes(content)
+    temporary.replace(path)
+
+
+def locate(run_or_log: Path) -> tuple[Path, Path]:
+    """(log, folder) of a run directory or of a log file.
+
+    Raises:
+        HarnessError: neither exists.
+    """
+    if os.path.isdir(run_or_log):  # unlike Path's, never an error, whatever the name
+        log = run_or_log / BUS_LOG
+        if not log.is_file():
+            raise HarnessError(f"{run_or_log} has no {BUS_LOG}")
+        return log, run_or_log
+    if not os.path.isfile(run_or_log):
+        raise HarnessError(f"{run_or_log} does not exist")
+    return run_or_log, run_or_log.parent
+
+
+def fingerprint() -> Json:
+    """What decides about the last bit of a result: CPU, Python, numpy and its linear algebra."""
+    config: Any = np.show_config(mode="dicts")
+    blas = config["Build Dependencies"]["blas"]
+    return {
+        "machine": platform.machine(),
+        "cpu": _cpu_model(),
+        "system": platform.system(),
+        "libc": " ".join(platform.libc_ver()),
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "simd": config["SIMD Extensions"],
+        "blas": f"{blas.get('name')} {blas.get('version')}",
+        "blas_core": os.environ.get("OPENBLAS_CORETYPE", ""),
+    }
+
+
+def _cpu_model() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return platform.processor()
+    values = {key.strip(): value.strip() for key, _, value in (line.partition(":") for line in lines)}
+    return " ".join(
+        values.get(key, "") for key in ("vendor_id", "model name", "cpu family", "model", "stepping")
+    ).strip()

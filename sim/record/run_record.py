@@ -1,0 +1,103 @@
+"""run.json: its keys, checked once when it is read."""
+
+from pathlib import Path
+from typing import Annotated, Literal, NotRequired, cast
+
+from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, with_config
+from pydantic_core import from_json
+from typing_extensions import TypedDict
+
+from fsw.input.regular_file import read_regular
+from fsw.input.schema import faults
+from sim.errors import HarnessError
+from sim.scenario.names import Name
+
+SCHEMA_VERSION = 1
+MOST_BYTES = 1_000_000
+_OPEN = ConfigDict(strict=True, extra="allow", allow_inf_nan=False)
+"""Keys that are not known stay: a later version may write more under the same schema version."""
+
+Text = Annotated[str, Field(max_length=1000)]
+Digest = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
+Count = Annotated[int, Field(ge=0, lt=2**32)]
+
+
+@with_config(_OPEN)
+class Platform(TypedDict):
+    """What the run was flown on; ``run_dir.fingerprint`` gives more."""
+
+    machine: Text
+    system: Text
+    python: Text
+    numpy: Text
+
+
+@with_config(_OPEN)
+class FlownRecord(TypedDict):
+    """What became of a flight that came to its end."""
+
+    ticks: Count
+    slips: NotRequired[Count]
+    wall_s: NotRequired[Annotated[float, Field(ge=1e-6, le=1e12)]]
+
+
+@with_config(_OPEN)
+class FlightRecord(TypedDict):
+    """What a summary needs to know. ``flown`` is there once the flight has ended."""
+
+    seed: Annotated[int, Field(ge=0, lt=2**64)]
+    flown: NotRequired[FlownRecord]
+
+
+@with_config(_OPEN)
+class SenderRecord(TypedDict):
+    """Frames of another under one identifier; ``tick`` is that of the first."""
+
+    message: Text
+    id: Text
+    tick: Count
+    frames: Count
+
+
+@with_config(_OPEN)
+class RunRecord(FlightRecord):
+    """What run.json says. ``ended``: why a flight came to no end, where the plant knows."""
+
+    schema_version: int
+    torquer_version: Text
+    scenario: Text
+    scenario_sha256: Digest
+    flight_table_crc: Annotated[str, Field(pattern="^[0-9a-f]{8}$")]
+    ticks: Annotated[int, Field(ge=1, lt=2**32)]
+    bus: Text
+    pace: Literal["lockstep", "realtime"]
+    pace_factor: Annotated[float, Field(gt=0.0, le=1e6)] | None
+    platform: Platform
+    complete: bool
+    digests: NotRequired[dict[Name, Digest]]
+    second_senders: NotRequired[list[SenderRecord]]
+    ended: NotRequired[Text]
+
+
+_RECORD = TypeAdapter(RunRecord)
+
+
+def read_record(path: Path) -> RunRecord:
+    """The content of a run.json.
+
+    Raises:
+        OSError: it cannot be read.
+        HarnessError: not JSON, of another version, or a key is missing or not what it should be.
+    """
+    try:
+        content = from_json(read_regular(path, MOST_BYTES), allow_inf_nan=False)
+    except ValueError as error:
+        raise HarnessError(f"{path}: not JSON: {error}") from None
+    told = content.get("schema_version") if isinstance(content, dict) else None
+    if type(told) is not int or told != SCHEMA_VERSION:
+        raise HarnessError(f"{path}: schema_version is {told}, and only {SCHEMA_VERSION} can be read")
+    try:
+        _RECORD.validate_python(content)
+    except ValidationError as error:
+        raise HarnessError(f"{path}: {faults(RunRecord, error)}") from None
+    return cast(RunRecord, content)  # and not the copy that pydantic makes, which is in another order

@@ -1,0 +1,200 @@
+"""truth.h5: the plant's histories, one row a tick.
+
+All datasets get their full length when the file is made, contiguous and filled with NaN. From then on only
+rows change, never the structure, so that a process killed at any moment leaves a file that opens; and the
+space is taken at once, so that a disk that cannot hold the histories is known before the flight.
+"""
+
+import errno
+import os
+import re
+from array import array
+from itertools import chain, islice
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from fsw.input.regular_file import check_regular
+from sim.errors import HarnessError
+from sim.plant.plant import TruthRow
+
+BLOCK_ROWS = 1024
+ROOM_FOR_STRUCTURE = 8192
+
+Histories = dict[str, NDArray[np.float64]]
+
+COLUMNS: tuple[tuple[str, int, str, str], ...] = (
+    ("t_s", 1, "s", "time since tick 0"),
+    ("q_body_from_orbit", 4, "1", "attitude, scalar first"),
+    ("omega_body_orbit_radps", 3, "rad/s", "rate of the body relative to the orbital frame, body axes"),
+    ("b_body_t", 3, "T", "geomagnetic field, body axes"),
+    ("sun_body", 3, "1", "unit vector to the Sun, body axes"),
+    ("lit", 1, "1", "visible fraction of the Sun"),
+    ("m_body_am2", 3, "A m^2", "mean coil dipole over the tick that ends here, body axes"),
+    ("r_eci_m", 3, "m", "position, TEME of date"),
+)
+"""Name, width, unit and meaning of the datasets; torques follow, one dataset a source."""
+
+
+class TruthFile:
+    """Writes one row a tick, in blocks.
+
+    Raises:
+        HarnessError: the disk cannot hold the histories of so many ticks.
+    """
+
+    def __init__(self, path: Path, ticks: int, torque_sources: tuple[str, ...]) -> None:
+        self._columns = sum(width for _, width, *_ in COLUMNS) + 3 * len(torque_sources)
+        _take_space(path, 8 * ticks * self._columns + ROOM_FOR_STRUCTURE)
+        self._file = h5py.File(path, "w", libver="earliest")
+        torques = tuple(
+            (f"torque_body_nm/{source}", 3, "N m", f"torque by {source}, body axes")
+            for source in torque_sources
+        )
+        self._datasets = []
+        for name, width, unit, meaning in COLUMNS + torques:
+            shape = (ticks,) if width == 1 else (ticks, width)
+            dataset = self._file.create_dataset(name, shape, dtype="f8", fillvalue=np.nan)
+            dataset.attrs["unit"] = unit
+            dataset.attrs["meaning"] = meaning
+            dataset[0:1] = np.nan  # allocates the space now: the structure is final before the first row
+            self._datasets.append((dataset, width))
+        self._waiting = array("d")
+        self._written = 0
+        self._file.flush()
+        _take_space(path, path.stat().st_size)
+
+    def append(self, row: TruthRow) -> None:
+        """Add the row of the next tick."""
+        self._waiting.fromlist(_flat(row))
+        if len(self._waiting) >= BLOCK_ROWS * self._columns:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write the rows that wait."""
+        if not self._waiting:
+            return
+        block = np.array(self._waiting).reshape(-1, self._columns)
+        self._waiting = array("d")
+        here = slice(self._written, self._written + len(block))
+        column = 0
+        for dataset, width in self._datasets:
+            values = block[:, column : column + width]
+            dataset[here] = values[:, 0] if width == 1 else values
+            column += width
+        self._written = here.stop
+        self._file.flush()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.flush()
+        self._file.close()
+
+
+_CANNOT_RESERVE = (errno.EBADF, errno.EINVAL, errno.EOPNOTSUPP)
+"""What a file system answers that has no such call; its space is then taken as it is written."""
+
+
+def _take_space(path: Path, size: int) -> None:
+    """Make a file take its space on the disk.
+
+    Raises:
+        HarnessError: there is not so much.
+    """
+    try:
+        with path.open("ab") as file:
+            os.posix_fallocate(file.fileno(), 0, size)
+    except OSError as error:
+        if error.errno in _CANNOT_RESERVE:
+            return
+        raise HarnessError(
+            f"{path}: histories of this length need {size / 1e6:.1f} MB: {error.strerror}"
+        ) from None
+
+
+LARGEST = 1e15
+"""No history has a greater magnitude, in SI."""
+MOST_SOURCES = 16
+_SOURCE = re.compile("[a-z][a-z0-9_]{0,39}")
+_DAMAGE = (OSError, KeyError, RuntimeError, TypeError, ValueError)
+"""What h5py raises over a file that is none, or is damaged."""
+
+
+def read_truth(path: Path) -> Histories:
+    """The flown rows of every dataset, by name.
+
+    Raises:
+        HarnessError: missing or not a truth file.
+    """
+    try:
+        check_regular(path)
+        with h5py.File(path, "r") as file:
+            widths = {name: width for name, width, *_ in COLUMNS}
+            widths |= {f"torque_body_nm/{source}": 3 for source in _sources(file)}
+            _check_layout(file, widths, path.stat().st_size)
+            histories = {name: file[name][:] for name in widths}
+    except _DAMAGE as error:
+        raise HarnessError(f"{path}: cannot be read as plant histories ({error})") from None
+    for name, history in histories.items():
+        if (np.abs(history) > LARGEST).any():
+            raise HarnessError(f"{path}: {name} holds a magnitude above {LARGEST:g}")
+    flown = min(map(_complete_rows, histories.values()))
+    return {name: history[:flown] for name, history in histories.items()}
+
+
+def _sources(file: h5py.File) -> list[str]:
+    """What turns the body, as the file names it.
+
+    Raises:
+        ValueError: a name that is none of ours, or very many.
+    """
+    names = list(islice(file["torque_body_nm"], MOST_SOURCES + 1))
+    if len(names) > MOST_SOURCES or not all(_SOURCE.fullmatch(name) for name in names):
+        raise ValueError(f"torque_body_nm is no group of at most {MOST_SOURCES} torques by name")
+    return names
+
+
+def _check_layout(file: h5py.File, widths: dict[str, int], size: int) -> None:
+    """Doubles in the shapes that ``TruthFile`` makes, in one piece and in this file: so many bytes at most.
+
+    Raises:
+        ValueError: something else.
+    """
+    rows = (*getattr(file["t_s"], "shape", ()), 0)[0]
+    for name, width in widths.items():
+        dataset, shape = file[name], (rows,) if width == 1 else (rows, width)
+        if not isinstance(dataset, h5py.Dataset) or (dataset.shape, dataset.dtype) != (shape, np.dtype("f8")):
+            raise ValueError(f"{name} is no table of {' x '.join(map(str, shape))} doubles")
+        elsewhere = dataset.is_virtual or dataset.external or dataset.file.filename != file.filename
+        if dataset.chunks or elsewhere:
+            raise ValueError(f"{name} is not stored in one piece in this file")
+    if 8 * rows * sum(widths.values()) > size:
+        raise ValueError(f"{rows} rows do not fit into its {size} bytes")
+
+
+def _complete_rows(history: NDArray[np.float64]) -> int:
+    """Rows before the first with a NaN; where a flush was cut short, datasets differ in it."""
+    broken = np.flatnonzero(~np.isfinite(history.reshape(len(history), -1)).all(axis=1))
+    return int(broken[0]) if len(broken) else len(history)
+
+
+def _flat(row: TruthRow) -> list[float]:
+    return [
+        row.t_s,
+        *row.q_body_from_orbit,
+        *row.omega_body_orbit_radps,
+        *row.b_body_t,
+        *row.sun_body,
+        row.lit,
+        *row.m_body_am2,
+        *row.r_eci_m,
+        *chain.from_iterable(row.torque_body_nm),
+    ]

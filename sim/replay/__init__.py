@@ -1,0 +1,1 @@
+"""Replay: a log through the flight software again, through the plant, or onto a bus."""

@@ -1,0 +1,214 @@
+"""What ``torquer replay`` does: through the flight software, through the plant, or onto a bus."""
+
+import time
+from collections.abc import Iterator
+from contextlib import suppress
+from itertools import groupby, islice, zip_longest
+from pathlib import Path
+from typing import NamedTuple
+
+import click
+
+from fsw.bus.open_bus import open_bus
+from fsw.table.config import flight_config
+from fsw.wire.frame import Frame
+from fsw.wire.messages import NAMES, Sync
+from sim.errors import HarnessError
+from sim.faults.section import forge_answers, make_plant
+from sim.flight.answers import answered
+from sim.progress import progress
+from sim.record import run_dir
+from sim.record.binding import Binding, compare
+from sim.record.candump import LogEntry, LogTruncatedError, format_time, read_log
+from sim.record.log_index import vouch
+from sim.record.run_record import RunRecord
+from sim.record.signature import PublicKey
+from sim.replay.replay import replay
+from sim.scenario.assemble import plant_config
+from sim.scenario.schema import Scenario, flight_table, load, parse_settings
+
+LONGEST_PAUSE_S = 86_400.0
+"""In a log that is played: what pauses for longer was not recorded in one piece."""
+
+
+class Flown(NamedTuple):
+    """What a log was flown with: scenario, run.json where there is one, and what that says of the files."""
+
+    scenario: Scenario
+    run: RunRecord | None
+    binding: Binding
+
+    @property
+    def ticks(self) -> int:
+        """How many are in the log, as far as that is known."""
+        return self.run["ticks"] if self.run else 0
+
+
+def locate(
+    run_or_log: Path, scenario: str | None, settings: tuple[str, ...], key: PublicKey | None = None
+) -> tuple[Path, Flown]:
+    """The log, and what it was flown with; with a key, the run must be signed by its private half.
+
+    Raises:
+        HarnessError: no such log, or nothing tells the scenario.
+        TableError: the scenario is not valid.
+    """
+    log, folder = run_dir.locate(run_or_log)
+    binding = compare(folder, log, key)
+    with binding.beside_errors():
+        next(iter(read_log(log)))  # a file that is no log is named first
+        run = run_dir.read_run(folder) if (folder / run_dir.RUN).is_file() else None
+        beside = folder / run_dir.SCENARIO
+        if scenario is None and not beside.is_file():
+            raise HarnessError(
+                f"{log}: no {run_dir.SCENARIO} beside it: name what it was flown with by --scenario"
+            )
+        return log, Flown(load(scenario or str(beside), parse_settings(settings)), run, binding)
+
+
+def through_flight_software(log: Path, flown: Flown) -> int:
+    """Print the verdict; 0 if the replay is exact, as far as this platform must be, and the log whole."""
+    config = flight_config(flight_table(flown.scenario))
+    with progress("replaying", flown.ticks) as watch:
+        shown = replay(
+            log, config, lambda state: watch(state.tick), forged=forge_answers(flown.scenario.fault)
+        )
+    same_platform = flown.run is None or flown.run["platform"] == run_dir.fingerprint()
+    exact = shown.bit_exact or (shown.command_exact and not same_platform)
+    if shown.bit_exact:
+        click.echo(f"bit-exact: {shown.ticks} ticks, {shown.frames} frames, every state CRC equal")
+    elif shown.command_exact:
+        need = (
+            "bit-exact is required: the platform is the run's"
+            if same_platform
+            else "another platform than the run's"
+        )
+        click.echo(f"command-exact, not bit-exact ({need}): {shown.first_bit_difference}")
+    else:
+        click.echo(f"differs: {shown.first_bit_difference}")
+        if shown.first_command_difference != shown.first_bit_difference:
+            click.echo(f"first command that differs: {shown.first_command_difference}")
+        _vouched(log, flown)
+        return 1
+    holds = _vouched(log, flown)
+    if shown.ended:
+        return 0 if exact and holds else 1
+    how = "inside a line" if shown.cut else "without its end mark"
+    click.echo(
+        f"incomplete: the log ends {how} after line {shown.end_line}, at tick {max(shown.last_tick, 0)}"
+    )
+    return 1
+
+
+def through_plant(log: Path, flown: Flown) -> int:
+    """The recorded commands through the plant: its frames must come out as logged."""
+    if flown.run is None:
+        raise HarnessError(f"{log}: --plant needs the seed: no {run_dir.RUN} beside it")
+    plant = make_plant(plant_config(flown.scenario, flown.run["seed"]), flown.scenario.fault)
+    ticks = 0
+    with progress("replaying", flown.ticks) as watch:
+        for logged, is_last in _by_time(log):
+            if is_last and logged == [plant.end()]:
+                click.echo(f"plant reproduced: {ticks} ticks, every frame equal")
+                return 0 if _vouched(log, flown) else 1
+            sent = plant.begin_tick()
+            begin = _beginning(logged, sent)
+            end = begin + len(sent)
+            difference = _difference(sent, logged[begin:end])
+            if difference is not None:
+                click.echo(f"differs: tick {ticks}: {difference}")
+                _vouched(log, flown)
+                return 1
+            for frame in logged[:begin] + logged[end:]:
+                plant.receive(frame)
+            plant.slips += not answered(logged, ticks)
+            plant.end_tick()
+            ticks += 1
+            watch(ticks)
+    _vouched(log, flown)
+    click.echo(f"incomplete: the log ends without its end mark at tick {max(ticks - 1, 0)}")
+    return 1
+
+
+def _vouched(log: Path, flown: Flown) -> bool:
+    """Print what index and run.json say of the log; whether it may pass for a complete one of its run."""
+    voucher = vouch(log)
+    if voucher.sentence:
+        click.echo(f"{'note' if voucher.holds else 'index'}: {voucher.sentence}")
+    for line in flown.binding.lines:
+        click.echo(line)
+    return voucher.holds and flown.binding.holds
+
+
+def _beginning(logged: list[Frame], sent: list[Frame]) -> int:
+    """Where the frames of the plant begin in a tick: SYNC is their last, strangers may be first."""
+    own = [index for index, frame in enumerate(logged) if frame == sent[-1]]
+    any_sync = [index for index, frame in enumerate(logged) if frame.can_id == Sync.ID]
+    sync = next(iter(own + any_sync), len(sent))
+    return max(0, sync + 1 - len(sent))
+
+
+def _difference(ours: list[Frame], logged: list[Frame]) -> str | None:
+    """The first frame that the plant does not send as logged."""
+    for mine, other in zip_longest(ours, logged):
+        if mine != other:
+            name = NAMES.get((mine or other).can_id, "a frame")
+            texts = [frame.data.hex() if frame else "missing" for frame in (other, mine)]
+            return f"{name} is {texts[0]} in the log and {texts[1]} from the plant"
+    return None
+
+
+def play(log: Path, flown: Flown, spec: str) -> int:
+    """Send every frame of the log onto a bus, spaced as its timestamps are; 0 if it is that of its run.
+
+    Raises:
+        HarnessError: it would take for ever.
+        BusError: the bus cannot be used.
+    """
+    first_us, last_us = _playable(log)
+    bus = open_bus(spec)
+    try:
+        with progress(f"playing onto {spec}", last_us - first_us) as watch:
+            began = time.monotonic()
+            for stamp_us, group in groupby(read_log(log), key=lambda entry: entry.timestamp_us):
+                watch(stamp_us - first_us)
+                time.sleep(max(0.0, began + (stamp_us - first_us) / 1e6 - time.monotonic()))
+                bus.send([entry.frame for entry in group])
+    finally:
+        bus.close()
+    for line in flown.binding.lines:
+        click.echo(line)
+    return 0 if flown.binding.holds else 1
+
+
+def _by_time(log: Path) -> Iterator[tuple[list[Frame], bool]]:
+    """The frames after FSW_BOOT, those of one time together, and whether they are the last of the log."""
+    groups = groupby(_after_boot(log), key=lambda entry: entry.timestamp_us)
+    frames = ([entry.frame for entry in group] for _, group in groups)
+    before = next(frames, None)
+    for after in frames:
+        assert before is not None
+        yield before, False
+        before = after
+    if before is not None:
+        yield before, True
+
+
+def _playable(log: Path) -> tuple[int, int]:
+    """First and last timestamp [us] of a log that can be played."""
+    first_us = last_us = next(iter(read_log(log))).timestamp_us
+    with suppress(LogTruncatedError):
+        for entry in read_log(log):
+            pause_s = (entry.timestamp_us - last_us) / 1e6
+            if pause_s > LONGEST_PAUSE_S:
+                raise HarnessError(
+                    f"{log}: at {format_time(entry.timestamp_us)} it pauses for {pause_s:.0f} s"
+                )
+            last_us = entry.timestamp_us
+    return first_us, last_us
+
+
+def _after_boot(log: Path) -> Iterator[LogEntry]:
+    """The whole entries after FSW_BOOT, up to where the log is cut."""
+    with suppress(LogTruncatedError):
+        yield from islice(read_log(log), 1, None)

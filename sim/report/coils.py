@@ -1,0 +1,231 @@
+"""The charts of the report that show the coils against their limits: rasters, duty, gaps, levels."""
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path
+from matplotlib.ticker import MaxNLocator
+
+from sim.audit.findings import COILS, Pulse
+from sim.drawing.canvas import (
+    AXES_COLOURS,
+    BINS,
+    BOTTOM_IN,
+    INK,
+    LEFT_IN,
+    LEGEND_IN,
+    LIMIT,
+    RIGHT_IN,
+    TITLE_IN,
+    WIDTH_IN,
+    Span,
+    TimeAxis,
+    legend,
+    shade,
+    stacked,
+    trace,
+)
+from sim.report.histories import Flown
+
+ZOOM_S = 1200.0
+MARKS = 300
+"""Marks of broken limits in a chart; a log of a board that broke loose may hold thousands."""
+BACKOFF = "#f7e3d3"
+_REACH = 0.42
+"""Height of a bar of the highest level; lanes are 1 apart."""
+
+
+def raster(flown: Flown) -> Figure:
+    """Every pulse of the flight: a lane a coil, a bar up or down by polarity, as high as its level."""
+    time = flown.time
+    figure, (panel,) = stacked(time, (2.1,), legends=bool(flown.audit.violations))
+    _lanes(panel, flown)
+    bin_s = flown.length_s / (2 * BINS)
+    for coil, colour in zip(COILS, AXES_COLOURS, strict=True):
+        bars = {
+            (round(float(pulse.start_s) / bin_s), pulse.level)
+            for pulse in flown.audit.pulses
+            if pulse.coil == coil
+        }
+        centres = [(place * bin_s / time.unit_s, level) for place, level in sorted(bars)]
+        _bars(panel, coil, [(x, x, level) for x, level in centres], colour, flown.audit.limits.max_level)
+    panel.set_title("Every pulse of the flight")
+    _violations(panel, flown, time)
+    return figure
+
+
+def zoom(flown: Flown) -> Figure:
+    """Twenty minutes with the most pulses: their lengths, and the back-off that each one starts."""
+    time = flown.window(flown.busiest(ZOOM_S), min(ZOOM_S, flown.length_s))
+    figure, (panel,) = stacked(time, (2.3,), legends=bool(flown.audit.violations))
+    _lanes(panel, flown)
+    limits = flown.audit.limits
+    backoff_s = limits.backoff_us / 1e6
+    seen = [p for p in flown.audit.pulses if time.start_s - backoff_s < p.start_s < time.end_s]
+    for coil, colour in zip(COILS, AXES_COLOURS, strict=True):
+        locking = seen if limits.shared else [pulse for pulse in seen if pulse.coil == coil]
+        low, high = _lane_fractions(coil)
+        shade(panel, time, _inside(locking, backoff_s, time), low, high, BACKOFF, "backoff")
+        own = [pulse for pulse in seen if pulse.coil == coil and pulse.end_s > time.start_s]
+        edges = [(float(p.start_s) / time.unit_s, float(p.end_s) / time.unit_s, p.level) for p in own]
+        _bars(panel, coil, edges, colour, limits.max_level)
+        for (left, right, level), pulse in zip(edges, own, strict=True):
+            panel.annotate(
+                f"{float(pulse.length_s):.3g} s",
+                ((left + right) / 2.0, _lane(coil)),
+                (0.0, -3.0 if level > 0 else 3.0),
+                textcoords="offset points",
+                ha="center",
+                va="top" if level > 0 else "bottom",
+                fontsize=6.5,
+                annotation_clip=True,
+            )
+    panel.xaxis.set_major_locator(MaxNLocator(10, steps=[1, 2, 5, 10]))
+    part = f"The {ZOOM_S / 60.0:g} minutes with the most pulses" if flown.length_s > ZOOM_S else "The same"
+    panel.set_title(f"{part}, to scale, back-off shaded")
+    _violations(panel, flown, time)
+    return figure
+
+
+def duty(flown: Flown) -> Figure:
+    """Duty over the orbit before each time, against what pulse length and back-off allow."""
+    time, limits = flown.time, flown.audit.limits
+    figure, (panel,) = stacked(time, (1.8,))
+    cycle_s = (limits.pulse_us + limits.backoff_us) / 1e6
+    at_s = np.linspace(min(5.0 * cycle_s, flown.length_s / 4.0), flown.length_s, 2 * BINS)
+    coils = [100.0 * flown.duty(coil, at_s) for coil in COILS]
+    for coil, colour in zip(COILS, AXES_COLOURS, strict=True):
+        trace(panel, time, at_s, coils[coil], f"coil {coil}", colour)
+    if limits.shared:
+        trace(panel, time, at_s, sum(coils, np.zeros_like(at_s)), "all", INK, linewidth=1.3)
+    bound = 100.0 * limits.pulse_us / (limits.pulse_us + limits.backoff_us)
+    what = "all coils" if limits.shared else "each coil"
+    panel.axhline(
+        bound, color=LIMIT, linestyle=(0, (4, 2)), linewidth=1.1, label=f"{bound:.2f} %: limit of {what}"
+    )
+    panel.set_ylim(0.0, 1.15 * max(bound, *(float(duty.max()) for duty in coils)))
+    panel.set_ylabel("duty [%]")
+    panel.set_title("Duty over the last orbit")
+    legend(panel)
+    return figure
+
+
+def gaps_and_levels(flown: Flown) -> Figure:
+    """How long the gaps were against the back-off, and which levels were fired."""
+    height_in = 2.6
+    figure = Figure(figsize=(WIDTH_IN, height_in))
+    gaps, levels = figure.subplots(
+        1,
+        2,
+        width_ratios=(3, 2),
+        gridspec_kw={
+            "left": LEFT_IN / WIDTH_IN,
+            "right": 1.0 - RIGHT_IN / WIDTH_IN,
+            "bottom": BOTTOM_IN / height_in,
+            "top": 1.0 - (TITLE_IN + LEGEND_IN) / height_in,
+            "wspace": 0.18,
+        },
+    )
+    _gaps(gaps, flown)
+    _levels(levels, flown)
+    return figure
+
+
+def _gaps(panel: Axes, flown: Flown) -> None:
+    limits, gaps_s = flown.audit.limits, flown.gaps_s()
+    limit_s = max(limits.backoff_us / 1e6, 1.0)
+    least = float(np.clip(gaps_s.min(initial=limit_s / 2.0), 0.1, limit_s / 2.0))
+    most = max(float(gaps_s.max(initial=0.0)), 2.0 * limit_s) * 1.001
+    edges = np.unique((*np.geomspace(least, limit_s, 8)[:-1], limit_s, *np.geomspace(limit_s, most, 40)[1:]))
+    counts, _ = np.histogram(np.maximum(gaps_s, least), edges)
+    panel.stairs(counts, edges, fill=True, color=AXES_COLOURS[0])
+    panel.yaxis.set_major_locator(MaxNLocator("auto", integer=True))
+    panel.set_xscale("log")
+    panel.set_xlim(edges[0], edges[-1])
+    ticks = [t for t in (0.1, 1, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 1e4, 1e5) if least <= t <= most]
+    panel.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    panel.set_xticks([], minor=True)
+    panel.axvspan(edges[0], limit_s, facecolor=LIMIT, alpha=0.1, linewidth=0.0)
+    panel.axvline(limit_s, color=LIMIT, linestyle=(0, (4, 2)), linewidth=1.1, label=f"{limit_s:g} s back-off")
+    panel.grid(axis="x", visible=False)
+    panel.set_xlabel("gap to the next pulse" + ("" if limits.shared else " of the same coil") + " [s]")
+    panel.set_ylabel("count")
+    panel.set_title(f"Gaps, least {gaps_s.min():.3f} s" if len(gaps_s) else "Gaps")
+    legend(panel)
+
+
+def _levels(panel: Axes, flown: Flown) -> None:
+    highest = flown.audit.limits.max_level
+    shown = range(-highest, highest + 1)
+    for coil, colour in zip(COILS, AXES_COLOURS, strict=True):
+        fired = [pulse.level for pulse in flown.audit.pulses if pulse.coil == coil]
+        heights = [fired.count(level) for level in shown]
+        places = np.array(shown) + 0.27 * (coil - 1)
+        panel.bar(places, heights, 0.27, color=colour, label=f"coil {coil}", linewidth=0.0)
+    panel.set_xticks(list(shown), [f"{level:+d}" if level else "0" for level in shown])
+    panel.grid(axis="x", visible=False)
+    panel.yaxis.set_major_locator(MaxNLocator("auto", integer=True))
+    panel.set_xlabel("level")
+    panel.set_ylabel("pulses")
+    panel.set_title("Levels")
+    legend(panel)
+
+
+def _lane(coil: int) -> float:
+    return float(len(COILS) - 1 - coil)
+
+
+def _lane_fractions(coil: int) -> tuple[float, float]:
+    return (_lane(coil) + 0.04) / len(COILS), (_lane(coil) + 0.96) / len(COILS)
+
+
+def _lanes(panel: Axes, flown: Flown) -> None:
+    highest = flown.audit.limits.max_level
+    panel.set_ylim(-0.5, len(COILS) - 0.5)
+    panel.set_yticks([_lane(coil) for coil in COILS], [f"coil {coil}" for coil in COILS])
+    panel.set_yticks([_lane(coil) + sign * _REACH for coil in COILS for sign in (-1, 1)], minor=True)
+    panel.set_yticklabels(
+        [f"{sign * highest:+d}" for _ in COILS for sign in (-1, 1)], minor=True, fontsize=6.5
+    )
+    panel.tick_params(axis="y", which="both", length=0.0)
+    panel.spines["left"].set_visible(False)
+
+
+def _bars(
+    panel: Axes, coil: int, edges: Iterable[tuple[float, float, int]], colour: str, max_level: int
+) -> None:
+    """All bars of a coil as one path; an outline, thin where there are many, keeps the shortest visible."""
+    corners, codes = [], []
+    for left, right, level in edges:
+        low = _lane(coil)
+        high = low + _REACH * level / max_level
+        corners += [(left, low), (left, high)]
+        codes += [Path.MOVETO, Path.LINETO]
+        if right > left:
+            corners += [(right, high), (right, low), (left, low)]
+            codes += [Path.LINETO, Path.LINETO, Path.CLOSEPOLY]
+    if not corners:
+        return
+    width = 0.8 if len(corners) < 1000 else 0.4
+    bars = PathPatch(Path(corners, codes), facecolor=colour, edgecolor=colour, linewidth=width, zorder=2)
+    bars.set_gid(f"pulses-{coil}")
+    bars.set_clip_on(True)
+    panel.add_patch(bars)
+
+
+def _inside(pulses: Sequence[Pulse], backoff_s: float, time: TimeAxis) -> list[Span]:
+    """The back-off of each pulse that lies in the window, at least in part."""
+    ends = [float(pulse.end_s) for pulse in pulses]
+    return [(end, end + backoff_s) for end in ends if end < time.end_s and end + backoff_s > time.start_s]
+
+
+def _violations(panel: Axes, flown: Flown, time: TimeAxis) -> None:
+    found = [v for v in flown.audit.violations if time.start_s <= v.time_s <= time.end_s][:MARKS]
+    if found:
+        x = [float(one.time_s) / time.unit_s for one in found]
+        y = [_lane(one.coil) if one.coil is not None else len(COILS) - 0.6 for one in found]
+        panel.plot(x, y, "x", color=LIMIT, markersize=6, markeredgewidth=1.6, label="limit broken", zorder=3)
+        legend(panel)

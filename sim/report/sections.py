@@ -1,0 +1,117 @@
+"""The sections of the report that hold charts, and the words under each chart."""
+
+from collections.abc import Callable
+from html import escape
+
+from matplotlib.figure import Figure
+
+from sim.audit.auditor import AuditReport
+from sim.audit.findings import AuditLimits
+from sim.drawing.canvas import style, svg
+from sim.record.estimates import Estimates
+from sim.record.truth import Histories
+from sim.report import charts as charts_of
+from sim.report import coils
+from sim.report.histories import Flown
+from sim.report.tables import section
+from sim.scenario.schema import Scenario
+
+Chart = tuple[Callable[[Flown], Figure], str]
+"""What draws it, and the words under it."""
+
+
+def charts(
+    scenario: Scenario, truth: Histories, estimates: Estimates, audit: AuditReport, events: str
+) -> list[str]:
+    """All sections with charts; ``events`` is HTML that goes with the modes."""
+    if len(truth["t_s"]) == 0:
+        return [section("attitude", "Flight", "<p>No tick was flown: there is nothing to draw.</p>" + events)]
+    flown = Flown.of(scenario, truth, estimates, audit)
+    with style():
+        return [
+            section("attitude", "Attitude", _HINT + _drawn(flown, _ATTITUDE) + events),
+            section(
+                "estimate",
+                "Estimate",
+                _drawn(flown, _ESTIMATE)
+                if flown.has_estimates
+                else f"<p>{_NO_ESTIMATE[scenario.knowledge]}</p>",
+            ),
+            section(
+                "coils",
+                "Coils against their limits",
+                _drawn(flown, _coils(audit.limits)) if audit.pulses else "<p>No coil was driven.</p>",
+            ),
+            section("environment", "Field, dipole and torques", _drawn(flown, _ENVIRONMENT)),
+        ]
+
+
+def _drawn(flown: Flown, shown: tuple[Chart, ...]) -> str:
+    return "".join(_figure(draw.__name__, svg(draw(flown), draw.__name__), words) for draw, words in shown)
+
+
+def _figure(name: str, graphic: str, words: str) -> str:
+    text = escape(words)
+    return (
+        f'<figure id="chart-{name}"><div class="scroll" tabindex="0" role="img" aria-label="{text}">'
+        f"{graphic}</div><figcaption>{text}</figcaption></figure>"
+    )
+
+
+_ATTITUDE: tuple[Chart, ...] = (
+    (
+        charts_of.pointing,
+        "True angle from the nominal attitude, and of body axis 1 from the local vertical. Grey bands, here "
+        "and in all charts against time, are eclipses. A long history is drawn as the span between its least "
+        "and largest values.",
+    ),
+    (charts_of.modes, "Mode of the controller."),
+    (
+        charts_of.rates,
+        "True rate of the body relative to the orbital frame.",
+    ),
+)
+_ESTIMATE: tuple[Chart, ...] = (
+    (
+        charts_of.estimate,
+        "True error of the estimate, over all three axes, and three times the standard deviation that the "
+        "filter states for it, 3 √tr P. A filter that knows what it does not know stays under the line.",
+    ),
+)
+_ENVIRONMENT: tuple[Chart, ...] = (
+    (charts_of.field_and_dipole, "As the plant has them. Coil 0, 1, 2 drives along body axis 1, 2, 3."),
+    (
+        charts_of.torques,
+        "As the plant has them, magnitudes. The coils act in pulses: theirs is the magnitude of the mean "
+        "torque over ten minutes.",
+    ),
+)
+_HINT = '<p class="hint">The charts scroll sideways.</p>'
+_NO_ESTIMATE = {
+    "perfect": "Flown with perfect knowledge: the plant told the controller attitude and rate.",
+    "filter": "The filter gave no estimate in this flight.",
+}
+
+
+def _coils(limits: AuditLimits) -> tuple[Chart, ...]:
+    whose = "any coil" if limits.shared else "the same coil"
+    return (
+        (
+            coils.raster,
+            "A lane for each coil: bars go up or down with the polarity and reach as far as the level. They "
+            "are drawn wider than the pulses last.",
+        ),
+        (
+            coils.zoom,
+            f"With the length of each pulse, at most {limits.pulse_us / 1e6:g} s. Shaded: the back-off of "
+            f"{limits.backoff_us / 1e6:g} s from the end of a pulse, in which no pulse of {whose} may start.",
+        ),
+        (
+            coils.duty,
+            "Fraction of the orbit before each time, or of the flight so far, for which a coil was driven.",
+        ),
+        (
+            coils.gaps_and_levels,
+            "From the end of a pulse to the start of the next; and how often which level.",
+        ),
+    )

@@ -1,0 +1,237 @@
+"""summary.json: how well the flight went, all judged against the plant's truth."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fsw.wire.messages import CLASSES, NAMES, SENDERS, CoilRefused, Mode, intact
+from sim.audit.auditor import AuditReport
+from sim.record.candump import LogEntry
+from sim.record.estimates import Estimates
+from sim.record.run_record import FlightRecord
+from sim.record.truth import Histories
+from sim.report.attitude_arrays import angle_rad, axis1_angle_rad, normal_in_body, relative
+from sim.scenario.schema import Scenario, orbit_period_s
+
+Array = NDArray[np.float64]
+Json = dict[str, Any]
+
+CONVERGED_DEG = 2.0
+CONVERGED_FOR_S = 600.0
+SETTLED_DEG = 5.0
+SPIN_SETTLED_RADPS = 1e-3
+EVENTS_KEPT = 200
+
+
+@dataclass(slots=True)
+class BusTally:
+    """What is counted on the bus: refusals and events, the first events in full."""
+
+    epoch_us: int
+    refused: int = 0
+    events: list[Json] = field(default_factory=list)
+
+    def take(self, entry: LogEntry) -> None:
+        """Count one frame."""
+        can_id = entry.frame.can_id
+        name = NAMES.get(can_id, "")
+        if can_id == CoilRefused.ID:
+            self.refused += 1
+        elif name.endswith("_EVENT") and intact(entry.frame) and len(self.events) < EVENTS_KEPT:
+            values = CLASSES[can_id].decode(entry.frame.data)._asdict()
+            seconds = (entry.timestamp_us - self.epoch_us) / 1e6
+            self.events.append(
+                {
+                    "t_s": seconds,
+                    "node": SENDERS[can_id],
+                    "event": values["event"],
+                    "severity": values["severity"],
+                    "argument": values["argument"],
+                }
+            )
+
+
+def summarise(
+    scenario: Scenario,
+    run: FlightRecord,
+    truth: Histories,
+    estimates: Estimates,
+    audit: AuditReport,
+    tally: BusTally,
+) -> Json:
+    """All keys of summary.json that make sense for this flight."""
+    tick_hz = scenario.time.tick_hz
+    ticks = len(truth["t_s"])
+    sim_s = ticks / tick_hz
+    last_orbit = slice(max(0, ticks - round(orbit_period_s(scenario) * tick_hz)), ticks)
+    flown = run.get("flown")
+    wall_s = flown.get("wall_s") if flown else None
+    summary: Json = {
+        "scenario": scenario.name,
+        "seed": run["seed"],
+        "sim_seconds": sim_s,
+        "wall_seconds": wall_s,
+        "realtime_factor": sim_s / wall_s if wall_s else None,
+        "ticks": ticks,
+        "slips": flown.get("slips") if flown else None,
+        "pulses": {
+            "total": len(audit.pulses),
+            "per_coil": audit.pulses_per_coil,
+            "refused": tally.refused,
+        },
+        "duty": {"per_coil": audit.duty_per_coil, "total": audit.duty_total},
+        "min_gap_s": {"per_coil": audit.min_gap_per_coil_s, "any": audit.min_gap_any_s},
+        "max_pulse_s": audit.max_pulse_s,
+        "limits_ok": audit.ok,
+    }
+    if ticks:
+        q = truth["q_body_from_orbit"]
+        upright = np.zeros_like(q)
+        upright[:, 0] = 1.0
+        summary["pointing_deg"] = _angles(np.degrees(angle_rad(relative(upright, q))), last_orbit)
+        summary["axis1_deg"] = _axis1(np.degrees(axis1_angle_rad(q)), last_orbit, tick_hz, scenario)
+        summary |= _estimate(truth, estimates, tick_hz)
+        summary["spin_radps"] = _spin(scenario, truth, audit, last_orbit)
+        summary["mode_final"] = Mode(int(estimates.mode[ticks - 1])).name
+    summary["events"] = tally.events
+    return {key: value for key, value in summary.items() if value is not None}
+
+
+def estimate_error(truth: Histories, estimates: Estimates) -> Array:
+    """The turn from the estimated to the true attitude at each tick, (n, 4); NaN before there is one."""
+    ticks = len(truth["t_s"])
+    return relative(estimates.q_body_from_orbit[:ticks], truth["q_body_from_orbit"])
+
+
+def nees(truth: Histories, estimates: Estimates) -> Array:
+    """Normalised estimation error squared of attitude and rate at each tick; NaN where unknown."""
+    ticks = len(truth["t_s"])
+    turn = estimate_error(truth, estimates)
+    orbit_rate = np.linalg.norm(
+        estimates.omega_body_radps[:ticks] - estimates.omega_body_orbit_radps[:ticks], axis=1
+    )
+    omega_true = truth["omega_body_orbit_radps"] + orbit_rate[:, None] * normal_in_body(
+        truth["q_body_from_orbit"]
+    )
+    error = np.hstack((2.0 * turn[:, 1:], omega_true - estimates.omega_body_radps[:ticks]))
+    known = np.isfinite(error).all(axis=1)
+    result = np.full(ticks, np.nan)
+    if known.any():
+        solved = np.linalg.solve(estimates.covariance[:ticks][known], error[known][:, :, None])[:, :, 0]
+        result[known] = np.sum(error[known] * solved, axis=1)
+    return result
+
+
+def _angles(angle_deg: Array, last_orbit: slice) -> Json:
+    recent = angle_deg[last_orbit]
+    return {
+        "final": float(angle_deg[-1]),
+        "rms_last_orbit": float(np.sqrt(np.mean(recent**2))),
+        "max_last_orbit": float(recent.max()),
+    }
+
+
+def _axis1(angle_deg: Array, last_orbit: slice, tick_hz: int, scenario: Scenario) -> Json:
+    result = _angles(angle_deg, last_orbit) | {"mean_last_orbit": float(angle_deg[last_orbit].mean())}
+    outside = np.flatnonzero(angle_deg >= SETTLED_DEG)
+    settled = int(outside[-1]) + 1 if len(outside) else 0
+    if settled < len(angle_deg):
+        result["settle_orbits_5deg"] = settled / tick_hz / orbit_period_s(scenario)
+    return result
+
+
+def _estimate(truth: Histories, estimates: Estimates, tick_hz: int) -> Json:
+    error_deg = np.degrees(angle_rad(estimate_error(truth, estimates)))
+    good = error_deg < CONVERGED_DEG  # NaN, no estimate yet, is not good
+    first = _first_run(good, round(CONVERGED_FOR_S * tick_hz))
+    if first is None:
+        return {}
+    error_deg, lit = error_deg[first:], truth["lit"][first:] > 0.5
+    known = np.isfinite(error_deg)  # a filter that begins anew knows nothing for a while
+    consistency = nees(truth, estimates)[first:]
+    result: Json = {
+        "estimate_deg": {
+            key: float(np.sqrt(np.mean(error_deg[where] ** 2)))
+            for key, where in (("rms_sunlit", lit & known), ("rms_eclipse", ~lit & known))
+            if where.any()
+        }
+        | {"max": float(error_deg[known].max())},
+        "converged_at_s": first / tick_hz,
+    }
+    if np.isfinite(consistency).any():
+        result["nees_mean"] = float(np.nanmean(consistency))
+    return result
+
+
+def _spin(scenario: Scenario, truth: Histories, audit: AuditReport, last_orbit: slice) -> Json | None:
+    """How the spin about body axis 1 follows its reference; None where none is wanted."""
+    reference = scenario.control.spin_radps
+    if reference == 0.0:
+        return None
+    spin = truth["omega_body_orbit_radps"][:, 0]
+    deviation = np.abs(spin - reference)
+    result: Json = {
+        "reference": reference,
+        "mean_last_orbit": float(spin[last_orbit].mean()),
+        "max_dev_last_orbit": float(deviation[last_orbit].max()),
+    }
+    inside = np.flatnonzero(deviation < SPIN_SETTLED_RADPS)
+    if len(inside):
+        settle_s = int(inside[0]) / scenario.time.tick_hz
+        result["settle_s_1e-3"] = settle_s
+        result["pulses_to_settle"] = sum(pulse.start_s < settle_s for pulse in audit.pulses)
+    return result
+
+
+def _first_run(good: NDArray[np.bool_], length: int) -> int | None:
+    """The first index from which ``length`` values in a row are true."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], good.astype(np.int8), [0]))))
+    for start, stop in zip(edges[::2], edges[1::2], strict=True):
+        if stop - start >= length:
+            return int(start)
+    return None
+
+
+def summary_text(summary: Json) -> str:
+    """The summary for a person, a few lines."""
+    pulses, gap_s = summary["pulses"], summary["min_gap_s"]["any"]
+    flown = f"{summary['scenario']}, seed {summary['seed']}: {summary['sim_seconds']:.0f} s flown"
+    if "realtime_factor" in summary:
+        flown += f" at {summary['realtime_factor']:.0f} times real time"
+    verdict = "kept" if summary["limits_ok"] else "BROKEN"
+    limits = f"{verdict}: {pulses['total']} pulses, {pulses['refused']} refused"
+    if "max_pulse_s" in summary:
+        limits += f", longest {summary['max_pulse_s']:.3f} s"
+    if gap_s is not None:
+        limits += f", least gap {gap_s:.3f} s"
+    rows = {"limits": limits}
+    if "pointing_deg" in summary:
+        last = summary["pointing_deg"]
+        rows["pointing"] = (
+            f"{last['rms_last_orbit']:.2f} deg RMS, {last['max_last_orbit']:.2f} deg max over the last orbit"
+        )
+        axis1 = summary["axis1_deg"]
+        settled = axis1.get("settle_orbits_5deg")
+        after = f"under 5 deg for good after {settled:.2f} orbits" if settled is not None else "not settled"
+        rows["axis 1"] = f"{axis1['rms_last_orbit']:.2f} deg RMS off the vertical, {after}"
+    if "spin_radps" in summary:
+        spin = summary["spin_radps"]
+        rows["spin"] = (
+            f"{spin['mean_last_orbit']:.5f} rad/s in the mean of the last orbit, "
+            f"{spin['max_dev_last_orbit']:.5f} at most off {spin['reference']:g}"
+        )
+    if "estimate_deg" in summary:
+        named = {"rms_sunlit": "RMS sunlit", "rms_eclipse": "RMS in eclipse", "max": "max"}
+        parts = [f"{value:.3f} deg {named[key]}" for key, value in summary["estimate_deg"].items()]
+        rows["estimate"] = f"{', '.join(parts)}, converged at {summary['converged_at_s']:.0f} s"
+    if "mode_final" in summary:
+        rows["mode"] = summary["mode_final"]
+    if "replay" in summary:
+        rows["replay"] = "bit-exact" if summary["replay"]["bit_exact"] else "NOT bit-exact"
+    failed = summary.get("failures", {})
+    rows |= {
+        name.replace("_", " "): failed[name] for name in ("second_senders", "complete") if name in failed
+    }
+    return "\n".join([flown, *(f"  {name:<10} {text}" for name, text in rows.items())])

@@ -1,0 +1,299 @@
+"""Words and tables of the report: verdicts, key figures, what was flown, events, violations."""
+
+from collections.abc import Iterable, Sequence
+from datetime import UTC, datetime
+from html import escape
+from typing import Any
+
+import tomli_w
+
+from fsw.core.events import Event
+from fsw.wire.messages import Mode, Severity
+from sim.audit.auditor import AuditReport
+from sim.audit.findings import COILS, seconds_text
+from sim.flight.second_senders import said
+from sim.record.run_record import RunRecord
+from sim.scenario.schema import Scenario, orbit_period_s
+
+Json = dict[str, Any]
+
+VIOLATIONS_SHOWN = 50
+EVENTS_OPEN = 12
+"""More events than these are folded away."""
+
+_TILES = (
+    ("Pointing", ("pointing_deg", "rms_last_orbit"), "{:.2f}°", "RMS, last orbit"),
+    ("Axis 1 from vertical", ("axis1_deg", "rms_last_orbit"), "{:.2f}°", "RMS, last orbit"),
+    ("Attitude estimate", ("estimate_deg", "rms_sunlit"), "{:.3f}°", "RMS in sunlight"),
+    ("Duty", ("duty", "total"), "{:.2%}", "all coils, whole flight"),
+    ("Pulses", ("pulses", "total"), "{:d}", "of all coils"),
+)
+_ATTITUDE = (
+    ("Pointing, RMS over the last orbit", ("pointing_deg", "rms_last_orbit"), "{:.3f}°"),
+    ("Pointing, largest over the last orbit", ("pointing_deg", "max_last_orbit"), "{:.3f}°"),
+    ("Pointing at the end", ("pointing_deg", "final"), "{:.3f}°"),
+    ("Axis 1, RMS over the last orbit", ("axis1_deg", "rms_last_orbit"), "{:.3f}°"),
+    ("Axis 1, mean over the last orbit", ("axis1_deg", "mean_last_orbit"), "{:.3f}°"),
+    ("Axis 1, largest over the last orbit", ("axis1_deg", "max_last_orbit"), "{:.3f}°"),
+    ("Axis 1, under 5° from orbit", ("axis1_deg", "settle_orbits_5deg"), "{:.2f}"),
+    ("Final mode", ("mode_final",), "{}"),
+)
+_ESTIMATE = (
+    ("Estimate, RMS in sunlight", ("estimate_deg", "rms_sunlit"), "{:.4f}°"),
+    ("Estimate, RMS in eclipse", ("estimate_deg", "rms_eclipse"), "{:.4f}°"),
+    ("Estimate, largest", ("estimate_deg", "max"), "{:.4f}°"),
+    ("Estimate converged at", ("converged_at_s",), "{:.0f} s"),
+    ("NEES, mean (6 expected)", ("nees_mean",), "{:.2f}"),
+)
+_FLIGHT = (
+    ("Flown", ("sim_seconds",), "{:.0f} s"),
+    ("Ticks", ("ticks",), "{:d}"),
+    ("Speed", ("realtime_factor",), "{:.0f} × real time"),
+    ("Slips", ("slips",), "{:d}"),
+)
+_KNOWLEDGE = {"filter": "filter on the sensors", "perfect": "perfect, from the plant"}
+
+
+def section(anchor: str, title: str, content: str) -> str:
+    """A section of the page; the content is HTML."""
+    return f'<section id="{anchor}"><h2>{title}</h2>{content}</section>'
+
+
+def badges(summary: Json, run: RunRecord | None, audit: AuditReport) -> str:
+    """The verdicts: limits, refusals, replay, mode, and whether the flight is whole."""
+    shown = [_limits_badge(audit)]
+    refused = summary["pulses"]["refused"]
+    shown.append(("note", f"! {refused} refused") if refused else ("good", "✓ no refusals"))
+    shown.append(_replay_badge(summary.get("replay")))
+    mode = summary.get("mode_final")
+    if mode is not None:
+        shown.append(("good" if mode == Mode.POINT.name else "note", f"mode {mode}"))
+    if not whole(run, audit):
+        planned = f" of {run['ticks']}" if run else ""
+        shown.append(("bad", f"✗ incomplete: {summary['ticks']}{planned} ticks"))
+    if summary.get("second_senders"):
+        shown.append(("bad", f"✗ {said(summary['second_senders'])}"))
+    items = "".join(f'<li class="{kind}">{escape(text)}</li>' for kind, text in shown)
+    return f'<ul class="badges">{items}</ul>'
+
+
+def whole(run: RunRecord | None, audit: AuditReport) -> bool:
+    """The flight ran to its end, and its log is whole."""
+    return audit.complete and (run is None or "flown" in run)
+
+
+def tiles(summary: Json) -> str:
+    """The few figures that are looked at first."""
+    shown = [
+        f"<div><dt>{name}</dt><dd>{_value(summary, keys, pattern)}<small>{what}</small></dd></div>"
+        for name, keys, pattern, what in _TILES
+        if _find(summary, keys) is not None
+    ]
+    return f'<dl class="tiles">{"".join(shown)}</dl>'
+
+
+def key_figures(summary: Json, audit: AuditReport) -> str:
+    """All figures of the summary."""
+    lists = [
+        _pairs(
+            [(name, _value(summary, keys, pattern)) for name, keys, pattern in rows if _has(summary, keys)]
+        )
+        for rows in (_ATTITUDE, (*_ESTIMATE, *_FLIGHT))
+    ]
+    return f'<div class="columns">{"".join(lists)}</div>{_coil_table(summary, audit)}'
+
+
+def what_was_flown(scenario: Scenario) -> str:
+    """The scenario in words, and in full."""
+    coils, control = scenario.coils, scenario.control
+    magnetometer, disturbance = scenario.sensors.magnetometer, scenario.disturbance
+    left = (
+        ("Orbit", _orbit(scenario)),
+        ("Epoch", f"{datetime.fromtimestamp(scenario.epoch_unix_s, UTC):%Y-%m-%d %H:%M:%S} UTC"),
+        ("Geomagnetic field", _field(scenario)),
+        ("Inertia", f"{_inertia(scenario)} kg m²"),
+        ("Start", f"{scenario.initial.angle_deg:g}° about {_triple(scenario.initial.axis)}"),
+        ("Start rate", f"{_triple(scenario.initial.rate_degps)} °/s"),
+        ("Bias torque", f"{_triple(disturbance.torque_nm)} N m"),
+        ("Residual dipole", f"{_triple(disturbance.residual_dipole_am2)} A m²"),
+    )
+    right = (
+        ("Levels", f"{_triple(coils.levels_am2)} A m², both polarities"),
+        ("Limits", f"{coils.pulse_s:g} s pulses, {coils.backoff_s:g} s back-off, {_backoff(coils.backoff)}"),
+        (
+            "Knowledge",
+            "filter on the sensors" if scenario.knowledge == "filter" else "perfect, from the plant",
+        ),
+        ("Magnetometer", f"{magnetometer.noise_nt:g} nT noise, bias {_triple(magnetometer.bias_nt)} nT"),
+        ("Sun sensor", f"{scenario.sensors.sun.noise_deg:g}° noise"),
+        ("Law", f"{control.law}, k_w {control.k_w:g} N m s/T², k_a {control.k_a:g} N m/T²"),
+        ("Tick rate", f"{scenario.time.tick_hz} Hz"),
+    )
+    lists = "".join(_pairs([(name, escape(text)) for name, text in rows]) for rows in (left, right))
+    full = escape(tomli_w.dumps(scenario.model_dump(mode="json", exclude_none=True)))
+    return (
+        f'<div class="columns">{lists}</div>'
+        f"<details><summary>The whole scenario</summary><pre>{full}</pre></details>"
+    )
+
+
+def violations(audit: AuditReport) -> str:
+    """The limits that were broken, and the auditor's notes; empty without any."""
+    parts = []
+    if audit.violations:
+        rows = [
+            (seconds_text(one.time_s), "" if one.coil is None else str(one.coil), one.kind, one.sentence)
+            for one in audit.violations[:VIOLATIONS_SHOWN]
+        ]
+        more = len(audit.violations) - len(rows)
+        parts.append(_table(("t [s]", "coil", "limit", "what"), rows, "Limits broken"))
+        if more > 0:
+            parts.append(f"<p>and {more} more</p>")
+    parts += [f"<p>{escape(note)}</p>" for note in audit.notes]
+    return "".join(parts)
+
+
+def events(summary: Json) -> str:
+    """What the nodes reported, in order; empty if nothing."""
+    reported = summary.get("events", [])
+    if not reported:
+        return ""
+    rows = [
+        (
+            seconds_text(one["t_s"]),
+            one["node"],
+            Severity(one["severity"]).name.lower() if one["severity"] in set(Severity) else "",
+            _event_text(one),
+        )
+        for one in reported
+    ]
+    table = _table(("t [s]", "node", "severity", "event"), rows)
+    shown = " open" if len(rows) <= EVENTS_OPEN else ""
+    return f"<details{shown}><summary>Events: {len(rows)}</summary>{table}</details>"
+
+
+def versions(run: RunRecord | None) -> str:
+    """What wrote the run, for the foot of the page."""
+    if run is None:
+        return "torquer"
+    platform = run["platform"]
+    parts = (
+        f"torquer {run['torquer_version']}",
+        f"scenario {run['scenario_sha256'][:12]}",
+        f"flight table {run['flight_table_crc']}",
+        f"Python {platform['python']}, numpy {platform['numpy']}",
+        f"{platform['system']} {platform['machine']}",
+    )
+    return escape(" · ".join(parts))
+
+
+def _limits_badge(audit: AuditReport) -> tuple[str, str]:
+    if audit.ok:
+        return "good", "✓ limits kept"
+    if not audit.violations:
+        return "note", "! limits not judged: no coil status"
+    return "bad", f"✗ limits broken: {len(audit.violations)}"
+
+
+def _replay_badge(replay: Json | None) -> tuple[str, str]:
+    if replay is None:
+        return "note", "not replayed"
+    if replay["bit_exact"]:
+        return "good", "✓ replay bit-exact"
+    return ("note", "! replay command-exact only") if replay["command_exact"] else ("bad", "✗ replay differs")
+
+
+def _coil_table(summary: Json, audit: AuditReport) -> str:
+    limits = audit.limits
+    bound = limits.pulse_us / (limits.pulse_us + limits.backoff_us)
+    gap_limit = f"≥ {limits.backoff_us / 1e6:g}"
+    each_duty, each_gap = ("", "") if limits.shared else (f"≤ {bound:.2%}", gap_limit)
+    all_duty, any_gap = (f"≤ {bound:.2%}", gap_limit) if limits.shared else ("", "")
+    duty, gap = summary["duty"], summary["min_gap_s"]
+    rows = [
+        (f"coil {coil}", str(count), f"{duty_of:.2%}", _seconds(gap_of))
+        for coil, count, duty_of, gap_of in zip(
+            COILS, summary["pulses"]["per_coil"], duty["per_coil"], gap["per_coil"], strict=True
+        )
+    ]
+    if not limits.shared:
+        rows.append(("limit of each", "", each_duty, each_gap))
+    rows.append(("all", str(summary["pulses"]["total"]), f"{duty['total']:.2%}", _seconds(gap["any"])))
+    if limits.shared:
+        rows.append(("limit of all", "", all_duty, any_gap))
+    longest = summary.get("max_pulse_s")
+    note = "" if longest is None else f"<p>Longest pulse {longest:.3f} s of {limits.pulse_us / 1e6:g} s.</p>"
+    return "<h3>Coils</h3>" + _table(("", "pulses", "duty", "least gap [s]"), rows) + note
+
+
+def _event_text(one: Json) -> str:
+    number, argument = one["event"], one["argument"]
+    if one["node"] == "FSW" and number in set(Event):
+        event = Event(number)
+        if event is Event.MODE_CHANGED and argument in set(Mode):
+            return f"mode {Mode(argument).name}"
+        return f"{event.name.replace('_', ' ').lower()} ({argument})"
+    return f"event {number} ({argument})"
+
+
+def _orbit(scenario: Scenario) -> str:
+    orbit = scenario.orbit
+    period = f"{orbit_period_s(scenario) / 60.0:.1f} min"
+    if orbit.tle is not None:
+        return (
+            f"elements of {orbit.tle[0][2:7].strip()}, inclination {float(orbit.tle[1][8:16]):.2f}°, {period}"
+        )
+    return f"circular, {orbit.altitude_km:g} km, inclination {orbit.inclination_deg:g}°, {period}"
+
+
+def _field(scenario: Scenario) -> str:
+    field = scenario.field
+    return f"igrf14, degree {field.degree}" if field.model == "igrf14" else field.model.replace("_", " ")
+
+
+def _inertia(scenario: Scenario) -> str:
+    tensor = scenario.body.inertia
+    if all(tensor[i][j] == 0.0 for i in COILS for j in COILS if i != j):
+        return _triple([tensor[i][i] for i in COILS])
+    return ", ".join(_triple(row) for row in tensor)
+
+
+def _backoff(kind: str) -> str:
+    return "shared by all coils" if kind == "shared" else "each coil its own"
+
+
+def _triple(values: Iterable[float]) -> str:
+    return f"({', '.join(f'{value:g}' for value in values)})"
+
+
+def _seconds(value: float | None) -> str:
+    return "–" if value is None else seconds_text(value)
+
+
+def _find(summary: Json, keys: Sequence[str]) -> Any:  # noqa: ANN401
+    found: Any = summary
+    for key in keys:
+        found = found.get(key) if isinstance(found, dict) else None
+    return found
+
+
+def _has(summary: Json, keys: Sequence[str]) -> bool:
+    return _find(summary, keys) is not None
+
+
+def _value(summary: Json, keys: Sequence[str], pattern: str) -> str:
+    return escape(pattern.format(_find(summary, keys)))
+
+
+def _pairs(rows: Iterable[tuple[str, str]]) -> str:
+    """A table of names and values; the values are HTML."""
+    return f"<table>{''.join(f'<tr><th>{name}</th><td>{value}</td></tr>' for name, value in rows)}</table>"
+
+
+def _table(head: Sequence[str], rows: Iterable[Sequence[str]], caption: str = "") -> str:
+    top = "".join(f"<th>{escape(name)}</th>" for name in head)
+    body = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows)
+    title = f"<caption>{escape(caption)}</caption>" if caption else ""
+    return (
+        f'<div class="scroll"><table>{title}<thead><tr>{top}</tr></thead><tbody>{body}</tbody></table></div>'
+    )

@@ -1,0 +1,161 @@
+"""From a scenario to the plant's configuration: units of people to SI."""
+
+from math import cos, hypot, radians, sin
+
+from fsw.input.schema import TableError
+from hil_stub.coils.coil_driver import CoilLimits
+from sim.plant.config import (
+    BodyConfig,
+    CoilConfig,
+    ContinuousConfig,
+    DisturbanceConfig,
+    FieldConfig,
+    InitialConfig,
+    MagnetometerConfig,
+    OrbitConfig,
+    PlantConfig,
+    PlateConfig,
+    SunSensorConfig,
+)
+from sim.scenario.schema import Scenario
+
+NT = 1e-9
+Vec3 = tuple[float, float, float]
+
+
+def plant_config(scenario: Scenario, seed: int) -> PlantConfig:
+    """The plant of a scenario, its random streams drawn from ``seed``.
+
+    Raises:
+        TableError: the scenario is consistent in itself, but no plant has such numbers.
+    """
+    try:
+        return _config(scenario, seed)
+    except ValueError as error:
+        raise TableError(f"the scenario's plant: {error}") from None
+
+
+def _config(scenario: Scenario, seed: int) -> PlantConfig:
+    tick_hz, coils = scenario.time.tick_hz, scenario.coils
+    return PlantConfig(
+        epoch_unix_s=scenario.epoch_unix_s,
+        tick_hz=tick_hz,
+        seed=seed,
+        orbit=_orbit(scenario),
+        field=FieldConfig(scenario.field.model, scenario.field.degree),
+        body=_body(scenario),
+        initial=_initial(scenario),
+        disturbance=_disturbance(scenario),
+        magnetometer=_magnetometer(scenario),
+        sun_sensor=_sun_sensor(scenario),
+        coils=_coils(scenario),
+        limits=CoilLimits(
+            tick_hz=tick_hz,
+            pulse_ms=round(coils.pulse_s * 1000.0),
+            backoff_ms=round(coils.backoff_s * 1000.0),
+            shared=coils.backoff == "shared",
+        ),
+        max_substep_s=scenario.plant.max_substep_s,
+        perfect_knowledge=scenario.knowledge == "perfect",
+    )
+
+
+def _orbit(scenario: Scenario) -> OrbitConfig:
+    orbit = scenario.orbit
+    if orbit.tle is not None:
+        return OrbitConfig(tle=orbit.tle)
+    return OrbitConfig(
+        altitude_m=1000.0 * (orbit.altitude_km or 0.0),
+        inclination_rad=radians(orbit.inclination_deg),
+        raan_rad=radians(orbit.raan_deg),
+        u0_rad=radians(orbit.u0_deg),
+    )
+
+
+def _body(scenario: Scenario) -> BodyConfig:
+    body = scenario.body
+    plates = tuple(
+        PlateConfig(
+            plate.area_m2,
+            _unit(plate.normal),
+            plate.centre_m,
+            plate.drag_coefficient,
+            plate.specular,
+            plate.diffuse,
+        )
+        for plate in body.plates
+    )
+    return BodyConfig(body.inertia, body.wheel_nms, plates)
+
+
+def _disturbance(scenario: Scenario) -> DisturbanceConfig:
+    given = scenario.disturbance
+    return DisturbanceConfig(
+        torque_body_nm=given.torque_nm,
+        residual_dipole_body_am2=given.residual_dipole_am2,
+        density_scale=given.drag.density_scale if given.drag else None,
+        solar_flux_wpm2=given.solar_pressure.flux_wpm2 if given.solar_pressure else None,
+        eddy_nms_per_t2=given.eddy_nms_per_t2,
+        torque_noise_nm_rts=given.torque_noise_nm_rts,
+    )
+
+
+def _coils(scenario: Scenario) -> CoilConfig:
+    coils = scenario.coils
+    continuous = None
+    if coils.driver == "continuous" and coils.max_dipole_am2 is not None:
+        continuous = ContinuousConfig(coils.max_dipole_am2, coils.on_fraction)
+    return CoilConfig(
+        coils.levels_am2,
+        coils.dipole_per_ampere_am2,
+        coils.time_constant_s,
+        coils.dipole_scale,
+        continuous,
+    )
+
+
+def _initial(scenario: Scenario) -> InitialConfig:
+    initial = scenario.initial
+    half = 0.5 * radians(initial.angle_deg)
+    factor = sin(half) / hypot(*initial.axis)
+    x, y, z = initial.axis
+    return InitialConfig((cos(half), factor * x, factor * y, factor * z), _radians(initial.rate_degps))
+
+
+def _magnetometer(scenario: Scenario) -> MagnetometerConfig:
+    given = scenario.sensors.magnetometer
+    first, second, third = given.coil_field_nt_per_am2
+    return MagnetometerConfig(
+        noise_t=given.noise_nt * NT,
+        bias_t=_scaled(given.bias_nt, NT),
+        scale=given.scale,
+        misalignment_rad=_radians(given.misalignment_deg),
+        quantum_t=given.quantum_nt * NT,
+        saturation_t=given.saturation_nt * NT,
+        coil_coupling_t_per_am2=(_scaled(first, NT), _scaled(second, NT), _scaled(third, NT)),
+        latency_s=given.latency_s,
+    )
+
+
+def _sun_sensor(scenario: Scenario) -> SunSensorConfig:
+    given = scenario.sensors.sun
+    return SunSensorConfig(
+        noise_rad=radians(given.noise_deg),
+        misalignment_rad=_radians(given.misalignment_deg),
+        quantum=given.quantum,
+        latency_s=given.latency_s,
+        fov_half_rad=radians(given.fov_half_deg or 180.0),
+        boresights_body=tuple(_unit(axis) for axis in given.boresights),
+    )
+
+
+def _scaled(v: Vec3, factor: float) -> Vec3:
+    return (v[0] * factor, v[1] * factor, v[2] * factor)
+
+
+def _unit(v: Vec3) -> Vec3:
+    return _scaled(v, 1.0 / hypot(*v))
+
+
+def _radians(v: Vec3) -> Vec3:
+    return (radians(v[0]), radians(v[1]), radians(v[2]))

@@ -1,0 +1,237 @@
+"""Scenarios: the schema of their TOML files, and how they are found, overridden and checked.
+
+A scenario says everything about one flight. The onboard table is derived from it: what plant and controller
+share (orbit, body, coils, control) is written once; ``[flight]`` lays further values over the onboard table,
+for instance an inertia that the controller believes and the plant does not have.
+"""
+
+import tomllib
+from datetime import UTC, datetime
+from importlib import resources
+from math import pi, sqrt
+from pathlib import Path
+from typing import Any, Literal, Self
+
+from pydantic import Field, model_validator
+
+from fsw.input.schema import Nested, Positive, Section, TableError, Triple, merge, read_toml, validated
+from fsw.input.toml_text import MOST_LEVELS, BoundsError, parse_toml
+from fsw.table import table as onboard
+from fsw.table.sections import CIRCULAR_KEYS, CoilTable, ControlTable, OrbitTable, TimeTable
+from fsw.table.table import FlightTable
+from sim.faults.section import Faults
+from sim.scenario.names import Name
+from sim.scenario.sections import DisturbanceSection, ScenarioBody, SensorsSection
+from sim.scenario.telecommands import Telecommands
+
+MU_M3PS2 = 3.986004418e14
+DECAY_TIME_CONSTANTS = 5.0
+"""After so many a coil's field is below 1 % of what it was."""
+
+
+class ScenarioTime(TimeTable):
+    """Tick rate, epoch and how many orbits are flown."""
+
+    orbits: float = Field(gt=0.0, le=100000.0)
+
+
+class TruthField(Section):
+    """Field model of the plant; ``degree`` counts for igrf14. The onboard model is the same to degree 10."""
+
+    model: Literal["igrf14", "tilted_dipole", "direct_dipole"] = "igrf14"
+    degree: int = Field(default=13, ge=1, le=13)
+
+
+class InitialState(Section):
+    """Attitude, body from orbit, as a turn about an axis; rate relative to the orbital frame, body axes."""
+
+    axis: Triple = (1.0, 1.0, 1.0)
+    angle_deg: float = Field(default=0.0, ge=-180.0, le=180.0)
+    rate_degps: Triple = (0.0, 0.0, 0.0)
+
+    @model_validator(mode="after")
+    def _axis_has_a_direction(self) -> "InitialState":
+        if not any(self.axis):
+            raise ValueError("axis must not be zero")
+        return self
+
+
+class ScenarioCoils(CoilTable):
+    """Limits and levels, and the physics of coil and driver."""
+
+    pulse_s: float = Field(default=3.0, gt=0.0, le=3.0)
+    backoff_s: float = Field(default=100.0, ge=0.0, le=160.0)
+    backoff: Literal["shared", "per_coil"] = "shared"
+    time_constant_s: Positive = 0.01
+    dipole_scale: Triple = (1.0, 1.0, 1.0)
+
+
+class PlantSection(Section):
+    """Integration of the plant."""
+
+    max_substep_s: float = Field(default=1.0, ge=0.001, le=5.0)
+
+
+class Scenario(Section):
+    """A whole scenario, checked."""
+
+    name: Name
+    summary: str
+    knowledge: Literal["filter", "perfect"] = "filter"
+    time: ScenarioTime
+    orbit: OrbitTable
+    field: TruthField = TruthField()
+    body: ScenarioBody
+    initial: InitialState = InitialState()
+    coils: ScenarioCoils
+    sensors: SensorsSection = SensorsSection()
+    disturbance: DisturbanceSection = DisturbanceSection()
+    control: ControlTable
+    plant: PlantSection = PlantSection()
+    telecommand: Telecommands = ()
+    fault: Faults = ()
+    flight: dict[str, Any] = Field(default_factory=dict)
+
+    @model_validator(mode="after")
+    def _parts_fit(self) -> Self:
+        for name in ("drag", "solar_pressure"):
+            if getattr(self.disturbance, name) is not None and not self.body.plates:
+                raise ValueError(f"disturbance.{name} needs body.plates, the flat parts of the surface")
+        if self.coils.driver == "continuous" and self.knowledge == "filter":
+            self._check_decay()
+        return self
+
+    def _check_decay(self) -> None:
+        off_s = (1.0 - self.coils.on_fraction) / self.time.tick_hz
+        decay_s = DECAY_TIME_CONSTANTS * self.coils.time_constant_s
+        if off_s < decay_s * (1.0 - 1e-9):
+            raise ValueError(
+                f"coils.on_fraction = {self.coils.on_fraction:g} leaves the coils {1000.0 * off_s:g} ms to "
+                f"lose their current before the sensors sample, which takes {1000.0 * decay_s:g} ms: lower "
+                "it, coils.time_constant_s or time.tick_hz"
+            )
+
+    @property
+    def epoch_unix_s(self) -> int:
+        """Time of tick 0, Unix seconds."""
+        return onboard.epoch_unix_s(self.time, self.orbit)
+
+
+def orbit_period_s(scenario: Scenario) -> float:
+    """The period of the scenario's orbit: from the mean motion of the TLE, or of the circle."""
+    if scenario.orbit.tle is not None:
+        return 86400.0 / float(scenario.orbit.tle[1][52:63])
+    radius_m = 6378137.0 + 1000.0 * (scenario.orbit.altitude_km or 0.0)
+    return 2.0 * pi * sqrt(radius_m**3 / MU_M3PS2)
+
+
+def shipped() -> list[Scenario]:
+    """The scenarios that ship, by name."""
+    return [load(name) for name in _names()]
+
+
+def load(name_or_path: str, overrides: Nested | None = None) -> Scenario:
+    """A shipped scenario by its name, or a scenario file by its path, with overrides laid over it.
+
+    Raises:
+        TableError: not found, not TOML, or a key that is unknown, missing, of the wrong type or out of range.
+    """
+    values, source = _read(name_or_path)
+    scenario = validated(Scenario, onboard.lay_over(values, overrides or {}), source)
+    flight_table(scenario, source)
+    return scenario
+
+
+def flight_table(scenario: Scenario, source: str = "scenario") -> FlightTable:
+    """The onboard table that this scenario flies with.
+
+    Raises:
+        TableError: ``[flight]`` holds a key or value the onboard table does not take.
+    """
+    shared = scenario.model_dump(
+        include={
+            "knowledge": True,
+            "orbit": {"tle", *CIRCULAR_KEYS},
+            "body": {"inertia_kgm2", "wheel_nms"},
+            "coils": {
+                "driver",
+                "max_dipole_am2",
+                "on_fraction",
+                "dipole_per_ampere_am2",
+                "levels_am2",
+                "pulse_s",
+                "backoff_s",
+                "backoff",
+            },
+            "control": True,
+        },
+        exclude_none=True,
+    )
+    epoch = datetime.fromtimestamp(scenario.epoch_unix_s, UTC)  # the plant's, whatever orbit is believed
+    shared["time"] = {"tick_hz": scenario.time.tick_hz, "epoch_utc": epoch.isoformat()}
+    shared["field"] = {"model": scenario.field.model}
+    shared["estimator"] = {
+        "magnetometer_sigma_nt": _with_floor(scenario.sensors.magnetometer.noise_nt, FIELD_MODEL_ERROR_NT),
+        "sun_sigma_deg": _with_floor(scenario.sensors.sun.noise_deg, SUN_MODEL_ERROR_DEG),
+    }
+    defaults = onboard.default_values()
+    defaults.pop("orbit")
+    values = onboard.lay_over(merge(defaults, shared), scenario.flight)
+    return validated(FlightTable, values, f"{source}: [flight]")
+
+
+FIELD_MODEL_ERROR_NT = 20.0
+"""What degrees 11 to 13 of the field add at low orbits, and the wire's rounding."""
+SUN_MODEL_ERROR_DEG = 0.02
+"""Almanac Sun and the wire's rounding."""
+
+
+def parse_settings(settings: tuple[str, ...]) -> Nested:
+    """``KEY=VALUE`` settings as nested values; VALUE is TOML, or a bare word taken as a string.
+
+    Raises:
+        TableError: a setting without '=' or with an empty key, or beyond what is read of TOML.
+    """
+    values: Nested = {}
+    for setting in settings:
+        key, equals, text = setting.partition("=")
+        parts = key.strip().split(".")
+        if not equals or not all(parts):
+            raise TableError(f"--set {setting}: write KEY=VALUE, for instance time.tick_hz=10")
+        if len(parts) > MOST_LEVELS:
+            raise TableError(f"--set {key[:40]}...: a key has more than {MOST_LEVELS} parts")
+        try:
+            value = parse_toml(f"value = {text}")["value"]
+        except tomllib.TOMLDecodeError:
+            value = text
+        except BoundsError as error:
+            raise TableError(f"--set {key}: {error}") from None
+        for part in reversed(parts):
+            value = {part: value}
+        values = merge(values, value)
+    return values
+
+
+def _with_floor(sigma: float, floor: float) -> float:
+    return float((sigma * sigma + floor * floor) ** 0.5)
+
+
+def _read(name_or_path: str) -> tuple[Nested, str]:
+    if name_or_path.endswith(".toml"):
+        return read_toml(Path(name_or_path)), name_or_path
+    names = _names()
+    if name_or_path not in names:
+        raise TableError(
+            f"there is no scenario {name_or_path!r}: choose one of {', '.join(names)}, "
+            "or a path that ends in .toml"
+        )
+    shipped_file = resources.files("sim.scenario.shipped").joinpath(f"{name_or_path}.toml")
+    return tomllib.loads(shipped_file.read_text(encoding="utf-8")), f"scenario {name_or_path}"
+
+
+def _names() -> list[str]:
+    """The names of the scenarios that ship."""
+    folder = resources.files("sim.scenario.shipped")
+    return sorted(
+        entry.name.removesuffix(".toml") for entry in folder.iterdir() if entry.name.endswith(".toml")
+    )

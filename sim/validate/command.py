@@ -1,0 +1,84 @@
+"""What ``torquer validate`` does."""
+
+import os
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+from sim.campaign.claim import Verdict
+from sim.campaign.runner import Finished, run
+from sim.errors import HarnessError
+from sim.progress import progress
+from sim.record.destination import check_file
+from sim.validate.page import line, render, tally
+from sim.validate.reference import reference
+from sim.validate.registry import all_studies, chosen, find_repository
+
+PAGE = "validation.md"
+
+
+def validate(
+    folder: Path | None, only: Sequence[str], out: Path | None, quick: bool, workers: int | None
+) -> int:
+    """Run the studies, print each outcome, write the page.
+
+    Without ``out`` only a whole validation writes its page: into docs/ of the repository, else here.
+
+    Args:
+        folder: run the checks of this folder of reference files alone.
+        only: first words of the ids of the studies to run; none: all.
+        out: where the page goes.
+        quick: leave out flights.
+        workers: processes; None: as many as there are cores.
+
+    Returns:
+        The exit code: 1 if a claim fails, else 0.
+
+    Raises:
+        HarnessError: reference data are malformed, an id is unknown, or the page cannot be written.
+    """
+    began = time.monotonic()
+    repository = find_repository(Path.cwd())
+    studies = reference.studies(folder) if folder is not None else all_studies(repository)
+    studies = chosen(studies, only, quick)
+    whole = folder is None and not only and not quick
+    page = out or (_default_page(repository) if whole else None)
+    if page is not None:
+        check_file(page)
+    bar = sys.stderr.isatty()  # then the outcomes wait until it is gone; else they are the progress
+    with progress("validating", sum(len(study.tasks) for study in studies)) as watch:
+        finished = run(studies, workers or os.cpu_count() or 1, watch, _quiet if bar else _print)
+    if bar:
+        for study in finished:
+            _print(study)
+    outcomes = [outcome for study in finished for outcome in study.outcomes]
+    wall_s = time.monotonic() - began
+    if page is not None:
+        _write(page, render(finished, wall_s))
+        click.echo(f"page: {page}")
+    click.echo(f"{tally(outcomes)}; {wall_s:.0f} s")
+    return int(any(outcome.verdict is Verdict.FAIL for outcome in outcomes))
+
+
+def _default_page(repository: Path | None) -> Path:
+    return Path(PAGE) if repository is None else repository / "docs" / PAGE
+
+
+def _print(finished: Finished) -> None:
+    for outcome in finished.outcomes:
+        click.echo(line(outcome))
+
+
+def _quiet(finished: Finished) -> None:
+    """Nothing yet."""
+
+
+def _write(page: Path, text: str) -> None:
+    try:
+        page.parent.mkdir(parents=True, exist_ok=True)
+        page.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise HarnessError(f"{page}: cannot be written ({error.strerror})") from None

@@ -1,0 +1,189 @@
+"""Claims that are computed rather than flown: what theory and plant have to say of each other."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
+from math import pi, sqrt
+from typing import Any
+
+import numpy as np
+
+from hil_stub.coils.coil_driver import CoilLimits
+from sim.campaign.claim import Claim, Outcome, Study
+from sim.design.theory.bodies import BODIES, UNSTABLE_BODIES, Body
+from sim.design.theory.floquet import degree_of_stability, monodromy
+from sim.design.theory.linear import Gains, closed_loop
+from sim.design.theory.search import continuous, search
+from sim.plant.config import BodyConfig, CoilConfig, FieldConfig, InitialConfig, OrbitConfig, PlantConfig
+from sim.plant.dynamics.jacobi import jacobi_integral
+from sim.plant.environment.orbit import EARTH_RADIUS_M, MU_M3PS2
+from sim.plant.plant import Plant
+from sim.plant.rotation import Mat3, from_vector
+from sim.validate.controlled_plant import ControlledPlant
+
+THEORY = "Ovchinnikov, Penkov, Roldugin 2015, eq. 3 and 4"
+
+KNOWN_BEST: dict[str, tuple[float, Gains]] = {
+    "1U": (-0.522, Gains(6.2385e4, 9.1252)),
+    "3U": (-0.886, Gains(5.85e4, 54.9)),
+    "50 kg": (-0.519, Gains(6.2694e6, 1614.9)),
+    "100 kg": (-0.487, Gains(2.4618e7, 3679.5)),
+    "few tons": (-0.497, Gains(1.0171e10, 2.8213e6)),
+    "boom": (-0.167, Gains(3.2433e8, 4.7969e4)),
+}
+"""Least degrees of stability known, to three digits, and gains near them."""
+ROUNDED = 5e-4
+
+ROUGH_STEPS = 64
+"""Of the Magnus integration, for the map and the ways down."""
+
+FULL: Mat3 = ((1.02, 0.03, -0.02), (0.03, 1.85, 0.05), (-0.02, 0.05, 1.95))
+"""An inertia tensor with nothing zero in it, kg m^2."""
+POINTS = 8
+"""Arguments of latitude at which linearisations are compared."""
+
+
+def studies() -> list[Study]:
+    """The Jacobi integral; linearisation, exponents and best gains of the PD law."""
+    return [jacobi(), linearisation(), exponents(), best_gains(), unstable_bodies()]
+
+
+def jacobi() -> Study:
+    """What the uncontrolled motion conserves."""
+    claim = Claim(
+        "jacobi",
+        "Relative drift of the Jacobi integral, uncontrolled, three circular orbits of 800 km",
+        "Beletsky 1966; Hughes 1986, chapter 9",
+        "1",
+        high=1e-11,
+    )
+    return Study("jacobi", (jacobi_drift,), lambda drifts: [claim.judge(drifts[0])])
+
+
+def linearisation() -> Study:
+    """The design tools' matrix against differences of the plant's right-hand side."""
+    bodies = (*BODIES, replace(BODIES[2], name="50 kg, full inertia tensor", inertia_kgm2=FULL))
+    claim = Claim(
+        "linearisation",
+        "Linearised motion against finite differences of the plant's right-hand side",
+        THEORY,
+        "1",
+        high=1e-9,
+    )
+    return _worst_of(claim, bodies, linearisation_error)
+
+
+def exponents() -> Study:
+    """Floquet exponents of the linear theory against those of the plant's motion."""
+    claim = Claim(
+        "exponents",
+        "Degree of stability against that of the nonlinear plant over one orbit",
+        THEORY,
+        "1/rad",
+        high=1e-3,
+    )
+    return _worst_of(claim, BODIES, exponent_error)
+
+
+def best_gains() -> Study:
+    """The search finds gains as good as the best that are known."""
+    claims = [
+        Claim(
+            f"best_gains.{body.name.replace(' ', '_')}",
+            f"Best degree of stability of {body.name}, as good as the best known to three digits",
+            THEORY,
+            "1/rad",
+            high=KNOWN_BEST[body.name][0] + ROUNDED,
+        )
+        for body in BODIES
+    ]
+
+    def conclude(found: Sequence[Any]) -> list[Outcome]:
+        return [claim.judge(degree, text) for claim, (degree, text, _) in zip(claims, found, strict=True)]
+
+    return Study("best_gains", tuple(partial(best_degree, body) for body in BODIES), conclude)
+
+
+def unstable_bodies() -> Study:
+    """Bodies that no gains stabilise are told from those that some do."""
+    known = dict(zip((body.name for body in UNSTABLE_BODIES), (True, False, False), strict=True))
+    claim = Claim(
+        "unstable_bodies",
+        "Bodies against the gravity gradient of which it is told wrongly whether gains stabilise them",
+        THEORY,
+        "bodies",
+        high=0.0,
+    )
+
+    def conclude(found: Sequence[Any]) -> list[Outcome]:
+        wrong = [
+            name
+            for (name, can), (*_, stabilised) in zip(known.items(), found, strict=True)
+            if can != stabilised
+        ]
+        return [claim.judge(float(len(wrong)), ", ".join(wrong))]
+
+    return Study("unstable_bodies", tuple(partial(best_degree, body) for body in UNSTABLE_BODIES), conclude)
+
+
+def jacobi_drift() -> float:
+    """The largest |H - H_0| / |H_0| over three orbits of the whole plant, coils off."""
+    altitude_m = 800e3
+    rate = sqrt(MU_M3PS2 / (EARTH_RADIUS_M + altitude_m) ** 3)
+    plant = Plant(
+        PlantConfig(
+            epoch_unix_s=1_742_461_200,
+            tick_hz=1,
+            seed=1,
+            orbit=OrbitConfig(None, altitude_m, 1.72, 0.6, 0.35),
+            field=FieldConfig("direct_dipole"),
+            body=BodyConfig(FULL),
+            initial=InitialConfig(from_vector((0.4, -0.3, 0.5)), (1e-3, -7e-4, 5e-4)),
+            coils=CoilConfig((0.5, 2.0, 8.0)),
+            limits=CoilLimits(tick_hz=1, pulse_ms=3000, backoff_ms=100_000),
+        )
+    )
+    rows = []
+    for _ in range(round(3.0 * 2.0 * pi / rate)):
+        rows.append(plant.truth())
+        plant.begin_tick()
+        plant.end_tick()
+    q = np.array([row.q_body_from_orbit for row in rows])
+    omega = np.array([row.omega_body_orbit_radps for row in rows])
+    integral = jacobi_integral(np.array(FULL), q, omega, rate)
+    return float(np.abs(integral - integral[0]).max() / abs(integral[0]))
+
+
+def linearisation_error(body: Body) -> float:
+    """The largest difference of any element at any point of the orbit."""
+    gains = _gains(body)
+    system, plant = closed_loop(body, gains), ControlledPlant.of(body, gains)
+    points = 2.0 * pi * (np.arange(POINTS) + 0.3) / POINTS
+    theirs = np.array([plant.linearised(u) for u in points.tolist()])
+    return float(np.abs(system(points) - theirs).max())
+
+
+def exponent_error(body: Body) -> float:
+    """Between the degrees of stability of linear theory and of the plant."""
+    gains = _gains(body)
+    ours = degree_of_stability(monodromy(closed_loop(body, gains)))
+    return abs(float(ours - degree_of_stability(ControlledPlant.of(body, gains).monodromy())))
+
+
+def best_degree(body: Body) -> tuple[float, str, bool]:
+    """The best degree of stability found, with its gains, and whether gains stabilise the body."""
+    found = search(body, continuous(body), continuous(body, ROUGH_STEPS))
+    best = found.best
+    return best.degree, f"k_w {best.gains.k_w:.6g}, k_a {best.gains.k_a:.6g}", found.stabilised
+
+
+def _gains(body: Body) -> Gains:
+    return KNOWN_BEST[body.name.partition(",")[0]][1]
+
+
+def _worst_of(claim: Claim, bodies: Sequence[Body], error: Callable[[Body], float]) -> Study:
+    def conclude(errors: Sequence[float]) -> list[Outcome]:
+        worst = int(np.argmax(errors))
+        return [claim.judge(errors[worst], bodies[worst].name)]
+
+    return Study(claim.id, tuple(partial(error, body) for body in bodies), conclude)

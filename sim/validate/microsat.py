@@ -1,0 +1,232 @@
+"""What is claimed of the 50 kg satellite with the filter in the loop: pointing, acquisition, consistency."""
+
+from datetime import UTC, datetime
+from math import inf
+
+import numpy as np
+from scipy.stats import chi2
+
+from fsw.input.schema import Nested
+from fsw.wire.messages import Mode
+from sim.campaign.claim import Study
+from sim.campaign.flight import Figures, Order
+from sim.campaign.study import Figure, Group, at, campaign, measured
+from sim.plant.environment.orbit import Sgp4Orbit
+from sim.plant.environment.sun import illumination, sun_eci_m
+from sim.record.estimates import Estimates
+from sim.record.truth import Histories
+from sim.report.attitude_arrays import angle_rad, relative
+from sim.report.summary import nees
+from sim.scenario.schema import Scenario, flight_table, load, orbit_period_s
+from sim.validate.reference.comparison import Array
+
+SCENARIO = "microsat"
+SOURCE = "50 kg satellite with PoSAT-1's actuation limits; laws of Ovchinnikov, Penkov, Roldugin 2015"
+FILTER = "Lefferts, Markley, Shuster 1982; bounds: Bar-Shalom, Li, Kirubarajan 2001, section 5.4"
+
+POINTING_RUNS, STARTS_WITHIN_DEG = 10, 60.0
+LAST_ORBITS = 4.0
+BIAS_TORQUES = (("zero", 0.0, 0.6), ("3e-8", 3e-8, 1.5), ("1e-7", 1e-7, 4.0))
+"""Name, bias torque per axis [N m], RMS pointing error that must be kept to [deg]."""
+
+ACQUIRED_RUNS, ACQUIRED_DEG, ACQUIRED_DEGPS, ACQUIRED_ORBITS = 20, 10.0, 1.0, 6.0
+FLOWN_ORBITS = 8.0
+
+NEES_RUNS, NEES_STATES, NEES_CONFIDENCE = 100, 6, 0.95
+BIASED_RUNS, BIAS_NT = 4, 500.0
+
+KEPT = at("limits_ok", 0.0)
+
+
+def studies() -> list[Study]:
+    """Pointing under bias torques, acquisition from any attitude, the filter's consistency."""
+    return [pointing(), acquisition(), consistency(), magnetometer_bias()]
+
+
+def pointing() -> Study:
+    """Ten seeds for each bias torque, from attitudes up to 60 deg off."""
+    groups = [
+        Group(name, tuple(_pointing_order(seed, torque_nm) for seed in range(1, POINTING_RUNS + 1)))
+        for name, torque_nm, _ in BIAS_TORQUES
+    ]
+    figures = [
+        Figure(
+            f"rms_{name}",
+            f"RMS pointing error, last {LAST_ORBITS:.0f} orbits, bias torque {torque_nm:g} N m, all seeds",
+            "deg",
+            measured("rms_deg"),
+            group=name,
+            high=limit_deg,
+        )
+        for name, torque_nm, limit_deg in BIAS_TORQUES
+    ]
+    limits = [
+        Figure(
+            f"limits_{name}", "Actuator limits kept, by the independent audit", "1", KEPT, group=name, low=1.0
+        )
+        for name, *_ in BIAS_TORQUES
+    ]
+    return campaign("microsat", SOURCE, groups, figures + limits)
+
+
+def acquisition() -> Study:
+    """Random attitudes at 1 deg/s, half of them from the Earth's shadow."""
+    orders = tuple(_acquisition_order(run) for run in range(ACQUIRED_RUNS))
+    figures = (
+        Figure(
+            "held",
+            f"In POINT and under {ACQUIRED_DEG:g} deg for good after, from any attitude at 1 deg/s, all",
+            "orbits",
+            measured("held_orbits"),
+            high=ACQUIRED_ORBITS,
+        ),
+        Figure(
+            "final",
+            "Largest pointing error at the end, none inverted",
+            "deg",
+            at("pointing_deg.final"),
+            high=10.0,
+        ),
+        Figure(
+            "eclipse", "Part of the starts in eclipse", "1", measured("dark_start"), "mean", low=0.5, high=0.5
+        ),
+        Figure("limits", "Actuator limits kept, by the independent audit", "1", KEPT, low=1.0),
+    )
+    return campaign("acquisition", SOURCE, (Group("", orders),), figures)
+
+
+def consistency() -> Study:
+    """Biases and torques drawn from what the filter takes them for; one look at each run, at its end."""
+    low, high = (
+        float(chi2.ppf(part, NEES_STATES * NEES_RUNS)) / NEES_RUNS
+        for part in (0.5 * (1.0 - NEES_CONFIDENCE), 0.5 * (1.0 + NEES_CONFIDENCE))
+    )
+    figure = Figure(
+        "nees",
+        f"Mean NEES of attitude and rate after one orbit, {NEES_RUNS} runs, 95 % bounds",
+        "1",
+        measured("nees"),
+        "mean",
+        low=low,
+        high=high,
+    )
+    orders = tuple(_drawn_order(run) for run in range(NEES_RUNS))
+    return campaign("filter", FILTER, (Group("", orders),), (figure,))
+
+
+def magnetometer_bias() -> Study:
+    """A magnetometer bias that the filter has to find."""
+    bias = {"sensors": {"magnetometer": {"bias_nt": [BIAS_NT, -BIAS_NT, BIAS_NT]}}}
+    orders = tuple(Order(SCENARIO, bias, seed=seed) for seed in range(1, BIASED_RUNS + 1))
+    figure = Figure(
+        "sunlit",
+        f"RMS attitude error of the filter, sunlit, magnetometer bias {BIAS_NT:g} nT per axis, all seeds",
+        "deg",
+        at("estimate_deg.rms_sunlit"),
+        high=0.2,
+    )
+    return campaign("filter_bias", FILTER, (Group("", orders),), (figure,))
+
+
+def pointed(scenario: Scenario, truth: Histories, estimates: Estimates) -> Figures:
+    """RMS pointing error of the last orbits."""
+    error_deg = pointing_deg(truth)
+    last = error_deg[-round(LAST_ORBITS * orbit_period_s(scenario) * scenario.time.tick_hz) :]
+    return {"rms_deg": float(np.sqrt(np.mean(last**2)))}
+
+
+def acquired(scenario: Scenario, truth: Histories, estimates: Estimates) -> Figures:
+    """Orbits after which it points for good, infinite if it does not; whether it began in the dark."""
+    held = (pointing_deg(truth) < ACQUIRED_DEG) & (estimates.mode[: len(truth["t_s"])] == Mode.POINT)
+    broken = np.flatnonzero(~held)
+    first = int(broken[-1]) + 1 if len(broken) else 0
+    orbits = first / scenario.time.tick_hz / orbit_period_s(scenario)
+    return {
+        "held_orbits": orbits if first < len(held) else inf,
+        "dark_start": float(truth["lit"][0] == 0.0),
+    }
+
+
+def consistent(scenario: Scenario, truth: Histories, estimates: Estimates) -> Figures:
+    """NEES at the last tick."""
+    return {"nees": float(nees(truth, estimates)[-1])}
+
+
+def pointing_deg(truth: Histories) -> Array:
+    """The angle between body and orbital frame at each tick."""
+    q = truth["q_body_from_orbit"]
+    upright = np.zeros_like(q)
+    upright[:, 0] = 1.0
+    return np.degrees(angle_rad(relative(upright, q)))
+
+
+def _pointing_order(seed: int, torque_nm: float) -> Order:
+    random = np.random.default_rng(seed)
+    overrides: Nested = {
+        "initial": {"axis": _direction(random), "angle_deg": float(random.uniform(0.0, STARTS_WITHIN_DEG))},
+        "disturbance": {"torque_nm": [torque_nm] * 3},
+    }
+    return Order(SCENARIO, overrides, seed=seed, measure=pointed)
+
+
+def _acquisition_order(run: int) -> Order:
+    random = np.random.default_rng(1000 + run)
+    axis, angle_deg = _any_attitude(random)
+    rate = [ACQUIRED_DEGPS * part for part in _direction(random)]
+    overrides: Nested = {
+        "initial": {"axis": axis, "angle_deg": angle_deg, "rate_degps": rate},
+        "time": {"epoch_utc": _epoch(random, dark=run % 2 == 1)},
+    }
+    return Order(SCENARIO, overrides, seed=run + 1, orbits=FLOWN_ORBITS, measure=acquired)
+
+
+def _drawn_order(run: int) -> Order:
+    """What the filter takes for random is random: attitude, bias, torque and its noise."""
+    scenario, random = load(SCENARIO), np.random.default_rng(2000 + run)
+    assumed = estimator_values(scenario)
+    axis, angle_deg = _any_attitude(random)
+    overrides: Nested = {
+        "initial": {"axis": axis, "angle_deg": angle_deg, "rate_degps": random.normal(0.0, 0.1, 3).tolist()},
+        "sensors": {"magnetometer": {"bias_nt": random.normal(0.0, assumed["bias_sigma_nt"], 3).tolist()}},
+        "disturbance": {
+            "torque_nm": random.normal(0.0, assumed["torque_sigma_nm"], 3).tolist(),
+            "torque_noise_nm_rts": assumed["torque_noise_nm_rts"],
+        },
+    }
+    return Order(SCENARIO, overrides, seed=run + 1, orbits=1.0, measure=consistent)
+
+
+def estimator_values(scenario: Scenario) -> dict[str, float]:
+    """What the scenario's filter assumes."""
+    values: dict[str, float] = flight_table(scenario).estimator.model_dump()
+    return values
+
+
+def _direction(random: np.random.Generator) -> list[float]:
+    vector = random.standard_normal(3)
+    unit: list[float] = (vector / np.linalg.norm(vector)).tolist()
+    return unit
+
+
+def _any_attitude(random: np.random.Generator) -> tuple[list[float], float]:
+    """Axis and angle [deg] of an attitude that may be any."""
+    q = random.standard_normal(4)
+    sine, cosine = np.linalg.norm(q[1:]), abs(q[0])
+    axis: list[float] = (q[1:] / sine).tolist()
+    return axis, float(np.degrees(2.0 * np.arctan2(sine, cosine)))
+
+
+def _epoch(random: np.random.Generator, dark: bool) -> str:
+    """A time within a day of the elements' epoch at which the satellite is lit in full, or not at all."""
+    scenario = load(SCENARIO)
+    assert scenario.orbit.tle is not None
+    epoch_unix_s = scenario.epoch_unix_s
+    times = np.sort(random.integers(0, 86400, 50)).astype(float)
+    r_m, _ = Sgp4Orbit(scenario.orbit.tle, epoch_unix_s).at(times)
+    lit = illumination(r_m, sun_eci_m(epoch_unix_s, times))
+    chosen = times[lit == (0.0 if dark else 1.0)][0]
+    return _iso(epoch_unix_s + int(chosen))
+
+
+def _iso(unix_s: int) -> str:
+    return datetime.fromtimestamp(unix_s, UTC).strftime("%Y-%m-%dT%H:%M:%SZ")

@@ -1,0 +1,74 @@
+"""validation.md: one table, made of outcomes alone."""
+
+import platform
+from collections.abc import Sequence
+
+import numpy as np
+import scipy
+
+from sim.campaign.claim import Outcome, Verdict
+from sim.campaign.runner import Finished
+from sim.validate.reference.reference import Checked
+
+_HEAD = """# Validation
+
+Written by `torquer validate`; do not edit. Each row is computed anew by that command: a claim or a
+reference figure, who says so, what this code gives, and what it must keep to. Of a reference file's rows
+the one nearest to its tolerance counts.
+"""
+
+
+def render(finished: Sequence[Finished], wall_s: float) -> str:
+    """The page: the table of claims, what was left out of the reference files, wall time and platform."""
+    outcomes = [outcome for study in finished for outcome in study.outcomes]
+    lines = [_HEAD, tally(outcomes) + ".", "", "| claim | source | ours | tolerance | verdict |"]
+    lines += ["|---|---|---|---|---|", *map(_row, outcomes), ""]
+    files = [result for study in finished for result in study.results if isinstance(result, Checked)]
+    if files:
+        lines += ["| reference file | rows | columns not used |", "|---|---|---|"]
+        lines += [f"| {file.name} | {file.rows} | {', '.join(file.unused) or 'none'} |" for file in files]
+        lines.append("")
+    lines += [f"Wall time {wall_s:.0f} s. {platform_line()}.", ""]
+    return "\n".join(lines)
+
+
+def line(outcome: Outcome) -> str:
+    """One outcome for the terminal."""
+    if outcome.ours is None:
+        return f"{outcome.verdict.value:<6} {outcome.claim.id}"
+    where = f"  [{outcome.where}]" if outcome.where else ""
+    figure = f"{_figure(outcome)} ({outcome.claim.limits})"
+    return f"{outcome.verdict.value:<6} {outcome.claim.id}: {outcome.claim.statement}: {figure}{where}"
+
+
+def tally(outcomes: Sequence[Outcome]) -> str:
+    """How many claims hold, fail, and could not be judged."""
+    count = {verdict: sum(outcome.verdict is verdict for outcome in outcomes) for verdict in Verdict}
+    text = f"{count[Verdict.PASS]} claims hold, {count[Verdict.FAIL]} fail"
+    return text + (f", {count[Verdict.ABSENT]} absent" if count[Verdict.ABSENT] else "")
+
+
+def platform_line() -> str:
+    """What the figures were computed with."""
+    return (
+        f"Python {platform.python_version()}, numpy {np.__version__}, scipy {scipy.__version__}, "
+        f"{platform.system()} {platform.machine()}"
+    )
+
+
+def _row(outcome: Outcome) -> str:
+    claim = outcome.claim
+    ours = "" if outcome.ours is None else _figure(outcome)
+    if outcome.verdict is Verdict.FAIL and outcome.where:
+        ours += f" at {outcome.where}"
+    limits = f"{claim.limits} {_unit(claim.unit)}".strip() if outcome.ours is not None else ""
+    cells = (f"{claim.statement} (`{claim.id}`)", claim.source, ours, limits, outcome.verdict.value)
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+
+
+def _figure(outcome: Outcome) -> str:
+    return f"{outcome.ours:.4g} {_unit(outcome.claim.unit)}".strip()
+
+
+def _unit(unit: str) -> str:
+    return "" if unit == "1" else unit

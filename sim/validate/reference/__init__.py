@@ -1,0 +1,1 @@
+"""Reference data, a module a format, each against our own code."""

@@ -1,0 +1,172 @@
+"""attitude_*.csv: the plant's rigid body and its torques against histories of other simulators."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import partial
+from math import ceil
+
+import numpy as np
+
+from fsw.core.algebra import quaternion as onboard
+from sim.errors import HarnessError
+from sim.plant.dynamics import torques
+from sim.plant.dynamics.rigid_body import Motion, RigidBody
+from sim.plant.environment.surroundings import Surroundings
+from sim.plant.rotation import ZERO, Mat3, Quaternion, Vec3, matrix, normalise
+from sim.report.attitude_arrays import angle_rad, relative
+from sim.validate.reference.comparison import Array, Comparison, largest
+from sim.validate.reference.reference_table import ReferenceTable, names_of
+from sim.validate.reference.two_body import two_body
+
+ATTITUDE_RAD = 1e-7
+RATE_RADPS = 1e-9
+POSITION_M = 1e-2
+MATRIX = 1e-12
+"""The header gives the quaternion to 14 digits."""
+
+TURN_A_STEP_RAD = 0.006
+"""Runge-Kutta steps in which the body turns by no more: errors of 1e-9 rad after 1000 rad."""
+MOST_STEPS = 10_000
+"""From a row to the next."""
+LONGEST_STEP_S, SHORTEST_STEP_S = 1.0, 0.005
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """What the header of a history says of the body and its surroundings."""
+
+    inertia_kgm2: Mat3
+    r0_m: Array
+    v0_mps: Array
+    start: Motion
+    c0: Array
+    mu_m3ps2: float
+    gravity: bool
+    dipole_body_am2: Vec3
+    dipole_tm3: float
+    dipole_axis: Array
+
+
+def check(table: ReferenceTable) -> Iterator[Comparison]:
+    """Fly the header's case through the plant's integrator and compare every row.
+
+    Raises:
+        HarnessError: header or rows are malformed.
+    """
+    case, times = read_case(table), table.column("t_s")
+    if times[0] < 0.0 or (np.diff(times) <= 0.0).any():
+        row = 0 if times[0] < 0.0 else int(np.flatnonzero(np.diff(times) <= 0.0)[0]) + 1
+        raise HarnessError(f"{table.path}, line {table.lines[row]}, column t_s: times must rise from 0")
+    q = table.columns("q0", "q1", "q2", "q3")
+    omega = table.columns(*names_of("omega_", "xyz", "_rad_s"))
+    r_m = 1e3 * table.columns(*names_of("r_eci_", "xyz", "_km"))
+    longest_step_s = step_s(omega)
+    gaps_s = np.diff(times, prepend=0.0)
+    if gaps_s.max() > MOST_STEPS * longest_step_s:
+        row = int(np.argmax(gaps_s))
+        raise HarnessError(
+            f"{table.path}, line {table.lines[row]}, column t_s: the {gaps_s[row]:g} s before it take more "
+            f"than {MOST_STEPS} integration steps at such rates"
+        )
+    ours_q, ours_omega = fly(case, times, longest_step_s)
+    norm = np.linalg.norm(q, axis=1)
+    yield Comparison(
+        "attitude",
+        "Attitude through the plant's integrator",
+        "rad",
+        np.maximum(angle_rad(relative(ours_q, q / norm[:, None])), np.abs(norm - 1.0)),
+        ATTITUDE_RAD,
+    )
+    yield Comparison("rate", "Inertial rate", "rad/s", largest(ours_omega - omega), RATE_RADPS)
+    ours_r_m = two_body(case.r0_m, case.v0_mps, case.mu_m3ps2, times)
+    yield Comparison("position", "Position on the header's orbit", "m", largest(ours_r_m - r_m), POSITION_M)
+    start = case.start.q_body_from_eci
+    for who, c in (("Plant", matrix(start)), ("Onboard", onboard.dcm(start))):
+        apart = np.zeros(len(table))
+        apart[0] = np.abs(np.array(c) - case.c0).max()
+        yield Comparison(f"matrix_{who.lower()}", f"{who} matrix of the first attitude", "1", apart, MATRIX)
+
+
+def read_case(table: ReferenceTable) -> Case:
+    """The case of a header.
+
+    Raises:
+        HarnessError: a line of the header is missing or malformed.
+    """
+    translation = table.comment("translation") or ""
+    rows = np.reshape(table.header("J (kg m^2", 9), (3, 3))
+    q = table.header("q0 (body<-inertial", 4)
+    dipole, dipole_tm3, axis = ZERO, 0.0, np.zeros(3)
+    if table.comment("dipole m_body") is not None:
+        dipole = _vec3(table.header("dipole m_body", 3))
+        field = table.comment("field: B_inertial") or ""
+        dipole_tm3 = table.numbers_after(field.partition(" T m^3")[0], "mu_e = ", 1, "field: ... mu_e = ")[0]
+        axis = np.array(table.numbers_after(field, "mhat (constant, inertial) = ", 3, "field: ... mhat = "))
+    if not any(q):
+        raise HarnessError(f"{table.path}: the header's quaternion q0 is zero")
+    case = Case(
+        inertia_kgm2=(_vec3(rows[0]), _vec3(rows[1]), _vec3(rows[2])),
+        r0_m=np.array(table.header("r0_m", 3)),
+        v0_mps=np.array(table.header("v0_m_s", 3)),
+        start=Motion(normalise((q[0], q[1], q[2], q[3])), _vec3(table.header("w0_rad_s", 3))),
+        c0=np.reshape(table.header("C0", 9), (3, 3)),
+        mu_m3ps2=table.numbers_after(translation, "mu = ", 1, "translation: ... mu = ")[0],
+        gravity="gravity gradient ON" in translation,
+        dipole_body_am2=dipole,
+        dipole_tm3=dipole_tm3,
+        dipole_axis=axis,
+    )
+    _check_physics(table, case)
+    return case
+
+
+def fly(case: Case, times: Array, longest_step_s: float) -> tuple[Array, Array]:
+    """Attitudes (n, 4) and inertial rates (n, 3) of the plant's rigid body at rising times from 0."""
+    body, motion, here = RigidBody(case.inertia_kgm2), case.start, 0.0
+    torque = partial(_torque, case)
+    history = []
+    for time in times.tolist():
+        steps = ceil((time - here) / longest_step_s)
+        around = surroundings(case, np.linspace(here, time, 2 * steps + 1))
+        for step in range(steps):
+            motion = body.step(motion, torque, around[2 * step : 2 * step + 3], (time - here) / steps)
+        history.append(motion)
+        here = time
+    return np.array([m.q_body_from_eci for m in history]), np.array([m.omega_body_radps for m in history])
+
+
+def surroundings(case: Case, t_s: Array) -> list[Surroundings]:
+    """Radius, gradient and field, B = (mu_e / r^3) (3 (m . e) e - m), at each time."""
+    r_m = two_body(case.r0_m, case.v0_mps, case.mu_m3ps2, t_s)
+    r_norm = np.linalg.norm(r_m, axis=1)[:, None]
+    e = r_m / r_norm
+    gradient = case.gravity * 3.0 * case.mu_m3ps2 / r_norm[:, 0] ** 3
+    b_t = case.dipole_tm3 / r_norm**3 * (3.0 * (e @ case.dipole_axis)[:, None] * e - case.dipole_axis)
+    return [
+        Surroundings((ex, ey, ez), g, (bx, by, bz))
+        for (ex, ey, ez), g, (bx, by, bz) in zip(e.tolist(), gradient.tolist(), b_t.tolist(), strict=True)
+    ]
+
+
+def step_s(omega: Array) -> float:
+    """The integration step for a history of rates."""
+    fastest = float(np.linalg.norm(omega, axis=1).max())
+    return min(LONGEST_STEP_S, max(SHORTEST_STEP_S, TURN_A_STEP_RAD / max(fastest, 1e-9)))
+
+
+def _torque(case: Case, q: Quaternion, omega_body_radps: Vec3, around: Surroundings) -> Vec3:
+    return torques.total(case.inertia_kgm2, q, around, case.dipole_body_am2, ZERO)
+
+
+def _check_physics(table: ReferenceTable, case: Case) -> None:
+    if not np.linalg.eigvalsh(np.array(case.inertia_kgm2)).min() > 0.0:
+        raise HarnessError(f"{table.path}: the header's J is not positive definite")
+    try:
+        two_body(case.r0_m, case.v0_mps, case.mu_m3ps2, np.zeros(1))
+    except (ValueError, ZeroDivisionError):
+        raise HarnessError(f"{table.path}: the header's r0_m and v0_m_s are no closed orbit") from None
+
+
+def _vec3(values: list[float] | Array) -> Vec3:
+    x, y, z = (float(value) for value in values)
+    return (x, y, z)

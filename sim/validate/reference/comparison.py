@@ -1,0 +1,64 @@
+"""Deviations from reference rows, and the one that is worst."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sim.campaign.claim import Claim, Outcome
+from sim.validate.reference.reference_table import ReferenceTable
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """How far our code is from the reference in each row.
+
+    Attributes:
+        id: last word of the claim's id.
+        statement: what is compared.
+        unit: of deviation and tolerance.
+        deviation: one a row, (n,).
+        tolerance: for all rows or one a row.
+    """
+
+    id: str
+    statement: str
+    unit: str
+    deviation: Array
+    tolerance: ArrayLike
+
+    def outcome(self, table: ReferenceTable) -> Outcome:
+        """The verdict on the row that comes nearest to its tolerance or exceeds it most."""
+        tolerance = np.broadcast_to(np.asarray(self.tolerance, dtype=np.float64), self.deviation.shape)
+        excess = np.where(self.deviation == 0.0, 0.0, self.deviation / np.maximum(tolerance, 1e-300))
+        excess = np.where(np.isnan(excess), np.inf, excess)
+        worst = int(np.argmax(excess))
+        claim = Claim(
+            id=f"reference.{table.path.stem}.{self.id}",
+            statement=self.statement,
+            source=f"{table.path.name}: {table.comments[0]}" if table.comments else table.path.name,
+            unit=self.unit,
+            high=float(tolerance[worst]),
+        )
+        where = "" if claim.high == self.deviation[worst] == 0.0 else table.label(worst)
+        return claim.judge(float(self.deviation[worst]), where)
+
+
+def largest(differences: Array) -> Array:
+    """The largest magnitude in each row of (n, ...), (n,)."""
+    worst: Array = np.abs(differences).reshape(len(differences), -1).max(axis=1)
+    return worst
+
+
+def mismatch(ours: ArrayLike, theirs: ArrayLike) -> Array:
+    """1 in the rows where two columns differ, else 0: for what must agree exactly."""
+    differs: Array = (np.asarray(ours) != np.asarray(theirs)).astype(np.float64)
+    return differs
+
+
+def angle_rad(a: Array, b: Array) -> Array:
+    """The angle between directions, (n, 3) each, exact for small ones too."""
+    angle: Array = np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), (a * b).sum(axis=1))
+    return angle

@@ -1,0 +1,86 @@
+"""igrf14.csv: both implementations of the geomagnetic field, Earth-fixed position to Earth-fixed field."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from fsw.core.orbit import igrf as onboard
+from fsw.core.orbit.igrf_coefficients import EPOCHS_UNIX_S, MAX_DEGREE
+from sim.errors import HarnessError
+from sim.plant.environment.igrf import Igrf
+from sim.validate.reference.comparison import Array, Comparison, largest
+from sim.validate.reference.reference_table import ReferenceTable, names_of
+
+SAME_EPOCHS_NT = 1e-3
+"""Rounding of other software near the poles; the formulas agree to 1e-10 nT."""
+OTHER_EPOCHS_NT = 0.5
+"""Coefficients linear in decimal years instead of elapsed days differ by up to 0.22 nT."""
+
+
+def check(table: ReferenceTable) -> Iterator[Comparison]:
+    """Compare the field at every row.
+
+    Raises:
+        HarnessError: a row is malformed or outside the years of the model.
+    """
+    unix_s = table.unix_s("utc_iso")
+    r_m = 1e3 * table.columns(*names_of("r_ecef_", "xyz", "_km"))
+    reference_nt = table.columns(*names_of("b_ecef_", "xyz", "_nT"))
+    other_nt = table.columns(*names_of("b_decyear_", "xyz", "_nT"))
+    _check_places(table, r_m)
+    plant_nt = 1e9 * _each(table, Igrf(), unix_s, r_m)
+    yield Comparison(
+        "plant",
+        "Plant's field, IGRF-14 to degree 13",
+        "nT",
+        largest(plant_nt - reference_nt),
+        SAME_EPOCHS_NT,
+    )
+    yield Comparison(
+        "decimal_years",
+        "The same against coefficients linear in decimal years",
+        "nT",
+        largest(plant_nt - other_nt),
+        OTHER_EPOCHS_NT,
+    )
+    inside = (unix_s >= EPOCHS_UNIX_S[0]) & (unix_s <= EPOCHS_UNIX_S[-1])
+    flight_nt, short_nt = np.zeros_like(plant_nt), np.zeros_like(plant_nt)
+    for row in np.flatnonzero(inside):
+        x, y, z = r_m[row].tolist()
+        model = onboard.prepare(float(unix_s[row]) // 86400.0 * 86400.0)
+        flight_nt[row] = 1e9 * np.array(onboard.field_ecef_t((x, y, z), float(unix_s[row]), model))
+    short_nt[inside] = 1e9 * Igrf(MAX_DEGREE).at(unix_s[inside], r_m[inside])
+    yield Comparison(
+        "onboard",
+        f"Onboard field against the plant's, both to degree {MAX_DEGREE}",
+        "nT",
+        largest(flight_nt - short_nt),
+        SAME_EPOCHS_NT,
+    )
+    beyond = plant_nt - short_nt
+    yield Comparison(
+        "onboard_reference",
+        f"Onboard field with the plant's degrees above {MAX_DEGREE} added",
+        "nT",
+        np.where(inside, largest(flight_nt + beyond - reference_nt), 0.0),
+        SAME_EPOCHS_NT,
+    )
+
+
+def _each(table: ReferenceTable, model: Igrf, unix_s: Array, r_m: Array) -> Array:
+    """The field at all rows; the first that the model refuses is named."""
+    try:
+        return model.at(unix_s, r_m)
+    except ValueError:
+        for row, line in enumerate(table.lines):
+            try:
+                model.at(unix_s[row : row + 1], r_m[row : row + 1])
+            except ValueError as error:
+                raise HarnessError(f"{table.path}, line {line}, column utc_iso: {error}") from None
+        raise
+
+
+def _check_places(table: ReferenceTable, r_m: Array) -> None:
+    for line, r in zip(table.lines, r_m, strict=True):
+        if not np.any(r):
+            raise HarnessError(f"{table.path}, line {line}, column r_ecef_x_km: the centre of the Earth")

@@ -1,0 +1,99 @@
+"""Reference checks: files of known formats in a folder, each against our production code."""
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from sim.campaign.claim import Claim, Outcome, Study, Verdict
+from sim.errors import HarnessError
+from sim.validate.reference import (
+    attitude_check,
+    earth_check,
+    eclipse_check,
+    elements_check,
+    field_check,
+    floquet_check,
+    triad_check,
+)
+from sim.validate.reference.comparison import Comparison
+from sim.validate.reference.reference_table import ReferenceTable
+
+Check = Callable[[ReferenceTable], Iterator[Comparison]]
+
+CHECKS: dict[str, Check] = {
+    "igrf14.csv": field_check.check,
+    "earth_sun.csv": earth_check.check,
+    "eclipse.csv": eclipse_check.check,
+    "attitude_*.csv": attitude_check.check,
+    "floquet.csv": floquet_check.check,
+    "triad_mekf.csv": triad_check.check,
+}
+"""By file name; one pattern may stand for many files."""
+
+ELEMENTS = "tle.txt"
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """What one file showed; ``unused`` are the columns that no check read."""
+
+    name: str
+    rows: int
+    unused: tuple[str, ...]
+    outcomes: tuple[Outcome, ...]
+
+
+def studies(folder: Path) -> list[Study]:
+    """The checks of a folder, a study a file; a kind of file that is not there is reported as absent.
+
+    Raises:
+        HarnessError: the folder is none, or holds no file of a known format.
+    """
+    if not os.path.isdir(folder):  # unlike Path's, never an error, whatever the name
+        raise HarnessError(f"{folder} is no folder")
+    patterns = [*CHECKS, ELEMENTS]
+    files = {pattern: sorted(folder.glob(pattern)) for pattern in patterns}
+    if not any(files.values()):
+        raise HarnessError(f"{folder} holds none of the reference files {', '.join(patterns)}")
+    return [study for pattern in patterns for study in _studies(pattern, files[pattern])]
+
+
+def absent() -> list[Study]:
+    """The same where there is no folder at all."""
+    return [study for pattern in [*CHECKS, ELEMENTS] for study in _studies(pattern, [])]
+
+
+def check_file(path: Path, pattern: str) -> Checked:
+    """Check one file.
+
+    Raises:
+        HarnessError: it is malformed.
+    """
+    try:
+        if pattern == ELEMENTS:
+            outcomes = tuple(elements_check.check(path))
+            return Checked(path.name, len(elements_check.read_elements(path)), (), outcomes)
+        table = ReferenceTable(path)
+        outcomes = tuple(comparison.outcome(table) for comparison in CHECKS[pattern](table))
+        return Checked(path.name, len(table), tuple(table.unused), outcomes)
+    except (ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
+        raise HarnessError(f"{path}: a row cannot be computed ({error})") from None
+
+
+def _studies(pattern: str, files: list[Path]) -> list[Study]:
+    stem = Path(pattern).stem
+    if not files:
+        claim = Claim(f"reference.{stem.rstrip('_*')}", f"{pattern}", pattern, "")
+        return [Study(claim.id, (), lambda results: [Outcome(claim, Verdict.ABSENT)])]
+    return [
+        Study(f"reference.{path.stem}", (partial(check_file, path, pattern),), _outcomes) for path in files
+    ]
+
+
+def _outcomes(results: Sequence[Any]) -> list[Outcome]:
+    return [outcome for checked in results for outcome in checked.outcomes]

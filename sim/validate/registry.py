@@ -1,0 +1,48 @@
+"""All studies there are, and which of them are meant."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from sim.campaign.claim import Study
+from sim.errors import HarnessError
+from sim.validate import computed, microsat, posat1
+from sim.validate.reference import reference
+
+REFERENCE_FOLDER = Path("tests", "reference")
+
+
+def all_studies(repository: Path | None) -> list[Study]:
+    """Every study; the reference data lie in the repository only."""
+    folder = None if repository is None else repository / REFERENCE_FOLDER
+    checks = reference.studies(folder) if folder is not None and folder.is_dir() else reference.absent()
+    return [*checks, *computed.studies(), *posat1.studies(), *microsat.studies()]
+
+
+def chosen(studies: Sequence[Study], only: Sequence[str], quick: bool) -> list[Study]:
+    """The studies whose ids begin with one of ``only`` (all, if it is empty); ``quick`` leaves out flights.
+
+    Raises:
+        HarnessError: a word of ``only`` fits no study, or nothing is left.
+    """
+    for word in only:
+        if not any(_begins(study.id, word) for study in studies):
+            ids = ", ".join(study.id for study in studies)
+            raise HarnessError(f"--only {word}: no such claims; there are {ids}")
+    kept = [study for study in studies if not only or any(_begins(study.id, word) for word in only)]
+    kept = [study for study in kept if not (quick and study.flown)]
+    if not kept:
+        raise HarnessError("--quick leaves out flights, and --only names nothing else")
+    return kept
+
+
+def find_repository(start: Path) -> Path | None:
+    """The folder at or above ``start`` that holds this project's source; None outside of it."""
+    for folder in (start, *start.parents):
+        project = folder / "pyproject.toml"
+        if project.is_file() and 'name = "torquer"' in project.read_text(encoding="utf-8", errors="replace"):
+            return folder
+    return None
+
+
+def _begins(study_id: str, word: str) -> bool:
+    return study_id == word or study_id.startswith(f"{word}.")

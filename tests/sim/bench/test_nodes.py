@@ -1,0 +1,25 @@
+"""The processes of a bench end with it, also those that stand still."""
+
+import os
+import signal
+import time
+
+from sim.bench import nodes
+from sim.bench.nodes import Nodes, hub_of
+
+
+def test_a_hub_that_stands_still_is_killed(monkeypatch):
+    monkeypatch.setattr(nodes, "GRACE_S", 0.5)
+    began = time.monotonic()
+    with hub_of("loop") as served:
+        os.kill(served.hub_pid, signal.SIGSTOP)
+    assert time.monotonic() - began < 20.0
+    assert not os.path.exists(f"/proc/{served.hub_pid}")
+
+
+def test_a_node_that_stands_still_is_killed(monkeypatch):
+    monkeypatch.setattr(nodes, "GRACE_S", 0.5)
+    with Nodes() as started:
+        node = started.start("waiting", "http.server", "0")
+        os.kill(node.process.pid, signal.SIGSTOP)
+    assert node.process.returncode < 0

@@ -1,0 +1,102 @@
+"""The plant behind somebody else's coil board: it flies as with its own."""
+
+import pytest
+
+from fsw.wire.messages import (
+    CoilDipole,
+    CoilDipoleStatus,
+    CoilFire,
+    CoilStatus,
+    MagField,
+    SunVector,
+    Sync,
+)
+from hil_stub.coils.coil_driver import CoilDriver
+from hil_stub.coils.dipole_driver import DipoleDriver
+from sim.bench.world import PlantWorld, SyncAlone
+from sim.plant.plant import Plant
+from sim.scenario.assemble import plant_config
+from sim.scenario.schema import load
+
+PULSED = {"time": {"tick_hz": 2}, "coils": {"backoff_s": 5.0}}
+CONTINUOUS = {"coils": {"driver": "continuous", "max_dipole_am2": 5.0, "on_fraction": 0.8}}
+
+
+def requests(tick):
+    """Pulses that end with a tick and within one; each as soon as the board may take it."""
+    duration_ms = (3000, 2250, 300)[tick // 20 % 3]
+    return [CoilFire((-2, 3, 1)[tick % 3], tick % 3, tick & 0xFF, tick & 0xFF, duration_ms).encode()]
+
+
+def dipoles(tick):
+    return [CoilDipole(0.5, -0.25, 0.125 * (tick % 5)).encode()] if tick % 4 else []
+
+
+@pytest.mark.parametrize(
+    ("changes", "asked"), [(PULSED, requests), (CONTINUOUS, dipoles)], ids=["pulsed", "continuous"]
+)
+def test_what_a_board_tells_drives_the_plant_as_its_own_board_does(changes, asked):
+    config = plant_config(load("microsat", changes), seed=7)
+    own = Plant(config)
+    shown = {"magnetometer": [], "sun": []}
+    world = PlantWorld(config, shown["magnetometer"].append, shown["sun"].append)
+    limits, continuous = config.limits, config.coils.continuous
+    board = DipoleDriver(config.tick_hz, continuous.on_fraction) if continuous else CoilDriver(limits)
+    board.begin_tick(0, 0.0)
+    driven = 0
+    for tick in range(120):
+        frames = {frame.can_id: frame for frame in own.begin_tick()}
+        assert world.frames()[-1] == frames[Sync.ID]
+        for name, message in (("magnetometer", MagField), ("sun", SunVector)):
+            valid, x, y, z, _ = message.decode(frames[message.ID].data)
+            assert shown[name][-1] == f"{tick} {x!r} {y!r} {z!r} {valid}\n".encode()
+        for request in asked(tick):
+            own.receive(request)
+            board.receive(request)
+            assert not world.hear(request)
+        own.end_tick()
+        driven += any(own.driven.current_a)
+        board.drive()
+        told = [world.hear(frame) for frame in board.begin_tick(tick + 1, 0.0)]
+        assert told.count(True) == 1
+        world.advance()
+        assert world._plant.motion == own.motion, f"they part in tick {tick}"
+    assert driven > 20
+
+
+def test_without_a_word_nothing_was_driven():
+    config = plant_config(load("microsat", PULSED), seed=7)
+    world, quiet = PlantWorld(config, None, None), Plant(config)
+    world.hear(CoilStatus(3, 0, 1500, 300, 9000, 1).encode())
+    for _ in range(3):
+        quiet.end_tick()
+        world.advance()
+    assert world._plant.motion != quiet.motion, "the first tick was driven"
+    other = PlantWorld(config, None, None)
+    for _ in range(3):
+        other.advance()
+    assert other._plant.motion == quiet.motion
+
+
+@pytest.mark.parametrize("level", [-8, 7, 4])
+def test_a_level_that_is_none_drives_nothing(level):
+    world = PlantWorld(plant_config(load("microsat", PULSED), seed=7), None, None)
+    assert world.hear(CoilStatus(level, 3, 1500, 300, 9000, 1).encode())
+    assert not any(world._drive.drive().current_a)
+
+
+def test_the_word_of_the_other_kind_of_board_counts_for_nothing():
+    world = PlantWorld(plant_config(load("microsat", PULSED), seed=7), None, None)
+    assert not world.hear(CoilDipoleStatus(0.5, 0.5, 0.5).encode())
+    broken = CoilStatus(3, 0, 1500, 300, 9000, 1).encode()
+    assert not world.hear(broken._replace(data=broken.data[:-1] + b"\0"))
+
+
+def test_sync_alone_counts_ticks_and_seconds():
+    world, sent = SyncAlone(1000, 2), []
+    for _ in range(5):
+        (frame,) = world.frames()
+        sent.append(tuple(Sync.decode(frame.data)))
+        assert not world.hear(frame)
+        world.advance()
+    assert sent == [(0, 1000), (1, 1000), (2, 1001), (3, 1001), (4, 1002)]

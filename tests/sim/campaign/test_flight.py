@@ -1,0 +1,98 @@
+"""A flight without files comes to what ``torquer sil`` comes to."""
+
+import json
+from math import inf, nan
+
+import numpy as np
+import pytest
+
+from fsw.input.schema import merge
+from sim.campaign.flight import Flight, Order, fly_order
+from sim.campaign.study import Figure, Group, at, campaign, label, number
+from sim.record import run_dir
+from sim.report.conclude import conclude
+
+OVERRIDES = {
+    "body": {"inertia_kgm2": [[1.02, 0.03, -0.02], [0.03, 1.85, 0.05], [-0.02, 0.05, 1.95]]},
+    "initial": {"axis": [0.5, -0.7, 0.4], "rate_degps": [0.05, -0.07, 0.04]},
+    "sensors": {"magnetometer": {"bias_nt": [150.0, -250.0, 100.0]}},
+    "disturbance": {"torque_nm": [3e-8, -2e-8, 1e-8], "residual_dipole_am2": [0.003, 0.002, -0.004]},
+    "flight": {"modes": {"settle_s": 20.0}},
+}
+ORBITS = 300 / (86400.0 / 14.30166407)
+UNTIMED = {"wall_seconds", "realtime_factor", "replay"}
+
+
+def final_row(scenario, truth, estimates):
+    return {"rows": float(len(truth["t_s"])), "known": float(np.isfinite(estimates.covariance[-1]).all())}
+
+
+@pytest.fixture(scope="module")
+def flown():
+    return fly_order(Order("microsat", OVERRIDES, seed=5, orbits=ORBITS, measure=final_row))
+
+
+def test_the_summary_is_that_of_the_run_directory(flown, fly_run):
+    path = fly_run()
+    expected = {key: value for key, value in conclude(path).items() if key not in UNTIMED}
+    ours = {key: value for key, value in flown.summary.items() if key not in UNTIMED}
+    assert json.loads(json.dumps(ours)) == expected
+    assert expected["pulses"]["total"] == 2
+    assert expected["events"]
+
+
+def test_its_audit_sees_what_the_board_drove(flown, fly_run):
+    assert flown.summary["limits_ok"] is True
+    fast = fly_order(
+        Order("microsat", merge(OVERRIDES, {"coils": {"backoff_s": 20.0}}), seed=5, orbits=ORBITS)
+    )
+    assert fast.summary["min_gap_s"]["any"] < 100.0
+    assert run_dir.read_run(fly_run())["ticks"] == flown.summary["ticks"]
+
+
+def test_further_figures_are_taken_from_its_histories(flown):
+    assert flown.figures == {"rows": 300.0, "known": 1.0}
+
+
+def test_numbers_of_a_summary():
+    flight = Flight(Order("x"), {"a": {"b": 2, "text": "c"}, "ok": True}, {})
+    assert number(flight, "a.b") == 2.0
+    assert number(flight, "ok") == 1.0
+    assert at("a.missing", inf)(flight) == inf
+    assert np.isnan(number(flight, "a.b.c"))
+    assert np.isnan(number(flight, "a.text"))
+
+
+def test_a_label_tells_what_is_special():
+    order = Order("posat1", {"orbit": {"raan_deg": 60.0}, "initial": {"axis": [0, 1.23456, 0]}}, seed=3)
+    assert label(order) == "posat1, seed 3, orbit.raan_deg=60, initial.axis=[0, 1.235, 0]"
+
+
+class TestFigures:
+    def outcome(self, values, **how):
+        orders = tuple(Order("x", seed=seed) for seed in range(len(values)))
+        other = (Order("y"),)
+        figure = Figure("f", "what", "deg", at("v", nan), group="mine", **how)
+        study = campaign("s", "who", (Group("other", other), Group("mine", orders)), (figure,))
+        assert len(study.tasks) == len(values) + 1
+        flights = [Flight(order, {"v": value}, {}) for order, value in zip(orders, values, strict=True)]
+        return study.conclude([Flight(other[0], {"v": -1e9}, {}), *flights])[0]
+
+    def test_the_worst_flight_counts_and_is_named(self):
+        outcome = self.outcome([1.0, 4.0, 3.0], high=3.5)
+        assert (outcome.ours, outcome.verdict.value, outcome.where) == (4.0, "FAIL", "worst: x, seed 1: 4")
+        assert self.outcome([1.0, 4.0, 3.0], low=1.5).ours == 1.0
+        assert self.outcome([1.0, 4.0, 3.0], low=0.9, high=10.0).ours == 1.0
+
+    def test_the_median_and_the_mean(self):
+        assert self.outcome([1.0, 9.0, 3.0], of="median", high=3.0).verdict.value == "PASS"
+        assert self.outcome([1.0, 9.0, 2.0], of="mean", high=3.9).verdict.value == "FAIL"
+
+    def test_a_flight_without_the_figure_fails(self):
+        outcome = self.outcome([1.0, nan, 2.0], high=3.0)
+        assert outcome.verdict.value == "FAIL"
+        assert "seed 1" in outcome.where
+
+    def test_one_that_never_settles_is_worst_but_may_be_beyond_the_median(self):
+        assert self.outcome([1.0, inf, 2.0], high=3.0).verdict.value == "FAIL"
+        assert self.outcome([1.0, inf, 2.0], of="median", high=3.0).ours == 2.0

@@ -1,0 +1,64 @@
+"""Which laws are compared, and by which driver."""
+
+import pytest
+
+from fsw.core.laws.table import LAWS, Aim
+from sim.compare.case import Driver, cases, chosen_laws
+from sim.errors import HarnessError
+from sim.scenario.schema import load
+
+BOTH = (Driver.PULSED, Driver.CONTINUOUS)
+
+
+def test_every_law_has_an_aim():
+    assert all(isinstance(row.aim, Aim) for row in LAWS.values())
+
+
+def test_laws_of_the_scenarios_own_aim_by_default():
+    three_axis = chosen_laws(load("microsat"), None)
+    assert {"pd", "lqr", "sliding", "output_feedback"} <= set(three_axis)
+    assert not {"bdot", "sun_pointing", "spin_up", "dual_spin"} & set(three_axis)
+    damping = chosen_laws(load("posat1"), None)
+    assert {"predictive", "rate_damping", "bdot"} <= set(damping)
+    assert "pd" not in damping
+
+
+def test_laws_and_aims_by_name_in_the_order_of_the_table():
+    scenario = load("microsat")
+    assert chosen_laws(scenario, "lqr, pd,pd") == ("pd", "lqr")
+    assert chosen_laws(scenario, "sun,bdot") == ("bdot", "sun_pointing")
+    assert chosen_laws(scenario, "all") == tuple(LAWS)
+
+
+@pytest.mark.parametrize("text", ["pd,pdd", "", "pd,"])
+def test_unknown_laws_are_named(text):
+    with pytest.raises(HarnessError, match=f"--laws {text}: there is no law '{text.partition(',')[2]}'"):
+        chosen_laws(load("microsat"), text)
+
+
+def test_all_else_is_the_same():
+    settings = {"control": {"k_w": 5e6}, "body": {"inertia_kgm2": [1.0, 2.0, 2.5]}}
+    found = cases("microsat", settings, ("pd", "lqr"), BOTH, 7, 0.5)
+    assert [(case.law, case.driver) for case in found] == [
+        (law, driver) for driver in BOTH for law in ("pd", "lqr")
+    ]
+    for case in found:
+        flown = load(case.order.scenario, case.order.overrides)
+        assert (flown.control.law, flown.coils.driver) == (case.law, case.driver)
+        assert (flown.control.k_w, flown.body.inertia_kgm2) == (5e6, (1.0, 2.0, 2.5))
+        assert (case.order.seed, case.order.orbits) == (7, 0.5)
+
+
+def test_full_scale_is_the_highest_level_unless_the_scenario_has_one():
+    def full_scale(scenario, settings=None):
+        (case,) = cases(scenario, settings or {}, ("pd",), (Driver.CONTINUOUS,), 1, None)
+        return load(scenario, case.order.overrides).coils.max_dipole_am2
+
+    assert full_scale("microsat") == 8.0
+    assert full_scale("microsat", {"coils": {"max_dipole_am2": 3.0}}) == 3.0
+    assert full_scale("kalman-tons") == 200.0
+
+
+def test_a_scenario_of_a_continuous_driver_flies_pulses_too():
+    (case,) = cases("tumbling", {}, ("pd",), (Driver.PULSED,), 1, None)
+    assert load("tumbling", case.order.overrides).coils.driver == "pulsed"

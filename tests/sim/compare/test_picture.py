@@ -1,0 +1,88 @@
+"""The picture: every law named, names apart, nothing drawn of what did not fly."""
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from fsw.core.laws.table import LAWS
+from sim.compare import picture as drawing
+from sim.compare.case import Driver
+from sim.compare.picture import picture, spread
+from sim.compare.score import History, Result, Score
+from sim.drawing.canvas import TimeAxis
+
+TIME = TimeAxis("orbits", 6000.0, 0.0, 12000.0, ((1000.0, 3000.0),))
+T_S = np.linspace(0.0, 12000.0, 120)
+
+
+def result(law, error_deg, driver=Driver.PULSED):
+    score = Score(law, LAWS[law].aim, driver, pointing_rms_deg=error_deg)
+    return Result(score, History(TIME, T_S, error_deg + 40.0 * np.exp(-T_S / 900.0)))
+
+
+@pytest.fixture
+def drawn(tmp_path, monkeypatch):
+    """Draws results; gives the panels that were saved."""
+    saved = []
+    save = Figure.savefig
+
+    def keep(figure, *args, **kwargs):
+        saved.append(figure)
+        save(figure, *args, **kwargs)
+
+    monkeypatch.setattr(Figure, "savefig", keep)
+
+    def draw(results):
+        picture(tmp_path / "x.png", "microsat", results)
+        return saved[-1].axes if saved else [], tmp_path / "x.png"
+
+    return draw
+
+
+def names(panel):
+    return [text.get_text().split()[0] for text in panel.texts if text.get_text().endswith("°")][1:]
+
+
+def test_a_panel_a_driver_with_a_named_line_a_law(drawn):
+    flown = [result(law, 0.5 + number) for number, law in enumerate(("pd", "lqr", "sliding"))]
+    flown.append(result("pd", 0.3, Driver.CONTINUOUS))
+    flown.append(Result(Score("mpc", LAWS["mpc"].aim, Driver.CONTINUOUS, failure="no"), None))
+    (pulsed, continuous), path = drawn(flown)
+    assert sorted(names(pulsed)) == ["lqr", "pd", "sliding"]
+    assert names(continuous) == ["pd"]
+    assert path.read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_law_has_one_colour_and_no_two_look_alike(drawn):
+    laws = list(LAWS)
+    flown = [result(law, 1.0 + n, driver) for driver in Driver for n, law in enumerate(laws)]
+    looks = []
+    for panel in drawn(flown)[0]:
+        lines = [line for line in panel.lines if line.get_label() in LAWS]
+        looks.append(
+            {line.get_label(): (line.get_color(), str(line._unscaled_dash_pattern)) for line in lines}
+        )
+    assert looks[0] == looks[1]
+    assert len(set(looks[0].values())) == len(laws)
+    assert len(laws) <= len(drawing.COLOURS) * len(drawing.DASHES)
+
+
+def test_nothing_flown_is_no_picture(drawn):
+    panels, path = drawn([Result(Score("pd", LAWS["pd"].aim, Driver.PULSED, failure="no"), None)])
+    assert not panels
+    assert not path.exists()
+
+
+def test_names_far_apart_stay_where_they_are():
+    assert spread([0.1, 0.5, 0.9], 0.05) == pytest.approx([0.1, 0.5, 0.9])
+
+
+def test_names_that_crowd_move_apart_about_their_middle():
+    assert spread([0.5, 0.5, 0.5], 0.1) == pytest.approx([0.4, 0.5, 0.6])
+
+
+@pytest.mark.parametrize("heights", [[0.0] * 6, [1.0] * 6, [0.0, 0.01, 0.02, 0.5, 0.98, 0.99, 1.0]])
+def test_names_stay_in_the_panel_and_apart(heights):
+    places = spread(heights, 0.05)
+    assert all(0.0 <= place <= 1.0 for place in places)
+    assert np.diff(places).min() >= 0.05 - 1e-12

@@ -1,0 +1,78 @@
+"""A board on a simulated bench: the same conversation as over a bus, in simulated time."""
+
+from collections import deque
+
+import pytest
+
+from hil_stub.bench import Bench
+from sim.conformance.session import KINDS, Session
+
+
+class SimulatedBus:
+    """A bus with one board; waiting makes time pass, and nothing else does."""
+
+    name = "simulated"
+
+    def __init__(self, bench):
+        self.bench = bench
+        self.now_s = 1000.0
+        self.queue = deque(bench.switch_on(now_ms=self.now_ms))
+
+    @property
+    def now_ms(self):
+        return round(1000.0 * self.now_s)
+
+    def send(self, frames):
+        for frame in frames:
+            self.queue.extend(self.bench.receive(frame, self.now_ms))
+
+    def receive(self, timeout_s):
+        if self.queue:
+            return self.queue.popleft()
+        self.now_s += timeout_s
+        self.bench.watch(self.now_ms)
+        return None
+
+    def close(self):
+        pass
+
+
+class SlowBus(SimulatedBus):
+    """A bus on which what a board says takes 60 ms, as from a busy computer."""
+
+    def __init__(self, bench):
+        self.on_the_way = deque()
+        super().__init__(bench)
+
+    def send(self, frames):
+        super().send(frames)
+        self.on_the_way.extend((self.now_s + 0.06, frame) for frame in self.queue)
+        self.queue.clear()
+
+    def receive(self, timeout_s):
+        if self.queue:
+            return super().receive(timeout_s)
+        until_s = self.now_s + timeout_s
+        if self.on_the_way and self.on_the_way[0][0] <= until_s:
+            arrives_s, frame = self.on_the_way.popleft()
+            super().receive(max(0.0, arrives_s - self.now_s))
+            return frame
+        return super().receive(timeout_s)
+
+
+@pytest.fixture
+def slow_bus():
+    return SlowBus
+
+
+@pytest.fixture
+def session_with():
+    """Makes a session with a board (made anew at each restart) in simulated time."""
+
+    def make(
+        make_board, tick_hz=1, kind="coil", deadman_ms=5000, has_clock=True, bench=Bench, bus=SimulatedBus
+    ):
+        link = bus(bench(make_board, deadman_ms, has_clock))
+        return Session(link, KINDS[kind], tick_hz, clock=lambda: link.now_s)
+
+    return make

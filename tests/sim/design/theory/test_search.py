@@ -1,0 +1,129 @@
+"""The search for gains: as good as what is known, deterministic, and honest where nothing stabilises."""
+
+import numpy as np
+import pytest
+
+from sim.design.theory.bodies import BODIES, UNSTABLE_BODIES
+from sim.design.theory.floquet import ROUGH_STEPS
+from sim.design.theory.linear import Gains
+from sim.design.theory.search import (
+    GRID,
+    MARGIN,
+    SEARCH_STEPS,
+    best_integral,
+    candidate,
+    continuous,
+    gain_map,
+    natural_gains,
+    search,
+)
+
+MICROSAT = BODIES[2]
+
+
+PLACE_W, PLACE_A = 3.0, 0.5
+"""Where ``kinked`` has its minimum, in natural gains."""
+
+
+def kinked(gains):
+    """A landscape like a real one: two slopes that meet in a valley, and a second, higher basin."""
+    natural = natural_gains(MICROSAT)
+    w, a = np.log(gains.k_w / natural.k_w / PLACE_W), np.log(gains.k_a / natural.k_a / PLACE_A)
+    valley = np.maximum(np.sqrt(np.abs(w - 0.3 * a)), 0.3 * np.abs(a)) - 0.6
+    other = 0.2 * np.hypot(w + 3.0, a - 3.0) - 0.3
+    return np.minimum(valley, other)
+
+
+@pytest.fixture(scope="module")
+def microsat():
+    return search(MICROSAT, continuous(MICROSAT), continuous(MICROSAT, ROUGH_STEPS))
+
+
+def test_it_finds_the_known_optimum(microsat):
+    best = microsat.best
+    assert best.degree < -0.5185
+    assert best.gains.k_w == pytest.approx(6.2694e6, rel=2e-3)
+    assert best.gains.k_a == pytest.approx(1614.9, rel=2e-3)
+    assert microsat.stabilised
+
+
+def test_the_best_gains_are_better_than_all_beside_them(microsat):
+    best = microsat.best
+    around = np.exp(np.linspace(-0.2, 0.2, 11))
+    beside = continuous(MICROSAT)(Gains(best.gains.k_w * around[:, None], best.gains.k_a * around))
+    assert beside.min() >= best.degree - 1e-6
+
+
+def test_the_steady_gains_are_surer_than_the_best(microsat):
+    best, steady = microsat.best, microsat.steady
+    assert steady.sure < best.sure - 0.05
+    assert best.degree < steady.degree < 0.0
+
+
+def test_it_says_when_no_gains_stabilise():
+    body = UNSTABLE_BODIES[1]
+    found = search(body, continuous(body), continuous(body, ROUGH_STEPS))
+    assert not found.stabilised
+    assert found.best.sure > 0.0
+
+
+def test_it_goes_down_to_the_kink_of_the_lower_basin():
+    best, natural = search(MICROSAT, kinked, kinked).best, natural_gains(MICROSAT)
+    assert best.degree == pytest.approx(-0.6, abs=0.02)
+    assert best.gains.k_w / natural.k_w == pytest.approx(PLACE_W, rel=0.05)
+    assert best.gains.k_a / natural.k_a == pytest.approx(PLACE_A, rel=0.1)
+
+
+def test_the_wide_basin_is_steadier_than_the_kink():
+    found = search(MICROSAT, kinked, kinked)
+    assert found.steady.sure < found.best.sure
+    assert found.steady.degree == pytest.approx(-0.3, abs=0.02)
+
+
+def test_it_finds_the_same_again_and_tells_how_far_it_is():
+    heard = []
+    once = search(MICROSAT, kinked, kinked, heard.append)
+    again = search(MICROSAT, kinked, kinked)
+    assert (once.best, once.steady) == (again.best, again.steady)
+    assert heard == sorted(heard)
+    assert (heard[0], heard[-1]) == (1, SEARCH_STEPS)
+
+
+def test_gains_stay_within_what_was_searched():
+    found = search(MICROSAT, *[lambda gains: -np.log(gains.k_w) - np.log(gains.k_a)] * 2)
+    assert found.best.gains.k_w <= found.map.k_w[-1] * (1.0 + 1e-9)
+    assert found.best.gains.k_a <= found.map.k_a[-1] * (1.0 + 1e-9)
+
+
+def test_sure_is_the_worst_of_gains_that_are_off():
+    degree, gains = continuous(MICROSAT, ROUGH_STEPS), Gains(6.2e6, 1500.0)
+    off = (
+        np.exp(MARGIN * np.array([0.0, 1.0, 1.0, -1.0, -1.0])),
+        np.exp(MARGIN * np.array([0.0, 1.0, -1.0, 1.0, -1.0])),
+    )
+    expected = max(float(degree(Gains(gains.k_w * w, gains.k_a * a))) for w, a in zip(*off, strict=True))
+    one = candidate(degree, gains)
+    assert one.sure == pytest.approx(expected, abs=1e-12)
+    assert one.sure > one.degree
+
+
+def test_a_map_has_its_gains_where_it_says():
+    degree = continuous(MICROSAT, ROUGH_STEPS)
+    found = gain_map(MICROSAT, degree)
+    assert found.degree.shape == (GRID, GRID)
+    assert found.degree[7, 23] == pytest.approx(float(degree(Gains(found.k_w[23], found.k_a[7]))), abs=1e-12)
+
+
+def test_the_best_integral_gain_is_best_and_too_much_of_it_diverges():
+    gains, degree = Gains(6.0e6, 1300.0), continuous(MICROSAT, ROUGH_STEPS)
+    best = best_integral(MICROSAT, gains, degree)
+    assert (best.k_w, best.k_a) == gains[:2]
+    at = [float(degree(best._replace(k_i=factor * best.k_i))) for factor in (0.5, 0.9, 1.0, 1.1, 8.0)]
+    assert at[2] < -0.1
+    assert at[2] <= min(at[1], at[3]) + 1e-3
+    assert at[2] < at[0] < 0.0 < at[4]
+
+
+def test_natural_gains_scale_with_the_inertia():
+    small, large = natural_gains(BODIES[0]), natural_gains(BODIES[4])
+    assert all(b > 1e4 * a for a, b in zip(small, large, strict=True))

@@ -1,0 +1,191 @@
+"""Plant, boards and flight software in one process under faults."""
+
+from dataclasses import replace
+from random import Random
+
+import pytest
+
+from fsw.core.events import Event as Number
+from fsw.wire.messages import CoilStatus, PlantEnd
+from sim.errors import HarnessError
+from sim.fault_rig import currents
+from sim.fault_rig.record import Event, Record
+from sim.fault_table import case, checks
+from sim.fault_table.case import fly
+from sim.fault_table.row import Row, When
+from sim.fault_table.rows import ROWS, chosen
+from sim.faults.fault import Condition, Fault
+from sim.faults.kinds import make
+
+TICKS = 420
+
+
+def nothing():
+    return make("none", {}, Random(1))
+
+
+def verdicts(result):
+    return {outcome.check: outcome.verdict for outcome in result.outcomes}
+
+
+def test_without_a_fault_it_is_the_flight_of_the_loop(flown):
+    record = flown(nothing(), TICKS)
+    assert record.asked[0] == 100
+    assert len(record.asked) == len(currents.pulses(record.driven, 1)) == 4
+    assert record.refused == 0
+    assert record.crash is None
+
+
+def test_a_killed_fsw_ends_no_pulse_early_and_waits_a_full_back_off(flown):
+    class Killed(Fault):
+        def condition(self, tick):
+            return Condition.DEAD
+
+    record = flown(Killed(Random(1), {}), TICKS, first=102, end=110)
+    first, second = currents.pulses(record.driven, 1)[:2]
+    assert (first.start_s, first.end_s) == (100, 103)
+    assert record.boots == [0, 110]
+    assert second.start_s >= 210
+
+
+def test_what_a_stopped_fsw_answers_late_is_refused(flown):
+    fault = make("stopped", {}, Random(1))
+    record = flown(fault, 130, first=95, end=110)
+    assert record.asked == [110], "the request for tick 100 goes out in tick 110"
+    assert record.refused == 1
+    assert currents.pulses(record.driven, 1) == []
+
+
+def test_the_log_of_the_audit_is_what_the_board_said_not_what_came_through(flown):
+    record = flown(make("corruption", {"part": 1.0}, Random(1)), 50)
+    assert sum(entry.frame.can_id == CoilStatus.ID for entry in record.entries) == 50
+    assert all(
+        CoilStatus.decode(entry.frame.data).level == 0
+        for entry in record.entries
+        if entry.frame.can_id == CoilStatus.ID
+    )
+
+
+def test_an_exception_out_of_a_step_is_noted_and_ends_fsw(flown):
+    class Poison(Fault):
+        def upset(self, state):
+            return None
+
+    record = flown(Poison(Random(1), {}), 20, first=10, end=11)
+    assert "tick 10" in record.crash
+
+
+def test_a_board_without_guards_is_found_out(rig, bounds, monkeypatch):
+    monkeypatch.setattr("hil_stub.coils.guard.ask", lenient)
+    bench = rig()
+    bench.inject(make("second_sender", {"frames": 1.0}, Random(3)), 5, None)
+    for _ in range(60):
+        bench.tick()
+    record = bench.finish()
+    row = Row("planted", "", "none")
+    holds, said = checks.limits(row, record, bounds)
+    assert not holds
+    assert said
+    assert currents.violations(record.driven, bounds.currents)
+
+
+def lenient(state, asked, tick, limits):
+    if asked.duration_ms > 60000:
+        return state, None
+    return replace(
+        state, coil=asked.coil, level=asked.level, remaining=limits.units(asked.duration_ms), seq=asked.seq
+    ), None
+
+
+def test_the_same_case_is_the_same_flight():
+    row = chosen(["loss-50"])[0]
+    one, other = fly(row, 1, 2), fly(row, 1, 2)
+    assert one.outcomes == other.outcomes
+    timeless = [
+        {name: value for name, value in result.measured.items() if "ms" not in name}
+        for result in (one, other)
+    ]
+    assert timeless[0] == timeless[1]
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "none",
+        "corruption",
+        "delay",
+        "fsw-killed",
+        "coil-board-restarts",
+        "tick-back",
+        "sync-forged-pair",
+        "end-forged",
+        "mag-nan-passing",
+        "bit-flip",
+    ],
+)
+def test_a_sample_of_the_table_holds(name):
+    result = fly(chosen([name])[0], 1, 2)
+    assert not result.failed, result.outcomes
+
+
+class TestForgery:
+    """What the checks of forged SYNC, PLANT_END and TICK_DONE find."""
+
+    @pytest.fixture
+    def record(self):
+        return Record(1, onset=2, end=9)
+
+    def test_a_few_ticks_may_go_unanswered_and_no_more(self, record, bounds):
+        record.done = [False] * 5 + [True] + [False] * checks.MOST_DEAF + [True]
+        assert checks.hears(None, record, bounds)[0]
+        record.done += [False] * (checks.MOST_DEAF + 1)
+        assert not checks.hears(None, record, bounds)[0]
+
+    def test_a_filter_that_begins_again_or_a_plant_that_does_is_disturbance(self, record, bounds):
+        record.events = [Event(1, Number.FILTER_RESTARTED, 1), Event(5, Number.STRANGE_SYNC, 7)]
+        assert checks.undisturbed(None, record, bounds)[0]
+        record.events.append(Event(5, Number.FILTER_RESTARTED, 2))
+        assert not checks.undisturbed(None, record, bounds)[0]
+        record.events, record.restarts = [], [5]
+        assert not checks.undisturbed(None, record, bounds)[0]
+
+    @pytest.mark.parametrize("number", [Number.STRANGE_SYNC, Number.PLANT_RESTARTED, Number.FALSE_END])
+    def test_any_event_of_the_plant_tells(self, record, bounds, number):
+        record.events = [Event(1, number, 0)]
+        assert not checks.told(None, record, bounds)[0]
+        record.events = [Event(2, number, 0)]
+        assert checks.told(None, record, bounds)[0]
+
+    def test_a_request_soon_after_a_restart_is_found(self, record, bounds):
+        record.restarts, record.asked = [50], [149]
+        assert not checks.boots_locked(None, record, bounds)[0]
+        record.asked = [150]
+        assert checks.boots_locked(None, record, bounds)[0]
+
+    def test_an_end_that_is_believed_is_found(self, flown, bounds):
+        class End(Fault):
+            def strangers(self, tick):
+                return [PlantEnd(tick).encode()]
+
+        record = flown(End(Random(1), {}), 20, first=10, end=11)
+        assert record.ended == 10
+        assert not checks.answered(None, record, bounds)[0]
+
+
+def test_rows_have_names_of_their_own_and_known_checks():
+    assert len({row.name for row in ROWS}) == len(ROWS)
+    for row in ROWS:
+        assert set(row.expect) <= set(checks.CHECKS)
+        assert ("recovers" in row.expect) <= (not row.stays)
+
+
+def test_an_unknown_row_is_a_sentence():
+    with pytest.raises(HarnessError, match="--row nonsense"):
+        chosen(["nonsense"])
+
+
+def test_phases_go_through_the_pulse():
+    rng = Random(1)
+    phases = [case.phase_s(When.PULSE, phase, rng) for phase in range(40)]
+    assert {0.0, 1.0, 2.0, 3.0, 102.0} <= set(phases)
+    assert all(0.0 <= phase <= case.CYCLE_S for phase in phases)

@@ -1,0 +1,161 @@
+"""``torquer faults``: what it prints, what it writes, what it ends with."""
+
+import json
+from dataclasses import replace
+from xml.etree import ElementTree
+
+import pytest
+
+from sim.errors import HarnessError
+from sim.fault_table import command, kept, render
+from sim.fault_table.row import CaseResult, Outcome, RowResult, Verdict
+from sim.fault_table.rows import ROWS, chosen
+from sim.faults.kinds import KINDS
+from torquer.cli.main import main
+
+
+def run(*arguments):
+    with pytest.raises(SystemExit) as ended:
+        main.main(["faults", *map(str, arguments)], prog_name="torquer")
+    return ended.value.code or 0
+
+
+def case(row, *verdicts, phase=0, seed=1):
+    outcomes = tuple(Outcome(f"check {n}", verdict, f"said <{n}>") for n, verdict in enumerate(verdicts))
+    return CaseResult(row, phase, seed, outcomes, {"pulses": 7.0, "worst step ms": 1.0}, 0.5)
+
+
+@pytest.fixture
+def planted():
+    """A row that passes, one that fails in one of two cases, one that is open."""
+    passes, fails, is_open = chosen(["none"])[0], chosen(["loss-50"])[0], chosen(["second-sender"])[0]
+    return [
+        RowResult(passes, (case(passes.name, Verdict.PASS),)),
+        RowResult(
+            fails, (case(fails.name, Verdict.PASS), case(fails.name, Verdict.PASS, Verdict.FAIL, phase=3))
+        ),
+        RowResult(is_open, (case(is_open.name, Verdict.OPEN),)),
+    ]
+
+
+def test_a_row_is_flown_in_every_phase_with_every_seed(capsys, tmp_path):
+    code = run(
+        "--row",
+        "queue-full",
+        "--row",
+        "time-jumps",
+        "--phases",
+        2,
+        "--seeds",
+        2,
+        "--workers",
+        1,
+        "--out",
+        tmp_path,
+    )
+    printed = capsys.readouterr().out
+    assert code == 0
+    assert "time-jumps" in printed
+    assert "2 rows, 8 cases: 2 rows pass, 0 fail; 0 violations of the coil limits" in printed
+    written = json.loads((tmp_path / "faults.json").read_text())
+    cases = [(one["phase"], one["seed"]) for one in written["rows"][0]["cases"]]
+    assert cases == [(0, 1), (0, 2), (1, 1), (1, 2)]
+
+
+def test_json_is_json_alone(capsys):
+    assert run("--row", "queue-full", "--json", "--workers", 1) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert [row["row"] for row in printed["rows"]] == ["queue-full"]
+    assert printed["rows"][0]["verdict"] == "PASS"
+
+
+def test_a_violated_expectation_is_exit_code_1(planted, monkeypatch, capsys):
+    monkeypatch.setattr(command, "fly_rows", lambda *arguments: planted)
+    assert run("--workers", 1) == 1
+    monkeypatch.setattr(command, "fly_rows", lambda *arguments: [planted[0], planted[2]])
+    assert run("--workers", 1) == 0
+
+
+def test_the_list_names_every_row(capsys):
+    assert run("--list") == 0
+    printed = capsys.readouterr().out
+    assert all(row.name in printed for row in ROWS)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("--row", "gremlins"), "--row gremlins: there is no such row"),
+        (("--phases", "0"), "--phases"),
+        (("--row", "none", "--write-docs"), "--write-docs: the page is of all rows"),
+        (("--row", "none", "--keep", "none.json"), "--keep none.json: not the faults.json of a campaign"),
+    ],
+)
+def test_what_a_user_can_mend_is_a_sentence(arguments, said, capsys):
+    assert run(*arguments) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count("\n") == 1
+
+
+def test_rows_of_an_earlier_run_are_kept_and_count(planted, monkeypatch, capsys, tmp_path):
+    (tmp_path / "faults.json").write_text(render.as_json(planted))
+    now = [RowResult(planted[0].row, planted[0].cases * 3)]
+    monkeypatch.setattr(command, "fly_rows", lambda *_: now)
+    assert run("--row", "none", "--keep", tmp_path / "faults.json", "--out", tmp_path / "both") == 1
+    assert "3 rows, 6 cases: 1 rows pass, 1 fail, 1 not yet" in capsys.readouterr().out
+    both = kept.read(tmp_path / "both" / "faults.json")
+    assert both == {one.row.name: replace(one, kept=True) for one in (*now, *planted[1:])}
+
+
+def test_the_page_tells_which_rows_were_kept(planted):
+    page = render.markdown([planted[0], replace(planted[1], kept=True)], 1, 1)
+    assert "flown by an earlier run" in page
+    assert page.count("\\* |") == 1
+    assert "earlier" not in render.markdown(planted, 1, 1)
+
+
+def test_a_row_that_has_another_fault_now_is_not_kept(planted, tmp_path):
+    (tmp_path / "faults.json").write_text(render.as_json(planted).replace("part 0.5", "part 0.4"))
+    with pytest.raises(HarnessError, match="loss-50 was flown with another fault"):
+        kept.read(tmp_path / "faults.json")
+
+
+def test_junit_counts_failures_and_what_is_open(planted):
+    root = ElementTree.fromstring(render.junit(planted))
+    counts = {
+        suite.get("name"): (suite.get("tests"), suite.get("failures"), suite.get("skipped")) for suite in root
+    }
+    assert counts == {"none": ("1", "0", "0"), "loss-50": ("2", "1", "0"), "second-sender": ("1", "0", "1")}
+    (failure,) = root.iter("failure")
+    assert failure.get("message") == "check 1: said <1>"
+
+
+def test_pages_name_the_failed_case_and_escape(planted):
+    page = render.html(planted)
+    assert "phase 3 seed 1" in page
+    assert "said <1>" not in page
+    assert "said &lt;1&gt;" in page
+    assert "http" not in page
+    markdown = render.markdown(planted, 4, 1)
+    assert "1 rows pass, 1 fail, 1 not yet" in markdown
+    assert "1 of 2: check 1, said <1>, phase 3 seed 1" in markdown
+    assert all(f"| `{kind}` |" in markdown for kind in KINDS)
+
+
+def test_the_page_holds_nothing_of_the_wall_clock(planted):
+    slower = [replace(one, cases=tuple(replace(case, wall_s=9.0) for case in one.cases)) for one in planted]
+    assert render.markdown(planted, 1, 1) == render.markdown(slower, 1, 1)
+    assert "worst step" not in render.markdown(planted, 1, 1)
+
+
+def test_a_broken_limit_is_counted_over_all_cases():
+    row = chosen(["none"])[0]
+    broken = CaseResult("none", 0, 1, (Outcome("limits", Verdict.FAIL, "pulse of 4 s"),), {})
+    assert "; 1 violations of the coil limits" in render.tally([RowResult(row, (broken,))])
+
+
+def test_there_is_no_page_outside_a_checkout(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(HarnessError, match="no checkout"):
+        command.faults((), 1, 1, False, None, 1, True)

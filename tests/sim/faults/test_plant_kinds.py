@@ -1,0 +1,161 @@
+"""Faults of sensors, coils and boards: what they do to what the boards say and what flows."""
+
+from itertools import pairwise
+from math import inf, isnan
+from random import Random
+
+import pytest
+
+from fsw.wire.messages import CoilBoot, CoilFire, CoilStatus, MagField, SunVector
+from sim.faults.faulty_plant import FaultyPlant, Scheduled
+from sim.faults.kinds import make
+from sim.faults.node_kinds import count_doubles, flip, flip_bit
+from sim.plant.hardware.actuators import Driven
+from sim.scenario.assemble import plant_config
+from sim.scenario.schema import load
+
+B_T = (20e-6, -7e-6, 31e-6)
+SUN = (0.6, -0.64, 0.48)
+
+
+def fault(kind, **parameters):
+    return make(kind, parameters, Random(1))
+
+
+@pytest.mark.parametrize(
+    ("kind", "parameters", "read_t"),
+    [
+        ("mag_saturated", {"nt": 15000.0}, (15e-6, -7e-6, 15e-6)),
+        ("mag_bias", {"axis": 1.0, "nt": 4000.0}, (20e-6, -3e-6, 31e-6)),
+        ("mag_scale", {"axis": 2.0, "scale": -1.0}, (20e-6, -7e-6, -31e-6)),
+        ("mag_swapped", {"axis": 0.0}, (-7e-6, 20e-6, 31e-6)),
+        ("mag_swapped", {"axis": 2.0}, (31e-6, -7e-6, 20e-6)),
+        ("mag_infinite", {"axis": 1.0}, (20e-6, inf, 31e-6)),
+    ],
+)
+def test_the_magnetometer_reads_wrong_and_calls_it_valid(kind, parameters, read_t):
+    read, valid = fault(kind, **parameters).field(B_T, True)
+    assert read == pytest.approx(read_t)
+    assert valid
+
+
+def test_not_a_number_is_none():
+    assert isnan(fault("mag_nan").field(B_T, True)[0][0])
+
+
+def test_a_frozen_sensor_shows_its_first_value_for_ever():
+    for frozen, read in ((fault("mag_frozen"), "field"), (fault("sun_frozen"), "sun")):
+        first = getattr(frozen, read)(SUN, True)
+        assert getattr(frozen, read)((1.0, 0.0, 0.0), False) == first == (SUN, True)
+
+
+def test_the_sun_is_read_wrong_only_where_it_is_seen():
+    wrong = fault("sun_scale", axis=0.0, scale=-1.0)
+    assert wrong.sun(SUN, True) == ((-0.6, -0.64, 0.48), True)
+    assert wrong.sun((0.0, 0.0, 0.0), False) == ((0.0, 0.0, 0.0), False)
+    assert fault("sun_unseen").sun(SUN, True)[1] is False
+
+
+def test_extreme_codes_are_whole_frames_of_the_sensors_alone():
+    frames = [MagField(1, 1.0, 2.0, 3.0, 7).encode(), CoilStatus(0, 1, 0, 0, 0, 0, 7).encode()]
+    field, status = fault("extreme_codes").from_boards(0, frames)
+    decoded = MagField.decode(field.data)
+    assert {abs(decoded.b_x), abs(decoded.b_y), abs(decoded.b_z)} == {65534.0}
+    assert (decoded.valid, decoded.counter) == (1, 7)
+    assert status == frames[1]
+
+
+def test_coils_that_are_cut_or_stuck():
+    driven = Driven((0.0, 0.1, 0.0), 0.5)
+    assert fault("coil_open", axis=1.0).driven(driven) == Driven((0.0, 0.0, 0.0), 0.5)
+    assert fault("coil_open", axis=0.0).driven(driven) == driven
+    assert fault("coil_stuck_on", axis=2.0, ampere=0.4).driven(driven) == Driven((0.0, 0.1, 0.4), 1.0)
+
+
+class Bench:
+    """A plant whose coil driver is asked by hand."""
+
+    def __init__(self, *scheduled):
+        self.plant = FaultyPlant(plant_config(load("microsat"), 1), scheduled)
+        self.said = []
+
+    def fly(self, ticks, fire_at=None):
+        for _ in range(ticks):
+            self.said.append(self.plant.begin_tick())
+            if self.plant.tick == fire_at:
+                self.plant.receive(CoilFire(3, 1, 1, fire_at & 0xFF, 3000).encode())
+            self.plant.end_tick()
+        return self.plant.truth().m_body_am2
+
+
+def test_a_coil_wired_the_wrong_way_round_gives_the_opposite_dipole_for_the_same_current():
+    wrong = Bench(Scheduled(fault("coil_wired", axis=1.0, scale=-1.0), 0))
+    right = Bench()
+    m_wrong, m_right = (bench.fly(102, fire_at=100) for bench in (wrong, right))
+    assert m_right[1] == pytest.approx(8.0, rel=0.02)
+    assert m_wrong[1] == -m_right[1]
+    currents = [
+        next(CoilStatus.decode(f.data).current_ma for f in bench.said[101] if f.can_id == CoilStatus.ID)
+        for bench in (wrong, right)
+    ]
+    assert currents[0] == currents[1] == 400
+
+
+def test_a_coil_driver_that_restarts_in_a_pulse_ends_it_and_locks_out():
+    bench = Bench(Scheduled(fault("coil_board_restarts"), 101, 102))
+    bench.fly(103, fire_at=100)
+    assert any(frame.can_id == CoilBoot.ID for frame in bench.said[101])
+    status = next(CoilStatus.decode(f.data) for f in bench.said[102] if f.can_id == CoilStatus.ID)
+    assert (status.level, status.remaining_ms, status.lockout_ms) == (0, 0, 99_000)
+
+
+def test_a_dead_coil_driver_says_and_drives_nothing_and_boots_afterwards():
+    bench = Bench(Scheduled(fault("coil_board_dead"), 101, 105))
+    bench.fly(104, fire_at=100)
+    silent = [frame.can_id for frames in bench.said[101:104] for frame in frames]
+    assert CoilStatus.ID not in silent
+    assert MagField.ID in silent
+    assert not any(bench.plant.driven.current_a)
+    bench.fly(2)
+    assert any(frame.can_id == CoilBoot.ID for frame in bench.said[105])
+
+
+def test_albedo_pulls_the_sun_towards_the_earth():
+    bench = Bench(Scheduled(fault("albedo", part=0.4), 1))
+    bench.fly(2)
+    clear, pulled = (
+        next(SunVector.decode(f.data) for f in frames if f.can_id == SunVector.ID) for frames in bench.said
+    )
+    cosine = clear.s_x * pulled.s_x + clear.s_y * pulled.s_y + clear.s_z * pulled.s_z
+    assert 0.2 < cosine < 0.98
+
+
+def test_one_bit_of_one_double_flips():
+    assert flip_bit(1.0, 63) == -1.0
+    assert flip_bit(flip_bit(0.1, 17), 17) == 0.1
+    state = ((1, 2.0), "x", (3.0, (4.0, 5)))
+    assert count_doubles(state) == 3
+    assert flip(state, 2, 63) == ((1, 2.0), "x", (3.0, (-4.0, 5)))
+
+
+def test_every_double_of_a_flight_state_can_be_reached(rig):
+    bench = rig()
+    for _ in range(60):
+        bench.tick()
+    state = bench._node.state
+    places = count_doubles(state)
+    assert places > 100
+    for place in range(0, places, 7):
+        assert count_doubles(flip(state, place, 3)) == places
+
+
+def test_a_storm_restarts_a_board_over_and_over_and_nothing_flows():
+    bench = Bench(Scheduled(fault("coil_board_storm", ticks=60.0), 10, 400))
+    for start in range(0, 400, 40):
+        bench.fly(40, fire_at=start + 20)
+    boots = [
+        tick for tick, frames in enumerate(bench.said) for frame in frames if frame.can_id == CoilBoot.ID
+    ]
+    assert len(boots) > 6
+    assert max(later - sooner for sooner, later in pairwise(boots[1:])) <= 60
+    assert not any(bench.plant.driven.current_a)

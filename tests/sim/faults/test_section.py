@@ -1,0 +1,67 @@
+"""``[[fault]]`` in a scenario."""
+
+import pytest
+
+from fsw.input.schema import TableError
+from fsw.wire.messages import MagField
+from sim.faults.faulty_plant import FaultyPlant
+from sim.faults.section import make_plant
+from sim.plant.plant import Plant
+from sim.scenario.assemble import plant_config
+from sim.scenario.schema import load
+
+
+def scenario(**fault):
+    return load("microsat", {"fault": [fault]})
+
+
+def field_nt(frames):
+    return next(MagField.decode(frame.data) for frame in frames if frame.can_id == MagField.ID)
+
+
+@pytest.mark.parametrize(
+    ("fault", "said"),
+    [
+        ({"kind": "gremlins", "at_s": 1.0}, "fault.0: kind 'gremlins' is none of .*loss"),
+        ({"kind": "killed", "at_s": 1.0}, "fault.0: kind 'killed' is none of"),
+        ({"kind": "loss", "at_s": -1.0}, "fault.0.at_s"),
+        ({"kind": "loss"}, "fault.0.at_s"),
+        ({"kind": "loss", "at_s": 1.0, "lasts_s": 0.0}, "fault.0.lasts_s"),
+        ({"kind": "loss", "at_s": 1.0, "parameters": {"part": 1.1}}, "part = 1.1 is outside 0 to 1"),
+        ({"kind": "loss", "at_s": 1.0, "parameters": {"parts": 0.1}}, "no such parameter, but part"),
+        ({"kind": "loss", "at_s": 1.0, "often": True}, "fault.0.often"),
+    ],
+)
+def test_what_makes_no_sense_is_a_sentence(fault, said):
+    with pytest.raises(TableError, match=said):
+        scenario(**fault)
+
+
+def test_a_flight_without_faults_has_a_plain_plant():
+    chosen = load("microsat")
+    assert type(make_plant(plant_config(chosen, 1), chosen.fault)) is Plant
+
+
+def test_a_fault_comes_and_goes_when_it_is_to():
+    chosen = scenario(kind="mag_bias", at_s=3.0, lasts_s=2.0, parameters={"axis": 1.0, "nt": 9000.0})
+    plant = make_plant(plant_config(chosen, 1), chosen.fault)
+    healthy = Plant(plant_config(chosen, 1))
+    assert isinstance(plant, FaultyPlant)
+    off_nt = []
+    for _ in range(8):
+        faulty, right = field_nt(plant.begin_tick()), field_nt(healthy.begin_tick())
+        off_nt.append(faulty.b_y - right.b_y)
+        assert (faulty.b_x, faulty.b_z) == (right.b_x, right.b_z)
+        plant.end_tick()
+        healthy.end_tick()
+    assert off_nt == pytest.approx([0.0, 0.0, 0.0, 9000.0, 9000.0, 0.0, 0.0, 0.0], abs=2.0)
+
+
+def test_a_fault_without_an_end_stays():
+    chosen = scenario(kind="sun_board_dead", at_s=2.0)
+    plant = make_plant(plant_config(chosen, 1), chosen.fault)
+    counts = []
+    for _ in range(5):
+        counts.append(len(plant.begin_tick()))
+        plant.end_tick()
+    assert counts[1] - 1 == counts[2] == counts[4]

@@ -1,0 +1,162 @@
+"""Runs in which strangers spoke replay bit-exact, wherever their frames met those of the plant."""
+
+from dataclasses import dataclass
+from random import Random
+
+import pytest
+
+from fsw.node import FlightNode
+from fsw.table.config import flight_config
+from fsw.wire.frame import Frame
+from fsw.wire.messages import FswEvent, PlantEnd, Sync, TickDone
+from sim.flight import answers
+from sim.flight.recorded import record
+from sim.flight.virtual import VirtualBus
+from sim.record import run_dir
+from sim.record.candump import format_line, format_time, read_log
+from sim.record.pace import Pace
+from sim.record.run_dir import BUS_LOG
+from sim.replay.replay import replay
+from sim.report.conclude import conclude
+from sim.scenario.schema import flight_table, load
+
+TICKS = 250
+FAR = 10**9
+
+
+class RacingBus(VirtualBus):
+    """A stranger's frames meet the plant's frames of each tick, at every place."""
+
+    def __init__(self, node, frames_of, seed=3):
+        super().__init__(node)
+        self.random, self.frames_of, self.count = Random(seed), frames_of, 0
+
+    def send(self, frames):
+        strangers = self.frames_of(self.random)
+        places = sorted(self.random.randrange(len(frames) + 1) for _ in strangers)
+        for place, frame in enumerate([*frames, None]):
+            while places and places[0] == place:
+                places.pop(0)
+                self.count += 1
+                stranger = strangers.pop(0)
+                self._queue.append(stranger)
+                super().send([stranger])
+            if frame is not None:
+                super().send([frame])
+
+
+def sync(tick):
+    return Sync(tick % 2**32, 77).encode()
+
+
+@dataclass
+class Goes:
+    """Goes on tick by tick from ``FAR`` in a part of the ticks."""
+
+    part: float
+    tick: int = FAR
+
+    def __call__(self, random):
+        if random.random() > self.part:
+            return []
+        self.tick += 1
+        return [sync(self.tick)]
+
+
+def seldom(frames_of):
+    return lambda random: frames_of(random) if random.random() < 0.05 else []
+
+
+STRANGERS = {
+    "one strange SYNC": seldom(lambda random: [sync(random.getrandbits(32))]),
+    "one in each tick": lambda random: [sync(random.getrandbits(32))],
+    "one that goes on": Goes(0.5),
+    "pairs": seldom(lambda random: [sync(x := random.getrandbits(32)), sync(x + 1)]),
+    "equal pairs": seldom(lambda random: [sync(random.getrandbits(32))] * 2),
+    "ends": seldom(lambda random: [PlantEnd(random.getrandbits(24), counter=random.getrandbits(4)).encode()]),
+    "noise": lambda random: (
+        [Frame(random.getrandbits(11) | 0x700, random.randbytes(8))] * random.randrange(3)
+    ),
+}
+
+
+@pytest.fixture
+def fly_with(tmp_path, monkeypatch):
+    """A flight with a stranger: its bus and configuration; the log is in the run directory."""
+    monkeypatch.setattr(answers, "REPEAT_SYNC_S", 0.01)
+
+    def fly(frames_of, ticks=TICKS):
+        scenario = load("microsat")
+        run_dir.begin(tmp_path, scenario, 5, ticks, "virtual", Pace())
+        config = flight_config(flight_table(scenario))
+        bus = RacingBus(FlightNode(config), frames_of)
+        record(tmp_path, scenario, bus)
+        return bus, config
+
+    return fly
+
+
+@pytest.mark.parametrize("frames_of", STRANGERS.values(), ids=STRANGERS)
+def test_replays_bit_exact(tmp_path, fly_with, frames_of):
+    bus, config = fly_with(frames_of)
+    states = []
+    shown = replay(tmp_path / BUS_LOG, config, states.append)
+    assert bus.count > 5
+    assert shown.bit_exact, shown.first_bit_difference
+    assert shown.ended
+    done = [e.frame for e in read_log(tmp_path / BUS_LOG) if e.frame.can_id == TickDone.ID]
+    assert {TickDone.decode(frame.data).tick for frame in done} >= set(range(TICKS))
+
+
+def test_a_run_that_was_led_astray_is_concluded_all_the_same(tmp_path, fly_with):
+    fly_with(STRANGERS["pairs"])
+    summary = conclude(tmp_path)
+    assert summary["replay"]["bit_exact"]
+    assert run_dir.read_run(tmp_path)["complete"] is True
+
+
+def test_the_order_that_is_found_explains_an_altered_frame_no_more_than_the_logged_one(tmp_path, fly_with):
+    _, config = fly_with(STRANGERS["one in each tick"])
+    entries = list(read_log(tmp_path / BUS_LOG))
+    events = [i for i, e in enumerate(entries) if e.frame.can_id == FswEvent.ID]
+    for index in (events[3], events[-1]):
+        event = FswEvent.decode(entries[index].frame.data)
+        altered = entries[index]._replace(frame=event._replace(argument=event.argument ^ 4).encode())
+        lines = [*entries[:index], altered, *entries[index + 1 :]]
+        log = tmp_path / "altered.log"
+        log.write_text("".join(format_line(format_time(e.timestamp_us), e.channel, e.frame) for e in lines))
+        shown = replay(log, config)
+        assert not shown.bit_exact
+        assert shown.first_bit_difference.signal == "FSW_EVENT.argument"
+
+
+class TestEnd:
+    @pytest.fixture
+    def entries(self, flown_run):
+        return list(read_log(flown_run / BUS_LOG))
+
+    @pytest.fixture
+    def refly(self, tmp_path, flown_run, config_of):
+        def of(entries):
+            log = tmp_path / "bus.log"
+            log.write_text(
+                "".join(format_line(format_time(e.timestamp_us), e.channel, e.frame) for e in entries)
+            )
+            return replay(log, config_of(flown_run))
+
+        return of
+
+    @pytest.mark.parametrize("ticks", [150, 149, 300, 9999])
+    def test_in_the_middle_is_no_end_and_no_reason_to_stop(self, refly, entries, ticks):
+        """As a log that was edited: the flight software would have told of it."""
+        done = [i for i, e in enumerate(entries) if e.frame.can_id == TickDone.ID][149]
+        forged = entries[done]._replace(frame=PlantEnd(ticks, counter=1).encode())
+        shown = refly([*entries[: done + 1], forged, *entries[done + 1 :]])
+        assert shown.first_bit_difference.tick == 150
+        assert "PLANT_END" not in shown.first_bit_difference.signal
+
+    @pytest.mark.parametrize("ticks", [299, 301, 9999])
+    def test_that_does_not_fit_is_none(self, refly, entries, ticks):
+        shown = refly([*entries[:-1], entries[-1]._replace(frame=PlantEnd(ticks).encode())])
+        assert not shown.ended
+        assert shown.first_bit_difference.signal == "PLANT_END.ticks"

@@ -1,0 +1,1 @@
+"""The ``torquer`` command, a file a command."""

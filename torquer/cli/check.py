@@ -1,0 +1,22 @@
+"""``torquer check``: the audit of the actuator limits in a log."""
+
+from pathlib import Path
+
+import click
+
+from torquer.cli.options import RUN_OR_LOG, VERIFY, sentences
+
+
+@click.command()
+@RUN_OR_LOG
+@click.option("--backoff", type=click.Choice(["shared", "per_coil"]), help="Limits of a bare log.")
+@VERIFY
+@sentences
+def check(run_or_log: Path, backoff: str | None, verify: Path | None) -> int:
+    """Audit the actuator limits in a candump log, independently of the controller."""
+    from sim.audit.check import check, render
+    from sim.record.signature import public_key
+
+    report = check(run_or_log, backoff, None if verify is None else public_key(verify))
+    click.echo(render(report))
+    return report.exit_code

@@ -1,0 +1,39 @@
+"""``torquer compare``: control laws side by side."""
+
+from pathlib import Path
+
+import click
+
+from torquer.cli.options import SEEDS, SETTINGS, sentences
+
+
+@click.command()
+@click.argument("scenario", default="microsat")
+@click.option("--laws", metavar="A,B", help="Laws, aims or all. Default: all with the aim of the scenario's.")
+@click.option(
+    "--driver", default="both", show_default=True, type=click.Choice(["pulsed", "continuous", "both"])
+)
+@click.option(
+    "--orbits", type=click.FloatRange(min=0.0, min_open=True), help="Default: as the scenario says."
+)
+@click.option("--seed", default=1, show_default=True, type=SEEDS, help="Of all random streams.")
+@click.option("--workers", type=click.IntRange(min=1), help="Processes. Default: one a core.")
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="Folder. Default: compare/<scenario>-<UTC time>."
+)
+@SETTINGS
+@sentences
+def compare(
+    scenario: str,
+    laws: str | None,
+    driver: str,
+    orbits: float | None,
+    seed: int,
+    workers: int | None,
+    out: Path | None,
+    settings: tuple[str, ...],
+) -> int:
+    """Fly every applicable control law on SCENARIO, all else the same: table and picture."""
+    from sim.compare import command
+
+    return command.compare(scenario, settings, laws, driver, orbits, seed, workers, out)

@@ -1,0 +1,39 @@
+"""``torquer faults``: the fault campaign."""
+
+from pathlib import Path
+
+import click
+
+from torquer.cli.options import sentences
+
+
+@click.command()
+@click.option("--row", "rows", multiple=True, metavar="NAME", help="These rows alone, by their first words.")
+@click.option("--phases", default=1, show_default=True, type=click.IntRange(min=1), help="Of each row.")
+@click.option("--seeds", default=1, show_default=True, type=click.IntRange(min=1), help="Of each phase.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON alone.")
+@click.option("--list", "listing", is_flag=True, help="Print the rows and what they expect.")
+@click.option("--out", type=click.Path(path_type=Path), help="Folder of faults.xml (JUnit), .html and .json.")
+@click.option("--workers", type=click.IntRange(min=1), help="Processes. Default: one a core.")
+@click.option("--slow", is_flag=True, help="Also rows that fly real processes: minutes.")
+@click.option("--keep", type=click.Path(path_type=Path), help="Rows not flown now: from this faults.json.")
+@click.option("--write-docs", is_flag=True, help="Write docs/faults.md of the repository.")
+@sentences
+def faults(
+    rows: tuple[str, ...],
+    phases: int,
+    seeds: int,
+    as_json: bool,
+    listing: bool,
+    out: Path | None,
+    workers: int | None,
+    slow: bool,
+    keep: Path | None,
+    write_docs: bool,
+) -> int:
+    """Inject every fault of the table, in several phases and seeds: verdict per row."""
+    from sim.fault_table import command
+
+    if listing:
+        return command.list_rows(rows)
+    return command.faults(rows, phases, seeds, as_json, out, workers, write_docs, slow, keep)

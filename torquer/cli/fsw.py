@@ -1,0 +1,20 @@
+"""``torquer fsw``: the flight software by hand, with the onboard table of a scenario."""
+
+import click
+
+from torquer.cli.options import BUSES, SETTINGS, sentences
+
+
+@click.command()
+@click.argument("scenario", default="microsat")
+@click.option("--bus", default="auto", show_default=True, help=BUSES)
+@SETTINGS
+@click.option("--disarmed", is_flag=True, help="Let no request to drive a coil get on the bus.")
+@click.option("--bench", is_flag=True, help="On a bench: no PLANT_END ends it.")
+@sentences
+def fsw(scenario: str, bus: str, settings: tuple[str, ...], disarmed: bool, bench: bool) -> int:
+    """Fly on a bus: answer the SYNC of a plant, with the onboard table of SCENARIO."""
+    from fsw.process import fly
+    from sim.scenario.schema import flight_table, load, parse_settings
+
+    return fly(flight_table(load(scenario, parse_settings(settings))), bus, disarmed, bench)

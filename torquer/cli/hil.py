@@ -1,0 +1,98 @@
+"""``torquer hil``: the flight software in real time against boards."""
+
+from pathlib import Path
+
+import click
+
+from sim.errors import HarnessError
+from torquer.cli.options import BUSES, SEEDS, SETTINGS, sentences
+
+
+@click.command()
+@click.argument("scenario", default="microsat")
+@click.option("--bus", default="auto", show_default=True, help=BUSES)
+@click.option("--real", metavar="A,B", help="Boards that are hardware: of coil, magnetometer, sun.")
+@click.option("--arm", is_flag=True, help="Let coils be driven; without it no request reaches the bus.")
+@click.option(
+    "--seconds",
+    default=60.0,
+    show_default=True,
+    type=click.FloatRange(0.0, 1e6, min_open=True),
+    help="How long.",
+)
+@click.option("--tick-hz", type=click.IntRange(1, 100), help="Ticks a second. Default: the scenario's.")
+@click.option(
+    "--stimulus", default="plant", show_default=True, help="What sensors see: plant, RUN, LOG or FILE.toml."
+)
+@click.option("--jitter-ms", default=10.0, show_default=True, help="Budget of SYNC's jitter, p99.")
+@click.option("--latency-ms", type=float, help="Budget of SYNC to TICK_DONE, p99. Default: half a tick.")
+@click.option("--slips", default=0, show_default=True, help="Budget of ticks without answer or sample.")
+@click.option("--load-percent", default=50.0, show_default=True, help="Budget of the bus load, mean.")
+@click.option(
+    "--memory-percent", default=2.0, show_default=True, help="Budget of each process' growth once warm."
+)
+@click.option(
+    "--warm-s",
+    default=60.0,
+    show_default=True,
+    type=click.FloatRange(0.0),
+    help="Memory is judged from then on, if the run is longer.",
+)
+@click.option(
+    "--deadman-s",
+    default=5.0,
+    show_default=True,
+    type=click.FloatRange(0.1, 3600.0),
+    help="The coil board's dead-man.",
+)
+@click.option(
+    "--conformance",
+    type=click.Choice(["coil", "magnetometer", "sun"]),
+    help="Instead, check one board, alone on the bus, against docs/icd.md; its limits are SCENARIO's.",
+)
+@click.option("--seed", default=1, show_default=True, type=SEEDS, help="Of the plant.")
+@click.option("--out", type=click.Path(path_type=Path), help="Keep log and numbers in this folder.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON alone.")
+@SETTINGS
+@sentences
+def hil(
+    scenario: str,
+    bus: str,
+    real: str | None,
+    arm: bool,
+    seconds: float,
+    tick_hz: int | None,
+    stimulus: str,
+    jitter_ms: float,
+    latency_ms: float | None,
+    slips: int,
+    load_percent: float,
+    memory_percent: float,
+    warm_s: float,
+    deadman_s: float,
+    conformance: str | None,
+    seed: int,
+    out: Path | None,
+    as_json: bool,
+    settings: tuple[str, ...],
+) -> int:
+    """SCENARIO in real time: flight software against boards, each its own process or real hardware."""
+    from sim.scenario.schema import load, parse_settings
+
+    rate = (f"time.tick_hz={tick_hz}",) if tick_hz is not None else ()
+    chosen = load(scenario, parse_settings((*settings, *rate)))
+    if conformance is not None and out is not None:
+        raise HarnessError("--out: a conformance run keeps no log")
+    if conformance is not None:
+        from sim.conformance.command import conformance as conform
+
+        return conform(chosen, conformance, bus, arm, deadman_s, as_json)
+    from sim.bench import command
+    from sim.bench.verdict import Budgets
+
+    half_ms = 500.0 / chosen.time.tick_hz
+    latency = half_ms if latency_ms is None else latency_ms
+    budgets = Budgets(jitter_ms, latency, slips, load_percent, memory_percent)
+    boards = command.real_boards(real)
+    bench = command.Bench(chosen, bus, boards, arm, seconds, stimulus, deadman_s, budgets, warm_s, seed, out)
+    return command.hil(bench, as_json)

@@ -1,0 +1,69 @@
+"""Options that commands share, and how what they raise becomes a sentence and an exit code."""
+
+import sys
+from collections.abc import Callable
+from functools import wraps
+from pathlib import Path
+from typing import ParamSpec
+
+import click
+
+from fsw.bus.interface import BusError
+from fsw.input.schema import TableError
+from fsw.input.sentence import sentence
+from sim.errors import HarnessError
+from sim.plant.errors import PlantError
+from sim.signals import EndedBySignal, endings_raised
+
+Parameters = ParamSpec("Parameters")
+
+SEEDS = click.IntRange(0, 2**64 - 1)
+BUSES = "auto, loop[:PORT], socketcan:NAME, slcan:PORT"
+RUN_OR_LOG = click.argument("run_or_log", metavar="RUN|LOG", type=click.Path(path_type=Path))
+SETTINGS = click.option(
+    "--set", "settings", multiple=True, metavar="KEY=VALUE", help="Override a key of the scenario."
+)
+
+SIGN = click.option(
+    "--sign",
+    metavar="KEY",
+    type=click.Path(path_type=Path),
+    help="Sign the run: a private Ed25519 key in PEM. Needs torquer[sign].",
+)
+VERIFY = click.option(
+    "--verify",
+    metavar="PUBLIC_KEY",
+    type=click.Path(path_type=Path),
+    help="The run must be signed: its public Ed25519 key in PEM. Needs torquer[sign].",
+)
+
+
+def sentences(command: Callable[Parameters, int | None]) -> Callable[Parameters, None]:
+    """Turn what a user can mend into one sentence on stderr and an exit code."""
+
+    @wraps(command)
+    def run(*args: Parameters.args, **kwargs: Parameters.kwargs) -> None:
+        try:
+            with endings_raised():
+                code = command(*args, **kwargs)
+        except (TableError, BusError, HarnessError, PlantError) as error:
+            click.echo(f"torquer: {sentence(error)}", err=True)
+            code = getattr(error, "exit_code", 2)
+        except KeyboardInterrupt:
+            click.echo("torquer: interrupted; what was done so far is kept", err=True)
+            code = 130
+        except EndedBySignal as end:
+            click.echo(f"torquer: {end}", err=True)
+            code = end.exit_code
+        sys.exit(code or 0)
+
+    return run
+
+
+def say_failures(failures: dict[str, str]) -> int:
+    """Say what failed, in one sentence; the exit code."""
+    from sim.report.verdict import flight_failed
+
+    if failures:
+        click.echo(f"torquer: {flight_failed(failures)}", err=True)
+    return int(bool(failures))

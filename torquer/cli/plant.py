@@ -1,0 +1,73 @@
+"""``torquer plant``: the plant by hand, on a bus with a flight software of another process."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import click
+
+from torquer.cli.options import BUSES, SEEDS, SETTINGS, sentences
+
+WAITING_SAID_S = 30.0
+"""How often it is said that nobody has come yet."""
+
+
+@click.command()
+@click.argument("scenario", default="microsat")
+@click.option("--bus", default="auto", show_default=True, help=BUSES)
+@click.option(
+    "--orbits",
+    type=click.FloatRange(min=0.0, min_open=True),
+    help="How long to fly; default as the scenario says.",
+)
+@click.option("--seed", default=1, show_default=True, type=SEEDS, help="Of all random streams.")
+@click.option("--pace", default="lockstep", show_default=True, help="lockstep or realtime[:FACTOR].")
+@click.option("--out", type=click.Path(path_type=Path), help="Run directory; default runs/<scenario>-<time>.")
+@SETTINGS
+@sentences
+def plant(
+    scenario: str,
+    bus: str,
+    orbits: float | None,
+    seed: int,
+    pace: str,
+    out: Path | None,
+    settings: tuple[str, ...],
+) -> None:
+    """Fly SCENARIO against a flight software on the same bus: waits for its FSW_BOOT, then begins tick 0."""
+    from fsw.bus.open_bus import open_bus, resolve
+    from sim.errors import FlightError
+    from sim.flight.recorded import check_plant, record, ticks_of
+    from sim.progress import progress
+    from sim.record import run_dir
+    from sim.record.pace import parse_pace
+    from sim.report.conclude import conclude
+    from sim.report.verdict import flight_failed
+    from sim.scenario.schema import load, parse_settings
+
+    chosen = load(scenario, parse_settings(settings))
+    ticks, chosen_pace, spec = ticks_of(chosen, orbits), parse_pace(pace), resolve(bus)
+    check_plant(chosen, seed)
+    link = open_bus(spec)
+    directory = out or run_dir.default_path(chosen)
+    run_dir.begin(directory, chosen, seed, ticks, spec.partition(":")[0], chosen_pace)
+    click.echo(f"plant on {spec}: waiting for the flight software", err=True)
+    with progress(f"flying {chosen.name}", ticks) as watch:
+        record(directory, chosen, link, watch, waiting=_still_waiting())
+    with progress("replaying", ticks) as watch:
+        summary = conclude(directory, watch)
+    click.echo(f"flown: {directory}", err=True)
+    if "failures" in summary:
+        raise FlightError(flight_failed(summary["failures"]))
+
+
+def _still_waiting() -> Callable[[float], None]:
+    """Says now and then that the flight software is still waited for."""
+    next_s = WAITING_SAID_S
+
+    def say(waited_s: float) -> None:
+        nonlocal next_s
+        if waited_s >= next_s:
+            next_s += WAITING_SAID_S
+            click.echo(f"plant: no flight software yet, after {waited_s:.0f} s", err=True)
+
+    return say

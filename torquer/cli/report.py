@@ -1,0 +1,40 @@
+"""``torquer report``: the report of a run, made anew."""
+
+from pathlib import Path
+
+import click
+
+from torquer.cli.options import SIGN, VERIFY, say_failures, sentences
+
+
+@click.command()
+@click.argument("run", type=click.Path(path_type=Path))
+@SIGN
+@VERIFY
+@sentences
+def report(run: Path, sign: Path | None, verify: Path | None) -> int:
+    """Rebuild summary.json and report.html of a run; that it was cut short is said, and no failure."""
+    from sim.progress import progress
+    from sim.record import run_dir
+    from sim.record.binding import require_sources, sign_run
+    from sim.record.signature import private_key, public_key, signature_of
+    from sim.report.conclude import conclude
+    from sim.report.summary import summary_text
+    from sim.report.verdict import Verdict
+
+    key = None if sign is None else private_key(sign)
+    binding = require_sources(run, None if verify is None else public_key(verify))
+    bound_before = (run / run_dir.RUN).read_bytes()
+    with progress("replaying", run_dir.read_run(run)["ticks"]) as watch:
+        summary = conclude(run, watch)
+    if key is not None:
+        sign_run(run, key)
+    elif signature_of(run / run_dir.RUN).exists() and (run / run_dir.RUN).read_bytes() != bound_before:
+        click.echo(f"note: {run_dir.RUN} is not what was signed any more: --sign KEY signs it anew", err=True)
+    for line in binding.lines:
+        click.echo(line)
+    click.echo(summary_text(summary))
+    click.echo(f"report: {run / run_dir.REPORT}")
+    failed: dict[str, str] = summary.get("failures", {})
+    flown_badly = {name: clause for name, clause in failed.items() if name != Verdict.COMPLETE}
+    return say_failures(flown_badly) or int(not binding.holds)

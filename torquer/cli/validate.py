@@ -1,0 +1,34 @@
+"""``torquer validate``: every published figure and reference check."""
+
+from pathlib import Path
+
+import click
+
+from torquer.cli.options import sentences
+
+
+@click.command()
+@click.option(
+    "--reference",
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    help="Check against the reference files in this folder alone.",
+)
+@click.option(
+    "--only", multiple=True, metavar="ID", help="These claims alone, by the first words of their ids."
+)
+@click.option("--quick", is_flag=True, help="Leave out flights.")
+@click.option("--workers", type=click.IntRange(min=1), help="Processes. Default: one a core.")
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    help="The page. Default, if all is run: docs/validation.md of the repository, else validation.md.",
+)
+@sentences
+def validate(
+    reference: Path | None, only: tuple[str, ...], quick: bool, workers: int | None, out: Path | None
+) -> int:
+    """Every published figure and reference check: claim, source, ours, verdict."""
+    from sim.validate.command import validate
+
+    return validate(reference, only, out, quick, workers)
