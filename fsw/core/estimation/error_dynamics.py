@@ -4,10 +4,8 @@ import numpy as np
 
 from fsw.core.algebra.quaternion import Quaternion
 from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale, sub, transform
-from fsw.core.estimation.mekf_config import Matrix, MekfConfig
-
-MAX_VARIANCE = 1e6
-"""Beyond it an estimate says nothing (1000 rad), and the algebra comes near the end of the numbers."""
+from fsw.core.estimation.kalman import Matrix
+from fsw.core.estimation.mekf_config import MekfConfig
 
 
 def process_noise(m_body_am2: Vec3, b_body_t: Vec3, config: MekfConfig) -> Matrix:

@@ -16,12 +16,12 @@ from math import isfinite, nan
 from typing import NamedTuple
 
 import numpy as np
-from filterpy.kalman import KalmanFilter
 
 from fsw.core.algebra.quaternion import Quaternion, from_small_rotation, multiply, normalise, rotate
 from fsw.core.algebra.vector import ZERO, Vec3, add, scale, skew, sub
 from fsw.core.estimation.error_dynamics import acceleration, process_noise, transition_matrix, turn
-from fsw.core.estimation.mekf_config import Layout, Matrix, MekfConfig
+from fsw.core.estimation.kalman import LeanKalmanFilter, Matrix
+from fsw.core.estimation.mekf_config import Layout, MekfConfig
 
 MAX_VARIANCE = 1e6
 """Beyond it an estimate says nothing (1000 rad), and the algebra comes near the end of the numbers."""
@@ -117,9 +117,8 @@ def predict(
     alpha_mid = acceleration(omega_mid, e1_mid, b_mid, gravity_per_s2, m_body_am2, torque, config)
     transition = transition_matrix(omega_mid, e1_mid, b_mid, gravity_per_s2, m_body_am2, config)
 
-    kalman = _filter(config)
-    kalman.P, kalman.F, kalman.Q = estimate.covariance, transition, process_noise(m_body_am2, b_mid, config)
-    kalman.predict()
+    kalman = LeanKalmanFilter(config.zero, estimate.covariance, config.identity)
+    kalman.predict(F=transition, Q=process_noise(m_body_am2, b_mid, config))
     return Estimate(
         normalise(multiply(q, turn(scale(h, omega_mid)))),
         add(omega, scale(h, alpha_mid)),
@@ -171,9 +170,8 @@ def _update(
     estimate: Estimate, innovation: tuple[float, ...], sensitivity: Matrix, noise: Matrix, config: MekfConfig
 ) -> Estimate | None:
     """The update of filterpy, judged by its own NIS and folded in."""
-    kalman = _filter(config)
-    kalman.P, kalman.R = estimate.covariance, noise
-    kalman.update(np.array(innovation), H=sensitivity)
+    kalman = LeanKalmanFilter(config.zero, estimate.covariance, config.identity)
+    kalman.update(np.array(innovation), noise, sensitivity)
     nis, trace = float(kalman.y.dot(kalman.SI).dot(kalman.y)), estimate.trace
     if trace is not None:
         seen = sensitivity.dot(trace.effect)  # the operator @ takes twice as long for so small arrays
@@ -198,13 +196,6 @@ def unexplained(sums: Matrix) -> float:
     except np.linalg.LinAlgError:
         return nan
     return float(sums[-1, -1] - explained)
-
-
-def _filter(config: MekfConfig) -> KalmanFilter:
-    """A copy of the blank filter, made by hand: ``copy.copy`` takes as long as the prediction."""
-    kalman = object.__new__(KalmanFilter)
-    kalman.__dict__ = config.blank.__dict__.copy()
-    return kalman
 
 
 def _fold(

@@ -3,13 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from filterpy.kalman import KalmanFilter
-from numpy.typing import NDArray
-from scipy.linalg.lapack import dgesv
 
 from fsw.core.algebra.vector import ZERO, Mat3, Vec3, inverse
-
-Matrix = NDArray[np.float64]
+from fsw.core.estimation.kalman import Matrix
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +25,7 @@ class MekfConfig:
     ``constant`` is the constant part of 1 + A h, (n, n); ``moving`` (36, 12) is what its upper left 6x6 gains
     by each component of the rate and of 3 mu/r^3 e1 e1^T, ``driven`` (36, 9) by each of m b^T. By
     measurement, field, Sun or both at once: ``..._sensitivity`` is the constant part of H, (3 or 6, n), and
-    ``..._noise`` the covariance, (3, 3) or (6, 6). ``blank`` is a filter to copy.
+    ``..._noise`` the covariance, (3, 3) or (6, 6). ``zero`` is the error state between updates, (n).
     """
 
     inertia_kgm2: Mat3
@@ -43,6 +39,7 @@ class MekfConfig:
     moving: Matrix
     driven: Matrix
     identity: Matrix
+    zero: Matrix
     field_sensitivity: Matrix
     sun_sensitivity: Matrix
     both_sensitivity: Matrix
@@ -51,7 +48,6 @@ class MekfConfig:
     both_noise: Matrix
     dipole_sigma: float
     gate_nis: float
-    blank: KalmanFilter
 
 
 def layout(estimate_bias: bool, estimate_torque: bool) -> Layout:
@@ -137,6 +133,7 @@ def mekf_config(
         moving=moving,
         driven=driven,
         identity=np.eye(parts.size),
+        zero=np.zeros(parts.size),
         field_sensitivity=field_sensitivity,
         sun_sensitivity=sun_sensitivity,
         both_sensitivity=np.vstack((field_sensitivity, sun_sensitivity)),
@@ -145,7 +142,6 @@ def mekf_config(
         both_noise=np.diag(field_variances + sun_variances),
         dipole_sigma=dipole_sigma,
         gate_nis=gate_nis,
-        blank=_blank(parts.size),
     )
 
 
@@ -166,20 +162,3 @@ def _varying(j: Matrix, j_inverse: Matrix) -> Matrix:
 def _cross(a: Matrix) -> Matrix:
     """The matrix [a x]."""
     return np.cross(a, np.eye(3)).T
-
-
-def _blank(size: int) -> KalmanFilter:
-    """A filter whose error state is zero. Its methods replace arrays and change none, so copies may share."""
-    blank = KalmanFilter(dim_x=size, dim_z=3)
-    blank.x = np.zeros(size)  # filterpy's (n, 1) default would broadcast a flat z to (n, n)
-    blank.inv = _inverse
-    return blank
-
-
-_UNITS = {size: np.eye(size) for size in (3, 6)}
-
-
-def _inverse(m: Matrix) -> Matrix:
-    """By LAPACK alone, in a fifth of numpy's time; of a singular matrix no numbers, where numpy raises."""
-    _, _, inverted, failure = dgesv(m, _UNITS[len(m)])
-    return np.full_like(m, np.nan) if failure else inverted

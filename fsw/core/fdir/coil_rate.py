@@ -30,8 +30,9 @@ import numpy as np
 
 from fsw.core.algebra.vector import Mat3, Vec3, scale
 from fsw.core.estimation import mekf
+from fsw.core.estimation.kalman import Matrix
 from fsw.core.estimation.mekf import Estimate, Trace
-from fsw.core.estimation.mekf_config import Matrix, MekfConfig
+from fsw.core.estimation.mekf_config import MekfConfig
 
 PULSES = 3
 """Of each coil its latest pulses are solved for, so many."""

@@ -52,14 +52,3 @@ class TestLayout:
         np.testing.assert_allclose(diagonal, expected, rtol=1e-12)
         without_bias = make_config(bias=False).initial_covariance.diagonal()
         np.testing.assert_allclose(without_bias, np.delete(expected, [6, 7, 8]), rtol=1e-12)
-
-
-class TestInverse:
-    @pytest.mark.parametrize("size", [3, 6])
-    def test_it_is_the_one_of_numpy(self, size):
-        m = np.random.default_rng(size).normal(size=(size, size)) + 3.0 * np.eye(size)
-        np.testing.assert_allclose(make_config().blank.inv(m), np.linalg.inv(m), rtol=1e-12, atol=1e-14)
-
-    @pytest.mark.parametrize("m", [np.zeros((3, 3)), np.ones((6, 6)), np.full((6, 6), np.inf)])
-    def test_what_has_none_gives_no_numbers_and_does_not_raise(self, m):
-        assert not np.isfinite(make_config().blank.inv(m)).any()
