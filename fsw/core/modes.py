@@ -79,6 +79,10 @@ class ModeState(NamedTuple):
     trips: int = 0
     held: bool = False
 
+    def integers(self) -> tuple[int, ...]:
+        """For the checksum of the state."""
+        return (self.mode, self.since_tick, *self.held_since, self.trips, self.held)
+
 
 def judge(
     attitude: Attitude, spin_radps: float, tripped: bool, state: ModeState, config: ModeConfig

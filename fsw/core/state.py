@@ -17,7 +17,7 @@ from fsw.core.laws.interface import FieldSample, Memory, Setpoint
 from fsw.core.laws.table import LAWS
 from fsw.core.modes import ModeState
 from fsw.core.orbit.elements import Elements, Upload
-from fsw.core.orbit.ephemeris import EphemerisWindow, pack_values
+from fsw.core.orbit.ephemeris import EphemerisWindow
 from fsw.core.throttle import Throttle
 from fsw.wire.frame import Frame
 
@@ -64,85 +64,57 @@ class FlightState(NamedTuple):
     events: Throttle
     sent: tuple[int, ...]
 
+    def integers(self) -> tuple[int, ...]:
+        """Every integer and flag, in the order that recorded logs fix."""
+        return (
+            self.tick,
+            self.field_tick,
+            self.status_tick,
+            self.ignored_syncs,
+            *self.syncs.integers(),
+            self.time_error_s,
+            *self.gate.integers(),
+            *self.second_sender,
+            self.upload.come,
+            self.orbit is not None,
+            *self.estimator.integers(),
+            *self.sensors.integers(),
+            *self.coils.integers(),
+            self.attitude.valid,
+            *self.modes.integers(),
+            self.sample.tick,
+            LAWS[self.setpoint.law].number,
+            *self.pulses.integers(),
+            *self.coil.integers(),
+            *self.events.integers(),
+            *self.sent,
+        )
+
+    def floats(self) -> tuple[float, ...]:
+        """Every float outside the estimator's arrays, in the order that recorded logs fix."""
+        return (
+            *self.attitude.floats(),
+            *self.sensors.floats(),
+            *self.sample.b_body_t,
+            *self.pulses.floats(),
+            *self.coil.floats(),
+            *self.setpoint.floats(),
+            *self.memory,
+            *self.upload.values,
+            *(self.orbit or ()),
+            *(self.ephemeris.floats() if self.ephemeris is not None else ()),
+            *self.estimator.floats(),
+        )
+
 
 def checksum(state: FlightState) -> int:
-    """CRC-32 over every number of the state, little-endian: integers as 64 bit, floats as doubles."""
-    gate, modes, coil, pulses, attitude = state.gate, state.modes, state.coil, state.pulses, state.attitude
-    field_watch, sun_watch, pair, doubted = state.sensors
-    faults, wrong, *strange = state.coils
-    known, *refusals = state.estimator
-    integers = (
-        state.tick,
-        state.field_tick,
-        state.status_tick,
-        state.ignored_syncs,
-        *state.syncs.doubted,
-        *state.syncs[1:],
-        state.time_error_s,
-        *gate.counters,
-        *gate[1:],
-        *state.second_sender,
-        state.upload.come,
-        state.orbit is not None,
-        *refusals,
-        *field_watch[:-1],
-        *sun_watch[:-1],
-        *pair,
-        doubted,
-        *faults,
-        *wrong,
-        *strange,
-        attitude.valid,
-        modes.mode,
-        modes.since_tick,
-        *modes.held_since,
-        modes.trips,
-        modes.held,
-        state.sample.tick,
-        LAWS[state.setpoint.law].number,
-        *pulses.ready_tick,
-        pulses.busy_until,
-        *coil.lockout_ms,
-        coil.driven_coil,
-        coil.driven_level,
-        coil.seq,
-        coil.refusals,
-        coil.fired_tick,
-        *coil.fired,
-        *(number for told in state.events.told for number in told),
-        state.events.held_back,
-        *state.sent,
-    )
-    floats: tuple[float, ...] = (
-        *attitude.q_body_from_orbit,
-        *attitude.omega_body_orbit_radps,
-        attitude.sigma3_attitude_rad,
-        attitude.sigma3_rate_radps,
-        *field_watch.sample,
-        *sun_watch.sample,
-        *state.sample.b_body_t,
-        *pulses.owed_impulse_body_nms,
-        *pulses.held_am2,
-        *coil.driven_am2,
-        *coil.paid_body_nms,
-        *state.setpoint[1:],
-        *state.memory,
-        *state.upload.values,
-        *(state.orbit or ()),
-    )
-    if state.ephemeris is not None:
-        floats += pack_values(state.ephemeris)
-    if known is not None:
-        floats += (*known.q_body_from_eci, *known.omega_body_radps, *known.mag_bias_t, *known.torque_body_nm)
-    register = zlib.crc32(struct.pack(f"<{len(integers)}q{len(floats)}d", *integers, *floats))
-    if known is None:
-        return register
-    register = zlib.crc32(known.covariance.tobytes(), register)
-    if known.trace is None:
-        return register
-    causes, effect, sums, count = known.trace
-    register = zlib.crc32(struct.pack(f"<{1 + len(causes)}q", count, *causes), register)
-    return zlib.crc32(sums.tobytes(), zlib.crc32(effect.tobytes(), register))
+    """CRC-32 over every number of the state, as each part gives its own.
+
+    Little-endian: all integers as 64 bit, all floats as doubles, then the arrays of the estimator.
+    """
+    integers, floats = state.integers(), state.floats()
+    numbers = struct.pack(f"<{len(integers)}q{len(floats)}d", *integers, *floats)
+    return zlib.crc32(state.estimator.packed(), zlib.crc32(numbers))
 
 
 def initial_state(pulses: PulseState, setpoint: Setpoint, sent: tuple[int, ...]) -> FlightState:

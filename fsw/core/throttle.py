@@ -36,6 +36,10 @@ class Throttle(NamedTuple):
     told: tuple[Told, ...] = ()
     held_back: int = 0
 
+    def integers(self) -> tuple[int, ...]:
+        """For the checksum of the state."""
+        return (*(number for told in self.told for number in told), self.held_back)
+
 
 def throttled(
     state: Throttle, happenings: list[Happening], tick: int, spacing_ticks: int

@@ -34,6 +34,15 @@ class CoilView:
     fired: Pulse = NO_PULSE
     paid_body_nms: Vec3 = ZERO
 
+    def integers(self) -> tuple[int, ...]:
+        """For the checksum of the state."""
+        driven = (self.driven_coil, self.driven_level)
+        return (*self.lockout_ms, *driven, self.seq, self.refusals, self.fired_tick, *self.fired)
+
+    def floats(self) -> tuple[float, ...]:
+        """For the checksum of the state."""
+        return (*self.driven_am2, *self.paid_body_nms)
+
 
 class CoilConfig(NamedTuple):
     """The limits of the pulses, and the continuous driver that is there instead, if any."""

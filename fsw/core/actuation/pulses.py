@@ -51,6 +51,14 @@ class PulseState:
     owed_impulse_body_nms: Vec3 = ZERO
     held_am2: Vec3 = ZERO
 
+    def integers(self) -> tuple[int, ...]:
+        """For the checksum of the state."""
+        return (*self.ready_tick, self.busy_until)
+
+    def floats(self) -> tuple[float, ...]:
+        """For the checksum of the state."""
+        return (*self.owed_impulse_body_nms, *self.held_am2)
+
 
 class Pulse(NamedTuple):
     """A pulse to fire: coil 0..2, level -3..3 without zero."""

@@ -40,6 +40,18 @@ class EstimatorState(NamedTuple):
     rejected_total: int = 0
     restarts: int = 0
 
+    def integers(self) -> tuple[int, ...]:
+        """For the checksum of the state, as are the next two."""
+        return (self.rejected_in_a_row, self.rejected_total, self.restarts)
+
+    def floats(self) -> tuple[float, ...]:
+        """The estimate, if there is one, without its arrays."""
+        return () if self.estimate is None else self.estimate.floats()
+
+    def packed(self) -> bytes:
+        """The arrays of the estimate."""
+        return b"" if self.estimate is None else self.estimate.packed()
+
 
 class Used(NamedTuple):
     """Which measurements were taken in this tick."""

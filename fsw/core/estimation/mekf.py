@@ -12,6 +12,7 @@ direction, m the dipole, b the field and h the momentum of a wheel, all in body 
 Source: Lefferts, Markley, Shuster 1982; the dynamics as in Ovchinnikov, Penkov, Roldugin 2015.
 """
 
+import struct
 from math import isfinite, nan
 from typing import NamedTuple
 
@@ -41,6 +42,11 @@ class Trace(NamedTuple):
     sums: Matrix
     measured: int
 
+    def packed(self) -> bytes:
+        """For the checksum of the state."""
+        causes = struct.pack(f"<{1 + len(self.causes)}q", self.measured, *self.causes)
+        return causes + self.effect.tobytes() + self.sums.tobytes()
+
 
 class Estimate(NamedTuple):
     """Attitude, inertial rate, biases, and the covariance of the error state.
@@ -54,6 +60,14 @@ class Estimate(NamedTuple):
     torque_body_nm: Vec3
     covariance: Matrix
     trace: Trace | None = None
+
+    def floats(self) -> tuple[float, ...]:
+        """For the checksum of the state, as is ``packed``: all but the arrays."""
+        return (*self.q_body_from_eci, *self.omega_body_radps, *self.mag_bias_t, *self.torque_body_nm)
+
+    def packed(self) -> bytes:
+        """The arrays."""
+        return self.covariance.tobytes() + (b"" if self.trace is None else self.trace.packed())
 
 
 def start(q_body_from_eci: Quaternion, omega_body_radps: Vec3, config: MekfConfig) -> Estimate:
@@ -79,13 +93,7 @@ def healthy(estimate: Estimate) -> bool:
     Asked after a prediction, which brings a bad number off the diagonal of the covariance onto it.
     """
     variances: list[float] = estimate.covariance.diagonal().tolist()
-    numbers = (
-        *estimate.q_body_from_eci,
-        *estimate.omega_body_radps,
-        *estimate.mag_bias_t,
-        *estimate.torque_body_nm,
-    )
-    return isfinite(sum(numbers)) and min(variances) > 0.0 and sum(variances) < MAX_VARIANCE
+    return isfinite(sum(estimate.floats())) and min(variances) > 0.0 and sum(variances) < MAX_VARIANCE
 
 
 def predict(

@@ -66,6 +66,10 @@ class CoilHealth(NamedTuple):
     stray_ma: int = 0
     stuck: bool = False
 
+    def integers(self) -> tuple[int, ...]:
+        """For the checksum of the state."""
+        return (*self.faults, *self.wrong, self.strange_ticks, self.stray_ma, self.stuck)
+
 
 def driven_am2(health: CoilHealth, view: CoilView, timing: PulseConfig, config: CoilHealthConfig) -> Vec3:
     """Dipole over the tick that has ended, body axes, a current included for which a coil is named.

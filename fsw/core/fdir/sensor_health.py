@@ -55,6 +55,14 @@ class SensorHealth(NamedTuple):
     pair: Pair = Pair()
     doubted: bool = False
 
+    def integers(self) -> tuple[int, ...]:
+        """For the checksum of the state."""
+        return (*self.field.integers(), *self.sun.integers(), *self.pair, self.doubted)
+
+    def floats(self) -> tuple[float, ...]:
+        """For the checksum of the state."""
+        return (*self.field.sample, *self.sun.sample)
+
 
 def trusted(readings: Readings, health: SensorHealth, reference: Reference) -> Readings:
     """The readings without those of a sensor that is left out, and without a Sun where none can be.

@@ -77,6 +77,10 @@ class Watch(NamedTuple):
     agreed: int = 0
     sample: Vec3 = ZERO
 
+    def integers(self) -> tuple[int, ...]:
+        """For the checksum of the state."""
+        return self[:-1]
+
 
 def watched(
     watch: Watch, said: Vec3 | None, other: Watch, cause: int, weight: int, config: SensorHealthConfig

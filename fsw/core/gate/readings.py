@@ -117,6 +117,10 @@ class GateState(NamedTuple):
     heard: int = 0
     commanded: int = 0
 
+    def integers(self) -> tuple[int, ...]:
+        """For the checksum of the state."""
+        return (*self.counters, *self[1:])
+
 
 def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateState]:
     """Judge the frames of one tick.

@@ -44,6 +44,10 @@ class SyncWatch(NamedTuple):
     settled_tick: int = 0
     strange_tick: int = -1
 
+    def integers(self) -> tuple[int, ...]:
+        """For the checksum of the state."""
+        return (*self.doubted, self.settled_tick, self.strange_tick)
+
 
 def judge(watch: SyncWatch, current: int, tick: int) -> tuple[Belief, SyncWatch]:
     """What a SYNC is taken for, and what is in doubt after it.

@@ -59,6 +59,10 @@ class Setpoint(NamedTuple):
     k_i: float
     spin_radps: float
 
+    def floats(self) -> tuple[float, ...]:
+        """For the checksum of the state; the law counts by its number."""
+        return self[1:]
+
 
 @dataclass(frozen=True, slots=True)
 class ControlConfig:

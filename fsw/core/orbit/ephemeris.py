@@ -29,6 +29,10 @@ class Node:
     b_eci_t: Vec3
     sun_eci: Vec3
 
+    def floats(self) -> tuple[float, ...]:
+        """For the checksum of the state."""
+        return (*self.r_eci_m, *self.v_eci_mps, *self.b_eci_t, *self.sun_eci)
+
 
 @dataclass(frozen=True, slots=True)
 class EphemerisWindow:
@@ -36,6 +40,11 @@ class EphemerisWindow:
 
     first_node: int
     nodes: tuple[Node, Node, Node, Node]
+
+    def floats(self) -> tuple[float, ...]:
+        """For the checksum of the state: 49 numbers, that of the first node leading."""
+        a, b, c, d = self.nodes
+        return (self.first_node, *a.floats(), *b.floats(), *c.floats(), *d.floats())
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,28 +198,4 @@ def _blend(weights: Weights, a: Vec3, b: Vec3, c: Vec3, d: Vec3) -> Vec3:
         w0 * a[0] + w1 * b[0] + w2 * c[0] + w3 * d[0],
         w0 * a[1] + w1 * b[1] + w2 * c[1] + w3 * d[1],
         w0 * a[2] + w1 * b[2] + w2 * c[2] + w3 * d[2],
-    )
-
-
-def pack_values(window: EphemerisWindow) -> tuple[float, ...]:
-    """The window as 49 numbers, its first node's number leading."""
-    a, b, c, d = window.nodes
-    return (
-        window.first_node,
-        *a.r_eci_m,
-        *a.v_eci_mps,
-        *a.b_eci_t,
-        *a.sun_eci,
-        *b.r_eci_m,
-        *b.v_eci_mps,
-        *b.b_eci_t,
-        *b.sun_eci,
-        *c.r_eci_m,
-        *c.v_eci_mps,
-        *c.b_eci_t,
-        *c.sun_eci,
-        *d.r_eci_m,
-        *d.v_eci_mps,
-        *d.b_eci_t,
-        *d.sun_eci,
     )

@@ -5,7 +5,7 @@ import pytest
 
 from fsw.core.algebra.quaternion import rotate
 from fsw.core.algebra.vector import cross, dot, norm, scale, unit
-from fsw.core.orbit.ephemeris import advance, ephemeris_model, node, pack_values, reference_at
+from fsw.core.orbit.ephemeris import advance, ephemeris_model, node, reference_at
 from fsw.core.orbit.field import FieldKind, field_eci_t
 from fsw.core.orbit.propagation import circular_orbit, sgp4_orbit, state_eci
 from fsw.core.orbit.sun import lit, sun_eci
@@ -98,7 +98,7 @@ def test_a_node_is_the_models_own_at_its_moment(make_model, itamsat, itamsat_epo
 def test_every_number_of_the_window_is_packed(make_model):
     model = make_model()
     window = advance(None, 333, model)
-    values = pack_values(window)
+    values = window.floats()
     assert len(values) == len(set(values)) == 49
     assert values[0] == window.first_node
     assert values[1:4] == window.nodes[0].r_eci_m
