@@ -163,14 +163,13 @@ def _sensors(table: FlightTable) -> SensorHealthConfig:
 
 def _coil_health(table: FlightTable) -> CoilHealthConfig:
     fdir, tick_hz = table.fdir, table.time.tick_hz
-    first, second, third = (1000.0 * m / table.coils.dipole_per_ampere_am2 for m in table.coils.levels_am2)
     return CoilHealthConfig(
-        current_ma=(first, second, third),
+        current_ma=table.coils.levels_ma,
         weak_part=fdir.weak_coil_part,
         open_part=fdir.open_coil_part,
         name_pulses=fdir.name_pulses,
         name_sigmas=fdir.name_sigmas,
-        stuck_ma=max(1.0, 0.5 * first),
+        stuck_ma=max(1.0, 0.5 * table.coils.levels_ma[0]),
         stuck_ticks=_ticks(table.coils.pulse_s + fdir.stuck_s, tick_hz) + 1,
         inertia_inverse=inverse(table.body.inertia),
     )
@@ -193,7 +192,7 @@ def _pulses(table: FlightTable) -> PulseConfig:
         pulse_ticks=pulse_ticks,
         backoff_ticks=backoff_ticks,
         duration_ms=duration_ms,
-        shared=coils.backoff == "shared",
+        shared=coils.shared,
         levels_am2=coils.levels_am2,
         pulse_s=duration_ms / 1000.0,
         tick_s=1.0 / tick_hz,

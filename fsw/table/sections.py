@@ -6,7 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, Strict, field_validator, model_validator
 
-from fsw.core.algebra.vector import Mat3
+from fsw.core.algebra.vector import Mat3, Vec3
 from fsw.core.laws.interface import MAX_SPIN_RADPS
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit.propagation import sgp4_orbit
@@ -120,6 +120,17 @@ class CoilTable(Section):
         if self.driver == "continuous" and self.max_dipole_am2 is None:
             raise ValueError("a continuous driver needs max_dipole_am2")
         return self
+
+    @property
+    def shared(self) -> bool:
+        """A pulse of any coil begins the back-off of all three; otherwise each coil has its own."""
+        return self.backoff == "shared"
+
+    @property
+    def levels_ma(self) -> Vec3:
+        """Currents of a sound coil at levels 1, 2, 3, mA."""
+        first, second, third = (1000.0 * m / self.dipole_per_ampere_am2 for m in self.levels_am2)
+        return (first, second, third)
 
 
 class ControlTable(Section):

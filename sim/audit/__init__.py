@@ -1,1 +1,1 @@
-"""The auditor of the actuator limits: judges any log, shares no code with scheduler or interlock."""
+"""The auditor of the actuator limits: judges any log; on purpose without code of scheduler or interlock."""

@@ -9,6 +9,7 @@ from fsw.input.toml_text import load_toml
 from fsw.wire.messages import CoilBoot, FswBoot, MagBoot, PlantBoot, SunBoot, intact
 from sim.audit.auditor import audit
 from sim.audit.findings import AuditLimits, AuditReport, seconds_text
+from sim.audit.limits import is_shared, limits_in
 from sim.errors import HarnessError
 from sim.record.binding import compare
 from sim.record.candump import LogEntry, read_log
@@ -47,7 +48,7 @@ def check(path: Path, backoff: str | None, key: PublicKey | None = None) -> Audi
     beside = AuditLimits() if foreign else limits_beside(log)
     limits = beside or AuditLimits()
     if backoff is not None:
-        limits = replace(limits, shared=_is_shared(backoff, "--backoff"))
+        limits = replace(limits, shared=is_shared(backoff, "--backoff"))
     with binding.beside_errors():
         report = audit(_of_this_contract(log), limits, expect_end=beside is not None)
     voucher = vouch(log)
@@ -90,13 +91,7 @@ def limits_beside(log: Path) -> AuditLimits | None:
         raise HarnessError(f"{scenario}: cannot be read: {error.strerror}") from None
     except ValueError as error:
         raise HarnessError(f"{scenario}: cannot be read: {error}") from None
-    coils, time = _table(tables, "coils", scenario), _table(tables, "time", scenario)
-    return AuditLimits(
-        pulse_us=_microseconds(coils.get("pulse_s", 3.0), f"{scenario}: coils.pulse_s"),
-        backoff_us=_microseconds(coils.get("backoff_s", 100.0), f"{scenario}: coils.backoff_s"),
-        shared=_is_shared(coils.get("backoff", "shared"), f"{scenario}: coils.backoff"),
-        tick_hz=_tick_hz(time.get("tick_hz"), f"{scenario}: time.tick_hz"),
-    )
+    return limits_in(tables, str(scenario))
 
 
 def render(report: AuditReport) -> str:
@@ -143,30 +138,3 @@ def _verdict(report: AuditReport) -> str:
         if report.complete
         else "FAIL: limits kept as far as the log goes, but it is incomplete"
     )
-
-
-def _is_shared(backoff: object, where: str) -> bool:
-    if backoff not in ("shared", "per_coil"):
-        raise HarnessError(f"{where} is {backoff!r}, not 'shared' or 'per_coil'")
-    return backoff == "shared"
-
-
-def _table(tables: dict[str, object], name: str, scenario: Path) -> dict[str, object]:
-    table = tables.get(name, {})
-    if not isinstance(table, dict):
-        raise HarnessError(f"{scenario}: {name} is not a table")
-    return table
-
-
-def _microseconds(value: object, where: str) -> int:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value < 1e9:
-        raise HarnessError(f"{where} is {value!r}, not a time in seconds")
-    return round(value * 1_000_000)
-
-
-def _tick_hz(value: object, where: str) -> int | None:
-    if value is None:
-        return None
-    if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= 1_000_000:
-        raise HarnessError(f"{where} is {value!r}, not a whole number of ticks a second")
-    return value

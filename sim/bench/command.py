@@ -187,7 +187,7 @@ def _board(bench: Bench, nodes: Nodes, name: str, spec: str) -> Node:
     coils = scenario.coils
     if coils.driver == "continuous":
         return nodes.start(name, *stub, "dipole", *common)
-    levels_ma = [f"{1000.0 * level / coils.dipole_per_ampere_am2!r}" for level in coils.levels_am2]
+    levels_ma = [repr(level_ma) for level_ma in coils.levels_ma]
     limits = (
         "--pulse-s",
         str(coils.pulse_s),

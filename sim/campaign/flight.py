@@ -15,7 +15,7 @@ from fsw.table.config import flight_config
 from fsw.wire.frame import Frame
 from fsw.wire.messages import NAMES, CoilBoot, CoilRefused, CoilStatus, PlantEnd, Sync
 from sim.audit.auditor import AuditReport, audit
-from sim.audit.findings import AuditLimits
+from sim.audit.limits import limits_in
 from sim.flight.flight import fly
 from sim.flight.recorded import ticks_of
 from sim.flight.virtual import VirtualBus
@@ -122,7 +122,7 @@ def record_order(order: Order) -> Record:
     run = FlightRecord(
         seed=order.seed, flown={"ticks": flown.ticks, "slips": flown.slips, "wall_s": flown.wall_s}
     )
-    audited = audit(log.entries, _limits(scenario))
+    audited = audit(log.entries, limits_in(scenario.model_dump(mode="json"), scenario.name))
     return Record(scenario, run, truth.histories, truth.recorder.estimates(), audited, tally)
 
 
@@ -160,13 +160,3 @@ class _Truth:
 
     def flush(self) -> None:
         """Everything is there already."""
-
-
-def _limits(scenario: Scenario) -> AuditLimits:
-    coils = scenario.coils
-    return AuditLimits(
-        pulse_us=round(1e6 * coils.pulse_s),
-        backoff_us=round(1e6 * coils.backoff_s),
-        shared=coils.backoff == "shared",
-        tick_hz=scenario.time.tick_hz,
-    )

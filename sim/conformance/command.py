@@ -9,6 +9,7 @@ from fsw.bus.open_bus import open_bus, resolve
 from sim.conformance.conformance import Verdict, conform
 from sim.conformance.session import KINDS, Session
 from sim.conformance.subject import Limits
+from sim.scenario.coil_limits import coil_limits
 from sim.scenario.schema import Scenario
 
 _MARKS = {True: "ok    ", False: "FAILED"}
@@ -23,10 +24,9 @@ def conformance(
         BusError: the bus cannot be used.
         HarnessError: no board answers, or somebody else paces the bus.
     """
-    coils, tick_hz = scenario.coils, scenario.time.tick_hz
-    limits = Limits(
-        round(1000.0 * coils.pulse_s), round(1000.0 * coils.backoff_s), coils.backoff == "shared", deadman_s
-    )
+    tick_hz = scenario.time.tick_hz
+    board = coil_limits(scenario.coils, tick_hz)
+    limits = Limits(board.pulse_ms, board.backoff_ms, board.shared, deadman_s)
     spec = resolve(bus)
     link = open_bus(spec)
     if not as_json:

@@ -21,4 +21,4 @@ def pulsing_of(scenario: Scenario) -> Pulsing | None:
     coils = scenario.coils
     if coils.driver == "continuous":
         return None
-    return Pulsing(coils.pulse_s, coils.backoff_s, scenario.control.leak_s, coils.backoff == "shared")
+    return Pulsing(coils.pulse_s, coils.backoff_s, scenario.control.leak_s, coils.shared)

@@ -5,7 +5,7 @@ from fractions import Fraction
 from fsw.core.events import Event
 from fsw.wire.messages import Mode
 from sim.audit.auditor import audit
-from sim.audit.findings import AuditLimits
+from sim.audit.limits import limits_in
 from sim.fault_rig import currents
 from sim.fault_rig.currents import CurrentLimits
 from sim.fault_rig.record import Record
@@ -21,6 +21,7 @@ from sim.fault_table.naming import (
     tripped,
 )
 from sim.fault_table.row import Bounds, Check, Outcome, Row, Verdict
+from sim.scenario.coil_limits import coil_limits
 from sim.scenario.schema import Scenario, orbit_period_s
 
 GOOD_DEG = 2.0
@@ -36,20 +37,19 @@ MOST_FRAMES = 64
 
 def bounds_of(scenario: Scenario) -> Bounds:
     """What the flights of a scenario are judged by: its own limits, from the table of its coils."""
-    coils, hz = scenario.coils, scenario.time.tick_hz
-    shared = coils.backoff == "shared"
-    low, middle, high = (level / coils.dipole_per_ampere_am2 for level in coils.levels_am2)
+    board = coil_limits(scenario.coils, scenario.time.tick_hz)
+    first_ma, second_ma, third_ma = scenario.coils.levels_ma
     return Bounds(
-        AuditLimits(round(coils.pulse_s * 1e6), round(coils.backoff_s * 1e6), 3, shared, hz),
+        limits_in(scenario.model_dump(mode="json"), scenario.name),
         CurrentLimits(
-            hz,
-            (low, middle, high),
-            Fraction(str(coils.pulse_s)),
-            Fraction(str(coils.backoff_s)),
-            shared,
+            board.tick_hz,
+            (1e-3 * first_ma, 1e-3 * second_ma, 1e-3 * third_ma),
+            Fraction(board.pulse_ms, 1000),
+            Fraction(board.backoff_ms, 1000),
+            board.shared,
         ),
         orbit_period_s(scenario),
-        coils.backoff_s,
+        scenario.coils.backoff_s,
     )
 
 

@@ -119,7 +119,7 @@ def what_was_flown(scenario: Scenario) -> str:
     )
     right = (
         ("Levels", f"{_triple(coils.levels_am2)} A m², both polarities"),
-        ("Limits", f"{coils.pulse_s:g} s pulses, {coils.backoff_s:g} s back-off, {_backoff(coils.backoff)}"),
+        ("Limits", f"{coils.pulse_s:g} s pulses, {coils.backoff_s:g} s back-off, {_backoff(coils.shared)}"),
         (
             "Knowledge",
             "filter on the sensors" if scenario.knowledge == "filter" else "perfect, from the plant",
@@ -258,8 +258,8 @@ def _inertia(scenario: Scenario) -> str:
     return ", ".join(_triple(row) for row in tensor)
 
 
-def _backoff(kind: str) -> str:
-    return "shared by all coils" if kind == "shared" else "each coil its own"
+def _backoff(shared: bool) -> str:
+    return "shared by all coils" if shared else "each coil its own"
 
 
 def _triple(values: Iterable[float]) -> str:

@@ -3,7 +3,6 @@
 from math import cos, hypot, radians, sin
 
 from fsw.input.schema import TableError
-from hil_stub.coils.coil_driver import CoilLimits
 from sim.plant.config import (
     BodyConfig,
     CoilConfig,
@@ -17,6 +16,7 @@ from sim.plant.config import (
     PlateConfig,
     SunSensorConfig,
 )
+from sim.scenario.coil_limits import coil_limits
 from sim.scenario.schema import Scenario
 
 NT = 1e-9
@@ -36,7 +36,7 @@ def plant_config(scenario: Scenario, seed: int) -> PlantConfig:
 
 
 def _config(scenario: Scenario, seed: int) -> PlantConfig:
-    tick_hz, coils = scenario.time.tick_hz, scenario.coils
+    tick_hz = scenario.time.tick_hz
     return PlantConfig(
         epoch_unix_s=scenario.epoch_unix_s,
         tick_hz=tick_hz,
@@ -49,12 +49,7 @@ def _config(scenario: Scenario, seed: int) -> PlantConfig:
         magnetometer=_magnetometer(scenario),
         sun_sensor=_sun_sensor(scenario),
         coils=_coils(scenario),
-        limits=CoilLimits(
-            tick_hz=tick_hz,
-            pulse_ms=round(coils.pulse_s * 1000.0),
-            backoff_ms=round(coils.backoff_s * 1000.0),
-            shared=coils.backoff == "shared",
-        ),
+        limits=coil_limits(scenario.coils, tick_hz),
         max_substep_s=scenario.plant.max_substep_s,
         perfect_knowledge=scenario.knowledge == "perfect",
     )

@@ -140,7 +140,7 @@ def jacobi_drift() -> float:
             body=BodyConfig(FULL),
             initial=InitialConfig(from_vector((0.4, -0.3, 0.5)), (1e-3, -7e-4, 5e-4)),
             coils=CoilConfig((0.5, 2.0, 8.0)),
-            limits=CoilLimits(tick_hz=1, pulse_ms=3000, backoff_ms=100_000),
+            limits=CoilLimits(tick_hz=1),
         )
     )
     rows = []
