@@ -1,465 +1,75 @@
-"""The loop bus loses nothing, keeps order, and ends loudly."""
+"""The loop bus through python-can."""
 
-import signal
-import socket
-import subprocess
-import sys
-import threading
+import asyncio
 import time
-from random import Random
 
+import can
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 
-from fsw.bus import hub as hub_module
-from fsw.bus import link as link_module
-from fsw.bus import record
-from fsw.bus.door import GREETING
-from fsw.bus.hub import Hub
-from fsw.bus.interface import BusClosed, BusError
-from fsw.bus.link import LoopLink
+from fsw.bus.can_message import frame_of
 from fsw.bus.open_bus import open_bus
 from fsw.wire.frame import Frame
 
 PATIENCE_S = 10.0
 
 
-def numbered(count, can_id=0x123):
-    return [Frame(can_id, number.to_bytes(4, "big")) for number in range(count)]
+@pytest.fixture
+def buses(hub):
+    pair = [can.Bus(interface="loop", channel=channel) for channel in (hub.port, str(hub.port))]
+    yield pair
+    for bus in pair:
+        bus.shutdown()
 
 
-def take(bus, count):
-    """The next ``count`` frames, fewer if the bus falls silent."""
-    frames = []
-    while len(frames) < count and (frame := bus.receive(PATIENCE_S)) is not None:
-        frames.append(frame)
-    return frames
+class TestBackend:
+    def test_messages_pass(self, buses):
+        sent = can.Message(arbitration_id=0x123, is_extended_id=False, data=b"abc")
+        buses[0].send(sent)
+        received = buses[1].recv(PATIENCE_S)
+        assert received.equals(sent, timestamp_delta=None, check_channel=False)
+        assert abs(received.timestamp - time.time()) < 5.0
+        assert buses[0].recv(0.05) is None
 
+    def test_filters_hold(self, buses):
+        buses[1].set_filters([{"can_id": 0x200, "can_mask": 0x7FF}])
+        buses[0].send_frames([Frame(0x100, b""), Frame(0x200, b"x"), Frame(0x300, b"")])
+        assert frame_of(buses[1].recv(PATIENCE_S)) == Frame(0x200, b"x")
+        assert buses[1].recv(0.05) is None
 
-def wait_until(holds):
-    deadline = time.monotonic() + PATIENCE_S
-    while not holds():
-        assert time.monotonic() < deadline, "it never came true"
-        time.sleep(0.005)
+    def test_a_notifier_hands_out_every_record_of_a_bulk_read(self, buses, numbered):
+        reader = can.BufferedReader()
+        notifier = can.Notifier(buses[1], [reader], timeout=0.1)
+        buses[0].send_frames(numbered(5000))
+        got = [frame_of(reader.get_message(PATIENCE_S)) for _ in range(5000)]
+        notifier.stop()
+        assert got == numbered(5000)
 
+    def test_so_does_a_notifier_in_asyncio(self, buses, numbered):
+        async def listen():
+            reader = can.AsyncBufferedReader()
+            notifier = can.Notifier(buses[1], [reader], timeout=0.1, loop=asyncio.get_running_loop())
+            buses[0].send_frames(numbered(1000))
+            got = [frame_of(await asyncio.wait_for(reader.get_message(), PATIENCE_S)) for _ in range(1000)]
+            await asyncio.to_thread(notifier.stop)
+            return got
 
-class TestDelivery:
-    def test_a_frame_goes_to_all_but_its_sender(self, open_link):
-        sender, first, second = open_link(), open_link(), open_link()
-        frame = Frame(0x7FF, b"\x01\x02\x03\x04\x05\x06\x07\x08")
-        sender.send([frame])
-        assert take(first, 1) == take(second, 1) == [frame]
-        assert [bus.receive(0.05) for bus in (sender, first, second)] == [None, None, None]
+        assert asyncio.run(listen()) == numbered(1000)
 
-    def test_flags_of_frames_that_are_not_ours_pass(self, open_link):
-        sender, reader = open_link(), open_link()
-        foreign = [
-            Frame(0x9FFF_FFFF, b"x"),
-            Frame(0x4000_0123, bytes(3)),
-            Frame(0x2000_0004, bytes(8)),
-            Frame(0, b""),
-        ]
-        sender.send(foreign)
-        assert take(reader, 4) == foreign
+    def test_can_fd_is_refused(self, buses):
+        with pytest.raises(can.CanOperationError, match="classic CAN only"):
+            buses[0].send(can.Message(arbitration_id=1, is_fd=True, data=bytes(12)))
 
-    def test_what_is_sent_right_after_opening_is_not_missed(self, open_link):
-        sender = open_link()
-        for frame in numbered(100):
-            reader = open_link()
-            sender.send([frame])
-            assert reader.receive(PATIENCE_S) == frame
-            reader.close()
-
-    @settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-    @given(
-        bursts=st.lists(st.tuples(st.integers(0, 2), st.integers(0, 3000)), max_size=20),
-        seed=st.integers(0, 2**32),
-    )
-    def test_bursts_arrive_whole_and_in_order(self, open_link, bursts, seed):
-        random = Random(seed)
-        reader, senders = open_link(), [open_link() for _ in range(3)]
-        sent = [[], [], []]
-        for sender, length in bursts:
-            burst = [Frame(sender, random.randbytes(random.randrange(9))) for _ in range(length)]
-            senders[sender].send(burst)
-            sent[sender] += burst
-        got = take(reader, sum(map(len, sent)))
-        assert [[frame for frame in got if frame.can_id == sender] for sender in range(3)] == sent
-        assert reader.receive(0) is None
-        for link in (reader, *senders):
-            link.close()
-
-    def test_a_reader_that_wakes_late_gets_all(self, open_link):
-        sender, late, prompt = open_link(), open_link(), open_link()
-        flood = numbered(10_000)
-        count = 60
-        counter = threading.Thread(target=lambda: take(prompt, count * len(flood)))
-        counter.start()
-        for _ in range(count):  # more than the buffers of the kernel hold
-            sender.send(flood)
-        counter.join()
-        for _ in range(count):
-            assert take(late, len(flood)) == flood
-        assert late.receive(0.05) is None
-
-    def test_all_talk_at_once_and_all_hear_all(self, open_link):
-        links = [open_link() for _ in range(6)]
-        mine = [numbered(2000, can_id) for can_id in range(6)]
-        heard = [[] for _ in links]
-
-        def talk(index):
-            for start in range(0, 2000, 50):
-                links[index].send(mine[index][start : start + 50])
-            heard[index] = take(links[index], 5 * 2000)
-
-        threads = [threading.Thread(target=talk, args=(index,)) for index in range(6)]
-        for thread in threads:
-            thread.start()
-        for thread in threads:
-            thread.join()
-        for index, frames in enumerate(heard):
-            for other in set(range(6)) - {index}:
-                assert [frame for frame in frames if frame.can_id == other] == mine[other]
-
-    def test_records_are_never_torn_apart_by_another_sender(self, hub, open_link):
-        reader, other = open_link(), open_link()
-        with socket.create_connection(("127.0.0.1", hub.port)) as slow:
-            assert slow.recv(len(GREETING), socket.MSG_WAITALL) == GREETING
-            halves = record.pack(Frame(0x111, b"halves"))
-            slow.sendall(halves[:7])
-            other.send(numbered(3))
-            assert take(reader, 3) == numbered(3)
-            slow.sendall(halves[7:])
-            assert take(reader, 1) == [Frame(0x111, b"halves")]
-
-    def test_a_frame_too_long_is_refused_and_nothing_sent(self, open_link):
-        sender, reader = open_link(), open_link()
-        with pytest.raises(ValueError, match="at most 8"):
-            sender.send([Frame(1, b"ok"), Frame(2, bytes(9))])
-        assert reader.receive(0.05) is None
-
-
-class TestWaiting:
-    @pytest.mark.parametrize("timeout_s", [0, 0.0, -0.001, -5])
-    def test_zero_or_a_deadline_passed_does_not_wait(self, open_link, timeout_s):
-        link = open_link()
-        began = time.monotonic()
-        assert link.receive(timeout_s) is None
-        assert time.monotonic() - began < 0.05
-
-    def test_a_timeout_is_kept(self, open_link):
-        link = open_link()
-        began = time.monotonic()
-        assert link.receive(0.1) is None
-        assert 0.1 <= time.monotonic() - began < 0.5
-
-    def test_none_waits_until_a_frame_comes(self, open_link):
-        link, other = open_link(), open_link()
-        later = threading.Timer(0.1, other.send, [numbered(1)])
-        later.start()
-        assert link.receive(None) == numbered(1)[0]
-        later.join()
-
-    def test_half_a_record_does_not_end_the_wait_early(self):
-        with socket.create_server(("127.0.0.1", 0)) as server:
-            halves = record.pack(Frame(0x123, b"whole"))
-
-            def serve():
-                connection, _ = server.accept()
-                connection.sendall(GREETING + halves[:5])
-                time.sleep(0.1)
-                connection.sendall(halves[5:])
-                connection.recv(1)
-                connection.close()
-
-            thread = threading.Thread(target=serve)
-            thread.start()
-            link = LoopLink(server.getsockname()[1], may_host=False)
-            assert link.receive(0.01) is None
-            assert link.receive(PATIENCE_S) == Frame(0x123, b"whole")
-            link.close()
-            thread.join()
-
-
-class TestEnding:
-    def test_what_came_before_the_end_is_handed_out_first(self, hub, open_link):
-        sender, reader = open_link(), open_link()
-        sender.send(numbered(1000))
+    def test_the_end_of_the_hub_is_an_error_of_python_can(self, hub, buses):
         hub.close()
-        assert take(reader, 1000) == numbered(1000)
-        for timeout_s in (0, 0.1, None):
-            with pytest.raises(BusClosed, match="its hub is gone"):
-                reader.receive(timeout_s)
+        with pytest.raises(can.CanOperationError, match="its hub is gone"):
+            buses[1].recv(PATIENCE_S)
 
-    def test_sending_after_the_end_is_told(self, hub, open_link):
-        link = open_link()
-        hub.close()
+    def test_a_wrong_channel_is_an_error_of_python_can(self):
+        with pytest.raises(can.CanInitializationError, match="names no TCP port"):
+            can.Bus(interface="loop", channel="nowhere")
 
-        def send_for_long():
-            for _ in range(1000):
-                link.send(numbered(1))
-                time.sleep(0.001)
-
-        with pytest.raises(BusClosed):
-            send_for_long()
-
-    def test_a_closed_end_says_so(self, open_link):
-        link = open_link()
-        link.close()
-        link.close()
-        with pytest.raises(BusClosed, match="this end has been closed"):
-            link.receive(None)
-        with pytest.raises(BusClosed, match="this end has been closed"):
-            link.send(numbered(1))
-
-    def test_one_end_leaving_does_not_disturb_the_others(self, hub, open_link):
-        first, second, leaver = open_link(), open_link(), open_link()
-        second.send(numbered(100))
-        leaver.send(numbered(100, 0x7))
-        leaver.close()  # with frames unread
-        assert sorted(take(first, 200)) == sorted(numbered(100) + numbered(100, 0x7))
-        wait_until(lambda: hub.clients == 2)
-        first.send(numbered(5))
-        assert take(second, 105)[-5:] == numbered(5)
-
-    @pytest.mark.parametrize("ending", [signal.SIGKILL, signal.SIGTERM])
-    def test_a_killed_host_is_noticed_at_once(self, free_port, ending):
-        host = run_node(free_port, "bus.receive(None); bus.send(numbered(10)); bus.receive(None)")
-        link = LoopLink(free_port, may_host=False)
-        link.send([Frame(0x1, b"go")])
-        assert take(link, 10) == numbered(10)
-        host.send_signal(ending)
-        host.wait()
-        began = time.monotonic()
-        with pytest.raises(BusClosed, match="its hub is gone"):
-            link.receive(None)
-        assert time.monotonic() - began < 1.0
-        link.close()
-
-
-def run_node(port, deeds):
-    """A process that opens the bus and does ``deeds``."""
-    program = (
-        "from fsw.bus.open_bus import open_bus\n"
-        "from fsw.wire.frame import Frame\n"
-        "numbered = lambda count: [Frame(0x123, n.to_bytes(4, 'big')) for n in range(count)]\n"
-        f"bus = open_bus('loop:{port}')\n"
-        f"{deeds}\n"
-    )
-    return subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True)
-
-
-def take_until_closed(link):
-    frames = []
-    try:
-        while (frame := link.receive(PATIENCE_S)) is not None:
-            frames.append(frame)
-    except BusClosed:
-        return frames
-    pytest.fail(f"the bus fell silent after {len(frames)} frames, but did not close")
-
-
-class TestLastWords:
-    """A node that sends and leaves at once is heard, also when it hosts the bus and does not close it."""
-
-    @pytest.mark.parametrize("leaving", ["bus.close()", "", "raise SystemExit(3)"])
-    def test_of_the_host(self, free_port, leaving):
-        host = run_node(free_port, f"bus.receive(None); bus.send(numbered(5000)); {leaving}")
-        link = LoopLink(free_port, may_host=False)
-        link.send([Frame(0x1, b"go")])
-        assert take_until_closed(link) == numbered(5000)
-        assert host.wait() in (0, 3)
-        link.close()
-
-    @pytest.mark.parametrize("leaving", ["bus.close()", ""])
-    def test_of_a_guest(self, hub, open_link, leaving):
-        link = open_link()
-        guest = run_node(hub.port, f"bus.receive(None); bus.send(numbered(5000)); {leaving}")
-        wait_until(lambda: hub.clients == 2)
-        link.send([Frame(0x1, b"go"), *numbered(500)])  # some of it stays unread
-        assert take(link, 5000) == numbered(5000)
-        assert guest.wait() == 0
-
-
-class TestLaggards:
-    def test_one_that_never_reads_is_disconnected_and_the_bus_goes_on(self, monkeypatch, open_link):
-        monkeypatch.setattr(hub_module, "BACKLOG_LIMIT", 2**20)
-        sender, sleeper, reader = open_link(), open_link(), open_link()
-        flood = numbered(20_000)
-        count = 40  # 12.8 MB
-        for _ in range(count):
-            sender.send(flood)
-            assert take(reader, len(flood)) == flood
-        heard = take_until_closed(sleeper)
-        assert heard == (flood * count)[: len(heard)]  # up to the end it has lost nothing
-        assert len(heard) < len(flood) * count
-        sender.send(numbered(3))
-        assert take(reader, 3) == numbered(3)
-
-    @pytest.mark.parametrize("words", [b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n", b"\xff" * 64])
-    def test_a_stranger_is_shown_out(self, hub, open_link, words):
-        link = open_link()
-        with socket.create_connection(("127.0.0.1", hub.port)) as stranger:
-            stranger.settimeout(PATIENCE_S)
-            stranger.recv(len(GREETING), socket.MSG_WAITALL)
-            stranger.sendall(words)
-            assert stranger.recv(1) == b""
-        assert link.receive(0.05) is None
-
-
-class TestOpening:
-    def test_the_first_to_come_hosts(self, free_port):
-        first, second = open_bus(f"loop:{free_port}"), open_bus(f"loop:{free_port}")
-        second.send(numbered(3))
-        assert take(first, 3) == numbered(3)
-        assert first.name == "loop"
-        second.close()
-        first.close()
-
-    def test_after_the_host_has_left_the_next_hosts(self, free_port):
-        for _ in range(3):
-            first, second = open_bus(f"loop:{free_port}"), open_bus(f"loop:{free_port}")
-            first.close()
-            with pytest.raises(BusClosed):
-                second.receive(PATIENCE_S)
-            second.close()
-
-    def test_many_openers_at_once_meet_on_one_bus(self, free_port):
-        start = threading.Barrier(8)
-        links = []
-
-        def opener():
-            start.wait()
-            links.append(LoopLink(free_port))
-
-        threads = [threading.Thread(target=opener) for _ in range(8)]
-        for thread in threads:
-            thread.start()
-        for thread in threads:
-            thread.join()
-        assert len(links) == 8
-        links[0].send(numbered(10))
-        assert [take(link, 10) for link in links[1:]] == [numbered(10)] * 7
-        for link in links:
-            link.close()
-
-    def test_two_processes_racing_meet(self, free_port):
-        deeds = "print('open', flush=True); print(bus.receive(10).can_id, flush=True); bus.receive(None)"
-        nodes = [run_node(free_port, deeds) for _ in range(2)]
-        link = LoopLink(free_port)
-        try:
-            assert [node.stdout.readline() for node in nodes] == ["open\n"] * 2
-            link.send([Frame(0x123, b"")])
-            assert [node.stdout.readline() for node in nodes] == [f"{0x123}\n"] * 2
-        finally:
-            for node in nodes:
-                node.kill()
-                node.wait()
-            link.close()
-
-    def test_a_guest_waits_for_its_hub(self, free_port):
-        hubs = []
-        later = threading.Timer(0.2, lambda: hubs.append(Hub(free_port)) or hubs[0].start())
-        later.start()
-        link = LoopLink(free_port, may_host=False)
-        link.close()
-        hubs[0].close()
-
-    def test_but_not_for_ever(self, free_port):
-        with pytest.raises(BusError, match=f"no hub answers on port {free_port}"):
-            LoopLink(free_port, timeout_s=0.1, may_host=False)
-
-    def test_a_port_of_another_program_is_refused(self):
-        with socket.create_server(("127.0.0.1", 0)) as server:
-
-            def greet_wrongly():
-                connection, _ = server.accept()
-                with connection:
-                    connection.sendall(b"220 mail.example.org ESMTP\r\n")
-
-            thread = threading.Thread(target=greet_wrongly)
-            thread.start()
-            with pytest.raises(BusError, match="taken by another program"):
-                LoopLink(server.getsockname()[1], timeout_s=1.0)
-            thread.join()
-
-    def test_a_port_of_a_silent_program_is_given_up(self):
-        with (
-            socket.create_server(("127.0.0.1", 0)) as server,
-            pytest.raises(BusError, match="no hub answers"),
-        ):
-            LoopLink(server.getsockname()[1], timeout_s=0.2)
-
-    def test_a_guest_never_comes_before_its_host(self):
-        """Else the first words of a guest that was waiting for the port would be lost on its host."""
-        hub = Hub()
-        guests = []
-
-        def come_and_talk():
-            guests.append(LoopLink(hub.port))
-            guests[0].send(numbered(1))
-
-        thread = threading.Thread(target=come_and_talk)
-        thread.start()
-        time.sleep(0.1)  # the guest stands at the door
-        with hub.attach() as host:
-            hub.start()
-            thread.join()
-            assert host.recv(record.SIZE) == record.pack(numbered(1)[0])
-        guests[0].close()
-        hub.close()
-
-
-class TestPolledHub:
-    def test_it_serves_only_when_polled(self):
-        hub = Hub()
-        links = []
-        thread = threading.Thread(target=lambda: links.extend(LoopLink(hub.port) for _ in range(2)))
-        thread.start()
-        while thread.is_alive():
-            hub.poll(0.01)
-        assert hub.clients == 2
-        sender, reader = links
-        sender.send(numbered(100))
-        assert reader.receive(0.05) is None
-        while hub.poll(0.0):
-            pass
-        assert take(reader, 100) == numbered(100)
-        hub.close()
-        hub.close()
-        with pytest.raises(BusClosed):
-            reader.receive(None)
-
-    def test_it_waits_no_longer_than_told(self):
-        hub = Hub()
-        began = time.monotonic()
-        assert not hub.poll(0.1)
-        assert 0.09 <= time.monotonic() - began < 0.5
-        hub.close()
-
-    def test_a_taken_port_is_an_error(self):
-        hub = Hub()
-        with pytest.raises(OSError, match="in use"):
-            Hub(hub.port)
-        hub.close()
-
-
-def test_a_hub_that_stands_still_is_not_waited_for_for_ever(monkeypatch):
-    """It has greeted, and then takes nothing."""
-    monkeypatch.setattr(link_module, "SEND_PATIENCE_S", 0.2)
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        taken = []
-
-        def greet():
-            taken.append(server.accept()[0])
-            taken[0].sendall(GREETING)
-
-        greeter = threading.Thread(target=greet)
-        greeter.start()
-        link = LoopLink(server.getsockname()[1], may_host=False)
-        greeter.join()
-        with pytest.raises(BusError, match="takes nothing any more: its hub stands still"):
-            link.send(numbered(1_000_000))
-        taken[0].close()
-        link.close()
+    def test_both_ways_of_opening_meet_on_one_bus(self, hub, buses, numbered):
+        ours = open_bus(f"loop:{hub.port}")
+        ours.send(numbered(2))
+        assert [frame_of(buses[0].recv(PATIENCE_S)) for _ in range(2)] == numbered(2)
+        ours.close()
