@@ -1,7 +1,6 @@
 """A bus on which somebody flies is refused: heard, or asked."""
 
 import time
-from collections import deque
 
 import pytest
 
@@ -13,30 +12,6 @@ from sim.flight.bus_taken import FLYING, refuse_taken
 
 BOOT = FswBoot(0, 1, 2).encode()
 FIELD = MagField(1, 20000.0, 0.0, -30000.0).encode()
-
-
-class Bus:
-    """Frames that are there, and others that come when PLANT_BOOT is sent."""
-
-    name = "bus"
-
-    def __init__(self, there=(), when_asked=()):
-        self.queue = deque(there)
-        self.when_asked = when_asked
-        self.sent = []
-
-    def send(self, frames):
-        self.sent += frames
-        self.queue.extend(self.when_asked)
-
-    def receive(self, timeout_s):
-        if self.queue:
-            return self.queue.popleft()
-        time.sleep(timeout_s)
-        return None
-
-    def close(self):
-        pass
 
 
 @pytest.fixture(autouse=True)
@@ -54,43 +29,41 @@ def quick(monkeypatch):
         (FIELD, r"MAG_FIELD \(110\)"),
     ],
 )
-def test_who_speaks_is_named_and_not_spoken_to(frame, named):
-    bus = Bus([Frame(0x7FF, b""), frame])
+def test_who_speaks_is_named_and_not_spoken_to(frame, named, bus_of):
+    bus = bus_of([Frame(0x7FF, b""), frame])
     with pytest.raises(BusError, match=rf"^vcan0 is taken: {named} was heard before the flight began$"):
         refuse_taken(bus, "vcan0")
     assert bus.sent == []
 
 
 @pytest.mark.parametrize("boot", [BOOT, CoilBoot(0, 1, 0).encode()])
-def test_who_waits_in_silence_is_asked(boot):
-    bus = Bus(when_asked=[boot])
+def test_who_waits_in_silence_is_asked(boot, bus_of):
+    bus = bus_of(when_asked=[boot])
     with pytest.raises(BusError, match="_BOOT"):
         refuse_taken(bus, "vcan0")
     assert [frame.can_id for frame in bus.sent] == [PlantBoot.ID]
 
 
-def test_noise_and_the_ground_take_no_bus():
+def test_noise_and_the_ground_take_no_bus(bus_of):
     noise = [
         Frame(0x7FF, b"\1"),
         FIELD._replace(data=b"\0" * 8),
         Frame(CoilStatus.ID, b""),
         TcClear().encode(),
     ]
-    refuse_taken(Bus(noise, noise), "vcan0")
+    refuse_taken(bus_of(noise, noise), "vcan0")
 
 
-def test_boards_may_be_there_where_they_are_wanted():
+def test_boards_may_be_there_where_they_are_wanted(bus_of):
     boards = [FIELD, CoilBoot(0, 1, 0).encode()]
-    refuse_taken(Bus(boards, boards), "vcan0", FLYING)
+    refuse_taken(bus_of(boards, boards), "vcan0", FLYING)
     with pytest.raises(BusError, match="FSW_BOOT"):
-        refuse_taken(Bus(boards, [*boards, BOOT]), "vcan0", FLYING)
+        refuse_taken(bus_of(boards, [*boards, BOOT]), "vcan0", FLYING)
 
 
-def test_a_bus_that_babbles_is_listened_to_no_longer():
-    class Babble(Bus):
-        def receive(self, timeout_s):
-            return Frame(0x7FF, b"")
-
+def test_a_bus_that_babbles_is_listened_to_no_longer(bus_of):
+    bus = bus_of()
+    bus.receive = lambda timeout_s: Frame(0x7FF, b"")
     began = time.monotonic()
-    refuse_taken(Babble(), "vcan0")
+    refuse_taken(bus, "vcan0")
     assert time.monotonic() - began < 1.0

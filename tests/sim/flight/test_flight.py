@@ -1,8 +1,5 @@
 """The flight loop: bound to the answer that names the tick, logged as it happens, late answers counted."""
 
-import time
-from collections import deque
-
 import pytest
 
 from fsw.node import FlightNode
@@ -33,34 +30,14 @@ from sim.scenario.schema import flight_table, load, parse_settings
 BOOT = FswBoot(0, 1, 2).encode()
 
 
-class ScriptedBus:
-    """Answers each SYNC as it is told to; frames wait in a queue, as on a bus."""
-
-    name = "scripted"
-
-    def __init__(self, answer, first=(BOOT,)):
-        self.answer = answer
-        self.queue = deque(first)
-        self.sent = []
-
-    def send(self, frames):
-        for frame in frames:
-            self.sent.append(frame)
-            if frame.can_id == Sync.ID:
-                self.queue.extend(self.answer(Sync.decode(frame.data).tick))
-
-    def receive(self, timeout_s):
-        if self.queue:
-            return self.queue.popleft()
-        time.sleep(timeout_s)
-        return None
-
-    def close(self):
-        pass
-
-
 def done(tick):
     return TickDone(tick, 7).encode()
+
+
+@pytest.fixture
+def scripted(bus_of):
+    """Makes a bus that answers each SYNC as it is told to, after what waits on it at first."""
+    return lambda answer, first=(BOOT,): bus_of(first, answer=answer)
 
 
 @pytest.fixture
@@ -93,7 +70,7 @@ def virtual():
 
 
 class TestLockstep:
-    def test_sync_is_sent_again_to_a_flight_software_that_is_silent(self, flown, monkeypatch):
+    def test_sync_is_sent_again_to_a_flight_software_that_is_silent(self, flown, monkeypatch, scripted):
         """As one that a forged SYNC has led astray, which believes the second."""
         monkeypatch.setattr(answers, "REPEAT_SYNC_S", 0.01)
         asked = []
@@ -102,7 +79,7 @@ class TestLockstep:
             asked.append(tick)
             return [done(tick)] if asked.count(tick) == 2 else []
 
-        result, entries, *_ = flown(ScriptedBus(second_time), 5)
+        result, entries, *_ = flown(scripted(second_time), 5)
         assert result.slips == 0
         assert asked == [0, 0, 1, 1, 2, 2, 3, 3, 4, 4]
         logged = [Sync.decode(e.frame.data).tick for e in entries if e.frame.can_id == Sync.ID]
@@ -158,37 +135,37 @@ class TestLockstep:
                 can_id in (0x080, 0x200, 0x201, 0x202, 0x280, 0x410, 0x610) for can_id in ids[sync + 1 :]
             )
 
-    def test_only_the_answer_that_names_the_tick_releases_it(self, flown):
+    def test_only_the_answer_that_names_the_tick_releases_it(self, flown, scripted):
         """An old TICK_DONE, one of another tick and a shortened one are logged and waited past."""
 
         def answer(tick):
             stale = [done(tick - 1)] if tick else []
             return [*stale, done(tick + 1), done(tick)._replace(data=b"\x01"), done(tick)]
 
-        result, entries, *_ = flown(ScriptedBus(answer), 5)
+        result, entries, *_ = flown(scripted(answer), 5)
         assert result.ticks == 5
         assert sum(entry.frame.can_id == TickDone.ID for entry in entries) == 4 * 5 - 1
 
-    def test_without_an_answer_it_ends_with_a_sentence_and_exit_code_1(self, flown, monkeypatch):
+    def test_without_an_answer_it_ends_with_a_sentence_and_exit_code_1(self, flown, monkeypatch, scripted):
         monkeypatch.setattr(answers, "ANSWER_TIMEOUT_S", 0.0)
         with pytest.raises(
             FlightError, match="no answer from the flight software to tick 3 within"
         ) as caught:
-            flown(ScriptedBus(lambda tick: [done(tick)] if tick < 3 else []))
+            flown(scripted(lambda tick: [done(tick)] if tick < 3 else []))
         assert caught.value.exit_code == 1
 
-    def test_what_was_flown_by_then_is_kept(self, flown, monkeypatch, tmp_path):
+    def test_what_was_flown_by_then_is_kept(self, flown, monkeypatch, tmp_path, scripted):
         monkeypatch.setattr(answers, "ANSWER_TIMEOUT_S", 0.0)
         with pytest.raises(FlightError):
-            flown(ScriptedBus(lambda tick: [done(tick)] if tick < 3 else []))
+            flown(scripted(lambda tick: [done(tick)] if tick < 3 else []))
         assert len(read_truth(tmp_path / "truth.h5")["t_s"]) == 3
         entries = list(read_log(tmp_path / "bus.log"))
         assert TickDone.decode(entries[-1].frame.data).tick == 2
 
-    def test_requests_reach_the_board(self, flown):
+    def test_requests_reach_the_board(self, flown, scripted):
         """A request in answer to tick 100 is driven from then on, and shows in the truth."""
         fire = CoilFire(2, 1, 1, 100, 3000).encode()
-        _, _, truth, _ = flown(ScriptedBus(lambda tick: [fire] * (tick == 100) + [done(tick)]), 110)
+        _, _, truth, _ = flown(scripted(lambda tick: [fire] * (tick == 100) + [done(tick)]), 110)
         driven = [tick for tick, dipole in enumerate(truth["m_body_am2"][:, 1]) if dipole > 1.0]
         assert driven == [101, 102, 103]
 
@@ -199,16 +176,16 @@ class TestLockstep:
 
 
 class TestBoot:
-    def test_waits_for_an_intact_fsw_boot_and_drops_what_comes_before(self, flown):
+    def test_waits_for_an_intact_fsw_boot_and_drops_what_comes_before(self, flown, scripted):
         broken = BOOT._replace(data=BOOT.data[:-1] + b"\0")
-        bus = ScriptedBus(lambda tick: [done(tick)], first=(done(9), broken, BOOT))
+        bus = scripted(lambda tick: [done(tick)], first=(done(9), broken, BOOT))
         _, entries, *_ = flown(bus, 3)
         assert entries[0].frame == BOOT
         assert [e.frame.can_id for e in entries].count(TickDone.ID) == 3
 
-    def test_asks_again_until_it_is_answered(self, flown, monkeypatch):
+    def test_asks_again_until_it_is_answered(self, flown, monkeypatch, scripted):
         monkeypatch.setattr(answers, "BOOT_REQUEST_S", 0.01)
-        bus = ScriptedBus(lambda tick: [done(tick)], first=())
+        bus = scripted(lambda tick: [done(tick)], first=())
         receive = bus.receive
 
         def late(timeout_s):
@@ -226,8 +203,8 @@ class TestRealTime:
     FAST = Pace(200.0)
     """5 ms a tick."""
 
-    def test_keeps_to_absolute_deadlines(self, flown):
-        result, *_ = flown(ScriptedBus(lambda tick: [done(tick)]), 40, self.FAST)
+    def test_keeps_to_absolute_deadlines(self, flown, scripted):
+        result, *_ = flown(scripted(lambda tick: [done(tick)]), 40, self.FAST)
         assert (result.ticks, result.slips) == (40, 0)
         assert 40 / 200.0 <= result.wall_s < 5.0
 
@@ -236,17 +213,17 @@ class TestRealTime:
         assert result.slips == 0
         assert result.wall_s >= 40 / 200.0
 
-    def test_a_missing_answer_is_a_counted_slip_and_never_a_wait(self, flown):
+    def test_a_missing_answer_is_a_counted_slip_and_never_a_wait(self, flown, scripted):
         result, entries, *_ = flown(
-            ScriptedBus(lambda tick: [] if tick in (3, 4, 9) else [done(tick)]), 20, self.FAST
+            scripted(lambda tick: [] if tick in (3, 4, 9) else [done(tick)]), 20, self.FAST
         )
         assert (result.ticks, result.slips) == (20, 3)
         assert [Sync.decode(e.frame.data).tick for e in entries if e.frame.can_id == Sync.ID] == list(
             range(20)
         )
 
-    def test_late_answers_to_the_last_tick_still_reach_the_log(self, flown, monkeypatch):
-        bus = ScriptedBus(lambda tick: [] if tick == 19 else [done(tick)])
+    def test_late_answers_to_the_last_tick_still_reach_the_log(self, flown, monkeypatch, scripted):
+        bus = scripted(lambda tick: [] if tick == 19 else [done(tick)])
         receive = bus.receive
 
         def slow(timeout_s):
@@ -260,7 +237,7 @@ class TestRealTime:
         assert result.slips == 1
         assert TickDone.decode(entries[-2].frame.data).tick == 19
 
-    def test_a_late_answer_is_logged_when_it_comes_and_counted_as_a_slip(self, flown):
+    def test_a_late_answer_is_logged_when_it_comes_and_counted_as_a_slip(self, flown, scripted):
         rate = NavRate(1, 0.01, 0.0, 0.0).encode()
 
         def answer(tick):
@@ -268,17 +245,15 @@ class TestRealTime:
                 return []
             return [rate, done(5), done(6)] if tick == 6 else [done(tick)]
 
-        result, entries, *_ = flown(ScriptedBus(answer), 10, self.FAST)
+        result, entries, *_ = flown(scripted(answer), 10, self.FAST)
         assert result.slips == 1
         order = [e.frame for e in entries if e.frame.can_id in (Sync.ID, NavRate.ID, TickDone.ID)]
         at = order.index(rate)
         assert Sync.decode(order[at - 1].data).tick == 6
         assert [TickDone.decode(frame.data).tick for frame in order[at + 1 : at + 3]] == [5, 6]
 
-    def test_slips_are_told_in_the_plant_s_heartbeat(self, flown):
-        _, entries, *_ = flown(
-            ScriptedBus(lambda tick: [] if tick in (3, 4) else [done(tick)]), 62, Pace(500.0)
-        )
+    def test_slips_are_told_in_the_plant_s_heartbeat(self, flown, scripted):
+        _, entries, *_ = flown(scripted(lambda tick: [] if tick in (3, 4) else [done(tick)]), 62, Pace(500.0))
         (beat,) = [e.frame for e in entries if e.frame.can_id == PlantHeartbeat.ID]
         assert PlantHeartbeat.decode(beat.data).slips >= 2
 
@@ -297,12 +272,3 @@ class TestVirtualBus:
         while (frame := bus.receive(0.0)) is not None:
             answers.append(frame)
         assert TickDone.decode(answers[-1].data).tick == 0
-
-
-def test_the_log_is_there_a_tick_at_a_time(tmp_path):
-    """Each write is on disk when it returns: who reads then finds whole lines."""
-    with BusLog(tmp_path / "bus.log", "vcan0") as log:
-        for tick in range(5):
-            log.write(1_000_000 * tick, [done(tick), BOOT])
-            assert [e.timestamp_us for e in read_log(tmp_path / "bus.log")][-1] == 1_000_000 * tick
-            assert (tmp_path / "bus.log").read_bytes().count(b"\n") == 2 * (tick + 1)

@@ -1,0 +1,95 @@
+"""How long a flight is, whether it can be flown, and what a recorded one leaves in its run directory."""
+
+import hashlib
+import json
+from math import inf, nan
+
+import pytest
+
+from fsw.input.schema import TableError
+from fsw.wire.frame import Frame
+from fsw.wire.messages import FswBoot, TickDone
+from sim.errors import FlightError, HarnessError
+from sim.flight import answers
+from sim.flight.recorded import MOST_TICKS, check_flyable, check_plant, record, ticks_of
+from sim.record import run_dir
+from sim.record.candump import read_log
+from sim.record.pace import LOCKSTEP
+from sim.record.truth import read_truth
+from sim.scenario.schema import load, orbit_period_s, parse_settings
+
+TICKS = 5
+BOOT = FswBoot(0, 1, 2).encode()
+
+
+class TestLength:
+    @pytest.mark.parametrize("tick_hz", [1, 3])
+    def test_is_a_whole_number_of_ticks(self, tick_hz):
+        scenario = load("microsat", parse_settings((f"time.tick_hz={tick_hz}",)))
+        period_ticks = orbit_period_s(scenario) * tick_hz
+        assert ticks_of(scenario, 2.0) == round(2.0 * period_ticks)
+        assert ticks_of(scenario, None) == round(scenario.time.orbits * period_ticks)
+
+    def test_is_at_least_one_tick(self):
+        assert ticks_of(load("microsat"), 1e-9) == 1
+
+    @pytest.mark.parametrize("orbits", [1e5, inf, nan])
+    def test_has_a_limit(self, orbits):
+        with pytest.raises(HarnessError, match=rf"--orbits {orbits:g}: a run has at most {MOST_TICKS} ticks"):
+            ticks_of(load("microsat"), orbits)
+
+    def test_of_a_scenario_names_its_key(self):
+        with pytest.raises(HarnessError, match=r"^time\.orbits=90000: a run has at most"):
+            ticks_of(load("microsat", parse_settings(("time.orbits=90000",))), None)
+
+
+def test_what_the_flight_software_cannot_fly_is_refused_before_the_run_begins():
+    """A pulse below a tick: the plant alone could fly it."""
+    scenario = load("microsat", parse_settings(("coils.pulse_s=0.1",)))
+    with pytest.raises(TableError):
+        check_flyable(scenario, 1)
+    check_plant(scenario, 1)
+
+
+class TestRecord:
+    @pytest.fixture
+    def run(self, tmp_path):
+        """A run directory that has been begun, and its scenario."""
+        scenario = load("microsat")
+        run_dir.begin(tmp_path / "run", scenario, 3, TICKS, "scripted", LOCKSTEP)
+        return tmp_path / "run", scenario
+
+    def test_leaves_log_histories_and_what_was_flown(self, run, bus_of):
+        path, scenario = run
+        bus = bus_of([BOOT], answer=lambda tick: [TickDone(tick, 7).encode()])
+        record(path, scenario, bus)
+        log = path / "bus.log"
+        kept = json.loads((path / "run.json").read_text())
+        assert (kept["flown"]["ticks"], kept["flown"]["slips"]) == (TICKS, 0)
+        assert kept["digests"]["bus.log"] == hashlib.sha256(log.read_bytes()).hexdigest()
+        assert "second_senders" not in kept or kept["second_senders"] == []
+        assert len(read_truth(path / "truth.h5")["t_s"]) == TICKS
+        assert bus.closed
+
+    def test_names_a_second_sender(self, run, bus_of):
+        path, scenario = run
+        foreign = TickDone(4000, 7).encode()
+        answer = {2: [foreign]}
+        record(
+            path,
+            scenario,
+            bus_of([BOOT], answer=lambda tick: [*answer.get(tick, []), TickDone(tick, 7).encode()]),
+        )
+        (sender,) = json.loads((path / "run.json").read_text())["second_senders"]
+        assert sender["message"] == "TICK_DONE"
+
+    def test_keeps_what_was_flown_before_the_answers_stopped(self, run, bus_of, monkeypatch):
+        path, scenario = run
+        monkeypatch.setattr(answers, "ANSWER_TIMEOUT_S", 0.0)
+        noise = Frame(0x7FF, b"")
+        bus = bus_of([BOOT], answer=lambda tick: [noise, TickDone(tick, 7).encode()] if tick < 3 else [])
+        with pytest.raises(FlightError, match="to tick 3"):
+            record(path, scenario, bus)
+        assert bus.closed
+        assert TickDone.decode(list(read_log(path / "bus.log"))[-1].frame.data).tick == 2
+        assert "flown" not in json.loads((path / "run.json").read_text())
