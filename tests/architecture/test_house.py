@@ -38,3 +38,29 @@ def test_no_folder_has_too_many_modules(folder):
 @pytest.mark.parametrize("folder", FOLDERS, ids=relative)
 def test_every_folder_says_what_it_is_for(folder):
     assert ast.get_docstring(ast.parse((folder / "__init__.py").read_text()))
+
+
+# --- tests mirror the packages
+
+TEST_FOLDERS = sorted(
+    {path.parent for package in PACKAGES for path in (ROOT / "tests" / package).rglob("test_*.py")}
+)
+
+
+def mirrored(path):
+    """The path in a package whose tests are at ``path``."""
+    return ROOT / path.relative_to(ROOT / "tests")
+
+
+@pytest.mark.parametrize("folder", TEST_FOLDERS, ids=relative)
+def test_every_folder_of_tests_is_a_package(folder):
+    assert (mirrored(folder) / "__init__.py").exists()
+
+
+@pytest.mark.parametrize(
+    "path", [path for folder in TEST_FOLDERS for path in sorted(folder.glob("test_*.py"))], ids=relative
+)
+def test_every_test_is_of_a_module_or_says_what_it_specifies(path):
+    name = path.stem.removeprefix("test_")
+    modules = (mirrored(path.parent) / f"{stem}.py" for stem in (name, f"__{name}__"))
+    assert any(module.exists() for module in modules) or ast.get_docstring(ast.parse(path.read_text()))
