@@ -1,1 +1,1 @@
-"""The bus contract: frames, messages, CRC. The only part of fsw that other packages import."""
+"""The bus contract: frames, messages and their CRC."""
