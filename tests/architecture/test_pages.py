@@ -1,0 +1,41 @@
+"""The pages: files, links and commands that they name exist."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from torquer.cli.main import main
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
+TREES = ("fsw/", "hil_stub/", "sim/", "torquer/", "tests/", "tools/", "docs/", "examples/")
+
+
+def each(pattern):
+    """Page and match, for every match on a page."""
+    return [
+        pytest.param(page, found, id=f"{page.name}:{found}")
+        for page in PAGES
+        for found in sorted(set(re.findall(pattern, page.read_text(encoding="utf-8"))))
+    ]
+
+
+@pytest.mark.parametrize(("page", "path"), each(rf"`((?:{'|'.join(TREES)})[\w./-]*)"))
+def test_a_file_that_a_page_names_exists(page, path):
+    assert (ROOT / path).exists()
+
+
+@pytest.mark.parametrize(("page", "target"), each(r"\]\(([^)#:]+)(?:#[^)]*)?\)"))
+def test_a_link_leads_to_a_file(page, target):
+    assert (page.parent / target).exists()
+
+
+@pytest.mark.parametrize(("page", "command"), each(r"(?m)(?:^|[`$] ?|&& )torquer ([a-z]+)\b"))
+def test_a_command_that_a_page_names_exists(page, command):
+    assert command in main.commands
+
+
+@pytest.mark.parametrize(("page", "target"), each(r"`make ([a-z-]+)"))
+def test_a_make_target_that_a_page_names_exists(page, target):
+    assert re.search(rf"(?m)^{target}:", (ROOT / "Makefile").read_text(encoding="utf-8"))
