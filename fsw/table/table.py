@@ -7,13 +7,11 @@ of ``fsw/flight.toml``.
 import json
 import tomllib
 import zlib
-from datetime import UTC, datetime
-from decimal import Decimal
 from importlib import resources
-from math import ceil
 from pathlib import Path
 from typing import Literal
 
+from fsw.core.orbit.tle import tle_epoch_unix_s
 from fsw.input.schema import (
     Nested,
     Section,
@@ -72,15 +70,8 @@ def epoch_unix_s(time: TimeTable, orbit: OrbitTable) -> int:
     if time.epoch_utc is not None:
         return parse_utc(time.epoch_utc)
     if orbit.tle is not None:
-        return tle_epoch_unix_s(orbit.tle[0])
+        return tle_epoch_unix_s(*orbit.tle)
     return parse_utc(DEFAULT_EPOCH_UTC)
-
-
-def tle_epoch_unix_s(line1: str) -> int:
-    """The epoch in the first line of a TLE (year and day in columns 19 to 32), rounded up to a second."""
-    year, day = int(line1[18:20]), Decimal(line1[20:32])
-    january = datetime(year + (1900 if year >= 57 else 2000), 1, 1, tzinfo=UTC)
-    return int(january.timestamp()) + ceil((day - 1) * 86400)
 
 
 def default_values() -> Nested:

@@ -2,6 +2,7 @@
 
 from math import pi
 
+from fsw.core.orbit.tle import tle_elements
 from sim.design.theory.bodies import EARTH_RADIUS_KM, MU_M3PS2, Body
 from sim.design.theory.pulsed import Pulsing
 from sim.scenario.schema import Scenario, orbit_period_s
@@ -10,7 +11,7 @@ from sim.scenario.schema import Scenario, orbit_period_s
 def body_of(scenario: Scenario) -> Body:
     """The body; of a TLE, the circle with its mean motion and inclination."""
     orbit = scenario.orbit
-    inclination_deg = orbit.inclination_deg if orbit.tle is None else float(orbit.tle[1][8:16])
+    inclination_deg = orbit.inclination_deg if orbit.tle is None else tle_elements(*orbit.tle).inclination_deg
     radius_m = (MU_M3PS2 * (orbit_period_s(scenario) / (2.0 * pi)) ** 2) ** (1.0 / 3.0)
     altitude_km = orbit.altitude_km if orbit.altitude_km is not None else radius_m / 1e3 - EARTH_RADIUS_KM
     return Body(scenario.name, scenario.body.inertia, altitude_km, inclination_deg, scenario.body.wheel_nms)

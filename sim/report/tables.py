@@ -8,6 +8,7 @@ from typing import Any
 import tomli_w
 
 from fsw.core.events import Event
+from fsw.core.orbit.tle import read_tle, tle_elements
 from fsw.wire.messages import Mode, Severity
 from sim.audit.auditor import AuditReport
 from sim.audit.findings import COILS, seconds_text
@@ -240,9 +241,8 @@ def _orbit(scenario: Scenario) -> str:
     orbit = scenario.orbit
     period = f"{orbit_period_s(scenario) / 60.0:.1f} min"
     if orbit.tle is not None:
-        return (
-            f"elements of {orbit.tle[0][2:7].strip()}, inclination {float(orbit.tle[1][8:16]):.2f}°, {period}"
-        )
+        satellite, elements = read_tle(*orbit.tle).satnum_str.strip(), tle_elements(*orbit.tle)
+        return f"elements of {satellite}, inclination {elements.inclination_deg:.2f}°, {period}"
     return f"circular, {orbit.altitude_km:g} km, inclination {orbit.inclination_deg:g}°, {period}"
 
 

@@ -14,6 +14,7 @@ from typing import Any, Literal, Self
 
 from pydantic import Field, model_validator
 
+from fsw.core.orbit.tle import tle_elements
 from fsw.input.schema import Nested, Positive, Section, TableError, Triple, merge, read_toml, validated
 from fsw.input.toml_text import MOST_LEVELS, BoundsError, parse_toml
 from fsw.table import table as onboard
@@ -120,7 +121,7 @@ class Scenario(Section):
 def orbit_period_s(scenario: Scenario) -> float:
     """The period of the scenario's orbit: from the mean motion of the TLE, or of the circle."""
     if scenario.orbit.tle is not None:
-        return 86400.0 / float(scenario.orbit.tle[1][52:63])
+        return 86400.0 / tle_elements(*scenario.orbit.tle).motion_revpday
     radius_m = 6378137.0 + 1000.0 * (scenario.orbit.altitude_km or 0.0)
     return 2.0 * pi * sqrt(radius_m**3 / MU_M3PS2)
 

@@ -6,7 +6,6 @@ not those that the flight software accepts: a scenario may show a refusal.
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from datetime import date
 from decimal import Decimal
 from math import ceil
 from typing import Annotated, Literal
@@ -15,6 +14,7 @@ from pydantic import Field, Strict, field_validator
 
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit.propagation import sgp4_orbit
+from fsw.core.orbit.tle import tle_elements
 from fsw.input.schema import Section
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
@@ -179,21 +179,13 @@ def digits_of(value: Decimal) -> tuple[int, int]:
 
 
 def elements_of(line1: str, line2: str) -> dict[Element, Decimal]:
-    """The numbers of a two-line element set, digit by digit."""
-    year, day = int(line1[18:20]), Decimal(line1[20:32])
-    january = date(year + (1900 if year >= 57 else 2000), 1, 1) - date(1970, 1, 1)
-    bstar = Decimal(f"{line1[53]}0.{line1[54:59]}e{line1[59:61]}".strip())
-    return {
-        Element.EPOCH_DAY: Decimal(january.days + int(day) - 1),
-        Element.EPOCH_FRACTION: day % 1,
-        Element.INCLINATION_DEG: Decimal(line2[8:16].strip()),
-        Element.RAAN_DEG: Decimal(line2[17:25].strip()),
-        Element.ECCENTRICITY: Decimal(f"0.{line2[26:33]}"),
-        Element.PERIGEE_DEG: Decimal(line2[34:42].strip()),
-        Element.ANOMALY_DEG: Decimal(line2[43:51].strip()),
-        Element.MOTION_REVPDAY: Decimal(line2[52:63].strip()),
-        Element.BSTAR: bstar,
-    }
+    """The numbers of a two-line element set, digit by digit.
+
+    Raises:
+        ValueError: the lines are no element set.
+    """
+    numbers = (Decimal(repr(number)) for number in tle_elements(line1, line2))
+    return dict(zip(Element, numbers, strict=True))
 
 
 def _element(element: Element, value: Decimal) -> CountedMessage:

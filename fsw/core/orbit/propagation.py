@@ -1,6 +1,5 @@
 """The orbit: SGP4 on a two-line element set or on elements from the ground, or a circular Kepler orbit."""
 
-import re
 from dataclasses import dataclass, field
 from math import cos, isfinite, pi, radians, sin, sqrt
 from typing import Any
@@ -10,33 +9,16 @@ from sgp4.api import SGP4_ERRORS, WGS72, Satrec
 from fsw.core.algebra.vector import Vec3
 from fsw.core.orbit.earth import MU_M3PS2, RADIUS_M
 from fsw.core.orbit.elements import Elements
+from fsw.core.orbit.tle import DAY_MIN, DAY_S, UNIX_EPOCH_JD, read_tle
 
 State = tuple[Vec3, Vec3]
 """Position (m) and velocity (m/s), both in eci."""
 
-_UNIX_EPOCH_JD = 2440587.5
-_DAY_S = 86400.0
 _SGP4_EPOCH_DAY = -7306.0
 """1949-12-31 in days since 1970-01-01."""
-_DAY_MIN = 1440.0
 
 MAX_KM = 50_000.0
 """Far beyond any orbit of less than 225 minutes, where SGP4 goes without an error weeks past a decay."""
-
-_SATELLITE = r"[ 0-9A-Z][ 0-9]{4}"
-_ANGLE = r"(?:[0-9]{3}| [0-9]{2}|  [0-9])\.[0-9]{4}"
-_EXPONENTIAL = r"[ +-][0-9]{5}[+-][0-9]"
-_COUNT = r" *[0-9]+"
-_FORMAT = {
-    "1": re.compile(
-        rf"(?=.{{69}}$)1 {_SATELLITE}[A-Z] [ 0-9A-Z]{{8}} [0-9]{{5}}\.[0-9]{{8}} [ +-]\.[0-9]{{8}}"
-        rf" {_EXPONENTIAL} {_EXPONENTIAL} [ 0-9] {_COUNT}"
-    ),
-    "2": re.compile(
-        rf"(?=.{{69}}$)2 {_SATELLITE} {_ANGLE} {_ANGLE} [0-9]{{7}} {_ANGLE} {_ANGLE}"
-        rf" (?:[0-9]{{2}}| [0-9])\.[0-9]{{8}}{_COUNT}"
-    ),
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,14 +60,9 @@ def sgp4_orbit(line1: str, line2: str) -> Sgp4Orbit:
         ValueError: a line is malformed or its checksum wrong, the lines are of two satellites, SGP4 refuses
             the elements, or they are of a deep-space orbit, whose propagator remembers earlier calls.
     """
-    line1, line2 = line1.rstrip(), line2.rstrip()
-    _check_line(line1, "1")
-    _check_line(line2, "2")
-    if line1[2:7] != line2[2:7]:
-        raise ValueError(f"the element lines are of two satellites, {line1[2:7]} and {line2[2:7]}")
-    satellite = Satrec.twoline2rv(line1, line2)
-    _check_propagator(satellite, line1[2:7])
-    return Sgp4Orbit(line1, line2, satellite)
+    satellite = read_tle(line1, line2)
+    _check_propagator(satellite, satellite.satnum_str)
+    return Sgp4Orbit(line1.rstrip(), line2.rstrip(), satellite)
 
 
 def element_orbit(elements: Elements) -> ElementOrbit:
@@ -107,7 +84,7 @@ def element_orbit(elements: Elements) -> ElementOrbit:
         radians(elements.perigee_deg),
         radians(elements.inclination_deg),
         radians(elements.anomaly_deg),
-        elements.motion_revpday * 2.0 * pi / _DAY_MIN,
+        elements.motion_revpday * 2.0 * pi / DAY_MIN,
         radians(elements.raan_deg),
     )
     _check_propagator(satellite, "the ground")
@@ -122,14 +99,6 @@ def _check_propagator(satellite: Any, name: str) -> None:  # noqa: ANN401  (of a
         raise ValueError(f"SGP4 refuses the elements of {name}: {SGP4_ERRORS[error]}")
     if satellite.method != "n":
         raise ValueError(f"{name} takes 225 minutes or more an orbit: the field is for low orbits")
-
-
-def _check_line(line: str, number: str) -> None:
-    if not _FORMAT[number].fullmatch(line):
-        raise ValueError(f"element line {number} is not in the two-line format: {line!r}")
-    checksum = sum(int(c) if c.isdigit() else c == "-" for c in line[:68]) % 10
-    if checksum != int(line[68]):
-        raise ValueError(f"element line {number} has checksum {line[68]} but adds up to {checksum}: {line!r}")
 
 
 def circular_orbit(
@@ -160,8 +129,8 @@ def state_eci(orbit: Orbit, unix_s: float) -> State | None:
     """Position (m) and velocity (m/s) in eci, or None where SGP4 has no sane answer (a decayed orbit)."""
     if isinstance(orbit, CircularOrbit):
         return _circular_state(orbit, unix_s)
-    days, seconds = divmod(unix_s, _DAY_S)
-    error, r_km, v_kmps = orbit.satellite.sgp4(_UNIX_EPOCH_JD + days, seconds / _DAY_S)
+    days, seconds = divmod(unix_s, DAY_S)
+    error, r_km, v_kmps = orbit.satellite.sgp4(UNIX_EPOCH_JD + days, seconds / DAY_S)
     if error or not max(map(abs, r_km)) < MAX_KM:
         return None
     return (

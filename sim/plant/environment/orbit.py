@@ -85,18 +85,6 @@ def make_orbit(config: OrbitConfig, epoch_unix_s: int) -> Orbit:
     return Sgp4Orbit(config.tle, epoch_unix_s)
 
 
-def tle_epoch_unix_s(tle: tuple[str, str]) -> int:
-    """The epoch of the elements, UTC, rounded up to a whole second.
-
-    Raises:
-        ValueError: a line is malformed or its checksum is wrong.
-    """
-    satellite = _satellite(tle)
-    day_s: int = round((satellite.jdsatepoch - UNIX_EPOCH_JD) * DAY_S)
-    parts: int = round(satellite.jdsatepochF * 1e8)  # the elements give the day to eight decimals: exact
-    return day_s - (-parts * DAY_S // 10**8)
-
-
 def _satellite(tle: tuple[str, str]) -> Satrec:
     for number, line in enumerate(tle, start=1):
         if len(line) != 69 or not line.startswith(f"{number} "):

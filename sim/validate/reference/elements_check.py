@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 
 from fsw.core.orbit.propagation import sgp4_orbit, state_eci
+from fsw.core.orbit.tle import read_tle, tle_elements, tle_epoch_unix_s
 from sim.campaign.claim import Claim, Outcome
 from sim.errors import HarnessError
-from sim.plant.environment.orbit import Sgp4Orbit, tle_epoch_unix_s
+from sim.plant.environment.orbit import Sgp4Orbit
 from sim.validate.reference.reference_table import read_lines
 
 POSITION_M = 1e-3
@@ -28,6 +29,11 @@ class Elements:
     lines: tuple[str, str]
     line: int
 
+    @property
+    def title(self) -> str:
+        """The name, or the number of the satellite where the file gives none."""
+        return self.name or str(read_tle(*self.lines).satnum_str)
+
 
 def check(path: Path) -> Iterator[Outcome]:
     """Compare position and velocity over a day from each epoch.
@@ -39,7 +45,7 @@ def check(path: Path) -> Iterator[Outcome]:
     if not found:
         raise HarnessError(f"{path}: no elements of an orbit under 225 minutes")
     apart = [_apart(path, elements) for elements in found]
-    names = [f"{path.name} line {elements.line} ({elements.name})" for elements in found]
+    names = [f"{path.name} line {elements.line} ({elements.title})" for elements in found]
     rows = (
         ("position", "Onboard SGP4 position against the plant's, one day", "m", POSITION_M),
         ("velocity", "Onboard SGP4 velocity against the plant's, one day", "m/s", VELOCITY_MPS),
@@ -70,7 +76,7 @@ def read_elements(path: Path) -> list[Elements]:
             continue
         if not lines or not lines[0][1].startswith("2 "):
             raise HarnessError(f"{path}, line {number}: element line 2 does not follow")
-        found.append(Elements(name or line[2:7], (line, lines.pop(0)[1]), number))
+        found.append(Elements(name, (line, lines.pop(0)[1]), number))
         name = ""
     if name:
         raise HarnessError(f"{path}, line {number}: no elements follow the name {name}")
@@ -79,18 +85,16 @@ def read_elements(path: Path) -> list[Elements]:
 
 def _slow(path: Path, elements: Elements) -> bool:
     try:
-        return float(elements.lines[1][52:63]) < SLOWEST_REVOLUTIONS_A_DAY
-    except ValueError:
-        raise HarnessError(
-            f"{path}, line {elements.line + 1}, column 53: no mean motion in element line 2"
-        ) from None
+        return tle_elements(*elements.lines).motion_revpday < SLOWEST_REVOLUTIONS_A_DAY
+    except ValueError as error:
+        raise HarnessError(f"{path}, line {elements.line}: {error}") from None
 
 
 def _apart(path: Path, elements: Elements) -> tuple[float, float]:
     """Largest distances of position [m] and velocity [m/s]."""
     try:
         onboard = sgp4_orbit(*elements.lines)
-        epoch_unix_s = tle_epoch_unix_s(elements.lines)
+        epoch_unix_s = tle_epoch_unix_s(*elements.lines)
         plant = Sgp4Orbit(elements.lines, epoch_unix_s)
         times = np.arange(0.0, SPAN_S + STEP_S, STEP_S)
         r_m, v_mps = plant.at(times)
@@ -99,7 +103,7 @@ def _apart(path: Path, elements: Elements) -> tuple[float, float]:
     states = [state_eci(onboard, epoch_unix_s + t) for t in times.tolist()]
     if any(state is None for state in states):
         raise HarnessError(
-            f"{path}, line {elements.line}: the onboard orbit of {elements.name} ends within a day"
+            f"{path}, line {elements.line}: the onboard orbit of {elements.title} ends within a day"
         )
     ours = np.array(states)
     distances = np.linalg.norm(ours - np.stack([r_m, v_mps], axis=1), axis=2).max(axis=0)

@@ -16,7 +16,6 @@ from fsw.table.table import (
     flight_table,
     lay_over,
     load_flight_table,
-    tle_epoch_unix_s,
 )
 
 TLE = (
@@ -231,24 +230,6 @@ class TestOrbit:
 class TestEpoch:
     def unix(self, *moment):
         return int(datetime(*moment, tzinfo=UTC).timestamp())
-
-    @pytest.mark.parametrize(
-        ("day", "moment"),
-        [
-            ("15086.11593543", (2015, 3, 27, 2, 46, 57)),  # 02:46:56.82
-            ("15086.00000000", (2015, 3, 27, 0, 0, 0)),  # a whole second is not rounded
-            ("15086.00000001", (2015, 3, 27, 0, 0, 1)),  # 0.9 ms
-            ("15086.50000000", (2015, 3, 27, 12, 0, 0)),
-            ("24001.00000000", (2024, 1, 1, 0, 0, 0)),
-            ("24366.99999999", (2025, 1, 1, 0, 0, 0)),  # into the next year
-            ("57001.00000000", (1957, 1, 1, 0, 0, 0)),
-            ("56001.00000000", (2056, 1, 1, 0, 0, 0)),
-            ("99365.25000000", (1999, 12, 31, 6, 0, 0)),
-        ],
-    )
-    def test_of_elements_is_rounded_up_to_a_whole_second(self, day, moment):
-        line = TLE[0][:18] + day + TLE[0][32:]
-        assert tle_epoch_unix_s(line) == self.unix(*moment)
 
     def test_is_the_elements_unless_it_is_named(self):
         assert flight_table({}, "x").epoch_unix_s == self.unix(2015, 3, 27, 2, 46, 57)

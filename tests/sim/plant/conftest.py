@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
+from fsw.core.orbit.tle import tle_epoch_unix_s
 from hil_stub.coils.coil_driver import CoilLimits
 from sim.plant.config import (
     BodyConfig,
@@ -20,7 +21,6 @@ from sim.plant.config import (
     PlantConfig,
     SunSensorConfig,
 )
-from sim.plant.environment.orbit import tle_epoch_unix_s
 from sim.plant.plant import Plant
 from sim.plant.rotation import from_vector
 
@@ -74,7 +74,7 @@ def make_config(itamsat):
     def make(tick_hz=1, pulse_ms=3000, backoff_ms=4000, **parts):
         inertia = ((1.02, 0.03, -0.02), (0.03, 1.85, 0.05), (-0.02, 0.05, 1.95))
         defaults = {
-            "epoch_unix_s": tle_epoch_unix_s(itamsat),
+            "epoch_unix_s": tle_epoch_unix_s(*itamsat),
             "tick_hz": tick_hz,
             "seed": 7,
             "orbit": OrbitConfig(tle=itamsat),

@@ -70,50 +70,6 @@ def test_blanks_and_line_ends_after_the_lines_are_forgiven(tle, itamsat):
     assert sgp4_orbit(line1 + "  \r\n", line2 + "\n") == itamsat
 
 
-@pytest.mark.parametrize("index", [0, 1])
-@pytest.mark.parametrize(
-    "spoil",
-    [
-        lambda line: "",
-        lambda line: line[:-1],
-        lambda line: line + "0",
-        lambda line: replaced(line, 1, "3"),
-        lambda line: replaced(line, 21, "x"),
-        lambda line: replaced(line, 30, "\0"),
-        lambda line: replaced(line, 30, "²"),
-        lambda line: replaced(line, 69, "x"),
-    ],
-)
-def test_a_malformed_line_is_refused_by_its_number(tle, spoil, index):
-    lines = list(tle["ITAMSAT"])
-    lines[index] = spoil(lines[index])
-    with pytest.raises(ValueError, match=f"element line {index + 1} is not in the two-line format"):
-        sgp4_orbit(*lines)
-
-
-@pytest.mark.parametrize("index", [0, 1])
-def test_every_digit_is_under_the_checksum(tle, index):
-    lines = tle["ITAMSAT"]
-    for column in range(8, 69):
-        old = lines[index][column - 1]
-        if old.isdigit():
-            spoilt = list(lines)
-            spoilt[index] = replaced(lines[index], column, str((int(old) + 1) % 10))
-            with pytest.raises(ValueError, match=f"element line {index + 1} has checksum"):
-                sgp4_orbit(*spoilt)
-
-
-def test_lines_in_the_wrong_order_are_refused(tle):
-    line1, line2 = tle["ITAMSAT"]
-    with pytest.raises(ValueError, match="element line 1"):
-        sgp4_orbit(line2, line1)
-
-
-def test_lines_of_two_satellites_are_refused(tle):
-    with pytest.raises(ValueError, match="two satellites, 22826 and 14781"):
-        sgp4_orbit(tle["ITAMSAT"][0], tle["UO-11"][1])
-
-
 @pytest.mark.parametrize(
     ("mean_motion", "reason"),
     [("99.00000000", "decayed"), (" 0.00000000", "less than zero"), (" 6.39000000", "225 minutes")],

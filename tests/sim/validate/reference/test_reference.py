@@ -205,7 +205,7 @@ def test_elements_of_slow_orbits_are_left_out(folder):
     path = folder.copy("tle.txt")
     geostationary = (
         "1 25544U 98067A   15086.11593543  .00000000  00000-0  00000-0 0  9991",
-        "2 25544   0.0100  36.4208 0008932 173.8349 186.2944  1.00270000121353",
+        "2 25544   0.0100  36.4208 0008932 173.8349 186.2944  1.00270000121359",
     )
     path.write_text("\n".join(["FAR", *geostationary, path.read_text()]))
     assert {outcome.verdict for outcome in check(folder, "tle.txt")} == {Verdict.PASS}
