@@ -10,6 +10,7 @@ import click
 
 from fsw.input.regular_file import check_regular
 from fsw.input.toml_text import load_toml
+from fsw.wire.candump_line import LONGEST
 from fsw.wire.messages import MagField, SunVector
 from hil_stub.sensors.stimulus import (
     NOTHING,
@@ -26,7 +27,6 @@ from hil_stub.sensors.stimulus import (
 
 PIPE_PATIENCE_S = 1.0
 """How long a sensor waits for what it is shown over stdin; after that it reads nothing."""
-LONGEST_LINE = 256
 
 
 class PipedStimulus:
@@ -116,8 +116,8 @@ def _toml(path: Path) -> dict[str, object]:
         raise StimulusError(f"cannot be read as TOML: {error}") from None
 
 
-def _lines(log: Path) -> Iterator[str]:
+def _lines(log: Path) -> Iterator[bytes]:
     """The lines of a log; what is longer than any frame's comes in pieces, which are none."""
-    with log.open(encoding="ascii", errors="replace") as file:
-        while line := file.readline(LONGEST_LINE):
+    with log.open("rb") as file:
+        while line := file.readline(LONGEST):
             yield line

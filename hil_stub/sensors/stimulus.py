@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable
 from math import ceil, hypot, isfinite
 from typing import NamedTuple
 
-from fsw.wire.frame import Frame
+from fsw.wire.candump_line import LineReader
 from fsw.wire.messages import MagField, SunVector, Sync, intact
 
 Vec3 = tuple[float, float, float]
@@ -32,8 +32,8 @@ def constant(vector: Vec3) -> Stimulus:
     return lambda tick: Reading(vector, True)
 
 
-def recorded(lines: Iterable[str], message: type[MagField] | type[SunVector], scale: float) -> Stimulus:
-    """What the sensor said in a candump log, at the same ticks; nothing where it was silent or broken.
+def recorded(lines: Iterable[bytes], message: type[MagField] | type[SunVector], scale: float) -> Stimulus:
+    """The samples of the sensor in a candump log, at the same ticks; nothing where it was silent or broken.
 
     Args:
         lines: of the log; what is no frame of ours is passed over.
@@ -44,18 +44,18 @@ def recorded(lines: Iterable[str], message: type[MagField] | type[SunVector], sc
         StimulusError: the log holds not one sample of this sensor before a ``SYNC``.
     """
     readings: dict[int, Reading] = {}
-    heard = NOTHING
+    reader, latest = LineReader(), NOTHING
     for line in lines:
-        frame = _frame(line)
-        if frame is None or not intact(frame):
+        logged = reader.read(line)
+        if logged is None or not intact(frame := logged[2]):
             continue
         if frame.can_id == message.ID:
             valid, x, y, z, _ = message.decode(frame.data)
-            heard = Reading(scaled((x, y, z), scale), bool(valid))
+            latest = Reading(scaled((x, y, z), scale), bool(valid))
         elif frame.can_id == Sync.ID:
-            if heard is not NOTHING:
-                readings[Sync.decode(frame.data).tick] = heard
-            heard = NOTHING
+            if latest is not NOTHING:
+                readings[Sync.decode(frame.data).tick] = latest
+            latest = NOTHING
     if not readings:
         raise StimulusError(f"the log holds no {message.__name__} of any tick")
     return lambda tick: readings.get(tick, NOTHING)
@@ -140,13 +140,3 @@ def _reading(value: object, convert: Callable[[Vec3], Vec3], name: str) -> Readi
         return Reading(convert(three_numbers(value)), True)
     except StimulusError as error:
         raise StimulusError(f"{name} {error}, or false for nothing") from None
-
-
-def _frame(line: str) -> Frame | None:
-    """The frame of a line of a candump log; None if there is none."""
-    words = line.split()
-    identifier, mark, data = words[2].partition("#") if len(words) >= 3 else ("", "", "")
-    try:
-        return Frame(int(identifier, 16), bytes.fromhex(data)) if mark else None
-    except ValueError:
-        return None

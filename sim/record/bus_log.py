@@ -6,9 +6,9 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
+from fsw.wire.candump_line import format_line, format_time
 from fsw.wire.frame import Frame
 from sim.errors import FlightError
-from sim.record.candump import format_line, format_time
 from sim.record.log_index import LogIndex
 
 

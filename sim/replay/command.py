@@ -11,6 +11,7 @@ import click
 
 from fsw.bus.open_bus import open_bus
 from fsw.table.config import flight_config
+from fsw.wire.candump_line import format_time
 from fsw.wire.frame import Frame
 from fsw.wire.messages import NAMES, Sync
 from sim.errors import HarnessError
@@ -19,7 +20,7 @@ from sim.flight.answers import answered
 from sim.progress import progress
 from sim.record import run_dir
 from sim.record.binding import Binding, compare
-from sim.record.candump import LogEntry, LogTruncatedError, format_time, read_log
+from sim.record.candump import LogEntry, LogTruncatedError, read_log
 from sim.record.log_index import vouch
 from sim.record.run_record import RunRecord
 from sim.record.signature import PublicKey

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from fsw.bus.open_bus import open_bus
+from fsw.wire.candump_line import format_line, format_time
 from fsw.wire.messages import (
     CLASSES,
     CoilBoot,
@@ -122,7 +123,7 @@ def exchange(bus, tick):
 
 
 def test_a_sensor_shows_a_recorded_run_and_a_script(bus, start, tmp_path):
-    log = [f"(0.0) x {f.can_id:03X}#{f.data.hex()}\n" for f in recorded_frames()]
+    log = [format_line(format_time(0), "vcan0", frame) for frame in recorded_frames()]
     (tmp_path / "bus.log").write_text("".join(log))
     process = start("magnetometer", "--stimulus", str(tmp_path))
     assert hear(bus, 2)[1][:4] == (1, 0.0, 100.0, -200.0)

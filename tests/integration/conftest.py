@@ -12,8 +12,9 @@ from typing import NamedTuple
 import pytest
 
 from fsw.bus.socketcan import interface_is_up
+from fsw.wire.candump_line import format_line, format_time
 from fsw.wire.messages import CLASSES, Sync
-from sim.record.candump import format_line, format_time, read_log
+from sim.record.candump import read_log
 from sim.record.log_index import LogIndex
 from sim.report import conclude
 from torquer.cli.main import main

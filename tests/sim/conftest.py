@@ -11,6 +11,7 @@ import pytest
 
 from fsw.input.schema import merge
 from fsw.table.config import flight_config
+from fsw.wire.candump_line import format_line, format_time
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilBoot, CoilStatus, MagField, PlantEnd, Sync
 from sim.audit.auditor import AuditLimits, AuditReport, audit
@@ -18,7 +19,7 @@ from sim.fault_rig.rig import Rig, prepared
 from sim.fault_table.checks import bounds_of
 from sim.flight import virtual
 from sim.record import run_dir
-from sim.record.candump import LogEntry, format_line, format_time, read_log
+from sim.record.candump import LogEntry, read_log
 from sim.record.pace import Pace
 from sim.scenario.schema import flight_table, load, parse_settings
 

@@ -4,6 +4,7 @@ import os
 
 import pytest
 
+from fsw.wire.candump_line import format_line
 from fsw.wire.messages import CoilBoot, MagField, SunVector, Sync
 from hil_stub.process.stimulus_option import PipedStimulus
 from hil_stub.sensors.stimulus import (
@@ -20,8 +21,7 @@ from hil_stub.sensors.stimulus import (
 
 
 def line(message):
-    can_id, data = message.encode()
-    return f"(1427513417.000000) vcan0 {can_id:03X}#{data.hex().upper()}\n"
+    return format_line("1427513417.000000", "vcan0", message.encode()).encode()
 
 
 def from_nt(vector):
@@ -49,11 +49,11 @@ class TestLog:
 
     def test_broken_frames_and_other_lines_show_nothing(self):
         good = line(MagField(1, 100.0, -200.0, 300.0))
-        broken = good.replace("#", "#F", 1)[:-2] + "\n"
+        broken = good.replace(b"#", b"#F", 1)[:-2] + b"\n"
         log = [
-            "",
-            "no frame at all\n",
-            "(0.0) vcan0 110#R\n",
+            b"",
+            b"no frame at all\n",
+            b"(0.0) vcan0 110#R\n",
             broken,
             line(Sync(0, 0)),
             good,

@@ -6,14 +6,12 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+from fsw.wire.candump_line import MOST_REMEMBERED, format_line, format_time
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame
 from sim.record.candump import (
-    MOST_KNOWN,
     LogEntry,
     LogError,
     LogTruncatedError,
-    format_line,
-    format_time,
     read_log,
 )
 
@@ -59,39 +57,6 @@ def read_in_new_file(content: bytes) -> tuple[list[LogEntry], LogError | None]:
     return entries, None
 
 
-# --- writing
-
-
-def test_a_line_is_what_candump_writes():
-    assert format_line(STAMP, "vcan0", Frame(0x110, bytes.fromhex("133E0014F79838B7"))) == LINE
-
-
-@pytest.mark.parametrize(
-    ("frame", "text"),
-    [
-        (Frame(0x000, b""), "000#"),
-        (Frame(0x7FF, b"\x00\xab"), "7FF#00AB"),
-        (Frame(0x123 | EXTENDED_FLAG, b"\x01"), "00000123#01"),
-        (Frame(0x1FFFFFFF | EXTENDED_FLAG, b""), "1FFFFFFF#"),
-        (Frame(0x123 | REMOTE_FLAG, b""), "123#R"),
-        (Frame(0x123 | EXTENDED_FLAG | REMOTE_FLAG, b""), "00000123#R"),
-        (Frame(0x004 | ERROR_FLAG, bytes(8)), "20000004#0000000000000000"),
-    ],
-)
-def test_identifiers_are_written_and_read_as_their_kind_demands(read, frame, text):
-    line = format_line(STAMP, "can1", frame)
-    assert line == f"({STAMP}) can1 {text}\n"
-    assert read(line) == [LogEntry(1, TIME_US, "can1", frame)]
-
-
-@pytest.mark.parametrize(
-    ("timestamp_us", "text"),
-    [(0, "0000000000.000000"), (1_500_000, "0000000001.500000"), (TIME_US + 1, "1427513417.000001")],
-)
-def test_times_have_ten_digits_and_six_decimals(timestamp_us, text):
-    assert format_time(timestamp_us) == text
-
-
 @given(st.lists(st.tuples(st.integers(0, 10**16), any_frame), min_size=1, max_size=20))
 def test_what_is_written_is_read_back(rows):
     text = "".join(format_line(format_time(time_us), "vcan0", frame) for time_us, frame in rows)
@@ -101,28 +66,7 @@ def test_what_is_written_is_read_back(rows):
     assert [entry.line for entry in entries] == list(range(1, len(rows) + 1))
 
 
-# --- reading what others write
-
-
-@pytest.mark.parametrize(
-    "line",
-    [
-        f"({STAMP}) vcan0 110#133E0014F79838B7 R\n",
-        f"({STAMP}) vcan0 110#133E0014F79838B7 T\n",
-        f"({STAMP})   vcan0 110#133E0014F79838B7\n",
-        "(1427513417.000000999) vcan0 110#133E0014F79838B7\n",
-        f"({STAMP}) vcan0 110#133E0014F79838B7_9\n",
-        f"({STAMP}) vcan0 110#133e0014f79838b7\n",
-        f"({STAMP}) vcan0 110#133E0014F79838B7\r\n",
-    ],
-)
-def test_the_variants_of_newer_candumps_are_read(read, line):
-    assert read(line) == [LogEntry(1, TIME_US, "vcan0", Frame(0x110, bytes.fromhex("133E0014F79838B7")))]
-
-
-@pytest.mark.parametrize("payload", ["R", "R0", "R8", "R8_F", "R R"])
-def test_a_remote_frame_is_told_apart_from_one_with_data(read, payload):
-    assert read(f"({STAMP}) vcan0 123#{payload}\n")[0].frame == Frame(0x123 | REMOTE_FLAG, b"")
+# --- entry by entry
 
 
 def test_entries_come_one_by_one(tmp_path):
@@ -132,7 +76,7 @@ def test_entries_come_one_by_one(tmp_path):
 
 
 def test_a_log_in_which_every_line_has_words_of_its_own_takes_no_memory(tmp_path):
-    lines = 3 * MOST_KNOWN
+    lines = 3 * MOST_REMEMBERED
     with (tmp_path / "bus.log").open("w") as log:
         log.writelines(f"(0000000000.000000) {n:064d} {n:08X}#\n" for n in range(lines))
     tracemalloc.start()
@@ -140,7 +84,7 @@ def test_a_log_in_which_every_line_has_words_of_its_own_takes_no_memory(tmp_path
     kept, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert read == [(f"{n:08d}", n) for n in range(lines)]
-    assert peak - kept < 400 * MOST_KNOWN
+    assert peak - kept < 400 * MOST_REMEMBERED
 
 
 # --- what is no log

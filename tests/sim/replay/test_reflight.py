@@ -7,13 +7,14 @@ import pytest
 
 from fsw.node import FlightNode
 from fsw.table.config import flight_config
+from fsw.wire.candump_line import format_line, format_time
 from fsw.wire.frame import Frame
 from fsw.wire.messages import FswEvent, PlantEnd, Sync, TickDone
 from sim.flight import answers
 from sim.flight.recorded import record
 from sim.flight.virtual import VirtualBus
 from sim.record import run_dir
-from sim.record.candump import format_line, format_time, read_log
+from sim.record.candump import read_log
 from sim.record.pace import Pace
 from sim.record.run_dir import BUS_LOG
 from sim.replay.replay import replay

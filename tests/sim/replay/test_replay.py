@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from fsw.table.config import flight_config
+from fsw.wire.candump_line import format_line, format_time
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
     CoilFire,
@@ -19,7 +20,7 @@ from fsw.wire.messages import (
     Sync,
     TickDone,
 )
-from sim.record.candump import LogError, format_line, format_time, read_log
+from sim.record.candump import LogError, read_log
 from sim.record.run_dir import BUS_LOG
 from sim.replay.replay import replay
 from sim.scenario.schema import flight_table, load

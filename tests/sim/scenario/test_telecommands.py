@@ -15,6 +15,7 @@ from fsw.core.orbit.propagation import element_orbit, sgp4_orbit, state_eci
 from fsw.input.schema import TableError
 from fsw.node import FlightNode
 from fsw.table.config import flight_config
+from fsw.wire.candump_line import format_line, format_time
 from fsw.wire.messages import (
     CLASSES,
     NAMES,
@@ -38,7 +39,7 @@ from fsw.wire.messages import (
 from sim.flight.recorded import record
 from sim.flight.virtual import VirtualBus, fly_virtual
 from sim.record import run_dir
-from sim.record.candump import format_line, format_time, read_log
+from sim.record.candump import read_log
 from sim.record.pace import Pace
 from sim.record.run_dir import BUS_LOG
 from sim.replay.replay import replay
