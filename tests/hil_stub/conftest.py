@@ -12,7 +12,8 @@ from fsw.wire.messages import (
     CoilStatus,
     intact,
 )
-from hil_stub.coils.coil_driver import CoilDriver, Drive
+from hil_stub.bench import Bench, CoilBoard
+from hil_stub.coils.coil_driver import CoilDriver, CoilLimits, Drive
 
 
 def read_frames(frames):
@@ -85,3 +86,11 @@ def rig_with():
 def read():
     """Turns frames into messages."""
     return read_frames
+
+
+@pytest.fixture
+def bench():
+    """A coil driver that follows a bus by itself, switched on."""
+    bench = Bench(lambda: CoilBoard(CoilLimits(1)))
+    bench.switch_on()
+    return bench

@@ -20,6 +20,8 @@ from sim.report import conclude
 from torquer.cli.main import main
 
 CAN_FIXTURES = {"vcan0", "own_interface"}
+TINY = ("microsat", "--seed", "7", "--orbits", "0.005", "--bus", "virtual")
+"""A flight of 30 ticks."""
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -108,6 +110,18 @@ def flown(tmp_path_factory):
         return runs[arguments]
 
     return fly
+
+
+@pytest.fixture
+def run(flown, tmp_path):
+    """A copy of a run of 30 ticks, to be altered; no digest tells of that before the file is read."""
+    folder = tmp_path / "run"
+    folder.mkdir()
+    for file in flown(*TINY).iterdir():
+        (folder / file.name).write_bytes(file.read_bytes())
+    told = json.loads((folder / "run.json").read_text())
+    (folder / "run.json").write_text(json.dumps({**told, "digests": {}}))
+    return folder
 
 
 class Bus(NamedTuple):

@@ -4,10 +4,6 @@ import json
 import os
 import subprocess
 import sys
-import tempfile
-import time
-from contextlib import contextmanager
-from pathlib import Path
 
 import h5py
 import numpy as np
@@ -18,19 +14,6 @@ from sim.record import run_dir
 TINY = ("microsat", "--seed", "7", "--orbits", "0.005", "--bus", "virtual")
 LONGEST_S, MOST_MB = 5.0, 500.0
 DEEP = 50_000
-NOBODY = 65534
-
-
-@pytest.fixture
-def run(flown, tmp_path):
-    """A copy of a run of 30 ticks, to be altered; no digest tells of that before the file is read."""
-    folder = tmp_path / "run"
-    folder.mkdir()
-    for file in flown(*TINY).iterdir():
-        (folder / file.name).write_bytes(file.read_bytes())
-    told = json.loads((folder / "run.json").read_text())
-    (folder / "run.json").write_text(json.dumps({**told, "digests": {}}))
-    return folder
 
 
 # --- in a process of its own: what it takes
@@ -354,109 +337,3 @@ def test_a_motion_that_is_lost_ends_the_flight_in_one_sentence(torquer, tmp_path
     assert done.code == 1
     assert "the motion is lost in tick 0" in done.sentence
     assert torquer("check", tmp_path / "new").code == 1
-
-
-# --- places that cannot be written
-
-
-@pytest.fixture(params=["below a file", "proc", "a device"])
-def nowhere(request, tmp_path):
-    """A place where no folder can be made, not even by root."""
-    (tmp_path / "file").write_text("kept")
-    return {"below a file": tmp_path / "file" / "x", "proc": Path("/proc/x"), "a device": Path("/dev/full")}[
-        request.param
-    ]
-
-
-@pytest.mark.parametrize(
-    "words",
-    [
-        ("sil", "--bus", "virtual"),
-        ("validate", "--quick"),
-        ("design", "microsat"),
-        ("design", "microsat", "--json"),
-        ("compare",),
-        ("faults",),
-        ("hil", "--seconds", "2"),
-    ],
-    ids=" ".join,
-)
-def test_an_out_that_cannot_be_written_is_refused_before_any_work(words, nowhere, torquer):
-    began = time.process_time()
-    done = torquer(*words, "--out", nowhere)
-    assert time.process_time() - began < LONGEST_S
-    assert (done.code, done.out) == (2, "")
-    assert str(nowhere) in done.sentence or str(nowhere.parent) in done.sentence
-    assert "cannot be written" in done.sentence
-
-
-@pytest.mark.parametrize(
-    ("words", "name"),
-    [
-        (("compare", "--out", "out"), "compare.png"),
-        (("faults", "--out", "out"), "faults.html"),
-        (("design", "microsat", "--out", "out"), "robustness.png"),
-        (("hil", "--out", "out"), "hil.json"),
-        (("validate", "--quick", "--out", "out/page.md"), "page.md"),
-        (("sil", "--bus", "virtual", "--out", "out"), "bus.log.index"),
-    ],
-)
-def test_so_is_a_folder_in_the_way_of_a_file(words, name, torquer, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "out" / name).mkdir(parents=True)
-    done = torquer(*words)
-    assert (done.code, done.out) == (2, "")
-    assert "out" in done.sentence
-
-
-@pytest.mark.parametrize("name", ["summary.json", "report.html"])
-def test_a_report_that_cannot_be_written(run, torquer, name):
-    (run / name).unlink()
-    (run / name).mkdir()
-    before = (run / "run.json").read_bytes()
-    done = torquer("report", run)
-    assert done.code == 2
-    assert f"{name}: cannot be written (Is a directory)" in done.sentence
-    assert (run / "run.json").read_bytes() == before
-
-
-@contextmanager
-def read_only(folder):
-    """For root, which may write everywhere, another user."""
-    folder.chmod(0o555)
-    is_root = os.geteuid() == 0
-    if is_root:
-        os.seteuid(NOBODY)
-    try:
-        yield
-    finally:
-        if is_root:
-            os.seteuid(0)
-        folder.chmod(0o755)
-
-
-def test_a_report_in_a_folder_that_is_read_only(run, torquer):
-    assert torquer("report", run).code == 0  # everything is imported, which nobody may not do
-    with tempfile.TemporaryDirectory(dir="/tmp") as place:
-        os.chmod(place, 0o755)
-        copy = Path(place) / "run"
-        copy.mkdir()
-        for file in run.iterdir():
-            (copy / file.name).write_bytes(file.read_bytes())
-        with read_only(copy):
-            done = torquer("report", copy)
-    assert done.code == 2
-    assert f"{copy}: cannot be written (Permission denied)" in done.sentence
-
-
-def test_gains_into_a_scenario_that_is_read_only(torquer):
-    with tempfile.TemporaryDirectory(dir="/tmp") as place:
-        os.chmod(place, 0o755)
-        folder = Path(place) / "mine"
-        folder.mkdir()
-        shipped = Path(run_dir.__file__).parents[1] / "scenario" / "shipped" / "microsat.toml"
-        (folder / "mine.toml").write_bytes(shipped.read_bytes())
-        with read_only(folder):
-            done = torquer("design", folder / "mine.toml", "--json", "--write")
-    assert (done.code, done.out) == (2, "")
-    assert "cannot be written (Permission denied)" in done.sentence

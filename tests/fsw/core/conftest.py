@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from fsw.core.orbit.propagation import sgp4_orbit
+from fsw.wire.messages import Element, TcOrbitElement
 
 ROOT = Path(__file__).resolve().parents[3]
 REFERENCE = ROOT / "tests" / "reference"
@@ -104,3 +105,36 @@ def decaying(tle):
 @pytest.fixture(scope="session")
 def checksummed():
     return with_checksum
+
+
+DIGITS = {
+    Element.EPOCH_DAY: (16521, 0),
+    Element.EPOCH_FRACTION: (11593543, -8),
+    Element.INCLINATION_DEG: (986946, -4),
+    Element.RAAN_DEG: (364208, -4),
+    Element.ECCENTRICITY: (8932, -7),
+    Element.PERIGEE_DEG: (1738349, -4),
+    Element.ANOMALY_DEG: (1862944, -4),
+    Element.MOTION_REVPDAY: (1430166407, -8),
+    Element.BSTAR: (11414, -8),
+}
+"""ITAMSAT: the numbers of its two-line elements, whose epoch is 2015, day 86.11593543."""
+
+
+def elements_of(**changed):
+    """TC_ORBIT_ELEMENT for each, in order, with some digits changed or left out (None)."""
+    digits = {e: changed.get(e.name.lower(), d) for e, d in DIGITS.items()}
+    kept = [(e, d) for e, d in digits.items() if d is not None]
+    return [TcOrbitElement(e, d[1], d[0], counter=n & 0xF) for n, (e, d) in enumerate(kept)]
+
+
+@pytest.fixture(scope="session")
+def digits():
+    """Mantissa and exponent of each orbit element of ITAMSAT."""
+    return DIGITS
+
+
+@pytest.fixture(scope="session")
+def elements():
+    """Makes the telecommands that upload these elements."""
+    return elements_of

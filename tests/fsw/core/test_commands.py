@@ -1,8 +1,6 @@
 """Telecommands: each is carried out whole or refused whole, and acknowledged once."""
 
-from collections import Counter
 from math import dist
-from random import Random
 
 import pytest
 
@@ -19,13 +17,9 @@ from fsw.core.orbit.propagation import element_orbit, sgp4_orbit, state_eci
 from fsw.core.state import checksum
 from fsw.core.step import boot
 from fsw.wire.messages import (
-    CoilFire,
-    CoilRefused,
     Element,
-    FswEvent,
     Gain,
     Mode,
-    NavQuality,
     TcAck,
     TcAckResult,
     TcClear,
@@ -35,32 +29,15 @@ from fsw.wire.messages import (
     TcOrbitElement,
     TcOrbitLoad,
     TcSpin,
-    TickDone,
 )
 
 TICK = 40
-DIGITS = {
-    Element.EPOCH_DAY: (16521, 0),
-    Element.EPOCH_FRACTION: (11593543, -8),
-    Element.INCLINATION_DEG: (986946, -4),
-    Element.RAAN_DEG: (364208, -4),
-    Element.ECCENTRICITY: (8932, -7),
-    Element.PERIGEE_DEG: (1738349, -4),
-    Element.ANOMALY_DEG: (1862944, -4),
-    Element.MOTION_REVPDAY: (1430166407, -8),
-    Element.BSTAR: (11414, -8),
-}
-"""ITAMSAT: the numbers of its two-line elements, whose epoch is 2015, day 86.11593543."""
 
 
-def elements(**changed):
-    """TC_ORBIT_ELEMENT for each, in order, with some digits changed or left out (None)."""
-    digits = {e: changed.get(e.name.lower(), d) for e, d in DIGITS.items()}
-    kept = [(e, d) for e, d in digits.items() if d is not None]
-    return [TcOrbitElement(e, d[1], d[0], counter=n & 0xF) for n, (e, d) in enumerate(kept)]
-
-
-ITAMSAT = Elements(*(decimal(*digits) for digits in DIGITS.values()))
+@pytest.fixture(scope="module")
+def itamsat(digits):
+    """The elements as an orbit is made from them."""
+    return Elements(*(decimal(*number) for number in digits.values()))
 
 
 @pytest.fixture(scope="module")
@@ -230,14 +207,14 @@ class TestGain:
 
 
 class TestOrbit:
-    def test_elements_are_kept_aside_and_fly_nothing(self, obey, state):
+    def test_elements_are_kept_aside_and_fly_nothing(self, obey, state, elements, itamsat):
         after, results = obey(state, *elements())
         assert results == [TcAckResult.ACCEPTED] * 9
-        assert after == state._replace(upload=Upload(ITAMSAT, 0x1FF))
+        assert after == state._replace(upload=Upload(itamsat, 0x1FF))
 
-    def test_are_loaded_at_once(self, obey, state, config):
+    def test_are_loaded_at_once(self, obey, state, config, elements, itamsat):
         after, results = obey(state, *elements(raan_deg=(500000, -4)), TcOrbitLoad())
-        wanted = ITAMSAT._replace(raan_deg=50.0)
+        wanted = itamsat._replace(raan_deg=50.0)
         assert results[-1] is TcAckResult.ACCEPTED
         assert (after.orbit, after.upload) == (wanted, Upload())
         assert after.ephemeris == advance(None, TICK, fly_orbit(config.ephemeris, wanted))
@@ -245,11 +222,11 @@ class TestOrbit:
         assert after == state._replace(orbit=wanted, ephemeris=after.ephemeris)
 
     @pytest.mark.parametrize("missing", Element)
-    def test_not_before_all_have_come(self, refused, missing):
+    def test_not_before_all_have_come(self, refused, missing, elements):
         sent = elements(**{missing.name.lower(): None})
         refused(TcAckResult.INCOMPLETE, *sent, TcOrbitLoad())
 
-    def test_a_second_load_needs_all_of_them_again(self, refused):
+    def test_a_second_load_needs_all_of_them_again(self, refused, elements):
         refused(TcAckResult.INCOMPLETE, *elements(), TcOrbitLoad(), TcOrbitLoad(1))
 
     @pytest.mark.parametrize(
@@ -260,14 +237,16 @@ class TestOrbit:
             {"bstar": (9, -1), "epoch_day": (10_000, 0)},  # decayed long ago
         ],
     )
-    def test_that_is_none_keeps_the_old_one_and_can_be_mended(self, obey, refused, state, wrong):
+    def test_that_is_none_keeps_the_old_one_and_can_be_mended(
+        self, obey, refused, state, wrong, digits, elements, itamsat
+    ):
         refused(TcAckResult.OUT_OF_RANGE, *elements(**wrong), TcOrbitLoad())
         mended = [
-            TcOrbitElement(Element[name.upper()], *reversed(DIGITS[Element[name.upper()]])) for name in wrong
+            TcOrbitElement(Element[name.upper()], *reversed(digits[Element[name.upper()]])) for name in wrong
         ]
         after, results = obey(state, *elements(**wrong), TcOrbitLoad(), *mended, TcOrbitLoad(1))
         assert results[-1] is TcAckResult.ACCEPTED
-        assert after.orbit == ITAMSAT
+        assert after.orbit == itamsat
 
     @pytest.mark.parametrize("element", Element)
     def test_an_element_that_cannot_be_is_refused_alone(self, obey, refused, state, element):
@@ -281,8 +260,8 @@ class TestOrbit:
     def test_there_are_nine(self, refused, element):
         refused(TcAckResult.UNKNOWN, TcOrbitElement(element, 0, 0))
 
-    def test_the_same_numbers_are_the_same_orbit_as_two_lines(self, tle):
-        lines, numbers = sgp4_orbit(*tle["ITAMSAT"]), element_orbit(ITAMSAT)
+    def test_the_same_numbers_are_the_same_orbit_as_two_lines(self, tle, itamsat):
+        lines, numbers = sgp4_orbit(*tle["ITAMSAT"]), element_orbit(itamsat)
         for hours in (0, 1, 24, 240):
             unix_s = 1427424416 + 3600 * hours
             (r, v), (r2, v2) = state_eci(lines, unix_s), state_eci(numbers, unix_s)
@@ -290,9 +269,9 @@ class TestOrbit:
             assert dist(v, v2) < 1e-5
 
     @pytest.mark.parametrize("slow", [6.39, 1.0, 0.0])
-    def test_deep_space_is_no_orbit_for_this_field(self, slow):
+    def test_deep_space_is_no_orbit_for_this_field(self, slow, itamsat):
         with pytest.raises(ValueError, match=r"225 minutes|refuses"):
-            element_orbit(ITAMSAT._replace(motion_revpday=slow))
+            element_orbit(itamsat._replace(motion_revpday=slow))
 
 
 class TestAcknowledgement:
@@ -319,144 +298,16 @@ class TestAcknowledgement:
 
     @pytest.mark.parametrize(
         "sent",
-        [TcMode(Mode.SAFE), TcClear(), TcLaw(2), TcSpin(2**-9), TcGain(Gain.K_I, 0, 7), elements()[3]],
+        [
+            TcMode(Mode.SAFE),
+            TcClear(),
+            TcLaw(2),
+            TcSpin(2**-9),
+            TcGain(Gain.K_I, 0, 7),
+            TcOrbitElement(Element.RAAN_DEG, -4, 364208, 3),
+        ],
         ids=lambda message: type(message).__name__,
     )
     def test_what_was_carried_out_shows_in_the_checksum(self, obey, state, sent):
         after, _ = obey(state, sent)
         assert checksum(after) != checksum(state)
-
-
-def with_telecommands(*messages):
-    frames = tuple(message.encode() for message in messages)
-    return lambda inbox: inbox._replace(frames=(*frames, *inbox.frames))
-
-
-def of(kind, messages):
-    return [message for message in messages if type(message) is kind]
-
-
-class TestInTheLoop:
-    def test_the_answer_to_the_tick_tells_before_it_is_done(self, make_world):
-        world = make_world()
-        world.fly(5)
-        said = world.step(with_telecommands(TcSpin(2**-7, 3), TcMode(7, 4)))
-        assert of(TcAck, said) == [
-            TcAck(TcAckResult.ACCEPTED, TcSpin.ID, 3, 5, counter=0),
-            TcAck(TcAckResult.UNKNOWN, TcMode.ID, 4, 5, counter=1),
-        ]
-        assert type(said[-1]) is TickDone
-        assert world.state.setpoint.spin_radps == 2**-7
-        assert of(TcAck, world.step()) == []
-
-    def test_a_broken_one_has_no_answer_and_no_effect(self, make_world):
-        world, other = make_world(), make_world()
-        frame = TcMode(Mode.SAFE).encode()
-        broken = frame._replace(data=bytes((frame.data[0] ^ 0x20,)) + frame.data[1:])
-        said = world.step(lambda inbox: inbox._replace(frames=(broken, *inbox.frames)))
-        assert of(TcAck, said) == []
-        other.step()
-        expected = other.state._replace(gate=other.state.gate._replace(rejected=1))
-        assert checksum(world.state) == checksum(expected)
-
-    def test_a_safe_that_the_ground_asked_for_lasts_until_it_asks_for_more(self, make_world):
-        world = make_world()
-        world.fly(60)
-        assert world.state.modes.mode is not Mode.SAFE
-        said = world.step(with_telecommands(TcMode(Mode.SAFE)))
-        assert [(e.event, e.argument) for e in of(FswEvent, said)] == [(1, Mode.SAFE)]
-        quiet = [message for said in world.fly(150) for message in said]
-        assert of(CoilFire, quiet) == []
-        assert {quality.mode for quality in of(NavQuality, quiet)} == {Mode.SAFE}
-        said = world.step(with_telecommands(TcMode(Mode.DETUMBLE, 1)))
-        assert of(CoilFire, said)  # the coils have long been ready, and the same tick obeys
-        assert world.state.modes.mode is Mode.DETUMBLE
-
-    def test_trips_that_keep_it_safe_are_forgotten_by_the_ground(self, make_world, without):
-        world = make_world()
-        world.fly(10)
-        stuck = ModeState(Mode.SAFE, trips=world.config.modes.trips_to_stay_safe)
-        world.state = world.state._replace(modes=stuck)
-        world.fly(30)
-        assert world.state.modes.mode is Mode.SAFE
-        said = world.step(with_telecommands(TcClear()))
-        assert of(FswEvent, said) == []
-        world.fly(30)
-        assert world.state.modes.mode is not Mode.SAFE
-
-    def test_an_orbit_is_flown_from_the_next_tick_on(self, make_world):
-        world, other = make_world(), make_world()
-        for one in (world, other):
-            one.fly(25)
-        turned = elements(raan_deg=(374208, -4))
-        said = world.step(with_telecommands(*turned, TcOrbitLoad()))
-        other.step()
-        assert [ack.result for ack in of(TcAck, said)] == [TcAckResult.ACCEPTED] * 10
-        assert world.state.attitude == other.state.attitude
-        model = fly_orbit(world.config.ephemeris, world.state.orbit)
-        for _ in range(60):
-            world.step()
-            other.step()
-            assert world.state.ephemeris == advance(None, world.state.tick, model)
-        assert world.state.attitude != other.state.attitude
-
-    def test_telecommands_beyond_what_the_gate_looks_at_are_counted_as_unread(self, make_world):
-        world = make_world()
-        said = world.step(with_telecommands(*(TcClear(n & 0xF) for n in range(80))))
-        assert len(of(TcAck, said)) == 64
-        assert world.state.gate.overrun > 0
-
-
-def random_telecommand(random, counter):
-    """Intact, its values anything; now and then the sensible ones."""
-    kind = random.choice([*TELECOMMANDS.values()])
-    message = kind.decode(random.randbytes(kind.LENGTH))._replace(counter=counter)
-    if kind is TcOrbitElement and random.random() < 0.7:
-        element = random.choice([*Element])
-        mantissa, exponent = DIGITS[element]
-        message = TcOrbitElement(element, exponent, mantissa + random.randrange(-3, 4), counter)
-    if kind is TcLaw and random.random() < 0.9:
-        message = TcLaw(random.choice([*LAW_NAMES]), counter)
-    if kind is TcGain and random.random() < 0.5:
-        message = TcGain(random.randrange(3), random.randrange(-3, 5), random.randrange(2**20), counter)
-    return message
-
-
-@pytest.mark.parametrize(
-    ("seed", "settings"),
-    [
-        (1, {}),
-        (2, {}),
-        (3, {"knowledge": "perfect"}),
-        (4, {"knowledge": "perfect", "coils": {"backoff": "per_coil"}}),
-        (5, {"coils": {"driver": "continuous", "max_dipole_am2": 0.2}}),
-    ],
-)
-def test_whatever_the_ground_sends_the_limits_are_kept(make_world, seed, settings):
-    """Five hundred ticks of random telecommands against the boards' own interlock."""
-    world, random = make_world(seed=seed, **settings), Random(seed)
-    counters, answers, refusals, fires = Counter(), Counter(), 0, 0
-    for _ in range(500):
-        sent = []
-        for _ in range(random.choice([0, 0, 1, 2, 12])):
-            message = random_telecommand(random, 0)
-            counters[message.ID] += 1
-            sent.append(message._replace(counter=counters[message.ID] & 0xF))
-
-        def told(inbox, sent=sent):
-            nonlocal refusals
-            refusals += any(frame.can_id == CoilRefused.ID for frame in inbox.frames)
-            return with_telecommands(*sent)(inbox)
-
-        said = world.step(told)
-        acks = of(TcAck, said)
-        assert [(ack.command, ack.command_counter) for ack in acks] == [(m.ID, m.counter) for m in sent]
-        answers.update(TcAckResult(ack.result) for ack in acks)
-        fires += len(of(CoilFire, said))
-        assert world.state.modes.mode is not Mode.SAFE or not of(CoilFire, said)
-        for fire in of(CoilFire, said):
-            assert fire.duration_ms == 3000
-            assert 1 <= abs(fire.level) <= 3
-    assert refusals == 0
-    assert fires > 0 or "driver" in settings.get("coils", {})
-    assert set(answers) | {TcAckResult.NOT_ALLOWED} == {*TcAckResult} - {TcAckResult.REPEATED}

@@ -76,3 +76,9 @@ def session_with():
         return Session(link, KINDS[kind], tick_hz, clock=lambda: link.now_s)
 
     return make
+
+
+@pytest.fixture(scope="session")
+def failures():
+    """What is wrong with a board, by the name of the check that has found it."""
+    return lambda verdicts: {verdict.name: verdict.failure for verdict in verdicts if verdict.failure}

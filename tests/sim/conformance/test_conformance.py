@@ -6,16 +6,12 @@ import pytest
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
-    CoilBoot,
     CoilFire,
-    CoilHeartbeat,
-    CoilRefused,
     CoilRefusedReason,
     CoilStatus,
-    PlantBoot,
     Sync,
 )
-from hil_stub.bench import Bench, CoilBoard, MagnetometerBoard, SunBoard
+from hil_stub.bench import CoilBoard, MagnetometerBoard, SunBoard
 from hil_stub.coils import coil_driver, guard, interlock
 from hil_stub.coils.coil_driver import CoilLimits
 from hil_stub.coils.events import CoilEventCode
@@ -28,14 +24,10 @@ from sim.errors import HarnessError
 NAMES = [check.run.__name__ for check in CHECKS]
 
 
-def failures(verdicts):
-    return {verdict.name: verdict.failure for verdict in verdicts if verdict.failure}
-
-
 @pytest.mark.parametrize("has_clock", [True, False], ids=["clock", "ticks"])
 @pytest.mark.parametrize("shared", [True, False], ids=["shared", "per_coil"])
 @pytest.mark.parametrize("hz", [1, 3, 10])
-def test_the_stub_conforms(session_with, hz, shared, has_clock):
+def test_the_stub_conforms(session_with, hz, shared, has_clock, failures):
     session = session_with(lambda: CoilBoard(CoilLimits(hz, shared=shared)), hz, has_clock=has_clock)
     verdicts = conform(session, Limits(shared=shared), armed=True)
     assert [verdict.name for verdict in verdicts] == NAMES
@@ -44,14 +36,14 @@ def test_the_stub_conforms(session_with, hz, shared, has_clock):
     assert set(found) == (set() if has_clock else {"own_clock", "held_tick"})
 
 
-def test_a_board_has_a_whole_tick_for_its_answer(session_with, slow_bus):
+def test_a_board_has_a_whole_tick_for_its_answer(session_with, slow_bus, failures):
     """Also when ticks come early: they come no sooner than it answers."""
     session = session_with(lambda: CoilBoard(CoilLimits(10)), 10, bus=slow_bus)
     assert failures(conform(session, Limits(), armed=True)) == {}
 
 
 @pytest.mark.parametrize(("pulse_ms", "backoff_ms", "deadman_s"), [(2500, 7300, 5.0), (500, 1500, 0.5)])
-def test_it_conforms_with_other_limits(session_with, pulse_ms, backoff_ms, deadman_s):
+def test_it_conforms_with_other_limits(session_with, pulse_ms, backoff_ms, deadman_s, failures):
     limits = CoilLimits(10, pulse_ms, backoff_ms)
     session = session_with(lambda: CoilBoard(limits), 10, deadman_ms=round(1000 * deadman_s))
     assert failures(conform(session, Limits(pulse_ms, backoff_ms, True, deadman_s), armed=True)) == {}
@@ -64,13 +56,13 @@ def test_it_conforms_with_other_limits(session_with, pulse_ms, backoff_ms, deadm
         ("sun", lambda: SunBoard(1, constant((1.0, 0.0, 0.0)))),
     ],
 )
-def test_sensors_conform(session_with, kind, make):
+def test_sensors_conform(session_with, kind, make, failures):
     verdicts = conform(session_with(make, kind=kind), Limits(), armed=False)
     assert [verdict.name for verdict in verdicts] == ["boot", "noise", "lost_count", "all_along"]
     assert failures(verdicts) == {}
 
 
-def test_without_arm_no_request_is_ever_sent(session_with):
+def test_without_arm_no_request_is_ever_sent(session_with, failures):
     session = session_with(lambda: CoilBoard(CoilLimits(1)))
     bus, sent = session._bus, []
     send = bus.send
@@ -96,132 +88,6 @@ def test_somebody_else_who_paces_the_bus_is_an_error(session_with, stranger):
     session._bus.queue.append(stranger.encode())
     with pytest.raises(HarnessError, match="somebody else sends SYNC"):
         conform(session, Limits(), armed=True)
-
-
-class FaultyBench(Bench):
-    """A bench whose frames, in and out, pass through what a fault makes of them."""
-
-    outward = staticmethod(lambda frames, tick: frames)
-    takes = staticmethod(lambda frame: True)
-
-    def switch_on(self, *args, **kwargs):
-        return self.outward(super().switch_on(*args, **kwargs), self._tick)
-
-    def receive(self, frame, now_ms=0):
-        if not self.takes(frame):
-            return []
-        sent = super().receive(frame, now_ms)
-        booted = any(f.can_id == CoilBoot.ID for f in sent)
-        return sent if booted else self.outward(sent, self._tick)
-
-
-def changed(message_type, change):
-    """Every message of that type, changed."""
-
-    def outward(frames, tick):
-        out = []
-        for frame in frames:
-            if frame.can_id == message_type.ID:
-                message = change(message_type.decode(frame.data), tick)
-                out += [] if message is None else [message.encode()]
-            else:
-                out.append(frame)
-        return out
-
-    return {"outward": staticmethod(outward)}
-
-
-def times(number):
-    """COIL_STATUS so many times in every seventh tick."""
-
-    def outward(frames, tick):
-        again = number if tick % 7 == 3 else 1
-        return [f for frame in frames for f in [frame] * (again if frame.can_id == CoilStatus.ID else 1)]
-
-    return {"outward": staticmethod(outward)}
-
-
-def break_crc(frames, tick):
-    return [Frame(f.can_id, f.data[:-1] + b"\0") if tick % 50 == 49 else f for f in frames]
-
-
-def believes_one(self, tick):
-    return (
-        self.switch_on(tick, self._now_ms) if tick not in (self._tick, self._tick + 1) else follow(self, tick)
-    )
-
-
-follow = Bench._follow
-
-
-def fed_by_any(self, tick):
-    self._synced_tick = None
-    return follow(self, tick)
-
-
-def deaf_to_equals(self, tick):
-    return [] if tick == self._strange_sync else follow(self, tick)
-
-
-def never_back(self, tick):
-    return [] if tick < self._tick else follow(self, tick)
-
-
-def never_forgets(self, tick):
-    kept = self._strange_sync
-    frames = follow(self, tick)
-    self._strange_sync = self._strange_sync or kept
-    return frames
-
-
-ON_THE_BUS = {
-    "no boot message": (changed(CoilBoot, lambda m, tick: None), "boot"),
-    "no status now and then": (times(0), None),
-    "two statuses now and then": (times(2), "all_along"),
-    "a counter that stands still": (changed(CoilStatus, lambda m, tick: m._replace(counter=3)), "all_along"),
-    "broken frames": ({"outward": staticmethod(break_crc)}, "all_along"),
-    "no heartbeat": (changed(CoilHeartbeat, lambda m, tick: None), "all_along"),
-    "sign lost": (changed(CoilStatus, lambda m, tick: m._replace(level=abs(m.level))), "boot_lockout"),
-    "always coil 0": (changed(CoilStatus, lambda m, tick: m._replace(coil=0)), "boot"),
-    "no current": (changed(CoilStatus, lambda m, tick: m._replace(current_ma=0)), "boot_lockout"),
-    "current for ever": (changed(CoilStatus, lambda m, tick: m._replace(current_ma=-200)), "boot_lockout"),
-    "no lockout told": (changed(CoilStatus, lambda m, tick: m._replace(lockout_ms=0)), "boot"),
-    "remaining_ms stands still": (
-        changed(CoilStatus, lambda m, tick: m._replace(remaining_ms=3000 if m.level else 0)),
-        "boot_lockout",
-    ),
-    "seq not told": (changed(CoilStatus, lambda m, tick: m._replace(seq=0)), "boot_lockout"),
-    "silent refusals": (changed(CoilRefused, lambda m, tick: None), "boot_lockout"),
-    "refusals of another seq": (changed(CoilRefused, lambda m, tick: m._replace(seq=m.seq + 1)), "refusals"),
-    "refusals of another tick": (
-        changed(CoilRefused, lambda m, tick: m._replace(tick=m.tick + 1)),
-        "refusals",
-    ),
-    "PLANT_BOOT is not heard": ({"takes": staticmethod(lambda f: f.can_id != PlantBoot.ID)}, "boot"),
-    "lost count is not noticed": (
-        {"_follow": lambda self, t: follow(self, min(t, self._tick + 1))},
-        "lost_count",
-    ),
-    "one strange SYNC is believed": ({"_follow": believes_one}, "noise"),
-    "two of one tick are not believed": ({"_follow": deaf_to_equals}, "lost_count"),
-    "two backwards are not believed": ({"_follow": never_back}, "lost_count"),
-    "a good SYNC does not end a row of strange ones": ({"_follow": never_forgets}, "lost_count"),
-    "a SYNC that repeats its tick feeds the dead-man": ({"_follow": fed_by_any}, "repeated_tick"),
-    "the dead-man is not told": (
-        {"outward": staticmethod(lambda frames, tick: [f for f in frames if f.can_id != 0x420])},
-        "dead_man",
-    ),
-}
-
-
-@pytest.mark.parametrize(("parts", "finds"), ON_THE_BUS.values(), ids=ON_THE_BUS)
-def test_a_fault_on_the_bus_is_found(session_with, parts, finds):
-    faulty = type("Faulty", (FaultyBench,), parts)
-    found = failures(
-        conform(session_with(lambda: CoilBoard(CoilLimits(1)), bench=faulty), Limits(), armed=True)
-    )
-    assert found
-    assert finds is None or finds in found, found
 
 
 def without(reason):
@@ -360,31 +226,31 @@ IN_THE_BOARD = {
 
 
 @pytest.mark.parametrize(("plant", "finds"), IN_THE_BOARD.values(), ids=IN_THE_BOARD)
-def test_a_fault_in_the_board_is_found(session_with, monkeypatch, plant, finds):
+def test_a_fault_in_the_board_is_found(session_with, monkeypatch, plant, finds, failures):
     plant(monkeypatch)
     found = failures(conform(session_with(lambda: CoilBoard(CoilLimits(1))), Limits(), armed=True))
     assert finds in found, found
 
 
 @pytest.mark.parametrize(("of_board", "of_bench"), [(True, False), (False, True)])
-def test_the_wrong_kind_of_back_off_is_found(session_with, of_board, of_bench):
+def test_the_wrong_kind_of_back_off_is_found(session_with, of_board, of_bench, failures):
     session = session_with(lambda: CoilBoard(CoilLimits(1, shared=of_board)))
     assert "back_off" in failures(conform(session, Limits(shared=of_bench), armed=True))
 
 
-def test_no_dead_man_is_found(session_with):
+def test_no_dead_man_is_found(session_with, failures):
     session = session_with(lambda: CoilBoard(CoilLimits(1)), deadman_ms=None)
     assert {"dead_man", "dead_man_in_a_pulse"} <= set(failures(conform(session, Limits(), armed=True)))
 
 
-def test_a_restart_that_costs_nothing_is_found(session_with):
+def test_a_restart_that_costs_nothing_is_found(session_with, failures):
     """The board is the same one after PLANT_BOOT: its timers run on."""
     board = CoilBoard(CoilLimits(1))
     session = session_with(lambda: board)
     assert "restart_in_a_pulse" in failures(conform(session, Limits(), armed=True))
 
 
-def test_a_board_that_speaks_out_of_turn_is_found(session_with):
+def test_a_board_that_speaks_out_of_turn_is_found(session_with, failures):
     session = session_with(lambda: CoilBoard(CoilLimits(1)))
     bus, receive = session._bus, session._bus.receive
     said = CoilStatus(0, 0, 0, 0, 0, 0).encode()

@@ -1,0 +1,129 @@
+"""What is heard of the coil driver: its word on each coil, what it drove, and whether that was asked for."""
+
+from dataclasses import replace
+
+import pytest
+
+from fsw.core.actuation.actuator import UNHEARD, CoilView, hear, unexpected
+from fsw.core.actuation.pulses import Pulse
+from fsw.core.gate.readings import NOTHING
+from fsw.wire.messages import CoilBoot, CoilRefused, CoilRefusedReason, CoilStatus
+
+ZERO = (0.0, 0.0, 0.0)
+TICK = 10_000
+
+
+@pytest.fixture(scope="module")
+def coils(make_world):
+    """At 1 Hz: pulses of 3 s, levels of 0.5, 2 and 8 A m^2."""
+    return make_world().config.coils
+
+
+def status(coil, lockout_ms=0, level=0, seq=0):
+    return CoilStatus(level, coil, 0, 0, lockout_ms, seq)
+
+
+def refusal(tick):
+    return CoilRefused(0, 9, CoilRefusedReason.LOCKOUT, tick & 0xFF)
+
+
+def test_before_the_board_is_heard_and_asked_nothing_is_known():
+    view = CoilView()
+    assert view.lockout_ms == (-1, -1, -1)
+    assert (view.driven_coil, view.driven_level, view.driven_am2) == (0, 0, ZERO)
+    assert (view.seq, view.refusals) == (0, 0)
+    assert (view.fired_tick, view.fired, view.paid_body_nms) == (-1, Pulse(0, 0), ZERO)
+
+
+@pytest.mark.parametrize("coil", [0, 1, 2])
+def test_a_status_is_the_word_on_its_coil_alone(coil, coils):
+    before = CoilView(lockout_ms=(10, -1, 30), refusals=4)
+    after = hear(before, NOTHING._replace(coil=status(coil, 99_990, level=-2, seq=17)), TICK, coils)
+    expected = [10, -1, 30]
+    expected[coil] = 99_990
+    assert after.lockout_ms == tuple(expected)
+    assert (after.driven_coil, after.driven_level, after.seq, after.refusals) == (coil, -2, 17, 4)
+
+
+FIRED = CoilView((0, 10, -1), seq=9, fired_tick=TICK, fired=Pulse(1, -3), paid_body_nms=(1e-5, 2e-5, 3e-5))
+
+
+@pytest.mark.parametrize(
+    ("ticks_after", "level"), [(0, 0), (1, -3), (2, -3), (3, -3), (4, 0), (100, 0), (TICK, 0)]
+)
+def test_without_a_status_the_last_word_stands_and_the_own_request_counts_as_driven(
+    ticks_after, level, coils
+):
+    """For as long as it was asked for: a status that was lost is no reason to think the coil was off."""
+    after = hear(FIRED, NOTHING, TICK + ticks_after, coils)
+    dipole_am2 = (0.0, -8.0 if level else 0.0, 0.0)
+    assert after == replace(FIRED, driven_coil=1, driven_level=level, driven_am2=dipole_am2)
+    assert not unexpected(after, TICK + ticks_after, coils.pulses)
+
+
+@pytest.mark.parametrize("tick", [0, 1, 3, TICK])
+def test_without_a_status_and_a_request_nothing_counts_as_driven(tick, coils):
+    assert hear(CoilView(), NOTHING, tick, coils) == CoilView()
+
+
+@pytest.mark.parametrize("level", [0, 1])
+def test_what_the_board_says_goes_before_the_own_request(level, coils):
+    after = hear(FIRED, NOTHING._replace(coil=status(2, level=level)), TICK + 1, coils)
+    assert (after.driven_coil, after.driven_level, after.driven_am2) == (2, level, (0.0, 0.0, 0.5 * level))
+
+
+@pytest.mark.parametrize("coil", [None, 0, 1, 2])
+def test_a_board_that_has_booted_has_not_told_its_lockouts(coil, coils):
+    """But of the coil that it tells of in the same tick."""
+    booted = NOTHING._replace(coil_boot=CoilBoot(1, 1, 7))
+    if coil is not None:
+        booted = booted._replace(coil=status(coil, 99_000, seq=9))
+    expected = [99_000 if coil == told else -1 for told in range(3)]
+    assert hear(replace(FIRED, lockout_ms=(0, 10, 0)), booted, TICK + 50, coils) == replace(
+        FIRED, lockout_ms=tuple(expected), driven_coil=1 if coil is None else coil
+    )
+    assert CoilView().lockout_ms == UNHEARD
+
+
+@pytest.mark.parametrize("said", [None, status(1)], ids=["status lost", "status heard"])
+def test_a_refusal_is_counted_with_or_without_a_status(said, coils):
+    view = CoilView(refusals=2)
+    refused = NOTHING._replace(coil=said, refused=refusal(TICK))
+    assert hear(view, refused, TICK, coils).refusals == 3
+    assert hear(view, NOTHING._replace(coil=said), TICK, coils).refusals == 2
+
+
+@pytest.mark.parametrize(
+    ("coil", "level", "dipole_am2"),
+    [(0, 1, (0.5, 0, 0)), (1, -2, (0, -2.0, 0)), (2, 3, (0, 0, 8.0)), (1, 0, (0, 0, 0))],
+)
+def test_the_driven_dipole_is_that_of_the_status(coil, level, dipole_am2, coils):
+    view = hear(CoilView(), NOTHING._replace(coil=status(coil, level=level)), TICK, coils)
+    assert view.driven_am2 == dipole_am2
+
+
+@pytest.mark.parametrize(
+    ("ticks_after", "coil", "level", "is_unexpected"),
+    [
+        (0, 1, -2, True),  # driven before it was asked for
+        (1, 1, -2, False),
+        (3, 1, -2, False),
+        (4, 1, -2, True),  # longer than a pulse
+        (2, 1, 2, True),  # the wrong sign
+        (2, 1, -3, True),
+        (2, 0, -2, True),
+        (4, 1, 0, False),
+        (0, 0, 0, False),
+    ],
+)
+def test_only_the_pulse_that_was_asked_for_is_expected_and_only_for_its_time(
+    ticks_after, coil, level, is_unexpected, coils
+):
+    view = CoilView(driven_coil=coil, driven_level=level, fired_tick=TICK, fired=Pulse(1, -2))
+    assert unexpected(view, TICK + ticks_after, coils.pulses) is is_unexpected
+
+
+@pytest.mark.parametrize("tick", [0, 1, 2, 3, TICK])
+def test_before_the_first_request_any_drive_is_unexpected(tick, coils):
+    assert unexpected(CoilView(driven_coil=0, driven_level=1), tick, coils.pulses)
+    assert not unexpected(CoilView(), tick, coils.pulses)

@@ -1,0 +1,142 @@
+"""The conformance suite finds each planted fault of what a board sends and takes."""
+
+import pytest
+
+from fsw.wire.frame import Frame
+from fsw.wire.messages import (
+    CoilBoot,
+    CoilHeartbeat,
+    CoilRefused,
+    CoilStatus,
+    PlantBoot,
+)
+from hil_stub.bench import Bench, CoilBoard
+from hil_stub.coils.coil_driver import CoilLimits
+from sim.conformance.conformance import conform
+from sim.conformance.subject import Limits
+
+
+class FaultyBench(Bench):
+    """A bench whose frames, in and out, pass through what a fault makes of them."""
+
+    outward = staticmethod(lambda frames, tick: frames)
+    takes = staticmethod(lambda frame: True)
+
+    def switch_on(self, *args, **kwargs):
+        return self.outward(super().switch_on(*args, **kwargs), self._tick)
+
+    def receive(self, frame, now_ms=0):
+        if not self.takes(frame):
+            return []
+        sent = super().receive(frame, now_ms)
+        booted = any(f.can_id == CoilBoot.ID for f in sent)
+        return sent if booted else self.outward(sent, self._tick)
+
+
+def changed(message_type, change):
+    """Every message of that type, changed."""
+
+    def outward(frames, tick):
+        out = []
+        for frame in frames:
+            if frame.can_id == message_type.ID:
+                message = change(message_type.decode(frame.data), tick)
+                out += [] if message is None else [message.encode()]
+            else:
+                out.append(frame)
+        return out
+
+    return {"outward": staticmethod(outward)}
+
+
+def times(number):
+    """COIL_STATUS so many times in every seventh tick."""
+
+    def outward(frames, tick):
+        again = number if tick % 7 == 3 else 1
+        return [f for frame in frames for f in [frame] * (again if frame.can_id == CoilStatus.ID else 1)]
+
+    return {"outward": staticmethod(outward)}
+
+
+def break_crc(frames, tick):
+    return [Frame(f.can_id, f.data[:-1] + b"\0") if tick % 50 == 49 else f for f in frames]
+
+
+def believes_one(self, tick):
+    return (
+        self.switch_on(tick, self._now_ms) if tick not in (self._tick, self._tick + 1) else follow(self, tick)
+    )
+
+
+follow = Bench._follow
+
+
+def fed_by_any(self, tick):
+    self._synced_tick = None
+    return follow(self, tick)
+
+
+def deaf_to_equals(self, tick):
+    return [] if tick == self._strange_sync else follow(self, tick)
+
+
+def never_back(self, tick):
+    return [] if tick < self._tick else follow(self, tick)
+
+
+def never_forgets(self, tick):
+    kept = self._strange_sync
+    frames = follow(self, tick)
+    self._strange_sync = self._strange_sync or kept
+    return frames
+
+
+ON_THE_BUS = {
+    "no boot message": (changed(CoilBoot, lambda m, tick: None), "boot"),
+    "no status now and then": (times(0), None),
+    "two statuses now and then": (times(2), "all_along"),
+    "a counter that stands still": (changed(CoilStatus, lambda m, tick: m._replace(counter=3)), "all_along"),
+    "broken frames": ({"outward": staticmethod(break_crc)}, "all_along"),
+    "no heartbeat": (changed(CoilHeartbeat, lambda m, tick: None), "all_along"),
+    "sign lost": (changed(CoilStatus, lambda m, tick: m._replace(level=abs(m.level))), "boot_lockout"),
+    "always coil 0": (changed(CoilStatus, lambda m, tick: m._replace(coil=0)), "boot"),
+    "no current": (changed(CoilStatus, lambda m, tick: m._replace(current_ma=0)), "boot_lockout"),
+    "current for ever": (changed(CoilStatus, lambda m, tick: m._replace(current_ma=-200)), "boot_lockout"),
+    "no lockout told": (changed(CoilStatus, lambda m, tick: m._replace(lockout_ms=0)), "boot"),
+    "remaining_ms stands still": (
+        changed(CoilStatus, lambda m, tick: m._replace(remaining_ms=3000 if m.level else 0)),
+        "boot_lockout",
+    ),
+    "seq not told": (changed(CoilStatus, lambda m, tick: m._replace(seq=0)), "boot_lockout"),
+    "silent refusals": (changed(CoilRefused, lambda m, tick: None), "boot_lockout"),
+    "refusals of another seq": (changed(CoilRefused, lambda m, tick: m._replace(seq=m.seq + 1)), "refusals"),
+    "refusals of another tick": (
+        changed(CoilRefused, lambda m, tick: m._replace(tick=m.tick + 1)),
+        "refusals",
+    ),
+    "PLANT_BOOT is not heard": ({"takes": staticmethod(lambda f: f.can_id != PlantBoot.ID)}, "boot"),
+    "lost count is not noticed": (
+        {"_follow": lambda self, t: follow(self, min(t, self._tick + 1))},
+        "lost_count",
+    ),
+    "one strange SYNC is believed": ({"_follow": believes_one}, "noise"),
+    "two of one tick are not believed": ({"_follow": deaf_to_equals}, "lost_count"),
+    "two backwards are not believed": ({"_follow": never_back}, "lost_count"),
+    "a good SYNC does not end a row of strange ones": ({"_follow": never_forgets}, "lost_count"),
+    "a SYNC that repeats its tick feeds the dead-man": ({"_follow": fed_by_any}, "repeated_tick"),
+    "the dead-man is not told": (
+        {"outward": staticmethod(lambda frames, tick: [f for f in frames if f.can_id != 0x420])},
+        "dead_man",
+    ),
+}
+
+
+@pytest.mark.parametrize(("parts", "finds"), ON_THE_BUS.values(), ids=ON_THE_BUS)
+def test_a_fault_on_the_bus_is_found(session_with, parts, finds, failures):
+    faulty = type("Faulty", (FaultyBench,), parts)
+    found = failures(
+        conform(session_with(lambda: CoilBoard(CoilLimits(1)), bench=faulty), Limits(), armed=True)
+    )
+    assert found
+    assert finds is None or finds in found, found
