@@ -3,6 +3,7 @@
 from collections.abc import Collection
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import partial
 from math import ceil
 from pathlib import Path
 from typing import NamedTuple
@@ -15,6 +16,7 @@ from fsw.wire.candump_line import format_line, format_time
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilBoot, CoilStatus, MagField, PlantEnd, Sync
 from sim.audit.auditor import AuditLimits, AuditReport, audit
+from sim.campaign.claim import Claim, Study
 from sim.fault_rig.rig import Rig, prepared
 from sim.fault_table.checks import bounds_of
 from sim.flight import virtual
@@ -196,3 +198,15 @@ def flown(rig):
         return bench.finish()
 
     return fly
+
+
+@pytest.fixture(scope="session")
+def study():
+    """Makes a study of one claim: the sum of its values is at most ``limit``."""
+
+    def make(study_id, values, flown=False, limit=10.0):
+        claim = Claim(study_id, f"sum of {study_id}", "arithmetic", "1", high=limit)
+        tasks = tuple(partial(float, value) for value in values)
+        return Study(study_id, tasks, lambda results: [claim.judge(sum(results), f"of {results}")], flown)
+
+    return make

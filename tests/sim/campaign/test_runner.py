@@ -1,0 +1,53 @@
+"""Studies are run by workers: results in order, and a failure ends the run at once."""
+
+import multiprocessing
+import os
+import signal
+import time
+from functools import partial
+
+import pytest
+
+from sim.campaign.claim import Study
+from sim.campaign.runner import run
+from sim.errors import HarnessError
+
+
+class TestRunner:
+    @pytest.mark.parametrize("workers", [1, 2])
+    def test_results_are_in_order_however_they_came(self, workers, study):
+        studies = [study("one", [1, 2, 3]), study("none", []), study("two", [20])]
+        seen, told = [], []
+        finished = run(studies, workers, seen.append, lambda done: told.append(done.study.id))
+        assert [done.results for done in finished] == [(1.0, 2.0, 3.0), (), (20.0,)]
+        assert [done.outcomes[0].verdict.value for done in finished] == ["PASS", "PASS", "FAIL"]
+        assert seen == [1, 2, 3, 4]
+        assert sorted(told) == ["none", "one", "two"]
+
+    def test_what_a_task_refuses_ends_the_run(self):
+        def refuse():
+            raise HarnessError("no")
+
+        with pytest.raises(HarnessError, match="no"):
+            run([Study("x", (refuse,), lambda results: [])], 1, lambda done: None, lambda done: None)
+
+    def test_one_that_fails_does_not_wait_for_the_others(self):
+        tasks = (partial(time.sleep, 60.0), partial(int, "no number"))
+        began = time.monotonic()
+        with pytest.raises(ValueError, match="no number"):
+            run([Study("x", tasks, lambda results: [])], 2, lambda done: None, lambda done: None)
+        assert time.monotonic() - began < 30.0
+        assert not multiprocessing.active_children()
+
+
+def ended_from_outside():
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def test_a_worker_that_is_killed_is_one_sentence():
+    others = multiprocessing.active_children()
+    studies = [Study(f"s{number}", (ended_from_outside,), lambda results: []) for number in range(3)]
+    with pytest.raises(HarnessError, match="a worker process was ended from outside: 0 of 3 ") as caught:
+        run(studies, 2, lambda done: None, lambda done: None)
+    assert caught.value.exit_code == 1
+    assert multiprocessing.active_children() == others

@@ -1,0 +1,63 @@
+"""``torquer validate``: which files are checked, what it prints and writes, and how it ends."""
+
+import pytest
+from click.testing import CliRunner
+
+from sim.validate import command
+from torquer.cli.main import main
+
+
+class TestCommand:
+    def call(self, *words):
+        return CliRunner().invoke(main, ["validate", "--workers", "1", *map(str, words)])
+
+    def test_reference_files_that_agree(self, folder):
+        folder.copy("eclipse.csv", rows=4)
+        folder.copy("earth_sun.csv", rows=4)
+        page = folder.path / "deep" / "page.md"
+        result = self.call("--reference", folder.path, "--out", page)
+        assert result.exit_code == 0
+        assert "17 claims hold, 0 fail, 5 absent" in result.stdout
+        assert "| eclipse.csv | 4 | kind, " in page.read_text()
+        assert page.read_text().count("| PASS |") == 17
+
+    def test_one_that_does_not_is_exit_code_1(self, folder):
+        folder.copy("eclipse.csv", rows=20)
+        line_number = folder.add("eclipse.csv", 12, "frac_planar", 1e-5)
+        result = self.call("--reference", folder.path)
+        assert result.exit_code == 1
+        failed = [text for text in result.stdout.splitlines() if text.startswith("FAIL")]
+        assert len(failed) == 1
+        assert f"eclipse.csv line {line_number} " in failed[0]
+
+    def test_malformed_files_are_one_sentence_and_exit_code_2(self, folder):
+        folder.copy("eclipse.csv", rows=4)
+        line_number = folder.put("eclipse.csv", 2, "sun_x_km", lambda _: "far")
+        result = self.call("--reference", folder.path)
+        assert result.exit_code == 2
+        expected = f"torquer: {folder.path / 'eclipse.csv'}, line {line_number}, column sun_x_km: 'far'"
+        assert result.stderr == f"{expected} is no finite number\n"
+
+    @pytest.mark.parametrize("words", [("--reference", "nowhere"), ("--only", "nothing"), ("--workers", "0")])
+    def test_what_cannot_be_done_is_exit_code_2(self, words):
+        result = self.call(*words)
+        assert result.exit_code == 2
+        assert result.stderr.startswith("torquer: ")
+        assert result.stderr.count("\n") == 1
+
+    def test_only_a_whole_validation_writes_the_page_by_itself(self, tmp_path, monkeypatch, study):
+        parts = [study("a", [1.0]), study("b", [2.0], flown=True)]
+        monkeypatch.setattr(command, "all_studies", lambda repository: parts)
+        monkeypatch.setattr(command, "find_repository", lambda start: tmp_path)
+        page = tmp_path / "docs" / "validation.md"
+        for words in (["--quick"], ["--only", "a"]):
+            assert self.call(*words).exit_code == 0
+            assert not page.exists()
+        result = self.call()
+        assert result.exit_code == 0
+        assert page.read_text().count("| PASS |") == 2
+        assert f"page: {page}" in result.stdout
+        monkeypatch.setattr(command, "find_repository", lambda start: None)
+        monkeypatch.chdir(tmp_path)
+        self.call()
+        assert (tmp_path / "validation.md").exists()

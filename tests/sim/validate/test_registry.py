@@ -1,0 +1,45 @@
+"""Which studies run, and where the repository is."""
+
+import pytest
+
+from sim.campaign.claim import Verdict
+from sim.errors import HarnessError
+from sim.validate.registry import all_studies, chosen, find_repository
+
+
+class TestChoice:
+    @pytest.fixture
+    def ids(self, study):
+        """The ids of the chosen studies, of three."""
+        studies = (study("reference.igrf14", []), study("reference.tle", []), study("posat1", [], flown=True))
+        return lambda *only, quick=False: [one.id for one in chosen(studies, only, quick)]
+
+    def test_all_by_default_and_first_words_by_only(self, ids):
+        assert ids() == ["reference.igrf14", "reference.tle", "posat1"]
+        assert ids("reference") == ["reference.igrf14", "reference.tle"]
+        assert ids("reference.tle", "posat1") == ["reference.tle", "posat1"]
+
+    def test_quick_leaves_out_flights(self, ids):
+        assert ids(quick=True) == ["reference.igrf14", "reference.tle"]
+        with pytest.raises(HarnessError, match="--quick"):
+            ids("posat1", quick=True)
+
+    @pytest.mark.parametrize("word", ["refer", "posat", "nothing", ""])
+    def test_words_that_fit_nothing_are_refused(self, word, ids):
+        with pytest.raises(HarnessError, match=r"no such claims; there are reference\.igrf14, "):
+            ids(word)
+
+    def test_without_a_repository_reference_checks_are_absent(self):
+        absent = [s for s in all_studies(None) if s.id.startswith("reference.")]
+        assert absent
+        assert all(not s.tasks and s.conclude([])[0].verdict is Verdict.ABSENT for s in absent)
+
+    def test_ids_are_unique_and_begin_with_their_study(self, pytestconfig):
+        studies = all_studies(pytestconfig.rootpath)
+        assert len({s.id for s in studies}) == len(studies) > 10
+
+
+def test_the_repository_is_found_from_within(tmp_path, pytestconfig):
+    assert find_repository(pytestconfig.rootpath / "sim" / "plant") == pytestconfig.rootpath
+    (tmp_path / "pyproject.toml").write_text('name = "another"\n')
+    assert find_repository(tmp_path) is None
