@@ -13,12 +13,11 @@ on them.
 """
 
 from collections import Counter, deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import cache, lru_cache
 from itertools import product
 from math import inf
-from types import ModuleType
 from typing import NamedTuple
 
 import pytest
@@ -46,16 +45,17 @@ DEMANDS = {
 
 
 Heard = tuple[CoilStatus | None, CoilBoot | None]
+Planting = Callable[[pytest.MonkeyPatch], None]
+"""Plants a bug in the scheduler or in the interlock."""
 
 
 class Setup(NamedTuple):
-    """What is proven: for which limits, by whose rules, and what may go wrong."""
+    """What is proven: for which limits, with which bugs, and what may go wrong."""
 
     shared: bool
     pulse_ticks: int
     backoff_ticks: int
-    scheduler: ModuleType = actuator
-    rules: ModuleType = interlock
+    bugs: tuple[Planting, ...] = ()
     faults: bool = True
     board_restarts: bool = True
     restart_in_pulse: bool = True
@@ -169,14 +169,14 @@ class Search:
             energy_metric=identity,
         )
         self.coils = actuator.CoilConfig(self.config, dipoles=None)
-        self.limits = setup.rules.CoilLimits(1, duration_ms, 1000 * setup.backoff_ticks, setup.shared)
+        self.limits = interlock.CoilLimits(1, duration_ms, 1000 * setup.backoff_ticks, setup.shared)
         self.words, self.decide, self.ask = cache(self._words), cache(self._decide), cache(self._ask)
         self.drive = cache(self._drive)
         self.proof = Proof()
 
     def run(self) -> Proof:
         """Everything that can be reached from boot; AssertionError at the first world that breaks a limit."""
-        first = World(self._boot(0), self.setup.rules.boot(self.limits), Judge(), 0, new=True)
+        first = World(self._boot(0), interlock.boot(self.limits), Judge(), 0, new=True)
         seen = {first}
         queue = deque(seen)
         while queue:
@@ -193,9 +193,9 @@ class Search:
         own, board, judge, phase, new = world
         faults, proof = self.setup.faults, self.proof
         if self.setup.board_restarts:
-            yield world._replace(board=self.setup.rules.boot(self.limits), new=True)
+            yield world._replace(board=interlock.boot(self.limits), new=True)
         if faults:
-            yield world._replace(board=self.setup.rules.silence(board, self.limits))
+            yield world._replace(board=interlock.silence(board, self.limits))
             if self.setup.restart_in_pulse or judge.on is None:
                 proof.restarts_in_pulse += judge.on is not None
                 yield world._replace(own=self._boot(phase))
@@ -222,8 +222,8 @@ class Search:
         return World(own, board_then, judge, (world.phase + 1) % 3)
 
     def _boot(self, phase: int) -> Own:
-        act, tick = self.setup.scheduler, EPOCH + phase
-        return relative(act.pulses.boot(tick, self.config), act.CoilView(), tick)
+        tick = EPOCH + phase
+        return relative(pulses.boot(tick, self.config), actuator.CoilView(), tick)
 
     def _words(self, board: interlock.Interlock, phase: int, new: bool) -> list[Heard]:
         """What the scheduler may hear in this tick; None where it is lost."""
@@ -238,13 +238,13 @@ class Search:
 
     def _decide(self, own: Own, phase: int, status: CoilStatus | None, boot: CoilBoot | None) -> list[tuple]:
         """Each outcome, the scheduler afterwards and what it asks, with the demands that lead to it."""
-        act, tick = self.setup.scheduler, EPOCH + phase
+        tick = EPOCH + phase
         timers = pulses.PulseState(tuple(tick + left for left in own.ready), tick + own.busy, ZERO)
         readings = NOTHING._replace(coil=status, coil_boot=boot)
-        view = act.hear(act.CoilView(lockout_ms=own.word), readings, tick, self.coils)
+        view = actuator.hear(actuator.CoilView(lockout_ms=own.word), readings, tick, self.coils)
         outcomes: dict[tuple[Own, CoilFire | None], list[int | None]] = {}
         for demand, (owed, b_body_t) in DEMANDS.items():
-            state, after, request = act.actuate(
+            state, after, request = actuator.actuate(
                 replace(timers, owed_impulse_body_nms=owed),
                 view,
                 Demand(),
@@ -258,9 +258,9 @@ class Search:
 
     def _ask(self, board: interlock.Interlock, request: CoilFire, phase: int) -> tuple:
         """The board after the request, as it comes off the bus, and why it was refused."""
-        rules, fire = self.setup.rules, CoilFire.decode(request.encode().data)
-        asked = rules.Request(fire.coil, fire.level, fire.duration_ms, fire.seq, fire.tick)
-        after, reason = rules.ask(board, asked, EPOCH + phase, self.limits)
+        fire = CoilFire.decode(request.encode().data)
+        asked = interlock.Request(fire.coil, fire.level, fire.duration_ms, fire.seq, fire.tick)
+        after, reason = interlock.ask(board, asked, EPOCH + phase, self.limits)
         assert reason is not None or board.remaining == 0, "two coils on: a pulse into another"
         return after, reason
 
@@ -268,7 +268,7 @@ class Search:
         """One tick on, watched by the judge; nothing is kept that no rule can see."""
         driven = min(board.remaining, interlock.UNITS_PER_TICK)
         judge = judge.watch(board.coil, board.level, driven, self.setup)
-        board = self.setup.rules.elapse(board, 1)
+        board = interlock.elapse(board, 1)
         coil, seq = board.coil if board.level else 0, None if board.seq is None else 0
         return replace(board, coil=coil, seq=seq), judge
 
@@ -279,7 +279,14 @@ def search():
 
     The last two are kept: what follows may ask for more of the same.
     """
-    return lru_cache(maxsize=2)(lambda setup: Search(setup).run())
+
+    def searched(setup):
+        with pytest.MonkeyPatch.context() as patch:
+            for plant in setup.bugs:
+                plant(patch)
+            return Search(setup).run()
+
+    return lru_cache(maxsize=2)(searched)
 
 
 @pytest.fixture
