@@ -10,8 +10,7 @@ from typing import Any, NamedTuple
 from fsw.core import modes
 from fsw.core.config import FlightConfig
 from fsw.core.estimation.estimator import untraced
-from fsw.core.fdir.coil_health import CoilHealth
-from fsw.core.fdir.sensor_health import SensorHealth
+from fsw.core.fdir.fdir import Health
 from fsw.core.gate.readings import Readings, Telecommand
 from fsw.core.laws.interface import MAX_SPIN_RADPS
 from fsw.core.laws.table import LAWS
@@ -103,8 +102,7 @@ def _clear(state: FlightState, message: TcClear, situation: Situation) -> Outcom
     """Trips are forgotten, every sensor is believed again, and every coil used."""
     return state._replace(
         modes=state.modes._replace(trips=0),
-        sensors=SensorHealth(),
-        coils=CoilHealth(),
+        health=Health(),
         estimator=untraced(state.estimator),
     )
 

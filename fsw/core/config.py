@@ -4,8 +4,7 @@ from dataclasses import dataclass
 
 from fsw.core.actuation.actuator import CoilConfig
 from fsw.core.estimation.estimator import EstimatorConfig
-from fsw.core.fdir.coil_health import CoilHealthConfig
-from fsw.core.fdir.sensor_watch import SensorHealthConfig
+from fsw.core.fdir.fdir import FdirConfig
 from fsw.core.gate.second_sender import SecondSenderConfig
 from fsw.core.laws.interface import ControlConfig
 from fsw.core.modes import ModeConfig
@@ -22,10 +21,9 @@ class FlightConfig:
     table_crc: int
     ephemeris: EphemerisModel
     estimator: EstimatorConfig
-    sensors: SensorHealthConfig
     control: ControlConfig
     coils: CoilConfig
-    coil_health: CoilHealthConfig
+    fdir: FdirConfig
     modes: ModeConfig
     rates: RateTable
     second_sender: SecondSenderConfig

@@ -11,6 +11,7 @@ from fsw.core.actuation.pulses import boot
 from fsw.core.config import FlightConfig
 from fsw.core.estimation.attitude import UNKNOWN
 from fsw.core.estimation.estimator import restart
+from fsw.core.fdir import fdir
 from fsw.core.gate.second_sender import SecondSender
 from fsw.core.laws.interface import FieldSample
 from fsw.core.modes import ModeState
@@ -23,7 +24,7 @@ def restarted(state: FlightState, tick: int, config: FlightConfig) -> FlightStat
 
     A throttled event stays so for what is left of its time, a second sender for all of its time.
     """
-    other, pair, events = state.second_sender, state.sensors.pair, state.events
+    other, events = state.second_sender, state.events
     told = tuple(kind._replace(tick=tick - (state.tick - kind.tick)) for kind in events.told)
     known = state.estimator.estimate is not None
     return state._replace(
@@ -31,7 +32,7 @@ def restarted(state: FlightState, tick: int, config: FlightConfig) -> FlightStat
         second_sender=SecondSender(other.signs, tick, other.can_id) if other.signs else other,
         ephemeris=None,
         estimator=restart(state.estimator) if known else state.estimator._replace(rejected_in_a_row=0),
-        sensors=state.sensors._replace(pair=pair._replace(proof=min(pair.proof, 0))),
+        health=fdir.plant_restarted(state.health),
         attitude=UNKNOWN,
         modes=ModeState(since_tick=tick, trips=state.modes.trips, held=state.modes.held),
         sample=FieldSample(),

@@ -8,8 +8,7 @@ from fsw.core.actuation.actuator import CoilView
 from fsw.core.actuation.pulses import PulseState
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.estimation.estimator import EstimatorState
-from fsw.core.fdir.coil_health import CoilHealth
-from fsw.core.fdir.sensor_health import SensorHealth
+from fsw.core.fdir.fdir import Health
 from fsw.core.gate.readings import GateState
 from fsw.core.gate.second_sender import NOBODY, SecondSender
 from fsw.core.gate.sync_watch import SyncWatch
@@ -52,8 +51,7 @@ class FlightState(NamedTuple):
     upload: Upload
     ephemeris: EphemerisWindow | None
     estimator: EstimatorState
-    sensors: SensorHealth
-    coils: CoilHealth
+    health: Health
     attitude: Attitude
     modes: ModeState
     sample: FieldSample
@@ -78,8 +76,7 @@ class FlightState(NamedTuple):
             self.upload.come,
             self.orbit is not None,
             *self.estimator.integers(),
-            *self.sensors.integers(),
-            *self.coils.integers(),
+            *self.health.integers(),
             self.attitude.valid,
             *self.modes.integers(),
             self.sample.tick,
@@ -94,7 +91,7 @@ class FlightState(NamedTuple):
         """Every float outside the estimator's arrays, in the order that recorded logs fix."""
         return (
             *self.attitude.floats(),
-            *self.sensors.floats(),
+            *self.health.floats(),
             *self.sample.b_body_t,
             *self.pulses.floats(),
             *self.coil.floats(),
@@ -132,8 +129,7 @@ def initial_state(pulses: PulseState, setpoint: Setpoint, sent: tuple[int, ...])
         upload=Upload(),
         ephemeris=None,
         estimator=EstimatorState(),
-        sensors=SensorHealth(),
-        coils=CoilHealth(),
+        health=Health(),
         attitude=UNKNOWN,
         modes=ModeState(),
         sample=FieldSample(),

@@ -1,39 +1,55 @@
-"""The flight loop as one pure function: gate, estimate, supervise, obey, control, schedule, report."""
+"""The flight loop as one pure function, from what the boards sent to what is sent and reported."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
 
 from fsw.core import telemetry
 from fsw.core.actuation import pulses
-from fsw.core.actuation.actuator import actuate, hear, unexpected
+from fsw.core.actuation.actuator import actuate, hear
 from fsw.core.algebra.quaternion import rotate
-from fsw.core.algebra.vector import ZERO
+from fsw.core.algebra.vector import ZERO, Vec3
 from fsw.core.commands import command
 from fsw.core.config import FlightConfig
 from fsw.core.estimation.attitude import UNKNOWN
 from fsw.core.estimation.estimator import (
     NONE_USED,
     Used,
-    attitude,
-    estimate,
+    orbital_attitude,
     perfect_attitude,
+    predict,
     restart,
-    untraced,
+    update,
     usable_field,
     usable_sun,
 )
-from fsw.core.fdir import coil_health, sensor_health
+from fsw.core.fdir import fdir
+from fsw.core.fdir.fdir import Evidence
 from fsw.core.gate import second_sender
 from fsw.core.gate.readings import Readings, admit
-from fsw.core.gate.sync_watch import Belief, judge, near
+from fsw.core.gate.sync_watch import Belief, SyncWatch, judge, near
 from fsw.core.laws import by_mode
-from fsw.core.laws.interface import FieldSample, Seen
+from fsw.core.laws.interface import Demand, FieldSample, Seen
+from fsw.core.monitors import Monitor
 from fsw.core.orbit.ephemeris import EphemerisModel, Reference, advance, fly_orbit, reference_at, sound
 from fsw.core.restart import restarted
 from fsw.core.state import FlightState, Inbox, checksum, initial_state
-from fsw.core.supervisor import Verdict, supervise
-from fsw.core.throttle import Throttle, throttled
+from fsw.core.supervisor import supervise
 from fsw.wire.frame import Frame
-from fsw.wire.messages import CoilDipole, CoilFire, CountedMessage, TcAck, TickDone
+from fsw.wire.messages import CoilDipole, CoilFire, CountedMessage, TickDone
 
 Outbox = tuple[Frame, ...]
+
+
+class Observation(NamedTuple):
+    """What one tick shows of the satellite.
+
+    ``readings`` are those that may be trusted; ``reference`` is what was expected, None where no orbit is
+    known; ``used`` is what the filter took.
+    """
+
+    readings: Readings
+    reference: Reference | None
+    used: Used = NONE_USED
 
 
 def boot(config: FlightConfig) -> FlightState:
@@ -47,38 +63,25 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     """One tick: (state, inbox, config) -> (state, outbox), the outbox closed by TICK_DONE.
 
     A SYNC that is not believed is counted and answered with nothing; one that is repeated because the answer
-    was not heard, with TICK_DONE alone. Only the first and one that goes on take what is in the inbox.
+    was not received, with TICK_DONE alone. Only the first and one that goes on take what is in the inbox.
     """
     before, tick = state, inbox.tick
     belief, syncs = judge(state.syncs, state.tick, tick)
     if belief is Belief.IGNORED or belief is Belief.UNHEARD:
         state = state._replace(ignored_syncs=state.ignored_syncs + 1, syncs=syncs)
-        return state, (TickDone(tick, checksum(state)).encode(),) if belief is Belief.UNHEARD else ()
-    if belief is Belief.RESTARTED:
-        state, inbox = restarted(state, tick, config), inbox._replace(frames=())
-    elif 0 <= state.tick < tick - 1:
-        state = state._replace(pulses=pulses.delay(state.pulses, tick, tick - state.tick - 1))
-    state = state._replace(syncs=syncs._replace(strange_tick=-1))
+        return state, (_done(state, tick),) if belief is Belief.UNHEARD else ()
+    state, inbox = _begin(state, inbox, belief, syncs, config)
     model = fly_orbit(config.ephemeris, state.orbit)
-    state, readings = _gate(state, inbox, model, config)
-    state, readings, reference, used = _estimate(state, readings, tick - before.tick, config)
-    verdict = supervise(state, state.attitude, tick, config)
-    state, acks = command(state._replace(modes=verdict.modes), readings, verdict.violated is not None, config)
-    seen = _look(state, readings, reference, model)
-    demand = by_mode.demand(state.modes.mode, seen, state.memory, state.setpoint, config.control)
-    pulse_state, coil, request = actuate(
-        state.pulses, state.coil, demand, seen.b_body_t, readings, tick, config.coils, state.coils.faults
-    )
-    frames, events, sent = _report(before, state, readings, used, reference, verdict, acks, request, config)
-    state = state._replace(
-        sample=seen.sample,
-        memory=demand.memory if demand is not None else (),
-        pulses=pulse_state,
-        coil=coil,
-        events=events,
-        sent=sent,
-    )
-    return state, (*frames, TickDone(tick, checksum(state)).encode())
+    state, readings = _gate(state, inbox, config)
+    state, reference = _predict(state, model, tick - before.tick, config)
+    state, observation = _update(state, readings, reference, config)
+    state = _judge(state, readings, observation, config)
+    state, violated = supervise(state, config)
+    state, acks = command(state, observation.readings, violated is not None, config)
+    state, demand, b_body_t = _control(state, observation, model, config)
+    state, requests = _schedule(state, observation.readings, demand, b_body_t, config)
+    state, frames = _report(before, state, observation, violated, (*requests, *acks), config)
+    return state, (*frames, _done(state, tick))
 
 
 def takes_inbox(before: FlightState, after: FlightState) -> bool:
@@ -86,21 +89,31 @@ def takes_inbox(before: FlightState, after: FlightState) -> bool:
     return after.tick != before.tick and (before.tick < 0 or near(before.tick, after.tick))
 
 
-def _gate(
-    state: FlightState, inbox: Inbox, model: EphemerisModel, config: FlightConfig
-) -> tuple[FlightState, Readings]:
-    """Take what the boards said; at the first tick of a count start every timer in full."""
-    tick = inbox.tick
+def _done(state: FlightState, tick: int) -> Frame:
+    return TickDone(tick, checksum(state)).encode()
+
+
+def _begin(
+    state: FlightState, inbox: Inbox, belief: Belief, syncs: SyncWatch, config: FlightConfig
+) -> tuple[FlightState, Inbox]:
+    """At the first tick of a count every timer starts in full; ticks that were skipped stop the timers."""
+    tick, timing = inbox.tick, config.coils.pulses
+    if belief is Belief.RESTARTED:
+        state, inbox = restarted(state, tick, config), inbox._replace(frames=())
     if state.tick < 0:
-        state = state._replace(
-            pulses=pulses.boot(tick, config.coils.pulses), field_tick=tick, status_tick=tick
-        )
+        state = state._replace(pulses=pulses.boot(tick, timing), field_tick=tick, status_tick=tick)
+    elif state.tick < tick - 1:
+        state = state._replace(pulses=pulses.delay(state.pulses, tick, tick - state.tick - 1))
+    return state._replace(tick=tick, syncs=syncs._replace(strange_tick=-1)), inbox
+
+
+def _gate(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[FlightState, Readings]:
+    """Take what the boards sent; the coil driver's word is judged at once."""
+    tick = inbox.tick
     readings, gate = admit(inbox.frames, state.gate)
     view = hear(state.coil, readings, tick, config.coils)
-    unasked = unexpected(view, tick, config.coils.pulses)
     expected_s = config.epoch_unix_s + tick // config.tick_hz
-    heard = state._replace(
-        tick=tick,
+    state = state._replace(
         field_tick=tick if readings.field is not None else state.field_tick,
         status_tick=tick if readings.coil is not None else state.status_tick,
         time_error_s=inbox.unix_time_s - expected_s,
@@ -108,117 +121,117 @@ def _gate(
         second_sender=second_sender.watch(
             state.second_sender, readings, view.seq, config.coils.dipoles is None, tick, config.second_sender
         ),
-        ephemeris=advance(state.ephemeris, tick, model),
         coil=view,
-        coils=coil_health.judge_current(
-            state.coils, view, readings, unasked, tick, config.coils.pulses, config.coil_health
-        ),
+        health=fdir.judge_current(state.health, view, readings, tick, config.fdir),
     )
-    return heard, readings
+    return state, readings
 
 
-def _estimate(
-    state: FlightState, readings: Readings, elapsed_ticks: int, config: FlightConfig
-) -> tuple[FlightState, Readings, Reference | None, Used]:
-    """The estimate of this tick, the readings that may be trusted, what was expected and what was taken."""
-    if state.ephemeris is None:
-        return state._replace(attitude=UNKNOWN), readings, None, NONE_USED
-    reference = reference_at(state.ephemeris, state.tick, config.ephemeris)
+def _predict(
+    state: FlightState, model: EphemerisModel, elapsed_ticks: int, config: FlightConfig
+) -> tuple[FlightState, Reference | None]:
+    """Carry ephemeris and estimate to this tick; the reference is None where no orbit is known."""
+    ephemeris = advance(state.ephemeris, state.tick, model)
+    if ephemeris is None:
+        return state._replace(ephemeris=None), None
+    reference = reference_at(ephemeris, state.tick, config.ephemeris)
     if not sound(reference):
-        lost = state._replace(ephemeris=None, estimator=restart(state.estimator), attitude=UNKNOWN)
-        return lost, readings, None, NONE_USED
+        return state._replace(ephemeris=None, estimator=restart(state.estimator)), None
+    driven_am2 = fdir.driven_am2(state.health, state.coil, config.fdir)
+    predicted = predict(state.estimator, reference, driven_am2, elapsed_ticks, config.estimator)
+    return state._replace(ephemeris=ephemeris, estimator=predicted), reference
+
+
+def _update(
+    state: FlightState, readings: Readings, reference: Reference | None, config: FlightConfig
+) -> tuple[FlightState, Observation]:
+    """Update the estimate by what may be trusted of the readings."""
+    if reference is None:
+        return state._replace(attitude=UNKNOWN), Observation(readings, None)
     if config.estimator.perfect:
-        known = perfect_attitude(readings, state.attitude)
-        return state._replace(attitude=known), readings, reference, NONE_USED
-    trusted = sensor_health.trusted(readings, state.sensors, reference)
-    driven_am2 = coil_health.driven_am2(state.coils, state.coil, config.coils.pulses, config.coil_health)
-    estimator, used = estimate(
-        state.estimator, trusted, reference, driven_am2, elapsed_ticks, config.estimator
-    )
-    seen = attitude(estimator, reference, config.estimator)
-    sensors = sensor_health.judge(
-        state.sensors,
-        readings,
-        usable_field(readings),
-        usable_sun(readings),
-        reference,
-        used,
-        estimator.estimate,
-        seen.sigma3_attitude_rad,
-        config.sensors,
-    )
-    coils = state.coils
-    if sensor_health.in_doubt(sensors, config.sensors):
-        estimator = untraced(estimator)
-    else:
-        coils, estimator = coil_health.judge_rate(
-            coils,
-            state.coil,
-            reference.b_eci_t,
-            estimator,
-            state.tick,
-            config.coils.pulses,
-            config.coil_health,
-            config.estimator.mekf,
-        )
-    if sensors.doubted:
-        estimator, seen = restart(estimator), UNKNOWN
-    if coil_health.turned_unawares(coils):
-        seen = seen._replace(valid=False)
-    state = state._replace(estimator=estimator, sensors=sensors, coils=coils, attitude=seen)
-    return state, trusted, reference, used
+        attitude = perfect_attitude(readings, state.attitude)
+        return state._replace(attitude=attitude), Observation(readings, reference)
+    readings = fdir.trusted(readings, state.health, reference)
+    updated, used = update(state.estimator, readings, reference, config.estimator)
+    attitude = orbital_attitude(updated, reference, config.estimator)
+    return state._replace(estimator=updated, attitude=attitude), Observation(readings, reference, used)
 
 
-def _look(state: FlightState, readings: Readings, reference: Reference | None, model: EphemerisModel) -> Seen:
+def _judge(
+    state: FlightState, readings: Readings, observation: Observation, config: FlightConfig
+) -> FlightState:
+    """Judge sensors and coils by all readings, of isolated sensors too."""
+    reference = observation.reference
+    if reference is None or config.estimator.perfect:
+        return state
+    evidence = Evidence(state.tick, readings, state.coil, reference, observation.used)
+    health, judged, attitude = fdir.judge(
+        state.health, state.estimator, state.attitude, evidence, config.fdir
+    )
+    return state._replace(health=health, estimator=judged, attitude=attitude)
+
+
+def _control(
+    state: FlightState, observation: Observation, model: EphemerisModel, config: FlightConfig
+) -> tuple[FlightState, Demand | None, Vec3]:
+    """What the law of this mode asks for, and the field that it reckoned with, body axes, T."""
+    seen = _law_input(state, observation, model)
+    demand = by_mode.demand(state.modes.mode, seen, state.memory, state.setpoint, config.control)
+    memory = demand.memory if demand is not None else ()
+    return state._replace(sample=seen.sample, memory=memory), demand, seen.b_body_t
+
+
+def _law_input(state: FlightState, observation: Observation, model: EphemerisModel) -> Seen:
     """What the law sees: the modelled field where the attitude is known, else the measured one."""
+    readings, reference, attitude = observation.readings, observation.reference, state.attitude
     usable = usable_field(readings)
     sample = FieldSample(usable, state.tick) if usable is not None else state.sample
     b_body_t = sample.b_body_t
-    if state.attitude.valid and reference is not None:
+    if attitude.valid and reference is not None:
         b_orbit_t = rotate(reference.q_orbit_from_eci, reference.b_eci_t)
-        b_body_t = rotate(state.attitude.q_body_from_orbit, b_orbit_t)
-    known = state.estimator.estimate
-    torque_body_nm = known.torque_body_nm if known is not None else ZERO
+        b_body_t = rotate(attitude.q_body_from_orbit, b_orbit_t)
+    estimate = state.estimator.estimate
     return Seen(
-        state.attitude,
+        attitude,
         b_body_t,
         sample,
         state.sample,
         usable_sun(readings),
         reference,
-        torque_body_nm,
+        estimate.torque_body_nm if estimate is not None else ZERO,
         state.tick,
         model,
     )
 
 
+def _schedule(
+    state: FlightState, readings: Readings, demand: Demand | None, b_body_t: Vec3, config: FlightConfig
+) -> tuple[FlightState, list[CoilFire | CoilDipole]]:
+    """At most one request to the coil driver."""
+    faults = state.health.coils.faults
+    timers, view, request = actuate(
+        state.pulses, state.coil, demand, b_body_t, readings, state.tick, config.coils, faults
+    )
+    return state._replace(pulses=timers, coil=view), [request] if request is not None else []
+
+
 def _report(
     before: FlightState,
     state: FlightState,
-    readings: Readings,
-    used: Used,
-    reference: Reference | None,
-    verdict: Verdict,
-    acks: list[TcAck],
-    request: CoilFire | CoilDipole | None,
+    observation: Observation,
+    violated: Monitor | None,
+    replies: Sequence[CountedMessage],
     config: FlightConfig,
-) -> tuple[list[Frame], Throttle, tuple[int, ...]]:
-    """The frames of this tick without TICK_DONE, what events were told, and the counters of what was sent."""
-    tick = state.tick
-    messages: list[CountedMessage] = [] if request is None else [request]
-    messages += acks
-    if config.rates.attitude.due(tick):
-        messages += telemetry.attitude_messages(state.attitude)
-    if config.rates.quality.due(tick):
-        messages.append(
-            telemetry.quality_message(
-                state.attitude, state.modes, used, reference is not None and reference.lit
-            )
-        )
-    happened = telemetry.happenings(before, state, readings, verdict.violated)
-    events, happenings = throttled(state.events, happened, tick, config.event_spacing_ticks)
-    messages += [telemetry.event_message(happening, tick) for happening in happenings]
-    if config.rates.heartbeat.due(tick):
-        messages.append(telemetry.heartbeat_message(tick, state.modes, state.gate.rejected))
+) -> tuple[FlightState, list[Frame]]:
+    """The frames of this tick: request and acknowledgements, then telemetry as it is due."""
+    events, event_messages = telemetry.event_messages(
+        before, state, observation.readings, violated, config.event_spacing_ticks
+    )
+    messages = [
+        *replies,
+        *telemetry.navigation_messages(state, observation.used, observation.reference, config.rates),
+        *event_messages,
+        *telemetry.heartbeat_messages(state, config.rates),
+    ]
     frames, sent = telemetry.number(messages, state.sent)
-    return frames, events, sent
+    return state._replace(events=events, sent=sent), frames

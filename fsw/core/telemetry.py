@@ -3,13 +3,15 @@
 from fsw.core.estimation.attitude import Attitude
 from fsw.core.estimation.estimator import Used
 from fsw.core.events import SEVERITY, Event, Happening
-from fsw.core.fdir.coil_health import CoilHealth
-from fsw.core.fdir.sensor_watch import Sensor
+from fsw.core.fdir import fdir
 from fsw.core.gate.readings import Readings
 from fsw.core.gate.sync_watch import near
 from fsw.core.modes import ModeState
 from fsw.core.monitors import Monitor
+from fsw.core.orbit.ephemeris import Reference
+from fsw.core.rates import RateTable
 from fsw.core.state import FlightState
+from fsw.core.throttle import Throttle, throttled
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
     CoilDipole,
@@ -42,6 +44,35 @@ FIRST_COUNTERS = (0,) * len(COUNTED)
 def boot_frame(table_crc: int) -> Frame:
     """FSW_BOOT: sent once, before the first SYNC."""
     return FswBoot(reason=0, version=CONTRACT_VERSION, table_crc=table_crc).encode()
+
+
+def navigation_messages(
+    state: FlightState, used: Used, reference: Reference | None, rates: RateTable
+) -> list[CountedMessage]:
+    """NAV_ATTITUDE, NAV_RATE and NAV_QUALITY, those that are due."""
+    messages: list[CountedMessage] = []
+    if rates.attitude.due(state.tick):
+        messages += attitude_messages(state.attitude)
+    if rates.quality.due(state.tick):
+        lit = reference is not None and reference.lit
+        messages.append(quality_message(state.attitude, state.modes, used, lit))
+    return messages
+
+
+def heartbeat_messages(state: FlightState, rates: RateTable) -> list[CountedMessage]:
+    """FSW_HEARTBEAT, if it is due."""
+    if not rates.heartbeat.due(state.tick):
+        return []
+    return [heartbeat_message(state.tick, state.modes, state.gate.rejected)]
+
+
+def event_messages(
+    before: FlightState, after: FlightState, readings: Readings, violated: Monitor | None, spacing_ticks: int
+) -> tuple[Throttle, list[CountedMessage]]:
+    """The events of this tick that may be sent, and the throttle after it."""
+    found = happenings(before, after, readings, violated)
+    throttle, passed = throttled(after.events, found, after.tick, spacing_ticks)
+    return throttle, [event_message(happening, after.tick) for happening in passed]
 
 
 def attitude_messages(attitude: Attitude) -> list[CountedMessage]:
@@ -85,14 +116,7 @@ def happenings(
         found.append(Happening(Event.FILTER_RESTARTED, after.estimator.restarts))
     if before.estimator.estimate is None and after.estimator.estimate is not None:
         found.append(Happening(Event.FILTER_STARTED, after.estimator.restarts))
-    if after.sensors.field.fault != before.sensors.field.fault:
-        found += _sensor(Sensor.MAGNETOMETER, before.sensors.field.fault, after.sensors.field.fault)
-    if after.sensors.sun.fault != before.sensors.sun.fault:
-        found += _sensor(Sensor.SUN_SENSOR, before.sensors.sun.fault, after.sensors.sun.fault)
-    if after.sensors.pair.contradictory and not before.sensors.pair.contradictory:
-        found.append(Happening(Event.SENSORS_DISAGREE, 0))
-    if after.coils is not before.coils:
-        found += _coils(before.coils, after.coils)
+    found += fdir.happenings(before.health, after.health)
     if after.second_sender.named and not before.second_sender.named:
         found.append(Happening(Event.SECOND_SENDER, after.second_sender.can_id))
     if readings.refused is not None:
@@ -112,22 +136,6 @@ def _plant(before: FlightState, after: FlightState, readings: Readings) -> list[
     if readings.end is not None:
         found.append(Happening(Event.FALSE_END, readings.end.ticks))
     return found
-
-
-def _sensor(sensor: Sensor, before: int, after: int) -> list[Happening]:
-    """A sensor whose fault has changed."""
-    if after:
-        return [Happening(Event.SENSOR_ISOLATED, 100 * sensor + after)]
-    return [Happening(Event.SENSOR_READMITTED, 100 * sensor + before)]
-
-
-def _coils(before: CoilHealth, after: CoilHealth) -> list[Happening]:
-    """Coils whose fault is new."""
-    return [
-        Happening(Event.COIL_FAULT, 100 * number + fault)
-        for number, (was, fault) in enumerate(zip(before.faults, after.faults, strict=True), start=1)
-        if fault and fault != was
-    ]
 
 
 def event_message(happening: Happening, tick: int) -> CountedMessage:

@@ -10,6 +10,7 @@ from fsw.core.config import FlightConfig
 from fsw.core.estimation.estimator import EstimatorConfig
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.fdir.coil_health import CoilHealthConfig
+from fsw.core.fdir.fdir import FdirConfig
 from fsw.core.fdir.sensor_pair import PairConfig
 from fsw.core.fdir.sensor_watch import AGAINST_ESTIMATE, FULL, SensorHealthConfig
 from fsw.core.gate.second_sender import SecondSenderConfig
@@ -39,6 +40,7 @@ def flight_config(table: FlightTable) -> FlightConfig:
     tick_hz = table.time.tick_hz
     try:
         orbit = _orbit(table.orbit, table.epoch_unix_s)
+        estimator, timing = _estimator(table), _pulses(table)
         return FlightConfig(
             tick_hz=tick_hz,
             epoch_unix_s=table.epoch_unix_s,
@@ -51,11 +53,10 @@ def flight_config(table: FlightTable) -> FlightConfig:
                 table.field.degree,
                 table.telemetry.ephemeris_s,
             ),
-            estimator=_estimator(table),
-            sensors=_sensors(table),
+            estimator=estimator,
             control=_control(table, orbit),
-            coils=CoilConfig(_pulses(table), _dipoles(table)),
-            coil_health=_coil_health(table),
+            coils=CoilConfig(timing, _dipoles(table)),
+            fdir=FdirConfig(_sensors(table), _coil_health(table), timing, estimator.mekf),
             modes=_modes(table.modes, tick_hz),
             rates=_rates(table.telemetry, tick_hz),
             event_spacing_ticks=_ticks(table.fdir.event_spacing_s, tick_hz),

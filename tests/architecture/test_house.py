@@ -64,3 +64,72 @@ def test_every_test_is_of_a_module_or_says_what_it_specifies(path):
     name = path.stem.removeprefix("test_")
     modules = (mirrored(path.parent) / f"{stem}.py" for stem in (name, f"__{name}__"))
     assert any(module.exists() for module in modules) or ast.get_docstring(ast.parse(path.read_text()))
+
+
+# --- the flight loop is one screen at one level
+
+STEP = ROOT / "fsw" / "core" / "step.py"
+MOST_LINES_OF_A_STAGE, MOST_ARGUMENTS = 40, 6
+METHODS_OF_VALUES = {"_replace"}
+"""What ``step`` may call on a value: it makes another of the same type."""
+
+
+def top_level(path):
+    """Functions, classes and what is imported at the top of a module, by name."""
+    found = {}
+    for statement in ast.parse(path.read_text()).body:
+        if isinstance(statement, ast.FunctionDef | ast.ClassDef):
+            found[statement.name] = statement
+        elif isinstance(statement, ast.ImportFrom):
+            for name in statement.names:
+                found[name.asname or name.name] = (statement.module, name.name)
+    return found
+
+
+def module_path(dotted):
+    path = ROOT.joinpath(*dotted.split("."))
+    return path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+
+
+def resolved(called, path):
+    """The definition that an expression names in a module, through its imports; None: a method of a value."""
+    if isinstance(called, ast.Name):
+        found = top_level(path).get(called.id)
+        while isinstance(found, tuple):
+            module, name = found
+            found = top_level(module_path(module)).get(name)
+        return found
+    if isinstance(called, ast.Attribute) and isinstance(called.value, ast.Name):
+        imported = top_level(path).get(called.value.id)
+        if isinstance(imported, tuple):
+            return top_level(module_path(".".join(imported))).get(called.attr)
+    return None
+
+
+def stages():
+    """``step`` and every function that it calls itself."""
+    step = top_level(STEP)["step"]
+    found = {"step": step}
+    for call in (node for node in ast.walk(step) if isinstance(node, ast.Call)):
+        definition = resolved(call.func, STEP)
+        if definition is None:
+            assert isinstance(call.func, ast.Attribute), f"{ast.unparse(call.func)} cannot be resolved"
+            assert call.func.attr in METHODS_OF_VALUES, f"{ast.unparse(call.func)} cannot be resolved"
+        else:
+            found[ast.unparse(call.func)] = definition
+    return found
+
+
+def test_the_stages_of_a_step_are_found():
+    own = {"_gate", "_predict", "_update", "_judge", "_control", "_schedule", "_report"}
+    assert own | {"supervise", "command"} < set(stages())
+
+
+@pytest.mark.parametrize("name", stages())
+def test_every_stage_of_a_step_fits_a_screen(name):
+    stage = stages()[name]
+    assert isinstance(stage, ast.FunctionDef)
+    lines, arguments = stage.end_lineno - stage.lineno + 1, stage.args
+    counted = [*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs]
+    assert lines < MOST_LINES_OF_A_STAGE
+    assert len(counted) + bool(arguments.vararg) + bool(arguments.kwarg) <= MOST_ARGUMENTS

@@ -78,41 +78,60 @@ def usable_sun(readings: Readings) -> Vec3 | None:
     return (sun.s_x, sun.s_y, sun.s_z) if sun is not None and sun.valid else None
 
 
-def estimate(
+def predict(
     state: EstimatorState,
-    readings: Readings,
     reference: Reference,
     m_body_am2: Vec3,
     elapsed_ticks: int,
     config: EstimatorConfig,
-) -> tuple[EstimatorState, Used]:
-    """Bring the estimate to this tick; also which measurements were taken.
+) -> EstimatorState:
+    """Carry the estimate, if there is one, to this tick; without it where it is too old or no longer sound.
 
     Args:
         state: of the tick before.
-        readings: what the boards said.
         reference: field, Sun and orbit at this tick.
         m_body_am2: dipole driven over the tick that ends now, body axes.
         elapsed_ticks: ticks since ``state``; more than one where a SYNC was lost.
         config: tuning.
     """
+    estimate = state.estimate
+    if estimate is None:
+        return state
+    if elapsed_ticks > MAX_ELAPSED_TICKS:
+        return restart(state)
+    gravity = 3.0 * MU_M3PS2 / reference.radius_m**3
+    e1_eci = scale(1.0 / reference.radius_m, reference.r_eci_m)
+    for remaining in range(elapsed_ticks, 0, -1):
+        dipole = m_body_am2 if remaining == 1 else ZERO
+        estimate = mekf.predict(estimate, e1_eci, reference.b_eci_t, gravity, dipole, config.mekf)
+    return state._replace(estimate=estimate) if mekf.healthy(estimate) else restart(state)
+
+
+def update(
+    state: EstimatorState, readings: Readings, reference: Reference, config: EstimatorConfig
+) -> tuple[EstimatorState, Used]:
+    """Take the samples of this tick, or start by them; also which of them were taken.
+
+    Args:
+        state: predicted to this tick.
+        readings: what the boards sent.
+        reference: field, Sun and orbit at this tick.
+        config: tuning.
+    """
     field, sun = usable_field(readings), usable_sun(readings)
     blanked = field is None and readings.field is not None
-    current = _carried(state.estimate, reference, m_body_am2, elapsed_ticks, config)
-    if current is None:
-        state = state if state.estimate is None else restart(state)
+    if state.estimate is None:
         started = _start(field, sun, reference, config)
         return state._replace(estimate=started), Used(started is not None, started is not None, blanked)
 
-    current, took_field, took_sun = _updated(current, field, sun, reference, config.mekf)
+    estimate, took_field, took_sun = _updated(state.estimate, field, sun, reference, config.mekf)
     rejected = (field is not None and not took_field) + (sun is not None and not took_sun)
     in_a_row = state.rejected_in_a_row + rejected
     if not rejected and (took_field or took_sun):
         in_a_row = 0
-    moved = EstimatorState(current, in_a_row, state.rejected_total + rejected, state.restarts)
-    used = Used(took_field, took_sun, blanked)
-    lost = in_a_row >= config.restart_after_rejections or not mekf.healthy(current)
-    return (restart(moved) if lost else moved), used
+    updated = EstimatorState(estimate, in_a_row, state.rejected_total + rejected, state.restarts)
+    lost = in_a_row >= config.restart_after_rejections or not mekf.healthy(estimate)
+    return (restart(updated) if lost else updated), Used(took_field, took_sun, blanked)
 
 
 def _updated(
@@ -130,7 +149,7 @@ def _updated(
     return after_sun or current, after_field is not None, after_sun is not None
 
 
-def attitude(state: EstimatorState, reference: Reference, config: EstimatorConfig) -> Attitude:
+def orbital_attitude(state: EstimatorState, reference: Reference, config: EstimatorConfig) -> Attitude:
     """The estimate as seen from the orbital frame."""
     known = state.estimate
     if known is None:
@@ -153,24 +172,6 @@ def perfect_attitude(readings: Readings, before: Attitude) -> Attitude:
     scalar = max(0.0, 1.0 - q.q_x**2 - q.q_y**2 - q.q_z**2) ** 0.5
     near_unit = (scalar, q.q_x, q.q_y, q.q_z)  # near 180 deg rounding makes the vector longer than 1
     return Attitude(normalise(near_unit), (w.w_x, w.w_y, w.w_z), 0.0, 0.0, True)
-
-
-def _carried(
-    known: Estimate | None,
-    reference: Reference,
-    m_body_am2: Vec3,
-    elapsed_ticks: int,
-    config: EstimatorConfig,
-) -> Estimate | None:
-    """The estimate predicted to this tick; None where there is none, it is too old or no longer sound."""
-    if known is None or elapsed_ticks > MAX_ELAPSED_TICKS:
-        return None
-    gravity = 3.0 * MU_M3PS2 / reference.radius_m**3
-    e1_eci = scale(1.0 / reference.radius_m, reference.r_eci_m)
-    for remaining in range(elapsed_ticks, 0, -1):
-        dipole = m_body_am2 if remaining == 1 else ZERO
-        known = mekf.predict(known, e1_eci, reference.b_eci_t, gravity, dipole, config.mekf)
-    return known if mekf.healthy(known) else None
 
 
 def _start(

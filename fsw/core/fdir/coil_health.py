@@ -85,7 +85,7 @@ def driven_am2(health: CoilHealth, view: CoilView, timing: PulseConfig, config: 
     return scale(_stray_am2(health, timing, config), AXES[health.faults.index(CoilFault.STUCK)])
 
 
-def turned_unawares(health: CoilHealth) -> bool:
+def unattributed_torque(health: CoilHealth) -> bool:
     """Whether a current turns the satellite, and nothing has told yet in which coil it flows."""
     return health.stuck and _flows_somewhere(health)
 
@@ -220,7 +220,7 @@ def _blamed(
     weak = coil_blame.too_little(solution, config.weak_part, config.name_sigmas)
     if weak is not None:
         health = _named(health, weak.coil, _kind(weak.part, config))
-    conducting = coil_blame.conducting(solution) if turned_unawares(health) else None
+    conducting = coil_blame.conducting(solution) if unattributed_torque(health) else None
     if conducting is None:
         return health, known
     return _named(health, conducting, CoilFault.STUCK), coil_rate.settle(known, conducting, tuning)

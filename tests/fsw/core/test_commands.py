@@ -6,6 +6,7 @@ import pytest
 
 from fsw.core.commands import HANDLERS, LAW_NAMES, command, decimal
 from fsw.core.fdir.coil_health import CoilHealth
+from fsw.core.fdir.fdir import Health
 from fsw.core.fdir.sensor_health import SensorHealth
 from fsw.core.fdir.sensor_watch import Watch
 from fsw.core.gate.readings import NOTHING, TELECOMMANDS
@@ -140,13 +141,11 @@ class TestMode:
 
 def test_clearing_forgets_trips_and_faults_and_nothing_else(obey, state):
     faulty = state._replace(
-        sensors=SensorHealth(Watch(fault=3), Watch(fault=2)), coils=CoilHealth(faults=(1, 2, 3))
+        health=Health(SensorHealth(Watch(fault=3), Watch(fault=2)), CoilHealth(faults=(1, 2, 3)))
     )
     after, results = obey(faulty, TcClear())
     assert results == [TcAckResult.ACCEPTED]
-    assert after == state._replace(
-        modes=state.modes._replace(trips=0), sensors=SensorHealth(), coils=CoilHealth()
-    )
+    assert after == state._replace(modes=state.modes._replace(trips=0), health=Health())
 
 
 class TestLaw:

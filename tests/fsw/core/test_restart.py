@@ -7,6 +7,7 @@ import pytest
 
 from fsw.core.events import Event
 from fsw.core.fdir.coil_health import CoilFault
+from fsw.core.fdir.fdir import Health
 from fsw.core.fdir.sensor_watch import SensorFault, Watch
 from fsw.core.gate.second_sender import SIGNS, SecondSender
 from fsw.core.gate.sync_watch import LEAP_TICKS
@@ -172,22 +173,22 @@ class TestRepeated:
 
 class TestWhatStays:
     def test_what_the_ground_has_set_and_what_was_found(self, world, snapshot):
-        coils = world.state.coils._replace(faults=(0, CoilFault.OPEN, 0))
-        sensors = world.state.sensors._replace(sun=Watch(SensorFault.FROZEN))
+        coils = world.state.health.coils._replace(faults=(0, CoilFault.OPEN, 0))
+        sensors = world.state.health.sensors._replace(sun=Watch(SensorFault.FROZEN))
         modes = ask(world.state.modes, Mode.SAFE, 149)._replace(trips=2)
         state = world.state._replace(
-            coils=coils,
-            sensors=sensors,
+            health=Health(sensors, coils),
             modes=modes,
             second_sender=SecondSender(SIGNS, 140, CoilFire.ID),
             orbit=world.state.upload.values,
             ignored_syncs=7,
         )
         after = restarted(state, 3, world.config)
-        for kept in ("gate", "orbit", "upload", "coils", "setpoint", "sent", "ignored_syncs", "time_error_s"):
+        for kept in ("gate", "orbit", "upload", "setpoint", "sent", "ignored_syncs", "time_error_s"):
             assert snapshot(getattr(after, kept)) == snapshot(getattr(state, kept))
-        assert after.sensors.sun == sensors.sun
-        assert after.sensors.pair.proof <= 0
+        assert after.health.coils == coils
+        assert after.health.sensors.sun == sensors.sun
+        assert after.health.sensors.pair.proof <= 0
         assert (after.modes.mode, after.modes.trips, after.modes.held) == (Mode.SAFE, 2, True)
         assert after.second_sender == SecondSender(SIGNS, 3, CoilFire.ID)
 

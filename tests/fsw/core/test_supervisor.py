@@ -1,11 +1,13 @@
 """Monitors and modes joined: what is watched comes from where it should, and its trip is carried out."""
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import pytest
 
 from fsw.core.estimation.estimator import UNKNOWN, Attitude
 from fsw.core.fdir.coil_health import CoilHealth
+from fsw.core.fdir.fdir import Health
 from fsw.core.gate.second_sender import SIGNS, SecondSender
 from fsw.core.modes import ModeState
 from fsw.core.monitors import Monitor
@@ -23,13 +25,19 @@ def world(make_world):
     return world
 
 
+class Supervision(NamedTuple):
+    modes: ModeState
+    violated: Monitor | None
+
+
 @pytest.fixture
 def supervised(world):
-    """The verdict on the flown state with changes, in POINT."""
+    """The modes after the supervision of a state with changes, in POINT, and the monitor that is violated."""
 
-    def judge(attitude=WELL, tick=TICK, **changes):
-        state = world.state._replace(modes=ModeState(Mode.POINT), **changes)
-        return supervise(state, attitude, tick, world.config)
+    def judge(attitude=WELL, **changes):
+        state = world.state._replace(modes=ModeState(Mode.POINT), attitude=attitude, **changes)
+        after, violated = supervise(state, world.config)
+        return Supervision(after.modes, violated)
 
     return judge
 
@@ -50,8 +58,8 @@ def test_the_attitude_is_the_one_of_this_tick(supervised):
 )
 def test_freshness_is_counted_from_the_last_message(world, supervised, name, monitor):
     stale = world.config.stale_after_ticks
-    assert supervised(tick=TICK, **{name: TICK - stale + 1}).violated is None
-    assert supervised(tick=TICK, **{name: TICK - stale}).violated is monitor
+    assert supervised(**{name: TICK - stale + 1}).violated is None
+    assert supervised(**{name: TICK - stale}).violated is monitor
 
 
 def test_an_impulse_that_is_no_number_trips(world, supervised):
@@ -60,8 +68,9 @@ def test_an_impulse_that_is_no_number_trips(world, supervised):
 
 
 def test_a_coil_that_nobody_asked_for_trips(supervised):
-    assert supervised(coils=CoilHealth(stuck=True)).violated is Monitor.COIL_AS_COMMANDED
-    assert supervised(coils=CoilHealth(faults=(4, 1, 2), strange_ticks=1)).violated is None
+    stuck, strange = CoilHealth(stuck=True), CoilHealth(faults=(4, 1, 2), strange_ticks=1)
+    assert supervised(health=Health(coils=stuck)).violated is Monitor.COIL_AS_COMMANDED
+    assert supervised(health=Health(coils=strange)).violated is None
 
 
 def test_an_orbit_that_is_not_known_trips(supervised):
@@ -75,5 +84,5 @@ def test_a_second_sender_trips_once_it_is_named(supervised):
 
 
 def test_a_trip_leads_to_safe_in_the_same_tick_and_is_counted(supervised):
-    verdict = supervised(ephemeris=None)
-    assert (verdict.modes.mode, verdict.modes.trips, verdict.modes.since_tick) == (Mode.SAFE, 1, TICK)
+    modes = supervised(ephemeris=None).modes
+    assert (modes.mode, modes.trips, modes.since_tick) == (Mode.SAFE, 1, TICK)

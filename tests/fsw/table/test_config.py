@@ -122,7 +122,7 @@ class TestTicks:
         }
         config = configured(
             time={"tick_hz": 10}, modes={"stale_after_s": 50.0}, estimator=tuning, fdir=fdir
-        ).sensors
+        ).fdir.sensors
         assert config == SensorHealthConfig(
             max_field_error_t=pytest.approx(2.5e-6),
             max_norm_error=0.04,

@@ -19,9 +19,10 @@ from fsw.core.estimation.estimator import (
     EstimatorConfig,
     EstimatorState,
     Used,
-    attitude,
-    estimate,
+    orbital_attitude,
     perfect_attitude,
+    predict,
+    update,
     usable_field,
     usable_sun,
 )
@@ -83,7 +84,7 @@ def seen_from(q_body_from_eci=Q_BODY_FROM_ECI, reference=REFERENCE, **changes):
 
 
 def step(state, readings, reference=REFERENCE, dipole=ZERO, elapsed=1, config=CONFIG):
-    return estimate(state, readings, reference, dipole, elapsed, config)[:2]
+    return update(predict(state, reference, dipole, elapsed, config), readings, reference, config)
 
 
 @pytest.fixture(scope="module")
@@ -391,7 +392,7 @@ class TestSoundness:
             broken = settled._replace(estimate=settled.estimate._replace(covariance=covariance))
             state, _ = step(broken, seen_from())
             assert state.estimate is None or mekf.healthy(state.estimate)
-            attitude(state, REFERENCE, CONFIG)
+            orbital_attitude(state, REFERENCE, CONFIG)
 
     def test_a_covariance_that_overflows_in_the_prediction_is_caught_before_the_update(self, settled):
         spinning = settled.estimate._replace(
@@ -416,13 +417,13 @@ class TestSoundness:
 
 class TestAttitude:
     def test_unknown_before_the_start(self):
-        assert attitude(EstimatorState(), REFERENCE, CONFIG) is UNKNOWN
+        assert orbital_attitude(EstimatorState(), REFERENCE, CONFIG) is UNKNOWN
         assert not UNKNOWN.valid
 
     def test_is_seen_from_the_orbital_frame(self, settled):
         """q_body_from_eci = q_orbit_from_eci (x) q_body_from_orbit, and the orbit turns about its normal."""
         moving = settled.estimate._replace(omega_body_radps=(0.011, -0.007, 0.005))
-        seen = attitude(settled._replace(estimate=moving), REFERENCE, CONFIG)
+        seen = orbital_attitude(settled._replace(estimate=moving), REFERENCE, CONFIG)
         chained = multiply(REFERENCE.q_orbit_from_eci, seen.q_body_from_orbit)
         assert canonical(chained) == pytest.approx(canonical(moving.q_body_from_eci), abs=1e-14)
         assert seen.q_body_from_orbit[0] >= 0.0
@@ -437,7 +438,7 @@ class TestAttitude:
             q_body_from_eci=REFERENCE.q_orbit_from_eci,
             omega_body_radps=scale(1.04e-3, rotate(REFERENCE.q_orbit_from_eci, normal_eci)),
         )
-        seen = attitude(settled._replace(estimate=carried), REFERENCE, CONFIG)
+        seen = orbital_attitude(settled._replace(estimate=carried), REFERENCE, CONFIG)
         assert seen.q_body_from_orbit == pytest.approx((1.0, 0.0, 0.0, 0.0), abs=1e-15)
         assert seen.omega_body_orbit_radps == pytest.approx(ZERO, abs=1e-17)
 
@@ -449,7 +450,7 @@ class TestAttitude:
             covariance = np.diag([radians(0.05) ** 2] * 3 + [1e-10, 4e-10, 9e-10] + [1e-14] * 6)
             covariance[axis, axis] = radians(sigma_deg) ** 2
             estimated = settled.estimate._replace(covariance=covariance)
-            seen = attitude(settled._replace(estimate=estimated), REFERENCE, CONFIG)
+            seen = orbital_attitude(settled._replace(estimate=estimated), REFERENCE, CONFIG)
             assert seen.valid is valid
             assert degrees(seen.sigma3_attitude_rad) == pytest.approx(3.0 * sigma_deg)
             assert seen.sigma3_rate_radps == pytest.approx(9e-5)
@@ -457,7 +458,7 @@ class TestAttitude:
     def test_the_sigmas_are_those_of_the_worst_axis_of_attitude_and_of_rate(self, settled):
         for first, second in (([3.0, 1.0, 2.0], [40.0, 20.0, 30.0]), ([1.0, 2.0, 3.0], [20.0, 30.0, 40.0])):
             covariance = 1e-6 * np.diag([*first, *second, *[500.0] * 6])
-            seen = attitude(
+            seen = orbital_attitude(
                 settled._replace(estimate=settled.estimate._replace(covariance=covariance)), REFERENCE, CONFIG
             )
             assert seen.sigma3_attitude_rad == pytest.approx(3.0 * (3e-6) ** 0.5)

@@ -89,7 +89,7 @@ def test_a_wrong_current_names_the_coil_at_its_second_pulse(make_world, factor, 
     own = [tick for tick, coil in fires(said) if coil == first]
     assert len(own) == 1  # the first pulse went out before
     assert named == own[0] + 3
-    assert world.state.coils.faults[first] == kind
+    assert world.state.health.coils.faults[first] == kind
     assert fires(said)[-1][0] > named
     assert world.state.modes.trips == 0
 
@@ -102,7 +102,7 @@ def test_a_coil_that_was_not_fired_is_not_judged(make_world):
     off = NOTHING._replace(coil=CoilStatus(0, 0, 0, 0, 0, 0))
     for view in (CoilView(), CoilView(fired_tick=700)):
         tick = view.fired_tick + pulses.pulse_ticks
-        assert judge_current(health, view, off, False, tick, pulses, config.coil_health) == health
+        assert judge_current(health, view, off, False, tick, pulses, config.fdir.coils) == health
 
 
 def test_a_single_wrong_current_names_nobody(make_world):
@@ -113,22 +113,22 @@ def test_a_single_wrong_current_names_nobody(make_world):
         said = fly(world, 1)
     coil = fires(said)[0][1]
     assert events(fly(world, 10, current_times(coil, 0.0)), Event.COIL_FAULT) == []
-    assert world.state.coils.wrong[coil] == 1
+    assert world.state.health.coils.wrong[coil] == 1
     said = fly(world, 900)
     assert events(said, Event.COIL_FAULT) == []
-    assert world.state.coils.wrong == (0, 0, 0)
+    assert world.state.health.coils.wrong == (0, 0, 0)
 
 
 @pytest.mark.requirement("REQ-COIL-05")
 def test_a_coil_that_is_named_is_not_fired_until_the_ground_clears_it(make_world):
     world = make_world()
     world.fly(SETTLED)
-    health = world.state.coils._replace(faults=(1, 0, 3))
-    world.state = world.state._replace(coils=health)
+    health = world.state.health.coils._replace(faults=(1, 0, 3))
+    world.state = world.state._replace(health=world.state.health._replace(coils=health))
     said = fly(world, 900)
     assert {coil for _, coil in fires(said)} == {1}
     world.step(lambda inbox: inbox._replace(frames=(*inbox.frames, TcClear(counter=3).encode())))
-    assert world.state.coils.faults == (0, 0, 0)
+    assert world.state.health.coils.faults == (0, 0, 0)
     assert {coil for _, coil in fires(fly(world, 900))} & {0, 2}
 
 
@@ -159,10 +159,10 @@ class TestStuck:
         world.fly(SETTLED)
         conduct(world.plant, 2, -0.4)
         valid = []
-        while not any(world.state.coils.faults):
+        while not any(world.state.health.coils.faults):
             valid.append(world.state.attitude.valid)
             world.fly(1)
-        stuck_ticks = world.config.coil_health.stuck_ticks
+        stuck_ticks = world.config.fdir.coils.stuck_ticks
         assert valid == [True] * (stuck_ticks + 1) + [False] * (len(valid) - stuck_ticks - 1)
         world.fly(400)
         assert world.state.attitude.valid
@@ -187,7 +187,7 @@ class TestStuck:
         world.fly(flown)
         said = fly(world, 120, told_by_driver(level=0, current_ma=400))
         ((tripped, monitor),) = events(said, Event.MONITOR_TRIPPED)
-        assert (tripped, monitor) == (world.config.coil_health.stuck_ticks - 1, 7)
+        assert (tripped, monitor) == (world.config.fdir.coils.stuck_ticks - 1, 7)
         assert events(said, Event.COIL_FAULT) == []
         assert world.state.modes.mode is Mode.SAFE
         assert not world.state.attitude.valid
@@ -198,7 +198,7 @@ class TestStuck:
         world.fly(90)
         said = fly(world, 60, told_by_driver(level=2, coil=1, current_ma=100))
         assert events(said, Event.MONITOR_TRIPPED) == [(0, 7)]
-        assert events(said, Event.COIL_FAULT) == [(world.config.coil_health.stuck_ticks - 1, 204)]
+        assert events(said, Event.COIL_FAULT) == [(world.config.fdir.coils.stuck_ticks - 1, 204)]
         assert world.state.modes.mode is Mode.SAFE
 
     def test_it_stays_safe_while_it_lasts_and_not_for_ever(self, make_world):

@@ -212,13 +212,13 @@ def test_nominal_flight_names_nobody(make_world, ticks, settings):
     watcher.fly(ticks)
     assert watcher.of(Event.SENSOR_ISOLATED) == []
     assert watcher.of(Event.SENSORS_DISAGREE) == []
-    assert watcher.world.state.sensors.field.suspicion == 0
+    assert watcher.world.state.health.sensors.field.suspicion == 0
 
 
 def test_what_is_left_out_does_not_reach_the_damping_either(make_world):
     """B-dot works with measured fields: of a magnetometer that is named it takes none."""
     watcher = Watcher(make_world())
     watcher.fly(100, of_field(lambda x, y, z: (0.0, 0.0, 0.0)))
-    assert watcher.world.state.sensors.field.fault
+    assert watcher.world.state.health.sensors.field.fault
     assert watcher.world.state.sample.tick <= 30
     assert watcher.world.state.modes.mode in {Mode.DETUMBLE, Mode.ACQUIRE}
