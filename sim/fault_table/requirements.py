@@ -1,7 +1,7 @@
-"""What the flight software has to notice, each with its limit, who watches it and what it says then.
+"""Requirements on fault detection: each with its limit, what monitors it and the event that reports it.
 
-The one list of requirements on fault detection. ``docs/requirements.md`` is written from it, every id is
-cited by a test, and every number that an event can name stands in it.
+``docs/requirements.md`` is written from this list, every id is cited by a test, and every number that an
+event can have as its argument is in it.
 """
 
 from enum import IntEnum
@@ -19,7 +19,7 @@ from fsw.core.orbit.earth import RADIUS_M
 
 
 class Requirement(NamedTuple):
-    """A requirement; ``watch`` is the number that the event's argument names, ``limit`` says from when on."""
+    """A requirement; ``watch`` is the number in the event's argument, ``limit`` the threshold."""
 
     id: str
     text: str
@@ -45,7 +45,7 @@ def _coil(number: int, watch: CoilFault, text: str) -> Requirement:
 
 
 REQUIREMENTS: tuple[Requirement, ...] = (
-    _trip(1, Monitor.ATTITUDE_FINITE, "Attitude and rate that control works with are numbers.", "finite"),
+    _trip(1, Monitor.ATTITUDE_FINITE, "Attitude and rate that control uses are numbers.", "finite"),
     _trip(
         2,
         Monitor.QUATERNION_UNIT,
@@ -59,66 +59,68 @@ REQUIREMENTS: tuple[Requirement, ...] = (
         f"below {RATE_LIMIT_RADPS:g} rad/s about each axis",
     ),
     _trip(4, Monitor.OWED_FINITE, "The impulse that is still owed is a number.", "finite"),
-    _trip(5, Monitor.FIELD_FRESH, "The magnetometer speaks.", "an intact MAG_FIELD in `modes.stale_after_s`"),
+    _trip(5, Monitor.FIELD_FRESH, "The magnetometer sends.", "an intact MAG_FIELD in `modes.stale_after_s`"),
     _trip(
         6,
         Monitor.COIL_STATUS_FRESH,
-        "The coil driver speaks.",
+        "The coil driver sends.",
         "an intact COIL_STATUS in `modes.stale_after_s`",
     ),
     _trip(
         7,
         Monitor.COIL_AS_COMMANDED,
-        "The coil driver drives what was asked for and nothing else.",
+        "The coil driver drives what was requested and nothing else.",
         "coil and level of the own request, for the time of a pulse",
     ),
     _trip(8, Monitor.ORBIT_KNOWN, "The orbit has a position at this tick.", "the ephemeris has one"),
     _trip(
         9,
         Monitor.NO_SECOND_SENDER,
-        "Nobody else sends in the place of the flight software; while somebody does, it asks for no pulse.",
+        "No other node sends in the place of the flight software; while one does, no pulse is requested.",
         "until `fdir.second_sender_s` after the last sign",
     ),
     _sensor(
         1,
         SensorFault.SATURATED,
-        "A magnetometer that calls its samples not valid while no coil drives is named and left out.",
+        "A magnetometer that marks its samples as not valid while no coil drives is isolated.",
         "`fdir.name_s`",
     ),
     _sensor(
         2,
         SensorFault.STRENGTH,
-        "A field of the wrong strength or a Sun vector of the wrong length is named and left out.",
+        "A sensor is isolated if its field has the wrong strength or its Sun vector the wrong length.",
         "`fdir.max_field_error_nt`, `fdir.max_sun_norm_error` for `fdir.name_s`",
     ),
     _sensor(
         3,
         SensorFault.FROZEN,
-        "A sensor whose sample stands still while the other's moves, or sees nothing, is named and left out.",
+        "A sensor whose sample stands still while the other's moves or is missing is isolated.",
         "`fdir.frozen_s`",
     ),
     _sensor(
         4,
         SensorFault.REFUSED,
-        "A sensor that the filter refuses while it takes the other, or that is alone, is named and left out, "
-        "if the filter has taken both before.",
+        "A sensor that the filter refuses while it accepts the other, or has no other, is isolated if the "
+        "filter has accepted both before.",
         "both for `fdir.prove_s`; then `estimator.gate_nis` for `fdir.name_s` where the angle of field and "
         "Sun is not the modelled one, by more than `fdir.max_angle_error_deg`, else for 1.5 times as long",
     ),
-    _sensor(5, SensorFault.SILENT, "A sensor without acceptable samples is named.", "`modes.stale_after_s`"),
+    _sensor(
+        5, SensorFault.SILENT, "A sensor without acceptable samples is isolated.", "`modes.stale_after_s`"
+    ),
     Requirement(
         "REQ-SENSOR-06",
-        "A sensor that is left out is believed again once it is consistent with the estimate, or for longer "
-        "with the other sensor, whereupon the filter begins anew.",
+        "An isolated sensor is readmitted once it is consistent with the estimate, or with the other sensor, "
+        "in which case the filter restarts.",
         f"`fdir.readmit_s`; against the estimate {AGAINST_ESTIMATE} times as long",
         None,
         Event.SENSOR_READMITTED,
     ),
     Requirement(
         "REQ-SENSOR-07",
-        "Before the filter has taken both for long, sensors that contradict each other name nobody: this is "
-        "said, the filter ends, and does not begin before they have agreed for longer. Likewise when a "
-        "filter that finds a larger bias or disturbance than there can be refuses one; it proves nothing.",
+        "Before the filter has accepted both for long, a contradiction between the sensors isolates nothing: "
+        "it is reported, the filter ends, and does not begin before they have agreed for longer. Likewise "
+        "when a filter whose bias or disturbance is larger than possible refuses one of them; it proves nothing.",
         f"`fdir.max_angle_error_deg` for `fdir.name_s`; agreed for {AGAINST_ESTIMATE} times `fdir.readmit_s`,"
         f" a bad sample undoing {MISFIT}; the square root of `estimator.gate_nis` times "
         "`estimator.bias_sigma_nt`, `estimator.torque_sigma_nm`",
@@ -127,7 +129,7 @@ REQUIREMENTS: tuple[Requirement, ...] = (
     ),
     Requirement(
         "REQ-SENSOR-08",
-        "Noise, eclipse, a driven coil, field and Sun nearly parallel, or a tumble name no sensor.",
+        "Noise, eclipse, a driven coil, field and Sun nearly parallel, or a tumble isolate no sensor.",
         "0.001 false alarms an hour",
         None,
         Event.SENSOR_ISOLATED,
@@ -135,25 +137,23 @@ REQUIREMENTS: tuple[Requirement, ...] = (
     _sensor(
         9,
         SensorFault.UNLIT,
-        "What a Sun sensor sees in the Earth's shadow is not used, and a sensor that goes on so is named.",
+        "A Sun vector in the Earth's shadow is not used, and a sensor that continues so is isolated.",
         f"{(RADIUS_M - SHADOW_M) / 1000.0:g} km inside the shadow's edge; `fdir.name_s`",
     ),
-    _coil(
-        1, CoilFault.OPEN, "A coil without current, or whose pulses have no effect, is named and left out."
-    ),
-    _coil(2, CoilFault.WEAK, "A coil of too small a current or effect is named and left out."),
-    _coil(3, CoilFault.REVERSED, "A coil whose current or effect is the other way is named and left out."),
+    _coil(1, CoilFault.OPEN, "A coil without current, or whose pulses have no effect, is isolated."),
+    _coil(2, CoilFault.WEAK, "A coil of too small a current or effect is isolated."),
+    _coil(3, CoilFault.REVERSED, "A coil whose current or effect is reversed is isolated."),
     Requirement(
         "REQ-COIL-04",
-        "A level or current that nobody asked for leads to SAFE; when it lasts its coil is named, as the "
-        "driver tells it or as the torque tells in sunlight.",
-        "level: at once; more than half of the least level's current, and name: `fdir.stuck_s` beyond",
+        "A level or current that was not requested leads to SAFE; if it persists its coil is isolated, by "
+        "the report of the driver or, in sunlight, by the torque.",
+        "level: at once; more than half of the least level's current, and isolation: `fdir.stuck_s` beyond",
         CoilFault.STUCK,
         Event.COIL_FAULT,
     ),
     Requirement(
         "REQ-COIL-05",
-        "A coil that is named is not fired until the ground sends TC_CLEAR; sound coils are not named.",
+        "An isolated coil is not fired until the ground sends TC_CLEAR; sound coils are not isolated.",
         "no pulse",
         None,
         Event.COIL_FAULT,
@@ -161,9 +161,9 @@ REQUIREMENTS: tuple[Requirement, ...] = (
     Requirement(
         "REQ-BUS-01",
         "Another node that sends under an identifier of the flight software, or whose requests the coil "
-        "driver refuses, is named by that identifier.",
+        "driver refuses, is identified by it.",
         f"{SIGNS} ticks with a whole frame or a refusal, `fdir.second_sender_s` apart at most, or 10 s where "
-        "no pulse was asked for",
+        "no pulse was requested",
         None,
         Event.SECOND_SENDER,
     ),
@@ -176,7 +176,7 @@ REQUIREMENTS: tuple[Requirement, ...] = (
     ),
     Requirement(
         "REQ-BUS-03",
-        "A SYNC that names neither the tick that was answered nor one near ahead moves nothing, and is told.",
+        "A SYNC of neither the tick that was answered nor one near ahead has no effect but an event.",
         f"up to {LEAP_TICKS} ticks ahead",
         None,
         Event.STRANGE_SYNC,
@@ -184,21 +184,21 @@ REQUIREMENTS: tuple[Requirement, ...] = (
     Requirement(
         "REQ-BUS-04",
         "Two of them, the second naming the tick of the first or the next one, mean that the plant has "
-        "started anew: the estimate is lost, all timers start in full, and SYNC is answered again.",
-        "two in a row: with no settled count going on by a tick between them",
+        "restarted: the estimate is lost, all timers start in full, and SYNC is answered again.",
+        "two in a row: no settled count advances by a tick between them",
         None,
         Event.PLANT_RESTARTED,
     ),
     Requirement(
         "REQ-BUS-05",
-        "A PLANT_END that does not fit the ticks that were answered ends nothing, and is told.",
+        "A PLANT_END that does not fit the ticks that were answered has no effect but an event.",
         f"the ticks answered; up to {LEAP_TICKS} more where silence follows",
         None,
         Event.FALSE_END,
     ),
     Requirement(
         "REQ-EVENT-01",
-        "No event floods the bus: of one kind there is one in a time at most; those held back are counted.",
+        "No event floods the bus: events of one kind keep a least distance; those held back are counted.",
         "`fdir.event_spacing_s`",
         None,
         Event.TIME_MISMATCH,
@@ -222,10 +222,10 @@ def _watch(requirement: Requirement) -> str:
 _HEAD = """# Requirements on fault detection
 
 Written from `sim/fault_table/requirements.py` by `python tools/write_requirements.py`; a test fails when it
-is stale or when no test cites one of its requirements. The number after what watches is the one that the
-event's argument names. A violated `REQ-TRIP` requirement leads to SAFE in the same tick. A sensor is named
-as 100 times its number (1: magnetometer, 2: Sun sensor) and the number of the fault; a coil likewise, by
-its axis.
+is stale or when no test cites one of its requirements. The number in parentheses is the argument of the
+event. A violated `REQ-TRIP` requirement leads to SAFE in the same tick. For a sensor the argument is 100
+times its number (1: magnetometer, 2: Sun sensor) plus the number of the fault; for a coil likewise, by its
+axis. An isolated unit is left out of estimation and control.
 
-| id | requirement | limit | watched by | event |
+| id | requirement | limit | monitored by | event |
 |---|---|---|---|---|"""
