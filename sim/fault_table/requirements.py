@@ -120,7 +120,7 @@ REQUIREMENTS: tuple[Requirement, ...] = (
         "REQ-SENSOR-07",
         "Before the filter has accepted both for long, a contradiction between the sensors isolates nothing: "
         "it is reported, the filter ends, and does not begin before they have agreed for longer. Likewise "
-        "when a filter whose bias or disturbance is larger than possible refuses one of them; it proves nothing.",
+        "when a filter whose bias or disturbance is impossibly large refuses one of them; it proves nothing.",
         f"`fdir.max_angle_error_deg` for `fdir.name_s`; agreed for {AGAINST_ESTIMATE} times `fdir.readmit_s`,"
         f" a bad sample undoing {MISFIT}; the square root of `estimator.gate_nis` times "
         "`estimator.bias_sigma_nt`, `estimator.torque_sigma_nm`",
