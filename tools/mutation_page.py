@@ -15,12 +15,12 @@ RESULTS, COVERAGE = HERE / "results.json", HERE / "coverage.json"
 
 TEXT = """# Mutation testing
 
-Each module is changed in one small thing at a time, and its tests are run: one must fail. Changed are
-operators, comparisons, constants, conditions and loops; left out are statements, assignments to what lasts,
-named arguments and what is given back. `make mutation` measures and writes this page; the tests of each
-module stand in `tests/mutation/targets.toml`, the reasons for what survives in
-`tests/mutation/survivors.toml`. Tests that run too long count as failed. A module that has been changed
-since it was measured is told as such, and measured anew by `make mutation`.
+Each mutant is a module with one small change, and the tests of the module are run: one must fail. The changes
+replace operators, comparisons, constants, conditions and loops, and omit statements, assignments to state,
+keyword arguments and return values. `make mutation` measures and writes this page; the tests of each module
+are in `tests/mutation/targets.toml`, the reasons for survivors in `tests/mutation/survivors.toml`. Tests that
+run too long count as failed. A module that has changed since its measurement is marked as such, and
+`make mutation` measures it again.
 
 | part | module | mutants | noticed | too long | survived, listed | survived, not listed |
 |---|---|---|---|---|---|---|

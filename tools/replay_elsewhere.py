@@ -138,9 +138,9 @@ def _page(rows: list[tuple[str, str, str, str]], orbits: float, wall_s: float) -
     head = [
         "# Replay on other machines",
         "",
-        "Written by `make replay-elsewhere`. Flights on the virtual bus, each replayed with parts of the",
-        "processor switched off for the libraries, and by other versions of Python. Bit-exact: every frame",
-        "and every state CRC. Command-exact: every `COIL_FIRE`, telemetry within one step of the wire.",
+        "Written by `make replay-elsewhere`. Flights on the virtual bus, each replayed with some processor",
+        "features hidden from the libraries, and by other versions of Python. Bit-exact: every frame and",
+        "state CRC is equal. Command-exact: every `COIL_FIRE` is, telemetry within one unit of its signal.",
         "",
         f"{orbits:g} orbits each; {platform.machine()}, {_version(sys.executable)}; {wall_s:.0f} s in all.",
         "",

@@ -15,28 +15,29 @@ _TOLD = ("pulses", "refused", "rejected", "worst error deg", "recovered s", "nam
 """Figures that are the same on every run; times on the wall are not."""
 _HEAD = """# Faults
 
-Written by `torquer faults --write-docs`; do not edit. Each row is injected anew by that command, by a seeded
-man in the middle between the nodes, or in boards, plant or process. Every case must keep invariant I (pulse
-at most 3 s, 100 s of back-off, one coil, three levels: judged from COIL_STATUS and, by other code, from the
-current that the plant drove), let no exception out of a step, have no NaN in the flight state, and answer
-every SYNC; beside that what the row expects. `not yet`: the flight software has no event that could name
-the unit. Figures are the worst over all cases.
+Written by `torquer faults --write-docs`; do not edit. That command injects the fault of each row, by a seeded
+man in the middle between the nodes, or in boards, plant or process. Every case must keep the limits (pulse at
+most 3 s, 100 s of back-off, one coil, three levels: judged from COIL_STATUS and, by other code, from the
+current that the plant drove), raise no exception in a step, have no NaN in the flight state, and answer every
+SYNC, and meet what its row expects. `not yet`: the flight software has no event that could identify the unit.
+Figures are the worst over all cases.
 """
 
 
 _KINDS_HEAD = """## Faults of files and processes
 
-Faults that need no flight are tests: the plant killed (`tests/integration/test_sil_ended.py`), disk full and
-logs that are cut, altered or of another version (`test_logs_that_lie.py`), tables and scenarios that are
-wrong (`test_sil_refuses.py`). `torquer faults --slow` has two more rows, which kill and stop a real process.
+Faults that need no flight are tests: the plant killed (`tests/integration/test_sil_ended.py`), a full disk
+and logs that are cut, altered or of another version (`tests/integration/test_logs_that_lie.py`), wrong tables
+and scenarios (`tests/integration/test_sil_refuses.py`). `torquer faults --slow` adds two rows, which kill and
+stop a real process.
 
 ## Faults in a scenario
 
-A scenario schedules faults of its own; without `lasts_s` one stays. The log holds what was on the bus of the
-flight software, so that such a run replays to the last bit. `torquer check` judges what stands in the log: a
-COIL_STATUS that was corrupted on its way is a violation there. A fault that was asked for is no reason by
-itself for `torquer sil` to fail: of such a scenario it does not count broken frames, and takes no stranger of
-the fault for a second sender, but limits, replay and completeness must hold.
+A scenario schedules faults of its own; without `lasts_s` a fault is permanent. The log holds the frames on
+the bus of the flight software, so that such a run replays to the last bit. `torquer check` judges the log: a
+COIL_STATUS that was corrupted on its way is a violation there. A scheduled fault alone does not make
+`torquer sil` fail: with such a scenario it does not count broken frames, and no stranger of the fault as a
+second sender, but limits, replay and completeness must hold.
 
     [[fault]]
     kind = "mag_bias"

@@ -12,9 +12,9 @@ from sim.validate.reference.reference import Checked
 
 _HEAD = """# Validation
 
-Written by `torquer validate`; do not edit. Each row is computed anew by that command: a claim or a
-reference figure, who says so, what this code gives, and what it must keep to. Of a reference file's rows
-the one nearest to its tolerance counts.
+Written by `torquer validate`; do not edit. That command computes each row: a claim or a reference figure, its
+source, the figure of this code, and the tolerance. Of the rows of a reference file the one nearest to its
+tolerance counts.
 """
 
 
