@@ -5,8 +5,8 @@ import sys
 import click
 
 from fsw.input import command_line
+from fsw.input.error_text import error_text
 from fsw.input.schema import TableError
-from fsw.input.sentence import sentence
 from fsw.process import fly
 from fsw.table.table import load_flight_table
 
@@ -24,7 +24,7 @@ def main(table: str | None, bus: str, disarmed: bool, bench: bool, parent: int |
     try:
         loaded = load_flight_table(table)
     except TableError as error:
-        click.echo(f"fsw: {sentence(error)}", err=True)
+        click.echo(f"fsw: {error_text(error)}", err=True)
         sys.exit(2)
     sys.exit(fly(loaded, bus, disarmed, bench, parent))
 

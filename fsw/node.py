@@ -12,7 +12,7 @@ from fsw.core.telemetry import boot_frame
 from fsw.wire.frame import Frame
 from fsw.wire.messages import PlantBoot, PlantEnd, Sync, intact
 
-KEPT_FRAMES = 1024
+MOST_INBOX_FRAMES = 1024
 """Frames kept between two answers: bounds memory under a flood, far above what the gate looks at."""
 
 NO_PLANT_S = 2.0
@@ -56,12 +56,12 @@ class FlightNode:
         if frame.can_id == Sync.ID and intact(frame):
             return self._answer(Sync.decode(frame.data))
         if frame.can_id == PlantEnd.ID and intact(frame):
-            self.end = self._judged(PlantEnd.decode(frame.data).ticks)
-        if len(self._inbox) < KEPT_FRAMES:
+            self.end = self._judge_end(PlantEnd.decode(frame.data).ticks)
+        if len(self._inbox) < MOST_INBOX_FRAMES:
             self._inbox.append(frame)
         return ()
 
-    def hears_plant_start(self, frame: Frame, idle_s: float = 0.0) -> bool:
+    def is_boot_request(self, frame: Frame, idle_s: float = 0.0) -> bool:
         """Whether the plant asks for FSW_BOOT: it started after this node did, or once more.
 
         Args:
@@ -88,7 +88,7 @@ class FlightNode:
             self.end = End.NO
         return outbox
 
-    def _judged(self, ticks: int) -> End:
+    def _judge_end(self, ticks: int) -> End:
         """What is to be made of a PLANT_END: none is believed before the first tick."""
         ahead = (ticks - self.state.tick - 1) % TICKS_MODULO
         if self.state.tick < 0 or ahead > LEAP_TICKS:

@@ -5,8 +5,8 @@ import click
 from fsw.bus.disarmed import Disarmed
 from fsw.bus.interface import Bus, BusError
 from fsw.bus.open_bus import open_bus, resolve
+from fsw.input.error_text import error_text
 from fsw.input.schema import TableError
-from fsw.input.sentence import sentence
 from fsw.node import FlightNode
 from fsw.runner import run
 from fsw.table.config import flight_config
@@ -48,7 +48,7 @@ def fly(
 
 
 def _failed(error: Exception, exit_code: int) -> int:
-    click.echo(f"fsw: {sentence(error)}", err=True)
+    click.echo(f"fsw: {error_text(error)}", err=True)
     return exit_code
 
 

@@ -44,6 +44,6 @@ def run(node: FlightNode, bus: Bus, parent: int | None = None, bench: bool = Fal
         if answer:
             bus.send(answer)
             answered = now
-        elif node.hears_plant_start(frame, now - answered) and now - booted > REPEAT_BOOT_AFTER_S:
+        elif node.is_boot_request(frame, now - answered) and now - booted > REPEAT_BOOT_AFTER_S:
             bus.send([node.start()])
             booted = now

@@ -4,7 +4,7 @@ import sys
 
 import click
 
-from fsw.input.sentence import sentence
+from fsw.input.error_text import error_text
 from hil_stub.process.command import board
 
 EXIT_BAD_INPUT = 2
@@ -15,10 +15,10 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         board.main(arguments, prog_name="python -m hil_stub", standalone_mode=False)
     except click.UsageError as error:
-        click.echo(sentence(error.format_message()), err=True)
+        click.echo(error_text(error.format_message()), err=True)
         return EXIT_BAD_INPUT
     except click.ClickException as error:
-        click.echo(sentence(error.format_message()), err=True)
+        click.echo(error_text(error.format_message()), err=True)
         return error.exit_code
     except click.Abort:
         pass

@@ -19,7 +19,7 @@ LEVEL_A = (0.1, 0.2, 0.3)
 """Current read-back at levels 1, 2, 3, unless the board is told otherwise."""
 
 
-class Board(Protocol):
+class BenchBoard(Protocol):
     """A board with its stimulus: enters ticks, hears frames.
 
     ``clock_ms`` is what its own clock reads; None: it has none.
@@ -147,7 +147,7 @@ class SunBoard(SensorBoard):
         super().__init__(SunSensor(tick_hz).begin_tick, stimulus)
 
 
-class Bench:
+class BenchNode:
     """Enters the ticks of the bus: k + 1 when ``TICK_DONE(k)`` has come, or ``SYNC(k + 1)`` at the latest.
 
     The board vouches for its timers only while it counts every tick. When it has lost count (two strange
@@ -165,7 +165,7 @@ class Bench:
     """
 
     def __init__(
-        self, make_board: Callable[[], Board], deadman_ms: int | None = None, has_clock: bool = False
+        self, make_board: Callable[[], BenchBoard], deadman_ms: int | None = None, has_clock: bool = False
     ) -> None:
         self._make_board = make_board
         self._deadman_ms = deadman_ms

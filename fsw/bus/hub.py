@@ -1,6 +1,6 @@
 """The hub of the loop bus: hands every record that a client sends to all other clients.
 
-The hub listens on 127.0.0.1 and speaks 16-byte records (``fsw.bus.record``) after one greeting. It never
+The hub listens on 127.0.0.1 and speaks 16-byte records (``fsw.bus.can_frame``) after one greeting. It never
 drops a record: what a slow client has not taken yet waits in memory. When that is more than ``BACKLOG_LIMIT``
 for all clients together, the slowest is disconnected, which it notices, instead of losing frames, which it
 would not. More than ``MOST_CLIENTS`` are not let in.
@@ -15,8 +15,8 @@ from dataclasses import dataclass, field
 from threading import Thread
 from time import monotonic
 
-from fsw.bus import record
-from fsw.bus.door import Door, DoorStuckError
+from fsw.bus import can_frame
+from fsw.bus.hub_listener import HubListener, NoDescriptorError
 
 MOST_CLIENTS = 64
 """Each of them gets a copy of every record: more would slow the bus for all."""
@@ -24,7 +24,7 @@ MOST_CLIENTS = 64
 BACKLOG_LIMIT = 64 * 2**20
 """Bytes that are kept for all clients together."""
 
-_DOOR_REST_S = 0.1
+_PAUSE_S = 0.1
 _CHUNK = 2**16
 _BOTH = selectors.EVENT_READ | selectors.EVENT_WRITE
 
@@ -33,11 +33,11 @@ _BOTH = selectors.EVENT_READ | selectors.EVENT_WRITE
 class _Client:
     socket: socket.socket
     name: str
-    torn: bytes = b""  # beginning of a record whose end is still on its way
+    partial: bytes = b""  # beginning of a record whose end is still on its way
     backlog: bytearray = field(default_factory=bytearray)
 
 
-def tell_on_stderr(sentence: str) -> None:
+def report_on_stderr(sentence: str) -> None:
     """Say it on standard error, if that is open: the bus does not depend on who listens there."""
     with suppress(OSError, ValueError):
         print(f"hub: {sentence}", file=sys.stderr, flush=True)
@@ -50,24 +50,24 @@ class Hub:
 
     Args:
         port: TCP port on 127.0.0.1; 0 takes a free one.
-        tell: called with a sentence about each client that is dropped for being slow, and about some of those
-            that are not let in. It must not block: the bus waits for it.
+        report: called with a sentence about each client that is dropped for being slow, and about some of
+            those that are refused. It must not block: the bus waits for it.
 
     Raises:
         OSError: the port is taken.
     """
 
-    def __init__(self, port: int = 0, tell: Callable[[str], None] = tell_on_stderr) -> None:
+    def __init__(self, port: int = 0, report: Callable[[str], None] = report_on_stderr) -> None:
         self._clients: set[_Client] = set()
         self._thread: Thread | None = None
         self._selector = selectors.DefaultSelector()
-        self._tell = tell
-        self._door = Door(port, tell)
-        self._door_rests_until: float | None = None
+        self._report = report
+        self._listener = HubListener(port, report)
+        self._paused_until: float | None = None
         self._waker, self._wake = socket.socketpair()
         self._stopping = False
-        self.port: int = self._door.port
-        self._selector.register(self._door, selectors.EVENT_READ, self._answer_door)
+        self.port: int = self._listener.port
+        self._selector.register(self._listener, selectors.EVENT_READ, self._accept)
         self._selector.register(self._wake, selectors.EVENT_READ, self._stop)
 
     @property
@@ -77,8 +77,8 @@ class Hub:
 
     def poll(self, timeout_s: float | None) -> bool:
         """Serve what is ready, waiting at most ``timeout_s`` for it (None: for ever); true if any was."""
-        if self._door_rests_until is not None:
-            timeout_s = self._rest(self._door_rests_until, timeout_s)
+        if self._paused_until is not None:
+            timeout_s = self._rest(self._paused_until, timeout_s)
         ready = self._selector.select(timeout_s)
         for key, events in ready:
             if isinstance(key.data, _Client):
@@ -101,15 +101,15 @@ class Hub:
 
     def close(self, linger_s: float = 1.0) -> None:
         """Hand over what has been sent so far, for at most ``linger_s``, then disconnect all."""
-        if self._door.fileno() < 0:
+        if self._listener.fileno() < 0:
             return
         if self._thread is not None:
             self._waker.send(b"\0")
             self._thread.join()
-        if self._door_rests_until is None:
-            self._selector.unregister(self._door)
-        self._door_rests_until = None
-        self._door.close()
+        if self._paused_until is None:
+            self._selector.unregister(self._listener)
+        self._paused_until = None
+        self._listener.close()
         deadline = monotonic() + linger_s
         while (self.poll(0.0) or self._backlogged()) and monotonic() < deadline:
             if self._backlogged():
@@ -131,12 +131,12 @@ class Hub:
     def _backlogged(self) -> bool:
         return any(client.backlog for client in self._clients)
 
-    def _answer_door(self) -> None:
+    def _accept(self) -> None:
         try:
-            let_in = self._door.answer(has_room=len(self._clients) < MOST_CLIENTS)
-        except DoorStuckError:  # whoever stands there would be told of again and again
-            self._selector.unregister(self._door)
-            self._door_rests_until = monotonic() + _DOOR_REST_S
+            let_in = self._listener.accept(has_room=len(self._clients) < MOST_CLIENTS)
+        except NoDescriptorError:  # whoever stands there would be told of again and again
+            self._selector.unregister(self._listener)
+            self._paused_until = monotonic() + _PAUSE_S
             return
         if let_in is not None:
             connection, port = let_in
@@ -147,8 +147,8 @@ class Hub:
         left_s = until - monotonic()
         if left_s > 0.0:
             return left_s if timeout_s is None else min(left_s, timeout_s)
-        self._selector.register(self._door, selectors.EVENT_READ, self._answer_door)
-        self._door_rests_until = None
+        self._selector.register(self._listener, selectors.EVENT_READ, self._accept)
+        self._paused_until = None
         return timeout_s
 
     def _admit(self, connection: socket.socket, name: str) -> None:
@@ -173,10 +173,10 @@ class Hub:
         if not received:
             self._drop(sender)
             return
-        pending = sender.torn + received if sender.torn else received
-        whole = len(pending) - len(pending) % record.SIZE
-        records, sender.torn = pending[:whole], pending[whole:]
-        if records and max(records[record.LENGTH_OFFSET :: record.SIZE]) > record.MAX_DATA:
+        pending = sender.partial + received if sender.partial else received
+        whole = len(pending) - len(pending) % can_frame.SIZE
+        records, sender.partial = pending[:whole], pending[whole:]
+        if records and max(records[can_frame.LENGTH_OFFSET :: can_frame.SIZE]) > can_frame.MAX_DATA:
             self._drop(sender)  # a stranger: these are no records
             return
         for client in tuple(self._clients):
@@ -196,7 +196,7 @@ class Hub:
         """Drop the slowest, until no more is kept than may be."""
         while sum(len(client.backlog) for client in self._clients) > BACKLOG_LIMIT:
             slowest = max(self._clients, key=lambda client: len(client.backlog))
-            self._tell(
+            self._report(
                 f"{slowest.name} is dropped from the loop bus on port {self.port}: it reads too slowly, "
                 f"{len(slowest.backlog) / 2**20:.1f} MiB wait for it"
             )

@@ -7,9 +7,9 @@ from collections import deque
 from collections.abc import Sequence
 from time import monotonic, sleep
 
-from fsw.bus import record
-from fsw.bus.door import FULL, GREETING, HOST
+from fsw.bus import can_frame
 from fsw.bus.hub import Hub
+from fsw.bus.hub_listener import FULL, GREETING, HOST
 from fsw.bus.interface import DEFAULT_LOOP_PORT, BusClosed, BusError
 from fsw.wire.frame import Frame
 
@@ -40,7 +40,7 @@ class LoopLink:
     def __init__(self, port: int = DEFAULT_LOOP_PORT, timeout_s: float = 10.0, may_host: bool = True) -> None:
         self.spec = f"loop:{port}"
         self._inbox: deque[Frame] = deque()
-        self._torn = b""  # beginning of a record whose end is still on its way
+        self._partial = b""  # beginning of a record whose end is still on its way
         self._hub: Hub | None = None
         try:
             self._socket = self._join(port, monotonic() + timeout_s, may_host)
@@ -52,7 +52,7 @@ class LoopLink:
     def send(self, frames: Sequence[Frame]) -> None:
         """Send all frames at once, in order."""
         try:
-            self._socket.sendall(record.pack_all(frames))
+            self._socket.sendall(can_frame.pack_all(frames))
         except TimeoutError as error:
             still = f"the bus {self.spec} takes nothing any more: its hub stands still"
             raise BusError(still) from error
@@ -87,11 +87,11 @@ class LoopLink:
                 raise self._closed() from error
             if not received:
                 raise self._closed()
-            pending = self._torn + received if self._torn else received
-            whole = len(pending) - len(pending) % record.SIZE
-            self._torn = pending[whole:]
+            pending = self._partial + received if self._partial else received
+            whole = len(pending) - len(pending) % can_frame.SIZE
+            self._partial = pending[whole:]
             if whole:
-                self._inbox.extend(record.unpack(pending[:whole]))
+                self._inbox.extend(can_frame.unpack(pending[:whole]))
                 return True
 
     def _closed(self) -> BusClosed:

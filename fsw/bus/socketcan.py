@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from struct import pack, unpack_from
 from time import monotonic, sleep
 
-from fsw.bus import record
+from fsw.bus import can_frame
 from fsw.bus.interface import BusClosed, BusError
 from fsw.wire.frame import Frame
 
@@ -45,7 +45,7 @@ class SocketCan:
         """Send all frames, in order, waiting for a full transmit queue but not for ever."""
         deadline: float | None = None
         for frame in frames:
-            packed = record.pack(frame)
+            packed = can_frame.pack(frame)
             while True:
                 try:
                     self._socket.send(packed)
@@ -63,15 +63,15 @@ class SocketCan:
         """The next frame, or None if none came within ``timeout_s``."""
         try:
             try:
-                received = self._socket.recv(record.SIZE, socket.MSG_DONTWAIT)
+                received = self._socket.recv(can_frame.SIZE, socket.MSG_DONTWAIT)
             except BlockingIOError:
                 left_s = None if timeout_s is None else max(0.0, timeout_s)
                 if not select.select((self._socket,), (), (), left_s)[0]:
                     return None
-                received = self._socket.recv(record.SIZE)
+                received = self._socket.recv(can_frame.SIZE)
         except (OSError, ValueError) as error:  # ValueError: closed on our side
             raise self._failure(error) from error
-        return next(record.unpack(received))
+        return next(can_frame.unpack(received))
 
     def close(self) -> None:
         """Leave the bus."""

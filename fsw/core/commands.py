@@ -15,7 +15,7 @@ from fsw.core.gate.readings import Readings, Telecommand
 from fsw.core.laws.interface import MAX_SPIN_RADPS
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit.elements import RANGES, Upload
-from fsw.core.orbit.ephemeris import advance, fly_orbit
+from fsw.core.orbit.ephemeris import advance, with_orbit
 from fsw.core.orbit.propagation import element_orbit
 from fsw.core.state import FlightState
 from fsw.wire.messages import (
@@ -95,7 +95,7 @@ def _mode(state: FlightState, message: TcMode, situation: Situation) -> Outcome:
     }
     if not allowed[mode]:
         return TcAckResult.NOT_ALLOWED
-    return state._replace(modes=modes.ask(now, mode, state.tick))
+    return state._replace(modes=modes.request_mode(now, mode, state.tick))
 
 
 def _clear(state: FlightState, message: TcClear, situation: Situation) -> Outcome:
@@ -140,7 +140,7 @@ def _element(state: FlightState, message: TcOrbitElement, situation: Situation) 
     low, high = RANGES[element]
     if not low <= value <= high:
         return TcAckResult.OUT_OF_RANGE
-    return state._replace(upload=state.upload.kept(element, value))
+    return state._replace(upload=state.upload.with_element(element, value))
 
 
 def _load(state: FlightState, message: TcOrbitLoad, situation: Situation) -> Outcome:
@@ -152,7 +152,7 @@ def _load(state: FlightState, message: TcOrbitLoad, situation: Situation) -> Out
         element_orbit(elements)
     except ValueError:
         return TcAckResult.OUT_OF_RANGE
-    window = advance(None, state.tick, fly_orbit(situation.config.ephemeris, elements))
+    window = advance(None, state.tick, with_orbit(situation.config.ephemeris, elements))
     if window is None:
         return TcAckResult.OUT_OF_RANGE
     return state._replace(orbit=elements, upload=Upload(), ephemeris=window)

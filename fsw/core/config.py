@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from fsw.core.actuation.actuator import CoilConfig
+from fsw.core.actuation.actuator import ActuatorConfig
 from fsw.core.estimation.estimator import EstimatorConfig
 from fsw.core.fdir.fdir import FdirConfig
 from fsw.core.gate.second_sender import SecondSenderConfig
@@ -22,7 +22,7 @@ class FlightConfig:
     ephemeris: EphemerisModel
     estimator: EstimatorConfig
     control: ControlConfig
-    coils: CoilConfig
+    coils: ActuatorConfig
     fdir: FdirConfig
     modes: ModeConfig
     rates: RateTable

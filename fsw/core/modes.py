@@ -12,7 +12,7 @@ from fsw.core.estimation.attitude import Attitude
 from fsw.wire.messages import Mode
 
 
-class Situation(NamedTuple):
+class ModeConditions(NamedTuple):
     """The conditions of the table, judged once a tick."""
 
     tripped: bool
@@ -24,7 +24,7 @@ class Situation(NamedTuple):
     far: bool
 
 
-class Row(NamedTuple):
+class Transition(NamedTuple):
     """A transition: taken when ``condition`` has held for the dwell of that name."""
 
     source: Mode
@@ -33,18 +33,18 @@ class Row(NamedTuple):
     dwell: str
 
 
-TABLE: tuple[Row, ...] = (
-    Row(Mode.SAFE, Mode.DETUMBLE, "clear", "recover_s"),
-    Row(Mode.DETUMBLE, Mode.SAFE, "tripped", "none_s"),
-    Row(Mode.DETUMBLE, Mode.ACQUIRE, "slow", "settle_s"),
-    Row(Mode.ACQUIRE, Mode.SAFE, "tripped", "none_s"),
-    Row(Mode.ACQUIRE, Mode.DETUMBLE, "fast", "settle_s"),
-    Row(Mode.ACQUIRE, Mode.DETUMBLE, "lost_attitude", "lose_s"),
-    Row(Mode.ACQUIRE, Mode.POINT, "near", "hold_s"),
-    Row(Mode.POINT, Mode.SAFE, "tripped", "none_s"),
-    Row(Mode.POINT, Mode.DETUMBLE, "fast", "settle_s"),
-    Row(Mode.POINT, Mode.DETUMBLE, "lost_attitude", "lose_s"),
-    Row(Mode.POINT, Mode.ACQUIRE, "far", "hold_s"),
+TABLE: tuple[Transition, ...] = (
+    Transition(Mode.SAFE, Mode.DETUMBLE, "clear", "recover_s"),
+    Transition(Mode.DETUMBLE, Mode.SAFE, "tripped", "none_s"),
+    Transition(Mode.DETUMBLE, Mode.ACQUIRE, "slow", "settle_s"),
+    Transition(Mode.ACQUIRE, Mode.SAFE, "tripped", "none_s"),
+    Transition(Mode.ACQUIRE, Mode.DETUMBLE, "fast", "settle_s"),
+    Transition(Mode.ACQUIRE, Mode.DETUMBLE, "lost_attitude", "lose_s"),
+    Transition(Mode.ACQUIRE, Mode.POINT, "near", "hold_s"),
+    Transition(Mode.POINT, Mode.SAFE, "tripped", "none_s"),
+    Transition(Mode.POINT, Mode.DETUMBLE, "fast", "settle_s"),
+    Transition(Mode.POINT, Mode.DETUMBLE, "lost_attitude", "lose_s"),
+    Transition(Mode.POINT, Mode.ACQUIRE, "far", "hold_s"),
 )
 
 _ROWS_FROM = {mode: [(i, row) for i, row in enumerate(TABLE) if row.source is mode] for mode in Mode}
@@ -86,14 +86,14 @@ class ModeState(NamedTuple):
 
 def judge(
     attitude: Attitude, spin_radps: float, tripped: bool, state: ModeState, config: ModeConfig
-) -> Situation:
+) -> ModeConditions:
     """The conditions of the table at this tick; a rate is slow or fast beside the spin that is wanted."""
     q0, q1, q2, q3 = attitude.q_body_from_orbit
     cosine = q0 * q0 + q1 * q1 - q2 * q2 - q3 * q3 if config.axis_only else 2.0 * q0 * q0 - 1.0
     w1, w2, w3 = attitude.omega_body_orbit_radps
     rate = norm((w1 - spin_radps, w2, w3))
     known = attitude.valid
-    return Situation(
+    return ModeConditions(
         tripped=tripped,
         clear=not tripped and not state.held and state.trips < config.trips_to_stay_safe,
         lost_attitude=not known,
@@ -104,7 +104,7 @@ def judge(
     )
 
 
-def advance(state: ModeState, situation: Situation, tick: int, config: ModeConfig) -> ModeState:
+def advance(state: ModeState, situation: ModeConditions, tick: int, config: ModeConfig) -> ModeState:
     """The mode after this tick. At most one transition a tick; every condition starts anew in a new mode."""
     held = [-1] * len(TABLE)
     trips = state.trips + (situation.tripped and state.mode is not Mode.SAFE)
@@ -119,7 +119,7 @@ def advance(state: ModeState, situation: Situation, tick: int, config: ModeConfi
     return ModeState(state.mode, state.since_tick, tuple(held), trips, state.held)
 
 
-def ask(state: ModeState, mode: Mode, tick: int) -> ModeState:
+def request_mode(state: ModeState, mode: Mode, tick: int) -> ModeState:
     """The mode that the ground asks for; a SAFE that it asks for is held."""
     held = mode is Mode.SAFE
     if mode is state.mode:

@@ -26,7 +26,7 @@ class Monitor(IntEnum):
     NO_SECOND_SENDER = 9
 
 
-class Watched(NamedTuple):
+class MonitorInput(NamedTuple):
     """What the monitors look at."""
 
     attitude: Attitude
@@ -48,7 +48,7 @@ def _square(q0: float, q1: float, q2: float, q3: float) -> float:
     return q0 * q0 + q1 * q1 + q2 * q2 + q3 * q3
 
 
-MONITORS: tuple[tuple[Monitor, Callable[[Watched], bool]], ...] = (
+MONITORS: tuple[tuple[Monitor, Callable[[MonitorInput], bool]], ...] = (
     (
         Monitor.ATTITUDE_FINITE,
         lambda w: isfinite(sum(w.attitude.q_body_from_orbit) + sum(w.attitude.omega_body_orbit_radps)),
@@ -70,7 +70,7 @@ MONITORS: tuple[tuple[Monitor, Callable[[Watched], bool]], ...] = (
 )
 
 
-def first_violation(watched: Watched) -> Monitor | None:
+def first_violation(watched: MonitorInput) -> Monitor | None:
     """The first monitor that is violated, in the order of the list, or None."""
     for monitor, holds in MONITORS:
         if not holds(watched):

@@ -6,13 +6,13 @@ found faulty, how often a monitor has tripped, that there is a second sender, an
 stay: a forged SYNC must not bring back a coil or a sensor that was named, nor lead out of a SAFE that lasts.
 """
 
-from fsw.core.actuation.actuator import UNHEARD, CoilView
+from fsw.core.actuation.actuator import LOCKOUT_UNKNOWN, CoilView
 from fsw.core.actuation.pulses import boot
 from fsw.core.config import FlightConfig
 from fsw.core.estimation.attitude import UNKNOWN
 from fsw.core.estimation.estimator import restart
 from fsw.core.fdir import fdir
-from fsw.core.gate.second_sender import SecondSender
+from fsw.core.gate.second_sender import SecondSenderWatch
 from fsw.core.laws.interface import FieldSample
 from fsw.core.modes import ModeState
 from fsw.core.state import FlightState
@@ -25,11 +25,11 @@ def restarted(state: FlightState, tick: int, config: FlightConfig) -> FlightStat
     A throttled event stays so for what is left of its time, a second sender for all of its time.
     """
     other, events = state.second_sender, state.events
-    told = tuple(kind._replace(tick=tick - (state.tick - kind.tick)) for kind in events.told)
+    told = tuple(kind._replace(tick=tick - (state.tick - kind.tick)) for kind in events.reported)
     known = state.estimator.estimate is not None
     return state._replace(
         tick=-1,
-        second_sender=SecondSender(other.signs, tick, other.can_id) if other.signs else other,
+        second_sender=SecondSenderWatch(other.signs, tick, other.can_id) if other.signs else other,
         ephemeris=None,
         estimator=restart(state.estimator) if known else state.estimator._replace(rejected_in_a_row=0),
         health=fdir.plant_restarted(state.health),
@@ -38,6 +38,6 @@ def restarted(state: FlightState, tick: int, config: FlightConfig) -> FlightStat
         sample=FieldSample(),
         memory=(),
         pulses=boot(tick, config.coils.pulses),
-        coil=CoilView(UNHEARD, seq=state.coil.seq, refusals=state.coil.refusals),
+        coil=CoilView(LOCKOUT_UNKNOWN, seq=state.coil.seq, refusals=state.coil.refusals),
         events=Throttle(told, events.held_back),
     )

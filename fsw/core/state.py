@@ -10,7 +10,7 @@ from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.estimation.estimator import EstimatorState
 from fsw.core.fdir.fdir import Health
 from fsw.core.gate.readings import GateState
-from fsw.core.gate.second_sender import NOBODY, SecondSender
+from fsw.core.gate.second_sender import NO_SIGNS, SecondSenderWatch
 from fsw.core.gate.sync_watch import SyncWatch
 from fsw.core.laws.interface import FieldSample, Memory, Setpoint
 from fsw.core.laws.table import LAWS
@@ -46,7 +46,7 @@ class FlightState(NamedTuple):
     syncs: SyncWatch
     time_error_s: int
     gate: GateState
-    second_sender: SecondSender
+    second_sender: SecondSenderWatch
     orbit: Elements | None
     upload: Upload
     ephemeris: EphemerisWindow | None
@@ -73,7 +73,7 @@ class FlightState(NamedTuple):
             self.time_error_s,
             *self.gate.integers(),
             *self.second_sender,
-            self.upload.come,
+            self.upload.received,
             self.orbit is not None,
             *self.estimator.integers(),
             *self.health.integers(),
@@ -124,7 +124,7 @@ def initial_state(pulses: PulseState, setpoint: Setpoint, sent: tuple[int, ...])
         syncs=SyncWatch(),
         time_error_s=0,
         gate=GateState(),
-        second_sender=NOBODY,
+        second_sender=NO_SIGNS,
         orbit=None,
         upload=Upload(),
         ephemeris=None,

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from fsw.core import telemetry
 from fsw.core.actuation import pulses
-from fsw.core.actuation.actuator import actuate, hear
+from fsw.core.actuation.actuator import actuate, update_view
 from fsw.core.algebra.quaternion import rotate
 from fsw.core.algebra.vector import ZERO, Vec3
 from fsw.core.commands import command
@@ -28,9 +28,9 @@ from fsw.core.gate import second_sender
 from fsw.core.gate.readings import Readings, admit
 from fsw.core.gate.sync_watch import Belief, SyncWatch, judge, near
 from fsw.core.laws import by_mode
-from fsw.core.laws.interface import Demand, FieldSample, Seen
+from fsw.core.laws.interface import Demand, FieldSample, LawInput
 from fsw.core.monitors import Monitor
-from fsw.core.orbit.ephemeris import EphemerisModel, Reference, advance, fly_orbit, reference_at, sound
+from fsw.core.orbit.ephemeris import EphemerisModel, Reference, advance, plausible, reference_at, with_orbit
 from fsw.core.restart import restarted
 from fsw.core.state import FlightState, Inbox, checksum, initial_state
 from fsw.core.supervisor import supervise
@@ -67,11 +67,11 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     """
     before, tick = state, inbox.tick
     belief, syncs = judge(state.syncs, state.tick, tick)
-    if belief is Belief.IGNORED or belief is Belief.UNHEARD:
+    if belief is Belief.IGNORED or belief is Belief.UNANSWERED:
         state = state._replace(ignored_syncs=state.ignored_syncs + 1, syncs=syncs)
-        return state, (_done(state, tick),) if belief is Belief.UNHEARD else ()
+        return state, (_done(state, tick),) if belief is Belief.UNANSWERED else ()
     state, inbox = _begin(state, inbox, belief, syncs, config)
-    model = fly_orbit(config.ephemeris, state.orbit)
+    model = with_orbit(config.ephemeris, state.orbit)
     state, readings = _gate(state, inbox, config)
     state, reference = _predict(state, model, tick - before.tick, config)
     state, observation = _update(state, readings, reference, config)
@@ -111,7 +111,7 @@ def _gate(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Fligh
     """Take what the boards sent; the coil driver's word is judged at once."""
     tick = inbox.tick
     readings, gate = admit(inbox.frames, state.gate)
-    view = hear(state.coil, readings, tick, config.coils)
+    view = update_view(state.coil, readings, tick, config.coils)
     expected_s = config.epoch_unix_s + tick // config.tick_hz
     state = state._replace(
         field_tick=tick if readings.field is not None else state.field_tick,
@@ -135,7 +135,7 @@ def _predict(
     if ephemeris is None:
         return state._replace(ephemeris=None), None
     reference = reference_at(ephemeris, state.tick, config.ephemeris)
-    if not sound(reference):
+    if not plausible(reference):
         return state._replace(ephemeris=None, estimator=restart(state.estimator)), None
     driven_am2 = fdir.driven_am2(state.health, state.coil, config.fdir)
     predicted = predict(state.estimator, reference, driven_am2, elapsed_ticks, config.estimator)
@@ -181,7 +181,7 @@ def _control(
     return state._replace(sample=seen.sample, memory=memory), demand, seen.b_body_t
 
 
-def _law_input(state: FlightState, observation: Observation, model: EphemerisModel) -> Seen:
+def _law_input(state: FlightState, observation: Observation, model: EphemerisModel) -> LawInput:
     """What the law sees: the modelled field where the attitude is known, else the measured one."""
     readings, reference, attitude = observation.readings, observation.reference, state.attitude
     usable = usable_field(readings)
@@ -191,7 +191,7 @@ def _law_input(state: FlightState, observation: Observation, model: EphemerisMod
         b_orbit_t = rotate(reference.q_orbit_from_eci, reference.b_eci_t)
         b_body_t = rotate(attitude.q_body_from_orbit, b_orbit_t)
     estimate = state.estimator.estimate
-    return Seen(
+    return LawInput(
         attitude,
         b_body_t,
         sample,

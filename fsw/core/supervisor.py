@@ -2,7 +2,7 @@
 
 from fsw.core import modes
 from fsw.core.config import FlightConfig
-from fsw.core.monitors import Monitor, Watched, first_violation
+from fsw.core.monitors import Monitor, MonitorInput, first_violation
 from fsw.core.state import FlightState
 
 
@@ -16,14 +16,14 @@ def supervise(state: FlightState, config: FlightConfig) -> tuple[FlightState, Mo
     Returns:
         The state in the mode of this tick, and the monitor that is violated, if any.
     """
-    watched = Watched(
+    watched = MonitorInput(
         attitude=state.attitude,
         owed_impulse_body_nms=state.pulses.owed_impulse_body_nms,
         field_age_ticks=state.tick - state.field_tick,
         status_age_ticks=state.tick - state.status_tick,
         unexpected_drive=state.health.coils.stuck,
         orbit_known=state.ephemeris is not None,
-        second_sender=state.second_sender.named,
+        second_sender=state.second_sender.detected,
         stale_after_ticks=config.stale_after_ticks,
     )
     violated = first_violation(watched)

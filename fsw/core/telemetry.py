@@ -11,7 +11,7 @@ from fsw.core.monitors import Monitor
 from fsw.core.orbit.ephemeris import Reference
 from fsw.core.rates import RateTable
 from fsw.core.state import FlightState
-from fsw.core.throttle import Throttle, throttled
+from fsw.core.throttle import Throttle, throttle_events
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
     CoilDipole,
@@ -71,7 +71,7 @@ def event_messages(
 ) -> tuple[Throttle, list[CountedMessage]]:
     """The events of this tick that may be sent, and the throttle after it."""
     found = happenings(before, after, readings, violated)
-    throttle, passed = throttled(after.events, found, after.tick, spacing_ticks)
+    throttle, passed = throttle_events(after.events, found, after.tick, spacing_ticks)
     return throttle, [event_message(happening, after.tick) for happening in passed]
 
 
@@ -117,7 +117,7 @@ def happenings(
     if before.estimator.estimate is None and after.estimator.estimate is not None:
         found.append(Happening(Event.FILTER_STARTED, after.estimator.restarts))
     found += fdir.happenings(before.health, after.health)
-    if after.second_sender.named and not before.second_sender.named:
+    if after.second_sender.detected and not before.second_sender.detected:
         found.append(Happening(Event.SECOND_SENDER, after.second_sender.can_id))
     if readings.refused is not None:
         found.append(Happening(Event.REQUEST_REFUSED, readings.refused.reason))

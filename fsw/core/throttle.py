@@ -22,7 +22,7 @@ MOST_KINDS = 32
 """Kinds remembered at once; beyond, events are held back."""
 
 
-class Told(NamedTuple):
+class LastReport(NamedTuple):
     """A kind, and the tick in which it was last told."""
 
     event: int
@@ -33,15 +33,15 @@ class Told(NamedTuple):
 class Throttle(NamedTuple):
     """The kinds told of late, and how many events were held back since boot."""
 
-    told: tuple[Told, ...] = ()
+    reported: tuple[LastReport, ...] = ()
     held_back: int = 0
 
     def integers(self) -> tuple[int, ...]:
         """For the checksum of the state."""
-        return (*(number for told in self.told for number in told), self.held_back)
+        return (*(number for told in self.reported for number in told), self.held_back)
 
 
-def throttled(
+def throttle_events(
     state: Throttle, happenings: list[Happening], tick: int, spacing_ticks: int
 ) -> tuple[Throttle, list[Happening]]:
     """What may be told in this tick.
@@ -51,7 +51,7 @@ def throttled(
     """
     if not happenings:
         return state, happenings
-    told = [kind for kind in state.told if tick - kind.tick < spacing_ticks]
+    told = [kind for kind in state.reported if tick - kind.tick < spacing_ticks]
     known = {(kind.event, kind.argument) for kind in told}
     passed = []
     for happening in happenings:
@@ -60,6 +60,6 @@ def throttled(
         if kind in known or len(told) >= MOST_KINDS:
             continue
         known.add(kind)
-        told.append(Told(*kind, tick))
+        told.append(LastReport(*kind, tick))
         passed.append(happening)
     return Throttle(tuple(told), state.held_back + len(happenings) - len(passed)), passed

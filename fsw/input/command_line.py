@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import click
 
-from fsw.input.sentence import sentence
+from fsw.input.error_text import error_text
 
 
 def run(command: click.Command, name: str, arguments: Sequence[str] | None = None) -> int:
@@ -18,7 +18,7 @@ def run(command: click.Command, name: str, arguments: Sequence[str] | None = Non
     try:
         code = command.main(arguments, prog_name=f"python -m {name}", standalone_mode=False)
     except click.ClickException as error:
-        click.echo(f"{name}: {sentence(error.format_message())}", err=True)
+        click.echo(f"{name}: {error_text(error.format_message())}", err=True)
         return error.exit_code
     except click.Abort:
         return 130

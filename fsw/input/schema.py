@@ -22,7 +22,7 @@ class TableError(Exception):
     """A table that cannot be used; the message is one sentence for the user."""
 
 
-FAULTS_TOLD = 12
+MOST_FAULTS = 12
 LONGEST_VALUE = 80
 """Of what is wrong, so much is told that the sentence can still be read."""
 
@@ -72,8 +72,8 @@ def validated(model: type[Model], values: Nested, source: str) -> Model:
 
 def faults(model: type[Any], error: ValidationError) -> str:
     """The first wrong keys, each with what is allowed, and how many there are beside them."""
-    told = "; ".join(_fault(model, dict(detail)) for detail in islice(error.errors(), FAULTS_TOLD))
-    others = error.error_count() - FAULTS_TOLD
+    told = "; ".join(_fault(model, dict(detail)) for detail in islice(error.errors(), MOST_FAULTS))
+    others = error.error_count() - MOST_FAULTS
     return f"{told}; and {others} more" if others > 0 else told
 
 

@@ -2,7 +2,7 @@
 
 from math import ceil, cos, radians, sqrt
 
-from fsw.core.actuation.actuator import CoilConfig
+from fsw.core.actuation.actuator import ActuatorConfig
 from fsw.core.actuation.dipoles import DipoleConfig
 from fsw.core.actuation.pulses import PulseConfig, pulse_timing
 from fsw.core.algebra.vector import inverse, product
@@ -55,7 +55,7 @@ def flight_config(table: FlightTable) -> FlightConfig:
             ),
             estimator=estimator,
             control=_control(table, orbit),
-            coils=CoilConfig(timing, _dipoles(table)),
+            coils=ActuatorConfig(timing, _dipoles(table)),
             fdir=FdirConfig(_sensors(table), _coil_health(table), timing, estimator.mekf),
             modes=_modes(table.modes, tick_hz),
             rates=_rates(table.telemetry, tick_hz),

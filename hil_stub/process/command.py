@@ -11,8 +11,8 @@ from fsw.wire.messages import MagField, SunVector
 from hil_stub.bench import (
     DEADMAN_MS,
     LEVEL_A,
-    Bench,
-    Board,
+    BenchBoard,
+    BenchNode,
     CoilBoard,
     DipoleBoard,
     MagnetometerBoard,
@@ -150,13 +150,13 @@ def sun(spec: str, tick_hz: int, stimulus: str | None, rest: tuple[str, ...]) ->
 
 def _serve(
     spec: str,
-    make_board: Callable[[], Board],
+    make_board: Callable[[], BenchBoard],
     deadman_s: float = 0.0,
     clock: str = "ticks",
     pins: TextIO | None = None,
 ) -> None:
     deadman_ms = round(1000.0 * deadman_s) or None
-    bench = Bench(make_board, deadman_ms, has_clock=clock == "own")
+    bench = BenchNode(make_board, deadman_ms, has_clock=clock == "own")
     try:
         bus = open_bus(spec)
     except BusError as error:

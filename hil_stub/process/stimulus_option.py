@@ -40,7 +40,7 @@ class PipedStimulus:
     def __init__(self, scale: float, descriptor: int = 0) -> None:
         self._scale = scale
         self._descriptor = descriptor
-        self._torn = b""
+        self._partial = b""
         self._readings: dict[int, Reading] = {}
 
     def __call__(self, tick: int) -> Reading:
@@ -57,7 +57,7 @@ class PipedStimulus:
         if not select.select((self._descriptor,), (), (), timeout_s)[0]:
             return False
         text = os.read(self._descriptor, 65536)
-        *lines, self._torn = (self._torn + text).split(b"\n")
+        *lines, self._partial = (self._partial + text).split(b"\n")
         for line in lines:
             number, x, y, z, valid = line.split()
             vector = scaled((float(x), float(y), float(z)), self._scale)

@@ -12,8 +12,8 @@ import click
 from fsw.bus.interface import BusError
 from fsw.bus.open_bus import open_bus
 from fsw.input import command_line
+from fsw.input.error_text import error_text
 from fsw.input.schema import TableError
-from fsw.input.sentence import sentence
 from sim.errors import HarnessError
 from sim.flight.answers import CounterpartError, Patience
 from sim.flight.recorded import record
@@ -39,7 +39,7 @@ def main(path: Path, bus: str, patience: tuple[float, float], parent: int) -> No
         run_dir.update(path, ended=str(error))
         sys.exit(1)
     except (TableError, BusError, HarnessError, PlantError) as error:
-        click.echo(f"plant: {sentence(error)}", err=True)
+        click.echo(f"plant: {error_text(error)}", err=True)
         sys.exit(getattr(error, "exit_code", 2))
     except KeyboardInterrupt:
         sys.exit(130)

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from math import isfinite
 
 from fsw.core.actuation import pulses
-from fsw.core.actuation.actuator import CoilConfig, CoilView, actuate, hear
+from fsw.core.actuation.actuator import ActuatorConfig, CoilView, actuate, update_view
 from fsw.core.actuation.pulses import AXES, PulseConfig, PulseState
 from fsw.core.gate.readings import NOTHING
-from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, Law, Memory, Seen
+from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, Law, LawInput, Memory
 from fsw.wire.messages import CoilBoot, CoilFire
 from sim.testing.bench import Fire, Heard, Limits, MakeScheduler, Scheduler
 
@@ -30,7 +30,7 @@ class ShippedScheduler:
     def __init__(self, limits: Limits) -> None:
         timing = pulses.pulse_timing(limits.tick_hz, limits.pulse_ms, limits.backoff_ms)
         pulse_ticks, backoff_ticks, duration_ms = timing
-        self._config = CoilConfig(
+        self._config = ActuatorConfig(
             PulseConfig(
                 pulse_ticks=pulse_ticks,
                 backoff_ticks=backoff_ticks,
@@ -57,7 +57,7 @@ class ShippedScheduler:
         if self._state is None:
             self._state = pulses.boot(heard.tick, self._config.pulses)
         readings = NOTHING._replace(coil=heard.status, coil_boot=_BOOTED if heard.booted else None)
-        self._view = hear(self._view, readings, heard.tick, self._config)
+        self._view = update_view(self._view, readings, heard.tick, self._config)
         self._state, self._view, request = actuate(
             self._state, self._view, demand, heard.b_body_t, readings, heard.tick, self._config
         )
@@ -79,7 +79,7 @@ class _UnderLaw:
     def step(self, heard: Heard) -> Sequence[Fire]:
         """Ask the law, and the scheduler for what it wants."""
         before, self._sample = self._sample, FieldSample(heard.b_body_t, heard.tick)
-        seen = Seen(heard.attitude, heard.b_body_t, self._sample, before, tick=heard.tick)
+        seen = LawInput(heard.attitude, heard.b_body_t, self._sample, before, tick=heard.tick)
         demand = self._law(seen, self._memory, self._control.setpoint, self._control)
         wanted = (*demand.m_body_am2, *(demand.impulse_body_nms or ()), *demand.memory)
         if not all(map(isfinite, wanted)):

@@ -6,7 +6,7 @@ from fsw.core.gate.second_sender import SIGNS
 from fsw.core.gate.sync_watch import LEAP_TICKS
 from fsw.core.state import Inbox
 from fsw.core.step import boot, step
-from fsw.node import KEPT_FRAMES, NO_PLANT_S, End, FlightNode
+from fsw.node import MOST_INBOX_FRAMES, NO_PLANT_S, End, FlightNode
 from fsw.table.config import flight_config
 from fsw.table.table import load_flight_table
 from fsw.wire.frame import EXTENDED_FLAG, Frame
@@ -90,11 +90,11 @@ def test_a_sync_that_repeats_its_tick_is_answered_with_nothing(node, config):
 
 
 def test_a_flood_is_bounded_and_counted(node, config):
-    for _ in range(KEPT_FRAMES + 500):
+    for _ in range(MOST_INBOX_FRAMES + 500):
         node.receive(Frame(0x7FF, b""))
-    assert len(node._inbox) == KEPT_FRAMES
+    assert len(node._inbox) == MOST_INBOX_FRAMES
     node.receive(sync(config, 0))
-    assert node.state.gate.overrun == KEPT_FRAMES - 64
+    assert node.state.gate.overrun == MOST_INBOX_FRAMES - 64
     assert len(node._inbox) == 0
 
 
@@ -141,20 +141,20 @@ class TestEnd:
 
 def test_a_plant_that_starts_is_heard_before_the_first_tick_alone(node, config):
     start = PlantBoot(0, 1, 2).encode()
-    assert node.hears_plant_start(start)
-    assert not node.hears_plant_start(FIELD)
-    assert not node.hears_plant_start(start._replace(data=start.data[:-1] + b"\0"))
+    assert node.is_boot_request(start)
+    assert not node.is_boot_request(FIELD)
+    assert not node.is_boot_request(start._replace(data=start.data[:-1] + b"\0"))
     node.receive(sync(config, 0))
-    assert not node.hears_plant_start(start)
+    assert not node.is_boot_request(start)
 
 
 def test_a_plant_that_starts_anew_is_heard_when_there_has_been_none_for_a_while(node, config):
     """In its tick 0 a plant says so too, and a stranger may at any time."""
     start = PlantBoot(0, 1, 2).encode()
     node.receive(sync(config, 500))
-    assert not node.hears_plant_start(start, NO_PLANT_S)
-    assert node.hears_plant_start(start, NO_PLANT_S + 0.1)
-    assert not node.hears_plant_start(FIELD, NO_PLANT_S + 0.1)
+    assert not node.is_boot_request(start, NO_PLANT_S)
+    assert node.is_boot_request(start, NO_PLANT_S + 0.1)
+    assert not node.is_boot_request(FIELD, NO_PLANT_S + 0.1)
 
 
 def test_after_fsw_boot_nothing_is_left_of_the_flight_before(node, config):
@@ -189,10 +189,10 @@ def test_what_came_before_a_sync_that_is_not_answered_counts_for_the_next(node, 
 
 def test_a_flood_of_strange_syncs_is_bounded(node, config):
     node.receive(sync(config, 5))
-    for i in range(3 * KEPT_FRAMES):
+    for i in range(3 * MOST_INBOX_FRAMES):
         node.receive(Frame(0x7FF, b""))
         node.receive(sync(config, 10**9 + 7 * i))
-    assert len(node._inbox) == KEPT_FRAMES
+    assert len(node._inbox) == MOST_INBOX_FRAMES
     node.receive(sync(config, 6))
     assert node.state.tick == 6
     assert not node._inbox
@@ -254,4 +254,4 @@ def test_on_the_loop_bus_a_node_hears_the_others_of_its_kind_and_never_itself(op
         for _ in ends:
             while clock.receive(10.0).can_id != TickDone.ID:
                 pass
-    assert [node.state.second_sender.named for _, node in ends] == [count > 1] * count
+    assert [node.state.second_sender.detected for _, node in ends] == [count > 1] * count

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import pytest
 
 from fsw.core.actuation import pulses
-from fsw.core.actuation.actuator import CoilConfig, CoilView, actuate, hear
+from fsw.core.actuation.actuator import ActuatorConfig, CoilView, actuate, update_view
 from fsw.core.actuation.pulses import PulseConfig
 from fsw.core.gate.readings import GateState, admit
 from fsw.core.laws.interface import Demand as Asked
@@ -83,7 +83,7 @@ class Flight:
     """The scheduler as it flies: frames in, at most one frame out."""
 
     def __init__(self, config):
-        self.config = CoilConfig(config, dipoles=None)
+        self.config = ActuatorConfig(config, dipoles=None)
         self.gate, self.view, self.sent = GateState(), CoilView(), 0
         self.state = None
 
@@ -91,7 +91,7 @@ class Flight:
         if self.state is None:
             self.state = pulses.boot(tick, self.config.pulses)
         readings, self.gate = admit(tuple(frames), self.gate)
-        self.view = hear(self.view, readings, tick, self.config)
+        self.view = update_view(self.view, readings, tick, self.config)
         m_body_am2, b_body_t = demand
         asked = Asked(m_body_am2) if mode is not Mode.SAFE else None
         self.state, self.view, request = actuate(

@@ -11,7 +11,7 @@ from typing import Any
 
 import click
 
-from fsw.input.sentence import sentence
+from fsw.input.error_text import error_text
 from sim.errors import DISK_FULL
 
 COMMANDS = (
@@ -59,7 +59,7 @@ class Commands(click.Group):
         try:
             code = super().main(*args, **{**kwargs, "standalone_mode": False})
         except click.ClickException as error:
-            click.echo(f"torquer: {sentence(error.format_message())}", err=True)
+            click.echo(f"torquer: {error_text(error.format_message())}", err=True)
             code = error.exit_code
         except OSError as error:
             if error.errno not in DISK_FULL:

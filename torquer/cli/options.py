@@ -9,8 +9,8 @@ from typing import ParamSpec
 import click
 
 from fsw.bus.interface import BusError
+from fsw.input.error_text import error_text
 from fsw.input.schema import TableError
-from fsw.input.sentence import sentence
 from sim.errors import HarnessError
 from sim.plant.errors import PlantError
 from sim.signals import EndedBySignal, endings_raised
@@ -47,7 +47,7 @@ def sentences(command: Callable[Parameters, int | None]) -> Callable[Parameters,
             with endings_raised():
                 code = command(*args, **kwargs)
         except (TableError, BusError, HarnessError, PlantError) as error:
-            click.echo(f"torquer: {sentence(error)}", err=True)
+            click.echo(f"torquer: {error_text(error)}", err=True)
             code = getattr(error, "exit_code", 2)
         except KeyboardInterrupt:
             click.echo("torquer: interrupted; what was done so far is kept", err=True)

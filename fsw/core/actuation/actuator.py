@@ -12,7 +12,7 @@ from fsw.core.laws.interface import Demand
 from fsw.wire.messages import CoilDipole, CoilFire
 
 NO_PULSE = Pulse(0, 0)
-UNHEARD = (-1, -1, -1)
+LOCKOUT_UNKNOWN = (-1, -1, -1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +24,7 @@ class CoilView:
     the first request; ``paid_body_nms`` is the impulse of the last request.
     """
 
-    lockout_ms: tuple[int, int, int] = UNHEARD
+    lockout_ms: tuple[int, int, int] = LOCKOUT_UNKNOWN
     driven_coil: int = 0
     driven_level: int = 0
     driven_am2: Vec3 = ZERO
@@ -44,30 +44,30 @@ class CoilView:
         return (*self.driven_am2, *self.paid_body_nms)
 
 
-class CoilConfig(NamedTuple):
+class ActuatorConfig(NamedTuple):
     """The limits of the pulses, and the continuous driver that is there instead, if any."""
 
     pulses: PulseConfig
     dipoles: DipoleConfig | None
 
 
-def hear(view: CoilView, readings: Readings, tick: int, config: CoilConfig) -> CoilView:
+def update_view(view: CoilView, readings: Readings, tick: int, config: ActuatorConfig) -> CoilView:
     """The view after what the coil driver said in this tick.
 
     A board that has just booted has not told its lockouts. Without a status the own request, if one is under
     way, counts as driven.
     """
-    lockout = list(view.lockout_ms if readings.coil_boot is None else UNHEARD)
+    lockout = list(view.lockout_ms if readings.coil_boot is None else LOCKOUT_UNKNOWN)
     status = readings.coil
     if status is not None:
         lockout[status.coil] = status.lockout_ms
         coil, level, seq = status.coil, status.level, status.seq
     else:
-        coil, level, seq = view.fired.coil, _asked_level(view, tick, config.pulses), view.seq
+        coil, level, seq = view.fired.coil, _requested_level(view, tick, config.pulses), view.seq
     if config.dipoles is None:
         driven_am2 = scale(pulses.dipole_am2(level, config.pulses.levels_am2), AXES[coil])
     else:
-        driven_am2 = dipoles.driven(readings.dipole, config.dipoles)
+        driven_am2 = dipoles.driven_dipole_am2(readings.dipole, config.dipoles)
     return CoilView(
         lockout_ms=(lockout[0], lockout[1], lockout[2]),
         driven_coil=coil,
@@ -81,7 +81,7 @@ def hear(view: CoilView, readings: Readings, tick: int, config: CoilConfig) -> C
     )
 
 
-def _asked_level(view: CoilView, tick: int, config: PulseConfig) -> int:
+def _requested_level(view: CoilView, tick: int, config: PulseConfig) -> int:
     """The level that the own request drives over the tick that just ended, 0 if it does not."""
     asked = view.fired_tick < tick <= view.fired_tick + config.pulse_ticks
     return view.fired.level if asked else 0
@@ -91,7 +91,7 @@ def unexpected(view: CoilView, tick: int, config: PulseConfig) -> bool:
     """Whether the board drove something that was not asked for."""
     if view.driven_level == 0:
         return False
-    return (view.driven_coil, view.driven_level) != (view.fired.coil, _asked_level(view, tick, config))
+    return (view.driven_coil, view.driven_level) != (view.fired.coil, _requested_level(view, tick, config))
 
 
 def actuate(
@@ -101,14 +101,14 @@ def actuate(
     b_body_t: Vec3,
     readings: Readings,
     tick: int,
-    config: CoilConfig,
+    config: ActuatorConfig,
     faults: tuple[int, int, int] = (0, 0, 0),
 ) -> tuple[PulseState, CoilView, CoilFire | CoilDipole | None]:
     """Turn what the law asks for into at most one request.
 
     Args:
         state: scheduler state.
-        view: as ``hear`` left it.
+        view: as ``update_view`` left it.
         demand: what the law asks for; None: nothing is owed and nothing is sent.
         b_body_t: field, body axes, T.
         readings: what was heard in this tick; without a word of the coil driver nothing is sent.

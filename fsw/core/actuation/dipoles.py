@@ -27,7 +27,7 @@ class DipoleConfig:
     genetic: bool
 
 
-def driven(status: CoilDipoleStatus | None, config: DipoleConfig) -> Vec3:
+def driven_dipole_am2(status: CoilDipoleStatus | None, config: DipoleConfig) -> Vec3:
     """The mean dipole over the tick that just ended, body axes, A m^2; zero without a word of the board."""
     if status is None:
         return ZERO
@@ -39,12 +39,12 @@ def request(
 ) -> tuple[PulseState, CoilDipole]:
     """The dipole of this tick."""
     if demand.impulse_body_nms is None:
-        return state, saturated(demand.m_body_am2, config)
+        return state, saturate(demand.m_body_am2, config)
     if tick >= state.busy_until:
         state = replace(state, held_am2=ZERO)
         if tick >= max(state.ready_tick) and dot(b_body_t, b_body_t) > 0.0:
             state = _begin(state, demand.impulse_body_nms, b_body_t, tick, config, timing)
-    return state, saturated(state.held_am2, config)
+    return state, saturate(state.held_am2, config)
 
 
 def _begin(
@@ -73,7 +73,7 @@ def _begin(
     return replace(state, ready_tick=(again, again, again), busy_until=end, held_am2=m_body_am2)
 
 
-def saturated(m_body_am2: Vec3, config: DipoleConfig) -> CoilDipole:
+def saturate(m_body_am2: Vec3, config: DipoleConfig) -> CoilDipole:
     """The request: the dipole as fractions of full scale, shortened to fit but not turned.
 
     What is not a number asks for nothing: on the wire it would be full scale.

@@ -32,7 +32,7 @@ from fsw.wire.messages import (
 INBOX_LIMIT = 64
 """Frames looked at in one tick; a babbling node cannot cost more than that."""
 
-Listened = (
+InputMessage = (
     MagField
     | SunVector
     | CoilStatus
@@ -44,7 +44,7 @@ Listened = (
     | PlantEnd
 )
 
-LISTENED: dict[int, type[Listened]] = {
+INPUT_MESSAGES: dict[int, type[InputMessage]] = {
     MagField.ID: MagField,
     SunVector.ID: SunVector,
     CoilStatus.ID: CoilStatus,
@@ -68,8 +68,8 @@ TELECOMMANDS: dict[int, type[Telecommand]] = {
     TcOrbitLoad.ID: TcOrbitLoad,
 }
 
-_HEARD: dict[int, type[Listened | Telecommand]] = {**LISTENED, **TELECOMMANDS}
-_SLOT = {can_id: slot for slot, can_id in enumerate(_HEARD)}
+_ACCEPTED: dict[int, type[InputMessage | Telecommand]] = {**INPUT_MESSAGES, **TELECOMMANDS}
+_SLOT = {can_id: slot for slot, can_id in enumerate(_ACCEPTED)}
 _IN_ANY_PLACE = frozenset({*TELECOMMANDS, PlantEnd.ID})
 """Identifiers of what others may send between the boards' messages."""
 _OWN = frozenset(can_id for can_id, sender in SENDERS.items() if sender == "FSW")
@@ -106,16 +106,16 @@ class GateState(NamedTuple):
     """Last counter of each listened message (-1: none yet), counts since boot, and what was taken since boot.
 
     ``heard`` is the CRC-32 of the data of all messages taken: nothing on the bus can be altered afterwards
-    without the state telling, not even a sample that had no use. ``commanded`` is the same of telecommands
+    without the state telling, not even a sample that had no use. ``command_crc`` is the same of telecommands
     and PLANT_END, which may come between the boards' messages in any order.
     """
 
-    counters: tuple[int, ...] = (-1,) * len(_HEARD)
+    counters: tuple[int, ...] = (-1,) * len(_ACCEPTED)
     rejected: int = 0
     missed: int = 0
     overrun: int = 0
-    heard: int = 0
-    commanded: int = 0
+    input_crc: int = 0
+    command_crc: int = 0
 
     def integers(self) -> tuple[int, ...]:
         """For the checksum of the state."""
@@ -128,17 +128,17 @@ def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateSt
     Returns:
         The readings, and the gate's state with ``rejected`` (broken, unknown, repeated or out of range),
         ``missed`` (jumps of a counter), ``overrun`` (frames beyond the limit, unread), ``heard`` and
-        ``commanded`` brought forward.
+        ``command_crc`` brought forward.
     """
-    slots: list[object] = [None] * len(LISTENED)
+    slots: list[object] = [None] * len(INPUT_MESSAGES)
     telecommands: list[Telecommand] = []
     repeated: list[Telecommand] = []
     counters = list(state.counters)
     rejected, missed = state.rejected, state.missed
-    digests = [state.heard, state.commanded]
+    digests = [state.input_crc, state.command_crc]
     under_own_id = 0
     for frame in frames[:INBOX_LIMIT]:
-        message_class = _HEARD.get(frame.can_id)
+        message_class = _ACCEPTED.get(frame.can_id)
         if message_class is None:
             if not intact(frame):
                 rejected += 1
@@ -174,7 +174,7 @@ def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateSt
     return readings, GateState(tuple(counters), rejected, missed, overrun, *digests)
 
 
-def _in_range(message: Listened | Telecommand) -> bool:
+def _in_range(message: InputMessage | Telecommand) -> bool:
     """Whether the values can be; of telecommands, ``commands`` judges them and gives an answer."""
     if isinstance(message, CoilStatus):
         return -3 <= message.level <= 3 and message.coil <= 2

@@ -27,7 +27,7 @@ class SecondSenderConfig(NamedTuple):
     other_ticks: int
 
 
-class SecondSender(NamedTuple):
+class SecondSenderWatch(NamedTuple):
     """Ticks with a sign, ``SIGNS`` at most; the last of them, and the identifier that it was seen under."""
 
     signs: int = 0
@@ -35,17 +35,22 @@ class SecondSender(NamedTuple):
     can_id: int = 0
 
     @property
-    def named(self) -> bool:
+    def detected(self) -> bool:
         """Whether there are enough signs."""
         return self.signs >= SIGNS
 
 
-NOBODY = SecondSender()
+NO_SIGNS = SecondSenderWatch()
 
 
 def watch(
-    before: SecondSender, readings: Readings, seq: int, pulsed: bool, tick: int, config: SecondSenderConfig
-) -> SecondSender:
+    before: SecondSenderWatch,
+    readings: Readings,
+    seq: int,
+    pulsed: bool,
+    tick: int,
+    config: SecondSenderConfig,
+) -> SecondSenderWatch:
     """What is known of a second sender after this tick.
 
     Args:
@@ -60,10 +65,10 @@ def watch(
     if not can_id and readings.refused is not None and pulsed and _of_another(readings.refused, seq):
         can_id = CoilFire.ID
     if not can_id:
-        return NOBODY if before.signs and tick - before.tick > config.request_ticks else before
-    apart = config.request_ticks if can_id in REQUESTS or before.named else config.other_ticks
+        return NO_SIGNS if before.signs and tick - before.tick > config.request_ticks else before
+    apart = config.request_ticks if can_id in REQUESTS or before.detected else config.other_ticks
     signs = before.signs if before.signs and tick - before.tick <= apart else 0
-    return SecondSender(min(signs + 1, SIGNS), tick, can_id)
+    return SecondSenderWatch(min(signs + 1, SIGNS), tick, can_id)
 
 
 def _of_another(refused: CoilRefused, seq: int) -> bool:

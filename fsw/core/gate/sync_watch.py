@@ -25,7 +25,7 @@ class Belief(Enum):
     """What a SYNC is taken for."""
 
     IGNORED = auto()
-    UNHEARD = auto()
+    UNANSWERED = auto()
     """Of the tick that was answered, again and again: the answer has not been heard."""
     NEXT = auto()
     """The next tick; where SYNCs were lost, one near ahead."""
@@ -63,7 +63,7 @@ def judge(watch: SyncWatch, current: int, tick: int) -> tuple[Belief, SyncWatch]
         return Belief.NEXT, _gone_on(watch, current, tick)
     if tick == current:
         if tick in watch.doubted:
-            return Belief.UNHEARD, watch._replace(doubted=_without(watch.doubted, tick))
+            return Belief.UNANSWERED, watch._replace(doubted=_without(watch.doubted, tick))
         return Belief.IGNORED, watch._replace(doubted=_with(watch.doubted, tick))
     if tick in watch.doubted or tick - 1 in watch.doubted:
         doubted = _with(_without(watch.doubted, tick, tick - 1), current)

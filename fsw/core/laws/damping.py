@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from fsw.core.algebra.vector import Vec3, cross, norm, scale, sub
-from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
+from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 
 MAX_DIFFERENCE_S = 10.0
 """Field samples further apart than this tell nothing of the rate."""
@@ -75,35 +75,35 @@ def switched_gain(b_dot_tps: Vec3, b_body_t: Vec3, k_w: float, below_radps: floa
     return k_w if norm(b_dot_tps) > below_radps * norm(b_body_t) else factor * k_w
 
 
-def rate_damping(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+def rate_damping(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """Damping of the rate relative to the orbital frame, down to the spin that is wanted."""
-    if not seen.attitude.valid:
+    if not inputs.attitude.valid:
         return Demand()
-    w1, w2, w3 = seen.attitude.omega_body_orbit_radps
-    return Demand(rate_damping_dipole(seen.b_body_t, (w1 - setpoint.spin_radps, w2, w3), setpoint.k_w))
+    w1, w2, w3 = inputs.attitude.omega_body_orbit_radps
+    return Demand(rate_damping_dipole(inputs.b_body_t, (w1 - setpoint.spin_radps, w2, w3), setpoint.k_w))
 
 
-def bdot(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+def bdot(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """B-dot from the last two usable field samples."""
-    interval_s = difference_s(seen, config.tick_s)
+    interval_s = difference_s(inputs, config.tick_s)
     if interval_s == 0.0:
         return Demand()
-    return Demand(bdot_dipole(seen.sample.b_body_t, seen.before.b_body_t, interval_s, setpoint.k_w))
+    return Demand(bdot_dipole(inputs.sample.b_body_t, inputs.before.b_body_t, interval_s, setpoint.k_w))
 
 
-def bdot_switched(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+def bdot_switched(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """B-dot whose gain is switched by the apparent rate."""
     gains: SwitchedGains = config.gains["bdot_switched"]
-    interval_s = difference_s(seen, config.tick_s)
+    interval_s = difference_s(inputs, config.tick_s)
     if interval_s == 0.0:
         return Demand()
-    now, before = seen.sample.b_body_t, seen.before.b_body_t
+    now, before = inputs.sample.b_body_t, inputs.before.b_body_t
     b_dot = scale(1.0 / interval_s, sub(now, before))
     k_w = switched_gain(b_dot, now, setpoint.k_w, gains.below_radps, gains.factor)
     return Demand(bdot_dipole(now, before, interval_s, k_w))
 
 
-def difference_s(seen: Seen, tick_s: float) -> float:
+def difference_s(inputs: LawInput, tick_s: float) -> float:
     """Time between the last two usable field samples, s; zero where they tell nothing of the rate."""
-    interval_s = (seen.sample.tick - seen.before.tick) * tick_s
-    return interval_s if seen.before.tick >= 0 and interval_s <= MAX_DIFFERENCE_S else 0.0
+    interval_s = (inputs.sample.tick - inputs.before.tick) * tick_s
+    return interval_s if inputs.before.tick >= 0 and interval_s <= MAX_DIFFERENCE_S else 0.0

@@ -8,7 +8,7 @@ from math import atan2, sin
 
 from fsw.core.algebra.quaternion import dcm
 from fsw.core.algebra.vector import Mat3, Vec3, add
-from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
+from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 from fsw.core.laws.pd import attitude_error
 
 
@@ -74,18 +74,18 @@ def pitch(c_body_from_orbit: Mat3) -> float:
     return atan2(a12 - a21, a11 + a22)
 
 
-def dual_spin(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+def dual_spin(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The wheel held to the orbit normal, the body turned to its pitch.
 
     Without a wheel, or with one against the orbit normal, nothing: there the drag relative to the orbital
     frame would drive the satellite away.
     """
     gains: DualSpinGains = config.gains["dual_spin"]
-    if not seen.attitude.valid or config.wheel_body_nms[2] <= 0.0:
+    if not inputs.attitude.valid or config.wheel_body_nms[2] <= 0.0:
         return Demand()
-    c = dcm(seen.attitude.q_body_from_orbit)
-    omega = seen.attitude.omega_body_orbit_radps
-    holding = wheel_axis_dipole(seen.b_body_t, omega, attitude_error(c)[1], setpoint.k_w, setpoint.k_a)
+    c = dcm(inputs.attitude.q_body_from_orbit)
+    omega = inputs.attitude.omega_body_orbit_radps
+    holding = wheel_axis_dipole(inputs.b_body_t, omega, attitude_error(c)[1], setpoint.k_w, setpoint.k_a)
     stiff = 2.0 * setpoint.k_a * gains.stiffness
-    turning = pitch_dipole(seen.b_body_t, stiff * sin(gains.pitch_rad - pitch(c)) - setpoint.k_w * omega[2])
+    turning = pitch_dipole(inputs.b_body_t, stiff * sin(gains.pitch_rad - pitch(c)) - setpoint.k_w * omega[2])
     return Demand(add(holding, turning))

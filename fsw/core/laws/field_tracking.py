@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from fsw.core.algebra.quaternion import rotate
 from fsw.core.algebra.vector import Vec3, add, scale, sub
 from fsw.core.laws.damping import MAX_DIFFERENCE_S
-from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
+from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 from fsw.core.laws.pd import pd
 
 TRACKED = 4
@@ -47,9 +47,9 @@ def field_tracking_dipole(error_t: Vec3, error_rate_tps: Vec3, k_w: float, k_a: 
     return add(scale(-2.0 * k_a, error_t), scale(-k_w, error_rate_tps))
 
 
-def field_tracking(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+def field_tracking(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """Field tracking from magnetometer and orbit alone. Memory: tick of the last sample and b - B then."""
-    sample, reference = seen.sample, seen.reference
+    sample, reference = inputs.sample, inputs.reference
     if reference is None or sample.tick < 0:
         return Demand()
     if memory and sample.tick == memory[0]:
@@ -66,13 +66,13 @@ def field_tracking(seen: Seen, memory: Memory, setpoint: Setpoint, config: Contr
     return Demand(field_tracking_dipole(error_t, rate_tps, setpoint.k_w, setpoint.k_a), memory=kept)
 
 
-def tracking_before_pd(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+def tracking_before_pd(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """Field tracking far from the goal, before the hand-over; begins afresh where it comes back from PD."""
     gains: HandOverGains = config.gains["field_tracking_pd"]
     own = setpoint._replace(k_w=gains.share_w * setpoint.k_w, k_a=gains.share_a * setpoint.k_a)
-    return field_tracking(seen, memory if len(memory) == TRACKED else (), own, config)
+    return field_tracking(inputs, memory if len(memory) == TRACKED else (), own, config)
 
 
-def pd_after_tracking(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+def pd_after_tracking(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The PD law near the goal (the review's eq. 8 in the plane the coils reach), after the hand-over."""
-    return pd(seen, memory if len(memory) != TRACKED else (), setpoint, config)
+    return pd(inputs, memory if len(memory) != TRACKED else (), setpoint, config)

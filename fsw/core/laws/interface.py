@@ -21,7 +21,7 @@ class FieldSample:
     tick: int = -1
 
 
-class Seen(NamedTuple):
+class LawInput(NamedTuple):
     """What a law may look at in one tick.
 
     ``b_body_t`` is the modelled field where the attitude is known, else the last measured one; ``sample``
@@ -104,5 +104,5 @@ class Demand(NamedTuple):
     memory: Memory = ()
 
 
-Law = Callable[[Seen, Memory, Setpoint, ControlConfig], Demand]
+Law = Callable[[LawInput, Memory, Setpoint, ControlConfig], Demand]
 """One control law: pure, called once a tick."""

@@ -16,9 +16,9 @@ import numpy as np
 from fsw.core.algebra.quaternion import Quaternion, dcm
 from fsw.core.algebra.vector import Mat3, Vec3, add, scale, transform, transpose
 from fsw.core.estimation.attitude import Attitude
-from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
+from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 from fsw.core.laws.pd import pd_far
-from fsw.core.laws.riccati import NotHeldError, Schedule, backward, periodic, problem
+from fsw.core.laws.riccati import NotHeldError, Schedule, backward, periodic, regulator_problem
 from fsw.core.orbit.ephemeris import Reference
 
 STEPS = 48
@@ -27,7 +27,7 @@ STEPS = 48
 
 @dataclass(frozen=True, slots=True)
 class LqrGains:
-    """Weights of rate and dipole against that of attitude, as in ``riccati.problem``."""
+    """Weights of rate and dipole against that of attitude, as in ``riccati.regulator_problem``."""
 
     rate: float = 0.0
     effort: float = 0.1
@@ -78,14 +78,14 @@ def schedule(
     across, along = sin(inclination_rad), np.full(STEPS, cos(inclination_rad))
     b_orbit_t = field_t * np.stack([-2.0 * across * np.sin(u), across * np.cos(u), along], axis=-1)
     step_s = 2.0 * pi / STEPS / orbit_rate_radps
-    given = problem(
+    problem = regulator_problem(
         inertia_kgm2, wheel_body_nms, orbit_rate_radps, field_t, step_s, weights.rate, weights.effort
     )
     try:
-        gains, costs = periodic(given, b_orbit_t)
+        gains, costs = periodic(problem, b_orbit_t)
     except NotHeldError:
-        gains, costs = backward(given, np.concatenate([b_orbit_t, b_orbit_t]), np.zeros((6, 9)))
-    return Schedule(given, gains[:STEPS], costs[:STEPS])
+        gains, costs = backward(problem, np.concatenate([b_orbit_t, b_orbit_t]), np.zeros((6, 9)))
+    return Schedule(problem, gains[:STEPS], costs[:STEPS])
 
 
 def latitude_argument(reference: Reference) -> float:
@@ -136,20 +136,22 @@ def within(m_body_am2: Vec3, most_am2: float) -> Vec3:
     return scale(most_am2 / largest, m_body_am2) if largest > most_am2 else m_body_am2
 
 
-def lqr(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+def lqr(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """M = M(u) (Omega, theta, d), d the estimated torque and what rests on the nominal attitude."""
     table = config.schedules.get("lqr")
-    if not seen.attitude.valid or seen.reference is None or table is None:
+    if not inputs.attitude.valid or inputs.reference is None or table is None:
         return Demand()
-    gain = table.gains[node(latitude_argument(seen.reference))].ravel().tolist()
-    return Demand(within(dipole(gain, seen.attitude, known_torque(seen, table)), config.mean_dipole_am2))
+    gain = table.gains[node(latitude_argument(inputs.reference))].ravel().tolist()
+    return Demand(
+        within(dipole(gain, inputs.attitude, expected_torque(inputs, table)), config.mean_dipole_am2)
+    )
 
 
-def known_torque(seen: Seen, table: Schedule) -> Vec3:
+def expected_torque(inputs: LawInput, table: Schedule) -> Vec3:
     """The torque that the plan may reckon with, body axes, N m."""
-    return add(seen.torque_body_nm, table.problem.resting_nm)
+    return add(inputs.torque_body_nm, table.problem.resting_nm)
 
 
-def without_memory(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+def without_memory(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """Far from the goal: the PD law's far form; nothing is kept for the law near it."""
-    return pd_far(seen, (), setpoint, config)._replace(memory=())
+    return pd_far(inputs, (), setpoint, config)._replace(memory=())

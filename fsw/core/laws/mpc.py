@@ -14,14 +14,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
-from fsw.core.laws.lqr import STEPS, check_weights, dipole, known_torque, latitude_argument, node, within
+from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
+from fsw.core.laws.lqr import STEPS, check_weights, dipole, expected_torque, latitude_argument, node, within
 from fsw.core.laws.riccati import Array, Schedule, backward
 from fsw.core.orbit.ephemeris import EphemerisModel
 from fsw.core.orbit.field import field_eci_t
 from fsw.core.orbit.propagation import state_eci
 
-FLOWN = 5
+APPLIED_STEPS = 5
 """Steps of a plan that are flown."""
 _NUMBERS = 3 * 9
 """Of a gain."""
@@ -67,7 +67,7 @@ def field_ahead(model: EphemerisModel, unix_s: float, step_s: float, steps: int)
 
 
 def plan(table: Schedule, b_orbit_t: Array, end_node: int) -> Array:
-    """Gains of the first steps, shape (FLOWN, 3, 9), at the end of the plan the periodic regulator's cost.
+    """Gains of the first steps, shape (APPLIED_STEPS, 3, 9), of a plan that ends in the regulator's cost.
 
     Args:
         table: the periodic regulator.
@@ -75,33 +75,33 @@ def plan(table: Schedule, b_orbit_t: Array, end_node: int) -> Array:
         end_node: step of the table in which the plan ends.
     """
     gains, _ = backward(table.problem, b_orbit_t, table.costs[end_node])
-    return gains[:FLOWN]
+    return gains[:APPLIED_STEPS]
 
 
-def mpc(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+def mpc(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The step of the plan in memory (tick of its making, its gains); a new plan where it has ended."""
     table = config.schedules.get("mpc")
-    if not seen.attitude.valid or seen.reference is None or seen.ephemeris is None or table is None:
+    if not inputs.attitude.valid or inputs.reference is None or inputs.ephemeris is None or table is None:
         return Demand(memory=memory)
-    step = _step(memory, seen.tick, config.tick_s / table.problem.step_s)
+    step = _step(memory, inputs.tick, config.tick_s / table.problem.step_s)
     if step is None:
         steps = round(config.gains["mpc"].horizon_orbits * STEPS)
-        model, step_s = seen.ephemeris, table.problem.step_s
-        unix_s = model.epoch_unix_s + seen.tick * config.tick_s
+        model, step_s = inputs.ephemeris, table.problem.step_s
+        unix_s = model.epoch_unix_s + inputs.tick * config.tick_s
         b_orbit_t = field_ahead(model, unix_s, step_s, steps)
         if b_orbit_t is None:
             return Demand()
-        end = node(latitude_argument(seen.reference)) + steps
+        end = node(latitude_argument(inputs.reference)) + steps
         gains = plan(table, b_orbit_t, end % STEPS)
-        memory, step = (float(seen.tick), *gains.ravel().tolist()), 0
+        memory, step = (float(inputs.tick), *gains.ravel().tolist()), 0
     first = 1 + step * _NUMBERS
-    wanted = dipole(memory[first : first + _NUMBERS], seen.attitude, known_torque(seen, table))
+    wanted = dipole(memory[first : first + _NUMBERS], inputs.attitude, expected_torque(inputs, table))
     return Demand(within(wanted, config.mean_dipole_am2), memory=memory)
 
 
 def _step(memory: Memory, tick: int, steps_per_tick: float) -> int | None:
     """The step of the plan in memory that this tick belongs to; None where there is none."""
-    if len(memory) != 1 + FLOWN * _NUMBERS or tick < memory[0]:
+    if len(memory) != 1 + APPLIED_STEPS * _NUMBERS or tick < memory[0]:
         return None
     step = int((tick - memory[0]) * steps_per_tick)
-    return step if step < FLOWN else None
+    return step if step < APPLIED_STEPS else None

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 from fsw.core.algebra.quaternion import Quaternion
 from fsw.core.algebra.vector import Vec3, cross
-from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
+from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 from fsw.core.laws.pd import far_error, pd_dipole
 
 
@@ -54,16 +54,16 @@ def follow(q_body_from_orbit: Quaternion, followed: Quaternion, part: float) -> 
     return (z0 + part * (q0 - z0), z1 + part * (q1 - z1), z2 + part * (q2 - z2), z3 + part * (q3 - z3))
 
 
-def output_feedback(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The PD law on the lagged rate; memory is z, which begins at the first attitude seen."""
-    if not seen.attitude.valid:
+def output_feedback(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """The PD law on the lagged rate; memory is z, which begins at the first attitude inputs."""
+    if not inputs.attitude.valid:
         return Demand()
-    q = seen.attitude.q_body_from_orbit
-    given: FilterGains = config.gains["output_feedback"]
+    q = inputs.attitude.q_body_from_orbit
+    gains: FilterGains = config.gains["output_feedback"]
     z = _of_sign(memory, q)
-    omega = lagged_rate(q, z, given.bandwidth_radps)
-    step = given.bandwidth_radps * config.tick_s
-    dipole = pd_dipole(seen.b_body_t, omega, far_error(q), setpoint.k_w, setpoint.k_a)
+    omega = lagged_rate(q, z, gains.bandwidth_radps)
+    step = gains.bandwidth_radps * config.tick_s
+    dipole = pd_dipole(inputs.b_body_t, omega, far_error(q), setpoint.k_w, setpoint.k_a)
     return Demand(dipole, memory=follow(q, z, step / (1.0 + step)))
 
 

@@ -2,7 +2,7 @@
 
 from fsw.core.algebra.quaternion import Quaternion, dcm
 from fsw.core.algebra.vector import ZERO, Mat3, Vec3, add, cross, norm, scale
-from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
+from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 
 
 def attitude_error(c_body_from_orbit: Mat3) -> Vec3:
@@ -41,7 +41,7 @@ def pd_dipole(b_body_t: Vec3, omega_body_orbit_radps: Vec3, error: Vec3, k_w: fl
     return cross((k_w * w1 + k_a * s1, k_w * w2 + k_a * s2, k_w * w3 + k_a * s3), b_body_t)
 
 
-def integrated(
+def integrate_error(
     integral_s: Vec3, error: Vec3, b_body_t: Vec3, k_i: float, tick_s: float, mean_dipole_am2: float
 ) -> Vec3:
     """I <- I + S h, held where k_i |b| |I| stays below the dipole that the coils can give for good."""
@@ -50,30 +50,32 @@ def integrated(
     return grown if asked_am2 <= mean_dipole_am2 else scale(mean_dipole_am2 / asked_am2, grown)
 
 
-def pd(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+def pd(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """M = -k_w b x Omega - k_a b x S - k_i b x I, I the integral of S."""
     integral_s = _integral(memory)
-    if not seen.attitude.valid:
+    if not inputs.attitude.valid:
         return Demand(memory=integral_s)
-    error = attitude_error(dcm(seen.attitude.q_body_from_orbit))
+    error = attitude_error(dcm(inputs.attitude.q_body_from_orbit))
     if setpoint.k_i > 0.0:
-        integral_s = integrated(
-            integral_s, error, seen.b_body_t, setpoint.k_i, config.tick_s, config.mean_dipole_am2
+        integral_s = integrate_error(
+            integral_s, error, inputs.b_body_t, setpoint.k_i, config.tick_s, config.mean_dipole_am2
         )
-    return _demand(seen, error, integral_s, setpoint)
+    return _demand(inputs, error, integral_s, setpoint)
 
 
-def pd_far(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+def pd_far(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The same law far from the goal: an error that does not vanish upside down, the integral held."""
     integral_s = _integral(memory)
-    if not seen.attitude.valid:
+    if not inputs.attitude.valid:
         return Demand(memory=integral_s)
-    return _demand(seen, far_error(seen.attitude.q_body_from_orbit), integral_s, setpoint)
+    return _demand(inputs, far_error(inputs.attitude.q_body_from_orbit), integral_s, setpoint)
 
 
-def _demand(seen: Seen, error: Vec3, integral_s: Vec3, setpoint: Setpoint) -> Demand:
-    held = cross(scale(setpoint.k_i, integral_s), seen.b_body_t)
-    dipole = pd_dipole(seen.b_body_t, seen.attitude.omega_body_orbit_radps, error, setpoint.k_w, setpoint.k_a)
+def _demand(inputs: LawInput, error: Vec3, integral_s: Vec3, setpoint: Setpoint) -> Demand:
+    held = cross(scale(setpoint.k_i, integral_s), inputs.b_body_t)
+    dipole = pd_dipole(
+        inputs.b_body_t, inputs.attitude.omega_body_orbit_radps, error, setpoint.k_w, setpoint.k_a
+    )
     return Demand(add(dipole, held), memory=integral_s)
 
 

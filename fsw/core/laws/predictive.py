@@ -14,7 +14,7 @@ Source: Tavares et al. (ConSat, PoSAT-1), eq. 5 and 18.
 
 from fsw.core.algebra.quaternion import dcm
 from fsw.core.algebra.vector import Mat3, Vec3, add, cross, dot, scale, sub, transform, transpose
-from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
+from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 from fsw.core.orbit.earth import MU_M3PS2
 
 
@@ -67,9 +67,9 @@ def best_impulse(impulse_body_nms: Vec3, b_body_t: Vec3, inertia_kgm2: Mat3) -> 
     return sub(impulse_body_nms, scale(dot(b_body_t, impulse_body_nms) / dot(b_body_t, weighted), weighted))
 
 
-def predictive(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+def predictive(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The impulse that is missing at the end of a pulse fired now."""
-    attitude, reference = seen.attitude, seen.reference
+    attitude, reference = inputs.attitude, inputs.reference
     if not attitude.valid or reference is None:
         return Demand()
     change = free_rate_change(

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from fsw.core.algebra.quaternion import dcm
 from fsw.core.algebra.vector import ZERO, Vec3, add, cross, dot, scale, sub
-from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
+from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 from fsw.core.laws.pd import attitude_error, far_error
 
 NT = 1e-9
@@ -84,45 +84,45 @@ def reference_torque(b_body_t: Vec3, omega_body_orbit_radps: Vec3, error: Vec3, 
     return scale(-dot(b_body_t, b_body_t), wanted)
 
 
-def weighted(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+def weighted(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The PD torque by the weighted projection."""
-    if not seen.attitude.valid:
+    if not inputs.attitude.valid:
         return Demand()
-    return _weighted(seen, attitude_error(dcm(seen.attitude.q_body_from_orbit)), setpoint, config)
+    return _weighted(inputs, attitude_error(dcm(inputs.attitude.q_body_from_orbit)), setpoint, config)
 
 
-def weighted_far(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+def weighted_far(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The same far from the goal, by the error that does not vanish upside down."""
-    if not seen.attitude.valid:
+    if not inputs.attitude.valid:
         return Demand()
-    return _weighted(seen, far_error(seen.attitude.q_body_from_orbit), setpoint, config)
+    return _weighted(inputs, far_error(inputs.attitude.q_body_from_orbit), setpoint, config)
 
 
-def regularised(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+def regularised(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The PD torque by the regularised inverse."""
-    if not seen.attitude.valid:
+    if not inputs.attitude.valid:
         return Demand()
-    return _regularised(seen, attitude_error(dcm(seen.attitude.q_body_from_orbit)), setpoint, config)
+    return _regularised(inputs, attitude_error(dcm(inputs.attitude.q_body_from_orbit)), setpoint, config)
 
 
-def regularised_far(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+def regularised_far(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The same far from the goal, by the error that does not vanish upside down."""
-    if not seen.attitude.valid:
+    if not inputs.attitude.valid:
         return Demand()
-    return _regularised(seen, far_error(seen.attitude.q_body_from_orbit), setpoint, config)
+    return _regularised(inputs, far_error(inputs.attitude.q_body_from_orbit), setpoint, config)
 
 
-def _weighted(seen: Seen, error: Vec3, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    given: WeightGains = config.gains["pd_weighted"]
+def _weighted(inputs: LawInput, error: Vec3, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    gains: WeightGains = config.gains["pd_weighted"]
     (j1, _, _), (_, j2, _), (_, _, j3) = config.inertia_kgm2
-    weights = (given.q1, given.q2, given.q3)
+    weights = (gains.q1, gains.q2, gains.q3)
     if min(weights) <= 0.0:
         weights = (1.0 / j1, 1.0 / j2, 1.0 / j3)
-    torque = reference_torque(seen.b_body_t, seen.attitude.omega_body_orbit_radps, error, setpoint)
-    return Demand(torque_dipole(weighted_projection(torque, seen.b_body_t, weights), seen.b_body_t))
+    torque = reference_torque(inputs.b_body_t, inputs.attitude.omega_body_orbit_radps, error, setpoint)
+    return Demand(torque_dipole(weighted_projection(torque, inputs.b_body_t, weights), inputs.b_body_t))
 
 
-def _regularised(seen: Seen, error: Vec3, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    given: RegularGains = config.gains["pd_regularised"]
-    torque = reference_torque(seen.b_body_t, seen.attitude.omega_body_orbit_radps, error, setpoint)
-    return Demand(regularised_dipole(torque, seen.b_body_t, given.floor_nt * NT))
+def _regularised(inputs: LawInput, error: Vec3, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    gains: RegularGains = config.gains["pd_regularised"]
+    torque = reference_torque(inputs.b_body_t, inputs.attitude.omega_body_orbit_radps, error, setpoint)
+    return Demand(regularised_dipole(torque, inputs.b_body_t, gains.floor_nt * NT))

@@ -69,7 +69,7 @@ class Schedule:
     costs: Array
 
 
-def problem(
+def regulator_problem(
     inertia_kgm2: Mat3,
     wheel_body_nms: Vec3,
     orbit_rate_radps: float,
@@ -123,11 +123,11 @@ def resting_torque(inertia_kgm2: Mat3, wheel_body_nms: Vec3, orbit_rate_radps: f
     return sub(gravity, scale(orbit_rate_radps, cross(E3, momentum)))
 
 
-def backward(given: Problem, b_orbit_t: Array, last: Array) -> tuple[Array, Array]:
+def backward(problem: Problem, b_orbit_t: Array, last: Array) -> tuple[Array, Array]:
     """Solve from the last step to the first.
 
     Args:
-        given: the problem.
+        problem: the problem.
         b_orbit_t: field in the middle of each step, orbital axes, T, shape (n, 3).
         last: (P S) at the end of the last step, shape (6, 9).
 
@@ -135,28 +135,28 @@ def backward(given: Problem, b_orbit_t: Array, last: Array) -> tuple[Array, Arra
         M of each step, (n, 3, 9), and (P S) at the beginning of each, (n, 6, 9).
     """
     gains, costs = np.empty((len(b_orbit_t), 3, 9)), np.empty((len(b_orbit_t), 6, 9))
-    pushes = _pushes(given, b_orbit_t)
-    f, ahead = given.free[:, :6], last
+    pushes = _pushes(problem, b_orbit_t)
+    f, ahead = problem.free[:, :6], last
     for k in range(len(b_orbit_t) - 1, -1, -1):
         push = pushes[k]
-        reached = ahead[:, :6] @ given.free
+        reached = ahead[:, :6] @ problem.free
         reached[:, 6:] += ahead[:, 6:]
         pushed = ahead[:, :6] @ push
-        gain = -np.linalg.solve(push.T @ pushed + given.effort * np.eye(3), push.T @ reached)
+        gain = -np.linalg.solve(push.T @ pushed + problem.effort * np.eye(3), push.T @ reached)
         ahead = f.T @ (reached + pushed @ gain)
-        ahead[:, :6] += np.diag(given.cost)
+        ahead[:, :6] += np.diag(problem.cost)
         gains[k], costs[k] = gain, ahead
     return gains, costs
 
 
-def periodic(given: Problem, b_orbit_t: Array) -> tuple[Array, Array]:
+def periodic(problem: Problem, b_orbit_t: Array) -> tuple[Array, Array]:
     """Solve for an orbit whose field comes again for ever.
 
     The steps are summed to one step an orbit, x+ = A x - G p+, p = H x + A^T p+ (p half the slope of the
     cost), and that step is doubled.
 
     Args:
-        given: the problem.
+        problem: the problem.
         b_orbit_t: as for ``backward``, over one orbit.
 
     Returns:
@@ -165,16 +165,16 @@ def periodic(given: Problem, b_orbit_t: Array) -> tuple[Array, Array]:
     Raises:
         NotHeldError: no periodic dipole holds the attitude.
     """
-    f, pushes = given.free[:, :6], _pushes(given, b_orbit_t)
+    f, pushes = problem.free[:, :6], _pushes(problem, b_orbit_t)
     try:
         with np.errstate(all="ignore"):
-            last = np.hstack([_orbit_cost(given, pushes), np.zeros((6, 3))])
-            gains, costs = backward(given, b_orbit_t, last)
+            last = np.hstack([_orbit_cost(problem, pushes), np.zeros((6, 3))])
+            gains, costs = backward(problem, b_orbit_t, last)
             closed = np.eye(6)
             for push, gain in zip(pushes, gains, strict=True):
                 closed = (f + push @ gain[:, :6]) @ closed
             last[:, 6:] = np.linalg.solve(np.eye(6) - closed.T, costs[0, :, 6:])
-            gains, costs = backward(given, b_orbit_t, last)
+            gains, costs = backward(problem, b_orbit_t, last)
             change = np.abs(costs[0] - last).max(axis=0)
             settled = bool(np.all(change <= SETTLED * np.abs(last).max(axis=0)))
     except np.linalg.LinAlgError:
@@ -184,13 +184,13 @@ def periodic(given: Problem, b_orbit_t: Array) -> tuple[Array, Array]:
     return gains, costs
 
 
-def _orbit_cost(given: Problem, pushes: Array) -> Array:
+def _orbit_cost(problem: Problem, pushes: Array) -> Array:
     """P at the beginning of an orbit of many, (6, 6)."""
     shape = (len(pushes), 6, 6)
     parts: tuple[Array, ...] = (
-        np.broadcast_to(given.free[:, :6], shape),
-        pushes @ pushes.swapaxes(-1, -2) / given.effort,
-        np.broadcast_to(np.diag(given.cost), shape),
+        np.broadcast_to(problem.free[:, :6], shape),
+        pushes @ pushes.swapaxes(-1, -2) / problem.effort,
+        np.broadcast_to(np.diag(problem.cost), shape),
     )
     while (count := len(parts[0])) > 1:
         even = count - count % 2
@@ -211,9 +211,9 @@ def _joined(first: tuple[Array, ...], second: tuple[Array, ...]) -> tuple[Array,
     return through @ a1, g2 + through @ g1 @ a2.swapaxes(-1, -2), h1 + back @ a1
 
 
-def _pushes(given: Problem, b_orbit_t: Array) -> Array:
+def _pushes(problem: Problem, b_orbit_t: Array) -> Array:
     """-G [b x] of each step, (n, 6, 3): what a dipole adds to the state."""
-    pushes: Array = -given.free[:, 6:] @ _skews(b_orbit_t)
+    pushes: Array = -problem.free[:, 6:] @ _skews(b_orbit_t)
     return pushes
 
 

@@ -17,7 +17,7 @@ that the lost torque drop out of ds/dt.
 from dataclasses import dataclass
 
 from fsw.core.algebra.vector import ZERO, Vec3, add, dot, norm, scale, transform
-from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
+from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 from fsw.core.laws.projection import torque_dipole
 
 
@@ -56,35 +56,35 @@ def lost_torque(torque_body_nm: Vec3, b_body_t: Vec3) -> Vec3:
     return scale(dot(b_body_t, torque_body_nm) / square, b_body_t) if square > 0.0 else torque_body_nm
 
 
-def sliding(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+def sliding(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """M_ref = -c s on the plain surface."""
-    if not seen.attitude.valid or seen.reference is None:
+    if not inputs.attitude.valid or inputs.reference is None:
         return Demand()
-    given: SlidingGains = config.gains["sliding"]
-    w0 = seen.reference.orbit_rate_radps
-    s = _surface(seen, given.slope * w0, config)
-    return Demand(torque_dipole(scale(-given.reach * w0, s), seen.b_body_t))
+    gains: SlidingGains = config.gains["sliding"]
+    w0 = inputs.reference.orbit_rate_radps
+    s = _surface(inputs, gains.slope * w0, config)
+    return Demand(torque_dipole(scale(-gains.reach * w0, s), inputs.b_body_t))
 
 
-def sliding_integral(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+def sliding_integral(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The same with both integrals; memory is K_i times the first, and the second, N m s each.
 
     Each is held where alone it would ask for more than the coils can give for good.
     """
     held = _held(memory)
-    if not seen.attitude.valid or seen.reference is None:
+    if not inputs.attitude.valid or inputs.reference is None:
         return Demand(memory=(*held[0], *held[1]))
-    given: SlidingIntegralGains = config.gains["sliding_integral"]
-    w0 = seen.reference.orbit_rate_radps
-    reach = given.reach * w0
-    most = config.mean_dipole_am2 * norm(seen.b_body_t) / reach
-    grown = scale(given.integral * w0**2 * mean_moment(config) * config.tick_s, _attitude(seen))
+    gains: SlidingIntegralGains = config.gains["sliding_integral"]
+    w0 = inputs.reference.orbit_rate_radps
+    reach = gains.reach * w0
+    most = config.mean_dipole_am2 * norm(inputs.b_body_t) / reach
+    grown = scale(gains.integral * w0**2 * mean_moment(config) * config.tick_s, _attitude(inputs))
     mean = _bounded(add(held[0], grown), most)
-    s = add(_surface(seen, given.slope * w0, config), add(mean, held[1]))
+    s = add(_surface(inputs, gains.slope * w0, config), add(mean, held[1]))
     wanted = scale(-reach, s)
-    lost = scale(given.lost * config.tick_s, lost_torque(wanted, seen.b_body_t))
+    lost = scale(gains.lost * config.tick_s, lost_torque(wanted, inputs.b_body_t))
     missed = _bounded(add(held[1], lost), most)
-    return Demand(torque_dipole(wanted, seen.b_body_t), memory=(*mean, *missed))
+    return Demand(torque_dipole(wanted, inputs.b_body_t), memory=(*mean, *missed))
 
 
 def mean_moment(config: ControlConfig) -> float:
@@ -93,13 +93,13 @@ def mean_moment(config: ControlConfig) -> float:
     return (j1 + j2 + j3) / 3.0
 
 
-def _surface(seen: Seen, slope_radps: float, config: ControlConfig) -> Vec3:
-    momentum = transform(config.inertia_kgm2, seen.attitude.omega_body_orbit_radps)
-    return surface(momentum, _attitude(seen), slope_radps * mean_moment(config))
+def _surface(inputs: LawInput, slope_radps: float, config: ControlConfig) -> Vec3:
+    momentum = transform(config.inertia_kgm2, inputs.attitude.omega_body_orbit_radps)
+    return surface(momentum, _attitude(inputs), slope_radps * mean_moment(config))
 
 
-def _attitude(seen: Seen) -> Vec3:
-    q0, q1, q2, q3 = seen.attitude.q_body_from_orbit
+def _attitude(inputs: LawInput) -> Vec3:
+    q0, q1, q2, q3 = inputs.attitude.q_body_from_orbit
     return (q1, q2, q3) if q0 >= 0.0 else (-q1, -q2, -q3)
 
 

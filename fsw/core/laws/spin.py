@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from fsw.core.algebra.vector import Vec3, add, cross, dot, scale
 from fsw.core.laws.damping import difference_s
-from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
+from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 from fsw.core.laws.motion import motion
 
 AXES: tuple[Vec3, Vec3, Vec3] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -98,41 +98,41 @@ def y_thomson_dipole(
     return scale(k_w * size_t * (spin_body_radps - wanted_radps) * sign, AXES[(axis + 2) % 3])
 
 
-def nutation(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+def nutation(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """Nutation damping from the last two usable field samples."""
     gains: SpinGains = config.gains["nutation"]
-    return Demand(_nutation(seen, setpoint.k_w, gains.number, config.tick_s))
+    return Demand(_nutation(inputs, setpoint.k_w, gains.number, config.tick_s))
 
 
-def spin_up(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+def spin_up(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """Spin-up with k = k_w (w_ref - w_e), which ends by itself; nutation damping by the coil along e."""
     gains: SpinGains = config.gains["spin_up"]
-    moving = motion(seen, config)
+    moving = motion(inputs, config)
     if moving is None:
         return Demand()
     lacking_radps = setpoint.spin_radps - moving.omega_body_radps[gains.number]
-    spinning = spin_up_dipole(seen.b_body_t, gains.number, setpoint.k_w * lacking_radps)
-    return Demand(add(spinning, _nutation(seen, setpoint.k_w, gains.number, config.tick_s)))
+    spinning = spin_up_dipole(inputs.b_body_t, gains.number, setpoint.k_w * lacking_radps)
+    return Demand(add(spinning, _nutation(inputs, setpoint.k_w, gains.number, config.tick_s)))
 
 
-def y_thomson(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+def y_thomson(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The spin held by one coil; B-dot of the coil along the axis, which turns it to the orbit normal."""
     gains: SpinGains = config.gains["y_thomson"]
-    moving = motion(seen, config)
+    moving = motion(inputs, config)
     if moving is None:
         return Demand()
     holding = y_thomson_dipole(
-        seen.b_body_t,
+        inputs.b_body_t,
         moving.omega_body_radps[gains.number],
         setpoint.spin_radps,
         gains.number,
         setpoint.k_w,
     )
-    return Demand(add(holding, _nutation(seen, setpoint.k_w, gains.number, config.tick_s)))
+    return Demand(add(holding, _nutation(inputs, setpoint.k_w, gains.number, config.tick_s)))
 
 
-def _nutation(seen: Seen, k_w: float, axis: int, tick_s: float) -> Vec3:
-    interval_s = difference_s(seen, tick_s)
+def _nutation(inputs: LawInput, k_w: float, axis: int, tick_s: float) -> Vec3:
+    interval_s = difference_s(inputs, tick_s)
     if interval_s == 0.0:
         return (0.0, 0.0, 0.0)
-    return nutation_dipole(seen.sample.b_body_t, seen.before.b_body_t, interval_s, axis, k_w)
+    return nutation_dipole(inputs.sample.b_body_t, inputs.before.b_body_t, interval_s, axis, k_w)

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 
 from fsw.core.algebra.quaternion import rotate
 from fsw.core.algebra.vector import Vec3, add, cross, dot, norm, scale, sub, transform, unit
-from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
-from fsw.core.laws.motion import Motion, motion
+from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
+from fsw.core.laws.motion import InertialMotion, motion
 from fsw.core.laws.spin import AXES, SpinGains
 
 
@@ -127,37 +127,37 @@ def three_term_dipole(
     return cross(b_body_t, wanted)
 
 
-def spin_relay(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+def spin_relay(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The relay law on L1 + L2, each coil at the dipole it can give for good."""
     gains: SpinAxisGains = config.gains["spin_relay"]
-    moving = motion(seen, config)
+    moving = motion(inputs, config)
     if moving is None:
         return Demand()
     wanted_nms = _wanted_spin_nms(setpoint, gains, config)
     direction, body = _errors(moving, wanted_nms, gains)
-    return Demand(relay_dipole(seen.b_body_t, add(direction, body), config.mean_dipole_am2))
+    return Demand(relay_dipole(inputs.b_body_t, add(direction, body), config.mean_dipole_am2))
 
 
-def reorientation(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+def reorientation(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The momentum turned to its target, its size as it is."""
     gains: SpinAxisGains = config.gains["reorientation"]
-    moving = motion(seen, config)
+    moving = motion(inputs, config)
     if moving is None:
         return Demand()
     direction, _ = _errors(moving, norm(moving.momentum_body_nms), gains)
-    return Demand(reorientation_dipole(seen.b_body_t, direction, gains.number, gains.k_h))
+    return Demand(reorientation_dipole(inputs.b_body_t, direction, gains.number, gains.k_h))
 
 
-def three_term(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+def three_term(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """Nutation damped, spin held and momentum turned, at once."""
     gains: ThreeTermGains = config.gains["three_term"]
-    moving = motion(seen, config)
+    moving = motion(inputs, config)
     if moving is None:
         return Demand()
     direction, body = _errors(moving, _wanted_spin_nms(setpoint, gains, config), gains)
     return Demand(
         three_term_dipole(
-            seen.b_body_t,
+            inputs.b_body_t,
             moving.omega_body_radps,
             body[gains.number],
             direction,
@@ -176,7 +176,7 @@ def _wanted_spin_nms(setpoint: Setpoint, gains: SpinAxisGains, config: ControlCo
     return dot(e, add(spinning, config.wheel_body_nms))
 
 
-def _errors(moving: Motion, wanted_nms: float, gains: SpinAxisGains) -> tuple[Vec3, Vec3]:
+def _errors(moving: InertialMotion, wanted_nms: float, gains: SpinAxisGains) -> tuple[Vec3, Vec3]:
     """L1 and L2, body axes."""
     target_body = rotate(moving.q_body_from_eci, gains.target_eci)
     direction = sub(scale(wanted_nms, target_body), moving.momentum_body_nms)

@@ -2,7 +2,7 @@
 
 from fsw.core.algebra.vector import Vec3, cross, dot, norm, scale, sub, unit
 from fsw.core.laws.damping import MAX_DIFFERENCE_S
-from fsw.core.laws.interface import ControlConfig, Demand, Memory, Seen, Setpoint
+from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 from fsw.core.laws.motion import motion
 
 
@@ -25,17 +25,17 @@ def sun_dipole(sun_change_radps: Vec3, cos_alpha: float, k: float) -> Vec3:
     return scale(-k * cos_alpha, sun_change_radps)
 
 
-def sun_pointing(seen: Seen, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The Sun law with k = k_w |b|, alpha by the models; where the Sun is not seen, nothing.
+def sun_pointing(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """The Sun law with k = k_w |b|, alpha by the models; where the Sun is not inputs, nothing.
 
     ds/dt by the estimated rate where there is one, else by the change of the Sun vector itself. Memory: the
     tick and the Sun vector then.
     """
-    sun, reference = seen.sun_body, seen.reference
+    sun, reference = inputs.sun_body, inputs.reference
     if sun is None or reference is None:
         return Demand()
-    kept = (float(seen.tick), *sun)
-    change_radps = _sun_change(seen, sun, memory, config)
+    kept = (float(inputs.tick), *sun)
+    change_radps = _sun_change(inputs, sun, memory, config)
     if change_radps is None:
         return Demand(memory=kept)
     field_t = norm(reference.b_eci_t)
@@ -43,14 +43,14 @@ def sun_pointing(seen: Seen, memory: Memory, setpoint: Setpoint, config: Control
     return Demand(sun_dipole(change_radps, cos_alpha, setpoint.k_w * field_t), memory=kept)
 
 
-def _sun_change(seen: Seen, sun: Vec3, memory: Memory, config: ControlConfig) -> Vec3 | None:
+def _sun_change(inputs: LawInput, sun: Vec3, memory: Memory, config: ControlConfig) -> Vec3 | None:
     """The ds/dt of the law, 1/s; None where neither rate nor an earlier vector is at hand."""
-    moving = motion(seen, config)
+    moving = motion(inputs, config)
     if moving is not None:
         return cross(sun, moving.omega_body_radps)
     if not memory:
         return None
-    interval_s = (seen.tick - memory[0]) * config.tick_s
+    interval_s = (inputs.tick - memory[0]) * config.tick_s
     if interval_s > MAX_DIFFERENCE_S:
         return None
     return scale(1.0 / interval_s, sub(sun, (memory[1], memory[2], memory[3])))

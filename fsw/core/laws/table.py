@@ -46,7 +46,7 @@ class Aim(StrEnum):
     """An axis is turned to the Sun."""
 
 
-class Row(NamedTuple):
+class LawEntry(NamedTuple):
     """A law: its number in telecommands, its aim, what ACQUIRE and POINT fly, and its own parameters.
 
     Those are a class, a frozen dataclass of floats with defaults, or None for a law with none.
@@ -59,27 +59,29 @@ class Row(NamedTuple):
     gains: type | None = None
 
 
-LAWS: dict[str, Row] = {
-    "pd": Row(0, Aim.THREE_AXIS, pd_far, pd),
-    "rate_damping": Row(1, Aim.RATE, rate_damping, rate_damping),
-    "bdot": Row(2, Aim.RATE, bdot, bdot),
-    "predictive": Row(3, Aim.RATE, predictive, predictive),
-    "bdot_switched": Row(10, Aim.RATE, bdot_switched, bdot_switched, SwitchedGains),
-    "nutation": Row(11, Aim.SPIN, nutation, nutation, SpinGains),
-    "spin_up": Row(12, Aim.SPIN, spin_up, spin_up, SpinGains),
-    "y_thomson": Row(13, Aim.SPIN, y_thomson, y_thomson, SpinGains),
-    "spin_relay": Row(14, Aim.SPIN, spin_relay, spin_relay, SpinAxisGains),
-    "reorientation": Row(15, Aim.SPIN, reorientation, reorientation, SpinAxisGains),
-    "three_term": Row(16, Aim.SPIN, three_term, three_term, ThreeTermGains),
-    "dual_spin": Row(20, Aim.AXIS, dual_spin, dual_spin, DualSpinGains),
-    "field_tracking": Row(21, Aim.THREE_AXIS, field_tracking, field_tracking),
-    "field_tracking_pd": Row(22, Aim.THREE_AXIS, tracking_before_pd, pd_after_tracking, HandOverGains),
-    "sun_pointing": Row(30, Aim.SUN, sun_pointing, sun_pointing),
-    "lqr": Row(40, Aim.THREE_AXIS, without_memory, lqr, LqrGains),
-    "mpc": Row(41, Aim.THREE_AXIS, without_memory, mpc, MpcGains),
-    "pd_weighted": Row(50, Aim.THREE_AXIS, weighted_far, weighted, WeightGains),
-    "pd_regularised": Row(51, Aim.THREE_AXIS, regularised_far, regularised, RegularGains),
-    "output_feedback": Row(52, Aim.THREE_AXIS, output_feedback, output_feedback, FilterGains),
-    "sliding": Row(60, Aim.THREE_AXIS, sliding, sliding, SlidingGains),
-    "sliding_integral": Row(61, Aim.THREE_AXIS, sliding_integral, sliding_integral, SlidingIntegralGains),
+LAWS: dict[str, LawEntry] = {
+    "pd": LawEntry(0, Aim.THREE_AXIS, pd_far, pd),
+    "rate_damping": LawEntry(1, Aim.RATE, rate_damping, rate_damping),
+    "bdot": LawEntry(2, Aim.RATE, bdot, bdot),
+    "predictive": LawEntry(3, Aim.RATE, predictive, predictive),
+    "bdot_switched": LawEntry(10, Aim.RATE, bdot_switched, bdot_switched, SwitchedGains),
+    "nutation": LawEntry(11, Aim.SPIN, nutation, nutation, SpinGains),
+    "spin_up": LawEntry(12, Aim.SPIN, spin_up, spin_up, SpinGains),
+    "y_thomson": LawEntry(13, Aim.SPIN, y_thomson, y_thomson, SpinGains),
+    "spin_relay": LawEntry(14, Aim.SPIN, spin_relay, spin_relay, SpinAxisGains),
+    "reorientation": LawEntry(15, Aim.SPIN, reorientation, reorientation, SpinAxisGains),
+    "three_term": LawEntry(16, Aim.SPIN, three_term, three_term, ThreeTermGains),
+    "dual_spin": LawEntry(20, Aim.AXIS, dual_spin, dual_spin, DualSpinGains),
+    "field_tracking": LawEntry(21, Aim.THREE_AXIS, field_tracking, field_tracking),
+    "field_tracking_pd": LawEntry(22, Aim.THREE_AXIS, tracking_before_pd, pd_after_tracking, HandOverGains),
+    "sun_pointing": LawEntry(30, Aim.SUN, sun_pointing, sun_pointing),
+    "lqr": LawEntry(40, Aim.THREE_AXIS, without_memory, lqr, LqrGains),
+    "mpc": LawEntry(41, Aim.THREE_AXIS, without_memory, mpc, MpcGains),
+    "pd_weighted": LawEntry(50, Aim.THREE_AXIS, weighted_far, weighted, WeightGains),
+    "pd_regularised": LawEntry(51, Aim.THREE_AXIS, regularised_far, regularised, RegularGains),
+    "output_feedback": LawEntry(52, Aim.THREE_AXIS, output_feedback, output_feedback, FilterGains),
+    "sliding": LawEntry(60, Aim.THREE_AXIS, sliding, sliding, SlidingGains),
+    "sliding_integral": LawEntry(
+        61, Aim.THREE_AXIS, sliding_integral, sliding_integral, SlidingIntegralGains
+    ),
 }

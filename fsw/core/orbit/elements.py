@@ -41,14 +41,14 @@ class Upload(NamedTuple):
     """Elements kept aside, and which of them have come: bit n for element n."""
 
     values: Elements = Elements(*(0.0,) * len(Element))
-    come: int = 0
+    received: int = 0
 
     @property
     def complete(self) -> bool:
         """Whether every element has come."""
-        return self.come == (1 << len(Element)) - 1
+        return self.received == (1 << len(Element)) - 1
 
-    def kept(self, element: Element, value: float) -> "Upload":
+    def with_element(self, element: Element, value: float) -> "Upload":
         """With one more element, or one replaced."""
         values = (*self.values[:element], value, *self.values[element + 1 :])
-        return Upload(Elements(*values), self.come | 1 << element)
+        return Upload(Elements(*values), self.received | 1 << element)

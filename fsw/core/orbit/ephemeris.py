@@ -10,7 +10,7 @@ from math import isfinite
 from fsw.core.algebra.quaternion import Quaternion, from_dcm
 from fsw.core.algebra.vector import Vec3, cross, dot, norm, scale
 from fsw.core.orbit.elements import Elements
-from fsw.core.orbit.field import Field, FieldKind, field_eci_t, prepare_field
+from fsw.core.orbit.field import FieldKind, OnboardField, field_eci_t, prepare_field
 from fsw.core.orbit.igrf_coefficients import MAX_DEGREE
 from fsw.core.orbit.propagation import Orbit, element_orbit, state_eci
 from fsw.core.orbit.sun import lit, sun_eci
@@ -21,7 +21,7 @@ Weights = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
-class Node:
+class EphemerisNode:
     """What is known at one node: position (m), velocity (m/s), field (T), unit vector to the Sun; all eci."""
 
     r_eci_m: Vec3
@@ -39,7 +39,7 @@ class EphemerisWindow:
     """Four successive nodes; the ticks it serves lie between the second and the third."""
 
     first_node: int
-    nodes: tuple[Node, Node, Node, Node]
+    nodes: tuple[EphemerisNode, EphemerisNode, EphemerisNode, EphemerisNode]
 
     def floats(self) -> tuple[float, ...]:
         """For the checksum of the state: 49 numbers, that of the first node leading."""
@@ -52,7 +52,7 @@ class EphemerisModel:
     """The orbit and the field of a flight, and the clock of its nodes."""
 
     orbit: Orbit
-    field: Field
+    field: OnboardField
     epoch_unix_s: int
     tick_hz: int
     node_ticks: int
@@ -100,7 +100,7 @@ def ephemeris_model(
     return EphemerisModel(orbit, prepared, epoch_unix_s, tick_hz, node_ticks=node_s * tick_hz)
 
 
-def fly_orbit(model: EphemerisModel, elements: Elements | None) -> EphemerisModel:
+def with_orbit(model: EphemerisModel, elements: Elements | None) -> EphemerisModel:
     """The model with the orbit of elements from the ground; None: with its own.
 
     Raises:
@@ -127,14 +127,14 @@ def advance(window: EphemerisWindow | None, tick: int, model: EphemerisModel) ->
     return EphemerisWindow(first, (n0, n1, n2, n3))
 
 
-def node(number: int, model: EphemerisModel) -> Node | None:
+def node(number: int, model: EphemerisModel) -> EphemerisNode | None:
     """The node at tick ``number * node_ticks``, or None where the orbit has no position."""
     unix_s = model.epoch_unix_s + number * model.node_ticks / model.tick_hz
     state = state_eci(model.orbit, unix_s)
     if state is None:
         return None
     r_eci_m, v_eci_mps = state
-    return Node(r_eci_m, v_eci_mps, field_eci_t(model.field, r_eci_m, unix_s), sun_eci(unix_s))
+    return EphemerisNode(r_eci_m, v_eci_mps, field_eci_t(model.field, r_eci_m, unix_s), sun_eci(unix_s))
 
 
 def reference_at(window: EphemerisWindow, tick: int, model: EphemerisModel) -> Reference:
@@ -165,7 +165,7 @@ def reference_at(window: EphemerisWindow, tick: int, model: EphemerisModel) -> R
     )
 
 
-def sound(reference: Reference) -> bool:
+def plausible(reference: Reference) -> bool:
     """Whether it can be: no damaged node, whose window is to be made anew."""
     return (
         LEAST_RADIUS_M < reference.radius_m < MOST_RADIUS_M

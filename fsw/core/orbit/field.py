@@ -18,14 +18,14 @@ class FieldKind(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Field:
+class OnboardField:
     """A field ready to be evaluated; ``model`` is None for the direct dipole."""
 
     kind: FieldKind
     model: FieldModel | None
 
 
-def prepare_field(kind: FieldKind, epoch_unix_s: float, degree: int = MAX_DEGREE) -> Field:
+def prepare_field(kind: FieldKind, epoch_unix_s: float, degree: int = MAX_DEGREE) -> OnboardField:
     """The field of a flight that begins at the epoch; the tilted dipole is IGRF-14 of degree 1.
 
     Raises:
@@ -33,14 +33,14 @@ def prepare_field(kind: FieldKind, epoch_unix_s: float, degree: int = MAX_DEGREE
     """
     match kind:
         case FieldKind.IGRF14:
-            return Field(kind, prepare(epoch_unix_s, degree))
+            return OnboardField(kind, prepare(epoch_unix_s, degree))
         case FieldKind.TILTED_DIPOLE:
-            return Field(kind, prepare(epoch_unix_s, degree=1))
+            return OnboardField(kind, prepare(epoch_unix_s, degree=1))
         case FieldKind.DIRECT_DIPOLE:
-            return Field(kind, None)
+            return OnboardField(kind, None)
 
 
-def field_eci_t(field: Field, r_eci_m: Vec3, unix_s: float) -> Vec3:
+def field_eci_t(field: OnboardField, r_eci_m: Vec3, unix_s: float) -> Vec3:
     """B at a place (m, eci) and time: (3,) in T, eci."""
     if field.model is None:
         return direct_dipole_eci_t(r_eci_m)

@@ -22,7 +22,7 @@ MAX_KM = 50_000.0
 
 
 @dataclass(frozen=True, slots=True)
-class Sgp4Orbit:
+class TleOrbit:
     """A two-line element set and the propagator initialised from it."""
 
     line1: str
@@ -39,7 +39,7 @@ class ElementOrbit:
 
 
 @dataclass(frozen=True, slots=True)
-class CircularOrbit:
+class CircularKeplerOrbit:
     """A circular Kepler orbit: r = radius (node cos u + ahead sin u), u = u0 + rate (t - epoch)."""
 
     epoch_unix_s: float
@@ -50,10 +50,10 @@ class CircularOrbit:
     ahead_eci: Vec3
 
 
-Orbit = Sgp4Orbit | ElementOrbit | CircularOrbit
+Orbit = TleOrbit | ElementOrbit | CircularKeplerOrbit
 
 
-def sgp4_orbit(line1: str, line2: str) -> Sgp4Orbit:
+def sgp4_orbit(line1: str, line2: str) -> TleOrbit:
     """The orbit of a two-line element set (Vallado et al. 2006, WGS-72 as the sets are made).
 
     Raises:
@@ -62,7 +62,7 @@ def sgp4_orbit(line1: str, line2: str) -> Sgp4Orbit:
     """
     satellite = read_tle(line1, line2)
     _check_propagator(satellite, satellite.satnum_str)
-    return Sgp4Orbit(line1.rstrip(), line2.rstrip(), satellite)
+    return TleOrbit(line1.rstrip(), line2.rstrip(), satellite)
 
 
 def element_orbit(elements: Elements) -> ElementOrbit:
@@ -103,7 +103,7 @@ def _check_propagator(satellite: Any, name: str) -> None:  # noqa: ANN401  (of a
 
 def circular_orbit(
     altitude_km: float, inclination_deg: float, raan_deg: float, u0_deg: float, epoch_unix_s: float
-) -> CircularOrbit:
+) -> CircularKeplerOrbit:
     """The circular orbit at an altitude above 6378.137 km with the argument of latitude u0 at the epoch.
 
     Raises:
@@ -115,7 +115,7 @@ def circular_orbit(
         raise ValueError(f"a circular orbit needs an altitude above 0 km, not {altitude_km:g}")
     radius_m = RADIUS_M + 1000.0 * altitude_km
     raan, inclination = radians(raan_deg), radians(inclination_deg)
-    return CircularOrbit(
+    return CircularKeplerOrbit(
         epoch_unix_s=epoch_unix_s,
         radius_m=radius_m,
         rate_radps=sqrt(MU_M3PS2 / radius_m) / radius_m,
@@ -127,7 +127,7 @@ def circular_orbit(
 
 def state_eci(orbit: Orbit, unix_s: float) -> State | None:
     """Position (m) and velocity (m/s) in eci, or None where SGP4 has no sane answer (a decayed orbit)."""
-    if isinstance(orbit, CircularOrbit):
+    if isinstance(orbit, CircularKeplerOrbit):
         return _circular_state(orbit, unix_s)
     days, seconds = divmod(unix_s, DAY_S)
     error, r_km, v_kmps = orbit.satellite.sgp4(UNIX_EPOCH_JD + days, seconds / DAY_S)
@@ -139,7 +139,7 @@ def state_eci(orbit: Orbit, unix_s: float) -> State | None:
     )
 
 
-def _circular_state(orbit: CircularOrbit, unix_s: float) -> State:
+def _circular_state(orbit: CircularKeplerOrbit, unix_s: float) -> State:
     u = orbit.u0_rad + orbit.rate_radps * (unix_s - orbit.epoch_unix_s)
     x, y = orbit.radius_m * cos(u), orbit.radius_m * sin(u)
     n, a, w0 = orbit.node_eci, orbit.ahead_eci, orbit.rate_radps

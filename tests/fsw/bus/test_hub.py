@@ -7,8 +7,8 @@ import time
 import pytest
 
 from fsw.bus import hub as hub_module
-from fsw.bus.door import GREETING
 from fsw.bus.hub import Hub
+from fsw.bus.hub_listener import GREETING
 from fsw.bus.interface import BusClosed
 from fsw.bus.link import LoopLink
 

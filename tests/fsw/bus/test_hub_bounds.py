@@ -12,10 +12,10 @@ from statistics import median
 
 import pytest
 
+from fsw.bus import can_frame
 from fsw.bus import hub as hub_module
-from fsw.bus import record
-from fsw.bus.door import FULL, GREETING
 from fsw.bus.hub import MOST_CLIENTS, Hub
+from fsw.bus.hub_listener import FULL, GREETING
 from fsw.bus.interface import BusError
 from fsw.bus.link import LoopLink
 from fsw.wire.frame import Frame
@@ -118,7 +118,7 @@ def said():
 @pytest.fixture
 def hub(said):
     """A hub that serves in a thread, and tells to a list."""
-    served = Hub(tell=said.append)
+    served = Hub(report=said.append)
     served.start()
     yield served
     served.close()
@@ -145,7 +145,7 @@ def port_of(connection):
 
 def pass_on(sender, reader, size):
     """Send so many bytes of records and read them at the other end, in step."""
-    chunk = record.pack(Frame(0x123, b"12345678")) * (MIB // record.SIZE)
+    chunk = can_frame.pack(Frame(0x123, b"12345678")) * (MIB // can_frame.SIZE)
     for _ in range(size // MIB):
         sender.sendall(chunk)
         assert take(reader, MIB) == chunk
@@ -278,7 +278,7 @@ class TestDescriptors:
         def fail(listener):
             raise OSError(ENFILE, "Too many open files in system")
 
-        hub = Hub(tell=said.append)
+        hub = Hub(report=said.append)
         with hub.attach() as first, hub.attach() as second, monkeypatch.context() as patch:
             patch.setattr(socket.socket, "accept", fail)
             with socket.create_connection(("127.0.0.1", hub.port)) as waiting:
@@ -287,10 +287,10 @@ class TestDescriptors:
                     hub.poll(None)
                     polls += 1
                 assert polls < 20
-                word = record.pack(Frame(0x123, b"still"))
+                word = can_frame.pack(Frame(0x123, b"still"))
                 first.sendall(word)
                 hub.poll(1.0)
-                assert second.recv(record.SIZE) == word
+                assert second.recv(can_frame.SIZE) == word
                 patch.undo()
                 waiting.settimeout(0.0)
                 deadline = time.monotonic() + PATIENCE_S

@@ -10,10 +10,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from fsw.bus import can_frame
 from fsw.bus import link as link_module
-from fsw.bus import record
-from fsw.bus.door import GREETING
 from fsw.bus.hub import Hub
+from fsw.bus.hub_listener import GREETING
 from fsw.bus.interface import BusClosed, BusError
 from fsw.bus.link import LoopLink
 from fsw.bus.open_bus import open_bus
@@ -104,7 +104,7 @@ class TestDelivery:
         reader, other = open_link(), open_link()
         with socket.create_connection(("127.0.0.1", hub.port)) as slow:
             assert slow.recv(len(GREETING), socket.MSG_WAITALL) == GREETING
-            halves = record.pack(Frame(0x111, b"halves"))
+            halves = can_frame.pack(Frame(0x111, b"halves"))
             slow.sendall(halves[:7])
             other.send(numbered(3))
             assert take(reader, 3) == numbered(3)
@@ -141,7 +141,7 @@ class TestWaiting:
 
     def test_half_a_record_does_not_end_the_wait_early(self):
         with socket.create_server(("127.0.0.1", 0)) as server:
-            halves = record.pack(Frame(0x123, b"whole"))
+            halves = can_frame.pack(Frame(0x123, b"whole"))
 
             def serve():
                 connection, _ = server.accept()
@@ -336,7 +336,7 @@ class TestOpening:
         with hub.attach() as host:
             hub.start()
             thread.join()
-            assert host.recv(record.SIZE) == record.pack(numbered(1)[0])
+            assert host.recv(can_frame.SIZE) == can_frame.pack(numbered(1)[0])
         guests[0].close()
         hub.close()
 

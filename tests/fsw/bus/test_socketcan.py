@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from fsw.bus import record, socketcan
+from fsw.bus import can_frame, socketcan
 from fsw.bus.interface import BusClosed, BusError
 from fsw.wire.frame import Frame
 
@@ -38,7 +38,7 @@ def bus_on(monkeypatch):
 def test_a_full_queue_is_waited_for_and_the_order_kept(bus_on):
     queue = Queue([0, errno.ENOBUFS, errno.ENOBUFS, 0, errno.ENOBUFS])
     bus_on(queue).send(FRAMES)
-    assert list(record.unpack(queue.sent)) == FRAMES
+    assert list(can_frame.unpack(queue.sent)) == FRAMES
 
 
 def test_but_not_for_ever(bus_on, monkeypatch):
@@ -48,7 +48,7 @@ def test_but_not_for_ever(bus_on, monkeypatch):
     with pytest.raises(BusError, match=r"transmit queue of can7 stayed full for 0\.1 s"):
         bus_on(queue).send(FRAMES)
     assert 0.1 <= time.monotonic() - began < 1.0
-    assert list(record.unpack(queue.sent)) == FRAMES[:1]
+    assert list(can_frame.unpack(queue.sent)) == FRAMES[:1]
     assert 10 < 100_000 - len(queue.refusals) < 1000, "it neither gave up early nor span"
 
 

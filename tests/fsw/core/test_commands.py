@@ -13,7 +13,7 @@ from fsw.core.gate.readings import NOTHING, TELECOMMANDS
 from fsw.core.laws.table import LAWS
 from fsw.core.modes import ModeState
 from fsw.core.orbit.elements import RANGES, Elements, Upload
-from fsw.core.orbit.ephemeris import advance, fly_orbit
+from fsw.core.orbit.ephemeris import advance, with_orbit
 from fsw.core.orbit.propagation import element_orbit, sgp4_orbit, state_eci
 from fsw.core.state import checksum
 from fsw.core.step import boot
@@ -216,7 +216,7 @@ class TestOrbit:
         wanted = itamsat._replace(raan_deg=50.0)
         assert results[-1] is TcAckResult.ACCEPTED
         assert (after.orbit, after.upload) == (wanted, Upload())
-        assert after.ephemeris == advance(None, TICK, fly_orbit(config.ephemeris, wanted))
+        assert after.ephemeris == advance(None, TICK, with_orbit(config.ephemeris, wanted))
         assert after.ephemeris != state.ephemeris
         assert after == state._replace(orbit=wanted, ephemeris=after.ephemeris)
 

@@ -8,7 +8,7 @@ import pytest
 from fsw.core.commands import LAW_NAMES
 from fsw.core.gate.readings import TELECOMMANDS
 from fsw.core.modes import ModeState
-from fsw.core.orbit.ephemeris import advance, fly_orbit
+from fsw.core.orbit.ephemeris import advance, with_orbit
 from fsw.core.state import checksum
 from fsw.wire.messages import (
     CoilFire,
@@ -96,7 +96,7 @@ class TestInTheLoop:
         other.step()
         assert [ack.result for ack in of(TcAck, said)] == [TcAckResult.ACCEPTED] * 10
         assert world.state.attitude == other.state.attitude
-        model = fly_orbit(world.config.ephemeris, world.state.orbit)
+        model = with_orbit(world.config.ephemeris, world.state.orbit)
         for _ in range(60):
             world.step()
             other.step()

@@ -6,7 +6,7 @@ from math import cos, pi, radians, sin
 import pytest
 
 from fsw.core.estimation.estimator import Attitude
-from fsw.core.modes import TABLE, ModeConfig, ModeState, Situation, advance, judge
+from fsw.core.modes import TABLE, ModeConditions, ModeConfig, ModeState, advance, judge
 from fsw.table.sections import ModesTable
 from fsw.wire.messages import Mode
 
@@ -21,7 +21,7 @@ CONFIG = ModeConfig(
     axis_only=False,
     trips_to_stay_safe=3,
 )
-QUIET = Situation(*[False] * len(Situation._fields))
+QUIET = ModeConditions(*[False] * len(ModeConditions._fields))
 START = 1000
 ROWS = [pytest.param(index, row, id=f"{row.source.name}-{row.condition}") for index, row in enumerate(TABLE)]
 
@@ -41,10 +41,10 @@ def fly(state, situations, start=START, config=CONFIG):
 
 class TestTable:
     def test_conditions_exist(self):
-        assert {row.condition for row in TABLE} <= set(Situation._fields)
+        assert {row.condition for row in TABLE} <= set(ModeConditions._fields)
 
     def test_every_condition_is_used(self):
-        assert {row.condition for row in TABLE} == set(Situation._fields)
+        assert {row.condition for row in TABLE} == set(ModeConditions._fields)
 
     def test_dwell_times_exist_in_the_onboard_table(self):
         assert {row.dwell for row in TABLE} - {"none_s"} <= set(ModesTable.model_fields)
@@ -114,7 +114,7 @@ def test_without_any_condition_no_mode_is_left(mode):
 
 
 def test_a_trip_wins_over_everything_else():
-    everything = Situation(*[True] * len(Situation._fields))._replace(clear=False)
+    everything = ModeConditions(*[True] * len(ModeConditions._fields))._replace(clear=False)
     for mode in (Mode.DETUMBLE, Mode.ACQUIRE, Mode.POINT):
         held = tuple(0 if row.source is mode else -1 for row in TABLE)
         assert advance(ModeState(mode, held_since=held), everything, START, CONFIG).mode is Mode.SAFE

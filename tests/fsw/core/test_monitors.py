@@ -5,11 +5,11 @@ from math import inf, nan
 import pytest
 
 from fsw.core.estimation.estimator import UNKNOWN, Attitude
-from fsw.core.monitors import MONITORS, RATE_LIMIT_RADPS, Monitor, Watched, first_violation
+from fsw.core.monitors import MONITORS, RATE_LIMIT_RADPS, Monitor, MonitorInput, first_violation
 
 Q = (0.5, -0.5, 0.5, 0.5)
 OMEGA = (0.01, -0.02, 0.03)
-WELL = Watched(
+WELL = MonitorInput(
     attitude=Attitude(Q, OMEGA, 0.01, 1e-4, True),
     owed_impulse_body_nms=(1e-4, -2e-4, 3e-4),
     field_age_ticks=59,
@@ -96,7 +96,7 @@ def test_the_numbers_fit_the_event_s_argument_and_are_unique():
 
 
 def test_of_several_violations_the_first_of_the_list_is_named():
-    everything = Watched(
+    everything = MonitorInput(
         Attitude((nan, 0.0, 0.0, 0.0), (1.0, 1.0, 1.0), nan, nan, True),
         (nan, 0.0, 0.0),
         99,

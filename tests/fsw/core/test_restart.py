@@ -9,9 +9,9 @@ from fsw.core.events import Event
 from fsw.core.fdir.coil_health import CoilFault
 from fsw.core.fdir.fdir import Health
 from fsw.core.fdir.sensor_watch import SensorFault, Watch
-from fsw.core.gate.second_sender import SIGNS, SecondSender
+from fsw.core.gate.second_sender import SIGNS, SecondSenderWatch
 from fsw.core.gate.sync_watch import LEAP_TICKS
-from fsw.core.modes import ask
+from fsw.core.modes import request_mode
 from fsw.core.restart import restarted
 from fsw.core.state import Inbox
 from fsw.core.step import step, takes_inbox
@@ -175,11 +175,11 @@ class TestWhatStays:
     def test_what_the_ground_has_set_and_what_was_found(self, world, snapshot):
         coils = world.state.health.coils._replace(faults=(0, CoilFault.OPEN, 0))
         sensors = world.state.health.sensors._replace(sun=Watch(SensorFault.FROZEN))
-        modes = ask(world.state.modes, Mode.SAFE, 149)._replace(trips=2)
+        modes = request_mode(world.state.modes, Mode.SAFE, 149)._replace(trips=2)
         state = world.state._replace(
             health=Health(sensors, coils),
             modes=modes,
-            second_sender=SecondSender(SIGNS, 140, CoilFire.ID),
+            second_sender=SecondSenderWatch(SIGNS, 140, CoilFire.ID),
             orbit=world.state.upload.values,
             ignored_syncs=7,
         )
@@ -190,15 +190,15 @@ class TestWhatStays:
         assert after.health.sensors.sun == sensors.sun
         assert after.health.sensors.pair.proof <= 0
         assert (after.modes.mode, after.modes.trips, after.modes.held) == (Mode.SAFE, 2, True)
-        assert after.second_sender == SecondSender(SIGNS, 3, CoilFire.ID)
+        assert after.second_sender == SecondSenderWatch(SIGNS, 3, CoilFire.ID)
 
     def test_a_second_sender_is_not_forgotten_for_a_forged_pair(self, world):
-        world.state = world.state._replace(second_sender=SecondSender(SIGNS, 149, CoilFire.ID))
+        world.state = world.state._replace(second_sender=SecondSenderWatch(SIGNS, 149, CoilFire.ID))
         forge(world, FAR)
         forge(world, FAR + 1)
         fired = [of(CoilFire, said) for said in world.fly(115)]
         assert not any(fired)
-        assert world.state.second_sender.named
+        assert world.state.second_sender.detected
 
     @pytest.mark.requirement("REQ-EVENT-01")
     def test_events_are_held_back_under_the_new_count_too(self, world):

@@ -23,7 +23,7 @@ def flown(make_world):
     """A state in which everything has happened: ephemeris, estimate, a pulse, a law that remembers."""
     world = make_world(control={"law": "pd"})
     world.fly(230)
-    state = world.state._replace(orbit=ELEMENTS, upload=Upload().kept(Element.BSTAR, 1e-5))
+    state = world.state._replace(orbit=ELEMENTS, upload=Upload().with_element(Element.BSTAR, 1e-5))
     assert state.estimator.estimate.trace is not None
     assert state.coil.fired_tick >= 0
     assert any(state.pulses.owed_impulse_body_nms)

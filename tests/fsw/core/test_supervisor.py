@@ -8,7 +8,7 @@ import pytest
 from fsw.core.estimation.estimator import UNKNOWN, Attitude
 from fsw.core.fdir.coil_health import CoilHealth
 from fsw.core.fdir.fdir import Health
-from fsw.core.gate.second_sender import SIGNS, SecondSender
+from fsw.core.gate.second_sender import SIGNS, SecondSenderWatch
 from fsw.core.modes import ModeState
 from fsw.core.monitors import Monitor
 from fsw.core.supervisor import supervise
@@ -78,7 +78,7 @@ def test_an_orbit_that_is_not_known_trips(supervised):
 
 
 def test_a_second_sender_trips_once_it_is_named(supervised):
-    signs = SecondSender(SIGNS, TICK, 0x080)
+    signs = SecondSenderWatch(SIGNS, TICK, 0x080)
     assert supervised(second_sender=signs).violated is Monitor.NO_SECOND_SENDER
     assert supervised(second_sender=signs._replace(signs=SIGNS - 1)).violated is None
 

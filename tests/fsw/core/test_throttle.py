@@ -3,7 +3,7 @@
 import pytest
 
 from fsw.core.events import Event, Happening
-from fsw.core.throttle import MOST_KINDS, Throttle, throttled
+from fsw.core.throttle import MOST_KINDS, Throttle, throttle_events
 from fsw.wire.messages import FswEvent
 
 REFUSED, OTHER = Happening(Event.REQUEST_REFUSED, 8), Happening(Event.REQUEST_REFUSED, 3)
@@ -12,7 +12,7 @@ REFUSED, OTHER = Happening(Event.REQUEST_REFUSED, 8), Happening(Event.REQUEST_RE
 def told(happenings_by_tick, spacing=10):
     state, passed = Throttle(), []
     for tick, happenings in enumerate(happenings_by_tick):
-        state, now = throttled(state, happenings, tick, spacing)
+        state, now = throttle_events(state, happenings, tick, spacing)
         passed += [(tick, happening) for happening in now]
     return state, passed
 
@@ -48,13 +48,13 @@ def test_without_a_spacing_everything_is_told_tick_by_tick():
 
 def test_what_is_remembered_is_bounded():
     state, passed = told([[Happening(Event.SENSOR_ISOLATED, n) for n in range(1000)]] * 3)
-    assert len(passed) == len(state.told) == MOST_KINDS
+    assert len(passed) == len(state.reported) == MOST_KINDS
     assert state.held_back == 3000 - MOST_KINDS
 
 
 def test_a_quiet_tick_changes_nothing():
     state, _ = told([[REFUSED]])
-    assert throttled(state, [], 99, 10) == (state, [])
+    assert throttle_events(state, [], 99, 10) == (state, [])
 
 
 @pytest.mark.requirement("REQ-EVENT-01")

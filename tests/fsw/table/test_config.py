@@ -10,7 +10,7 @@ from fsw.core.fdir.sensor_watch import FULL as BAD_TICK
 from fsw.core.fdir.sensor_watch import SensorHealthConfig
 from fsw.core.laws.interface import Setpoint
 from fsw.core.modes import TABLE
-from fsw.core.orbit.propagation import CircularOrbit, Sgp4Orbit
+from fsw.core.orbit.propagation import CircularKeplerOrbit, TleOrbit
 from fsw.core.rates import RateGroup
 from fsw.input.schema import TableError, merge
 from fsw.table.config import flight_config
@@ -236,9 +236,9 @@ def test_identity_of_the_table_goes_along():
 
 
 def test_both_kinds_of_orbit():
-    assert isinstance(configured().ephemeris.orbit, Sgp4Orbit)
+    assert isinstance(configured().ephemeris.orbit, TleOrbit)
     orbit = configured(orbit=CIRCULAR).ephemeris.orbit
-    assert isinstance(orbit, CircularOrbit)
+    assert isinstance(orbit, CircularKeplerOrbit)
     assert orbit.radius_m == pytest.approx(6378137.0 + 700e3)
     assert orbit.u0_rad == pytest.approx(radians(20.0))
 

@@ -1,7 +1,7 @@
 """A search of every state that the scheduler and the coil driver can reach together.
 
-The scheduler (``hear`` and ``actuate``, as they fly) and the interlock are run beside a judge that sees only
-what is driven and keeps its own stopwatches. In each reachable world every demand is made (each coil, or
+The scheduler (``update_view`` and ``actuate``, unchanged) and the interlock are run beside a judge that sees
+only what is driven and keeps its own stopwatches. In each reachable world every demand is made (each coil, or
 none), COIL_STATUS is heard or lost, COIL_FIRE is lost, comes once or twice, either side restarts, and the
 board's dead-man wakes.
 
@@ -168,7 +168,7 @@ class Search:
             rate_metric=identity,
             energy_metric=identity,
         )
-        self.coils = actuator.CoilConfig(self.config, dipoles=None)
+        self.coils = actuator.ActuatorConfig(self.config, dipoles=None)
         self.limits = interlock.CoilLimits(1, duration_ms, 1000 * setup.backoff_ticks, setup.shared)
         self.words, self.decide, self.ask = cache(self._words), cache(self._decide), cache(self._ask)
         self.drive = cache(self._drive)
@@ -226,7 +226,7 @@ class Search:
         return relative(pulses.boot(tick, self.config), actuator.CoilView(), tick)
 
     def _words(self, board: interlock.Interlock, phase: int, new: bool) -> list[Heard]:
-        """What the scheduler may hear in this tick; None where it is lost."""
+        """What the scheduler may receive in this tick; None where it is lost."""
         coil = board.coil if board.level else phase
         remaining_ms = self.limits.milliseconds(board.remaining)
         lockout_ms = self.limits.milliseconds(board.lockout[coil], 10)
@@ -241,7 +241,7 @@ class Search:
         tick = EPOCH + phase
         timers = pulses.PulseState(tuple(tick + left for left in own.ready), tick + own.busy, ZERO)
         readings = NOTHING._replace(coil=status, coil_boot=boot)
-        view = actuator.hear(actuator.CoilView(lockout_ms=own.word), readings, tick, self.coils)
+        view = actuator.update_view(actuator.CoilView(lockout_ms=own.word), readings, tick, self.coils)
         outcomes: dict[tuple[Own, CoilFire | None], list[int | None]] = {}
         for demand, (owed, b_body_t) in DEMANDS.items():
             state, after, request = actuator.actuate(

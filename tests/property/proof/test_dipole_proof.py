@@ -1,6 +1,6 @@
 """The continuous driver by exhaustion: every three ticks of a board that is on, off or restarts.
 
-The flight side (``hear`` and ``actuate``, as they fly) is run against the board, through encoded frames.
+The flight side (``update_view`` and ``actuate``, unchanged) is run against the board, through encoded frames.
 COIL_DIPOLE_STATUS is heard or lost; COIL_DIPOLE comes, is lost, or comes a tick late. Demanded is a dipole,
 an impulse, or nothing.
 """
@@ -10,7 +10,7 @@ from itertools import product
 import pytest
 
 from fsw.core.actuation import pulses
-from fsw.core.actuation.actuator import CoilConfig, CoilView, actuate, hear
+from fsw.core.actuation.actuator import ActuatorConfig, CoilView, actuate, update_view
 from fsw.core.actuation.dipoles import DipoleConfig
 from fsw.core.gate.readings import GateState, admit
 from fsw.core.laws.interface import Demand
@@ -34,7 +34,7 @@ SEQUENCES = [
 BOARDS, STATUSES, REQUESTS = ("on", "off", "restarts"), ("heard", "lost"), ("comes", "lost", "late")
 IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 TIMING = pulses.PulseConfig(1, 1, 1000, True, (1.0, 2.0, 3.0), 1.0, 1.0, 300.0, IDENTITY, IDENTITY)
-CONFIG = CoilConfig(TIMING, DipoleConfig(5.0, IDENTITY, genetic=False))
+CONFIG = ActuatorConfig(TIMING, DipoleConfig(5.0, IDENTITY, genetic=False))
 
 
 class Line:
@@ -56,7 +56,7 @@ class Line:
         said = [] if self.board is None else self.board.begin_tick(tick, 0.0)
         heard = [f for f in said if status == "heard" or f.can_id in (CoilBoot.ID,)]
         readings, self.gate = admit(tuple(heard), self.gate)
-        self.view = hear(self.view, readings, tick, CONFIG)
+        self.view = update_view(self.view, readings, tick, CONFIG)
         self.state, self.view, asked = actuate(self.state, self.view, demand, FIELD, readings, tick, CONFIG)
         self.judge_request(tick, asked, demand, told=any(f.can_id == CoilDipoleStatus.ID for f in heard))
         self.judge_drive(asked, request)

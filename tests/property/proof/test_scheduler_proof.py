@@ -79,14 +79,14 @@ def choosing(seen: Callable) -> Planting:
 def hearing(lockout_of: Callable) -> Planting:
     """What is taken for the board's lockouts after a status: ``lockout_of(after, before, status)``."""
 
-    def wrong(hear, view, readings, tick, config):
-        after = hear(view, readings, tick, config)
+    def wrong(update_view, view, readings, tick, config):
+        after = update_view(view, readings, tick, config)
         if readings.coil is None:
             return after
-        before = view.lockout_ms if readings.coil_boot is None else actuator.UNHEARD
+        before = view.lockout_ms if readings.coil_boot is None else actuator.LOCKOUT_UNKNOWN
         return replace(after, lockout_ms=tuple(lockout_of(after.lockout_ms, before, readings.coil)))
 
-    return around(actuator, "hear", wrong)
+    return around(actuator, "update_view", wrong)
 
 
 def with_coil(lockout_ms, coil, value):
@@ -252,8 +252,10 @@ def test_a_board_that_restarts_and_is_heard_refuses_nothing_and_fires_again(sear
 def test_a_scheduler_that_does_not_hear_of_the_restart_is_refused(search, small, shared):
     deaf = around(
         actuator,
-        "hear",
-        lambda hear, view, readings, *rest: hear(view, readings._replace(coil_boot=None), *rest),
+        "update_view",
+        lambda update_view, view, readings, *rest: update_view(
+            view, readings._replace(coil_boot=None), *rest
+        ),
     )
     assert search(with_restarts_of_the_board(small[shared], deaf)).refused
 

@@ -9,7 +9,7 @@ from hypothesis import event, given, settings
 from hypothesis import strategies as st
 
 from fsw.core.actuation import pulses
-from fsw.core.actuation.actuator import CoilConfig, CoilView, actuate, hear
+from fsw.core.actuation.actuator import ActuatorConfig, CoilView, actuate, update_view
 from fsw.core.actuation.pulses import Pulse, PulseConfig
 from fsw.core.gate.readings import NOTHING
 from fsw.core.laws.interface import Demand
@@ -44,7 +44,7 @@ def make_config(shared=True, tick_hz=1):
 
 
 CONFIG = make_config()
-COILS = CoilConfig(CONFIG, dipoles=None)
+COILS = ActuatorConfig(CONFIG, dipoles=None)
 
 
 def ready(owed=OWED_FOR[0]):
@@ -65,7 +65,7 @@ BOARD_IS_THERE = NOTHING._replace(coil=status(0))
 def run(state=None, view=ALL_FREE, demand=None, readings=BOARD_IS_THERE, tick=TICK, config=CONFIG):
     """Under a law that asks for nothing more, unless told otherwise."""
     asked = Demand() if demand is None else demand
-    coils = CoilConfig(config, dipoles=None)
+    coils = ActuatorConfig(config, dipoles=None)
     return actuate(ready() if state is None else state, view, asked, B_BODY_T, readings, tick, coils)
 
 
@@ -79,10 +79,10 @@ def refusal(tick):
 
 
 def test_after_a_boot_of_the_board_nothing_goes_out_before_its_word_is_heard():
-    view = hear(ALL_FREE, NOTHING._replace(coil_boot=CoilBoot(1, 1, 7), coil=status(1)), TICK, COILS)
+    view = update_view(ALL_FREE, NOTHING._replace(coil_boot=CoilBoot(1, 1, 7), coil=status(1)), TICK, COILS)
     state, view, request = run(view=view)
     assert request is None, "coil 0 is what is wanted"
-    view = hear(view, NOTHING._replace(coil=status(0)), TICK + 1, COILS)
+    view = update_view(view, NOTHING._replace(coil=status(0)), TICK + 1, COILS)
     assert run(state, view, tick=TICK + 1)[2].coil == 0
 
 
@@ -225,7 +225,7 @@ def test_a_refusal_that_is_heard_twice_gives_back_once():
 
 def test_a_request_that_was_refused_does_not_count_as_driven():
     _, view, _ = refused_at(1)
-    after = hear(view, NOTHING, TICK + 2, COILS)
+    after = update_view(view, NOTHING, TICK + 2, COILS)
     assert (after.driven_level, after.driven_am2) == (0, ZERO)
 
 
@@ -290,7 +290,7 @@ def test_a_pulse_asked_for_before_safe_still_locks_out_after_it():
 
 def test_seq_never_repeats_the_last_accepted_one():
     for accepted in range(256):
-        view = hear(ALL_FREE, NOTHING._replace(coil=status(0, seq=accepted)), TICK, COILS)
+        view = update_view(ALL_FREE, NOTHING._replace(coil=status(0, seq=accepted)), TICK, COILS)
         _, _, request = run(view=view)
         assert request.seq == (accepted + 1) % 256
         assert CoilFire.decode(request.encode().data).seq != accepted
@@ -300,7 +300,7 @@ def test_seq_follows_what_the_board_accepted_not_what_was_asked():
     """A lost request leaves no gap: its number comes again, and the board has never seen it."""
     state, view, request = run(view=replace(ALL_FREE, seq=7))
     assert request.seq == 8
-    view = hear(view, NOTHING._replace(coil=status(0, seq=7)), TICK + 1, COILS)
+    view = update_view(view, NOTHING._replace(coil=status(0, seq=7)), TICK + 1, COILS)
     _, _, again = run(replace(state, owed_impulse_body_nms=OWED_FOR[0]), view, tick=TICK + 103)
     assert again.seq == 8
 

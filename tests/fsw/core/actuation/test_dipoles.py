@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fsw.core.actuation import dipoles, pulses
-from fsw.core.actuation.actuator import CoilConfig, CoilView, actuate, hear
-from fsw.core.actuation.dipoles import MOST, DipoleConfig, driven, request, saturated
+from fsw.core.actuation.actuator import ActuatorConfig, CoilView, actuate, update_view
+from fsw.core.actuation.dipoles import MOST, DipoleConfig, driven_dipole_am2, request, saturate
 from fsw.core.actuation.pulses import PulseConfig
 from fsw.core.algebra.vector import ZERO, inverse
 from fsw.core.gate.readings import NOTHING
@@ -53,11 +53,11 @@ def am2(sent):
 
 class TestSaturation:
     def test_a_dipole_that_fits_is_sent_as_it_is(self):
-        assert am2(saturated((1.0, -9.5, 4.0), CONFIG)) == pytest.approx((1.0, -9.5, 4.0))
+        assert am2(saturate((1.0, -9.5, 4.0), CONFIG)) == pytest.approx((1.0, -9.5, 4.0))
 
     @given(st.tuples(*[st.floats(-1e3, 1e3)] * 3))
     def test_what_does_not_fit_is_shortened_and_not_turned(self, m_body_am2):
-        sent = am2(saturated(m_body_am2, CONFIG))
+        sent = am2(saturate(m_body_am2, CONFIG))
         most = max(abs(c) for c in m_body_am2)
         limit = MOST * FULL_SCALE_AM2
         expected = np.array(m_body_am2) * min(1.0, limit / most if most > 0.0 else 1.0)
@@ -67,7 +67,7 @@ class TestSaturation:
     @pytest.mark.parametrize("m_body_am2", [(50.0, 0.0, 0.0), (-50.0, 9.6, -50.0), (9.6, -9.6, 9.6)])
     def test_the_largest_is_what_the_wire_can_bear(self, m_body_am2):
         """And comes off it with the sign it went on it with."""
-        sent = saturated(m_body_am2, CONFIG)
+        sent = saturate(m_body_am2, CONFIG)
         heard = CoilDipole.decode(sent.encode().data)
         np.testing.assert_allclose(am2(heard), am2(sent), atol=LSB * FULL_SCALE_AM2)
         assert max(abs(c) for c in heard[:3]) == MOST
@@ -77,25 +77,27 @@ class TestSaturation:
     def test_what_is_not_a_number_asks_for_nothing(self, axis, value):
         """On the wire it would be full scale."""
         m_body_am2 = tuple(value if i == axis else 1.0 for i in range(3))
-        assert saturated(m_body_am2, CONFIG) == CoilDipole(0.0, 0.0, 0.0)
+        assert saturate(m_body_am2, CONFIG) == CoilDipole(0.0, 0.0, 0.0)
 
     def test_none_is_none(self):
-        assert saturated(ZERO, CONFIG) == CoilDipole(0.0, 0.0, 0.0)
+        assert saturate(ZERO, CONFIG) == CoilDipole(0.0, 0.0, 0.0)
 
 
 class TestDriven:
     def test_is_what_the_board_says_of_full_scale(self):
-        assert driven(CoilDipoleStatus(0.5, -0.25, 0.125), CONFIG) == pytest.approx((4.8, -2.4, 1.2))
+        assert driven_dipole_am2(CoilDipoleStatus(0.5, -0.25, 0.125), CONFIG) == pytest.approx(
+            (4.8, -2.4, 1.2)
+        )
 
     def test_without_a_word_it_is_none(self):
-        assert driven(None, CONFIG) == ZERO
+        assert driven_dipole_am2(None, CONFIG) == ZERO
 
     def test_it_is_what_the_view_holds_and_no_level_is(self):
-        coils = CoilConfig(TIMING, CONFIG)
+        coils = ActuatorConfig(TIMING, CONFIG)
         readings = NOTHING._replace(
             coil=CoilStatus(0, 1, 0, 0, 0, 0), dipole=CoilDipoleStatus(0.5, -0.25, 0.125)
         )
-        view = hear(CoilView(), readings, 44, coils)
+        view = update_view(CoilView(), readings, 44, coils)
         assert view.driven_am2 == pytest.approx((4.8, -2.4, 1.2))
         assert view.driven_level == 0
 
@@ -199,7 +201,7 @@ class TestImpulses:
 class TestActuate:
     """The continuous driver behind the same door as the pulses."""
 
-    COILS = CoilConfig(TIMING, CONFIG)
+    COILS = ActuatorConfig(TIMING, CONFIG)
     HEARD = NOTHING._replace(dipole=CoilDipoleStatus(0.0, 0.0, 0.0))
 
     def run(self, demand, readings=HEARD, tick=500):
@@ -207,7 +209,7 @@ class TestActuate:
         return actuate(state, CoilView(), demand, B_BODY_T, readings, tick, self.COILS)
 
     def test_a_request_goes_out_at_once(self):
-        assert self.run(Demand((1.0, -2.0, 3.0)))[2] == saturated((1.0, -2.0, 3.0), CONFIG)
+        assert self.run(Demand((1.0, -2.0, 3.0)))[2] == saturate((1.0, -2.0, 3.0), CONFIG)
         assert np.array(am2(self.run(missing())[2])) == pytest.approx(best_am2())
 
     @pytest.mark.parametrize("demand", [Demand((1.0, -2.0, 3.0)), missing()], ids=["dipole", "impulse"])

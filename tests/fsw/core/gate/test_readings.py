@@ -7,7 +7,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fsw.core.gate.readings import INBOX_LIMIT, LISTENED, NOTHING, TELECOMMANDS, GateState, Readings, admit
+from fsw.core.gate.readings import (
+    INBOX_LIMIT,
+    INPUT_MESSAGES,
+    NOTHING,
+    TELECOMMANDS,
+    GateState,
+    Readings,
+    admit,
+)
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame
 from fsw.wire.messages import (
     CLASSES,
@@ -72,7 +80,7 @@ def test_an_empty_inbox_tells_nothing_and_changes_nothing():
 
 
 def test_what_is_listened_to_is_what_this_test_sends():
-    assert list(LISTENED) == [message.ID for message in EVERY_KIND]
+    assert list(INPUT_MESSAGES) == [message.ID for message in EVERY_KIND]
 
 
 def test_every_kind_is_taken_as_sent():
@@ -83,7 +91,7 @@ def test_every_kind_is_taken_as_sent():
     assert readings.field == FIELD
     heard = crc32(b"".join(message.encode().data for message in as_sent[:-1]))
     counters = (*range(5, 14), *(-1,) * len(TELECOMMANDS))
-    assert state == GateState(counters, heard=heard, commanded=crc32(END.encode().data))
+    assert state == GateState(counters, input_crc=heard, command_crc=crc32(END.encode().data))
 
 
 @EVERY_MESSAGE
@@ -141,7 +149,7 @@ class TestEachMessage:
         _, state = admit(frames(*EVERY_KIND), GateState())
         _, later = admitted(message._replace(counter=message.counter + 1), state=state)
         changed = [a != b for a, b in zip(state.counters, later.counters, strict=True)]
-        assert changed == [can_id == message.ID for can_id in (*LISTENED, *TELECOMMANDS)]
+        assert changed == [can_id == message.ID for can_id in (*INPUT_MESSAGES, *TELECOMMANDS)]
 
 
 @EVERY_COUNTED
@@ -306,7 +314,7 @@ class TestTelecommands:
     def test_is_the_only_one_heard(self, message):
         readings, state = admitted(message)
         assert readings == NOTHING._replace(telecommands=(message,))
-        assert (state.heard, state.commanded) == (0, crc32(message.encode().data))
+        assert (state.input_crc, state.command_crc) == (0, crc32(message.encode().data))
         assert (state.rejected, state.missed) == (0, 0)
 
     def test_all_of_one_kind_count(self, message):
@@ -321,7 +329,7 @@ class TestTelecommands:
         assert state.rejected == 1
         readings, later = admitted(message, state=state)
         assert (readings.telecommands, readings.repeated) == ((), (message,))
-        assert (later.rejected, later.commanded) == (2, state.commanded)
+        assert (later.rejected, later.command_crc) == (2, state.command_crc)
 
     def test_gaps_are_counted(self, message):
         readings, state = admitted(message, message._replace(counter=9))
@@ -356,7 +364,7 @@ def test_every_telecommand_is_listened_to():
 
 def random_frame(random):
     """Nearly right: listened identifiers and right lengths often, flags and nonsense now and then."""
-    can_id = random.choice([*LISTENED, *TELECOMMANDS, *CLASSES, random.getrandbits(11)])
+    can_id = random.choice([*INPUT_MESSAGES, *TELECOMMANDS, *CLASSES, random.getrandbits(11)])
     if random.random() < 0.1:
         can_id |= random.choice([EXTENDED_FLAG, REMOTE_FLAG, ERROR_FLAG])
     known = CLASSES.get(can_id)
@@ -375,7 +383,7 @@ def test_of_ten_thousand_random_frames_none_is_taken_unless_intact():
             assert intact(frame)
             assert heard == [CLASSES[frame.can_id].decode(frame.data)]
             assert after.rejected == state.rejected
-        elif frame.can_id in (*LISTENED, *TELECOMMANDS) or not intact(frame):
+        elif frame.can_id in (*INPUT_MESSAGES, *TELECOMMANDS) or not intact(frame):
             assert after == state._replace(rejected=state.rejected + 1)
         state = after
     assert 0 < taken < 10_000 / 100  # a CRC of 8 bits lets one in 256 pass
@@ -385,7 +393,7 @@ def test_of_ten_thousand_random_frames_none_is_taken_unless_intact():
     st.lists(
         st.builds(
             Frame,
-            st.integers(0, 2**32 - 1) | st.sampled_from([*LISTENED, *TELECOMMANDS]),
+            st.integers(0, 2**32 - 1) | st.sampled_from([*INPUT_MESSAGES, *TELECOMMANDS]),
             st.binary(max_size=64),
         ),
         max_size=80,

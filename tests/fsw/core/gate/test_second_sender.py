@@ -6,7 +6,7 @@ import pytest
 
 from fsw.core.events import Event
 from fsw.core.gate.readings import NOTHING
-from fsw.core.gate.second_sender import NOBODY, SIGNS, SecondSenderConfig, watch
+from fsw.core.gate.second_sender import NO_SIGNS, SIGNS, SecondSenderConfig, watch
 from fsw.core.monitors import Monitor
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
@@ -39,7 +39,7 @@ def refusal(seq, reason=CoilRefusedReason.LOCKOUT):
 
 def watched(heard, pulsed=True):
     """What is known after ``heard``, readings by tick."""
-    known = NOBODY
+    known = NO_SIGNS
     for tick, readings in heard.items():
         known = watch(known, readings, SEQ, pulsed, tick, CONFIG)
     return known
@@ -50,12 +50,12 @@ class TestNamed:
     @pytest.mark.parametrize("can_id", FROM_FSW, ids=[CLASSES[can_id].__name__ for can_id in FROM_FSW])
     def test_by_any_identifier_of_its_own(self, can_id):
         known = watched({tick: under(can_id) for tick in range(70, 70 + SIGNS)})
-        assert known.named
+        assert known.detected
         assert known.can_id == can_id
 
     def test_by_requests_that_the_coil_driver_refuses(self):
         known = watched({tick: refusal(SEQ + 2 + tick) for tick in range(SIGNS)})
-        assert known.named
+        assert known.detected
         assert known.can_id == CoilFire.ID
 
     @pytest.mark.parametrize(
@@ -69,16 +69,16 @@ class TestNamed:
         ],
     )
     def test_signs_must_not_be_too_far_apart(self, can_id, apart, named):
-        assert watched({7 + n * apart: under(can_id) for n in range(20)}).named is named
+        assert watched({7 + n * apart: under(can_id) for n in range(20)}).detected is named
 
     def test_not_by_less_than_three_ticks_with_a_sign(self):
-        assert not watched({0: under(CoilFire.ID), 1: under(CoilFire.ID)}).named
+        assert not watched({0: under(CoilFire.ID), 1: under(CoilFire.ID)}).detected
 
     def test_any_sign_keeps_it_named_until_it_has_been_away_for_long_enough(self):
         named = {tick: under(CoilFire.ID) for tick in range(3)} | {122: under(NavRate.ID)}
-        assert watched(named | {242: NOTHING}).named
-        assert watched(named | {243: NOTHING}) == NOBODY
-        assert not watched(named | {243: under(CoilFire.ID)}).named
+        assert watched(named | {242: NOTHING}).detected
+        assert watched(named | {243: NOTHING}) == NO_SIGNS
+        assert not watched(named | {243: under(CoilFire.ID)}).detected
 
 
 @pytest.mark.requirement("REQ-BUS-02")
@@ -86,18 +86,18 @@ class TestNotNamed:
     @pytest.mark.parametrize("seq", [SEQ, SEQ + 1])
     def test_by_own_requests_refused(self, seq):
         """The one that was accepted last, come again, and the one after it."""
-        assert watched({tick: refusal(seq) for tick in range(50)}) == NOBODY
+        assert watched({tick: refusal(seq) for tick in range(50)}) == NO_SIGNS
 
     def test_by_refusals_of_what_was_broken_on_its_way(self):
         broken = {tick: refusal(5 * tick, CoilRefusedReason.MALFORMED) for tick in range(50)}
-        assert watched(broken) == NOBODY
+        assert watched(broken) == NO_SIGNS
 
     def test_by_refusals_of_a_continuous_driver_which_counts_otherwise(self):
-        assert watched({tick: refusal(5 * tick) for tick in range(50)}, pulsed=False) == NOBODY
+        assert watched({tick: refusal(5 * tick) for tick in range(50)}, pulsed=False) == NO_SIGNS
 
     def test_when_the_sequence_number_wraps(self):
-        assert watch(NOBODY, refusal(0), 255, True, 9, CONFIG) == NOBODY
-        assert watch(NOBODY, refusal(255), 0, True, 9, CONFIG) != NOBODY
+        assert watch(NO_SIGNS, refusal(0), 255, True, 9, CONFIG) == NO_SIGNS
+        assert watch(NO_SIGNS, refusal(255), 0, True, 9, CONFIG) != NO_SIGNS
 
 
 class TestInFlight:

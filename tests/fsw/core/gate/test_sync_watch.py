@@ -120,7 +120,7 @@ class TestTheTickThatWasAnswered:
 
     def test_again_and_again_has_not_heard_the_answer(self, count):
         """As a plant that lost it, or one that has started anew in this very tick."""
-        assert [count.hear(AT) for _ in range(4)] == [Belief.IGNORED, Belief.UNHEARD] * 2
+        assert [count.hear(AT) for _ in range(4)] == [Belief.IGNORED, Belief.UNANSWERED] * 2
         assert count.hear(AT + 1) is Belief.NEXT
 
     def test_after_the_tick_before_it_is_still_a_duplicate(self, count):

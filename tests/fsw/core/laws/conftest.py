@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from fsw.core.algebra.quaternion import from_dcm
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
-from fsw.core.laws.interface import ControlConfig, FieldSample, Seen, Setpoint
+from fsw.core.laws.interface import ControlConfig, FieldSample, LawInput, Setpoint
 from fsw.core.orbit.ephemeris import Reference
 
 MU = 3.986004418e14
@@ -122,13 +122,13 @@ def config(body, step_s, gains=None):
     )
 
 
-def seen_at(orbit, tick, step_s, *motion, **more):
-    """What a law sees of the true motion at a tick; arguments as of ``seen_in``."""
+def inputs_at(orbit, tick, step_s, *motion, **more):
+    """What a law sees of the true motion at a tick; arguments as of ``inputs_in``."""
     t_s = tick * step_s
-    return seen_in(orbit, tick, orbit.c_orbit_from_eci(t_s), orbit.b_eci_t(t_s), *motion, **more)
+    return inputs_in(orbit, tick, orbit.c_orbit_from_eci(t_s), orbit.b_eci_t(t_s), *motion, **more)
 
 
-def seen_in(
+def inputs_in(
     orbit, tick, c_orbit, b_eci, c_body_from_eci, omega, before, sun_eci=None, known=True, sampled=True
 ):
     c_body_from_orbit = c_body_from_eci @ c_orbit.T
@@ -147,7 +147,7 @@ def seen_in(
         orbit_rate_radps=orbit.rate_radps,
     )
     sample = FieldSample(b_body, tick) if sampled else before
-    return Seen(attitude, b_body, sample, before, sun, reference, tick=tick)
+    return LawInput(attitude, b_body, sample, before, sun, reference, tick=tick)
 
 
 def fly(
@@ -164,7 +164,7 @@ def fly(
     sun_eci=None,
     known=True,
     switch=None,
-    look=lambda seen: seen,
+    look=lambda inputs: inputs,
     settings=None,
 ):
     """Fly a law from an attitude and an absolute rate; the dipole holds over a step.
@@ -200,9 +200,9 @@ def fly(
             law = switch[1]
         c_body_from_eci, omega = state[:, :3], inverse @ (state[:, 3] - wheel)
         now = c_orbit[2 * tick], b_eci[2 * tick]
-        seen = seen_in(orbit, tick, *now, c_body_from_eci, omega, before, sun, known)
-        demand = law(look(seen), memory, law_setpoint, settings)
-        before, memory = seen.sample, demand.memory
+        inputs = inputs_in(orbit, tick, *now, c_body_from_eci, omega, before, sun, known)
+        demand = law(look(inputs), memory, law_setpoint, settings)
+        before, memory = inputs.sample, demand.memory
         m = [max(-body.most_am2, min(body.most_am2, part)) for part in demand.m_body_am2]
         rows.append((tick * step_s, omega, c_body_from_eci @ now[0].T, state, m))
         start, middle, end = around[2 * tick : 2 * tick + 3]
@@ -234,7 +234,7 @@ class Bench:
     """What the tests of the laws use."""
 
     Orbit, Body = Orbit, Body
-    fly, seen_at = staticmethod(fly), staticmethod(seen_at)
+    fly, inputs_at = staticmethod(fly), staticmethod(inputs_at)
     setpoint, config = staticmethod(setpoint), staticmethod(config)
     angles_deg = staticmethod(angles_deg)
 

@@ -9,7 +9,7 @@ from fsw.core.algebra.vector import ZERO, Mat3, cross, inverse
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.laws import by_mode
 from fsw.core.laws.damping import bdot, bdot_dipole, rate_damping, rate_damping_dipole
-from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, Seen, Setpoint
+from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, LawInput, Setpoint
 from fsw.core.laws.pd import attitude_error, far_error, pd_dipole
 from fsw.core.laws.predictive import predictive
 from fsw.core.laws.table import LAWS
@@ -50,12 +50,12 @@ REFERENCE = Reference(
 EVERY_LAW = pytest.mark.parametrize("law", LAWS)
 
 
-def seen(attitude=KNOWN, sample=SAMPLE, before=BEFORE):
-    return Seen(attitude, B_BODY_T, sample, before, (0.6, 0.0, 0.8), REFERENCE, (1e-7, -2e-7, 3e-7))
+def inputs(attitude=KNOWN, sample=SAMPLE, before=BEFORE):
+    return LawInput(attitude, B_BODY_T, sample, before, (0.6, 0.0, 0.8), REFERENCE, (1e-7, -2e-7, 3e-7))
 
 
 def flown(mode, setpoint=PD, attitude=KNOWN, memory=(), config=CONFIG):
-    return by_mode.demand(mode, seen(attitude), memory, setpoint, config)
+    return by_mode.demand(mode, inputs(attitude), memory, setpoint, config)
 
 
 def pd_with(error):
@@ -66,7 +66,7 @@ BY_PD = pd_with(attitude_error(dcm(KNOWN.q_body_from_orbit)))
 BY_FAR_PD = pd_with(far_error(KNOWN.q_body_from_orbit))
 BY_RATE = Demand(rate_damping_dipole(B_BODY_T, KNOWN.omega_body_orbit_radps, K_W))
 BY_BDOT = Demand(bdot_dipole(SAMPLE.b_body_t, BEFORE.b_body_t, 1.0, K_W))
-BY_PREDICTION = predictive(seen(), (), PD, CONFIG)
+BY_PREDICTION = predictive(inputs(), (), PD, CONFIG)
 NOTHING = Demand()
 NOTHING_BUT_MEMORY = Demand(memory=ZERO)
 
@@ -116,7 +116,7 @@ def test_acquire_and_point_fly_the_law_of_the_setpoint(law, mode):
     row = LAWS[law]
     flies = row.acquire if mode is Mode.ACQUIRE else row.point
     setpoint = PD._replace(law=law)
-    assert flown(mode, setpoint) == flies(seen(), (), setpoint, CONFIG)
+    assert flown(mode, setpoint) == flies(inputs(), (), setpoint, CONFIG)
 
 
 @EVERY_LAW
@@ -139,7 +139,7 @@ class TestSpin:
     SPINNING = DAMPING._replace(spin_radps=0.02)
 
     def spinning_at(self, *omega):
-        return seen(KNOWN._replace(omega_body_orbit_radps=omega))
+        return inputs(KNOWN._replace(omega_body_orbit_radps=omega))
 
     def test_the_rate_wanted_is_left_alone(self):
         m = rate_damping(self.spinning_at(0.02, 0.0, 0.0), (), self.SPINNING, CONFIG).m_body_am2
@@ -156,7 +156,7 @@ class TestSpin:
 
     def test_prediction_misses_the_momentum_of_the_spin_that_is_wanted(self):
         without, wanting = (
-            predictive(seen(), (), setpoint, CONFIG).impulse_body_nms
+            predictive(inputs(), (), setpoint, CONFIG).impulse_body_nms
             for setpoint in (PREDICTIVE, PREDICTIVE._replace(spin_radps=0.02))
         )
         momentum = tuple(0.02 * row[0] for row in INERTIA)
@@ -168,7 +168,7 @@ class TestBdot:
     """Two usable samples, neither the same nor too far apart; else nothing."""
 
     def by_bdot(self, sample=SAMPLE, before=BEFORE):
-        return bdot(seen(sample=sample, before=before), (), PD, CONFIG)
+        return bdot(inputs(sample=sample, before=before), (), PD, CONFIG)
 
     def test_before_the_first_sample(self):
         assert self.by_bdot(sample=FieldSample(), before=FieldSample()) == NOTHING

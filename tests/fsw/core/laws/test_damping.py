@@ -44,7 +44,7 @@ def test_the_equation_of_bdot(b, before, interval_s):
 
 @pytest.mark.parametrize("interval_s", [0.1, 1.0])
 def test_bdot_is_rate_damping_while_the_body_turns_slowly(interval_s):
-    """Seen from a body that turns with omega in a field that stands still, db/dt = b x omega.
+    """LawInput from a body that turns with omega in a field that stands still, db/dt = b x omega.
 
     The difference over an interval is the derivative in its middle, up to (omega h)^2 / 24.
     """

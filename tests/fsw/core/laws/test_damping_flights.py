@@ -18,10 +18,10 @@ TUMBLE = (0.02, -0.03, 0.025)
 K_W = 6.27e6
 
 
-def absolute_damping(seen, memory, setpoint, config):
+def absolute_damping(inputs, memory, setpoint, config):
     """m = -k_w b x omega with the absolute rate, as the review has it."""
-    omega = motion(seen, config).omega_body_radps
-    return Demand(rate_damping_dipole(seen.b_body_t, omega, setpoint.k_w))
+    omega = motion(inputs, config).omega_body_radps
+    return Demand(rate_damping_dipole(inputs.b_body_t, omega, setpoint.k_w))
 
 
 @pytest.fixture(scope="module")

@@ -61,7 +61,7 @@ def test_to_first_order_it_is_the_pd_law_less_the_turning_of_the_field(bench, tu
         angle = theta + rate * (tick - 700.5)
         c = turned(angle, np.degrees(np.linalg.norm(angle))) @ orbit.c_orbit_from_eci(tick)
         demand = field_tracking(
-            bench.seen_at(orbit, tick, 1.0, c, np.zeros(3), before), memory, point, settings
+            bench.inputs_at(orbit, tick, 1.0, c, np.zeros(3), before), memory, point, settings
         )
         before, memory = FieldSample((0.0, 0.0, 0.0), tick), demand.memory
 
@@ -120,36 +120,36 @@ class TestFlights:
 
 class TestMemory:
     @pytest.fixture
-    def seen(self, bench, turned):
+    def inputs(self, bench, turned):
         def at(tick, sampled=True, before=NO_SAMPLE):
             c = turned((1, 2, 3), 25.0) @ bench.Orbit().c_orbit_from_eci(tick)
-            return bench.seen_at(bench.Orbit(), tick, 1.0, c, np.zeros(3), before, sampled=sampled)
+            return bench.inputs_at(bench.Orbit(), tick, 1.0, c, np.zeros(3), before, sampled=sampled)
 
         return at
 
     @pytest.fixture
     def fly(self, bench):
         point, settings = bench.setpoint(k_w=1e7, k_a=2000.0), bench.config(bench.Body(), 1.0, GAINS)
-        return lambda law, seen, memory: law(seen, memory, point, settings)
+        return lambda law, inputs, memory: law(inputs, memory, point, settings)
 
-    def test_one_sample_tells_no_change(self, seen, fly):
-        demand = fly(field_tracking, seen(50), ())
+    def test_one_sample_tells_no_change(self, inputs, fly):
+        demand = fly(field_tracking, inputs(50), ())
         assert demand.m_body_am2 == (0.0, 0.0, 0.0)
-        assert fly(field_tracking, seen(51), demand.memory).m_body_am2 != (0.0, 0.0, 0.0)
+        assert fly(field_tracking, inputs(51), demand.memory).m_body_am2 != (0.0, 0.0, 0.0)
 
-    def test_a_tick_without_a_sample_asks_for_nothing_and_forgets_nothing(self, seen, fly):
-        first = fly(field_tracking, seen(50), ())
-        blanked = fly(field_tracking, seen(51, sampled=False, before=seen(50).sample), first.memory)
+    def test_a_tick_without_a_sample_asks_for_nothing_and_forgets_nothing(self, inputs, fly):
+        first = fly(field_tracking, inputs(50), ())
+        blanked = fly(field_tracking, inputs(51, sampled=False, before=inputs(50).sample), first.memory)
         assert blanked.m_body_am2 == (0.0, 0.0, 0.0)
         assert blanked.memory == first.memory
-        assert fly(field_tracking, seen(52), blanked.memory).m_body_am2 != (0.0, 0.0, 0.0)
+        assert fly(field_tracking, inputs(52), blanked.memory).m_body_am2 != (0.0, 0.0, 0.0)
 
-    def test_an_old_sample_tells_no_change(self, seen, fly):
-        first = fly(field_tracking, seen(50), ())
-        assert fly(field_tracking, seen(61), first.memory).m_body_am2 == (0.0, 0.0, 0.0)
+    def test_an_old_sample_tells_no_change(self, inputs, fly):
+        first = fly(field_tracking, inputs(50), ())
+        assert fly(field_tracking, inputs(61), first.memory).m_body_am2 == (0.0, 0.0, 0.0)
 
-    def test_neither_law_of_the_hand_over_takes_the_other_s_memory_for_its_own(self, seen, fly):
-        tracked, integral = fly(tracking_before_pd, seen(50), ()).memory, (10.0, -20.0, 30.0)
-        assert fly(pd_after_tracking, seen(51), tracked) == fly(pd_after_tracking, seen(51), ())
-        assert fly(tracking_before_pd, seen(51), integral) == fly(tracking_before_pd, seen(51), ())
-        assert fly(pd_after_tracking, seen(51), integral).memory == integral
+    def test_neither_law_of_the_hand_over_takes_the_other_s_memory_for_its_own(self, inputs, fly):
+        tracked, integral = fly(tracking_before_pd, inputs(50), ()).memory, (10.0, -20.0, 30.0)
+        assert fly(pd_after_tracking, inputs(51), tracked) == fly(pd_after_tracking, inputs(51), ())
+        assert fly(tracking_before_pd, inputs(51), integral) == fly(tracking_before_pd, inputs(51), ())
+        assert fly(pd_after_tracking, inputs(51), integral).memory == integral

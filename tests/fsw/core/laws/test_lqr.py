@@ -49,7 +49,7 @@ def flight(bench, settings, turned):
             omega_body=orbit.rate_radps * c[:, 2],
             seconds=orbits * orbit.period_s,
             step_s=10.0,
-            look=lambda seen: seen._replace(torque_body_nm=torque if known else (0.0, 0.0, 0.0)),
+            look=lambda inputs: inputs._replace(torque_body_nm=torque if known else (0.0, 0.0, 0.0)),
             settings=settings,
         )
 
@@ -57,11 +57,11 @@ def flight(bench, settings, turned):
 
 
 @pytest.fixture
-def seen(bench, turned):
+def inputs(bench, turned):
     orbit, c = bench.Orbit(), turned((1, -2, 3), 15.0)
     c_body_from_eci = c @ orbit.c_orbit_from_eci(2000.0)
-    before = bench.seen_at(orbit, 199, 10.0, c_body_from_eci, np.zeros(3), None).sample
-    return bench.seen_at(orbit, 200, 10.0, c_body_from_eci, np.array([1e-4, 2e-4, 1.3e-3]), before)
+    before = bench.inputs_at(orbit, 199, 10.0, c_body_from_eci, np.zeros(3), None).sample
+    return bench.inputs_at(orbit, 200, 10.0, c_body_from_eci, np.array([1e-4, 2e-4, 1.3e-3]), before)
 
 
 def rms_deg(flown, orbits, last):
@@ -103,26 +103,26 @@ def test_a_constant_torque_that_it_does_not_know_leaves_more(flight):
     assert by_pd > 4.0
 
 
-def test_what_rests_on_an_oblique_body_is_reckoned_with(bench, settings, seen):
+def test_what_rests_on_an_oblique_body_is_reckoned_with(bench, settings, inputs):
     oblique = ((1.02, 0.05, 0.0), (0.05, 1.85, 0.0), (0.0, 0.0, 1.95))
     table = schedule(oblique, (0.0, 0.0, 0.0), 1.04e-3, radians(98.6), 2.1e-5, WEIGHTS)
     given = replace(settings, schedules={"lqr": table})
     rest = table.problem.resting_nm
-    cancelled = seen._replace(torque_body_nm=tuple(-part for part in rest))
+    cancelled = inputs._replace(torque_body_nm=tuple(-part for part in rest))
     flat = replace(table, problem=replace(table.problem, resting_nm=(0.0, 0.0, 0.0)))
     without = replace(settings, schedules={"lqr": flat})
     point = bench.setpoint()
     assert np.linalg.norm(rest) > 1e-8
-    assert lqr(cancelled, (), point, given) == lqr(seen, (), point, without)
-    assert lqr(seen, (), point, given) != lqr(seen, (), point, without)
+    assert lqr(cancelled, (), point, given) == lqr(inputs, (), point, without)
+    assert lqr(inputs, (), point, given) != lqr(inputs, (), point, without)
 
 
 @pytest.mark.parametrize("t_s", [0.0, 700.0, 2500.0, 4000.0, 5900.0])
 def test_the_argument_of_latitude_is_read_off_the_orbital_axes(bench, t_s):
     orbit = bench.Orbit()
-    seen = bench.seen_at(orbit, 1, t_s, orbit.c_orbit_from_eci(t_s), np.zeros(3), None)
+    inputs = bench.inputs_at(orbit, 1, t_s, orbit.c_orbit_from_eci(t_s), np.zeros(3), None)
     u = orbit.rate_radps * t_s
-    assert np.exp(1j * latitude_argument(seen.reference)) == pytest.approx(np.exp(1j * u), abs=1e-9)
+    assert np.exp(1j * latitude_argument(inputs.reference)) == pytest.approx(np.exp(1j * u), abs=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -139,31 +139,31 @@ def test_a_dipole_beyond_the_bound_is_shortened_and_keeps_its_direction():
     assert within((1.0, -1.9, 0.5), 2.0) == (1.0, -1.9, 0.5)
 
 
-def test_the_bound_of_the_coils_holds(bench, settings, seen):
+def test_the_bound_of_the_coils_holds(bench, settings, inputs):
     tight = replace(settings, mean_dipole_am2=1e-3)
-    m = lqr(seen, (), bench.setpoint(), tight).m_body_am2
+    m = lqr(inputs, (), bench.setpoint(), tight).m_body_am2
     assert max(map(abs, m)) == pytest.approx(1e-3)
 
 
 @pytest.mark.parametrize("missing", ["attitude", "reference", "schedule"])
-def test_without_knowledge_nothing_is_asked_for(bench, settings, seen, missing):
+def test_without_knowledge_nothing_is_asked_for(bench, settings, inputs, missing):
     given = settings if missing != "schedule" else replace(settings, schedules={})
     if missing == "attitude":
-        seen = seen._replace(attitude=UNKNOWN)
+        inputs = inputs._replace(attitude=UNKNOWN)
     if missing == "reference":
-        seen = seen._replace(reference=None)
-    assert lqr(seen, (), bench.setpoint(), given).m_body_am2 == (0.0, 0.0, 0.0)
+        inputs = inputs._replace(reference=None)
+    assert lqr(inputs, (), bench.setpoint(), given).m_body_am2 == (0.0, 0.0, 0.0)
 
 
-def test_with_knowledge_something_finite_is(bench, settings, seen):
-    m = lqr(seen, (), bench.setpoint(), settings).m_body_am2
+def test_with_knowledge_something_finite_is(bench, settings, inputs):
+    m = lqr(inputs, (), bench.setpoint(), settings).m_body_am2
     assert all(map(isfinite, m))
     assert any(m)
 
 
-def test_far_from_the_goal_the_pd_law_flies_and_leaves_no_memory(bench, settings, seen):
+def test_far_from_the_goal_the_pd_law_flies_and_leaves_no_memory(bench, settings, inputs):
     point = bench.setpoint(k_w=K_W, k_a=K_A, k_i=0.08)
     foreign = tuple(float(k) for k in range(136))
-    demand = without_memory(seen, foreign, point, settings)
-    assert demand.m_body_am2 == pd_far(seen, (), point, settings).m_body_am2
+    demand = without_memory(inputs, foreign, point, settings)
+    assert demand.m_body_am2 == pd_far(inputs, (), point, settings).m_body_am2
     assert demand.memory == ()

@@ -17,8 +17,8 @@ def body(bench):
 
 def test_the_motion_is_the_true_one(bench, body, turned):
     orbit, omega, c_body_from_eci = bench.Orbit(), np.array([0.03, -0.01, 0.02]), turned((3, -1, 2), 130.0)
-    seen = bench.seen_at(orbit, 400, 5.0, c_body_from_eci, omega, FieldSample())
-    moving = motion(seen, bench.config(body, 5.0))
+    inputs = bench.inputs_at(orbit, 400, 5.0, c_body_from_eci, omega, FieldSample())
+    moving = motion(inputs, bench.config(body, 5.0))
     np.testing.assert_allclose(moving.omega_body_radps, omega, atol=1e-15)
     np.testing.assert_allclose(moving.momentum_body_nms, INERTIA @ omega + (0.01, -0.02, 0.3), atol=1e-14)
     np.testing.assert_allclose(dcm(moving.q_body_from_eci), c_body_from_eci, atol=1e-14)
@@ -27,7 +27,7 @@ def test_the_motion_is_the_true_one(bench, body, turned):
 @pytest.mark.parametrize("missing", ["attitude", "orbit"])
 def test_without_attitude_or_orbit_there_is_none(bench, body, missing):
     known = missing != "attitude"
-    seen = bench.seen_at(bench.Orbit(), 9, 1.0, np.eye(3), np.zeros(3), FieldSample(), known=known)
+    inputs = bench.inputs_at(bench.Orbit(), 9, 1.0, np.eye(3), np.zeros(3), FieldSample(), known=known)
     if missing == "orbit":
-        seen = seen._replace(reference=None)
-    assert motion(seen, bench.config(body, 1.0)) is None
+        inputs = inputs._replace(reference=None)
+    assert motion(inputs, bench.config(body, 1.0)) is None

@@ -8,7 +8,7 @@ import pytest
 
 from fsw.core.estimation.attitude import UNKNOWN
 from fsw.core.laws.lqr import STEPS, LqrGains, lqr, schedule
-from fsw.core.laws.mpc import FLOWN, MpcGains, field_ahead, mpc, plan
+from fsw.core.laws.mpc import APPLIED_STEPS, MpcGains, field_ahead, mpc, plan
 from fsw.core.orbit.ephemeris import ephemeris_model
 from fsw.core.orbit.field import FieldKind, field_eci_t
 from fsw.core.orbit.propagation import circular_orbit
@@ -41,11 +41,11 @@ def settings(bench):
 
 
 @pytest.fixture
-def seen(bench, turned):
+def inputs(bench, turned):
     """Tick 3 of a satellite on the direct dipole's field, 15 deg off."""
     orbit = bench.Orbit()
     c_body_from_eci = turned((1, -2, 3), 15.0) @ orbit.c_orbit_from_eci(30.0)
-    given = bench.seen_at(orbit, 3, STEP_S, c_body_from_eci, np.array([1e-4, 2e-4, 1.3e-3]), None)
+    given = bench.inputs_at(orbit, 3, STEP_S, c_body_from_eci, np.array([1e-4, 2e-4, 1.3e-3]), None)
     return given._replace(ephemeris=model_of(FieldKind.DIRECT_DIPOLE, orbit))
 
 
@@ -62,21 +62,21 @@ def test_no_field_ahead_where_the_orbit_has_no_position(bench, monkeypatch):
     assert field_ahead(model_of(FieldKind.DIRECT_DIPOLE, bench.Orbit()), EPOCH, 60.0, 10) is None
 
 
-@pytest.mark.parametrize("steps", [FLOWN, STEPS // 3, STEPS, 2 * STEPS])
+@pytest.mark.parametrize("steps", [APPLIED_STEPS, STEPS // 3, STEPS, 2 * STEPS])
 def test_on_the_field_of_the_regulator_the_plan_is_the_regulator(settings, steps):
     """However far it looks, as its end is worth what the regulator makes of it."""
     table, start = settings.schedules["mpc"], 17
     u = 2.0 * np.pi / STEPS * (start + np.arange(steps) + 0.5)
     i, b0 = radians(98.6), 7.812e15 / (7178137.0**3)
     field = b0 * np.stack([-2 * np.sin(u) * np.sin(i), np.cos(u) * np.sin(i), np.full(steps, np.cos(i))], -1)
-    expected = table.gains[(start + np.arange(FLOWN)) % STEPS]
+    expected = table.gains[(start + np.arange(APPLIED_STEPS)) % STEPS]
     gains = plan(table, field, (start + steps) % STEPS)
     assert gains == pytest.approx(expected, rel=1e-6, abs=1e-7 * np.abs(expected).min(axis=(0, 1)).max())
 
 
-def test_on_that_field_both_laws_ask_for_nearly_the_same(bench, settings, seen):
+def test_on_that_field_both_laws_ask_for_nearly_the_same(bench, settings, inputs):
     """Not the same: the steps of the one begin with the plan, those of the other at the node."""
-    by_lqr, by_mpc = (np.array(law(seen, (), bench.setpoint(), settings).m_body_am2) for law in (lqr, mpc))
+    by_lqr, by_mpc = (np.array(law(inputs, (), bench.setpoint(), settings).m_body_am2) for law in (lqr, mpc))
     assert by_mpc == pytest.approx(by_lqr, abs=0.1 * np.linalg.norm(by_lqr))
 
 
@@ -106,7 +106,7 @@ def test_on_a_tilted_field_with_a_constant_torque_the_plan_points_better(bench, 
             omega_body=(0.0, 0.0, orbit.rate_radps),
             seconds=6.0 * orbit.period_s,
             step_s=STEP_S,
-            look=lambda seen: seen._replace(torque_body_nm=TORQUE, ephemeris=model),
+            look=lambda inputs: inputs._replace(torque_body_nm=TORQUE, ephemeris=model),
             settings=settings,
         )
         return float(np.sqrt(np.mean(flown.angle_deg[-len(flown.t_s) // 2 :] ** 2)))
@@ -116,54 +116,54 @@ def test_on_a_tilted_field_with_a_constant_torque_the_plan_points_better(bench, 
     assert by_mpc < 0.8 * by_lqr
 
 
-def test_a_plan_is_flown_for_its_steps_and_then_made_anew(bench, settings, seen):
+def test_a_plan_is_flown_for_its_steps_and_then_made_anew(bench, settings, inputs):
     step_ticks = settings.schedules["mpc"].problem.step_s / STEP_S
-    memory = mpc(seen, (), bench.setpoint(), settings).memory
-    last, first = int(FLOWN * step_ticks), int(FLOWN * step_ticks) + 1
-    still = mpc(seen._replace(tick=3 + last), memory, bench.setpoint(), settings).memory
-    anew = mpc(seen._replace(tick=3 + first), memory, bench.setpoint(), settings).memory
+    memory = mpc(inputs, (), bench.setpoint(), settings).memory
+    last, first = int(APPLIED_STEPS * step_ticks), int(APPLIED_STEPS * step_ticks) + 1
+    still = mpc(inputs._replace(tick=3 + last), memory, bench.setpoint(), settings).memory
+    anew = mpc(inputs._replace(tick=3 + first), memory, bench.setpoint(), settings).memory
     assert still == memory
     assert anew[0] == 3 + first
     assert anew[1:] != memory[1:]
 
 
-def test_each_step_of_a_plan_has_its_gain(bench, settings, seen):
+def test_each_step_of_a_plan_has_its_gain(bench, settings, inputs):
     step_ticks = settings.schedules["mpc"].problem.step_s / STEP_S
-    memory = mpc(seen, (), bench.setpoint(), settings).memory
-    ticks = [3 + int(step * step_ticks) + 1 for step in range(FLOWN)]
-    asked = [mpc(seen._replace(tick=tick), memory, bench.setpoint(), settings) for tick in ticks]
-    assert len({demand.m_body_am2 for demand in asked}) == FLOWN
+    memory = mpc(inputs, (), bench.setpoint(), settings).memory
+    ticks = [3 + int(step * step_ticks) + 1 for step in range(APPLIED_STEPS)]
+    asked = [mpc(inputs._replace(tick=tick), memory, bench.setpoint(), settings) for tick in ticks]
+    assert len({demand.m_body_am2 for demand in asked}) == APPLIED_STEPS
     assert {demand.memory for demand in asked} == {memory}
 
 
 @pytest.mark.parametrize("foreign", [(1.0, 2.0, 3.0), (900.0,) + (7.0,) * 135, (0.0,) * 136])
-def test_what_is_not_a_plan_of_now_is_replaced(bench, settings, seen, foreign):
+def test_what_is_not_a_plan_of_now_is_replaced(bench, settings, inputs, foreign):
     """Another law's memory, a plan of the future, and one long gone."""
-    late = seen._replace(tick=500)
+    late = inputs._replace(tick=500)
     assert mpc(late, foreign, bench.setpoint(), settings) == mpc(late, (), bench.setpoint(), settings)
 
 
-def test_the_bound_of_the_coils_holds(bench, settings, seen):
+def test_the_bound_of_the_coils_holds(bench, settings, inputs):
     tight = replace(settings, mean_dipole_am2=1e-3)
-    m = mpc(seen, (), bench.setpoint(), tight).m_body_am2
-    free = mpc(seen, (), bench.setpoint(), settings).m_body_am2
+    m = mpc(inputs, (), bench.setpoint(), tight).m_body_am2
+    free = mpc(inputs, (), bench.setpoint(), settings).m_body_am2
     assert max(map(abs, m)) == pytest.approx(1e-3)
     assert np.cross(m, free) == pytest.approx(np.zeros(3), abs=1e-15)
 
 
-def test_without_a_bound_in_reach_it_changes_nothing(bench, settings, seen):
+def test_without_a_bound_in_reach_it_changes_nothing(bench, settings, inputs):
     wide = replace(settings, mean_dipole_am2=1e6)
-    assert mpc(seen, (), bench.setpoint(), wide) == mpc(seen, (), bench.setpoint(), settings)
+    assert mpc(inputs, (), bench.setpoint(), wide) == mpc(inputs, (), bench.setpoint(), settings)
 
 
 @pytest.mark.parametrize("missing", ["attitude", "reference", "ephemeris", "schedule"])
-def test_without_knowledge_nothing_is_asked_for(bench, settings, seen, missing):
+def test_without_knowledge_nothing_is_asked_for(bench, settings, inputs, missing):
     given = settings if missing != "schedule" else replace(settings, schedules={})
     if missing != "schedule":
-        seen = seen._replace(**{missing: UNKNOWN if missing == "attitude" else None})
-    assert mpc(seen, (), bench.setpoint(), given).m_body_am2 == (0.0, 0.0, 0.0)
+        inputs = inputs._replace(**{missing: UNKNOWN if missing == "attitude" else None})
+    assert mpc(inputs, (), bench.setpoint(), given).m_body_am2 == (0.0, 0.0, 0.0)
 
 
-def test_a_gap_in_the_attitude_keeps_the_plan(bench, settings, seen):
-    memory = mpc(seen, (), bench.setpoint(), settings).memory
-    assert mpc(seen._replace(attitude=UNKNOWN), memory, bench.setpoint(), settings).memory == memory
+def test_a_gap_in_the_attitude_keeps_the_plan(bench, settings, inputs):
+    memory = mpc(inputs, (), bench.setpoint(), settings).memory
+    assert mpc(inputs._replace(attitude=UNKNOWN), memory, bench.setpoint(), settings).memory == memory

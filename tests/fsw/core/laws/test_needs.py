@@ -39,7 +39,7 @@ def ask(bench, turned):
         for tick in (500, 501):
             c = turned((1, 2, 3), 25.0 + 0.5 * (tick - 500)) @ orbit.c_orbit_from_eci(tick)
             omega = np.radians(0.5) * np.array([1, 2, 3]) / np.sqrt(14.0) + orbit.rate_radps * c[:, 2]
-            seen = bench.seen_at(
+            inputs = bench.inputs_at(
                 orbit,
                 tick,
                 1.0,
@@ -51,9 +51,9 @@ def ask(bench, turned):
                 sampled=missing != "second sample" or tick == 500,
             )
             if missing == "orbit":
-                seen = seen._replace(reference=None)
-            demand = row.acquire(seen, memory, point, settings)
-            before, memory = seen.sample, demand.memory
+                inputs = inputs._replace(reference=None)
+            demand = row.acquire(inputs, memory, point, settings)
+            before, memory = inputs.sample, demand.memory
         return demand.m_body_am2
 
     return asked

@@ -27,14 +27,16 @@ def settings(bench):
 
 
 @pytest.fixture
-def seen(bench, turned):
+def inputs(bench, turned):
     orbit = bench.Orbit()
     c_body_from_eci = turned((1, -2, 3), 25.0) @ orbit.c_orbit_from_eci(700.0)
-    return bench.seen_at(orbit, 1400, STEP_S, c_body_from_eci, np.array([1e-3, 2e-3, -1e-3]), None)
+    return bench.inputs_at(orbit, 1400, STEP_S, c_body_from_eci, np.array([1e-3, 2e-3, -1e-3]), None)
 
 
-def with_attitude(seen, q, omega=(nan, nan, nan)):
-    return seen._replace(attitude=seen.attitude._replace(q_body_from_orbit=q, omega_body_orbit_radps=omega))
+def with_attitude(inputs, q, omega=(nan, nan, nan)):
+    return inputs._replace(
+        attitude=inputs.attitude._replace(q_body_from_orbit=q, omega_body_orbit_radps=omega)
+    )
 
 
 @pytest.fixture(scope="module")
@@ -42,8 +44,8 @@ def flight(bench, turned):
     """From 20 deg off, the rate unknown to the law where it is told to be blind."""
 
     def fly(law, orbits=6.0, blind=False, k_w=K_W):
-        def look(seen):
-            return with_attitude(seen, seen.attitude.q_body_from_orbit) if blind else seen
+        def look(inputs):
+            return with_attitude(inputs, inputs.attitude.q_body_from_orbit) if blind else inputs
 
         orbit, c = bench.Orbit(), turned((1, 2, 3), 20.0)
         return bench.fly(
@@ -75,16 +77,18 @@ def test_the_lag_of_a_steady_turn_is_its_rate():
     assert lagged_rate(q, before, BANDWIDTH_RADPS) == pytest.approx(omega, rel=0.05)
 
 
-def test_at_first_no_rate_is_assumed(seen, settings, bench):
-    demand = output_feedback(with_attitude(seen, Q), (), bench.setpoint(k_w=K_W, k_a=K_A), settings)
-    at_rest = pd_far(with_attitude(seen, Q, (0.0, 0.0, 0.0)), (), bench.setpoint(k_w=K_W, k_a=K_A), settings)
+def test_at_first_no_rate_is_assumed(inputs, settings, bench):
+    demand = output_feedback(with_attitude(inputs, Q), (), bench.setpoint(k_w=K_W, k_a=K_A), settings)
+    at_rest = pd_far(
+        with_attitude(inputs, Q, (0.0, 0.0, 0.0)), (), bench.setpoint(k_w=K_W, k_a=K_A), settings
+    )
     assert demand.m_body_am2 == pytest.approx(at_rest.m_body_am2)
     assert demand.memory == pytest.approx(Q)
 
 
-def test_the_sign_of_a_quaternion_means_nothing(seen, settings, bench):
+def test_the_sign_of_a_quaternion_means_nothing(inputs, settings, bench):
     point, z = bench.setpoint(k_w=K_W, k_a=K_A), normalise((0.91, 0.09, -0.19, 0.31))
-    one, other = (output_feedback(with_attitude(seen, q), z, point, settings) for q in (Q, negative(Q)))
+    one, other = (output_feedback(with_attitude(inputs, q), z, point, settings) for q in (Q, negative(Q)))
     assert one.m_body_am2 == pytest.approx(other.m_body_am2, rel=1e-12)
     assert negative(one.memory) == pytest.approx(other.memory, rel=1e-12)
 
@@ -107,13 +111,13 @@ def test_with_the_rate_it_converges_sooner(flight):
     assert flight(pd).angle_deg[third_orbit].max() < flight(output_feedback).angle_deg[third_orbit].max()
 
 
-def test_an_unknown_attitude_asks_for_nothing_and_forgets(seen, settings, bench):
-    demand = output_feedback(seen._replace(attitude=UNKNOWN), Q, bench.setpoint(k_w=K_W, k_a=K_A), settings)
+def test_an_unknown_attitude_asks_for_nothing_and_forgets(inputs, settings, bench):
+    demand = output_feedback(inputs._replace(attitude=UNKNOWN), Q, bench.setpoint(k_w=K_W, k_a=K_A), settings)
     assert demand.m_body_am2 == (0.0, 0.0, 0.0)
     assert demand.memory == ()
 
 
-def test_without_a_field_nothing_is_asked_for(seen, settings, bench):
-    dark = with_attitude(seen, Q)._replace(b_body_t=(0.0, 0.0, 0.0))
+def test_without_a_field_nothing_is_asked_for(inputs, settings, bench):
+    dark = with_attitude(inputs, Q)._replace(b_body_t=(0.0, 0.0, 0.0))
     demand = output_feedback(dark, (), bench.setpoint(k_w=K_W, k_a=K_A), settings)
     assert demand.m_body_am2 == (0.0, 0.0, 0.0)

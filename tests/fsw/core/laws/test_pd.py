@@ -11,8 +11,8 @@ from scipy.spatial.transform import Rotation
 from fsw.core.algebra.quaternion import IDENTITY, dcm
 from fsw.core.algebra.vector import ZERO
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
-from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, Seen, Setpoint
-from fsw.core.laws.pd import attitude_error, far_error, integrated, pd, pd_dipole, pd_far
+from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, LawInput, Setpoint
+from fsw.core.laws.pd import attitude_error, far_error, integrate_error, pd, pd_dipole, pd_far
 
 K_W, K_A = 6.2694e6, 1614.9
 component = st.floats(-1.0, 1.0, allow_subnormal=False)
@@ -126,21 +126,21 @@ KNOWN = Attitude(quaternion((0.1, -0.2, 0.15)), (0.001, -0.002, 0.003), 0.01, 1e
 S = attitude_error(dcm(KNOWN.q_body_from_orbit))
 
 
-def seen(attitude=KNOWN, b_body_t=B_BODY_T):
-    return Seen(attitude, b_body_t, FieldSample(), FieldSample())
+def inputs(attitude=KNOWN, b_body_t=B_BODY_T):
+    return LawInput(attitude, b_body_t, FieldSample(), FieldSample())
 
 
 class TestIntegral:
     def test_the_error_is_summed_over_time(self):
-        demand = pd(seen(), (), SETPOINT, CONFIG)
+        demand = pd(inputs(), (), SETPOINT, CONFIG)
         assert demand.memory == pytest.approx(tuple(0.5 * c for c in S))
-        demand = pd(seen(), demand.memory, SETPOINT, CONFIG)
+        demand = pd(inputs(), demand.memory, SETPOINT, CONFIG)
         assert demand.memory == pytest.approx(S)
 
     @given(vectors, vectors)
     def test_its_dipole_never_exceeds_what_the_coils_can_give_for_good(self, integral, error):
         integral = tuple(1e5 * c for c in integral)
-        grown = integrated(integral, error, B_BODY_T, 0.08, 0.5, MEAN_AM2)
+        grown = integrate_error(integral, error, B_BODY_T, 0.08, 0.5, MEAN_AM2)
         free = np.array(integral) + 0.5 * np.array(error)
         limit = MEAN_AM2 / (0.08 * np.linalg.norm(B_BODY_T))
         assert np.linalg.norm(grown) <= limit * (1.0 + 1e-12)
@@ -153,16 +153,16 @@ class TestIntegral:
         limit = MEAN_AM2 / (0.08 * np.linalg.norm(B_BODY_T))
         memory = tuple((0.9999 * limit * np.array(S) / np.linalg.norm(S)).tolist())
         for _ in range(100):
-            memory = pd(seen(), memory, SETPOINT, CONFIG).memory
+            memory = pd(inputs(), memory, SETPOINT, CONFIG).memory
         assert np.linalg.norm(memory) == pytest.approx(limit, rel=1e-12)
         back = Attitude(
             (KNOWN.q_body_from_orbit[0], *(-c for c in KNOWN.q_body_from_orbit[1:])), ZERO, 0, 0, True
         )
-        assert np.linalg.norm(pd(seen(back), memory, SETPOINT, CONFIG).memory) < np.linalg.norm(memory)
+        assert np.linalg.norm(pd(inputs(back), memory, SETPOINT, CONFIG).memory) < np.linalg.norm(memory)
 
     def test_it_acts(self):
         """- k_i b x I beside the other two terms."""
-        demand = pd(seen(), (30.0, -20.0, 10.0), SETPOINT, CONFIG)
+        demand = pd(inputs(), (30.0, -20.0, 10.0), SETPOINT, CONFIG)
         expected = np.array(pd_dipole(B_BODY_T, KNOWN.omega_body_orbit_radps, S, K_W, K_A))
         expected -= 0.08 * np.cross(B_BODY_T, np.array([30.0, -20.0, 10.0]) + 0.5 * np.array(S))
         np.testing.assert_allclose(demand.m_body_am2, expected, rtol=1e-12)
@@ -171,23 +171,23 @@ class TestIntegral:
     def test_at_the_goal_it_goes_on_against_a_constant_torque(self):
         at_goal = Attitude(IDENTITY, ZERO, 0.01, 1e-4, True)
         memory = (30.0, -20.0, 10.0)
-        demand = pd(seen(at_goal), memory, SETPOINT, CONFIG)
+        demand = pd(inputs(at_goal), memory, SETPOINT, CONFIG)
         assert demand.memory == memory
         np.testing.assert_allclose(demand.m_body_am2, -0.08 * np.cross(B_BODY_T, memory), rtol=1e-12)
 
     def test_without_its_gain_it_neither_grows_nor_acts(self):
-        demand = pd(seen(), (), SETPOINT._replace(k_i=0.0), CONFIG)
+        demand = pd(inputs(), (), SETPOINT._replace(k_i=0.0), CONFIG)
         assert demand == Demand(pd_dipole(B_BODY_T, KNOWN.omega_body_orbit_radps, S, K_W, K_A), memory=ZERO)
 
     @pytest.mark.parametrize("law", [pd, pd_far])
     @pytest.mark.parametrize("attitude", [UNKNOWN, KNOWN._replace(valid=False)])
     def test_without_an_attitude_it_is_kept_and_nothing_asked_for(self, law, attitude):
         memory = (30.0, -20.0, 10.0)
-        assert law(seen(attitude), memory, SETPOINT, CONFIG) == Demand(memory=memory)
+        assert law(inputs(attitude), memory, SETPOINT, CONFIG) == Demand(memory=memory)
 
     def test_far_from_the_goal_it_is_held_and_acts(self):
         memory = (30.0, -20.0, 10.0)
-        demand = pd_far(seen(), memory, SETPOINT, CONFIG)
+        demand = pd_far(inputs(), memory, SETPOINT, CONFIG)
         error = far_error(KNOWN.q_body_from_orbit)
         expected = np.array(pd_dipole(B_BODY_T, KNOWN.omega_body_orbit_radps, error, K_W, K_A))
         expected -= 0.08 * np.cross(B_BODY_T, memory)
@@ -197,8 +197,8 @@ class TestIntegral:
 
 def test_upside_down_the_far_law_turns_back_and_the_near_one_does_not():
     upside_down = Attitude(quaternion((0.0, pi, 0.0)), ZERO, 0.01, 1e-4, True)
-    near = pd(seen(upside_down), (), SETPOINT, CONFIG).m_body_am2
-    far = pd_far(seen(upside_down), (), SETPOINT, CONFIG).m_body_am2
+    near = pd(inputs(upside_down), (), SETPOINT, CONFIG).m_body_am2
+    far = pd_far(inputs(upside_down), (), SETPOINT, CONFIG).m_body_am2
     np.testing.assert_allclose(near, 0.0, atol=1e-12)
     assert np.linalg.norm(far) > 0.05
     assert np.cross(far, B_BODY_T)[1] < 0.0

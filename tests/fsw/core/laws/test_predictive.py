@@ -9,7 +9,7 @@ from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
-from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, Seen, Setpoint
+from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, LawInput, Setpoint
 from fsw.core.laws.predictive import best_impulse, free_rate_change, missing_impulse, predictive
 from fsw.core.orbit.ephemeris import Reference
 
@@ -180,8 +180,8 @@ Q = (0.8, 0.36, -0.288, 0.384)
 REFERENCE = Reference((RADIUS_M, 0.0, 0.0), RADIUS_M, (1e-5, 2e-5, 3e-5), (1.0, 0.0, 0.0), True, Q, W0)
 
 
-def seen(attitude, reference=REFERENCE):
-    return Seen(attitude, (1e-5, -2e-5, 3e-5), FieldSample(), FieldSample(), reference=reference)
+def inputs(attitude, reference=REFERENCE):
+    return LawInput(attitude, (1e-5, -2e-5, 3e-5), FieldSample(), FieldSample(), reference=reference)
 
 
 KNOWN = Attitude(Q, (0.011, -0.007, 0.005), 0.01, 1e-4, True)
@@ -193,7 +193,7 @@ class TestLaw:
         c = Rotation.from_quat([*Q[1:], Q[0]]).as_matrix().T
         omega = np.array(KNOWN.omega_body_orbit_radps)
         expected = J @ (np.array([0.02, 0.0, 0.0]) - omega - PULSE_S * change(c, omega))
-        demand = predictive(seen(KNOWN), (), SETPOINT, CONFIG)
+        demand = predictive(inputs(KNOWN), (), SETPOINT, CONFIG)
         assert demand.impulse_body_nms == pytest.approx(vec(expected), rel=1e-9)
         assert demand._replace(impulse_body_nms=None) == Demand(), "no dipole besides, and no memory"
 
@@ -202,8 +202,8 @@ class TestLaw:
         [(UNKNOWN, REFERENCE), (KNOWN._replace(valid=False), REFERENCE), (KNOWN, None)],
     )
     def test_without_attitude_or_orbit_it_asks_for_nothing(self, attitude, reference):
-        assert predictive(seen(attitude, reference), (), SETPOINT, CONFIG) == Demand()
+        assert predictive(inputs(attitude, reference), (), SETPOINT, CONFIG) == Demand()
 
     def test_the_gains_do_not_matter(self):
         other = SETPOINT._replace(k_w=9.0, k_a=9.0, k_i=9.0)
-        assert predictive(seen(KNOWN), (), other, CONFIG) == predictive(seen(KNOWN), (), SETPOINT, CONFIG)
+        assert predictive(inputs(KNOWN), (), other, CONFIG) == predictive(inputs(KNOWN), (), SETPOINT, CONFIG)

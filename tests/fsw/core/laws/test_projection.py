@@ -97,26 +97,26 @@ def settings(bench):
 
 
 @pytest.fixture
-def seen(bench, turned):
+def inputs(bench, turned):
     orbit = bench.Orbit()
     c_body_from_eci = turned((1, -2, 3), 25.0) @ orbit.c_orbit_from_eci(700.0)
-    return bench.seen_at(orbit, 700, 1.0, c_body_from_eci, np.array([1e-3, 2e-3, -1e-3]), None)
+    return bench.inputs_at(orbit, 700, 1.0, c_body_from_eci, np.array([1e-3, 2e-3, -1e-3]), None)
 
 
-def test_with_equal_weights_or_no_lambda_the_law_is_pd(bench, settings, seen):
+def test_with_equal_weights_or_no_lambda_the_law_is_pd(bench, settings, inputs):
     point = bench.setpoint(k_w=K_W, k_a=K_A)
-    plain = pd(seen, (), point, settings("pd", None)).m_body_am2
-    equal = weighted(seen, (), point, settings("pd_weighted", WeightGains(2.0, 2.0, 2.0)))
-    bare = regularised(seen, (), point, settings("pd_regularised", RegularGains(0.0)))
+    plain = pd(inputs, (), point, settings("pd", None)).m_body_am2
+    equal = weighted(inputs, (), point, settings("pd_weighted", WeightGains(2.0, 2.0, 2.0)))
+    bare = regularised(inputs, (), point, settings("pd_regularised", RegularGains(0.0)))
     assert equal.m_body_am2 == pytest.approx(plain, rel=1e-9)
     assert bare.m_body_am2 == pytest.approx(plain, rel=1e-9)
 
 
-def test_weights_not_given_are_the_inverse_moments(bench, settings, seen):
+def test_weights_not_given_are_the_inverse_moments(bench, settings, inputs):
     point = bench.setpoint(k_w=K_W, k_a=K_A)
-    own = weighted(seen, (), point, settings("pd_weighted", WeightGains()))
-    given_ = weighted(seen, (), point, settings("pd_weighted", WeightGains(1.0, 0.1, 1.0 / 10.5)))
-    other = weighted(seen, (), point, settings("pd_weighted", WeightGains(1.0, 1.0, 1.0)))
+    own = weighted(inputs, (), point, settings("pd_weighted", WeightGains()))
+    given_ = weighted(inputs, (), point, settings("pd_weighted", WeightGains(1.0, 0.1, 1.0 / 10.5)))
+    other = weighted(inputs, (), point, settings("pd_weighted", WeightGains(1.0, 1.0, 1.0)))
     assert own.m_body_am2 == pytest.approx(given_.m_body_am2, rel=1e-12)
     assert own.m_body_am2 != pytest.approx(other.m_body_am2, rel=1e-2)
 
@@ -163,20 +163,20 @@ def test_a_weight_on_the_axis_of_small_moment_steadies_it_at_the_others_cost(axe
 
 @pytest.mark.parametrize("name", ["pd_weighted", "pd_regularised"])
 @pytest.mark.parametrize("mode", ["acquire", "point"])
-def test_an_unknown_attitude_asks_for_nothing(bench, settings, seen, name, mode):
+def test_an_unknown_attitude_asks_for_nothing(bench, settings, inputs, name, mode):
     law, point = getattr(LAWS[name], mode), bench.setpoint(k_w=K_W, k_a=K_A)
     given_ = settings(name, LAWS[name].gains())
-    assert law(seen._replace(attitude=UNKNOWN), (), point, given_).m_body_am2 == (0.0, 0.0, 0.0)
-    assert any(law(seen, (), point, given_).m_body_am2)
+    assert law(inputs._replace(attitude=UNKNOWN), (), point, given_).m_body_am2 == (0.0, 0.0, 0.0)
+    assert any(law(inputs, (), point, given_).m_body_am2)
 
 
 @pytest.mark.parametrize("name", ["pd_weighted", "pd_regularised"])
-def test_upside_down_the_far_form_turns_and_the_near_form_rests(bench, settings, seen, name):
-    over = replace_attitude(seen, (0.0, 1.0, 0.0, 0.0))
+def test_upside_down_the_far_form_turns_and_the_near_form_rests(bench, settings, inputs, name):
+    over = replace_attitude(inputs, (0.0, 1.0, 0.0, 0.0))
     point, given_ = bench.setpoint(k_w=0.0, k_a=K_A), settings(name, LAWS[name].gains())
     assert np.linalg.norm(LAWS[name].acquire(over, (), point, given_).m_body_am2) > 1e-3
     assert np.linalg.norm(LAWS[name].point(over, (), point, given_).m_body_am2) < 1e-9
 
 
-def replace_attitude(seen, q):
-    return seen._replace(attitude=seen.attitude._replace(q_body_from_orbit=q))
+def replace_attitude(inputs, q):
+    return inputs._replace(attitude=inputs.attitude._replace(q_body_from_orbit=q))

@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from fsw.core.laws.riccati import NotHeldError, backward, free_step, periodic, problem, resting_torque
+from fsw.core.laws.riccati import (
+    NotHeldError,
+    backward,
+    free_step,
+    periodic,
+    regulator_problem,
+    resting_torque,
+)
 from sim.design.theory import linear
 from sim.design.theory.bodies import Body
 from sim.design.theory.periodic_lqr import Augmented, Weights, design
@@ -24,7 +31,7 @@ def orbit_field(steps, body=BODY):
 
 def orbit_problem(steps, rate=1.0, effort=0.1, body=BODY, wheel=NO_WHEEL):
     step_s = 2.0 * pi / steps / body.rate_radps
-    return problem(body.inertia_kgm2, wheel, body.rate_radps, body.field_t, step_s, rate, effort)
+    return regulator_problem(body.inertia_kgm2, wheel, body.rate_radps, body.field_t, step_s, rate, effort)
 
 
 @pytest.fixture(scope="module")

@@ -46,17 +46,17 @@ def flight(bench, turned):
 
 
 @pytest.fixture
-def seen(bench, turned):
+def inputs(bench, turned):
     orbit = bench.Orbit()
     c_body_from_eci = turned((1, -2, 3), 25.0) @ orbit.c_orbit_from_eci(700.0)
-    return bench.seen_at(orbit, 700, 1.0, c_body_from_eci, np.array([1e-3, 2e-3, -1e-3]), None)
+    return bench.inputs_at(orbit, 700, 1.0, c_body_from_eci, np.array([1e-3, 2e-3, -1e-3]), None)
 
 
 @pytest.fixture
 def asked(bench):
-    def ask(name, seen, memory=(), own=None, most_am2=MOST_AM2):
+    def ask(name, inputs, memory=(), own=None, most_am2=MOST_AM2):
         settings = bench.config(bench.Body(INERTIA, most_am2=most_am2), 1.0, {name: own or OWN[name]()})
-        return LAWS[name].point(seen, memory, bench.setpoint(), settings)
+        return LAWS[name].point(inputs, memory, bench.setpoint(), settings)
 
     return ask
 
@@ -89,15 +89,15 @@ def test_without_a_field_the_whole_torque_is_lost():
     assert lost_torque((1e-6, 2e-6, 3e-6), (0.0, 0.0, 0.0)) == (1e-6, 2e-6, 3e-6)
 
 
-def test_the_torque_asked_for_is_parallel_to_the_surface(bench, seen, asked):
+def test_the_torque_asked_for_is_parallel_to_the_surface(bench, inputs, asked):
     """Its projection is what flies."""
-    m = np.array(asked("sliding", seen).m_body_am2)
-    w0, own = seen.reference.orbit_rate_radps, SlidingGains()
-    omega, q = seen.attitude.omega_body_orbit_radps, seen.attitude.q_body_from_orbit
+    m = np.array(asked("sliding", inputs).m_body_am2)
+    w0, own = inputs.reference.orbit_rate_radps, SlidingGains()
+    omega, q = inputs.attitude.omega_body_orbit_radps, inputs.attitude.q_body_from_orbit
     s = INERTIA @ omega + own.slope * w0 * MOMENT * np.array(q[1:]) * np.sign(q[0])
-    unit = np.array(seen.b_body_t) / np.linalg.norm(seen.b_body_t)
+    unit = np.array(inputs.b_body_t) / np.linalg.norm(inputs.b_body_t)
     wanted = -own.reach * w0 * s
-    assert np.cross(m, seen.b_body_t) == pytest.approx(wanted - unit * (unit @ wanted), rel=1e-9)
+    assert np.cross(m, inputs.b_body_t) == pytest.approx(wanted - unit * (unit @ wanted), rel=1e-9)
 
 
 def test_the_surface_is_reached_and_the_attitude_follows(bench, flight):
@@ -118,47 +118,47 @@ def test_on_the_mean_a_constant_torque_is_answered_by_the_integral(flight):
     assert own < 2.5
 
 
-def test_without_integrals_both_laws_are_one(seen, asked):
+def test_without_integrals_both_laws_are_one(inputs, asked):
     own = SlidingIntegralGains(integral=0.0, lost=0.0)
-    assert asked("sliding_integral", seen, own=own).m_body_am2 == asked("sliding", seen).m_body_am2
+    assert asked("sliding_integral", inputs, own=own).m_body_am2 == asked("sliding", inputs).m_body_am2
 
 
-def test_a_lost_torque_is_remembered_where_it_counts(seen, asked):
+def test_a_lost_torque_is_remembered_where_it_counts(inputs, asked):
     """It moves the surface by what no dipole could give, along b."""
     own = SlidingIntegralGains(integral=0.0, lost=1.0)
-    first = asked("sliding_integral", seen, own=own)
+    first = asked("sliding_integral", inputs, own=own)
     missed = np.array(first.memory[3:])
     assert np.linalg.norm(missed) > 0.0
-    assert np.cross(missed, seen.b_body_t) == pytest.approx(np.zeros(3), abs=1e-20)
+    assert np.cross(missed, inputs.b_body_t) == pytest.approx(np.zeros(3), abs=1e-20)
 
 
 @pytest.mark.parametrize("lost", [0.0, 1.0])
-def test_integrals_are_held_at_what_the_coils_can_give_for_good(seen, asked, lost):
+def test_integrals_are_held_at_what_the_coils_can_give_for_good(inputs, asked, lost):
     own, memory, most_am2 = SlidingIntegralGains(integral=1e3, lost=lost), (), 1e-4
     for _ in range(300):
-        memory = asked("sliding_integral", seen, memory, own, most_am2).memory
-    limit = most_am2 * np.linalg.norm(seen.b_body_t) / (own.reach * seen.reference.orbit_rate_radps)
+        memory = asked("sliding_integral", inputs, memory, own, most_am2).memory
+    limit = most_am2 * np.linalg.norm(inputs.b_body_t) / (own.reach * inputs.reference.orbit_rate_radps)
     assert np.linalg.norm(memory[:3]) == pytest.approx(limit)
     assert np.linalg.norm(memory[3:]) <= limit * (1.0 + 1e-12)
 
 
 @pytest.mark.parametrize("name", OWN)
 @pytest.mark.parametrize("missing", ["attitude", "reference"])
-def test_without_knowledge_nothing_is_asked_for_and_integrals_stay(seen, asked, name, missing):
+def test_without_knowledge_nothing_is_asked_for_and_integrals_stay(inputs, asked, name, missing):
     held = (1e-6, 2e-6, 3e-6, -1e-6, -2e-6, -3e-6) if name == "sliding_integral" else ()
-    less = seen._replace(**{missing: UNKNOWN if missing == "attitude" else None})
+    less = inputs._replace(**{missing: UNKNOWN if missing == "attitude" else None})
     demand = asked(name, less, held)
     assert demand.m_body_am2 == (0.0, 0.0, 0.0)
     assert demand.memory == held
 
 
 @pytest.mark.parametrize("name", OWN)
-def test_without_a_field_nothing_is_asked_for(seen, asked, name):
-    demand = asked(name, seen._replace(b_body_t=(0.0, 0.0, 0.0)))
+def test_without_a_field_nothing_is_asked_for(inputs, asked, name):
+    demand = asked(name, inputs._replace(b_body_t=(0.0, 0.0, 0.0)))
     assert demand.m_body_am2 == (0.0, 0.0, 0.0)
     assert all(map(isfinite, demand.memory))
 
 
 @pytest.mark.parametrize("foreign", [(1.0, 2.0, 3.0), (1.0,) * 136])
-def test_another_laws_memory_is_not_read(seen, asked, foreign):
-    assert asked("sliding_integral", seen, foreign) == asked("sliding_integral", seen, ())
+def test_another_laws_memory_is_not_read(inputs, asked, foreign):
+    assert asked("sliding_integral", inputs, foreign) == asked("sliding_integral", inputs, ())

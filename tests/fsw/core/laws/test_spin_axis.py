@@ -144,9 +144,9 @@ def test_at_the_goal_nothing_is_left_to_do(bench, turned, name, axis):
         ThreeTermGains(float(axis), *target) if name == "three_term" else SpinAxisGains(float(axis), *target)
     )
     body = bench.Body(inertia=np.diag([1.02, 1.85, 1.95]), wheel=tuple(0.3 * e))
-    seen = bench.seen_at(bench.Orbit(), 700, 1.0, turned((1, -2, 3), 70.0), 0.04 * e, FieldSample())
+    inputs = bench.inputs_at(bench.Orbit(), 700, 1.0, turned((1, -2, 3), 70.0), 0.04 * e, FieldSample())
     point, settings = bench.setpoint(spin_radps=0.04), bench.config(body, 1.0, {name: gains})
-    reached = LAWS[name].point(seen, (), point, settings).m_body_am2
+    reached = LAWS[name].point(inputs, (), point, settings).m_body_am2
     assert reached == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
 
 

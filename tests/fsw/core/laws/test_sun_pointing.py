@@ -70,8 +70,10 @@ class TestWithoutRate:
 
         def at(tick, memory, sun=SUN_SEEN):
             c = turned((1, 2, 3), 0.5 * tick)
-            seen = bench.seen_at(bench.Orbit(), tick, 1.0, c, np.zeros(3), FieldSample(), sun, known=False)
-            return sun_pointing(seen, memory, point, settings)
+            inputs = bench.inputs_at(
+                bench.Orbit(), tick, 1.0, c, np.zeros(3), FieldSample(), sun, known=False
+            )
+            return sun_pointing(inputs, memory, point, settings)
 
         return at
 

@@ -8,7 +8,7 @@ import pytest
 from fsw.core.algebra.quaternion import normalise
 from fsw.core.algebra.vector import ZERO
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
-from fsw.core.laws.interface import Demand, FieldSample, Seen
+from fsw.core.laws.interface import Demand, FieldSample, LawInput
 from fsw.core.laws.table import LAWS
 from fsw.core.state import checksum
 from fsw.core.step import boot
@@ -33,11 +33,11 @@ BOTH = pytest.mark.parametrize("mode", ["acquire", "point"])
 
 def blind(attitude):
     """Nothing is known or measured."""
-    return Seen(attitude, ZERO, FieldSample(), FieldSample())
+    return LawInput(attitude, ZERO, FieldSample(), FieldSample())
 
 
-def asked(name, mode, seen, memory=()):
-    return getattr(LAWS[name], mode)(seen, memory, SETPOINT._replace(law=name), CONTROL)
+def asked(name, mode, inputs, memory=()):
+    return getattr(LAWS[name], mode)(inputs, memory, SETPOINT._replace(law=name), CONTROL)
 
 
 def test_numbers_are_unique_and_fit_a_telecommand():
@@ -81,7 +81,7 @@ def test_an_attitude_that_is_not_valid_is_not_looked_at(name, mode):
     """Whatever it says: as if it were another one."""
     other = Attitude(normalise((0.2, -0.5, 0.7, 0.1)), (0.1, 0.2, -0.3), 1.0, 1.0, False)
     first, second = (
-        asked(name, mode, Seen(attitude, B_BODY_T, SAMPLE, BEFORE)) for attitude in (NOT_VALID, other)
+        asked(name, mode, LawInput(attitude, B_BODY_T, SAMPLE, BEFORE)) for attitude in (NOT_VALID, other)
     )
     assert first == second
     if name not in MEASURED:
@@ -100,10 +100,10 @@ def test_without_a_field_no_dipole_is_asked_for(name, mode):
 @EVERY_LAW
 @BOTH
 def test_a_law_is_a_function_and_takes_back_what_it_remembered(name, mode):
-    seen = Seen(KNOWN, B_BODY_T, SAMPLE, BEFORE, (0.6, 0.0, 0.8))
-    once, again = asked(name, mode, seen), asked(name, mode, seen)
+    inputs = LawInput(KNOWN, B_BODY_T, SAMPLE, BEFORE, (0.6, 0.0, 0.8))
+    once, again = asked(name, mode, inputs), asked(name, mode, inputs)
     assert once == again
-    later = asked(name, mode, seen, once.memory)
+    later = asked(name, mode, inputs, once.memory)
     assert len(later.memory) == len(once.memory)
     assert all(isinstance(c, float) and isfinite(c) for c in later.memory)
 

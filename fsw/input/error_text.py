@@ -3,7 +3,7 @@
 LONGEST = 1000
 
 
-def sentence(error: object) -> str:
+def error_text(error: object) -> str:
     """What an error says, on one line that can be read: names in it may hold any character, and any number.
 
     What is not printable is escaped, and what is longer than ``LONGEST`` is cut in its middle.

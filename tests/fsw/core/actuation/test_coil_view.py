@@ -1,10 +1,10 @@
-"""What is heard of the coil driver: its word on each coil, what it drove, and whether that was asked for."""
+"""The view of the coil driver: lockout of each coil, what it drove, and whether that was requested."""
 
 from dataclasses import replace
 
 import pytest
 
-from fsw.core.actuation.actuator import UNHEARD, CoilView, hear, unexpected
+from fsw.core.actuation.actuator import LOCKOUT_UNKNOWN, CoilView, unexpected, update_view
 from fsw.core.actuation.pulses import Pulse
 from fsw.core.gate.readings import NOTHING
 from fsw.wire.messages import CoilBoot, CoilRefused, CoilRefusedReason, CoilStatus
@@ -38,7 +38,7 @@ def test_before_the_board_is_heard_and_asked_nothing_is_known():
 @pytest.mark.parametrize("coil", [0, 1, 2])
 def test_a_status_is_the_word_on_its_coil_alone(coil, coils):
     before = CoilView(lockout_ms=(10, -1, 30), refusals=4)
-    after = hear(before, NOTHING._replace(coil=status(coil, 99_990, level=-2, seq=17)), TICK, coils)
+    after = update_view(before, NOTHING._replace(coil=status(coil, 99_990, level=-2, seq=17)), TICK, coils)
     expected = [10, -1, 30]
     expected[coil] = 99_990
     assert after.lockout_ms == tuple(expected)
@@ -55,7 +55,7 @@ def test_without_a_status_the_last_word_stands_and_the_own_request_counts_as_dri
     ticks_after, level, coils
 ):
     """For as long as it was asked for: a status that was lost is no reason to think the coil was off."""
-    after = hear(FIRED, NOTHING, TICK + ticks_after, coils)
+    after = update_view(FIRED, NOTHING, TICK + ticks_after, coils)
     dipole_am2 = (0.0, -8.0 if level else 0.0, 0.0)
     assert after == replace(FIRED, driven_coil=1, driven_level=level, driven_am2=dipole_am2)
     assert not unexpected(after, TICK + ticks_after, coils.pulses)
@@ -63,12 +63,12 @@ def test_without_a_status_the_last_word_stands_and_the_own_request_counts_as_dri
 
 @pytest.mark.parametrize("tick", [0, 1, 3, TICK])
 def test_without_a_status_and_a_request_nothing_counts_as_driven(tick, coils):
-    assert hear(CoilView(), NOTHING, tick, coils) == CoilView()
+    assert update_view(CoilView(), NOTHING, tick, coils) == CoilView()
 
 
 @pytest.mark.parametrize("level", [0, 1])
 def test_what_the_board_says_goes_before_the_own_request(level, coils):
-    after = hear(FIRED, NOTHING._replace(coil=status(2, level=level)), TICK + 1, coils)
+    after = update_view(FIRED, NOTHING._replace(coil=status(2, level=level)), TICK + 1, coils)
     assert (after.driven_coil, after.driven_level, after.driven_am2) == (2, level, (0.0, 0.0, 0.5 * level))
 
 
@@ -79,18 +79,18 @@ def test_a_board_that_has_booted_has_not_told_its_lockouts(coil, coils):
     if coil is not None:
         booted = booted._replace(coil=status(coil, 99_000, seq=9))
     expected = [99_000 if coil == told else -1 for told in range(3)]
-    assert hear(replace(FIRED, lockout_ms=(0, 10, 0)), booted, TICK + 50, coils) == replace(
+    assert update_view(replace(FIRED, lockout_ms=(0, 10, 0)), booted, TICK + 50, coils) == replace(
         FIRED, lockout_ms=tuple(expected), driven_coil=1 if coil is None else coil
     )
-    assert CoilView().lockout_ms == UNHEARD
+    assert CoilView().lockout_ms == LOCKOUT_UNKNOWN
 
 
 @pytest.mark.parametrize("said", [None, status(1)], ids=["status lost", "status heard"])
 def test_a_refusal_is_counted_with_or_without_a_status(said, coils):
     view = CoilView(refusals=2)
     refused = NOTHING._replace(coil=said, refused=refusal(TICK))
-    assert hear(view, refused, TICK, coils).refusals == 3
-    assert hear(view, NOTHING._replace(coil=said), TICK, coils).refusals == 2
+    assert update_view(view, refused, TICK, coils).refusals == 3
+    assert update_view(view, NOTHING._replace(coil=said), TICK, coils).refusals == 2
 
 
 @pytest.mark.parametrize(
@@ -98,7 +98,7 @@ def test_a_refusal_is_counted_with_or_without_a_status(said, coils):
     [(0, 1, (0.5, 0, 0)), (1, -2, (0, -2.0, 0)), (2, 3, (0, 0, 8.0)), (1, 0, (0, 0, 0))],
 )
 def test_the_driven_dipole_is_that_of_the_status(coil, level, dipole_am2, coils):
-    view = hear(CoilView(), NOTHING._replace(coil=status(coil, level=level)), TICK, coils)
+    view = update_view(CoilView(), NOTHING._replace(coil=status(coil, level=level)), TICK, coils)
     assert view.driven_am2 == dipole_am2
 
 

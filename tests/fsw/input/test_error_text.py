@@ -2,12 +2,12 @@
 
 import pytest
 
-from fsw.input.sentence import LONGEST, sentence
+from fsw.input.error_text import LONGEST, error_text
 
 
 @pytest.mark.parametrize("text", ["a.toml: x = 'ü' is not allowed", "", "→ 5 µT"])
 def test_what_can_be_read_stays(text):
-    assert sentence(ValueError(text)) == text
+    assert error_text(ValueError(text)) == text
 
 
 @pytest.mark.parametrize(
@@ -21,11 +21,11 @@ def test_what_can_be_read_stays(text):
     ],
 )
 def test_what_cannot_is_escaped(text, told):
-    assert sentence(text) == told
+    assert error_text(text) == told
 
 
 def test_what_is_too_long_is_cut_in_its_middle():
-    told = sentence("begin" + "x" * 10**6 + "end")
+    told = error_text("begin" + "x" * 10**6 + "end")
     assert told.startswith("begin")
     assert told.endswith("end")
     assert " ... " in told

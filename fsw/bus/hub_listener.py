@@ -16,48 +16,48 @@ _SEND_BUFFER = 2**18
 """Bytes. Left to itself the kernel would keep 4 MiB for each client that does not read."""
 
 
-class DoorStuckError(OSError):
+class NoDescriptorError(OSError):
     """There is not even a descriptor left to turn somebody away: whoever stands at the door stays there."""
 
 
-class Door:
+class HubListener:
     """A listening socket on 127.0.0.1, and a descriptor kept back to turn somebody away when none is left.
 
     Args:
         port: TCP port; 0 takes a free one.
-        tell: called with a sentence about who was turned away, at the first, tenth, hundredth ... of them.
+        report: called with a sentence about who was turned away, at the first, tenth, hundredth ... of them.
 
     Raises:
         OSError: the port is taken.
     """
 
-    def __init__(self, port: int, tell: Callable[[str], None]) -> None:
+    def __init__(self, port: int, report: Callable[[str], None]) -> None:
         self._listener = _listen(port)
         self._spare: int | None = _descriptor()
-        self._tell = tell
-        self._turned_away = 0
-        self._tell_at = 1
+        self._report = report
+        self._refused = 0
+        self._report_at = 1
         self.port: int = self._listener.getsockname()[1]
 
     def fileno(self) -> int:
         """The descriptor to wait on; negative once closed."""
         return self._listener.fileno()
 
-    def answer(self, has_room: bool) -> tuple[socket.socket, int] | None:
+    def accept(self, has_room: bool) -> tuple[socket.socket, int] | None:
         """Answer the next who stands there: its connection, greeted, and its port; None if it was not let in.
 
         Raises:
-            DoorStuckError: it cannot be answered, for now.
+            NoDescriptorError: it cannot be answered, for now.
         """
         try:
             connection, (_, port) = self._listener.accept()
         except (BlockingIOError, ConnectionError):  # gone again before it was taken
             return None
         except OSError as error:
-            self._turn_away_with_spare(error)
+            self._refuse_with_spare(error)
             return None
         if not has_room:
-            self._turn_away(connection, "it has as many clients as it takes")
+            self._refuse(connection, "it has as many clients as it takes")
             return None
         return (connection, port) if _greet(connection) else None
 
@@ -68,7 +68,7 @@ class Door:
             os.close(self._spare)
             self._spare = None
 
-    def _turn_away_with_spare(self, why: OSError) -> None:
+    def _refuse_with_spare(self, why: OSError) -> None:
         if self._spare is not None:
             os.close(self._spare)
         try:
@@ -76,21 +76,21 @@ class Door:
         except (BlockingIOError, ConnectionError):
             return
         except OSError as error:
-            raise DoorStuckError(error.errno, error.strerror) from error
+            raise NoDescriptorError(error.errno, error.strerror) from error
         else:
-            self._turn_away(connection, str(why.strerror))
+            self._refuse(connection, str(why.strerror))
         finally:
             self._spare = _descriptor()
 
-    def _turn_away(self, connection: socket.socket, why: str) -> None:
+    def _refuse(self, connection: socket.socket, why: str) -> None:
         with connection, suppress(OSError):  # gone already
             connection.setblocking(False)
             connection.send(FULL)
-        self._turned_away += 1
-        if self._turned_away == self._tell_at:
-            self._tell_at *= 10
-            self._tell(
-                f"the loop bus on port {self.port} takes nobody more ({why}): {self._turned_away} refused"
+        self._refused += 1
+        if self._refused == self._report_at:
+            self._report_at *= 10
+            self._report(
+                f"the loop bus on port {self.port} takes nobody more ({why}): {self._refused} refused"
             )
 
 
