@@ -86,8 +86,7 @@ mutation: venv
 
 coverage: venv
 	$(bin)/coverage erase
-	$(bin)/coverage run -m pytest -q -p no:cacheprovider tests/fsw/wire tests/fsw/core/test_pulses.py \
-		tests/fsw/core/test_pulse_choice.py tests/fsw/core/test_actuation.py tests/fsw/core/test_dipoles.py \
+	$(bin)/coverage run -m pytest -q -p no:cacheprovider tests/fsw/wire tests/fsw/core/actuation \
 		tests/hil_stub/coils/test_interlock.py tests/hil_stub/coils/test_guard.py tests/hil_stub/coils/test_coil_driver.py \
 		tests/hil_stub/coils/test_read_back.py tests/hil_stub/test_node.py tests/sim/audit tests/sim/record/test_log_index.py
 	@mkdir -p build

@@ -4,6 +4,7 @@ import hashlib
 import json
 import os
 import shutil
+import socket
 import subprocess
 import sys
 from pathlib import Path
@@ -55,6 +56,13 @@ def own_interface():
     subprocess.run(["ip", "link", "set", name, "up"], check=True)
     yield name
     subprocess.run(["ip", "link", "delete", name], check=False, capture_output=True)
+
+
+@pytest.fixture
+def port():
+    """A TCP port of the loop bus that nobody uses."""
+    with socket.create_server(("127.0.0.1", 0)) as probe:
+        return probe.getsockname()[1]
 
 
 class Outcome(NamedTuple):
@@ -204,6 +212,19 @@ class Node:
         """How it ended."""
         code = self.process.wait(timeout_s)
         return Outcome(code, self.stdout.read_text(), self.stderr.read_text())
+
+
+@pytest.fixture(scope="session")
+def is_alive():
+    """Whether a process runs: it is there, and no zombie."""
+
+    def alive(pid):
+        try:
+            return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+        except OSError:
+            return False
+
+    return alive
 
 
 @pytest.fixture

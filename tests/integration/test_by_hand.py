@@ -1,7 +1,6 @@
 """Plant and flight software started by hand, in two terminals, in either order."""
 
 import json
-import socket
 import time
 from random import Random
 
@@ -13,13 +12,6 @@ from fsw.bus.loop import frame_of
 from fsw.wire.messages import FswBoot, PlantEnd, Sync, TickDone
 
 OPTIONS = ("--seed", "7", "--orbits", "0.05")
-
-
-@pytest.fixture
-def port():
-    """A TCP port that nobody uses."""
-    with socket.create_server(("127.0.0.1", 0)) as probe:
-        return probe.getsockname()[1]
 
 
 def wait_for(node, text):

@@ -3,7 +3,6 @@
 import json
 import random
 import re
-import socket
 import time
 from threading import Thread
 
@@ -323,10 +322,8 @@ def test_the_plant_needs_the_seed(copy, torquer):
 # --- onto a bus
 
 
-def test_a_log_is_played_onto_a_bus_at_its_own_pace(flown, torquer, bus):
+def test_a_log_is_played_onto_a_bus_at_its_own_pace(flown, torquer, bus, port):
     run = flown("microsat", "--set", "time.tick_hz=10", "--orbits", "0.0002", "--bus", "virtual")
-    with socket.create_server(("127.0.0.1", 0)) as probe:
-        port = probe.getsockname()[1]
     listener = LoopLink(port)
     heard, times = [], []
 
@@ -354,11 +351,9 @@ def test_a_bus_that_is_none_is_named(copy, torquer):
     assert "can0" in done.sentence
 
 
-def test_a_log_that_pauses_for_longer_than_anybody_waits_is_not_played(copy, torquer):
+def test_a_log_that_pauses_for_longer_than_anybody_waits_is_not_played(copy, torquer, port):
     copy.entries[1][0] += 10**13
     copy.write()
-    with socket.create_server(("127.0.0.1", 0)) as probe:
-        port = probe.getsockname()[1]
     done = torquer("replay", copy.folder, "--onto", f"loop:{port}")
     assert done.code == 2
     assert "it pauses for 1" in done.sentence

@@ -1,7 +1,6 @@
 """Another sender on the bus of ``torquer sil``: refused before the flight, named in it, and the run fails."""
 
 import json
-import socket
 from threading import Event, Thread
 
 import pytest
@@ -34,13 +33,6 @@ FLIGHT = ("microsat", "--seed", "7", "--orbits", "0.1")
 def no_report(monkeypatch):
     """Drawing takes longer than the flights."""
     monkeypatch.setattr(conclude, "write_report", lambda path, *rest: path.write_text(""))
-
-
-@pytest.fixture
-def port():
-    """A TCP port that nobody uses."""
-    with socket.create_server(("127.0.0.1", 0)) as probe:
-        return probe.getsockname()[1]
 
 
 class Stranger:

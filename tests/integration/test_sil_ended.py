@@ -32,13 +32,6 @@ def children_of(pid):
     return found
 
 
-def lives(pid):
-    try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except OSError:
-        return False
-
-
 def wait_until(condition):
     deadline = time.monotonic() + PATIENCE_S
     while not (result := condition()):
@@ -50,8 +43,8 @@ def wait_until(condition):
 class Flight:
     """A run of ``torquer sil`` that is under way."""
 
-    def __init__(self, start, run, *options, bus="loop"):
-        self.run = run
+    def __init__(self, start, is_alive, run, *options, bus="loop"):
+        self.run, self._is_alive = run, is_alive
         words = ("torquer", "sil", "--bus", bus, "--out", run, *options)
         self.sil = start(*words, start_new_session=True)
         self.nodes = wait_until(self._two_nodes)
@@ -66,16 +59,20 @@ class Flight:
         log = self.run / "bus.log"
         wait_until(lambda: log.exists() and log.stat().st_size > 50 * lines)
 
+    def is_gone(self):
+        """Whether neither of its nodes is left."""
+        return not any(map(self._is_alive, self.nodes.values()))
+
     def gone(self):
-        wait_until(lambda: not any(map(lives, self.nodes.values())))
+        wait_until(self.is_gone)
 
 
 @pytest.fixture
-def flight(start, tmp_path):
+def flight(start, is_alive, tmp_path):
     """Starts a flight that lasts longer than the test."""
 
     def begin(*options, bus="loop"):
-        return Flight(start, tmp_path / "run", "--orbits", "3", *options, bus=bus)
+        return Flight(start, is_alive, tmp_path / "run", "--orbits", "3", *options, bus=bus)
 
     return begin
 
@@ -171,7 +168,7 @@ def test_who_is_asked_to_end_says_so_and_ends_its_nodes(signum, code, flight, bu
     ended = flown.sil.wait()
     assert (ended.code, ended.out) == (code, "")
     assert ended.sentence == f"torquer: ended by {signum.name}; what was done so far is kept"
-    assert not any(map(lives, flown.nodes.values()))
+    assert flown.is_gone()
     readable(flown.run, bus, torquer)
 
 
@@ -194,9 +191,11 @@ def test_nodes_on_a_can_interface_end_with_sil(vcan0, flight, bus):
     assert bus(flown.run).frames[-1].can_id == TickDone.ID
 
 
-def test_flight_software_that_stands_still_for_a_second_is_waited_for(start, tmp_path, bus, torquer, flown):
+def test_flight_software_that_stands_still_for_a_second_is_waited_for(
+    start, is_alive, tmp_path, bus, torquer, flown
+):
     options = ("--orbits", "0.08", "--seed", "3")
-    flight = Flight(start, tmp_path / "run", *options)
+    flight = Flight(start, is_alive, tmp_path / "run", *options)
     flight.reach(100)
     os.kill(flight.nodes["fsw"], signal.SIGSTOP)
     time.sleep(0.2)
@@ -205,6 +204,6 @@ def test_flight_software_that_stands_still_for_a_second_is_waited_for(start, tmp
     assert (flight.run / "bus.log").stat().st_size == stood
     os.kill(flight.nodes["fsw"], signal.SIGCONT)
     assert flight.sil.wait().code == 0
-    assert not any(map(lives, flight.nodes.values()))
+    assert flight.is_gone()
     assert bus(flight.run) == bus(flown("microsat", *options, "--bus", "virtual"))
     assert torquer("replay", flight.run).code == 0

@@ -23,15 +23,8 @@ PATIENCE = Patience(boot_s=30.0, answer_s=1.5, silence_s=1.5)
 LOCKSTEP, REAL_TIME = Pace(), Pace(50.0)
 
 
-def runs(pid):
-    try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except OSError:
-        return False
-
-
 @pytest.fixture
-def flight(tmp_path, monkeypatch):
+def flight(tmp_path, monkeypatch, is_alive):
     """Flies, and stops a node once so many lines are logged: what the flight says, how long it took."""
     nodes = {}
 
@@ -62,7 +55,7 @@ def flight(tmp_path, monkeypatch):
             fly_processes(path, scenario, spec, hub, lambda tick: None, patience)
         stopper.join()
         took_s = time.monotonic() - stopped_at[0]
-        assert not any(runs(node.pid) for node in nodes.values()), "something is left running"
+        assert not any(is_alive(node.pid) for node in nodes.values()), "something is left running"
         assert caught.value.exit_code == 1
         assert json.loads((path / run_dir.RUN).read_text())["complete"] is False
         return str(caught.value), took_s
@@ -106,7 +99,7 @@ def test_the_deadlines_of_the_command_are_long_enough_for_a_loaded_machine():
 
 
 @pytest.mark.skipif(os.environ.get("TORQUER_REAL_DEADLINES") != "1", reason="takes half a minute")
-def test_so_does_the_command_itself(start, tmp_path):
+def test_so_does_the_command_itself(start, is_alive, tmp_path):
     """With the deadlines that it has."""
     words = ("torquer", "sil", "--bus", "loop", "--orbits", "10", "--out", tmp_path / "run")
     flown = start(*words, start_new_session=True)
@@ -118,4 +111,4 @@ def test_so_does_the_command_itself(start, tmp_path):
     ended = flown.wait(90)
     assert (ended.code, ended.out) == (1, "")
     assert "the run is not complete" in ended.sentence
-    assert not any(runs(child) for child in children)
+    assert not any(is_alive(child) for child in children)
