@@ -1,18 +1,18 @@
-# make sil    makes the environment .venv and flies the default scenario
-# make test   all tests; those on a CAN interface say so when there is none
-# make lint   style, types, layers, generated code and pages
-# make validate   every claim and reference figure anew, into docs/validation.md: minutes to half an hour
+# make sil    make the environment .venv and fly the default scenario
+# make test   all tests; those on a CAN interface are skipped, and reported, where there is none
+# make lint   style, types, layers, generated code, pages and pictures
+# make validate   compute every claim and reference figure, into docs/validation.md: minutes to half an hour
 # make replay-elsewhere   does a log of 20 orbits replay with other processor features, into docs/replay.md
 # make faults     every fault in ten phases and with five seeds, 250 real kills among them, into docs/faults.md: an hour or two
 # make soak       72 simulated hours, and an hour on the bench in real time, into docs/soak.md
-# make golden     record the golden logs anew: after a change that means to alter what fsw answers
+# make golden     record the golden logs again: after a change that means to alter the answers of fsw
 # make test-vcan   the tests on a CAN interface, in a user-mode Linux guest where this kernel has no vcan
-# make fuzz       a million random frames, a thousand mutations of each kind of file that is read: half an hour
-# make attack     a million requests and lies on the bus of a coil board, ten minutes on the real process: half an hour
+# make fuzz       a million random frames, a thousand mutations of each kind of input file: half an hour
+# make attack     a million requests and forged frames to a coil board, ten minutes on the real process: half an hour
 # make differential scheduler against interlock over 100 orbits of whole flights: some minutes
 # make planted    schedulers with planted faults, and correct ones, through sim.testing as a user would run it: some minutes
-# make mutation     change scheduler, interlock, auditor and codec a thing at a time: do the tests notice? an hour
-# make coverage     branch coverage of the same modules, which must be whole, into the same page: a minute
+# make mutation     change scheduler, interlock, auditor and codec one thing at a time: do the tests notice? an hour
+# make coverage     branch coverage of the same modules, which must be complete, into the same page: a minute
 
 PYTHON ?= python3
 PYTEST_FLAGS ?= -q -rs -n 2 --dist worksteal

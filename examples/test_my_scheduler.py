@@ -1,7 +1,7 @@
-"""A scheduler of one's own, tested against the limits: run by ``pytest examples``.
+"""A scheduler of your own, tested against the limits: run by ``pytest examples``.
 
-It fires the coil on which the most is asked, and waits a back-off: after its own boot, after the boot of the
-board, and for the board's word on the coil.
+It fires the coil with the largest demand. It waits a back-off after its own boot and after the boot of the
+board, and until the board reports no lockout of that coil.
 """
 
 from hypothesis import given, settings
@@ -22,8 +22,10 @@ class MyScheduler:
         if self.ready is None or heard.booted:
             self.ready = heard.tick + self.backoff
         size, coil = max((abs(m), axis) for axis, m in enumerate(heard.m_body_am2))
-        word = heard.status
-        if size == 0.0 or heard.tick < self.ready or word is None or word.coil != coil or word.lockout_ms:
+        status = heard.status
+        if size == 0.0 or heard.tick < self.ready:
+            return []
+        if status is None or status.coil != coil or status.lockout_ms:
             return []
         self.ready = heard.tick + self.pulse + self.backoff
         return [Fire(coil, 3 if heard.m_body_am2[coil] > 0.0 else -3, self.duration_ms)]
