@@ -121,7 +121,7 @@ def drawing(boxes: list[Box], height: float) -> str:
     imports = imports_between(list(places))
     for upper, lower in implied_left_out(imports):
         if package_of(upper) == package_of(lower):
-            connect(svg, places[upper], places[lower])
+            connect(svg, places, upper, lower)
     for room, place in places.items():
         outside = sorted(other for other in imports[room] if package_of(other) != package_of(room))
         draw_room(svg, room, place, outside)
@@ -200,14 +200,21 @@ def implied_left_out(imports: dict[str, set[str]]) -> Iterator[tuple[str, str]]:
                 yield upper, lower
 
 
-def connect(
-    svg: ElementTree.Element, upper: tuple[float, float, float], lower: tuple[float, float, float]
-) -> None:
-    x1, y1 = upper[0] + upper[2] / 2, upper[1] + ROOM
-    x2, y2 = lower[0] + lower[2] / 2, lower[1] - 1
+def connect(svg: ElementTree.Element, places: Places, upper: str, lower: str) -> None:
+    """An arrow from the foot of a room to the head of one below, or past the rooms of the same column."""
+    (left1, top1, width1), (left2, top2, width2) = places[upper], places[lower]
+    x1, y1, x2, y2 = left1 + width1 / 2, top1 + ROOM, left2 + width2 / 2, top2 - 1
+    between = [x for x, y, width in places.values() if top1 < y < top2 and x < x1 < x + width]
+    if between and abs(x2 - x1) < GAP:
+        x1, y1, x2 = left1 + width1, top1 + ROOM / 2, x2 + 0.3 * width2
+        out = x1 + 11 * (y2 - y1) / FLOOR + 10
+        arrow(svg, f"M{x1:.0f},{y1:.0f} C{out:.0f},{y1:.0f} {out:.0f},{y2 - 30:.0f} {x2:.0f},{y2:.0f}")
+        return
     bend = min(40.0, (y2 - y1) / 2)
-    path = f"M{x1:.0f},{y1:.0f} C{x1:.0f},{y1 + bend:.0f} {x2:.0f},{y2 - bend:.0f} {x2:.0f},{y2:.0f}"
-    arrow(svg, path)
+    arrow(
+        svg,
+        f"M{x1:.0f},{y1:.0f} C{x1:.0f},{y1 + bend:.0f} {x2:.0f},{y2 - bend:.0f} {x2:.0f},{y2:.0f}",
+    )
 
 
 def modes() -> str:
