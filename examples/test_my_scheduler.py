@@ -1,7 +1,7 @@
 """A scheduler of your own, tested against the limits: run by ``pytest examples``.
 
-It fires the coil with the largest demand. It waits a back-off after its own boot and after the boot of the
-board, and until the board reports no lockout of that coil.
+It fires the coil with the largest demand, and waits: for a back-off after its own boot and after the boot of
+the board, and for a COIL_STATUS of the coil without lockout.
 """
 
 from hypothesis import given, settings
