@@ -40,3 +40,19 @@ def test_a_command_that_a_page_names_exists(page, command):
 @pytest.mark.parametrize(("page", "target"), each(r"`make ([a-z-]+)"))
 def test_a_make_target_that_a_page_names_exists(page, target):
     assert re.search(rf"(?m)^{target}:", (ROOT / "Makefile").read_text(encoding="utf-8"))
+
+
+SOURCES = "\n".join(
+    path.read_text(encoding="utf-8")
+    for package in ("fsw", "hil_stub", "sim", "torquer")
+    for path in sorted((ROOT / package).rglob("*"))
+    if path.suffix in (".py", ".toml", ".dbc")
+)
+
+
+@pytest.mark.parametrize(
+    "name",
+    sorted(set(re.findall(r"`([A-Za-z]\w+)`", (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8")))),
+)
+def test_a_name_that_the_glossary_gives_is_in_the_code(name):
+    assert re.search(rf"\b{name}\b", SOURCES)
