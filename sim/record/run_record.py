@@ -87,7 +87,8 @@ def read_record(path: Path) -> RunRecord:
 
     Raises:
         OSError: it cannot be read.
-        HarnessError: not JSON, of another version, or a key is missing or not what it should be.
+        HarnessError: not JSON, of another version, a key is missing or not what it should be, or keys contradict
+            each other.
     """
     try:
         content = from_json(read_regular(path, MOST_BYTES), allow_inf_nan=False)
@@ -100,4 +101,6 @@ def read_record(path: Path) -> RunRecord:
         _RECORD.validate_python(content)
     except ValidationError as error:
         raise HarnessError(f"{path}: {faults(RunRecord, error)}") from None
+    if content["complete"] and "flown" not in content:
+        raise HarnessError(f"{path}: complete is true, but flown, which every complete run has, is missing")
     return cast(RunRecord, content)  # and not the copy that pydantic makes, which is in another order

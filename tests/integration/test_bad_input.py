@@ -254,6 +254,16 @@ def test_a_key_of_the_wrong_type_is_named(run, torquer, command, key, value, tol
     assert told in done.sentence
 
 
+@pytest.mark.parametrize("command", ["check", "report", "replay"])
+def test_a_complete_run_without_its_outcome_contradicts_itself(run, torquer, command):
+    content = json.loads((run / "run.json").read_text())
+    del content["flown"]
+    (run / "run.json").write_text(json.dumps({**content, "complete": True}))
+    done = torquer(command, run)
+    assert done.code == 2
+    assert "run.json: complete is true, but flown, which every complete run has, is missing" in done.sentence
+
+
 def test_keys_of_a_later_version_are_kept(run, torquer):
     content = json.loads((run / "run.json").read_text())
     (run / "run.json").write_text(json.dumps({**content, "weather": {"sky": "clear"}, "complete": False}))

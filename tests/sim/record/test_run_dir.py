@@ -121,6 +121,13 @@ class TestReading:
         with pytest.raises(HarnessError, match=r"run\.json: not JSON"):
             run_dir.read_run(tmp_path)
 
+    def test_a_run_json_that_is_complete_without_an_outcome(self, begun):
+        content = run_dir.read_run(begun)
+        run_dir.write_json(begun / run_dir.RUN, {**content, "complete": True})
+        with pytest.raises(HarnessError, match=r"run\.json: complete is true, but flown") as refusal:
+            run_dir.read_run(begun)
+        assert refusal.value.exit_code == 2
+
     def test_a_scenario_that_is_no_longer_valid(self, begun):
         file = begun / run_dir.SCENARIO
         file.write_text(file.read_text().replace("angle_deg", "angel_deg"))
