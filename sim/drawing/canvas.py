@@ -1,10 +1,8 @@
-"""How charts of the report look, and how they become small inline SVG."""
+"""How charts of the report look."""
 
-import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from io import StringIO
 from typing import Any
 
 import matplotlib
@@ -221,41 +219,3 @@ def log_y(panel: Axes, *histories: Array, decades: float) -> None:
     panel.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if few else (1.0,)))
     panel.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     panel.yaxis.set_minor_locator(NullLocator())
-
-
-def svg(figure: Figure, prefix: str) -> str:
-    """The figure as an SVG element for HTML: small, without metadata, its ids begin with ``prefix``.
-
-    What an artist was named by ``set_gid`` becomes the class of its group.
-    """
-    into = StringIO()
-    nothing = {"Date": None, "Creator": None, "Format": None, "Type": None}
-    figure.savefig(into, format="svg", metadata=nothing)
-    text = into.getvalue()
-    text = text[text.index("<svg") :]
-    for pattern, replacement in _SLIMMING:
-        text = pattern.sub(replacement, text)
-    text = re.sub(r'(id="|"#|url\(#)', rf"\g<1>{prefix}-", text)
-    return _TAG.sub(lambda tag: _DECIMALS.sub(_short, tag[0]), text).strip()
-
-
-_SLIMMING = tuple(
-    (re.compile(pattern, re.DOTALL), replacement)
-    for pattern, replacement in (
-        (r"<metadata>.*?</metadata>|<style.*?</style>|<!--.*?-->", ""),
-        (r' xmlns(?::xlink)?="[^"]*"| version="[^"]*"', ""),
-        (r' width="[\d.]+pt" height="[\d.]+pt"', ""),
-        (r'<g id="[\w.]+_\d+"', "<g"),
-        (r'<g id="', '<g class="'),
-        (r'font: (?:(\w+) )?([\d.]+px) [^;"]*', r"font-size: \2; font-weight: \1"),
-        (r"; font-weight: (?=[;\"])", ""),
-        (r"\s*\n\s*", "\n"),
-    )
-)
-_TAG = re.compile(r"<[^>]*>")
-_DECIMALS = re.compile(r"-?\d+\.\d+(?:e-?\d+)?")
-
-
-def _short(number: re.Match[str]) -> str:
-    text = f"{float(number[0]):.2f}".rstrip("0").rstrip(".")
-    return "0" if text == "-0" else text

@@ -87,8 +87,8 @@ def read_record(path: Path) -> RunRecord:
 
     Raises:
         OSError: it cannot be read.
-        HarnessError: not JSON, of another version, a key is missing or not what it should be, or keys contradict
-            each other.
+        HarnessError: not JSON, of another version, or a key is missing, not what it should be, or in
+            contradiction to another.
     """
     try:
         content = from_json(read_regular(path, MOST_BYTES), allow_inf_nan=False)

@@ -7,7 +7,8 @@ from matplotlib.figure import Figure
 
 from sim.audit.auditor import AuditReport
 from sim.audit.findings import AuditLimits
-from sim.drawing.canvas import style, svg
+from sim.drawing.canvas import style
+from sim.drawing.inline_svg import svg
 from sim.record.estimates import Estimates
 from sim.record.truth import Histories
 from sim.report import charts as charts_of

@@ -1,0 +1,80 @@
+"""A figure of matplotlib as an SVG element that stands in an HTML page: small, without metadata."""
+
+from io import StringIO
+from itertools import groupby
+from xml.etree import ElementTree
+
+import matplotlib
+from matplotlib.figure import Figure
+
+_NUMBER = frozenset("0123456789.-e")
+_UNUSED = frozenset(("metadata", "style"))
+_VERBATIM = frozenset(("id", "class", "xlink:href"))
+_OF_THE_ROOT = ("width", "height", "version")
+"""The page scales the picture by its ``viewBox``."""
+
+
+def svg(figure: Figure, salt: str) -> str:
+    """The figure as an SVG element.
+
+    The name that ``set_gid`` gave an artist becomes the class of its group; numbers have two decimals.
+
+    Args:
+        figure: drawn within ``canvas.style``.
+        salt: other than that of every other figure of the page, so that the ids are unique.
+    """
+    into = StringIO()
+    nothing = {"Date": None, "Creator": None, "Format": None, "Type": None}
+    with matplotlib.rc_context({"svg.hashsalt": salt}):
+        figure.savefig(into, format="svg", metadata=nothing)
+    root = ElementTree.fromstring(into.getvalue())
+    _simplify(root)
+    for name in _OF_THE_ROOT:
+        root.attrib.pop(name, None)
+    return ElementTree.tostring(root, encoding="unicode")
+
+
+def _simplify(element: ElementTree.Element) -> None:
+    """Names without namespace, which HTML does not need; groups with a class or none; short numbers."""
+    element.tag = _plain(element.tag)
+    attributes = {_plain(name): value for name, value in element.attrib.items()}
+    if element.tag == "g" and "id" in attributes:
+        name = attributes.pop("id")
+        if not _is_numbered(name):
+            attributes = {"class": name, **attributes}
+    element.attrib = {
+        name: value if name in _VERBATIM else _shortened(value) for name, value in attributes.items()
+    }
+    element.text = (element.text or "").strip()
+    for child in list(element):
+        if _plain(child.tag) in _UNUSED:
+            element.remove(child)
+            continue
+        _simplify(child)
+        child.tail = "\n"
+
+
+def _plain(name: str) -> str:
+    """The name without its namespace; a link bears its usual prefix."""
+    namespace, _, plain = name.rpartition("}")
+    return f"xlink:{plain}" if namespace.endswith("xlink") else plain
+
+
+def _is_numbered(name: str) -> bool:
+    """Whether matplotlib has named the group, as ``axes_1``."""
+    return name.rpartition("_")[2].isdigit()
+
+
+def _shortened(value: str) -> str:
+    """The text with its decimal numbers rounded to hundredths."""
+    return "".join(_short("".join(run)) for _, run in groupby(value, _NUMBER.__contains__))
+
+
+def _short(run: str) -> str:
+    if "." not in run:
+        return run
+    try:
+        text = f"{float(run):.2f}".rstrip("0").rstrip(".")
+    except ValueError:
+        return run
+    return "0" if text == "-0" else text
