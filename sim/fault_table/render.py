@@ -3,14 +3,14 @@
 import json
 from collections.abc import Sequence
 from dataclasses import asdict
-from html import escape
-from importlib import resources
 from itertools import groupby
 from xml.etree import ElementTree
 
+from sim.drawing.pages import page
 from sim.fault_table.row import CaseResult, Row, RowResult, Verdict
 from sim.faults.kinds import KINDS
 
+_COLUMNS = ("row", "injected", "expected", "cases", "measured", "verdict")
 _TOLD = ("pulses", "refused", "rejected", "worst error deg", "recovered s", "named s")
 """Figures that are the same on every run; times on the wall are not."""
 _HEAD = """# Faults
@@ -122,33 +122,22 @@ def _junit_case(suite: ElementTree.Element, case: CaseResult) -> None:
 
 def html(results: Sequence[RowResult]) -> str:
     """One self-contained page without scripts."""
-    css = resources.files("sim.drawing").joinpath("report.css").read_text(encoding="utf-8")
-    sections = "\n".join(_html_group(group, list(rows)) for group, rows in _groups(results))
     bad = any(result.verdict is Verdict.FAIL for result in results)
-    badge = f'<ul class="badges"><li class="{"bad" if bad else "good"}">{escape(tally(results))}</li></ul>'
-    return (
-        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>Fault campaign</title>\n<style>\n{css}</style>\n</head>\n<body>\n<main>\n"
-        f'<header><p class="over">Fault campaign</p><h1>The guards under every fault</h1>{badge}</header>\n'
-        f"{sections}\n</main>\n</body>\n</html>\n"
+    return page(
+        "sim.fault_table",
+        "faults.html",
+        badge="bad" if bad else "good",
+        tally=tally(results),
+        head=_COLUMNS,
+        groups=[(group, [_html_row(result) for result in rows]) for group, rows in _groups(results)],
     )
 
 
-def _html_group(group: str, results: list[RowResult]) -> str:
-    colour = {Verdict.PASS: "good", Verdict.FAIL: "bad", Verdict.OPEN: "note"}
-    rows = "".join(
-        f"<tr><td>{escape(result.row.name)}</td><td>{escape(injected(result.row))}</td>"
-        f"<td>{escape(expected(result.row))}</td><td>{len(result.cases)}</td><td>{escape(_found(result))}</td>"
-        f'<td class="{colour[result.verdict]}">{result.verdict.value}</td></tr>\n'
-        for result in results
-    )
-    return (
-        f'<section><h2>{escape(group)}</h2><div class="scroll"><table><thead><tr><th>row</th>'
-        "<th>injected</th><th>expected</th><th>cases</th><th>measured</th><th>verdict</th>"
-        f"</tr></thead><tbody>\n{rows}"
-        "</tbody></table></div></section>"
-    )
+def _html_row(result: RowResult) -> tuple[tuple[str, ...], str, str]:
+    """The cells of a row but its verdict, then that verdict with its class of style before it."""
+    row, colour = result.row, {Verdict.PASS: "good", Verdict.FAIL: "bad", Verdict.OPEN: "note"}
+    cells = (row.name, injected(row), expected(row), str(len(result.cases)), _found(result))
+    return cells, colour[result.verdict], result.verdict.value
 
 
 def markdown(results: Sequence[RowResult], phases: int, seeds: int) -> str:
@@ -158,7 +147,7 @@ def markdown(results: Sequence[RowResult], phases: int, seeds: int) -> str:
         kept = "flown by an earlier run, maybe of an earlier version, with phases and seeds of its own"
         lines += [f"But \\*: {kept}.", ""]
     for group, rows in _groups(results):
-        lines += [f"## {group}", "", "| row | injected | expected | cases | measured | verdict |"]
+        lines += [f"## {group}", "", f"| {' | '.join(_COLUMNS)} |"]
         lines.append("|---|---|---|---|---|---|")
         for result in rows:
             cells = (

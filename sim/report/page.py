@@ -1,11 +1,10 @@
 """report.html of a run: one self-contained page without scripts, the same for the same inputs."""
 
-from html import escape
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
 from sim.audit.auditor import AuditReport
+from sim.drawing.pages import page
 from sim.record import run_dir
 from sim.record.estimates import Estimates
 from sim.record.run_record import RunRecord
@@ -27,39 +26,39 @@ def write_report(
     Raises:
         HarnessError: that ``run.json`` is damaged.
     """
-    from sim.report.sections import charts  # noqa: PLC0415 matplotlib loads when something is drawn
+    from sim.report.sections import sections  # noqa: PLC0415 matplotlib loads when something is drawn
 
     run = run_dir.read_run(path.parent) if (path.parent / run_dir.RUN).is_file() else None
-    sections = [
-        tables.section(
-            "figures", "Key figures", tables.violations(audit) + tables.key_figures(summary, audit)
-        ),
-        *charts(scenario, truth, estimates, audit, tables.events(summary)),
-        tables.section("flown", "What was flown", tables.what_was_flown(scenario)),
-    ]
-    path.write_text(_page(_header(scenario, summary, run, audit), sections, run), encoding="utf-8")
-
-
-def _page(header: str, sections: list[str], run: RunRecord | None) -> str:
-    css = resources.files("sim.drawing").joinpath("report.css").read_text(encoding="utf-8")
-    title = header[header.index("<h1>") + 4 : header.index("</h1>")]
-    return (
-        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{title}: flight report</title>\n<style>\n{css}</style>\n</head>\n<body>\n<main>\n"
-        f"{header}\n{chr(10).join(sections)}\n<footer>{tables.versions(run)}</footer>\n</main>\n</body>\n</html>\n"
+    events = tables.events(summary)
+    html = page(
+        "sim.report",
+        "report.html",
+        name=scenario.name,
+        about=scenario.summary,
+        facts=_facts(summary, run),
+        badges=tables.badges(summary, run, audit),
+        tiles=tables.tiles(summary),
+        violations=tables.violations(audit),
+        violations_left_out=max(0, len(audit.violations) - tables.VIOLATIONS_SHOWN),
+        notes=audit.notes,
+        key_figures=tables.key_figures(summary),
+        coils=tables.coil_table(summary, audit),
+        longest_pulse=tables.longest_pulse(summary, audit),
+        charts=sections(scenario, truth, estimates, audit),
+        events=events,
+        events_open=len(events.rows) <= tables.EVENTS_OPEN,
+        scenario=tables.scenario_in_words(scenario),
+        scenario_toml=tables.scenario_toml(scenario),
+        versions=tables.versions(run),
     )
+    path.write_text(html, encoding="utf-8")
 
 
-def _header(scenario: Scenario, summary: dict[str, Any], run: RunRecord | None, audit: AuditReport) -> str:
+def _facts(summary: dict[str, Any], run: RunRecord | None) -> list[str]:
     facts = [f"seed {summary['seed']}"]
     if run:
         facts.append(f"bus {run['bus']}, {run['pace']}")
     facts.append(f"{summary['ticks']} ticks, {summary['sim_seconds']:.0f} s")
     if run:
         facts.append(f"torquer {run['torquer_version']}")
-    return (
-        f'<header><p class="over">Flight report</p><h1>{escape(scenario.name)}</h1>'
-        f'<p>{escape(scenario.summary)}</p><p class="meta">{escape(" · ".join(facts))}</p>'
-        f"{tables.badges(summary, run, audit)}{tables.tiles(summary)}</header>"
-    )
+    return facts

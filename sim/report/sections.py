@@ -1,8 +1,9 @@
 """The sections of the report that hold charts, and the words under each chart."""
 
 from collections.abc import Callable
-from html import escape
+from typing import NamedTuple
 
+from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from sim.audit.auditor import AuditReport
@@ -14,52 +15,54 @@ from sim.record.truth import Histories
 from sim.report import charts as charts_of
 from sim.report import coils
 from sim.report.histories import Flown
-from sim.report.tables import section
 from sim.scenario.schema import Scenario
 
-Chart = tuple[Callable[[Flown], Figure], str]
-"""What draws it, and the words under it."""
+Drawing = tuple[Callable[[Flown], Figure], str]
+"""What draws a chart, and the words under it."""
 
 
-def charts(
-    scenario: Scenario, truth: Histories, estimates: Estimates, audit: AuditReport, events: str
-) -> list[str]:
-    """All sections with charts; ``events`` is HTML that goes with the modes."""
+class Chart(NamedTuple):
+    """A chart as it stands on the page."""
+
+    name: str
+    svg: Markup
+    words: str
+
+
+class Section(NamedTuple):
+    """A section with charts, or a note why there are none."""
+
+    anchor: str
+    title: str
+    charts: tuple[Chart, ...] = ()
+    note: str = ""
+
+
+def sections(scenario: Scenario, truth: Histories, estimates: Estimates, audit: AuditReport) -> list[Section]:
+    """All sections with charts."""
     if len(truth["t_s"]) == 0:
-        return [section("attitude", "Flight", "<p>No tick was flown: there is nothing to draw.</p>" + events)]
+        return [Section("attitude", "Flight", note="No tick was flown: there is nothing to draw.")]
     flown = Flown.of(scenario, truth, estimates, audit)
     with style():
         return [
-            section("attitude", "Attitude", _HINT + _drawn(flown, _ATTITUDE) + events),
-            section(
-                "estimate",
-                "Estimate",
-                _drawn(flown, _ESTIMATE)
-                if flown.has_estimates
-                else f"<p>{_NO_ESTIMATE[scenario.knowledge]}</p>",
-            ),
-            section(
-                "coils",
-                "Coils against their limits",
-                _drawn(flown, _coils(audit.limits)) if audit.pulses else "<p>No coil was driven.</p>",
-            ),
-            section("environment", "Field, dipole and torques", _drawn(flown, _ENVIRONMENT)),
+            Section("attitude", "Attitude", _drawn(flown, _ATTITUDE)),
+            Section("estimate", "Estimate", _drawn(flown, _ESTIMATE))
+            if flown.has_estimates
+            else Section("estimate", "Estimate", note=_NO_ESTIMATE[scenario.knowledge]),
+            Section("coils", _COILS_TITLE, _drawn(flown, _coils(audit.limits)))
+            if audit.pulses
+            else Section("coils", _COILS_TITLE, note="No coil was driven."),
+            Section("environment", "Field, dipole and torques", _drawn(flown, _ENVIRONMENT)),
         ]
 
 
-def _drawn(flown: Flown, shown: tuple[Chart, ...]) -> str:
-    return "".join(_figure(draw.__name__, svg(draw(flown), draw.__name__), words) for draw, words in shown)
-
-
-def _figure(name: str, graphic: str, words: str) -> str:
-    text = escape(words)
-    return (
-        f'<figure id="chart-{name}"><div class="scroll" tabindex="0" role="img" aria-label="{text}">'
-        f"{graphic}</div><figcaption>{text}</figcaption></figure>"
+def _drawn(flown: Flown, drawings: tuple[Drawing, ...]) -> tuple[Chart, ...]:
+    return tuple(
+        Chart(draw.__name__, Markup(svg(draw(flown), draw.__name__)), words) for draw, words in drawings
     )
 
 
-_ATTITUDE: tuple[Chart, ...] = (
+_ATTITUDE: tuple[Drawing, ...] = (
     (
         charts_of.pointing,
         "True angle from the nominal attitude, and of body axis 1 from the local vertical. Grey bands, here "
@@ -72,14 +75,14 @@ _ATTITUDE: tuple[Chart, ...] = (
         "True rate of the body relative to the orbital frame.",
     ),
 )
-_ESTIMATE: tuple[Chart, ...] = (
+_ESTIMATE: tuple[Drawing, ...] = (
     (
         charts_of.estimate,
         "True error of the estimate, over all three axes, and three times the standard deviation that the "
         "filter states for it, 3 √tr P. A filter that knows what it does not know stays under the line.",
     ),
 )
-_ENVIRONMENT: tuple[Chart, ...] = (
+_ENVIRONMENT: tuple[Drawing, ...] = (
     (charts_of.field_and_dipole, "As the plant has them. Coil 0, 1, 2 drives along body axis 1, 2, 3."),
     (
         charts_of.torques,
@@ -87,14 +90,14 @@ _ENVIRONMENT: tuple[Chart, ...] = (
         "torque over ten minutes.",
     ),
 )
-_HINT = '<p class="hint">The charts scroll sideways.</p>'
+_COILS_TITLE = "Coils against their limits"
 _NO_ESTIMATE = {
     "perfect": "Flown with perfect knowledge: the plant told the controller attitude and rate.",
     "filter": "The filter gave no estimate in this flight.",
 }
 
 
-def _coils(limits: AuditLimits) -> tuple[Chart, ...]:
+def _coils(limits: AuditLimits) -> tuple[Drawing, ...]:
     whose = "any coil" if limits.shared else "the same coil"
     return (
         (

@@ -1,9 +1,8 @@
-"""Words and tables of the report: verdicts, key figures, what was flown, events, violations."""
+"""Words and tables of the report as values: verdicts, key figures, scenario, events, violations."""
 
 from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
-from html import escape
-from typing import Any
+from typing import Any, NamedTuple
 
 import tomli_w
 
@@ -17,6 +16,25 @@ from sim.record.run_record import RunRecord
 from sim.scenario.schema import Scenario, orbit_period_s
 
 Json = dict[str, Any]
+Pairs = list[tuple[str, str]]
+"""Names and values."""
+
+
+class Table(NamedTuple):
+    """A table of text."""
+
+    head: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    caption: str = ""
+
+
+class Tile(NamedTuple):
+    """A figure that is looked at first."""
+
+    name: str
+    value: str
+    note: str
+
 
 VIOLATIONS_SHOWN = 50
 EVENTS_OPEN = 12
@@ -55,13 +73,8 @@ _FLIGHT = (
 _KNOWLEDGE = {"filter": "filter on the sensors", "perfect": "perfect, from the plant"}
 
 
-def section(anchor: str, title: str, content: str) -> str:
-    """A section of the page; the content is HTML."""
-    return f'<section id="{anchor}"><h2>{title}</h2>{content}</section>'
-
-
-def badges(summary: Json, run: RunRecord | None, audit: AuditReport) -> str:
-    """The verdicts: limits, refusals, replay, mode, and whether the flight is whole."""
+def badges(summary: Json, run: RunRecord | None, audit: AuditReport) -> list[tuple[str, str]]:
+    """The verdicts with their classes of style: limits, refusals, replay, mode, completeness."""
     shown = [_limits_badge(audit)]
     refused = summary["pulses"]["refused"]
     shown.append(("note", f"! {refused} refused") if refused else ("good", "✓ no refusals"))
@@ -74,8 +87,7 @@ def badges(summary: Json, run: RunRecord | None, audit: AuditReport) -> str:
         shown.append(("bad", f"✗ incomplete: {summary['ticks']}{planned} ticks"))
     if summary.get("second_senders"):
         shown.append(("bad", f"✗ {said(summary['second_senders'])}"))
-    items = "".join(f'<li class="{kind}">{escape(text)}</li>' for kind, text in shown)
-    return f'<ul class="badges">{items}</ul>'
+    return shown
 
 
 def whole(run: RunRecord | None, audit: AuditReport) -> bool:
@@ -83,32 +95,52 @@ def whole(run: RunRecord | None, audit: AuditReport) -> bool:
     return audit.complete and (run is None or "flown" in run)
 
 
-def tiles(summary: Json) -> str:
+def tiles(summary: Json) -> list[Tile]:
     """The few figures that are looked at first."""
-    shown = [
-        f"<div><dt>{name}</dt><dd>{_value(summary, keys, pattern)}<small>{what}</small></dd></div>"
-        for name, keys, pattern, what in _TILES
-        if _find(summary, keys) is not None
+    return [
+        Tile(name, _value(summary, keys, pattern), note)
+        for name, keys, pattern, note in _TILES
+        if _has(summary, keys)
     ]
-    return f'<dl class="tiles">{"".join(shown)}</dl>'
 
 
-def key_figures(summary: Json, audit: AuditReport) -> str:
-    """All figures of the summary."""
-    lists = [
-        _pairs(
-            [(name, _value(summary, keys, pattern)) for name, keys, pattern in rows if _has(summary, keys)]
+def key_figures(summary: Json) -> tuple[Pairs, Pairs]:
+    """All figures of the summary in two columns: of the attitude; of estimate and flight."""
+    return _present(summary, _ATTITUDE), _present(summary, (*_ESTIMATE, *_FLIGHT))
+
+
+def coil_table(summary: Json, audit: AuditReport) -> Table:
+    """Pulses, duty and least gap of each coil and of all, with their limits."""
+    limits, duty, gap = audit.limits, summary["duty"], summary["min_gap_s"]
+    rows = [
+        (f"coil {coil}", str(count), f"{duty_of:.2%}", _seconds(gap_of))
+        for coil, count, duty_of, gap_of in zip(
+            COILS, summary["pulses"]["per_coil"], duty["per_coil"], gap["per_coil"], strict=True
         )
-        for rows in (_ATTITUDE, (*_ESTIMATE, *_FLIGHT))
     ]
-    return f'<div class="columns">{"".join(lists)}</div>{_coil_table(summary, audit)}'
+    total = ("all", str(summary["pulses"]["total"]), f"{duty['total']:.2%}", _seconds(gap["any"]))
+    most_duty = f"≤ {limits.pulse_us / (limits.pulse_us + limits.backoff_us):.2%}"
+    least_gap = f"≥ {limits.backoff_us / 1e6:g}"
+    rows += (
+        [total, ("limit of all", "", most_duty, least_gap)]
+        if limits.shared
+        else [("limit of each", "", most_duty, least_gap), total]
+    )
+    return Table(("", "pulses", "duty", "least gap [s]"), rows)
 
 
-def what_was_flown(scenario: Scenario) -> str:
-    """The scenario in words, and in full."""
+def longest_pulse(summary: Json, audit: AuditReport) -> str:
+    """The longest pulse against its limit; empty without a pulse."""
+    if summary.get("max_pulse_s") is None:
+        return ""
+    return f"Longest pulse {summary['max_pulse_s']:.3f} s of {audit.limits.pulse_us / 1e6:g} s."
+
+
+def scenario_in_words(scenario: Scenario) -> tuple[Pairs, Pairs]:
+    """What was flown, in two columns: of orbit and body; of coils, sensors and law."""
     coils, control = scenario.coils, scenario.control
     magnetometer, disturbance = scenario.sensors.magnetometer, scenario.disturbance
-    left = (
+    left = [
         ("Orbit", _orbit(scenario)),
         ("Epoch", f"{datetime.fromtimestamp(scenario.epoch_unix_s, UTC):%Y-%m-%d %H:%M:%S} UTC"),
         ("Geomagnetic field", _field(scenario)),
@@ -117,48 +149,35 @@ def what_was_flown(scenario: Scenario) -> str:
         ("Start rate", f"{_triple(scenario.initial.rate_degps)} °/s"),
         ("Bias torque", f"{_triple(disturbance.torque_nm)} N m"),
         ("Residual dipole", f"{_triple(disturbance.residual_dipole_am2)} A m²"),
-    )
-    right = (
+    ]
+    right = [
         ("Levels", f"{_triple(coils.levels_am2)} A m², both polarities"),
         ("Limits", f"{coils.pulse_s:g} s pulses, {coils.backoff_s:g} s back-off, {_backoff(coils.shared)}"),
-        (
-            "Knowledge",
-            "filter on the sensors" if scenario.knowledge == "filter" else "perfect, from the plant",
-        ),
+        ("Knowledge", _KNOWLEDGE[scenario.knowledge]),
         ("Magnetometer", f"{magnetometer.noise_nt:g} nT noise, bias {_triple(magnetometer.bias_nt)} nT"),
         ("Sun sensor", f"{scenario.sensors.sun.noise_deg:g}° noise"),
         ("Law", f"{control.law}, k_w {control.k_w:g} N m s/T², k_a {control.k_a:g} N m/T²"),
         ("Tick rate", f"{scenario.time.tick_hz} Hz"),
-    )
-    lists = "".join(_pairs([(name, escape(text)) for name, text in rows]) for rows in (left, right))
-    full = escape(tomli_w.dumps(scenario.model_dump(mode="json", exclude_none=True)))
-    return (
-        f'<div class="columns">{lists}</div>'
-        f"<details><summary>The whole scenario</summary><pre>{full}</pre></details>"
-    )
+    ]
+    return left, right
 
 
-def violations(audit: AuditReport) -> str:
-    """The limits that were broken, and the auditor's notes; empty without any."""
-    parts = []
-    if audit.violations:
-        rows = [
-            (seconds_text(one.time_s), "" if one.coil is None else str(one.coil), one.kind, one.sentence)
-            for one in audit.violations[:VIOLATIONS_SHOWN]
-        ]
-        more = len(audit.violations) - len(rows)
-        parts.append(_table(("t [s]", "coil", "limit", "what"), rows, "Limits broken"))
-        if more > 0:
-            parts.append(f"<p>and {more} more</p>")
-    parts += [f"<p>{escape(note)}</p>" for note in audit.notes]
-    return "".join(parts)
+def scenario_toml(scenario: Scenario) -> str:
+    """The scenario in full."""
+    return tomli_w.dumps(scenario.model_dump(mode="json", exclude_none=True))
 
 
-def events(summary: Json) -> str:
-    """What the nodes reported, in order; empty if nothing."""
-    reported = summary.get("events", [])
-    if not reported:
-        return ""
+def violations(audit: AuditReport) -> Table:
+    """The first of the limits that were broken."""
+    rows = [
+        (seconds_text(one.time_s), "" if one.coil is None else str(one.coil), one.kind, one.sentence)
+        for one in audit.violations[:VIOLATIONS_SHOWN]
+    ]
+    return Table(("t [s]", "coil", "limit", "what"), rows, "Limits broken")
+
+
+def events(summary: Json) -> Table:
+    """What the nodes reported, in order."""
     rows = [
         (
             seconds_text(one["t_s"]),
@@ -166,26 +185,23 @@ def events(summary: Json) -> str:
             Severity(one["severity"]).name.lower() if one["severity"] in set(Severity) else "",
             _event_text(one),
         )
-        for one in reported
+        for one in summary.get("events", [])
     ]
-    table = _table(("t [s]", "node", "severity", "event"), rows)
-    shown = " open" if len(rows) <= EVENTS_OPEN else ""
-    return f"<details{shown}><summary>Events: {len(rows)}</summary>{table}</details>"
+    return Table(("t [s]", "node", "severity", "event"), rows)
 
 
-def versions(run: RunRecord | None) -> str:
+def versions(run: RunRecord | None) -> Sequence[str]:
     """What wrote the run, for the foot of the page."""
     if run is None:
-        return "torquer"
+        return ("torquer",)
     platform = run["platform"]
-    parts = (
+    return (
         f"torquer {run['torquer_version']}",
         f"scenario {run['scenario_sha256'][:12]}",
         f"flight table {run['flight_table_crc']}",
         f"Python {platform['python']}, numpy {platform['numpy']}",
         f"{platform['system']} {platform['machine']}",
     )
-    return escape(" · ".join(parts))
 
 
 def _limits_badge(audit: AuditReport) -> tuple[str, str]:
@@ -202,29 +218,6 @@ def _replay_badge(replay: Json | None) -> tuple[str, str]:
     if replay["bit_exact"]:
         return "good", "✓ replay bit-exact"
     return ("note", "! replay command-exact only") if replay["command_exact"] else ("bad", "✗ replay differs")
-
-
-def _coil_table(summary: Json, audit: AuditReport) -> str:
-    limits = audit.limits
-    bound = limits.pulse_us / (limits.pulse_us + limits.backoff_us)
-    gap_limit = f"≥ {limits.backoff_us / 1e6:g}"
-    each_duty, each_gap = ("", "") if limits.shared else (f"≤ {bound:.2%}", gap_limit)
-    all_duty, any_gap = (f"≤ {bound:.2%}", gap_limit) if limits.shared else ("", "")
-    duty, gap = summary["duty"], summary["min_gap_s"]
-    rows = [
-        (f"coil {coil}", str(count), f"{duty_of:.2%}", _seconds(gap_of))
-        for coil, count, duty_of, gap_of in zip(
-            COILS, summary["pulses"]["per_coil"], duty["per_coil"], gap["per_coil"], strict=True
-        )
-    ]
-    if not limits.shared:
-        rows.append(("limit of each", "", each_duty, each_gap))
-    rows.append(("all", str(summary["pulses"]["total"]), f"{duty['total']:.2%}", _seconds(gap["any"])))
-    if limits.shared:
-        rows.append(("limit of all", "", all_duty, any_gap))
-    longest = summary.get("max_pulse_s")
-    note = "" if longest is None else f"<p>Longest pulse {longest:.3f} s of {limits.pulse_us / 1e6:g} s.</p>"
-    return "<h3>Coils</h3>" + _table(("", "pulses", "duty", "least gap [s]"), rows) + note
 
 
 def _event_text(one: Json) -> str:
@@ -282,18 +275,8 @@ def _has(summary: Json, keys: Sequence[str]) -> bool:
 
 
 def _value(summary: Json, keys: Sequence[str], pattern: str) -> str:
-    return escape(pattern.format(_find(summary, keys)))
+    return pattern.format(_find(summary, keys))
 
 
-def _pairs(rows: Iterable[tuple[str, str]]) -> str:
-    """A table of names and values; the values are HTML."""
-    return f"<table>{''.join(f'<tr><th>{name}</th><td>{value}</td></tr>' for name, value in rows)}</table>"
-
-
-def _table(head: Sequence[str], rows: Iterable[Sequence[str]], caption: str = "") -> str:
-    top = "".join(f"<th>{escape(name)}</th>" for name in head)
-    body = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows)
-    title = f"<caption>{escape(caption)}</caption>" if caption else ""
-    return (
-        f'<div class="scroll"><table>{title}<thead><tr>{top}</tr></thead><tbody>{body}</tbody></table></div>'
-    )
+def _present(summary: Json, rows: Sequence[tuple[str, Sequence[str], str]]) -> Pairs:
+    return [(name, _value(summary, keys, pattern)) for name, keys, pattern in rows if _has(summary, keys)]

@@ -45,7 +45,9 @@ after = (list(sys.path), dict(os.environ), os.getcwd(), signal.getsignal(signal.
 doings += [f"changes {b} to {a}" for b, a in zip(before, after, strict=True) if b != a]
 print(json.dumps([doings, sorted(sys.modules)]))
 """
-LIBRARIES = "can, click, filterpy.kalman, h5py, matplotlib.figure, pydantic, rich.progress, sgp4.api, tomli_w"
+LIBRARIES = (
+    "can, click, filterpy.kalman, h5py, jinja2, matplotlib.figure, pydantic, rich.progress, sgp4.api, tomli_w"
+)
 
 
 def within(name, package):

@@ -86,7 +86,7 @@ def run(flown, tmp_path):
 @pytest.fixture
 def no_charts(monkeypatch):
     """They take a second."""
-    monkeypatch.setattr("sim.report.sections.charts", lambda *given: [])
+    monkeypatch.setattr("sim.report.sections.sections", lambda *given: [])
 
 
 CHECK, REPLAY, PLANT, REPORT = ("check",), ("replay",), ("replay", "--plant"), ("report",)
