@@ -77,7 +77,7 @@ def format_line(timestamp: str, channel: str, frame: Frame) -> str:
     Args:
         timestamp: as ``format_time`` gives it.
         channel: name of the bus, without spaces.
-        frame: any classic frame; of a remote frame the length is not kept.
+        frame: any classic frame; of a remote frame the length is lost.
     """
     can_id, data = frame
     if can_id < 0x800:

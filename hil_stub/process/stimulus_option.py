@@ -50,7 +50,7 @@ class PipedStimulus:
             left_s = deadline - time.monotonic()
             if left_s <= 0.0 or not self._fill(left_s):
                 return NOTHING
-        self._readings = {known: shown for known, shown in self._readings.items() if known >= tick}
+        self._readings = {at: reading for at, reading in self._readings.items() if at >= tick}
         return self._readings[tick]
 
     def _fill(self, timeout_s: float) -> bool:

@@ -19,7 +19,7 @@ Span = tuple[float, float]
 
 INK, MUTED, LIMIT = "#1b2733", "#5b6b7b", "#b3261e"
 AXES_COLOURS = ("#0072b2", "#d55e00", "#009e73")
-"""Blue, vermilion, green of Okabe and Ito: told apart by all kinds of colour vision."""
+"""Blue, vermilion, green of Okabe and Ito: distinct in all kinds of colour vision."""
 MORE_COLOURS = ("#cc79a7", "#e69f00", "#56b4e9")
 ECLIPSE = "#dde4ee"
 

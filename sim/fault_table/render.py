@@ -11,7 +11,7 @@ from sim.fault_table.row import CaseResult, Row, RowResult, Verdict
 from sim.faults.kinds import KINDS
 
 _COLUMNS = ("row", "injected", "expected", "cases", "measured", "verdict")
-_TOLD = ("pulses", "refused", "rejected", "worst error deg", "recovered s", "named s")
+_REPEATABLE = ("pulses", "refused", "rejected", "worst error deg", "recovered s", "named s")
 """Figures that are the same on every run; times on the wall are not."""
 _HEAD = """# Faults
 
@@ -174,9 +174,9 @@ def _kind_row(name: str) -> str:
 
 def injected(row: Row) -> str:
     """What is injected, for a person."""
-    said = [f"{name} {value:g}" for name, value in _all_parameters(row).items()]
+    parameters = [f"{name} {value:g}" for name, value in _all_parameters(row).items()]
     lasts = "stays" if row.stays else f"{row.lasts_s:g} s"
-    return ", ".join([row.kind.replace("_", " "), *said, lasts])
+    return ", ".join([row.kind.replace("_", " "), *parameters, lasts])
 
 
 def expected(row: Row) -> str:
@@ -203,7 +203,7 @@ def _found(result: RowResult) -> str:
 
 
 def _figures(result: RowResult) -> str:
-    return ", ".join(f"{name} {value:.4g}" for name, value in result.measured.items() if name in _TOLD)
+    return ", ".join(f"{name} {value:.4g}" for name, value in result.measured.items() if name in _REPEATABLE)
 
 
 def _with(case: CaseResult, verdict: Verdict) -> list[str]:

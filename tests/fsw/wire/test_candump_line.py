@@ -2,7 +2,14 @@
 
 import pytest
 
-from fsw.wire.candump_line import LineReader, format_line, format_time, is_beginning, is_fd
+from fsw.wire.candump_line import (
+    MOST_REMEMBERED,
+    LineReader,
+    format_line,
+    format_time,
+    is_beginning,
+    is_fd,
+)
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame
 
 STAMP = "1427513417.000000"
@@ -87,3 +94,10 @@ def test_a_line_that_has_been_cut_is_a_beginning_and_another_text_is_none():
 def test_the_line_of_a_can_fd_frame_is_recognised():
     assert is_fd(f"({STAMP}) vcan0 110##1133E0014F79838B7\n".encode())
     assert not is_fd(LINE.encode())
+
+
+def test_a_reader_forgets_words_rather_than_grow():
+    reader = LineReader()
+    for number in range(MOST_REMEMBERED + 2):
+        text = format_line(STAMP, f"can{number}", Frame(number | EXTENDED_FLAG, b""))
+        assert reader.read(text.encode()) == (TIME_US, f"can{number}", Frame(number | EXTENDED_FLAG, b""))
