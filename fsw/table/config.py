@@ -155,7 +155,7 @@ def _sensors(table: FlightTable) -> SensorHealthConfig:
         name_suspicion=FULL * max(1, _ticks(fdir.name_s, tick_hz)),
         readmit_ticks=max(1, _ticks(fdir.readmit_s, tick_hz)),
         pair=PairConfig(
-            say_ticks=max(1, _ticks(fdir.name_s, tick_hz)),
+            report_ticks=max(1, _ticks(fdir.name_s, tick_hz)),
             prove_ticks=max(1, _ticks(fdir.prove_s, tick_hz)),
             agree_ticks=AGAINST_ESTIMATE * max(1, _ticks(fdir.readmit_s, tick_hz)),
         ),

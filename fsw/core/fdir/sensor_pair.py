@@ -1,7 +1,7 @@
-"""Whether field and Sun bear each other out.
+"""Whether field and Sun agree with each other.
 
-Before an attitude is known, their angle is all that can be held against the model. Where it is wrong, one of
-the two sensors is, and nothing tells which; and for minutes it may be right by chance. So no estimate begins
+Without an attitude their angle is all that can be compared with the model. Where it is wrong one of the two
+sensors is faulty, and nothing isolates it; and for minutes it may be right by chance. So no estimate begins
 with a pair that has just contradicted itself, and one that has begun must prove itself, by taking both again
 and again while the satellite turns, before what it refuses counts against a sensor.
 """
@@ -15,37 +15,38 @@ MISFIT = 20
 class PairConfig(NamedTuple):
     """Times of a contradiction and of an agreement.
 
-    ``say_ticks``: of contradiction before it is said; ``prove_ticks``: in which an estimate has to take both;
-    ``agree_ticks``: for which they must agree after a contradiction.
+    ``report_ticks``: of contradiction before it is reported; ``prove_ticks``: in which an estimate has to
+    take both; ``agree_ticks``: for which they must agree after a contradiction.
     """
 
-    say_ticks: int
+    report_ticks: int
     prove_ticks: int
     agree_ticks: int
 
 
-class Compared(NamedTuple):
-    """One tick.
+class Comparison(NamedTuple):
+    """Field and Sun in one tick.
 
-    ``seen``: there are both; ``agree``: nothing speaks against them; ``unexplained``: their angle is wrong,
-    or an estimate that is not credible refuses one, and neither is known to be wrong. ``took_both`` (and is
-    credible) and ``refused`` (any) tell of the estimate, if it is ``known``.
+    ``both``: both were measured; ``agree``: nothing speaks against them; ``unexplained``: their angle is
+    wrong, or an estimate that is not credible refuses one, and neither sensor has a fault of its own that
+    explains it. ``estimated``: there is an estimate; ``took_both``: it took both, and is credible;
+    ``refused``: it refused any.
     """
 
-    seen: bool
+    both: bool
     agree: bool
     unexplained: bool
-    known: bool
+    estimated: bool
     took_both: bool
     refused: bool
 
 
 class Pair(NamedTuple):
-    """What is known of both.
+    """What both together have shown.
 
-    ``apart``: ticks of contradiction without a proven estimate, those of agreement taken off, and
-    ``contradictory``: they were enough to say so. ``proof``: ticks in which the estimate took both; below 0:
-    ticks for which they must agree before there is one.
+    ``apart``: ticks of contradiction without a proven estimate, less those of agreement, and
+    ``contradictory``: they were enough to report it. ``proof``: ticks in which the estimate took both; below
+    0: ticks for which they must agree before there is one.
     """
 
     apart: int = 0
@@ -58,26 +59,26 @@ def proven(pair: Pair, config: PairConfig) -> bool:
     return pair.proof >= config.prove_ticks
 
 
-def judge_pair(before: Pair, tick: Compared, config: PairConfig) -> Pair:
+def judge_pair(before: Pair, comparison: Comparison, config: PairConfig) -> Pair:
     """The pair after a tick."""
-    if tick.unexplained and not proven(before, config):
-        apart = min(before.apart + 1, config.say_ticks)
+    if comparison.unexplained and not proven(before, config):
+        apart = min(before.apart + 1, config.report_ticks)
     else:
         apart = max(before.apart - 1, 0)
-    contradictory = apart == config.say_ticks or (before.contradictory and apart > 0)
+    contradictory = apart == config.report_ticks or (before.contradictory and apart > 0)
     if contradictory and not before.contradictory:
         return Pair(apart, True, -config.agree_ticks)
-    return Pair(apart, contradictory, _proof(before, tick, config))
+    return Pair(apart, contradictory, _proof(before, comparison, config))
 
 
-def _proof(before: Pair, tick: Compared, config: PairConfig) -> int:
+def _proof(before: Pair, comparison: Comparison, config: PairConfig) -> int:
     """An estimate gains by each pair that it takes; without one, what it had proved is lost."""
     proof = before.proof
-    if tick.known:
+    if comparison.estimated:
         if proven(before, config):
             return proof
-        return max(0, proof - MISFIT) if tick.refused else proof + tick.took_both
+        return max(0, proof - MISFIT) if comparison.refused else proof + comparison.took_both
     owed = min(proof, 0)
-    if not tick.seen:
+    if not comparison.both:
         return owed
-    return min(owed + 1, 0) if tick.agree else max(owed - MISFIT, -config.agree_ticks)
+    return min(owed + 1, 0) if comparison.agree else max(owed - MISFIT, -config.agree_ticks)

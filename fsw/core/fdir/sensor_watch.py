@@ -1,4 +1,4 @@
-"""One sensor: what it is suspected of, when it is named, and when it may be believed again."""
+"""One sensor: what it is suspected of, when it is isolated, and when it is readmitted."""
 
 from dataclasses import dataclass
 from enum import IntEnum
@@ -9,14 +9,14 @@ from fsw.core.fdir.sensor_pair import MISFIT, PairConfig
 
 
 class Sensor(IntEnum):
-    """Numbers of the sensors, as named on the bus."""
+    """Numbers of the sensors, as reported on the bus."""
 
     MAGNETOMETER = 1
     SUN_SENSOR = 2
 
 
 class SensorFault(IntEnum):
-    """What is wrong with a sensor, as named on the bus."""
+    """Faults of a sensor, as reported on the bus."""
 
     SATURATED = 1
     STRENGTH = 2
@@ -33,15 +33,15 @@ STILL = 10
 """A sample counts as still after this part of the time in which it counts as frozen."""
 
 DARK: Vec3 = (0.0, 0.0, 0.0)
-"""The sample of a Sun sensor that sees nothing."""
+"""The sample of a Sun sensor without a Sun."""
 
 AGAINST_ESTIMATE = 4
-"""So many times longer both sensors must agree before they are believed against the estimate."""
+"""How many times longer both sensors must agree if that contradicts the estimate."""
 
 
 @dataclass(frozen=True, slots=True)
 class SensorHealthConfig:
-    """Limits of the checks; ``name_suspicion`` names a sensor, ``readmit_ticks`` good samples bring it back.
+    """Limits of the checks; ``name_suspicion`` isolates a sensor, ``readmit_ticks`` good samples readmit it.
 
     ``field_noise_t`` and ``sun_noise_rad`` are the largest deviations that are noise, ``max_bias_t`` and
     ``max_torque_nm`` the largest bias and disturbance with which an estimate proves itself.
@@ -65,7 +65,7 @@ class Watch(NamedTuple):
     """One sensor: its fault (0: none), what it is suspected of and how much, and its last sample.
 
     ``same``: ticks for which the valid sample has not moved; ``missing``: ticks without a sample; ``good``:
-    samples that the estimate foretold while it is left out, ``agreed`` those that the other sensor bears out.
+    samples as predicted while it is isolated, ``agreed`` those that agree with the other sensor.
     """
 
     fault: int = 0
@@ -82,35 +82,54 @@ class Watch(NamedTuple):
         return self[:-1]
 
 
-def watched(
-    watch: Watch, said: Vec3 | None, other: Watch, cause: int, weight: int, config: SensorHealthConfig
+def judge_sample(
+    watch: Watch, sample: Vec3 | None, other: Watch, cause: int, weight: int, config: SensorHealthConfig
 ) -> Watch:
-    """The watch after a tick, ``said`` being the raw sample, ``DARK`` where there was nothing to be seen."""
-    if said is None:
-        return _unheard(watch, config)
-    fault, before, suspicion, same, _, good, agreed, sample = watch
-    same = same + 1 if said == sample and said is not DARK else 0
+    """The watch after a tick.
+
+    Args:
+        watch: of the tick before.
+        sample: as the sensor sent it, ``DARK`` of a Sun sensor without a Sun; None if none came.
+        other: the watch of the other sensor, of the tick before.
+        cause: what speaks against the sample; 0 if nothing does.
+        weight: suspicion that this adds.
+        config: limits.
+    """
+    if sample is None:
+        return _without_sample(watch, config)
+    fault, before, suspicion, same, _, good, agreed, last = watch
+    same = same + 1 if sample == last and sample is not DARK else 0
     if fault:
-        return Watch(fault, before, 0, same, 0, good, agreed, said)
+        return Watch(fault, before, 0, same, 0, good, agreed, sample)
     if same >= config.frozen_ticks > 2 * other.same:
-        return Watch(SensorFault.FROZEN, same=same, sample=said)
+        return Watch(SensorFault.FROZEN, same=same, sample=sample)
     if not cause:
-        return Watch(0, before, suspicion - FULL if suspicion > FULL else 0, same, 0, 0, 0, said)
+        return Watch(0, before, suspicion - FULL if suspicion > FULL else 0, same, 0, 0, 0, sample)
     suspicion += weight
     if suspicion >= config.name_suspicion:
-        return Watch(cause, same=same, sample=said)
-    return Watch(0, cause, suspicion, same, 0, 0, 0, said)
+        return Watch(cause, same=same, sample=sample)
+    return Watch(0, cause, suspicion, same, 0, 0, 0, sample)
 
 
-def _unheard(watch: Watch, config: SensorHealthConfig) -> Watch:
+def _without_sample(watch: Watch, config: SensorHealthConfig) -> Watch:
     missing = watch.missing + 1
     if missing < config.silent_ticks or watch.fault:
         return watch._replace(missing=missing)
     return Watch(SensorFault.SILENT, missing=missing, sample=watch.sample)
 
 
-def probed(watch: Watch, fits: bool, agree: bool, config: SensorHealthConfig) -> tuple[Watch, bool]:
-    """A sensor that is left out, back when enough samples were good; and whether the estimate is doubted."""
+def probe(watch: Watch, fits: bool, agree: bool, config: SensorHealthConfig) -> tuple[Watch, bool]:
+    """An isolated sensor after one more sample.
+
+    Args:
+        watch: of this tick.
+        fits: the sample is as predicted.
+        agree: both sensors agree.
+        config: limits.
+
+    Returns:
+        The watch, without a fault when enough samples were good, and whether they contradict the estimate.
+    """
     good = watch.good + 1 if fits and watch.same == 0 else max(0, watch.good - MISFIT)
     agreed = watch.agreed + 1 if agree and watch.same == 0 else max(0, watch.agreed - MISFIT)
     if good >= config.readmit_ticks:
@@ -120,8 +139,8 @@ def probed(watch: Watch, fits: bool, agree: bool, config: SensorHealthConfig) ->
     return watch._replace(good=good, agreed=agreed), False
 
 
-def as_foretold(sample: Vec3, agree: bool, foretold: Vec3 | None, noise: float, sigma3_rad: float) -> bool:
-    """Whether a sample is what the estimate foretells; without one, whether both sensors agree."""
-    if foretold is None:
+def as_predicted(sample: Vec3, agree: bool, predicted: Vec3 | None, noise: float, sigma3_rad: float) -> bool:
+    """Whether a sample is what the estimate predicts; without an estimate, whether both sensors agree."""
+    if predicted is None:
         return agree
-    return norm(sub(sample, foretold)) < noise + sigma3_rad * norm(foretold)
+    return norm(sub(sample, predicted)) < noise + sigma3_rad * norm(predicted)

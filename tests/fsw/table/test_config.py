@@ -135,7 +135,7 @@ class TestTicks:
             silent_ticks=500,
             name_suspicion=210 * BAD_TICK,
             readmit_ticks=2500,
-            pair=PairConfig(say_ticks=210, prove_ticks=1400, agree_ticks=4 * 2500),
+            pair=PairConfig(report_ticks=210, prove_ticks=1400, agree_ticks=4 * 2500),
         )
 
     @pytest.mark.parametrize(

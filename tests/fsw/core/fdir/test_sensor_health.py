@@ -30,7 +30,7 @@ CONFIG = SensorHealthConfig(
     silent_ticks=17,
     name_suspicion=FULL * 10,
     readmit_ticks=25,
-    pair=PairConfig(say_ticks=10, prove_ticks=15, agree_ticks=100),
+    pair=PairConfig(report_ticks=10, prove_ticks=15, agree_ticks=100),
 )
 B_ECI_T, SUN_ECI = (2.1e-5, -1.3e-5, 1.7e-5), (0.36, 0.48, 0.8)
 Q = normalise((0.7, 0.3, -0.5, 0.4))
@@ -460,10 +460,10 @@ class TestCredibility:
     def test_unproven_it_ends_by_refusals_though_the_angle_is_right(self, flight, known, ends):
         flight.health = SensorHealth()
         doubted = []
-        for _ in range(CONFIG.pair.say_ticks):
+        for _ in range(CONFIG.pair.report_ticks):
             assert flight.step(used=SUN_ONLY, known=known) == (0, 0)
             doubted.append(flight.health.doubted)
-        assert doubted == [False] * (CONFIG.pair.say_ticks - 1) + [ends]
+        assert doubted == [False] * (CONFIG.pair.report_ticks - 1) + [ends]
 
 
 def test_the_geometry_of_these_tests_hides_nothing():
