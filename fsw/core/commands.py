@@ -82,7 +82,7 @@ def _ack(message: Telecommand, result: TcAckResult, tick: int) -> TcAck:
 
 
 def _mode(state: FlightState, message: TcMode, situation: Situation) -> Outcome:
-    """SAFE at any time; out of SAFE when all is well; to a law that needs the attitude when that is known."""
+    """SAFE at any time; out of SAFE when all is well; to a law that needs the attitude while it is valid."""
     if message.mode not in list(Mode):
         return TcAckResult.UNKNOWN
     mode, now = Mode(message.mode), state.modes
@@ -99,7 +99,7 @@ def _mode(state: FlightState, message: TcMode, situation: Situation) -> Outcome:
 
 
 def _clear(state: FlightState, message: TcClear, situation: Situation) -> Outcome:
-    """Trips are forgotten, every sensor is believed again, and every coil used."""
+    """Forget the trips, trust every sensor again and use every coil."""
     return state._replace(
         modes=state.modes._replace(trips=0),
         health=Health(),
@@ -108,7 +108,7 @@ def _clear(state: FlightState, message: TcClear, situation: Situation) -> Outcom
 
 
 def _law(state: FlightState, message: TcLaw, situation: Situation) -> Outcome:
-    """A law begins without a memory; the one that flies already goes on with its own."""
+    """A law begins without a memory; the current one goes on with its own."""
     name = LAW_NAMES.get(message.law)
     if name is None:
         return TcAckResult.UNKNOWN

@@ -1,4 +1,4 @@
-"""What may happen that is worth telling: numbers, severities, arguments."""
+"""Events that fsw reports: numbers, severities, arguments."""
 
 from enum import IntEnum
 from typing import NamedTuple
@@ -7,7 +7,7 @@ from fsw.wire.messages import Severity
 
 
 class Event(IntEnum):
-    """Numbers of fsw's events, and what the argument tells."""
+    """Numbers of fsw's events, with the meaning of the argument."""
 
     MODE_CHANGED = 1  # the new mode
     FILTER_STARTED = 2  # restarts so far
@@ -16,13 +16,13 @@ class Event(IntEnum):
     REQUEST_REFUSED = 5  # reason
     TIME_MISMATCH = 6  # SYNC's time less the expected, s
     SENSOR_ISOLATED = 7  # 100 times the number of the sensor, and of its fault
-    SENSOR_READMITTED = 8  # as when it was isolated
-    SENSORS_DISAGREE = 9  # 0: there is no estimate to tell by which of them is wrong
+    SENSOR_READMITTED = 8  # as in its isolation
+    SENSORS_DISAGREE = 9  # 0: without an estimate neither of them can be isolated
     COIL_FAULT = 10  # 100 times the number of the coil (1 to 3), and of its fault
     SECOND_SENDER = 11  # the identifier of fsw under which another sends
-    STRANGE_SYNC = 12  # the tick that it named; of several, that of the last
+    STRANGE_SYNC = 12  # its tick; of several, that of the last
     PLANT_RESTARTED = 13  # the last tick of the old count
-    FALSE_END = 14  # the ticks that PLANT_END named
+    FALSE_END = 14  # the ticks in PLANT_END
 
 
 SEVERITY: dict[Event, Severity] = {

@@ -1,9 +1,9 @@
-"""What is left of the flight state when the plant has started anew, or somebody makes believe that it has.
+"""What is left of the flight state when the plant has restarted, or a forged SYNC pretends that it has.
 
-As after a boot every timer starts in full and nothing is known of the attitude: what hangs on the count of
-ticks is worth nothing under another count. But fsw has not booted. What the ground has set, which units were
+As after a boot every timer starts in full and there is no attitude: what depends on the count of ticks is
+worth nothing under another count. But fsw has not booted. What the ground has set, which units were
 found faulty, how often a monitor has tripped, that there is a second sender, and what is counted since boot
-stay: a forged SYNC must not bring back a coil or a sensor that was named, nor lead out of a SAFE that lasts.
+stay: a forged SYNC must not bring back an isolated coil or sensor, nor lead out of a SAFE that lasts.
 """
 
 from fsw.core.actuation.actuator import LOCKOUT_UNKNOWN, CoilView
@@ -25,13 +25,13 @@ def restarted(state: FlightState, tick: int, config: FlightConfig) -> FlightStat
     A throttled event stays so for what is left of its time, a second sender for all of its time.
     """
     other, events = state.second_sender, state.events
-    told = tuple(kind._replace(tick=tick - (state.tick - kind.tick)) for kind in events.reported)
-    known = state.estimator.estimate is not None
+    reported = tuple(kind._replace(tick=tick - (state.tick - kind.tick)) for kind in events.reported)
+    estimated = state.estimator.estimate is not None
     return state._replace(
         tick=-1,
         second_sender=SecondSenderWatch(other.signs, tick, other.can_id) if other.signs else other,
         ephemeris=None,
-        estimator=restart(state.estimator) if known else state.estimator._replace(rejected_in_a_row=0),
+        estimator=restart(state.estimator) if estimated else state.estimator._replace(rejected_in_a_row=0),
         health=fdir.plant_restarted(state.health),
         attitude=UNKNOWN,
         modes=ModeState(since_tick=tick, trips=state.modes.trips, held=state.modes.held),
@@ -39,5 +39,5 @@ def restarted(state: FlightState, tick: int, config: FlightConfig) -> FlightStat
         memory=(),
         pulses=boot(tick, config.coils.pulses),
         coil=CoilView(LOCKOUT_UNKNOWN, seq=state.coil.seq, refusals=state.coil.refusals),
-        events=Throttle(told, events.held_back),
+        events=Throttle(reported, events.held_back),
     )

@@ -22,7 +22,7 @@ from fsw.wire.frame import Frame
 
 
 class Inbox(NamedTuple):
-    """A SYNC's tick and time, and what came since the last one that took what had come."""
+    """A SYNC's tick and time, and the frames since the last SYNC that took the inbox."""
 
     tick: int
     unix_time_s: int
@@ -33,10 +33,10 @@ class FlightState(NamedTuple):
     """Everything that fsw carries from one tick to the next.
 
     ``tick`` is -1 before the first SYNC; ``ignored_syncs`` counts those that were not answered, and ``syncs``
-    tells which are in doubt; ``field_tick`` and ``status_tick`` are the last ticks with an
+    holds those in doubt; ``field_tick`` and ``status_tick`` are the last ticks with an
     intact MAG_FIELD and COIL_STATUS, ``time_error_s`` the last SYNC's time less the expected; ``setpoint``
-    and ``memory`` are the control law's; ``orbit`` and ``upload`` are elements from the ground, those flown
-    (None: the table's orbit) and those kept aside; ``sent`` are the counters of the messages that fsw sends.
+    and ``memory`` are the control law's; ``orbit`` and ``upload`` are elements from the ground, those in use
+    (None: the table's orbit) and those not loaded yet; ``sent`` are the counters of fsw's own messages.
     """
 
     tick: int

@@ -43,8 +43,8 @@ Outbox = tuple[Frame, ...]
 class Observation(NamedTuple):
     """What one tick shows of the satellite.
 
-    ``readings`` are those that may be trusted; ``reference`` is what was expected, None where no orbit is
-    known; ``used`` is what the filter took.
+    ``readings`` are those that may be trusted; ``reference`` is what the models expect, None without an
+    orbit; ``used`` is what the filter took.
     """
 
     readings: Readings
@@ -63,7 +63,7 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     """One tick: (state, inbox, config) -> (state, outbox), the outbox closed by TICK_DONE.
 
     A SYNC that is not believed is counted and answered with nothing; one that is repeated because the answer
-    was not received, with TICK_DONE alone. Only the first and one that goes on take what is in the inbox.
+    was not received, with TICK_DONE alone. Only the first and one that goes on take the frames of the inbox.
     """
     before, tick = state, inbox.tick
     belief, syncs = judge(state.syncs, state.tick, tick)
@@ -85,7 +85,7 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
 
 
 def takes_inbox(before: FlightState, after: FlightState) -> bool:
-    """Whether a step has looked at what came: the SYNC was the first, or went on."""
+    """Whether a step has taken the frames of its inbox: the SYNC was the first, or went on."""
     return after.tick != before.tick and (before.tick < 0 or near(before.tick, after.tick))
 
 
@@ -108,7 +108,7 @@ def _begin(
 
 
 def _gate(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[FlightState, Readings]:
-    """Take what the boards sent; the coil driver's word is judged at once."""
+    """Accept what the boards sent, and compare the coil driver's currents with the requests."""
     tick = inbox.tick
     readings, gate = admit(inbox.frames, state.gate)
     view = update_view(state.coil, readings, tick, config.coils)
@@ -130,7 +130,7 @@ def _gate(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Fligh
 def _predict(
     state: FlightState, model: EphemerisModel, elapsed_ticks: int, config: FlightConfig
 ) -> tuple[FlightState, Reference | None]:
-    """Carry ephemeris and estimate to this tick; the reference is None where no orbit is known."""
+    """Carry ephemeris and estimate to this tick; the reference is None where the orbit has no position."""
     ephemeris = advance(state.ephemeris, state.tick, model)
     if ephemeris is None:
         return state._replace(ephemeris=None), None
@@ -174,7 +174,7 @@ def _judge(
 def _control(
     state: FlightState, observation: Observation, model: EphemerisModel, config: FlightConfig
 ) -> tuple[FlightState, Demand | None, Vec3]:
-    """What the law of this mode asks for, and the field that it reckoned with, body axes, T."""
+    """What the law of this mode asks for, and the field that it used, body axes, T."""
     seen = _law_input(state, observation, model)
     demand = by_mode.demand(state.modes.mode, seen, state.memory, state.setpoint, config.control)
     memory = demand.memory if demand is not None else ()
@@ -182,7 +182,7 @@ def _control(
 
 
 def _law_input(state: FlightState, observation: Observation, model: EphemerisModel) -> LawInput:
-    """What the law sees: the modelled field where the attitude is known, else the measured one."""
+    """The field is the modelled one where the attitude is valid, else the last one measured."""
     readings, reference, attitude = observation.readings, observation.reference, state.attitude
     usable = usable_field(readings)
     sample = FieldSample(usable, state.tick) if usable is not None else state.sample

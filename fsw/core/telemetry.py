@@ -106,7 +106,7 @@ def heartbeat_message(tick: int, modes: ModeState, rejects: int) -> CountedMessa
 def happenings(
     before: FlightState, after: FlightState, readings: Readings, violated: Monitor | None
 ) -> list[Happening]:
-    """What is worth an event in this tick: changes only, so that nothing repeats while it lasts."""
+    """The events of this tick: changes only, so that nothing repeats while it lasts."""
     found = _plant(before, after, readings) if before.tick >= 0 else []
     if after.modes.trips > before.modes.trips and violated is not None:
         found.append(Happening(Event.MONITOR_TRIPPED, violated))
@@ -127,7 +127,7 @@ def happenings(
 
 
 def _plant(before: FlightState, after: FlightState, readings: Readings) -> list[Happening]:
-    """What has come under the plant's identifiers and cannot be, or what it has done."""
+    """A restart of the plant, and frames under its identifiers that it cannot have sent."""
     found = []
     if not near(before.tick, after.tick):
         found.append(Happening(Event.PLANT_RESTARTED, before.tick))

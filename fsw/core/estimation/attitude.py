@@ -1,4 +1,4 @@
-"""The attitude as the controller sees it."""
+"""The attitude as control and telemetry use it."""
 
 from typing import NamedTuple
 
@@ -6,7 +6,7 @@ from fsw.core.algebra.vector import ZERO, Vec3
 
 
 class Attitude(NamedTuple):
-    """What control and telemetry use: body relative to the orbital frame, and how it came about."""
+    """Body relative to the orbital frame, with three standard deviations."""
 
     q_body_from_orbit: tuple[float, float, float, float]
     omega_body_orbit_radps: Vec3

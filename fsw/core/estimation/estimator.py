@@ -16,7 +16,7 @@ from fsw.core.orbit.ephemeris import Reference
 
 TESLA_PER_NT = 1e-9
 MAX_ELAPSED_TICKS = 60
-"""After a longer silence the filter starts anew instead of predicting."""
+"""After a longer silence the filter restarts instead of predicting."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,14 +150,14 @@ def _updated(
 
 
 def orbital_attitude(state: EstimatorState, reference: Reference, config: EstimatorConfig) -> Attitude:
-    """The estimate as seen from the orbital frame."""
-    known = state.estimate
-    if known is None:
+    """The estimate relative to the orbital frame."""
+    estimate = state.estimate
+    if estimate is None:
         return UNKNOWN
-    q = canonical(multiply(conjugate(reference.q_orbit_from_eci), known.q_body_from_eci))
+    q = canonical(multiply(conjugate(reference.q_orbit_from_eci), estimate.q_body_from_eci))
     e3_body = rotate(q, (0.0, 0.0, 1.0))
-    omega = sub(known.omega_body_radps, scale(reference.orbit_rate_radps, e3_body))
-    variances: list[float] = known.covariance.diagonal().tolist()
+    omega = sub(estimate.omega_body_radps, scale(reference.orbit_rate_radps, e3_body))
+    variances: list[float] = estimate.covariance.diagonal().tolist()
     sigma_attitude, sigma_rate = max(variances[0:3]) ** 0.5, max(variances[3:6]) ** 0.5
     return Attitude(
         q, omega, 3.0 * sigma_attitude, 3.0 * sigma_rate, sigma_attitude <= config.valid_sigma_rad
@@ -187,11 +187,11 @@ def _start(
 
 
 def untraced(state: EstimatorState) -> EstimatorState:
-    """Without what tells of deviations."""
-    known = state.estimate
-    return state if known is None else state._replace(estimate=known._replace(trace=None))
+    """Without the trace of deviations."""
+    estimate = state.estimate
+    return state if estimate is None else state._replace(estimate=estimate._replace(trace=None))
 
 
 def restart(state: EstimatorState) -> EstimatorState:
-    """Without an estimate: the next pair of good samples starts the filter anew."""
+    """Without an estimate: the next pair of good samples starts the filter."""
     return EstimatorState(None, 0, state.rejected_total, state.restarts + 1)

@@ -25,14 +25,14 @@ from fsw.core.estimation.kalman import LeanKalmanFilter, Matrix
 from fsw.core.estimation.mekf_config import Layout, MekfConfig
 
 MAX_VARIANCE = 1e6
-"""Beyond it an estimate says nothing (1000 rad), and the algebra comes near the end of the numbers."""
+"""Beyond it (1000 rad) an estimate is worthless, and the algebra comes near to overflow."""
 
 
 class Trace(NamedTuple):
-    """What deviations that the filter does not know of would do to its errors and innovations.
+    """What unmodelled deviations would do to the errors and innovations of the filter.
 
-    ``causes``: of each of k deviations a number that tells what it is of. ``effect`` (n, k + 1): what a unit
-    of each leaves in the error state; the last column only makes room for the innovation. ``sums``
+    ``causes``: for each of k deviations the number of its cause. ``effect`` (n, k + 1): what a unit of each
+    leaves in the error state; the last column only makes room for the innovation. ``sums``
     (k + 1, k + 1): t^T S^-1 t over all updates, t being the effects as measured, and the innovation last;
     ``measured``: of how many numbers.
     """
@@ -51,7 +51,7 @@ class Trace(NamedTuple):
 class Estimate(NamedTuple):
     """Attitude, inertial rate, biases, and the covariance of the error state.
 
-    Units: rad, rad/s, T, N m. The covariance is (n, n) with n = 6, 9 or 12, laid out as ``Layout`` says.
+    Units: rad, rad/s, T, N m. The covariance is (n, n) with n = 6, 9 or 12, laid out as in ``Layout``.
     """
 
     q_body_from_eci: Quaternion
@@ -76,7 +76,7 @@ def start(q_body_from_eci: Quaternion, omega_body_radps: Vec3, config: MekfConfi
 
 
 def corrected(estimate: Estimate, error: Matrix, uncertainty: Matrix, config: MekfConfig) -> Estimate:
-    """The estimate set right by something else than a measurement.
+    """The estimate corrected by something else than a measurement.
 
     Args:
         estimate: before.
@@ -90,7 +90,7 @@ def corrected(estimate: Estimate, error: Matrix, uncertainty: Matrix, config: Me
 def healthy(estimate: Estimate) -> bool:
     """Whether every number is finite and every variance positive and below ``MAX_VARIANCE``.
 
-    Asked after a prediction, which brings a bad number off the diagonal of the covariance onto it.
+    To be checked after a prediction, which moves a bad number onto the diagonal of the covariance.
     """
     variances: list[float] = estimate.covariance.diagonal().tolist()
     return isfinite(sum(estimate.floats())) and min(variances) > 0.0 and sum(variances) < MAX_VARIANCE
@@ -182,12 +182,12 @@ def _update(
     kalman.update(np.array(innovation), noise, sensitivity)
     nis, trace = float(kalman.y.dot(kalman.SI).dot(kalman.y)), estimate.trace
     if trace is not None:
-        seen = sensitivity.dot(trace.effect)  # the operator @ takes twice as long for so small arrays
-        seen[:, -1] = kalman.y
-        sums = trace.sums + seen.T.dot(kalman.SI.dot(seen))
+        traced = sensitivity.dot(trace.effect)  # the operator @ takes twice as long for so small arrays
+        traced[:, -1] = kalman.y
+        sums = trace.sums + traced.T.dot(kalman.SI.dot(traced))
         if nis > config.gate_nis:
             nis = unexplained(sums) - unexplained(trace.sums)
-        trace = Trace(trace.causes, trace.effect - kalman.K.dot(seen), sums, trace.measured + len(seen))
+        trace = Trace(trace.causes, trace.effect - kalman.K.dot(traced), sums, trace.measured + len(traced))
     if not 0.0 <= nis <= config.gate_nis:  # overflow can make it -inf
         return None
     return _fold(estimate, kalman.x, 0.5 * (kalman.P + kalman.P.T), config.layout, trace)

@@ -1,8 +1,8 @@
-"""Which coil is faulty, told by its current and by what its pulses do to the rate.
+"""Which coil is faulty, by its current and by what its pulses do to the rate.
 
 At the end of a pulse the current that is read back is held against that of the level. What pulses did to the
-rate ``coil_rate`` solves for; and what a current does that nobody asked for, of which the supply, shared by
-all coils, does not tell in which it flows.
+rate ``coil_rate`` solves for; and what a stray current does, one without a request: the supply, which all
+coils share, does not show in which it flows.
 """
 
 from dataclasses import dataclass
@@ -17,13 +17,13 @@ from fsw.core.algebra.vector import Mat3, Vec3, cross, scale, transform
 from fsw.core.estimation.estimator import EstimatorState
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.fdir import coil_blame, coil_rate
+from fsw.core.fdir import coil_isolation, coil_rate
 from fsw.core.gate.readings import Readings
 from fsw.wire.messages import CoilStatus
 
 
 class CoilFault(IntEnum):
-    """What is wrong with a coil, as named on the bus."""
+    """Faults of a coil, as reported on the bus."""
 
     OPEN = 1
     WEAK = 2
@@ -39,8 +39,8 @@ class CoilHealthConfig:
     """Current of each level and limits.
 
     ``weak_part`` and ``open_part`` of the nominal current or torque are the most that is weak and open;
-    ``name_pulses`` in a row with a wrong current name a coil, ``name_sigmas`` is the certainty that the rate
-    has to give; a current that nobody asked for is stuck after ``stuck_ticks``.
+    ``name_pulses`` in a row with a wrong current isolate a coil, ``name_sigmas`` is the certainty that the
+    rate has to give; a stray current means a stuck coil after ``stuck_ticks``.
     """
 
     current_ma: Vec3
@@ -56,8 +56,8 @@ class CoilHealthConfig:
 class CoilHealth(NamedTuple):
     """By coil: its fault (0: none) and pulses in a row with a wrong current.
 
-    ``strange_ticks``: ticks in a row with a level or current that nobody asked for, ``stray_ma``: the current
-    of which no level tells; ``stuck``: the level is there, or the current for too long.
+    ``strange_ticks``: ticks in a row with a level or a current without a request, ``stray_ma``: a current
+    without a level; ``stuck``: there is such a level, or such a current for too long.
     """
 
     faults: tuple[int, int, int] = HEALTHY
@@ -72,11 +72,11 @@ class CoilHealth(NamedTuple):
 
 
 def driven_am2(health: CoilHealth, view: CoilView, timing: PulseConfig, config: CoilHealthConfig) -> Vec3:
-    """Dipole over the tick that has ended, body axes, a current included for which a coil is named.
+    """Dipole over the tick that has ended, body axes, a stray current included if a coil is isolated for it.
 
     Args:
         health: of this tick.
-        view: after what was heard in this tick.
+        view: after what was received in this tick.
         timing: of the pulses.
         config: limits.
     """
@@ -86,12 +86,12 @@ def driven_am2(health: CoilHealth, view: CoilView, timing: PulseConfig, config: 
 
 
 def unattributed_torque(health: CoilHealth) -> bool:
-    """Whether a current turns the satellite, and nothing has told yet in which coil it flows."""
+    """Whether a stray current turns the satellite, and it is not isolated yet in which coil it flows."""
     return health.stuck and _flows_somewhere(health)
 
 
 def _flows_somewhere(health: CoilHealth) -> bool:
-    """Whether there is a current that nobody asked for, and no coil is named for it."""
+    """Whether there is a stray current, and no coil is isolated for it."""
     return health.stray_ma != 0 and CoilFault.STUCK not in health.faults
 
 
@@ -108,13 +108,13 @@ def judge_current(
     timing: PulseConfig,
     config: CoilHealthConfig,
 ) -> CoilHealth:
-    """Hold what the coil driver says against what was asked of it.
+    """Compare what the coil driver reports with what was asked of it.
 
     Args:
         health: of the tick before.
-        view: after what was heard in this tick.
-        readings: what was heard.
-        unasked: the driver tells of a level that was not asked for.
+        view: after what was received in this tick.
+        readings: what was received.
+        unasked: the driver reports a level that was not requested.
         tick: this one.
         timing: of the pulses.
         config: limits.
@@ -139,16 +139,16 @@ def judge_current(
     if wrong == health.wrong[fired.coil]:
         return health
     health = health._replace(wrong=_with(health.wrong, fired.coil, wrong))
-    return _named(health, fired.coil, kind) if wrong >= config.name_pulses else health
+    return _with_fault(health, fired.coil, kind) if wrong >= config.name_pulses else health
 
 
 def _strange(health: CoilHealth, status: CoilStatus, unasked: bool, config: CoilHealthConfig) -> CoilHealth:
-    """Something flows unasked: stuck when for longer than a pulse that an earlier boot may have begun."""
+    """Something flows without a request: stuck if for longer than a pulse that began before a boot."""
     ticks = health.strange_ticks + 1
     lasts = ticks >= config.stuck_ticks
     stray_ma = 0 if status.level else status.current_ma
     health = health._replace(strange_ticks=ticks, stray_ma=stray_ma, stuck=unasked or lasts)
-    return _named(health, status.coil, CoilFault.STUCK) if unasked and lasts else health
+    return _with_fault(health, status.coil, CoilFault.STUCK) if unasked and lasts else health
 
 
 def judge_rate(
@@ -161,11 +161,11 @@ def judge_rate(
     config: CoilHealthConfig,
     tuning: MekfConfig,
 ) -> tuple[CoilHealth, EstimatorState]:
-    """Hold what the filter had to correct against what pulses, and a current unasked for, should have done.
+    """Compare what the filter had to correct with what pulses, and a stray current, should have done.
 
     Args:
         health: of the tick before.
-        view: after what was heard in this tick.
+        view: after what was received in this tick.
         b_eci_t: field as modelled.
         state: of the estimator, after the samples of this tick.
         tick: this one.
@@ -174,25 +174,27 @@ def judge_rate(
         tuning: of the filter.
 
     Returns:
-        The health, and the estimator, set right where a coil certainly did not what it was taken to do.
+        The health, and the estimator, corrected where a coil certainly did something else than assumed.
     """
-    known, age = state.estimate, tick - view.fired_tick
+    estimate, age = state.estimate, tick - view.fired_tick
     ended = age == timing.pulse_ticks and view.driven_level != 0
     stray = _flows_somewhere(health)
     early = age % EARLY_TICKS == 0 and (state.rejected_in_a_row > 0 or stray)
     due = ended or early or age == timing.backoff_ticks
-    if known is None or not (due or stray):
+    if estimate is None or not (due or stray):
         return health, state
     if stray:
-        kicks_radps = _stray_kicks(health, rotate(known.q_body_from_eci, b_eci_t), timing, config)
-        known = coil_rate.carry(known, kicks_radps, timing.tick_s, begins=health.strange_ticks == 1)
+        kicks_radps = _stray_kicks(health, rotate(estimate.q_body_from_eci, b_eci_t), timing, config)
+        estimate = coil_rate.trace_stray(
+            estimate, kicks_radps, timing.tick_s, begins=health.strange_ticks == 1
+        )
     if due:
-        health, known = _blamed(health, known, config, tuning)
+        health, estimate = _isolate(health, estimate, config, tuning)
     if ended and (view.driven_coil, view.driven_level) == view.fired:
-        b_body_t = rotate(known.q_body_from_eci, b_eci_t)
+        b_body_t = rotate(estimate.q_body_from_eci, b_eci_t)
         kick_radps = transform(config.inertia_inverse, pulses.impulse(view.fired, b_body_t, timing))
-        known = coil_rate.begin(known, view.fired.coil, kick_radps, timing.pulse_s)
-    return health, state._replace(estimate=known)
+        estimate = coil_rate.trace_pulse(estimate, view.fired.coil, kick_radps, timing.pulse_s)
+    return health, state._replace(estimate=estimate)
 
 
 EARLY_TICKS = 5
@@ -201,7 +203,7 @@ next pulse is due."""
 
 
 def _stray_kicks(health: CoilHealth, b_body_t: Vec3, timing: PulseConfig, config: CoilHealthConfig) -> Mat3:
-    """What the current that nobody asked for would do to the rate in a tick, by coil."""
+    """What the stray current would do to the rate in a tick, by coil, rad/s."""
     m_am2 = _stray_am2(health, timing, config)
     first, second, third = (
         transform(config.inertia_inverse, scale(timing.tick_s * m_am2, cross(axis, b_body_t)))
@@ -210,20 +212,22 @@ def _stray_kicks(health: CoilHealth, b_body_t: Vec3, timing: PulseConfig, config
     return first, second, third
 
 
-def _blamed(
-    health: CoilHealth, known: Estimate, config: CoilHealthConfig, tuning: MekfConfig
+def _isolate(
+    health: CoilHealth, estimate: Estimate, config: CoilHealthConfig, tuning: MekfConfig
 ) -> tuple[CoilHealth, Estimate]:
-    """With the coil named that the filter accuses, if any, and the estimate set right."""
-    known, solution = coil_rate.solve(known, tuning)
+    """With the coil isolated that did something else than assumed, if any, and the estimate corrected."""
+    estimate, solution = coil_rate.solve(estimate, tuning)
     if solution is None:
-        return health, known
-    weak = coil_blame.too_little(solution, config.weak_part, config.name_sigmas)
+        return health, estimate
+    weak = coil_isolation.too_little(solution, config.weak_part, config.name_sigmas)
     if weak is not None:
-        health = _named(health, weak.coil, _kind(weak.part, config))
-    conducting = coil_blame.conducting(solution) if unattributed_torque(health) else None
+        health = _with_fault(health, weak.coil, _kind(weak.part, config))
+    conducting = coil_isolation.conducting(solution) if unattributed_torque(health) else None
     if conducting is None:
-        return health, known
-    return _named(health, conducting, CoilFault.STUCK), coil_rate.settle(known, conducting, tuning)
+        return health, estimate
+    return _with_fault(health, conducting, CoilFault.STUCK), coil_rate.settle_stray(
+        estimate, conducting, tuning
+    )
 
 
 REVERSED_PART = -0.5
@@ -238,8 +242,8 @@ def _kind(part: float, config: CoilHealthConfig) -> int:
     return CoilFault.OPEN if part < config.open_part else CoilFault.WEAK
 
 
-def _named(health: CoilHealth, coil: int, kind: int) -> CoilHealth:
-    """A coil's first fault is kept until the ground clears it, but for one that is stuck."""
+def _with_fault(health: CoilHealth, coil: int, kind: int) -> CoilHealth:
+    """A coil keeps its first fault until the ground clears it, unless it is found stuck."""
     if health.faults[coil] and kind != CoilFault.STUCK:
         return health
     return health._replace(faults=_with(health.faults, coil, kind))

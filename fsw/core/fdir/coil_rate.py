@@ -1,8 +1,8 @@
-"""What the coils did to the rate, told by what the filter did not expect to measure afterwards.
+"""What the coils did to the rate, from what the filter did not expect to measure afterwards.
 
-The filter reckons with the torque impulse of a pulse. If pulse j had (1 + e_j) times that effect (e = -1:
+The filter assumes the torque impulse of a pulse. If pulse j had (1 + e_j) times that effect (e = -1:
 none, e = -2: the other way), the error state is off by the sum of e_j u_j; at the end of the pulse u_j is the
-change that it should have made. The filter carries the u_j along (F its transition, K its gain, H its
+change that it should have made. The filter propagates the u_j (F its transition, K its gain, H its
 sensitivity, y its innovation and S the covariance of y):
 
     predict  u_j <- F u_j                  update  t_j = H u_j,    u_j <- u_j - K t_j
@@ -11,17 +11,17 @@ The mean of the innovation is then the sum of e_j t_j, not zero. Least squares f
 
     A_ij = sum of t_i^T S^-1 t_j,    a_j = sum of t_j^T S^-1 y,    (A + 1) e = a,
 
-are exact: no guess has to be flown, and no pulse is blamed for what an earlier one has left. The 1 says that
-before anything is measured e_j is 0 with a standard deviation of 1. The estimate lacks the sum of e_j u_j.
-What is left, the sum of y^T S^-1 y less a^T e, is about the number of the numbers measured if the coils are
-all that went wrong; where it is more a sensor may be wrong, and no coil is judged.
+are exact: no guess has to be tried, and no pulse is charged with what an earlier one has left. The 1 means
+that before any measurement e_j is 0 with a standard deviation of 1. The estimate lacks the sum of e_j u_j.
+What is left, the sum of y^T S^-1 y less a^T e, is about the number of scalars measured if nothing but the
+coils was wrong; where it is more a sensor may be faulty, and no coil is judged.
 
-A current that nobody asked for flows in one of the coils, and the supply, which they share, does not tell in
-which. For each of the three u_j grows, tick by tick, by what the current would do there: e_j is 1 for the one
-in which it flows and 0 for the others.
+A stray current, one without a request, flows in one of the coils, and the supply, which they share, does not
+show in which. For each of the three u_j grows, tick by tick, by what the current would do there: e_j is 1 for
+the one in which it flows and 0 for the others.
 
 Source: Friedland 1969, Treatment of bias in recursive filtering (IEEE Trans. Automatic Control 14), e being
-the bias. Willsky and Jones 1976 tell the size of jumps by the same sums.
+the bias. Willsky and Jones 1976 estimate the size of jumps by the same sums.
 """
 
 from typing import NamedTuple
@@ -39,15 +39,15 @@ PULSES = 3
 MODEL_ERROR = 0.05
 """Relative uncertainty of a coil's effect that no measurement takes away."""
 CERTAIN = 4.0
-"""Standard deviations of a deviation from which on the estimate is set right by it."""
+"""A deviation of so many standard deviations corrects the estimate."""
 UNEXPLAINED = 1.25
-"""Of the squares of the innovations, for each number measured: what may be left, or no coil is judged."""
+"""Squares of the innovations that may be left for each scalar measured; beyond, no coil is judged."""
 STRAY = 3
-"""Of a current that nobody asked for in coil j, STRAY + j is the number as a cause; j itself of a pulse."""
+"""STRAY + j is the number, as a cause, of a stray current in coil j; j itself that of a pulse."""
 
 
 class Solution(NamedTuple):
-    """What each cause did: its deviation e from what was reckoned with, and their covariance (k, k)."""
+    """What each cause did: its deviation e from what was assumed, and their covariance (k, k)."""
 
     causes: tuple[int, ...]
     deviation: Matrix
@@ -59,75 +59,75 @@ def indices_of(cause: int, causes: tuple[int, ...]) -> list[int]:
     return [index for index, other in enumerate(causes) if other == cause]
 
 
-def begin(known: Estimate, coil: int, kick_radps: Vec3, pulse_s: float) -> Estimate:
-    """The estimate that carries also a pulse that ends now, and the oldest of its coil no longer.
+def trace_pulse(estimate: Estimate, coil: int, kick_radps: Vec3, pulse_s: float) -> Estimate:
+    """Trace one more pulse, which ends now, and the oldest of its coil no longer.
 
     Args:
-        known: the estimate.
+        estimate: before.
         coil: whose the pulse is.
-        kick_radps: change of rate that the filter reckoned with, body axes.
+        kick_radps: change of rate that the filter assumed, body axes.
         pulse_s: its length.
     """
-    trace = known.trace or _nothing(known)
+    trace = estimate.trace or _empty_trace(estimate)
     own = indices_of(coil, trace.causes)
     if len(own) == PULSES:
-        trace = _forgotten(trace, own[-1])
+        trace = _without(trace, own[-1])
     effect = np.array((*scale(0.5 * pulse_s, kick_radps), *kick_radps))
-    return known._replace(trace=_extended(trace, (coil,), effect[:, np.newaxis]))
+    return estimate._replace(trace=_extended(trace, (coil,), effect[:, np.newaxis]))
 
 
-def carry(known: Estimate, kicks_radps: Mat3, tick_s: float, begins: bool) -> Estimate:
-    """The estimate that reckons with a current in any of the coils, over one tick more.
+def trace_stray(estimate: Estimate, kicks_radps: Mat3, tick_s: float, begins: bool) -> Estimate:
+    """Trace a stray current in any of the coils over one more tick.
 
     Args:
-        known: the estimate.
+        estimate: before.
         kicks_radps: by coil, the change of rate that the current would make in this tick, body axes.
         tick_s: length of a tick.
         begins: whether the current began in this tick; an earlier one is then forgotten.
     """
-    trace = known.trace or _nothing(known)
+    trace = estimate.trace or _empty_trace(estimate)
     if begins or STRAY not in trace.causes:
         for cause in (STRAY, STRAY + 1, STRAY + 2):
             if cause in trace.causes:
-                trace = _forgotten(trace, trace.causes.index(cause))
+                trace = _without(trace, trace.causes.index(cause))
         trace = _extended(trace, (STRAY, STRAY + 1, STRAY + 2), np.zeros((6, 3)))
     effect, first = trace.effect.copy(), trace.causes.index(STRAY)
     kicks = np.array(kicks_radps).T
     effect[0:3, first : first + 3] += 0.5 * tick_s * kicks
     effect[3:6, first : first + 3] += kicks
-    return known._replace(trace=trace._replace(effect=effect))
+    return estimate._replace(trace=trace._replace(effect=effect))
 
 
-def settle(known: Estimate, coil: int, tuning: MekfConfig) -> Estimate:
-    """The estimate set right by a current that is known to flow in this coil, and that is carried no longer.
+def settle_stray(estimate: Estimate, coil: int, tuning: MekfConfig) -> Estimate:
+    """Correct the estimate by a stray current that certainly flows in this coil, and trace it no longer.
 
     Args:
-        known: the estimate, which carries a current.
+        estimate: before, with the trace of a stray current.
         coil: in which it flows.
         tuning: of the filter.
 
     Raises:
-        ValueError: it carries no current.
+        ValueError: it has no such trace.
     """
-    trace = known.trace
+    trace = estimate.trace
     if trace is None or STRAY not in trace.causes:
-        raise ValueError("no current is carried")
+        raise ValueError("no stray current is traced")
     flows = trace.causes.index(STRAY + coil)
     lacks = trace.effect[:, flows]
-    known = mekf.corrected(known, lacks, MODEL_ERROR**2 * np.outer(lacks, lacks), tuning)
+    estimate = mekf.corrected(estimate, lacks, MODEL_ERROR**2 * np.outer(lacks, lacks), tuning)
     without = np.eye(len(trace.sums))
     without[flows, -1] = -1.0  # the innovations less what the current has done to them
     sums = without.T @ trace.sums @ without
-    kept = [index for index, cause in enumerate(trace.causes) if cause < STRAY]
-    places = [*kept, -1]
-    causes = tuple(trace.causes[index] for index in kept)
-    return known._replace(
+    others = [index for index, cause in enumerate(trace.causes) if cause < STRAY]
+    places = [*others, -1]
+    causes = tuple(trace.causes[index] for index in others)
+    return estimate._replace(
         trace=Trace(causes, trace.effect[:, places], sums[places][:, places], trace.measured)
     )
 
 
-def _nothing(known: Estimate) -> Trace:
-    return Trace((), np.zeros((len(known.covariance), 1)), np.zeros((1, 1)), 0)
+def _empty_trace(estimate: Estimate) -> Trace:
+    return Trace((), np.zeros((len(estimate.covariance), 1)), np.zeros((1, 1)), 0)
 
 
 def _extended(trace: Trace, causes: tuple[int, ...], effects: Matrix) -> Trace:
@@ -140,47 +140,47 @@ def _extended(trace: Trace, causes: tuple[int, ...], effects: Matrix) -> Trace:
     return Trace((*causes, *trace.causes), effect, sums, 0)
 
 
-def _forgotten(trace: Trace, index: int) -> Trace:
+def _without(trace: Trace, index: int) -> Trace:
     """Without one of the causes, its deviation being integrated out."""
     causes, effect, sums, measured = trace
     row = sums[index]
     sums = sums - np.outer(row, row) / (row[index] + 1.0)
-    kept = [other for other in range(len(sums)) if other != index]
-    return Trace(causes[:index] + causes[index + 1 :], effect[:, kept], sums[kept][:, kept], measured)
+    others = [place for place in range(len(sums)) if place != index]
+    return Trace(causes[:index] + causes[index + 1 :], effect[:, others], sums[others][:, others], measured)
 
 
-def solve(known: Estimate, tuning: MekfConfig) -> tuple[Estimate, Solution | None]:
+def solve(estimate: Estimate, tuning: MekfConfig) -> tuple[Estimate, Solution | None]:
     """Solve for what the causes did.
 
     Args:
-        known: the estimate.
+        estimate: before.
         tuning: of the filter.
 
     Returns:
-        The estimate, set right where something certainly was not what it was taken for, and the solution, if
-        the causes explain what was measured.
+        The estimate, corrected where a deviation is certain, and the solution, if the causes explain what was
+        measured.
     """
-    trace = known.trace
+    trace = estimate.trace
     if trace is None:
-        return known, None
+        return estimate, None
     if not (np.isfinite(trace.sums).all() and np.isfinite(trace.effect).all()):
-        return known._replace(trace=None), None
+        return estimate._replace(trace=None), None
     try:
-        return _solved(known, trace, tuning)
+        return _solve(estimate, trace, tuning)
     except np.linalg.LinAlgError:  # as of sums that are damaged
-        return known._replace(trace=None), None
+        return estimate._replace(trace=None), None
 
 
-def _solved(known: Estimate, trace: Trace, tuning: MekfConfig) -> tuple[Estimate, Solution | None]:
+def _solve(estimate: Estimate, trace: Trace, tuning: MekfConfig) -> tuple[Estimate, Solution | None]:
     covariance: Matrix = np.asarray(np.linalg.inv(trace.sums[:-1, :-1] + np.eye(len(trace.causes))), float)
     covariance = 0.5 * (covariance + covariance.T)
     np.linalg.cholesky(covariance)  # raises if it is not positive, lest an inverse of a part of it does later
     deviation = covariance @ trace.sums[:-1, -1]
     if mekf.unexplained(trace.sums) > UNEXPLAINED * trace.measured:
-        return known, None
+        return estimate, None
     effect = trace.effect[:, :-1]
     certain = deviation**2 > CERTAIN**2 * (covariance.diagonal() + MODEL_ERROR**2)
     if (certain & effect.any(axis=0)).any():
-        known = mekf.corrected(known, effect @ deviation, effect @ covariance @ effect.T, tuning)
-        known = known._replace(trace=trace._replace(effect=np.zeros_like(trace.effect)))
-    return known, Solution(trace.causes, deviation, covariance)
+        estimate = mekf.corrected(estimate, effect @ deviation, effect @ covariance @ effect.T, tuning)
+        estimate = estimate._replace(trace=trace._replace(effect=np.zeros_like(trace.effect)))
+    return estimate, Solution(trace.causes, deviation, covariance)

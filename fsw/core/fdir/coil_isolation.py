@@ -1,4 +1,4 @@
-"""Which coil the solution accuses: one whose pulses did too little, or one that conducts by itself."""
+"""Which coil the solution isolates: one whose pulses did too little, or one that conducts by itself."""
 
 from typing import NamedTuple
 
@@ -7,23 +7,23 @@ import numpy as np
 from fsw.core.fdir.coil_rate import CERTAIN, MODEL_ERROR, STRAY, Solution, indices_of
 
 CLEAR = 0.25
-"""Standard deviation of what a coil does from which on one fault can be told from another."""
+"""Standard deviation of a coil's effect below which its faults can be distinguished."""
 
 
-class Accused(NamedTuple):
+class WeakCoil(NamedTuple):
     """A coil that certainly does less than it should, and what part of it."""
 
     coil: int
     part: float
 
 
-def too_little(solution: Solution, weak_part: float, name_sigmas: float) -> Accused | None:
+def too_little(solution: Solution, weak_part: float, name_sigmas: float) -> WeakCoil | None:
     """The coil that by its latest pulse, or its latest few together, certainly did too little.
 
     Args:
         solution: what the causes did.
         weak_part: of the nominal effect; less is a fault.
-        name_sigmas: certainty with which a coil is accused.
+        name_sigmas: certainty with which a coil is isolated, standard deviations.
     """
     causes, deviation, covariance = solution
     weak = {causes[index] for index in np.flatnonzero(deviation < weak_part - 1.0)}
@@ -38,12 +38,12 @@ def too_little(solution: Solution, weak_part: float, name_sigmas: float) -> Accu
                 continue
             part = 1.0 + float(weights @ deviation[latest]) / weight
             if part + name_sigmas * weight**-0.5 < weak_part:
-                return Accused(coil, part)
+                return WeakCoil(coil, part)
     return None
 
 
 def conducting(solution: Solution) -> int | None:
-    """The coil in which the current flows that nobody asked for; None while it may be another, or none.
+    """The coil in which a current flows without a request; None while it may be another, or none.
 
     Of the four explanations (e = 0, or 1 for one of the coils) the likeliest, if it fits and each other is
     less likely by ``CERTAIN``. The distance of each is the square of its deviation from the solution, by the

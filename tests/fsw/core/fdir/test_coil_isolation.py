@@ -1,9 +1,9 @@
-"""Whom a solution accuses: by how much, how sure, and never one of two that cannot be told apart."""
+"""Which coil a solution isolates: by how much, how surely, and never one of two that look alike."""
 
 import numpy as np
 import pytest
 
-from fsw.core.fdir.coil_blame import Accused, conducting, too_little
+from fsw.core.fdir.coil_isolation import WeakCoil, conducting, too_little
 from fsw.core.fdir.coil_rate import STRAY, Solution
 
 WEAK_PART, SIGMAS = 0.7, 4.0
@@ -20,7 +20,7 @@ def weak(*arguments):
 
 
 def test_a_pulse_that_certainly_did_too_little_accuses_its_coil():
-    assert weak((2, 0), (0.01, -0.9), (0.04, 0.03)) == Accused(0, pytest.approx(0.1))
+    assert weak((2, 0), (0.01, -0.9), (0.04, 0.03)) == WeakCoil(0, pytest.approx(0.1))
 
 
 @pytest.mark.parametrize(
@@ -31,7 +31,9 @@ def test_it_accuses_nobody(deviation, sigma):
 
 
 def test_pulses_none_of_which_is_sure_do_so_together():
-    assert weak((1, 1, 1), (-0.8, -0.9, -1.0), (0.22, 0.22, 0.22)) == Accused(1, pytest.approx(0.1, abs=0.01))
+    assert weak((1, 1, 1), (-0.8, -0.9, -1.0), (0.22, 0.22, 0.22)) == WeakCoil(
+        1, pytest.approx(0.1, abs=0.01)
+    )
     assert weak((1, 0, 2), (-0.8, -0.9, -1.0), (0.22, 0.22, 0.22)) is None
 
 
