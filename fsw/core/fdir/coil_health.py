@@ -127,11 +127,8 @@ def judge_current(
     if health.strange_ticks:
         health = health._replace(strange_ticks=0, stray_ma=0, stuck=False)
     fired = view.fired
-    if (
-        tick != view.fired_tick + timing.pulse_ticks
-        or not status.level
-        or (status.coil, status.level) != fired
-    ):
+    ended = tick == view.fired_tick + timing.pulse_ticks
+    if not ended or not status.level or (status.coil, status.level) != fired:
         return health
     nominal_ma = config.current_ma[abs(status.level) - 1]
     kind = _kind(status.current_ma / (nominal_ma if status.level > 0 else -nominal_ma), config)
@@ -185,9 +182,8 @@ def judge_rate(
         return health, state
     if stray:
         kicks_radps = _stray_kicks(health, rotate(estimate.q_body_from_eci, b_eci_t), timing, config)
-        estimate = coil_rate.trace_stray(
-            estimate, kicks_radps, timing.tick_s, begins=health.strange_ticks == 1
-        )
+        begins = health.strange_ticks == 1
+        estimate = coil_rate.trace_stray(estimate, kicks_radps, timing.tick_s, begins)
     if due:
         health, estimate = _isolate(health, estimate, config, tuning)
     if ended and (view.driven_coil, view.driven_level) == view.fired:
@@ -225,9 +221,8 @@ def _isolate(
     conducting = coil_isolation.conducting(solution) if unattributed_torque(health) else None
     if conducting is None:
         return health, estimate
-    return _with_fault(health, conducting, CoilFault.STUCK), coil_rate.settle_stray(
-        estimate, conducting, tuning
-    )
+    health = _with_fault(health, conducting, CoilFault.STUCK)
+    return health, coil_rate.settle_stray(estimate, conducting, tuning)
 
 
 REVERSED_PART = -0.5
