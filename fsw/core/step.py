@@ -11,17 +11,9 @@ from fsw.core.algebra.vector import ZERO, Vec3
 from fsw.core.commands import command
 from fsw.core.config import FlightConfig
 from fsw.core.estimation.attitude import UNKNOWN
-from fsw.core.estimation.estimator import (
-    NONE_USED,
-    Used,
-    orbital_attitude,
-    perfect_attitude,
-    predict,
-    restart,
-    update,
-    usable_field,
-    usable_sun,
-)
+from fsw.core.estimation.estimator import NONE_USED, Used, predict, restart, update
+from fsw.core.estimation.orbital_attitude import orbital_attitude, perfect_attitude
+from fsw.core.estimation.samples import usable_field, usable_sun
 from fsw.core.fdir import fdir
 from fsw.core.fdir.fdir import Evidence
 from fsw.core.gate import second_sender
@@ -153,7 +145,7 @@ def _update(
         return state._replace(attitude=attitude), Observation(readings, reference)
     readings = fdir.trusted(readings, state.health, reference)
     updated, used = update(state.estimator, readings, reference, config.estimator)
-    attitude = orbital_attitude(updated, reference, config.estimator)
+    attitude = orbital_attitude(updated.estimate, reference, config.estimator.valid_sigma_rad)
     return state._replace(estimator=updated, attitude=attitude), Observation(readings, reference, used)
 
 

@@ -3,18 +3,16 @@
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from fsw.core.algebra.quaternion import canonical, conjugate, multiply, normalise, rotate
-from fsw.core.algebra.vector import ZERO, Vec3, scale, sub
+from fsw.core.algebra.vector import ZERO, Vec3, scale
 from fsw.core.estimation import mekf
-from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
+from fsw.core.estimation.samples import usable_field, usable_sun
 from fsw.core.estimation.triad import consistent, triad
 from fsw.core.gate.readings import Readings
 from fsw.core.orbit.earth import MU_M3PS2
 from fsw.core.orbit.ephemeris import Reference
 
-TESLA_PER_NT = 1e-9
 MAX_ELAPSED_TICKS = 60
 """After a longer silence the filter restarts instead of predicting."""
 
@@ -62,20 +60,6 @@ class Used(NamedTuple):
 
 
 NONE_USED = Used(False, False, False)
-
-
-def usable_field(readings: Readings) -> Vec3 | None:
-    """The field sample, T; None where a coil was driven, its current still flowed, or either may be."""
-    field, coil = readings.field, readings.coil
-    if field is None or not field.valid or coil is None or coil.level != 0 or coil.current_ma != 0:
-        return None
-    return (field.b_x * TESLA_PER_NT, field.b_y * TESLA_PER_NT, field.b_z * TESLA_PER_NT)
-
-
-def usable_sun(readings: Readings) -> Vec3 | None:
-    """The measured Sun direction, or None."""
-    sun = readings.sun
-    return (sun.s_x, sun.s_y, sun.s_z) if sun is not None and sun.valid else None
 
 
 def predict(
@@ -147,31 +131,6 @@ def _updated(
     current = after_field or current
     after_sun = mekf.update_sun(current, sun, s, config) if sun is not None else None
     return after_sun or current, after_field is not None, after_sun is not None
-
-
-def orbital_attitude(state: EstimatorState, reference: Reference, config: EstimatorConfig) -> Attitude:
-    """The estimate relative to the orbital frame."""
-    estimate = state.estimate
-    if estimate is None:
-        return UNKNOWN
-    q = canonical(multiply(conjugate(reference.q_orbit_from_eci), estimate.q_body_from_eci))
-    e3_body = rotate(q, (0.0, 0.0, 1.0))
-    omega = sub(estimate.omega_body_radps, scale(reference.orbit_rate_radps, e3_body))
-    variances: list[float] = estimate.covariance.diagonal().tolist()
-    sigma_attitude, sigma_rate = max(variances[0:3]) ** 0.5, max(variances[3:6]) ** 0.5
-    return Attitude(
-        q, omega, 3.0 * sigma_attitude, 3.0 * sigma_rate, sigma_attitude <= config.valid_sigma_rad
-    )
-
-
-def perfect_attitude(readings: Readings, before: Attitude) -> Attitude:
-    """The attitude the reference messages give; the one before, no longer valid, where they are missing."""
-    q, w = readings.ref_attitude, readings.ref_rate
-    if q is None or w is None or not q.valid or not w.valid:
-        return before._replace(valid=False)
-    scalar = max(0.0, 1.0 - q.q_x**2 - q.q_y**2 - q.q_z**2) ** 0.5
-    near_unit = (scalar, q.q_x, q.q_y, q.q_z)  # near 180 deg rounding makes the vector longer than 1
-    return Attitude(normalise(near_unit), (w.w_x, w.w_y, w.w_z), 0.0, 0.0, True)
 
 
 def _start(

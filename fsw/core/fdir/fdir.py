@@ -7,8 +7,9 @@ from fsw.core.actuation.actuator import CoilView, unexpected
 from fsw.core.actuation.pulses import PulseConfig
 from fsw.core.algebra.vector import Vec3
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
-from fsw.core.estimation.estimator import EstimatorState, Used, restart, untraced, usable_field, usable_sun
+from fsw.core.estimation.estimator import EstimatorState, Used, restart, untraced
 from fsw.core.estimation.mekf_config import MekfConfig
+from fsw.core.estimation.samples import usable_field, usable_sun
 from fsw.core.events import Event, Happening
 from fsw.core.fdir import coil_health, sensor_health
 from fsw.core.fdir.coil_health import CoilHealth, CoilHealthConfig

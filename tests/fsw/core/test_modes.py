@@ -5,7 +5,7 @@ from math import cos, pi, radians, sin
 
 import pytest
 
-from fsw.core.estimation.estimator import Attitude
+from fsw.core.estimation.attitude import Attitude
 from fsw.core.modes import TABLE, ModeConditions, ModeConfig, ModeState, advance, judge
 from fsw.table.sections import ModesTable
 from fsw.wire.messages import Mode

@@ -4,7 +4,7 @@ from math import inf, nan
 
 import pytest
 
-from fsw.core.estimation.estimator import UNKNOWN, Attitude
+from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.monitors import MONITORS, RATE_LIMIT_RADPS, Monitor, MonitorInput, first_violation
 
 Q = (0.5, -0.5, 0.5, 0.5)

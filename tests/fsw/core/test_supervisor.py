@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import pytest
 
-from fsw.core.estimation.estimator import UNKNOWN, Attitude
+from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.fdir.coil_health import CoilHealth
 from fsw.core.fdir.fdir import Health
 from fsw.core.gate.second_sender import SIGNS, SecondSenderWatch

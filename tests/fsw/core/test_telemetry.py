@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from fsw.core import telemetry
-from fsw.core.estimation.estimator import UNKNOWN, Attitude, EstimatorState, Used
+from fsw.core.estimation.attitude import UNKNOWN, Attitude
+from fsw.core.estimation.estimator import EstimatorState, Used
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.gate.readings import NOTHING
 from fsw.core.modes import ModeState

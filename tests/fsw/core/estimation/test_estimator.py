@@ -1,35 +1,30 @@
 """From readings to an estimate: when the filter starts, what it takes, and when it begins anew."""
 
 from dataclasses import replace
-from math import degrees, inf, nan, radians
+from math import inf, nan, radians
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fsw.core.algebra.quaternion import canonical, conjugate, multiply, normalise, rotate
+from fsw.core.algebra.quaternion import conjugate, multiply, normalise, rotate
 from fsw.core.algebra.vector import ZERO, add, cross, norm, scale, unit
 from fsw.core.estimation import mekf
 from fsw.core.estimation.estimator import (
     MAX_ELAPSED_TICKS,
     NONE_USED,
-    UNKNOWN,
-    Attitude,
     EstimatorConfig,
     EstimatorState,
     Used,
-    orbital_attitude,
-    perfect_attitude,
     predict,
     update,
-    usable_field,
-    usable_sun,
 )
 from fsw.core.estimation.mekf_config import mekf_config
+from fsw.core.estimation.orbital_attitude import orbital_attitude
 from fsw.core.gate.readings import NOTHING
 from fsw.core.orbit.ephemeris import Reference
-from fsw.wire.messages import CoilStatus, MagField, RefAttitude, RefRate, SunVector
+from fsw.wire.messages import CoilStatus, MagField, SunVector
 
 MEKF = mekf_config(
     ((1.02, 0.07, -0.05), (0.07, 1.85, 0.11), (-0.05, 0.11, 1.45)),
@@ -106,45 +101,6 @@ def angle_rad(p, q):
 OFF_SUN = SunVector(1, *unit(rotate(Q_BODY_FROM_ECI, add(REFERENCE.sun_eci, scale(9e3, REFERENCE.b_eci_t)))))
 """About 20 deg nearer to the field than it should be."""
 OFF_FIELD = field_message(scale(1.3, rotate(Q_BODY_FROM_ECI, REFERENCE.b_eci_t)))
-
-
-class TestUsable:
-    def test_a_quiet_sample_is_taken_in_tesla(self):
-        readings = seen_from(field=MagField(1, 20000.0, -7000.0, 31000.0))
-        assert usable_field(readings) == pytest.approx((2.0e-5, -7.0e-6, 3.1e-5), rel=1e-12)
-
-    @pytest.mark.parametrize(
-        "changes",
-        [
-            {"field": None},
-            {"field": MagField(0, 20000.0, -7000.0, 31000.0)},
-            {"coil": None},
-            {"coil": IDLE._replace(level=1)},
-            {"coil": IDLE._replace(level=-3)},
-            {"coil": IDLE._replace(current_ma=1)},
-            {"coil": IDLE._replace(current_ma=-1)},
-        ],
-        ids=[
-            "none",
-            "not valid",
-            "no coil status",
-            "driven",
-            "driven backwards",
-            "current",
-            "current backwards",
-        ],
-    )
-    def test_a_sample_that_a_coil_may_have_spoilt_is_not(self, changes):
-        assert usable_field(seen_from(**changes)) is None
-
-    def test_what_remains_of_a_pulse_does_not_count_before_it_is_driven(self):
-        """Level is what was driven until now; the sample is good if nothing was."""
-        assert usable_field(seen_from(coil=IDLE._replace(remaining_ms=3000))) is not None
-
-    def test_sun(self):
-        assert usable_sun(seen_from(sun=SunVector(1, 0.6, -0.48, 0.64))) == (0.6, -0.48, 0.64)
-        assert usable_sun(seen_from(sun=SunVector(0, 0.6, -0.48, 0.64))) is None
-        assert usable_sun(seen_from(sun=None)) is None
 
 
 class TestStart:
@@ -392,7 +348,7 @@ class TestSoundness:
             broken = settled._replace(estimate=settled.estimate._replace(covariance=covariance))
             state, _ = step(broken, seen_from())
             assert state.estimate is None or mekf.healthy(state.estimate)
-            orbital_attitude(state, REFERENCE, CONFIG)
+            orbital_attitude(state.estimate, REFERENCE, CONFIG.valid_sigma_rad)
 
     def test_a_covariance_that_overflows_in_the_prediction_is_caught_before_the_update(self, settled):
         spinning = settled.estimate._replace(
@@ -413,87 +369,3 @@ class TestSoundness:
         readings = seen_from(field=MagField(1, *b_nt), sun=SunVector(1, *sun))
         state, _ = step(settled, readings, dipole=(m, -m, m), elapsed=elapsed)
         assert state.estimate is None or mekf.healthy(state.estimate)
-
-
-class TestAttitude:
-    def test_unknown_before_the_start(self):
-        assert orbital_attitude(EstimatorState(), REFERENCE, CONFIG) is UNKNOWN
-        assert not UNKNOWN.valid
-
-    def test_is_seen_from_the_orbital_frame(self, settled):
-        """q_body_from_eci = q_orbit_from_eci (x) q_body_from_orbit, and the orbit turns about its normal."""
-        moving = settled.estimate._replace(omega_body_radps=(0.011, -0.007, 0.005))
-        seen = orbital_attitude(settled._replace(estimate=moving), REFERENCE, CONFIG)
-        chained = multiply(REFERENCE.q_orbit_from_eci, seen.q_body_from_orbit)
-        assert canonical(chained) == pytest.approx(canonical(moving.q_body_from_eci), abs=1e-14)
-        assert seen.q_body_from_orbit[0] >= 0.0
-        normal_eci = rotate(conjugate(REFERENCE.q_orbit_from_eci), (0.0, 0.0, 1.0))
-        normal_body = rotate(moving.q_body_from_eci, normal_eci)
-        expected = np.array(moving.omega_body_radps) - 1.04e-3 * np.array(normal_body)
-        np.testing.assert_allclose(seen.omega_body_orbit_radps, expected, atol=1e-15)
-
-    def test_a_body_at_rest_in_the_orbital_frame_is(self, settled):
-        normal_eci = rotate(conjugate(REFERENCE.q_orbit_from_eci), (0.0, 0.0, 1.0))
-        carried = settled.estimate._replace(
-            q_body_from_eci=REFERENCE.q_orbit_from_eci,
-            omega_body_radps=scale(1.04e-3, rotate(REFERENCE.q_orbit_from_eci, normal_eci)),
-        )
-        seen = orbital_attitude(settled._replace(estimate=carried), REFERENCE, CONFIG)
-        assert seen.q_body_from_orbit == pytest.approx((1.0, 0.0, 0.0, 0.0), abs=1e-15)
-        assert seen.omega_body_orbit_radps == pytest.approx(ZERO, abs=1e-17)
-
-    @pytest.mark.parametrize(
-        ("sigma_deg", "valid"), [(0.1, True), (4.999, True), (5.001, False), (60.0, False)]
-    )
-    def test_it_serves_control_while_its_worst_axis_is_known_well_enough(self, settled, sigma_deg, valid):
-        for axis in range(3):
-            covariance = np.diag([radians(0.05) ** 2] * 3 + [1e-10, 4e-10, 9e-10] + [1e-14] * 6)
-            covariance[axis, axis] = radians(sigma_deg) ** 2
-            estimated = settled.estimate._replace(covariance=covariance)
-            seen = orbital_attitude(settled._replace(estimate=estimated), REFERENCE, CONFIG)
-            assert seen.valid is valid
-            assert degrees(seen.sigma3_attitude_rad) == pytest.approx(3.0 * sigma_deg)
-            assert seen.sigma3_rate_radps == pytest.approx(9e-5)
-
-    def test_the_sigmas_are_those_of_the_worst_axis_of_attitude_and_of_rate(self, settled):
-        for first, second in (([3.0, 1.0, 2.0], [40.0, 20.0, 30.0]), ([1.0, 2.0, 3.0], [20.0, 30.0, 40.0])):
-            covariance = 1e-6 * np.diag([*first, *second, *[500.0] * 6])
-            seen = orbital_attitude(
-                settled._replace(estimate=settled.estimate._replace(covariance=covariance)), REFERENCE, CONFIG
-            )
-            assert seen.sigma3_attitude_rad == pytest.approx(3.0 * (3e-6) ** 0.5)
-            assert seen.sigma3_rate_radps == pytest.approx(3.0 * (40e-6) ** 0.5)
-
-
-class TestPerfectKnowledge:
-    BEFORE = Attitude((0.8, 0.6, 0.0, 0.0), (0.1, 0.2, 0.3), 0.0, 0.0, True)
-    Q = RefAttitude(1, 0.5, -0.25, 0.125)
-    W = RefRate(1, 0.01, -0.02, 0.03)
-
-    def test_is_what_the_plant_says(self):
-        seen = perfect_attitude(NOTHING._replace(ref_attitude=self.Q, ref_rate=self.W), self.BEFORE)
-        assert seen.q_body_from_orbit[1:] == pytest.approx((0.5, -0.25, 0.125), rel=1e-12)
-        assert sum(c * c for c in seen.q_body_from_orbit) == pytest.approx(1.0, abs=1e-15)
-        assert seen.q_body_from_orbit[0] > 0.0
-        assert seen.omega_body_orbit_radps == (0.01, -0.02, 0.03)
-        assert (seen.sigma3_attitude_rad, seen.sigma3_rate_radps, seen.valid) == (0.0, 0.0, True)
-
-    @pytest.mark.parametrize(
-        "changes",
-        [
-            {},
-            {"ref_attitude": Q},
-            {"ref_rate": W},
-            {"ref_attitude": Q._replace(valid=0), "ref_rate": W},
-            {"ref_attitude": Q, "ref_rate": W._replace(valid=0)},
-        ],
-    )
-    def test_without_both_the_one_before_is_kept_and_not_valid(self, changes):
-        seen = perfect_attitude(NOTHING._replace(**changes), self.BEFORE)
-        assert seen == self.BEFORE._replace(valid=False)
-
-    def test_upside_down_the_wire_s_rounding_still_gives_a_unit_quaternion(self):
-        for vector in ((0.6, -0.48, 0.64), (0.57735027, 0.57735027, 0.57735027), (0.999985, 0.0, 0.0)):
-            decoded = RefAttitude.decode(RefAttitude(1, *vector).encode().data)
-            seen = perfect_attitude(NOTHING._replace(ref_attitude=decoded, ref_rate=self.W), self.BEFORE)
-            assert sum(c * c for c in seen.q_body_from_orbit) == pytest.approx(1.0, abs=1e-15)

@@ -8,8 +8,9 @@ import pytest
 
 from fsw.core.algebra.quaternion import normalise, rotate
 from fsw.core.algebra.vector import norm, scale, sub
-from fsw.core.estimation.estimator import Used, usable_field, usable_sun
+from fsw.core.estimation.estimator import Used
 from fsw.core.estimation.mekf import Estimate
+from fsw.core.estimation.samples import usable_field, usable_sun
 from fsw.core.fdir.sensor_health import SensorHealth, judge, trusted
 from fsw.core.fdir.sensor_pair import MISFIT, Pair, PairConfig
 from fsw.core.fdir.sensor_watch import AGAINST_ESTIMATE, FULL, SLIGHT, SensorFault, SensorHealthConfig
