@@ -10,6 +10,7 @@ The constants are small so that the search ends; no rule depends on them.
 
 import copy
 from collections import Counter, deque
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from itertools import product
 from typing import NamedTuple
@@ -75,29 +76,35 @@ class Proof:
     apart: int = 0  # states in which one interlock has ended a pulse that the other has not
 
 
-def fresh(kind, limits, clock_ms):
-    """A guard that has just been switched on."""
+Watching = Callable[[Judge], Judge]
+"""What a judge sees of a change."""
+
+
+def fresh(kind, limits):
+    """A guard that has just been switched on. It is always now at 0 ms."""
     board = kind(limits)
-    board.pass_time(clock_ms)
+    board.pass_time(0)
     return board
 
 
-def passed(board, judge, now_ms, span_ms):
+def passed(board, span_ms):
     """Time passes, and no tick comes. A pulse that is over then was over when its timer said so."""
     later = copy.copy(board)
-    later.pass_time(now_ms + span_ms)
-    driven_ms = 0
+    later.pass_time(span_ms)
+    driven_ms, drives = 0, later.drives
     if board.drives:
-        driven_ms = span_ms if later.drives else board.ends_ms - now_ms
+        driven_ms = span_ms if drives else board.ends_ms
         assert 0 < driven_ms <= span_ms
-    return later, judge.watch(board.coil, driven_ms, span_ms).cut(later.drives), now_ms + span_ms
+    vars(later).update({name: ms - span_ms for name, ms in vars(later).items() if name.endswith("_ms")})
+    return later, lambda judge: judge.watch(board.coil, driven_ms, span_ms).cut(drives)
 
 
-def changed(board, judge, now_ms, change):
+def changed(board, change):
     """Something happens in no time."""
     other = copy.copy(board)
     change(other)
-    return other, judge.cut(other.drives), now_ms
+    drives = other.drives
+    return other, lambda judge: judge.cut(drives)
 
 
 def both_accept(board, asked):
@@ -107,36 +114,53 @@ def both_accept(board, asked):
     )
 
 
+def asked_of(board, shared, proof):
+    """The guards that have accepted a request, each request having been made."""
+    for asked in REQUESTS[shared]:
+        answered = copy.copy(board)
+        reason = answered.ask(asked, TICK)
+        assert (reason is None) == both_accept(board, asked), f"{asked}: {reason}"
+        if reason is None:
+            proof.accepted[asked.coil] += 1
+            assert answered.drives
+            yield answered, lambda judge: judge
+        else:
+            proof.refused[reason] += 1
+            assert vars(answered) == vars(board), "a refusal changed the state"
+
+
+def reached_from(board, kind, shared, proof) -> list[tuple[Guard, Watching]]:
+    """Whatever may happen to a guard, and what a judge sees of it."""
+    return [
+        *(passed(board, span_ms) for span_ms in JUMPS_MS),
+        *(changed(board, lambda one, n=n: one.elapse(n)) for n in TICKS),
+        changed(board, lambda one: one.sync()),
+        changed(board, lambda one: one.silence()),
+        (fresh(kind, LIMITS[shared]), lambda judge: judge.cut(still_on=False)),
+        *asked_of(board, shared, proof),
+    ]
+
+
 def prove(kind: type[Guard], shared: bool) -> Proof:
-    """Search all that can be reached; AssertionError at the first state that breaks a demand."""
-    limits, proof = LIMITS[shared], Proof()
-    queue = deque([(fresh(kind, limits, 0), Judge(limits), 0)])
-    seen = set()
+    """Search all that can be reached; AssertionError at the first state that breaks a demand.
+
+    What may happen to a guard does not depend on the judge, and is done once for many judges.
+    """
+    proof = Proof()
+    queue = deque([(fresh(kind, LIMITS[shared]), Judge(LIMITS[shared]))])
+    reached, seen = {}, set()
     while queue:
-        board, judge, now_ms = queue.popleft()
-        state = (board._by_ticks, board._by_clock, board._tick_under_way, now_ms - board._clock_ms, judge)
-        if state in seen:
+        board, judge = queue.popleft()
+        guard = (board._by_ticks, board._by_clock, board._tick_under_way, board._clock_ms)
+        if (guard, judge) in seen:
             continue
-        seen.add(state)
+        seen.add((guard, judge))
         if len(seen) > 100_000:
             raise RuntimeError("the states do not end")
         proof.apart += (board._by_ticks.remaining == 0) != (board._by_clock.remaining == 0)
-        queue += [passed(board, judge, now_ms, span_ms) for span_ms in JUMPS_MS]
-        queue += [changed(board, judge, now_ms, lambda one, n=n: one.elapse(n)) for n in TICKS]
-        queue.append(changed(board, judge, now_ms, lambda one: one.sync()))
-        queue.append(changed(board, judge, now_ms, lambda one: one.silence()))
-        queue.append((fresh(kind, limits, now_ms), judge.cut(still_on=False), now_ms))
-        for asked in REQUESTS[shared]:
-            answered = copy.copy(board)
-            reason = answered.ask(asked, TICK)
-            assert (reason is None) == both_accept(board, asked), f"{asked}: {reason}"
-            if reason is None:
-                proof.accepted[asked.coil] += 1
-                assert answered.drives
-                queue.append((answered, judge, now_ms))
-            else:
-                proof.refused[reason] += 1
-                assert vars(answered) == vars(board), "a refusal changed the state"
+        if guard not in reached:
+            reached[guard] = reached_from(board, kind, shared, proof)
+        queue += [(other, watched(judge)) for other, watched in reached[guard]]
     proof.states = len(seen)
     return proof
 
