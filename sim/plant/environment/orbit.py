@@ -86,6 +86,7 @@ def make_orbit(config: OrbitConfig, epoch_unix_s: int) -> Orbit:
 
 
 def _satellite(tle: tuple[str, str]) -> Satrec:
+    """The table has checked the lines of a scenario; sgp4 itself takes lines that are cut or exchanged."""
     for number, line in enumerate(tle, start=1):
         if len(line) != 69 or not line.startswith(f"{number} "):
             raise ValueError(f"line {number} of the TLE is malformed")
