@@ -167,10 +167,10 @@ def _control(
     state: FlightState, observation: Observation, model: EphemerisModel, config: FlightConfig
 ) -> tuple[FlightState, Demand | None, Vec3]:
     """What the law of this mode asks for, and the field that it used, body axes, T."""
-    seen = _law_input(state, observation, model)
-    demand = by_mode.demand(state.modes.mode, seen, state.memory, state.setpoint, config.control)
+    law_input = _law_input(state, observation, model)
+    demand = by_mode.demand(state.modes.mode, law_input, state.memory, state.setpoint, config.control)
     memory = demand.memory if demand is not None else ()
-    return state._replace(sample=seen.sample, memory=memory), demand, seen.b_body_t
+    return state._replace(sample=law_input.sample, memory=memory), demand, law_input.b_body_t
 
 
 def _law_input(state: FlightState, observation: Observation, model: EphemerisModel) -> LawInput:

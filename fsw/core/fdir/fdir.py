@@ -92,7 +92,7 @@ def judge(
         config: limits.
 
     Returns:
-        The health, the estimator set right or restarted where a fault was found, and the attitude, which is
+        The health, the estimator corrected or restarted where a fault was found, and the attitude, which is
         not valid while a fault may be what it shows.
     """
     readings, reference = evidence.readings, evidence.reference
