@@ -1,1 +1,1 @@
-"""Torquer flight software: what flies."""
+"""Torquer flight software: node, core, onboard table, and its way onto the bus."""

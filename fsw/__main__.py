@@ -20,7 +20,7 @@ from fsw.table.table import load_flight_table
 @click.option("--bench", is_flag=True, help="On a bench: no PLANT_END ends it.")
 @click.option("--parent", type=int, hidden=True)
 def main(table: str | None, bus: str, disarmed: bool, bench: bool, parent: int | None) -> None:
-    """Fly on a bus: answer the SYNC of a plant, as an onboard table says."""
+    """Run the flight software on a bus: answer each SYNC of a plant, by an onboard table."""
     try:
         loaded = load_flight_table(table)
     except TableError as error:

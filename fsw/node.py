@@ -13,10 +13,10 @@ from fsw.wire.frame import Frame
 from fsw.wire.messages import PlantBoot, PlantEnd, Sync, intact
 
 MOST_INBOX_FRAMES = 1024
-"""Frames kept between two answers: bounds memory under a flood, far above what the gate looks at."""
+"""Frames stored between two answers: bounds memory under a flood, far above what the gate reads."""
 
 NO_PLANT_S = 2.0
-"""No SYNC answered for so long: a PLANT_BOOT is of a plant that waits for FSW_BOOT."""
+"""After this long without an answered SYNC, a PLANT_BOOT comes from a plant that waits for FSW_BOOT."""
 
 TICKS_MODULO = 1 << 24
 """As PLANT_END counts."""
@@ -27,12 +27,12 @@ class End(Enum):
 
     NO = auto()
     DOUBTED = auto()
-    """The plant says so, but of a tick near ahead: it is if silence follows."""
+    """PLANT_END names a tick near ahead: the run is over if silence follows."""
     YES = auto()
 
 
 class FlightNode:
-    """Flight software seen from the bus: frames in, frames out."""
+    """The flight software as a node of the bus: frames in, frames out."""
 
     def __init__(self, config: FlightConfig) -> None:
         self.config = config
@@ -41,7 +41,7 @@ class FlightNode:
         self._inbox: list[Frame] = []
 
     def start(self) -> Frame:
-        """FSW_BOOT, the first frame this node sends: a flight begins, and what came before does not count."""
+        """FSW_BOOT, the first frame this node sends: a flight begins, and earlier frames do not count."""
         self.state, self.end = boot(self.config), End.NO
         self._inbox = []
         return boot_frame(self.config.table_crc)
@@ -65,20 +65,20 @@ class FlightNode:
         """Whether the plant asks for FSW_BOOT: it started after this node did, or once more.
 
         Args:
-            frame: what came.
+            frame: the received frame.
             idle_s: time since a SYNC was answered.
         """
         waits = self.state.tick < 0 or idle_s > NO_PLANT_S
         return waits and frame.can_id == PlantBoot.ID and intact(frame)
 
     def copy(self) -> Self:
-        """A node that goes on from here by itself."""
+        """An independent copy of the node in its present state."""
         other = copy(self)
         other._inbox = self._inbox.copy()
         return other
 
     def _answer(self, sync: Sync) -> tuple[Frame, ...]:
-        """One step; what the boards said is kept until a SYNC takes it."""
+        """One step; the frames of the boards are stored until a SYNC consumes them."""
         before = self.state
         inbox = Inbox(sync.tick, sync.unix_time_s, tuple(self._inbox))
         self.state, outbox = step(before, inbox, self.config)
@@ -89,7 +89,7 @@ class FlightNode:
         return outbox
 
     def _judge_end(self, ticks: int) -> End:
-        """What is to be made of a PLANT_END: none is believed before the first tick."""
+        """Whether a PLANT_END ends the run; none is believed before the first tick."""
         ahead = (ticks - self.state.tick - 1) % TICKS_MODULO
         if self.state.tick < 0 or ahead > LEAP_TICKS:
             return self.end

@@ -1,4 +1,4 @@
-"""The flight software as a process: its node on a bus, faults told in one sentence, an exit code."""
+"""The flight software as a process: its node on a bus, faults as one sentence, an exit code."""
 
 import click
 
@@ -12,13 +12,13 @@ from fsw.runner import run
 from fsw.table.config import flight_config
 from fsw.table.table import FlightTable
 
-MOST_PASSED_OVER = 10_000
+MOST_DISCARDED = 10_000
 
 
 def fly(
     table: FlightTable, spec: str, disarmed: bool = False, bench: bool = False, parent: int | None = None
 ) -> int:
-    """Fly on a bus until the run ends: the exit code.
+    """Run the flight software on a bus until the run ends: the exit code.
 
     Args:
         table: the onboard table.
@@ -36,7 +36,7 @@ def fly(
     if parent is None:
         click.echo(f"fsw on {resolve(spec)}", err=True)
     try:
-        _pass_over(link)
+        _discard_backlog(link)
         run(node, link, parent, bench)
     except BusError as error:
         return _failed(error, 1)
@@ -52,8 +52,8 @@ def _failed(error: Exception, exit_code: int) -> int:
     return exit_code
 
 
-def _pass_over(bus: Bus) -> None:
-    """What was sent before FSW_BOOT does not count; not all of it, if others babble without end."""
-    for _ in range(MOST_PASSED_OVER):
+def _discard_backlog(bus: Bus) -> None:
+    """Discard the frames sent before FSW_BOOT, up to a bound: other nodes may send without end."""
+    for _ in range(MOST_DISCARDED):
         if bus.receive(0.0) is None:
             return

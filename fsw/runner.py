@@ -7,11 +7,11 @@ from fsw.bus.interface import Bus, BusClosed
 from fsw.node import End, FlightNode
 
 IDLE_S = 1.0
-"""How often a parent is looked for, whatever others say on the bus."""
+"""How often the parent process is checked, however busy the bus is."""
 REPEAT_BOOT_AFTER_S = 0.5
-"""A plant that asks for FSW_BOOT sooner than this has been answered by the one just sent."""
+"""A request for FSW_BOOT sooner than this is answered by the one just sent."""
 SILENCE_S = 5.0
-"""An end that is in doubt is believed when nothing has come for so long."""
+"""An end in doubt is believed after this long without a frame."""
 
 
 def run(node: FlightNode, bus: Bus, parent: int | None = None, bench: bool = False) -> None:
@@ -24,26 +24,26 @@ def run(node: FlightNode, bus: Bus, parent: int | None = None, bench: bool = Fal
         bench: no PLANT_END ends it.
     """
     bus.send([node.start()])
-    booted = heard = answered = looked = time.monotonic()
+    booted_s = received_s = answered_s = checked_s = time.monotonic()
     while bench or not node.ended:
         try:
             frame = bus.receive(IDLE_S)
         except BusClosed:
             return
-        now = time.monotonic()
-        if parent is not None and (frame is None or now - looked > IDLE_S):
+        now_s = time.monotonic()
+        if parent is not None and (frame is None or now_s - checked_s > IDLE_S):
             if os.getppid() != parent:
                 return
-            looked = now
+            checked_s = now_s
         if frame is None:
-            if node.end is End.DOUBTED and now - heard > SILENCE_S and not bench:
+            if node.end is End.DOUBTED and now_s - received_s > SILENCE_S and not bench:
                 return
             continue
-        heard = now
+        received_s = now_s
         answer = node.receive(frame)
         if answer:
             bus.send(answer)
-            answered = now
-        elif node.is_boot_request(frame, now - answered) and now - booted > REPEAT_BOOT_AFTER_S:
+            answered_s = now_s
+        elif node.is_boot_request(frame, now_s - answered_s) and now_s - booted_s > REPEAT_BOOT_AFTER_S:
             bus.send([node.start()])
-            booted = now
+            booted_s = now_s

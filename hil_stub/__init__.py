@@ -1,1 +1,1 @@
-"""Boards between the bus and the physics. They guard themselves; frames in, frames out."""
+"""Boards between bus and physics, which enforce their own limits; frames in, frames out."""

@@ -13,14 +13,14 @@ from hil_stub.sensors.stimulus import Stimulus, Vec3
 from hil_stub.sensors.sun_sensor import SunSensor
 
 DEADMAN_MS = 5000
-"""Silence of ``SYNC`` after which a board on a bench is silenced, unless it is told otherwise."""
+"""Time without ``SYNC`` after which a board on a bench switches off, by default."""
 
 LEVEL_A = (0.1, 0.2, 0.3)
-"""Current read-back at levels 1, 2, 3, unless the board is told otherwise."""
+"""Current at levels 1, 2, 3 [A], by default."""
 
 
 class BenchBoard(Protocol):
-    """A board with its stimulus: enters ticks, hears frames.
+    """A board with its stimulus: enters ticks, receives frames.
 
     ``clock_ms`` is what its own clock reads; None: it has none.
     """
@@ -29,10 +29,10 @@ class BenchBoard(Protocol):
         """Enter ``tick``: the frames to send."""
 
     def receive(self, frame: Frame, clock_ms: int | None) -> None:
-        """Hear a frame of the bus."""
+        """Receive a frame of the bus."""
 
     def pass_time(self, clock_ms: int | None) -> None:
-        """Nothing has come."""
+        """Time has passed without a frame."""
 
     def sync(self) -> None:
         """The ``SYNC`` of this tick has come."""
@@ -42,7 +42,7 @@ class BenchBoard(Protocol):
 
     @property
     def pin(self) -> Pin | None:
-        """The coil that is on at the instant that the board was last told of."""
+        """The coil that is on at the latest time given to the board."""
 
 
 class CoilBoard:
@@ -65,7 +65,7 @@ class CoilBoard:
         return self._driver.begin_tick(tick, current_a if drive.level > 0 else -current_a, clock_ms)
 
     def receive(self, frame: Frame, clock_ms: int | None) -> None:
-        """Hear a frame of the bus."""
+        """Receive a frame of the bus."""
         self._driver.receive(frame, clock_ms)
 
     def pass_time(self, clock_ms: int | None) -> None:
@@ -86,22 +86,22 @@ class CoilBoard:
         return self._driver.pin
 
 
-class Unguarded:
-    """What a board that drives no pulses does about time, SYNC and silence: nothing."""
+class Untimed:
+    """A board that drives no pulses: time, SYNC and silence do not affect it."""
 
     pin = None
 
     def sync(self) -> None:
-        """Nothing of it goes on beyond a tick."""
+        """No drive lasts beyond a tick."""
 
     def pass_time(self, clock_ms: int | None) -> None:
-        """Nothing of it depends on time."""
+        """No state depends on time."""
 
     def silence(self, clock_ms: int | None) -> None:
-        """Nothing of it goes on for longer than a tick."""
+        """No drive lasts longer than a tick."""
 
 
-class DipoleBoard(Unguarded):
+class DipoleBoard(Untimed):
     """A continuous driver whose coils are without current when the sensors sample."""
 
     def __init__(self, tick_hz: int) -> None:
@@ -113,12 +113,12 @@ class DipoleBoard(Unguarded):
         return self._driver.begin_tick(tick, 0.0)
 
     def receive(self, frame: Frame, clock_ms: int | None) -> None:
-        """Hear a frame of the bus."""
+        """Receive a frame of the bus."""
         self._driver.receive(frame)
 
 
-class SensorBoard(Unguarded):
-    """A sensor: what it hears, and that it is left alone, is nothing to it."""
+class SensorBoard(Untimed):
+    """A sensor, which ignores received frames, time and silence."""
 
     def __init__(self, begin_tick: Callable[[int, Vec3, bool], list[Frame]], stimulus: Stimulus) -> None:
         self._begin_tick = begin_tick
@@ -130,18 +130,18 @@ class SensorBoard(Unguarded):
         return self._begin_tick(tick, vector, valid)
 
     def receive(self, frame: Frame, clock_ms: int | None) -> None:
-        """A sensor hears nothing."""
+        """A sensor ignores all frames."""
 
 
 class MagnetometerBoard(SensorBoard):
-    """A magnetometer that is shown a field [T]."""
+    """A magnetometer whose stimulus is a field [T]."""
 
     def __init__(self, tick_hz: int, stimulus: Stimulus) -> None:
         super().__init__(Magnetometer(tick_hz).begin_tick, stimulus)
 
 
 class SunBoard(SensorBoard):
-    """A Sun sensor that is shown a direction."""
+    """A Sun sensor whose stimulus is a direction."""
 
     def __init__(self, tick_hz: int, stimulus: Stimulus) -> None:
         super().__init__(SunSensor(tick_hz).begin_tick, stimulus)
@@ -152,10 +152,10 @@ class BenchNode:
 
     The board vouches for its timers only while it counts every tick. When it has lost count (two strange
     ``SYNC`` in a row, of one tick or of one and the next), or when the plant has started anew, it is replaced
-    by a new one, which boots: for the coil driver a full lockout. One strange ``SYNC`` alone moves nothing.
-    ``PLANT_END`` is nothing to it: a bench is switched off, not told that it is over.
+    by a new one, which boots: for the coil driver a full lockout. One strange ``SYNC`` alone changes nothing.
+    ``PLANT_END`` is ignored: a bench is switched off by hand.
 
-    The dead-man: when no ``SYNC`` has gone on in the count of ticks for ``deadman_ms``, the board is silenced
+    The dead-man: when no ``SYNC`` has gone on in the count of ticks for ``deadman_ms``, the board is off
     until one does. One that only repeats the tick of the last is no sign of life.
 
     Args:
@@ -178,7 +178,7 @@ class BenchNode:
 
     @property
     def pin(self) -> Pin | None:
-        """The coil that is on at the time that the bench was last told of; None: all are off."""
+        """The coil that is on at the latest time given to the bench; None: all are off."""
         return self._board.pin
 
     def switch_on(self, tick: int = 0, now_ms: int = 0) -> list[Frame]:
@@ -195,7 +195,7 @@ class BenchNode:
         return self._enter()
 
     def receive(self, frame: Frame, now_ms: int = 0) -> list[Frame]:
-        """Hear a frame of the bus: the frames to send because of it."""
+        """Receive a frame of the bus: the frames to send in answer."""
         self.watch(now_ms)
         self._board.receive(frame, self._clock_ms)
         if not intact(frame):
@@ -210,14 +210,14 @@ class BenchNode:
         return []
 
     def watch(self, now_ms: int) -> None:
-        """Time goes on, also where nothing is heard: pulses end, and the dead-man wakes."""
+        """Time has passed, with or without a frame: pulses end, and the dead-man acts."""
         self._now_ms = now_ms
         self._board.pass_time(self._clock_ms)
         if self._deadman_ms is not None and now_ms - self._synced_ms > self._deadman_ms:
             self._board.silence(self._clock_ms)
 
     def due_ms(self) -> int | None:
-        """When ``watch`` is due next although nothing is heard; None: whenever."""
+        """When ``watch`` is due next if no frame comes; None: at any time."""
         pin = self.pin
         due_ms = [] if pin is None or pin.until_ms is None else [pin.until_ms]
         if self._deadman_ms is not None and self._now_ms - self._synced_ms <= self._deadman_ms:

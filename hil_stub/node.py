@@ -1,4 +1,4 @@
-"""What every board does beside its work: count ticks, say that it has started, say that it is alive."""
+"""What all boards share: the count of ticks, the boot message and the heartbeat."""
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
@@ -26,8 +26,8 @@ class Node:
     Ticks only rise: one that does not is ignored. Ticks that were skipped are counted as slips.
 
     Args:
-        boot: message that says that the board has started.
-        heartbeat: message that says that it is alive, every 60 s after boot.
+        boot: message sent once after boot.
+        heartbeat: message sent every 60 s after boot.
         tick_hz: ticks a second.
         table_crc: CRC-32 of the board's table.
 
@@ -71,7 +71,7 @@ class Node:
         return [self._boot(reason=0, version=CONTRACT_VERSION, table_crc=self._table_crc).encode()]
 
     def heartbeat(self, state: int = 0, rejects: int = 0) -> list[Frame]:
-        """The heartbeat, when it is due: every 60 s of ticks after boot, late rather than never.
+        """The heartbeat, when it is due: every 60 s of ticks after boot, late if ticks were skipped.
 
         Args:
             state: state of the node, four bits.

@@ -191,8 +191,8 @@ def pulse_table(tick_hz: str) -> str:
     fired = 100 * hz
     board = board_in(fired, hz, duration_ms)
     shown = [*range(fired + 1, fired + 7), fired + 100 * hz, fired + 103 * hz - 1, fired + 103 * hz]
-    told = [(tick, status_of(board, tick)) for tick in range(fired + 1, shown[-1] + 1)]
-    return status_table("tick", [row for row in told if row[0] in shown])
+    statuses = [(tick, status_of(board, tick)) for tick in range(fired + 1, shown[-1] + 1)]
+    return status_table("tick", [row for row in statuses if row[0] in shown])
 
 
 def skip_table() -> str:

@@ -9,7 +9,7 @@ _RECORD = Struct("=IB3x8s")
 SIZE = _RECORD.size
 MAX_DATA = 8
 LENGTH_OFFSET = 4
-"""Where in a record the number of data bytes stands."""
+"""Offset of the number of data bytes in a record."""
 
 
 def pack(frame: Frame) -> bytes:

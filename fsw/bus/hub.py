@@ -3,7 +3,7 @@
 The hub listens on 127.0.0.1 and speaks 16-byte records (``fsw.bus.can_frame``) after one greeting. It never
 drops a record: what a slow client has not taken yet waits in memory. When that is more than ``BACKLOG_LIMIT``
 for all clients together, the slowest is disconnected, which it notices, instead of losing frames, which it
-would not. More than ``MOST_CLIENTS`` are not let in.
+would not. At most ``MOST_CLIENTS`` are accepted.
 """
 
 import selectors
@@ -22,7 +22,7 @@ MOST_CLIENTS = 64
 """Each of them gets a copy of every record: more would slow the bus for all."""
 
 BACKLOG_LIMIT = 64 * 2**20
-"""Bytes that are kept for all clients together."""
+"""Bytes that wait for all clients together."""
 
 _PAUSE_S = 0.1
 _CHUNK = 2**16
@@ -38,13 +38,13 @@ class _Client:
 
 
 def report_on_stderr(sentence: str) -> None:
-    """Say it on standard error, if that is open: the bus does not depend on who listens there."""
+    """Write a sentence to standard error, if that is open: the bus does not depend on it."""
     with suppress(OSError, ValueError):
         print(f"hub: {sentence}", file=sys.stderr, flush=True)
 
 
 class Hub:
-    """A hub that serves when told to by ``poll``, or by itself in a daemon thread after ``start``.
+    """A hub that serves when ``poll`` is called, or by itself in a daemon thread after ``start``.
 
     Opening a bus waits for the hub's greeting: whoever serves by ``poll`` opens none in that same thread.
 
@@ -78,7 +78,7 @@ class Hub:
     def poll(self, timeout_s: float | None) -> bool:
         """Serve what is ready, waiting at most ``timeout_s`` for it (None: for ever); true if any was."""
         if self._paused_until is not None:
-            timeout_s = self._rest(self._paused_until, timeout_s)
+            timeout_s = self._pause(self._paused_until, timeout_s)
         ready = self._selector.select(timeout_s)
         for key, events in ready:
             if isinstance(key.data, _Client):
@@ -133,17 +133,17 @@ class Hub:
 
     def _accept(self) -> None:
         try:
-            let_in = self._listener.accept(has_room=len(self._clients) < MOST_CLIENTS)
-        except NoDescriptorError:  # whoever stands there would be told of again and again
+            accepted = self._listener.accept(has_room=len(self._clients) < MOST_CLIENTS)
+        except NoDescriptorError:  # select would return for the same client again and again
             self._selector.unregister(self._listener)
             self._paused_until = monotonic() + _PAUSE_S
             return
-        if let_in is not None:
-            connection, port = let_in
+        if accepted is not None:
+            connection, port = accepted
             self._admit(connection, f"the client on port {port}")
 
-    def _rest(self, until: float, timeout_s: float | None) -> float | None:
-        """How long to wait for traffic while nobody is let in; the timeout as it was once that is over."""
+    def _pause(self, until: float, timeout_s: float | None) -> float | None:
+        """How long to wait for traffic while no client is accepted; ``timeout_s`` once that is over."""
         left_s = until - monotonic()
         if left_s > 0.0:
             return left_s if timeout_s is None else min(left_s, timeout_s)
@@ -177,7 +177,7 @@ class Hub:
         whole = len(pending) - len(pending) % can_frame.SIZE
         records, sender.partial = pending[:whole], pending[whole:]
         if records and max(records[can_frame.LENGTH_OFFSET :: can_frame.SIZE]) > can_frame.MAX_DATA:
-            self._drop(sender)  # a stranger: these are no records
+            self._drop(sender)  # not a client of ours: these are no records
             return
         for client in tuple(self._clients):
             if client is not sender and records:
@@ -193,7 +193,7 @@ class Hub:
         client.backlog += records
 
     def _shed(self) -> None:
-        """Drop the slowest, until no more is kept than may be."""
+        """Drop the slowest clients until the backlog is within its limit."""
         while sum(len(client.backlog) for client in self._clients) > BACKLOG_LIMIT:
             slowest = max(self._clients, key=lambda client: len(client.backlog))
             self._report(

@@ -1,4 +1,4 @@
-"""The hub's door: lets in who comes to the bus, or tells them that there is no room."""
+"""The listening socket of the hub: accepts a client with a greeting, or refuses it with one."""
 
 import os
 import socket
@@ -9,7 +9,7 @@ GREETING = b"torquer-loop/1\r\n"
 """First bytes from the hub: the client is on the bus, and what follows is for it."""
 
 FULL = b"torquer-full/1\r\n"
-"""First and last bytes from a hub that takes no more clients; as many as in the greeting."""
+"""First and last bytes from a hub that accepts no more clients; as many as in the greeting."""
 
 HOST = "127.0.0.1"
 _SEND_BUFFER = 2**18
@@ -17,15 +17,15 @@ _SEND_BUFFER = 2**18
 
 
 class NoDescriptorError(OSError):
-    """There is not even a descriptor left to turn somebody away: whoever stands at the door stays there."""
+    """There is no descriptor left even to refuse a client: it stays in the backlog of the socket."""
 
 
 class HubListener:
-    """A listening socket on 127.0.0.1, and a descriptor kept back to turn somebody away when none is left.
+    """A listening socket on 127.0.0.1, and a spare descriptor to refuse a client when no other is left.
 
     Args:
         port: TCP port; 0 takes a free one.
-        report: called with a sentence about who was turned away, at the first, tenth, hundredth ... of them.
+        report: called with a sentence about refused clients, at the first, tenth, hundredth ... of them.
 
     Raises:
         OSError: the port is taken.
@@ -44,25 +44,25 @@ class HubListener:
         return self._listener.fileno()
 
     def accept(self, has_room: bool) -> tuple[socket.socket, int] | None:
-        """Answer the next who stands there: its connection, greeted, and its port; None if it was not let in.
+        """Accept the next client: its greeted connection and its port; None if it was refused or is gone.
 
         Raises:
-            NoDescriptorError: it cannot be answered, for now.
+            NoDescriptorError: it cannot be answered now.
         """
         try:
             connection, (_, port) = self._listener.accept()
-        except (BlockingIOError, ConnectionError):  # gone again before it was taken
+        except (BlockingIOError, ConnectionError):  # gone before it was accepted
             return None
         except OSError as error:
             self._refuse_with_spare(error)
             return None
         if not has_room:
-            self._refuse(connection, "it has as many clients as it takes")
+            self._refuse(connection, "it has as many clients as it serves")
             return None
         return (connection, port) if _greet(connection) else None
 
     def close(self) -> None:
-        """Let nobody in any more."""
+        """Accept no more clients."""
         self._listener.close()
         if self._spare is not None:
             os.close(self._spare)
@@ -90,7 +90,7 @@ class HubListener:
         if self._refused == self._report_at:
             self._report_at *= 10
             self._report(
-                f"the loop bus on port {self.port} takes nobody more ({why}): {self._refused} refused"
+                f"the loop bus on port {self.port} accepts no more clients ({why}): {self._refused} refused"
             )
 
 

@@ -10,7 +10,7 @@ DEFAULT_LOOP_PORT = 28011
 
 
 class BusError(Exception):
-    """A bus that cannot be opened or used; the message is one sentence for people."""
+    """A bus that cannot be opened or used; the message is one sentence for the user."""
 
 
 class BusClosed(BusError):  # noqa: N818  (a state, not a fault: it ends every run)
@@ -41,7 +41,7 @@ class Bus(Protocol):
         A timeout of None waits for ever; 0, or a deadline already passed, does not wait.
 
         Raises:
-            BusClosed: the bus is gone, and all that came before has been handed out.
+            BusClosed: the bus is gone, and all earlier frames have been returned.
             BusError: the interface failed.
         """
 

@@ -1,4 +1,4 @@
-"""One end of the loop bus: a TCP connection to the hub, which the first to come hosts itself."""
+"""One end of the loop bus: a TCP connection to the hub, which the first process to open it hosts."""
 
 import atexit
 import select
@@ -16,23 +16,23 @@ from fsw.wire.frame import Frame
 _RETRY_S = 0.01
 _PARTING_S = 1.0
 SEND_PATIENCE_S = 20.0
-"""A hub that takes nothing for so long stands still."""
+"""A hub that accepts no data for so long stands still."""
 _CHUNK = 2**16
 
 
 class LoopLink:
     """A :class:`~fsw.bus.interface.Bus` on the loop bus of ``port``. Once open, it misses nothing.
 
-    If nobody serves the port, this process does, in a daemon thread, until ``close``: that ends the bus for
-    all.
+    If no hub serves the port, this process hosts one, in a daemon thread, until ``close``: that ends the bus
+    for all.
 
     Args:
         port: the hub's TCP port on 127.0.0.1.
         timeout_s: how long to try.
-        may_host: whether to serve the port if nobody does.
+        may_host: whether to host the hub if there is none.
 
     Raises:
-        BusError: no hub came up in time, it takes no more clients, or something else listens there.
+        BusError: no hub came up in time, it accepts no more clients, or another program listens there.
     """
 
     name = "loop"
@@ -46,7 +46,7 @@ class LoopLink:
             self._socket = self._join(port, monotonic() + timeout_s, may_host)
         except OSError as error:  # no descriptor or no port left, say
             raise BusError(f"the bus {self.spec} cannot be opened: {error.strerror}") from error
-        self._socket.settimeout(SEND_PATIENCE_S)  # of sending: what is received has been waited for
+        self._socket.settimeout(SEND_PATIENCE_S)  # for sending: receiving waits in select
         atexit.register(self.close)
 
     def send(self, frames: Sequence[Frame]) -> None:
@@ -54,7 +54,7 @@ class LoopLink:
         try:
             self._socket.sendall(can_frame.pack_all(frames))
         except TimeoutError as error:
-            still = f"the bus {self.spec} takes nothing any more: its hub stands still"
+            still = f"the bus {self.spec} accepts no more data: its hub stands still"
             raise BusError(still) from error
         except OSError as error:
             raise self._closed() from error
@@ -70,7 +70,7 @@ class LoopLink:
         if self._socket.fileno() < 0:
             return
         atexit.unregister(self.close)
-        self._part()
+        self._shut_down()
         self._socket.close()
         if self._hub is not None:
             self._hub.close()
@@ -101,8 +101,8 @@ class LoopLink:
             f"the bus {self.spec} is closed: its hub is gone, or dropped this end, which read too slowly"
         )
 
-    def _part(self) -> None:
-        """Say that nothing more follows, and read until the hub agrees.
+    def _shut_down(self) -> None:
+        """Shut down sending, and read until the hub does the same.
 
         Closing on unread data would reset the connection and could destroy what the hub has not read yet.
         """
@@ -139,7 +139,7 @@ class LoopLink:
 
 
 def _connect(port: int, deadline: float) -> socket.socket | None:
-    """A connection that the hub has greeted; None if nobody listens (yet, or any more)."""
+    """A connection that the hub has greeted; None if no hub listens (yet, or any more)."""
     connection = socket.socket()
     try:
         connection.settimeout(max(_RETRY_S, deadline - monotonic()))
@@ -154,7 +154,7 @@ def _connect(port: int, deadline: float) -> socket.socket | None:
                 raise ConnectionResetError
             greeting += received
         if greeting == FULL:
-            raise BusError(f"the loop bus on port {port} is full: its hub takes no more clients")
+            raise BusError(f"the loop bus on port {port} is full: its hub accepts no more clients")
         if greeting != GREETING:
             raise BusError(f"port {port} of this machine is taken by another program, which is no hub")
     except (ConnectionError, TimeoutError):

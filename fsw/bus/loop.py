@@ -16,8 +16,9 @@ from fsw.wire.frame import Frame
 class LoopBus(can.BusABC):
     """The loop bus as a python-can backend, registered as interface ``loop``.
 
-    It has no file descriptor to offer: one read may take many records, and they are handed out one by one, so
-    that waiting on a descriptor would miss what has been read already. ``can.Notifier`` then uses a thread.
+    It has no file descriptor to offer: one read may return many records, which are then received one by one,
+    so that waiting on a descriptor would miss those that have been read already. ``can.Notifier`` then uses a
+    thread.
 
     Args:
         channel: the hub's TCP port; None takes the default.

@@ -14,7 +14,7 @@ _AUTO_INTERFACE = "vcan0"
 
 
 def resolve(spec: str) -> str:
-    """The spec in full: ``auto`` becomes what it stands for here, ``loop`` gets its port.
+    """The spec in full: ``auto`` becomes the bus it means on this machine, ``loop`` gets its port.
 
     Raises:
         BusError: no such kind of bus, or its argument is missing or wrong.

@@ -11,7 +11,7 @@ from fsw.wire.frame import Frame
 
 BITRATE = 500_000
 SEND_PATIENCE_S = 5.0
-"""An adapter that takes nothing for so long stands still."""
+"""An adapter that accepts no data for so long stands still."""
 
 
 class PythonCan:

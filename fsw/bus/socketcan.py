@@ -13,10 +13,10 @@ from fsw.bus.interface import BusClosed, BusError
 from fsw.wire.frame import Frame
 
 RECEIVE_BUFFER = 32 * 2**20
-"""The kernel's default holds some 278 frames and then drops without a word; this holds some 80 000."""
+"""The kernel's default holds some 278 frames and then drops silently; this holds some 80 000."""
 
 SEND_PATIENCE_S = 0.5
-"""A full transmit queue is waited for this long: at 125 kbit/s it is time for 500 frames."""
+"""How long a full transmit queue is waited for: at 125 kbit/s it is time for 500 frames."""
 
 _RETRY_S = 0.0005
 _CAN_RAW_ERR_FILTER = 2  # missing from the module socket before Python 3.13, like the next

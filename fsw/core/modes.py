@@ -1,7 +1,8 @@
-"""The mode table: from where to where, on which condition, held for how long.
+"""The mode table: transitions with source, target, condition and dwell time.
 
-Rows of the current mode are looked at in order; the first whose condition has held without a break for its
-dwell time is taken. Hysteresis lies in the conditions: what leads out of a mode is wider than what leads in.
+Transitions of the current mode are checked in order; the first whose condition has held without a break for
+its dwell time is taken. Hysteresis lies in the conditions: the limits to leave a mode are wider than to
+enter.
 """
 
 from dataclasses import dataclass
@@ -13,7 +14,7 @@ from fsw.wire.messages import Mode
 
 
 class ModeConditions(NamedTuple):
-    """The conditions of the table, judged once a tick."""
+    """The conditions of the table, evaluated once a tick."""
 
     tripped: bool
     clear: bool
@@ -54,8 +55,8 @@ _ROWS_FROM = {mode: [(i, row) for i, row in enumerate(TABLE) if row.source is mo
 class ModeConfig:
     """Thresholds, and dwell ticks by row of ``TABLE``.
 
-    ``near_cosine`` and ``far_cosine`` are cosines of the angle from nominal; ``axis_only`` judges that
-    angle for body axis 1 alone, from the local vertical.
+    ``near_cosine`` and ``far_cosine`` are cosines of the angle from the nominal attitude; with ``axis_only``
+    it is that of body axis 1 alone from the local vertical.
     """
 
     dwell_ticks: tuple[int, ...]
@@ -70,7 +71,7 @@ class ModeConfig:
 class ModeState(NamedTuple):
     """The mode, since when, and since when each row's condition has held (-1: it does not).
 
-    ``held``: the ground asked for SAFE, and the table does not lead out of it.
+    ``held``: the ground has commanded SAFE, and no transition leaves it.
     """
 
     mode: Mode = Mode.SAFE
@@ -87,25 +88,25 @@ class ModeState(NamedTuple):
 def judge(
     attitude: Attitude, spin_radps: float, tripped: bool, state: ModeState, config: ModeConfig
 ) -> ModeConditions:
-    """The conditions of the table at this tick; a rate is slow or fast beside the spin that is wanted."""
+    """The conditions of the table at this tick; rates are relative to the spin of the setpoint."""
     q0, q1, q2, q3 = attitude.q_body_from_orbit
     cosine = q0 * q0 + q1 * q1 - q2 * q2 - q3 * q3 if config.axis_only else 2.0 * q0 * q0 - 1.0
     w1, w2, w3 = attitude.omega_body_orbit_radps
     rate = norm((w1 - spin_radps, w2, w3))
-    known = attitude.valid
+    valid = attitude.valid
     return ModeConditions(
         tripped=tripped,
         clear=not tripped and not state.held and state.trips < config.trips_to_stay_safe,
-        lost_attitude=not known,
-        slow=known and rate < config.slow_radps,
-        fast=known and rate > config.fast_radps,
-        near=known and cosine > config.near_cosine,
-        far=known and cosine < config.far_cosine,
+        lost_attitude=not valid,
+        slow=valid and rate < config.slow_radps,
+        fast=valid and rate > config.fast_radps,
+        near=valid and cosine > config.near_cosine,
+        far=valid and cosine < config.far_cosine,
     )
 
 
 def advance(state: ModeState, situation: ModeConditions, tick: int, config: ModeConfig) -> ModeState:
-    """The mode after this tick. At most one transition a tick; every condition starts anew in a new mode."""
+    """The mode after this tick. At most one transition a tick; the dwell times restart in a new mode."""
     held = [-1] * len(TABLE)
     trips = state.trips + (situation.tripped and state.mode is not Mode.SAFE)
     for index, row in _ROWS_FROM[state.mode]:
@@ -120,7 +121,7 @@ def advance(state: ModeState, situation: ModeConditions, tick: int, config: Mode
 
 
 def request_mode(state: ModeState, mode: Mode, tick: int) -> ModeState:
-    """The mode that the ground asks for; a SAFE that it asks for is held."""
+    """The mode that the ground commands; a commanded SAFE is held."""
     held = mode is Mode.SAFE
     if mode is state.mode:
         return state._replace(held=held)

@@ -1,6 +1,6 @@
 """Monitors: each a name, a limit and a predicate over one tick. A violation trips to SAFE.
 
-What each of them is for stands in ``requirements``.
+The purpose of each is in ``docs/requirements.md``.
 """
 
 from collections.abc import Callable
@@ -27,7 +27,7 @@ class Monitor(IntEnum):
 
 
 class MonitorInput(NamedTuple):
-    """What the monitors look at."""
+    """The inputs of the monitors in one tick."""
 
     attitude: Attitude
     owed_impulse_body_nms: Vec3

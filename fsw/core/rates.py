@@ -1,4 +1,4 @@
-"""Rate groups: slower work runs on the ticks where ``tick % divisor == offset``."""
+"""Rate groups: work at a fraction of the tick rate, on ticks where ``tick % divisor == offset``."""
 
 from dataclasses import dataclass
 

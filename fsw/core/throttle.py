@@ -1,4 +1,4 @@
-"""Events no more often than once a time for each kind; what is held back is counted.
+"""Limits the rate of events of each kind; suppressed events are counted.
 
 A kind is an event with its argument where that is a code, and the event alone where it is a quantity: a clock
 that jitters, or restarts that number themselves, are one kind.
@@ -19,11 +19,11 @@ QUANTITIES = frozenset(
     }
 )
 MOST_KINDS = 32
-"""Kinds remembered at once; beyond, events are held back."""
+"""Kinds remembered at once; events of further kinds are suppressed."""
 
 
 class LastReport(NamedTuple):
-    """A kind, and the tick in which it was last told."""
+    """A kind of event, and the tick in which it was last reported."""
 
     event: int
     argument: int
@@ -31,35 +31,35 @@ class LastReport(NamedTuple):
 
 
 class Throttle(NamedTuple):
-    """The kinds told of late, and how many events were held back since boot."""
+    """The kinds reported recently, and the number of events suppressed since boot."""
 
     reported: tuple[LastReport, ...] = ()
     held_back: int = 0
 
     def integers(self) -> tuple[int, ...]:
         """For the checksum of the state."""
-        return (*(number for told in self.reported for number in told), self.held_back)
+        return (*(number for report in self.reported for number in report), self.held_back)
 
 
 def throttle_events(
     state: Throttle, happenings: list[Happening], tick: int, spacing_ticks: int
 ) -> tuple[Throttle, list[Happening]]:
-    """What may be told in this tick.
+    """The events that may be reported in this tick.
 
     Returns:
-        The state with what was told and held back, and the happenings to tell, in their order.
+        The state with the reported kinds and the count, and the happenings to report, in their order.
     """
     if not happenings:
         return state, happenings
-    told = [kind for kind in state.reported if tick - kind.tick < spacing_ticks]
-    known = {(kind.event, kind.argument) for kind in told}
+    reported = [kind for kind in state.reported if tick - kind.tick < spacing_ticks]
+    recent = {(kind.event, kind.argument) for kind in reported}
     passed = []
     for happening in happenings:
         argument = 0 if happening.event in QUANTITIES else happening.argument
         kind = (int(happening.event), argument)
-        if kind in known or len(told) >= MOST_KINDS:
+        if kind in recent or len(reported) >= MOST_KINDS:
             continue
-        known.add(kind)
-        told.append(LastReport(*kind, tick))
+        recent.add(kind)
+        reported.append(LastReport(*kind, tick))
         passed.append(happening)
-    return Throttle(tuple(told), state.held_back + len(happenings) - len(passed)), passed
+    return Throttle(tuple(reported), state.held_back + len(happenings) - len(passed)), passed

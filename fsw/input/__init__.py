@@ -1,1 +1,1 @@
-"""What people give to a node: files and options, read within bounds, their faults told in one sentence."""
+"""Files and options of a node: read within bounds, each fault reported in one sentence."""

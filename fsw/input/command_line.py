@@ -1,4 +1,4 @@
-"""How a node's command line is run: a wrong option is one sentence, without the usage before it."""
+"""Runs the command line of a node: a wrong option is one sentence, without the usage before it."""
 
 from collections.abc import Sequence
 

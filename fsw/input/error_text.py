@@ -1,10 +1,10 @@
-"""How an error is told on a terminal."""
+"""The text of an error on a terminal."""
 
 LONGEST = 1000
 
 
 def error_text(error: object) -> str:
-    """What an error says, on one line that can be read: names in it may hold any character, and any number.
+    """The text of an error on one readable line: names in it may hold any characters, and any number of them.
 
     What is not printable is escaped, and what is longer than ``LONGEST`` is cut in its middle.
     """

@@ -1,4 +1,4 @@
-"""Files as they are read here: regular ones, and no more of one than what it is for can hold."""
+"""Reads regular files only, and of each no more than its purpose allows."""
 
 import errno
 import os
@@ -11,7 +11,7 @@ def read_regular(path: Path, most_bytes: int) -> bytes:
 
     Raises:
         OSError: there is no such file, it is a directory, pipe or device, cannot be read, or holds more than
-            ``most_bytes``; ``strerror`` says it.
+            ``most_bytes``; ``strerror`` says which.
     """
     check_regular(path)
     with path.open("rb") as file:

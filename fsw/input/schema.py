@@ -1,4 +1,4 @@
-"""Checked values from TOML: how a section is read, and how its faults are told in one sentence."""
+"""Checked values from TOML: sections, and the sentence that reports their faults."""
 
 import tomllib
 from itertools import islice
@@ -24,11 +24,11 @@ class TableError(Exception):
 
 MOST_FAULTS = 12
 LONGEST_VALUE = 80
-"""Of what is wrong, so much is told that the sentence can still be read."""
+"""Faults, and characters of a value, in one sentence: more could not be read."""
 
 
 class Section(BaseModel):
-    """A section that knows its keys and takes no others."""
+    """A section that accepts only its own keys."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
@@ -46,7 +46,7 @@ def read_toml(path: Path) -> Nested:
     """The content of a TOML file.
 
     Raises:
-        TableError: the file is missing, unreadable, not TOML or beyond what is read of it.
+        TableError: the file is missing, unreadable, not TOML or beyond the bounds of ``toml_text``.
     """
     try:
         return load_toml(path)
@@ -71,10 +71,10 @@ def validated(model: type[Model], values: Nested, source: str) -> Model:
 
 
 def faults(model: type[Any], error: ValidationError) -> str:
-    """The first wrong keys, each with what is allowed, and how many there are beside them."""
-    told = "; ".join(_fault(model, dict(detail)) for detail in islice(error.errors(), MOST_FAULTS))
+    """The first wrong keys, each with what is allowed, and the number of the others."""
+    text = "; ".join(_fault(model, dict(detail)) for detail in islice(error.errors(), MOST_FAULTS))
     others = error.error_count() - MOST_FAULTS
-    return f"{told}; and {others} more" if others > 0 else told
+    return f"{text}; and {others} more" if others > 0 else text
 
 
 def _fault(model: type[Any], detail: Nested) -> str:
@@ -88,10 +88,10 @@ def _fault(model: type[Any], detail: Nested) -> str:
         return f"{path}: {message}" if path else message
     allowed = _allowed_range(model, detail["loc"]) or _KINDS.get(detail["type"], "")
     hint = f"allowed is {allowed}" if allowed else f"{message[0].lower()}{message[1:]}"
-    return f"{path} = {_shown(detail['input'])} is not allowed: {hint}"
+    return f"{path} = {_shortened(detail['input'])} is not allowed: {hint}"
 
 
-def _shown(value: object) -> str:
+def _shortened(value: object) -> str:
     text = repr(value)
     return text if len(text) <= LONGEST_VALUE else f"{text[:LONGEST_VALUE]}..."
 

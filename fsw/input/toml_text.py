@@ -1,4 +1,4 @@
-"""TOML as far as it is read here: bounded in size, in depth and in the magnitude of its numbers.
+"""TOML within bounds: in size, in depth and in the magnitude of its numbers.
 
 Python's own reader has no bounds: nesting ends its stack, a long key takes hours, an integer may have any
 number of digits. What no scenario, table or script needs is refused before anything is computed with it.
@@ -16,14 +16,14 @@ MOST_BYTES = 1_000_000
 MOST_LEVELS = 32
 """Of tables and lists inside each other."""
 LEAST, MOST = 1e-18, 1e15
-"""Between them lies the magnitude of every number, in the units of people, that is not 0."""
+"""Bounds of the magnitude of every number but 0, in the units of the file."""
 
 _PART = r"""(?:[A-Za-z0-9_-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')"""
 _LONG_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{MOST_LEVELS}}}")
 
 
 class BoundsError(ValueError):
-    """TOML, but more of it than is read here; the message is a clause that says of what."""
+    """TOML beyond the bounds; the message is a clause that says which."""
 
 
 def load_toml(path: Path) -> dict[str, Any]:
@@ -40,7 +40,7 @@ def parse_toml(text: str) -> dict[str, Any]:
     """The values of a TOML document.
 
     Raises:
-        TOMLDecodeError: it is none.
+        TOMLDecodeError: the text is not TOML.
         BoundsError: it is nested deeper than ``MOST_LEVELS``, or a number is beyond ``LEAST`` and ``MOST``.
     """
     if _LONG_KEY.search(text):
@@ -62,7 +62,7 @@ _BEYOND = f"not allowed: a number is 0, or from {LEAST:g} to {MOST:g} in magnitu
 
 
 def _check(value: object, key: str, level: int) -> None:
-    """Depth and numbers of a value; infinity and NaN are left to what knows the key."""
+    """Depth and numbers of a value; infinity and NaN are left to the schema."""
     if level > MOST_LEVELS:
         raise BoundsError(_TOO_DEEP)
     if isinstance(value, dict):

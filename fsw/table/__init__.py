@@ -1,1 +1,1 @@
-"""The onboard table: what its file may say, and the config that the core makes of it."""
+"""The onboard table: the schema of its file, and the configuration of the core made from it."""

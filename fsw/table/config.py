@@ -1,4 +1,4 @@
-"""From a checked onboard table to the config the core uses: units of people to SI, seconds to ticks."""
+"""From a checked onboard table to the config the core uses: units of the file to SI, seconds to ticks."""
 
 from math import ceil, cos, radians, sqrt
 
@@ -28,14 +28,14 @@ from fsw.table.table import FlightTable
 
 NT = 1e-9
 CHATTER_S = 10.0
-"""Between signs of another that reports in the place of the flight software."""
+"""Longest time between signs of a second sender of reports."""
 
 
 def flight_config(table: FlightTable) -> FlightConfig:
     """Prepare everything a step needs.
 
     Raises:
-        TableError: the table is consistent in itself but cannot be flown (orbit decayed, pulse below a tick).
+        TableError: the table is consistent but cannot be used (orbit decayed, pulse below a tick).
     """
     tick_hz = table.time.tick_hz
     try:
@@ -223,7 +223,7 @@ def _modes(modes: ModesTable, tick_hz: int) -> ModeConfig:
 
 
 def _ticks(seconds: float, tick_hz: int) -> int:
-    """At least so long; 1.1 s at 10 Hz are 11 ticks, though 1.1 * 10 is a little more in floats."""
+    """Ticks that last at least so long; 1.1 s at 10 Hz are 11, though 1.1 * 10 is a little more in floats."""
     return ceil(seconds * tick_hz - 1e-9)
 
 

@@ -1,4 +1,4 @@
-"""Inertia tensors as a table may give them."""
+"""Checks of the inertia tensor of a table."""
 
 from math import isfinite
 
@@ -15,7 +15,7 @@ def three_numbers(value: object) -> bool:
 
 
 def check_inertia(inertia_kgm2: Mat3) -> None:
-    """Check that a tensor can belong to a body.
+    """Check that a tensor is that of a rigid body.
 
     J is possible exactly if tr(J)/2 I - J, the second moment of mass, has no negative eigenvalue, and J > 0.
 
@@ -32,7 +32,7 @@ def check_inertia(inertia_kgm2: Mat3) -> None:
 
 
 def _possible(inertia: Mat3) -> bool:
-    """Whether a symmetric tensor whose trace is 2 can belong to a body, up to rounding."""
+    """Whether a symmetric tensor whose trace is 2 is that of a rigid body, up to rounding."""
     (a, h, g), (_, b, f), (_, _, c) = inertia
     x, y, z = 1.0 - a, 1.0 - b, 1.0 - c
     minors = (x, y, z, x * y - h * h, y * z - f * f, z * x - g * g)

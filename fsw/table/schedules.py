@@ -1,4 +1,4 @@
-"""Tables of the periodic regulators, from the onboard table: computed once when it is loaded."""
+"""Gain schedules of the periodic regulators, computed once when the onboard table is loaded."""
 
 from functools import lru_cache
 from math import atan2, hypot, sqrt

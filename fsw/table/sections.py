@@ -1,4 +1,4 @@
-"""The sections of an onboard table, and their checks: the units of people (deg, nT, km)."""
+"""The sections of an onboard table, and their checks, in deg, nT and km."""
 
 from dataclasses import fields
 from datetime import UTC, date, datetime
@@ -61,7 +61,7 @@ class OrbitTable(Section):
 
 
 class FieldTable(Section):
-    """Onboard field model; ``degree`` counts for igrf14."""
+    """Onboard field model; ``degree`` is used by igrf14."""
 
     model: Literal["igrf14", "tilted_dipole", "direct_dipole"]
     degree: int = Field(ge=1, le=10)
@@ -100,7 +100,7 @@ class CoilTable(Section):
     """The coil driver: levels per polarity and limits, or the full scale of a continuous one.
 
     ``on_fraction`` is the part of a tick over which a continuous driver drives, ``dipole_per_ampere_am2``
-    what a sound coil gives, in A m^2 per A.
+    the dipole of a healthy coil, in A m^2 per A.
     """
 
     driver: Literal["pulsed", "continuous"] = "pulsed"
@@ -134,13 +134,13 @@ class CoilTable(Section):
 
 
 class ControlTable(Section):
-    """Pointing law and its gains, spin about body axis 1, leak of the owed impulse.
+    """Pointing law and its gains, spin about body axis 1, leak time of the owed impulse.
 
     Units: ``k_w`` N m s/T^2, ``k_a`` N m/T^2, ``k_i`` N m/(T^2 s). ``gains`` holds, by law, that law's own
     parameters. ``minimiser`` is how a continuous driver finds the dipole of a predictive law.
     """
 
-    law: Literal[tuple(LAWS)]  # type: ignore[valid-type]  # names that are known when it is loaded
+    law: Literal[tuple(LAWS)]  # type: ignore[valid-type]  # the names are those of the loaded table
     k_w: NotNegative
     k_a: NotNegative
     k_i: NotNegative = 0.0
@@ -211,10 +211,9 @@ class ModesTable(Section):
 
 
 class FdirTable(Section):
-    """Limits of the checks of sensors, coils and bus, how long before one is named, and believed again.
+    """Limits of the checks of sensors, coils and bus, times until a unit is isolated and readmitted.
 
-    Of its nominal current or effect, less than ``weak_coil_part`` is a weak coil's, less than
-    ``open_coil_part`` an open one's.
+    A coil is weak below ``weak_coil_part`` of its nominal current or effect, open below ``open_coil_part``.
     """
 
     max_field_error_nt: Positive

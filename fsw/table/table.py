@@ -1,6 +1,6 @@
-"""The onboard table: what a flight table file may say, and its checks.
+"""The onboard table: schema of a flight table file, and its checks.
 
-A table is TOML with the units of people (deg, nT, km). Sections left out take the values
+A table is TOML in deg, nT and km. Sections left out take the values
 of ``fsw/flight.toml``.
 """
 
@@ -62,11 +62,11 @@ class FlightTable(Section):
 
 
 DEFAULT_EPOCH_UTC = "2025-03-20T09:00:00Z"
-"""Time of tick 0 for a circular orbit that names none: the March equinox of 2025, to the hour."""
+"""Time of tick 0 for a circular orbit without one: the March equinox of 2025, to the hour."""
 
 
 def epoch_unix_s(time: TimeTable, orbit: OrbitTable) -> int:
-    """Time of tick 0: as named, else the TLE's epoch rounded up to a whole second, else the default."""
+    """Time of tick 0: ``epoch_utc``, else the TLE's epoch rounded up to a whole second, else the default."""
     if time.epoch_utc is not None:
         return parse_utc(time.epoch_utc)
     if orbit.tle is not None:

@@ -1,1 +1,1 @@
-"""The coil drivers and what guards their coils: an interlock by ticks and by time, and the read-back."""
+"""The coil drivers and their guards: an interlock by ticks and one by time, and the current read-back."""

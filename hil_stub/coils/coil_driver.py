@@ -48,7 +48,7 @@ OFF = Drive(0, 0, 0.0)
 class Pin(NamedTuple):
     """The output that is on at this instant: ``level`` on ``coil``.
 
-    ``until_ms``: when the board's own clock ends it, whatever comes or does not come by then; None: the board
+    ``until_ms``: when the board's own clock ends it, whatever is received by then; None: the board
     has no clock. A board arms a timer with it when the pulse begins, and needs nothing more to end it.
     """
 
@@ -63,7 +63,7 @@ class CoilDriver:
     In each tick: ``begin_tick``, then ``receive`` for each frame of the bus, then ``drive``. A request that
     comes after ``drive``, or before the first tick, answers no tick and is refused as one of a wrong tick.
 
-    A board with a clock of its own is told the time with each of these, and by ``pass_time`` when nothing
+    A board with a clock of its own gets the time with each of these, and by ``pass_time`` when no frame
     comes: then a pulse ends when the first of clock and ticks says so, a back-off when the last does.
 
     With a read-back the current is checked against what is driven. The first check after boot is the
@@ -71,7 +71,7 @@ class CoilDriver:
 
     Args:
         limits: what the interlock enforces.
-        read_back: what the currents should be; None: they are told, and not judged.
+        read_back: nominal currents; None: the current is reported, and not judged.
     """
 
     def __init__(self, limits: CoilLimits, read_back: ReadBack | None = None) -> None:
@@ -93,10 +93,10 @@ class CoilDriver:
         """Frames that failed the gate since boot."""
 
     def begin_tick(self, tick: int, current_a: float, clock_ms: int | None = None) -> list[Frame]:
-        """Enter ``tick`` and say what is to be said in it.
+        """Enter ``tick``: the frames to send in it.
 
         At the first tick ``COIL_BOOT``; always one ``COIL_STATUS``; one ``COIL_REFUSED`` for each request
-        refused since the last tick, at most 64; one ``COIL_EVENT`` for each finding; every 60 s after boot
+        refused since the last tick, at most 64; one ``COIL_EVENT`` for each new fault; every 60 s after boot
         ``COIL_HEARTBEAT``.
 
         A tick that does not rise is ignored: nothing happens and nothing is sent. Over skipped ticks a pulse
@@ -121,17 +121,17 @@ class CoilDriver:
         return frames
 
     def pass_time(self, clock_ms: int | None) -> None:
-        """Nothing has come, and the board's own clock reads ``clock_ms``; None: it has none."""
+        """No frame has come, and the board's own clock reads ``clock_ms``; None: it has none."""
         self._guard.pass_time(clock_ms)
 
     def sync(self) -> None:
-        """The ``SYNC`` of this tick: what was told of it in advance is so now."""
+        """The ``SYNC`` of this tick: its status, sent in advance, holds now."""
         self._guard.sync()
 
     def silence(self, clock_ms: int | None = None) -> None:
         """The dead-man: no ``SYNC`` for too long. All off, and a full back-off that begins now.
 
-        Called on and on as long as it is silent. ``COIL_EVENT`` tells it when the board next enters a tick.
+        Called repeatedly while ``SYNC`` stays away. ``COIL_EVENT`` reports it in the next tick.
         """
         self._guard.pass_time(clock_ms)
         self._guard.silence()
@@ -142,7 +142,7 @@ class CoilDriver:
 
         A frame that fails the gate (unknown id, flags, length, CRC) is counted in ``rejects``. If its id is
         that of ``COIL_FIRE`` and it is long enough to name a coil and a sequence number, it is also refused
-        as malformed, under the names that it bears.
+        as malformed, with that coil and number.
         """
         self._guard.pass_time(clock_ms)
         if not intact(frame):
@@ -171,7 +171,7 @@ class CoilDriver:
 
     @property
     def pin(self) -> Pin | None:
-        """What is on at the instant that the board was last told of; None: all coils are off."""
+        """The coil that is on at the latest time given to the board; None: all coils are off."""
         guard = self._guard
         return Pin(guard.coil, guard.level, guard.ends_ms) if guard.drives else None
 

@@ -20,7 +20,7 @@ from hil_stub.node import Node
 Vec3 = tuple[float, float, float]
 
 _NAMED = {CoilFire.ID: 3, CoilDipole.ID: 1}
-"""Requests, and the bytes they must have for what names them to be read."""
+"""Requests, and the bytes that hold their coil and number."""
 
 
 class DipoleBoardState(IntEnum):
@@ -42,7 +42,7 @@ _NONE: Vec3 = (0.0, 0.0, 0.0)
 
 
 class DipoleDriver:
-    """A board that drives what one ``COIL_DIPOLE`` asks, in the tick in which it is received and no longer.
+    """A board that drives the dipole of one ``COIL_DIPOLE``, in the tick of its reception and no longer.
 
     A request ends by itself: a tick without one is a tick without drive. The coils are off at the end of
     every tick, so that no current flows when the sensors sample. ``COIL_FIRE`` is refused.
@@ -65,14 +65,14 @@ class DipoleDriver:
         self._node = Node(CoilBoot, CoilHeartbeat, tick_hz, table_crc)
         self._on_fraction = on_fraction
         self._open = False  # whether a request may be taken
-        self._asked: Vec3 | None = None
+        self._requested: Vec3 | None = None
         self._refusals = Refusals()
         self._statuses = 0
         self.rejects = 0
         """Frames that failed the gate since boot."""
 
     def begin_tick(self, tick: int, current_a: float) -> list[Frame]:
-        """Enter ``tick`` and say what is to be said in it.
+        """Enter ``tick``: the frames to send in it.
 
         At the first tick ``COIL_BOOT``; always one ``COIL_STATUS``, of coils that are off, and one
         ``COIL_DIPOLE_STATUS``; one ``COIL_REFUSED`` for each request refused since the last tick, at most 64;
@@ -85,8 +85,8 @@ class DipoleDriver:
         elapsed = self._node.advance(tick)
         if elapsed is None:
             return []
-        driven = self._asked if elapsed == 1 and self._asked is not None else _NONE
-        self._asked = None
+        driven = self._requested if elapsed == 1 and self._requested is not None else _NONE
+        self._requested = None
         self._open = True
         frames = self._node.boot()
         frames += self._status(tick, current_a, driven)
@@ -100,7 +100,7 @@ class DipoleDriver:
         """Take a frame of the bus, whole or not at all; the first ``COIL_DIPOLE`` of a tick is driven.
 
         A frame that fails the gate (unknown id, flags, length, CRC) is counted in ``rejects``. If its id is
-        that of a request and it is long enough to bear a name, it is also refused as malformed.
+        that of a request and it holds coil and number, it is also refused as malformed.
         """
         named = len(frame.data) >= _NAMED.get(frame.can_id, len(frame.data) + 1)
         if not intact(frame):
@@ -110,21 +110,21 @@ class DipoleDriver:
         elif frame.can_id == CoilFire.ID:
             self._refuse(frame, CoilRefusedReason.WRONG_BOARD)
         elif frame.can_id == CoilDipole.ID:
-            self._ask(frame)
+            self._take_request(frame)
 
     def drive(self) -> DipoleDrive:
         """What is driven over the tick that has begun; ends the time for requests that answer it."""
         self._open = False
-        return DipoleDrive(self._asked or _NONE, self._on_fraction)
+        return DipoleDrive(self._requested or _NONE, self._on_fraction)
 
-    def _ask(self, frame: Frame) -> None:
+    def _take_request(self, frame: Frame) -> None:
         if not self._open:
             self._refuse(frame, CoilRefusedReason.WRONG_TICK)
-        elif self._asked is not None:
+        elif self._requested is not None:
             self._refuse(frame, CoilRefusedReason.SECOND_DIPOLE)
         else:
-            asked = CoilDipole.decode(frame.data)
-            self._asked = (asked.m_x, asked.m_y, asked.m_z)
+            request = CoilDipole.decode(frame.data)
+            self._requested = (request.m_x, request.m_y, request.m_z)
 
     def _status(self, tick: int, current_a: float, driven: Vec3) -> list[Frame]:
         off = CoilStatus(

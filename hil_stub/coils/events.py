@@ -1,4 +1,4 @@
-"""What a coil driver board has found since it last spoke."""
+"""The events of a coil driver board."""
 
 from enum import IntEnum
 
@@ -28,13 +28,13 @@ SEVERITY = {
 
 
 class Events:
-    """Makes events into frames, counted since boot."""
+    """Encodes events, counted since boot."""
 
     def __init__(self) -> None:
         self._count = 0
 
     def frame(self, code: CoilEventCode, tick: int, argument: int = 0) -> Frame:
-        """The frame that tells an event of ``tick``."""
+        """The frame of an event in ``tick``."""
         event = CoilEvent(SEVERITY[code], code, tick, argument, counter=self._count)
         self._count += 1
         return event.encode()

@@ -1,15 +1,15 @@
-"""The interlock twice over: by the ticks of the bus, and by a clock of the board's own where it has one.
+"""Two interlocks: one by the ticks of the bus, one by the board's own clock where it has one.
 
 Ticks come over the bus, and the bus may lie: a SYNC that comes too often would shorten a back-off, one that
 stays away would stretch a pulse. So a pulse is over when the first of the two says so, a back-off when the
 last does, and a request is accepted only if both accept it.
 
 The two need not agree, and neither waits for the other: time passes while no tick comes, and ticks may come
-in no time. ``pass_time`` goes before whatever is asked of the guard, else its clock would stand still until
-the next tick, and the time that had passed by then would be taken from the back-off.
+in no time. ``pass_time`` comes before every other call, else its clock would stand still until the next
+tick, and the time that had passed by then would be taken from the back-off.
 
-A board enters a tick as soon as fsw has answered the one before, to tell of it before its SYNC comes. Timers
-by ticks are of the instant that is told of; a pulse whose last tick that is stays on until the SYNC, or until
+A board enters a tick as soon as fsw has answered the one before, to report it before its SYNC comes. Timers
+by ticks are of the reported instant; a pulse whose last tick that is stays on until the SYNC, or until
 the clock ends it.
 """
 
@@ -51,7 +51,7 @@ class Guard:
         """Driven in the tick that has ended, or just accepted."""
 
     def pass_time(self, clock_ms: int | None) -> None:
-        """The board's own clock reads ``clock_ms`` (None: it has none). One that runs back stands still."""
+        """The board's own clock reads ``clock_ms`` (None: it has none). One that runs back is ignored."""
         if clock_ms is None:
             return
         if self._by_clock is None:
@@ -61,7 +61,7 @@ class Guard:
             self._clock_ms = clock_ms
 
     def elapse(self, ticks: int) -> None:
-        """So many ticks on; the SYNC of the last is still to come."""
+        """Advance by ticks; the SYNC of the last is still to come."""
         self._tick_under_way = self.on
         self._by_ticks = elapse(self._by_ticks, ticks)
         self.level = self._by_ticks.level if self._driven else 0
@@ -72,7 +72,7 @@ class Guard:
         self._tick_under_way = False
 
     def silence(self) -> None:
-        """Nobody is heard: off, and locked out in full."""
+        """No SYNC for too long: off, and locked out in full."""
         self._by_ticks = silence(self._by_ticks, self._limits)
         if self._by_clock is not None:
             self._by_clock = silence(self._by_clock, self._clock_limits)

@@ -1,8 +1,8 @@
 """The coil interlock: what may be driven, as a pure function of integers.
 
-Invariant, whatever is asked and however often the board restarts: no pulse lasts longer than ``pulse_ms``,
-no pulse starts earlier than ``backoff_ms`` after the end of the one before it (of any coil, or of the same
-coil), no more than one coil is on, and every level is one of -3..3.
+Invariant, whatever is requested and however often the board restarts: no pulse lasts longer than
+``pulse_ms``, no pulse starts earlier than ``backoff_ms`` after the end of the one before it (of any coil,
+or of the same coil), no more than one coil is on, and every level is one of -3..3.
 
 Time is counted in units of 1 / (1000 tick_hz) s: a tick is 1000 units and a millisecond is ``tick_hz`` units,
 so that every duration is exact at every tick rate. All timers run down to zero; none is ever set by anything
@@ -62,7 +62,7 @@ class CoilLimits:
 
 
 class Request(NamedTuple):
-    """What a ``COIL_FIRE`` asks; ``tick`` is the low byte of the tick that it answers."""
+    """The request of a ``COIL_FIRE``; ``tick`` is the low byte of the tick that it answers."""
 
     coil: int
     level: int
@@ -94,15 +94,15 @@ class Interlock:
 
 
 def boot(limits: CoilLimits) -> Interlock:
-    """All coils off and locked out in full: a restart costs a whole back-off, for nothing outlives it."""
+    """All coils off and locked out in full: a restart costs a whole back-off, as no timer survives it."""
     full = limits.units(limits.backoff_ms)
     return Interlock(coil=0, level=0, remaining=0, lockout=(full, full, full), seq=None)
 
 
 def silence(state: Interlock, limits: CoilLimits) -> Interlock:
-    """The dead-man: nobody is heard, so all is off and locked out in full, as after boot.
+    """The dead-man: no SYNC for too long, so all is off and locked out in full, as after boot.
 
-    The sequence number stays known: a request that was carried out before is still a repeated one.
+    The sequence number stays: a request that was carried out before is still a repeated one.
     """
     return replace(boot(limits), seq=state.seq)
 
@@ -137,7 +137,7 @@ _REFUSED_IF: tuple[tuple[CoilRefusedReason, _Rule], ...] = (
     (CoilRefusedReason.COIL_ON, lambda state, asked, tick, limits: state.remaining > 0),
     (CoilRefusedReason.LOCKOUT, lambda state, asked, tick, limits: state.lockout[asked.coil] > 0),
 )
-"""The rules in the order in which they are judged; the first that applies names the refusal."""
+"""The rules in the order in which they are judged; the first that applies is the reason."""
 
 REFUSAL_ORDER = tuple(reason for reason, _ in _REFUSED_IF)
 """The reasons in that order, for the specification of the board."""

@@ -1,4 +1,4 @@
-"""Current read-back: what is measured in the supply of the coils, against what is driven."""
+"""Current read-back: the measured supply current against the nominal one of the driven level."""
 
 from dataclasses import dataclass
 from math import copysign
@@ -11,7 +11,7 @@ _NONE = 0.1
 
 @dataclass(frozen=True, slots=True)
 class ReadBack:
-    """What the currents should be.
+    """Nominal currents and their tolerance.
 
     Args:
         nominal_a: at levels 1, 2, 3 [A].
@@ -34,7 +34,7 @@ class ReadBack:
             raise ValueError("settle_ms must not be negative, and tolerance lie between 0 and 1")
 
     def judge(self, level: int, current_a: float) -> CoilEventCode | None:
-        """What is wrong with a settled current at a level (0: all coils are off); None when nothing is.
+        """What is wrong with a settled current at a level (0: all coils are off); None if it is right.
 
         A read-back that is not a number is wrong at every level.
         """

@@ -1,10 +1,10 @@
-"""What a coil driver board has refused since it last spoke."""
+"""The requests that a coil driver board has refused since its last tick."""
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilRefused, CoilRefusedReason
 
 MAX_REFUSALS = 64
-"""Refusals named in one tick. A flood of requests is not answered by a flood of frames."""
+"""Refusals reported in one tick. A flood of requests is not answered by a flood of frames."""
 
 
 class Refusals:
@@ -15,10 +15,10 @@ class Refusals:
         self._count = 0
 
     def add(self, coil: int, seq: int, reason: CoilRefusedReason, tick: int | None) -> None:
-        """Note one, under the names that the request bears; beyond ``MAX_REFUSALS`` it is passed over.
+        """Note one, with coil and number of the request; beyond ``MAX_REFUSALS`` it is dropped.
 
         Args:
-            coil: coil that was asked for.
+            coil: of the request.
             seq: sequence number of the request.
             reason: why it was refused.
             tick: tick in which it came; None before the first.
@@ -29,7 +29,7 @@ class Refusals:
         self._count += 1
 
     def take(self) -> list[Frame]:
-        """The frames that name them, each given once."""
+        """Their frames, each returned once."""
         frames = [message.encode() for message in self._waiting]
         self._waiting.clear()
         return frames

@@ -1,1 +1,1 @@
-"""A board as a process on a bus: its command line, its loop, and what its sensor is shown."""
+"""A board as a process on a bus: its command line, its loop and its stimulus."""

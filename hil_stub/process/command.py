@@ -1,4 +1,4 @@
-"""The command line of a board: which one, on which bus, with what limits, shown what."""
+"""The command line of a board: kind, bus, limits and stimulus."""
 
 from collections.abc import Callable
 from typing import TextIO
@@ -31,13 +31,13 @@ _bus = click.option(
 _tick_hz = click.option(
     "--tick-hz", type=click.IntRange(1, 1000), default=1, show_default=True, help="Ticks a second."
 )
-_SHOWN = {"ignore_unknown_options": True}  # so that --stimulus takes negative numbers
+_WITH_STIMULUS = {"ignore_unknown_options": True}  # so that --stimulus takes negative numbers
 
 
 @click.group()
 @click.option("--parent", type=int, hidden=True)
 def board(parent: int | None) -> None:
-    """Run one board on a bus, until Ctrl-C: a bench is not over when a plant says so."""
+    """Run one board on a bus, until Ctrl-C; PLANT_END does not end it."""
 
 
 @board.command()
@@ -113,17 +113,17 @@ def dipole(spec: str, tick_hz: int) -> None:
     _serve(spec, lambda: DipoleBoard(tick_hz))
 
 
-@board.command(context_settings=_SHOWN)
+@board.command(context_settings=_WITH_STIMULUS)
 @_bus
 @_tick_hz
 @click.option("--stimulus", help="Field in body axes [nT]. Default: 20000 0 -30000.")
 @click.argument("rest", nargs=-1, type=click.UNPROCESSED, metavar="")
 def magnetometer(spec: str, tick_hz: int, stimulus: str | None, rest: tuple[str, ...]) -> None:
-    """The magnetometer, shown a field.
+    """The magnetometer, with a field as its stimulus.
 
-    --stimulus X Y Z is a constant; RUN or LOG what it said then, tick by tick; FILE.toml a script.
+    --stimulus X Y Z is a constant; RUN or LOG its samples there, tick by tick; FILE.toml a script.
     """
-    shown = stimulus_of(
+    sample_at = stimulus_of(
         stimulus_words(stimulus, rest, "20000 0 -30000"),
         "field_nt",
         MagField,
@@ -131,21 +131,23 @@ def magnetometer(spec: str, tick_hz: int, stimulus: str | None, rest: tuple[str,
         NT,
         lambda v: scaled(v, NT),
     )
-    _serve(spec, lambda: MagnetometerBoard(tick_hz, shown))
+    _serve(spec, lambda: MagnetometerBoard(tick_hz, sample_at))
 
 
-@board.command(context_settings=_SHOWN)
+@board.command(context_settings=_WITH_STIMULUS)
 @_bus
 @_tick_hz
 @click.option("--stimulus", help="Direction of the Sun in body axes. Default: 1 0 0.")
 @click.argument("rest", nargs=-1, type=click.UNPROCESSED, metavar="")
 def sun(spec: str, tick_hz: int, stimulus: str | None, rest: tuple[str, ...]) -> None:
-    """The Sun sensor, shown a lamp.
+    """The Sun sensor, with a direction as its stimulus.
 
-    --stimulus X Y Z is a constant; RUN or LOG what it said then, tick by tick; FILE.toml a script.
+    --stimulus X Y Z is a constant; RUN or LOG its samples there, tick by tick; FILE.toml a script.
     """
-    shown = stimulus_of(stimulus_words(stimulus, rest, "1 0 0"), "sun", SunVector, tick_hz, 1.0, direction)
-    _serve(spec, lambda: SunBoard(tick_hz, shown))
+    sample_at = stimulus_of(
+        stimulus_words(stimulus, rest, "1 0 0"), "sun", SunVector, tick_hz, 1.0, direction
+    )
+    _serve(spec, lambda: SunBoard(tick_hz, sample_at))
 
 
 def _serve(
@@ -174,7 +176,7 @@ def _serve(
 
 
 def _parent() -> int | None:
-    """What was given to the group of commands."""
+    """The option --parent of the group of commands."""
     group = click.get_current_context().parent
     parent: int | None = group.params["parent"] if group is not None else None
     return parent

@@ -1,4 +1,4 @@
-"""Runs a board on a bus, and shows what is on at its pins."""
+"""Runs a board on a bus, and logs the state of its pins."""
 
 import os
 import time
@@ -21,10 +21,11 @@ class PinLog:
     """Each change of the coil outputs as a line: what a logic analyser would show of a real board.
 
     ``1234 on 2 -3 until 4234``: since 1234 ms of this machine's monotonic clock coil 2 is on at level -3, and
-    the timer that was armed with it ends that at 4234 ms. ``2345 off``: something else has ended it before.
+    the timer that was armed with it ends that at 4234 ms. ``2345 off``: it has ended before for another
+    reason.
 
     Args:
-        file: where the lines go; each is handed over at once.
+        file: where the lines go; each is flushed at once.
     """
 
     def __init__(self, file: TextIO) -> None:
@@ -35,9 +36,9 @@ class PinLog:
         """What is on at this instant."""
         if pin == self._shown:
             return
-        said = "off" if pin is None else f"on {pin.coil} {pin.level}"
+        output = "off" if pin is None else f"on {pin.coil} {pin.level}"
         timer = "" if pin is None or pin.until_ms is None else f" until {pin.until_ms}"
-        self._file.write(f"{at_ms} {said}{timer}\n")
+        self._file.write(f"{at_ms} {output}{timer}\n")
         self._file.flush()
         self._shown = pin
 
@@ -49,7 +50,7 @@ def run(bench: BenchNode, bus: Bus, pins: PinLog | None = None, parent: int | No
         bench: the board.
         bus: where it lives.
         pins: takes each change of the outputs.
-        parent: process that started this one; when it is gone there is nobody to serve.
+        parent: process that started this one; when it is gone the board ends.
     """
     bus.send(bench.switch_on(now_ms=now_ms()))
     while parent is None or os.getppid() == parent:
@@ -64,5 +65,5 @@ def run(bench: BenchNode, bus: Bus, pins: PinLog | None = None, parent: int | No
 
 
 def _patience_s(due_ms: int | None) -> float:
-    """How long to wait for a frame: no longer than until something is due without one."""
+    """How long to wait for a frame: until ``watch`` is due at the latest."""
     return POLL_S if due_ms is None else min(POLL_S, max(0.0, (due_ms - now_ms()) / 1000.0))

@@ -1,4 +1,4 @@
-"""What ``--stimulus`` says: three numbers, a log or a run, a script, or readings on standard input."""
+"""The stimulus of ``--stimulus``: three numbers, a log or a run, a script, or readings on standard input."""
 
 import os
 import select
@@ -26,11 +26,11 @@ from hil_stub.sensors.stimulus import (
 )
 
 PIPE_PATIENCE_S = 1.0
-"""How long a sensor waits for what it is shown over stdin; after that it reads nothing."""
+"""How long a sensor waits for a reading on stdin; after that the sample is invalid."""
 
 
 class PipedStimulus:
-    """Readings as lines on stdin, ``tick x y z valid``: waits for the tick asked for, but not for ever.
+    """Readings as lines on stdin, ``tick x y z valid``: waits a bounded time for the tick.
 
     Args:
         scale: from the numbers of the lines to the reading.
@@ -44,7 +44,7 @@ class PipedStimulus:
         self._readings: dict[int, Reading] = {}
 
     def __call__(self, tick: int) -> Reading:
-        """The reading at ``tick``; nothing, if it does not come."""
+        """The reading at ``tick``; NOTHING if it does not come."""
         deadline = time.monotonic() + PIPE_PATIENCE_S
         while tick not in self._readings:
             left_s = deadline - time.monotonic()
@@ -73,7 +73,7 @@ def stimulus_of(
     scale: float,
     convert: Callable[[Vec3], Vec3],
 ) -> Stimulus:
-    """What ``--stimulus`` asks for: three numbers, a log or a run, a script, or ``-`` for stdin."""
+    """The stimulus of the option's words: three numbers, a log or a run, a script, or ``-`` for stdin."""
     try:
         if len(words) == 3:
             return constant(convert(three_numbers([_number(word) for word in words])))
@@ -94,7 +94,7 @@ def stimulus_of(
 
 
 def stimulus_words(first: str | None, rest: tuple[str, ...], default: str) -> tuple[str, ...]:
-    """The words after ``--stimulus``; without it the default, and nothing may be left over."""
+    """The words after ``--stimulus``; without it the default, and no other argument."""
     if first is not None:
         return (first, *rest)
     if rest:

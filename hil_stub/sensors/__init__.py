@@ -1,1 +1,1 @@
-"""The sensor boards, and what their sensors are shown on a bench."""
+"""The sensor boards, and the stimulus of their sensors on a bench."""

@@ -1,4 +1,4 @@
-"""What a sensor on the bench is shown, tick by tick: a constant, a recorded log, or a script."""
+"""The stimulus of a sensor on a bench, tick by tick: a constant, a recorded log, or a script."""
 
 from collections.abc import Callable, Iterable
 from math import ceil, hypot, isfinite
@@ -24,7 +24,7 @@ Stimulus = Callable[[int], Reading]
 
 
 class StimulusError(Exception):
-    """A stimulus that cannot be used; the message is one sentence for people."""
+    """A stimulus that cannot be used; the message is one sentence for the user."""
 
 
 def constant(vector: Vec3) -> Stimulus:
@@ -37,7 +37,7 @@ def recorded(lines: Iterable[bytes], message: type[MagField] | type[SunVector], 
 
     Args:
         lines: of the log; what is no frame of ours is passed over.
-        message: what the sensor says.
+        message: of the sensor.
         scale: from the signals of that message to the reading.
 
     Raises:
@@ -62,17 +62,17 @@ def recorded(lines: Iterable[bytes], message: type[MagField] | type[SunVector], 
 
 
 def scripted(steps: object, key: str, tick_hz: int, convert: Callable[[Vec3], Vec3]) -> Stimulus:
-    """What a script says: the value of ``key`` in the last step that has begun and has that key.
+    """The stimulus of a script: the value of ``key`` in the last step that has begun and has that key.
 
     Args:
         steps: tables with ``t_s``, the time from which they hold, rising from 0; three numbers under ``key``,
-            or false for nothing to be read.
+            or false for an invalid sample.
         key: the sensor's.
         tick_hz: ticks a second.
         convert: the numbers of the script into a reading.
 
     Raises:
-        StimulusError: a step that is not like that.
+        StimulusError: a step of another form.
     """
     if not isinstance(steps, list) or not steps:
         raise StimulusError("a script needs at least one [[step]]")

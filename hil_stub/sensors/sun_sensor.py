@@ -24,7 +24,7 @@ class SunSensor:
     def begin_tick(self, tick: int, sun_body: tuple[float, float, float], valid: bool) -> list[Frame]:
         """Enter ``tick``: ``SUN_BOOT`` at the first, ``SUN_VECTOR``, ``SUN_HEARTBEAT`` every 60 s.
 
-        An invalid sample shows no direction at all: what cannot be seen is not on the bus. A component out
+        An invalid sample has no direction: its components are zero. A component out
         of range or not a number makes the sample invalid. A tick that does not rise is ignored.
 
         Args:
@@ -34,7 +34,7 @@ class SunSensor:
         """
         if self._node.advance(tick) is None:
             return []
-        seen = valid and all(_LOW <= component <= _HIGH for component in sun_body)
-        sample = SunVector(int(seen), *(sun_body if seen else _DARK), counter=self._vectors)
+        visible = valid and all(_LOW <= component <= _HIGH for component in sun_body)
+        sample = SunVector(int(visible), *(sun_body if visible else _DARK), counter=self._vectors)
         self._vectors += 1
         return [*self._node.boot(), sample.encode(), *self._node.heartbeat()]

@@ -1,1 +1,1 @@
-"""From what a law asks for to what the coil driver is asked."""
+"""From the demand of a law to the request to the coil driver."""

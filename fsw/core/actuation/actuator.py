@@ -1,4 +1,4 @@
-"""From what a law asks for to what is sent to the coil driver, and what the coil driver says of it."""
+"""From the demand of a law to a request to the coil driver, and the view of the driver's reports."""
 
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -17,11 +17,11 @@ LOCKOUT_UNKNOWN = (-1, -1, -1)
 
 @dataclass(frozen=True, slots=True)
 class CoilView:
-    """What the coil driver last said, and what was last asked of it.
+    """The last reports of the coil driver, and the last request to it.
 
-    ``lockout_ms`` by coil, -1 where the board has not told yet; ``driven_coil`` and ``driven_level`` over
-    the tick that just ended, ``driven_am2`` the mean dipole over it, body axes; ``fired_tick`` is -1 before
-    the first request; ``paid_body_nms`` is the impulse of the last request.
+    ``lockout_ms`` by coil, -1 where the board has not reported it yet; ``driven_coil`` and ``driven_level``
+    over the tick that just ended, ``driven_am2`` the mean dipole over it, body axes; ``fired_tick`` is -1
+    before the first request; ``paid_body_nms`` is the impulse of the last request.
     """
 
     lockout_ms: tuple[int, int, int] = LOCKOUT_UNKNOWN
@@ -52,10 +52,10 @@ class ActuatorConfig(NamedTuple):
 
 
 def update_view(view: CoilView, readings: Readings, tick: int, config: ActuatorConfig) -> CoilView:
-    """The view after what the coil driver said in this tick.
+    """The view after the reports of the coil driver in this tick.
 
-    A board that has just booted has not told its lockouts. Without a status the own request, if one is under
-    way, counts as driven.
+    A board that has just booted has not reported its lockouts. Without a status the own request, if one is
+    under way, counts as driven.
     """
     lockout = list(view.lockout_ms if readings.coil_boot is None else LOCKOUT_UNKNOWN)
     status = readings.coil
@@ -88,7 +88,7 @@ def _requested_level(view: CoilView, tick: int, config: PulseConfig) -> int:
 
 
 def unexpected(view: CoilView, tick: int, config: PulseConfig) -> bool:
-    """Whether the board drove something that was not asked for."""
+    """Whether the board drove something that was not requested."""
     if view.driven_level == 0:
         return False
     return (view.driven_coil, view.driven_level) != (view.fired.coil, _requested_level(view, tick, config))
@@ -104,14 +104,14 @@ def actuate(
     config: ActuatorConfig,
     faults: tuple[int, int, int] = (0, 0, 0),
 ) -> tuple[PulseState, CoilView, CoilFire | CoilDipole | None]:
-    """Turn what the law asks for into at most one request.
+    """Turn the demand of the law into at most one request.
 
     Args:
         state: scheduler state.
-        view: as ``update_view`` left it.
-        demand: what the law asks for; None: nothing is owed and nothing is sent.
+        view: after ``update_view``.
+        demand: of the law; None: nothing is owed and nothing is sent.
         b_body_t: field, body axes, T.
-        readings: what was heard in this tick; without a word of the coil driver nothing is sent.
+        readings: of this tick; without a status of the coil driver nothing is sent.
         tick: tick that is answered.
         config: the coils.
         faults: by coil; one with a fault is not fired.
@@ -131,7 +131,7 @@ def actuate(
 
 
 def _refused(view: CoilView, readings: Readings, tick: int) -> bool:
-    """Whether the request of the tick before, or of the one before that, came to nothing."""
+    """Whether the request of the tick before, or of the one before that, was refused."""
     refused = readings.refused
     if refused is None or tick > view.fired_tick + 2:
         return False
@@ -148,7 +148,7 @@ def _pulse(
     config: PulseConfig,
     faults: tuple[int, int, int],
 ) -> tuple[PulseState, CoilView, CoilFire | None]:
-    """At most one pulse: only when the own timer and the board's last word on that coil agree."""
+    """At most one pulse: only when the own timer and the board's last report of that coil agree."""
     if demand.impulse_body_nms is None:
         state = pulses.owe(state, cross(demand.m_body_am2, b_body_t), b_body_t, config)
         wanted, metric = state.owed_impulse_body_nms, config.rate_metric

@@ -1,7 +1,7 @@
 """The continuous driver: a dipole each tick; for a law of impulses the best one, held for a pulse.
 
 The board drives each request over the first part of one tick and nothing without a request; the magnetometer
-samples while it is off. An impulse law keeps the timing of the pulses, so that only the choice is freed.
+samples while it is off. An impulse law has the timing of the pulses; only the choice of the dipole is wider.
 """
 
 from dataclasses import dataclass, replace
@@ -20,7 +20,7 @@ MOST = 1.0 - 2.0**-16
 
 @dataclass(frozen=True, slots=True)
 class DipoleConfig:
-    """Mean dipole over a tick at full scale, A m^2, the inertia, and whether the best one is searched for."""
+    """Mean dipole over a tick at full scale, A m^2, the inertia, and the way to the best one."""
 
     full_scale_am2: float
     inertia_kgm2: Mat3
@@ -28,7 +28,7 @@ class DipoleConfig:
 
 
 def driven_dipole_am2(status: CoilDipoleStatus | None, config: DipoleConfig) -> Vec3:
-    """The mean dipole over the tick that just ended, body axes, A m^2; zero without a word of the board."""
+    """The mean dipole over the tick that just ended, body axes, A m^2; zero without a report of the board."""
     if status is None:
         return ZERO
     return scale(config.full_scale_am2, (status.m_x, status.m_y, status.m_z))
@@ -76,7 +76,7 @@ def _begin(
 def saturate(m_body_am2: Vec3, config: DipoleConfig) -> CoilDipole:
     """The request: the dipole as fractions of full scale, shortened to fit but not turned.
 
-    What is not a number asks for nothing: on the wire it would be full scale.
+    A dipole that is not finite becomes zero: on the wire it would be full scale.
     """
     fractions = scale(1.0 / config.full_scale_am2, m_body_am2)
     if not isfinite(sum(fractions)):

@@ -4,10 +4,10 @@ One coil at a time, three levels per polarity, pulses of 3 s, then at least 100 
 of the pulse, for that coil or for all of them (``shared``). After boot a full back-off passes first. All
 timing is in integer ticks, rounded so that the pulse is never longer and the gap never shorter.
 
-What a continuous law asks for is kept as a torque impulse that is still owed: a leaky sigma-delta
-modulator, bounded by what one pulse can pay. The pulse that is fired is the one that leaves the least of the
-impulse that is owed, or that a predictive law misses; firing none is one of the choices and wins ties. Least
-is told by a metric: the rate that is left, or its energy.
+The demand of a continuous law is accumulated as the torque impulse still owed: a leaky sigma-delta
+modulator, bounded by what one pulse can pay. The pulse that is fired is the one that leaves the least of
+the impulse that is owed, or that a predictive law demands; firing none is one of the choices and wins ties.
+Least is by a metric: the rate that is left, or its energy.
 
 Source: Tavares et al. (ConSat, PoSAT-1) for the limits and the choice; the modulator is this project's.
 """
@@ -88,7 +88,7 @@ def boot(tick: int, config: PulseConfig) -> PulseState:
 def delay(state: PulseState, tick: int, skipped: int) -> PulseState:
     """The state after a skip of the count to ``tick``: timers that ran go on by as much, whoever skipped it.
 
-    Nothing tells lost ticks from ticks that never were, and a back-off must not end early.
+    Lost ticks cannot be distinguished from ticks that never were, and a back-off must not end early.
     """
     before = tick - skipped - 1
     a, b, c = (ready + skipped if ready > before else ready for ready in state.ready_tick)
@@ -97,7 +97,7 @@ def delay(state: PulseState, tick: int, skipped: int) -> PulseState:
 
 
 def owe(state: PulseState, torque_body_nm: Vec3, b_body_t: Vec3, config: PulseConfig) -> PulseState:
-    """Add one tick of the torque asked for: r <- (1 - h / tau) r + T h, |r| at most what one pulse can pay.
+    """Add one tick of the demanded torque: r <- (1 - h / tau) r + T h, |r| at most what one pulse can pay.
 
     Without that bound a strong demand would go on being paid long after its cause is gone.
     """
@@ -126,7 +126,7 @@ def choose(
 
     Args:
         state: own timers.
-        impulse_body_nms: r, the impulse that is wanted.
+        impulse_body_nms: r, the impulse demanded.
         metric: W, symmetric and positive.
         tick: tick that is answered.
         b_body_t: field, body axes, T.

@@ -1,1 +1,1 @@
-"""What is let in from the bus: whole frames, a tick that is believed, one sender of each kind."""
+"""Which frames are accepted: intact ones, of a believed tick, from one sender of each message."""

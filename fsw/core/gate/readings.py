@@ -1,4 +1,4 @@
-"""The decode gate: from raw frames to what the boards said in this tick.
+"""The decode gate: from raw frames to the readings of one tick.
 
 A frame is taken whole or not at all: known identifier, right length and CRC, a counter that moved, values
 in range. Everything else is counted and dropped.
@@ -30,7 +30,7 @@ from fsw.wire.messages import (
 )
 
 INBOX_LIMIT = 64
-"""Frames looked at in one tick; a babbling node cannot cost more than that."""
+"""Frames read in one tick; a babbling node cannot cost more than that."""
 
 InputMessage = (
     MagField
@@ -71,18 +71,18 @@ TELECOMMANDS: dict[int, type[Telecommand]] = {
 _ACCEPTED: dict[int, type[InputMessage | Telecommand]] = {**INPUT_MESSAGES, **TELECOMMANDS}
 _SLOT = {can_id: slot for slot, can_id in enumerate(_ACCEPTED)}
 _IN_ANY_PLACE = frozenset({*TELECOMMANDS, PlantEnd.ID})
-"""Identifiers of what others may send between the boards' messages."""
+"""Identifiers of messages that other nodes may send between those of the boards."""
 _OWN = frozenset(can_id for can_id, sender in SENDERS.items() if sender == "FSW")
-"""Identifiers of fsw: nobody else is to use them."""
+"""Identifiers of fsw: no other node is to use them."""
 _COIL_SLOTS = [slot for can_id, slot in _SLOT.items() if SENDERS[can_id] == "COIL"]
 
 
 class Readings(NamedTuple):
     """The last accepted message of each kind in this tick; None where there was none.
 
-    Of telecommands all count, in the order in which they came; ``repeated`` are those that bore the counter
-    of the one before. ``under_own_id`` is the lowest identifier of fsw itself under which a whole frame came,
-    0 if there is none. ``end`` is a PLANT_END after which the flight has gone on.
+    Telecommands are all taken, in order of reception; ``repeated`` are those with the counter of the one
+    before. ``under_own_id`` is the lowest identifier of fsw itself under which a whole frame came, 0 if there
+    is none. ``end`` is a PLANT_END after which the flight has gone on.
     """
 
     field: MagField | None
@@ -103,11 +103,11 @@ NOTHING = Readings(None, None, None, None, None, None)
 
 
 class GateState(NamedTuple):
-    """Last counter of each listened message (-1: none yet), counts since boot, and what was taken since boot.
+    """Last counter of each listened message (-1: none yet), and counts and CRCs since boot.
 
-    ``heard`` is the CRC-32 of the data of all messages taken: nothing on the bus can be altered afterwards
-    without the state telling, not even a sample that had no use. ``command_crc`` is the same of telecommands
-    and PLANT_END, which may come between the boards' messages in any order.
+    ``input_crc`` is the CRC-32 of the data of all accepted messages: no accepted frame can be altered in a
+    log without another state CRC, not even a sample that was not used. ``command_crc`` is the same of
+    telecommands and PLANT_END, which may come between the boards' messages in any order.
     """
 
     counters: tuple[int, ...] = (-1,) * len(_ACCEPTED)
@@ -127,7 +127,7 @@ def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateSt
 
     Returns:
         The readings, and the gate's state with ``rejected`` (broken, unknown, repeated or out of range),
-        ``missed`` (jumps of a counter), ``overrun`` (frames beyond the limit, unread), ``heard`` and
+        ``missed`` (jumps of a counter), ``overrun`` (frames beyond the limit, unread), ``input_crc`` and
         ``command_crc`` brought forward.
     """
     slots: list[object] = [None] * len(INPUT_MESSAGES)
@@ -152,30 +152,30 @@ def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateSt
         slot = _SLOT[frame.can_id]
         step = (message.counter - counters[slot]) & 0xF
         if message_class is CoilBoot:  # a board that starts counts anew
-            for its in _COIL_SLOTS:
-                counters[its] = -1
-        known = counters[slot] >= 0
-        if (known and step == 0) or not _in_range(message):
+            for coil_slot in _COIL_SLOTS:
+                counters[coil_slot] = -1
+        has_counter = counters[slot] >= 0
+        if (has_counter and step == 0) or not _in_range(message):
             rejected += 1
             if isinstance(message, Telecommand):
                 repeated.append(message)
             continue
-        if known:
+        if has_counter:
             missed += step - 1
         counters[slot] = message.counter
         if isinstance(message, Telecommand):
             telecommands.append(message)
         else:
             slots[slot] = message
-        which = frame.can_id in _IN_ANY_PLACE
-        digests[which] = crc32(frame.data, digests[which])
+        digest = frame.can_id in _IN_ANY_PLACE
+        digests[digest] = crc32(frame.data, digests[digest])
     overrun = state.overrun + max(0, len(frames) - INBOX_LIMIT)
     readings = Readings(*slots, tuple(telecommands), tuple(repeated), under_own_id)  # type: ignore[arg-type, call-arg]
     return readings, GateState(tuple(counters), rejected, missed, overrun, *digests)
 
 
 def _in_range(message: InputMessage | Telecommand) -> bool:
-    """Whether the values can be; of telecommands, ``commands`` judges them and gives an answer."""
+    """Whether the values are possible; ``commands`` judges and answers those of telecommands."""
     if isinstance(message, CoilStatus):
         return -3 <= message.level <= 3 and message.coil <= 2
     if isinstance(message, SunVector) and message.valid:

@@ -1,8 +1,8 @@
 """Whether another node sends in fsw's place.
 
-fsw does not hear what it sends itself. A whole frame under one of its own identifiers, and the refusal of a
+fsw does not receive its own frames. An intact frame under one of its own identifiers, and the refusal of a
 request that it never made, are signs of a second sender. One alone may be a frame of an earlier boot that was
-still on its way, or noise with the right CRC: only several of them, soon after one another, name it.
+still on its way, or noise with the right CRC: several of them in short sequence detect one.
 """
 
 from typing import NamedTuple
@@ -11,7 +11,7 @@ from fsw.core.gate.readings import Readings
 from fsw.wire.messages import CoilDipole, CoilFire, CoilRefused, CoilRefusedReason
 
 SIGNS = 3
-"""Ticks with a sign that name a second sender."""
+"""Ticks with a sign that make a second sender detected."""
 
 REQUESTS = frozenset({CoilFire.ID, CoilDipole.ID})
 
@@ -20,7 +20,7 @@ class SecondSenderConfig(NamedTuple):
     """A sign counts with the one before while they are no further apart than this.
 
     ``request_ticks`` for requests, of which there may be one a back-off; ``other_ticks`` for what else fsw
-    sends, some of it in each tick. A second sender of which there is no sign for ``request_ticks`` has gone.
+    sends, some of it in each tick. Without a sign for ``request_ticks`` it is gone.
     """
 
     request_ticks: int
@@ -28,7 +28,7 @@ class SecondSenderConfig(NamedTuple):
 
 
 class SecondSenderWatch(NamedTuple):
-    """Ticks with a sign, ``SIGNS`` at most; the last of them, and the identifier that it was seen under."""
+    """Ticks with a sign, ``SIGNS`` at most; the last of them, and the identifier of the frame."""
 
     signs: int = 0
     tick: int = -1
@@ -51,15 +51,15 @@ def watch(
     tick: int,
     config: SecondSenderConfig,
 ) -> SecondSenderWatch:
-    """What is known of a second sender after this tick.
+    """The watch after this tick.
 
     Args:
-        before: what was known.
-        readings: what was heard.
-        seq: number of the request that the coil driver accepted last; an own one bears this or the next.
-        pulsed: the coil driver numbers its refusals so, and is no continuous one.
+        before: the watch before it.
+        readings: of this tick.
+        seq: number of the request that the coil driver accepted last; one of fsw has this or the next.
+        pulsed: the coil driver is pulsed: its refusals have numbers of requests.
         tick: this one.
-        config: limits.
+        config: the limits.
     """
     can_id = readings.under_own_id
     if not can_id and readings.refused is not None and pulsed and _of_another(readings.refused, seq):
@@ -72,5 +72,5 @@ def watch(
 
 
 def _of_another(refused: CoilRefused, seq: int) -> bool:
-    """Whether a request that fsw has not made was refused; what was malformed may bear any number."""
+    """Whether the refused request is not of fsw; a malformed one may bear any number."""
     return refused.reason != CoilRefusedReason.MALFORMED and (refused.seq - seq) & 0xFF > 1

@@ -1,14 +1,14 @@
 """Which SYNC is believed: time comes over the bus, and the bus may lie.
 
 A SYNC of a tick near ahead is believed at once. One of the tick that was answered last is a duplicate, or
-comes from a plant that has not had its answer and repeats it. Any other is strange. One strange SYNC moves
-nothing; a second one that names the same tick or the next one means that the plant has started anew: in
-lockstep it repeats its SYNC until it is answered, in real time it goes on.
+comes from a plant that did not receive the answer and repeats it. Any other is strange. One strange SYNC
+moves nothing; a second one that names the same tick or the next one means that the plant has started anew:
+in lockstep it repeats its SYNC until it is answered, in real time it goes on.
 
 Others may stand between the two. What is in doubt is forgotten when a settled count goes on by a tick, so
 that strange SYNCs between true ones never add up. A count that has been skipped or begun anew settles in
 ``LEAP_TICKS``; until then one that has been left for it may be believed again. Of two plants that both go on
-tick by tick nothing here can tell which is the false one.
+tick by tick nothing here can decide which is the false one.
 """
 
 from enum import Enum, auto
@@ -22,11 +22,11 @@ MOST_DOUBTED = 64
 
 
 class Belief(Enum):
-    """What a SYNC is taken for."""
+    """How a SYNC is judged."""
 
     IGNORED = auto()
     UNANSWERED = auto()
-    """Of the tick that was answered, again and again: the answer has not been heard."""
+    """Of the tick that was answered, repeatedly: the answer was not received."""
     NEXT = auto()
     """The next tick; where SYNCs were lost, one near ahead."""
     RESTARTED = auto()
@@ -36,8 +36,8 @@ class Belief(Enum):
 class SyncWatch(NamedTuple):
     """SYNCs in doubt.
 
-    ``doubted``: their ticks, the latest last; ``settled_tick``: from which on the count is settled;
-    ``strange_tick``: the latest strange one that has not been told yet, -1 if there is none.
+    ``doubted``: their ticks, the latest last; ``settled_tick``: the count is settled from here on;
+    ``strange_tick``: the latest strange one that has not been reported yet, -1 if there is none.
     """
 
     doubted: tuple[int, ...] = ()
@@ -50,10 +50,10 @@ class SyncWatch(NamedTuple):
 
 
 def judge(watch: SyncWatch, current: int, tick: int) -> tuple[Belief, SyncWatch]:
-    """What a SYNC is taken for, and what is in doubt after it.
+    """How a SYNC is judged, and the watch after it.
 
     Args:
-        watch: what was in doubt.
+        watch: SYNCs in doubt before it.
         current: the tick that was answered last; -1: none yet, and any is believed.
         tick: the one that SYNC names.
     """
@@ -77,7 +77,7 @@ def near(current: int, tick: int) -> bool:
 
 
 def _gone_on(watch: SyncWatch, current: int, tick: int) -> SyncWatch:
-    """After a tick that is near: by a skip the count may have been led astray."""
+    """The watch after a tick near ahead: a skip may come from a forged SYNC."""
     if tick > current + 1:
         return watch._replace(settled_tick=tick + LEAP_TICKS)
     return watch._replace(doubted=()) if watch.doubted and current >= watch.settled_tick else watch

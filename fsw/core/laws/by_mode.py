@@ -1,4 +1,4 @@
-"""Which law each mode flies."""
+"""The law of each mode."""
 
 from fsw.core.laws.damping import bdot, rate_damping
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
@@ -8,7 +8,7 @@ from fsw.wire.messages import Mode
 
 
 def detumble(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """By the estimated rate where it is known: predictive with pulses, else proportional. B-dot where not."""
+    """By the estimated rate where it is valid: predictive with pulses, else proportional. Otherwise B-dot."""
     if not inputs.attitude.valid:
         return bdot(inputs, memory, setpoint, config)
     law = predictive if config.pulsed else rate_damping
@@ -18,7 +18,7 @@ def detumble(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Contr
 def demand(
     mode: Mode, inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig
 ) -> Demand | None:
-    """What the law of this mode asks for; in SAFE nothing at all."""
+    """The demand of the law of this mode; None in SAFE."""
     match mode:
         case Mode.SAFE:
             return None

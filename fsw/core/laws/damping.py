@@ -1,4 +1,4 @@
-"""Damping laws: from a known rate, and from the change of the measured field alone."""
+"""Damping laws: from the estimated rate, and from the change of the measured field alone."""
 
 from dataclasses import dataclass
 
@@ -6,7 +6,7 @@ from fsw.core.algebra.vector import Vec3, cross, norm, scale, sub
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 
 MAX_DIFFERENCE_S = 10.0
-"""Field samples further apart than this tell nothing of the rate."""
+"""Field samples further apart than this give no rate."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,13 +70,13 @@ def switched_gain(b_dot_tps: Vec3, b_body_t: Vec3, k_w: float, below_radps: floa
         The gain of this tick, N m s / T^2.
 
     Source: Semkin, Lyubimov, Malyshev, as in Ovchinnikov, Roldugin 2019, section 1: two values of the gain,
-    changed when the rate falls below a value. There the rate is known; here the field stands in for it.
+    changed when the rate falls below a value. There the rate is measured; here the field stands in for it.
     """
     return k_w if norm(b_dot_tps) > below_radps * norm(b_body_t) else factor * k_w
 
 
 def rate_damping(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """Damping of the rate relative to the orbital frame, down to the spin that is wanted."""
+    """Damping of the rate relative to the orbital frame, down to the spin of the setpoint."""
     if not inputs.attitude.valid:
         return Demand()
     w1, w2, w3 = inputs.attitude.omega_body_orbit_radps
@@ -104,6 +104,6 @@ def bdot_switched(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: 
 
 
 def difference_s(inputs: LawInput, tick_s: float) -> float:
-    """Time between the last two usable field samples, s; zero where they tell nothing of the rate."""
+    """Time between the last two usable field samples, s; zero where they give no rate."""
     interval_s = (inputs.sample.tick - inputs.before.tick) * tick_s
     return interval_s if inputs.before.tick >= 0 and interval_s <= MAX_DIFFERENCE_S else 0.0

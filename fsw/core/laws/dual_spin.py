@@ -14,7 +14,7 @@ from fsw.core.laws.pd import attitude_error
 
 @dataclass(frozen=True, slots=True)
 class DualSpinGains:
-    """The turn wanted in the orbit plane, and how stiffly it is held.
+    """Pitch angle in the orbit plane and the stiffness of its control.
 
     Attributes:
         pitch_rad: angle about the orbit normal, body from orbit.

@@ -1,4 +1,4 @@
-"""Field tracking: the measured field turned onto that expected in the nominal attitude; none is estimated."""
+"""Field tracking: the measured field is turned onto that of the nominal attitude, without an estimate."""
 
 from dataclasses import dataclass
 
@@ -56,18 +56,18 @@ def field_tracking(inputs: LawInput, memory: Memory, setpoint: Setpoint, config:
         return Demand(memory=memory)
     expected_t = rotate(reference.q_orbit_from_eci, reference.b_eci_t)
     error_t = sub(sample.b_body_t, expected_t)
-    kept = (float(sample.tick), *error_t)
+    tracked = (float(sample.tick), *error_t)
     if not memory:
-        return Demand(memory=kept)
+        return Demand(memory=tracked)
     interval_s = (sample.tick - memory[0]) * config.tick_s
     if interval_s > MAX_DIFFERENCE_S:
-        return Demand(memory=kept)
+        return Demand(memory=tracked)
     rate_tps = scale(1.0 / interval_s, sub(error_t, (memory[1], memory[2], memory[3])))
-    return Demand(field_tracking_dipole(error_t, rate_tps, setpoint.k_w, setpoint.k_a), memory=kept)
+    return Demand(field_tracking_dipole(error_t, rate_tps, setpoint.k_w, setpoint.k_a), memory=tracked)
 
 
 def tracking_before_pd(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """Field tracking far from the goal, before the hand-over; begins afresh where it comes back from PD."""
+    """Field tracking far from the goal, before the hand-over; without memory when it returns from PD."""
     gains: HandOverGains = config.gains["field_tracking_pd"]
     own = setpoint._replace(k_w=gains.share_w * setpoint.k_w, k_a=gains.share_a * setpoint.k_a)
     return field_tracking(inputs, memory if len(memory) == TRACKED else (), own, config)

@@ -1,7 +1,7 @@
 """The genetic search of PoSAT-1: the dipole with the least energy left, over the plane normal to the field.
 
 A population of points of that plane; each generation keeps the best (elitism), takes the null dipole into it
-anew (cloning: else it may end at a dipole along the field, which does nothing and costs power), and fills up
+anew (cloning: otherwise it may end at a dipole along the field, without torque), and fills up
 with mixtures of two parents, each won in a tournament of two, moved a little at random. The random numbers
 are a linear congruential sequence from a seed: same seed, same result, on every machine.
 

@@ -22,13 +22,13 @@ class FieldSample:
 
 
 class LawInput(NamedTuple):
-    """What a law may look at in one tick.
+    """What a law receives in one tick.
 
-    ``b_body_t`` is the modelled field where the attitude is known, else the last measured one; ``sample``
+    ``b_body_t`` is the modelled field where the attitude is valid, else the last measured one; ``sample``
     and ``before`` are the last usable field sample of this tick and of the tick before; ``sun_body`` is the
     measured Sun direction, None where there is none; ``reference`` is orbit, field and Sun as modelled, None
     where no orbit is known; ``torque_body_nm`` is the estimated disturbance; ``tick`` is this tick;
-    ``ephemeris`` tells orbit and field of times to come.
+    ``ephemeris`` gives orbit and field at later times.
     """
 
     attitude: Attitude
@@ -43,7 +43,7 @@ class LawInput(NamedTuple):
 
 
 MAX_SPIN_RADPS = 0.1
-"""Largest spin that may be asked for."""
+"""Largest spin that a setpoint may hold."""
 
 
 class Setpoint(NamedTuple):
@@ -66,19 +66,19 @@ class Setpoint(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ControlConfig:
-    """What the table fixes.
+    """Parameters of the laws that the onboard table fixes.
 
     Attributes:
-        setpoint: what holds from boot on.
+        setpoint: at boot.
         gains: by law, the parameters that are that law's alone.
-        inertia_kgm2: inertia tensor, body axes, as the controller believes it.
+        inertia_kgm2: inertia tensor, body axes, as the controller assumes it.
         inertia_inverse: its inverse.
         wheel_body_nms: constant momentum of a wheel, body axes.
         pulsed: whether the coils give pulses, or any dipole each tick.
         tick_s: length of a tick.
         horizon_s: length of a pulse: how far a predictive law looks.
-        mean_dipole_am2: dipole per axis that the coils can give for good.
-        schedules: by law, what was tabulated over an orbit for the periodic laws.
+        mean_dipole_am2: dipole per axis that the coils can give in the mean.
+        schedules: by law, the gains over an orbit of the periodic laws.
     """
 
     setpoint: Setpoint
@@ -94,9 +94,9 @@ class ControlConfig:
 
 
 class Demand(NamedTuple):
-    """What a law asks for: a mean dipole, or an angular impulse to be given at the next opportunity.
+    """The demand of a law: a mean dipole, or an angular impulse to be given at the next opportunity.
 
-    An impulse law leaves the dipole to the actuator, which gives what it can with the least energy left.
+    An impulse law leaves the dipole to the actuator, which chooses the one with the least energy left.
     """
 
     m_body_am2: Vec3 = ZERO

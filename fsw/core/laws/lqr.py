@@ -1,8 +1,8 @@
-"""Periodic linear-quadratic regulator: the dipole that costs least for ever on the direct dipole's field.
+"""Periodic linear-quadratic regulator: the dipole of least cost without end on the direct dipole's field.
 
 The gain M(u) is tabulated over the argument of latitude u of an orbit, from the controller's own inertia and
-orbit, once, when the onboard table is loaded. The law knows the constant torque that the filter estimates: a
-dipole cannot cancel it, but there is a periodic motion with the least error, and the law leads there.
+orbit, once, when the onboard table is loaded. The law uses the constant torque that the filter estimates: a
+dipole cannot cancel it, but there is a periodic motion with the least error, and the law leads to it.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.2; the equations stand in ``riccati``.
 """
@@ -42,7 +42,7 @@ class LqrGains:
 
 
 def check_weights(rate: float, effort: float) -> None:
-    """Refuse weights that make no problem.
+    """Check that the weights are in range.
 
     Raises:
         ValueError: a weight out of range.
@@ -64,7 +64,7 @@ def schedule(
     """The periodic solution on the direct dipole's field of a circular orbit.
 
     Where none holds the body, as on an equatorial orbit with its steady field, the schedule looks one to two
-    orbits ahead: what can be held is, and the rest is let go.
+    orbits ahead: it holds what can be held.
 
     Args:
         inertia_kgm2: J, body axes.
@@ -148,10 +148,10 @@ def lqr(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlCon
 
 
 def expected_torque(inputs: LawInput, table: Schedule) -> Vec3:
-    """The torque that the plan may reckon with, body axes, N m."""
+    """The constant torque that the plan allows for, body axes, N m."""
     return add(inputs.torque_body_nm, table.problem.resting_nm)
 
 
 def without_memory(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """Far from the goal: the PD law's far form; nothing is kept for the law near it."""
+    """Far from the goal: the PD law's far form, without memory for the law near it."""
     return pd_far(inputs, (), setpoint, config)._replace(memory=())

@@ -1,4 +1,4 @@
-"""What the laws of a spinning satellite ask first: absolute rate, momentum, where inertial axes lie."""
+"""Absolute rate, momentum and inertial attitude, for the laws of a spinning satellite."""
 
 from typing import NamedTuple
 
@@ -16,7 +16,7 @@ class InertialMotion(NamedTuple):
 
 
 def motion(inputs: LawInput, config: ControlConfig) -> InertialMotion | None:
-    """Omega = Omega_rel + w0 e3 and h = J omega + h_wheel; None where attitude or orbit is not known."""
+    """Omega = Omega_rel + w0 e3 and h = J omega + h_wheel; None without a valid attitude or an orbit."""
     attitude, reference = inputs.attitude, inputs.reference
     if not attitude.valid or reference is None:
         return None

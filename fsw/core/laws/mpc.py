@@ -1,11 +1,11 @@
-"""Linear predictive control over the period of the field: a plan for the orbit ahead, soon made anew.
+"""Linear predictive control over the period of the field: a plan for the orbit ahead, renewed often.
 
-Orbit and field model tell the field along the coming orbit: not the direct dipole's, which comes again each
+Orbit and field model give the field along the coming orbit: not the direct dipole's, which repeats each
 orbit, but the one that the satellite will meet. The plan costs least along it, and at its end what the
-periodic regulator (``lqr``) expects from there on. Its first steps are flown, by feedback; then it is made
+periodic regulator (``lqr``) expects from there on. Its first steps are applied, by feedback; then it is made
 anew. On the direct dipole's field it is the periodic regulator.
 
-The plan knows no bound of the dipole: what is asked is shortened to what the coils can give for good.
+The plan has no bound of the dipole: the demand is shortened to what the coils can give in the mean.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.3 (after Silani, Lovera 2005); equations: ``riccati``.
 """
@@ -22,7 +22,7 @@ from fsw.core.orbit.field import field_eci_t
 from fsw.core.orbit.propagation import state_eci
 
 APPLIED_STEPS = 5
-"""Steps of a plan that are flown."""
+"""Steps of a plan that are applied."""
 _NUMBERS = 3 * 9
 """Of a gain."""
 
@@ -79,7 +79,7 @@ def plan(table: Schedule, b_orbit_t: Array, end_node: int) -> Array:
 
 
 def mpc(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The step of the plan in memory (tick of its making, its gains); a new plan where it has ended."""
+    """The step of the plan in memory (tick of its start, its gains); a new plan where it has ended."""
     table = config.schedules.get("mpc")
     if not inputs.attitude.valid or inputs.reference is None or inputs.ephemeris is None or table is None:
         return Demand(memory=memory)

@@ -1,11 +1,11 @@
-"""Three axes without a rate: the attitude and what a filter remembers of it.
+"""Three axes without a rate: from the attitude and a filter that follows it.
 
-A filter follows the quaternion, z' = a (q - z). Its lag tells the rate: q - z is q' / a where the motion is
+A filter follows the quaternion, z' = a (q - z). Its lag gives the rate: q - z is q' / a where the motion is
 slow against a, and as q' = 1/2 W(q) Omega with W^T W = E,
 
     Omega ~ 2 a W(q)^T (q - z),     W(q)^T y = q0 yv - y0 qv - qv x yv.
 
-The PD law flies on it: m = -k_w b x Omega_z - k_a b x E, with E = 4 qv. No rate is looked at.
+The PD law uses it: m = -k_w b x Omega_z - k_a b x E, with E = 4 qv. No estimated rate is used.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1, after Lovera, Astolfi 2004: delta' = alpha (q - eps lambda
 delta), u = -eps^2 (k1 q + k2 alpha lambda W^T (q - eps lambda delta)). The scan damages it; here
@@ -55,7 +55,7 @@ def follow(q_body_from_orbit: Quaternion, followed: Quaternion, part: float) -> 
 
 
 def output_feedback(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The PD law on the lagged rate; memory is z, which begins at the first attitude inputs."""
+    """The PD law on the lagged rate; memory is z, which begins at the first valid attitude."""
     if not inputs.attitude.valid:
         return Demand()
     q = inputs.attitude.q_body_from_orbit
@@ -68,7 +68,7 @@ def output_feedback(inputs: LawInput, memory: Memory, setpoint: Setpoint, config
 
 
 def _of_sign(memory: Memory, q: Quaternion) -> Quaternion:
-    """Z of the sign nearer to q, as q and -q are one attitude; q where nothing is remembered."""
+    """Z of the sign nearer to q, as q and -q are one attitude; q without memory."""
     if len(memory) != 4:
         return q
     z0, z1, z2, z3 = memory

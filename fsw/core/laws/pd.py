@@ -44,10 +44,10 @@ def pd_dipole(b_body_t: Vec3, omega_body_orbit_radps: Vec3, error: Vec3, k_w: fl
 def integrate_error(
     integral_s: Vec3, error: Vec3, b_body_t: Vec3, k_i: float, tick_s: float, mean_dipole_am2: float
 ) -> Vec3:
-    """I <- I + S h, held where k_i |b| |I| stays below the dipole that the coils can give for good."""
+    """I <- I + S h, held where k_i |b| |I| stays below the dipole that the coils can give in the mean."""
     grown = add(integral_s, scale(tick_s, error))
-    asked_am2 = k_i * norm(b_body_t) * norm(grown)
-    return grown if asked_am2 <= mean_dipole_am2 else scale(mean_dipole_am2 / asked_am2, grown)
+    demanded_am2 = k_i * norm(b_body_t) * norm(grown)
+    return grown if demanded_am2 <= mean_dipole_am2 else scale(mean_dipole_am2 / demanded_am2, grown)
 
 
 def pd(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
@@ -64,7 +64,7 @@ def pd(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConf
 
 
 def pd_far(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The same law far from the goal: an error that does not vanish upside down, the integral held."""
+    """The same law far from the goal: an error that does not vanish upside down, the integral frozen."""
     integral_s = _integral(memory)
     if not inputs.attitude.valid:
         return Demand(memory=integral_s)

@@ -5,7 +5,7 @@ At each opportunity the rate one pulse ahead is predicted without control,
     Omega+ = Omega + dt (domega/dt + w0 Omega x e3),
     J domega/dt = 3 mu/r^3 e1 x J e1 - omega x (J omega + h),
 
-and what is missing, r = J (Omega_ref - Omega+), is the impulse asked for. The cost of giving m for dt,
+and what is missing, r = J (Omega_ref - Omega+), is the impulse demanded. The cost of m for dt,
 1/2 (Omega+ - Omega_ref)^T J (Omega+ - Omega_ref), is then 1/2 (r - dt m x b)^T J^-1 (r - dt m x b): the
 actuator looks for its least value, over the 18 pulses and none, or over all dipoles.
 
@@ -68,7 +68,7 @@ def best_impulse(impulse_body_nms: Vec3, b_body_t: Vec3, inertia_kgm2: Mat3) -> 
 
 
 def predictive(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The impulse that is missing at the end of a pulse fired now."""
+    """The impulse missing at the end of a pulse fired now."""
     attitude, reference = inputs.attitude, inputs.reference
     if not attitude.valid or reference is None:
         return Demand()

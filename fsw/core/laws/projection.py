@@ -1,6 +1,6 @@
-"""Torques that no coil can give, made dipoles: the weighted projection and the regularised inverse.
+"""From a torque to a dipole: the weighted projection and the regularised inverse.
 
-A law asks for a torque M_ref; coils give M = m x b, normal to the field. The reference is that of the PD law,
+A law demands a torque M_ref; coils give M = m x b, normal to the field. The reference is that of the PD law,
 M_ref = -|b|^2 (k_w Omega + k_a S), whose plain projection is the PD dipole.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1. The scan damages both formulas; they were derived anew.
@@ -33,7 +33,7 @@ class RegularGains:
 
 
 def weighted_projection(torque_body_nm: Vec3, b_body_t: Vec3, weights: Vec3) -> Vec3:
-    """The torque normal to b nearest to the one asked for: M = M_ref - Q^-1 b (b^T Q^-1 b)^-1 b^T M_ref.
+    """The torque normal to b nearest to the demanded one: M = M_ref - Q^-1 b (b^T Q^-1 b)^-1 b^T M_ref.
 
     It minimises (M_ref - M)^T Q (M_ref - M) under M . b = 0: a heavy weight keeps the error off that axis.
 
@@ -52,7 +52,7 @@ def weighted_projection(torque_body_nm: Vec3, b_body_t: Vec3, weights: Vec3) -> 
 
 
 def torque_dipole(torque_body_nm: Vec3, b_body_t: Vec3) -> Vec3:
-    """M = b x M / |b|^2: the shortest dipole for a torque normal to b; it loses what lies along b."""
+    """M = b x M / |b|^2: the shortest dipole for a torque normal to b; the part along b is lost."""
     square = dot(b_body_t, b_body_t)
     return scale(1.0 / square, cross(b_body_t, torque_body_nm)) if square > 0.0 else ZERO
 

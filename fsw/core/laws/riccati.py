@@ -1,4 +1,4 @@
-"""The linear-quadratic problem of a dipole in a known field, solved backwards in time.
+"""The linear-quadratic problem of a dipole in a given field, solved backwards in time.
 
 About the nominal attitude (body = orbit), with Omega the rate relative to the orbital frame, theta the small
 rotation vector and d a constant torque, all in orbital axes, x = (Omega, theta):
@@ -12,8 +12,8 @@ x+ = F x + G (d - [b x] m). The cost is the sum over the steps of
 
     rate |Omega / w0|^2 + |theta|^2 + effort |m B0 / (w0^2 J_mean)|^2
 
-B0 the field above the equator. The torque d is known and nothing controls it: the optimal cost is
-x^T P x + 2 x^T S d + ..., the optimal dipole m = M (x, d). P and S are kept as one matrix (P S), 6 x 9.
+B0 the field above the equator. The torque d is given and not controlled: the optimal cost is
+x^T P x + 2 x^T S d + ..., the optimal dipole m = M (x, d). P and S are stored as one matrix (P S), 6 x 9.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.2 (after Wisniewski 1996); damaged in the scan, derived anew.
 The sums by halves and the doubling: Chu, Fan, Lin, Wang 2004 (periodic Riccati equations).
@@ -32,7 +32,7 @@ E3: Vec3 = (0.0, 0.0, 1.0)
 DOUBLINGS = 8
 """The periodic solution is reached from 2^8 orbits ahead."""
 SETTLED = 1e-6
-"""What an orbit may still change of it, relatively."""
+"""Largest relative change over an orbit."""
 TAYLOR = 14
 """Terms of the exponential of a step, which is short against the free motion."""
 
@@ -150,7 +150,7 @@ def backward(problem: Problem, b_orbit_t: Array, last: Array) -> tuple[Array, Ar
 
 
 def periodic(problem: Problem, b_orbit_t: Array) -> tuple[Array, Array]:
-    """Solve for an orbit whose field comes again for ever.
+    """Solve for an orbit whose field repeats.
 
     The steps are summed to one step an orbit, x+ = A x - G p+, p = H x + A^T p+ (p half the slope of the
     cost), and that step is doubled.

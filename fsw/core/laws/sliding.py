@@ -1,13 +1,13 @@
-"""Sliding control: a surface in rate and attitude on which the attitude dies away, and a torque towards it.
+"""Sliding control: a surface in rate and attitude on which the attitude error decays, a torque to it.
 
-On the surface s = J Omega + K q = 0 (10) the attitude decays by itself; the torque asked for is parallel to
+On the surface s = J Omega + K q = 0 (10) the attitude decays by itself; the torque demanded is parallel to
 s, M_ref = -c s, and the coils give its projection normal to the field. With integrals,
 
     s = J Omega + K q + K_i (integral of q) + (integral of b b^T M_ref / |b|^2),
 
-the first remembers the mean error and so answers a constant torque; the second is the impulse that the coils
+the first holds the mean error and so counters a constant torque; the second is the impulse that the coils
 could not give: with it ds/dt is what full control would make it, the surface is one that the coils can reach.
-Flown, it brings the attitude later, and a constant torque winds it up: its part is zero unless asked for.
+In simulation it delays convergence, and a constant torque winds it up: its part is zero by default.
 
 Source: Ovchinnikov, Roldugin 2019, eq. 10 and the surface with integrals after it. The scan damages the
 latter: the second integral is given as one of b b^T alone; what it integrates was derived anew, by asking
@@ -31,7 +31,7 @@ class SlidingGains:
 
 @dataclass(frozen=True, slots=True)
 class SlidingIntegralGains:
-    """As for ``SlidingGains``; K_i = integral w0^2 J, and the part of the lost impulse that is remembered."""
+    """As for ``SlidingGains``; K_i = integral w0^2 J, and the part of the lost impulse that is integrated."""
 
     reach: float = 3.0
     slope: float = 0.5
@@ -69,7 +69,7 @@ def sliding(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Contro
 def sliding_integral(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The same with both integrals; memory is K_i times the first, and the second, N m s each.
 
-    Each is held where alone it would ask for more than the coils can give for good.
+    Each is bounded where alone it would demand more than the coils can give in the mean.
     """
     held = _held(memory)
     if not inputs.attitude.valid or inputs.reference is None:

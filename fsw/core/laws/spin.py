@@ -1,7 +1,7 @@
 """Spin about a body axis: nutation damping, spin-up, and the Y-Thomson spin about the orbit normal.
 
 The review writes these laws for the third axis, Y-Thomson's for the second; here they hold for any body axis
-e, with e, u, v in cyclic order. The rate wanted is the spin of the setpoint, against the stars.
+e, with e, u, v in cyclic order. The rate wanted is the spin of the setpoint, absolute.
 """
 
 from dataclasses import dataclass

@@ -128,7 +128,7 @@ def three_term_dipole(
 
 
 def spin_relay(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The relay law on L1 + L2, each coil at the dipole it can give for good."""
+    """The relay law on L1 + L2, each coil at the dipole it can give in the mean."""
     gains: SpinAxisGains = config.gains["spin_relay"]
     moving = motion(inputs, config)
     if moving is None:
@@ -139,7 +139,7 @@ def spin_relay(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Con
 
 
 def reorientation(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The momentum turned to its target, its size as it is."""
+    """Turns the momentum to its target and leaves its size."""
     gains: SpinAxisGains = config.gains["reorientation"]
     moving = motion(inputs, config)
     if moving is None:
@@ -149,7 +149,7 @@ def reorientation(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: 
 
 
 def three_term(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """Nutation damped, spin held and momentum turned, at once."""
+    """Damps nutation, holds the spin and turns the momentum at once."""
     gains: ThreeTermGains = config.gains["three_term"]
     moving = motion(inputs, config)
     if moving is None:

@@ -26,7 +26,7 @@ def sun_dipole(sun_change_radps: Vec3, cos_alpha: float, k: float) -> Vec3:
 
 
 def sun_pointing(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The Sun law with k = k_w |b|, alpha by the models; where the Sun is not inputs, nothing.
+    """The Sun law with k = k_w |b|, alpha by the models; without a Sun vector, nothing.
 
     ds/dt by the estimated rate where there is one, else by the change of the Sun vector itself. Memory: the
     tick and the Sun vector then.
@@ -34,17 +34,17 @@ def sun_pointing(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: C
     sun, reference = inputs.sun_body, inputs.reference
     if sun is None or reference is None:
         return Demand()
-    kept = (float(inputs.tick), *sun)
+    memory_now = (float(inputs.tick), *sun)
     change_radps = _sun_change(inputs, sun, memory, config)
     if change_radps is None:
-        return Demand(memory=kept)
+        return Demand(memory=memory_now)
     field_t = norm(reference.b_eci_t)
     cos_alpha = dot(reference.sun_eci, unit(reference.b_eci_t))
-    return Demand(sun_dipole(change_radps, cos_alpha, setpoint.k_w * field_t), memory=kept)
+    return Demand(sun_dipole(change_radps, cos_alpha, setpoint.k_w * field_t), memory=memory_now)
 
 
 def _sun_change(inputs: LawInput, sun: Vec3, memory: Memory, config: ControlConfig) -> Vec3 | None:
-    """The ds/dt of the law, 1/s; None where neither rate nor an earlier vector is at hand."""
+    """The ds/dt of the law, 1/s; None without a rate or an earlier vector."""
     moving = motion(inputs, config)
     if moving is not None:
         return cross(sun, moving.omega_body_radps)

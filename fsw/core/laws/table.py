@@ -1,4 +1,4 @@
-"""The laws that fly, by name: far from the goal and near it."""
+"""The control laws by name, each far from the goal and near it."""
 
 from enum import StrEnum
 from typing import NamedTuple
@@ -39,7 +39,7 @@ class Aim(StrEnum):
     AXIS = "axis"
     """A body axis with a wheel is held to its direction, the body turned about it."""
     RATE = "rate"
-    """The rate is taken away, or down to the spin that is wanted."""
+    """The rate is damped, to zero or to the spin of the setpoint."""
     SPIN = "spin"
     """A spin is built up, or the axis of one is turned."""
     SUN = "sun"
@@ -47,9 +47,9 @@ class Aim(StrEnum):
 
 
 class LawEntry(NamedTuple):
-    """A law: its number in telecommands, its aim, what ACQUIRE and POINT fly, and its own parameters.
+    """A law: its number in telecommands, its aim, its forms in ACQUIRE and POINT, and its own parameters.
 
-    Those are a class, a frozen dataclass of floats with defaults, or None for a law with none.
+    The parameters are a class, a frozen dataclass of floats with defaults, or None for a law with none.
     """
 
     number: int

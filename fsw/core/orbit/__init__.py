@@ -1,1 +1,1 @@
-"""Where the satellite is, and what field and Sun it meets there."""
+"""Orbit, field and Sun as the satellite expects them."""

@@ -1,4 +1,4 @@
-"""Orbit elements from the ground: kept aside one by one, flown all at once."""
+"""Orbit elements from the ground: stored one by one, put into use all at once."""
 
 from typing import NamedTuple
 
@@ -34,18 +34,18 @@ RANGES: dict[Element, tuple[float, float]] = {
     Element.MOTION_REVPDAY: (6.4, 20.0),
     Element.BSTAR: (-1.0, 1.0),
 }
-"""What each element alone may be; whether they are an orbit together is judged when they are loaded."""
+"""Range of each element alone; whether together they are an orbit is judged when they are loaded."""
 
 
 class Upload(NamedTuple):
-    """Elements kept aside, and which of them have come: bit n for element n."""
+    """Elements received so far, and which: bit n for element n."""
 
     values: Elements = Elements(*(0.0,) * len(Element))
     received: int = 0
 
     @property
     def complete(self) -> bool:
-        """Whether every element has come."""
+        """Whether every element has been received."""
         return self.received == (1 << len(Element)) - 1
 
     def with_element(self, element: Element, value: float) -> "Upload":

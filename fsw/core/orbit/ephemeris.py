@@ -1,7 +1,7 @@
 """The slow rate group: orbit, field and Sun at nodes, and between the nodes a cubic.
 
 A node stands every ``node_ticks`` ticks and depends on its number alone, so that the window of four nodes
-around a tick is the same however it was reached.
+around a tick does not depend on earlier ticks.
 """
 
 from dataclasses import dataclass, replace
@@ -22,7 +22,7 @@ Weights = tuple[float, float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class EphemerisNode:
-    """What is known at one node: position (m), velocity (m/s), field (T), unit vector to the Sun; all eci."""
+    """One node: position (m), velocity (m/s), field (T), unit vector to the Sun; all eci."""
 
     r_eci_m: Vec3
     v_eci_mps: Vec3
@@ -60,7 +60,7 @@ class EphemerisModel:
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """What the satellite expects around it in one tick.
+    """Orbit, field and Sun that the satellite expects in one tick.
 
     Orbit axes: 1 along the radius, 2 ahead, 3 along the orbit normal. ``orbit_rate_radps`` is about axis 3.
     """
@@ -104,7 +104,7 @@ def with_orbit(model: EphemerisModel, elements: Elements | None) -> EphemerisMod
     """The model with the orbit of elements from the ground; None: with its own.
 
     Raises:
-        ValueError: the elements are no orbit that can be flown.
+        ValueError: the elements are no low orbit.
     """
     return model if elements is None else replace(model, orbit=element_orbit(elements))
 
@@ -112,7 +112,7 @@ def with_orbit(model: EphemerisModel, elements: Elements | None) -> EphemerisMod
 def advance(window: EphemerisWindow | None, tick: int, model: EphemerisModel) -> EphemerisWindow | None:
     """The window that serves the tick: at most one new node in steady flight, four at boot and after a jump.
 
-    None where the orbit has no position: there is no reference then, and the next call begins afresh.
+    None where the orbit has no position: the next call then computes all four nodes.
     """
     first = tick // model.node_ticks - 1
     if window is not None:
@@ -166,7 +166,7 @@ def reference_at(window: EphemerisWindow, tick: int, model: EphemerisModel) -> R
 
 
 def plausible(reference: Reference) -> bool:
-    """Whether it can be: no damaged node, whose window is to be made anew."""
+    """Whether the values are possible; a window with a damaged node is computed anew."""
     return (
         LEAST_RADIUS_M < reference.radius_m < MOST_RADIUS_M
         and norm(reference.b_eci_t) < MOST_FIELD_T

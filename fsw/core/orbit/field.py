@@ -1,4 +1,4 @@
-"""The geomagnetic field models that can fly, in inertial axes."""
+"""The onboard models of the geomagnetic field, in inertial axes."""
 
 from dataclasses import dataclass
 from enum import Enum
@@ -10,7 +10,7 @@ from fsw.core.orbit.igrf_coefficients import MAX_DEGREE
 
 
 class FieldKind(Enum):
-    """Which field model flies."""
+    """The onboard field model."""
 
     IGRF14 = "igrf14"
     TILTED_DIPOLE = "tilted_dipole"

@@ -41,7 +41,7 @@ class FieldModel:
 def prepare(epoch_unix_s: float, degree: int = MAX_DEGREE) -> FieldModel:
     """The field model of a flight that begins at the epoch.
 
-    Each coefficient is linear in elapsed time between the five-year models; the slope at the epoch is kept
+    Each coefficient is linear in elapsed time between the five-year models; the slope at the epoch holds
     for the whole flight.
 
     Raises:

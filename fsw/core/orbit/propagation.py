@@ -126,7 +126,7 @@ def circular_orbit(
 
 
 def state_eci(orbit: Orbit, unix_s: float) -> State | None:
-    """Position (m) and velocity (m/s) in eci, or None where SGP4 has no sane answer (a decayed orbit)."""
+    """Position (m) and velocity (m/s) in eci, or None where SGP4 has no valid answer (a decayed orbit)."""
     if isinstance(orbit, CircularKeplerOrbit):
         return _circular_state(orbit, unix_s)
     days, seconds = divmod(unix_s, DAY_S)

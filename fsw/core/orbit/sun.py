@@ -1,4 +1,4 @@
-"""The direction of the Sun, and whether a satellite sees it."""
+"""The direction of the Sun, and whether it lights a satellite."""
 
 from math import cos, radians, sin
 
@@ -24,7 +24,7 @@ def sun_eci(unix_s: float) -> Vec3:
 def lit(r_eci_m: Vec3, sun_eci: Vec3, radius_m: float = RADIUS_M) -> bool:
     """Whether the satellite is outside the Earth's cylindrical shadow, whose edge is mid-penumbra.
 
-    With a smaller radius: whether it may be, for all that is not known of the edge.
+    With a smaller radius: whether it may be outside, allowing for the uncertainty of the edge.
     """
     along = dot(r_eci_m, sun_eci)
     return along >= 0.0 or dot(r_eci_m, r_eci_m) - along * along > radius_m * radius_m

@@ -1,4 +1,4 @@
-"""The hub bounds what it takes on: clients, memory, descriptors. Who keeps up with it does not notice."""
+"""The bounds of the hub: clients, memory, descriptors. A client that keeps up does not notice them."""
 
 import resource
 import select
@@ -226,7 +226,7 @@ class TestRoom:
     def test_one_too_many_is_told_at_once(self, hub, full):
         began = time.monotonic()
         with pytest.raises(
-            BusError, match=f"^the loop bus on port {hub.port} is full: its hub takes no more clients$"
+            BusError, match=f"^the loop bus on port {hub.port} is full: its hub accepts no more clients$"
         ):
             LoopLink(hub.port)
         assert time.monotonic() - began < 1.0
@@ -237,12 +237,13 @@ class TestRoom:
         wait_until(lambda: hub.clients == MOST_CLIENTS - 1)
         LoopLink(hub.port).close()
 
-    def test_refusals_are_told_ever_more_rarely(self, hub, said, full):
+    def test_refusals_are_reported_ever_more_rarely(self, hub, said, full):
         for _ in range(120):
             with socket.create_connection(("127.0.0.1", hub.port)) as refused:
                 assert take(refused, len(FULL) + 1) == FULL
-        takes = f"the loop bus on port {hub.port} takes nobody more (it has as many clients as it takes)"
-        assert said == [f"{takes}: {count} refused" for count in (1, 10, 100)]
+        why = "it has as many clients as it serves"
+        refusal = f"the loop bus on port {hub.port} accepts no more clients ({why})"
+        assert said == [f"{refusal}: {count} refused" for count in (1, 10, 100)]
 
     def test_a_stopped_standard_error_stops_nobody(self, serve):
         process, port = serve()
@@ -256,7 +257,7 @@ class TestRoom:
 
 
 class TestDescriptors:
-    def test_with_none_left_the_bus_goes_on_and_who_comes_is_told(self, serve):
+    def test_with_none_left_the_bus_goes_on_and_a_client_is_refused(self, serve):
         process, port = serve(descriptors=24)
         sender, reader = come(port), come(port)
         others, refused = [], 0
