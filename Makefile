@@ -79,6 +79,7 @@ soak: venv
 	$(bin)/python tools/soak.py $(SOAK)
 
 planted: venv
+	TORQUER_SCHEDULER_FLIGHTS=200 $(bin)/pytest -q --timeout 1800 tests/sim/testing/test_audit_scheduler.py
 	$(bin)/python tools/planted.py $(PLANTED)
 
 mutation: venv

@@ -27,7 +27,7 @@ Figures are the worst over all cases.
 _KINDS_HEAD = """## Faults of files and processes
 
 Faults that need no flight are tests: the plant killed (`tests/integration/test_sil_ended.py`), a full disk
-and logs that are cut, altered or of another version (`tests/integration/test_logs_that_lie.py`), wrong tables
+and logs that are cut, altered or of another version (`tests/integration/test_altered_runs.py`), wrong tables
 and scenarios (`tests/integration/test_sil_refuses.py`). `torquer faults --slow` adds two rows, which kill and
 stop a real process.
 

@@ -256,7 +256,7 @@ def test_noise_brings_the_flight_loop_to_nothing_but_safe(config):
     assert node.state.gate.rejected > FRAMES // 3
 
 
-def test_lies_of_every_node_break_no_limit_of_the_scheduler(config):
+def test_false_messages_of_every_node_break_no_limit_of_the_scheduler(config):
     """Each message there is, telecommands among them, with any content."""
     random, node = Random(SEED + 21), FlightNode(config)
     foreign = [m for m in CLASSES.values() if SENDERS[m.ID] != "FSW" and m is not Sync]

@@ -114,6 +114,6 @@ def test_without_arm_what_needs_power_is_not_run_and_a_short_lockout_is_found_al
     assert "6 not run: they drive coils and need --arm" in output
 
 
-def test_nobody_there_is_one_sentence(ended):
+def test_no_board_there_is_one_sentence(ended):
     _, errors, code = ended["nobody"]
     assert (errors, code) == ("torquer: no COIL board answers on this bus\n", 2)

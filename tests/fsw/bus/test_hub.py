@@ -33,7 +33,7 @@ class TestLaggards:
         assert take(reader, 3) == numbered(3)
 
     @pytest.mark.parametrize("words", [b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n", b"\xff" * 64])
-    def test_a_stranger_is_shown_out(self, hub, open_link, words):
+    def test_a_stranger_is_disconnected(self, hub, open_link, words):
         link = open_link()
         with socket.create_connection(("127.0.0.1", hub.port)) as stranger:
             stranger.settimeout(PATIENCE_S)

@@ -245,7 +245,7 @@ class TestRoom:
         refusal = f"the loop bus on port {hub.port} accepts no more clients ({why})"
         assert said == [f"{refusal}: {count} refused" for count in (1, 10, 100)]
 
-    def test_a_stopped_standard_error_stops_nobody(self, serve):
+    def test_a_stopped_standard_error_stops_no_client(self, serve):
         process, port = serve()
         process.process.stderr.close()
         clients = [come(port) for _ in range(MOST_CLIENTS)]

@@ -67,7 +67,7 @@ def test_an_impulse_that_is_no_number_trips(world, supervised):
     assert supervised(pulses=pulses).violated is Monitor.OWED_FINITE
 
 
-def test_a_coil_that_nobody_asked_for_trips(supervised):
+def test_a_coil_that_was_not_requested_trips(supervised):
     stuck, strange = CoilHealth(stuck=True), CoilHealth(faults=(4, 1, 2), strange_ticks=1)
     assert supervised(health=Health(coils=stuck)).violated is Monitor.COIL_AS_COMMANDED
     assert supervised(health=Health(coils=strange)).violated is None

@@ -121,7 +121,7 @@ class TestAgainstCantools:
                 assert all(decoded[other.name] == 0 for other in quantities if other is not signal)
 
     @EVERY_MESSAGE
-    def test_codes_wrap_at_their_width_and_spill_into_nobody(self, dbc, name):
+    def test_codes_wrap_at_their_width_and_change_no_other(self, dbc, name):
         message = dbc.get_message_by_name(name)
         codes = [signal for signal in message.signals if not signal.unit and signal.name != "crc"]
         zero = {s.name: 0 for s in message.signals if s.name != "crc"}
@@ -173,7 +173,7 @@ class TestGoldenBytes:
         assert counters == [n % 16 for n in range(33)]
 
     @pytest.mark.parametrize("name", SEALED)
-    def test_a_message_that_nobody_has_counted_bears_zero(self, dbc, name):
+    def test_a_message_without_a_count_bears_zero(self, dbc, name):
         fields = [field for field in BY_NAME[name]._fields if field != "counter"]
         frame = BY_NAME[name](**dict.fromkeys(fields, 1)).encode()
         assert dbc.get_message_by_name(name).decode(frame.data)["counter"] == 0

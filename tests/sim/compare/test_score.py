@@ -15,7 +15,7 @@ CONTINUOUS = {"coils": {"driver": "continuous", "max_dipole_am2": 8.0, "on_fract
 ORBIT_S = orbit_period_s(load("microsat"))
 
 
-def test_settled_is_under_five_degrees_for_good(plant_record, case_of):
+def test_settled_is_under_five_degrees_from_then_on(plant_record, case_of):
     errors = [60.0] * 100 + [4.0] * 100 + [5.5] + [4.99] * 199
     assert judge(case_of(), plant_record(errors)).settle_orbits_5deg == pytest.approx(201 / ORBIT_S)
 

@@ -73,12 +73,12 @@ def test_while_a_second_sender_is_there_nothing_is_asked_for_and_later_something
         assert checks.no_request(row, flown, bounds)[0] is holds
 
 
-def test_a_unit_that_nobody_can_name_is_not_held_against_fsw(bounds):
+def test_a_unit_that_cannot_be_identified_is_not_held_against_fsw(bounds):
     row = Row("planted", "", "none", unit="the cat")
     assert checks.blamed_rightly(row, record(), bounds)[0] is None
 
 
-def test_any_blame_is_a_false_alarm_where_nothing_is_wrong(bounds):
+def test_any_isolation_is_a_false_alarm_where_nothing_is_wrong(bounds):
     row = Row("planted", "", "none")
     assert checks.quiet(row, record(), bounds)[0]
     assert not checks.quiet(row, record(isolated(120, Sensor.SUN_SENSOR)), bounds)[0]

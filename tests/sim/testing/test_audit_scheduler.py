@@ -1,5 +1,6 @@
 """The bench for schedulers of one's own: good ones pass, and each planted fault is found and named."""
 
+import os
 import subprocess
 import sys
 from math import nan
@@ -30,7 +31,9 @@ from sim.testing import (
     limits,
 )
 
-SOME = settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
+FLIGHTS = int(os.environ.get("TORQUER_SCHEDULER_FLIGHTS", "20"))
+"""``make planted`` takes more."""
+SOME = settings(max_examples=FLIGHTS, deadline=None, suppress_health_check=list(HealthCheck))
 FOUND = settings(
     max_examples=5000,
     deadline=None,
@@ -149,13 +152,13 @@ class Asks:
     ],
 )
 @pytest.mark.parametrize("lost_requests", [0, 0xFF])
-def test_a_request_is_blamed_that_no_board_could_drive(requests, kind, lost_requests):
+def test_a_request_that_no_board_could_drive_is_a_violation(requests, kind, lost_requests):
     flight = Flight(Limits(), 0, (Stretch(120, STRONG, FIELD, lost_requests=lost_requests),))
     violations = audit_scheduler(Asks(*requests), flight).violations
     assert (kind, 110) in {(violation.kind, violation.tick) for violation in violations}
 
 
-def test_a_request_as_it_should_be_is_not_blamed():
+def test_a_request_as_it_should_be_is_none():
     flight = Flight(Limits(), 0, (Stretch(120, STRONG, FIELD),))
     assert audit_scheduler(Asks(Fire(1, 3, 3000)), flight).ok
 

@@ -25,8 +25,8 @@ def test_a_planted_fault_is_found(scheduler):
 
 
 @pytest.mark.parametrize("scheduler", CORRECT, ids=lambda one: one.__name__)
-def test_a_correct_scheduler_is_not_blamed(scheduler):
-    assert run(scheduler.__name__, SEED, UNSHRUNK, examples=30).blamed is None
+def test_a_correct_scheduler_passes(scheduler):
+    assert run(scheduler.__name__, SEED, UNSHRUNK, examples=15).blamed is None
 
 
 @pytest.mark.parametrize(
@@ -39,5 +39,5 @@ def test_a_correct_scheduler_is_not_blamed(scheduler):
         ("Timers", [Run("Timers", 9.0, None), Run("Timers", 9.0, "too long")], False),
     ],
 )
-def test_the_table_fails_by_a_fault_that_is_missed_a_correct_one_blamed_or_a_long_run(name, runs, as_wanted):
+def test_the_table_fails_by_a_missed_fault_a_false_alarm_or_a_long_run(name, runs, as_wanted):
     assert row(name, runs)[1] is as_wanted

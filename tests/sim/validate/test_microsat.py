@@ -58,7 +58,7 @@ class TestAcquired:
     def orbits(self, scenario, angles, mode):
         return microsat.acquired(scenario, histories(angles), modes(mode))["held_orbits"]
 
-    def test_from_the_tick_on_that_both_hold_for_good(self, scenario):
+    def test_from_the_tick_from_which_on_both_hold(self, scenario):
         angles, mode = np.full(self.TICKS, 9.9), np.full(self.TICKS, int(Mode.POINT))
         assert self.orbits(scenario, angles, mode) == 0.0
         angles[ORBIT // 2] = 10.1

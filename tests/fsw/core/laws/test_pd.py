@@ -138,7 +138,7 @@ class TestIntegral:
         assert demand.memory == pytest.approx(S)
 
     @given(vectors, vectors)
-    def test_its_dipole_never_exceeds_what_the_coils_can_give_for_good(self, integral, error):
+    def test_its_dipole_never_exceeds_what_the_coils_can_hold(self, integral, error):
         integral = tuple(1e5 * c for c in integral)
         grown = integrate_error(integral, error, B_BODY_T, 0.08, 0.5, MEAN_AM2)
         free = np.array(integral) + 0.5 * np.array(error)

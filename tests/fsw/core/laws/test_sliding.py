@@ -133,7 +133,7 @@ def test_a_lost_torque_is_remembered_where_it_counts(inputs, asked):
 
 
 @pytest.mark.parametrize("lost", [0.0, 1.0])
-def test_integrals_are_held_at_what_the_coils_can_give_for_good(inputs, asked, lost):
+def test_integrals_are_limited_to_what_the_coils_can_hold(inputs, asked, lost):
     own, memory, most_am2 = SlidingIntegralGains(integral=1e3, lost=lost), (), 1e-4
     for _ in range(300):
         memory = asked("sliding_integral", inputs, memory, own, most_am2).memory
