@@ -24,6 +24,12 @@ def charts(page):
     return {name for name in page.values("id") if name.startswith("chart-")}
 
 
+@pytest.fixture
+def no_charts(monkeypatch):
+    """For what is said beside them: they take a second."""
+    monkeypatch.setattr("sim.report.sections.sections", lambda *given: [])
+
+
 def test_the_page_needs_nothing_but_itself(page):
     assert not {"script", "link", "iframe", "object", "embed", "img", "image", "base", "form"} & set(
         page.tags
@@ -86,6 +92,7 @@ def write_run(folder, **values):
     (folder / "run.json").write_text(json.dumps(known | values))
 
 
+@pytest.mark.usefixtures("no_charts")
 def test_bus_and_versions_come_from_the_run_beside_the_report(tmp_path, made_run):
     write_run(tmp_path, flown={"ticks": 7000})
     page = made_run().write(tmp_path)
@@ -126,6 +133,7 @@ def test_thousands_of_broken_limits_do_not_drown_the_page(tmp_path, made_run):
     assert len(page.source) < 1_500_000
 
 
+@pytest.mark.usefixtures("no_charts")
 @pytest.mark.parametrize(
     ("replay", "words"),
     [
@@ -140,17 +148,20 @@ def test_a_replay_that_differs_is_not_called_exact(tmp_path, replay, words, made
     assert "✓ replay bit-exact" not in page.text
 
 
+@pytest.mark.usefixtures("no_charts")
 def test_refusals_are_counted(tmp_path, made_run):
     page = made_run(ticks=20, pulses=(), refused=3).write(tmp_path)
     assert "! 3 refused" in page.text
 
 
+@pytest.mark.usefixtures("no_charts")
 def test_an_unfinished_flight_is_called_so(tmp_path, made_run):
     write_run(tmp_path, ticks=18124)
     page = made_run(complete=False).write(tmp_path)
     assert "✗ incomplete: 7000 of 18124 ticks" in page.text
 
 
+@pytest.mark.usefixtures("no_charts")
 def test_a_log_without_its_end_is_incomplete_though_nothing_else_is_known(tmp_path, made_run):
     page = made_run(ticks=20, pulses=(), complete=False).write(tmp_path)
     assert "✗ incomplete: 20 ticks" in page.text
