@@ -1,25 +1,25 @@
-"""Independent audit of the actuator limits, from what the coil driver board says it really drove.
+"""Independent audit of the actuator limits, from the coil driver board's own report of what it drove.
 
 Judged are the COIL_STATUS frames of a log: no pulse longer than allowed; no pulse sooner after another one,
-or after a boot of the board, than the back-off; no level out of range; never two coils at once; nothing
-announced that would break a limit; no COIL_STATUS that cannot be trusted. The status of tick k tells what was
-driven in the interval that ends at k, so a pulse begins one tick before the first status that shows it.
+or after a boot of the board, than the back-off; no level out of range; never two coils at once; no pulse
+announced that would break a limit; no COIL_STATUS with a wrong CRC or length. The status of tick k reports
+the interval that ends at k, so a pulse begins one tick before the first status that shows it.
 
-Two clocks tell the time: the ticks of SYNC, and the timestamps, where they are simulated time or where the
-log has no usable SYNC. A limit must be kept by each of them, and where both count they must agree.
-Comparisons are exact. Nothing here comes from the onboard scheduler or from the boards.
+There are two clocks: the ticks of SYNC, and the timestamps, where they are simulated time or where the
+log has no usable SYNC. Each limit must hold by both of them, and where both count they must agree.
+Comparisons are exact. Nothing here is shared with the onboard scheduler or the boards, on purpose.
 """
 
 from collections.abc import Iterable, Iterator
 
 from fsw.wire.messages import CoilBoot, CoilStatus, PlantEnd, Sync, intact
-from sim.audit.findings import AuditLimits, AuditReport, Kind, Pulse, Violation, seconds_text
+from sim.audit.findings import AuditLimits, AuditReport, DrivenPulse, Violation, ViolationKind, seconds_text
 from sim.audit.log_clock import MICRO, LogClock, read_clock
 from sim.audit.pulse_judge import PulseJudge
 from sim.audit.status_ticks import BoardStatus, StatusTicks
 from sim.record.candump import LogEntry, LogTruncatedError
 
-__all__ = ["AuditLimits", "AuditReport", "Kind", "Pulse", "Violation", "audit"]
+__all__ = ["AuditLimits", "AuditReport", "DrivenPulse", "Violation", "ViolationKind", "audit"]
 
 _JUDGED = frozenset((CoilStatus.ID, CoilBoot.ID, Sync.ID))
 
@@ -30,7 +30,7 @@ def audit(entries: Iterable[LogEntry], limits: AuditLimits, expect_end: bool = F
     Args:
         entries: the log, as ``read_log`` yields it.
         limits: what to judge by.
-        expect_end: the log is one of ours, so that it is complete only if PLANT_END is its last frame.
+        expect_end: Torquer recorded the log, so that it is complete only if PLANT_END is its last frame.
 
     Raises:
         LogError: the log has been altered; passed on from ``entries``.
@@ -44,7 +44,7 @@ def audit(entries: Iterable[LogEntry], limits: AuditLimits, expect_end: bool = F
 
 
 class _WholeEntries:
-    """The entries that matter, up to where the log is cut; what it ended with is known afterwards."""
+    """The entries that are judged, up to where the log is truncated; afterwards, how the log ended."""
 
     def __init__(self, entries: Iterable[LogEntry]) -> None:
         self._entries = entries
@@ -63,8 +63,8 @@ class _WholeEntries:
                     sync = last
                 if last.can_id in _JUDGED:
                     yield entry
-        except LogTruncatedError as cut:
-            self.truncated_at = cut.line
+        except LogTruncatedError as error:
+            self.truncated_at = error.line
             return
         if last is None or last.can_id != PlantEnd.ID:
             return
@@ -72,17 +72,17 @@ class _WholeEntries:
             self.wrong_end = "its last frame is a PLANT_END with a wrong CRC or length"
         elif sync is not None and not _fits(PlantEnd.decode(last.data), Sync.decode(sync.data)):
             ticks, tick = PlantEnd.decode(last.data).ticks, Sync.decode(sync.data).tick
-            self.wrong_end = f"its PLANT_END tells of {ticks} ticks, its last SYNC is of tick {tick}"
+            self.wrong_end = f"its PLANT_END counts {ticks} ticks, its last SYNC is of tick {tick}"
         self.ended = self.wrong_end is None
 
 
 def _fits(end: PlantEnd, sync: Sync) -> bool:
-    """Whether the ticks that were flown, modulo 2^24, are those up to the last."""
+    """Whether the number of ticks in PLANT_END, modulo 2^24, is that up to the last SYNC."""
     return (sync.tick + 1 - end.ticks) % (1 << 24) == 0
 
 
 class _Auditor:
-    """Sorts the log into ticks and hands them to the judges."""
+    """Sorts the log into ticks and passes them to the judge of each clock."""
 
     def __init__(self, clock: LogClock, limits: AuditLimits) -> None:
         self._clock = clock
@@ -102,10 +102,12 @@ class _Auditor:
         self._crowded_ticks = 0
         self._broken_boots = 0
         if clock.contradictory and clock.epoch_s is None:
-            self._blame(Kind.SYNC, 0, None, 0, "no tick rate makes unix_time_s = epoch + tick // tick_hz")
+            self._add(
+                ViolationKind.SYNC, 0, None, 0, "no tick rate makes unix_time_s = epoch + tick // tick_hz"
+            )
 
     def take(self, entry: LogEntry) -> None:
-        """The next SYNC, COIL_STATUS or COIL_BOOT of the log."""
+        """Process the next SYNC, COIL_STATUS or COIL_BOOT of the log."""
         can_id = entry.frame.can_id
         if can_id == CoilStatus.ID:
             self._take_status(entry)
@@ -136,7 +138,7 @@ class _Auditor:
         line, timestamp_us, _, frame = entry
         if len(frame.data) != Sync.LENGTH:
             tick = None if self._tick is None else self._tick + 1
-            self._blame(Kind.SYNC, (tick or 0) * MICRO, tick, line, f"SYNC of {len(frame.data)} bytes")
+            self._add(ViolationKind.SYNC, (tick or 0) * MICRO, tick, line, f"SYNC of {len(frame.data)} bytes")
             return
         tick, unix_time_s = Sync.decode(frame.data)
         if tick == self._tick:  # sent again: no time has passed by it
@@ -145,14 +147,14 @@ class _Auditor:
         step = 1 if self._tick is None else tick - self._tick
         if step < 1:
             sentence = f"SYNC goes back from tick {self._tick} to tick {tick}: two runs in one log?"
-            self._blame(Kind.SYNC, tick * MICRO, tick, line, sentence)
+            self._add(ViolationKind.SYNC, tick * MICRO, tick, line, sentence)
             self._interrupt()
             step = 1
         self._tick = tick
         self._check_unix_time(line, tick, unix_time_s)
         self._check_timestamp("SYNC", line, timestamp_us, tick)
-        for this, boards in self._ticks.close(tick, step):
-            self._judge_tick(this, boards)
+        for of_tick, boards in self._ticks.close(tick, step):
+            self._judge_tick(of_tick, boards)
 
     def _judge_tick(self, tick: int, boards: list[BoardStatus]) -> None:
         instant = tick * MICRO
@@ -176,7 +178,7 @@ class _Auditor:
                 sentence = (
                     f"timestamp of {name} is {seconds_text(abs(off_s))} s {'late' if off > 0 else 'early'}"
                 )
-                self._blame(Kind.TIMESTAMP, tick * MICRO, tick, line, sentence)
+                self._add(ViolationKind.TIMESTAMP, tick * MICRO, tick, line, sentence)
 
     def _check_unix_time(self, line: int, tick: int, unix_time_s: int) -> None:
         expected = (self._clock.epoch_s or 0) + tick // self._clock.units
@@ -185,7 +187,7 @@ class _Auditor:
             self._unix_off = off
             if off:
                 sentence = f"SYNC says unix_time_s {unix_time_s}, its tick says {expected}"
-                self._blame(Kind.SYNC, tick * MICRO, tick, line, sentence)
+                self._add(ViolationKind.SYNC, tick * MICRO, tick, line, sentence)
 
     # --- logs without
 
@@ -206,7 +208,7 @@ class _Auditor:
     # --- both
 
     def _stamped(self, boards: list[BoardStatus]) -> int:
-        """The time that timestamps give to the statuses of a tick: until then at least a coil was driven."""
+        """The instant of a tick's statuses by timestamp: the last with a coil driven, else the first."""
         times = [board.timestamp_us for board in boards if board.status is not None and board.status.level]
         return self._clock.of_timestamp(max(times, default=boards[0].timestamp_us))
 
@@ -218,7 +220,7 @@ class _Auditor:
             self._crowded_ticks += 1
         for line, _, status, _ in boards:
             if status is None:
-                self._blame(Kind.FRAME, instant, tick, line, "COIL_STATUS with a wrong CRC or length")
+                self._add(ViolationKind.FRAME, instant, tick, line, "COIL_STATUS with a wrong CRC or length")
         return [board.status for board in boards if board.status is not None]
 
     def _boot(self, instant: int) -> None:
@@ -232,11 +234,11 @@ class _Auditor:
     def _judges(self) -> list[PulseJudge]:
         return [judge for judge in (self._by_ticks, self._by_timestamps) if judge is not None]
 
-    def _blame(self, kind: Kind, instant: int, tick: int | None, line: int, sentence: str) -> None:
+    def _add(self, kind: ViolationKind, instant: int, tick: int | None, line: int, sentence: str) -> None:
         self._violations.append(Violation(kind, self._clock.seconds(instant), tick, None, line, sentence))
 
     def report(self, log: _WholeEntries, expect_end: bool) -> AuditReport:
-        """The verdict, after the last entry."""
+        """The result, after the last entry."""
         if self._by_ticks is None:
             self._judge_by_timestamps()
         elif self._ticks.waiting and self._tick is not None:
@@ -258,17 +260,17 @@ class _Auditor:
         )
 
     def _all_violations(self) -> tuple[Violation, ...]:
-        """Those of both judges, but what both have found only once."""
-        found = list(self._violations)
+        """The violations of both judges; one that both report counts once."""
+        violations = list(self._violations)
         for judge in self._judges():
-            known = {(one.kind, one.tick, one.coil) for one in found}
-            found += [one for one in judge.violations if (one.kind, one.tick, one.coil) not in known]
-        return tuple(sorted(found, key=lambda one: (one.time_s, one.line)))
+            already = {(one.kind, one.tick, one.coil) for one in violations}
+            violations += [one for one in judge.violations if (one.kind, one.tick, one.coil) not in already]
+        return tuple(sorted(violations, key=lambda one: (one.time_s, one.line)))
 
     def _notes(self, log: _WholeEntries) -> Iterator[str]:
         clock = self._clock
         if log.truncated_at is not None:
-            yield f"truncated: line {log.truncated_at} is incomplete; judged is what stands before it"
+            yield f"truncated: line {log.truncated_at} is incomplete; the lines before it are judged"
         elif not log.ended:
             yield f"the log has no end mark{f': {log.wrong_end}' if log.wrong_end else ''}"
         if self._statuses == 0:

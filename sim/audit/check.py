@@ -19,16 +19,16 @@ from sim.record.signature import PublicKey
 LOG_NAME = "bus.log"
 SCENARIO_NAME = "scenario.toml"
 CONTRACT_VERSION = 1
-"""Of the bus contract that is judged here; each node tells its own when it boots."""
+"""Version of the bus contract that is judged here; each node reports its own in its boot message."""
 _BOOTS = {boot.ID: boot for boot in (PlantBoot, FswBoot, CoilBoot, MagBoot, SunBoot)}
 _SHOWN = 50
-"""Violations that are printed one by one; a log of ours that broke loose may hold thousands."""
+"""Violations that are printed one by one; the log of a board out of control may hold thousands."""
 
 
 def check(path: Path, backoff: str | None, key: PublicKey | None = None) -> AuditReport:
     """Audit a log by the limits of the scenario beside it, and compare what lies beside it with its run.json.
 
-    A scenario that is not the run's tells nothing of its limits: then they are the usual ones.
+    A scenario that is not the run's does not give its limits: then the default ones apply.
 
     Args:
         path: a run directory, or a log.
@@ -44,15 +44,15 @@ def check(path: Path, backoff: str | None, key: PublicKey | None = None) -> Audi
     if not os.path.isfile(log):
         raise HarnessError(f"{path}: no {LOG_NAME} in it" if folder else f"{path}: no such file")
     binding = compare(log.parent, log, key)
-    foreign = SCENARIO_NAME in binding.mismatches
-    beside = AuditLimits() if foreign else limits_beside(log)
-    limits = beside or AuditLimits()
+    mismatched = SCENARIO_NAME in binding.mismatches
+    stated = AuditLimits() if mismatched else limits_beside(log)
+    limits = stated or AuditLimits()
     if backoff is not None:
         limits = replace(limits, shared=is_shared(backoff, "--backoff"))
     with binding.beside_errors():
-        report = audit(_of_this_contract(log), limits, expect_end=beside is not None)
+        report = audit(_of_this_contract(log), limits, expect_end=stated is not None)
     voucher = vouch(log)
-    usual = f"judged by the usual limits: {SCENARIO_NAME} is not the run's" if foreign else ""
+    usual = f"judged by the usual limits: {SCENARIO_NAME} is not the run's" if mismatched else ""
     notes = (voucher.sentence, binding.note, usual)
     return replace(
         report,
@@ -64,7 +64,7 @@ def check(path: Path, backoff: str | None, key: PublicKey | None = None) -> Audi
 
 
 def _of_this_contract(log: Path) -> Iterator[LogEntry]:
-    """The entries of a log whose nodes, where they tell, speak as this version does."""
+    """The entries of a log; every boot message in it must be of this version of the contract."""
     for entry in read_log(log):
         if entry.frame.can_id in _BOOTS and intact(entry.frame):
             version = _BOOTS[entry.frame.can_id].decode(entry.frame.data).version
@@ -95,7 +95,7 @@ def limits_beside(log: Path) -> AuditLimits | None:
 
 
 def render(report: AuditReport) -> str:
-    """The verdict for people: what was judged, each violation with time and coil, and the notes."""
+    """The result as text: the limits, each violation with time and coil, the notes and the verdict."""
     limits = report.limits
     pulse_s, backoff_s = (seconds_text(us / 1_000_000) for us in (limits.pulse_us, limits.backoff_us))
     lines = [

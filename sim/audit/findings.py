@@ -1,4 +1,4 @@
-"""What an audit of the actuator limits has found, as values."""
+"""The result of an audit of the actuator limits, as values."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -9,8 +9,8 @@ from itertools import pairwise
 COILS = (0, 1, 2)
 
 
-class Kind(StrEnum):
-    """What a violation is of."""
+class ViolationKind(StrEnum):
+    """The rule that a violation breaks."""
 
     PULSE = "pulse"
     ANNOUNCED = "announced"
@@ -44,7 +44,7 @@ class AuditLimits:
 
 
 @dataclass(frozen=True, slots=True)
-class Pulse:
+class DrivenPulse:
     """One coil driven without a break over [start_s, end_s)."""
 
     coil: int
@@ -60,18 +60,18 @@ class Pulse:
 
 @dataclass(frozen=True, slots=True)
 class Violation:
-    """One limit broken: what, when, where.
+    """One rule broken: which, when and where.
 
     Attributes:
-        kind: the limit.
+        kind: the rule.
         time_s: seconds from tick 0, or from the first entry of a log without SYNC. For a pulse its start.
         tick: the tick of that time, if the log has ticks.
         coil: the coil, if it is known.
-        line: line of the log that gives it away.
+        line: line of the log that shows it.
         sentence: what is wrong, without time and coil.
     """
 
-    kind: Kind
+    kind: ViolationKind
     time_s: Fraction
     tick: int | None
     coil: int | None
@@ -86,13 +86,13 @@ class Violation:
 
 @dataclass(frozen=True, slots=True)
 class AuditReport:
-    """The verdict on one log.
+    """The result for one log.
 
     Attributes:
-        limits: what was judged by.
+        limits: the limits that were applied.
         pulses: all pulses, by start.
         violations: all violations, by time.
-        notes: what the reader should know besides, a sentence each.
+        notes: remarks for the reader, a sentence each.
         statuses: number of COIL_STATUS judged.
         span_s: time from the first to the last of them.
         truncated_at: number of the line that is cut, if the log ends inside one.
@@ -102,7 +102,7 @@ class AuditReport:
     """
 
     limits: AuditLimits
-    pulses: tuple[Pulse, ...]
+    pulses: tuple[DrivenPulse, ...]
     violations: tuple[Violation, ...]
     notes: tuple[str, ...]
     statuses: int
@@ -119,7 +119,7 @@ class AuditReport:
 
     @property
     def exit_code(self) -> int:
-        """0 if the limits were kept over a complete log that is as it was flown, of its own run, else 1."""
+        """0 if the limits were kept over a complete, unaltered log that belongs to its run, else 1."""
         return 0 if self.ok and self.complete and self.genuine and not self.mismatches else 1
 
     @property
@@ -152,10 +152,10 @@ class AuditReport:
         """Least time from a pulse to the next of the same coil, for each coil."""
         return [_min_gap(self._of(coil)) for coil in COILS]
 
-    def _of(self, coil: int) -> tuple[Pulse, ...]:
+    def _of(self, coil: int) -> tuple[DrivenPulse, ...]:
         return tuple(pulse for pulse in self.pulses if pulse.coil == coil)
 
-    def _duty(self, pulses: Iterable[Pulse]) -> float:
+    def _duty(self, pulses: Iterable[DrivenPulse]) -> float:
         driven_s = sum((pulse.length_s for pulse in pulses), Fraction(0))
         return float(driven_s / self.span_s) if self.span_s > 0 else 0.0
 
@@ -166,7 +166,7 @@ def seconds_text(time_s: Fraction | float) -> str:
     return text[:-3] + text[-3:].rstrip("0")
 
 
-def _min_gap(pulses: Iterable[Pulse]) -> float | None:
+def _min_gap(pulses: Iterable[DrivenPulse]) -> float | None:
     """Least gap of pulses in order of start; those that overlap have none: 0."""
     gaps = (float(max(later.start_s - sooner.end_s, Fraction(0))) for sooner, later in pairwise(pulses))
     return min(gaps, default=None)

@@ -1,4 +1,4 @@
-"""The time of a log: its tick rate, and what its timestamps are worth, read off its first seconds.
+"""The clock of a log: its tick rate, and whether its timestamps are simulated time, from its first seconds.
 
 All instants are integers in units of 1 / (10^6 tick_hz) s. In them a tick is 10^6, a microsecond is
 ``tick_hz``, and nothing is ever rounded.
@@ -15,7 +15,7 @@ from sim.record.candump import LogEntry
 
 MICRO = 1_000_000
 _PEEK = 100_000
-"""How many entries may be looked at before the rate must be settled."""
+"""Entries that may be read before the rate must be decided."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,9 +23,9 @@ class LogClock:
     """How to turn ticks and timestamps of a log into instants.
 
     Attributes:
-        units: ticks a second where ticks are known, else 1; an instant counts 1 / (10^6 units) s.
+        units: ticks a second where the rate is known, else 1; an instant counts 1 / (10^6 units) s.
         period: of COIL_STATUS, in instants.
-        epoch_s: unix time of tick 0; None if the log has no SYNC, or none that tells the tick rate.
+        epoch_s: unix time of tick 0; None if the log has no SYNC, or too few to show the tick rate.
         origin_us: timestamp that counts as t = 0.
         simulated: timestamps are epoch + tick / tick_hz, to the microsecond.
         contradictory: no tick rate fits the log's SYNCs.
@@ -74,9 +74,9 @@ def read_clock(entries: Iterator[LogEntry], tick_hz: int | None) -> tuple[LogClo
             continue
         first = first or entry
         tick, unix = Sync.decode(entry.frame.data)
-        known = unix in seconds
-        seconds[unix] = (seconds[unix][0] if known else tick, tick)
-        if len(seconds) > 1 and not known:
+        is_new = unix not in seconds
+        seconds[unix] = (tick if is_new else seconds[unix][0], tick)
+        if len(seconds) > 1 and is_new:
             rates = _rates(seconds, rates)
             if rates is not None and len(rates) <= 1:
                 break

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from fsw.wire.messages import CoilStatus
-from sim.audit.findings import COILS, AuditLimits, Kind, Pulse, Violation, seconds_text
+from sim.audit.findings import COILS, AuditLimits, DrivenPulse, Violation, ViolationKind, seconds_text
 from sim.audit.log_clock import LogClock
 
 
@@ -20,14 +20,14 @@ class _Drive:
     line: int
     announced: int  # the end that the last status announces
     latest: int  # the latest end announced so far
-    blamed_levels: set[int] = field(default_factory=set)
+    reported_levels: set[int] = field(default_factory=set)
 
 
 class PulseJudge:
-    """Assembles pulses from statuses, in order of time, and blames each that breaks a limit."""
+    """Assembles pulses from statuses, in order of time, and reports each that breaks a limit."""
 
     def __init__(self, clock: LogClock, limits: AuditLimits) -> None:
-        self.pulses: list[Pulse] = []
+        self.pulses: list[DrivenPulse] = []
         self.violations: list[Violation] = []
         self._clock = clock
         self._limits = limits
@@ -45,7 +45,7 @@ class PulseJudge:
     def observe(self, now: int, tick: int | None, line: int, statuses: list[CoilStatus]) -> None:
         """All statuses of one tick: what was driven in the interval that ends ``now``.
 
-        A tick without any is not judged: a coil seen driven before and after it was driven in it too.
+        A tick without any is not judged: a coil driven before and after it was driven in it too.
         """
         driven = [status for status in statuses if status.level]
         if not statuses or not (driven or self._drives):
@@ -56,27 +56,27 @@ class PulseJudge:
         for drive in stopped:
             self._stop(drive, before)
         for status in driven:
-            known = self._drives.get(status.coil)
-            if known is not None and known.seq == status.seq:
-                drive = known
+            under_way = self._drives.get(status.coil)
+            if under_way is not None and under_way.seq == status.seq:
+                drive = under_way
                 self._go_on(drive, status, now)
             else:
-                if known is not None:
-                    self._stop(known, before)
+                if under_way is not None:
+                    self._stop(under_way, before)
                 start_tick = None if tick is None else tick - 1
                 announced = self._announced(before, now, status)
                 drive = _Drive(
                     status.coil, status.seq, status.level, before, now, start_tick, line, announced, announced
                 )
                 self._start(drive, stopped)
-            if abs(status.level) > self._limits.max_level and status.level not in drive.blamed_levels:
-                drive.blamed_levels.add(status.level)
+            if abs(status.level) > self._limits.max_level and status.level not in drive.reported_levels:
+                drive.reported_levels.add(status.level)
                 highest = self._limits.max_level
                 sentence = f"level {status.level} is outside -{highest}..{highest}"
-                self._blame(Kind.LEVEL, now, tick, status.coil, line, sentence)
+                self._add(ViolationKind.LEVEL, now, tick, status.coil, line, sentence)
 
     def finish(self) -> None:
-        """Nothing more is known: what is driven ends where it was last seen."""
+        """The log ends: a coil still driven counts as driven until its last status."""
         for drive in list(self._drives.values()):
             self._stop(drive, drive.end)
 
@@ -85,7 +85,7 @@ class PulseJudge:
         self._judge_gap(drive)
         self._judge_boot(drive)
         if drive.coil not in COILS:
-            self._blame_start(Kind.COIL, drive, "there is no such coil")
+            self._add_at_start(ViolationKind.COIL, drive, "there is no such coil")
         self._drives[drive.coil] = drive
 
     def _go_on(self, drive: _Drive, status: CoilStatus, now: int) -> None:
@@ -96,7 +96,7 @@ class PulseJudge:
         drive.latest = max(drive.latest, drive.announced)
 
     def _announced(self, start: int, end: int, status: CoilStatus) -> int:
-        """What remains comes in whole milliseconds, so what has passed is counted in whole ones too."""
+        """The end by ``remaining_ms``; in whole milliseconds, so elapsed time is too."""
         return start + ((end - start) // self._millisecond + status.remaining_ms) * self._millisecond
 
     def _stop(self, drive: _Drive, until: int) -> None:
@@ -105,20 +105,22 @@ class PulseJudge:
         end = max(drive.end, min(drive.announced, until))
         self._ended[drive.coil] = end
         seconds = self._clock.seconds
-        self.pulses.append(Pulse(drive.coil, drive.level, seconds(drive.start), seconds(end)))
+        self.pulses.append(DrivenPulse(drive.coil, drive.level, seconds(drive.start), seconds(end)))
         limit = f"{seconds_text(seconds(self._longest))} s"
         if end - drive.start > self._longest:
             length = seconds_text(seconds(end - drive.start))
-            self._blame_start(Kind.PULSE, drive, f"pulse of {length} s exceeds {limit}")
+            self._add_at_start(ViolationKind.PULSE, drive, f"pulse of {length} s exceeds {limit}")
         elif drive.latest - drive.start > self._longest:
             length = seconds_text(seconds(drive.latest - drive.start))
-            self._blame_start(Kind.ANNOUNCED, drive, f"pulse announces {length} s, which exceeds {limit}")
+            self._add_at_start(
+                ViolationKind.ANNOUNCED, drive, f"pulse announces {length} s, which exceeds {limit}"
+            )
 
     def _judge_overlap(self, drive: _Drive, stopped: list[_Drive]) -> None:
         others = {other.coil for other in self._drives.values()}
         others |= {other.coil for other in stopped if other.announced > drive.start}
         for coil in sorted(others - {drive.coil}):
-            self._blame_start(Kind.TWO_COILS, drive, f"two coils at once: coil {coil} is on too")
+            self._add_at_start(ViolationKind.TWO_COILS, drive, f"two coils at once: coil {coil} is on too")
 
     def _judge_gap(self, drive: _Drive) -> None:
         coils = self._ended if self._limits.shared else self._ended.keys() & {drive.coil}
@@ -128,22 +130,22 @@ class PulseJudge:
         gap = max(drive.start - self._ended[other], 0)
         if gap < self._backoff:
             whose = "its own pulse" if other == drive.coil else f"the pulse of coil {other}"
-            self._blame_backoff(Kind.GAP, drive, gap, f"the end of {whose}")
+            self._add_backoff(ViolationKind.GAP, drive, gap, f"the end of {whose}")
 
     def _judge_boot(self, drive: _Drive) -> None:
         if self._booted is not None and 0 <= drive.start - self._booted < self._backoff:
-            self._blame_backoff(Kind.BOOT, drive, drive.start - self._booted, "the boot of the board")
+            self._add_backoff(ViolationKind.BOOT, drive, drive.start - self._booted, "the boot of the board")
 
-    def _blame_backoff(self, kind: Kind, drive: _Drive, gap: int, event: str) -> None:
+    def _add_backoff(self, kind: ViolationKind, drive: _Drive, gap: int, event: str) -> None:
         seconds = self._clock.seconds
         least = seconds_text(seconds(self._backoff))
         sentence = f"pulse starts {seconds_text(seconds(gap))} s after {event}, sooner than {least} s"
-        self._blame_start(kind, drive, sentence)
+        self._add_at_start(kind, drive, sentence)
 
-    def _blame_start(self, kind: Kind, drive: _Drive, sentence: str) -> None:
-        self._blame(kind, drive.start, drive.tick, drive.coil, drive.line, sentence)
+    def _add_at_start(self, kind: ViolationKind, drive: _Drive, sentence: str) -> None:
+        self._add(kind, drive.start, drive.tick, drive.coil, drive.line, sentence)
 
-    def _blame(
-        self, kind: Kind, instant: int, tick: int | None, coil: int | None, line: int, sentence: str
+    def _add(
+        self, kind: ViolationKind, instant: int, tick: int | None, coil: int | None, line: int, sentence: str
     ) -> None:
         self.violations.append(Violation(kind, self._clock.seconds(instant), tick, coil, line, sentence))

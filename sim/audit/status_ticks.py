@@ -1,4 +1,4 @@
-"""Which tick a COIL_STATUS belongs to: it bears no tick, only its place among the SYNCs."""
+"""Which tick a COIL_STATUS belongs to: it carries no tick number, only its place among the SYNCs shows it."""
 
 from typing import NamedTuple
 
@@ -11,7 +11,7 @@ class BoardStatus(NamedTuple):
     Attributes:
         line: its line in the log.
         timestamp_us: its timestamp.
-        status: what it says; None if it cannot be trusted.
+        status: its content; None if its CRC or length is wrong.
         booted: the board has started since its last status.
     """
 
@@ -22,7 +22,7 @@ class BoardStatus(NamedTuple):
 
 
 class StatusTicks:
-    """Deals statuses out to ticks.
+    """Assigns statuses to ticks.
 
     There is one status a tick, and it comes before the tick's SYNC. In real time it may come after it, and a
     recorder may lose frames. So of several statuses at once the last belong to the last ticks, one each, as

@@ -9,7 +9,7 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from matplotlib.ticker import MaxNLocator
 
-from sim.audit.findings import COILS, Pulse
+from sim.audit.findings import COILS, DrivenPulse
 from sim.drawing.canvas import (
     AXES_COLOURS,
     BINS,
@@ -32,7 +32,7 @@ from sim.report.histories import Flown
 
 ZOOM_S = 1200.0
 MARKS = 300
-"""Marks of broken limits in a chart; a log of a board that broke loose may hold thousands."""
+"""Marks of broken limits in a chart; the log of a board out of control may hold thousands."""
 BACKOFF = "#f7e3d3"
 _REACH = 0.42
 """Height of a bar of the highest level; lanes are 1 apart."""
@@ -216,7 +216,7 @@ def _bars(
     panel.add_patch(bars)
 
 
-def _inside(pulses: Sequence[Pulse], backoff_s: float, time: TimeAxis) -> list[Span]:
+def _inside(pulses: Sequence[DrivenPulse], backoff_s: float, time: TimeAxis) -> list[Span]:
     """The back-off of each pulse that lies in the window, at least in part."""
     ends = [float(pulse.end_s) for pulse in pulses]
     return [(end, end + backoff_s) for end in ends if end < time.end_s and end + backoff_s > time.start_s]

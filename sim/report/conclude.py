@@ -6,7 +6,7 @@ from pathlib import Path
 
 from fsw.core.state import FlightState
 from fsw.table.config import flight_config
-from sim.audit.auditor import AuditReport, Kind, audit
+from sim.audit.auditor import AuditReport, ViolationKind, audit
 from sim.audit.check import limits_beside
 from sim.errors import HarnessError
 from sim.faults.section import break_frames, forge_answers
@@ -83,7 +83,7 @@ def _tallied(entries: Iterator[LogEntry], tally: BusTally) -> Iterator[LogEntry]
 
 def _without_broken_frames(audited: AuditReport) -> AuditReport:
     """What the board has done, where the scenario asks for frames that come broken: these are no pulses."""
-    kept = tuple(violation for violation in audited.violations if violation.kind is not Kind.FRAME)
+    kept = tuple(violation for violation in audited.violations if violation.kind is not ViolationKind.FRAME)
     return replace(audited, violations=kept)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.audit.auditor import AuditReport
-from sim.audit.findings import COILS, Pulse
+from sim.audit.findings import COILS, DrivenPulse
 from sim.drawing.canvas import Span, TimeAxis
 from sim.record.estimates import Estimates
 from sim.record.truth import Histories
@@ -161,7 +161,7 @@ class Flown:
         return min(max(begin, 0.0), self.length_s - length_s)
 
 
-def _driven(pulses: Sequence[Pulse], at_s: Array) -> Array:
+def _driven(pulses: Sequence[DrivenPulse], at_s: Array) -> Array:
     """Seconds driven until each time, by pulses of one coil in order."""
     if not pulses:
         return np.zeros_like(at_s)

@@ -9,7 +9,7 @@ from fractions import Fraction
 from fsw.core.laws.interface import ControlConfig, Law
 from fsw.table.config import flight_config
 from sim.audit.auditor import audit
-from sim.audit.findings import AuditLimits, AuditReport, Kind, Violation
+from sim.audit.findings import AuditLimits, AuditReport, Violation, ViolationKind
 from sim.record.candump import LogEntry
 from sim.scenario.schema import flight_table, load
 from sim.testing.bench import Fire, Flight, FlownTick, Limits, MakeScheduler, fly_ticks, on_the_bus
@@ -124,13 +124,13 @@ def _log(ticks: Iterator[FlownTick], tick_hz: int) -> Iterator[LogEntry]:
             yield LogEntry(line, 0, "bench", frame)
 
 
-def _faults(request: Fire, asked: list[int]) -> Iterator[tuple[Kind, str]]:
+def _faults(request: Fire, asked: list[int]) -> Iterator[tuple[ViolationKind, str]]:
     coil, level, duration_ms = request
     if coil not in CARRIED_COILS:
-        yield Kind.COIL, "request for a coil that COIL_FIRE cannot name"
+        yield ViolationKind.COIL, "request for a coil that COIL_FIRE cannot name"
     elif coil in asked:
-        yield Kind.GAP, "second request for the same coil in one tick"
+        yield ViolationKind.GAP, "second request for the same coil in one tick"
     if level == 0 or level not in CARRIED_LEVELS:
-        yield Kind.LEVEL, f"request of level {level}"
+        yield ViolationKind.LEVEL, f"request of level {level}"
     if round(duration_ms) == 0 or round(duration_ms) not in CARRIED_MS:
-        yield Kind.PULSE, f"request of {duration_ms} ms"
+        yield ViolationKind.PULSE, f"request of {duration_ms} ms"

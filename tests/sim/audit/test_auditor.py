@@ -4,12 +4,12 @@ import pytest
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilBoot, CoilStatus, PlantEnd
-from sim.audit.auditor import AuditLimits, Kind, audit
+from sim.audit.auditor import AuditLimits, ViolationKind, audit
 from sim.record.candump import read_log
 
 
 def found(report):
-    """Kind, time, tick and coil of each violation."""
+    """ViolationKind, time, tick and coil of each violation."""
     return [(one.kind, one.time_s, one.tick, one.coil) for one in report.violations]
 
 
@@ -55,7 +55,7 @@ def test_duty_is_the_fraction_of_the_time_driven(judge, bus_log, fired):
 def test_a_pulse_of_3_1_s_at_10_hz(judge, bus_log, fired, sync):
     report = judge(bus_log(10, 1500, [fired(1, 1234, 3100)], sync=sync))
     tick = 1234 if sync else None
-    assert found(report) == [(Kind.PULSE, Fraction("123.4"), tick, 1)]
+    assert found(report) == [(ViolationKind.PULSE, Fraction("123.4"), tick, 1)]
     assert "pulse of 3.100 s exceeds 3.000 s" in str(report.violations[0])
     assert not report.ok
     assert report.exit_code == 1
@@ -64,7 +64,7 @@ def test_a_pulse_of_3_1_s_at_10_hz(judge, bus_log, fired, sync):
 
 def test_a_pulse_that_ends_within_a_tick_is_measured_by_what_remained(judge, bus_log, fired):
     report = judge(bus_log(1, 200, [fired(2, 110, 3100)]))
-    assert found(report) == [(Kind.PULSE, 110, 110, 2)]
+    assert found(report) == [(ViolationKind.PULSE, 110, 110, 2)]
     assert report.pulses[0].length_s == Fraction("3.1")
 
 
@@ -79,13 +79,13 @@ def test_shorter_pulses_are_measured_to_the_millisecond(judge, bus_log, fired, d
 @pytest.mark.parametrize("tick_hz", [1, 3, 7, 10])
 def test_one_millisecond_too_long_is_too_long(judge, bus_log, fired, tick_hz):
     report = judge(bus_log(tick_hz, 20 * tick_hz, [fired(0, 10 * tick_hz, 3001)]))
-    assert found(report) == [(Kind.PULSE, 10, 10 * tick_hz, 0)]
+    assert found(report) == [(ViolationKind.PULSE, 10, 10 * tick_hz, 0)]
 
 
 def test_a_pulse_driven_one_tick_beyond_its_announced_end(judge, bus_log, fired):
     log = bus_log(1, 200, [fired(0, 110)])
     log.change(114, level=1, coil=0, seq=1)
-    assert found(judge(log)) == [(Kind.PULSE, 110, 110, 0)]
+    assert found(judge(log)) == [(ViolationKind.PULSE, 110, 110, 0)]
 
 
 @pytest.mark.parametrize(("tick", "remaining_ms"), [(111, 2001), (112, 1001), (113, 1)])
@@ -93,7 +93,7 @@ def test_a_pulse_that_announces_too_much_although_it_ends_in_time(judge, bus_log
     log = bus_log(1, 200, [fired(0, 110)])
     log.change(tick, remaining_ms=remaining_ms)
     report = judge(log)
-    assert found(report) == [(Kind.ANNOUNCED, 110, 110, 0)]
+    assert found(report) == [(ViolationKind.ANNOUNCED, 110, 110, 0)]
     assert "announces 3.001 s, which exceeds 3.000 s" in str(report.violations[0])
     assert report.max_pulse_s == 3.0
 
@@ -101,7 +101,7 @@ def test_a_pulse_that_announces_too_much_although_it_ends_in_time(judge, bus_log
 @pytest.mark.parametrize("sync", [True, False])
 def test_a_pulse_still_on_when_the_log_ends_is_judged_too(judge, bus_log, fired, sync):
     report = judge(bus_log(10, 1032, [fired(0, 1000, 3100)], sync=sync))
-    assert found(report) == [(Kind.PULSE, 100, 1000 if sync else None, 0)]
+    assert found(report) == [(ViolationKind.PULSE, 100, 1000 if sync else None, 0)]
 
 
 def test_a_pulse_cut_short_by_the_board_counts_only_as_driven(judge, bus_log, fired):
@@ -119,7 +119,7 @@ def test_a_pulse_cut_short_by_the_board_counts_only_as_driven(judge, bus_log, fi
 @pytest.mark.parametrize("sync", [True, False])
 def test_a_gap_of_99_9_s_at_10_hz(judge, bus_log, fired, sync):
     report = judge(bus_log(10, 2200, [fired(0, 1000), fired(1, 2029)], sync=sync))
-    assert found(report) == [(Kind.GAP, Fraction("202.9"), 2029 if sync else None, 1)]
+    assert found(report) == [(ViolationKind.GAP, Fraction("202.9"), 2029 if sync else None, 1)]
     assert "starts 99.900 s after the end of the pulse of coil 0" in str(report.violations[0])
     assert report.min_gap_any_s == 99.9
 
@@ -128,19 +128,19 @@ def test_a_shared_back_off_holds_for_any_coil_and_one_per_coil_for_the_same(judg
     log = bus_log(1, 400, [fired(0, 100), fired(1, 110), fired(2, 120), fired(0, 203), fired(1, 212)])
     shared = judge(log, shared=True)
     assert [(one.kind, one.tick) for one in shared.violations] == [
-        (Kind.GAP, 110),
-        (Kind.GAP, 120),
-        (Kind.GAP, 203),
-        (Kind.GAP, 212),
+        (ViolationKind.GAP, 110),
+        (ViolationKind.GAP, 120),
+        (ViolationKind.GAP, 203),
+        (ViolationKind.GAP, 212),
     ]
-    assert found(judge(log, shared=False)) == [(Kind.GAP, 212, 212, 1)]
+    assert found(judge(log, shared=False)) == [(ViolationKind.GAP, 212, 212, 1)]
 
 
 @pytest.mark.parametrize("before", [(0, 1), (1, 0), (0, 2), (2, 0), (1, 2), (2, 1)])
 def test_a_shared_back_off_is_from_the_pulse_that_ended_last(judge, bus_log, fired, before):
     third = 3 - sum(before)
     report = judge(bus_log(1, 400, [fired(before[0], 100), fired(before[1], 203), fired(third, 250)]))
-    assert found(report) == [(Kind.GAP, 250, 250, third)]
+    assert found(report) == [(ViolationKind.GAP, 250, 250, third)]
     assert f"starts 44.000 s after the end of the pulse of coil {before[1]}" in str(report.violations[0])
 
 
@@ -150,14 +150,14 @@ def test_one_coil_may_follow_another_at_once_where_the_back_off_is_per_coil(judg
 
 def test_a_second_request_that_follows_at_once_is_another_pulse(judge, bus_log, fired):
     report = judge(bus_log(1, 200, [fired(0, 100, 1000), fired(0, 101, 1000)]), shared=False)
-    assert found(report) == [(Kind.GAP, 101, 101, 0)]
+    assert found(report) == [(ViolationKind.GAP, 101, 101, 0)]
 
 
 def test_a_second_request_shown_in_the_same_tick_is_another_pulse(judge, bus_log, fired):
     log = bus_log(1, 200, [fired(0, 110)])
     log.statuses[112].append(CoilStatus(1, 0, 0, 0, 0, 9).encode())
     report = judge(log, shared=False)
-    assert found(report)[0] == (Kind.GAP, 111, 111, 0)
+    assert found(report)[0] == (ViolationKind.GAP, 111, 111, 0)
     assert "starts 0.000 s after the end of its own pulse" in str(report.violations[0])
     assert spans(report)[:2] == [(0, 110, 112), (0, 111, 112)]
 
@@ -166,9 +166,9 @@ def test_limits_other_than_the_usual_are_judged_as_given(judge, bus_log, fired):
     log = bus_log(10, 500, [fired(0, 100, 1500), fired(1, 315, 1500)])
     assert judge(log, pulse_us=1_500_000, backoff_us=20_000_000).ok
     assert found(judge(log, pulse_us=1_499_999, backoff_us=20_000_001)) == [
-        (Kind.PULSE, 10, 100, 0),
-        (Kind.GAP, Fraction("31.5"), 315, 1),
-        (Kind.PULSE, Fraction("31.5"), 315, 1),
+        (ViolationKind.PULSE, 10, 100, 0),
+        (ViolationKind.GAP, Fraction("31.5"), 315, 1),
+        (ViolationKind.PULSE, Fraction("31.5"), 315, 1),
     ]
 
 
@@ -177,13 +177,13 @@ def test_limits_other_than_the_usual_are_judged_as_given(judge, bus_log, fired):
 
 def test_a_pulse_99_s_after_a_boot_and_none_after_100_s(judge, bus_log, fired):
     report = judge(bus_log(1, 400, [fired(0, 199), fired(1, 350)], boots=[100, 250]))
-    assert found(report) == [(Kind.BOOT, 199, 199, 0)]
+    assert found(report) == [(ViolationKind.BOOT, 199, 199, 0)]
     assert " 99.000 s after the boot" in str(report.violations[0])
 
 
 def test_a_pulse_in_the_very_tick_of_a_boot(judge, bus_log, fired):
     report = judge(bus_log(1, 200, [fired(0, 100)], boots=[100]))
-    assert found(report) == [(Kind.BOOT, 100, 100, 0)]
+    assert found(report) == [(ViolationKind.BOOT, 100, 100, 0)]
     assert " 0.000 s after the boot" in str(report.violations[0])
 
 
@@ -193,7 +193,7 @@ def test_without_a_boot_in_the_log_the_first_pulse_may_come_at_any_time(judge, b
 
 def test_a_boot_in_a_log_without_sync(judge, bus_log, fired):
     report = judge(bus_log(1, 200, [fired(2, 99)], boots=[0], sync=False))
-    assert found(report) == [(Kind.BOOT, 99, None, 2)]
+    assert found(report) == [(ViolationKind.BOOT, 99, None, 2)]
 
 
 def test_a_pulse_that_a_boot_cuts_off_did_not_start_after_it(judge, bus_log, fired):
@@ -211,7 +211,7 @@ def test_a_boot_that_cannot_be_trusted_is_noted(judge, bus_log):
 def test_a_boot_counts_in_a_tick_with_two_statuses(judge, bus_log, fired):
     log = bus_log(1, 200, [fired(0, 110)], boots=[50])
     log.statuses[50] *= 2
-    assert found(judge(log)) == [(Kind.BOOT, 110, 110, 0)]
+    assert found(judge(log)) == [(ViolationKind.BOOT, 110, 110, 0)]
 
 
 # --- levels and coils
@@ -220,14 +220,14 @@ def test_a_boot_counts_in_a_tick_with_two_statuses(judge, bus_log, fired):
 @pytest.mark.parametrize("level", [4, 7, -4, -8])
 def test_a_level_out_of_range_is_named_once(judge, bus_log, fired, level):
     report = judge(bus_log(1, 200, [fired(2, 110, level=level)]))
-    assert found(report) == [(Kind.LEVEL, 111, 111, 2)]
+    assert found(report) == [(ViolationKind.LEVEL, 111, 111, 2)]
     assert f"level {level} is outside -3..3" in str(report.violations[0])
 
 
 def test_a_level_out_of_range_in_the_middle_of_a_pulse(judge, bus_log, fired):
     log = bus_log(1, 200, [fired(2, 110)])
     log.change(112, level=4)
-    assert found(judge(log)) == [(Kind.LEVEL, 112, 112, 2)]
+    assert found(judge(log)) == [(ViolationKind.LEVEL, 112, 112, 2)]
 
 
 @pytest.mark.parametrize("level", [-3, -2, -1, 1, 2, 3])
@@ -238,7 +238,7 @@ def test_levels_in_range_pass(judge, bus_log, fired, level):
 
 
 def test_a_coil_that_does_not_exist(judge, bus_log, fired):
-    assert found(judge(bus_log(1, 200, [fired(3, 110)]))) == [(Kind.COIL, 110, 110, 3)]
+    assert found(judge(bus_log(1, 200, [fired(3, 110)]))) == [(ViolationKind.COIL, 110, 110, 3)]
 
 
 @pytest.mark.parametrize("sync", [True, False])
@@ -249,20 +249,20 @@ def test_two_coils_driven_in_one_tick(judge, bus_log, fired, sync, first, shared
     other = CoilStatus(2, 1, 0, 0, 0, 9).encode()
     log.statuses[112].insert(0 if first else 1, other)
     report = judge(log, shared=shared)
-    assert (Kind.TWO_COILS, 111, 111 if sync else None, 1) in found(report)
+    assert (ViolationKind.TWO_COILS, 111, 111 if sync else None, 1) in found(report)
     assert "coil 0 is on too" in str(report.violations)
 
 
 def test_two_coils_that_start_together(judge, bus_log, fired):
     log = bus_log(1, 200, [fired(0, 110, 1000)])
     log.statuses[111].append(CoilStatus(2, 1, 0, 0, 0, 9).encode())
-    assert found(judge(log)) == [(Kind.TWO_COILS, 110, 110, 1)]
+    assert found(judge(log)) == [(ViolationKind.TWO_COILS, 110, 110, 1)]
 
 
 def test_a_coil_shown_while_another_one_has_time_left(judge, bus_log, fired):
     log = bus_log(1, 200, [fired(0, 110)])
     log.change(113, coil=1, seq=2)
-    assert (Kind.TWO_COILS, 112, 112, 1) in found(judge(log, shared=False))
+    assert (ViolationKind.TWO_COILS, 112, 112, 1) in found(judge(log, shared=False))
 
 
 def test_a_second_status_in_a_tick_cannot_hide_what_the_first_shows(judge, bus_log, fired):
@@ -270,7 +270,7 @@ def test_a_second_status_in_a_tick_cannot_hide_what_the_first_shows(judge, bus_l
     for tick in (111, 112, 113):
         log.statuses[tick].append(CoilStatus(0, 0, 0, 0, 0, 1).encode())
     report = judge(log)
-    assert found(report) == [(Kind.LEVEL, 111, 111, 0)]
+    assert found(report) == [(ViolationKind.LEVEL, 111, 111, 0)]
     assert spans(report) == [(0, 110, 113)]
     assert "3 ticks with more than one COIL_STATUS" in report.notes
 
@@ -290,14 +290,14 @@ def test_a_second_status_in_a_tick_cannot_hide_what_the_first_shows(judge, bus_l
 def test_a_status_with_a_wrong_crc_or_length(judge, bus_log, spoil):
     log = bus_log(1, 200)
     log.statuses[57] = [Frame(CoilStatus.ID, spoil(log.statuses[57][0].data))]
-    assert found(judge(log)) == [(Kind.FRAME, 57, 57, None)]
+    assert found(judge(log)) == [(ViolationKind.FRAME, 57, 57, None)]
 
 
 def test_a_status_with_a_wrong_crc_does_not_end_the_pulse(judge, bus_log, fired):
     log = bus_log(1, 200, [fired(0, 110)])
     log.statuses[112] = [Frame(CoilStatus.ID, bytes(8))]
     report = judge(log)
-    assert found(report) == [(Kind.FRAME, 112, 112, None)]
+    assert found(report) == [(ViolationKind.FRAME, 112, 112, None)]
     assert spans(report) == [(0, 110, 113)]
 
 
@@ -341,17 +341,17 @@ def test_a_log_that_is_cut_is_judged_as_far_as_it_goes_and_is_not_complete(bus_l
     path.write_text(text[: text.index(")", len(text) // 4 * 3)])
     line = path.read_text().count("\n") + 1
     report = audit(read_log(path), AuditLimits())
-    assert found(report) == [(Kind.PULSE, 110, 110, 0)]
+    assert found(report) == [(ViolationKind.PULSE, 110, 110, 0)]
     assert (report.truncated_at, report.complete) == (line, False)
-    assert f"truncated: line {line} is incomplete; judged is what stands before it" in report.notes
+    assert f"truncated: line {line} is incomplete; the lines before it are judged" in report.notes
 
 
 @pytest.mark.parametrize(
     ("end", "said"),
     [
         (PlantEnd(50).encode(), None),
-        (PlantEnd(9999).encode(), "its PLANT_END tells of 9999 ticks, its last SYNC is of tick 49"),
-        (PlantEnd(49).encode(), "its PLANT_END tells of 49 ticks, its last SYNC is of tick 49"),
+        (PlantEnd(9999).encode(), "its PLANT_END counts 9999 ticks, its last SYNC is of tick 49"),
+        (PlantEnd(49).encode(), "its PLANT_END counts 49 ticks, its last SYNC is of tick 49"),
         (Frame(PlantEnd.ID, b"\0\1\2\3\4"), "its last frame is a PLANT_END with a wrong CRC or length"),
     ],
     ids=["fits", "of another run", "one too few", "broken"],

@@ -5,7 +5,7 @@ import pytest
 from fsw.core import telemetry
 from fsw.wire.messages import CoilBoot
 from hil_stub import node
-from sim.audit.auditor import AuditLimits, Kind, audit
+from sim.audit.auditor import AuditLimits, ViolationKind, audit
 from sim.audit.check import CONTRACT_VERSION, check, limits_beside, render
 from sim.errors import HarnessError
 from sim.record import run_dir
@@ -235,7 +235,7 @@ def test_a_scenario_that_is_not_the_runs_widens_no_limit(bound):
     scenario.write_text(scenario.read_text().replace("backoff_s = 10.0", "backoff_s = 5.0"))
     report = check(bound, None)
     assert report.limits == AuditLimits()
-    assert [violation.kind for violation in report.violations] == [Kind.GAP]
+    assert [violation.kind for violation in report.violations] == [ViolationKind.GAP]
     assert "judged by the usual limits: scenario.toml is not the run's" in report.notes
     (sentence,) = report.mismatches
     assert f"MISMATCH {sentence}" in render(report).splitlines()
@@ -308,7 +308,7 @@ def test_violations_before_the_cut_are_found(run, bus_log, fired):
     log = folder / "bus.log"
     log.write_bytes(log.read_bytes()[:-30])
     report = check(folder, None)
-    assert [one.kind for one in report.violations] == [Kind.LEVEL]
+    assert [one.kind for one in report.violations] == [ViolationKind.LEVEL]
     assert report.truncated_at is not None
 
 

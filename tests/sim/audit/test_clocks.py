@@ -6,7 +6,7 @@ import pytest
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import NAMES, CoilBoot, CoilStatus, Sync
-from sim.audit.auditor import AuditLimits, Kind, audit
+from sim.audit.auditor import AuditLimits, ViolationKind, audit
 from sim.record.candump import LogEntry
 
 EPOCH_US = 1_427_513_417_000_000
@@ -18,7 +18,7 @@ def every(period_us, statuses):
 
 
 def found(report):
-    """Kind, time, tick and coil of each violation."""
+    """ViolationKind, time, tick and coil of each violation."""
     return [(one.kind, one.time_s, one.tick, one.coil) for one in report.violations]
 
 
@@ -40,8 +40,8 @@ def test_a_gap_that_only_the_timestamps_show(judge, bus_log, fired):
     log.shifts_us = dict.fromkeys(range(150, 400), -100_000)
     report = judge(log)
     assert found(report) == [
-        (Kind.TIMESTAMP, 150, 150, None),
-        (Kind.GAP, Fraction("202.9"), 203, 1),
+        (ViolationKind.TIMESTAMP, 150, 150, None),
+        (ViolationKind.GAP, Fraction("202.9"), 203, 1),
     ]
     assert "0.100 s early" in str(report.violations[0])
     assert "99.900 s after" in str(report.violations[1])
@@ -51,7 +51,7 @@ def test_a_pulse_that_only_the_timestamps_show(judge, bus_log, fired):
     log = bus_log(1, 400, [fired(0, 100)])
     log.shifts_us = {103: 100_000}
     report = judge(log)
-    assert found(report) == [(Kind.PULSE, 100, 100, 0), (Kind.TIMESTAMP, 103, 103, None)]
+    assert found(report) == [(ViolationKind.PULSE, 100, 100, 0), (ViolationKind.TIMESTAMP, 103, 103, None)]
     assert "pulse of 3.100 s" in str(report.violations[0])
 
 
@@ -61,13 +61,13 @@ def test_a_status_between_two_ticks_that_shows_a_coil_on_for_longer(bus_log, fir
     last_driven = entries[103 * 3]
     assert last_driven.frame == log.statuses[103][0]
     entries.insert(104 * 3, last_driven._replace(timestamp_us=last_driven.timestamp_us + 100_000))
-    assert (Kind.PULSE, 100, 100, 0) in found(audit(entries, AuditLimits()))
+    assert (ViolationKind.PULSE, 100, 100, 0) in found(audit(entries, AuditLimits()))
 
 
 def test_one_microsecond_off_simulated_time_is_named_once(judge, bus_log):
     log = bus_log(10, 100)
     log.shifts_us = dict.fromkeys(range(50, 100), 1)
-    assert found(judge(log)) == [(Kind.TIMESTAMP, 5, 50, None)]
+    assert found(judge(log)) == [(ViolationKind.TIMESTAMP, 5, 50, None)]
 
 
 @pytest.mark.parametrize("name", ["COIL_STATUS", "SYNC"])
@@ -80,7 +80,7 @@ def test_a_single_frame_off_simulated_time_is_named(bus_log, name, first):
         for entry in bus_log(10, 1300).entries(first)
     ]
     report = audit(entries, AuditLimits())
-    assert found(report) == [(Kind.TIMESTAMP, Fraction("123.4"), 1234, None)]
+    assert found(report) == [(ViolationKind.TIMESTAMP, Fraction("123.4"), 1234, None)]
     assert f"timestamp of {name} is 0.020 s late" in str(report.violations[0])
 
 
@@ -99,7 +99,7 @@ def test_a_microsecond_is_one_at_1_hz_too(judge, bus_log, shift_us, said):
     log = bus_log(1, 20)
     log.shifts_us = dict.fromkeys(range(10, 20), shift_us)
     (violation,) = judge(log).violations
-    assert (violation.kind, violation.tick) == (Kind.TIMESTAMP, 10)
+    assert (violation.kind, violation.tick) == (ViolationKind.TIMESTAMP, 10)
     assert said in violation.sentence
 
 
@@ -117,12 +117,12 @@ def test_wall_clock_timestamps_do_not_count_where_ticks_do(judge, bus_log, fired
 def test_ticks_are_judged_where_timestamps_are_not_simulated(judge, bus_log, fired):
     log = bus_log(10, 1500, [fired(1, 1234, 3100)])
     log.shifts_us = {tick: 1000 - 90_000 * tick for tick in range(1500)}
-    assert found(judge(log)) == [(Kind.PULSE, Fraction("123.4"), 1234, 1)]
+    assert found(judge(log)) == [(ViolationKind.PULSE, Fraction("123.4"), 1234, 1)]
 
 
 def test_without_sync_time_counts_from_the_first_entry(judge, bus_log, fired):
     report = judge(bus_log(1, 200, [fired(1, 100, 3100)], sync=False))
-    assert found(report) == [(Kind.PULSE, 100, None, 1)]
+    assert found(report) == [(ViolationKind.PULSE, 100, None, 1)]
     assert "no tick rate in the log: judged by timestamps, a COIL_STATUS every 1.000 s" in report.notes
 
 
@@ -142,16 +142,16 @@ def test_without_sync_the_period_need_not_be_a_whole_rate(period_us):
     statuses = [idle] * 5 + pulse + [idle] * 5
     assert audit(every(period_us, statuses), AuditLimits(pulse_us=length_us)).ok
     report = audit(every(period_us, statuses), AuditLimits(pulse_us=length_us - 1))
-    assert found(report) == [(Kind.PULSE, Fraction(4 * period_us, 1_000_000), None, 2)]
+    assert found(report) == [(ViolationKind.PULSE, Fraction(4 * period_us, 1_000_000), None, 2)]
 
 
 def test_without_sync_statuses_within_half_a_period_are_of_one_tick():
     idle, one, two = (CoilStatus(level, coil, 0, 0, 0, 1) for level, coil in [(0, 0), (1, 1), (1, 2)])
     entries = every(1_000_000, [idle] * 5 + [one] + [idle] * 5)
     for after_us, kinds in [
-        (0, [Kind.TWO_COILS]),
-        (500_000, [Kind.TWO_COILS]),
-        (500_001, [Kind.TWO_COILS, Kind.GAP]),
+        (0, [ViolationKind.TWO_COILS]),
+        (500_000, [ViolationKind.TWO_COILS]),
+        (500_001, [ViolationKind.TWO_COILS, ViolationKind.GAP]),
     ]:
         other = LogEntry(99, 5_000_000 + after_us, "can0", two.encode())
         report = audit([*entries[:6], other, *entries[6:]], AuditLimits())
@@ -164,7 +164,7 @@ def test_without_sync_a_coil_was_on_until_the_last_status_that_says_so():
     entries = every(1_000_000, [idle] * 5 + [on] * 3 + [idle] * 5)
     entries.insert(8, LogEntry(99, 7_100_000, "can0", on.encode()))
     report = audit(entries, AuditLimits())
-    assert found(report) == [(Kind.PULSE, 4, None, 0)]
+    assert found(report) == [(ViolationKind.PULSE, 4, None, 0)]
     assert "pulse of 3.100 s" in str(report.violations[0])
 
 
@@ -192,14 +192,14 @@ def test_without_sync_doubled_statuses_do_not_make_the_period_zero(bus_log, fire
 def test_the_tick_rate_of_a_log_that_starts_anywhere(bus_log, fired, tick_hz, first):
     log = bus_log(tick_hz, first + 12 * tick_hz, [fired(0, first + 5 * tick_hz, 3100)])
     report = audit(log.entries(first), AuditLimits())
-    assert found(report) == [(Kind.PULSE, Fraction(first, tick_hz) + 5, first + 5 * tick_hz, 0)]
+    assert found(report) == [(ViolationKind.PULSE, Fraction(first, tick_hz) + 5, first + 5 * tick_hz, 0)]
     assert report.span_s == 12 - Fraction(1, tick_hz)
     assert report.statuses == 12 * tick_hz
 
 
 def test_the_tick_rate_of_the_log_overrules_that_of_the_scenario(judge, bus_log, fired):
     report = judge(bus_log(10, 1500, [fired(1, 1234, 3100)]), tick_hz=1)
-    assert found(report) == [(Kind.PULSE, Fraction("123.4"), 1234, 1)]
+    assert found(report) == [(ViolationKind.PULSE, Fraction("123.4"), 1234, 1)]
     assert "the log has 10 ticks a second, its scenario says 1" in report.notes
 
 
@@ -226,8 +226,10 @@ def test_a_boot_that_comes_after_its_sync_belongs_to_its_tick(bus_log, fired):
 
 def test_a_log_too_short_to_tell_its_tick_rate_is_judged_by_the_scenarios(bus_log, fired):
     log = bus_log(100, 50, [fired(1, 20, 100), fired(2, 40, 100)])
-    assert found(audit(log.entries(), AuditLimits(tick_hz=100))) == [(Kind.GAP, Fraction("0.4"), 40, 2)]
-    assert found(audit(log.entries(), AuditLimits())) == [(Kind.GAP, Fraction("0.4"), None, 2)]
+    assert found(audit(log.entries(), AuditLimits(tick_hz=100))) == [
+        (ViolationKind.GAP, Fraction("0.4"), 40, 2)
+    ]
+    assert found(audit(log.entries(), AuditLimits())) == [(ViolationKind.GAP, Fraction("0.4"), None, 2)]
 
 
 @pytest.mark.parametrize(("stated", "tick_hz"), [(11, 11), (10, 10), (9, 10), (None, 10)])
@@ -244,7 +246,7 @@ def test_what_comes_after_the_last_sync_is_judged(bus_log, fired, level):
     entries = bus_log(1, 112, [fired(0, 110, level=level)]).entries()
     assert NAMES[entries[-3].frame.can_id] == "COIL_STATUS"
     report = audit(entries[:-2], AuditLimits())
-    assert found(report) == ([(Kind.LEVEL, 111, 111, 0)] if level == 4 else [])
+    assert found(report) == ([(ViolationKind.LEVEL, 111, 111, 0)] if level == 4 else [])
     assert len(report.pulses) == 1
 
 
@@ -258,7 +260,7 @@ def test_a_unix_time_that_contradicts_its_tick_is_named_once(bus_log, last):
         lambda sync: sync._replace(unix_time_s=sync.unix_time_s + (150 <= sync.tick <= last)).encode(),
     )
     report = audit(entries, AuditLimits())
-    assert found(report) == [(Kind.SYNC, 15, 150, None)]
+    assert found(report) == [(ViolationKind.SYNC, 15, 150, None)]
     assert f"unix_time_s {EPOCH_US // 10**6 + 16}, its tick says {EPOCH_US // 10**6 + 15}" in str(report)
 
 
@@ -273,7 +275,7 @@ def test_ticks_that_jump_forward_to_hide_a_short_gap(bus_log, fired):
 def test_ticks_that_go_back(bus_log, fired):
     entries = bus_log(1, 50, [fired(0, 48)]).entries() + bus_log(1, 20).entries(5)
     report = audit(entries, AuditLimits())
-    assert (Kind.SYNC, 5, 5, None) in found(report)
+    assert (ViolationKind.SYNC, 5, 5, None) in found(report)
     assert "SYNC goes back from tick 49 to tick 5" in "".join(map(str, report.violations))
     assert [(pulse.start_s, pulse.end_s) for pulse in report.pulses] == [(48, 49)]
 
@@ -294,7 +296,7 @@ def test_a_sync_that_is_sent_again_with_another_time_is_a_violation(bus_log):
     entries.insert(
         entries.index(last) + 1, last._replace(frame=sync._replace(unix_time_s=sync.unix_time_s + 9).encode())
     )
-    assert (Kind.SYNC, 40, 40, None) in found(audit(entries, AuditLimits()))
+    assert (ViolationKind.SYNC, 40, 40, None) in found(audit(entries, AuditLimits()))
 
 
 def test_a_pulse_does_not_last_from_one_run_into_the_next(bus_log, fired):
@@ -311,22 +313,22 @@ def test_a_log_whose_clock_begins_in_1970(judge, bus_log, fired):
 
 def test_a_first_sync_of_the_wrong_length_has_no_tick(bus_log):
     entries = with_sync(bus_log(1, 50), lambda sync: sync.encode() if sync.tick else Frame(Sync.ID, b"\0"))
-    assert found(audit(entries, AuditLimits()))[0] == (Kind.SYNC, 0, None, None)
+    assert found(audit(entries, AuditLimits()))[0] == (ViolationKind.SYNC, 0, None, None)
 
 
 def test_a_sync_of_the_wrong_length(bus_log):
     log = bus_log(1, 50)
     entries = with_sync(log, lambda sync: Frame(Sync.ID, b"\0") if sync.tick == 30 else sync.encode())
-    assert found(audit(entries, AuditLimits())) == [(Kind.SYNC, 30, 30, None)]
+    assert found(audit(entries, AuditLimits())) == [(ViolationKind.SYNC, 30, 30, None)]
 
 
 def test_syncs_that_fit_no_tick_rate(bus_log):
     entries = with_sync(bus_log(1, 50), lambda sync: Sync(sync.tick, 1000 - sync.tick).encode())
     for tick_hz in (None, 1):
         report = audit(entries, AuditLimits(tick_hz=tick_hz))
-        assert {one.kind for one in report.violations} == {Kind.SYNC}
+        assert {one.kind for one in report.violations} == {ViolationKind.SYNC}
     report = audit(entries, AuditLimits())
-    assert found(report) == [(Kind.SYNC, 0, None, None)]
+    assert found(report) == [(ViolationKind.SYNC, 0, None, None)]
     assert "no tick rate" in str(report.violations[0])
     assert report.violations[0].line == 0, "it is of no line, but of all"
 

@@ -5,11 +5,11 @@ from fractions import Fraction
 
 import pytest
 
-from sim.audit.findings import AuditLimits, AuditReport, Kind, Pulse, Violation, seconds_text
+from sim.audit.findings import AuditLimits, AuditReport, DrivenPulse, Violation, ViolationKind, seconds_text
 
 
 def pulse(coil, start_s, end_s, level=1):
-    return Pulse(coil, level, Fraction(start_s), Fraction(end_s))
+    return DrivenPulse(coil, level, Fraction(start_s), Fraction(end_s))
 
 
 PULSES = (pulse(1, 10, 13), pulse(0, 110, "111.5"), pulse(1, 230, 232, level=-3), pulse(1, 400, 401))
@@ -23,7 +23,7 @@ REPORT = AuditReport(
     truncated_at=None,
     complete=True,
 )
-VIOLATION = Violation(Kind.GAP, Fraction("12.5"), 125, 2, 77, "too soon")
+VIOLATION = Violation(ViolationKind.GAP, Fraction("12.5"), 125, 2, 77, "too soon")
 
 
 def test_the_limits_are_those_of_the_invariant_unless_others_are_given():

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilStatus
-from sim.audit.auditor import AuditLimits, Kind, audit
+from sim.audit.auditor import AuditLimits, ViolationKind, audit
 
 BACKOFF_S = 7
 RATES = [1, 2, 3, 5, 7, 10]
@@ -15,7 +15,7 @@ TICKS = st.just(True)
 
 
 def found(log, shared):
-    """Kind, tick and coil of each violation."""
+    """ViolationKind, tick and coil of each violation."""
     report = audit(log.entries(), AuditLimits(backoff_us=BACKOFF_S * 1_000_000, shared=shared))
     return [(one.kind, one.tick, one.coil) for one in report.violations]
 
@@ -60,7 +60,7 @@ def test_a_pulse_that_is_too_long_is_found(bus_log, fired):
         (log, shared), which = case
         pulse = log.pulses[which]._replace(duration_ms=duration_ms)
         log = bus_log(log.tick_hz, log.ticks, [pulse])
-        assert found(log, shared) == [(Kind.PULSE, pulse.start, pulse.coil)]
+        assert found(log, shared) == [(ViolationKind.PULSE, pulse.start, pulse.coil)]
 
     check()
 
@@ -74,7 +74,7 @@ def test_a_pulse_that_is_too_soon_is_found(bus_log, fired):
         start = data.draw(st.integers(off, off + BACKOFF_S * log.tick_hz - 1))
         coil = data.draw(st.integers(0, 2)) if shared else first.coil
         log = bus_log(log.tick_hz, start + 5 * log.tick_hz, [first, fired(coil, start)])
-        assert found(log, shared) == [(Kind.GAP, start, coil)]
+        assert found(log, shared) == [(ViolationKind.GAP, start, coil)]
 
     check()
 
@@ -85,7 +85,7 @@ def test_a_pulse_too_soon_after_a_boot_is_found(bus_log, fired):
         (log, shared), which = case
         pulse = log.pulses[which]
         log.boots = [max(0, pulse.start - data.draw(st.integers(0, BACKOFF_S * log.tick_hz - 1)))]
-        assert (Kind.BOOT, pulse.start, pulse.coil) in found(log, shared)
+        assert (ViolationKind.BOOT, pulse.start, pulse.coil) in found(log, shared)
 
     check()
 
@@ -96,7 +96,7 @@ def test_a_bad_level_is_found(bus_log, fired):
         (log, shared), which = case
         pulse = log.pulses[which]
         log.change(pulse.start + 1, level=level)
-        assert found(log, shared) == [(Kind.LEVEL, pulse.start + 1, pulse.coil)]
+        assert found(log, shared) == [(ViolationKind.LEVEL, pulse.start + 1, pulse.coil)]
 
     check()
 
@@ -108,7 +108,7 @@ def test_a_second_coil_is_found(bus_log, fired):
         pulse = log.pulses[which]
         coil = (pulse.coil + offset) % 3
         log.statuses[pulse.start + 1].insert(position, CoilStatus(1, coil, 0, 0, 0, 200).encode())
-        assert (Kind.TWO_COILS, pulse.start) in [one[:2] for one in found(log, shared)]
+        assert (ViolationKind.TWO_COILS, pulse.start) in [one[:2] for one in found(log, shared)]
 
     check()
 
@@ -121,7 +121,7 @@ def test_an_announcement_of_too_much_is_found(bus_log, fired):
         announced_ms = data.draw(st.integers(3001, 4095))
         passed_ms = 1000 // log.tick_hz
         log.change(pulse.start + 1, remaining_ms=announced_ms - passed_ms)
-        assert (Kind.ANNOUNCED, pulse.start, pulse.coil) in found(log, shared)
+        assert (ViolationKind.ANNOUNCED, pulse.start, pulse.coil) in found(log, shared)
 
     check()
 
@@ -135,7 +135,7 @@ def test_any_flipped_bit_of_any_status_is_found(bus_log, fired):
         bit = data.draw(st.integers(0, 8 * CoilStatus.LENGTH - 1))
         spoiled = int.from_bytes(frame.data, "little") ^ 1 << bit
         log.statuses[tick] = [Frame(CoilStatus.ID, spoiled.to_bytes(CoilStatus.LENGTH, "little"))]
-        assert (Kind.FRAME, tick, None) in found(log, shared)
+        assert (ViolationKind.FRAME, tick, None) in found(log, shared)
 
     check()
 
@@ -149,7 +149,7 @@ def test_any_shifted_timestamp_is_found(bus_log, fired):
         least = 1 if exact else 2
         shift_us = data.draw(st.one_of(st.integers(least, 10**9), st.integers(-(10**9), -least)))
         log.shifts_us = {tick: shift_us}
-        assert (Kind.TIMESTAMP, tick, None) in found(log, shared)
+        assert (ViolationKind.TIMESTAMP, tick, None) in found(log, shared)
 
     check()
 

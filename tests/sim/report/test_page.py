@@ -250,7 +250,7 @@ def test_events_are_told_in_words(tmp_path, made_run):
 
 def test_a_hundred_orbits_stay_small(tmp_path, made_run, charts):
     pulses = tuple(
-        Pulse(i % 3, (-3, -2, -1, 1, 2, 3)[i * 7 % 6], Fraction(103 * i + 100), Fraction(103 * i + 103))
+        DrivenPulse(i % 3, (-3, -2, -1, 1, 2, 3)[i * 7 % 6], Fraction(103 * i + 100), Fraction(103 * i + 103))
         for i in range(5800)
     )
     run = made_run(ticks=600_000, pulses=pulses)

@@ -13,7 +13,7 @@ from fsw.core.laws.interface import Demand
 from fsw.core.laws.table import LAWS
 from fsw.wire.messages import CoilStatus, Sync, intact
 from sim.audit.auditor import audit
-from sim.audit.findings import AuditLimits, Kind
+from sim.audit.findings import AuditLimits, ViolationKind
 from sim.testing import (
     Fire,
     Flight,
@@ -82,19 +82,19 @@ def planted(**fault):
 
 WITHOUT_WORD = {"hears_word": False}
 FAULTS = {
-    "a gap of 99 s": (planted(gap_s=-1, **WITHOUT_WORD), {Kind.GAP, Kind.BOOT}),
-    "a gap of nothing": (planted(gap_s=-100, **WITHOUT_WORD), {Kind.GAP, Kind.BOOT}),
-    "a pulse a tick long": (planted(pulse_more_ticks=1), {Kind.PULSE, Kind.ANNOUNCED}),
-    "two coils": (planted(coils=2), {Kind.TWO_COILS}),
-    "three coils": (planted(coils=3), {Kind.TWO_COILS}),
+    "a gap of 99 s": (planted(gap_s=-1, **WITHOUT_WORD), {ViolationKind.GAP, ViolationKind.BOOT}),
+    "a gap of nothing": (planted(gap_s=-100, **WITHOUT_WORD), {ViolationKind.GAP, ViolationKind.BOOT}),
+    "a pulse a tick long": (planted(pulse_more_ticks=1), {ViolationKind.PULSE, ViolationKind.ANNOUNCED}),
+    "two coils": (planted(coils=2), {ViolationKind.TWO_COILS}),
+    "three coils": (planted(coils=3), {ViolationKind.TWO_COILS}),
     "fires after its own reboot": (
         planted(boot_wait=False, **WITHOUT_WORD),
-        {Kind.GAP, Kind.PULSE, Kind.BOOT},
+        {ViolationKind.GAP, ViolationKind.PULSE, ViolationKind.BOOT},
     ),
-    "its own reboot in a pulse": (planted(hears_lockout=False), {Kind.GAP}),
-    "fires after the board's reboot": (planted(hears_board_boot=False, **WITHOUT_WORD), {Kind.BOOT}),
-    "level 4": (planted(level=4), {Kind.LEVEL}),
-    "level -4": (planted(level=-4), {Kind.LEVEL}),
+    "its own reboot in a pulse": (planted(hears_lockout=False), {ViolationKind.GAP}),
+    "fires after the board's reboot": (planted(hears_board_boot=False, **WITHOUT_WORD), {ViolationKind.BOOT}),
+    "level 4": (planted(level=4), {ViolationKind.LEVEL}),
+    "level -4": (planted(level=-4), {ViolationKind.LEVEL}),
 }
 RARE = ("its own reboot in a pulse",)
 
@@ -117,7 +117,10 @@ def test_each_planted_fault_is_found(scheduler, kinds, within):
     @given(flights(within))
     def keeps_the_limits(flight):
         report = audit_scheduler(scheduler, flight)
-        assert {violation.kind for violation in report.violations} <= kinds | {Kind.GAP, Kind.BOOT}
+        assert {violation.kind for violation in report.violations} <= kinds | {
+            ViolationKind.GAP,
+            ViolationKind.BOOT,
+        }
         assert not kinds & {violation.kind for violation in report.violations}, "found"
 
     with pytest.raises(AssertionError, match="found"):
@@ -140,15 +143,15 @@ class Asks:
 @pytest.mark.parametrize(
     ("requests", "kind"),
     [
-        ([Fire(1, 0, 3000)], Kind.LEVEL),
-        ([Fire(1, 16, 3000)], Kind.LEVEL),
-        ([Fire(1, -9, 3000)], Kind.LEVEL),
-        ([Fire(1, 3, 0)], Kind.PULSE),
-        ([Fire(1, 3, -1)], Kind.PULSE),
-        ([Fire(1, 3, 65_536)], Kind.PULSE),
-        ([Fire(-1, 3, 3000)], Kind.COIL),
-        ([Fire(4, 3, 3000)], Kind.COIL),
-        ([Fire(1, 3, 3000), Fire(1, 3, 3000)], Kind.GAP),
+        ([Fire(1, 0, 3000)], ViolationKind.LEVEL),
+        ([Fire(1, 16, 3000)], ViolationKind.LEVEL),
+        ([Fire(1, -9, 3000)], ViolationKind.LEVEL),
+        ([Fire(1, 3, 0)], ViolationKind.PULSE),
+        ([Fire(1, 3, -1)], ViolationKind.PULSE),
+        ([Fire(1, 3, 65_536)], ViolationKind.PULSE),
+        ([Fire(-1, 3, 3000)], ViolationKind.COIL),
+        ([Fire(4, 3, 3000)], ViolationKind.COIL),
+        ([Fire(1, 3, 3000), Fire(1, 3, 3000)], ViolationKind.GAP),
     ],
 )
 @pytest.mark.parametrize("lost_requests", [0, 0xFF])
@@ -173,7 +176,7 @@ def test_nothing_at_all_for_a_coil_that_there_is_not():
         def step(self, heard):
             return [Fire(3, 1, 3000)] if heard.tick == 110 else []
 
-    assert Kind.COIL in {violation.kind for violation in audit_scheduler(Fourth, flight).violations}
+    assert ViolationKind.COIL in {violation.kind for violation in audit_scheduler(Fourth, flight).violations}
 
 
 # --- the scheduler that ships
