@@ -33,7 +33,7 @@ from sim.progress import progress
 from sim.record import run_dir
 from sim.record.destination import check_file
 from sim.record.pace import Pace
-from sim.replay.replay import replay
+from sim.replay.log_replay import replay
 from sim.scenario.schema import flight_table, load
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -1,1 +1,1 @@
-"""Replay: a log through the flight software again, through the plant, or onto a bus."""
+"""Replay of a log: through the flight software, through the plant, or onto a bus."""

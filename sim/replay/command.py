@@ -1,4 +1,4 @@
-"""What ``torquer replay`` does: through the flight software, through the plant, or onto a bus."""
+"""``torquer replay``: a log through the flight software, through the plant, or onto a bus."""
 
 import time
 from collections.abc import Iterator
@@ -24,101 +24,99 @@ from sim.record.candump import LogEntry, LogTruncatedError, read_log
 from sim.record.log_index import vouch
 from sim.record.run_record import RunRecord
 from sim.record.signature import PublicKey
-from sim.replay.replay import replay
+from sim.replay.log_replay import replay
 from sim.scenario.assemble import plant_config
 from sim.scenario.schema import Scenario, flight_table, load, parse_settings
 
 LONGEST_PAUSE_S = 86_400.0
-"""In a log that is played: what pauses for longer was not recorded in one piece."""
+"""In a log that is played onto a bus: a longer pause means that it was not recorded in one piece."""
 
 
-class Flown(NamedTuple):
-    """What a log was flown with: scenario, run.json where there is one, and what that says of the files."""
+class LoggedRun(NamedTuple):
+    """The run that a log is of: its scenario, its run.json where there is one, and the check of its files."""
 
     scenario: Scenario
-    run: RunRecord | None
+    record: RunRecord | None
     binding: Binding
 
     @property
     def ticks(self) -> int:
-        """How many are in the log, as far as that is known."""
-        return self.run["ticks"] if self.run else 0
+        """Number of ticks of the run; 0 where it is unknown."""
+        return self.record["ticks"] if self.record else 0
 
 
 def locate(
     run_or_log: Path, scenario: str | None, settings: tuple[str, ...], key: PublicKey | None = None
-) -> tuple[Path, Flown]:
-    """The log, and what it was flown with; with a key, the run must be signed by its private half.
+) -> tuple[Path, LoggedRun]:
+    """The log and its run; with a key, the run must be signed by its private half.
 
     Raises:
-        HarnessError: no such log, or nothing tells the scenario.
+        HarnessError: no such log, or no scenario for it.
         TableError: the scenario is not valid.
     """
     log, folder = run_dir.locate(run_or_log)
     binding = compare(folder, log, key)
     with binding.beside_errors():
-        next(iter(read_log(log)))  # a file that is no log is named first
-        run = run_dir.read_run(folder) if (folder / run_dir.RUN).is_file() else None
+        next(iter(read_log(log)))  # a file that is no log is reported first
+        record = run_dir.read_run(folder) if (folder / run_dir.RUN).is_file() else None
         beside = folder / run_dir.SCENARIO
         if scenario is None and not beside.is_file():
-            raise HarnessError(
-                f"{log}: no {run_dir.SCENARIO} beside it: name what it was flown with by --scenario"
-            )
-        return log, Flown(load(scenario or str(beside), parse_settings(settings)), run, binding)
+            raise HarnessError(f"{log}: no {run_dir.SCENARIO} beside it: name its scenario by --scenario")
+        return log, LoggedRun(load(scenario or str(beside), parse_settings(settings)), record, binding)
 
 
-def through_flight_software(log: Path, flown: Flown) -> int:
-    """Print the verdict; 0 if the replay is exact, as far as this platform must be, and the log whole."""
-    config = flight_config(flight_table(flown.scenario))
-    with progress("replaying", flown.ticks) as watch:
-        shown = replay(
-            log, config, lambda state: watch(state.tick), forged=forge_answers(flown.scenario.fault)
+def through_flight_software(log: Path, run: LoggedRun) -> int:
+    """Print the result; 0 if the replay is as exact as this platform allows, and the log complete."""
+    config = flight_config(flight_table(run.scenario))
+    with progress("replaying", run.ticks) as watch:
+        result = replay(
+            log, config, lambda state: watch(state.tick), forged=forge_answers(run.scenario.fault)
         )
-    same_platform = flown.run is None or flown.run["platform"] == run_dir.fingerprint()
-    exact = shown.bit_exact or (shown.command_exact and not same_platform)
-    if shown.bit_exact:
-        click.echo(f"bit-exact: {shown.ticks} ticks, {shown.frames} frames, every state CRC equal")
-    elif shown.command_exact:
+    same_platform = run.record is None or run.record["platform"] == run_dir.fingerprint()
+    exact = result.bit_exact or (result.command_exact and not same_platform)
+    if result.bit_exact:
+        click.echo(f"bit-exact: {result.ticks} ticks, {result.frames} frames, every state CRC equal")
+    elif result.command_exact:
         need = (
             "bit-exact is required: the platform is the run's"
             if same_platform
             else "another platform than the run's"
         )
-        click.echo(f"command-exact, not bit-exact ({need}): {shown.first_bit_difference}")
+        click.echo(f"command-exact, not bit-exact ({need}): {result.first_bit_difference}")
     else:
-        click.echo(f"differs: {shown.first_bit_difference}")
-        if shown.first_command_difference != shown.first_bit_difference:
-            click.echo(f"first command that differs: {shown.first_command_difference}")
-        _vouched(log, flown)
+        click.echo(f"differs: {result.first_bit_difference}")
+        if result.first_command_difference != result.first_bit_difference:
+            click.echo(f"first command that differs: {result.first_command_difference}")
+        _report_binding(log, run)
         return 1
-    holds = _vouched(log, flown)
-    if shown.ended:
+    holds = _report_binding(log, run)
+    if result.ended:
         return 0 if exact and holds else 1
-    how = "inside a line" if shown.cut else "without its end mark"
+    how = "inside a line" if result.cut else "without its end mark"
     click.echo(
-        f"incomplete: the log ends {how} after line {shown.end_line}, at tick {max(shown.last_tick, 0)}"
+        f"incomplete: the log ends {how} after line {result.end_line}, at tick {max(result.last_tick, 0)}"
     )
     return 1
 
 
-def through_plant(log: Path, flown: Flown) -> int:
-    """The recorded commands through the plant: its frames must come out as logged."""
-    if flown.run is None:
+def through_plant(log: Path, run: LoggedRun) -> int:
+    """Feed the recorded commands to the plant: its frames must be those of the log."""
+    if run.record is None:
         raise HarnessError(f"{log}: --plant needs the seed: no {run_dir.RUN} beside it")
-    plant = make_plant(plant_config(flown.scenario, flown.run["seed"]), flown.scenario.fault)
+    plant = make_plant(plant_config(run.scenario, run.record["seed"]), run.scenario.fault)
     ticks = 0
-    with progress("replaying", flown.ticks) as watch:
+    with progress("replaying", run.ticks) as watch:
         for logged, is_last in _by_time(log):
             if is_last and logged == [plant.end()]:
                 click.echo(f"plant reproduced: {ticks} ticks, every frame equal")
-                return 0 if _vouched(log, flown) else 1
+                return 0 if _report_binding(log, run) else 1
             sent = plant.begin_tick()
             begin = _beginning(logged, sent)
             end = begin + len(sent)
             difference = _difference(sent, logged[begin:end])
             if difference is not None:
                 click.echo(f"differs: tick {ticks}: {difference}")
-                _vouched(log, flown)
+                _report_binding(log, run)
                 return 1
             for frame in logged[:begin] + logged[end:]:
                 plant.receive(frame)
@@ -126,44 +124,44 @@ def through_plant(log: Path, flown: Flown) -> int:
             plant.end_tick()
             ticks += 1
             watch(ticks)
-    _vouched(log, flown)
+    _report_binding(log, run)
     click.echo(f"incomplete: the log ends without its end mark at tick {max(ticks - 1, 0)}")
     return 1
 
 
-def _vouched(log: Path, flown: Flown) -> bool:
-    """Print what index and run.json say of the log; whether it may pass for a complete one of its run."""
+def _report_binding(log: Path, run: LoggedRun) -> bool:
+    """Print what index and run.json say of the log; whether both hold for it."""
     voucher = vouch(log)
     if voucher.sentence:
         click.echo(f"{'note' if voucher.holds else 'index'}: {voucher.sentence}")
-    for line in flown.binding.lines:
+    for line in run.binding.lines:
         click.echo(line)
-    return voucher.holds and flown.binding.holds
+    return voucher.holds and run.binding.holds
 
 
 def _beginning(logged: list[Frame], sent: list[Frame]) -> int:
-    """Where the frames of the plant begin in a tick: SYNC is their last, strangers may be first."""
+    """Where the frames of the plant begin in a tick: SYNC is their last, others may stand before them."""
     own = [index for index, frame in enumerate(logged) if frame == sent[-1]]
     any_sync = [index for index, frame in enumerate(logged) if frame.can_id == Sync.ID]
     sync = next(iter(own + any_sync), len(sent))
     return max(0, sync + 1 - len(sent))
 
 
-def _difference(ours: list[Frame], logged: list[Frame]) -> str | None:
+def _difference(sent: list[Frame], logged: list[Frame]) -> str | None:
     """The first frame that the plant does not send as logged."""
-    for mine, other in zip_longest(ours, logged):
-        if mine != other:
-            name = NAMES.get((mine or other).can_id, "a frame")
-            texts = [frame.data.hex() if frame else "missing" for frame in (other, mine)]
+    for own, other in zip_longest(sent, logged):
+        if own != other:
+            name = NAMES.get((own or other).can_id, "a frame")
+            texts = [frame.data.hex() if frame else "missing" for frame in (other, own)]
             return f"{name} is {texts[0]} in the log and {texts[1]} from the plant"
     return None
 
 
-def play(log: Path, flown: Flown, spec: str) -> int:
+def play(log: Path, run: LoggedRun, spec: str) -> int:
     """Send every frame of the log onto a bus, spaced as its timestamps are; 0 if it is that of its run.
 
     Raises:
-        HarnessError: it would take for ever.
+        HarnessError: the log pauses for longer than a day.
         BusError: the bus cannot be used.
     """
     first_us, last_us = _playable(log)
@@ -177,9 +175,9 @@ def play(log: Path, flown: Flown, spec: str) -> int:
                 bus.send([entry.frame for entry in group])
     finally:
         bus.close()
-    for line in flown.binding.lines:
+    for line in run.binding.lines:
         click.echo(line)
-    return 0 if flown.binding.holds else 1
+    return 0 if run.binding.holds else 1
 
 
 def _by_time(log: Path) -> Iterator[tuple[list[Frame], bool]]:

@@ -17,7 +17,7 @@ from sim.record.estimates import EstimateRecorder
 from sim.record.log_index import vouch
 from sim.record.run_dir import Json
 from sim.record.truth import read_truth
-from sim.replay.replay import Replay, replay
+from sim.replay.log_replay import ReplayResult, replay
 from sim.report.page import write_report
 from sim.report.summary import BusTally, summarise
 from sim.report.verdict import Verdict, failures
@@ -87,5 +87,5 @@ def _without_broken_frames(audited: AuditReport) -> AuditReport:
     return replace(audited, violations=kept)
 
 
-def _verdict(shown: Replay) -> Json:
+def _verdict(shown: ReplayResult) -> Json:
     return {"bit_exact": shown.bit_exact, "command_exact": shown.command_exact, "ticks": shown.ticks}

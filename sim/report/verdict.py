@@ -8,7 +8,7 @@ from sim.flight.second_senders import said
 from sim.record import run_dir
 from sim.record.log_index import Voucher
 from sim.record.run_record import RunRecord
-from sim.replay.replay import Replay
+from sim.replay.log_replay import ReplayResult
 
 
 class Verdict(StrEnum):
@@ -24,7 +24,7 @@ def failures(
     run: RunRecord,
     ticks: int,
     audited: AuditReport,
-    shown: Replay,
+    shown: ReplayResult,
     voucher: Voucher,
 ) -> dict[str, str]:
     """What fails, each in a clause for people; empty where all is well.
@@ -58,7 +58,7 @@ def _limits(judged: int, violations: Sequence[Violation]) -> str:
     return "" if judged else "nothing tells whether the limits were kept: the log has no COIL_STATUS"
 
 
-def _replay(shown: Replay, same_platform: bool) -> str:
+def _replay(shown: ReplayResult, same_platform: bool) -> str:
     if shown.bit_exact or (shown.command_exact and not same_platform):
         return ""
     return f"the replay is not exact: {shown.first_bit_difference}"

@@ -16,7 +16,7 @@ from fsw.table.config import flight_config
 from fsw.wire.messages import CoilFire, FswEvent
 from sim.record import run_dir
 from sim.record.candump import read_log
-from sim.replay.replay import replay
+from sim.replay.log_replay import replay
 from sim.scenario.schema import flight_table, load
 
 HERE = Path(__file__).resolve().parent

@@ -5,7 +5,7 @@ import pytest
 
 from sim.record.estimates import EstimateRecorder
 from sim.record.run_dir import BUS_LOG
-from sim.replay.replay import replay
+from sim.replay.log_replay import replay
 
 
 @pytest.fixture(scope="module")

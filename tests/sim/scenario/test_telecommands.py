@@ -42,7 +42,7 @@ from sim.record import run_dir
 from sim.record.candump import read_log
 from sim.record.pace import Pace
 from sim.record.run_dir import BUS_LOG
-from sim.replay.replay import replay
+from sim.replay.log_replay import replay
 from sim.scenario.schema import flight_table, load
 from sim.scenario.telecommands import digits_of, elements_of, uplink
 

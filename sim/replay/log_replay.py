@@ -1,7 +1,7 @@
-"""Replay: the logged frames through the flight software again, its answers compared with the logged ones.
+"""Replay of a log through the flight software: its answers are compared with the logged ones.
 
-Two verdicts: bit-exact (every frame and every state CRC equal), required where the platform is the run's;
-command-exact (every COIL_FIRE and event equal, navigation within one unit of its signal), enough elsewhere.
+Bit-exact: every frame and every state CRC equal; required on the platform of the run. Command-exact: every
+COIL_FIRE and event equal, navigation within one unit of its signal; sufficient elsewhere.
 """
 
 from collections import deque
@@ -25,7 +25,7 @@ from fsw.wire.messages import (
     intact,
 )
 from sim.record.candump import LogEntry, LogTruncatedError, read_log
-from sim.replay.reflight import OnTick, Reflight
+from sim.replay.replayed_software import OnTick, ReplayedSoftware
 
 FROM_FSW = frozenset(can_id for can_id, sender in SENDERS.items() if sender == "FSW")
 UNITS: dict[int, tuple[float, ...]] = {
@@ -33,29 +33,31 @@ UNITS: dict[int, tuple[float, ...]] = {
     NavRate.ID: (0.0, 2.0**-19, 2.0**-19, 2.0**-19),
     NavQuality.ID: (0.0, 2.0**-14, 2.0**-22),
 }
-"""What one unit of each signal is, for the messages whose last bit may differ; 0 and absent: exact."""
+"""The unit of each signal of the messages whose last bit may differ; 0 and absent: exact."""
 
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """Where log and replay part: the tick, the signal and both values."""
+    """Where log and replay first differ: the tick, the signal and both values."""
 
     tick: int
     signal: str
     logged: object
-    reflown: object
+    replayed: object
 
     def __str__(self) -> str:
-        """One clause for the user."""
-        return f"tick {self.tick}: {self.signal} is {self.logged} in the log and {self.reflown} in the replay"
+        """The difference as a clause of a sentence."""
+        return (
+            f"tick {self.tick}: {self.signal} is {self.logged} in the log and {self.replayed} in the replay"
+        )
 
 
 @dataclass(frozen=True, slots=True)
-class Replay:
-    """What a replay showed.
+class ReplayResult:
+    """The result of a replay.
 
-    ``ended``: the log ends with a PLANT_END that fits. ``end_line`` is the last line read, ``cut`` says that
-    it was cut short.
+    ``ended``: the log ends with a PLANT_END that fits. ``end_line`` is the last line read; ``cut``: the log
+    is truncated inside the next.
     """
 
     ticks: int
@@ -80,27 +82,27 @@ class Replay:
 
 def replay(
     log: Path, config: FlightConfig, on_tick: OnTick = lambda state: None, forged: bool = False
-) -> Replay:
-    """Refly a log.
+) -> ReplayResult:
+    """Replay a log.
 
-    Only a PLANT_END that is the last frame and fits the ticks that were flown is the end of the run: one with
-    which the flight goes on is a stranger's.
+    Only a PLANT_END that is the last frame and fits the number of ticks is the end of the run; a stranger
+    sent any other.
 
     Args:
         log: a candump log.
-        config: what the flight software flew with.
-        on_tick: called with the flight state after every reflown tick.
-        forged: the flight had a stranger under identifiers of the flight software, as a fault that was asked
-            for: what bears one of them between two answers is heard, not compared.
+        config: of the flight software in the run.
+        on_tick: called with the flight state after every replayed tick.
+        forged: the scenario injects frames under identifiers of the flight software: such a frame between two
+            answers is received, not compared.
 
     Raises:
         LogError: the file is no candump log, or was altered so that it no longer is one.
     """
-    flight = Reflight(config, on_tick)
+    software = ReplayedSoftware(config, on_tick)
     differences: dict[bool, Difference] = {}
     frames = end_line = 0
     end: int | None = None
-    doubt: tuple[bool, Difference] | None = None  # a broken frame is noise, if the answer comes beside it
+    doubt: tuple[bool, Difference] | None = None  # a broken frame is noise if the whole answer follows
     cut = False
     for entry in _whole_entries(log):
         if entry is None:
@@ -110,40 +112,40 @@ def replay(
         frame = entry.frame
         end = PlantEnd.decode(frame.data).ticks if frame.can_id == PlantEnd.ID and intact(frame) else None
         if frame.can_id not in FROM_FSW:
-            flight.hear(frame)
+            software.receive(frame)
             continue
         frames += 1
-        if frame == flight.boot and not flight.expected:  # asked for again by a plant that came late
-            flight.reboot()
-        elif not flight.expected and (forged or not intact(frame)):
-            flight.hear(frame)
-        elif not intact(frame) and frame != flight.expected[0][1]:
-            doubt = doubt or _difference(frame, deque(flight.expected), max(flight.last_tick, 0))
-            flight.hear(frame)
-        elif not flight.explains(frame):
-            exact, difference = doubt or _difference(frame, flight.expected, max(flight.last_tick, 0))
+        if frame == software.boot and not software.expected:  # a plant that started late asked for it again
+            software.reboot()
+        elif not software.expected and (forged or not intact(frame)):
+            software.receive(frame)
+        elif not intact(frame) and frame != software.expected[0][1]:
+            doubt = doubt or _difference(frame, deque(software.expected), max(software.last_tick, 0))
+            software.receive(frame)
+        elif not software.explains(frame):
+            exact, difference = doubt or _difference(frame, software.expected, max(software.last_tick, 0))
             differences.setdefault(exact, difference)
             if exact:
                 break
-        elif not flight.expected:
+        elif not software.expected:
             doubt = None
-    ticks = (flight.last_tick + 1) % TICKS_MODULO
-    tick = max(flight.last_tick, 0)
+    ticks = (software.last_tick + 1) % TICKS_MODULO
+    tick = max(software.last_tick, 0)
     if end is not None and end != ticks and True not in differences:
         differences[True] = Difference(tick, "PLANT_END.ticks", end, ticks)
-    elif end is not None and flight.expected and True not in differences:
-        tick, said = flight.expected[0]
-        differences[True] = doubt[1] if doubt else Difference(tick, NAMES[said.can_id], "missing", "there")
+    elif end is not None and software.expected and True not in differences:
+        tick, missing = software.expected[0]
+        differences[True] = doubt[1] if doubt else Difference(tick, NAMES[missing.can_id], "missing", "there")
     first = min(differences.values(), key=lambda d: d.tick, default=None)
-    return Replay(
-        flight.ticks,
+    return ReplayResult(
+        software.ticks,
         frames,
         first,
         differences.get(True),
         end == ticks,
         cut,
         end_line,
-        flight.last_tick,
+        software.last_tick,
     )
 
 
@@ -156,31 +158,31 @@ def _whole_entries(log: Path) -> Iterator[LogEntry | None]:
 
 
 def _difference(frame: Frame, expected: deque[tuple[int, Frame]], tick: int) -> tuple[bool, Difference]:
-    """A logged frame that is not the next reflown one: whether a command differs, and where."""
+    """A logged frame that is not the next replayed one: whether a command differs, and where."""
     if not expected:
         return True, Difference(tick, NAMES[frame.can_id], "there", "missing")
-    tick, reflown = expected.popleft()
-    if frame.can_id != reflown.can_id:
-        return True, Difference(tick, "the next frame", NAMES[frame.can_id], NAMES[reflown.can_id])
+    tick, replayed = expected.popleft()
+    if frame.can_id != replayed.can_id:
+        return True, Difference(tick, "the next frame", NAMES[frame.can_id], NAMES[replayed.can_id])
     message = CLASSES[frame.can_id]
     if len(frame.data) != message.LENGTH or (frame.can_id != TickDone.ID and not intact(frame)):
         return True, Difference(
-            tick, f"{NAMES[frame.can_id]} as a whole", frame.data.hex(), reflown.data.hex()
+            tick, f"{NAMES[frame.can_id]} as a whole", frame.data.hex(), replayed.data.hex()
         )
-    logged_values, reflown_values = message.decode(frame.data), message.decode(reflown.data)
+    logged_values, replayed_values = message.decode(frame.data), message.decode(replayed.data)
     differing = [
         index
-        for index, pair in enumerate(zip(logged_values, reflown_values, strict=True))
+        for index, pair in enumerate(zip(logged_values, replayed_values, strict=True))
         if pair[0] != pair[1]
     ]
     first = differing[0]
     signal = f"{NAMES[frame.can_id]}.{message._fields[first]}"
-    difference = Difference(tick, signal, logged_values[first], reflown_values[first])
+    difference = Difference(tick, signal, logged_values[first], replayed_values[first])
     if frame.can_id in (TickDone.ID, FswBoot.ID):
         return message._fields[first] == "tick", difference
     units = UNITS.get(frame.can_id, ())
     tolerated = all(
-        index < len(units) and abs(logged_values[index] - reflown_values[index]) <= 1.001 * units[index]
+        index < len(units) and abs(logged_values[index] - replayed_values[index]) <= 1.001 * units[index]
         for index in differing
     )
     return not tolerated, difference

@@ -22,7 +22,7 @@ from fsw.wire.messages import (
 )
 from sim.record.candump import LogError, read_log
 from sim.record.run_dir import BUS_LOG
-from sim.replay.replay import replay
+from sim.replay.log_replay import replay
 from sim.scenario.schema import flight_table, load
 
 TICKS = 300
@@ -39,7 +39,7 @@ def config(flown_run, config_of):
 
 
 @pytest.fixture
-def refly(tmp_path, config):
+def replay_entries(tmp_path, config):
     """Replays entries as a log of their own."""
 
     def of(entries, config=config):
@@ -96,9 +96,9 @@ class TestHonest:
         assert [state.tick for state in states] == list(range(TICKS))
         assert states[-1].estimator.estimate is not None
 
-    def test_the_channel_s_name_and_the_time_do_not_count(self, refly, entries):
+    def test_the_channel_s_name_and_the_time_do_not_count(self, replay_entries, entries):
         renamed = [entry._replace(channel="can7", timestamp_us=entry.timestamp_us + 5) for entry in entries]
-        assert refly(renamed).bit_exact
+        assert replay_entries(renamed).bit_exact
 
     def test_another_run_of_the_same_seed_gives_the_same_log(self, fly_run, flown_run):
         assert (fly_run() / BUS_LOG).read_bytes() == (flown_run / BUS_LOG).read_bytes()
@@ -110,8 +110,8 @@ class TestHonest:
 class TestChangedByte:
     @pytest.mark.parametrize("tick", [0, 1, 57, 150, 299])
     @pytest.mark.parametrize("byte", range(8))
-    def test_of_a_field_sample_is_found_in_its_tick(self, refly, entries, tick, byte):
-        shown = refly(changed(entries, index_of(entries, MagField, tick), flip(byte)))
+    def test_of_a_field_sample_is_found_in_its_tick(self, replay_entries, entries, tick, byte):
+        shown = replay_entries(changed(entries, index_of(entries, MagField, tick), flip(byte)))
         assert not shown.bit_exact
         assert shown.first_bit_difference.tick == tick
         assert str(shown.first_bit_difference).startswith(f"tick {tick}: ")
@@ -124,11 +124,11 @@ class TestChangedByte:
         )
 
     @pytest.mark.parametrize("kind", [MagField, SunVector, CoilStatus], ids=lambda kind: kind.__name__)
-    def test_of_any_board_is_found(self, refly, entries, kind):
-        shown = refly(changed(entries, index_of(entries, kind, 120), flip(1, 3)))
+    def test_of_any_board_is_found(self, replay_entries, entries, kind):
+        shown = replay_entries(changed(entries, index_of(entries, kind, 120), flip(1, 3)))
         assert shown.first_bit_difference.tick == 120
 
-    def test_of_a_sample_that_is_not_used_is_found_by_the_checksum(self, refly, entries):
+    def test_of_a_sample_that_is_not_used_is_found_by_the_checksum(self, replay_entries, entries):
         """The filter is blanked during a pulse: nothing but a counter in the state tells."""
         pulse = next(
             i
@@ -136,25 +136,25 @@ class TestChangedByte:
             if e.frame.can_id == CoilStatus.ID and CoilStatus.decode(e.frame.data).level
         )
         field = max(i for i in range(pulse) if entries[i].frame.can_id == MagField.ID)
-        shown = refly(changed(entries, field, flip(2)))
+        shown = replay_entries(changed(entries, field, flip(2)))
         assert shown.first_bit_difference.signal == "TICK_DONE.state_crc"
 
-    def test_of_a_frame_that_fsw_does_not_listen_to_is_found_too(self, refly, entries):
+    def test_of_a_frame_that_fsw_does_not_listen_to_is_found_too(self, replay_entries, entries):
         """The heartbeats of tick 60 stand before fsw's own, which tells the rejects."""
         beat = next(i for i, e in enumerate(entries) if e.frame.can_id == CoilHeartbeat.ID)
-        difference = refly(changed(entries, beat, flip(3))).first_bit_difference
+        difference = replay_entries(changed(entries, beat, flip(3))).first_bit_difference
         assert (difference.tick, difference.signal) == (60, "FSW_HEARTBEAT.rejects")
-        assert (difference.logged, difference.reflown) == (0, 1)
+        assert (difference.logged, difference.replayed) == (0, 1)
 
-    def test_a_forged_sample_with_a_right_crc_is_found(self, refly, entries):
+    def test_a_forged_sample_with_a_right_crc_is_found(self, replay_entries, entries):
         index = index_of(entries, MagField, 140)
         field = MagField.decode(entries[index].frame.data)
         forged = changed(entries, index, lambda _: field._replace(b_x=field.b_x + 2.0).encode())
-        shown = refly(forged)
+        shown = replay_entries(forged)
         assert shown.first_bit_difference.tick == 140
 
-    def test_of_sync(self, refly, entries):
-        shown = refly(changed(entries, index_of(entries, Sync, 100), flip(0)))
+    def test_of_sync(self, replay_entries, entries):
+        shown = replay_entries(changed(entries, index_of(entries, Sync, 100), flip(0)))
         assert not shown.bit_exact
         assert shown.first_bit_difference.tick in (100, 101)
 
@@ -162,13 +162,13 @@ class TestChangedByte:
 class TestChangedAnswer:
     """What is changed in an answer itself is named by its signal, and told apart: command or last bit."""
 
-    def test_a_request(self, refly, entries):
+    def test_a_request(self, replay_entries, entries):
         index = next(i for i, e in enumerate(entries) if e.frame.can_id == CoilFire.ID)
         fire = CoilFire.decode(entries[index].frame.data)
         other = -fire.level
-        shown = refly(changed(entries, index, lambda _: fire._replace(level=other).encode()))
+        shown = replay_entries(changed(entries, index, lambda _: fire._replace(level=other).encode()))
         difference = shown.first_command_difference
-        assert (difference.signal, difference.logged, difference.reflown) == (
+        assert (difference.signal, difference.logged, difference.replayed) == (
             "COIL_FIRE.level",
             other,
             fire.level,
@@ -181,43 +181,45 @@ class TestChangedAnswer:
     )
     @pytest.mark.parametrize(("units", "commands"), [(1, True), (-1, True), (2, False), (-50, False)])
     def test_navigation_may_differ_by_one_unit_on_another_machine(
-        self, refly, entries, kind, signal, unit, units, commands
+        self, replay_entries, entries, kind, signal, unit, units, commands
     ):
         index = index_of(entries, kind, 133)
         message = kind.decode(entries[index].frame.data)
         moved = message._replace(**{signal: getattr(message, signal) + units * unit})
-        shown = refly(changed(entries, index, lambda _: moved.encode()))
+        shown = replay_entries(changed(entries, index, lambda _: moved.encode()))
         assert not shown.bit_exact
         assert shown.command_exact is commands
         assert shown.first_bit_difference.tick == 133
         assert shown.first_bit_difference.signal.endswith(f".{signal}")
 
-    def test_a_flag_may_not(self, refly, entries):
+    def test_a_flag_may_not(self, replay_entries, entries):
         index = index_of(entries, NavAttitude, 133)
         message = NavAttitude.decode(entries[index].frame.data)
-        shown = refly(changed(entries, index, lambda _: message._replace(valid=1 - message.valid).encode()))
+        shown = replay_entries(
+            changed(entries, index, lambda _: message._replace(valid=1 - message.valid).encode())
+        )
         assert shown.first_command_difference.signal == "NAV_ATTITUDE.valid"
 
-    def test_a_state_crc_is_no_command(self, refly, entries):
-        shown = refly(changed(entries, index_of(entries, TickDone, 77), flip(6)))
+    def test_a_state_crc_is_no_command(self, replay_entries, entries):
+        shown = replay_entries(changed(entries, index_of(entries, TickDone, 77), flip(6)))
         assert (shown.bit_exact, shown.command_exact) == (False, True)
         assert (shown.first_bit_difference.tick, shown.first_bit_difference.signal) == (
             77,
             "TICK_DONE.state_crc",
         )
 
-    def test_the_tick_that_is_answered_is(self, refly, entries):
-        shown = refly(changed(entries, index_of(entries, TickDone, 77), flip(0)))
+    def test_the_tick_that_is_answered_is(self, replay_entries, entries):
+        shown = replay_entries(changed(entries, index_of(entries, TickDone, 77), flip(0)))
         assert shown.first_command_difference.signal == "TICK_DONE.tick"
 
     @pytest.mark.parametrize("byte", [0, 3, 7])
-    def test_a_broken_frame_is_named_as_a_whole(self, refly, entries, byte):
-        shown = refly(changed(entries, index_of(entries, NavRate, 88), flip(byte)))
+    def test_a_broken_frame_is_named_as_a_whole(self, replay_entries, entries, byte):
+        shown = replay_entries(changed(entries, index_of(entries, NavRate, 88), flip(byte)))
         assert shown.first_command_difference.tick == 88
         assert shown.first_command_difference.signal == "NAV_RATE as a whole"
 
-    def test_a_shortened_frame_is_too(self, refly, entries):
-        shown = refly(
+    def test_a_shortened_frame_is_too(self, replay_entries, entries):
+        shown = replay_entries(
             changed(entries, index_of(entries, TickDone, 88), lambda f: f._replace(data=f.data[:4]))
         )
         assert shown.first_command_difference.signal == "TICK_DONE as a whole"
@@ -228,39 +230,43 @@ class TestMissingAndExtra:
         return entries[:index] + entries[index + 1 :]
 
     @pytest.mark.parametrize("kind", [MagField, SunVector, CoilStatus], ids=lambda kind: kind.__name__)
-    def test_a_missing_board_frame(self, refly, entries, kind):
-        shown = refly(self.drop(entries, index_of(entries, kind, 42)))
+    def test_a_missing_board_frame(self, replay_entries, entries, kind):
+        shown = replay_entries(self.drop(entries, index_of(entries, kind, 42)))
         assert shown.first_bit_difference.tick == 42
 
-    def test_a_missing_answer(self, refly, entries):
-        shown = refly(self.drop(entries, index_of(entries, NavRate, 42)))
+    def test_a_missing_answer(self, replay_entries, entries):
+        shown = replay_entries(self.drop(entries, index_of(entries, NavRate, 42)))
         difference = shown.first_command_difference
         assert (difference.tick, difference.signal) == (42, "the next frame")
-        assert (difference.logged, difference.reflown) == ("TICK_DONE", "NAV_RATE")
+        assert (difference.logged, difference.replayed) == ("TICK_DONE", "NAV_RATE")
 
-    def test_the_last_answer_of_all(self, refly, entries):
+    def test_the_last_answer_of_all(self, replay_entries, entries):
         last = max(i for i, e in enumerate(entries) if e.frame.can_id == TickDone.ID)
-        shown = refly(self.drop(entries, last))
+        shown = replay_entries(self.drop(entries, last))
         assert (shown.first_command_difference.tick, shown.first_command_difference.signal) == (
             299,
             "TICK_DONE",
         )
 
-    def test_an_answer_too_many(self, refly, entries):
+    def test_an_answer_too_many(self, replay_entries, entries):
         index = index_of(entries, TickDone, 42)
         doubled = [*entries[: index + 1], entries[index], *entries[index + 1 :]]
-        difference = refly(doubled).first_command_difference
-        assert (difference.signal, difference.logged, difference.reflown) == ("TICK_DONE", "there", "missing")
+        difference = replay_entries(doubled).first_command_difference
+        assert (difference.signal, difference.logged, difference.replayed) == (
+            "TICK_DONE",
+            "there",
+            "missing",
+        )
 
-    def test_a_missing_sync(self, refly, entries):
-        shown = refly(self.drop(entries, index_of(entries, Sync, 42)))
+    def test_a_missing_sync(self, replay_entries, entries):
+        shown = replay_entries(self.drop(entries, index_of(entries, Sync, 42)))
         assert shown.first_command_difference is not None
         assert shown.first_command_difference.tick in (41, 42)
 
-    def test_a_foreign_frame_in_the_log(self, refly, entries):
+    def test_a_foreign_frame_in_the_log(self, replay_entries, entries):
         index = index_of(entries, MagField, 42)
         foreign = entries[index]._replace(frame=Frame(0x7FF, b"\x01"))
-        difference = refly([*entries[:index], foreign, *entries[index:]]).first_bit_difference
+        difference = replay_entries([*entries[:index], foreign, *entries[index:]]).first_bit_difference
         assert (difference.tick, difference.signal) == (42, "TICK_DONE.state_crc")
 
 
@@ -310,16 +316,16 @@ class TestTruncated:
             assert shown.end_line == text[:length].count(b"\n")
             assert shown.cut is not text[:length].endswith(b"\n")
 
-    def test_a_log_without_its_end_mark_has_not_ended(self, refly, entries):
+    def test_a_log_without_its_end_mark_has_not_ended(self, replay_entries, entries):
         assert entries[-1].frame.can_id == PlantEnd.ID
-        shown = refly(entries[:-1])
+        shown = replay_entries(entries[:-1])
         assert (shown.bit_exact, shown.ended, shown.cut, shown.ticks) == (True, False, False, TICKS)
 
-    def test_nor_has_one_whose_end_mark_is_broken(self, refly, entries):
-        assert not refly(changed(entries, len(entries) - 1, flip(1))).ended
+    def test_nor_has_one_whose_end_mark_is_broken(self, replay_entries, entries):
+        assert not replay_entries(changed(entries, len(entries) - 1, flip(1))).ended
 
-    def test_nor_one_that_goes_on_after_it(self, refly, entries):
-        assert not refly([*entries, entries[1]]).ended
+    def test_nor_one_that_goes_on_after_it(self, replay_entries, entries):
+        assert not replay_entries([*entries, entries[1]]).ended
 
     @pytest.mark.parametrize("content", [b"", b"hello\n", b"\x89HDF\r\n", b"<html>\n"])
     def test_a_file_that_is_no_log_is_named(self, tmp_path, config, content):

@@ -17,7 +17,7 @@ from sim.record import run_dir
 from sim.record.candump import read_log
 from sim.record.pace import Pace
 from sim.record.run_dir import BUS_LOG
-from sim.replay.replay import replay
+from sim.replay.log_replay import replay
 from sim.report.conclude import conclude
 from sim.scenario.schema import flight_table, load
 
@@ -137,7 +137,7 @@ class TestEnd:
         return list(read_log(flown_run / BUS_LOG))
 
     @pytest.fixture
-    def refly(self, tmp_path, flown_run, config_of):
+    def replay_entries(self, tmp_path, flown_run, config_of):
         def of(entries):
             log = tmp_path / "bus.log"
             log.write_text(
@@ -148,16 +148,16 @@ class TestEnd:
         return of
 
     @pytest.mark.parametrize("ticks", [150, 149, 300, 9999])
-    def test_in_the_middle_is_no_end_and_no_reason_to_stop(self, refly, entries, ticks):
+    def test_in_the_middle_is_no_end_and_no_reason_to_stop(self, replay_entries, entries, ticks):
         """As a log that was edited: the flight software would have told of it."""
         done = [i for i, e in enumerate(entries) if e.frame.can_id == TickDone.ID][149]
         forged = entries[done]._replace(frame=PlantEnd(ticks, counter=1).encode())
-        shown = refly([*entries[: done + 1], forged, *entries[done + 1 :]])
+        shown = replay_entries([*entries[: done + 1], forged, *entries[done + 1 :]])
         assert shown.first_bit_difference.tick == 150
         assert "PLANT_END" not in shown.first_bit_difference.signal
 
     @pytest.mark.parametrize("ticks", [299, 301, 9999])
-    def test_that_does_not_fit_is_none(self, refly, entries, ticks):
-        shown = refly([*entries[:-1], entries[-1]._replace(frame=PlantEnd(ticks).encode())])
+    def test_that_does_not_fit_is_none(self, replay_entries, entries, ticks):
+        shown = replay_entries([*entries[:-1], entries[-1]._replace(frame=PlantEnd(ticks).encode())])
         assert not shown.ended
         assert shown.first_bit_difference.signal == "PLANT_END.ticks"
