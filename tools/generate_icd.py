@@ -21,7 +21,7 @@ from fsw.wire.frame import crc8  # noqa: E402
 from fsw.wire.messages import CoilFire, CoilRefusedReason, CoilStatus  # noqa: E402
 from hil_stub import bench, node  # noqa: E402
 from hil_stub.coils import coil_driver, events, interlock, read_back  # noqa: E402
-from sim.conformance.conformance import CHECKS  # noqa: E402
+from sim.conformance.check_runner import CHECKS  # noqa: E402
 
 DBC = ROOT / "fsw" / "wire" / "torquer.dbc"
 TEMPLATE = ROOT / "tools" / "icd.md.in"

@@ -1,1 +1,1 @@
-"""Whether a board, stub or hardware, does what docs/icd.md says."""
+"""Conformance of a board, stub or hardware, with docs/icd.md."""

@@ -1,41 +1,41 @@
-"""The checks of a board, one function each; its docstring says what is demanded."""
+"""The checks of a board, one function each; its docstring states the demand."""
 
 from collections.abc import Callable
 from itertools import pairwise
 
 from fsw.wire.frame import EXTENDED_FLAG, REMOTE_FLAG, Frame
 from fsw.wire.messages import AnyMessage, CoilEvent, CoilRefusedReason, CoilStatus, Sync
-from sim.conformance.session import BrokenError, Heard, Kind
-from sim.conformance.subject import Subject, reasons
+from sim.conformance.board_link import BoardKind, NonconformanceError, TickReply
+from sim.conformance.board_under_test import BoardUnderTest, reasons
 
 DEAD_MAN = 2
-"""``event`` of COIL_EVENT: written down here anew, as everything that is judged by."""
+"""``event`` of COIL_EVENT; restated here, so that the checks do not depend on the board's code."""
 HEARTBEAT_S = 60
 
 
-def boot(subject: Subject) -> None:
+def boot(board: BoardUnderTest) -> None:
     """PLANT_BOOT restarts it: boot message, off, a full lockout on every coil, no fault of the self-test."""
-    session = subject.session
-    session.restart()
+    link = board.link
+    link.restart()
     for _ in range(2):
-        session.step()
-    first = session.restart()
-    if len(first.only(session.kind.boot)) != 1 or not isinstance(first.messages[0], session.kind.boot):
-        raise BrokenError(f"PLANT_BOOT: one boot message first, not {names(first.messages)}")
-    if session.kind.sample is not CoilStatus:
+        link.step()
+    first = link.restart()
+    if len(first.only(link.kind.boot)) != 1 or not isinstance(first.messages[0], link.kind.boot):
+        raise NonconformanceError(f"PLANT_BOOT: one boot message first, not {names(first.messages)}")
+    if link.kind.sample is not CoilStatus:
         return
-    subject.locked_out(first)
+    board.expect_lockout(first)
     for number in range(1, 4):
-        heard = session.step()
-        subject.locked_out(heard, number)
-        if heard.only(CoilEvent):
-            raise BrokenError(f"a fault is told after boot: {heard.only(CoilEvent)}")
+        reply = link.step()
+        board.expect_lockout(reply, number)
+        if reply.only(CoilEvent):
+            raise NonconformanceError(f"a fault is reported after boot: {reply.only(CoilEvent)}")
 
 
-def noise(subject: Subject) -> None:
+def noise(board: BoardUnderTest) -> None:
     """Unknown, remote, extended and broken frames, and a strange SYNC alone, move nothing."""
-    session = subject.session
-    sample = Sync(session.tick + 7, 0).encode()
+    link = board.link
+    sample = Sync(link.tick + 7, 0).encode()
     strange = [
         Frame(0x7FF, b"\xff" * 8),
         Frame(0x123 | EXTENDED_FLAG, b"\x00"),
@@ -43,43 +43,43 @@ def noise(subject: Subject) -> None:
         Frame(sample.can_id, sample.data[:7]),
         sample,
     ]
-    heard = session.step(*strange)
-    if heard.only(session.kind.boot):
-        raise BrokenError("it restarted because of noise")
-    if session.kind.sample is CoilStatus:
-        subject.off(heard)
+    reply = link.step(*strange)
+    if reply.only(link.kind.boot):
+        raise NonconformanceError("it restarted because of noise")
+    if link.kind.sample is CoilStatus:
+        board.expect_off(reply)
 
 
-def boot_lockout(subject: Subject) -> None:
-    """After boot nothing is accepted for a full back-off, and then it is; the pulse is as asked for."""
-    subject.wait_for_next(subject.session.restart().at_s)
+def boot_lockout(board: BoardUnderTest) -> None:
+    """After boot nothing is accepted for a full back-off, and then it is; the pulse is as requested."""
+    board.request_until_accepted(board.link.restart().at_s)
 
 
-def refusals(subject: Subject) -> None:
+def refusals(board: BoardUnderTest) -> None:
     """Each improper request is refused for its own reason, in lockout and when free, and changes nothing."""
     for when in ("locked out", "free"):
         if when == "free":
-            subject.free()
-        for changes, reason in _improper(subject):
-            subject.off(subject.refuse(subject.fire(**changes()), reason))
+            board.wait_until_free()
+        for changes, reason in _improper(board):
+            board.expect_off(board.expect_refusal(board.request(**changes()), reason))
         for damage in (_flip, _shorten, _lengthen):
-            asked = subject.fire()
-            frame = damage(asked.encode())
-            subject.off(subject.refuse(asked, CoilRefusedReason.MALFORMED, frame))
+            request = board.request()
+            frame = damage(request.encode())
+            board.expect_off(board.expect_refusal(request, CoilRefusedReason.MALFORMED, frame))
         for flag in (EXTENDED_FLAG, REMOTE_FLAG):
-            good = subject.fire().encode()
-            heard = subject.session.step(Frame(good.can_id | flag, good.data))
-            subject.off(heard)
-            if heard.refused:
-                raise BrokenError(f"a frame that is no request was refused as {reasons(heard)}")
+            proper = board.request().encode()
+            reply = board.link.step(Frame(proper.can_id | flag, proper.data))
+            board.expect_off(reply)
+            if reply.refused:
+                raise NonconformanceError(f"a frame that is no request was refused as {reasons(reply)}")
 
 
-def _improper(subject: Subject) -> list[tuple[Callable[[], dict[str, int]], CoilRefusedReason]]:
-    reason, too_long = CoilRefusedReason, subject.limits.pulse_ms + 1
+def _improper(board: BoardUnderTest) -> list[tuple[Callable[[], dict[str, int]], CoilRefusedReason]]:
+    reason, too_long = CoilRefusedReason, board.limits.pulse_ms + 1
     return [
-        (lambda: {"tick": subject.session.tick - 1 & 0xFF}, reason.WRONG_TICK),
-        (lambda: {"tick": subject.session.tick + 1 & 0xFF}, reason.WRONG_TICK),
-        (lambda: {"seq": subject.accepted_seq}, reason.REPEATED_SEQ),
+        (lambda: {"tick": board.link.tick - 1 & 0xFF}, reason.WRONG_TICK),
+        (lambda: {"tick": board.link.tick + 1 & 0xFF}, reason.WRONG_TICK),
+        (lambda: {"seq": board.accepted_seq}, reason.REPEATED_SEQ),
         (lambda: {"coil": 3}, reason.BAD_COIL),
         (lambda: {"level": 0}, reason.BAD_LEVEL),
         (lambda: {"level": 4}, reason.BAD_LEVEL),
@@ -88,7 +88,7 @@ def _improper(subject: Subject) -> list[tuple[Callable[[], dict[str, int]], Coil
         (lambda: {"duration_ms": 0}, reason.BAD_DURATION),
         (lambda: {"duration_ms": too_long}, reason.BAD_DURATION),
         (lambda: {"duration_ms": 65_535}, reason.BAD_DURATION),
-        (lambda: {"coil": 3, "level": 0, "tick": subject.session.tick - 1 & 0xFF}, reason.WRONG_TICK),
+        (lambda: {"coil": 3, "level": 0, "tick": board.link.tick - 1 & 0xFF}, reason.WRONG_TICK),
         (lambda: {"coil": 3, "level": 0, "duration_ms": 0}, reason.BAD_COIL),
         (lambda: {"level": 0, "duration_ms": 0}, reason.BAD_LEVEL),
     ]
@@ -106,114 +106,116 @@ def _lengthen(frame: Frame) -> Frame:
     return Frame(frame.can_id, frame.data + b"\x00")
 
 
-def back_off(subject: Subject) -> None:
+def back_off(board: BoardUnderTest) -> None:
     """One coil at a time; from the end of a pulse to the next start a full back-off, and not much more."""
-    subject.free()
-    duration_ms = max(1, round(0.75 * subject.limits.pulse_ms))
-    asked, heard = subject.accept(duration_ms=duration_ms, level=3)
-    end_s = heard.at_s + duration_ms / 1000.0
+    board.wait_until_free()
+    duration_ms = max(1, round(0.75 * board.limits.pulse_ms))
+    request, reply = board.expect_accepted(duration_ms=duration_ms, level=3)
+    end_s = reply.at_s + duration_ms / 1000.0
 
-    def another() -> Heard:
+    def another() -> TickReply:
         reason = CoilRefusedReason.COIL_ON
-        return subject.refuse(subject.fire(coil=2), reason) if heard.status.remaining_ms else session.step()
+        return (
+            board.expect_refusal(board.request(coil=2), reason) if reply.status.remaining_ms else link.step()
+        )
 
-    session = subject.session
-    subject.pulse(asked, heard, another)
-    if subject.limits.shared:
-        subject.off(subject.refuse(subject.fire(coil=0), CoilRefusedReason.LOCKOUT))
+    link = board.link
+    board.follow_pulse(request, reply, another)
+    if board.limits.shared:
+        board.expect_off(board.expect_refusal(board.request(coil=0), CoilRefusedReason.LOCKOUT))
     else:
-        other, began = subject.accept(coil=0, duration_ms=max(1, duration_ms // 2))
-        subject.pulse(other, began)
-    subject.wait_for_next(end_s)
+        other_request, first_reply = board.expect_accepted(coil=0, duration_ms=max(1, duration_ms // 2))
+        board.follow_pulse(other_request, first_reply)
+    board.request_until_accepted(end_s)
 
 
-def dead_man(subject: Subject) -> None:
+def dead_man(board: BoardUnderTest) -> None:
     """No SYNC: off, COIL_EVENT, and a full lockout that begins when SYNC is back."""
-    subject.session.step()
-    subject.off(subject.session.step())
-    _fall_silent(subject)
+    board.link.step()
+    board.expect_off(board.link.step())
+    _stop_sync(board)
 
 
-def dead_man_in_a_pulse(subject: Subject) -> None:
+def dead_man_in_a_pulse(board: BoardUnderTest) -> None:
     """The same while a coil is on."""
-    subject.free()
-    subject.accept()
-    _fall_silent(subject)
-    subject.off(subject.refuse(subject.fire(), CoilRefusedReason.LOCKOUT))
+    board.wait_until_free()
+    board.expect_accepted()
+    _stop_sync(board)
+    board.expect_off(board.expect_refusal(board.request(), CoilRefusedReason.LOCKOUT))
 
 
-def _fall_silent(subject: Subject) -> None:
-    during = subject.session.silence(1.5 * subject.limits.deadman_s + subject.session.period_s)
+def _stop_sync(board: BoardUnderTest) -> None:
+    during = board.link.silence(1.5 * board.limits.deadman_s + board.link.period_s)
     if during.messages:
-        raise BrokenError(f"it speaks without being spoken to: {names(during.messages)}")
-    silenced(subject, "no SYNC")
+        raise NonconformanceError(f"it sends without a SYNC: {names(during.messages)}")
+    expect_dead_man(board, "no SYNC")
 
 
-def silenced(subject: Subject, why: str) -> None:
-    """The dead-man is told in the next tick, with a full lockout.
+def expect_dead_man(board: BoardUnderTest, why: str) -> None:
+    """The dead-man is reported in the next tick, with a full lockout.
 
     Raises:
-        BrokenError: it is not.
+        NonconformanceError: it is not.
     """
-    heard = subject.session.step()
-    events = [message.event for message in heard.messages if isinstance(message, CoilEvent)]
+    reply = board.link.step()
+    events = [message.event for message in reply.messages if isinstance(message, CoilEvent)]
     if events != [DEAD_MAN]:
-        raise BrokenError(
-            f"{why} for {1.5 * subject.limits.deadman_s:g} s: events {events}, not the dead-man"
+        raise NonconformanceError(
+            f"{why} for {1.5 * board.limits.deadman_s:g} s: events {events}, not the dead-man"
         )
-    subject.locked_out(heard, 1)
+    board.expect_lockout(reply, 1)
 
 
-def restart_in_a_pulse(subject: Subject) -> None:
+def restart_in_a_pulse(board: BoardUnderTest) -> None:
     """A restart while a coil is on: off at once, and a full lockout."""
-    subject.free()
-    subject.accept()
-    subject.locked_out(subject.session.restart())
-    subject.off(subject.refuse(subject.fire(), CoilRefusedReason.LOCKOUT))
+    board.wait_until_free()
+    board.expect_accepted()
+    board.expect_lockout(board.link.restart())
+    board.expect_off(board.expect_refusal(board.request(), CoilRefusedReason.LOCKOUT))
 
 
-def all_along(subject: Subject) -> None:
+def all_along(board: BoardUnderTest) -> None:
     """Exactly one sample in each tick, counters that rise by one, no broken frame, heartbeats in time."""
-    session = subject.session
-    kind = session.kind
-    for heard in session.record:
-        if heard.broken:
-            raise BrokenError(f"a frame that is not intact in tick {heard.tick}: {heard.broken[0]}")
-        if len(heard.only(kind.sample)) != 1 and (heard.due or heard.messages):
-            said = names(heard.messages)
-            raise BrokenError(f"not one {kind.sample.__name__} in tick {heard.tick}: {said}")
-    _counted([message for heard in session.record for message in heard.messages], kind)
-    _beats(session.record, kind, session.tick_hz)
+    link = board.link
+    kind = link.kind
+    for reply in link.replies:
+        if reply.broken:
+            raise NonconformanceError(f"a frame that is not intact in tick {reply.tick}: {reply.broken[0]}")
+        if len(reply.only(kind.sample)) != 1 and (reply.due or reply.messages):
+            received = names(reply.messages)
+            raise NonconformanceError(f"not one {kind.sample.__name__} in tick {reply.tick}: {received}")
+    _check_counters([message for reply in link.replies for message in reply.messages], kind)
+    _check_heartbeats(link.replies, kind, link.tick_hz)
 
 
-def _counted(messages: list[AnyMessage], kind: Kind) -> None:
+def _check_counters(messages: list[AnyMessage], kind: BoardKind) -> None:
     """Counters rise by one, from 0 after boot."""
     following: dict[type[AnyMessage], int] = {}
     booted = False
     for message in messages:
         if isinstance(message, kind.boot):
             following, booted = {}, True
-        told = message[-1]
-        due = following.get(type(message), 0 if booted else told)
-        if told != due:
-            raise BrokenError(f"counter of {type(message).__name__} is {told}, not {due}")
+        counter = message[-1]
+        due = following.get(type(message), 0 if booted else counter)
+        if counter != due:
+            raise NonconformanceError(f"counter of {type(message).__name__} is {counter}, not {due}")
         following[type(message)] = (due + 1) % 16
 
 
-def _beats(record: list[Heard], kind: Kind, tick_hz: int) -> None:
+def _check_heartbeats(replies: list[TickReply], kind: BoardKind, tick_hz: int) -> None:
     """Heartbeats every 60 s of ticks after boot."""
-    boots = [n for n, heard in enumerate(record) if heard.only(kind.boot)]
-    for first, last in pairwise([*boots, len(record)]):
-        life = record[first:last]
-        period, born = HEARTBEAT_S * tick_hz, life[0].tick
-        due = [h for h in life if h.due and h.tick > born and (h.tick - born) % period == 0]
+    boots = [n for n, reply in enumerate(replies) if reply.only(kind.boot)]
+    for first, last in pairwise([*boots, len(replies)]):
+        life = replies[first:last]
+        period, boot_tick = HEARTBEAT_S * tick_hz, life[0].tick
+        due = [h for h in life if h.due and h.tick > boot_tick and (h.tick - boot_tick) % period == 0]
         missing = [h.tick for h in due if not h.only(kind.heartbeat)]
         if missing:
-            raise BrokenError(
+            raise NonconformanceError(
                 f"no heartbeat in tick {missing[0]}, {HEARTBEAT_S} s after boot or the last one"
             )
 
 
 def names(messages: list[AnyMessage]) -> str:
-    """The names of messages, for people."""
+    """The names of messages, as text."""
     return ", ".join(type(message).__name__ for message in messages) or "nothing"

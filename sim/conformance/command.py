@@ -1,4 +1,4 @@
-"""``torquer hil --conformance``: one board, checked over its bus, and the verdict as text or JSON."""
+"""``torquer hil --conformance``: one board, checked over its bus; the results as text or JSON."""
 
 import json
 import time
@@ -6,9 +6,9 @@ import time
 import click
 
 from fsw.bus.open_bus import open_bus, resolve
-from sim.conformance.conformance import Verdict, conform
-from sim.conformance.session import KINDS, Session
-from sim.conformance.subject import Limits
+from sim.conformance.board_link import BOARD_KINDS, BoardLink
+from sim.conformance.board_under_test import BoardLimits
+from sim.conformance.check_runner import CheckResult, run_checks
 from sim.scenario.coil_limits import coil_limits
 from sim.scenario.schema import Scenario
 
@@ -22,42 +22,47 @@ def conformance(
 
     Raises:
         BusError: the bus cannot be used.
-        HarnessError: no board answers, or somebody else paces the bus.
+        HarnessError: no board answers, or another node sends SYNC.
     """
     tick_hz = scenario.time.tick_hz
     board = coil_limits(scenario.coils, tick_hz)
-    limits = Limits(board.pulse_ms, board.backoff_ms, board.shared, deadman_s)
+    limits = BoardLimits(board.pulse_ms, board.backoff_ms, board.shared, deadman_s)
     spec = resolve(bus)
-    link = open_bus(spec)
+    can_bus = open_bus(spec)
     if not as_json:
-        click.echo(f"{kind} on {spec}, {tick_hz} Hz, {_said(limits)}")
+        click.echo(f"{kind} on {spec}, {tick_hz} Hz, {_limits_text(limits)}")
     began = time.monotonic()
     try:
-        verdicts = conform(Session(link, KINDS[kind], tick_hz), limits, armed, lambda v: _tell(v, as_json))
+        results = run_checks(
+            BoardLink(can_bus, BOARD_KINDS[kind], tick_hz),
+            limits,
+            armed,
+            lambda result: _echo(result, as_json),
+        )
     finally:
-        link.close()
-    failed = [verdict for verdict in verdicts if verdict.failure]
-    unarmed = [verdict for verdict in verdicts if not verdict.ran]
+        can_bus.close()
+    failed = [result for result in results if result.failure]
+    unarmed = [result for result in results if not result.ran]
     if as_json:
         wall_s = time.monotonic() - began
-        checks = [verdict._asdict() for verdict in verdicts]
+        checks = [result._asdict() for result in results]
         click.echo(json.dumps({"board": kind, "bus": spec, "seconds": wall_s, "checks": checks}, indent=2))
     else:
         skipped = f", {len(unarmed)} not run: they drive coils and need --arm" if unarmed else ""
-        click.echo(f"{len(verdicts) - len(failed) - len(unarmed)} kept, {len(failed)} failed{skipped}")
+        click.echo(f"{len(results) - len(failed) - len(unarmed)} kept, {len(failed)} failed{skipped}")
     return int(bool(failed))
 
 
-def _said(limits: Limits) -> str:
-    kind = "shared" if limits.shared else "per coil"
+def _limits_text(limits: BoardLimits) -> str:
+    scope = "shared" if limits.shared else "per coil"
     return (
-        f"pulses up to {limits.pulse_ms / 1000.0:g} s, back-off {limits.backoff_ms / 1000.0:g} s ({kind}), "
+        f"pulses up to {limits.pulse_ms / 1000.0:g} s, back-off {limits.backoff_ms / 1000.0:g} s ({scope}), "
         f"dead-man {limits.deadman_s:g} s"
     )
 
 
-def _tell(verdict: Verdict, as_json: bool) -> None:
+def _echo(result: CheckResult, as_json: bool) -> None:
     if as_json:
         return
-    mark = _MARKS[verdict.failure is None] if verdict.ran else "not run"
-    click.echo(f"{mark:<8}{verdict.name:<20} {verdict.failure or verdict.what}")
+    mark = _MARKS[result.failure is None] if result.ran else "not run"
+    click.echo(f"{mark:<8}{result.name:<20} {result.failure or result.what}")

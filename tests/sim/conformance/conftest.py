@@ -5,7 +5,7 @@ from collections import deque
 import pytest
 
 from hil_stub.bench import BenchNode
-from sim.conformance.session import KINDS, Session
+from sim.conformance.board_link import BOARD_KINDS, BoardLink
 
 
 class SimulatedBus:
@@ -73,7 +73,7 @@ def session_with():
         make_board, tick_hz=1, kind="coil", deadman_ms=5000, has_clock=True, bench=BenchNode, bus=SimulatedBus
     ):
         link = bus(bench(make_board, deadman_ms, has_clock))
-        return Session(link, KINDS[kind], tick_hz, clock=lambda: link.now_s)
+        return BoardLink(link, BOARD_KINDS[kind], tick_hz, clock=lambda: link.now_s)
 
     return make
 

@@ -1,4 +1,4 @@
-"""Talks to one board as plant and flight software would, in real time, and listens to all that it says."""
+"""A link to one board: speaks to it as plant and flight software would, and records its replies."""
 
 import time
 from collections.abc import Callable
@@ -29,11 +29,11 @@ from fsw.wire.messages import (
 from sim.errors import HarnessError
 
 
-class BrokenError(Exception):
-    """The board does not do what the specification says; the message is one sentence for people."""
+class NonconformanceError(Exception):
+    """The board does not do what the specification demands; the message is one sentence for people."""
 
 
-class Kind(NamedTuple):
+class BoardKind(NamedTuple):
     """The messages of a kind of board; ``sample`` is the one that it sends exactly once a tick."""
 
     node: str
@@ -42,21 +42,21 @@ class Kind(NamedTuple):
     heartbeat: type[CoilHeartbeat] | type[MagHeartbeat] | type[SunHeartbeat]
 
 
-KINDS = {
-    "coil": Kind("COIL", CoilBoot, CoilStatus, CoilHeartbeat),
-    "magnetometer": Kind("MAG", MagBoot, MagField, MagHeartbeat),
-    "sun": Kind("SUN", SunBoot, SunVector, SunHeartbeat),
+BOARD_KINDS = {
+    "coil": BoardKind("COIL", CoilBoot, CoilStatus, CoilHeartbeat),
+    "magnetometer": BoardKind("MAG", MagBoot, MagField, MagHeartbeat),
+    "sun": BoardKind("SUN", SunBoot, SunVector, SunHeartbeat),
 }
 
 
 @dataclass
-class Heard:
-    """What the board says in a tick.
+class TickReply:
+    """What the board sends in a tick.
 
     Args:
-        tick: the tick that it is of.
-        at_s: when that was due which it follows: the SYNC of the tick before.
-        due: the board has to speak: exactly one sample.
+        tick: the tick.
+        at_s: when the SYNC of the tick before was due.
+        due: the board has to answer with exactly one sample.
         messages: all its intact messages.
         broken: frames under its identifiers that are not intact.
     """
@@ -76,24 +76,24 @@ class Heard:
         """The COIL_STATUS of the tick.
 
         Raises:
-            BrokenError: there is none.
+            NonconformanceError: there is none.
         """
         for message in self.messages:
             if isinstance(message, CoilStatus):
                 return message
-        raise BrokenError(f"no COIL_STATUS of tick {self.tick}")
+        raise NonconformanceError(f"no COIL_STATUS of tick {self.tick}")
 
     @property
     def refused(self) -> list[CoilRefused]:
-        """The refusals told in the tick."""
+        """The refusals in the tick."""
         return [message for message in self.messages if isinstance(message, CoilRefused)]
 
 
-class Session:
+class BoardLink:
     """The bus with one board on it, driven tick by tick.
 
     Args:
-        bus: where the board lives; nobody else may send SYNC there.
+        bus: with the board on it; nothing else may send SYNC there.
         kind: of the board.
         tick_hz: ticks a second.
         clock: seconds on a clock that never runs back, as ``bus.receive`` counts its timeouts.
@@ -103,7 +103,7 @@ class Session:
     def __init__(
         self,
         bus: Bus,
-        kind: Kind,
+        kind: BoardKind,
         tick_hz: int,
         clock: Callable[[], float] = time.monotonic,
         watch: Callable[[], None] = lambda: None,
@@ -119,13 +119,13 @@ class Session:
         self._boots = 0
         self.tick = 0
         """The tick whose SYNC comes next; the board is in it."""
-        self.record: list[Heard] = []
-        """All that was heard, and when."""
+        self.replies: list[TickReply] = []
+        """All replies so far."""
 
-    def step(self, *frames: Frame, early_s: float | None = None) -> Heard:
-        """SYNC of this tick, ``frames``, TICK_DONE; then what the board says of the next tick, until that.
+    def step(self, *frames: Frame, early_s: float | None = None) -> TickReply:
+        """Send SYNC of this tick, ``frames`` and TICK_DONE; return what the board sends until the next tick.
 
-        With ``early_s`` the next tick comes so long after the answer, and not when it is due.
+        With ``early_s`` the next tick comes that long after the answer, and not when it is due.
         """
         tick, self.tick = self.tick, self.tick + 1
         at_s = self.due_s()
@@ -133,14 +133,14 @@ class Session:
         self._bus.send([sync, *frames, TickDone(tick, 0).encode()])
         return self._listen(tick + 1, at_s, self.period_s, due=True, early_s=early_s)
 
-    def sync(self, tick: int) -> Heard:
-        """A SYNC alone, of any tick, and a tick's time to listen."""
+    def sync(self, tick: int) -> TickReply:
+        """Send a SYNC alone, of any tick, and listen for the time of a tick."""
         at_s = self.due_s()
         self._bus.send([Sync(tick, self._epoch_unix_s).encode()])
         return self._listen(tick, at_s, self.period_s)
 
-    def restart(self) -> Heard:
-        """PLANT_BOOT, which restarts a board that is in a later tick than 0; what it says then."""
+    def restart(self) -> TickReply:
+        """Send PLANT_BOOT, which restarts a board in a later tick than 0, and listen for a tick."""
         self.tick = 0
         at_s = self.clock()
         self._bus.send([PlantBoot(0, 1, 0, counter=self._boots).encode()])
@@ -148,38 +148,38 @@ class Session:
         self._due_s = at_s
         return self._listen(0, at_s, self.period_s)
 
-    def silence(self, seconds: float) -> Heard:
-        """Nothing is sent for a while: what the board says all the same."""
+    def silence(self, seconds: float) -> TickReply:
+        """Send nothing for a while: what the board sends all the same."""
         self._due_s = at_s = self.clock()
         return self._listen(self.tick, at_s, seconds)
 
     def due_s(self) -> float:
-        """When the next SYNC is due, by the clock; one that is far too late is due now, not in a rush."""
+        """When the next SYNC is due, by the clock; if that is more than a tick ago, it is now."""
         if self.clock() > self._due_s + self.period_s:
             self._due_s = self.clock()
         return self._due_s
 
     def _listen(
         self, tick: int, at_s: float, seconds: float, due: bool = False, early_s: float | None = None
-    ) -> Heard:
+    ) -> TickReply:
         self._watch()
         self._due_s += seconds
-        heard = Heard(tick, at_s, due)
+        reply = TickReply(tick, at_s, due)
         while (left_s := self._due_s - self.clock()) > 0.0:
             frame = self._bus.receive(left_s)
             if frame is not None:
-                self._take(frame, heard)
-            if early_s is not None and heard.only(self.kind.sample):
+                self._take(frame, reply)
+            if early_s is not None and reply.only(self.kind.sample):
                 self._due_s = min(self._due_s, self.clock() + early_s)
-        self.record.append(heard)
-        return heard
+        self.replies.append(reply)
+        return reply
 
-    def _take(self, frame: Frame, heard: Heard) -> None:
+    def _take(self, frame: Frame, reply: TickReply) -> None:
         sender = SENDERS.get(frame.can_id)
         if sender == self.kind.node:
             if intact(frame):
-                heard.messages.append(CLASSES[frame.can_id].decode(frame.data))
+                reply.messages.append(CLASSES[frame.can_id].decode(frame.data))
             else:
-                heard.broken.append(frame)
+                reply.broken.append(frame)
         elif frame.can_id in (Sync.ID, TickDone.ID):
-            raise HarnessError("somebody else sends SYNC or TICK_DONE on this bus: a board is tested alone")
+            raise HarnessError("another node sends SYNC or TICK_DONE on this bus: a board is tested alone")
