@@ -23,8 +23,8 @@ from fsw.table.config import flight_config
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilRefused
 from sim.audit.check import check
-from sim.bench.memory import Memory
-from sim.bench.verdict import Line
+from sim.bench.budgets import BudgetLine
+from sim.bench.memory import MemoryMonitor
 from sim.errors import HarnessError
 from sim.flight.flight import WATCH_TICKS
 from sim.flight.recorded import MOST_TICKS, record
@@ -53,7 +53,7 @@ class Part:
 
     title: str
     said: str
-    lines: list[Line]
+    lines: list[BudgetLine]
     memory: Json
 
 
@@ -83,11 +83,11 @@ def fly(folder: Path, name: str, hours: float) -> None:
         raise HarnessError(f"--hours {hours:g}: a run has at most {MOST_TICKS} ticks")
     run_dir.begin(folder, scenario, 1, ticks, "virtual", Pace())
     bus = TimedBus(FlightNode(flight_config(flight_table(scenario))))
-    memory = Memory({"flight": os.getpid()}, ticks, tick_hz, WARM_PART * ticks / tick_hz, WATCH_TICKS)
+    memory = MemoryMonitor({"flight": os.getpid()}, ticks, tick_hz, WARM_PART * ticks / tick_hz, WATCH_TICKS)
     with progress(f"flying {name}", ticks) as watch:
 
         def on_tick(tick: int) -> None:
-            memory.look(tick)
+            memory.sample(tick)
             watch(tick)
 
         record(folder, scenario, bus, on_tick)
@@ -126,9 +126,9 @@ def flight_part(folder: Path, memory_percent: float) -> Part:
         + _memory_said(measured["memory"])
     )
     lines = [
-        Line("ticks without an answer", flown["slips"], 0),
-        Line(f"steps above {1000.0 * STEP_BUDGET_S:g} ms", measured["steps"]["above"], 0),
-        *(Line("memory, growth [%]", percent, memory_percent) for percent in growth.values()),
+        BudgetLine("ticks without an answer", flown["slips"], 0),
+        BudgetLine(f"steps above {1000.0 * STEP_BUDGET_S:g} ms", measured["steps"]["above"], 0),
+        *(BudgetLine("memory, growth [%]", percent, memory_percent) for percent in growth.values()),
     ]
     return Part(f"{hours:.4g} simulated hours", said, lines + _of_the_log(folder), measured["memory"])
 
@@ -150,12 +150,12 @@ def bench_part(folder: Path) -> Part:
         + _row("SYNC to TICK_DONE", *(f"{latency[part]:.3f}" for part in ("p50", "p99", "max")))
         + f"\n\nBus load at 125 kbit/s: mean {bus['mean']:.1f} %, busiest tick {bus['busiest_tick']:.1f} %."
     )
-    lines = [Line(line["name"], line["measured"], line["allowed"]) for line in numbers["budgets"]]
-    lines.append(Line("nodes that ended before their time", len(numbers["ended"]), 0))
+    lines = [BudgetLine(line["name"], line["measured"], line["allowed"]) for line in numbers["budgets"]]
+    lines.append(BudgetLine("nodes that ended before their time", len(numbers["ended"]), 0))
     return Part(f"{seconds:.0f} s of wall time", said, lines + _of_the_log(folder), numbers["memory"])
 
 
-def _of_the_log(folder: Path) -> list[Line]:
+def _of_the_log(folder: Path) -> list[BudgetLine]:
     """What auditor and replay say of a run."""
     log, scenario = folder / run_dir.BUS_LOG, run_dir.read_scenario(folder)
     report = check(folder, None)
@@ -165,12 +165,14 @@ def _of_the_log(folder: Path) -> list[Line]:
     with log.open("rb") as lines:
         refused = sum(mark in line for line in lines)
     return [
-        Line(f"violations of the limits in {len(report.pulses)} pulses", len(report.violations), 0),
-        Line("requests that the coil board refused", refused, 0),
-        Line(
+        BudgetLine(f"violations of the limits in {len(report.pulses)} pulses", len(report.violations), 0),
+        BudgetLine("requests that the coil board refused", refused, 0),
+        BudgetLine(
             "log cut or altered", int(not (report.complete and report.genuine and not report.mismatches)), 0
         ),
-        Line(f"replay of {shown.ticks} ticks not bit-exact", int(not (shown.bit_exact and shown.ended)), 0),
+        BudgetLine(
+            f"replay of {shown.ticks} ticks not bit-exact", int(not (shown.bit_exact and shown.ended)), 0
+        ),
     ]
 
 

@@ -1,22 +1,22 @@
-"""What was measured on a bench against its budgets, as text and as JSON."""
+"""The budgets of a bench: what was measured against what is allowed, as text and as JSON."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from sim.bench.bus_load import BITRATE
-from sim.bench.conductor import Measured
-from sim.bench.times import Times
+from sim.bench.realtime_loop import BenchMeasurements
+from sim.bench.time_histogram import TimeHistogram
 
 Json = dict[str, Any]
 
 
 @dataclass(frozen=True, slots=True)
 class Budgets:
-    """What must be kept: 99 % of the times [ms], all of the ticks, the mean load of the bus [%], memory [%].
+    """What is allowed: 99th percentiles of times [ms], ticks, mean load of the bus [%], memory [%].
 
-    ``slips`` is allowed of unanswered ticks, and of ticks without the sample of a board, each;
-    ``memory_percent`` is how far the memory of each process may rise once it is warm.
+    ``slips``: of unanswered ticks, and of ticks without the sample of each board; ``memory_percent``: how far
+    the memory of each process may rise once it is warm.
     """
 
     jitter_ms: float
@@ -26,8 +26,8 @@ class Budgets:
     memory_percent: float
 
 
-class Line(NamedTuple):
-    """One budget: what it is of, what was measured, what is allowed."""
+class BudgetLine(NamedTuple):
+    """One budget: its name, what was measured, what is allowed."""
 
     name: str
     measured: float
@@ -35,23 +35,23 @@ class Line(NamedTuple):
 
     @property
     def kept(self) -> bool:
-        """Whether it is; what could not be measured is not."""
+        """Whether the budget is kept; what could not be measured is not."""
         return self.measured <= self.allowed
 
 
-def percentiles(times: Times) -> Json:
-    """p50, p99 and max in ms; infinite where nothing was observed."""
-    return {name: 1000.0 * times.at(part) for name, part in (("p50", 0.5), ("p99", 0.99), ("max", 1.0))}
+def percentiles(times: TimeHistogram) -> Json:
+    """p50, p99 and max in ms; infinite where nothing was counted."""
+    return {name: 1000.0 * times.quantile(part) for name, part in (("p50", 0.5), ("p99", 0.99), ("max", 1.0))}
 
 
 def judge(
-    measured: Measured,
+    measured: BenchMeasurements,
     budgets: Budgets,
     boards: Sequence[str],
     tick_hz: int,
     growth_percent: Mapping[str, float],
-) -> tuple[Json, list[Line]]:
-    """The numbers and, by them, the budgets; ``growth_percent``: of the memory of each process."""
+) -> tuple[Json, list[BudgetLine]]:
+    """The numbers, and the budgets judged by them; ``growth_percent``: of the memory of each process."""
     jitter, latency = percentiles(measured.jitter), percentiles(measured.latency)
     seconds = measured.ticks / tick_hz
     load = 100.0 * measured.bits / (BITRATE * seconds) if seconds else 0.0
@@ -64,36 +64,36 @@ def judge(
         "slips": measured.slips,
         "missing_samples": missing,
         "bus_load_percent": {"mean": load, "busiest_tick": busiest, "bitrate": BITRATE},
-        "messages": dict(sorted(measured.seen.items())),
+        "messages": dict(sorted(measured.messages.items())),
     }
     lines = [
-        Line("jitter of SYNC, p99 [ms]", jitter["p99"], budgets.jitter_ms),
-        Line("SYNC to TICK_DONE, p99 [ms]", latency["p99"], budgets.latency_ms),
-        Line("ticks without an answer", measured.slips, budgets.slips),
+        BudgetLine("jitter of SYNC, p99 [ms]", jitter["p99"], budgets.jitter_ms),
+        BudgetLine("SYNC to TICK_DONE, p99 [ms]", latency["p99"], budgets.latency_ms),
+        BudgetLine("ticks without an answer", measured.slips, budgets.slips),
         *(
-            Line(f"ticks without one {board} sample", number, budgets.slips)
+            BudgetLine(f"ticks without one {board} sample", number, budgets.slips)
             for board, number in missing.items()
         ),
-        Line(f"bus load at {BITRATE // 1000} kbit/s, mean [%]", load, budgets.load_percent),
+        BudgetLine(f"bus load at {BITRATE // 1000} kbit/s, mean [%]", load, budgets.load_percent),
         *(
-            Line(f"memory of {name}, growth [%]", growth, budgets.memory_percent)
+            BudgetLine(f"memory of {name}, growth [%]", growth, budgets.memory_percent)
             for name, growth in growth_percent.items()
         ),
     ]
     return numbers, lines
 
 
-def render(numbers: Json, lines: Sequence[Line]) -> str:
-    """The table for people."""
+def render(numbers: Json, lines: Sequence[BudgetLine]) -> str:
+    """The table as text."""
     jitter, latency, load = numbers["jitter_ms"], numbers["latency_ms"], numbers["bus_load_percent"]
-    seen = numbers["messages"]
+    messages = numbers["messages"]
     text = [f"{'[ms]':<32}{'p50':>10}{'p99':>10}{'max':>10}"]
     for name, times in (("jitter of SYNC", jitter), ("sensor to command", latency)):
         text.append(f"{name:<32}" + "".join(f"{times[part]:>10.3f}" for part in ("p50", "p99", "max")))
     text.append(f"bus load: mean {load['mean']:.1f} %, busiest tick {load['busiest_tick']:.1f} %")
-    asked, refused = seen.get("COIL_FIRE", 0), seen.get("COIL_REFUSED", 0)
-    events = sum(number for name, number in seen.items() if name.endswith("_EVENT"))
-    text.append(f"{numbers['ticks']} ticks, {asked} pulses asked for, {refused} refused, {events} events")
+    requested, refused = messages.get("COIL_FIRE", 0), messages.get("COIL_REFUSED", 0)
+    events = sum(number for name, number in messages.items() if name.endswith("_EVENT"))
+    text.append(f"{numbers['ticks']} ticks, {requested} pulses requested, {refused} refused, {events} events")
     for line in lines:
         mark = "ok" if line.kept else "BROKEN"
         text.append(f"{mark:<8}{line.name:<36}{line.measured:>10.4g}  budget {line.allowed:g}")

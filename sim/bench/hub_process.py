@@ -1,4 +1,4 @@
-"""The hub of a loop bus as a process: says its port, and serves until its standard input ends."""
+"""The hub of a loop bus as a process: prints its port, and serves until its standard input ends."""
 
 import sys
 
@@ -6,7 +6,7 @@ from fsw.bus.hub import Hub
 
 
 def main() -> int:
-    """Serve the port that is named as the first argument, or a free one for 0."""
+    """Serve the port given as the first argument, or a free one for 0."""
     try:
         hub = Hub(int(sys.argv[1]))
     except OSError:

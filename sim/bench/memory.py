@@ -1,4 +1,4 @@
-"""Resident memory of every process of a bench through the run: it must not grow once all are warm."""
+"""Resident memory of every process of a bench: it must not grow once all are warm."""
 
 import os
 from collections.abc import Mapping, Sequence
@@ -6,11 +6,11 @@ from typing import Any
 
 PAGE_KIB = os.sysconf("SC_PAGE_SIZE") // 1024
 SAMPLES = 240
-"""Of each process in a run that is long enough; one a second at most."""
+"""Of each process, in a run that is long enough; at most one a second."""
 
 
 def resident_kib(pid: int) -> int | None:
-    """Resident memory of a process; None where the system does not tell."""
+    """Resident memory of a process [KiB]; None where the system does not report it."""
     try:
         with open(f"/proc/{pid}/statm", encoding="ascii") as file:
             return int(file.read().split()[1]) * PAGE_KIB
@@ -24,15 +24,15 @@ def growth_percent(kib: Sequence[int], warm: int) -> float:
     return 100.0 * (max(later) / kib[warm] - 1.0) if later else float("inf")
 
 
-class Memory:
-    """Looks at processes now and then.
+class MemoryMonitor:
+    """Samples the resident memory of processes.
 
     Args:
         pids: of the processes, by name.
         ticks: how many the run has.
         tick_hz: ticks a second.
         warm_s: from then on memory must not grow.
-        grain: only ticks that are multiples of it are looked at; 1 s without it.
+        grain: only ticks that are multiples of it are sampled; 1 s without it.
     """
 
     def __init__(
@@ -47,8 +47,8 @@ class Memory:
         self._kib: dict[str, list[int]] = {name: [] for name in pids}
         self._load: list[float] = []
 
-    def look(self, tick: int) -> None:
-        """Look, if it is time."""
+    def sample(self, tick: int) -> None:
+        """Take a sample, if one is due in this tick."""
         if tick % self._every_ticks:
             return
         self._load.append(os.getloadavg()[0])
@@ -57,7 +57,7 @@ class Memory:
                 self._kib[name].append(kib)
 
     def growth_percent(self) -> dict[str, float]:
-        """Of each process since it was warm; nothing if the run ended before, or the system tells nothing."""
+        """Of each process once warm; empty if the run ended before, or the system does not report memory."""
         if self._last <= self._warm or not any(self._kib.values()):
             return {}
         return {name: growth_percent(kib, self._warm) for name, kib in self._kib.items()}

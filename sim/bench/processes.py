@@ -20,44 +20,44 @@ HUB_S = 30.0
 
 
 @dataclass
-class Node:
-    """One process, and where its errors go."""
+class BenchProcess:
+    """One process, and the file that its errors go to."""
 
     name: str
-    process: subprocess.Popen[bytes]
+    popen: subprocess.Popen[bytes]
     errors: IO[bytes]
 
     @property
     def alive(self) -> bool:
         """Whether it still runs."""
-        return self.process.poll() is None
+        return self.popen.poll() is None
 
-    def said(self) -> str:
+    def last_error(self) -> str:
         """The last line of its errors."""
         self.errors.seek(0)
         lines = self.errors.read().decode(errors="replace").strip().splitlines()
-        return lines[-1] if lines else "it said nothing"
+        return lines[-1] if lines else "without an error message"
 
 
-class Nodes:
-    """Starts nodes by name, and ends those that have not ended by themselves."""
+class BenchProcesses:
+    """Starts processes by name, and ends those that have not ended by themselves."""
 
     def __init__(self) -> None:
-        self.by_name: dict[str, Node] = {}
+        self.by_name: dict[str, BenchProcess] = {}
 
-    def start(self, name: str, *words: str, piped: bool = False) -> Node:
-        """``python -m`` words, in the environment of this process; ``piped``: standard input is a pipe."""
-        errors = TemporaryFile()  # noqa: SIM115  (open as long as the node)
-        process = subprocess.Popen(
-            [sys.executable, "-m", *words],
+    def start(self, name: str, *arguments: str, piped: bool = False) -> BenchProcess:
+        """Start ``python -m`` with these arguments; ``piped``: standard input is a pipe."""
+        errors = TemporaryFile()  # noqa: SIM115  (open as long as the process)
+        popen = subprocess.Popen(
+            [sys.executable, "-m", *arguments],
             env=_environment(),
             stdin=subprocess.PIPE if piped else subprocess.DEVNULL,
             stderr=errors,
             start_new_session=True,  # Ctrl-C is for this process, which ends its nodes itself
         )
-        if process.stdin is not None:
-            os.set_blocking(process.stdin.fileno(), False)
-        self.by_name[name] = Node(name, process, errors)
+        if popen.stdin is not None:
+            os.set_blocking(popen.stdin.fileno(), False)
+        self.by_name[name] = BenchProcess(name, popen, errors)
         return self.by_name[name]
 
     def __enter__(self) -> Self:
@@ -66,16 +66,16 @@ class Nodes:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        for node in self.by_name.values():
-            node.process.terminate()
-        for node in self.by_name.values():
-            wait_or_kill(node.process)
-            if node.process.stdin is not None:
-                node.process.stdin.close()
-            node.errors.close()
+        for process in self.by_name.values():
+            process.popen.terminate()
+        for process in self.by_name.values():
+            wait_or_kill(process.popen)
+            if process.popen.stdin is not None:
+                process.popen.stdin.close()
+            process.errors.close()
 
 
-class Served(NamedTuple):
+class ServedBus(NamedTuple):
     """A bus in full, and the process that serves it, if that was started for it."""
 
     spec: str
@@ -83,38 +83,38 @@ class Served(NamedTuple):
 
 
 @contextmanager
-def hub_of(bus: str) -> Iterator[Served]:
-    """The bus; a loop bus that nobody serves is served by a process of its own meanwhile.
+def hub_of(bus: str) -> Iterator[ServedBus]:
+    """The bus; a loop bus without a hub is served by a process of its own meanwhile.
 
     Raises:
         BusError: something else listens on the port of the loop bus.
     """
     spec = resolve(bus)
     if not spec.startswith("loop:"):
-        yield Served(spec, None)
+        yield ServedBus(spec, None)
         return
     port = "0" if bus in ("loop", "auto") else spec.removeprefix("loop:")
-    words = [sys.executable, "-m", "sim.bench.hub_process", port]
+    arguments = [sys.executable, "-m", "sim.bench.hub_process", port]
     hub = subprocess.Popen(
-        words, env=_environment(), stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True
+        arguments, env=_environment(), stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True
     )
     assert hub.stdin is not None
     assert hub.stdout is not None
     try:
         if not select.select((hub.stdout,), (), (), HUB_S)[0]:
-            raise BusError(f"the hub of {bus} does not start: it has said nothing for {HUB_S:.0f} s")
-        served = hub.stdout.readline().strip()
-        if not served:  # somebody else serves it, or keeps the port for something else
+            raise BusError(f"the hub of {bus} does not start: no answer for {HUB_S:.0f} s")
+        port_text = hub.stdout.readline().strip()
+        if not port_text:  # another hub serves it, or something else listens on the port
             LoopLink(int(port), timeout_s=1.0, may_host=False).close()
-        yield Served(f"loop:{served.decode()}", hub.pid) if served else Served(spec, None)
+        yield ServedBus(f"loop:{port_text.decode()}", hub.pid) if port_text else ServedBus(spec, None)
     finally:
-        hub.stdin.close()  # it hands over what it has, and ends
+        hub.stdin.close()  # it forwards what it has, and ends
         hub.stdout.close()
         wait_or_kill(hub)
 
 
 def wait_or_kill(process: subprocess.Popen[bytes]) -> None:
-    """Wait for a process that has been told to end; one that stands still is killed."""
+    """Wait for a process that was asked to end; one that does not react is killed."""
     try:
         process.wait(GRACE_S)
     except subprocess.TimeoutExpired:

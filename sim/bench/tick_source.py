@@ -1,4 +1,4 @@
-"""What paces the bench and shows the sensors something: the plant in real time, or SYNC alone."""
+"""The source of the ticks of a bench, and of what its sensors see: the plant in real time, or SYNC alone."""
 
 import os
 from collections.abc import Callable
@@ -23,24 +23,24 @@ from sim.plant.rotation import ZERO
 
 OFF = Driven(ZERO, 0.0)
 Line = Callable[[bytes], None]
-"""Takes a line for a sensor's standard input."""
+"""Writes a line to a sensor's standard input."""
 
 
-class World(Protocol):
-    """Tick by tick: ``frames``; then ``hear`` what is on the bus; then ``advance`` to the next tick."""
+class TickSource(Protocol):
+    """In each tick: ``frames``; then ``receive`` what is on the bus; then ``advance`` to the next tick."""
 
     def frames(self) -> list[Frame]:
         """The frames of this tick, SYNC last."""
 
-    def hear(self, frame: Frame) -> bool:
-        """A frame of the bus: whether it is the board's word on this tick, so that the world can go on."""
+    def receive(self, frame: Frame) -> bool:
+        """Take a frame of the bus: whether it is the coil board's status of this tick."""
 
     def advance(self) -> None:
-        """Go on to the next tick, with what the board has told or else without."""
+        """Advance to the next tick, with the status of the coil board if it has sent one."""
 
 
-class SyncAlone:
-    """No physics: the sensors have stimuli of their own."""
+class SyncOnly:
+    """SYNC without physics: the sensors have stimuli of their own."""
 
     def __init__(self, epoch_unix_s: int, tick_hz: int) -> None:
         self._epoch_unix_s = epoch_unix_s
@@ -51,8 +51,8 @@ class SyncAlone:
         """SYNC."""
         return [Sync(self._tick, self._epoch_unix_s + self._tick // self._tick_hz).encode()]
 
-    def hear(self, frame: Frame) -> bool:
-        """Nothing depends on it."""
+    def receive(self, frame: Frame) -> bool:
+        """Nothing depends on the bus."""
         return False
 
     def advance(self) -> None:
@@ -60,8 +60,8 @@ class SyncAlone:
         self._tick += 1
 
 
-class ToldDrive:
-    """The plant's actuator where the board is somebody else's: what COIL_STATUS says was driven.
+class ReportedDrive:
+    """The plant's actuator where the coil board is a process or hardware: what its COIL_STATUS reports.
 
     Args:
         config: the plant.
@@ -74,34 +74,34 @@ class ToldDrive:
         self._level_a = [0.0, *(dipole / coils.dipole_per_ampere_am2 for dipole in coils.levels_am2)]
         self._continuous = coils.continuous
         self._dipole_per_ampere = coils.dipole_per_ampere_am2
-        self._asked_ms = 0
+        self._requested_ms = 0
         self._left_ms = 0
         self._driven = OFF
 
     def begin_tick(self, tick: int, current_a: float) -> list[Frame]:
-        """The board speaks for itself."""
+        """Nothing: the board sends its own frames."""
         return []
 
     def receive(self, frame: Frame) -> None:
-        """Nothing is taken from the plant."""
+        """Nothing: the board receives its own frames."""
 
     def drive(self) -> Driven:
-        """What the board told of this tick, once; off where it has told nothing."""
+        """What the board reported for this tick, once; off where it has reported nothing."""
         driven, self._driven = self._driven, OFF
         return driven
 
-    def hear(self, frame: Frame) -> bool:
-        """Take what concerns the coils: whether it was the board's word on a tick."""
+    def take(self, frame: Frame) -> bool:
+        """Take what concerns the coils: whether the frame was the board's status of a tick."""
         if not intact(frame):
             return False
         if frame.can_id == CoilFire.ID:
-            self._asked_ms = CoilFire.decode(frame.data).duration_ms
+            self._requested_ms = CoilFire.decode(frame.data).duration_ms
         elif frame.can_id == CoilStatus.ID and self._continuous is None:
             self._driven = self._pulse(CoilStatus.decode(frame.data))
             return True
         elif frame.can_id == CoilDipoleStatus.ID and self._continuous is not None:
-            told, full_a = CoilDipoleStatus.decode(frame.data), self._full_a
-            current_a = (told.m_x * full_a, told.m_y * full_a, told.m_z * full_a)
+            status, full_a = CoilDipoleStatus.decode(frame.data), self._full_a
+            current_a = (status.m_x * full_a, status.m_y * full_a, status.m_z * full_a)
             self._driven = Driven(current_a, self._continuous.on_fraction)
             return True
         return False
@@ -111,29 +111,29 @@ class ToldDrive:
         return self._continuous.max_dipole_am2 / self._dipole_per_ampere if self._continuous else 0.0
 
     def _pulse(self, status: CoilStatus) -> Driven:
-        """The last tick of a pulse is driven for the rest of it: as told a tick ago, or as asked."""
+        """The last tick of a pulse is driven for the rest of it: as reported a tick ago, or as requested."""
         before_ms, self._left_ms = self._left_ms, status.remaining_ms
         if not status.level or abs(status.level) >= len(self._level_a):
             return OFF
-        part_ms = self._tick_ms if status.remaining_ms else before_ms or self._asked_ms
+        part_ms = self._tick_ms if status.remaining_ms else before_ms or self._requested_ms
         current_a = self._level_a[abs(status.level)] * (1.0 if status.level > 0 else -1.0)
         x, y, z = (current_a if coil == status.coil else 0.0 for coil in range(3))
         return Driven((x, y, z), min(1.0, part_ms / self._tick_ms))
 
 
-class PlantWorld:
-    """The plant, its sensors being shown what it computes.
+class PlantTicks:
+    """The plant; the sensors are shown what it computes.
 
     Args:
         config: the plant.
-        magnetometer: takes the lines for the magnetometer; None: it is real, and so is its field.
+        magnetometer: writes lines to the magnetometer; None: it is real, and so is its field.
         sun: the same for the Sun sensor.
     """
 
     def __init__(self, config: PlantConfig, magnetometer: Line | None, sun: Line | None) -> None:
-        self._drive = ToldDrive(config)
+        self._drive = ReportedDrive(config)
         self._plant = Plant(config, self._drive)
-        self._shown = {MagField.ID: magnetometer, SunVector.ID: sun}
+        self._sensors = {MagField.ID: magnetometer, SunVector.ID: sun}
         self._own: list[Frame] = []
         self._show()
 
@@ -141,9 +141,9 @@ class PlantWorld:
         """The plant's own frames of this tick, SYNC last."""
         return self._own
 
-    def hear(self, frame: Frame) -> bool:
-        """A frame of the bus: whether the board has told what was driven in this tick."""
-        return self._drive.hear(frame)
+    def receive(self, frame: Frame) -> bool:
+        """Take a frame of the bus: whether the board has reported what was driven in this tick."""
+        return self._drive.take(frame)
 
     def advance(self) -> None:
         """Integrate over this tick, and show the sensors the instant of the next."""
@@ -156,14 +156,14 @@ class PlantWorld:
         for frame in self._plant.begin_tick():
             if SENDERS[frame.can_id] == "PLANT":
                 self._own += [frame] if frame.can_id != PlantBoot.ID else []  # all have booted by now
-            elif take := self._shown.get(frame.can_id):
+            elif write := self._sensors.get(frame.can_id):
                 message = MagField if frame.can_id == MagField.ID else SunVector
                 valid, x, y, z, _ = message.decode(frame.data)
-                take(f"{tick} {x!r} {y!r} {z!r} {valid}\n".encode())
+                write(f"{tick} {x!r} {y!r} {z!r} {valid}\n".encode())
 
 
 def line_to(descriptor: int) -> Line:
-    """Lines into a pipe that must not block; one that nobody reads any more takes none."""
+    """Writes lines into a pipe without blocking; where nothing reads it, the lines are dropped."""
 
     def write(line: bytes) -> None:
         try:

@@ -1,4 +1,4 @@
-"""Times as counted, not gathered: however long a bench runs, they take no more memory."""
+"""A histogram of times: however long a bench runs, it takes no more memory."""
 
 from collections import Counter
 from collections.abc import Iterable
@@ -6,28 +6,28 @@ from math import ceil, log, log1p
 
 LEAST_S = 1e-6
 STEP = 0.01
-"""Times that differ by less, relative, are counted as one."""
+"""Relative width of a class."""
 
 
-class Times:
-    """Times above 0; percentiles are true to 1 %, rounded up, and the longest is exact."""
+class TimeHistogram:
+    """Counts times above 0 in classes; quantiles are true to 1 %, rounded up, and the longest is exact."""
 
     def __init__(self, seconds: Iterable[float] = ()) -> None:
         self._counts: Counter[int] = Counter()
         self._number = 0
         self._longest_s = 0.0
-        for one_s in seconds:
-            self.add(one_s)
+        for time_s in seconds:
+            self.add(time_s)
 
     def add(self, seconds: float) -> None:
-        """Count one."""
+        """Count one time."""
         self._counts[_class(seconds)] += 1
         self._number += 1
         self._longest_s = max(self._longest_s, seconds)
 
-    def at(self, part: float) -> float:
-        """The time that no more than a ``part`` of all stay below; infinite where nothing was counted."""
-        passed = min(self._number - 1, int(part * self._number))
+    def quantile(self, fraction: float) -> float:
+        """The time that no more than a ``fraction`` of all stay below; infinite where none was counted."""
+        passed = min(self._number - 1, int(fraction * self._number))
         for number in sorted(self._counts):
             passed -= self._counts[number]
             if passed < 0:
@@ -36,5 +36,5 @@ class Times:
 
 
 def _class(seconds: float) -> int:
-    """Of the times from a step below ``LEAST_S * (1 + STEP)^class`` up to that."""
+    """The class of a time: the k with LEAST_S (1 + STEP)^(k - 1) < t <= LEAST_S (1 + STEP)^k, at least 0."""
     return ceil(log(seconds / LEAST_S) / log1p(STEP)) if seconds > LEAST_S else 0

@@ -8,9 +8,9 @@ import pytest
 
 from fsw.wire.messages import CoilRefused
 from sim.bench import command
-from sim.bench.conductor import Measured
-from sim.bench.times import Times
-from sim.bench.verdict import Budgets, judge
+from sim.bench.budgets import Budgets, judge
+from sim.bench.realtime_loop import BenchMeasurements
+from sim.bench.time_histogram import TimeHistogram
 from torquer.cli import main as cli
 
 ROOT = Path(__file__).parents[2]
@@ -41,7 +41,9 @@ def change(flight):
 
 def bench_of(flight, **changes):
     """The same log as if a bench had left it."""
-    run = Measured(ticks=360, jitter=Times([1e-3] * 360), latency=Times([4e-3] * 360), bits=1000)
+    run = BenchMeasurements(
+        ticks=360, jitter=TimeHistogram([1e-3] * 360), latency=TimeHistogram([4e-3] * 360), bits=1000
+    )
     run.samples.update({"coil": 360})
     grown = {"fsw": changes.pop("grown", 0.5)}
     numbers, lines = judge(run, Budgets(10.0, 50.0, 0, 50.0, 2.0), ("coil",), 1, grown)

@@ -88,11 +88,13 @@ def hil(
 
         return conform(chosen, conformance, bus, arm, deadman_s, as_json)
     from sim.bench import command
-    from sim.bench.verdict import Budgets
+    from sim.bench.budgets import Budgets
 
     half_ms = 500.0 / chosen.time.tick_hz
     latency = half_ms if latency_ms is None else latency_ms
     budgets = Budgets(jitter_ms, latency, slips, load_percent, memory_percent)
     boards = command.real_boards(real)
-    bench = command.Bench(chosen, bus, boards, arm, seconds, stimulus, deadman_s, budgets, warm_s, seed, out)
-    return command.hil(bench, as_json)
+    settings_of_run = command.HilSettings(
+        chosen, bus, boards, arm, seconds, stimulus, deadman_s, budgets, warm_s, seed, out
+    )
+    return command.hil(settings_of_run, as_json)

@@ -2,9 +2,9 @@
 
 import pytest
 
-from sim.bench.conductor import Measured
-from sim.bench.times import Times
-from sim.bench.verdict import Budgets, judge, percentiles, render
+from sim.bench.budgets import Budgets, judge, percentiles, render
+from sim.bench.realtime_loop import BenchMeasurements
+from sim.bench.time_histogram import TimeHistogram
 
 BOARDS = ("coil", "sun")
 BUDGETS = Budgets(jitter_ms=10.0, latency_ms=50.0, slips=1, load_percent=20.0, memory_percent=2.0)
@@ -12,10 +12,10 @@ FLAT = {"fsw": 0.1, "hub": 2.0}
 
 
 def measured(**changes):
-    run = Measured(
+    run = BenchMeasurements(
         ticks=100,
-        jitter=Times([0.001] * 99 + [0.2]),
-        latency=Times([0.004] * 100),
+        jitter=TimeHistogram([0.001] * 99 + [0.2]),
+        latency=TimeHistogram([0.004] * 100),
         slips=1,
         bits=125_000,
         busiest_bits=2500,
@@ -42,15 +42,15 @@ def test_the_numbers():
 @pytest.mark.parametrize(
     ("changes", "named"),
     [
-        ({"jitter": Times([0.02] * 100)}, "jitter"),
-        ({"latency": Times([0.06] * 100)}, "TICK_DONE"),
-        ({"latency": Times()}, "TICK_DONE"),
+        ({"jitter": TimeHistogram([0.02] * 100)}, "jitter"),
+        ({"latency": TimeHistogram([0.06] * 100)}, "TICK_DONE"),
+        ({"latency": TimeHistogram()}, "TICK_DONE"),
         ({"slips": 2}, "without an answer"),
         ({"bits": 251_000}, "bus load"),
     ],
 )
 def test_each_budget_can_break(changes, named):
-    good = Times([0.001] * 100)
+    good = TimeHistogram([0.001] * 100)
     run = measured(**{"jitter": good, **changes})
     (name,) = broken(run)
     assert named in name
@@ -58,21 +58,21 @@ def test_each_budget_can_break(changes, named):
 
 
 def test_a_board_that_is_silent_breaks_one():
-    run = measured(jitter=Times([0.001] * 100))
+    run = measured(jitter=TimeHistogram([0.001] * 100))
     assert broken(run) == []
     run.samples["sun"] = 98
     assert broken(run) == ["ticks without one sun sample"]
 
 
 def test_memory_that_grows_breaks_the_budget_of_its_process_alone():
-    run = measured(jitter=Times([0.001] * 100))
+    run = measured(jitter=TimeHistogram([0.001] * 100))
     assert broken(run, {"fsw": 2.01, "hub": 2.0}) == ["memory of fsw, growth [%]"]
     assert broken(run, {"fsw": float("inf")}) == ["memory of fsw, growth [%]"]
     assert broken(run, {}) == []
 
 
 def test_percentiles_in_ms():
-    shown = percentiles(Times(n / 1000.0 for n in range(200)))
+    shown = percentiles(TimeHistogram(n / 1000.0 for n in range(200)))
     assert shown == pytest.approx({"p50": 100.0, "p99": 198.0, "max": 199.0}, rel=0.01)
     assert shown["max"] == 199.0
-    assert percentiles(Times())["max"] == float("inf")
+    assert percentiles(TimeHistogram())["max"] == float("inf")

@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from sim.bench import memory
-from sim.bench.memory import Memory, growth_percent, resident_kib, scheduling
+from sim.bench.memory import MemoryMonitor, growth_percent, resident_kib, scheduling
 
 
 @pytest.fixture
@@ -19,14 +19,14 @@ def resident(monkeypatch):
 
 
 def watched(ticks=1000, warm_s=20.0, grain=None):
-    return Memory({"fsw": 1, "coil": 2}, ticks, 10, warm_s, grain)
+    return MemoryMonitor({"fsw": 1, "coil": 2}, ticks, 10, warm_s, grain)
 
 
 def test_growth_counts_from_when_all_is_warm(resident):
     history = watched()
     for tick in range(1000):
         resident[1] = 500 + min(tick, 200) * 5 // 2 + (30 if tick >= 900 else 0)
-        history.look(tick)
+        history.sample(tick)
     assert history.growth_percent() == pytest.approx({"fsw": 3.0, "coil": 0.0})
 
 
@@ -34,7 +34,7 @@ def test_a_peak_counts_though_it_is_given_back(resident):
     history = watched()
     for tick in range(1000):
         resident[2] = 5250 if tick == 500 else 4000 if tick > 500 else 5000
-        history.look(tick)
+        history.sample(tick)
     assert history.growth_percent()["coil"] == pytest.approx(5.0)
 
 
@@ -43,7 +43,7 @@ def test_a_process_that_is_gone_is_not_kept_to_be_flat(resident):
     for tick in range(1000):
         if tick == 150:
             del resident[1]
-        history.look(tick)
+        history.sample(tick)
     assert history.growth_percent() == {"fsw": float("inf"), "coil": 0.0}
 
 
@@ -51,7 +51,7 @@ def test_a_process_that_is_gone_is_not_kept_to_be_flat(resident):
 def test_a_run_that_ends_before_it_is_warm_is_not_judged(resident, ticks, judged):
     history = watched(ticks)
     for tick in range(ticks):
-        history.look(tick)
+        history.sample(tick)
     assert bool(history.growth_percent()) is judged
 
 
@@ -59,7 +59,7 @@ def test_where_the_system_tells_nothing_nothing_is_judged(resident):
     resident.clear()
     history = watched()
     for tick in range(1000):
-        history.look(tick)
+        history.sample(tick)
     assert history.growth_percent() == {}
 
 
@@ -67,7 +67,7 @@ def test_where_the_system_tells_nothing_nothing_is_judged(resident):
 def test_a_long_run_has_no_more_samples_than_can_be_looked_at(resident, grain, every_s, samples):
     history = watched(100_000, 0.0, grain)
     for tick in range(0, 100_000, grain or 1):
-        history.look(tick)
+        history.sample(tick)
     told = history.history()
     assert (told["every_s"], len(told["kib"]["fsw"])) == (every_s, samples)
 

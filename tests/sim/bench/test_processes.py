@@ -4,12 +4,12 @@ import os
 import signal
 import time
 
-from sim.bench import nodes
-from sim.bench.nodes import Nodes, hub_of
+from sim.bench import processes
+from sim.bench.processes import BenchProcesses, hub_of
 
 
 def test_a_hub_that_stands_still_is_killed(monkeypatch):
-    monkeypatch.setattr(nodes, "GRACE_S", 0.5)
+    monkeypatch.setattr(processes, "GRACE_S", 0.5)
     began = time.monotonic()
     with hub_of("loop") as served:
         os.kill(served.hub_pid, signal.SIGSTOP)
@@ -18,8 +18,8 @@ def test_a_hub_that_stands_still_is_killed(monkeypatch):
 
 
 def test_a_node_that_stands_still_is_killed(monkeypatch):
-    monkeypatch.setattr(nodes, "GRACE_S", 0.5)
-    with Nodes() as started:
+    monkeypatch.setattr(processes, "GRACE_S", 0.5)
+    with BenchProcesses() as started:
         node = started.start("waiting", "http.server", "0")
-        os.kill(node.process.pid, signal.SIGSTOP)
-    assert node.process.returncode < 0
+        os.kill(node.popen.pid, signal.SIGSTOP)
+    assert node.popen.returncode < 0

@@ -13,7 +13,7 @@ from fsw.wire.messages import (
 )
 from hil_stub.coils.coil_driver import CoilDriver
 from hil_stub.coils.dipole_driver import DipoleDriver
-from sim.bench.world import PlantWorld, SyncAlone
+from sim.bench.tick_source import PlantTicks, SyncOnly
 from sim.plant.plant import Plant
 from sim.scenario.assemble import plant_config
 from sim.scenario.schema import load
@@ -39,7 +39,7 @@ def test_what_a_board_tells_drives_the_plant_as_its_own_board_does(changes, aske
     config = plant_config(load("microsat", changes), seed=7)
     own = Plant(config)
     shown = {"magnetometer": [], "sun": []}
-    world = PlantWorld(config, shown["magnetometer"].append, shown["sun"].append)
+    world = PlantTicks(config, shown["magnetometer"].append, shown["sun"].append)
     limits, continuous = config.limits, config.coils.continuous
     board = DipoleDriver(config.tick_hz, continuous.on_fraction) if continuous else CoilDriver(limits)
     board.begin_tick(0, 0.0)
@@ -53,11 +53,11 @@ def test_what_a_board_tells_drives_the_plant_as_its_own_board_does(changes, aske
         for request in asked(tick):
             own.receive(request)
             board.receive(request)
-            assert not world.hear(request)
+            assert not world.receive(request)
         own.end_tick()
         driven += any(own.driven.current_a)
         board.drive()
-        told = [world.hear(frame) for frame in board.begin_tick(tick + 1, 0.0)]
+        told = [world.receive(frame) for frame in board.begin_tick(tick + 1, 0.0)]
         assert told.count(True) == 1
         world.advance()
         assert world._plant.motion == own.motion, f"they part in tick {tick}"
@@ -66,13 +66,13 @@ def test_what_a_board_tells_drives_the_plant_as_its_own_board_does(changes, aske
 
 def test_without_a_word_nothing_was_driven():
     config = plant_config(load("microsat", PULSED), seed=7)
-    world, quiet = PlantWorld(config, None, None), Plant(config)
-    world.hear(CoilStatus(3, 0, 1500, 300, 9000, 1).encode())
+    world, quiet = PlantTicks(config, None, None), Plant(config)
+    world.receive(CoilStatus(3, 0, 1500, 300, 9000, 1).encode())
     for _ in range(3):
         quiet.end_tick()
         world.advance()
     assert world._plant.motion != quiet.motion, "the first tick was driven"
-    other = PlantWorld(config, None, None)
+    other = PlantTicks(config, None, None)
     for _ in range(3):
         other.advance()
     assert other._plant.motion == quiet.motion
@@ -80,23 +80,23 @@ def test_without_a_word_nothing_was_driven():
 
 @pytest.mark.parametrize("level", [-8, 7, 4])
 def test_a_level_that_is_none_drives_nothing(level):
-    world = PlantWorld(plant_config(load("microsat", PULSED), seed=7), None, None)
-    assert world.hear(CoilStatus(level, 3, 1500, 300, 9000, 1).encode())
+    world = PlantTicks(plant_config(load("microsat", PULSED), seed=7), None, None)
+    assert world.receive(CoilStatus(level, 3, 1500, 300, 9000, 1).encode())
     assert not any(world._drive.drive().current_a)
 
 
 def test_the_word_of_the_other_kind_of_board_counts_for_nothing():
-    world = PlantWorld(plant_config(load("microsat", PULSED), seed=7), None, None)
-    assert not world.hear(CoilDipoleStatus(0.5, 0.5, 0.5).encode())
+    world = PlantTicks(plant_config(load("microsat", PULSED), seed=7), None, None)
+    assert not world.receive(CoilDipoleStatus(0.5, 0.5, 0.5).encode())
     broken = CoilStatus(3, 0, 1500, 300, 9000, 1).encode()
-    assert not world.hear(broken._replace(data=broken.data[:-1] + b"\0"))
+    assert not world.receive(broken._replace(data=broken.data[:-1] + b"\0"))
 
 
 def test_sync_alone_counts_ticks_and_seconds():
-    world, sent = SyncAlone(1000, 2), []
+    world, sent = SyncOnly(1000, 2), []
     for _ in range(5):
         (frame,) = world.frames()
         sent.append(tuple(Sync.decode(frame.data)))
-        assert not world.hear(frame)
+        assert not world.receive(frame)
         world.advance()
     assert sent == [(0, 1000), (1, 1000), (2, 1001), (3, 1001), (4, 1002)]
