@@ -1,4 +1,4 @@
-"""What is flown: which laws are comparable on a scenario, and by which coil drivers."""
+"""The cases of a comparison: which laws are comparable on a scenario, and by which coil drivers."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -11,7 +11,7 @@ from sim.scenario.schema import Scenario, load
 
 
 class Driver(StrEnum):
-    """How a law's demand gets to the coils."""
+    """How the dipole that a law asks for gets to the coils."""
 
     PULSED = "pulsed"
     """By the scheduler, within the scenario's limits of pulse and back-off."""
@@ -20,8 +20,8 @@ class Driver(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Case:
-    """One flight of a comparison."""
+class ComparisonCase:
+    """One flight of a comparison: a law, a driver, and the order to fly them."""
 
     law: str
     driver: Driver
@@ -29,7 +29,7 @@ class Case:
 
     @property
     def aim(self) -> Aim:
-        """What its law is for."""
+        """The aim of its law."""
         return LAWS[self.law].aim
 
 
@@ -41,7 +41,7 @@ def chosen_laws(scenario: Scenario, text: str | None) -> tuple[str, ...]:
         text: names of laws or aims, or ``all``, with commas between.
 
     Raises:
-        HarnessError: a name that is neither.
+        HarnessError: a name that is neither a law nor an aim.
     """
     words = [LAWS[scenario.control.law].aim.value]
     if text is not None:
@@ -63,20 +63,20 @@ def cases(
     drivers: tuple[Driver, ...],
     seed: int,
     orbits: float | None,
-) -> tuple[Case, ...]:
+) -> tuple[ComparisonCase, ...]:
     """Every law by every driver, all else the same.
 
     Raises:
         TableError: the scenario is not valid, or not with one of the drivers.
     """
-    found = []
+    all_cases = []
     for driver in drivers:
         values = merge(settings, _coils(load(name_or_path, settings), driver))
         load(name_or_path, values)
         for law in laws:
-            flown = merge(values, {"control": {"law": law}})
-            found.append(Case(law, driver, Order(name_or_path, flown, seed, orbits)))
-    return tuple(found)
+            overrides = merge(values, {"control": {"law": law}})
+            all_cases.append(ComparisonCase(law, driver, Order(name_or_path, overrides, seed, orbits)))
+    return tuple(all_cases)
 
 
 def _coils(scenario: Scenario, driver: Driver) -> Nested:

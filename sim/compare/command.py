@@ -1,4 +1,4 @@
-"""What ``torquer compare`` does: choose, fly side by side, say, write, draw."""
+"""``torquer compare``: flies the laws side by side; prints, writes and draws how they did."""
 
 import os
 import sys
@@ -39,7 +39,7 @@ def compare(
     Args:
         name: of the scenario, or its path.
         settings: ``KEY=VALUE``, laid over the scenario.
-        laws: as ``chosen_laws`` takes them.
+        laws: the text for ``chosen_laws``.
         driver: one of ``Driver``, or ``both``.
         orbits: None: as the scenario says.
         seed: of the plant's random streams, the same in all flights.
@@ -47,24 +47,24 @@ def compare(
         out: folder of the files; None: ``compare/<scenario>-<UTC time>``.
 
     Returns:
-        The exit code: how a law does is a result, that a flight broke the limits is a failure, 1.
+        The exit code: 1 if a flight broke the limits; how well a law does is no failure.
 
     Raises:
-        TableError: the scenario is not known or not valid.
-        HarnessError: a law is not known, or the folder cannot be used.
+        TableError: there is no such scenario, or it is not valid.
+        HarnessError: there is no such law, or the folder cannot be used.
     """
     values = parse_settings(settings)
     scenario = load(name, values)
     chosen = chosen_laws(scenario, laws)
     drivers = tuple(Driver) if driver == "both" else (Driver(driver),)
-    to_fly = cases(name, values, chosen, drivers, seed, orbits)
+    chosen_cases = cases(name, values, chosen, drivers, seed, orbits)
     ticks = ticks_of(scenario, orbits)
-    folder = _made(out or _default_folder(scenario))
+    folder = _new_folder(out or _default_folder(scenario))
     studies = [
         Study(f"{case.law}-{case.driver}", (partial(fly_case, case),), lambda results: [], flown=True)
-        for case in to_fly
+        for case in chosen_cases
     ]
-    flown = {
+    description = {
         "scenario": scenario.name,
         "seed": seed,
         "settings": list(settings),
@@ -83,10 +83,10 @@ def compare(
     try:
         with progress(f"comparing {len(chosen)} laws on {scenario.name}", len(studies)) as watch:
             run(studies, workers or os.cpu_count() or 1, watch, take)
-    finally:  # what has flown is kept when the rest is given up
+    finally:  # flights that are done are written when the rest is given up
         scores = ranked(result.score for result in results)
-        flown["complete"] = len(results) == len(studies)
-        _write(folder, scores, flown, f"{scenario.name}, seed {seed}", results)
+        description["complete"] = len(results) == len(studies)
+        _write(folder, scores, description, f"{scenario.name}, seed {seed}", results)
     click.echo(_heading(scenario, seed, ticks))
     click.echo(as_text(scores))
     click.echo(f"files: {folder / JSON}, {CSV}, {PICTURE}")
@@ -99,24 +99,24 @@ def compare(
 def _heading(scenario: Scenario, seed: int, ticks: int) -> str:
     what = "axis 1 from the vertical" if by_axis1(scenario) else "the whole attitude"
     return (
-        f"{scenario.name}, seed {seed}, {ticks / scenario.time.tick_hz:.0f} s: {what}, under 5 deg for good "
-        "after; RMS, max and rate over the last orbit"
+        f"{scenario.name}, seed {seed}, {ticks / scenario.time.tick_hz:.0f} s: {what}; settled: under "
+        "5 deg from then on; RMS, max and rate over the last orbit"
     )
 
 
 def _write(
-    folder: Path, scores: list[Score], flown: dict[str, object], title: str, results: list[Result]
+    folder: Path, scores: list[Score], description: dict[str, object], title: str, results: list[Result]
 ) -> None:
     try:
-        write_json(folder / JSON, as_json(scores, flown))
+        write_json(folder / JSON, as_json(scores, description))
         (folder / CSV).write_text(as_csv(scores), encoding="utf-8")
         picture(folder / PICTURE, title, results)
     except OSError as error:
         raise HarnessError(f"{folder}: cannot be written ({error.strerror or error})") from None
 
 
-def _made(folder: Path) -> Path:
-    """The folder, there before anything is flown."""
+def _new_folder(folder: Path) -> Path:
+    """The folder, made before anything is flown."""
     check_folder(folder, (JSON, CSV, PICTURE))
     if (folder / JSON).exists():
         raise HarnessError(f"{folder} already holds a comparison: choose another --out")

@@ -1,4 +1,4 @@
-"""The picture of a comparison: pointing error over time, a panel a driver, every line named at its end."""
+"""The picture of a comparison: pointing error over time, a panel a driver, every line labelled at its end."""
 
 from collections.abc import Sequence
 from math import log10
@@ -23,26 +23,26 @@ DOTS_PER_INCH = 150
 
 
 def picture(path: Path, title: str, results: Sequence[Result]) -> None:
-    """Draw what flew, as PNG; nothing if nothing did."""
-    flown = [result for result in results if result.history is not None]
-    if not flown:
+    """Draw the flights, as PNG; nothing if there is none."""
+    flights = [result for result in results if result.history is not None]
+    if not flights:
         return
-    drivers = [driver for driver in Driver if any(result.score.driver is driver for result in flown)]
-    laws = [law for law in LAWS if any(result.score.law == law for result in flown)]
-    errors = [result.history.error_deg for result in flown if result.history is not None]
-    assert flown[0].history is not None
+    drivers = [driver for driver in Driver if any(result.score.driver is driver for result in flights)]
+    laws = [law for law in LAWS if any(result.score.law == law for result in flights)]
+    errors = [result.history.error_deg for result in flights if result.history is not None]
+    assert flights[0].history is not None
     with style():
         heights_in = [PANEL_IN] * len(drivers)
-        figure, panels = stacked(flown[0].history.time, heights_in, legends=False, right_in=NAMES_IN)
-        shaded = "; eclipses shaded" if flown[0].history.time.eclipses else ""
+        figure, panels = stacked(flights[0].history.time, heights_in, legends=False, right_in=NAMES_IN)
+        shaded = "; eclipses shaded" if flights[0].history.time.eclipses else ""
         smoothed = f"RMS of {WINDOW_ORBITS:g} orbits about each time"
-        panels[-1].set_xlabel(f"{flown[0].history.time.label}; {smoothed}{shaded}")
+        panels[-1].set_xlabel(f"{flights[0].history.time.label}; {smoothed}{shaded}")
         for panel, driver in zip(panels, drivers, strict=True):
             log_y(panel, *errors, decades=3.5)
             _settled(panel)
             panel.set_ylabel("pointing error [deg]")
             panel.set_title(f"{title}: {driver.value} coil driver")
-            _lines(panel, laws, [result for result in flown if result.score.driver is driver])
+            _lines(panel, laws, [result for result in flights if result.score.driver is driver])
         figure.savefig(
             path, format="png", dpi=DOTS_PER_INCH, facecolor="white", metadata={"Software": "torquer"}
         )

@@ -1,4 +1,4 @@
-"""What a flight of a comparison comes to: its line of the table, and its history for the picture."""
+"""The result of a flight of a comparison: its line of the table, and its history for the picture."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -10,11 +10,11 @@ from fsw.core.laws.table import Aim
 from fsw.input.schema import TableError
 from fsw.wire.messages import Mode
 from sim.campaign.flight import Record, record_order
-from sim.compare.case import Case, Driver
+from sim.compare.case import ComparisonCase, Driver
 from sim.drawing.canvas import TimeAxis
 from sim.errors import HarnessError
 from sim.record.truth import Histories
-from sim.report.histories import Flown
+from sim.report.histories import FlightHistories
 from sim.report.summary import SETTLED_DEG
 from sim.scenario.schema import Scenario, flight_table, orbit_period_s
 
@@ -32,13 +32,13 @@ class Score:
     """A line of the table; its fields are the columns of the files.
 
     Attributes:
-        law: that flew.
-        aim: what it is for.
+        law: its name.
+        aim: of the law.
         driver: of the coils.
-        settle_orbits_5deg: when the pointing error fell under 5 deg for good; None: never.
+        settle_orbits_5deg: from when on the pointing error is under 5 deg; None: never.
         pointing_rms_deg: pointing error over the last orbit.
         pointing_max_deg: its largest.
-        rate_rms_degps: rate relative to the orbital frame, less the spin that is wanted, over the last orbit.
+        rate_rms_degps: rate relative to the orbital frame, less the spin reference, over the last orbit.
         dipole_squared_a2m4s: integral of |m|^2 over the flight; times resistance over (dipole an ampere)^2
             it is the energy lost in the coils.
         pulses: None for a continuous driver, which has none.
@@ -72,14 +72,14 @@ class History(NamedTuple):
 
 
 class Result(NamedTuple):
-    """What became of a case; no history without a flight."""
+    """The result of a case; no history without a flight."""
 
     score: Score
     history: History | None
 
 
-def fly_case(case: Case) -> Result:
-    """Fly and judge. A law that cannot be flown on this scenario has a line that says so."""
+def fly_case(case: ComparisonCase) -> Result:
+    """Fly and judge. A law that cannot fly on this scenario has a line that says so."""
     try:
         record = record_order(case.order)
     except (TableError, HarnessError) as error:
@@ -87,7 +87,7 @@ def fly_case(case: Case) -> Result:
     return Result(judge(case, record), history(record))
 
 
-def judge(case: Case, record: Record) -> Score:
+def judge(case: ComparisonCase, record: Record) -> Score:
     """The line of a flight, from the plant's truth and the audit."""
     scenario, truth, audit = record.scenario, record.truth, record.audit
     tick_hz, orbit_s = scenario.time.tick_hz, orbit_period_s(scenario)
@@ -117,14 +117,14 @@ def history(record: Record) -> History:
 
     The window of a quarter of an orbit takes out the dips where the error passes zero.
     """
-    flown = Flown.of(record.scenario, record.truth, record.estimates, record.audit)
-    ticks, orbits = flown.ticks, flown.length_s / flown.orbit_s
+    flight = FlightHistories.of(record.scenario, record.truth, record.estimates, record.audit)
+    ticks, orbits = flight.ticks, flight.length_s / flight.orbit_s
     points = min(ticks, MOST_POINTS, max(2, round(POINTS_AN_ORBIT * orbits)))
     at = np.linspace(0, ticks - 1, points).round().astype(int)
-    half = round(0.5 * WINDOW_ORBITS * flown.orbit_s * flown.tick_hz)
+    half = round(0.5 * WINDOW_ORBITS * flight.orbit_s * flight.tick_hz)
     first, past = np.maximum(at - half, 0), np.minimum(at + half + 1, ticks)
     total = np.concatenate(([0.0], np.cumsum(pointing_error_deg(record) ** 2)))
-    return History(flown.time, flown.t_s[at], np.sqrt((total[past] - total[first]) / (past - first)))
+    return History(flight.time, flight.t_s[at], np.sqrt((total[past] - total[first]) / (past - first)))
 
 
 def by_axis1(scenario: Scenario) -> bool:
@@ -134,8 +134,8 @@ def by_axis1(scenario: Scenario) -> bool:
 
 def pointing_error_deg(record: Record) -> Array:
     """The angle from nominal at each tick."""
-    flown = Flown.of(record.scenario, record.truth, record.estimates, record.audit)
-    return flown.axis1_deg if by_axis1(record.scenario) else flown.pointing_deg
+    flight = FlightHistories.of(record.scenario, record.truth, record.estimates, record.audit)
+    return flight.axis1_deg if by_axis1(record.scenario) else flight.pointing_deg
 
 
 def _rate_error_degps(scenario: Scenario, truth: Histories) -> Array:

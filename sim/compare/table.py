@@ -1,4 +1,4 @@
-"""The table of a comparison: as text, CSV and JSON, none of which depends on how long the flights took."""
+"""The table of a comparison as text, CSV and JSON; none depends on how long the flights took."""
 
 import csv
 from collections.abc import Callable, Iterable, Sequence
@@ -29,7 +29,7 @@ _COLUMNS: tuple[tuple[str, str, str, Callable[[Any], str]], ...] = (
     ("mode_final", "mode", "", str),
     ("limits_ok", "limits", "", lambda ok: "kept" if ok else "BROKEN"),
 )
-"""Field of a score, heading, unit, and how it is written."""
+"""Field of a score, heading, unit, format."""
 _LEFT = frozenset({"law", "driver", "mode_final", "limits_ok"})
 
 
@@ -45,7 +45,7 @@ def ranked(scores: Iterable[Score]) -> list[Score]:
 
 
 def as_text(scores: Sequence[Score]) -> str:
-    """The table for a person; under it why a law did not fly."""
+    """The table as text; below it why a law did not fly."""
     rows = [[heading for _, heading, _, _ in _COLUMNS], [unit for _, _, unit, _ in _COLUMNS]]
     rows += [[_cell(getattr(score, name), write) for name, _, _, write in _COLUMNS] for score in scores]
     widths = [max(len(row[column]) for row in rows) for column in range(len(_COLUMNS))]
@@ -69,12 +69,12 @@ def as_csv(scores: Sequence[Score]) -> str:
     return into.getvalue()
 
 
-def as_json(scores: Sequence[Score], flown: dict[str, Any]) -> dict[str, Any]:
-    """All scores, and what was flown."""
+def as_json(scores: Sequence[Score], description: dict[str, Any]) -> dict[str, Any]:
+    """All scores, and the description of the comparison."""
     return {
         "schema_version": SCHEMA_VERSION,
         "torquer_version": version("torquer"),
-        **flown,
+        **description,
         "rows": [asdict(score) for score in scores],
     }
 

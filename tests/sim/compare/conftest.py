@@ -8,7 +8,7 @@ import pytest
 from fsw.wire.messages import Mode
 from sim.audit.auditor import AuditLimits, audit
 from sim.campaign.flight import Order, Record
-from sim.compare.case import Case, Driver
+from sim.compare.case import ComparisonCase, Driver
 from sim.record.estimates import EstimateRecorder
 from sim.report.summary import BusTally
 from sim.scenario.schema import load
@@ -48,4 +48,4 @@ def plant_record(bus_log, fired):
 @pytest.fixture
 def case_of():
     """The case of a law and a driver, of no flight in particular."""
-    return lambda law="pd", driver=Driver.PULSED: Case(law, driver, Order("microsat"))
+    return lambda law="pd", driver=Driver.PULSED: ComparisonCase(law, driver, Order("microsat"))
