@@ -1,4 +1,4 @@
-"""What ``torquer design`` computes: gains searched or given, and all that is said about them."""
+"""The analysis of ``torquer design``: gains searched or given, their stability and margins."""
 
 from collections.abc import Callable
 from contextlib import suppress
@@ -28,7 +28,7 @@ from sim.design.theory.search import (
 
 Watch = Callable[[int], None]
 ANALYSIS_STEPS = 2 * SEARCH_STEPS + 4
-"""What ``analyse`` counts to."""
+"""The steps that ``analyse`` reports to ``watch``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,18 +66,18 @@ class Pulsed:
 
 @dataclass(frozen=True, slots=True)
 class Analysis:
-    """All that is said about one pair of gains of one body.
+    """The analysis of one pair of gains for one body.
 
     Attributes:
         body: the satellite.
         chosen: the gains: given, or the best.
         search: None where gains were given.
         multipliers: characteristic multipliers.
-        margins: how much may be off.
+        margins: how far gains and inertia may be off.
         integral: the best k_i, the other gains as they are.
         pulsed: None for a continuous driver.
         periodic_lqr: the least degree of stability of a periodic regulator; None if there is none.
-        resting_torque_nm: what the nominal attitude is under.
+        resting_torque_nm: torque on the body at rest in the nominal attitude.
     """
 
     body: Body
@@ -102,23 +102,23 @@ class Analysis:
 
 
 @dataclass(frozen=True, slots=True)
-class Drawn:
-    """What the pictures show."""
+class PictureMaps:
+    """The maps that the pictures show."""
 
-    maps: dict[str, GainMap]
+    degree_maps: dict[str, GainMap]
     inertia: InertiaMaps
 
 
 def analyse(
     body: Body, pulsing: Pulsing | None, given: Gains | None, watch: Watch = lambda done: None
 ) -> Analysis:
-    """Search the best gains, or take those given, and analyse them; ``watch`` hears of ``ANALYSIS_STEPS``."""
+    """Analyse the best gains, or those given; ``watch`` is called with 0 to ``ANALYSIS_STEPS``."""
     fine, rough = continuous(body), continuous(body, ROUGH_STEPS)
     if given is not None:
-        found, chosen = None, candidate(fine, given)
+        searched, chosen = None, candidate(fine, given)
     else:
-        found = search(body, fine, rough, watch)
-        chosen = found.best
+        searched = search(body, fine, rough, watch)
+        chosen = searched.best
     watch(SEARCH_STEPS)
     pulsed = _pulsed(body, pulsing, chosen.gains, given is None, watch) if pulsing is not None else None
     watch(2 * SEARCH_STEPS)
@@ -131,19 +131,19 @@ def analyse(
     allowed = margins(body, chosen.gains, rough)
     watch(ANALYSIS_STEPS)
     whole = multipliers(monodromy(closed_loop(body, chosen.gains)))
-    return Analysis(body, chosen, found, whole, allowed, integral, pulsed, lqr, resting_torque(body))
+    return Analysis(body, chosen, searched, whole, allowed, integral, pulsed, lqr, resting_torque(body))
 
 
-def drawn(analysis: Analysis) -> Drawn:
-    """What the pictures need beside the analysis."""
-    body, pulsed, found = analysis.body, analysis.pulsed, analysis.search
-    maps = {"continuous dipole": found.map if found else gain_map(body, continuous(body, ROUGH_STEPS))}
+def picture_maps(analysis: Analysis) -> PictureMaps:
+    """Compute the maps that the pictures show beside the analysis."""
+    body, pulsed, searched = analysis.body, analysis.pulsed, analysis.search
+    maps = {"continuous dipole": searched.map if searched else gain_map(body, continuous(body, ROUGH_STEPS))}
     if pulsed is not None:
         of_pulses = (
             pulsed.search.map if pulsed.search else gain_map(body, PulsedLoop(body, pulsed.pulsing).degree)
         )
         maps["pulses"] = of_pulses
-    return Drawn(maps, inertia_maps(body, analysis.chosen.gains))
+    return PictureMaps(maps, inertia_maps(body, analysis.chosen.gains))
 
 
 def _pulsed(body: Body, pulsing: Pulsing, gains: Gains, searched: bool, watch: Watch) -> Pulsed:

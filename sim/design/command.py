@@ -1,18 +1,18 @@
-"""``torquer design``: search or evaluate, say, draw, write."""
+"""``torquer design``: searches or evaluates gains; prints, draws and writes the result."""
 
 import json
 from pathlib import Path
 
 import click
 
-from sim.design.analysis import ANALYSIS_STEPS, Analysis, analyse, drawn
+from sim.design.analysis import ANALYSIS_STEPS, Analysis, analyse, picture_maps
+from sim.design.from_scenario import body_of, pulsing_of
 from sim.design.pictures import gain_picture, robustness_picture
 from sim.design.render import as_json, as_text
-from sim.design.subject import body_of, pulsing_of
+from sim.design.scenario_file import check_writable, write_gains
 from sim.design.theory.bodies import Body
 from sim.design.theory.linear import Gains
 from sim.design.theory.search import natural_gains
-from sim.design.write import check_writable, write_gains
 from sim.errors import HarnessError
 from sim.progress import progress
 from sim.record.destination import check_folder
@@ -21,8 +21,8 @@ from sim.scenario.schema import Scenario, load, parse_settings
 
 GAIN_PICTURE, ROBUSTNESS_PICTURE, RESULT = "gains.png", "robustness.png", "design.json"
 
-MOST = 1e6
-"""Gains are taken up to this multiple of the natural ones; beyond, numbers end before stability does."""
+MAX_GAIN_RATIO = 1e6
+"""Gains are accepted up to this multiple of the natural ones; beyond it the numbers overflow."""
 
 
 def design(
@@ -36,7 +36,7 @@ def design(
     """The command; exit code 1 if a search found no gains that stabilise.
 
     Raises:
-        HarnessError: gains that are no gains, or a file that cannot be written.
+        HarnessError: gains out of range, or a file that cannot be written.
         TableError: a scenario that cannot be used.
     """
     target = check_writable(name) if write else None
@@ -65,18 +65,18 @@ def design(
 def _check(gains: Gains, body: Body) -> None:
     natural = natural_gains(body)
     for name, gain, scale in (("K_W", gains.k_w, natural.k_w), ("K_A", gains.k_a, natural.k_a)):
-        most = MOST * float(scale)
+        most = MAX_GAIN_RATIO * float(scale)
         if not 0.0 <= gain <= most:
             raise HarnessError(f"--gains: {name} = {gain:g} is not allowed: for this body 0 to {most:.1g}")
 
 
 def _draw(folder: Path, analysis: Analysis, scenario: Scenario) -> None:
-    flown = Gains(scenario.control.k_w, scenario.control.k_a)
+    of_scenario = Gains(scenario.control.k_w, scenario.control.k_a)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        shown = drawn(analysis)
-        gain_picture(folder / GAIN_PICTURE, analysis, shown, flown)
-        robustness_picture(folder / ROBUSTNESS_PICTURE, analysis, shown.inertia)
+        maps = picture_maps(analysis)
+        gain_picture(folder / GAIN_PICTURE, analysis, maps, of_scenario)
+        robustness_picture(folder / ROBUSTNESS_PICTURE, analysis, maps.inertia)
         write_json(folder / RESULT, as_json(analysis))
     except OSError as error:
         raise HarnessError(f"{folder}: cannot be written ({error.strerror or error})") from None

@@ -8,7 +8,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
 
-from sim.design.analysis import Analysis, Drawn
+from sim.design.analysis import Analysis, PictureMaps
 from sim.design.theory.bodies import Body
 from sim.design.theory.linear import Array, Gains
 from sim.design.theory.robustness import PAIRS, InertiaMaps
@@ -25,10 +25,10 @@ Marks = dict[str, tuple[str, Gains]]
 """Label to marker and gains."""
 
 
-def gain_picture(path: Path, analysis: Analysis, drawn: Drawn, flown: Gains) -> None:
+def gain_picture(path: Path, analysis: Analysis, maps: PictureMaps, of_scenario: Gains) -> None:
     """The degree of stability over (k_w, k_a), for the continuous dipole and for pulses, as PNG."""
     found, pulsed = analysis.search, analysis.pulsed
-    marks = {"continuous dipole": _marks(analysis, flown), "pulses": {"scenario": ("x", flown)}}
+    marks = {"continuous dipole": _marks(analysis, of_scenario), "pulses": {"scenario": ("x", of_scenario)}}
     if found is None:
         marks["pulses"]["given"] = ("D", analysis.chosen.gains)
     elif pulsed is not None and pulsed.search is not None:
@@ -37,10 +37,12 @@ def gain_picture(path: Path, analysis: Analysis, drawn: Drawn, flown: Gains) -> 
             "steady": ("o", pulsed.search.steady.gains),
         }
     with style():
-        figure = Figure(figsize=(5.2 * len(drawn.maps) + 1.0, 5.2), layout="constrained", facecolor="white")
-        panels = figure.subplots(1, len(drawn.maps), squeeze=False)[0]
-        reach = _reach(*(one.degree for one in drawn.maps.values()))
-        for panel, (name, one) in zip(panels, drawn.maps.items(), strict=True):
+        figure = Figure(
+            figsize=(5.2 * len(maps.degree_maps) + 1.0, 5.2), layout="constrained", facecolor="white"
+        )
+        panels = figure.subplots(1, len(maps.degree_maps), squeeze=False)[0]
+        reach = _reach(*(one.degree for one in maps.degree_maps.values()))
+        for panel, (name, one) in zip(panels, maps.degree_maps.items(), strict=True):
             panel.set_title(name)
             _gain_panel(panel, one, marks[name], reach)
         _colour_bar(figure, panels, reach)
@@ -49,7 +51,7 @@ def gain_picture(path: Path, analysis: Analysis, drawn: Drawn, flown: Gains) -> 
 
 
 def robustness_picture(path: Path, analysis: Analysis, maps: InertiaMaps) -> None:
-    """The degree of stability against what may be wrong with the inertia, as PNG."""
+    """The degree of stability against errors of the inertia, as PNG."""
     gains = analysis.chosen.gains
     with style():
         figure = Figure(figsize=(10.5, 9.0), layout="constrained", facecolor="white")
@@ -63,13 +65,13 @@ def robustness_picture(path: Path, analysis: Analysis, maps: InertiaMaps) -> Non
             panel.set_title(f"spreads along axes {one + 1} and {other + 1}")
         _tilt_panel(panels[3], maps)
         _colour_bar(figure, list(panels[:3]), reach)
-        flown = f"k_w {float(gains.k_w):.5g}, k_a {float(gains.k_a):.5g}"
-        figure.suptitle(_title(analysis.body, f"degree of stability on another inertia, {flown}"))
+        gains_text = f"k_w {float(gains.k_w):.5g}, k_a {float(gains.k_a):.5g}"
+        figure.suptitle(_title(analysis.body, f"degree of stability on another inertia, {gains_text}"))
         _save(path, figure)
 
 
-def _marks(analysis: Analysis, flown: Gains) -> Marks:
-    own: Marks = {"scenario": ("x", flown)}
+def _marks(analysis: Analysis, of_scenario: Gains) -> Marks:
+    own: Marks = {"scenario": ("x", of_scenario)}
     if analysis.search is None:
         return own | {"given": ("D", analysis.chosen.gains)}
     return own | {"best": ("*", analysis.search.best.gains), "steady": ("o", analysis.search.steady.gains)}
@@ -94,7 +96,7 @@ def _gain_panel(panel: Axes, one: GainMap, marks: Marks, reach: float) -> None:
 
 
 def _reach(*degrees: Array) -> float:
-    """How far the colours reach, either way: to the most stable; what is as unstable and more looks alike."""
+    """The range of the colours, either way: to the most stable; the unstable are clipped at the same size."""
     return max(LEAST_SCALE, *(-float(np.nanmin(degree)) for degree in degrees))
 
 

@@ -1,4 +1,4 @@
-"""What ``torquer design`` says: as text and as JSON."""
+"""The result of ``torquer design`` as text and as JSON."""
 
 from math import isfinite, log, pi
 from typing import Any
@@ -17,9 +17,9 @@ NOISE = 1e-12
 
 
 def as_json(analysis: Analysis) -> Json:
-    """The analysis as values of JSON; what is not there is null or absent."""
+    """The analysis as values of JSON; what does not apply is null or absent."""
     body, found, pulsed = analysis.body, analysis.search, analysis.pulsed
-    said: Json = {
+    values: Json = {
         "scenario": body.name,
         "inertia_kgm2": body.inertia_kgm2,
         "altitude_km": body.altitude_km,
@@ -45,15 +45,15 @@ def as_json(analysis: Analysis) -> Json:
         "resting_torque_nm": analysis.resting_torque_nm.tolist(),
     }
     if found is not None:
-        said["steady"] = _candidate(found.steady)
+        values["steady"] = _candidate(found.steady)
     if pulsed is not None:
-        said["pulsed"] = _pulsed_json(pulsed)
-    finite: Json = _finite(said)
+        values["pulsed"] = _pulsed_json(pulsed)
+    finite: Json = _finite(values)
     return finite
 
 
 def _finite(value: Any) -> Any:  # noqa: ANN401  (any value of JSON)
-    """The same with null for what JSON has no number for: a degree beyond all bounds."""
+    """The same with null for what JSON has no number for: an infinite degree."""
     match value:
         case dict():
             return {key: _finite(one) for key, one in value.items()}
@@ -65,7 +65,7 @@ def _finite(value: Any) -> Any:  # noqa: ANN401  (any value of JSON)
 
 
 def as_text(analysis: Analysis, scenario: Scenario) -> str:
-    """The analysis for people."""
+    """The analysis as text."""
     parts = (
         _subject(analysis),
         _verdict(analysis),
@@ -99,13 +99,13 @@ def _verdict(analysis: Analysis) -> str:
         if best.degree < -NEUTRAL
         else ""
     )
-    said = (
+    text = (
         f"no gains stabilise this body: the best degree of stability found is {best.degree:+.4f} at "
         f"k_w {best.gains.k_w:.4g}, k_a {best.gains.k_a:.4g}{sharp}"
     )
     if analysis.periodic_lqr is not None and analysis.periodic_lqr < -NEUTRAL:
-        said += f"\na periodic regulator does, with a degree of {analysis.periodic_lqr:+.3f}"
-    return said
+        text += f"\na periodic regulator does, with a degree of {analysis.periodic_lqr:+.3f}"
+    return text
 
 
 def _gain_table(analysis: Analysis) -> str:
@@ -179,7 +179,7 @@ def _extensions(analysis: Analysis) -> str:
 
 
 def _notes(analysis: Analysis, scenario: Scenario) -> str:
-    """What the user should know of the scenario."""
+    """Notes on the scenario."""
     rows = []
     if max(abs(torque) for torque in analysis.resting_torque_nm.tolist()) > 0.0:
         torque = ", ".join(f"{part:.2e}" for part in analysis.resting_torque_nm.tolist())
@@ -213,7 +213,7 @@ def _integral(one: Integral) -> Json:
 def _pulsed_json(pulsed: Pulsed) -> Json:
     pulsing = pulsed.pulsing
     in_turn, together = (pulsed.sampled, pulsed.other) if pulsing.in_turn else (pulsed.other, pulsed.sampled)
-    said: Json = {
+    values: Json = {
         "pulse_s": pulsing.pulse_s,
         "backoff_s": pulsing.backoff_s,
         "leak_s": pulsing.leak_s,
@@ -226,8 +226,8 @@ def _pulsed_json(pulsed: Pulsed) -> Json:
         "integral": _integral(pulsed.integral),
     }
     if pulsed.search is not None:
-        said["best"], said["steady"] = _candidate(pulsed.search.best), _candidate(pulsed.search.steady)
-    return said
+        values["best"], values["steady"] = _candidate(pulsed.search.best), _candidate(pulsed.search.steady)
+    return values
 
 
 def _float(value: Number | None) -> float | None:

@@ -3,7 +3,7 @@
 import pytest
 
 from sim.design.analysis import ANALYSIS_STEPS, analyse
-from sim.design.subject import body_of, pulsing_of
+from sim.design.from_scenario import body_of, pulsing_of
 from sim.scenario.schema import load
 
 SCENARIO_FILE = """\

@@ -1,4 +1,4 @@
-"""What the analysis holds, and how it is said as text, as JSON and as pictures."""
+"""What the analysis holds, and how it is result as text, as JSON and as pictures."""
 
 import json
 from dataclasses import replace
@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from sim.design.from_scenario import body_of, pulsing_of
 from sim.design.render import as_json, as_text
-from sim.design.subject import body_of, pulsing_of
 from sim.design.theory.floquet import monodromy, multipliers
 from sim.design.theory.linear import closed_loop
 from sim.scenario.schema import load, parse_settings
@@ -28,18 +28,18 @@ def test_multipliers_are_those_of_the_best_gains(searched):
 
 def test_json_says_what_the_analysis_holds(searched):
     _, analysis, _ = searched
-    said = json.loads(json.dumps(as_json(analysis), allow_nan=False))
-    assert said["degree_of_stability"] == analysis.chosen.degree < -0.518
-    assert said["stabilised"] is True
-    moduli = [abs(complex(*pair)) for pair in said["multipliers"]]
+    result = json.loads(json.dumps(as_json(analysis), allow_nan=False))
+    assert result["degree_of_stability"] == analysis.chosen.degree < -0.518
+    assert result["stabilised"] is True
+    moduli = [abs(complex(*pair)) for pair in result["multipliers"]]
     assert len(moduli) == 6
     assert moduli == sorted(moduli, reverse=True)
-    assert said["settling_orbits"] == pytest.approx(np.log(20.0) / (-2.0 * np.pi * analysis.chosen.degree))
-    assert said["gains"]["k_w"] == analysis.chosen.gains.k_w
-    assert said["steady"]["degree_of_stability_gains_off"] < said["degree_of_stability_gains_off"]
-    assert said["integral"]["gains"]["k_i"] > 0.0
-    assert said["integral"]["degree_of_stability"] < -0.1
-    assert said["periodic_lqr"]["degree_of_stability"] < said["degree_of_stability"]
+    assert result["settling_orbits"] == pytest.approx(np.log(20.0) / (-2.0 * np.pi * analysis.chosen.degree))
+    assert result["gains"]["k_w"] == analysis.chosen.gains.k_w
+    assert result["steady"]["degree_of_stability_gains_off"] < result["degree_of_stability_gains_off"]
+    assert result["integral"]["gains"]["k_i"] > 0.0
+    assert result["integral"]["degree_of_stability"] < -0.1
+    assert result["periodic_lqr"]["degree_of_stability"] < result["degree_of_stability"]
 
 
 def test_pulses_are_said_with_how_they_were_counted(searched):
@@ -54,28 +54,28 @@ def test_pulses_are_said_with_how_they_were_counted(searched):
 
 def test_text_names_gains_exponents_and_margins(searched):
     scenario, analysis, _ = searched
-    said = as_text(analysis, scenario)
-    assert f"{analysis.chosen.degree:+.4f}" in said
-    assert f"{analysis.chosen.gains.k_w:.6g}" in said
-    assert said.count(" i   ") == 6
-    assert "no gains stabilise" not in said
-    assert "note: of the TLE, mean motion and inclination count" in said
+    result = as_text(analysis, scenario)
+    assert f"{analysis.chosen.degree:+.4f}" in result
+    assert f"{analysis.chosen.gains.k_w:.6g}" in result
+    assert result.count(" i   ") == 6
+    assert "no gains stabilise" not in result
+    assert "note: of the TLE, mean motion and inclination count" in result
 
 
 def test_text_says_when_no_gains_stabilise_and_the_best_it_found(searched):
     scenario, analysis, _ = searched
     lost = replace(analysis.search, steady=replace(analysis.search.steady, sure=0.02))
-    said = as_text(replace(analysis, search=lost), scenario)
-    assert "no gains stabilise this body: the best degree of stability found is" in said
-    assert f"{analysis.search.best.degree:+.4f}" in said
+    result = as_text(replace(analysis, search=lost), scenario)
+    assert "no gains stabilise this body: the best degree of stability found is" in result
+    assert f"{analysis.search.best.degree:+.4f}" in result
 
 
 def test_gains_that_do_not_stabilise_have_no_margins(searched):
     scenario, analysis, _ = searched
     unstable = replace(analysis, search=None, chosen=replace(analysis.chosen, degree=0.2))
-    said = as_text(unstable, scenario)
-    assert "the first row is not stable: it has no margins" in said
-    assert "never" in said
+    result = as_text(unstable, scenario)
+    assert "the first row is not stable: it has no margins" in result
+    assert "never" in result
     assert as_json(unstable)["settling_orbits"] is None
     assert "it has no margins" not in as_text(analysis, scenario)
 
@@ -83,9 +83,9 @@ def test_gains_that_do_not_stabilise_have_no_margins(searched):
 def test_a_degree_beyond_all_numbers_is_null_in_json(searched):
     analysis = searched[1]
     beyond = replace(analysis, pulsed=replace(analysis.pulsed, sampled=np.inf))
-    said = json.loads(json.dumps(as_json(beyond), allow_nan=False))
-    assert said["pulsed"]["sampled"] is None
-    assert said["pulsed"]["averaged"] == analysis.pulsed.averaged
+    result = json.loads(json.dumps(as_json(beyond), allow_nan=False))
+    assert result["pulsed"]["sampled"] is None
+    assert result["pulsed"]["averaged"] == analysis.pulsed.averaged
 
 
 def test_the_orbit_of_a_tle_is_the_circle_of_its_mean_motion():
@@ -120,9 +120,10 @@ def test_a_continuous_driver_has_no_pulses_to_analyse(searched):
 
 def test_a_body_that_rests_under_a_torque_is_told_to_be_no_equilibrium(searched):
     scenario = load("microsat", parse_settings(("control.law=rate_damping",)))
-    said = as_text(replace(searched[1], resting_torque_nm=np.array([0.0, -2.1e-7, 0.0])), scenario)
+    result = as_text(replace(searched[1], resting_torque_nm=np.array([0.0, -2.1e-7, 0.0])), scenario)
     assert (
-        "note: the nominal attitude is no equilibrium of this body (0.00e+00, -2.10e-07, 0.00e+00 N m" in said
+        "note: the nominal attitude is no equilibrium of this body (0.00e+00, -2.10e-07, 0.00e+00 N m"
+        in result
     )
-    assert "the scenario flies the law rate_damping" in said
+    assert "the scenario flies the law rate_damping" in result
     assert "no equilibrium" not in as_text(searched[1], searched[0])

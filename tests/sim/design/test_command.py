@@ -26,8 +26,8 @@ def design(capsys, tmp_path, monkeypatch):
     def run(*arguments):
         with pytest.raises(SystemExit) as ended:
             main.main(["design", *map(str, arguments)], prog_name="torquer")
-        said = capsys.readouterr()
-        return ended.value.code or 0, said.out, said.err
+        result = capsys.readouterr()
+        return ended.value.code or 0, result.out, result.err
 
     return run
 
@@ -62,10 +62,10 @@ def test_given_gains_as_json_are_those_of_the_reference(design):
         "--set", f"orbit.altitude_km={float(row['altitude_km'])}",
         "--set", f"orbit.inclination_deg={row['inclination_deg']}",
     )  # fmt: skip
-    said = json.loads(out)
+    result = json.loads(out)
     assert (code, err) == (0, "")
-    assert said["degree_of_stability"] == pytest.approx(float(row["degree_of_stability"]), abs=1e-7)
-    for k, (re, im) in enumerate(said["multipliers"][:4], start=1):
+    assert result["degree_of_stability"] == pytest.approx(float(row["degree_of_stability"]), abs=1e-7)
+    for k, (re, im) in enumerate(result["multipliers"][:4], start=1):
         assert complex(re, im) == pytest.approx(
             complex(float(row[f"mult_{k}_re"]), float(row[f"mult_{k}_im"])), abs=1e-7, rel=1e-7
         )

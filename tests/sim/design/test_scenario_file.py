@@ -5,8 +5,8 @@ import tomllib
 
 import pytest
 
+from sim.design.scenario_file import check_writable, write_gains
 from sim.design.theory.linear import Gains
-from sim.design.write import check_writable, write_gains
 from sim.errors import HarnessError
 
 GAINS = Gains(7654321.98765432, 1234.56789123)

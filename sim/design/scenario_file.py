@@ -1,4 +1,4 @@
-"""Gains into a scenario file: two values of ``[control]`` change, every other byte stays."""
+"""Write gains into a scenario file: two values of ``[control]`` change, every other byte stays."""
 
 import os
 import re
@@ -22,7 +22,7 @@ _VALUE = re.compile(
 
 
 def check_writable(scenario: str) -> Path:
-    """The file that gains can be written to, asked before anything is computed.
+    """The file that gains can be written to; checked before anything is computed.
 
     Raises:
         HarnessError: the scenario is one that ships, given by its name, or as for ``write_gains``.
@@ -52,7 +52,7 @@ def write_gains(path: Path, gains: Gains) -> None:
 
 
 def _edited(path: Path, gains: Gains) -> str:
-    values = {"k_w": _written(gains.k_w), "k_a": _written(gains.k_a)}
+    values = {"k_w": _gain_text(gains.k_w), "k_a": _gain_text(gains.k_a)}
     try:
         after = _with_values(read_regular(path, MOST_BYTES).decode("utf-8"), values)
     except OSError as error:
@@ -84,7 +84,7 @@ def _with_values(text: str, values: dict[str, str]) -> str | None:
     return after if tomllib.loads(after) == wanted else None
 
 
-def _written(gain: Number) -> str:
+def _gain_text(gain: Number) -> str:
     return repr(float(f"{float(gain):.{DIGITS}g}"))
 
 

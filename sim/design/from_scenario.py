@@ -1,4 +1,4 @@
-"""From a scenario to what is designed for: the body on its circular orbit, and how its coils pulse."""
+"""The body on its circular orbit and the pulsing of its coils, from a scenario."""
 
 from math import pi
 
@@ -9,7 +9,7 @@ from sim.scenario.schema import Scenario, orbit_period_s
 
 
 def body_of(scenario: Scenario) -> Body:
-    """The body; of a TLE, the circle with its mean motion and inclination."""
+    """The body and its orbit; for a TLE the circular orbit with its mean motion and inclination."""
     orbit = scenario.orbit
     inclination_deg = orbit.inclination_deg if orbit.tle is None else tle_elements(*orbit.tle).inclination_deg
     radius_m = (MU_M3PS2 * (orbit_period_s(scenario) / (2.0 * pi)) ** 2) ** (1.0 / 3.0)
@@ -18,7 +18,7 @@ def body_of(scenario: Scenario) -> Body:
 
 
 def pulsing_of(scenario: Scenario) -> Pulsing | None:
-    """How the coils pulse: one in turn where they share their back-off; None for a continuous driver."""
+    """The pulsing: one coil in turn where they share their back-off; None for a continuous driver."""
     coils = scenario.coils
     if coils.driver == "continuous":
         return None
