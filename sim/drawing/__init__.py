@@ -1,1 +1,1 @@
-"""How charts and pages look."""
+"""The look of charts: sizes, colours, axes, SVG."""

@@ -1,1 +1,1 @@
-"""What is told of a run: verdict, summary.json, report.html."""
+"""The results of a run: verdict, summary.json, report.html."""

@@ -7,7 +7,7 @@ Array = NDArray[np.float64]
 
 
 def relative(q_from: Array, q_to: Array) -> Array:
-    """conj(q_from) (x) q_to: the turn from the first attitude to the second, scalar part >= 0, (n, 4)."""
+    """conj(q_from) (x) q_to: the rotation from the first attitude to the second, scalar part >= 0, (n, 4)."""
     p0, p = q_from[:, :1], -q_from[:, 1:]
     q0, q = q_to[:, :1], q_to[:, 1:]
     scalar = p0 * q0 - np.sum(p * q, axis=1, keepdims=True)

@@ -16,7 +16,7 @@ from sim.drawing.canvas import (
     stacked,
     trace,
 )
-from sim.report.histories import Flown
+from sim.report.histories import FlightHistories
 
 MODE_COLOURS = {
     Mode.SAFE: "#b3261e",
@@ -27,14 +27,14 @@ MODE_COLOURS = {
 SETTLED_DEG = 5.0
 
 
-def modes(flown: Flown) -> Figure:
-    """Which mode the controller was in."""
-    time = flown.time
+def modes(flight: FlightHistories) -> Figure:
+    """The mode of the controller."""
+    time = flight.time
     figure, (panel,) = stacked(time, (0.9,), legends=False)
     rows = len(Mode)
     for row, mode in enumerate(Mode):
         low, high = (row + 0.18) / rows, (row + 0.82) / rows
-        spans = flown.spans(flown.estimates.mode[: flown.ticks] == mode)
+        spans = flight.spans(flight.estimates.mode[: flight.ticks] == mode)
         shade(panel, time, spans, low, high, MODE_COLOURS[mode], f"mode-{mode.name}")
     panel.set_ylim(0.0, rows)
     panel.set_yticks(np.arange(rows) + 0.5, [mode.name for mode in Mode])
@@ -44,13 +44,13 @@ def modes(flown: Flown) -> Figure:
     return figure
 
 
-def pointing(flown: Flown) -> Figure:
+def pointing(flight: FlightHistories) -> Figure:
     """The angle of the whole attitude and that of axis 1."""
-    time = flown.time
+    time = flight.time
     figure, (panel,) = stacked(time, (2.3,))
-    total, axis1 = flown.pointing_deg, flown.axis1_deg
-    trace(panel, time, flown.t_s, axis1, "axis 1 from the vertical", AXES_COLOURS[0])
-    trace(panel, time, flown.t_s, total, "whole attitude", INK, linewidth=1.2)
+    total, axis1 = flight.pointing_deg, flight.axis1_deg
+    trace(panel, time, flight.t_s, axis1, "axis 1 from the vertical", AXES_COLOURS[0])
+    trace(panel, time, flight.t_s, total, "whole attitude", INK, linewidth=1.2)
     panel.axhline(SETTLED_DEG, color=MUTED, linewidth=0.8, linestyle=(0, (4, 3)), label=f"{SETTLED_DEG:g}°")
     log_y(panel, total, axis1, decades=3.5)
     panel.set_ylabel("angle [deg]")
@@ -59,35 +59,35 @@ def pointing(flown: Flown) -> Figure:
     return figure
 
 
-def rates(flown: Flown) -> Figure:
+def rates(flight: FlightHistories) -> Figure:
     """Rates relative to the orbital frame: components, and magnitude on a logarithmic scale."""
-    time = flown.time
+    time = flight.time
     figure, (components, magnitude) = stacked(time, (1.6, 1.3))
-    omega = 1000.0 * np.degrees(flown.truth["omega_body_orbit_radps"])
+    omega = 1000.0 * np.degrees(flight.truth["omega_body_orbit_radps"])
     for axis, colour in enumerate(AXES_COLOURS):
-        trace(components, time, flown.t_s, omega[:, axis], f"axis {axis + 1}", colour)
+        trace(components, time, flight.t_s, omega[:, axis], f"axis {axis + 1}", colour)
     components.set_ylabel("rate [mdeg/s]")
     components.set_title("Rates relative to the orbital frame, body axes")
     legend(components)
     total = np.linalg.norm(omega, axis=1)
-    trace(magnitude, time, flown.t_s, total, "magnitude", INK)
+    trace(magnitude, time, flight.t_s, total, "magnitude", INK)
     log_y(magnitude, total, decades=4.0)
     magnitude.set_ylabel("rate [mdeg/s]")
     magnitude.set_title("Their magnitude")
     return figure
 
 
-def estimate(flown: Flown) -> Figure:
-    """True errors of the estimated attitude and rate with what the filter itself expects, 3 sigma."""
-    time = flown.time
+def estimate(flight: FlightHistories) -> Figure:
+    """True errors of the estimated attitude and rate beside the 3 sigma that the filter expects."""
+    time = flight.time
     figure, panels = stacked(time, (1.9, 1.6))
     histories = (
-        ("Attitude estimate", "error [deg]", flown.attitude_error_deg, flown.sigma3_deg(0)),
-        ("Rate estimate", "error [mdeg/s]", 1e3 * flown.rate_error_degps, 1e3 * flown.sigma3_deg(3)),
+        ("Attitude estimate", "error [deg]", flight.attitude_error_deg, flight.sigma3_deg(0)),
+        ("Rate estimate", "error [mdeg/s]", 1e3 * flight.rate_error_degps, 1e3 * flight.sigma3_deg(3)),
     )
     for panel, (title, label, error, sigma3) in zip(panels, histories, strict=True):
-        trace(panel, time, flown.t_s, error, "true error", AXES_COLOURS[0])
-        trace(panel, time, flown.t_s, sigma3, "3σ of the filter", AXES_COLOURS[1], linewidth=1.3)
+        trace(panel, time, flight.t_s, error, "true error", AXES_COLOURS[0])
+        trace(panel, time, flight.t_s, sigma3, "3σ of the filter", AXES_COLOURS[1], linewidth=1.3)
         log_y(panel, error, sigma3, decades=4.0)
         panel.set_ylabel(label)
         panel.set_title(title)
@@ -95,15 +95,15 @@ def estimate(flown: Flown) -> Figure:
     return figure
 
 
-def field_and_dipole(flown: Flown) -> Figure:
-    """The geomagnetic field and the dipole that really flowed, body axes."""
-    time = flown.time
+def field_and_dipole(flight: FlightHistories) -> Figure:
+    """The geomagnetic field and the true dipole of the coils, body axes."""
+    time = flight.time
     figure, (field, dipole) = stacked(time, (1.6, 1.4))
-    b_ut, m_am2 = 1e6 * flown.truth["b_body_t"], flown.truth["m_body_am2"]
-    trace(field, time, flown.t_s, np.linalg.norm(b_ut, axis=1), "magnitude", MUTED)
+    b_ut, m_am2 = 1e6 * flight.truth["b_body_t"], flight.truth["m_body_am2"]
+    trace(field, time, flight.t_s, np.linalg.norm(b_ut, axis=1), "magnitude", MUTED)
     for axis, colour in enumerate(AXES_COLOURS):
-        trace(field, time, flown.t_s, b_ut[:, axis], f"axis {axis + 1}", colour)
-        trace(dipole, time, flown.t_s, m_am2[:, axis], f"axis {axis + 1}", colour, linewidth=0.7)
+        trace(field, time, flight.t_s, b_ut[:, axis], f"axis {axis + 1}", colour)
+        trace(dipole, time, flight.t_s, m_am2[:, axis], f"axis {axis + 1}", colour, linewidth=0.7)
     field.set_ylabel("field [µT]")
     field.set_title("Geomagnetic field, body axes")
     dipole.set_ylabel("dipole [A m²]")
@@ -113,17 +113,17 @@ def field_and_dipole(flown: Flown) -> Figure:
     return figure
 
 
-def torques(flown: Flown) -> Figure:
+def torques(flight: FlightHistories) -> Figure:
     """Magnitudes of the torques by source."""
-    time = flown.time
+    time = flight.time
     figure, (panel,) = stacked(time, (2.0,))
-    found = {source: 1e6 * torque for source, torque in flown.torques().items()}
+    torques_unm = {source: 1e6 * torque for source, torque in flight.torques().items()}
     colours = {"coils": INK, "gravity_gradient": AXES_COLOURS[0], "bias": AXES_COLOURS[1]}
     spare = iter((AXES_COLOURS[2], *MORE_COLOURS, LIMIT) * 4)
-    for source, torque in found.items():
+    for source, torque in torques_unm.items():
         label = source.replace("_", " ") + (", mean of 10 min" if source == "coils" else "")
-        trace(panel, time, flown.t_s, torque, label, colours.get(source) or next(spare))
-    log_y(panel, *found.values(), decades=3.5)
+        trace(panel, time, flight.t_s, torque, label, colours.get(source) or next(spare))
+    log_y(panel, *torques_unm.values(), decades=3.5)
     panel.set_ylabel("torque [µN m]")
     panel.set_title("Torques by source")
     legend(panel)

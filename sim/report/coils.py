@@ -28,7 +28,7 @@ from sim.drawing.canvas import (
     stacked,
     trace,
 )
-from sim.report.histories import Flown
+from sim.report.histories import FlightHistories
 
 ZOOM_S = 1200.0
 MARKS = 300
@@ -38,38 +38,38 @@ _REACH = 0.42
 """Height of a bar of the highest level; lanes are 1 apart."""
 
 
-def raster(flown: Flown) -> Figure:
+def raster(flight: FlightHistories) -> Figure:
     """Every pulse of the flight: a lane a coil, a bar up or down by polarity, as high as its level."""
-    time = flown.time
-    figure, (panel,) = stacked(time, (2.1,), legends=bool(flown.audit.violations))
-    _lanes(panel, flown)
-    bin_s = flown.length_s / (2 * BINS)
+    time = flight.time
+    figure, (panel,) = stacked(time, (2.1,), legends=bool(flight.audit.violations))
+    _lanes(panel, flight)
+    bin_s = flight.length_s / (2 * BINS)
     for coil, colour in zip(COILS, AXES_COLOURS, strict=True):
         bars = {
             (round(float(pulse.start_s) / bin_s), pulse.level)
-            for pulse in flown.audit.pulses
+            for pulse in flight.audit.pulses
             if pulse.coil == coil
         }
         centres = [(place * bin_s / time.unit_s, level) for place, level in sorted(bars)]
-        _bars(panel, coil, [(x, x, level) for x, level in centres], colour, flown.audit.limits.max_level)
+        _bars(panel, coil, [(x, x, level) for x, level in centres], colour, flight.audit.limits.max_level)
     panel.set_title("Every pulse of the flight")
-    _violations(panel, flown, time)
+    _violations(panel, flight, time)
     return figure
 
 
-def zoom(flown: Flown) -> Figure:
-    """Twenty minutes with the most pulses: their lengths, and the back-off that each one starts."""
-    time = flown.window(flown.busiest(ZOOM_S), min(ZOOM_S, flown.length_s))
-    figure, (panel,) = stacked(time, (2.3,), legends=bool(flown.audit.violations))
-    _lanes(panel, flown)
-    limits = flown.audit.limits
+def zoom(flight: FlightHistories) -> Figure:
+    """The twenty minutes with the most pulses: their lengths, and the back-off after each."""
+    time = flight.window(flight.busiest(ZOOM_S), min(ZOOM_S, flight.length_s))
+    figure, (panel,) = stacked(time, (2.3,), legends=bool(flight.audit.violations))
+    _lanes(panel, flight)
+    limits = flight.audit.limits
     backoff_s = limits.backoff_us / 1e6
-    seen = [p for p in flown.audit.pulses if time.start_s - backoff_s < p.start_s < time.end_s]
+    shown = [p for p in flight.audit.pulses if time.start_s - backoff_s < p.start_s < time.end_s]
     for coil, colour in zip(COILS, AXES_COLOURS, strict=True):
-        locking = seen if limits.shared else [pulse for pulse in seen if pulse.coil == coil]
+        locking = shown if limits.shared else [pulse for pulse in shown if pulse.coil == coil]
         low, high = _lane_fractions(coil)
-        shade(panel, time, _inside(locking, backoff_s, time), low, high, BACKOFF, "backoff")
-        own = [pulse for pulse in seen if pulse.coil == coil and pulse.end_s > time.start_s]
+        shade(panel, time, _backoff_spans(locking, backoff_s, time), low, high, BACKOFF, "backoff")
+        own = [pulse for pulse in shown if pulse.coil == coil and pulse.end_s > time.start_s]
         edges = [(float(p.start_s) / time.unit_s, float(p.end_s) / time.unit_s, p.level) for p in own]
         _bars(panel, coil, edges, colour, limits.max_level)
         for (left, right, level), pulse in zip(edges, own, strict=True):
@@ -84,19 +84,19 @@ def zoom(flown: Flown) -> Figure:
                 annotation_clip=True,
             )
     panel.xaxis.set_major_locator(MaxNLocator(10, steps=[1, 2, 5, 10]))
-    part = f"The {ZOOM_S / 60.0:g} minutes with the most pulses" if flown.length_s > ZOOM_S else "The same"
+    part = f"The {ZOOM_S / 60.0:g} minutes with the most pulses" if flight.length_s > ZOOM_S else "The same"
     panel.set_title(f"{part}, to scale, back-off shaded")
-    _violations(panel, flown, time)
+    _violations(panel, flight, time)
     return figure
 
 
-def duty(flown: Flown) -> Figure:
+def duty(flight: FlightHistories) -> Figure:
     """Duty over the orbit before each time, against what pulse length and back-off allow."""
-    time, limits = flown.time, flown.audit.limits
+    time, limits = flight.time, flight.audit.limits
     figure, (panel,) = stacked(time, (1.8,))
     cycle_s = (limits.pulse_us + limits.backoff_us) / 1e6
-    at_s = np.linspace(min(5.0 * cycle_s, flown.length_s / 4.0), flown.length_s, 2 * BINS)
-    coils = [100.0 * flown.duty(coil, at_s) for coil in COILS]
+    at_s = np.linspace(min(5.0 * cycle_s, flight.length_s / 4.0), flight.length_s, 2 * BINS)
+    coils = [100.0 * flight.duty(coil, at_s) for coil in COILS]
     for coil, colour in zip(COILS, AXES_COLOURS, strict=True):
         trace(panel, time, at_s, coils[coil], f"coil {coil}", colour)
     if limits.shared:
@@ -113,8 +113,8 @@ def duty(flown: Flown) -> Figure:
     return figure
 
 
-def gaps_and_levels(flown: Flown) -> Figure:
-    """How long the gaps were against the back-off, and which levels were fired."""
+def gaps_and_levels(flight: FlightHistories) -> Figure:
+    """The lengths of the gaps against the back-off, and the levels of the pulses."""
     height_in = 2.6
     figure = Figure(figsize=(WIDTH_IN, height_in))
     gaps, levels = figure.subplots(
@@ -129,13 +129,13 @@ def gaps_and_levels(flown: Flown) -> Figure:
             "wspace": 0.18,
         },
     )
-    _gaps(gaps, flown)
-    _levels(levels, flown)
+    _gaps(gaps, flight)
+    _levels(levels, flight)
     return figure
 
 
-def _gaps(panel: Axes, flown: Flown) -> None:
-    limits, gaps_s = flown.audit.limits, flown.gaps_s()
+def _gaps(panel: Axes, flight: FlightHistories) -> None:
+    limits, gaps_s = flight.audit.limits, flight.gaps_s()
     limit_s = max(limits.backoff_us / 1e6, 1.0)
     least = float(np.clip(gaps_s.min(initial=limit_s / 2.0), 0.1, limit_s / 2.0))
     most = max(float(gaps_s.max(initial=0.0)), 2.0 * limit_s) * 1.001
@@ -157,15 +157,15 @@ def _gaps(panel: Axes, flown: Flown) -> None:
     legend(panel)
 
 
-def _levels(panel: Axes, flown: Flown) -> None:
-    highest = flown.audit.limits.max_level
-    shown = range(-highest, highest + 1)
+def _levels(panel: Axes, flight: FlightHistories) -> None:
+    highest = flight.audit.limits.max_level
+    levels = range(-highest, highest + 1)
     for coil, colour in zip(COILS, AXES_COLOURS, strict=True):
-        fired = [pulse.level for pulse in flown.audit.pulses if pulse.coil == coil]
-        heights = [fired.count(level) for level in shown]
-        places = np.array(shown) + 0.27 * (coil - 1)
+        fired_levels = [pulse.level for pulse in flight.audit.pulses if pulse.coil == coil]
+        heights = [fired_levels.count(level) for level in levels]
+        places = np.array(levels) + 0.27 * (coil - 1)
         panel.bar(places, heights, 0.27, color=colour, label=f"coil {coil}", linewidth=0.0)
-    panel.set_xticks(list(shown), [f"{level:+d}" if level else "0" for level in shown])
+    panel.set_xticks(list(levels), [f"{level:+d}" if level else "0" for level in levels])
     panel.grid(axis="x", visible=False)
     panel.yaxis.set_major_locator(MaxNLocator("auto", integer=True))
     panel.set_xlabel("level")
@@ -182,8 +182,8 @@ def _lane_fractions(coil: int) -> tuple[float, float]:
     return (_lane(coil) + 0.04) / len(COILS), (_lane(coil) + 0.96) / len(COILS)
 
 
-def _lanes(panel: Axes, flown: Flown) -> None:
-    highest = flown.audit.limits.max_level
+def _lanes(panel: Axes, flight: FlightHistories) -> None:
+    highest = flight.audit.limits.max_level
     panel.set_ylim(-0.5, len(COILS) - 0.5)
     panel.set_yticks([_lane(coil) for coil in COILS], [f"coil {coil}" for coil in COILS])
     panel.set_yticks([_lane(coil) + sign * _REACH for coil in COILS for sign in (-1, 1)], minor=True)
@@ -216,16 +216,16 @@ def _bars(
     panel.add_patch(bars)
 
 
-def _inside(pulses: Sequence[DrivenPulse], backoff_s: float, time: TimeAxis) -> list[Span]:
+def _backoff_spans(pulses: Sequence[DrivenPulse], backoff_s: float, time: TimeAxis) -> list[Span]:
     """The back-off of each pulse that lies in the window, at least in part."""
     ends = [float(pulse.end_s) for pulse in pulses]
     return [(end, end + backoff_s) for end in ends if end < time.end_s and end + backoff_s > time.start_s]
 
 
-def _violations(panel: Axes, flown: Flown, time: TimeAxis) -> None:
-    found = [v for v in flown.audit.violations if time.start_s <= v.time_s <= time.end_s][:MARKS]
-    if found:
-        x = [float(one.time_s) / time.unit_s for one in found]
-        y = [_lane(one.coil) if one.coil is not None else len(COILS) - 0.6 for one in found]
+def _violations(panel: Axes, flight: FlightHistories, time: TimeAxis) -> None:
+    violations = [v for v in flight.audit.violations if time.start_s <= v.time_s <= time.end_s][:MARKS]
+    if violations:
+        x = [float(one.time_s) / time.unit_s for one in violations]
+        y = [_lane(one.coil) if one.coil is not None else len(COILS) - 0.6 for one in violations]
         panel.plot(x, y, "x", color=LIMIT, markersize=6, markeredgewidth=1.6, label="limit broken", zorder=3)
         legend(panel)

@@ -1,4 +1,4 @@
-"""What is made of a flown run: audit, replay, summary, report; only then is the run complete."""
+"""Conclude a run: audit, replay, summary and report; only then is the run complete."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -39,10 +39,10 @@ def conclude(path: Path, watch: Watch = lambda tick: None) -> Json:
     check_folder(path, run_dir.RESULTS)
     log = path / run_dir.BUS_LOG
     truth = read_truth(path / run_dir.TRUTH)
-    flown = run.get("flown")
-    if flown is not None and len(truth["t_s"]) != flown["ticks"]:
+    flight = run.get("flown")
+    if flight is not None and len(truth["t_s"]) != flight["ticks"]:
         raise HarnessError(
-            f"{path / run_dir.TRUTH}: {len(truth['t_s'])} whole rows, but {flown['ticks']} ticks were flown"
+            f"{path / run_dir.TRUTH}: {len(truth['t_s'])} whole rows, but {flight['ticks']} ticks were flown"
         )
     recorder = EstimateRecorder(len(truth["t_s"]))
 
@@ -51,41 +51,47 @@ def conclude(path: Path, watch: Watch = lambda tick: None) -> Json:
         watch(state.tick)
 
     config, forged = flight_config(flight_table(scenario)), forge_answers(scenario.fault)
-    shown = replay(log, config, on_tick, forged)
+    replay_result = replay(log, config, on_tick, forged)
     tally = BusTally(scenario.epoch_unix_s * 1_000_000)
     limits = limits_beside(log)
     assert limits is not None
-    audited = audit(_tallied(read_log(log), tally), limits, expect_end=True)
+    report = audit(_tally_entries(read_log(log), tally), limits, expect_end=True)
     if break_frames(scenario.fault):
-        audited = _without_broken_frames(audited)
-    summary = summarise(scenario, run, truth, recorder.estimates(), audited, tally)
-    summary["replay"] = _verdict(shown)
+        report = _without_broken_frames(report)
+    summary = summarise(scenario, run, truth, recorder.estimates(), report, tally)
+    summary["replay"] = _replay_json(replay_result)
     senders = run.get("second_senders")
-    failed = failures(run, summary["ticks"], audited, shown, vouch(log))
-    summary |= {key: found for key, found in (("second_senders", senders), ("failures", failed)) if found}
+    failed_checks = failures(run, summary["ticks"], report, replay_result, vouch(log))
+    summary |= {
+        key: found for key, found in (("second_senders", senders), ("failures", failed_checks)) if found
+    }
     flight_is_bound = run_dir.BUS_LOG in binding.digests(run)
     if flight_is_bound:
         binding.release(path, run_dir.SUMMARY)
     run_dir.write_json(path / run_dir.SUMMARY, summary)
-    write_report(path / run_dir.REPORT, scenario, summary, truth, recorder.estimates(), audited)
+    write_report(path / run_dir.REPORT, scenario, summary, truth, recorder.estimates(), report)
     if flight_is_bound:
         binding.bind(path, run_dir.TRUTH, run_dir.SUMMARY)
-    if Verdict.COMPLETE not in failed:
+    if Verdict.COMPLETE not in failed_checks:
         run_dir.update(path, complete=True)
     return summary
 
 
-def _tallied(entries: Iterator[LogEntry], tally: BusTally) -> Iterator[LogEntry]:
+def _tally_entries(entries: Iterator[LogEntry], tally: BusTally) -> Iterator[LogEntry]:
     for entry in entries:
         tally.take(entry)
         yield entry
 
 
-def _without_broken_frames(audited: AuditReport) -> AuditReport:
-    """What the board has done, where the scenario asks for frames that come broken: these are no pulses."""
-    kept = tuple(violation for violation in audited.violations if violation.kind is not ViolationKind.FRAME)
-    return replace(audited, violations=kept)
+def _without_broken_frames(report: AuditReport) -> AuditReport:
+    """The report without broken frames, where the scenario injects them: they say nothing about the board."""
+    others = tuple(violation for violation in report.violations if violation.kind is not ViolationKind.FRAME)
+    return replace(report, violations=others)
 
 
-def _verdict(shown: ReplayResult) -> Json:
-    return {"bit_exact": shown.bit_exact, "command_exact": shown.command_exact, "ticks": shown.ticks}
+def _replay_json(replay_result: ReplayResult) -> Json:
+    return {
+        "bit_exact": replay_result.bit_exact,
+        "command_exact": replay_result.command_exact,
+        "ticks": replay_result.ticks,
+    }

@@ -1,4 +1,4 @@
-"""What the charts of the report draw, derived from a run's histories."""
+"""The quantities that the charts of the report draw, derived from a run's histories."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,21 +19,21 @@ from sim.scenario.schema import Scenario, orbit_period_s
 Array = NDArray[np.float64]
 
 DARK = 0.5
-"""Less of the Sun than this is an eclipse."""
+"""A smaller visible fraction of the Sun is an eclipse."""
 ROUNDING = 1e-9
-"""What is left of a torque, by rounding of a mean, that is none."""
+"""A torque below this fraction of the largest is the rounding error of a mean."""
 
 
 @dataclass(frozen=True, slots=True)
-class Flown:
-    """A flight of at least one tick.
+class FlightHistories:
+    """The histories of a flight of at least one tick.
 
     Attributes:
         truth: the plant's histories.
         estimates: the controller's, of the same ticks.
         audit: pulses, violations and the limits.
         tick_hz: ticks a second.
-        orbit_s: one orbit.
+        orbit_s: period of the orbit.
     """
 
     truth: Histories
@@ -43,8 +43,10 @@ class Flown:
     orbit_s: float
 
     @classmethod
-    def of(cls, scenario: Scenario, truth: Histories, estimates: Estimates, audit: AuditReport) -> "Flown":
-        """What was flown in a run."""
+    def of(
+        cls, scenario: Scenario, truth: Histories, estimates: Estimates, audit: AuditReport
+    ) -> "FlightHistories":
+        """The histories of a run."""
         return cls(truth, estimates, audit, scenario.time.tick_hz, orbit_period_s(scenario))
 
     @property
@@ -54,7 +56,7 @@ class Flown:
 
     @property
     def ticks(self) -> int:
-        """How many ticks were flown."""
+        """The number of ticks."""
         return len(self.t_s)
 
     @property
@@ -74,8 +76,8 @@ class Flown:
         """A part of the flight, in minutes or seconds."""
         label, unit_s = ("minutes", 60.0) if length_s >= 300.0 else ("seconds", 1.0)
         eclipses = self.spans(self.truth["lit"] < DARK)
-        seen = tuple(span for span in eclipses if span[1] > start_s and span[0] < start_s + length_s)
-        return TimeAxis(f"{label} from the start", unit_s, start_s, start_s + length_s, seen)
+        shown = tuple(span for span in eclipses if span[1] > start_s and span[0] < start_s + length_s)
+        return TimeAxis(f"{label} from the start", unit_s, start_s, start_s + length_s, shown)
 
     def spans(self, where: NDArray[np.bool_]) -> tuple[Span, ...]:
         """The spans of time, s, over which something is so at every tick."""
@@ -97,7 +99,7 @@ class Flown:
 
     @property
     def has_estimates(self) -> bool:
-        """The controller estimated with a filter, at some tick."""
+        """Whether the controller estimated with a filter, at some tick."""
         return bool(np.isfinite(self.estimates.covariance[: self.ticks, 0, 0]).any())
 
     @property
@@ -126,24 +128,24 @@ class Flown:
 
         Coils act in pulses: theirs is the magnitude of the mean over ten minutes.
         """
-        found = {}
+        by_source = {}
         for name, torque in self.truth.items():
             source = name.removeprefix("torque_body_nm/")
             if source != name and np.any(torque):
                 acts = _mean(torque, round(600.0 * self.tick_hz)) if source == "coils" else torque
                 size = np.linalg.norm(acts, axis=1)
-                found[source] = np.where(size > ROUNDING * size.max(), size, np.nan)
-        return found
+                by_source[source] = np.where(size > ROUNDING * size.max(), size, np.nan)
+        return by_source
 
     def duty(self, coil: int, at_s: Array) -> Array:
         """Fraction of the orbit before each time, or of the flight so far, for which a coil was driven."""
         pulses = [pulse for pulse in self.audit.pulses if pulse.coil == coil]
-        driven_s = _driven(pulses, at_s) - _driven(pulses, at_s - self.orbit_s)
+        driven_s = _driven_s(pulses, at_s) - _driven_s(pulses, at_s - self.orbit_s)
         result: Array = driven_s / np.clip(at_s, 1.0 / self.tick_hz, self.orbit_s)
         return result
 
     def gaps_s(self) -> Array:
-        """The gaps that the limit speaks of: between any pulses, or between those of one coil."""
+        """The gaps that the back-off limits: between any pulses, or between those of one coil."""
         groups = [COILS] if self.audit.limits.shared else [(coil,) for coil in COILS]
         gaps = []
         for group in groups:
@@ -152,7 +154,7 @@ class Flown:
         return np.array(gaps)
 
     def busiest(self, length_s: float) -> float:
-        """Where the window of a length begins that holds the most pulses, the first such."""
+        """Start [s] of the first window of this length that holds the most pulses."""
         starts = np.array([float(pulse.start_s) for pulse in self.audit.pulses])
         if self.length_s <= length_s or len(starts) == 0:
             return 0.0
@@ -161,15 +163,15 @@ class Flown:
         return min(max(begin, 0.0), self.length_s - length_s)
 
 
-def _driven(pulses: Sequence[DrivenPulse], at_s: Array) -> Array:
+def _driven_s(pulses: Sequence[DrivenPulse], at_s: Array) -> Array:
     """Seconds driven until each time, by pulses of one coil in order."""
     if not pulses:
         return np.zeros_like(at_s)
     edges = np.array([(float(pulse.start_s), float(pulse.end_s)) for pulse in pulses])
     lengths = edges[:, 1] - edges[:, 0]
     done = np.cumsum(lengths)
-    known = np.stack((done - lengths, done), axis=1)
-    result: Array = np.interp(at_s, edges.ravel(), known.ravel())
+    total_s = np.stack((done - lengths, done), axis=1)
+    result: Array = np.interp(at_s, edges.ravel(), total_s.ravel())
     return result
 
 

@@ -14,10 +14,10 @@ from sim.record.estimates import Estimates
 from sim.record.truth import Histories
 from sim.report import charts as charts_of
 from sim.report import coils
-from sim.report.histories import Flown
+from sim.report.histories import FlightHistories
 from sim.scenario.schema import Scenario
 
-Drawing = tuple[Callable[[Flown], Figure], str]
+Drawing = tuple[Callable[[FlightHistories], Figure], str]
 """What draws a chart, and the words under it."""
 
 
@@ -42,7 +42,7 @@ def sections(scenario: Scenario, truth: Histories, estimates: Estimates, audit: 
     """All sections with charts."""
     if len(truth["t_s"]) == 0:
         return [Section("attitude", "Flight", note="No tick was flown: there is nothing to draw.")]
-    flown = Flown.of(scenario, truth, estimates, audit)
+    flown = FlightHistories.of(scenario, truth, estimates, audit)
     with style():
         return [
             Section("attitude", "Attitude", _drawn(flown, _ATTITUDE)),
@@ -56,7 +56,7 @@ def sections(scenario: Scenario, truth: Histories, estimates: Estimates, audit: 
         ]
 
 
-def _drawn(flown: Flown, drawings: tuple[Drawing, ...]) -> tuple[Chart, ...]:
+def _drawn(flown: FlightHistories, drawings: tuple[Drawing, ...]) -> tuple[Chart, ...]:
     return tuple(
         Chart(draw.__name__, Markup(svg(draw(flown), draw.__name__)), words) for draw, words in drawings
     )
@@ -92,7 +92,7 @@ _ENVIRONMENT: tuple[Drawing, ...] = (
 )
 _COILS_TITLE = "Coils against their limits"
 _NO_ESTIMATE = {
-    "perfect": "Flown with perfect knowledge: the plant told the controller attitude and rate.",
+    "perfect": "FlightHistories with perfect knowledge: the plant told the controller attitude and rate.",
     "filter": "The filter gave no estimate in this flight.",
 }
 

@@ -1,4 +1,4 @@
-"""summary.json: how well the flight went, all judged against the plant's truth."""
+"""summary.json: the performance of a flight, judged against the plant's truth."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -22,12 +22,12 @@ CONVERGED_DEG = 2.0
 CONVERGED_FOR_S = 600.0
 SETTLED_DEG = 5.0
 SPIN_SETTLED_RADPS = 1e-3
-EVENTS_KEPT = 200
+MAX_EVENTS = 200
 
 
 @dataclass(slots=True)
 class BusTally:
-    """What is counted on the bus: refusals and events, the first events in full."""
+    """Refusals on the bus, and the first events in full."""
 
     epoch_us: int
     refused: int = 0
@@ -39,7 +39,7 @@ class BusTally:
         name = NAMES.get(can_id, "")
         if can_id == CoilRefused.ID:
             self.refused += 1
-        elif name.endswith("_EVENT") and intact(entry.frame) and len(self.events) < EVENTS_KEPT:
+        elif name.endswith("_EVENT") and intact(entry.frame) and len(self.events) < MAX_EVENTS:
             values = CLASSES[can_id].decode(entry.frame.data)._asdict()
             seconds = (entry.timestamp_us - self.epoch_us) / 1e6
             self.events.append(
@@ -61,13 +61,13 @@ def summarise(
     audit: AuditReport,
     tally: BusTally,
 ) -> Json:
-    """All keys of summary.json that make sense for this flight."""
+    """The content of summary.json, of the keys that apply to this flight."""
     tick_hz = scenario.time.tick_hz
     ticks = len(truth["t_s"])
     sim_s = ticks / tick_hz
     last_orbit = slice(max(0, ticks - round(orbit_period_s(scenario) * tick_hz)), ticks)
-    flown = run.get("flown")
-    wall_s = flown.get("wall_s") if flown else None
+    flight = run.get("flown")
+    wall_s = flight.get("wall_s") if flight else None
     summary: Json = {
         "scenario": scenario.name,
         "seed": run["seed"],
@@ -75,7 +75,7 @@ def summarise(
         "wall_seconds": wall_s,
         "realtime_factor": sim_s / wall_s if wall_s else None,
         "ticks": ticks,
-        "slips": flown.get("slips") if flown else None,
+        "slips": flight.get("slips") if flight else None,
         "pulses": {
             "total": len(audit.pulses),
             "per_coil": audit.pulses_per_coil,
@@ -100,7 +100,7 @@ def summarise(
 
 
 def estimate_error(truth: Histories, estimates: Estimates) -> Array:
-    """The turn from the estimated to the true attitude at each tick, (n, 4); NaN before there is one."""
+    """The rotation from the estimated to the true attitude at each tick, (n, 4); NaN before the first."""
     ticks = len(truth["t_s"])
     return relative(estimates.q_body_from_orbit[:ticks], truth["q_body_from_orbit"])
 
@@ -116,11 +116,11 @@ def nees(truth: Histories, estimates: Estimates) -> Array:
         truth["q_body_from_orbit"]
     )
     error = np.hstack((2.0 * turn[:, 1:], omega_true - estimates.omega_body_radps[:ticks]))
-    known = np.isfinite(error).all(axis=1)
+    defined = np.isfinite(error).all(axis=1)
     result = np.full(ticks, np.nan)
-    if known.any():
-        solved = np.linalg.solve(estimates.covariance[:ticks][known], error[known][:, :, None])[:, :, 0]
-        result[known] = np.sum(error[known] * solved, axis=1)
+    if defined.any():
+        solved = np.linalg.solve(estimates.covariance[:ticks][defined], error[defined][:, :, None])[:, :, 0]
+        result[defined] = np.sum(error[defined] * solved, axis=1)
     return result
 
 
@@ -149,15 +149,15 @@ def _estimate(truth: Histories, estimates: Estimates, tick_hz: int) -> Json:
     if first is None:
         return {}
     error_deg, lit = error_deg[first:], truth["lit"][first:] > 0.5
-    known = np.isfinite(error_deg)  # a filter that begins anew knows nothing for a while
+    estimated = np.isfinite(error_deg)  # a filter that starts anew has no estimate for a while
     consistency = nees(truth, estimates)[first:]
     result: Json = {
         "estimate_deg": {
             key: float(np.sqrt(np.mean(error_deg[where] ** 2)))
-            for key, where in (("rms_sunlit", lit & known), ("rms_eclipse", ~lit & known))
+            for key, where in (("rms_sunlit", lit & estimated), ("rms_eclipse", ~lit & estimated))
             if where.any()
         }
-        | {"max": float(error_deg[known].max())},
+        | {"max": float(error_deg[estimated].max())},
         "converged_at_s": first / tick_hz,
     }
     if np.isfinite(consistency).any():
@@ -166,7 +166,7 @@ def _estimate(truth: Histories, estimates: Estimates, tick_hz: int) -> Json:
 
 
 def _spin(scenario: Scenario, truth: Histories, audit: AuditReport, last_orbit: slice) -> Json | None:
-    """How the spin about body axis 1 follows its reference; None where none is wanted."""
+    """How the spin about body axis 1 follows its reference; None without a reference."""
     reference = scenario.control.spin_radps
     if reference == 0.0:
         return None
@@ -195,13 +195,13 @@ def _first_run(good: NDArray[np.bool_], length: int) -> int | None:
 
 
 def summary_text(summary: Json) -> str:
-    """The summary for a person, a few lines."""
+    """The summary as a few lines of text."""
     pulses, gap_s = summary["pulses"], summary["min_gap_s"]["any"]
-    flown = f"{summary['scenario']}, seed {summary['seed']}: {summary['sim_seconds']:.0f} s flown"
+    heading = f"{summary['scenario']}, seed {summary['seed']}: {summary['sim_seconds']:.0f} s flown"
     if "realtime_factor" in summary:
-        flown += f" at {summary['realtime_factor']:.0f} times real time"
-    verdict = "kept" if summary["limits_ok"] else "BROKEN"
-    limits = f"{verdict}: {pulses['total']} pulses, {pulses['refused']} refused"
+        heading += f" at {summary['realtime_factor']:.0f} times real time"
+    limits_text = "kept" if summary["limits_ok"] else "BROKEN"
+    limits = f"{limits_text}: {pulses['total']} pulses, {pulses['refused']} refused"
     if "max_pulse_s" in summary:
         limits += f", longest {summary['max_pulse_s']:.3f} s"
     if gap_s is not None:
@@ -214,7 +214,7 @@ def summary_text(summary: Json) -> str:
         )
         axis1 = summary["axis1_deg"]
         settled = axis1.get("settle_orbits_5deg")
-        after = f"under 5 deg for good after {settled:.2f} orbits" if settled is not None else "not settled"
+        after = f"under 5 deg from {settled:.2f} orbits on" if settled is not None else "not settled"
         rows["axis 1"] = f"{axis1['rms_last_orbit']:.2f} deg RMS off the vertical, {after}"
     if "spin_radps" in summary:
         spin = summary["spin_radps"]
@@ -234,4 +234,4 @@ def summary_text(summary: Json) -> str:
     rows |= {
         name.replace("_", " "): failed[name] for name in ("second_senders", "complete") if name in failed
     }
-    return "\n".join([flown, *(f"  {name:<10} {text}" for name, text in rows.items())])
+    return "\n".join([heading, *(f"  {name:<10} {text}" for name, text in rows.items())])

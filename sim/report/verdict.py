@@ -1,4 +1,4 @@
-"""Whether a run failed, and why: by its limits, its replay, who else spoke on its bus, its completeness."""
+"""Whether a run failed, and why: its limits, its replay, second senders on its bus, its completeness."""
 
 from collections.abc import Mapping, Sequence
 from enum import StrEnum
@@ -12,7 +12,7 @@ from sim.replay.log_replay import ReplayResult
 
 
 class Verdict(StrEnum):
-    """What a run is judged by, in the order in which it is told."""
+    """What a run is judged by, in the order in which it is reported."""
 
     LIMITS = "limits"
     REPLAY = "replay"
@@ -23,45 +23,45 @@ class Verdict(StrEnum):
 def failures(
     run: RunRecord,
     ticks: int,
-    audited: AuditReport,
-    shown: ReplayResult,
+    audit_report: AuditReport,
+    replay_result: ReplayResult,
     voucher: Voucher,
 ) -> dict[str, str]:
-    """What fails, each in a clause for people; empty where all is well.
+    """What fails, each as a clause of a sentence; empty where nothing fails.
 
     Args:
         run: content of run.json.
-        ticks: how many have been flown.
-        audited: what the audit of the whole log has found.
-        shown: what the replay showed.
-        voucher: what the index says of the log.
+        ticks: number of ticks of the flight.
+        audit_report: the audit of the whole log.
+        replay_result: the result of the replay.
+        voucher: the check of the log against its index.
     """
     senders = run.get("second_senders")
-    found = {
-        Verdict.LIMITS: _limits(audited.statuses, audited.violations),
-        Verdict.REPLAY: _replay(shown, run.get("platform") == run_dir.fingerprint()),
+    clauses = {
+        Verdict.LIMITS: _limits(audit_report.statuses, audit_report.violations),
+        Verdict.REPLAY: _replay(replay_result, run.get("platform") == run_dir.fingerprint()),
         Verdict.SECOND_SENDERS: said(senders) if senders else "",
-        Verdict.COMPLETE: _incomplete(run, ticks, audited.complete, voucher),
+        Verdict.COMPLETE: _incomplete(run, ticks, audit_report.complete, voucher),
     }
-    return {verdict.value: clause for verdict, clause in found.items() if clause}
+    return {verdict.value: clause for verdict, clause in clauses.items() if clause}
 
 
-def flight_failed(found: Mapping[str, str]) -> str:
+def flight_failed(clauses: Mapping[str, str]) -> str:
     """All that failed, in one sentence."""
-    return f"the flight failed: {'; '.join(found.values())}"
+    return f"the flight failed: {'; '.join(clauses.values())}"
 
 
 def _limits(judged: int, violations: Sequence[Violation]) -> str:
     if violations:
         times = "once" if len(violations) == 1 else f"{len(violations)} times"
         return f"the limits are broken {times}, first at {violations[0]}"
-    return "" if judged else "nothing tells whether the limits were kept: the log has no COIL_STATUS"
+    return "" if judged else "the limits cannot be judged: the log has no COIL_STATUS"
 
 
-def _replay(shown: ReplayResult, same_platform: bool) -> str:
-    if shown.bit_exact or (shown.command_exact and not same_platform):
+def _replay(replay_result: ReplayResult, same_platform: bool) -> str:
+    if replay_result.bit_exact or (replay_result.command_exact and not same_platform):
         return ""
-    return f"the replay is not exact: {shown.first_bit_difference}"
+    return f"the replay is not exact: {replay_result.first_bit_difference}"
 
 
 def _incomplete(run: RunRecord, ticks: int, ended: bool, voucher: Voucher) -> str:

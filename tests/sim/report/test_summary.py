@@ -135,5 +135,5 @@ class TestRealFlight:
         axis1 = summary["axis1_deg"] | {"settle_orbits_5deg": 1.594}
         spin = {"reference": 0.02, "mean_last_orbit": 0.019871, "max_dev_last_orbit": 0.000312}
         text = summary_text(summary | {"axis1_deg": axis1, "spin_radps": spin})
-        assert "under 5 deg for good after 1.59 orbits" in text
+        assert "under 5 deg from 1.59 orbits on" in text
         assert "0.01987 rad/s in the mean of the last orbit, 0.00031 at most off 0.02" in text
