@@ -1,8 +1,8 @@
 """Test a pulse scheduler or a control law of your own against the limits that the shipped one keeps.
 
-A scheduler is any object with ``step(heard) -> requests``; what makes one from ``Limits`` is called at every
-boot of it, so that nothing outlives a reboot. It is flown over a board that drives whatever it is asked, and
-what was driven is judged by the auditor that ``torquer check`` uses. Ten lines::
+A scheduler is any object with ``step(heard) -> requests``; the function that makes one from ``Limits`` is
+called at each of its boots, so that nothing outlives a reboot. It flies over a board that drives every
+request, and the auditor of ``torquer check`` judges what was driven. Ten lines::
 
     from hypothesis import given, settings
     from sim.testing import Fire, audit_scheduler, flights
@@ -18,14 +18,24 @@ what was driven is judged by the auditor that ``torquer check`` uses. Ten lines:
         assert report.ok, report.violations
 
 ``flights()`` gives demands, fields, tick rates, lost messages and reboots of scheduler and board, in flights
-of few pulses and of many; a failing flight is shrunk to a short one. What is found, and what is not, stands
-in docs/testing.md. A law in the form of ``fsw.core.laws.interface.Law`` is flown through the
-shipped scheduler by ``audit_law``. The strategies need hypothesis: ``pip install torquer[testing]``.
+of few pulses and of many; a failing flight is shrunk to a short one. docs/testing.md lists what is found and
+what is not. ``audit_law`` flies a law in the form of ``fsw.core.laws.interface.Law`` through the shipped
+scheduler. The strategies need hypothesis: ``pip install torquer[testing]``.
 """
 
 from sim.audit.findings import AuditReport, Violation
-from sim.testing.bench import Fire, Flight, Heard, Limits, MakeScheduler, Reboot, Scheduler, Stretch, fly
-from sim.testing.judge import audit_law, audit_scheduler
+from sim.testing.scheduler_audit import audit_law, audit_scheduler
+from sim.testing.scheduler_flight import (
+    Fire,
+    Flight,
+    Heard,
+    Limits,
+    MakeScheduler,
+    Reboot,
+    Scheduler,
+    Stretch,
+    fly,
+)
 from sim.testing.shipped import ShippedScheduler, UnsoundLawError, scheduler_under
 from sim.testing.strategies import (
     attitudes,

@@ -1,4 +1,4 @@
-"""The scheduler that ships, as one of those that may be tested; and a law of your own before it."""
+"""The shipped scheduler in the form that ``audit_scheduler`` tests, alone or behind a law of your own."""
 
 from collections.abc import Sequence
 from math import isfinite
@@ -9,7 +9,7 @@ from fsw.core.actuation.pulses import AXES, PulseConfig, PulseState
 from fsw.core.gate.readings import NOTHING
 from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, Law, LawInput, Memory
 from fsw.wire.messages import CoilBoot, CoilFire
-from sim.testing.bench import Fire, Heard, Limits, MakeScheduler, Scheduler
+from sim.testing.scheduler_flight import Fire, Heard, Limits, MakeScheduler, Scheduler
 
 LEVELS_AM2 = (0.5, 2.0, 8.0)
 LEAK_S = 300.0
@@ -17,7 +17,7 @@ _BOOTED = CoilBoot(reason=0, version=1, table_crc=0)
 
 
 class UnsoundLawError(AssertionError):
-    """A law has asked for something that is not a number."""
+    """A law has asked for something that is not a finite number."""
 
 
 class ShippedScheduler:
@@ -49,11 +49,11 @@ class ShippedScheduler:
         self._view = CoilView()
 
     def step(self, heard: Heard) -> Sequence[Fire]:
-        """As in flight: what is owed grows by the demand, and is paid by a pulse when there may be one."""
-        return self.meet(heard, Demand(heard.m_body_am2))
+        """As in flight: the owed impulse grows by the demand, and a pulse pays it when one is allowed."""
+        return self.step_with_demand(heard, Demand(heard.m_body_am2))
 
-    def meet(self, heard: Heard, demand: Demand) -> Sequence[Fire]:
-        """The same for a demand of another origin."""
+    def step_with_demand(self, heard: Heard, demand: Demand) -> Sequence[Fire]:
+        """The same for this demand in place of that of the flight."""
         if self._state is None:
             self._state = pulses.boot(heard.tick, self._config.pulses)
         readings = NOTHING._replace(coil=heard.status, coil_boot=_BOOTED if heard.booted else None)
@@ -66,8 +66,8 @@ class ShippedScheduler:
         return (Fire(request.coil, request.level, request.duration_ms),)
 
 
-class _UnderLaw:
-    """The shipped scheduler, asked by a law."""
+class _SchedulerUnderLaw:
+    """The shipped scheduler with the demands of a law."""
 
     def __init__(self, limits: Limits, law: Law, control: ControlConfig) -> None:
         self._scheduler = ShippedScheduler(limits)
@@ -77,21 +77,21 @@ class _UnderLaw:
         self._sample = FieldSample()
 
     def step(self, heard: Heard) -> Sequence[Fire]:
-        """Ask the law, and the scheduler for what it wants."""
+        """Ask the law for its demand, and the scheduler for requests."""
         before, self._sample = self._sample, FieldSample(heard.b_body_t, heard.tick)
-        seen = LawInput(heard.attitude, heard.b_body_t, self._sample, before, tick=heard.tick)
-        demand = self._law(seen, self._memory, self._control.setpoint, self._control)
-        wanted = (*demand.m_body_am2, *(demand.impulse_body_nms or ()), *demand.memory)
-        if not all(map(isfinite, wanted)):
-            raise UnsoundLawError(f"tick {heard.tick}: {demand} is not of numbers, for {seen}")
+        law_input = LawInput(heard.attitude, heard.b_body_t, self._sample, before, tick=heard.tick)
+        demand = self._law(law_input, self._memory, self._control.setpoint, self._control)
+        values = (*demand.m_body_am2, *(demand.impulse_body_nms or ()), *demand.memory)
+        if not all(map(isfinite, values)):
+            raise UnsoundLawError(f"tick {heard.tick}: {demand} is not finite, for {law_input}")
         self._memory = demand.memory
-        return self._scheduler.meet(heard, demand)
+        return self._scheduler.step_with_demand(heard, demand)
 
 
 def scheduler_under(law: Law, control: ControlConfig) -> MakeScheduler:
-    """Makes the shipped scheduler with a law before it, which may be tested as one."""
+    """Make the shipped scheduler with a law before it, which can be tested as a scheduler."""
 
     def make(limits: Limits) -> Scheduler:
-        return _UnderLaw(limits, law, control)
+        return _SchedulerUnderLaw(limits, law, control)
 
     return make

@@ -1,4 +1,4 @@
-"""Hypothesis strategies of what a scheduler or a law may meet; each shrinks to something plain."""
+"""Hypothesis strategies for the flights of a scheduler or a law; each shrinks to something simple."""
 
 from functools import cache
 from itertools import product
@@ -9,36 +9,36 @@ from hypothesis.strategies import DrawFn, SearchStrategy
 
 from fsw.core.algebra.vector import ZERO, Vec3
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
-from sim.testing.bench import Flight, Limits, Reboot, Stretch
+from sim.testing.scheduler_flight import Flight, Limits, Reboot, Stretch
 
 WHOLE_RATES = (1, 2, 5, 10, 1000)
 BROKEN_RATES = (3, 7, 30, 64, 300)
-"""Ticks a second: so that a tick is a whole number of milliseconds, and so that it is none."""
+"""Ticks a second: with a tick of a whole number of milliseconds, and without."""
 SLOW_TIMINGS_MS = ((3000, 100_000), (3000, 10_000), (2900, 7301))
 FAST_TIMINGS_MS = ((300, 999), (301, 2003))
-"""Pulse and back-off, up to ``MOST_SLOW_HZ`` and above; as flown is the first."""
+"""Pulse and back-off, up to ``MOST_SLOW_HZ`` and above; the first is that of the default satellite."""
 MOST_SLOW_HZ = 10
 PULSES_TICKS = (1, 2, 3)
 BACKOFFS_TICKS = (1, 2, 3, 4, 6, 8)
-"""Whole ticks of timings that are short in ticks."""
+"""Lengths in whole ticks of the short timings."""
 SIZES_AM2 = (8.0, 2.0, 0.5, 1e-9)
 MOST_DIPOLE_AM2 = 50.0
 MOST_FIELD_T = 6.5e-5
 EQUAL = (0.0, 1.0, -1.0, 0.5)
-"""What components of equal size or value are made of."""
+"""Factors of components of equal size or value."""
 SIZES_T = (3e-5, MOST_FIELD_T)
 MOST_RATE_RADPS = 0.2
 MOST_STRETCHES = 8
 MOST_CYCLES = 30
-"""Of pulse and back-off, in one stretch of a long flight."""
+"""Cycles of pulse and back-off in one stretch of a long flight."""
 MOST_PULSES = 2000
-"""What fits into the longest of long flights, fired as soon as it may be."""
+"""Pulses in the longest of long flights, if each is fired as soon as it may be."""
 MOST_TICKS = 12_000
-"""Of a long flight, where back-offs are long."""
+"""Length of a long flight where back-offs are long."""
 MOST_EVENTFUL_TICKS = 4000
-"""Of a flight that is flown in more than one lap, but is no long one."""
+"""Length of a flight of several laps that is not a long one."""
 WORD_BITS = (8, 15, 16, 24, 31)
-"""A tick number may outgrow words of so many bits; a float of 32 bits holds 24."""
+"""Word lengths that a tick number may outgrow; a float of 32 bits holds 24 bits."""
 
 _LOST = st.sampled_from((0, 0, 0, 0, 0xFF)) | st.sampled_from((0, 0, 0, 0, 0xFF)) | st.integers(0, 0xFF)
 _SELDOM_LOST = st.sampled_from((0, 0, 0, 0b1, 0b01010101, 0xFF))
@@ -60,7 +60,7 @@ def tick_rates() -> SearchStrategy[int]:
 
 @cache
 def timings_ms(tick_hz: int) -> SearchStrategy[tuple[int, int]]:
-    """Pulse and back-off: of few ticks and a part of one more, or as flown.
+    """Pulse and back-off: of few ticks and a part of one more, or as in flight.
 
     Where they are of few ticks, a long flight holds many pulses.
     """
@@ -79,7 +79,7 @@ def limits(
     timing_ms: SearchStrategy[tuple[int, int]] | None = None,
     shared: SearchStrategy[bool] | None = None,
 ) -> Limits:
-    """Limits: of every rate and both kinds of back-off, as flown and shorter, unless told."""
+    """Limits: of every rate and both kinds of back-off, as in flight and shorter, unless given."""
     hz = draw(tick_hz if tick_hz is not None else tick_rates())
     pulse_ms, backoff_ms = draw(timing_ms if timing_ms is not None else timings_ms(hz))
     return Limits(hz, pulse_ms, backoff_ms, draw(shared if shared is not None else st.booleans()))
@@ -108,7 +108,7 @@ def fields() -> SearchStrategy[Vec3]:
 
 @cache
 def attitudes() -> SearchStrategy[Attitude]:
-    """An attitude and rate relative to the orbital frame, known or not."""
+    """An attitude and rate relative to the orbital frame, valid or not."""
     rate = st.floats(-MOST_RATE_RADPS, MOST_RATE_RADPS)
     return st.just(UNKNOWN) | st.builds(
         _attitude,
@@ -130,12 +130,12 @@ def stretches(  # noqa: D417, draw is Hypothesis's own
     calm: bool = False,
     losses: bool = True,
 ) -> Stretch:
-    """Some ticks with their demand; many end in a pulse, so that the next begins in one.
+    """Some ticks with one demand; many end in a pulse, so that the next stretch begins in one.
 
     Args:
         within: the limits.
-        demands: what is asked of the scheduler; default: ``dipoles()``.
-        calm: nobody reboots, fewer messages are lost, and there may be many pulses.
+        demands: the demands on the scheduler; default: ``dipoles()``.
+        calm: nothing reboots, fewer messages are lost, and there may be many pulses.
         losses: messages may be lost.
     """
     lost = st.just(0) if not losses else _SELDOM_LOST if calm else _LOST
@@ -157,17 +157,17 @@ def flights(
 
     Args:
         within: limits; default: ``limits()``.
-        demands: what is asked of the scheduler; default: ``dipoles()``.
+        demands: the demands on the scheduler; default: ``dipoles()``.
     """
     one = _flights(within if within is not None else limits(), demands if demands is not None else dipoles())
     return st.lists(one, min_size=1, max_size=1, unique_by=id).map(_only)
 
 
 def _only(flights: list[Flight]) -> Flight:
-    """The one of a list.
+    """The one element of a list.
 
-    Five of six examples of Hypothesis would be variants of the one before, within the same limits; of what
-    stands in a collection of unique elements it makes none, so that each flight is another one.
+    Hypothesis makes five of six examples as variants of the one before, within the same limits, but not of
+    the elements of a unique collection; so each flight differs.
     """
     return flights[0]
 

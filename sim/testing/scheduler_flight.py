@@ -1,9 +1,9 @@
-"""A scheduler on a bench: what it hears, what it may ask, and a board that drives whatever it is asked.
+"""A scheduler in simulated flight: its inputs, its requests, and a board that drives every request.
 
-The board has no interlock, so that what the scheduler does wrong is done. It only drops a request that the
-bus has lost. What it says of its lockout is true: how long it would refuse each coil if it did refuse. So a
-scheduler that is started anew in the middle of a pulse can know of it, as it can in flight. Lost are
-COIL_STATUS and requests; COIL_BOOT always arrives.
+The board has no interlock, so that each mistake of the scheduler shows. It drops only requests that are lost
+on the bus. The lockout that it reports is true: how long it would refuse each coil if it had an interlock. So
+a scheduler that starts anew in the middle of a pulse can learn of it, as in flight. COIL_STATUS and requests
+may be lost; COIL_BOOT always arrives.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -23,14 +23,14 @@ UNITS_PER_TICK = 1000
 MOST_LEVEL = 3
 MOST_LOCKOUT_MS = 163_830
 MOST_REMAINING_MS = 4095
-"""What COIL_STATUS can tell of its lockout and of the rest of a pulse."""
+"""The largest lockout and rest of a pulse that COIL_STATUS can carry."""
 
 Vec3 = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What must be kept: the longest pulse, the back-off after it, of any coil (shared) or of the same."""
+    """The limits: the longest pulse, and the back-off after a pulse of any coil (shared) or of the same."""
 
     tick_hz: int = 1
     pulse_ms: int = 3000
@@ -47,14 +47,14 @@ class Fire(NamedTuple):
 
 
 class Heard(NamedTuple):
-    """What a scheduler knows in a tick.
+    """The inputs of a scheduler in a tick.
 
     Attributes:
         tick: number of the tick; rises by one.
         m_body_am2: the mean dipole that the law asks for, body axes, A m^2.
         b_body_t: the field, body axes, T.
         attitude: for a law of your own.
-        status: what the board says of one coil in this tick; None where the message was lost.
+        status: the board's COIL_STATUS of this tick; None where it was lost.
         booted: the board has just started, all coils locked out.
     """
 
@@ -67,10 +67,10 @@ class Heard(NamedTuple):
 
 
 class Scheduler(Protocol):
-    """Decides in every tick what to fire. A request is driven from the tick on in which it is made."""
+    """Decides in every tick what to fire. A request is driven from its tick on."""
 
     def step(self, heard: Heard, /) -> Sequence[Fire]:
-        """The requests of this tick: none or one, where the limits are to be kept."""
+        """The requests of this tick; at most one, if the limits are to be kept."""
 
 
 MakeScheduler = Callable[[Limits], Scheduler]
@@ -78,7 +78,7 @@ MakeScheduler = Callable[[Limits], Scheduler]
 
 
 class Reboot(Flag):
-    """Who is started anew."""
+    """What is started anew."""
 
     NOBODY = 0
     SCHEDULER = 1
@@ -86,7 +86,7 @@ class Reboot(Flag):
 
 
 class Stretch(NamedTuple):
-    """Some ticks with one demand. In tick n a message is lost if bit n modulo 8 is set."""
+    """A number of ticks with one demand. In tick n a message is lost if bit n modulo 8 is set."""
 
     ticks: int
     m_body_am2: Vec3
@@ -98,9 +98,9 @@ class Stretch(NamedTuple):
 
 
 class Flight(NamedTuple):
-    """What is flown: the limits, the first tick, and the stretches, at whose begin reboots happen.
+    """The course of a flight: limits, first tick, and stretches; reboots happen at the start of a stretch.
 
-    After the last stretch comes the first again, until all have been flown ``laps`` times.
+    All stretches are repeated ``laps`` times.
     """
 
     limits: Limits
@@ -109,27 +109,27 @@ class Flight(NamedTuple):
     laps: int = 1
 
 
-class FlownTick(NamedTuple):
-    """A tick as it was flown.
+class TickRecord(NamedTuple):
+    """The record of a tick.
 
     Attributes:
         tick: its number.
         line: that of its first frame in the log.
         booted: the board has just started.
-        said: its COIL_STATUS, of every coil that was driven or of one that was not.
-        requests: what was requested in it, lost or not.
-        harmed: the board has driven, since it booted, what one with an interlock would have refused.
+        statuses: COIL_STATUS of every coil that was driven, or of one that was not.
+        requests: all requests of the tick, lost or not.
+        unsafe: since it booted, the board has driven something that an interlock would have refused.
     """
 
     tick: int
     line: int
     booted: bool
-    said: tuple[CoilStatus, ...]
+    statuses: tuple[CoilStatus, ...]
     requests: Sequence[Fire]
-    harmed: bool
+    unsafe: bool
 
 
-class _On(NamedTuple):
+class _DrivenCoil(NamedTuple):
     """A coil that is driven: its level, and until when in units of 1 / (1000 tick_hz) s."""
 
     level: int
@@ -142,32 +142,32 @@ class _Board:
     def __init__(self, limits: Limits, tick: int) -> None:
         self._limits = limits
         self._now = tick * UNITS_PER_TICK
-        self._on: dict[int, _On] = {}
+        self._on: dict[int, _DrivenCoil] = {}
         self._backoff = limits.backoff_ms * limits.tick_hz
         self._ready = [self._now + self._backoff] * 3
         self._statuses = 0
         self._seq = 0
-        self.harmed = False
+        self.unsafe = False
 
     def begin_tick(self, tick: int) -> tuple[CoilStatus, ...]:
         """A COIL_STATUS of each coil that was driven in the tick that ends now, or of one that was not."""
         self._now = now = tick * UNITS_PER_TICK
         if self._on:
-            said = tuple(self._status(coil, on.level, on.end) for coil, on in self._on.items())
+            statuses = tuple(self._status(coil, on.level, on.end) for coil, on in self._on.items())
             self._on = {coil: on for coil, on in self._on.items() if on.end > now}
         else:
-            said = (self._status(tick % 3, 0, now),)
+            statuses = (self._status(tick % 3, 0, now),)
         self._statuses = (self._statuses + 1) & 0xF
-        return said
+        return statuses
 
     def fire(self, request: CoilFire) -> None:
-        """Drive it, whatever else is driven; ``harmed`` tells that no interlock would have let it."""
+        """Drive it, whatever else is driven; ``unsafe`` is set if an interlock would have refused it."""
         duration = request.duration_ms * self._limits.tick_hz
-        self.harmed = self.harmed or not self._allows(request)
+        self.unsafe = self.unsafe or not self._allows(request)
         if duration == 0 or request.level == 0:
             return
         end = self._now + duration
-        self._on[request.coil] = _On(request.level, end)
+        self._on[request.coil] = _DrivenCoil(request.level, end)
         self._seq = request.seq
         for coil in range(3):
             if self._limits.shared or coil == request.coil:
@@ -180,7 +180,7 @@ class _Board:
         return timely and 0 < request.duration_ms <= self._limits.pulse_ms
 
     def _status(self, coil: int, level: int, end: int) -> CoilStatus:
-        """As it comes off the bus."""
+        """The COIL_STATUS, its values bounded as on the bus."""
         hz, now = self._limits.tick_hz, self._now
         lockout = max(0, self._ready[coil] - now) if coil < len(self._ready) else 0
         return CoilStatus(
@@ -195,24 +195,24 @@ class _Board:
 
 
 def fly(make: MakeScheduler, flight: Flight) -> Iterator[LogEntry]:
-    """Fly a scheduler: the log of the board, as it would stand in bus.log."""
+    """Fly a scheduler: the log of the board, as it would be in bus.log."""
     hz = flight.limits.tick_hz
-    for flown in fly_ticks(make, flight):
-        stamp_us = EPOCH_S * 1_000_000 + flown.tick * 1_000_000 // hz
-        for line, frame in enumerate(on_the_bus(flown, hz), start=flown.line):
+    for record in fly_ticks(make, flight):
+        stamp_us = EPOCH_S * 1_000_000 + record.tick * 1_000_000 // hz
+        for line, frame in enumerate(frames_of(record, hz), start=record.line):
             yield LogEntry(line, stamp_us, "bench", frame)
 
 
-def on_the_bus(flown: FlownTick, tick_hz: int) -> Iterator[Frame]:
-    """The frames of a tick: what the board said, and SYNC."""
-    if flown.booted:
+def frames_of(record: TickRecord, tick_hz: int) -> Iterator[Frame]:
+    """The frames of a tick: those of the board, and SYNC."""
+    if record.booted:
         yield CoilBoot(reason=0, version=1, table_crc=0).encode()
-    for status in flown.said:
+    for status in record.statuses:
         yield status.encode()
-    yield Sync(flown.tick, EPOCH_S + flown.tick // tick_hz).encode()
+    yield Sync(record.tick, EPOCH_S + record.tick // tick_hz).encode()
 
 
-def fly_ticks(make: MakeScheduler, flight: Flight) -> Iterator[FlownTick]:
+def fly_ticks(make: MakeScheduler, flight: Flight) -> Iterator[TickRecord]:
     """Fly a scheduler, tick by tick."""
     limits, tick, line, seq = flight.limits, flight.first_tick, 1, 0
     board, scheduler, boots = _Board(limits, tick), make(limits), True
@@ -223,19 +223,19 @@ def fly_ticks(make: MakeScheduler, flight: Flight) -> Iterator[FlownTick]:
         if Reboot.SCHEDULER in reboot:
             scheduler = make(limits)
         for index in range(ticks):
-            said = board.begin_tick(tick)
+            statuses = board.begin_tick(tick)
             bit = index % PATTERN_TICKS
-            status = None if lost_statuses >> bit & 1 else said[-1]
+            status = None if lost_statuses >> bit & 1 else statuses[-1]
             requests = scheduler.step(Heard(tick, m_body_am2, b_body_t, attitude, status, boots))
-            yield FlownTick(tick, line, boots, said, requests, board.harmed)
+            yield TickRecord(tick, line, boots, statuses, requests, board.unsafe)
             for request in requests:
                 seq += 1
                 if not lost_requests >> bit & 1:
                     board.fire(_as_sent(request, seq, tick))
-            tick, line, boots = tick + 1, line + boots + len(said) + 1, False
+            tick, line, boots = tick + 1, line + boots + len(statuses) + 1, False
 
 
 def _as_sent(request: Fire, seq: int, tick: int) -> CoilFire:
-    """The request as it comes off the bus, fields cut to what they hold."""
+    """The request as received, its values cut to the width of their fields."""
     coil, level, duration_ms = request
     return CoilFire.decode(CoilFire(level, coil, seq & 0xFF, tick & 0xFF, duration_ms).encode().data)
