@@ -356,7 +356,7 @@ def test_report_says_that_a_signature_no_longer_holds_and_signs_anew(run, torque
     (run / "run.json").write_text(json.dumps(told))
     done = torquer("report", run)
     assert done.code == 0
-    assert "run.json is not what was signed any more: --sign KEY signs it anew" in done.sentence
+    assert "run.json is no longer what was signed: --sign KEY signs it again" in done.sentence
     assert torquer("check", run, "--verify", public).code == 1
     assert torquer("report", run, "--sign", key).err == ""
     assert torquer("check", run, "--verify", public).code == 0

@@ -1,4 +1,4 @@
-"""``torquer board``: a board by hand, with the options of ``python -m hil_stub``."""
+"""``torquer board``: a board alone, with the options of ``python -m hil_stub``."""
 
 from hil_stub.process.command import board
 

@@ -11,8 +11,10 @@ from torquer.cli.options import SETTINGS, sentences
 @click.argument("scenario")
 @click.option("--gains", nargs=2, type=float, metavar="K_W K_A", help="Evaluate these instead of searching.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON alone; pictures only with --out.")
-@click.option("--write", is_flag=True, help="Put the gains into SCENARIO, a file.")
-@click.option("--out", type=click.Path(path_type=Path), help="Of pictures; default: runs/design-<scenario>.")
+@click.option("--write", is_flag=True, help="Write the gains into SCENARIO, a file.")
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="Folder of pictures; default: runs/design-<scenario>."
+)
 @SETTINGS
 @sentences
 def design(

@@ -15,8 +15,10 @@ from torquer.cli.options import sentences
 @click.option("--list", "listing", is_flag=True, help="Print the rows and what they expect.")
 @click.option("--out", type=click.Path(path_type=Path), help="Folder of faults.xml (JUnit), .html and .json.")
 @click.option("--workers", type=click.IntRange(min=1), help="Processes. Default: one a core.")
-@click.option("--slow", is_flag=True, help="Also rows that fly real processes: minutes.")
-@click.option("--keep", type=click.Path(path_type=Path), help="Rows not flown now: from this faults.json.")
+@click.option("--slow", is_flag=True, help="Also rows that run real processes: minutes.")
+@click.option(
+    "--keep", type=click.Path(path_type=Path), help="Take the rows that do not run now from this faults.json."
+)
 @click.option("--write-docs", is_flag=True, help="Write docs/faults.md of the repository.")
 @sentences
 def faults(
@@ -31,7 +33,7 @@ def faults(
     keep: Path | None,
     write_docs: bool,
 ) -> int:
-    """Inject every fault of the table, in several phases and seeds: verdict per row."""
+    """Inject every fault of the table, in several phases and with several seeds: a verdict per row."""
     from sim.fault_table import command
 
     if listing:

@@ -1,4 +1,4 @@
-"""``torquer fsw``: the flight software by hand, with the onboard table of a scenario."""
+"""``torquer fsw``: the flight software alone, with the onboard table of a scenario."""
 
 import click
 
@@ -9,8 +9,8 @@ from torquer.cli.options import BUSES, SETTINGS, sentences
 @click.argument("scenario", default="microsat")
 @click.option("--bus", default="auto", show_default=True, help=BUSES)
 @SETTINGS
-@click.option("--disarmed", is_flag=True, help="Let no request to drive a coil get on the bus.")
-@click.option("--bench", is_flag=True, help="On a bench: no PLANT_END ends it.")
+@click.option("--disarmed", is_flag=True, help="Send no request to drive a coil.")
+@click.option("--bench", is_flag=True, help="On a bench: PLANT_END does not end it.")
 @sentences
 def fsw(scenario: str, bus: str, settings: tuple[str, ...], disarmed: bool, bench: bool) -> int:
     """Fly on a bus: answer the SYNC of a plant, with the onboard table of SCENARIO."""

@@ -11,7 +11,7 @@ from torquer.cli.options import BUSES, SEEDS, SETTINGS, sentences
 @click.command()
 @click.argument("scenario", default="microsat")
 @click.option("--bus", default="auto", show_default=True, help=BUSES)
-@click.option("--real", metavar="A,B", help="Boards that are hardware: of coil, magnetometer, sun.")
+@click.option("--real", metavar="A,B", help="Boards that are hardware: coil, magnetometer, sun.")
 @click.option("--arm", is_flag=True, help="Let coils be driven; without it no request reaches the bus.")
 @click.option(
     "--seconds",
@@ -36,7 +36,7 @@ from torquer.cli.options import BUSES, SEEDS, SETTINGS, sentences
     default=60.0,
     show_default=True,
     type=click.FloatRange(0.0),
-    help="Memory is judged from then on, if the run is longer.",
+    help="From when on memory is judged, in a longer run.",
 )
 @click.option(
     "--deadman-s",
@@ -51,7 +51,7 @@ from torquer.cli.options import BUSES, SEEDS, SETTINGS, sentences
     help="Instead, check one board, alone on the bus, against docs/icd.md; its limits are SCENARIO's.",
 )
 @click.option("--seed", default=1, show_default=True, type=SEEDS, help="Of the plant.")
-@click.option("--out", type=click.Path(path_type=Path), help="Keep log and numbers in this folder.")
+@click.option("--out", type=click.Path(path_type=Path), help="Write log and numbers into this folder.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON alone.")
 @SETTINGS
 @sentences
@@ -82,7 +82,7 @@ def hil(
     rate = (f"time.tick_hz={tick_hz}",) if tick_hz is not None else ()
     chosen = load(scenario, parse_settings((*settings, *rate)))
     if conformance is not None and out is not None:
-        raise HarnessError("--out: a conformance run keeps no log")
+        raise HarnessError("--out: a conformance run writes no log")
     if conformance is not None:
         from sim.conformance.command import conformance as conform
 
@@ -94,7 +94,7 @@ def hil(
     latency = half_ms if latency_ms is None else latency_ms
     budgets = Budgets(jitter_ms, latency, slips, load_percent, memory_percent)
     boards = command.real_boards(real)
-    settings_of_run = command.HilSettings(
+    run_settings = command.HilSettings(
         chosen, bus, boards, arm, seconds, stimulus, deadman_s, budgets, warm_s, seed, out
     )
-    return command.hil(settings_of_run, as_json)
+    return command.hil(run_settings, as_json)

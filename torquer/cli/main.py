@@ -1,7 +1,7 @@
 """The ``torquer`` command. Errors are one sentence and exit code 2; a failed verdict is exit code 1.
 
-Each kind of input is checked where it enters, and told of there. What comes out of a command as any other
-exception is a defect of this program: it stays a traceback (exit code 1), which says where to look.
+Each kind of input is checked where it enters, and reported there. Any other exception that leaves a command
+is a defect of this program: it stays a traceback (exit code 1), which shows where.
 """
 
 import sys
@@ -29,7 +29,7 @@ COMMANDS = (
     "fsw",
     "board",
 )
-"""Each in the module of its name."""
+"""The commands; each is in the module of its name."""
 
 
 class Commands(click.Group):
@@ -40,14 +40,14 @@ class Commands(click.Group):
         return list(COMMANDS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """The command, from the module of its name: only what is asked for is loaded."""
+        """The command, from the module of its name: only that module is loaded."""
         if cmd_name not in COMMANDS:
             return None
         command: click.Command = getattr(import_module(f"torquer.cli.{cmd_name}"), cmd_name)
         return command
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """No name of anything holds a NUL."""
+        """Parse the arguments; none may hold a NUL character."""
         if any("\0" in word for word in args):
             raise click.UsageError("an argument holds a NUL character")
         return super().parse_args(ctx, args)
@@ -55,7 +55,7 @@ class Commands(click.Group):
     def main(self, *args: Any, **kwargs: Any) -> Any:  # noqa: ANN401  (as in click)
         """Run a command line and exit."""
         if isinstance(sys.stdout, TextIOWrapper):
-            sys.stdout.reconfigure(errors="backslashreplace")  # a path may hold what is no text
+            sys.stdout.reconfigure(errors="backslashreplace")  # a path need not be valid text
         try:
             code = super().main(*args, **{**kwargs, "standalone_mode": False})
         except click.ClickException as error:
@@ -64,7 +64,9 @@ class Commands(click.Group):
         except OSError as error:
             if error.errno not in DISK_FULL:
                 raise
-            click.echo(f"torquer: the disk takes no more ({error.strerror}); what was done is kept", err=True)
+            click.echo(
+                f"torquer: the disk is full ({error.strerror}); what was written before is kept", err=True
+            )
             code = 1
         except click.Abort:
             code = 130

@@ -1,4 +1,4 @@
-"""Options that commands share, and how what they raise becomes a sentence and an exit code."""
+"""Options that commands share, and the way from their errors to a sentence and an exit code."""
 
 import sys
 from collections.abc import Callable
@@ -39,7 +39,7 @@ VERIFY = click.option(
 
 
 def sentences(command: Callable[Parameters, int | None]) -> Callable[Parameters, None]:
-    """Turn what a user can mend into one sentence on stderr and an exit code."""
+    """Turn an error that the user can correct into one sentence on stderr and an exit code."""
 
     @wraps(command)
     def run(*args: Parameters.args, **kwargs: Parameters.kwargs) -> None:
@@ -60,8 +60,8 @@ def sentences(command: Callable[Parameters, int | None]) -> Callable[Parameters,
     return run
 
 
-def say_failures(failures: dict[str, str]) -> int:
-    """Say what failed, in one sentence; the exit code."""
+def report_failures(failures: dict[str, str]) -> int:
+    """Print what failed, in one sentence; return the exit code."""
     from sim.report.verdict import flight_failed
 
     if failures:

@@ -1,4 +1,4 @@
-"""``torquer plant``: the plant by hand, on a bus with a flight software of another process."""
+"""``torquer plant``: the plant alone, on a bus with the flight software of another process."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -7,8 +7,8 @@ import click
 
 from torquer.cli.options import BUSES, SEEDS, SETTINGS, sentences
 
-WAITING_SAID_S = 30.0
-"""How often it is said that nobody has come yet."""
+WAITING_NOTE_S = 30.0
+"""Interval of the notes that there is no flight software yet."""
 
 
 @click.command()
@@ -61,13 +61,13 @@ def plant(
 
 
 def _still_waiting() -> Callable[[float], None]:
-    """Says now and then that the flight software is still waited for."""
-    next_s = WAITING_SAID_S
+    """A function that prints from time to time that the plant still waits for the flight software."""
+    next_s = WAITING_NOTE_S
 
-    def say(waited_s: float) -> None:
+    def note(waited_s: float) -> None:
         nonlocal next_s
         if waited_s >= next_s:
-            next_s += WAITING_SAID_S
+            next_s += WAITING_NOTE_S
             click.echo(f"plant: no flight software yet, after {waited_s:.0f} s", err=True)
 
-    return say
+    return note

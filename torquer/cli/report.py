@@ -1,10 +1,10 @@
-"""``torquer report``: the report of a run, made anew."""
+"""``torquer report``: the report of a run, rebuilt."""
 
 from pathlib import Path
 
 import click
 
-from torquer.cli.options import SIGN, VERIFY, say_failures, sentences
+from torquer.cli.options import SIGN, VERIFY, report_failures, sentences
 
 
 @click.command()
@@ -13,7 +13,7 @@ from torquer.cli.options import SIGN, VERIFY, say_failures, sentences
 @VERIFY
 @sentences
 def report(run: Path, sign: Path | None, verify: Path | None) -> int:
-    """Rebuild summary.json and report.html of a run; that it was cut short is said, and no failure."""
+    """Rebuild summary.json and report.html of a run; a run that was cut short is noted, and no failure."""
     from sim.progress import progress
     from sim.record import run_dir
     from sim.record.binding import require_sources, sign_run
@@ -24,17 +24,17 @@ def report(run: Path, sign: Path | None, verify: Path | None) -> int:
 
     key = None if sign is None else private_key(sign)
     binding = require_sources(run, None if verify is None else public_key(verify))
-    bound_before = (run / run_dir.RUN).read_bytes()
+    before = (run / run_dir.RUN).read_bytes()
     with progress("replaying", run_dir.read_run(run)["ticks"]) as watch:
         summary = conclude(run, watch)
     if key is not None:
         sign_run(run, key)
-    elif signature_of(run / run_dir.RUN).exists() and (run / run_dir.RUN).read_bytes() != bound_before:
-        click.echo(f"note: {run_dir.RUN} is not what was signed any more: --sign KEY signs it anew", err=True)
+    elif signature_of(run / run_dir.RUN).exists() and (run / run_dir.RUN).read_bytes() != before:
+        click.echo(f"note: {run_dir.RUN} is no longer what was signed: --sign KEY signs it again", err=True)
     for line in binding.lines:
         click.echo(line)
     click.echo(summary_text(summary))
     click.echo(f"report: {run / run_dir.REPORT}")
     failed: dict[str, str] = summary.get("failures", {})
-    flown_badly = {name: clause for name, clause in failed.items() if name != Verdict.COMPLETE}
-    return say_failures(flown_badly) or int(not binding.holds)
+    failed_in_flight = {name: clause for name, clause in failed.items() if name != Verdict.COMPLETE}
+    return report_failures(failed_in_flight) or int(not binding.holds)

@@ -1,4 +1,4 @@
-"""``torquer scenarios``: the scenarios that ship."""
+"""``torquer scenarios``: the shipped scenarios."""
 
 import click
 
@@ -8,7 +8,7 @@ from torquer.cli.options import sentences
 @click.command()
 @sentences
 def scenarios() -> None:
-    """The scenarios that ship, one line each."""
+    """List the shipped scenarios, one line each."""
     from sim.scenario.schema import shipped
 
     for scenario in shipped():

@@ -1,10 +1,10 @@
-"""``torquer sil``: a scenario flown with software in the loop."""
+"""``torquer sil``: a scenario with software in the loop."""
 
 from pathlib import Path
 
 import click
 
-from torquer.cli.options import BUSES, SEEDS, SETTINGS, SIGN, say_failures, sentences
+from torquer.cli.options import BUSES, SEEDS, SETTINGS, SIGN, report_failures, sentences
 
 
 @click.command()
@@ -57,7 +57,7 @@ def sil(
                 click.echo(f"bus: {kind} (auto)", err=True)
             with progress(flying, ticks) as watch:
                 fly_processes(path, chosen, spec, hub, watch)
-    from sim.record.binding import sign_run  # the flight does not wait for what it does not need
+    from sim.record.binding import sign_run  # loaded after the flight, which does not need it
     from sim.report.conclude import conclude
     from sim.report.summary import summary_text
 
@@ -67,4 +67,4 @@ def sil(
         sign_run(path, key)
     click.echo(summary_text(summary))
     click.echo(f"report: {path / run_dir.REPORT}")
-    return say_failures(summary.get("failures", {}))
+    return report_failures(summary.get("failures", {}))

@@ -1,4 +1,4 @@
-"""``torquer validate``: every published figure and reference check."""
+"""``torquer validate``: the published figures and reference checks."""
 
 from pathlib import Path
 
