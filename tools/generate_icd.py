@@ -43,7 +43,7 @@ VALUES = {
 
 
 class IcdError(Exception):
-    """What the page is made of does not fit together."""
+    """The sources of the page contradict each other."""
 
 
 @cache
@@ -60,10 +60,10 @@ def texts(section: str, names: list[str]) -> dict[str, str]:
     """The texts of a section of rules.toml, which must be of exactly these names."""
     with (ROOT / "hil_stub" / "rules.toml").open("rb") as file:
         given = tomllib.load(file)[section]
-    strange = set(given) ^ set(names)
-    if strange:
+    unmatched = set(given) ^ set(names)
+    if unmatched:
         raise IcdError(
-            f"hil_stub/rules.toml: [{section}] and the code differ in {', '.join(sorted(strange))}"
+            f"hil_stub/rules.toml: [{section}] and the code differ in {', '.join(sorted(unmatched))}"
         )
     return given
 
@@ -111,7 +111,7 @@ def meaning(signal: Signal) -> str:
 
 
 def crc_example() -> str:
-    """A request as it goes over the wire, its CRC worked out byte by byte."""
+    """A request as on the bus, its CRC computed byte by byte."""
     request = CoilFire(level=-2, coil=1, seq=7, tick=100, duration_ms=3000, counter=5).encode()
     covered = request.can_id.to_bytes(2, "big") + request.data[:-1]
     registers = [f"{crc8(covered[: index + 1]) ^ 0xFF:02X}" for index in range(len(covered))]
@@ -190,9 +190,9 @@ def pulse_table(tick_hz: str) -> str:
     hz, duration_ms = int(tick_hz), {"1": 3000, "2": 2250}[tick_hz]
     fired = 100 * hz
     board = board_in(fired, hz, duration_ms)
-    shown = [*range(fired + 1, fired + 7), fired + 100 * hz, fired + 103 * hz - 1, fired + 103 * hz]
-    statuses = [(tick, status_of(board, tick)) for tick in range(fired + 1, shown[-1] + 1)]
-    return status_table("tick", [row for row in statuses if row[0] in shown])
+    ticks = [*range(fired + 1, fired + 7), fired + 100 * hz, fired + 103 * hz - 1, fired + 103 * hz]
+    statuses = [(tick, status_of(board, tick)) for tick in range(fired + 1, ticks[-1] + 1)]
+    return status_table("tick", [row for row in statuses if row[0] in ticks])
 
 
 def skip_table() -> str:

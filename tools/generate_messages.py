@@ -15,8 +15,8 @@ WIRE = Path(__file__).resolve().parent.parent / "fsw" / "wire"
 TARGET = WIRE / "messages.py"
 WHOLE_UNITS = (None, "", "ms", "s", "mA")
 ENUM_SIGNALS = ("mode", "severity", "reason", "result", "gain", "element")
-OF_ITS_MESSAGE = ("reason", "result")
-"""Enums that are named after the message too."""
+NAMED_BY_MESSAGE = ("reason", "result")
+"""Signals whose enum bears the name of the message too."""
 
 MODULE = '''"""Messages of the bus: generated from torquer.dbc by tools/generate_messages.py. Do not edit.
 
@@ -113,8 +113,8 @@ def python_type(signal: Signal) -> str:
 
 def fields_of(message: Message) -> list[Signal]:
     """The signals a message holds: in the order of their bits, the counter last, the CRC left out."""
-    kept = [signal for signal in message.signals if signal.name != "crc"]
-    return sorted(kept, key=lambda signal: (signal.name == "counter", signal.start))
+    fields = [signal for signal in message.signals if signal.name != "crc"]
+    return sorted(fields, key=lambda signal: (signal.name == "counter", signal.start))
 
 
 def field_line(signal: Signal) -> str:
@@ -171,7 +171,7 @@ def enum_texts(messages: list[Message]) -> list[str]:
         for signal in message.signals:
             if signal.name not in ENUM_SIGNALS or not signal.choices or message.name.endswith("_BOOT"):
                 continue
-            owner = camel(message.name) if signal.name in OF_ITS_MESSAGE else ""
+            owner = camel(message.name) if signal.name in NAMED_BY_MESSAGE else ""
             name = owner + camel(signal.name)
             members = (
                 f"    {str(label).upper()} = {value}" for value, label in sorted(signal.choices.items())

@@ -1,4 +1,4 @@
-"""Mutants of a module: its source with one small thing changed, as text, line by line the same otherwise."""
+"""Mutants of a module: its source with one change in one line."""
 
 import ast
 from collections.abc import Iterator
@@ -33,7 +33,7 @@ COMBINED = {
 }
 CALLED = {"min": "max", "max": "min", "any": "all", "all": "any"}
 Span = tuple[int, int]
-"""Where a piece of source begins and ends."""
+"""Start and end of a piece of source."""
 
 
 @dataclass(frozen=True)
@@ -47,18 +47,18 @@ class Mutant:
 
     @property
     def change(self) -> str:
-        """The change in words that outlast other changes of the file: the line before and after."""
+        """The change without its line number, so that it outlasts other changes of the file."""
         return f"{self.before} -> {self.after}"
 
 
 def mutants(source: str) -> Iterator[Mutant]:
     """Every mutant of a module, in the order of the source, each one once."""
-    seen = {source}
+    sources = {source}
     for (begin, end), text in sorted(_changes(source)):
         mutated = source[:begin] + text + source[end:]
-        if mutated in seen:
+        if mutated in sources:
             continue
-        seen.add(mutated)
+        sources.add(mutated)
         line = source.count("\n", 0, begin) + 1
         yield Mutant(line, _line(source, begin), _line(mutated, begin), mutated)
 
@@ -70,7 +70,7 @@ def _line(source: str, place: int) -> str:
 
 
 def _changes(source: str) -> Iterator[tuple[Span, str]]:  # noqa: PLR0912, PLR0915  (a case for each kind of node)
-    """(where, what stands there instead)."""
+    """(place, replacement) of each change."""
     lines = source.splitlines(keepends=True)
     starts = [0]
     for line in lines:
@@ -83,26 +83,26 @@ def _changes(source: str) -> Iterator[tuple[Span, str]]:  # noqa: PLR0912, PLR09
     def span(node: ast.AST) -> Span:
         return at(node.lineno, node.col_offset), at(node.end_lineno, node.end_col_offset)
 
-    for node in _executed(ast.parse(source)):
+    for node in _executable_nodes(ast.parse(source)):
         match node:
             case ast.Compare(ops=[op]) if type(op) in COMPARED:
-                between = (span(node.left)[1], span(node.comparators[0])[0])
-                yield _swapped(source, between, COMPARED[type(op)])
+                operands_gap = (span(node.left)[1], span(node.comparators[0])[0])
+                yield _swap_operator(source, operands_gap, COMPARED[type(op)])
             case ast.Compare():
                 for left, op, right in zip(
                     [node.left, *node.comparators], node.ops, node.comparators, strict=False
                 ):
-                    yield _swapped(source, (span(left)[1], span(right)[0]), COMPARED[type(op)])
+                    yield _swap_operator(source, (span(left)[1], span(right)[0]), COMPARED[type(op)])
             case ast.BoolOp(values=[*values]):
                 other = "or" if isinstance(node.op, ast.And) else "and"
                 for left, right in pairwise(values):
-                    yield _swapped(source, (span(left)[1], span(right)[0]), other)
+                    yield _swap_operator(source, (span(left)[1], span(right)[0]), other)
             case ast.BinOp() if type(node.op) in COMBINED:
-                between = (span(node.left)[1], span(node.right)[0])
-                yield _swapped(source, between, COMBINED[type(node.op)][1])
+                operands_gap = (span(node.left)[1], span(node.right)[0])
+                yield _swap_operator(source, operands_gap, COMBINED[type(node.op)][1])
             case ast.AugAssign() if type(node.op) in COMBINED:
-                between = (span(node.target)[1], span(node.value)[0])
-                yield _swapped(source, between, COMBINED[type(node.op)][1] + "=")
+                operands_gap = (span(node.target)[1], span(node.value)[0])
+                yield _swap_operator(source, operands_gap, COMBINED[type(node.op)][1] + "=")
             case ast.UnaryOp(op=ast.Not() | ast.USub() as op):
                 begin = span(node)[0]
                 yield (begin, begin + len("not " if isinstance(op, ast.Not) else "-")), ""
@@ -126,7 +126,7 @@ def _changes(source: str) -> Iterator[tuple[Span, str]]:  # noqa: PLR0912, PLR09
                 yield span(node), "pass"
             case ast.Return(value=value) if not isinstance(value, ast.Constant):
                 yield span(value), "None"
-            case ast.Assign(targets=[target]) if _is_kept(target):
+            case ast.Assign(targets=[target]) if _is_persistent(target):
                 yield span(node), "pass"
             case ast.Continue():
                 yield span(node), "break"
@@ -137,12 +137,12 @@ def _changes(source: str) -> Iterator[tuple[Span, str]]:  # noqa: PLR0912, PLR09
         if isinstance(node, ast.Call):
             for keyword in node.keywords:
                 if keyword.arg:
-                    yield _left_out(source, span(keyword)), ""
+                    yield _with_comma(source, span(keyword)), ""
 
 
-def _swapped(source: str, between: Span, operator: str) -> tuple[Span, str]:
+def _swap_operator(source: str, operands_gap: Span, operator: str) -> tuple[Span, str]:
     """Another operator between two operands, whatever brackets and line ends are there too."""
-    begin, end = between
+    begin, end = operands_gap
     gap = source[begin:end]
     old = gap.strip("() \t\n\\")
     comment = old.find("#")
@@ -151,19 +151,19 @@ def _swapped(source: str, between: Span, operator: str) -> tuple[Span, str]:
     return (begin + place, begin + place + len(old)), operator
 
 
-def _is_kept(target: ast.expr) -> bool:
-    """Whether what is assigned outlasts the function: an attribute, or an element."""
+def _is_persistent(target: ast.expr) -> bool:
+    """Whether the target of an assignment outlasts the function: an attribute, or an element."""
     return any(isinstance(node, ast.Attribute | ast.Subscript) for node in ast.walk(target))
 
 
-def _left_out(source: str, argument: Span) -> Span:
-    """An argument with the comma after it."""
+def _with_comma(source: str, argument: Span) -> Span:
+    """The span of an argument and the comma after it."""
     begin, end = argument
     after = source[end:].lstrip()
     return begin, len(source) - len(after) + 1 if after.startswith(",") else end
 
 
-def _executed(tree: ast.AST) -> Iterator[ast.AST]:
+def _executable_nodes(tree: ast.AST) -> Iterator[ast.AST]:
     """Every node but annotations, docstrings, decorators and imports."""
     for name, value in ast.iter_fields(tree):
         if name in ("annotation", "returns", "decorator_list", "type_comment"):
@@ -174,4 +174,4 @@ def _executed(tree: ast.AST) -> Iterator[ast.AST]:
             if isinstance(child, ast.Expr) and isinstance(child.value, ast.Constant):
                 continue
             yield child
-            yield from _executed(child)
+            yield from _executable_nodes(child)

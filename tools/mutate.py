@@ -1,10 +1,10 @@
-"""Mutation testing: change one small thing, run the tests that should notice, tell of each that none did.
+"""Mutation testing: change one thing, run the tests that should notice, report each change that none did.
 
     python tools/mutate.py [TARGET or MODULE ...] [--stale | --again | --quick] [--workers N] [--verbose]
     python tools/mutate.py --list | --page | --coverage FILE
 
-Writes docs/mutation.md from tests/mutation/results.json, which keeps what has been measured with the digest
-of the module it was measured on. Survivors that change nothing anybody can see stand in
+Writes docs/mutation.md from tests/mutation/results.json, which stores each result with the digest of the
+module it was measured on. Survivors that change nothing observable are listed in
 tests/mutation/survivors.toml, with reasons. Exit code 1 if a mutant survives that is not listed there, or a
 module has been changed since it was measured.
 """
@@ -42,29 +42,29 @@ _judge: Judge | None = None
 
 
 def judge_mutant(module: str, target: Target, source: str) -> tuple[str, str]:
-    """In a worker, which sees one module."""
+    """Judge one mutant, in a worker process that imports one module only."""
     global _judge  # noqa: PLW0603
     if _judge is None:
         _judge = Judge(module, [target.quick, target.slow])
     return _judge.judge(source)
 
 
-class Measuring(NamedTuple):
+class Measurement(NamedTuple):
     """How to measure.
 
     Args:
         workers: processes.
-        verbose: tell of every mutant, not only of those that survive.
+        verbose: print every mutant, not only those that survive.
     """
 
     workers: int
     verbose: bool
 
     def judge_all(self, module: str, target: Target, made: list[Mutant]) -> dict[str, Any]:
-        """What becomes of the mutants, in processes that see this module only."""
+        """Judge the mutants, in processes that import this module only."""
         counts, survived = Counter[str](), []
         with tempfile.TemporaryDirectory(prefix="mutation-") as folder:
-            tempfile.tempdir = folder  # of the copies, and of what the tests leave
+            tempfile.tempdir = folder  # for the copies, and for what the tests leave
             with ProcessPoolExecutor(self.workers) as pool:
                 outcomes = pool.map(partial(judge_mutant, module, target), [one.source for one in made])
                 for number, (mutant, (outcome, test)) in enumerate(zip(made, outcomes, strict=True), 1):
@@ -79,32 +79,32 @@ class Measuring(NamedTuple):
         return {"killed": counts[KILLED], "timeouts": counts[TIMEOUT], "survived": survived}
 
     def measure(self, module: str, target: Target) -> None:
-        """All mutants of a module; the result is kept."""
+        """Judge all mutants of a module, and store the result."""
         measured, made = digest(module), mutants_of(module)
         began = time.monotonic()
         outcome = self.judge_all(module, target, made)
         wall_s = round(time.monotonic() - began)
-        keep(module, outcome | {"sha256": measured, "mutants": len(made), "wall_s": wall_s})
+        store_result(module, outcome | {"sha256": measured, "mutants": len(made), "wall_s": wall_s})
 
     def measure_again(self, module: str, target: Target) -> None:
-        """Those that have survived, of a module that is as it was: tests may have been added."""
+        """Judge again the unlisted survivors of an unchanged module: tests may have been added."""
         result = stored(RESULTS)[module]
-        doubtful = [change for one, change in unlisted(stored(RESULTS)) if one == module]
-        made = [mutant for mutant in mutants_of(module) if mutant.change in doubtful]
+        unexplained = [change for one, change in unlisted(stored(RESULTS)) if one == module]
+        made = [mutant for mutant in mutants_of(module) if mutant.change in unexplained]
         if not made or module in outdated(stored(RESULTS)):
             return
         outcome = self.judge_all(module, target, made)
-        survived = [one for one in result["survived"] if one not in doubtful or one in outcome["survived"]]
+        survived = [one for one in result["survived"] if one not in unexplained or one in outcome["survived"]]
         timeouts = result["timeouts"] + outcome["timeouts"]
         killed = result["mutants"] - timeouts - len(survived)
-        keep(module, result | {"survived": survived, "timeouts": timeouts, "killed": killed})
+        store_result(module, result | {"survived": survived, "timeouts": timeouts, "killed": killed})
 
 
 def mutants_of(module: str) -> list[Mutant]:
     return list(mutants((ROOT / module).read_text(encoding="utf-8")))
 
 
-def keep(module: str, result: dict[str, Any]) -> None:
+def store_result(module: str, result: dict[str, Any]) -> None:
     store(RESULTS, stored(RESULTS) | {module: result})
     write_page()
 
@@ -114,9 +114,11 @@ def main() -> int:
     parser.add_argument("only", nargs="*", help="targets or modules; default all")
     parser.add_argument("--stale", action="store_true", help="only modules not measured as they are now")
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
-    parser.add_argument("--verbose", action="store_true", help="tell every mutant, and the test that noticed")
+    parser.add_argument(
+        "--verbose", action="store_true", help="print every mutant, and the test that noticed"
+    )
     parser.add_argument("--again", action="store_true", help="only what has survived and is not listed")
-    parser.add_argument("--quick", action="store_true", help="only the quick tests; the outcome is not kept")
+    parser.add_argument("--quick", action="store_true", help="only the quick tests; the result is not stored")
     parser.add_argument("--list", action="store_true", help="count mutants, run nothing")
     parser.add_argument("--page", action="store_true", help="write the page anew, run nothing")
     parser.add_argument("--coverage", type=Path, help="take branch coverage from this file, run nothing")
@@ -129,14 +131,14 @@ def main() -> int:
         if not options.only or target.name in options.only or module in options.only
         if old is None or module in old
     ]
-    measuring = Measuring(options.workers, options.verbose)
+    measurement = Measurement(options.workers, options.verbose)
     if options.list:
         for target, module in chosen:
             print(f"{target.name:<16} {module:<36} {len(mutants_of(module))} mutants")
         return 0
     if options.quick:
         for target, module in chosen:
-            measuring.judge_all(module, target._replace(slow=[]), mutants_of(module))
+            measurement.judge_all(module, target._replace(slow=[]), mutants_of(module))
         return 0
     if options.coverage:
         note_coverage(json.loads(options.coverage.read_text(encoding="utf-8")))
@@ -146,7 +148,7 @@ def main() -> int:
         write_page()
     else:
         for target, module in chosen:
-            (measuring.measure_again if options.again else measuring.measure)(module, target)
+            (measurement.measure_again if options.again else measurement.measure)(module, target)
     results = stored(RESULTS)
     for module in outdated(results):
         print(f"{module}: not measured as it is now")

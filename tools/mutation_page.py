@@ -1,4 +1,4 @@
-"""The page of mutation testing, docs/mutation.md: from what has been measured, and what is known of it."""
+"""The page of mutation testing, docs/mutation.md, from the results and the reasons of the survivors."""
 
 import hashlib
 import json
@@ -70,7 +70,7 @@ def store(path: Path, results: dict[str, Any]) -> None:
 
 
 def digest(module: str) -> str:
-    """Of the module, and of the mutants that it would have now."""
+    """The digest of the module and of the mutants that it has now."""
     source = (ROOT / module).read_text(encoding="utf-8")
     made = "".join(f"{mutant.line} {mutant.change}\n" for mutant in mutants(source))
     return hashlib.sha256((source + made).encode()).hexdigest()
@@ -111,17 +111,17 @@ def write_page() -> None:
 
 
 def note_coverage(measured: dict[str, Any]) -> None:
-    """Keep what ``coverage json`` has measured."""
-    kept = {}
+    """Store what ``coverage json`` has measured."""
+    by_module = {}
     for module, one in measured["files"].items():
         summary = one["summary"]
         if summary["num_statements"]:
-            kept[Path(module).as_posix()] = {
+            by_module[Path(module).as_posix()] = {
                 "statements": summary["num_statements"],
                 "branches": summary["num_branches"],
                 "percent": summary["percent_covered_display"],
             }
-    store(COVERAGE, kept)
+    store(COVERAGE, by_module)
 
 
 def _survived(results: dict[str, Any], module: str) -> list[str]:
@@ -133,7 +133,7 @@ def _row(
 ) -> str:
     if result is None:
         return f"| {part} | `{module}` | not measured | | | | |"
-    known = [change for change in result["survived"] if (module, change) in listed]
-    numbers = (result["mutants"], result["killed"], result["timeouts"], len(known))
-    cells = " | ".join(map(str, (*numbers, len(result["survived"]) - len(known))))
+    listed_changes = [change for change in result["survived"] if (module, change) in listed]
+    numbers = (result["mutants"], result["killed"], result["timeouts"], len(listed_changes))
+    cells = " | ".join(map(str, (*numbers, len(result["survived"]) - len(listed_changes))))
     return f"| {part} | `{module}`{' (changed since)' if old else ''} | {cells} |"

@@ -1,8 +1,8 @@
 """Runs the tests of one module on many versions of it: in a copy of the repository, each in a forked child.
 
-What costs is not the tests but getting to them. So the child is forked off a process that has imported the
-libraries, and of the project whatever does not need the module; tests that are quick or have noticed mutants
-before come first; a failure is told by its name alone, neither shrunk nor explained.
+Most of the time goes into start-up, not into the tests. So the child is forked off a process that has
+imported the libraries, and every module of the project that does not need the mutated one; tests that are
+quick or have noticed mutants before come first; a failure is reported by its name alone.
 """
 
 import ast
@@ -37,26 +37,26 @@ LOADED = "loaded.txt"
 """In the copy: names of the modules that the tests have imported."""
 
 LEAST_TIMEOUT_S = 10.0
-SLOWER = 8.0
-"""A mutant that takes so many times as long as no mutant is stopped, and counts as noticed."""
+TIMEOUT_RATIO = 8.0
+"""A mutant is stopped, and counts as noticed, when the tests take this many times as long as without it."""
 
 KILLED, SURVIVED, TIMEOUT = "killed", "survived", "timeout"
 
-SPARED = ("cacheprovider", "xdist", "unraisableexception", "hypothesispytest")
-OPTIONS = ["-x", "-q", "--tb=no", "--assert=plain", *(f"-pno:{plugin}" for plugin in SPARED)]
+UNUSED_PLUGINS = ("cacheprovider", "xdist", "unraisableexception", "hypothesispytest")
+OPTIONS = ["-x", "-q", "--tb=no", "--assert=plain", *(f"-pno:{plugin}" for plugin in UNUSED_PLUGINS)]
 
 
-class Order:
-    """Plugin of pytest: the most promising tests first; what became of each is written down.
+class PytestOrder:
+    """Plugin of pytest: runs the most promising tests first, and writes the outcome of each to a file.
 
     Args:
         seconds: how long each takes.
         noticed: how often each has failed so far.
-        told: file for what becomes of them.
+        outcomes: file for the outcomes.
     """
 
-    def __init__(self, seconds: dict[str, float], noticed: Counter[str], told: Path) -> None:
-        self._seconds, self._noticed, self._told = seconds, noticed, told
+    def __init__(self, seconds: dict[str, float], noticed: Counter[str], outcomes: Path) -> None:
+        self._seconds, self._noticed, self._outcomes = seconds, noticed, outcomes
 
     def pytest_collection_modifyitems(self, items: list) -> None:
         items.sort(
@@ -65,12 +65,12 @@ class Order:
 
     def pytest_runtest_logreport(self, report) -> None:
         if report.when == "call" or report.failed:
-            with self._told.open("a", encoding="utf-8") as file:
+            with self._outcomes.open("a", encoding="utf-8") as file:
                 file.write(f"{report.nodeid} {not report.failed} {report.duration:.4f}\n")
 
 
 class Stage:
-    """Tests that are run together, and what is known of each."""
+    """Tests that are run together, with the time that each takes and the mutants that it has noticed."""
 
     def __init__(self, tests: list[str]) -> None:
         self._tests = tests
@@ -80,26 +80,28 @@ class Stage:
         self.last_failed = ""
 
     def run(self, folder: Path, timeout_s: float, first: bool = False) -> str:
-        """Run them on what stands in the folder; the first run leaves what makes the next ones quick."""
-        told = folder / "told.txt"
-        told.unlink(missing_ok=True)
+        """Run them on the copy in the folder; the first run leaves compiled modules for the next ones."""
+        outcomes = folder / "outcomes.txt"
+        outcomes.unlink(missing_ok=True)
         child = os.fork()
         if child == 0:
             os.setsid()
             code = 1
             try:
-                code = _in_child(folder, self._tests, Order(self._seconds, self._noticed, told), first)
+                code = _in_child(
+                    folder, self._tests, PytestOrder(self._seconds, self._noticed, outcomes), first
+                )
             finally:
                 os._exit(code)
         code, late = _wait(child, timeout_s)
-        self._learn(told)
+        self._learn(outcomes)
         if late:
             return TIMEOUT
         return SURVIVED if code == 0 else KILLED
 
-    def _learn(self, told: Path) -> None:
+    def _learn(self, outcomes: Path) -> None:
         self.last_failed = "the tests cannot be collected"
-        for line in told.read_text(encoding="utf-8").splitlines() if told.exists() else ():
+        for line in outcomes.read_text(encoding="utf-8").splitlines() if outcomes.exists() else ():
             test, passed, seconds = line.rsplit(maxsplit=2)
             self.last_failed = test  # unless another follows
             if passed == "True":
@@ -109,7 +111,7 @@ class Stage:
 
 
 class Judge:
-    """Tells of one version of a module after the other whether the tests notice; one a process.
+    """Judges whether the tests notice versions of a module, one after the other; one judge a process.
 
     Args:
         module: path of the module in the repository.
@@ -133,8 +135,8 @@ class Judge:
         for first in (True, False):
             began = time.monotonic()
             if stage.run(self._folder, 900.0, first) != SURVIVED:
-                raise SystemExit(f"{self._module}: without a mutant too there fails {stage.last_failed}")
-            stage.timeout_s = max(LEAST_TIMEOUT_S, SLOWER * (time.monotonic() - began))
+                raise SystemExit(f"{self._module}: the tests fail without a mutant: {stage.last_failed}")
+            stage.timeout_s = max(LEAST_TIMEOUT_S, TIMEOUT_RATIO * (time.monotonic() - began))
             if first:
                 self._forget_compiled()
                 _import_all_but(self._module, self._folder)
@@ -166,7 +168,7 @@ def _copy_repository(folder: Path) -> None:
 
 
 def _prepare(folder: Path) -> None:
-    """Settings of every child; they outlast the worker's, which are gone with it."""
+    """Set up what every child uses."""
     from hypothesis import Phase, settings  # noqa: PLC0415
 
     settings.register_profile(
@@ -183,7 +185,7 @@ def _prepare(folder: Path) -> None:
 
 
 def _import_all_but(module: str, folder: Path) -> None:
-    """Import what children have imported, but for that module and what needs it, by way of others too."""
+    """Import what children have imported, except that module and whatever imports it, also indirectly."""
     wanted = (folder / LOADED).read_text(encoding="utf-8").split()
     dependent = _dependent_on(module, folder)
     for name in wanted:
@@ -204,10 +206,10 @@ def _dependent_on(module: str, folder: Path) -> set[str]:
             name = ".".join(path.relative_to(folder).with_suffix("").parts).removesuffix(".__init__")
             above = {name.rsplit(".", n)[0] for n in range(1, name.count(".") + 1)}
             needs[name] = above | set(_imported(ast.parse(path.read_text(encoding="utf-8"))))
-    found = {".".join(Path(module).with_suffix("").parts)}
-    while more := {name for name in needs if name not in found and needs[name] & found}:
-        found |= more
-    return found
+    dependent = {".".join(Path(module).with_suffix("").parts)}
+    while more := {name for name in needs if name not in dependent and needs[name] & dependent}:
+        dependent |= more
+    return dependent
 
 
 def _imported(tree: ast.AST) -> Iterator[str]:
@@ -219,7 +221,7 @@ def _imported(tree: ast.AST) -> Iterator[str]:
             yield from (f"{node.module}.{alias.name}" for alias in node.names)
 
 
-def _in_child(folder: Path, tests: list[str], order: Order, first: bool) -> int:
+def _in_child(folder: Path, tests: list[str], order: PytestOrder, first: bool) -> int:
     import pytest  # noqa: PLC0415
 
     sink = os.open(os.environ.get("MUTATION_OUTPUT", os.devnull), os.O_WRONLY | os.O_CREAT | os.O_APPEND)
@@ -237,7 +239,7 @@ def _in_child(folder: Path, tests: list[str], order: Order, first: bool) -> int:
 
 
 def _wait(child: int, timeout_s: float) -> tuple[int, bool]:
-    """(how the child has ended, whether it had to be ended)."""
+    """(exit code of the child, whether it was stopped after the timeout)."""
     deadline = time.monotonic() + timeout_s
     while True:
         ended, status = os.waitpid(child, os.WNOHANG)

@@ -1,9 +1,9 @@
-"""Planted schedulers: how surely and how fast ``sim.testing`` finds each, and that it blames no correct one.
+"""Planted schedulers: how reliably and how fast ``sim.testing`` finds each, and that correct ones pass.
 
     python tools/planted.py [NAME ...] [--runs N] [--workers N]
 
 A run is what a user would have: 100 examples, shrunk, from a seed of its own and without a database. Prints a
-table. Exit code 1 if a planted fault was missed, a correct scheduler blamed, or a run took 60 s or more.
+table. Exit code 1 if a planted fault was missed, a correct scheduler failed, or a run took 60 s or more.
 """
 
 import argparse
@@ -27,16 +27,16 @@ SCHEDULERS = {one.__name__: one for one in (*PLANTED, *CORRECT)}
 
 
 class Run(NamedTuple):
-    """One run of Hypothesis: how long it took, and what was blamed, None if nothing."""
+    """One run of Hypothesis: how long it took, and the first violation; None if there was none."""
 
     name: str
     seconds: float
-    blamed: str | None
+    violation: str | None
 
 
 def run(name: str, number: int, phases: tuple[Phase, ...] = tuple(Phase), examples: int = EXAMPLES) -> Run:
-    """What a user would run, from the seed ``number``."""
-    make, seen = SCHEDULERS[name], []
+    """Run the test as a user would, from the seed ``number``."""
+    make, violations = SCHEDULERS[name], []
     demands = dipoles() | unsound_dipoles() if name in UNSOUND else None
 
     @settings(
@@ -53,26 +53,26 @@ def run(name: str, number: int, phases: tuple[Phase, ...] = tuple(Phase), exampl
     @given(flights(demands=demands))
     def keeps_the_limits(flight):
         report = audit_scheduler(make, flight)
-        seen[:] = report.violations
+        violations[:] = report.violations
         assert report.ok
 
     began = time.monotonic()
     try:
         keeps_the_limits()
     except AssertionError:
-        return Run(name, time.monotonic() - began, str(seen[0]))
+        return Run(name, time.monotonic() - began, str(violations[0]))
     return Run(name, time.monotonic() - began, None)
 
 
 def row(name: str, runs: list[Run]) -> tuple[str, bool]:
-    """A row of the table, and whether it is as it must be."""
-    found = [one for one in runs if one.blamed is not None]
+    """A row of the table, and whether it is as required."""
+    found = [one for one in runs if one.violation is not None]
     longest_s = max(one.seconds for one in runs)
-    as_wanted = len(found) == (0 if SCHEDULERS[name] in CORRECT else len(runs)) and longest_s < LONGEST_S
-    shown = min((one.blamed for one in found), key=len, default="")
+    passed = len(found) == (0 if SCHEDULERS[name] in CORRECT else len(runs)) and longest_s < LONGEST_S
+    shortest = min((one.violation for one in found), key=len, default="")
     what = SCHEDULERS[name].__doc__.splitlines()[0]
-    text = f"{what:62} {len(found)} of {len(runs)}  {longest_s:5.1f} s  {shown}"
-    return text + ("" if as_wanted else "  <-- WRONG"), as_wanted
+    text = f"{what:62} {len(found)} of {len(runs)}  {longest_s:5.1f} s  {shortest}"
+    return text + ("" if passed else "  <-- WRONG"), passed
 
 
 def main() -> int:
@@ -82,27 +82,27 @@ def main() -> int:
     )
     parser.add_argument("--runs", type=int, default=4, help="seeds of each (4)")
     parser.add_argument("--workers", type=int, default=1, help="runs at a time (1)")
-    asked = parser.parse_args()
-    unknown = sorted(set(asked.names) - SCHEDULERS.keys())
+    options = parser.parse_args()
+    unknown = sorted(set(options.names) - SCHEDULERS.keys())
     if unknown:
         parser.error(f"no scheduler {', '.join(unknown)} in planted_schedulers.py")
-    names = asked.names or list(SCHEDULERS)
-    seeds = range(1, asked.runs + 1)
-    wanted = [(name, number) for name in names for number in seeds]
-    print(f"{'what is wrong with it':62} blamed in, longest run, and the shortest that is said of it")
-    right = True
-    with ProcessPoolExecutor(asked.workers) as pool:
-        done = pool.map(run, *zip(*wanted, strict=True))
+    names = options.names or list(SCHEDULERS)
+    seeds = range(1, options.runs + 1)
+    runs_to_do = [(name, number) for name in names for number in seeds]
+    print(f"{'fault':62} found in, longest run, shortest violation")
+    all_passed = True
+    with ProcessPoolExecutor(options.workers) as pool:
+        done = pool.map(run, *zip(*runs_to_do, strict=True))
         for name, runs in groupby(done, key=lambda one: one.name):
-            text, as_wanted = row(name, list(runs))
-            right = right and as_wanted
+            text, passed = row(name, list(runs))
+            all_passed = all_passed and passed
             print(text, flush=True)
     print(
         "OK"
-        if right
-        else f"FAIL: a fault missed, a correct one blamed, or a run of {LONGEST_S:.0f} s or more"
+        if all_passed
+        else f"FAIL: a fault missed, a correct scheduler failed, or a run of {LONGEST_S:.0f} s or more"
     )
-    return 0 if right else 1
+    return 0 if all_passed else 1
 
 
 if __name__ == "__main__":

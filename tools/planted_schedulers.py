@@ -1,6 +1,6 @@
-"""Schedulers as others might write them: some that keep the limits, and many with one fault each.
+"""Schedulers as users might write them: some that keep the limits, and many with one fault each.
 
-``tools/planted.py`` measures on them what ``sim.testing`` finds. They know its public interface alone.
+``tools/planted.py`` measures on them what ``sim.testing`` finds. They use its public interface alone.
 """
 
 from math import ceil
@@ -11,7 +11,7 @@ from sim.testing import Fire, ShippedScheduler
 
 
 class Timers:
-    """timers of its own; of the board it hears only the boots"""
+    """timers of its own; of the board it uses only the boots"""
 
     def __init__(self, limits):
         self.limits = limits
@@ -66,15 +66,15 @@ class Timers:
 
 
 class ByTheBoard(Timers):
-    """timers, and the board's word on its lockout"""
+    """timers, and the lockout that the board reports"""
 
     def boot_ticks(self):
         return self.backoff
 
     def free(self, coil, heard):
-        word = heard.status
-        told = word is not None and word.coil == coil and word.lockout_ms == 0
-        return told and super().free(coil, heard)
+        status = heard.status
+        reported_free = status is not None and status.coil == coil and status.lockout_ms == 0
+        return reported_free and super().free(coil, heard)
 
 
 class ByMilliseconds:
@@ -94,7 +94,7 @@ class ByMilliseconds:
             return []
         level = 1 + (size > 1.0) + (size > 4.0)
         wanted_ms = round(min(1.0, size / 8.0) * limits.pulse_ms)
-        duration_ms = max(ceil(1000 / hz), wanted_ms)  # shorter than a tick no status can tell
+        duration_ms = max(ceil(1000 / hz), wanted_ms)  # no status can show less than a tick
         self.end = now + duration_ms * hz
         for one in range(3):
             if limits.shared or one == coil:
@@ -145,21 +145,21 @@ class TwoOnEqualValues(Timers):
 
 
 class BelowCoilZero(Timers):
-    """coil -1 where two are asked for alike"""
+    """coil -1 where two demands are equal in size"""
 
     def fires(self, coil, demand):
         return [coil if sum(abs(m) == abs(demand[coil]) for m in demand) == 1 else -1]
 
 
 class AboveCoilTwo(Timers):
-    """coil 3 where all are asked for alike"""
+    """coil 3 where all demands are equal in size"""
 
     def fires(self, coil, demand):
         return [coil if len({abs(m) for m in demand}) > 1 else 3]
 
 
 class LevelFour(Timers):
-    """level 4 where more is asked than the coils have"""
+    """level 4 for a demand beyond full scale"""
 
     def level(self, m_am2):
         level = min(4, ceil(abs(m_am2) / 8.0 * 3))
@@ -234,14 +234,14 @@ class ForgetsThePulse(Timers):
 
 
 class DeafToBoots(Timers):
-    """does not hear that the board has booted"""
+    """ignores that the board has booted"""
 
     def step(self, heard):
         return super().step(heard._replace(booted=False))
 
 
 class PerCoil(Timers):
-    """back-off of each coil for itself where it is shared"""
+    """back-off per coil where it is shared"""
 
     def locks(self, fired, coil):
         return coil == fired
@@ -272,7 +272,7 @@ class WholeMilliseconds(Timers):
 
 
 class SixteenBits(Timers):
-    """keeps ticks in 16 bits, in which they start anew"""
+    """counts ticks in 16 bits, which overflow"""
 
     def step(self, heard):
         return super().step(heard._replace(tick=heard.tick & 0xFFFF))
@@ -289,7 +289,7 @@ class ShortFloats(Timers):
 
 
 class CountsInAByte(Timers):
-    """counts pulses in a byte, and is free when the count is nought"""
+    """counts pulses in a byte, without a back-off where the count is zero"""
 
     def backoff_ticks(self, level):
         return self.backoff if self.fired & 0xFF else 0
@@ -309,14 +309,14 @@ class SendsAgain(Timers):
 
 
 class SeesOneCoil(Timers):
-    """does not see that another coil is on where the back-off is of each coil"""
+    """ignores that another coil is on where the back-off is per coil"""
 
     def free(self, coil, heard):
         return heard.tick >= self.ready[coil]
 
 
 class Credit(Timers):
-    """no back-off after a pulse that was long waited for"""
+    """no back-off after a pulse that came after a long pause"""
 
     fired_at = 0
 
@@ -337,7 +337,7 @@ class DurationRoundedUp(Timers):
 
 
 class TickZero(Timers):
-    """takes a boot in tick 0 for none"""
+    """ignores a boot in tick 0"""
 
     def step(self, heard):
         if self.ready is None and heard.tick == 0:
@@ -347,7 +347,7 @@ class TickZero(Timers):
 
 
 class HearsBootsLate(Timers):
-    """hears a tick late that the board has booted"""
+    """takes a boot of the board a tick late"""
 
     booted = False
 
@@ -357,7 +357,7 @@ class HearsBootsLate(Timers):
 
 
 class NoNumber(Timers):
-    """level 0 for a demand that is no number"""
+    """level 0 for a demand that is not a number"""
 
     def level(self, m_am2):
         return (m_am2 > 0.0) * 3 - (m_am2 < 0.0) * 3
@@ -396,4 +396,4 @@ PLANTED = (
     NoNumber,
 )
 UNSOUND = frozenset({"NoNumber"})
-"""Flown with demands that are no numbers besides."""
+"""Tested with demands that are not finite too."""

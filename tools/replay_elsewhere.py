@@ -1,8 +1,7 @@
-"""Does a log replay where the processor can do other things? Flies one, replays it so, writes docs/replay.md.
+"""Replays logs with other processor features and other versions of Python; writes docs/replay.md.
 
-Each variant is this machine with something switched off, or another Python: the nearest to another machine
-that one machine can be. Commands must be the same everywhere; where telemetry and state end to be the same to
-the last bit is told.
+Each variant is this machine with something switched off, or another Python: one machine cannot come closer to
+another. Commands must be equal everywhere; the page says where telemetry and state first differ in a bit.
 """
 
 import argparse
@@ -56,7 +55,7 @@ VARIANTS = (
 
 
 def main() -> int:
-    """Fly, replay in every way, write the page; 1 if a command differs anywhere."""
+    """Fly, replay in every variant, write the page; 1 if a command differs anywhere."""
     arguments = _arguments()
     try:
         check_file(arguments.out)
@@ -92,9 +91,9 @@ def _arguments() -> argparse.Namespace:
 
 def _fly(scenario: str, orbits: float, run: Path) -> None:
     print(f"{scenario}: flying", file=sys.stderr)
-    words = ("sil", scenario, "--bus", "virtual", "--orbits", str(orbits), "--out", str(run))
-    if (done := _torquer(Variant("as flown"), *words)).returncode:
-        sys.exit(f"{scenario} is not flown: {done.stderr.strip()}")
+    arguments = ("sil", scenario, "--bus", "virtual", "--orbits", str(orbits), "--out", str(run))
+    if (done := _torquer(Variant("as flown"), *arguments)).returncode:
+        sys.exit(f"{scenario} does not fly: {done.stderr.strip()}")
 
 
 def _replay(scenario: str, run: Path, variant: Variant) -> tuple[str, str, str, str]:
@@ -104,9 +103,9 @@ def _replay(scenario: str, run: Path, variant: Variant) -> tuple[str, str, str, 
     return scenario, variant.name, verdict, detail
 
 
-def _torquer(variant: Variant, *words: str) -> subprocess.CompletedProcess[str]:
+def _torquer(variant: Variant, *arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        [variant.python, "-m", "torquer.cli.main", *words],
+        [variant.python, "-m", "torquer.cli.main", *arguments],
         env=os.environ | variant.environment,
         capture_output=True,
         text=True,
@@ -115,16 +114,16 @@ def _torquer(variant: Variant, *words: str) -> subprocess.CompletedProcess[str]:
 
 
 def _verdict(done: subprocess.CompletedProcess[str]) -> tuple[str, str]:
-    """The verdict of ``torquer replay`` and what it tells beside; its error where it gave none."""
-    told = done.stdout.strip().splitlines()
-    if not told:
-        return "failed", (done.stderr.strip().splitlines() or ["no word"])[-1]
-    first = told[0]
+    """The verdict of ``torquer replay`` and its details; its error where it gave none."""
+    lines = done.stdout.strip().splitlines()
+    if not lines:
+        return "failed", (done.stderr.strip().splitlines() or ["no output"])[-1]
+    first = lines[0]
     if first.startswith("bit-exact"):
         return "bit-exact", ""
     if first.startswith("command-exact"):
         return "command-exact", f"first bit: {first.rpartition('): ')[2]}"
-    return "differs", "; ".join(told)
+    return "differs", "; ".join(lines)
 
 
 def _version(python: str) -> str:

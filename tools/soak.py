@@ -1,4 +1,4 @@
-"""Flies for long: does memory stay flat, is nobody late, are the limits kept? Writes docs/soak.md.
+"""Long runs: does memory stay flat, is every answer in time, are the limits kept? Writes docs/soak.md.
 
 Two runs: simulated hours on the virtual bus, as fast as they go, and wall time in real time on the bench,
 armed, at 10 Hz. Both logs are then audited and replayed. Exit code 1 when a budget is broken.
@@ -42,23 +42,23 @@ MEASURED = "soak.json"
 BENCH_HZ = 10
 STEP_BUDGET_S = 1.0 / BENCH_HZ
 WARM_PART, WARM_MOST_S = 0.05, 60.0
-"""Of a run, and of wall time: by then all has been loaded and every mode flown that soon comes."""
+"""Fraction of a run, and wall time at most, until memory counts as warm: by then all modules are loaded."""
 
 Json = dict[str, Any]
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
-    """One of the two runs: what it was, what was measured, and the memory of its processes."""
+class RunResult:
+    """The result of one of the two runs: its description, its budgets, and the memory of its processes."""
 
     title: str
-    said: str
+    description: str
     lines: list[BudgetLine]
     memory: Json
 
 
 class TimedBus(VirtualBus):
-    """The virtual bus, with the processor time of each step looked at: not gathered, memory shall be flat."""
+    """The virtual bus, which measures the processor time of each step without storing it, for flat memory."""
 
     def __init__(self, node: FlightNode) -> None:
         super().__init__(node)
@@ -97,53 +97,55 @@ def fly(folder: Path, name: str, hours: float) -> None:
 
 
 def bench(folder: Path, name: str, wall_s: float, priority: int | None, words: Sequence[str]) -> None:
-    """Wall time on the bench: every node a process; its verdict is in hil.json, whatever its exit code."""
+    """Wall time on the bench, every node a process; the result is in hil.json, whatever the exit code."""
     warm_s = min(WARM_MOST_S, WARM_PART * wall_s)
     command = [sys.executable, "-m", "torquer.cli.main", "hil", name, "--tick-hz", str(BENCH_HZ), "--arm"]
     command += ["--seconds", str(wall_s), "--warm-s", str(warm_s), "--out", str(folder), "--json", *words]
     try:
         subprocess.run(
-            command, stdout=subprocess.DEVNULL, check=False, preexec_fn=lambda: _in_real_time(priority)
+            command, stdout=subprocess.DEVNULL, check=False, preexec_fn=lambda: _set_real_time(priority)
         )
     except subprocess.SubprocessError:
         raise HarnessError(f"--priority {priority}: not allowed here") from None
 
 
-def _in_real_time(priority: int | None) -> None:
+def _set_real_time(priority: int | None) -> None:
     if priority is not None:
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
 
 
-def flight_part(folder: Path, memory_percent: float) -> Part:
+def flight_part(folder: Path, memory_percent: float) -> RunResult:
     """Judge a flight."""
     run, measured = run_dir.read_run(folder), _json(folder / MEASURED)
-    flown, growth = run["flown"], measured["growth_percent"]
-    hours = flown["ticks"] / run_dir.read_scenario(folder).time.tick_hz / 3600.0
-    said = (
-        f"`{run['scenario']}` on the virtual bus, {hours:.4g} simulated hours in {flown['wall_s']:.0f} s: "
-        f"{3600.0 * hours / flown['wall_s']:.0f} times real time. Longest step of the flight software: "
+    flight, growth = run["flown"], measured["growth_percent"]
+    hours = flight["ticks"] / run_dir.read_scenario(folder).time.tick_hz / 3600.0
+    description = (
+        f"`{run['scenario']}` on the virtual bus, {hours:.4g} simulated hours in {flight['wall_s']:.0f} s: "
+        f"{3600.0 * hours / flight['wall_s']:.0f} times real time. Longest step of the flight software: "
         f"{1000.0 * measured['steps']['longest_s']:.1f} ms of processor time. "
-        + _memory_said(measured["memory"])
+        + _memory_text(measured["memory"])
     )
     lines = [
-        BudgetLine("ticks without an answer", flown["slips"], 0),
+        BudgetLine("ticks without an answer", flight["slips"], 0),
         BudgetLine(f"steps above {1000.0 * STEP_BUDGET_S:g} ms", measured["steps"]["above"], 0),
         *(BudgetLine("memory, growth [%]", percent, memory_percent) for percent in growth.values()),
     ]
-    return Part(f"{hours:.4g} simulated hours", said, lines + _of_the_log(folder), measured["memory"])
+    return RunResult(
+        f"{hours:.4g} simulated hours", description, lines + _of_the_log(folder), measured["memory"]
+    )
 
 
-def bench_part(folder: Path) -> Part:
+def bench_part(folder: Path) -> RunResult:
     """Judge a bench."""
     numbers = _json(folder / "hil.json")
     seconds = numbers["ticks"] / numbers["tick_hz"]
     load = numbers["memory"]["load_average"]
     jitter, latency, bus = numbers["jitter_ms"], numbers["latency_ms"], numbers["bus_load_percent"]
-    said = (
+    description = (
         f"`{numbers['scenario']}` on the bench, armed, {seconds:.0f} s at {numbers['tick_hz']} Hz on "
         f"`{numbers['bus'].partition(':')[0]}`; scheduling: {numbers['scheduling']}; load average of the "
         f"machine {sum(load) / len(load):.1f} in the mean, {max(load):.1f} at most. "
-        f"{_memory_said(numbers['memory'])}\n\n"
+        f"{_memory_text(numbers['memory'])}\n\n"
         "| [ms] | p50 | p99 | max |\n|---|---|---|---|\n"
         + _row("jitter of SYNC", *(f"{jitter[part]:.3f}" for part in ("p50", "p99", "max")))
         + "\n"
@@ -152,15 +154,17 @@ def bench_part(folder: Path) -> Part:
     )
     lines = [BudgetLine(line["name"], line["measured"], line["allowed"]) for line in numbers["budgets"]]
     lines.append(BudgetLine("nodes that ended before their time", len(numbers["ended"]), 0))
-    return Part(f"{seconds:.0f} s of wall time", said, lines + _of_the_log(folder), numbers["memory"])
+    return RunResult(
+        f"{seconds:.0f} s of wall time", description, lines + _of_the_log(folder), numbers["memory"]
+    )
 
 
 def _of_the_log(folder: Path) -> list[BudgetLine]:
-    """What auditor and replay say of a run."""
+    """The budgets of a log: its audit and its replay."""
     log, scenario = folder / run_dir.BUS_LOG, run_dir.read_scenario(folder)
     report = check(folder, None)
     with progress("replaying", run_dir.read_run(folder)["ticks"]) as watch:
-        shown = replay(log, flight_config(flight_table(scenario)), lambda state: watch(state.tick))
+        result = replay(log, flight_config(flight_table(scenario)), lambda state: watch(state.tick))
     mark = f" {CoilRefused.ID:03X}#".encode()
     with log.open("rb") as lines:
         refused = sum(mark in line for line in lines)
@@ -171,12 +175,12 @@ def _of_the_log(folder: Path) -> list[BudgetLine]:
             "log cut or altered", int(not (report.complete and report.genuine and not report.mismatches)), 0
         ),
         BudgetLine(
-            f"replay of {shown.ticks} ticks not bit-exact", int(not (shown.bit_exact and shown.ended)), 0
+            f"replay of {result.ticks} ticks not bit-exact", int(not (result.bit_exact and result.ended)), 0
         ),
     ]
 
 
-def _memory_said(memory: Json) -> str:
+def _memory_text(memory: Json) -> str:
     kib, warm = memory["kib"], memory["warm"]
     parts = [
         f"{name} {samples[warm] / 1024.0:.1f}, {max(samples) / 1024.0:.1f}"
@@ -186,7 +190,7 @@ def _memory_said(memory: Json) -> str:
     return f"Memory once warm and at most [MiB]: {'; '.join(parts)}." if parts else ""
 
 
-def page(parts: Sequence[Part], picture: str) -> str:
+def page(parts: Sequence[RunResult], picture: str) -> str:
     """docs/soak.md."""
     text = [
         "# Long runs",
@@ -205,7 +209,7 @@ def page(parts: Sequence[Part], picture: str) -> str:
             "",
             f"## {part.title}",
             "",
-            part.said,
+            part.description,
             "",
             "| budget of | measured | allowed | |",
             "|---|---|---|---|",
@@ -221,9 +225,9 @@ def _row(*cells: str) -> str:
     return f"| {' | '.join(cells)} |"
 
 
-def draw(parts: Sequence[Part], path: Path) -> None:
+def draw(parts: Sequence[RunResult], path: Path) -> None:
     """Memory of each process relative to when it was warm."""
-    from matplotlib.figure import Figure  # noqa: PLC0415  (not loaded while memory is looked at)
+    from matplotlib.figure import Figure  # noqa: PLC0415  (not loaded while memory is measured)
 
     from sim.drawing.canvas import style  # noqa: PLC0415
 
@@ -245,7 +249,7 @@ def _json(path: Path) -> Json:
     try:
         content: Json = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise HarnessError(f"{path}: cannot be read as what was measured ({error})") from None
+        raise HarnessError(f"{path}: cannot be read as a result ({error})") from None
     return content
 
 

@@ -60,7 +60,7 @@ def broken(part):
 def test_a_flight_keeps_all_and_says_how_fast_it_was(flight):
     part = soak.flight_part(flight, 50.0)
     assert broken(part) == []
-    assert "0.1 simulated hours" in part.said
+    assert "0.1 simulated hours" in part.description
     assert {line.name for line in part.lines} >= {"ticks without an answer", "memory, growth [%]"}
     assert "replay of 360 ticks not bit-exact" in {line.name for line in part.lines}
     assert len(part.memory["kib"]["flight"]) == 6
