@@ -29,7 +29,7 @@ def as_json(analysis: Analysis) -> Json:
         "multipliers": [[value.real, value.imag] for value in analysis.multipliers.tolist()],
         "settling_orbits": analysis.settling_orbits,
         "stabilised": analysis.stabilised,
-        "degree_of_stability_gains_off": analysis.chosen.sure,
+        "degree_of_stability_gains_off": analysis.chosen.worst_degree,
         "gains_off": MARGIN,
         "margins": {
             "k_w_factor": analysis.margins.k_w,
@@ -95,7 +95,8 @@ def _verdict(analysis: Analysis) -> str:
         return ""
     best = found.best
     sharp = (
-        f", and off by {MARGIN:.0%} they give {best.sure:+.3f}: a strip that no model of the field hits"
+        f", and off by {MARGIN:.0%} they give {best.worst_degree:+.3f}: "
+        "a strip that no model of the field hits"
         if best.degree < -NEUTRAL
         else ""
     )
@@ -126,7 +127,7 @@ def _row(name: str, one: Candidate) -> tuple[str, str, str, str, str, str]:
         f"{one.gains.k_w:.6g}",
         f"{one.gains.k_a:.6g}",
         f"{one.degree:+.4f}",
-        f"{one.sure:+.4f}",
+        f"{one.worst_degree:+.4f}",
         "never" if orbits is None else f"{orbits:.2f} orbits",
     )
 
@@ -202,7 +203,7 @@ def _candidate(one: Candidate) -> Json:
     return {
         "gains": _gains(one.gains),
         "degree_of_stability": one.degree,
-        "degree_of_stability_gains_off": one.sure,
+        "degree_of_stability_gains_off": one.worst_degree,
     }
 
 

@@ -18,7 +18,7 @@ class Body:
     """A satellite on a circular orbit.
 
     Attributes:
-        name: what it is called.
+        name: its name.
         inertia_kgm2: rows of the inertia tensor, body axes; nominal attitude is body = orbit, with axis 1 the
             radius, 2 along-track, 3 the orbit's normal.
         altitude_km: above 6378.137 km.
@@ -74,4 +74,4 @@ UNSTABLE_BODIES = tuple(
         ("few tons, gravity gradient unstable", (3500.0, 3000.0, 1500.0), 700.0, 98.2),
     )
 )
-"""The same bodies turned so that the gravity gradient drives them away (A > B > C)."""
+"""The same bodies turned so that the gravity gradient turns them over (A > B > C)."""

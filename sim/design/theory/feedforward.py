@@ -1,10 +1,9 @@
-"""The least attitude error that a constant torque leaves: over all periodic dipoles, by least squares.
+"""The least attitude error under a constant torque, over all periodic dipoles, by least squares.
 
-A dipole gives no torque along the field, so a constant torque d can only be answered on the mean, by a
+A dipole gives no torque along the field, so a constant torque d can only be balanced on the mean, by a
 periodic motion. With x' = A x + J^-1 (v x B + d / w0^2) as in ``linear``, v = m B0 / w0^2, all of period
 2 pi, Fourier collocation at N nodes makes the motion linear in the dipoles at the nodes; their least squares
-is the answer. No law does better for long, on the direct dipole's field and for small
-angles.
+is the result. In the long run no law does better, on the direct dipole's field and for small angles.
 """
 
 from typing import NamedTuple
@@ -15,13 +14,13 @@ from sim.design.theory.bodies import Body, Vec3
 from sim.design.theory.linear import Array, dipole_field, free_motion, skew
 
 NODES = 32
-"""Nodes an orbit: the field has two harmonics, the answer a few more."""
+"""Nodes an orbit: the field has two harmonics, the response a few more."""
 TOLERANCE = 1e-9
-"""Dipoles that do less than this part of the most effective one are not used."""
+"""Dipoles with less than this fraction of the effect of the most effective one are not used."""
 
 
-class Answer(NamedTuple):
-    """The best periodic answer to a constant torque, at the nodes u = 2 pi k / N.
+class PeriodicResponse(NamedTuple):
+    """The best periodic response to a constant torque, at the nodes u = 2 pi k / N.
 
     Attributes:
         rms_rad: root mean square of |theta| over an orbit.
@@ -34,13 +33,13 @@ class Answer(NamedTuple):
     dipole_am2: Array
 
 
-def least_error(body: Body, torque_nm: Vec3, nodes: int = NODES) -> Answer:
+def least_error(body: Body, torque_nm: Vec3, nodes: int = NODES) -> PeriodicResponse:
     """The periodic dipole with the least mean square of theta under a constant torque.
 
     Args:
         body: the satellite and its orbit.
-        torque_nm: constant torque, body axes, beside what rests on the nominal attitude.
-        nodes: an even number of them.
+        torque_nm: constant torque, body axes, beside that on the body at rest in the nominal attitude.
+        nodes: their number, even.
     """
     u = 2.0 * np.pi / nodes * np.arange(nodes, dtype=np.float64)
     w0, inverse = body.rate_radps, np.linalg.inv(np.asarray(body.inertia_kgm2))
@@ -53,7 +52,7 @@ def least_error(body: Body, torque_nm: Vec3, nodes: int = NODES) -> Answer:
     dipoles = np.linalg.lstsq(rows, -turned.ravel(), rcond=TOLERANCE)[0]
     theta = turned + (rows @ dipoles).reshape(nodes, 3)
     rms = float(np.sqrt(np.mean(np.sum(theta**2, axis=1))))
-    return Answer(rms, theta, dipoles.reshape(nodes, 3) * w0**2 / body.field_t)
+    return PeriodicResponse(rms, theta, dipoles.reshape(nodes, 3) * w0**2 / body.field_t)
 
 
 def _derivative(nodes: int) -> Array:

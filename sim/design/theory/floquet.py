@@ -2,8 +2,8 @@
 
 The monodromy matrix of x' = A(u) x, A of period 2 pi, is the product of the transition matrices of equal
 steps, each by the Radau IIA method of five stages (order 9). It is stiffly stable: strong damping of one axis
-(a boom) asks for no shorter steps. All steps, and any number of systems, are computed at once; the product is
-taken last.
+(a boom) does not need shorter steps. All steps, and any number of systems, are computed at once; the product
+is taken last.
 
 Source: Hairer, Wanner 1996, Solving Ordinary Differential Equations II, IV.5.
 """
@@ -26,7 +26,7 @@ NEUTRAL = 1e-9
 """A degree of stability within it of zero is neither stable nor unstable."""
 
 SETTLED = 0.05
-"""A deviation has settled once it has fallen to this part of itself."""
+"""A deviation has settled once it has fallen to this fraction."""
 
 
 def monodromy(system: System, steps: int = STEPS) -> Array:

@@ -8,8 +8,8 @@ B = J^-1 (-[B x]) in the rows of w, and the cost, the integral over u of
 The periodic solution of the Riccati equation is reached from the end of many orbits backwards. A step is
 exact: with Phi the transition matrix of the Hamiltonian system, P_k = (Phi22 - P Phi12)^-1 (P Phi11 - Phi21).
 
-A constant disturbance torque may be known: as states that nothing controls. Their own block of P grows
-without end and matters to no gain; the blocks of the motion and of the coupling converge.
+A known constant disturbance torque is added as uncontrollable states. Their own block of P grows without
+bound and does not affect the gains; the blocks of the motion and of the coupling converge.
 
 Source: Bittanti, Colaneri 2009, Periodic Systems; the step: Schiff, Shnider 1999.
 """
@@ -37,7 +37,7 @@ CONVERGED = 1e-10
 
 
 class Augmented(Enum):
-    """What the law knows beside rate and attitude."""
+    """The states of the law beside rate and attitude."""
 
     NOTHING = "nothing"
     INTEGRAL = "integral of theta"
@@ -112,22 +112,22 @@ def best_effort(body: Body, augmented: Augmented = Augmented.NOTHING) -> tuple[W
     Raises:
         NotConvergedError: there is no law with any of them.
     """
-    found = []
+    laws = []
     for effort in EFFORTS:
         weights = Weights(effort=float(effort))
         with suppress(NotConvergedError):
             law = design(body, weights, augmented)
-            found.append((float(degree_of_stability(monodromy(closed_loop(body, law)))), weights))
-    if not found:
+            laws.append((float(degree_of_stability(monodromy(closed_loop(body, law)))), weights))
+    if not laws:
         raise NotConvergedError("there is no periodic regulator with any of the efforts tried")
-    degree, weights = min(found, key=lambda one: one[0])
+    degree, weights = min(laws, key=lambda one: one[0])
     return weights, degree
 
 
 def closed_loop(body: Body, law: PeriodicLaw) -> System:
     """The matrix A(u) of the motion under a periodic law, the gain between its nodes by Fourier's series.
 
-    Six states, or nine with the integral of theta; what is known of a disturbance does not change stability.
+    Six states, or nine with the integral of theta; a known disturbance does not change stability.
     """
     size = 9 if law.augmented is Augmented.INTEGRAL else 6
     free = free_motion(body, size)
@@ -147,7 +147,7 @@ def closed_loop(body: Body, law: PeriodicLaw) -> System:
 
 
 def _motion(body: Body, augmented: Augmented) -> Array:
-    """The constant matrix of the motion and of what is known beside it."""
+    """The constant matrix of the motion and of the known disturbance."""
     if augmented is not Augmented.TORQUE:
         return free_motion(body, 9 if augmented is Augmented.INTEGRAL else 6)
     matrix = np.zeros((9, 9))
@@ -171,15 +171,15 @@ def _actuation(u: Array, body: Body, size: int) -> Array:
 def _periodic_riccati(steps: Array, n: int) -> Array:
     """The periodic solution at the nodes, (N, n, n), from the Hamiltonian system's transition matrices."""
     solution = np.zeros((len(steps), n, n))
-    p, ours = np.zeros((n, n)), slice(0, 6)
+    p, motion = np.zeros((n, n)), slice(0, 6)
     for _ in range(ORBITS):
-        before = solution[0, ours].copy()
+        before = solution[0, motion].copy()
         for k in range(len(steps) - 1, -1, -1):
             phi = steps[k]
             p = np.linalg.solve(phi[n:, n:] - p @ phi[:n, n:], p @ phi[:n, :n] - phi[n:, :n])
             p = 0.5 * (p + p.T)
             solution[k] = p
-        change, size = np.abs(solution[0, ours] - before).max(), np.abs(solution[0, ours]).max()
+        change, size = np.abs(solution[0, motion] - before).max(), np.abs(solution[0, motion]).max()
         if not size < BEYOND:
             break
         if change <= CONVERGED * size:

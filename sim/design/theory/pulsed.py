@@ -1,19 +1,19 @@
-"""The pulsed actuator: short pulses and long pauses in place of a continuous dipole, by Floquet theory too.
+"""The pulsed actuator by Floquet theory: short pulses and long pauses in place of a continuous dipole.
 
-Between pulses the body moves freely, x' = A0 x, and the law's torque T(u) = -F(u) x is only kept as an
-impulse that is owed, r' = T - r / tau. A pulse of length T_p at u_k pays what the coils can, by the torque
+Between pulses the body moves freely, x' = A0 x, and the law's torque T(u) = -F(u) x is only accumulated as an
+owed impulse, r' = T - r / tau. A pulse of length T_p at u_k pays what the coils can, by the torque
 p / T_p, with p = P_k r nearest to r, |J^-1 (r - p)| least, among the torques the coils can give at u_k,
 
     all coils at once: p normal to b;     one coil in turn: p along e_j x b, j = 1, 2, 3, 1, ...
 
-and r - p stays owed. That is the scheduler that flies, less the steps of its levels; and it picks the coil by
+and r - p stays owed. This is the onboard scheduler without the steps of its levels; that picks the coil by
 need, not in turn. Everything is linear in (x, r), so one period (pulse and pause) is a matrix, and the
 periods of an orbit multiply to the monodromy matrix. Pulses and orbit do not keep step (at 800 km 58.8
 periods of 103 s make an orbit): the analysis takes the nearest whole number of periods an orbit, a multiple
-of three for coils in turn, and says which.
+of three for coils in turn, and reports it.
 
-On the average over a period the pulses give the law's own torque where the dipole is raised by period / T_p,
-which is what paying an impulse does: the averaged analysis is then the continuous one. Unraised, it is the
+On the average over a period the pulses give the law's own torque if the dipole is raised by period / T_p,
+as paying an impulse does: the averaged analysis is then the continuous one. Unraised, it is the
 continuous one with the gains lowered by the duty.
 """
 
@@ -29,7 +29,7 @@ from sim.design.theory.floquet import degree_of_stability, product
 from sim.design.theory.linear import Array, Gains, dipole_field, feedback_scales, free_motion, projection
 
 PARALLEL = 1e-6
-"""A coil whose torque is this part of what it can be lies along the field, and pays nothing."""
+"""A coil whose torque is below this fraction of the largest is parallel to the field, and pays nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +77,7 @@ class PulsedLoop:
         pulse, leak = period * pulsing.duty, pulsing.leak_s * body.rate_radps
         starts = period * np.arange(self.periods, dtype=np.float64)
         self._paid = _payable(dipole_field(starts + 0.5 * pulse, body), inertia, pulsing.in_turn)
-        self._kept = exp(-period / leak) * (np.eye(3) - self._paid)
+        self._retained = exp(-period / leak) * (np.eye(3) - self._paid)
         push = np.zeros((size, 3))
         push[:3] = np.linalg.inv(inertia) / pulse
         self._free, pushed = _response(free, push, period, pulse)
@@ -101,12 +101,12 @@ class PulsedLoop:
         maps[..., :n, :n] = self._free
         maps[..., :n, n:] = self._pushed
         maps[..., n:, :n] = np.tensordot(scales, self._owed_x, axes=1)
-        maps[..., n:, n:] = self._kept + np.tensordot(scales, self._owed_r, axes=1)
+        maps[..., n:, n:] = self._retained + np.tensordot(scales, self._owed_r, axes=1)
         return product(maps)
 
 
 def _payable(field: Array, inertia: Array, in_turn: bool) -> Array:
-    """P_k, shape (k, 3, 3): from an owed impulse to what of it the coils can pay."""
+    """P_k, shape (k, 3, 3): maps an owed impulse to the part that the coils can pay."""
     inverse = np.linalg.inv(inertia)
     if not in_turn:
         normal = field @ inertia
@@ -143,7 +143,7 @@ def _quadrature(edges: tuple[float, ...], order: int = 6) -> tuple[Array, Array]
 
 
 def _response(free: Array, push: Array, after: float, pulse: float) -> tuple[Array, Array]:
-    """What the state at ``after`` is of the state at 0, and of a push that lasts from 0 to ``pulse``."""
+    """The response of the state at ``after`` to the state at 0, and to a push from 0 to ``pulse``."""
     n = len(free)
     both = np.zeros((n + 3, n + 3))
     both[:n, :n], both[:n, n:] = free, push

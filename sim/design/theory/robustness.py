@@ -1,6 +1,6 @@
-"""Robustness: the degree of stability of gains on a body that is not the one they were designed for.
+"""Robustness: the degree of stability of gains on another body than the one they were designed for.
 
-The law does not know the inertia, so its gains stay while the body's tensor is another one. May be wrong:
+The law does not use the inertia, so its gains stay while the body's tensor is another one. The errors are of:
 
 - the moments, J = D J_believed D with D^2 = diag(1 + e); moments that no body has (one greater than the sum
   of the others) are left out;
@@ -54,15 +54,15 @@ class InertiaMaps:
 
 @dataclass(frozen=True, slots=True)
 class Margins:
-    """How much may be off before the degree of stability is no longer negative; None: beyond what was sought.
+    """The errors at which the degree of stability is no longer negative; None: beyond the scan.
 
     Attributes:
         k_w: factors down and up, on k_w alone.
         k_a: factors down and up, on k_a alone.
         both: factors down and up, on both.
         half: the same as ``both``, before half the degree is lost.
-        moments: relative error of the moments of inertia, each its own way.
-        spreads: relative error of the spreads of mass, each its own way.
+        moments: relative error of the moments of inertia, each with its own sign.
+        spreads: relative error of the spreads of mass, each with its own sign.
         tilt_deg: turn of the principal axes about any one body axis.
     """
 
@@ -77,9 +77,9 @@ class Margins:
 
 def degrees(body: Body, gains: Gains, inertia_kgm2: Array) -> Array:
     """Degrees of stability, shape (...), of one pair of gains on tensors (..., 3, 3); NaN for no body."""
-    found = degree_of_stability(monodromy(closed_loop(body, gains, inertia_kgm2), ROUGH_STEPS))
+    result = degree_of_stability(monodromy(closed_loop(body, gains, inertia_kgm2), ROUGH_STEPS))
     moments = np.linalg.eigvalsh(inertia_kgm2)
-    return np.where(moments[..., 0] + moments[..., 1] >= moments[..., 2], found, np.nan)
+    return np.where(moments[..., 0] + moments[..., 1] >= moments[..., 2], result, np.nan)
 
 
 def wrong_moments(body: Body, errors: Array) -> Array:
@@ -145,8 +145,8 @@ def margins(body: Body, gains: Gains, degree: Degree) -> Margins:
 
 
 def _worst(body: Body, gains: Gains, tensors: Array) -> float:
-    found = degrees(body, gains, tensors)
-    return float(np.nanmax(found)) if np.isfinite(found).any() else -np.inf
+    values = degrees(body, gains, tensors)
+    return float(np.nanmax(values)) if np.isfinite(values).any() else -np.inf
 
 
 def _first(places: Array, values: Array) -> float | None:

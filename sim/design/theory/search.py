@@ -1,11 +1,11 @@
 """The best gains: the least degree of stability over the map (k_w, k_a), and over k_i.
 
-The degree is smooth in the gains but for kinks, where multipliers meet; the optima sit on kinks, and beside
-one the degree rises like the square root of the distance. A grid over the logarithms of the gains finds the
-basins; the simplex method of Nelder and Mead, started anew from ever smaller simplices, goes down in each.
-Nothing is random. As no gains are kept to the last digit, the steady gains are sought too: those of the least
-degree that is sure within ``MARGIN`` of both. Gains stabilise a body only if that is negative: bodies that
-the gravity gradient drives away can have stable gains on a strip so thin that no model of the field hits it.
+The degree is smooth in the gains except at kinks, where multipliers meet; the optima lie on kinks, and near
+one the degree rises as the square root of the distance. A grid over the logarithms of the gains finds the
+basins; the simplex method of Nelder and Mead, restarted with smaller and smaller simplices, descends in each.
+Nothing is random. As no gains are realised to the last digit, the steady gains are sought too: those whose
+greatest degree within ``MARGIN`` of both is least. Gains stabilise a body only if that is negative: a body
+that the gravity gradient turns over can have stable gains on a strip too thin for any model of the field.
 """
 
 from collections.abc import Callable, Sequence
@@ -25,7 +25,7 @@ Watch = Callable[[int], None]
 Bounds = tuple[float | None, float | None]
 
 MARGIN = 0.1
-"""How far gains may be off and must stabilise nonetheless; the field's strength, by half as much."""
+"""Relative error of the gains at which they must still stabilise; of the field's strength, half as much."""
 
 GRID = 40
 SPAN_W = (0.03, 100.0)
@@ -34,11 +34,11 @@ SPAN_A = (0.003, 300.0)
 SPAN_I = (1e-4, 10.0)
 
 STARTS = 4
-"""Basins of the grid that are gone down."""
+"""Basins of the grid in which a minimum is sought."""
 WIDE, NARROW, FLAT = (0.2, 0.03), (0.03, 0.004, 0.0005), (0.1, 0.02)
-"""Sizes of simplex, in logarithms of the gains: down a basin, to its kink, and to its flat."""
+"""Sizes of simplices, in logarithms of the gains: in a basin, at its kink, and in its flat part."""
 SEARCH_STEPS = GRID + STARTS + 1 + STARTS
-"""What ``search`` counts to."""
+"""The steps that ``search`` reports to ``watch``."""
 
 _AROUND = np.array([(0.0, 0.0), (1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)])
 
@@ -59,22 +59,22 @@ class Candidate:
     Attributes:
         gains: the gains.
         degree: their degree of stability.
-        sure: the greatest degree within ``MARGIN`` of both gains.
+        worst_degree: the greatest degree within ``MARGIN`` of both gains.
     """
 
     gains: Gains
     degree: float
-    sure: float
+    worst_degree: float
 
 
 @dataclass(frozen=True, slots=True)
 class Search:
-    """What a search found.
+    """The result of a search.
 
     Attributes:
         map: the grid it started from.
         best: the gains of the least degree.
-        steady: the gains of the least degree that is sure.
+        steady: the gains of the least worst degree.
     """
 
     map: GainMap
@@ -83,8 +83,8 @@ class Search:
 
     @property
     def stabilised(self) -> bool:
-        """Whether there are gains that stabilise although they are off by ``MARGIN``."""
-        return self.steady.sure < -NEUTRAL
+        """Whether there are gains that stabilise even when they are off by ``MARGIN``."""
+        return self.steady.worst_degree < -NEUTRAL
 
 
 def continuous(body: Body, steps: int = STEPS) -> Degree:
@@ -99,7 +99,7 @@ def natural_gains(body: Body) -> Gains:
 
 
 def gain_map(body: Body, degree: Degree, watch: Watch = lambda done: None) -> GainMap:
-    """Degrees over the whole span of gains; ``watch`` is told how many of ``GRID`` rows there are."""
+    """Degrees over the whole span of gains; ``watch`` is called with the number of rows done, of ``GRID``."""
     natural = natural_gains(body)
     k_w, k_a = natural.k_w * np.geomspace(*SPAN_W, GRID), natural.k_a * np.geomspace(*SPAN_A, GRID)
     rows = []
@@ -115,31 +115,31 @@ def search(body: Body, fine: Degree, rough: Degree, watch: Watch = lambda done: 
     Args:
         body: for the scale of its gains.
         fine: degree of stability by which gains are judged.
-        rough: the same, not as exact, for the grid and the ways down.
-        watch: told how far it is, of ``SEARCH_STEPS``.
+        rough: the same, less exact, for the grid and the descents.
+        watch: called with the number of steps done, of ``SEARCH_STEPS``.
     """
-    found = gain_map(body, rough, watch)
-    bounds = [(np.log(gains[0]), np.log(gains[-1])) for gains in (found.k_w, found.k_a)]
+    grid = gain_map(body, rough, watch)
+    bounds = [(np.log(gains[0]), np.log(gains[-1])) for gains in (grid.k_w, grid.k_a)]
     lows: list[Array] = []
-    for done, start in enumerate(_basins(found), start=1):
+    for done, start in enumerate(_basins(grid), start=1):
         lows.append(_descend(rough, start, WIDE, bounds))
         watch(GRID + done)
     best = _descend(fine, min(lows, key=lambda low: _at(rough, low)), NARROW, bounds)
     watch(GRID + STARTS + 1)
-    sure = _surely(rough)
+    worst = _worst_within_margin(rough)
     flats: list[Array] = []
     for done, low in enumerate(_apart(lows), start=1):
-        flats.append(_descend(sure, low, FLAT, bounds))
+        flats.append(_descend(worst, low, FLAT, bounds))
         watch(GRID + STARTS + 1 + done)
-    steady = min(flats, key=lambda flat: _at(sure, flat))
+    steady = min(flats, key=lambda flat: _at(worst, flat))
     watch(SEARCH_STEPS)
-    return Search(found, candidate(fine, Gains(*np.exp(best))), candidate(fine, Gains(*np.exp(steady))))
+    return Search(grid, candidate(fine, Gains(*np.exp(best))), candidate(fine, Gains(*np.exp(steady))))
 
 
 def candidate(degree: Degree, gains: Gains) -> Candidate:
     """Gains with their degrees."""
     chosen = Gains(float(gains.k_w), float(gains.k_a), gains.k_i)
-    return Candidate(chosen, float(degree(chosen)), float(_surely(degree)(chosen)))
+    return Candidate(chosen, float(degree(chosen)), float(_worst_within_margin(degree)(chosen)))
 
 
 def best_integral(body: Body, gains: Gains, degree: Degree) -> Gains:
@@ -160,8 +160,8 @@ def best_integral(body: Body, gains: Gains, degree: Degree) -> Gains:
     return Gains(gains.k_w, gains.k_a, best)
 
 
-def _surely(degree: Degree) -> Degree:
-    """The greatest degree among gains as they are and both off by ``MARGIN``, this way or that."""
+def _worst_within_margin(degree: Degree) -> Degree:
+    """The greatest degree among the gains themselves and both off by ``MARGIN``, up or down."""
 
     def greatest(gains: Gains) -> Array:
         off_w, off_a = np.exp(MARGIN * _AROUND).T
@@ -173,23 +173,23 @@ def _surely(degree: Degree) -> Degree:
     return greatest
 
 
-def _basins(found: GainMap) -> list[Array]:
+def _basins(grid: GainMap) -> list[Array]:
     """Logarithms (k_w, k_a) of the grid's local minima, the lowest first."""
-    degree, rows, columns = found.degree, *found.degree.shape
+    degree, rows, columns = grid.degree, *grid.degree.shape
     walled = np.pad(degree, 1, constant_values=np.inf)
     windows = [walled[i : i + rows, j : j + columns] for i in range(3) for j in range(3)]
     places = np.argwhere(degree <= np.min(windows, axis=0))
     lowest = sorted(map(tuple, places), key=lambda place: degree[place])[:STARTS]
-    return [np.log([found.k_w[j], found.k_a[i]]) for i, j in lowest]
+    return [np.log([grid.k_w[j], grid.k_a[i]]) for i, j in lowest]
 
 
 def _apart(places: list[Array]) -> list[Array]:
-    """Places without those that lie within a tenth of one before them."""
-    kept: list[Array] = []
+    """Places without those within a tenth of one before them."""
+    distinct: list[Array] = []
     for place in places:
-        if all(np.abs(place - other).max() > 0.1 for other in kept):
-            kept.append(place)
-    return kept
+        if all(np.abs(place - other).max() > 0.1 for other in distinct):
+            distinct.append(place)
+    return distinct
 
 
 def _descend(degree: Degree, start: Array, simplices: tuple[float, ...], bounds: Sequence[Bounds]) -> Array:

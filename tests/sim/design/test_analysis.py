@@ -64,7 +64,7 @@ def test_text_names_gains_exponents_and_margins(searched):
 
 def test_text_says_when_no_gains_stabilise_and_the_best_it_found(searched):
     scenario, analysis, _ = searched
-    lost = replace(analysis.search, steady=replace(analysis.search.steady, sure=0.02))
+    lost = replace(analysis.search, steady=replace(analysis.search.steady, worst_degree=0.02))
     result = as_text(replace(analysis, search=lost), scenario)
     assert "no gains stabilise this body: the best degree of stability found is" in result
     assert f"{analysis.search.best.degree:+.4f}" in result

@@ -104,7 +104,7 @@ def test_where_no_gains_stabilise_that_is_the_verdict_and_nothing_is_written(
     design, as_searched, searched, scenario_file
 ):
     found = searched[1].search
-    as_searched(search=replace(found, steady=replace(found.steady, sure=0.1)))
+    as_searched(search=replace(found, steady=replace(found.steady, worst_degree=0.1)))
     before = scenario_file.read_text()
     code, out, _ = design(scenario_file, "--write", "--json")
     assert code == 1
