@@ -17,7 +17,7 @@ class EndedBySignal(BaseException):
     """
 
     def __init__(self, signum: int) -> None:
-        super().__init__(f"ended by {signal.Signals(signum).name}; what was done so far is kept")
+        super().__init__(f"ended by {signal.Signals(signum).name}; what was written so far is kept")
         self.exit_code = 128 + signum
 
 

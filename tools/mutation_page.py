@@ -56,7 +56,7 @@ def targets() -> list[Target]:
 
 
 def survivors() -> dict[tuple[str, str], str]:
-    """The reason for each (module, change)."""
+    """The reason for each listed (module, change)."""
     listed = tomllib.loads((HERE / "survivors.toml").read_text(encoding="utf-8"))
     return {(one["module"], one["change"]): one["reason"] for one in listed.get("survivor", [])}
 

@@ -190,29 +190,29 @@ class FromTheStart(Timers):
 class ShortAfterLost(Timers):
     """no back-off after a pulse that no status shows"""
 
-    asked = shown = None
+    last_request_tick = None
 
     def step(self, heard):
         status = heard.status
-        if self.asked == heard.tick - 1 and not (status is not None and status.level):
+        if self.last_request_tick == heard.tick - 1 and not (status is not None and status.level):
             self.ready, self.busy_until = [heard.tick] * 3, heard.tick
         requests = super().step(heard)
         if requests:
-            self.asked = heard.tick
+            self.last_request_tick = heard.tick
         return requests
 
 
 class ShortAfterTwoLost(Timers):
     """half a back-off once two requests in a row were lost"""
 
-    asked, lost = None, 0
+    last_request_tick, lost = None, 0
 
     def step(self, heard):
-        if self.asked == heard.tick - 1 and heard.status is not None:
+        if self.last_request_tick == heard.tick - 1 and heard.status is not None:
             self.lost = 0 if heard.status.level else self.lost + 1
         requests = super().step(heard)
         if requests:
-            self.asked = heard.tick
+            self.last_request_tick = heard.tick
         return requests
 
     def backoff_ticks(self, level):

@@ -26,7 +26,7 @@ _SHOWN = 50
 
 
 def check(path: Path, backoff: str | None, key: PublicKey | None = None) -> AuditReport:
-    """Audit a log by the limits of the scenario beside it, and compare what lies beside it with its run.json.
+    """Audit a log by the limits of the scenario beside it, and compare the files beside it with its run.json.
 
     A scenario that is not the run's does not give its limits: then the default ones apply.
 
@@ -36,7 +36,7 @@ def check(path: Path, backoff: str | None, key: PublicKey | None = None) -> Audi
         key: the run must be signed by its private half.
 
     Raises:
-        HarnessError: there is no such log, it is no candump log or an altered one, or what lies beside it
+        HarnessError: there is no such log, it is no candump log or an altered one, or a file beside it
             cannot be used.
     """
     folder = os.path.isdir(path)  # unlike Path's, never an error, whatever the name

@@ -100,7 +100,7 @@ class PulseJudge:
         return start + ((end - start) // self._millisecond + status.remaining_ms) * self._millisecond
 
     def _stop(self, drive: _Drive, until: int) -> None:
-        """Close a pulse that is known to be over at ``until``, or when it was announced to be if sooner."""
+        """Close a pulse that is over at ``until``, or at its announced end if that is sooner."""
         del self._drives[drive.coil]
         end = max(drive.end, min(drive.announced, until))
         self._ended[drive.coil] = end

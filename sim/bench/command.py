@@ -54,7 +54,7 @@ class HilSettings:
         budgets: what must be met.
         warm_s: from when on memory is judged.
         seed: of the plant.
-        out: run directory to be written; None: no log is kept.
+        out: run directory to be written; None: no log is written.
     """
 
     scenario: Scenario
@@ -78,7 +78,7 @@ def real_boards(names: str | None) -> frozenset[str]:
     """
     given = frozenset(name.strip() for name in names.split(",")) if names else frozenset()
     if strange := sorted(given - set(BOARDS)):
-        raise HarnessError(f"--real {names}: {strange[0]!r} is no board: choose of {', '.join(BOARDS)}")
+        raise HarnessError(f"--real {names}: {strange[0]!r} is no board: choose from {', '.join(BOARDS)}")
     return given
 
 

@@ -30,7 +30,7 @@ from sim.errors import HarnessError
 
 
 class NonconformanceError(Exception):
-    """The board does not do what the specification demands; the message is one sentence for people."""
+    """The board does not do what the specification demands; the message is one sentence."""
 
 
 class BoardKind(NamedTuple):

@@ -137,7 +137,7 @@ class _DrivenCoil(NamedTuple):
 
 
 class _Board:
-    """Drives each coil as it was last asked. Instants are units of 1 / (1000 tick_hz) s from tick 0."""
+    """Drives each coil as last requested. Instants are units of 1 / (1000 tick_hz) s from tick 0."""
 
     def __init__(self, limits: Limits, tick: int) -> None:
         self._limits = limits

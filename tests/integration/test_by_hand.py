@@ -36,7 +36,7 @@ def test_either_may_start_first(first, port, start, flown, tmp_path):
     nodes[second] = start(*words[second])
     plant, fsw = nodes["plant"].wait(), nodes["fsw"].wait()
     assert (plant.code, plant.out) == (0, "")
-    assert plant.err.endswith(f"flown: {run}\n")
+    assert plant.err.endswith(f"run: {run}\n")
     assert (fsw.code, fsw.out, fsw.err) == (0, "", f"fsw on loop:{port}\n")
     whole = flown("microsat", *OPTIONS, "--bus", "loop")
     assert (run / "bus.log").read_bytes() == (whole / "bus.log").read_bytes()

@@ -153,7 +153,7 @@ def test_ctrl_c_is_one_sentence(flight, bus, torquer):
     os.killpg(flown.sil.process.pid, signal.SIGINT)  # a terminal interrupts the whole group
     ended = flown.sil.wait()
     assert (ended.code, ended.out) == (130, "")
-    assert ended.sentence == "torquer: interrupted; what was done so far is kept"
+    assert ended.sentence == "torquer: interrupted; what was written so far is kept"
     flown.gone()
     readable(flown.run, bus, torquer)
 
@@ -167,7 +167,7 @@ def test_who_is_asked_to_end_says_so_and_ends_its_nodes(signum, code, flight, bu
     flown.sil.process.send_signal(signum)
     ended = flown.sil.wait()
     assert (ended.code, ended.out) == (code, "")
-    assert ended.sentence == f"torquer: ended by {signum.name}; what was done so far is kept"
+    assert ended.sentence == f"torquer: ended by {signum.name}; what was written so far is kept"
     assert flown.is_gone()
     readable(flown.run, bus, torquer)
 

@@ -54,5 +54,5 @@ def test_another_command_and_no_answer_are_errors(page, said, told):
 
 
 def test_a_flight_that_fails_is_not_replayed(page):
-    with pytest.raises(SystemExit, match="microsat is not flown: trouble"):
+    with pytest.raises(SystemExit, match="microsat does not fly: trouble"):
         page({}, flown=2)

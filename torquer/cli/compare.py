@@ -14,7 +14,7 @@ from torquer.cli.options import SEEDS, SETTINGS, sentences
     "--driver", default="both", show_default=True, type=click.Choice(["pulsed", "continuous", "both"])
 )
 @click.option(
-    "--orbits", type=click.FloatRange(min=0.0, min_open=True), help="Default: as the scenario says."
+    "--orbits", type=click.FloatRange(min=0.0, min_open=True), help="Default: those of the scenario."
 )
 @click.option("--seed", default=1, show_default=True, type=SEEDS, help="Of all random streams.")
 @click.option("--workers", type=click.IntRange(min=1), help="Processes. Default: one a core.")

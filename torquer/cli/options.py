@@ -50,7 +50,7 @@ def sentences(command: Callable[Parameters, int | None]) -> Callable[Parameters,
             click.echo(f"torquer: {error_text(error)}", err=True)
             code = getattr(error, "exit_code", 2)
         except KeyboardInterrupt:
-            click.echo("torquer: interrupted; what was done so far is kept", err=True)
+            click.echo("torquer: interrupted; what was written so far is kept", err=True)
             code = 130
         except EndedBySignal as end:
             click.echo(f"torquer: {end}", err=True)

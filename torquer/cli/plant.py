@@ -17,7 +17,7 @@ WAITING_NOTE_S = 30.0
 @click.option(
     "--orbits",
     type=click.FloatRange(min=0.0, min_open=True),
-    help="How long to fly; default as the scenario says.",
+    help="How long to fly; default: as in the scenario.",
 )
 @click.option("--seed", default=1, show_default=True, type=SEEDS, help="Of all random streams.")
 @click.option("--pace", default="lockstep", show_default=True, help="lockstep or realtime[:FACTOR].")
@@ -55,7 +55,7 @@ def plant(
         record(directory, chosen, link, watch, waiting=_still_waiting())
     with progress("replaying", ticks) as watch:
         summary = conclude(directory, watch)
-    click.echo(f"flown: {directory}", err=True)
+    click.echo(f"run: {directory}", err=True)
     if "failures" in summary:
         raise FlightError(flight_failed(summary["failures"]))
 

@@ -12,7 +12,7 @@ from torquer.cli.options import BUSES, SEEDS, SETTINGS, SIGN, report_failures, s
 @click.option("--bus", default="auto", show_default=True, help=BUSES + " or virtual.")
 @click.option("--pace", default="lockstep", show_default=True, help="lockstep or realtime[:FACTOR].")
 @click.option(
-    "--orbits", type=click.FloatRange(min=0.0, min_open=True), help="Default: as the scenario says."
+    "--orbits", type=click.FloatRange(min=0.0, min_open=True), help="Default: those of the scenario."
 )
 @click.option("--seed", default=1, show_default=True, type=SEEDS, help="Of all random streams.")
 @click.option("--out", type=click.Path(path_type=Path), help="Default: runs/<scenario>-<UTC time>.")

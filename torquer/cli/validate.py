@@ -28,7 +28,7 @@ from torquer.cli.options import sentences
 def validate(
     reference: Path | None, only: tuple[str, ...], quick: bool, workers: int | None, out: Path | None
 ) -> int:
-    """Every published figure and reference check: claim, source, ours, verdict."""
+    """Check every published figure and reference: claim, source, our figure, verdict."""
     from sim.validate.command import validate
 
     return validate(reference, only, out, quick, workers)
