@@ -57,7 +57,7 @@ def test_it_conforms_with_other_limits(session_with, pulse_ms, backoff_ms, deadm
     ],
 )
 def test_sensors_conform(session_with, kind, make, failures):
-    verdicts = conform(session_with(make, kind=kind), Limits(), armed=False)
+    verdicts = run_checks(session_with(make, kind=kind), BoardLimits(), armed=False)
     assert [verdict.name for verdict in verdicts] == ["boot", "noise", "lost_count", "all_along"]
     assert failures(verdicts) == {}
 

@@ -12,8 +12,8 @@ from fsw.wire.messages import (
 )
 from hil_stub.bench import BenchNode, CoilBoard
 from hil_stub.coils.coil_driver import CoilLimits
-from sim.conformance.conformance import conform
-from sim.conformance.subject import Limits
+from sim.conformance.board_under_test import BoardLimits
+from sim.conformance.check_runner import run_checks
 
 
 class FaultyBench(BenchNode):
@@ -136,7 +136,7 @@ ON_THE_BUS = {
 def test_a_fault_on_the_bus_is_found(session_with, parts, finds, failures):
     faulty = type("Faulty", (FaultyBench,), parts)
     found = failures(
-        conform(session_with(lambda: CoilBoard(CoilLimits(1)), bench=faulty), Limits(), armed=True)
+        run_checks(session_with(lambda: CoilBoard(CoilLimits(1)), bench=faulty), BoardLimits(), armed=True)
     )
     assert found
     assert finds is None or finds in found, found

@@ -14,11 +14,11 @@ import pytest
 from fsw.wire.messages import Mode
 from sim.audit.auditor import AuditLimits, AuditReport
 from sim.audit.check import check
-from sim.audit.findings import Pulse, Violation
+from sim.audit.findings import DrivenPulse, Violation
 from sim.record.estimates import Estimates
 from sim.record.truth import Histories
 from sim.report.conclude import conclude
-from sim.report.histories import Flown
+from sim.report.histories import FlightHistories
 from sim.report.page import write_report
 from sim.report.summary import BusTally, summarise
 from sim.scenario.schema import Scenario, load
@@ -81,8 +81,8 @@ class Run:
     """A flight made up: a libration that decays, an estimate a little off, pulses as they are given."""
 
     ticks: int = 7000
-    pulses: tuple[Pulse, ...] = tuple(
-        Pulse(i % 3, (-3, -2, -1, 1, 2, 3)[i % 6], Fraction(100 + 110 * i), Fraction(103 + 110 * i))
+    pulses: tuple[DrivenPulse, ...] = tuple(
+        DrivenPulse(i % 3, (-3, -2, -1, 1, 2, 3)[i % 6], Fraction(100 + 110 * i), Fraction(103 + 110 * i))
         for i in range(12)
     )
     violations: tuple[Violation, ...] = ()
@@ -139,8 +139,8 @@ class Run:
             complete=self.complete,
         )
 
-    def flown(self, **truth: np.ndarray) -> Flown:
-        return Flown.of(self.scenario, self.truth() | truth, self.estimates(), self.audit())
+    def flown(self, **truth: np.ndarray) -> FlightHistories:
+        return FlightHistories.of(self.scenario, self.truth() | truth, self.estimates(), self.audit())
 
     def write(self, path: Path, estimates: Estimates | None = None, **truth: np.ndarray) -> Page:
         histories = self.truth() | truth

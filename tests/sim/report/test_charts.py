@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from sim.audit.auditor import AuditLimits
-from sim.audit.findings import Pulse
+from sim.audit.findings import DrivenPulse
 
 CHARTS = {
     "chart-pointing": ["Pointing error", "angle [deg]", "axis 1 from the vertical"],
@@ -91,7 +91,10 @@ def test_every_pulse_is_a_bar_up_or_down_by_its_polarity(page, made_run):
 
 
 def test_the_zoom_shows_pulses_to_scale_and_the_backoff_after_each(tmp_path, made_run):
-    pulses = (Pulse(0, 1, Fraction(100), Fraction(103)), Pulse(2, -2, Fraction(250), Fraction("251.5")))
+    pulses = (
+        DrivenPulse(0, 1, Fraction(100), Fraction(103)),
+        DrivenPulse(2, -2, Fraction(250), Fraction("251.5")),
+    )
     page = made_run(ticks=600, pulses=pulses).write(tmp_path)
     axis = time_axis(page, "chart-zoom")
     (bar,) = page.drawn("chart-zoom", "pulses-0")
@@ -106,7 +109,10 @@ def test_the_zoom_shows_pulses_to_scale_and_the_backoff_after_each(tmp_path, mad
 
 
 def test_a_backoff_of_each_coil_shades_the_lane_of_that_coil_alone(tmp_path, made_run):
-    pulses = (Pulse(0, 1, Fraction(100), Fraction(103)), Pulse(2, 1, Fraction(103), Fraction(106)))
+    pulses = (
+        DrivenPulse(0, 1, Fraction(100), Fraction(103)),
+        DrivenPulse(2, 1, Fraction(103), Fraction(106)),
+    )
     page = made_run(ticks=600, pulses=pulses, limits=AuditLimits(shared=False)).write(tmp_path)
     shaded = [spans_on(lane, time_axis(page, "chart-zoom")) for lane in page.drawn("chart-zoom", "backoff")]
     assert shaded == [

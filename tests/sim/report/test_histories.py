@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from sim.audit.auditor import AuditLimits
-from sim.audit.findings import Pulse
-from sim.report.histories import Flown
+from sim.audit.findings import DrivenPulse
+from sim.report.histories import FlightHistories
 
 
 @pytest.mark.parametrize(("lit", "dark"), [(0.0, True), (0.49, True), (0.5, False), (1.0, False)])
@@ -19,8 +19,8 @@ def test_an_eclipse_is_where_less_than_half_of_the_sun_is_seen(lit, dark, made_r
 
 
 def test_a_zoom_is_where_most_pulses_are(made_run):
-    rare = [Pulse(0, 1, Fraction(100 + 900 * i), Fraction(103 + 900 * i)) for i in range(4)]
-    dense = [Pulse(1, 1, Fraction(4000 + 103 * i), Fraction(4003 + 103 * i)) for i in range(10)]
+    rare = [DrivenPulse(0, 1, Fraction(100 + 900 * i), Fraction(103 + 900 * i)) for i in range(4)]
+    dense = [DrivenPulse(1, 1, Fraction(4000 + 103 * i), Fraction(4003 + 103 * i)) for i in range(10)]
     flown = made_run(pulses=(*rare, *dense)).flown()
     begin = flown.busiest(1200.0)
     assert begin <= 4000.0
@@ -28,7 +28,7 @@ def test_a_zoom_is_where_most_pulses_are(made_run):
 
 
 def test_duty_is_taken_over_one_orbit_and_over_less_at_the_beginning(made_run):
-    pulses = tuple(Pulse(1, 1, Fraction(103 * i + 100), Fraction(103 * i + 103)) for i in range(60))
+    pulses = tuple(DrivenPulse(1, 1, Fraction(103 * i + 100), Fraction(103 * i + 103)) for i in range(60))
     flown = made_run(ticks=20000, pulses=pulses).flown()
     at_s = np.array([50.0, 103.0, 6180.0, 6180.0 + flown.orbit_s])
     duty = flown.duty(1, at_s)
@@ -40,7 +40,7 @@ def test_duty_is_taken_over_one_orbit_and_over_less_at_the_beginning(made_run):
 
 
 def test_gaps_are_those_the_limit_speaks_of(made_run):
-    pulses = tuple(Pulse(c, 1, Fraction(s), Fraction(s + 3)) for c, s in ((0, 100), (1, 203), (0, 400)))
+    pulses = tuple(DrivenPulse(c, 1, Fraction(s), Fraction(s + 3)) for c, s in ((0, 100), (1, 203), (0, 400)))
     assert made_run(pulses=pulses).flown().gaps_s().tolist() == [100.0, 194.0]
     each = made_run(pulses=pulses, limits=AuditLimits(shared=False)).flown()
     assert each.gaps_s().tolist() == [297.0]
@@ -52,7 +52,7 @@ def test_the_rate_error_is_that_of_the_inertial_rate(made_run):
     off = replace(run.estimates(), q_body_from_orbit=q, omega_body_radps=np.tile([0.0, 0.0, 1.0e-3], (50, 1)))
     off.omega_body_orbit_radps[:] = 0.0
     still = {"q_body_from_orbit": q, "omega_body_orbit_radps": np.tile([2e-5, 0.0, 0.0], (50, 1))}
-    flown = Flown.of(run.scenario, run.truth() | still, off, run.audit())
+    flown = FlightHistories.of(run.scenario, run.truth() | still, off, run.audit())
     assert flown.rate_error_degps == pytest.approx(np.degrees(2e-5))
 
 

@@ -12,8 +12,8 @@ import matplotlib
 import numpy as np
 import pytest
 
-from sim.audit.auditor import Kind
-from sim.audit.findings import Pulse, Violation
+from sim.audit.auditor import ViolationKind
+from sim.audit.findings import DrivenPulse, Violation
 from sim.record.run_dir import SCHEMA_VERSION
 from sim.scenario.schema import load
 
@@ -116,7 +116,7 @@ def test_the_same_flight_gives_the_same_bytes_whatever_the_user_set_matplotlib_t
 
 
 def test_broken_limits_are_named_and_marked(tmp_path, made_run):
-    broken = Violation(Kind.GAP, Fraction("210.5"), 210, 1, 999, "starts 99.9 s after <coil 0>")
+    broken = Violation(ViolationKind.GAP, Fraction("210.5"), 210, 1, 999, "starts 99.9 s after <coil 0>")
     page = made_run(violations=(broken,), notes=("the log has 2 boots",)).write(tmp_path)
     assert "✗ limits broken: 1" in page.text
     assert "✓ limits kept" not in page.text
@@ -126,7 +126,7 @@ def test_broken_limits_are_named_and_marked(tmp_path, made_run):
 
 
 def test_thousands_of_broken_limits_do_not_drown_the_page(tmp_path, made_run):
-    many = tuple(Violation(Kind.PULSE, Fraction(i), i, 0, i, "too long") for i in range(5000))
+    many = tuple(Violation(ViolationKind.PULSE, Fraction(i), i, 0, i, "too long") for i in range(5000))
     page = made_run(violations=many).write(tmp_path)
     assert "✗ limits broken: 5000" in page.text
     assert "and 4950 more" in page.text
@@ -177,7 +177,7 @@ def test_a_very_short_flight_has_a_report(tmp_path, ticks, made_run):
 
 @pytest.mark.filterwarnings("error")
 def test_a_flight_with_one_pulse_has_all_charts(tmp_path, made_run, charts):
-    page = made_run(ticks=110, pulses=(Pulse(0, 3, Fraction(100), Fraction(103)),)).write(tmp_path)
+    page = made_run(ticks=110, pulses=(DrivenPulse(0, 3, Fraction(100), Fraction(103)),)).write(tmp_path)
     assert charts <= set(page.values("id"))
 
 
