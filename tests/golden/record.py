@@ -44,16 +44,16 @@ def record(name: str) -> None:
         run = Path(folder) / "run"
         run_dir.begin(run, scenario, SEED, ticks, "virtual", Pace())
         fly_virtual(run, scenario, lambda tick: None)
-        kept = HERE / name
-        kept.mkdir(exist_ok=True)
-        shutil.copy(run / run_dir.SCENARIO, kept / run_dir.SCENARIO)
+        target = HERE / name
+        target.mkdir(exist_ok=True)
+        shutil.copy(run / run_dir.SCENARIO, target / run_dir.SCENARIO)
         with (
-            (kept / "bus.log.gz").open("wb") as file,
+            (target / "bus.log.gz").open("wb") as file,
             gzip.GzipFile("", "wb", mtime=0, fileobj=file) as packed,
         ):
             packed.write((run / run_dir.BUS_LOG).read_bytes())
         platform = json.dumps(run_dir.fingerprint(), indent=2) + "\n"
-        (kept / "platform.json").write_text(platform, encoding="utf-8")
+        (target / "platform.json").write_text(platform, encoding="utf-8")
 
 
 if __name__ == "__main__":

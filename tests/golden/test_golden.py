@@ -27,10 +27,10 @@ NAMES = sorted(path.parent.name for path in HERE.glob("*/bus.log.gz"))
 @pytest.fixture(params=NAMES)
 def golden(request, tmp_path):
     """A run directory unpacked from a golden log."""
-    kept = HERE / request.param
-    (tmp_path / run_dir.BUS_LOG).write_bytes(gzip.decompress((kept / "bus.log.gz").read_bytes()))
+    folder = HERE / request.param
+    (tmp_path / run_dir.BUS_LOG).write_bytes(gzip.decompress((folder / "bus.log.gz").read_bytes()))
     for name in (run_dir.SCENARIO, "platform.json"):
-        (tmp_path / name).write_bytes((kept / name).read_bytes())
+        (tmp_path / name).write_bytes((folder / name).read_bytes())
     return tmp_path
 
 

@@ -53,7 +53,7 @@ def fly_run(tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
-def flown_run(fly_run):
+def recorded_run(fly_run):
     """A run of 300 ticks, two pulses in it. Not to be changed: copy what is to be broken."""
     return fly_run()
 

@@ -40,8 +40,8 @@ def copy(tmp_path):
 
 
 def test_the_page_is_fresh():
-    shown = generate(ROOT, "--check")
-    assert shown.returncode == 0, shown.stdout + shown.stderr
+    done = generate(ROOT, "--check")
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_make_lint_checks_it():
@@ -75,8 +75,8 @@ def test_a_stale_page_is_noticed(copy, name, old, new):
     changed = copy / name
     assert old in changed.read_text()
     changed.write_text(changed.read_text().replace(old, new))
-    shown = generate(copy, "--check")
-    assert (shown.returncode, "stale" in shown.stdout) == (1, True), shown.stderr
+    done = generate(copy, "--check")
+    assert (done.returncode, "stale" in done.stdout) == (1, True), done.stderr
 
 
 @pytest.mark.parametrize(
@@ -85,9 +85,9 @@ def test_a_stale_page_is_noticed(copy, name, old, new):
 def test_a_rule_without_a_text_is_an_error(copy, old, new):
     rules = copy / "hil_stub" / "rules.toml"
     rules.write_text(rules.read_text().replace(old, new, 1))
-    shown = generate(copy)
-    assert shown.returncode != 0
-    assert "rules.toml" in shown.stderr
+    done = generate(copy)
+    assert done.returncode != 0
+    assert "rules.toml" in done.stderr
 
 
 def test_the_worked_example_is_what_another_codec_makes():
@@ -95,8 +95,8 @@ def test_the_worked_example_is_what_another_codec_makes():
     decoded = cantools.database.load_file(ROOT / "fsw/wire/torquer.dbc").decode_message(
         int(can_id, 16), bytes.fromhex(data), decode_choices=False
     )
-    shown = {"level": -2, "coil": 1, "seq": 7, "tick": 100, "duration_ms": 3000, "counter": 5}
-    assert {name: decoded[name] for name in shown} == shown
+    done = {"level": -2, "coil": 1, "seq": 7, "tick": 100, "duration_ms": 3000, "counter": 5}
+    assert {name: decoded[name] for name in done} == done
     register = 0xFF
     for byte in bytes.fromhex(f"0{can_id}{data}")[:-1]:
         register ^= byte

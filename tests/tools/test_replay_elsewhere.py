@@ -16,12 +16,12 @@ NEARLY = "command-exact, not bit-exact (another platform than the run's): tick 7
 
 @pytest.fixture
 def page(monkeypatch, tmp_path):
-    """The page and the exit code, with replays that answer as told by variant."""
+    """The page and the exit code, with the answer of each variant's replay given."""
 
-    def made(answers, flown=0):
+    def made(answers, exit_code=0):
         def torquer(variant, command, *_):
-            said = answers.get(variant.name, EXACT) if command == "replay" else ""
-            return subprocess.CompletedProcess([], flown, said, "trouble\nNoSuchThing: of it")
+            output = answers.get(variant.name, EXACT) if command == "replay" else ""
+            return subprocess.CompletedProcess([], exit_code, output, "trouble\nNoSuchThing: of it")
 
         monkeypatch.setattr(tool, "_torquer", torquer)
         monkeypatch.setattr(sys, "argv", ["replay_elsewhere", "--out", str(tmp_path / "replay.md")])
@@ -41,18 +41,18 @@ def test_each_flight_is_replayed_in_each_way_and_told_in_order(page):
 
 
 @pytest.mark.parametrize(
-    ("said", "told"),
+    ("answer", "expected"),
     [
         ("differs: tick 3: COIL_FIRE is 1 and 2\n", "differs: tick 3: COIL_FIRE is 1 and 2"),
         ("", "NoSuchThing: of it"),
     ],
 )
-def test_another_command_and_no_answer_are_errors(page, said, told):
-    code, text = page({tool.VARIANTS[-1].name: said})
+def test_another_command_and_no_answer_are_errors(page, answer, expected):
+    code, text = page({tool.VARIANTS[-1].name: answer})
     assert code == 1
-    assert told in text
+    assert expected in text
 
 
 def test_a_flight_that_fails_is_not_replayed(page):
     with pytest.raises(SystemExit, match="microsat does not fly: trouble"):
-        page({}, flown=2)
+        page({}, exit_code=2)

@@ -1,4 +1,4 @@
-"""The long run in its short form: flown, judged, told; and each thing that may not be is found."""
+"""The long run in a short form: flight, judgement, page; and each broken budget is found."""
 
 import json
 import sys

@@ -9,7 +9,7 @@ from sim.record.candump import read_log
 
 
 def found(report):
-    """ViolationKind, time, tick and coil of each violation."""
+    """Kind, time, tick and coil of each violation."""
     return [(one.kind, one.time_s, one.tick, one.coil) for one in report.violations]
 
 
@@ -347,7 +347,7 @@ def test_a_log_that_is_cut_is_judged_as_far_as_it_goes_and_is_not_complete(bus_l
 
 
 @pytest.mark.parametrize(
-    ("end", "said"),
+    ("end", "wrong_end"),
     [
         (PlantEnd(50).encode(), None),
         (PlantEnd(9999).encode(), "its PLANT_END counts 9999 ticks, its last SYNC is of tick 49"),
@@ -356,12 +356,12 @@ def test_a_log_that_is_cut_is_judged_as_far_as_it_goes_and_is_not_complete(bus_l
     ],
     ids=["fits", "of another run", "one too few", "broken"],
 )
-def test_only_an_end_mark_that_fits_makes_a_log_complete(bus_log, end, said):
+def test_only_an_end_mark_that_fits_makes_a_log_complete(bus_log, end, wrong_end):
     entries = bus_log(1, 50).entries()
     entries.append(entries[-1]._replace(line=len(entries) + 1, frame=end))
     report = audit(entries, AuditLimits(), expect_end=True)
-    assert report.complete is (said is None)
-    assert report.notes == (() if said is None else (f"the log has no end mark: {said}",))
+    assert report.complete is (wrong_end is None)
+    assert report.notes == (() if wrong_end is None else (f"the log has no end mark: {wrong_end}",))
 
 
 def test_an_end_mark_in_the_middle_is_none(bus_log):

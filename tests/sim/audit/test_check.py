@@ -119,16 +119,16 @@ def test_a_scenario_that_cannot_be_read_is_named(run, bus_log):
 
 
 @pytest.mark.parametrize(
-    ("key", "kept", "refused"),
+    ("key", "accepted", "refused"),
     [
         ("coils.pulse_s", (0, 0.0, 0.5, 999_999_999), (-1, -1e-9, 1e9, "nan", "true")),
         ("coils.backoff_s", (0, 0.5, 999_999_999.5), (-1, 1_000_000_000, "inf", '"100"')),
         ("time.tick_hz", (1, 1_000_000), (0, 1_000_001, 1.0, "true")),
     ],
 )
-def test_the_ends_of_each_range_are_in_it(tmp_path, key, kept, refused):
+def test_the_ends_of_each_range_are_in_it(tmp_path, key, accepted, refused):
     scenario, (table, name) = tmp_path / "scenario.toml", key.split(".")
-    for value in kept:
+    for value in accepted:
         scenario.write_text(f"[{table}]\n{name} = {value}\n")
         limits = limits_beside(tmp_path / "bus.log")
         field, unit = {"pulse_s": ("pulse_us", 10**6), "backoff_s": ("backoff_us", 10**6)}.get(
@@ -253,7 +253,7 @@ def test_a_log_that_is_not_the_runs_fails_though_it_keeps_the_limits(bound, bus_
     )
 
 
-def test_an_error_in_a_log_that_is_not_the_runs_tells_both(bound):
+def test_an_error_in_a_log_that_is_not_the_runs_names_both(bound):
     with (bound / "bus.log").open("a") as log:
         log.write("nothing\n")
     with pytest.raises(LogError, match=r"is no candump line.*; bus\.log is not the run's own"):
@@ -269,7 +269,7 @@ def test_a_complete_log_ends_with_its_end_mark(run, bus_log):
     assert report.notes == ("nothing vouches for the log: there is no bus.log.index beside it",)
 
 
-def test_a_log_of_ours_without_end_mark_is_incomplete(run, bus_log):
+def test_a_recorded_log_without_end_mark_is_incomplete(run, bus_log):
     report = check(run(bus_log(ticks=20, end=False)), None)
     assert report.ok
     assert not report.complete

@@ -18,7 +18,7 @@ def every(period_us, statuses):
 
 
 def found(report):
-    """ViolationKind, time, tick and coil of each violation."""
+    """Kind, time, tick and coil of each violation."""
     return [(one.kind, one.time_s, one.tick, one.coil) for one in report.violations]
 
 
@@ -94,13 +94,13 @@ def test_the_rounding_of_timestamps_to_microseconds_is_no_violation(judge, bus_l
     assert judge(log).ok
 
 
-@pytest.mark.parametrize(("shift_us", "said"), [(1, "0.000001 s late"), (-1, "0.000001 s early")])
-def test_a_microsecond_is_one_at_1_hz_too(judge, bus_log, shift_us, said):
+@pytest.mark.parametrize(("shift_us", "text"), [(1, "0.000001 s late"), (-1, "0.000001 s early")])
+def test_a_microsecond_is_one_at_1_hz_too(judge, bus_log, shift_us, text):
     log = bus_log(1, 20)
     log.shifts_us = dict.fromkeys(range(10, 20), shift_us)
     (violation,) = judge(log).violations
     assert (violation.kind, violation.tick) == (ViolationKind.TIMESTAMP, 10)
-    assert said in violation.sentence
+    assert text in violation.sentence
 
 
 # --- other timestamps
@@ -347,8 +347,8 @@ def test_a_lone_status_is_judged(bus_log):
 def test_without_sync_the_rate_of_the_scenario_tells_the_time(bus_log, fired):
     """Every other status is lost: by their spacing alone the rate would be half of it."""
     log = bus_log(10, 2500, [fired(0, 1001), fired(1, 2035)], sync=False)
-    kept = [entry for entry in log.entries() if entry.frame.can_id == CoilStatus.ID][::2]
-    report = audit(kept, AuditLimits(tick_hz=10))
+    every_other = [entry for entry in log.entries() if entry.frame.can_id == CoilStatus.ID][::2]
+    report = audit(every_other, AuditLimits(tick_hz=10))
     assert report.violations == ()
     assert not any("a COIL_STATUS every 0.200 s" in note for note in report.notes)
     assert any("a COIL_STATUS every 0.100 s" in note for note in report.notes)

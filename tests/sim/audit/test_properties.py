@@ -15,7 +15,7 @@ TICKS = st.just(True)
 
 
 def found(log, shared):
-    """ViolationKind, tick and coil of each violation."""
+    """Kind, tick and coil of each violation."""
     report = audit(log.entries(), AuditLimits(backoff_us=BACKOFF_S * 1_000_000, shared=shared))
     return [(one.kind, one.tick, one.coil) for one in report.violations]
 

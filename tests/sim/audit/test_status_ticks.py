@@ -10,7 +10,7 @@ def ticks():
 
 
 def status(counter):
-    """A status that is known by its counter, and logged in the line of that number."""
+    """A status identified by its counter, and logged in the line of that number."""
     return BoardStatus(counter, 0, CoilStatus(0, 0, 0, 0, 0, 0, counter % 16), False)
 
 
@@ -83,7 +83,7 @@ def test_what_cannot_be_trusted_is_not_taken_for_late(ticks):
     assert deal(ticks, 4, 1, 1) == [(4, [1])]
 
 
-def test_it_tells_whether_a_status_waits(ticks):
+def test_it_reports_whether_a_status_waits(ticks):
     assert not ticks.waiting
     ticks.add(status(0))
     assert ticks.waiting

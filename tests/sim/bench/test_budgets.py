@@ -72,7 +72,7 @@ def test_memory_that_grows_breaks_the_budget_of_its_process_alone():
 
 
 def test_percentiles_in_ms():
-    shown = percentiles(TimeHistogram(n / 1000.0 for n in range(200)))
-    assert shown == pytest.approx({"p50": 100.0, "p99": 198.0, "max": 199.0}, rel=0.01)
-    assert shown["max"] == 199.0
+    in_ms = percentiles(TimeHistogram(n / 1000.0 for n in range(200)))
+    assert in_ms == pytest.approx({"p50": 100.0, "p99": 198.0, "max": 199.0}, rel=0.01)
+    assert in_ms["max"] == 199.0
     assert percentiles(TimeHistogram())["max"] == float("inf")

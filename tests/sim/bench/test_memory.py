@@ -68,8 +68,8 @@ def test_a_long_run_has_no_more_samples_than_can_be_looked_at(resident, grain, e
     history = watched(100_000, 0.0, grain)
     for tick in range(0, 100_000, grain or 1):
         history.sample(tick)
-    told = history.history()
-    assert (told["every_s"], len(told["kib"]["fsw"])) == (every_s, samples)
+    samples_of_run = history.history()
+    assert (samples_of_run["every_s"], len(samples_of_run["kib"]["fsw"])) == (every_s, samples)
 
 
 def test_growth_is_relative_to_the_sample_that_is_warm():

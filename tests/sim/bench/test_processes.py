@@ -1,4 +1,4 @@
-"""The processes of a bench end with it, also those that stand still."""
+"""The processes of a bench end with it, also those that do not react."""
 
 import os
 import signal
@@ -8,7 +8,7 @@ from sim.bench import processes
 from sim.bench.processes import BenchProcesses, hub_of
 
 
-def test_a_hub_that_stands_still_is_killed(monkeypatch):
+def test_a_hub_that_does_not_react_is_killed(monkeypatch):
     monkeypatch.setattr(processes, "GRACE_S", 0.5)
     began = time.monotonic()
     with hub_of("loop") as served:
@@ -17,9 +17,9 @@ def test_a_hub_that_stands_still_is_killed(monkeypatch):
     assert not os.path.exists(f"/proc/{served.hub_pid}")
 
 
-def test_a_node_that_stands_still_is_killed(monkeypatch):
+def test_a_process_that_does_not_react_is_killed(monkeypatch):
     monkeypatch.setattr(processes, "GRACE_S", 0.5)
-    with BenchProcesses() as started:
-        node = started.start("waiting", "http.server", "0")
-        os.kill(node.popen.pid, signal.SIGSTOP)
-    assert node.popen.returncode < 0
+    with BenchProcesses() as processes_started:
+        process = processes_started.start("waiting", "http.server", "0")
+        os.kill(process.popen.pid, signal.SIGSTOP)
+    assert process.popen.returncode < 0

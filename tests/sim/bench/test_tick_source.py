@@ -1,4 +1,4 @@
-"""The plant behind somebody else's coil board: it flies as with its own."""
+"""The plant with a coil board on the bus: it moves as with its own."""
 
 import pytest
 
@@ -33,45 +33,45 @@ def dipoles(tick):
 
 
 @pytest.mark.parametrize(
-    ("changes", "asked"), [(PULSED, requests), (CONTINUOUS, dipoles)], ids=["pulsed", "continuous"]
+    ("changes", "frames_of"), [(PULSED, requests), (CONTINUOUS, dipoles)], ids=["pulsed", "continuous"]
 )
-def test_what_a_board_tells_drives_the_plant_as_its_own_board_does(changes, asked):
+def test_what_a_board_reports_drives_the_plant_as_its_own_board_does(changes, frames_of):
     config = plant_config(load("microsat", changes), seed=7)
     own = Plant(config)
-    shown = {"magnetometer": [], "sun": []}
-    world = PlantTicks(config, shown["magnetometer"].append, shown["sun"].append)
+    lines = {"magnetometer": [], "sun": []}
+    source = PlantTicks(config, lines["magnetometer"].append, lines["sun"].append)
     limits, continuous = config.limits, config.coils.continuous
     board = DipoleDriver(config.tick_hz, continuous.on_fraction) if continuous else CoilDriver(limits)
     board.begin_tick(0, 0.0)
     driven = 0
     for tick in range(120):
         frames = {frame.can_id: frame for frame in own.begin_tick()}
-        assert world.frames()[-1] == frames[Sync.ID]
+        assert source.frames()[-1] == frames[Sync.ID]
         for name, message in (("magnetometer", MagField), ("sun", SunVector)):
             valid, x, y, z, _ = message.decode(frames[message.ID].data)
-            assert shown[name][-1] == f"{tick} {x!r} {y!r} {z!r} {valid}\n".encode()
-        for request in asked(tick):
+            assert lines[name][-1] == f"{tick} {x!r} {y!r} {z!r} {valid}\n".encode()
+        for request in frames_of(tick):
             own.receive(request)
             board.receive(request)
-            assert not world.receive(request)
+            assert not source.receive(request)
         own.end_tick()
         driven += any(own.driven.current_a)
         board.drive()
-        told = [world.receive(frame) for frame in board.begin_tick(tick + 1, 0.0)]
-        assert told.count(True) == 1
-        world.advance()
-        assert world._plant.motion == own.motion, f"they part in tick {tick}"
+        reported = [source.receive(frame) for frame in board.begin_tick(tick + 1, 0.0)]
+        assert reported.count(True) == 1
+        source.advance()
+        assert source._plant.motion == own.motion, f"they differ in tick {tick}"
     assert driven > 20
 
 
-def test_without_a_word_nothing_was_driven():
+def test_without_a_status_nothing_was_driven():
     config = plant_config(load("microsat", PULSED), seed=7)
-    world, quiet = PlantTicks(config, None, None), Plant(config)
-    world.receive(CoilStatus(3, 0, 1500, 300, 9000, 1).encode())
+    source, quiet = PlantTicks(config, None, None), Plant(config)
+    source.receive(CoilStatus(3, 0, 1500, 300, 9000, 1).encode())
     for _ in range(3):
         quiet.end_tick()
-        world.advance()
-    assert world._plant.motion != quiet.motion, "the first tick was driven"
+        source.advance()
+    assert source._plant.motion != quiet.motion, "the first tick was driven"
     other = PlantTicks(config, None, None)
     for _ in range(3):
         other.advance()
@@ -79,24 +79,24 @@ def test_without_a_word_nothing_was_driven():
 
 
 @pytest.mark.parametrize("level", [-8, 7, 4])
-def test_a_level_that_is_none_drives_nothing(level):
-    world = PlantTicks(plant_config(load("microsat", PULSED), seed=7), None, None)
-    assert world.receive(CoilStatus(level, 3, 1500, 300, 9000, 1).encode())
-    assert not any(world._drive.drive().current_a)
+def test_a_level_that_does_not_exist_drives_nothing(level):
+    source = PlantTicks(plant_config(load("microsat", PULSED), seed=7), None, None)
+    assert source.receive(CoilStatus(level, 3, 1500, 300, 9000, 1).encode())
+    assert not any(source._drive.drive().current_a)
 
 
-def test_the_word_of_the_other_kind_of_board_counts_for_nothing():
-    world = PlantTicks(plant_config(load("microsat", PULSED), seed=7), None, None)
-    assert not world.receive(CoilDipoleStatus(0.5, 0.5, 0.5).encode())
+def test_the_status_of_the_other_kind_of_board_is_ignored():
+    source = PlantTicks(plant_config(load("microsat", PULSED), seed=7), None, None)
+    assert not source.receive(CoilDipoleStatus(0.5, 0.5, 0.5).encode())
     broken = CoilStatus(3, 0, 1500, 300, 9000, 1).encode()
-    assert not world.receive(broken._replace(data=broken.data[:-1] + b"\0"))
+    assert not source.receive(broken._replace(data=broken.data[:-1] + b"\0"))
 
 
 def test_sync_alone_counts_ticks_and_seconds():
-    world, sent = SyncOnly(1000, 2), []
+    source, sent = SyncOnly(1000, 2), []
     for _ in range(5):
-        (frame,) = world.frames()
+        (frame,) = source.frames()
         sent.append(tuple(Sync.decode(frame.data)))
-        assert not world.receive(frame)
-        world.advance()
+        assert not source.receive(frame)
+        source.advance()
     assert sent == [(0, 1000), (1, 1000), (2, 1001), (3, 1001), (4, 1002)]

@@ -1,4 +1,4 @@
-"""TimeHistogram that are counted and not gathered, against the ranks of all of them."""
+"""Quantiles of a histogram of times, against the ranks of all of them."""
 
 import random
 
@@ -14,7 +14,7 @@ def ranked(seconds, part):
 
 
 @pytest.mark.parametrize("number", [1, 2, 3, 99, 1000])
-def test_ranks_are_true_to_a_hundredth_and_never_told_too_small(number):
+def test_quantiles_are_true_to_a_hundredth_and_never_too_small(number):
     stream = random.Random(number)
     seconds = [stream.lognormvariate(-6.0, 2.0) for _ in range(number)]
     times = TimeHistogram(seconds)

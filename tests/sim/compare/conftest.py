@@ -1,4 +1,4 @@
-"""A flight that was never flown, every figure of it known beforehand, and the case it answers."""
+"""A made-up flight with given figures, and the case that it belongs to."""
 
 from math import cos, radians, sin
 

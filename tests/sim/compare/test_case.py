@@ -43,9 +43,9 @@ def test_all_else_is_the_same():
         (law, driver) for driver in BOTH for law in ("pd", "lqr")
     ]
     for case in found:
-        flown = load(case.order.scenario, case.order.overrides)
-        assert (flown.control.law, flown.coils.driver) == (case.law, case.driver)
-        assert (flown.control.k_w, flown.body.inertia_kgm2) == (5e6, (1.0, 2.0, 2.5))
+        scenario = load(case.order.scenario, case.order.overrides)
+        assert (scenario.control.law, scenario.coils.driver) == (case.law, case.driver)
+        assert (scenario.control.k_w, scenario.body.inertia_kgm2) == (5e6, (1.0, 2.0, 2.5))
         assert (case.order.seed, case.order.orbits) == (7, 0.5)
 
 

@@ -87,7 +87,7 @@ def test_a_comparison_is_not_overwritten(torquer, tmp_path):
     assert (tmp_path / "old" / "compare.json").read_text() == "{}"
 
 
-def test_what_has_flown_is_kept_when_the_rest_is_given_up(torquer, tmp_path, monkeypatch):
+def test_finished_flights_are_written_when_the_rest_is_given_up(torquer, tmp_path, monkeypatch):
     fly = command.fly_case
 
     def interrupted(case):

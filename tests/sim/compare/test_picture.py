@@ -44,10 +44,10 @@ def names(panel):
 
 
 def test_a_panel_a_driver_with_a_named_line_a_law(drawn):
-    flown = [result(law, 0.5 + number) for number, law in enumerate(("pd", "lqr", "sliding"))]
-    flown.append(result("pd", 0.3, Driver.CONTINUOUS))
-    flown.append(Result(Score("mpc", LAWS["mpc"].aim, Driver.CONTINUOUS, failure="no"), None))
-    (pulsed, continuous), path = drawn(flown)
+    results = [result(law, 0.5 + number) for number, law in enumerate(("pd", "lqr", "sliding"))]
+    results.append(result("pd", 0.3, Driver.CONTINUOUS))
+    results.append(Result(Score("mpc", LAWS["mpc"].aim, Driver.CONTINUOUS, failure="no"), None))
+    (pulsed, continuous), path = drawn(results)
     assert sorted(names(pulsed)) == ["lqr", "pd", "sliding"]
     assert names(continuous) == ["pd"]
     assert path.read_bytes().startswith(b"\x89PNG")
@@ -55,9 +55,9 @@ def test_a_panel_a_driver_with_a_named_line_a_law(drawn):
 
 def test_a_law_has_one_colour_and_no_two_look_alike(drawn):
     laws = list(LAWS)
-    flown = [result(law, 1.0 + n, driver) for driver in Driver for n, law in enumerate(laws)]
+    results = [result(law, 1.0 + n, driver) for driver in Driver for n, law in enumerate(laws)]
     looks = []
-    for panel in drawn(flown)[0]:
+    for panel in drawn(results)[0]:
         lines = [line for line in panel.lines if line.get_label() in LAWS]
         looks.append(
             {line.get_label(): (line.get_color(), str(line._unscaled_dash_pattern)) for line in lines}
@@ -67,7 +67,7 @@ def test_a_law_has_one_colour_and_no_two_look_alike(drawn):
     assert len(laws) <= len(drawing.COLOURS) * len(drawing.DASHES)
 
 
-def test_nothing_flown_is_no_picture(drawn):
+def test_without_a_flight_there_is_no_picture(drawn):
     panels, path = drawn([Result(Score("pd", LAWS["pd"].aim, Driver.PULSED, failure="no"), None)])
     assert not panels
     assert not path.exists()

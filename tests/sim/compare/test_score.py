@@ -1,4 +1,4 @@
-"""The figures of a flight, from records whose figures are known."""
+"""The figures of a flight, from records with given figures."""
 
 from dataclasses import asdict
 from math import degrees, sqrt
@@ -109,5 +109,5 @@ def test_a_law_that_cannot_be_flown_is_a_line():
     score, drawn = fly_case(case)
     assert drawn is None
     assert "effort" in score.failure
-    told = {"law", "aim", "driver", "failure"}
-    assert {key for key, value in asdict(score).items() if value is not None} == told
+    filled = {"law", "aim", "driver", "failure"}
+    assert {key for key, value in asdict(score).items() if value is not None} == filled

@@ -76,7 +76,7 @@ def test_csv_reads_back():
     assert rows[1]["failure"] == ABSENT.failure
 
 
-def test_json_holds_the_rows_and_what_was_flown():
+def test_json_holds_the_rows_and_the_description():
     read = json.loads(json.dumps(as_json(SCORES, {"scenario": "microsat", "seed": 3})))
     assert {"schema_version", "torquer_version", "scenario", "seed", "rows"} == set(read)
     assert set(read["rows"][0]) == {field.name for field in fields(Score)}

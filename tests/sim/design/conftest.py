@@ -47,8 +47,8 @@ def scenario_file(tmp_path):
 
 @pytest.fixture(scope="session")
 def searched():
-    """(scenario, analysis, what the progress bar heard) of a search for the default scenario."""
-    scenario, heard = load("microsat"), []
-    analysis = analyse(body_of(scenario), pulsing_of(scenario), None, heard.append)
-    assert heard[-1] == ANALYSIS_STEPS
-    return scenario, analysis, heard
+    """(scenario, analysis, progress) of a search for the default scenario."""
+    scenario, progress = load("microsat"), []
+    analysis = analyse(body_of(scenario), pulsing_of(scenario), None, progress.append)
+    assert progress[-1] == ANALYSIS_STEPS
+    return scenario, analysis, progress

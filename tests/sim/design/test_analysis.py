@@ -1,4 +1,4 @@
-"""What the analysis holds, and how it is result as text, as JSON and as pictures."""
+"""The content of the analysis, as text, as JSON and as pictures."""
 
 import json
 from dataclasses import replace
@@ -14,9 +14,9 @@ from sim.scenario.schema import load, parse_settings
 
 
 def test_the_progress_never_goes_back(searched):
-    heard = searched[2]
-    assert heard == sorted(heard)
-    assert len(set(heard)) > 50
+    progress = searched[2]
+    assert progress == sorted(progress)
+    assert len(set(progress)) > 50
 
 
 def test_multipliers_are_those_of_the_best_gains(searched):
@@ -42,7 +42,7 @@ def test_json_says_what_the_analysis_holds(searched):
     assert result["periodic_lqr"]["degree_of_stability"] < result["degree_of_stability"]
 
 
-def test_pulses_are_said_with_how_they_were_counted(searched):
+def test_pulses_are_reported_with_their_number_an_orbit(searched):
     _, analysis, _ = searched
     pulsed = as_json(analysis)["pulsed"]
     assert pulsed["periods_per_orbit"] == 60

@@ -16,9 +16,9 @@ from sim.report.conclude import conclude
 
 
 @pytest.fixture(scope="module")
-def whole(flown_run, tmp_path_factory):
+def whole(recorded_run, tmp_path_factory):
     """A finished run; for reading only."""
-    path = shutil.copytree(flown_run, tmp_path_factory.mktemp("bound") / "run")
+    path = shutil.copytree(recorded_run, tmp_path_factory.mktemp("bound") / "run")
     conclude(path)
     return path
 
@@ -47,8 +47,8 @@ class TestWhatIsBound:
         assert set(binding.digests(run_dir.read_run(tmp_path / "new"))) == {SCENARIO}
         assert compare(tmp_path / "new") == ({}, "")
 
-    def test_a_run_that_has_been_flown_but_not_concluded_says_what_is_not_bound(self, flown_run):
-        assert compare(flown_run) == ({}, "the run was not finished: no digests of truth.h5")
+    def test_a_run_that_has_been_flown_but_not_concluded_says_what_is_not_bound(self, recorded_run):
+        assert compare(recorded_run) == ({}, "the run was not finished: no digests of truth.h5")
 
     def test_without_a_run_json_nothing_is(self, tmp_path):
         assert compare(tmp_path) == ({}, "")

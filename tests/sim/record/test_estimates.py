@@ -9,9 +9,9 @@ from sim.replay.log_replay import replay
 
 
 @pytest.fixture(scope="module")
-def states(flown_run, config_of):
+def states(recorded_run, config_of):
     seen = []
-    replay(flown_run / BUS_LOG, config_of(flown_run), seen.append)
+    replay(recorded_run / BUS_LOG, config_of(recorded_run), seen.append)
     return seen
 
 

@@ -1,4 +1,4 @@
-"""Replay: an honest log is exact; one changed byte, one missing frame or a cut is named where it is."""
+"""Replay: an unaltered log is exact; a changed byte, a missing frame or a cut is reported where it is."""
 
 from dataclasses import replace
 
@@ -29,13 +29,13 @@ TICKS = 300
 
 
 @pytest.fixture(scope="module")
-def entries(flown_run):
-    return list(read_log(flown_run / BUS_LOG))
+def entries(recorded_run):
+    return list(read_log(recorded_run / BUS_LOG))
 
 
 @pytest.fixture(scope="module")
-def config(flown_run, config_of):
-    return config_of(flown_run)
+def config(recorded_run, config_of):
+    return config_of(recorded_run)
 
 
 @pytest.fixture
@@ -53,12 +53,12 @@ def replay_entries(tmp_path, config):
 
 def index_of(entries, kind, tick):
     """Where the tick's frame of a kind is in the log."""
-    seen = -1
+    tick_so_far = -1
     for index, entry in enumerate(entries):
         if entry.frame.can_id == Sync.ID:
-            seen = Sync.decode(entry.frame.data).tick
+            tick_so_far = Sync.decode(entry.frame.data).tick
         before_sync = kind.ID in (MagField.ID, SunVector.ID, CoilStatus.ID, Sync.ID)
-        if entry.frame.can_id == kind.ID and (seen + before_sync - (kind is Sync)) == tick:
+        if entry.frame.can_id == kind.ID and (tick_so_far + before_sync - (kind is Sync)) == tick:
             return index
     raise AssertionError(f"no {kind.__name__} in tick {tick}")
 
@@ -77,22 +77,22 @@ def flip(byte, bit=0):
     return change
 
 
-class TestHonest:
-    def test_an_honest_log_is_bit_exact(self, flown_run, config, entries):
-        shown = replay(flown_run / BUS_LOG, config)
-        assert shown.bit_exact
-        assert shown.command_exact
-        assert (shown.ticks, shown.last_tick) == (TICKS, TICKS - 1)
-        assert (shown.ended, shown.cut, shown.end_line) == (True, False, len(entries))
+class TestUnaltered:
+    def test_an_unaltered_log_is_bit_exact(self, recorded_run, config, entries):
+        result = replay(recorded_run / BUS_LOG, config)
+        assert result.bit_exact
+        assert result.command_exact
+        assert (result.ticks, result.last_tick) == (TICKS, TICKS - 1)
+        assert (result.ended, result.cut, result.end_line) == (True, False, len(entries))
         from_fsw = {FswBoot.ID, CoilFire.ID, TickDone.ID, *range(0x200, 0x203), 0x410, 0x610}
-        assert shown.frames == sum(entry.frame.can_id in from_fsw for entry in entries)
+        assert result.frames == sum(entry.frame.can_id in from_fsw for entry in entries)
 
     def test_there_was_something_to_replay(self, entries):
         assert sum(entry.frame.can_id == CoilFire.ID for entry in entries) >= 2
 
-    def test_the_state_of_every_tick_is_handed_out(self, flown_run, config):
+    def test_the_state_of_every_tick_is_handed_out(self, recorded_run, config):
         states = []
-        replay(flown_run / BUS_LOG, config, states.append)
+        replay(recorded_run / BUS_LOG, config, states.append)
         assert [state.tick for state in states] == list(range(TICKS))
         assert states[-1].estimator.estimate is not None
 
@@ -100,22 +100,22 @@ class TestHonest:
         renamed = [entry._replace(channel="can7", timestamp_us=entry.timestamp_us + 5) for entry in entries]
         assert replay_entries(renamed).bit_exact
 
-    def test_another_run_of_the_same_seed_gives_the_same_log(self, fly_run, flown_run):
-        assert (fly_run() / BUS_LOG).read_bytes() == (flown_run / BUS_LOG).read_bytes()
+    def test_another_run_of_the_same_seed_gives_the_same_log(self, fly_run, recorded_run):
+        assert (fly_run() / BUS_LOG).read_bytes() == (recorded_run / BUS_LOG).read_bytes()
 
-    def test_another_seed_does_not(self, fly_run, flown_run):
-        assert (fly_run(seed=6) / BUS_LOG).read_bytes() != (flown_run / BUS_LOG).read_bytes()
+    def test_another_seed_does_not(self, fly_run, recorded_run):
+        assert (fly_run(seed=6) / BUS_LOG).read_bytes() != (recorded_run / BUS_LOG).read_bytes()
 
 
 class TestChangedByte:
     @pytest.mark.parametrize("tick", [0, 1, 57, 150, 299])
     @pytest.mark.parametrize("byte", range(8))
     def test_of_a_field_sample_is_found_in_its_tick(self, replay_entries, entries, tick, byte):
-        shown = replay_entries(changed(entries, index_of(entries, MagField, tick), flip(byte)))
-        assert not shown.bit_exact
-        assert shown.first_bit_difference.tick == tick
-        assert str(shown.first_bit_difference).startswith(f"tick {tick}: ")
-        assert shown.first_bit_difference.signal.partition(".")[0] in (
+        result = replay_entries(changed(entries, index_of(entries, MagField, tick), flip(byte)))
+        assert not result.bit_exact
+        assert result.first_bit_difference.tick == tick
+        assert str(result.first_bit_difference).startswith(f"tick {tick}: ")
+        assert result.first_bit_difference.signal.partition(".")[0] in (
             "NAV_ATTITUDE",
             "NAV_RATE",
             "NAV_QUALITY",
@@ -125,8 +125,8 @@ class TestChangedByte:
 
     @pytest.mark.parametrize("kind", [MagField, SunVector, CoilStatus], ids=lambda kind: kind.__name__)
     def test_of_any_board_is_found(self, replay_entries, entries, kind):
-        shown = replay_entries(changed(entries, index_of(entries, kind, 120), flip(1, 3)))
-        assert shown.first_bit_difference.tick == 120
+        result = replay_entries(changed(entries, index_of(entries, kind, 120), flip(1, 3)))
+        assert result.first_bit_difference.tick == 120
 
     def test_of_a_sample_that_is_not_used_is_found_by_the_checksum(self, replay_entries, entries):
         """The filter is blanked during a pulse: nothing but a counter in the state tells."""
@@ -136,8 +136,8 @@ class TestChangedByte:
             if e.frame.can_id == CoilStatus.ID and CoilStatus.decode(e.frame.data).level
         )
         field = max(i for i in range(pulse) if entries[i].frame.can_id == MagField.ID)
-        shown = replay_entries(changed(entries, field, flip(2)))
-        assert shown.first_bit_difference.signal == "TICK_DONE.state_crc"
+        result = replay_entries(changed(entries, field, flip(2)))
+        assert result.first_bit_difference.signal == "TICK_DONE.state_crc"
 
     def test_of_a_frame_that_fsw_does_not_listen_to_is_found_too(self, replay_entries, entries):
         """The heartbeats of tick 60 stand before fsw's own, which tells the rejects."""
@@ -150,31 +150,31 @@ class TestChangedByte:
         index = index_of(entries, MagField, 140)
         field = MagField.decode(entries[index].frame.data)
         forged = changed(entries, index, lambda _: field._replace(b_x=field.b_x + 2.0).encode())
-        shown = replay_entries(forged)
-        assert shown.first_bit_difference.tick == 140
+        result = replay_entries(forged)
+        assert result.first_bit_difference.tick == 140
 
     def test_of_sync(self, replay_entries, entries):
-        shown = replay_entries(changed(entries, index_of(entries, Sync, 100), flip(0)))
-        assert not shown.bit_exact
-        assert shown.first_bit_difference.tick in (100, 101)
+        result = replay_entries(changed(entries, index_of(entries, Sync, 100), flip(0)))
+        assert not result.bit_exact
+        assert result.first_bit_difference.tick in (100, 101)
 
 
 class TestChangedAnswer:
-    """What is changed in an answer itself is named by its signal, and told apart: command or last bit."""
+    """A change in an answer itself is reported by its signal, and as one of a command or of a last bit."""
 
     def test_a_request(self, replay_entries, entries):
         index = next(i for i, e in enumerate(entries) if e.frame.can_id == CoilFire.ID)
         fire = CoilFire.decode(entries[index].frame.data)
         other = -fire.level
-        shown = replay_entries(changed(entries, index, lambda _: fire._replace(level=other).encode()))
-        difference = shown.first_command_difference
+        result = replay_entries(changed(entries, index, lambda _: fire._replace(level=other).encode()))
+        difference = result.first_command_difference
         assert (difference.signal, difference.logged, difference.replayed) == (
             "COIL_FIRE.level",
             other,
             fire.level,
         )
         assert difference.tick % 256 == fire.tick
-        assert not shown.bit_exact
+        assert not result.bit_exact
 
     @pytest.mark.parametrize(
         ("kind", "signal", "unit"), [(NavAttitude, "q_y", 2.0**-16), (NavRate, "w_z", 2.0**-19)]
@@ -186,43 +186,43 @@ class TestChangedAnswer:
         index = index_of(entries, kind, 133)
         message = kind.decode(entries[index].frame.data)
         moved = message._replace(**{signal: getattr(message, signal) + units * unit})
-        shown = replay_entries(changed(entries, index, lambda _: moved.encode()))
-        assert not shown.bit_exact
-        assert shown.command_exact is commands
-        assert shown.first_bit_difference.tick == 133
-        assert shown.first_bit_difference.signal.endswith(f".{signal}")
+        result = replay_entries(changed(entries, index, lambda _: moved.encode()))
+        assert not result.bit_exact
+        assert result.command_exact is commands
+        assert result.first_bit_difference.tick == 133
+        assert result.first_bit_difference.signal.endswith(f".{signal}")
 
     def test_a_flag_may_not(self, replay_entries, entries):
         index = index_of(entries, NavAttitude, 133)
         message = NavAttitude.decode(entries[index].frame.data)
-        shown = replay_entries(
+        result = replay_entries(
             changed(entries, index, lambda _: message._replace(valid=1 - message.valid).encode())
         )
-        assert shown.first_command_difference.signal == "NAV_ATTITUDE.valid"
+        assert result.first_command_difference.signal == "NAV_ATTITUDE.valid"
 
     def test_a_state_crc_is_no_command(self, replay_entries, entries):
-        shown = replay_entries(changed(entries, index_of(entries, TickDone, 77), flip(6)))
-        assert (shown.bit_exact, shown.command_exact) == (False, True)
-        assert (shown.first_bit_difference.tick, shown.first_bit_difference.signal) == (
+        result = replay_entries(changed(entries, index_of(entries, TickDone, 77), flip(6)))
+        assert (result.bit_exact, result.command_exact) == (False, True)
+        assert (result.first_bit_difference.tick, result.first_bit_difference.signal) == (
             77,
             "TICK_DONE.state_crc",
         )
 
     def test_the_tick_that_is_answered_is(self, replay_entries, entries):
-        shown = replay_entries(changed(entries, index_of(entries, TickDone, 77), flip(0)))
-        assert shown.first_command_difference.signal == "TICK_DONE.tick"
+        result = replay_entries(changed(entries, index_of(entries, TickDone, 77), flip(0)))
+        assert result.first_command_difference.signal == "TICK_DONE.tick"
 
     @pytest.mark.parametrize("byte", [0, 3, 7])
     def test_a_broken_frame_is_named_as_a_whole(self, replay_entries, entries, byte):
-        shown = replay_entries(changed(entries, index_of(entries, NavRate, 88), flip(byte)))
-        assert shown.first_command_difference.tick == 88
-        assert shown.first_command_difference.signal == "NAV_RATE as a whole"
+        result = replay_entries(changed(entries, index_of(entries, NavRate, 88), flip(byte)))
+        assert result.first_command_difference.tick == 88
+        assert result.first_command_difference.signal == "NAV_RATE as a whole"
 
     def test_a_shortened_frame_is_too(self, replay_entries, entries):
-        shown = replay_entries(
+        result = replay_entries(
             changed(entries, index_of(entries, TickDone, 88), lambda f: f._replace(data=f.data[:4]))
         )
-        assert shown.first_command_difference.signal == "TICK_DONE as a whole"
+        assert result.first_command_difference.signal == "TICK_DONE as a whole"
 
 
 class TestMissingAndExtra:
@@ -231,19 +231,19 @@ class TestMissingAndExtra:
 
     @pytest.mark.parametrize("kind", [MagField, SunVector, CoilStatus], ids=lambda kind: kind.__name__)
     def test_a_missing_board_frame(self, replay_entries, entries, kind):
-        shown = replay_entries(self.drop(entries, index_of(entries, kind, 42)))
-        assert shown.first_bit_difference.tick == 42
+        result = replay_entries(self.drop(entries, index_of(entries, kind, 42)))
+        assert result.first_bit_difference.tick == 42
 
     def test_a_missing_answer(self, replay_entries, entries):
-        shown = replay_entries(self.drop(entries, index_of(entries, NavRate, 42)))
-        difference = shown.first_command_difference
+        result = replay_entries(self.drop(entries, index_of(entries, NavRate, 42)))
+        difference = result.first_command_difference
         assert (difference.tick, difference.signal) == (42, "the next frame")
         assert (difference.logged, difference.replayed) == ("TICK_DONE", "NAV_RATE")
 
     def test_the_last_answer_of_all(self, replay_entries, entries):
         last = max(i for i, e in enumerate(entries) if e.frame.can_id == TickDone.ID)
-        shown = replay_entries(self.drop(entries, last))
-        assert (shown.first_command_difference.tick, shown.first_command_difference.signal) == (
+        result = replay_entries(self.drop(entries, last))
+        assert (result.first_command_difference.tick, result.first_command_difference.signal) == (
             299,
             "TICK_DONE",
         )
@@ -259,9 +259,9 @@ class TestMissingAndExtra:
         )
 
     def test_a_missing_sync(self, replay_entries, entries):
-        shown = replay_entries(self.drop(entries, index_of(entries, Sync, 42)))
-        assert shown.first_command_difference is not None
-        assert shown.first_command_difference.tick in (41, 42)
+        result = replay_entries(self.drop(entries, index_of(entries, Sync, 42)))
+        assert result.first_command_difference is not None
+        assert result.first_command_difference.tick in (41, 42)
 
     def test_a_foreign_frame_in_the_log(self, replay_entries, entries):
         index = index_of(entries, MagField, 42)
@@ -271,55 +271,55 @@ class TestMissingAndExtra:
 
 
 class TestOtherTable:
-    def test_the_boot_frame_tells(self, flown_run):
+    def test_the_boot_frame_differs(self, recorded_run):
         other = flight_config(flight_table(load("microsat")))
-        shown = replay(flown_run / BUS_LOG, other)
-        assert not shown.bit_exact
-        assert (shown.first_bit_difference.tick, shown.first_bit_difference.signal) == (
+        result = replay(recorded_run / BUS_LOG, other)
+        assert not result.bit_exact
+        assert (result.first_bit_difference.tick, result.first_bit_difference.signal) == (
             0,
             "FSW_BOOT.table_crc",
         )
 
-    def test_so_does_the_flight_under_other_gains(self, flown_run, config):
+    def test_the_answers_differ_under_other_gains(self, recorded_run, config):
         setpoint = config.control.setpoint
         tripled = setpoint._replace(k_a=3.0 * setpoint.k_a)
         stronger = replace(config, control=replace(config.control, setpoint=tripled))
-        shown = replay(flown_run / BUS_LOG, stronger)
-        assert not shown.bit_exact
+        result = replay(recorded_run / BUS_LOG, stronger)
+        assert not result.bit_exact
 
 
 class TestTruncated:
-    def text(self, flown_run):
-        return (flown_run / BUS_LOG).read_bytes()
+    def text(self, recorded_run):
+        return (recorded_run / BUS_LOG).read_bytes()
 
     @pytest.mark.parametrize("part", [0.001, 0.1, 0.33, 0.5, 0.77, 0.9, 0.9999])
-    def test_a_log_cut_anywhere_is_exact_as_far_as_it_goes(self, tmp_path, flown_run, config, part):
-        text = self.text(flown_run)
+    def test_a_log_cut_anywhere_is_exact_as_far_as_it_goes(self, tmp_path, recorded_run, config, part):
+        text = self.text(recorded_run)
         log = tmp_path / "bus.log"
         log.write_bytes(text[: round(part * len(text))])
-        shown = replay(log, config)
-        assert shown.bit_exact
-        assert not shown.ended
+        result = replay(log, config)
+        assert result.bit_exact
+        assert not result.ended
         whole = log.read_bytes().count(b"\n")
-        assert shown.end_line == whole
-        assert shown.cut is (not log.read_bytes().endswith(b"\n"))
-        assert shown.ticks == shown.last_tick + 1 < TICKS or part > 0.99
+        assert result.end_line == whole
+        assert result.cut is (not log.read_bytes().endswith(b"\n"))
+        assert result.ticks == result.last_tick + 1 < TICKS or part > 0.99
 
-    def test_every_cut_inside_three_ticks(self, tmp_path, flown_run, config):
-        lines = self.text(flown_run).splitlines(keepends=True)
+    def test_every_cut_inside_three_ticks(self, tmp_path, recorded_run, config):
+        lines = self.text(recorded_run).splitlines(keepends=True)
         text = b"".join(lines[:25])
         log = tmp_path / "bus.log"
         for length in range(1, len(text)):
             log.write_bytes(text[:length])
-            shown = replay(log, config)
-            assert shown.bit_exact
-            assert shown.end_line == text[:length].count(b"\n")
-            assert shown.cut is not text[:length].endswith(b"\n")
+            result = replay(log, config)
+            assert result.bit_exact
+            assert result.end_line == text[:length].count(b"\n")
+            assert result.cut is not text[:length].endswith(b"\n")
 
     def test_a_log_without_its_end_mark_has_not_ended(self, replay_entries, entries):
         assert entries[-1].frame.can_id == PlantEnd.ID
-        shown = replay_entries(entries[:-1])
-        assert (shown.bit_exact, shown.ended, shown.cut, shown.ticks) == (True, False, False, TICKS)
+        result = replay_entries(entries[:-1])
+        assert (result.bit_exact, result.ended, result.cut, result.ticks) == (True, False, False, TICKS)
 
     def test_nor_has_one_whose_end_mark_is_broken(self, replay_entries, entries):
         assert not replay_entries(changed(entries, len(entries) - 1, flip(1))).ended

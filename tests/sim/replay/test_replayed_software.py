@@ -1,4 +1,4 @@
-"""Runs in which strangers spoke replay bit-exact, wherever their frames met those of the plant."""
+"""Runs with frames of strangers replay bit-exact, wherever these crossed those of the plant."""
 
 from dataclasses import dataclass
 from random import Random
@@ -51,8 +51,8 @@ def sync(tick):
 
 
 @dataclass
-class Goes:
-    """Goes on tick by tick from ``FAR`` in a part of the ticks."""
+class CountingStranger:
+    """Counts on tick by tick from ``FAR``, in a part of the ticks."""
 
     part: float
     tick: int = FAR
@@ -71,7 +71,7 @@ def seldom(frames_of):
 STRANGERS = {
     "one strange SYNC": seldom(lambda random: [sync(random.getrandbits(32))]),
     "one in each tick": lambda random: [sync(random.getrandbits(32))],
-    "one that goes on": Goes(0.5),
+    "one that goes on": CountingStranger(0.5),
     "pairs": seldom(lambda random: [sync(x := random.getrandbits(32)), sync(x + 1)]),
     "equal pairs": seldom(lambda random: [sync(random.getrandbits(32))] * 2),
     "ends": seldom(lambda random: [PlantEnd(random.getrandbits(24), counter=random.getrandbits(4)).encode()]),
@@ -101,15 +101,15 @@ def fly_with(tmp_path, monkeypatch):
 def test_replays_bit_exact(tmp_path, fly_with, frames_of):
     bus, config = fly_with(frames_of)
     states = []
-    shown = replay(tmp_path / BUS_LOG, config, states.append)
+    result = replay(tmp_path / BUS_LOG, config, states.append)
     assert bus.count > 5
-    assert shown.bit_exact, shown.first_bit_difference
-    assert shown.ended
+    assert result.bit_exact, result.first_bit_difference
+    assert result.ended
     done = [e.frame for e in read_log(tmp_path / BUS_LOG) if e.frame.can_id == TickDone.ID]
     assert {TickDone.decode(frame.data).tick for frame in done} >= set(range(TICKS))
 
 
-def test_a_run_that_was_led_astray_is_concluded_all_the_same(tmp_path, fly_with):
+def test_a_run_that_strangers_disturbed_is_concluded_too(tmp_path, fly_with):
     fly_with(STRANGERS["pairs"])
     summary = conclude(tmp_path)
     assert summary["replay"]["bit_exact"]
@@ -126,38 +126,38 @@ def test_the_order_that_is_found_explains_an_altered_frame_no_more_than_the_logg
         lines = [*entries[:index], altered, *entries[index + 1 :]]
         log = tmp_path / "altered.log"
         log.write_text("".join(format_line(format_time(e.timestamp_us), e.channel, e.frame) for e in lines))
-        shown = replay(log, config)
-        assert not shown.bit_exact
-        assert shown.first_bit_difference.signal == "FSW_EVENT.argument"
+        result = replay(log, config)
+        assert not result.bit_exact
+        assert result.first_bit_difference.signal == "FSW_EVENT.argument"
 
 
 class TestEnd:
     @pytest.fixture
-    def entries(self, flown_run):
-        return list(read_log(flown_run / BUS_LOG))
+    def entries(self, recorded_run):
+        return list(read_log(recorded_run / BUS_LOG))
 
     @pytest.fixture
-    def replay_entries(self, tmp_path, flown_run, config_of):
+    def replay_entries(self, tmp_path, recorded_run, config_of):
         def of(entries):
             log = tmp_path / "bus.log"
             log.write_text(
                 "".join(format_line(format_time(e.timestamp_us), e.channel, e.frame) for e in entries)
             )
-            return replay(log, config_of(flown_run))
+            return replay(log, config_of(recorded_run))
 
         return of
 
     @pytest.mark.parametrize("ticks", [150, 149, 300, 9999])
     def test_in_the_middle_is_no_end_and_no_reason_to_stop(self, replay_entries, entries, ticks):
-        """As a log that was edited: the flight software would have told of it."""
+        """As a log that was edited: the flight software would have reported it."""
         done = [i for i, e in enumerate(entries) if e.frame.can_id == TickDone.ID][149]
         forged = entries[done]._replace(frame=PlantEnd(ticks, counter=1).encode())
-        shown = replay_entries([*entries[: done + 1], forged, *entries[done + 1 :]])
-        assert shown.first_bit_difference.tick == 150
-        assert "PLANT_END" not in shown.first_bit_difference.signal
+        result = replay_entries([*entries[: done + 1], forged, *entries[done + 1 :]])
+        assert result.first_bit_difference.tick == 150
+        assert "PLANT_END" not in result.first_bit_difference.signal
 
     @pytest.mark.parametrize("ticks", [299, 301, 9999])
     def test_that_does_not_fit_is_none(self, replay_entries, entries, ticks):
-        shown = replay_entries([*entries[:-1], entries[-1]._replace(frame=PlantEnd(ticks).encode())])
-        assert not shown.ended
-        assert shown.first_bit_difference.signal == "PLANT_END.ticks"
+        result = replay_entries([*entries[:-1], entries[-1]._replace(frame=PlantEnd(ticks).encode())])
+        assert not result.ended
+        assert result.first_bit_difference.signal == "PLANT_END.ticks"

@@ -176,10 +176,10 @@ def strict():
 
 
 @pytest.fixture(scope="session")
-def concluded(flown_run, tmp_path_factory):
+def concluded(recorded_run, tmp_path_factory):
     """A copy of a run with all that is made of it."""
     path = tmp_path_factory.mktemp("concluded") / "run"
-    shutil.copytree(flown_run, path)
+    shutil.copytree(recorded_run, path)
     conclude(path)
     return path
 

@@ -45,8 +45,8 @@ class TestRealFlight:
             assert key in summary
             assert inner is None or inner <= set(summary[key]), key
 
-    def test_a_run_is_complete_once_it_has_been_concluded(self, flown_run, concluded):
-        assert run_dir.read_run(flown_run)["complete"] is False
+    def test_a_run_is_complete_once_it_has_been_concluded(self, recorded_run, concluded):
+        assert run_dir.read_run(recorded_run)["complete"] is False
         assert run_dir.read_run(concluded)["complete"] is True
         assert {file.name for file in concluded.iterdir()} == {
             "run.json",
@@ -58,8 +58,8 @@ class TestRealFlight:
             "report.html",
         }
 
-    def test_a_run_that_was_cut_is_concluded_but_not_complete(self, flown_run, tmp_path):
-        shutil.copytree(flown_run, tmp_path / "run")
+    def test_a_run_that_was_cut_is_concluded_but_not_complete(self, recorded_run, tmp_path):
+        shutil.copytree(recorded_run, tmp_path / "run")
         log = tmp_path / "run" / run_dir.BUS_LOG
         log.write_bytes(log.read_bytes()[:40_000])
         made = conclude(tmp_path / "run")
@@ -67,8 +67,8 @@ class TestRealFlight:
         assert made["replay"]["ticks"] < 300
         assert run_dir.read_run(tmp_path / "run")["complete"] is False
 
-    def test_a_run_that_never_ended_its_flight_is_not_complete(self, flown_run, tmp_path):
-        shutil.copytree(flown_run, tmp_path / "run")
+    def test_a_run_that_never_ended_its_flight_is_not_complete(self, recorded_run, tmp_path):
+        shutil.copytree(recorded_run, tmp_path / "run")
         run = run_dir.read_run(tmp_path / "run")
         run.pop("flown")
         run_dir.write_json(tmp_path / "run" / run_dir.RUN, run)

@@ -161,7 +161,7 @@ def test_a_request_that_no_board_could_drive_is_a_violation(requests, kind, lost
     assert (kind, 110) in {(violation.kind, violation.tick) for violation in violations}
 
 
-def test_a_request_as_it_should_be_is_none():
+def test_a_proper_request_is_no_violation():
     flight = Flight(Limits(), 0, (Stretch(120, STRONG, FIELD),))
     assert audit_scheduler(Asks(Fire(1, 3, 3000)), flight).ok
 

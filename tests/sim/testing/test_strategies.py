@@ -11,16 +11,16 @@ EXAMPLES = 100
 
 
 class Eager:
-    """Fires whenever it may, told by the board alone."""
+    """Fires whenever the board allows it, without timers of its own."""
 
     def __init__(self, limits):
         self.pulse_ms = limits.pulse_ms * limits.tick_hz // 1000 * 1000 // limits.tick_hz
 
     def step(self, heard):
-        word = heard.status
-        if word is None or word.lockout_ms or word.remaining_ms:
+        status = heard.status
+        if status is None or status.lockout_ms or status.remaining_ms:
             return []
-        return [Fire(word.coil, 3, self.pulse_ms)]
+        return [Fire(status.coil, 3, self.pulse_ms)]
 
 
 def drawn(strategy):

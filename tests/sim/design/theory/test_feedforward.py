@@ -40,7 +40,7 @@ def rms(theta):
 
 
 def test_the_answer_is_a_periodic_motion_of_the_linearised_body():
-    """Integrated from its own first state for one orbit, the body moves as told."""
+    """Integrated from its own first state for one orbit, the body moves as computed."""
     found = least_error(BODY, TORQUE)
     waves = np.fft.fftfreq(32, 1.0 / 32)
     rate = np.fft.ifft(1j * waves[:, None] * np.fft.fft(found.theta_rad, axis=0), axis=0).real[0]

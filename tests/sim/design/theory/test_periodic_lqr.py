@@ -87,8 +87,8 @@ def mean_attitude(body, law, torque_nm, knows):
     steps = transitions(forced, 64)
     whole = product(steps)
     state = np.append(np.linalg.solve(np.eye(6) - whole[:6, :6], whole[:6, 6]), 1.0)
-    seen = [state := step @ state for step in steps]
-    return np.linalg.norm(np.mean(seen, axis=0)[3:6])
+    states = [state := step @ state for step in steps]
+    return np.linalg.norm(np.mean(states, axis=0)[3:6])
 
 
 def test_a_known_torque_turns_the_body_less():

@@ -27,9 +27,9 @@ def fly(body, gains, pulsing, periods, start):
     def derivative(torque):
         def of(u, y):
             x, owed = y[:size], y[size:]
-            asked = inertia @ ((loop(np.array([u]))[0] - free) @ x)[:3]
+            demanded = inertia @ ((loop(np.array([u]))[0] - free) @ x)[:3]
             push = np.concatenate([np.linalg.solve(inertia, torque), np.zeros(size - 3)])
-            return np.concatenate([free @ x + push, asked - owed / leak])
+            return np.concatenate([free @ x + push, demanded - owed / leak])
 
         return of
 

@@ -81,12 +81,12 @@ def test_the_wide_basin_is_steadier_than_the_kink():
 
 
 def test_it_finds_the_same_again_and_tells_how_far_it_is():
-    heard = []
-    once = search(MICROSAT, kinked, kinked, heard.append)
+    progress = []
+    once = search(MICROSAT, kinked, kinked, progress.append)
     again = search(MICROSAT, kinked, kinked)
     assert (once.best, once.steady) == (again.best, again.steady)
-    assert heard == sorted(heard)
-    assert (heard[0], heard[-1]) == (1, SEARCH_STEPS)
+    assert progress == sorted(progress)
+    assert (progress[0], progress[-1]) == (1, SEARCH_STEPS)
 
 
 def test_gains_stay_within_what_was_searched():
