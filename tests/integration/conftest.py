@@ -90,7 +90,7 @@ def run_torquer(arguments):
 
 @pytest.fixture
 def torquer(capfd):
-    """Runs ``torquer ARGUMENTS...`` and tells how it ended and what it and its processes said."""
+    """Runs ``torquer ARGUMENTS...`` and returns its exit code and all output."""
 
     def run(*arguments):
         capfd.readouterr()
@@ -101,8 +101,8 @@ def torquer(capfd):
 
 
 @pytest.fixture(scope="session")
-def flown(tmp_path_factory):
-    """The directory of a run that ``torquer sil ARGUMENTS...`` has flown; for reading only.
+def sil_run(tmp_path_factory):
+    """The directory of the run of ``torquer sil ARGUMENTS...``; for reading only.
 
     Its report is left blank: drawing it takes longer than the flight.
     """
@@ -110,7 +110,7 @@ def flown(tmp_path_factory):
 
     def fly(*arguments):
         if arguments not in runs:
-            path = tmp_path_factory.mktemp("flown") / "run"
+            path = tmp_path_factory.mktemp("sil") / "run"
             with pytest.MonkeyPatch.context() as patch:
                 patch.setattr(conclude, "write_report", lambda path, *rest: path.write_text(""))
                 assert run_torquer(("sil", *arguments, "--out", path)) == 0
@@ -121,14 +121,14 @@ def flown(tmp_path_factory):
 
 
 @pytest.fixture
-def run(flown, tmp_path):
+def run(sil_run, tmp_path):
     """A copy of a run of 30 ticks, to be altered; no digest tells of that before the file is read."""
     folder = tmp_path / "run"
     folder.mkdir()
-    for file in flown(*TINY).iterdir():
+    for file in sil_run(*TINY).iterdir():
         (folder / file.name).write_bytes(file.read_bytes())
-    told = json.loads((folder / "run.json").read_text())
-    (folder / "run.json").write_text(json.dumps({**told, "digests": {}}))
+    run_json = json.loads((folder / "run.json").read_text())
+    (folder / "run.json").write_text(json.dumps({**run_json, "digests": {}}))
     return folder
 
 

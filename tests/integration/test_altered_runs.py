@@ -18,9 +18,9 @@ FEW = settings(max_examples=25, deadline=None, suppress_health_check=list(Health
 
 
 @pytest.fixture
-def run(flown, tmp_path):
+def run(sil_run, tmp_path):
     """A copy of a run of 30 ticks, to be altered."""
-    return shutil.copytree(flown(*TINY), tmp_path / "run")
+    return shutil.copytree(sil_run(*TINY), tmp_path / "run")
 
 
 def judged(torquer, run):
@@ -93,8 +93,8 @@ def test_a_bare_log_is_judged_and_said_to_be_one(run, torquer):
 
 
 def test_a_run_of_another_version(run, torquer):
-    told = json.loads((run / "run.json").read_text())
-    (run / "run.json").write_text(json.dumps(told | {"schema_version": 99}))
+    run_json = json.loads((run / "run.json").read_text())
+    (run / "run.json").write_text(json.dumps(run_json | {"schema_version": 99}))
     for command in ("replay", "report"):
         done = torquer(command, run)
         assert done.code == 2
@@ -109,8 +109,8 @@ def test_a_run_json_of_something_else(run, torquer, content):
     assert "run.json: schema_version is None" in done.sentence
 
 
-def test_a_log_of_another_bus_contract(flown, copy_of, torquer):
-    copy = copy_of(flown(*TINY))
+def test_a_log_of_another_bus_contract(sil_run, copy_of, torquer):
+    copy = copy_of(sil_run(*TINY))
     boots = [index for index in copy.where(CoilBoot) if index >= 0]
     assert all(CoilBoot.decode(copy.entries[index][2].data).version == CONTRACT_VERSION for index in boots)
     copy.change(boots[0], version=CONTRACT_VERSION + 1)
@@ -129,7 +129,7 @@ def with_files_of_at_most(size):
 
 
 @pytest.mark.parametrize("bus", ["virtual", "loop"])
-def test_a_full_disk_ends_the_flight_with_what_was_flown_kept(bus, start, tmp_path, torquer, flown):
+def test_a_full_disk_ends_the_flight_with_what_was_flown_kept(bus, start, tmp_path, torquer, sil_run):
     folder, limit = tmp_path / "run", with_files_of_at_most(180_000)
     words = ("torquer", "sil", "microsat", *LONGER, "--bus", bus, "--out", folder)
     ended = start(*words, **limit).wait()
@@ -138,11 +138,11 @@ def test_a_full_disk_ends_the_flight_with_what_was_flown_kept(bus, start, tmp_pa
     assert "what was flown until then is kept" in ended.err
     assert "Traceback" not in ended.err
     assert ended.err.count("\n") == (1 if bus == "virtual" else 2), "one sentence of each process"
-    whole = flown("microsat", *LONGER, "--bus", "virtual")
-    kept = (folder / "bus.log").read_text().replace(" loop ", " virtual ")
+    whole = sil_run("microsat", *LONGER, "--bus", "virtual")
+    logged = (folder / "bus.log").read_text().replace(" loop ", " virtual ")
     assert 170_000 < len((folder / "bus.log").read_bytes()) <= 180_000
-    assert (whole / "bus.log").read_text().startswith(kept)
-    assert kept.endswith("\n")
+    assert (whole / "bus.log").read_text().startswith(logged)
+    assert logged.endswith("\n")
     assert json.loads((folder / "run.json").read_text())["complete"] is False
     replayed = torquer("replay", folder)
     assert replayed.code == 1

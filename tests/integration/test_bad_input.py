@@ -144,12 +144,12 @@ SAMPLES = (
 @pytest.mark.parametrize("sample", SAMPLES, ids=lambda sample: sample.__name__)
 @pytest.mark.usefixtures("run")
 def test_it_is_refused_soon_and_in_little_memory(sample, tmp_path):
-    words, told = sample(tmp_path)
-    code, said = measured(*words, cwd=tmp_path)
+    words, expected = sample(tmp_path)
+    code, output = measured(*words, cwd=tmp_path)
     assert code == 2
-    assert said.startswith("torquer: ")
-    assert told in said
-    assert said.count("\n") == 1
+    assert output.startswith("torquer: ")
+    assert expected in output
+    assert output.count("\n") == 1
 
 
 # --- histories that are none
@@ -229,7 +229,7 @@ def test_a_hole_in_the_histories_of_a_whole_flight(run, torquer):
 
 @pytest.mark.parametrize("command", [("report",), ("replay",), ("replay", "--plant")], ids=" ".join)
 @pytest.mark.parametrize(
-    ("key", "value", "told"),
+    ("key", "value", "expected"),
     [
         ("ticks", None, "ticks = None is not allowed"),
         ("ticks", "many", "ticks = 'many' is not allowed"),
@@ -245,13 +245,13 @@ def test_a_hole_in_the_histories_of_a_whole_flight(run, torquer):
         ("schema_version", "1", "schema_version is 1, and only 1 can be read"),
     ],
 )
-def test_a_key_of_the_wrong_type_is_named(run, torquer, command, key, value, told):
+def test_a_key_of_the_wrong_type_is_named(run, torquer, command, key, value, expected):
     content = json.loads((run / "run.json").read_text())
     (run / "run.json").write_text(json.dumps({**content, key: value}))
     done = torquer(*command[:1], run, *command[1:])
     assert done.code == 2
     assert "run.json: " in done.sentence
-    assert told in done.sentence
+    assert expected in done.sentence
 
 
 @pytest.mark.parametrize("command", ["check", "report", "replay"])
@@ -326,7 +326,7 @@ def test_a_name_that_no_file_can_have(words, torquer):
 
 
 @pytest.mark.parametrize(
-    ("setting", "told"),
+    ("setting", "expected"),
     [
         ("time.epoch_utc=2100-01-01T00:00:00Z", "IGRF-14 holds from 2015 to 2030"),
         ("plant.max_substep_s=1e-15", "plant.max_substep_s"),
@@ -334,10 +334,10 @@ def test_a_name_that_no_file_can_have(words, torquer):
         ("initial.rate_degps=[1e30, 0, 0]", "--set initial.rate_degps: value.0 is not allowed"),
     ],
 )
-def test_what_cannot_be_flown_is_refused_before_a_run_is_begun(setting, told, torquer, tmp_path):
+def test_what_cannot_be_flown_is_refused_before_a_run_is_begun(setting, expected, torquer, tmp_path):
     done = torquer("sil", *TINY[:-2], "--bus", "virtual", "--set", setting, "--out", tmp_path / "new")
     assert done.code == 2
-    assert told in done.sentence
+    assert expected in done.sentence
     assert not (tmp_path / "new").exists()
 
 

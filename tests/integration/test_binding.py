@@ -29,9 +29,9 @@ FILES = ("scenario.toml", "bus.log", "truth.h5", "summary.json")
 
 
 @pytest.fixture
-def run(flown, tmp_path):
+def run(sil_run, tmp_path):
     """A copy of a run of 30 ticks, to be altered."""
-    return shutil.copytree(flown(*TINY), tmp_path / "run")
+    return shutil.copytree(sil_run(*TINY), tmp_path / "run")
 
 
 def says(torquer, run, *options):
@@ -54,9 +54,9 @@ def snapshot(run):
 # --- exchanged or edited
 
 
-def test_the_log_of_another_run_with_its_index(run, flown, torquer):
+def test_the_log_of_another_run_with_its_index(run, sil_run, torquer):
     for name in ("bus.log", "bus.log.index"):
-        shutil.copy(flown(*OTHER) / name, run / name)
+        shutil.copy(sil_run(*OTHER) / name, run / name)
     assert all(named(done, "bus.log") for done in says(torquer, run).values())
     assert torquer("check", run).out.splitlines()[-1].startswith("FAIL: ")
     for words in JUDGES:  # the log alone is held against the run beside it
@@ -90,7 +90,7 @@ def test_histories_and_summary_that_were_edited(run, torquer, name):
     for words in JUDGES:
         done = torquer(words[0], run, *words[1:])
         assert named(done, name)
-        assert any(said in done.out for said in ("limits: pulse", "bit-exact: 30", "plant reproduced: 30"))
+        assert any(text in done.out for text in ("limits: pulse", "bit-exact: 30", "plant reproduced: 30"))
 
 
 @pytest.mark.parametrize("name", FILES[2:])
@@ -102,8 +102,8 @@ def test_a_file_that_is_gone(run, torquer, name):
         assert f"MISMATCH {name} is missing, and run.json has its digest" in done.out.splitlines()
 
 
-def test_an_altered_frame_is_still_told_by_tick_and_signal(copy_of, flown, torquer):
-    copy = copy_of(flown(*TINY))
+def test_an_altered_frame_is_still_reported_by_tick_and_signal(copy_of, sil_run, torquer):
+    copy = copy_of(sil_run(*TINY))
     bound = (copy.folder / "run.json").read_bytes()
     index = copy.in_tick(17, MagField)
     copy.change(index, b_x=MagField.decode(copy.entries[index][2].data).b_x + 100.0)
@@ -117,10 +117,10 @@ def test_an_altered_frame_is_still_told_by_tick_and_signal(copy_of, flown, torqu
     assert plant.out.startswith("differs: tick 17: MAG_FIELD is ")
 
 
-def test_a_broken_limit_is_still_told(copy_of, flown, torquer):
+def test_a_broken_limit_is_still_reported(copy_of, sil_run, torquer):
     from fsw.wire.messages import CoilStatus
 
-    copy = copy_of(flown(*TINY))
+    copy = copy_of(sil_run(*TINY))
     bound = (copy.folder / "run.json").read_bytes()
     copy.change(copy.where(CoilStatus)[10], level=2)
     copy.write()
@@ -134,8 +134,8 @@ def test_a_broken_limit_is_still_told(copy_of, flown, torquer):
 
 
 @pytest.mark.parametrize("name", FILES[:3])
-def test_report_rebuilds_nothing_from_what_is_not_the_runs(run, flown, torquer, name):
-    shutil.copy(flown(*OTHER) / name, run / name)
+def test_report_rebuilds_nothing_from_what_is_not_the_runs(run, sil_run, torquer, name):
+    shutil.copy(sil_run(*OTHER) / name, run / name)
     before = snapshot(run)
     done = torquer("report", run)
     assert named(done, name)
@@ -156,15 +156,15 @@ def test_report_names_an_edited_summary_once_and_rebuilds_it(run, torquer):
 
 
 def test_a_run_of_before_there_were_digests_is_judged_as_it_was(run, torquer):
-    told = json.loads((run / "run.json").read_text())
-    del told["digests"]
-    (run / "run.json").write_text(json.dumps(told))
+    run_json = json.loads((run / "run.json").read_text())
+    del run_json["digests"]
+    (run / "run.json").write_text(json.dumps(run_json))
     (run / "summary.json").write_text((run / "summary.json").read_text() + "\n")
-    said = "note: run.json is of an older version: no digests of bus.log, truth.h5, summary.json"
+    note = "note: run.json is of an older version: no digests of bus.log, truth.h5, summary.json"
     for _ in range(2):  # report has not bound it
         for done in says(torquer, run).values():
             assert (done.code, done.err) == (0, "")
-            assert said in done.out.splitlines()
+            assert note in done.out.splitlines()
 
 
 KILLED_AT_EACH_STEP = """
@@ -312,8 +312,8 @@ def test_a_signed_run_is_verified_by_every_command(torquer, keys, tmp_path):
     for done in says(torquer, run, "--verify", other).values():
         assert done.code == 1
         assert "run.json.sig is not the signature of run.json by this key" in done.out + done.err
-    told = json.loads(signed)
-    for forged in ({**told, "seed": 8}, {**told, "digests": {}}, {**told, "more": 1}):
+    run_json = json.loads(signed)
+    for forged in ({**run_json, "seed": 8}, {**run_json, "digests": {}}, {**run_json, "more": 1}):
         (run / "run.json").write_text(json.dumps(forged, indent=2) + "\n")
         for words in COMMANDS:
             done = torquer(words[0], run, *words[1:], "--verify", public)
@@ -338,9 +338,9 @@ def test_a_run_without_signature_is_not_verified(run, torquer, keys):
 def test_a_signature_that_does_not_cover_a_file_is_not_enough(run, torquer, keys):
     from sim.record.signature import private_key, sign
 
-    told = json.loads((run / "run.json").read_text())
-    del told["digests"]["truth.h5"]
-    (run / "run.json").write_text(json.dumps(told))
+    run_json = json.loads((run / "run.json").read_text())
+    del run_json["digests"]["truth.h5"]
+    (run / "run.json").write_text(json.dumps(run_json))
     sign(run / "run.json", private_key(keys[0]))
     done = torquer("check", run, "--verify", keys[1])
     assert done.code == 1
@@ -351,9 +351,9 @@ def test_report_says_that_a_signature_no_longer_holds_and_signs_anew(run, torque
     key, public, _ = keys
     assert torquer("report", run, "--sign", key).code == 0
     assert torquer("check", run, "--verify", public).code == 0
-    told = json.loads((run / "run.json").read_text())
-    told["flown"]["wall_s"] = 1.25  # the summary comes out otherwise
-    (run / "run.json").write_text(json.dumps(told))
+    run_json = json.loads((run / "run.json").read_text())
+    run_json["flown"]["wall_s"] = 1.25  # the summary comes out otherwise
+    (run / "run.json").write_text(json.dumps(run_json))
     done = torquer("report", run)
     assert done.code == 0
     assert "run.json is no longer what was signed: --sign KEY signs it again" in done.sentence

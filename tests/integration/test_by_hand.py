@@ -23,7 +23,7 @@ def wait_for(node, text):
 
 
 @pytest.mark.parametrize("first", ["plant", "fsw"])
-def test_either_may_start_first(first, port, start, flown, tmp_path):
+def test_either_may_start_first(first, port, start, sil_run, tmp_path):
     run = tmp_path / "run"
     words = {
         "plant": ("torquer", "plant", "microsat", "--bus", f"loop:{port}", *OPTIONS, "--out", run),
@@ -38,15 +38,15 @@ def test_either_may_start_first(first, port, start, flown, tmp_path):
     assert (plant.code, plant.out) == (0, "")
     assert plant.err.endswith(f"run: {run}\n")
     assert (fsw.code, fsw.out, fsw.err) == (0, "", f"fsw on loop:{port}\n")
-    whole = flown("microsat", *OPTIONS, "--bus", "loop")
+    whole = sil_run("microsat", *OPTIONS, "--bus", "loop")
     assert (run / "bus.log").read_bytes() == (whole / "bus.log").read_bytes()
     assert {path.name for path in run.iterdir()} == {path.name for path in whole.iterdir()}
-    ours, theirs = (json.loads((path / "run.json").read_text()) for path in (run, whole))
-    assert ours.pop("flown")["ticks"] == theirs.pop("flown")["ticks"]
-    for run in (ours, theirs):
+    own, reference = (json.loads((path / "run.json").read_text()) for path in (run, whole))
+    assert own.pop("flown")["ticks"] == reference.pop("flown")["ticks"]
+    for run in (own, reference):
         del run["digests"]["summary.json"]  # it tells how long the flight took
-    assert ours == theirs
-    assert ours["complete"] is True
+    assert own == reference
+    assert own["complete"] is True
 
 
 def test_on_a_bench_one_flight_software_flies_run_after_run(port, start, tmp_path):
@@ -93,13 +93,13 @@ def test_sil_is_a_guest_where_others_host_the_bus(port, torquer, bus, tmp_path):
     run = tmp_path / "run"
     with can.Bus(interface="loop", channel=port) as listener:
         assert torquer("sil", "--orbits", "0.02", "--bus", f"loop:{port}", "--out", run).code == 0
-        heard = []
-        while not heard or heard[-1].can_id != PlantEnd.ID:
+        received = []
+        while not received or received[-1].can_id != PlantEnd.ID:
             message = listener.recv(30.0)
             assert message is not None, "it never ended"
-            heard.append(frame_of(message))
-    boots = [index for index, frame in enumerate(heard) if frame.can_id == FswBoot.ID]
-    assert heard[boots[-1] :] == bus(run).frames
+            received.append(frame_of(message))
+    boots = [index for index, frame in enumerate(received) if frame.can_id == FswBoot.ID]
+    assert received[boots[-1] :] == bus(run).frames
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""``torquer check`` on logs of real flights: accepted as flown, refused once a limit is broken in a copy."""
+"""``torquer check`` on logs of real flights: accepted, and refused once a limit is broken in a copy."""
 
 import re
 import shutil
@@ -17,16 +17,16 @@ FLIGHTS = {"shared 10 Hz": SHARED_10HZ, "per coil 1 Hz": PER_COIL, "shared 1 Hz"
 
 
 @pytest.fixture(params=FLIGHTS.values(), ids=FLIGHTS)
-def flight(request, flown):
+def flight(request, sil_run):
     """A flight with at least two pulses, and its tick rate."""
     arguments, tick_hz = request.param
-    return flown(*arguments), tick_hz
+    return sil_run(*arguments), tick_hz
 
 
 @pytest.fixture
-def at_10hz(flown, copy_of):
+def at_10hz(sil_run, copy_of):
     """A copy of a flight at 10 Hz, shared back-off."""
-    return copy_of(flown(*SHARED_10HZ[0]))
+    return copy_of(sil_run(*SHARED_10HZ[0]))
 
 
 def pulses(copy):

@@ -85,14 +85,14 @@ def ended():
                 assert boards[-1].stderr.readline().startswith("on ")
                 suites[name] = conformance(bench_bus, *options)
             suites["nobody"] = conformance(loop())
-            shown = {
+            result = {
                 name: (*suite.communicate(timeout=120), suite.returncode) for name, suite in suites.items()
             }
         finally:
             for process in (*boards, *suites.values()):
                 process.kill()
                 process.communicate()
-    return shown
+    return result
 
 
 @pytest.mark.parametrize("way", ["loop", "slcan"])
@@ -101,10 +101,10 @@ def test_the_stub_conforms(ended, way):
         pytest.skip("pyserial, which serial adapters need, is not installed")
     output, errors, code = ended[way]
     assert errors == ""
-    shown = json.loads(output)
-    assert {check["name"]: check["failure"] for check in shown["checks"] if check["failure"]} == {}
+    result = json.loads(output)
+    assert {check["name"]: check["failure"] for check in result["checks"] if check["failure"]} == {}
     assert code == 0
-    assert all(check["ran"] for check in shown["checks"])
+    assert all(check["ran"] for check in result["checks"])
 
 
 def test_without_arm_what_needs_power_is_not_run_and_a_short_lockout_is_found_all_the_same(ended):

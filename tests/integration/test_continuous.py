@@ -1,4 +1,4 @@
-"""A flight with the continuous driver and every disturbance: flown, audited, replayed through both."""
+"""A flight with the continuous driver and every disturbance: audited, and replayed through both."""
 
 import h5py
 import numpy as np
@@ -21,32 +21,32 @@ SETTINGS = (
 
 
 @pytest.fixture
-def flight(flown):
+def flight(sil_run):
     settings = [word for setting in SETTINGS for word in ("--set", setting)]
-    return flown("microsat", "--orbits", "0.08", "--bus", "virtual", *settings)
+    return sil_run("microsat", "--orbits", "0.08", "--bus", "virtual", *settings)
 
 
 def test_what_is_asked_in_a_tick_is_told_at_the_next_and_has_flowed(flight, copy_of):
     log = copy_of(flight)
-    asked, told, ticks, last = [], [], 0, None
+    requested, reported, ticks, last = [], [], 0, None
     for _, _, frame in log.entries:
         if frame.can_id == CoilDipoleStatus.ID:
-            told.append(CoilDipoleStatus.decode(frame.data)[:3])
+            reported.append(CoilDipoleStatus.decode(frame.data)[:3])
         elif frame.can_id == Sync.ID:
-            asked.append(last)
+            requested.append(last)
             last, ticks = None, ticks + 1
         elif frame.can_id == CoilDipole.ID:
             assert last is None
             last = CoilDipole.decode(frame.data)[:3]
-    assert len(told) == ticks == len(log.where(CoilStatus))
-    asked = [m or (0.0, 0.0, 0.0) for m in asked]
-    assert told == asked
-    assert sum(map(any, told)) > 100
+    assert len(reported) == ticks == len(log.where(CoilStatus))
+    requested = [m or (0.0, 0.0, 0.0) for m in requested]
+    assert reported == requested
+    assert sum(map(any, reported)) > 100
     assert log.where(CoilFire) == log.where(CoilRefused) == []
     with h5py.File(flight / "truth.h5") as truth:
         flowed = truth["m_body_am2"][:]
         assert {"drag", "solar_pressure", "eddy", "noise", "coils"} <= set(truth["torque_body_nm"])
-    assert flowed == pytest.approx(9.6 * np.array(told), rel=1e-7, abs=1e-7)
+    assert flowed == pytest.approx(9.6 * np.array(reported), rel=1e-7, abs=1e-7)
 
 
 def test_the_audit_finds_no_pulse_and_no_violation(flight, torquer):

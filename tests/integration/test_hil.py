@@ -156,15 +156,15 @@ def test_the_bench_goes_on_without_its_flight_software_and_says_so(benches):
 def test_what_cannot_be_is_one_sentence(capsys, words, named):
     with pytest.raises(SystemExit) as ended:
         main(["hil", *words])
-    heard = capsys.readouterr()
-    assert (ended.value.code, heard.out) == (2, "")
-    (sentence,) = heard.err.splitlines()
+    output = capsys.readouterr()
+    assert (ended.value.code, output.out) == (2, "")
+    (sentence,) = output.err.splitlines()
     assert named in sentence
 
 
 def test_a_node_that_does_not_start_is_named_with_what_it_said():
-    shown = torquer("hil", "--stimulus", "no.such.log", "--seconds", "1")
-    assert shown.returncode == 2
-    (sentence,) = shown.stderr.splitlines()
+    done = torquer("hil", "--stimulus", "no.such.log", "--seconds", "1")
+    assert done.returncode == 2
+    (sentence,) = done.stderr.splitlines()
     assert "node does not start" in sentence
     assert "no.such.log" in sentence

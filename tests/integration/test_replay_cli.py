@@ -28,15 +28,15 @@ SIGNAL = re.compile(r"tick (\d+): ([A-Z_]+\.[a-z0-9_]+) is (\S+) in the log and 
 
 
 @pytest.fixture
-def copy(copy_of, flown):
+def copy(copy_of, sil_run):
     """A run of 302 ticks with two pulses, to be altered."""
-    return copy_of(flown(*SHORT, "--bus", "loop"))
+    return copy_of(sil_run(*SHORT, "--bus", "loop"))
 
 
 @pytest.fixture
-def tiny(copy_of, flown):
+def tiny(copy_of, sil_run):
     """A run of 30 ticks, to be altered."""
-    return copy_of(flown(*TINY))
+    return copy_of(sil_run(*TINY))
 
 
 def differs(done):
@@ -229,8 +229,8 @@ def test_cut_anywhere_it_says_where_it_ends(tiny, torquer):
         lines = sum(end <= cut for end in ends)
         last = sum(tiny.entries[index][2].can_id == Sync.ID for index in range(lines)) - 1
         how = "without its end mark" if cut in ends else "inside a line"
-        said = f"incomplete: the log ends {how} after line {lines}, at tick {max(last, 0)}\n"
-        assert done.out.endswith(said), cut
+        last_line = f"incomplete: the log ends {how} after line {lines}, at tick {max(last, 0)}\n"
+        assert done.out.endswith(last_line), cut
         assert done.out.startswith("bit-exact: "), cut
 
 
@@ -322,17 +322,17 @@ def test_the_plant_needs_the_seed(copy, torquer):
 # --- onto a bus
 
 
-def test_a_log_is_played_onto_a_bus_at_its_own_pace(flown, torquer, bus, port):
-    run = flown("microsat", "--set", "time.tick_hz=10", "--orbits", "0.0002", "--bus", "virtual")
+def test_a_log_is_played_onto_a_bus_at_its_own_pace(sil_run, torquer, bus, port):
+    run = sil_run("microsat", "--set", "time.tick_hz=10", "--orbits", "0.0002", "--bus", "virtual")
     listener = LoopLink(port)
-    heard, times = [], []
+    received, times = [], []
 
     def listen():
-        while not heard or heard[-1].can_id != PlantEnd.ID:
+        while not received or received[-1].can_id != PlantEnd.ID:
             frame = listener.receive(30.0)
             if frame is None:
                 break
-            heard.append(frame)
+            received.append(frame)
             times.append(time.monotonic())
 
     thread = Thread(target=listen)
@@ -341,7 +341,7 @@ def test_a_log_is_played_onto_a_bus_at_its_own_pace(flown, torquer, bus, port):
     thread.join()
     listener.close()
     assert (done.code, done.err) == (0, "")
-    assert heard == bus(run).frames
+    assert received == bus(run).frames
     assert 1.15 < times[-1] - times[0] < 2.5, "12 ticks of 0.1 s"
 
 

@@ -61,9 +61,9 @@ class Stranger:
 
 
 def once(message, *frames):
-    """Answer that message, as often as it is heard, the first time."""
+    """Answer that message, only the first time that it is received."""
     left = [list(frames)]
-    return lambda heard: left.pop() if heard == message and left else []
+    return lambda received: left.pop() if received == message and left else []
 
 
 SYNC = Sync(AT, EPOCH + AT)
@@ -85,13 +85,13 @@ def test_one_frame_in_flight_fails_the_run_and_is_named(forged, port, torquer, t
     with Stranger(port, once(SYNC, forged.encode())):
         done = torquer("sil", *FLIGHT, "--bus", f"loop:{port}", "--out", run)
     assert done.code == 1
-    told = json.loads((run / "run.json").read_text())
-    (sender,) = [one for one in told["second_senders"] if one["id"] == f"{forged.ID:03X}"]
+    run_json = json.loads((run / "run.json").read_text())
+    (sender,) = [one for one in run_json["second_senders"] if one["id"] == f"{forged.ID:03X}"]
     assert sender["tick"] >= AT - 1
     assert "a second sender is on the bus" in done.sentence
     assert f"{sender['message']} ({sender['id']}) at tick {sender['tick']}" in done.sentence
-    if "flown" in told:  # a PLANT_END may have ended the flight software
-        assert json.loads((run / "summary.json").read_text())["second_senders"] == told["second_senders"]
+    if "flown" in run_json:  # a PLANT_END may have ended the flight software
+        assert json.loads((run / "summary.json").read_text())["second_senders"] == run_json["second_senders"]
         again = torquer("report", run)
         assert (again.code, again.sentence) == (1, done.sentence)
 
@@ -120,22 +120,22 @@ def test_noise_fails_nothing_and_the_log_replays_with_it(port, torquer, bus, tmp
         Frame(CoilFire.ID, bytes(8)),
     )
     run = tmp_path / "run"
-    with Stranger(port, lambda heard: noise if isinstance(heard, Sync | NavRate) else ()):
+    with Stranger(port, lambda received: noise if isinstance(received, Sync | NavRate) else ()):
         done = torquer("sil", *FLIGHT, "--bus", f"loop:{port}", "--out", run)
     assert (done.code, done.err) == (0, "")
     assert sum(frame.can_id == 0x7FF for frame in bus(run).frames) > 100
     assert torquer("replay", run).code == torquer("replay", run, "--plant").code == 0
 
 
-@pytest.mark.parametrize(("command", "heard"), [("plant", "PLANT_BOOT (500)"), ("fsw", "FSW_BOOT (510)")])
-def test_a_bus_on_which_a_node_waits_is_refused(command, heard, port, start, torquer, tmp_path):
+@pytest.mark.parametrize(("command", "boot"), [("plant", "PLANT_BOOT (500)"), ("fsw", "FSW_BOOT (510)")])
+def test_a_bus_on_which_a_node_waits_is_refused(command, boot, port, start, torquer, tmp_path):
     hub = LoopLink(port)
     node = start("torquer", command, "microsat", "--bus", f"loop:{port}")
     assert hub.receive(30.0) is not None, "it is there"
     done = torquer("sil", *FLIGHT, "--bus", f"loop:{port}", "--out", tmp_path / "run")
     hub.close()
     assert (done.code, done.out) == (2, "")
-    assert f"torquer: loop:{port} is taken: {heard}" in done.sentence
+    assert f"torquer: loop:{port} is taken: {boot}" in done.sentence
     assert not (tmp_path / "run").exists()
     node.process.kill()
 

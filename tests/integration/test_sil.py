@@ -53,8 +53,8 @@ def of(frames, message):
 
 
 @pytest.fixture(scope="module")
-def run(flown):
-    return flown(*SHORT, "--bus", "loop")
+def run(sil_run):
+    return sil_run(*SHORT, "--bus", "loop")
 
 
 def test_a_run_leaves_its_files_and_no_others(run):
@@ -84,8 +84,8 @@ def test_summary(run):
     assert summary["replay"]["bit_exact"] is True
 
 
-def test_a_longer_run_judges_the_estimate(flown):
-    run = flown("microsat", "--orbits", "0.12", "--bus", "virtual")
+def test_a_longer_run_judges_the_estimate(sil_run):
+    run = sil_run("microsat", "--orbits", "0.12", "--bus", "virtual")
     summary = read(run, "summary.json")
     assert set(summary["estimate_deg"]) >= {"max"}
     assert summary["converged_at_s"] < 100
@@ -129,8 +129,8 @@ def test_every_tick_is_on_the_bus_in_its_order(run, bus):
     assert ticks == sorted(ticks)
 
 
-def test_the_scenario_beside_a_run_flies_it_again(run, flown, bus):
-    again = flown(str(run / "scenario.toml"), "--seed", "7", "--orbits", "0.05", "--bus", "virtual")
+def test_the_scenario_beside_a_run_flies_it_again(run, sil_run, bus):
+    again = sil_run(str(run / "scenario.toml"), "--seed", "7", "--orbits", "0.05", "--bus", "virtual")
     assert bus(again) == bus(run)
 
 
@@ -167,23 +167,23 @@ def test_the_nodes_run_the_same_code_whatever_lies_around(torquer, tmp_path, mon
 # --- determinism
 
 
-def test_the_same_seed_gives_the_same_bytes(run, flown):
-    again = flown("--seed", "7", "--orbits", "0.05", "microsat", "--bus", "loop")
+def test_the_same_seed_gives_the_same_bytes(run, sil_run):
+    again = sil_run("--seed", "7", "--orbits", "0.05", "microsat", "--bus", "loop")
     assert again != run
     for name in ("bus.log", "bus.log.index", "scenario.toml"):
         assert (again / name).read_bytes() == (run / name).read_bytes()
     with h5py.File(run / "truth.h5") as one, h5py.File(again / "truth.h5") as other:
         assert all(np.array_equal(one[name], other[name]) for name in TRUTH)
-    ours, theirs = (read(path, "summary.json") for path in (run, again))
-    for summary in (ours, theirs):
+    first, second = (read(path, "summary.json") for path in (run, again))
+    for summary in (first, second):
         del summary["wall_seconds"], summary["realtime_factor"]
-    assert ours == theirs
+    assert first == second
 
 
-def test_another_seed_gives_other_samples(run, flown, bus):
-    other = flown("microsat", "--seed", "8", "--orbits", "0.05", "--bus", "virtual")
-    ours, theirs = (of(bus(path).frames, MagField) for path in (run, other))
-    same = sum(mine[1:4] == yours[1:4] for mine, yours in zip(ours, theirs, strict=True))
+def test_another_seed_gives_other_samples(run, sil_run, bus):
+    other = sil_run("microsat", "--seed", "8", "--orbits", "0.05", "--bus", "virtual")
+    first, second = (of(bus(path).frames, MagField) for path in (run, other))
+    same = sum(mine[1:4] == yours[1:4] for mine, yours in zip(first, second, strict=True))
     assert same < 3
 
 
@@ -198,9 +198,9 @@ def test_another_seed_gives_other_samples(run, flown, bus):
     ],
     ids=lambda value: value if isinstance(value, str) else " ".join(value[1:]) or "default",
 )  # fmt: skip
-def test_loop_and_virtual_carry_the_same_frames_in_the_same_order(scenario, settings, flown, bus, torquer):
+def test_loop_and_virtual_carry_the_same_frames_in_the_same_order(scenario, settings, sil_run, bus, torquer):
     options = [word for setting in settings for word in ("--set", setting)]
-    two, one = (flown(scenario, *options, "--bus", kind) for kind in ("loop", "virtual"))
+    two, one = (sil_run(scenario, *options, "--bus", kind) for kind in ("loop", "virtual"))
     assert bus(two) == bus(one)
     table = tomllib.loads((two / "scenario.toml").read_text())
     tick_hz, frames = table["time"]["tick_hz"], bus(two).frames
@@ -217,9 +217,9 @@ def test_loop_and_virtual_carry_the_same_frames_in_the_same_order(scenario, sett
 # --- what scenario keys do
 
 
-def test_ticks_bear_the_epoch_and_the_rate(flown, bus):
+def test_ticks_bear_the_epoch_and_the_rate(sil_run, bus):
     settings = ("time.orbits=0.018", "time.tick_hz=10", EPOCH)
-    run = flown("microsat", *(w for s in settings for w in ("--set", s)), "--bus", "loop")
+    run = sil_run("microsat", *(w for s in settings for w in ("--set", s)), "--bus", "loop")
     times, frames = bus(run)
     epoch_s = 1709251140
     assert times[0] == epoch_s * 1_000_000
@@ -231,9 +231,9 @@ def test_the_epoch_of_a_tle_is_its_own_rounded_up(run, bus):
     assert bus(run).times_us[0] == 1427424417_000000  # day 86.11593543 of 2015: 02:46:56.82
 
 
-def test_setting_a_key_of_a_circle_replaces_the_tle(flown):
+def test_setting_a_key_of_a_circle_replaces_the_tle(sil_run):
     settings = ("time.orbits=0.018", "time.tick_hz=5", *CIRCLE)
-    run = flown("microsat", *(w for s in settings for w in ("--set", s)), "--bus", "loop")
+    run = sil_run("microsat", *(w for s in settings for w in ("--set", s)), "--bus", "loop")
     orbit = tomllib.loads((run / "scenario.toml").read_text())["orbit"]
     assert "tle" not in orbit
     assert (orbit["altitude_km"], orbit["inclination_deg"], orbit["raan_deg"]) == (600.0, 51.6, 0.0)
@@ -242,9 +242,9 @@ def test_setting_a_key_of_a_circle_replaces_the_tle(flown):
         assert truth["r_eci_m"][0] == pytest.approx([6978137.0, 0.0, 0.0])
 
 
-def test_per_coil_lets_another_coil_fire_sooner(flown, torquer):
+def test_per_coil_lets_another_coil_fire_sooner(sil_run, torquer):
     settings = ("time.orbits=0.03", "time.tick_hz=2", "coils.backoff=per_coil")
-    run = flown("cubesat3u", *(w for s in settings for w in ("--set", s)), "--bus", "loop")
+    run = sil_run("cubesat3u", *(w for s in settings for w in ("--set", s)), "--bus", "loop")
     gaps = read(run, "summary.json")["min_gap_s"]
     assert gaps["any"] < 100.0
     assert all(gap is None or gap >= 100.0 for gap in gaps["per_coil"])
@@ -252,9 +252,9 @@ def test_per_coil_lets_another_coil_fire_sooner(flown, torquer):
     assert torquer("check", run, "--backoff", "shared").code == 1
 
 
-def test_perfect_knowledge_comes_over_the_bus(flown, run, bus):
-    posat1 = flown("posat1", "--set", "time.orbits=0.04", "--bus", "loop")
-    microsat = flown("microsat", "--orbits", "0.005", "--set", "knowledge=perfect", "--bus", "virtual")
+def test_perfect_knowledge_comes_over_the_bus(sil_run, run, bus):
+    posat1 = sil_run("posat1", "--set", "time.orbits=0.04", "--bus", "loop")
+    microsat = sil_run("microsat", "--orbits", "0.005", "--set", "knowledge=perfect", "--bus", "virtual")
     for perfect in (posat1, microsat):
         assert len(of(bus(perfect).frames, RefAttitude)) == read(perfect, "run.json")["ticks"]
     assert of(bus(run).frames, RefAttitude) == []
@@ -264,8 +264,8 @@ def test_perfect_knowledge_comes_over_the_bus(flown, run, bus):
 
 
 @pytest.mark.parametrize("factor", [400, 100_000])
-def test_real_time_keeps_to_the_clock_and_counts_slips(factor, flown, bus, torquer):
-    run = flown("microsat", "--orbits", "0.05", "--pace", f"realtime:{factor}", "--bus", "loop")
+def test_real_time_keeps_to_the_clock_and_counts_slips(factor, sil_run, bus, torquer):
+    run = sil_run("microsat", "--orbits", "0.05", "--pace", f"realtime:{factor}", "--bus", "loop")
     summary = read(run, "summary.json")
     times, frames = bus(run)
     logged = list(zip(times, frames, strict=True))

@@ -1,4 +1,4 @@
-"""Killing one of the processes of ``torquer sil``: one sentence, the other gone, what was flown readable."""
+"""Killing one of the processes of ``torquer sil``: one sentence, the other gone, what is written readable."""
 
 import json
 import os
@@ -111,88 +111,88 @@ RANDOM = random.Random(20150327)
     ids=lambda value: getattr(value, "name", value),
 )
 def test_a_killed_node_ends_the_run(victim, signum, lines, flight, bus, torquer):
-    flown = flight()
-    flown.reach(lines)
-    os.kill(flown.nodes[victim], signum)
-    ended = flown.sil.wait()
+    sil_run = flight()
+    sil_run.reach(lines)
+    os.kill(sil_run.nodes[victim], signum)
+    ended = sil_run.sil.wait()
     assert ended.code == 1
     assert ended.out == ""
     name = {"sim.flight.plant_process": "plant", "fsw": "flight software"}[victim]
     assert ended.sentence.startswith(f"torquer: the {name} ")
-    flown.gone()
-    last = readable(flown.run, bus, torquer)
+    sil_run.gone()
+    last = readable(sil_run.run, bus, torquer)
     assert f"at tick {last}:" in ended.sentence
-    assert str(flown.run) in ended.sentence
+    assert str(sil_run.run) in ended.sentence
     if signum == signal.SIGTERM:
         return  # one report of each will do
-    report = torquer("report", flown.run)
+    report = torquer("report", sil_run.run)
     assert report.code == 0
     assert "replay     bit-exact" in report.out
-    assert {path.name for path in flown.run.iterdir()} >= {"summary.json", "report.html"}
-    assert json.loads((flown.run / "run.json").read_text())["complete"] is False
+    assert {path.name for path in sil_run.run.iterdir()} >= {"summary.json", "report.html"}
+    assert json.loads((sil_run.run / "run.json").read_text())["complete"] is False
 
 
 @pytest.mark.parametrize("victim", ["sim.flight.plant_process", "fsw"])
 def test_a_node_killed_before_the_first_tick_ends_the_run(victim, flight, torquer):
-    flown = flight()
-    os.kill(flown.nodes[victim], signal.SIGKILL)
-    ended = flown.sil.wait()
+    sil_run = flight()
+    os.kill(sil_run.nodes[victim], signal.SIGKILL)
+    ended = sil_run.sil.wait()
     assert ended.code == 1
     assert "was ended by signal 9" in ended.sentence
-    flown.gone()
-    assert json.loads((flown.run / "run.json").read_text())["complete"] is False
+    sil_run.gone()
+    assert json.loads((sil_run.run / "run.json").read_text())["complete"] is False
     for command in ("replay", "check", "report"):
-        done = torquer(command, flown.run)
+        done = torquer(command, sil_run.run)
         assert done.code == 2
-        assert str(flown.run) in done.sentence
+        assert str(sil_run.run) in done.sentence
 
 
 def test_ctrl_c_is_one_sentence(flight, bus, torquer):
-    flown = flight()
-    flown.reach(500)
-    os.killpg(flown.sil.process.pid, signal.SIGINT)  # a terminal interrupts the whole group
-    ended = flown.sil.wait()
+    sil_run = flight()
+    sil_run.reach(500)
+    os.killpg(sil_run.sil.process.pid, signal.SIGINT)  # a terminal interrupts the whole group
+    ended = sil_run.sil.wait()
     assert (ended.code, ended.out) == (130, "")
     assert ended.sentence == "torquer: interrupted; what was written so far is kept"
-    flown.gone()
-    readable(flown.run, bus, torquer)
+    sil_run.gone()
+    readable(sil_run.run, bus, torquer)
 
 
 @pytest.mark.parametrize(
     ("signum", "code"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129)], ids=["SIGTERM", "SIGHUP"]
 )
 def test_who_is_asked_to_end_says_so_and_ends_its_nodes(signum, code, flight, bus, torquer):
-    flown = flight()
-    flown.reach(500)
-    flown.sil.process.send_signal(signum)
-    ended = flown.sil.wait()
+    sil_run = flight()
+    sil_run.reach(500)
+    sil_run.sil.process.send_signal(signum)
+    ended = sil_run.sil.wait()
     assert (ended.code, ended.out) == (code, "")
     assert ended.sentence == f"torquer: ended by {signum.name}; what was written so far is kept"
-    assert flown.is_gone()
-    readable(flown.run, bus, torquer)
+    assert sil_run.is_gone()
+    readable(sil_run.run, bus, torquer)
 
 
 def test_nodes_end_by_themselves_when_sil_is_gone(flight):
-    flown = flight()
-    flown.sil.process.kill()
-    ended = flown.sil.wait()
+    sil_run = flight()
+    sil_run.sil.process.kill()
+    ended = sil_run.sil.wait()
     assert (ended.code, ended.out) == (-signal.SIGKILL, "")
-    flown.gone()
-    assert "Traceback" not in flown.sil.stderr.read_text()
+    sil_run.gone()
+    assert "Traceback" not in sil_run.sil.stderr.read_text()
 
 
 def test_nodes_on_a_can_interface_end_with_sil(vcan0, flight, bus):
     """The bus lives on, and nothing on it tells them."""
-    flown = flight("--orbits", "20", bus=f"socketcan:{vcan0}")
-    flown.reach(100)
-    flown.sil.process.kill()
-    flown.sil.wait()
-    flown.gone()
-    assert bus(flown.run).frames[-1].can_id == TickDone.ID
+    sil_run = flight("--orbits", "20", bus=f"socketcan:{vcan0}")
+    sil_run.reach(100)
+    sil_run.sil.process.kill()
+    sil_run.sil.wait()
+    sil_run.gone()
+    assert bus(sil_run.run).frames[-1].can_id == TickDone.ID
 
 
 def test_flight_software_that_stands_still_for_a_second_is_waited_for(
-    start, is_alive, tmp_path, bus, torquer, flown
+    start, is_alive, tmp_path, bus, torquer, sil_run
 ):
     options = ("--orbits", "0.08", "--seed", "3")
     flight = Flight(start, is_alive, tmp_path / "run", *options)
@@ -205,5 +205,5 @@ def test_flight_software_that_stands_still_for_a_second_is_waited_for(
     os.kill(flight.nodes["fsw"], signal.SIGCONT)
     assert flight.sil.wait().code == 0
     assert flight.is_gone()
-    assert bus(flight.run) == bus(flown("microsat", *options, "--bus", "virtual"))
+    assert bus(flight.run) == bus(sil_run("microsat", *options, "--bus", "virtual"))
     assert torquer("replay", flight.run).code == 0

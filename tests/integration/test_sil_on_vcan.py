@@ -34,9 +34,9 @@ def tool(name):
 class Candump:
     """candump on an interface, its log kept in a file."""
 
-    def __init__(self, interface, kept):
-        self.kept = kept
-        with kept.open("w") as file:
+    def __init__(self, interface, log):
+        self.log = log
+        with log.open("w") as file:
             words = [tool("candump"), "-r", PLENTY, "-L", interface]
             self.process = subprocess.Popen(words, stdout=file, stdin=subprocess.DEVNULL)
         time.sleep(0.5)  # until its socket is bound
@@ -44,22 +44,22 @@ class Candump:
     def end(self):
         """Its log, once it has written what it has heard: in a guest that may take a while."""
         size = -1
-        while size != (size := self.kept.stat().st_size):
+        while size != (size := self.log.stat().st_size):
             time.sleep(1.0)
         self.process.terminate()
         self.process.wait(10)
-        return self.kept
+        return self.log
 
 
 @pytest.fixture(scope="session")
-def on_can(vcan0, flown, tmp_path_factory):
+def on_can(vcan0, sil_run, tmp_path_factory):
     """(run directory, candump's own log) of one flight on vcan0."""
     listener = Candump(vcan0, tmp_path_factory.mktemp("candump") / "candump.log")
     try:
-        run = flown(*FLIGHT, "--bus", f"socketcan:{vcan0}")
+        run = sil_run(*FLIGHT, "--bus", f"socketcan:{vcan0}")
     finally:
-        kept = listener.end()
-    return run, kept
+        log = listener.end()
+    return run, log
 
 
 def by_node(frames):
@@ -71,17 +71,17 @@ def by_node(frames):
 
 
 def test_candump_keeps_the_same_frames_as_we_do(on_can, vcan0, bus):
-    run, kept = on_can
-    theirs, ours = bus(kept).frames, bus(run).frames
+    run, log = on_can
+    received, sent = bus(log).frames, bus(run).frames
     # candump also hears plant and flight software look for each other before the run begins
-    assert theirs[-len(ours) :] == ours
-    assert {frame.can_id for frame in theirs[: -len(ours)]} <= {PlantBoot.ID, FswBoot.ID}
+    assert received[-len(sent) :] == sent
+    assert {frame.can_id for frame in received[: -len(sent)]} <= {PlantBoot.ID, FswBoot.ID}
     assert json.loads((run / "run.json").read_text())["bus"] == "socketcan"
     assert (run / "bus.log").read_text().split("\n")[0].split(" ")[1] == vcan0
 
 
-def test_every_bus_carries_the_same_frames(on_can, flown, bus):
-    runs = [on_can[0], flown(*FLIGHT, "--bus", "loop"), flown(*FLIGHT, "--bus", "virtual")]
+def test_every_bus_carries_the_same_frames(on_can, sil_run, bus):
+    runs = [on_can[0], sil_run(*FLIGHT, "--bus", "loop"), sil_run(*FLIGHT, "--bus", "virtual")]
     nodes = [by_node(bus(run).frames) for run in runs]
     assert nodes[0] == nodes[1] == nodes[2]
     assert set(nodes[0]) == {"PLANT", "FSW", "COIL", "MAG", "SUN"}
@@ -104,20 +104,20 @@ def test_auto_takes_vcan0_and_says_so(torquer, vcan0, tmp_path):
     assert json.loads((tmp_path / "run" / "run.json").read_text())["bus"] == "socketcan"
 
 
-def test_canplayer_plays_our_log_back(flown, vcan0, bus, tmp_path):
-    run = flown(*FLIGHT, "--bus", "virtual")
+def test_canplayer_plays_our_log_back(sil_run, vcan0, bus, tmp_path):
+    run = sil_run(*FLIGHT, "--bus", "virtual")
     log = tmp_path / "as-vcan0.log"
     log.write_text((run / "bus.log").read_text().replace(" virtual ", f" {vcan0} "))
     listener = Candump(vcan0, tmp_path / "candump.log")
     try:
         subprocess.run([tool("canplayer"), "-t", "-g", "1", "-I", str(log)], check=True, timeout=60)
     finally:
-        kept = listener.end()
-    assert bus(kept).frames == bus(run).frames
+        log = listener.end()
+    assert bus(log).frames == bus(run).frames
 
 
 @pytest.mark.parametrize("first", ["plant", "fsw"])
-def test_two_terminals_in_either_order(first, vcan0, start, bus, flown, tmp_path):
+def test_two_terminals_in_either_order(first, vcan0, start, bus, sil_run, tmp_path):
     run, spec = tmp_path / "run", f"socketcan:{vcan0}"
     words = {
         "plant": (*FLIGHT, "--bus", spec, "--out", run),
@@ -129,7 +129,7 @@ def test_two_terminals_in_either_order(first, vcan0, start, bus, flown, tmp_path
     nodes[second] = start("torquer", second, *words[second])
     assert nodes["plant"].wait().code == 0
     assert nodes["fsw"].wait().code == 0
-    assert bus(run).frames == bus(flown(*FLIGHT, "--bus", "virtual")).frames
+    assert bus(run).frames == bus(sil_run(*FLIGHT, "--bus", "virtual")).frames
 
 
 def test_strangers_on_the_bus_do_not_end_a_run(torquer, vcan0, bus, tmp_path):

@@ -102,13 +102,13 @@ def test_the_deadlines_of_the_command_are_long_enough_for_a_loaded_machine():
 def test_so_does_the_command_itself(start, is_alive, tmp_path):
     """With the deadlines that it has."""
     words = ("torquer", "sil", "--bus", "loop", "--orbits", "10", "--out", tmp_path / "run")
-    flown = start(*words, start_new_session=True)
+    sil_run = start(*words, start_new_session=True)
     log = tmp_path / "run" / "bus.log"
     while not (log.exists() and log.stat().st_size > 10_000):
         time.sleep(0.05)
-    children = Path(f"/proc/{flown.process.pid}/task/{flown.process.pid}/children").read_text().split()
+    children = Path(f"/proc/{sil_run.process.pid}/task/{sil_run.process.pid}/children").read_text().split()
     os.kill(int(children[0]), signal.SIGSTOP)
-    ended = flown.wait(90)
+    ended = sil_run.wait(90)
     assert (ended.code, ended.out) == (1, "")
     assert "the run is not complete" in ended.sentence
     assert not any(is_alive(child) for child in children)

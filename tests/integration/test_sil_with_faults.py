@@ -1,4 +1,4 @@
-"""A scenario that schedules faults: flown, replayed to the last bit, and put through the plant again."""
+"""A scenario that schedules faults: run, replayed to the last bit, and put through the plant again."""
 
 from importlib import resources
 
@@ -38,8 +38,8 @@ def scenario(tmp_path_factory):
 
 
 @pytest.mark.parametrize("bus", ["virtual", "loop"])
-def test_a_flight_with_faults_replays_to_the_last_bit(bus, scenario, flown, torquer):
-    run = flown(str(scenario), "--orbits", "0.06", "--bus", bus)
+def test_a_flight_with_faults_replays_to_the_last_bit(bus, scenario, sil_run, torquer):
+    run = sil_run(str(scenario), "--orbits", "0.06", "--bus", bus)
     replayed = torquer("replay", run)
     assert replayed.code == 0, replayed.out
     assert "bit-exact" in replayed.out
@@ -47,9 +47,9 @@ def test_a_flight_with_faults_replays_to_the_last_bit(bus, scenario, flown, torq
     assert reproduced.code == 0, reproduced.out
 
 
-def test_both_buses_carry_the_same_faults(scenario, flown):
+def test_both_buses_carry_the_same_faults(scenario, sil_run):
     logs = [
-        (flown(str(scenario), "--orbits", "0.06", "--bus", bus) / "bus.log").read_text().splitlines()
+        (sil_run(str(scenario), "--orbits", "0.06", "--bus", bus) / "bus.log").read_text().splitlines()
         for bus in ("virtual", "loop")
     ]
     frames = [[line.split(" ", 2)[2] for line in log] for log in logs]

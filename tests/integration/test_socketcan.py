@@ -131,8 +131,12 @@ def test_python_can_hears_and_is_heard(vcan0):
         can.Bus(interface="socketcan", channel=vcan0) as theirs,
     ):
         ours.send([Frame(0x321, b"\x01\x02")])
-        heard = theirs.recv(PATIENCE_S)
-        assert (heard.arbitration_id, heard.is_extended_id, bytes(heard.data)) == (0x321, False, b"\x01\x02")
+        received = theirs.recv(PATIENCE_S)
+        assert (received.arbitration_id, received.is_extended_id, bytes(received.data)) == (
+            0x321,
+            False,
+            b"\x01\x02",
+        )
         theirs.send(can.Message(arbitration_id=0x1234567, data=b"abc"))
         assert ours.receive(PATIENCE_S) == Frame(0x8123_4567, b"abc")
 
