@@ -92,7 +92,7 @@ _ENVIRONMENT: tuple[Drawing, ...] = (
 )
 _COILS_TITLE = "Coils against their limits"
 _NO_ESTIMATE = {
-    "perfect": "FlightHistories with perfect knowledge: the plant told the controller attitude and rate.",
+    "perfect": "Perfect knowledge: the plant sent attitude and rate to the controller.",
     "filter": "The filter gave no estimate in this flight.",
 }
 

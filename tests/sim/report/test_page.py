@@ -203,7 +203,7 @@ def unknown(estimates):
 def test_perfect_knowledge_has_no_estimate_to_show(tmp_path, made_run, charts):
     run = made_run(scenario=load("microsat", {"knowledge": "perfect"}))
     page = run.write(tmp_path, unknown(run.estimates()))
-    assert "Flown with perfect knowledge: the plant told the controller attitude and rate." in page.text
+    assert "Perfect knowledge: the plant sent attitude and rate to the controller." in page.text
     assert charts - {"chart-estimate"} <= set(page.values("id"))
     assert "chart-estimate" not in page.values("id")
 
