@@ -156,11 +156,11 @@ class ControlTable(Section):
             if own is None:
                 allowed = ", ".join(name for name, row in LAWS.items() if row.gains is not None)
                 raise ValueError(f"gains.{law}: no such law has gains of its own (allowed: {allowed})")
-            known = [field.name for field in fields(own)]
-            strange = sorted(set(given) - set(known))
+            names = [field.name for field in fields(own)]
+            strange = sorted(set(given) - set(names))
             if strange:
                 raise ValueError(
-                    f"gains.{law}: {', '.join(strange)} is not known (allowed: {', '.join(known)})"
+                    f"gains.{law}: {', '.join(strange)} is not known (allowed: {', '.join(names)})"
                 )
         return self
 

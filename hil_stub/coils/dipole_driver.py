@@ -19,7 +19,7 @@ from hil_stub.node import Node
 
 Vec3 = tuple[float, float, float]
 
-_NAMED = {CoilFire.ID: 3, CoilDipole.ID: 1}
+_READABLE_BYTES = {CoilFire.ID: 3, CoilDipole.ID: 1}
 """Requests, and the bytes that hold their coil and number."""
 
 
@@ -102,10 +102,10 @@ class DipoleDriver:
         A frame that fails the gate (unknown id, flags, length, CRC) is counted in ``rejects``. If its id is
         that of a request and it holds coil and number, it is also refused as malformed.
         """
-        named = len(frame.data) >= _NAMED.get(frame.can_id, len(frame.data) + 1)
+        readable = len(frame.data) >= _READABLE_BYTES.get(frame.can_id, len(frame.data) + 1)
         if not intact(frame):
             self.rejects += 1
-            if named:
+            if readable:
                 self._refuse(frame, CoilRefusedReason.MALFORMED)
         elif frame.can_id == CoilFire.ID:
             self._refuse(frame, CoilRefusedReason.WRONG_BOARD)

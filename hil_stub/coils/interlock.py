@@ -126,16 +126,19 @@ def elapse(state: Interlock, ticks: int) -> Interlock:
 _Rule = Callable[[Interlock, Request, int, CoilLimits], bool]
 
 _REFUSED_IF: tuple[tuple[CoilRefusedReason, _Rule], ...] = (
-    (CoilRefusedReason.WRONG_TICK, lambda state, asked, tick, limits: asked.tick != tick & 0xFF),
-    (CoilRefusedReason.REPEATED_SEQ, lambda state, asked, tick, limits: asked.seq == state.seq),
-    (CoilRefusedReason.BAD_COIL, lambda state, asked, tick, limits: not 0 <= asked.coil < COILS),
-    (CoilRefusedReason.BAD_LEVEL, lambda state, asked, tick, limits: not 1 <= abs(asked.level) <= MAX_LEVEL),
+    (CoilRefusedReason.WRONG_TICK, lambda state, request, tick, limits: request.tick != tick & 0xFF),
+    (CoilRefusedReason.REPEATED_SEQ, lambda state, request, tick, limits: request.seq == state.seq),
+    (CoilRefusedReason.BAD_COIL, lambda state, request, tick, limits: not 0 <= request.coil < COILS),
+    (
+        CoilRefusedReason.BAD_LEVEL,
+        lambda state, request, tick, limits: not 1 <= abs(request.level) <= MAX_LEVEL,
+    ),
     (
         CoilRefusedReason.BAD_DURATION,
-        lambda state, asked, tick, limits: not 1 <= asked.duration_ms <= limits.pulse_ms,
+        lambda state, request, tick, limits: not 1 <= request.duration_ms <= limits.pulse_ms,
     ),
-    (CoilRefusedReason.COIL_ON, lambda state, asked, tick, limits: state.remaining > 0),
-    (CoilRefusedReason.LOCKOUT, lambda state, asked, tick, limits: state.lockout[asked.coil] > 0),
+    (CoilRefusedReason.COIL_ON, lambda state, request, tick, limits: state.remaining > 0),
+    (CoilRefusedReason.LOCKOUT, lambda state, request, tick, limits: state.lockout[request.coil] > 0),
 )
 """The rules in the order in which they are judged; the first that applies is the reason."""
 
@@ -144,7 +147,7 @@ REFUSAL_ORDER = tuple(reason for reason, _ in _REFUSED_IF)
 
 
 def ask(
-    state: Interlock, asked: Request, tick: int, limits: CoilLimits
+    state: Interlock, request: Request, tick: int, limits: CoilLimits
 ) -> tuple[Interlock, CoilRefusedReason | None]:
     """Judge a request at ``tick``: the state after it, and why it was refused (None: accepted).
 
@@ -152,13 +155,14 @@ def ask(
     locks out for that and the back-off after it.
     """
     for reason, applies in _REFUSED_IF:
-        if applies(state, asked, tick, limits):
+        if applies(state, request, tick, limits):
             return state, reason
-    duration = limits.units(asked.duration_ms)
+    duration = limits.units(request.duration_ms)
     until_next = duration + limits.units(limits.backoff_ms)
     a, b, c = (
-        until_next if limits.shared or coil == asked.coil else left for coil, left in enumerate(state.lockout)
+        until_next if limits.shared or coil == request.coil else left
+        for coil, left in enumerate(state.lockout)
     )
     return replace(
-        state, coil=asked.coil, level=asked.level, remaining=duration, lockout=(a, b, c), seq=asked.seq
+        state, coil=request.coil, level=request.level, remaining=duration, lockout=(a, b, c), seq=request.seq
     ), None

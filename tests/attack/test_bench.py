@@ -98,15 +98,15 @@ def attack(tools, values, requests, seed, enough=lambda judge: False):
 @pytest.mark.parametrize("values", SETUPS.values(), ids=SETUPS)
 def test_no_attack_breaks_a_limit(tools, values, record_property):
     attacker, judge = attack(tools, values, REQUESTS // len(SETUPS), SEED)
-    told = {
+    reports = {
         "requests": attacker.requests,
         "pulses": judge.pulses,
         "longest pulse ms": judge.longest_ms,
         "least gap ms": judge.least_gap_ms,
         "violations": len(judge.violations),
     }
-    record_property("attack", told)
-    print(f"\n{values}: {told}")
+    record_property("attack", reports)
+    print(f"\n{values}: {reports}")
     assert judge.violations == []
     assert judge.pulses >= attacker.requests // 25, "it was let fire: no proof by doing nothing"
     assert judge.longest_ms == values[1], "the longest pulse that is allowed was driven"

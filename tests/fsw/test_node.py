@@ -101,32 +101,32 @@ def test_a_flood_is_bounded_and_counted(node, config):
 @pytest.mark.requirement("REQ-BUS-05")
 class TestEnd:
     @pytest.fixture
-    def flown(self, node, config):
+    def run(self, node, config):
         """A node that has answered tick 6."""
         node.receive(sync(config, 6))
         return node
 
-    def test_is_heard_when_it_is_intact(self, flown):
+    def test_is_heard_when_it_is_intact(self, run):
         end = PlantEnd(7).encode()
-        flown.receive(end._replace(data=bytes((end.data[0] ^ 1,)) + end.data[1:]))
-        assert flown.end is End.NO
-        flown.receive(end)
-        assert flown.ended
+        run.receive(end._replace(data=bytes((end.data[0] ^ 1,)) + end.data[1:]))
+        assert run.end is End.NO
+        run.receive(end)
+        assert run.ended
 
     @pytest.mark.parametrize("ticks", [0, 6, 8 + LEAP_TICKS, 1000, 2**24 - 1])
-    def test_of_another_count_is_none(self, flown, ticks):
-        flown.receive(PlantEnd(ticks).encode())
-        assert flown.end is End.NO
+    def test_of_another_count_is_none(self, run, ticks):
+        run.receive(PlantEnd(ticks).encode())
+        assert run.end is End.NO
 
     @pytest.mark.parametrize("ticks", [8, 7 + LEAP_TICKS])
-    def test_of_a_tick_near_ahead_is_in_doubt_until_a_sync_is_answered(self, flown, config, ticks):
-        flown.receive(PlantEnd(ticks).encode())
-        flown.receive(PlantEnd(1000).encode())
-        assert flown.end is End.DOUBTED
-        flown.receive(sync(config, 3))
-        assert flown.end is End.DOUBTED
-        flown.receive(sync(config, 7))
-        assert flown.end is End.NO
+    def test_of_a_tick_near_ahead_is_in_doubt_until_a_sync_is_answered(self, run, config, ticks):
+        run.receive(PlantEnd(ticks).encode())
+        run.receive(PlantEnd(1000).encode())
+        assert run.end is End.DOUBTED
+        run.receive(sync(config, 3))
+        assert run.end is End.DOUBTED
+        run.receive(sync(config, 7))
+        assert run.end is End.NO
 
     def test_before_the_first_tick_is_of_another_run(self, node):
         for ticks in (0, 7):

@@ -68,10 +68,10 @@ class TestLockstep:
         assert isinstance(sample, kind)
         assert sample[:4] == (1, *shown)
 
-    @pytest.mark.parametrize("told", [0, 3, 10, 2**24 - 1])
-    def test_an_end_that_the_plant_tells_of_is_nothing_to_it(self, bench, read, told):
+    @pytest.mark.parametrize("reports", [0, 3, 10, 2**24 - 1])
+    def test_an_end_that_the_plant_tells_of_is_nothing_to_it(self, bench, read, reports):
         fly(bench, range(10))
-        assert bench.receive(PlantEnd(told).encode()) == []
+        assert bench.receive(PlantEnd(reports).encode()) == []
         assert read(fly(bench, [10]))[0].lockout_ms == 89_000
 
 
@@ -170,14 +170,14 @@ class TestLosingCount:
 def test_a_continuous_driver_tells_the_dipole_of_the_tick_that_has_ended(read):
     bench = BenchNode(lambda: DipoleBoard(1))
     assert [type(m) for m in read(bench.switch_on())] == [CoilBoot, CoilStatus, CoilDipoleStatus]
-    told = []
+    reports = []
     for tick, asked in enumerate([0.25, 0.5, None, -0.75, None]):
         bench.receive(Sync(tick, 0).encode())
         if asked is not None:
             bench.receive(CoilDipole(asked, 0.0, -asked).encode())
         _, status = read(bench.receive(TickDone(tick, 0).encode()))
-        told.append(status[:3])
-    assert told == [
+        reports.append(status[:3])
+    assert reports == [
         (0.25, 0.0, -0.25),
         (0.5, 0.0, -0.5),
         (0.0, 0.0, 0.0),

@@ -178,14 +178,14 @@ class TestTimeThatPassesWithoutTicks:
         """Ticks in no time; what the board says in the last."""
         for tick in ticks:
             bench.receive(Sync(tick, 0).encode(), now_ms)
-            said = bench.receive(TickDone(tick, 0).encode(), now_ms)
-        return said
+            replies = bench.receive(TickDone(tick, 0).encode(), now_ms)
+        return replies
 
     def test_a_request_late_in_a_held_tick_is_timed_from_when_it_came(self, free, read):
         assert self.fire(free, 150, 155_900) == Pin(1, -2, 158_900)
-        said = self.rush(free, range(150, 260), 156_000)
+        replies = self.rush(free, range(150, 260), 156_000)
         assert free.pin is None
-        assert read(said)[0].lockout_ms == 102_900
+        assert read(replies)[0].lockout_ms == 102_900
         assert self.fire(free, 260, 258_890, seq=6) is None, "99.99 s after the end that it was armed for"
 
     def test_after_a_held_tick_and_a_rush_the_gap_is_whole(self, free):
@@ -203,14 +203,14 @@ class TestTimeThatPassesWithoutTicks:
     def test_a_pulse_lasts_as_long_as_was_asked_though_ticks_are_told_of_ahead(self, free, read):
         """fsw answers at once: the board enters each tick nearly a second before its SYNC."""
         self.fire(free, 150, 151_010)
-        told, on = [], []
+        reports, on = [], []
         for tick in range(150, 155):
             (status,) = read(free.receive(TickDone(tick, 0).encode(), 1020 + 1000 * tick))
-            told.append((status.level, status.remaining_ms))
+            reports.append((status.level, status.remaining_ms))
             free.watch(2000 + 1000 * tick - 1)
             on.append(free.pin is not None)
             free.receive(Sync(tick + 1, 0).encode(), 2000 + 1000 * tick)
-        assert told == [(-2, 2000), (-2, 1000), (-2, 0), (0, 0), (0, 0)]
+        assert reports == [(-2, 2000), (-2, 1000), (-2, 0), (0, 0), (0, 0)]
         assert on == [True, True, True, False, False]
 
     def test_a_pulse_that_the_ticks_end_ends_with_sync(self, free):
@@ -234,9 +234,9 @@ class TestTimeThatPassesWithoutTicks:
         for now_ms in range(151_000, 158_001, 100):
             free.receive(Sync(150, 0).encode(), now_ms)
         assert self.fire(free, 150, 158_000) is None
-        said = read(free.receive(TickDone(150, 0).encode(), 158_000))
-        assert [m.event for m in said if isinstance(m, CoilEvent)] == [CoilEventCode.DEAD_MAN]
-        assert [m.reason for m in said if isinstance(m, CoilRefused)] == [Reason.LOCKOUT]
+        replies = read(free.receive(TickDone(150, 0).encode(), 158_000))
+        assert [m.event for m in replies if isinstance(m, CoilEvent)] == [CoilEventCode.DEAD_MAN]
+        assert [m.reason for m in replies if isinstance(m, CoilRefused)] == [Reason.LOCKOUT]
 
     def test_the_back_off_after_silence_runs_from_when_it_ended(self, free):
         free.watch(200_000)

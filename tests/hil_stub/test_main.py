@@ -193,9 +193,9 @@ def test_with_a_clock_of_its_own_fast_ticks_do_not_end_the_lockout(bus, start):
 def test_bad_input_is_one_sentence_and_exit_code_2(capsys, monkeypatch, arguments, named):
     monkeypatch.chdir(ROOT)
     assert main(arguments) == 2
-    heard = capsys.readouterr()
-    assert heard.out == ""
-    (sentence,) = heard.err.splitlines()
+    report = capsys.readouterr()
+    assert report.out == ""
+    (sentence,) = report.err.splitlines()
     assert named in sentence
 
 

@@ -83,8 +83,8 @@ def update_view(view: CoilView, readings: Readings, tick: int, config: ActuatorC
 
 def _requested_level(view: CoilView, tick: int, config: PulseConfig) -> int:
     """The level that the own request drives over the tick that just ended, 0 if it does not."""
-    asked = view.fired_tick < tick <= view.fired_tick + config.pulse_ticks
-    return view.fired.level if asked else 0
+    under_way = view.fired_tick < tick <= view.fired_tick + config.pulse_ticks
+    return view.fired.level if under_way else 0
 
 
 def unexpected(view: CoilView, tick: int, config: PulseConfig) -> bool:

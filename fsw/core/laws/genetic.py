@@ -61,8 +61,8 @@ def search(
     for _ in range(GENERATIONS):
         children = [_child(ranked, spread, random) for _ in range(POPULATION - 2)]
         spread *= _NARROWING
-        kept = [ranked[0][1], (0.0, 0.0)]
-        ranked = sorted((cost(point), point) for point in kept + children)
+        elite = [ranked[0][1], (0.0, 0.0)]
+        ranked = sorted((cost(point), point) for point in elite + children)
     best_cost, best = ranked[0]
     return dipole(best) if best_cost < cost((0.0, 0.0)) else ZERO
 

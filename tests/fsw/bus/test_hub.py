@@ -26,9 +26,9 @@ class TestLaggards:
         for _ in range(count):
             sender.send(flood)
             assert take(reader, len(flood)) == flood
-        heard = take_until_closed(sleeper)
-        assert heard == (flood * count)[: len(heard)]  # up to the end it has lost nothing
-        assert len(heard) < len(flood) * count
+        received = take_until_closed(sleeper)
+        assert received == (flood * count)[: len(received)]  # up to the end it has lost nothing
+        assert len(received) < len(flood) * count
         sender.send(numbered(3))
         assert take(reader, 3) == numbered(3)
 

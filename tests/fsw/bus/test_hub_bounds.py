@@ -111,14 +111,14 @@ def serve(run):
 
 
 @pytest.fixture
-def said():
+def messages():
     return []
 
 
 @pytest.fixture
-def hub(said):
+def hub(messages):
     """A hub that serves in a thread, and tells to a list."""
-    served = Hub(report=said.append)
+    served = Hub(report=messages.append)
     served.start()
     yield served
     served.close()
@@ -179,22 +179,22 @@ class TestMemory:
         dropped = [client for client in clients if is_closed(client)]
         assert 0 < len(dropped) < idle
         pass_on(sender, reader, MIB)
-        told = process.end().splitlines()
-        assert len(told) == len(dropped)
+        reports = process.end().splitlines()
+        assert len(reports) == len(dropped)
         for client in dropped:
             gone = f"hub: the client on port {port_of(client)} is dropped"
-            assert [line.startswith(gone) for line in told].count(True) == 1
+            assert [line.startswith(gone) for line in reports].count(True) == 1
 
-    def test_the_slowest_is_dropped_and_told(self, hub, said, monkeypatch, wait_until):
+    def test_the_slowest_is_dropped_and_told(self, hub, messages, monkeypatch, wait_until):
         monkeypatch.setattr(hub_module, "BACKLOG_LIMIT", 48 * MIB)
         sender, reader, sleeper, late = (come(hub.port) for _ in range(4))
         pass_on(sender, reader, 20 * MIB)
-        assert said == []
+        assert messages == []
         take(late, 16 * MIB)
         pass_on(sender, reader, 20 * MIB)
         wait_until(lambda: hub.clients == 3)
-        assert len(said) == 1
-        assert said[0].startswith(
+        assert len(messages) == 1
+        assert messages[0].startswith(
             f"the client on port {port_of(sleeper)} is dropped from the loop bus on port {hub.port}: "
             "it reads too slowly, "
         )
@@ -203,13 +203,13 @@ class TestMemory:
         for client in (sender, reader, sleeper, late):
             client.close()
 
-    def test_what_has_been_taken_is_forgotten(self, hub, said, monkeypatch):
+    def test_what_has_been_taken_is_forgotten(self, hub, messages, monkeypatch):
         monkeypatch.setattr(hub_module, "BACKLOG_LIMIT", 12 * MIB)
         sender, reader, late = (come(hub.port) for _ in range(3))
         for _ in range(5):
             pass_on(sender, reader, 8 * MIB)
             take(late, 8 * MIB)
-        assert said == []
+        assert messages == []
         for client in (sender, reader, late):
             client.close()
 
@@ -237,13 +237,13 @@ class TestRoom:
         wait_until(lambda: hub.clients == MOST_CLIENTS - 1)
         LoopLink(hub.port).close()
 
-    def test_refusals_are_reported_ever_more_rarely(self, hub, said, full):
+    def test_refusals_are_reported_ever_more_rarely(self, hub, messages, full):
         for _ in range(120):
             with socket.create_connection(("127.0.0.1", hub.port)) as refused:
                 assert take(refused, len(FULL) + 1) == FULL
         why = "it has as many clients as it serves"
         refusal = f"the loop bus on port {hub.port} accepts no more clients ({why})"
-        assert said == [f"{refusal}: {count} refused" for count in (1, 10, 100)]
+        assert messages == [f"{refusal}: {count} refused" for count in (1, 10, 100)]
 
     def test_a_stopped_standard_error_stops_no_client(self, serve):
         process, port = serve()
@@ -273,13 +273,13 @@ class TestDescriptors:
         assert process.cpu_s() - before < 0.3
         assert "Too many open files" in process.end().splitlines()[0]
 
-    def test_a_door_that_cannot_be_answered_rests(self, monkeypatch, said):
+    def test_a_door_that_cannot_be_answered_rests(self, monkeypatch, messages):
         """The whole machine can be out of descriptors, too: then not even a refusal is possible."""
 
         def fail(listener):
             raise OSError(ENFILE, "Too many open files in system")
 
-        hub = Hub(report=said.append)
+        hub = Hub(report=messages.append)
         with hub.attach() as first, hub.attach() as second, monkeypatch.context() as patch:
             patch.setattr(socket.socket, "accept", fail)
             with socket.create_connection(("127.0.0.1", hub.port)) as waiting:

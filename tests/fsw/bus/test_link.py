@@ -84,19 +84,19 @@ class TestDelivery:
     def test_all_talk_at_once_and_all_hear_all(self, open_link, numbered, take):
         links = [open_link() for _ in range(6)]
         mine = [numbered(2000, can_id) for can_id in range(6)]
-        heard = [[] for _ in links]
+        received = [[] for _ in links]
 
         def talk(index):
             for start in range(0, 2000, 50):
                 links[index].send(mine[index][start : start + 50])
-            heard[index] = take(links[index], 5 * 2000)
+            received[index] = take(links[index], 5 * 2000)
 
         threads = [threading.Thread(target=talk, args=(index,)) for index in range(6)]
         for thread in threads:
             thread.start()
         for thread in threads:
             thread.join()
-        for index, frames in enumerate(heard):
+        for index, frames in enumerate(received):
             for other in set(range(6)) - {index}:
                 assert [frame for frame in frames if frame.can_id == other] == mine[other]
 

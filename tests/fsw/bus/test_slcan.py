@@ -42,11 +42,11 @@ class TestAdapter:
 def test_slcan_speaks_to_a_serial_adapter():
     pytest.importorskip("serial", reason="pyserial, which serial adapters need, is not installed")
     adapter, port = os.openpty()
-    heard = bytearray()
+    data = bytearray()
 
     def listen():
-        while b"t12321122\r" not in heard:
-            heard.extend(os.read(adapter, 64))
+        while b"t12321122\r" not in data:
+            data.extend(os.read(adapter, 64))
 
     listener = threading.Thread(target=listen)
     listener.start()
@@ -54,7 +54,7 @@ def test_slcan_speaks_to_a_serial_adapter():
     assert bus.name == os.path.basename(os.ttyname(port))
     bus.send([Frame(0x123, b"\x11\x22")])
     listener.join()
-    assert b"S6\r" in heard  # 500 kbit/s
+    assert b"S6\r" in data  # 500 kbit/s
     os.write(adapter, b"t4563AABBCC\r")
     assert bus.receive(PATIENCE_S) == Frame(0x456, b"\xaa\xbb\xcc")
     bus.close()

@@ -43,12 +43,12 @@ class TestInTheLoop:
     def test_the_answer_to_the_tick_tells_before_it_is_done(self, make_world):
         world = make_world()
         world.fly(5)
-        said = world.step(with_telecommands(TcSpin(2**-7, 3), TcMode(7, 4)))
-        assert of(TcAck, said) == [
+        replies = world.step(with_telecommands(TcSpin(2**-7, 3), TcMode(7, 4)))
+        assert of(TcAck, replies) == [
             TcAck(TcAckResult.ACCEPTED, TcSpin.ID, 3, 5, counter=0),
             TcAck(TcAckResult.UNKNOWN, TcMode.ID, 4, 5, counter=1),
         ]
-        assert type(said[-1]) is TickDone
+        assert type(replies[-1]) is TickDone
         assert world.state.setpoint.spin_radps == 2**-7
         assert of(TcAck, world.step()) == []
 
@@ -56,8 +56,8 @@ class TestInTheLoop:
         world, other = make_world(), make_world()
         frame = TcMode(Mode.SAFE).encode()
         broken = frame._replace(data=bytes((frame.data[0] ^ 0x20,)) + frame.data[1:])
-        said = world.step(lambda inbox: inbox._replace(frames=(broken, *inbox.frames)))
-        assert of(TcAck, said) == []
+        replies = world.step(lambda inbox: inbox._replace(frames=(broken, *inbox.frames)))
+        assert of(TcAck, replies) == []
         other.step()
         expected = other.state._replace(gate=other.state.gate._replace(rejected=1))
         assert checksum(world.state) == checksum(expected)
@@ -66,13 +66,13 @@ class TestInTheLoop:
         world = make_world()
         world.fly(60)
         assert world.state.modes.mode is not Mode.SAFE
-        said = world.step(with_telecommands(TcMode(Mode.SAFE)))
-        assert [(e.event, e.argument) for e in of(FswEvent, said)] == [(1, Mode.SAFE)]
-        quiet = [message for said in world.fly(150) for message in said]
+        replies = world.step(with_telecommands(TcMode(Mode.SAFE)))
+        assert [(e.event, e.argument) for e in of(FswEvent, replies)] == [(1, Mode.SAFE)]
+        quiet = [message for replies in world.fly(150) for message in replies]
         assert of(CoilFire, quiet) == []
         assert {quality.mode for quality in of(NavQuality, quiet)} == {Mode.SAFE}
-        said = world.step(with_telecommands(TcMode(Mode.DETUMBLE, 1)))
-        assert of(CoilFire, said)  # the coils have long been ready, and the same tick obeys
+        replies = world.step(with_telecommands(TcMode(Mode.DETUMBLE, 1)))
+        assert of(CoilFire, replies)  # the coils have long been ready, and the same tick obeys
         assert world.state.modes.mode is Mode.DETUMBLE
 
     def test_trips_that_keep_it_safe_are_forgotten_by_the_ground(self, make_world, without):
@@ -82,8 +82,8 @@ class TestInTheLoop:
         world.state = world.state._replace(modes=stuck)
         world.fly(30)
         assert world.state.modes.mode is Mode.SAFE
-        said = world.step(with_telecommands(TcClear()))
-        assert of(FswEvent, said) == []
+        replies = world.step(with_telecommands(TcClear()))
+        assert of(FswEvent, replies) == []
         world.fly(30)
         assert world.state.modes.mode is not Mode.SAFE
 
@@ -92,9 +92,9 @@ class TestInTheLoop:
         for one in (world, other):
             one.fly(25)
         turned = elements(raan_deg=(374208, -4))
-        said = world.step(with_telecommands(*turned, TcOrbitLoad()))
+        replies = world.step(with_telecommands(*turned, TcOrbitLoad()))
         other.step()
-        assert [ack.result for ack in of(TcAck, said)] == [TcAckResult.ACCEPTED] * 10
+        assert [ack.result for ack in of(TcAck, replies)] == [TcAckResult.ACCEPTED] * 10
         assert world.state.attitude == other.state.attitude
         model = with_orbit(world.config.ephemeris, world.state.orbit)
         for _ in range(60):
@@ -105,8 +105,8 @@ class TestInTheLoop:
 
     def test_telecommands_beyond_what_the_gate_looks_at_are_counted_as_unread(self, make_world):
         world = make_world()
-        said = world.step(with_telecommands(*(TcClear(n & 0xF) for n in range(80))))
-        assert len(of(TcAck, said)) == 64
+        replies = world.step(with_telecommands(*(TcClear(n & 0xF) for n in range(80))))
+        assert len(of(TcAck, replies)) == 64
         assert world.state.gate.overrun > 0
 
 
@@ -146,18 +146,18 @@ def test_whatever_the_ground_sends_the_limits_are_kept(make_world, digits, seed,
             counters[message.ID] += 1
             sent.append(message._replace(counter=counters[message.ID] & 0xF))
 
-        def told(inbox, sent=sent):
+        def reports(inbox, sent=sent):
             nonlocal refusals
             refusals += any(frame.can_id == CoilRefused.ID for frame in inbox.frames)
             return with_telecommands(*sent)(inbox)
 
-        said = world.step(told)
-        acks = of(TcAck, said)
+        replies = world.step(reports)
+        acks = of(TcAck, replies)
         assert [(ack.command, ack.command_counter) for ack in acks] == [(m.ID, m.counter) for m in sent]
         answers.update(TcAckResult(ack.result) for ack in acks)
-        fires += len(of(CoilFire, said))
-        assert world.state.modes.mode is not Mode.SAFE or not of(CoilFire, said)
-        for fire in of(CoilFire, said):
+        fires += len(of(CoilFire, replies))
+        assert world.state.modes.mode is not Mode.SAFE or not of(CoilFire, replies)
+        for fire in of(CoilFire, replies):
             assert fire.duration_ms == 3000
             assert 1 <= abs(fire.level) <= 3
     assert refusals == 0

@@ -30,7 +30,7 @@ def of(kind, messages):
     return [message for message in messages if isinstance(message, kind)]
 
 
-def told(messages):
+def reports(messages):
     return [(Event(m.event), m.argument) for m in of(FswEvent, messages)]
 
 
@@ -59,31 +59,31 @@ class TestOneStrange:
         assert forge(world, strange) == []
         assert world.state.ignored_syncs == 1
         assert (world.state.estimator, world.state.pulses) == (estimate, pulses)
-        said = world.step()
-        assert of(TickDone, said)[0].tick == 150
+        replies = world.step()
+        assert of(TickDone, replies)[0].tick == 150
         signed = strange if strange < 2**31 else strange - 2**32
-        assert told(said) == [(Event.STRANGE_SYNC, signed)]
-        assert told(world.step()) == []
+        assert reports(replies) == [(Event.STRANGE_SYNC, signed)]
+        assert reports(world.step()) == []
         assert world.state.estimator.restarts == 0
 
     def test_in_each_tick_is_told_once_in_a_time(self, world):
-        said = []
+        replies = []
         for i in range(30):
             forge(world, FAR + i)
-            said += world.step()
-        assert len([one for one in told(said) if one[0] is Event.STRANGE_SYNC]) == 3
+            replies += world.step()
+        assert len([one for one in reports(replies) if one[0] is Event.STRANGE_SYNC]) == 3
         assert world.state.estimator.restarts == 0
 
     @pytest.mark.parametrize("first", [FAR, 3])
     def test_in_each_tick_changes_no_request(self, make_world, first):
         """From boot on, though they go on tick by tick."""
         quiet, world = make_world(), make_world()
-        honest = [of(CoilFire, said) for said in quiet.fly(260)]
-        flown = []
+        honest = [of(CoilFire, replies) for replies in quiet.fly(260)]
+        run = []
         for i in range(260):
-            flown.append(of(CoilFire, world.step()))
+            run.append(of(CoilFire, world.step()))
             forge(world, first + 1000 + i)
-        assert flown == honest
+        assert run == honest
         assert any(honest)
 
 
@@ -94,11 +94,11 @@ class TestTwoStrange:
     )
     def test_are_answered_and_told(self, world, first, second):
         forge(world, first)
-        said = forge(world, second)
-        assert of(TickDone, said)[0].tick == second
-        assert (Event.PLANT_RESTARTED, 149) in told(said)
-        assert (Event.FILTER_RESTARTED, 1) in told(said)
-        assert (Event.MODE_CHANGED, Mode.SAFE) in told(said)
+        replies = forge(world, second)
+        assert of(TickDone, replies)[0].tick == second
+        assert (Event.PLANT_RESTARTED, 149) in reports(replies)
+        assert (Event.FILTER_RESTARTED, 1) in reports(replies)
+        assert (Event.MODE_CHANGED, Mode.SAFE) in reports(replies)
         assert not world.state.attitude.valid
         assert world.state.estimator.estimate is None
         assert world.state.pulses.ready_tick == (second + BACKOFF,) * 3
@@ -107,7 +107,7 @@ class TestTwoStrange:
         world = make_world()
         world.fly(240)
         world.plant = make_world().plant
-        fires = [tick for tick, said in enumerate(world.fly(210)) if of(CoilFire, said)]
+        fires = [tick for tick, replies in enumerate(world.fly(210)) if of(CoilFire, replies)]
         assert fires
         assert fires[0] >= 1 + BACKOFF
         assert world.state.attitude.valid
@@ -116,8 +116,8 @@ class TestTwoStrange:
     def test_the_true_plant_is_followed_at_its_next_sync(self, world):
         forge(world, FAR)
         forge(world, FAR + 1)
-        said = world.step()
-        assert of(TickDone, said)[0].tick == 150
+        replies = world.step()
+        assert of(TickDone, replies)[0].tick == 150
         assert world.state.pulses.ready_tick == (150 + BACKOFF,) * 3
 
     def test_a_restart_in_mid_pulse_is_no_trip(self, make_world):
@@ -133,14 +133,14 @@ class TestTwoStrange:
     def test_a_first_sync_that_was_wrong_costs_a_tick(self, make_world):
         world = make_world()
         assert of(TickDone, forge(world, FAR))[0].tick == FAR
-        answered = [of(TickDone, said) for said in world.fly(60)]
+        answered = [of(TickDone, replies) for replies in world.fly(60)]
         assert [done[0].tick for done in answered[1:]] == list(range(1, 60))
         assert answered[0] == []
         assert world.state.attitude.valid
 
     def test_a_skip_that_was_forged_costs_a_tick(self, world):
         assert of(TickDone, forge(world, 149 + 50))[0].tick == 199
-        answered = [[done.tick for done in of(TickDone, said)] for said in world.fly(30)]
+        answered = [[done.tick for done in of(TickDone, replies)] for replies in world.fly(30)]
         assert answered == [[], *([tick] for tick in range(151, 180))]
         assert world.state.pulses.ready_tick == (151 + BACKOFF,) * 3
 
@@ -159,7 +159,7 @@ class TestTwoStrange:
 class TestRepeated:
     def test_once_is_a_duplicate_and_nothing_is_told(self, world):
         assert forge(world, 149) == []
-        assert told(world.step()) == []
+        assert reports(world.step()) == []
 
     def test_again_gives_tick_done_alone_and_nothing_starts_anew(self, world):
         """To a plant in lockstep that lost it, and to one that starts anew in this very tick."""
@@ -196,18 +196,18 @@ class TestWhatStays:
         world.state = world.state._replace(second_sender=SecondSenderWatch(SIGNS, 149, CoilFire.ID))
         forge(world, FAR)
         forge(world, FAR + 1)
-        fired = [of(CoilFire, said) for said in world.fly(115)]
+        fired = [of(CoilFire, replies) for replies in world.fly(115)]
         assert not any(fired)
         assert world.state.second_sender.detected
 
     @pytest.mark.requirement("REQ-EVENT-01")
     def test_events_are_held_back_under_the_new_count_too(self, world):
-        said = []
+        replies = []
         for i in range(40):
-            said += forge(world, FAR + 10 * i)
-            said += forge(world, FAR + 10 * i + 1)
-            said += world.step()
-        kinds = [event for event, _ in told(said)]
+            replies += forge(world, FAR + 10 * i)
+            replies += forge(world, FAR + 10 * i + 1)
+            replies += world.step()
+        kinds = [event for event, _ in reports(replies)]
         assert kinds.count(Event.PLANT_RESTARTED) <= 5
         assert world.state.events.held_back > 60
 
@@ -222,11 +222,11 @@ class TestAttack:
                 forge(world, first)
                 forge(world, first + random.randrange(2))
             before = world.state.tick
-            said = world.step()
+            replies = world.step()
             if not before < tick <= before + LEAP_TICKS:
                 began = tick
-            assert [done.tick for done in of(TickDone, said)] == [tick]
-            assert not of(CoilFire, said) or tick >= began + BACKOFF
+            assert [done.tick for done in of(TickDone, replies)] == [tick]
+            assert not of(CoilFire, replies) or tick >= began + BACKOFF
 
     @pytest.mark.parametrize("seed", range(3))
     def test_by_any_tick_raises_nothing(self, make_world, seed):
@@ -243,14 +243,14 @@ class TestEnd:
     @pytest.mark.requirement("REQ-BUS-05")
     def test_after_which_the_flight_goes_on_is_told(self, world):
         end = PlantEnd(7, counter=3).encode()
-        said = world.step(lambda inbox: inbox._replace(frames=(end, *inbox.frames)))
-        assert told(said) == [(Event.FALSE_END, 7)]
-        assert told(world.step()) == []
+        replies = world.step(lambda inbox: inbox._replace(frames=(end, *inbox.frames)))
+        assert reports(replies) == [(Event.FALSE_END, 7)]
+        assert reports(world.step()) == []
 
     def test_of_the_run_before_is_not(self, make_world):
         world, end = make_world(), PlantEnd(7, counter=3).encode()
-        said = world.step(lambda inbox: inbox._replace(frames=(end, *inbox.frames)))
-        assert Event.FALSE_END not in dict(told(said))
+        replies = world.step(lambda inbox: inbox._replace(frames=(end, *inbox.frames)))
+        assert Event.FALSE_END not in dict(reports(replies))
 
 
 @pytest.mark.parametrize("ahead", [2, 30])

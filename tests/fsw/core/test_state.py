@@ -19,7 +19,7 @@ ELEMENTS = Elements(
 
 
 @pytest.fixture(scope="module")
-def flown(make_world):
+def run(make_world):
     """A state in which everything has happened: ephemeris, estimate, a pulse, a law that remembers."""
     world = make_world(control={"law": "pd"})
     world.fly(230)
@@ -42,17 +42,15 @@ def nearest_other(leaf):
     return nextafter(leaf, 1e300) if isinstance(leaf, float) else leaf + 1
 
 
-def test_every_number_of_the_state_counts(flown, leaves):
-    before = checksum(flown)
-    blind = [
-        path for path, leaf, rebuild in leaves(flown) if checksum(rebuild(nearest_other(leaf))) == before
-    ]
+def test_every_number_of_the_state_counts(run, leaves):
+    before = checksum(run)
+    blind = [path for path, leaf, rebuild in leaves(run) if checksum(rebuild(nearest_other(leaf))) == before]
     assert blind == []
 
 
-def test_the_walk_reaches_every_field(flown, leaves):
+def test_the_walk_reaches_every_field(run, leaves):
     """So that a field added to the state is in the test above by itself."""
-    paths = [path for path, *_ in leaves(flown)]
+    paths = [path for path, *_ in leaves(run)]
     assert {path.split(".")[1] for path in paths} == set(FlightState._fields)
     assert len(paths) == len(set(paths)) > 250
 
@@ -64,34 +62,34 @@ def test_every_number_of_a_boot_state_counts_too(make_world, leaves):
     assert [path for path, leaf, rebuild in known if checksum(rebuild(nearest_other(leaf))) == before] == []
 
 
-def test_what_is_not_there_differs_from_what_is(flown):
-    without_estimate = flown._replace(estimator=flown.estimator._replace(estimate=None))
-    without_ephemeris = flown._replace(ephemeris=None)
-    without_orbit = flown._replace(orbit=None)
-    sums = {checksum(state) for state in (flown, without_estimate, without_ephemeris, without_orbit)}
+def test_what_is_not_there_differs_from_what_is(run):
+    without_estimate = run._replace(estimator=run.estimator._replace(estimate=None))
+    without_ephemeris = run._replace(ephemeris=None)
+    without_orbit = run._replace(orbit=None)
+    sums = {checksum(state) for state in (run, without_estimate, without_ephemeris, without_orbit)}
     assert len(sums) == 4
 
 
-def test_numbers_that_change_places_are_noticed(flown):
+def test_numbers_that_change_places_are_noticed(run):
     """A sum over the numbers would not notice."""
     one, other = ({"rejected": 7, "missed": 3}, {"rejected": 3, "missed": 7})
-    assert len({checksum(flown._replace(gate=flown.gate._replace(**counts))) for counts in (one, other)}) == 2
+    assert len({checksum(run._replace(gate=run.gate._replace(**counts))) for counts in (one, other)}) == 2
 
 
-def test_equal_states_have_equal_checksums(flown):
-    assert checksum(deepcopy(flown)) == checksum(flown)
+def test_equal_states_have_equal_checksums(run):
+    assert checksum(deepcopy(run)) == checksum(run)
 
 
-def test_the_layout_of_an_array_in_memory_does_not_count(flown):
-    known = flown.estimator.estimate
+def test_the_layout_of_an_array_in_memory_does_not_count(run):
+    known = run.estimator.estimate
     turned = known._replace(covariance=np.asfortranarray(known.covariance))
-    assert checksum(flown._replace(estimator=flown.estimator._replace(estimate=turned))) == checksum(flown)
+    assert checksum(run._replace(estimator=run.estimator._replace(estimate=turned))) == checksum(run)
 
 
-def test_it_has_32_bits(flown):
-    assert 0 <= checksum(flown) < 2**32
+def test_it_has_32_bits(run):
+    assert 0 <= checksum(run) < 2**32
 
 
-def test_a_state_cannot_be_changed_in_place(flown):
+def test_a_state_cannot_be_changed_in_place(run):
     with pytest.raises(AttributeError):
-        flown.tick = 5
+        run.tick = 5

@@ -35,7 +35,7 @@ def of(kind, messages):
 
 def events_of(ticks):
     """(tick, event, argument) of every FSW_EVENT, by the tick in which it was sent."""
-    return [(tick, m.event, m.argument) for tick, said in enumerate(ticks) for m in of(FswEvent, said)]
+    return [(tick, m.event, m.argument) for tick, replies in enumerate(ticks) for m in of(FswEvent, replies)]
 
 
 @pytest.fixture(scope="module")
@@ -180,8 +180,8 @@ class TestTicks:
         world.fly(150)
         lost = world.inbox()
         world.plant.end_tick()
-        said = world.step(lambda inbox: inbox._replace(frames=lost.frames + inbox.frames))
-        assert of(TickDone, said)[0].tick == 151
+        replies = world.step(lambda inbox: inbox._replace(frames=lost.frames + inbox.frames))
+        assert of(TickDone, replies)[0].tick == 151
         assert world.state.gate.rejected == world.state.gate.missed == 0
         assert world.state.estimator.restarts == 0
         assert world.state.attitude.valid
@@ -195,10 +195,10 @@ class TestTicks:
             world.inbox()
             world.plant.end_tick()
         assert world.step() == []
-        said = world.step()
-        assert of(TickDone, said)[0].tick == 241
+        replies = world.step()
+        assert of(TickDone, replies)[0].tick == 241
         assert world.state.estimator.restarts == 1
-        assert (Event.FILTER_RESTARTED, 1) in [(m.event, m.argument) for m in of(FswEvent, said)]
+        assert (Event.FILTER_RESTARTED, 1) in [(m.event, m.argument) for m in of(FswEvent, replies)]
 
     def test_a_start_in_the_middle_of_a_flight_waits_out_a_full_back_off(self, make_world):
         """fsw boots at tick 150 while the board is long ready: no request before tick 250."""
@@ -207,19 +207,19 @@ class TestTicks:
             world.inbox()
             world.plant.end_tick()
         ticks = world.fly(160)
-        fires = [tick for tick, said in enumerate(ticks, 150) if of(CoilFire, said)]
+        fires = [tick for tick, replies in enumerate(ticks, 150) if of(CoilFire, replies)]
         assert fires
         assert fires[0] >= 250
 
     @pytest.mark.parametrize("error_s", [1, -3600])
     def test_a_clock_that_is_off_is_an_event_and_nothing_more(self, flight, error_s):
         config, inboxes, states, outboxes = flight
-        state, told, fires = states[100], [], []
+        state, reports, fires = states[100], [], []
         for inbox in inboxes[100:130]:
             state, outbox = step(state, inbox._replace(unix_time_s=inbox.unix_time_s + error_s), config)
-            told += [FswEvent.decode(f.data) for f in outbox if f.can_id == FswEvent.ID]
+            reports += [FswEvent.decode(f.data) for f in outbox if f.can_id == FswEvent.ID]
             fires.append([f for f in outbox if f.can_id == CoilFire.ID])
-        assert [(m.event, m.argument) for m in told if m.event == Event.TIME_MISMATCH] == [
+        assert [(m.event, m.argument) for m in reports if m.event == Event.TIME_MISMATCH] == [
             (Event.TIME_MISMATCH, error_s)
         ]
         assert fires == [[f for f in outbox if f.can_id == CoilFire.ID] for outbox in outboxes[100:130]]
@@ -234,22 +234,22 @@ class TestEvents:
     def test_of_an_undisturbed_flight(self, flight):
         """Each change once, and nothing while it lasts."""
         *_, outboxes = flight
-        told = [
+        reports = [
             (tick, message.event, message.argument)
             for tick, outbox in enumerate(outboxes)
             for message in (FswEvent.decode(f.data) for f in outbox if f.can_id == FswEvent.ID)
         ]
-        assert told[0] == (0, Event.FILTER_STARTED, 0)
-        modes = [(tick, Mode(argument)) for tick, event, argument in told if event == Event.MODE_CHANGED]
+        assert reports[0] == (0, Event.FILTER_STARTED, 0)
+        modes = [(tick, Mode(argument)) for tick, event, argument in reports if event == Event.MODE_CHANGED]
         assert modes[:2] == [(5, Mode.DETUMBLE), (26, Mode.ACQUIRE)]
-        assert len(told) == 1 + len(modes)
+        assert len(reports) == 1 + len(modes)
 
     def test_a_refusal_is_told_with_its_reason(self, make_world):
         world = make_world()
         world.fly(10)
         refused = CoilRefused(coil=1, seq=7, reason=8, tick=9, counter=4).encode()
-        said = world.step(lambda inbox: inbox._replace(frames=(*inbox.frames, refused)))
-        assert [(m.event, m.argument) for m in of(FswEvent, said)] == [(Event.REQUEST_REFUSED, 8)]
+        replies = world.step(lambda inbox: inbox._replace(frames=(*inbox.frames, refused)))
+        assert [(m.event, m.argument) for m in of(FswEvent, replies)] == [(Event.REQUEST_REFUSED, 8)]
         assert world.state.coil.refusals == 1
         assert of(FswEvent, world.step()) == []
 
@@ -271,13 +271,13 @@ class TestSilence:
         assert (self.STALE_S - 1, Event.MODE_CHANGED, Mode.SAFE) in events_of(ticks)
         assert max(after) == self.STALE_S - 1
         assert world.state.modes.mode is Mode.SAFE
-        assert not any(of(CoilFire, said) for said in ticks[self.STALE_S - 1 :])
+        assert not any(of(CoilFire, replies) for replies in ticks[self.STALE_S - 1 :])
 
     def test_without_coil_status_not_one_request_goes_out(self, make_world, without):
         """Not even in the minute before the monitor trips, with both timers long run out."""
         world = make_world()
         world.fly(90)
-        assert not any(of(CoilFire, said) for said in world.fly(200, without(CoilStatus)))
+        assert not any(of(CoilFire, replies) for replies in world.fly(200, without(CoilStatus)))
 
     def test_a_board_that_comes_back_is_trusted_again(self, make_world, without):
         world = make_world()
@@ -295,7 +295,7 @@ class TestSilence:
             world.fly(70, without(MagField))
             world.fly(40)
         assert (world.state.modes.mode, world.state.modes.trips) == (Mode.SAFE, 3)
-        assert not any(of(CoilFire, said) for said in world.fly(200))
+        assert not any(of(CoilFire, replies) for replies in world.fly(200))
         assert world.state.modes.mode is Mode.SAFE
 
     def test_without_a_sun_sensor_the_flight_goes_on(self, make_world, without):
@@ -310,8 +310,8 @@ class TestSilence:
         ticks = world.fly(250, lambda inbox: inbox._replace(frames=()))
         assert world.state.modes.mode is Mode.SAFE
         assert world.state.estimator.estimate is None
-        assert not any(of(CoilFire, said) for said in ticks)
-        assert all(isinstance(said[-1], TickDone) for said in ticks)
+        assert not any(of(CoilFire, replies) for replies in ticks)
+        assert all(isinstance(replies[-1], TickDone) for replies in ticks)
 
     def test_a_coil_that_drives_by_itself_leads_to_safe_at_once(self, make_world):
         world = make_world()
@@ -323,8 +323,8 @@ class TestSilence:
             frames.append(rogue._replace(counter=inbox.tick & 0xF).encode())
             return inbox._replace(frames=tuple(frames))
 
-        said = world.step(drive)
-        assert (Event.MONITOR_TRIPPED, 7) in [(m.event, m.argument) for m in of(FswEvent, said)]
+        replies = world.step(drive)
+        assert (Event.MONITOR_TRIPPED, 7) in [(m.event, m.argument) for m in of(FswEvent, replies)]
         assert world.state.modes.mode is Mode.SAFE
 
 
@@ -347,10 +347,10 @@ class TestPerfectKnowledge:
         for _ in range(50):
             truth = world.plant.truth()
             world.step()
-            seen = world.state.attitude
-            assert seen.valid
-            assert seen.q_body_from_orbit == pytest.approx(truth.q_body_from_orbit, abs=3e-5)
-            assert seen.omega_body_orbit_radps == pytest.approx(truth.omega_body_orbit_radps, abs=2e-6)
+            estimate = world.state.attitude
+            assert estimate.valid
+            assert estimate.q_body_from_orbit == pytest.approx(truth.q_body_from_orbit, abs=3e-5)
+            assert estimate.omega_body_orbit_radps == pytest.approx(truth.omega_body_orbit_radps, abs=2e-6)
         assert world.state.estimator.estimate is None
 
     def test_in_every_attitude_no_monitor_trips(self, make_world):
@@ -376,8 +376,8 @@ def test_an_orbit_that_has_decayed_leads_to_safe(make_world, decaying):
     assert state.ephemeris is None
     assert not state.attitude.valid
     assert outbox[-1] == TickDone(tick, checksum(state)).encode()
-    told = [FswEvent.decode(frame.data) for frame in outbox if frame.can_id == FswEvent.ID]
-    assert (Event.MONITOR_TRIPPED, 8) in [(message.event, message.argument) for message in told]
+    reports = [FswEvent.decode(frame.data) for frame in outbox if frame.can_id == FswEvent.ID]
+    assert (Event.MONITOR_TRIPPED, 8) in [(message.event, message.argument) for message in reports]
 
 
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
@@ -391,9 +391,9 @@ def test_an_ephemeris_of_what_is_no_number_is_made_anew(make_world, vector, brok
     world.state = world.state._replace(
         ephemeris=replace(whole, nodes=(whole.nodes[0], spoiled, *whole.nodes[2:]))
     )
-    said = world.step()
+    replies = world.step()
     assert not world.state.attitude.valid
-    assert not of(CoilFire, said)
+    assert not of(CoilFire, replies)
     world.fly(2)
     assert world.state.ephemeris.nodes[1] == whole.nodes[1]
     assert world.state.attitude.valid

@@ -171,8 +171,8 @@ def test_one_liar_among_honest_boards(make_world, seed):
         honest = world.inbox()
         frames = honest.frames
         if tick > 120 and random.random() < 0.8:
-            said = [lie(random, liar, tick & 0xF) if f.can_id == liar.ID else f for f in frames]
-            frames = tuple(said)
+            replies = [lie(random, liar, tick & 0xF) if f.can_id == liar.ID else f for f in frames]
+            frames = tuple(replies)
         inbox = honest._replace(frames=frames)
         world.state, outbox = step(world.state, inbox, world.config)
         watch.judge(inbox, world.state, outbox)

@@ -87,14 +87,14 @@ class TestMessages:
 class TestNumbering:
     def test_each_message_counts_for_itself(self):
         nav, rate, beat = NavAttitude(1, 0.1, 0.2, 0.3), NavRate(1, 0.0, 0.0, 0.0), FswHeartbeat(0, 0, 0, 0)
-        counters, seen = FIRST_COUNTERS, {NavAttitude.ID: [], NavRate.ID: [], FswHeartbeat.ID: []}
+        counters, observed = FIRST_COUNTERS, {NavAttitude.ID: [], NavRate.ID: [], FswHeartbeat.ID: []}
         for tick in range(40):
             frames, counters = telemetry.number([nav, rate] + [beat] * (tick % 5 == 0), counters)
             for frame in frames:
                 assert intact(frame)
-                seen[frame.can_id].append(CLASSES[frame.can_id].decode(frame.data).counter)
-        assert seen[NavAttitude.ID] == seen[NavRate.ID] == [n % 16 for n in range(40)]
-        assert seen[FswHeartbeat.ID] == list(range(8))
+                observed[frame.can_id].append(CLASSES[frame.can_id].decode(frame.data).counter)
+        assert observed[NavAttitude.ID] == observed[NavRate.ID] == [n % 16 for n in range(40)]
+        assert observed[FswHeartbeat.ID] == list(range(8))
 
     def test_several_of_a_kind_in_one_tick(self):
         event = FswEvent(0, 1, 2, 3)

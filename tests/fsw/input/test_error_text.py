@@ -11,7 +11,7 @@ def test_what_can_be_read_stays(text):
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "reports"),
     [
         ("a\nb", r"a\nb"),
         ("a\0b", r"a\x00b"),
@@ -20,13 +20,13 @@ def test_what_can_be_read_stays(text):
         ("\u2028", r"\u2028"),
     ],
 )
-def test_what_cannot_is_escaped(text, told):
-    assert error_text(text) == told
+def test_what_cannot_is_escaped(text, reports):
+    assert error_text(text) == reports
 
 
 def test_what_is_too_long_is_cut_in_its_middle():
-    told = error_text("begin" + "x" * 10**6 + "end")
-    assert told.startswith("begin")
-    assert told.endswith("end")
-    assert " ... " in told
-    assert len(told) == LONGEST + 5
+    reports = error_text("begin" + "x" * 10**6 + "end")
+    assert reports.startswith("begin")
+    assert reports.endswith("end")
+    assert " ... " in reports
+    assert len(reports) == LONGEST + 5

@@ -90,9 +90,9 @@ class TestRefusals:
         board = CoilDriver(CoilLimits(1, backoff_ms=0))
         board.receive(CoilFire(3, 0, 1, 0, 3000).encode())
         assert board.drive() == OFF
-        boot, heard, refused = read(board.begin_tick(0, 0.0))
+        boot, report, refused = read(board.begin_tick(0, 0.0))
         assert isinstance(boot, CoilBoot)
-        assert heard.level == 0
+        assert report.level == 0
         assert (refused.reason, refused.tick) == (Reason.WRONG_TICK, 0)
 
     def test_a_flood_is_not_answered_by_a_flood(self, rig):
@@ -188,10 +188,10 @@ class TestTicks:
         rig.step(rig.fire(coil=0, level=2))
         rig.tick += jump - 1
         step = rig.step()
-        heard = step.status
+        report = step.status
         rest_ms = max(0, 3000 - 1000 * jump)
-        assert (heard.remaining_ms, heard.lockout_ms) == (rest_ms, max(0, 103_000 - 1000 * jump))
-        assert (heard.level, heard.coil) == ((2, 0) if jump <= 3 else (0, rig.tick % 3))
+        assert (report.remaining_ms, report.lockout_ms) == (rest_ms, max(0, 103_000 - 1000 * jump))
+        assert (report.level, report.coil) == ((2, 0) if jump <= 3 else (0, rig.tick % 3))
         assert step.drive == (Drive(0, 2, 1.0) if rest_ms else OFF)
 
     def test_asking_for_the_drive_twice_changes_nothing(self, rig):
@@ -211,8 +211,8 @@ class TestDeadMan:
     def test_a_pulse_ends_at_once_and_a_full_back_off_begins(self, rig):
         assert rig.step(rig.fire()).drive == Drive(1, 3, 1.0)
         self.fall_silent(rig)
-        heard = rig.step().status
-        assert (heard.level, heard.remaining_ms, heard.lockout_ms) == (0, 0, 99_000)
+        report = rig.step().status
+        assert (report.level, report.remaining_ms, report.lockout_ms) == (0, 0, 99_000)
         rig.skip_to(399)
         assert rig.step(rig.fire(seq=2)).drive == OFF
         assert rig.step(rig.fire(seq=3)).drive == Drive(1, 3, 1.0)

@@ -51,8 +51,8 @@ class TestTheTableAt1Hz:
         assert first.drive == OFF
         for tick in range(1, 100):
             step = rig.step(rig.fire(seq=tick, coil=tick % 3))
-            heard = step.status
-            assert (heard.level, heard.coil, heard.lockout_ms) == (0, tick % 3, 100_000 - 1000 * tick)
+            report = step.status
+            assert (report.level, report.coil, report.lockout_ms) == (0, tick % 3, 100_000 - 1000 * tick)
             assert step.reasons == [Reason.LOCKOUT]
             assert step.drive == OFF
         free = rig.step(rig.fire(seq=0))
@@ -106,10 +106,10 @@ def test_every_tick_of_a_pulse_and_its_lockout(rig_with, hz, duration_ms, shared
             assert step.drive[:2] == (2, -2)
             driven_ms += Fraction(round(step.drive.fraction * 1000), hz)
         step = rig.step(rig.fire(coil=2, level=1, seq=rig.tick & 0xFF | 2))
-        heard = step.status
-        said = (heard.level, heard.coil, heard.remaining_ms, heard.lockout_ms)
-        assert said == expected(limits, fired, 2, -2, duration_ms, rig.tick)
-        assert heard.seq == 1
+        report = step.status
+        values = (report.level, report.coil, report.remaining_ms, report.lockout_ms)
+        assert values == expected(limits, fired, 2, -2, duration_ms, rig.tick)
+        assert report.seq == 1
     assert driven_ms == duration_ms, "driven for exactly as long as asked"
     step = rig.step(rig.fire(coil=2, level=1, seq=0))
     assert (rig.tick, step.drive[:2]) == (free, (2, 1)), "the first tick after the lockout is free"
@@ -128,8 +128,8 @@ def test_the_fraction_is_that_part_of_the_tick_that_is_driven(rig_with, hz):
 
 def test_a_lockout_longer_than_its_signal_saturates(rig_with):
     rig = rig_with(CoilLimits(1, backoff_ms=200_000))
-    heard = [rig.step().status.lockout_ms for _ in range(200)]
-    assert heard == [min(200_000 - 1000 * tick, 163_830) for tick in range(200)]
+    lockouts_ms = [rig.step().status.lockout_ms for _ in range(200)]
+    assert lockouts_ms == [min(200_000 - 1000 * tick, 163_830) for tick in range(200)]
     free = rig.step(rig.fire())
     assert (free.status.lockout_ms, free.drive.level) == (0, 3)
 

@@ -40,54 +40,55 @@ def step(board, read):
     ticks = iter(range(100_000))
 
     def step(*messages, current_a=0.0):
-        said = read(board.begin_tick(next(ticks), current_a))
+        replies = read(board.begin_tick(next(ticks), current_a))
         for message in messages:
             board.receive(message if isinstance(message, Frame) else message.encode())
-        return said, board.drive()
+        return replies, board.drive()
 
     return step
 
 
-def of(kind, said):
-    return [message for message in said if isinstance(message, kind)]
+def of(kind, replies):
+    return [message for message in replies if isinstance(message, kind)]
 
 
-def reasons(said):
-    return [(message.seq, message.reason) for message in of(CoilRefused, said)]
+def reasons(replies):
+    return [(message.seq, message.reason) for message in of(CoilRefused, replies)]
 
 
 class TestDrive:
     def test_a_dipole_is_driven_in_its_tick_and_told_at_the_next(self, step):
-        said, drive = step(CoilDipole(*ASKED))
+        replies, drive = step(CoilDipole(*ASKED))
         assert drive == DipoleDrive(ASKED, 0.8)
-        assert of(CoilDipoleStatus, said) == [CoilDipoleStatus(*NONE, 0)]
-        said, drive = step()
-        assert of(CoilDipoleStatus, said) == [CoilDipoleStatus(*ASKED, 1)]
+        assert of(CoilDipoleStatus, replies) == [CoilDipoleStatus(*NONE, 0)]
+        replies, drive = step()
+        assert of(CoilDipoleStatus, replies) == [CoilDipoleStatus(*ASKED, 1)]
         assert drive == DipoleDrive(NONE, 0.8)
 
     def test_without_a_new_request_nothing_is_driven(self, step):
         step(CoilDipole(*ASKED))
-        said = [step() for _ in range(20)]
-        assert [drive.dipole for _, drive in said] == [NONE] * 20
-        shown = [of(CoilDipoleStatus, messages)[0][:3] for messages, _ in said]
+        replies = [step() for _ in range(20)]
+        assert [drive.dipole for _, drive in replies] == [NONE] * 20
+        shown = [of(CoilDipoleStatus, messages)[0][:3] for messages, _ in replies]
         assert shown == [ASKED] + [NONE] * 19
 
     def test_requests_follow_each_other_tick_by_tick(self, step):
         asked = [(0.5 - k * STEP, k * STEP, -0.25) for k in range(50)]
-        told = [step(CoilDipole(*m, counter=k)) for k, m in enumerate(asked)]
-        assert [drive.dipole for _, drive in told] == asked
-        assert [of(CoilDipoleStatus, said)[0][:3] for said, _ in told[1:]] == asked[:-1]
-        assert [of(CoilDipoleStatus, said)[0].counter for said, _ in told] == [k % 16 for k in range(50)]
+        reports = [step(CoilDipole(*m, counter=k)) for k, m in enumerate(asked)]
+        assert [drive.dipole for _, drive in reports] == asked
+        assert [of(CoilDipoleStatus, replies)[0][:3] for replies, _ in reports[1:]] == asked[:-1]
+        counters = [of(CoilDipoleStatus, replies)[0].counter for replies, _ in reports]
+        assert counters == [k % 16 for k in range(50)]
 
     @pytest.mark.parametrize("m", [(-1.0, 1.0 - STEP, -STEP), NONE, (STEP, 0.0, -1.0)])
     def test_the_whole_scale_passes_to_the_last_bit(self, step, m):
         assert step(CoilDipole(*m))[1].dipole == m
 
     def test_the_first_of_a_tick_is_driven_and_further_ones_are_refused(self, step):
-        said, drive = step(CoilDipole(*ASKED, 3), CoilDipole(0.1, 0.1, 0.1, 4), CoilDipole(*NONE, 5))
+        replies, drive = step(CoilDipole(*ASKED, 3), CoilDipole(0.1, 0.1, 0.1, 4), CoilDipole(*NONE, 5))
         assert drive.dipole == ASKED
-        said, _ = step()
-        assert reasons(said) == [(4, Reason.SECOND_DIPOLE), (5, Reason.SECOND_DIPOLE)]
+        replies, _ = step()
+        assert reasons(replies) == [(4, Reason.SECOND_DIPOLE), (5, Reason.SECOND_DIPOLE)]
 
     def test_a_dipole_of_zero_is_a_request_too(self, step):
         _, drive = step(CoilDipole(*NONE), CoilDipole(*ASKED, 1))
@@ -101,9 +102,9 @@ class TestDrive:
         board.drive()
         board.receive(CoilDipole(*ASKED, 8).encode())
         assert board.drive().dipole == NONE
-        said = read(board.begin_tick(1, 0.0))
-        assert reasons(said) == [(8, Reason.WRONG_TICK)]
-        assert of(CoilDipoleStatus, said)[0][:3] == NONE
+        replies = read(board.begin_tick(1, 0.0))
+        assert reasons(replies) == [(8, Reason.WRONG_TICK)]
+        assert of(CoilDipoleStatus, replies)[0][:3] == NONE
 
     def test_over_skipped_ticks_nothing_was_driven_in_the_last(self, board, read):
         board.begin_tick(0, 0.0)
@@ -132,8 +133,8 @@ class TestDrive:
 class TestWhatItSays:
     def test_one_status_a_tick_of_coils_that_are_off(self, step):
         for tick in range(12):
-            said, _ = step(CoilDipole(*ASKED), current_a=0.0)
-            (status,) = of(CoilStatus, said)
+            replies, _ = step(CoilDipole(*ASKED), current_a=0.0)
+            (status,) = of(CoilStatus, replies)
             assert status == CoilStatus(0, tick % 3, 0, 0, 0, 0, counter=tick)
 
     def test_what_current_still_flows_is_read_back(self, step):
@@ -222,18 +223,18 @@ def alterations():
 @given(st.lists(st.tuples(st.lists(alterations(), max_size=4), st.booleans()), max_size=20))
 def test_whatever_comes_only_the_first_intact_dipole_of_a_tick_is_driven(ticks):
     """Against a model: what is open, what was asked, what is told."""
-    board, told = DipoleDriver(1), NONE
+    board, reports = DipoleDriver(1), NONE
     for tick, (frames, late) in enumerate(ticks):
-        said = board.begin_tick(tick, 0.0)
-        assert all(intact(frame) for frame in said)
-        (status,) = [CLASSES[f.can_id].decode(f.data) for f in said if f.can_id == CoilDipoleStatus.ID]
-        assert status[:3] == told
+        replies = board.begin_tick(tick, 0.0)
+        assert all(intact(frame) for frame in replies)
+        (status,) = [CLASSES[f.can_id].decode(f.data) for f in replies if f.can_id == CoilDipoleStatus.ID]
+        assert status[:3] == reports
         for frame in frames:
             board.receive(frame)
         dipoles = [CoilDipole.decode(f.data)[:3] for f in frames if f.can_id == CoilDipole.ID and intact(f)]
-        told = dipoles[0] if dipoles else NONE
-        assert board.drive().dipole == told
-        assert all(isfinite(part) and -1.0 <= part <= 1.0 for part in told)
+        reports = dipoles[0] if dipoles else NONE
+        assert board.drive().dipole == reports
+        assert all(isfinite(part) and -1.0 <= part <= 1.0 for part in reports)
         if late:
             board.receive(CoilDipole(0.5, 0.5, 0.5).encode())
-            assert board.drive().dipole == told
+            assert board.drive().dipole == reports

@@ -145,9 +145,10 @@ class CoilDriverMachine(RuleBasedStateMachine):
         if ticks > 1:
             self.judge.skip(self.tick + ticks, self.model.end)
         self.tick += ticks
-        said = [CLASSES[frame.can_id].decode(frame.data) for frame in self.board.begin_tick(self.tick, 0.0)]
-        assert sum(isinstance(message, CoilStatus) for message in said) == 1
-        assert [m.reason for m in said if isinstance(m, CoilRefused)] == self.reasons
+        frames = self.board.begin_tick(self.tick, 0.0)
+        replies = [CLASSES[frame.can_id].decode(frame.data) for frame in frames]
+        assert sum(isinstance(message, CoilStatus) for message in replies) == 1
+        assert [m.reason for m in replies if isinstance(m, CoilRefused)] == self.reasons
         self.reasons = []
         for fire in fires:
             reason = self.model.answer(fire, self.tick)

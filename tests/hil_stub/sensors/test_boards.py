@@ -48,9 +48,9 @@ class TestBoth:
         self, read, make, boot, sample, heartbeat, vector
     ):
         board = make(1)
-        said = [message for tick in range(61) for message in read(board.begin_tick(tick, vector, True))]
-        assert said[0] == boot(reason=0, version=1, table_crc=0)
-        assert said[-1] == heartbeat(state=0, rejects=0, slips=0, tick=60)
+        replies = [message for tick in range(61) for message in read(board.begin_tick(tick, vector, True))]
+        assert replies[0] == boot(reason=0, version=1, table_crc=0)
+        assert replies[-1] == heartbeat(state=0, rejects=0, slips=0, tick=60)
 
     @pytest.mark.parametrize("backwards", [0, 1, 10**6])
     def test_a_tick_that_does_not_rise_is_ignored(

@@ -261,10 +261,10 @@ def test_without_a_law_nothing_is_fired_and_nothing_owed(fresh, lockout_ms):
     timers = replace(ready(), ready_tick=(TICK - 5, TICK, TICK + 9), busy_until=TICK - 20)
     before = replace(timers, held_am2=(1.0, -2.0, 3.0))
     view = replace(ALL_FREE, lockout_ms=lockout_ms)
-    after, seen, request = run_safe(before, view, BOARD_IS_THERE if fresh else NOTHING)
+    after, found, request = run_safe(before, view, BOARD_IS_THERE if fresh else NOTHING)
     assert request is None
     assert after == replace(timers, owed_impulse_body_nms=ZERO)
-    assert seen == view
+    assert found == view
 
 
 def test_a_refusal_that_comes_while_no_law_flies_is_not_owed_either():

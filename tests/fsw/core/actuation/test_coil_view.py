@@ -78,7 +78,7 @@ def test_a_board_that_has_booted_has_not_told_its_lockouts(coil, coils):
     booted = NOTHING._replace(coil_boot=CoilBoot(1, 1, 7))
     if coil is not None:
         booted = booted._replace(coil=status(coil, 99_000, seq=9))
-    expected = [99_000 if coil == told else -1 for told in range(3)]
+    expected = [99_000 if coil == reports else -1 for reports in range(3)]
     assert update_view(replace(FIRED, lockout_ms=(0, 10, 0)), booted, TICK + 50, coils) == replace(
         FIRED, lockout_ms=tuple(expected), driven_coil=1 if coil is None else coil
     )

@@ -68,9 +68,9 @@ class TestSaturation:
     def test_the_largest_is_what_the_wire_can_bear(self, m_body_am2):
         """And comes off it with the sign it went on it with."""
         sent = saturate(m_body_am2, CONFIG)
-        heard = CoilDipole.decode(sent.encode().data)
-        np.testing.assert_allclose(am2(heard), am2(sent), atol=LSB * FULL_SCALE_AM2)
-        assert max(abs(c) for c in heard[:3]) == MOST
+        report = CoilDipole.decode(sent.encode().data)
+        np.testing.assert_allclose(am2(report), am2(sent), atol=LSB * FULL_SCALE_AM2)
+        assert max(abs(c) for c in report[:3]) == MOST
 
     @pytest.mark.parametrize("axis", [0, 1, 2])
     @pytest.mark.parametrize("value", [nan, inf, -inf])
@@ -102,7 +102,7 @@ class TestDriven:
         assert view.driven_level == 0
 
 
-def flown(demands, config=CONFIG, timing=TIMING, b=lambda tick: B_BODY_T, boot_tick=0):
+def history(demands, config=CONFIG, timing=TIMING, b=lambda tick: B_BODY_T, boot_tick=0):
     """What is sent in each tick from boot on, A m^2."""
     state, sent = pulses.boot(boot_tick, timing), []
     for tick, demand in enumerate(demands, boot_tick):
@@ -125,7 +125,7 @@ class TestContinuousLaw:
     def test_each_tick_has_its_own_dipole_from_the_first_on(self):
         """No timing of pulses: the board ends a request by itself."""
         asked = [(0.1 * n, -0.2 * n, 0.3) for n in range(12)]
-        np.testing.assert_allclose(flown([Demand(m) for m in asked]), asked, rtol=1e-12, atol=1e-15)
+        np.testing.assert_allclose(history([Demand(m) for m in asked]), asked, rtol=1e-12, atol=1e-15)
 
     def test_nothing_is_owed(self):
         state, _ = request(pulses.boot(0, TIMING), Demand((1e3, 1e3, 1e3)), B_BODY_T, 5, CONFIG, TIMING)
@@ -134,7 +134,7 @@ class TestContinuousLaw:
 
 class TestImpulses:
     def test_the_dipole_gives_the_best_impulse_over_a_pulse(self):
-        sent = flown([missing()] * 103)[102]
+        sent = history([missing()] * 103)[102]
         given_nms = TIMING.pulse_s * np.cross(sent, B_BODY_T)
         np.testing.assert_allclose(given_nms, best_impulse(IMPULSE_NMS, B_BODY_T, INERTIA), rtol=1e-9)
         assert abs(sent @ np.array(B_BODY_T)) < 1e-12 * np.linalg.norm(sent)
@@ -145,7 +145,7 @@ class TestImpulses:
     def test_the_timing_is_that_of_the_pulses(self, tick_hz, boot_tick):
         """A back-off after boot, then 3 s on and 100 s off."""
         timing = make_timing(tick_hz)
-        sent = flown([missing()] * (310 * tick_hz), timing=timing, boot_tick=boot_tick)
+        sent = history([missing()] * (310 * tick_hz), timing=timing, boot_tick=boot_tick)
         on = [any(m) for m in sent]
         changes = [tick / tick_hz for tick in range(1, len(on)) if on[tick] is not on[tick - 1]]
         assert changes == [100.0, 103.0, 203.0, 206.0, 306.0, 309.0]
@@ -159,19 +159,19 @@ class TestImpulses:
             if pulse is not None:
                 fired.append(tick)
                 state = pulses.fire(state, pulse, ZERO, tick, TIMING)
-        sent = flown([missing()] * 310)
+        sent = history([missing()] * 310)
         assert fired == [t for t in range(310) if any(sent[t]) and not any(sent[t - 1])]
 
     def test_it_is_held_whatever_the_field_and_the_demand_do_meanwhile(self):
         demands = [missing()] * 101 + [missing((1.0, 1.0, 1.0)), missing(ZERO), missing((1.0, 1.0, 1.0))]
-        sent = flown(demands, b=lambda tick: B_BODY_T if tick <= 100 else (3e-5, 1e-5, 0.0))
+        sent = history(demands, b=lambda tick: B_BODY_T if tick <= 100 else (3e-5, 1e-5, 0.0))
         for tick in (100, 101, 102):
             np.testing.assert_allclose(sent[tick], best_am2(), rtol=1e-12)
         assert not any(sent[103])
 
     @pytest.mark.parametrize("config", [CONFIG, GENETIC], ids=["closed form", "genetic"])
     def test_without_a_field_nothing_is_begun_and_the_first_field_serves(self, config):
-        sent = flown([missing()] * 110, config, b=lambda tick: ZERO if tick < 107 else B_BODY_T)
+        sent = history([missing()] * 110, config, b=lambda tick: ZERO if tick < 107 else B_BODY_T)
         assert not sent[:107].any()
         assert sent[107:].any(axis=1).all()
 
@@ -183,18 +183,18 @@ class TestImpulses:
             left = r - TIMING.pulse_s * np.cross(m, B_BODY_T)
             return left @ metric @ left
 
-        by_search = flown([missing()] * 101, GENETIC)[100]
+        by_search = history([missing()] * 101, GENETIC)[100]
         assert cost(by_search) <= cost(best_am2()) + 0.01 * (cost(np.zeros(3)) - cost(best_am2()))
-        assert not np.array_equal(by_search, flown([missing()] * 101)[100])
+        assert not np.array_equal(by_search, history([missing()] * 101)[100])
 
     def test_the_search_differs_from_pulse_to_pulse_and_is_the_same_in_each_flight(self):
-        once, again = (flown([missing()] * 310, GENETIC) for _ in range(2))
+        once, again = (history([missing()] * 310, GENETIC) for _ in range(2))
         np.testing.assert_array_equal(once, again)
         assert not np.array_equal(once[100], once[203])
         np.testing.assert_array_equal(once[100], once[102])
 
     def test_a_law_of_dipoles_is_not_kept_waiting_by_a_pulse(self):
-        sent = flown([missing()] * 101 + [Demand((1.0, 2.0, 3.0))])
+        sent = history([missing()] * 101 + [Demand((1.0, 2.0, 3.0))])
         np.testing.assert_allclose(sent[101], (1.0, 2.0, 3.0))
 
 

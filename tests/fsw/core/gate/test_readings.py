@@ -89,9 +89,9 @@ def test_every_kind_is_taken_as_sent():
     assert tuple(readings[: len(EVERY_KIND)]) == tuple(type(m).decode(m.encode().data) for m in EVERY_KIND)
     assert readings.coil == COIL
     assert readings.field == FIELD
-    heard = crc32(b"".join(message.encode().data for message in as_sent[:-1]))
+    input_crc = crc32(b"".join(message.encode().data for message in as_sent[:-1]))
     counters = (*range(5, 14), *(-1,) * len(TELECOMMANDS))
-    assert state == GateState(counters, input_crc=heard, command_crc=crc32(END.encode().data))
+    assert state == GateState(counters, input_crc=input_crc, command_crc=crc32(END.encode().data))
 
 
 @EVERY_MESSAGE
@@ -377,11 +377,11 @@ def test_of_ten_thousand_random_frames_none_is_taken_unless_intact():
     for _ in range(10_000):
         frame = random_frame(random)
         readings, after = admit((frame,), state)
-        heard = [message for message in (*readings[:-3], *readings.telecommands) if message is not None]
-        if heard:
+        accepted = [message for message in (*readings[:-3], *readings.telecommands) if message is not None]
+        if accepted:
             taken += 1
             assert intact(frame)
-            assert heard == [CLASSES[frame.can_id].decode(frame.data)]
+            assert accepted == [CLASSES[frame.can_id].decode(frame.data)]
             assert after.rejected == state.rejected
         elif frame.can_id in (*INPUT_MESSAGES, *TELECOMMANDS) or not intact(frame):
             assert after == state._replace(rejected=state.rejected + 1)

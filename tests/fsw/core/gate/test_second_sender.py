@@ -105,17 +105,17 @@ class TestInFlight:
     def world(self, make_world):
         return make_world(flight={"fdir": {"second_sender_s": 15.0}})
 
-    def events(self, said, event):
+    def events(self, replies, event):
         """(tick, argument) of each."""
         return [
             (tick, message.argument)
-            for tick, messages in enumerate(said)
+            for tick, messages in enumerate(replies)
             for message in messages
             if isinstance(message, FswEvent) and message.event == event
         ]
 
-    def fired(self, said):
-        return [tick for tick, messages in enumerate(said) if any(isinstance(m, CoilFire) for m in messages)]
+    def fired(self, replies):
+        return [tick for tick, reply in enumerate(replies) if any(isinstance(m, CoilFire) for m in reply)]
 
     @pytest.mark.requirement("REQ-BUS-01", "REQ-TRIP-09")
     def test_is_named_inhibits_and_lets_control_go_on_when_it_has_gone(self, world):
@@ -130,31 +130,31 @@ class TestInFlight:
             fire = CoilFire(2, 1, rng.randrange(256), (inbox.tick + 9) & 0xFF, 3000, inbox.tick & 0xF)
             return inbox._replace(frames=(*inbox.frames, fire.encode()))
 
-        said = world.fly(180, joined)
-        assert self.events(said, Event.SECOND_SENDER) == [(first + SIGNS - 1, CoilFire.ID)]
-        assert self.events(said, Event.MONITOR_TRIPPED) == [(first + SIGNS - 1, Monitor.NO_SECOND_SENDER)]
-        assert (first + SIGNS - 1, Mode.SAFE) in self.events(said, Event.MODE_CHANGED)
+        replies = world.fly(180, joined)
+        assert self.events(replies, Event.SECOND_SENDER) == [(first + SIGNS - 1, CoilFire.ID)]
+        assert self.events(replies, Event.MONITOR_TRIPPED) == [(first + SIGNS - 1, Monitor.NO_SECOND_SENDER)]
+        assert (first + SIGNS - 1, Mode.SAFE) in self.events(replies, Event.MODE_CHANGED)
         gone = end + 15
-        assert self.fired(said)
-        assert gone <= self.fired(said)[0] <= gone + 7
+        assert self.fired(replies)
+        assert gone <= self.fired(replies)[0] <= gone + 7
 
     @pytest.mark.requirement("REQ-BUS-02")
     def test_frames_that_are_broken_are_no_sign(self, world):
         broken = FIRE._replace(data=bytes((FIRE.data[0] ^ 1,)) + FIRE.data[1:])
         short = Frame(TickDone.ID, TickDone(5, 6).encode().data[:-1])
         strange = (broken, short, Frame(CoilFire.ID | 0x8000_0000, FIRE.data))
-        said = world.fly(130, lambda inbox: inbox._replace(frames=(*inbox.frames, *strange)))
-        assert self.events(said, Event.SECOND_SENDER) == []
-        assert self.fired(said)
+        replies = world.fly(130, lambda inbox: inbox._replace(frames=(*inbox.frames, *strange)))
+        assert self.events(replies, Event.SECOND_SENDER) == []
+        assert self.fired(replies)
 
     @pytest.mark.requirement("REQ-BUS-02")
     def test_what_was_still_on_its_way_when_fsw_booted_is_no_second_sender(self, world):
-        said = world.fly(
+        replies = world.fly(
             120,
             lambda inbox: inbox._replace(frames=(FIRE, FIRE, *inbox.frames)) if inbox.tick < 2 else inbox,
         )
-        assert self.events(said, Event.SECOND_SENDER) == []
-        assert self.fired(said)
+        assert self.events(replies, Event.SECOND_SENDER) == []
+        assert self.fired(replies)
 
     def test_it_costs_no_sensor_reading(self, world):
         world.fly(5, lambda inbox: inbox._replace(frames=(FIRE, *inbox.frames)))

@@ -54,7 +54,7 @@ def inputs(attitude=KNOWN, sample=SAMPLE, before=BEFORE):
     return LawInput(attitude, B_BODY_T, sample, before, (0.6, 0.0, 0.8), REFERENCE, (1e-7, -2e-7, 3e-7))
 
 
-def flown(mode, setpoint=PD, attitude=KNOWN, memory=(), config=CONFIG):
+def run(mode, setpoint=PD, attitude=KNOWN, memory=(), config=CONFIG):
     return by_mode.demand(mode, inputs(attitude), memory, setpoint, config)
 
 
@@ -100,14 +100,14 @@ def test_the_demands_of_this_test_all_differ():
     ],
 )
 def test_law_by_mode(mode, setpoint, attitude, expected):
-    assert flown(mode, setpoint, attitude) == expected
+    assert run(mode, setpoint, attitude) == expected
 
 
 @pytest.mark.parametrize(
     ("attitude", "expected"), [(KNOWN, BY_RATE), (NOT_VALID, BY_BDOT), (UNKNOWN, BY_BDOT)]
 )
 def test_detumble_with_a_continuous_driver_is_proportional(attitude, expected):
-    assert flown(Mode.DETUMBLE, PD, attitude, config=replace(CONFIG, pulsed=False)) == expected
+    assert run(Mode.DETUMBLE, PD, attitude, config=replace(CONFIG, pulsed=False)) == expected
 
 
 @EVERY_LAW
@@ -116,20 +116,20 @@ def test_acquire_and_point_fly_the_law_of_the_setpoint(law, mode):
     row = LAWS[law]
     flies = row.acquire if mode is Mode.ACQUIRE else row.point
     setpoint = PD._replace(law=law)
-    assert flown(mode, setpoint) == flies(inputs(), (), setpoint, CONFIG)
+    assert run(mode, setpoint) == flies(inputs(), (), setpoint, CONFIG)
 
 
 @EVERY_LAW
 def test_safe_asks_for_nothing_whatever_the_law(law):
     """Not even for no dipole: what was owed is forgotten."""
-    assert flown(Mode.SAFE, PD._replace(law=law)) is None
+    assert run(Mode.SAFE, PD._replace(law=law)) is None
 
 
 @EVERY_LAW
 @pytest.mark.parametrize("attitude", [KNOWN, NOT_VALID, UNKNOWN])
 def test_detumble_flies_the_same_whatever_the_law_and_forgets(law, attitude):
-    with_memory = flown(Mode.DETUMBLE, PD._replace(law=law), attitude, memory=(1.0, 2.0, 3.0))
-    assert with_memory == flown(Mode.DETUMBLE, PD, attitude)
+    with_memory = run(Mode.DETUMBLE, PD._replace(law=law), attitude, memory=(1.0, 2.0, 3.0))
+    assert with_memory == run(Mode.DETUMBLE, PD, attitude)
     assert with_memory.memory == ()
 
 

@@ -51,11 +51,11 @@ def test_bdot_is_rate_damping_while_the_body_turns_slowly(interval_s):
     omega = np.array([0.011, -0.007, 0.005])
     b_eci_t = np.array([1.7e-5, -2.3e-5, 3.1e-5])
 
-    def seen(t_s):
+    def field_at(t_s):
         return tuple(Rotation.from_rotvec(omega * t_s).as_matrix().T @ b_eci_t)
 
-    by_difference = np.array(bdot_dipole(seen(interval_s), seen(0.0), interval_s, K_W))
-    by_rate = np.array(rate_damping_dipole(seen(0.5 * interval_s), tuple(omega), K_W))
+    by_difference = np.array(bdot_dipole(field_at(interval_s), field_at(0.0), interval_s, K_W))
+    by_rate = np.array(rate_damping_dipole(field_at(0.5 * interval_s), tuple(omega), K_W))
     assert np.linalg.norm(by_difference - by_rate) < 1e-5 * np.linalg.norm(by_rate)
 
 

@@ -44,23 +44,23 @@ def damped(bench):
     return fly
 
 
-def in_orbital_rates(orbit, flown):
-    return np.linalg.norm(flown.omega_body, axis=1) / orbit.rate_radps
+def in_orbital_rates(orbit, run):
+    return np.linalg.norm(run.omega_body, axis=1) / orbit.rate_radps
 
 
 def test_bdot_stops_just_under_twice_the_orbital_rate(damped):
     """On a polar orbit the field itself turns at 2 w0 on the mean, and the body with it."""
-    orbit, flown = damped(bdot, 90.0, orbits=4)
-    rate = in_orbital_rates(orbit, flown)[-2 * len(flown.t_s) // 4 :]
+    orbit, run = damped(bdot, 90.0, orbits=4)
+    rate = in_orbital_rates(orbit, run)[-2 * len(run.t_s) // 4 :]
     assert 1.8 < rate.mean() < 2.0
     assert rate.min() > 1.2
 
 
 def test_damping_by_the_rate_does_not_stop_there(damped):
-    orbit, flown = damped(absolute_damping, 90.0, orbits=2.5)
-    rate = in_orbital_rates(orbit, flown)
+    orbit, run = damped(absolute_damping, 90.0, orbits=2.5)
+    rate = in_orbital_rates(orbit, run)
     assert rate[-1] < 0.05
-    assert np.all(np.diff(flown.energy_j) <= 0.0)
+    assert np.all(np.diff(run.energy_j) <= 0.0)
 
 
 def test_its_decay_is_exponential_and_slower_where_the_field_turns_less(bench):
@@ -68,7 +68,7 @@ def test_its_decay_is_exponential_and_slower_where_the_field_turns_less(bench):
     lost = {}
     for inclination_deg in (30.0, 90.0):
         orbit = bench.Orbit(inclination_deg=inclination_deg)
-        flown = bench.fly(
+        run = bench.fly(
             absolute_damping,
             bench.setpoint(k_w=1e6),
             orbit=orbit,
@@ -77,7 +77,7 @@ def test_its_decay_is_exponential_and_slower_where_the_field_turns_less(bench):
             seconds=5.01 * orbit.period_s,
             step_s=orbit.period_s / 600,
         )
-        by_orbit = np.log(in_orbital_rates(orbit, flown))[::600]
+        by_orbit = np.log(in_orbital_rates(orbit, run))[::600]
         fourth, fifth = -np.diff(by_orbit)[3:]
         assert fifth == pytest.approx(fourth, rel=0.01)
         lost[inclination_deg] = fifth
@@ -87,8 +87,8 @@ def test_its_decay_is_exponential_and_slower_where_the_field_turns_less(bench):
 def test_damping_of_the_relative_rate_takes_the_jacobi_integral_down(bench):
     """Under gravity gradient: 1/2 Omega J Omega + 3/2 w0^2 e1 J e1 - 1/2 w0^2 e3 J e3."""
     orbit, body = bench.Orbit(), bench.Body()
-    flown = bench.fly(rate_damping, bench.setpoint(), omega_body=(0.004, -0.003, 0.002), seconds=9000.0)
-    e1, e3, rate = flown.c_body_from_orbit[:, :, 0], flown.c_body_from_orbit[:, :, 2], flown.relative_body
+    run = bench.fly(rate_damping, bench.setpoint(), omega_body=(0.004, -0.003, 0.002), seconds=9000.0)
+    e1, e3, rate = run.c_body_from_orbit[:, :, 0], run.c_body_from_orbit[:, :, 2], run.relative_body
     half = [0.5 * np.einsum("ti,ij,tj->t", v, body.inertia, v) for v in (rate, e1, e3)]
     jacobi = half[0] + orbit.rate_radps**2 * (3.0 * half[1] - half[2])
     assert np.all(np.diff(jacobi) <= 1e-13)
@@ -100,7 +100,7 @@ class TestSwitchedGain:
         gains = {"bdot_switched": SwitchedGains(below_radps=0.01, factor=5.0)}
         _, fixed = damped(bdot, 98.6, orbits=2.5, k_w=6e5, most_am2=2.0)
         orbit, switched = damped(bdot_switched, 98.6, orbits=2.5, k_w=6e5, most_am2=2.0, gains=gains)
-        slow = [in_orbital_rates(orbit, flown) < 4.0 for flown in (fixed, switched)]
+        slow = [in_orbital_rates(orbit, run) < 4.0 for run in (fixed, switched)]
         assert slow[1].sum() > 2 * slow[0].sum() > 0
         fast = np.linalg.norm(fixed.omega_body, axis=1) > 0.03
         np.testing.assert_array_equal(fixed.m_body[fast], switched.m_body[fast])

@@ -48,7 +48,7 @@ def test_pitch_is_the_turn_about_axis_3(angle_rad):
 
 
 @pytest.fixture(scope="module")
-def flown(bench, turned):
+def run(bench, turned):
     orbit, c0 = bench.Orbit(), turned((1, 1, 1), 20.0)
     return bench.fly(
         dual_spin,
@@ -64,21 +64,21 @@ def flown(bench, turned):
 
 
 class TestFlights:
-    def test_the_wheel_comes_to_the_orbit_normal(self, flown, bench):
-        tilt_deg = flown.axis_to_deg(2, bench.Orbit().c_orbit_from_eci(0.0)[2])
+    def test_the_wheel_comes_to_the_orbit_normal(self, run, bench):
+        tilt_deg = run.axis_to_deg(2, bench.Orbit().c_orbit_from_eci(0.0)[2])
         assert tilt_deg[0] > 15.0
         assert tilt_deg[-1] < 1.2
 
-    def test_the_body_turns_to_its_pitch_in_the_orbit_plane(self, flown):
+    def test_the_body_turns_to_its_pitch_in_the_orbit_plane(self, run):
         """The gravity gradient holds it back by a fraction of a degree."""
-        pitch_deg = np.degrees([pitch(c) for c in flown.c_body_from_orbit[-1000:]])
+        pitch_deg = np.degrees([pitch(c) for c in run.c_body_from_orbit[-1000:]])
         np.testing.assert_allclose(pitch_deg, np.degrees(0.5), atol=0.5)
 
 
 @pytest.mark.parametrize("wheel_nms", [0.0, -0.05])
 def test_no_dipole_without_a_wheel_along_the_orbit_normal(bench, turned, wheel_nms):
     body = bench.Body(wheel=(0.0, 0.0, wheel_nms))
-    flown = bench.fly(
+    run = bench.fly(
         dual_spin,
         bench.setpoint(k_w=1e7, k_a=4000.0),
         gains={"dual_spin": DualSpinGains()},
@@ -86,4 +86,4 @@ def test_no_dipole_without_a_wheel_along_the_orbit_normal(bench, turned, wheel_n
         c_body_from_orbit=turned((1, 1, 1), 20.0),
         seconds=20.0,
     )
-    assert not flown.m_body.any()
+    assert not run.m_body.any()

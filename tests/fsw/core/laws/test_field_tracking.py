@@ -78,8 +78,8 @@ def test_to_first_order_it_is_the_pd_law_less_the_turning_of_the_field(bench, tu
 class TestFlights:
     def test_with_a_wheel_along_the_normal_it_comes_to_nominal(self, from_nominal, bench):
         body = bench.Body(inertia=np.diag([1.9, 1.95, 2.0]), wheel=(0.0, 0.0, 0.05))
-        flown = from_nominal(field_tracking, (1, 1, 1), 20.0, 4.0, body, k_w=1e7, k_a=2000.0, known=False)
-        assert flown.angle_deg[-1] < 0.5
+        run = from_nominal(field_tracking, (1, 1, 1), 20.0, 4.0, body, k_w=1e7, k_a=2000.0, known=False)
+        assert run.angle_deg[-1] < 0.5
 
     def test_with_gains_found_for_pd_and_no_wheel_it_does_not(self, from_nominal, bench):
         """Why the hand-over has gains of its own; the PD law converges from there."""
@@ -102,7 +102,7 @@ class TestFlights:
         self, from_nominal, bench, axis, angle_deg, relative
     ):
         hand_over_s = 3.5 * bench.Orbit().period_s
-        flown = from_nominal(
+        run = from_nominal(
             tracking_before_pd,
             axis,
             angle_deg,
@@ -113,9 +113,9 @@ class TestFlights:
             relative=relative,
             switch=(hand_over_s, pd_after_tracking),
         )
-        at_hand_over = flown.angle_deg[int(hand_over_s / 8.0)]
+        at_hand_over = run.angle_deg[int(hand_over_s / 8.0)]
         assert at_hand_over < 20.0
-        assert flown.angle_deg[-200:].max() < 0.1
+        assert run.angle_deg[-200:].max() < 0.1
 
 
 class TestMemory:

@@ -10,7 +10,7 @@ CONTINUOUS = {"driver": "continuous", "max_dipole_am2": 5.0, "on_fraction": 0.8}
 
 
 @pytest.fixture(scope="module")
-def flown(make_world):
+def run(make_world):
     """A world some ticks into ACQUIRE, and the dipoles asked for there."""
 
     def fly(name, ticks=10):
@@ -30,13 +30,13 @@ def flown(make_world):
 
 
 @pytest.mark.parametrize("name", REVIEW)
-def test_each_law_drives_the_coils(flown, name):
-    world, dipoles = flown(name)
+def test_each_law_drives_the_coils(run, name):
+    world, dipoles = run(name)
     assert world.state.modes.mode is Mode.ACQUIRE
     assert any((message.m_x, message.m_y, message.m_z) != (0.0, 0.0, 0.0) for message in dipoles)
 
 
 @pytest.mark.parametrize("name", ["field_tracking", "sun_pointing"])
-def test_a_law_that_remembers_when_knows_the_tick(flown, name):
-    world, _ = flown(name)
+def test_a_law_that_remembers_when_knows_the_tick(run, name):
+    world, _ = run(name)
     assert world.state.memory[0] == world.state.tick

@@ -97,7 +97,7 @@ def test_on_a_tilted_field_with_a_constant_torque_the_plan_points_better(bench, 
     orbit = Real()
 
     def rms_deg(law):
-        flown = bench.fly(
+        run = bench.fly(
             law,
             bench.setpoint(),
             orbit=orbit,
@@ -109,7 +109,7 @@ def test_on_a_tilted_field_with_a_constant_torque_the_plan_points_better(bench, 
             look=lambda inputs: inputs._replace(torque_body_nm=TORQUE, ephemeris=model),
             settings=settings,
         )
-        return float(np.sqrt(np.mean(flown.angle_deg[-len(flown.t_s) // 2 :] ** 2)))
+        return float(np.sqrt(np.mean(run.angle_deg[-len(run.t_s) // 2 :] ** 2)))
 
     by_lqr, by_mpc = rms_deg(lqr), rms_deg(mpc)
     assert by_mpc < 2.2

@@ -95,9 +95,9 @@ def test_the_sign_of_a_quaternion_means_nothing(inputs, settings, bench):
 
 def test_without_a_rate_the_attitude_converges(flight):
     """The property claimed by the source; the law sees no number in place of the rate."""
-    flown = flight(output_feedback, blind=True)
-    assert flown.angle_deg[0] == pytest.approx(20.0)
-    assert flown.angle_deg[-600:].max() < 0.3
+    run = flight(output_feedback, blind=True)
+    assert run.angle_deg[0] == pytest.approx(20.0)
+    assert run.angle_deg[-600:].max() < 0.3
 
 
 def test_without_damping_it_would_not(flight):

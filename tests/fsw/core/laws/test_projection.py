@@ -133,7 +133,7 @@ def test_the_reference_torque_is_the_one_whose_projection_is_pd(bench):
 def axes_deg(bench, turned):
     """RMS about each axis over the last two of eight orbits, in a constant torque, by weights."""
 
-    def flown(own):
+    def run(own):
         orbit, c = bench.Orbit(), turned((1, 2, 3), 20.0)
         flight = bench.fly(
             weighted,
@@ -150,7 +150,7 @@ def axes_deg(bench, turned):
         parts = [c[:, 1, 2] - c[:, 2, 1], c[:, 2, 0] - c[:, 0, 2], c[:, 0, 1] - c[:, 1, 0]]
         return np.degrees(0.5 * np.sqrt(np.mean(np.square(parts), axis=1)))
 
-    return flown
+    return run
 
 
 def test_a_weight_on_the_axis_of_small_moment_steadies_it_at_the_others_cost(axes_deg):

@@ -95,14 +95,14 @@ def test_the_cost_told_is_the_cost_flown(solved):
     given, field, gains, costs = solved
     x, d = np.array([2e-4, -1e-4, 3e-4, 0.1, -0.2, 0.15]), np.array([1e-7, -2e-7, 3e-7])
 
-    def told(ahead, state):
+    def reports(ahead, state):
         return state @ ahead[:, :6] @ state + 2.0 * state @ ahead[:, 6:] @ d
 
     def whole(start):
-        flown, end = rolled(given, field, gains, start, d)
-        return flown + told(costs[0], end)
+        run, end = rolled(given, field, gains, start, d)
+        return run + reports(costs[0], end)
 
-    assert whole(x) - whole(0.0 * x) == pytest.approx(told(costs[0], x), rel=1e-9)
+    assert whole(x) - whole(0.0 * x) == pytest.approx(reports(costs[0], x), rel=1e-9)
 
 
 @pytest.mark.parametrize("axis", [0, 1, 2])
@@ -112,8 +112,8 @@ def test_any_other_first_dipole_costs_more(solved, axis, sign):
     x, d = np.array([2e-4, -1e-4, 3e-4, 0.1, -0.2, 0.15]), np.array([1e-7, -2e-7, 3e-7])
 
     def whole(change):
-        flown, end = rolled(given, field, gains, x, d, change)
-        return flown + end @ costs[0][:, :6] @ end + 2.0 * end @ costs[0][:, 6:] @ d
+        run, end = rolled(given, field, gains, x, d, change)
+        return run + end @ costs[0][:, :6] @ end + 2.0 * end @ costs[0][:, 6:] @ d
 
     assert whole(sign * 0.01 * np.eye(3)[axis]) > whole(np.zeros(3))
 

@@ -61,16 +61,16 @@ def asked(bench):
     return ask
 
 
-def rms_deg(flown, orbits):
+def rms_deg(run, orbits):
     """Over the last orbit."""
-    return float(np.sqrt(np.mean(flown.angle_deg[-int(len(flown.t_s) / orbits) :] ** 2)))
+    return float(np.sqrt(np.mean(run.angle_deg[-int(len(run.t_s) / orbits) :] ** 2)))
 
 
-def surfaces(flown, rate_radps):
+def surfaces(run, rate_radps):
     """J Omega + K q along a flight, in w0 J, small angles."""
-    c = flown.c_body_from_orbit
+    c = run.c_body_from_orbit
     twice = np.stack([c[:, 1, 2] - c[:, 2, 1], c[:, 2, 0] - c[:, 0, 2], c[:, 0, 1] - c[:, 1, 0]], axis=1)
-    momentum = flown.relative_body @ INERTIA
+    momentum = run.relative_body @ INERTIA
     return np.linalg.norm(momentum / (rate_radps * MOMENT) + SlidingGains().slope * 0.25 * twice, axis=1)
 
 
@@ -101,13 +101,13 @@ def test_the_torque_asked_for_is_parallel_to_the_surface(bench, inputs, asked):
 
 
 def test_the_surface_is_reached_and_the_attitude_follows(bench, flight):
-    flown = flight("sliding")
+    run = flight("sliding")
     orbit = bench.Orbit()
-    off = surfaces(flown, orbit.rate_radps)
+    off = surfaces(run, orbit.rate_radps)
     second = int(2.0 * orbit.period_s / 10.0)
     assert off[second:].max() < 0.02 * off[:60].max()
-    assert flown.angle_deg[second:].max() < 1.0
-    assert rms_deg(flown, 5.0) < 0.01
+    assert run.angle_deg[second:].max() < 1.0
+    assert rms_deg(run, 5.0) < 0.01
 
 
 def test_on_the_mean_a_constant_torque_is_answered_by_the_integral(flight):

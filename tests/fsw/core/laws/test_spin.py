@@ -88,24 +88,24 @@ class TestTorques:
 
 class TestFlights:
     def test_nutation_is_damped_and_the_spin_kept(self, spinning):
-        flown = spinning(nutation, "nutation", (0.1, -0.03, 0.025), orbits=1.5)
-        across = np.linalg.norm(flown.omega_body[:, 1:], axis=1)
+        run = spinning(nutation, "nutation", (0.1, -0.03, 0.025), orbits=1.5)
+        across = np.linalg.norm(run.omega_body[:, 1:], axis=1)
         assert across[-1] < 0.01 * across[0]
-        np.testing.assert_allclose(flown.omega_body[:, 0], 0.1, rtol=1e-6)
-        by_minute = flown.energy_j[across > 0.004][::20]
+        np.testing.assert_allclose(run.omega_body[:, 0], 0.1, rtol=1e-6)
+        by_minute = run.energy_j[across > 0.004][::20]
         assert np.all(np.diff(by_minute) < 0.0)
 
     def test_spin_up_reaches_its_rate_and_stays(self, spinning):
-        flown = spinning(spin_up, "spin_up", (0.001, -0.003, 0.005), orbits=1.5, spin_radps=0.1)
-        assert flown.omega_body[-1, 0] == pytest.approx(0.1, rel=2e-3)
-        assert np.linalg.norm(flown.omega_body[-1, 1:]) < 2e-4
-        assert flown.omega_body[:, 0].max() < 0.1001
+        run = spinning(spin_up, "spin_up", (0.001, -0.003, 0.005), orbits=1.5, spin_radps=0.1)
+        assert run.omega_body[-1, 0] == pytest.approx(0.1, rel=2e-3)
+        assert np.linalg.norm(run.omega_body[-1, 1:]) < 2e-4
+        assert run.omega_body[:, 0].max() < 0.1001
 
     def test_y_thomson_spins_about_the_orbit_normal(self, spinning, bench):
         normal = bench.Orbit().c_orbit_from_eci(0.0)[2]
-        flown = spinning(y_thomson, "y_thomson", (0.01, -0.03, 0.025), orbits=4, spin_radps=0.02, step_s=5.0)
-        assert flown.omega_body[-1, 0] == pytest.approx(0.02, rel=2e-3)
-        tilt_deg = flown.axis_to_deg(0, normal)
+        run = spinning(y_thomson, "y_thomson", (0.01, -0.03, 0.025), orbits=4, spin_radps=0.02, step_s=5.0)
+        assert run.omega_body[-1, 0] == pytest.approx(0.02, rel=2e-3)
+        tilt_deg = run.axis_to_deg(0, normal)
         assert tilt_deg[0] > 60.0
         assert tilt_deg[-1] < 15.0
         assert tilt_deg[-1] < 0.6 * tilt_deg[len(tilt_deg) // 2]

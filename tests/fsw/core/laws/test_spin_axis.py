@@ -85,24 +85,24 @@ class TestTorques:
 
 class TestFlights:
     def test_reorientation_turns_the_momentum_and_keeps_its_size(self, spinning):
-        flown = spinning(reorientation, (0.05, 0.0, 0.0), orbits=2, most_am2=5.0)
-        angle_deg = flown.angle_to_deg(TARGET)
+        run = spinning(reorientation, (0.05, 0.0, 0.0), orbits=2, most_am2=5.0)
+        angle_deg = run.angle_to_deg(TARGET)
         assert angle_deg[0] > 60.0
         assert angle_deg[-1] < 10.0
         assert np.all(np.diff(angle_deg) < 0.02)
-        np.testing.assert_allclose(flown.omega_body[:, 0], 0.05, rtol=1e-6)
+        np.testing.assert_allclose(run.omega_body[:, 0], 0.05, rtol=1e-6)
 
     def test_three_terms_damp_spin_up_and_turn_at_once(self, spinning):
-        flown = spinning(three_term, (0.02, 0.04, -0.05), orbits=2, most_am2=5.0)
-        assert flown.angle_to_deg(TARGET)[-1] < 0.3
-        assert flown.axis_to_deg(0, TARGET)[-1] < 0.3
-        assert flown.omega_body[-1, 0] == pytest.approx(0.1, rel=3e-3)
-        assert np.linalg.norm(flown.omega_body[-1, 1:]) < 5e-4
+        run = spinning(three_term, (0.02, 0.04, -0.05), orbits=2, most_am2=5.0)
+        assert run.angle_to_deg(TARGET)[-1] < 0.3
+        assert run.axis_to_deg(0, TARGET)[-1] < 0.3
+        assert run.omega_body[-1, 0] == pytest.approx(0.1, rel=3e-3)
+        assert np.linalg.norm(run.omega_body[-1, 1:]) < 5e-4
 
     def test_three_terms_about_the_third_axis_of_a_body_that_is_not_symmetric(self, bench):
         """With a wheel along that axis and gravity gradient."""
         orbit, body = bench.Orbit(), bench.Body(np.diag([1.02, 1.85, 1.95]), (0.0, 0.0, 0.03), 5.0)
-        flown = bench.fly(
+        run = bench.fly(
             three_term,
             bench.setpoint(k_w=3e6, spin_radps=0.06),
             gains={"three_term": ThreeTermGains(3.0, *TARGET)},
@@ -111,24 +111,24 @@ class TestFlights:
             omega_body=(0.02, 0.01, -0.01),
             seconds=1.5 * orbit.period_s,
         )
-        assert flown.angle_to_deg(TARGET)[-1] < 1.0
-        assert flown.axis_to_deg(2, TARGET)[-1] < 1.0
-        assert flown.omega_body[-1] == pytest.approx((0.0, 0.0, 0.06), abs=6e-4)
+        assert run.angle_to_deg(TARGET)[-1] < 1.0
+        assert run.axis_to_deg(2, TARGET)[-1] < 1.0
+        assert run.omega_body[-1] == pytest.approx((0.0, 0.0, 0.06), abs=6e-4)
 
     def test_the_relay_does_the_same_with_coils_fully_on(self, spinning):
-        flown = spinning(spin_relay, (0.02, 0.04, -0.05), orbits=2.5, most_am2=1.0)
-        assert set(np.abs(flown.m_body).ravel()) == {1.0}
-        assert flown.angle_to_deg(TARGET)[-1] < 3.0
-        assert flown.axis_to_deg(0, TARGET)[-1] < 3.0
-        assert flown.omega_body[-1, 0] == pytest.approx(0.1, rel=0.03)
-        assert np.linalg.norm(flown.omega_body[-1, 1:]) < 2e-3
+        run = spinning(spin_relay, (0.02, 0.04, -0.05), orbits=2.5, most_am2=1.0)
+        assert set(np.abs(run.m_body).ravel()) == {1.0}
+        assert run.angle_to_deg(TARGET)[-1] < 3.0
+        assert run.axis_to_deg(0, TARGET)[-1] < 3.0
+        assert run.omega_body[-1, 0] == pytest.approx(0.1, rel=0.03)
+        assert np.linalg.norm(run.omega_body[-1, 1:]) < 2e-3
 
     def test_the_two_errors_of_the_relay_only_shrink(self, spinning):
         """(|L1|^2 + |L2|^2) / 2 for a body symmetric about its spin axis, before the relay chatters."""
-        flown = spinning(spin_relay, (0.02, 0.04, -0.05), orbits=0.5, most_am2=1.0)
+        run = spinning(spin_relay, (0.02, 0.04, -0.05), orbits=0.5, most_am2=1.0)
         target, size = np.array(TARGET) / np.linalg.norm(TARGET), 0.1 * INERTIA[0, 0]
-        in_space = size * target - flown.momentum_eci
-        in_body = size * np.eye(3)[0] - flown.omega_body @ INERTIA
+        in_space = size * target - run.momentum_eci
+        in_body = size * np.eye(3)[0] - run.omega_body @ INERTIA
         value = np.sum(in_space**2, axis=1) + np.sum(in_body**2, axis=1)
         assert np.all(np.diff(value) < 1e-4 * value[0])
         assert value[-1] < 0.5 * value[0]

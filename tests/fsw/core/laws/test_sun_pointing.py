@@ -29,7 +29,7 @@ def test_across_the_sun_the_torque_is_a_drag(b, sun, omega):
 
 
 @pytest.fixture(scope="module")
-def flown(bench):
+def run(bench):
     def fly(omega, known=True):
         orbit = bench.Orbit()
         return bench.fly(
@@ -49,16 +49,16 @@ def flown(bench):
 
 class TestFlights:
     @pytest.mark.parametrize("known", [True, False])
-    def test_momentum_and_axis_of_most_inertia_come_to_the_sun(self, flown, known):
+    def test_momentum_and_axis_of_most_inertia_come_to_the_sun(self, run, known):
         """With the rate estimated, or by the Sun sensor alone."""
-        flight = flown((0.01, 0.03, 0.04), known)
+        flight = run((0.01, 0.03, 0.04), known)
         assert flight.axis_to_deg(2, SUN)[0] > 40.0
         assert flight.angle_to_deg(SUN)[-1] < 0.1
         assert flight.axis_to_deg(2, SUN)[-1] < 0.5
         assert np.linalg.norm(flight.omega_body[-1]) > 0.02
 
-    def test_a_momentum_away_from_the_sun_goes_to_the_far_end_of_its_line(self, flown):
-        flight = flown((0.02, -0.01, -0.05))
+    def test_a_momentum_away_from_the_sun_goes_to_the_far_end_of_its_line(self, run):
+        flight = run((0.02, -0.01, -0.05))
         assert flight.angle_to_deg(SUN)[0] > 120.0
         assert flight.angle_to_deg(SUN)[-1] > 170.0
 

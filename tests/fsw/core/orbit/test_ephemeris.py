@@ -26,7 +26,7 @@ def make_model(itamsat, itamsat_epoch_unix_s):
     return make
 
 
-def flown(model, ticks):
+def run(model, ticks):
     """Each tick with its window, stepping from the first."""
     window = None
     for tick in ticks:
@@ -40,7 +40,7 @@ def flown(model, ticks):
 def test_stepping_and_jumping_reach_the_same_window(make_model, tick_hz):
     model = make_model(tick_hz)
     last = 5 * model.node_ticks + 3
-    for tick, window in flown(model, range(last)):
+    for tick, window in run(model, range(last)):
         if tick % 7 == 0 or tick % model.node_ticks == 0:
             assert window == advance(None, tick, model)
 
@@ -56,7 +56,7 @@ def test_a_window_reached_backwards_or_over_a_gap_is_the_same(make_model, tick_h
 
 def test_the_second_and_third_node_stand_around_the_tick(make_model, tick_hz):
     model = make_model(tick_hz)
-    for tick, window in flown(model, range(3 * model.node_ticks)):
+    for tick, window in run(model, range(3 * model.node_ticks)):
         second = (window.first_node + 1) * model.node_ticks
         assert second <= tick < second + model.node_ticks
 
@@ -72,7 +72,7 @@ def test_within_a_node_interval_nothing_is_computed(make_model, tick_hz):
 
 def test_one_new_node_a_step_the_other_three_are_kept(make_model, tick_hz):
     model = make_model(tick_hz)
-    windows = [w for _, w in flown(model, range(0, 10 * model.node_ticks, model.node_ticks))]
+    windows = [w for _, w in run(model, range(0, 10 * model.node_ticks, model.node_ticks))]
     for old, new in pairwise(windows):
         assert new.first_node == old.first_node + 1
         assert all(kept is was for kept, was in zip(new.nodes, old.nodes[1:], strict=False))
@@ -161,7 +161,7 @@ def test_the_cubic_holds_the_field_to_a_tenth_of_a_nanotesla(
     make_model, itamsat, itamsat_epoch_unix_s, node_s, field_error_t
 ):
     model = make_model(node_s=node_s)
-    for tick, window in flown(model, range(0, 4 * ORBIT_S, 7)):
+    for tick, window in run(model, range(0, 4 * ORBIT_S, 7)):
         unix_s = itamsat_epoch_unix_s + tick
         reference = reference_at(window, tick, model)
         r_m, v_mps = state_eci(itamsat, unix_s)
@@ -176,7 +176,7 @@ def test_a_lower_orbit_is_held_with_the_default_nodes():
     epoch_s = 1_760_000_000
     orbit = circular_orbit(300.0, 97.6, 20.0, 10.0, epoch_s)
     model = ephemeris_model(orbit, epoch_s, tick_hz=1)
-    for tick, window in flown(model, range(0, 4 * 5400, 7)):
+    for tick, window in run(model, range(0, 4 * 5400, 7)):
         r_m, _ = state_eci(orbit, epoch_s + tick)
         b_t = field_eci_t(model.field, r_m, epoch_s + tick)
         assert dist(reference_at(window, tick, model).b_eci_t, b_t) < 0.1e-9
@@ -193,7 +193,7 @@ def test_at_a_node_the_reference_is_the_node(make_model, tick_hz):
 
 def test_orbit_axes_are_radius_ahead_and_normal(make_model, itamsat, itamsat_epoch_unix_s):
     model = make_model()
-    for tick, window in flown(model, range(0, ORBIT_S, 13)):
+    for tick, window in run(model, range(0, ORBIT_S, 13)):
         q = reference_at(window, tick, model).q_orbit_from_eci
         r_m, v_mps = state_eci(itamsat, itamsat_epoch_unix_s + tick)
         assert hypot(*q) == pytest.approx(1.0, abs=1e-15)
@@ -220,7 +220,7 @@ def test_the_direct_dipole_of_a_circular_orbit_keeps_its_normal_component():
     model = ephemeris_model(orbit, epoch_s, 1, field=FieldKind.DIRECT_DIPOLE)
     normal_t = [
         rotate(reference.q_orbit_from_eci, reference.b_eci_t)[2]
-        for tick, window in flown(model, range(0, 5740, 11))
+        for tick, window in run(model, range(0, 5740, 11))
         for reference in [reference_at(window, tick, model)]
     ]
     assert min(normal_t) == pytest.approx(7.812e15 / 6928137.0**3 * -0.13225639, abs=1e-12)
@@ -230,7 +230,7 @@ def test_the_direct_dipole_of_a_circular_orbit_keeps_its_normal_component():
 def test_the_eclipse_comes_and_goes_as_the_orbit_says(make_model, itamsat, itamsat_epoch_unix_s):
     model = make_model()
     lights = []
-    for tick, window in flown(model, range(ORBIT_S)):
+    for tick, window in run(model, range(ORBIT_S)):
         reference = reference_at(window, tick, model)
         unix_s = itamsat_epoch_unix_s + tick
         assert reference.lit == lit(state_eci(itamsat, unix_s)[0], sun_eci(unix_s))

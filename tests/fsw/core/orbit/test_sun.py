@@ -25,14 +25,14 @@ def test_the_sun_vector_is_a_unit_vector(reference_rows):
 
 def test_the_shadow_begins_and_ends_at_half_the_solar_disc(reference_rows, vector_of):
     rows = reference_rows("eclipse.csv")
-    seen = {True: 0, False: 0}
+    counts = {True: 0, False: 0}
     for row in rows:
         r_m = scale(1000.0, vector_of(row, "sat_", "_km"))
         is_lit = lit(r_m, unit(vector_of(row, "sun_", "_km")))
         assert is_lit == (row["lit_cylinder"] == "1")
         assert is_lit == (float(row["frac_exact"]) >= 0.5)
-        seen[is_lit] += 1
-    assert min(seen.values()) > 10
+        counts[is_lit] += 1
+    assert min(counts.values()) > 10
 
 
 @pytest.mark.parametrize("along_m", [7e6, 1e3, 0.0])
