@@ -3,7 +3,7 @@
 import errno
 
 DISK_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-"""Of an OSError: nothing is wrong but that there is no room."""
+"""``errno`` of an OSError that only means that there is no room."""
 
 
 class HarnessError(Exception):

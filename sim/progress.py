@@ -12,7 +12,7 @@ Watch = Callable[[int], None]
 
 @contextmanager
 def progress(what: str, total: int) -> Iterator[Watch]:
-    """Gives a function to call with how far it is."""
+    """Yield a function to be called with the number of units done, of ``total``."""
     if not sys.stderr.isatty():
         yield lambda done: None
         return

@@ -1,4 +1,4 @@
-"""SIGTERM and SIGHUP as an exception, so that whoever is asked to end closes its files and ends its nodes."""
+"""SIGTERM and SIGHUP as an exception, so that a process closes its files and ends its nodes first."""
 
 import signal
 from collections.abc import Iterator
@@ -10,10 +10,10 @@ _NAMES = ("SIGTERM", "SIGHUP")  # not everywhere are both
 
 
 class EndedBySignal(BaseException):
-    """Somebody asks this process to end.
+    """A signal asks this process to end.
 
     Attributes:
-        exit_code: what it is to end with, as a shell tells it.
+        exit_code: of the process: 128 plus the number of the signal.
     """
 
     def __init__(self, signum: int) -> None:
@@ -22,8 +22,8 @@ class EndedBySignal(BaseException):
 
 
 @contextmanager
-def endings_raised() -> Iterator[None]:
-    """Raise ``EndedBySignal`` at the first of these signals, and be deaf to more of them while it is handled.
+def raise_on_signals() -> Iterator[None]:
+    """Raise ``EndedBySignal`` at the first of these signals, and ignore more of them while it is handled.
 
     A signal that was ignored before (``nohup``) stays so.
     """

@@ -13,7 +13,7 @@ from sim.audit.limits import is_shared, limits_in
 from sim.errors import HarnessError
 from sim.record.binding import compare
 from sim.record.candump import LogEntry, read_log
-from sim.record.log_index import Standing, vouch
+from sim.record.log_index import LogStanding, check_against_index
 from sim.record.signature import PublicKey
 
 LOG_NAME = "bus.log"
@@ -57,8 +57,8 @@ def check(path: Path, backoff: str | None, key: PublicKey | None = None) -> Audi
     return replace(
         report,
         notes=(*report.notes, *(note for note in notes if note)),
-        complete=report.complete and voucher.standing is not Standing.OPEN,
-        genuine=voucher.standing is not Standing.BROKEN,
+        complete=report.complete and voucher.standing is not LogStanding.OPEN,
+        genuine=voucher.standing is not LogStanding.BROKEN,
         mismatches=tuple(binding.mismatches.values()),
     )
 

@@ -25,7 +25,7 @@ from sim.flight.answers import (
     waiting_frames,
 )
 from sim.plant.plant import Plant, TruthRow
-from sim.record.heard import heard_before_sync
+from sim.record.inbox_order import split_at_sync
 from sim.record.pace import LOCKSTEP, Pace
 from sim.scenario.telecommands import Uplink
 
@@ -118,8 +118,8 @@ def fly(
             silence.end(before + answers, tick)
         from_others = [frame for frame in answers if frame is not sent[-1]]
         overhear(tick, before, from_others, len(from_others) < len(answers))
-        heard, answers = heard_before_sync(known, answers, tick)
-        before += heard
+        received, answers = split_at_sync(known, answers, tick)
+        before += received
         for frame in before + answers:
             plant.receive(frame)
         log.write(timestamp_us, before + sent + answers)

@@ -19,7 +19,7 @@ from sim.flight.answers import CounterpartError, Patience
 from sim.flight.recorded import record
 from sim.plant.errors import PlantError
 from sim.record import run_dir
-from sim.signals import EndedBySignal, endings_raised
+from sim.signals import EndedBySignal, raise_on_signals
 
 
 @click.command()
@@ -32,7 +32,7 @@ def main(path: Path, bus: str, patience: tuple[float, float], parent: int) -> No
     _end_with(parent)
     boot_s, answer_s = patience
     try:
-        with endings_raised():
+        with raise_on_signals():
             link = open_bus(bus)
             record(path, run_dir.read_scenario(path), link, patience=Patience(boot_s, answer_s, answer_s))
     except CounterpartError as error:

@@ -1,1 +1,1 @@
-"""A run as it lies on disk: bus log, truth, estimates, run.json, and what binds them together."""
+"""The run directory: bus log, truth, estimates, run.json, and the digests that bind them together."""

@@ -1,7 +1,7 @@
-"""What binds the files of a run to each other: their SHA-256 in run.json, written as each is finished.
+"""The binding of a run's files: their SHA-256 digests in run.json, each written when the file is finished.
 
-That tells a file that was exchanged, edited or lost. It guards against mishap, not against somebody who
-rewrites run.json too: against that stands its signature (``sim.record.signature``).
+A digest detects a file that was exchanged, edited or lost. It protects against accidents, not against a
+forger who rewrites run.json too: for that there is its signature (``sim.record.signature``).
 """
 
 import hashlib
@@ -16,13 +16,13 @@ from sim.progress import Watch, progress
 from sim.record import run_dir
 from sim.record.run_dir import BUS_LOG, DIGESTS, RUN, SCENARIO, SCENARIO_DIGEST, SUMMARY, TRUTH
 from sim.record.run_record import RunRecord
-from sim.record.signature import PrivateKey, PublicKey, fault_of, sign
+from sim.record.signature import PrivateKey, PublicKey, sign, signature_fault
 
 FILES = (SCENARIO, BUS_LOG, TRUTH, SUMMARY)
-"""What is bound of a run once it is finished."""
+"""Files of a finished run whose digests are in run.json."""
 CHUNK = 1 << 20
 BAR_FROM = 400_000_000
-"""So many bytes take a second or two."""
+"""Size of a file from which on a progress bar is shown [bytes]: hashing it takes a second or two."""
 
 
 class BindingError(HarnessError):
@@ -32,11 +32,11 @@ class BindingError(HarnessError):
 
 
 class Binding(NamedTuple):
-    """What run.json says of the files beside it.
+    """Result of comparing the files of a run with run.json.
 
     Attributes:
-        mismatches: a sentence for each file that is not the run's own, by its name.
-        note: what is not bound, in a sentence; empty where there is nothing to tell.
+        mismatches: a sentence for each file that differs from its digest, by the name of the file.
+        note: the files without a digest, in a sentence; empty if there are none.
     """
 
     mismatches: dict[str, str]
@@ -49,13 +49,13 @@ class Binding(NamedTuple):
 
     @property
     def lines(self) -> list[str]:
-        """What a command prints of it."""
+        """The lines that a command prints."""
         notes = [f"note: {self.note}"] if self.note else []
         return [f"MISMATCH {sentence}" for sentence in self.mismatches.values()] + notes
 
     @contextmanager
     def beside_errors(self) -> Iterator[None]:
-        """An error in the block tells of the mismatches too: one of them may be its cause."""
+        """Add the mismatches to the message of an error in the block: one of them may be its cause."""
         try:
             yield
         except (HarnessError, TableError) as error:
@@ -64,13 +64,13 @@ class Binding(NamedTuple):
 
 
 def require_sources(folder: Path, key: PublicKey | None) -> Binding:
-    """What ``compare`` says, if all that a summary is made from is the run's own.
+    """Compare, and refuse a run of which a source of the summary differs from its digest.
 
     Raises:
-        BindingError: it is not, or not signed.
+        BindingError: one differs, or is not signed.
         HarnessError: run.json or a file that it binds cannot be read.
     """
-    run_dir.read_run(folder)  # here it must be one
+    run_dir.read_run(folder)  # raises where there is no run.json
     binding = compare(folder, key=key)
     faults = [sentence for name, sentence in binding.mismatches.items() if name != SUMMARY]
     if faults:
@@ -92,18 +92,18 @@ def compare(folder: Path, log: Path | None = None, key: PublicKey | None = None)
     if not (folder / RUN).is_file():
         return Binding({} if key is None else {RUN: f"{folder} has no {RUN}, so that nothing is signed"})
     run = run_dir.read_run(folder)
-    kept = digests(run)
-    paths = {name: folder / name for name in (*FILES, *kept)}
+    recorded = digests(run)
+    paths = {name: folder / name for name in (*FILES, *recorded)}
     if log is not None:
         paths[BUS_LOG] = log
     mismatches = {}
-    for name, digest in kept.items():
+    for name, digest in recorded.items():
         if sentence := _mismatch(paths[name], digest):
             mismatches[name] = sentence
-    unbound = [name for name in FILES if name not in kept and paths[name].is_file()]
+    unbound = [name for name in FILES if name not in recorded and paths[name].is_file()]
     if key is not None:
         mismatches |= {name: f"{name} is not signed: {RUN} has no digest of it" for name in unbound}
-        if sentence := fault_of(folder / RUN, key):
+        if sentence := signature_fault(folder / RUN, key):
             mismatches[RUN] = sentence
     return Binding(mismatches, _note(run, unbound))
 
@@ -114,17 +114,17 @@ def digests(run: RunRecord) -> dict[str, str]:
 
 
 def bind(folder: Path, *names: str) -> None:
-    """Add the digests of files that are finished; what is bound already stays bound as it is."""
-    kept = run_dir.read_run(folder)[DIGESTS]
-    added = {name: sha256_of(folder / name) for name in names if name not in kept}
-    run_dir.update(folder, **{DIGESTS: {**kept, **added}})
+    """Add the digests of finished files; a digest that is there already stays."""
+    recorded = run_dir.read_run(folder)[DIGESTS]
+    added = {name: sha256_of(folder / name) for name in names if name not in recorded}
+    run_dir.update(folder, **{DIGESTS: {**recorded, **added}})
 
 
 def release(folder: Path, name: str) -> None:
-    """Unbind a file that is about to be written anew: a kill in between leaves it without digest."""
-    kept = run_dir.read_run(folder)[DIGESTS]
-    if kept.pop(name, None) is not None:
-        run_dir.update(folder, **{DIGESTS: kept})
+    """Remove the digest of a file that is about to be rewritten: a kill in between leaves it without one."""
+    recorded = run_dir.read_run(folder)[DIGESTS]
+    if recorded.pop(name, None) is not None:
+        run_dir.update(folder, **{DIGESTS: recorded})
 
 
 def sign_run(folder: Path, key: PrivateKey) -> None:
@@ -135,8 +135,8 @@ def sign_run(folder: Path, key: PrivateKey) -> None:
         HarnessError: run.json or a file that it binds cannot be read.
     """
     faults = list(compare(folder).mismatches.values())
-    kept = digests(run_dir.read_run(folder))
-    if missing := [name for name in FILES if name not in kept]:
+    recorded = digests(run_dir.read_run(folder))
+    if missing := [name for name in FILES if name not in recorded]:
         faults.append(f"{RUN} has no digests of {', '.join(missing)}")
     if faults:
         raise BindingError(f"{folder} is not signed: {'; '.join(faults)}")
@@ -144,7 +144,7 @@ def sign_run(folder: Path, key: PrivateKey) -> None:
 
 
 def sha256_of(path: Path, watch: Watch = lambda size: None) -> str:
-    """The digest of a file in hex; ``watch`` is told how many bytes have been read.
+    """The digest of a file in hex; ``watch`` is called with the number of bytes read.
 
     Raises:
         HarnessError: it cannot be read.
@@ -161,7 +161,7 @@ def sha256_of(path: Path, watch: Watch = lambda size: None) -> str:
 
 
 def _mismatch(path: Path, digest: str) -> str:
-    """What is wrong with a file of the run; empty if nothing is."""
+    """How a file of the run differs from its digest, in a sentence; empty if it does not."""
     if not path.is_file():
         return f"{path.name} is missing, and {RUN} has its digest"
     size = path.stat().st_size

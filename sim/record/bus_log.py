@@ -1,4 +1,4 @@
-"""bus.log and its index as they are written, a whole tick at a time."""
+"""The writer of bus.log and its index."""
 
 import hashlib
 import os
@@ -16,7 +16,7 @@ class BusLog:
     """bus.log and its index, written a whole tick at a time: a kill leaves whole ticks.
 
     Raises:
-        FlightError: the disk takes no more. What was written is kept, up to its last whole tick.
+        FlightError: the disk is full. The file then ends with its last whole tick.
     """
 
     def __init__(self, path: Path, channel: str) -> None:
@@ -31,7 +31,7 @@ class BusLog:
             raise FlightError(f"{path}: cannot be written: {error.strerror}") from None
 
     def write(self, timestamp_us: int, frames: list[Frame]) -> None:
-        """Append frames that all bear one time."""
+        """Append frames that share one time stamp."""
         stamp = format_time(timestamp_us)
         channel = self._channel
         text = "".join([format_line(stamp, channel, frame) for frame in frames]).encode("ascii")
@@ -44,8 +44,7 @@ class BusLog:
             if rest:
                 os.ftruncate(self._descriptor, self._size)
             raise FlightError(
-                f"{self._path}: cannot be written at {stamp}: {error.strerror}; "
-                "what was flown until then is kept"
+                f"{self._path}: cannot be written at {stamp}: {error.strerror}; the log up to then is kept"
             ) from None
         self._size += len(text)
         self._sha256.update(text)

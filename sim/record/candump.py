@@ -11,11 +11,11 @@ from sim.errors import HarnessError
 
 
 class LogError(HarnessError):
-    """The file is no candump log, or is one that has been altered."""
+    """The file is not a candump log, or has been altered."""
 
 
 class LogTruncatedError(LogError):
-    """The log ends inside a line. Raised after every whole line has been handed out.
+    """The log ends inside a line. Raised after every whole line has been yielded.
 
     Attributes:
         line: number of the line that is cut.
@@ -42,7 +42,7 @@ def read_log(path: Path) -> Iterator[LogEntry]:
 
     Raises:
         LogTruncatedError: at the end, if the last line is cut; every whole line has been yielded by then.
-        LogError: the file cannot be read, its first line is no candump line, or a later one is not.
+        LogError: the file cannot be read, or one of its lines is not a candump line.
     """
     try:
         check_regular(path)
@@ -57,10 +57,10 @@ def _entries(path: Path, readline: Callable[[int], bytes]) -> Iterator[LogEntry]
     number = 0
     while text := readline(LONGEST):
         number += 1
-        logged = read(text)
-        if logged is None:
+        fields = read(text)
+        if fields is None:
             raise _refusal(path, number, text)
-        yield LogEntry(number, *logged)
+        yield LogEntry(number, *fields)
     if number == 0:
         raise LogError(f"{path}: not a candump log: the file is empty")
 
@@ -72,4 +72,4 @@ def _refusal(path: Path, number: int, text: bytes) -> LogError:
         return LogError(f"{path}: line {number} is a CAN FD frame: only classic CAN is read")
     if number == 1:
         return LogError(f"{path}: not a candump log: line 1 is not '(seconds) channel id#data'")
-    return LogError(f"{path}: line {number} is no candump line: the log has been altered")
+    return LogError(f"{path}: line {number} is not a candump line: the log has been altered")

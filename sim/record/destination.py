@@ -1,4 +1,4 @@
-"""Where results go: asked for before anything is computed, so that no work is lost for want of a place."""
+"""Checks that results can be written, made before anything is computed, so that no work is lost."""
 
 import os
 from collections.abc import Sequence
@@ -10,7 +10,7 @@ from sim.errors import HarnessError
 
 
 def check_folder(folder: Path, names: Sequence[str] = ()) -> None:
-    """Make a folder if it is not there, and be sure that these files can be written into it.
+    """Create a folder if it does not exist, and check that these files can be written into it.
 
     Raises:
         HarnessError: they cannot; the message says which, and why.
@@ -19,14 +19,14 @@ def check_folder(folder: Path, names: Sequence[str] = ()) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         with TemporaryFile(dir=folder):
             pass
-    except (OSError, ValueError) as error:  # of a NUL, ValueError
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the path
         raise HarnessError(f"{folder}: cannot be written ({_why(error)})") from None
     for name in names:
         _check_target(folder / name)
 
 
 def check_file(path: Path) -> None:
-    """Make the folder of a file if it is not there, and be sure that the file can be written.
+    """Create the folder of a file if it does not exist, and check that the file can be written.
 
     Raises:
         HarnessError: it cannot.
@@ -36,7 +36,7 @@ def check_file(path: Path) -> None:
 
 
 def _check_target(path: Path) -> None:
-    """Nothing is in the way of a file: a folder, a device, or a file that may not be changed."""
+    """Check that no folder, device or write-protected file has this path."""
     try:
         if os.path.lexists(path):
             check_regular(path)

@@ -1,4 +1,4 @@
-"""The controller's estimates at every tick, gathered while a log is replayed."""
+"""The estimates of the flight software at every tick, recorded during a replay."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Estimates:
-    """Histories by tick: NaN where nothing was known.
+    """Histories by tick: NaN where there was no estimate.
 
     ``covariance`` is that of attitude and rate error, (n, 6, 6), body axes; ``mode`` the mode's number.
     """
@@ -26,7 +26,7 @@ class Estimates:
 
 
 class EstimateRecorder:
-    """Takes flight states tick by tick."""
+    """Records flight states tick by tick."""
 
     def __init__(self, ticks: int) -> None:
         self._estimates = Estimates(
@@ -39,20 +39,20 @@ class EstimateRecorder:
         )
 
     def take(self, state: FlightState) -> None:
-        """Keep what the state says of its tick; ticks beyond the histories are passed over."""
+        """Store the estimate of the state's tick; ticks beyond the histories are ignored."""
         tick, into = state.tick, self._estimates
         if tick >= len(into.valid):
             return
         into.mode[tick] = state.modes.mode
         into.valid[tick] = state.attitude.valid
-        known = state.estimator.estimate
-        if known is None and not state.attitude.valid:
+        estimate = state.estimator.estimate
+        if estimate is None and not state.attitude.valid:
             return
         into.q_body_from_orbit[tick] = state.attitude.q_body_from_orbit
         into.omega_body_orbit_radps[tick] = state.attitude.omega_body_orbit_radps
-        if known is not None:
-            into.omega_body_radps[tick] = known.omega_body_radps
-            into.covariance[tick] = known.covariance[0:6, 0:6]
+        if estimate is not None:
+            into.omega_body_radps[tick] = estimate.omega_body_radps
+            into.covariance[tick] = estimate.covariance[0:6, 0:6]
 
     def estimates(self) -> Estimates:
         """The histories."""

@@ -1,18 +1,18 @@
-"""The index beside a bus log: what vouches that the log is whole and as it was flown.
+"""The index of a bus log, by which one can check that the log is whole and unaltered.
 
-``bus.log.index`` is written as the flight goes. Its first line names its version; then comes a line for each
-block of the log, a block being what ``BLOCK_WRITES`` writes (as a rule ticks) have added:
+``bus.log.index`` is written during the flight. Its first line has its version; then comes a line for each
+block of the log, a block being the text of ``BLOCK_WRITES`` writes (as a rule ticks):
 
     torquer-log-index 1 crc32
     <lines> <bytes> <sha256> crc32
     <lines> <bytes> <sha256> end crc32
 
 Lines and bytes count from the start of the log. The digest is SHA-256 over the digest before it (of the first
-block: nothing) and the block, so that every digest hangs on all that stands before it. ``end`` is on the last
-line of a flight that came to its end. Each line is sealed by a CRC-32 of its text: damage to the index is
-told from damage to the log.
+block: nothing) and the block, so that every digest depends on the whole log before it. ``end`` is on the last
+line of a completed flight. Each line has a CRC-32 of its text, which distinguishes damage to the index from
+damage to the log.
 
-A digest without a key guards against mishap and carelessness, not against somebody who forges both files.
+A digest without a key protects against accidents, not against a forger who rewrites both files.
 """
 
 import errno
@@ -35,29 +35,29 @@ _SEALED = re.compile(rb"(.{1,160}) ([0-9a-f]{8})\n")
 _BLOCK = re.compile(rb"(\d{1,12}) (\d{1,15}) ([0-9a-f]{64})( end)?")
 
 
-class Standing(Enum):
-    """What the index says of a log."""
+class LogStanding(Enum):
+    """What an index shows about its log."""
 
     VOUCHED = "vouched"
-    """Whole and as it was flown."""
+    """Whole and unaltered."""
     UNKNOWN = "unknown"
     """There is no index."""
     OPEN = "open"
-    """As it was flown, but the flight was cut short: nothing vouches for the end."""
+    """Unaltered, but the flight was cut short: the index does not cover the end."""
     BROKEN = "broken"
     """Cut, altered, or with an index that cannot be used."""
 
 
-class Voucher(NamedTuple):
-    """What the index says of a log, and in a sentence; empty where there is nothing to tell."""
+class IndexCheck(NamedTuple):
+    """What the index shows about a log, and why, in a sentence; empty if it is whole and unaltered."""
 
-    standing: Standing
+    standing: LogStanding
     sentence: str
 
     @property
     def holds(self) -> bool:
-        """Whether nothing speaks against a log that claims to be complete."""
-        return self.standing in (Standing.VOUCHED, Standing.UNKNOWN)
+        """Whether the log may be complete: the index does not contradict that."""
+        return self.standing in (LogStanding.VOUCHED, LogStanding.UNKNOWN)
 
 
 class Block(NamedTuple):
@@ -75,8 +75,8 @@ _MOST_INDEX_BYTES = 64_000_000
 _FIRST = Block(0, 0, b"", end=False)
 
 
-def index_of(log: Path) -> Path:
-    """Where the index of a log is."""
+def index_path(log: Path) -> Path:
+    """The path of the index of a log."""
     return log.with_name(log.name + SUFFIX)
 
 
@@ -88,13 +88,13 @@ class LogIndex:
     """
 
     def __init__(self, log: Path) -> None:
-        self._descriptor = os.open(index_of(log), os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
+        self._descriptor = os.open(index_path(log), os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
         self._lines = self._size = self._writes = self._own_size = 0
         self._hash = hashlib.sha256()
         self._put(f"{_TITLE} {VERSION}")
 
     def add(self, text: bytes, lines: int) -> None:
-        """What has just been written to the log: whole lines."""
+        """Add text that has just been written to the log: whole lines."""
         self._hash.update(text)
         self._lines += lines
         self._size += len(text)
@@ -103,7 +103,7 @@ class LogIndex:
             self._close_block("")
 
     def close(self, ended: bool) -> None:
-        """Vouch for the rest; ``ended``: the flight came to its end."""
+        """Add the last block; ``ended``: the flight was completed."""
         try:
             if ended or self._writes:
                 self._close_block(" end" if ended else "")
@@ -130,40 +130,40 @@ class _BrokenError(Exception):
     """Log and index do not agree; the message says how."""
 
 
-def vouch(log: Path) -> Voucher:
-    """Compare a log with the index beside it; never an error, whatever the files hold."""
-    name = index_of(log).name
+def check_against_index(log: Path) -> IndexCheck:
+    """Compare a log with its index; any content of the two files gives a result, never an error."""
+    name = index_path(log).name
     try:
-        content = read_regular(index_of(log), _MOST_INDEX_BYTES)
+        content = read_regular(index_path(log), _MOST_INDEX_BYTES)
         with log.open("rb") as file:
             return _compare(name, file, _blocks(name, content))
     except FileNotFoundError:
-        return Voucher(Standing.UNKNOWN, f"nothing vouches for the log: there is no {name} beside it")
+        return IndexCheck(LogStanding.UNKNOWN, f"nothing vouches for the log: there is no {name} beside it")
     except OSError as error:
-        return Voucher(Standing.BROKEN, f"{name} cannot be compared with the log: {error.strerror}")
+        return IndexCheck(LogStanding.BROKEN, f"{name} cannot be compared with the log: {error.strerror}")
     except _BrokenError as broken:
-        return Voucher(Standing.BROKEN, str(broken))
+        return IndexCheck(LogStanding.BROKEN, str(broken))
 
 
-def _compare(name: str, file: BinaryIO, blocks: Iterator[Block]) -> Voucher:
-    there = os.fstat(file.fileno()).st_size
+def _compare(name: str, file: BinaryIO, blocks: Iterator[Block]) -> IndexCheck:
+    log_size = os.fstat(file.fileno()).st_size
     last = _FIRST
     for block in blocks:
-        if there < block.size:
-            raise _BrokenError(f"truncated: the log has {there} bytes, its index tells of {block.size}")
+        if log_size < block.size:
+            raise _BrokenError(f"truncated: the log has {log_size} bytes, its index covers {block.size}")
         if _digest(file, block.size - last.size, last.digest) != block.digest:
             raise _BrokenError(f"altered: lines {last.lines + 1} to {block.lines} are not what was flown")
         last = block
-    if last.end and there > last.size:
+    if last.end and log_size > last.size:
         raise _BrokenError(f"altered: something was added after line {last.lines}")
     if last.end:
-        return Voucher(Standing.VOUCHED, "")
+        return IndexCheck(LogStanding.VOUCHED, "")
     rest = (
         f"nothing vouches for what follows line {last.lines}"
-        if there > last.size
+        if log_size > last.size
         else "the flight did not come to its end"
     )
-    return Voucher(Standing.OPEN, f"{name} has no end mark: {rest}")
+    return IndexCheck(LogStanding.OPEN, f"{name} has no end mark: {rest}")
 
 
 def _digest(file: BinaryIO, size: int, before: bytes) -> bytes:
@@ -176,9 +176,9 @@ def _digest(file: BinaryIO, size: int, before: bytes) -> bytes:
 
 
 def _blocks(name: str, content: bytes) -> Iterator[Block]:
-    """What an index tells; half a line, that a kill has left, is passed over."""
+    """The blocks of an index; an incomplete last line, as left by a kill, is ignored."""
     lines = content.splitlines(keepends=True)
-    title = _unsealed(lines[0]) if lines else None
+    title = _unseal(lines[0]) if lines else None
     if title is None or not title.startswith(_TITLE.encode()):
         raise _BrokenError(f"{name} is damaged in its line 1, or no index of a log")
     version = title.decode("latin-1").split()[-1]
@@ -195,14 +195,14 @@ def _blocks(name: str, content: bytes) -> Iterator[Block]:
         last = block
 
 
-def _unsealed(line: bytes) -> bytes | None:
+def _unseal(line: bytes) -> bytes | None:
     """The text of a line of the index; None if its CRC is wrong."""
     found = _SEALED.fullmatch(line)
     return found[1] if found and int(found[2], 16) == crc32(found[1]) else None
 
 
 def _block(line: bytes) -> Block | None:
-    found = _BLOCK.fullmatch(_unsealed(line) or b"")
+    found = _BLOCK.fullmatch(_unseal(line) or b"")
     if found is None:
         return None
     return Block(int(found[1]), int(found[2]), bytes.fromhex(found[3].decode()), end=found[4] is not None)

@@ -1,4 +1,4 @@
-"""How a run is paced: in lockstep, or in real time times a factor."""
+"""The pace of a run: lockstep, or a multiple of real time."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ from sim.errors import HarnessError
 
 @dataclass(frozen=True, slots=True)
 class Pace:
-    """``factor`` None: lockstep, as fast as it goes; else real time times the factor."""
+    """``factor`` None: lockstep, as fast as possible; else the multiple of real time."""
 
     factor: float | None = None
 

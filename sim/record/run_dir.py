@@ -1,4 +1,4 @@
-"""The run directory: its files, and run.json, which is replaced atomically and complete only at the end."""
+"""The run directory: its files, and run.json, which is replaced atomically."""
 
 import hashlib
 import json
@@ -33,13 +33,13 @@ DIGESTS: Final = "digests"
 """Keys of run.json: SHA-256 of the scenario, and of further files by name, added when each is finished."""
 FILES = (RUN, SCENARIO, BUS_LOG, BUS_LOG + SUFFIX, TRUTH, SUMMARY, REPORT)
 RESULTS = (RUN, SUMMARY, REPORT)
-"""What is written when a flight is over, and again by ``torquer report``."""
+"""Files written when a flight is over, and again by ``torquer report``."""
 
 Json = dict[str, Any]
 
 
 def default_path(scenario: Scenario) -> Path:
-    """``runs/<scenario>-<UTC time>``; a number is added where that exists."""
+    """``runs/<scenario>-<UTC time>``; a number is added if that exists."""
     stem = f"{scenario.name}-{datetime.now(UTC):%Y%m%dT%H%M%SZ}"
     path, number = Path("runs") / stem, 1
     while path.exists():
@@ -49,7 +49,7 @@ def default_path(scenario: Scenario) -> Path:
 
 
 def begin(path: Path, scenario: Scenario, seed: int, ticks: int, bus: str, pace: Pace) -> None:
-    """Make the directory with scenario.toml and a run.json that is not complete.
+    """Create the directory with scenario.toml and a run.json that says ``complete: false``.
 
     Raises:
         HarnessError: the directory holds a run already, or cannot be written.
@@ -143,7 +143,7 @@ def locate(run_or_log: Path) -> tuple[Path, Path]:
 
 
 def fingerprint() -> Json:
-    """What decides about the last bit of a result: CPU, Python, numpy and its linear algebra."""
+    """What the last bit of a result depends on: CPU, Python, numpy and its linear algebra."""
     config: Any = np.show_config(mode="dicts")
     blas = config["Build Dependencies"]["blas"]
     return {

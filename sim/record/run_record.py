@@ -15,7 +15,7 @@ from sim.scenario.names import Name
 SCHEMA_VERSION = 1
 MOST_BYTES = 1_000_000
 _OPEN = ConfigDict(strict=True, extra="allow", allow_inf_nan=False)
-"""Keys that are not known stay: a later version may write more under the same schema version."""
+"""Unknown keys are accepted: a later version may write more under the same schema version."""
 
 Text = Annotated[str, Field(max_length=1000)]
 Digest = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
@@ -24,7 +24,7 @@ Count = Annotated[int, Field(ge=0, lt=2**32)]
 
 @with_config(_OPEN)
 class Platform(TypedDict):
-    """What the run was flown on; ``run_dir.fingerprint`` gives more."""
+    """The platform of the run; ``run_dir.fingerprint`` has more keys."""
 
     machine: Text
     system: Text
@@ -33,8 +33,8 @@ class Platform(TypedDict):
 
 
 @with_config(_OPEN)
-class FlownRecord(TypedDict):
-    """What became of a flight that came to its end."""
+class CompletedFlightRecord(TypedDict):
+    """The outcome of a completed flight."""
 
     ticks: Count
     slips: NotRequired[Count]
@@ -43,15 +43,15 @@ class FlownRecord(TypedDict):
 
 @with_config(_OPEN)
 class FlightRecord(TypedDict):
-    """What a summary needs to know. ``flown`` is there once the flight has ended."""
+    """The part of run.json that a summary needs. ``flown`` is present once the flight has ended."""
 
     seed: Annotated[int, Field(ge=0, lt=2**64)]
-    flown: NotRequired[FlownRecord]
+    flown: NotRequired[CompletedFlightRecord]
 
 
 @with_config(_OPEN)
 class SenderRecord(TypedDict):
-    """Frames of another under one identifier; ``tick`` is that of the first."""
+    """Frames of a second sender under one identifier; ``tick`` is that of the first."""
 
     message: Text
     id: Text
@@ -61,7 +61,7 @@ class SenderRecord(TypedDict):
 
 @with_config(_OPEN)
 class RunRecord(FlightRecord):
-    """What run.json says. ``ended``: why a flight came to no end, where the plant knows."""
+    """run.json. ``ended``: why a flight was not completed, where the plant knows."""
 
     schema_version: int
     torquer_version: Text
@@ -94,9 +94,9 @@ def read_record(path: Path) -> RunRecord:
         content = from_json(read_regular(path, MOST_BYTES), allow_inf_nan=False)
     except ValueError as error:
         raise HarnessError(f"{path}: not JSON: {error}") from None
-    told = content.get("schema_version") if isinstance(content, dict) else None
-    if type(told) is not int or told != SCHEMA_VERSION:
-        raise HarnessError(f"{path}: schema_version is {told}, and only {SCHEMA_VERSION} can be read")
+    found = content.get("schema_version") if isinstance(content, dict) else None
+    if type(found) is not int or found != SCHEMA_VERSION:
+        raise HarnessError(f"{path}: schema_version is {found}, and only {SCHEMA_VERSION} can be read")
     try:
         _RECORD.validate_python(content)
     except ValidationError as error:

@@ -14,24 +14,24 @@ LONGEST_KEY = 10_000
 
 
 class PrivateKey(Protocol):
-    """What signs."""
+    """A key that signs."""
 
     def sign(self, data: bytes, /) -> bytes:
         """The signature of the data."""
 
 
 class PublicKey(Protocol):
-    """What verifies."""
+    """A key that verifies a signature."""
 
     def verify(self, signature: bytes, data: bytes, /) -> None:
-        """Raise InvalidSignature if it is not that of the data."""
+        """Raise InvalidSignature if it is not the signature of the data."""
 
 
 def private_key(path: Path) -> PrivateKey:
     """The key in a PEM file as ``openssl genpkey -algorithm ed25519`` writes it.
 
     Raises:
-        HarnessError: there is none, or the package cryptography is missing.
+        HarnessError: the file has no such key, or the package cryptography is missing.
     """
     _require_cryptography("--sign")
     from cryptography.exceptions import UnsupportedAlgorithm  # noqa: PLC0415
@@ -51,7 +51,7 @@ def public_key(path: Path) -> PublicKey:
     """The key in a PEM file as ``openssl pkey -pubout`` writes it.
 
     Raises:
-        HarnessError: there is none, or the package cryptography is missing.
+        HarnessError: the file has no such key, or the package cryptography is missing.
     """
     _require_cryptography("--verify")
     from cryptography.exceptions import UnsupportedAlgorithm  # noqa: PLC0415
@@ -68,19 +68,19 @@ def public_key(path: Path) -> PublicKey:
 
 
 def sign(path: Path, key: PrivateKey) -> None:
-    """Put the signature of a file beside it.
+    """Write the signature of a file beside it.
 
     Raises:
         OSError: it cannot be written.
     """
-    replace_file(signature_of(path), key.sign(path.read_bytes()))
+    replace_file(signature_path(path), key.sign(path.read_bytes()))
 
 
-def fault_of(path: Path, key: PublicKey) -> str:
-    """What is wrong with the signature of a file; empty if it is that of the key."""
+def signature_fault(path: Path, key: PublicKey) -> str:
+    """Why the signature of a file is not valid; empty if it is valid for the key."""
     from cryptography.exceptions import InvalidSignature  # noqa: PLC0415
 
-    signature = signature_of(path)
+    signature = signature_path(path)
     try:
         key.verify(signature.read_bytes(), path.read_bytes())
     except FileNotFoundError:
@@ -92,8 +92,8 @@ def fault_of(path: Path, key: PublicKey) -> str:
     return ""
 
 
-def signature_of(path: Path) -> Path:
-    """Where the signature of a file is."""
+def signature_path(path: Path) -> Path:
+    """The path of the signature of a file."""
     return path.with_name(path.name + SUFFIX)
 
 

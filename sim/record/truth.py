@@ -1,8 +1,8 @@
-"""truth.h5: the plant's histories, one row a tick.
+"""truth.h5: the plant's histories, one row per tick.
 
-All datasets get their full length when the file is made, contiguous and filled with NaN. From then on only
-rows change, never the structure, so that a process killed at any moment leaves a file that opens; and the
-space is taken at once, so that a disk that cannot hold the histories is known before the flight.
+All datasets get their full length when the file is created, contiguous and filled with NaN. From then on
+only rows change, never the structure, so that a process killed at any moment leaves a file that opens; and
+the space is allocated at once, so that a disk that is too small is found before the flight.
 """
 
 import errno
@@ -37,11 +37,11 @@ COLUMNS: tuple[tuple[str, int, str, str], ...] = (
     ("m_body_am2", 3, "A m^2", "mean coil dipole over the tick that ends here, body axes"),
     ("r_eci_m", 3, "m", "position, TEME of date"),
 )
-"""Name, width, unit and meaning of the datasets; torques follow, one dataset a source."""
+"""Name, width, unit and meaning of the datasets; torques follow, one dataset per source."""
 
 
 class TruthFile:
-    """Writes one row a tick, in blocks.
+    """Writes one row per tick, in blocks.
 
     Raises:
         HarnessError: the disk cannot hold the histories of so many ticks.
@@ -49,7 +49,7 @@ class TruthFile:
 
     def __init__(self, path: Path, ticks: int, torque_sources: tuple[str, ...]) -> None:
         self._columns = sum(width for _, width, *_ in COLUMNS) + 3 * len(torque_sources)
-        _take_space(path, 8 * ticks * self._columns + ROOM_FOR_STRUCTURE)
+        _allocate(path, 8 * ticks * self._columns + ROOM_FOR_STRUCTURE)
         self._file = h5py.File(path, "w", libver="earliest")
         torques = tuple(
             (f"torque_body_nm/{source}", 3, "N m", f"torque by {source}, body axes")
@@ -63,23 +63,23 @@ class TruthFile:
             dataset.attrs["meaning"] = meaning
             dataset[0:1] = np.nan  # allocates the space now: the structure is final before the first row
             self._datasets.append((dataset, width))
-        self._waiting = array("d")
+        self._buffer = array("d")
         self._written = 0
         self._file.flush()
-        _take_space(path, path.stat().st_size)
+        _allocate(path, path.stat().st_size)
 
     def append(self, row: TruthRow) -> None:
         """Add the row of the next tick."""
-        self._waiting.fromlist(_flat(row))
-        if len(self._waiting) >= BLOCK_ROWS * self._columns:
+        self._buffer.fromlist(_flat(row))
+        if len(self._buffer) >= BLOCK_ROWS * self._columns:
             self.flush()
 
     def flush(self) -> None:
-        """Write the rows that wait."""
-        if not self._waiting:
+        """Write the rows in the buffer."""
+        if not self._buffer:
             return
-        block = np.array(self._waiting).reshape(-1, self._columns)
-        self._waiting = array("d")
+        block = np.array(self._buffer).reshape(-1, self._columns)
+        self._buffer = array("d")
         here = slice(self._written, self._written + len(block))
         column = 0
         for dataset, width in self._datasets:
@@ -99,21 +99,21 @@ class TruthFile:
         self._file.close()
 
 
-_CANNOT_RESERVE = (errno.EBADF, errno.EINVAL, errno.EOPNOTSUPP)
-"""What a file system answers that has no such call; its space is then taken as it is written."""
+_NOT_SUPPORTED = (errno.EBADF, errno.EINVAL, errno.EOPNOTSUPP)
+"""Errors of a file system without this call; the space is then allocated as it is written."""
 
 
-def _take_space(path: Path, size: int) -> None:
-    """Make a file take its space on the disk.
+def _allocate(path: Path, size: int) -> None:
+    """Allocate the space of a file on the disk.
 
     Raises:
-        HarnessError: there is not so much.
+        HarnessError: the disk has not enough.
     """
     try:
         with path.open("ab") as file:
             os.posix_fallocate(file.fileno(), 0, size)
     except OSError as error:
-        if error.errno in _CANNOT_RESERVE:
+        if error.errno in _NOT_SUPPORTED:
             return
         raise HarnessError(
             f"{path}: histories of this length need {size / 1e6:.1f} MB: {error.strerror}"
@@ -125,11 +125,11 @@ LARGEST = 1e15
 MOST_SOURCES = 16
 _SOURCE = re.compile("[a-z][a-z0-9_]{0,39}")
 _DAMAGE = (OSError, KeyError, RuntimeError, TypeError, ValueError)
-"""What h5py raises over a file that is none, or is damaged."""
+"""What h5py raises for a file that is not HDF5, or is damaged."""
 
 
 def read_truth(path: Path) -> Histories:
-    """The flown rows of every dataset, by name.
+    """The complete rows of every dataset, by name.
 
     Raises:
         HarnessError: missing or not a truth file.
@@ -146,15 +146,15 @@ def read_truth(path: Path) -> Histories:
     for name, history in histories.items():
         if (np.abs(history) > LARGEST).any():
             raise HarnessError(f"{path}: {name} holds a magnitude above {LARGEST:g}")
-    flown = min(map(_complete_rows, histories.values()))
-    return {name: history[:flown] for name, history in histories.items()}
+    complete = min(map(_complete_rows, histories.values()))
+    return {name: history[:complete] for name, history in histories.items()}
 
 
 def _sources(file: h5py.File) -> list[str]:
-    """What turns the body, as the file names it.
+    """The names of the torques in the file.
 
     Raises:
-        ValueError: a name that is none of ours, or very many.
+        ValueError: a name that no source has, or more than ``MOST_SOURCES``.
     """
     names = list(islice(file["torque_body_nm"], MOST_SOURCES + 1))
     if len(names) > MOST_SOURCES or not all(_SOURCE.fullmatch(name) for name in names):
@@ -166,7 +166,7 @@ def _check_layout(file: h5py.File, widths: dict[str, int], size: int) -> None:
     """Doubles in the shapes that ``TruthFile`` makes, in one piece and in this file: so many bytes at most.
 
     Raises:
-        ValueError: something else.
+        ValueError: any other layout.
     """
     rows = (*getattr(file["t_s"], "shape", ()), 0)[0]
     for name, width in widths.items():

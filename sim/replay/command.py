@@ -21,7 +21,7 @@ from sim.progress import progress
 from sim.record import run_dir
 from sim.record.binding import Binding, compare
 from sim.record.candump import LogEntry, LogTruncatedError, read_log
-from sim.record.log_index import vouch
+from sim.record.log_index import check_against_index
 from sim.record.run_record import RunRecord
 from sim.record.signature import PublicKey
 from sim.replay.log_replay import replay

@@ -14,7 +14,7 @@ from sim.record import binding, run_dir
 from sim.record.candump import LogEntry, read_log
 from sim.record.destination import check_folder
 from sim.record.estimates import EstimateRecorder
-from sim.record.log_index import vouch
+from sim.record.log_index import check_against_index
 from sim.record.run_dir import Json
 from sim.record.truth import read_truth
 from sim.replay.log_replay import ReplayResult, replay

@@ -6,7 +6,7 @@ from enum import StrEnum
 from sim.audit.findings import AuditReport, Violation
 from sim.flight.second_senders import said
 from sim.record import run_dir
-from sim.record.log_index import Voucher
+from sim.record.log_index import IndexCheck
 from sim.record.run_record import RunRecord
 from sim.replay.log_replay import ReplayResult
 
@@ -64,7 +64,7 @@ def _replay(replay_result: ReplayResult, same_platform: bool) -> str:
     return f"the replay is not exact: {replay_result.first_bit_difference}"
 
 
-def _incomplete(run: RunRecord, ticks: int, ended: bool, voucher: Voucher) -> str:
+def _incomplete(run: RunRecord, ticks: int, ended: bool, voucher: IndexCheck) -> str:
     if "flown" in run and ended:
         return "" if voucher.holds else voucher.sentence
     why = f": {run['ended']}" if "ended" in run else ""

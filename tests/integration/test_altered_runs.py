@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from fsw.wire.messages import CoilBoot
 from sim.audit.check import CONTRACT_VERSION
-from sim.record.log_index import index_of
+from sim.record.log_index import index_path
 
 TINY = ("microsat", "--seed", "7", "--orbits", "0.005", "--bus", "virtual")
 COMMANDS = (("replay",), ("replay", "--plant"), ("check",))
@@ -81,7 +81,7 @@ def test_what_no_verdict_depends_on_is_given_away_by_the_index_alone(run, torque
 
 
 def test_a_bare_log_is_judged_and_said_to_be_one(run, torquer):
-    index_of(run / "bus.log").unlink()
+    index_path(run / "bus.log").unlink()
     for done in judged(torquer, run):
         assert done.code == 0
         assert (
@@ -135,7 +135,7 @@ def test_a_full_disk_ends_the_flight_with_what_was_flown_kept(bus, start, tmp_pa
     ended = start(*words, **limit).wait()
     assert ended.code == 1
     assert "bus.log: cannot be written at " in ended.err
-    assert "what was flown until then is kept" in ended.err
+    assert "the log up to then is kept" in ended.err
     assert "Traceback" not in ended.err
     assert ended.err.count("\n") == (1 if bus == "virtual" else 2), "one sentence of each process"
     whole = sil_run("microsat", *LONGER, "--bus", "virtual")

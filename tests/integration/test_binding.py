@@ -9,7 +9,7 @@ import sys
 import pytest
 
 from fsw.wire.messages import MagField
-from sim.record.log_index import index_of
+from sim.record.log_index import index_path
 
 TINY = ("microsat", "--seed", "7", "--orbits", "0.005", "--bus", "virtual")
 OTHER = (
@@ -274,7 +274,7 @@ def test_the_bench_binds_its_log_and_its_numbers(torquer, tmp_path):
     assert "not finished" not in before.out
     (run / "hil.json").write_text("{}")
     assert named(torquer("check", run), "hil.json")
-    index_of(run / "bus.log").unlink()
+    index_path(run / "bus.log").unlink()
     with (run / "bus.log").open("ab") as log:
         log.write((run / "bus.log").read_bytes().splitlines(keepends=True)[-1])
     assert named(torquer("check", run), "bus.log")

@@ -250,7 +250,7 @@ def test_a_cut_log_goes_through_the_plant_as_far_as_it_goes(copy, torquer):
         done = torquer("replay", copy.folder, "--plant")
         assert done.code == 1
         index, binding, incomplete = done.out.splitlines()
-        assert index.startswith(f"index: truncated: the log has {cut} bytes, its index tells of ")
+        assert index.startswith(f"index: truncated: the log has {cut} bytes, its index covers ")
         assert binding.startswith("MISMATCH bus.log is not the run's own: ")
         assert re.fullmatch(r"incomplete: .* at tick \d+", incomplete)
 

@@ -6,7 +6,7 @@ from threading import Thread
 
 import pytest
 
-from sim.signals import EndedBySignal, endings_raised
+from sim.signals import EndedBySignal, raise_on_signals
 
 
 @pytest.mark.parametrize(("signum", "code"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129)])
@@ -22,7 +22,7 @@ def test_the_first_is_raised_and_more_do_not_disturb_the_cleaning_up(signum, cod
             os.kill(os.getpid(), signal.SIGHUP)
             cleaned.append(True)
 
-    with pytest.raises(EndedBySignal) as caught, endings_raised():
+    with pytest.raises(EndedBySignal) as caught, raise_on_signals():
         be_ended()
     assert cleaned
     assert caught.value.exit_code == code
@@ -34,7 +34,7 @@ def test_one_that_is_ignored_stays_so():
     """As ``nohup`` wants it."""
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
     try:
-        with endings_raised():
+        with raise_on_signals():
             os.kill(os.getpid(), signal.SIGHUP)
         assert signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
     finally:
@@ -46,7 +46,7 @@ def test_elsewhere_than_in_the_main_thread_nothing_is_changed():
     found = []
 
     def look():
-        with endings_raised():
+        with raise_on_signals():
             found.append(signal.getsignal(signal.SIGTERM))
 
     thread = Thread(target=look)

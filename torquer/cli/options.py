@@ -13,7 +13,7 @@ from fsw.input.error_text import error_text
 from fsw.input.schema import TableError
 from sim.errors import HarnessError
 from sim.plant.errors import PlantError
-from sim.signals import EndedBySignal, endings_raised
+from sim.signals import EndedBySignal, raise_on_signals
 
 Parameters = ParamSpec("Parameters")
 
@@ -44,7 +44,7 @@ def sentences(command: Callable[Parameters, int | None]) -> Callable[Parameters,
     @wraps(command)
     def run(*args: Parameters.args, **kwargs: Parameters.kwargs) -> None:
         try:
-            with endings_raised():
+            with raise_on_signals():
                 code = command(*args, **kwargs)
         except (TableError, BusError, HarnessError, PlantError) as error:
             click.echo(f"torquer: {error_text(error)}", err=True)

@@ -17,7 +17,7 @@ def report(run: Path, sign: Path | None, verify: Path | None) -> int:
     from sim.progress import progress
     from sim.record import run_dir
     from sim.record.binding import require_sources, sign_run
-    from sim.record.signature import private_key, public_key, signature_of
+    from sim.record.signature import private_key, public_key, signature_path
     from sim.report.conclude import conclude
     from sim.report.summary import summary_text
     from sim.report.verdict import Verdict

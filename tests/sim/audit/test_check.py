@@ -256,7 +256,7 @@ def test_a_log_that_is_not_the_runs_fails_though_it_keeps_the_limits(bound, bus_
 def test_an_error_in_a_log_that_is_not_the_runs_names_both(bound):
     with (bound / "bus.log").open("a") as log:
         log.write("nothing\n")
-    with pytest.raises(LogError, match=r"is no candump line.*; bus\.log is not the run's own"):
+    with pytest.raises(LogError, match=r"is not a candump line.*; bus\.log is not the run's own"):
         check(bound, None)
 
 

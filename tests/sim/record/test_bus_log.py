@@ -11,7 +11,7 @@ from fsw.wire.messages import FswBoot, PlantEnd, TickDone
 from sim.errors import FlightError
 from sim.record.bus_log import BusLog
 from sim.record.candump import read_log
-from sim.record.log_index import Standing, vouch
+from sim.record.log_index import LogStanding, check_against_index
 
 BOOT = FswBoot(0, 1, 2).encode()
 
@@ -66,7 +66,7 @@ def test_what_was_there_is_replaced(path):
 def test_the_index_vouches_for_a_flight_that_came_to_its_end(path):
     with BusLog(path, "vcan0") as log:
         log.write(0, [BOOT, PlantEnd(0).encode()])
-    assert vouch(path)[0] is Standing.VOUCHED
+    assert check_against_index(path)[0] is LogStanding.VOUCHED
 
 
 def test_it_has_no_end_mark_of_one_that_failed(path):
@@ -77,7 +77,7 @@ def test_it_has_no_end_mark_of_one_that_failed(path):
 
     with pytest.raises(ZeroDivisionError):
         fail()
-    assert vouch(path)[0] is Standing.OPEN
+    assert check_against_index(path)[0] is LogStanding.OPEN
 
 
 def test_a_folder_that_is_not_there_is_one_sentence(tmp_path):

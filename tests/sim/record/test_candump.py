@@ -137,7 +137,7 @@ def test_a_file_that_cannot_be_read_is_named(tmp_path, name):
     ],
 )
 def test_a_line_that_is_none_is_refused_by_its_number(read, line):
-    with pytest.raises(LogError, match="line 2 is no candump line"):
+    with pytest.raises(LogError, match="line 2 is not a candump line"):
         read(LINE + line + LINE)
 
 
@@ -180,7 +180,7 @@ def test_a_last_line_that_is_only_without_newline_is_cut_too(read):
 
 
 def test_an_end_that_no_line_begins_with_is_no_cut(read):
-    with pytest.raises(LogError, match="line 2 is no candump line") as refusal:
+    with pytest.raises(LogError, match="line 2 is not a candump line") as refusal:
         read(LINE + "(142751x")
     assert not isinstance(refusal.value, LogTruncatedError)
 

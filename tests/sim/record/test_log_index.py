@@ -16,7 +16,7 @@ from sim.errors import FlightError
 from sim.record import bus_log
 from sim.record.bus_log import BusLog
 from sim.record.candump import LogTruncatedError, read_log
-from sim.record.log_index import BLOCK_WRITES, SUFFIX, LogIndex, Standing, index_of, vouch
+from sim.record.log_index import BLOCK_WRITES, SUFFIX, LogIndex, LogStanding, check_against_index, index_path
 
 TICKS = 3 * BLOCK_WRITES + 11
 
@@ -41,30 +41,30 @@ def log(tmp_path):
 
 
 def test_a_log_as_it_was_flown_is_vouched_for(log):
-    assert vouch(log) == (Standing.VOUCHED, "")
-    assert vouch(log).holds
-    assert len(index_of(log).read_text().splitlines()) == 1 + 4
-    assert index_of(log).read_text().count(" end ") == 1
+    assert check_against_index(log) == (LogStanding.VOUCHED, "")
+    assert check_against_index(log).holds
+    assert len(index_path(log).read_text().splitlines()) == 1 + 4
+    assert index_path(log).read_text().count(" end ") == 1
 
 
 @pytest.mark.parametrize("ticks", [0, 1, BLOCK_WRITES - 1, BLOCK_WRITES, 2 * BLOCK_WRITES - 1])
 def test_whatever_its_length(tmp_path, ticks):
     write(tmp_path / "bus.log", ticks)
-    assert vouch(tmp_path / "bus.log").standing is Standing.VOUCHED
+    assert check_against_index(tmp_path / "bus.log").standing is LogStanding.VOUCHED
 
 
 def test_the_index_is_beside_the_log_and_bears_its_name(log):
-    assert index_of(log) == log.with_name("bus.log" + SUFFIX)
+    assert index_path(log) == log.with_name("bus.log" + SUFFIX)
     moved = log.rename(log.with_name("flight.log"))
-    assert vouch(moved).standing is Standing.UNKNOWN
+    assert check_against_index(moved).standing is LogStanding.UNKNOWN
 
 
 def test_for_a_bare_log_nothing_vouches_and_that_is_said(log):
-    index_of(log).unlink()
-    standing, sentence = vouch(log)
-    assert standing is Standing.UNKNOWN
+    index_path(log).unlink()
+    standing, sentence = check_against_index(log)
+    assert standing is LogStanding.UNKNOWN
     assert "nothing vouches" in sentence
-    assert vouch(log).holds
+    assert check_against_index(log).holds
 
 
 # --- whatever is cut or altered
@@ -73,15 +73,15 @@ def test_for_a_bare_log_nothing_vouches_and_that_is_said(log):
 def test_a_log_cut_at_any_byte_is_truncated(log):
     """From its end backwards."""
     whole = log.stat().st_size
-    ends = [int(line.split()[1]) for line in index_of(log).read_text().splitlines()[1:]]
+    ends = [int(line.split()[1]) for line in index_path(log).read_text().splitlines()[1:]]
     near_ends = {size for end in ends for size in range(end - 60, end + 60)}
     for size in sorted(near_ends | set(range(0, whole, 41)), reverse=True):
         if size < whole:
             os.truncate(log, size)
             told = next(end for end in ends if end > size)
-            assert vouch(log) == (
-                Standing.BROKEN,
-                f"truncated: the log has {size} bytes, its index tells of {told}",
+            assert check_against_index(log) == (
+                LogStanding.BROKEN,
+                f"truncated: the log has {size} bytes, its index covers {told}",
             )
 
 
@@ -92,8 +92,8 @@ def test_any_byte_of_the_log_that_is_altered_is_found_and_in_its_block(log):
         altered = bytearray(whole)
         altered[place] ^= 1 << chosen.randrange(8)
         log.write_bytes(altered)
-        standing, sentence = vouch(log)
-        assert standing is Standing.BROKEN
+        standing, sentence = check_against_index(log)
+        assert standing is LogStanding.BROKEN
         first, last = (int(word) for word in sentence.split() if word.isdigit())
         assert first <= whole[: place + 1].count(b"\n") + 1 <= last + (whole[place : place + 1] == b"\n")
         assert last - first < lines_in_a_block
@@ -102,45 +102,45 @@ def test_any_byte_of_the_log_that_is_altered_is_found_and_in_its_block(log):
 @pytest.mark.parametrize("more", [b"x", b"\n", b"(0000000300.000000) vcan0 110#00\n"])
 def test_what_is_added_at_the_end_is_found(log, more):
     log.write_bytes(log.read_bytes() + more)
-    assert vouch(log).sentence == f"altered: something was added after line {2 * TICKS + 1}"
+    assert check_against_index(log).sentence == f"altered: something was added after line {2 * TICKS + 1}"
 
 
 def test_lines_that_change_places_are_found(log):
     lines = log.read_bytes().splitlines(keepends=True)
     lines[300], lines[301] = lines[301], lines[300]
     log.write_bytes(b"".join(lines))
-    assert vouch(log).sentence.startswith("altered: lines ")
+    assert check_against_index(log).sentence.startswith("altered: lines ")
 
 
 def test_blocks_that_change_places_are_found_although_each_is_as_it_was(log):
     whole = log.read_bytes()
-    sizes = [int(line.split()[1]) for line in index_of(log).read_text().splitlines()[1:3]]
+    sizes = [int(line.split()[1]) for line in index_path(log).read_text().splitlines()[1:3]]
     log.write_bytes(whole[sizes[0] : sizes[1]] + whole[: sizes[0]] + whole[sizes[1] :])
-    assert not vouch(log).holds
+    assert not check_against_index(log).holds
 
 
 def test_an_index_cut_at_any_byte_vouches_no_more(log):
-    whole = index_of(log).read_bytes()
+    whole = index_path(log).read_bytes()
     for size in range(len(whole)):
-        index_of(log).write_bytes(whole[:size])
-        standing, sentence = vouch(log)
-        assert standing in (Standing.OPEN, Standing.BROKEN)
+        index_path(log).write_bytes(whole[:size])
+        standing, sentence = check_against_index(log)
+        assert standing in (LogStanding.OPEN, LogStanding.BROKEN)
         assert sentence
-        assert (standing is Standing.BROKEN) == (b"\n" not in whole[:size])
+        assert (standing is LogStanding.BROKEN) == (b"\n" not in whole[:size])
 
 
 def test_an_index_with_any_bit_altered_vouches_no_more(tmp_path):
     log = tmp_path / "bus.log"
     write(log, BLOCK_WRITES + 3)
-    whole = index_of(log).read_bytes()
+    whole = index_path(log).read_bytes()
     for place in range(len(whole)):
         for bit in range(8):
             altered = bytearray(whole)
             altered[place] ^= 1 << bit
-            index_of(log).write_bytes(altered)
-            standing, sentence = vouch(log)
-            assert standing in (Standing.OPEN, Standing.BROKEN), (place, bit)
-            assert (standing is Standing.OPEN) == (place == len(whole) - 1), "but for its last newline"
+            index_path(log).write_bytes(altered)
+            standing, sentence = check_against_index(log)
+            assert standing in (LogStanding.OPEN, LogStanding.BROKEN), (place, bit)
+            assert (standing is LogStanding.OPEN) == (place == len(whole) - 1), "but for its last newline"
             assert "bus.log.index" in sentence
 
 
@@ -152,31 +152,34 @@ def sealed(text):
 
 
 def test_an_index_of_another_version_is_named(log):
-    lines = index_of(log).read_bytes().splitlines(keepends=True)
-    index_of(log).write_bytes(b"".join([sealed(b"torquer-log-index 2"), *lines[1:]]))
-    assert vouch(log) == (Standing.BROKEN, "bus.log.index is of version 2, and only version 1 can be read")
+    lines = index_path(log).read_bytes().splitlines(keepends=True)
+    index_path(log).write_bytes(b"".join([sealed(b"torquer-log-index 2"), *lines[1:]]))
+    assert check_against_index(log) == (
+        LogStanding.BROKEN,
+        "bus.log.index is of version 2, and only version 1 can be read",
+    )
 
 
 @pytest.mark.parametrize(
     "content", [b"", b"\n", b"\xff" * 500, b"torquer-log-index\n", sealed(b"torquer-log-index"), sealed(b"x")]
 )
 def test_an_index_that_is_none_is_no_error(log, content):
-    index_of(log).write_bytes(content)
-    assert vouch(log).standing is Standing.BROKEN
+    index_path(log).write_bytes(content)
+    assert check_against_index(log).standing is LogStanding.BROKEN
 
 
 def test_an_index_that_cannot_be_read_is_no_error(log):
-    index_of(log).unlink()
-    index_of(log).mkdir()
-    assert vouch(log).standing is Standing.BROKEN
+    index_path(log).unlink()
+    index_path(log).mkdir()
+    assert check_against_index(log).standing is LogStanding.BROKEN
 
 
 @pytest.mark.parametrize("block", [(5, 10), (5, 10**14)])
 def test_a_well_sealed_line_that_makes_no_sense_is_no_error(log, block):
-    lines = index_of(log).read_bytes().splitlines(keepends=True)
+    lines = index_path(log).read_bytes().splitlines(keepends=True)
     lines[2] = sealed(b"%d %d %b" % (*block, b"0" * 64))
-    index_of(log).write_bytes(b"".join(lines))
-    assert vouch(log).standing is Standing.BROKEN
+    index_path(log).write_bytes(b"".join(lines))
+    assert check_against_index(log).standing is LogStanding.BROKEN
 
 
 # --- a flight that does not come to its end
@@ -212,10 +215,10 @@ def test_a_kill_at_any_moment_leaves_a_log_that_its_index_does_not_contradict(tm
     process.kill()
     assert process.wait(20) == -signal.SIGKILL
     process.stdout.close()
-    standing, sentence = vouch(log)
-    assert standing is Standing.OPEN
+    standing, sentence = check_against_index(log)
+    assert standing is LogStanding.OPEN
     assert "has no end mark" in sentence
-    vouched = int(index_of(log).read_text().splitlines()[-1].split()[0]) if delay_ms >= 10 else 0
+    vouched = int(index_path(log).read_text().splitlines()[-1].split()[0]) if delay_ms >= 10 else 0
     lines = whole_lines(log) if log.stat().st_size else 0
     assert lines - 2 * BLOCK_WRITES <= vouched <= lines or delay_ms < 10
 
@@ -230,8 +233,8 @@ def test_a_flight_that_fails_is_vouched_for_as_far_as_it_went(tmp_path):
 
     with pytest.raises(ZeroDivisionError):
         fly()
-    assert vouch(log) == (
-        Standing.OPEN,
+    assert check_against_index(log) == (
+        LogStanding.OPEN,
         "bus.log.index has no end mark: the flight did not come to its end",
     )
 
@@ -263,8 +266,8 @@ def test_a_full_disk_keeps_whole_ticks(tmp_path, monkeypatch, room):
         write(log)
     monkeypatch.undo()
     assert caught.value.exit_code == 1
-    standing, _ = vouch(log)
-    assert standing is Standing.OPEN
+    standing, _ = check_against_index(log)
+    assert standing is LogStanding.OPEN
     if log.stat().st_size:
         written = [entry.frame for entry in read_log(log)]
         assert written[0] == FswBoot(0, 1, 2).encode()
@@ -276,16 +279,16 @@ def test_half_a_line_of_the_index_is_taken_back(tmp_path, monkeypatch):
     log = tmp_path / "bus.log"
     log.write_bytes(b"x\n" * 64)
     index = LogIndex(log)
-    before = index_of(log).read_bytes()
+    before = index_path(log).read_bytes()
     for _ in range(63):
         index.add(b"x\n", 1)
     monkeypatch.setattr(bus_log.os, "write", FullDisk(10))
     with pytest.raises(OSError, match="No space left on device"):
         index.add(b"x\n", 1)
     monkeypatch.undo()
-    assert index_of(log).read_bytes() == before
+    assert index_path(log).read_bytes() == before
     index.close(ended=True)
-    assert vouch(log).standing is Standing.VOUCHED
+    assert check_against_index(log).standing is LogStanding.VOUCHED
 
 
 @pytest.mark.parametrize("room", [0, 20])
@@ -298,7 +301,7 @@ def test_a_disk_that_is_full_before_the_flight_is_named(tmp_path, monkeypatch, r
 def test_a_disk_that_is_full_at_the_very_end_is_named(tmp_path, monkeypatch):
     log = tmp_path / "bus.log"
     write(log, 5)
-    room = log.stat().st_size + index_of(log).stat().st_size - 1
+    room = log.stat().st_size + index_path(log).stat().st_size - 1
     monkeypatch.setattr(bus_log.os, "write", FullDisk(room))
     with pytest.raises(FlightError, match="its index cannot be written"):
         write(log, 5)
@@ -319,7 +322,7 @@ def test_of_a_flight_that_is_killed_at_most_the_last_64_writes_are_not_vouched_f
     vouched = []
     for _ in range(200):
         index.add(b"x\n", 1)
-        _, *blocks = index_of(tmp_path / "bus.log").read_text().splitlines()
+        _, *blocks = index_path(tmp_path / "bus.log").read_text().splitlines()
         vouched.append(int(blocks[-1].split()[0]) if blocks else 0)
     index.close(ended=False)
     assert vouched == [64 * (writes // 64) for writes in range(1, 201)]
@@ -331,7 +334,7 @@ def test_the_file_of_an_index_is_everybodys_to_read_and_is_closed(tmp_path):
         LogIndex(tmp_path / "bus.log").close(ended=True)
     finally:
         os.umask(mask)
-    assert index_of(tmp_path / "bus.log").stat().st_mode & 0o777 == 0o644
+    assert index_path(tmp_path / "bus.log").stat().st_mode & 0o777 == 0o644
     assert len(os.listdir("/proc/self/fd")) == before
 
 
@@ -342,4 +345,4 @@ def test_an_index_can_be_made_for_any_log(log):
     index = LogIndex(log)
     index.add(text, text.count(b"\n"))
     index.close(ended=True)
-    assert vouch(log).standing is Standing.VOUCHED
+    assert check_against_index(log).standing is LogStanding.VOUCHED

@@ -8,7 +8,7 @@ import pytest
 
 from sim.errors import HarnessError
 from sim.record import signature
-from sim.record.signature import fault_of, private_key, public_key, sign, signature_of
+from sim.record.signature import private_key, public_key, sign, signature_fault, signature_path
 
 serialization = pytest.importorskip("cryptography.hazmat.primitives.serialization")
 from cryptography.hazmat.primitives.asymmetric import ec, ed448, ed25519  # noqa: E402
@@ -39,35 +39,38 @@ def files(tmp_path):
 def test_what_one_half_signs_the_other_verifies(files):
     run = files / "run.json"
     sign(run, private_key(files / "key.pem"))
-    assert len(signature_of(run).read_bytes()) == 64
-    assert fault_of(run, public_key(files / "public.pem")) == ""
+    assert len(signature_path(run).read_bytes()) == 64
+    assert signature_fault(run, public_key(files / "public.pem")) == ""
 
 
 def test_every_byte_of_the_file_and_of_the_signature_counts(files):
     run, key = files / "run.json", public_key(files / "public.pem")
     sign(run, private_key(files / "key.pem"))
-    for path in (run, signature_of(run)):
+    for path in (run, signature_path(run)):
         content = path.read_bytes()
         for place in range(len(content)):
             path.write_bytes(content[:place] + bytes([content[place] ^ 1]) + content[place + 1 :])
-            assert fault_of(run, key) == "run.json.sig is not the signature of run.json by this key"
+            assert signature_fault(run, key) == "run.json.sig is not the signature of run.json by this key"
         for other in (b"", content[:-1], content + b"\0"):
             path.write_bytes(other)
-            assert fault_of(run, key) == "run.json.sig is not the signature of run.json by this key"
+            assert signature_fault(run, key) == "run.json.sig is not the signature of run.json by this key"
         path.write_bytes(content)
-    assert fault_of(run, key) == ""
+    assert signature_fault(run, key) == ""
 
 
 def test_another_key_does_not_verify_it(files):
     sign(files / "run.json", ed25519.Ed25519PrivateKey.generate())
-    assert "is not the signature" in fault_of(files / "run.json", public_key(files / "public.pem"))
+    assert "is not the signature" in signature_fault(files / "run.json", public_key(files / "public.pem"))
 
 
 def test_without_a_signature_that_is_said(files):
     key = public_key(files / "public.pem")
-    assert fault_of(files / "run.json", key) == "run.json is not signed: there is no run.json.sig beside it"
-    signature_of(files / "run.json").mkdir()
-    assert fault_of(files / "run.json", key) == "run.json.sig cannot be read: Is a directory"
+    assert (
+        signature_fault(files / "run.json", key)
+        == "run.json is not signed: there is no run.json.sig beside it"
+    )
+    signature_path(files / "run.json").mkdir()
+    assert signature_fault(files / "run.json", key) == "run.json.sig cannot be read: Is a directory"
 
 
 def no_keys():
@@ -129,7 +132,7 @@ def test_openssl_makes_the_key_and_verifies_the_signature(files):
     assert openssl("genpkey", "-algorithm", "ed25519", "-out", "key.pem").returncode == 0
     assert openssl("pkey", "-in", "key.pem", "-pubout", "-out", "public.pem").returncode == 0
     sign(files / "run.json", private_key(files / "key.pem"))
-    assert fault_of(files / "run.json", public_key(files / "public.pem")) == ""
+    assert signature_fault(files / "run.json", public_key(files / "public.pem")) == ""
     words = ("-pubin", "-inkey", "public.pem", "-rawin", "-in", "run.json", "-sigfile", "run.json.sig")
     done = openssl("pkeyutl", "-verify", *words)
     if "rawin" in done.stderr:
