@@ -26,8 +26,8 @@ from sim.audit.check import check
 from sim.bench.budgets import BudgetLine
 from sim.bench.memory import MemoryMonitor
 from sim.errors import HarnessError
-from sim.flight.flight import WATCH_TICKS
-from sim.flight.recorded import MOST_TICKS, record
+from sim.flight.flight_loop import WATCH_TICKS
+from sim.flight.record_flight import MOST_TICKS, record_flight
 from sim.flight.virtual import VirtualBus
 from sim.progress import progress
 from sim.record import run_dir
@@ -90,7 +90,7 @@ def fly(folder: Path, name: str, hours: float) -> None:
             memory.sample(tick)
             watch(tick)
 
-        record(folder, scenario, bus, on_tick)
+        record_flight(folder, scenario, bus, on_tick)
     steps = {"longest_s": bus.longest_s, "above": bus.above}
     measured = {"steps": steps, "memory": memory.history(), "growth_percent": memory.growth_percent()}
     run_dir.write_json(folder / MEASURED, measured)

@@ -20,8 +20,8 @@ from sim.bench.processes import BenchProcess, BenchProcesses, hub_of
 from sim.bench.realtime_loop import RealtimeLoop, is_boot
 from sim.bench.tick_source import PlantTicks, SyncOnly, TickSource, line_to
 from sim.errors import HarnessError
-from sim.flight.bus_taken import FLYING, refuse_taken
-from sim.flight.second_senders import said
+from sim.flight.bus_in_use import FLIGHT_NODES, refuse_bus_in_use
+from sim.flight.second_senders import describe_senders
 from sim.flight.table_file import write_flight_table
 from sim.progress import progress
 from sim.record import run_dir
@@ -118,7 +118,7 @@ def hil(settings: HilSettings, as_json: bool = False) -> int:
     if as_json:
         click.echo(json.dumps(numbers, indent=2))
     failures = [f"{name} ended before its time: {last}" for name, last in numbers["ended"].items()]
-    failures += [said(numbers["second_senders"])] if numbers["second_senders"] else []
+    failures += [describe_senders(numbers["second_senders"])] if numbers["second_senders"] else []
     broken = [line["name"] for line in numbers["budgets"] if not line["kept"]]
     failures += [f"over budget: {', '.join(broken)}"] if broken else []
     if failures:

@@ -16,8 +16,8 @@ from fsw.wire.frame import Frame
 from fsw.wire.messages import NAMES, CoilBoot, CoilRefused, CoilStatus, PlantEnd, Sync
 from sim.audit.auditor import AuditReport, audit
 from sim.audit.limits import limits_in
-from sim.flight.flight import fly
-from sim.flight.recorded import ticks_of
+from sim.flight.flight_loop import fly
+from sim.flight.record_flight import ticks_of
 from sim.flight.virtual import VirtualBus
 from sim.plant.plant import Plant, TruthRow
 from sim.record.candump import LogEntry

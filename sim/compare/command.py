@@ -15,7 +15,7 @@ from sim.compare.picture import picture
 from sim.compare.score import Result, Score, by_axis1, fly_case
 from sim.compare.table import as_csv, as_json, as_text, ranked
 from sim.errors import HarnessError
-from sim.flight.recorded import ticks_of
+from sim.flight.record_flight import ticks_of
 from sim.progress import progress
 from sim.record.destination import check_folder
 from sim.record.run_dir import write_json

@@ -22,7 +22,7 @@ from fsw.wire.messages import FswBoot, intact
 from sim.errors import HarnessError
 from sim.fault_rig.record import Record
 from sim.faults.faulty_plant import FaultyPlant
-from sim.flight.answers import answered
+from sim.flight.fsw_answers import has_answer
 from sim.flight.sil import start_node
 from sim.flight.table_file import write_flight_table
 from sim.scenario.assemble import plant_config
@@ -159,7 +159,7 @@ class ProcessRig:
         answers: list[Frame] = []
         while (frame := self._link.receive(max(0.0, deadline - time.monotonic()))) is not None:
             answers.append(frame)
-            if answered([frame], tick):
+            if has_answer([frame], tick):
                 self._present = True
                 return answers
         self._present = False

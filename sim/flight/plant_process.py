@@ -15,8 +15,8 @@ from fsw.input import command_line
 from fsw.input.error_text import error_text
 from fsw.input.schema import TableError
 from sim.errors import HarnessError
-from sim.flight.answers import CounterpartError, Patience
-from sim.flight.recorded import record
+from sim.flight.fsw_answers import CounterpartError, Patience
+from sim.flight.record_flight import record_flight
 from sim.plant.errors import PlantError
 from sim.record import run_dir
 from sim.signals import EndedBySignal, raise_on_signals
@@ -28,13 +28,15 @@ from sim.signals import EndedBySignal, raise_on_signals
 @click.option("--patience", type=(float, float), required=True, help="For the boot, for an answer [s].")
 @click.option("--parent", type=int, required=True, help="Process whose end ends this one.")
 def main(path: Path, bus: str, patience: tuple[float, float], parent: int) -> None:
-    """Fly the run that was begun there; what is wrong with the flight software run.json tells the parent."""
-    _end_with(parent)
+    """Fly the run that was begun there; if the flight software fails, run.json says why."""
+    _exit_with(parent)
     boot_s, answer_s = patience
     try:
         with raise_on_signals():
             link = open_bus(bus)
-            record(path, run_dir.read_scenario(path), link, patience=Patience(boot_s, answer_s, answer_s))
+            record_flight(
+                path, run_dir.read_scenario(path), link, patience=Patience(boot_s, answer_s, answer_s)
+            )
     except CounterpartError as error:
         run_dir.update(path, ended=str(error))
         sys.exit(1)
@@ -47,7 +49,7 @@ def main(path: Path, bus: str, patience: tuple[float, float], parent: int) -> No
         sys.exit(1)
 
 
-def _end_with(parent: int) -> None:
+def _exit_with(parent: int) -> None:
     """End this process soon after the one that started it."""
 
     def wait() -> None:

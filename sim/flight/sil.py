@@ -14,11 +14,11 @@ from fsw.bus.interface import Bus
 from fsw.bus.link import LoopLink
 from fsw.bus.open_bus import open_bus, resolve
 from sim.errors import FlightError
-from sim.flight.answers import ANSWER_TIMEOUT_S, Patience
-from sim.flight.bus_taken import refuse_taken
-from sim.flight.flight import Watch
-from sim.flight.second_senders import said
-from sim.flight.standstill import Standstill
+from sim.flight.bus_in_use import refuse_bus_in_use
+from sim.flight.flight_loop import ProgressCallback
+from sim.flight.fsw_answers import ANSWER_TIMEOUT_S, Patience
+from sim.flight.second_senders import describe_senders
+from sim.flight.stall_detector import StallDetector
 from sim.flight.table_file import write_flight_table
 from sim.record import run_dir
 from sim.scenario.schema import Scenario
@@ -27,26 +27,26 @@ POLL_S = 0.1
 GRACE_S = 5.0
 PATIENCE = Patience(boot_s=60.0, answer_s=ANSWER_TIMEOUT_S, silence_s=ANSWER_TIMEOUT_S)
 MARGIN_S = 5.0
-"""The plant tells of a silent flight software by itself; only if it does not in time, it stands still."""
+"""Beyond the plant's own deadlines: only after it is the plant itself taken to be stalled."""
 
 
 @contextmanager
-def served(bus: str) -> Iterator[tuple[str, Hub | None]]:
-    """A bus for two processes: its spec in full, and the hub if it is a loop bus that is hosted here.
+def serve_bus(bus: str) -> Iterator[tuple[str, Hub | None]]:
+    """A bus for two processes: its full spec, and the hub if this process hosts a loop bus.
 
     Raises:
-        BusError: the bus cannot be used, or somebody flies on it already.
+        BusError: the bus cannot be used, or is in use by another flight.
     """
     spec = resolve(bus)
     if not spec.startswith("loop:"):
-        _refuse_taken(open_bus(spec), spec)
+        _refuse_in_use(open_bus(spec), spec)
         yield spec, None
         return
     port = int(spec.removeprefix("loop:"))
     try:
         hub = Hub(0 if bus in ("loop", "auto") else port)
     except OSError:  # somebody else hosts it, or keeps the port for something else
-        _refuse_taken(LoopLink(port, timeout_s=1.0, may_host=False), spec)
+        _refuse_in_use(LoopLink(port, timeout_s=1.0, may_host=False), spec)
         yield spec, None
         return
     try:
@@ -55,20 +55,25 @@ def served(bus: str) -> Iterator[tuple[str, Hub | None]]:
         hub.close()
 
 
-def _refuse_taken(bus: Bus, spec: str) -> None:
+def _refuse_in_use(bus: Bus, spec: str) -> None:
     try:
-        refuse_taken(bus, spec)
+        refuse_bus_in_use(bus, spec)
     finally:
         bus.close()
 
 
 def fly_processes(
-    path: Path, scenario: Scenario, spec: str, hub: Hub | None, watch: Watch, patience: Patience = PATIENCE
+    path: Path,
+    scenario: Scenario,
+    spec: str,
+    hub: Hub | None,
+    watch: ProgressCallback,
+    patience: Patience = PATIENCE,
 ) -> None:
-    """Fly with plant and flight software as two processes on a bus, as ``served`` gives it.
+    """Fly with plant and flight software as two processes on a bus, as ``serve_bus`` gives it.
 
     Raises:
-        FlightError: one of the two ended before its time, or stands still; both have been ended.
+        FlightError: one of the two ended too early or is stalled; both have been ended.
     """
     with TemporaryDirectory() as scratch:
         table = write_flight_table(Path(scratch), scenario)
@@ -81,22 +86,24 @@ def _fly_processes(
     table: Path,
     spec: str,
     hub: Hub | None,
-    watch: Watch,
+    watch: ProgressCallback,
     patience: Patience,
 ) -> None:
     common = ("--bus", spec, "--parent", str(os.getpid()))
     waits = (str(patience.boot_s), str(patience.answer_s))
     plant = start_node("sim.flight.plant_process", str(path), *common, "--patience", *waits)
     fsw = start_node("fsw", "--table", str(table), *common)
-    standstill = _standstill(path, scenario, patience)
-    stood_s = 0.0
+    stall = _stall_detector(path, scenario, patience)
+    stalled_s = 0.0
     try:
-        while plant.poll() is None and fsw.poll() is None and not (stood_s := standstill.lasts_s()):
+        while plant.poll() is None and fsw.poll() is None and not (stalled_s := stall.stalled_s()):
             _serve(hub, POLL_S)
             watch(last_tick(path, scenario))
-        deadline = time.monotonic() + (0.0 if stood_s else GRACE_S)
+        deadline = time.monotonic() + (0.0 if stalled_s else GRACE_S)
         while (
-            (plant.poll() is None or fsw.poll() is None) and time.monotonic() < deadline and _well(plant, fsw)
+            (plant.poll() is None or fsw.poll() is None)
+            and time.monotonic() < deadline
+            and _no_failure(plant, fsw)
         ):
             _serve(hub, POLL_S / 10.0)
     finally:
@@ -111,19 +118,19 @@ def _fly_processes(
         return
     tick = last_tick(path, scenario)
     name, process = failed[0] if failed else ("flight software", fsw)
-    why = run.get("ended") or f"the {name} {_how(process.returncode)} at tick {tick}"
-    if stood_s:
-        why = f"the plant stands still: nothing has been flown for {stood_s:.0f} s after tick {tick}"
+    why = run.get("ended") or f"the {name} {_exit_text(process.returncode)} at tick {tick}"
+    if stalled_s:
+        why = f"the plant stands still: nothing has been flown for {stalled_s:.0f} s after tick {tick}"
     if run.get("second_senders"):
-        why += f"; {said(run['second_senders'])}"
+        why += f"; {describe_senders(run['second_senders'])}"
     raise FlightError(f"{why}: the run is not complete, what was flown is in {path}")
 
 
-def _standstill(path: Path, scenario: Scenario, patience: Patience) -> Standstill:
+def _stall_detector(path: Path, scenario: Scenario, patience: Patience) -> StallDetector:
     factor = run_dir.read_run(path)["pace_factor"]
     two_ticks_s = 2.0 / (scenario.time.tick_hz * factor) if factor else 0.0
     longest_s = patience.answer_s + MARGIN_S + two_ticks_s
-    return Standstill(path / run_dir.BUS_LOG, patience.boot_s + MARGIN_S, longest_s)
+    return StallDetector(path / run_dir.BUS_LOG, patience.boot_s + MARGIN_S, longest_s)
 
 
 def last_tick(path: Path, scenario: Scenario) -> int:
@@ -142,7 +149,7 @@ def last_tick(path: Path, scenario: Scenario) -> int:
 
 
 def start_node(module: str, *arguments: str) -> subprocess.Popen[bytes]:
-    """A node as a process, of the same code. Ctrl-C is for this process alone: it ends its nodes itself."""
+    """Start a node as a process of the same code. Ctrl-C reaches this process only, which ends its nodes."""
     words = [sys.executable, "-m", module, *arguments]
     path = {"PYTHONPATH": os.pathsep.join(sys.path), "PYTHONSAFEPATH": "1"}  # not what lies in this directory
     environment = {**os.environ, **path, "OPENBLAS_NUM_THREADS": "1"}
@@ -150,7 +157,7 @@ def start_node(module: str, *arguments: str) -> subprocess.Popen[bytes]:
 
 
 def _serve(hub: Hub | None, seconds: float) -> None:
-    """Let time pass; where the bus is hosted here, by serving it."""
+    """Wait; meanwhile serve the bus if this process hosts it."""
     if hub is None:
         time.sleep(seconds)
         return
@@ -159,12 +166,12 @@ def _serve(hub: Hub | None, seconds: float) -> None:
         hub.poll(remaining_s)
 
 
-def _well(*processes: subprocess.Popen[bytes]) -> bool:
+def _no_failure(*processes: subprocess.Popen[bytes]) -> bool:
     return all(process.poll() in (None, 0) for process in processes)
 
 
 def _end(processes: Sequence[subprocess.Popen[bytes]], hub: Hub | None) -> None:
-    """End what still runs, with time to close its files; what stands still is killed."""
+    """Terminate processes that still run, with time to close their files; then kill them."""
     for process in processes:
         process.terminate()
     deadline = time.monotonic() + GRACE_S
@@ -175,7 +182,7 @@ def _end(processes: Sequence[subprocess.Popen[bytes]], hub: Hub | None) -> None:
         process.wait()
 
 
-def _how(code: int | None) -> str:
+def _exit_text(code: int | None) -> str:
     if code is not None and code < 0:
         return f"was ended by signal {-code}"
     return f"ended with exit code {code}"

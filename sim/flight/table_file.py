@@ -1,4 +1,4 @@
-"""The onboard table of a scenario as a file, for a flight software that is a process of its own."""
+"""The onboard table of a scenario as a file, for flight software in a process of its own."""
 
 from pathlib import Path
 
@@ -10,7 +10,7 @@ FLIGHT_TABLE = "flight.toml"
 
 
 def write_flight_table(folder: Path, scenario: Scenario) -> Path:
-    """Write the resolved table into a folder: its path.
+    """Write the resolved table into a folder, and return its path.
 
     Raises:
         TableError: the scenario's ``[flight]`` holds what the onboard table does not take.

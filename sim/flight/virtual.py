@@ -8,13 +8,13 @@ from pathlib import Path
 from fsw.node import FlightNode
 from fsw.table.config import flight_config
 from fsw.wire.frame import Frame
-from sim.flight.flight import Watch
-from sim.flight.recorded import record
+from sim.flight.flight_loop import ProgressCallback
+from sim.flight.record_flight import record_flight
 from sim.scenario.schema import Scenario, flight_table
 
 
 class VirtualBus:
-    """The plant's end of a bus whose only other node is the flight software, answering at once."""
+    """The plant's end of a bus whose only other node is the flight software, which answers at once."""
 
     name = "virtual"
 
@@ -39,7 +39,7 @@ class VirtualBus:
         """Nothing to release."""
 
 
-def fly_virtual(path: Path, scenario: Scenario, watch: Watch) -> None:
+def fly_virtual(path: Path, scenario: Scenario, watch: ProgressCallback) -> None:
     """Fly with plant and flight software in this process."""
     node = FlightNode(flight_config(flight_table(scenario)))
-    record(path, scenario, VirtualBus(node), watch)
+    record_flight(path, scenario, VirtualBus(node), watch)

@@ -16,7 +16,7 @@ from fsw.wire.frame import Frame
 from fsw.wire.messages import NAMES, Sync
 from sim.errors import HarnessError
 from sim.faults.section import forge_answers, make_plant
-from sim.flight.answers import answered
+from sim.flight.fsw_answers import has_answer
 from sim.progress import progress
 from sim.record import run_dir
 from sim.record.binding import Binding, compare
@@ -120,7 +120,7 @@ def through_plant(log: Path, run: LoggedRun) -> int:
                 return 1
             for frame in logged[:begin] + logged[end:]:
                 plant.receive(frame)
-            plant.slips += not answered(logged, ticks)
+            plant.slips += not has_answer(logged, ticks)
             plant.end_tick()
             ticks += 1
             watch(ticks)

@@ -11,7 +11,7 @@ from fsw.core.orbit.tle import read_tle, tle_elements
 from fsw.wire.messages import Mode, Severity
 from sim.audit.auditor import AuditReport
 from sim.audit.findings import COILS, seconds_text
-from sim.flight.second_senders import said
+from sim.flight.second_senders import describe_senders
 from sim.record.run_record import RunRecord
 from sim.scenario.schema import Scenario, orbit_period_s
 
@@ -86,7 +86,7 @@ def badges(summary: Json, run: RunRecord | None, audit: AuditReport) -> list[tup
         planned = f" of {run['ticks']}" if run else ""
         shown.append(("bad", f"✗ incomplete: {summary['ticks']}{planned} ticks"))
     if summary.get("second_senders"):
-        shown.append(("bad", f"✗ {said(summary['second_senders'])}"))
+        shown.append(("bad", f"✗ {describe_senders(summary['second_senders'])}"))
     return shown
 
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from enum import StrEnum
 
 from sim.audit.findings import AuditReport, Violation
-from sim.flight.second_senders import said
+from sim.flight.second_senders import describe_senders
 from sim.record import run_dir
 from sim.record.log_index import IndexCheck
 from sim.record.run_record import RunRecord

@@ -11,8 +11,8 @@ import pytest
 
 from sim.errors import FlightError
 from sim.flight import sil
-from sim.flight.answers import Patience
-from sim.flight.sil import fly_processes, served
+from sim.flight.fsw_answers import Patience
+from sim.flight.sil import fly_processes, serve_bus
 from sim.record import run_dir
 from sim.record.pace import Pace
 from sim.scenario.schema import load
@@ -51,7 +51,7 @@ def flight(tmp_path, monkeypatch, is_alive):
 
         stopper = Thread(target=stop)
         stopper.start()
-        with pytest.raises(FlightError) as caught, served("loop") as (spec, hub):
+        with pytest.raises(FlightError) as caught, serve_bus("loop") as (spec, hub):
             fly_processes(path, scenario, spec, hub, lambda tick: None, patience)
         stopper.join()
         took_s = time.monotonic() - stopped_at[0]

@@ -36,7 +36,7 @@ def plant(
     """Fly SCENARIO against a flight software on the same bus: waits for its FSW_BOOT, then begins tick 0."""
     from fsw.bus.open_bus import open_bus, resolve
     from sim.errors import FlightError
-    from sim.flight.recorded import check_plant, record, ticks_of
+    from sim.flight.record_flight import check_plant, record_flight, ticks_of
     from sim.progress import progress
     from sim.record import run_dir
     from sim.record.pace import parse_pace
@@ -52,7 +52,7 @@ def plant(
     run_dir.begin(directory, chosen, seed, ticks, spec.partition(":")[0], chosen_pace)
     click.echo(f"plant on {spec}: waiting for the flight software", err=True)
     with progress(f"flying {chosen.name}", ticks) as watch:
-        record(directory, chosen, link, watch, waiting=_still_waiting())
+        record_flight(directory, chosen, link, watch, waiting=_still_waiting())
     with progress("replaying", ticks) as watch:
         summary = conclude(directory, watch)
     click.echo(f"run: {directory}", err=True)

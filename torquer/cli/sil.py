@@ -30,8 +30,8 @@ def sil(
     settings: tuple[str, ...],
 ) -> int:
     """Fly SCENARIO: plant and flight software as two processes on a bus (virtual: in one)."""
-    from sim.flight.recorded import check_flyable, ticks_of
-    from sim.flight.sil import fly_processes, served
+    from sim.flight.record_flight import check_can_fly, ticks_of
+    from sim.flight.sil import fly_processes, serve_bus
     from sim.progress import progress
     from sim.record import run_dir
     from sim.record.pace import parse_pace
@@ -41,7 +41,7 @@ def sil(
     key = None if sign is None else private_key(sign)
     chosen, chosen_pace = load(scenario, parse_settings(settings)), parse_pace(pace)
     ticks, path = ticks_of(chosen, orbits), out or run_dir.default_path(chosen)
-    check_flyable(chosen, seed)
+    check_can_fly(chosen, seed)
     flying = f"flying {chosen.name}"
     if bus == "virtual":
         from sim.flight.virtual import fly_virtual
@@ -50,7 +50,7 @@ def sil(
         with progress(flying, ticks) as watch:
             fly_virtual(path, chosen, watch)
     else:
-        with served(bus) as (spec, hub):
+        with serve_bus(bus) as (spec, hub):
             kind = spec.partition(":")[0]
             run_dir.begin(path, chosen, seed, ticks, kind, chosen_pace)
             if bus == "auto":

@@ -19,7 +19,7 @@ from fsw.wire.messages import (
     TcMode,
     TickDone,
 )
-from sim.flight.second_senders import ALONE, SecondSender, SenderWatch, said
+from sim.flight.second_senders import ALONE, SecondSenderFrames, SenderWatch, describe_senders
 
 EPOCH = 1_427_424_417
 NAV = [NavAttitude(1, 0.1, 0.2, 0.3).encode(), NavRate(1, 0.0, 0.0, 0.0).encode()]
@@ -69,17 +69,17 @@ class TestInBothPaces:
     def test_no_one_else_sends_as_plant_or_board(self, lockstep, frame, early):
         second = ([frame], answer(2)) if early else ([], [*answer(2)[:2], frame, *answer(2)[2:]])
         found = heard(*quiet(2), second, ([], answer(3)), lockstep=lockstep)
-        assert found == [SecondSender(frame.can_id, 2, 1)]
+        assert found == [SecondSenderFrames(frame.can_id, 2, 1)]
 
     def test_boards_may_be_nodes_of_the_bus(self, lockstep):
         ticks = [([FIELD], answer(tick)) for tick in range(3)]
         assert heard(*ticks, lockstep=lockstep, own=ALONE) == []
-        assert heard(*ticks, lockstep=lockstep) == [SecondSender(MagField.ID, 0, 3)]
+        assert heard(*ticks, lockstep=lockstep) == [SecondSenderFrames(MagField.ID, 0, 3)]
 
     def test_a_boot_in_flight_is_another(self, lockstep):
         boot = FswBoot(0, 1, 2).encode()
         found = heard(*quiet(2), ([boot], answer(2)), lockstep=lockstep)
-        assert found == [SecondSender(FswBoot.ID, 2, 1)]
+        assert found == [SecondSenderFrames(FswBoot.ID, 2, 1)]
 
     def test_a_boot_that_was_asked_for_twice_may_come_into_the_first_tick(self, lockstep):
         boot = FswBoot(0, 1, 2).encode()
@@ -89,25 +89,25 @@ class TestInBothPaces:
     def test_a_tick_ends_once(self, lockstep):
         """A forged TICK_DONE came first and was believed; the true answer follows."""
         found = heard(*quiet(2), ([], [done(2)]), ([*answer(2)], answer(3)), lockstep=lockstep)
-        assert found == [SecondSender(TickDone.ID, 2, 1)]
+        assert found == [SecondSenderFrames(TickDone.ID, 2, 1)]
 
     def test_nor_before_it_has_begun(self, lockstep):
         assert heard(*quiet(2), ([], [done(900), *answer(2)]), lockstep=lockstep) == [
-            SecondSender(TickDone.ID, 2, 1)
+            SecondSenderFrames(TickDone.ID, 2, 1)
         ]
 
     def test_nor_long_after(self, lockstep):
         assert heard(*quiet(5), ([done(1)], answer(5)), lockstep=lockstep) == [
-            SecondSender(TickDone.ID, 5, 1)
+            SecondSenderFrames(TickDone.ID, 5, 1)
         ]
 
     def test_a_second_flight_software_says_everything_twice(self, lockstep):
         twice = [(answer(tick - 1) if tick else [], answer(tick)) for tick in range(10)]
-        assert heard(*twice, lockstep=lockstep) == [SecondSender(TickDone.ID, 0, 9)]
+        assert heard(*twice, lockstep=lockstep) == [SecondSenderFrames(TickDone.ID, 0, 9)]
 
     def test_frames_are_counted_from_the_first_on(self, lockstep):
         ticks = [([FIELD] if tick > 1 else [], answer(tick)) for tick in range(6)]
-        assert heard(*ticks, lockstep=lockstep) == [SecondSender(MagField.ID, 2, 4)]
+        assert heard(*ticks, lockstep=lockstep) == [SecondSenderFrames(MagField.ID, 2, 4)]
 
     @pytest.mark.parametrize(
         "frame",
@@ -128,17 +128,17 @@ class TestInBothPaces:
         """The flight software may have believed it: what it then says is its own."""
         forged = ([Sync(2, EPOCH + 2).encode(), *answer(2)], answer(2))
         assert heard(*quiet(2), forged, ([*answer(3)], answer(3)), lockstep=lockstep) == [
-            SecondSender(Sync.ID, 2, 1)
+            SecondSenderFrames(Sync.ID, 2, 1)
         ]
 
 
 class TestInLockstep:
     def test_between_two_answers_the_flight_software_is_silent(self):
-        assert heard(*quiet(2), ([NAV[0]], answer(2))) == [SecondSender(NavAttitude.ID, 2, 1)]
+        assert heard(*quiet(2), ([NAV[0]], answer(2))) == [SecondSenderFrames(NavAttitude.ID, 2, 1)]
 
     def test_no_answer_holds_a_message_twice(self):
         fire = CoilFire(1, 0, 3, 2, 3000).encode()
-        assert heard(([], [fire, fire, *answer(0)])) == [SecondSender(CoilFire.ID, 0, 1)]
+        assert heard(([], [fire, fire, *answer(0)])) == [SecondSenderFrames(CoilFire.ID, 0, 1)]
 
 
 def test_a_sync_that_was_sent_again_may_be_answered_again():
@@ -147,7 +147,7 @@ def test_a_sync_that_was_sent_again_may_be_answered_again():
     watch.take(1, answer(0), answer(1))
     assert watch.found == []
     watch.take(2, answer(1), answer(2))
-    assert watch.found == [SecondSender(TickDone.ID, 1, 1)]
+    assert watch.found == [SecondSenderFrames(TickDone.ID, 1, 1)]
 
 
 def test_in_real_time_a_late_answer_is_no_second_sender():
@@ -165,7 +165,7 @@ def test_a_new_one_is_told_at_once_and_only_once():
 
 
 def test_it_is_said_by_name_identifier_and_tick():
-    found = [SecondSender(TickDone.ID, 57, 1).as_json(), SecondSender(Sync.ID, 60, 3).as_json()]
-    assert said(found) == (
+    found = [SecondSenderFrames(TickDone.ID, 57, 1).as_json(), SecondSenderFrames(Sync.ID, 60, 3).as_json()]
+    assert describe_senders(found) == (
         "a second sender is on the bus: TICK_DONE (280) at tick 57, SYNC (180) from tick 60 on"
     )

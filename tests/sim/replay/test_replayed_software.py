@@ -11,7 +11,7 @@ from fsw.wire.candump_line import format_line, format_time
 from fsw.wire.frame import Frame
 from fsw.wire.messages import FswEvent, PlantEnd, Sync, TickDone
 from sim.flight import answers
-from sim.flight.recorded import record
+from sim.flight.record_flight import record_flight
 from sim.flight.virtual import VirtualBus
 from sim.record import run_dir
 from sim.record.candump import read_log
@@ -91,7 +91,7 @@ def fly_with(tmp_path, monkeypatch):
         run_dir.begin(tmp_path, scenario, 5, ticks, "virtual", Pace())
         config = flight_config(flight_table(scenario))
         bus = RacingBus(FlightNode(config), frames_of)
-        record(tmp_path, scenario, bus)
+        record_flight(tmp_path, scenario, bus)
         return bus, config
 
     return fly

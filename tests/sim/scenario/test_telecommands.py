@@ -36,7 +36,7 @@ from fsw.wire.messages import (
     TickDone,
     intact,
 )
-from sim.flight.recorded import record
+from sim.flight.record_flight import record_flight
 from sim.flight.virtual import VirtualBus, fly_virtual
 from sim.record import run_dir
 from sim.record.candump import read_log
@@ -285,7 +285,7 @@ def test_commands_by_hand_replay_too_wherever_they_meet_the_tick(tmp_path):
     run_dir.begin(tmp_path, scenario, 5, TICKS, "virtual", Pace())
     config = flight_config(flight_table(scenario))
     bus = RacingBus(FlightNode(config))
-    record(tmp_path, scenario, bus)
+    record_flight(tmp_path, scenario, bus)
     shown = replay(tmp_path / BUS_LOG, config)
     assert bus.count > 150
     assert shown.bit_exact, shown.first_bit_difference

@@ -8,13 +8,13 @@ import pytest
 from fsw.wire.frame import Frame
 from fsw.wire.messages import FswBoot, PlantBoot, PlantEnd, Sync, TickDone
 from sim.flight import answers
-from sim.flight.answers import (
+from sim.flight.fsw_answers import (
     MOST_WAITING,
     CounterpartError,
     Silence,
-    answered,
     await_boot,
-    heard_until,
+    frames_until,
+    has_answer,
     late_answers,
     lockstep_answers,
     waiting_frames,
@@ -85,7 +85,7 @@ class TestWaitingFrames:
         assert len(waiting_frames(babbling)) == MOST_WAITING
 
     def test_so_are_those_after_a_deadline_that_has_passed(self, babbling):
-        assert len(list(heard_until(babbling, time.monotonic() - 1.0))) == MOST_WAITING
+        assert len(list(frames_until(babbling, time.monotonic() - 1.0))) == MOST_WAITING
 
 
 class TestLateAnswers:
@@ -135,5 +135,5 @@ class TestSilence:
 
 
 def test_an_answer_names_its_tick_and_is_whole():
-    assert answered([NOISE, done(3)], 3)
-    assert not answered([done(2), done(3)._replace(data=b"\3"), PlantEnd(3).encode()], 3)
+    assert has_answer([NOISE, done(3)], 3)
+    assert not has_answer([done(2), done(3)._replace(data=b"\3"), PlantEnd(3).encode()], 3)

@@ -8,7 +8,7 @@ from fsw.bus.interface import BusError
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilBoot, CoilStatus, FswBoot, MagField, PlantBoot, Sync, TcClear, TickDone
 from sim.flight import bus_taken
-from sim.flight.bus_taken import FLYING, refuse_taken
+from sim.flight.bus_in_use import FLIGHT_NODES, refuse_bus_in_use
 
 BOOT = FswBoot(0, 1, 2).encode()
 FIELD = MagField(1, 20000.0, 0.0, -30000.0).encode()
@@ -31,8 +31,8 @@ def quick(monkeypatch):
 )
 def test_who_speaks_is_named_and_not_spoken_to(frame, named, bus_of):
     bus = bus_of([Frame(0x7FF, b""), frame])
-    with pytest.raises(BusError, match=rf"^vcan0 is taken: {named} was heard before the flight began$"):
-        refuse_taken(bus, "vcan0")
+    with pytest.raises(BusError, match=rf"^vcan0 is taken: {named} was received before the flight began$"):
+        refuse_bus_in_use(bus, "vcan0")
     assert bus.sent == []
 
 
@@ -40,7 +40,7 @@ def test_who_speaks_is_named_and_not_spoken_to(frame, named, bus_of):
 def test_who_waits_in_silence_is_asked(boot, bus_of):
     bus = bus_of(when_asked=[boot])
     with pytest.raises(BusError, match="_BOOT"):
-        refuse_taken(bus, "vcan0")
+        refuse_bus_in_use(bus, "vcan0")
     assert [frame.can_id for frame in bus.sent] == [PlantBoot.ID]
 
 
@@ -51,19 +51,19 @@ def test_noise_and_the_ground_take_no_bus(bus_of):
         Frame(CoilStatus.ID, b""),
         TcClear().encode(),
     ]
-    refuse_taken(bus_of(noise, noise), "vcan0")
+    refuse_bus_in_use(bus_of(noise, noise), "vcan0")
 
 
 def test_boards_may_be_there_where_they_are_wanted(bus_of):
     boards = [FIELD, CoilBoot(0, 1, 0).encode()]
-    refuse_taken(bus_of(boards, boards), "vcan0", FLYING)
+    refuse_bus_in_use(bus_of(boards, boards), "vcan0", FLIGHT_NODES)
     with pytest.raises(BusError, match="FSW_BOOT"):
-        refuse_taken(bus_of(boards, [*boards, BOOT]), "vcan0", FLYING)
+        refuse_bus_in_use(bus_of(boards, [*boards, BOOT]), "vcan0", FLIGHT_NODES)
 
 
 def test_a_bus_that_babbles_is_listened_to_no_longer(bus_of):
     bus = bus_of()
     bus.receive = lambda timeout_s: Frame(0x7FF, b"")
     began = time.monotonic()
-    refuse_taken(bus, "vcan0")
+    refuse_bus_in_use(bus, "vcan0")
     assert time.monotonic() - began < 1.0

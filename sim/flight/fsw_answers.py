@@ -1,4 +1,4 @@
-"""How the plant waits for the flight software: for its boot, for the answer to a tick, and not for ever."""
+"""How the plant waits for the flight software: for its boot and for the answer to a tick, with deadlines."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -13,27 +13,27 @@ from sim.errors import FlightError
 BOOT_REQUEST_S = 1.0
 ANSWER_TIMEOUT_S = 20.0
 REPEAT_SYNC_S = 2.0
-"""In lockstep: silence after which SYNC is sent again; a flight software that doubts it believes it then."""
+"""In lockstep: silence after which SYNC is repeated; flight software that rejected the first accepts that."""
 LATE_TIMEOUT_S = 5.0
-"""After the last tick in real time: silence for so long, and no late answer is waited for any more."""
+"""In real time, after the last tick: silence after which the plant stops waiting for late answers."""
 
 MOST_WAITING = 1024
-"""Frames of strangers taken before a tick: one that babbles without end does not stop the plant."""
+"""Most frames taken before a tick, so that a babbling node cannot stop the plant."""
 
 Overhear = Callable[[int, list[Frame], list[Frame], bool], object]
-"""Called in each tick with what came before its SYNC and after it, and whether SYNC was sent again."""
+"""Called in each tick with the frames before its SYNC, those after it, and whether SYNC was repeated."""
 
 
 class CounterpartError(FlightError):
-    """The flight software has said nothing for too long, or another plant speaks in this one's place."""
+    """The flight software is silent for too long, or another plant sends on the bus."""
 
 
 @dataclass(frozen=True, slots=True)
 class Patience:
-    """How long the flight software is waited for [s].
+    """How long to wait for the flight software [s].
 
-    ``boot_s``: until it boots. ``answer_s``: in lockstep for the answer to a tick. ``silence_s``: in real
-    time, where no answer is waited for, for any at all.
+    ``boot_s``: for its boot. ``answer_s``: in lockstep, for the answer to a tick. ``silence_s``: in real
+    time, for any answer.
     """
 
     boot_s: float = inf
@@ -42,7 +42,7 @@ class Patience:
 
 
 def await_boot(bus: Bus, boot_s: float, overhear: Overhear, waiting: Callable[[float], None]) -> Frame:
-    """FSW_BOOT. A flight software that started first and was not heard is asked to repeat it."""
+    """Wait for FSW_BOOT; PLANT_BOOT asks flight software that booted earlier to repeat it."""
     began = time.monotonic()
     while (waited_s := time.monotonic() - began) < boot_s:
         waiting(waited_s)
@@ -61,15 +61,15 @@ def await_boot(bus: Bus, boot_s: float, overhear: Overhear, waiting: Callable[[f
 
 
 def waiting_frames(bus: Bus) -> list[Frame]:
-    """What strangers have sent since: the flight software has it before this tick, so the log has too."""
+    """Frames received since the last tick; in the log, as for the flight software, they precede this tick."""
     frames: list[Frame] = []
     while len(frames) < MOST_WAITING and (frame := bus.receive(0.0)) is not None:
         frames.append(frame)
     return frames
 
 
-def heard_until(bus: Bus, deadline: float) -> Iterator[Frame]:
-    """All frames up to a deadline of the monotonic clock, and what is there already if that has passed."""
+def frames_until(bus: Bus, deadline: float) -> Iterator[Frame]:
+    """All frames up to a deadline of the monotonic clock; those already received if it has passed."""
     late = 0
     while late < MOST_WAITING:
         left_s = max(0.0, deadline - time.monotonic())
@@ -81,16 +81,16 @@ def heard_until(bus: Bus, deadline: float) -> Iterator[Frame]:
 
 
 def lockstep_answers(bus: Bus, tick: int, sync: Frame, answer_s: float) -> list[Frame]:
-    """All frames up to the TICK_DONE that names ``tick``, with SYNC where it had to be sent again.
+    """All frames up to the TICK_DONE of ``tick``, among them each repeated SYNC.
 
-    What others say does not stretch the time for it.
+    Frames of other nodes do not extend the deadline.
     """
     answers: list[Frame] = []
     deadline = time.monotonic() + answer_s
     while True:
-        for frame in heard_until(bus, min(deadline, time.monotonic() + REPEAT_SYNC_S)):
+        for frame in frames_until(bus, min(deadline, time.monotonic() + REPEAT_SYNC_S)):
             answers.append(frame)
-            if _names(frame, tick):
+            if _is_answer(frame, tick):
                 return answers
         if time.monotonic() >= deadline:
             raise CounterpartError(
@@ -101,25 +101,25 @@ def lockstep_answers(bus: Bus, tick: int, sync: Frame, answer_s: float) -> list[
 
 
 def late_answers(bus: Bus, tick: int) -> list[Frame]:
-    """What a flight software that has fallen behind still says, up to the TICK_DONE that names ``tick``.
+    """The late frames of flight software that has fallen behind, up to the TICK_DONE of ``tick``.
 
-    It is over when no tick is answered for ``LATE_TIMEOUT_S``, whatever others say.
+    Ends when no tick is answered for ``LATE_TIMEOUT_S``, whatever other nodes send.
     """
     answers: list[Frame] = []
-    left_s, answered_s = LATE_TIMEOUT_S, time.monotonic()
-    while left_s > 0.0 and not answered(answers[-1:], tick) and (frame := bus.receive(left_s)) is not None:
+    left_s, last_s = LATE_TIMEOUT_S, time.monotonic()
+    while left_s > 0.0 and not has_answer(answers[-1:], tick) and (frame := bus.receive(left_s)) is not None:
         answers.append(frame)
         now = time.monotonic()
         if frame.can_id == TickDone.ID:
-            answered_s = now
-        left_s = LATE_TIMEOUT_S - (now - answered_s)
+            last_s = now
+        left_s = LATE_TIMEOUT_S - (now - last_s)
     return answers
 
 
 class Silence:
-    """In real time: how long the flight software has answered no tick.
+    """In real time: the time for which the flight software has answered no tick.
 
-    Time for which this process was stopped itself does not count.
+    Time in which this process itself was stopped does not count.
     """
 
     def __init__(self, most_s: float, period_s: float, began: float) -> None:
@@ -127,10 +127,10 @@ class Silence:
         self._longest_s = period_s + 1.0
         self._before = began
         self._silent_s = 0.0
-        self._answered = -1
+        self._last_tick = -1
 
-    def end(self, heard: list[Frame], tick: int) -> None:
-        """A tick has ended, with what was heard in it.
+    def end(self, frames: list[Frame], tick: int) -> None:
+        """Note the end of a tick, and the frames received in it.
 
         Raises:
             CounterpartError: too long without an answer, and over more than one tick.
@@ -138,21 +138,21 @@ class Silence:
         now = time.monotonic()
         self._silent_s += min(now - self._before, self._longest_s)
         self._before = now
-        if any(frame.can_id == TickDone.ID for frame in heard):
-            self._silent_s, self._answered = 0.0, tick
-        elif self._silent_s > self._most_s and tick > self._answered + 1:
+        if any(frame.can_id == TickDone.ID for frame in frames):
+            self._silent_s, self._last_tick = 0.0, tick
+        elif self._silent_s > self._most_s and tick > self._last_tick + 1:
             raise CounterpartError(
-                f"no answer from the flight software since tick {max(self._answered, 0)} "
+                f"no answer from the flight software since tick {max(self._last_tick, 0)} "
                 f"for {self._most_s:.0f} s"
             )
 
 
-def answered(frames: list[Frame], tick: int) -> bool:
-    """Whether the TICK_DONE that names ``tick`` is among the frames."""
-    return any(_names(frame, tick) for frame in frames)
+def has_answer(frames: list[Frame], tick: int) -> bool:
+    """Whether the TICK_DONE of ``tick`` is among the frames."""
+    return any(_is_answer(frame, tick) for frame in frames)
 
 
-def _names(frame: Frame, tick: int) -> bool:
+def _is_answer(frame: Frame, tick: int) -> bool:
     return (
         frame.can_id == TickDone.ID
         and len(frame.data) == TickDone.LENGTH

@@ -16,7 +16,7 @@ from fsw.wire.messages import (
 )
 from sim.errors import FlightError
 from sim.flight import answers
-from sim.flight.flight import fly
+from sim.flight.flight_loop import fly
 from sim.flight.virtual import VirtualBus
 from sim.plant.dynamics.torques import SOURCES
 from sim.plant.plant import Plant
@@ -42,7 +42,7 @@ def scripted(bus_of):
 
 @pytest.fixture
 def flown(tmp_path):
-    """Flies on a bus: (Flown, log entries, histories, plant)."""
+    """Flies on a bus: (FlightOutcome, log entries, histories, plant)."""
 
     def through(bus, ticks=20, pace=LOCKSTEP, *settings, watch=lambda tick: None):
         scenario = load("microsat", parse_settings(settings))

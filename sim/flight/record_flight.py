@@ -1,4 +1,4 @@
-"""A flight that is recorded: the plant on a bus, its log, histories and strangers kept in a run directory."""
+"""Records a flight: bus log, histories and second senders go into the run directory."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -7,8 +7,8 @@ from fsw.bus.interface import Bus
 from fsw.wire.frame import Frame
 from sim.errors import HarnessError
 from sim.faults.section import make_plant
-from sim.flight.answers import Patience
-from sim.flight.flight import Watch, fly
+from sim.flight.flight_loop import ProgressCallback, fly
+from sim.flight.fsw_answers import Patience
 from sim.flight.second_senders import SenderWatch
 from sim.record import run_dir
 from sim.record.bus_log import BusLog
@@ -19,7 +19,7 @@ from sim.scenario.schema import Scenario, flight_table, orbit_period_s
 from sim.scenario.telecommands import uplink
 
 MOST_TICKS = 2**24 - 1
-"""What PLANT_END can tell."""
+"""The largest count of PLANT_END."""
 
 
 def ticks_of(scenario: Scenario, orbits: float | None) -> int:
@@ -37,8 +37,8 @@ def ticks_of(scenario: Scenario, orbits: float | None) -> int:
     return max(1, round(chosen * ticks_per_orbit))
 
 
-def check_flyable(scenario: Scenario, seed: int) -> None:
-    """Build plant and flight software once, before a run is begun that one of them could not fly.
+def check_can_fly(scenario: Scenario, seed: int) -> None:
+    """Check that plant and flight software can be built, before the run is begun.
 
     Raises:
         TableError: why not.
@@ -54,23 +54,23 @@ def check_plant(scenario: Scenario, seed: int) -> None:
     make_plant(plant_config(scenario, seed), scenario.fault)
 
 
-def record(
+def record_flight(
     path: Path,
     scenario: Scenario,
     bus: Bus,
-    watch: Watch = lambda tick: None,
+    watch: ProgressCallback = lambda tick: None,
     patience: Patience | None = None,
     waiting: Callable[[float], None] = lambda waited_s: None,
 ) -> None:
-    """Fly the run that ``path`` was begun for, and keep there its log, its histories, and who else spoke.
+    """Fly a run that was begun, and record its log, its histories and its second senders.
 
     Args:
-        path: of the run.
-        scenario: its own.
+        path: the run directory.
+        scenario: of the run.
         bus: to fly on; it is closed.
-        watch: told the tick, now and then.
-        patience: how long the flight software is waited for; None: until it boots for ever.
-        waiting: told every second how long that has lasted.
+        watch: called with the tick now and then.
+        patience: how long to wait for the flight software; None: without limit until it boots.
+        waiting: called every second until the flight software boots, with the time waited [s].
 
     Raises:
         FlightError: the flight software gives no answer.
@@ -81,19 +81,19 @@ def record(
     pace = Pace(run["pace_factor"])
     senders = SenderWatch(lockstep=pace.factor is None)
 
-    def keep_senders() -> None:
+    def store_senders() -> None:
         run_dir.update(path, second_senders=[sender.as_json() for sender in senders.found])
 
     def overhear(tick: int, before: list[Frame], answers: list[Frame], again: bool) -> None:
         if senders.take(tick, before, answers, again):
-            keep_senders()
+            store_senders()
 
     try:
         with (
             BusLog(path / run_dir.BUS_LOG, bus.name) as log,
             TruthFile(path / run_dir.TRUTH, run["ticks"], plant.torque_sources) as truth,
         ):
-            flown = fly(
+            outcome = fly(
                 plant,
                 bus,
                 log,
@@ -110,10 +110,10 @@ def record(
             )
     finally:
         bus.close()
-        if senders.found:  # how many frames, in the end
-            keep_senders()
+        if senders.found:  # their final counts of frames
+            store_senders()
     run_dir.update(
         path,
-        flown={"ticks": flown.ticks, "slips": flown.slips, "wall_s": flown.wall_s},
+        flown={"ticks": outcome.ticks, "slips": outcome.slips, "wall_s": outcome.wall_s},
         **{run_dir.DIGESTS: {run_dir.BUS_LOG: log.sha256}},
     )

@@ -1,4 +1,4 @@
-"""One flight: the plant's ticks exchanged with the flight software over a bus, recorded as they happen.
+"""The loop of a flight: the plant exchanges its ticks with the flight software over a bus and records them.
 
 In lockstep the plant waits for the TICK_DONE that names its tick. In real time it keeps to absolute
 deadlines; an answer that is not there by then is a counted slip, never a wait.
@@ -13,13 +13,13 @@ from typing import Protocol
 
 from fsw.bus.interface import Bus
 from fsw.wire.frame import Frame
-from sim.flight.answers import (
+from sim.flight.fsw_answers import (
     Overhear,
     Patience,
     Silence,
-    answered,
     await_boot,
-    heard_until,
+    frames_until,
+    has_answer,
     late_answers,
     lockstep_answers,
     waiting_frames,
@@ -29,13 +29,13 @@ from sim.record.inbox_order import split_at_sync
 from sim.record.pace import LOCKSTEP, Pace
 from sim.scenario.telecommands import Uplink
 
-Watch = Callable[[int], None]
-"""Called now and then with the tick that is under way."""
+ProgressCallback = Callable[[int], None]
+"""Called every ``WATCH_TICKS`` ticks with the current tick."""
 
 
 @dataclass(frozen=True, slots=True)
-class Flown:
-    """What became of a flight."""
+class FlightOutcome:
+    """The outcome of a completed flight."""
 
     ticks: int
     slips: int
@@ -43,14 +43,14 @@ class Flown:
 
 
 class FrameLog(Protocol):
-    """Takes the frames of a flight."""
+    """A sink for the frames of a flight."""
 
     def write(self, timestamp_us: int, frames: list[Frame]) -> None:
-        """Append frames that all bear one time."""
+        """Append frames that share one time stamp."""
 
 
 class TruthLog(Protocol):
-    """Takes the plant's truth."""
+    """A sink for the plant's truth."""
 
     def append(self, row: TruthRow) -> None:
         """Add the row of the next tick."""
@@ -68,32 +68,32 @@ def fly(
     epoch_unix_s: int,
     tick_hz: int,
     pace: Pace = LOCKSTEP,
-    watch: Watch = lambda tick: None,
+    watch: ProgressCallback = lambda tick: None,
     uplink: Uplink = lambda tick: [],
     patience: Patience | None = None,
     overhear: Overhear = lambda tick, before, answers, again: None,
     waiting: Callable[[float], None] = lambda waited_s: None,
-) -> Flown:
-    """Fly ``ticks`` ticks; what the ground sends in a tick goes before what the boards say.
+) -> FlightOutcome:
+    """Fly ``ticks`` ticks; in each, telecommands go before the frames of the boards.
 
     Args:
-        plant: to be flown.
-        bus: its end.
-        log: takes every frame.
-        truth: takes the plant's truth.
+        plant: the plant.
+        bus: the plant's end of the bus.
+        log: sink of every frame.
+        truth: sink of the plant's truth.
         ticks: how many.
         epoch_unix_s: time of tick 0.
         tick_hz: ticks a second.
         pace: lockstep or real time.
-        watch: told the tick, now and then.
-        uplink: what the ground sends in a tick.
-        patience: how long the flight software is waited for; None: the default.
-        overhear: told what others have sent.
-        waiting: told every second how long the flight software has been waited for until it boots [s].
+        watch: called with the tick every ``WATCH_TICKS`` ticks.
+        uplink: the telecommands of a tick.
+        patience: how long to wait for the flight software; None: the default.
+        overhear: called in each tick with the frames of other nodes.
+        waiting: called every second until the flight software boots, with the time waited [s].
 
     Raises:
-        CounterpartError: the flight software is silent, or another plant speaks.
-        FlightError: the disk takes no more.
+        CounterpartError: the flight software is silent, or another plant sends.
+        FlightError: the disk is full.
         BusError: the bus failed.
     """
     patience = patience or Patience()
@@ -108,17 +108,17 @@ def fly(
     for tick in range(ticks):
         timestamp_us = epoch_us + tick * 1_000_000 // tick_hz
         sent = uplink(tick) + plant.begin_tick()
-        known = answers + (before := waiting_frames(bus)) + sent
+        inbox = answers + (before := waiting_frames(bus)) + sent
         bus.send(sent)
         if pace.factor is None:
             answers = lockstep_answers(bus, tick, sent[-1], patience.answer_s)
         else:
-            answers = list(heard_until(bus, began + (tick + 1) * period_s))
-            plant.slips += not answered(answers, tick)
+            answers = list(frames_until(bus, began + (tick + 1) * period_s))
+            plant.slips += not has_answer(answers, tick)
             silence.end(before + answers, tick)
         from_others = [frame for frame in answers if frame is not sent[-1]]
         overhear(tick, before, from_others, len(from_others) < len(answers))
-        received, answers = split_at_sync(known, answers, tick)
+        received, answers = split_at_sync(inbox, answers, tick)
         before += received
         for frame in before + answers:
             plant.receive(frame)
@@ -127,13 +127,13 @@ def fly(
         plant.end_tick()
         if tick % WATCH_TICKS == 0:
             watch(tick)
-    if not answered(answers, ticks - 1):
+    if not has_answer(answers, ticks - 1):
         log.write(timestamp_us, late_answers(bus, ticks - 1))
     end = plant.end()
     bus.send([end])
     log.write(epoch_us + ticks * 1_000_000 // tick_hz, [end])
     truth.flush()
-    return Flown(ticks, plant.slips, time.monotonic() - began)
+    return FlightOutcome(ticks, plant.slips, time.monotonic() - began)
 
 
 WATCH_TICKS = 64

@@ -11,7 +11,7 @@ from fsw.wire.frame import Frame
 from fsw.wire.messages import FswBoot, TickDone
 from sim.errors import FlightError, HarnessError
 from sim.flight import answers
-from sim.flight.recorded import MOST_TICKS, check_flyable, check_plant, record, ticks_of
+from sim.flight.record_flight import MOST_TICKS, check_can_fly, check_plant, record_flight, ticks_of
 from sim.record import run_dir
 from sim.record.candump import read_log
 from sim.record.pace import LOCKSTEP
@@ -47,7 +47,7 @@ def test_what_the_flight_software_cannot_fly_is_refused_before_the_run_begins():
     """A pulse below a tick: the plant alone could fly it."""
     scenario = load("microsat", parse_settings(("coils.pulse_s=0.1",)))
     with pytest.raises(TableError):
-        check_flyable(scenario, 1)
+        check_can_fly(scenario, 1)
     check_plant(scenario, 1)
 
 
@@ -62,7 +62,7 @@ class TestRecord:
     def test_leaves_log_histories_and_what_was_flown(self, run, bus_of):
         path, scenario = run
         bus = bus_of([BOOT], answer=lambda tick: [TickDone(tick, 7).encode()])
-        record(path, scenario, bus)
+        record_flight(path, scenario, bus)
         log = path / "bus.log"
         kept = json.loads((path / "run.json").read_text())
         assert (kept["flown"]["ticks"], kept["flown"]["slips"]) == (TICKS, 0)
@@ -75,7 +75,7 @@ class TestRecord:
         path, scenario = run
         foreign = TickDone(4000, 7).encode()
         answer = {2: [foreign]}
-        record(
+        record_flight(
             path,
             scenario,
             bus_of([BOOT], answer=lambda tick: [*answer.get(tick, []), TickDone(tick, 7).encode()]),
@@ -89,7 +89,7 @@ class TestRecord:
         noise = Frame(0x7FF, b"")
         bus = bus_of([BOOT], answer=lambda tick: [noise, TickDone(tick, 7).encode()] if tick < 3 else [])
         with pytest.raises(FlightError, match="to tick 3"):
-            record(path, scenario, bus)
+            record_flight(path, scenario, bus)
         assert bus.closed
         assert TickDone.decode(list(read_log(path / "bus.log"))[-1].frame.data).tick == 2
         assert "flown" not in json.loads((path / "run.json").read_text())
