@@ -17,11 +17,11 @@ from fsw.wire.messages import (
     intact,
 )
 from sim.plant.config import PlantConfig
-from sim.plant.hardware.actuators import Board, Driven
+from sim.plant.hardware.actuators import Board, CoilDrive
 from sim.plant.plant import Plant
 from sim.plant.rotation import ZERO
 
-OFF = Driven(ZERO, 0.0)
+OFF = CoilDrive(ZERO, 0.0)
 Line = Callable[[bytes], None]
 """Writes a line to a sensor's standard input."""
 
@@ -118,7 +118,7 @@ class ReportedDrive:
         part_ms = self._tick_ms if status.remaining_ms else before_ms or self._requested_ms
         current_a = self._level_a[abs(status.level)] * (1.0 if status.level > 0 else -1.0)
         x, y, z = (current_a if coil == status.coil else 0.0 for coil in range(3))
-        return Driven((x, y, z), min(1.0, part_ms / self._tick_ms))
+        return CoilDrive((x, y, z), min(1.0, part_ms / self._tick_ms))
 
 
 class PlantTicks:

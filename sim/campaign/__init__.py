@@ -1,1 +1,1 @@
-"""Studies made of many flights, side by side on the machine's cores."""
+"""Studies of many flights, run in parallel on the cores of the machine."""

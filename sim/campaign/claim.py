@@ -1,4 +1,4 @@
-"""What is claimed, and what became of it."""
+"""Claims, their verdicts, and the studies that decide them."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -7,13 +7,13 @@ from math import inf
 from typing import Any
 
 
-class Verdict(StrEnum):
-    """What a claim's figure says."""
+class ClaimVerdict(StrEnum):
+    """The verdict on a claim."""
 
     PASS = "PASS"
     FAIL = "FAIL"
     ABSENT = "absent"
-    """There is nothing here to judge it by."""
+    """The data to judge it by are missing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +23,7 @@ class Claim:
     Attributes:
         id: short and unique; ``--only`` takes it or its first words.
         statement: what the figure is.
-        source: who says so.
+        source: where the claim is from.
         unit: of figure and limits.
         low: least that passes.
         high: most that passes.
@@ -36,14 +36,14 @@ class Claim:
     low: float = -inf
     high: float = inf
 
-    def judge(self, ours: float, where: str = "") -> "Outcome":
+    def judge(self, ours: float, where: str = "") -> "ClaimOutcome":
         """The outcome of a figure; one that is not a number fails."""
         passed = self.low <= ours <= self.high
-        return Outcome(self, Verdict.PASS if passed else Verdict.FAIL, ours, where)
+        return ClaimOutcome(self, ClaimVerdict.PASS if passed else ClaimVerdict.FAIL, ours, where)
 
     @property
     def limits(self) -> str:
-        """The limits for a person."""
+        """The limits as text."""
         if self.low == -inf:
             return "0" if self.high == 0.0 else f"<= {self.high:.6g}"
         if self.high == inf:
@@ -52,31 +52,31 @@ class Claim:
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class ClaimOutcome:
     """A claim with its figure and verdict; ``where`` names the worst case."""
 
     claim: Claim
-    verdict: Verdict
+    verdict: ClaimVerdict
     ours: float | None = None
     where: str = ""
 
 
 Task = Callable[[], Any]
-"""Computes something that can be sent between processes; can be sent itself."""
+"""A picklable function with a picklable result."""
 
 
 @dataclass(frozen=True, slots=True)
 class Study:
-    """Work that decides about some claims together.
+    """Tasks that decide some claims together.
 
     Attributes:
         id: the first word of its claims' ids.
         tasks: independent of each other and of the order in which they run.
         conclude: the outcomes, from the tasks' results in order.
-        flown: whether the tasks are flights, which take minutes.
+        has_flights: whether the tasks are flights, which take minutes.
     """
 
     id: str
     tasks: tuple[Task, ...]
-    conclude: Callable[[Sequence[Any]], list[Outcome]]
-    flown: bool = False
+    conclude: Callable[[Sequence[Any]], list[ClaimOutcome]]
+    has_flights: bool = False

@@ -1,7 +1,7 @@
-"""A flight for campaigns: plant and flight software in one process, no file, judged as by ``torquer sil``.
+"""Flights for campaigns: plant and flight software in one process, no files, judged as by ``torquer sil``.
 
-The loop, the bus, the audit and the summary are those of ``torquer sil --bus virtual``; only what they are
-given is kept in memory instead of files, and no more of it than they need.
+The loop, the bus, the audit and the summary are those of ``torquer sil --bus virtual``; only their
+input is in memory instead of files, and only as much as they need.
 """
 
 from collections.abc import Callable
@@ -33,17 +33,17 @@ from sim.scenario.telecommands import uplink
 Figures = dict[str, float]
 Measure = Callable[[Scenario, Histories, Estimates], Figures]
 
-_KEPT = frozenset({CoilStatus.ID, CoilBoot.ID, CoilRefused.ID, Sync.ID, PlantEnd.ID}) | {
+_JUDGED = frozenset({CoilStatus.ID, CoilBoot.ID, CoilRefused.ID, Sync.ID, PlantEnd.ID}) | {
     can_id for can_id, name in NAMES.items() if name.endswith("_EVENT")
 }
-"""What audit and tally look at."""
+"""Identifiers of the frames that audit and tally evaluate."""
 
 _COLUMNS = {"t_s": 1, "q_body_from_orbit": 4, "omega_body_orbit_radps": 3, "lit": 1, "m_body_am2": 3}
 
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """A flight to be flown.
+    """A flight to be run.
 
     Attributes:
         scenario: name or path.
@@ -61,8 +61,8 @@ class Order:
 
 
 @dataclass(frozen=True, slots=True)
-class Flight:
-    """What came of it: the keys of summary.json, and what ``measure`` gave."""
+class FlightResult:
+    """The result of a flight: the keys of summary.json, and the figures of ``measure``."""
 
     order: Order
     summary: Json
@@ -70,8 +70,8 @@ class Flight:
 
 
 @dataclass(frozen=True, slots=True)
-class Record:
-    """All that is kept of a flight: ``run`` is what ``run.json`` would say of it, as far as it is judged."""
+class RecordedFlight:
+    """The record of a flight: ``run`` has the keys of ``run.json`` that a summary needs."""
 
     scenario: Scenario
     run: FlightRecord
@@ -81,21 +81,23 @@ class Record:
     tally: BusTally
 
 
-def fly_order(order: Order) -> Flight:
+def fly_order(order: Order) -> FlightResult:
     """Fly, audit and summarise.
 
     Raises:
         TableError: the scenario or an override is not valid.
         HarnessError: the flight cannot be flown.
     """
-    kept = record_order(order)
-    summary = summarise(kept.scenario, kept.run, kept.truth, kept.estimates, kept.audit, kept.tally)
-    figures = {} if order.measure is None else order.measure(kept.scenario, kept.truth, kept.estimates)
-    return Flight(order, summary, figures)
+    record = record_order(order)
+    summary = summarise(
+        record.scenario, record.run, record.truth, record.estimates, record.audit, record.tally
+    )
+    figures = {} if order.measure is None else order.measure(record.scenario, record.truth, record.estimates)
+    return FlightResult(order, summary, figures)
 
 
-def record_order(order: Order) -> Record:
-    """Fly and audit; ``measure`` is left to others.
+def record_order(order: Order) -> RecordedFlight:
+    """Fly and audit; ``measure`` is not called.
 
     Raises:
         TableError: the scenario or an override is not valid.
@@ -106,7 +108,7 @@ def record_order(order: Order) -> Record:
     node = FlightNode(flight_config(flight_table(scenario)))
     log, truth = _Frames(), _Truth(ticks, node)
     plant = Plant(plant_config(scenario, order.seed))
-    flown = fly(
+    outcome = fly(
         plant,
         VirtualBus(node),
         log,
@@ -120,14 +122,14 @@ def record_order(order: Order) -> Record:
     for entry in log.entries:
         tally.take(entry)
     run = FlightRecord(
-        seed=order.seed, flown={"ticks": flown.ticks, "slips": flown.slips, "wall_s": flown.wall_s}
+        seed=order.seed, flown={"ticks": outcome.ticks, "slips": outcome.slips, "wall_s": outcome.wall_s}
     )
-    audited = audit(log.entries, limits_in(scenario.model_dump(mode="json"), scenario.name))
-    return Record(scenario, run, truth.histories, truth.recorder.estimates(), audited, tally)
+    report = audit(log.entries, limits_in(scenario.model_dump(mode="json"), scenario.name))
+    return RecordedFlight(scenario, run, truth.histories, truth.recorder.estimates(), report, tally)
 
 
 class _Frames:
-    """The frames that are looked at afterwards, numbered as the lines of a log would be."""
+    """The frames that are evaluated after the flight, numbered like the lines of a log."""
 
     def __init__(self) -> None:
         self.entries: list[LogEntry] = []
@@ -136,12 +138,12 @@ class _Frames:
     def write(self, timestamp_us: int, frames: list[Frame]) -> None:
         for frame in frames:
             self._line += 1
-            if frame.can_id in _KEPT:
+            if frame.can_id in _JUDGED:
                 self.entries.append(LogEntry(self._line, timestamp_us, "virtual", frame))
 
 
 class _Truth:
-    """The histories that a summary needs, and with each row what the flight software knows by then."""
+    """The histories that a summary needs, and with each row the estimate of the flight software."""
 
     def __init__(self, ticks: int, node: FlightNode) -> None:
         self.histories: Histories = {
@@ -159,4 +161,4 @@ class _Truth:
         self._row += 1
 
     def flush(self) -> None:
-        """Everything is there already."""
+        """Nothing is buffered."""

@@ -1,4 +1,4 @@
-"""Runs studies, their tasks side by side on the machine's cores; the outcome does not depend on how many."""
+"""Runs studies, their tasks in parallel; the outcome does not depend on the number of processes."""
 
 import multiprocessing
 import os
@@ -12,31 +12,31 @@ from dataclasses import dataclass
 from multiprocessing.process import BaseProcess
 from typing import Any
 
-from sim.campaign.claim import Outcome, Study, Task
+from sim.campaign.claim import ClaimOutcome, Study, Task
 from sim.errors import HarnessError
 
 Watch = Callable[[int], None]
 
 
 class WorkerLostError(HarnessError):
-    """Not all was done, and through no fault of what was asked for."""
+    """A worker process was ended from outside before all tasks were done."""
 
     exit_code = 1
 
 
 @dataclass(frozen=True, slots=True)
-class Finished:
-    """A study that is done: outcomes, what its tasks gave, and how long these took together."""
+class StudyResult:
+    """A completed study: outcomes, results of its tasks, and the sum of their wall times."""
 
     study: Study
-    outcomes: tuple[Outcome, ...]
+    outcomes: tuple[ClaimOutcome, ...]
     results: tuple[Any, ...]
     wall_s: float
 
 
 def run(
-    studies: Sequence[Study], workers: int, watch: Watch, report: Callable[[Finished], None]
-) -> list[Finished]:
+    studies: Sequence[Study], workers: int, watch: Watch, report: Callable[[StudyResult], None]
+) -> list[StudyResult]:
     """Run all tasks and conclude every study.
 
     Args:
@@ -49,18 +49,18 @@ def run(
         The studies in their order.
 
     Raises:
-        HarnessError: a task met what a user can mend, or a worker was ended; the rest is given up.
+        HarnessError: a task failed with a message for the user, or a worker was ended; the rest is cancelled.
     """
     waiting = {place: len(study.tasks) for place, study in enumerate(studies)}
     results: dict[tuple[int, int], tuple[float, Any]] = {}
-    finished: dict[int, Finished] = {}
+    finished: dict[int, StudyResult] = {}
 
     def conclude(place: int) -> None:
         study = studies[place]
         mine = [results.pop((place, number)) for number in range(len(study.tasks))]
-        given = tuple(result for _, result in mine)
+        task_results = tuple(result for _, result in mine)
         wall_s = sum(wall_s for wall_s, _ in mine)
-        finished[place] = Finished(study, tuple(study.conclude(given)), given, wall_s)
+        finished[place] = StudyResult(study, tuple(study.conclude(task_results)), task_results, wall_s)
         report(finished[place])
 
     for place in [place for place, count in waiting.items() if not count]:
@@ -83,14 +83,14 @@ def _results(studies: Sequence[Study], workers: int) -> Iterator[tuple[int, int,
     ]
     if workers == 1 or len(tasks) < 2:
         for place, number, task in tasks:
-            yield place, number, _timed(task)
+            yield place, number, _run_timed(task)
         return
     others = multiprocessing.active_children()
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # one task, one core
     with ProcessPoolExecutor(min(workers, len(tasks)), multiprocessing.get_context("spawn")) as pool:
-        with _deaf_children():
+        with _children_ignore_interrupt():
             places: dict[Future[tuple[float, Any]], tuple[int, int]] = {
-                pool.submit(_timed, task): (place, number) for place, number, task in tasks
+                pool.submit(_run_timed, task): (place, number) for place, number, task in tasks
             }
         try:
             for future in as_completed(places):
@@ -107,8 +107,8 @@ def _results(studies: Sequence[Study], workers: int) -> Iterator[tuple[int, int,
 
 
 @contextmanager
-def _deaf_children() -> Iterator[None]:
-    """Processes started meanwhile leave Ctrl-C to this one, which ends them."""
+def _children_ignore_interrupt() -> Iterator[None]:
+    """Processes started in the block ignore Ctrl-C: this one ends them."""
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         yield
@@ -125,7 +125,7 @@ def _end(others: Sequence[BaseProcess]) -> None:
         process.join()
 
 
-def _timed(task: Task) -> tuple[float, Any]:
+def _run_timed(task: Task) -> tuple[float, Any]:
     began = time.monotonic()
     result = task()
     return time.monotonic() - began, result

@@ -1,4 +1,4 @@
-"""Studies made of flights: a set of orders, and figures that are taken from what they came to."""
+"""Studies of flights: a set of orders, and figures of their results."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -7,10 +7,10 @@ from math import inf, isnan, nan
 from statistics import fmean, median
 
 from fsw.input.schema import Nested
-from sim.campaign.claim import Claim, Outcome, Study
-from sim.campaign.flight import Flight, Order, fly_order
+from sim.campaign.claim import Claim, ClaimOutcome, Study
+from sim.campaign.flight import FlightResult, Order, fly_order
 
-Pick = Callable[[Flight], float]
+Pick = Callable[[FlightResult], float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +22,7 @@ class Figure:
         statement: what it is.
         unit: of figure and limits.
         pick: the figure of one flight.
-        of: how the flights' figures become one: ``median``, ``mean`` or, by default, the one that is worst.
+        of: how the flights' figures are combined: ``median``, ``mean`` or, by default, the worst.
         group: the flights that count, by the group of their order.
         low: least that passes.
         high: most that passes.
@@ -51,17 +51,19 @@ def campaign(study_id: str, source: str, groups: Sequence[Group], figures: Seque
     names = [group.name for group in groups for _ in group.orders]
     tasks = tuple(partial(fly_order, order) for group in groups for order in group.orders)
 
-    def conclude(flights: Sequence[Flight]) -> list[Outcome]:
-        flown = list(zip(names, flights, strict=True))
+    def conclude(flights: Sequence[FlightResult]) -> list[ClaimOutcome]:
+        named_flights = list(zip(names, flights, strict=True))
         return [
-            _judge(study_id, source, figure, [flight for name, flight in flown if name == figure.group])
+            _judge(
+                study_id, source, figure, [flight for name, flight in named_flights if name == figure.group]
+            )
             for figure in figures
         ]
 
-    return Study(study_id, tasks, conclude, flown=True)
+    return Study(study_id, tasks, conclude, has_flights=True)
 
 
-def number(flight: Flight, key: str, missing: float = nan) -> float:
+def summary_number(flight: FlightResult, key: str, missing: float = nan) -> float:
     """A number of the summary, ``a.b`` for its nested keys; ``missing`` where the summary has none."""
     value: object = flight.summary
     for part in key.split("."):
@@ -69,32 +71,32 @@ def number(flight: Flight, key: str, missing: float = nan) -> float:
     return float(value) if isinstance(value, int | float) else missing
 
 
-def at(key: str, missing: float = nan) -> Pick:
+def summary_value(key: str, missing: float = nan) -> Pick:
     """Picks a number of the summary."""
-    return lambda flight: number(flight, key, missing)
+    return lambda flight: summary_number(flight, key, missing)
 
 
-def measured(name: str) -> Pick:
+def figure_of(name: str) -> Pick:
     """Picks a figure that the flight's measure gave."""
     return lambda flight: flight.figures.get(name, nan)
 
 
-def label(order: Order) -> str:
-    """Which flight this is, for a person."""
+def describe_order(order: Order) -> str:
+    """A text that identifies a flight."""
     words = [f"{key}={_text(value)}" for key, value in _flat(order.overrides)]
     return ", ".join([order.scenario, f"seed {order.seed}", *words])
 
 
-_COMBINED: dict[str, Callable[[list[float]], float]] = {"median": median, "mean": fmean}
+_COMBINATIONS: dict[str, Callable[[list[float]], float]] = {"median": median, "mean": fmean}
 
 
-def _judge(study_id: str, source: str, figure: Figure, flights: Sequence[Flight]) -> Outcome:
+def _judge(study_id: str, source: str, figure: Figure, flights: Sequence[FlightResult]) -> ClaimOutcome:
     claim = Claim(f"{study_id}.{figure.id}", figure.statement, source, figure.unit, figure.low, figure.high)
     values = [figure.pick(flight) for flight in flights]
     excess = [inf if isnan(value) else max(figure.low - value, value - figure.high) for value in values]
     worst = max(range(len(values)), key=lambda place: excess[place])
-    value = _COMBINED[figure.of](values) if figure.of in _COMBINED else values[worst]
-    return claim.judge(value, f"worst: {label(flights[worst].order)}: {values[worst]:.3g}")
+    value = _COMBINATIONS[figure.of](values) if figure.of in _COMBINATIONS else values[worst]
+    return claim.judge(value, f"worst: {describe_order(flights[worst].order)}: {values[worst]:.3g}")
 
 
 def _flat(values: Nested, prefix: str = "") -> Iterator[tuple[str, object]]:
@@ -106,7 +108,7 @@ def _flat(values: Nested, prefix: str = "") -> Iterator[tuple[str, object]]:
 
 
 def _text(value: object) -> str:
-    """A value with its numbers cut short."""
+    """A value with its numbers rounded."""
     if isinstance(value, list):
         return f"[{', '.join(map(_text, value))}]"
     return f"{value:.4g}" if isinstance(value, float) else str(value)

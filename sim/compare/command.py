@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from sim.campaign.claim import Study
-from sim.campaign.runner import Finished, run
+from sim.campaign.runner import StudyResult, run
 from sim.compare.case import Driver, cases, chosen_laws
 from sim.compare.picture import picture
 from sim.compare.score import Result, Score, by_axis1, fly_case
@@ -75,7 +75,7 @@ def compare(
     results: list[Result] = []
     bar = sys.stderr.isatty()  # else each flight's line is the progress
 
-    def take(finished: Finished) -> None:
+    def take(finished: StudyResult) -> None:
         results.append(finished.results[0])
         if not bar:
             click.echo(_line(finished), err=True)
@@ -127,7 +127,7 @@ def _default_folder(scenario: Scenario) -> Path:
     return Path("compare") / f"{scenario.name}-{datetime.now(UTC):%Y%m%dT%H%M%SZ}"
 
 
-def _line(finished: Finished) -> str:
+def _line(finished: StudyResult) -> str:
     score = finished.results[0].score
     figure = score.failure or f"{score.pointing_rms_deg:.2f} deg RMS over the last orbit"
     return f"{score.law}, {score.driver}: {figure} ({finished.wall_s:.0f} s)"

@@ -112,7 +112,7 @@ def judge(case: ComparisonCase, record: Record) -> Score:
     )
 
 
-def history(record: Record) -> History:
+def history(record: RecordedFlight) -> History:
     """The running root mean square of the pointing error, sixty points an orbit, fewer in a long flight.
 
     The window of a quarter of an orbit takes out the dips where the error passes zero.
@@ -132,7 +132,7 @@ def by_axis1(scenario: Scenario) -> bool:
     return flight_table(scenario).modes.axis_only
 
 
-def pointing_error_deg(record: Record) -> Array:
+def pointing_error_deg(record: RecordedFlight) -> Array:
     """The angle from nominal at each tick."""
     flight = FlightHistories.of(record.scenario, record.truth, record.estimates, record.audit)
     return flight.axis1_deg if by_axis1(record.scenario) else flight.pointing_deg

@@ -11,7 +11,7 @@ from sim.fault_rig.currents import CurrentPulse
 from sim.fault_rig.rig import Rig
 from sim.faults.faulty_plant import FaultyPlant
 from sim.plant.config import PlantConfig
-from sim.plant.hardware.actuators import OFF, Board, Driven
+from sim.plant.hardware.actuators import OFF, Board, CoilDrive
 from sim.scenario.assemble import plant_config
 from sim.scenario.schema import Scenario
 
@@ -34,23 +34,23 @@ class BenchActuator:
         self._bench = BenchNode(
             lambda: CoilBoard(limits, (low_a, middle_a, high_a)), DEADMAN_MS, has_clock=True
         )
-        self._said = self._bench.switch_on()
+        self._outbox = self._bench.switch_on()
         self._pin: Pin | None = None
-        self._driven = OFF
+        self._drive = OFF
         self._on_ms = self.now_ms = 0
         self.pulses: list[CurrentPulse] = []
         """What was on, over true time; what is on still is not among it."""
 
     def begin_tick(self, tick: int, current_a: float) -> list[Frame]:
         """What the bench has said since; it enters ticks by itself, and reads its own current back."""
-        said, self._said = self._said, []
-        return said
+        sent, self._outbox = self._outbox, []
+        return sent
 
     def receive(self, frame: Frame) -> None:
         """Hear a frame of the bus at this instant."""
         if frame.can_id == TickDone.ID:
-            self._driven = self._over_the_tick()
-        self._said += self._bench.receive(frame, self.now_ms)
+            self._drive = self._over_the_tick()
+        self._outbox += self._bench.receive(frame, self.now_ms)
         self._note(self.now_ms)
 
     def wait(self, milliseconds: int) -> None:
@@ -62,19 +62,19 @@ class BenchActuator:
             self._bench.watch(self.now_ms)
             self._note(self.now_ms)
 
-    def drive(self) -> Driven:
+    def drive(self) -> CoilDrive:
         """What was driven over the tick that fsw has answered."""
-        driven, self._driven = self._driven, OFF
-        return driven
+        drive, self._drive = self._drive, OFF
+        return drive
 
-    def _over_the_tick(self) -> Driven:
+    def _over_the_tick(self) -> CoilDrive:
         pin = self._bench.pin
         if pin is None:
             return OFF
         current_a = self._level_a[abs(pin.level)] * (1 if pin.level > 0 else -1)
         x, y, z = (current_a if coil == pin.coil else 0.0 for coil in range(3))
         left_ms = self._period_ms if pin.until_ms is None else pin.until_ms - self.now_ms
-        return Driven((x, y, z), float(min(Fraction(1), left_ms / self._period_ms)))
+        return CoilDrive((x, y, z), float(min(Fraction(1), left_ms / self._period_ms)))
 
     def _note(self, at_ms: int) -> None:
         pin = self._bench.pin

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import isclose
 
-from sim.plant.hardware.actuators import Driven
+from sim.plant.hardware.actuators import CoilDrive
 
 PER_TICK = 1_000_000
 """Parts of a tick are told to a millionth of it."""
@@ -35,11 +35,11 @@ class CurrentPulse:
     end_s: Fraction
 
 
-def pulses(driven: Sequence[Driven], tick_hz: int) -> list[CurrentPulse]:
+def pulses(drives: Sequence[CoilDrive], tick_hz: int) -> list[CurrentPulse]:
     """The pulses in the plant's record, by start."""
     found: list[CurrentPulse] = []
     under_way: dict[int, Fraction] = {}
-    for tick, (current_a, fraction) in enumerate(driven):
+    for tick, (current_a, fraction) in enumerate(drives):
         now, part = Fraction(tick, tick_hz), Fraction(round(fraction * PER_TICK), PER_TICK * tick_hz)
         for coil in range(3):
             on = bool(current_a[coil]) and part > 0
@@ -50,19 +50,19 @@ def pulses(driven: Sequence[Driven], tick_hz: int) -> list[CurrentPulse]:
                 found.append(CurrentPulse(coil, now if start is None else start, now + part))
             elif on:
                 under_way[coil] = now if start is None else start
-    last = Fraction(len(driven), tick_hz)
+    last = Fraction(len(drives), tick_hz)
     found += [CurrentPulse(coil, start, last) for coil, start in under_way.items()]
     return sorted(found, key=lambda pulse: pulse.start_s)
 
 
-def violations(driven: Sequence[Driven], limits: CurrentLimits) -> list[str]:
+def violations(drives: Sequence[CoilDrive], limits: CurrentLimits) -> list[str]:
     """Each breach of invariant I, a sentence each."""
-    return [*_momentary(driven, limits), *lasting(pulses(driven, limits.tick_hz), limits)]
+    return [*_momentary(drives, limits), *lasting(pulses(drives, limits.tick_hz), limits)]
 
 
-def _momentary(driven: Sequence[Driven], limits: CurrentLimits) -> list[str]:
+def _momentary(drives: Sequence[CoilDrive], limits: CurrentLimits) -> list[str]:
     found = []
-    for tick, (current_a, fraction) in enumerate(driven):
+    for tick, (current_a, fraction) in enumerate(drives):
         flowing = [current for current in current_a if current and fraction]
         if len(flowing) > 1:
             found.append(f"tick {tick}: {len(flowing)} coils at once")

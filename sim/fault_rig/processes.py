@@ -115,7 +115,7 @@ class ProcessRig:
         before = True
         while self.plant.tick < patience:
             self._tick()
-            now = any(self.record.driven[-1].current_a)
+            now = any(self.record.coil_drives[-1].current_a)
             if now and not before:
                 return
             before = now
@@ -125,7 +125,7 @@ class ProcessRig:
         plant, record = self.plant, self.record
         tick = plant.tick
         frames = plant.begin_tick()
-        record.note_said(tick, self._epoch_us, plant.said)
+        record.note_sent(tick, self._epoch_us, plant.sent)
         self._link.send(frames)
         if struck is not None:
             self._strike(struck, tick)
@@ -140,7 +140,7 @@ class ProcessRig:
         record.modes.append(None)
         record.error_deg.append(None)
         plant.end_tick()
-        record.driven.append(plant.driven)
+        record.coil_drives.append(plant.coil_drive)
 
     def _strike(self, struck: Struck, tick: int) -> None:
         time.sleep(struck.delay_s)

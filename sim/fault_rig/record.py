@@ -18,7 +18,7 @@ from fsw.wire.messages import (
     intact,
 )
 from sim.fault_rig.currents import CurrentPulse
-from sim.plant.hardware.actuators import Driven
+from sim.plant.hardware.actuators import CoilDrive
 from sim.plant.plant import TruthRow
 from sim.record.candump import LogEntry
 
@@ -53,7 +53,7 @@ class Record:
         onset: tick in which the fault comes; None if it never came.
         end: first tick without it; None if it stays.
         entries: SYNC, COIL_STATUS and COIL_BOOT as plant and board themselves have said them.
-        driven: what really flowed in each tick, as the plant drove it.
+        coil_drives: what really flowed in each tick, as the plant drove it.
         pulses_by_time: what a board with a clock of its own has driven, over true time; else none.
         asked: ticks in which fsw's process sent COIL_FIRE.
         asked_coils: the coils of these.
@@ -78,7 +78,7 @@ class Record:
     onset: int | None = None
     end: int | None = None
     entries: list[LogEntry] = field(default_factory=list)
-    driven: list[Driven] = field(default_factory=list)
+    coil_drives: list[CoilDrive] = field(default_factory=list)
     pulses_by_time: list[CurrentPulse] = field(default_factory=list)
     asked: list[int] = field(default_factory=list)
     asked_coils: list[int] = field(default_factory=list)
@@ -101,9 +101,9 @@ class Record:
     @property
     def ticks(self) -> int:
         """How many were flown."""
-        return len(self.driven)
+        return len(self.coil_drives)
 
-    def note_said(self, tick: int, epoch_us: int, frames: list[Frame]) -> None:
+    def note_sent(self, tick: int, epoch_us: int, frames: list[Frame]) -> None:
         """What plant and boards have said in a tick."""
         stamp = epoch_us + tick * US // self.tick_hz
         on: int | None = None

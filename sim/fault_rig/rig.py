@@ -11,7 +11,7 @@ from fsw.wire.frame import Frame
 from fsw.wire.messages import Sync, TickDone, intact
 from sim.fault_rig.record import Record
 from sim.faults.fault import Condition, Fault
-from sim.faults.faulty_plant import FaultyPlant, Scheduled
+from sim.faults.faulty_plant import FaultyPlant, ScheduledFault
 from sim.scenario.assemble import plant_config
 from sim.scenario.schema import Scenario, flight_table, load, parse_settings
 
@@ -46,7 +46,7 @@ class Rig:
 
     def inject(self, fault: Fault, first: int, end: int | None) -> None:
         """Schedule a fault, for the next tick at the earliest."""
-        self.plant.inject(Scheduled(fault, first, end))
+        self.plant.inject(ScheduledFault(fault, first, end))
         self.record.onset, self.record.end = first, end
 
     def tick(self) -> None:
@@ -58,7 +58,7 @@ class Rig:
         for fault in plant.active:
             syncs = [frame for one in syncs for frame in fault.sync(tick, one)]
         frames += syncs
-        record.note_said(tick, self._epoch_us, plant.said)
+        record.note_sent(tick, self._epoch_us, plant.sent)
         self._be(self._wanted(tick), tick)
         self.pace(tick, syncs)
         answers = self._answers(tick, frames)
@@ -67,7 +67,7 @@ class Rig:
             plant.receive(frame)
         record.note_state(tick, self._node.state if self._node is not None else None, plant.truth())
         plant.end_tick()
-        record.driven.append(plant.driven)
+        record.coil_drives.append(plant.coil_drive)
 
     def pace(self, tick: int, syncs: list[Frame]) -> None:
         """True time until fsw answers: here ticks are the time."""

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from sim.campaign.claim import Study
-from sim.campaign.runner import Finished, run
+from sim.campaign.runner import StudyResult, run
 from sim.fault_table.case import fly
 from sim.fault_table.row import CaseResult, Row, RowResult
 
@@ -40,9 +40,9 @@ def fly_rows(
 
 def _study(row: Row, phases: int, seeds: int) -> Study:
     tasks = tuple(partial(fly, row, phase, seed + 1) for phase in range(phases) for seed in range(seeds))
-    return Study(row.name, tasks, lambda results: [], flown=True)
+    return Study(row.name, tasks, lambda results: [], has_flights=True)
 
 
-def _result(by_name: dict[str, Row], done: Finished) -> RowResult:
+def _result(by_name: dict[str, Row], done: StudyResult) -> RowResult:
     cases: tuple[CaseResult, ...] = done.results
     return RowResult(by_name[done.study.id], cases)

@@ -106,7 +106,7 @@ def _anchor(when: When, rig: Rig, hz: int) -> int:
     while rig.plant.tick < until_s * hz:
         rig.tick()
         tick = rig.plant.tick
-        if when is When.PULSE and tick > ARMED_S * hz and any(rig.record.driven[-1].current_a):
+        if when is When.PULSE and tick > ARMED_S * hz and any(rig.record.coil_drives[-1].current_a):
             return tick - 1
     return rig.plant.tick
 
@@ -115,7 +115,7 @@ def _measured(row: Row, record: Record) -> dict[str, float]:
     """Figures for the table."""
     onset = record.onset or 0
     found = {
-        "pulses": float(len(currents.pulses(record.driven, record.tick_hz))),
+        "pulses": float(len(currents.pulses(record.coil_drives, record.tick_hz))),
         "refused": float(record.refused),
         "rejected": float(record.rejected),
         "worst step ms": record.worst_step_s * 1000.0,

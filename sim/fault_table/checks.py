@@ -58,7 +58,7 @@ def limits(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
     report = audit(record.entries, bounds.audit)
     found = [str(violation) for violation in report.violations]
     if "stuck" not in row.expect:  # a switch that does not open is beyond every guard
-        found += currents.violations(record.driven, bounds.currents)
+        found += currents.violations(record.coil_drives, bounds.currents)
     return not found and report.statuses > 0, found[0] if found else ""
 
 
@@ -93,7 +93,7 @@ def answered(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
 def no_extra_pulse(row: Row, record: Record, bounds: Bounds) -> tuple[bool, str]:
     """Each pulse began in a tick in which fsw asked for it."""
     asked = set(record.asked)
-    for pulse in currents.pulses(record.driven, record.tick_hz):
+    for pulse in currents.pulses(record.coil_drives, record.tick_hz):
         tick = int(pulse.start_s * record.tick_hz)
         if tick not in asked:
             return False, f"a pulse began in tick {tick}, which nobody asked for"

@@ -1,4 +1,4 @@
-"""Faults of the bus: what a man in the middle does to frames, and what strangers send."""
+"""Faults of the bus: frames altered on their way, and frames of nodes that do not belong on the bus."""
 
 from collections.abc import Callable
 from functools import partial
@@ -14,33 +14,33 @@ _OF_FSW = {can_id for can_id, sender in SENDERS.items() if sender == "FSW"}
 Tamper = Callable[[list[Frame], Random, Parameters], list[Frame]]
 
 
-def lost(frames: list[Frame], rng: Random, parameters: Parameters) -> list[Frame]:
+def lose(frames: list[Frame], rng: Random, parameters: Parameters) -> list[Frame]:
     """Each frame is lost with probability ``part``."""
     return [frame for frame in frames if rng.random() >= parameters["part"]]
 
 
-def duplicated(frames: list[Frame], rng: Random, parameters: Parameters) -> list[Frame]:
+def duplicate(frames: list[Frame], rng: Random, parameters: Parameters) -> list[Frame]:
     """Each frame comes a second time with probability ``part``."""
     return [copy for frame in frames for copy in [frame] * (1 + (rng.random() < parameters["part"]))]
 
 
-def reordered(frames: list[Frame], rng: Random, parameters: Parameters) -> list[Frame]:
+def reorder(frames: list[Frame], rng: Random, parameters: Parameters) -> list[Frame]:
     """The frames of a tick come in any order."""
     return rng.sample(frames, len(frames))
 
 
-def corrupted(frames: list[Frame], rng: Random, parameters: Parameters) -> list[Frame]:
+def corrupt(frames: list[Frame], rng: Random, parameters: Parameters) -> list[Frame]:
     """Bits of the data are flipped, in each frame with probability ``part``."""
-    return [_flipped(frame, rng) if rng.random() < parameters["part"] else frame for frame in frames]
+    return [_flip_bits(frame, rng) if rng.random() < parameters["part"] else frame for frame in frames]
 
 
-def resized(frames: list[Frame], rng: Random, parameters: Parameters) -> list[Frame]:
+def resize(frames: list[Frame], rng: Random, parameters: Parameters) -> list[Frame]:
     """Each frame has a wrong length with probability ``part``."""
-    return [_resized(frame, rng) if rng.random() < parameters["part"] else frame for frame in frames]
+    return [_resize(frame, rng) if rng.random() < parameters["part"] else frame for frame in frames]
 
 
-def readdressed(frames: list[Frame], rng: Random, parameters: Parameters) -> list[Frame]:
-    """Each frame bears an identifier that nobody knows with probability ``part``."""
+def readdress(frames: list[Frame], rng: Random, parameters: Parameters) -> list[Frame]:
+    """Each frame gets an unassigned identifier with probability ``part``."""
     unknown = [can_id for can_id in range(IDS) if can_id not in CLASSES]
     return [
         Frame(rng.choice(unknown), frame.data) if rng.random() < parameters["part"] else frame
@@ -48,8 +48,8 @@ def readdressed(frames: list[Frame], rng: Random, parameters: Parameters) -> lis
     ]
 
 
-def flagged(flag: int, frames: list[Frame], rng: Random, parameters: Parameters) -> list[Frame]:
-    """Each frame bears a flag that makes it none of ours with probability ``part``."""
+def set_flag(flag: int, frames: list[Frame], rng: Random, parameters: Parameters) -> list[Frame]:
+    """Each frame gets a flag, by which it is no data frame of the contract, with probability ``part``."""
     return [
         Frame(frame.can_id | flag, b"" if flag == REMOTE_FLAG else frame.data)
         if rng.random() < parameters["part"]
@@ -58,20 +58,20 @@ def flagged(flag: int, frames: list[Frame], rng: Random, parameters: Parameters)
     ]
 
 
-def _flipped(frame: Frame, rng: Random) -> Frame:
+def _flip_bits(frame: Frame, rng: Random) -> Frame:
     data = bytearray(frame.data)
     for _ in range(rng.randint(1, 4)):
         data[rng.randrange(len(data))] ^= 1 << rng.randrange(8)
     return Frame(frame.can_id, bytes(data))
 
 
-def _resized(frame: Frame, rng: Random) -> Frame:
+def _resize(frame: Frame, rng: Random) -> Frame:
     length = rng.choice([length for length in range(FULL + 1) if length != len(frame.data)])
     return Frame(frame.can_id, (frame.data + rng.randbytes(FULL))[:length])
 
 
-class OnFrames(Fault):
-    """Does the same to the frames of both directions."""
+class FrameTampering(Fault):
+    """Tampers with the frames of both directions in the same way."""
 
     def __init__(self, tamper: Tamper, rng: Random, parameters: Parameters) -> None:
         super().__init__(rng, parameters)
@@ -94,18 +94,18 @@ class Bursts(Fault):
         self._open, self._until = True, -1
 
     def from_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
-        """All or nothing."""
+        """All frames, or none."""
         if tick >= self._until:
             self._open = not self._open
             self._until = tick + self.rng.randint(1, round(self.parameters["ticks"]))
         return frames if self._open else []
 
     def to_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
-        """All or nothing."""
+        """All frames, or none."""
         return frames if self._open else []
 
 
-class Late(Fault):
+class FrameDelay(Fault):
     """Each frame of either direction comes 0 to ``ticks`` ticks late, at random if ``jitter`` is not 0."""
 
     def __init__(self, rng: Random, parameters: Parameters) -> None:
@@ -121,12 +121,12 @@ class Late(Fault):
         """What is due."""
         return self._due(self._outward, tick, frames)
 
-    def _due(self, kept: list[tuple[int, Frame]], tick: int, frames: list[Frame]) -> list[Frame]:
+    def _due(self, queue: list[tuple[int, Frame]], tick: int, frames: list[Frame]) -> list[Frame]:
         most = round(self.parameters["ticks"])
         jitter = bool(self.parameters["jitter"])
-        kept += [(tick + (self.rng.randint(0, most) if jitter else most), frame) for frame in frames]
-        due = [frame for at, frame in kept if at <= tick]
-        kept[:] = [(at, frame) for at, frame in kept if at > tick]
+        queue += [(tick + (self.rng.randint(0, most) if jitter else most), frame) for frame in frames]
+        due = [frame for at, frame in queue if at <= tick]
+        queue[:] = [(at, frame) for at, frame in queue if at > tick]
         return due
 
 
@@ -147,7 +147,7 @@ class LinkDown(Fault):
 
 
 class QueueFull(Fault):
-    """ENOBUFS: of each answer of fsw only some first frames find room in the interface's queue."""
+    """ENOBUFS: the interface's queue takes only the first frames of each answer of fsw."""
 
     def to_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
         """The first frames."""
@@ -157,7 +157,7 @@ class QueueFull(Fault):
 class RandomFrames(Fault):
     """A stranger sends ``frames`` random frames a tick: any identifier but SYNC's, any flags, any data.
 
-    With ``as_fsw`` 0 it keeps off the identifiers of fsw, so that a log still tells who said what.
+    With ``as_fsw`` 0 it does not use the identifiers of fsw, so that the senders in a log stay distinct.
     """
 
     def __init__(self, rng: Random, parameters: Parameters) -> None:
@@ -194,7 +194,7 @@ class Flood(Fault):
         return [Frame(0x001, bytes(FULL))] * round(self.parameters["frames"])
 
 
-class SecondSender(Fault):
+class ForgedRequests(Fault):
     """Another node sends well-formed COIL_FIRE on fsw's identifier, ``frames`` a tick."""
 
     def strangers(self, tick: int) -> list[Frame]:
@@ -213,11 +213,11 @@ class SecondSender(Fault):
         ]
 
 
-def on_frames(tamper: Tamper) -> Callable[[Random, Parameters], Fault]:
+def frame_fault(tamper: Tamper) -> Callable[[Random, Parameters], Fault]:
     """A fault that tampers with frames."""
-    return partial(OnFrames, tamper)
+    return partial(FrameTampering, tamper)
 
 
-def on_flag(flag: int) -> Callable[[Random, Parameters], Fault]:
+def flag_fault(flag: int) -> Callable[[Random, Parameters], Fault]:
     """A fault that sets a flag of SocketCAN."""
-    return partial(OnFrames, partial(flagged, flag))
+    return partial(FrameTampering, partial(set_flag, flag))

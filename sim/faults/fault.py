@@ -1,4 +1,4 @@
-"""What a fault may touch. Each kind of fault overrides what it touches and leaves the rest as it is."""
+"""The interface of faults: each kind overrides the methods of what it affects."""
 
 from collections.abc import Mapping
 from enum import Enum, auto
@@ -16,21 +16,21 @@ Parameters = Mapping[str, float]
 
 
 class Condition(Enum):
-    """How the flight software's process is."""
+    """The state of the flight software's process."""
 
     RUNNING = auto()
     STOPPED = auto()
-    """As by SIGSTOP: what it is sent waits for it."""
+    """As by SIGSTOP: frames to it wait."""
     DEAD = auto()
     """As by SIGKILL: when it runs again it boots."""
 
 
 class Fault(Interference):
-    """A fault that is there from ``begin`` to ``end``. This one does nothing.
+    """A fault that is active from ``begin`` to ``end``. This one does nothing.
 
     Args:
-        rng: whatever is random in the fault comes from it.
-        parameters: by name, as the table of kinds has them.
+        rng: source of all random numbers of the fault.
+        parameters: by name, as in the table of kinds.
     """
 
     def __init__(self, rng: Random, parameters: Parameters) -> None:
@@ -38,41 +38,41 @@ class Fault(Interference):
         self.parameters = parameters
 
     def begin(self, plant: Plant) -> None:
-        """The fault comes, before the tick begins."""
+        """The fault begins, before the tick does."""
 
     def end(self, plant: Plant) -> None:
-        """The fault goes, before the tick begins."""
+        """The fault ends, before the tick begins."""
 
     def before(self, tick: int, plant: Plant) -> None:
-        """A tick with the fault is about to begin."""
+        """A tick with the fault active is about to begin."""
 
     def from_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
-        """What fsw receives of what the boards sent in this tick; SYNC is not among it."""
+        """The frames that fsw receives of those the boards sent in this tick; SYNC is not among them."""
         return frames
 
     def strangers(self, tick: int) -> list[Frame]:
-        """What a node that does not belong here sends before SYNC; all others hear it."""
+        """The frames that a node outside the contract sends before SYNC; all others receive them."""
         return []
 
     def sync(self, tick: int, frame: Frame) -> list[Frame]:
-        """What fsw receives in place of this tick's SYNC."""
+        """The frames that fsw receives in place of this tick's SYNC."""
         return [frame]
 
     def to_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
-        """What the boards receive of fsw's answers to this tick."""
+        """The frames that the boards receive of fsw's answer to this tick."""
         return frames
 
     repeats_sync = False
-    """Whether SYNC comes again and again while a tick is held."""
+    """Whether SYNC is repeated while a tick is held."""
 
     def held_ms(self, tick: int) -> int:
         """True time from SYNC to fsw's answer, where a board has a clock of its own [ms]."""
         return 0
 
     def condition(self, tick: int) -> Condition:
-        """How fsw's process is in this tick."""
+        """The state of fsw's process in this tick."""
         return Condition.RUNNING
 
     def upset(self, state: "FlightState") -> "FlightState":
-        """What becomes of the flight state in memory, before this tick's step."""
+        """The flight state in memory after an upset, before this tick's step."""
         return state

@@ -6,15 +6,15 @@ from dataclasses import dataclass
 from fsw.wire.frame import Frame
 from sim.faults.fault import Fault
 from sim.plant.config import PlantConfig
-from sim.plant.hardware.actuators import Actuator, Driven
+from sim.plant.hardware.actuators import Actuator, CoilDrive
 from sim.plant.interference import Interference
 from sim.plant.plant import Plant
 from sim.plant.rotation import Vec3
 
 
 @dataclass(frozen=True, slots=True)
-class Scheduled:
-    """A fault that is there in the ticks from ``first`` to before ``end``; None: for ever."""
+class ScheduledFault:
+    """A fault that is active from tick ``first`` to before ``end``; None: to the end of the flight."""
 
     fault: Fault
     first: int
@@ -22,99 +22,99 @@ class Scheduled:
 
 
 class FaultyPlant(Plant):
-    """As a plant, but with faults that come and go.
+    """A plant with faults that begin and end.
 
-    What ``begin_tick`` gives is what is on the bus of fsw; ``said`` is what the boards themselves have said.
+    ``begin_tick`` gives the frames on the bus of fsw; ``sent`` are those that the boards themselves sent.
 
     Args:
         config: the plant.
-        faults: what is scheduled from the start.
-        actuator: what drives the coils, where that is not a board of the plant's own.
+        faults: scheduled from the start.
+        actuator: drives the coils in place of the plant's own board.
     """
 
     def __init__(
-        self, config: PlantConfig, faults: Sequence[Scheduled] = (), actuator: Actuator | None = None
+        self, config: PlantConfig, faults: Sequence[ScheduledFault] = (), actuator: Actuator | None = None
     ) -> None:
         super().__init__(config, actuator)
         self._waiting = list(faults)
-        self._scheduled: list[Scheduled] = []
-        self._heard: list[Frame] = []
+        self._schedule: list[ScheduledFault] = []
+        self._to_boards: list[Frame] = []
         self.active: tuple[Fault, ...] = ()
-        """The faults that are there in this tick."""
-        self.heard: list[Frame] = []
-        """What got through to the boards in the tick that has ended last."""
-        self.said: list[Frame] = []
-        """What the boards and the plant have said in this tick, SYNC last."""
+        """The faults that are active in this tick."""
+        self.received: list[Frame] = []
+        """The frames that the boards received in the last complete tick."""
+        self.sent: list[Frame] = []
+        """The frames that boards and plant sent in this tick, SYNC last."""
 
-    def inject(self, scheduled: Scheduled) -> None:
-        """Schedule one more."""
+    def inject(self, scheduled: ScheduledFault) -> None:
+        """Schedule a further fault."""
         self._waiting.append(scheduled)
 
     def begin_tick(self) -> list[Frame]:
-        """The frames of this tick as fsw gets them."""
+        """The frames of this tick as fsw receives them."""
         self._switch()
-        self.said = super().begin_tick()
-        *frames, sync = self.said
+        self.sent = super().begin_tick()
+        *frames, sync = self.sent
         strangers: list[Frame] = []
         for fault in self.active:
             frames = fault.from_boards(self.tick, frames)
             strangers += fault.strangers(self.tick)
-        self._heard = list(strangers)
+        self._to_boards = list(strangers)
         return [*frames, *strangers, sync]
 
     def receive(self, frame: Frame) -> None:
-        """Keep a frame of fsw until the tick ends."""
-        self._heard.append(frame)
+        """Store a frame of fsw until the tick ends."""
+        self._to_boards.append(frame)
 
     def end_tick(self) -> None:
-        """Let the boards hear what gets through to them, and go on to the next tick."""
-        frames = self._heard
+        """Hand the boards the frames that reach them, and advance to the next tick."""
+        frames = self._to_boards
         for fault in self.active:
             frames = fault.to_boards(self.tick, frames)
         for frame in frames:
             super().receive(frame)
-        self.heard = frames
+        self.received = frames
         super().end_tick()
 
     def _switch(self) -> None:
-        """Faults that come with this tick, and those that go."""
+        """Begin and end faults as scheduled for this tick."""
         tick = self.tick
-        over = [one for one in self._scheduled if one.end is not None and one.end <= tick]
+        over = [one for one in self._schedule if one.end is not None and one.end <= tick]
         due = [one for one in self._waiting if one.first <= tick]
         for one in over:
-            self._scheduled.remove(one)
+            self._schedule.remove(one)
             one.fault.end(self)
         for one in due:
             self._waiting.remove(one)
-            self._scheduled.append(one)
+            self._schedule.append(one)
             one.fault.begin(self)
         if over or due:
-            self.active = tuple(one.fault for one in self._scheduled)
+            self.active = tuple(one.fault for one in self._schedule)
             self.interference = _Chain(self.active)
         for fault in self.active:
             fault.before(tick, self)
 
 
 class _Chain(Interference):
-    """All faults one after the other."""
+    """All faults, one after the other."""
 
     def __init__(self, faults: tuple[Fault, ...]) -> None:
         self._faults = faults
 
     def field(self, b_body_t: Vec3, valid: bool) -> tuple[Vec3, bool]:
-        """Through all."""
+        """Apply all faults."""
         for fault in self._faults:
             b_body_t, valid = fault.field(b_body_t, valid)
         return b_body_t, valid
 
     def sun(self, sun_body: Vec3, valid: bool) -> tuple[Vec3, bool]:
-        """Through all."""
+        """Apply all faults."""
         for fault in self._faults:
             sun_body, valid = fault.sun(sun_body, valid)
         return sun_body, valid
 
-    def driven(self, driven: Driven) -> Driven:
-        """Through all."""
+    def coil_drive(self, drive: CoilDrive) -> CoilDrive:
+        """Apply all faults."""
         for fault in self._faults:
-            driven = fault.driven(driven)
-        return driven
+            drive = fault.coil_drive(drive)
+        return drive

@@ -1,4 +1,4 @@
-"""Strangers who forge what steers a flight: the plant's SYNC and PLANT_END, and TICK_DONE of fsw."""
+"""Forged messages that control a flight: the plant's SYNC and PLANT_END, and TICK_DONE of fsw."""
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import PlantEnd, Sync, TickDone
@@ -8,14 +8,14 @@ MOST_TICKS = 2**24
 LAST_TICK = 2**32 - 1
 
 
-class SyncForged(Fault):
-    """Before SYNC come ``count`` forged ones, in each tick with probability ``part``.
+class ForgedSync(Fault):
+    """``count`` forged SYNCs precede the true one, in each tick with probability ``part``.
 
     The first is ``ticks`` from the true one, or any where ``ticks`` is 0; each further one ``step`` later.
     """
 
     def strangers(self, tick: int) -> list[Frame]:
-        """SYNCs of nobody's."""
+        """The forged SYNCs."""
         rng, parameters = self.rng, self.parameters
         if rng.random() >= parameters["part"]:
             return []
@@ -24,20 +24,20 @@ class SyncForged(Fault):
         return [Sync(first + step * i, first & 0xFFFF).encode() for i in range(round(parameters["count"]))]
 
 
-class EndForged(Fault):
-    """A PLANT_END of any count but those that may be true, in each tick."""
+class ForgedEnd(Fault):
+    """A PLANT_END in each tick, of any count except those that may be true."""
 
     def strangers(self, tick: int) -> list[Frame]:
-        """An end that is none."""
+        """The forged PLANT_END."""
         ticks = (tick + self.rng.randrange(100, MOST_TICKS - 100)) % MOST_TICKS
         return [PlantEnd(ticks, counter=tick & 0xF).encode()]
 
 
-class DoneForged(Fault):
+class ForgedTickDone(Fault):
     """TICK_DONE of this tick under the identifier of fsw, in each tick with probability ``part``."""
 
     def strangers(self, tick: int) -> list[Frame]:
-        """An answer that fsw has not given."""
+        """The forged TICK_DONE."""
         if self.rng.random() >= self.parameters["part"]:
             return []
         return [TickDone(tick, self.rng.getrandbits(32)).encode()]

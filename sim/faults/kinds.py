@@ -1,4 +1,4 @@
-"""The table of kinds of faults: what each is called, what it takes, and who makes it."""
+"""The table of the kinds of faults: name, parameters, and the class that injects it."""
 
 from collections.abc import Callable, Mapping
 from random import Random
@@ -20,14 +20,14 @@ class Parameter(NamedTuple):
     high: float
 
 
-class Kind(NamedTuple):
+class FaultKind(NamedTuple):
     """A kind of fault.
 
-    ``in_plant``: the plant's process can inject it by itself, so that a scenario may schedule it.
+    ``in_plant``: the plant's process can inject it, so that a scenario may schedule it.
     ``by_signal``: it needs the flight software as a process of its own.
     ``by_clock``: it needs a coil board with a clock of its own.
-    ``breaks``: COIL_STATUS may come broken, though the board keeps its limits.
-    ``forges``: a stranger sends whole frames under identifiers of the flight software.
+    ``breaks``: COIL_STATUS may arrive corrupt, though the board keeps its limits.
+    ``forges``: a stranger sends intact frames under identifiers of the flight software.
     """
 
     make: Callable[[Random, Parameters], Fault]
@@ -46,29 +46,29 @@ STRIKES = Parameter(5.0, 1.0, 1000.0)
 A_FEW = Parameter(3.0, 1.0, 1000.0)
 HELD = {"seconds": Parameter(4.9, 0.0, 1000.0), "rushed": Parameter(0.0, 0.0, 1000.0)}
 
-KINDS: dict[str, Kind] = {
-    "none": Kind(Fault),
-    "loss": Kind(bus.on_frames(bus.lost), PART),
-    "bursts": Kind(bus.Bursts, {"ticks": Parameter(10.0, 1.0, 1000.0)}),
-    "duplicates": Kind(bus.on_frames(bus.duplicated), PART),
-    "reordering": Kind(bus.on_frames(bus.reordered)),
-    "delay": Kind(bus.Late, {"ticks": A_FEW, "jitter": Parameter(0.0, 0.0, 1.0)}),
-    "corruption": Kind(bus.on_frames(bus.corrupted), PART, breaks=True),
-    "wrong_length": Kind(bus.on_frames(bus.resized), PART, breaks=True),
-    "unknown_id": Kind(bus.on_frames(bus.readdressed), PART),
-    "rtr": Kind(bus.on_flag(REMOTE_FLAG), PART),
-    "extended_id": Kind(bus.on_flag(EXTENDED_FLAG), PART),
-    "error_frames": Kind(bus.on_flag(ERROR_FLAG), PART),
-    "random_frames": Kind(
+KINDS: dict[str, FaultKind] = {
+    "none": FaultKind(Fault),
+    "loss": FaultKind(bus.frame_fault(bus.lose), PART),
+    "bursts": FaultKind(bus.Bursts, {"ticks": Parameter(10.0, 1.0, 1000.0)}),
+    "duplicates": FaultKind(bus.frame_fault(bus.duplicate), PART),
+    "reordering": FaultKind(bus.frame_fault(bus.reorder)),
+    "delay": FaultKind(bus.FrameDelay, {"ticks": A_FEW, "jitter": Parameter(0.0, 0.0, 1.0)}),
+    "corruption": FaultKind(bus.frame_fault(bus.corrupt), PART, breaks=True),
+    "wrong_length": FaultKind(bus.frame_fault(bus.resize), PART, breaks=True),
+    "unknown_id": FaultKind(bus.frame_fault(bus.readdress), PART),
+    "rtr": FaultKind(bus.flag_fault(REMOTE_FLAG), PART),
+    "extended_id": FaultKind(bus.flag_fault(EXTENDED_FLAG), PART),
+    "error_frames": FaultKind(bus.flag_fault(ERROR_FLAG), PART),
+    "random_frames": FaultKind(
         bus.RandomFrames,
         {"frames": Parameter(100.0, 0.0, 10_000.0), "as_fsw": Parameter(1.0, 0.0, 1.0)},
         breaks=True,
         forges=True,
     ),
-    "flood": Kind(bus.Flood, {"frames": Parameter(500.0, 0.0, 10_000.0)}),
-    "second_sender": Kind(bus.SecondSender, {"frames": Parameter(1.0, 0.0, 1000.0)}, forges=True),
-    "sync_forged": Kind(
-        forged.SyncForged,
+    "flood": FaultKind(bus.Flood, {"frames": Parameter(500.0, 0.0, 10_000.0)}),
+    "second_sender": FaultKind(bus.ForgedRequests, {"frames": Parameter(1.0, 0.0, 1000.0)}, forges=True),
+    "sync_forged": FaultKind(
+        forged.ForgedSync,
         {
             **ALWAYS,
             "ticks": Parameter(0.0, -1e9, 1e9),
@@ -76,60 +76,64 @@ KINDS: dict[str, Kind] = {
             "step": Parameter(1.0, 0.0, 1.0),
         },
     ),
-    "end_forged": Kind(forged.EndForged),
-    "done_forged": Kind(forged.DoneForged, ALWAYS, forges=True),
-    "link_down": Kind(bus.LinkDown, in_plant=False),
-    "queue_full": Kind(bus.QueueFull),
-    "mag_nan": Kind(plant.field_reads(plant.not_a_number), AXIS),
-    "mag_infinite": Kind(plant.field_reads(plant.infinite), AXIS),
-    "mag_saturated": Kind(plant.field_reads(plant.clipped), {"nt": Parameter(15_000.0, 0.0, 65_000.0)}),
-    "mag_frozen": Kind(plant.FieldFrozen),
-    "mag_bias": Kind(
-        plant.field_reads(plant.shifted), {**AXIS, "nt": Parameter(10_000.0, -60_000.0, 60_000.0)}
+    "end_forged": FaultKind(forged.ForgedEnd),
+    "done_forged": FaultKind(forged.ForgedTickDone, ALWAYS, forges=True),
+    "link_down": FaultKind(bus.LinkDown, in_plant=False),
+    "queue_full": FaultKind(bus.QueueFull),
+    "mag_nan": FaultKind(plant.field_fault(plant.set_nan), AXIS),
+    "mag_infinite": FaultKind(plant.field_fault(plant.set_infinity), AXIS),
+    "mag_saturated": FaultKind(plant.field_fault(plant.clip), {"nt": Parameter(15_000.0, 0.0, 65_000.0)}),
+    "mag_frozen": FaultKind(plant.FieldFrozen),
+    "mag_bias": FaultKind(
+        plant.field_fault(plant.shift), {**AXIS, "nt": Parameter(10_000.0, -60_000.0, 60_000.0)}
     ),
-    "mag_scale": Kind(plant.field_reads(plant.scaled), {**AXIS, "scale": Parameter(1.5, -10.0, 10.0)}),
-    "mag_swapped": Kind(plant.field_reads(plant.swapped), AXIS),
-    "sun_nan": Kind(plant.sun_reads(plant.not_a_number), AXIS),
-    "sun_frozen": Kind(plant.SunFrozen),
-    "sun_scale": Kind(plant.sun_reads(plant.scaled), {**AXIS, "scale": Parameter(-1.0, -10.0, 10.0)}),
-    "sun_swapped": Kind(plant.sun_reads(plant.swapped), AXIS),
-    "sun_unseen": Kind(plant.SunUnseen),
-    "albedo": Kind(plant.SunTilted, {"part": Parameter(0.4, 0.0, 1.0)}),
-    "extreme_codes": Kind(plant.ExtremeCodes, {"sun": Parameter(0.0, 0.0, 1.0)}),
-    "coil_open": Kind(plant.CoilOpen, AXIS),
-    "coil_wired": Kind(plant.CoilWired, {**AXIS, "scale": Parameter(-1.0, -2.0, 2.0)}),
-    "coil_stuck_on": Kind(plant.StuckOn, {**AXIS, "ampere": Parameter(0.4, -10.0, 10.0)}),
-    "coil_board_restarts": Kind(plant.board(plant.BoardRestarts, "coil")),
-    "coil_board_storm": Kind(plant.board(plant.BoardStorm, "coil"), {"ticks": Parameter(150.0, 1.0, 1e6)}),
-    "coil_board_dead": Kind(plant.board(plant.BoardDead, "coil")),
-    "mag_board_restarts": Kind(plant.board(plant.BoardRestarts, "magnetometer")),
-    "mag_board_dead": Kind(plant.board(plant.BoardDead, "magnetometer")),
-    "sun_board_restarts": Kind(plant.board(plant.BoardRestarts, "sun")),
-    "sun_board_dead": Kind(plant.board(plant.BoardDead, "sun")),
-    "killed": Kind(node.Killed, in_plant=False),
-    "stopped": Kind(node.Stopped, in_plant=False),
-    "storm": Kind(
-        node.Storm, {"up": Parameter(150.0, 1.0, 1e6), "down": Parameter(20.0, 1.0, 1e6)}, in_plant=False
+    "mag_scale": FaultKind(plant.field_fault(plant.scale), {**AXIS, "scale": Parameter(1.5, -10.0, 10.0)}),
+    "mag_swapped": FaultKind(plant.field_fault(plant.swap_axes), AXIS),
+    "sun_nan": FaultKind(plant.sun_fault(plant.set_nan), AXIS),
+    "sun_frozen": FaultKind(plant.SunFrozen),
+    "sun_scale": FaultKind(plant.sun_fault(plant.scale), {**AXIS, "scale": Parameter(-1.0, -10.0, 10.0)}),
+    "sun_swapped": FaultKind(plant.sun_fault(plant.swap_axes), AXIS),
+    "sun_unseen": FaultKind(plant.SunBlindness),
+    "albedo": FaultKind(plant.SunDeflection, {"part": Parameter(0.4, 0.0, 1.0)}),
+    "extreme_codes": FaultKind(plant.ExtremeCodes, {"sun": Parameter(0.0, 0.0, 1.0)}),
+    "coil_open": FaultKind(plant.CoilOpen, AXIS),
+    "coil_wired": FaultKind(plant.CoilRescaling, {**AXIS, "scale": Parameter(-1.0, -2.0, 2.0)}),
+    "coil_stuck_on": FaultKind(plant.CoilStuckOn, {**AXIS, "ampere": Parameter(0.4, -10.0, 10.0)}),
+    "coil_board_restarts": FaultKind(plant.board_fault(plant.BoardRestarts, "coil")),
+    "coil_board_storm": FaultKind(
+        plant.board_fault(plant.BoardStorm, "coil"), {"ticks": Parameter(150.0, 1.0, 1e6)}
     ),
-    "all_restart": Kind(node.AllRestart, in_plant=False),
-    "sync_lost": Kind(node.SyncLost, PART, in_plant=False),
-    "sync_repeated": Kind(node.SyncRepeated, {"times": A_FEW}, in_plant=False),
-    "ticks_held": Kind(node.TicksHeld, HELD, in_plant=False, by_clock=True),
-    "ticks_repeated": Kind(node.TicksRepeated, HELD, in_plant=False, by_clock=True),
-    "tick_jumps": Kind(
+    "coil_board_dead": FaultKind(plant.board_fault(plant.BoardDead, "coil")),
+    "mag_board_restarts": FaultKind(plant.board_fault(plant.BoardRestarts, "magnetometer")),
+    "mag_board_dead": FaultKind(plant.board_fault(plant.BoardDead, "magnetometer")),
+    "sun_board_restarts": FaultKind(plant.board_fault(plant.BoardRestarts, "sun")),
+    "sun_board_dead": FaultKind(plant.board_fault(plant.BoardDead, "sun")),
+    "killed": FaultKind(node.FswKill, in_plant=False),
+    "stopped": FaultKind(node.FswStop, in_plant=False),
+    "storm": FaultKind(
+        node.FswKillStorm,
+        {"up": Parameter(150.0, 1.0, 1e6), "down": Parameter(20.0, 1.0, 1e6)},
+        in_plant=False,
+    ),
+    "all_restart": FaultKind(node.AllRestart, in_plant=False),
+    "sync_lost": FaultKind(node.SyncLoss, PART, in_plant=False),
+    "sync_repeated": FaultKind(node.SyncRepetition, {"times": A_FEW}, in_plant=False),
+    "ticks_held": FaultKind(node.TickHold, HELD, in_plant=False, by_clock=True),
+    "ticks_repeated": FaultKind(node.TickRepetition, HELD, in_plant=False, by_clock=True),
+    "tick_jumps": FaultKind(
         node.TickJumps,
         {"ticks": Parameter(1000.0, -1e9, 1e9), "with_time": Parameter(1.0, 0.0, 1.0)},
         in_plant=False,
     ),
-    "time_jumps": Kind(node.TimeJumps, {"seconds": Parameter(3600.0, -1e9, 1e9)}, in_plant=False),
-    "bit_flip": Kind(node.BitFlip, in_plant=False),
-    "sigkill": Kind(Fault, {"times": STRIKES}, in_plant=False, by_signal=True),
-    "sigstop": Kind(Fault, {"times": STRIKES}, in_plant=False, by_signal=True),
+    "time_jumps": FaultKind(node.TimeJumps, {"seconds": Parameter(3600.0, -1e9, 1e9)}, in_plant=False),
+    "bit_flip": FaultKind(node.BitFlip, in_plant=False),
+    "sigkill": FaultKind(Fault, {"times": STRIKES}, in_plant=False, by_signal=True),
+    "sigstop": FaultKind(Fault, {"times": STRIKES}, in_plant=False, by_signal=True),
 }
 
 
 def make(kind: str, parameters: Parameters, rng: Random) -> Fault:
-    """A fault of a kind; parameters that are not given are the table's."""
+    """A fault of a kind, with the table's defaults for parameters that are not given."""
     entry = KINDS[kind]
     defaults = {name: parameter.default for name, parameter in entry.parameters.items()}
     return entry.make(rng, {**defaults, **parameters})

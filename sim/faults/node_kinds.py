@@ -16,7 +16,7 @@ if TYPE_CHECKING:  # the plant's process, which loads the faults of a scenario, 
     from fsw.core.state import FlightState
 
 
-class Killed(Fault):
+class FswKill(Fault):
     """fsw's process is killed; it boots when the fault is over."""
 
     def condition(self, tick: int) -> Condition:
@@ -24,15 +24,15 @@ class Killed(Fault):
         return Condition.DEAD
 
 
-class Stopped(Fault):
-    """fsw's process is stopped; when it goes on, it finds all that it was sent meanwhile."""
+class FswStop(Fault):
+    """fsw's process is stopped; when it continues, it receives all frames that were sent meanwhile."""
 
     def condition(self, tick: int) -> Condition:
         """Stopped."""
         return Condition.STOPPED
 
 
-class Storm(Fault):
+class FswKillStorm(Fault):
     """fsw is killed over and over: runs up to ``up`` ticks, is dead up to ``down`` ticks."""
 
     def __init__(self, rng: Random, parameters: Parameters) -> None:
@@ -48,8 +48,8 @@ class Storm(Fault):
         return Condition.RUNNING if self._running else Condition.DEAD
 
 
-class AllRestart(Killed):
-    """Everything is switched off and on: fsw and the boards."""
+class AllRestart(FswKill):
+    """fsw and the boards are power-cycled."""
 
     def end(self, plant: Plant) -> None:
         """The boards boot in the same tick as fsw."""
@@ -57,7 +57,7 @@ class AllRestart(Killed):
             plant.restart(board)
 
 
-class SyncLost(Fault):
+class SyncLoss(Fault):
     """SYNC is lost with probability ``part``."""
 
     def sync(self, tick: int, frame: Frame) -> list[Frame]:
@@ -65,23 +65,23 @@ class SyncLost(Fault):
         return [] if self.rng.random() < self.parameters["part"] else [frame]
 
 
-class SyncRepeated(Fault):
-    """SYNC comes up to ``times`` times more."""
+class SyncRepetition(Fault):
+    """SYNC is repeated up to ``times`` times."""
 
     def sync(self, tick: int, frame: Frame) -> list[Frame]:
-        """SYNC, again and again."""
+        """SYNC and its repetitions."""
         return [frame] * (1 + self.rng.randint(1, round(self.parameters["times"])))
 
 
-class TicksHeld(Fault):
-    """Each tick is held for ``seconds``; after one with a request, ``rushed`` ticks come in no time."""
+class TickHold(Fault):
+    """Each tick is held for ``seconds``; after one with a request, ``rushed`` ticks follow without delay."""
 
     def __init__(self, rng: Random, parameters: Parameters) -> None:
         super().__init__(rng, parameters)
         self._rush = 0
 
     def held_ms(self, tick: int) -> int:
-        """The whole time, or none of it."""
+        """The whole time, or 0 during a rush."""
         return 0 if self._rush else round(1000 * self.parameters["seconds"])
 
     def to_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
@@ -91,14 +91,14 @@ class TicksHeld(Fault):
         return frames
 
 
-class TicksRepeated(TicksHeld):
-    """The same, and SYNC comes again and again while a tick is held."""
+class TickRepetition(TickHold):
+    """The same, and SYNC is repeated while a tick is held."""
 
     repeats_sync = True
 
 
 class TickJumps(Fault):
-    """SYNC names a tick that is off by ``ticks``; its time goes with it if ``with_time`` is not 0."""
+    """The tick in SYNC is off by ``ticks``; so is its time if ``with_time`` is not 0."""
 
     def sync(self, tick: int, frame: Frame) -> list[Frame]:
         """A wrong SYNC."""

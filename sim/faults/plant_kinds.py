@@ -9,7 +9,7 @@ from typing import Literal
 from fsw.wire.frame import Frame
 from fsw.wire.messages import SENDERS, MagField, SunVector
 from sim.faults.fault import Fault, Parameters
-from sim.plant.hardware.actuators import Driven
+from sim.plant.hardware.actuators import CoilDrive
 from sim.plant.plant import Plant
 from sim.plant.rotation import ZERO, Vec3, matrix, transform
 
@@ -20,48 +20,48 @@ FULL_FIELD_NT, FULL_SUN = 65534.0, 1.9999
 Reading = Callable[[Vec3, Parameters], Vec3]
 
 
-def with_axis(v: Vec3, parameters: Parameters, value: float) -> Vec3:
-    """The vector with another value on the axis that is faulty."""
+def replace_axis(v: Vec3, parameters: Parameters, value: float) -> Vec3:
+    """The vector with another value on the faulty axis."""
     axis = round(parameters["axis"])
     return (value if axis == 0 else v[0], value if axis == 1 else v[1], value if axis == 2 else v[2])
 
 
-def not_a_number(v: Vec3, parameters: Parameters) -> Vec3:
+def set_nan(v: Vec3, parameters: Parameters) -> Vec3:
     """NaN on one axis."""
-    return with_axis(v, parameters, nan)
+    return replace_axis(v, parameters, nan)
 
 
-def infinite(v: Vec3, parameters: Parameters) -> Vec3:
+def set_infinity(v: Vec3, parameters: Parameters) -> Vec3:
     """Infinity on one axis."""
-    return with_axis(v, parameters, inf)
+    return replace_axis(v, parameters, inf)
 
 
-def scaled(v: Vec3, parameters: Parameters) -> Vec3:
-    """One axis reads ``scale`` times too much; -1 is a wrong sign."""
-    return with_axis(v, parameters, v[round(parameters["axis"])] * parameters["scale"])
+def scale(v: Vec3, parameters: Parameters) -> Vec3:
+    """One axis reads ``scale`` times its value; -1 is a wrong sign."""
+    return replace_axis(v, parameters, v[round(parameters["axis"])] * parameters["scale"])
 
 
-def swapped(v: Vec3, parameters: Parameters) -> Vec3:
-    """The axis that is faulty and the next one change places."""
+def swap_axes(v: Vec3, parameters: Parameters) -> Vec3:
+    """The faulty axis and the next one are swapped."""
     first = round(parameters["axis"])
     second = (first + 1) % 3
     order = [second if axis == first else first if axis == second else axis for axis in range(3)]
     return (v[order[0]], v[order[1]], v[order[2]])
 
 
-def shifted(v: Vec3, parameters: Parameters) -> Vec3:
-    """One axis reads a field of ``nt`` too much."""
-    return with_axis(v, parameters, v[round(parameters["axis"])] + parameters["nt"] * T_PER_NT)
+def shift(v: Vec3, parameters: Parameters) -> Vec3:
+    """One axis has an offset of ``nt``."""
+    return replace_axis(v, parameters, v[round(parameters["axis"])] + parameters["nt"] * T_PER_NT)
 
 
-def clipped(v: Vec3, parameters: Parameters) -> Vec3:
-    """No axis reads more than ``nt``, and nothing tells."""
+def clip(v: Vec3, parameters: Parameters) -> Vec3:
+    """No axis reads more than ``nt``, and the sample is still marked as valid."""
     most = parameters["nt"] * T_PER_NT
     return (min(max(v[0], -most), most), min(max(v[1], -most), most), min(max(v[2], -most), most))
 
 
-class FieldReads(Fault):
-    """The magnetometer reads something else, and calls it valid."""
+class WrongFieldReading(Fault):
+    """The magnetometer has a wrong reading, marked as valid."""
 
     def __init__(self, reading: Reading, rng: Random, parameters: Parameters) -> None:
         super().__init__(rng, parameters)
@@ -72,8 +72,8 @@ class FieldReads(Fault):
         return self._reading(b_body_t, self.parameters), valid
 
 
-class SunReads(Fault):
-    """The Sun sensor reads something else where it sees the Sun."""
+class WrongSunReading(Fault):
+    """The Sun sensor has a wrong reading where the Sun is in view."""
 
     def __init__(self, reading: Reading, rng: Random, parameters: Parameters) -> None:
         super().__init__(rng, parameters)
@@ -85,7 +85,7 @@ class SunReads(Fault):
 
 
 class FieldFrozen(Fault):
-    """The magnetometer shows its last value for ever."""
+    """The magnetometer repeats its last value."""
 
     _last: Vec3 | None = None
 
@@ -96,7 +96,7 @@ class FieldFrozen(Fault):
 
 
 class SunFrozen(Fault):
-    """The Sun sensor shows its last value for ever, in eclipse too."""
+    """The Sun sensor repeats its last value, in eclipse too."""
 
     _last: Vec3 | None = None
 
@@ -106,17 +106,17 @@ class SunFrozen(Fault):
         return self._last, True
 
 
-class SunTilted(Fault):
-    """The direction is pulled by up to ``part`` towards the Earth, lit or not: albedo blinds the sensor."""
+class SunDeflection(Fault):
+    """Albedo deflects the direction by up to ``part`` towards the Earth, in sunlight and in eclipse."""
 
     _plant: Plant
 
     def begin(self, plant: Plant) -> None:
-        """Whose attitude tells where the Earth is."""
+        """Store the plant, whose attitude gives the direction of the Earth."""
         self._plant = plant
 
     def sun(self, sun_body: Vec3, valid: bool) -> tuple[Vec3, bool]:
-        """The Sun and the Earth mixed; where there is no Sun, the Earth."""
+        """The direction between Sun and Earth; without Sun, that of the Earth."""
         down = transform(matrix(self._plant.truth().q_body_from_orbit), (-1.0, 0.0, 0.0))
         part = self.parameters["part"] if valid else 1.0
         x, y, z = ((1.0 - part) * s + part * e for s, e in zip(sun_body, down, strict=True))
@@ -124,8 +124,8 @@ class SunTilted(Fault):
         return (x / length, y / length, z / length), True
 
 
-class SunUnseen(Fault):
-    """The Sun sensor sees nothing."""
+class SunBlindness(Fault):
+    """The Sun sensor has no Sun in view."""
 
     def sun(self, sun_body: Vec3, valid: bool) -> tuple[Vec3, bool]:
         """Darkness."""
@@ -133,7 +133,7 @@ class SunUnseen(Fault):
 
 
 class ExtremeCodes(Fault):
-    """Frames of one sensor (``sun`` 0 or 1) bear the extremes of their codes, called valid, the CRC right."""
+    """Frames of one sensor (``sun`` 0 or 1) have extreme values, the mark of validity and a right CRC."""
 
     def from_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
         """Whole frames with impossible values."""
@@ -154,34 +154,34 @@ class ExtremeCodes(Fault):
 class CoilOpen(Fault):
     """A coil is cut: no current flows."""
 
-    def driven(self, driven: Driven) -> Driven:
+    def coil_drive(self, drive: CoilDrive) -> CoilDrive:
         """Without this coil's current."""
-        return Driven(with_axis(driven.current_a, self.parameters, 0.0), driven.fraction)
+        return CoilDrive(replace_axis(drive.current_a, self.parameters, 0.0), drive.fraction)
 
 
-class CoilWired(Fault):
+class CoilRescaling(Fault):
     """A coil gives ``scale`` of its dipole for the same current: -1 is reversed, below 1 weak."""
 
     def begin(self, plant: Plant) -> None:
         """The coil changes."""
-        plant.wire(round(self.parameters["axis"]), self.parameters["scale"])
+        plant.scale_coil(round(self.parameters["axis"]), self.parameters["scale"])
 
     def end(self, plant: Plant) -> None:
         """The coil is as before."""
-        plant.wire(round(self.parameters["axis"]), 1.0)
+        plant.scale_coil(round(self.parameters["axis"]), 1.0)
 
 
-class StuckOn(Fault):
-    """A driver's switch does not open any more: ``ampere`` flow through a coil all the time."""
+class CoilStuckOn(Fault):
+    """A driver's switch does not open: ``ampere`` flow through a coil all the time."""
 
-    def driven(self, driven: Driven) -> Driven:
-        """This coil for the whole tick, the others as the board means."""
-        current_a = driven.current_a if driven.fraction else ZERO
-        return Driven(with_axis(current_a, self.parameters, self.parameters["ampere"]), 1.0)
+    def coil_drive(self, drive: CoilDrive) -> CoilDrive:
+        """This coil for the whole tick, the others as the board commands."""
+        current_a = drive.current_a if drive.fraction else ZERO
+        return CoilDrive(replace_axis(current_a, self.parameters, self.parameters["ampere"]), 1.0)
 
 
 class BoardRestarts(Fault):
-    """A board is switched off and on."""
+    """A board is power-cycled."""
 
     def __init__(self, board: BoardName, rng: Random, parameters: Parameters) -> None:
         super().__init__(rng, parameters)
@@ -201,43 +201,43 @@ class BoardStorm(Fault):
         self._next = -1
 
     def before(self, tick: int, plant: Plant) -> None:
-        """It may be time."""
+        """Restart if it is due."""
         if tick >= self._next:
             plant.restart(self._board)
             self._next = tick + self.rng.randint(1, round(self.parameters["ticks"]))
 
 
 class BoardDead(Fault):
-    """A board says and does nothing; when the fault is over it boots."""
+    """A board sends and does nothing; when the fault ends it boots."""
 
     def __init__(self, board: BoardName, rng: Random, parameters: Parameters) -> None:
         super().__init__(rng, parameters)
         self._board: BoardName = board
 
     def from_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
-        """What the others say."""
+        """The frames of the other boards."""
         return [frame for frame in frames if SENDERS.get(frame.can_id) != _NODE[self._board]]
 
-    def driven(self, driven: Driven) -> Driven:
-        """A coil driver that is dead drives nothing."""
-        return Driven(ZERO, 0.0) if self._board == "coil" else driven
+    def coil_drive(self, drive: CoilDrive) -> CoilDrive:
+        """A dead coil driver drives nothing."""
+        return CoilDrive(ZERO, 0.0) if self._board == "coil" else drive
 
     def end(self, plant: Plant) -> None:
         """It boots."""
         plant.restart(self._board)
 
 
-def field_reads(reading: Reading) -> Callable[[Random, Parameters], Fault]:
+def field_fault(reading: Reading) -> Callable[[Random, Parameters], Fault]:
     """A fault of the magnetometer."""
-    return partial(FieldReads, reading)
+    return partial(WrongFieldReading, reading)
 
 
-def sun_reads(reading: Reading) -> Callable[[Random, Parameters], Fault]:
+def sun_fault(reading: Reading) -> Callable[[Random, Parameters], Fault]:
     """A fault of the Sun sensor."""
-    return partial(SunReads, reading)
+    return partial(WrongSunReading, reading)
 
 
-def board(
+def board_fault(
     kind: type[BoardRestarts] | type[BoardStorm] | type[BoardDead], name: BoardName
 ) -> Callable[[Random, Parameters], Fault]:
     """A fault of a board."""

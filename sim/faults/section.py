@@ -1,4 +1,4 @@
-"""Faults of a scenario: ``[[fault]]`` says which kind comes when, for how long, with which parameters."""
+"""Faults of a scenario: a ``[[fault]]`` gives kind, start, duration and parameters."""
 
 from collections.abc import Sequence
 from math import ceil
@@ -8,14 +8,14 @@ from typing import Annotated, Self
 from pydantic import Field, Strict, model_validator
 
 from fsw.input.schema import Positive, Section, TableError
-from sim.faults.faulty_plant import FaultyPlant, Scheduled
+from sim.faults.faulty_plant import FaultyPlant, ScheduledFault
 from sim.faults.kinds import KINDS, make
 from sim.plant.config import PlantConfig
 from sim.plant.plant import Plant
 
 
 class FaultSection(Section):
-    """One fault. It comes with the first tick at or after ``at_s``; without ``lasts_s`` it stays."""
+    """One fault. It begins with the first tick at or after ``at_s``; without ``lasts_s`` it is permanent."""
 
     kind: str
     at_s: float = Field(ge=0.0)
@@ -44,17 +44,17 @@ Faults = Annotated[tuple[FaultSection, ...], Strict(False)]
 
 
 def break_frames(faults: Sequence[FaultSection]) -> bool:
-    """Whether frames of the coil driver may come broken because the scenario asks for it."""
+    """Whether a fault of the scenario may corrupt frames of the coil driver."""
     return any(KINDS[fault.kind].breaks for fault in faults)
 
 
 def forge_answers(faults: Sequence[FaultSection]) -> bool:
-    """Whether the scenario asks for a stranger that sends under identifiers of the flight software."""
+    """Whether a fault of the scenario sends under identifiers of the flight software."""
     return any(KINDS[fault.kind].forges for fault in faults)
 
 
 def make_plant(config: PlantConfig, faults: Sequence[FaultSection]) -> Plant:
-    """The plant of a flight with its faults scheduled; what is random in them comes from the plant's seed.
+    """The plant of a flight with its faults scheduled; their random numbers come from the plant's seed.
 
     Raises:
         TableError: the scenario is consistent in itself, but orbit or field are not known at its epoch, or a
@@ -63,14 +63,14 @@ def make_plant(config: PlantConfig, faults: Sequence[FaultSection]) -> Plant:
     try:
         if not faults:
             return Plant(config)
-        return FaultyPlant(config, [_scheduled(number, fault, config) for number, fault in enumerate(faults)])
+        return FaultyPlant(config, [_schedule(number, fault, config) for number, fault in enumerate(faults)])
     except ValueError as error:
         raise TableError(f"the scenario's plant: {error}") from None
 
 
-def _scheduled(number: int, fault: FaultSection, config: PlantConfig) -> Scheduled:
+def _schedule(number: int, fault: FaultSection, config: PlantConfig) -> ScheduledFault:
     first = ceil(fault.at_s * config.tick_hz)
     lasts = None if fault.lasts_s is None else max(1, round(fault.lasts_s * config.tick_hz))
     rng = Random(f"fault {number}/{config.seed}")
     end = None if lasts is None else first + lasts
-    return Scheduled(make(fault.kind, fault.parameters, rng), first, end)
+    return ScheduledFault(make(fault.kind, fault.parameters, rng), first, end)

@@ -1,4 +1,4 @@
-"""What a plant is made of: every number the physics needs, in SI, as frozen values."""
+"""The configuration of a plant: every number that the physics needs, in SI, as frozen values."""
 
 from dataclasses import dataclass
 from math import isclose, pi
@@ -15,7 +15,7 @@ NO_COUPLING: Mat3 = (ZERO, ZERO, ZERO)
 
 @dataclass(frozen=True, slots=True)
 class OrbitConfig:
-    """The orbit: two lines of a TLE for SGP4, or a circle for which the other four stand.
+    """The orbit: two lines of a TLE for SGP4, or a circle given by the other four.
 
     Attributes:
         tle: the two lines, or None for the circular orbit.
@@ -47,7 +47,7 @@ class FieldConfig:
 
 @dataclass(frozen=True, slots=True)
 class PlateConfig:
-    """A flat plate of the surface, which feels air and light on one side.
+    """A flat plate of the surface, on whose outer side air and light act.
 
     Attributes:
         area_m2: its area.
@@ -128,7 +128,7 @@ class InitialConfig:
 
 @dataclass(frozen=True, slots=True)
 class DisturbanceConfig:
-    """What disturbs the body beside the gravity gradient.
+    """Disturbances other than the gravity gradient.
 
     Attributes:
         torque_body_nm: constant torque, body axes.
@@ -167,7 +167,7 @@ class MagnetometerConfig:
         quantum_t: step of the reading, 0 for none.
         saturation_t: largest magnitude of an axis; beyond it the sample is not valid.
         coil_coupling_t_per_am2: column j is the field at the sensor, body axes, per dipole of coil j.
-        latency_s: age of what a sample shows.
+        latency_s: age of the values in a sample.
     """
 
     noise_t: float = 0.0
@@ -188,7 +188,7 @@ class SunSensorConfig:
         noise_rad: standard deviation of a small rotation about each axis, per sample.
         misalignment_rad: rotation vector that turns the body axes into the sensor's.
         quantum: step of a component of the unit vector, 0 for none.
-        latency_s: age of what a sample shows.
+        latency_s: age of the values in a sample.
         fov_half_rad: half the opening angle of each cone of view.
         boresights_body: unit axes of the cones, body axes; none: it sees all around.
     """
@@ -207,7 +207,7 @@ class ContinuousConfig:
 
     Attributes:
         max_dipole_am2: nominal full scale of each coil.
-        on_fraction: part of a tick for which it drives.
+        on_fraction: part of a tick in which it drives.
     """
 
     max_dipole_am2: float
@@ -257,7 +257,7 @@ class PlantConfig:
         field: the geomagnetic field.
         body: the rigid body.
         initial: attitude and rate at the epoch.
-        disturbance: torques and dipoles that disturb.
+        disturbance: disturbance torques and dipoles.
         magnetometer: its errors.
         sun_sensor: its errors.
         coils: the coils.
@@ -266,7 +266,7 @@ class PlantConfig:
         perfect_knowledge: whether the plant sends its true attitude and rate.
 
     Raises:
-        ValueError: a number is out of range, or board and plant do not tick alike.
+        ValueError: a number is out of range, or the tick rates of board and plant differ.
     """
 
     epoch_unix_s: int

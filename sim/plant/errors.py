@@ -1,10 +1,10 @@
-"""What ends a plant."""
+"""Errors that end the plant."""
 
 
 class PlantError(ValueError):
-    """The plant cannot go on: its models end, or its motion does; the message is a clause for people.
+    """The plant cannot continue: a model ends, or the integration diverges; the message is a clause.
 
-    ``exit_code`` is what a process ends with that met it in flight.
+    ``exit_code`` is that of a process which this error ends in flight.
     """
 
     exit_code = 1

@@ -1,11 +1,11 @@
-"""Where a fault may reach into the plant: between physics and boards."""
+"""Interface by which a fault acts on the plant: between physics and boards."""
 
-from sim.plant.hardware.actuators import Driven
+from sim.plant.hardware.actuators import CoilDrive
 from sim.plant.rotation import Vec3
 
 
 class Interference:
-    """What the boards are given in place of the truth. This one leaves everything as it is."""
+    """Replaces the readings that boards get and the currents that flow. This one changes nothing."""
 
     def field(self, b_body_t: Vec3, valid: bool) -> tuple[Vec3, bool]:
         """The magnetometer's reading [T] as its board gets it."""
@@ -15,9 +15,9 @@ class Interference:
         """The Sun sensor's reading as its board gets it."""
         return sun_body, valid
 
-    def driven(self, driven: Driven) -> Driven:
-        """What flows where the coil driver's board means to drive this."""
-        return driven
+    def coil_drive(self, drive: CoilDrive) -> CoilDrive:
+        """The currents that flow where the coil driver board commands ``drive``."""
+        return drive
 
 
 NO_INTERFERENCE = Interference()

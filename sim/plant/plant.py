@@ -1,4 +1,4 @@
-"""The plant: physics and boards together, tick by tick, frames out and frames in."""
+"""The plant: physics and boards, tick by tick, with frames as output and input."""
 
 from math import ceil, isfinite
 from typing import Literal, NamedTuple
@@ -15,7 +15,7 @@ from sim.plant.dynamics.disturbances import effects, torque_noise
 from sim.plant.dynamics.rigid_body import Motion, RigidBody, Torque
 from sim.plant.environment.surroundings import Environment, Surroundings
 from sim.plant.errors import PlantError
-from sim.plant.hardware.actuators import Actuator, Driven, make_actuator
+from sim.plant.hardware.actuators import Actuator, CoilDrive, make_actuator
 from sim.plant.hardware.coils import Coils
 from sim.plant.hardware.sensors import MagnetometerPhysics, SunSensorPhysics
 from sim.plant.interference import NO_INTERFERENCE, Interference
@@ -33,7 +33,7 @@ from sim.plant.rotation import (
 )
 
 _REF_RATE_RANGE_RADPS = 0.125
-"""What ``REF_RATE`` holds; beyond it the rate is sent as not valid."""
+"""Range of ``REF_RATE``; beyond it the rate is sent as not valid."""
 
 
 class TruthRow(NamedTuple):
@@ -47,24 +47,24 @@ class TruthRow(NamedTuple):
     sun_body: Vec3
     """Unit vector from the satellite to the Sun."""
     lit: float
-    """Fraction of the Sun's disc that is seen."""
+    """Visible fraction of the Sun's disc."""
     m_body_am2: Vec3
-    """Mean dipole of the coils that really flowed over the tick that ends at t_k."""
+    """Mean true dipole of the coils over the tick that ends at t_k."""
     r_eci_m: Vec3
     torque_body_nm: tuple[Vec3, ...]
-    """At t_k, by ``Plant.torque_sources``; that of the coils is m x b of this row, noise that before t_k."""
+    """At t_k, by ``Plant.torque_sources``; the coils' is m x b of this row, the noise that before t_k."""
 
 
 class Plant:
     """Satellite, environment and boards.
 
     In each tick: ``begin_tick`` and send its frames; ``receive`` each frame of the answer; ``end_tick``.
-    ``truth`` speaks of the instant of the tick that has begun. Same configuration, same frames and truth to
-    the last bit.
+    ``truth`` is that of the instant of the tick that has begun. The same configuration gives the same frames
+    and truth to the last bit.
 
     Args:
         config: the plant.
-        actuator: what drives the coils, where that is not a board of the plant's own.
+        actuator: drives the coils in place of the plant's own board.
 
     Raises:
         ValueError: the orbit elements are malformed, or no orbit or field is known at the epoch.
@@ -77,10 +77,10 @@ class Plant:
         self._step_s = 1.0 / (config.tick_hz * self.substeps)
         self._environment = Environment(config, self.substeps)
         self._body = RigidBody(config.body.inertia_kgm2, config.body.wheel_body_nms)
-        effects_by_name, self._noise = effects(config), torque_noise(config)
-        self._effects = tuple(effects_by_name.values())
-        self.torque_sources = (*torques.SOURCES, *effects_by_name, *(("noise",) if self._noise else ()))
-        """Names of what turns the body, in the order in which truth lists them."""
+        effect_by_name, self._noise = effects(config), torque_noise(config)
+        self._effects = tuple(effect_by_name.values())
+        self.torque_sources = (*torques.SOURCES, *effect_by_name, *(("noise",) if self._noise else ()))
+        """Names of the torques, in the order of ``TruthRow.torque_body_nm``."""
         self._coils = Coils(config.coils)
         self._magnetometer = MagnetometerPhysics(config.magnetometer, config.seed, config.tick_hz)
         self._sun_sensor = SunSensorPhysics(config.sun_sensor, config.seed, config.tick_hz)
@@ -88,17 +88,17 @@ class Plant:
         self._magnetometer_board = Magnetometer(config.tick_hz)
         self._sun_sensor_board = SunSensor(config.tick_hz)
         self.interference: Interference = NO_INTERFERENCE
-        """What a fault does between physics and boards."""
-        self.driven = Driven(ZERO, 0.0)
-        """What was really driven over the tick that has ended last."""
+        """The effect of faults between physics and boards."""
+        self.coil_drive = CoilDrive(ZERO, 0.0)
+        """The currents that flowed over the last complete tick."""
         self._tick = 0
-        self._flowed_am2 = ZERO
+        self._mean_dipole_am2 = ZERO
         self._noise_body_nm = ZERO
         self.motion = self._initial_motion()
         """Attitude and rate against the inertial frame at the instant of the tick."""
         self._observe()
         self.slips = 0
-        """Deadlines missed since boot: counted by whoever paces the plant, reported in its heartbeat."""
+        """Deadlines missed since boot: counted by the real-time loop, reported in the heartbeat."""
 
     @property
     def tick(self) -> int:
@@ -108,8 +108,8 @@ class Plant:
     def begin_tick(self) -> list[Frame]:
         """The frames of this tick, in the order in which they are sent.
 
-        Magnetometer, Sun sensor, coil driver, the plant itself, last ``SYNC``; each node says at tick 0 first
-        that it has booted.
+        Magnetometer, Sun sensor, coil driver, the plant itself, and ``SYNC`` last; at tick 0 each node begins
+        with its boot message.
         """
         tick, coils = self._tick, self._coils
         faulty = self.interference
@@ -124,11 +124,11 @@ class Plant:
         ]
 
     def receive(self, frame: Frame) -> None:
-        """Hand a frame that answers this tick to the boards that listen."""
+        """Hand a frame of this tick's answer to the coil driver board."""
         self._actuator.board.receive(frame)
 
     def restart(self, board: Literal["magnetometer", "sun", "coil"]) -> None:
-        """Switch a board off and on before a tick begins: it boots in that tick, and has forgotten all."""
+        """Power-cycle a board before a tick begins: it boots in that tick, without memory of before."""
         config = self._config
         match board:
             case "magnetometer":
@@ -138,18 +138,18 @@ class Plant:
             case "coil":
                 self._actuator = make_actuator(config)
 
-    def wire(self, coil: int, scale: float) -> None:
-        """Let a coil give so much of its dipole for the same current; -1 is wired the wrong way round."""
+    def scale_coil(self, coil: int, scale: float) -> None:
+        """Scale the dipole that a coil gives for the same current; -1 reverses it."""
         self._coils.rescale(coil, scale)
 
     def end_tick(self) -> None:
-        """Drive what the coil driver drives, and go on to the next tick.
+        """Drive the coils as the coil driver commands, and advance to the next tick.
 
         Raises:
-            PlantError: the motion is no longer one of numbers, or orbit or field are known no further.
+            PlantError: the motion is not finite, or the orbit or field model ends.
         """
-        self.driven = self.interference.driven(self._actuator.drive())
-        driven_a, fraction = self.driven
+        self.coil_drive = self.interference.coil_drive(self._actuator.drive())
+        driven_a, fraction = self.coil_drive
         if self._noise:
             self._noise_body_nm = next(self._noise)
         substeps, step_s, motion = self.substeps, self._step_s, self.motion
@@ -161,9 +161,9 @@ class Plant:
             torque = self._torque((mx, my, mz))
             motion = self._body.step(motion, torque, self._around[2 * substep : 2 * substep + 3], step_s)
             if not _is_motion(motion):
-                raise PlantError(f"the motion is lost in tick {self._tick}: too fast for the integration")
+                raise PlantError(f"the motion diverges in tick {self._tick}: too fast for the integration")
         self.motion = motion
-        self._flowed_am2 = (sx / substeps, sy / substeps, sz / substeps)
+        self._mean_dipole_am2 = (sx / substeps, sy / substeps, sz / substeps)
         self._tick += 1
         self._observe()
 
@@ -181,11 +181,11 @@ class Plant:
             b_body_t=b_body_t,
             sun_body=self._sun_body,
             lit=sample.lit,
-            m_body_am2=self._flowed_am2,
+            m_body_am2=self._mean_dipole_am2,
             r_eci_m=sample.r_eci_m,
             torque_body_nm=(
                 torques.gravity_gradient(inertia, e_body, around.gradient_ps2),
-                torques.magnetic(self._flowed_am2, b_body_t),
+                torques.magnetic(self._mean_dipole_am2, b_body_t),
                 torques.magnetic(disturbance.residual_dipole_body_am2, b_body_t),
                 disturbance.torque_body_nm,
                 *(
@@ -230,7 +230,7 @@ class Plant:
         )
 
     def _observe(self) -> None:
-        """What surrounds the satellite in this tick; field and Sun in body axes at its instant."""
+        """Update the environment of this tick, and field and Sun in body axes at its instant."""
         self._sample = sample = self._environment.sample(self._tick)
         self._around = self._environment.stages(self._tick)
         self._body_from_eci = matrix(self.motion.q_body_from_eci)
@@ -265,6 +265,6 @@ class Plant:
 
 
 def _is_motion(motion: Motion) -> bool:
-    """Whether attitude and rate are still numbers, and the attitude one."""
+    """Whether attitude and rate are finite, and the quaternion is near unit norm."""
     (q0, q1, q2, q3), (x, y, z) = motion
     return isfinite(x + y + z) and 0.5 < q0 * q0 + q1 * q1 + q2 * q2 + q3 * q3 < 2.0

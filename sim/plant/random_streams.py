@@ -11,7 +11,7 @@ _BLOCK = 3072
 def normals(seed: int, name: str) -> Iterator[float]:
     """Standard normal numbers without end: the stream ``name`` of the seed.
 
-    A stream depends on nothing but seed and name: neither on the other streams nor on how far they were
+    A stream depends on seed and name only, not on the other streams or on how far they were
     drawn. PCG64 under numpy's SeedSequence, with the CRC-32 of the name as its spawn key.
     """
     sequence = np.random.SeedSequence(seed, spawn_key=(crc32(name.encode()),))

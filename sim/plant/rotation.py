@@ -1,4 +1,4 @@
-"""Rotations of the plant, on plain floats: the plant shares no algebra with the flight code that it judges.
+"""Rotations of the plant, on plain floats: the plant shares no algebra with the flight software it tests.
 
 Quaternions are Hamilton, scalar first, unit: v_body = C(q_body_from_ref) v_ref with
 C = (q0^2 - |qv|^2) I + 2 qv qv^T - 2 q0 [qv x], and q_c_from_a = q_b_from_a (x) q_c_from_b.

@@ -1,1 +1,1 @@
-"""Scenarios: what their TOML files may say, and what it means to the plant."""
+"""Scenarios: the schema of their TOML files, and the configuration of the plant from them."""

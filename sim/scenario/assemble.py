@@ -1,4 +1,4 @@
-"""From a scenario to the plant's configuration: units of people to SI."""
+"""The plant's configuration from a scenario, its units converted to SI."""
 
 from math import cos, hypot, radians, sin
 
@@ -27,7 +27,7 @@ def plant_config(scenario: Scenario, seed: int) -> PlantConfig:
     """The plant of a scenario, its random streams drawn from ``seed``.
 
     Raises:
-        TableError: the scenario is consistent in itself, but no plant has such numbers.
+        TableError: the scenario is consistent in itself, but no plant can have these numbers.
     """
     try:
         return _config(scenario, seed)
@@ -84,14 +84,14 @@ def _body(scenario: Scenario) -> BodyConfig:
 
 
 def _disturbance(scenario: Scenario) -> DisturbanceConfig:
-    given = scenario.disturbance
+    section = scenario.disturbance
     return DisturbanceConfig(
-        torque_body_nm=given.torque_nm,
-        residual_dipole_body_am2=given.residual_dipole_am2,
-        density_scale=given.drag.density_scale if given.drag else None,
-        solar_flux_wpm2=given.solar_pressure.flux_wpm2 if given.solar_pressure else None,
-        eddy_nms_per_t2=given.eddy_nms_per_t2,
-        torque_noise_nm_rts=given.torque_noise_nm_rts,
+        torque_body_nm=section.torque_nm,
+        residual_dipole_body_am2=section.residual_dipole_am2,
+        density_scale=section.drag.density_scale if section.drag else None,
+        solar_flux_wpm2=section.solar_pressure.flux_wpm2 if section.solar_pressure else None,
+        eddy_nms_per_t2=section.eddy_nms_per_t2,
+        torque_noise_nm_rts=section.torque_noise_nm_rts,
     )
 
 
@@ -118,29 +118,29 @@ def _initial(scenario: Scenario) -> InitialConfig:
 
 
 def _magnetometer(scenario: Scenario) -> MagnetometerConfig:
-    given = scenario.sensors.magnetometer
-    first, second, third = given.coil_field_nt_per_am2
+    section = scenario.sensors.magnetometer
+    first, second, third = section.coil_field_nt_per_am2
     return MagnetometerConfig(
-        noise_t=given.noise_nt * NT,
-        bias_t=_scaled(given.bias_nt, NT),
-        scale=given.scale,
-        misalignment_rad=_radians(given.misalignment_deg),
-        quantum_t=given.quantum_nt * NT,
-        saturation_t=given.saturation_nt * NT,
+        noise_t=section.noise_nt * NT,
+        bias_t=_scaled(section.bias_nt, NT),
+        scale=section.scale,
+        misalignment_rad=_radians(section.misalignment_deg),
+        quantum_t=section.quantum_nt * NT,
+        saturation_t=section.saturation_nt * NT,
         coil_coupling_t_per_am2=(_scaled(first, NT), _scaled(second, NT), _scaled(third, NT)),
-        latency_s=given.latency_s,
+        latency_s=section.latency_s,
     )
 
 
 def _sun_sensor(scenario: Scenario) -> SunSensorConfig:
-    given = scenario.sensors.sun
+    section = scenario.sensors.sun
     return SunSensorConfig(
-        noise_rad=radians(given.noise_deg),
-        misalignment_rad=_radians(given.misalignment_deg),
-        quantum=given.quantum,
-        latency_s=given.latency_s,
-        fov_half_rad=radians(given.fov_half_deg or 180.0),
-        boresights_body=tuple(_unit(axis) for axis in given.boresights),
+        noise_rad=radians(section.noise_deg),
+        misalignment_rad=_radians(section.misalignment_deg),
+        quantum=section.quantum,
+        latency_s=section.latency_s,
+        fov_half_rad=radians(section.fov_half_deg or 180.0),
+        boresights_body=tuple(_unit(axis) for axis in section.boresights),
     )
 
 

@@ -1,4 +1,4 @@
-"""Names that become part of a path: they can lead nowhere else."""
+"""Names that become part of a path, and cannot contain another path."""
 
 import re
 from typing import Annotated
@@ -14,11 +14,11 @@ def is_name(text: str) -> bool:
     return _NAME.fullmatch(text) is not None
 
 
-def _checked(text: str) -> str:
+def _check(text: str) -> str:
     if not is_name(text):
         raise ValueError(f"{text[:100]!r} is not allowed: allowed are {ALLOWED}")
     return text
 
 
-Name = Annotated[str, AfterValidator(_checked)]
-"""A text of a checked section that is part of a path."""
+Name = Annotated[str, AfterValidator(_check)]
+"""A text of a scenario that becomes part of a path."""

@@ -1,8 +1,8 @@
-"""Scenarios: the schema of their TOML files, and how they are found, overridden and checked.
+"""Scenarios: the schema of their TOML files; how they are found, overridden and validated.
 
-A scenario says everything about one flight. The onboard table is derived from it: what plant and controller
-share (orbit, body, coils, control) is written once; ``[flight]`` lays further values over the onboard table,
-for instance an inertia that the controller believes and the plant does not have.
+A scenario describes one flight in full. The onboard table is derived from it: values that plant and
+controller share (orbit, body, coils, control) are written once; ``[flight]`` overrides values of the onboard
+table, for instance the inertia that the controller assumes.
 """
 
 import tomllib
@@ -27,7 +27,7 @@ from sim.scenario.telecommands import Telecommands
 
 MU_M3PS2 = 3.986004418e14
 DECAY_TIME_CONSTANTS = 5.0
-"""After so many a coil's field is below 1 % of what it was."""
+"""Time constants after which a coil's field is below 1 % of its value."""
 
 
 class ScenarioTime(TimeTable):
@@ -74,7 +74,7 @@ class PlantSection(Section):
 
 
 class Scenario(Section):
-    """A whole scenario, checked."""
+    """A validated scenario."""
 
     name: Name
     summary: str
@@ -182,9 +182,9 @@ def flight_table(scenario: Scenario, source: str = "scenario") -> FlightTable:
 
 
 FIELD_MODEL_ERROR_NT = 20.0
-"""What degrees 11 to 13 of the field add at low orbits, and the wire's rounding."""
+"""Contribution of degrees 11 to 13 of the field in low orbits, and rounding on the wire."""
 SUN_MODEL_ERROR_DEG = 0.02
-"""Almanac Sun and the wire's rounding."""
+"""Error of the almanac's Sun, and rounding on the wire."""
 
 
 def parse_settings(settings: tuple[str, ...]) -> Nested:

@@ -1,4 +1,4 @@
-"""Sections of a scenario that the plant alone knows: surface, sensors, disturbances."""
+"""Sections of a scenario that only the plant uses: surface, sensors, disturbances."""
 
 from typing import Annotated, Self
 
@@ -14,7 +14,7 @@ Latency = Annotated[float, Field(ge=0.0, le=60.0)]
 class PlateSection(Section):
     """A flat part of the surface: area, outward normal, centre of pressure from the mass centre, body axes.
 
-    ``specular`` and ``diffuse`` are the parts of the light that are mirrored and scattered.
+    ``specular`` and ``diffuse`` are the parts of the light reflected as by a mirror and scattered.
     """
 
     area_m2: Positive
@@ -57,7 +57,7 @@ class MagnetometerSection(Section):
 
 
 class SunSensorSection(Section):
-    """Physics of the Sun sensor, body axes: it sees within ``fov_half_deg`` of a boresight, or all around."""
+    """Physics of the Sun sensor, body axes: in view within ``fov_half_deg`` of a boresight."""
 
     noise_deg: NotNegative = 0.5
     misalignment_deg: Triple = (0.0, 0.0, 0.0)

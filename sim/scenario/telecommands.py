@@ -1,7 +1,7 @@
-"""Telecommands of a scenario: what the ground sends, when, and as which frames.
+"""Telecommands of a scenario: what the ground sends, at which time and as which frames.
 
-``[[telecommand]]`` names the message and, in the units of people, what it says. Ranges are those of the wire,
-not those that the flight software accepts: a scenario may show a refusal.
+``[[telecommand]]`` gives the message and, in readable units, its content. Ranges are those of the wire, not
+those that the flight software accepts: a scenario may show a rejection.
 """
 
 from collections import Counter
@@ -37,17 +37,17 @@ Uplink = Callable[[int], list[Frame]]
 MOST_DIGITS = 2**31 - 1
 
 
-class Sent(Section):
-    """When it is sent: before the first SYNC at or after this time since the epoch."""
+class TelecommandSection(Section):
+    """A telecommand and its time: sent before the first SYNC at or after ``at_s`` since the epoch."""
 
     at_s: float = Field(ge=0.0)
 
     def messages(self) -> list[CountedMessage]:
-        """What goes out, counters left at 0."""
+        """The messages to send, with counters 0."""
         raise NotImplementedError
 
 
-class SendMode(Sent):
+class SendMode(TelecommandSection):
     """TC_MODE."""
 
     message: Literal["TC_MODE"]
@@ -58,7 +58,7 @@ class SendMode(Sent):
         return [TcMode(Mode[self.mode])]
 
 
-class SendClear(Sent):
+class SendClear(TelecommandSection):
     """TC_CLEAR."""
 
     message: Literal["TC_CLEAR"]
@@ -68,7 +68,7 @@ class SendClear(Sent):
         return [TcClear()]
 
 
-class SendLaw(Sent):
+class SendLaw(TelecommandSection):
     """TC_LAW: the law by its name."""
 
     message: Literal["TC_LAW"]
@@ -79,7 +79,7 @@ class SendLaw(Sent):
         return [TcLaw(LAWS[self.law].number)]
 
 
-class SendSpin(Sent):
+class SendSpin(TelecommandSection):
     """TC_SPIN."""
 
     message: Literal["TC_SPIN"]
@@ -90,7 +90,7 @@ class SendSpin(Sent):
         return [TcSpin(self.spin_radps)]
 
 
-class SendGain(Sent):
+class SendGain(TelecommandSection):
     """TC_GAIN, in the units of the control table."""
 
     message: Literal["TC_GAIN"]
@@ -109,7 +109,7 @@ class SendGain(Sent):
         return [TcGain(Gain[self.gain.upper()], exponent, mantissa)]
 
 
-class SendElement(Sent):
+class SendElement(TelecommandSection):
     """TC_ORBIT_ELEMENT."""
 
     message: Literal["TC_ORBIT_ELEMENT"]
@@ -127,7 +127,7 @@ class SendElement(Sent):
         return [_element(Element[self.element.upper()], Decimal(repr(self.value)))]
 
 
-class SendOrbit(Sent):
+class SendOrbit(TelecommandSection):
     """TC_ORBIT_LOAD; where ``tle`` is given, with all its elements before it."""
 
     message: Literal["TC_ORBIT_LOAD"]
@@ -153,20 +153,20 @@ Telecommand = Annotated[
 Telecommands = Annotated[tuple[Telecommand, ...], Strict(False)]
 
 
-def uplink(telecommands: Sequence[Sent], tick_hz: int) -> Uplink:
-    """The frames of each tick, each kind of message counted for itself."""
+def uplink(telecommands: Sequence[TelecommandSection], tick_hz: int) -> Uplink:
+    """The frames of each tick, with a counter for each kind of message."""
     frames: dict[int, list[Frame]] = {}
     counters: Counter[int] = Counter()
-    for sent in sorted(telecommands, key=lambda sent: sent.at_s):
-        tick = ceil(sent.at_s * tick_hz - 1e-9)
-        for message in sent.messages():
+    for telecommand in sorted(telecommands, key=lambda telecommand: telecommand.at_s):
+        tick = ceil(telecommand.at_s * tick_hz - 1e-9)
+        for message in telecommand.messages():
             frames.setdefault(tick, []).append(message._replace(counter=counters[message.ID] & 0xF).encode())
             counters[message.ID] += 1
     return lambda tick: frames.get(tick, [])
 
 
 def digits_of(value: Decimal) -> tuple[int, int]:
-    """Mantissa and exponent of a decimal number as on the wire.
+    """Mantissa and exponent of a decimal number, as on the wire.
 
     Raises:
         ValueError: it has more digits than 32 bits hold, or is too large or too small.

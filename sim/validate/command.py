@@ -8,8 +8,8 @@ from pathlib import Path
 
 import click
 
-from sim.campaign.claim import Verdict
-from sim.campaign.runner import Finished, run
+from sim.campaign.claim import ClaimVerdict
+from sim.campaign.runner import StudyResult, run
 from sim.errors import HarnessError
 from sim.progress import progress
 from sim.record.destination import check_file
@@ -60,19 +60,19 @@ def validate(
         _write(page, render(finished, wall_s))
         click.echo(f"page: {page}")
     click.echo(f"{tally(outcomes)}; {wall_s:.0f} s")
-    return int(any(outcome.verdict is Verdict.FAIL for outcome in outcomes))
+    return int(any(outcome.verdict is ClaimVerdict.FAIL for outcome in outcomes))
 
 
 def _default_page(repository: Path | None) -> Path:
     return Path(PAGE) if repository is None else repository / "docs" / PAGE
 
 
-def _print(finished: Finished) -> None:
+def _print(finished: StudyResult) -> None:
     for outcome in finished.outcomes:
         click.echo(line(outcome))
 
 
-def _quiet(finished: Finished) -> None:
+def _quiet(finished: StudyResult) -> None:
     """Nothing yet."""
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from hil_stub.coils.coil_driver import CoilLimits
-from sim.campaign.claim import Claim, Outcome, Study
+from sim.campaign.claim import Claim, ClaimOutcome, Study
 from sim.design.theory.bodies import BODIES, UNSTABLE_BODIES, Body
 from sim.design.theory.floquet import degree_of_stability, monodromy
 from sim.design.theory.linear import Gains, closed_loop
@@ -98,7 +98,7 @@ def best_gains() -> Study:
         for body in BODIES
     ]
 
-    def conclude(found: Sequence[Any]) -> list[Outcome]:
+    def conclude(found: Sequence[Any]) -> list[ClaimOutcome]:
         return [claim.judge(degree, text) for claim, (degree, text, _) in zip(claims, found, strict=True)]
 
     return Study("best_gains", tuple(partial(best_degree, body) for body in BODIES), conclude)
@@ -115,7 +115,7 @@ def unstable_bodies() -> Study:
         high=0.0,
     )
 
-    def conclude(found: Sequence[Any]) -> list[Outcome]:
+    def conclude(found: Sequence[Any]) -> list[ClaimOutcome]:
         wrong = [
             name
             for (name, can), (*_, stabilised) in zip(known.items(), found, strict=True)
@@ -182,7 +182,7 @@ def _gains(body: Body) -> Gains:
 
 
 def _worst_of(claim: Claim, bodies: Sequence[Body], error: Callable[[Body], float]) -> Study:
-    def conclude(errors: Sequence[float]) -> list[Outcome]:
+    def conclude(errors: Sequence[float]) -> list[ClaimOutcome]:
         worst = int(np.argmax(errors))
         return [claim.judge(errors[worst], bodies[worst].name)]
 

@@ -10,7 +10,7 @@ from fsw.input.schema import Nested
 from fsw.wire.messages import Mode
 from sim.campaign.claim import Study
 from sim.campaign.flight import Figures, Order
-from sim.campaign.study import Figure, Group, at, campaign, measured
+from sim.campaign.study import Figure, Group, campaign, figure_of, summary_value
 from sim.plant.environment.orbit import Sgp4Orbit
 from sim.plant.environment.sun import illumination, sun_eci_m
 from sim.record.estimates import Estimates
@@ -35,7 +35,7 @@ FLOWN_ORBITS = 8.0
 NEES_RUNS, NEES_STATES, NEES_CONFIDENCE = 100, 6, 0.95
 BIASED_RUNS, BIAS_NT = 4, 500.0
 
-KEPT = at("limits_ok", 0.0)
+KEPT = summary_value("limits_ok", 0.0)
 
 
 def studies() -> list[Study]:
@@ -54,7 +54,7 @@ def pointing() -> Study:
             f"rms_{name}",
             f"RMS pointing error, last {LAST_ORBITS:.0f} orbits, bias torque {torque_nm:g} N m, all seeds",
             "deg",
-            measured("rms_deg"),
+            figure_of("rms_deg"),
             group=name,
             high=limit_deg,
         )
@@ -77,18 +77,24 @@ def acquisition() -> Study:
             "held",
             f"In POINT and under {ACQUIRED_DEG:g} deg for good after, from any attitude at 1 deg/s, all",
             "orbits",
-            measured("held_orbits"),
+            figure_of("held_orbits"),
             high=ACQUIRED_ORBITS,
         ),
         Figure(
             "final",
             "Largest pointing error at the end, none inverted",
             "deg",
-            at("pointing_deg.final"),
+            summary_value("pointing_deg.final"),
             high=10.0,
         ),
         Figure(
-            "eclipse", "Part of the starts in eclipse", "1", measured("dark_start"), "mean", low=0.5, high=0.5
+            "eclipse",
+            "Part of the starts in eclipse",
+            "1",
+            figure_of("dark_start"),
+            "mean",
+            low=0.5,
+            high=0.5,
         ),
         Figure("limits", "Actuator limits kept, by the independent audit", "1", KEPT, low=1.0),
     )
@@ -105,7 +111,7 @@ def consistency() -> Study:
         "nees",
         f"Mean NEES of attitude and rate after one orbit, {NEES_RUNS} runs, 95 % bounds",
         "1",
-        measured("nees"),
+        figure_of("nees"),
         "mean",
         low=low,
         high=high,
@@ -122,7 +128,7 @@ def magnetometer_bias() -> Study:
         "sunlit",
         f"RMS attitude error of the filter, sunlit, magnetometer bias {BIAS_NT:g} nT per axis, all seeds",
         "deg",
-        at("estimate_deg.rms_sunlit"),
+        summary_value("estimate_deg.rms_sunlit"),
         high=0.2,
     )
     return campaign("filter_bias", FILTER, (Group("", orders),), (figure,))

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 import numpy as np
 import scipy
 
-from sim.campaign.claim import Outcome, Verdict
-from sim.campaign.runner import Finished
+from sim.campaign.claim import ClaimOutcome, ClaimVerdict
+from sim.campaign.runner import StudyResult
 from sim.validate.reference.reference import Checked
 
 _HEAD = """# Validation
@@ -18,7 +18,7 @@ tolerance counts.
 """
 
 
-def render(finished: Sequence[Finished], wall_s: float) -> str:
+def render(finished: Sequence[StudyResult], wall_s: float) -> str:
     """The page: the table of claims, what was left out of the reference files, wall time and platform."""
     outcomes = [outcome for study in finished for outcome in study.outcomes]
     lines = [_HEAD, tally(outcomes) + ".", "", "| claim | source | ours | tolerance | verdict |"]
@@ -32,7 +32,7 @@ def render(finished: Sequence[Finished], wall_s: float) -> str:
     return "\n".join(lines)
 
 
-def line(outcome: Outcome) -> str:
+def line(outcome: ClaimOutcome) -> str:
     """One outcome for the terminal."""
     if outcome.ours is None:
         return f"{outcome.verdict.value:<6} {outcome.claim.id}"
@@ -41,11 +41,11 @@ def line(outcome: Outcome) -> str:
     return f"{outcome.verdict.value:<6} {outcome.claim.id}: {outcome.claim.statement}: {figure}{where}"
 
 
-def tally(outcomes: Sequence[Outcome]) -> str:
+def tally(outcomes: Sequence[ClaimOutcome]) -> str:
     """How many claims hold, fail, and could not be judged."""
-    count = {verdict: sum(outcome.verdict is verdict for outcome in outcomes) for verdict in Verdict}
-    text = f"{count[Verdict.PASS]} claims hold, {count[Verdict.FAIL]} fail"
-    return text + (f", {count[Verdict.ABSENT]} absent" if count[Verdict.ABSENT] else "")
+    count = {verdict: sum(outcome.verdict is verdict for outcome in outcomes) for verdict in ClaimVerdict}
+    text = f"{count[ClaimVerdict.PASS]} claims hold, {count[ClaimVerdict.FAIL]} fail"
+    return text + (f", {count[ClaimVerdict.ABSENT]} absent" if count[ClaimVerdict.ABSENT] else "")
 
 
 def platform_line() -> str:
@@ -56,17 +56,17 @@ def platform_line() -> str:
     )
 
 
-def _row(outcome: Outcome) -> str:
+def _row(outcome: ClaimOutcome) -> str:
     claim = outcome.claim
     ours = "" if outcome.ours is None else _figure(outcome)
-    if outcome.verdict is Verdict.FAIL and outcome.where:
+    if outcome.verdict is ClaimVerdict.FAIL and outcome.where:
         ours += f" at {outcome.where}"
     limits = f"{claim.limits} {_unit(claim.unit)}".strip() if outcome.ours is not None else ""
     cells = (f"{claim.statement} (`{claim.id}`)", claim.source, ours, limits, outcome.verdict.value)
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
 
 
-def _figure(outcome: Outcome) -> str:
+def _figure(outcome: ClaimOutcome) -> str:
     return f"{outcome.ours:.4g} {_unit(outcome.claim.unit)}".strip()
 
 

@@ -5,9 +5,9 @@ from statistics import median
 from typing import Any
 
 from fsw.input.schema import Nested, merge
-from sim.campaign.claim import Claim, Outcome, Study
-from sim.campaign.flight import Figures, Flight, Order
-from sim.campaign.study import Figure, Group, at, campaign, measured, number
+from sim.campaign.claim import Claim, ClaimOutcome, Study
+from sim.campaign.flight import Figures, FlightResult, Order
+from sim.campaign.study import Figure, Group, campaign, figure_of, summary_number, summary_value
 from sim.record.estimates import Estimates
 from sim.record.truth import Histories
 from sim.scenario.schema import Scenario
@@ -19,8 +19,8 @@ TILTS = {"pitch": [0.0, 0.0, 1.0], "roll": [0.0, 1.0, 0.0]}
 FREE: Nested = {"coils": {"driver": "continuous", "max_dipole_am2": 60.0, "on_fraction": 1.0}}
 """Any dipole up to the highest level, at the timing of the pulses."""
 
-SETTLE = at("axis1_deg.settle_orbits_5deg", inf)
-KEPT = at("limits_ok", 0.0)
+SETTLE = summary_value("axis1_deg.settle_orbits_5deg", inf)
+KEPT = summary_value("limits_ok", 0.0)
 
 
 def studies() -> list[Study]:
@@ -47,10 +47,10 @@ def libration() -> Study:
         "posat1.restricted", "Median settling, restricted over unrestricted law", SOURCE, "1", 0.85, 1.15
     )
 
-    def conclude(flights: Any) -> list[Outcome]:  # noqa: ANN401  (as in Study)
+    def conclude(flights: Any) -> list[ClaimOutcome]:  # noqa: ANN401  (as in Study)
         return [*flown.conclude(flights), _ratio(claim, flights[:count], flights[count:])]
 
-    return Study(flown.id, flown.tasks, conclude, flown=True)
+    return Study(flown.id, flown.tasks, conclude, has_flights=True)
 
 
 def spin() -> Study:
@@ -58,13 +58,18 @@ def spin() -> Study:
     figures = (
         Figure("all", "Boom from 60 deg under 5 deg for good after, all", "orbits", SETTLE, high=4.0),
         Figure(
-            "tilt", "Mean tilt in the last orbit", "deg", at("axis1_deg.mean_last_orbit"), low=1.8, high=2.2
+            "tilt",
+            "Mean tilt in the last orbit",
+            "deg",
+            summary_value("axis1_deg.mean_last_orbit"),
+            low=1.8,
+            high=2.2,
         ),
         Figure(
             "deviation",
             "Spin's largest deviation in the last orbit",
             "rad/s",
-            at("spin_radps.max_dev_last_orbit"),
+            summary_value("spin_radps.max_dev_last_orbit"),
             high=6e-4,
         ),
         Figure("limits", "Actuator limits kept, by the independent audit", "1", KEPT, low=1.0),
@@ -80,7 +85,7 @@ def spin_up() -> Study:
             "pulses",
             "Pulses until then, median",
             "pulses",
-            at("spin_radps.pulses_to_settle", inf),
+            summary_value("spin_radps.pulses_to_settle", inf),
             "median",
             high=12.0,
         ),
@@ -88,11 +93,11 @@ def spin_up() -> Study:
             "error_median",
             "Final error of the spin, median",
             "rad/s",
-            measured("spin_error"),
+            figure_of("spin_error"),
             "median",
             high=5e-4,
         ),
-        Figure("error_all", "Final error of the spin, all", "rad/s", measured("spin_error"), high=8e-4),
+        Figure("error_all", "Final error of the spin, all", "rad/s", figure_of("spin_error"), high=8e-4),
         Figure("limits", "Actuator limits kept, by the independent audit", "1", KEPT, low=1.0),
     )
     phases = [(node, u0) for node in NODES_DEG for u0 in (0.0, 90.0)]
@@ -116,13 +121,13 @@ def _starts(scenario: str, orbits: float, overrides: Nested | None = None) -> tu
     )
 
 
-def _ratio(claim: Claim, restricted: list[Flight], free: list[Flight]) -> Outcome:
+def _ratio(claim: Claim, restricted: list[FlightResult], free: list[FlightResult]) -> ClaimOutcome:
     ours, theirs = (median(SETTLE(flight) for flight in flights) for flights in (restricted, free))
     return claim.judge(ours / theirs, f"medians {ours:.2f} and {theirs:.2f} orbits")
 
 
-def _spun_up_min(flight: Flight) -> float:
-    return number(flight, "spin_radps.settle_s_1e-3", inf) / 60.0
+def _spun_up_min(flight: FlightResult) -> float:
+    return summary_number(flight, "spin_radps.settle_s_1e-3", inf) / 60.0
 
 
 def final_spin(scenario: Scenario, truth: Histories, estimates: Estimates) -> Figures:

@@ -29,7 +29,7 @@ def chosen(studies: Sequence[Study], only: Sequence[str], quick: bool) -> list[S
             ids = ", ".join(study.id for study in studies)
             raise HarnessError(f"--only {word}: no such claims; there are {ids}")
     kept = [study for study in studies if not only or any(_begins(study.id, word) for word in only)]
-    kept = [study for study in kept if not (quick and study.flown)]
+    kept = [study for study in kept if not (quick and study.has_flights)]
     if not kept:
         raise HarnessError("--quick leaves out flights, and --only names nothing else")
     return kept

@@ -345,5 +345,5 @@ def test_a_motion_that_is_lost_ends_the_flight_in_one_sentence(torquer, tmp_path
     words = ("--set", "initial.rate_degps=[1e14, 1e13, 0]", "--out", tmp_path / "new")
     done = torquer("sil", *TINY, *words)
     assert done.code == 1
-    assert "the motion is lost in tick 0" in done.sentence
+    assert "the motion diverges in tick 0" in done.sentence
     assert torquer("check", tmp_path / "new").code == 1

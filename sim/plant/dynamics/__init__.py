@@ -1,1 +1,1 @@
-"""How the body moves: torques on it and its attitude and rate."""
+"""Rotation of the body: torques, attitude and rate."""

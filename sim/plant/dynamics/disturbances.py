@@ -1,4 +1,4 @@
-"""The torques that act only where the configuration asks for them."""
+"""The optional torques: drag, solar pressure, eddy currents and noise."""
 
 from collections.abc import Callable, Iterator
 from math import sqrt
@@ -10,11 +10,11 @@ from sim.plant.random_streams import normals
 from sim.plant.rotation import Mat3, Vec3, transform
 
 Effect = Callable[[Mat3, Vec3, Surroundings], Vec3]
-"""Torque in body axes [N m]: of the turn body from ``eci``, the inertial rate in body axes, surroundings."""
+"""Torque, body axes [N m], from C(body from ``eci``), the inertial rate in body axes and the surroundings."""
 
 
 def effects(config: PlantConfig) -> dict[str, Effect]:
-    """Those that follow from attitude, rate and surroundings, by the name that truth gives them."""
+    """The torques that follow from attitude, rate and surroundings, by name (``Plant.torque_sources``)."""
     found: dict[str, Effect] = {}
     disturbance, plates = config.disturbance, config.body.plates
     if disturbance.density_scale is not None:
@@ -34,7 +34,7 @@ def torque_noise(config: PlantConfig) -> Iterator[Vec3] | None:
     """A torque for each tick, constant over it, white from tick to tick; None where there is none.
 
     Its standard deviation per axis is sqrt(q tick_hz), q the spectral density of the white torque that it
-    stands for: over many ticks the integral of both has the variance q t. Stream ``torque_noise``.
+    represents: over many ticks the integral of both has the variance q t. Stream ``torque_noise``.
     """
     root_density = config.disturbance.torque_noise_nm_rts
     if not root_density:

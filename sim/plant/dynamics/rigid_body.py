@@ -7,11 +7,11 @@ from sim.plant.environment.surroundings import Surroundings
 from sim.plant.rotation import ZERO, Mat3, Quaternion, Vec3, cross, normalise, transform
 
 Torque = Callable[[Quaternion, Vec3, Surroundings], Vec3]
-"""Torque in body axes [N m]: of q_body_from_eci, the inertial rate in body axes, surroundings."""
+"""Torque in body axes [N m], from q_body_from_eci, the inertial rate in body axes and the surroundings."""
 
 
 class Motion(NamedTuple):
-    """State of the rotation."""
+    """Rotational state."""
 
     q_body_from_eci: Quaternion
     omega_body_radps: Vec3

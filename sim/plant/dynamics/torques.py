@@ -4,7 +4,7 @@ from sim.plant.environment.surroundings import Surroundings
 from sim.plant.rotation import Mat3, Quaternion, Vec3, cross, matrix, transform
 
 SOURCES = ("gravity_gradient", "coils", "residual_dipole", "bias")
-"""What turns every body, in the order in which truth lists it; ``disturbances`` has what may come after."""
+"""The torques on every body, in the order of ``TruthRow``; those of ``disturbances`` follow."""
 
 
 def gravity_gradient(inertia_kgm2: Mat3, e_body: Vec3, gradient_ps2: float) -> Vec3:
@@ -21,8 +21,8 @@ def magnetic(m_body_am2: Vec3, b_body_t: Vec3) -> Vec3:
 def eddy(k_nms_per_t2: float, omega_body_radps: Vec3, b_body_t: Vec3) -> Vec3:
     """T = k (omega x b) x b [N m] of the currents that the field induces in a turning conductor.
 
-    It brakes omega across the field, and not along it (Wertz 1978, section 17.2). The slow turn of the field
-    along the orbit is left out.
+    It brakes omega across the field, and not along it (Wertz 1978, section 17.2). The slow rotation of the
+    field along the orbit is neglected.
 
     Args:
         k_nms_per_t2: k, of the conductor's shape and conductivity; 2/3 pi r^4 sigma d for a thin sphere.

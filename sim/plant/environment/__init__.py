@@ -1,1 +1,1 @@
-"""What surrounds the satellite: orbit, Earth, field, Sun, air, whatever its attitude."""
+"""The environment of the satellite: orbit, Earth, field, Sun and air, independent of attitude."""

@@ -1,4 +1,4 @@
-"""The upper atmosphere: density, and the flow that a satellite meets, for many points at once."""
+"""The upper atmosphere: density, and the velocity relative to the air, for many points at once."""
 
 import numpy as np
 

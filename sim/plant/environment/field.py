@@ -50,7 +50,7 @@ class DirectDipole:
 
 
 def make_field(config: FieldConfig, epoch_unix_s: int) -> Field:
-    """The field that the configuration asks for."""
+    """The configured field."""
     if config.model == "direct_dipole":
         return DirectDipole()
     return RotatingIgrf(1 if config.model == "tilted_dipole" else config.degree, epoch_unix_s)

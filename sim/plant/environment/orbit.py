@@ -79,7 +79,7 @@ class Sgp4Orbit:
 
 
 def make_orbit(config: OrbitConfig, epoch_unix_s: int) -> Orbit:
-    """The orbit that the configuration asks for."""
+    """The configured orbit."""
     if config.tle is None:
         return CircularOrbit(config)
     return Sgp4Orbit(config.tle, epoch_unix_s)

@@ -1,7 +1,7 @@
-"""What surrounds the satellite along its orbit, whatever its attitude: computed ahead, read in plain floats.
+"""The environment along the orbit, independent of attitude: computed ahead, read as plain floats.
 
-Orbit, field and Sun are computed at nodes, many at once, and interpolated to every instant at which the
-integration or the sensors look. All instants lie on one grid of integers, so no time is ever accumulated.
+Orbit, field and Sun are computed at nodes, many at once, and interpolated to every instant that the
+integration or the sensors need. All instants lie on one grid of integers, so no time is ever accumulated.
 """
 
 from collections.abc import Iterable
@@ -46,7 +46,7 @@ VACUUM = Exposure(ZERO, 0.0, ZERO, 0.0)
 
 
 class Surroundings(NamedTuple):
-    """What the torques need at one instant."""
+    """The quantities that the torques need at one instant."""
 
     e_eci: Vec3
     """Unit vector of the radius."""
@@ -54,11 +54,11 @@ class Surroundings(NamedTuple):
     """3 mu / r^3."""
     b_eci_t: Vec3
     exposure: Exposure = VACUUM
-    """Where drag or the pressure of light is asked for."""
+    """Only if drag or solar pressure is configured."""
 
 
 class Sample(NamedTuple):
-    """What sensors and truth need at one tick."""
+    """The quantities that sensors and truth need at one tick."""
 
     r_eci_m: Vec3
     orbit_from_eci: Mat3
@@ -69,7 +69,7 @@ class Sample(NamedTuple):
     sun_eci: Vec3
     """Unit vector from the satellite to the Sun."""
     lit: float
-    """Fraction of the Sun's disc that is seen."""
+    """Visible fraction of the Sun's disc."""
 
 
 class Environment:
@@ -109,7 +109,7 @@ class Environment:
         return self._samples[place]
 
     def _enter(self, tick: int) -> int:
-        """See that the block of the tick is there; the tick's place in it."""
+        """Compute the block of the tick if needed; return the tick's place in it."""
         block, place = divmod(tick, self._ticks_per_block)
         if block != self._block:
             self._compute(block)

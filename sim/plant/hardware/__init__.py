@@ -1,1 +1,1 @@
-"""The instruments on board: sensors and coils as physics."""
+"""Sensors and coils: their physics, and the coil driver boards that drive the coils."""

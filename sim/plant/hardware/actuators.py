@@ -1,4 +1,4 @@
-"""Board and coils together: what the coil driver drives, as currents."""
+"""The coil driver boards of the plant, and the currents that they drive."""
 
 from math import ceil
 from typing import NamedTuple, Protocol
@@ -11,18 +11,18 @@ from sim.plant.config import CoilConfig, ContinuousConfig, PlantConfig
 from sim.plant.rotation import ZERO, Vec3
 
 SETTLED_TIME_CONSTANTS = 10.0
-"""After so many the read-back of a coil is judged: less than 0.01 % of the change is left."""
+"""Time constants after which the read-back is judged: less than 0.01 % of the change is left."""
 
 
-class Driven(NamedTuple):
-    """What is driven over a tick, from its start for ``fraction`` of it."""
+class CoilDrive(NamedTuple):
+    """The currents driven over a tick, from its start for ``fraction`` of it."""
 
     current_a: Vec3
-    """That each coil is driven to."""
+    """Target current of each coil."""
     fraction: float
 
 
-OFF = Driven(ZERO, 0.0)
+OFF = CoilDrive(ZERO, 0.0)
 
 
 class Board(Protocol):
@@ -32,7 +32,7 @@ class Board(Protocol):
         """Enter a tick, the coil current being read back: the frames to send."""
 
     def receive(self, frame: Frame) -> None:
-        """Hear a frame of the bus."""
+        """Take a frame of the bus."""
 
 
 class Actuator(Protocol):
@@ -40,8 +40,8 @@ class Actuator(Protocol):
 
     board: Board
 
-    def drive(self) -> Driven:
-        """What is driven over the tick that has begun."""
+    def drive(self) -> CoilDrive:
+        """The currents of the tick that has begun."""
 
 
 class PulsedActuator:
@@ -55,33 +55,33 @@ class PulsedActuator:
         self.board: Board = self._driver
         self._level_a = [0.0, low_a, middle_a, high_a]
 
-    def drive(self) -> Driven:
-        """What is driven over the tick that has begun."""
+    def drive(self) -> CoilDrive:
+        """The currents of the tick that has begun."""
         coil, level, fraction = self._driver.drive()
         if not level:
             return OFF
         current_a = self._level_a[level] if level > 0 else -self._level_a[-level]
         x, y, z = (current_a if each == coil else 0.0 for each in range(3))
-        return Driven((x, y, z), fraction)
+        return CoilDrive((x, y, z), fraction)
 
 
 class ContinuousActuator:
-    """All three coils at once, for a part of the tick in which they are asked for."""
+    """All three coils at once, for a part of the tick in which they are commanded."""
 
     def __init__(self, tick_hz: int, coils: CoilConfig, continuous: ContinuousConfig) -> None:
         self._driver = DipoleDriver(tick_hz, continuous.on_fraction)
         self.board: Board = self._driver
         self._full_a = continuous.max_dipole_am2 / coils.dipole_per_ampere_am2
 
-    def drive(self) -> Driven:
-        """What is driven over the tick that has begun."""
+    def drive(self) -> CoilDrive:
+        """The currents of the tick that has begun."""
         (x, y, z), fraction = self._driver.drive()
         full_a = self._full_a
-        return Driven((x * full_a, y * full_a, z * full_a), fraction)
+        return CoilDrive((x * full_a, y * full_a, z * full_a), fraction)
 
 
 def make_actuator(config: PlantConfig) -> Actuator:
-    """The one that the configuration asks for."""
+    """The configured actuator."""
     continuous = config.coils.continuous
     if continuous is None:
         return PulsedActuator(config)

@@ -6,11 +6,11 @@ from sim.plant.config import CoilConfig
 from sim.plant.rotation import ZERO, Vec3
 
 _EXTINCT_A = 1e-15
-"""A current below this has died away."""
+"""A current below this counts as zero."""
 
 
 class Coils:
-    """Currents that follow what is driven with a first-order lag: di/dt = (i_driven - i) / tau.
+    """Currents that follow their targets with a first-order lag: di/dt = (i_driven - i) / tau.
 
     Args:
         config: the coils.
@@ -23,7 +23,7 @@ class Coils:
         self._current_a = [0.0, 0.0, 0.0]
 
     def rescale(self, coil: int, scale: float) -> None:
-        """Let a coil give ``scale`` of its true dipole from now on."""
+        """Scale the dipole of a coil from now on."""
         config = self._config
         self._dipole_per_ampere[coil] = config.dipole_per_ampere_am2 * config.dipole_scale[coil] * scale
 
@@ -40,7 +40,7 @@ class Coils:
         return x + y + z
 
     def advance(self, driven_a: Vec3, on_s: float, step_s: float) -> Vec3:
-        """Go on by a step in which coils are driven from its start for ``on_s``; exact mean dipole [A m^2].
+        """Advance by a step in which coils are driven from its start for ``on_s``; exact mean dipole [A m^2].
 
         The mean, not the end value, carries the impulse: the lag is far shorter than a step.
 

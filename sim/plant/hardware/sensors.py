@@ -1,4 +1,4 @@
-"""Sensor physics: what the boards' instruments read."""
+"""Sensor physics: the readings of the boards' instruments."""
 
 from collections import deque
 from math import cos, sqrt
@@ -7,37 +7,37 @@ from sim.plant.config import MagnetometerConfig, SunSensorConfig
 from sim.plant.random_streams import normals
 from sim.plant.rotation import ZERO, Vec3, from_vector, matrix, transform
 
-LIT_ENOUGH = 0.5
-"""Fraction of the Sun's disc below which the Sun sensor sees nothing."""
+LEAST_LIT = 0.5
+"""Visible fraction of the Sun's disc below which the Sun sensor has no reading."""
 
 
 _Values = tuple[float, ...]
 
 
 class Delay:
-    """What was there ``latency_s`` ago: linear between samples; before the first, the first.
+    """The values ``latency_s`` ago: linear between samples; before the first, the first.
 
     Args:
-        latency_s: age of what is given back.
+        latency_s: age of the returned values.
         tick_hz: samples a second.
     """
 
     def __init__(self, latency_s: float, tick_hz: int) -> None:
         ticks, self._part = divmod(latency_s * tick_hz, 1.0)
         self._length = int(ticks) + 2
-        self._kept: deque[_Values] = deque(maxlen=self._length)
+        self._samples: deque[_Values] = deque(maxlen=self._length)
 
     def __call__(self, now: _Values) -> _Values:
-        """The values of back then, those of the next sample being ``now``."""
-        kept, part = self._kept, self._part
-        kept.append(now)
-        while len(kept) < self._length:
-            kept.append(now)
-        return tuple(late + part * (early - late) for early, late in zip(kept[0], kept[1], strict=True))
+        """Add the sample ``now``, and return the delayed values."""
+        samples, part = self._samples, self._part
+        samples.append(now)
+        while len(samples) < self._length:
+            samples.append(now)
+        return tuple(late + part * (early - late) for early, late in zip(samples[0], samples[1], strict=True))
 
 
 class MagnetometerPhysics:
-    """b = scale (R (b_body + K m)) + bias + noise, then quantised and held within the range.
+    """b = scale (R (b_body + K m)) + bias + noise, then quantised and limited to the range.
 
     R turns body into sensor axes, K m is the coils' own field; both are those of ``latency_s`` ago.
 
@@ -66,7 +66,7 @@ class MagnetometerPhysics:
         if self._delay:
             sensed = self._delay(sensed)
         x, y, z = (
-            _quantised(scale * b + bias + config.noise_t * next(self._noise), config.quantum_t)
+            _quantise(scale * b + bias + config.noise_t * next(self._noise), config.quantum_t)
             for scale, b, bias in zip(config.scale, sensed, config.bias_t, strict=True)
         )
         most = config.saturation_t
@@ -99,22 +99,22 @@ class SunSensorPhysics:
 
         Args:
             sun_body: true unit vector.
-            lit: fraction of the Sun's disc that is seen.
+            lit: visible fraction of the Sun's disc.
         """
         noise, sigma = self._noise, self._config.noise_rad
         ax, ay, az = sigma * next(noise), sigma * next(noise), sigma * next(noise)
         if self._delay:
             *then, lit = self._delay((*sun_body, lit))
             sun_body = (then[0], then[1], then[2])
-        if lit < LIT_ENOUGH or not self._in_view(sun_body):
+        if lit < LEAST_LIT or not self._in_view(sun_body):
             return ZERO, False
         x, y, z = transform(self._sensor_from_body, sun_body)
         x, y, z = x + ay * z - az * y, y + az * x - ax * z, z + ax * y - ay * x
         factor, quantum = 1.0 / sqrt(x * x + y * y + z * z), self._config.quantum
         return (
-            _quantised(x * factor, quantum),
-            _quantised(y * factor, quantum),
-            _quantised(z * factor, quantum),
+            _quantise(x * factor, quantum),
+            _quantise(y * factor, quantum),
+            _quantise(z * factor, quantum),
         ), True
 
     def _in_view(self, sun_body: Vec3) -> bool:
@@ -126,5 +126,5 @@ class SunSensorPhysics:
         return any(x * bx + y * by + z * bz >= least for bx, by, bz in boresights)
 
 
-def _quantised(value: float, quantum: float) -> float:
+def _quantise(value: float, quantum: float) -> float:
     return quantum * round(value / quantum) if quantum else value

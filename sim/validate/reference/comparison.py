@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sim.campaign.claim import Claim, Outcome
+from sim.campaign.claim import Claim, ClaimOutcome
 from sim.validate.reference.reference_table import ReferenceTable
 
 Array = NDArray[np.float64]
@@ -29,7 +29,7 @@ class Comparison:
     deviation: Array
     tolerance: ArrayLike
 
-    def outcome(self, table: ReferenceTable) -> Outcome:
+    def outcome(self, table: ReferenceTable) -> ClaimOutcome:
         """The verdict on the row that comes nearest to its tolerance or exceeds it most."""
         tolerance = np.broadcast_to(np.asarray(self.tolerance, dtype=np.float64), self.deviation.shape)
         excess = np.where(self.deviation == 0.0, 0.0, self.deviation / np.maximum(tolerance, 1e-300))

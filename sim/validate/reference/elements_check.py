@@ -8,7 +8,7 @@ import numpy as np
 
 from fsw.core.orbit.propagation import sgp4_orbit, state_eci
 from fsw.core.orbit.tle import read_tle, tle_elements, tle_epoch_unix_s
-from sim.campaign.claim import Claim, Outcome
+from sim.campaign.claim import Claim, ClaimOutcome
 from sim.errors import HarnessError
 from sim.plant.environment.orbit import Sgp4Orbit
 from sim.validate.reference.reference_table import read_lines
@@ -35,7 +35,7 @@ class Elements:
         return self.name or str(read_tle(*self.lines).satnum_str)
 
 
-def check(path: Path) -> Iterator[Outcome]:
+def check(path: Path) -> Iterator[ClaimOutcome]:
     """Compare position and velocity over a day from each epoch.
 
     Raises:

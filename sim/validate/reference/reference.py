@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from sim.campaign.claim import Claim, Outcome, Study, Verdict
+from sim.campaign.claim import Claim, ClaimOutcome, ClaimVerdict, Study
 from sim.errors import HarnessError
 from sim.validate.reference import (
     attitude_check,
@@ -45,7 +45,7 @@ class Checked:
     name: str
     rows: int
     unused: tuple[str, ...]
-    outcomes: tuple[Outcome, ...]
+    outcomes: tuple[ClaimOutcome, ...]
 
 
 def studies(folder: Path) -> list[Study]:
@@ -89,11 +89,11 @@ def _studies(pattern: str, files: list[Path]) -> list[Study]:
     stem = Path(pattern).stem
     if not files:
         claim = Claim(f"reference.{stem.rstrip('_*')}", f"{pattern}", pattern, "")
-        return [Study(claim.id, (), lambda results: [Outcome(claim, Verdict.ABSENT)])]
+        return [Study(claim.id, (), lambda results: [ClaimOutcome(claim, ClaimVerdict.ABSENT)])]
     return [
         Study(f"reference.{path.stem}", (partial(check_file, path, pattern),), _outcomes) for path in files
     ]
 
 
-def _outcomes(results: Sequence[Any]) -> list[Outcome]:
+def _outcomes(results: Sequence[Any]) -> list[ClaimOutcome]:
     return [outcome for checked in results for outcome in checked.outcomes]

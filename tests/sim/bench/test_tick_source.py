@@ -55,7 +55,7 @@ def test_what_a_board_reports_drives_the_plant_as_its_own_board_does(changes, fr
             board.receive(request)
             assert not source.receive(request)
         own.end_tick()
-        driven += any(own.driven.current_a)
+        driven += any(own.coil_drive.current_a)
         board.drive()
         reported = [source.receive(frame) for frame in board.begin_tick(tick + 1, 0.0)]
         assert reported.count(True) == 1

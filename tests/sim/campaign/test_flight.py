@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from fsw.input.schema import merge
-from sim.campaign.flight import Flight, Order, fly_order
-from sim.campaign.study import Figure, Group, at, campaign, label, number
+from sim.campaign.flight import FlightResult, Order, fly_order
+from sim.campaign.study import Figure, Group, campaign, describe_order, summary_number, summary_value
 from sim.record import run_dir
 from sim.report.conclude import conclude
 
@@ -55,28 +55,28 @@ def test_further_figures_are_taken_from_its_histories(flown):
 
 
 def test_numbers_of_a_summary():
-    flight = Flight(Order("x"), {"a": {"b": 2, "text": "c"}, "ok": True}, {})
-    assert number(flight, "a.b") == 2.0
-    assert number(flight, "ok") == 1.0
-    assert at("a.missing", inf)(flight) == inf
-    assert np.isnan(number(flight, "a.b.c"))
-    assert np.isnan(number(flight, "a.text"))
+    flight = FlightResult(Order("x"), {"a": {"b": 2, "text": "c"}, "ok": True}, {})
+    assert summary_number(flight, "a.b") == 2.0
+    assert summary_number(flight, "ok") == 1.0
+    assert summary_value("a.missing", inf)(flight) == inf
+    assert np.isnan(summary_number(flight, "a.b.c"))
+    assert np.isnan(summary_number(flight, "a.text"))
 
 
 def test_a_label_tells_what_is_special():
     order = Order("posat1", {"orbit": {"raan_deg": 60.0}, "initial": {"axis": [0, 1.23456, 0]}}, seed=3)
-    assert label(order) == "posat1, seed 3, orbit.raan_deg=60, initial.axis=[0, 1.235, 0]"
+    assert describe_order(order) == "posat1, seed 3, orbit.raan_deg=60, initial.axis=[0, 1.235, 0]"
 
 
 class TestFigures:
     def outcome(self, values, **how):
         orders = tuple(Order("x", seed=seed) for seed in range(len(values)))
         other = (Order("y"),)
-        figure = Figure("f", "what", "deg", at("v", nan), group="mine", **how)
+        figure = Figure("f", "what", "deg", summary_value("v", nan), group="mine", **how)
         study = campaign("s", "who", (Group("other", other), Group("mine", orders)), (figure,))
         assert len(study.tasks) == len(values) + 1
-        flights = [Flight(order, {"v": value}, {}) for order, value in zip(orders, values, strict=True)]
-        return study.conclude([Flight(other[0], {"v": -1e9}, {}), *flights])[0]
+        flights = [FlightResult(order, {"v": value}, {}) for order, value in zip(orders, values, strict=True)]
+        return study.conclude([FlightResult(other[0], {"v": -1e9}, {}), *flights])[0]
 
     def test_the_worst_flight_counts_and_is_named(self):
         outcome = self.outcome([1.0, 4.0, 3.0], high=3.5)

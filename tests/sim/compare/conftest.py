@@ -40,7 +40,7 @@ def plant_record(bus_log, fired):
         estimates.mode[-1] = Mode.ACQUIRE
         log = bus_log(ticks=ticks, pulses=[fired(coil, tick) for coil, tick in pulses])
         audited = audit(log.entries(), AuditLimits(tick_hz=1))
-        return Record(load("microsat", overrides or {}), {}, truth, estimates, audited, BusTally(0))
+        return RecordedFlight(load("microsat", overrides or {}), {}, truth, estimates, audited, BusTally(0))
 
     return plant
 

@@ -5,14 +5,14 @@ from fractions import Fraction
 import pytest
 
 from sim.fault_rig.currents import CurrentLimits, CurrentPulse, pulses, violations
-from sim.plant.hardware.actuators import Driven
+from sim.plant.hardware.actuators import CoilDrive
 
-OFF = Driven((0.0, 0.0, 0.0), 0.0)
+OFF = CoilDrive((0.0, 0.0, 0.0), 0.0)
 LEVELS_A = (0.025, 0.1, 0.4)
 
 
 def on(coil, current_a=0.1, fraction=1.0):
-    return Driven(tuple(current_a if each == coil else 0.0 for each in range(3)), fraction)
+    return CoilDrive(tuple(current_a if each == coil else 0.0 for each in range(3)), fraction)
 
 
 def limits(tick_hz=1, shared=True):
@@ -20,9 +20,9 @@ def limits(tick_hz=1, shared=True):
 
 
 def test_pulses_at_the_limits_are_kept():
-    driven = [on(0)] * 3 + [OFF] * 100 + [on(1, -0.4)] * 3 + [OFF]
-    assert violations(driven, limits()) == []
-    assert pulses(driven, 1) == [CurrentPulse(0, Fraction(0), Fraction(3)), CurrentPulse(1, 103, 106)]
+    drives = [on(0)] * 3 + [OFF] * 100 + [on(1, -0.4)] * 3 + [OFF]
+    assert violations(drives, limits()) == []
+    assert pulses(drives, 1) == [CurrentPulse(0, Fraction(0), Fraction(3)), CurrentPulse(1, 103, 106)]
 
 
 @pytest.mark.parametrize(
@@ -32,21 +32,21 @@ def test_pulses_at_the_limits_are_kept():
         ([on(2)] * 4, "coil 2 on for 4 s"),
         ([on(0)] + [OFF] * 99 + [on(1)], "coil 1 on 99 s after a pulse"),
         ([on(0)] * 2 + [on(1)] + [OFF], "coil 1 on 0 s after a pulse"),
-        ([Driven((0.1, 0.1, 0.0), 1.0), OFF], "2 coils at once"),
+        ([CoilDrive((0.1, 0.1, 0.0), 1.0), OFF], "2 coils at once"),
         ([on(0, 0.2), OFF], "0.2 A is no level"),
         ([on(0, 0.1 * (1.0 + 1e-6)), OFF], "is no level"),
     ],
 )
-def test_each_breach_is_said(driven, said):
-    assert any(said in sentence for sentence in violations(driven, limits()))
+def test_each_breach_is_said(drives, said):
+    assert any(said in sentence for sentence in violations(drives, limits()))
 
 
 def test_a_pulse_that_ends_within_a_tick_is_as_long_as_it_flowed():
-    driven = [on(1)] * 29 + [on(1, fraction=0.9)] + [OFF] * 5
-    assert pulses(driven, 10) == [CurrentPulse(1, Fraction(0), Fraction("2.99"))]
+    drives = [on(1)] * 29 + [on(1, fraction=0.9)] + [OFF] * 5
+    assert pulses(drives, 10) == [CurrentPulse(1, Fraction(0), Fraction("2.99"))]
 
 
 def test_a_back_off_of_its_own_holds_between_pulses_of_one_coil_alone():
-    driven = [on(0)] * 3 + [OFF] * 2 + [on(1)] * 3 + [OFF] * 2 + [on(0)]
-    assert [one for one in violations(driven, limits(shared=False)) if "coil 1" in one] == []
-    assert any("coil 0 on 7 s after" in one for one in violations(driven, limits(shared=False)))
+    drives = [on(0)] * 3 + [OFF] * 2 + [on(1)] * 3 + [OFF] * 2 + [on(0)]
+    assert [one for one in violations(drives, limits(shared=False)) if "coil 1" in one] == []
+    assert any("coil 0 on 7 s after" in one for one in violations(drives, limits(shared=False)))

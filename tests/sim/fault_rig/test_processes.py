@@ -29,7 +29,7 @@ def struck(bounds):
 
 def test_a_pulse_ends_by_itself_when_its_sender_is_killed(struck):
     record = struck(stop=False)
-    first, *later = currents.pulses(record.driven, 1)
+    first, *later = currents.pulses(record.coil_drives, 1)
     assert first.end_s - first.start_s == 3
     boot = record.boots[1]
     assert first.start_s < boot

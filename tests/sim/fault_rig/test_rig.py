@@ -31,18 +31,18 @@ def verdicts(result):
 def test_without_a_fault_it_is_the_flight_of_the_loop(flown):
     record = flown(nothing(), TICKS)
     assert record.asked[0] == 100
-    assert len(record.asked) == len(currents.pulses(record.driven, 1)) == 4
+    assert len(record.asked) == len(currents.pulses(record.coil_drives, 1)) == 4
     assert record.refused == 0
     assert record.crash is None
 
 
 def test_a_killed_fsw_ends_no_pulse_early_and_waits_a_full_back_off(flown):
-    class Killed(Fault):
+    class FswKill(Fault):
         def condition(self, tick):
             return Condition.DEAD
 
-    record = flown(Killed(Random(1), {}), TICKS, first=102, end=110)
-    first, second = currents.pulses(record.driven, 1)[:2]
+    record = flown(FswKill(Random(1), {}), TICKS, first=102, end=110)
+    first, second = currents.pulses(record.coil_drives, 1)[:2]
     assert (first.start_s, first.end_s) == (100, 103)
     assert record.boots == [0, 110]
     assert second.start_s >= 210
@@ -53,7 +53,7 @@ def test_what_a_stopped_fsw_answers_late_is_refused(flown):
     record = flown(fault, 130, first=95, end=110)
     assert record.asked == [110], "the request for tick 100 goes out in tick 110"
     assert record.refused == 1
-    assert currents.pulses(record.driven, 1) == []
+    assert currents.pulses(record.coil_drives, 1) == []
 
 
 def test_the_log_of_the_audit_is_what_the_board_said_not_what_came_through(flown):
@@ -86,7 +86,7 @@ def test_a_board_without_guards_is_found_out(rig, bounds, monkeypatch):
     holds, said = checks.limits(row, record, bounds)
     assert not holds
     assert said
-    assert currents.violations(record.driven, bounds.currents)
+    assert currents.violations(record.coil_drives, bounds.currents)
 
 
 def lenient(state, asked, tick, limits):

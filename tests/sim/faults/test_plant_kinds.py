@@ -7,10 +7,10 @@ from random import Random
 import pytest
 
 from fsw.wire.messages import CoilBoot, CoilFire, CoilStatus, MagField, SunVector
-from sim.faults.faulty_plant import FaultyPlant, Scheduled
+from sim.faults.faulty_plant import FaultyPlant, ScheduledFault
 from sim.faults.kinds import make
 from sim.faults.node_kinds import count_doubles, flip, flip_bit
-from sim.plant.hardware.actuators import Driven
+from sim.plant.hardware.actuators import CoilDrive
 from sim.scenario.assemble import plant_config
 from sim.scenario.schema import load
 
@@ -66,10 +66,12 @@ def test_extreme_codes_are_whole_frames_of_the_sensors_alone():
 
 
 def test_coils_that_are_cut_or_stuck():
-    driven = Driven((0.0, 0.1, 0.0), 0.5)
-    assert fault("coil_open", axis=1.0).driven(driven) == Driven((0.0, 0.0, 0.0), 0.5)
-    assert fault("coil_open", axis=0.0).driven(driven) == driven
-    assert fault("coil_stuck_on", axis=2.0, ampere=0.4).driven(driven) == Driven((0.0, 0.1, 0.4), 1.0)
+    coil_drive = CoilDrive((0.0, 0.1, 0.0), 0.5)
+    assert fault("coil_open", axis=1.0).coil_drive(coil_drive) == CoilDrive((0.0, 0.0, 0.0), 0.5)
+    assert fault("coil_open", axis=0.0).coil_drive(coil_drive) == coil_drive
+    assert fault("coil_stuck_on", axis=2.0, ampere=0.4).coil_drive(coil_drive) == CoilDrive(
+        (0.0, 0.1, 0.4), 1.0
+    )
 
 
 class Bench:
@@ -89,7 +91,7 @@ class Bench:
 
 
 def test_a_coil_wired_the_wrong_way_round_gives_the_opposite_dipole_for_the_same_current():
-    wrong = Bench(Scheduled(fault("coil_wired", axis=1.0, scale=-1.0), 0))
+    wrong = Bench(ScheduledFault(fault("coil_wired", axis=1.0, scale=-1.0), 0))
     right = Bench()
     m_wrong, m_right = (bench.fly(102, fire_at=100) for bench in (wrong, right))
     assert m_right[1] == pytest.approx(8.0, rel=0.02)
@@ -102,7 +104,7 @@ def test_a_coil_wired_the_wrong_way_round_gives_the_opposite_dipole_for_the_same
 
 
 def test_a_coil_driver_that_restarts_in_a_pulse_ends_it_and_locks_out():
-    bench = Bench(Scheduled(fault("coil_board_restarts"), 101, 102))
+    bench = Bench(ScheduledFault(fault("coil_board_restarts"), 101, 102))
     bench.fly(103, fire_at=100)
     assert any(frame.can_id == CoilBoot.ID for frame in bench.said[101])
     status = next(CoilStatus.decode(f.data) for f in bench.said[102] if f.can_id == CoilStatus.ID)
@@ -110,18 +112,18 @@ def test_a_coil_driver_that_restarts_in_a_pulse_ends_it_and_locks_out():
 
 
 def test_a_dead_coil_driver_says_and_drives_nothing_and_boots_afterwards():
-    bench = Bench(Scheduled(fault("coil_board_dead"), 101, 105))
+    bench = Bench(ScheduledFault(fault("coil_board_dead"), 101, 105))
     bench.fly(104, fire_at=100)
     silent = [frame.can_id for frames in bench.said[101:104] for frame in frames]
     assert CoilStatus.ID not in silent
     assert MagField.ID in silent
-    assert not any(bench.plant.driven.current_a)
+    assert not any(bench.plant.coil_drive.current_a)
     bench.fly(2)
     assert any(frame.can_id == CoilBoot.ID for frame in bench.said[105])
 
 
 def test_albedo_pulls_the_sun_towards_the_earth():
-    bench = Bench(Scheduled(fault("albedo", part=0.4), 1))
+    bench = Bench(ScheduledFault(fault("albedo", part=0.4), 1))
     bench.fly(2)
     clear, pulled = (
         next(SunVector.decode(f.data) for f in frames if f.can_id == SunVector.ID) for frames in bench.said
@@ -150,7 +152,7 @@ def test_every_double_of_a_flight_state_can_be_reached(rig):
 
 
 def test_a_storm_restarts_a_board_over_and_over_and_nothing_flows():
-    bench = Bench(Scheduled(fault("coil_board_storm", ticks=60.0), 10, 400))
+    bench = Bench(ScheduledFault(fault("coil_board_storm", ticks=60.0), 10, 400))
     for start in range(0, 400, 40):
         bench.fly(40, fire_at=start + 20)
     boots = [
@@ -158,4 +160,4 @@ def test_a_storm_restarts_a_board_over_and_over_and_nothing_flows():
     ]
     assert len(boots) > 6
     assert max(later - sooner for sooner, later in pairwise(boots[1:])) <= 60
-    assert not any(bench.plant.driven.current_a)
+    assert not any(bench.plant.coil_drive.current_a)

@@ -7,7 +7,7 @@ import pytest
 from fsw.bus.interface import BusError
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilBoot, CoilStatus, FswBoot, MagField, PlantBoot, Sync, TcClear, TickDone
-from sim.flight import bus_taken
+from sim.flight import bus_in_use
 from sim.flight.bus_in_use import FLIGHT_NODES, refuse_bus_in_use
 
 BOOT = FswBoot(0, 1, 2).encode()
@@ -16,8 +16,8 @@ FIELD = MagField(1, 20000.0, 0.0, -30000.0).encode()
 
 @pytest.fixture(autouse=True)
 def quick(monkeypatch):
-    monkeypatch.setattr(bus_taken, "LISTEN_S", 0.02)
-    monkeypatch.setattr(bus_taken, "ASK_S", 0.02)
+    monkeypatch.setattr(bus_in_use, "LISTEN_S", 0.02)
+    monkeypatch.setattr(bus_in_use, "ASK_S", 0.02)
 
 
 @pytest.mark.parametrize(

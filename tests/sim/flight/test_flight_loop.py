@@ -15,7 +15,7 @@ from fsw.wire.messages import (
     TickDone,
 )
 from sim.errors import FlightError
-from sim.flight import answers
+from sim.flight import fsw_answers
 from sim.flight.flight_loop import fly
 from sim.flight.virtual import VirtualBus
 from sim.plant.dynamics.torques import SOURCES
@@ -72,7 +72,7 @@ def virtual():
 class TestLockstep:
     def test_sync_is_sent_again_to_a_flight_software_that_is_silent(self, flown, monkeypatch, scripted):
         """As one that a forged SYNC has led astray, which believes the second."""
-        monkeypatch.setattr(answers, "REPEAT_SYNC_S", 0.01)
+        monkeypatch.setattr(fsw_answers, "REPEAT_SYNC_S", 0.01)
         asked = []
 
         def second_time(tick):
@@ -147,7 +147,7 @@ class TestLockstep:
         assert sum(entry.frame.can_id == TickDone.ID for entry in entries) == 4 * 5 - 1
 
     def test_without_an_answer_it_ends_with_a_sentence_and_exit_code_1(self, flown, monkeypatch, scripted):
-        monkeypatch.setattr(answers, "ANSWER_TIMEOUT_S", 0.0)
+        monkeypatch.setattr(fsw_answers, "ANSWER_TIMEOUT_S", 0.0)
         with pytest.raises(
             FlightError, match="no answer from the flight software to tick 3 within"
         ) as caught:
@@ -155,7 +155,7 @@ class TestLockstep:
         assert caught.value.exit_code == 1
 
     def test_what_was_flown_by_then_is_kept(self, flown, monkeypatch, tmp_path, scripted):
-        monkeypatch.setattr(answers, "ANSWER_TIMEOUT_S", 0.0)
+        monkeypatch.setattr(fsw_answers, "ANSWER_TIMEOUT_S", 0.0)
         with pytest.raises(FlightError):
             flown(scripted(lambda tick: [done(tick)] if tick < 3 else []))
         assert len(read_truth(tmp_path / "truth.h5")["t_s"]) == 3
@@ -184,7 +184,7 @@ class TestBoot:
         assert [e.frame.can_id for e in entries].count(TickDone.ID) == 3
 
     def test_asks_again_until_it_is_answered(self, flown, monkeypatch, scripted):
-        monkeypatch.setattr(answers, "BOOT_REQUEST_S", 0.01)
+        monkeypatch.setattr(fsw_answers, "BOOT_REQUEST_S", 0.01)
         bus = scripted(lambda tick: [done(tick)], first=())
         receive = bus.receive
 
@@ -228,7 +228,7 @@ class TestRealTime:
 
         def slow(timeout_s):
             asked = [Sync.decode(f.data).tick for f in bus.sent if f.can_id == Sync.ID]
-            if timeout_s == answers.LATE_TIMEOUT_S and asked[-1] == 19:
+            if timeout_s == fsw_answers.LATE_TIMEOUT_S and asked[-1] == 19:
                 bus.queue.append(done(19))
             return receive(timeout_s)
 

@@ -7,7 +7,7 @@ import pytest
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import FswBoot, PlantBoot, PlantEnd, Sync, TickDone
-from sim.flight import answers
+from sim.flight import fsw_answers
 from sim.flight.fsw_answers import (
     MOST_WAITING,
     CounterpartError,
@@ -45,7 +45,7 @@ class TestBoot:
         assert [frame.can_id for frame in bus.sent] == [PlantBoot.ID]
 
     def test_a_silent_bus_is_given_up_after_the_time_that_was_given(self, bus_of, monkeypatch):
-        monkeypatch.setattr(answers, "BOOT_REQUEST_S", 0.01)
+        monkeypatch.setattr(fsw_answers, "BOOT_REQUEST_S", 0.01)
         bus, waited = bus_of(), []
         with pytest.raises(CounterpartError, match="has not booted within 0 s"):
             await_boot(bus, 0.05, lambda *seen: None, waited.append)
@@ -66,7 +66,7 @@ class TestLockstep:
         assert list(bus.queue) == [done(4)]
 
     def test_the_sync_that_is_sent_again_stands_among_the_answers(self, bus_of, monkeypatch):
-        monkeypatch.setattr(answers, "REPEAT_SYNC_S", 0.01)
+        monkeypatch.setattr(fsw_answers, "REPEAT_SYNC_S", 0.01)
         bus = bus_of([NOISE], answer=lambda tick: [done(tick)])
         assert lockstep_answers(bus, 3, SYNC, 1.0) == [NOISE, SYNC, done(3)]
 
@@ -93,7 +93,7 @@ class TestLateAnswers:
         assert late_answers(bus_of([done(8), done(9), NOISE]), 9) == [done(8), done(9)]
 
     def test_or_when_no_tick_is_answered_any_more_whatever_others_say(self, babbling, monkeypatch):
-        monkeypatch.setattr(answers, "LATE_TIMEOUT_S", 0.02)
+        monkeypatch.setattr(fsw_answers, "LATE_TIMEOUT_S", 0.02)
         began = time.monotonic()
         late_answers(babbling, 9)
         assert time.monotonic() - began < 1.0
@@ -105,7 +105,7 @@ class TestSilence:
     @pytest.fixture
     def at(self, monkeypatch):
         clock = {"now": 100.0}
-        monkeypatch.setattr(answers.time, "monotonic", lambda: clock["now"])
+        monkeypatch.setattr(fsw_answers.time, "monotonic", lambda: clock["now"])
         return lambda now: clock.update(now=now)
 
     def test_too_long_is_an_error_that_names_the_last_tick_answered(self, at):

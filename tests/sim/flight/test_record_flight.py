@@ -10,7 +10,7 @@ from fsw.input.schema import TableError
 from fsw.wire.frame import Frame
 from fsw.wire.messages import FswBoot, TickDone
 from sim.errors import FlightError, HarnessError
-from sim.flight import answers
+from sim.flight import fsw_answers
 from sim.flight.record_flight import MOST_TICKS, check_can_fly, check_plant, record_flight, ticks_of
 from sim.record import run_dir
 from sim.record.candump import read_log
@@ -85,7 +85,7 @@ class TestRecord:
 
     def test_keeps_what_was_flown_before_the_answers_stopped(self, run, bus_of, monkeypatch):
         path, scenario = run
-        monkeypatch.setattr(answers, "ANSWER_TIMEOUT_S", 0.0)
+        monkeypatch.setattr(fsw_answers, "ANSWER_TIMEOUT_S", 0.0)
         noise = Frame(0x7FF, b"")
         bus = bus_of([BOOT], answer=lambda tick: [noise, TickDone(tick, 7).encode()] if tick < 3 else [])
         with pytest.raises(FlightError, match="to tick 3"):

@@ -10,7 +10,7 @@ from fsw.table.config import flight_config
 from fsw.wire.candump_line import format_line, format_time
 from fsw.wire.frame import Frame
 from fsw.wire.messages import FswEvent, PlantEnd, Sync, TickDone
-from sim.flight import answers
+from sim.flight import fsw_answers
 from sim.flight.record_flight import record_flight
 from sim.flight.virtual import VirtualBus
 from sim.record import run_dir
@@ -84,7 +84,7 @@ STRANGERS = {
 @pytest.fixture
 def fly_with(tmp_path, monkeypatch):
     """A flight with a stranger: its bus and configuration; the log is in the run directory."""
-    monkeypatch.setattr(answers, "REPEAT_SYNC_S", 0.01)
+    monkeypatch.setattr(fsw_answers, "REPEAT_SYNC_S", 0.01)
 
     def fly(frames_of, ticks=TICKS):
         scenario = load("microsat")

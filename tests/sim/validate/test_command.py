@@ -46,7 +46,7 @@ class TestCommand:
         assert result.stderr.count("\n") == 1
 
     def test_only_a_whole_validation_writes_the_page_by_itself(self, tmp_path, monkeypatch, study):
-        parts = [study("a", [1.0]), study("b", [2.0], flown=True)]
+        parts = [study("a", [1.0]), study("b", [2.0], has_flights=True)]
         monkeypatch.setattr(command, "all_studies", lambda repository: parts)
         monkeypatch.setattr(command, "find_repository", lambda start: tmp_path)
         page = tmp_path / "docs" / "validation.md"

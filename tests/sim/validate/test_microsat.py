@@ -7,8 +7,8 @@ import pytest
 from scipy.stats import chi2
 
 from fsw.wire.messages import Mode
-from sim.campaign.claim import Verdict
-from sim.campaign.flight import Flight
+from sim.campaign.claim import ClaimVerdict
+from sim.campaign.flight import FlightResult
 from sim.plant.environment.orbit import Sgp4Orbit
 from sim.plant.environment.sun import illumination, sun_eci_m
 from sim.record.estimates import EstimateRecorder
@@ -121,7 +121,7 @@ def test_the_filters_runs_are_drawn_from_what_it_assumes():
 )
 def test_consistency_is_judged_by_the_chi_square_bounds_of_the_mean(nees, verdict):
     study = microsat.consistency()
-    flights = [Flight(task.args[0], {}, {"nees": nees}) for task in study.tasks]
+    flights = [FlightResult(task.args[0], {}, {"nees": nees}) for task in study.tasks]
     outcome = study.conclude(flights)[0]
     assert outcome.verdict.value == verdict
     assert outcome.claim.low == pytest.approx(chi2.ppf(0.025, 600) / 100)
@@ -131,7 +131,7 @@ def test_consistency_is_judged_by_the_chi_square_bounds_of_the_mean(nees, verdic
 class TestPosat1:
     def flights(self, study, settle):
         return [
-            Flight(task.args[0], {"limits_ok": True, "axis1_deg": {"settle_orbits_5deg": orbits}}, {})
+            FlightResult(task.args[0], {"limits_ok": True, "axis1_deg": {"settle_orbits_5deg": orbits}}, {})
             for task, orbits in zip(study.tasks, settle, strict=True)
         ]
 
@@ -152,23 +152,23 @@ class TestPosat1:
 
     def test_median_worst_and_ratio(self):
         settle = [2.0] * 6 + [2.9] * 6
-        assert set(self.verdicts(settle * 2).values()) == {Verdict.PASS}
+        assert set(self.verdicts(settle * 2).values()) == {ClaimVerdict.PASS}
         late = [*settle[:-1], 4.6]
-        assert self.verdicts(late + settle)["all"] is Verdict.FAIL
-        assert self.verdicts([3.1] * 12 + [3.1] * 12)["median"] is Verdict.FAIL
-        assert self.verdicts([2.0] * 12 + [1.7] * 12)["restricted"] is Verdict.FAIL
-        assert self.verdicts([2.0] * 12 + [2.4] * 12)["restricted"] is Verdict.FAIL
+        assert self.verdicts(late + settle)["all"] is ClaimVerdict.FAIL
+        assert self.verdicts([3.1] * 12 + [3.1] * 12)["median"] is ClaimVerdict.FAIL
+        assert self.verdicts([2.0] * 12 + [1.7] * 12)["restricted"] is ClaimVerdict.FAIL
+        assert self.verdicts([2.0] * 12 + [2.4] * 12)["restricted"] is ClaimVerdict.FAIL
 
     def test_one_that_never_settles_fails(self):
         study = posat1.libration()
         flights = self.flights(study, [2.0] * 24)
-        flights[3] = Flight(flights[3].order, {"limits_ok": True, "axis1_deg": {}}, {})
-        failed = {o.claim.id for o in study.conclude(flights) if o.verdict is Verdict.FAIL}
+        flights[3] = FlightResult(flights[3].order, {"limits_ok": True, "axis1_deg": {}}, {})
+        failed = {o.claim.id for o in study.conclude(flights) if o.verdict is ClaimVerdict.FAIL}
         assert failed == {"posat1.all"}
-        flights[3] = Flight(
+        flights[3] = FlightResult(
             flights[3].order, {"limits_ok": False, "axis1_deg": {"settle_orbits_5deg": 2.0}}, {}
         )
-        failed = {o.claim.id for o in study.conclude(flights) if o.verdict is Verdict.FAIL}
+        failed = {o.claim.id for o in study.conclude(flights) if o.verdict is ClaimVerdict.FAIL}
         assert failed == {"posat1.limits"}
 
     def test_the_final_spin_is_that_of_the_last_tick(self):

@@ -2,8 +2,8 @@
 
 import pytest
 
-from sim.campaign.claim import Claim, Outcome, Verdict
-from sim.campaign.runner import Finished
+from sim.campaign.claim import Claim, ClaimOutcome, ClaimVerdict
+from sim.campaign.runner import StudyResult
 from sim.validate.page import line, render
 
 CLAIM = Claim("a.b", "Least | most", "Somebody 2001", "deg", low=1.0, high=2.0)
@@ -14,12 +14,12 @@ class TestPage:
         return (
             CLAIM.judge(1.5, "row 7"),
             Claim("a.c", "Too much", "Her", "1", high=1e-9).judge(2e-9, "row 8"),
-            Outcome(Claim("a.d", "Not there", "Nobody", ""), Verdict.ABSENT),
+            ClaimOutcome(Claim("a.d", "Not there", "Nobody", ""), ClaimVerdict.ABSENT),
         )
 
     @pytest.fixture
     def page(self, study):
-        return render([Finished(study("a", []), self.outcomes(), (), 1.0)], 61.4)
+        return render([StudyResult(study("a", []), self.outcomes(), (), 1.0)], 61.4)
 
     def test_a_row_a_claim(self, page):
         rows = [row for row in page.splitlines() if row.startswith("| ") and "`a." in row]

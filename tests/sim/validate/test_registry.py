@@ -2,7 +2,7 @@
 
 import pytest
 
-from sim.campaign.claim import Verdict
+from sim.campaign.claim import ClaimVerdict
 from sim.errors import HarnessError
 from sim.validate.registry import all_studies, chosen, find_repository
 
@@ -11,7 +11,11 @@ class TestChoice:
     @pytest.fixture
     def ids(self, study):
         """The ids of the chosen studies, of three."""
-        studies = (study("reference.igrf14", []), study("reference.tle", []), study("posat1", [], flown=True))
+        studies = (
+            study("reference.igrf14", []),
+            study("reference.tle", []),
+            study("posat1", [], has_flights=True),
+        )
         return lambda *only, quick=False: [one.id for one in chosen(studies, only, quick)]
 
     def test_all_by_default_and_first_words_by_only(self, ids):
@@ -32,7 +36,7 @@ class TestChoice:
     def test_without_a_repository_reference_checks_are_absent(self):
         absent = [s for s in all_studies(None) if s.id.startswith("reference.")]
         assert absent
-        assert all(not s.tasks and s.conclude([])[0].verdict is Verdict.ABSENT for s in absent)
+        assert all(not s.tasks and s.conclude([])[0].verdict is ClaimVerdict.ABSENT for s in absent)
 
     def test_ids_are_unique_and_begin_with_their_study(self, pytestconfig):
         studies = all_studies(pytestconfig.rootpath)

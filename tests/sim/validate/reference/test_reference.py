@@ -5,7 +5,7 @@ from math import cos, sin
 import numpy as np
 import pytest
 
-from sim.campaign.claim import Verdict
+from sim.campaign.claim import ClaimVerdict
 from sim.errors import HarnessError
 from sim.plant.environment.orbit import MU_M3PS2
 from sim.validate.reference import attitude_check, reference
@@ -27,14 +27,14 @@ def failures(folder, name):
     return {
         outcome.claim.id.rpartition(".")[2]: outcome
         for outcome in check(folder, name)
-        if outcome.verdict is Verdict.FAIL
+        if outcome.verdict is ClaimVerdict.FAIL
     }
 
 
 def test_every_reference_file_passes(whole_folder):
     studies = reference.studies(whole_folder.path)
     outcomes = [outcome for study in studies for outcome in study.conclude([task() for task in study.tasks])]
-    assert {outcome.verdict for outcome in outcomes} == {Verdict.PASS}
+    assert {outcome.verdict for outcome in outcomes} == {ClaimVerdict.PASS}
     assert len({outcome.claim.id for outcome in outcomes}) == len(outcomes) > 50
     assert len(studies) == 11
 
@@ -144,7 +144,7 @@ class TestOtherCases:
         head = [replaced(line) for line in head]
         path.write_text("\n".join(head + top_rows([0.0, 7.5, 15.0, 31.0])) + "\n")
         outcomes = check(folder, "attitude_top.csv")
-        assert {outcome.verdict for outcome in outcomes} == {Verdict.PASS}
+        assert {outcome.verdict for outcome in outcomes} == {ClaimVerdict.PASS}
         assert {outcome.claim.id.split(".")[1] for outcome in outcomes} == {"attitude_top"}
 
     def test_columns_are_found_by_name(self, folder):
@@ -208,7 +208,7 @@ def test_elements_of_slow_orbits_are_left_out(folder):
         "2 25544   0.0100  36.4208 0008932 173.8349 186.2944  1.00270000121359",
     )
     path.write_text("\n".join(["FAR", *geostationary, path.read_text()]))
-    assert {outcome.verdict for outcome in check(folder, "tle.txt")} == {Verdict.PASS}
+    assert {outcome.verdict for outcome in check(folder, "tle.txt")} == {ClaimVerdict.PASS}
     path.write_text("\n".join(["FAR", *geostationary]))
     with pytest.raises(HarnessError, match="no elements of an orbit under 225 minutes"):
         check(folder, "tle.txt")
@@ -331,11 +331,11 @@ def test_what_is_not_there_is_absent_and_does_not_fail(folder):
     (folder.path / "notes.txt").write_text("of no interest")
     studies = reference.studies(folder.path)
     outcomes = [outcome for study in studies for outcome in study.conclude([task() for task in study.tasks])]
-    absent = {outcome.claim.id for outcome in outcomes if outcome.verdict is Verdict.ABSENT}
+    absent = {outcome.claim.id for outcome in outcomes if outcome.verdict is ClaimVerdict.ABSENT}
     assert absent == {
         f"reference.{stem}" for stem in ("igrf14", "earth_sun", "attitude", "floquet", "triad_mekf", "tle")
     }
-    assert {outcome.verdict for outcome in outcomes} == {Verdict.PASS, Verdict.ABSENT}
+    assert {outcome.verdict for outcome in outcomes} == {ClaimVerdict.PASS, ClaimVerdict.ABSENT}
 
 
 def test_a_folder_without_any_of_them_is_refused(folder):
