@@ -1,1 +1,1 @@
-"""Flights with faults: the rigs on which they are flown, and what is kept of them."""
+"""Test rigs for flights with faults, and the record of such a flight."""

@@ -1,4 +1,4 @@
-"""The rig with a coil board on a bench: the board's clock goes by true time, which ticks need not keep to."""
+"""The rig with a coil board on a bench: its clock runs by true time, from which ticks may deviate."""
 
 from fractions import Fraction
 
@@ -19,7 +19,7 @@ REPEATED_EVERY_MS = 500
 
 
 class BenchActuator:
-    """A coil driver on a bench in the place of the plant's own. Currents are the nominal ones.
+    """A coil driver on a bench in place of the plant's own, with nominal currents.
 
     Args:
         config: the plant's.
@@ -39,22 +39,22 @@ class BenchActuator:
         self._drive = OFF
         self._on_ms = self.now_ms = 0
         self.pulses: list[CurrentPulse] = []
-        """What was on, over true time; what is on still is not among it."""
+        """Completed pulses, over true time."""
 
     def begin_tick(self, tick: int, current_a: float) -> list[Frame]:
-        """What the bench has said since; it enters ticks by itself, and reads its own current back."""
+        """The frames of the bench since the last tick; it enters ticks and reads its current by itself."""
         sent, self._outbox = self._outbox, []
         return sent
 
     def receive(self, frame: Frame) -> None:
-        """Hear a frame of the bus at this instant."""
+        """Take a frame of the bus at this instant."""
         if frame.can_id == TickDone.ID:
             self._drive = self._over_the_tick()
         self._outbox += self._bench.receive(frame, self.now_ms)
         self._note(self.now_ms)
 
     def wait(self, milliseconds: int) -> None:
-        """True time passes; the pin is looked at when its timer ends it."""
+        """Let true time pass, and note when the timer switches the pin off."""
         end_ms = self.now_ms + milliseconds
         while self.now_ms < end_ms:
             due_ms = self._bench.due_ms()
@@ -63,7 +63,7 @@ class BenchActuator:
             self._note(self.now_ms)
 
     def drive(self) -> CoilDrive:
-        """What was driven over the tick that fsw has answered."""
+        """The currents over the tick that fsw has answered."""
         drive, self._drive = self._drive, OFF
         return drive
 
@@ -88,18 +88,18 @@ class BenchActuator:
 
 
 class ClockRig(Rig):
-    """A flight in which a fault says how long each tick lasts."""
+    """A flight in which a fault determines the duration of each tick."""
 
     def __init__(self, scenario: Scenario, config: FlightConfig, seed: int) -> None:
         super().__init__(scenario, config, seed)
-        flown = plant_config(scenario, seed)
-        self._actuator = BenchActuator(flown)
-        self._period_ms = 1000 // flown.tick_hz
-        self.plant = FaultyPlant(flown, actuator=self._actuator)
+        config_of_plant = plant_config(scenario, seed)
+        self._actuator = BenchActuator(config_of_plant)
+        self._period_ms = 1000 // config_of_plant.tick_hz
+        self.plant = FaultyPlant(config_of_plant, actuator=self._actuator)
         self.record.pulses_by_time = self._actuator.pulses
 
     def pace(self, tick: int, syncs: list[Frame]) -> None:
-        """The board hears SYNC, and time passes until fsw answers; while a tick is held SYNC is repeated."""
+        """Hand SYNC to the board, and let time pass until fsw answers; repeat SYNC if the fault does."""
         board = self._actuator
         board.wait(self._period_ms if not self.plant.active else 0)
         for sync in syncs:

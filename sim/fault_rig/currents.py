@@ -1,7 +1,7 @@
-"""Second audit of invariant I: on what the plant drove through its coils, not on what the board says of it.
+"""Second audit of invariant I: of the currents that the plant drove, not of what the board reports.
 
-It shares nothing with the auditor of COIL_STATUS: it knows neither sequence numbers nor announcements, only
-which current flowed for which part of which tick.
+It shares nothing with the auditor of COIL_STATUS: its input is neither sequence numbers nor announcements but
+which current flowed in which part of which tick.
 """
 
 from collections.abc import Sequence
@@ -12,12 +12,12 @@ from math import isclose
 from sim.plant.hardware.actuators import CoilDrive
 
 PER_TICK = 1_000_000
-"""Parts of a tick are told to a millionth of it."""
+"""Resolution of a part of a tick."""
 
 
 @dataclass(frozen=True, slots=True)
 class CurrentLimits:
-    """What the currents must keep to; ``levels_a`` are the three magnitudes."""
+    """Limits of the currents; ``levels_a`` are the three magnitudes."""
 
     tick_hz: int
     levels_a: tuple[float, float, float]
@@ -36,7 +36,7 @@ class CurrentPulse:
 
 
 def pulses(drives: Sequence[CoilDrive], tick_hz: int) -> list[CurrentPulse]:
-    """The pulses in the plant's record, by start."""
+    """The pulses in the plant's currents, ordered by start."""
     found: list[CurrentPulse] = []
     under_way: dict[int, Fraction] = {}
     for tick, (current_a, fraction) in enumerate(drives):
@@ -73,7 +73,7 @@ def _momentary(drives: Sequence[CoilDrive], limits: CurrentLimits) -> list[str]:
 
 
 def lasting(found: Sequence[CurrentPulse], limits: CurrentLimits) -> list[str]:
-    """Each pulse that is too long or too soon, of pulses by their start."""
+    """A sentence for each pulse that is too long or too soon; the pulses are ordered by start."""
     sentences = [
         f"coil {pulse.coil} on for {float(pulse.end_s - pulse.start_s):g} s at {float(pulse.start_s):g} s"
         for pulse in found

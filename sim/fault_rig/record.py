@@ -1,4 +1,4 @@
-"""What is kept of a flight with a fault, for the verdict."""
+"""The record of a flight with a fault, from which it is judged."""
 
 from dataclasses import dataclass, field
 from math import acos, degrees, isfinite
@@ -27,7 +27,7 @@ US = 1_000_000
 
 
 @dataclass(frozen=True, slots=True)
-class Event:
+class ReportedEvent:
     """An FSW_EVENT."""
 
     tick: int
@@ -37,7 +37,7 @@ class Event:
 
 @dataclass(frozen=True, slots=True)
 class BoardEvent:
-    """A COIL_EVENT, with the coil that was on; None: all were off."""
+    """A COIL_EVENT, with the coil that was on; None: none was."""
 
     tick: int
     number: int
@@ -45,33 +45,33 @@ class BoardEvent:
 
 
 @dataclass(slots=True)
-class Record:
-    """A flight, tick by tick.
+class FaultFlightRecord:
+    """The record of a flight, tick by tick.
 
     Attributes:
         tick_hz: ticks a second.
-        onset: tick in which the fault comes; None if it never came.
-        end: first tick without it; None if it stays.
-        entries: SYNC, COIL_STATUS and COIL_BOOT as plant and board themselves have said them.
-        coil_drives: what really flowed in each tick, as the plant drove it.
-        pulses_by_time: what a board with a clock of its own has driven, over true time; else none.
-        asked: ticks in which fsw's process sent COIL_FIRE.
-        asked_coils: the coils of these.
+        onset: tick in which the fault begins; None if it never did.
+        end: first tick without it; None if it is permanent.
+        entries: SYNC, COIL_STATUS and COIL_BOOT as plant and board sent them.
+        coil_drives: the currents that the plant drove in each tick.
+        pulses_by_time: pulses of a board with a clock of its own, over true time; else none.
+        request_ticks: ticks in which fsw sent COIL_FIRE.
+        request_coils: the coils of these requests.
         boots: ticks in which fsw booted.
-        restarts: ticks in which fsw took the plant for one that has started anew.
-        ended: tick in which fsw took the run for over; None if it never did.
-        refused: COIL_REFUSED, counted.
-        error_deg: true error of the estimate; None where fsw has none that it calls valid.
-        modes: by tick; None while fsw is not there.
+        restarts: ticks in which fsw concluded that the plant has restarted.
+        ended: tick in which fsw ended the run; None if it never did.
+        refused: number of COIL_REFUSED.
+        error_deg: true error of the estimate; None where fsw has no valid one.
+        modes: by tick; None while fsw does not run.
         events: FSW_EVENT.
         board_events: COIL_EVENT.
-        crash: what came out of a step, if anything did.
-        not_finite: first tick with a number in the state that is none.
+        crash: exception that a step raised; None if none did.
+        not_finite: first tick with a number in the state that is not finite.
         unanswered: ticks whose SYNC reached a running fsw and was not answered.
-        done: by tick, whether fsw has answered it with the TICK_DONE that names it.
+        done: by tick, whether fsw has answered it with its TICK_DONE.
         worst_answer: most frames in one answer.
         worst_step_s: longest time that one answer took.
-        rejected: frames that fsw's gate and the coil driver have dropped.
+        rejected: frames that fsw's gate has rejected.
     """
 
     tick_hz: int
@@ -80,15 +80,15 @@ class Record:
     entries: list[LogEntry] = field(default_factory=list)
     coil_drives: list[CoilDrive] = field(default_factory=list)
     pulses_by_time: list[CurrentPulse] = field(default_factory=list)
-    asked: list[int] = field(default_factory=list)
-    asked_coils: list[int] = field(default_factory=list)
+    request_ticks: list[int] = field(default_factory=list)
+    request_coils: list[int] = field(default_factory=list)
     boots: list[int] = field(default_factory=list)
     restarts: list[int] = field(default_factory=list)
     ended: int | None = None
     refused: int = 0
     error_deg: list[float | None] = field(default_factory=list)
     modes: list[Mode | None] = field(default_factory=list)
-    events: list[Event] = field(default_factory=list)
+    events: list[ReportedEvent] = field(default_factory=list)
     board_events: list[BoardEvent] = field(default_factory=list)
     crash: str | None = None
     not_finite: int | None = None
@@ -100,11 +100,11 @@ class Record:
 
     @property
     def ticks(self) -> int:
-        """How many were flown."""
+        """Number of complete ticks."""
         return len(self.coil_drives)
 
     def note_sent(self, tick: int, epoch_us: int, frames: list[Frame]) -> None:
-        """What plant and boards have said in a tick."""
+        """Note the frames that plant and boards sent in a tick."""
         stamp = epoch_us + tick * US // self.tick_hz
         on: int | None = None
         for frame in frames:
@@ -118,30 +118,30 @@ class Record:
             self.refused += frame.can_id == CoilRefused.ID
 
     def note_answer(self, tick: int, frames: list[Frame]) -> None:
-        """What fsw has said in a tick."""
+        """Note the frames that fsw sent in a tick."""
         self.worst_answer = max(self.worst_answer, len(frames))
         done = [TickDone.decode(frame.data).tick for frame in frames if frame.can_id == TickDone.ID]
         self.done.append(tick in done)
         for frame in frames:
             if frame.can_id == CoilFire.ID and intact(frame):
-                self.asked.append(tick)
-                self.asked_coils.append(CoilFire.decode(frame.data).coil)
+                self.request_ticks.append(tick)
+                self.request_coils.append(CoilFire.decode(frame.data).coil)
             elif frame.can_id == FswEvent.ID:
                 event = FswEvent.decode(frame.data)
-                self.events.append(Event(tick, event.event, event.argument))
+                self.events.append(ReportedEvent(tick, event.event, event.argument))
 
     def note_state(self, tick: int, state: FlightState | None, truth: TruthRow) -> None:
-        """What fsw believes in a tick, and what is true."""
-        known = state is not None and state.tick >= 0
-        self.modes.append(state.modes.mode if state is not None and known else None)
-        valid = state is not None and known and state.attitude.valid
+        """Note the estimate of fsw in a tick against the truth."""
+        started = state is not None and state.tick >= 0
+        self.modes.append(state.modes.mode if state is not None and started else None)
+        valid = state is not None and started and state.attitude.valid
         self.error_deg.append(_error_deg(state, truth) if state is not None and valid else None)
         if state is not None and self.not_finite is None and not finite(state):
             self.not_finite = tick
 
 
 def finite(state: FlightState) -> bool:
-    """Whether the numbers that fsw acts on are numbers."""
+    """Whether all numbers that fsw uses are finite."""
     numbers = (
         *state.attitude.q_body_from_orbit,
         *state.attitude.omega_body_orbit_radps,

@@ -1,4 +1,4 @@
-"""Plant, boards and flight software in one process, and faults between them. The plant always ticks on."""
+"""Plant, boards and flight software in one process, and faults between them. The plant never stops."""
 
 import time
 from functools import cache
@@ -9,28 +9,28 @@ from fsw.node import FlightNode
 from fsw.table.config import flight_config
 from fsw.wire.frame import Frame
 from fsw.wire.messages import Sync, TickDone, intact
-from sim.fault_rig.record import Record
+from sim.fault_rig.record import FaultFlightRecord
 from sim.faults.fault import Condition, Fault
 from sim.faults.faulty_plant import FaultyPlant, ScheduledFault
 from sim.scenario.assemble import plant_config
 from sim.scenario.schema import Scenario, flight_table, load, parse_settings
 
-MOST_KEPT = 4096
-"""Frames that wait for a stopped process; a socket's buffer holds no more."""
+MOST_WAITING = 4096
+"""Frames that wait for a stopped process; the size of a socket's buffer."""
 
 
 @cache
-def prepared(name: str, settings: tuple[str, ...]) -> tuple[Scenario, FlightConfig]:
-    """A scenario and its onboard table: costly, and the same for all flights of a row."""
+def prepare(name: str, settings: tuple[str, ...]) -> tuple[Scenario, FlightConfig]:
+    """Load a scenario and its onboard table: slow, and the same for all flights of a row."""
     scenario = load(name, parse_settings(settings))
     return scenario, flight_config(flight_table(scenario))
 
 
 class Rig:
-    """One flight under fault.
+    """One flight with faults.
 
     Args:
-        scenario: what is flown.
+        scenario: of the flight.
         config: its onboard table.
         seed: of the plant's random streams.
     """
@@ -42,7 +42,7 @@ class Rig:
         self._backlog: list[Frame] = []
         self._condition = Condition.DEAD
         self.plant = FaultyPlant(plant_config(scenario, seed))
-        self.record = Record(scenario.time.tick_hz)
+        self.record = FaultFlightRecord(scenario.time.tick_hz)
 
     def inject(self, fault: Fault, first: int, end: int | None) -> None:
         """Schedule a fault, for the next tick at the earliest."""
@@ -59,7 +59,7 @@ class Rig:
             syncs = [frame for one in syncs for frame in fault.sync(tick, one)]
         frames += syncs
         record.note_sent(tick, self._epoch_us, plant.sent)
-        self._be(self._wanted(tick), tick)
+        self._set_condition(self._due_condition(tick), tick)
         self.pace(tick, syncs)
         answers = self._answers(tick, frames)
         record.note_answer(tick, answers)
@@ -70,23 +70,23 @@ class Rig:
         record.coil_drives.append(plant.coil_drive)
 
     def pace(self, tick: int, syncs: list[Frame]) -> None:
-        """True time until fsw answers: here ticks are the time."""
+        """Let true time pass until fsw answers; in this rig time is counted in ticks."""
 
-    def finish(self) -> Record:
+    def finish(self) -> FaultFlightRecord:
         """The record, its counts complete."""
         if self._node is not None:
             self.record.rejected = self._node.state.gate.rejected
         return self.record
 
-    def _wanted(self, tick: int) -> Condition:
+    def _due_condition(self, tick: int) -> Condition:
         conditions = [fault.condition(tick) for fault in self.plant.active]
         for worst in (Condition.DEAD, Condition.STOPPED):
             if worst in conditions:
                 return worst
         return Condition.RUNNING
 
-    def _be(self, condition: Condition, tick: int) -> None:
-        """Let the process become what it is to be."""
+    def _set_condition(self, condition: Condition, tick: int) -> None:
+        """Bring the process into a condition."""
         if condition is Condition.DEAD:
             self._node = None
             self._backlog.clear()
@@ -97,11 +97,11 @@ class Rig:
         self._condition = condition
 
     def _answers(self, tick: int, frames: list[Frame]) -> list[Frame]:
-        """What fsw says to what it is sent; an exception that leaves it is its end, and is noted."""
+        """The answers of fsw to its frames; an exception ends it and is noted."""
         node, record = self._node, self.record
         if node is None:
             return []
-        self._backlog = (self._backlog + frames)[:MOST_KEPT]
+        self._backlog = (self._backlog + frames)[:MOST_WAITING]
         if self._condition is Condition.STOPPED:
             return []
         waiting, self._backlog = self._backlog, []
@@ -114,7 +114,7 @@ class Rig:
                 before = node.state.tick
                 answer = node.receive(frame)
                 answers += answer
-                if _asks(frame, before) and not _names(answer, Sync.decode(frame.data).tick):
+                if _needs_answer(frame, before) and not _answers_tick(answer, Sync.decode(frame.data).tick):
                     record.unanswered.append(tick)
                 if node.state.tick != before >= 0 and not near(before, node.state.tick):
                     record.restarts.append(tick)
@@ -127,15 +127,15 @@ class Rig:
         return answers
 
 
-def _asks(frame: Frame, before: int) -> bool:
-    """Whether a frame is a SYNC that moves time forward, and not so far that it must be doubted."""
+def _needs_answer(frame: Frame, before: int) -> bool:
+    """Whether a frame is a SYNC that moves time forward by a plausible number of ticks."""
     if frame.can_id != Sync.ID or not intact(frame):
         return False
     tick = Sync.decode(frame.data).tick
     return before < 0 or near(before, tick)
 
 
-def _names(answer: tuple[Frame, ...], tick: int) -> bool:
+def _answers_tick(answer: tuple[Frame, ...], tick: int) -> bool:
     """Whether the answer ends with the TICK_DONE of that tick."""
     last = answer[-1] if answer else None
     return last is not None and last.can_id == TickDone.ID and TickDone.decode(last.data).tick == tick

@@ -1,1 +1,1 @@
-"""``torquer faults``: the table of faults, each flown and judged by independent audit."""
+"""``torquer faults``: the table of faults, each injected into flights and judged by independent audits."""

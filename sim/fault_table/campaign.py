@@ -1,4 +1,4 @@
-"""All cases of the chosen rows, side by side on the machine's cores."""
+"""Runs all cases of the chosen rows in parallel."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -6,26 +6,26 @@ from functools import partial
 from sim.campaign.claim import Study
 from sim.campaign.runner import StudyResult, run
 from sim.fault_table.case import fly
-from sim.fault_table.row import CaseResult, Row, RowResult
+from sim.fault_table.row import CaseResult, FaultRow, RowResult
 
 Watch = Callable[[int], None]
 
 
 def fly_rows(
-    rows: Sequence[Row],
+    rows: Sequence[FaultRow],
     phases: int,
     seeds: int,
     workers: int,
     watch: Watch,
     report: Callable[[RowResult], None],
 ) -> list[RowResult]:
-    """Fly every row in so many phases, each with so many seeds.
+    """Fly every row in all phases, each with all seeds.
 
     Args:
-        rows: what to fly.
-        phases: of each row.
-        seeds: 1 to this number, of each phase.
-        workers: processes; the outcome does not depend on how many.
+        rows: rows of the table.
+        phases: number of phases of each row.
+        seeds: number of seeds of each phase, from 1 on.
+        workers: processes; the outcome does not depend on their number.
         watch: called with the number of cases done.
         report: called with each row when it is done.
 
@@ -38,11 +38,11 @@ def fly_rows(
     return [_result(by_name, done) for done in finished]
 
 
-def _study(row: Row, phases: int, seeds: int) -> Study:
+def _study(row: FaultRow, phases: int, seeds: int) -> Study:
     tasks = tuple(partial(fly, row, phase, seed + 1) for phase in range(phases) for seed in range(seeds))
     return Study(row.name, tasks, lambda results: [], has_flights=True)
 
 
-def _result(by_name: dict[str, Row], done: StudyResult) -> RowResult:
+def _result(by_name: dict[str, FaultRow], done: StudyResult) -> RowResult:
     cases: tuple[CaseResult, ...] = done.results
     return RowResult(by_name[done.study.id], cases)

@@ -1,4 +1,4 @@
-"""One case: a row, a phase and a seed, flown and judged. Same case, same flight."""
+"""One case of the table: a row, a phase and a seed. The same case gives the same flight."""
 
 import time
 import warnings
@@ -7,67 +7,67 @@ from random import Random
 
 from sim.fault_rig import currents
 from sim.fault_rig.clock_rig import ClockRig
-from sim.fault_rig.processes import ProcessRig, strikes
-from sim.fault_rig.record import Record
-from sim.fault_rig.rig import Rig, prepared
+from sim.fault_rig.process_rig import ProcessRig, random_strikes
+from sim.fault_rig.record import FaultFlightRecord
+from sim.fault_rig.rig import Rig, prepare
 from sim.fault_table import checks
-from sim.fault_table.naming import isolated
-from sim.fault_table.row import CaseResult, Row, When
+from sim.fault_table.isolation import isolations
+from sim.fault_table.row import CaseResult, FaultRow, When
 from sim.faults.kinds import KINDS, make
 from sim.scenario.schema import Scenario
 
 SCENARIO = "microsat"
 ARMED_S = 180.0
-"""Before that the flight settles: boot, first lockout, filter."""
+"""Time in which the flight settles before a fault: boot, first lockout, filter [s]."""
 BEFORE_ECLIPSE = 'time.epoch_utc="2015-03-27T03:13:11Z"'
-"""An eclipse begins 600 s later."""
+"""Start of a flight 600 s before an eclipse."""
 ECLIPSE_S = 500.0
 CYCLE_S = 103.0
 ORDER = (1.0, 0.0, 2.0, 3.0, 102.0, 50.0, 4.0, 101.0, 99.0, 25.0, 100.0, 75.0)
-"""Phases of a pulse and its back-off that come first [s]; beyond them any."""
+"""First phases in a pulse and its back-off [s]; further ones are random."""
 SPACING_S = 37.0
-TURNED = ("initial.axis=[0.9, 0.3, -0.2]", "initial.rate_degps=[0.05, -0.07, 0.04]")
+INITIAL_TURN = ("initial.axis=[0.9, 0.3, -0.2]", "initial.rate_degps=[0.05, -0.07, 0.04]")
 FIRST_DEG, STEP_DEG = 75.0, 47.0
-"""Attitude from which a flight begins that is faulty from its first tick on."""
+"""Initial attitudes of flights that are faulty from their first tick on."""
 
 
-def settings_of(row: Row, phase: int) -> tuple[str, ...]:
+def settings_of(row: FaultRow, phase: int) -> tuple[str, ...]:
     """Settings of the scenario for this row."""
     if row.when is When.BOOT:
-        return (*row.settings, *TURNED, f"initial.angle_deg={(FIRST_DEG + phase * STEP_DEG) % 180.0}")
+        return (*row.settings, *INITIAL_TURN, f"initial.angle_deg={(FIRST_DEG + phase * STEP_DEG) % 180.0}")
     return (*row.settings, BEFORE_ECLIPSE) if row.when is When.ECLIPSE else row.settings
 
 
-def fly(row: Row, phase: int, seed: int) -> CaseResult:
+def fly(row: FaultRow, phase: int, seed: int) -> CaseResult:
     """Fly one case and judge it."""
     began = time.perf_counter()
-    scenario, config = prepared(SCENARIO, settings_of(row, phase))
+    scenario, config = prepare(SCENARIO, settings_of(row, phase))
     bounds = checks.bounds_of(scenario)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the algebra's, of a state whose bits have flipped
         if KINDS[row.kind].by_signal:
-            record = _struck(row, phase, seed, scenario)
+            record = _fly_strikes(row, phase, seed, scenario)
         else:
             rig = ClockRig if KINDS[row.kind].by_clock else Rig
-            record = _flown(row, phase, seed, rig(scenario, config, seed), bounds.orbit_s)
+            record = _fly_fault(row, phase, seed, rig(scenario, config, seed), bounds.orbit_s)
     outcomes = checks.judge(row, record, bounds)
-    return CaseResult(row.name, phase, seed, outcomes, _measured(row, record), time.perf_counter() - began)
+    return CaseResult(row.name, phase, seed, outcomes, _figures(row, record), time.perf_counter() - began)
 
 
-def _struck(row: Row, phase: int, seed: int, scenario: Scenario) -> Record:
+def _fly_strikes(row: FaultRow, phase: int, seed: int, scenario: Scenario) -> FaultFlightRecord:
     times = round(row.parameters["times"])
-    planned = strikes(times, Random(f"{row.name}/{phase}/{seed}"))
+    planned = random_strikes(times, Random(f"{row.name}/{phase}/{seed}"))
     rig = ProcessRig(scenario, seed, stop=row.kind == "sigstop")
     return rig.fly(planned)
 
 
-def _flown(row: Row, phase: int, seed: int, rig: Rig, orbit_s: float) -> Record:
+def _fly_fault(row: FaultRow, phase: int, seed: int, rig: Rig, orbit_s: float) -> FaultFlightRecord:
     rng = Random(f"{row.name}/{phase}/{seed}")
     fault = make(row.kind, row.parameters, rng)
     hz, record = rig.record.tick_hz, rig.record
     offset_s = phase_s(row.when, phase, rng)
-    anchor = _anchor(row.when, rig, hz)
-    onset = anchor + round(offset_s * hz)
+    reference = _fly_to_reference(row.when, rig, hz)
+    onset = reference + round(offset_s * hz)
     end = None if row.stays else onset + max(1, round(row.lasts_s * hz))
     rig.inject(fault, onset, end)
     watched = (end if end is not None else onset) + round(row.watch_s * hz)
@@ -87,14 +87,14 @@ def _flown(row: Row, phase: int, seed: int, rig: Rig, orbit_s: float) -> Record:
 
 
 def phase_s(when: When, phase: int, rng: Random) -> float:
-    """When the fault comes, from what its phases are counted from."""
+    """The start of the fault after the reference tick of its phases [s]."""
     if when is When.PULSE:
         return ORDER[phase] if phase < len(ORDER) else rng.uniform(0.0, CYCLE_S)
     return 0.0 if when is When.BOOT else phase * SPACING_S
 
 
-def _anchor(when: When, rig: Rig, hz: int) -> int:
-    """Fly until the tick that phases are counted from: the next one to be flown, or one before."""
+def _fly_to_reference(when: When, rig: Rig, hz: int) -> int:
+    """Fly until the reference tick of the phases: the next tick, or the one before."""
     if when is When.BOOT:
         until_s = 0.0
     elif when is When.SUNLIT:
@@ -111,10 +111,10 @@ def _anchor(when: When, rig: Rig, hz: int) -> int:
     return rig.plant.tick
 
 
-def _measured(row: Row, record: Record) -> dict[str, float]:
+def _figures(row: FaultRow, record: FaultFlightRecord) -> dict[str, float]:
     """Figures for the table."""
     onset = record.onset or 0
-    found = {
+    figures = {
         "pulses": float(len(currents.pulses(record.coil_drives, record.tick_hz))),
         "refused": float(record.refused),
         "rejected": float(record.rejected),
@@ -122,11 +122,11 @@ def _measured(row: Row, record: Record) -> dict[str, float]:
     }
     errors = [error for error in record.error_deg[onset:] if error is not None]
     if errors:
-        found["worst error deg"] = max(errors)
-    after_s = checks.recovered_s(record)
+        figures["worst error deg"] = max(errors)
+    after_s = checks.recovery_s(record)
     if after_s is not None and "recovers" in row.expect:
-        found["recovered s"] = after_s
-    right = [tick for tick, unit in isolated(record) if unit == row.unit and tick >= onset]
-    if right:
-        found["named s"] = (right[0] - onset) / record.tick_hz
-    return found
+        figures["recovered s"] = after_s
+    ticks = [tick for tick, unit in isolations(record) if unit == row.unit and tick >= onset]
+    if ticks:
+        figures["named s"] = (ticks[0] - onset) / record.tick_hz
+    return figures

@@ -1,4 +1,4 @@
-"""What ``torquer faults`` does."""
+"""The command ``torquer faults``."""
 
 import os
 import sys
@@ -8,10 +8,10 @@ from pathlib import Path
 import click
 
 from sim.errors import HarnessError
-from sim.fault_table import kept, render
+from sim.fault_table import earlier_rows, render
 from sim.fault_table.campaign import fly_rows
-from sim.fault_table.row import RowResult, Verdict
-from sim.fault_table.rows import ROWS, chosen
+from sim.fault_table.row import CheckVerdict, RowResult
+from sim.fault_table.rows import ROWS, choose_rows
 from sim.progress import progress
 from sim.record.destination import check_file, check_folder
 from sim.validate.registry import find_repository
@@ -20,8 +20,8 @@ PAGE, JUNIT, HTML, JSON = "faults.md", "faults.xml", "faults.html", "faults.json
 
 
 def list_rows(names: Sequence[str]) -> int:
-    """Print what there is to inject."""
-    for row in chosen(names, slow=True):
+    """Print the rows."""
+    for row in choose_rows(names, slow=True):
         click.echo(render.listed(row))
     return 0
 
@@ -37,17 +37,17 @@ def faults(
     slow: bool = False,
     keep: Path | None = None,
 ) -> int:
-    """Fly the rows, print each, write what is asked for.
+    """Fly the rows, print each result, write the requested files.
 
     Args:
-        names: rows, or first words of their names; none: all.
+        names: of rows, or first words of names; none: all.
         phases: of each row.
         seeds: of each phase.
         as_json: print JSON alone.
-        out: folder of faults.xml, faults.html and faults.json; None: they are not written.
+        out: folder for faults.xml, faults.html and faults.json; None: not written.
         workers: processes; None: one a core.
-        slow: also rows that fly real processes.
-        keep: faults.json of an earlier run, for the rows that are not flown in this one.
+        slow: include rows that run real processes.
+        keep: faults.json of an earlier campaign, for the rows that are not in this one.
         write_docs: write docs/faults.md of the repository.
 
     Returns:
@@ -56,8 +56,8 @@ def faults(
     Raises:
         HarnessError: there is no such row, or a file cannot be written.
     """
-    rows = chosen(names, slow)
-    earlier = {} if keep is None else kept.read(keep)
+    rows = choose_rows(names, slow)
+    earlier = {} if keep is None else earlier_rows.read(keep)
     page = _docs_page({*earlier, *(row.name for row in rows)}) if write_docs else None
     if page is not None:
         check_file(page)
@@ -67,7 +67,7 @@ def faults(
     count = len(rows) * phases * seeds
     with progress("injecting faults", count) as watch:
         results = fly_rows(
-            rows, phases, seeds, workers or os.cpu_count() or 1, watch, _silent if quiet else _print
+            rows, phases, seeds, workers or os.cpu_count() or 1, watch, _print_later if quiet else _print
         )
     by_name = earlier | {result.row.name: result for result in results}
     results = [by_name[row.name] for row in ROWS if row.name in by_name]
@@ -84,7 +84,7 @@ def faults(
     if page is not None:
         _write(page, render.markdown(results, phases, seeds))
         click.echo(f"page: {page}", err=as_json)
-    return int(any(result.verdict is Verdict.FAIL for result in results))
+    return int(any(result.verdict is CheckVerdict.FAIL for result in results))
 
 
 def _docs_page(names: set[str]) -> Path:
@@ -100,8 +100,8 @@ def _print(result: RowResult) -> None:
     click.echo(render.line(result))
 
 
-def _silent(result: RowResult) -> None:
-    """Nothing yet."""
+def _print_later(result: RowResult) -> None:
+    """Print nothing yet."""
 
 
 def _write(path: Path, text: str) -> None:

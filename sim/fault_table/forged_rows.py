@@ -1,19 +1,19 @@
-"""Rows of the fault table in which a stranger forges what steers a flight, and what is expected of each."""
+"""Rows of the fault table with forged SYNC, PLANT_END and TICK_DONE, and the checks of each."""
 
-from sim.fault_table.row import Row, When
+from sim.fault_table.row import FaultRow, When
 
 GROUP = "SYNC, PLANT_END and TICK_DONE forged"
 STEADY = ("no extra pulse", "goes on", "hears", "recovers")
 
 
-def _sync(name: str, *expect: str, when: When = When.PULSE, **parameters: float) -> Row:
-    """SYNCs of a stranger before the true one."""
+def _sync(name: str, *expect: str, when: When = When.PULSE, **parameters: float) -> FaultRow:
+    """A row with forged SYNCs before the true one."""
     lasts_s = 1.0 if when is When.BOOT else 300.0
     expect = ("boots locked", *expect, *STEADY)
-    return Row(f"sync-forged-{name}", GROUP, "sync_forged", parameters, lasts_s, when, expect)
+    return FaultRow(f"sync-forged-{name}", GROUP, "sync_forged", parameters, lasts_s, when, expect)
 
 
-FORGED_ROWS: tuple[Row, ...] = (
+FORGED_ROWS: tuple[FaultRow, ...] = (
     _sync("any", "undisturbed", "told"),
     _sync("going-on", "undisturbed", "told", ticks=1e6),
     _sync("behind", "undisturbed", "told", ticks=-500.0),
@@ -26,9 +26,9 @@ FORGED_ROWS: tuple[Row, ...] = (
     _sync("rush", "told", count=10.0, part=0.2),
     _sync("first", when=When.BOOT, ticks=1e9),
     _sync("first-pair", when=When.BOOT, ticks=1e9, count=2.0),
-    Row("end-forged", GROUP, "end_forged", {}, 300.0, expect=("undisturbed", "told", *STEADY)),
-    Row("done-forged-seldom", GROUP, "done_forged", {"part": 0.02}, 300.0, expect=STEADY),
-    Row(
+    FaultRow("end-forged", GROUP, "end_forged", {}, 300.0, expect=("undisturbed", "told", *STEADY)),
+    FaultRow("done-forged-seldom", GROUP, "done_forged", {"part": 0.02}, 300.0, expect=STEADY),
+    FaultRow(
         "done-forged",
         GROUP,
         "done_forged",

@@ -7,7 +7,7 @@ from itertools import groupby
 from xml.etree import ElementTree
 
 from sim.drawing.pages import page
-from sim.fault_table.row import CaseResult, Row, RowResult, Verdict
+from sim.fault_table.row import CaseResult, CheckVerdict, FaultRow, RowResult
 from sim.faults.kinds import KINDS
 
 _COLUMNS = ("row", "injected", "expected", "cases", "measured", "verdict")
@@ -52,13 +52,12 @@ second sender, but limits, replay and completeness must hold.
 def tally(results: Sequence[RowResult]) -> str:
     """How many rows and cases there were, and how many failed."""
     cases = [case for result in results for case in result.cases]
-    rows = {verdict: sum(result.verdict is verdict for result in results) for verdict in Verdict}
+    rows = {verdict: sum(result.verdict is verdict for result in results) for verdict in CheckVerdict}
     broken = sum(not _holds(case, "limits") for case in cases)
-    text = (
-        f"{len(results)} rows, {len(cases)} cases: {rows[Verdict.PASS]} rows pass, {rows[Verdict.FAIL]} fail"
-    )
-    if rows[Verdict.OPEN]:
-        text += f", {rows[Verdict.OPEN]} not yet"
+    passed, failed = rows[CheckVerdict.PASS], rows[CheckVerdict.FAIL]
+    text = f"{len(results)} rows, {len(cases)} cases: {passed} rows pass, {failed} fail"
+    if rows[CheckVerdict.OPEN]:
+        text += f", {rows[CheckVerdict.OPEN]} not yet"
     return f"{text}; {broken} violations of the coil limits"
 
 
@@ -67,7 +66,7 @@ def line(result: RowResult) -> str:
     return f"{result.verdict.value:<8} {result.row.name:<24} {len(result.cases):>4} cases  {_found(result)}"
 
 
-def listed(row: Row) -> str:
+def listed(row: FaultRow) -> str:
     """One row for ``--list``."""
     return f"{row.name:<24} {injected(row)}; expected: {expected(row)}"
 
@@ -100,7 +99,7 @@ def junit(results: Sequence[RowResult]) -> str:
             name=result.row.name,
             tests=str(len(cases)),
             failures=str(sum(case.failed for case in cases)),
-            skipped=str(sum(not case.failed and bool(_with(case, Verdict.OPEN)) for case in cases)),
+            skipped=str(sum(not case.failed and bool(_with(case, CheckVerdict.OPEN)) for case in cases)),
             time=f"{sum(case.wall_s for case in cases):.3f}",
         )
         for case in cases:
@@ -113,7 +112,7 @@ def _junit_case(suite: ElementTree.Element, case: CaseResult) -> None:
     test = ElementTree.SubElement(
         suite, "testcase", classname=f"faults.{case.row}", name=name, time=f"{case.wall_s:.3f}"
     )
-    failed, waiting = _with(case, Verdict.FAIL), _with(case, Verdict.OPEN)
+    failed, waiting = _with(case, CheckVerdict.FAIL), _with(case, CheckVerdict.OPEN)
     if failed:
         ElementTree.SubElement(test, "failure", message="; ".join(failed))
     elif waiting:
@@ -122,7 +121,7 @@ def _junit_case(suite: ElementTree.Element, case: CaseResult) -> None:
 
 def html(results: Sequence[RowResult]) -> str:
     """One self-contained page without scripts."""
-    bad = any(result.verdict is Verdict.FAIL for result in results)
+    bad = any(result.verdict is CheckVerdict.FAIL for result in results)
     return page(
         "sim.fault_table",
         "faults.html",
@@ -135,7 +134,7 @@ def html(results: Sequence[RowResult]) -> str:
 
 def _html_row(result: RowResult) -> tuple[tuple[str, ...], str, str]:
     """The cells of a row but its verdict, then that verdict with its class of style before it."""
-    row, colour = result.row, {Verdict.PASS: "good", Verdict.FAIL: "bad", Verdict.OPEN: "note"}
+    row, colour = result.row, {CheckVerdict.PASS: "good", CheckVerdict.FAIL: "bad", CheckVerdict.OPEN: "note"}
     cells = (row.name, injected(row), expected(row), str(len(result.cases)), _found(result))
     return cells, colour[result.verdict], result.verdict.value
 
@@ -143,9 +142,9 @@ def _html_row(result: RowResult) -> tuple[tuple[str, ...], str, str]:
 def markdown(results: Sequence[RowResult], phases: int, seeds: int) -> str:
     """docs/faults.md."""
     lines = [_HEAD, f"{tally(results)}. Phases {phases}, seeds {seeds} each.", ""]
-    if any(result.kept for result in results):
-        kept = "flown by an earlier run, maybe of an earlier version, with phases and seeds of its own"
-        lines += [f"But \\*: {kept}.", ""]
+    if any(result.earlier for result in results):
+        earlier = "flown by an earlier run, maybe of an earlier version, with phases and seeds of its own"
+        lines += [f"But \\*: {earlier}.", ""]
     for group, rows in _groups(results):
         lines += [f"## {group}", "", f"| {' | '.join(_COLUMNS)} |"]
         lines.append("|---|---|---|---|---|---|")
@@ -156,7 +155,7 @@ def markdown(results: Sequence[RowResult], phases: int, seeds: int) -> str:
                 expected(result.row),
                 str(len(result.cases)),
                 _found(result),
-                result.verdict.value + (" \\*" if result.kept else ""),
+                result.verdict.value + (" \\*" if result.earlier else ""),
             )
             lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
         lines.append("")
@@ -172,31 +171,31 @@ def _kind_row(name: str) -> str:
     return f"| `{name}` | {parameters} | {'yes' if kind.in_plant else 'no'} |"
 
 
-def injected(row: Row) -> str:
+def injected(row: FaultRow) -> str:
     """What is injected, for a person."""
     parameters = [f"{name} {value:g}" for name, value in _all_parameters(row).items()]
     lasts = "stays" if row.stays else f"{row.lasts_s:g} s"
     return ", ".join([row.kind.replace("_", " "), *parameters, lasts])
 
 
-def expected(row: Row) -> str:
+def expected(row: FaultRow) -> str:
     """What is expected beside what every row must keep."""
     names = [f"{name} ({row.unit})" if "named" in name else name for name in row.expect]
     return ", ".join(names) or "the limits"
 
 
-def _all_parameters(row: Row) -> dict[str, float]:
+def _all_parameters(row: FaultRow) -> dict[str, float]:
     defaults = {name: parameter.default for name, parameter in KINDS[row.kind].parameters.items()}
     return {**defaults, **row.parameters}
 
 
 def _found(result: RowResult) -> str:
-    for verdict in (Verdict.FAIL, Verdict.OPEN):
+    for verdict in (CheckVerdict.FAIL, CheckVerdict.OPEN):
         worst = result.first(verdict)
         if worst is not None:
             case, outcome = worst
             count = sum(bool(_with(case, verdict)) for case in result.cases)
-            where = f"phase {case.phase} seed {case.seed}" if verdict is Verdict.FAIL else ""
+            where = f"phase {case.phase} seed {case.seed}" if verdict is CheckVerdict.FAIL else ""
             parts = [f"{count} of {len(result.cases)}: {outcome.check}", outcome.said, where]
             return "; ".join([", ".join(part for part in parts if part), _figures(result)])
     return _figures(result)
@@ -206,7 +205,7 @@ def _figures(result: RowResult) -> str:
     return ", ".join(f"{name} {value:.4g}" for name, value in result.measured.items() if name in _REPEATABLE)
 
 
-def _with(case: CaseResult, verdict: Verdict) -> list[str]:
+def _with(case: CaseResult, verdict: CheckVerdict) -> list[str]:
     return [
         f"{outcome.check}: {outcome.said}" if outcome.said else outcome.check
         for outcome in case.outcomes
@@ -215,7 +214,7 @@ def _with(case: CaseResult, verdict: Verdict) -> list[str]:
 
 
 def _holds(case: CaseResult, check: str) -> bool:
-    return all(outcome.verdict is Verdict.PASS for outcome in case.outcomes if outcome.check == check)
+    return all(outcome.verdict is CheckVerdict.PASS for outcome in case.outcomes if outcome.check == check)
 
 
 def _groups(results: Sequence[RowResult]) -> list[tuple[str, list[RowResult]]]:

@@ -1,4 +1,4 @@
-"""One row of the fault table, and what becomes of it, as values."""
+"""Rows of the fault table and their results, as values."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -7,23 +7,23 @@ from math import inf
 
 from sim.audit.findings import AuditLimits
 from sim.fault_rig.currents import CurrentLimits
-from sim.fault_rig.record import Record
+from sim.fault_rig.record import FaultFlightRecord
 
 
-class Verdict(StrEnum):
-    """What a check says."""
+class CheckVerdict(StrEnum):
+    """The verdict of a check."""
 
     PASS = "PASS"
     FAIL = "FAIL"
     OPEN = "not yet"
-    """The flight software has nothing yet that could do what is expected."""
+    """The flight software has no function yet that could meet the expectation."""
 
 
 class When(StrEnum):
-    """What the phases of a row are counted from."""
+    """The reference from which the phases of a row are counted."""
 
     PULSE = "pulse"
-    """The tick in which a pulse begins; phases go through the pulse and the back-off after it."""
+    """The tick in which a pulse begins; phases cover the pulse and the back-off after it."""
     SUNLIT = "sunlit"
     """Well after the start, in sunlight."""
     BOOT = "boot"
@@ -33,21 +33,21 @@ class When(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
-    """A fault with what is expected of it.
+class FaultRow:
+    """A fault, and the checks that flights with it must pass.
 
     Attributes:
         name: short and unique; ``--row`` takes it or its first words.
-        group: the line of the fault table that it belongs to.
+        group: heading under which the page lists it.
         kind: of fault, as in ``kinds.KINDS``.
-        parameters: of that kind, where they are not its defaults.
-        lasts_s: how long it is there; infinite: it stays.
-        when: what phases are counted from.
-        expect: names of the checks beside those that every row must pass.
-        unit: the sensor or coil that must be named, for the check ``named``.
+        parameters: of that kind, where they differ from its defaults.
+        lasts_s: duration of the fault; infinite: permanent.
+        when: reference of the phases.
+        expect: names of the checks in addition to those of every row.
+        unit: the unit that must be isolated, for the check ``named``.
         settings: of the scenario.
-        slow: it flies a real process, which takes seconds.
-        watch_s: flown after the fault, at least; ``recovers`` flies on until it is decided.
+        slow: it runs real processes, which takes seconds.
+        watch_s: least duration of the flight after the fault; with ``recovers`` until that is decided.
     """
 
     name: str
@@ -64,61 +64,61 @@ class Row:
 
     @property
     def stays(self) -> bool:
-        """Whether the fault is there for ever."""
+        """Whether the fault is permanent."""
         return self.lasts_s == inf
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
-    """One check of one case."""
+class CheckOutcome:
+    """The outcome of one check of one case; ``said`` is the finding, under its key of faults.json."""
 
     check: str
-    verdict: Verdict
+    verdict: CheckVerdict
     said: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class CaseResult:
-    """One phase and seed of a row.
+    """The result of one phase and seed of a row.
 
     Attributes:
         row: its name.
         phase: number of the phase.
         seed: the seed.
         outcomes: the checks.
-        measured: figures by name; of a row the largest counts.
-        wall_s: what it took.
+        measured: figures by name; a row shows the largest.
+        wall_s: wall time of the case.
     """
 
     row: str
     phase: int
     seed: int
-    outcomes: tuple[Outcome, ...]
+    outcomes: tuple[CheckOutcome, ...]
     measured: dict[str, float]
     wall_s: float = 0.0
 
     @property
     def failed(self) -> bool:
-        """Whether an expectation is violated."""
-        return any(outcome.verdict is Verdict.FAIL for outcome in self.outcomes)
+        """Whether a check failed."""
+        return any(outcome.verdict is CheckVerdict.FAIL for outcome in self.outcomes)
 
 
 @dataclass(frozen=True, slots=True)
 class RowResult:
-    """All cases of a row; ``kept``: an earlier run has flown them."""
+    """All cases of a row; ``earlier``: they are from an earlier campaign."""
 
-    row: Row
+    row: FaultRow
     cases: tuple[CaseResult, ...]
-    kept: bool = False
+    earlier: bool = False
 
     @property
-    def verdict(self) -> Verdict:
+    def verdict(self) -> CheckVerdict:
         """The worst of all checks."""
         verdicts = {outcome.verdict for case in self.cases for outcome in case.outcomes}
-        for worst in (Verdict.FAIL, Verdict.OPEN):
+        for worst in (CheckVerdict.FAIL, CheckVerdict.OPEN):
             if worst in verdicts:
                 return worst
-        return Verdict.PASS
+        return CheckVerdict.PASS
 
     @property
     def measured(self) -> dict[str, float]:
@@ -128,7 +128,7 @@ class RowResult:
             name: max(case.measured[name] for case in self.cases if name in case.measured) for name in names
         }
 
-    def first(self, verdict: Verdict) -> tuple[CaseResult, Outcome] | None:
+    def first(self, verdict: CheckVerdict) -> tuple[CaseResult, CheckOutcome] | None:
         """The first case and check with that verdict."""
         for case in self.cases:
             for outcome in case.outcomes:
@@ -139,7 +139,7 @@ class RowResult:
 
 @dataclass(frozen=True, slots=True)
 class Bounds:
-    """What a flight is judged by."""
+    """Bounds by which flights are judged."""
 
     audit: AuditLimits
     currents: CurrentLimits
@@ -147,5 +147,5 @@ class Bounds:
     backoff_s: float
 
 
-Check = Callable[[Row, Record, Bounds], tuple[bool | None, str]]
-"""Whether it holds (None: not yet to be expected) and what was found."""
+Check = Callable[[FaultRow, FaultFlightRecord, Bounds], tuple[bool | None, str]]
+"""Gives whether the check holds (None: not to be expected yet), and the finding."""

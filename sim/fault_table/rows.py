@@ -1,11 +1,11 @@
-"""The fault table: every row, what is injected, and what is expected."""
+"""The fault table: for every row the injected fault and the checks."""
 
 from collections.abc import Sequence
 from math import inf
 
 from sim.errors import HarnessError
 from sim.fault_table.forged_rows import FORGED_ROWS
-from sim.fault_table.row import Row, When
+from sim.fault_table.row import FaultRow, When
 
 BUS = ("no extra pulse", "goes on")
 TIMED = ("limits by time", *BUS, "quiet", "recovers")
@@ -35,22 +35,22 @@ NOON_ORBIT = (
     "orbit.u0_deg=20.0",
     'time.epoch_utc="2015-03-27T02:46:57Z"',
 )
-"""An orbit over noon: from 200 to 430 s after its start the Sun is within 20 deg of the field's direction."""
+"""A noon orbit: from 200 to 430 s after its start the Sun is within 20 deg of the field's direction."""
 
 
-def _field(name: str, kind: str, **parameters: float) -> tuple[Row, Row]:
-    """A fault of the magnetometer that goes away, and one that stays."""
+def _field(name: str, kind: str, **parameters: float) -> tuple[FaultRow, FaultRow]:
+    """A temporary and a permanent fault of the magnetometer."""
     return _sensor("magnetometer", name, kind, parameters)
 
 
-def _sun(name: str, kind: str, **parameters: float) -> tuple[Row, Row]:
+def _sun(name: str, kind: str, **parameters: float) -> tuple[FaultRow, FaultRow]:
     return _sensor("sun sensor", name, kind, parameters)
 
 
-def _sensor(unit: str, name: str, kind: str, parameters: dict[str, float]) -> tuple[Row, Row]:
+def _sensor(unit: str, name: str, kind: str, parameters: dict[str, float]) -> tuple[FaultRow, FaultRow]:
     return (
-        Row(f"{name}-passing", SENSOR, kind, parameters, 300.0, When.SUNLIT, ("goes on", "recovers")),
-        Row(
+        FaultRow(f"{name}-passing", SENSOR, kind, parameters, 300.0, When.SUNLIT, ("goes on", "recovers")),
+        FaultRow(
             name,
             SENSOR,
             kind,
@@ -64,12 +64,12 @@ def _sensor(unit: str, name: str, kind: str, parameters: dict[str, float]) -> tu
     )
 
 
-def _from_boot(name: str, kind: str, unit: str, **parameters: float) -> tuple[Row, ...]:
-    """A fault that has always been there: who is wrong cannot always be told."""
+def _from_boot(name: str, kind: str, unit: str, **parameters: float) -> tuple[FaultRow, ...]:
+    """A fault from boot on: which sensor is faulty is then not always observable."""
     passing = ("goes on", "no other named", "recovers")
     return (
-        Row(f"{name}-boot-passing", BOOT, kind, parameters, 300.0, When.BOOT, passing, unit),
-        Row(
+        FaultRow(f"{name}-boot-passing", BOOT, kind, parameters, 300.0, When.BOOT, passing, unit),
+        FaultRow(
             f"{name}-boot",
             BOOT,
             kind,
@@ -83,10 +83,10 @@ def _from_boot(name: str, kind: str, unit: str, **parameters: float) -> tuple[Ro
     )
 
 
-def _coils(name: str, kind: str, *expect: str, **parameters: float) -> tuple[Row, ...]:
-    """A fault of each coil."""
+def _coils(name: str, kind: str, *expect: str, **parameters: float) -> tuple[FaultRow, ...]:
+    """The same fault of each coil."""
     return tuple(
-        Row(
+        FaultRow(
             f"{name}-{coil}",
             COIL,
             kind,
@@ -100,25 +100,25 @@ def _coils(name: str, kind: str, *expect: str, **parameters: float) -> tuple[Row
     )
 
 
-ROWS: tuple[Row, ...] = (
-    Row("none", NOTHING, "none", {}, 1.0, expect=(*BUS, "quiet", "recovers"), watch_s=1500.0),
-    Row("loss-1", LOSS, "loss", {"part": 0.01}, 300.0, expect=(*BUS, "recovers")),
-    Row("loss-10", LOSS, "loss", {"part": 0.1}, 300.0, expect=(*BUS, "recovers")),
-    Row("loss-50", LOSS, "loss", {"part": 0.5}, 300.0, expect=(*BUS, "recovers")),
-    Row("bursts", LOSS, "bursts", {"ticks": 30.0}, 300.0, expect=(*BUS, "recovers")),
-    Row("duplicates", LOSS, "duplicates", {"part": 0.5}, 300.0, expect=(*BUS, "recovers")),
-    Row("reordering", LOSS, "reordering", {}, 300.0, expect=(*BUS, "recovers")),
-    Row("delay", LOSS, "delay", {"ticks": 2.0}, 300.0, expect=(*BUS, "recovers")),
-    Row("jitter", LOSS, "delay", {"ticks": 3.0, "jitter": 1.0}, 300.0, expect=(*BUS, "recovers")),
-    Row("corruption", CORRUPT, "corruption", {"part": 0.3}, 300.0, expect=BROKEN),
-    Row("wrong-length", CORRUPT, "wrong_length", {"part": 0.3}, 300.0, expect=BROKEN),
-    Row("unknown-id", CORRUPT, "unknown_id", {"part": 0.3}, 300.0, expect=BROKEN),
-    Row("rtr", CORRUPT, "rtr", {"part": 0.3}, 300.0, expect=BROKEN),
-    Row("extended-id", CORRUPT, "extended_id", {"part": 0.3}, 300.0, expect=BROKEN),
-    Row("error-frames", CORRUPT, "error_frames", {"part": 0.3}, 300.0, expect=BROKEN),
-    Row("random-frames", CORRUPT, "random_frames", {"frames": 100.0}, 200.0, expect=BROKEN),
-    Row("flood", FLOOD, "flood", {"frames": 500.0}, 200.0, expect=(*BUS, "recovers")),
-    Row(
+ROWS: tuple[FaultRow, ...] = (
+    FaultRow("none", NOTHING, "none", {}, 1.0, expect=(*BUS, "quiet", "recovers"), watch_s=1500.0),
+    FaultRow("loss-1", LOSS, "loss", {"part": 0.01}, 300.0, expect=(*BUS, "recovers")),
+    FaultRow("loss-10", LOSS, "loss", {"part": 0.1}, 300.0, expect=(*BUS, "recovers")),
+    FaultRow("loss-50", LOSS, "loss", {"part": 0.5}, 300.0, expect=(*BUS, "recovers")),
+    FaultRow("bursts", LOSS, "bursts", {"ticks": 30.0}, 300.0, expect=(*BUS, "recovers")),
+    FaultRow("duplicates", LOSS, "duplicates", {"part": 0.5}, 300.0, expect=(*BUS, "recovers")),
+    FaultRow("reordering", LOSS, "reordering", {}, 300.0, expect=(*BUS, "recovers")),
+    FaultRow("delay", LOSS, "delay", {"ticks": 2.0}, 300.0, expect=(*BUS, "recovers")),
+    FaultRow("jitter", LOSS, "delay", {"ticks": 3.0, "jitter": 1.0}, 300.0, expect=(*BUS, "recovers")),
+    FaultRow("corruption", CORRUPT, "corruption", {"part": 0.3}, 300.0, expect=BROKEN),
+    FaultRow("wrong-length", CORRUPT, "wrong_length", {"part": 0.3}, 300.0, expect=BROKEN),
+    FaultRow("unknown-id", CORRUPT, "unknown_id", {"part": 0.3}, 300.0, expect=BROKEN),
+    FaultRow("rtr", CORRUPT, "rtr", {"part": 0.3}, 300.0, expect=BROKEN),
+    FaultRow("extended-id", CORRUPT, "extended_id", {"part": 0.3}, 300.0, expect=BROKEN),
+    FaultRow("error-frames", CORRUPT, "error_frames", {"part": 0.3}, 300.0, expect=BROKEN),
+    FaultRow("random-frames", CORRUPT, "random_frames", {"frames": 100.0}, 200.0, expect=BROKEN),
+    FaultRow("flood", FLOOD, "flood", {"frames": 500.0}, 200.0, expect=(*BUS, "recovers")),
+    FaultRow(
         "second-sender",
         SECOND,
         "second_sender",
@@ -128,14 +128,14 @@ ROWS: tuple[Row, ...] = (
         unit="second sender",
         watch_s=480.0,
     ),
-    Row("link-down", INTERFACE, "link_down", {}, 90.0, expect=(*BUS, "recovers")),
-    Row("link-down-mid-pulse", INTERFACE, "link_down", {}, 2.0, expect=(*BUS, "recovers")),
-    Row("queue-full", INTERFACE, "queue_full", {}, 300.0, expect=(*BUS, "recovers")),
-    Row("fsw-killed", PROCESS, "killed", {}, 1.0, expect=(*BUS, "boots locked", "recovers")),
-    Row("fsw-killed-long", PROCESS, "killed", {}, 40.0, expect=(*BUS, "boots locked", "recovers")),
-    Row("fsw-stopped", PROCESS, "stopped", {}, 4.0, expect=(*BUS, "recovers")),
-    Row("fsw-stopped-long", PROCESS, "stopped", {}, 256.0, expect=(*BUS, "recovers")),
-    Row(
+    FaultRow("link-down", INTERFACE, "link_down", {}, 90.0, expect=(*BUS, "recovers")),
+    FaultRow("link-down-mid-pulse", INTERFACE, "link_down", {}, 2.0, expect=(*BUS, "recovers")),
+    FaultRow("queue-full", INTERFACE, "queue_full", {}, 300.0, expect=(*BUS, "recovers")),
+    FaultRow("fsw-killed", PROCESS, "killed", {}, 1.0, expect=(*BUS, "boots locked", "recovers")),
+    FaultRow("fsw-killed-long", PROCESS, "killed", {}, 40.0, expect=(*BUS, "boots locked", "recovers")),
+    FaultRow("fsw-stopped", PROCESS, "stopped", {}, 4.0, expect=(*BUS, "recovers")),
+    FaultRow("fsw-stopped-long", PROCESS, "stopped", {}, 256.0, expect=(*BUS, "recovers")),
+    FaultRow(
         "fsw-storm",
         PROCESS,
         "storm",
@@ -143,7 +143,7 @@ ROWS: tuple[Row, ...] = (
         900.0,
         expect=(*BUS, "boots locked", "recovers"),
     ),
-    Row(
+    FaultRow(
         "fsw-storm-fast",
         PROCESS,
         "storm",
@@ -151,7 +151,7 @@ ROWS: tuple[Row, ...] = (
         120.0,
         expect=(*BUS, "boots locked", "recovers"),
     ),
-    Row(
+    FaultRow(
         "process-killed",
         PROCESS,
         "sigkill",
@@ -159,11 +159,15 @@ ROWS: tuple[Row, ...] = (
         expect=("no extra pulse", "boots locked"),
         slow=True,
     ),
-    Row("process-stopped", PROCESS, "sigstop", {"times": 5.0}, expect=("no extra pulse",), slow=True),
-    Row("coil-board-restarts", BOARD, "coil_board_restarts", {}, 1.0, expect=(*BUS, "recovers")),
-    Row("coil-board-storm", BOARD, "coil_board_storm", {"ticks": 150.0}, 900.0, expect=(*BUS, "recovers")),
-    Row("coil-board-storm-fast", BOARD, "coil_board_storm", {"ticks": 4.0}, 200.0, expect=(*BUS, "recovers")),
-    Row(
+    FaultRow("process-stopped", PROCESS, "sigstop", {"times": 5.0}, expect=("no extra pulse",), slow=True),
+    FaultRow("coil-board-restarts", BOARD, "coil_board_restarts", {}, 1.0, expect=(*BUS, "recovers")),
+    FaultRow(
+        "coil-board-storm", BOARD, "coil_board_storm", {"ticks": 150.0}, 900.0, expect=(*BUS, "recovers")
+    ),
+    FaultRow(
+        "coil-board-storm-fast", BOARD, "coil_board_storm", {"ticks": 4.0}, 200.0, expect=(*BUS, "recovers")
+    ),
+    FaultRow(
         "coil-board-dead",
         BOARD,
         "coil_board_dead",
@@ -172,8 +176,8 @@ ROWS: tuple[Row, ...] = (
         expect=(*BUS, "recovers", "silence named"),
         unit="coil board",
     ),
-    Row("mag-board-restarts", BOARD, "mag_board_restarts", {}, 1.0, expect=(*BUS, "recovers")),
-    Row(
+    FaultRow("mag-board-restarts", BOARD, "mag_board_restarts", {}, 1.0, expect=(*BUS, "recovers")),
+    FaultRow(
         "mag-board-dead",
         BOARD,
         "mag_board_dead",
@@ -182,16 +186,16 @@ ROWS: tuple[Row, ...] = (
         expect=(*BUS, "recovers", "silence named"),
         unit="magnetometer",
     ),
-    Row("sun-board-restarts", BOARD, "sun_board_restarts", {}, 1.0, expect=(*BUS, "recovers")),
-    Row("sun-board-dead", BOARD, "sun_board_dead", {}, 90.0, expect=(*BUS, "recovers")),
-    Row("all-restart", BOARD, "all_restart", {}, 5.0, expect=(*BUS, "boots locked", "recovers")),
-    Row("sync-lost", CLOCK, "sync_lost", {"part": 0.3}, 300.0, expect=(*BUS, "recovers")),
-    Row("sync-repeated", CLOCK, "sync_repeated", {"times": 3.0}, 300.0, expect=(*BUS, "recovers")),
-    Row("ticks-held", CLOCK, "ticks_held", {}, 300.0, expect=TIMED),
-    Row("ticks-held-then-rushed", CLOCK, "ticks_held", {"rushed": 110.0}, 600.0, expect=TIMED),
-    Row("ticks-rushed", CLOCK, "ticks_held", {"seconds": 0.0}, 300.0, expect=TIMED),
-    Row("ticks-repeated", CLOCK, "ticks_repeated", {"seconds": 7.0}, 300.0, expect=TIMED),
-    Row(
+    FaultRow("sun-board-restarts", BOARD, "sun_board_restarts", {}, 1.0, expect=(*BUS, "recovers")),
+    FaultRow("sun-board-dead", BOARD, "sun_board_dead", {}, 90.0, expect=(*BUS, "recovers")),
+    FaultRow("all-restart", BOARD, "all_restart", {}, 5.0, expect=(*BUS, "boots locked", "recovers")),
+    FaultRow("sync-lost", CLOCK, "sync_lost", {"part": 0.3}, 300.0, expect=(*BUS, "recovers")),
+    FaultRow("sync-repeated", CLOCK, "sync_repeated", {"times": 3.0}, 300.0, expect=(*BUS, "recovers")),
+    FaultRow("ticks-held", CLOCK, "ticks_held", {}, 300.0, expect=TIMED),
+    FaultRow("ticks-held-then-rushed", CLOCK, "ticks_held", {"rushed": 110.0}, 600.0, expect=TIMED),
+    FaultRow("ticks-rushed", CLOCK, "ticks_held", {"seconds": 0.0}, 300.0, expect=TIMED),
+    FaultRow("ticks-repeated", CLOCK, "ticks_repeated", {"seconds": 7.0}, 300.0, expect=TIMED),
+    FaultRow(
         "ticks-repeated-then-rushed",
         CLOCK,
         "ticks_repeated",
@@ -199,11 +203,11 @@ ROWS: tuple[Row, ...] = (
         600.0,
         expect=TIMED,
     ),
-    Row("tick-ahead", CLOCK, "tick_jumps", {"ticks": 1000.0}, 1.0, expect=(*BUS, "recovers")),
-    Row("tick-far-ahead", CLOCK, "tick_jumps", {"ticks": 1e9}, 1.0, expect=(*BUS, "recovers")),
-    Row("tick-ahead-lasting", CLOCK, "tick_jumps", {"ticks": 1000.0}, 20.0, expect=(*BUS, "recovers")),
-    Row("tick-back", CLOCK, "tick_jumps", {"ticks": -100.0}, 20.0, expect=(*BUS, "recovers")),
-    Row("time-jumps", CLOCK, "time_jumps", {"seconds": 3600.0}, 60.0, expect=(*BUS, "recovers")),
+    FaultRow("tick-ahead", CLOCK, "tick_jumps", {"ticks": 1000.0}, 1.0, expect=(*BUS, "recovers")),
+    FaultRow("tick-far-ahead", CLOCK, "tick_jumps", {"ticks": 1e9}, 1.0, expect=(*BUS, "recovers")),
+    FaultRow("tick-ahead-lasting", CLOCK, "tick_jumps", {"ticks": 1000.0}, 20.0, expect=(*BUS, "recovers")),
+    FaultRow("tick-back", CLOCK, "tick_jumps", {"ticks": -100.0}, 20.0, expect=(*BUS, "recovers")),
+    FaultRow("time-jumps", CLOCK, "time_jumps", {"seconds": 3600.0}, 60.0, expect=(*BUS, "recovers")),
     *FORGED_ROWS,
     *_field("mag-nan", "mag_nan"),
     *_field("mag-infinite", "mag_infinite", axis=1.0),
@@ -214,8 +218,10 @@ ROWS: tuple[Row, ...] = (
     *_field("mag-swapped", "mag_swapped", axis=1.0),
     *_field("mag-sign", "mag_scale", axis=2.0, scale=-1.0),
     *_field("mag-extreme-codes", "extreme_codes"),
-    Row("sun-nan-passing", SENSOR, "sun_nan", {}, 300.0, When.SUNLIT, ("goes on", "recovers")),
-    Row("sun-nan", SENSOR, "sun_nan", {}, inf, When.SUNLIT, ("goes on", "bounded", "quiet"), watch_s=900.0),
+    FaultRow("sun-nan-passing", SENSOR, "sun_nan", {}, 300.0, When.SUNLIT, ("goes on", "recovers")),
+    FaultRow(
+        "sun-nan", SENSOR, "sun_nan", {}, inf, When.SUNLIT, ("goes on", "bounded", "quiet"), watch_s=900.0
+    ),
     *_sun("sun-extreme-codes", "extreme_codes", sun=1.0),
     *_sun("sun-frozen", "sun_frozen"),
     *_sun("sun-swapped", "sun_swapped"),
@@ -224,8 +230,10 @@ ROWS: tuple[Row, ...] = (
     *_from_boot("mag-swapped", "mag_swapped", "magnetometer", axis=1.0),
     *_from_boot("sun-swapped", "sun_swapped", "sun sensor"),
     *_from_boot("sun-sign", "sun_scale", "sun sensor", axis=0.0, scale=-1.0),
-    Row("eclipse", LIGHT, "none", {}, 1.0, When.ECLIPSE, ("goes on", "quiet", "recovers"), watch_s=2400.0),
-    Row(
+    FaultRow(
+        "eclipse", LIGHT, "none", {}, 1.0, When.ECLIPSE, ("goes on", "quiet", "recovers"), watch_s=2400.0
+    ),
+    FaultRow(
         "sun-parallel",
         LIGHT,
         "killed",
@@ -235,13 +243,13 @@ ROWS: tuple[Row, ...] = (
         ("boots locked", "recovers"),
         settings=NOON_ORBIT,
     ),
-    Row("sun-unseen", LIGHT, "sun_unseen", {}, 1200.0, When.SUNLIT, ("goes on", "quiet", "recovers")),
-    Row("albedo", LIGHT, "albedo", {"part": 0.4}, 600.0, When.SUNLIT, BLINDED, "sun sensor"),
-    Row("albedo-eclipse", LIGHT, "albedo", {"part": 0.4}, 600.0, When.ECLIPSE, BLINDED, "sun sensor"),
-    Row(
+    FaultRow("sun-unseen", LIGHT, "sun_unseen", {}, 1200.0, When.SUNLIT, ("goes on", "quiet", "recovers")),
+    FaultRow("albedo", LIGHT, "albedo", {"part": 0.4}, 600.0, When.SUNLIT, BLINDED, "sun sensor"),
+    FaultRow("albedo-eclipse", LIGHT, "albedo", {"part": 0.4}, 600.0, When.ECLIPSE, BLINDED, "sun sensor"),
+    FaultRow(
         "lamp-in-eclipse-passing", LIGHT, "albedo", {"part": 0.0}, 600.0, When.ECLIPSE, BLINDED, "sun sensor"
     ),
-    Row(
+    FaultRow(
         "lamp-in-eclipse",
         LIGHT,
         "albedo",
@@ -256,7 +264,7 @@ ROWS: tuple[Row, ...] = (
     *_coils("coil-reversed", "coil_wired", scale=-1.0),
     *_coils("coil-weak", "coil_wired", scale=0.3),
     *_coils("coil-stuck-on", "coil_stuck_on", "bounded", "stuck", "board names", ampere=0.4),
-    Row(
+    FaultRow(
         "coil-stuck-on-in-eclipse",
         COIL,
         "coil_stuck_on",
@@ -266,24 +274,24 @@ ROWS: tuple[Row, ...] = (
         ("no other named", "bounded", "stuck", "board names"),
         "coil 2",
     ),
-    Row("bit-flip", UPSET, "bit_flip", {}, 1.0, expect=(*BUS, "recovers")),
+    FaultRow("bit-flip", UPSET, "bit_flip", {}, 1.0, expect=(*BUS, "recovers")),
 )
 """All rows, in the order of the page."""
 
 
-def chosen(names: Sequence[str], slow: bool = False) -> list[Row]:
-    """The rows of these names, or that begin with them; without a name all, slow ones if asked for.
+def choose_rows(names: Sequence[str], slow: bool = False) -> list[FaultRow]:
+    """The rows with these names, or whose names begin with them; without names all, slow ones on request.
 
     Raises:
-        HarnessError: a name that is none.
+        HarnessError: there is no such row.
     """
     for name in names:
-        if not any(_is(row, name) for row in ROWS):
+        if not any(_matches(row, name) for row in ROWS):
             raise HarnessError(f"--row {name}: there is no such row; `torquer faults --list` names them")
     if not names:
         return [row for row in ROWS if slow or not row.slow]
-    return [row for row in ROWS if any(_is(row, name) for name in names)]
+    return [row for row in ROWS if any(_matches(row, name) for name in names)]
 
 
-def _is(row: Row, name: str) -> bool:
+def _matches(row: FaultRow, name: str) -> bool:
     return row.name == name or row.name.startswith(name + "-")

@@ -1,1 +1,1 @@
-"""``torquer validate``: every claim and reference figure, reproduced and judged."""
+"""``torquer validate``: every claim and reference figure, computed and judged."""

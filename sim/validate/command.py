@@ -1,4 +1,4 @@
-"""What ``torquer validate`` does."""
+"""The command ``torquer validate``."""
 
 import os
 import sys
@@ -15,7 +15,7 @@ from sim.progress import progress
 from sim.record.destination import check_file
 from sim.validate.page import line, render, tally
 from sim.validate.reference import reference
-from sim.validate.registry import all_studies, chosen, find_repository
+from sim.validate.registry import all_studies, choose_studies, find_repository
 
 PAGE = "validation.md"
 
@@ -25,12 +25,13 @@ def validate(
 ) -> int:
     """Run the studies, print each outcome, write the page.
 
-    Without ``out`` only a whole validation writes its page: into docs/ of the repository, else here.
+    Without ``out`` only a complete validation writes its page: into docs/ of the repository, else into the
+    current directory.
 
     Args:
-        folder: run the checks of this folder of reference files alone.
+        folder: run only the checks of the reference files in this folder.
         only: first words of the ids of the studies to run; none: all.
-        out: where the page goes.
+        out: path of the page.
         quick: leave out flights.
         workers: processes; None: as many as there are cores.
 
@@ -43,14 +44,14 @@ def validate(
     began = time.monotonic()
     repository = find_repository(Path.cwd())
     studies = reference.studies(folder) if folder is not None else all_studies(repository)
-    studies = chosen(studies, only, quick)
+    studies = choose_studies(studies, only, quick)
     whole = folder is None and not only and not quick
     page = out or (_default_page(repository) if whole else None)
     if page is not None:
         check_file(page)
-    bar = sys.stderr.isatty()  # then the outcomes wait until it is gone; else they are the progress
+    bar = sys.stderr.isatty()  # then the outcomes are printed after the progress bar
     with progress("validating", sum(len(study.tasks) for study in studies)) as watch:
-        finished = run(studies, workers or os.cpu_count() or 1, watch, _quiet if bar else _print)
+        finished = run(studies, workers or os.cpu_count() or 1, watch, _print_later if bar else _print)
     if bar:
         for study in finished:
             _print(study)
@@ -72,8 +73,8 @@ def _print(finished: StudyResult) -> None:
         click.echo(line(outcome))
 
 
-def _quiet(finished: StudyResult) -> None:
-    """Nothing yet."""
+def _print_later(finished: StudyResult) -> None:
+    """Print nothing yet."""
 
 
 def _write(page: Path, text: str) -> None:

@@ -1,4 +1,4 @@
-"""Claims that are computed rather than flown: what theory and plant have to say of each other."""
+"""Claims that need no flight: theory and plant against each other."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -31,11 +31,11 @@ KNOWN_BEST: dict[str, tuple[float, Gains]] = {
     "few tons": (-0.497, Gains(1.0171e10, 2.8213e6)),
     "boom": (-0.167, Gains(3.2433e8, 4.7969e4)),
 }
-"""Least degrees of stability known, to three digits, and gains near them."""
+"""Best published degrees of stability, to three digits, and gains near them."""
 ROUNDED = 5e-4
 
 ROUGH_STEPS = 64
-"""Of the Magnus integration, for the map and the ways down."""
+"""Steps of the Magnus integration, for the map and the descents from it."""
 
 FULL: Mat3 = ((1.02, 0.03, -0.02), (0.03, 1.85, 0.05), (-0.02, 0.05, 1.95))
 """An inertia tensor with nothing zero in it, kg m^2."""
@@ -49,7 +49,7 @@ def studies() -> list[Study]:
 
 
 def jacobi() -> Study:
-    """What the uncontrolled motion conserves."""
+    """The integral that the uncontrolled motion conserves."""
     claim = Claim(
         "jacobi",
         "Relative drift of the Jacobi integral, uncontrolled, three circular orbits of 800 km",
@@ -86,11 +86,11 @@ def exponents() -> Study:
 
 
 def best_gains() -> Study:
-    """The search finds gains as good as the best that are known."""
+    """The search finds gains as good as the best published."""
     claims = [
         Claim(
             f"best_gains.{body.name.replace(' ', '_')}",
-            f"Best degree of stability of {body.name}, as good as the best known to three digits",
+            f"Best degree of stability of {body.name}, as good as the best stabilisable to three digits",
             THEORY,
             "1/rad",
             high=KNOWN_BEST[body.name][0] + ROUNDED,
@@ -105,11 +105,11 @@ def best_gains() -> Study:
 
 
 def unstable_bodies() -> Study:
-    """Bodies that no gains stabilise are told from those that some do."""
-    known = dict(zip((body.name for body in UNSTABLE_BODIES), (True, False, False), strict=True))
+    """The search distinguishes bodies that gains can stabilise from those that they cannot."""
+    stabilisable = dict(zip((body.name for body in UNSTABLE_BODIES), (True, False, False), strict=True))
     claim = Claim(
         "unstable_bodies",
-        "Bodies against the gravity gradient of which it is told wrongly whether gains stabilise them",
+        "Bodies unstable under gravity gradient that are misjudged as to whether gains stabilise them",
         THEORY,
         "bodies",
         high=0.0,
@@ -118,7 +118,7 @@ def unstable_bodies() -> Study:
     def conclude(found: Sequence[Any]) -> list[ClaimOutcome]:
         wrong = [
             name
-            for (name, can), (*_, stabilised) in zip(known.items(), found, strict=True)
+            for (name, can), (*_, stabilised) in zip(stabilisable.items(), found, strict=True)
             if can != stabilised
         ]
         return [claim.judge(float(len(wrong)), ", ".join(wrong))]

@@ -1,7 +1,7 @@
 """The plant's rigid body under a continuous PD dipole on a circular orbit in the direct dipole's field.
 
-Physics are the plant's, the law is the one that flies; only the sampling and the pulses between them are left
-out, as the theory has none. States are those of ``theory.linear``: x = (Omega / w0, theta), here with
+Physics are the plant's, the law is that of the flight software; sampling and pulses are left out, as in the
+theory. States are those of ``theory.linear``: x = (Omega / w0, theta), here with
 theta = 2 qv of the attitude relative to the orbital frame, over the argument of latitude u.
 """
 
@@ -37,12 +37,12 @@ from sim.validate.reference.comparison import Array
 STEPS = 720
 """Integration steps an orbit."""
 RAAN_RAD = 0.7
-"""Any: nothing depends on it."""
+"""Arbitrary: nothing depends on it."""
 
 
 @dataclass(frozen=True, slots=True)
 class ControlledPlant:
-    """A body with its gains; every quantity over time is by the argument of latitude u."""
+    """A body with its gains; functions of time are functions of the argument of latitude u."""
 
     body: Body
     k_w: float
@@ -85,7 +85,7 @@ class ControlledPlant:
         return np.stack(columns, axis=1)
 
     def _flow(self, x: Array, stages: "list[_Stage]") -> Array:
-        """The state after the orbit that the stages make, from x."""
+        """The state after one orbit, from x."""
         w0 = self.body.rate_radps
         _, normal, q_start = stages[0]
         rigid, torque, motion = (
@@ -138,7 +138,7 @@ _Stage = tuple[Surroundings, Vec3, Quaternion]
 
 @dataclass(frozen=True, slots=True)
 class _Torque:
-    """Gravity gradient and the PD law's dipole in the field, as ``RigidBody`` asks for it."""
+    """Gravity gradient and the PD law's dipole in the field, as ``RigidBody`` takes it."""
 
     plant: ControlledPlant
     normal: Vec3

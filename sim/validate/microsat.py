@@ -1,4 +1,4 @@
-"""What is claimed of the 50 kg satellite with the filter in the loop: pointing, acquisition, consistency."""
+"""Claims on the 50 kg satellite with the filter in the loop: pointing, acquisition, consistency."""
 
 from datetime import UTC, datetime
 from math import inf
@@ -27,15 +27,15 @@ FILTER = "Lefferts, Markley, Shuster 1982; bounds: Bar-Shalom, Li, Kirubarajan 2
 POINTING_RUNS, STARTS_WITHIN_DEG = 10, 60.0
 LAST_ORBITS = 4.0
 BIAS_TORQUES = (("zero", 0.0, 0.6), ("3e-8", 3e-8, 1.5), ("1e-7", 1e-7, 4.0))
-"""Name, bias torque per axis [N m], RMS pointing error that must be kept to [deg]."""
+"""Name, bias torque per axis [N m], limit of the RMS pointing error [deg]."""
 
 ACQUIRED_RUNS, ACQUIRED_DEG, ACQUIRED_DEGPS, ACQUIRED_ORBITS = 20, 10.0, 1.0, 6.0
-FLOWN_ORBITS = 8.0
+ACQUISITION_ORBITS = 8.0
 
 NEES_RUNS, NEES_STATES, NEES_CONFIDENCE = 100, 6, 0.95
 BIASED_RUNS, BIAS_NT = 4, 500.0
 
-KEPT = summary_value("limits_ok", 0.0)
+LIMITS_KEPT = summary_value("limits_ok", 0.0)
 
 
 def studies() -> list[Study]:
@@ -62,7 +62,12 @@ def pointing() -> Study:
     ]
     limits = [
         Figure(
-            f"limits_{name}", "Actuator limits kept, by the independent audit", "1", KEPT, group=name, low=1.0
+            f"limits_{name}",
+            "Actuator limits kept, by the independent audit",
+            "1",
+            LIMITS_KEPT,
+            group=name,
+            low=1.0,
         )
         for name, *_ in BIAS_TORQUES
     ]
@@ -75,7 +80,7 @@ def acquisition() -> Study:
     figures = (
         Figure(
             "held",
-            f"In POINT and under {ACQUIRED_DEG:g} deg for good after, from any attitude at 1 deg/s, all",
+            f"In POINT and under {ACQUIRED_DEG:g} deg from then on after, from any attitude at 1 deg/s, all",
             "orbits",
             figure_of("held_orbits"),
             high=ACQUIRED_ORBITS,
@@ -96,13 +101,13 @@ def acquisition() -> Study:
             low=0.5,
             high=0.5,
         ),
-        Figure("limits", "Actuator limits kept, by the independent audit", "1", KEPT, low=1.0),
+        Figure("limits", "Actuator limits kept, by the independent audit", "1", LIMITS_KEPT, low=1.0),
     )
     return campaign("acquisition", SOURCE, (Group("", orders),), figures)
 
 
 def consistency() -> Study:
-    """Biases and torques drawn from what the filter takes them for; one look at each run, at its end."""
+    """Biases and torques drawn from the filter's own statistics; evaluated at the end of each run."""
     low, high = (
         float(chi2.ppf(part, NEES_STATES * NEES_RUNS)) / NEES_RUNS
         for part in (0.5 * (1.0 - NEES_CONFIDENCE), 0.5 * (1.0 + NEES_CONFIDENCE))
@@ -116,12 +121,12 @@ def consistency() -> Study:
         low=low,
         high=high,
     )
-    orders = tuple(_drawn_order(run) for run in range(NEES_RUNS))
+    orders = tuple(_random_order(run) for run in range(NEES_RUNS))
     return campaign("filter", FILTER, (Group("", orders),), (figure,))
 
 
 def magnetometer_bias() -> Study:
-    """A magnetometer bias that the filter has to find."""
+    """A magnetometer bias that the filter has to estimate."""
     bias = {"sensors": {"magnetometer": {"bias_nt": [BIAS_NT, -BIAS_NT, BIAS_NT]}}}
     orders = tuple(Order(SCENARIO, bias, seed=seed) for seed in range(1, BIASED_RUNS + 1))
     figure = Figure(
@@ -134,15 +139,15 @@ def magnetometer_bias() -> Study:
     return campaign("filter_bias", FILTER, (Group("", orders),), (figure,))
 
 
-def pointed(scenario: Scenario, truth: Histories, estimates: Estimates) -> Figures:
+def pointing_figures(scenario: Scenario, truth: Histories, estimates: Estimates) -> Figures:
     """RMS pointing error of the last orbits."""
     error_deg = pointing_deg(truth)
     last = error_deg[-round(LAST_ORBITS * orbit_period_s(scenario) * scenario.time.tick_hz) :]
     return {"rms_deg": float(np.sqrt(np.mean(last**2)))}
 
 
-def acquired(scenario: Scenario, truth: Histories, estimates: Estimates) -> Figures:
-    """Orbits after which it points for good, infinite if it does not; whether it began in the dark."""
+def acquisition_figures(scenario: Scenario, truth: Histories, estimates: Estimates) -> Figures:
+    """Orbits after which it stays pointed, infinite if it does not; whether it started in eclipse."""
     held = (pointing_deg(truth) < ACQUIRED_DEG) & (estimates.mode[: len(truth["t_s"])] == Mode.POINT)
     broken = np.flatnonzero(~held)
     first = int(broken[-1]) + 1 if len(broken) else 0
@@ -153,7 +158,7 @@ def acquired(scenario: Scenario, truth: Histories, estimates: Estimates) -> Figu
     }
 
 
-def consistent(scenario: Scenario, truth: Histories, estimates: Estimates) -> Figures:
+def consistency_figures(scenario: Scenario, truth: Histories, estimates: Estimates) -> Figures:
     """NEES at the last tick."""
     return {"nees": float(nees(truth, estimates)[-1])}
 
@@ -172,7 +177,7 @@ def _pointing_order(seed: int, torque_nm: float) -> Order:
         "initial": {"axis": _direction(random), "angle_deg": float(random.uniform(0.0, STARTS_WITHIN_DEG))},
         "disturbance": {"torque_nm": [torque_nm] * 3},
     }
-    return Order(SCENARIO, overrides, seed=seed, measure=pointed)
+    return Order(SCENARIO, overrides, seed=seed, measure=pointing_figures)
 
 
 def _acquisition_order(run: int) -> Order:
@@ -183,11 +188,11 @@ def _acquisition_order(run: int) -> Order:
         "initial": {"axis": axis, "angle_deg": angle_deg, "rate_degps": rate},
         "time": {"epoch_utc": _epoch(random, dark=run % 2 == 1)},
     }
-    return Order(SCENARIO, overrides, seed=run + 1, orbits=FLOWN_ORBITS, measure=acquired)
+    return Order(SCENARIO, overrides, seed=run + 1, orbits=ACQUISITION_ORBITS, measure=acquisition_figures)
 
 
-def _drawn_order(run: int) -> Order:
-    """What the filter takes for random is random: attitude, bias, torque and its noise."""
+def _random_order(run: int) -> Order:
+    """An order whose attitude, bias, torque and torque noise are drawn from the filter's statistics."""
     scenario, random = load(SCENARIO), np.random.default_rng(2000 + run)
     assumed = estimator_values(scenario)
     axis, angle_deg = _any_attitude(random)
@@ -199,11 +204,11 @@ def _drawn_order(run: int) -> Order:
             "torque_noise_nm_rts": assumed["torque_noise_nm_rts"],
         },
     }
-    return Order(SCENARIO, overrides, seed=run + 1, orbits=1.0, measure=consistent)
+    return Order(SCENARIO, overrides, seed=run + 1, orbits=1.0, measure=consistency_figures)
 
 
 def estimator_values(scenario: Scenario) -> dict[str, float]:
-    """What the scenario's filter assumes."""
+    """The estimator's section of the onboard table."""
     values: dict[str, float] = flight_table(scenario).estimator.model_dump()
     return values
 
@@ -215,7 +220,7 @@ def _direction(random: np.random.Generator) -> list[float]:
 
 
 def _any_attitude(random: np.random.Generator) -> tuple[list[float], float]:
-    """Axis and angle [deg] of an attitude that may be any."""
+    """Axis and angle [deg] of a uniformly random attitude."""
     q = random.standard_normal(4)
     sine, cosine = np.linalg.norm(q[1:]), abs(q[0])
     axis: list[float] = (q[1:] / sine).tolist()
@@ -230,8 +235,8 @@ def _epoch(random: np.random.Generator, dark: bool) -> str:
     times = np.sort(random.integers(0, 86400, 50)).astype(float)
     r_m, _ = Sgp4Orbit(scenario.orbit.tle, epoch_unix_s).at(times)
     lit = illumination(r_m, sun_eci_m(epoch_unix_s, times))
-    chosen = times[lit == (0.0 if dark else 1.0)][0]
-    return _iso(epoch_unix_s + int(chosen))
+    epoch_s = times[lit == (0.0 if dark else 1.0)][0]
+    return _iso(epoch_unix_s + int(epoch_s))
 
 
 def _iso(unix_s: int) -> str:

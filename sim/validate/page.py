@@ -8,7 +8,7 @@ import scipy
 
 from sim.campaign.claim import ClaimOutcome, ClaimVerdict
 from sim.campaign.runner import StudyResult
-from sim.validate.reference.reference import Checked
+from sim.validate.reference.reference import FileResult
 
 _HEAD = """# Validation
 
@@ -23,7 +23,7 @@ def render(finished: Sequence[StudyResult], wall_s: float) -> str:
     outcomes = [outcome for study in finished for outcome in study.outcomes]
     lines = [_HEAD, tally(outcomes) + ".", "", "| claim | source | ours | tolerance | verdict |"]
     lines += ["|---|---|---|---|---|", *map(_row, outcomes), ""]
-    files = [result for study in finished for result in study.results if isinstance(result, Checked)]
+    files = [result for study in finished for result in study.results if isinstance(result, FileResult)]
     if files:
         lines += ["| reference file | rows | columns not used |", "|---|---|---|"]
         lines += [f"| {file.name} | {file.rows} | {', '.join(file.unused) or 'none'} |" for file in files]

@@ -1,4 +1,4 @@
-"""All studies there are, and which of them are meant."""
+"""All studies, and the choice among them."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -12,27 +12,27 @@ REFERENCE_FOLDER = Path("tests", "reference")
 
 
 def all_studies(repository: Path | None) -> list[Study]:
-    """Every study; the reference data lie in the repository only."""
+    """All studies; reference data are only in the repository."""
     folder = None if repository is None else repository / REFERENCE_FOLDER
     checks = reference.studies(folder) if folder is not None and folder.is_dir() else reference.absent()
     return [*checks, *computed.studies(), *posat1.studies(), *microsat.studies()]
 
 
-def chosen(studies: Sequence[Study], only: Sequence[str], quick: bool) -> list[Study]:
+def choose_studies(studies: Sequence[Study], only: Sequence[str], quick: bool) -> list[Study]:
     """The studies whose ids begin with one of ``only`` (all, if it is empty); ``quick`` leaves out flights.
 
     Raises:
-        HarnessError: a word of ``only`` fits no study, or nothing is left.
+        HarnessError: a word of ``only`` matches no study, or no study is left.
     """
     for word in only:
         if not any(_begins(study.id, word) for study in studies):
             ids = ", ".join(study.id for study in studies)
             raise HarnessError(f"--only {word}: no such claims; there are {ids}")
-    kept = [study for study in studies if not only or any(_begins(study.id, word) for word in only)]
-    kept = [study for study in kept if not (quick and study.has_flights)]
-    if not kept:
+    studies_left = [study for study in studies if not only or any(_begins(study.id, word) for word in only)]
+    studies_left = [study for study in studies_left if not (quick and study.has_flights)]
+    if not studies_left:
         raise HarnessError("--quick leaves out flights, and --only names nothing else")
-    return kept
+    return studies_left
 
 
 def find_repository(start: Path) -> Path | None:

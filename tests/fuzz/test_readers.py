@@ -24,8 +24,8 @@ import fsw.__main__
 import hil_stub.__main__
 from fsw.input import command_line
 from sim.fault_table import command as faults_command
-from sim.fault_table import kept
-from sim.fault_table.row import CaseResult, Outcome, RowResult, Verdict
+from sim.fault_table import earlier_rows
+from sim.fault_table.row import CaseResult, CheckOutcome, CheckVerdict, RowResult
 from sim.fault_table.rows import ROWS
 from sim.report import conclude
 from sim.scenario.schema import load
@@ -286,7 +286,9 @@ def test_a_stimulus(mutated, flown, tmp_path, name, sensor):
 
 
 def test_a_campaign_that_is_kept(mutated, tmp_path, monkeypatch):
-    case = CaseResult(ROWS[1].name, 0, 1, (Outcome("limits", Verdict.PASS, "held"),), {"peak_deg": 3.5}, 0.25)
+    case = CaseResult(
+        ROWS[1].name, 0, 1, (CheckOutcome("limits", CheckVerdict.PASS, "held"),), {"peak_deg": 3.5}, 0.25
+    )
     whole = faults_command.render.as_json([RowResult(ROWS[1], (case,)), RowResult(ROWS[2], (case, case))])
     monkeypatch.setattr(faults_command, "fly_rows", lambda *given: [])
 
@@ -297,7 +299,7 @@ def test_a_campaign_that_is_kept(mutated, tmp_path, monkeypatch):
         words = ("--row", ROWS[0].name, "--keep", tmp_path / "faults.json", "--out", tmp_path / "out")
         torquer("faults", *words)
 
-    assert kept.read(write(tmp_path / "faults.json", whole)).keys() == {ROWS[1].name, ROWS[2].name}
+    assert earlier_rows.read(write(tmp_path / "faults.json", whole)).keys() == {ROWS[1].name, ROWS[2].name}
     mutate()
 
 

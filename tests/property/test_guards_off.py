@@ -13,7 +13,7 @@ from fsw.core.actuation.pulses import PulseState
 from fsw.core.gate.sync_watch import Belief
 from fsw.core.monitors import MONITORS, Monitor
 from sim.fault_table.case import fly
-from sim.fault_table.row import Verdict
+from sim.fault_table.row import CheckVerdict
 from sim.fault_table.rows import ROWS
 
 
@@ -91,4 +91,4 @@ def test_without_the_guard_the_fault_is_seen(off, monkeypatch):
     row = next(row for row in ROWS if row.name == off.row)
     monkeypatch.setattr(*off.patch)
     outcomes = fly(replace(row, watch_s=off.watch_s), off.phase, seed=1).outcomes
-    assert off.fails in {outcome.check for outcome in outcomes if outcome.verdict is Verdict.FAIL}
+    assert off.fails in {outcome.check for outcome in outcomes if outcome.verdict is CheckVerdict.FAIL}

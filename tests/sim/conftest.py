@@ -17,7 +17,7 @@ from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilBoot, CoilStatus, MagField, PlantEnd, Sync
 from sim.audit.auditor import AuditLimits, AuditReport, audit
 from sim.campaign.claim import Claim, Study
-from sim.fault_rig.rig import Rig, prepared
+from sim.fault_rig.rig import Rig, prepare
 from sim.fault_table.checks import bounds_of
 from sim.flight import virtual
 from sim.record import run_dir
@@ -173,7 +173,7 @@ def fired() -> type[Fired]:
 @pytest.fixture
 def bounds():
     """What flights of the default scenario are judged by."""
-    return bounds_of(prepared("microsat", ())[0])
+    return bounds_of(prepare("microsat", ())[0])
 
 
 @pytest.fixture
@@ -181,7 +181,7 @@ def rig():
     """Makes a rig of the default scenario, with settings laid over it."""
 
     def make(*settings, seed=1):
-        return Rig(*prepared("microsat", settings), seed)
+        return Rig(*prepare("microsat", settings), seed)
 
     return make
 
@@ -204,9 +204,11 @@ def flown(rig):
 def study():
     """Makes a study of one claim: the sum of its values is at most ``limit``."""
 
-    def make(study_id, values, flown=False, limit=10.0):
+    def make(study_id, values, has_flights=False, limit=10.0):
         claim = Claim(study_id, f"sum of {study_id}", "arithmetic", "1", high=limit)
         tasks = tuple(partial(float, value) for value in values)
-        return Study(study_id, tasks, lambda results: [claim.judge(sum(results), f"of {results}")], flown)
+        return Study(
+            study_id, tasks, lambda results: [claim.judge(sum(results), f"of {results}")], has_flights
+        )
 
     return make

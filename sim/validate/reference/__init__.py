@@ -1,1 +1,1 @@
-"""Reference data, a module a format, each against our own code."""
+"""Checks against reference data, a module for each file format."""

@@ -22,18 +22,18 @@ ATTITUDE_RAD = 1e-7
 RATE_RADPS = 1e-9
 POSITION_M = 1e-2
 MATRIX = 1e-12
-"""The header gives the quaternion to 14 digits."""
+"""The header has the quaternion to 14 digits."""
 
 TURN_A_STEP_RAD = 0.006
-"""Runge-Kutta steps in which the body turns by no more: errors of 1e-9 rad after 1000 rad."""
+"""Largest turn in a Runge-Kutta step: errors of 1e-9 rad after 1000 rad."""
 MOST_STEPS = 10_000
-"""From a row to the next."""
+"""Integration steps from a row to the next."""
 LONGEST_STEP_S, SHORTEST_STEP_S = 1.0, 0.005
 
 
 @dataclass(frozen=True, slots=True)
-class Case:
-    """What the header of a history says of the body and its surroundings."""
+class AttitudeCase:
+    """The header of a history: body, orbit and field."""
 
     inertia_kgm2: Mat3
     r0_m: Array
@@ -87,7 +87,7 @@ def check(table: ReferenceTable) -> Iterator[Comparison]:
         yield Comparison(f"matrix_{who.lower()}", f"{who} matrix of the first attitude", "1", apart, MATRIX)
 
 
-def read_case(table: ReferenceTable) -> Case:
+def read_case(table: ReferenceTable) -> AttitudeCase:
     """The case of a header.
 
     Raises:
@@ -104,7 +104,7 @@ def read_case(table: ReferenceTable) -> Case:
         axis = np.array(table.numbers_after(field, "mhat (constant, inertial) = ", 3, "field: ... mhat = "))
     if not any(q):
         raise HarnessError(f"{table.path}: the header's quaternion q0 is zero")
-    case = Case(
+    case = AttitudeCase(
         inertia_kgm2=(_vec3(rows[0]), _vec3(rows[1]), _vec3(rows[2])),
         r0_m=np.array(table.header("r0_m", 3)),
         v0_mps=np.array(table.header("v0_m_s", 3)),
@@ -120,7 +120,7 @@ def read_case(table: ReferenceTable) -> Case:
     return case
 
 
-def fly(case: Case, times: Array, longest_step_s: float) -> tuple[Array, Array]:
+def fly(case: AttitudeCase, times: Array, longest_step_s: float) -> tuple[Array, Array]:
     """Attitudes (n, 4) and inertial rates (n, 3) of the plant's rigid body at rising times from 0."""
     body, motion, here = RigidBody(case.inertia_kgm2), case.start, 0.0
     torque = partial(_torque, case)
@@ -135,7 +135,7 @@ def fly(case: Case, times: Array, longest_step_s: float) -> tuple[Array, Array]:
     return np.array([m.q_body_from_eci for m in history]), np.array([m.omega_body_radps for m in history])
 
 
-def surroundings(case: Case, t_s: Array) -> list[Surroundings]:
+def surroundings(case: AttitudeCase, t_s: Array) -> list[Surroundings]:
     """Radius, gradient and field, B = (mu_e / r^3) (3 (m . e) e - m), at each time."""
     r_m = two_body(case.r0_m, case.v0_mps, case.mu_m3ps2, t_s)
     r_norm = np.linalg.norm(r_m, axis=1)[:, None]
@@ -154,11 +154,11 @@ def step_s(omega: Array) -> float:
     return min(LONGEST_STEP_S, max(SHORTEST_STEP_S, TURN_A_STEP_RAD / max(fastest, 1e-9)))
 
 
-def _torque(case: Case, q: Quaternion, omega_body_radps: Vec3, around: Surroundings) -> Vec3:
+def _torque(case: AttitudeCase, q: Quaternion, omega_body_radps: Vec3, around: Surroundings) -> Vec3:
     return torques.total(case.inertia_kgm2, q, around, case.dipole_body_am2, ZERO)
 
 
-def _check_physics(table: ReferenceTable, case: Case) -> None:
+def _check_physics(table: ReferenceTable, case: AttitudeCase) -> None:
     if not np.linalg.eigvalsh(np.array(case.inertia_kgm2)).min() > 0.0:
         raise HarnessError(f"{table.path}: the header's J is not positive definite")
     try:

@@ -1,4 +1,4 @@
-"""Deviations from reference rows, and the one that is worst."""
+"""Deviations from reference rows, and the worst of them."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """How far our code is from the reference in each row.
+    """The deviation of our code from the reference in each row.
 
     Attributes:
         id: last word of the claim's id.
@@ -30,7 +30,7 @@ class Comparison:
     tolerance: ArrayLike
 
     def outcome(self, table: ReferenceTable) -> ClaimOutcome:
-        """The verdict on the row that comes nearest to its tolerance or exceeds it most."""
+        """The verdict on the row with the largest ratio of deviation to tolerance."""
         tolerance = np.broadcast_to(np.asarray(self.tolerance, dtype=np.float64), self.deviation.shape)
         excess = np.where(self.deviation == 0.0, 0.0, self.deviation / np.maximum(tolerance, 1e-300))
         excess = np.where(np.isnan(excess), np.inf, excess)
@@ -53,7 +53,7 @@ def largest(differences: Array) -> Array:
 
 
 def mismatch(ours: ArrayLike, theirs: ArrayLike) -> Array:
-    """1 in the rows where two columns differ, else 0: for what must agree exactly."""
+    """1 in the rows where two columns differ, else 0: for columns that must agree exactly."""
     differs: Array = (np.asarray(ours) != np.asarray(theirs)).astype(np.float64)
     return differs
 

@@ -1,4 +1,4 @@
-"""eclipse.csv: how much of the Sun the Earth leaves free."""
+"""eclipse.csv: the visible fraction of the Sun."""
 
 from collections.abc import Iterator
 
@@ -12,7 +12,7 @@ from sim.validate.reference.reference_table import ReferenceTable, names_of
 SAME_MODEL = 1e-7
 """The planar two-circle formula; arccos near full shadow costs half the digits."""
 OTHER_MODEL = 5e-3
-"""The Earth's limb is no plane circle: the exact fraction differs by up to 2e-4 in low orbits."""
+"""The Earth's limb is not a plane circle: the exact fraction differs by up to 2e-4 in low orbits."""
 
 
 def check(table: ReferenceTable) -> Iterator[Comparison]:
@@ -36,7 +36,7 @@ def check(table: ReferenceTable) -> Iterator[Comparison]:
         "class",
         "Rows where the plant's fraction is not of the class sunlit, umbra or between",
         "rows",
-        mismatch([_kind(value) for value in fraction], [_MEANS.get(name, "partial") for name in classes]),
+        mismatch([_class(value) for value in fraction], [_CLASSES.get(name, "partial") for name in classes]),
         0.0,
     )
     yield Comparison(
@@ -49,7 +49,7 @@ def check(table: ReferenceTable) -> Iterator[Comparison]:
 
 
 def _cylinder_mismatch(r_m: Array, sun_m: Array, reference: Array) -> Array:
-    """1 where it differs whether the cylinder points to the Sun from the Earth or from the satellite.
+    """1 where the shadow differs both for a cylinder along Earth to Sun and for one along satellite to Sun.
 
     The two are 0.3 km apart at the shadow's edge in low orbits, and a reference may mean either.
     """
@@ -64,8 +64,8 @@ def _cylinder_mismatch(r_m: Array, sun_m: Array, reference: Array) -> Array:
     return differs
 
 
-_MEANS = {"sunlit": "sunlit", "umbra": "umbra"}
+_CLASSES = {"sunlit": "sunlit", "umbra": "umbra"}
 
 
-def _kind(fraction: float) -> str:
+def _class(fraction: float) -> str:
     return {0.0: "umbra", 1.0: "sunlit"}.get(float(fraction), "partial")

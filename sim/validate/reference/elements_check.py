@@ -15,14 +15,14 @@ from sim.validate.reference.reference_table import read_lines
 
 POSITION_M = 1e-3
 VELOCITY_MPS = 1e-6
-"""The same propagator; the two tell it the time in different parts of a day, 1e-11 days apart."""
+"""The same propagator; the two split the time into day and fraction differently, by up to 1e-11 days."""
 SPAN_S, STEP_S = 86400, 60
 SLOWEST_REVOLUTIONS_A_DAY = 6.4
-"""225 minutes: SGP4 has another theory for slower orbits, and this project is for low ones."""
+"""225 minutes: SGP4 uses another theory for slower orbits, which this project does not cover."""
 
 
 @dataclass(frozen=True, slots=True)
-class Elements:
+class NamedElements:
     """A two-line element set, and the line of the file that it begins in."""
 
     name: str
@@ -44,7 +44,7 @@ def check(path: Path) -> Iterator[ClaimOutcome]:
     found = [elements for elements in read_elements(path) if not _slow(path, elements)]
     if not found:
         raise HarnessError(f"{path}: no elements of an orbit under 225 minutes")
-    apart = [_apart(path, elements) for elements in found]
+    distances = [_largest_distances(path, elements) for elements in found]
     names = [f"{path.name} line {elements.line} ({elements.title})" for elements in found]
     rows = (
         ("position", "Onboard SGP4 position against the plant's, one day", "m", POSITION_M),
@@ -52,11 +52,11 @@ def check(path: Path) -> Iterator[ClaimOutcome]:
     )
     for part, (name, statement, unit, tolerance) in enumerate(rows):
         claim = Claim(f"reference.tle.{name}", statement, path.name, unit, high=tolerance)
-        worst = max(range(len(found)), key=lambda place: apart[place][part])
-        yield claim.judge(apart[worst][part], names[worst])
+        worst = max(range(len(found)), key=lambda place: distances[place][part])
+        yield claim.judge(distances[worst][part], names[worst])
 
 
-def read_elements(path: Path) -> list[Elements]:
+def read_elements(path: Path) -> list[NamedElements]:
     """The element sets of a file: a name, then two lines; lines that begin with ``#`` do not count.
 
     Raises:
@@ -76,21 +76,21 @@ def read_elements(path: Path) -> list[Elements]:
             continue
         if not lines or not lines[0][1].startswith("2 "):
             raise HarnessError(f"{path}, line {number}: element line 2 does not follow")
-        found.append(Elements(name, (line, lines.pop(0)[1]), number))
+        found.append(NamedElements(name, (line, lines.pop(0)[1]), number))
         name = ""
     if name:
         raise HarnessError(f"{path}, line {number}: no elements follow the name {name}")
     return found
 
 
-def _slow(path: Path, elements: Elements) -> bool:
+def _slow(path: Path, elements: NamedElements) -> bool:
     try:
         return tle_elements(*elements.lines).motion_revpday < SLOWEST_REVOLUTIONS_A_DAY
     except ValueError as error:
         raise HarnessError(f"{path}, line {elements.line}: {error}") from None
 
 
-def _apart(path: Path, elements: Elements) -> tuple[float, float]:
+def _largest_distances(path: Path, elements: NamedElements) -> tuple[float, float]:
     """Largest distances of position [m] and velocity [m/s]."""
     try:
         onboard = sgp4_orbit(*elements.lines)
@@ -106,5 +106,5 @@ def _apart(path: Path, elements: Elements) -> tuple[float, float]:
             f"{path}, line {elements.line}: the onboard orbit of {elements.title} ends within a day"
         )
     ours = np.array(states)
-    distances = np.linalg.norm(ours - np.stack([r_m, v_mps], axis=1), axis=2).max(axis=0)
-    return float(distances[0]), float(distances[1])
+    deviations = np.linalg.norm(ours - np.stack([r_m, v_mps], axis=1), axis=2).max(axis=0)
+    return float(deviations[0]), float(deviations[1])

@@ -28,7 +28,7 @@ def check(table: ReferenceTable) -> Iterator[Comparison]:
     reference_nt = table.columns(*names_of("b_ecef_", "xyz", "_nT"))
     other_nt = table.columns(*names_of("b_decyear_", "xyz", "_nT"))
     _check_places(table, r_m)
-    plant_nt = 1e9 * _each(table, Igrf(), unix_s, r_m)
+    plant_nt = 1e9 * _field_at_rows(table, Igrf(), unix_s, r_m)
     yield Comparison(
         "plant",
         "Plant's field, IGRF-14 to degree 13",
@@ -67,8 +67,8 @@ def check(table: ReferenceTable) -> Iterator[Comparison]:
     )
 
 
-def _each(table: ReferenceTable, model: Igrf, unix_s: Array, r_m: Array) -> Array:
-    """The field at all rows; the first that the model refuses is named."""
+def _field_at_rows(table: ReferenceTable, model: Igrf, unix_s: Array, r_m: Array) -> Array:
+    """The field at all rows; an error gives the first row that the model rejects."""
     try:
         return model.at(unix_s, r_m)
     except ValueError:

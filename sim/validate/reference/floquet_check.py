@@ -17,9 +17,9 @@ TOLERANCE = 1e-7
 CONSTANTS = 1e-12
 """Relative; w0 and B0 are closed formulas."""
 NEUTRAL = 1e-9
-"""Degrees within it are neither stable nor unstable."""
+"""Degrees of a smaller magnitude count as neutral."""
 CLUSTER = 1e-3
-"""Multipliers nearer to each other than this are a cluster."""
+"""Largest distance of multipliers in a cluster."""
 STEPS = 2048
 
 Complex = NDArray[np.complex128]
@@ -61,7 +61,7 @@ def check(table: ReferenceTable) -> Iterator[Comparison]:
         "Cases called stable, neutral or unstable otherwise",
         "rows",
         np.array(
-            [not _called(*row) for row in zip(degrees, table.column("stable"), strict=True)], dtype=float
+            [not _same_class(*row) for row in zip(degrees, table.column("stable"), strict=True)], dtype=float
         ),
         0.0,
     )
@@ -78,7 +78,7 @@ def check(table: ReferenceTable) -> Iterator[Comparison]:
 
 
 def apart(ours: Complex, theirs: Complex) -> float:
-    """How far two sets of multipliers are apart, relative to the greater of 1 and the modulus.
+    """The distance of two sets of multipliers, relative to the greater of 1 and the modulus.
 
     Paired so that the distance is least in sum. Multipliers that nearly coincide are ill conditioned, each by
     itself, but not their mean: of those nearer than ``CLUSTER`` to each other the mean is compared.
@@ -92,8 +92,8 @@ def apart(ours: Complex, theirs: Complex) -> float:
     return float((deviation / np.maximum(1.0, np.abs(theirs))).max())
 
 
-def _called(degree: float, called: float) -> bool:
-    """Whether a degree of stability, within its tolerance, may be called stable 1, neutral 0, unstable -1."""
+def _same_class(degree: float, called: float) -> bool:
+    """Whether a degree of stability, within its tolerance, is 1 stable, 0 neutral or -1 unstable."""
     low, high = degree - TOLERANCE, degree + TOLERANCE
     return bool(
         {1.0: low < -NEUTRAL, 0.0: low <= 0.0 <= high, -1.0: high > NEUTRAL}.get(float(called), False)

@@ -1,4 +1,4 @@
-"""Reference checks: files of known formats in a folder, each against our production code."""
+"""Reference checks: files of known formats in a folder, each against the code under test."""
 
 import os
 from collections.abc import Callable, Iterator, Sequence
@@ -33,14 +33,14 @@ CHECKS: dict[str, Check] = {
     "floquet.csv": floquet_check.check,
     "triad_mekf.csv": triad_check.check,
 }
-"""By file name; one pattern may stand for many files."""
+"""By file name; a pattern may match several files."""
 
 ELEMENTS = "tle.txt"
 
 
 @dataclass(frozen=True, slots=True)
-class Checked:
-    """What one file showed; ``unused`` are the columns that no check read."""
+class FileResult:
+    """The result of one file; ``unused`` are the columns that no check read."""
 
     name: str
     rows: int
@@ -49,10 +49,10 @@ class Checked:
 
 
 def studies(folder: Path) -> list[Study]:
-    """The checks of a folder, a study a file; a kind of file that is not there is reported as absent.
+    """The checks of a folder, one study per file; a format without a file is reported as absent.
 
     Raises:
-        HarnessError: the folder is none, or holds no file of a known format.
+        HarnessError: it is not a folder, or has no file of a known format.
     """
     if not os.path.isdir(folder):  # unlike Path's, never an error, whatever the name
         raise HarnessError(f"{folder} is no folder")
@@ -64,11 +64,11 @@ def studies(folder: Path) -> list[Study]:
 
 
 def absent() -> list[Study]:
-    """The same where there is no folder at all."""
+    """The studies without a folder: all formats are absent."""
     return [study for pattern in [*CHECKS, ELEMENTS] for study in _studies(pattern, [])]
 
 
-def check_file(path: Path, pattern: str) -> Checked:
+def check_file(path: Path, pattern: str) -> FileResult:
     """Check one file.
 
     Raises:
@@ -77,10 +77,10 @@ def check_file(path: Path, pattern: str) -> Checked:
     try:
         if pattern == ELEMENTS:
             outcomes = tuple(elements_check.check(path))
-            return Checked(path.name, len(elements_check.read_elements(path)), (), outcomes)
+            return FileResult(path.name, len(elements_check.read_elements(path)), (), outcomes)
         table = ReferenceTable(path)
         outcomes = tuple(comparison.outcome(table) for comparison in CHECKS[pattern](table))
-        return Checked(path.name, len(table), tuple(table.unused), outcomes)
+        return FileResult(path.name, len(table), tuple(table.unused), outcomes)
     except (ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
         raise HarnessError(f"{path}: a row cannot be computed ({error})") from None
 

@@ -1,4 +1,4 @@
-"""Reference data as it lies in files: comment lines, then a table by column names."""
+"""Reference data in files: comment lines, then a table with named columns."""
 
 import csv
 from collections.abc import Sequence
@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 MOST_BYTES = 16_000_000
 
 _LABELS = ("case", "name", "kind", "utc_iso", "t_s")
-"""Columns that tell a person which row is meant."""
+"""Columns that identify a row for a reader."""
 
 
 class ReferenceTable:
@@ -54,7 +54,7 @@ class ReferenceTable:
 
     @property
     def unused(self) -> list[str]:
-        """Columns that nothing has been read from."""
+        """Columns that were not read."""
         return [name for name in self.names if name not in self._read]
 
     def texts(self, name: str) -> list[str]:
@@ -118,10 +118,10 @@ class ReferenceTable:
         return self.numbers_after(f"{line} ", "= ", count, start)
 
     def numbers_after(self, line: str, sign: str, count: int, what: str) -> list[float]:
-        """So many numbers behind the last ``sign`` in a comment.
+        """``count`` numbers after the last ``sign`` in a comment.
 
         Raises:
-            HarnessError: they are not there.
+            HarnessError: there are fewer.
         """
         words = line.rpartition(sign)[2].replace(";", " ").replace(",", " ").split()[:count]
         numbers = [number for word in words if (number := _number(word)) is not None]
@@ -135,7 +135,7 @@ class ReferenceTable:
         return next(iter(begins + [line for line in self.comments if part in line]), None)
 
     def label(self, row: int) -> str:
-        """Which row this is, for a person."""
+        """A text that identifies a row."""
         named = [(name, self._rows[row][self.names.index(name)]) for name in _LABELS if name in self.names]
         text = ", ".join(f"{name} {value}" for name, value in named)
         return f"{self.path.name} line {self.lines[row]} ({text})"

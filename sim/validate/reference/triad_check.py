@@ -18,11 +18,11 @@ from sim.validate.reference.reference_table import ReferenceTable, names_of
 
 ATTITUDE_RAD = 1e-9
 ROUNDING_RAD = 1e-12
-"""Over the gap of the two largest eigenvalues: where doubles lose more, they lose so much."""
+"""Divided by the gap of the two largest eigenvalues: rounding error where that is larger."""
 COVARIANCE = 1e-9
 """Relative to the standard deviations of row and column."""
 ROUNDING = 1e-14
-"""Times the condition number of the covariance: what doubles lose where that is more."""
+"""Times the condition number of the covariance: rounding error where that is larger."""
 PRIOR = 10.0
 """The filter's prior standard deviation over the largest one that is expected after the update."""
 
@@ -31,8 +31,8 @@ PLACES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
 
 @dataclass(frozen=True, slots=True)
-class Pair:
-    """Two directions measured and modelled, and how well they are known."""
+class DirectionPair:
+    """Two directions, measured and modelled, with their standard deviations."""
 
     b1: Vec3
     b2: Vec3
@@ -86,8 +86,8 @@ def check(table: ReferenceTable) -> Iterator[Comparison]:
     )
 
 
-def update(pair: Pair, q_body_from_ref: Array, covariance: Array) -> Estimate:
-    """The flight filter, begun at an attitude with a wide prior, after both directions at once."""
+def update(pair: DirectionPair, q_body_from_ref: Array, covariance: Array) -> Estimate:
+    """The estimate of the flight filter from a wide prior, after an update with both directions."""
     q0, q1, q2, q3 = q_body_from_ref.tolist()
     config = mekf_config(
         ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
@@ -115,18 +115,18 @@ def _prior_sigma(covariance: Array) -> float:
 
 
 def _covariance_error(estimate: Estimate, reference: Array) -> float:
-    """Against inv(inv(P_reference) + inv(P_prior)), which the prior leaves of the reference."""
+    """The deviation from inv(inv(P_reference) + inv(P_prior)), relative to the standard deviations."""
     prior = np.eye(3) / _prior_sigma(reference) ** 2
     expected = np.linalg.inv(np.linalg.inv(reference) + prior)
     sigma = np.sqrt(np.diag(expected))
     return float((np.abs(estimate.covariance[:3, :3] - expected) / np.outer(sigma, sigma)).max())
 
 
-def _pairs(table: ReferenceTable) -> list[Pair]:
+def _pairs(table: ReferenceTable) -> list[DirectionPair]:
     names = [name for stem in ("b1_", "b2_", "r1_", "r2_") for name in names_of(stem, "xyz")]
     rows = table.columns(*names, "sigma1_rad", "sigma2_rad").tolist()
     return [
-        Pair((a, b, c), (d, e, f), (g, h, i), (j, k, m), sigma1, sigma2)
+        DirectionPair((a, b, c), (d, e, f), (g, h, i), (j, k, m), sigma1, sigma2)
         for a, b, c, d, e, f, g, h, i, j, k, m, sigma1, sigma2 in rows
     ]
 

@@ -1,4 +1,4 @@
-"""Kepler's motion in closed form, for histories that were made with it."""
+"""Keplerian motion in closed form, for histories that were computed with it."""
 
 import numpy as np
 from numpy.typing import NDArray

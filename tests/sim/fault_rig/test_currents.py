@@ -26,7 +26,7 @@ def test_pulses_at_the_limits_are_kept():
 
 
 @pytest.mark.parametrize(
-    ("driven", "said"),
+    ("drives", "said"),
     [
         ([on(0)] * 3 + [on(0, fraction=0.001)], "coil 0 on for 3.001 s"),
         ([on(2)] * 4, "coil 2 on for 4 s"),

@@ -9,11 +9,11 @@ from fsw.core.events import Event as Number
 from fsw.wire.messages import CoilStatus, PlantEnd
 from sim.errors import HarnessError
 from sim.fault_rig import currents
-from sim.fault_rig.record import Event, Record
+from sim.fault_rig.record import FaultFlightRecord, ReportedEvent
 from sim.fault_table import case, checks
 from sim.fault_table.case import fly
-from sim.fault_table.row import Row, When
-from sim.fault_table.rows import ROWS, chosen
+from sim.fault_table.row import FaultRow, When
+from sim.fault_table.rows import ROWS, choose_rows
 from sim.faults.fault import Condition, Fault
 from sim.faults.kinds import make
 
@@ -30,8 +30,8 @@ def verdicts(result):
 
 def test_without_a_fault_it_is_the_flight_of_the_loop(flown):
     record = flown(nothing(), TICKS)
-    assert record.asked[0] == 100
-    assert len(record.asked) == len(currents.pulses(record.coil_drives, 1)) == 4
+    assert record.request_ticks[0] == 100
+    assert len(record.request_ticks) == len(currents.pulses(record.coil_drives, 1)) == 4
     assert record.refused == 0
     assert record.crash is None
 
@@ -51,7 +51,7 @@ def test_a_killed_fsw_ends_no_pulse_early_and_waits_a_full_back_off(flown):
 def test_what_a_stopped_fsw_answers_late_is_refused(flown):
     fault = make("stopped", {}, Random(1))
     record = flown(fault, 130, first=95, end=110)
-    assert record.asked == [110], "the request for tick 100 goes out in tick 110"
+    assert record.request_ticks == [110], "the request for tick 100 goes out in tick 110"
     assert record.refused == 1
     assert currents.pulses(record.coil_drives, 1) == []
 
@@ -82,8 +82,8 @@ def test_a_board_without_guards_is_found_out(rig, bounds, monkeypatch):
     for _ in range(60):
         bench.tick()
     record = bench.finish()
-    row = Row("planted", "", "none")
-    holds, said = checks.limits(row, record, bounds)
+    row = FaultRow("planted", "", "none")
+    holds, said = checks.keeps_limits(row, record, bounds)
     assert not holds
     assert said
     assert currents.violations(record.coil_drives, bounds.currents)
@@ -98,7 +98,7 @@ def lenient(state, asked, tick, limits):
 
 
 def test_the_same_case_is_the_same_flight():
-    row = chosen(["loss-50"])[0]
+    row = choose_rows(["loss-50"])[0]
     one, other = fly(row, 1, 2), fly(row, 1, 2)
     assert one.outcomes == other.outcomes
     timeless = [
@@ -124,7 +124,7 @@ def test_the_same_case_is_the_same_flight():
     ],
 )
 def test_a_sample_of_the_table_holds(name):
-    result = fly(chosen([name])[0], 1, 2)
+    result = fly(choose_rows([name])[0], 1, 2)
     assert not result.failed, result.outcomes
 
 
@@ -133,34 +133,37 @@ class TestForgery:
 
     @pytest.fixture
     def record(self):
-        return Record(1, onset=2, end=9)
+        return FaultFlightRecord(1, onset=2, end=9)
 
     def test_a_few_ticks_may_go_unanswered_and_no_more(self, record, bounds):
         record.done = [False] * 5 + [True] + [False] * checks.MOST_DEAF + [True]
-        assert checks.hears(None, record, bounds)[0]
+        assert checks.keeps_answering(None, record, bounds)[0]
         record.done += [False] * (checks.MOST_DEAF + 1)
-        assert not checks.hears(None, record, bounds)[0]
+        assert not checks.keeps_answering(None, record, bounds)[0]
 
     def test_a_filter_that_begins_again_or_a_plant_that_does_is_disturbance(self, record, bounds):
-        record.events = [Event(1, Number.FILTER_RESTARTED, 1), Event(5, Number.STRANGE_SYNC, 7)]
-        assert checks.undisturbed(None, record, bounds)[0]
-        record.events.append(Event(5, Number.FILTER_RESTARTED, 2))
-        assert not checks.undisturbed(None, record, bounds)[0]
+        record.events = [
+            ReportedEvent(1, Number.FILTER_RESTARTED, 1),
+            ReportedEvent(5, Number.STRANGE_SYNC, 7),
+        ]
+        assert checks.estimate_continues(None, record, bounds)[0]
+        record.events.append(ReportedEvent(5, Number.FILTER_RESTARTED, 2))
+        assert not checks.estimate_continues(None, record, bounds)[0]
         record.events, record.restarts = [], [5]
-        assert not checks.undisturbed(None, record, bounds)[0]
+        assert not checks.estimate_continues(None, record, bounds)[0]
 
     @pytest.mark.parametrize("number", [Number.STRANGE_SYNC, Number.PLANT_RESTARTED, Number.FALSE_END])
     def test_any_event_of_the_plant_tells(self, record, bounds, number):
-        record.events = [Event(1, number, 0)]
-        assert not checks.told(None, record, bounds)[0]
-        record.events = [Event(2, number, 0)]
-        assert checks.told(None, record, bounds)[0]
+        record.events = [ReportedEvent(1, number, 0)]
+        assert not checks.reports_forgery(None, record, bounds)[0]
+        record.events = [ReportedEvent(2, number, 0)]
+        assert checks.reports_forgery(None, record, bounds)[0]
 
     def test_a_request_soon_after_a_restart_is_found(self, record, bounds):
-        record.restarts, record.asked = [50], [149]
-        assert not checks.boots_locked(None, record, bounds)[0]
-        record.asked = [150]
-        assert checks.boots_locked(None, record, bounds)[0]
+        record.restarts, record.request_ticks = [50], [149]
+        assert not checks.waits_after_boot(None, record, bounds)[0]
+        record.request_ticks = [150]
+        assert checks.waits_after_boot(None, record, bounds)[0]
 
     def test_an_end_that_is_believed_is_found(self, flown, bounds):
         class End(Fault):
@@ -169,7 +172,7 @@ class TestForgery:
 
         record = flown(End(Random(1), {}), 20, first=10, end=11)
         assert record.ended == 10
-        assert not checks.answered(None, record, bounds)[0]
+        assert not checks.answers_every_sync(None, record, bounds)[0]
 
 
 def test_rows_have_names_of_their_own_and_known_checks():
@@ -181,7 +184,7 @@ def test_rows_have_names_of_their_own_and_known_checks():
 
 def test_an_unknown_row_is_a_sentence():
     with pytest.raises(HarnessError, match="--row nonsense"):
-        chosen(["nonsense"])
+        choose_rows(["nonsense"])
 
 
 def test_phases_go_through_the_pulse():

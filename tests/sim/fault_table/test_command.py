@@ -7,9 +7,9 @@ from xml.etree import ElementTree
 import pytest
 
 from sim.errors import HarnessError
-from sim.fault_table import command, kept, render
-from sim.fault_table.row import CaseResult, Outcome, RowResult, Verdict
-from sim.fault_table.rows import ROWS, chosen
+from sim.fault_table import command, earlier_rows, render
+from sim.fault_table.row import CaseResult, CheckOutcome, CheckVerdict, RowResult
+from sim.fault_table.rows import ROWS, choose_rows
 from sim.faults.kinds import KINDS
 from torquer.cli.main import main
 
@@ -21,20 +21,28 @@ def run(*arguments):
 
 
 def case(row, *verdicts, phase=0, seed=1):
-    outcomes = tuple(Outcome(f"check {n}", verdict, f"said <{n}>") for n, verdict in enumerate(verdicts))
+    outcomes = tuple(CheckOutcome(f"check {n}", verdict, f"said <{n}>") for n, verdict in enumerate(verdicts))
     return CaseResult(row, phase, seed, outcomes, {"pulses": 7.0, "worst step ms": 1.0}, 0.5)
 
 
 @pytest.fixture
 def planted():
     """A row that passes, one that fails in one of two cases, one that is open."""
-    passes, fails, is_open = chosen(["none"])[0], chosen(["loss-50"])[0], chosen(["second-sender"])[0]
+    passes, fails, is_open = (
+        choose_rows(["none"])[0],
+        choose_rows(["loss-50"])[0],
+        choose_rows(["second-sender"])[0],
+    )
     return [
-        RowResult(passes, (case(passes.name, Verdict.PASS),)),
+        RowResult(passes, (case(passes.name, CheckVerdict.PASS),)),
         RowResult(
-            fails, (case(fails.name, Verdict.PASS), case(fails.name, Verdict.PASS, Verdict.FAIL, phase=3))
+            fails,
+            (
+                case(fails.name, CheckVerdict.PASS),
+                case(fails.name, CheckVerdict.PASS, CheckVerdict.FAIL, phase=3),
+            ),
         ),
-        RowResult(is_open, (case(is_open.name, Verdict.OPEN),)),
+        RowResult(is_open, (case(is_open.name, CheckVerdict.OPEN),)),
     ]
 
 
@@ -104,12 +112,12 @@ def test_rows_of_an_earlier_run_are_kept_and_count(planted, monkeypatch, capsys,
     monkeypatch.setattr(command, "fly_rows", lambda *_: now)
     assert run("--row", "none", "--keep", tmp_path / "faults.json", "--out", tmp_path / "both") == 1
     assert "3 rows, 6 cases: 1 rows pass, 1 fail, 1 not yet" in capsys.readouterr().out
-    both = kept.read(tmp_path / "both" / "faults.json")
-    assert both == {one.row.name: replace(one, kept=True) for one in (*now, *planted[1:])}
+    both = earlier_rows.read(tmp_path / "both" / "faults.json")
+    assert both == {one.row.name: replace(one, earlier=True) for one in (*now, *planted[1:])}
 
 
 def test_the_page_tells_which_rows_were_kept(planted):
-    page = render.markdown([planted[0], replace(planted[1], kept=True)], 1, 1)
+    page = render.markdown([planted[0], replace(planted[1], earlier=True)], 1, 1)
     assert "flown by an earlier run" in page
     assert page.count("\\* |") == 1
     assert "earlier" not in render.markdown(planted, 1, 1)
@@ -118,7 +126,7 @@ def test_the_page_tells_which_rows_were_kept(planted):
 def test_a_row_that_has_another_fault_now_is_not_kept(planted, tmp_path):
     (tmp_path / "faults.json").write_text(render.as_json(planted).replace("part 0.5", "part 0.4"))
     with pytest.raises(HarnessError, match="loss-50 was flown with another fault"):
-        kept.read(tmp_path / "faults.json")
+        earlier_rows.read(tmp_path / "faults.json")
 
 
 def test_junit_counts_failures_and_what_is_open(planted):
@@ -150,8 +158,8 @@ def test_the_page_holds_nothing_of_the_wall_clock(planted):
 
 
 def test_a_broken_limit_is_counted_over_all_cases():
-    row = chosen(["none"])[0]
-    broken = CaseResult("none", 0, 1, (Outcome("limits", Verdict.FAIL, "pulse of 4 s"),), {})
+    row = choose_rows(["none"])[0]
+    broken = CaseResult("none", 0, 1, (CheckOutcome("limits", CheckVerdict.FAIL, "pulse of 4 s"),), {})
     assert "; 1 violations of the coil limits" in render.tally([RowResult(row, (broken,))])
 
 

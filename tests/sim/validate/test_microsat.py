@@ -48,7 +48,7 @@ def test_rms_is_over_the_last_four_orbits(scenario):
     angles[: ORBIT - 10] = 90.0
     angles[-ORBIT:] = 5.0
     truth = histories(angles, axis=2)
-    found = microsat.pointed(scenario, truth, modes([Mode.POINT] * len(angles)))["rms_deg"]
+    found = microsat.pointing_figures(scenario, truth, modes([Mode.POINT] * len(angles)))["rms_deg"]
     assert found == pytest.approx(np.sqrt((3 * 9.0 + 25.0) / 4.0), rel=1e-3)
 
 
@@ -56,7 +56,7 @@ class TestAcquired:
     TICKS = 2 * ORBIT
 
     def orbits(self, scenario, angles, mode):
-        return microsat.acquired(scenario, histories(angles), modes(mode))["held_orbits"]
+        return microsat.acquisition_figures(scenario, histories(angles), modes(mode))["held_orbits"]
 
     def test_from_the_tick_from_which_on_both_hold(self, scenario):
         angles, mode = np.full(self.TICKS, 9.9), np.full(self.TICKS, int(Mode.POINT))
@@ -73,9 +73,9 @@ class TestAcquired:
 
     def test_a_start_in_the_dark_is_told(self, scenario):
         truth = histories([0.0, 0.0])
-        assert microsat.acquired(scenario, truth, modes([3, 3]))["dark_start"] == 0.0
+        assert microsat.acquisition_figures(scenario, truth, modes([3, 3]))["dark_start"] == 0.0
         truth["lit"][0] = 0.0
-        assert microsat.acquired(scenario, truth, modes([3, 3]))["dark_start"] == 1.0
+        assert microsat.acquisition_figures(scenario, truth, modes([3, 3]))["dark_start"] == 1.0
 
 
 def test_starts_of_acquisition_are_any_and_half_of_them_dark():

@@ -4,7 +4,7 @@ import pytest
 
 from sim.campaign.claim import ClaimVerdict
 from sim.errors import HarnessError
-from sim.validate.registry import all_studies, chosen, find_repository
+from sim.validate.registry import all_studies, choose_studies, find_repository
 
 
 class TestChoice:
@@ -16,7 +16,7 @@ class TestChoice:
             study("reference.tle", []),
             study("posat1", [], has_flights=True),
         )
-        return lambda *only, quick=False: [one.id for one in chosen(studies, only, quick)]
+        return lambda *only, quick=False: [one.id for one in choose_studies(studies, only, quick)]
 
     def test_all_by_default_and_first_words_by_only(self, ids):
         assert ids() == ["reference.igrf14", "reference.tle", "posat1"]

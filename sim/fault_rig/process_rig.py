@@ -1,7 +1,7 @@
 """The flight software as a process of its own that is killed or stopped by signals, in the middle of pulses.
 
-While it lives the plant waits for its answers; while it is gone the plant ticks on. Signals come at random
-moments of the wall clock within a tick: what the process was doing then, nobody knows.
+While it runs the plant waits for its answers; while it does not the plant goes on ticking. Signals come at
+random moments of the wall clock within a tick.
 """
 
 import os
@@ -20,7 +20,7 @@ from fsw.bus.link import LoopLink
 from fsw.wire.frame import Frame
 from fsw.wire.messages import FswBoot, intact
 from sim.errors import HarnessError
-from sim.fault_rig.record import Record
+from sim.fault_rig.record import FaultFlightRecord
 from sim.faults.faulty_plant import FaultyPlant
 from sim.flight.fsw_answers import has_answer
 from sim.flight.sil import start_node
@@ -29,18 +29,18 @@ from sim.scenario.assemble import plant_config
 from sim.scenario.schema import Scenario
 
 ALONE_S = 0.01
-"""What a tick takes while nobody answers."""
+"""Duration of a tick without an answer."""
 ANSWER_S = 5.0
 BOOT_S = 60.0
 WITHIN_TICK_S = 0.003
-"""A signal comes up to so long after SYNC; a step takes about a third of it."""
+"""Longest delay of a signal after SYNC; a step takes about a third of it."""
 CYCLE_TICKS = 103
 MOST_STOPPED_TICKS = 8
 
 
 @dataclass(frozen=True, slots=True)
-class Struck:
-    """When the process is struck: so many ticks after the next pulse's start, so long after that SYNC."""
+class Strike:
+    """The time of a signal: ``ticks`` after the start of the next pulse, ``delay_s`` after the SYNC there."""
 
     ticks: int
     delay_s: float
@@ -62,17 +62,17 @@ class ProcessRig:
         self._stopped_until = -1
         self._present = True
         self.plant = FaultyPlant(plant_config(scenario, seed))
-        self.record = Record(scenario.time.tick_hz)
+        self.record = FaultFlightRecord(scenario.time.tick_hz)
 
-    def fly(self, strikes: list[Struck]) -> Record:
-        """Fly until the process has been struck as often as asked, and its last successor has fired."""
+    def fly(self, strikes: list[Strike]) -> FaultFlightRecord:
+        """Fly until all signals were sent, and the last process has fired."""
         with self._bus():
             self._await_boot()
-            for struck in strikes:
+            for strike in strikes:
                 self._until_pulse()
-                for _ in range(struck.ticks):
+                for _ in range(strike.ticks):
                     self._tick()
-                self._tick(struck)
+                self._tick(strike)
             self._until_pulse()
             for _ in range(CYCLE_TICKS):
                 self._tick()
@@ -110,7 +110,7 @@ class ProcessRig:
         raise HarnessError("the flight software's process does not boot")
 
     def _until_pulse(self) -> None:
-        """Tick until a pulse begins: the tick that follows is its second."""
+        """Tick until a pulse begins; the next tick is its second."""
         patience = self.plant.tick + 40 * CYCLE_TICKS
         before = True
         while self.plant.tick < patience:
@@ -121,14 +121,14 @@ class ProcessRig:
             before = now
         raise HarnessError("the flight software's process does not fire")
 
-    def _tick(self, struck: Struck | None = None) -> None:
+    def _tick(self, strike: Strike | None = None) -> None:
         plant, record = self.plant, self.record
         tick = plant.tick
         frames = plant.begin_tick()
         record.note_sent(tick, self._epoch_us, plant.sent)
         self._link.send(frames)
-        if struck is not None:
-            self._strike(struck, tick)
+        if strike is not None:
+            self._strike(strike, tick)
         elif 0 <= self._stopped_until <= tick:
             self._process.send_signal(signal.SIGCONT)
             self._stopped_until = -1
@@ -142,19 +142,19 @@ class ProcessRig:
         plant.end_tick()
         record.coil_drives.append(plant.coil_drive)
 
-    def _strike(self, struck: Struck, tick: int) -> None:
-        time.sleep(struck.delay_s)
+    def _strike(self, strike: Strike, tick: int) -> None:
+        time.sleep(strike.delay_s)
         self._present = False
         if self._stop:
             self._process.send_signal(signal.SIGSTOP)
-            self._stopped_until = tick + 1 + struck.ticks % MOST_STOPPED_TICKS
+            self._stopped_until = tick + 1 + strike.ticks % MOST_STOPPED_TICKS
             return
         self._process.kill()
         self._process.wait()
         self._process = self._start()
 
     def _answers(self, tick: int) -> list[Frame]:
-        """All that is said until the answer to this tick is whole, or the time is over."""
+        """All frames until the answer to this tick is complete, or the time is over."""
         deadline = time.monotonic() + (ANSWER_S if self._present else ALONE_S)
         answers: list[Frame] = []
         while (frame := self._link.receive(max(0.0, deadline - time.monotonic()))) is not None:
@@ -166,10 +166,10 @@ class ProcessRig:
         return answers
 
 
-def strikes(count: int, rng: Random) -> list[Struck]:
-    """Half of them within the pulse, half anywhere in the cycle."""
+def random_strikes(count: int, rng: Random) -> list[Strike]:
+    """Random signals: half of them within the pulse, half anywhere in the cycle."""
 
     def ticks() -> int:
         return rng.randrange(3 if rng.random() < 0.5 else CYCLE_TICKS - 3)
 
-    return [Struck(ticks(), rng.uniform(0.0, WITHIN_TICK_S)) for _ in range(count)]
+    return [Strike(ticks(), rng.uniform(0.0, WITHIN_TICK_S)) for _ in range(count)]

@@ -1,4 +1,4 @@
-"""Rows that an earlier run has flown, from its faults.json: a long campaign may be flown in parts."""
+"""Results of an earlier campaign, from its faults.json: a long campaign may be run in parts."""
 
 from pathlib import Path
 from typing import Annotated
@@ -16,8 +16,8 @@ MOST_BYTES = 64_000_000
 """A whole campaign of ten phases and five seeds takes 3 MB."""
 
 
-class KeptRow(BaseModel):
-    """What is read of a row: a row without a case has shown nothing."""
+class EarlierRow(BaseModel):
+    """The keys of a row that are read; each row has at least one case."""
 
     model_config = ConfigDict(strict=True)
 
@@ -26,33 +26,33 @@ class KeptRow(BaseModel):
     cases: Annotated[tuple[CaseResult, ...], Field(min_length=1)]
 
 
-class Campaign(BaseModel):
+class CampaignFile(BaseModel):
     """A faults.json."""
 
     model_config = ConfigDict(strict=True)
 
-    rows: tuple[KeptRow, ...]
+    rows: tuple[EarlierRow, ...]
 
 
 def read(path: Path) -> dict[str, RowResult]:
-    """The rows of a faults.json by name, those that the table no longer has left out.
+    """The results in a faults.json by name, without rows that the table no longer has.
 
     Raises:
-        HarnessError: it is none, or a row was flown with another fault than the table has now.
+        HarnessError: it is not a faults.json, or the fault of a row has changed since.
     """
     by_name = {row.name: row for row in ROWS}
     try:
-        campaign = Campaign.model_validate_json(read_regular(path, MOST_BYTES))
+        campaign = CampaignFile.model_validate_json(read_regular(path, MOST_BYTES))
     except OSError as error:
-        raise _none(path, f"cannot be read: {error.strerror}") from None
+        raise _not_a_campaign(path, f"cannot be read: {error.strerror}") from None
     except ValidationError as error:
-        raise _none(path, faults(Campaign, error)) from None
-    flown = [one for one in campaign.rows if one.row in by_name]
-    other = [one.row for one in flown if one.injected != injected(by_name[one.row])]
+        raise _not_a_campaign(path, faults(CampaignFile, error)) from None
+    current = [one for one in campaign.rows if one.row in by_name]
+    other = [one.row for one in current if one.injected != injected(by_name[one.row])]
     if other:
         raise HarnessError(f"--keep {path}: row {other[0]} was flown with another fault than it has now")
-    return {one.row: RowResult(by_name[one.row], one.cases, kept=True) for one in flown}
+    return {one.row: RowResult(by_name[one.row], one.cases, earlier=True) for one in current}
 
 
-def _none(path: Path, why: str) -> HarnessError:
+def _not_a_campaign(path: Path, why: str) -> HarnessError:
     return HarnessError(f"--keep {path}: not the faults.json of a campaign ({why})")

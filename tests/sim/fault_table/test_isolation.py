@@ -1,0 +1,117 @@
+"""Whom the flight software blames, as its events tell."""
+
+import pytest
+
+from fsw.core.fdir.sensor_watch import Sensor, SensorFault
+from fsw.core.monitors import Monitor
+from fsw.core.telemetry import Event as Number
+from hil_stub.coils.events import CoilEventCode
+from sim.fault_rig.record import BoardEvent, FaultFlightRecord, ReportedEvent
+from sim.fault_table import checks, isolation
+from sim.fault_table.row import FaultRow
+
+
+def record(*events, board=()):
+    return FaultFlightRecord(1, onset=100, events=list(events), board_events=list(board))
+
+
+def isolated(tick, sensor):
+    return ReportedEvent(tick, Number.SENSOR_ISOLATED, 100 * sensor + SensorFault.REFUSED)
+
+
+def test_sensors_are_named_by_isolation_and_boards_by_monitors():
+    flown = record(
+        isolated(120, Sensor.SUN_SENSOR),
+        ReportedEvent(130, Number.MONITOR_TRIPPED, Monitor.FIELD_FRESH),
+        ReportedEvent(131, Number.MODE_CHANGED, 0),
+    )
+    assert isolation.isolations(flown) == [(120, "sun sensor")]
+    assert isolation.monitor_trips(flown) == [(130, "magnetometer")]
+
+
+@pytest.mark.parametrize("identifier", [0x080, 0x088, 0x200, 0x610, 0x7FF])
+def test_a_second_sender_is_named_by_any_identifier(identifier):
+    flown = record(ReportedEvent(120, Number.SECOND_SENDER, identifier))
+    assert isolation.isolations(flown) == [(120, "second sender")]
+
+
+def test_the_right_unit_must_be_named_and_no_other(bounds):
+    row = FaultRow("planted", "", "none", unit="magnetometer")
+    right, wrong = isolated(130, Sensor.MAGNETOMETER), isolated(125, Sensor.SUN_SENSOR)
+    assert checks.isolates_faulty_unit(row, record(right), bounds) == (True, "isolated after 30 s")
+    assert checks.isolates_faulty_unit(row, record(), bounds)[0] is False
+    assert checks.isolates_faulty_unit(row, record(wrong), bounds)[0] is False
+    assert checks.isolates_faulty_unit(row, record(wrong, right), bounds)[0] is False
+    before = isolated(99, Sensor.SUN_SENSOR)
+    assert checks.isolates_faulty_unit(row, record(before, right), bounds)[0] is True
+
+
+def test_a_sensor_that_is_disturbed_may_be_named_but_no_other(bounds):
+    row = FaultRow("planted", "", "none", unit="sun sensor")
+    right, wrong = isolated(130, Sensor.SUN_SENSOR), isolated(135, Sensor.MAGNETOMETER)
+    assert checks.isolates_no_other_unit(row, record(), bounds)[0]
+    assert checks.isolates_no_other_unit(row, record(right), bounds)[0]
+    assert checks.isolates_no_other_unit(row, record(right, wrong), bounds) == (
+        False,
+        "magnetometer named in tick 135",
+    )
+
+
+def test_a_second_sender_that_is_none_is_found(bounds):
+    flown = record(ReportedEvent(120, Number.SECOND_SENDER, 0x080))
+    assert not checks.invents_no_second_sender(FaultRow("planted", "", "none"), flown, bounds)[0]
+    assert checks.invents_no_second_sender(FaultRow("planted", "", "second_sender"), flown, bounds)[0]
+    assert checks.invents_no_second_sender(FaultRow("planted", "", "none"), record(), bounds)[0]
+
+
+def test_while_a_second_sender_is_there_nothing_is_asked_for_and_later_something(bounds):
+    row = FaultRow("planted", "", "second_sender", unit="second sender")
+    flown = record(ReportedEvent(120, Number.SECOND_SENDER, 0x080))
+    flown.end = 200
+    for asked, holds in (([90, 119, 200], True), ([119], False), ([120, 300], False), ([199, 300], False)):
+        flown.request_ticks = asked
+        assert checks.stops_requests(row, flown, bounds)[0] is holds
+
+
+def test_a_unit_that_nobody_can_name_is_not_held_against_fsw(bounds):
+    row = FaultRow("planted", "", "none", unit="the cat")
+    assert checks.isolates_faulty_unit(row, record(), bounds)[0] is None
+
+
+def test_any_blame_is_a_false_alarm_where_nothing_is_wrong(bounds):
+    row = FaultRow("planted", "", "none")
+    assert checks.isolates_nothing(row, record(), bounds)[0]
+    assert not checks.isolates_nothing(row, record(isolated(120, Sensor.SUN_SENSOR)), bounds)[0]
+    assert not checks.isolates_nothing(
+        row, record(ReportedEvent(9, Number.MONITOR_TRIPPED, Monitor.RATE_BOUNDED)), bounds
+    )[0]
+
+
+def test_the_board_names_the_coil_that_is_on(bounds):
+    row = FaultRow("planted", "", "none", unit="coil 2")
+    cut = BoardEvent(101, CoilEventCode.NO_CURRENT, 2)
+    other = BoardEvent(101, CoilEventCode.NO_CURRENT, 0)
+    assert checks.board_identifies_unit(row, record(board=[cut]), bounds)[0]
+    assert not checks.board_identifies_unit(row, record(board=[other, cut]), bounds)[0]
+    assert not checks.board_identifies_unit(row, record(), bounds)[0]
+    stuck = FaultRow("planted", "", "none", unit="coil 2", expect=("stuck",))
+    shorted = BoardEvent(101, CoilEventCode.CURRENT_WHILE_OFF, None)
+    beside = BoardEvent(101, CoilEventCode.CURRENT_WRONG, 0)
+    assert checks.board_identifies_unit(stuck, record(board=[shorted]), bounds)[0]
+    assert checks.board_identifies_unit(stuck, record(board=[beside, shorted]), bounds)[0]
+    assert not checks.board_identifies_unit(stuck, record(board=[other, shorted]), bounds)[0]
+
+
+def test_a_coil_that_conducts_by_itself_must_be_named_without_any_pulse_of_its_own(bounds):
+    row = FaultRow("planted", "", "none", unit="coil 2", expect=("named", "stuck"))
+    assert checks.isolates_faulty_unit(row, record(), bounds)[0] is False
+
+
+@pytest.mark.parametrize(("pulses", "holds"), [(4, None), (5, False)])
+def test_a_coil_that_was_hardly_used_need_not_be_named(pulses, holds, bounds, monkeypatch):
+    monkeypatch.setitem(isolation.ISOLATED, 99, {3: "coil 2"})
+    flown = record()
+    flown.request_ticks = [50, *range(100, 100 + 2 * pulses)]
+    flown.request_coils = [2, *[2, 1] * pulses]
+    row = FaultRow("planted", "", "none", unit="coil 2")
+    assert checks.isolates_faulty_unit(row, flown, bounds)[0] is holds
