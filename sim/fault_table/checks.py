@@ -96,7 +96,7 @@ def no_extra_pulse(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> 
     for pulse in currents.pulses(record.coil_drives, record.tick_hz):
         tick = int(pulse.start_s * record.tick_hz)
         if tick not in request_ticks:
-            return False, f"a pulse began in tick {tick}, without a request"
+            return False, f"a pulse began in tick {tick} without a request"
     return True, ""
 
 
@@ -126,22 +126,24 @@ def control_continues(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) 
 def stops_requests(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
     """No pulse is requested from the isolation of the unit to the end of the fault, and one afterwards."""
     end = record.end if record.end is not None else record.ticks
-    isolated = min((tick for tick, unit in isolations(record) if unit == row.unit), default=record.onset or 0)
-    early = [tick for tick in record.request_ticks if isolated <= tick < end]
+    isolation_tick = min(
+        (tick for tick, unit in isolations(record) if unit == row.unit), default=record.onset or 0
+    )
+    early = [tick for tick in record.request_ticks if isolation_tick <= tick < end]
     if early:
         return False, f"request in tick {early[0]} in spite of {row.unit}"
     later = [tick for tick in record.request_ticks if tick >= end]
-    return bool(
-        later
-    ), f"requests again {(later[0] - end) / record.tick_hz:.0f} s after" if later else "no request afterwards"
+    if not later:
+        return False, "no request afterwards"
+    return True, f"requests again {(later[0] - end) / record.tick_hz:.0f} s after"
 
 
 def invents_no_second_sender(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
     """A second sender is reported only where another node sends in the place of fsw."""
     if row.kind in ("second_sender", "random_frames", "done_forged"):
         return True, ""
-    isolated = [tick for tick, unit in isolations(record) if unit == SECOND_SENDER]
-    return not isolated, f"a second sender reported in tick {isolated[0]}" if isolated else ""
+    ticks = [tick for tick, unit in isolations(record) if unit == SECOND_SENDER]
+    return not ticks, f"a second sender reported in tick {ticks[0]}" if ticks else ""
 
 
 def counts_rejected_frames(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
@@ -180,7 +182,7 @@ def keeps_answering(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) ->
 
 
 def estimate_continues(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
-    """Fsw does not conclude that the plant has restarted, and does not restart the filter."""
+    """No restart of the plant is concluded, and the filter is not restarted."""
     onset = record.onset or 0
     again = [one.tick for one in record.events if one.number == Event.FILTER_RESTARTED and one.tick >= onset]
     found = record.restarts + again
@@ -191,9 +193,9 @@ def reports_forgery(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) ->
     """An event reports the forgery under the plant's identifiers."""
     onset = record.onset or 0
     ticks = [one.tick for one in record.events if one.number in FORGERY_EVENTS and one.tick >= onset]
-    return bool(
-        ticks
-    ), f"reported after {(ticks[0] - onset) / record.tick_hz:.0f} s" if ticks else "not reported"
+    if not ticks:
+        return False, "not reported"
+    return True, f"reported after {(ticks[0] - onset) / record.tick_hz:.0f} s"
 
 
 def isolates_nothing(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:

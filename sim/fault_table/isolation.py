@@ -136,7 +136,7 @@ def monitor_trips_for_silent_board(
 
 
 def enters_safe(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool | None, str]:
-    """Fsw enters SAFE if a driver is stuck on."""
+    """SAFE is entered if a driver is stuck on."""
     if not can_isolate(row.unit):
         return None, "fsw cannot detect a driver that is stuck on yet"
     onset = record.onset or 0

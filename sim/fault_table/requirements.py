@@ -183,7 +183,7 @@ REQUIREMENTS: tuple[Requirement, ...] = (
     ),
     Requirement(
         "REQ-BUS-04",
-        "Two of them, the second isolation the tick of the first or the next one, mean that the plant has "
+        "Two of them, the second with the tick of the first or the next one, mean that the plant has "
         "restarted: the estimate is lost, all timers start in full, and SYNC is answered again.",
         "two in a row: no settled count advances by a tick between them",
         None,

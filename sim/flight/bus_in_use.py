@@ -32,7 +32,7 @@ def refuse_bus_in_use(bus: Bus, spec: str, senders: frozenset[str] = ALL_NODES) 
         bus.send([PlantBoot(reason=0, version=1, table_crc=0).encode()])
         frame = _first_frame(bus, ASK_S, senders)
     if frame is not None:
-        raise BusError(f"{spec} is taken: {_describe(frame)} was received before the flight began")
+        raise BusError(f"{spec} is in use: {_describe(frame)} was received before the flight began")
 
 
 def _first_frame(bus: Bus, seconds: float, senders: frozenset[str]) -> Frame | None:

@@ -120,10 +120,10 @@ def _fly_processes(
     name, process = failed[0] if failed else ("flight software", fsw)
     why = run.get("ended") or f"the {name} {_exit_text(process.returncode)} at tick {tick}"
     if stalled_s:
-        why = f"the plant stands still: nothing has been flown for {stalled_s:.0f} s after tick {tick}"
+        why = f"the plant is stalled: its log has not grown for {stalled_s:.0f} s after tick {tick}"
     if run.get("second_senders"):
         why += f"; {describe_senders(run['second_senders'])}"
-    raise FlightError(f"{why}: the run is not complete, what was flown is in {path}")
+    raise FlightError(f"{why}: the run is not complete, its files are in {path}")
 
 
 def _stall_detector(path: Path, scenario: Scenario, patience: Patience) -> StallDetector:

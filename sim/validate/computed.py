@@ -90,7 +90,7 @@ def best_gains() -> Study:
     claims = [
         Claim(
             f"best_gains.{body.name.replace(' ', '_')}",
-            f"Best degree of stability of {body.name}, as good as the best stabilisable to three digits",
+            f"Best degree of stability of {body.name}, as good as the best known to three digits",
             THEORY,
             "1/rad",
             high=KNOWN_BEST[body.name][0] + ROUNDED,

@@ -157,7 +157,7 @@ def test_of_two_flights_at_once_no_two_succeed(port, start, torquer, tmp_path):
     ended = [flight.wait() for flight in flights]
     for flight in ended:
         if flight.code:
-            assert "second sender" in flight.sentence or "is taken" in flight.sentence
+            assert "second sender" in flight.sentence or "is in use" in flight.sentence
     codes = sorted(flight.code for flight in ended)
     assert codes in ([0, 2], [1, 1]), ended
 

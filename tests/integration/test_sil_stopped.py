@@ -69,7 +69,7 @@ def flight(tmp_path, monkeypatch, is_alive):
 @pytest.mark.parametrize("pace", [LOCKSTEP, REAL_TIME], ids=["lockstep", "real time"])
 @pytest.mark.parametrize(
     ("victim", "says"),
-    [("fsw", "no answer from the flight software"), ("sim.flight.plant_process", "the plant stands still")],
+    [("fsw", "no answer from the flight software"), ("sim.flight.plant_process", "the plant is stalled")],
 )
 def test_one_that_stands_still_in_flight_ends_it(victim, says, pace, flight, tmp_path, torquer, bus):
     sentence, took_s = flight(victim, 500, pace)
@@ -90,7 +90,7 @@ def test_flight_software_that_never_boots_ends_it(flight):
 
 def test_a_plant_that_never_begins_ends_it(flight):
     sentence, _ = flight("sim.flight.plant_process", 0, LOCKSTEP, Patience(boot_s=2.0, answer_s=1.5))
-    assert sentence.startswith("the plant stands still: nothing has been flown for")
+    assert sentence.startswith("the plant is stalled: its log has not grown for")
 
 
 def test_the_deadlines_of_the_command_are_long_enough_for_a_loaded_machine():

@@ -31,7 +31,7 @@ def quick(monkeypatch):
 )
 def test_who_speaks_is_named_and_not_spoken_to(frame, named, bus_of):
     bus = bus_of([Frame(0x7FF, b""), frame])
-    with pytest.raises(BusError, match=rf"^vcan0 is taken: {named} was received before the flight began$"):
+    with pytest.raises(BusError, match=rf"^vcan0 is in use: {named} was received before the flight began$"):
         refuse_bus_in_use(bus, "vcan0")
     assert bus.sent == []
 
