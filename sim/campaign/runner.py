@@ -102,7 +102,7 @@ def _results(studies: Sequence[Study], workers: int) -> Iterator[tuple[int, int,
                 f"a worker process was ended from outside: {done} of {len(places)} tasks were done"
             ) from None
         except BaseException:
-            _end(others)  # that breaks the pool, which then gives up what waits, and is waited for
+            _end(others)  # breaks the pool, which then cancels waiting tasks and is joined
             raise
 
 

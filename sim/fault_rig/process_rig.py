@@ -50,7 +50,7 @@ class ProcessRig:
     """One flight with a real process.
 
     Args:
-        scenario: what is flown.
+        scenario: of the flight.
         seed: of the plant.
         stop: SIGSTOP and SIGCONT in place of SIGKILL.
     """

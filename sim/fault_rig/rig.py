@@ -120,7 +120,7 @@ class Rig:
                     record.restarts.append(tick)
                 if node.ended and record.ended is None:
                     record.ended = tick
-        except Exception as error:  # whatever comes out of a step is a finding, for the check "no exception"
+        except Exception as error:  # any exception is a finding, for the check "no exception"
             record.crash = f"tick {tick}: {type(error).__name__}: {error}"
             self._node = None
         record.worst_step_s = max(record.worst_step_s, time.perf_counter() - began)

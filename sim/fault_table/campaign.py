@@ -30,7 +30,7 @@ def fly_rows(
         report: called with each row when it is done.
 
     Returns:
-        The rows in their order, with one result for each case that was asked for.
+        The rows in their order, with one result for each case.
     """
     studies = [_study(row, phases, seeds) for row in rows]
     by_name = {row.name: row for row in rows}

@@ -57,7 +57,7 @@ def keeps_limits(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tu
     """Invariant I by both audits: of COIL_STATUS, and of the currents that the plant drove."""
     report = audit(record.entries, bounds.audit)
     found = [str(violation) for violation in report.violations]
-    if "stuck" not in row.expect:  # a switch that does not open is beyond every guard
+    if "stuck" not in row.expect:  # no guard can open a switch that is stuck
         found += currents.violations(record.coil_drives, bounds.currents)
     return not found and report.statuses > 0, found[0] if found else ""
 
@@ -143,7 +143,7 @@ def invents_no_second_sender(row: FaultRow, record: FaultFlightRecord, bounds: B
     if row.kind in ("second_sender", "random_frames", "done_forged"):
         return True, ""
     ticks = [tick for tick, unit in isolations(record) if unit == SECOND_SENDER]
-    return not ticks, f"a second sender reported in tick {ticks[0]}" if ticks else ""
+    return not ticks, f"second sender reported in tick {ticks[0]}" if ticks else ""
 
 
 def counts_rejected_frames(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:

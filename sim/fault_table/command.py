@@ -63,7 +63,7 @@ def faults(
         check_file(page)
     if out is not None:
         check_folder(out, (JUNIT, HTML, JSON))
-    quiet = as_json or sys.stderr.isatty()  # then the rows wait until the bar is gone
+    quiet = as_json or sys.stderr.isatty()  # then the rows are printed after the progress bar
     count = len(rows) * phases * seeds
     with progress("injecting faults", count) as watch:
         results = fly_rows(

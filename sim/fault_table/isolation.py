@@ -72,7 +72,7 @@ def monitor_trips(record: FaultFlightRecord) -> list[tuple[int, str]]:
 _WITHOUT_A_COIL = {
     CoilEventCode.DEAD_MAN: "plant",
     CoilEventCode.CURRENT_WHILE_OFF: "coil driver",
-    CoilEventCode.CURRENT_WRONG: "coil driver",  # the coil that is driven, or another beside it
+    CoilEventCode.CURRENT_WRONG: "coil driver",  # of the driven coil, or of another beside it
     CoilEventCode.SELF_TEST_FAILED: "coil driver",
 }
 

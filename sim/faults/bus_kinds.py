@@ -173,7 +173,7 @@ class RandomFrames(Fault):
     def _frame(self) -> Frame:
         rng = self.rng
         data = rng.randbytes(rng.randint(0, FULL))
-        if rng.random() < 0.5:  # half of them on identifiers that somebody listens to
+        if rng.random() < 0.5:  # half of them on identifiers of the contract
             return Frame(rng.choice(self._known), data)
         match rng.choice((0, 0, EXTENDED_FLAG, REMOTE_FLAG, ERROR_FLAG)):
             case 0:

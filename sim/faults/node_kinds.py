@@ -86,8 +86,8 @@ class TickHold(Fault):
 
     def to_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
         """A request begins a rush."""
-        asked = any(frame.can_id == CoilFire.ID for frame in frames)
-        self._rush = round(self.parameters["rushed"]) if asked else max(0, self._rush - 1)
+        requested = any(frame.can_id == CoilFire.ID for frame in frames)
+        self._rush = round(self.parameters["rushed"]) if requested else max(0, self._rush - 1)
         return frames
 
 
@@ -139,7 +139,7 @@ def flip_bit(value: float, bit: int) -> float:
     return float(flipped)
 
 
-def count_doubles(value: Any) -> int:  # noqa: ANN401  (whatever a state is made of)
+def count_doubles(value: Any) -> int:  # noqa: ANN401  (any part of a state)
     """How many doubles there are in a value of named tuples, dataclasses, tuples and arrays."""
     if isinstance(value, float):
         return 1

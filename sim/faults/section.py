@@ -57,7 +57,7 @@ def make_plant(config: PlantConfig, faults: Sequence[FaultSection]) -> Plant:
     """The plant of a flight with its faults scheduled; their random numbers come from the plant's seed.
 
     Raises:
-        TableError: the scenario is consistent in itself, but orbit or field are not known at its epoch, or a
+        TableError: the scenario is consistent in itself, but orbit or field do not exist at its epoch, or a
             part cannot be built with its numbers.
     """
     try:

@@ -100,7 +100,7 @@ def fly(
     boot = await_boot(bus, patience.boot_s, overhear, waiting)
     epoch_us = timestamp_us = epoch_unix_s * 1_000_000
     log.write(epoch_us, [boot])
-    gc.freeze()  # what was loaded before the flight need not be searched for garbage during it
+    gc.freeze()  # so that collections during the flight do not scan what was loaded before
     began = time.monotonic()
     answers: list[Frame] = []
     period_s = 1.0 / (tick_hz * (pace.factor or inf))

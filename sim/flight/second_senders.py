@@ -89,7 +89,7 @@ class SenderWatch:
         strange = [(frame.can_id, tick) for frame in received if frame.can_id in self._own]
         from_fsw = [frame for frame in received if SENDERS[frame.can_id] == "FSW"]
         if Sync.ID not in self._found and all(can_id != Sync.ID for can_id, _ in strange):
-            # else the flight software has answered a SYNC that was not the plant's: nothing tells whose
+            # else the flight software may have answered a SYNC that was not the plant's
             early = sum(SENDERS[frame.can_id] == "FSW" for frame in before if intact(frame))
             strange += (
                 self._in_lockstep(tick, from_fsw, early) if self._lockstep else self._in_time(tick, from_fsw)
@@ -108,7 +108,7 @@ class SenderWatch:
             if frame.can_id == TickDone.ID and self._surplus(tick, frame):
                 if TickDone.decode(frame.data).tick != self._again:
                     strange.append((TickDone.ID, _tick_of_surplus(tick, frame)))
-                answer.clear()  # it was answered before: by whom, nothing tells
+                answer.clear()  # answered before: it cannot be said which of the two answers is the false one
             else:
                 answer.append((place, frame))
         sent: set[int] = set()

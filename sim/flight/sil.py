@@ -45,7 +45,7 @@ def serve_bus(bus: str) -> Iterator[tuple[str, Hub | None]]:
     port = int(spec.removeprefix("loop:"))
     try:
         hub = Hub(0 if bus in ("loop", "auto") else port)
-    except OSError:  # somebody else hosts it, or keeps the port for something else
+    except OSError:  # another process hosts it, or uses the port for something else
         _refuse_in_use(LoopLink(port, timeout_s=1.0, may_host=False), spec)
         yield spec, None
         return
@@ -151,7 +151,7 @@ def last_tick(path: Path, scenario: Scenario) -> int:
 def start_node(module: str, *arguments: str) -> subprocess.Popen[bytes]:
     """Start a node as a process of the same code. Ctrl-C reaches this process only, which ends its nodes."""
     words = [sys.executable, "-m", module, *arguments]
-    path = {"PYTHONPATH": os.pathsep.join(sys.path), "PYTHONSAFEPATH": "1"}  # not what lies in this directory
+    path = {"PYTHONPATH": os.pathsep.join(sys.path), "PYTHONSAFEPATH": "1"}  # not from the current directory
     environment = {**os.environ, **path, "OPENBLAS_NUM_THREADS": "1"}
     return subprocess.Popen(words, env=environment, start_new_session=True)
 

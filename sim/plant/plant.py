@@ -67,7 +67,7 @@ class Plant:
         actuator: drives the coils in place of the plant's own board.
 
     Raises:
-        ValueError: the orbit elements are malformed, or no orbit or field is known at the epoch.
+        ValueError: the orbit elements are malformed, or orbit or field do not exist at the epoch.
     """
 
     def __init__(self, config: PlantConfig, actuator: Actuator | None = None) -> None:

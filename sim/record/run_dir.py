@@ -132,7 +132,7 @@ def locate(run_or_log: Path) -> tuple[Path, Path]:
     Raises:
         HarnessError: neither exists.
     """
-    if os.path.isdir(run_or_log):  # unlike Path's, never an error, whatever the name
+    if os.path.isdir(run_or_log):  # unlike Path.is_dir, never an error, whatever the name
         log = run_or_log / BUS_LOG
         if not log.is_file():
             raise HarnessError(f"{run_or_log} has no {BUS_LOG}")

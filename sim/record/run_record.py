@@ -103,4 +103,4 @@ def read_record(path: Path) -> RunRecord:
         raise HarnessError(f"{path}: {faults(RunRecord, error)}") from None
     if content["complete"] and "flown" not in content:
         raise HarnessError(f"{path}: complete is true, but flown, which every complete run has, is missing")
-    return cast(RunRecord, content)  # and not the copy that pydantic makes, which is in another order
+    return cast(RunRecord, content)  # not pydantic's copy, whose keys are in another order

@@ -168,7 +168,7 @@ def flight_table(scenario: Scenario, source: str = "scenario") -> FlightTable:
         },
         exclude_none=True,
     )
-    epoch = datetime.fromtimestamp(scenario.epoch_unix_s, UTC)  # the plant's, whatever orbit is believed
+    epoch = datetime.fromtimestamp(scenario.epoch_unix_s, UTC)  # the plant's, not that of [flight]
     shared["time"] = {"tick_hz": scenario.time.tick_hz, "epoch_utc": epoch.isoformat()}
     shared["field"] = {"model": scenario.field.model}
     shared["estimator"] = {

@@ -32,7 +32,7 @@ class RigidBody:
         self._inverse = _inverse(inertia_kgm2)
 
     def step(self, motion: Motion, torque: Torque, around: Sequence[Surroundings], step_s: float) -> Motion:
-        """One Runge-Kutta step of fourth order; the torque is evaluated anew at each of its four stages.
+        """One Runge-Kutta step of fourth order; the torque is evaluated at each of its four stages.
 
         Args:
             motion: state at the start.

@@ -95,7 +95,7 @@ class SunSensorPhysics:
         self._noise = normals(seed, "sun_sensor")
 
     def measure(self, sun_body: Vec3, lit: float) -> tuple[Vec3, bool]:
-        """The unit vector to the Sun and whether it is valid: in view, and at least half of the Sun is seen.
+        """The unit vector to the Sun and whether it is valid: in view, and at least half of the disc visible.
 
         Args:
             sun_body: true unit vector.

@@ -1,4 +1,4 @@
-"""Reference checks: files of known formats in a folder, each against the code under test."""
+"""Reference checks: files of known formats in a folder, each compared with this code."""
 
 import os
 from collections.abc import Callable, Iterator, Sequence
@@ -54,7 +54,7 @@ def studies(folder: Path) -> list[Study]:
     Raises:
         HarnessError: it is not a folder, or has no file of a known format.
     """
-    if not os.path.isdir(folder):  # unlike Path's, never an error, whatever the name
+    if not os.path.isdir(folder):  # unlike Path.is_dir, never an error, whatever the name
         raise HarnessError(f"{folder} is no folder")
     patterns = [*CHECKS, ELEMENTS]
     files = {pattern: sorted(folder.glob(pattern)) for pattern in patterns}
