@@ -1,4 +1,4 @@
-"""A flight without files comes to what ``torquer sil`` comes to."""
+"""A flight without files has the results of ``torquer sil``."""
 
 import json
 from math import inf, nan
@@ -78,7 +78,7 @@ class TestFigures:
         flights = [FlightResult(order, {"v": value}, {}) for order, value in zip(orders, values, strict=True)]
         return study.conclude([FlightResult(other[0], {"v": -1e9}, {}), *flights])[0]
 
-    def test_the_worst_flight_counts_and_is_named(self):
+    def test_the_worst_flight_counts_and_is_identified(self):
         outcome = self.outcome([1.0, 4.0, 3.0], high=3.5)
         assert (outcome.ours, outcome.verdict.value, outcome.where) == (4.0, "FAIL", "worst: x, seed 1: 4")
         assert self.outcome([1.0, 4.0, 3.0], low=1.5).ours == 1.0

@@ -37,7 +37,7 @@ def test_pulses_at_the_limits_are_kept():
         ([on(0, 0.1 * (1.0 + 1e-6)), OFF], "is no level"),
     ],
 )
-def test_each_breach_is_said(drives, said):
+def test_each_breach_is_reported(drives, said):
     assert any(said in sentence for sentence in violations(drives, limits()))
 
 

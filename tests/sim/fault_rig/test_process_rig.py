@@ -1,4 +1,4 @@
-"""The flight software as a real process, struck by signals."""
+"""The flight software as a real process that gets signals."""
 
 from random import Random
 
@@ -19,7 +19,7 @@ def strike(bounds):
     def fly(stop):
         scenario, _ = prepare(SCENARIO, ())
         record = ProcessRig(scenario, seed=1, stop=stop).fly([Strike(0, 0.001)])
-        for check in (checks.limits, checks.no_extra_pulse, checks.boots_locked):
+        for check in (checks.keeps_limits, checks.no_extra_pulse, checks.waits_after_boot):
             holds, said = check(FaultRow("struck", "", "none"), record, bounds)
             assert holds, said
         return record

@@ -56,7 +56,7 @@ def test_what_a_stopped_fsw_answers_late_is_refused(flown):
     assert currents.pulses(record.coil_drives, 1) == []
 
 
-def test_the_log_of_the_audit_is_what_the_board_said_not_what_came_through(flown):
+def test_the_log_of_the_audit_has_the_frames_that_the_board_sent_not_those_received(flown):
     record = flown(make("corruption", {"part": 1.0}, Random(1)), 50)
     assert sum(entry.frame.can_id == CoilStatus.ID for entry in record.entries) == 50
     assert all(
@@ -66,7 +66,7 @@ def test_the_log_of_the_audit_is_what_the_board_said_not_what_came_through(flown
     )
 
 
-def test_an_exception_out_of_a_step_is_noted_and_ends_fsw(flown):
+def test_an_exception_in_a_step_is_noted_and_ends_fsw(flown):
     class Poison(Fault):
         def upset(self, state):
             return None
@@ -136,12 +136,12 @@ class TestForgery:
         return FaultFlightRecord(1, onset=2, end=9)
 
     def test_a_few_ticks_may_go_unanswered_and_no_more(self, record, bounds):
-        record.done = [False] * 5 + [True] + [False] * checks.MOST_DEAF + [True]
+        record.done = [False] * 5 + [True] + [False] * checks.MOST_UNANSWERED + [True]
         assert checks.keeps_answering(None, record, bounds)[0]
-        record.done += [False] * (checks.MOST_DEAF + 1)
+        record.done += [False] * (checks.MOST_UNANSWERED + 1)
         assert not checks.keeps_answering(None, record, bounds)[0]
 
-    def test_a_filter_that_begins_again_or_a_plant_that_does_is_disturbance(self, record, bounds):
+    def test_a_restart_of_filter_or_plant_is_found(self, record, bounds):
         record.events = [
             ReportedEvent(1, Number.FILTER_RESTARTED, 1),
             ReportedEvent(5, Number.STRANGE_SYNC, 7),
@@ -153,7 +153,7 @@ class TestForgery:
         assert not checks.estimate_continues(None, record, bounds)[0]
 
     @pytest.mark.parametrize("number", [Number.STRANGE_SYNC, Number.PLANT_RESTARTED, Number.FALSE_END])
-    def test_any_event_of_the_plant_tells(self, record, bounds, number):
+    def test_any_event_on_the_plant_is_a_report(self, record, bounds, number):
         record.events = [ReportedEvent(1, number, 0)]
         assert not checks.reports_forgery(None, record, bounds)[0]
         record.events = [ReportedEvent(2, number, 0)]
@@ -165,7 +165,7 @@ class TestForgery:
         record.request_ticks = [150]
         assert checks.waits_after_boot(None, record, bounds)[0]
 
-    def test_an_end_that_is_believed_is_found(self, flown, bounds):
+    def test_an_accepted_false_end_is_found(self, flown, bounds):
         class End(Fault):
             def strangers(self, tick):
                 return [PlantEnd(tick).encode()]

@@ -99,14 +99,14 @@ def test_the_list_names_every_row(capsys):
         (("--row", "none", "--keep", "none.json"), "--keep none.json: not the faults.json of a campaign"),
     ],
 )
-def test_what_a_user_can_mend_is_a_sentence(arguments, said, capsys):
+def test_a_user_error_is_one_sentence(arguments, said, capsys):
     assert run(*arguments) == 2
     error = capsys.readouterr().err
     assert said in error
     assert error.count("\n") == 1
 
 
-def test_rows_of_an_earlier_run_are_kept_and_count(planted, monkeypatch, capsys, tmp_path):
+def test_rows_of_an_earlier_campaign_count(planted, monkeypatch, capsys, tmp_path):
     (tmp_path / "faults.json").write_text(render.as_json(planted))
     now = [RowResult(planted[0].row, planted[0].cases * 3)]
     monkeypatch.setattr(command, "fly_rows", lambda *_: now)
@@ -116,14 +116,14 @@ def test_rows_of_an_earlier_run_are_kept_and_count(planted, monkeypatch, capsys,
     assert both == {one.row.name: replace(one, earlier=True) for one in (*now, *planted[1:])}
 
 
-def test_the_page_tells_which_rows_were_kept(planted):
+def test_the_page_marks_the_rows_of_an_earlier_campaign(planted):
     page = render.markdown([planted[0], replace(planted[1], earlier=True)], 1, 1)
     assert "flown by an earlier run" in page
     assert page.count("\\* |") == 1
     assert "earlier" not in render.markdown(planted, 1, 1)
 
 
-def test_a_row_that_has_another_fault_now_is_not_kept(planted, tmp_path):
+def test_an_earlier_row_with_another_fault_is_refused(planted, tmp_path):
     (tmp_path / "faults.json").write_text(render.as_json(planted).replace("part 0.5", "part 0.4"))
     with pytest.raises(HarnessError, match="loss-50 was flown with another fault"):
         earlier_rows.read(tmp_path / "faults.json")

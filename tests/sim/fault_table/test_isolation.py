@@ -1,4 +1,4 @@
-"""Whom the flight software blames, as its events tell."""
+"""Which unit the flight software isolates, by its events."""
 
 import pytest
 
@@ -19,7 +19,7 @@ def isolated(tick, sensor):
     return ReportedEvent(tick, Number.SENSOR_ISOLATED, 100 * sensor + SensorFault.REFUSED)
 
 
-def test_sensors_are_named_by_isolation_and_boards_by_monitors():
+def test_sensors_are_identified_by_isolation_and_boards_by_monitors():
     flown = record(
         isolated(120, Sensor.SUN_SENSOR),
         ReportedEvent(130, Number.MONITOR_TRIPPED, Monitor.FIELD_FRESH),
@@ -30,12 +30,12 @@ def test_sensors_are_named_by_isolation_and_boards_by_monitors():
 
 
 @pytest.mark.parametrize("identifier", [0x080, 0x088, 0x200, 0x610, 0x7FF])
-def test_a_second_sender_is_named_by_any_identifier(identifier):
+def test_a_second_sender_is_reported_with_any_identifier(identifier):
     flown = record(ReportedEvent(120, Number.SECOND_SENDER, identifier))
     assert isolation.isolations(flown) == [(120, "second sender")]
 
 
-def test_the_right_unit_must_be_named_and_no_other(bounds):
+def test_the_faulty_unit_must_be_isolated_and_no_other(bounds):
     row = FaultRow("planted", "", "none", unit="magnetometer")
     right, wrong = isolated(130, Sensor.MAGNETOMETER), isolated(125, Sensor.SUN_SENSOR)
     assert checks.isolates_faulty_unit(row, record(right), bounds) == (True, "isolated after 30 s")
@@ -46,25 +46,25 @@ def test_the_right_unit_must_be_named_and_no_other(bounds):
     assert checks.isolates_faulty_unit(row, record(before, right), bounds)[0] is True
 
 
-def test_a_sensor_that_is_disturbed_may_be_named_but_no_other(bounds):
+def test_a_disturbed_sensor_may_be_isolated_but_no_other(bounds):
     row = FaultRow("planted", "", "none", unit="sun sensor")
     right, wrong = isolated(130, Sensor.SUN_SENSOR), isolated(135, Sensor.MAGNETOMETER)
     assert checks.isolates_no_other_unit(row, record(), bounds)[0]
     assert checks.isolates_no_other_unit(row, record(right), bounds)[0]
     assert checks.isolates_no_other_unit(row, record(right, wrong), bounds) == (
         False,
-        "magnetometer named in tick 135",
+        "magnetometer isolated in tick 135",
     )
 
 
-def test_a_second_sender_that_is_none_is_found(bounds):
+def test_a_report_of_a_second_sender_that_is_none_fails(bounds):
     flown = record(ReportedEvent(120, Number.SECOND_SENDER, 0x080))
     assert not checks.invents_no_second_sender(FaultRow("planted", "", "none"), flown, bounds)[0]
     assert checks.invents_no_second_sender(FaultRow("planted", "", "second_sender"), flown, bounds)[0]
     assert checks.invents_no_second_sender(FaultRow("planted", "", "none"), record(), bounds)[0]
 
 
-def test_while_a_second_sender_is_there_nothing_is_asked_for_and_later_something(bounds):
+def test_no_pulse_is_requested_beside_a_second_sender_and_one_is_afterwards(bounds):
     row = FaultRow("planted", "", "second_sender", unit="second sender")
     flown = record(ReportedEvent(120, Number.SECOND_SENDER, 0x080))
     flown.end = 200
@@ -73,12 +73,12 @@ def test_while_a_second_sender_is_there_nothing_is_asked_for_and_later_something
         assert checks.stops_requests(row, flown, bounds)[0] is holds
 
 
-def test_a_unit_that_nobody_can_name_is_not_held_against_fsw(bounds):
+def test_a_unit_that_fsw_cannot_isolate_is_no_failure(bounds):
     row = FaultRow("planted", "", "none", unit="the cat")
     assert checks.isolates_faulty_unit(row, record(), bounds)[0] is None
 
 
-def test_any_blame_is_a_false_alarm_where_nothing_is_wrong(bounds):
+def test_any_isolation_is_a_false_alarm_without_a_fault(bounds):
     row = FaultRow("planted", "", "none")
     assert checks.isolates_nothing(row, record(), bounds)[0]
     assert not checks.isolates_nothing(row, record(isolated(120, Sensor.SUN_SENSOR)), bounds)[0]
@@ -87,7 +87,7 @@ def test_any_blame_is_a_false_alarm_where_nothing_is_wrong(bounds):
     )[0]
 
 
-def test_the_board_names_the_coil_that_is_on(bounds):
+def test_the_board_identifies_the_coil_that_is_on(bounds):
     row = FaultRow("planted", "", "none", unit="coil 2")
     cut = BoardEvent(101, CoilEventCode.NO_CURRENT, 2)
     other = BoardEvent(101, CoilEventCode.NO_CURRENT, 0)
@@ -102,13 +102,13 @@ def test_the_board_names_the_coil_that_is_on(bounds):
     assert not checks.board_identifies_unit(stuck, record(board=[other, shorted]), bounds)[0]
 
 
-def test_a_coil_that_conducts_by_itself_must_be_named_without_any_pulse_of_its_own(bounds):
+def test_a_coil_that_conducts_by_itself_must_be_isolated_without_any_pulse_of_its_own(bounds):
     row = FaultRow("planted", "", "none", unit="coil 2", expect=("named", "stuck"))
     assert checks.isolates_faulty_unit(row, record(), bounds)[0] is False
 
 
 @pytest.mark.parametrize(("pulses", "holds"), [(4, None), (5, False)])
-def test_a_coil_that_was_hardly_used_need_not_be_named(pulses, holds, bounds, monkeypatch):
+def test_a_coil_that_was_hardly_used_need_not_be_isolated(pulses, holds, bounds, monkeypatch):
     monkeypatch.setitem(isolation.ISOLATED, 99, {3: "coil 2"})
     flown = record()
     flown.request_ticks = [50, *range(100, 100 + 2 * pulses)]

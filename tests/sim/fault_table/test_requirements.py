@@ -1,4 +1,4 @@
-"""The list of requirements: complete, cited by tests, and what the document says."""
+"""The list of requirements: complete, cited by tests, and equal to the document."""
 
 import ast
 import re
@@ -59,7 +59,7 @@ def test_ids_are_unique_and_of_one_form():
 
 
 @pytest.mark.parametrize(("event", "kinds"), NAMED, ids=[event.name for event, _ in NAMED])
-def test_whatever_can_be_named_has_one_requirement(event, kinds):
+def test_each_argument_of_an_event_has_one_requirement(event, kinds):
     watched = [r.watch for r in REQUIREMENTS if r.event is event and r.watch is not None]
     assert sorted(watched) == sorted(kinds)
 

@@ -1,4 +1,4 @@
-"""The man in the middle: what it does to frames."""
+"""Faults of the bus: frames are altered, added and lost."""
 
 from random import Random
 
@@ -97,7 +97,7 @@ def test_every_default_is_in_its_range():
 class TestForged:
     @pytest.mark.parametrize(("step", "count"), [(0.0, 2), (1.0, 1), (1.0, 5)])
     @pytest.mark.parametrize("ticks", [0.0, 50.0, -500.0, 1e9])
-    def test_syncs_stand_as_told(self, ticks, step, count):
+    def test_syncs_are_off_by_the_parameters(self, ticks, step, count):
         forger = fault("sync_forged", ticks=ticks, count=float(count), step=step)
         for tick in (0, 1000):
             forged = [Sync.decode(frame.data).tick for frame in forger.strangers(tick)]

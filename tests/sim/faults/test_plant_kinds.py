@@ -1,4 +1,4 @@
-"""Faults of sensors, coils and boards: what they do to what the boards say and what flows."""
+"""Faults of sensors, coils and boards: their effect on frames and currents."""
 
 from itertools import pairwise
 from math import inf, isnan

@@ -1,4 +1,4 @@
-"""A bus on which somebody flies is refused: heard, or asked."""
+"""A bus in use is refused, whether its nodes send by themselves or only answer."""
 
 import time
 
@@ -29,7 +29,7 @@ def quick(monkeypatch):
         (FIELD, r"MAG_FIELD \(110\)"),
     ],
 )
-def test_who_speaks_is_named_and_not_spoken_to(frame, named, bus_of):
+def test_a_sender_is_identified_without_sending_to_it(frame, named, bus_of):
     bus = bus_of([Frame(0x7FF, b""), frame])
     with pytest.raises(BusError, match=rf"^vcan0 is in use: {named} was received before the flight began$"):
         refuse_bus_in_use(bus, "vcan0")

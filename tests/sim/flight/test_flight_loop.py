@@ -154,7 +154,7 @@ class TestLockstep:
             flown(scripted(lambda tick: [done(tick)] if tick < 3 else []))
         assert caught.value.exit_code == 1
 
-    def test_what_was_flown_by_then_is_kept(self, flown, monkeypatch, tmp_path, scripted):
+    def test_the_log_up_to_then_remains(self, flown, monkeypatch, tmp_path, scripted):
         monkeypatch.setattr(fsw_answers, "ANSWER_TIMEOUT_S", 0.0)
         with pytest.raises(FlightError):
             flown(scripted(lambda tick: [done(tick)] if tick < 3 else []))
@@ -169,7 +169,7 @@ class TestLockstep:
         driven = [tick for tick, dipole in enumerate(truth["m_body_am2"][:, 1]) if dipole > 1.0]
         assert driven == [101, 102, 103]
 
-    def test_who_watches_is_told_now_and_then(self, flown, virtual):
+    def test_progress_is_reported_now_and_then(self, flown, virtual):
         seen = []
         flown(virtual(), 200, watch=seen.append)
         assert seen == [0, 64, 128, 192]
@@ -252,7 +252,7 @@ class TestRealTime:
         assert Sync.decode(order[at - 1].data).tick == 6
         assert [TickDone.decode(frame.data).tick for frame in order[at + 1 : at + 3]] == [5, 6]
 
-    def test_slips_are_told_in_the_plant_s_heartbeat(self, flown, scripted):
+    def test_slips_are_reported_in_the_plant_s_heartbeat(self, flown, scripted):
         _, entries, *_ = flown(scripted(lambda tick: [] if tick in (3, 4) else [done(tick)]), 62, Pace(500.0))
         (beat,) = [e.frame for e in entries if e.frame.can_id == PlantHeartbeat.ID]
         assert PlantHeartbeat.decode(beat.data).slips >= 2

@@ -1,4 +1,4 @@
-"""How long the plant waits: for the boot, for answers, and what it takes of a bus that babbles."""
+"""How long the plant waits for boot and answers, and how many frames it takes from a babbling node."""
 
 import time
 from itertools import repeat

@@ -1,4 +1,4 @@
-"""How long a flight is, whether it can be flown, and what a recorded one leaves in its run directory."""
+"""The length of a flight, checks before it, and the files that it leaves in its run directory."""
 
 import hashlib
 import json

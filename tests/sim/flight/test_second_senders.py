@@ -1,4 +1,4 @@
-"""Who else speaks: told from what the plant hears, by identifier and tick."""
+"""Second senders are detected in the frames that the plant receives, by identifier and tick."""
 
 import pytest
 
@@ -49,7 +49,7 @@ def quiet(count):
 
 @pytest.mark.parametrize("lockstep", [True, False])
 class TestInBothPaces:
-    def test_the_flight_software_alone_is_nobody_else(self, lockstep):
+    def test_the_flight_software_alone_is_no_second_sender(self, lockstep):
         assert heard(*quiet(5), lockstep=lockstep) == []
 
     @pytest.mark.parametrize(
@@ -155,7 +155,7 @@ def test_in_real_time_a_late_answer_is_no_second_sender():
     assert heard(*ticks, lockstep=False) == []
 
 
-def test_a_new_one_is_told_at_once_and_only_once():
+def test_a_new_one_is_reported_at_once_and_only_once():
     watch = SenderWatch(lockstep=True)
     assert [watch.take(tick, [FIELD] * (tick == 1), answer(tick)) for tick in range(3)] == [
         False,
@@ -164,7 +164,7 @@ def test_a_new_one_is_told_at_once_and_only_once():
     ]
 
 
-def test_it_is_said_by_name_identifier_and_tick():
+def test_it_is_described_by_message_identifier_and_tick():
     found = [SecondSenderFrames(TickDone.ID, 57, 1).as_json(), SecondSenderFrames(Sync.ID, 60, 3).as_json()]
     assert describe_senders(found) == (
         "a second sender is on the bus: TICK_DONE (280) at tick 57, SYNC (180) from tick 60 on"

@@ -1,4 +1,4 @@
-"""The onboard table written for a flight software of another process: read back, it is the same table."""
+"""The onboard table written for flight software in another process: read back, it is the same table."""
 
 import pytest
 

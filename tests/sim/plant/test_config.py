@@ -1,4 +1,4 @@
-"""What a plant cannot be, and is refused."""
+"""Configurations that a plant refuses."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""The plant with the continuous driver: three coils at once, for a part of a tick, off when sensors look."""
+"""The plant with the continuous driver: three coils at once, for a part of a tick, off for samples."""
 
 import numpy as np
 import pytest

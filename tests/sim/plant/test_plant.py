@@ -221,7 +221,7 @@ def test_the_impulse_of_a_pulse_does_not_depend_on_the_tick_rate(make_plant, tic
     assert np.flatnonzero(flowed)[0] == 5 * tick_hz + 1
 
 
-def test_a_refused_request_drives_nothing_and_is_named(make_plant):
+def test_a_refused_request_drives_nothing_and_is_reported(make_plant):
     history = fly(make_plant(), 8, {2: lambda plant: fire(plant, seq=77)})
     assert all(truth.m_body_am2 == (0.0, 0.0, 0.0) for _, truth in history)
     refused = [m for said, _ in history for m in said if isinstance(m, messages.CoilRefused)]

@@ -1,4 +1,4 @@
-"""The plant's rotations against scipy's, which speak of the inverse: C(q) there is C(q)^T here."""
+"""The plant's rotations against scipy's, which are the inverse: C(q) there is C(q)^T here."""
 
 import numpy as np
 import pytest

@@ -63,7 +63,7 @@ class TestWhatIsBound:
     @pytest.mark.parametrize(
         "kept", [[], 3, "text", {"bus.log": 3}, {"../x": "00"}, {"": "00"}, {"a\0": "0"}]
     )
-    def test_digests_that_are_none_are_named(self, run, kept):
+    def test_malformed_digests_are_reported(self, run, kept):
         told(run, digests=kept)
         with pytest.raises(HarnessError, match="digests"):
             compare(run)
@@ -97,7 +97,7 @@ class TestMismatch:
         (run / name).unlink()
         assert compare(run).mismatches == {name: f"{name} is missing, and run.json has its digest"}
 
-    def test_each_is_named(self, run):
+    def test_each_is_reported(self, run):
         for name in FILES:
             (run / name).write_bytes(b"other")
         assert set(compare(run).mismatches) == set(FILES)
@@ -142,7 +142,7 @@ class TestMismatch:
 
 
 class TestOlderRuns:
-    def test_are_said_to_be_older(self, run):
+    def test_are_reported_as_older(self, run):
         told(run, **{DIGESTS: None})
         (run / BUS_LOG).write_bytes(b"other")
         assert compare(run) == (

@@ -101,7 +101,7 @@ def test_a_log_in_which_every_line_has_words_of_its_own_takes_no_memory(tmp_path
         (b"(" + b"1" * 100_000, "not a candump log"),
     ],
 )
-def test_a_file_that_is_no_log_is_named_in_one_sentence(read, tmp_path, content, reason):
+def test_a_file_that_is_no_log_is_refused_in_one_sentence(read, tmp_path, content, reason):
     with pytest.raises(LogError, match=reason) as refusal:
         read(content)
     assert not isinstance(refusal.value, LogTruncatedError)
@@ -111,7 +111,7 @@ def test_a_file_that_is_no_log_is_named_in_one_sentence(read, tmp_path, content,
 
 
 @pytest.mark.parametrize("name", ["missing.log", "."])
-def test_a_file_that_cannot_be_read_is_named(tmp_path, name):
+def test_a_file_that_cannot_be_read_is_refused(tmp_path, name):
     with pytest.raises(LogError, match="cannot be read"):
         list(read_log(tmp_path / name))
 
@@ -141,7 +141,7 @@ def test_a_line_that_is_none_is_refused_by_its_number(read, line):
         read(LINE + line + LINE)
 
 
-def test_a_can_fd_frame_is_named_as_one(read):
+def test_a_can_fd_frame_is_refused_as_one(read):
     with pytest.raises(LogError, match="line 2 is a CAN FD frame"):
         read(LINE + f"({STAMP}) vcan0 110##1133E0014F79838B7\n")
 

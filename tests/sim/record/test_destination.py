@@ -1,4 +1,4 @@
-"""A place for results is asked for before the work, and nothing there is changed by asking."""
+"""The place of results is checked before the work, and the check changes nothing there."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""The controller's estimates by tick, gathered from the states of a replay."""
+"""The estimates of the flight software by tick, recorded from the states of a replay."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ def recorded(states, ticks):
     return recorder.estimates()
 
 
-def test_every_tick_holds_what_its_state_said(states):
+def test_every_tick_holds_the_estimate_of_its_state(states):
     estimates = recorded(states, 300)
     for tick in (0, 1, 57, 101, 299):
         state = states[tick]

@@ -1,4 +1,4 @@
-"""A telecommand that meets SYNC on the bus stands in the log with the tick that acknowledges it."""
+"""A telecommand that meets SYNC on the bus is in the log with the tick that acknowledges it."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""The index of a log: what it vouches for, and what it gives away."""
+"""The index of a log: what it confirms, and what it detects."""
 
 import errno
 import os
@@ -59,7 +59,7 @@ def test_the_index_is_beside_the_log_and_bears_its_name(log):
     assert check_against_index(moved).standing is LogStanding.UNKNOWN
 
 
-def test_for_a_bare_log_nothing_vouches_and_that_is_said(log):
+def test_a_log_without_an_index_is_unknown_and_the_sentence_says_so(log):
     index_path(log).unlink()
     standing, sentence = check_against_index(log)
     assert standing is LogStanding.UNKNOWN
@@ -151,7 +151,7 @@ def sealed(text):
     return b"%b %08x\n" % (text, crc32(text))
 
 
-def test_an_index_of_another_version_is_named(log):
+def test_an_index_of_another_version_is_reported(log):
     lines = index_path(log).read_bytes().splitlines(keepends=True)
     index_path(log).write_bytes(b"".join([sealed(b"torquer-log-index 2"), *lines[1:]]))
     assert check_against_index(log) == (
@@ -292,13 +292,13 @@ def test_half_a_line_of_the_index_is_taken_back(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("room", [0, 20])
-def test_a_disk_that_is_full_before_the_flight_is_named(tmp_path, monkeypatch, room):
+def test_a_disk_that_is_full_before_the_flight_is_reported(tmp_path, monkeypatch, room):
     monkeypatch.setattr(bus_log.os, "write", FullDisk(room))
     with pytest.raises(FlightError, match="cannot be written: No space left on device"):
         write(tmp_path / "bus.log")
 
 
-def test_a_disk_that_is_full_at_the_very_end_is_named(tmp_path, monkeypatch):
+def test_a_disk_that_is_full_at_the_very_end_is_reported(tmp_path, monkeypatch):
     log = tmp_path / "bus.log"
     write(log, 5)
     room = log.stat().st_size + index_path(log).stat().st_size - 1

@@ -1,4 +1,4 @@
-"""Options that more than one command takes."""
+"""The option ``--pace``."""
 
 import pytest
 

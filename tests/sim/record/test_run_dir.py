@@ -59,7 +59,7 @@ class TestBegin:
             run_dir.begin(tmp_path, scenario, 1, 10, "virtual", Pace())
         assert (tmp_path / name).read_text() == "precious"
 
-    def test_a_place_that_cannot_be_written_is_named(self, tmp_path, scenario):
+    def test_a_folder_that_cannot_be_written_is_reported(self, tmp_path, scenario):
         (tmp_path / "file").write_text("")
         with pytest.raises(HarnessError, match="cannot be written") as caught:
             run_dir.begin(tmp_path / "file" / "run", scenario, 1, 10, "virtual", Pace())

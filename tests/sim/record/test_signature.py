@@ -63,7 +63,7 @@ def test_another_key_does_not_verify_it(files):
     assert "is not the signature" in signature_fault(files / "run.json", public_key(files / "public.pem"))
 
 
-def test_without_a_signature_that_is_said(files):
+def test_a_missing_signature_is_reported(files):
     key = public_key(files / "public.pem")
     assert (
         signature_fault(files / "run.json", key)
@@ -106,7 +106,7 @@ def test_a_key_is_not_taken_for_its_other_half(files):
         public_key(files / "key.pem")
 
 
-def test_a_key_that_is_not_there_is_named(tmp_path):
+def test_a_missing_key_is_reported(tmp_path):
     for read in (private_key, public_key):
         with pytest.raises(HarnessError, match=r"none\.pem: cannot be read: No such file"):
             read(tmp_path / "none.pem")
@@ -114,7 +114,7 @@ def test_a_key_that_is_not_there_is_named(tmp_path):
             read(tmp_path)
 
 
-def test_without_the_package_the_extra_is_named(files, monkeypatch):
+def test_without_the_package_the_message_gives_the_extra(files, monkeypatch):
     monkeypatch.setitem(sys.modules, "cryptography", None)
     for read, option in ((private_key, "--sign"), (public_key, "--verify")):
         with pytest.raises(

@@ -1,4 +1,4 @@
-"""truth.h5: what is written reads back, with units, and a kill at any moment leaves what was flown."""
+"""truth.h5: what is written reads back, with units, and a kill at any moment leaves the complete rows."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""From a scenario to the plant: units of people to SI, nothing left behind."""
+"""The plant's configuration from a scenario: all values, in SI."""
 
 from math import pi, radians
 

@@ -1,4 +1,4 @@
-"""Scenarios: those that ship are sound, settings are laid over them, and errors are told in one sentence."""
+"""Scenarios: those that ship are sound, settings are laid over them, and errors are one sentence."""
 
 from datetime import UTC, datetime
 from importlib import resources
@@ -79,7 +79,7 @@ class TestShipped:
 
 
 class TestFinding:
-    def test_an_unknown_name_is_told_with_those_there_are(self):
+    def test_an_unknown_name_is_refused_with_a_list_of_names(self):
         sentence = fault("macrosat")
         assert "there is no scenario 'macrosat'" in sentence
         assert f"choose one of {', '.join(sorted(NAMES))}, or" in sentence
@@ -156,7 +156,7 @@ class TestSettings:
             ("flight=3", "flight = 3 is not allowed: allowed is a section of keys"),
         ],
     )
-    def test_a_setting_that_does_not_fit_is_told(self, text, told):
+    def test_a_malformed_setting_is_refused(self, text, told):
         sentence = fault(**settings(text))
         assert sentence.startswith("scenario microsat: ")
         assert told in sentence

@@ -1,4 +1,4 @@
-"""Sections that the plant alone knows: what they refuse, in one sentence that names the key."""
+"""Sections that only the plant uses: what they refuse, in one sentence with the key."""
 
 import pytest
 
@@ -43,7 +43,7 @@ CONTINUOUS = ("coils.driver=continuous", "coils.max_dipole_am2=12")
         ([*CONTINUOUS, "coils.on_fraction=1.0"], ["coils.on_fraction = 1 leaves the coils 0 ms"]),
     ],
 )
-def test_faults_are_told_in_one_sentence(settings, words):
+def test_errors_are_reported_in_one_sentence(settings, words):
     with pytest.raises(TableError) as caught:
         load("microsat", parse_settings(tuple(settings)))
     sentence = str(caught.value)
@@ -66,7 +66,7 @@ def test_what_is_allowed(settings):
     assert load("microsat", parse_settings(tuple(settings)))
 
 
-def test_the_controller_is_told_nothing_of_it():
+def test_the_controller_does_not_know_of_it():
     known = load("microsat")
     settings = (
         PLATE,

@@ -1,4 +1,4 @@
-"""Telecommands of a scenario: sent in their tick, answered, and flown again from the log to the last bit."""
+"""Telecommands of a scenario: sent in their tick, answered, and replayed from the log to the last bit."""
 
 import re
 import tomllib
@@ -162,7 +162,7 @@ class TestNumbers:
         ({"message": "TC_ORBIT_LOAD", "tle": ["1", "2"]}, "tle: element line 1 is not"),
     ],
 )
-def test_what_cannot_be_sent_is_told(wrong, told):
+def test_what_cannot_be_sent_is_refused(wrong, told):
     with pytest.raises(TableError, match=r"scenario microsat: .*telecommand") as error:
         with_telecommands({"at_s": 1.0, "message": "TC_SPIN", "spin_radps": 0.01, **wrong})
     assert told in str(error.value)

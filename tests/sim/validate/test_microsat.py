@@ -1,4 +1,4 @@
-"""What is taken from flights of the microsatellite, and that their starts are what the claims say."""
+"""The figures of flights of the microsatellite, and that their initial states are as claimed."""
 
 from math import inf
 
@@ -71,7 +71,7 @@ class TestAcquired:
         angles[-1] = 180.0
         assert self.orbits(scenario, angles, np.full(self.TICKS, int(Mode.POINT))) == inf
 
-    def test_a_start_in_the_dark_is_told(self, scenario):
+    def test_a_start_in_eclipse_is_reported(self, scenario):
         truth = histories([0.0, 0.0])
         assert microsat.acquisition_figures(scenario, truth, modes([3, 3]))["dark_start"] == 0.0
         truth["lit"][0] = 0.0

@@ -1,4 +1,4 @@
-"""The page: a row a claim, and what stands around the table."""
+"""The page: a row per claim, and the text around the table."""
 
 import pytest
 

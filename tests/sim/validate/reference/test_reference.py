@@ -79,7 +79,7 @@ SPOILED = [
 @pytest.mark.parametrize(
     ("name", "row", "column", "error", "failing"), SPOILED, ids=[f"{s[0]}-{s[2]}" for s in SPOILED]
 )
-def test_one_spoiled_number_fails_and_its_line_is_named(folder, name, row, column, error, failing):
+def test_one_spoiled_number_fails_and_its_line_is_reported(folder, name, row, column, error, failing):
     folder.copy(name, rows=ROWS.get(name))
     line = folder.add(name, row, column, error)
     failed = failures(folder, name)
@@ -87,14 +87,14 @@ def test_one_spoiled_number_fails_and_its_line_is_named(folder, name, row, colum
     assert all(f"{name} line {line} " in outcome.where for outcome in failed.values())
 
 
-def test_times_that_no_integration_reaches_are_named(folder):
+def test_times_that_no_integration_reaches_are_reported(folder):
     folder.copy("attitude_c_dipole.csv", rows=6)
     folder.put("attitude_c_dipole.csv", 5, "t_s", lambda text: "1e15")
     with pytest.raises(HarnessError, match=r"column t_s: the 1e\+15 s before it take more than 10000"):
         failures(folder, "attitude_c_dipole.csv")
 
 
-def test_a_quote_without_its_end_is_named(folder):
+def test_a_quote_without_its_end_is_reported(folder):
     folder.copy("eclipse.csv")
     folder.put("eclipse.csv", 3, "class", lambda text: '"umbra')
     with pytest.raises(HarnessError, match="line "):
@@ -345,7 +345,7 @@ def test_a_folder_without_any_of_them_is_refused(folder):
         reference.studies(folder.path / "nowhere")
 
 
-def test_columns_that_no_check_reads_are_told(folder):
+def test_columns_that_no_check_reads_are_reported(folder):
     folder.copy("triad_mekf.csv", rows=3)
     unused = reference.check_file(folder.path / "triad_mekf.csv", "triad_mekf.csv").unused
     assert {"lambda", "p_triad_xx", "sep_deg"} <= set(unused)
