@@ -14,7 +14,7 @@ from sim.plant.dynamics.rigid_body import Motion, RigidBody
 from sim.plant.environment.surroundings import Surroundings
 from sim.plant.rotation import ZERO, Mat3, Quaternion, Vec3, matrix, normalise
 from sim.report.attitude_arrays import angle_rad, relative
-from sim.validate.reference.comparison import Array, Comparison, largest
+from sim.validate.reference.comparison import Array, ReferenceComparison, largest
 from sim.validate.reference.reference_table import ReferenceTable, names_of
 from sim.validate.reference.two_body import two_body
 
@@ -47,7 +47,7 @@ class AttitudeCase:
     dipole_axis: Array
 
 
-def check(table: ReferenceTable) -> Iterator[Comparison]:
+def check(table: ReferenceTable) -> Iterator[ReferenceComparison]:
     """Fly the header's case through the plant's integrator and compare every row.
 
     Raises:
@@ -70,21 +70,25 @@ def check(table: ReferenceTable) -> Iterator[Comparison]:
         )
     ours_q, ours_omega = fly(case, times, longest_step_s)
     norm = np.linalg.norm(q, axis=1)
-    yield Comparison(
+    yield ReferenceComparison(
         "attitude",
         "Attitude through the plant's integrator",
         "rad",
         np.maximum(angle_rad(relative(ours_q, q / norm[:, None])), np.abs(norm - 1.0)),
         ATTITUDE_RAD,
     )
-    yield Comparison("rate", "Inertial rate", "rad/s", largest(ours_omega - omega), RATE_RADPS)
+    yield ReferenceComparison("rate", "Inertial rate", "rad/s", largest(ours_omega - omega), RATE_RADPS)
     ours_r_m = two_body(case.r0_m, case.v0_mps, case.mu_m3ps2, times)
-    yield Comparison("position", "Position on the header's orbit", "m", largest(ours_r_m - r_m), POSITION_M)
+    yield ReferenceComparison(
+        "position", "Position on the header's orbit", "m", largest(ours_r_m - r_m), POSITION_M
+    )
     start = case.start.q_body_from_eci
     for who, c in (("Plant", matrix(start)), ("Onboard", onboard.dcm(start))):
         apart = np.zeros(len(table))
         apart[0] = np.abs(np.array(c) - case.c0).max()
-        yield Comparison(f"matrix_{who.lower()}", f"{who} matrix of the first attitude", "1", apart, MATRIX)
+        yield ReferenceComparison(
+            f"matrix_{who.lower()}", f"{who} matrix of the first attitude", "1", apart, MATRIX
+        )
 
 
 def read_case(table: ReferenceTable) -> AttitudeCase:

@@ -9,7 +9,7 @@ from fsw.core.orbit import sun as onboard_sun
 from sim.plant.environment import earth as plant_earth
 from sim.plant.environment.orbit import DAY_S, UNIX_EPOCH_JD
 from sim.plant.environment.sun import sun_eci_m
-from sim.validate.reference.comparison import Array, Comparison, angle_rad, largest
+from sim.validate.reference.comparison import Array, ReferenceComparison, angle_rad, largest
 from sim.validate.reference.reference_table import ReferenceTable, names_of
 
 ROTATION_RAD = 1e-9
@@ -21,7 +21,7 @@ SUN_DISTANCE = 1e-4
 INDICES = [f"{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3)]
 
 
-def check(table: ReferenceTable) -> Iterator[Comparison]:
+def check(table: ReferenceTable) -> Iterator[ReferenceComparison]:
     """Compare rotation, Sun and distance at every row.
 
     Raises:
@@ -33,7 +33,7 @@ def check(table: ReferenceTable) -> Iterator[Comparison]:
     yield from _sun(table, unix_s)
 
 
-def _rotation(table: ReferenceTable, unix_s: Array) -> Iterator[Comparison]:
+def _rotation(table: ReferenceTable, unix_s: Array) -> Iterator[ReferenceComparison]:
     angle = table.column("gmst82_rad")
     pef_from_teme = table.columns(*names_of("t2p_", INDICES)).reshape(-1, 3, 3)
     itrs_from_gcrs = table.columns(*names_of("c2t_", INDICES)).reshape(-1, 3, 3)
@@ -41,15 +41,17 @@ def _rotation(table: ReferenceTable, unix_s: Array) -> Iterator[Comparison]:
     sun_itrs = np.einsum("nij,nj->ni", itrs_from_gcrs, sun_gcrs)
     for who, angles, turns in (("Plant", *_plant_rotation(unix_s)), ("Onboard", *_onboard_rotation(unix_s))):
         name, apart = who.lower(), np.angle(np.exp(1j * (angles - angle)))
-        yield Comparison(f"gmst_{name}", f"{who} sidereal time (GMST82)", "rad", np.abs(apart), ROTATION_RAD)
-        yield Comparison(
+        yield ReferenceComparison(
+            f"gmst_{name}", f"{who} sidereal time (GMST82)", "rad", np.abs(apart), ROTATION_RAD
+        )
+        yield ReferenceComparison(
             f"turn_{name}",
             f"{who} turn TEME to Earth-fixed",
             "1",
             largest(turns - pef_from_teme),
             ROTATION_RAD,
         )
-        yield Comparison(
+        yield ReferenceComparison(
             f"chain_{name}",
             f"{who} turn of the Sun's direction against IAU 2006/2000A, GCRS to Earth-fixed",
             "1",
@@ -58,7 +60,7 @@ def _rotation(table: ReferenceTable, unix_s: Array) -> Iterator[Comparison]:
         )
 
 
-def _sun(table: ReferenceTable, unix_s: Array) -> Iterator[Comparison]:
+def _sun(table: ReferenceTable, unix_s: Array) -> Iterator[ReferenceComparison]:
     plant_m = np.concatenate([sun_eci_m(int(t), np.array([t % 1.0])) for t in unix_s])
     distance_m = np.linalg.norm(plant_m, axis=1)
     onboard = np.array([onboard_sun.sun_eci(t) for t in unix_s.tolist()])
@@ -74,7 +76,7 @@ def _sun(table: ReferenceTable, unix_s: Array) -> Iterator[Comparison]:
     for who, ours in (("Plant", plant_m / distance_m[:, None]), ("Onboard", onboard)):
         for frame, meaning, turn in frames:
             theirs = table.columns(*names_of(f"sun_{frame}_", "xyz"))
-            yield Comparison(
+            yield ReferenceComparison(
                 f"sun_{frame}_{who.lower()}",
                 f"{who} direction of the Sun, {meaning}",
                 "rad",
@@ -85,7 +87,7 @@ def _sun(table: ReferenceTable, unix_s: Array) -> Iterator[Comparison]:
                 SUN_RAD,
             )
     theirs_m = 1e3 * table.column("sun_dist_km")
-    yield Comparison(
+    yield ReferenceComparison(
         "sun_distance",
         "Plant's distance of the Sun, relative",
         "1",

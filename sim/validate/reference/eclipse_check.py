@@ -6,7 +6,7 @@ import numpy as np
 
 from fsw.core.orbit.sun import lit
 from sim.plant.environment.sun import illumination
-from sim.validate.reference.comparison import Array, Comparison, mismatch
+from sim.validate.reference.comparison import Array, ReferenceComparison, mismatch
 from sim.validate.reference.reference_table import ReferenceTable, names_of
 
 SAME_MODEL = 1e-7
@@ -15,7 +15,7 @@ OTHER_MODEL = 5e-3
 """The Earth's limb is not a plane circle: the exact fraction differs by up to 2e-4 in low orbits."""
 
 
-def check(table: ReferenceTable) -> Iterator[Comparison]:
+def check(table: ReferenceTable) -> Iterator[ReferenceComparison]:
     """Compare fraction, class and cylinder at every row.
 
     Raises:
@@ -26,20 +26,20 @@ def check(table: ReferenceTable) -> Iterator[Comparison]:
     fraction = illumination(r_m, sun_m)
     planar, exact = table.column("frac_planar"), table.column("frac_exact")
     classes = table.texts("class")
-    yield Comparison(
+    yield ReferenceComparison(
         "planar", "Plant's lit fraction, plane circles", "1", np.abs(fraction - planar), SAME_MODEL
     )
-    yield Comparison(
+    yield ReferenceComparison(
         "exact", "Plant's lit fraction against the exact one", "1", np.abs(fraction - exact), OTHER_MODEL
     )
-    yield Comparison(
+    yield ReferenceComparison(
         "class",
         "Rows where the plant's fraction is not of the class sunlit, umbra or between",
         "rows",
         mismatch([_class(value) for value in fraction], [_CLASSES.get(name, "partial") for name in classes]),
         0.0,
     )
-    yield Comparison(
+    yield ReferenceComparison(
         "cylinder",
         "Rows where the onboard cylindrical shadow differs",
         "rows",

@@ -8,7 +8,7 @@ from fsw.core.orbit import igrf as onboard
 from fsw.core.orbit.igrf_coefficients import EPOCHS_UNIX_S, MAX_DEGREE
 from sim.errors import HarnessError
 from sim.plant.environment.igrf import Igrf
-from sim.validate.reference.comparison import Array, Comparison, largest
+from sim.validate.reference.comparison import Array, ReferenceComparison, largest
 from sim.validate.reference.reference_table import ReferenceTable, names_of
 
 SAME_EPOCHS_NT = 1e-3
@@ -17,7 +17,7 @@ OTHER_EPOCHS_NT = 0.5
 """Coefficients linear in decimal years instead of elapsed days differ by up to 0.22 nT."""
 
 
-def check(table: ReferenceTable) -> Iterator[Comparison]:
+def check(table: ReferenceTable) -> Iterator[ReferenceComparison]:
     """Compare the field at every row.
 
     Raises:
@@ -29,14 +29,14 @@ def check(table: ReferenceTable) -> Iterator[Comparison]:
     other_nt = table.columns(*names_of("b_decyear_", "xyz", "_nT"))
     _check_places(table, r_m)
     plant_nt = 1e9 * _field_at_rows(table, Igrf(), unix_s, r_m)
-    yield Comparison(
+    yield ReferenceComparison(
         "plant",
         "Plant's field, IGRF-14 to degree 13",
         "nT",
         largest(plant_nt - reference_nt),
         SAME_EPOCHS_NT,
     )
-    yield Comparison(
+    yield ReferenceComparison(
         "decimal_years",
         "The same against coefficients linear in decimal years",
         "nT",
@@ -50,7 +50,7 @@ def check(table: ReferenceTable) -> Iterator[Comparison]:
         model = onboard.prepare(float(unix_s[row]) // 86400.0 * 86400.0)
         flight_nt[row] = 1e9 * np.array(onboard.field_ecef_t((x, y, z), float(unix_s[row]), model))
     short_nt[inside] = 1e9 * Igrf(MAX_DEGREE).at(unix_s[inside], r_m[inside])
-    yield Comparison(
+    yield ReferenceComparison(
         "onboard",
         f"Onboard field against the plant's, both to degree {MAX_DEGREE}",
         "nT",
@@ -58,7 +58,7 @@ def check(table: ReferenceTable) -> Iterator[Comparison]:
         SAME_EPOCHS_NT,
     )
     beyond = plant_nt - short_nt
-    yield Comparison(
+    yield ReferenceComparison(
         "onboard_reference",
         f"Onboard field with the plant's degrees above {MAX_DEGREE} added",
         "nT",

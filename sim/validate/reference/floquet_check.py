@@ -9,7 +9,7 @@ from scipy.optimize import linear_sum_assignment
 from sim.design.theory.bodies import Body, diagonal
 from sim.design.theory.floquet import degree_of_stability, monodromy, multipliers
 from sim.design.theory.linear import Gains, closed_loop
-from sim.validate.reference.comparison import Comparison, mismatch
+from sim.validate.reference.comparison import ReferenceComparison, mismatch
 from sim.validate.reference.reference_table import ReferenceTable
 
 TOLERANCE = 1e-7
@@ -25,7 +25,7 @@ STEPS = 2048
 Complex = NDArray[np.complex128]
 
 
-def check(table: ReferenceTable) -> Iterator[Comparison]:
+def check(table: ReferenceTable) -> Iterator[ReferenceComparison]:
     """Compare every case.
 
     Raises:
@@ -48,15 +48,17 @@ def check(table: ReferenceTable) -> Iterator[Comparison]:
     ]
     degrees = np.array([float(degree_of_stability(turn)) for turn in turns])
     reference = table.column("degree_of_stability")
-    yield Comparison("degree", "Degree of stability", "1/rad", np.abs(degrees - reference), TOLERANCE)
-    yield Comparison(
+    yield ReferenceComparison(
+        "degree", "Degree of stability", "1/rad", np.abs(degrees - reference), TOLERANCE
+    )
+    yield ReferenceComparison(
         "multipliers",
         "Multipliers, relative to max(1, modulus)",
         "1",
         np.array([apart(multipliers(turn), row) for turn, row in zip(turns, theirs, strict=True)]),
         TOLERANCE,
     )
-    yield Comparison(
+    yield ReferenceComparison(
         "stable",
         "Cases called stable, neutral or unstable otherwise",
         "rows",
@@ -67,12 +69,12 @@ def check(table: ReferenceTable) -> Iterator[Comparison]:
     )
     rates, fields = (np.array([getattr(body, name) for body in bodies]) for name in ("rate_radps", "field_t"))
     for name, ours, column in (("w0", rates, "w0_rad_s"), ("b0", fields, "B0_T")):
-        yield Comparison(
+        yield ReferenceComparison(
             name, f"{column}, relative", "1", np.abs(ours / table.column(column) - 1.0), CONSTANTS
         )
     a, b, c = moments.T
     held = np.where((c > b) & (b > a), "stable", "unstable")
-    yield Comparison(
+    yield ReferenceComparison(
         "gravity", "Bodies that the gravity gradient holds", "rows", mismatch(held, table.texts("gg")), 0.0
     )
 

@@ -20,10 +20,10 @@ from sim.validate.reference import (
     floquet_check,
     triad_check,
 )
-from sim.validate.reference.comparison import Comparison
+from sim.validate.reference.comparison import ReferenceComparison
 from sim.validate.reference.reference_table import ReferenceTable
 
-Check = Callable[[ReferenceTable], Iterator[Comparison]]
+Check = Callable[[ReferenceTable], Iterator[ReferenceComparison]]
 
 CHECKS: dict[str, Check] = {
     "igrf14.csv": field_check.check,

@@ -13,7 +13,7 @@ from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.triad import triad
 from sim.errors import HarnessError
 from sim.report.attitude_arrays import angle_rad, relative
-from sim.validate.reference.comparison import Array, Comparison
+from sim.validate.reference.comparison import Array, ReferenceComparison
 from sim.validate.reference.reference_table import ReferenceTable, names_of
 
 ATTITUDE_RAD = 1e-9
@@ -42,7 +42,7 @@ class DirectionPair:
     sigma2_rad: float
 
 
-def check(table: ReferenceTable) -> Iterator[Comparison]:
+def check(table: ReferenceTable) -> Iterator[ReferenceComparison]:
     """Compare attitudes and the filter's covariance at every row.
 
     Raises:
@@ -51,8 +51,8 @@ def check(table: ReferenceTable) -> Iterator[Comparison]:
     pairs, gap = _pairs(table), np.maximum(table.column("gap"), 1e-300)
     q_true, q_triad, q_best = (_quaternions(table, name) for name in ("q_true", "q_triad", "q_dav"))
     ours = np.array([triad(pair.b1, pair.b2, pair.r1, pair.r2) for pair in pairs])
-    yield Comparison("triad", "TRIAD", "rad", _angle(ours, q_triad), ATTITUDE_RAD)
-    yield Comparison(
+    yield ReferenceComparison("triad", "TRIAD", "rad", _angle(ours, q_triad), ATTITUDE_RAD)
+    yield ReferenceComparison(
         "triad_error",
         "TRIAD's angle from the true attitude",
         "rad",
@@ -63,21 +63,21 @@ def check(table: ReferenceTable) -> Iterator[Comparison]:
     updated = [update(pair, q, p) for pair, q, p in zip(pairs, q_best, expected, strict=True)]
     moved = np.array([estimate.q_body_from_eci for estimate in updated])
     allowed = np.maximum(ATTITUDE_RAD, ROUNDING_RAD / gap)
-    yield Comparison(
+    yield ReferenceComparison(
         "filter",
         "What the filter's update moves the best attitude (Davenport) by",
         "rad",
         _angle(moved, q_best),
         allowed,
     )
-    yield Comparison(
+    yield ReferenceComparison(
         "filter_error",
         "The filter's angle from the true attitude",
         "rad",
         np.abs(_angle(moved, q_true) - table.column("err_dav_rad")),
         allowed,
     )
-    yield Comparison(
+    yield ReferenceComparison(
         "covariance",
         "The filter's covariance after both directions, relative",
         "1",
