@@ -51,7 +51,7 @@ def check(path: Path, backoff: str | None, key: PublicKey | None = None) -> Audi
         limits = replace(limits, shared=is_shared(backoff, "--backoff"))
     with binding.beside_errors():
         report = audit(_of_this_contract(log), limits, expect_end=stated is not None)
-    voucher = vouch(log)
+    voucher = check_against_index(log)
     usual = f"judged by the usual limits: {SCENARIO_NAME} is not the run's" if mismatched else ""
     notes = (voucher.sentence, binding.note, usual)
     return replace(

@@ -101,7 +101,7 @@ def hil(settings: HilSettings, as_json: bool = False) -> int:
         bus = open_bus(spec)
         try:
             if hub_pid is None:
-                refuse_taken(bus, spec, FLYING)
+                refuse_bus_in_use(bus, spec, FLIGHT_NODES)
             folder = settings.out or Path(scratch)
             _begin(settings, folder, spec)
             table = write_flight_table(Path(scratch), settings.scenario)

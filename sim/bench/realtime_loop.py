@@ -13,7 +13,7 @@ from sim.bench.bus_load import frame_bits
 from sim.bench.tick_source import TickSource
 from sim.bench.time_histogram import TimeHistogram
 from sim.flight.flight import FrameLog
-from sim.flight.second_senders import ALONE, SecondSender, SenderWatch
+from sim.flight.second_senders import ALONE, SecondSenderFrames, SenderWatch
 
 SAMPLES = {CoilStatus.ID: "coil", MagField.ID: "magnetometer", SunVector.ID: "sun"}
 """The message that each board sends exactly once a tick."""
@@ -48,7 +48,7 @@ class BenchMeasurements:
     busiest_bits: int = 0
     samples: Counter[str] = field(default_factory=Counter)
     messages: Counter[str] = field(default_factory=Counter)
-    second_senders: list[SecondSender] = field(default_factory=list)
+    second_senders: list[SecondSenderFrames] = field(default_factory=list)
 
 
 class RealtimeLoop:

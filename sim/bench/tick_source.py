@@ -85,7 +85,7 @@ class ReportedDrive:
     def receive(self, frame: Frame) -> None:
         """Nothing: the board receives its own frames."""
 
-    def drive(self) -> Driven:
+    def drive(self) -> CoilDrive:
         """What the board reported for this tick, once; off where it has reported nothing."""
         driven, self._driven = self._driven, OFF
         return driven
@@ -102,7 +102,7 @@ class ReportedDrive:
         elif frame.can_id == CoilDipoleStatus.ID and self._continuous is not None:
             status, full_a = CoilDipoleStatus.decode(frame.data), self._full_a
             current_a = (status.m_x * full_a, status.m_y * full_a, status.m_z * full_a)
-            self._driven = Driven(current_a, self._continuous.on_fraction)
+            self._driven = CoilDrive(current_a, self._continuous.on_fraction)
             return True
         return False
 
@@ -110,7 +110,7 @@ class ReportedDrive:
     def _full_a(self) -> float:
         return self._continuous.max_dipole_am2 / self._dipole_per_ampere if self._continuous else 0.0
 
-    def _pulse(self, status: CoilStatus) -> Driven:
+    def _pulse(self, status: CoilStatus) -> CoilDrive:
         """The last tick of a pulse is driven for the rest of it: as reported a tick ago, or as requested."""
         before_ms, self._left_ms = self._left_ms, status.remaining_ms
         if not status.level or abs(status.level) >= len(self._level_a):

@@ -61,7 +61,7 @@ def compare(
     ticks = ticks_of(scenario, orbits)
     folder = _new_folder(out or _default_folder(scenario))
     studies = [
-        Study(f"{case.law}-{case.driver}", (partial(fly_case, case),), lambda results: [], flown=True)
+        Study(f"{case.law}-{case.driver}", (partial(fly_case, case),), lambda results: [], has_flights=True)
         for case in chosen_cases
     ]
     description = {

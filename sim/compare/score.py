@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from fsw.core.laws.table import Aim
 from fsw.input.schema import TableError
 from fsw.wire.messages import Mode
-from sim.campaign.flight import Record, record_order
+from sim.campaign.flight import RecordedFlight, record_order
 from sim.compare.case import ComparisonCase, Driver
 from sim.drawing.canvas import TimeAxis
 from sim.errors import HarnessError
@@ -87,7 +87,7 @@ def fly_case(case: ComparisonCase) -> Result:
     return Result(judge(case, record), history(record))
 
 
-def judge(case: ComparisonCase, record: Record) -> Score:
+def judge(case: ComparisonCase, record: RecordedFlight) -> Score:
     """The line of a flight, from the plant's truth and the audit."""
     scenario, truth, audit = record.scenario, record.truth, record.audit
     tick_hz, orbit_s = scenario.time.tick_hz, orbit_period_s(scenario)

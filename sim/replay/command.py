@@ -131,7 +131,7 @@ def through_plant(log: Path, run: LoggedRun) -> int:
 
 def _report_binding(log: Path, run: LoggedRun) -> bool:
     """Print what index and run.json say of the log; whether both hold for it."""
-    voucher = vouch(log)
+    voucher = check_against_index(log)
     if voucher.sentence:
         click.echo(f"{'note' if voucher.holds else 'index'}: {voucher.sentence}")
     for line in run.binding.lines:

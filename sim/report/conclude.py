@@ -61,7 +61,7 @@ def conclude(path: Path, watch: Watch = lambda tick: None) -> Json:
     summary = summarise(scenario, run, truth, recorder.estimates(), report, tally)
     summary["replay"] = _replay_json(replay_result)
     senders = run.get("second_senders")
-    failed_checks = failures(run, summary["ticks"], report, replay_result, vouch(log))
+    failed_checks = failures(run, summary["ticks"], report, replay_result, check_against_index(log))
     summary |= {
         key: found for key, found in (("second_senders", senders), ("failures", failed_checks)) if found
     }

@@ -25,7 +25,7 @@ def failures(
     ticks: int,
     audit_report: AuditReport,
     replay_result: ReplayResult,
-    voucher: Voucher,
+    voucher: IndexCheck,
 ) -> dict[str, str]:
     """What fails, each as a clause of a sentence; empty where nothing fails.
 
@@ -40,7 +40,7 @@ def failures(
     clauses = {
         Verdict.LIMITS: _limits(audit_report.statuses, audit_report.violations),
         Verdict.REPLAY: _replay(replay_result, run.get("platform") == run_dir.fingerprint()),
-        Verdict.SECOND_SENDERS: said(senders) if senders else "",
+        Verdict.SECOND_SENDERS: describe_senders(senders) if senders else "",
         Verdict.COMPLETE: _incomplete(run, ticks, audit_report.complete, voucher),
     }
     return {verdict.value: clause for verdict, clause in clauses.items() if clause}

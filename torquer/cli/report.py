@@ -29,7 +29,7 @@ def report(run: Path, sign: Path | None, verify: Path | None) -> int:
         summary = conclude(run, watch)
     if key is not None:
         sign_run(run, key)
-    elif signature_of(run / run_dir.RUN).exists() and (run / run_dir.RUN).read_bytes() != before:
+    elif signature_path(run / run_dir.RUN).exists() and (run / run_dir.RUN).read_bytes() != before:
         click.echo(f"note: {run_dir.RUN} is no longer what was signed: --sign KEY signs it again", err=True)
     for line in binding.lines:
         click.echo(line)

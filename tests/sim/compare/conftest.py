@@ -7,7 +7,7 @@ import pytest
 
 from fsw.wire.messages import Mode
 from sim.audit.auditor import AuditLimits, audit
-from sim.campaign.flight import Order, Record
+from sim.campaign.flight import Order, RecordedFlight
 from sim.compare.case import ComparisonCase, Driver
 from sim.record.estimates import EstimateRecorder
 from sim.report.summary import BusTally
