@@ -147,7 +147,7 @@ class SunBoard(SensorBoard):
         super().__init__(SunSensor(tick_hz).begin_tick, stimulus)
 
 
-class BenchNode:
+class Bench:
     """Enters the ticks of the bus: k + 1 when ``TICK_DONE(k)`` has come, or ``SYNC(k + 1)`` at the latest.
 
     The board vouches for its timers only while it counts every tick. When it has lost count (two strange

@@ -11,8 +11,8 @@ from fsw.wire.messages import MagField, SunVector
 from hil_stub.bench import (
     DEADMAN_MS,
     LEVEL_A,
+    Bench,
     BenchBoard,
-    BenchNode,
     CoilBoard,
     DipoleBoard,
     MagnetometerBoard,
@@ -158,7 +158,7 @@ def _serve(
     pins: TextIO | None = None,
 ) -> None:
     deadman_ms = round(1000.0 * deadman_s) or None
-    bench = BenchNode(make_board, deadman_ms, has_clock=clock == "own")
+    bench = Bench(make_board, deadman_ms, has_clock=clock == "own")
     try:
         bus = open_bus(spec)
     except BusError as error:

@@ -5,7 +5,7 @@ import time
 from typing import TextIO
 
 from fsw.bus.interface import Bus
-from hil_stub.bench import BenchNode
+from hil_stub.bench import Bench
 from hil_stub.coils.coil_driver import Pin
 
 POLL_S = 0.5
@@ -43,7 +43,7 @@ class PinLog:
         self._shown = pin
 
 
-def run(bench: BenchNode, bus: Bus, pins: PinLog | None = None, parent: int | None = None) -> None:
+def run(bench: Bench, bus: Bus, pins: PinLog | None = None, parent: int | None = None) -> None:
     """Serve the bus until the process is ended.
 
     Args:

@@ -12,7 +12,7 @@ from fsw.wire.messages import NAMES, SENDERS, CoilStatus, MagField, PlantEnd, Su
 from sim.bench.bus_load import frame_bits
 from sim.bench.tick_source import TickSource
 from sim.bench.time_histogram import TimeHistogram
-from sim.flight.flight import FrameLog
+from sim.flight.flight_loop import FrameLog
 from sim.flight.second_senders import ALONE, SecondSenderFrames, SenderWatch
 
 SAMPLES = {CoilStatus.ID: "coil", MagField.ID: "magnetometer", SunVector.ID: "sun"}

@@ -5,7 +5,7 @@ from fractions import Fraction
 from fsw.core.config import FlightConfig
 from fsw.wire.frame import Frame
 from fsw.wire.messages import TickDone
-from hil_stub.bench import DEADMAN_MS, BenchNode, CoilBoard
+from hil_stub.bench import DEADMAN_MS, Bench, CoilBoard
 from hil_stub.coils.coil_driver import Pin
 from sim.fault_rig.currents import CurrentPulse
 from sim.fault_rig.rig import Rig
@@ -31,9 +31,7 @@ class BenchActuator:
         self.board: Board = self
         self._level_a = (0.0, low_a, middle_a, high_a)
         self._period_ms = Fraction(1000, config.tick_hz)
-        self._bench = BenchNode(
-            lambda: CoilBoard(limits, (low_a, middle_a, high_a)), DEADMAN_MS, has_clock=True
-        )
+        self._bench = Bench(lambda: CoilBoard(limits, (low_a, middle_a, high_a)), DEADMAN_MS, has_clock=True)
         self._outbox = self._bench.switch_on()
         self._pin: Pin | None = None
         self._drive = OFF

@@ -8,7 +8,7 @@ from random import Random
 
 import pytest
 
-from hil_stub.bench import BenchNode, CoilBoard
+from hil_stub.bench import Bench, CoilBoard
 from hil_stub.coils import guard
 from hil_stub.coils.coil_driver import CoilDriver, CoilLimits
 from hil_stub.coils.interlock import boot
@@ -37,7 +37,7 @@ class SimulatedTarget:
         self._on_ms = self._off_ms = None
         self._last = None
         limits = CoilLimits(setup.tick_hz, setup.pulse_ms, setup.backoff_ms, setup.shared)
-        self._bench = BenchNode(lambda: CoilBoard(limits), setup.deadman_ms, has_clock=True)
+        self._bench = Bench(lambda: CoilBoard(limits), setup.deadman_ms, has_clock=True)
         self.restart()
 
     def now_ms(self):

@@ -12,7 +12,7 @@ from fsw.wire.messages import (
     CoilStatus,
     intact,
 )
-from hil_stub.bench import BenchNode, CoilBoard
+from hil_stub.bench import Bench, CoilBoard
 from hil_stub.coils.coil_driver import CoilDriver, CoilLimits, Drive
 
 
@@ -91,6 +91,6 @@ def read():
 @pytest.fixture
 def bench():
     """A coil driver that follows a bus by itself, switched on."""
-    bench = BenchNode(lambda: CoilBoard(CoilLimits(1)))
+    bench = Bench(lambda: CoilBoard(CoilLimits(1)))
     bench.switch_on()
     return bench

@@ -16,7 +16,7 @@ from fsw.wire.messages import (
     Sync,
     TickDone,
 )
-from hil_stub.bench import BenchNode, DipoleBoard, MagnetometerBoard, SunBoard
+from hil_stub.bench import Bench, DipoleBoard, MagnetometerBoard, SunBoard
 from hil_stub.sensors.stimulus import constant
 
 
@@ -31,7 +31,7 @@ def fly(bench, ticks):
 
 class TestLockstep:
     def test_the_frames_of_the_first_tick_come_at_the_start(self, read):
-        bench = BenchNode(lambda: MagnetometerBoard(1, constant((2e-5, 0.0, -3e-5))))
+        bench = Bench(lambda: MagnetometerBoard(1, constant((2e-5, 0.0, -3e-5))))
         assert [type(m) for m in read(bench.switch_on())] == [MagBoot, MagField]
 
     def test_those_of_the_next_when_fsw_has_answered(self, bench, read):
@@ -61,7 +61,7 @@ class TestLockstep:
         ],
     )
     def test_a_sensor_shows_its_stimulus_and_ignores_requests(self, read, make, stimulus, kind, shown):
-        bench = BenchNode(lambda: make(1, constant(stimulus)))
+        bench = Bench(lambda: make(1, constant(stimulus)))
         bench.switch_on()
         bench.receive(CoilFire(3, 0, 1, 0, 3000).encode())
         (sample,) = read(fly(bench, range(50)))
@@ -168,7 +168,7 @@ class TestLosingCount:
 
 
 def test_a_continuous_driver_tells_the_dipole_of_the_tick_that_has_ended(read):
-    bench = BenchNode(lambda: DipoleBoard(1))
+    bench = Bench(lambda: DipoleBoard(1))
     assert [type(m) for m in read(bench.switch_on())] == [CoilBoot, CoilStatus, CoilDipoleStatus]
     reports = []
     for tick, asked in enumerate([0.25, 0.5, None, -0.75, None]):

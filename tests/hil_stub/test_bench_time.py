@@ -12,7 +12,7 @@ from fsw.wire.messages import (
     TickDone,
 )
 from fsw.wire.messages import CoilRefusedReason as Reason
-from hil_stub.bench import BenchNode, CoilBoard, SunBoard
+from hil_stub.bench import Bench, CoilBoard, SunBoard
 from hil_stub.coils.coil_driver import CoilLimits, Pin
 from hil_stub.coils.events import CoilEventCode
 from hil_stub.sensors.stimulus import constant
@@ -23,7 +23,7 @@ class TestTheDeadMan:
 
     @pytest.fixture
     def watched(self):
-        bench = BenchNode(lambda: CoilBoard(CoilLimits(1)), deadman_ms=5000)
+        bench = Bench(lambda: CoilBoard(CoilLimits(1)), deadman_ms=5000)
         bench.switch_on(now_ms=1000)
         return bench
 
@@ -125,7 +125,7 @@ class TestTheDeadMan:
         assert read(self.fly(bench, [10]))[0].lockout_ms == 89_000
 
     def test_sensors_go_on(self, read):
-        bench = BenchNode(lambda: SunBoard(1, constant((1.0, 0.0, 0.0))), deadman_ms=5000)
+        bench = Bench(lambda: SunBoard(1, constant((1.0, 0.0, 0.0))), deadman_ms=5000)
         bench.switch_on()
         bench.watch(10**6)
         assert len(read(bench.receive(Sync(1, 0).encode(), 10**6))) == 1
@@ -134,7 +134,7 @@ class TestTheDeadMan:
 class TestAClockOfItsOwn:
     @pytest.fixture
     def clocked(self):
-        bench = BenchNode(lambda: CoilBoard(CoilLimits(1)), has_clock=True)
+        bench = Bench(lambda: CoilBoard(CoilLimits(1)), has_clock=True)
         bench.switch_on(now_ms=5_000_000)
         return bench
 
@@ -162,7 +162,7 @@ class TestTimeThatPassesWithoutTicks:
     @pytest.fixture
     def free(self):
         """In tick 150, all back-offs over; the last thing heard is its SYNC, at 151 s."""
-        bench = BenchNode(lambda: CoilBoard(CoilLimits(1)), deadman_ms=5000, has_clock=True)
+        bench = Bench(lambda: CoilBoard(CoilLimits(1)), deadman_ms=5000, has_clock=True)
         bench.switch_on(now_ms=1000)
         for tick in range(150):
             bench.receive(Sync(tick, 0).encode(), 1000 + 1000 * tick)

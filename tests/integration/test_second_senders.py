@@ -135,7 +135,7 @@ def test_a_bus_on_which_a_node_waits_is_refused(command, boot, port, start, torq
     done = torquer("sil", *FLIGHT, "--bus", f"loop:{port}", "--out", tmp_path / "run")
     hub.close()
     assert (done.code, done.out) == (2, "")
-    assert f"torquer: loop:{port} is taken: {boot}" in done.sentence
+    assert f"torquer: loop:{port} is in use: {boot}" in done.sentence
     assert not (tmp_path / "run").exists()
     node.process.kill()
 

@@ -4,7 +4,7 @@ from collections import deque
 
 import pytest
 
-from hil_stub.bench import BenchNode
+from hil_stub.bench import Bench
 from sim.conformance.board_link import BOARD_KINDS, BoardLink
 
 
@@ -70,7 +70,7 @@ def session_with():
     """Makes a session with a board (made anew at each restart) in simulated time."""
 
     def make(
-        make_board, tick_hz=1, kind="coil", deadman_ms=5000, has_clock=True, bench=BenchNode, bus=SimulatedBus
+        make_board, tick_hz=1, kind="coil", deadman_ms=5000, has_clock=True, bench=Bench, bus=SimulatedBus
     ):
         link = bus(bench(make_board, deadman_ms, has_clock))
         return BoardLink(link, BOARD_KINDS[kind], tick_hz, clock=lambda: link.now_s)

@@ -10,13 +10,13 @@ from fsw.wire.messages import (
     CoilStatus,
     PlantBoot,
 )
-from hil_stub.bench import BenchNode, CoilBoard
+from hil_stub.bench import Bench, CoilBoard
 from hil_stub.coils.coil_driver import CoilLimits
 from sim.conformance.board_under_test import BoardLimits
 from sim.conformance.check_runner import run_checks
 
 
-class FaultyBench(BenchNode):
+class FaultyBench(Bench):
     """A bench whose frames, in and out, pass through what a fault makes of them."""
 
     outward = staticmethod(lambda frames, tick: frames)
@@ -69,7 +69,7 @@ def believes_one(self, tick):
     )
 
 
-follow = BenchNode._follow
+follow = Bench._follow
 
 
 def fed_by_any(self, tick):
