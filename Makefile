@@ -50,6 +50,7 @@ lint: venv
 	$(bin)/python tools/generate_messages.py --check
 	$(bin)/python tools/generate_icd.py --check
 	$(bin)/python tools/write_requirements.py --check
+	$(bin)/python tools/draw_design.py --check
 
 test-vcan: venv
 	TORQUER_REQUIRE_VCAN=1 tests/with-vcan $(bin)/pytest -q -rs -p no:cacheprovider -m vcan

