@@ -29,7 +29,7 @@ class Chart(NamedTuple):
     words: str
 
 
-class Section(NamedTuple):
+class ChartSection(NamedTuple):
     """A section with charts, or a note why there are none."""
 
     anchor: str
@@ -38,27 +38,29 @@ class Section(NamedTuple):
     note: str = ""
 
 
-def sections(scenario: Scenario, truth: Histories, estimates: Estimates, audit: AuditReport) -> list[Section]:
+def sections(
+    scenario: Scenario, truth: Histories, estimates: Estimates, audit: AuditReport
+) -> list[ChartSection]:
     """All sections with charts."""
     if len(truth["t_s"]) == 0:
-        return [Section("attitude", "Flight", note="No tick was flown: there is nothing to draw.")]
-    flown = FlightHistories.of(scenario, truth, estimates, audit)
+        return [ChartSection("attitude", "Flight", note="No tick was flown: there is nothing to draw.")]
+    histories = FlightHistories.of(scenario, truth, estimates, audit)
     with style():
         return [
-            Section("attitude", "Attitude", _drawn(flown, _ATTITUDE)),
-            Section("estimate", "Estimate", _drawn(flown, _ESTIMATE))
-            if flown.has_estimates
-            else Section("estimate", "Estimate", note=_NO_ESTIMATE[scenario.knowledge]),
-            Section("coils", _COILS_TITLE, _drawn(flown, _coils(audit.limits)))
+            ChartSection("attitude", "Attitude", _charts(histories, _ATTITUDE)),
+            ChartSection("estimate", "Estimate", _charts(histories, _ESTIMATE))
+            if histories.has_estimates
+            else ChartSection("estimate", "Estimate", note=_NO_ESTIMATE[scenario.knowledge]),
+            ChartSection("coils", _COILS_TITLE, _charts(histories, _coils(audit.limits)))
             if audit.pulses
-            else Section("coils", _COILS_TITLE, note="No coil was driven."),
-            Section("environment", "Field, dipole and torques", _drawn(flown, _ENVIRONMENT)),
+            else ChartSection("coils", _COILS_TITLE, note="No coil was driven."),
+            ChartSection("environment", "Field, dipole and torques", _charts(histories, _ENVIRONMENT)),
         ]
 
 
-def _drawn(flown: FlightHistories, drawings: tuple[Drawing, ...]) -> tuple[Chart, ...]:
+def _charts(histories: FlightHistories, drawings: tuple[Drawing, ...]) -> tuple[Chart, ...]:
     return tuple(
-        Chart(draw.__name__, Markup(svg(draw(flown), draw.__name__)), words) for draw, words in drawings
+        Chart(draw.__name__, Markup(svg(draw(histories), draw.__name__)), words) for draw, words in drawings
     )
 
 

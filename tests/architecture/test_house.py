@@ -135,16 +135,12 @@ def test_every_stage_of_a_step_fits_a_screen(name):
     assert len(counted) + bool(arguments.vararg) + bool(arguments.kwarg) <= MOST_ARGUMENTS
 
 
-NAMES_OF_TWO = {"Flown", "Heard", "Kind", "Limits", "Node", "Pulse", "Section", "Verdict"}
-"""Class names that still stand for two things. The list only shrinks."""
-
-
 def test_no_class_name_stands_for_two_things():
     classes = [
         (node.name, f"{relative(path)}:{node.lineno}")
         for path in MODULES
         for node in ast.walk(ast.parse(path.read_text()))
-        if isinstance(node, ast.ClassDef) and node.name not in NAMES_OF_TWO
+        if isinstance(node, ast.ClassDef)
     ]
     places = {name: [place for other, place in classes if other == name] for name, _ in classes}
     assert {name: where for name, where in places.items() if len(where) > 1} == {}

@@ -149,8 +149,8 @@ def test_noise(make_world, seed):
 
 @pytest.mark.parametrize("knowledge", ["filter", "perfect"])
 @pytest.mark.parametrize("seed", range(6))
-def test_liars(make_world, seed, knowledge):
-    """Every board lies about everything, in well-formed frames."""
+def test_false_samples_from_every_board(make_world, seed, knowledge):
+    """Random values in well-formed frames, from every board."""
     config, random = make_world(knowledge=knowledge).config, Random(seed)
     state, watch = boot(config), Watch(config)
     for tick in range(TICKS):
@@ -163,8 +163,8 @@ def test_liars(make_world, seed, knowledge):
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_one_liar_among_honest_boards(make_world, seed):
-    """The filter runs; then the Sun sensor or the magnetometer says anything, at times for long."""
+def test_false_samples_from_one_sensor(make_world, seed):
+    """The filter runs; then the Sun sensor or the magnetometer sends random values, at times for long."""
     world, random = make_world(seed=seed), Random(seed)
     watch, liar = Watch(world.config), random.choice([SunVector, MagField])
     for tick in range(TICKS):

@@ -66,7 +66,7 @@ def fly(coils, parts, ticks=EVERY, noise=1.0, alter=lambda estimate: estimate, l
 
 
 def judged(estimate):
-    """The estimate after it, and whom it accuses."""
+    """The estimate after the solution, and the coil that it isolates."""
     estimate, solution = solve(estimate, CONFIG)
     return estimate, solution and too_little(solution, WEAK_PART, SIGMAS)
 
