@@ -17,16 +17,16 @@ import pytest
 
 LIMITS = (
     "--set",
-    "coils.pulse_s=0.8",
+    "coils.pulse_s=1.2",
     "--set",
-    "coils.backoff_s=2.6",
+    "coils.backoff_s=3.9",
     "--tick-hz",
-    "3",
+    "2",
     "--deadman-s",
-    "0.8",
+    "1.2",
 )
-BOARD = ("coil", "--pulse-s", "0.8", "--backoff-s", "2.6", "--tick-hz", "3", "--deadman-s", "0.8")
-SHORT = (*BOARD, "--backoff-s", "2.0")
+BOARD = ("coil", "--pulse-s", "1.2", "--backoff-s", "3.9", "--tick-hz", "2", "--deadman-s", "1.2")
+SHORT = (*BOARD, "--backoff-s", "3.0")
 
 
 def start(*words):
@@ -86,7 +86,7 @@ def ended():
                 suites[name] = conformance(bench_bus, *options)
             suites["nobody"] = conformance(loop())
             result = {
-                name: (*suite.communicate(timeout=120), suite.returncode) for name, suite in suites.items()
+                name: (*suite.communicate(timeout=200), suite.returncode) for name, suite in suites.items()
             }
         finally:
             for process in (*boards, *suites.values()):
