@@ -15,7 +15,7 @@
 # make coverage     branch coverage of the same modules, which must be complete, into the same page: a minute
 
 PYTHON ?= python3
-PYTEST_FLAGS ?= -q -rs -n 3 --dist worksteal
+PYTEST_FLAGS ?= -q -rs -n 2 --dist worksteal
 PYTHONS ?=
 
 bin := .venv/bin
