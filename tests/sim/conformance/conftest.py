@@ -66,8 +66,8 @@ def slow_bus():
 
 
 @pytest.fixture
-def session_with():
-    """Makes a session with a board (made anew at each restart) in simulated time."""
+def link_to():
+    """Makes a link to a board (made anew at each restart) in simulated time."""
 
     def make(
         make_board, tick_hz=1, kind="coil", deadman_ms=5000, has_clock=True, bench=Bench, bus=SimulatedBus

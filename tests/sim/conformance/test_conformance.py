@@ -27,26 +27,26 @@ NAMES = [check.run.__name__ for check in CHECKS]
 @pytest.mark.parametrize("has_clock", [True, False], ids=["clock", "ticks"])
 @pytest.mark.parametrize("shared", [True, False], ids=["shared", "per_coil"])
 @pytest.mark.parametrize("hz", [1, 3, 10])
-def test_the_stub_conforms(session_with, hz, shared, has_clock, failures):
-    session = session_with(lambda: CoilBoard(CoilLimits(hz, shared=shared)), hz, has_clock=has_clock)
-    verdicts = run_checks(session, BoardLimits(shared=shared), armed=True)
+def test_the_stub_conforms(link_to, hz, shared, has_clock, failures):
+    link = link_to(lambda: CoilBoard(CoilLimits(hz, shared=shared)), hz, has_clock=has_clock)
+    verdicts = run_checks(link, BoardLimits(shared=shared), armed=True)
     assert [verdict.name for verdict in verdicts] == NAMES
     assert all(verdict.ran and verdict.what for verdict in verdicts)
     found = failures(verdicts)
     assert set(found) == (set() if has_clock else {"own_clock", "held_tick"})
 
 
-def test_a_board_has_a_whole_tick_for_its_answer(session_with, slow_bus, failures):
+def test_a_board_has_a_whole_tick_for_its_answer(link_to, slow_bus, failures):
     """Also when ticks come early: they come no sooner than it answers."""
-    session = session_with(lambda: CoilBoard(CoilLimits(10)), 10, bus=slow_bus)
-    assert failures(run_checks(session, BoardLimits(), armed=True)) == {}
+    link = link_to(lambda: CoilBoard(CoilLimits(10)), 10, bus=slow_bus)
+    assert failures(run_checks(link, BoardLimits(), armed=True)) == {}
 
 
 @pytest.mark.parametrize(("pulse_ms", "backoff_ms", "deadman_s"), [(2500, 7300, 5.0), (500, 1500, 0.5)])
-def test_it_conforms_with_other_limits(session_with, pulse_ms, backoff_ms, deadman_s, failures):
+def test_it_conforms_with_other_limits(link_to, pulse_ms, backoff_ms, deadman_s, failures):
     limits = CoilLimits(10, pulse_ms, backoff_ms)
-    session = session_with(lambda: CoilBoard(limits), 10, deadman_ms=round(1000 * deadman_s))
-    assert failures(run_checks(session, BoardLimits(pulse_ms, backoff_ms, True, deadman_s), armed=True)) == {}
+    link = link_to(lambda: CoilBoard(limits), 10, deadman_ms=round(1000 * deadman_s))
+    assert failures(run_checks(link, BoardLimits(pulse_ms, backoff_ms, True, deadman_s), armed=True)) == {}
 
 
 @pytest.mark.parametrize(
@@ -56,38 +56,38 @@ def test_it_conforms_with_other_limits(session_with, pulse_ms, backoff_ms, deadm
         ("sun", lambda: SunBoard(1, constant((1.0, 0.0, 0.0)))),
     ],
 )
-def test_sensors_conform(session_with, kind, make, failures):
-    verdicts = run_checks(session_with(make, kind=kind), BoardLimits(), armed=False)
+def test_sensors_conform(link_to, kind, make, failures):
+    verdicts = run_checks(link_to(make, kind=kind), BoardLimits(), armed=False)
     assert [verdict.name for verdict in verdicts] == ["boot", "noise", "lost_count", "all_along"]
     assert failures(verdicts) == {}
 
 
-def test_without_arm_no_request_is_ever_sent(session_with, failures):
-    session = session_with(lambda: CoilBoard(CoilLimits(1)))
-    bus, sent = session._bus, []
+def test_without_arm_no_request_is_ever_sent(link_to, failures):
+    link = link_to(lambda: CoilBoard(CoilLimits(1)))
+    bus, sent = link._bus, []
     send = bus.send
     bus.send = lambda frames: (sent.extend(frames), send(frames))
-    verdicts = run_checks(session, BoardLimits(), armed=False)
+    verdicts = run_checks(link, BoardLimits(), armed=False)
     assert failures(verdicts) == {}
     assert {v.name for v in verdicts if not v.ran} == {c.run.__name__ for c in CHECKS if c.power}
     assert len(sent) > 20
     assert not any(frame.can_id & 0x7FF == CoilFire.ID for frame in sent)
 
 
-def test_a_bus_without_a_board_is_an_error(session_with):
-    session = session_with(lambda: CoilBoard(CoilLimits(1)))
-    session._bus.queue.clear()
-    session._bus.send = lambda frames: None
+def test_a_bus_without_a_board_is_an_error(link_to):
+    link = link_to(lambda: CoilBoard(CoilLimits(1)))
+    link._bus.queue.clear()
+    link._bus.send = lambda frames: None
     with pytest.raises(HarnessError, match="no COIL board answers"):
-        run_checks(session, BoardLimits(), armed=True)
+        run_checks(link, BoardLimits(), armed=True)
 
 
 @pytest.mark.parametrize("stranger", [Sync(5, 0)])
-def test_somebody_else_who_paces_the_bus_is_an_error(session_with, stranger):
-    session = session_with(lambda: CoilBoard(CoilLimits(1)))
-    session._bus.queue.append(stranger.encode())
+def test_somebody_else_who_paces_the_bus_is_an_error(link_to, stranger):
+    link = link_to(lambda: CoilBoard(CoilLimits(1)))
+    link._bus.queue.append(stranger.encode())
     with pytest.raises(HarnessError, match="another node sends SYNC"):
-        run_checks(session, BoardLimits(), armed=True)
+        run_checks(link, BoardLimits(), armed=True)
 
 
 def without(reason):
@@ -226,35 +226,33 @@ IN_THE_BOARD = {
 
 
 @pytest.mark.parametrize(("plant", "finds"), IN_THE_BOARD.values(), ids=IN_THE_BOARD)
-def test_a_fault_in_the_board_is_found(session_with, monkeypatch, plant, finds, failures):
+def test_a_fault_in_the_board_is_found(link_to, monkeypatch, plant, finds, failures):
     plant(monkeypatch)
-    found = failures(run_checks(session_with(lambda: CoilBoard(CoilLimits(1))), BoardLimits(), armed=True))
+    found = failures(run_checks(link_to(lambda: CoilBoard(CoilLimits(1))), BoardLimits(), armed=True))
     assert finds in found, found
 
 
 @pytest.mark.parametrize(("of_board", "of_bench"), [(True, False), (False, True)])
-def test_the_wrong_kind_of_back_off_is_found(session_with, of_board, of_bench, failures):
-    session = session_with(lambda: CoilBoard(CoilLimits(1, shared=of_board)))
-    assert "back_off" in failures(run_checks(session, BoardLimits(shared=of_bench), armed=True))
+def test_the_wrong_kind_of_back_off_is_found(link_to, of_board, of_bench, failures):
+    link = link_to(lambda: CoilBoard(CoilLimits(1, shared=of_board)))
+    assert "back_off" in failures(run_checks(link, BoardLimits(shared=of_bench), armed=True))
 
 
-def test_no_dead_man_is_found(session_with, failures):
-    session = session_with(lambda: CoilBoard(CoilLimits(1)), deadman_ms=None)
-    assert {"dead_man", "dead_man_in_a_pulse"} <= set(
-        failures(run_checks(session, BoardLimits(), armed=True))
-    )
+def test_no_dead_man_is_found(link_to, failures):
+    link = link_to(lambda: CoilBoard(CoilLimits(1)), deadman_ms=None)
+    assert {"dead_man", "dead_man_in_a_pulse"} <= set(failures(run_checks(link, BoardLimits(), armed=True)))
 
 
-def test_a_restart_that_costs_nothing_is_found(session_with, failures):
+def test_a_restart_that_costs_nothing_is_found(link_to, failures):
     """The board is the same one after PLANT_BOOT: its timers run on."""
     board = CoilBoard(CoilLimits(1))
-    session = session_with(lambda: board)
-    assert "restart_in_a_pulse" in failures(run_checks(session, BoardLimits(), armed=True))
+    link = link_to(lambda: board)
+    assert "restart_in_a_pulse" in failures(run_checks(link, BoardLimits(), armed=True))
 
 
-def test_a_board_that_speaks_out_of_turn_is_found(session_with, failures):
-    session = session_with(lambda: CoilBoard(CoilLimits(1)))
-    bus, receive = session._bus, session._bus.receive
+def test_a_board_that_speaks_out_of_turn_is_found(link_to, failures):
+    link = link_to(lambda: CoilBoard(CoilLimits(1)))
+    bus, receive = link._bus, link._bus.receive
     said = CoilStatus(0, 0, 0, 0, 0, 0).encode()
 
     def babble(timeout_s):
@@ -262,7 +260,7 @@ def test_a_board_that_speaks_out_of_turn_is_found(session_with, failures):
         return said if frame is None and timeout_s > 4.0 else frame
 
     bus.receive = babble
-    assert "dead_man" in failures(run_checks(session, BoardLimits(), armed=False))
+    assert "dead_man" in failures(run_checks(link, BoardLimits(), armed=False))
 
 
 def test_the_number_of_the_dead_man_is_that_of_the_board():

@@ -133,10 +133,10 @@ ON_THE_BUS = {
 
 
 @pytest.mark.parametrize(("parts", "finds"), ON_THE_BUS.values(), ids=ON_THE_BUS)
-def test_a_fault_on_the_bus_is_found(session_with, parts, finds, failures):
+def test_a_fault_on_the_bus_is_found(link_to, parts, finds, failures):
     faulty = type("Faulty", (FaultyBench,), parts)
     found = failures(
-        run_checks(session_with(lambda: CoilBoard(CoilLimits(1)), bench=faulty), BoardLimits(), armed=True)
+        run_checks(link_to(lambda: CoilBoard(CoilLimits(1)), bench=faulty), BoardLimits(), armed=True)
     )
     assert found
     assert finds is None or finds in found, found
