@@ -1,16 +1,19 @@
 """The configuration of a plant: every number that the physics needs, in SI, as frozen values."""
 
 from dataclasses import dataclass
-from math import isclose, pi
+from math import isclose
 from typing import Literal
 
 from hil_stub.coils.coil_driver import CoilLimits
-from sim.plant.rotation import ZERO, Mat3, Quaternion, Vec3
+from sim.plant.rotation import ONES, ZERO, Mat3, Quaternion, Vec3
+from sim.plant.sensor_config import (
+    PERFECT_MAGNETOMETER,
+    PERFECT_SUN_SENSOR,
+    MagnetometerConfig,
+    SunSensorConfig,
+)
 
 FieldModel = Literal["igrf14", "tilted_dipole", "direct_dipole"]
-
-ONES: Vec3 = (1.0, 1.0, 1.0)
-NO_COUPLING: Mat3 = (ZERO, ZERO, ZERO)
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +26,7 @@ class OrbitConfig:
         inclination_rad: to the equator of the frame ``eci``.
         raan_rad: right ascension of the ascending node.
         u0_rad: argument of latitude at the epoch.
+        along_track_m: how far the satellite is ahead of this orbit, along its track.
     """
 
     tle: tuple[str, str] | None = None
@@ -30,6 +34,7 @@ class OrbitConfig:
     inclination_rad: float = 0.0
     raan_rad: float = 0.0
     u0_rad: float = 0.0
+    along_track_m: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,15 +136,16 @@ class DisturbanceConfig:
     """Disturbances other than the gravity gradient.
 
     Attributes:
-        torque_body_nm: constant torque, body axes.
+        torque_body_nm: constant torque, body axes; the mean of one that varies daily.
         residual_dipole_body_am2: constant magnetic dipole, body axes.
         density_scale: air density over that of the model, None for no drag on the plates.
         solar_flux_wpm2: of sunlight at 1 au, None for no pressure of it on the plates.
         eddy_nms_per_t2: k_e of the eddy currents' torque k_e (omega x b) x b, 0 for none.
         torque_noise_nm_rts: root of the spectral density of a white torque per axis [N m s^(1/2)].
+        torque_daily_part: amplitude of the daily variation of ``torque_body_nm``, as a part of it.
 
     Raises:
-        ValueError: a quantity that cannot be negative is.
+        ValueError: a quantity that cannot be negative is, or the daily part is above 1.
     """
 
     torque_body_nm: Vec3 = ZERO
@@ -148,57 +154,14 @@ class DisturbanceConfig:
     solar_flux_wpm2: float | None = None
     eddy_nms_per_t2: float = 0.0
     torque_noise_nm_rts: float = 0.0
+    torque_daily_part: float = 0.0
 
     def __post_init__(self) -> None:
         for name in ("density_scale", "solar_flux_wpm2", "eddy_nms_per_t2", "torque_noise_nm_rts"):
             if not (getattr(self, name) or 0.0) >= 0.0:
                 raise ValueError(f"{name} must not be negative")
-
-
-@dataclass(frozen=True, slots=True)
-class MagnetometerConfig:
-    """The magnetometer's errors.
-
-    Attributes:
-        noise_t: standard deviation per axis and sample.
-        bias_t: constant offset, sensor axes.
-        scale: factor per sensor axis.
-        misalignment_rad: rotation vector that turns the body axes into the sensor's.
-        quantum_t: step of the reading, 0 for none.
-        saturation_t: largest magnitude of an axis; beyond it the sample is not valid.
-        coil_coupling_t_per_am2: column j is the field at the sensor, body axes, per dipole of coil j.
-        latency_s: age of the values in a sample.
-    """
-
-    noise_t: float = 0.0
-    bias_t: Vec3 = ZERO
-    scale: Vec3 = ONES
-    misalignment_rad: Vec3 = ZERO
-    quantum_t: float = 0.0
-    saturation_t: float = 65e-6
-    coil_coupling_t_per_am2: Mat3 = NO_COUPLING
-    latency_s: float = 0.0
-
-
-@dataclass(frozen=True, slots=True)
-class SunSensorConfig:
-    """The Sun sensor's errors.
-
-    Attributes:
-        noise_rad: standard deviation of a small rotation about each axis, per sample.
-        misalignment_rad: rotation vector that turns the body axes into the sensor's.
-        quantum: step of a component of the unit vector, 0 for none.
-        latency_s: age of the values in a sample.
-        fov_half_rad: half the opening angle of each cone of view.
-        boresights_body: unit axes of the cones, body axes; none: it sees all around.
-    """
-
-    noise_rad: float = 0.0
-    misalignment_rad: Vec3 = ZERO
-    quantum: float = 0.0
-    latency_s: float = 0.0
-    fov_half_rad: float = pi
-    boresights_body: tuple[Vec3, ...] = ()
+        if not 0.0 <= self.torque_daily_part <= 1.0:
+            raise ValueError("torque_daily_part must lie between 0 and 1")
 
 
 @dataclass(frozen=True, slots=True)
@@ -216,7 +179,7 @@ class ContinuousConfig:
 
 @dataclass(frozen=True, slots=True)
 class CoilConfig:
-    """Three coils along the body axes.
+    """Three coils, nominally along the body axes.
 
     Attributes:
         levels_am2: nominal dipoles of levels 1, 2, 3, rising.
@@ -224,6 +187,7 @@ class CoilConfig:
         time_constant_s: of the current's rise and decay, 0 for none.
         dipole_scale: true over nominal dipole of each coil: 1 is right, -1 is wired the wrong way round.
         continuous: the continuous driver; None: one that gives pulses of the levels.
+        misalignment_rad: by coil, the rotation vector that turns its axis out of the body axis, body axes.
 
     Raises:
         ValueError: the levels do not rise from above zero, or a quantity is out of range.
@@ -234,6 +198,7 @@ class CoilConfig:
     time_constant_s: float = 0.01
     dipole_scale: Vec3 = ONES
     continuous: ContinuousConfig | None = None
+    misalignment_rad: Mat3 = (ZERO, ZERO, ZERO)
 
     def __post_init__(self) -> None:
         low, middle, high = self.levels_am2
@@ -277,8 +242,8 @@ class PlantConfig:
     body: BodyConfig
     initial: InitialConfig = InitialConfig()
     disturbance: DisturbanceConfig = DisturbanceConfig()
-    magnetometer: MagnetometerConfig = MagnetometerConfig()
-    sun_sensor: SunSensorConfig = SunSensorConfig()
+    magnetometer: MagnetometerConfig = PERFECT_MAGNETOMETER
+    sun_sensor: SunSensorConfig = PERFECT_SUN_SENSOR
     coils: CoilConfig
     limits: CoilLimits
     max_substep_s: float = 1.0

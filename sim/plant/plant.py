@@ -11,7 +11,7 @@ from hil_stub.sensors.magnetometer import Magnetometer
 from hil_stub.sensors.sun_sensor import SunSensor
 from sim.plant.config import PlantConfig
 from sim.plant.dynamics import torques
-from sim.plant.dynamics.disturbances import effects, torque_noise
+from sim.plant.dynamics.disturbances import bias_torque, effects, torque_noise
 from sim.plant.dynamics.rigid_body import Motion, RigidBody, Torque
 from sim.plant.environment.surroundings import Environment, Surroundings
 from sim.plant.errors import PlantError
@@ -187,7 +187,7 @@ class Plant:
                 torques.gravity_gradient(inertia, e_body, around.gradient_ps2),
                 torques.magnetic(self._mean_dipole_am2, b_body_t),
                 torques.magnetic(disturbance.residual_dipole_body_am2, b_body_t),
-                disturbance.torque_body_nm,
+                self._bias_body_nm(),
                 *(
                     effect(self._body_from_eci, self.motion.omega_body_radps, around)
                     for effect in self._effects
@@ -205,7 +205,7 @@ class Plant:
         inertia, disturbance, found = self._config.body.inertia_kgm2, self._config.disturbance, self._effects
         (mx, my, mz), (rx, ry, rz) = m_body_am2, disturbance.residual_dipole_body_am2
         dipole = (mx + rx, my + ry, mz + rz)
-        (bx, by, bz), (nx, ny, nz) = disturbance.torque_body_nm, self._noise_body_nm
+        (bx, by, bz), (nx, ny, nz) = self._bias_body_nm(), self._noise_body_nm
         bias = (bx + nx, by + ny, bz + nz)
         if not found:
             return lambda q, omega, around: torques.total(inertia, q, around, dipole, bias)
@@ -219,6 +219,10 @@ class Plant:
             return (x, y, z)
 
         return torque
+
+    def _bias_body_nm(self) -> Vec3:
+        """The constant torque with its daily variation, at the instant of the tick."""
+        return bias_torque(self._config.disturbance, self._tick / self._config.tick_hz)
 
     def _initial_motion(self) -> Motion:
         sample, initial = self._environment.sample(0), self._config.initial

@@ -13,6 +13,7 @@ Mat3 = tuple[Vec3, Vec3, Vec3]
 Quaternion = tuple[float, float, float, float]
 
 ZERO: Vec3 = (0.0, 0.0, 0.0)
+ONES: Vec3 = (1.0, 1.0, 1.0)
 
 
 def cross(a: Vec3, b: Vec3) -> Vec3:

@@ -10,12 +10,11 @@ from sim.plant.config import (
     DisturbanceConfig,
     FieldConfig,
     InitialConfig,
-    MagnetometerConfig,
     OrbitConfig,
     PlantConfig,
     PlateConfig,
-    SunSensorConfig,
 )
+from sim.plant.sensor_config import MagnetometerConfig, SunSensorConfig
 from sim.scenario.coil_limits import coil_limits
 from sim.scenario.schema import Scenario
 
@@ -57,13 +56,15 @@ def _config(scenario: Scenario, seed: int) -> PlantConfig:
 
 def _orbit(scenario: Scenario) -> OrbitConfig:
     orbit = scenario.orbit
+    along_track_m = 1000.0 * orbit.along_track_km
     if orbit.tle is not None:
-        return OrbitConfig(tle=orbit.tle)
+        return OrbitConfig(tle=orbit.tle, along_track_m=along_track_m)
     return OrbitConfig(
         altitude_m=1000.0 * (orbit.altitude_km or 0.0),
         inclination_rad=radians(orbit.inclination_deg),
         raan_rad=radians(orbit.raan_deg),
         u0_rad=radians(orbit.u0_deg),
+        along_track_m=along_track_m,
     )
 
 
@@ -92,11 +93,13 @@ def _disturbance(scenario: Scenario) -> DisturbanceConfig:
         solar_flux_wpm2=section.solar_pressure.flux_wpm2 if section.solar_pressure else None,
         eddy_nms_per_t2=section.eddy_nms_per_t2,
         torque_noise_nm_rts=section.torque_noise_nm_rts,
+        torque_daily_part=section.torque_daily_part,
     )
 
 
 def _coils(scenario: Scenario) -> CoilConfig:
     coils = scenario.coils
+    first, second, third = coils.misalignment_deg
     continuous = None
     if coils.driver == "continuous" and coils.max_dipole_am2 is not None:
         continuous = ContinuousConfig(coils.max_dipole_am2, coils.on_fraction)
@@ -106,6 +109,7 @@ def _coils(scenario: Scenario) -> CoilConfig:
         coils.time_constant_s,
         coils.dipole_scale,
         continuous,
+        (_radians(first), _radians(second), _radians(third)),
     )
 
 
@@ -125,6 +129,7 @@ def _magnetometer(scenario: Scenario) -> MagnetometerConfig:
         bias_t=_scaled(section.bias_nt, NT),
         scale=section.scale,
         misalignment_rad=_radians(section.misalignment_deg),
+        non_orthogonality_rad=_radians(section.non_orthogonality_deg),
         quantum_t=section.quantum_nt * NT,
         saturation_t=section.saturation_nt * NT,
         coil_coupling_t_per_am2=(_scaled(first, NT), _scaled(second, NT), _scaled(third, NT)),

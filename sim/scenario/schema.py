@@ -15,14 +15,24 @@ from typing import Any, Literal, Self
 from pydantic import Field, model_validator
 
 from fsw.core.orbit.tle import tle_elements
-from fsw.input.schema import Nested, Positive, Section, TableError, Triple, merge, read_toml, validated
+from fsw.input.schema import (
+    Nested,
+    Positive,
+    Section,
+    Square,
+    TableError,
+    Triple,
+    merge,
+    read_toml,
+    validated,
+)
 from fsw.input.toml_text import MOST_LEVELS, BoundsError, parse_toml
 from fsw.table import table as onboard
-from fsw.table.sections import CIRCULAR_KEYS, CoilTable, ControlTable, OrbitTable, TimeTable
+from fsw.table.sections import CIRCULAR_KEYS, CoilTable, ControlTable, TimeTable
 from fsw.table.table import FlightTable
 from sim.faults.section import Faults
 from sim.scenario.names import Name
-from sim.scenario.sections import DisturbanceSection, ScenarioBody, SensorsSection
+from sim.scenario.sections import DisturbanceSection, ScenarioBody, ScenarioOrbit, SensorsSection
 from sim.scenario.telecommands import Telecommands
 
 MU_M3PS2 = 3.986004418e14
@@ -58,13 +68,17 @@ class InitialState(Section):
 
 
 class ScenarioCoils(CoilTable):
-    """Limits and levels, and the physics of coil and driver."""
+    """Limits and levels, and the physics of coil and driver.
+
+    ``misalignment_deg`` holds, by coil, the rotation vector that turns its axis, body axes.
+    """
 
     pulse_s: float = Field(default=3.0, gt=0.0, le=3.0)
     backoff_s: float = Field(default=100.0, ge=0.0, le=160.0)
     backoff: Literal["shared", "per_coil"] = "shared"
     time_constant_s: Positive = 0.01
     dipole_scale: Triple = (1.0, 1.0, 1.0)
+    misalignment_deg: Square = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
 class PlantSection(Section):
@@ -80,7 +94,7 @@ class Scenario(Section):
     summary: str
     knowledge: Literal["filter", "perfect"] = "filter"
     time: ScenarioTime
-    orbit: OrbitTable
+    orbit: ScenarioOrbit
     field: TruthField = TruthField()
     body: ScenarioBody
     initial: InitialState = InitialState()

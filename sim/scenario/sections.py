@@ -1,14 +1,21 @@
-"""Sections of a scenario that only the plant uses: surface, sensors, disturbances."""
+"""Sections of a scenario with keys that only the plant uses: orbit, surface, sensors, disturbances."""
 
 from typing import Annotated, Self
 
 from pydantic import Field, Strict, model_validator
 
 from fsw.input.schema import NotNegative, Positive, Section, Triple
-from fsw.table.sections import BodyTable
+from fsw.table.sections import BodyTable, OrbitTable
 
 Part = Annotated[float, Field(ge=0.0, le=1.0)]
+Skew = Annotated[float, Field(ge=-10.0, le=10.0)]
 Latency = Annotated[float, Field(ge=0.0, le=60.0)]
+
+
+class ScenarioOrbit(OrbitTable):
+    """The onboard orbit, and how far along its track the satellite is ahead of it."""
+
+    along_track_km: float = Field(default=0.0, ge=-20000.0, le=20000.0)
 
 
 class PlateSection(Section):
@@ -40,12 +47,16 @@ class ScenarioBody(BodyTable):
 
 
 class MagnetometerSection(Section):
-    """Physics of the magnetometer, body axes."""
+    """Physics of the magnetometer, body axes.
+
+    ``non_orthogonality_deg`` is what the angles xy, xz and yz between its axes lack of a right angle.
+    """
 
     noise_nt: NotNegative = 200.0
     bias_nt: Triple = (0.0, 0.0, 0.0)
     scale: Triple = (1.0, 1.0, 1.0)
     misalignment_deg: Triple = (0.0, 0.0, 0.0)
+    non_orthogonality_deg: Annotated[tuple[Skew, Skew, Skew], Strict(False)] = (0.0, 0.0, 0.0)
     quantum_nt: NotNegative = 2.0
     saturation_nt: Positive = 65000.0
     latency_s: Latency = 0.0
@@ -97,10 +108,12 @@ class SolarPressureSection(Section):
 class DisturbanceSection(Section):
     """Constant torque, residual dipole, eddy currents (k of k (omega x b) x b), white torque; drag and light.
 
-    ``torque_noise_nm_rts`` is the root of the spectral density of the white torque per axis.
+    ``torque_noise_nm_rts`` is the root of the spectral density of the white torque per axis,
+    ``torque_daily_part`` the amplitude of the constant torque's daily variation as a part of it.
     """
 
     torque_nm: Triple = (0.0, 0.0, 0.0)
+    torque_daily_part: Part = 0.0
     residual_dipole_am2: Triple = (0.0, 0.0, 0.0)
     eddy_nms_per_t2: NotNegative = 0.0
     torque_noise_nm_rts: NotNegative = 0.0

@@ -1,16 +1,33 @@
-"""The optional torques: drag, solar pressure, eddy currents and noise."""
+"""The disturbance torques: the constant one, drag, solar pressure, eddy currents and noise."""
 
 from collections.abc import Callable, Iterator
-from math import sqrt
+from math import cos, pi, sqrt
 
-from sim.plant.config import PlantConfig
+from sim.plant.config import DisturbanceConfig, PlantConfig
 from sim.plant.dynamics import surfaces, torques
+from sim.plant.environment.orbit import DAY_S
 from sim.plant.environment.surroundings import Surroundings
 from sim.plant.random_streams import normals
 from sim.plant.rotation import Mat3, Vec3, transform
 
 Effect = Callable[[Mat3, Vec3, Surroundings], Vec3]
 """Torque, body axes [N m], from C(body from ``eci``), the inertial rate in body axes and the surroundings."""
+
+
+def bias_torque(disturbance: DisturbanceConfig, t_s: float) -> Vec3:
+    """T (1 + p cos(2 pi t / day)), body axes [N m]: constant torque T and its daily variation.
+
+    It stands for what no model here gives, such as outgassing, and what follows the hour, such as the air.
+
+    Args:
+        disturbance: T and p.
+        t_s: time since tick 0.
+    """
+    if not disturbance.torque_daily_part:
+        return disturbance.torque_body_nm
+    factor = 1.0 + disturbance.torque_daily_part * cos(2.0 * pi * t_s / DAY_S)
+    x, y, z = disturbance.torque_body_nm
+    return (factor * x, factor * y, factor * z)
 
 
 def effects(config: PlantConfig) -> dict[str, Effect]:

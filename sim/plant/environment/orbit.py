@@ -34,6 +34,7 @@ class CircularOrbit:
         self._radius_m = EARTH_RADIUS_M + config.altitude_m
         self._rate_radps = np.sqrt(MU_M3PS2 / self._radius_m**3)
         self._u0_rad = config.u0_rad
+        self.mean_speed_mps = float(self._radius_m * self._rate_radps)
         ci, si = np.cos(config.inclination_rad), np.sin(config.inclination_rad)
         co, so = np.cos(config.raan_rad), np.sin(config.raan_rad)
         self._p = np.array([co, so, 0.0])
@@ -61,6 +62,8 @@ class Sgp4Orbit:
 
     def __init__(self, tle: tuple[str, str], epoch_unix_s: int) -> None:
         self._satellite = _satellite(tle)
+        self.mean_speed_mps = float((MU_M3PS2 * self._satellite.no_kozai / 60.0) ** (1.0 / 3.0))
+        """(mu n)^(1/3) of the mean motion n."""
         days, self._second = divmod(epoch_unix_s, DAY_S)
         self._day_jd = UNIX_EPOCH_JD + days
 
@@ -78,11 +81,28 @@ class Sgp4Orbit:
         return 1e3 * r_km, 1e3 * v_kmps
 
 
+class LeadingOrbit:
+    """The motion on another orbit ``lead_s`` later: r(t + lead_s), v(t + lead_s).
+
+    The errors of two-line elements are mainly along the track (Flohrer, Krag and Klinkrad 2008).
+    """
+
+    def __init__(self, orbit: Orbit, lead_s: float) -> None:
+        self._orbit = orbit
+        self._lead_s = lead_s
+
+    def at(self, t_s: Array) -> tuple[Array, Array]:
+        """Position and velocity, as in ``Orbit``."""
+        return self._orbit.at(t_s + self._lead_s)
+
+
 def make_orbit(config: OrbitConfig, epoch_unix_s: int) -> Orbit:
-    """The configured orbit."""
-    if config.tle is None:
-        return CircularOrbit(config)
-    return Sgp4Orbit(config.tle, epoch_unix_s)
+    """The configured orbit, and on it the satellite ``along_track_m`` ahead, at its mean speed."""
+    orbit: CircularOrbit | Sgp4Orbit
+    orbit = CircularOrbit(config) if config.tle is None else Sgp4Orbit(config.tle, epoch_unix_s)
+    if not config.along_track_m:
+        return orbit
+    return LeadingOrbit(orbit, config.along_track_m / orbit.mean_speed_mps)
 
 
 def _satellite(tle: tuple[str, str]) -> Satrec:

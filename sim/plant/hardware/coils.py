@@ -1,9 +1,9 @@
-"""Three coils along the body axes: current, dipole and read-back."""
+"""Three coils: current, dipole and read-back."""
 
 from math import exp, expm1
 
 from sim.plant.config import CoilConfig
-from sim.plant.rotation import ZERO, Vec3
+from sim.plant.rotation import ZERO, Mat3, Vec3, from_vector, matrix, transform
 
 _EXTINCT_A = 1e-15
 """A current below this counts as zero."""
@@ -11,6 +11,8 @@ _EXTINCT_A = 1e-15
 
 class Coils:
     """Currents that follow their targets with a first-order lag: di/dt = (i_driven - i) / tau.
+
+    Their dipole is m = sum of k_j i_j R(turn_j) e_j, k_j the true dipole of one ampere.
 
     Args:
         config: the coils.
@@ -20,6 +22,7 @@ class Coils:
         self._config = config
         self._tau_s = config.time_constant_s
         self._dipole_per_ampere = [config.dipole_per_ampere_am2 * scale for scale in config.dipole_scale]
+        self._body_from_coils = _body_from_coils(config.misalignment_rad)
         self._current_a = [0.0, 0.0, 0.0]
 
     def rescale(self, coil: int, scale: float) -> None:
@@ -30,8 +33,8 @@ class Coils:
     @property
     def dipole_body_am2(self) -> Vec3:
         """The dipole at this instant."""
-        (x, y, z), (i, j, k) = self._dipole_per_ampere, self._current_a
-        return (x * i, y * j, z * k)
+        x, y, z = self._current_a
+        return self._dipole((x, y, z))
 
     @property
     def readback_a(self) -> float:
@@ -52,8 +55,12 @@ class Coils:
         if self._current_a == [0.0, 0.0, 0.0] and not (on_s and any(driven_a)):
             return ZERO
         x, y, z = (self._mean_current(coil, driven_a[coil], on_s, step_s) for coil in range(3))
-        i, j, k = self._dipole_per_ampere
-        return (x * i, y * j, z * k)
+        return self._dipole((x, y, z))
+
+    def _dipole(self, current_a: Vec3) -> Vec3:
+        (x, y, z), (i, j, k) = self._dipole_per_ampere, current_a
+        by_coil = (x * i, y * j, z * k)
+        return transform(self._body_from_coils, by_coil) if self._body_from_coils else by_coil
 
     def _mean_current(self, coil: int, target_a: float, on_s: float, step_s: float) -> float:
         charge_on, turned_off_a = self._follow(self._current_a[coil], target_a, on_s)
@@ -69,3 +76,12 @@ class Coils:
             return target_a * time_s, target_a
         gap_a, x = start_a - target_a, time_s / self._tau_s
         return target_a * time_s - gap_a * self._tau_s * expm1(-x), target_a + gap_a * exp(-x)
+
+
+def _body_from_coils(turns_rad: Mat3) -> Mat3 | None:
+    """The matrix whose columns are the coils' axes, in body axes; None where they are the body axes."""
+    if turns_rad == (ZERO, ZERO, ZERO):
+        return None
+    # C(q) takes body axes to the turned ones: its row j is the turned axis j
+    a, b, c = (matrix(from_vector(turn))[coil] for coil, turn in enumerate(turns_rad))
+    return ((a[0], b[0], c[0]), (a[1], b[1], c[1]), (a[2], b[2], c[2]))

@@ -1,11 +1,11 @@
 """Sensor physics: the readings of the boards' instruments."""
 
 from collections import deque
-from math import cos, sqrt
+from math import cos, sin, sqrt
 
-from sim.plant.config import MagnetometerConfig, SunSensorConfig
 from sim.plant.random_streams import normals
-from sim.plant.rotation import ZERO, Vec3, from_vector, matrix, transform
+from sim.plant.rotation import ZERO, Mat3, Vec3, from_vector, matrix, transform
+from sim.plant.sensor_config import MagnetometerConfig, SunSensorConfig
 
 LEAST_LIT = 0.5
 """Visible fraction of the Sun's disc below which the Sun sensor has no reading."""
@@ -37,9 +37,10 @@ class Delay:
 
 
 class MagnetometerPhysics:
-    """b = scale (R (b_body + K m)) + bias + noise, then quantised and limited to the range.
+    """b = scale (N R (b_body + K m)) + bias + noise, then quantised and limited to the range.
 
-    R turns body into sensor axes, K m is the coils' own field; both are those of ``latency_s`` ago.
+    R turns body into sensor axes, N takes them to the directions in which the three sensors point, which need
+    not be orthogonal; K m is the coils' own field. All are those of ``latency_s`` ago.
 
     Args:
         config: the errors.
@@ -51,6 +52,8 @@ class MagnetometerPhysics:
         self._config = config
         self._delay = Delay(config.latency_s, tick_hz) if config.latency_s else None
         self._sensor_from_body = matrix(from_vector(config.misalignment_rad))
+        if any(config.non_orthogonality_rad):
+            self._sensor_from_body = _skewed(config.non_orthogonality_rad, self._sensor_from_body)
         self._noise = normals(seed, "magnetometer")
 
     def measure(self, b_body_t: Vec3, m_body_am2: Vec3) -> tuple[Vec3, bool]:
@@ -124,6 +127,32 @@ class SunSensorPhysics:
         x, y, z = sun_body
         least = self._cos_half * sqrt(x * x + y * y + z * z)
         return any(x * bx + y * by + z * bz >= least for bx, by, bz in boresights)
+
+
+def _skewed(non_orthogonality_rad: Vec3, axes: Mat3) -> Mat3:
+    """N times the sensor's orthogonal axes: the unit vectors along which its three sensors measure.
+
+    x stays, y lies in the plane of x and y; the cosines between them are sin xy, sin xz and sin yz. N is
+    lower triangular, as in Merayo et al. 2000 (Scalar calibration of vector magnetometers).
+
+    Args:
+        non_orthogonality_rad: what the angles xy, xz and yz lack of a right angle.
+        axes: rows of the orthogonal axes, body axes.
+    """
+    xy, xz, yz = map(sin, non_orthogonality_rad)
+    x, y, z = axes
+    cos_xy = sqrt(1.0 - xy * xy)
+    zy = (yz - xy * xz) / cos_xy
+    zz = sqrt(1.0 - xz * xz - zy * zy)
+    return (
+        x,
+        (xy * x[0] + cos_xy * y[0], xy * x[1] + cos_xy * y[1], xy * x[2] + cos_xy * y[2]),
+        (
+            xz * x[0] + zy * y[0] + zz * z[0],
+            xz * x[1] + zy * y[1] + zz * z[1],
+            xz * x[2] + zy * y[2] + zz * z[2],
+        ),
+    )
 
 
 def _quantise(value: float, quantum: float) -> float:

@@ -16,13 +16,12 @@ from sim.plant.config import (
     DisturbanceConfig,
     FieldConfig,
     InitialConfig,
-    MagnetometerConfig,
     OrbitConfig,
     PlantConfig,
-    SunSensorConfig,
 )
 from sim.plant.plant import Plant
 from sim.plant.rotation import from_vector
+from sim.plant.sensor_config import MagnetometerConfig, SunSensorConfig
 
 REFERENCE = Path(__file__).parents[2] / "reference"
 

@@ -14,7 +14,8 @@ from fsw.wire.messages import (
     MagField,
     intact,
 )
-from sim.plant.config import CoilConfig, ContinuousConfig, MagnetometerConfig
+from sim.plant.config import CoilConfig, ContinuousConfig
+from sim.plant.sensor_config import MagnetometerConfig
 
 SCALE = (0.97, 1.02, -1.05)
 COILS = CoilConfig((0.5, 2.0, 8.0), 11.0, 0.01, SCALE, ContinuousConfig(12.0, 0.8))

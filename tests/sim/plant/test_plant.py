@@ -1,5 +1,6 @@
 """The plant as the bus sees it, and the truth behind it."""
 
+from dataclasses import replace
 from itertools import pairwise
 from math import pi, sqrt
 
@@ -17,17 +18,11 @@ from fsw.wire.messages import (
     RefRate,
     Sync,
 )
-from sim.plant.config import (
-    DisturbanceConfig,
-    FieldConfig,
-    InitialConfig,
-    MagnetometerConfig,
-    OrbitConfig,
-    SunSensorConfig,
-)
+from sim.plant.config import DisturbanceConfig, FieldConfig, InitialConfig, OrbitConfig
 from sim.plant.dynamics import torques
 from sim.plant.errors import PlantError
 from sim.plant.rotation import matrix
+from sim.plant.sensor_config import MagnetometerConfig, SunSensorConfig
 
 DAY = 86400
 CIRCLE = OrbitConfig(None, 800e3, 1.72, 0.6, 0.35)
@@ -219,6 +214,31 @@ def test_the_impulse_of_a_pulse_does_not_depend_on_the_tick_rate(make_plant, tic
     flowed = np.array([truth.m_body_am2[2] for _, truth in history])
     assert flowed.sum() / tick_hz == pytest.approx(3.0 * 0.5 * 1.05)
     assert np.flatnonzero(flowed)[0] == 5 * tick_hz + 1
+
+
+def test_a_coil_whose_axis_is_turned_drives_the_other_axes_too(make_plant, make_config):
+    """Coil 1 turned by 30 mrad about axis 3: it points at -axis 1 by the sine."""
+    turned = replace(make_config().coils, misalignment_rad=((0.0,) * 3, (0.0, 0.0, 0.03), (0.0,) * 3))
+    history = fly(make_plant(coils=turned), 9, {5: lambda plant: fire(plant, coil=1, level=2)})
+    row = history[8][1]
+    assert row.m_body_am2 == pytest.approx((-2.04 * np.sin(0.03), 2.04 * np.cos(0.03), 0.0))
+    assert row.torque_body_nm[1] == pytest.approx(np.cross(row.m_body_am2, row.b_body_t))
+
+
+def test_a_satellite_ahead_of_its_orbit_is_ahead_in_the_truth(make_plant):
+    there, ahead = (fly(make_plant(orbit=replace(CIRCLE, along_track_m=d)), 2)[1][1] for d in (0.0, 5e3))
+    gap = np.subtract(ahead.r_eci_m, there.r_eci_m)
+    assert np.linalg.norm(gap) == pytest.approx(5e3, rel=1e-6)
+    assert np.linalg.norm(np.subtract(ahead.b_body_t, there.b_body_t)) > 5e-9
+    assert ahead.q_body_from_orbit == pytest.approx(there.q_body_from_orbit, abs=1e-6)
+
+
+def test_a_magnetometer_whose_axes_are_not_orthogonal_errs_on_the_bus(make_plant):
+    skewed = MagnetometerConfig(non_orthogonality_rad=(0.02, 0.0, 0.0))
+    for said, truth in fly(make_plant(magnetometer=skewed), 20):
+        field, b_nt = only(MagField, said), 1e9 * np.array(truth.b_body_t)
+        expected = (b_nt[0], np.sin(0.02) * b_nt[0] + np.cos(0.02) * b_nt[1], b_nt[2])
+        assert (field.b_x, field.b_y, field.b_z) == pytest.approx(expected, abs=1.01)
 
 
 def test_a_refused_request_drives_nothing_and_is_reported(make_plant):

@@ -17,6 +17,7 @@ SETTINGS = parse_settings(
         "orbit.inclination_deg=98.2",
         "orbit.raan_deg=10",
         "orbit.u0_deg=20",
+        "orbit.along_track_km=-5.5",
         "field.model=igrf14",
         "field.degree=12",
         "body.inertia_kgm2=[[1.02, 0.03, -0.02], [0.03, 1.85, 0.05], [-0.02, 0.05, 1.95]]",
@@ -30,10 +31,12 @@ SETTINGS = parse_settings(
         "coils.dipole_per_ampere_am2=21",
         "coils.time_constant_s=0.02",
         "coils.dipole_scale=[0.9, 1.1, 1.2]",
+        "coils.misalignment_deg=[[0.1, 0.2, 0.3], [-0.4, 0.5, 0.6], [0.7, -0.8, 0.9]]",
         "sensors.magnetometer.noise_nt=150",
         "sensors.magnetometer.bias_nt=[100, -200, 300]",
         "sensors.magnetometer.scale=[1.01, 0.99, 1.02]",
         "sensors.magnetometer.misalignment_deg=[0.1, 0.2, -0.3]",
+        "sensors.magnetometer.non_orthogonality_deg=[0.4, -0.5, 0.6]",
         "sensors.magnetometer.quantum_nt=4",
         "sensors.magnetometer.saturation_nt=60000",
         "sensors.magnetometer.latency_s=0.3",
@@ -45,6 +48,7 @@ SETTINGS = parse_settings(
         "sensors.sun.fov_half_deg=60",
         "sensors.sun.boresights=[[3, 0, -4], [0, 0.5, 0]]",
         "disturbance.torque_nm=[1e-8, -2e-8, 3e-8]",
+        "disturbance.torque_daily_part=0.3",
         "disturbance.residual_dipole_am2=[0.01, -0.02, 0.03]",
         "disturbance.eddy_nms_per_t2=30",
         "disturbance.torque_noise_nm_rts=2e-9",
@@ -73,12 +77,15 @@ def test_orbit_and_field(plant):
     assert orbit.altitude_m == 700e3
     assert (orbit.inclination_rad, orbit.raan_rad) == pytest.approx((radians(98.2), radians(10.0)))
     assert orbit.u0_rad == pytest.approx(radians(20.0))
+    assert orbit.along_track_m == -5500.0
     assert (plant.field.model, plant.field.degree) == ("igrf14", 12)
 
 
 def test_elements_are_passed_on():
-    scenario = load("microsat")
-    assert plant_config(scenario, 1).orbit.tle == scenario.orbit.tle
+    scenario = load("microsat", parse_settings(("orbit.along_track_km=3",)))
+    orbit = plant_config(scenario, 1).orbit
+    assert orbit.tle == scenario.orbit.tle
+    assert orbit.along_track_m == 3000.0
 
 
 def test_body_and_start(plant):
@@ -103,6 +110,8 @@ def test_coils_and_their_limits(plant):
     assert coils.levels_am2 == (0.4, 1.6, 6.4)
     assert (coils.dipole_per_ampere_am2, coils.time_constant_s) == (21.0, 0.02)
     assert coils.dipole_scale == (0.9, 1.1, 1.2)
+    turns = ((0.1, 0.2, 0.3), (-0.4, 0.5, 0.6), (0.7, -0.8, 0.9))
+    assert coils.misalignment_rad == tuple(tuple(map(radians, turn)) for turn in turns)
     assert (limits.tick_hz, limits.pulse_ms, limits.backoff_ms, limits.shared) == (4, 2500, 90000, False)
 
 
@@ -112,6 +121,7 @@ def test_magnetometer(plant):
     assert sensor.bias_t == pytest.approx((100e-9, -200e-9, 300e-9))
     assert sensor.scale == (1.01, 0.99, 1.02)
     assert sensor.misalignment_rad == pytest.approx(tuple(map(radians, (0.1, 0.2, -0.3))))
+    assert sensor.non_orthogonality_rad == pytest.approx(tuple(map(radians, (0.4, -0.5, 0.6))))
     assert sensor.latency_s == 0.3
     assert (sensor.quantum_t, sensor.saturation_t) == pytest.approx((4e-9, 60000e-9))
     for row, expected in zip(sensor.coil_coupling_t_per_am2, ((1, 2, 3), (4, 5, 6), (7, 8, 9)), strict=True):
@@ -129,6 +139,7 @@ def test_sun_sensor(plant):
 
 def test_disturbances(plant):
     assert plant.disturbance.torque_body_nm == (1e-8, -2e-8, 3e-8)
+    assert plant.disturbance.torque_daily_part == 0.3
     assert plant.disturbance.residual_dipole_body_am2 == (0.01, -0.02, 0.03)
     assert (plant.disturbance.density_scale, plant.disturbance.solar_flux_wpm2) == (1.5, 1361.0)
     assert (plant.disturbance.eddy_nms_per_t2, plant.disturbance.torque_noise_nm_rts) == (30.0, 2e-9)
@@ -138,6 +149,9 @@ def test_what_a_scenario_does_not_speak_of_is_not_there():
     plain = plant_config(load("microsat"), 1)
     assert (plain.body.plates, plain.body.wheel_body_nms) == ((), (0.0, 0.0, 0.0))
     assert plain.disturbance == DisturbanceConfig((3e-8, 3e-8, 3e-8))
+    assert plain.orbit.along_track_m == 0.0
+    assert plain.coils.misalignment_rad == ((0.0, 0.0, 0.0),) * 3
+    assert plain.magnetometer.non_orthogonality_rad == (0.0, 0.0, 0.0)
     assert (plain.magnetometer.latency_s, plain.sun_sensor.latency_s) == (0.0, 0.0)
     assert (plain.sun_sensor.fov_half_rad, plain.sun_sensor.boresights_body) == (pi, ())
     assert plain.coils.continuous is None

@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 from fsw.wire.messages import MagField, SunVector
 from sim.plant.config import BodyConfig, DisturbanceConfig, InitialConfig, OrbitConfig, PlateConfig
 from sim.plant.dynamics import torques
-from sim.plant.dynamics.disturbances import torque_noise
+from sim.plant.dynamics.disturbances import bias_torque, torque_noise
 from sim.plant.environment.atmosphere import altitude_m, density_kgpm3
 from sim.plant.environment.orbit import make_orbit
 from sim.plant.environment.sun import AU_M, sun_eci_m
@@ -161,6 +161,46 @@ def test_asked_for_with_no_effect_the_motion_is_the_same(fly):
     assert [row.q_body_from_orbit for row in one] == [row.q_body_from_orbit for row in other]
     (_, moved) = fly(100)
     assert moved[-1].q_body_from_orbit != one[-1].q_body_from_orbit
+
+
+class TestDaily:
+    DAILY = DisturbanceConfig((3e-8, -2e-8, 1e-8), (0.01, 0.02, -0.03), torque_daily_part=0.4)
+
+    @pytest.mark.parametrize(
+        ("hours", "factor"), [(0, 1.4), (4, 1.2), (6, 1.0), (12, 0.6), (20, 1.2), (24, 1.4)]
+    )
+    def test_it_is_most_at_the_start_and_least_half_a_day_later(self, hours, factor):
+        expected = factor * np.array(self.DAILY.torque_body_nm)
+        assert bias_torque(self.DAILY, 3600.0 * hours) == pytest.approx(expected, rel=1e-12)
+
+    def test_the_truth_shows_the_torque_of_its_instant(self, fly):
+        plant, rows = fly(1201, tick_hz=2, disturbance=self.DAILY)
+        for tick in (0, 500, 1200):
+            found = by_source(plant, rows[tick])["bias"]
+            assert found == pytest.approx(np.array(bias_torque(self.DAILY, 0.5 * tick)), rel=1e-15)
+        assert (found != np.array(self.DAILY.torque_body_nm)).all()
+
+    def test_the_body_turns_by_it(self, make_plant):
+        """On a body of equal moments nothing else acts: J times the change of rate is its impulse."""
+        body = BodyConfig(((2.0, 0.0, 0.0), (0.0, 2.0, 0.0), (0.0, 0.0, 2.0)))
+        daily = DisturbanceConfig((3e-5, -2e-5, 1e-5), torque_daily_part=0.4)
+        plant = make_plant(orbit=LOW, body=body, disturbance=daily)
+        start = np.array(plant.motion.omega_body_radps)
+        for _ in range(3600):
+            plant.begin_tick()
+            plant.end_tick()
+        impulse_s = 3600.0 + 0.4 * np.sin(2.0 * np.pi / 24.0) * 86400.0 / (2.0 * np.pi)
+        change = np.array(plant.motion.omega_body_radps) - start
+        assert change == pytest.approx(impulse_s * np.array(daily.torque_body_nm) / 2.0, rel=1e-4)
+
+    def test_without_it_the_torque_is_the_constant_one_itself(self):
+        constant = DisturbanceConfig((3e-8, -2e-8, 1e-8))
+        assert bias_torque(constant, 7777.0) is constant.torque_body_nm
+
+    @pytest.mark.parametrize("part", [-0.1, 1.1, float("nan")])
+    def test_a_part_that_is_none_is_refused(self, part):
+        with pytest.raises(ValueError, match="torque_daily_part must lie between 0 and 1"):
+            DisturbanceConfig(torque_daily_part=part)
 
 
 class TestNoise:

@@ -1,3 +1,4 @@
+from dataclasses import replace
 from math import pi, radians, sqrt
 
 import numpy as np
@@ -99,3 +100,29 @@ def test_malformed_elements_are_refused(itamsat, damage):
 def test_the_configuration_chooses(itamsat):
     assert isinstance(make_orbit(CIRCLE, 0), CircularOrbit)
     assert isinstance(make_orbit(OrbitConfig(tle=itamsat), 0), Sgp4Orbit)
+
+
+class TestAhead:
+    @pytest.mark.parametrize("km", [5.0, -80.0, 3000.0])
+    def test_on_a_circle_it_is_the_angle_of_the_arc(self, km):
+        ahead = make_orbit(replace(CIRCLE, along_track_m=1e3 * km), 0)
+        turned = make_orbit(replace(CIRCLE, u0_rad=CIRCLE.u0_rad + 1e3 * km / A), 0)
+        for found, expected in zip(ahead.at(TIMES), turned.at(TIMES), strict=True):
+            assert found == pytest.approx(expected, rel=1e-9, abs=1e-3)
+
+    @pytest.mark.parametrize("km", [5.0, -80.0])
+    def test_on_elements_it_is_the_way_along_the_track_on_average(self, itamsat, km):
+        epoch = tle_epoch_unix_s(*itamsat)
+        orbits = (make_orbit(OrbitConfig(tle=itamsat, along_track_m=d), epoch) for d in (1e3 * km, 0.0))
+        times = np.linspace(0.0, 6041.0, 400)
+        (r, _), (r0, v0) = (orbit.at(times) for orbit in orbits)
+        along = ((r - r0) * v0).sum(axis=1) / np.linalg.norm(v0, axis=1) / 1e3
+        assert along.mean() == pytest.approx(km, rel=1e-3)
+        assert along == pytest.approx(km, rel=3e-3)
+        normal = np.cross(r0, v0)
+        across = ((r - r0) * normal).sum(axis=1) / np.linalg.norm(normal, axis=1)
+        assert np.abs(across).max() < 1.0
+
+    def test_nothing_ahead_is_the_orbit_itself(self, itamsat):
+        assert isinstance(make_orbit(replace(CIRCLE, along_track_m=0.0), 0), CircularOrbit)
+        assert isinstance(make_orbit(OrbitConfig(tle=itamsat, along_track_m=0.0), 0), Sgp4Orbit)

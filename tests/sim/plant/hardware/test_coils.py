@@ -1,8 +1,10 @@
+from dataclasses import replace
 from math import exp
 
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from scipy.spatial.transform import Rotation
 
 from sim.plant.config import CoilConfig
 from sim.plant.hardware.coils import Coils
@@ -119,3 +121,28 @@ def test_three_coils_at_once_are_three_coils_one_at_a_time():
         assert all(mean)
         assert together.readback_a == pytest.approx(sum(coils.readback_a for coils in apart), rel=1e-14)
         assert together.dipole_body_am2 == tuple(coils.dipole_body_am2[i] for i, coils in enumerate(apart))
+
+
+TURNS = ((0.02, -0.03, 0.05), (0.04, 0.01, -0.02), (-0.03, 0.05, 0.01))
+
+
+def test_an_axis_that_is_turned_gives_its_dipole_along_the_turned_axis():
+    """The same currents along the axes that scipy turns."""
+    driven_a, straight, turned = (
+        (0.05, -0.4, 0.3),
+        Coils(CONFIG),
+        Coils(replace(CONFIG, misalignment_rad=TURNS)),
+    )
+    axes = [Rotation.from_rotvec(turn).apply(axis) for turn, axis in zip(TURNS, np.eye(3), strict=True)]
+    for on_s in (0.7, 0.0):
+        by_coil, mean = (np.array(coils.advance(driven_a, on_s, 1.0)) for coils in (straight, turned))
+        assert mean == pytest.approx(by_coil @ axes, rel=1e-12)
+        assert turned.dipole_body_am2 == pytest.approx(straight.dipole_body_am2 @ np.array(axes), rel=1e-12)
+        assert turned.readback_a == straight.readback_a
+        assert np.abs(mean - by_coil).min() > 1e-3
+
+
+def test_axes_that_are_not_turned_give_the_same_bits():
+    plain, zero = Coils(CONFIG), Coils(replace(CONFIG, misalignment_rad=((0.0, 0.0, 0.0),) * 3))
+    assert plain.advance(one(1, 3), 0.7, 1.0) == zero.advance(one(1, 3), 0.7, 1.0)
+    assert plain.dipole_body_am2 == zero.dipole_body_am2

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from sim.plant.config import MagnetometerConfig, SunSensorConfig
 from sim.plant.hardware.sensors import Delay, MagnetometerPhysics, SunSensorPhysics
+from sim.plant.sensor_config import MagnetometerConfig, SunSensorConfig
 
 B = (1.1e-5, -2.3e-5, 3.1e-5)
 S = (0.6, -0.48, 0.64)
@@ -39,6 +39,47 @@ def test_misalignment_turns_the_sensor():
         sensor_from_body.apply(B)
     )
     assert read_sun(SunSensorConfig(misalignment_rad=tilt))[0] == pytest.approx(sensor_from_body.apply(S))
+
+
+SKEW = (radians(2.0), radians(-3.0), radians(1.5))
+
+
+def sensed_axes(**errors):
+    """Directions of the three sensors, body axes: their answers to a field along each body axis."""
+    fields = np.eye(3) * 3e-5
+    columns = [read_field(MagnetometerConfig(**errors), b=tuple(field))[0] for field in fields]
+    return np.array(columns).T / 3e-5
+
+
+def test_sensor_axes_lack_their_angles_of_a_right_angle():
+    x, y, z = sensed_axes(non_orthogonality_rad=SKEW)
+    assert np.linalg.norm([x, y, z], axis=1) == pytest.approx(1.0, rel=1e-14)
+    assert [np.arccos(x @ y), np.arccos(x @ z), np.arccos(y @ z)] == pytest.approx(
+        np.pi / 2.0 - np.array(SKEW)
+    )
+    assert x == pytest.approx([1.0, 0.0, 0.0])
+    assert y[2] == pytest.approx(0.0, abs=1e-15)
+    assert np.linalg.det([x, y, z]) > 0.99
+
+
+def test_a_single_skew_turns_one_axis_towards_another():
+    """By hand: the z sensor leans by 2 degrees towards y."""
+    _, _, z = sensed_axes(non_orthogonality_rad=(0.0, 0.0, radians(2.0)))
+    assert z == pytest.approx([0.0, np.sin(radians(2.0)), np.cos(radians(2.0))])
+
+
+def test_the_skew_is_between_the_axes_of_the_turned_sensor():
+    tilt = (0.02, -0.03, 0.05)
+    straight, turned = (
+        sensed_axes(non_orthogonality_rad=SKEW),
+        sensed_axes(non_orthogonality_rad=SKEW, misalignment_rad=tilt),
+    )
+    assert turned == pytest.approx(Rotation.from_rotvec(tilt).apply(straight), abs=1e-14)
+
+
+def test_without_skew_the_reading_has_the_same_bits():
+    tilted = MagnetometerConfig(misalignment_rad=(0.02, -0.03, 0.05), noise_t=2e-7)
+    assert read_field(replace(tilted, non_orthogonality_rad=OFF)) == read_field(tilted)
 
 
 def test_errors_come_in_their_order_turned_then_scaled_then_biased():

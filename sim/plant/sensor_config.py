@@ -1,0 +1,60 @@
+"""The configuration of the sensors: their errors, in SI, as frozen values."""
+
+from dataclasses import dataclass
+from math import pi
+
+from sim.plant.rotation import ONES, ZERO, Mat3, Vec3
+
+NO_COUPLING: Mat3 = (ZERO, ZERO, ZERO)
+
+
+@dataclass(frozen=True, slots=True)
+class MagnetometerConfig:
+    """The magnetometer's errors.
+
+    Attributes:
+        noise_t: standard deviation per axis and sample.
+        bias_t: constant offset, sensor axes.
+        scale: factor per sensor axis.
+        misalignment_rad: rotation vector that turns the body axes into the sensor's.
+        non_orthogonality_rad: what the angles xy, xz and yz between the sensor axes lack of a right angle.
+        quantum_t: step of the reading, 0 for none.
+        saturation_t: largest magnitude of an axis; beyond it the sample is not valid.
+        coil_coupling_t_per_am2: column j is the field at the sensor, body axes, per dipole along body axis j.
+        latency_s: age of the values in a sample.
+    """
+
+    noise_t: float = 0.0
+    bias_t: Vec3 = ZERO
+    scale: Vec3 = ONES
+    misalignment_rad: Vec3 = ZERO
+    non_orthogonality_rad: Vec3 = ZERO
+    quantum_t: float = 0.0
+    saturation_t: float = 65e-6
+    coil_coupling_t_per_am2: Mat3 = NO_COUPLING
+    latency_s: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class SunSensorConfig:
+    """The Sun sensor's errors.
+
+    Attributes:
+        noise_rad: standard deviation of a small rotation about each axis, per sample.
+        misalignment_rad: rotation vector that turns the body axes into the sensor's.
+        quantum: step of a component of the unit vector, 0 for none.
+        latency_s: age of the values in a sample.
+        fov_half_rad: half the opening angle of each cone of view.
+        boresights_body: unit axes of the cones, body axes; none: it sees all around.
+    """
+
+    noise_rad: float = 0.0
+    misalignment_rad: Vec3 = ZERO
+    quantum: float = 0.0
+    latency_s: float = 0.0
+    fov_half_rad: float = pi
+    boresights_body: tuple[Vec3, ...] = ()
+
+
+PERFECT_MAGNETOMETER = MagnetometerConfig()
+PERFECT_SUN_SENSOR = SunSensorConfig()
