@@ -137,12 +137,13 @@ class DisturbanceConfig:
 
     Attributes:
         torque_body_nm: constant torque, body axes; the mean of one that varies daily.
-        residual_dipole_body_am2: constant magnetic dipole, body axes.
+        residual_dipole_body_am2: constant magnetic dipole, body axes; that in sunlight of one that varies.
         density_scale: air density over that of the model, None for no drag on the plates.
         solar_flux_wpm2: of sunlight at 1 au, None for no pressure of it on the plates.
         eddy_nms_per_t2: k_e of the eddy currents' torque k_e (omega x b) x b, 0 for none.
         torque_noise_nm_rts: root of the spectral density of a white torque per axis [N m s^(1/2)].
         torque_daily_part: amplitude of the daily variation of ``torque_body_nm``, as a part of it.
+        residual_dipole_eclipse_body_am2: what the Earth's shadow adds to the residual dipole, body axes.
 
     Raises:
         ValueError: a quantity that cannot be negative is, or the daily part is above 1.
@@ -155,6 +156,7 @@ class DisturbanceConfig:
     eddy_nms_per_t2: float = 0.0
     torque_noise_nm_rts: float = 0.0
     torque_daily_part: float = 0.0
+    residual_dipole_eclipse_body_am2: Vec3 = ZERO
 
     def __post_init__(self) -> None:
         for name in ("density_scale", "solar_flux_wpm2", "eddy_nms_per_t2", "torque_noise_nm_rts"):
@@ -188,6 +190,7 @@ class CoilConfig:
         dipole_scale: true over nominal dipole of each coil: 1 is right, -1 is wired the wrong way round.
         continuous: the continuous driver; None: one that gives pulses of the levels.
         misalignment_rad: by coil, the rotation vector that turns its axis out of the body axis, body axes.
+        remanence_part: of the dipole of a coil's last pulse, which it keeps until its next.
 
     Raises:
         ValueError: the levels do not rise from above zero, or a quantity is out of range.
@@ -199,6 +202,7 @@ class CoilConfig:
     dipole_scale: Vec3 = ONES
     continuous: ContinuousConfig | None = None
     misalignment_rad: Mat3 = (ZERO, ZERO, ZERO)
+    remanence_part: float = 0.0
 
     def __post_init__(self) -> None:
         low, middle, high = self.levels_am2
@@ -208,6 +212,8 @@ class CoilConfig:
             raise ValueError("dipole_per_ampere_am2 must be positive")
         if not self.time_constant_s >= 0.0:
             raise ValueError("time_constant_s must not be negative")
+        if not 0.0 <= self.remanence_part <= 1.0:
+            raise ValueError("remanence_part must lie between 0 and 1")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

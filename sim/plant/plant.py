@@ -11,7 +11,7 @@ from hil_stub.sensors.magnetometer import Magnetometer
 from hil_stub.sensors.sun_sensor import SunSensor
 from sim.plant.config import PlantConfig
 from sim.plant.dynamics import torques
-from sim.plant.dynamics.disturbances import bias_torque, effects, torque_noise
+from sim.plant.dynamics.disturbances import bias_torque, effects, residual_dipole, torque_noise
 from sim.plant.dynamics.rigid_body import Motion, RigidBody, Torque
 from sim.plant.environment.surroundings import Environment, Surroundings
 from sim.plant.errors import PlantError
@@ -186,7 +186,9 @@ class Plant:
             torque_body_nm=(
                 torques.gravity_gradient(inertia, e_body, around.gradient_ps2),
                 torques.magnetic(self._mean_dipole_am2, b_body_t),
-                torques.magnetic(disturbance.residual_dipole_body_am2, b_body_t),
+                torques.magnetic(
+                    residual_dipole(disturbance, sample.lit, self._coils.remanence_body_am2), b_body_t
+                ),
                 self._bias_body_nm(),
                 *(
                     effect(self._body_from_eci, self.motion.omega_body_radps, around)
@@ -203,7 +205,8 @@ class Plant:
     def _torque(self, m_body_am2: Vec3) -> Torque:
         """The torque over an integration step in which the coils' mean dipole is ``m_body_am2``."""
         inertia, disturbance, found = self._config.body.inertia_kgm2, self._config.disturbance, self._effects
-        (mx, my, mz), (rx, ry, rz) = m_body_am2, disturbance.residual_dipole_body_am2
+        residual = residual_dipole(disturbance, self._sample.lit, self._coils.mean_remanence_body_am2)
+        (mx, my, mz), (rx, ry, rz) = m_body_am2, residual
         dipole = (mx + rx, my + ry, mz + rz)
         (bx, by, bz), (nx, ny, nz) = self._bias_body_nm(), self._noise_body_nm
         bias = (bx + nx, by + ny, bz + nz)

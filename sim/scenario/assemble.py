@@ -94,6 +94,7 @@ def _disturbance(scenario: Scenario) -> DisturbanceConfig:
         eddy_nms_per_t2=section.eddy_nms_per_t2,
         torque_noise_nm_rts=section.torque_noise_nm_rts,
         torque_daily_part=section.torque_daily_part,
+        residual_dipole_eclipse_body_am2=section.residual_dipole_eclipse_am2,
     )
 
 
@@ -110,6 +111,7 @@ def _coils(scenario: Scenario) -> CoilConfig:
         coils.dipole_scale,
         continuous,
         (_radians(first), _radians(second), _radians(third)),
+        scenario.disturbance.remanence_part,
     )
 
 

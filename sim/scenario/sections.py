@@ -109,12 +109,16 @@ class DisturbanceSection(Section):
     """Constant torque, residual dipole, eddy currents (k of k (omega x b) x b), white torque; drag and light.
 
     ``torque_noise_nm_rts`` is the root of the spectral density of the white torque per axis,
-    ``torque_daily_part`` the amplitude of the constant torque's daily variation as a part of it.
+    ``torque_daily_part`` the amplitude of the constant torque's daily variation as a part of it,
+    ``residual_dipole_eclipse_am2`` what is added to the residual dipole in shadow, ``remanence_part`` what a
+    coil keeps of the dipole of its last pulse until its next.
     """
 
     torque_nm: Triple = (0.0, 0.0, 0.0)
     torque_daily_part: Part = 0.0
     residual_dipole_am2: Triple = (0.0, 0.0, 0.0)
+    residual_dipole_eclipse_am2: Triple = (0.0, 0.0, 0.0)
+    remanence_part: Part = 0.0
     eddy_nms_per_t2: NotNegative = 0.0
     torque_noise_nm_rts: NotNegative = 0.0
     drag: DragSection | None = None

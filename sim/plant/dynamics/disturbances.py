@@ -1,4 +1,4 @@
-"""The disturbance torques: the constant one, drag, solar pressure, eddy currents and noise."""
+"""The disturbances: constant torque, residual dipole, drag, solar pressure, eddy currents and noise."""
 
 from collections.abc import Callable, Iterator
 from math import cos, pi, sqrt
@@ -28,6 +28,22 @@ def bias_torque(disturbance: DisturbanceConfig, t_s: float) -> Vec3:
     factor = 1.0 + disturbance.torque_daily_part * cos(2.0 * pi * t_s / DAY_S)
     x, y, z = disturbance.torque_body_nm
     return (factor * x, factor * y, factor * z)
+
+
+def residual_dipole(disturbance: DisturbanceConfig, lit: float, remanence_body_am2: Vec3) -> Vec3:
+    """M = m_0 + (1 - lit) m_e + m_r, body axes [A m^2]: constant, by the Earth's shadow, and by remanence.
+
+    m_e is that of the loops in which a current begins or ends when the solar cells are in the dark, which
+    takes no time (Inamori, Sako and Nakasuka 2011).
+
+    Args:
+        disturbance: m_0 and m_e.
+        lit: visible fraction of the Sun's disc.
+        remanence_body_am2: m_r.
+    """
+    (x, y, z), (rx, ry, rz) = disturbance.residual_dipole_body_am2, remanence_body_am2
+    dark, (ex, ey, ez) = 1.0 - lit, disturbance.residual_dipole_eclipse_body_am2
+    return (x + dark * ex + rx, y + dark * ey + ry, z + dark * ez + rz)
 
 
 def effects(config: PlantConfig) -> dict[str, Effect]:

@@ -1,8 +1,9 @@
-"""Three coils: current, dipole and read-back."""
+"""Three coils: current, dipole, remanence and read-back."""
 
 from math import exp, expm1
 
 from sim.plant.config import CoilConfig
+from sim.plant.hardware.remanence import Remanence
 from sim.plant.rotation import ZERO, Mat3, Vec3, from_vector, matrix, transform
 
 _EXTINCT_A = 1e-15
@@ -23,6 +24,7 @@ class Coils:
         self._tau_s = config.time_constant_s
         self._dipole_per_ampere = [config.dipole_per_ampere_am2 * scale for scale in config.dipole_scale]
         self._body_from_coils = _body_from_coils(config.misalignment_rad)
+        self._remanence = Remanence(config.remanence_part)
         self._current_a = [0.0, 0.0, 0.0]
 
     def rescale(self, coil: int, scale: float) -> None:
@@ -32,9 +34,19 @@ class Coils:
 
     @property
     def dipole_body_am2(self) -> Vec3:
-        """The dipole at this instant."""
-        x, y, z = self._current_a
-        return self._dipole((x, y, z))
+        """The dipole at this instant: of the currents, and what the cores keep."""
+        (x, y, z), (kx, ky, kz) = self._current_a, self._remanence.now_a
+        return self._dipole((x + kx, y + ky, z + kz))
+
+    @property
+    def remanence_body_am2(self) -> Vec3:
+        """The dipole that the cores keep at this instant."""
+        return self._dipole(self._remanence.now_a)
+
+    @property
+    def mean_remanence_body_am2(self) -> Vec3:
+        """The mean of what the cores kept over the last step."""
+        return self._dipole(self._remanence.mean_a)
 
     @property
     def readback_a(self) -> float:
@@ -52,6 +64,8 @@ class Coils:
             on_s: how long, 0 to ``step_s``; then to 0.
             step_s: length of the step.
         """
+        if self._remanence.part:
+            self._remanence.advance(driven_a, on_s, step_s)
         if self._current_a == [0.0, 0.0, 0.0] and not (on_s and any(driven_a)):
             return ZERO
         x, y, z = (self._mean_current(coil, driven_a[coil], on_s, step_s) for coil in range(3))

@@ -241,6 +241,40 @@ def test_a_magnetometer_whose_axes_are_not_orthogonal_errs_on_the_bus(make_plant
         assert (field.b_x, field.b_y, field.b_z) == pytest.approx(expected, abs=1.01)
 
 
+def test_what_a_pulse_leaves_turns_the_body_and_is_in_the_residual_dipole_s_torque(make_plant, make_config):
+    """J dw/dt = T - w x J w after the pulse, with 5 % of its dipole left."""
+    inertia, coils = (
+        np.array(make_config().body.inertia_kgm2),
+        replace(make_config().coils, remanence_part=0.05),
+    )
+    plant, rows, omega = make_plant(tick_hz=10, coils=coils, backoff_ms=0), [], []
+    for tick in range(60):
+        plant.begin_tick()
+        rows.append(plant.truth())
+        omega.append(plant.motion.omega_body_radps)
+        if tick == 5:
+            fire(plant, coil=0, level=3)
+        plant.end_tick()
+    left = np.array([0.05 * 8.0 * 0.97, 0.0, 0.0])
+    for k in (3, 20, *range(40, 59)):
+        m = np.array([0.01, 0.02, -0.03]) + (left if k >= 40 else 0.0)
+        assert rows[k].torque_body_nm[2] == pytest.approx(np.cross(m, rows[k].b_body_t))
+        assert bool(any(rows[k].m_body_am2)) == (k == 20)
+        w, change = np.array(omega[k]), (np.array(omega[k + 1]) - omega[k - 1]) / 0.2
+        torque = np.sum(rows[k].torque_body_nm, axis=0)
+        assert inertia @ change + np.cross(w, inertia @ w) == pytest.approx(torque, rel=1e-5, abs=1e-10)
+
+
+def test_the_magnetometer_feels_what_a_pulse_leaves(make_plant, make_config):
+    coupling = MagnetometerConfig(coil_coupling_t_per_am2=((4e-6, 0.0, 0.0), (0.0,) * 3, (0.0,) * 3))
+    coils = replace(make_config().coils, remanence_part=0.05, time_constant_s=0.0)
+    plant = make_plant(magnetometer=coupling, coils=coils)
+    history = fly(plant, 12, {5: lambda plant: fire(plant, coil=0, level=3)})
+    own_nt = [only(MagField, said).b_x - 1e9 * truth.b_body_t[0] for said, truth in history]
+    assert own_nt[:6] == pytest.approx([0.0] * 6, abs=1.01)
+    assert own_nt[9:] == pytest.approx([4e3 * 0.05 * 8.0 * 0.97] * 3, abs=1.01)
+
+
 def test_a_refused_request_drives_nothing_and_is_reported(make_plant):
     history = fly(make_plant(), 8, {2: lambda plant: fire(plant, seq=77)})
     assert all(truth.m_body_am2 == (0.0, 0.0, 0.0) for _, truth in history)

@@ -50,6 +50,8 @@ SETTINGS = parse_settings(
         "disturbance.torque_nm=[1e-8, -2e-8, 3e-8]",
         "disturbance.torque_daily_part=0.3",
         "disturbance.residual_dipole_am2=[0.01, -0.02, 0.03]",
+        "disturbance.residual_dipole_eclipse_am2=[0.04, -0.05, 0.06]",
+        "disturbance.remanence_part=0.02",
         "disturbance.eddy_nms_per_t2=30",
         "disturbance.torque_noise_nm_rts=2e-9",
         "disturbance.drag.density_scale=1.5",
@@ -110,6 +112,7 @@ def test_coils_and_their_limits(plant):
     assert coils.levels_am2 == (0.4, 1.6, 6.4)
     assert (coils.dipole_per_ampere_am2, coils.time_constant_s) == (21.0, 0.02)
     assert coils.dipole_scale == (0.9, 1.1, 1.2)
+    assert coils.remanence_part == 0.02
     turns = ((0.1, 0.2, 0.3), (-0.4, 0.5, 0.6), (0.7, -0.8, 0.9))
     assert coils.misalignment_rad == tuple(tuple(map(radians, turn)) for turn in turns)
     assert (limits.tick_hz, limits.pulse_ms, limits.backoff_ms, limits.shared) == (4, 2500, 90000, False)
@@ -140,6 +143,7 @@ def test_sun_sensor(plant):
 def test_disturbances(plant):
     assert plant.disturbance.torque_body_nm == (1e-8, -2e-8, 3e-8)
     assert plant.disturbance.torque_daily_part == 0.3
+    assert plant.disturbance.residual_dipole_eclipse_body_am2 == (0.04, -0.05, 0.06)
     assert plant.disturbance.residual_dipole_body_am2 == (0.01, -0.02, 0.03)
     assert (plant.disturbance.density_scale, plant.disturbance.solar_flux_wpm2) == (1.5, 1361.0)
     assert (plant.disturbance.eddy_nms_per_t2, plant.disturbance.torque_noise_nm_rts) == (30.0, 2e-9)
@@ -150,6 +154,7 @@ def test_what_a_scenario_does_not_speak_of_is_not_there():
     assert (plain.body.plates, plain.body.wheel_body_nms) == ((), (0.0, 0.0, 0.0))
     assert plain.disturbance == DisturbanceConfig((3e-8, 3e-8, 3e-8))
     assert plain.orbit.along_track_m == 0.0
+    assert plain.coils.remanence_part == 0.0
     assert plain.coils.misalignment_rad == ((0.0, 0.0, 0.0),) * 3
     assert plain.magnetometer.non_orthogonality_rad == (0.0, 0.0, 0.0)
     assert (plain.magnetometer.latency_s, plain.sun_sensor.latency_s) == (0.0, 0.0)

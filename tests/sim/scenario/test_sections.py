@@ -29,6 +29,8 @@ CONTINUOUS = ("coils.driver=continuous", "coils.max_dipole_am2=12")
             ["sensors.magnetometer.non_orthogonality_deg=[0, 0, -10.1]"],
             ["sensors.magnetometer.non_orthogonality_deg.2", "-10.1 is not allowed", "equal to -10"],
         ),
+        (["disturbance.remanence_part=1.5"], ["disturbance.remanence_part", "at most 1"]),
+        (["disturbance.residual_dipole_eclipse_am2=[0, 1]"], ["residual_dipole_eclipse_am2.2 is missing"]),
         (["disturbance.torque_daily_part=1.1"], ["disturbance.torque_daily_part", "at most 1"]),
         (["disturbance.torque_daily_part=-0.1"], ["disturbance.torque_daily_part", "at least 0"]),
         (["body.plates=[{area_m2=0, normal=[0, 0, 1]}]"], ["body.plates.0.area_m2"]),

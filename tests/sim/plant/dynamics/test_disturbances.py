@@ -1,5 +1,7 @@
 """What acts only where it is asked for: in the truth by its name, in the motion by its torque."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -7,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from fsw.wire.messages import MagField, SunVector
 from sim.plant.config import BodyConfig, DisturbanceConfig, InitialConfig, OrbitConfig, PlateConfig
 from sim.plant.dynamics import torques
-from sim.plant.dynamics.disturbances import bias_torque, torque_noise
+from sim.plant.dynamics.disturbances import bias_torque, residual_dipole, torque_noise
 from sim.plant.environment.atmosphere import altitude_m, density_kgpm3
 from sim.plant.environment.orbit import make_orbit
 from sim.plant.environment.sun import AU_M, sun_eci_m
@@ -201,6 +203,43 @@ class TestDaily:
     def test_a_part_that_is_none_is_refused(self, part):
         with pytest.raises(ValueError, match="torque_daily_part must lie between 0 and 1"):
             DisturbanceConfig(torque_daily_part=part)
+
+
+class TestResidualDipole:
+    VARIES = DisturbanceConfig(
+        residual_dipole_body_am2=(0.01, 0.02, -0.03), residual_dipole_eclipse_body_am2=(-0.004, 0.006, 0.05)
+    )
+
+    @pytest.mark.parametrize(
+        ("lit", "expected"),
+        [(1.0, (0.011, 0.022, -0.027)), (0.0, (0.007, 0.028, 0.023)), (0.75, (0.01, 0.0235, -0.0145))],
+    )
+    def test_it_is_the_sum_of_what_is_constant_what_the_shadow_adds_and_remanence(self, lit, expected):
+        assert residual_dipole(self.VARIES, lit, (0.001, 0.002, 0.003)) == pytest.approx(expected)
+
+    def test_the_truth_shows_its_torque_in_light_and_in_shadow(self, fly):
+        plant, rows = fly(5600, disturbance=self.VARIES)
+        seen = set()
+        for row in rows[::100]:
+            m = np.array([0.01, 0.02, -0.03]) + (1.0 - row.lit) * np.array([-0.004, 0.006, 0.05])
+            assert by_source(plant, row)["residual_dipole"] == pytest.approx(np.cross(m, row.b_body_t))
+            seen.add(row.lit)
+        assert {0.0, 1.0} <= seen
+
+    def test_in_the_dark_the_body_turns_as_by_the_sum_and_in_light_as_without(self, make_plant, fly):
+        """To the last bit, for as long as neither begins nor ends."""
+        summed = DisturbanceConfig(residual_dipole_body_am2=(0.01 - 0.004, 0.02 + 0.006, -0.03 + 0.05))
+        plain = DisturbanceConfig(residual_dipole_body_am2=(0.01, 0.02, -0.03))
+        orbits = [replace(LOW, u0_rad=u0) for u0 in np.arange(0.0, 6.3, 0.1)]
+        lit = [make_plant(orbit=orbit).truth().lit for orbit in orbits]
+        for light, same, other in ((0.0, summed, plain), (1.0, plain, summed)):
+            orbit = orbits[lit.index(light)]
+            (_, varying), (_, alike), (_, unlike) = (
+                fly(60, orbit=orbit, disturbance=disturbance) for disturbance in (self.VARIES, same, other)
+            )
+            assert {row.lit for row in varying} == {light}
+            assert varying == alike
+            assert varying[-1].omega_body_orbit_radps != unlike[-1].omega_body_orbit_radps
 
 
 class TestNoise:

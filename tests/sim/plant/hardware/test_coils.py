@@ -146,3 +146,58 @@ def test_axes_that_are_not_turned_give_the_same_bits():
     plain, zero = Coils(CONFIG), Coils(replace(CONFIG, misalignment_rad=((0.0, 0.0, 0.0),) * 3))
     assert plain.advance(one(1, 3), 0.7, 1.0) == zero.advance(one(1, 3), 0.7, 1.0)
     assert plain.dipole_body_am2 == zero.dipole_body_am2
+
+
+KEEPS = replace(CONFIG, time_constant_s=0.0, remanence_part=0.02)
+
+
+class TestRemanence:
+    def test_a_part_of_the_last_pulse_stays_until_the_next(self):
+        """By hand, coil 2: 2 % of its dipole of 8 at 1.05, then 2 % of -0.5."""
+        coils = Coils(KEEPS)
+        for level, kept in (
+            (0, 0.0),
+            (3, 0.0),
+            (0, 0.168),
+            (0, 0.168),
+            (-1, 0.0),
+            (0, -0.0105),
+            (0, -0.0105),
+        ):
+            coils.advance(one(2, level), float(level != 0), 1.0)
+            assert coils.remanence_body_am2 == pytest.approx((0.0, 0.0, kept), abs=1e-15)
+            assert coils.mean_remanence_body_am2 == pytest.approx((0.0, 0.0, kept), abs=1e-15)
+
+    def test_each_coil_keeps_its_own(self):
+        coils = Coils(KEEPS)
+        for coil, level in ((0, 3), (1, -2), (2, 1), (0, -1)):
+            coils.advance(one(coil, level), 1.0, 1.0)
+        coils.advance(one(0, 0), 0.0, 1.0)
+        expected = 0.02 * np.array([-0.5 * 0.97, -2.0 * -1.02, 0.5 * 1.05])
+        assert coils.remanence_body_am2 == pytest.approx(expected)
+
+    def test_a_pulse_that_ends_inside_a_step_leaves_its_part_for_the_rest(self):
+        coils = Coils(KEEPS)
+        coils.advance(one(0, 3), 0.7, 1.0)
+        full = 0.02 * 8.0 * 0.97
+        assert coils.remanence_body_am2 == pytest.approx((full, 0.0, 0.0))
+        assert coils.mean_remanence_body_am2 == pytest.approx((0.3 * full, 0.0, 0.0))
+        assert coils.dipole_body_am2 == coils.remanence_body_am2  # no lag, so no current is left
+
+    def test_it_is_along_the_coil_and_none_of_the_read_back(self):
+        turned, straight = Coils(replace(KEEPS, misalignment_rad=TURNS)), Coils(KEEPS)
+        for coils in (turned, straight):
+            coils.advance((0.05, -0.4, 0.3), 0.5, 1.0)
+        axes = [Rotation.from_rotvec(turn).apply(axis) for turn, axis in zip(TURNS, np.eye(3), strict=True)]
+        assert turned.remanence_body_am2 == pytest.approx(straight.remanence_body_am2 @ np.array(axes))
+        assert turned.readback_a == 0.0
+
+    def test_without_it_nothing_is_kept(self):
+        coils = Coils(CONFIG)
+        coils.advance(one(0, 3), 0.7, 1.0)
+        assert coils.remanence_body_am2 == coils.mean_remanence_body_am2 == (0.0, 0.0, 0.0)
+
+    @pytest.mark.parametrize("part", [-0.01, 1.01, float("nan")])
+    def test_a_part_that_is_none_is_refused(self, part):
+        with pytest.raises(ValueError, match="remanence_part must lie between 0 and 1"):
+            replace(CONFIG, remanence_part=part)

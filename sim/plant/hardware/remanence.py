@@ -1,0 +1,44 @@
+"""The dipoles that the cores of the coils keep after a pulse."""
+
+from sim.plant.rotation import ZERO, Vec3
+
+
+class Remanence:
+    """Coil j keeps m_j = part m_pulse,j, m_pulse,j the dipole of its last pulse, until its next one.
+
+    So a core behaves that each pulse takes far beyond its coercive field: while it is driven its dipole is
+    that of the current, whatever it kept before, and then a part remains (Bozorth 1951, Ferromagnetism).
+    Dipoles are stated as the currents that would cause them, so that a coil's gain and axis apply to both.
+
+    Args:
+        part: kept of the dipole of a pulse.
+    """
+
+    def __init__(self, part: float) -> None:
+        self.part = part
+        self._kept_a = ZERO
+        self.now_a = ZERO
+        """At the end of the last step."""
+        self.mean_a = ZERO
+        """Mean over the last step."""
+
+    def advance(self, driven_a: Vec3, on_s: float, step_s: float) -> None:
+        """Advance by a step in which coils are driven from its start for ``on_s``.
+
+        Args:
+            driven_a: current that each coil is driven to, 0 for none.
+            on_s: how long, 0 to ``step_s``.
+            step_s: length of the step.
+        """
+        if not on_s:
+            self.now_a = self.mean_a = self._kept_a
+            return
+        off = 1.0 - on_s / step_s
+        coils = [
+            (self.part * driven, off) if driven else (kept, 1.0)
+            for driven, kept in zip(driven_a, self._kept_a, strict=True)
+        ]
+        (x, p), (y, q), (z, r) = coils
+        self._kept_a = (x, y, z)
+        self.mean_a = (x * p, y * q, z * r)
+        self.now_a = self._kept_a if off else self.mean_a
