@@ -13,6 +13,7 @@ from sim.plant.config import PlantConfig
 from sim.plant.dynamics import torques
 from sim.plant.dynamics.disturbances import bias_torque, effects, residual_dipole, torque_noise
 from sim.plant.dynamics.rigid_body import Motion, RigidBody, Torque
+from sim.plant.environment.albedo import earthlight
 from sim.plant.environment.surroundings import Environment, Surroundings
 from sim.plant.errors import PlantError
 from sim.plant.hardware.actuators import Actuator, CoilDrive, make_actuator
@@ -114,7 +115,8 @@ class Plant:
         tick, coils = self._tick, self._coils
         faulty = self.interference
         b_t, b_valid = faulty.field(*self._magnetometer.measure(self._b_body_t, coils.dipole_body_am2))
-        sun, sun_valid = faulty.sun(*self._sun_sensor.measure(self._sun_body, self._sample.lit))
+        seen = self._sun_sensor.measure(self._sun_body, self._sample.lit, self._earthlight_body())
+        sun, sun_valid = faulty.sun(*seen)
         return [
             *self._magnetometer_board.begin_tick(tick, b_t, b_valid),
             *self._sun_sensor_board.begin_tick(tick, sun, sun_valid),
@@ -243,6 +245,12 @@ class Plant:
         self._body_from_eci = matrix(self.motion.q_body_from_eci)
         self._b_body_t = transform(self._body_from_eci, sample.b_eci_t)
         self._sun_body = transform(self._body_from_eci, sample.sun_eci)
+
+    def _earthlight_body(self) -> Vec3:
+        """The Earth's light in parts of the Sun's, for a Sun sensor that it disturbs."""
+        if not self._config.sun_sensor.albedo:
+            return ZERO
+        return transform(self._body_from_eci, earthlight(self._sample.r_eci_m, self._sample.sun_eci))
 
     def _relative(self) -> tuple[Quaternion, Vec3]:
         """Attitude and rate relative to the orbital frame."""

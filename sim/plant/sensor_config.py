@@ -46,6 +46,7 @@ class SunSensorConfig:
         latency_s: age of the values in a sample.
         fov_half_rad: half the opening angle of each cone of view.
         boresights_body: unit axes of the cones, body axes; none: it sees all around.
+        albedo: whether the light of the Earth turns the measured direction.
     """
 
     noise_rad: float = 0.0
@@ -54,6 +55,7 @@ class SunSensorConfig:
     latency_s: float = 0.0
     fov_half_rad: float = pi
     boresights_body: tuple[Vec3, ...] = ()
+    albedo: bool = False
 
 
 PERFECT_MAGNETOMETER = MagnetometerConfig()

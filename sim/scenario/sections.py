@@ -68,7 +68,10 @@ class MagnetometerSection(Section):
 
 
 class SunSensorSection(Section):
-    """Physics of the Sun sensor, body axes: in view within ``fov_half_deg`` of a boresight."""
+    """Physics of the Sun sensor, body axes: in view within ``fov_half_deg`` of a boresight.
+
+    With ``albedo`` the light of the Earth turns what it measures.
+    """
 
     noise_deg: NotNegative = 0.5
     misalignment_deg: Triple = (0.0, 0.0, 0.0)
@@ -76,6 +79,7 @@ class SunSensorSection(Section):
     latency_s: Latency = 0.0
     fov_half_deg: float | None = Field(default=None, gt=0.0, le=180.0)
     boresights: Annotated[tuple[Triple, ...], Strict(False)] = ()
+    albedo: bool = False
 
     @model_validator(mode="after")
     def _has_cones(self) -> Self:

@@ -79,10 +79,11 @@ class MagnetometerPhysics:
 
 
 class SunSensorPhysics:
-    """s = R s_body, turned about each axis by a small random angle, then quantised.
+    """s = R (s_body + a_body) of unit length, turned about each axis by a small random angle, then quantised.
 
-    Light and direction are those of ``latency_s`` ago. The Sun is in view within ``fov_half_rad`` of a
-    boresight.
+    a is the light of the Earth, if it is in view: the signals of the sensor's cells go with the cosine of the
+    incidence, and the vector that they make up is the sum of all light. Light and directions are those of
+    ``latency_s`` ago. In view is what lies within ``fov_half_rad`` of a boresight.
 
     Args:
         config: the errors.
@@ -97,20 +98,24 @@ class SunSensorPhysics:
         self._sensor_from_body = matrix(from_vector(config.misalignment_rad))
         self._noise = normals(seed, "sun_sensor")
 
-    def measure(self, sun_body: Vec3, lit: float) -> tuple[Vec3, bool]:
+    def measure(self, sun_body: Vec3, lit: float, earthlight_body: Vec3 = ZERO) -> tuple[Vec3, bool]:
         """The unit vector to the Sun and whether it is valid: in view, and at least half of the disc visible.
 
         Args:
             sun_body: true unit vector.
             lit: visible fraction of the Sun's disc.
+            earthlight_body: a, in parts of the Sun's light.
         """
         noise, sigma = self._noise, self._config.noise_rad
         ax, ay, az = sigma * next(noise), sigma * next(noise), sigma * next(noise)
         if self._delay:
-            *then, lit = self._delay((*sun_body, lit))
-            sun_body = (then[0], then[1], then[2])
+            x, y, z, lit, *then = self._delay((*sun_body, lit, *earthlight_body))
+            sun_body, earthlight_body = (x, y, z), (then[0], then[1], then[2])
         if lit < LEAST_LIT or not self._in_view(sun_body):
             return ZERO, False
+        if earthlight_body != ZERO and self._in_view(earthlight_body):
+            (x, y, z), (ex, ey, ez) = sun_body, earthlight_body
+            sun_body = (x + ex, y + ey, z + ez)
         x, y, z = transform(self._sensor_from_body, sun_body)
         x, y, z = x + ay * z - az * y, y + az * x - ax * z, z + ax * y - ay * x
         factor, quantum = 1.0 / sqrt(x * x + y * y + z * z), self._config.quantum
@@ -120,11 +125,11 @@ class SunSensorPhysics:
             _quantise(z * factor, quantum),
         ), True
 
-    def _in_view(self, sun_body: Vec3) -> bool:
+    def _in_view(self, light_body: Vec3) -> bool:
         boresights = self._config.boresights_body
         if not boresights:
             return True
-        x, y, z = sun_body
+        x, y, z = light_body
         least = self._cos_half * sqrt(x * x + y * y + z * z)
         return any(x * bx + y * by + z * bz >= least for bx, by, bz in boresights)
 

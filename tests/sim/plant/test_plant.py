@@ -122,6 +122,31 @@ def test_perfect_sensors_show_the_truth_on_the_bus(make_plant):
         assert field.valid == sun.valid == 1
 
 
+def test_the_light_of_the_earth_turns_the_sun_on_the_bus_and_not_in_the_truth(make_plant):
+    """Towards nadir, most where the Sun is high; none at the poles' twilight, and no Sun in eclipse."""
+    plain, lit_up = SunSensorConfig(), SunSensorConfig(albedo=True)
+    turns, valid = {}, {}
+    plants = [make_plant(sun_sensor=sensor) for sensor in (plain, lit_up)]
+    for tick, ((_, truth), (said, other)) in enumerate(
+        zip(*(fly(plant, 6000) for plant in plants), strict=True)
+    ):
+        assert truth == other
+        sun = only(messages.SunVector, said)
+        valid.setdefault(truth.lit >= 0.5, set()).add(sun.valid)
+        if sun.valid and tick % 60 == 0:
+            measured, true = np.array([sun.s_x, sun.s_y, sun.s_z]), np.array(truth.sun_body)
+            e1 = np.array(matrix(truth.q_body_from_orbit))[:, 0]
+            height = e1 @ true
+            turns[height] = np.linalg.norm(np.cross(true, measured))
+            if height > 0.05:
+                assert np.cross(true, measured) @ np.cross(true, -e1) > 0.0
+                expected = true - 0.3 * (6378137.0 / np.linalg.norm(truth.r_eci_m)) ** 2 * height * e1
+                assert measured == pytest.approx(expected / np.linalg.norm(expected), abs=1e-4)
+    assert valid == {True: {1}, False: {0}}
+    assert max(turns.values()) > np.radians(5.0)
+    assert max(turn for height, turn in turns.items() if height <= 0.0) < 1e-4
+
+
 def test_in_eclipse_the_sun_is_not_valid(make_plant):
     valid = {}
     for said, truth in fly(make_plant(), 6000):

@@ -283,3 +283,40 @@ class TestFieldOfView:
         away.measure((0.0, 0.0, -1.0), 1.0)
         towards.measure((0.0, 0.0, 1.0), 1.0)
         assert away.measure(S, 1.0) == towards.measure(S, 1.0)
+
+
+class TestEarthlight:
+    LIGHT = (0.05, -0.12, -0.18)
+    CONES = ((0.0, 0.0, 1.0), (0.0, -1.0, 0.0))
+
+    def measured(self, config, light=LIGHT, lit=1.0, sun=S):
+        return SunSensorPhysics(config, 1).measure(sun, lit, light)
+
+    def test_it_is_added_to_the_sun_before_the_sensor_turns_it(self):
+        tilt = (0.02, -0.03, 0.05)
+        expected = Rotation.from_rotvec(tilt).inv().apply(np.add(S, self.LIGHT))
+        reading, valid = self.measured(SunSensorConfig(misalignment_rad=tilt))
+        assert valid
+        assert reading == pytest.approx(expected / np.linalg.norm(expected))
+
+    def test_light_out_of_view_is_not_seen(self):
+        """The Sun in one cone; the light once in the other and once in none."""
+        config = SunSensorConfig(fov_half_rad=radians(60.0), boresights_body=self.CONES)
+        sun = (0.0, 0.6, 0.8)
+        seen, _ = self.measured(config, (0.0, -0.2, -0.1), sun=sun)
+        unseen, _ = self.measured(config, (-0.1, 0.0, -0.2), sun=sun)
+        both = np.add(sun, (0.0, -0.2, -0.1))
+        assert seen == pytest.approx(both / np.linalg.norm(both))
+        assert unseen == pytest.approx(sun)
+
+    def test_it_makes_no_sun_in_the_dark(self):
+        assert self.measured(SunSensorConfig(), lit=0.0) == (OFF, False)
+
+    def test_it_is_as_late_as_the_sun(self):
+        late, prompt = (
+            SunSensorPhysics(SunSensorConfig(latency_s=2.0), 1),
+            SunSensorPhysics(SunSensorConfig(), 1),
+        )
+        lights = [(0.0, -0.02 * k, -0.1) for k in range(6)]
+        expected = [prompt.measure(S, 1.0, light) for light in lights]
+        assert [late.measure(S, 1.0, light) for light in lights][2:] == expected[:-2]
