@@ -3,18 +3,17 @@
 from collections.abc import Callable
 
 from fsw.core.events import Event as Number
-from fsw.core.fdir.sensor_watch import Sensor
 from fsw.core.monitors import Monitor
 from fsw.wire.messages import Mode
 from hil_stub.coils.events import CoilEventCode
 from sim.fault_rig.record import FaultFlightRecord, ReportedEvent
 from sim.fault_table.row import Bounds, FaultRow
+from sim.report.isolations import UNITS, isolated_unit
 
 LEAST_PULSES = 5
 """Pulses of a coil that suffice to isolate it if it is faulty."""
 UnitOf = Callable[[ReportedEvent], str]
 SECOND_SENDER = "second sender"
-_IDENTIFIERS = 0x800
 
 _UNIT_OF_MONITOR = {
     Monitor.FIELD_FRESH: "magnetometer",
@@ -32,34 +31,22 @@ def _unit_of_trip(event: ReportedEvent) -> str:
 MONITORS: dict[int, UnitOf] = {Number.MONITOR_TRIPPED: _unit_of_trip}
 """Units by the event of a monitor: a board is silent, or acts without a request."""
 
-_SENSORS = {Sensor.MAGNETOMETER: "magnetometer", Sensor.SUN_SENSOR: "sun sensor"}
-_COILS = {number: f"coil {number - 1}" for number in (1, 2, 3)}
-
-_ISOLATING: dict[str, dict[int, str]] = {
-    "SENSOR_ISOLATED": {int(sensor): unit for sensor, unit in _SENSORS.items()},
-    "COIL_FAULT": _COILS,
-    "SECOND_SENDER": dict.fromkeys(range(1 + _IDENTIFIERS // 100), SECOND_SENDER),
-}
-"""Units by event, and by the hundreds of its argument; an event that fsw does not have isolates nothing."""
-
-ISOLATED: dict[int, dict[int, str]] = {
-    int(Number[name]): units for name, units in _ISOLATING.items() if name in Number.__members__
-}
-"""The same by the number of the event."""
-
 
 def can_isolate(unit: str) -> bool:
     """Whether the flight software has an event that isolates this unit."""
-    return any(unit in units.values() for units in ISOLATED.values())
+    return unit == SECOND_SENDER or any(unit in units.values() for units in UNITS.values())
 
 
 def isolations(record: FaultFlightRecord) -> list[tuple[int, str]]:
     """(tick, unit) of each isolation of a unit."""
-    return [
-        (event.tick, ISOLATED[event.number].get(event.argument // 100, f"unit {event.argument}"))
-        for event in record.events
-        if event.number in ISOLATED
-    ]
+    units = [(event.tick, _isolated_by(event)) for event in record.events]
+    return [(tick, unit) for tick, unit in units if unit is not None]
+
+
+def _isolated_by(event: ReportedEvent) -> str | None:
+    if event.number == Number.SECOND_SENDER:
+        return SECOND_SENDER
+    return isolated_unit(event.number, event.argument)
 
 
 def monitor_trips(record: FaultFlightRecord) -> list[tuple[int, str]]:

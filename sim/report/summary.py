@@ -6,13 +6,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fsw.wire.messages import CLASSES, NAMES, SENDERS, CoilRefused, Mode, intact
+from fsw.wire.messages import CLASSES, NAMES, SENDERS, CoilRefused, FswEvent, Mode, intact
 from sim.audit.auditor import AuditReport
 from sim.record.candump import LogEntry
 from sim.record.estimates import Estimates
 from sim.record.run_record import FlightRecord
 from sim.record.truth import Histories
 from sim.report.attitude_arrays import angle_rad, axis1_angle_rad, normal_in_body, relative
+from sim.report.isolations import isolated_unit
 from sim.scenario.schema import Scenario, orbit_period_s
 
 Array = NDArray[np.float64]
@@ -27,20 +28,29 @@ MAX_EVENTS = 200
 
 @dataclass(slots=True)
 class BusTally:
-    """Refusals on the bus, and the first events in full."""
+    """Refusals on the bus, the first events in full, and the units that were isolated, in that order."""
 
     epoch_us: int
     refused: int = 0
     events: list[Json] = field(default_factory=list)
+    isolated: list[str] = field(default_factory=list)
 
     def take(self, entry: LogEntry) -> None:
         """Count one frame."""
         can_id = entry.frame.can_id
-        name = NAMES.get(can_id, "")
         if can_id == CoilRefused.ID:
             self.refused += 1
-        elif name.endswith("_EVENT") and intact(entry.frame) and len(self.events) < MAX_EVENTS:
-            values = CLASSES[can_id].decode(entry.frame.data)._asdict()
+        elif NAMES.get(can_id, "").endswith("_EVENT") and intact(entry.frame):
+            self._take_event(entry)
+
+    def _take_event(self, entry: LogEntry) -> None:
+        can_id = entry.frame.can_id
+        values = CLASSES[can_id].decode(entry.frame.data)._asdict()
+        if can_id == FswEvent.ID:
+            unit = isolated_unit(values["event"], values["argument"])
+            if unit is not None and unit not in self.isolated:
+                self.isolated.append(unit)
+        if len(self.events) < MAX_EVENTS:
             seconds = (entry.timestamp_us - self.epoch_us) / 1e6
             self.events.append(
                 {
@@ -95,6 +105,7 @@ def summarise(
         summary |= _estimate(truth, estimates, tick_hz)
         summary["spin_radps"] = _spin(scenario, truth, audit, last_orbit)
         summary["mode_final"] = Mode(int(estimates.mode[ticks - 1])).name
+    summary["isolated"] = tally.isolated
     summary["events"] = tally.events
     return {key: value for key, value in summary.items() if value is not None}
 
@@ -103,6 +114,18 @@ def estimate_error(truth: Histories, estimates: Estimates) -> Array:
     """The rotation from the estimated to the true attitude at each tick, (n, 4); NaN before the first."""
     ticks = len(truth["t_s"])
     return relative(estimates.q_body_from_orbit[:ticks], truth["q_body_from_orbit"])
+
+
+def within_3sigma(truth: Histories, estimates: Estimates) -> NDArray[np.bool_]:
+    """Whether each axis of the attitude error is inside the filter's own 3 sigma, by tick, (n, 3), body axes.
+
+    False where the error or its covariance is unknown.
+    """
+    ticks = len(truth["t_s"])
+    error_rad = 2.0 * estimate_error(truth, estimates)[:, 1:]
+    variance = np.diagonal(estimates.covariance[:ticks, :3, :3], axis1=1, axis2=2)
+    result: NDArray[np.bool_] = np.abs(error_rad) < 3.0 * np.sqrt(variance)
+    return result
 
 
 def nees(truth: Histories, estimates: Estimates) -> Array:
@@ -157,12 +180,25 @@ def _estimate(truth: Histories, estimates: Estimates, tick_hz: int) -> Json:
             for key, where in (("rms_sunlit", lit & estimated), ("rms_eclipse", ~lit & estimated))
             if where.any()
         }
-        | {"max": float(error_deg[estimated].max())},
+        | {
+            "max": float(error_deg[estimated].max()),
+            "within_3sigma": _part_within_3sigma(truth, estimates, first),
+        },
         "converged_at_s": first / tick_hz,
     }
     if np.isfinite(consistency).any():
         result["nees_mean"] = float(np.nanmean(consistency))
     return result
+
+
+def _part_within_3sigma(truth: Histories, estimates: Estimates, first: int) -> float | None:
+    """Part of the ticks from ``first`` on, attitude valid, with all axes inside; None if no covariance."""
+    ticks = len(truth["t_s"])
+    known = np.isfinite(estimates.covariance[:ticks]).all(axis=(1, 2))
+    counted = (estimates.valid[:ticks] & known)[first:]
+    if not counted.any():
+        return None
+    return float(within_3sigma(truth, estimates)[first:][counted].all(axis=1).mean())
 
 
 def _spin(scenario: Scenario, truth: Histories, audit: AuditReport, last_orbit: slice) -> Json | None:
@@ -223,11 +259,15 @@ def summary_text(summary: Json) -> str:
             f"{spin['max_dev_last_orbit']:.5f} at most off {spin['reference']:g}"
         )
     if "estimate_deg" in summary:
-        named = {"rms_sunlit": "RMS sunlit", "rms_eclipse": "RMS in eclipse", "max": "max"}
-        parts = [f"{value:.3f} deg {named[key]}" for key, value in summary["estimate_deg"].items()]
+        error = summary["estimate_deg"]
+        named = (("rms_sunlit", "RMS sunlit"), ("rms_eclipse", "RMS in eclipse"), ("max", "max"))
+        parts = [f"{error[key]:.3f} deg {text}" for key, text in named if key in error]
+        if error["within_3sigma"] is not None:
+            parts.append(f"inside its 3 sigma {error['within_3sigma']:.1%} of the time")
         rows["estimate"] = f"{', '.join(parts)}, converged at {summary['converged_at_s']:.0f} s"
     if "mode_final" in summary:
         rows["mode"] = summary["mode_final"]
+    rows["isolated"] = ", ".join(summary["isolated"]) or "no unit"
     if "replay" in summary:
         rows["replay"] = "bit-exact" if summary["replay"]["bit_exact"] else "NOT bit-exact"
     failed = summary.get("failures", {})

@@ -62,6 +62,7 @@ _ESTIMATE = (
     ("Estimate, RMS in eclipse", ("estimate_deg", "rms_eclipse"), "{:.4f}°"),
     ("Estimate, largest", ("estimate_deg", "max"), "{:.4f}°"),
     ("Estimate converged at", ("converged_at_s",), "{:.0f} s"),
+    ("Estimate inside its 3 sigma", ("estimate_deg", "within_3sigma"), "{:.2%} of the time"),
     ("NEES, mean (6 expected)", ("nees_mean",), "{:.2f}"),
 )
 _FLIGHT = (
@@ -74,7 +75,7 @@ _KNOWLEDGE = {"filter": "filter on the sensors", "perfect": "perfect, from the p
 
 
 def badges(summary: Json, run: RunRecord | None, audit: AuditReport) -> list[tuple[str, str]]:
-    """The verdicts with their classes of style: limits, refusals, replay, mode, completeness."""
+    """The verdicts with their classes of style: limits, refusals, replay, mode, isolation, completeness."""
     shown = [_limits_badge(audit)]
     refused = summary["pulses"]["refused"]
     shown.append(("note", f"! {refused} refused") if refused else ("good", "✓ no refusals"))
@@ -82,6 +83,8 @@ def badges(summary: Json, run: RunRecord | None, audit: AuditReport) -> list[tup
     mode = summary.get("mode_final")
     if mode is not None:
         shown.append(("good" if mode == Mode.POINT.name else "note", f"mode {mode}"))
+    if summary["isolated"]:
+        shown.append(("note", f"! isolated: {', '.join(summary['isolated'])}"))
     if not whole(run, audit):
         planned = f" of {run['ticks']}" if run else ""
         shown.append(("bad", f"✗ incomplete: {summary['ticks']}{planned} ticks"))

@@ -108,8 +108,7 @@ def test_a_coil_that_conducts_by_itself_must_be_isolated_without_any_pulse_of_it
 
 
 @pytest.mark.parametrize(("pulses", "holds"), [(4, None), (5, False)])
-def test_a_coil_that_was_hardly_used_need_not_be_isolated(pulses, holds, bounds, monkeypatch):
-    monkeypatch.setitem(isolation.ISOLATED, 99, {3: "coil 2"})
+def test_a_coil_that_was_hardly_used_need_not_be_isolated(pulses, holds, bounds):
     flown = record()
     flown.request_ticks = [50, *range(100, 100 + 2 * pulses)]
     flown.request_coils = [2, *[2, 1] * pulses]

@@ -95,6 +95,7 @@ class Run:
     )
     scenario: Scenario = field(default_factory=lambda: load("microsat"))
     events: list[dict[str, object]] = field(default_factory=list)
+    isolated: list[str] = field(default_factory=list)
 
     def truth(self) -> Histories:
         t = np.arange(self.ticks, dtype=float)
@@ -145,7 +146,7 @@ class Run:
     def write(self, path: Path, estimates: Estimates | None = None, **truth: np.ndarray) -> Page:
         histories = self.truth() | truth
         estimates = estimates or self.estimates()
-        tally = BusTally(0, self.refused, self.events)
+        tally = BusTally(0, self.refused, self.events, self.isolated)
         summary = summarise(self.scenario, {"seed": 7}, histories, estimates, self.audit(), tally)
         if self.replay is not None:
             summary["replay"] = self.replay

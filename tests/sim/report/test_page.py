@@ -65,8 +65,16 @@ def test_the_head_says_what_was_flown_and_how_it_went(page):
     assert "viewport" in page.values("name")
 
 
+@pytest.mark.usefixtures("no_charts")
+def test_isolated_units_stand_in_the_head(tmp_path, made_run):
+    page = made_run(isolated=["coil 1", "sun sensor"]).write(tmp_path)
+    assert "! isolated: coil 1, sun sensor" in page.text
+
+
 def test_key_figures_are_those_of_the_summary(page):
     text = " ".join(page.text)
+    assert "isolated" not in text
+    assert "Estimate inside its 3 sigma 100.00% of the time" in text
     assert re.search(r"Pointing at the end \d+\.\d{3}°", text)
     assert "NEES, mean (6 expected)" in text
     assert "coil 0 4 0.17% 327.000" in text

@@ -29,6 +29,7 @@ CONTRACT = {
     "pointing_deg": {"final", "rms_last_orbit", "max_last_orbit"},
     "axis1_deg": {"final", "rms_last_orbit", "max_last_orbit", "mean_last_orbit"},
     "mode_final": None,
+    "isolated": None,
     "events": None,
 }
 """What every flight has; ``estimate_deg``, ``converged_at_s``, ``nees_mean``, ``spin_radps`` come on top."""
@@ -116,6 +117,9 @@ class TestRealFlight:
         changes = [event["argument"] for event in summary["events"] if event["event"] == 1]
         assert summary["mode_final"] == Mode(changes[-1]).name
 
+    def test_a_flight_without_a_fault_has_isolated_no_unit(self, summary):
+        assert summary["isolated"] == []
+
     def test_what_makes_no_sense_is_absent(self, summary):
         """Five minutes are too short to converge, and no spin is wanted."""
         assert not {"estimate_deg", "converged_at_s", "nees_mean", "spin_radps"} & set(summary)
@@ -126,10 +130,19 @@ class TestRealFlight:
     def test_the_text_for_people(self, summary):
         text = summary_text(summary)
         assert text.startswith("microsat, seed 5: 300 s flown at ")
-        for part in ("kept", "pulses", "deg RMS", "off the vertical, not settled", "bit-exact"):
+        for part in ("kept", "pulses", "deg RMS", "off the vertical, not settled", "no unit", "bit-exact"):
             assert part in text
         assert summary["mode_final"] in text
         assert "spin" not in text
+
+    def test_the_text_tells_how_honest_the_estimate_is_and_what_was_isolated(self, summary):
+        error = {"rms_sunlit": 0.041, "max": 0.3, "within_3sigma": 0.9876}
+        found = {"estimate_deg": error, "converged_at_s": 12.0, "isolated": ["coil 1", "sun sensor"]}
+        text = summary_text(summary | found)
+        assert "inside its 3 sigma 98.8% of the time, converged at 12 s" in text
+        assert "isolated   coil 1, sun sensor" in text
+        unknown = summary_text(summary | found | {"estimate_deg": error | {"within_3sigma": None}})
+        assert "0.041 deg RMS sunlit, 0.300 deg max, converged at 12 s" in unknown
 
     def test_the_text_tells_settling_and_spin_where_there_are_some(self, summary):
         axis1 = summary["axis1_deg"] | {"settle_orbits_5deg": 1.594}

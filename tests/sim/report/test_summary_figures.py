@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from fsw.core.events import Event
 from fsw.wire.messages import CoilRefused, FswEvent, Mode, PlantEvent, TickDone
 from sim.record.candump import LogEntry
 from sim.record.estimates import Estimates
-from sim.report.summary import BusTally, nees, summarise, summary_text
+from sim.report.summary import BusTally, nees, summarise, summary_text, within_3sigma
 from sim.scenario.schema import load, orbit_period_s, parse_settings
 
 TICKS = 2400
@@ -115,7 +116,59 @@ class TestEstimate:
 
     def test_a_flight_in_the_light_alone_has_no_error_in_eclipse(self, audit):
         summary = Made(error_of(np.full(TICKS, 1.0))).summary(audit)
-        assert set(summary["estimate_deg"]) == {"rms_sunlit", "max"}
+        assert set(summary["estimate_deg"]) == {"rms_sunlit", "max", "within_3sigma"}
+
+
+class TestWithin3Sigma:
+    """Sigma is 1, 2 and 3 mrad about the body axes; the limits are 3, 6 and 9 mrad."""
+
+    COVARIANCE = np.diag([1e-6, 4e-6, 9e-6, 1e-10, 1e-10, 1e-10])
+    INSIDE = (0.00299, -0.00598, 0.00897)
+
+    def made(self, **errors_by_ticks):
+        error = np.tile(self.INSIDE, (TICKS, 1))
+        for axis, ticks, size in errors_by_ticks.values():
+            error[ticks, axis] = size
+        return Made(error, covariance=self.COVARIANCE)
+
+    def part(self, made, audit):
+        return made.summary(audit)["estimate_deg"]["within_3sigma"]
+
+    def test_each_axis_is_compared_with_its_own_sigma(self, audit):
+        assert self.part(self.made(), audit) == 1.0
+        for axis, size in enumerate((0.00301, -0.00602, 0.00903)):
+            made = self.made(beyond=(axis, slice(600), size))
+            assert self.part(made, audit) == pytest.approx(1.0 - 600 / TICKS)
+            expected = np.ones((TICKS, 3), dtype=bool)
+            expected[:600, axis] = False
+            np.testing.assert_array_equal(within_3sigma(made.truth, made.estimates), expected)
+
+    def test_a_tick_counts_where_all_axes_are_inside(self, audit):
+        made = self.made(first=(0, slice(0, 600), 0.004), third=(2, slice(300, 900), -0.01))
+        assert self.part(made, audit) == pytest.approx(1.0 - 900 / TICKS)
+
+    def test_what_is_before_convergence_does_not_count(self, audit):
+        made = self.made(late=(1, slice(600), 0.1))
+        assert made.summary(audit)["converged_at_s"] == 600.0
+        assert self.part(made, audit) == 1.0
+
+    def test_what_is_not_called_valid_does_not_count(self, audit):
+        made = self.made(beyond=(1, slice(600), 0.01))
+        made.estimates.valid[:900] = False
+        assert self.part(made, audit) == 1.0
+        made.estimates.valid[:900], made.estimates.valid[900:] = True, False
+        assert self.part(made, audit) == pytest.approx(1.0 / 3.0)
+
+    def test_a_tick_without_an_estimate_does_not_count(self, audit):
+        made = self.made(beyond=(1, slice(600), 0.01))
+        made.estimates.q_body_from_orbit[1200:1800] = np.nan
+        made.estimates.covariance[1200:1800] = np.nan
+        assert self.part(made, audit) == pytest.approx(2.0 / 3.0)
+
+    def test_without_a_covariance_it_is_unknown(self, audit, strict):
+        made = self.made()
+        made.estimates.covariance[:] = np.nan
+        assert strict(json.dumps(made.summary(audit)))["estimate_deg"]["within_3sigma"] is None
 
 
 class TestNees:
@@ -241,6 +294,32 @@ class TestTally:
         frame = FswEvent(2, 4, 17, -5).encode()
         tally.take(self.entry(frame._replace(data=frame.data[:-1] + b"\0")))
         assert tally.events == []
+
+    def test_isolated_units_are_named_once_in_the_order_of_their_isolation(self, audit):
+        tally = BusTally(self.EPOCH_US)
+        for event, argument in (
+            (Event.COIL_FAULT, 203),
+            (Event.SENSOR_ISOLATED, 204),
+            (Event.SENSOR_READMITTED, 204),
+            (Event.SENSOR_ISOLATED, 201),
+            (Event.MODE_CHANGED, 100),
+        ):
+            tally.take(self.entry(FswEvent(2, event, 17, argument).encode()))
+        assert tally.isolated == ["coil 1", "sun sensor"]
+        made = Made(error_of(np.full(TICKS, 1.0)))
+        assert made.summary(audit, tally=tally)["isolated"] == ["coil 1", "sun sensor"]
+
+    def test_no_other_node_isolates(self):
+        tally = BusTally(self.EPOCH_US)
+        tally.take(self.entry(PlantEvent(1, Event.SENSOR_ISOLATED, 18, 101).encode()))
+        assert tally.isolated == []
+
+    def test_a_unit_that_is_isolated_after_a_flood_of_events_counts(self):
+        tally = BusTally(self.EPOCH_US)
+        for number in range(1000):
+            tally.take(self.entry(FswEvent(0, Event.TIME_MISMATCH, 0, number).encode()))
+        tally.take(self.entry(FswEvent(2, Event.SENSOR_ISOLATED, 17, 106).encode()))
+        assert tally.isolated == ["magnetometer"]
 
     def test_a_flood_of_events_is_kept_to_the_first(self):
         tally = BusTally(self.EPOCH_US)
