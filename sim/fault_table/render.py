@@ -45,6 +45,9 @@ second sender, but limits, replay and completeness must hold.
     lasts_s = 300.0
     parameters = {axis = 1, nt = 10000}
 
+`per_s` is the change of `nt`, `scale` or `deg` in each second after the onset: `nt = 0, per_s = 0.2` is a
+bias that drifts by 0.2 nT/s. A kind that ends in `_late` delays the samples of one sensor.
+
 | kind | parameters: default (range) | in a scenario |
 |---|---|---|"""
 

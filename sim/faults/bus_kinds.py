@@ -130,6 +130,27 @@ class FrameDelay(Fault):
         return due
 
 
+class SampleDelay(FrameDelay):
+    """The frames ``can_id`` come ``ticks`` ticks late: at first none, then the old ones, counters in order.
+
+    With ``jitter`` each is 0 to ``ticks`` ticks late, at random.
+    """
+
+    def __init__(self, can_id: int, rng: Random, parameters: Parameters) -> None:
+        super().__init__(rng, parameters)
+        self._can_id = can_id
+
+    def from_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
+        """The other frames, and the samples that are due."""
+        samples = [frame for frame in frames if frame.can_id == self._can_id]
+        others = [frame for frame in frames if frame.can_id != self._can_id]
+        return others + super().from_boards(tick, samples)
+
+    def to_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
+        """All frames."""
+        return frames
+
+
 class LinkDown(Fault):
     """The interface is down: nothing gets through, not even SYNC."""
 
@@ -211,6 +232,11 @@ class ForgedRequests(Fault):
             ).encode()
             for _ in range(round(self.parameters["frames"]))
         ]
+
+
+def sample_delay(can_id: int) -> Callable[[Random, Parameters], Fault]:
+    """A delay of the samples of one sensor."""
+    return partial(SampleDelay, can_id)
 
 
 def frame_fault(tamper: Tamper) -> Callable[[Random, Parameters], Fault]:

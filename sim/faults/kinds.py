@@ -5,6 +5,7 @@ from random import Random
 from typing import NamedTuple
 
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG
+from fsw.wire.messages import MagField, SunVector
 from sim.faults import bus_kinds as bus
 from sim.faults import forged_kinds as forged
 from sim.faults import node_kinds as node
@@ -42,6 +43,9 @@ class FaultKind(NamedTuple):
 PART = {"part": Parameter(0.1, 0.0, 1.0)}
 ALWAYS = {"part": Parameter(1.0, 0.0, 1.0)}
 AXIS = {"axis": Parameter(0.0, 0.0, 2.0)}
+PER_S = {"per_s": Parameter(0.0, -1000.0, 1000.0)}
+TURN = {**AXIS, "deg": Parameter(10.0, -180.0, 180.0), **PER_S}
+LATE = {"ticks": Parameter(30.0, 1.0, 1000.0), "jitter": Parameter(0.0, 0.0, 1.0)}
 STRIKES = Parameter(5.0, 1.0, 1000.0)
 A_FEW = Parameter(3.0, 1.0, 1000.0)
 HELD = {"seconds": Parameter(4.9, 0.0, 1000.0), "rushed": Parameter(0.0, 0.0, 1000.0)}
@@ -85,14 +89,23 @@ KINDS: dict[str, FaultKind] = {
     "mag_saturated": FaultKind(plant.field_fault(plant.clip), {"nt": Parameter(15_000.0, 0.0, 65_000.0)}),
     "mag_frozen": FaultKind(plant.FieldFrozen),
     "mag_bias": FaultKind(
-        plant.field_fault(plant.shift), {**AXIS, "nt": Parameter(10_000.0, -60_000.0, 60_000.0)}
+        plant.field_fault(plant.shift, "nt"),
+        {**AXIS, "nt": Parameter(10_000.0, -60_000.0, 60_000.0), **PER_S},
     ),
-    "mag_scale": FaultKind(plant.field_fault(plant.scale), {**AXIS, "scale": Parameter(1.5, -10.0, 10.0)}),
+    "mag_scale": FaultKind(
+        plant.field_fault(plant.scale, "scale"), {**AXIS, "scale": Parameter(1.5, -10.0, 10.0), **PER_S}
+    ),
+    "mag_turned": FaultKind(plant.field_fault(plant.turn, "deg"), TURN),
     "mag_swapped": FaultKind(plant.field_fault(plant.swap_axes), AXIS),
+    "mag_late": FaultKind(bus.sample_delay(MagField.ID), LATE),
     "sun_nan": FaultKind(plant.sun_fault(plant.set_nan), AXIS),
     "sun_frozen": FaultKind(plant.SunFrozen),
-    "sun_scale": FaultKind(plant.sun_fault(plant.scale), {**AXIS, "scale": Parameter(-1.0, -10.0, 10.0)}),
+    "sun_scale": FaultKind(
+        plant.sun_fault(plant.scale, "scale"), {**AXIS, "scale": Parameter(-1.0, -10.0, 10.0), **PER_S}
+    ),
+    "sun_turned": FaultKind(plant.sun_fault(plant.turn, "deg"), TURN),
     "sun_swapped": FaultKind(plant.sun_fault(plant.swap_axes), AXIS),
+    "sun_late": FaultKind(bus.sample_delay(SunVector.ID), LATE),
     "sun_unseen": FaultKind(plant.SunBlindness),
     "albedo": FaultKind(plant.SunDeflection, {"part": Parameter(0.4, 0.0, 1.0)}),
     "extreme_codes": FaultKind(plant.ExtremeCodes, {"sun": Parameter(0.0, 0.0, 1.0)}),

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from functools import partial
-from math import inf, nan, sqrt
+from math import inf, nan, radians, sqrt
 from random import Random
 from typing import Literal
 
@@ -11,7 +11,7 @@ from fsw.wire.messages import SENDERS, MagField, SunVector
 from sim.faults.fault import Fault, Parameters
 from sim.plant.hardware.actuators import CoilDrive
 from sim.plant.plant import Plant
-from sim.plant.rotation import ZERO, Vec3, matrix, transform
+from sim.plant.rotation import ZERO, Vec3, from_vector, matrix, transform
 
 BoardName = Literal["magnetometer", "sun", "coil"]
 _NODE: dict[BoardName, str] = {"magnetometer": "MAG", "sun": "SUN", "coil": "COIL"}
@@ -54,34 +54,57 @@ def shift(v: Vec3, parameters: Parameters) -> Vec3:
     return replace_axis(v, parameters, v[round(parameters["axis"])] + parameters["nt"] * T_PER_NT)
 
 
+def turn(v: Vec3, parameters: Parameters) -> Vec3:
+    """The sensor is turned by ``deg`` about a body axis: it reads R v, R from body to sensor axes."""
+    return transform(matrix(from_vector(replace_axis(ZERO, parameters, radians(parameters["deg"])))), v)
+
+
 def clip(v: Vec3, parameters: Parameters) -> Vec3:
     """No axis reads more than ``nt``, and the sample is still marked as valid."""
     most = parameters["nt"] * T_PER_NT
     return (min(max(v[0], -most), most), min(max(v[1], -most), most), min(max(v[2], -most), most))
 
 
-class WrongFieldReading(Fault):
-    """The magnetometer has a wrong reading, marked as valid."""
+class WrongReading(Fault):
+    """A sensor has a wrong reading.
 
-    def __init__(self, reading: Reading, rng: Random, parameters: Parameters) -> None:
+    The parameter named ``size`` may change with time: size(t) = size + per_s (t - t_onset), t in seconds.
+    """
+
+    def __init__(self, reading: Reading, size: str | None, rng: Random, parameters: Parameters) -> None:
         super().__init__(rng, parameters)
-        self._reading = reading
+        self._reading, self._size, self._now = reading, size, parameters
+        self._onset_s = 0.0
+
+    def begin(self, plant: Plant) -> None:
+        """Note the time."""
+        self._onset_s = plant.t_s
+
+    def before(self, tick: int, plant: Plant) -> None:
+        """Set the size that the fault has in this tick."""
+        if self._size is not None:
+            change = self.parameters["per_s"] * (plant.t_s - self._onset_s)
+            self._now = {**self.parameters, self._size: self.parameters[self._size] + change}
+
+    def read(self, v: Vec3) -> Vec3:
+        """The wrong reading of this tick."""
+        return self._reading(v, self._now)
+
+
+class WrongFieldReading(WrongReading):
+    """The magnetometer has a wrong reading, marked as valid."""
 
     def field(self, b_body_t: Vec3, valid: bool) -> tuple[Vec3, bool]:
         """The wrong reading."""
-        return self._reading(b_body_t, self.parameters), valid
+        return self.read(b_body_t), valid
 
 
-class WrongSunReading(Fault):
+class WrongSunReading(WrongReading):
     """The Sun sensor has a wrong reading where the Sun is in view."""
-
-    def __init__(self, reading: Reading, rng: Random, parameters: Parameters) -> None:
-        super().__init__(rng, parameters)
-        self._reading = reading
 
     def sun(self, sun_body: Vec3, valid: bool) -> tuple[Vec3, bool]:
         """The wrong reading."""
-        return (self._reading(sun_body, self.parameters), True) if valid else (sun_body, False)
+        return (self.read(sun_body), True) if valid else (sun_body, False)
 
 
 class FieldFrozen(Fault):
@@ -227,14 +250,14 @@ class BoardDead(Fault):
         plant.restart(self._board)
 
 
-def field_fault(reading: Reading) -> Callable[[Random, Parameters], Fault]:
-    """A fault of the magnetometer."""
-    return partial(WrongFieldReading, reading)
+def field_fault(reading: Reading, size: str | None = None) -> Callable[[Random, Parameters], Fault]:
+    """A fault of the magnetometer; ``size``: the parameter that ``per_s`` changes."""
+    return partial(WrongFieldReading, reading, size)
 
 
-def sun_fault(reading: Reading) -> Callable[[Random, Parameters], Fault]:
-    """A fault of the Sun sensor."""
-    return partial(WrongSunReading, reading)
+def sun_fault(reading: Reading, size: str | None = None) -> Callable[[Random, Parameters], Fault]:
+    """A fault of the Sun sensor; ``size``: the parameter that ``per_s`` changes."""
+    return partial(WrongSunReading, reading, size)
 
 
 def board_fault(

@@ -106,6 +106,11 @@ class Plant:
         """The tick that has begun or is about to begin."""
         return self._tick
 
+    @property
+    def t_s(self) -> float:
+        """The time of that tick since tick 0 [s]."""
+        return self._tick / self._config.tick_hz
+
     def begin_tick(self) -> list[Frame]:
         """The frames of this tick, in the order in which they are sent.
 
@@ -177,7 +182,7 @@ class Plant:
         around = self._around[0]
         e_body = transform(self._body_from_eci, around.e_eci)
         return TruthRow(
-            t_s=self._tick / self._config.tick_hz,
+            t_s=self.t_s,
             q_body_from_orbit=q_body_from_orbit,
             omega_body_orbit_radps=omega_body_orbit_radps,
             b_body_t=b_body_t,

@@ -74,6 +74,20 @@ def test_jitter_loses_nothing():
     assert come != sorted(come)
 
 
+@pytest.mark.parametrize(("kind", "sample"), [("mag_late", 0), ("sun_late", 1)])
+def test_late_samples_are_those_of_one_sensor_in_their_order(kind, sample):
+    late = fault(kind, ticks=3.0)
+    numbers = []
+    for tick in range(10):
+        frames = [MagField(1, 20000.0, -7000.0, 31000.0, tick), SunVector(1, 0.6, -0.64, 0.48, tick)]
+        come = late.from_boards(tick, [frame.encode() for frame in frames])
+        other = frames.pop(1 - sample)
+        assert other.encode() in come
+        assert late.to_boards(tick, list(FRAMES)) == FRAMES
+        numbers += [type(frames[0]).decode(f.data).counter for f in come if f.can_id == frames[0].ID]
+    assert numbers == list(range(7))
+
+
 def test_a_queue_that_is_full_keeps_the_first_frames():
     full = fault("queue_full")
     for tick in range(50):

@@ -1,7 +1,7 @@
 """Faults of sensors, coils and boards: their effect on frames and currents."""
 
 from itertools import pairwise
-from math import inf, isnan
+from math import inf, isnan, radians
 from random import Random
 
 import pytest
@@ -10,7 +10,10 @@ from fsw.wire.messages import CoilBoot, CoilFire, CoilStatus, MagField, SunVecto
 from sim.faults.faulty_plant import FaultyPlant, ScheduledFault
 from sim.faults.kinds import make
 from sim.faults.node_kinds import count_doubles, flip, flip_bit
+from sim.plant.config import MagnetometerConfig
 from sim.plant.hardware.actuators import CoilDrive
+from sim.plant.hardware.sensors import MagnetometerPhysics
+from sim.plant.rotation import ZERO
 from sim.scenario.assemble import plant_config
 from sim.scenario.schema import load
 
@@ -31,12 +34,57 @@ def fault(kind, **parameters):
         ("mag_swapped", {"axis": 0.0}, (-7e-6, 20e-6, 31e-6)),
         ("mag_swapped", {"axis": 2.0}, (31e-6, -7e-6, 20e-6)),
         ("mag_infinite", {"axis": 1.0}, (20e-6, inf, 31e-6)),
+        ("mag_turned", {"axis": 0.0, "deg": 90.0}, (20e-6, 31e-6, 7e-6)),
+        ("mag_turned", {"axis": 1.0, "deg": 90.0}, (-31e-6, -7e-6, 20e-6)),
     ],
 )
 def test_the_magnetometer_reads_wrong_and_calls_it_valid(kind, parameters, read_t):
     read, valid = fault(kind, **parameters).field(B_T, True)
     assert read == pytest.approx(read_t)
     assert valid
+
+
+def test_a_turned_sensor_reads_as_one_that_is_misaligned_by_the_same_angle():
+    config = MagnetometerConfig(misalignment_rad=(0.0, 0.0, radians(25.0)))
+    misaligned, _ = MagnetometerPhysics(config, seed=1).measure(B_T, ZERO)
+    turned, _ = fault("mag_turned", axis=2.0, deg=25.0).field(B_T, True)
+    assert turned == pytest.approx(misaligned)
+
+
+class Clock:
+    """What a fault needs of a plant to know the time."""
+
+    t_s = 0.0
+
+
+def changed(kind, read, after_s, **parameters):
+    """The reading of a fault that began ``after_s`` ago, at 700 s."""
+    wrong, clock = fault(kind, **parameters), Clock()
+    clock.t_s = 700.0
+    wrong.begin(clock)
+    clock.t_s += after_s
+    wrong.before(0, clock)
+    return getattr(wrong, read)(SUN if read == "sun" else B_T, True)[0]
+
+
+@pytest.mark.parametrize(
+    ("kind", "parameters", "after_s", "reading"),
+    [
+        ("mag_bias", {"axis": 1.0, "nt": 0.0, "per_s": 0.2}, 0.0, B_T),
+        ("mag_bias", {"axis": 1.0, "nt": 100.0, "per_s": 0.2}, 4000.0, (20e-6, -6.1e-6, 31e-6)),
+        ("mag_scale", {"axis": 2.0, "scale": 1.0, "per_s": 5e-5}, 6000.0, (20e-6, -7e-6, 40.3e-6)),
+        ("mag_turned", {"axis": 0.0, "deg": 60.0, "per_s": 5e-3}, 6000.0, (20e-6, 31e-6, 7e-6)),
+        ("sun_scale", {"axis": 0.0, "scale": 1.0, "per_s": -0.01}, 50.0, (0.3, -0.64, 0.48)),
+        ("sun_turned", {"axis": 2.0, "deg": 0.0, "per_s": 0.1}, 900.0, (-0.64, -0.6, 0.48)),
+    ],
+)
+def test_a_fault_that_changes_is_counted_from_its_onset(kind, parameters, after_s, reading):
+    read = "sun" if kind.startswith("sun") else "field"
+    assert changed(kind, read, after_s, **parameters) == pytest.approx(reading)
+
+
+def test_a_turned_sun_sensor_has_no_sun_where_there_is_none():
+    assert fault("sun_turned", deg=10.0).sun((0.0, 0.0, 0.0), False) == ((0.0, 0.0, 0.0), False)
 
 
 def test_not_a_number_is_none():

@@ -30,6 +30,9 @@ def field_nt(frames):
         ({"kind": "loss", "at_s": 1.0, "parameters": {"part": 1.1}}, "part = 1.1 is outside 0 to 1"),
         ({"kind": "loss", "at_s": 1.0, "parameters": {"parts": 0.1}}, "no such parameter, but part"),
         ({"kind": "loss", "at_s": 1.0, "often": True}, "fault.0.often"),
+        ({"kind": "mag_late", "at_s": 1.0, "parameters": {"ticks": 0.0}}, "ticks = 0 is outside 1 to 1000"),
+        ({"kind": "sun_turned", "at_s": 1.0, "parameters": {"nt": 1.0}}, "sun_turned has no such parameter"),
+        ({"kind": "mag_frozen", "at_s": 1.0, "parameters": {"per_s": 1.0}}, "no such parameter, but none"),
     ],
 )
 def test_what_makes_no_sense_is_a_sentence(fault, said):
@@ -55,6 +58,30 @@ def test_a_fault_comes_and_goes_when_it_is_to():
         plant.end_tick()
         healthy.end_tick()
     assert off_nt == pytest.approx([0.0, 0.0, 0.0, 9000.0, 9000.0, 0.0, 0.0, 0.0], abs=2.0)
+
+
+def test_a_fault_grows_from_its_own_beginning_in_seconds():
+    chosen = load(
+        "microsat",
+        {
+            "time": {"tick_hz": 2},
+            "fault": [
+                {
+                    "kind": "mag_bias",
+                    "at_s": 2.0,
+                    "parameters": {"axis": 1.0, "nt": 4000.0, "per_s": 600.0},
+                }
+            ],
+        },
+    )
+    plant = make_plant(plant_config(chosen, 1), chosen.fault)
+    healthy = Plant(plant_config(chosen, 1))
+    off_nt = []
+    for _ in range(8):
+        off_nt.append(field_nt(plant.begin_tick()).b_y - field_nt(healthy.begin_tick()).b_y)
+        plant.end_tick()
+        healthy.end_tick()
+    assert off_nt == pytest.approx([0.0, 0.0, 0.0, 0.0, 4000.0, 4300.0, 4600.0, 4900.0], abs=2.0)
 
 
 def test_a_fault_without_an_end_stays():
