@@ -3,9 +3,11 @@
 import h5py
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from fsw.wire.messages import CoilDipole, CoilDipoleStatus, CoilFire, CoilRefused, CoilStatus, Sync
 
+TURNS_DEG = [[0.3, -0.2, 0.4], [0.1, 0.5, -0.3], [-0.2, 0.3, 0.1]]
 SETTINGS = (
     "coils.driver=continuous",
     "coils.max_dipole_am2=12",
@@ -17,6 +19,13 @@ SETTINGS = (
     "sensors.sun.fov_half_deg=100",
     "sensors.sun.boresights=[[1, 0, 0], [0, 1, 0]]",
     "sensors.magnetometer.latency_s=0.05",
+    "sensors.magnetometer.non_orthogonality_deg=[0.2, -0.3, 0.1]",
+    "sensors.sun.albedo=true",
+    f"coils.misalignment_deg={TURNS_DEG}",
+    "disturbance.torque_daily_part=0.5",
+    "disturbance.residual_dipole_eclipse_am2=[0.001, -0.002, 0.001]",
+    "disturbance.remanence_part=0.005",
+    "orbit.along_track_km=5",
 )
 
 
@@ -46,7 +55,9 @@ def test_what_is_asked_in_a_tick_is_told_at_the_next_and_has_flowed(flight, copy
     with h5py.File(flight / "truth.h5") as truth:
         flowed = truth["m_body_am2"][:]
         assert {"drag", "solar_pressure", "eddy", "noise", "coils"} <= set(truth["torque_body_nm"])
-    assert flowed == pytest.approx(9.6 * np.array(reported), rel=1e-7, abs=1e-7)
+    turned = Rotation.from_rotvec(TURNS_DEG, degrees=True)
+    axes = np.array([turned[coil].apply(axis) for coil, axis in enumerate(np.eye(3))])
+    assert flowed == pytest.approx(9.6 * np.array(reported) @ axes, rel=1e-7, abs=1e-7)
 
 
 def test_the_audit_finds_no_pulse_and_no_violation(flight, torquer):

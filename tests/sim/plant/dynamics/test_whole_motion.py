@@ -29,9 +29,12 @@ PLATES = (
     PlateConfig(0.45, (0.0, -0.8, -0.6), (0.06, -0.02, 0.4), 1.9, 0.5, 0.1),
     PlateConfig(0.25, (-1.0, 0.0, 0.0), (-0.2, 0.05, 0.1), 2.1, 0.2, 0.2),
 )
-DISTURBANCE = DisturbanceConfig((3e-8, -2e-8, 1e-8), (0.01, 0.02, -0.03), 1.5, 1361.0, 300.0)
-COILS = CoilConfig((0.5, 2.0, 8.0), 11.0, 0.0, (0.97, 1.02, 1.05), ContinuousConfig(12.0, 1.0))
+DISTURBANCE = DisturbanceConfig((3e-8, -2e-8, 1e-8), (0.01, 0.02, -0.03), 1.5, 1361.0, 300.0, 0.0, 0.4)
 ASKED = (0.0625, -0.125, 0.03125)
+TURNS = ((0.02, -0.03, 0.05), (0.04, 0.01, -0.02), (-0.03, 0.05, 0.01))
+COILS = CoilConfig((0.5, 2.0, 8.0), 11.0, 0.0, (0.97, 1.02, 1.05), ContinuousConfig(12.0, 1.0), TURNS)
+AXES = np.array([Rotation.from_rotvec(turn).apply(axis) for turn, axis in zip(TURNS, np.eye(3), strict=True)])
+DRIVEN_AM2 = (np.array(ASKED) * 12.0 * COILS.dipole_scale) @ AXES
 SECONDS = 600
 
 
@@ -41,7 +44,6 @@ class Model:
     def __init__(self, config):
         self.epoch = config.epoch_unix_s
         self.orbit, self.field = make_orbit(ORBIT, self.epoch), make_field(config.field, self.epoch)
-        self.dipole = np.array(ASKED) * 12.0 * COILS.dipole_scale + DISTURBANCE.residual_dipole_body_am2
 
     def torque(self, t, body_from_eci, w):
         times = np.array([t])
@@ -49,7 +51,8 @@ class Model:
         b = body_from_eci @ self.field.at(times, r[None])[0]
         e = body_from_eci @ r / np.linalg.norm(r)
         torque = 3.0 * 3.986004418e14 / np.linalg.norm(r) ** 3 * np.cross(e, J @ e)
-        torque += np.cross(self.dipole, b) + DISTURBANCE.torque_body_nm
+        torque += np.cross(DRIVEN_AM2 + DISTURBANCE.residual_dipole_body_am2, b)
+        torque += (1.0 + 0.4 * np.cos(2.0 * np.pi * t / 86400.0)) * np.array(DISTURBANCE.torque_body_nm)
         torque += 300.0 * np.cross(np.cross(w, b), b)
         return torque + self.plates(times, r, v, body_from_eci)
 
@@ -98,7 +101,7 @@ def test_ten_minutes_of_everything_at_once(make_plant, make_config, rotation_ang
         plant.receive(CoilDipole(*ASKED).encode())
         plant.end_tick()
         driven.append(plant.truth().m_body_am2)
-    assert driven[-1] == pytest.approx(np.array(ASKED) * 12.0 * COILS.dipole_scale)
+    assert driven[-1] == pytest.approx(DRIVEN_AM2)
     found, expected = plant.motion, solved.y[:, -1]
     assert rotation_angle(found.q_body_from_eci, expected[:4]) < 1e-7
     assert np.abs(np.subtract(found.omega_body_radps, expected[4:])).max() < 1e-9
