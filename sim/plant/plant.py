@@ -232,7 +232,7 @@ class Plant:
 
     def _bias_body_nm(self) -> Vec3:
         """The constant torque with its daily variation, at the instant of the tick."""
-        return bias_torque(self._config.disturbance, self._tick / self._config.tick_hz)
+        return bias_torque(self._config.disturbance, self.t_s)
 
     def _initial_motion(self) -> Motion:
         sample, initial = self._environment.sample(0), self._config.initial

@@ -145,19 +145,12 @@ def _skewed(non_orthogonality_rad: Vec3, axes: Mat3) -> Mat3:
         axes: rows of the orthogonal axes, body axes.
     """
     xy, xz, yz = map(sin, non_orthogonality_rad)
-    x, y, z = axes
-    cos_xy = sqrt(1.0 - xy * xy)
-    zy = (yz - xy * xz) / cos_xy
+    yy = sqrt(1.0 - xy * xy)
+    zy = (yz - xy * xz) / yy
     zz = sqrt(1.0 - xz * xz - zy * zy)
-    return (
-        x,
-        (xy * x[0] + cos_xy * y[0], xy * x[1] + cos_xy * y[1], xy * x[2] + cos_xy * y[2]),
-        (
-            xz * x[0] + zy * y[0] + zz * z[0],
-            xz * x[1] + zy * y[1] + zz * z[1],
-            xz * x[2] + zy * y[2] + zz * z[2],
-        ),
-    )
+    (a, b, c), (d, e, f), (g, h, i) = axes
+    body_from_axes = ((a, d, g), (b, e, h), (c, f, i))
+    return (axes[0], transform(body_from_axes, (xy, yy, 0.0)), transform(body_from_axes, (xz, zy, zz)))
 
 
 def _quantise(value: float, quantum: float) -> float:
