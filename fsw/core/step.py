@@ -7,12 +7,13 @@ from fsw.core import telemetry
 from fsw.core.actuation import pulses
 from fsw.core.actuation.actuator import actuate, update_view
 from fsw.core.algebra.quaternion import rotate
-from fsw.core.algebra.vector import ZERO, Vec3
+from fsw.core.algebra.vector import Vec3
 from fsw.core.commands import command
 from fsw.core.config import FlightConfig
 from fsw.core.estimation.attitude import UNKNOWN
 from fsw.core.estimation.estimator import NONE_USED, Used, predict, restart, update
 from fsw.core.estimation.orbital_attitude import orbital_attitude, perfect_attitude
+from fsw.core.estimation.parameters import NOTHING
 from fsw.core.estimation.samples import usable_field, usable_sun
 from fsw.core.fdir import fdir
 from fsw.core.fdir.fdir import Evidence
@@ -104,6 +105,7 @@ def _gate(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Fligh
     tick = inbox.tick
     readings, gate = admit(inbox.frames, state.gate)
     view = update_view(state.coil, readings, tick, config.coils)
+    readings = readings._replace(quiet=view.idle_ticks > config.estimator.blank_ticks)
     expected_s = config.epoch_unix_s + tick // config.tick_hz
     state = state._replace(
         field_tick=tick if readings.field is not None else state.field_tick,
@@ -183,6 +185,7 @@ def _law_input(state: FlightState, observation: Observation, model: EphemerisMod
         b_orbit_t = rotate(reference.q_orbit_from_eci, reference.b_eci_t)
         b_body_t = rotate(attitude.q_body_from_orbit, b_orbit_t)
     estimate = state.estimator.estimate
+    parameters = estimate.parameters if estimate is not None else NOTHING
     return LawInput(
         attitude,
         b_body_t,
@@ -190,7 +193,8 @@ def _law_input(state: FlightState, observation: Observation, model: EphemerisMod
         state.sample,
         usable_sun(readings),
         reference,
-        estimate.torque_body_nm if estimate is not None else ZERO,
+        parameters.torque_body_nm,
+        parameters.dipole_body_am2,
         state.tick,
         model,
     )

@@ -7,8 +7,6 @@ from fsw.core.actuation.dipoles import DipoleConfig
 from fsw.core.actuation.pulses import PulseConfig, pulse_timing
 from fsw.core.algebra.vector import inverse, product
 from fsw.core.config import FlightConfig
-from fsw.core.estimation.estimator import EstimatorConfig
-from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.fdir.coil_health import CoilHealthConfig
 from fsw.core.fdir.fdir import FdirConfig
 from fsw.core.fdir.sensor_pair import PairConfig
@@ -22,11 +20,12 @@ from fsw.core.orbit.field import FieldKind
 from fsw.core.orbit.propagation import Orbit, circular_orbit, sgp4_orbit
 from fsw.core.rates import RateGroup, RateTable
 from fsw.input.schema import TableError
+from fsw.table.estimator import GATE_NIS, NT, estimator_config, pair_limits, table_bounds
 from fsw.table.schedules import schedules
 from fsw.table.sections import CoilTable, ModesTable, OrbitTable, TelemetryTable
 from fsw.table.table import FlightTable
+from fsw.table.uncertainty import SIDE
 
-NT = 1e-9
 CHATTER_S = 10.0
 """Longest time between signs of a second sender of reports."""
 
@@ -40,7 +39,7 @@ def flight_config(table: FlightTable) -> FlightConfig:
     tick_hz = table.time.tick_hz
     try:
         orbit = _orbit(table.orbit, table.epoch_unix_s)
-        estimator, timing = _estimator(table), _pulses(table)
+        estimator, timing = estimator_config(table), _pulses(table)
         return FlightConfig(
             tick_hz=tick_hz,
             epoch_unix_s=table.epoch_unix_s,
@@ -109,47 +108,17 @@ def _full_scale(coils: CoilTable) -> float:
     return (coils.max_dipole_am2 or 0.0) * coils.on_fraction
 
 
-def _estimator(table: FlightTable) -> EstimatorConfig:
-    tuning = table.estimator
-    return EstimatorConfig(
-        mekf=mekf_config(
-            table.body.inertia,
-            1.0 / table.time.tick_hz,
-            wheel_body_nms=table.body.wheel_nms,
-            estimate_bias=tuning.bias,
-            estimate_torque=tuning.torque,
-            magnetometer_sigma_t=tuning.magnetometer_sigma_nt * NT,
-            sun_sigma_rad=radians(tuning.sun_sigma_deg),
-            attitude_sigma_rad=radians(tuning.attitude_sigma_deg),
-            rate_sigma_radps=radians(tuning.rate_sigma_degps),
-            bias_sigma_t=tuning.bias_sigma_nt * NT,
-            torque_sigma_nm=tuning.torque_sigma_nm,
-            torque_noise_nm_rts=tuning.torque_noise_nm_rts,
-            bias_walk_t_prts=tuning.bias_walk_nt_prts * NT,
-            torque_walk_nm_prts=tuning.torque_walk_nm_prts,
-            dipole_sigma=tuning.dipole_sigma,
-            gate_nis=tuning.gate_nis,
-        ),
-        perfect=table.knowledge == "perfect",
-        max_field_error_t=tuning.max_field_error_nt * NT,
-        max_angle_error_rad=radians(tuning.max_angle_error_deg),
-        min_separation_rad=radians(tuning.min_separation_deg),
-        restart_after_rejections=tuning.restart_after_rejections,
-        valid_sigma_rad=radians(tuning.valid_sigma_deg),
-    )
-
-
 def _sensors(table: FlightTable) -> SensorHealthConfig:
     fdir, tick_hz, tuning = table.fdir, table.time.tick_hz, table.estimator
-    sigmas = sqrt(tuning.gate_nis)
+    sigmas, known, limits = sqrt(GATE_NIS), table_bounds(table), pair_limits(table)
     return SensorHealthConfig(
-        max_field_error_t=fdir.max_field_error_nt * NT,
+        max_field_error_t=limits.field_t,
         max_norm_error=fdir.max_sun_norm_error,
-        max_angle_error_rad=radians(fdir.max_angle_error_deg),
+        max_angle_error_rad=limits.angle_rad,
         field_noise_t=sigmas * tuning.magnetometer_sigma_nt * NT,
         sun_noise_rad=sigmas * radians(tuning.sun_sigma_deg),
-        max_bias_t=sigmas * tuning.bias_sigma_nt * NT,
-        max_torque_nm=sigmas * tuning.torque_sigma_nm,
+        max_bias_t=sigmas * SIDE * known.mag_bias_t,
+        max_torque_nm=sigmas * SIDE * known.torque_nm,
         frozen_ticks=max(1, _ticks(fdir.frozen_s, tick_hz)),
         silent_ticks=max(1, _ticks(table.modes.stale_after_s, tick_hz)),
         name_suspicion=FULL * max(1, _ticks(fdir.name_s, tick_hz)),

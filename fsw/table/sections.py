@@ -166,25 +166,11 @@ class ControlTable(Section):
 
 
 class EstimatorTable(Section):
-    """Filter tuning: standard deviations and random walks."""
+    """Noise of the sensors, rate at start-up, and standard deviation up to which the attitude is valid."""
 
-    bias: bool
-    torque: bool
     magnetometer_sigma_nt: Positive
     sun_sigma_deg: Positive
-    attitude_sigma_deg: Positive
     rate_sigma_degps: Positive
-    bias_sigma_nt: Positive
-    torque_sigma_nm: Positive
-    torque_noise_nm_rts: NotNegative
-    bias_walk_nt_prts: NotNegative
-    torque_walk_nm_prts: NotNegative
-    dipole_sigma: float = Field(ge=0.0, le=1.0)
-    gate_nis: Positive
-    max_field_error_nt: Positive
-    max_angle_error_deg: Positive
-    min_separation_deg: float = Field(gt=0.0, lt=90.0)
-    restart_after_rejections: int = Field(ge=1)
     valid_sigma_deg: Positive
 
 
@@ -216,9 +202,7 @@ class FdirTable(Section):
     A coil is weak below ``weak_coil_part`` of its nominal current or effect, open below ``open_coil_part``.
     """
 
-    max_field_error_nt: Positive
     max_sun_norm_error: float = Field(gt=0.0, le=0.5)
-    max_angle_error_deg: float = Field(gt=0.0, lt=90.0)
     frozen_s: Positive
     name_s: Positive
     readmit_s: Positive

@@ -33,6 +33,7 @@ from fsw.table.sections import (
     TimeTable,
     parse_utc,
 )
+from fsw.table.uncertainty import UncertaintyTable
 
 
 class FlightTable(Section):
@@ -45,6 +46,7 @@ class FlightTable(Section):
     body: BodyTable
     coils: CoilTable
     control: ControlTable
+    uncertainty: UncertaintyTable = UncertaintyTable()
     estimator: EstimatorTable
     modes: ModesTable
     fdir: FdirTable

@@ -13,6 +13,8 @@ from fsw.wire.messages import CoilDipole, CoilFire
 
 NO_PULSE = Pulse(0, 0)
 LOCKOUT_UNKNOWN = (-1, -1, -1)
+MOST_IDLE_TICKS = 10_000
+"""So many are counted: longer than any sample is late."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +23,8 @@ class CoilView:
 
     ``lockout_ms`` by coil, -1 where the board has not reported it yet; ``driven_coil`` and ``driven_level``
     over the tick that just ended, ``driven_am2`` the mean dipole over it, body axes; ``fired_tick`` is -1
-    before the first request; ``paid_body_nms`` is the impulse of the last request.
+    before the first request; ``paid_body_nms`` is the impulse of the last request; ``idle_ticks``: reports in
+    a row of no level and no current.
     """
 
     lockout_ms: tuple[int, int, int] = LOCKOUT_UNKNOWN
@@ -33,11 +36,20 @@ class CoilView:
     fired_tick: int = -1
     fired: Pulse = NO_PULSE
     paid_body_nms: Vec3 = ZERO
+    idle_ticks: int = 0
 
     def integers(self) -> tuple[int, ...]:
         """For the checksum of the state."""
         driven = (self.driven_coil, self.driven_level)
-        return (*self.lockout_ms, *driven, self.seq, self.refusals, self.fired_tick, *self.fired)
+        return (
+            *self.lockout_ms,
+            *driven,
+            self.seq,
+            self.refusals,
+            self.fired_tick,
+            *self.fired,
+            self.idle_ticks,
+        )
 
     def floats(self) -> tuple[float, ...]:
         """For the checksum of the state."""
@@ -68,6 +80,7 @@ def update_view(view: CoilView, readings: Readings, tick: int, config: ActuatorC
         driven_am2 = scale(pulses.dipole_am2(level, config.pulses.levels_am2), AXES[coil])
     else:
         driven_am2 = dipoles.driven_dipole_am2(readings.dipole, config.dipoles)
+    idle = status is not None and status.level == 0 and status.current_ma == 0
     return CoilView(
         lockout_ms=(lockout[0], lockout[1], lockout[2]),
         driven_coil=coil,
@@ -78,6 +91,7 @@ def update_view(view: CoilView, readings: Readings, tick: int, config: ActuatorC
         fired_tick=view.fired_tick,
         fired=view.fired,
         paid_body_nms=view.paid_body_nms,
+        idle_ticks=min(view.idle_ticks + 1, MOST_IDLE_TICKS) if idle else 0,
     )
 
 

@@ -1,25 +1,33 @@
 """From readings to an estimate: start by TRIAD, then the filter, gated, blanked and restarted when lost."""
 
 from dataclasses import dataclass
+from math import radians
 from typing import NamedTuple
 
-from fsw.core.algebra.vector import ZERO, Vec3, scale
+from fsw.core.algebra.vector import ZERO, Vec3, dot, scale
 from fsw.core.estimation import mekf
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
+from fsw.core.estimation.parameters import NOTHING
 from fsw.core.estimation.samples import usable_field, usable_sun
 from fsw.core.estimation.triad import consistent, triad
 from fsw.core.gate.readings import Readings
 from fsw.core.orbit.earth import MU_M3PS2
 from fsw.core.orbit.ephemeris import Reference
 
+FAST_RADPS, SLOW_RADPS = radians(0.5), radians(0.3)
+"""Parameters that were estimated at a rate above the first are started anew when it is below the second: what
+a fast turn leaves in them is beyond their standard deviations."""
 MAX_ELAPSED_TICKS = 60
 """After a longer silence the filter restarts instead of predicting."""
 
 
 @dataclass(frozen=True, slots=True)
 class EstimatorConfig:
-    """Filter tuning and the tests around it; ``perfect`` takes the reference messages instead."""
+    """Filter tuning and the tests around it; ``perfect`` takes the reference messages instead.
+
+    ``blank_ticks``: for so long after a pulse a field sample may still be of its time.
+    """
 
     mekf: MekfConfig
     perfect: bool
@@ -28,19 +36,24 @@ class EstimatorConfig:
     min_separation_rad: float
     restart_after_rejections: int
     valid_sigma_rad: float
+    blank_ticks: int = 0
 
 
 class EstimatorState(NamedTuple):
-    """The estimate, or None before start-up, and the measurements the gate refused in a row."""
+    """The estimate, or None before start-up, and the measurements the gate refused in a row.
+
+    ``fast``: the satellite has turned fast since the parameters were started.
+    """
 
     estimate: Estimate | None = None
     rejected_in_a_row: int = 0
     rejected_total: int = 0
     restarts: int = 0
+    fast: bool = False
 
     def integers(self) -> tuple[int, ...]:
         """For the checksum of the state, as are the next two."""
-        return (self.rejected_in_a_row, self.rejected_total, self.restarts)
+        return (self.rejected_in_a_row, self.rejected_total, self.restarts, self.fast)
 
     def floats(self) -> tuple[float, ...]:
         """The estimate, if there is one, without its arrays."""
@@ -113,9 +126,21 @@ def update(
     in_a_row = state.rejected_in_a_row + rejected
     if not rejected and (took_field or took_sun):
         in_a_row = 0
-    updated = EstimatorState(estimate, in_a_row, state.rejected_total + rejected, state.restarts)
+    updated = EstimatorState(estimate, in_a_row, state.rejected_total + rejected, state.restarts, state.fast)
+    updated = _settled(updated, estimate, config.mekf)
     lost = in_a_row >= config.restart_after_rejections or not mekf.healthy(estimate)
     return (restart(updated) if lost else updated), Used(took_field, took_sun, blanked)
+
+
+def _settled(state: EstimatorState, estimate: Estimate, config: MekfConfig) -> EstimatorState:
+    """With the parameters at their priors when a fast turn has ended; attitude and rate go on."""
+    square = dot(estimate.omega_body_radps, estimate.omega_body_radps)
+    if square > FAST_RADPS**2:
+        return state._replace(fast=True)
+    if not state.fast or square > SLOW_RADPS**2:
+        return state
+    anew = estimate._replace(parameters=NOTHING, covariance=config.initial_covariance, trace=None)
+    return state._replace(estimate=anew, fast=False)
 
 
 def _updated(

@@ -1,15 +1,22 @@
-"""Multiplicative extended Kalman filter for attitude, rate, magnetometer bias and disturbance torque.
+"""Multiplicative extended Kalman filter for attitude, rate, and what the table knows within bounds only.
 
 The attitude lives outside the filter as a unit quaternion. The filter carries the error state
-(dtheta, domega, then magnetometer bias and disturbance torque where switched on); after each update the
+(dtheta, domega, then those of the ``Parameters`` that are uncertain); after each update the
 error is folded into the estimate, q <- q (x) (1, dtheta / 2), and reset to zero. With e1 the radius
-direction, m the dipole, b the field and h the momentum of a wheel, all in body axes:
+direction, b the field, h the momentum of a wheel, d the residual dipole and m = (1 + G) m_driven + d, all in
+body axes:
 
     d(dtheta)/dt = -omega x dtheta + domega
     J d(domega)/dt = ([(J omega + h) x] - [omega x] J) domega
                    + (3 mu/r^3 ([e1 x] J - [J e1 x]) [e1 x] + [m x][b x]) dtheta + dtorque
+                   + dd x b + (dG m_driven) x b
+                   + 3 mu/r^3 e1 x dJ e1 - omega x dJ omega - dJ domega/dt
 
-Source: Lefferts, Markley, Shuster 1982; the dynamics as in Ovchinnikov, Penkov, Roldugin 2015.
+The parameters are constants, or walk slowly. What cannot be told apart keeps its prior: a common turn of both
+sensors is a floor of the attitude's standard deviation that no measurement lowers.
+
+Source: Lefferts, Markley, Shuster 1982; the dynamics as in Ovchinnikov, Penkov, Roldugin 2015; constants that
+are not observed kept with their prior as in Schmidt 1966.
 """
 
 import struct
@@ -19,10 +26,25 @@ from typing import NamedTuple
 import numpy as np
 
 from fsw.core.algebra.quaternion import Quaternion, from_small_rotation, multiply, normalise, rotate
-from fsw.core.algebra.vector import ZERO, Vec3, add, scale, skew, sub
-from fsw.core.estimation.error_dynamics import acceleration, process_noise, transition_matrix, turn
+from fsw.core.algebra.vector import Vec3, add, scale, sub
+from fsw.core.estimation.error_dynamics import (
+    Surroundings,
+    acceleration,
+    process_noise,
+    transition_matrix,
+    turn,
+)
 from fsw.core.estimation.kalman import LeanKalmanFilter, Matrix
-from fsw.core.estimation.mekf_config import Layout, MekfConfig
+from fsw.core.estimation.measurement import field_prediction, sun_prediction
+from fsw.core.estimation.mekf_config import MekfConfig
+from fsw.core.estimation.parameters import (
+    NOTHING,
+    Layout,
+    Parameters,
+    corrected_parameters,
+    estimated_dipole,
+    estimated_rotor,
+)
 
 MAX_VARIANCE = 1e6
 """Beyond it (1000 rad) an estimate is worthless, and the algebra comes near to overflow."""
@@ -49,21 +71,21 @@ class Trace(NamedTuple):
 
 
 class Estimate(NamedTuple):
-    """Attitude, inertial rate, biases, and the covariance of the error state.
+    """Attitude, inertial rate, parameters, and the covariance of the error state.
 
-    Units: rad, rad/s, T, N m. The covariance is (n, n) with n = 6, 9 or 12, laid out as in ``Layout``.
+    The covariance is (n, n), n being 6 and the parameters that are carried, laid out as in ``Layout``; units
+    rad, rad/s and those of ``Parameters``.
     """
 
     q_body_from_eci: Quaternion
     omega_body_radps: Vec3
-    mag_bias_t: Vec3
-    torque_body_nm: Vec3
+    parameters: Parameters
     covariance: Matrix
     trace: Trace | None = None
 
     def floats(self) -> tuple[float, ...]:
         """For the checksum of the state, as is ``packed``: all but the arrays."""
-        return (*self.q_body_from_eci, *self.omega_body_radps, *self.mag_bias_t, *self.torque_body_nm)
+        return (*self.q_body_from_eci, *self.omega_body_radps, *self.parameters.floats())
 
     def packed(self) -> bytes:
         """The arrays."""
@@ -72,7 +94,7 @@ class Estimate(NamedTuple):
 
 def start(q_body_from_eci: Quaternion, omega_body_radps: Vec3, config: MekfConfig) -> Estimate:
     """The estimate at start-up: a known attitude, everything else at its prior."""
-    return Estimate(q_body_from_eci, omega_body_radps, ZERO, ZERO, config.initial_covariance)
+    return Estimate(q_body_from_eci, omega_body_radps, NOTHING, config.initial_covariance)
 
 
 def corrected(estimate: Estimate, error: Matrix, uncertainty: Matrix, config: MekfConfig) -> Estimate:
@@ -114,24 +136,27 @@ def predict(
         m_body_am2: dipole driven over the tick, body axes, A m^2.
         config: the filter.
     """
-    h = config.tick_s
-    q, omega = estimate.q_body_from_eci, estimate.omega_body_radps
-    e1, b = rotate(q, e1_eci), rotate(q, b_eci_t)
-    torque, trace = estimate.torque_body_nm, estimate.trace
-    alpha = acceleration(omega, e1, b, gravity_per_s2, m_body_am2, torque, config)
+    h, parts = config.tick_s, config.layout
+    q, omega, parameters, covariance, trace = estimate
+    torque, m, rotor = parameters.torque_body_nm, m_body_am2, config.rotor
+    if parts.dipole is not None or parts.coils is not None:
+        m = estimated_dipole(m, parameters)
+    if parts.inertia is not None:
+        rotor = estimated_rotor(rotor, parameters)
+    around = Surroundings(rotate(q, e1_eci), rotate(q, b_eci_t), gravity_per_s2)
+    alpha = acceleration(omega, around, m, torque, rotor)
     omega_mid = add(omega, scale(0.5 * h, alpha))
     q_mid = multiply(q, from_small_rotation(scale(0.5 * h, omega)))
-    e1_mid, b_mid = rotate(q_mid, e1_eci), rotate(q_mid, b_eci_t)
-    alpha_mid = acceleration(omega_mid, e1_mid, b_mid, gravity_per_s2, m_body_am2, torque, config)
-    transition = transition_matrix(omega_mid, e1_mid, b_mid, gravity_per_s2, m_body_am2, config)
+    around_mid = Surroundings(rotate(q_mid, e1_eci), rotate(q_mid, b_eci_t), gravity_per_s2)
+    alpha_mid = acceleration(omega_mid, around_mid, m, torque, rotor)
+    transition = transition_matrix(omega_mid, alpha_mid, around_mid, m_body_am2, config)
 
-    kalman = LeanKalmanFilter(config.zero, estimate.covariance, config.identity)
-    kalman.predict(F=transition, Q=process_noise(m_body_am2, b_mid, config))
+    kalman = LeanKalmanFilter(config.zero, covariance, config.identity)
+    kalman.predict(F=transition, Q=process_noise(m_body_am2, around_mid.b_t, config))
     return Estimate(
         normalise(multiply(q, turn(scale(h, omega_mid)))),
         add(omega, scale(h, alpha_mid)),
-        estimate.mag_bias_t,
-        torque,
+        parameters,
         kalman.P,
         trace if trace is None else _carried(trace, transition),
     )
@@ -142,21 +167,15 @@ def _carried(trace: Trace, transition: Matrix) -> Trace:
 
 
 def update_field(estimate: Estimate, b_body_t: Vec3, b_eci_t: Vec3, config: MekfConfig) -> Estimate | None:
-    """Take a magnetometer sample: z = b_measured - (C b_eci + bias). None when the gate rejects it."""
-    predicted = rotate(estimate.q_body_from_eci, b_eci_t)
-    innovation = sub(sub(b_body_t, predicted), estimate.mag_bias_t)
-    sensitivity = config.field_sensitivity.copy()
-    sensitivity[:, 0:3] = skew(predicted)
-    return _update(estimate, innovation, sensitivity, config.field_noise, config)
+    """Take a magnetometer sample. None when the gate rejects it."""
+    predicted, sensitivity = field_prediction(*estimate[:3], b_eci_t, config)
+    return _update(estimate, sub(b_body_t, predicted), sensitivity, config.field_noise, config)
 
 
 def update_sun(estimate: Estimate, s_body: Vec3, s_eci: Vec3, config: MekfConfig) -> Estimate | None:
-    """Take a Sun direction: z = s_measured - C s_eci. None when the gate rejects it."""
-    predicted = rotate(estimate.q_body_from_eci, s_eci)
-    innovation = sub(s_body, predicted)
-    sensitivity = config.sun_sensitivity.copy()
-    sensitivity[:, 0:3] = skew(predicted)
-    return _update(estimate, innovation, sensitivity, config.sun_noise, config)
+    """Take a Sun direction. None when the gate rejects it."""
+    predicted, sensitivity = sun_prediction(*estimate[:3], s_eci, config)
+    return _update(estimate, sub(s_body, predicted), sensitivity, config.sun_noise, config)
 
 
 def update_both(
@@ -166,11 +185,10 @@ def update_both(
 
     The NIS of a part is never above that of the whole, so the gate of one, applied to both, is the stricter.
     """
-    q = estimate.q_body_from_eci
-    b_predicted, s_predicted = rotate(q, b_eci_t), rotate(q, s_eci)
-    innovation = (*sub(sub(b_body_t, b_predicted), estimate.mag_bias_t), *sub(s_body, s_predicted))
-    sensitivity = config.both_sensitivity.copy()
-    sensitivity[:, 0:3] = (*skew(b_predicted), *skew(s_predicted))
+    b_predicted, b_sensitivity = field_prediction(*estimate[:3], b_eci_t, config)
+    s_predicted, s_sensitivity = sun_prediction(*estimate[:3], s_eci, config)
+    innovation = (*sub(b_body_t, b_predicted), *sub(s_body, s_predicted))
+    sensitivity = np.vstack((b_sensitivity, s_sensitivity))
     return _update(estimate, innovation, sensitivity, config.both_noise, config)
 
 
@@ -211,16 +229,10 @@ def _fold(
 ) -> Estimate:
     """Fold the error state into the estimate."""
     values: list[float] = error.tolist()
-    bias, torque = estimate.mag_bias_t, estimate.torque_body_nm
-    if parts.bias is not None:
-        bias = add(bias, _three(values, parts.bias))
-    if parts.torque is not None:
-        torque = add(torque, _three(values, parts.torque))
     return Estimate(
         normalise(multiply(estimate.q_body_from_eci, from_small_rotation(_three(values, 0)))),
         add(estimate.omega_body_radps, _three(values, 3)),
-        bias,
-        torque,
+        corrected_parameters(estimate.parameters, values, parts),
         covariance,
         trace,
     )

@@ -1,20 +1,24 @@
 """The filter's tuning, and what follows from it once and for all."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from fsw.core.algebra.vector import ZERO, Mat3, Vec3, inverse
 from fsw.core.estimation.kalman import Matrix
+from fsw.core.estimation.parameters import NAMES, Layout, Rotor, layout
 
 
-@dataclass(frozen=True, slots=True)
-class Layout:
-    """Where the switchable parts of the error state begin; None where switched off."""
+class Prior(NamedTuple):
+    """What is known of a parameter beforehand: standard deviations, and its random walk, both by component.
 
-    size: int
-    bias: int | None
-    torque: int | None
+    The walk is per square root of a second.
+    """
+
+    sigma: tuple[float, ...]
+    walk: tuple[float, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,14 +27,15 @@ class MekfConfig:
 
     ``process_noise`` is the covariance added per tick, (n, n). A being the system matrix and h the tick,
     ``constant`` is the constant part of 1 + A h, (n, n); ``moving`` (36, 12) is what its upper left 6x6 gains
-    by each component of the rate and of 3 mu/r^3 e1 e1^T, ``driven`` (36, 9) by each of m b^T. By
-    measurement, field, Sun or both at once: ``..._sensitivity`` is the constant part of H, (3 or 6, n), and
-    ``..._noise`` the covariance, (3, 3) or (6, 6). ``zero`` is the error state between updates, (n).
+    by each component of the rate and of 3 mu/r^3 e1 e1^T, ``driven`` (36, 9) by each of m b^T.
+    What the rows of the rate gain in the columns of a parameter: of the dipole by each component of b,
+    ``by_dipole`` (9, 3); of the coils by each of m b^T, ``by_coils`` (27, 9); of the inertia by each of
+    3 mu/r^3 e1 e1^T, omega omega^T and domega/dt, ``by_inertia`` (18, 21).
+    By measurement, field, Sun or both at once: ``..._sensitivity`` is the constant part of H, (3 or 6, n),
+    and ``..._noise`` the covariance, (3, 3) or (6, 6). ``zero`` is the error state between updates, (n).
     """
 
-    inertia_kgm2: Mat3
-    inertia_inverse: Mat3
-    wheel_body_nms: Vec3
+    rotor: Rotor
     tick_s: float
     layout: Layout
     initial_covariance: Matrix
@@ -38,6 +43,9 @@ class MekfConfig:
     constant: Matrix
     moving: Matrix
     driven: Matrix
+    by_dipole: Matrix
+    by_coils: Matrix
+    by_inertia: Matrix
     identity: Matrix
     zero: Matrix
     field_sensitivity: Matrix
@@ -50,29 +58,17 @@ class MekfConfig:
     gate_nis: float
 
 
-def layout(estimate_bias: bool, estimate_torque: bool) -> Layout:
-    """The layout of the error state with the parts that are switched on."""
-    bias = 6 if estimate_bias else None
-    torque = (9 if estimate_bias else 6) if estimate_torque else None
-    return Layout(size=6 + 3 * estimate_bias + 3 * estimate_torque, bias=bias, torque=torque)
-
-
 def mekf_config(
     inertia_kgm2: Mat3,
     tick_s: float,
+    priors: Mapping[str, Prior],
     *,
     wheel_body_nms: Vec3 = ZERO,
-    estimate_bias: bool,
-    estimate_torque: bool,
     magnetometer_sigma_t: float,
     sun_sigma_rad: float,
     attitude_sigma_rad: float,
     rate_sigma_radps: float,
-    bias_sigma_t: float,
-    torque_sigma_nm: float,
     torque_noise_nm_rts: float,
-    bias_walk_t_prts: float,
-    torque_walk_nm_prts: float,
     dipole_sigma: float = 0.0,
     gate_nis: float,
 ) -> MekfConfig:
@@ -81,50 +77,41 @@ def mekf_config(
     Args:
         inertia_kgm2: inertia tensor, body axes.
         tick_s: length of a tick, s.
+        priors: by name in ``Parameters``, of those that the filter estimates.
         wheel_body_nms: constant momentum of a wheel, body axes.
-        estimate_bias: carry the magnetometer bias.
-        estimate_torque: carry the disturbance torque.
         magnetometer_sigma_t: standard deviation of a field component, T.
         sun_sigma_rad: standard deviation of the Sun direction per tangential axis, rad.
-        attitude_sigma_rad: initial standard deviation, as are the next three.
+        attitude_sigma_rad: initial standard deviation, as is the next.
         rate_sigma_radps: rad/s.
-        bias_sigma_t: T.
-        torque_sigma_nm: N m.
         torque_noise_nm_rts: white torque noise, N m sqrt(s).
-        bias_walk_t_prts: random walk of the bias, T / sqrt(s).
-        torque_walk_nm_prts: random walk of the torque, N m / sqrt(s).
         dipole_sigma: relative error of a driven dipole.
         gate_nis: largest normalised innovation squared that is taken.
     """
-    parts = layout(estimate_bias, estimate_torque)
-    inverse_j = inverse(inertia_kgm2)
+    parts = layout(set(priors))
+    j, inverse_j = np.array(inertia_kgm2), inverse(inertia_kgm2)
     j_inverse = np.array(inverse_j)
     rate_noise = torque_noise_nm_rts**2 * (j_inverse @ j_inverse.T)
     noise = np.zeros((parts.size, parts.size))
     noise[0:3, 0:3] = rate_noise * tick_s**3 / 3.0
     noise[0:3, 3:6] = noise[3:6, 0:3] = rate_noise * tick_s**2 / 2.0
     noise[3:6, 3:6] = rate_noise * tick_s
+    variances = [attitude_sigma_rad**2] * 3 + [rate_sigma_radps**2] * 3
+    for index, place in parts.carried:
+        prior = priors[NAMES[index]]
+        noise[place, place] = np.diag([walk**2 * tick_s for walk in prior.walk])
+        variances += [sigma**2 for sigma in prior.sigma]
     system = np.zeros((parts.size, parts.size))
     system[0:3, 3:6] = np.eye(3)
     system[3:6, 3:6] = j_inverse @ _cross(np.array(wheel_body_nms))
-    variances = [attitude_sigma_rad**2] * 3 + [rate_sigma_radps**2] * 3
-    field_sensitivity, sun_sensitivity = np.zeros((3, parts.size)), np.zeros((3, parts.size))
-    field_variances, sun_variances = [magnetometer_sigma_t**2] * 3, [sun_sigma_rad**2] * 3
-    if parts.bias is not None:
-        here = slice(parts.bias, parts.bias + 3)
-        field_sensitivity[:, here] = np.eye(3)
-        noise[here, here] = np.eye(3) * bias_walk_t_prts**2 * tick_s
-        variances += [bias_sigma_t**2] * 3
     if parts.torque is not None:
-        here = slice(parts.torque, parts.torque + 3)
-        noise[here, here] = np.eye(3) * torque_walk_nm_prts**2 * tick_s
-        system[3:6, here] = j_inverse
-        variances += [torque_sigma_nm**2] * 3
-    moving, driven = np.split(tick_s * _varying(np.array(inertia_kgm2), j_inverse), [12], axis=1)
+        system[3:6, parts.torque] = j_inverse
+    field_sensitivity, sun_sensitivity = np.zeros((3, parts.size)), np.zeros((3, parts.size))
+    if parts.mag_bias is not None:
+        field_sensitivity[:, parts.mag_bias] = np.eye(3)
+    field_variances, sun_variances = [magnetometer_sigma_t**2] * 3, [sun_sigma_rad**2] * 3
+    moving, driven = np.split(tick_s * _varying(j, j_inverse), [12], axis=1)
     return MekfConfig(
-        inertia_kgm2=inertia_kgm2,
-        inertia_inverse=inverse_j,
-        wheel_body_nms=wheel_body_nms,
+        rotor=Rotor(inertia_kgm2, inverse_j, wheel_body_nms),
         tick_s=tick_s,
         layout=parts,
         initial_covariance=np.diag(variances),
@@ -132,6 +119,9 @@ def mekf_config(
         constant=np.eye(parts.size) + tick_s * system,
         moving=moving,
         driven=driven,
+        by_dipole=tick_s * _by_dipole(j_inverse),
+        by_coils=tick_s * _by_coils(j_inverse),
+        by_inertia=tick_s * _by_inertia(j_inverse),
         identity=np.eye(parts.size),
         zero=np.zeros(parts.size),
         field_sensitivity=field_sensitivity,
@@ -143,6 +133,41 @@ def mekf_config(
         dipole_sigma=dipole_sigma,
         gate_nis=gate_nis,
     )
+
+
+def _by_dipole(j_inverse: Matrix) -> Matrix:
+    """J^-1 (dd x b): a column for each component of b."""
+    axes = np.eye(3)
+    return np.array([-j_inverse @ _cross(axes[k]) for k in range(3)]).reshape(3, 9).T.copy()
+
+
+def _by_coils(j_inverse: Matrix) -> Matrix:
+    """J^-1 ((dG m) x b): a column for each component of m b^T, dG by rows."""
+    axes = np.eye(3)
+    columns = np.zeros((9, 3, 9))
+    for j in range(3):
+        for k in range(3):
+            for i in range(3):
+                columns[3 * j + k, :, 3 * i + j] = j_inverse @ np.cross(axes[i], axes[k])
+    return columns.reshape(9, 27).T.copy()
+
+
+def _by_inertia(j_inverse: Matrix) -> Matrix:
+    """J^-1 (g e1 x dJ e1 - omega x dJ omega - dJ domega/dt).
+
+    A column for each component of g e1 e1^T, of omega omega^T and of domega/dt, dJ as xx, yy, zz, xy, xz, yz.
+    """
+    axes = np.eye(3)
+    columns = np.zeros((21, 3, 6))
+    for index, (row, column) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))):
+        change = np.zeros((3, 3))
+        change[row, column] = change[column, row] = 1.0
+        for k in range(3):
+            columns[18 + k, :, index] = -j_inverse @ change[:, k]
+            for i in range(3):
+                effect = j_inverse @ np.cross(axes[i], change[:, k])
+                columns[3 * i + k, :, index], columns[9 + 3 * i + k, :, index] = effect, -effect
+    return columns.reshape(21, 18).T.copy()
 
 
 def _varying(j: Matrix, j_inverse: Matrix) -> Matrix:

@@ -8,10 +8,16 @@ TESLA_PER_NT = 1e-9
 
 def usable_field(readings: Readings) -> Vec3 | None:
     """The field sample, T; None where a coil was driven, its current still flowed, or either may be."""
-    field, coil = readings.field, readings.coil
-    if field is None or not field.valid or coil is None or coil.level != 0 or coil.current_ma != 0:
+    field = readings.field
+    if field is None or not field.valid or not coils_idle(readings):
         return None
     return (field.b_x * TESLA_PER_NT, field.b_y * TESLA_PER_NT, field.b_z * TESLA_PER_NT)
+
+
+def coils_idle(readings: Readings) -> bool:
+    """Whether no coil adds its own field to what the magnetometer senses."""
+    coil = readings.coil
+    return readings.quiet and coil is not None and coil.level == 0 and coil.current_ma == 0
 
 
 def usable_sun(readings: Readings) -> Vec3 | None:

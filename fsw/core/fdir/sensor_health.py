@@ -15,10 +15,11 @@ An isolated sensor does not update the filter until it has been consistent for a
 from math import acos
 from typing import NamedTuple
 
-from fsw.core.algebra.quaternion import rotate
-from fsw.core.algebra.vector import Vec3, add, dot, norm
+from fsw.core.algebra.vector import Vec3, dot, norm
 from fsw.core.estimation.estimator import Used
+from fsw.core.estimation.measurement import expected_field, expected_sun
 from fsw.core.estimation.mekf import Estimate
+from fsw.core.estimation.samples import coils_idle
 from fsw.core.fdir.sensor_pair import Comparison, Pair, judge_pair, proven
 from fsw.core.fdir.sensor_watch import (
     DARK,
@@ -118,7 +119,7 @@ def judge(
     b_cause, s_cause, apart = _plain_checks(field, sun, reference, config)
     if sun_claimed is not sun:
         s_cause = SensorFault.UNLIT
-    if readings.field is not None and not readings.field.valid and _idle(readings):
+    if readings.field is not None and not readings.field.valid and coils_idle(readings):
         b_cause = SensorFault.SATURATED
     b_before, s_before = health.field, health.sun
     b_refused = field is not None and not (used.field or b_cause or b_before.fault) and estimate is not None
@@ -153,16 +154,12 @@ def judge(
     if b_watch.fault or s_watch.fault:
         agree = both and not (apart or b_cause or s_cause)
         if b_watch.fault and field is not None:
-            predicted = (
-                None
-                if estimate is None
-                else add(rotate(estimate.q_body_from_eci, reference.b_eci_t), estimate.mag_bias_t)
-            )
+            predicted = None if estimate is None else expected_field(*estimate[:3], reference.b_eci_t)
             fits = not b_cause and as_predicted(field, agree, predicted, config.field_noise_t, sigma3_rad)
             b_watch, b_doubted = probe(b_watch, fits, agree, config)
             doubted = doubted or b_doubted
         if s_watch.fault and sun_claimed is not None:
-            predicted = None if estimate is None else rotate(estimate.q_body_from_eci, reference.sun_eci)
+            predicted = None if estimate is None else expected_sun(*estimate[:3], reference.sun_eci)
             fits = not s_cause and as_predicted(
                 sun_claimed, agree, predicted, config.sun_noise_rad, sigma3_rad
             )
@@ -202,8 +199,8 @@ def _credible(estimate: Estimate | None, config: SensorHealthConfig) -> bool:
     if estimate is None:
         return True
     return (
-        norm(estimate.mag_bias_t) <= config.max_bias_t
-        and norm(estimate.torque_body_nm) <= config.max_torque_nm
+        norm(estimate.parameters.mag_bias_t) <= config.max_bias_t
+        and norm(estimate.parameters.torque_body_nm) <= config.max_torque_nm
     )
 
 
@@ -219,9 +216,3 @@ def _sun_sample(message: SunVector | None) -> Vec3 | None:
 
 def _angle(cosine: float) -> float:
     return acos(max(-1.0, min(1.0, cosine)))
-
-
-def _idle(readings: Readings) -> bool:
-    """Whether no coil adds its own field to what the magnetometer senses."""
-    coil = readings.coil
-    return coil is not None and coil.level == 0 and coil.current_ma == 0

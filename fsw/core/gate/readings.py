@@ -82,7 +82,8 @@ class Readings(NamedTuple):
 
     Telecommands are all taken, in order of reception; ``repeated`` are those with the counter of the one
     before. ``under_own_id`` is the lowest identifier of fsw itself under which a whole frame came, 0 if there
-    is none. ``end`` is a PLANT_END after which the flight has gone on.
+    is none. ``end`` is a PLANT_END after which the flight has gone on. ``quiet``: no coil has driven for as
+    long as a field sample may be old.
     """
 
     field: MagField | None
@@ -97,6 +98,7 @@ class Readings(NamedTuple):
     telecommands: tuple[Telecommand, ...] = ()
     repeated: tuple[Telecommand, ...] = ()
     under_own_id: int = 0
+    quiet: bool = True
 
 
 NOTHING = Readings(None, None, None, None, None, None)

@@ -1,5 +1,6 @@
 """The law of each mode."""
 
+from fsw.core.algebra.vector import sub
 from fsw.core.laws.damping import bdot, rate_damping
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 from fsw.core.laws.predictive import predictive
@@ -18,13 +19,20 @@ def detumble(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Contr
 def demand(
     mode: Mode, inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig
 ) -> Demand | None:
-    """The demand of the law of this mode; None in SAFE."""
+    """The demand of the law of this mode; None in SAFE. From a dipole the residual one is taken off."""
     match mode:
         case Mode.SAFE:
             return None
         case Mode.DETUMBLE:
             return detumble(inputs, memory, setpoint, config)._replace(memory=())
         case Mode.ACQUIRE:
-            return LAWS[setpoint.law].acquire(inputs, memory, setpoint, config)
+            return _net(LAWS[setpoint.law].acquire(inputs, memory, setpoint, config), inputs)
         case Mode.POINT:
-            return LAWS[setpoint.law].point(inputs, memory, setpoint, config)
+            return _net(LAWS[setpoint.law].point(inputs, memory, setpoint, config), inputs)
+
+
+def _net(wanted: Demand, inputs: LawInput) -> Demand:
+    """The dipole wanted, less the residual dipole, which turns the satellite as the coils do."""
+    if wanted.impulse_body_nms is not None or not inputs.attitude.valid:
+        return wanted
+    return wanted._replace(m_body_am2=sub(wanted.m_body_am2, inputs.dipole_body_am2))

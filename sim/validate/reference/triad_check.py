@@ -92,17 +92,12 @@ def update(pair: DirectionPair, q_body_from_ref: Array, covariance: Array) -> Es
     config = mekf_config(
         ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
         1.0,
-        estimate_bias=False,
-        estimate_torque=False,
+        {},
         magnetometer_sigma_t=pair.sigma1_rad,
         sun_sigma_rad=pair.sigma2_rad,
         attitude_sigma_rad=_prior_sigma(covariance),
         rate_sigma_radps=1.0,
-        bias_sigma_t=0.0,
-        torque_sigma_nm=0.0,
         torque_noise_nm_rts=0.0,
-        bias_walk_t_prts=0.0,
-        torque_walk_nm_prts=0.0,
         gate_nis=inf,
     )
     before = start(normalise((q0, q1, q2, q3)), ZERO, config)

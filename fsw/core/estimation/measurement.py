@@ -1,0 +1,71 @@
+"""What each sensor should measure, and how that depends on every part of the error state."""
+
+import numpy as np
+
+from fsw.core.algebra.quaternion import Quaternion, rotate
+from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale, skew
+from fsw.core.estimation.kalman import Matrix
+from fsw.core.estimation.mekf_config import MekfConfig
+from fsw.core.estimation.parameters import Parameters
+
+Prediction = tuple[Vec3, Matrix]
+"""What should be measured, and its sensitivity H, (3, n)."""
+
+
+def expected_field(q_body_from_eci: Quaternion, omega: Vec3, parameters: Parameters, b_eci_t: Vec3) -> Vec3:
+    """The magnetometer's sample, z = (1 + s) o R(turn) C(t - delay) b + bias, to first order."""
+    b = _late(rotate(q_body_from_eci, b_eci_t), omega, parameters.delay_s[0])
+    return add(_scaled(_turned(b, parameters.mag_turn_rad), parameters.mag_scale), parameters.mag_bias_t)
+
+
+def expected_sun(q_body_from_eci: Quaternion, omega: Vec3, parameters: Parameters, s_eci: Vec3) -> Vec3:
+    """The Sun sensor's, z = R(turn) C(t - delay) s, to first order."""
+    s = _late(rotate(q_body_from_eci, s_eci), omega, parameters.delay_s[1])
+    return _turned(s, parameters.sun_turn_rad)
+
+
+def field_prediction(
+    q_body_from_eci: Quaternion, omega: Vec3, parameters: Parameters, b_eci_t: Vec3, config: MekfConfig
+) -> Prediction:
+    """What the magnetometer should measure, as in ``expected_field``."""
+    parts, sensitivity = config.layout, config.field_sensitivity.copy()
+    b = _late(rotate(q_body_from_eci, b_eci_t), omega, parameters.delay_s[0])
+    if parts.delay is not None:
+        sensitivity[:, parts.delay.start] = cross(omega, b)
+    b = _turned(b, parameters.mag_turn_rad)
+    sensitivity[:, 0:3] = turning = skew(b)
+    if parts.mag_turn is not None:
+        sensitivity[:, parts.mag_turn] = turning
+    if parts.mag_scale is not None:
+        sensitivity[:, parts.mag_scale] = np.diag(b)
+    return add(_scaled(b, parameters.mag_scale), parameters.mag_bias_t), sensitivity
+
+
+def sun_prediction(
+    q_body_from_eci: Quaternion, omega: Vec3, parameters: Parameters, s_eci: Vec3, config: MekfConfig
+) -> Prediction:
+    """What the Sun sensor should measure, as in ``expected_sun``."""
+    parts, sensitivity = config.layout, config.sun_sensitivity.copy()
+    s = _late(rotate(q_body_from_eci, s_eci), omega, parameters.delay_s[1])
+    if parts.delay is not None:
+        sensitivity[:, parts.delay.start + 1] = cross(omega, s)
+    s = _turned(s, parameters.sun_turn_rad)
+    sensitivity[:, 0:3] = turning = skew(s)
+    if parts.sun_turn is not None:
+        sensitivity[:, parts.sun_turn] = turning
+    return s, sensitivity
+
+
+def _late(v_body: Vec3, omega: Vec3, delay_s: float) -> Vec3:
+    """A direction fixed in space as it stood ``delay_s`` ago, body axes."""
+    return add(v_body, scale(delay_s, cross(omega, v_body))) if delay_s else v_body
+
+
+def _turned(v: Vec3, turn_rad: Vec3) -> Vec3:
+    """As seen in axes turned by a small angle."""
+    return v if turn_rad == ZERO else add(v, cross(v, turn_rad))
+
+
+def _scaled(v: Vec3, errors: Vec3) -> Vec3:
+    (x, y, z), (s1, s2, s3) = v, errors
+    return v if errors == ZERO else (x + s1 * x, y + s2 * y, z + s3 * z)

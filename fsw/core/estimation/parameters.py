@@ -1,0 +1,121 @@
+"""What the filter estimates besides attitude and rate: constants that the table knows within bounds only."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from fsw.core.algebra.vector import ZERO, Mat3, Vec3, inverse
+
+Matrix3x3 = tuple[float, float, float, float, float, float, float, float, float]
+Symmetric = tuple[float, float, float, float, float, float]
+
+UNCHANGED_COILS: Matrix3x3 = (0.0,) * 9
+UNCHANGED_INERTIA: Symmetric = (0.0,) * 6
+
+
+class Parameters(NamedTuple):
+    """How the satellite differs from its table; zero: not at all.
+
+    Attributes:
+        mag_bias_t: bias of the magnetometer, T.
+        torque_body_nm: disturbance torque, N m, body axes.
+        dipole_body_am2: residual dipole, A m^2, body axes.
+        coil_error: G by rows, the coils' dipole being (1 + G) times the one driven, body axes.
+        inertia_error_kgm2: xx, yy, zz, xy, xz, yz of the inertia tensor less the table's, body axes.
+        mag_turn_rad: small turn of the magnetometer's axes from the body's, rad.
+        mag_scale: relative error of its scale, by axis.
+        sun_turn_rad: small turn of the Sun sensor's axes, rad.
+        delay_s: age of the samples of magnetometer and Sun sensor, s.
+    """
+
+    mag_bias_t: Vec3 = ZERO
+    torque_body_nm: Vec3 = ZERO
+    dipole_body_am2: Vec3 = ZERO
+    coil_error: Matrix3x3 = UNCHANGED_COILS
+    inertia_error_kgm2: Symmetric = UNCHANGED_INERTIA
+    mag_turn_rad: Vec3 = ZERO
+    mag_scale: Vec3 = ZERO
+    sun_turn_rad: Vec3 = ZERO
+    delay_s: tuple[float, float] = (0.0, 0.0)
+
+    def floats(self) -> tuple[float, ...]:
+        """For the checksum of the state."""
+        return tuple(number for part in self for number in part)
+
+
+NOTHING = Parameters()
+"""A satellite that is as its table says, as far as is known."""
+
+NAMES = Parameters._fields
+SIZES = dict(zip(NAMES, map(len, NOTHING), strict=True))
+"""How many numbers each has."""
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """Where each carried parameter stands in the error state; None where it is not carried.
+
+    ``carried`` has, for each one carried, its place among the ``Parameters`` and in the error state.
+    """
+
+    size: int
+    carried: tuple[tuple[int, slice], ...]
+    mag_bias: slice | None
+    torque: slice | None
+    dipole: slice | None
+    coils: slice | None
+    inertia: slice | None
+    mag_turn: slice | None
+    mag_scale: slice | None
+    sun_turn: slice | None
+    delay: slice | None
+
+
+def layout(carried: set[str]) -> Layout:
+    """The error state with these parameters behind attitude and rate, in the order of ``Parameters``.
+
+    Args:
+        carried: names of fields of ``Parameters``.
+    """
+    places: list[slice | None] = []
+    size = 6
+    for name, length in SIZES.items():
+        places.append(slice(size, size + length) if name in carried else None)
+        size += length if name in carried else 0
+    known = tuple((index, place) for index, place in enumerate(places) if place is not None)
+    return Layout(size, known, *places)
+
+
+def corrected_parameters(parameters: Parameters, error: list[float], places: Layout) -> Parameters:
+    """The parameters plus their part of an error state."""
+    parts = list(parameters)
+    for index, place in places.carried:
+        parts[index] = tuple(a + b for a, b in zip(parts[index], error[place], strict=True))
+    return Parameters._make(parts)
+
+
+class Rotor(NamedTuple):
+    """What turns: inertia tensor and its inverse, momentum of a wheel; body axes."""
+
+    inertia_kgm2: Mat3
+    inertia_inverse: Mat3
+    wheel_body_nms: Vec3
+
+
+def estimated_rotor(nominal: Rotor, parameters: Parameters) -> Rotor:
+    """The rotor with the estimated error of its inertia."""
+    xx, yy, zz, xy, xz, yz = parameters.inertia_error_kgm2
+    (a, b, c), (d, e, f), (g, h, i) = nominal.inertia_kgm2
+    inertia = ((a + xx, b + xy, c + xz), (d + xy, e + yy, f + yz), (g + xz, h + yz, i + zz))
+    return Rotor(inertia, inverse(inertia), nominal.wheel_body_nms)
+
+
+def estimated_dipole(m_driven_am2: Vec3, parameters: Parameters) -> Vec3:
+    """M = (1 + G) m_driven + d, body axes, A m^2."""
+    x, y, z = m_driven_am2
+    g11, g12, g13, g21, g22, g23, g31, g32, g33 = parameters.coil_error
+    d1, d2, d3 = parameters.dipole_body_am2
+    return (
+        x + d1 + g11 * x + g12 * y + g13 * z,
+        y + d2 + g21 * x + g22 * y + g23 * z,
+        z + d3 + g31 * x + g32 * y + g33 * z,
+    )

@@ -1,0 +1,83 @@
+"""The estimator's configuration: its noise from the table, its priors and limits from the bounds."""
+
+from dataclasses import dataclass
+from math import ceil, radians, sqrt
+
+from fsw.core.estimation.estimator import EstimatorConfig
+from fsw.core.estimation.mekf_config import mekf_config
+from fsw.table.table import FlightTable
+from fsw.table.uncertainty import Bounds, bounds, priors
+
+NT = 1e-9
+GATE_NIS = 16.27
+"""Chi-square of 3 degrees of freedom: of sound samples 1 in 1000 is refused."""
+START_SIGMA_RAD = radians(5.0)
+"""Of the attitude that TRIAD gives at worst."""
+MIN_SEPARATION_RAD = radians(15.0)
+"""Of field and Sun at the start: TRIAD's error about the axis between them is then below 4 times theirs."""
+MAX_REFUSALS = 60
+"""Samples refused in a row after which the filter restarts."""
+DRIVE_SIGMA = 0.002
+"""Relative error of a driven dipole from pulse to pulse."""
+TORQUE_NOISE_RTS = 0.05
+"""White torque noise in parts of the torque's bound, times sqrt(s)."""
+LARGEST_FIELD_T, LEAST_FIELD_T = 5.0e-5, 2.0e-5
+ORBIT_RADIUS_M = 7.0e6
+
+
+@dataclass(frozen=True, slots=True)
+class PairLimits:
+    """The largest deviation of measured from modelled field strength, and field-Sun angle, if all is well."""
+
+    field_t: float
+    angle_rad: float
+
+
+def estimator_config(table: FlightTable) -> EstimatorConfig:
+    """Prepare the estimator."""
+    tuning, known, tick_s = table.estimator, table_bounds(table), 1.0 / table.time.tick_hz
+    limits = pair_limits(table)
+    return EstimatorConfig(
+        mekf=mekf_config(
+            table.body.inertia,
+            tick_s,
+            priors(known, table.body.inertia),
+            wheel_body_nms=table.body.wheel_nms,
+            magnetometer_sigma_t=tuning.magnetometer_sigma_nt * NT,
+            sun_sigma_rad=radians(tuning.sun_sigma_deg),
+            attitude_sigma_rad=START_SIGMA_RAD,
+            rate_sigma_radps=radians(tuning.rate_sigma_degps),
+            torque_noise_nm_rts=TORQUE_NOISE_RTS * known.torque_nm,
+            dipole_sigma=DRIVE_SIGMA,
+            gate_nis=GATE_NIS,
+        ),
+        perfect=table.knowledge == "perfect",
+        max_field_error_t=limits.field_t,
+        max_angle_error_rad=limits.angle_rad,
+        min_separation_rad=MIN_SEPARATION_RAD,
+        restart_after_rejections=MAX_REFUSALS,
+        valid_sigma_rad=radians(tuning.valid_sigma_deg),
+        blank_ticks=ceil(known.latency_s * table.time.tick_hz - 1e-9),
+    )
+
+
+def table_bounds(table: FlightTable) -> Bounds:
+    """The bounds of the whole table."""
+    return bounds(table.uncertainty, table.body.inertia, 1.0 / table.time.tick_hz)
+
+
+def pair_limits(table: FlightTable) -> PairLimits:
+    """From the bounds and the noise at the edge of the gate.
+
+    The field changes by 3 parts of the distance along the orbit in parts of its radius; where it is weakest
+    its errors turn it most.
+    """
+    known, tuning, sigmas = table_bounds(table), table.estimator, sqrt(GATE_NIS)
+    noise_t, noise_rad = tuning.magnetometer_sigma_nt * NT, radians(tuning.sun_sigma_deg)
+    offset_t = sqrt(3.0) * (known.mag_bias_t + sigmas * noise_t)
+    model = known.mag_scale_part + 3.0 * known.along_track_m / ORBIT_RADIUS_M
+    turns = known.mag_turn_rad + known.sun_turn_rad + known.mag_scale_part
+    return PairLimits(
+        field_t=offset_t + model * LARGEST_FIELD_T,
+        angle_rad=turns + offset_t / LEAST_FIELD_T + sigmas * noise_rad,
+    )

@@ -1,0 +1,130 @@
+"""The bounds within which the table is right, and the priors of the filter that follow from them.
+
+A bound is what an engineer can vouch for: the largest deviation that is to be expected. One that the table
+leaves out takes an ordinary value for a satellite of that size, never zero. Zero means that the table is
+exact there, and the filter does not carry the parameter.
+
+A deviation is taken as uniform within its bound, so that its standard deviation by component is bound /
+sqrt 3; a turn of any axis within an angle, as uniform in that ball: angle / sqrt 5.
+"""
+
+from dataclasses import dataclass
+from math import radians, sqrt
+
+from pydantic import Field
+
+from fsw.core.algebra.vector import Mat3
+from fsw.core.estimation.mekf_config import Prior
+from fsw.input.schema import NotNegative, Section
+
+Percent = NotNegative
+
+
+class UncertaintyTable(Section):
+    """Bounds of what the table may be wrong by; None: an ordinary value for a satellite of this size."""
+
+    inertia_percent: float | None = Field(default=None, ge=0.0, le=50.0)
+    products_percent: float | None = Field(default=None, ge=0.0, le=20.0)
+    residual_dipole_am2: NotNegative | None = None
+    coil_gain_percent: float | None = Field(default=None, ge=0.0, le=50.0)
+    coil_misalignment_deg: float | None = Field(default=None, ge=0.0, le=10.0)
+    magnetometer_bias_nt: float | None = Field(default=None, ge=0.0, le=20000.0)
+    magnetometer_scale_percent: float | None = Field(default=None, ge=0.0, le=20.0)
+    magnetometer_misalignment_deg: float | None = Field(default=None, ge=0.0, le=10.0)
+    sun_misalignment_deg: float | None = Field(default=None, ge=0.0, le=10.0)
+    torque_nm: NotNegative | None = None
+    along_track_km: float | None = Field(default=None, ge=0.0, le=500.0)
+    latency_s: float | None = Field(default=None, ge=0.0, le=60.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """The bounds in SI units; parts are relative to the table's value."""
+
+    inertia_part: float
+    products_part: float
+    dipole_am2: float
+    coil_gain_part: float
+    coil_turn_rad: float
+    mag_bias_t: float
+    mag_scale_part: float
+    mag_turn_rad: float
+    sun_turn_rad: float
+    torque_nm: float
+    along_track_m: float
+    latency_s: float
+
+
+REFERENCE_KGM2 = 1.6
+"""Mean moment of inertia of the 50 kg satellite for which the ordinary dipole and torque hold."""
+
+
+def bounds(table: UncertaintyTable, inertia_kgm2: Mat3, tick_s: float) -> Bounds:
+    """The bounds of the table, ordinary ones where it has none.
+
+    Residual dipole and disturbance torque grow with the volume: of bodies of one density and shape as the
+    moment of inertia to the power of 3/5.
+    """
+    volume = (_mean_moment(inertia_kgm2) / REFERENCE_KGM2) ** 0.6
+    return Bounds(
+        inertia_part=0.01 * _or(table.inertia_percent, 10.0),
+        products_part=0.01 * _or(table.products_percent, 2.0),
+        dipole_am2=_or(table.residual_dipole_am2, 0.1 * volume),
+        coil_gain_part=0.01 * _or(table.coil_gain_percent, 5.0),
+        coil_turn_rad=radians(_or(table.coil_misalignment_deg, 0.5)),
+        mag_bias_t=1e-9 * _or(table.magnetometer_bias_nt, 1000.0),
+        mag_scale_part=0.01 * _or(table.magnetometer_scale_percent, 0.5),
+        mag_turn_rad=radians(_or(table.magnetometer_misalignment_deg, 1.0)),
+        sun_turn_rad=radians(_or(table.sun_misalignment_deg, 0.5)),
+        torque_nm=_or(table.torque_nm, 3e-8 * volume),
+        along_track_m=1000.0 * _or(table.along_track_km, 5.0),
+        latency_s=_or(table.latency_s, tick_s),
+    )
+
+
+def _or(given: float | None, ordinary: float) -> float:
+    return ordinary if given is None else given
+
+
+def _mean_moment(inertia_kgm2: Mat3) -> float:
+    return (inertia_kgm2[0][0] + inertia_kgm2[1][1] + inertia_kgm2[2][2]) / 3.0
+
+
+SIDE = 1.0 / sqrt(3.0)
+"""Standard deviation of a component that is uniform within 1."""
+BALL = 1.0 / sqrt(5.0)
+"""Standard deviation by axis of a vector that is uniform in the ball of radius 1."""
+DAY_S = 86400.0
+
+
+def priors(known: Bounds, inertia_kgm2: Mat3) -> dict[str, Prior]:
+    """The prior of each parameter of the filter whose bound is not zero.
+
+    The walks say how much of its bound a parameter may wander: a tenth of it in a day, the disturbance torque
+    a fifth, and the coils a hundredth in a second, so that what a coil loses in flight is found.
+    """
+    moments = [inertia_kgm2[axis][axis] * known.inertia_part for axis in range(3)]
+    product = _mean_moment(inertia_kgm2) * known.products_part
+    gain, axis = known.coil_gain_part, known.coil_turn_rad
+    found = {
+        "mag_bias_t": _prior([known.mag_bias_t] * 3, SIDE, SLOW),
+        "torque_body_nm": _prior([known.torque_nm] * 3, SIDE, DAILY),
+        "dipole_body_am2": _prior([known.dipole_am2] * 3, SIDE, SLOW),
+        "coil_error": _prior([gain, axis, axis, axis, gain, axis, axis, axis, gain], SIDE, COILS),
+        "inertia_error_kgm2": _prior([*moments, product, product, product], SIDE, 0.0),
+        "mag_turn_rad": _prior([known.mag_turn_rad] * 3, BALL, 0.0),
+        "mag_scale": _prior([known.mag_scale_part] * 3, SIDE, 0.0),
+        "sun_turn_rad": _prior([known.sun_turn_rad] * 3, BALL, 0.0),
+        "delay_s": _prior([known.latency_s] * 2, SIDE, 0.0),
+    }
+    return {name: prior for name, prior in found.items() if any(prior.sigma)}
+
+
+SLOW = 0.1 / sqrt(DAY_S)
+DAILY = 0.2 / sqrt(DAY_S)
+COILS = 0.01
+"""Walks in parts of the bound per square root of a second."""
+
+
+def _prior(limits: list[float], shape: float, walk: float) -> Prior:
+    return Prior(tuple(shape * limit for limit in limits), tuple(walk * limit for limit in limits))
