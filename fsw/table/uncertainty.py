@@ -5,7 +5,8 @@ leaves out takes an ordinary value for a satellite of that size, never zero. Zer
 exact there, and the filter does not carry the parameter.
 
 A deviation is taken as uniform within its bound, so that its standard deviation by component is bound /
-sqrt 3; a turn of any axis within an angle, as uniform in that ball: angle / sqrt 5.
+sqrt 3; a turn of any axis within an angle, as uniform in that ball: angle / sqrt 5. The age of a sample lies
+between zero and its bound.
 """
 
 from dataclasses import dataclass
@@ -105,7 +106,7 @@ def priors(known: Bounds, inertia_kgm2: Mat3) -> dict[str, Prior]:
     """
     moments = [inertia_kgm2[axis][axis] * known.inertia_part for axis in range(3)]
     product = _mean_moment(inertia_kgm2) * known.products_part
-    gain, axis = known.coil_gain_part, known.coil_turn_rad
+    late, gain, axis = known.latency_s, known.coil_gain_part, known.coil_turn_rad
     found = {
         "mag_bias_t": _prior([known.mag_bias_t] * 3, SIDE, SLOW),
         "torque_body_nm": _prior([known.torque_nm] * 3, SIDE, DAILY),
@@ -115,7 +116,7 @@ def priors(known: Bounds, inertia_kgm2: Mat3) -> dict[str, Prior]:
         "mag_turn_rad": _prior([known.mag_turn_rad] * 3, BALL, 0.0),
         "mag_scale": _prior([known.mag_scale_part] * 3, SIDE, 0.0),
         "sun_turn_rad": _prior([known.sun_turn_rad] * 3, BALL, 0.0),
-        "delay_s": _prior([known.latency_s] * 2, SIDE, 0.0),
+        "delay_s": Prior((0.5 * SIDE * late,) * 2, (0.0, 0.0), mean=(0.5 * late, 0.5 * late)),
     }
     return {name: prior for name, prior in found.items() if any(prior.sigma)}
 

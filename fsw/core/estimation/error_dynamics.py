@@ -5,9 +5,9 @@ from typing import NamedTuple
 import numpy as np
 
 from fsw.core.algebra.quaternion import Quaternion
-from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale, sub, transform
+from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale, skew, sub, transform
 from fsw.core.estimation.kalman import Matrix
-from fsw.core.estimation.mekf_config import MekfConfig
+from fsw.core.estimation.mekf_config import MekfConfig, TorqueMaps
 from fsw.core.estimation.parameters import Rotor
 
 
@@ -38,40 +38,81 @@ def acceleration(omega: Vec3, around: Surroundings, m: Vec3, torque: Vec3, rotor
     return transform(j_inverse, sub(add(add(cross(m, around.b_t), gravity), torque), gyroscopic))
 
 
+class Motion(NamedTuple):
+    """How the satellite turns: rate, rad/s, its derivative, rad/s^2, and the dipole that acts, A m^2."""
+
+    omega: Vec3
+    alpha: Vec3
+    m_am2: Vec3
+
+
 def transition_matrix(
-    omega: Vec3, alpha: Vec3, around: Surroundings, m_driven: Vec3, config: MekfConfig
+    motion: Motion, around: Surroundings, m_driven: Vec3, rotor: Rotor, config: MekfConfig
 ) -> Matrix:
     """I + A h + (A h)^2 / 2 of the error dynamics; with A of the middle of the tick good to second order.
 
     Args:
-        omega: rate, rad/s.
-        alpha: its derivative, rad/s^2.
-        around: radius direction and field.
+        motion: in the middle of the tick.
+        around: radius direction and field there.
         m_driven: dipole that the coils are driven to, A m^2.
+        rotor: inertia as estimated.
         config: the filter.
     """
-    e1, b, parts = around.e1, around.b_t, config.layout
-    g1, g2, g3 = scale(around.gravity_per_s2, e1)
-    pull = (*scale(g1, e1), *scale(g2, e1), *scale(g3, e1))
-    change = config.moving.dot((*omega, *pull))
     step = config.constant.copy()
-    if m_driven != ZERO:
-        m1, m2, m3 = m_driven
-        drive = (*scale(m1, b), *scale(m2, b), *scale(m3, b))
-        change += config.driven.dot(drive)
-        if parts.coils is not None:
-            step[3:6, parts.coils] = config.by_coils.dot(drive).reshape(3, 9)
-    step[0:6, 0:6] += change.reshape(6, 6)
-    if parts.dipole is not None:
-        step[3:6, parts.dipole] = config.by_dipole.dot(b).reshape(3, 3)
-    if parts.inertia is not None:
-        w1, w2, w3 = omega
-        spin = (*scale(w1, omega), *scale(w2, omega), *scale(w3, omega))
-        step[3:6, parts.inertia] = config.by_inertia.dot((*pull, *spin, *alpha)).reshape(3, 6)
+    g1, g2, g3 = scale(around.gravity_per_s2, around.e1)
+    pull = (*scale(g1, around.e1), *scale(g2, around.e1), *scale(g3, around.e1))
+    if config.layout.inertia is None:
+        change = config.moving.dot((*motion.omega, *pull))
+        if motion.m_am2 != ZERO:
+            change += config.driven.dot(_outer(motion.m_am2, around.b_t))
+        step[0:6, 0:6] += change.reshape(6, 6)
+        inverse_h = config.inverse_h
+    else:
+        inverse_h = config.tick_s * np.array(rotor.inertia_inverse)
+        step[0:3, 0:3] -= np.array(skew(scale(config.tick_s, motion.omega)))
+        step[3:6, 0:6] += inverse_h.dot(_torque_rows(motion, around, pull, rotor, config.torques))
+    _parameter_columns(step, inverse_h, motion, around, pull, m_driven, config)
     transition: Matrix = step.dot(step)  # (1 + A h)^2, so that half of it and 1 is the series
     transition += config.identity
     transition *= 0.5
     return transition
+
+
+def _torque_rows(
+    motion: Motion, around: Surroundings, pull: tuple[float, ...], rotor: Rotor, maps: TorqueMaps
+) -> Matrix:
+    """The torque's derivative by attitude and rate, (3, 6)."""
+    (xx, xy, xz), (_, yy, yz), (_, _, zz) = rotor.inertia_kgm2
+    moving = maps.moving.dot((xx, yy, zz, xy, xz, yz)).reshape(18, 12)
+    rows: Matrix = moving.dot((*motion.omega, *pull)) + maps.driven.dot(_outer(motion.m_am2, around.b_t))
+    return rows.reshape(3, 6)
+
+
+def _parameter_columns(
+    step: Matrix,
+    inverse_h: Matrix,
+    motion: Motion,
+    around: Surroundings,
+    pull: tuple[float, ...],
+    m_driven: Vec3,
+    config: MekfConfig,
+) -> None:
+    """Set what the parameters do to the rate, J^-1 h times the torque's derivative by each."""
+    parts, maps = config.layout, config.torques
+    if parts.dipole is not None:
+        step[3:6, parts.dipole] = inverse_h.dot(maps.dipole.dot(around.b_t).reshape(3, 3))
+    if parts.coils is not None and m_driven != ZERO:
+        drive = _outer(m_driven, around.b_t)
+        step[3:6, parts.coils] = inverse_h.dot(maps.coils.dot(drive).reshape(3, 9))
+    if parts.inertia is not None:
+        moves = (*pull, *_outer(motion.omega, motion.omega), *motion.alpha)
+        step[3:6, parts.inertia] = inverse_h.dot(maps.inertia.dot(moves).reshape(3, 6))
+
+
+def _outer(a: Vec3, b: Vec3) -> tuple[float, ...]:
+    """A b^T by rows."""
+    a1, a2, a3 = a
+    return (*scale(a1, b), *scale(a2, b), *scale(a3, b))
 
 
 def turn(rotation_rad: Vec3) -> Quaternion:

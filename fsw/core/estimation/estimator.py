@@ -8,7 +8,6 @@ from fsw.core.algebra.vector import ZERO, Vec3, dot, scale
 from fsw.core.estimation import mekf
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.estimation.parameters import NOTHING
 from fsw.core.estimation.samples import usable_field, usable_sun
 from fsw.core.estimation.triad import consistent, triad
 from fsw.core.gate.readings import Readings
@@ -139,7 +138,7 @@ def _settled(state: EstimatorState, estimate: Estimate, config: MekfConfig) -> E
         return state._replace(fast=True)
     if not state.fast or square > SLOW_RADPS**2:
         return state
-    anew = estimate._replace(parameters=NOTHING, covariance=config.initial_covariance, trace=None)
+    anew = mekf.start(estimate.q_body_from_eci, estimate.omega_body_radps, config)
     return state._replace(estimate=anew, fast=False)
 
 

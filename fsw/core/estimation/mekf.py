@@ -28,6 +28,7 @@ import numpy as np
 from fsw.core.algebra.quaternion import Quaternion, from_small_rotation, multiply, normalise, rotate
 from fsw.core.algebra.vector import Vec3, add, scale, sub
 from fsw.core.estimation.error_dynamics import (
+    Motion,
     Surroundings,
     acceleration,
     process_noise,
@@ -38,7 +39,6 @@ from fsw.core.estimation.kalman import LeanKalmanFilter, Matrix
 from fsw.core.estimation.measurement import field_prediction, sun_prediction
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.estimation.parameters import (
-    NOTHING,
     Layout,
     Parameters,
     corrected_parameters,
@@ -94,7 +94,7 @@ class Estimate(NamedTuple):
 
 def start(q_body_from_eci: Quaternion, omega_body_radps: Vec3, config: MekfConfig) -> Estimate:
     """The estimate at start-up: a known attitude, everything else at its prior."""
-    return Estimate(q_body_from_eci, omega_body_radps, NOTHING, config.initial_covariance)
+    return Estimate(q_body_from_eci, omega_body_radps, config.initial_parameters, config.initial_covariance)
 
 
 def corrected(estimate: Estimate, error: Matrix, uncertainty: Matrix, config: MekfConfig) -> Estimate:
@@ -149,7 +149,8 @@ def predict(
     q_mid = multiply(q, from_small_rotation(scale(0.5 * h, omega)))
     around_mid = Surroundings(rotate(q_mid, e1_eci), rotate(q_mid, b_eci_t), gravity_per_s2)
     alpha_mid = acceleration(omega_mid, around_mid, m, torque, rotor)
-    transition = transition_matrix(omega_mid, alpha_mid, around_mid, m_body_am2, config)
+    motion = Motion(omega_mid, alpha_mid, m)
+    transition = transition_matrix(motion, around_mid, m_body_am2, rotor, config)
 
     kalman = LeanKalmanFilter(config.zero, covariance, config.identity)
     kalman.predict(F=transition, Q=process_noise(m_body_am2, around_mid.b_t, config))

@@ -8,17 +8,28 @@ import numpy as np
 
 from fsw.core.algebra.vector import ZERO, Mat3, Vec3, inverse
 from fsw.core.estimation.kalman import Matrix
-from fsw.core.estimation.parameters import NAMES, Layout, Rotor, layout
+from fsw.core.estimation.parameters import NAMES, NOTHING, Layout, Parameters, Rotor, layout
 
 
 class Prior(NamedTuple):
-    """What is known of a parameter beforehand: standard deviations, and its random walk, both by component.
+    """What is known of a parameter beforehand, by component: standard deviation, random walk, and mean.
 
-    The walk is per square root of a second.
+    The walk is per square root of a second; without a mean it is zero.
     """
 
     sigma: tuple[float, ...]
     walk: tuple[float, ...]
+    mean: tuple[float, ...] = ()
+
+
+class TorqueMaps(NamedTuple):
+    """Derivatives of the torque that are linear in what moves; see ``MekfConfig``."""
+
+    moving: Matrix
+    driven: Matrix
+    dipole: Matrix
+    coils: Matrix
+    inertia: Matrix
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,9 +39,12 @@ class MekfConfig:
     ``process_noise`` is the covariance added per tick, (n, n). A being the system matrix and h the tick,
     ``constant`` is the constant part of 1 + A h, (n, n); ``moving`` (36, 12) is what its upper left 6x6 gains
     by each component of the rate and of 3 mu/r^3 e1 e1^T, ``driven`` (36, 9) by each of m b^T.
-    What the rows of the rate gain in the columns of a parameter: of the dipole by each component of b,
-    ``by_dipole`` (9, 3); of the coils by each of m b^T, ``by_coils`` (27, 9); of the inertia by each of
-    3 mu/r^3 e1 e1^T, omega omega^T and domega/dt, ``by_inertia`` (18, 21).
+
+    ``torques`` are the same for the rows of the torque, those of the rate before J^-1 h, by parameter:
+    ``moving`` (216, 6) by each component of J, ``driven`` (18, 9); in the columns of the dipole by each
+    component of b; of the coils by each of m_driven b^T; of the inertia by each of 3 mu/r^3 e1 e1^T,
+    omega omega^T and domega/dt. ``inverse_h`` is J^-1 h.
+
     By measurement, field, Sun or both at once: ``..._sensitivity`` is the constant part of H, (3 or 6, n),
     and ``..._noise`` the covariance, (3, 3) or (6, 6). ``zero`` is the error state between updates, (n).
     """
@@ -38,14 +52,14 @@ class MekfConfig:
     rotor: Rotor
     tick_s: float
     layout: Layout
+    initial_parameters: Parameters
     initial_covariance: Matrix
     process_noise: Matrix
     constant: Matrix
     moving: Matrix
     driven: Matrix
-    by_dipole: Matrix
-    by_coils: Matrix
-    by_inertia: Matrix
+    torques: TorqueMaps
+    inverse_h: Matrix
     identity: Matrix
     zero: Matrix
     field_sensitivity: Matrix
@@ -114,14 +128,16 @@ def mekf_config(
         rotor=Rotor(inertia_kgm2, inverse_j, wheel_body_nms),
         tick_s=tick_s,
         layout=parts,
+        initial_parameters=NOTHING._replace(
+            **{name: prior.mean for name, prior in priors.items() if prior.mean}
+        ),
         initial_covariance=np.diag(variances),
         process_noise=noise,
         constant=np.eye(parts.size) + tick_s * system,
         moving=moving,
         driven=driven,
-        by_dipole=tick_s * _by_dipole(j_inverse),
-        by_coils=tick_s * _by_coils(j_inverse),
-        by_inertia=tick_s * _by_inertia(j_inverse),
+        torques=TORQUES,
+        inverse_h=tick_s * j_inverse,
         identity=np.eye(parts.size),
         zero=np.zeros(parts.size),
         field_sensitivity=field_sensitivity,
@@ -133,41 +149,6 @@ def mekf_config(
         dipole_sigma=dipole_sigma,
         gate_nis=gate_nis,
     )
-
-
-def _by_dipole(j_inverse: Matrix) -> Matrix:
-    """J^-1 (dd x b): a column for each component of b."""
-    axes = np.eye(3)
-    return np.array([-j_inverse @ _cross(axes[k]) for k in range(3)]).reshape(3, 9).T.copy()
-
-
-def _by_coils(j_inverse: Matrix) -> Matrix:
-    """J^-1 ((dG m) x b): a column for each component of m b^T, dG by rows."""
-    axes = np.eye(3)
-    columns = np.zeros((9, 3, 9))
-    for j in range(3):
-        for k in range(3):
-            for i in range(3):
-                columns[3 * j + k, :, 3 * i + j] = j_inverse @ np.cross(axes[i], axes[k])
-    return columns.reshape(9, 27).T.copy()
-
-
-def _by_inertia(j_inverse: Matrix) -> Matrix:
-    """J^-1 (g e1 x dJ e1 - omega x dJ omega - dJ domega/dt).
-
-    A column for each component of g e1 e1^T, of omega omega^T and of domega/dt, dJ as xx, yy, zz, xy, xz, yz.
-    """
-    axes = np.eye(3)
-    columns = np.zeros((21, 3, 6))
-    for index, (row, column) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))):
-        change = np.zeros((3, 3))
-        change[row, column] = change[column, row] = 1.0
-        for k in range(3):
-            columns[18 + k, :, index] = -j_inverse @ change[:, k]
-            for i in range(3):
-                effect = j_inverse @ np.cross(axes[i], change[:, k])
-                columns[3 * i + k, :, index], columns[9 + 3 * i + k, :, index] = effect, -effect
-    return columns.reshape(21, 18).T.copy()
 
 
 def _varying(j: Matrix, j_inverse: Matrix) -> Matrix:
@@ -187,3 +168,34 @@ def _varying(j: Matrix, j_inverse: Matrix) -> Matrix:
 def _cross(a: Matrix) -> Matrix:
     """The matrix [a x]."""
     return np.cross(a, np.eye(3)).T
+
+
+def _torque_maps() -> TorqueMaps:
+    """The torque is m x b + g e1 x J e1 - omega x J omega - J domega/dt, J as xx, yy, zz, xy, xz, yz."""
+    axes = np.eye(3)
+    moving, coils, inertia = np.zeros((18, 12, 6)), np.zeros((3, 9, 9)), np.zeros((3, 6, 21))
+    for index, (row, column) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))):
+        change = np.zeros((3, 3))
+        change[row, column] = change[column, row] = 1.0
+        moving[:, :, index] = _varying(change, axes)[18:, :12]
+        inertia[:, index, 18:] = -change
+        for i in range(3):
+            effect = np.cross(axes[i], change.T)  # a row for each k: e_i x (dJ e_k)
+            inertia[:, index, 3 * i : 3 * i + 3], inertia[:, index, 9 + 3 * i : 12 + 3 * i] = (
+                effect.T,
+                -effect.T,
+            )
+    for i in range(3):
+        for j in range(3):
+            coils[:, 3 * i + j, 3 * j : 3 * j + 3] = _cross(axes[i])
+    dipole = np.array([-_cross(axis) for axis in axes]).reshape(3, 9).T
+    return TorqueMaps(
+        moving.reshape(216, 6),
+        _varying(axes, axes)[18:, 12:].copy(),
+        dipole.copy(),
+        coils.reshape(27, 9),
+        inertia.reshape(18, 21),
+    )
+
+
+TORQUES = _torque_maps()
