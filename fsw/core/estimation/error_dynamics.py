@@ -7,8 +7,9 @@ import numpy as np
 from fsw.core.algebra.quaternion import Quaternion
 from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale, skew, sub, transform
 from fsw.core.estimation.kalman import Matrix
-from fsw.core.estimation.mekf_config import MekfConfig, TorqueMaps
+from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.estimation.parameters import Rotor
+from fsw.core.estimation.torque_maps import TorqueMaps
 
 
 def process_noise(m_body_am2: Vec3, b_body_t: Vec3, config: MekfConfig) -> Matrix:

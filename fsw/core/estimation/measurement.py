@@ -13,13 +13,13 @@ Prediction = tuple[Vec3, Matrix]
 
 
 def expected_field(q_body_from_eci: Quaternion, omega: Vec3, parameters: Parameters, b_eci_t: Vec3) -> Vec3:
-    """The magnetometer's sample, z = (1 + s) o R(turn) C(t - delay) b + bias, to first order."""
+    """The magnetometer's sample, z = (1 + s) o R(turn) C(t - delay) b + bias, R a small turn."""
     b = _late(rotate(q_body_from_eci, b_eci_t), omega, parameters.delay_s[0])
     return add(_scaled(_turned(b, parameters.mag_turn_rad), parameters.mag_scale), parameters.mag_bias_t)
 
 
 def expected_sun(q_body_from_eci: Quaternion, omega: Vec3, parameters: Parameters, s_eci: Vec3) -> Vec3:
-    """The Sun sensor's, z = R(turn) C(t - delay) s, to first order."""
+    """The Sun sensor's, z = R(turn) C(t - delay) s, R a small turn."""
     s = _late(rotate(q_body_from_eci, s_eci), omega, parameters.delay_s[1])
     return _turned(s, parameters.sun_turn_rad)
 
@@ -32,6 +32,7 @@ def field_prediction(
     b = _late(rotate(q_body_from_eci, b_eci_t), omega, parameters.delay_s[0])
     if parts.delay is not None:
         sensitivity[:, parts.delay.start] = cross(omega, b)
+        sensitivity[:, 3:6] = skew(scale(-parameters.delay_s[0], b))
     b = _turned(b, parameters.mag_turn_rad)
     sensitivity[:, 0:3] = turning = skew(b)
     if parts.mag_turn is not None:
@@ -49,6 +50,7 @@ def sun_prediction(
     s = _late(rotate(q_body_from_eci, s_eci), omega, parameters.delay_s[1])
     if parts.delay is not None:
         sensitivity[:, parts.delay.start + 1] = cross(omega, s)
+        sensitivity[:, 3:6] = skew(scale(-parameters.delay_s[1], s))
     s = _turned(s, parameters.sun_turn_rad)
     sensitivity[:, 0:3] = turning = skew(s)
     if parts.sun_turn is not None:
@@ -58,12 +60,15 @@ def sun_prediction(
 
 def _late(v_body: Vec3, omega: Vec3, delay_s: float) -> Vec3:
     """A direction fixed in space as it stood ``delay_s`` ago, body axes."""
-    return add(v_body, scale(delay_s, cross(omega, v_body))) if delay_s else v_body
+    return _turned(v_body, scale(-delay_s, omega))
 
 
 def _turned(v: Vec3, turn_rad: Vec3) -> Vec3:
-    """As seen in axes turned by a small angle."""
-    return v if turn_rad == ZERO else add(v, cross(v, turn_rad))
+    """As seen in axes turned by a small angle, to second order: to first it would grow longer."""
+    if turn_rad == ZERO:
+        return v
+    first = cross(v, turn_rad)
+    return add(add(v, first), scale(0.5, cross(first, turn_rad)))
 
 
 def _scaled(v: Vec3, errors: Vec3) -> Vec3:

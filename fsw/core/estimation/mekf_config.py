@@ -9,6 +9,7 @@ import numpy as np
 from fsw.core.algebra.vector import ZERO, Mat3, Vec3, inverse
 from fsw.core.estimation.kalman import Matrix
 from fsw.core.estimation.parameters import NAMES, NOTHING, Layout, Parameters, Rotor, layout
+from fsw.core.estimation.torque_maps import TORQUES, TorqueMaps, cross_matrix, system_maps
 
 
 class Prior(NamedTuple):
@@ -22,16 +23,6 @@ class Prior(NamedTuple):
     mean: tuple[float, ...] = ()
 
 
-class TorqueMaps(NamedTuple):
-    """Derivatives of the torque that are linear in what moves; see ``MekfConfig``."""
-
-    moving: Matrix
-    driven: Matrix
-    dipole: Matrix
-    coils: Matrix
-    inertia: Matrix
-
-
 @dataclass(frozen=True, slots=True)
 class MekfConfig:
     """The filter's tuning and what is derived from it once.
@@ -40,10 +31,7 @@ class MekfConfig:
     ``constant`` is the constant part of 1 + A h, (n, n); ``moving`` (36, 12) is what its upper left 6x6 gains
     by each component of the rate and of 3 mu/r^3 e1 e1^T, ``driven`` (36, 9) by each of m b^T.
 
-    ``torques`` are the same for the rows of the torque, those of the rate before J^-1 h, by parameter:
-    ``moving`` (216, 6) by each component of J, ``driven`` (18, 9); in the columns of the dipole by each
-    component of b; of the coils by each of m_driven b^T; of the inertia by each of 3 mu/r^3 e1 e1^T,
-    omega omega^T and domega/dt. ``inverse_h`` is J^-1 h.
+    ``torques`` are those of the torque, for estimated parameters; ``inverse_h`` is J^-1 h.
 
     By measurement, field, Sun or both at once: ``..._sensitivity`` is the constant part of H, (3 or 6, n),
     and ``..._noise`` the covariance, (3, 3) or (6, 6). ``zero`` is the error state between updates, (n).
@@ -116,21 +104,19 @@ def mekf_config(
         variances += [sigma**2 for sigma in prior.sigma]
     system = np.zeros((parts.size, parts.size))
     system[0:3, 3:6] = np.eye(3)
-    system[3:6, 3:6] = j_inverse @ _cross(np.array(wheel_body_nms))
+    system[3:6, 3:6] = j_inverse @ cross_matrix(np.array(wheel_body_nms))
     if parts.torque is not None:
         system[3:6, parts.torque] = j_inverse
     field_sensitivity, sun_sensitivity = np.zeros((3, parts.size)), np.zeros((3, parts.size))
     if parts.mag_bias is not None:
         field_sensitivity[:, parts.mag_bias] = np.eye(3)
     field_variances, sun_variances = [magnetometer_sigma_t**2] * 3, [sun_sigma_rad**2] * 3
-    moving, driven = np.split(tick_s * _varying(j, j_inverse), [12], axis=1)
+    moving, driven = np.split(tick_s * system_maps(j, j_inverse), [12], axis=1)
     return MekfConfig(
         rotor=Rotor(inertia_kgm2, inverse_j, wheel_body_nms),
         tick_s=tick_s,
         layout=parts,
-        initial_parameters=NOTHING._replace(
-            **{name: prior.mean for name, prior in priors.items() if prior.mean}
-        ),
+        initial_parameters=_means(priors),
         initial_covariance=np.diag(variances),
         process_noise=noise,
         constant=np.eye(parts.size) + tick_s * system,
@@ -151,51 +137,6 @@ def mekf_config(
     )
 
 
-def _varying(j: Matrix, j_inverse: Matrix) -> Matrix:
-    """A column for each component that the upper left 6x6 of the system matrix is linear in."""
-    axes = np.eye(3)
-    columns = np.zeros((21, 6, 6))
-    for k in range(3):
-        columns[k, 0:3, 0:3] = -_cross(axes[k])
-        columns[k, 3:6, 3:6] = j_inverse @ (_cross(j[k]) - _cross(axes[k]) @ j)
-        for i in range(3):
-            pull = _cross(axes[i]) @ j - _cross(j[i])
-            columns[3 + 3 * i + k, 3:6, 0:3] = j_inverse @ pull @ _cross(axes[k])
-            columns[12 + 3 * i + k, 3:6, 0:3] = j_inverse @ _cross(axes[i]) @ _cross(axes[k])
-    return columns.reshape(21, 36).T.copy()
-
-
-def _cross(a: Matrix) -> Matrix:
-    """The matrix [a x]."""
-    return np.cross(a, np.eye(3)).T
-
-
-def _torque_maps() -> TorqueMaps:
-    """The torque is m x b + g e1 x J e1 - omega x J omega - J domega/dt, J as xx, yy, zz, xy, xz, yz."""
-    axes = np.eye(3)
-    moving, coils, inertia = np.zeros((18, 12, 6)), np.zeros((3, 9, 9)), np.zeros((3, 6, 21))
-    for index, (row, column) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))):
-        change = np.zeros((3, 3))
-        change[row, column] = change[column, row] = 1.0
-        moving[:, :, index] = _varying(change, axes)[18:, :12]
-        inertia[:, index, 18:] = -change
-        for i in range(3):
-            effect = np.cross(axes[i], change.T)  # a row for each k: e_i x (dJ e_k)
-            inertia[:, index, 3 * i : 3 * i + 3], inertia[:, index, 9 + 3 * i : 12 + 3 * i] = (
-                effect.T,
-                -effect.T,
-            )
-    for i in range(3):
-        for j in range(3):
-            coils[:, 3 * i + j, 3 * j : 3 * j + 3] = _cross(axes[i])
-    dipole = np.array([-_cross(axis) for axis in axes]).reshape(3, 9).T
-    return TorqueMaps(
-        moving.reshape(216, 6),
-        _varying(axes, axes)[18:, 12:].copy(),
-        dipole.copy(),
-        coils.reshape(27, 9),
-        inertia.reshape(18, 21),
-    )
-
-
-TORQUES = _torque_maps()
+def _means(priors: Mapping[str, Prior]) -> Parameters:
+    given = [priors[name].mean if name in priors else () for name in NAMES]
+    return Parameters._make(mean or none for mean, none in zip(given, NOTHING, strict=True))
