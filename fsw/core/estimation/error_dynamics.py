@@ -50,7 +50,9 @@ class Motion(NamedTuple):
 def transition_matrix(
     motion: Motion, around: Surroundings, m_driven: Vec3, rotor: Rotor, config: MekfConfig
 ) -> Matrix:
-    """I + A h + (A h)^2 / 2 of the error dynamics; with A of the middle of the tick good to second order.
+    """The rows of attitude and rate of I + A h + (A h)^2 / 2, A being the system matrix, (6, n).
+
+    With A of the middle of the tick good to second order; all other rows are those of the identity.
 
     Args:
         motion: in the middle of the tick.
@@ -73,8 +75,9 @@ def transition_matrix(
         step[0:3, 0:3] -= np.array(skew(scale(config.tick_s, motion.omega)))
         step[3:6, 0:6] += inverse_h.dot(_torque_rows(motion, around, pull, rotor, config.torques))
     _parameter_columns(step, inverse_h, motion, around, pull, m_driven, config)
-    transition: Matrix = step.dot(step)  # (1 + A h)^2, so that half of it and 1 is the series
-    transition += config.identity
+    transition: Matrix = step[:, 0:6].dot(step)  # (1 + A h)^2, so that half of it and 1 is the series
+    transition[:, 6:] += step[:, 6:]
+    transition += config.identity_rows
     transition *= 0.5
     return transition
 

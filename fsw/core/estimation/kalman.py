@@ -1,4 +1,4 @@
-"""filterpy's Kalman filter without the copies that it keeps for inspection."""
+"""filterpy's Kalman filter without the copies that it keeps for inspection, and for few states that move."""
 
 import numpy as np
 from filterpy.kalman import KalmanFilter
@@ -11,15 +11,17 @@ Matrix = NDArray[np.float64]
 class LeanKalmanFilter(KalmanFilter):  # type: ignore[misc]  # filterpy has no types
     """filterpy's ``KalmanFilter`` for one prediction or one update of a flat state.
 
-    The operations of ``predict`` and ``update`` are filterpy's own in its order, so that every bit is equal:
+    The operations of ``predict`` and ``update`` are filterpy's own:
 
         predict  x <- F x,  P <- F P F^T + Q
         update   y = z - H x,  S = H P H^T + R,  K = P H^T S^-1,
                  x <- x + K y,  P <- (1 - K H) P (1 - K H)^T + K R K^T
 
-    Without fading memory, control input, and copies of prior, posterior and measurement; the constructor
-    allocates nothing, where filterpy's takes longer than a prediction. No method changes an array in place,
-    so arrays may be shared. The likelihoods are filterpy's.
+    Most states are constants: only the first rows of F differ from those of the identity, and only they are
+    given. The product of three in the update is taken from the left and from the right in turn, so that no
+    product of two (n, n) matrices is needed. Without fading memory, control input, and copies of prior,
+    posterior and measurement; the constructor allocates nothing, where filterpy's takes longer than a
+    prediction. No method changes an array in place, so arrays may be shared. The likelihoods are filterpy's.
 
     Attributes:
         x: state, (n).
@@ -32,13 +34,24 @@ class LeanKalmanFilter(KalmanFilter):  # type: ignore[misc]  # filterpy has no t
     _log_likelihood = _likelihood = _mahalanobis = None
     """Not computed yet: filterpy computes each when it is read."""
 
-    def __init__(self, x: Matrix, P: Matrix, identity: Matrix) -> None:
-        self.x, self.P, self._I = x, P, identity
+    def __init__(self, x: Matrix, P: Matrix) -> None:
+        self.x, self.P = x, P
 
     def predict(self, *, F: Matrix, Q: Matrix) -> None:
-        """Carry state and covariance over a step: transition F and process noise Q, both (n, n)."""
-        self.x = F.dot(self.x)
-        self.P = F.dot(self.P).dot(F.T) + Q
+        """Carry state and covariance over a step.
+
+        Args:
+            F: the first rows of the transition, (k, n); the others are those of the identity.
+            Q: process noise, (n, n).
+        """
+        moving = len(F)
+        x, covariance, rows = self.x.copy(), self.P.copy(), F.dot(self.P)
+        x[:moving] = F.dot(self.x)
+        covariance[:moving, :moving] = rows.dot(F.T)
+        covariance[:moving, moving:] = crossed = rows[:, moving:]
+        covariance[moving:, :moving] = crossed.T
+        covariance += Q
+        self.x, self.P = x, covariance
 
     def update(self, z: Matrix, R: Matrix, H: Matrix) -> None:
         """Take a measurement z, (m), with noise R, (m, m), and sensitivity H, (m, n)."""
@@ -48,8 +61,8 @@ class LeanKalmanFilter(KalmanFilter):  # type: ignore[misc]  # filterpy has no t
         self.SI = inverse(self.S)
         self.K = pht.dot(self.SI)
         self.x = self.x + self.K.dot(self.y)
-        i_kh = self._I - self.K.dot(H)
-        self.P = i_kh.dot(self.P).dot(i_kh.T) + self.K.dot(R).dot(self.K.T)
+        left = self.P - self.K.dot(pht.T)
+        self.P = left - left.dot(H.T).dot(self.K.T) + self.K.dot(R).dot(self.K.T)
 
 
 _UNITS = {size: np.eye(size) for size in (3, 6)}

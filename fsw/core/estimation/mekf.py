@@ -152,7 +152,7 @@ def predict(
     motion = Motion(omega_mid, alpha_mid, m)
     transition = transition_matrix(motion, around_mid, m_body_am2, rotor, config)
 
-    kalman = LeanKalmanFilter(config.zero, covariance, config.identity)
+    kalman = LeanKalmanFilter(config.zero, covariance)
     kalman.predict(F=transition, Q=process_noise(m_body_am2, around_mid.b_t, config))
     return Estimate(
         normalise(multiply(q, turn(scale(h, omega_mid)))),
@@ -164,7 +164,9 @@ def predict(
 
 
 def _carried(trace: Trace, transition: Matrix) -> Trace:
-    return Trace(trace.causes, transition.dot(trace.effect), trace.sums, trace.measured)
+    effect = trace.effect.copy()
+    effect[0:6] = transition.dot(trace.effect)
+    return Trace(trace.causes, effect, trace.sums, trace.measured)
 
 
 def update_field(estimate: Estimate, b_body_t: Vec3, b_eci_t: Vec3, config: MekfConfig) -> Estimate | None:
@@ -197,7 +199,7 @@ def _update(
     estimate: Estimate, innovation: tuple[float, ...], sensitivity: Matrix, noise: Matrix, config: MekfConfig
 ) -> Estimate | None:
     """The update of filterpy, judged by its own NIS and folded in."""
-    kalman = LeanKalmanFilter(config.zero, estimate.covariance, config.identity)
+    kalman = LeanKalmanFilter(config.zero, estimate.covariance)
     kalman.update(np.array(innovation), noise, sensitivity)
     nis, trace = float(kalman.y.dot(kalman.SI).dot(kalman.y)), estimate.trace
     if trace is not None:

@@ -28,8 +28,9 @@ class MekfConfig:
     """The filter's tuning and what is derived from it once.
 
     ``process_noise`` is the covariance added per tick, (n, n). A being the system matrix and h the tick,
-    ``constant`` is the constant part of 1 + A h, (n, n); ``moving`` (36, 12) is what its upper left 6x6 gains
-    by each component of the rate and of 3 mu/r^3 e1 e1^T, ``driven`` (36, 9) by each of m b^T.
+    ``constant`` is the constant part of the first six rows of 1 + A h, the others being the identity's;
+    ``moving`` (36, 12) is what the upper left 6x6 gains by each component of the rate and of
+    3 mu/r^3 e1 e1^T, ``driven`` (36, 9) by each of m b^T.
 
     ``torques`` are those of the torque, for estimated parameters; ``inverse_h`` is J^-1 h.
 
@@ -48,7 +49,7 @@ class MekfConfig:
     driven: Matrix
     torques: TorqueMaps
     inverse_h: Matrix
-    identity: Matrix
+    identity_rows: Matrix
     zero: Matrix
     field_sensitivity: Matrix
     sun_sensitivity: Matrix
@@ -102,7 +103,7 @@ def mekf_config(
         prior = priors[NAMES[index]]
         noise[place, place] = np.diag([walk**2 * tick_s for walk in prior.walk])
         variances += [sigma**2 for sigma in prior.sigma]
-    system = np.zeros((parts.size, parts.size))
+    identity_rows, system = np.eye(6, parts.size), np.zeros((6, parts.size))
     system[0:3, 3:6] = np.eye(3)
     system[3:6, 3:6] = j_inverse @ cross_matrix(np.array(wheel_body_nms))
     if parts.torque is not None:
@@ -119,12 +120,12 @@ def mekf_config(
         initial_parameters=_means(priors),
         initial_covariance=np.diag(variances),
         process_noise=noise,
-        constant=np.eye(parts.size) + tick_s * system,
+        constant=identity_rows + tick_s * system,
         moving=moving,
         driven=driven,
         torques=TORQUES,
         inverse_h=tick_s * j_inverse,
-        identity=np.eye(parts.size),
+        identity_rows=identity_rows,
         zero=np.zeros(parts.size),
         field_sensitivity=field_sensitivity,
         sun_sensitivity=sun_sensitivity,
