@@ -6,7 +6,7 @@ from math import ceil, radians, sqrt
 from fsw.core.estimation.estimator import EstimatorConfig
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.table.table import FlightTable
-from fsw.table.uncertainty import Bounds, bounds, priors
+from fsw.table.uncertainty import Uncertainty, bounds, priors
 
 NT = 1e-9
 GATE_NIS = 16.27
@@ -61,7 +61,7 @@ def estimator_config(table: FlightTable) -> EstimatorConfig:
     )
 
 
-def table_bounds(table: FlightTable) -> Bounds:
+def table_bounds(table: FlightTable) -> Uncertainty:
     """The bounds of the whole table."""
     return bounds(table.uncertainty, table.body.inertia, 1.0 / table.time.tick_hz)
 

@@ -18,11 +18,9 @@ from fsw.core.algebra.vector import Mat3
 from fsw.core.estimation.mekf_config import Prior
 from fsw.input.schema import NotNegative, Section
 
-Percent = NotNegative
-
 
 class UncertaintyTable(Section):
-    """Bounds of what the table may be wrong by; None: an ordinary value for a satellite of this size."""
+    """Uncertainty of what the table may be wrong by; None: an ordinary value for a satellite of this size."""
 
     inertia_percent: float | None = Field(default=None, ge=0.0, le=50.0)
     products_percent: float | None = Field(default=None, ge=0.0, le=20.0)
@@ -39,7 +37,7 @@ class UncertaintyTable(Section):
 
 
 @dataclass(frozen=True, slots=True)
-class Bounds:
+class Uncertainty:
     """The bounds in SI units; parts are relative to the table's value."""
 
     inertia_part: float
@@ -60,14 +58,14 @@ REFERENCE_KGM2 = 1.6
 """Mean moment of inertia of the 50 kg satellite for which the ordinary dipole and torque hold."""
 
 
-def bounds(table: UncertaintyTable, inertia_kgm2: Mat3, tick_s: float) -> Bounds:
+def bounds(table: UncertaintyTable, inertia_kgm2: Mat3, tick_s: float) -> Uncertainty:
     """The bounds of the table, ordinary ones where it has none.
 
     Residual dipole and disturbance torque grow with the volume: of bodies of one density and shape as the
     moment of inertia to the power of 3/5.
     """
     volume = (_mean_moment(inertia_kgm2) / REFERENCE_KGM2) ** 0.6
-    return Bounds(
+    return Uncertainty(
         inertia_part=0.01 * _or(table.inertia_percent, 10.0),
         products_part=0.01 * _or(table.products_percent, 2.0),
         dipole_am2=_or(table.residual_dipole_am2, 0.1 * volume),
@@ -98,7 +96,7 @@ BALL = 1.0 / sqrt(5.0)
 DAY_S = 86400.0
 
 
-def priors(known: Bounds, inertia_kgm2: Mat3) -> dict[str, Prior]:
+def priors(known: Uncertainty, inertia_kgm2: Mat3) -> dict[str, Prior]:
     """The prior of each parameter of the filter whose bound is not zero.
 
     The walks say how much of its bound a parameter may wander: a tenth of it in a day, the disturbance torque

@@ -23,7 +23,7 @@ def process_noise(m_body_am2: Vec3, b_body_t: Vec3, config: MekfConfig) -> Matri
     return noise
 
 
-class Surroundings(NamedTuple):
+class BodyFields(NamedTuple):
     """What acts at one attitude, body axes: the radius direction e1, the field b, T, and 3 mu/r^3, 1/s^2."""
 
     e1: Vec3
@@ -31,7 +31,7 @@ class Surroundings(NamedTuple):
     gravity_per_s2: float
 
 
-def acceleration(omega: Vec3, around: Surroundings, m: Vec3, torque: Vec3, rotor: Rotor) -> Vec3:
+def acceleration(omega: Vec3, around: BodyFields, m: Vec3, torque: Vec3, rotor: Rotor) -> Vec3:
     """J domega/dt = m x b + 3 mu/r^3 e1 x J e1 - omega x (J omega + h) + torque, all in body axes."""
     j, j_inverse, wheel = rotor
     gravity = scale(around.gravity_per_s2, cross(around.e1, transform(j, around.e1)))
@@ -39,7 +39,7 @@ def acceleration(omega: Vec3, around: Surroundings, m: Vec3, torque: Vec3, rotor
     return transform(j_inverse, sub(add(add(cross(m, around.b_t), gravity), torque), gyroscopic))
 
 
-class Motion(NamedTuple):
+class Turning(NamedTuple):
     """How the satellite turns: rate, rad/s, its derivative, rad/s^2, and the dipole that acts, A m^2."""
 
     omega: Vec3
@@ -48,7 +48,7 @@ class Motion(NamedTuple):
 
 
 def transition_matrix(
-    motion: Motion, around: Surroundings, m_driven: Vec3, rotor: Rotor, config: MekfConfig
+    motion: Turning, around: BodyFields, m_driven: Vec3, rotor: Rotor, config: MekfConfig
 ) -> Matrix:
     """The rows of attitude and rate of I + A h + (A h)^2 / 2, A being the system matrix, (6, n).
 
@@ -83,7 +83,7 @@ def transition_matrix(
 
 
 def _torque_rows(
-    motion: Motion, around: Surroundings, pull: tuple[float, ...], rotor: Rotor, maps: TorqueMaps
+    motion: Turning, around: BodyFields, pull: tuple[float, ...], rotor: Rotor, maps: TorqueMaps
 ) -> Matrix:
     """The torque's derivative by attitude and rate, (3, 6)."""
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = rotor.inertia_kgm2
@@ -95,8 +95,8 @@ def _torque_rows(
 def _parameter_columns(
     step: Matrix,
     inverse_h: Matrix,
-    motion: Motion,
-    around: Surroundings,
+    motion: Turning,
+    around: BodyFields,
     pull: tuple[float, ...],
     m_driven: Vec3,
     config: MekfConfig,
@@ -120,7 +120,7 @@ def _outer(a: Vec3, b: Vec3) -> tuple[float, ...]:
 
 
 def turn(rotation_rad: Vec3) -> Quaternion:
-    """The quaternion of a rotation vector by the series of sine and cosine: 1e-9 rad off at 0.5 rad."""
+    """The quaternion of a rotation vector by the series of sine and cosine: 2e-8 rad off at 0.5 rad."""
     r1, r2, r3 = rotation_rad
     square = 0.25 * (r1 * r1 + r2 * r2 + r3 * r3)
     half_sinc = 0.5 - square * (1.0 / 12.0 - square / 240.0)

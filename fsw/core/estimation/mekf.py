@@ -28,8 +28,8 @@ import numpy as np
 from fsw.core.algebra.quaternion import Quaternion, from_small_rotation, multiply, normalise, rotate
 from fsw.core.algebra.vector import Vec3, add, scale, sub
 from fsw.core.estimation.error_dynamics import (
-    Motion,
-    Surroundings,
+    BodyFields,
+    Turning,
     acceleration,
     process_noise,
     transition_matrix,
@@ -112,10 +112,12 @@ def corrected(estimate: Estimate, error: Matrix, uncertainty: Matrix, config: Me
 def healthy(estimate: Estimate) -> bool:
     """Whether every number is finite and every variance positive and below ``MAX_VARIANCE``.
 
-    To be checked after a prediction, which moves a bad number onto the diagonal of the covariance.
+    Of a parameter alone may a component be exact, with no variance. To be checked after a prediction, which
+    moves a bad number onto the diagonal of the covariance.
     """
     variances: list[float] = estimate.covariance.diagonal().tolist()
-    return isfinite(sum(estimate.floats())) and min(variances) > 0.0 and sum(variances) < MAX_VARIANCE
+    positive = min(variances[:6]) > 0.0 and min(variances) >= 0.0
+    return isfinite(sum(estimate.floats())) and positive and sum(variances) < MAX_VARIANCE
 
 
 def predict(
@@ -143,13 +145,13 @@ def predict(
         m = estimated_dipole(m, parameters)
     if parts.inertia is not None:
         rotor = estimated_rotor(rotor, parameters)
-    around = Surroundings(rotate(q, e1_eci), rotate(q, b_eci_t), gravity_per_s2)
+    around = BodyFields(rotate(q, e1_eci), rotate(q, b_eci_t), gravity_per_s2)
     alpha = acceleration(omega, around, m, torque, rotor)
     omega_mid = add(omega, scale(0.5 * h, alpha))
     q_mid = multiply(q, from_small_rotation(scale(0.5 * h, omega)))
-    around_mid = Surroundings(rotate(q_mid, e1_eci), rotate(q_mid, b_eci_t), gravity_per_s2)
+    around_mid = BodyFields(rotate(q_mid, e1_eci), rotate(q_mid, b_eci_t), gravity_per_s2)
     alpha_mid = acceleration(omega_mid, around_mid, m, torque, rotor)
-    motion = Motion(omega_mid, alpha_mid, m)
+    motion = Turning(omega_mid, alpha_mid, m)
     transition = transition_matrix(motion, around_mid, m_body_am2, rotor, config)
 
     kalman = LeanKalmanFilter(config.zero, covariance)

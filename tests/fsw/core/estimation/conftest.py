@@ -93,7 +93,7 @@ class Satellite:
         return 6 + sum(len(getattr(NOTHING, name)) for name in self.carried)
 
     def place(self, name):
-        """Where a parameter stands in the error state: behind attitude and rate, in the order of the names."""
+        """Where a parameter stands in the error state: behind attitude and rate, in the order of names."""
         before = sum(
             len(getattr(NOTHING, other)) for other in NAMES[: NAMES.index(name)] if other in self.carried
         )
@@ -138,7 +138,7 @@ class Satellite:
         rate = np.subtract(after.omega_body_radps, before.omega_body_radps)
         return np.concatenate((-Rotation.from_matrix(turn).as_rotvec(), rate, *known))
 
-    def measured(self, kind, estimate):
+    def measured(self, kind, estimate, b_eci_t=b_eci_t):
         """What ideal sensors say of such a satellite: field, Sun, or both.
 
         Field (1 + s) o R(turn) C(t - delay) b + bias, Sun R(turn) C(t - delay) s.
@@ -149,7 +149,7 @@ class Satellite:
             Rotation.from_rotvec(turn).as_matrix().T
             for turn in (parameters.mag_turn_rad, parameters.sun_turn_rad)
         ]
-        field = (1.0 + np.array(parameters.mag_scale)) * (turns[0] @ late[0] @ self.b_eci_t)
+        field = (1.0 + np.array(parameters.mag_scale)) * (turns[0] @ late[0] @ b_eci_t)
         said = {"field": field + parameters.mag_bias_t, "sun": turns[1] @ late[1] @ self.s_eci}
         return np.concatenate((said["field"], said["sun"])) if kind == "both" else said[kind]
 

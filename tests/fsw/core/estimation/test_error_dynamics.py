@@ -1,4 +1,4 @@
-"""The error dynamics: the transition is the derivative of the nonlinear flow; the noise is that of its causes."""
+"""The error dynamics: the transition is the derivative of the flow, and the noise that of its causes."""
 
 import numpy as np
 import pytest
