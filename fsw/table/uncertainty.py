@@ -15,12 +15,12 @@ from math import radians, sqrt
 from pydantic import Field
 
 from fsw.core.algebra.vector import Mat3
-from fsw.core.estimation.mekf_config import Prior
+from fsw.core.estimation.parameters import Prior
 from fsw.input.schema import NotNegative, Section
 
 
 class UncertaintyTable(Section):
-    """Uncertainty of what the table may be wrong by; None: an ordinary value for a satellite of this size."""
+    """Bounds of what the table may be wrong by; None: an ordinary value for a satellite of this size."""
 
     inertia_percent: float | None = Field(default=None, ge=0.0, le=50.0)
     products_percent: float | None = Field(default=None, ge=0.0, le=20.0)

@@ -2,11 +2,14 @@
 
 from datetime import UTC, datetime
 from math import inf
+from typing import NamedTuple
 
 import numpy as np
 from scipy.stats import chi2
 
 from fsw.input.schema import Nested
+from fsw.table.estimator import NT, TORQUE_NOISE_RTS, table_bounds
+from fsw.table.uncertainty import priors
 from fsw.wire.messages import Mode
 from sim.campaign.claim import Study
 from sim.campaign.flight import Figures, Order
@@ -193,24 +196,37 @@ def _acquisition_order(run: int) -> Order:
 
 def _random_order(run: int) -> Order:
     """An order whose attitude, bias, torque and torque noise are drawn from the filter's statistics."""
-    scenario, random = load(SCENARIO), np.random.default_rng(2000 + run)
-    assumed = estimator_values(scenario)
+    sigma, random = assumed(load(SCENARIO)), np.random.default_rng(2000 + run)
     axis, angle_deg = _any_attitude(random)
     overrides: Nested = {
         "initial": {"axis": axis, "angle_deg": angle_deg, "rate_degps": random.normal(0.0, 0.1, 3).tolist()},
-        "sensors": {"magnetometer": {"bias_nt": random.normal(0.0, assumed["bias_sigma_nt"], 3).tolist()}},
+        "sensors": {"magnetometer": {"bias_nt": random.normal(0.0, sigma.bias_nt, 3).tolist()}},
         "disturbance": {
-            "torque_nm": random.normal(0.0, assumed["torque_sigma_nm"], 3).tolist(),
-            "torque_noise_nm_rts": assumed["torque_noise_nm_rts"],
+            "torque_nm": random.normal(0.0, sigma.torque_nm, 3).tolist(),
+            "torque_noise_nm_rts": sigma.torque_noise_nm_rts,
         },
     }
     return Order(SCENARIO, overrides, seed=run + 1, orbits=1.0, measure=consistency_figures)
 
 
-def estimator_values(scenario: Scenario) -> dict[str, float]:
-    """The estimator's section of the onboard table."""
-    values: dict[str, float] = flight_table(scenario).estimator.model_dump()
-    return values
+class Assumed(NamedTuple):
+    """Standard deviations of what the filter estimates besides attitude and rate, and its torque noise."""
+
+    bias_nt: list[float]
+    torque_nm: list[float]
+    torque_noise_nm_rts: float
+
+
+def assumed(scenario: Scenario) -> Assumed:
+    """What the onboard table of a scenario makes the filter assume, by axis."""
+    table = flight_table(scenario)
+    known = table_bounds(table)
+    prior = priors(known, table.body.inertia)
+    return Assumed(
+        [sigma / NT for sigma in prior["mag_bias_t"].sigma],
+        list(prior["torque_body_nm"].sigma),
+        TORQUE_NOISE_RTS * known.torque_nm,
+    )
 
 
 def _direction(random: np.random.Generator) -> list[float]:

@@ -39,7 +39,7 @@ def acceleration(omega: Vec3, around: BodyFields, m: Vec3, torque: Vec3, rotor: 
     return transform(j_inverse, sub(add(add(cross(m, around.b_t), gravity), torque), gyroscopic))
 
 
-class Turning(NamedTuple):
+class BodyMotion(NamedTuple):
     """How the satellite turns: rate, rad/s, its derivative, rad/s^2, and the dipole that acts, A m^2."""
 
     omega: Vec3
@@ -48,7 +48,7 @@ class Turning(NamedTuple):
 
 
 def transition_matrix(
-    motion: Turning, around: BodyFields, m_driven: Vec3, rotor: Rotor, config: MekfConfig
+    motion: BodyMotion, around: BodyFields, m_driven: Vec3, rotor: Rotor, config: MekfConfig
 ) -> Matrix:
     """The rows of attitude and rate of I + A h + (A h)^2 / 2, A being the system matrix, (6, n).
 
@@ -83,7 +83,7 @@ def transition_matrix(
 
 
 def _torque_rows(
-    motion: Turning, around: BodyFields, pull: tuple[float, ...], rotor: Rotor, maps: TorqueMaps
+    motion: BodyMotion, around: BodyFields, pull: tuple[float, ...], rotor: Rotor, maps: TorqueMaps
 ) -> Matrix:
     """The torque's derivative by attitude and rate, (3, 6)."""
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = rotor.inertia_kgm2
@@ -95,7 +95,7 @@ def _torque_rows(
 def _parameter_columns(
     step: Matrix,
     inverse_h: Matrix,
-    motion: Turning,
+    motion: BodyMotion,
     around: BodyFields,
     pull: tuple[float, ...],
     m_driven: Vec3,

@@ -29,7 +29,7 @@ from fsw.core.algebra.quaternion import Quaternion, from_small_rotation, multipl
 from fsw.core.algebra.vector import Vec3, add, scale, sub
 from fsw.core.estimation.error_dynamics import (
     BodyFields,
-    Turning,
+    BodyMotion,
     acceleration,
     process_noise,
     transition_matrix,
@@ -151,7 +151,7 @@ def predict(
     q_mid = multiply(q, from_small_rotation(scale(0.5 * h, omega)))
     around_mid = BodyFields(rotate(q_mid, e1_eci), rotate(q_mid, b_eci_t), gravity_per_s2)
     alpha_mid = acceleration(omega_mid, around_mid, m, torque, rotor)
-    motion = Turning(omega_mid, alpha_mid, m)
+    motion = BodyMotion(omega_mid, alpha_mid, m)
     transition = transition_matrix(motion, around_mid, m_body_am2, rotor, config)
 
     kalman = LeanKalmanFilter(config.zero, covariance)

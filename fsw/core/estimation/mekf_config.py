@@ -2,25 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
 from fsw.core.algebra.vector import ZERO, Mat3, Vec3, inverse
 from fsw.core.estimation.kalman import Matrix
-from fsw.core.estimation.parameters import NAMES, NOTHING, Layout, Parameters, Rotor, layout
+from fsw.core.estimation.parameters import NAMES, NOTHING, Layout, Parameters, Prior, Rotor, layout
 from fsw.core.estimation.torque_maps import TORQUES, TorqueMaps, cross_matrix, system_maps
-
-
-class Prior(NamedTuple):
-    """What is known of a parameter beforehand, by component: standard deviation, random walk, and mean.
-
-    The walk is per square root of a second; without a mean it is zero.
-    """
-
-    sigma: tuple[float, ...]
-    walk: tuple[float, ...]
-    mean: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

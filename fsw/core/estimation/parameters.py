@@ -50,6 +50,17 @@ SIZES = dict(zip(NAMES, map(len, NOTHING), strict=True))
 """How many numbers each has."""
 
 
+class Prior(NamedTuple):
+    """What is known of a parameter beforehand, by component: standard deviation, random walk, and mean.
+
+    The walk is per square root of a second; without a mean it is zero.
+    """
+
+    sigma: tuple[float, ...]
+    walk: tuple[float, ...]
+    mean: tuple[float, ...] = ()
+
+
 @dataclass(frozen=True, slots=True)
 class Layout:
     """Where each carried parameter stands in the error state; None where it is not carried.

@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
+from fsw.table.config import flight_config
 from fsw.wire.messages import Mode
 from sim.campaign.claim import ClaimVerdict
 from sim.campaign.flight import FlightResult
 from sim.plant.environment.orbit import Sgp4Orbit
 from sim.plant.environment.sun import illumination, sun_eci_m
 from sim.record.estimates import EstimateRecorder
-from sim.scenario.schema import load, orbit_period_s
+from sim.scenario.schema import flight_table, load, orbit_period_s
 from sim.validate import microsat, posat1
 
 ORBIT = 6041
@@ -111,9 +112,14 @@ def test_the_filters_runs_are_drawn_from_what_it_assumes():
     assert len(orders) == 100
     torque = np.array([order.overrides["disturbance"]["torque_nm"] for order in orders])
     bias = np.array([order.overrides["sensors"]["magnetometer"]["bias_nt"] for order in orders])
-    assumed = microsat.estimator_values(load("microsat"))
-    assert torque.std() == pytest.approx(assumed["torque_sigma_nm"], rel=0.12)
-    assert bias.std() == pytest.approx(assumed["bias_sigma_nt"], rel=0.12)
+    config = flight_config(flight_table(load("microsat"))).estimator.mekf
+    sigma = np.sqrt(config.initial_covariance.diagonal())
+    assert bias.std(axis=0) == pytest.approx(sigma[6:9] * 1e9, rel=0.2)
+    assert torque.std(axis=0) == pytest.approx(sigma[9:12], rel=0.2)
+    (noise,) = {order.overrides["disturbance"]["torque_noise_nm_rts"] for order in orders}
+    assert noise == pytest.approx(1e-8)
+    rates = noise**2 * np.square(config.rotor.inertia_inverse).sum(axis=1)
+    np.testing.assert_allclose(config.process_noise.diagonal()[3:6], rates, rtol=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -15,8 +15,8 @@ from scipy.spatial.transform import Rotation
 from fsw.core.algebra.quaternion import normalise
 from fsw.core.algebra.vector import unit
 from fsw.core.estimation.mekf import Estimate
-from fsw.core.estimation.mekf_config import Prior, mekf_config
-from fsw.core.estimation.parameters import NAMES, NOTHING, Parameters
+from fsw.core.estimation.mekf_config import mekf_config
+from fsw.core.estimation.parameters import NAMES, NOTHING, Parameters, Prior
 
 LAYOUTS = {
     "none": (),
