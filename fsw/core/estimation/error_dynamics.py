@@ -30,6 +30,10 @@ class BodyFields(NamedTuple):
     b_t: Vec3
     gravity_per_s2: float
 
+    def pull(self) -> tuple[float, ...]:
+        """The dyad 3 mu/r^3 e1 e1^T by rows, 1/s^2."""
+        return _outer(scale(self.gravity_per_s2, self.e1), self.e1)
+
 
 def acceleration(omega: Vec3, around: BodyFields, m: Vec3, torque: Vec3, rotor: Rotor) -> Vec3:
     """J domega/dt = m x b + 3 mu/r^3 e1 x J e1 - omega x (J omega + h) + torque, all in body axes."""
@@ -62,10 +66,8 @@ def transition_matrix(
         config: the filter.
     """
     step = config.constant.copy()
-    g1, g2, g3 = scale(around.gravity_per_s2, around.e1)
-    pull = (*scale(g1, around.e1), *scale(g2, around.e1), *scale(g3, around.e1))
     if config.layout.inertia is None:
-        change = config.moving.dot((*motion.omega, *pull))
+        change = config.moving.dot((*motion.omega, *around.pull()))
         if motion.m_am2 != ZERO:
             change += config.driven.dot(_outer(motion.m_am2, around.b_t))
         step[0:6, 0:6] += change.reshape(6, 6)
@@ -73,8 +75,9 @@ def transition_matrix(
     else:
         inverse_h = config.tick_s * np.array(rotor.inertia_inverse)
         step[0:3, 0:3] -= np.array(skew(scale(config.tick_s, motion.omega)))
-        step[3:6, 0:6] += inverse_h.dot(_torque_rows(motion, around, pull, rotor, config.torques))
-    _parameter_columns(step, inverse_h, motion, around, pull, m_driven, config)
+        step[3:6, 0:6] = inverse_h.dot(_torque_rows(motion, around, rotor, config.torques))
+        step[3:6, 3:6] += config.identity_rows[3:6, 3:6]
+    _set_parameter_columns(step, inverse_h, motion, around, m_driven, config)
     transition: Matrix = step[:, 0:6].dot(step)  # (1 + A h)^2, so that half of it and 1 is the series
     transition[:, 6:] += step[:, 6:]
     transition += config.identity_rows
@@ -82,26 +85,25 @@ def transition_matrix(
     return transition
 
 
-def _torque_rows(
-    motion: BodyMotion, around: BodyFields, pull: tuple[float, ...], rotor: Rotor, maps: TorqueMaps
-) -> Matrix:
+def _torque_rows(motion: BodyMotion, around: BodyFields, rotor: Rotor, maps: TorqueMaps) -> Matrix:
     """The torque's derivative by attitude and rate, (3, 6)."""
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = rotor.inertia_kgm2
     moving = maps.moving.dot((xx, yy, zz, xy, xz, yz)).reshape(18, 12)
-    rows: Matrix = moving.dot((*motion.omega, *pull)) + maps.driven.dot(_outer(motion.m_am2, around.b_t))
-    return rows.reshape(3, 6)
+    entries = moving.dot((*motion.omega, *around.pull())) + maps.driven.dot(_outer(motion.m_am2, around.b_t))
+    rows: Matrix = entries.reshape(3, 6)
+    rows[:, 3:6] += skew(rotor.wheel_body_nms)
+    return rows
 
 
-def _parameter_columns(
+def _set_parameter_columns(
     step: Matrix,
     inverse_h: Matrix,
     motion: BodyMotion,
     around: BodyFields,
-    pull: tuple[float, ...],
     m_driven: Vec3,
     config: MekfConfig,
 ) -> None:
-    """Set what the parameters do to the rate, J^-1 h times the torque's derivative by each."""
+    """Set what the parameters do to the rate: J^-1 h times the torque's derivative by each."""
     parts, maps = config.layout, config.torques
     if parts.dipole is not None:
         step[3:6, parts.dipole] = inverse_h.dot(maps.dipole.dot(around.b_t).reshape(3, 3))
@@ -109,12 +111,14 @@ def _parameter_columns(
         drive = _outer(m_driven, around.b_t)
         step[3:6, parts.coils] = inverse_h.dot(maps.coils.dot(drive).reshape(3, 9))
     if parts.inertia is not None:
-        moves = (*pull, *_outer(motion.omega, motion.omega), *motion.alpha)
+        if parts.torque is not None:
+            step[3:6, parts.torque] = inverse_h
+        moves = (*around.pull(), *_outer(motion.omega, motion.omega), *motion.alpha)
         step[3:6, parts.inertia] = inverse_h.dot(maps.inertia.dot(moves).reshape(3, 6))
 
 
 def _outer(a: Vec3, b: Vec3) -> tuple[float, ...]:
-    """A b^T by rows."""
+    """The dyad a b^T by rows."""
     a1, a2, a3 = a
     return (*scale(a1, b), *scale(a2, b), *scale(a3, b))
 

@@ -57,6 +57,7 @@ class Satellite:
     """A filter that carries some of the parameters, and the satellite that it knows; SI units, body axes."""
 
     carried: tuple[str, ...]
+    wheel_body_nms: tuple[float, float, float] = (0.0, 0.0, 0.0)
     inertia_kgm2 = ((1.02, 0.07, -0.05), (0.07, 1.85, 0.11), (-0.05, 0.11, 1.45))
     q = normalise((0.6, -0.4, 0.5, 0.3))
     omega = (0.021, -0.034, 0.027)
@@ -77,6 +78,7 @@ class Satellite:
         """The filter's tuning; ``noiseless``: without any process noise."""
         values = {
             "tick_s": 1.0,
+            "wheel_body_nms": self.wheel_body_nms,
             "magnetometer_sigma_t": 2e-7,
             "sun_sigma_rad": radians(0.5),
             "attitude_sigma_rad": radians(5.0),
@@ -177,7 +179,7 @@ def quaternion_of(matrix):
 def flow(estimate, satellite, driven_am2, b_eci_t, gravity_ps2, duration_s):
     """The nonlinear motion by the parameters of the estimate, integrated to 1e-13.
 
-    J dw/dt = m x b + g e x J e + T - w x J w, with J = J0 + dJ and m = (1 + G) m_driven + d.
+    J dw/dt = m x b + g e x J e + T - w x (J w + h), with J = J0 + dJ and m = (1 + G) m_driven + d.
     """
     parameters = estimate.parameters
     xx, yy, zz, xy, xz, yz = parameters.inertia_error_kgm2
@@ -191,7 +193,9 @@ def flow(estimate, satellite, driven_am2, b_eci_t, gravity_ps2, duration_s):
         torque = np.cross(dipole, b) + gravity_ps2 * np.cross(e, inertia @ e) + parameters.torque_body_nm
         q0, q = state[0], state[1:4]
         turning = 0.5 * np.array([-q @ w, *(q0 * w + np.cross(q, w))])
-        return np.concatenate((turning, np.linalg.solve(inertia, torque - np.cross(w, inertia @ w))))
+        return np.concatenate(
+            (turning, np.linalg.solve(inertia, torque - np.cross(w, inertia @ w + satellite.wheel_body_nms)))
+        )
 
     begin = (*estimate.q_body_from_eci, *estimate.omega_body_radps)
     end = solve_ivp(rates, (0.0, duration_s), begin, method="DOP853", rtol=1e-13, atol=1e-15).y[:, -1]

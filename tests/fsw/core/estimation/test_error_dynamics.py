@@ -1,5 +1,7 @@
 """The error dynamics: the transition is the derivative of the flow, and the noise that of its causes."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -71,17 +73,24 @@ class TestTransition:
         undriven = transition(full, strong(full, dipole_body_am2=ZERO), ZERO)
         assert np.abs(transition(full, estimate, ZERO) - undriven)[3:6, 0:3].max() > 1e-3
 
-    def test_with_another_inertia_than_the_table_s_is_it_but_for_that_part(self, full, nonlinear_flow):
-        """The columns are those of the table's inertia, so that they can be prepared: 6 % off with 5 %."""
-        estimate = strong(full, inertia_error_kgm2=(0.05, -0.08, 0.06, 0.011, -0.009, 0.013))
-        found, expected = (
-            f - np.eye(full.size())
-            for f in (transition(full, estimate), by_differences(full, estimate, nonlinear_flow))
-        )
-        for name in TURNING:
-            columns = full.place(name)
-            off = np.abs(found[3:6, columns] - expected[3:6, columns]).max()
-            assert 1e-4 < off / np.abs(expected[3:6, columns]).max() < 0.1
+    @pytest.mark.parametrize("wheel_body_nms", [ZERO, (0.3, -0.2, 0.4)], ids=["no wheel", "wheel"])
+    def test_is_it_with_another_inertia_than_the_table_s(self, wheel_body_nms, full, nonlinear_flow):
+        satellite = replace(full, wheel_body_nms=wheel_body_nms)
+        inertia_error = full.parameters.inertia_error_kgm2
+        estimate = strong(satellite, inertia_error_kgm2=inertia_error)
+        found = transition(satellite, estimate)
+        expected = by_differences(satellite, estimate, nonlinear_flow)
+        np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-7)
+        as_in_table = transition(satellite, strong(satellite))
+        for name in ("torque_body_nm", "dipole_body_am2", "coil_error"):
+            columns = satellite.place(name)
+            assert np.abs(found - as_in_table)[3:6, columns].max() > 5e-5
+
+    def test_is_it_with_a_wheel(self, carrying, nonlinear_flow):
+        satellite = replace(carrying("torque_body_nm"), wheel_body_nms=(0.3, -0.2, 0.4))
+        estimate = strong(satellite)
+        expected = by_differences(satellite, estimate, nonlinear_flow)
+        np.testing.assert_allclose(transition(satellite, estimate), expected, rtol=0.0, atol=1e-7)
 
     @pytest.mark.parametrize("name", TURNING)
     def test_what_turns_the_satellite_acts_on_rate_and_attitude(self, name, full):

@@ -36,13 +36,13 @@ class TestExpected:
         assert expected == rotate(satellite.q, vector)
 
     @KIND
-    def test_is_what_the_sensor_says_to_first_order(self, kind, full):
-        """Exact turns differ by products of small angles; each parameter alone moves it by far more."""
+    def test_is_what_the_sensor_says_to_second_order(self, kind, full):
+        """Exact turns differ by third powers of small angles; each parameter alone moves it by far more."""
         estimate = full.estimate()
         vector = {"field": full.b_eci_t, "sun": full.s_eci}[kind]
         expected = EXPECTED[kind](*estimate[:3], vector)
         off = np.subtract(expected, full.measured(kind, estimate)) / unit_of(kind, full)
-        assert np.abs(off).max() < 6e-4
+        assert np.abs(off).max() < 1e-5
         for name in SEEN[kind]:
             without = EXPECTED[kind](
                 *estimate[:2], estimate.parameters._replace(**{name: getattr(NOTHING, name)}), vector
@@ -101,13 +101,23 @@ class TestPrediction:
 
     def test_it_is_zero_for_all_that_the_sensor_does_not_see(self, kind, full):
         _, found = prediction(kind, full, full.estimate())
-        assert not found[:, 3:6].any()
         for name in set(NAMES) - SEEN[kind]:
             assert not found[:, full.place(name)].any()
         for name in SEEN[kind] - {"delay_s"}:
             assert found[:, full.place(name)].any(axis=0).all()
         late = found[:, full.place("delay_s")].any(axis=0)
         assert late.tolist() == [kind == "field", kind == "sun"]
+
+    def test_the_rate_shows_in_a_late_sample_alone(self, kind, full):
+        """By as much as the body turns while it ages."""
+        estimate = full.estimate()
+        found, expected = prediction(kind, full, estimate)[1], full.sensitivity(kind, estimate)
+        np.testing.assert_allclose(
+            found[:, 3:6], expected[:, 3:6], rtol=0.0, atol=0.03 * np.abs(expected[:, 3:6]).max()
+        )
+        in_time = estimate._replace(parameters=estimate.parameters._replace(delay_s=(0.0, 0.0)))
+        assert found[:, 3:6].any()
+        assert not prediction(kind, full, in_time)[1][:, 3:6].any()
 
     def test_a_turn_of_the_sensor_looks_as_a_turn_of_the_body(self, kind, full):
         """Why no measurement can tell the common turn of both sensors from an attitude."""

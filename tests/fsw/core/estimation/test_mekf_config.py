@@ -1,54 +1,66 @@
-"""The filter's tuning: where each part of the error state stands, and what is prepared from it."""
+"""The filter's tuning: what stands where, and what is prepared from it."""
 
 from math import radians
 
 import numpy as np
-import pytest
 
-from fsw.core.estimation.mekf_config import layout, mekf_config
-
-INERTIA = ((1.02, 0.07, -0.05), (0.07, 1.85, 0.11), (-0.05, 0.11, 1.45))
-J_INVERSE = np.linalg.inv(np.array(INERTIA))
+from fsw.core.algebra.vector import inverse
+from fsw.core.estimation.mekf_config import mekf_config
+from fsw.core.estimation.parameters import NOTHING, Parameters, Prior
 
 
-def make_config(bias=True, torque=True):
-    return mekf_config(
-        INERTIA,
-        0.5,
-        estimate_bias=bias,
-        estimate_torque=torque,
-        magnetometer_sigma_t=2e-7,
-        sun_sigma_rad=radians(0.5),
-        attitude_sigma_rad=radians(5.0),
-        rate_sigma_radps=radians(2.0),
-        bias_sigma_t=3e-7,
-        torque_sigma_nm=1e-7,
-        torque_noise_nm_rts=1e-7,
-        bias_walk_t_prts=1e-10,
-        torque_walk_nm_prts=3e-10,
-        gate_nis=16.27,
-    )
+def test_the_priors_stand_where_the_layout_says(satellite):
+    config = satellite.config()
+    expected = np.repeat([radians(5.0), radians(2.0)], 3) ** 2
+    np.testing.assert_allclose(config.initial_covariance.diagonal()[:6], expected, rtol=1e-12)
+    sigmas = {
+        "mag_bias_t": (3e-7, 4e-7, 5e-7),
+        "torque_body_nm": (1e-7, 8e-8, 9e-8),
+        "inertia_error_kgm2": (0.06, 0.1, 0.08, 0.018, 0.016, 0.02),
+        "sun_turn_rad": (0.004, 0.003, 0.005),
+        "delay_s": (0.5, 0.6),
+    }
+    for name in set(satellite.carried) & set(sigmas):
+        variances = config.initial_covariance.diagonal()[satellite.place(name)]
+        np.testing.assert_allclose(variances, np.square(sigmas[name]), rtol=1e-12)
+    off_diagonal = config.initial_covariance - np.diag(config.initial_covariance.diagonal())
+    assert not off_diagonal.any()
 
 
-class TestLayout:
-    @pytest.mark.parametrize(
-        ("bias", "torque", "size", "bias_at", "torque_at"),
-        [
-            (False, False, 6, None, None),
-            (True, False, 9, 6, None),
-            (False, True, 9, None, 6),
-            (True, True, 12, 6, 9),
-        ],
-    )
-    def test_sizes_and_places(self, bias, torque, size, bias_at, torque_at):
-        parts = layout(bias, torque)
-        assert (parts.size, parts.bias, parts.torque) == (size, bias_at, torque_at)
-        config = make_config(bias, torque)
-        assert config.initial_covariance.shape == config.process_noise.shape == (size, size)
+def test_every_array_has_the_size_of_the_error_state(satellite):
+    config, size = satellite.config(), satellite.size()
+    assert config.layout.size == size
+    square = (config.initial_covariance, config.process_noise, config.constant, config.identity)
+    assert {array.shape for array in square} == {(size, size)}
+    assert config.field_sensitivity.shape == config.sun_sensitivity.shape == (3, size)
+    assert config.zero.shape == (size,)
 
-    def test_the_prior_stands_where_the_layout_says(self):
-        diagonal = make_config().initial_covariance.diagonal()
-        expected = np.repeat([radians(5.0), radians(2.0), 3e-7, 1e-7], 3) ** 2
-        np.testing.assert_allclose(diagonal, expected, rtol=1e-12)
-        without_bias = make_config(bias=False).initial_covariance.diagonal()
-        np.testing.assert_allclose(without_bias, np.delete(expected, [6, 7, 8]), rtol=1e-12)
+
+def test_the_parameters_begin_at_the_means_of_their_priors(full):
+    assert full.config().initial_parameters == NOTHING
+    tuning = {
+        "magnetometer_sigma_t": 2e-7,
+        "sun_sigma_rad": 0.01,
+        "attitude_sigma_rad": 0.1,
+        "rate_sigma_radps": 0.03,
+        "torque_noise_nm_rts": 1e-8,
+        "gate_nis": 16.27,
+    }
+    late = {
+        "delay_s": Prior((0.2, 0.3), (0.0, 0.0), mean=(0.5, 0.7)),
+        "mag_scale": Prior((0.1,) * 3, (0.0,) * 3),
+    }
+    config = mekf_config(full.inertia_kgm2, 1.0, late, **tuning)
+    assert config.initial_parameters == Parameters(delay_s=(0.5, 0.7))
+
+
+def test_the_rotor_is_that_of_the_table(full):
+    config = full.config(wheel_body_nms=(0.01, -0.02, 0.03))
+    assert config.rotor == (full.inertia_kgm2, inverse(full.inertia_kgm2), (0.01, -0.02, 0.03))
+
+
+def test_noise_of_the_sensors(full):
+    config = full.config(magnetometer_sigma_t=1.5e-7, sun_sigma_rad=0.007)
+    np.testing.assert_allclose(config.field_noise, 1.5e-7**2 * np.eye(3), rtol=1e-12)
+    np.testing.assert_allclose(config.sun_noise, 0.007**2 * np.eye(3), rtol=1e-12)
+    np.testing.assert_allclose(config.both_noise.diagonal(), [1.5e-7**2] * 3 + [0.007**2] * 3, rtol=1e-12)
