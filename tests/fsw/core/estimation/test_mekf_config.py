@@ -30,8 +30,8 @@ def test_the_priors_stand_where_the_layout_says(satellite):
 def test_every_array_has_the_size_of_the_error_state(satellite):
     config, size = satellite.config(), satellite.size()
     assert config.layout.size == size
-    square = (config.initial_covariance, config.process_noise, config.constant, config.identity)
-    assert {array.shape for array in square} == {(size, size)}
+    assert config.initial_covariance.shape == config.process_noise.shape == (size, size)
+    assert config.constant.shape == config.identity_rows.shape == (6, size)
     assert config.field_sensitivity.shape == config.sun_sensitivity.shape == (3, size)
     assert config.zero.shape == (size,)
 
