@@ -22,6 +22,8 @@ from fsw.core.estimation.estimator import (
 )
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.orbital_attitude import orbital_attitude
+from fsw.core.estimation.parameters import NAMES, Prior
+from fsw.core.estimation.parameters import NOTHING as NO_DIFFERENCE
 from fsw.core.gate.readings import NOTHING
 from fsw.core.orbit.ephemeris import Reference
 from fsw.wire.messages import CoilStatus, MagField, SunVector
@@ -29,19 +31,19 @@ from fsw.wire.messages import CoilStatus, MagField, SunVector
 MEKF = mekf_config(
     ((1.02, 0.07, -0.05), (0.07, 1.85, 0.11), (-0.05, 0.11, 1.45)),
     1.0,
-    estimate_bias=True,
-    estimate_torque=True,
+    {
+        "mag_bias_t": Prior((3e-7,) * 3, (1e-10,) * 3),
+        "torque_body_nm": Prior((1e-7,) * 3, (3e-10,) * 3),
+        "dipole_body_am2": Prior((0.02, 0.03, 0.025), (1e-6,) * 3, mean=(0.001, -0.002, 0.003)),
+    },
     magnetometer_sigma_t=2e-7,
     sun_sigma_rad=radians(0.5),
     attitude_sigma_rad=radians(5.0),
     rate_sigma_radps=radians(2.0),
-    bias_sigma_t=3e-7,
-    torque_sigma_nm=1e-7,
     torque_noise_nm_rts=1e-7,
-    bias_walk_t_prts=1e-10,
-    torque_walk_nm_prts=3e-10,
     gate_nis=16.27,
 )
+SIZE = MEKF.layout.size
 CONFIG = EstimatorConfig(
     mekf=MEKF,
     perfect=False,
@@ -127,6 +129,7 @@ class TestStart:
             {"coil": None},
             {"coil": IDLE._replace(level=2)},
             {"coil": IDLE._replace(current_ma=17)},
+            {"quiet": False},
             {"field": field_message(scale(1.1, rotate(Q_BODY_FROM_ECI, REFERENCE.b_eci_t)))},
             {"sun": OFF_SUN},
         ],
@@ -139,6 +142,7 @@ class TestStart:
             "no coil status",
             "coil driven",
             "coil current",
+            "a pulse not long ago",
             "strength not as modelled",
             "angle not as modelled",
         ],
@@ -186,6 +190,7 @@ class TestRunning:
             ({"coil": IDLE._replace(level=1)}, Used(False, True, True)),
             ({"coil": IDLE._replace(current_ma=5)}, Used(False, True, True)),
             ({"coil": None}, Used(False, True, True)),
+            ({"quiet": False}, Used(False, True, True)),
             ({"field": None, "sun": None, "coil": None}, Used(False, False, False)),
         ],
     )
@@ -221,15 +226,15 @@ class TestRunning:
         left, _ = step(settled, pulse)
         change = np.subtract(pushed.estimate.omega_body_radps, left.estimate.omega_body_radps)
         b_body = rotate(settled.estimate.q_body_from_eci, REFERENCE.b_eci_t)
-        expected = np.linalg.solve(np.array(MEKF.inertia_kgm2), np.cross((0.0, 0.0, 8.0), b_body))
+        expected = np.linalg.solve(np.array(MEKF.rotor.inertia_kgm2), np.cross((0.0, 0.0, 8.0), b_body))
         np.testing.assert_allclose(change, expected, rtol=1e-2)
 
     def test_gravity_turns_it_too(self, settled):
         """J dw/dt = 3 mu / r^3 e x J e - w x J w, with a body at rest and nothing else."""
-        still = settled.estimate._replace(omega_body_radps=ZERO, torque_body_nm=ZERO)
+        still = settled.estimate._replace(omega_body_radps=ZERO, parameters=NO_DIFFERENCE)
         after, _ = step(settled._replace(estimate=still), NOTHING)
         e = np.array(rotate(still.q_body_from_eci, REFERENCE.r_eci_m)) / REFERENCE.radius_m
-        j = np.array(MEKF.inertia_kgm2)
+        j = np.array(MEKF.rotor.inertia_kgm2)
         pull = 3.0 * 3.986004418e14 / REFERENCE.radius_m**3 * np.linalg.solve(j, np.cross(e, j @ e))
         np.testing.assert_allclose(after.estimate.omega_body_radps, pull, rtol=1e-5)
 
@@ -312,15 +317,93 @@ class TestRejections:
         assert angle_rad(state.estimate.q_body_from_eci, turned) < radians(0.1)
 
 
+class TestAfterAFastTurn:
+    """What a fast turn leaves in the parameters is beyond their deviations: they are started once more."""
+
+    def turning(self, settled, degps, fast=False):
+        """At this rate, with parameters that differ from their start."""
+        rate = scale(radians(degps), unit((0.6, -0.48, 0.64)))
+        drawn_away = settled.estimate.parameters._replace(mag_bias_t=(9e-7, -8e-7, 7e-7))
+        estimate = settled.estimate._replace(omega_body_radps=rate, parameters=drawn_away)
+        return settled._replace(estimate=estimate, fast=fast)
+
+    def begun_anew(self, state):
+        same = state.estimate.parameters == MEKF.initial_parameters
+        assert same is bool(np.array_equal(state.estimate.covariance, MEKF.initial_covariance))
+        return same
+
+    def silent_tick(self, state):
+        """Without a measurement, so that nothing but a start can change the parameters."""
+        return update(state, NOTHING, REFERENCE, CONFIG)[0]
+
+    @pytest.mark.parametrize(
+        ("fast", "degps", "fast_after", "anew"),
+        [
+            (False, 0.29, False, False),
+            (False, 0.31, False, False),
+            (False, 0.49, False, False),
+            (False, 0.51, True, False),
+            (False, 5.0, True, False),
+            (True, 5.0, True, False),
+            (True, 0.49, True, False),
+            (True, 0.31, True, False),
+            (True, 0.29, False, True),
+        ],
+    )
+    def test_it_counts_from_half_a_degree_per_second_and_ends_below_0_3(
+        self, settled, fast, degps, fast_after, anew
+    ):
+        after = self.silent_tick(self.turning(settled, degps, fast))
+        assert after.fast is fast_after
+        assert self.begun_anew(after) is anew
+
+    def test_attitude_rate_and_counts_go_on(self, settled):
+        before = self.turning(settled, 0.2, fast=True)._replace(
+            rejected_in_a_row=2, rejected_total=7, restarts=3
+        )
+        after = self.silent_tick(before)
+        assert self.begun_anew(after)
+        assert after.estimate.q_body_from_eci == before.estimate.q_body_from_eci
+        assert after.estimate.omega_body_radps == before.estimate.omega_body_radps
+        assert after.estimate.trace is None
+        assert after._replace(estimate=None) == before._replace(estimate=None, fast=False)
+
+    def test_it_happens_once(self, settled):
+        state = self.silent_tick(self.turning(settled, 0.2, fast=True))
+        for _ in range(3):
+            state, _ = step(state, seen_from())
+            assert not self.begun_anew(state)
+            assert not state.fast
+
+    def test_a_tumble_that_is_braked_ends_in_one_start_of_the_parameters(self, settled):
+        """From 1 deg/s to rest and not past 0.5 deg/s again: two crossings of 0.3 deg/s are one turn."""
+        state, starts = settled, 0
+        for degps in (1.0, 0.7, 0.45, 0.4, 0.25, 0.35, 0.45, 0.25):
+            state = self.silent_tick(self.turning(settled, degps, state.fast))
+            starts += self.begun_anew(state)
+        assert starts == 1
+
+    def test_a_filter_that_begins_anew_has_not_turned_fast(self, settled):
+        lost = predict(self.turning(settled, 5.0, fast=True), REFERENCE, ZERO, MAX_ELAPSED_TICKS + 1, CONFIG)
+        assert lost == EstimatorState(None, 0, settled.rejected_total, settled.restarts + 1, fast=False)
+
+    def test_it_is_in_the_checksum_of_the_state(self, settled):
+        assert settled._replace(fast=True).integers() != settled.integers()
+
+
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")  # overflow is what is tried
 class TestSoundness:
     @pytest.mark.parametrize("bad", [nan, inf, -inf, 1e200])
     @pytest.mark.parametrize("readings", [NOTHING, seen_from()], ids=["silent", "speaking"])
-    @pytest.mark.parametrize("field", ["q_body_from_eci", "omega_body_radps", "mag_bias_t", "torque_body_nm"])
+    @pytest.mark.parametrize("field", ["q_body_from_eci", "omega_body_radps", *NAMES])
     def test_a_broken_estimate_is_replaced_and_nothing_is_raised(self, settled, field, readings, bad):
-        values = list(getattr(settled.estimate, field))
-        values[-1] = bad
-        broken = settled._replace(estimate=settled.estimate._replace(**{field: tuple(values)}))
+        estimate = settled.estimate
+        if field in NAMES:
+            values = (*getattr(estimate.parameters, field)[:-1], bad)
+            estimate = estimate._replace(parameters=estimate.parameters._replace(**{field: values}))
+        else:
+            estimate = estimate._replace(**{field: (*getattr(estimate, field)[:-1], bad)})
+        broken = settled._replace(estimate=estimate)
         state, _ = step(broken, readings)
         assert state.estimate is None or mekf.healthy(state.estimate)
         if not np.isfinite(bad):
@@ -352,7 +435,7 @@ class TestSoundness:
 
     def test_a_covariance_that_overflows_in_the_prediction_is_caught_before_the_update(self, settled):
         spinning = settled.estimate._replace(
-            omega_body_radps=(1e60, -2e60, 3e60), covariance=1e100 * np.eye(12)
+            omega_body_radps=(1e60, -2e60, 3e60), covariance=1e100 * np.eye(SIZE)
         )
         state, used = step(settled._replace(estimate=spinning), seen_from())
         assert state.restarts == 1

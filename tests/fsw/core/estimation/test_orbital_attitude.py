@@ -10,6 +10,7 @@ from fsw.core.algebra.vector import ZERO, norm, scale, unit
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.orbital_attitude import orbital_attitude, perfect_attitude
+from fsw.core.estimation.parameters import Parameters
 from fsw.core.gate.readings import NOTHING
 from fsw.core.orbit.ephemeris import Reference
 from fsw.wire.messages import RefAttitude, RefRate
@@ -25,7 +26,10 @@ REFERENCE = Reference(
     orbit_rate_radps=1.04e-3,
 )
 ESTIMATE = Estimate(
-    normalise((0.6, -0.4, 0.5, 0.3)), (1e-4, 2e-4, -3e-4), (1e-7, 0.0, -1e-7), ZERO, 1e-6 * np.eye(12)
+    normalise((0.6, -0.4, 0.5, 0.3)),
+    (1e-4, 2e-4, -3e-4),
+    Parameters(mag_bias_t=(1e-7, 0.0, -1e-7)),
+    1e-6 * np.eye(12),
 )
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fsw.core.estimation.samples import usable_field, usable_sun
+from fsw.core.estimation.samples import coils_idle, usable_field, usable_sun
 from fsw.core.gate.readings import NOTHING
 from fsw.wire.messages import CoilStatus, MagField, SunVector
 
@@ -30,6 +30,7 @@ def test_a_quiet_sample_is_taken_in_tesla():
         {"coil": IDLE._replace(level=-3)},
         {"coil": IDLE._replace(current_ma=1)},
         {"coil": IDLE._replace(current_ma=-1)},
+        {"quiet": False},
     ],
     ids=[
         "none",
@@ -39,6 +40,7 @@ def test_a_quiet_sample_is_taken_in_tesla():
         "driven backwards",
         "current",
         "current backwards",
+        "a pulse not long ago",
     ],
 )
 def test_a_sample_that_a_coil_may_have_spoilt_is_not(changes):
@@ -48,6 +50,18 @@ def test_a_sample_that_a_coil_may_have_spoilt_is_not(changes):
 def test_what_remains_of_a_pulse_does_not_count_before_it_is_driven():
     """Level is what was driven until now; the sample is good if nothing was."""
     assert usable_field(readings_with(coil=IDLE._replace(remaining_ms=3000))) is not None
+
+
+def test_coils_are_idle_while_and_since_none_is_driven():
+    """Also where there is no sample, or none that is valid."""
+    assert coils_idle(readings_with(field=None))
+    assert not coils_idle(readings_with(coil=None))
+    assert not coils_idle(readings_with(coil=IDLE._replace(level=-2)))
+    assert not coils_idle(readings_with(quiet=False))
+
+
+def test_a_pulse_not_long_ago_spoils_no_sun():
+    assert usable_sun(readings_with(quiet=False)) is not None
 
 
 def test_sun():
