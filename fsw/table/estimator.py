@@ -69,14 +69,14 @@ def table_bounds(table: FlightTable) -> Uncertainty:
 def pair_limits(table: FlightTable) -> PairLimits:
     """From the bounds and the noise at the edge of the gate.
 
-    The field changes by 3 parts of the distance along the orbit in parts of its radius; where it is weakest
-    its errors turn it most.
+    Along the orbit the field changes in strength, and turns, by up to 3 times the part of the radius that is
+    flown; where it is weakest its errors turn it most.
     """
     known, tuning, sigmas = table_bounds(table), table.estimator, sqrt(GATE_NIS)
     noise_t, noise_rad = tuning.magnetometer_sigma_nt * NT, radians(tuning.sun_sigma_deg)
     offset_t = sqrt(3.0) * (known.mag_bias_t + sigmas * noise_t)
     model = known.mag_scale_part + 3.0 * known.along_track_m / ORBIT_RADIUS_M
-    turns = known.mag_turn_rad + known.sun_turn_rad + known.mag_scale_part
+    turns = known.mag_turn_rad + known.sun_turn_rad + model
     return PairLimits(
         field_t=offset_t + model * LARGEST_FIELD_T,
         angle_rad=turns + offset_t / LEAST_FIELD_T + sigmas * noise_rad,

@@ -16,7 +16,7 @@ from pydantic import Field
 
 from fsw.core.algebra.vector import Mat3
 from fsw.core.estimation.parameters import Prior
-from fsw.input.schema import NotNegative, Section
+from fsw.input.schema import Section
 
 
 class UncertaintyTable(Section):
@@ -24,14 +24,14 @@ class UncertaintyTable(Section):
 
     inertia_percent: float | None = Field(default=None, ge=0.0, le=50.0)
     products_percent: float | None = Field(default=None, ge=0.0, le=20.0)
-    residual_dipole_am2: NotNegative | None = None
+    residual_dipole_am2: float | None = Field(default=None, ge=0.0, allow_inf_nan=False)
     coil_gain_percent: float | None = Field(default=None, ge=0.0, le=50.0)
     coil_misalignment_deg: float | None = Field(default=None, ge=0.0, le=10.0)
     magnetometer_bias_nt: float | None = Field(default=None, ge=0.0, le=20000.0)
     magnetometer_scale_percent: float | None = Field(default=None, ge=0.0, le=20.0)
     magnetometer_misalignment_deg: float | None = Field(default=None, ge=0.0, le=10.0)
     sun_misalignment_deg: float | None = Field(default=None, ge=0.0, le=10.0)
-    torque_nm: NotNegative | None = None
+    torque_nm: float | None = Field(default=None, ge=0.0, allow_inf_nan=False)
     along_track_km: float | None = Field(default=None, ge=0.0, le=500.0)
     latency_s: float | None = Field(default=None, ge=0.0, le=60.0)
 

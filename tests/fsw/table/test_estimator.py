@@ -1,0 +1,190 @@
+"""From the onboard table to the estimator: noise as given, priors and limits from the bounds."""
+
+from dataclasses import fields
+from math import radians, sqrt
+
+import numpy as np
+import pytest
+
+from fsw.core.algebra.quaternion import normalise
+from fsw.core.estimation import mekf
+from fsw.core.estimation.parameters import NAMES
+from fsw.input.schema import merge
+from fsw.table.estimator import GATE_NIS, estimator_config, pair_limits, table_bounds
+from fsw.table.table import flight_table
+from fsw.table.uncertainty import UncertaintyTable, priors
+
+FULL = [[1.02, 0.03, -0.02], [0.03, 1.85, 0.05], [-0.02, 0.05, 1.95]]
+EXACT = dict.fromkeys(UncertaintyTable.model_fields, 0.0)
+
+
+def table_with(**sections):
+    return flight_table(merge({"body": {"inertia_kgm2": FULL}}, sections), "table.toml")
+
+
+def configured(**sections):
+    return estimator_config(table_with(**sections))
+
+
+class TestNoise:
+    def test_of_sensors_and_start(self):
+        tuning = {"magnetometer_sigma_nt": 150.0, "sun_sigma_deg": 0.4, "rate_sigma_degps": 1.5}
+        config = configured(estimator=tuning).mekf
+        np.testing.assert_allclose(config.field_noise, np.eye(3) * 150e-9**2, rtol=1e-12)
+        np.testing.assert_allclose(config.sun_noise, np.eye(3) * radians(0.4) ** 2, rtol=1e-12)
+        start = np.sqrt(config.initial_covariance.diagonal()[:6])
+        np.testing.assert_allclose(start, np.repeat([radians(5.0), radians(1.5)], 3), rtol=1e-12)
+
+    @pytest.mark.parametrize("tick_hz", [1, 4])
+    def test_of_a_tick_follows_from_the_torque_s_bound(self, tick_hz):
+        config = configured(time={"tick_hz": tick_hz}, uncertainty={"torque_nm": 4e-6}).mekf
+        assert config.tick_s == 1.0 / tick_hz
+        rates = 2e-7**2 / tick_hz * np.linalg.inv(FULL) @ np.linalg.inv(FULL).T
+        np.testing.assert_allclose(config.process_noise[3:6, 3:6], rates, rtol=1e-9)
+        walk = (0.2 * 4e-6) ** 2 / 86400.0 / tick_hz
+        np.testing.assert_allclose(config.process_noise.diagonal()[config.layout.torque], walk, rtol=1e-9)
+
+
+class TestStates:
+    def test_all_are_carried_unless_the_table_is_exact(self):
+        assert configured().mekf.layout.size == 41
+        assert configured(uncertainty=EXACT).mekf.layout.size == 6
+        biased = configured(uncertainty=EXACT | {"magnetometer_bias_nt": 500.0}).mekf.layout
+        assert (biased.size, biased.mag_bias) == (9, slice(6, 9))
+
+    def test_their_priors_are_those_of_the_bounds(self):
+        table = table_with(uncertainty={"inertia_percent": 8.0, "latency_s": 2.5})
+        config, expected = estimator_config(table).mekf, priors(table_bounds(table), table.body.inertia)
+        sigma = np.concatenate([expected[name].sigma for name in NAMES])
+        np.testing.assert_allclose(np.sqrt(config.initial_covariance.diagonal()[6:]), sigma, rtol=1e-12)
+        assert config.initial_parameters.delay_s == (1.25, 1.25)
+
+    @pytest.mark.parametrize("key", UncertaintyTable.model_fields)
+    def test_with_any_one_of_them_the_filter_is_sound(self, key):
+        """Also where a part of a parameter is exact, as the gains of coils that are turned alone."""
+        bound = {"residual_dipole_am2": 0.05, "torque_nm": 1e-7}.get(key, 1.0)
+        config = configured(uncertainty=EXACT | {key: bound}).mekf
+        q, b, s = normalise((0.6, -0.4, 0.5, 0.3)), (1.7e-5, -2.3e-5, 3.1e-5), (0.6, -0.48, 0.64)
+        estimate = mekf.start(q, (0.001, -0.002, 0.003), config)
+        for _ in range(50):
+            estimate = mekf.predict(estimate, (0.6, 0.0, 0.8), b, 3e-6, (0.0, -8.0, 0.0), config)
+            b_body, _ = mekf.field_prediction(*estimate[:3], b, config)
+            s_body, _ = mekf.sun_prediction(*estimate[:3], s, config)
+            estimate = mekf.update_both(estimate, b_body, b, s_body, s, config)
+            assert mekf.healthy(estimate)
+        variances = estimate.covariance.diagonal()
+        np.testing.assert_array_equal(variances == 0.0, config.initial_covariance.diagonal() == 0.0)
+
+
+class TestLimitsOfThePair:
+    KNOWN = {  # noqa: RUF012
+        "magnetometer_bias_nt": 700.0,
+        "magnetometer_scale_percent": 0.4,
+        "magnetometer_misalignment_deg": 1.5,
+        "sun_misalignment_deg": 0.25,
+        "along_track_km": 70.0,
+    }
+    SENSORS = {"magnetometer_sigma_nt": 150.0, "sun_sigma_deg": 0.3}  # noqa: RUF012
+
+    def test_are_the_bounds_and_the_noise_at_the_edge_of_the_gate(self):
+        limits = pair_limits(table_with(uncertainty=self.KNOWN, estimator=self.SENSORS))
+        offset_t = sqrt(3.0) * (700e-9 + sqrt(16.27) * 150e-9)
+        position = 3.0 * 70.0 / 7000.0
+        assert limits.field_t == pytest.approx(offset_t + (0.004 + position) * 5e-5)
+        turns = radians(1.5) + radians(0.25) + 0.004 + position
+        assert limits.angle_rad == pytest.approx(turns + offset_t / 2e-5 + sqrt(16.27) * radians(0.3))
+
+    @pytest.mark.parametrize("key", KNOWN)
+    def test_a_wider_bound_never_narrows_them(self, key):
+        once, twice = (
+            pair_limits(table_with(uncertainty=self.KNOWN | {key: factor * self.KNOWN[key]}))
+            for factor in (1.0, 2.0)
+        )
+        of_strength = "misalignment" not in key
+        assert (twice.field_t > once.field_t) is of_strength
+        assert twice.angle_rad > once.angle_rad
+
+    def test_of_an_exact_table_are_the_noise_s(self):
+        limits = pair_limits(table_with(uncertainty=EXACT, estimator=self.SENSORS))
+        assert limits.field_t == pytest.approx(sqrt(3.0 * GATE_NIS) * 150e-9)
+
+    def test_the_start_goes_by_them(self):
+        table = table_with(uncertainty=self.KNOWN)
+        config, limits = estimator_config(table), pair_limits(table)
+        assert (config.max_field_error_t, config.max_angle_error_rad) == (limits.field_t, limits.angle_rad)
+
+    def test_every_pair_within_the_bounds_passes_them(self):
+        """Drawn at the bounds: biased, scaled, turned sensors and a field from elsewhere on the orbit."""
+        limits, random = (
+            pair_limits(table_with(uncertainty=self.KNOWN, estimator=self.SENSORS)),
+            np.random.default_rng(3),
+        )
+        for _ in range(2000):
+            b, s = random.uniform(2e-5, 5e-5) * direction(random), direction(random)
+            true_b = b + 0.03 * np.linalg.norm(b) * direction(random)
+            scaled = (1.0 + 0.004 * random.choice([-1.0, 1.0], 3)) * (
+                true_b + np.cross(true_b, radians(1.5) * direction(random))
+            )
+            seen_b = scaled + 700e-9 * random.choice([-1.0, 1.0], 3)
+            seen_s = s + np.cross(s, radians(0.25) * direction(random))
+            assert abs(np.linalg.norm(seen_b) - np.linalg.norm(b)) < limits.field_t
+            assert abs(angle(seen_b, seen_s) - angle(b, s)) < limits.angle_rad
+
+
+@pytest.mark.parametrize(
+    ("latency_s", "tick_hz", "ticks"),
+    [(0.0, 1, 0), (1.0, 1, 1), (0.3, 1, 1), (1.1, 1, 2), (0.3, 10, 3), (2.0, 4, 8), (60.0, 10, 600)],
+)
+def test_a_pulse_blanks_the_field_for_as_long_as_a_sample_may_be_late(latency_s, tick_hz, ticks):
+    config = configured(time={"tick_hz": tick_hz}, uncertainty={"latency_s": latency_s})
+    assert config.blank_ticks == ticks
+
+
+def test_an_ordinary_sample_is_up_to_one_tick_old():
+    assert configured(time={"tick_hz": 10}).blank_ticks == 1
+    assert configured(time={"tick_hz": 10}).mekf.initial_parameters.delay_s == (0.05, 0.05)
+
+
+def test_what_no_bound_tells():
+    config = configured(estimator={"valid_sigma_deg": 4.0})
+    assert config.valid_sigma_rad == pytest.approx(radians(4.0))
+    assert config.min_separation_rad == pytest.approx(radians(15.0))
+    assert config.restart_after_rejections == 60
+    assert (config.mekf.gate_nis, config.mekf.dipole_sigma) == (16.27, 0.002)
+
+
+@pytest.mark.parametrize(("knowledge", "perfect"), [("filter", False), ("perfect", True)])
+def test_knowledge(knowledge, perfect):
+    assert configured(knowledge=knowledge).perfect is perfect
+
+
+def test_inertia_and_wheel_are_the_table_s():
+    rotor = configured(body={"wheel_nms": [0.01, -0.02, 0.03]}).mekf.rotor
+    np.testing.assert_allclose(rotor.inertia_kgm2, FULL)
+    np.testing.assert_allclose(rotor.inertia_inverse, np.linalg.inv(FULL), rtol=1e-12)
+    assert rotor.wheel_body_nms == (0.01, -0.02, 0.03)
+
+
+def test_no_bound_is_left_unread():
+    """Each changes the estimator's configuration."""
+    ordinary = configured()
+    for key in UncertaintyTable.model_fields:
+        changed = configured(uncertainty={key: 0.0})
+        assert (
+            any(
+                getattr(changed, field.name) != getattr(ordinary, field.name)
+                for field in fields(ordinary)
+                if field.name != "mekf"
+            )
+            or changed.mekf.layout.size != ordinary.mekf.layout.size
+            or not np.array_equal(changed.mekf.initial_covariance, ordinary.mekf.initial_covariance)
+        )
+
+
+def direction(random):
+    vector = random.normal(size=3)
+    return vector / np.linalg.norm(vector)
+
+
+def angle(a, b):
+    return np.arccos(np.clip(a @ b / np.linalg.norm(a) / np.linalg.norm(b), -1.0, 1.0))

@@ -1,0 +1,232 @@
+"""From the bounds of what a table may be wrong by to the priors of the filter."""
+
+from dataclasses import fields
+from math import radians, sqrt
+
+import numpy as np
+import pytest
+
+from fsw.core.estimation.parameters import NAMES, SIZES
+from fsw.input.schema import TableError
+from fsw.table.table import flight_table
+from fsw.table.uncertainty import Uncertainty, UncertaintyTable, bounds, priors
+
+INERTIA = ((1.2, 0.03, -0.02), (0.03, 1.5, 0.05), (-0.02, 0.05, 2.1))
+"""Mean moment 1.6 kg m^2: the size for which the ordinary values are written."""
+EXACT = dict.fromkeys(UncertaintyTable.model_fields, 0.0)
+GIVEN = {
+    "inertia_percent": 8.0,
+    "products_percent": 3.0,
+    "residual_dipole_am2": 0.04,
+    "coil_gain_percent": 6.0,
+    "coil_misalignment_deg": 0.7,
+    "magnetometer_bias_nt": 900.0,
+    "magnetometer_scale_percent": 0.4,
+    "magnetometer_misalignment_deg": 1.5,
+    "sun_misalignment_deg": 0.25,
+    "torque_nm": 7e-8,
+    "along_track_km": 11.0,
+    "latency_s": 1.8,
+}
+CARRIED_BY = {
+    "inertia_percent": "inertia_error_kgm2",
+    "products_percent": "inertia_error_kgm2",
+    "residual_dipole_am2": "dipole_body_am2",
+    "coil_gain_percent": "coil_error",
+    "coil_misalignment_deg": "coil_error",
+    "magnetometer_bias_nt": "mag_bias_t",
+    "magnetometer_scale_percent": "mag_scale",
+    "magnetometer_misalignment_deg": "mag_turn_rad",
+    "sun_misalignment_deg": "sun_turn_rad",
+    "torque_nm": "torque_body_nm",
+    "along_track_km": None,
+    "latency_s": "delay_s",
+}
+
+
+def bounds_of(inertia_kgm2=INERTIA, tick_s=1.0, **given):
+    return bounds(UncertaintyTable(**given), inertia_kgm2, tick_s)
+
+
+def priors_of(**given):
+    return priors(bounds_of(**given), INERTIA)
+
+
+class TestBounds:
+    def test_of_a_table_are_taken_in_si(self):
+        assert bounds_of(**GIVEN) == Uncertainty(
+            inertia_part=pytest.approx(0.08),
+            products_part=pytest.approx(0.03),
+            dipole_am2=0.04,
+            coil_gain_part=pytest.approx(0.06),
+            coil_turn_rad=pytest.approx(radians(0.7)),
+            mag_bias_t=pytest.approx(9e-7),
+            mag_scale_part=pytest.approx(0.004),
+            mag_turn_rad=pytest.approx(radians(1.5)),
+            sun_turn_rad=pytest.approx(radians(0.25)),
+            torque_nm=7e-8,
+            along_track_m=pytest.approx(11e3),
+            latency_s=1.8,
+        )
+
+    def test_left_out_are_ordinary_ones_and_none_of_them_zero(self):
+        ordinary = bounds_of(tick_s=0.25)
+        assert ordinary == Uncertainty(
+            inertia_part=pytest.approx(0.1),
+            products_part=pytest.approx(0.02),
+            dipole_am2=pytest.approx(0.1),
+            coil_gain_part=pytest.approx(0.05),
+            coil_turn_rad=pytest.approx(radians(0.5)),
+            mag_bias_t=pytest.approx(1e-6),
+            mag_scale_part=pytest.approx(0.005),
+            mag_turn_rad=pytest.approx(radians(1.0)),
+            sun_turn_rad=pytest.approx(radians(0.5)),
+            torque_nm=pytest.approx(3e-8),
+            along_track_m=pytest.approx(5e3),
+            latency_s=0.25,
+        )
+        assert all(getattr(ordinary, field.name) > 0.0 for field in fields(Uncertainty))
+
+    @pytest.mark.parametrize(("moments", "volume"), [(1.0, 1.0), (1e-3, 10.0**-1.8), (1e5, 1e3)])
+    def test_ordinary_dipole_and_torque_grow_with_the_volume(self, moments, volume):
+        """Of bodies of one density J ~ l^5, so that l^3 ~ J^(3/5): a 3U has 1/60 of a 50 kg satellite's."""
+        body = tuple(tuple(moments * entry for entry in row) for row in INERTIA)
+        scaled = bounds_of(body)
+        assert scaled.dipole_am2 == pytest.approx(0.1 * volume)
+        assert scaled.torque_nm == pytest.approx(3e-8 * volume)
+        assert bounds_of(body, residual_dipole_am2=0.3, torque_nm=4e-8).dipole_am2 == 0.3
+        assert (scaled.inertia_part, scaled.mag_bias_t) == (bounds_of().inertia_part, bounds_of().mag_bias_t)
+
+    @pytest.mark.parametrize("key", GIVEN)
+    def test_each_is_taken_for_itself_and_zero_is_no_ordinary_value(self, key):
+        ordinary, exact = bounds_of(), bounds_of(**{key: 0.0})
+        changed = [
+            field.name
+            for field in fields(Uncertainty)
+            if getattr(ordinary, field.name) != getattr(exact, field.name)
+        ]
+        assert len(changed) == 1
+        assert getattr(exact, changed[0]) == 0.0
+
+
+class TestPriors:
+    def test_a_deviation_is_uniform_within_its_bound(self):
+        """Standard deviation bound / sqrt 3 by component; of a turn of any axis angle / sqrt 5."""
+        found = priors_of(**GIVEN)
+        side, ball = 1.0 / sqrt(3.0), 1.0 / sqrt(5.0)
+        gain, axis = 0.06 * side, radians(0.7) * side
+        expected = {
+            "mag_bias_t": [9e-7 * side] * 3,
+            "torque_body_nm": [7e-8 * side] * 3,
+            "dipole_body_am2": [0.04 * side] * 3,
+            "coil_error": [gain, axis, axis, axis, gain, axis, axis, axis, gain],
+            "inertia_error_kgm2": [0.096 * side, 0.12 * side, 0.168 * side, *[0.048 * side] * 3],
+            "mag_turn_rad": [radians(1.5) * ball] * 3,
+            "mag_scale": [0.004 * side] * 3,
+            "sun_turn_rad": [radians(0.25) * ball] * 3,
+            "delay_s": [0.9 * side] * 2,
+        }
+        assert list(found) == list(NAMES)
+        for name, sigma in expected.items():
+            assert found[name].sigma == pytest.approx(sigma)
+            assert len(found[name].sigma) == len(found[name].walk) == SIZES[name]
+
+    @pytest.mark.parametrize(
+        ("shape", "sample"),
+        [
+            (1.0 / sqrt(3.0), lambda random: random.uniform(-1.0, 1.0, (100_000, 3))),
+            (1.0 / sqrt(5.0), lambda random: in_ball(random, 100_000)),
+        ],
+        ids=["within its bound", "in the ball"],
+    )
+    def test_that_is_what_such_deviations_have(self, shape, sample):
+        drawn = sample(np.random.default_rng(5))
+        assert np.abs(drawn).max() <= 1.0
+        np.testing.assert_allclose(drawn.std(axis=0), shape, rtol=0.01)
+
+    def test_samples_are_between_new_and_as_old_as_the_bound(self):
+        late = priors_of(latency_s=1.8)["delay_s"]
+        assert late.mean == pytest.approx((0.9, 0.9))
+        rest = set(NAMES) - {"delay_s"}
+        assert all(priors_of()[name].mean == () for name in rest)
+
+    @pytest.mark.parametrize(
+        ("name", "bound", "daily"),
+        [
+            ("mag_bias_t", 9e-7, 0.1),
+            ("torque_body_nm", 7e-8, 0.2),
+            ("dipole_body_am2", 0.04, 0.1),
+        ],
+    )
+    def test_what_wanders_in_a_day_is_a_part_of_the_bound(self, name, bound, daily):
+        walk = np.array(priors_of(**GIVEN)[name].walk)
+        np.testing.assert_allclose(walk * sqrt(86400.0), daily * bound, rtol=1e-12)
+
+    def test_coils_wander_faster_and_turns_scale_delay_and_inertia_not_at_all(self):
+        found = priors_of(**GIVEN)
+        gain, axis = 0.0006, 0.01 * radians(0.7)
+        assert found["coil_error"].walk == pytest.approx(
+            [gain, axis, axis, axis, gain, axis, axis, axis, gain]
+        )
+        for name in ("inertia_error_kgm2", "mag_turn_rad", "mag_scale", "sun_turn_rad", "delay_s"):
+            assert not any(found[name].walk)
+
+
+class TestWhatIsExactIsNotCarried:
+    def test_of_a_table_that_is_exact_nothing_is(self):
+        assert priors_of(**EXACT) == {}
+
+    @pytest.mark.parametrize(("key", "name"), CARRIED_BY.items())
+    def test_each_bound_alone_brings_its_parameter(self, key, name):
+        assert list(priors_of(**EXACT | {key: GIVEN[key]})) == ([name] if name else [])
+
+    def test_a_component_may_be_exact_where_another_is_not(self):
+        turned = priors_of(**EXACT | {"coil_misalignment_deg": 0.7})["coil_error"]
+        assert [sigma > 0.0 for sigma in turned.sigma] == [axis not in (0, 4, 8) for axis in range(9)]
+        skewed = priors_of(**EXACT | {"products_percent": 3.0})["inertia_error_kgm2"]
+        assert [sigma > 0.0 for sigma in skewed.sigma] == [False] * 3 + [True] * 3
+
+
+@pytest.mark.parametrize(
+    ("key", "largest"),
+    [
+        ("inertia_percent", 50.0),
+        ("products_percent", 20.0),
+        ("coil_gain_percent", 50.0),
+        ("coil_misalignment_deg", 10.0),
+        ("magnetometer_bias_nt", 20000.0),
+        ("magnetometer_scale_percent", 20.0),
+        ("magnetometer_misalignment_deg", 10.0),
+        ("sun_misalignment_deg", 10.0),
+        ("along_track_km", 500.0),
+        ("latency_s", 60.0),
+        ("residual_dipole_am2", None),
+        ("torque_nm", None),
+    ],
+)
+class TestRange:
+    def told(self, key, value):
+        with pytest.raises(TableError) as caught:
+            flight_table({"uncertainty": {key: value}}, "table.toml")
+        return str(caught.value)
+
+    def test_zero_and_the_largest_are_in_it(self, key, largest):
+        for value in (0.0, 1e9 if largest is None else largest):
+            table = flight_table({"uncertainty": {key: value}}, "table.toml")
+            assert getattr(table.uncertainty, key) == value
+
+    def test_what_is_not_is_told_in_one_sentence(self, key, largest):
+        beyond = [-1e-9, float("nan"), float("inf"), "much"]
+        for value in beyond if largest is None else [*beyond, largest * (1.0 + 1e-9)]:
+            told = self.told(key, value)
+            assert told.startswith(f"table.toml: uncertainty.{key} = ")
+            assert "allowed is a number at least 0" in told
+            assert largest is None or f"and at most {largest:g}" in told
+            assert "\n" not in told
+
+
+def in_ball(random, count):
+    """Vectors that are uniform in the ball of radius 1."""
+    direction = random.normal(size=(count, 3))
+    direction /= np.linalg.norm(direction, axis=1)[:, None]
+    return direction * np.cbrt(random.uniform(size=(count, 1)))
