@@ -26,8 +26,16 @@ UNEVEN = {
         "sun": {"misalignment_deg": [0.1, 0.05, -0.1]},
     },
     "disturbance": {"torque_nm": [3e-8, -2e-8, 1e-8], "residual_dipole_am2": [0.003, 0.002, -0.004]},
-    "flight": {"modes": {"recover_s": 5.0, "settle_s": 20.0, "hold_s": 40.0, "lose_s": 30.0}},
+    "flight": {
+        "modes": {"recover_s": 5.0, "settle_s": 20.0, "hold_s": 40.0, "lose_s": 30.0},
+        "uncertainty": {
+            "residual_dipole_am2": 0.005,
+            "magnetometer_misalignment_deg": 0.4,
+            "sun_misalignment_deg": 0.3,
+        },
+    },
 }
+"""The table knows what the satellite differs from it by, within bounds."""
 
 
 class World:

@@ -126,17 +126,21 @@ def update(
     if not rejected and (took_field or took_sun):
         in_a_row = 0
     updated = EstimatorState(estimate, in_a_row, state.rejected_total + rejected, state.restarts, state.fast)
-    updated = _settled(updated, estimate, config.mekf)
+    updated = _settled(updated, estimate, took_field and took_sun, config.mekf)
     lost = in_a_row >= config.restart_after_rejections or not mekf.healthy(estimate)
     return (restart(updated) if lost else updated), Used(took_field, took_sun, blanked)
 
 
-def _settled(state: EstimatorState, estimate: Estimate, config: MekfConfig) -> EstimatorState:
-    """With the parameters at their priors when a fast turn has ended; attitude and rate go on."""
+def _settled(state: EstimatorState, estimate: Estimate, seen: bool, config: MekfConfig) -> EstimatorState:
+    """With the parameters at their priors when a fast turn has ended; attitude and rate go on.
+
+    As every start, this takes field and Sun, ``seen`` in this tick: with one of them the covariance of a
+    start would not shrink.
+    """
     square = dot(estimate.omega_body_radps, estimate.omega_body_radps)
     if square > FAST_RADPS**2:
         return state._replace(fast=True)
-    if not state.fast or square > SLOW_RADPS**2:
+    if not state.fast or square > SLOW_RADPS**2 or not seen:
         return state
     anew = mekf.start(estimate.q_body_from_eci, estimate.omega_body_radps, config)
     return state._replace(estimate=anew, fast=False)

@@ -68,7 +68,14 @@ class TestPurity:
         estimator = config.estimator.mekf
         arrays = {
             name: getattr(estimator, name).copy()
-            for name in ("initial_covariance", "process_noise", "constant", "moving", "driven", "identity")
+            for name in (
+                "initial_covariance",
+                "process_noise",
+                "constant",
+                "moving",
+                "driven",
+                "identity_rows",
+            )
         }
         for tick in (100, 250):
             state, inbox = states[tick], inboxes[tick]
@@ -109,11 +116,20 @@ class TestOutbox:
         assert fires
         assert all(outbox[0].can_id == CoilFire.ID for outbox in fires)
 
-    def test_the_first_request_answers_tick_100(self, flight):
+    def test_the_first_request_answers_the_report_that_its_coil_is_free(self, flight):
         """A full back-off after the boot at tick 0, and not a tick more: the demand is there all along."""
-        *_, outboxes = flight
+        _, inboxes, _, outboxes = flight
         fires = [tick for tick, outbox in enumerate(outboxes) if outbox[0].can_id == CoilFire.ID]
-        assert fires[0] == 100
+        first = CoilFire.decode(outboxes[fires[0]][0].data)
+        reports = [
+            (tick, CoilStatus.decode(frame.data))
+            for tick, inbox in enumerate(inboxes)
+            for frame in inbox.frames
+            if frame.can_id == CoilStatus.ID
+        ]
+        free = [tick for tick, status in reports if status.coil == first.coil and not status.lockout_ms]
+        assert fires[0] == free[0]
+        assert 100 <= fires[0] < 103, "each coil reports in every third tick"
         assert all(later - sooner >= 103 for sooner, later in pairwise(fires))
 
     def test_every_frame_is_intact(self, flight):
@@ -241,7 +257,9 @@ class TestEvents:
         ]
         assert reports[0] == (0, Event.FILTER_STARTED, 0)
         modes = [(tick, Mode(argument)) for tick, event, argument in reports if event == Event.MODE_CHANGED]
-        assert modes[:2] == [(5, Mode.DETUMBLE), (26, Mode.ACQUIRE)]
+        assert [mode for _, mode in modes[:2]] == [Mode.DETUMBLE, Mode.ACQUIRE]
+        assert modes[0][0] == 5, "recovered"
+        assert 5 + 20 < modes[1][0] < 60, "settled, once the first guess of the rate was"
         assert len(reports) == 1 + len(modes)
 
     def test_a_refusal_is_told_with_its_reason(self, make_world):

@@ -14,6 +14,7 @@ from fsw.core.orbit.propagation import CircularKeplerOrbit, TleOrbit
 from fsw.core.rates import RateGroup
 from fsw.input.schema import TableError, merge
 from fsw.table.config import flight_config
+from fsw.table.estimator import pair_limits
 from fsw.table.table import flight_table
 
 FULL = [[1.02, 0.03, -0.02], [0.03, 1.85, 0.05], [-0.02, 0.05, 1.95]]
@@ -25,66 +26,24 @@ def configured(**sections):
     return flight_config(flight_table(values, "table.toml"))
 
 
-class TestEstimator:
-    def test_deviations(self):
-        config = configured(
-            estimator={
-                "magnetometer_sigma_nt": 150.0,
-                "sun_sigma_deg": 0.4,
-                "attitude_sigma_deg": 6.0,
-                "rate_sigma_degps": 1.5,
-                "bias_sigma_nt": 350.0,
-                "torque_sigma_nm": 2e-7,
-            }
-        ).estimator
-        prior = np.sqrt(config.mekf.initial_covariance.diagonal())
-        expected = np.repeat([radians(6.0), radians(1.5), 350e-9, 2e-7], 3)
-        np.testing.assert_allclose(prior, expected, rtol=1e-12)
-        np.testing.assert_allclose(config.mekf.field_noise, np.eye(3) * 150e-9**2, rtol=1e-12)
-        np.testing.assert_allclose(config.mekf.sun_noise, np.eye(3) * radians(0.4) ** 2, rtol=1e-12)
+def test_inertia_and_its_inverse():
+    config = configured()
+    np.testing.assert_allclose(config.control.inertia_kgm2, FULL)
+    np.testing.assert_allclose(config.control.inertia_inverse, np.linalg.inv(FULL), rtol=1e-12)
 
-    @pytest.mark.parametrize("tick_hz", [1, 4])
-    def test_noise_of_a_tick(self, tick_hz):
-        tuning = {"torque_noise_nm_rts": 2e-7, "bias_walk_nt_prts": 0.3, "torque_walk_nm_prts": 5e-10}
-        config = configured(time={"tick_hz": tick_hz}, estimator=tuning).estimator.mekf
-        assert config.tick_s == 1.0 / tick_hz
-        diagonal = config.process_noise.diagonal()
-        np.testing.assert_allclose(diagonal[6:9], np.full(3, 0.3e-9**2 / tick_hz), rtol=1e-12)
-        np.testing.assert_allclose(diagonal[9:12], np.full(3, 5e-10**2 / tick_hz), rtol=1e-12)
-        rates = 2e-7**2 / tick_hz * np.linalg.inv(FULL) @ np.linalg.inv(FULL).T
-        np.testing.assert_allclose(config.process_noise[3:6, 3:6], rates, rtol=1e-9)
 
-    def test_limits_of_the_start(self):
-        config = configured().estimator
-        assert config.max_field_error_t == pytest.approx(3e-6)
-        assert config.max_angle_error_rad == pytest.approx(radians(5.0))
-        assert config.min_separation_rad == pytest.approx(radians(15.0))
-        assert config.valid_sigma_rad == pytest.approx(radians(5.0))
-        assert config.restart_after_rejections == 60
+def test_metrics_of_what_a_pulse_leaves():
+    """The square of the rate that is left, and twice its energy."""
+    config, inverse = configured().coils.pulses, np.linalg.inv(FULL)
+    np.testing.assert_allclose(config.rate_metric, inverse.T @ inverse, rtol=1e-12)
+    np.testing.assert_allclose(config.energy_metric, inverse, rtol=1e-12)
 
-    @pytest.mark.parametrize(
-        ("bias", "torque", "size"), [(True, True, 12), (False, True, 9), (False, False, 6)]
-    )
-    def test_states(self, bias, torque, size):
-        config = configured(estimator={"bias": bias, "torque": torque}).estimator
-        assert config.mekf.layout.size == size
 
-    def test_inertia_and_its_inverse(self):
-        config = configured()
-        np.testing.assert_allclose(config.estimator.mekf.inertia_kgm2, FULL)
-        np.testing.assert_allclose(config.estimator.mekf.inertia_inverse, np.linalg.inv(FULL), rtol=1e-12)
-        np.testing.assert_allclose(config.control.inertia_kgm2, FULL)
-        np.testing.assert_allclose(config.control.inertia_inverse, np.linalg.inv(FULL), rtol=1e-12)
-
-    def test_metrics_of_what_a_pulse_leaves(self):
-        """The square of the rate that is left, and twice its energy."""
-        config, inverse = configured().coils.pulses, np.linalg.inv(FULL)
-        np.testing.assert_allclose(config.rate_metric, inverse.T @ inverse, rtol=1e-12)
-        np.testing.assert_allclose(config.energy_metric, inverse, rtol=1e-12)
-
-    @pytest.mark.parametrize(("knowledge", "perfect"), [("filter", False), ("perfect", True)])
-    def test_knowledge(self, knowledge, perfect):
-        assert configured(knowledge=knowledge).estimator.perfect is perfect
+def test_filter_and_fault_detection_go_by_the_same_limits():
+    config = configured(uncertainty={"magnetometer_bias_nt": 2000.0, "along_track_km": 30.0})
+    estimator, sensors = config.estimator, config.fdir.sensors
+    assert estimator.max_field_error_t == sensors.max_field_error_t
+    assert estimator.max_angle_error_rad == sensors.max_angle_error_rad
 
 
 class TestTicks:
@@ -105,32 +64,29 @@ class TestTicks:
 
     def test_limits_of_the_sensors(self):
         fdir = {
-            "max_field_error_nt": 2500.0,
             "max_sun_norm_error": 0.04,
-            "max_angle_error_deg": 6.0,
             "frozen_s": 12.0,
             "name_s": 21.0,
             "readmit_s": 250.0,
             "prove_s": 140.0,
         }
-        tuning = {
-            "gate_nis": 16.0,
-            "magnetometer_sigma_nt": 150.0,
-            "sun_sigma_deg": 0.3,
-            "bias_sigma_nt": 350.0,
-            "torque_sigma_nm": 2e-7,
+        sections = {
+            "time": {"tick_hz": 10},
+            "modes": {"stale_after_s": 50.0},
+            "estimator": {"magnetometer_sigma_nt": 150.0, "sun_sigma_deg": 0.3},
+            "uncertainty": {"magnetometer_bias_nt": 350.0, "torque_nm": 2e-7},
+            "fdir": fdir,
         }
-        config = configured(
-            time={"tick_hz": 10}, modes={"stale_after_s": 50.0}, estimator=tuning, fdir=fdir
-        ).fdir.sensors
+        sigmas, limits = 16.27**0.5, pair_limits(flight_table(sections, "table.toml"))
+        config = configured(**sections).fdir.sensors
         assert config == SensorHealthConfig(
-            max_field_error_t=pytest.approx(2.5e-6),
+            max_field_error_t=pytest.approx(limits.field_t),
             max_norm_error=0.04,
-            max_angle_error_rad=pytest.approx(radians(6.0)),
-            field_noise_t=pytest.approx(6e-7),
-            sun_noise_rad=pytest.approx(radians(1.2)),
-            max_bias_t=pytest.approx(1.4e-6),
-            max_torque_nm=pytest.approx(8e-7),
+            max_angle_error_rad=pytest.approx(limits.angle_rad),
+            field_noise_t=pytest.approx(sigmas * 150e-9),
+            sun_noise_rad=pytest.approx(sigmas * radians(0.3)),
+            max_bias_t=pytest.approx(sigmas * 350e-9 / 3.0**0.5),
+            max_torque_nm=pytest.approx(sigmas * 2e-7 / 3.0**0.5),
             frozen_ticks=120,
             silent_ticks=500,
             name_suspicion=210 * BAD_TICK,
@@ -206,12 +162,12 @@ def test_control_and_coils():
     assert (pulses.shared, pulses.levels_am2, pulses.leak_s) == (False, (1.0, 2.5, 9.0), 250.0)
     assert config.coils.dipoles is None
     assert config.control.pulsed
-    assert config.control.wheel_body_nms == config.estimator.mekf.wheel_body_nms == (0.0, 0.0, 0.0)
+    assert config.control.wheel_body_nms == config.estimator.mekf.rotor.wheel_body_nms == (0.0, 0.0, 0.0)
 
 
 def test_a_wheel_is_known_to_filter_and_law():
     config = configured(body={"wheel_nms": [0.01, -0.02, 0.03]})
-    assert config.control.wheel_body_nms == config.estimator.mekf.wheel_body_nms == (0.01, -0.02, 0.03)
+    assert config.control.wheel_body_nms == config.estimator.mekf.rotor.wheel_body_nms == (0.01, -0.02, 0.03)
 
 
 @pytest.mark.parametrize("minimiser", ["closed_form", "genetic"])

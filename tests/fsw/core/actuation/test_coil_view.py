@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from fsw.core.actuation.actuator import LOCKOUT_UNKNOWN, CoilView, unexpected, update_view
+from fsw.core.actuation.actuator import LOCKOUT_UNKNOWN, MOST_IDLE_TICKS, CoilView, unexpected, update_view
 from fsw.core.actuation.pulses import Pulse
 from fsw.core.gate.readings import NOTHING
 from fsw.wire.messages import CoilBoot, CoilRefused, CoilRefusedReason, CoilStatus
@@ -80,7 +80,10 @@ def test_a_board_that_has_booted_has_not_told_its_lockouts(coil, coils):
         booted = booted._replace(coil=status(coil, 99_000, seq=9))
     expected = [99_000 if coil == reports else -1 for reports in range(3)]
     assert update_view(replace(FIRED, lockout_ms=(0, 10, 0)), booted, TICK + 50, coils) == replace(
-        FIRED, lockout_ms=tuple(expected), driven_coil=1 if coil is None else coil
+        FIRED,
+        lockout_ms=tuple(expected),
+        driven_coil=1 if coil is None else coil,
+        idle_ticks=0 if coil is None else 1,
     )
     assert CoilView().lockout_ms == LOCKOUT_UNKNOWN
 
@@ -127,3 +130,37 @@ def test_only_the_pulse_that_was_asked_for_is_expected_and_only_for_its_time(
 def test_before_the_first_request_any_drive_is_unexpected(tick, coils):
     assert unexpected(CoilView(driven_coil=0, driven_level=1), tick, coils.pulses)
     assert not unexpected(CoilView(), tick, coils.pulses)
+
+
+class TestIdleTicks:
+    """Reports in a row of a driver at rest: how long ago a pulse may at most have been."""
+
+    def after(self, view, said, coils):
+        return update_view(view, NOTHING._replace(coil=said), TICK, coils).idle_ticks
+
+    def test_each_report_of_no_level_and_no_current_counts(self, coils):
+        view = CoilView()
+        for reports in range(1, 6):
+            view = update_view(view, NOTHING._replace(coil=status(reports % 3)), TICK, coils)
+            assert view.idle_ticks == reports
+
+    @pytest.mark.parametrize(
+        "said",
+        [
+            status(0, level=1),
+            status(2, level=-3),
+            status(1)._replace(current_ma=1),
+            status(1)._replace(current_ma=-1),
+            None,
+        ],
+        ids=["driven", "driven backwards", "current", "current backwards", "no report"],
+    )
+    def test_any_other_tick_begins_the_count_anew(self, said, coils):
+        assert self.after(CoilView(idle_ticks=7), said, coils) == 0
+
+    def test_the_count_ends_where_no_sample_is_as_late(self, coils):
+        assert self.after(CoilView(idle_ticks=MOST_IDLE_TICKS - 1), status(1), coils) == MOST_IDLE_TICKS
+        assert self.after(CoilView(idle_ticks=MOST_IDLE_TICKS), status(1), coils) == MOST_IDLE_TICKS
+
+    def test_it_is_in_the_checksum_of_the_state(self):
+        assert CoilView(idle_ticks=3).integers() != CoilView().integers()

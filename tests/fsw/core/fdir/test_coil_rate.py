@@ -11,6 +11,7 @@ from fsw.core.algebra.quaternion import conjugate, multiply, normalise, rotate
 from fsw.core.algebra.vector import ZERO, add, cross, scale, sub, transform, unit
 from fsw.core.estimation import mekf
 from fsw.core.estimation.mekf_config import mekf_config
+from fsw.core.estimation.parameters import Prior
 from fsw.core.fdir.coil_isolation import WeakCoil, conducting, too_little
 from fsw.core.fdir.coil_rate import PULSES, STRAY, settle_stray, solve, trace_pulse, trace_stray
 
@@ -18,17 +19,15 @@ INERTIA = ((1.02, 0.07, -0.05), (0.07, 1.85, 0.11), (-0.05, 0.11, 1.45))
 CONFIG = mekf_config(
     INERTIA,
     1.0,
-    estimate_bias=True,
-    estimate_torque=True,
+    {
+        "mag_bias_t": Prior((3e-7,) * 3, (1e-11,) * 3),
+        "torque_body_nm": Prior((1e-7,) * 3, (3e-11,) * 3),
+    },
     magnetometer_sigma_t=2e-7,
     sun_sigma_rad=radians(0.5),
     attitude_sigma_rad=radians(0.1),
     rate_sigma_radps=radians(0.001),
-    bias_sigma_t=3e-7,
-    torque_sigma_nm=1e-7,
     torque_noise_nm_rts=1e-8,
-    bias_walk_t_prts=1e-11,
-    torque_walk_nm_prts=3e-11,
     gate_nis=inf,
 )
 B_ECI_T, S_ECI, E1_ECI = (1.7e-5, -2.3e-5, 3.1e-5), unit((-0.8, 0.35, 0.4)), unit((0.3, 0.7, -0.5))
@@ -43,7 +42,7 @@ def step(estimate, dipole_am2):
 
 def kick_radps(estimate, coil):
     impulse_nms = scale(PULSE_S * LEVEL_AM2, cross(AXES[coil], rotate(estimate.q_body_from_eci, B_ECI_T)))
-    return transform(CONFIG.inertia_inverse, impulse_nms)
+    return transform(CONFIG.rotor.inertia_inverse, impulse_nms)
 
 
 def fly(coils, parts, ticks=EVERY, noise=1.0, alter=lambda estimate: estimate, level_am2=LEVEL_AM2):
@@ -210,7 +209,7 @@ def fly_stray(flows, tuning=CONFIG, ticks=30, start=START, actual=START):
         s = add(s, tuple(radians(0.5) * random.normal(size=3)))
         estimate = mekf.update_sun(estimate, s, S_ECI, tuning) or estimate
         b_body_t = rotate(estimate.q_body_from_eci, B_ECI_T)
-        kicks = [transform(tuning.inertia_inverse, cross(scale(LEVEL_AM2, e), b_body_t)) for e in AXES]
+        kicks = [transform(tuning.rotor.inertia_inverse, cross(scale(LEVEL_AM2, e), b_body_t)) for e in AXES]
         estimate = trace_stray(estimate, kicks, 1.0, begins=tick == 0)
     return estimate, truth
 

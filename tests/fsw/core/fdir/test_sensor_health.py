@@ -10,6 +10,7 @@ from fsw.core.algebra.quaternion import normalise, rotate
 from fsw.core.algebra.vector import norm, scale, sub
 from fsw.core.estimation.estimator import Used
 from fsw.core.estimation.mekf import Estimate
+from fsw.core.estimation.parameters import Parameters
 from fsw.core.estimation.samples import usable_field, usable_sun
 from fsw.core.fdir.sensor_health import SensorHealth, judge, trusted
 from fsw.core.fdir.sensor_pair import MISFIT, Pair, PairConfig
@@ -36,7 +37,7 @@ CONFIG = SensorHealthConfig(
 B_ECI_T, SUN_ECI = (2.1e-5, -1.3e-5, 1.7e-5), (0.36, 0.48, 0.8)
 Q = normalise((0.7, 0.3, -0.5, 0.4))
 BIAS_T = (2e-7, -3e-7, 1e-7)
-ESTIMATE = Estimate(Q, (1e-3, -2e-3, 5e-4), BIAS_T, (0.0, 0.0, 0.0), np.eye(12) * 1e-6)
+ESTIMATE = Estimate(Q, (1e-3, -2e-3, 5e-4), Parameters(mag_bias_t=BIAS_T), np.eye(12) * 1e-6)
 IDLE = CoilStatus(0, 1, 0, 0, 0, 0)
 BOTH, NEITHER, FIELD_ONLY, SUN_ONLY = (
     Used(True, True, False),
@@ -317,7 +318,10 @@ class TestReadmission:
     def test_both_sensors_against_the_estimate_restart_it(self, isolated):
         """The pair is turned about some axis: strength and angle are right, the estimate is not."""
         wrong = Estimate(
-            normalise((0.7, 0.3, -0.5, 0.8)), ESTIMATE.omega_body_radps, BIAS_T, BIAS_T, ESTIMATE.covariance
+            normalise((0.7, 0.3, -0.5, 0.8)),
+            ESTIMATE.omega_body_radps,
+            Parameters(mag_bias_t=BIAS_T, torque_body_nm=BIAS_T),
+            ESTIMATE.covariance,
         )
         samples = {"b": B_BODY_T, "s": S_BODY, "estimate": wrong}
         for _ in range(AGAINST_ESTIMATE * CONFIG.readmit_ticks - 1):
@@ -427,12 +431,16 @@ class TestContradiction:
         assert flight.health.pair.proof == 0
 
 
+def with_parameters(**parameters):
+    return ESTIMATE._replace(parameters=Parameters(**parameters))
+
+
 class TestCredibility:
     """An estimate that began with a wrong sensor explains it by what cannot be."""
 
-    BIASED = ESTIMATE._replace(mag_bias_t=(1.3e-6, -1.2e-6, 1.1e-6))
-    TURNED = ESTIMATE._replace(torque_body_nm=(-2.6e-7, 2.4e-7, 2.2e-7))
-    AT_THE_LIMITS = ESTIMATE._replace(
+    BIASED = with_parameters(mag_bias_t=(1.3e-6, -1.2e-6, 1.1e-6))
+    TURNED = with_parameters(mag_bias_t=BIAS_T, torque_body_nm=(-2.6e-7, 2.4e-7, 2.2e-7))
+    AT_THE_LIMITS = with_parameters(
         mag_bias_t=(1.2e-6, -1.2e-6, 1.0e-6), torque_body_nm=(-2e-7, 2e-7, 2.5e-7)
     )
 
