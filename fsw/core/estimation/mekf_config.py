@@ -22,8 +22,8 @@ class MekfConfig:
 
     ``torques`` are those of the torque, for estimated parameters; ``inverse_h`` is J^-1 h.
 
-    By measurement, field, Sun or both at once: ``..._sensitivity`` is the constant part of H, (3 or 6, n),
-    and ``..._noise`` the covariance, (3, 3) or (6, 6). ``zero`` is the error state between updates, (n).
+    By measurement, field, Sun or both at once: ``..._sensitivity`` is the constant part of H, (3, n), and
+    ``..._noise`` the covariance, (3, 3) or (6, 6). ``zero`` is the error state between updates, (n).
     """
 
     rotor: Rotor
@@ -41,7 +41,6 @@ class MekfConfig:
     zero: Matrix
     field_sensitivity: Matrix
     sun_sensitivity: Matrix
-    both_sensitivity: Matrix
     field_noise: Matrix
     sun_noise: Matrix
     both_noise: Matrix
@@ -117,7 +116,6 @@ def mekf_config(
         zero=np.zeros(parts.size),
         field_sensitivity=field_sensitivity,
         sun_sensitivity=sun_sensitivity,
-        both_sensitivity=np.vstack((field_sensitivity, sun_sensitivity)),
         field_noise=np.diag(field_variances),
         sun_noise=np.diag(sun_variances),
         both_noise=np.diag(field_variances + sun_variances),

@@ -415,3 +415,22 @@ def test_an_ephemeris_of_what_is_no_number_is_made_anew(make_world, vector, brok
     world.fly(2)
     assert world.state.ephemeris.nodes[1] == whole.nodes[1]
     assert world.state.attitude.valid
+
+
+class TestLateSamples:
+    """After a pulse the field is not used for as long as a sample may be late."""
+
+    @pytest.mark.parametrize(("latency_s", "late_ticks"), [(0.0, 0), (1.0, 1), (3.5, 4)])
+    def test_the_field_is_used_again_when_no_sample_can_be_of_the_pulse(
+        self, make_world, latency_s, late_ticks
+    ):
+        world = make_world(flight={"telemetry": {"quality_s": 1.0}, "uncertainty": {"latency_s": latency_s}})
+        while not world.state.coil.driven_level:
+            world.step()
+        reports = []
+        while world.state.coil.idle_ticks < 8:
+            (quality,) = of(NavQuality, world.step())
+            assert quality.mag_used != quality.mag_blanked
+            if world.state.coil.idle_ticks:
+                reports.append(quality.mag_blanked)
+        assert reports == [1] * late_ticks + [0] * (8 - late_ticks)
