@@ -6,7 +6,7 @@ from math import ceil, radians, sqrt
 from fsw.core.estimation.estimator import EstimatorConfig
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.table.table import FlightTable
-from fsw.table.uncertainty import Uncertainty, bounds, priors
+from fsw.table.uncertainty import Uncertainty, bounds, mean_moment, priors
 
 NT = 1e-9
 GATE_NIS = 16.27
@@ -21,6 +21,8 @@ DRIVE_SIGMA = 0.002
 """Relative error of a driven dipole from pulse to pulse."""
 TORQUE_NOISE_RTS = 0.05
 """White torque noise in parts of the torque's bound, times sqrt(s)."""
+LEAST_NOISE_RTS = 1e-10
+"""The least of it in parts of the mean moment of inertia, rad/s^2 sqrt(s): the equations are rounded."""
 LARGEST_FIELD_T, LEAST_FIELD_T = 5.0e-5, 2.0e-5
 ORBIT_RADIUS_M = 7.0e6
 
@@ -47,7 +49,9 @@ def estimator_config(table: FlightTable) -> EstimatorConfig:
             sun_sigma_rad=radians(tuning.sun_sigma_deg),
             attitude_sigma_rad=START_SIGMA_RAD,
             rate_sigma_radps=radians(tuning.rate_sigma_degps),
-            torque_noise_nm_rts=TORQUE_NOISE_RTS * known.torque_nm,
+            torque_noise_nm_rts=max(
+                TORQUE_NOISE_RTS * known.torque_nm, LEAST_NOISE_RTS * mean_moment(table.body.inertia)
+            ),
             dipole_sigma=DRIVE_SIGMA,
             gate_nis=GATE_NIS,
         ),

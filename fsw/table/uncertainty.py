@@ -64,7 +64,7 @@ def bounds(table: UncertaintyTable, inertia_kgm2: Mat3, tick_s: float) -> Uncert
     Residual dipole and disturbance torque grow with the volume: of bodies of one density and shape as the
     moment of inertia to the power of 3/5.
     """
-    volume = (_mean_moment(inertia_kgm2) / REFERENCE_KGM2) ** 0.6
+    volume = (mean_moment(inertia_kgm2) / REFERENCE_KGM2) ** 0.6
     return Uncertainty(
         inertia_part=0.01 * _or(table.inertia_percent, 10.0),
         products_part=0.01 * _or(table.products_percent, 2.0),
@@ -85,7 +85,8 @@ def _or(given: float | None, ordinary: float) -> float:
     return ordinary if given is None else given
 
 
-def _mean_moment(inertia_kgm2: Mat3) -> float:
+def mean_moment(inertia_kgm2: Mat3) -> float:
+    """A third of the trace of the inertia tensor, kg m^2."""
     return (inertia_kgm2[0][0] + inertia_kgm2[1][1] + inertia_kgm2[2][2]) / 3.0
 
 
@@ -103,7 +104,7 @@ def priors(known: Uncertainty, inertia_kgm2: Mat3) -> dict[str, Prior]:
     a fifth, and the coils a hundredth in a second, so that what a coil loses in flight is found.
     """
     moments = [inertia_kgm2[axis][axis] * known.inertia_part for axis in range(3)]
-    product = _mean_moment(inertia_kgm2) * known.products_part
+    product = mean_moment(inertia_kgm2) * known.products_part
     late, gain, axis = known.latency_s, known.coil_gain_part, known.coil_turn_rad
     found = {
         "mag_bias_t": _prior([known.mag_bias_t] * 3, SIDE, SLOW),

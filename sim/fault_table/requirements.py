@@ -89,7 +89,7 @@ REQUIREMENTS: tuple[Requirement, ...] = (
         2,
         SensorFault.STRENGTH,
         "A sensor is isolated if its field has the wrong strength or its Sun vector the wrong length.",
-        "`fdir.max_field_error_nt`, `fdir.max_sun_norm_error` for `fdir.name_s`",
+        "the field by more than `[uncertainty]` allows, or `fdir.max_sun_norm_error`, for `fdir.name_s`",
     ),
     _sensor(
         3,
@@ -102,8 +102,8 @@ REQUIREMENTS: tuple[Requirement, ...] = (
         SensorFault.REFUSED,
         "A sensor that the filter refuses while it accepts the other, or has no other, is isolated if the "
         "filter has accepted both before.",
-        "both for `fdir.prove_s`; then `estimator.gate_nis` for `fdir.name_s` where the angle of field and "
-        "Sun is not the modelled one, by more than `fdir.max_angle_error_deg`, else for 1.5 times as long",
+        "both for `fdir.prove_s`; then for `fdir.name_s` where the angle of field and Sun is not as modelled "
+        "within `[uncertainty]`, else for 1.5 times as long",
     ),
     _sensor(
         5, SensorFault.SILENT, "A sensor without acceptable samples is isolated.", "`modes.stale_after_s`"
@@ -121,9 +121,9 @@ REQUIREMENTS: tuple[Requirement, ...] = (
         "Before the filter has accepted both for long, a contradiction between the sensors isolates nothing: "
         "it is reported, the filter ends, and does not begin before they have agreed for longer. Likewise "
         "when a filter whose bias or disturbance is impossibly large refuses one of them; it proves nothing.",
-        f"`fdir.max_angle_error_deg` for `fdir.name_s`; agreed for {AGAINST_ESTIMATE} times `fdir.readmit_s`,"
-        f" a bad sample undoing {MISFIT}; the square root of `estimator.gate_nis` times "
-        "`estimator.bias_sigma_nt`, `estimator.torque_sigma_nm`",
+        f"an angle beyond `[uncertainty]` for `fdir.name_s`; agreed for {AGAINST_ESTIMATE} times "
+        f"`fdir.readmit_s`, a bad sample undoing {MISFIT}; a bias or torque beyond 4 standard deviations of "
+        "its bound",
         None,
         Event.SENSORS_DISAGREE,
     ),
