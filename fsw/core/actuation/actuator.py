@@ -164,8 +164,9 @@ def _pulse(
 ) -> tuple[PulseState, CoilView, CoilFire | None]:
     """At most one pulse: only when the own timer and the board's last report of that coil agree."""
     if demand.impulse_body_nms is None:
-        state = pulses.owe(state, cross(demand.m_body_am2, b_body_t), b_body_t, config)
-        wanted, metric = state.owed_impulse_body_nms, config.rate_metric
+        torque_body_nm = cross(demand.m_body_am2, b_body_t)
+        state = pulses.owe(state, torque_body_nm, b_body_t, config)
+        wanted, metric = pulses.due(state, torque_body_nm, b_body_t, config), config.rate_metric
     else:
         state = replace(state, owed_impulse_body_nms=ZERO)
         wanted, metric = demand.impulse_body_nms, config.energy_metric

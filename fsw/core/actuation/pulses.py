@@ -5,8 +5,10 @@ of the pulse, for that coil or for all of them (``shared``). After boot a full b
 timing is in integer ticks, rounded so that the pulse is never longer and the gap never shorter.
 
 The demand of a continuous law is accumulated as the torque impulse still owed: a leaky sigma-delta
-modulator, bounded by what one pulse can pay. The pulse that is fired is the one that leaves the least of
-the impulse that is owed, or that a predictive law demands; firing none is one of the choices and wins ties.
+modulator, bounded by what one pulse can pay. What is due is the impulse that will be owed in the middle of
+the time for which a pulse stands, until the next: paid only afterwards, a lasting demand would be half that
+time late and the leak would keep a part of it. The pulse that is fired is the one that leaves the least of
+the impulse that is due, or that a predictive law demands; firing none is one of the choices and wins ties.
 Least is by a metric: the rate that is left, or its energy.
 
 Source: Tavares et al. (ConSat, PoSAT-1) for the limits and the choice; the modulator is this project's.
@@ -16,7 +18,7 @@ from dataclasses import dataclass, replace
 from math import copysign
 from typing import NamedTuple
 
-from fsw.core.algebra.vector import ZERO, Mat3, Vec3, cross, dot, norm, scale, sub, transform
+from fsw.core.algebra.vector import ZERO, Mat3, Vec3, add, cross, dot, norm, scale, sub, transform
 
 AXES: Mat3 = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -105,10 +107,23 @@ def owe(state: PulseState, torque_body_nm: Vec3, b_body_t: Vec3, config: PulseCo
     r1, r2, r3 = state.owed_impulse_body_nms
     t1, t2, t3 = torque_body_nm
     owed = (keep * r1 + h * t1, keep * r2 + h * t2, keep * r3 + h * t3)
-    size, limit = norm(owed), config.pulse_s * config.levels_am2[2] * norm(b_body_t)
-    if size > limit:
-        owed = scale(limit / size, owed)
-    return PulseState(state.ready_tick, state.busy_until, owed)
+    return PulseState(state.ready_tick, state.busy_until, _within_a_pulse(owed, b_body_t, config))
+
+
+def due(state: PulseState, torque_body_nm: Vec3, b_body_t: Vec3, config: PulseConfig) -> Vec3:
+    """What a pulse fired now is to pay: r + T (T_p + T_b) / 2, T_b the back-off; body axes, N m s.
+
+    The demand of now is taken to last so long. The bound is that of ``owe``.
+    """
+    half_s = 0.5 * config.tick_s * (config.pulse_ticks + config.backoff_ticks)
+    expected = add(state.owed_impulse_body_nms, scale(half_s, torque_body_nm))
+    return _within_a_pulse(expected, b_body_t, config)
+
+
+def _within_a_pulse(impulse_body_nms: Vec3, b_body_t: Vec3, config: PulseConfig) -> Vec3:
+    """The impulse, shortened to the largest that one pulse can pay."""
+    size, limit = norm(impulse_body_nms), config.pulse_s * config.levels_am2[2] * norm(b_body_t)
+    return scale(limit / size, impulse_body_nms) if size > limit else impulse_body_nms
 
 
 def choose(

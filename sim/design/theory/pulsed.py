@@ -1,8 +1,9 @@
 """The pulsed actuator by Floquet theory: short pulses and long pauses in place of a continuous dipole.
 
 Between pulses the body moves freely, x' = A0 x, and the law's torque T(u) = -F(u) x is only accumulated as an
-owed impulse, r' = T - r / tau. A pulse of length T_p at u_k pays what the coils can, by the torque
-p / T_p, with p = P_k r nearest to r, |J^-1 (r - p)| least, among the torques the coils can give at u_k,
+owed impulse, r' = T - r / tau. A pulse of length T_p at u_k pays by the torque p / T_p. Due is what will be
+owed half a period later, d = r + T(u_k) period / 2, and p = P_k d is nearest to it, |J^-1 (d - p)| least,
+among the torques that the coils can give at u_k,
 
     all coils at once: p normal to b;     one coil in turn: p along e_j x b, j = 1, 2, 3, 1, ...
 
@@ -77,18 +78,19 @@ class PulsedLoop:
         pulse, leak = period * pulsing.duty, pulsing.leak_s * body.rate_radps
         starts = period * np.arange(self.periods, dtype=np.float64)
         self._paid = _payable(dipole_field(starts + 0.5 * pulse, body), inertia, pulsing.in_turn)
-        self._retained = exp(-period / leak) * (np.eye(3) - self._paid)
+        self._kept = exp(-period / leak)
         push = np.zeros((size, 3))
         push[:3] = np.linalg.inv(inertia) / pulse
-        self._free, pushed = _response(free, push, period, pulse)
-        self._pushed = pushed @ self._paid
+        self._free, self._pushed = _response(free, push, period, pulse)
         places, weights = _quadrature((0.0, pulse, period))
         reached = [_response(free, push, place, pulse) for place in places]
         owed = -weights * np.exp((places - period) / leak)
         normal = projection(starts[:, None] + places, body)
         of_x, of_p = (np.array(parts) for parts in zip(*reached, strict=True))
         self._owed_x = _demanded(normal, owed, of_x)
-        self._owed_r = _demanded(normal, owed, of_p) @ self._paid
+        self._owed_p = _demanded(normal, owed, of_p)
+        half = np.array([-0.5 * period])
+        self._ahead = _demanded(projection(starts[:, None], body), half, np.eye(size)[None])
 
     def degree(self, gains: Gains) -> Array:
         """Degrees of stability, of the shape of the gains."""
@@ -97,12 +99,17 @@ class PulsedLoop:
     def monodromy(self, gains: Gains) -> Array:
         """The transition matrix of (x, r) over an orbit, (..., n + 3, n + 3) for gains of shape (...)."""
         n, scales = len(self._free), feedback_scales(self.body, gains)
-        maps = np.zeros((*scales.shape[:-1], self.periods, n + 3, n + 3))
-        maps[..., :n, :n] = self._free
-        maps[..., :n, n:] = self._pushed
-        maps[..., n:, :n] = np.tensordot(scales, self._owed_x, axes=1)
-        maps[..., n:, n:] = self._retained + np.tensordot(scales, self._owed_r, axes=1)
-        return product(maps)
+        unpaid = np.zeros((*scales.shape[:-1], self.periods, n + 3, n + 3))
+        unpaid[..., :n, :n] = self._free
+        unpaid[..., n:, :n] = np.tensordot(scales, self._owed_x, axes=1)
+        unpaid[..., n:, n:] = self._kept * np.eye(3)
+        due = np.zeros((*unpaid.shape[:-2], 3, n + 3))
+        due[..., :n] = np.tensordot(scales, self._ahead, axes=1)
+        due[..., n:] = np.eye(3)
+        by_pulse = np.zeros((*unpaid.shape[:-2], n + 3, 3))
+        by_pulse[..., :n, :] = self._pushed
+        by_pulse[..., n:, :] = np.tensordot(scales, self._owed_p, axes=1) - self._kept * np.eye(3)
+        return product(unpaid + by_pulse @ self._paid @ due)
 
 
 def _payable(field: Array, inertia: Array, in_turn: bool) -> Array:

@@ -135,9 +135,21 @@ def test_a_pulse_is_paid_when_it_is_asked_for():
 
 def test_the_torque_of_the_demanded_dipole_is_owed():
     """T = m x b: 0.5 A m^2 along axis 1 in 20 uT along axis 3 turn about axis 2."""
-    state, _, request = run(ready(ZERO), demand=Demand((0.5, 0.0, 5.0)))
+    state, _, request = run(ready(ZERO), demand=Demand((0.5, 0.0, 5.0)), readings=NOTHING)
     assert request is None
     assert state.owed_impulse_body_nms == pytest.approx((0.0, -1e-5, 0.0))
+
+
+@pytest.mark.parametrize(("asked_am2", "fires"), [(0.0140, False), (0.0145, True), (-0.0145, True)])
+def test_a_pulse_goes_out_when_more_than_half_of_the_lowest_is_due(asked_am2, fires):
+    """Half of 3 s and 0.5 A m^2, of which 1 s of the demand is owed and 51.5 s are to come."""
+    state, _, request = run(ready(ZERO), demand=Demand((asked_am2, 0.0, 0.0)))
+    assert (request is not None) is fires
+    if fires:
+        assert (request.coil, abs(request.level)) == (0, 1)
+        assert request.level * asked_am2 > 0.0
+        paid = 3.0 * 0.5 if asked_am2 > 0.0 else -3.0 * 0.5
+        assert state.owed_impulse_body_nms == pytest.approx((0.0, 2e-5 * (paid - asked_am2), 0.0))
 
 
 @pytest.mark.parametrize(("coil", "lockout_ms"), list(product((0, 1), product((-1, 0, 163_830), repeat=3))))

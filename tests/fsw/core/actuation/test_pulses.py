@@ -231,6 +231,45 @@ def test_without_a_field_nothing_is_owed():
         assert state.owed_impulse_body_nms == (0.0, 0.0, 0.0)
 
 
+# What is due
+
+
+@pytest.mark.parametrize("tick_hz", [1, 2, 10, 50])
+def test_due_is_what_will_be_owed_half_way_to_the_next_pulse(tick_hz):
+    """At every rate: a pulse of 3 s and a back-off of 100 s stand for 103 s."""
+    config = make_config(tick_hz)
+    state = owing(config, (1.0, -2.0, 4.0))
+    due = pulses.due(state, (0.1, 0.02, -0.04), STRONG_T, config)
+    assert due == pytest.approx((1.0 + 5.15, -2.0 + 1.03, 4.0 - 2.06), rel=1e-12)
+
+
+def test_no_more_is_due_than_the_strongest_pulse_can_pay_and_its_direction_stays():
+    config = make_config()
+    b_body_t = (0.0, 3e-5, -4e-5)
+    most = 3.0 * 8.0 * 5e-5
+    due = pulses.due(owing(config, (0.1, -0.2, 0.2)), (0.3, -0.6, 0.6), b_body_t, config)
+    assert due == pytest.approx((most / 3, -2 * most / 3, 2 * most / 3))
+
+
+@pytest.mark.parametrize(
+    ("shared", "m_am2"),
+    [(True, (0.05, 0.0, 0.0)), (False, (0.05, 0.0, 0.0)), (False, (-0.09, 0.05, 0.01))],
+)
+def test_a_lasting_demand_is_paid_though_what_is_owed_leaks(shared, m_am2):
+    """To a twentieth; paid only when it is owed, an eighth of it and more would be forgotten."""
+    config, b_body_t = make_config(shared=shared), (2e-5, -3e-5, 1e-5)
+    torque = tuple(np.cross(m_am2, b_body_t).tolist())
+    state, paid, ticks = pulses.boot(0, config), np.zeros(3), 30_000
+    for tick in range(ticks):
+        state = pulses.owe(state, torque, b_body_t, config)
+        due = pulses.due(state, torque, b_body_t, config)
+        pulse = pulses.choose(state, due, config.rate_metric, tick, b_body_t, config)
+        if pulse is not None:
+            given = pulses.impulse(pulse, b_body_t, config)
+            state, paid = pulses.fire(state, pulse, given, tick, config), paid + given
+    assert paid / ticks @ torque / np.dot(torque, torque) == pytest.approx(1.0, abs=0.05)
+
+
 @pytest.mark.parametrize("level", [-3, -2, -1, 1, 2, 3])
 @pytest.mark.parametrize("coil", [0, 1, 2])
 def test_the_impulse_of_a_pulse(coil, level):

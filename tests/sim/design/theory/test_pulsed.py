@@ -24,31 +24,34 @@ def fly(body, gains, pulsing, periods, start):
     period = 2.0 * pi / periods
     pulse = period * pulsing.duty
 
+    def demanded(u, x):
+        return inertia @ ((loop(np.array([u]))[0] - free) @ x)[:3]
+
     def derivative(torque):
         def of(u, y):
             x, owed = y[:size], y[size:]
-            demanded = inertia @ ((loop(np.array([u]))[0] - free) @ x)[:3]
             push = np.concatenate([np.linalg.solve(inertia, torque), np.zeros(size - 3)])
-            return np.concatenate([free @ x + push, demanded - owed / leak])
+            return np.concatenate([free @ x + push, demanded(u, x) - owed / leak])
 
         return of
 
     y = np.array(start)
     for k in range(periods):
         u = k * period
-        paid = nearest(y[size:], dipole_field(np.array(u + 0.5 * pulse), body), inertia, pulsing.in_turn, k)
+        due = y[size:] + 0.5 * period * demanded(u, y[:size])
+        paid = nearest(due, dipole_field(np.array(u + 0.5 * pulse), body), inertia, pulsing.in_turn, k)
         y[size:] -= paid
         for torque, edges in ((paid / pulse, (u, u + pulse)), (np.zeros(3), (u + pulse, u + period))):
             y = solve_ivp(derivative(torque), edges, y, method="DOP853", rtol=1e-11, atol=1e-13).y[:, -1]
     return y
 
 
-def nearest(owed, field, inertia, in_turn, k):
-    """By least squares over the dipoles: what coils can pay, |J^-1 (r - m x b)| least."""
+def nearest(due, field, inertia, in_turn, k):
+    """By least squares over the dipoles: what coils can pay, |J^-1 (d - m x b)| least."""
     coils = np.eye(3)[:, [k % 3]] if in_turn else np.eye(3)
     given = -skew(field) @ coils
     inverse = np.linalg.inv(inertia)
-    dipole = np.linalg.lstsq(inverse @ given, inverse @ owed, rcond=1e-10)[0]
+    dipole = np.linalg.lstsq(inverse @ given, inverse @ due, rcond=1e-10)[0]
     return given @ dipole
 
 
