@@ -2,7 +2,10 @@
 
 The gain M(u) is tabulated over the argument of latitude u of an orbit, from the controller's own inertia and
 orbit, once, when the onboard table is loaded. The law uses the constant torque that the filter estimates: a
-dipole cannot cancel it, but there is a periodic motion with the least error, and the law leads to it.
+dipole cannot cancel it, but there is a periodic motion with the least error, and the law leads to it. M is
+the whole dipole: effort is charged for it with the residual one, so that the coils' is M less that, whatever
+the field to come. Charged for the coils' alone, a residual dipole would be left to act where that is cheap:
+it points worse.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.2; the equations stand in ``riccati``.
 """

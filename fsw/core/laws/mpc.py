@@ -5,7 +5,9 @@ orbit, but the one that the satellite will meet. The plan costs least along it, 
 periodic regulator (``lqr``) expects from there on. Its first steps are applied, by feedback; then it is made
 anew. On the direct dipole's field it is the periodic regulator.
 
-The plan has no bound of the dipole: the demand is shortened to what the coils can give in the mean.
+The plan has no bound of the dipole: the demand is shortened to what the coils can give in the mean. As for
+``lqr`` it is the whole dipole, from which the residual one is taken off, after that bound: what the residual
+dipole asks of the coils lasts, and shortened with the rest it would drive the body away.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.3 (after Silani, Lovera 2005); equations: ``riccati``.
 """

@@ -3,8 +3,9 @@
 At each opportunity the rate one pulse ahead is predicted without control,
 
     Omega+ = Omega + dt (domega/dt + w0 Omega x e3),
-    J domega/dt = 3 mu/r^3 e1 x J e1 - omega x (J omega + h),
+    J domega/dt = 3 mu/r^3 e1 x J e1 - omega x (J omega + h) + d + m_r x b,
 
+d the estimated torque and m_r the estimated residual dipole, which the paper does not have,
 and what is missing, r = J (Omega_ref - Omega+), is the impulse demanded. The cost of m for dt,
 1/2 (Omega+ - Omega_ref)^T J (Omega+ - Omega_ref), is then 1/2 (r - dt m x b)^T J^-1 (r - dt m x b): the
 actuator looks for its least value, over the 18 pulses and none, or over all dipoles.
@@ -27,7 +28,7 @@ def free_rate_change(
     inertia_inverse: Mat3,
     wheel_body_nms: Vec3,
 ) -> Vec3:
-    """dOmega/dt without control, body axes, rad/s^2.
+    """dOmega/dt without control or disturbance, body axes, rad/s^2.
 
     Args:
         omega_body_orbit_radps: Omega, rate relative to the orbital frame, body axes.
@@ -67,6 +68,11 @@ def best_impulse(impulse_body_nms: Vec3, b_body_t: Vec3, inertia_kgm2: Mat3) -> 
     return sub(impulse_body_nms, scale(dot(b_body_t, impulse_body_nms) / dot(b_body_t, weighted), weighted))
 
 
+def disturbance_nm(inputs: LawInput) -> Vec3:
+    """The estimated torque and that of the estimated residual dipole, d + m_r x b, body axes, N m."""
+    return add(inputs.torque_body_nm, cross(inputs.dipole_body_am2, inputs.b_body_t))
+
+
 def predictive(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The impulse missing at the end of a pulse fired now."""
     attitude, reference = inputs.attitude, inputs.reference
@@ -81,9 +87,14 @@ def predictive(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Con
         config.inertia_inverse,
         config.wheel_body_nms,
     )
+    disturbed = transform(config.inertia_inverse, disturbance_nm(inputs))
     wanted = (setpoint.spin_radps, 0.0, 0.0)
     return Demand(
         impulse_body_nms=missing_impulse(
-            attitude.omega_body_orbit_radps, change, wanted, config.horizon_s, config.inertia_kgm2
+            attitude.omega_body_orbit_radps,
+            add(change, disturbed),
+            wanted,
+            config.horizon_s,
+            config.inertia_kgm2,
         )
     )

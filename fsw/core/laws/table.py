@@ -1,4 +1,10 @@
-"""The control laws by name, each far from the goal and near it."""
+"""The control laws by name, each far from the goal and near it.
+
+Of the estimated disturbances ``predictive`` uses torque and dipole, ``lqr`` and ``mpc`` the torque. From the
+dipole that any law demands ``by_mode`` takes the residual one off. The other laws have no use for the torque:
+coils can oppose only its part normal to the field, which gains little at once; ``pd`` and
+``sliding_integral`` answer its mean by their integral.
+"""
 
 from enum import StrEnum
 from typing import NamedTuple

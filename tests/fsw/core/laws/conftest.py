@@ -67,6 +67,7 @@ class Body:
     most_am2: float = 1e9
     gravity: bool = True
     torque: tuple = (0.0, 0.0, 0.0)  # constant, body axes
+    dipole: tuple = (0.0, 0.0, 0.0)  # its own, body axes
 
 
 @dataclass
@@ -191,7 +192,8 @@ def fly(
         w1, w2, w3 = (inverse @ (state[:, 3] - wheel)).tolist()
         out = np.array([[0.0, w3, -w2], [-w3, 0.0, w1], [w2, -w1, 0.0]]) @ state
         gravity = cross(vertical, (body.inertia @ vertical).tolist())
-        parts = zip(cross(m, b), gravity, body.torque, strict=True)
+        whole = [coils + own for coils, own in zip(m, body.dipole, strict=True)]
+        parts = zip(cross(whole, b), gravity, body.torque, strict=True)
         out[:, 3] += [magnetic + pull * g + constant for magnetic, g, constant in parts]
         return out
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from fsw.core.algebra.quaternion import dcm, normalise
-from fsw.core.algebra.vector import ZERO, Mat3, add, cross, inverse
+from fsw.core.algebra.vector import ZERO, Mat3, add, cross, inverse, sub
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.laws import by_mode
 from fsw.core.laws.damping import bdot, bdot_dipole, rate_damping, rate_damping_dipole
@@ -117,6 +117,39 @@ def test_acquire_and_point_fly_the_law_of_the_setpoint(law, mode):
     flies = row.acquire if mode is Mode.ACQUIRE else row.point
     setpoint = PD._replace(law=law)
     assert run(mode, setpoint) == flies(inputs(), (), setpoint, CONFIG)
+
+
+RESIDUAL_AM2 = (0.04, -0.03, 0.07)
+
+
+def with_a_residual_dipole(mode, law, attitude=KNOWN):
+    """The demand beside the same one without it."""
+    setpoint = PD._replace(law=law)
+    given = inputs(attitude)
+    known = given._replace(dipole_body_am2=RESIDUAL_AM2)
+    return tuple(by_mode.demand(mode, case, (), setpoint, CONFIG) for case in (known, given))
+
+
+@pytest.mark.parametrize("law", [law for law in LAWS if law != "predictive"])
+@pytest.mark.parametrize("mode", [Mode.ACQUIRE, Mode.POINT])
+def test_from_every_dipole_the_residual_one_is_taken_off(law, mode):
+    known, without = with_a_residual_dipole(mode, law)
+    assert known == without._replace(m_body_am2=sub(without.m_body_am2, RESIDUAL_AM2))
+
+
+@pytest.mark.parametrize("mode", [Mode.ACQUIRE, Mode.POINT])
+def test_an_impulse_has_the_residual_dipole_in_the_motion_it_predicts(mode):
+    known, without = with_a_residual_dipole(mode, "predictive")
+    turned = cross(RESIDUAL_AM2, B_BODY_T)
+    expected = tuple(r - CONFIG.horizon_s * t for r, t in zip(without.impulse_body_nms, turned, strict=True))
+    assert known.impulse_body_nms == pytest.approx(expected, abs=1e-12)
+    assert known.m_body_am2 == ZERO
+
+
+@EVERY_LAW
+def test_without_an_attitude_that_holds_no_dipole_is_taken_off(law):
+    known, without = with_a_residual_dipole(Mode.POINT, law, NOT_VALID)
+    assert known == without
 
 
 @EVERY_LAW

@@ -7,11 +7,14 @@ import numpy as np
 import pytest
 
 from fsw.core.estimation.attitude import UNKNOWN
+from fsw.core.laws import by_mode
 from fsw.core.laws.lqr import STEPS, LqrGains, lqr, schedule
 from fsw.core.laws.mpc import APPLIED_STEPS, MpcGains, field_ahead, mpc, plan
+from fsw.core.laws.riccati import backward
 from fsw.core.orbit.ephemeris import ephemeris_model
 from fsw.core.orbit.field import FieldKind, field_eci_t
 from fsw.core.orbit.propagation import circular_orbit
+from fsw.wire.messages import Mode
 
 EPOCH = 1742461200
 MOST_AM2 = 2.0
@@ -114,6 +117,74 @@ def test_on_a_tilted_field_with_a_constant_torque_the_plan_points_better(bench, 
     by_lqr, by_mpc = rms_deg(lqr), rms_deg(mpc)
     assert by_mpc < 2.2
     assert by_mpc < 0.8 * by_lqr
+
+
+RESIDUAL_AM2 = (0.05, -0.03, 0.08)
+
+
+def charged_for_the_whole_dipole(problem, field, last, state, residual_am2):
+    """The dipoles of the coils that cost least along the field with effort |m + residual|^2, (steps, 3).
+
+    By least squares over all steps at once, from the step's matrix alone. The cost at the end is ``last``.
+    """
+    steps, f = len(field), problem.free[:, :6]
+    pushes = [problem.free[:, 6:] @ np.cross(np.eye(3), b).T for b in field]
+    reach, moved = np.zeros((6, 3 * steps)), np.array(state[:6])
+    rows, wanted = [], []
+    for k, push in enumerate(pushes):
+        reach = f @ reach
+        reach[:, 3 * k : 3 * k + 3] = push
+        moved = f @ moved + problem.free[:, 6:] @ np.array(state[6:]) + push @ np.array(residual_am2)
+        weight = np.diag(np.sqrt(problem.cost)) if k + 1 < steps else np.linalg.cholesky(last[:, :6]).T
+        rows.append(weight @ reach)
+        wanted.append(-weight @ moved)
+    rows.append(np.sqrt(problem.effort) * np.eye(3 * steps))
+    wanted.append(-np.sqrt(problem.effort) * np.tile(residual_am2, steps))
+    return np.linalg.lstsq(np.concatenate(rows), np.concatenate(wanted), rcond=None)[0].reshape(steps, 3)
+
+
+def test_the_plan_less_the_residual_dipole_costs_least_where_effort_is_the_whole_dipole(settings):
+    """Along any field: so it need not be known when the plan is made."""
+    problem, rng = settings.schedules["mpc"].problem, np.random.default_rng(3)
+    field = rng.normal(size=(8, 3)) * 3e-5
+    last = np.hstack([settings.schedules["mpc"].costs[5][:, :6], np.zeros((6, 3))])
+    state = np.concatenate([rng.normal(size=3) * 1e-4, rng.normal(size=3) * 0.1, rng.normal(size=3) * 1e-7])
+    gains, _ = backward(problem, field, last)
+    best = charged_for_the_whole_dipole(problem, field, last, state, RESIDUAL_AM2)[0]
+    assert gains[0] @ state - RESIDUAL_AM2 == pytest.approx(best, abs=1e-6 * np.linalg.norm(best))
+
+
+def test_a_residual_dipole_that_is_known_costs_nothing_and_one_that_is_not_drives_it_away(
+    bench, settings, turned
+):
+    """In the mode's demand, from 10 deg off; and while the coils can give it."""
+    orbit = bench.Orbit()
+    model = model_of(FieldKind.DIRECT_DIPOLE, orbit)
+    flown = replace(settings, setpoint=bench.setpoint("mpc"))
+
+    def angles_deg(dipole_am2, known):
+        def law(inputs, memory, setpoint, config):
+            return by_mode.demand(Mode.POINT, inputs, memory, setpoint, config)
+
+        return bench.fly(
+            law,
+            flown.setpoint,
+            orbit=orbit,
+            body=bench.Body(INERTIA, most_am2=MOST_AM2, dipole=dipole_am2),
+            c_body_from_orbit=turned((1, 2, 3), 10.0),
+            omega_body=(0.0, 0.0, orbit.rate_radps),
+            seconds=3.0 * orbit.period_s,
+            step_s=STEP_S,
+            look=lambda inputs: inputs._replace(
+                ephemeris=model, dipole_body_am2=dipole_am2 if known else (0.0, 0.0, 0.0)
+            ),
+            settings=flown,
+        ).angle_deg
+
+    without = angles_deg((0.0, 0.0, 0.0), known=False)
+    known = angles_deg(RESIDUAL_AM2, known=True)
+    assert known == pytest.approx(without, abs=0.1)
+    assert angles_deg(RESIDUAL_AM2, known=False)[-len(without) // 3 :].mean() > 5.0
 
 
 def test_a_plan_is_flown_for_its_steps_and_then_made_anew(bench, settings, inputs):

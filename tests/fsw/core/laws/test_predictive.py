@@ -197,6 +197,17 @@ class TestLaw:
         assert demand.impulse_body_nms == pytest.approx(vec(expected), rel=1e-9)
         assert demand._replace(impulse_body_nms=None) == Demand(), "no dipole besides, and no memory"
 
+    def test_what_the_known_disturbances_do_over_a_pulse_is_missing_besides(self):
+        """The impulses of the torque and of the residual dipole in the field, taken off."""
+        torque, dipole, b = np.array([2e-7, -3e-7, 5e-7]), np.array([0.03, 0.01, -0.02]), (1e-5, -2e-5, 3e-5)
+        given = inputs(KNOWN)._replace(torque_body_nm=vec(torque), dipole_body_am2=vec(dipole))
+        without, known = (
+            np.array(predictive(case, (), SETPOINT, CONFIG).impulse_body_nms)
+            for case in (inputs(KNOWN), given)
+        )
+        expected = -PULSE_S * (torque + np.cross(dipole, b))
+        assert known - without == pytest.approx(expected, abs=1e-15)
+
     @pytest.mark.parametrize(
         ("attitude", "reference"),
         [(UNKNOWN, REFERENCE), (KNOWN._replace(valid=False), REFERENCE), (KNOWN, None)],
