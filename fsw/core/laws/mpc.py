@@ -6,8 +6,8 @@ periodic regulator (``lqr``) expects from there on. Its first steps are applied,
 anew. On the direct dipole's field it is the periodic regulator.
 
 The plan has no bound of the dipole: the demand is shortened to what the coils can give in the mean. As for
-``lqr`` it is the whole dipole, from which the residual one is taken off, after that bound: what the residual
-dipole asks of the coils lasts, and shortened with the rest it would drive the body away.
+``lqr`` it is the whole dipole, from which the residual one is taken off, after that bound: near it the body
+points worse if the residual dipole is opposed in part only.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.3 (after Silani, Lovera 2005); equations: ``riccati``.
 """
