@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from fsw.core.algebra.quaternion import dcm, normalise
-from fsw.core.algebra.vector import ZERO, Mat3, add, cross, inverse, sub
+from fsw.core.algebra.vector import ZERO, Mat3, cross, inverse, sub
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.laws import by_mode
 from fsw.core.laws.damping import bdot, bdot_dipole, rate_damping, rate_damping_dipole
@@ -228,43 +228,3 @@ class TestBdot:
     def test_a_sample_of_tick_zero_counts(self):
         before = FieldSample(BEFORE.b_body_t, 0)
         assert self.by_bdot(FieldSample(SAMPLE.b_body_t, 4), before) == BY_BDOT
-
-
-class TestResidualDipole:
-    """It turns the satellite as the coils do: what they add to it is what the law wants."""
-
-    RESIDUAL_AM2 = (0.04, -0.07, 0.05)
-
-    def demanded(self, mode, setpoint=PD, attitude=KNOWN, dipole_body_am2=RESIDUAL_AM2):
-        known = inputs(attitude)._replace(dipole_body_am2=dipole_body_am2)
-        return by_mode.demand(mode, known, (), setpoint, CONFIG)
-
-    @pytest.mark.parametrize(("mode", "wanted"), [(Mode.ACQUIRE, BY_FAR_PD), (Mode.POINT, BY_PD)])
-    def test_is_taken_off_the_dipole_of_a_law_that_points(self, mode, wanted):
-        found = self.demanded(mode)
-        together = add(found.m_body_am2, self.RESIDUAL_AM2)
-        assert together == pytest.approx(wanted.m_body_am2)
-        assert found._replace(m_body_am2=ZERO) == wanted._replace(m_body_am2=ZERO)
-
-    @pytest.mark.parametrize("mode", [Mode.ACQUIRE, Mode.POINT])
-    def test_is_not_while_the_attitude_is_not_valid(self, mode):
-        for attitude in (NOT_VALID, UNKNOWN):
-            assert self.demanded(mode, attitude=attitude) == self.demanded(
-                mode, attitude=attitude, dipole_body_am2=ZERO
-            )
-
-    @pytest.mark.parametrize("attitude", [KNOWN, NOT_VALID])
-    def test_is_not_while_the_rate_is_damped(self, attitude):
-        with_it, without = (
-            self.demanded(Mode.DETUMBLE, attitude=attitude, dipole_body_am2=dipole)
-            for dipole in (self.RESIDUAL_AM2, ZERO)
-        )
-        assert with_it == without
-
-    def test_an_impulse_is_left_to_the_scheduler(self):
-        found = self.demanded(Mode.POINT, setpoint=PREDICTIVE)
-        assert found.impulse_body_nms is not None
-        assert found == self.demanded(Mode.POINT, setpoint=PREDICTIVE, dipole_body_am2=ZERO)
-
-    def test_in_safe_nothing_is_wanted(self):
-        assert self.demanded(Mode.SAFE) is None
