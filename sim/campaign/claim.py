@@ -44,6 +44,8 @@ class Claim:
     @property
     def limits(self) -> str:
         """The limits as text."""
+        if self.low == -inf and self.high == inf:
+            return "no limit"
         if self.low == -inf:
             return "0" if self.high == 0.0 else f"<= {self.high:.6g}"
         if self.high == inf:

@@ -51,6 +51,7 @@ class Order:
         seed: of the plant's random streams.
         orbits: None: as the scenario says.
         measure: further figures, of the scenario, truth and estimates; a function of a module.
+        name: what it is called; empty: by scenario, seed and overrides.
     """
 
     scenario: str
@@ -58,6 +59,7 @@ class Order:
     seed: int = 1
     orbits: float | None = None
     measure: Measure | None = None
+    name: str = ""
 
 
 @dataclass(frozen=True, slots=True)

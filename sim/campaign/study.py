@@ -7,7 +7,7 @@ from math import inf, isnan, nan
 from statistics import fmean, median
 
 from fsw.input.schema import Nested
-from sim.campaign.claim import Claim, ClaimOutcome, Study
+from sim.campaign.claim import Claim, ClaimOutcome, ClaimVerdict, Study
 from sim.campaign.flight import FlightResult, Order, fly_order
 
 Pick = Callable[[FlightResult], float]
@@ -24,6 +24,7 @@ class Figure:
         pick: the figure of one flight.
         of: how the flights' figures are combined: ``median``, ``mean`` or, by default, the worst.
         group: the flights that count, by the group of their order.
+        counts: which of them count; None: all.
         low: least that passes.
         high: most that passes.
     """
@@ -34,6 +35,7 @@ class Figure:
     pick: Pick
     of: str = "worst"
     group: str = ""
+    counts: Callable[[FlightResult], bool] | None = None
     low: float = -inf
     high: float = inf
 
@@ -53,12 +55,7 @@ def campaign(study_id: str, source: str, groups: Sequence[Group], figures: Seque
 
     def conclude(flights: Sequence[FlightResult]) -> list[ClaimOutcome]:
         named_flights = list(zip(names, flights, strict=True))
-        return [
-            _judge(
-                study_id, source, figure, [flight for name, flight in named_flights if name == figure.group]
-            )
-            for figure in figures
-        ]
+        return [_judge(study_id, source, figure, _counted(figure, named_flights)) for figure in figures]
 
     return Study(study_id, tasks, conclude, has_flights=True)
 
@@ -83,6 +80,8 @@ def figure_of(name: str) -> Pick:
 
 def describe_order(order: Order) -> str:
     """A text that identifies a flight."""
+    if order.name:
+        return order.name
     words = [f"{key}={_text(value)}" for key, value in _flat(order.overrides)]
     return ", ".join([order.scenario, f"seed {order.seed}", *words])
 
@@ -90,8 +89,15 @@ def describe_order(order: Order) -> str:
 _COMBINATIONS: dict[str, Callable[[list[float]], float]] = {"median": median, "mean": fmean}
 
 
+def _counted(figure: Figure, named_flights: Sequence[tuple[str, FlightResult]]) -> list[FlightResult]:
+    group = [flight for name, flight in named_flights if name == figure.group]
+    return group if figure.counts is None else [flight for flight in group if figure.counts(flight)]
+
+
 def _judge(study_id: str, source: str, figure: Figure, flights: Sequence[FlightResult]) -> ClaimOutcome:
     claim = Claim(f"{study_id}.{figure.id}", figure.statement, source, figure.unit, figure.low, figure.high)
+    if not flights:
+        return ClaimOutcome(claim, ClaimVerdict.ABSENT)
     values = [figure.pick(flight) for flight in flights]
     excess = [inf if isnan(value) else max(figure.low - value, value - figure.high) for value in values]
     worst = max(range(len(values)), key=lambda place: excess[place])

@@ -13,6 +13,7 @@ from sim.drawing.canvas import Span, TimeAxis
 from sim.record.estimates import Estimates
 from sim.record.truth import Histories
 from sim.report.attitude_arrays import angle_rad, axis1_angle_rad, normal_in_body
+from sim.report.spans import spans
 from sim.report.summary import estimate_error
 from sim.scenario.schema import Scenario, orbit_period_s
 
@@ -81,11 +82,7 @@ class FlightHistories:
 
     def spans(self, where: NDArray[np.bool_]) -> tuple[Span, ...]:
         """The spans of time, s, over which something is so at every tick."""
-        edges = np.flatnonzero(np.diff(np.concatenate(([0], where.astype(np.int8), [0]))))
-        return tuple(
-            (float(first) / self.tick_hz, float(past) / self.tick_hz)
-            for first, past in zip(edges[::2], edges[1::2], strict=True)
-        )
+        return tuple((first / self.tick_hz, past / self.tick_hz) for first, past in spans(where))
 
     @property
     def pointing_deg(self) -> Array:

@@ -14,6 +14,7 @@ from sim.record.run_record import FlightRecord
 from sim.record.truth import Histories
 from sim.report.attitude_arrays import angle_rad, axis1_angle_rad, normal_in_body, relative
 from sim.report.isolations import isolated_unit
+from sim.report.spans import held_from, spans
 from sim.scenario.schema import Scenario, orbit_period_s
 
 Array = NDArray[np.float64]
@@ -116,6 +117,12 @@ def estimate_error(truth: Histories, estimates: Estimates) -> Array:
     return relative(estimates.q_body_from_orbit[:ticks], truth["q_body_from_orbit"])
 
 
+def converged_tick(error_deg: Array, tick_hz: int) -> int | None:
+    """The first tick of ten minutes with a small error of the estimate; NaN, no estimate, is not small."""
+    length = round(CONVERGED_FOR_S * tick_hz)
+    return next((first for first, past in spans(error_deg < CONVERGED_DEG) if past - first >= length), None)
+
+
 def within_3sigma(truth: Histories, estimates: Estimates) -> NDArray[np.bool_]:
     """Whether each axis of the attitude error is inside the filter's own 3 sigma, by tick, (n, 3), body axes.
 
@@ -158,17 +165,15 @@ def _angles(angle_deg: Array, last_orbit: slice) -> Json:
 
 def _axis1(angle_deg: Array, last_orbit: slice, tick_hz: int, scenario: Scenario) -> Json:
     result = _angles(angle_deg, last_orbit) | {"mean_last_orbit": float(angle_deg[last_orbit].mean())}
-    outside = np.flatnonzero(angle_deg >= SETTLED_DEG)
-    settled = int(outside[-1]) + 1 if len(outside) else 0
-    if settled < len(angle_deg):
+    settled = held_from(angle_deg < SETTLED_DEG)
+    if settled is not None:
         result["settle_orbits_5deg"] = settled / tick_hz / orbit_period_s(scenario)
     return result
 
 
 def _estimate(truth: Histories, estimates: Estimates, tick_hz: int) -> Json:
     error_deg = np.degrees(angle_rad(estimate_error(truth, estimates)))
-    good = error_deg < CONVERGED_DEG  # NaN, no estimate yet, is not good
-    first = _first_run(good, round(CONVERGED_FOR_S * tick_hz))
+    first = converged_tick(error_deg, tick_hz)
     if first is None:
         return {}
     error_deg, lit = error_deg[first:], truth["lit"][first:] > 0.5
@@ -219,15 +224,6 @@ def _spin(scenario: Scenario, truth: Histories, audit: AuditReport, last_orbit: 
         result["settle_s_1e-3"] = settle_s
         result["pulses_to_settle"] = sum(pulse.start_s < settle_s for pulse in audit.pulses)
     return result
-
-
-def _first_run(good: NDArray[np.bool_], length: int) -> int | None:
-    """The first index from which ``length`` values in a row are true."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], good.astype(np.int8), [0]))))
-    for start, stop in zip(edges[::2], edges[1::2], strict=True):
-        if stop - start >= length:
-            return int(start)
-    return None
 
 
 def summary_text(summary: Json) -> str:

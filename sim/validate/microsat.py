@@ -19,6 +19,7 @@ from sim.plant.environment.sun import illumination, sun_eci_m
 from sim.record.estimates import Estimates
 from sim.record.truth import Histories
 from sim.report.attitude_arrays import angle_rad, relative
+from sim.report.spans import held_from
 from sim.report.summary import nees
 from sim.scenario.schema import Scenario, flight_table, load, orbit_period_s
 from sim.validate.reference.comparison import Array
@@ -152,11 +153,9 @@ def pointing_figures(scenario: Scenario, truth: Histories, estimates: Estimates)
 def acquisition_figures(scenario: Scenario, truth: Histories, estimates: Estimates) -> Figures:
     """Orbits after which it stays pointed, infinite if it does not; whether it started in eclipse."""
     held = (pointing_deg(truth) < ACQUIRED_DEG) & (estimates.mode[: len(truth["t_s"])] == Mode.POINT)
-    broken = np.flatnonzero(~held)
-    first = int(broken[-1]) + 1 if len(broken) else 0
-    orbits = first / scenario.time.tick_hz / orbit_period_s(scenario)
+    first = held_from(held)
     return {
-        "held_orbits": orbits if first < len(held) else inf,
+        "held_orbits": inf if first is None else first / scenario.time.tick_hz / orbit_period_s(scenario),
         "dark_start": float(truth["lit"][0] == 0.0),
     }
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from fsw.input.schema import merge
+from sim.campaign.claim import ClaimVerdict
 from sim.campaign.flight import FlightResult, Order, fly_order
 from sim.campaign.study import Figure, Group, campaign, describe_order, summary_number, summary_value
 from sim.record import run_dir
@@ -68,6 +69,10 @@ def test_a_label_tells_what_is_special():
     assert describe_order(order) == "posat1, seed 3, orbit.raan_deg=60, initial.axis=[0, 1.235, 0]"
 
 
+def test_an_order_with_a_name_goes_by_it():
+    assert describe_order(Order("microsat", {"time": {"tick_hz": 2}}, seed=3, name="mine")) == "mine"
+
+
 class TestFigures:
     def outcome(self, values, **how):
         orders = tuple(Order("x", seed=seed) for seed in range(len(values)))
@@ -96,3 +101,11 @@ class TestFigures:
     def test_one_that_never_settles_is_worst_but_may_be_beyond_the_median(self):
         assert self.outcome([1.0, inf, 2.0], high=3.0).verdict.value == "FAIL"
         assert self.outcome([1.0, inf, 2.0], of="median", high=3.0).ours == 2.0
+
+    def test_only_flights_that_count_are_judged(self):
+        outcome = self.outcome([1.0, 9.0, 2.0], high=3.0, counts=lambda flight: flight.summary["v"] < 5.0)
+        assert (outcome.verdict, outcome.ours) == (ClaimVerdict.PASS, 2.0)
+
+    def test_without_a_flight_that_counts_there_is_no_verdict(self):
+        outcome = self.outcome([1.0, 9.0], high=3.0, counts=lambda flight: False)
+        assert outcome.verdict is ClaimVerdict.ABSENT

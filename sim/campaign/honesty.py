@@ -1,0 +1,80 @@
+"""How honest the filter of a flight is, and how well the satellite points: what a population is judged by."""
+
+from math import inf
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fsw.wire.messages import Mode
+from sim.campaign.flight import Figures
+from sim.record.estimates import Estimates
+from sim.record.truth import Histories
+from sim.report.attitude_arrays import angle_rad
+from sim.report.spans import held_from, spans
+from sim.report.summary import converged_tick, estimate_error, within_3sigma
+from sim.scenario.schema import Scenario, flight_table, orbit_period_s
+
+Array = NDArray[np.float64]
+
+POINTED_DEG = 10.0
+LAST_ORBITS = 3.0
+WRONG_DEG = (5.0, 10.0)
+
+
+def honesty_figures(scenario: Scenario, truth: Histories, estimates: Estimates) -> Figures:
+    """What differs from the onboard table, how honest the filter is, and how well the satellite points.
+
+    ``inside_1``, ``_2``, ``_3``: part of the ticks after convergence, attitude valid, with the error about
+    that body axis inside 3 sigma; ``estimate_deg``: RMS of the error in them. ``wrong_5deg_s`` and
+    ``wrong_10deg_s``: longest time of the flight valid with a larger error. ``pointing_deg``: RMS over the
+    last orbits; ``pointed_orbits``: from when on it stays small, infinite if never; ``in_point``: 1 if the
+    flight ends in POINT.
+    """
+    tick_hz, ticks = scenario.time.tick_hz, len(truth["t_s"])
+    orbit_ticks = orbit_period_s(scenario) * tick_hz
+    pointing_deg = np.degrees(angle_rad(truth["q_body_from_orbit"]))
+    error_deg = np.degrees(angle_rad(estimate_error(truth, estimates)))
+    valid = estimates.valid[:ticks]
+    pointed = held_from(pointing_deg < POINTED_DEG)
+    return {
+        **_differences(scenario),
+        **_honesty(error_deg, valid, within_3sigma(truth, estimates), converged_tick(error_deg, tick_hz)),
+        **{f"wrong_{most:g}deg_s": _longest(valid & (error_deg > most)) / tick_hz for most in WRONG_DEG},
+        "pointing_deg": _rms(pointing_deg[-round(LAST_ORBITS * orbit_ticks) :]),
+        "pointed_orbits": inf if pointed is None else pointed / orbit_ticks,
+        "in_point": float(estimates.mode[ticks - 1] == Mode.POINT),
+    }
+
+
+def _differences(scenario: Scenario) -> Figures:
+    """Dipole, largest error of a moment of inertia, and the turns of both sensors together."""
+    nominal, true = np.array(flight_table(scenario).body.inertia), np.array(scenario.body.inertia)
+    sensors = scenario.sensors
+    turns_deg = (sensors.magnetometer.misalignment_deg, sensors.sun.misalignment_deg)
+    return {
+        "dipole_am2": float(np.linalg.norm(scenario.disturbance.residual_dipole_am2)),
+        "inertia_percent": 100.0 * float(np.abs(np.diagonal(true) / np.diagonal(nominal) - 1.0).max()),
+        "misalignment_deg": float(sum(np.linalg.norm(turn) for turn in turns_deg)),
+    }
+
+
+def _honesty(
+    error_deg: Array, valid: NDArray[np.bool_], inside: NDArray[np.bool_], first: int | None
+) -> Figures:
+    """From the first tick after convergence on; a filter that never converges is not honest."""
+    if first is None or not valid[first:].any():
+        return {"inside_1": 0.0, "inside_2": 0.0, "inside_3": 0.0, "estimate_deg": inf}
+    counted = valid[first:]
+    parts = inside[first:][counted].mean(axis=0)
+    return {
+        **{f"inside_{axis}": float(part) for axis, part in enumerate(parts, start=1)},
+        "estimate_deg": _rms(error_deg[first:][counted]),
+    }
+
+
+def _longest(holds: NDArray[np.bool_]) -> int:
+    return max((past - first for first, past in spans(holds)), default=0)
+
+
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.mean(values**2)))

@@ -1,0 +1,200 @@
+"""Populations of real satellites: what flies differs from its onboard table within bounds, at random.
+
+A satellite is drawn by its kind and seed alone, so it is the same in a campaign as by itself. The plant gets
+what is true; the onboard table keeps the nominal values of the scenario.
+"""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fsw.input.schema import Nested, merge
+from sim.campaign.flight import Order
+from sim.campaign.honesty import honesty_figures
+from sim.scenario.schema import load
+from sim.scenario.sections import ScenarioBody
+
+Array = NDArray[np.float64]
+Interval = tuple[float, float]
+
+START_DEG, START_DEGPS = 60.0, 0.05
+"""Most that the start is off: the angle, and the rate about each body axis."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tolerances:
+    """By how much a satellite may differ from its table. Uniform within it, but for the dipole.
+
+    Attributes:
+        residual_dipole_am2: least and most, any direction; its logarithm is uniform.
+        torque_nm: per body axis, at the peak of its daily variation.
+        declared_torque_nm: what the table has to allow for: the same, and drag and light.
+        inertia_percent: of each moment.
+        products_percent: of inertia, of the mean principal moment.
+        coil_gain_percent: of each coil.
+        coil_misalignment_deg: of each coil's axis, the whole turn.
+        magnetometer_bias_nt: per axis.
+        magnetometer_scale_percent: per axis.
+        magnetometer_misalignment_deg: the whole turn.
+        sun_misalignment_deg: the whole turn.
+        along_track_km: by which the satellite is ahead of its elements, or behind them.
+        latency_s: of both sensors; every satellite has it in full.
+    """
+
+    residual_dipole_am2: Interval
+    torque_nm: float
+    declared_torque_nm: float
+    inertia_percent: float = 10.0
+    products_percent: float = 2.0
+    coil_gain_percent: float = 5.0
+    coil_misalignment_deg: float = 0.5
+    magnetometer_bias_nt: float = 1000.0
+    magnetometer_scale_percent: float = 0.5
+    magnetometer_misalignment_deg: float = 1.0
+    sun_misalignment_deg: float = 0.5
+    along_track_km: float = 5.0
+    latency_s: float = 1.0
+
+    def declared(self) -> Nested:
+        """The bounds as ``[uncertainty]`` of an onboard table."""
+        values = asdict(self)
+        values["residual_dipole_am2"] = self.residual_dipole_am2[1]
+        values["torque_nm"] = values.pop("declared_torque_nm")
+        return values
+
+
+@dataclass(frozen=True, slots=True)
+class SatelliteKind:
+    """A population: the scenario of the nominal satellite, and the bounds."""
+
+    scenario: str
+    tolerances: Tolerances
+
+
+POPULATIONS: Mapping[str, SatelliteKind] = {
+    "50kg": SatelliteKind("microsat", Tolerances((0.001, 0.1), torque_nm=3e-8, declared_torque_nm=3e-8)),
+    "3u": SatelliteKind("cubesat3u", Tolerances((0.0005, 0.01), torque_nm=1e-9, declared_torque_nm=1e-9)),
+    "6u": SatelliteKind("cubesat6u", Tolerances((0.001, 0.02), torque_nm=2e-9, declared_torque_nm=3e-8)),
+}
+
+
+def satellite(
+    kind: str, seed: int, *, twice: bool = False, rate_degps: Interval | None = None, declared: bool = True
+) -> Nested:
+    """One satellite of a population, as overrides of the scenario of its kind.
+
+    Args:
+        kind: of ``POPULATIONS``.
+        seed: 0 or more; a satellite for each.
+        twice: the truth differs by twice as much; what is declared does not.
+        rate_degps: least and most of the start rate, about any axis; None: up to ``START_DEGPS`` per axis.
+        declared: the onboard table declares the bounds; else it holds what it takes for ordinary.
+    """
+    chosen, factor = POPULATIONS[kind], 2.0 if twice else 1.0
+    random = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=tuple(kind.encode())))
+    body = _nominal_body(chosen.scenario)
+    overrides = _hardware(random, chosen.tolerances, factor)
+    overrides["initial"] = _start(random, rate_degps)
+    overrides["body"] = {
+        "inertia_kgm2": _inertia(random, np.array(body.inertia), chosen.tolerances, factor).tolist()
+    }
+    overrides["flight"] = {"body": {"inertia_kgm2": list(body.inertia_kgm2)}}
+    limits = chosen.tolerances.declared()
+    overrides["flight"]["uncertainty"] = limits if declared else dict.fromkeys(limits)
+    return overrides
+
+
+def population_order(
+    kind: str,
+    seed: int,
+    orbits: float,
+    *,
+    twice: bool = False,
+    rate_degps: Interval | None = None,
+    overrides: Nested | None = None,
+) -> Order:
+    """The flight of a satellite, with ``overrides`` laid over it, measured by ``honesty_figures``."""
+    drawn = satellite(kind, seed, twice=twice, rate_degps=rate_degps)
+    changed = merge(drawn, overrides or {})
+    name = f"satellite {seed} of {kind}"
+    return Order(POPULATIONS[kind].scenario, changed, seed, orbits, honesty_figures, name)
+
+
+@cache
+def _nominal_body(scenario: str) -> ScenarioBody:
+    return load(scenario).body
+
+
+def _hardware(random: np.random.Generator, tolerances: Tolerances, factor: float) -> Nested:
+    """Dipole, coils, sensors, torque and orbit: all but the inertia."""
+
+    def within(bound: float) -> Array:
+        return factor * bound * random.uniform(-1.0, 1.0, 3)
+
+    def turn(bound_deg: float) -> list[float]:
+        turned: list[float] = (factor * bound_deg * random.uniform() * _direction(random)).tolist()
+        return turned
+
+    least, most = np.log(tolerances.residual_dipole_am2)
+    dipole = factor * np.exp(random.uniform(least, most)) * _direction(random)
+    daily_part = float(random.uniform())
+    return {
+        "disturbance": {
+            "residual_dipole_am2": dipole.tolist(),
+            "torque_nm": (within(tolerances.torque_nm) / (1.0 + daily_part)).tolist(),
+            "torque_daily_part": daily_part,
+        },
+        "coils": {
+            "dipole_scale": (1.0 + 0.01 * within(tolerances.coil_gain_percent)).tolist(),
+            "misalignment_deg": [turn(tolerances.coil_misalignment_deg) for _ in range(3)],
+        },
+        "sensors": {
+            "magnetometer": {
+                "bias_nt": within(tolerances.magnetometer_bias_nt).tolist(),
+                "scale": (1.0 + 0.01 * within(tolerances.magnetometer_scale_percent)).tolist(),
+                "misalignment_deg": turn(tolerances.magnetometer_misalignment_deg),
+                "latency_s": factor * tolerances.latency_s,
+            },
+            "sun": {
+                "misalignment_deg": turn(tolerances.sun_misalignment_deg),
+                "latency_s": factor * tolerances.latency_s,
+            },
+        },
+        "orbit": {"along_track_km": float(within(tolerances.along_track_km)[0])},
+    }
+
+
+def _start(random: np.random.Generator, rate_degps: Interval | None) -> Nested:
+    axis, angle_deg = _direction(random), random.uniform(0.0, START_DEG)
+    slow_degps = START_DEGPS * random.uniform(-1.0, 1.0, 3)
+    direction, part = _direction(random), random.uniform()  # drawn either way: the same satellite tumbles
+    if rate_degps is None:
+        rate = slow_degps
+    else:
+        rate = (rate_degps[0] + part * (rate_degps[1] - rate_degps[0])) * direction
+    return {"axis": axis.tolist(), "angle_deg": float(angle_deg), "rate_degps": rate.tolist()}
+
+
+def _inertia(random: np.random.Generator, nominal: Array, tolerances: Tolerances, factor: float) -> Array:
+    """A tensor near the nominal one, drawn last because it is drawn anew until a rigid body can have it."""
+    diagonal = np.diagonal(nominal)
+    while True:
+        moments = diagonal * (1.0 + 0.01 * factor * tolerances.inertia_percent * random.uniform(-1.0, 1.0, 3))
+        products = (
+            0.01 * factor * tolerances.products_percent * diagonal.mean() * random.uniform(-1.0, 1.0, 3)
+        )
+        upper = np.zeros((3, 3))
+        upper[np.triu_indices(3, 1)] = products
+        tensor: Array = np.diag(moments) + upper + upper.T
+        principal = np.linalg.eigvalsh(tensor)
+        if principal[0] > 0.0 and principal[2] < principal[0] + principal[1]:
+            return tensor
+
+
+def _direction(random: np.random.Generator) -> Array:
+    vector = random.standard_normal(3)
+    unit: Array = vector / np.linalg.norm(vector)
+    return unit

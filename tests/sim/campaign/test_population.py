@@ -1,0 +1,141 @@
+"""Random satellites: within their bounds, the same for the same seed, unknown on board."""
+
+import numpy as np
+import pytest
+
+from sim.campaign.honesty import honesty_figures
+from sim.campaign.population import POPULATIONS, population_order, satellite
+from sim.scenario.assemble import plant_config
+from sim.scenario.schema import flight_table, load
+
+SEEDS = range(60)
+
+
+def drawn(kind, **how):
+    return [satellite(kind, seed, **how) for seed in SEEDS]
+
+
+def differences(kind, one):
+    """By how much a satellite differs from its table, each part of its bound."""
+    limits, coils, sensors = POPULATIONS[kind].tolerances, one["coils"], one["sensors"]
+    disturbance = one["disturbance"]
+    true, moments = (np.array(at["body"]["inertia_kgm2"]) for at in (one, one["flight"]))
+    off = true - np.diag(np.diagonal(true))
+    return {
+        "inertia": 100.0 * np.abs(np.diagonal(true) / moments - 1.0).max() / limits.inertia_percent,
+        "products": 100.0 * np.abs(off).max() / moments.mean() / limits.products_percent,
+        "dipole": np.linalg.norm(disturbance["residual_dipole_am2"]) / limits.residual_dipole_am2[1],
+        "torque": np.abs(disturbance["torque_nm"]).max()
+        * (1.0 + disturbance["torque_daily_part"])
+        / limits.torque_nm,
+        "gain": 100.0 * np.abs(np.array(coils["dipole_scale"]) - 1.0).max() / limits.coil_gain_percent,
+        "axes": np.linalg.norm(coils["misalignment_deg"], axis=1).max() / limits.coil_misalignment_deg,
+        "bias": np.abs(sensors["magnetometer"]["bias_nt"]).max() / limits.magnetometer_bias_nt,
+        "scale": 100.0
+        * np.abs(np.array(sensors["magnetometer"]["scale"]) - 1.0).max()
+        / limits.magnetometer_scale_percent,
+        "turn": np.linalg.norm(sensors["magnetometer"]["misalignment_deg"])
+        / limits.magnetometer_misalignment_deg,
+        "sun": np.linalg.norm(sensors["sun"]["misalignment_deg"]) / limits.sun_misalignment_deg,
+        "along track": abs(one["orbit"]["along_track_km"]) / limits.along_track_km,
+        "latency": sensors["magnetometer"]["latency_s"] / limits.latency_s,
+        "latency of the Sun sensor": sensors["sun"]["latency_s"] / limits.latency_s,
+    }
+
+
+@pytest.mark.parametrize("kind", POPULATIONS)
+@pytest.mark.parametrize(("twice", "factor"), [(False, 1.0), (True, 2.0)])
+def test_the_truth_fills_its_bounds_and_stays_within(kind, twice, factor):
+    found = [differences(kind, one) for one in drawn(kind, twice=twice)]
+    for name in found[0]:
+        most = max(one[name] for one in found)
+        assert 0.9 * factor < most <= factor * (1.0 + 1e-9), name
+
+
+def test_the_dipole_is_spread_over_all_its_decades_and_directions():
+    dipoles = np.array([one["disturbance"]["residual_dipole_am2"] for one in drawn("50kg")])
+    size = np.linalg.norm(dipoles, axis=1)
+    assert size.min() < 0.0015
+    assert np.median(size) == pytest.approx(0.01, rel=0.5)
+    assert (np.abs(dipoles.mean(axis=0)) < 0.4 * size.mean()).all()
+
+
+@pytest.mark.parametrize("kind", POPULATIONS)
+def test_the_onboard_table_keeps_the_nominal_values(kind):
+    name = POPULATIONS[kind].scenario
+    nominal = load(name)
+    for seed in range(5):
+        flown = load(name, satellite(kind, seed))
+        for section in ("orbit", "body", "coils", "control", "estimator", "fdir"):
+            assert getattr(flight_table(flown), section) == getattr(flight_table(nominal), section)
+        plant = plant_config(flown, seed)
+        assert plant.body.inertia_kgm2 == flown.body.inertia != nominal.body.inertia
+        assert plant.disturbance.residual_dipole_body_am2 != (0.0, 0.0, 0.0)
+
+
+def test_a_satellite_is_that_of_its_kind_and_seed_alone():
+    assert satellite("50kg", 7) == satellite("50kg", 7)
+    one, other = satellite("50kg", 7), satellite("50kg", 8)
+    assert one["sensors"] != other["sensors"]
+    cubesat = satellite("3u", 7)
+    assert one["sensors"]["magnetometer"]["bias_nt"] != cubesat["sensors"]["magnetometer"]["bias_nt"]
+
+
+def test_starts_within_60_deg_and_slowly():
+    starts = [one["initial"] for one in drawn("50kg")]
+    angles = [start["angle_deg"] for start in starts]
+    assert 0.0 <= min(angles) < 5.0
+    assert 55.0 < max(angles) <= 60.0
+    rates = np.abs([start["rate_degps"] for start in starts])
+    assert 0.045 < rates.max() <= 0.05
+
+
+def test_the_same_satellite_tumbles():
+    calm, tumbling = satellite("50kg", 3), satellite("50kg", 3, rate_degps=(1.0, 2.0))
+    rates = [np.linalg.norm(one["initial"]["rate_degps"]) for one in drawn("50kg", rate_degps=(1.0, 2.0))]
+    assert 1.0 <= min(rates) < 1.1
+    assert 1.9 < max(rates) <= 2.0
+    for one in (calm, tumbling):
+        one["initial"].pop("rate_degps")
+    assert calm == tumbling
+
+
+def test_a_tensor_is_that_of_a_body_even_at_twice_the_bounds():
+    """A slender satellite is near the limit at which two moments of inertia sum to the third."""
+    for one in drawn("3u", twice=True):
+        moments = np.linalg.eigvalsh(one["body"]["inertia_kgm2"])
+        assert moments[2] < moments[0] + moments[1]
+
+
+def test_what_is_declared_is_the_bounds_and_not_the_truth():
+    one = satellite("6u", 4, twice=True)["flight"]
+    assert one["uncertainty"] == satellite("6u", 5)["flight"]["uncertainty"]
+    assert one["uncertainty"] == {
+        "inertia_percent": 10.0,
+        "products_percent": 2.0,
+        "residual_dipole_am2": 0.02,
+        "coil_gain_percent": 5.0,
+        "coil_misalignment_deg": 0.5,
+        "magnetometer_bias_nt": 1000.0,
+        "magnetometer_scale_percent": 0.5,
+        "magnetometer_misalignment_deg": 1.0,
+        "sun_misalignment_deg": 0.5,
+        "torque_nm": 3e-8,
+        "along_track_km": 5.0,
+        "latency_s": 1.0,
+    }
+    flown = load("cubesat6u", satellite("6u", 4))
+    assert flight_table(flown).uncertainty.model_dump() == one["uncertainty"]
+
+
+def test_a_table_that_declares_nothing_takes_ordinary_bounds():
+    flown = load("microsat", satellite("50kg", 4, declared=False))
+    assert set(flight_table(flown).uncertainty.model_dump().values()) == {None}
+
+
+def test_an_order_flies_the_satellite_with_what_is_laid_over_it():
+    order = population_order("50kg", 5, 8.0, twice=True, overrides={"coils": {"backoff": "per_coil"}})
+    expected = satellite("50kg", 5, twice=True)
+    assert order.overrides["coils"] == expected["coils"] | {"backoff": "per_coil"}
+    assert (order.scenario, order.seed, order.orbits) == ("microsat", 5, 8.0)
+    assert order.measure is honesty_figures
