@@ -21,7 +21,12 @@ PAGE = "validation.md"
 
 
 def validate(
-    folder: Path | None, only: Sequence[str], out: Path | None, quick: bool, workers: int | None
+    folder: Path | None,
+    only: Sequence[str],
+    out: Path | None,
+    quick: bool,
+    workers: int | None,
+    satellites: int | None = None,
 ) -> int:
     """Run the studies, print each outcome, write the page.
 
@@ -34,6 +39,7 @@ def validate(
         out: path of the page.
         quick: leave out flights.
         workers: processes; None: as many as there are cores.
+        satellites: at most so many of each population; None: all.
 
     Returns:
         The exit code: 1 if a claim fails, else 0.
@@ -43,9 +49,9 @@ def validate(
     """
     began = time.monotonic()
     repository = find_repository(Path.cwd())
-    studies = reference.studies(folder) if folder is not None else all_studies(repository)
+    studies = reference.studies(folder) if folder is not None else all_studies(repository, satellites)
     studies = choose_studies(studies, only, quick)
-    whole = folder is None and not only and not quick
+    whole = folder is None and not only and not quick and satellites is None
     page = out or (_default_page(repository) if whole else None)
     if page is not None:
         check_file(page)

@@ -5,17 +5,23 @@ from pathlib import Path
 
 from sim.campaign.claim import Study
 from sim.errors import HarnessError
-from sim.validate import computed, microsat, posat1
+from sim.validate import computed, microsat, population, posat1
 from sim.validate.reference import reference
 
 REFERENCE_FOLDER = Path("tests", "reference")
 
 
-def all_studies(repository: Path | None) -> list[Study]:
-    """All studies; reference data are only in the repository."""
+def all_studies(repository: Path | None, satellites: int | None = None) -> list[Study]:
+    """All studies; reference data are only in the repository. ``satellites``: at most, of each population."""
     folder = None if repository is None else repository / REFERENCE_FOLDER
     checks = reference.studies(folder) if folder is not None and folder.is_dir() else reference.absent()
-    return [*checks, *computed.studies(), *posat1.studies(), *microsat.studies()]
+    return [
+        *checks,
+        *computed.studies(),
+        *posat1.studies(),
+        *microsat.studies(),
+        *population.studies(satellites),
+    ]
 
 
 def choose_studies(studies: Sequence[Study], only: Sequence[str], quick: bool) -> list[Study]:

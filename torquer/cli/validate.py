@@ -18,6 +18,9 @@ from torquer.cli.options import sentences
     "--only", multiple=True, metavar="ID", help="These claims alone, by the first words of their ids."
 )
 @click.option("--quick", is_flag=True, help="Leave out flights.")
+@click.option(
+    "--satellites", type=click.IntRange(min=1), help="At most so many of each population. Default: all."
+)
 @click.option("--workers", type=click.IntRange(min=1), help="Processes. Default: one a core.")
 @click.option(
     "--out",
@@ -26,9 +29,14 @@ from torquer.cli.options import sentences
 )
 @sentences
 def validate(
-    reference: Path | None, only: tuple[str, ...], quick: bool, workers: int | None, out: Path | None
+    reference: Path | None,
+    only: tuple[str, ...],
+    quick: bool,
+    satellites: int | None,
+    workers: int | None,
+    out: Path | None,
 ) -> int:
     """Check every published figure and reference: claim, source, our figure, verdict."""
     from sim.validate.command import validate
 
-    return validate(reference, only, out, quick, workers)
+    return validate(reference, only, out, quick, workers, satellites)

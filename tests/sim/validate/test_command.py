@@ -47,7 +47,7 @@ class TestCommand:
 
     def test_only_a_whole_validation_writes_the_page_by_itself(self, tmp_path, monkeypatch, study):
         parts = [study("a", [1.0]), study("b", [2.0], has_flights=True)]
-        monkeypatch.setattr(command, "all_studies", lambda repository: parts)
+        monkeypatch.setattr(command, "all_studies", lambda repository, satellites: parts)
         monkeypatch.setattr(command, "find_repository", lambda start: tmp_path)
         page = tmp_path / "docs" / "validation.md"
         for words in (["--quick"], ["--only", "a"]):

@@ -1,0 +1,147 @@
+"""Claims on populations of satellites that differ from their onboard tables: quiet, honest, and pointing."""
+
+from collections.abc import Callable, Sequence
+from math import inf
+
+import numpy as np
+
+from sim.campaign.claim import Study
+from sim.campaign.flight import FlightResult, Order
+from sim.campaign.honesty import LAST_ORBITS, POINTED_DEG
+from sim.campaign.population import population_order
+from sim.campaign.study import Figure, Group, campaign, figure_of, summary_value
+
+SOURCE = "Ordinary tolerances of a satellite of this size"
+SATELLITES = {"50kg": 100, "3u": 30, "6u": 30}
+TUMBLING, TWICE = 30, 30
+ORBITS, ORBITS_FROM_5_DEGPS = 8.0, 14.0
+
+SMALL_DIPOLE_AM2 = 0.04
+"""Up to this the pulses with shared back-off can hold the 50 kg satellite pointed closely."""
+POINTED_ORBITS = 2.5
+WRONG_S = 60.0
+
+
+def studies(most: int | None = None) -> list[Study]:
+    """All of them, each with at most ``most`` satellites, the first ones."""
+
+    def seeds(count: int) -> range:
+        return range(1, 1 + (count if most is None else min(count, most)))
+
+    return [
+        microsatellites(seeds(SATELLITES["50kg"])),
+        large_dipoles(seeds(SATELLITES["50kg"])),
+        cubesats("3u", seeds(SATELLITES["3u"])),
+        cubesats("6u", seeds(SATELLITES["6u"])),
+        tumbling("tumbling", (1.0, 2.0), ORBITS, seeds(TUMBLING)),
+        tumbling("tumbling_5degps", (5.0, 5.0), ORBITS_FROM_5_DEGPS, seeds(TUMBLING)),
+        twice_the_bounds(seeds(TWICE)),
+    ]
+
+
+def microsatellites(seeds: Sequence[int]) -> Study:
+    """The 50 kg satellite with shared back-off."""
+    figures = (
+        *_quiet_and_honest(),
+        Figure("estimate", "RMS error of the estimate, median", "deg", ESTIMATE, "median", high=0.4),
+        Figure("estimate_worst", "RMS error of the estimate, all", "deg", ESTIMATE, high=0.7),
+        IN_POINT,
+        Figure(
+            "pointed",
+            f"Within {POINTED_DEG:g} deg for good after, dipole up to {SMALL_DIPOLE_AM2:g} A m^2, all",
+            "orbits",
+            figure_of("pointed_orbits"),
+            counts=_has_small_dipole,
+            high=POINTED_ORBITS,
+        ),
+        _pointing("pointing", "median", of="median", high=2.3),
+        _pointing("pointing_small_dipole", "dipole up to 0.04 A m^2, all", _has_small_dipole, high=4.0),
+        _pointing("pointing_worst", "all", high=8.0),
+    )
+    orders = tuple(population_order("50kg", seed, ORBITS) for seed in seeds)
+    return _study("50kg", orders, figures)
+
+
+def large_dipoles(seeds: Sequence[int]) -> Study:
+    """Those of the 50 kg satellites whose dipole is large, with a back-off of each coil by itself."""
+    per_coil = {"coils": {"backoff": "per_coil"}}
+    orders = [population_order("50kg", seed, ORBITS, overrides=per_coil) for seed in seeds]
+    large = tuple(order for order in orders if _dipole_am2(order) > SMALL_DIPOLE_AM2)
+    statement = "dipole above 0.04 A m^2, back-off per coil, all"
+    return _study("50kg_per_coil", large, (ISOLATED, _pointing("pointing", statement, high=4.0)))
+
+
+def cubesats(kind: str, seeds: Sequence[int]) -> Study:
+    """Satellites whose dipole may be more than their coils can counter: honest, and pointing as they can."""
+    orders = tuple(population_order(kind, seed, ORBITS) for seed in seeds)
+    figures = (*_quiet_and_honest(), _pointing("pointing", "median, reported", of="median"))
+    return _study(kind, orders, figures)
+
+
+def tumbling(name: str, rate_degps: tuple[float, float], orbits: float, seeds: Sequence[int]) -> Study:
+    """50 kg satellites that start by tumbling about any axis."""
+    orders = tuple(population_order("50kg", seed, orbits, rate_degps=rate_degps) for seed in seeds)
+    return _study(name, orders, (*_quiet_and_honest(), IN_POINT))
+
+
+def twice_the_bounds(seeds: Sequence[int]) -> Study:
+    """50 kg satellites that differ from their table by twice what is declared."""
+    orders = tuple(population_order("50kg", seed, ORBITS, twice=True) for seed in seeds)
+    wrong = Figure(
+        "wrong",
+        "Longest time valid with an error above 10 deg, all",
+        "s",
+        figure_of("wrong_10deg_s"),
+        high=WRONG_S,
+    )
+    return _study("twice", orders, (ISOLATED, wrong))
+
+
+def isolated_units(flight: FlightResult) -> float:
+    """How many units were isolated; all are healthy."""
+    return float(len(flight.summary["isolated"]))
+
+
+def inside(combine: Callable[[Sequence[float]], float]) -> Callable[[FlightResult], float]:
+    """The parts of the time inside 3 sigma about the three axes, combined."""
+    return lambda flight: float(combine([flight.figures[f"inside_{axis}"] for axis in (1, 2, 3)]))
+
+
+ESTIMATE = figure_of("estimate_deg")
+ISOLATED = Figure("isolated", "Healthy units isolated in a flight, all", "1", isolated_units, high=0.0)
+IN_POINT = Figure("in_point", "In POINT at the end, all", "1", figure_of("in_point"), low=1.0)
+
+
+def _quiet_and_honest() -> tuple[Figure, ...]:
+    pooled, each = "Time inside 3 sigma by axis, pooled", "Time inside 3 sigma, worst axis, all"
+    nees = "Mean NEES of attitude and rate"
+    return (
+        ISOLATED,
+        Figure("inside", pooled, "1", inside(np.mean), "mean", low=0.99),
+        Figure("inside_worst", each, "1", inside(min), low=0.95),
+        Figure("nees", nees, "1", summary_value("nees_mean", inf), "mean", low=2.0, high=8.0),
+    )
+
+
+def _pointing(
+    name: str,
+    which: str,
+    counts: Callable[[FlightResult], bool] | None = None,
+    of: str = "worst",
+    high: float = inf,
+) -> Figure:
+    statement = f"RMS pointing error, last {LAST_ORBITS:.0f} orbits, {which}"
+    return Figure(name, statement, "deg", figure_of("pointing_deg"), of, counts=counts, high=high)
+
+
+def _study(name: str, orders: tuple[Order, ...], figures: Sequence[Figure]) -> Study:
+    source = f"{SOURCE}; {len(orders)} satellites"
+    return campaign(f"population.{name}", source, (Group("", orders),), figures)
+
+
+def _has_small_dipole(flight: FlightResult) -> bool:
+    return flight.figures["dipole_am2"] <= SMALL_DIPOLE_AM2
+
+
+def _dipole_am2(order: Order) -> float:
+    return float(np.linalg.norm(order.overrides["disturbance"]["residual_dipole_am2"]))
