@@ -1,7 +1,8 @@
 # make sil    make the environment .venv and fly the default scenario
 # make test   all tests; those on a CAN interface are skipped, and reported, where there is none
 # make lint   style, types, layers, generated code, pages and pictures
-# make validate   compute every claim and reference figure, into docs/validation.md: minutes to half an hour
+# make validate   compute every claim and reference figure, into docs/validation.md: an hour or two
+# make population   fly populations of random satellites, into docs/population.md: an hour or two
 # make replay-elsewhere   does a log of 20 orbits replay with other processor features, into docs/replay.md
 # make faults     every fault in ten phases and with five seeds, 250 real kills among them, into docs/faults.md: an hour or two
 # make soak       72 simulated hours, and an hour on the bench in real time, into docs/soak.md
@@ -22,7 +23,7 @@ bin := .venv/bin
 installed := .venv/.installed
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv sil test lint test-vcan golden validate fuzz attack differential replay-elsewhere faults soak planted mutation coverage
+.PHONY: help venv sil test lint test-vcan golden validate fuzz attack differential replay-elsewhere faults population soak planted mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -75,6 +76,9 @@ replay-elsewhere: venv
 
 faults: venv
 	$(bin)/torquer faults --phases 10 --seeds 5 --slow --write-docs
+
+population: venv
+	$(bin)/python tools/population.py $(POPULATION)
 
 soak: venv
 	$(bin)/python tools/soak.py $(SOAK)

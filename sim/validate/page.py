@@ -21,8 +21,7 @@ tolerance counts.
 def render(finished: Sequence[StudyResult], wall_s: float) -> str:
     """The page: the table of claims, what was left out of the reference files, wall time and platform."""
     outcomes = [outcome for study in finished for outcome in study.outcomes]
-    lines = [_HEAD, tally(outcomes) + ".", "", "| claim | source | ours | tolerance | verdict |"]
-    lines += ["|---|---|---|---|---|", *map(_row, outcomes), ""]
+    lines = [_HEAD, tally(outcomes) + ".", "", *claims_table(outcomes), ""]
     files = [result for study in finished for result in study.results if isinstance(result, FileResult)]
     if files:
         lines += ["| reference file | rows | columns not used |", "|---|---|---|"]
@@ -30,6 +29,11 @@ def render(finished: Sequence[StudyResult], wall_s: float) -> str:
         lines.append("")
     lines += [f"Wall time {wall_s:.0f} s. {platform_line()}.", ""]
     return "\n".join(lines)
+
+
+def claims_table(outcomes: Sequence[ClaimOutcome]) -> list[str]:
+    """The lines of a table of claims with figures and verdicts."""
+    return ["| claim | source | ours | tolerance | verdict |", "|---|---|---|---|---|", *map(_row, outcomes)]
 
 
 def line(outcome: ClaimOutcome) -> str:
