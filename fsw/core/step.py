@@ -7,13 +7,13 @@ from fsw.core import telemetry
 from fsw.core.actuation import pulses
 from fsw.core.actuation.actuator import actuate, update_view
 from fsw.core.algebra.quaternion import rotate
-from fsw.core.algebra.vector import Vec3
+from fsw.core.algebra.vector import ZERO, Vec3, add
 from fsw.core.commands import command
 from fsw.core.config import FlightConfig
 from fsw.core.estimation.attitude import UNKNOWN
 from fsw.core.estimation.estimator import NONE_USED, Used, predict, restart, update
 from fsw.core.estimation.orbital_attitude import orbital_attitude, perfect_attitude
-from fsw.core.estimation.parameters import NOTHING
+from fsw.core.estimation.parameters import NOTHING, UNCHANGED_INERTIA, Parameters, inertia_error
 from fsw.core.estimation.samples import usable_field, usable_sun
 from fsw.core.fdir import fdir
 from fsw.core.fdir.fdir import Evidence
@@ -22,6 +22,7 @@ from fsw.core.gate.readings import Readings, admit
 from fsw.core.gate.sync_watch import Belief, SyncWatch, judge, near
 from fsw.core.laws import by_mode
 from fsw.core.laws.interface import Demand, FieldSample, LawInput
+from fsw.core.laws.riccati import resting_torque
 from fsw.core.monitors import Monitor
 from fsw.core.orbit.ephemeris import EphemerisModel, Reference, advance, plausible, reference_at, with_orbit
 from fsw.core.restart import restarted
@@ -193,11 +194,19 @@ def _law_input(state: FlightState, observation: Observation, model: EphemerisMod
         state.sample,
         usable_sun(readings),
         reference,
-        parameters.torque_body_nm,
+        _constant_torque(parameters, reference),
         parameters.dipole_body_am2,
         state.tick,
         model,
     )
+
+
+def _constant_torque(parameters: Parameters, reference: Reference | None) -> Vec3:
+    """On the nominal attitude: the estimated torque, and that of the inertia that the table does not know."""
+    if reference is None or parameters.inertia_error_kgm2 == UNCHANGED_INERTIA:
+        return parameters.torque_body_nm
+    resting = resting_torque(inertia_error(parameters), ZERO, reference.orbit_rate_radps)
+    return add(parameters.torque_body_nm, resting)
 
 
 def _schedule(

@@ -6,7 +6,7 @@ from torquer.cli.options import BUSES, SETTINGS, sentences
 
 
 @click.command()
-@click.argument("scenario", default="microsat")
+@click.argument("scenario", default="realsat")
 @click.option("--bus", default="auto", show_default=True, help=BUSES)
 @SETTINGS
 @click.option("--disarmed", is_flag=True, help="Send no request to drive a coil.")

@@ -12,7 +12,7 @@ WAITING_NOTE_S = 30.0
 
 
 @click.command()
-@click.argument("scenario", default="microsat")
+@click.argument("scenario", default="realsat")
 @click.option("--bus", default="auto", show_default=True, help=BUSES)
 @click.option(
     "--orbits",

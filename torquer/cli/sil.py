@@ -8,7 +8,7 @@ from torquer.cli.options import BUSES, SEEDS, SETTINGS, SIGN, report_failures, s
 
 
 @click.command()
-@click.argument("scenario", default="microsat")
+@click.argument("scenario", default="realsat")
 @click.option("--bus", default="auto", show_default=True, help=BUSES + " or virtual.")
 @click.option("--pace", default="lockstep", show_default=True, help="lockstep or realtime[:FACTOR].")
 @click.option(

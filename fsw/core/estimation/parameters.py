@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from fsw.core.algebra.vector import ZERO, Mat3, Vec3, inverse
+from fsw.core.algebra.vector import ZERO, Mat3, Vec3, add, inverse
 
 Matrix3x3 = tuple[float, float, float, float, float, float, float, float, float]
 Symmetric = tuple[float, float, float, float, float, float]
@@ -112,11 +112,16 @@ class Rotor(NamedTuple):
     wheel_body_nms: Vec3
 
 
+def inertia_error(parameters: Parameters) -> Mat3:
+    """The inertia tensor less the table's, kg m^2, body axes."""
+    xx, yy, zz, xy, xz, yz = parameters.inertia_error_kgm2
+    return ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
+
+
 def estimated_rotor(nominal: Rotor, parameters: Parameters) -> Rotor:
     """The rotor with the estimated error of its inertia."""
-    xx, yy, zz, xy, xz, yz = parameters.inertia_error_kgm2
-    (a, b, c), (d, e, f), (g, h, i) = nominal.inertia_kgm2
-    inertia = ((a + xx, b + xy, c + xz), (d + xy, e + yy, f + yz), (g + xz, h + yz, i + zz))
+    first, second, third = map(add, nominal.inertia_kgm2, inertia_error(parameters))
+    inertia = (first, second, third)
     return Rotor(inertia, inverse(inertia), nominal.wheel_body_nms)
 
 

@@ -27,7 +27,8 @@ class LawInput(NamedTuple):
     ``b_body_t`` is the modelled field where the attitude is valid, else the last measured one; ``sample``
     and ``before`` are the last usable field sample of this tick and of the tick before; ``sun_body`` is the
     measured Sun direction, None where there is none; ``reference`` is orbit, field and Sun as modelled, None
-    where no orbit is known; ``torque_body_nm`` is the estimated torque and ``dipole_body_am2`` the estimated
+    where no orbit is known; ``torque_body_nm`` is the estimated torque on
+    the nominal attitude, that of an inertia off the table's included, and ``dipole_body_am2`` the estimated
     residual dipole, which is taken off a demanded dipole by ``by_mode``, not by the law; ``tick`` is this
     tick; ``ephemeris`` gives orbit and field at later times.
     """
