@@ -11,6 +11,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -20,7 +21,7 @@ from sim.campaign.flight import FlightResult
 from sim.campaign.population import POPULATIONS, Tolerances
 from sim.campaign.runner import StudyResult, run
 from sim.campaign.study import summary_number
-from sim.drawing.canvas import AXES_COLOURS, LIMIT, style
+from sim.drawing.canvas import AXES_COLOURS, LIMIT, log_y, style
 from sim.errors import HarnessError
 from sim.progress import progress
 from sim.record.destination import check_file
@@ -122,8 +123,10 @@ def draw(finished: Sequence[StudyResult], path: Path) -> None:
                 honesty = [100.0 * worst_inside(flight) for flight in flights]
                 _dots(above[column], x, pointing, name, AXES_COLOURS[number])
                 _dots(below[column], x, honesty, name, AXES_COLOURS[number])
+        flown = [flight for flights in nominal_flights(finished).values() for flight in flights]
+        log_y(above[0], np.array([flight.figures["pointing_deg"] for flight in flown]), decades=3.0)
         for column, (_, label, scale) in enumerate(ACROSS):
-            above[column].set(xscale=scale, yscale="log")
+            above[column].set(xscale=scale)
             below[column].set(xscale=scale, xlabel=label)
             below[column].axhline(99.7, color=LIMIT, linewidth=0.8, linestyle=(0, (4, 3)))
         above[0].set(ylabel="pointing error, RMS [deg]", title="Pointing, last three orbits")
