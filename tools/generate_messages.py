@@ -14,7 +14,7 @@ from cantools.database.can import Message, Signal
 WIRE = Path(__file__).resolve().parent.parent / "fsw" / "wire"
 TARGET = WIRE / "messages.py"
 WHOLE_UNITS = (None, "", "ms", "s", "mA")
-ENUM_SIGNALS = ("mode", "severity", "reason", "result", "gain", "element")
+ENUM_SIGNALS = ("mode", "severity", "reason", "result", "gain", "element", "component")
 NAMED_BY_MESSAGE = ("reason", "result")
 """Signals whose enum bears the name of the message too."""
 

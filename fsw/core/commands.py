@@ -5,11 +5,14 @@ that bears the counter of the one before it is not carried out again, but answer
 """
 
 from collections.abc import Callable
+from math import sqrt
 from typing import Any, NamedTuple
 
 from fsw.core import modes
+from fsw.core.algebra.vector import positive_definite
 from fsw.core.config import FlightConfig
-from fsw.core.estimation.estimator import untraced
+from fsw.core.estimation.estimator import freeze, load, thaw, untraced
+from fsw.core.estimation.parameters import component_places, estimated_inertia
 from fsw.core.fdir.fdir import Health
 from fsw.core.gate.readings import Readings, Telecommand
 from fsw.core.laws.interface import MAX_SPIN_RADPS
@@ -19,17 +22,20 @@ from fsw.core.orbit.ephemeris import advance, with_orbit
 from fsw.core.orbit.propagation import element_orbit
 from fsw.core.state import FlightState
 from fsw.wire.messages import (
+    Component,
     Element,
     Gain,
     Mode,
     TcAck,
     TcAckResult,
     TcClear,
+    TcFreeze,
     TcGain,
     TcLaw,
     TcMode,
     TcOrbitElement,
     TcOrbitLoad,
+    TcParameter,
     TcSpin,
 )
 
@@ -158,6 +164,33 @@ def _load(state: FlightState, message: TcOrbitLoad, situation: Situation) -> Out
     return state._replace(orbit=elements, upload=Upload(), ephemeris=window)
 
 
+MOST_SIGMAS = 10.0
+"""A parameter may be loaded with a value within so many standard deviations of the prior from its mean."""
+
+
+def _parameter(state: FlightState, message: TcParameter, situation: Situation) -> Outcome:
+    """The filter goes on from this value, and starts from it; the satellite must remain a body."""
+    if message.component not in list(Component):
+        return TcAckResult.UNKNOWN
+    config, value = situation.config.estimator, decimal(message.mantissa, message.exponent)
+    place = component_places(config.mekf.layout).get(message.component)
+    if config.perfect or place is None:
+        return TcAckResult.NOT_ALLOWED
+    mean = config.mekf.initial_parameters.floats()[message.component]
+    if abs(value - mean) > MOST_SIGMAS * sqrt(config.mekf.initial_covariance[place, place]):
+        return TcAckResult.OUT_OF_RANGE
+    loaded = load(state.estimator, message.component, value, config.mekf)
+    held = [loaded.first, loaded.estimate and loaded.estimate.parameters]
+    inertias = [estimated_inertia(config.mekf.rotor, parameters) for parameters in held if parameters]
+    if not all(map(positive_definite, inertias)):
+        return TcAckResult.OUT_OF_RANGE
+    return state._replace(estimator=loaded)
+
+
+def _freeze(state: FlightState, message: TcFreeze, situation: Situation) -> Outcome:
+    return state._replace(estimator=freeze(state.estimator) if message.frozen else thaw(state.estimator))
+
+
 Handler = Callable[[FlightState, Any, Situation], Outcome]
 
 HANDLERS: dict[type[Telecommand], Handler] = {
@@ -168,4 +201,6 @@ HANDLERS: dict[type[Telecommand], Handler] = {
     TcGain: _gain,
     TcOrbitElement: _element,
     TcOrbitLoad: _load,
+    TcParameter: _parameter,
+    TcFreeze: _freeze,
 }

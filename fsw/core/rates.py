@@ -24,6 +24,10 @@ class RateGroup:
         """Whether the group runs in this tick."""
         return tick % self.divisor == self.offset
 
+    def in_turn(self, tick: int, length: int) -> int:
+        """Which of so many items it takes in this tick, if it takes one at a time."""
+        return tick // self.divisor % length
+
 
 @dataclass(frozen=True, slots=True)
 class RateTable:
@@ -31,4 +35,5 @@ class RateTable:
 
     attitude: RateGroup
     quality: RateGroup
+    parameter: RateGroup
     heartbeat: RateGroup

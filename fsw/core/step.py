@@ -235,6 +235,7 @@ def _report(
     messages = [
         *replies,
         *telemetry.navigation_messages(state, observation.used, observation.reference, config.rates),
+        *telemetry.parameter_messages(state, config.estimator.mekf.layout, config.rates),
         *event_messages,
         *telemetry.heartbeat_messages(state, config.rates),
     ]

@@ -1,7 +1,12 @@
 """What fsw reports: navigation, events, heartbeat. Every message has a counter of its own in the state."""
 
+from math import sqrt
+
+from fsw.core.estimation import mekf
 from fsw.core.estimation.attitude import Attitude
 from fsw.core.estimation.estimator import Used
+from fsw.core.estimation.mekf import Estimate
+from fsw.core.estimation.parameters import Layout, component_places
 from fsw.core.events import SEVERITY, Event, Happening
 from fsw.core.fdir import fdir
 from fsw.core.gate.readings import Readings
@@ -21,6 +26,7 @@ from fsw.wire.messages import (
     FswEvent,
     FswHeartbeat,
     NavAttitude,
+    NavParameter,
     NavQuality,
     NavRate,
     TcAck,
@@ -33,6 +39,7 @@ COUNTED = (
     NavAttitude.ID,
     NavRate.ID,
     NavQuality.ID,
+    NavParameter.ID,
     TcAck.ID,
     FswEvent.ID,
     FswHeartbeat.ID,
@@ -57,6 +64,21 @@ def navigation_messages(
         lit = reference is not None and reference.lit
         messages.append(quality_message(state.attitude, state.modes, used, lit))
     return messages
+
+
+def parameter_messages(state: FlightState, places: Layout, rates: RateTable) -> list[CountedMessage]:
+    """NAV_PARAMETER of the component whose turn it is, if one is due and there is an estimate.
+
+    Args:
+        state: of this tick.
+        places: of the error state.
+        rates: when it is due.
+    """
+    estimate, group = state.estimator.estimate, rates.parameter
+    if not group.due(state.tick) or estimate is None or not mekf.healthy(estimate):
+        return []
+    known = list(component_places(places).items())
+    return [parameter_message(estimate, *known[group.in_turn(state.tick, len(known))])] if known else []
 
 
 def heartbeat_messages(state: FlightState, rates: RateTable) -> list[CountedMessage]:
@@ -96,6 +118,25 @@ def quality_message(attitude: Attitude, modes: ModeState, used: Used, lit: bool)
         tripped=int(modes.trips > 0),
         trips=min(modes.trips, 255),
     )
+
+
+DIGITS = 4
+"""Decimal places of a reported parameter behind the first."""
+
+
+def parameter_message(estimate: Estimate, component: int, place: int) -> CountedMessage:
+    """NAV_PARAMETER.
+
+    Args:
+        estimate: of finite numbers.
+        component: its number among the parameters.
+        place: where it stands in the error state.
+    """
+    value, sigma = estimate.parameters.floats()[component], sqrt(estimate.covariance[place, place])
+    _, _, exponent_text = f"{max(abs(value), sigma):.{DIGITS}e}".partition("e")
+    exponent = int(exponent_text) - DIGITS
+    unit = float(f"1e{exponent}")
+    return NavParameter(component, exponent, round(value / unit), round(sigma / unit))
 
 
 def heartbeat_message(tick: int, modes: ModeState, rejects: int) -> CountedMessage:

@@ -200,4 +200,9 @@ def _rates(telemetry: TelemetryTable, tick_hz: int) -> RateTable:
     def every(period_s: float) -> RateGroup:
         return RateGroup(max(1, round(period_s * tick_hz)))
 
-    return RateTable(every(telemetry.attitude_s), every(telemetry.quality_s), every(telemetry.heartbeat_s))
+    return RateTable(
+        attitude=every(telemetry.attitude_s),
+        quality=every(telemetry.quality_s),
+        parameter=every(telemetry.parameter_s),
+        heartbeat=every(telemetry.heartbeat_s),
+    )

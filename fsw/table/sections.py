@@ -223,10 +223,14 @@ class FdirTable(Section):
 
 
 class TelemetryTable(Section):
-    """Periods of the reports and of the ephemeris nodes, s; at least one tick."""
+    """Periods of the reports and of the ephemeris nodes, s; at least one tick.
+
+    ``parameter_s`` is the time from one estimated number to the next, of which each is reported in its turn.
+    """
 
     attitude_s: NotNegative
     quality_s: NotNegative
+    parameter_s: NotNegative
     heartbeat_s: NotNegative
     ephemeris_s: int = Field(ge=10, le=30)
 

@@ -11,6 +11,7 @@ between zero and its bound.
 
 from dataclasses import dataclass
 from math import radians, sqrt
+from typing import NamedTuple
 
 from pydantic import Field
 
@@ -97,34 +98,51 @@ BALL = 1.0 / sqrt(5.0)
 DAY_S = 86400.0
 
 
-def priors(known: Uncertainty, inertia_kgm2: Mat3) -> dict[str, Prior]:
-    """The prior of each parameter of the filter whose bound is not zero.
+class Shape(NamedTuple):
+    """Standard deviation, walk per root of a second, and mean of a parameter, in parts of its limit."""
 
-    The walks say how much of its bound a parameter may wander: a tenth of it in a day, the disturbance torque
-    a fifth, and the coils a hundredth in a second, so that what a coil loses in flight is found.
-    """
+    sigma: float
+    walk: float = 0.0
+    mean: float = 0.0
+
+
+SHAPES = {
+    "mag_bias_t": Shape(SIDE, walk=0.1 / sqrt(DAY_S)),
+    "torque_body_nm": Shape(SIDE, walk=0.2 / sqrt(DAY_S)),
+    "dipole_body_am2": Shape(SIDE, walk=0.1 / sqrt(DAY_S)),
+    "coil_error": Shape(SIDE, walk=0.01),
+    "inertia_error_kgm2": Shape(SIDE),
+    "mag_turn_rad": Shape(BALL),
+    "mag_scale": Shape(SIDE),
+    "sun_turn_rad": Shape(BALL),
+    "delay_s": Shape(0.5 * SIDE, mean=0.5),
+}
+"""A parameter may wander by a tenth of its limit in a day, the disturbance torque by a fifth, and the coils
+by a hundredth in a second, so that what a coil loses in flight is found."""
+
+
+def priors(known: Uncertainty, inertia_kgm2: Mat3) -> dict[str, Prior]:
+    """The prior of each parameter of the filter whose bound is not zero."""
+    return {
+        name: Prior(*(tuple(part * limit for limit in largest) for part in SHAPES[name]))
+        for name, largest in limits(known, inertia_kgm2).items()
+        if any(largest)
+    }
+
+
+def limits(known: Uncertainty, inertia_kgm2: Mat3) -> dict[str, tuple[float, ...]]:
+    """The largest deviation of each parameter of the filter, by component."""
     moments = [inertia_kgm2[axis][axis] * known.inertia_part for axis in range(3)]
     product = mean_moment(inertia_kgm2) * known.products_part
-    late, gain, axis = known.latency_s, known.coil_gain_part, known.coil_turn_rad
-    found = {
-        "mag_bias_t": _prior([known.mag_bias_t] * 3, SIDE, SLOW),
-        "torque_body_nm": _prior([known.torque_nm] * 3, SIDE, DAILY),
-        "dipole_body_am2": _prior([known.dipole_am2] * 3, SIDE, SLOW),
-        "coil_error": _prior([gain, axis, axis, axis, gain, axis, axis, axis, gain], SIDE, COILS),
-        "inertia_error_kgm2": _prior([*moments, product, product, product], SIDE, 0.0),
-        "mag_turn_rad": _prior([known.mag_turn_rad] * 3, BALL, 0.0),
-        "mag_scale": _prior([known.mag_scale_part] * 3, SIDE, 0.0),
-        "sun_turn_rad": _prior([known.sun_turn_rad] * 3, BALL, 0.0),
-        "delay_s": Prior((0.5 * SIDE * late,) * 2, (0.0, 0.0), mean=(0.5 * late, 0.5 * late)),
+    gain, axis = known.coil_gain_part, known.coil_turn_rad
+    return {
+        "mag_bias_t": (known.mag_bias_t,) * 3,
+        "torque_body_nm": (known.torque_nm,) * 3,
+        "dipole_body_am2": (known.dipole_am2,) * 3,
+        "coil_error": (gain, axis, axis, axis, gain, axis, axis, axis, gain),
+        "inertia_error_kgm2": (*moments, product, product, product),
+        "mag_turn_rad": (known.mag_turn_rad,) * 3,
+        "mag_scale": (known.mag_scale_part,) * 3,
+        "sun_turn_rad": (known.sun_turn_rad,) * 3,
+        "delay_s": (known.latency_s,) * 2,
     }
-    return {name: prior for name, prior in found.items() if any(prior.sigma)}
-
-
-SLOW = 0.1 / sqrt(DAY_S)
-DAILY = 0.2 / sqrt(DAY_S)
-COILS = 0.01
-"""Walks in parts of the bound per square root of a second."""
-
-
-def _prior(limits: list[float], shape: float, walk: float) -> Prior:
-    return Prior(tuple(shape * limit for limit in limits), tuple(walk * limit for limit in limits))

@@ -42,6 +42,46 @@ class Element(IntEnum):
     BSTAR = 8
 
 
+class Component(IntEnum):
+    """Values of ``component``."""
+
+    MAG_BIAS_X = 0
+    MAG_BIAS_Y = 1
+    MAG_BIAS_Z = 2
+    TORQUE_X = 3
+    TORQUE_Y = 4
+    TORQUE_Z = 5
+    DIPOLE_X = 6
+    DIPOLE_Y = 7
+    DIPOLE_Z = 8
+    COIL_XX = 9
+    COIL_XY = 10
+    COIL_XZ = 11
+    COIL_YX = 12
+    COIL_YY = 13
+    COIL_YZ = 14
+    COIL_ZX = 15
+    COIL_ZY = 16
+    COIL_ZZ = 17
+    INERTIA_XX = 18
+    INERTIA_YY = 19
+    INERTIA_ZZ = 20
+    INERTIA_XY = 21
+    INERTIA_XZ = 22
+    INERTIA_YZ = 23
+    MAG_TURN_X = 24
+    MAG_TURN_Y = 25
+    MAG_TURN_Z = 26
+    MAG_SCALE_X = 27
+    MAG_SCALE_Y = 28
+    MAG_SCALE_Z = 29
+    SUN_TURN_X = 30
+    SUN_TURN_Y = 31
+    SUN_TURN_Z = 32
+    MAG_DELAY = 33
+    SUN_DELAY = 34
+
+
 class CoilRefusedReason(IntEnum):
     """Values of ``reason``."""
 
@@ -86,6 +126,8 @@ _TC_SPIN = id_register(0x0A3)
 _TC_GAIN = id_register(0x0A4)
 _TC_ORBIT_ELEMENT = id_register(0x0A5)
 _TC_ORBIT_LOAD = id_register(0x0A6)
+_TC_PARAMETER = id_register(0x0A7)
+_TC_FREEZE = id_register(0x0A8)
 _COIL_STATUS = id_register(0x100)
 _COIL_DIPOLE_STATUS = id_register(0x101)
 _COIL_REFUSED = id_register(0x108)
@@ -96,6 +138,7 @@ _REF_RATE = id_register(0x121)
 _NAV_ATTITUDE = id_register(0x200)
 _NAV_RATE = id_register(0x201)
 _NAV_QUALITY = id_register(0x202)
+_NAV_PARAMETER = id_register(0x203)
 _TC_ACK = id_register(0x208)
 _PLANT_EVENT = id_register(0x400)
 _FSW_EVENT = id_register(0x410)
@@ -401,6 +444,71 @@ class TcOrbitLoad(_TcOrbitLoad):
         """The values in the data bytes, unjudged."""
         word = int.from_bytes(data, "little")
         return cls(
+            (word & 0xF),
+        )
+
+
+class _TcParameter(NamedTuple):
+    component: int  # as in NAV_PARAMETER
+    exponent: int
+    mantissa: int
+    counter: int = 0
+
+
+class TcParameter(_TcParameter):
+    """The next value of a number that the filter estimates: mantissa times 10^exponent, in SI units."""
+
+    __slots__ = ()
+
+    ID: Final = 0x0A7
+    LENGTH: Final = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.component & 0x3F) << 4
+            | (self.exponent & 0xFF) << 16
+            | (self.mantissa & 0xFFFFFFFF) << 24
+        )
+        return seal(0x0A7, word, 8, _TC_PARAMETER)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "TcParameter":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0x3F),
+            ((word >> 16 & 0xFF ^ 0x80) - 0x80),
+            ((word >> 24 & 0xFFFFFFFF ^ 0x80000000) - 0x80000000),
+            (word & 0xF),
+        )
+
+
+class _TcFreeze(NamedTuple):
+    frozen: int  # 1 keep, 0 estimate
+    counter: int = 0
+
+
+class TcFreeze(_TcFreeze):
+    """Keep the parameters of the filter as they are, or estimate them again."""
+
+    __slots__ = ()
+
+    ID: Final = 0x0A8
+    LENGTH: Final = 2
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (self.counter & 0xF) | (self.frozen & 0x1) << 4
+        return seal(0x0A8, word, 2, _TC_FREEZE)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "TcFreeze":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0x1),
             (word & 0xF),
         )
 
@@ -850,6 +958,46 @@ class NavQuality(_NavQuality):
             (word >> 44 & 0x1),
             (word >> 45 & 0x1),
             (word >> 48 & 0xFF),
+            (word & 0xF),
+        )
+
+
+class _NavParameter(NamedTuple):
+    component: int  # axes are those of the body; of the coils row and column of G, dipole = (1 + G) times the one driven
+    exponent: int
+    value: int  # times 10^exponent
+    sigma: int  # standard deviation, times 10^exponent
+    counter: int = 0
+
+
+class NavParameter(_NavParameter):
+    """One of the numbers that the filter estimates besides attitude and rate, each in its turn; SI units."""
+
+    __slots__ = ()
+
+    ID: Final = 0x203
+    LENGTH: Final = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.component & 0x3F) << 4
+            | (self.exponent & 0xFF) << 10
+            | (self.value & 0x7FFFF) << 18
+            | (self.sigma & 0x7FFFF) << 37
+        )
+        return seal(0x203, word, 8, _NAV_PARAMETER)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "NavParameter":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0x3F),
+            ((word >> 10 & 0xFF ^ 0x80) - 0x80),
+            ((word >> 18 & 0x7FFFF ^ 0x40000) - 0x40000),
+            (word >> 37 & 0x7FFFF),
             (word & 0xF),
         )
 
@@ -1545,6 +1693,8 @@ CountedMessage = (
     | TcGain
     | TcOrbitElement
     | TcOrbitLoad
+    | TcParameter
+    | TcFreeze
     | CoilStatus
     | CoilDipoleStatus
     | CoilRefused
@@ -1555,6 +1705,7 @@ CountedMessage = (
     | NavAttitude
     | NavRate
     | NavQuality
+    | NavParameter
     | TcAck
     | PlantEvent
     | FswEvent
@@ -1586,6 +1737,8 @@ CLASSES: dict[int, type[AnyMessage]] = {
     0x0A4: TcGain,
     0x0A5: TcOrbitElement,
     0x0A6: TcOrbitLoad,
+    0x0A7: TcParameter,
+    0x0A8: TcFreeze,
     0x100: CoilStatus,
     0x101: CoilDipoleStatus,
     0x108: CoilRefused,
@@ -1597,6 +1750,7 @@ CLASSES: dict[int, type[AnyMessage]] = {
     0x200: NavAttitude,
     0x201: NavRate,
     0x202: NavQuality,
+    0x203: NavParameter,
     0x208: TcAck,
     0x280: TickDone,
     0x400: PlantEvent,
@@ -1628,6 +1782,8 @@ NAMES: dict[int, str] = {
     0x0A4: "TC_GAIN",
     0x0A5: "TC_ORBIT_ELEMENT",
     0x0A6: "TC_ORBIT_LOAD",
+    0x0A7: "TC_PARAMETER",
+    0x0A8: "TC_FREEZE",
     0x100: "COIL_STATUS",
     0x101: "COIL_DIPOLE_STATUS",
     0x108: "COIL_REFUSED",
@@ -1639,6 +1795,7 @@ NAMES: dict[int, str] = {
     0x200: "NAV_ATTITUDE",
     0x201: "NAV_RATE",
     0x202: "NAV_QUALITY",
+    0x203: "NAV_PARAMETER",
     0x208: "TC_ACK",
     0x280: "TICK_DONE",
     0x400: "PLANT_EVENT",
@@ -1670,6 +1827,8 @@ SENDERS: dict[int, str] = {
     0x0A4: "GROUND",
     0x0A5: "GROUND",
     0x0A6: "GROUND",
+    0x0A7: "GROUND",
+    0x0A8: "GROUND",
     0x100: "COIL",
     0x101: "COIL",
     0x108: "COIL",
@@ -1681,6 +1840,7 @@ SENDERS: dict[int, str] = {
     0x200: "FSW",
     0x201: "FSW",
     0x202: "FSW",
+    0x203: "FSW",
     0x208: "FSW",
     0x280: "FSW",
     0x400: "PLANT",
@@ -1712,6 +1872,8 @@ _SHAPES: dict[int, tuple[int, int | None]] = {
     0x0A4: (7, _TC_GAIN),
     0x0A5: (7, _TC_ORBIT_ELEMENT),
     0x0A6: (2, _TC_ORBIT_LOAD),
+    0x0A7: (8, _TC_PARAMETER),
+    0x0A8: (2, _TC_FREEZE),
     0x100: (8, _COIL_STATUS),
     0x101: (8, _COIL_DIPOLE_STATUS),
     0x108: (5, _COIL_REFUSED),
@@ -1723,6 +1885,7 @@ _SHAPES: dict[int, tuple[int, int | None]] = {
     0x200: (8, _NAV_ATTITUDE),
     0x201: (8, _NAV_RATE),
     0x202: (8, _NAV_QUALITY),
+    0x203: (8, _NAV_PARAMETER),
     0x208: (8, _TC_ACK),
     0x280: (8, None),
     0x400: (8, _PLANT_EVENT),

@@ -21,6 +21,7 @@ from fsw.wire.messages import (
     FswBoot,
     FswHeartbeat,
     NavAttitude,
+    NavParameter,
     NavQuality,
     NavRate,
     Sync,
@@ -34,7 +35,9 @@ WITH_BOARDS = frozenset({"PLANT", "COIL", "MAG", "SUN"})
 ALONE = frozenset({"PLANT"})
 """The same where the boards are nodes of their own."""
 
-_ONCE = frozenset({CoilFire.ID, CoilDipole.ID, NavAttitude.ID, NavRate.ID, NavQuality.ID, FswHeartbeat.ID})
+_ONCE = frozenset(
+    {CoilFire.ID, CoilDipole.ID, NavAttitude.ID, NavRate.ID, NavQuality.ID, NavParameter.ID, FswHeartbeat.ID}
+)
 """Messages that an answer of the flight software contains once at most."""
 
 

@@ -18,6 +18,7 @@ from fsw.wire.messages import (
     SENDERS,
     FswBoot,
     NavAttitude,
+    NavParameter,
     NavQuality,
     NavRate,
     PlantEnd,
@@ -32,6 +33,7 @@ UNITS: dict[int, tuple[float, ...]] = {
     NavAttitude.ID: (0.0, 2.0**-16, 2.0**-16, 2.0**-16),
     NavRate.ID: (0.0, 2.0**-19, 2.0**-19, 2.0**-19),
     NavQuality.ID: (0.0, 2.0**-14, 2.0**-22),
+    NavParameter.ID: (0.0, 0.0, 1.0, 1.0),
 }
 """The unit of each signal of the messages whose last bit may differ; 0 and absent: exact."""
 

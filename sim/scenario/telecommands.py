@@ -10,7 +10,7 @@ from decimal import Decimal
 from math import ceil
 from typing import Annotated, Literal
 
-from pydantic import Field, Strict, field_validator
+from pydantic import AfterValidator, Field, Strict, field_validator
 
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit.propagation import sgp4_orbit
@@ -18,16 +18,19 @@ from fsw.core.orbit.tle import tle_elements
 from fsw.input.schema import Section
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
+    Component,
     CountedMessage,
     Element,
     Gain,
     Mode,
     TcClear,
+    TcFreeze,
     TcGain,
     TcLaw,
     TcMode,
     TcOrbitElement,
     TcOrbitLoad,
+    TcParameter,
     TcSpin,
 )
 
@@ -35,6 +38,15 @@ Uplink = Callable[[int], list[Frame]]
 """The frames that the ground sends before the SYNC of a tick."""
 
 MOST_DIGITS = 2**31 - 1
+
+
+def _that_fits(value: float) -> float:
+    digits_of(Decimal(repr(value)))
+    return value
+
+
+DecimalValue = Annotated[float, AfterValidator(_that_fits)]
+"""A number that has a mantissa and an exponent on the wire."""
 
 
 class TelecommandSection(Section):
@@ -95,13 +107,7 @@ class SendGain(TelecommandSection):
 
     message: Literal["TC_GAIN"]
     gain: Literal["k_w", "k_a", "k_i"]
-    value: float
-
-    @field_validator("value")
-    @classmethod
-    def _fits(cls, value: float) -> float:
-        digits_of(Decimal(repr(value)))
-        return value
+    value: DecimalValue
 
     def messages(self) -> list[CountedMessage]:
         """One message."""
@@ -114,13 +120,7 @@ class SendElement(TelecommandSection):
 
     message: Literal["TC_ORBIT_ELEMENT"]
     element: Literal[tuple(name.lower() for name in Element.__members__)]  # type: ignore[valid-type]
-    value: float
-
-    @field_validator("value")
-    @classmethod
-    def _fits(cls, value: float) -> float:
-        digits_of(Decimal(repr(value)))
-        return value
+    value: DecimalValue
 
     def messages(self) -> list[CountedMessage]:
         """One message."""
@@ -146,8 +146,40 @@ class SendOrbit(TelecommandSection):
         return [*elements, TcOrbitLoad()]
 
 
+class SendParameter(TelecommandSection):
+    """TC_PARAMETER: a number that the filter estimates, by its name in the DBC, SI units."""
+
+    message: Literal["TC_PARAMETER"]
+    component: Literal[tuple(name.lower() for name in Component.__members__)]  # type: ignore[valid-type]
+    value: DecimalValue
+
+    def messages(self) -> list[CountedMessage]:
+        """One message."""
+        mantissa, exponent = digits_of(Decimal(repr(self.value)))
+        return [TcParameter(Component[self.component.upper()], exponent, mantissa)]
+
+
+class SendFreeze(TelecommandSection):
+    """TC_FREEZE: whether the parameters of the filter stay as they are."""
+
+    message: Literal["TC_FREEZE"]
+    frozen: bool
+
+    def messages(self) -> list[CountedMessage]:
+        """One message."""
+        return [TcFreeze(int(self.frozen))]
+
+
 Telecommand = Annotated[
-    SendMode | SendClear | SendLaw | SendSpin | SendGain | SendElement | SendOrbit,
+    SendMode
+    | SendClear
+    | SendLaw
+    | SendSpin
+    | SendGain
+    | SendElement
+    | SendOrbit
+    | SendParameter
+    | SendFreeze,
     Field(discriminator="message"),
 ]
 Telecommands = Annotated[tuple[Telecommand, ...], Strict(False)]

@@ -92,7 +92,14 @@ def test_one_byte_of_the_field_is_found_in_its_tick(tick, repair, copy, torquer)
     copy.entries[index][2] = alter(copy.entries[index][2], byte, bit, repair)
     first, signal = differs(torquer("replay", copy.write()))
     assert first == tick
-    assert signal.partition(".")[0] in {"NAV_ATTITUDE", "NAV_RATE", "NAV_QUALITY", "COIL_FIRE", "TICK_DONE"}
+    assert signal.partition(".")[0] in {
+        "NAV_ATTITUDE",
+        "NAV_RATE",
+        "NAV_QUALITY",
+        "NAV_PARAMETER",
+        "COIL_FIRE",
+        "TICK_DONE",
+    }
 
 
 def test_without_its_scenario_too(copy, torquer, tmp_path):

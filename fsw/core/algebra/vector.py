@@ -84,6 +84,12 @@ def skew(a: Vec3) -> Mat3:
     return ((0.0, -a3, a2), (a3, 0.0, -a1), (-a2, a1, 0.0))
 
 
+def positive_definite(m: Mat3) -> bool:
+    """Whether a symmetric matrix is: all its leading minors are positive."""
+    (a, b, _), (d, e, _), _ = m
+    return a > 0.0 and a * e - b * d > 0.0 and dot(m[0], cross(m[1], m[2])) > 0.0
+
+
 def inverse(m: Mat3) -> Mat3:
     """The inverse of a regular matrix, by cofactors.
 

@@ -7,7 +7,8 @@ from typing import NamedTuple
 from fsw.core.algebra.vector import ZERO, Vec3, dot, scale
 from fsw.core.estimation import mekf
 from fsw.core.estimation.mekf import Estimate
-from fsw.core.estimation.mekf_config import MekfConfig
+from fsw.core.estimation.mekf_config import MekfConfig, with_frozen_parameters
+from fsw.core.estimation.parameters import Parameters, component_places, with_component
 from fsw.core.estimation.samples import usable_field, usable_sun
 from fsw.core.estimation.triad import consistent, triad
 from fsw.core.gate.readings import Readings
@@ -41,7 +42,8 @@ class EstimatorConfig:
 class EstimatorState(NamedTuple):
     """The estimate, or None before start-up, and the measurements the gate refused in a row.
 
-    ``fast``: the satellite has turned fast since the parameters were started.
+    ``fast``: the satellite has turned fast since the parameters were started; ``first``: the values from
+    which they start, None: those of the prior; ``frozen``: they are not estimated.
     """
 
     estimate: Estimate | None = None
@@ -49,14 +51,17 @@ class EstimatorState(NamedTuple):
     rejected_total: int = 0
     restarts: int = 0
     fast: bool = False
+    first: Parameters | None = None
+    frozen: bool = False
 
     def integers(self) -> tuple[int, ...]:
         """For the checksum of the state, as are the next two."""
-        return (self.rejected_in_a_row, self.rejected_total, self.restarts, self.fast)
+        return (self.rejected_in_a_row, self.rejected_total, self.restarts, self.fast, self.frozen)
 
     def floats(self) -> tuple[float, ...]:
-        """The estimate, if there is one, without its arrays."""
-        return () if self.estimate is None else self.estimate.floats()
+        """The values to start from, and the estimate, if there is one, without its arrays."""
+        first = () if self.first is None else self.first.floats()
+        return first if self.estimate is None else (*first, *self.estimate.floats())
 
     def packed(self) -> bytes:
         """The arrays of the estimate."""
@@ -118,15 +123,21 @@ def update(
     blanked = field is None and readings.field is not None
     if state.estimate is None:
         started = _start(field, sun, reference, config)
-        return state._replace(estimate=started), Used(started is not None, started is not None, blanked)
+        if started is None:
+            return state, Used(False, False, blanked)
+        return state._replace(estimate=_from_first(started, state)), Used(True, True, blanked)
 
-    estimate, took_field, took_sun = _updated(state.estimate, field, sun, reference, config.mekf)
+    tuning = with_frozen_parameters(config.mekf) if state.frozen else config.mekf
+    estimate, took_field, took_sun = _updated(state.estimate, field, sun, reference, tuning)
     rejected = (field is not None and not took_field) + (sun is not None and not took_sun)
     in_a_row = state.rejected_in_a_row + rejected
     if not rejected and (took_field or took_sun):
         in_a_row = 0
-    updated = EstimatorState(estimate, in_a_row, state.rejected_total + rejected, state.restarts, state.fast)
-    updated = _settled(updated, estimate, took_field and took_sun, config.mekf)
+    updated = state._replace(
+        estimate=estimate, rejected_in_a_row=in_a_row, rejected_total=state.rejected_total + rejected
+    )
+    if not state.frozen:
+        updated = _settled(updated, estimate, took_field and took_sun, config.mekf)
     lost = in_a_row >= config.restart_after_rejections or not mekf.healthy(estimate)
     return (restart(updated) if lost else updated), Used(took_field, took_sun, blanked)
 
@@ -143,7 +154,12 @@ def _settled(state: EstimatorState, estimate: Estimate, seen: bool, config: Mekf
     if not state.fast or square > SLOW_RADPS**2 or not seen:
         return state
     anew = mekf.start(estimate.q_body_from_eci, estimate.omega_body_radps, config)
-    return state._replace(estimate=anew, fast=False)
+    return state._replace(estimate=_from_first(anew, state), fast=False)
+
+
+def _from_first(started: Estimate, state: EstimatorState) -> Estimate:
+    """With the parameters that the ground has set, if it has."""
+    return started if state.first is None else started._replace(parameters=state.first)
 
 
 def _updated(
@@ -181,4 +197,38 @@ def untraced(state: EstimatorState) -> EstimatorState:
 
 def restart(state: EstimatorState) -> EstimatorState:
     """Without an estimate: the next pair of good samples starts the filter."""
-    return EstimatorState(None, 0, state.rejected_total, state.restarts + 1)
+    return state._replace(estimate=None, rejected_in_a_row=0, restarts=state.restarts + 1, fast=False)
+
+
+def load(state: EstimatorState, component: int, value: float, config: MekfConfig) -> EstimatorState:
+    """With another value of a component of the parameters, now and whenever the filter starts.
+
+    Its error is then that of the prior, and has nothing to do with the others.
+
+    Args:
+        state: before.
+        component: its number, one that is carried.
+        value: SI units.
+        config: the filter.
+    """
+    estimate = state.estimate
+    first = with_component(state.first or config.initial_parameters, component, value)
+    if estimate is None:
+        return state._replace(first=first)
+    place = component_places(config.layout)[component]
+    covariance = estimate.covariance.copy()
+    covariance[place, :] = covariance[:, place] = config.initial_covariance[place]
+    parameters = with_component(estimate.parameters, component, value)
+    loaded = estimate._replace(parameters=parameters, covariance=covariance, trace=None)
+    return state._replace(first=first, estimate=loaded)
+
+
+def freeze(state: EstimatorState) -> EstimatorState:
+    """With the parameters as they are, now and whenever the filter starts, until ``thaw``."""
+    first = state.first if state.estimate is None else state.estimate.parameters
+    return untraced(state)._replace(first=first, frozen=True)
+
+
+def thaw(state: EstimatorState) -> EstimatorState:
+    """With the parameters estimated again."""
+    return state._replace(frozen=False)

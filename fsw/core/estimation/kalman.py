@@ -53,13 +53,19 @@ class LeanKalmanFilter(KalmanFilter):  # type: ignore[misc]  # filterpy has no t
         covariance += Q
         self.x, self.P = x, covariance
 
-    def update(self, z: Matrix, R: Matrix, H: Matrix) -> None:
-        """Take a measurement z, (m), with noise R, (m, m), and sensitivity H, (m, n)."""
+    def update(self, z: Matrix, R: Matrix, H: Matrix, considered: slice | None = None) -> None:
+        """Take a measurement z, (m), with noise R, (m, m), and sensitivity H, (m, n).
+
+        States that are ``considered`` keep their values: their rows of K are zero, and P remains that of the
+        errors (Schmidt 1966).
+        """
         self.y = z - H.dot(self.x)
         pht = self.P.dot(H.T)
         self.S = H.dot(pht) + R
         self.SI = inverse(self.S)
         self.K = pht.dot(self.SI)
+        if considered is not None:
+            self.K[considered] = 0.0
         self.x = self.x + self.K.dot(self.y)
         left = self.P - self.K.dot(pht.T)
         self.P = left - left.dot(H.T).dot(self.K.T) + self.K.dot(R).dot(self.K.T)

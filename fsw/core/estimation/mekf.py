@@ -202,7 +202,7 @@ def _update(
 ) -> Estimate | None:
     """The update of filterpy, judged by its own NIS and folded in."""
     kalman = LeanKalmanFilter(config.zero, estimate.covariance)
-    kalman.update(np.array(innovation), noise, sensitivity)
+    kalman.update(np.array(innovation), noise, sensitivity, config.considered)
     nis, trace = float(kalman.y.dot(kalman.SI).dot(kalman.y)), estimate.trace
     if trace is not None:
         traced = sensitivity.dot(trace.effect)  # the operator @ takes twice as long for so small arrays

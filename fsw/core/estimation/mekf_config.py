@@ -1,7 +1,7 @@
 """The filter's tuning, and what follows from it once and for all."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,6 +24,7 @@ class MekfConfig:
 
     By measurement, field, Sun or both at once: ``..._sensitivity`` is the constant part of H, (3, n), and
     ``..._noise`` the covariance, (3, 3) or (6, 6). ``zero`` is the error state between updates, (n).
+    ``considered``: the states that no update changes.
     """
 
     rotor: Rotor
@@ -46,6 +47,12 @@ class MekfConfig:
     both_noise: Matrix
     dipole_sigma: float
     gate_nis: float
+    considered: slice | None = None
+
+
+def with_frozen_parameters(config: MekfConfig) -> MekfConfig:
+    """The filter that estimates attitude and rate alone, and reckons with the error of its parameters."""
+    return replace(config, considered=slice(6, config.layout.size))
 
 
 def mekf_config(

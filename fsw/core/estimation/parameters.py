@@ -1,7 +1,7 @@
 """What the filter estimates besides attitude and rate: constants that the table knows within bounds only."""
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from fsw.core.algebra.vector import ZERO, Mat3, Vec3, add, inverse
 
@@ -38,7 +38,7 @@ class Parameters(NamedTuple):
     delay_s: tuple[float, float] = (0.0, 0.0)
 
     def floats(self) -> tuple[float, ...]:
-        """For the checksum of the state."""
+        """Every component, in the order of its number on the bus; for the checksum of the state too."""
         return tuple(number for part in self for number in part)
 
 
@@ -48,6 +48,8 @@ NOTHING = Parameters()
 NAMES = Parameters._fields
 SIZES = dict(zip(NAMES, map(len, NOTHING), strict=True))
 """How many numbers each has."""
+COMPONENTS = tuple((index, offset) for index, part in enumerate(NOTHING) for offset in range(len(part)))
+"""By its number on the bus, of which parameter each component is, and which of its numbers."""
 
 
 class Prior(NamedTuple):
@@ -104,6 +106,25 @@ def corrected_parameters(parameters: Parameters, error: list[float], places: Lay
     return Parameters._make(parts)
 
 
+def component_places(places: Layout) -> dict[int, int]:
+    """By the number of each component that is carried, its place in the error state; in the order of both."""
+    parts = dict(places.carried)
+    return {
+        number: parts[index].start + offset
+        for number, (index, offset) in enumerate(COMPONENTS)
+        if index in parts
+    }
+
+
+def with_component(parameters: Parameters, number: int, value: float) -> Parameters:
+    """The parameters with another value of one component."""
+    index, offset = COMPONENTS[number]
+    part = list(parameters[index])
+    part[offset] = value
+    changed: dict[str, Any] = {NAMES[index]: tuple(part)}
+    return parameters._replace(**changed)
+
+
 class Rotor(NamedTuple):
     """What turns: inertia tensor and its inverse, momentum of a wheel; body axes."""
 
@@ -118,10 +139,15 @@ def inertia_error(parameters: Parameters) -> Mat3:
     return ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
 
 
+def estimated_inertia(nominal: Rotor, parameters: Parameters) -> Mat3:
+    """The inertia tensor with its estimated error, body axes, kg m^2."""
+    first, second, third = map(add, nominal.inertia_kgm2, inertia_error(parameters))
+    return (first, second, third)
+
+
 def estimated_rotor(nominal: Rotor, parameters: Parameters) -> Rotor:
     """The rotor with the estimated error of its inertia."""
-    first, second, third = map(add, nominal.inertia_kgm2, inertia_error(parameters))
-    inertia = (first, second, third)
+    inertia = estimated_inertia(nominal, parameters)
     return Rotor(inertia, inverse(inertia), nominal.wheel_body_nms)
 
 

@@ -20,11 +20,13 @@ from fsw.wire.messages import (
     RefRate,
     SunVector,
     TcClear,
+    TcFreeze,
     TcGain,
     TcLaw,
     TcMode,
     TcOrbitElement,
     TcOrbitLoad,
+    TcParameter,
     TcSpin,
     intact,
 )
@@ -56,7 +58,9 @@ INPUT_MESSAGES: dict[int, type[InputMessage]] = {
     PlantEnd.ID: PlantEnd,
 }
 
-Telecommand = TcMode | TcClear | TcLaw | TcSpin | TcGain | TcOrbitElement | TcOrbitLoad
+Telecommand = (
+    TcMode | TcClear | TcLaw | TcSpin | TcGain | TcOrbitElement | TcOrbitLoad | TcParameter | TcFreeze
+)
 
 TELECOMMANDS: dict[int, type[Telecommand]] = {
     TcMode.ID: TcMode,
@@ -66,6 +70,8 @@ TELECOMMANDS: dict[int, type[Telecommand]] = {
     TcGain.ID: TcGain,
     TcOrbitElement.ID: TcOrbitElement,
     TcOrbitLoad.ID: TcOrbitLoad,
+    TcParameter.ID: TcParameter,
+    TcFreeze.ID: TcFreeze,
 }
 
 _ACCEPTED: dict[int, type[InputMessage | Telecommand]] = {**INPUT_MESSAGES, **TELECOMMANDS}

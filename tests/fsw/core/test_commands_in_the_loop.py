@@ -6,6 +6,8 @@ from random import Random
 import pytest
 
 from fsw.core.commands import LAW_NAMES
+from fsw.core.estimation import estimator
+from fsw.core.estimation.parameters import component_places
 from fsw.core.gate.readings import TELECOMMANDS
 from fsw.core.modes import ModeState
 from fsw.core.orbit.ephemeris import advance, with_orbit
@@ -13,18 +15,22 @@ from fsw.core.state import checksum
 from fsw.wire.messages import (
     CoilFire,
     CoilRefused,
+    Component,
     Element,
     FswEvent,
     Mode,
+    NavParameter,
     NavQuality,
     TcAck,
     TcAckResult,
     TcClear,
+    TcFreeze,
     TcGain,
     TcLaw,
     TcMode,
     TcOrbitElement,
     TcOrbitLoad,
+    TcParameter,
     TcSpin,
     TickDone,
 )
@@ -110,6 +116,101 @@ class TestInTheLoop:
         assert world.state.gate.overrun > 0
 
 
+MATCHED = {
+    "sensors": {
+        "magnetometer": {"misalignment_deg": [0.0, 0.0, 0.0]},
+        "sun": {"misalignment_deg": [0.0, 0.0, 0.0]},
+    },
+    "disturbance": {"residual_dipole_am2": [0.0, 0.0, 0.0]},
+    "flight": {
+        "uncertainty": {
+            "residual_dipole_am2": 0.0,
+            "magnetometer_misalignment_deg": 0.0,
+            "sun_misalignment_deg": 0.0,
+        }
+    },
+}
+"""As the table says, but for bias and torque, which the filter estimates."""
+BIAS_NT, TORQUE_NM = (150.0, -250.0, 100.0), (3e-8, -2e-8, 1e-8)
+"""The plant's."""
+
+
+def deviation(state, config):
+    """By component that is carried, its standard deviation."""
+    variances = state.estimator.estimate.covariance.diagonal()
+    return {
+        number: float(variances[place]) ** 0.5
+        for number, place in component_places(config.estimator.mekf.layout).items()
+    }
+
+
+@pytest.fixture(scope="class")
+def frozen_flight(make_world):
+    """Bias and torque loaded wrong and frozen for twenty minutes, then estimated for half an hour.
+
+    Returns the world, the states while frozen, and the messages of that time.
+    """
+    world = make_world(**MATCHED)
+    world.fly(300)
+    bias, torque = TcParameter(Component.MAG_BIAS_X, -9, 1000, 0), TcParameter(Component.TORQUE_Y, -9, 100, 1)
+    replies = world.step(with_telecommands(bias, torque, TcFreeze(1)))
+    assert [ack.result for ack in of(TcAck, replies)] == [TcAckResult.ACCEPTED] * 3
+    states, messages = [world.state], []
+    for _ in range(1200):
+        messages += world.step()
+        states.append(world.state)
+    world.step(with_telecommands(TcFreeze(0, 1)))
+    world.fly(1800)
+    return world, states, messages
+
+
+class TestFrozenParameters:
+    def test_keep_their_values_while_attitude_and_rate_are_estimated(self, frozen_flight):
+        _, states, _ = frozen_flight
+        first, last = states[0].estimator.estimate, states[-1].estimator.estimate
+        assert {state.estimator.estimate.parameters for state in states} == {first.parameters}
+        assert (first.parameters.mag_bias_t[0], first.parameters.torque_body_nm[1]) == (1e-6, 1e-7)
+        assert last.q_body_from_eci != first.q_body_from_eci
+        assert states[-1].estimator.restarts == 0
+
+    def test_deviations_stay_but_for_the_walk(self, frozen_flight):
+        world, states, _ = frozen_flight
+        first, last = deviation(states[0], world.config), deviation(states[-1], world.config)
+        for number in first:
+            assert first[number] < last[number] < 1.01 * first[number] + 1e-9
+
+    def test_are_reported_as_they_were_loaded(self, frozen_flight):
+        _, _, messages = frozen_flight
+        reported = {(m.component, m.exponent, m.value) for m in of(NavParameter, messages)}
+        loaded = {(m, e, v) for m, e, v in reported if m in (Component.MAG_BIAS_X, Component.TORQUE_Y)}
+        assert loaded == {(Component.MAG_BIAS_X, -10, 10000), (Component.TORQUE_Y, -11, 10000)}
+        assert len(of(NavParameter, messages)) == 120
+        assert {number for number, _, _ in reported} == set(range(6))
+
+    def test_after_it_the_estimate_converges(self, frozen_flight):
+        world, states, _ = frozen_flight
+        found, sigma = world.state.estimator.estimate.parameters, deviation(world.state, world.config)
+        before = deviation(states[-1], world.config)
+        true = [*(1e-9 * bias for bias in BIAS_NT), *TORQUE_NM]
+        for number, (value, wanted) in enumerate(
+            zip([*found.mag_bias_t, *found.torque_body_nm], true, strict=True)
+        ):
+            assert abs(value - wanted) < 3.5 * sigma[number]
+        assert sigma[Component.MAG_BIAS_X] < 0.1 * before[Component.MAG_BIAS_X]
+        assert sigma[Component.TORQUE_Y] < 0.1 * before[Component.TORQUE_Y]
+
+    def test_a_loaded_value_outlasts_modes_and_a_restart_of_the_filter(self, make_world, without):
+        world = make_world(**MATCHED)
+        world.fly(120)
+        world.step(with_telecommands(TcParameter(Component.MAG_BIAS_X, -9, 170), TcMode(Mode.SAFE)))
+        world.state = world.state._replace(estimator=estimator.restart(world.state.estimator))
+        while world.state.estimator.estimate is None:
+            world.step()
+        assert world.state.estimator.estimate.parameters.mag_bias_t == (1.7e-7, 0.0, 0.0)
+        sigma = deviation(world.state, world.config)
+        assert sigma[Component.MAG_BIAS_X] == sigma[Component.MAG_BIAS_Y] == pytest.approx(5e-7 / 3**0.5)
+
+
 def random_telecommand(random, counter, digits):
     """Intact, its values anything; now and then the sensible ones."""
     kind = random.choice([*TELECOMMANDS.values()])
@@ -120,6 +221,9 @@ def random_telecommand(random, counter, digits):
         message = TcOrbitElement(element, exponent, mantissa + random.randrange(-3, 4), counter)
     if kind is TcLaw and random.random() < 0.9:
         message = TcLaw(random.choice([*LAW_NAMES]), counter)
+    if kind is TcParameter and random.random() < 0.7:
+        value = random.randrange(-(2**31), 2**31)
+        message = TcParameter(random.randrange(6), random.choice([-15, -17, -18]), value, counter)
     if kind is TcGain and random.random() < 0.5:
         message = TcGain(random.randrange(3), random.randrange(-3, 5), random.randrange(2**20), counter)
     return message

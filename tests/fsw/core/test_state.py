@@ -25,6 +25,7 @@ def run(make_world):
     world.fly(230)
     state = world.state._replace(orbit=ELEMENTS, upload=Upload().with_element(Element.BSTAR, 1e-5))
     assert state.estimator.estimate.trace is not None
+    state = state._replace(estimator=state.estimator._replace(first=state.estimator.estimate.parameters))
     assert state.coil.fired_tick >= 0
     assert any(state.pulses.owed_impulse_body_nms)
     assert state.memory
@@ -64,10 +65,13 @@ def test_every_number_of_a_boot_state_counts_too(make_world, leaves):
 
 def test_what_is_not_there_differs_from_what_is(run):
     without_estimate = run._replace(estimator=run.estimator._replace(estimate=None))
+    without_first = run._replace(estimator=run.estimator._replace(first=None))
     without_ephemeris = run._replace(ephemeris=None)
     without_orbit = run._replace(orbit=None)
-    sums = {checksum(state) for state in (run, without_estimate, without_ephemeris, without_orbit)}
-    assert len(sums) == 4
+    sums = {
+        checksum(state) for state in (run, without_estimate, without_first, without_ephemeris, without_orbit)
+    }
+    assert len(sums) == 5
 
 
 def test_numbers_that_change_places_are_noticed(run):

@@ -21,6 +21,7 @@ from fsw.wire.messages import (
     MagField,
     Mode,
     NavAttitude,
+    NavParameter,
     NavQuality,
     NavRate,
     SunVector,
@@ -142,6 +143,7 @@ class TestOutbox:
             ids = [frame.can_id for frame in outbox]
             assert ids.count(NavAttitude.ID) == ids.count(NavRate.ID) == 1
             assert ids.count(NavQuality.ID) == (tick % 10 == 0)
+            assert ids.count(NavParameter.ID) == (tick % 10 == 0)
             assert ids.count(FswHeartbeat.ID) == (tick % 60 == 0)
 
     def test_each_message_s_counter_rises_by_one(self, flight):
@@ -150,7 +152,7 @@ class TestOutbox:
         for outbox in outboxes:
             for frame in outbox[:-1]:
                 counters.setdefault(frame.can_id, []).append(CLASSES[frame.can_id].decode(frame.data).counter)
-        assert len(counters) == 6
+        assert len(counters) == 7
         for counted in counters.values():
             assert counted == [n % 16 for n in range(len(counted))]
 

@@ -25,6 +25,7 @@ from fsw.wire.messages import (
     MagField,
     Mode,
     NavAttitude,
+    NavParameter,
     NavQuality,
     NavRate,
     RefAttitude,
@@ -35,7 +36,7 @@ from fsw.wire.messages import (
 )
 
 TICKS = 300
-FROM_FSW = (CoilFire, NavAttitude, NavRate, NavQuality, FswEvent, FswHeartbeat, TickDone)
+FROM_FSW = (CoilFire, NavAttitude, NavRate, NavQuality, NavParameter, FswEvent, FswHeartbeat, TickDone)
 LISTENED = (MagField, SunVector, CoilStatus, CoilRefused, RefAttitude, RefRate)
 
 

@@ -1,6 +1,6 @@
 """What fsw reports: values, saturation, counters, and events on changes alone."""
 
-from math import nan
+from math import inf, nan
 
 import numpy as np
 import pytest
@@ -9,9 +9,12 @@ from fsw.core import telemetry
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.estimation.estimator import EstimatorState, Used
 from fsw.core.estimation.mekf import Estimate
+from fsw.core.estimation.parameters import NAMES, layout, with_component
+from fsw.core.estimation.parameters import NOTHING as AS_THE_TABLE
 from fsw.core.gate.readings import NOTHING
 from fsw.core.modes import ModeState
 from fsw.core.monitors import Monitor
+from fsw.core.rates import RateGroup, RateTable
 from fsw.core.step import boot
 from fsw.core.telemetry import COUNTED, FIRST_COUNTERS, SEVERITY, Event, Happening
 from fsw.wire.messages import (
@@ -19,11 +22,13 @@ from fsw.wire.messages import (
     CoilDipole,
     CoilFire,
     CoilRefused,
+    Component,
     FswBoot,
     FswEvent,
     FswHeartbeat,
     Mode,
     NavAttitude,
+    NavParameter,
     NavQuality,
     NavRate,
     Severity,
@@ -37,6 +42,11 @@ ATTITUDE = Attitude((0.8, 0.36, -0.288, 0.384), (0.011, -0.007, 0.005), 0.02, 3e
 @pytest.fixture(scope="module")
 def state(make_world):
     return boot(make_world().config)._replace(modes=ModeState(Mode.POINT, trips=1))
+
+
+def telemetry_rates(parameter_ticks):
+    every = RateGroup(1)
+    return RateTable(attitude=every, quality=every, parameter=RateGroup(parameter_ticks), heartbeat=every)
 
 
 def decoded(message):
@@ -84,6 +94,67 @@ class TestMessages:
         assert FswBoot.decode(frame.data) == FswBoot(0, telemetry.CONTRACT_VERSION, 0xCAFEF00D, counter=0)
 
 
+def estimate_with(component, place, value, sigma, size=9):
+    """One in which a component has this value, and this standard deviation at its place."""
+    covariance = np.diag([2.0] * size)
+    covariance[place, place] = sigma**2
+    parameters = with_component(AS_THE_TABLE, component, value)
+    return Estimate((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), parameters, covariance)
+
+
+class TestParameter:
+    @pytest.mark.parametrize(
+        ("value", "sigma"),
+        [
+            (3.456789e-7, 2.5e-8),
+            (-3.456789e-7, 2.5e-8),
+            (1.2e-9, 4.321e-5),
+            (-0.0, 7.7e-3),
+            (12.345678, 1e-9),
+            (9.99996e-4, 9.99994e-4),
+            (1e-40, 3e-41),
+        ],
+    )
+    def test_value_and_deviation_have_four_decimal_places_of_the_larger(self, value, sigma):
+        message = decoded(telemetry.parameter_message(estimate_with(4, 7, value, sigma), 4, 7))
+        unit, larger = 10.0**message.exponent, max(abs(value), sigma)
+        assert message.component == Component.TORQUE_Y
+        assert message.value * unit == pytest.approx(value, rel=0.0, abs=0.5001e-4 * larger)
+        assert message.sigma * unit == pytest.approx(sigma, rel=0.0, abs=0.5001e-4 * larger)
+
+    def reports(self, state, estimate, carried, tick):
+        rates = telemetry_rates(10)
+        running = state._replace(tick=tick, estimator=EstimatorState(estimate))
+        return telemetry.parameter_messages(running, layout(carried), rates)
+
+    def test_each_that_is_carried_has_its_turn_and_no_other(self, state):
+        estimate = estimate_with(4, 7, 2e-8, 1e-8, size=11)
+        sent = {
+            tick: self.reports(state, estimate, {"torque_body_nm", "delay_s"}, tick) for tick in range(60)
+        }
+        assert [tick for tick, messages in sent.items() if messages] == [0, 10, 20, 30, 40, 50]
+        numbers = [Component(sent[tick][0].component).name for tick in (0, 10, 20, 30, 40, 50)]
+        assert numbers == ["TORQUE_X", "TORQUE_Y", "TORQUE_Z", "MAG_DELAY", "SUN_DELAY", "TORQUE_X"]
+        assert sent[10] == [NavParameter(Component.TORQUE_Y, -12, 20000, 10000)]
+
+    @pytest.mark.parametrize("broken", [nan, inf, -1.0])
+    def test_without_a_sound_estimate_there_is_none(self, state, broken):
+        estimate = estimate_with(4, 7, 2e-8, 1e-8)
+        covariance = estimate.covariance.copy()
+        covariance[7, 7] = broken
+        assert len(self.reports(state, estimate, {"torque_body_nm"}, 10)) == 1
+        assert self.reports(state, None, {"torque_body_nm"}, 10) == []
+        assert self.reports(state, estimate._replace(covariance=covariance), {"torque_body_nm"}, 10) == []
+
+    def test_of_a_table_that_is_exact_there_is_none(self, state):
+        assert self.reports(state, estimate_with(4, 7, 0.0, 1.0), set(), 10) == []
+
+    def test_a_full_round_reports_every_number_on_the_bus_once(self, state):
+        estimate = estimate_with(4, 10, 2e-8, 1e-8, size=6 + len(Component))
+        sent = [self.reports(state, estimate, set(NAMES), 10 * n)[0] for n in range(len(Component))]
+        assert [message.component for message in sent] == list(Component)
+
+
 class TestNumbering:
     def test_each_message_counts_for_itself(self):
         nav, rate, beat = NavAttitude(1, 0.1, 0.2, 0.3), NavRate(1, 0.0, 0.0, 0.0), FswHeartbeat(0, 0, 0, 0)
@@ -111,7 +182,17 @@ class TestNumbering:
         assert len(set(COUNTED)) == len(COUNTED) == len(FIRST_COUNTERS)
         assert set(COUNTED) == {
             m.ID
-            for m in (CoilFire, CoilDipole, NavAttitude, NavRate, NavQuality, TcAck, FswEvent, FswHeartbeat)
+            for m in (
+                CoilFire,
+                CoilDipole,
+                NavAttitude,
+                NavRate,
+                NavQuality,
+                NavParameter,
+                TcAck,
+                FswEvent,
+                FswHeartbeat,
+            )
         }
 
 
@@ -138,7 +219,7 @@ class TestEvents:
         assert self.found(safe, safe._replace(tick=8), violated=Monitor.FIELD_FRESH) == []
 
     def test_the_filter_starts_and_restarts(self, state):
-        known = Estimate((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), np.eye(6))
+        known = Estimate((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), AS_THE_TABLE, np.eye(6))
         running = state._replace(estimator=EstimatorState(known))
         lost = state._replace(estimator=EstimatorState(None, restarts=1))
         again = state._replace(estimator=EstimatorState(known, restarts=1))

@@ -14,6 +14,7 @@ from fsw.wire.messages import (
     NAMES,
     SENDERS,
     CoilRefusedReason,
+    Component,
     CountedMessage,
     Element,
     Gain,
@@ -40,6 +41,7 @@ CONTRACT = {
     "NAV_ATTITUDE": ("FSW", {}),
     "NAV_RATE": ("FSW", {}),
     "NAV_QUALITY": ("FSW", {"mode": 3}),
+    "NAV_PARAMETER": ("FSW", {"component": 6, "exponent": -8, "value": -19, "sigma": 19}),
     "TICK_DONE": ("FSW", {"tick": 32, "state_crc": 32}),
     "FSW_BOOT": ("FSW", {"table_crc": 32}),
     "TC_MODE": ("GROUND", {"mode": 3}),
@@ -49,6 +51,8 @@ CONTRACT = {
     "TC_GAIN": ("GROUND", {"gain": 4, "exponent": -8, "mantissa": -32}),
     "TC_ORBIT_ELEMENT": ("GROUND", {"element": 4, "exponent": -8, "mantissa": -32}),
     "TC_ORBIT_LOAD": ("GROUND", {}),
+    "TC_PARAMETER": ("GROUND", {"component": 6, "exponent": -8, "mantissa": -32}),
+    "TC_FREEZE": ("GROUND", {"frozen": 1}),
     "TC_ACK": ("FSW", {"result": 4, "command": 11, "command_counter": 4, "tick": 32}),
 }
 """Sender, and the width of the signals that others rely on; negative: signed."""
@@ -164,6 +168,8 @@ def test_the_codec_knows_the_dbc_s_messages_and_senders(dbc):
         (Mode, "TC_MODE", "mode"),
         (Gain, "TC_GAIN", "gain"),
         (Element, "TC_ORBIT_ELEMENT", "element"),
+        (Component, "TC_PARAMETER", "component"),
+        (Component, "NAV_PARAMETER", "component"),
         (TcAckResult, "TC_ACK", "result"),
     ],
 )

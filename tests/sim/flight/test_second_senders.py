@@ -11,6 +11,7 @@ from fsw.wire.messages import (
     FswEvent,
     MagField,
     NavAttitude,
+    NavParameter,
     NavRate,
     PlantBoot,
     PlantEnd,
@@ -136,9 +137,10 @@ class TestInLockstep:
     def test_between_two_answers_the_flight_software_is_silent(self):
         assert heard(*quiet(2), ([NAV[0]], answer(2))) == [SecondSenderFrames(NavAttitude.ID, 2, 1)]
 
-    def test_no_answer_holds_a_message_twice(self):
-        fire = CoilFire(1, 0, 3, 2, 3000).encode()
-        assert heard(([], [fire, fire, *answer(0)])) == [SecondSenderFrames(CoilFire.ID, 0, 1)]
+    @pytest.mark.parametrize("message", [CoilFire(1, 0, 3, 2, 3000), NavParameter(4, -12, 30000, 10000)])
+    def test_no_answer_holds_a_message_twice(self, message):
+        frame = message.encode()
+        assert heard(([], [frame, frame, *answer(0)])) == [SecondSenderFrames(message.ID, 0, 1)]
 
 
 def test_a_sync_that_was_sent_again_may_be_answered_again():

@@ -14,6 +14,7 @@ from fsw.wire.messages import (
     FswBoot,
     MagField,
     NavAttitude,
+    NavParameter,
     NavRate,
     PlantEnd,
     SunVector,
@@ -84,7 +85,7 @@ class TestUnaltered:
         assert result.command_exact
         assert (result.ticks, result.last_tick) == (TICKS, TICKS - 1)
         assert (result.ended, result.cut, result.end_line) == (True, False, len(entries))
-        from_fsw = {FswBoot.ID, CoilFire.ID, TickDone.ID, *range(0x200, 0x203), 0x410, 0x610}
+        from_fsw = {FswBoot.ID, CoilFire.ID, TickDone.ID, *range(0x200, 0x204), 0x410, 0x610}
         assert result.frames == sum(entry.frame.can_id in from_fsw for entry in entries)
 
     def test_there_was_something_to_replay(self, entries):
@@ -119,6 +120,7 @@ class TestChangedByte:
             "NAV_ATTITUDE",
             "NAV_RATE",
             "NAV_QUALITY",
+            "NAV_PARAMETER",
             "TICK_DONE",
             "the next frame",
         )
@@ -177,19 +179,25 @@ class TestChangedAnswer:
         assert not result.bit_exact
 
     @pytest.mark.parametrize(
-        ("kind", "signal", "unit"), [(NavAttitude, "q_y", 2.0**-16), (NavRate, "w_z", 2.0**-19)]
+        ("kind", "tick", "signal", "unit"),
+        [
+            (NavAttitude, 133, "q_y", 2.0**-16),
+            (NavRate, 133, "w_z", 2.0**-19),
+            (NavParameter, 130, "value", 1),
+            (NavParameter, 130, "sigma", 1),
+        ],
     )
     @pytest.mark.parametrize(("units", "commands"), [(1, True), (-1, True), (2, False), (-50, False)])
     def test_navigation_may_differ_by_one_unit_on_another_machine(
-        self, replay_entries, entries, kind, signal, unit, units, commands
+        self, replay_entries, entries, kind, tick, signal, unit, units, commands
     ):
-        index = index_of(entries, kind, 133)
+        index = index_of(entries, kind, tick)
         message = kind.decode(entries[index].frame.data)
         moved = message._replace(**{signal: getattr(message, signal) + units * unit})
         result = replay_entries(changed(entries, index, lambda _: moved.encode()))
         assert not result.bit_exact
         assert result.command_exact is commands
-        assert result.first_bit_difference.tick == 133
+        assert result.first_bit_difference.tick == tick
         assert result.first_bit_difference.signal.endswith(f".{signal}")
 
     def test_a_flag_may_not(self, replay_entries, entries):

@@ -20,6 +20,7 @@ from fsw.wire.messages import (
     CLASSES,
     NAMES,
     SENDERS,
+    Component,
     Element,
     Gain,
     Mode,
@@ -27,11 +28,13 @@ from fsw.wire.messages import (
     TcAck,
     TcAckResult,
     TcClear,
+    TcFreeze,
     TcGain,
     TcLaw,
     TcMode,
     TcOrbitElement,
     TcOrbitLoad,
+    TcParameter,
     TcSpin,
     TickDone,
     intact,
@@ -60,6 +63,9 @@ SENT = [
     {"at_s": 130.0, "message": "TC_SPIN", "spin_radps": 0.12},
     {"at_s": 140.0, "message": "TC_LAW", "law": "predictive"},
     {"at_s": 141.0, "message": "TC_CLEAR"},
+    {"at_s": 150.0, "message": "TC_PARAMETER", "component": "torque_y", "value": -2.5e-8},
+    {"at_s": 150.0, "message": "TC_FREEZE", "frozen": True},
+    {"at_s": 250.0, "message": "TC_FREEZE", "frozen": False},
 ]
 
 
@@ -83,7 +89,9 @@ class TestSchedule:
             130: [TcSpin.decode(TcSpin(0.12, 1).encode().data)],
             140: [TcLaw(LAWS["predictive"].number, 1)],
             141: [TcClear()],
+            150: [TcParameter(Component.TORQUE_Y, -9, -25), TcFreeze(1)],
             200: [TcMode(Mode.DETUMBLE)],
+            250: [TcFreeze(0, 1)],
         }
 
     @pytest.mark.parametrize(("tick_hz", "tick"), [(1, 2), (10, 11), (100, 110)])
@@ -99,7 +107,7 @@ class TestSchedule:
     def test_all_frames_are_intact_and_the_ground_s(self):
         frames_of = uplink(with_telecommands(*SENT).telecommand, 1)
         frames = [frame for tick in range(400) for frame in frames_of(tick)]
-        assert len(frames) == 7 + 10
+        assert len(frames) == 10 + 10
         assert all(intact(frame) and SENDERS[frame.can_id] == "GROUND" for frame in frames)
 
     def test_nothing_is_sent_where_nothing_is_asked_for(self):
@@ -159,6 +167,9 @@ class TestNumbers:
         ({"message": "TC_LAW", "law": "none"}, "law = 'none' is not allowed"),
         ({"message": "TC_MODE", "mode": "safe"}, "mode = 'safe' is not allowed"),
         ({"message": "TC_GAIN", "gain": "k_w", "value": 1.23456789012}, "value: 1.23456789012 does not fit"),
+        ({"message": "TC_PARAMETER", "component": "torque", "value": 1e-8}, "component = 'torque' is not"),
+        ({"message": "TC_PARAMETER", "component": "torque_x", "value": 1e-150}, "value: 1E-150 does not fit"),
+        ({"message": "TC_FREEZE", "frozen": 1}, "frozen = 1 is not allowed"),
         ({"message": "TC_ORBIT_LOAD", "tle": ["1", "2"]}, "tle: element line 1 is not"),
     ],
 )
@@ -184,7 +195,7 @@ class TestPage:
     def test_its_scenario_can_be_flown(self, page):
         (example,) = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
         told = sent_by(*tomllib.loads(example)["telecommand"], ticks=range(2000))
-        assert {tick: len(messages) for tick, messages in told.items()} == {600: 2, 900: 1, 1200: 10}
+        assert {tick: len(messages) for tick, messages in told.items()} == {600: 2, 900: 1, 1200: 10, 1500: 2}
 
     def test_its_frame_is_what_it_says(self, page):
         (said,) = set(re.findall(r"0A3#\w+", page))
@@ -231,7 +242,7 @@ class TestFlight:
                 answered.append(TcAck.decode(frame.data))
             tick += frame.can_id == TickDone.ID
         assert [(ack.command, ack.command_counter, ack.tick) for ack in answered] == sent
-        assert len(sent) == 7 + 10
+        assert len(sent) == 10 + 10
         refused = [ack for ack in answered if ack.result != TcAckResult.ACCEPTED]
         assert [(ack.command, ack.result) for ack in refused] == [(TcSpin.ID, TcAckResult.OUT_OF_RANGE)]
 
@@ -248,9 +259,14 @@ class TestFlight:
         assert states[119].orbit is None
         assert states[120].orbit == Elements(*map(float, elements_of(*ITAMSAT).values()))
         assert states[200].modes.mode is Mode.DETUMBLE
+        torques = [states[tick].estimator.estimate.parameters.torque_body_nm for tick in (149, 150, 249)]
+        assert [torque[1] == -2.5e-8 for torque in torques] == [False, True, True]
+        assert [states[tick].estimator.frozen for tick in (149, 150, 249, 250)] == [False, True, True, False]
 
     @pytest.mark.parametrize(
-        "kind", [TcLaw, TcSpin, TcGain, TcOrbitLoad, TcMode, TcClear], ids=lambda k: k.__name__
+        "kind",
+        [TcLaw, TcSpin, TcGain, TcOrbitLoad, TcMode, TcClear, TcParameter, TcFreeze],
+        ids=lambda k: k.__name__,
     )
     def test_a_log_without_one_of_them_replays_no_more(self, entries, refly, kind):
         index = next(i for i, entry in enumerate(entries) if entry.frame.can_id == kind.ID)

@@ -64,6 +64,15 @@ def test_inverse_of_any_inertia_like_tensor(m):
     np.testing.assert_allclose(np.array(inverse) @ tensor, np.eye(3), atol=1e-6)
 
 
+@pytest.mark.parametrize(
+    "moments", [(1.02, 1.85, 1.45), (-1.02, 1.85, 1.45), (1.02, -0.2, -0.3), (0.0, 1.0, 2.0)]
+)
+def test_a_symmetric_matrix_is_positive_definite_exactly_if_its_eigenvalues_are_positive(moments):
+    axes, _ = np.linalg.qr(np.array([[0.6, -0.2, 0.5], [0.3, 0.9, -0.4], [-0.7, 0.1, 0.8]]))
+    turned = tuple(map(tuple, (axes @ np.diag(moments) @ axes.T - 1e-12 * np.eye(3)).tolist()))
+    assert vector.positive_definite(turned) == (min(moments) > 0.0)
+
+
 def test_inverse_of_a_matrix_without_symmetry():
     m = ((2.0, -1.0, 0.5), (0.25, 3.0, 1.0), (-2.0, 0.75, 1.5))
     np.testing.assert_allclose(vector.inverse(m), np.linalg.inv(np.array(m)), rtol=1e-13)

@@ -36,11 +36,13 @@ from fsw.wire.messages import (
     SunVector,
     Sync,
     TcClear,
+    TcFreeze,
     TcGain,
     TcLaw,
     TcMode,
     TcOrbitElement,
     TcOrbitLoad,
+    TcParameter,
     TcSpin,
     TickDone,
     intact,
@@ -304,6 +306,8 @@ TELECOMMAND_OF = {
     TcGain.ID: TcGain(1, -1, 16149, counter=3),
     TcOrbitElement.ID: TcOrbitElement(4, -7, 8932, counter=3),
     TcOrbitLoad.ID: TcOrbitLoad(counter=3),
+    TcParameter.ID: TcParameter(17, -9, -45678, counter=3),
+    TcFreeze.ID: TcFreeze(1, counter=3),
 }
 
 

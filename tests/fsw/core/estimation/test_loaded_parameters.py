@@ -1,0 +1,219 @@
+"""Parameters by the numbers that they have on the bus, loaded and frozen by the ground."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from fsw.core.estimation import estimator
+from fsw.core.estimation.kalman import LeanKalmanFilter
+from fsw.core.estimation.parameters import (
+    NAMES,
+    NOTHING,
+    SIZES,
+    component_places,
+    layout,
+    with_component,
+)
+from fsw.wire.messages import Component
+
+ON_THE_BUS = {
+    "mag_bias_t": "MAG_BIAS_",
+    "torque_body_nm": "TORQUE_",
+    "dipole_body_am2": "DIPOLE_",
+    "coil_error": "COIL_",
+    "inertia_error_kgm2": "INERTIA_",
+    "mag_turn_rad": "MAG_TURN_",
+    "mag_scale": "MAG_SCALE_",
+    "sun_turn_rad": "SUN_TURN_",
+    "delay_s": "_DELAY",
+}
+BOUNDS = {"residual_dipole_am2": 0.03, "magnetometer_scale_percent": 0.4, "latency_s": 0.8}
+
+
+class TestNumbers:
+    def test_on_the_bus_are_those_of_the_parameters_in_their_order(self):
+        named = [name for name in NAMES for _ in range(SIZES[name])]
+        assert len(named) == len(Component)
+        assert all(ON_THE_BUS[name] in Component(number).name for number, name in enumerate(named))
+        assert [Component(number).name[-2:] for number in (11, 13, 15)] == ["XZ", "YY", "ZX"]
+        assert [Component(number).name[-2:] for number in range(18, 24)] == [
+            "XX",
+            "YY",
+            "ZZ",
+            "XY",
+            "XZ",
+            "YZ",
+        ]
+
+    def test_each_stands_where_the_layout_has_it(self):
+        places = component_places(layout({"torque_body_nm", "mag_scale", "delay_s"}))
+        assert list(places.items()) == [
+            (3, 6),
+            (4, 7),
+            (5, 8),
+            (27, 9),
+            (28, 10),
+            (29, 11),
+            (33, 12),
+            (34, 13),
+        ]
+        assert component_places(layout(set())) == {}
+
+    @pytest.mark.parametrize("number", Component)
+    def test_another_value_of_one_leaves_the_others(self, number):
+        numbers = [1.0 + n for n in range(len(Component))]
+        parameters = NOTHING
+        for other in Component:
+            parameters = with_component(parameters, other, numbers[other])
+        assert parameters.floats() == tuple(numbers)
+        numbers[number] = -7.5
+        changed = with_component(parameters, number, -7.5)
+        assert changed.floats() == tuple(numbers)
+        assert [*map(len, changed)] == [*SIZES.values()]
+
+
+@pytest.fixture(scope="module")
+def settled(make_world):
+    """A filter with some of the parameters, after a pulse, whose effect is traced."""
+    world = make_world(flight={"uncertainty": BOUNDS})
+    while world.state.estimator.estimate is None or world.state.estimator.estimate.trace is None:
+        world.step()
+    world.fly(5)
+    state, config = world.state.estimator, world.config.estimator
+    return state, config
+
+
+def place_of(number, config):
+    return component_places(config.mekf.layout)[number]
+
+
+def test_considered_states_keep_their_values_and_the_covariance_is_that_of_the_errors():
+    """Schmidt's filter: whatever the gain K, the error after an update is (1 - K H) e - K v."""
+    random = np.random.default_rng(7)
+    root, sensitivity, z = random.normal(size=(9, 9)), random.normal(size=(3, 9)), random.normal(size=3)
+    x, p, noise = random.normal(size=9), root @ root.T, np.diag([0.2, 0.3, 0.5])
+    best = p @ sensitivity.T @ np.linalg.inv(sensitivity @ p @ sensitivity.T + noise)
+    gain = np.where(np.arange(9)[:, None] < 4, best, 0.0)
+    remains = np.eye(9) - gain @ sensitivity
+    kalman = LeanKalmanFilter(x, p)
+    kalman.update(z, noise, sensitivity, slice(4, 9))
+    assert kalman.x[4:].tolist() == x[4:].tolist()
+    np.testing.assert_allclose(kalman.x, x + gain @ (z - sensitivity @ x), rtol=1e-9)
+    np.testing.assert_allclose(kalman.P, remains @ p @ remains.T + gain @ noise @ gain.T, atol=1e-9)
+    np.testing.assert_allclose(kalman.P[4:, 4:], p[4:, 4:], rtol=1e-12)
+
+
+class TestLoad:
+    NUMBER, VALUE = Component.DIPOLE_Y, -0.0123
+
+    @pytest.fixture
+    def both(self, settled):
+        state, config = settled
+        return state, estimator.load(state, self.NUMBER, self.VALUE, config.mekf), config
+
+    def test_its_deviation_is_that_of_the_prior_and_correlated_with_nothing(self, both):
+        before, after, config = both
+        place, covariance = place_of(self.NUMBER, config), after.estimate.covariance
+        assert covariance[place, place] == pytest.approx(0.03**2 / 3.0)
+        assert before.estimate.covariance[place, place] < 0.99 * 0.03**2 / 3.0
+        others = np.arange(len(covariance)) != place
+        assert np.count_nonzero(before.estimate.covariance[place, others]) == others.sum()
+        assert not covariance[place, others].any()
+        assert not covariance[others, place].any()
+
+    def test_nothing_else_is_touched(self, both):
+        before, after, config = both
+        others = np.arange(config.mekf.layout.size) != place_of(self.NUMBER, config)
+        covariances = [state.estimate.covariance[np.ix_(others, others)] for state in (before, after)]
+        np.testing.assert_array_equal(*covariances)
+        parameters = with_component(before.estimate.parameters, self.NUMBER, self.VALUE)
+        assert after.estimate[:2] == before.estimate[:2]
+        assert after.estimate.parameters == parameters
+        assert after.first == with_component(config.mekf.initial_parameters, self.NUMBER, self.VALUE)
+        assert after[1:5] == before[1:5]
+
+    def test_the_effect_of_pulses_is_traced_anew(self, both):
+        assert both[1].estimate.trace is None
+
+
+class TestFreeze:
+    def test_values_stay_through_updates_and_attitude_and_rate_do_not(self, make_world):
+        world = make_world(flight={"uncertainty": BOUNDS})
+        world.fly(110)
+        world.state = world.state._replace(estimator=estimator.freeze(world.state.estimator))
+        frozen = [world.state.estimator.estimate]
+        for _ in range(30):
+            world.step()
+            frozen.append(world.state.estimator.estimate)
+        assert len({estimate.parameters for estimate in frozen}) == 1
+        assert all(a.omega_body_radps != b.omega_body_radps for a, b in pairwise(frozen))
+        known = slice(6, None)
+        walked = frozen[-1].covariance[known, known] - frozen[0].covariance[known, known]
+        noise = 30 * world.config.estimator.mekf.process_noise[known, known]
+        np.testing.assert_allclose(walked, noise, atol=1e-9 * frozen[0].covariance[known, known].max())
+        smallest = np.linalg.eigvalsh(correlation(frozen[-1].covariance)).min()
+        assert smallest > 0.0
+
+    def test_what_pulses_did_before_corrects_them_no_more(self, settled):
+        state, _ = settled
+        assert state.estimate.trace.effect[6:].any()
+        assert estimator.freeze(state).estimate.trace is None
+
+    def test_of_a_filter_that_estimates_none_changes_no_bit_of_the_estimate(self, make_world):
+        worlds = [make_world(flight={"uncertainty": dict.fromkeys(NONE, 0.0)}) for _ in range(2)]
+        for world in worlds:
+            world.fly(60)
+        worlds[1].state = worlds[1].state._replace(estimator=estimator.freeze(worlds[1].state.estimator))
+        for world in worlds:
+            world.fly(30)
+        free, frozen = (world.state.estimator.estimate for world in worlds)
+        assert free.floats() == frozen.floats()
+        assert free.covariance.shape == (6, 6)
+        np.testing.assert_array_equal(free.covariance, frozen.covariance)
+
+    def test_a_restart_keeps_what_the_ground_has_set(self, settled):
+        state, _ = settled
+        frozen = estimator.freeze(state)
+        again = estimator.restart(frozen)
+        assert (again.first, again.frozen) == (state.estimate.parameters, True)
+        assert (again.estimate, again.restarts) == (None, state.restarts + 1)
+        assert estimator.thaw(again) == again._replace(frozen=False)
+
+
+NONE = (
+    "magnetometer_bias_nt",
+    "torque_nm",
+    "residual_dipole_am2",
+    "magnetometer_misalignment_deg",
+    "sun_misalignment_deg",
+)
+
+
+def correlation(covariance):
+    sigma = np.sqrt(covariance.diagonal())
+    return covariance / np.outer(sigma, sigma)
+
+
+class TestFastTurn:
+    """What a fast turn leaves in the parameters is given up when it ends."""
+
+    def slowed(self, make_world, frozen):
+        """The estimator before the first slow tick after a fast turn, a torque being loaded, and after it."""
+        world = make_world(flight={"uncertainty": BOUNDS})
+        world.fly(60)
+        loaded = estimator.load(world.state.estimator, Component.TORQUE_Z, 3e-8, world.config.estimator.mekf)
+        fast = loaded._replace(fast=True, frozen=frozen)
+        world.state = world.state._replace(estimator=fast)
+        world.step()
+        return fast, world.state.estimator
+
+    def test_they_start_from_what_the_ground_has_loaded(self, make_world):
+        before, after = self.slowed(make_world, frozen=False)
+        assert after.estimate.parameters == before.first != before.estimate.parameters
+        assert not after.fast
+
+    def test_frozen_ones_stay(self, make_world):
+        before, after = self.slowed(make_world, frozen=True)
+        assert after.estimate.parameters == before.estimate.parameters != before.first
+        assert after.fast
