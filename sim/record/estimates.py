@@ -1,10 +1,11 @@
 """The estimates of the flight software at every tick, recorded during a replay."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fsw.core.estimation.mekf import Estimate
 from fsw.core.state import FlightState
 
 Array = NDArray[np.float64]
@@ -14,7 +15,8 @@ Array = NDArray[np.float64]
 class Estimates:
     """Histories by tick: NaN where there was no estimate.
 
-    ``covariance`` is that of attitude and rate error, (n, 6, 6), body axes; ``mode`` the mode's number.
+    ``covariance`` is that of attitude and rate error, (n, 6, 6), body axes; ``mode`` the mode's number;
+    ``last`` the last estimate of the filter, whole.
     """
 
     q_body_from_orbit: Array
@@ -23,6 +25,7 @@ class Estimates:
     covariance: Array
     valid: NDArray[np.bool_]
     mode: NDArray[np.int64]
+    last: Estimate | None = None
 
 
 class EstimateRecorder:
@@ -37,6 +40,7 @@ class EstimateRecorder:
             valid=np.zeros(ticks, dtype=bool),
             mode=np.zeros(ticks, dtype=int),
         )
+        self._last: Estimate | None = None
 
     def take(self, state: FlightState) -> None:
         """Store the estimate of the state's tick; ticks beyond the histories are ignored."""
@@ -53,7 +57,8 @@ class EstimateRecorder:
         if estimate is not None:
             into.omega_body_radps[tick] = estimate.omega_body_radps
             into.covariance[tick] = estimate.covariance[0:6, 0:6]
+            self._last = estimate
 
     def estimates(self) -> Estimates:
         """The histories."""
-        return self._estimates
+        return replace(self._estimates, last=self._last)

@@ -10,6 +10,7 @@ from sim.record.estimates import Estimates
 from sim.record.run_record import RunRecord
 from sim.record.truth import Histories
 from sim.report import tables
+from sim.report.parameters import parameter_table
 from sim.scenario.schema import Scenario
 
 
@@ -45,6 +46,7 @@ def write_report(
         coils=tables.coil_table(summary, audit),
         longest_pulse=tables.longest_pulse(summary, audit),
         charts=sections(scenario, truth, estimates, audit),
+        parameters=parameter_table(summary),
         events=events,
         events_open=len(events.rows) <= tables.EVENTS_OPEN,
         scenario=tables.scenario_in_words(scenario),

@@ -12,6 +12,7 @@ from sim.record.candump import LogEntry
 from sim.record.estimates import Estimates
 from sim.record.run_record import FlightRecord
 from sim.record.truth import Histories
+from sim.report import parameters
 from sim.report.attitude_arrays import angle_rad, axis1_angle_rad, normal_in_body, relative
 from sim.report.isolations import isolated_unit
 from sim.report.spans import held_from, spans
@@ -104,6 +105,7 @@ def summarise(
         summary["pointing_deg"] = _angles(np.degrees(angle_rad(relative(upright, q))), last_orbit)
         summary["axis1_deg"] = _axis1(np.degrees(axis1_angle_rad(q)), last_orbit, tick_hz, scenario)
         summary |= _estimate(truth, estimates, tick_hz)
+        summary["parameters"] = parameters.parameter_figures(scenario, truth, estimates)
         summary["spin_radps"] = _spin(scenario, truth, audit, last_orbit)
         summary["mode_final"] = Mode(int(estimates.mode[ticks - 1])).name
     summary["isolated"] = tally.isolated

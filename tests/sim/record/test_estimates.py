@@ -43,6 +43,13 @@ def test_ticks_that_were_not_flown_are_unknown(states):
     assert not estimates.valid[100:].any()
 
 
+def test_the_last_estimate_is_kept_whole_though_the_filter_has_lost_it(states):
+    lost = states[200]._replace(estimator=type(states[200].estimator)())
+    assert recorded([*states[:200], lost], 300).last is states[199].estimator.estimate
+    assert recorded(states, 40).last is states[39].estimator.estimate
+    assert recorded([lost], 300).last is None
+
+
 def test_ticks_beyond_the_histories_are_passed_over(states):
     assert recorded(states, 40).valid.shape == (40,)
 

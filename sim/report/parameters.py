@@ -1,0 +1,115 @@
+"""What the filter estimates besides attitude and rate, beside the bounds of its table and the truth."""
+
+from math import degrees
+from typing import Any
+
+from fsw.core.estimation.mekf import healthy
+from fsw.core.estimation.parameters import COMPONENTS, NAMES, layout
+from fsw.table.estimator import table_bounds
+from fsw.table.table import FlightTable
+from fsw.table.uncertainty import limits, priors
+from fsw.wire.messages import Component
+from sim.plant.config import PlantConfig
+from sim.plant.dynamics.disturbances import residual_dipole
+from sim.plant.rotation import ZERO, from_vector, matrix
+from sim.record.estimates import Estimates
+from sim.record.truth import Histories
+from sim.report.tables import Table
+from sim.scenario.assemble import plant_config
+from sim.scenario.schema import Scenario, flight_table
+
+Json = dict[str, Any]
+Values = tuple[float, ...]
+
+MODELLED = ("coils", "gravity_gradient", "residual_dipole", "noise")
+"""Torques of the plant that the filter does not take for its disturbance torque."""
+UNITS = {
+    "mag_bias_t": ("nT", 1e9),
+    "torque_body_nm": ("N m", 1.0),
+    "dipole_body_am2": ("A m²", 1.0),
+    "coil_error": ("%", 100.0),
+    "inertia_error_kgm2": ("kg m²", 1.0),
+    "mag_turn_rad": ("°", degrees(1.0)),
+    "mag_scale": ("%", 100.0),
+    "sun_turn_rad": ("°", degrees(1.0)),
+    "delay_s": ("s", 1.0),
+}
+"""The unit in which the page shows a parameter, and how many of it are one of SI."""
+
+
+def parameter_figures(scenario: Scenario, truth: Histories, estimates: Estimates) -> Json | None:
+    """The last estimate of each parameter that the filter carries; None where there is no sound one.
+
+    By name in ``Parameters``, each a list by component, SI units: ``value``, ``sigma``, ``bound`` of the
+    onboard table, and ``truth`` where the plant has one.
+    """
+    estimate, table = estimates.last, flight_table(scenario)
+    if estimate is None or not healthy(estimate):
+        return None
+    known, inertia = table_bounds(table), table.body.inertia
+    bounds, true = limits(known, inertia), _truth(plant_config(scenario, seed=0), table, truth)
+    sigma = estimate.covariance.diagonal() ** 0.5
+    figures: Json = {}
+    for index, place in layout(set(priors(known, inertia))).carried:
+        name = NAMES[index]
+        figures[name] = {
+            "value": list(estimate.parameters[index]),
+            "sigma": sigma[place].tolist(),
+            "bound": list(bounds[name]),
+        }
+        if name in true:
+            figures[name]["truth"] = list(true[name])
+    return figures
+
+
+def parameter_table(summary: Json) -> Table:
+    """The same in the units of people, a row a component, named as on the bus."""
+    figures = summary.get("parameters", {})
+    rows = []
+    for component, (index, offset) in zip(Component, COMPONENTS, strict=True):
+        if NAMES[index] in figures:
+            unit, factor = UNITS[NAMES[index]]
+            columns = [figures[NAMES[index]].get(key) for key in ("bound", "value", "sigma", "truth")]
+            cells = ["–" if column is None else f"{factor * column[offset]:.4g}" for column in columns]
+            rows.append((component.name.lower(), unit, *cells))
+    return Table(("", "unit", "bound", "estimate at the end", "sigma", "truth"), rows)
+
+
+def _truth(plant: PlantConfig, table: FlightTable, truth: Histories) -> dict[str, Values]:
+    """What the parameters really are; torque and dipole, which may vary, at the end, without remanence."""
+    true = {
+        "mag_bias_t": plant.magnetometer.bias_t,
+        "dipole_body_am2": residual_dipole(plant.disturbance, truth["lit"][-1], ZERO),
+        "coil_error": _coil_error(plant),
+        "inertia_error_kgm2": _inertia_error(plant, table),
+        "mag_turn_rad": plant.magnetometer.misalignment_rad,
+        "mag_scale": tuple(scale - 1.0 for scale in plant.magnetometer.scale),
+        "sun_turn_rad": plant.sun_sensor.misalignment_rad,
+        "delay_s": (plant.magnetometer.latency_s, plant.sun_sensor.latency_s),
+    }
+    disturbing = [
+        torque
+        for name, torque in truth.items()
+        if name.startswith("torque_body_nm/") and name.removeprefix("torque_body_nm/") not in MODELLED
+    ]
+    if disturbing:
+        true["torque_body_nm"] = tuple(sum(torque[-1] for torque in disturbing).tolist())
+    return true
+
+
+def _coil_error(plant: PlantConfig) -> Values:
+    """G by rows: what the dipole of each coil, a column, differs by from one A m^2 along its axis."""
+    coils = plant.coils
+    axes = [matrix(from_vector(turn))[coil] for coil, turn in enumerate(coils.misalignment_rad)]
+    return tuple(
+        coils.dipole_scale[column] * axes[column][row] - (row == column)
+        for row in range(3)
+        for column in range(3)
+    )
+
+
+def _inertia_error(plant: PlantConfig, table: FlightTable) -> Values:
+    """As xx, yy, zz, xy, xz, yz."""
+    true, assumed = plant.body.inertia_kgm2, table.body.inertia
+    places = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+    return tuple(true[row][column] - assumed[row][column] for row, column in places)

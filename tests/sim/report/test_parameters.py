@@ -1,0 +1,191 @@
+"""What the filter estimates, in summary and report: values, deviations, bounds and truth by component."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from fsw.core.estimation.mekf import Estimate
+from fsw.core.estimation.parameters import NOTHING
+from sim.report.parameters import UNITS, parameter_figures, parameter_table
+from sim.scenario.schema import load
+
+UNLIKE = {
+    "body": {"inertia_kgm2": [[1.1, 0.03, -0.02], [0.03, 1.75, 0.05], [-0.02, 0.05, 1.95]]},
+    "coils": {
+        "dipole_scale": [0.95, 1.02, 1.04],
+        "misalignment_deg": [[0.0, 0.4, -0.3], [0.2, 0.0, 0.5], [-0.6, 0.1, 0.0]],
+    },
+    "sensors": {
+        "magnetometer": {
+            "bias_nt": [150.0, -250.0, 100.0],
+            "scale": [1.001, 0.998, 1.003],
+            "misalignment_deg": [0.3, -0.2, 0.1],
+            "latency_s": 0.4,
+        },
+        "sun": {"misalignment_deg": [-0.1, 0.25, 0.15], "latency_s": 0.7},
+    },
+    "disturbance": {
+        "residual_dipole_am2": [0.02, -0.03, 0.01],
+        "residual_dipole_eclipse_am2": [0.004, 0.002, -0.008],
+    },
+    "flight": {
+        "body": {"inertia_kgm2": [[1.0, 0.0, 0.0], [0.0, 1.8, 0.01], [0.0, 0.01, 2.0]]},
+        "uncertainty": {
+            "inertia_percent": 12.0,
+            "products_percent": 3.0,
+            "residual_dipole_am2": 0.05,
+            "coil_gain_percent": 6.0,
+            "coil_misalignment_deg": 0.5,
+            "magnetometer_bias_nt": 400.0,
+            "magnetometer_scale_percent": 0.4,
+            "magnetometer_misalignment_deg": 0.9,
+            "sun_misalignment_deg": 0.6,
+            "torque_nm": 3e-7,
+            "latency_s": 0.8,
+        },
+    },
+}
+TRUTH = {
+    "lit": np.array([1.0, 1.0, 1.0, 1.0, 0.25]),
+    "torque_body_nm/coils": np.full((5, 3), 1e-4),
+    "torque_body_nm/gravity_gradient": np.full((5, 3), 1e-6),
+    "torque_body_nm/residual_dipole": np.full((5, 3), 1e-7),
+    "torque_body_nm/noise": np.full((5, 3), 1e-8),
+    "torque_body_nm/bias": np.outer(np.arange(1.0, 6.0), [1e-9, -2e-9, 3e-9]),
+    "torque_body_nm/drag": np.tile([4e-9, 5e-9, -6e-9], (5, 1)),
+}
+
+
+def turned(axis, turn_deg, scale):
+    return scale * Rotation.from_rotvec(turn_deg, degrees=True).apply(np.eye(3)[axis])
+
+
+COILS = np.column_stack(
+    [turned(0, [0.0, 0.4, -0.3], 0.95), turned(1, [0.2, 0.0, 0.5], 1.02), turned(2, [-0.6, 0.1, 0.0], 1.04)]
+)
+COILS = (COILS - np.eye(3)).ravel()
+"""G of the three coils by rows."""
+
+
+def estimates_of(made_run, parameters, variances):
+    last = Estimate((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), parameters, np.diag(variances))
+    return replace(made_run(ticks=5).estimates(), last=last)
+
+
+@pytest.fixture(scope="module")
+def figures(made_run):
+    """Of a filter that carries all, every value and deviation another."""
+    parameters = NOTHING._replace(
+        mag_bias_t=(1e-7, -2e-7, 3e-7), coil_error=tuple(0.01 * n for n in range(9)), delay_s=(0.3, 0.6)
+    )
+    estimates = estimates_of(made_run, parameters, [(1.0 + n) ** 2 for n in range(41)])
+    return parameter_figures(load("microsat", UNLIKE), TRUTH, estimates)
+
+
+class TestFigures:
+    def test_are_of_every_parameter_that_is_carried(self, figures):
+        assert [*figures] == [*NOTHING._fields] == [*UNITS]
+
+    def test_values_and_deviations_are_those_of_the_last_estimate(self, figures):
+        assert figures["mag_bias_t"]["value"] == [1e-7, -2e-7, 3e-7]
+        assert figures["coil_error"]["value"] == [0.01 * n for n in range(9)]
+        assert figures["delay_s"]["value"] == [0.3, 0.6]
+        assert figures["mag_bias_t"]["sigma"] == [7.0, 8.0, 9.0]
+        assert figures["delay_s"]["sigma"] == [40.0, 41.0]
+
+    @pytest.mark.parametrize(
+        ("name", "bound"),
+        [
+            ("mag_bias_t", [4e-7] * 3),
+            ("torque_body_nm", [3e-7] * 3),
+            ("dipole_body_am2", [0.05] * 3),
+            ("coil_error", np.where(np.eye(3), 0.06, np.radians(0.5)).ravel()),
+            ("inertia_error_kgm2", [0.12, 0.216, 0.24, 0.048, 0.048, 0.048]),
+            ("mag_turn_rad", np.radians([0.9] * 3)),
+            ("mag_scale", [0.004] * 3),
+            ("sun_turn_rad", np.radians([0.6] * 3)),
+            ("delay_s", [0.8, 0.8]),
+        ],
+    )
+    def test_bounds_are_those_of_the_table(self, figures, name, bound):
+        assert figures[name]["bound"] == pytest.approx([*bound])
+
+    @pytest.mark.parametrize(
+        ("name", "truth"),
+        [
+            ("mag_bias_t", [1.5e-7, -2.5e-7, 1e-7]),
+            ("torque_body_nm", [9e-9, -5e-9, 9e-9]),  # bias of the last row, and drag
+            ("dipole_body_am2", [0.023, -0.0285, 0.004]),  # of the last row, three quarters in shadow
+            ("coil_error", COILS),
+            ("inertia_error_kgm2", [0.1, -0.05, -0.05, 0.03, -0.02, 0.04]),
+            ("mag_turn_rad", np.radians([0.3, -0.2, 0.1])),
+            ("mag_scale", [0.001, -0.002, 0.003]),
+            ("sun_turn_rad", np.radians([-0.1, 0.25, 0.15])),
+            ("delay_s", [0.4, 0.7]),
+        ],
+    )
+    def test_the_truth_is_the_plant_s(self, figures, name, truth):
+        assert figures[name]["truth"] == pytest.approx([*truth], abs=1e-15)
+
+    def test_of_an_exact_table_there_are_only_bias_and_torque(self, made_run):
+        estimates = estimates_of(made_run, NOTHING, [1.0] * 12)
+        assert [*parameter_figures(load("microsat"), TRUTH, estimates)] == ["mag_bias_t", "torque_body_nm"]
+
+    def test_without_histories_of_torques_that_truth_is_missing(self, made_run):
+        estimates = estimates_of(made_run, NOTHING, [1.0] * 12)
+        found = parameter_figures(load("microsat"), {"lit": TRUTH["lit"]}, estimates)
+        assert "truth" not in found["torque_body_nm"]
+        assert found["mag_bias_t"]["truth"] == [0.0, 0.0, 0.0]
+
+    @pytest.mark.parametrize("variance", [-1e-20, np.nan])
+    def test_of_an_estimate_that_is_not_sound_there_are_none(self, made_run, variance):
+        estimates = estimates_of(made_run, NOTHING, [1.0] * 11 + [variance])
+        assert parameter_figures(load("microsat"), TRUTH, estimates) is None
+
+    def test_without_a_filter_there_are_none(self, made_run):
+        assert parameter_figures(load("microsat"), TRUTH, made_run(ticks=5).estimates()) is None
+
+
+class TestTable:
+    def test_a_row_a_component_in_the_units_of_people(self, figures):
+        rows = {row[0]: row[1:] for row in parameter_table({"parameters": figures}).rows}
+        assert len(rows) == 35
+        assert rows["mag_bias_y"] == ("nT", "400", "-200", "8e+09", "-250")
+        assert rows["coil_yy"] == ("%", "6", "4", "2000", "1.995")
+        assert rows["coil_yz"][0:4] == ("%", "0.8727", "5", "2100")
+        assert rows["mag_turn_y"][0:2] == ("°", "0.9")
+        assert rows["mag_turn_y"][-1] == "-0.2"
+        assert rows["inertia_xz"] == ("kg m²", "0.048", "0", "29", "-0.02")
+        assert rows["sun_delay"] == ("s", "0.8", "0.6", "41", "0.7")
+
+    def test_without_a_truth_there_is_a_dash(self, figures):
+        without = {key: values for key, values in figures["torque_body_nm"].items() if key != "truth"}
+        (row, *_) = parameter_table({"parameters": {"torque_body_nm": without}}).rows
+        assert row == ("torque_x", "N m", "3e-07", "0", "10", "–")
+
+    def test_of_a_summary_without_parameters_is_empty(self):
+        assert parameter_table({}).rows == []
+
+
+class TestRun:
+    """In the files of a real run, both from the replay."""
+
+    def test_the_summary_has_them(self, concluded, strict):
+        found = strict((concluded / "summary.json").read_text(encoding="utf-8"))["parameters"]
+        assert [*found] == ["mag_bias_t", "torque_body_nm"]
+        for figures in found.values():
+            assert {*figures} == {"value", "sigma", "bound", "truth"}
+            assert all(
+                0.0 < sigma <= bound for sigma, bound in zip(figures["sigma"], figures["bound"], strict=True)
+            )
+
+    def test_the_page_shows_them(self, concluded):
+        html = (concluded / "report.html").read_text(encoding="utf-8")
+        section = html[html.index('<section id="parameters">') :]
+        assert section.index("mag_bias_x") < section.index("torque_z") < section.index("</section>")
+        assert "dipole_x" not in section[: section.index("</section>")]
+
+    def test_a_page_without_a_filter_has_no_such_section(self, made_run, tmp_path):
+        assert 'id="parameters"' not in made_run().write(tmp_path).source
