@@ -8,7 +8,7 @@ from fsw.wire.messages import Mode
 from hil_stub.coils.events import CoilEventCode
 from sim.fault_rig.record import FaultFlightRecord, ReportedEvent
 from sim.fault_table.row import Bounds, FaultRow
-from sim.report.isolations import UNITS, isolated_unit
+from sim.flight.isolations import UNITS, isolated_unit
 
 LEAST_PULSES = 5
 """Pulses of a coil that suffice to isolate it if it is faulty."""

@@ -8,13 +8,13 @@ from numpy.typing import NDArray
 
 from fsw.wire.messages import CLASSES, NAMES, SENDERS, CoilRefused, FswEvent, Mode, intact
 from sim.audit.auditor import AuditReport
+from sim.flight.isolations import isolated_unit
 from sim.record.candump import LogEntry
 from sim.record.estimates import Estimates
 from sim.record.run_record import FlightRecord
 from sim.record.truth import Histories
 from sim.report import parameters
 from sim.report.attitude_arrays import angle_rad, axis1_angle_rad, normal_in_body, relative
-from sim.report.isolations import isolated_unit
 from sim.report.spans import held_from, spans
 from sim.scenario.schema import Scenario, orbit_period_s
 

@@ -5,7 +5,7 @@ import pytest
 from fsw.core.events import Event
 from fsw.core.fdir.coil_health import CoilFault
 from fsw.core.fdir.sensor_watch import SensorFault
-from sim.report.isolations import isolated_unit
+from sim.flight.isolations import isolated_unit
 
 
 @pytest.mark.parametrize("fault", [*SensorFault])
