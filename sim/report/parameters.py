@@ -10,7 +10,7 @@ from fsw.table.table import FlightTable
 from fsw.table.uncertainty import limits, priors
 from fsw.wire.messages import Component
 from sim.plant.config import PlantConfig
-from sim.plant.dynamics.disturbances import residual_dipole
+from sim.plant.dynamics.disturbances import bias_torque, effects, residual_dipole
 from sim.plant.rotation import ZERO, from_vector, matrix
 from sim.record.estimates import Estimates
 from sim.record.truth import Histories
@@ -21,8 +21,6 @@ from sim.scenario.schema import Scenario, flight_table
 Json = dict[str, Any]
 Values = tuple[float, ...]
 
-MODELLED = ("coils", "gravity_gradient", "residual_dipole", "noise")
-"""Torques of the plant that the filter does not take for its disturbance torque."""
 UNITS = {
     "mag_bias_t": ("nT", 1e9),
     "torque_body_nm": ("N m", 1.0),
@@ -87,13 +85,8 @@ def _truth(plant: PlantConfig, table: FlightTable, truth: Histories) -> dict[str
         "sun_turn_rad": plant.sun_sensor.misalignment_rad,
         "delay_s": (plant.magnetometer.latency_s, plant.sun_sensor.latency_s),
     }
-    disturbing = [
-        torque
-        for name, torque in truth.items()
-        if name.startswith("torque_body_nm/") and name.removeprefix("torque_body_nm/") not in MODELLED
-    ]
-    if disturbing:
-        true["torque_body_nm"] = tuple(sum(torque[-1] for torque in disturbing).tolist())
+    if not effects(plant):  # torques that follow the motion have no one value
+        true["torque_body_nm"] = bias_torque(plant.disturbance, truth["t_s"][-1])
     return true
 
 
