@@ -17,6 +17,7 @@ from fsw.core.estimation.parameters import NOTHING, UNCHANGED_INERTIA, Parameter
 from fsw.core.estimation.samples import usable_field, usable_sun
 from fsw.core.fdir import fdir
 from fsw.core.fdir.fdir import Evidence
+from fsw.core.fdir.plausibility import Findings
 from fsw.core.gate import second_sender
 from fsw.core.gate.readings import Readings, admit
 from fsw.core.gate.sync_watch import Belief, SyncWatch, judge, near
@@ -44,6 +45,7 @@ class Observation(NamedTuple):
     readings: Readings
     reference: Reference | None
     used: Used = NONE_USED
+    findings: Findings | None = None
 
 
 def boot(config: FlightConfig) -> FlightState:
@@ -69,7 +71,7 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     state, readings = _gate(state, inbox, config)
     state, reference = _predict(state, model, tick - before.tick, config)
     state, observation = _update(state, readings, reference, config)
-    state = _judge(state, readings, observation, config)
+    state = _judge(state, observation, config)
     state, violated = supervise(state, config)
     state, acks = command(state, observation.readings, violated is not None, config)
     state, demand, b_body_t = _control(state, observation, model, config)
@@ -146,20 +148,20 @@ def _update(
     if config.estimator.perfect:
         attitude = perfect_attitude(readings, state.attitude)
         return state._replace(attitude=attitude), Observation(readings, reference)
-    readings = fdir.trusted(readings, state.health, reference)
+    findings = fdir.examine(readings, state.health, reference, config.fdir)
+    readings = fdir.trusted(readings, state.health, findings)
     updated, used = update(state.estimator, readings, reference, config.estimator)
     attitude = orbital_attitude(updated.estimate, reference, config.estimator.valid_sigma_rad)
-    return state._replace(estimator=updated, attitude=attitude), Observation(readings, reference, used)
+    state = state._replace(estimator=updated, attitude=attitude)
+    return state, Observation(readings, reference, used, findings)
 
 
-def _judge(
-    state: FlightState, readings: Readings, observation: Observation, config: FlightConfig
-) -> FlightState:
+def _judge(state: FlightState, observation: Observation, config: FlightConfig) -> FlightState:
     """Judge sensors and coils by all readings, of isolated sensors too."""
-    reference = observation.reference
-    if reference is None or config.estimator.perfect:
+    reference, findings = observation.reference, observation.findings
+    if reference is None or findings is None:
         return state
-    evidence = Evidence(state.tick, readings, state.coil, reference, observation.used)
+    evidence = Evidence(state.tick, findings, state.coil, reference, observation.used)
     health, judged, attitude = fdir.judge(
         state.health, state.estimator, state.attitude, evidence, config.fdir
     )

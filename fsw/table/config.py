@@ -1,16 +1,18 @@
 """From a checked onboard table to the config the core uses: units of the file to SI, seconds to ticks."""
 
-from math import ceil, cos, radians, sqrt
+from math import ceil, cos, radians
 
 from fsw.core.actuation.actuator import ActuatorConfig
 from fsw.core.actuation.dipoles import DipoleConfig
 from fsw.core.actuation.pulses import PulseConfig, pulse_timing
 from fsw.core.algebra.vector import inverse, product
 from fsw.core.config import FlightConfig
-from fsw.core.fdir.coil_health import CoilHealthConfig
+from fsw.core.estimation.mekf_config import MekfConfig
+from fsw.core.fdir.coils import CoilHealthConfig
+from fsw.core.fdir.credibility import credibility_config
+from fsw.core.fdir.evidence import weights
 from fsw.core.fdir.fdir import FdirConfig
-from fsw.core.fdir.sensor_pair import PairConfig
-from fsw.core.fdir.sensor_watch import AGAINST_ESTIMATE, FULL, SensorHealthConfig
+from fsw.core.fdir.sensors import SensorConfig
 from fsw.core.gate.second_sender import SecondSenderConfig
 from fsw.core.laws.interface import ControlConfig, Setpoint
 from fsw.core.laws.table import LAWS
@@ -20,14 +22,15 @@ from fsw.core.orbit.field import FieldKind
 from fsw.core.orbit.propagation import Orbit, circular_orbit, sgp4_orbit
 from fsw.core.rates import RateGroup, RateTable
 from fsw.input.schema import TableError
-from fsw.table.estimator import GATE_NIS, NT, estimator_config, pair_limits, table_bounds
+from fsw.table.estimator import estimator_config, plausibility_config
 from fsw.table.schedules import schedules
 from fsw.table.sections import CoilTable, ModesTable, OrbitTable, TelemetryTable
 from fsw.table.table import FlightTable
-from fsw.table.uncertainty import SIDE
 
 CHATTER_S = 10.0
 """Longest time between signs of a second sender of reports."""
+STUCK_S = 1.0
+"""Beyond a pulse, of a level or current that nobody asked for."""
 
 
 def flight_config(table: FlightTable) -> FlightConfig:
@@ -55,7 +58,7 @@ def flight_config(table: FlightTable) -> FlightConfig:
             estimator=estimator,
             control=_control(table, orbit),
             coils=ActuatorConfig(timing, _dipoles(table)),
-            fdir=FdirConfig(_sensors(table), _coil_health(table), timing, estimator.mekf),
+            fdir=_fdir(table, timing, estimator.mekf),
             modes=_modes(table.modes, tick_hz),
             rates=_rates(table.telemetry, tick_hz),
             event_spacing_ticks=_ticks(table.fdir.event_spacing_s, tick_hz),
@@ -108,40 +111,21 @@ def _full_scale(coils: CoilTable) -> float:
     return (coils.max_dipole_am2 or 0.0) * coils.on_fraction
 
 
-def _sensors(table: FlightTable) -> SensorHealthConfig:
-    fdir, tick_hz, tuning = table.fdir, table.time.tick_hz, table.estimator
-    sigmas, known, limits = sqrt(GATE_NIS), table_bounds(table), pair_limits(table)
-    return SensorHealthConfig(
-        max_field_error_t=limits.field_t,
-        max_norm_error=fdir.max_sun_norm_error,
-        max_angle_error_rad=limits.angle_rad,
-        field_noise_t=sigmas * tuning.magnetometer_sigma_nt * NT,
-        sun_noise_rad=sigmas * radians(tuning.sun_sigma_deg),
-        max_bias_t=sigmas * SIDE * known.mag_bias_t,
-        max_torque_nm=sigmas * SIDE * known.torque_nm,
-        frozen_ticks=max(1, _ticks(fdir.frozen_s, tick_hz)),
-        silent_ticks=max(1, _ticks(table.modes.stale_after_s, tick_hz)),
-        name_suspicion=FULL * max(1, _ticks(fdir.name_s, tick_hz)),
-        readmit_ticks=max(1, _ticks(fdir.readmit_s, tick_hz)),
-        pair=PairConfig(
-            report_ticks=max(1, _ticks(fdir.name_s, tick_hz)),
-            prove_ticks=max(1, _ticks(fdir.prove_s, tick_hz)),
-            agree_ticks=AGAINST_ESTIMATE * max(1, _ticks(fdir.readmit_s, tick_hz)),
+def _fdir(table: FlightTable, timing: PulseConfig, mekf: MekfConfig) -> FdirConfig:
+    given, tick_hz = table.fdir, table.time.tick_hz
+    budget = weights(given.false_alarm_days, 1.0 / tick_hz)
+    return FdirConfig(
+        plausibility=plausibility_config(table),
+        sensors=SensorConfig(budget, credibility_config(mekf), mekf),
+        coils=CoilHealthConfig(
+            current_ma=table.coils.levels_ma,
+            weak_part=given.weak_coil_part,
+            threshold=budget.threshold,
+            stuck_ma=max(1.0, 0.5 * table.coils.levels_ma[0]),
+            stuck_ticks=_ticks(table.coils.pulse_s + STUCK_S, tick_hz) + 1,
+            pulses=timing,
+            mekf=mekf,
         ),
-    )
-
-
-def _coil_health(table: FlightTable) -> CoilHealthConfig:
-    fdir, tick_hz = table.fdir, table.time.tick_hz
-    return CoilHealthConfig(
-        current_ma=table.coils.levels_ma,
-        weak_part=fdir.weak_coil_part,
-        open_part=fdir.open_coil_part,
-        name_pulses=fdir.name_pulses,
-        name_sigmas=fdir.name_sigmas,
-        stuck_ma=max(1.0, 0.5 * table.coils.levels_ma[0]),
-        stuck_ticks=_ticks(table.coils.pulse_s + fdir.stuck_s, tick_hz) + 1,
-        inertia_inverse=inverse(table.body.inertia),
     )
 
 

@@ -1,10 +1,10 @@
 """The estimator's configuration: its noise from the table, its priors and limits from the bounds."""
 
-from dataclasses import dataclass
 from math import ceil, radians, sqrt
 
 from fsw.core.estimation.estimator import EstimatorConfig
 from fsw.core.estimation.mekf_config import mekf_config
+from fsw.core.fdir.plausibility import PlausibilityConfig
 from fsw.table.table import FlightTable
 from fsw.table.uncertainty import Uncertainty, bounds, mean_moment, priors
 
@@ -27,18 +27,10 @@ LARGEST_FIELD_T, LEAST_FIELD_T = 5.0e-5, 2.0e-5
 ORBIT_RADIUS_M = 7.0e6
 
 
-@dataclass(frozen=True, slots=True)
-class PairLimits:
-    """The largest deviation of measured from modelled field strength, and field-Sun angle, if all is well."""
-
-    field_t: float
-    angle_rad: float
-
-
 def estimator_config(table: FlightTable) -> EstimatorConfig:
     """Prepare the estimator."""
     tuning, known, tick_s = table.estimator, table_bounds(table), 1.0 / table.time.tick_hz
-    limits = pair_limits(table)
+    limits = plausibility_config(table)
     return EstimatorConfig(
         mekf=mekf_config(
             table.body.inertia,
@@ -56,8 +48,8 @@ def estimator_config(table: FlightTable) -> EstimatorConfig:
             gate_nis=GATE_NIS,
         ),
         perfect=table.knowledge == "perfect",
-        max_field_error_t=limits.field_t,
-        max_angle_error_rad=limits.angle_rad,
+        max_field_error_t=limits.field_t + limits.field_part * LARGEST_FIELD_T,
+        max_angle_error_rad=limits.angle_rad + limits.field_t / LEAST_FIELD_T,
         min_separation_rad=MIN_SEPARATION_RAD,
         restart_after_rejections=MAX_REFUSALS,
         valid_sigma_rad=radians(tuning.valid_sigma_deg),
@@ -70,18 +62,19 @@ def table_bounds(table: FlightTable) -> Uncertainty:
     return bounds(table.uncertainty, table.body.inertia, 1.0 / table.time.tick_hz)
 
 
-def pair_limits(table: FlightTable) -> PairLimits:
-    """From the bounds and the noise at the edge of the gate.
+def plausibility_config(table: FlightTable) -> PlausibilityConfig:
+    """The largest deviations if all is well, from the bounds and the noise at the edge of the gate.
 
     Along the orbit the field changes in strength, and turns, by up to 3 times the part of the radius that is
-    flown; where it is weakest its errors turn it most.
+    flown.
     """
     known, tuning, sigmas = table_bounds(table), table.estimator, sqrt(GATE_NIS)
     noise_t, noise_rad = tuning.magnetometer_sigma_nt * NT, radians(tuning.sun_sigma_deg)
-    offset_t = sqrt(3.0) * (known.mag_bias_t + sigmas * noise_t)
     model = known.mag_scale_part + 3.0 * known.along_track_m / ORBIT_RADIUS_M
-    turns = known.mag_turn_rad + known.sun_turn_rad + model
-    return PairLimits(
-        field_t=offset_t + model * LARGEST_FIELD_T,
-        angle_rad=turns + offset_t / LEAST_FIELD_T + sigmas * noise_rad,
+    return PlausibilityConfig(
+        field_t=sqrt(3.0) * (known.mag_bias_t + sigmas * noise_t),
+        field_part=model,
+        angle_rad=known.mag_turn_rad + known.sun_turn_rad + model + sigmas * noise_rad,
+        sun_norm=sigmas * noise_rad,
+        late_ticks=ceil(known.latency_s * table.time.tick_hz - 1e-9),
     )

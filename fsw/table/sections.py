@@ -197,29 +197,16 @@ class ModesTable(Section):
 
 
 class FdirTable(Section):
-    """Limits of the checks of sensors, coils and bus, times until a unit is isolated and readmitted.
+    """What fault detection is to guarantee; every other limit follows from bounds and noise.
 
-    A coil is weak below ``weak_coil_part`` of its nominal current or effect, open below ``open_coil_part``.
+    ``false_alarm_days``: mean time between false alarms of a unit. A coil is weak below ``weak_coil_part`` of
+    its nominal current or effect.
     """
 
-    max_sun_norm_error: float = Field(gt=0.0, le=0.5)
-    frozen_s: Positive
-    name_s: Positive
-    readmit_s: Positive
-    prove_s: Positive
-    weak_coil_part: float = Field(gt=0.0, lt=1.0)
-    open_coil_part: float = Field(gt=0.0, lt=1.0)
-    name_pulses: int = Field(ge=1)
-    name_sigmas: Positive
-    stuck_s: Positive
+    false_alarm_days: float = Field(ge=1.0, le=36525.0)
+    weak_coil_part: float = Field(gt=0.2, lt=1.0)
     second_sender_s: Positive
     event_spacing_s: NotNegative
-
-    @model_validator(mode="after")
-    def _open_is_less_than_weak(self) -> Self:
-        if not self.open_coil_part < self.weak_coil_part:
-            raise ValueError("open_coil_part must lie under weak_coil_part")
-        return self
 
 
 class TelemetryTable(Section):

@@ -8,10 +8,10 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from fsw.core.events import Event
-from fsw.core.fdir.coil_health import CoilFault
-from fsw.core.fdir.sensor_health import SHADOW_M
-from fsw.core.fdir.sensor_pair import MISFIT
-from fsw.core.fdir.sensor_watch import AGAINST_ESTIMATE, SensorFault
+from fsw.core.fdir.credibility import SIGMAS
+from fsw.core.fdir.evidence import PAIR_NUMBERS
+from fsw.core.fdir.faults import CoilFault, SensorFault
+from fsw.core.fdir.plausibility import SHADOW_M
 from fsw.core.gate.second_sender import SIGNS
 from fsw.core.gate.sync_watch import LEAP_TICKS
 from fsw.core.monitors import RATE_LIMIT_RADPS, UNIT_TOLERANCE, Monitor
@@ -37,12 +37,11 @@ def _sensor(number: int, watch: SensorFault, text: str, limit: str) -> Requireme
 
 
 def _coil(number: int, watch: CoilFault, text: str) -> Requirement:
-    limit = (
-        "`fdir.weak_coil_part`, `fdir.open_coil_part`; current: `fdir.name_pulses` in a row; "
-        "effect on the rate: `fdir.name_sigmas`"
-    )
+    limit = "`fdir.weak_coil_part`; evidence of two pulses for `fdir.false_alarm_days`"
     return Requirement(f"REQ-COIL-{number:02}", text, limit, watch, Event.COIL_FAULT)
 
+
+ISOLATES = "evidence for `fdir.false_alarm_days`"
 
 REQUIREMENTS: tuple[Requirement, ...] = (
     _trip(1, Monitor.ATTITUDE_FINITE, "Attitude and rate that control uses are numbers.", "finite"),
@@ -83,54 +82,54 @@ REQUIREMENTS: tuple[Requirement, ...] = (
         1,
         SensorFault.SATURATED,
         "A magnetometer that marks its samples as not valid while no coil drives is isolated.",
-        "`fdir.name_s`",
+        ISOLATES,
     ),
     _sensor(
         2,
         SensorFault.STRENGTH,
         "A sensor is isolated if its field has the wrong strength or its Sun vector the wrong length.",
-        "the field by more than `[uncertainty]` allows, or `fdir.max_sun_norm_error`, for `fdir.name_s`",
+        f"by more than `[uncertainty]` and noise allow; {ISOLATES}",
     ),
     _sensor(
         3,
         SensorFault.FROZEN,
         "A sensor whose sample stands still while the other's moves or is missing is isolated.",
-        "`fdir.frozen_s`",
+        f"for longer than `uncertainty.latency_s`; {ISOLATES}",
     ),
     _sensor(
         4,
         SensorFault.REFUSED,
         "A sensor that the filter refuses while it accepts the other, or has no other, is isolated if the "
         "filter has accepted both before.",
-        "both for `fdir.prove_s`; then for `fdir.name_s` where the angle of field and Sun is not as modelled "
-        "within `[uncertainty]`, else for 1.5 times as long",
+        f"a filter that is proven; {ISOLATES}",
     ),
     _sensor(
-        5, SensorFault.SILENT, "A sensor without acceptable samples is isolated.", "`modes.stale_after_s`"
+        5,
+        SensorFault.SILENT,
+        "A sensor without acceptable samples is isolated.",
+        f"in twice the time; {ISOLATES}",
     ),
     Requirement(
         "REQ-SENSOR-06",
-        "An isolated sensor is readmitted once it is consistent with the estimate, or with the other sensor, "
-        "in which case the filter restarts.",
-        f"`fdir.readmit_s`; against the estimate {AGAINST_ESTIMATE} times as long",
+        "An isolated sensor is readmitted once it is consistent with the estimate, or, where that cannot "
+        "tell, with the other sensor, in which case the filter restarts.",
+        f"{ISOLATES}, of a sample that fits; of a pair that agrees, {PAIR_NUMBERS} times as long",
         None,
         Event.SENSOR_READMITTED,
     ),
     Requirement(
         "REQ-SENSOR-07",
-        "Before the filter has accepted both for long, a contradiction between the sensors isolates nothing: "
-        "it is reported, the filter ends, and does not begin before they have agreed for longer. Likewise "
-        "when a filter whose bias or disturbance is impossibly large refuses one of them; it proves nothing.",
-        f"an angle beyond `[uncertainty]` for `fdir.name_s`; agreed for {AGAINST_ESTIMATE} times "
-        f"`fdir.readmit_s`, a bad sample undoing {MISFIT}; a bias or torque beyond 4 standard deviations of "
-        "its bound",
+        "A contradiction between the sensors that does not show which is wrong isolates nothing: it is "
+        "reported, the filter ends, and does not begin before they have agreed for longer; until it is "
+        "proven no attitude is valid. Likewise innovations that are too large, and impossible parameters.",
+        f"{ISOLATES}; parameters: {SIGMAS:g} standard deviations of their priors",
         None,
         Event.SENSORS_DISAGREE,
     ),
     Requirement(
         "REQ-SENSOR-08",
         "Noise, eclipse, a driven coil, field and Sun nearly parallel, or a tumble isolate no sensor.",
-        "0.001 false alarms an hour",
+        "`fdir.false_alarm_days`",
         None,
         Event.SENSOR_ISOLATED,
     ),
@@ -138,7 +137,7 @@ REQUIREMENTS: tuple[Requirement, ...] = (
         9,
         SensorFault.UNLIT,
         "A Sun vector in the Earth's shadow is not used, and a sensor that continues so is isolated.",
-        f"{(RADIUS_M - SHADOW_M) / 1000.0:g} km inside the shadow's edge; `fdir.name_s`",
+        f"{(RADIUS_M - SHADOW_M) / 1000.0:g} km inside the shadow's edge; {ISOLATES}",
     ),
     _coil(1, CoilFault.OPEN, "A coil without current, or whose pulses have no effect, is isolated."),
     _coil(2, CoilFault.WEAK, "A coil of too small a current or effect is isolated."),
@@ -147,7 +146,7 @@ REQUIREMENTS: tuple[Requirement, ...] = (
         "REQ-COIL-04",
         "A level or current that was not requested leads to SAFE; if it persists its coil is isolated, by "
         "the report of the driver or, in sunlight, by the torque.",
-        "level: at once; more than half of the least level's current, and isolation: `fdir.stuck_s` beyond",
+        "level: at once; more than half of the least level's current, and isolation: 1 s beyond a pulse",
         CoilFault.STUCK,
         Event.COIL_FAULT,
     ),

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from fsw.core.events import Event
-from fsw.core.fdir.sensor_watch import Sensor
+from fsw.core.fdir.faults import Sensor
 
 UNITS: Mapping[int, Mapping[int, str]] = {
     Event.SENSOR_ISOLATED: {Sensor.MAGNETOMETER: "magnetometer", Sensor.SUN_SENSOR: "sun sensor"},

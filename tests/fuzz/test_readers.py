@@ -206,7 +206,8 @@ def leaves(values, above=()):
 SHIPPED = load("microsat").model_dump(mode="json")
 KEYS = [
     *sorted(".".join(key) for key in leaves(SHIPPED)),
-    "orbit.altitude_km", "flight.modes.recover_s", "flight.uncertainty.torque_nm", "flight.fdir.name_s",
+    "orbit.altitude_km", "flight.modes.recover_s", "flight.uncertainty.torque_nm",
+    "flight.fdir.false_alarm_days",
     "flight.telemetry.attitude_s", "flight.coils.levels_am2", "flight.body.inertia_kgm2",
     "control.gains.lqr.rate", "disturbance.drag.density_scale", "sensors.sun.fov_half_deg",
 ]  # fmt: skip

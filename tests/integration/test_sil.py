@@ -139,11 +139,11 @@ def test_bus_summary_and_report_are_named(torquer, tmp_path):
     done = torquer("sil", "--orbits", "0.003", "--out", tmp_path / "run")
     assert done.code == 0
     assert done.sentence == f"bus: {resolve('auto').partition(':')[0]} (auto)"
-    assert "microsat, seed 1: 18 s flown" in done.out
+    assert "realsat, seed 1: 18 s flown" in done.out
     assert done.out.endswith(f"report: {tmp_path / 'run' / 'report.html'}\n")
     report = (tmp_path / "run" / "report.html").read_text()
     assert report.lower().startswith("<!doctype html>")
-    assert "microsat" in report
+    assert "realsat" in report
 
 
 def test_without_out_a_run_is_named_by_scenario_and_time(torquer, tmp_path, monkeypatch):

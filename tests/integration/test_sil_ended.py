@@ -205,5 +205,5 @@ def test_flight_software_that_stands_still_for_a_second_is_waited_for(
     os.kill(flight.nodes["fsw"], signal.SIGCONT)
     assert flight.sil.wait().code == 0
     assert flight.is_gone()
-    assert bus(flight.run) == bus(sil_run("microsat", *options, "--bus", "virtual"))
+    assert bus(flight.run) == bus(sil_run("realsat", *options, "--bus", "virtual"))
     assert torquer("replay", flight.run).code == 0

@@ -63,19 +63,19 @@ GUARDS = {
     "sensor health": Off(
         "mag-bias",
         "named",
-        ("fsw.core.fdir.sensor_health.judge", lambda health, *seen: health),
+        ("fsw.core.fdir.sensors.judge", lambda health, *seen: health),
         watch_s=100.0,
     ),
     "coil health: current": Off(
         "coil-stuck-on-1",
         "stuck",
-        ("fsw.core.fdir.coil_health.judge_current", lambda health, *seen: health),
+        ("fsw.core.fdir.coils.judge_current", lambda health, *seen: health),
     ),
     "coil health: rate": Off(
         "coil-reversed-1",
         "named",
         (
-            "fsw.core.fdir.coil_health.judge_rate",
+            "fsw.core.fdir.coils.judge_effect",
             lambda health, view, field, state, *seen: (health, state),
         ),
         watch_s=2000.0,

@@ -130,7 +130,7 @@ def test_whatever_happens_the_limits_hold_and_what_is_demanded_on_and_on_is_fire
     run_state_machine_as_test(
         machine(bench_with, only),
         settings=settings(
-            max_examples=300,
+            max_examples=400,
             stateful_step_count=30,
             suppress_health_check=list(HealthCheck),
             derandomize=True,  # what is counted below is the same each time

@@ -74,7 +74,8 @@ class Estimate(NamedTuple):
     """Attitude, inertial rate, parameters, and the covariance of the error state.
 
     The covariance is (n, n), n being 6 and the parameters that are carried, laid out as in ``Layout``; units
-    rad, rad/s and those of ``Parameters``.
+    rad, rad/s and those of ``Parameters``. ``nis``: the normalised innovations squared of this tick, of so
+    many ``numbers``; what the traced deviations explain is not in it.
     """
 
     q_body_from_eci: Quaternion
@@ -82,10 +83,13 @@ class Estimate(NamedTuple):
     parameters: Parameters
     covariance: Matrix
     trace: Trace | None = None
+    nis: float = 0.0
+    numbers: int = 0
 
     def floats(self) -> tuple[float, ...]:
         """For the checksum of the state, as is ``packed``: all but the arrays."""
-        return (*self.q_body_from_eci, *self.omega_body_radps, *self.parameters.floats())
+        innovation = (self.nis, float(self.numbers))
+        return (*self.q_body_from_eci, *self.omega_body_radps, *self.parameters.floats(), *innovation)
 
     def packed(self) -> bytes:
         """The arrays."""
@@ -106,7 +110,8 @@ def corrected(estimate: Estimate, error: Matrix, uncertainty: Matrix, config: Me
         uncertainty: covariance that this adds, (n, n).
         config: the filter.
     """
-    return _fold(estimate, error, estimate.covariance + uncertainty, config.layout, estimate.trace)
+    anew = estimate._replace(covariance=estimate.covariance + uncertainty)
+    return _fold(anew, error, config.layout)
 
 
 def healthy(estimate: Estimate) -> bool:
@@ -139,7 +144,7 @@ def predict(
         config: the filter.
     """
     h, parts = config.tick_s, config.layout
-    q, omega, parameters, covariance, trace = estimate
+    q, omega, parameters, covariance, trace = estimate[:5]
     torque, m, rotor = parameters.torque_body_nm, m_body_am2, config.rotor
     if parts.dipole is not None or parts.coils is not None:
         m = estimated_dipole(m, parameters)
@@ -208,12 +213,14 @@ def _update(
         traced = sensitivity.dot(trace.effect)  # the operator @ takes twice as long for so small arrays
         traced[:, -1] = kalman.y
         sums = trace.sums + traced.T.dot(kalman.SI.dot(traced))
-        if nis > config.gate_nis:
+        if nis > 2.0 * len(traced):  # else there is nothing to explain
             nis = unexplained(sums) - unexplained(trace.sums)
         trace = Trace(trace.causes, trace.effect - kalman.K.dot(traced), sums, trace.measured + len(traced))
     if not 0.0 <= nis <= config.gate_nis:  # overflow can make it -inf
         return None
-    return _fold(estimate, kalman.x, 0.5 * (kalman.P + kalman.P.T), config.layout, trace)
+    covariance = 0.5 * (kalman.P + kalman.P.T)
+    taken = Estimate(*estimate[:3], covariance, trace, estimate.nis + nis, estimate.numbers + len(innovation))
+    return _fold(taken, kalman.x, config.layout)
 
 
 def unexplained(sums: Matrix) -> float:
@@ -229,17 +236,13 @@ def unexplained(sums: Matrix) -> float:
     return float(sums[-1, -1] - explained)
 
 
-def _fold(
-    estimate: Estimate, error: Matrix, covariance: Matrix, parts: Layout, trace: Trace | None
-) -> Estimate:
+def _fold(estimate: Estimate, error: Matrix, parts: Layout) -> Estimate:
     """Fold the error state into the estimate."""
     values: list[float] = error.tolist()
-    return Estimate(
-        normalise(multiply(estimate.q_body_from_eci, from_small_rotation(_three(values, 0)))),
-        add(estimate.omega_body_radps, _three(values, 3)),
-        corrected_parameters(estimate.parameters, values, parts),
-        covariance,
-        trace,
+    return estimate._replace(
+        q_body_from_eci=normalise(multiply(estimate.q_body_from_eci, from_small_rotation(_three(values, 0)))),
+        omega_body_radps=add(estimate.omega_body_radps, _three(values, 3)),
+        parameters=corrected_parameters(estimate.parameters, values, parts),
     )
 
 

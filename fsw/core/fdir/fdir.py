@@ -4,29 +4,27 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from fsw.core.actuation.actuator import CoilView, unexpected
-from fsw.core.actuation.pulses import PulseConfig
 from fsw.core.algebra.vector import Vec3
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.estimation.estimator import EstimatorState, Used, restart, untraced
-from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.estimation.samples import usable_field, usable_sun
 from fsw.core.events import Event, Happening
-from fsw.core.fdir import coil_health, sensor_health
-from fsw.core.fdir.coil_health import CoilHealth, CoilHealthConfig
-from fsw.core.fdir.sensor_health import SensorHealth
-from fsw.core.fdir.sensor_watch import Sensor, SensorHealthConfig
+from fsw.core.fdir import coils, pair, plausibility, sensors
+from fsw.core.fdir.coils import CoilHealth, CoilHealthConfig
+from fsw.core.fdir.faults import Sensor
+from fsw.core.fdir.pair import Standing
+from fsw.core.fdir.plausibility import Findings, PlausibilityConfig
+from fsw.core.fdir.sensors import SensorConfig, SensorHealth
 from fsw.core.gate.readings import Readings
 from fsw.core.orbit.ephemeris import Reference
 
 
 @dataclass(frozen=True, slots=True)
 class FdirConfig:
-    """Limits for sensors and coils, and what the coils and the filter are set to."""
+    """Limits for samples, sensors and coils."""
 
-    sensors: SensorHealthConfig
+    plausibility: PlausibilityConfig
+    sensors: SensorConfig
     coils: CoilHealthConfig
-    pulses: PulseConfig
-    mekf: MekfConfig
 
 
 class Health(NamedTuple):
@@ -40,19 +38,19 @@ class Health(NamedTuple):
         return (*self.sensors.integers(), *self.coils.integers())
 
     def floats(self) -> tuple[float, ...]:
-        """Those of the sensors: the coils have none."""
-        return self.sensors.floats()
+        """The evidence, and the last samples."""
+        return (*self.sensors.floats(), *self.coils.nats)
 
 
 class Evidence(NamedTuple):
     """What health is judged by in one tick.
 
-    ``readings`` are all that the boards sent, of isolated sensors too; ``view`` is that of the coil driver;
-    ``used`` is what the filter took.
+    ``findings`` are of all that the sensors sent; ``view`` is that of the coil driver; ``used`` is what the
+    filter took.
     """
 
     tick: int
-    readings: Readings
+    findings: Findings
     view: CoilView
     reference: Reference
     used: Used
@@ -62,21 +60,33 @@ def judge_current(
     health: Health, view: CoilView, readings: Readings, tick: int, config: FdirConfig
 ) -> Health:
     """The health after comparing what the coil driver reports with what was asked of it."""
-    unasked = unexpected(view, tick, config.pulses)
-    coils = coil_health.judge_current(
-        health.coils, view, readings, unasked, tick, config.pulses, config.coils
-    )
-    return Health(health.sensors, coils)
+    unasked = unexpected(view, tick, config.coils.pulses)
+    found = coils.judge_current(health.coils, view, readings, unasked, tick, config.coils)
+    return Health(health.sensors, found)
 
 
 def driven_am2(health: Health, view: CoilView, config: FdirConfig) -> Vec3:
     """Dipole over the tick that has ended, body axes, that of a stuck coil included."""
-    return coil_health.driven_am2(health.coils, view, config.pulses, config.coils)
+    return coils.driven_am2(health.coils, view, config.coils)
 
 
-def trusted(readings: Readings, health: Health, reference: Reference) -> Readings:
-    """The readings from which the filter may be updated."""
-    return sensor_health.trusted(readings, health.sensors, reference)
+def examine(readings: Readings, health: Health, reference: Reference, config: FdirConfig) -> Findings:
+    """What the samples of this tick show by themselves."""
+    return plausibility.examine(health.sensors.memory, readings, reference, config.plausibility)
+
+
+def trusted(readings: Readings, health: Health, findings: Findings) -> Readings:
+    """The readings from which the filter may be updated.
+
+    Without those of an isolated sensor, and those that something speaks against; without the Sun too while
+    the pair is disputed: no estimate begins then.
+    """
+    field, sun, *_ = found = health.sensors
+    if field.fault or findings.field_cause:
+        readings = readings._replace(field=None)
+    if sun.fault or findings.sun_cause or found.pair.standing is Standing.DISPUTED:
+        readings = readings._replace(sun=None)
+    return readings
 
 
 def judge(
@@ -95,51 +105,36 @@ def judge(
         The health, the estimator corrected or restarted where a fault was found, and the attitude, which is
         not valid while a fault may be what it shows.
     """
-    readings, reference = evidence.readings, evidence.reference
-    sensors = sensor_health.judge(
-        health.sensors,
-        readings,
-        usable_field(readings),
-        usable_sun(readings),
-        reference,
-        evidence.used,
-        estimator.estimate,
-        attitude.sigma3_attitude_rad,
-        config.sensors,
-    )
-    coils = health.coils
-    if sensor_health.in_doubt(sensors, config.sensors):
-        estimator = untraced(estimator)
-    else:
-        coils, estimator = coil_health.judge_rate(
-            coils,
-            evidence.view,
-            reference.b_eci_t,
-            estimator,
-            evidence.tick,
-            config.pulses,
-            config.coils,
-            config.mekf,
+    reference, findings = evidence.reference, evidence.findings
+    before, found = health.sensors, health.coils
+    judged = sensors.judge(before, findings, evidence.used, estimator.estimate, reference, config.sensors)
+    isolated = bool(judged.field.fault or judged.sun.fault)
+    changed = (judged.field.fault, judged.sun.fault) != (before.field.fault, before.sun.fault)
+    if changed or judged.pair.standing is not Standing.TRUSTED:
+        estimator = untraced(estimator)  # what a faulty sensor has shown proves nothing about a coil
+    elif not sensors.suspected(judged):
+        sure = pair.proven(judged.pair, config.sensors.weights) or isolated
+        found, estimator = coils.judge_effect(
+            found, evidence.view, reference.b_eci_t, estimator, evidence.tick, sure, config.coils
         )
-    if sensors.doubted:
+    if judged.pair.ended:
         estimator, attitude = restart(estimator), UNKNOWN
-    if coil_health.unattributed_torque(coils):
+    if not judged.pair.valid or coils.unattributed_torque(found):
         attitude = attitude._replace(valid=False)
-    return Health(sensors, coils), estimator, attitude
+    return Health(judged, found), estimator, attitude
 
 
 def plant_restarted(health: Health) -> Health:
     """The health under a new count of ticks: faults stay, what the lost estimate had proved does not."""
-    pair = health.sensors.pair
-    pair = pair._replace(proof=min(pair.proof, 0))
-    return Health(health.sensors._replace(pair=pair), health.coils)
+    return Health(health.sensors._replace(pair=health.sensors.pair._replace(proof=0.0)), health.coils)
 
 
 def happenings(before: Health, after: Health) -> list[Happening]:
     """An event for each fault that is new or gone."""
     found = _sensor(Sensor.MAGNETOMETER, before.sensors.field.fault, after.sensors.field.fault)
     found += _sensor(Sensor.SUN_SENSOR, before.sensors.sun.fault, after.sensors.sun.fault)
-    if after.sensors.pair.contradictory and not before.sensors.pair.contradictory:
+    was, now = before.sensors.pair.standing, after.sensors.pair.standing
+    if now is Standing.DISPUTED and was is not now:
         found.append(Happening(Event.SENSORS_DISAGREE, 0))
     if after.coils is not before.coils:
         found += _coils(before.coils.faults, after.coils.faults)

@@ -1,20 +1,17 @@
 """From the onboard table to what the core flies on: degrees, nanotesla and seconds to SI and ticks."""
 
-from math import cos, pi, radians
+from math import cos, log, pi, radians, sqrt
 
 import numpy as np
 import pytest
 
-from fsw.core.fdir.sensor_pair import PairConfig
-from fsw.core.fdir.sensor_watch import FULL as BAD_TICK
-from fsw.core.fdir.sensor_watch import SensorHealthConfig
+from fsw.core.fdir.plausibility import PlausibilityConfig
 from fsw.core.laws.interface import Setpoint
 from fsw.core.modes import TABLE
 from fsw.core.orbit.propagation import CircularKeplerOrbit, TleOrbit
 from fsw.core.rates import RateGroup
 from fsw.input.schema import TableError, merge
 from fsw.table.config import flight_config
-from fsw.table.estimator import pair_limits
 from fsw.table.table import flight_table
 
 FULL = [[1.02, 0.03, -0.02], [0.03, 1.85, 0.05], [-0.02, 0.05, 1.95]]
@@ -41,9 +38,9 @@ def test_metrics_of_what_a_pulse_leaves():
 
 def test_filter_and_fault_detection_go_by_the_same_limits():
     config = configured(uncertainty={"magnetometer_bias_nt": 2000.0, "along_track_km": 30.0})
-    estimator, sensors = config.estimator, config.fdir.sensors
-    assert estimator.max_field_error_t == sensors.max_field_error_t
-    assert estimator.max_angle_error_rad == sensors.max_angle_error_rad
+    estimator, limits = config.estimator, config.fdir.plausibility
+    assert estimator.max_field_error_t == limits.field_t + limits.field_part * 5e-5
+    assert estimator.max_angle_error_rad == limits.angle_rad + limits.field_t / 2e-5
 
 
 class TestTicks:
@@ -62,37 +59,30 @@ class TestTicks:
         assert config.modes.dwell_ticks[0] == 11
         assert config.stale_after_ticks == 22
 
-    def test_limits_of_the_sensors(self):
-        fdir = {
-            "max_sun_norm_error": 0.04,
-            "frozen_s": 12.0,
-            "name_s": 21.0,
-            "readmit_s": 250.0,
-            "prove_s": 140.0,
+    def test_limits_of_samples_follow_from_bounds_and_noise(self):
+        uncertainty = {
+            "magnetometer_bias_nt": 700.0,
+            "magnetometer_scale_percent": 0.4,
+            "magnetometer_misalignment_deg": 0.9,
+            "sun_misalignment_deg": 0.3,
+            "along_track_km": 7.0,
+            "latency_s": 0.25,
         }
-        sections = {
-            "time": {"tick_hz": 10},
-            "modes": {"stale_after_s": 50.0},
-            "estimator": {"magnetometer_sigma_nt": 150.0, "sun_sigma_deg": 0.3},
-            "uncertainty": {"magnetometer_bias_nt": 350.0, "torque_nm": 2e-7},
-            "fdir": fdir,
-        }
-        sigmas, limits = 16.27**0.5, pair_limits(flight_table(sections, "table.toml"))
-        config = configured(**sections).fdir.sensors
-        assert config == SensorHealthConfig(
-            max_field_error_t=pytest.approx(limits.field_t),
-            max_norm_error=0.04,
-            max_angle_error_rad=pytest.approx(limits.angle_rad),
-            field_noise_t=pytest.approx(sigmas * 150e-9),
-            sun_noise_rad=pytest.approx(sigmas * radians(0.3)),
-            max_bias_t=pytest.approx(sigmas * 350e-9 / 3.0**0.5),
-            max_torque_nm=pytest.approx(sigmas * 2e-7 / 3.0**0.5),
-            frozen_ticks=120,
-            silent_ticks=500,
-            name_suspicion=210 * BAD_TICK,
-            readmit_ticks=2500,
-            pair=PairConfig(report_ticks=210, prove_ticks=1400, agree_ticks=4 * 2500),
+        tuning = {"magnetometer_sigma_nt": 150.0, "sun_sigma_deg": 0.2}
+        config = configured(time={"tick_hz": 10}, estimator=tuning, uncertainty=uncertainty).fdir
+        edge = sqrt(16.27)
+        assert config.plausibility == PlausibilityConfig(
+            field_t=pytest.approx(sqrt(3.0) * (700e-9 + edge * 150e-9)),
+            field_part=pytest.approx(0.004 + 3.0 * 7.0e3 / 7.0e6),
+            angle_rad=pytest.approx(radians(0.9 + 0.3 + edge * 0.2) + 0.007),
+            sun_norm=pytest.approx(edge * radians(0.2)),
+            late_ticks=3,
         )
+
+    def test_the_budget_of_false_alarms_is_the_threshold_of_every_test(self):
+        config = configured(fdir={"false_alarm_days": 200.0}).fdir
+        assert config.sensors.weights.threshold == pytest.approx(log(200.0 * 86400.0 / 2.0))
+        assert config.coils.threshold == config.sensors.weights.threshold
 
     @pytest.mark.parametrize(
         ("tick_hz", "pulse_ticks", "backoff_ticks", "duration_ms"),

@@ -10,7 +10,7 @@ from fsw.core.algebra.quaternion import normalise
 from fsw.core.estimation import mekf
 from fsw.core.estimation.parameters import NAMES
 from fsw.input.schema import merge
-from fsw.table.estimator import GATE_NIS, estimator_config, pair_limits, table_bounds
+from fsw.table.estimator import GATE_NIS, estimator_config, plausibility_config, table_bounds
 from fsw.table.table import flight_table
 from fsw.table.uncertainty import UncertaintyTable, priors
 
@@ -87,36 +87,40 @@ class TestLimitsOfThePair:
     SENSORS = {"magnetometer_sigma_nt": 150.0, "sun_sigma_deg": 0.3}  # noqa: RUF012
 
     def test_are_the_bounds_and_the_noise_at_the_edge_of_the_gate(self):
-        limits = pair_limits(table_with(uncertainty=self.KNOWN, estimator=self.SENSORS))
+        limits = plausibility_config(table_with(uncertainty=self.KNOWN, estimator=self.SENSORS))
         offset_t = sqrt(3.0) * (700e-9 + sqrt(16.27) * 150e-9)
         position = 3.0 * 70.0 / 7000.0
-        assert limits.field_t == pytest.approx(offset_t + (0.004 + position) * 5e-5)
+        assert limits.field_t == pytest.approx(offset_t)
+        assert limits.field_part == pytest.approx(0.004 + position)
         turns = radians(1.5) + radians(0.25) + 0.004 + position
-        assert limits.angle_rad == pytest.approx(turns + offset_t / 2e-5 + sqrt(16.27) * radians(0.3))
+        assert limits.angle_rad == pytest.approx(turns + sqrt(16.27) * radians(0.3))
+        assert limits.sun_norm == pytest.approx(sqrt(16.27) * radians(0.3))
 
     @pytest.mark.parametrize("key", KNOWN)
     def test_a_wider_bound_never_narrows_them(self, key):
         once, twice = (
-            pair_limits(table_with(uncertainty=self.KNOWN | {key: factor * self.KNOWN[key]}))
+            plausibility_config(table_with(uncertainty=self.KNOWN | {key: factor * self.KNOWN[key]}))
             for factor in (1.0, 2.0)
         )
         of_strength = "misalignment" not in key
-        assert (twice.field_t > once.field_t) is of_strength
-        assert twice.angle_rad > once.angle_rad
+        assert (twice.field_t + twice.field_part > once.field_t + once.field_part) is of_strength
+        assert twice.angle_rad + twice.field_t / 3e-5 > once.angle_rad + once.field_t / 3e-5
 
     def test_of_an_exact_table_are_the_noise_s(self):
-        limits = pair_limits(table_with(uncertainty=EXACT, estimator=self.SENSORS))
+        limits = plausibility_config(table_with(uncertainty=EXACT, estimator=self.SENSORS))
         assert limits.field_t == pytest.approx(sqrt(3.0 * GATE_NIS) * 150e-9)
+        assert limits.field_part == 0.0
 
     def test_the_start_goes_by_them(self):
         table = table_with(uncertainty=self.KNOWN)
-        config, limits = estimator_config(table), pair_limits(table)
-        assert (config.max_field_error_t, config.max_angle_error_rad) == (limits.field_t, limits.angle_rad)
+        config, limits = estimator_config(table), plausibility_config(table)
+        assert config.max_field_error_t == limits.field_t + limits.field_part * 5e-5
+        assert config.max_angle_error_rad == limits.angle_rad + limits.field_t / 2e-5
 
     def test_every_pair_within_the_bounds_passes_them(self):
         """Drawn at the bounds: biased, scaled, turned sensors and a field from elsewhere on the orbit."""
         limits, random = (
-            pair_limits(table_with(uncertainty=self.KNOWN, estimator=self.SENSORS)),
+            plausibility_config(table_with(uncertainty=self.KNOWN, estimator=self.SENSORS)),
             np.random.default_rng(3),
         )
         for _ in range(2000):
@@ -127,8 +131,9 @@ class TestLimitsOfThePair:
             )
             seen_b = scaled + 700e-9 * random.choice([-1.0, 1.0], 3)
             seen_s = s + np.cross(s, radians(0.25) * direction(random))
-            assert abs(np.linalg.norm(seen_b) - np.linalg.norm(b)) < limits.field_t
-            assert abs(angle(seen_b, seen_s) - angle(b, s)) < limits.angle_rad
+            size = np.linalg.norm(b)
+            assert abs(np.linalg.norm(seen_b) - size) < limits.field_t + limits.field_part * size
+            assert abs(angle(seen_b, seen_s) - angle(b, s)) < limits.angle_rad + limits.field_t / size
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fsw.core.fdir.sensor_watch import Sensor, SensorFault
+from fsw.core.fdir.faults import Sensor, SensorFault
 from fsw.core.monitors import Monitor
 from fsw.core.telemetry import Event as Number
 from hil_stub.coils.events import CoilEventCode

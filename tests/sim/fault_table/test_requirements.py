@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from fsw.core.fdir.coil_health import CoilFault
-from fsw.core.fdir.sensor_watch import SensorFault
+from fsw.core.fdir.faults import CoilFault, SensorFault
 from fsw.core.monitors import Monitor
 from fsw.core.telemetry import Event
 from sim.fault_table.requirements import REQUIREMENTS, document

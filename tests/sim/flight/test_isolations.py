@@ -3,8 +3,7 @@
 import pytest
 
 from fsw.core.events import Event
-from fsw.core.fdir.coil_health import CoilFault
-from fsw.core.fdir.sensor_watch import SensorFault
+from fsw.core.fdir.faults import CoilFault, SensorFault
 from sim.flight.isolations import isolated_unit
 
 

@@ -4,11 +4,12 @@ import pytest
 
 from fsw.core.events import Event, Happening
 from fsw.core.fdir import fdir
-from fsw.core.fdir.coil_health import CoilFault, CoilHealth
+from fsw.core.fdir.coils import CoilHealth
+from fsw.core.fdir.faults import CoilFault, SensorFault
 from fsw.core.fdir.fdir import Evidence, Health
-from fsw.core.fdir.sensor_health import SensorHealth
-from fsw.core.fdir.sensor_pair import Pair
-from fsw.core.fdir.sensor_watch import SensorFault, Watch
+from fsw.core.fdir.pair import Pair, Standing
+from fsw.core.fdir.plausibility import Findings, Memory
+from fsw.core.fdir.sensors import SensorHealth, Watch
 from fsw.core.gate.readings import NOTHING
 from fsw.core.orbit.ephemeris import reference_at
 
@@ -32,7 +33,7 @@ class TestHappenings:
             (sensors(), sensors(sun=SILENT), Event.SENSOR_ISOLATED, 200 + SILENT),
             (sensors(field=SILENT), sensors(field=FROZEN), Event.SENSOR_ISOLATED, 100 + FROZEN),
             (sensors(field=FROZEN), sensors(), Event.SENSOR_READMITTED, 100 + FROZEN),
-            (sensors(), sensors(pair=Pair(contradictory=True)), Event.SENSORS_DISAGREE, 0),
+            (sensors(), sensors(pair=Pair(Standing.DISPUTED)), Event.SENSORS_DISAGREE, 0),
             (coils(0, 0, 0), coils(0, WEAK, 0), Event.COIL_FAULT, 200 + WEAK),
             (coils(0, WEAK, 0), coils(0, OPEN, 0), Event.COIL_FAULT, 200 + OPEN),
         ],
@@ -44,8 +45,8 @@ class TestHappenings:
         ("before", "after"),
         [
             (sensors(field=FROZEN, sun=SILENT), sensors(field=FROZEN, sun=SILENT)),
-            (sensors(pair=Pair(contradictory=True)), sensors(pair=Pair(contradictory=True))),
-            (sensors(pair=Pair(contradictory=True)), sensors()),
+            (sensors(pair=Pair(Standing.DISPUTED)), sensors(pair=Pair(Standing.DISPUTED))),
+            (sensors(pair=Pair(Standing.DISPUTED)), sensors()),
             (coils(OPEN, 0, WEAK), coils(OPEN, 0, WEAK)),
             (coils(OPEN, 0, WEAK), coils(0, 0, 0)),
         ],
@@ -55,7 +56,7 @@ class TestHappenings:
 
     def test_they_are_in_a_fixed_order(self):
         found = Health(
-            SensorHealth(Watch(FROZEN), Watch(SILENT), Pair(contradictory=True)), CoilHealth((1, 2, 3))
+            SensorHealth(Watch(FROZEN), Watch(SILENT), Pair(Standing.DISPUTED)), CoilHealth((1, 2, 3))
         )
         assert fdir.happenings(Health(), found) == [
             (Event.SENSOR_ISOLATED, 100 + FROZEN),
@@ -65,12 +66,37 @@ class TestHappenings:
         ]
 
 
-@pytest.mark.parametrize(("proof", "left"), [(-7, -7), (0, 0), (12, 0)])
-def test_a_restarted_plant_leaves_faults_and_debts_and_takes_the_proof(proof, left):
-    before = Health(SensorHealth(Watch(FROZEN), pair=Pair(3, True, proof)), CoilHealth((OPEN, 0, 0)))
+def test_a_restarted_plant_leaves_faults_and_doubts_and_takes_the_proof():
+    pair = Pair(Standing.TRUSTED, proof=12.0, doubt=3.0)
+    before = Health(SensorHealth(Watch(FROZEN), pair=pair), CoilHealth((OPEN, 0, 0)))
     after = fdir.plant_restarted(before)
-    assert after.sensors.pair == Pair(3, True, left)
+    assert after.sensors.pair == pair._replace(proof=0.0)
     assert after._replace(sensors=after.sensors._replace(pair=before.sensors.pair)) == before
+
+
+class TestTrusted:
+    """What the filter gets."""
+
+    BOTH = NOTHING._replace(field="field", sun="sun")
+    FINE = Findings(0, 0, None, None, False, False, Memory())
+
+    def test_all_that_nothing_speaks_against(self):
+        assert fdir.trusted(self.BOTH, Health(), self.FINE) == self.BOTH
+
+    @pytest.mark.parametrize(
+        ("health", "findings", "left"),
+        [
+            (sensors(field=FROZEN), FINE, (None, "sun")),
+            (sensors(sun=SILENT), FINE, ("field", None)),
+            (Health(), FINE._replace(field_cause=FROZEN), (None, "sun")),
+            (Health(), FINE._replace(sun_cause=FROZEN), ("field", None)),
+            (sensors(pair=Pair(Standing.DISPUTED)), FINE, ("field", None)),
+            (sensors(pair=Pair(Standing.ON_TRIAL)), FINE, ("field", "sun")),
+        ],
+    )
+    def test_without_what_is_isolated_implausible_or_disputed(self, health, findings, left):
+        trusted = fdir.trusted(self.BOTH, health, findings)
+        assert (trusted.field, trusted.sun) == left
 
 
 class TestJudgement:
@@ -81,7 +107,9 @@ class TestJudgement:
         world.fly(60)
         state, config = world.state, world.config
         reference = reference_at(state.ephemeris, state.tick, config.ephemeris)
-        evidence = Evidence(state.tick, NOTHING, state.coil, reference, fdir.Used(False, False, False))
+        findings = fdir.examine(NOTHING, state.health, reference, config.fdir)
+        used = fdir.Used(False, False, False)
+        evidence = Evidence(state.tick, findings, state.coil, reference, used)
 
         def judge(health):
             return fdir.judge(health, state.estimator, state.attitude, evidence, config.fdir), state
@@ -94,15 +122,23 @@ class TestJudgement:
         assert attitude.valid
         assert estimator.restarts == state.estimator.restarts
 
-    def test_an_attitude_is_not_valid_while_a_current_flows_in_an_unknown_coil(self, judged):
-        stray = Health(coils=CoilHealth(strange_ticks=9, stray_ma=40, stuck=True))
-        (_, _, attitude), state = judged(stray)
+    @pytest.mark.parametrize(
+        "health",
+        [
+            Health(coils=CoilHealth(strange_ticks=9, stray_ma=40, stuck=True)),
+            sensors(pair=Pair(Standing.DISPUTED)),
+            sensors(pair=Pair(Standing.ON_TRIAL)),
+        ],
+        ids=["a current in an unknown coil", "a disputed pair", "a pair on trial"],
+    )
+    def test_an_attitude_is_not_valid_with(self, judged, health):
+        (_, _, attitude), state = judged(health)
         assert attitude == state.attitude._replace(valid=False)
 
-    def test_a_contradiction_before_the_proof_restarts_the_filter(self, judged, monkeypatch):
-        doubted = SensorHealth(doubted=True)
-        monkeypatch.setattr(fdir.sensor_health, "judge", lambda *of_this_tick: doubted)
+    def test_enough_doubt_ends_the_filter(self, judged, monkeypatch):
+        disputed = SensorHealth(pair=Pair(Standing.DISPUTED, ended=True))
+        monkeypatch.setattr(fdir.sensors, "judge", lambda *of_this_tick: disputed)
         (health, estimator, attitude), state = judged(Health())
-        assert health.sensors is doubted
+        assert health.sensors is disputed
         assert (estimator.estimate, estimator.restarts) == (None, state.estimator.restarts + 1)
-        assert attitude is fdir.UNKNOWN
+        assert not attitude.valid

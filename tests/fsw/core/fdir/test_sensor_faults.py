@@ -4,11 +4,12 @@ from math import acos, degrees, hypot
 
 import pytest
 
-from fsw.core.fdir.sensor_watch import AGAINST_ESTIMATE
 from fsw.core.telemetry import Event
 from fsw.wire.messages import FswEvent, MagField, Mode, SunVector
 
 BEFORE_S, FAULT_S, AFTER_S = 300, 120, 420
+FITS_S, AGREES_S = 128, 516
+"""Least times until a sensor is believed again that is as predicted, and a pair at the right angle."""
 BEFORE_ECLIPSE = {"epoch_utc": "2015-03-27T03:21:11Z"}
 """Two minutes before it begins."""
 
@@ -105,7 +106,7 @@ def test_a_fault_is_named_borne_and_forgotten(make_world, name):
     watcher.fly(AFTER_S)
     back = watcher.of(Event.SENSOR_READMITTED)
     assert [argument for _, argument in back] == [named]
-    assert 299 <= back[0][0] - BEFORE_S - FAULT_S <= 400
+    assert FITS_S <= back[0][0] - BEFORE_S - FAULT_S <= 1.6 * FITS_S
     assert watcher.of(Event.SENSOR_ISOLATED) == [(tick, named)]
     assert watcher.of(Event.FILTER_RESTARTED) == []
     borne = watcher.errors_deg[BEFORE_S:]
@@ -156,14 +157,17 @@ def test_a_lamp_in_the_earth_s_shadow_is_no_sun(make_world):
 @pytest.mark.requirement("REQ-SENSOR-07")
 def test_a_fault_from_the_first_tick_on_does_not_start_the_filter(make_world):
     """Nor does it begin at once when it has gone: a pair that was wrong may be right by chance."""
-    watcher = Watcher(make_world(flight={"fdir": {"readmit_s": 20.0}}))
+    watcher = Watcher(make_world())
     watcher.fly(60, of_field(lambda x, y, z: (y, z, x)))
     assert watcher.world.state.estimator.estimate is None
     assert [argument for _, argument in watcher.of(Event.SENSORS_DISAGREE)] == [0]
-    watcher.fly(AGAINST_ESTIMATE * 20)
+    watcher.fly(AGREES_S)
     assert watcher.world.state.estimator.estimate is None
-    watcher.fly(10)
+    watcher.fly(60)
     assert watcher.world.state.estimator.estimate is not None
+    assert not watcher.world.state.attitude.valid
+    watcher.fly(2 * AGREES_S)
+    assert watcher.world.state.attitude.valid
     assert watcher.of(Event.SENSOR_ISOLATED) == []
 
 
@@ -212,7 +216,7 @@ def test_nominal_flight_names_nobody(make_world, ticks, settings):
     watcher.fly(ticks)
     assert watcher.of(Event.SENSOR_ISOLATED) == []
     assert watcher.of(Event.SENSORS_DISAGREE) == []
-    assert watcher.world.state.health.sensors.field.suspicion == 0
+    assert watcher.world.state.health.sensors.field.nats == 0.0
 
 
 def test_what_is_left_out_does_not_reach_the_damping_either(make_world):

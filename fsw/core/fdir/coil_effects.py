@@ -24,8 +24,6 @@ Source: Friedland 1969, Treatment of bias in recursive filtering (IEEE Trans. Au
 the bias. Willsky and Jones 1976 estimate the size of jumps by the same sums.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 
 from fsw.core.algebra.vector import Mat3, Vec3, scale
@@ -33,30 +31,12 @@ from fsw.core.estimation import mekf
 from fsw.core.estimation.kalman import Matrix
 from fsw.core.estimation.mekf import Estimate, Trace
 from fsw.core.estimation.mekf_config import MekfConfig
+from fsw.core.fdir.explanations import CERTAIN, MODEL_ERROR, STRAY, Solution, indices_of, of_pulses
 
 PULSES = 3
 """Of each coil its latest pulses are solved for, so many."""
-MODEL_ERROR = 0.05
-"""Relative uncertainty of a coil's effect that no measurement takes away."""
-CERTAIN = 4.0
-"""A deviation of so many standard deviations corrects the estimate."""
 UNEXPLAINED = 1.25
 """Squares of the innovations that may be left for each scalar measured; beyond, no coil is judged."""
-STRAY = 3
-"""STRAY + j is the number, as a cause, of a stray current in coil j; j itself that of a pulse."""
-
-
-class Solution(NamedTuple):
-    """What each cause did: its deviation e from what was assumed, and their covariance (k, k)."""
-
-    causes: tuple[int, ...]
-    deviation: Matrix
-    covariance: Matrix
-
-
-def indices_of(cause: int, causes: tuple[int, ...]) -> list[int]:
-    """Where this cause stands, the latest first."""
-    return [index for index, other in enumerate(causes) if other == cause]
 
 
 def trace_pulse(estimate: Estimate, coil: int, kick_radps: Vec3, pulse_s: float) -> Estimate:
@@ -178,9 +158,12 @@ def _solve(estimate: Estimate, trace: Trace, tuning: MekfConfig) -> tuple[Estima
     deviation = covariance @ trace.sums[:-1, -1]
     if mekf.unexplained(trace.sums) > UNEXPLAINED * trace.measured:
         return estimate, None
+    solution = Solution(trace.causes, deviation, covariance)
+    if not of_pulses(solution)[0].fits:
+        return estimate, None
     effect = trace.effect[:, :-1]
     certain = deviation**2 > CERTAIN**2 * (covariance.diagonal() + MODEL_ERROR**2)
     if (certain & effect.any(axis=0)).any():
         estimate = mekf.corrected(estimate, effect @ deviation, effect @ covariance @ effect.T, tuning)
         estimate = estimate._replace(trace=trace._replace(effect=np.zeros_like(trace.effect)))
-    return estimate, Solution(trace.causes, deviation, covariance)
+    return estimate, solution

@@ -1,88 +1,74 @@
 """Which coil is faulty, by its current and by what its pulses do to the rate.
 
 At the end of a pulse the current that is read back is held against that of the level. What pulses did to the
-rate ``coil_rate`` solves for; and what a stray current does, one without a request: the supply, which all
+rate ``coil_effects`` solves for; and what a stray current does, one without a request: the supply, which all
 coils share, does not show in which it flows.
 """
 
 from dataclasses import dataclass
-from enum import IntEnum
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from fsw.core.actuation import pulses
 from fsw.core.actuation.actuator import CoilView
 from fsw.core.actuation.pulses import AXES, PulseConfig
 from fsw.core.algebra.quaternion import rotate
-from fsw.core.algebra.vector import Mat3, Vec3, cross, scale, transform
+from fsw.core.algebra.vector import ZERO, Mat3, Vec3, cross, scale, transform
 from fsw.core.estimation.estimator import EstimatorState
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.fdir import coil_isolation, coil_rate
+from fsw.core.fdir import coil_effects, explanations
+from fsw.core.fdir.evidence import weigh
+from fsw.core.fdir.faults import CoilFault
 from fsw.core.gate.readings import Readings
 from fsw.wire.messages import CoilStatus
-
-
-class CoilFault(IntEnum):
-    """Faults of a coil, as reported on the bus."""
-
-    OPEN = 1
-    WEAK = 2
-    REVERSED = 3
-    STUCK = 4
-
-
-HEALTHY = (0, 0, 0)
 
 
 @dataclass(frozen=True, slots=True)
 class CoilHealthConfig:
     """Current of each level and limits.
 
-    ``weak_part`` and ``open_part`` of the nominal current or torque are the most that is weak and open;
-    ``name_pulses`` in a row with a wrong current isolate a coil, ``name_sigmas`` is the certainty that the
-    rate has to give; a stray current means a stuck coil after ``stuck_ticks``.
+    ``weak_part`` of the nominal current or torque is the most that is weak; evidence of ``threshold``, nats,
+    isolates a coil; a stray current means a stuck coil after ``stuck_ticks``.
     """
 
     current_ma: Vec3
     weak_part: float
-    open_part: float
-    name_pulses: int
-    name_sigmas: float
+    threshold: float
     stuck_ma: float
     stuck_ticks: int
-    inertia_inverse: Mat3
+    pulses: PulseConfig
+    mekf: MekfConfig
 
 
 class CoilHealth(NamedTuple):
-    """By coil: its fault (0: none) and pulses in a row with a wrong current.
+    """By coil: its fault (0: none) and what its currents show against it, nats.
 
     ``strange_ticks``: ticks in a row with a level or a current without a request, ``stray_ma``: a current
     without a level; ``stuck``: there is such a level, or such a current for too long.
     """
 
-    faults: tuple[int, int, int] = HEALTHY
-    wrong: tuple[int, int, int] = HEALTHY
+    faults: tuple[int, int, int] = (0, 0, 0)
+    nats: Vec3 = ZERO
     strange_ticks: int = 0
     stray_ma: int = 0
     stuck: bool = False
 
     def integers(self) -> tuple[int, ...]:
         """For the checksum of the state."""
-        return (*self.faults, *self.wrong, self.strange_ticks, self.stray_ma, self.stuck)
+        return (*self.faults, self.strange_ticks, self.stray_ma, self.stuck)
 
 
-def driven_am2(health: CoilHealth, view: CoilView, timing: PulseConfig, config: CoilHealthConfig) -> Vec3:
+def driven_am2(health: CoilHealth, view: CoilView, config: CoilHealthConfig) -> Vec3:
     """Dipole over the tick that has ended, body axes, a stray current included if a coil is isolated for it.
 
     Args:
         health: of this tick.
         view: after what was received in this tick.
-        timing: of the pulses.
         config: limits.
     """
     if not health.stray_ma or CoilFault.STUCK not in health.faults:
         return view.driven_am2
-    return scale(_stray_am2(health, timing, config), AXES[health.faults.index(CoilFault.STUCK)])
+    return scale(_stray_am2(health, config), AXES[health.faults.index(CoilFault.STUCK)])
 
 
 def unattributed_torque(health: CoilHealth) -> bool:
@@ -95,8 +81,8 @@ def _flows_somewhere(health: CoilHealth) -> bool:
     return health.stray_ma != 0 and CoilFault.STUCK not in health.faults
 
 
-def _stray_am2(health: CoilHealth, timing: PulseConfig, config: CoilHealthConfig) -> float:
-    return health.stray_ma / config.current_ma[-1] * timing.levels_am2[-1]
+def _stray_am2(health: CoilHealth, config: CoilHealthConfig) -> float:
+    return health.stray_ma / config.current_ma[-1] * config.pulses.levels_am2[-1]
 
 
 def judge_current(
@@ -105,7 +91,6 @@ def judge_current(
     readings: Readings,
     unasked: bool,
     tick: int,
-    timing: PulseConfig,
     config: CoilHealthConfig,
 ) -> CoilHealth:
     """Compare what the coil driver reports with what was asked of it.
@@ -116,7 +101,6 @@ def judge_current(
         readings: what was received.
         unasked: the driver reports a level that was not requested.
         tick: this one.
-        timing: of the pulses.
         config: limits.
     """
     status = readings.coil
@@ -127,16 +111,19 @@ def judge_current(
     if health.strange_ticks:
         health = health._replace(strange_ticks=0, stray_ma=0, stuck=False)
     fired = view.fired
-    ended = tick == view.fired_tick + timing.pulse_ticks
+    ended = tick == view.fired_tick + config.pulses.pulse_ticks
     if not ended or not status.level or (status.coil, status.level) != fired:
         return health
     nominal_ma = config.current_ma[abs(status.level) - 1]
     kind = _kind(status.current_ma / (nominal_ma if status.level > 0 else -nominal_ma), config)
-    wrong = health.wrong[fired.coil] + 1 if kind else 0
-    if wrong == health.wrong[fired.coil]:
-        return health
-    health = health._replace(wrong=_with(health.wrong, fired.coil, wrong))
-    return _with_fault(health, fired.coil, kind) if wrong >= config.name_pulses else health
+    by = config.threshold / NAME_PULSES
+    nats = weigh(health.nats[fired.coil], by if kind else -config.threshold, config.threshold)
+    health = health._replace(nats=_with(health.nats, fired.coil, nats))
+    return _with_fault(health, fired.coil, kind) if nats >= config.threshold else health
+
+
+NAME_PULSES = 2
+"""A reading of the current cannot be doubted, but may be of another moment: so many isolate a coil."""
 
 
 def _strange(health: CoilHealth, status: CoilStatus, unasked: bool, config: CoilHealthConfig) -> CoilHealth:
@@ -148,15 +135,14 @@ def _strange(health: CoilHealth, status: CoilStatus, unasked: bool, config: Coil
     return _with_fault(health, status.coil, CoilFault.STUCK) if unasked and lasts else health
 
 
-def judge_rate(
+def judge_effect(
     health: CoilHealth,
     view: CoilView,
     b_eci_t: Vec3,
     state: EstimatorState,
     tick: int,
-    timing: PulseConfig,
+    sure: bool,
     config: CoilHealthConfig,
-    tuning: MekfConfig,
 ) -> tuple[CoilHealth, EstimatorState]:
     """Compare what the filter had to correct with what pulses, and a stray current, should have done.
 
@@ -166,30 +152,31 @@ def judge_rate(
         b_eci_t: field as modelled.
         state: of the estimator, after the samples of this tick.
         tick: this one.
-        timing: of the pulses.
+        sure: nothing but a coil may be what the filter corrected.
         config: limits.
-        tuning: of the filter.
 
     Returns:
         The health, and the estimator, corrected where a coil certainly did something else than assumed.
     """
     estimate, age = state.estimate, tick - view.fired_tick
-    ended = age == timing.pulse_ticks and view.driven_level != 0
+    ended = age == config.pulses.pulse_ticks and view.driven_level != 0
     stray = _flows_somewhere(health)
     early = age % EARLY_TICKS == 0 and (state.rejected_in_a_row > 0 or stray)
-    due = ended or early or age == timing.backoff_ticks
+    due = ended or early or age == config.pulses.backoff_ticks
     if estimate is None or not (due or stray):
         return health, state
     if stray:
-        kicks_radps = _stray_kicks(health, rotate(estimate.q_body_from_eci, b_eci_t), timing, config)
+        kicks_radps = _stray_kicks(health, rotate(estimate.q_body_from_eci, b_eci_t), config)
         begins = health.strange_ticks == 1
-        estimate = coil_rate.trace_stray(estimate, kicks_radps, timing.tick_s, begins)
+        estimate = coil_effects.trace_stray(estimate, kicks_radps, config.pulses.tick_s, begins)
     if due:
-        health, estimate = _isolate(health, estimate, config, tuning)
+        health, estimate = _isolate(health, estimate, sure, config)
     if ended and (view.driven_coil, view.driven_level) == view.fired:
         b_body_t = rotate(estimate.q_body_from_eci, b_eci_t)
-        kick_radps = transform(config.inertia_inverse, pulses.impulse(view.fired, b_body_t, timing))
-        estimate = coil_rate.trace_pulse(estimate, view.fired.coil, kick_radps, timing.pulse_s)
+        kick_radps = transform(
+            config.mekf.rotor.inertia_inverse, pulses.impulse(view.fired, b_body_t, config.pulses)
+        )
+        estimate = coil_effects.trace_pulse(estimate, view.fired.coil, kick_radps, config.pulses.pulse_s)
     return health, state._replace(estimate=estimate)
 
 
@@ -198,34 +185,44 @@ EARLY_TICKS = 5
 next pulse is due."""
 
 
-def _stray_kicks(health: CoilHealth, b_body_t: Vec3, timing: PulseConfig, config: CoilHealthConfig) -> Mat3:
+def _stray_kicks(health: CoilHealth, b_body_t: Vec3, config: CoilHealthConfig) -> Mat3:
     """What the stray current would do to the rate in a tick, by coil, rad/s."""
-    m_am2 = _stray_am2(health, timing, config)
+    m_am2 = _stray_am2(health, config)
     first, second, third = (
-        transform(config.inertia_inverse, scale(timing.tick_s * m_am2, cross(axis, b_body_t)))
+        transform(
+            config.mekf.rotor.inertia_inverse, scale(config.pulses.tick_s * m_am2, cross(axis, b_body_t))
+        )
         for axis in AXES
     )
     return first, second, third
 
 
 def _isolate(
-    health: CoilHealth, estimate: Estimate, config: CoilHealthConfig, tuning: MekfConfig
+    health: CoilHealth, estimate: Estimate, sure: bool, config: CoilHealthConfig
 ) -> tuple[CoilHealth, Estimate]:
     """With the coil isolated that did something else than assumed, if any, and the estimate corrected."""
-    estimate, solution = coil_rate.solve(estimate, tuning)
-    if solution is None:
+    weak = explanations.weak_by_gain(estimate, config.mekf, config.weak_part, config.threshold)
+    estimate, solution = coil_effects.solve(estimate, config.mekf)
+    if solution is not None:
+        weak = explanations.weak_by_pulses(solution, config.weak_part, config.threshold) or weak
+    if weak is not None and sure and _another_is_sound(health, weak[0]):
+        health = _with_fault(health, weak[0], _kind(weak[1], config))
+    if solution is None or not unattributed_torque(health):
         return health, estimate
-    weak = coil_isolation.too_little(solution, config.weak_part, config.name_sigmas)
-    if weak is not None:
-        health = _with_fault(health, weak.coil, _kind(weak.part, config))
-    conducting = coil_isolation.conducting(solution) if unattributed_torque(health) else None
+    conducting = explanations.conducting(solution)
     if conducting is None:
         return health, estimate
     health = _with_fault(health, conducting, CoilFault.STUCK)
-    return health, coil_rate.settle_stray(estimate, conducting, tuning)
+    return health, coil_effects.settle_stray(estimate, conducting, config.mekf)
 
 
-REVERSED_PART = -0.5
+def _another_is_sound(health: CoilHealth, coil: int) -> bool:
+    """Whether a coil is left: that all three fail is less likely than that the filter is wrong."""
+    return any(not fault for other, fault in enumerate(health.faults) if other != coil)
+
+
+OPEN_PART, REVERSED_PART = 0.2, -0.5
+"""Parts of the nominal current or effect below which nothing flows, and below which it flows backwards."""
 
 
 def _kind(part: float, config: CoilHealthConfig) -> int:
@@ -234,7 +231,7 @@ def _kind(part: float, config: CoilHealthConfig) -> int:
         return 0
     if part < REVERSED_PART:
         return CoilFault.REVERSED
-    return CoilFault.OPEN if part < config.open_part else CoilFault.WEAK
+    return CoilFault.OPEN if part < OPEN_PART else CoilFault.WEAK
 
 
 def _with_fault(health: CoilHealth, coil: int, kind: int) -> CoilHealth:
@@ -244,6 +241,9 @@ def _with_fault(health: CoilHealth, coil: int, kind: int) -> CoilHealth:
     return health._replace(faults=_with(health.faults, coil, kind))
 
 
-def _with(three: tuple[int, int, int], index: int, value: int) -> tuple[int, int, int]:
+T = TypeVar("T", int, float)
+
+
+def _with(three: tuple[T, T, T], index: int, value: T) -> tuple[T, T, T]:
     a, b, c = three
     return ((value, b, c), (a, value, c), (a, b, value))[index]

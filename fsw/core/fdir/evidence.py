@@ -1,0 +1,87 @@
+"""The one rule by which a unit is isolated, readmitted or doubted: a sequential test of evidence, in nats.
+
+A sample that is as likely under a fault as without has no weight; else it weighs its log-likelihood ratio l,
+and the test of Wald and Page sums it up, E <- max(0, E + l), until E reaches A. A sound unit gets there once
+in e^A independent samples on average, or less often. The mean time between false alarms is what the table
+states, T, and the time over which errors of the samples are correlated is tau, so that
+
+    A = ln(T / tau).
+
+Samples closer than tau are not independent: a sample weighs no more than its part of one nat in tau against a
+unit, whatever its likelihood. So no single sample isolates, nor do many in a short time.
+
+The way back is the same test of the opposite question. A faulty sensor looks right in ``CHANCE`` of the time,
+because its error happens to lie where it does not show, and a sound one in all but ``MISS`` of it: a sample
+that fits weighs ln(1 / CHANCE) in tau, one that does not, ln(MISS / (1 - CHANCE)) at once.
+
+Source: Wald 1945; Page 1954, Continuous inspection schemes (Biometrika 41); Lorden 1971 for the e^A.
+"""
+
+from math import log
+from typing import NamedTuple
+
+CORRELATION_S = 2.0
+"""Errors of samples closer than this are not independent: twice the sampling time of the slowest sensor."""
+MISS = 1e-3
+"""Samples of a sound sensor that the filter's gate refuses."""
+CHANCE = 0.8
+"""Part of the time in which a faulty sensor looks right, at most."""
+DAY_S = 86400.0
+
+
+class EvidenceWeights(NamedTuple):
+    """What counts how much, nats: the threshold, and by tick what a sample weighs.
+
+    ``against``: a bad sample against a unit, and a good one in its favour; ``fits`` and ``misfits``: a sample
+    of an isolated unit; ``agrees``: a pair of samples of which only their angle can be compared.
+    """
+
+    threshold: float
+    against: float
+    fits: float
+    misfits: float
+    agrees: float
+
+
+def weights(false_alarm_days: float, tick_s: float) -> EvidenceWeights:
+    """The weights that keep the budget.
+
+    Args:
+        false_alarm_days: mean time between false alarms of a unit.
+        tick_s: length of a tick.
+    """
+    part = tick_s / CORRELATION_S
+    fits = -log(CHANCE)
+    return EvidenceWeights(
+        threshold=log(false_alarm_days * DAY_S / CORRELATION_S),
+        against=part,
+        fits=part * fits,
+        misfits=log(MISS / (1.0 - CHANCE)),
+        agrees=part * fits / PAIR_NUMBERS,
+    )
+
+
+PAIR_NUMBERS = 4
+"""Numbers that a pair of directions consists of; their angle is one of them."""
+
+
+def weigh(nats: float, by: float, threshold: float) -> float:
+    """The evidence after a sample that weighs ``by``: never negative, nor beyond the threshold."""
+    return min(max(0.0, nats + by), threshold)
+
+
+INFLATION = 4.0
+"""Of the innovations' covariance under a fault that is too slow for the filter's gate."""
+
+
+def misfit(nis: float, numbers: int) -> float:
+    """What innovations weigh against all who take part in them, at most one nat.
+
+    The log-likelihood ratio of a covariance of ``INFLATION`` times the filter's and the filter's own.
+
+    Args:
+        nis: normalised innovation squared.
+        numbers: of how many numbers; none weigh nothing.
+    """
+    weight = 0.5 * (1.0 - 1.0 / INFLATION) * nis - 0.5 * numbers * log(INFLATION)
+    return max(-1.0, min(1.0, weight))

@@ -1,0 +1,146 @@
+"""Both sensors together: whether the estimate is proven right about them, and whether they contradict.
+
+Of two directions nothing but their angle can be compared without an attitude, and a filter can explain a
+slow fault for long: it shares it out between both sensors and its parameters. So evidence against the pair is
+
+- innovations that are larger than the filter expects, and not so large that its gate refuses them;
+- a sensor that it can only take with parameters that the table does not allow;
+- while it is not proven: what it refuses, if it is not credible or was proven once; an angle that is not the
+  modelled one.
+
+Where that is enough the pair is disputed: both sensors are kept, the filter ends, and none begins before both
+have agreed for long. Its attitude is not valid before it is proven.
+"""
+
+from enum import IntEnum
+from typing import NamedTuple
+
+from fsw.core.estimation.estimator import Used
+from fsw.core.estimation.mekf import Estimate
+from fsw.core.fdir.credibility import CredibilityConfig, sensors_credible
+from fsw.core.fdir.evidence import PAIR_NUMBERS, EvidenceWeights, misfit, weigh
+from fsw.core.fdir.plausibility import Findings
+
+
+class Standing(IntEnum):
+    """What is thought of both sensors together.
+
+    ``NEW``: no estimate has been proven yet. ``TRUSTED``: this one has. ``DISPUTED``: one sensor is wrong,
+    and nothing shows which. ``ON_TRIAL``: they have agreed since, and the estimate is still to be proven.
+    """
+
+    NEW = 0
+    TRUSTED = 1
+    DISPUTED = 2
+    ON_TRIAL = 3
+
+
+class Pair(NamedTuple):
+    """The standing of both, and the evidence, nats.
+
+    ``proof``: that the estimate is right about both; ``doubt``: that one is wrong; ``accord``: that both are
+    right, while they are disputed, or one is isolated and no estimate can tell. ``ended``: the filter is to
+    end in this tick.
+    """
+
+    standing: Standing = Standing.NEW
+    proof: float = 0.0
+    doubt: float = 0.0
+    accord: float = 0.0
+    ended: bool = False
+
+    @property
+    def valid(self) -> bool:
+        """Whether an attitude may be valid that rests on them."""
+        return self.standing in (Standing.NEW, Standing.TRUSTED)
+
+
+class Observed(NamedTuple):
+    """What one tick shows of both: the samples, what the filter took, and what it refused of those in use.
+
+    ``isolated``: one of them is, ``untold``: and no estimate is certain enough to tell whether it still is
+    faulty. ``sound``: the estimate, if there is one, is credible.
+    """
+
+    findings: Findings
+    used: Used
+    estimate: Estimate | None
+    refused_field: bool
+    refused_sun: bool
+    isolated: bool
+    untold: bool
+    sound: bool
+
+    @property
+    def refused(self) -> bool:
+        """Whether the filter refused any."""
+        return self.refused_field or self.refused_sun
+
+
+def proven(pair: Pair, weights: EvidenceWeights) -> bool:
+    """Whether the estimate has shown for long enough, and lately, that it is right about both sensors."""
+    return pair.standing is Standing.TRUSTED and pair.proof >= 0.5 * weights.threshold
+
+
+def judge(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: CredibilityConfig) -> Pair:
+    """The pair after a tick; an ``accord`` that has reached the threshold readmits an isolated sensor."""
+    threshold, standing, doubt, accord = weights.threshold, pair.standing, 0.0, 0.0
+    if seen.isolated or standing is Standing.DISPUTED:
+        counts = seen.untold or standing is Standing.DISPUTED
+        accord = _accord(pair.accord, seen.findings, weights) if counts else pair.accord
+    if standing is not Standing.DISPUTED:
+        by = weights.against * _misfit(pair, seen, weights, credibility)
+        doubt = weigh(pair.doubt, by, threshold)
+    proof = _proof(pair, seen, weights)
+    if doubt >= threshold:
+        return Pair(Standing.DISPUTED, ended=True)
+    if accord >= threshold:
+        return Pair(Standing.ON_TRIAL, accord=accord, ended=True)
+    if standing is not Standing.DISPUTED and proof >= threshold:
+        standing = Standing.TRUSTED
+    elif standing is Standing.TRUSTED and seen.estimate is None:
+        standing = Standing.NEW
+    return Pair(standing, proof, doubt, accord)
+
+
+def _misfit(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: CredibilityConfig) -> float:
+    """What this tick weighs against the pair, in parts of the most that a tick may.
+
+    While one sensor is isolated only the innovations of the other do: angle and parameters are of both.
+    """
+    estimate, wrong = seen.estimate, False
+    if not seen.isolated:
+        if not proven(pair, weights):
+            was_proven = pair.standing is Standing.TRUSTED and seen.findings.pair
+            wrong = seen.findings.apart or (seen.refused and (was_proven or not seen.sound))
+        wrong = wrong or not (estimate is None or sensors_credible(estimate, credibility))
+    if wrong:
+        return 1.0
+    return -1.0 if estimate is None else _innovations(estimate)
+
+
+def _innovations(estimate: Estimate) -> float:
+    """What those of this tick weigh against the pair; none are none."""
+    return misfit(estimate.nis, estimate.numbers) if estimate.numbers else -1.0
+
+
+def _proof(pair: Pair, seen: Observed, weights: EvidenceWeights) -> float:
+    """An estimate gains by each pair that it takes, and loses while it takes one alone; on trial slowly."""
+    if seen.estimate is None:
+        return 0.0
+    if seen.refused:
+        by = 0.0 if pair.standing is Standing.TRUSTED else weights.misfits
+    elif seen.used.field and seen.used.sun and seen.sound:
+        by = weights.fits if _innovations(seen.estimate) < 0.0 else 0.0
+    else:
+        by = -weights.fits
+    slow = PAIR_NUMBERS if pair.standing is Standing.ON_TRIAL else 1
+    return weigh(pair.proof, by / slow, weights.threshold)
+
+
+def _accord(accord: float, findings: Findings, weights: EvidenceWeights) -> float:
+    """Both sensors gain by each pair at the modelled angle."""
+    if findings.field is None or findings.sun is None:
+        return accord
+    good = findings.pair and not findings.apart
+    return weigh(accord, weights.agrees if good else weights.misfits, weights.threshold)

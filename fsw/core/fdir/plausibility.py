@@ -1,0 +1,172 @@
+"""What speaks against a sample by itself: a table of checks that need neither attitude nor history.
+
+Every limit is what the bounds of the table and the noise at the edge of the filter's gate allow in this tick.
+"""
+
+from collections.abc import Callable
+from math import acos
+from typing import NamedTuple
+
+from fsw.core.algebra.vector import ZERO, Vec3, dot, norm
+from fsw.core.estimation.samples import coils_idle, usable_field, usable_sun
+from fsw.core.fdir.faults import Sensor, SensorFault
+from fsw.core.gate.readings import Readings
+from fsw.core.orbit.earth import RADIUS_M
+from fsw.core.orbit.ephemeris import Reference
+from fsw.core.orbit.sun import lit
+
+SHADOW_M = RADIUS_M - 100e3
+"""Radius of what is shadow for certain: the Earth is flattened by 21 km, half the penumbra of a low orbit is
+15 km wide, and the position may be off by tens of km."""
+DARK: Vec3 = (0.0, 0.0, 0.0)
+"""The sample of a Sun sensor without a Sun."""
+
+
+class PlausibilityConfig(NamedTuple):
+    """Largest deviations if all is well: of the field, T and in parts of it, and of directions, rad.
+
+    ``sun_norm``: of the Sun vector's length; ``late_ticks``: for so long a sample may be repeated.
+    """
+
+    field_t: float
+    field_part: float
+    angle_rad: float
+    sun_norm: float
+    late_ticks: int
+
+
+class Memory(NamedTuple):
+    """The last samples as they were sent, and for how many ticks each has been repeated."""
+
+    field: Vec3 = ZERO
+    sun: Vec3 = ZERO
+    field_still: int = 0
+    sun_still: int = 0
+
+    def integers(self) -> tuple[int, ...]:
+        """For the checksum of the state, as is ``floats``."""
+        return (self.field_still, self.sun_still)
+
+    def floats(self) -> tuple[float, ...]:
+        """The samples."""
+        return (*self.field, *self.sun)
+
+
+class Seen(NamedTuple):
+    """What the checks look at in one tick: all that the boards sent, and what the models expect."""
+
+    readings: Readings
+    field: Vec3 | None
+    sun: Vec3 | None
+    modelled_t: float
+    shadow: bool
+    field_still: bool
+    sun_still: bool
+    limits: PlausibilityConfig
+
+
+CHECKS: tuple[tuple[Sensor, SensorFault, Callable[[Seen], bool]], ...] = (
+    (Sensor.MAGNETOMETER, SensorFault.SILENT, lambda s: s.readings.field is None),
+    (
+        Sensor.MAGNETOMETER,
+        SensorFault.SATURATED,
+        lambda s: s.readings.field is not None and not s.readings.field.valid and coils_idle(s.readings),
+    ),
+    (Sensor.MAGNETOMETER, SensorFault.FROZEN, lambda s: s.field_still and not s.sun_still),
+    (
+        Sensor.MAGNETOMETER,
+        SensorFault.STRENGTH,
+        lambda s: (
+            s.field is not None
+            and not abs(norm(s.field) - s.modelled_t) <= s.limits.field_t + s.limits.field_part * s.modelled_t
+        ),
+    ),
+    (Sensor.SUN_SENSOR, SensorFault.SILENT, lambda s: s.readings.sun is None),
+    (Sensor.SUN_SENSOR, SensorFault.UNLIT, lambda s: s.sun is not None and s.shadow),
+    (
+        Sensor.SUN_SENSOR,
+        SensorFault.STRENGTH,
+        lambda s: s.sun is not None and not abs(norm(s.sun) - 1.0) <= s.limits.sun_norm,
+    ),
+    (Sensor.SUN_SENSOR, SensorFault.FROZEN, lambda s: s.sun_still and not s.field_still),
+)
+
+
+class Findings(NamedTuple):
+    """What the samples of a tick show by themselves.
+
+    ``field_cause`` and ``sun_cause``: what speaks against each, 0 if nothing does; ``field`` and ``sun``: the
+    samples that could be used if nothing did; ``pair``: both can be compared, ``apart``: by an angle that is
+    not the modelled one.
+    """
+
+    field_cause: int
+    sun_cause: int
+    field: Vec3 | None
+    sun: Vec3 | None
+    pair: bool
+    apart: bool
+    memory: Memory
+
+
+def examine(memory: Memory, readings: Readings, reference: Reference, limits: PlausibilityConfig) -> Findings:
+    """Apply the checks to the samples of this tick.
+
+    Args:
+        memory: of the tick before.
+        readings: all that the boards sent, of isolated sensors too.
+        reference: field and Sun as modelled.
+        limits: largest deviations if all is well.
+    """
+    memory = _remember(memory, readings)
+    field, sun = usable_field(readings), usable_sun(readings)
+    seen = Seen(
+        readings,
+        field,
+        sun,
+        norm(reference.b_eci_t),
+        sun is not None and _in_shadow(reference),
+        memory.field_still > limits.late_ticks,
+        memory.sun_still > limits.late_ticks,
+        limits,
+    )
+    causes = {Sensor.MAGNETOMETER: 0, Sensor.SUN_SENSOR: 0}
+    for sensor, cause, speaks_against in CHECKS:
+        if not causes[sensor] and speaks_against(seen):
+            causes[sensor] = int(cause)
+    b_cause, s_cause = causes[Sensor.MAGNETOMETER], causes[Sensor.SUN_SENSOR]
+    pair = field is not None and sun is not None and not (b_cause or s_cause)
+    apart = pair and _apart(seen, reference)
+    return Findings(b_cause, s_cause, field, sun, pair, apart, memory)
+
+
+def _remember(memory: Memory, readings: Readings) -> Memory:
+    field, sun, field_still, sun_still = memory
+    if readings.field is not None:
+        sample = (readings.field.b_x, readings.field.b_y, readings.field.b_z)
+        field, field_still = sample, field_still + 1 if sample == field else 0
+    message = readings.sun
+    if message is not None:
+        sample = (message.s_x, message.s_y, message.s_z) if message.valid else DARK
+        sun, sun_still = sample, sun_still + 1 if sample == sun and sample is not DARK else 0
+    return Memory(field, sun, field_still, sun_still)
+
+
+def _in_shadow(reference: Reference) -> bool:
+    """Whether the satellite is in shadow with certainty, beyond all errors of the model."""
+    return not (reference.lit or lit(reference.r_eci_m, reference.sun_eci, SHADOW_M))
+
+
+def _apart(seen: Seen, reference: Reference) -> bool:
+    """Whether field and Sun are at another angle than modelled; the field's errors turn a weak one most."""
+    field, sun, limits = seen.field, seen.sun, seen.limits
+    if field is None or sun is None or not norm(field) * norm(sun) > 0.0:
+        return False
+    measured = dot(field, sun) / (norm(field) * norm(sun))
+    expected = dot(reference.b_eci_t, reference.sun_eci) / seen.modelled_t
+    limit_rad = limits.angle_rad + limits.field_t / seen.modelled_t
+    return not abs(_angle(measured) - _angle(expected)) <= limit_rad
+
+
+def _angle(cosine: float) -> float:
+    return acos(max(-1.0, min(1.0, cosine)))

@@ -1,0 +1,60 @@
+"""Which estimates can be right: every parameter within four standard deviations of its prior."""
+
+import pytest
+
+from fsw.core.estimation import mekf
+from fsw.core.estimation.mekf_config import mekf_config
+from fsw.core.estimation.parameters import Prior
+from fsw.core.fdir.credibility import SIGMAS, credibility_config, credible, sensors_credible
+
+PRIORS = {
+    "mag_bias_t": Prior((3e-7, 4e-7, 5e-7), (0.0,) * 3),
+    "dipole_body_am2": Prior((0.02, 0.03, 0.04), (0.0,) * 3),
+    "sun_turn_rad": Prior((0.002, 0.003, 0.004), (0.0,) * 3),
+    "delay_s": Prior((0.2, 0.3), (0.0, 0.0), (0.5, 0.6)),
+}
+CONFIG = mekf_config(
+    ((1.02, 0.0, 0.0), (0.0, 1.85, 0.0), (0.0, 0.0, 1.95)),
+    1.0,
+    PRIORS,
+    magnetometer_sigma_t=2e-7,
+    sun_sigma_rad=0.01,
+    attitude_sigma_rad=0.1,
+    rate_sigma_radps=0.01,
+    torque_noise_nm_rts=1e-9,
+    gate_nis=16.0,
+)
+LIMITS = credibility_config(CONFIG)
+
+
+def estimated(name, place, number):
+    estimate = mekf.start((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), CONFIG)
+    numbers = list(getattr(estimate.parameters, name))
+    numbers[place] = number
+    return estimate._replace(parameters=estimate.parameters._replace(**{name: tuple(numbers)}))
+
+
+def test_an_estimate_that_begins_is_credible():
+    assert credible(mekf.start((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), CONFIG), LIMITS)
+
+
+NUMBERS = [(name, place) for name, prior in PRIORS.items() for place in range(len(prior.sigma))]
+
+
+@pytest.mark.parametrize(("name", "place"), NUMBERS)
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_each_number_has_its_own_limit_about_its_own_mean(name, place, sign):
+    prior = PRIORS[name]
+    mean = prior.mean[place] if prior.mean else 0.0
+    limit = sign * SIGMAS * prior.sigma[place]
+    assert credible(estimated(name, place, mean + 0.99 * limit), LIMITS)
+    assert not credible(estimated(name, place, mean + 1.01 * limit), LIMITS)
+
+
+def test_what_moves_the_satellite_says_nothing_of_its_sensors():
+    assert sensors_credible(estimated("dipole_body_am2", 1, 0.3), LIMITS)
+    assert not sensors_credible(estimated("sun_turn_rad", 1, 0.3), LIMITS)
+
+
+def test_no_number_is_not_credible():
+    assert not credible(estimated("mag_bias_t", 2, float("nan")), LIMITS)

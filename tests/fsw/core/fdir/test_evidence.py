@@ -1,0 +1,75 @@
+"""The sequential test: its threshold by the budget, what a sample may weigh, and how rarely it errs."""
+
+from math import exp, log
+
+import numpy as np
+import pytest
+
+from fsw.core.fdir.evidence import CORRELATION_S, DAY_S, MISS, misfit, weigh, weights
+
+DAYS = 40.0
+
+
+@pytest.fixture(params=[1.0, 0.1], ids=["1 Hz", "10 Hz"])
+def tick_s(request):
+    return request.param
+
+
+def time_to(threshold, by, tick_s):
+    """Seconds of samples that all weigh ``by`` until they reach the threshold."""
+    nats, ticks = 0.0, 0
+    while nats < threshold:
+        nats, ticks = weigh(nats, by, threshold), ticks + 1
+    return ticks * tick_s
+
+
+def test_the_threshold_is_the_budget_in_independent_samples(tick_s):
+    threshold = weights(DAYS, tick_s).threshold
+    assert CORRELATION_S * exp(threshold) == pytest.approx(DAYS * DAY_S)
+    assert weights(10.0 * DAYS, tick_s).threshold - threshold == pytest.approx(log(10.0))
+
+
+def test_the_times_do_not_depend_on_the_tick(tick_s):
+    known = weights(DAYS, tick_s)
+    assert time_to(known.threshold, known.against, tick_s) == pytest.approx(29.0, abs=1.0)
+    assert time_to(known.threshold, known.fits, tick_s) == pytest.approx(129.0, abs=1.0)
+    assert time_to(known.threshold, known.agrees, tick_s) == pytest.approx(515.0, abs=2.0)
+
+
+def test_a_good_sample_takes_back_what_a_bad_one_has_brought():
+    assert weigh(weigh(3.0, 0.5, 14.0), -0.5, 14.0) == 3.0
+    assert weigh(0.2, -0.5, 14.0) == 0.0, "no credit is saved up"
+    assert weigh(13.9, 0.5, 14.0) == 14.0, "nor blame beyond the threshold"
+
+
+def test_one_sample_that_does_not_fit_undoes_many_that_do():
+    known = weights(DAYS, 1.0)
+    assert -known.misfits > 40 * known.fits
+    assert -known.misfits < known.threshold, "but not all"
+
+
+def test_innovations_of_a_sound_filter_weigh_for_it_and_larger_ones_against():
+    assert misfit(6.0, 6) == -1.0
+    assert 0.0 < misfit(11.5, 6) < 1.0
+    assert misfit(40.0, 6) == 1.0, "no sample weighs more than a nat in the time of correlation"
+    assert misfit(0.0, 0) == 0.0
+
+
+@pytest.mark.parametrize(("inflation", "raises"), [(1.0, False), (1.5, False), (4.0, True)])
+def test_noise_raises_no_alarm_in_a_month_and_innovations_that_are_too_large_do(inflation, raises):
+    random, known = np.random.default_rng(7), weights(DAYS, 1.0)
+    nats = 0.0
+    for nis in inflation * random.chisquare(6, size=30 * 86400 if not raises else 600):
+        nats = weigh(nats, known.against * misfit(float(nis), 6), known.threshold)
+        if nats == known.threshold:
+            break
+    assert (nats == known.threshold) is raises
+
+
+def test_what_the_gate_refuses_of_a_sound_sensor_isolates_it_less_often_than_the_budget():
+    random, known = np.random.default_rng(8), weights(DAYS, 1.0)
+    highest = nats = 0.0
+    for refused in random.random(30 * 86400) < 20.0 * MISS:  # twenty times as often as it should
+        nats = weigh(nats, known.against if refused else -known.against, known.threshold)
+        highest = max(highest, nats)
+    assert highest < 0.5 * known.threshold

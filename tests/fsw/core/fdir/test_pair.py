@@ -1,0 +1,156 @@
+"""Both sensors together: what proves an estimate, what disputes the pair, and how it is trusted again."""
+
+from itertools import count
+
+import pytest
+
+from fsw.core.estimation import mekf
+from fsw.core.estimation.estimator import Used
+from fsw.core.estimation.mekf_config import mekf_config
+from fsw.core.estimation.parameters import Prior
+from fsw.core.fdir.credibility import credibility_config
+from fsw.core.fdir.evidence import weights
+from fsw.core.fdir.pair import Observed, Pair, Standing, judge, proven
+from fsw.core.fdir.plausibility import Findings, Memory
+
+CONFIG = mekf_config(
+    ((1.02, 0.0, 0.0), (0.0, 1.85, 0.0), (0.0, 0.0, 1.95)),
+    1.0,
+    {"mag_bias_t": Prior((3e-7,) * 3, (0.0,) * 3)},
+    magnetometer_sigma_t=2e-7,
+    sun_sigma_rad=0.01,
+    attitude_sigma_rad=0.1,
+    rate_sigma_radps=0.01,
+    torque_noise_nm_rts=1e-9,
+    gate_nis=16.0,
+)
+LIMITS, WEIGHTS = credibility_config(CONFIG), weights(40.0, 1.0)
+ESTIMATE = mekf.start((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), CONFIG)._replace(nis=5.0, numbers=6)
+TURNED = ESTIMATE._replace(parameters=ESTIMATE.parameters._replace(mag_bias_t=(2e-6, 0.0, 0.0)))
+B, S = (2e-5, 1e-5, -3e-5), (1.0, 0.0, 0.0)
+BOTH = Findings(0, 0, B, S, True, False, Memory())
+ECLIPSE = BOTH._replace(sun=None, pair=False)
+TAKEN = Observed(BOTH, Used(True, True, False), ESTIMATE, False, False, False, False, True)
+"""A tick in which all is well."""
+WITHOUT = TAKEN._replace(estimate=None, used=Used(False, False, False))
+REFUSED = TAKEN._replace(used=Used(True, False, False), refused_sun=True)
+LARGE = TAKEN._replace(estimate=ESTIMATE._replace(nis=20.0))
+TRUSTED = Pair(Standing.TRUSTED, proof=WEIGHTS.threshold)
+
+
+def after(pair, seen, ticks=1):
+    for _ in range(ticks):
+        pair = judge(pair, seen, WEIGHTS, LIMITS)
+    return pair
+
+
+def ticks_until(pair, seen, standing, most=3000):
+    for ticks in count(1):
+        pair = after(pair, seen)
+        if pair.standing is standing:
+            return ticks, pair
+        if ticks >= most:
+            return None, pair
+
+
+class TestProof:
+    def test_an_estimate_is_trusted_once_it_has_taken_both_for_long(self):
+        ticks, pair = ticks_until(Pair(), TAKEN, Standing.TRUSTED)
+        assert 120 < ticks < 140
+        assert proven(pair, WEIGHTS)
+
+    @pytest.mark.parametrize(
+        "seen",
+        [TAKEN._replace(sound=False), LARGE, WITHOUT, TAKEN._replace(used=Used(True, False, False))],
+        ids=["by a satellite that cannot be", "with large innovations", "never begun", "one alone"],
+    )
+    def test_it_proves_nothing(self, seen):
+        assert after(Pair(), seen, 25).proof == 0.0
+
+    def test_what_it_refuses_sets_back_a_young_one_by_far(self):
+        young = after(Pair(), TAKEN, 60)
+        assert after(young, REFUSED).proof < 0.3 * young.proof
+
+    def test_a_trusted_one_is_proven_for_a_minute_after_it_has_last_taken_both(self):
+        alone = TAKEN._replace(findings=ECLIPSE, used=Used(True, False, False))
+        assert proven(after(TRUSTED, alone, 60), WEIGHTS)
+        later = after(TRUSTED, alone, 80)
+        assert later.standing is Standing.TRUSTED
+        assert not proven(later, WEIGHTS)
+
+    def test_without_an_estimate_trust_is_lost(self):
+        assert after(TRUSTED, WITHOUT) == Pair(Standing.NEW)
+
+
+APART = BOTH._replace(apart=True)
+DOUBTS = {
+    "large innovations": (TRUSTED, LARGE),
+    "parameters beyond their bounds": (TRUSTED, TAKEN._replace(estimate=TURNED)),
+    "the wrong angle, without an estimate": (Pair(), WITHOUT._replace(findings=APART)),
+    "the wrong angle, with a young one": (Pair(), TAKEN._replace(findings=APART)),
+    "a refusal by one that is not credible": (Pair(), REFUSED._replace(sound=False)),
+    "a refusal after a long time with one alone": (TRUSTED._replace(proof=1.0), REFUSED),
+}
+
+
+@pytest.mark.requirement("REQ-SENSOR-07")
+class TestDoubt:
+    @pytest.mark.parametrize("name", DOUBTS)
+    def test_speaks_against_the_pair_and_ends_the_filter(self, name):
+        pair, seen = DOUBTS[name]
+        ticks, pair = ticks_until(pair, seen, Standing.DISPUTED)
+        assert 25 < ticks < 35
+        assert pair == Pair(Standing.DISPUTED, ended=True)
+        assert not pair.valid
+        assert not after(pair, WITHOUT).ended, "once"
+
+    @pytest.mark.parametrize(
+        ("pair", "seen"),
+        [
+            (TRUSTED, TAKEN),
+            (TRUSTED, REFUSED),
+            (Pair(), REFUSED),
+            (TRUSTED, TAKEN._replace(findings=APART)),
+        ],
+        ids=[
+            "all is well",
+            "a refusal that names one",
+            "a refusal by a young one",
+            "an angle it explains",
+        ],
+    )
+    def test_does_not_arise(self, pair, seen):
+        assert after(pair, seen, 25).doubt == 0.0
+
+    def test_of_an_isolated_sensor_neither_angle_nor_parameters_dispute_the_other(self):
+        alone = TAKEN._replace(isolated=True, used=Used(False, True, False))
+        assert after(Pair(), alone._replace(findings=APART), 100).standing is Standing.NEW
+        assert after(TRUSTED, alone._replace(estimate=TURNED), 100).standing is Standing.TRUSTED
+        large = ESTIMATE._replace(nis=15.0, numbers=3)
+        assert after(TRUSTED, alone._replace(estimate=large), 35).standing is Standing.DISPUTED
+
+
+class TestAccord:
+    DISPUTED = Pair(Standing.DISPUTED)
+
+    def test_a_disputed_pair_that_agrees_is_tried_and_then_trusted(self):
+        ticks, pair = ticks_until(self.DISPUTED, WITHOUT, Standing.ON_TRIAL)
+        assert 500 < ticks < 530
+        assert not pair.valid
+        ticks, pair = ticks_until(pair._replace(accord=0.0), TAKEN, Standing.TRUSTED)
+        assert 500 < ticks < 530
+        assert pair.valid
+
+    def test_one_wrong_angle_undoes_minutes(self):
+        pair = after(self.DISPUTED, WITHOUT, 300)
+        apart = WITHOUT._replace(findings=APART)
+        assert pair.accord - after(pair, apart).accord > 150 * WEIGHTS.agrees
+
+    def test_in_eclipse_nothing_is_won_or_lost(self):
+        pair = after(self.DISPUTED, WITHOUT, 300)
+        assert after(pair, WITHOUT._replace(findings=ECLIPSE), 100).accord == pair.accord
+
+    def test_an_isolated_sensor_is_judged_so_only_while_no_estimate_can_tell(self):
+        isolated = TAKEN._replace(isolated=True)
+        assert after(TRUSTED, isolated, 100).accord == 0.0
+        assert after(TRUSTED, isolated._replace(untold=True), 100).accord > 0.0

@@ -1,0 +1,155 @@
+"""What speaks against a sample by itself: each check at its limit, in its order, by its memory."""
+
+from dataclasses import replace
+from math import cos, nan, radians, sin
+
+import pytest
+
+from fsw.core.algebra.vector import add, norm, scale
+from fsw.core.fdir.faults import SensorFault
+from fsw.core.fdir.plausibility import SHADOW_M, Memory, PlausibilityConfig, examine
+from fsw.core.gate.readings import NOTHING
+from fsw.core.orbit.ephemeris import reference_at
+from fsw.wire.messages import CoilStatus, MagField, SunVector
+
+LIMITS = PlausibilityConfig(field_t=2e-6, field_part=0.01, angle_rad=0.05, sun_norm=0.03, late_ticks=0)
+IDLE = CoilStatus(0, 0, 0, 0, 0, 0)
+NT = 1e-9
+
+
+@pytest.fixture(scope="module")
+def reference(make_world):
+    """Of a sunlit tick."""
+    world = make_world()
+    world.fly(20)
+    found = reference_at(world.state.ephemeris, world.state.tick, world.config.ephemeris)
+    assert found.lit
+    return found
+
+
+@pytest.fixture
+def readings(reference):
+    """Sound readings, with some of the values changed."""
+
+    def make(b_eci_t=None, sun_eci=None, **changed):
+        b, s = b_eci_t or reference.b_eci_t, sun_eci or reference.sun_eci
+        sound = {
+            "field": MagField(1, *scale(1.0 / NT, b), counter=0),
+            "sun": SunVector(1, *s, counter=0),
+            "coil": IDLE,
+        }
+        return NOTHING._replace(**(sound | changed))
+
+    return make
+
+
+def causes(findings):
+    return findings.field_cause, findings.sun_cause
+
+
+def test_sound_samples_have_nothing_against_them_and_agree(reference, readings):
+    findings = examine(Memory(), readings(), reference, LIMITS)
+    assert causes(findings) == (0, 0)
+    assert (findings.pair, findings.apart) == (True, False)
+
+
+@pytest.mark.requirement("REQ-SENSOR-02")
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_the_strength_of_the_field_may_be_off_by_offset_and_part_of_its_own(reference, readings, sign):
+    size = norm(reference.b_eci_t)
+    limit = 2e-6 + 0.01 * size
+    inside = scale(1.0 + 0.99 * sign * limit / size, reference.b_eci_t)
+    outside = scale(1.0 + 1.01 * sign * limit / size, reference.b_eci_t)
+    assert causes(examine(Memory(), readings(inside), reference, LIMITS)) == (0, 0)
+    assert causes(examine(Memory(), readings(outside), reference, LIMITS)) == (SensorFault.STRENGTH, 0)
+
+
+@pytest.mark.parametrize("part", [0.968, 1.032, nan])
+def test_the_sun_vector_has_the_length_of_one(reference, readings, part):
+    long = readings(sun_eci=scale(part, reference.sun_eci))
+    assert causes(examine(Memory(), long, reference, LIMITS)) == (0, SensorFault.STRENGTH)
+    good = readings(sun_eci=scale(1.028, reference.sun_eci))
+    assert causes(examine(Memory(), good, reference, LIMITS)) == (0, 0)
+
+
+@pytest.mark.requirement("REQ-SENSOR-01")
+def test_a_field_marked_as_not_valid_counts_while_no_coil_drives(reference, readings):
+    saturated = readings(field=MagField(0, 1.0, 2.0, 3.0, counter=0))
+    assert causes(examine(Memory(), saturated, reference, LIMITS)) == (SensorFault.SATURATED, 0)
+    driven = saturated._replace(coil=IDLE._replace(level=2))
+    assert causes(examine(Memory(), driven, reference, LIMITS)) == (0, 0)
+
+
+@pytest.mark.requirement("REQ-SENSOR-05")
+def test_a_missing_sample_speaks_against_its_sensor(reference, readings):
+    assert causes(examine(Memory(), readings(field=None), reference, LIMITS)) == (SensorFault.SILENT, 0)
+    assert causes(examine(Memory(), readings(sun=None), reference, LIMITS)) == (0, SensorFault.SILENT)
+    dark = readings(sun=SunVector(0, 0.0, 0.0, 0.0, counter=0))
+    assert causes(examine(Memory(), dark, reference, LIMITS)) == (0, 0), "no Sun is a sample too"
+
+
+@pytest.mark.requirement("REQ-SENSOR-09")
+def test_a_sun_in_certain_shadow_is_none(reference, readings):
+    across = turned(reference, radians(90.0))
+    for side_m, cause in ((SHADOW_M - 1e3, SensorFault.UNLIT), (SHADOW_M + 1e3, 0)):
+        behind = add(scale(-7.0e6, reference.sun_eci), scale(side_m, across))
+        dark = replace(reference, r_eci_m=behind, lit=False)
+        assert causes(examine(Memory(), readings(), dark, LIMITS))[1] == cause
+
+
+@pytest.mark.requirement("REQ-SENSOR-03")
+class TestFrozen:
+    def fly(self, reference, readings, ticks, still_field, still_sun, late_ticks=0):
+        """The findings after ticks in which the others move."""
+        memory, findings = Memory(), None
+        for tick in range(ticks):
+            b = reference.b_eci_t if still_field else scale(1.0 + 1e-4 * tick, reference.b_eci_t)
+            s = reference.sun_eci if still_sun else scale(1.0 + 1e-4 * tick, reference.sun_eci)
+            limits = LIMITS._replace(late_ticks=late_ticks)
+            findings = examine(memory, readings(b, s), reference, limits)
+            memory = findings.memory
+        return findings
+
+    def test_a_sample_that_is_repeated_while_the_other_moves(self, reference, readings):
+        assert causes(self.fly(reference, readings, 1, True, False)) == (0, 0)
+        assert causes(self.fly(reference, readings, 2, True, False)) == (SensorFault.FROZEN, 0)
+        assert causes(self.fly(reference, readings, 2, False, True)) == (0, SensorFault.FROZEN)
+
+    def test_both_together_are_another_matter(self, reference, readings):
+        assert causes(self.fly(reference, readings, 9, True, True)) == (0, 0)
+
+    def test_a_sensor_may_repeat_its_sample_for_as_long_as_it_may_be_late(self, reference, readings):
+        assert causes(self.fly(reference, readings, 4, True, False, late_ticks=3)) == (0, 0)
+        assert causes(self.fly(reference, readings, 5, True, False, late_ticks=3)) == (SensorFault.FROZEN, 0)
+
+    def test_darkness_is_not_frozen(self, reference, readings):
+        memory = Memory()
+        for _ in range(5):
+            dark = readings(sun=SunVector(0, 0.0, 0.0, 0.0, counter=0))
+            memory = examine(memory, dark, reference, LIMITS).memory
+        assert memory.sun_still == 0
+
+
+def turned(reference, angle_rad):
+    """The Sun's direction turned towards the field."""
+    b = scale(1.0 / norm(reference.b_eci_t), reference.b_eci_t)
+    s = reference.sun_eci
+    along = sum(x * y for x, y in zip(b, s, strict=True))
+    across = tuple(x - along * y for x, y in zip(b, s, strict=True))
+    across = scale(1.0 / norm(across), across)
+    return tuple(cos(angle_rad) * x + sin(angle_rad) * y for x, y in zip(s, across, strict=True))
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_the_angle_of_field_and_sun_by_what_its_errors_turn_the_field_of_this_tick(reference, readings, sign):
+    limit = 0.05 + 2e-6 / norm(reference.b_eci_t)
+    for part, apart in ((0.98, False), (1.02, True)):
+        sun = turned(reference, sign * part * limit)
+        assert examine(Memory(), readings(sun_eci=sun), reference, LIMITS).apart is apart
+
+
+def test_a_sample_with_something_against_it_is_not_compared(reference, readings):
+    weak = readings(scale(0.5, reference.b_eci_t), turned(reference, radians(60.0)))
+    findings = examine(Memory(), weak, reference, LIMITS)
+    assert findings.field_cause == SensorFault.STRENGTH
+    assert (findings.pair, findings.apart) == (False, False)

@@ -1,0 +1,133 @@
+"""Which sensor: what the filter refuses counts against one alone, and what it predicts clears it."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+
+from fsw.core.algebra.quaternion import normalise, rotate
+from fsw.core.algebra.vector import add
+from fsw.core.estimation import mekf
+from fsw.core.estimation.estimator import Used
+from fsw.core.estimation.mekf_config import mekf_config
+from fsw.core.fdir.credibility import credibility_config
+from fsw.core.fdir.evidence import weights
+from fsw.core.fdir.faults import SensorFault
+from fsw.core.fdir.pair import Pair, Standing
+from fsw.core.fdir.plausibility import Findings, Memory
+from fsw.core.fdir.sensors import SensorConfig, SensorHealth, Watch, judge, suspected
+
+MEKF = mekf_config(
+    ((1.02, 0.0, 0.0), (0.0, 1.85, 0.0), (0.0, 0.0, 1.95)),
+    1.0,
+    {},
+    magnetometer_sigma_t=2e-7,
+    sun_sigma_rad=0.01,
+    attitude_sigma_rad=0.002,
+    rate_sigma_radps=0.01,
+    torque_noise_nm_rts=1e-9,
+    gate_nis=16.0,
+)
+WEIGHTS = weights(40.0, 1.0)
+CONFIG = SensorConfig(WEIGHTS, credibility_config(MEKF), MEKF)
+ESTIMATE = mekf.start(normalise((0.6, -0.4, 0.5, 0.3)), (0.0, 0.0, 0.0), MEKF)._replace(nis=5.0, numbers=6)
+TRUSTED = SensorHealth(pair=Pair(Standing.TRUSTED, proof=WEIGHTS.threshold))
+FIELD, SUN, TOOK_BOTH = Used(True, False, False), Used(False, True, False), Used(True, True, False)
+NEITHER = Used(False, False, False)
+
+
+class Models:
+    """Field and Sun of every tick."""
+
+    b_eci_t, sun_eci = (1.7e-5, -2.3e-5, 3.1e-5), (0.6, 0.0, 0.8)
+
+
+B, S = (rotate(ESTIMATE.q_body_from_eci, v) for v in (Models.b_eci_t, Models.sun_eci))
+SEEN = Findings(0, 0, B, S, True, False, Memory())
+
+
+def after(health, used, ticks=1, findings=SEEN, estimate=ESTIMATE):
+    for _ in range(ticks):
+        health = judge(health, findings, used, estimate, Models, CONFIG)
+    return health
+
+
+def faults(health):
+    return health.field.fault, health.sun.fault
+
+
+@pytest.mark.requirement("REQ-SENSOR-04")
+class TestRefused:
+    def test_the_sensor_that_the_filter_refuses_while_it_takes_the_other(self):
+        assert faults(after(TRUSTED, SUN, 28)) == (0, 0)
+        assert faults(after(TRUSTED, SUN, 29)) == (SensorFault.REFUSED, 0)
+        assert faults(after(TRUSTED, FIELD, 29)) == (0, SensorFault.REFUSED)
+
+    def test_the_magnetometer_alone_in_eclipse_but_not_the_sun_sensor_alone(self):
+        dark = SEEN._replace(sun=None, pair=False)
+        assert faults(after(TRUSTED, NEITHER, 29, dark)) == (SensorFault.REFUSED, 0)
+        blanked = SEEN._replace(field=None, pair=False)
+        assert faults(after(TRUSTED, NEITHER, 60, blanked)) == (0, 0)
+
+    @pytest.mark.parametrize("standing", [Standing.NEW, Standing.ON_TRIAL])
+    def test_a_filter_that_is_not_proven_accuses_nobody(self, standing):
+        young = SensorHealth(pair=Pair(standing))
+        assert faults(after(young, SUN, 100)) == (0, 0)
+
+    def test_who_is_wrong_of_two_that_are_refused_is_not_known(self):
+        begun = after(TRUSTED, SUN, 10)
+        both = after(begun, NEITHER, 100)
+        assert faults(both) == (0, 0)
+        assert (both.field.nats, both.sun.nats) == (begun.field.nats, 0.0)
+
+    def test_half_of_the_samples_isolate_nothing(self):
+        health = TRUSTED
+        for _ in range(400):
+            health = after(after(health, SUN), TOOK_BOTH)
+        assert faults(health) == (0, 0)
+
+
+def test_a_check_isolates_though_no_filter_is_proven():
+    strong = SEEN._replace(field_cause=SensorFault.STRENGTH, pair=False)
+    assert faults(after(SensorHealth(), SUN, 29, strong)) == (SensorFault.STRENGTH, 0)
+    assert suspected(after(SensorHealth(), SUN, 1, strong))
+
+
+@pytest.mark.requirement("REQ-SENSOR-05")
+def test_silence_weighs_half_since_the_bus_may_be_the_cause():
+    silent = SEEN._replace(sun_cause=SensorFault.SILENT, sun=None, pair=False)
+    assert faults(after(TRUSTED, FIELD, 57, silent)) == (0, 0)
+    assert faults(after(TRUSTED, FIELD, 58, silent)) == (0, SensorFault.SILENT)
+
+
+@pytest.mark.requirement("REQ-SENSOR-06")
+class TestReadmitted:
+    FIELD_OUT = TRUSTED._replace(field=Watch(SensorFault.STRENGTH))
+    SUN_OUT = TRUSTED._replace(sun=Watch(SensorFault.REFUSED))
+
+    @pytest.mark.parametrize(("health", "used"), [(FIELD_OUT, SUN), (SUN_OUT, FIELD)])
+    def test_once_it_is_for_long_what_the_estimate_predicts(self, health, used):
+        assert any(faults(after(health, used, 128)))
+        back = after(health, used, 129)
+        assert faults(back) == (0, 0)
+        assert not back.pair.ended
+
+    def test_not_while_it_is_off_by_more_than_the_gate_allows(self):
+        for step, ticks in ((6e-7, 129), (1.2e-6, 1000)):
+            moved = SEEN._replace(field=add(B, (step, 0.0, 0.0)))
+            assert faults(after(self.FIELD_OUT, SUN, ticks, moved)) == (
+                (0, 0) if step < 1e-6 else (SensorFault.STRENGTH, 0)
+            )
+
+    def test_not_by_an_estimate_that_is_less_certain_than_the_sensor(self):
+        vague = ESTIMATE._replace(covariance=100.0 * np.asarray(ESTIMATE.covariance))
+        fly = partial(after, self.SUN_OUT, FIELD, estimate=vague)
+        assert fly(ticks=400).sun.nats == 0.0
+        assert fly(ticks=400).pair.accord > 0.0
+
+    def test_then_by_agreeing_with_the_other_for_longer_and_the_filter_is_tried_anew(self):
+        lost = after(self.SUN_OUT, NEITHER, 510, estimate=None)
+        assert faults(lost) == (0, SensorFault.REFUSED)
+        back = after(self.SUN_OUT, NEITHER, 520, estimate=None)
+        assert faults(back) == (0, 0)
+        assert back.pair.standing is Standing.ON_TRIAL
