@@ -142,6 +142,7 @@ def judge_effect(
     state: EstimatorState,
     tick: int,
     sure: bool,
+    unexplained: bool,
     config: CoilHealthConfig,
 ) -> tuple[CoilHealth, EstimatorState]:
     """Compare what the filter had to correct with what pulses, and a stray current, should have done.
@@ -153,6 +154,7 @@ def judge_effect(
         state: of the estimator, after the samples of this tick.
         tick: this one.
         sure: nothing but a coil may be what the filter corrected.
+        unexplained: there is doubt about both sensors.
         config: limits.
 
     Returns:
@@ -161,8 +163,8 @@ def judge_effect(
     estimate, age = state.estimate, tick - view.fired_tick
     ended = age == config.pulses.pulse_ticks and view.driven_level != 0
     stray = _flows_somewhere(health)
-    early = age % EARLY_TICKS == 0 and (state.rejected_in_a_row > 0 or stray)
-    due = ended or early or age == config.pulses.backoff_ticks
+    hurry = age % EARLY_TICKS == 0 and (unexplained or state.rejected_in_a_row > 0 or stray)
+    due = ended or hurry or age == config.pulses.backoff_ticks
     if estimate is None or not (due or stray):
         return health, state
     if stray:
@@ -181,8 +183,8 @@ def judge_effect(
 
 
 EARLY_TICKS = 5
-"""So often coils are judged while the filter refuses measurements or a stray current flows; else when the
-next pulse is due."""
+"""So often coils are judged while the filter contradicts itself or a stray current flows; else when the next
+pulse is due, since a correction ends what a pulse can still show."""
 
 
 def _stray_kicks(health: CoilHealth, b_body_t: Vec3, config: CoilHealthConfig) -> Mat3:

@@ -17,6 +17,8 @@ MODEL_ERROR = 0.05
 """Relative uncertainty of a coil's effect that no measurement takes away."""
 CERTAIN = 4.0
 """A deviation of so many standard deviations is none of noise."""
+WITNESS = 1.0
+"""Evidence of a pulse by itself, nats, without which it says nothing of its coil."""
 STRAY = 3
 """STRAY + j is the number, as a cause, of a stray current in coil j; j itself that of a pulse."""
 
@@ -81,12 +83,16 @@ def weak_by_pulses(solution: Solution, weak_part: float, threshold: float) -> tu
     """The coil, and its part, that certainly does less than ``weak_part``; None while it may be another.
 
     The evidence is the log-likelihood ratio of the part that was measured and of the least that is sound,
-    (weak_part - part)^2 / 2 sigma^2, a pulse at most half of the threshold. It has to exceed that of every
-    other coil by the threshold.
+    (weak_part - part)^2 / 2 sigma^2, at most half of the threshold for each pulse that is a witness by
+    itself. It has to exceed that of every other coil by the threshold.
     """
     likely = [one for one in of_pulses(solution) if one.fits and one.part < weak_part]
+    lacks = weak_part - 1.0 - solution.deviation
+    each = np.sign(lacks) * lacks**2 / (solution.covariance.diagonal() + MODEL_ERROR**2)
     for one in likely:
-        nats = min(0.5 * one.weight * (weak_part - one.part) ** 2, 0.5 * one.pulses * threshold)
+        latest = indices_of(one.coil, solution.causes)[: one.pulses]
+        witnesses = int((0.5 * each[latest] >= WITNESS).sum())
+        nats = min(0.5 * one.weight * (weak_part - one.part) ** 2, 0.5 * threshold * witnesses)
         rivals = [other.distance for other in likely if other.coil != one.coil]
         if nats >= threshold and min(rivals, default=inf) - one.distance >= 2.0 * threshold:
             return one.coil, one.part

@@ -114,8 +114,9 @@ def judge(
         estimator = untraced(estimator)  # what a faulty sensor has shown proves nothing about a coil
     elif not sensors.suspected(judged):
         sure = pair.proven(judged.pair, config.sensors.weights) or isolated
+        doubt = judged.pair.doubt > 1.0
         found, estimator = coils.judge_effect(
-            found, evidence.view, reference.b_eci_t, estimator, evidence.tick, sure, config.coils
+            found, evidence.view, reference.b_eci_t, estimator, evidence.tick, sure, doubt, config.coils
         )
     if judged.pair.ended:
         estimator, attitude = restart(estimator), UNKNOWN

@@ -40,13 +40,22 @@ def test_two_pulses_that_did_too_little_accuse_their_coil(coil, part):
     ("causes", "deviation", "sigma"),
     [
         ((0, 2), (-0.9, 0.01), (0.03, 0.04)),
+        ((0, 0), (-0.9, -0.2), (0.03, 0.9)),
         ((0, 0), (-0.9, -0.9), (0.2, 0.2)),
         ((0, 0), (-0.35, -0.35), (0.03, 0.03)),
         ((0, 0), (0.9, 0.9), (0.03, 0.03)),
         ((0, 0, 1, 1), (-0.9, -0.9, -0.9, -0.9), (0.03, 0.03, 0.03, 0.03)),
         ((2, 1, 2), (-0.7, -0.6, -3.0), (0.05, 0.05, 0.05)),
     ],
-    ids=["one pulse", "unsure", "hardly weak", "strong", "two coils at once", "what no coil can do"],
+    ids=[
+        "one pulse",
+        "and one that says nothing",
+        "unsure",
+        "hardly weak",
+        "strong",
+        "two coils at once",
+        "what no coil can do",
+    ],
 )
 def test_they_accuse_nobody(causes, deviation, sigma):
     assert weak(causes, deviation, sigma) is None
