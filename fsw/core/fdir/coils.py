@@ -1,8 +1,7 @@
 """Which coil is faulty, by its current and by what its pulses do to the rate.
 
-At the end of a pulse the current that is read back is held against that of the level. What pulses did to the
-rate ``coil_effects`` solves for; and what a stray current does, one without a request: the supply, which all
-coils share, does not show in which it flows.
+At the end of a pulse the current that is read back is held against that of the level. What pulses, and a
+current without a request, did to the rate ``coil_effects`` solves for: the supply is that of all coils.
 """
 
 from dataclasses import dataclass
