@@ -17,8 +17,6 @@ MODEL_ERROR = 0.05
 """Relative uncertainty of a coil's effect that no measurement takes away."""
 CERTAIN = 4.0
 """A deviation of so many standard deviations is none of noise."""
-WITNESS = 1.0
-"""Evidence of a pulse by itself, nats, without which it says nothing of its coil."""
 STRAY = 3
 """STRAY + j is the number, as a cause, of a stray current in coil j; j itself that of a pulse."""
 
@@ -39,14 +37,13 @@ def indices_of(cause: int, causes: tuple[int, ...]) -> list[int]:
 class Explanation(NamedTuple):
     """What may be wrong: a coil whose latest pulses all had the same part of their effect.
 
-    ``coil`` is -1 where nothing is; ``pulses`` is their number; ``weight`` is 1 / sigma^2 of the part, and
-    ``distance`` the square of what is left, by the covariance: minus twice the log-likelihood.
+    ``coil`` is -1 where nothing is; ``pulses`` is their number, and ``distance`` the square of what is left, by
+    the covariance: minus twice the log-likelihood.
     """
 
     coil: int
     pulses: int
     part: float
-    weight: float
     distance: float
 
     @property
@@ -67,7 +64,7 @@ def of_pulses(solution: Solution) -> list[Explanation]:
         solution.covariance[np.ix_(pulses, pulses)] + MODEL_ERROR**2 * np.eye(len(pulses))
     )
     nothing = float(deviation @ weights @ deviation)
-    found = [Explanation(-1, 0, 1.0, 0.0, nothing)]
+    found = [Explanation(-1, 0, 1.0, nothing)]
     causes = tuple(solution.causes[index] for index in pulses)
     for coil in sorted(set(causes)):
         latest = np.zeros(len(pulses))
@@ -75,7 +72,7 @@ def of_pulses(solution: Solution) -> list[Explanation]:
             latest[index] = 1.0
             weight, explained = float(latest @ weights @ latest), float(latest @ weights @ deviation)
             part, distance = 1.0 + explained / weight, nothing - explained**2 / weight
-            found.append(Explanation(coil, count, part, weight, distance))
+            found.append(Explanation(coil, count, part, distance))
     return sorted(found, key=lambda explanation: explanation.distance)
 
 
@@ -83,16 +80,15 @@ def weak_by_pulses(solution: Solution, weak_part: float, threshold: float) -> tu
     """The coil, and its part, that certainly does less than ``weak_part``; None while it may be another.
 
     The evidence is the log-likelihood ratio of the part that was measured and of the least that is sound,
-    (weak_part - part)^2 / 2 sigma^2, at most half of the threshold for each pulse that is a witness by
-    itself. It has to exceed that of every other coil by the threshold.
+    (weak_part - part)^2 / 2 sigma^2, by each pulse by itself, at most half of the threshold. It
+    has to exceed that of every other coil by the threshold.
     """
     likely = [one for one in of_pulses(solution) if one.fits and one.part < weak_part]
     lacks = weak_part - 1.0 - solution.deviation
     each = np.sign(lacks) * lacks**2 / (solution.covariance.diagonal() + MODEL_ERROR**2)
     for one in likely:
         latest = indices_of(one.coil, solution.causes)[: one.pulses]
-        witnesses = int((0.5 * each[latest] >= WITNESS).sum())
-        nats = min(0.5 * one.weight * (weak_part - one.part) ** 2, 0.5 * threshold * witnesses)
+        nats = 0.5 * float(np.clip(each[latest], -threshold, threshold).sum())
         rivals = [other.distance for other in likely if other.coil != one.coil]
         if nats >= threshold and min(rivals, default=inf) - one.distance >= 2.0 * threshold:
             return one.coil, one.part

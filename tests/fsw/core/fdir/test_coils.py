@@ -238,10 +238,10 @@ class TestByTheRate:
         world = make_world()
         world.fly(SETTLED)
         world.plant._coils._dipole_per_ampere[0] *= scale
-        said = fly(world, 600)
+        said = fly(world, 900)
         ((tick, argument),) = events(said, Event.COIL_FAULT)
         assert argument == named
-        assert len([t for t, coil in fires(said) if coil == 0 and t < tick]) <= 2
+        assert len([t for t, coil in fires(said) if coil == 0 and t < tick]) <= 3
         assert events(said, Event.SENSOR_ISOLATED) == events(said, Event.FILTER_RESTARTED) == []
         assert error_deg(world) < 1.0
 
