@@ -182,8 +182,7 @@ def judge_effect(
 
 
 EARLY_TICKS = 5
-"""So often coils are judged while the filter contradicts itself or a stray current flows; else when the next
-pulse is due, since a correction ends what a pulse can still show."""
+"""So often while in doubt; else when the next pulse is due: a correction ends what a pulse can still show."""
 
 
 def _stray_kicks(health: CoilHealth, b_body_t: Vec3, config: CoilHealthConfig) -> Mat3:

@@ -37,8 +37,8 @@ def indices_of(cause: int, causes: tuple[int, ...]) -> list[int]:
 class Explanation(NamedTuple):
     """What may be wrong: a coil whose latest pulses all had the same part of their effect.
 
-    ``coil`` is -1 where nothing is; ``pulses`` is their number, and ``distance`` the square of what is left, by
-    the covariance: minus twice the log-likelihood.
+    ``coil`` is -1 where nothing is; ``pulses`` is their number, and ``distance`` the square of what is left,
+    by the covariance: minus twice the log-likelihood.
     """
 
     coil: int
