@@ -1,15 +1,17 @@
 """What the filter estimates besides attitude and rate: constants that the table knows within bounds only."""
 
 from dataclasses import dataclass
+from math import nan
 from typing import Any, NamedTuple
 
-from fsw.core.algebra.vector import ZERO, Mat3, Vec3, add, inverse
+from fsw.core.algebra.vector import ZERO, Mat3, Vec3, add, cross, dot, inverse
 
 Matrix3x3 = tuple[float, float, float, float, float, float, float, float, float]
 Symmetric = tuple[float, float, float, float, float, float]
 
 UNCHANGED_COILS: Matrix3x3 = (0.0,) * 9
 UNCHANGED_INERTIA: Symmetric = (0.0,) * 6
+NO_NUMBERS: Mat3 = ((nan, nan, nan),) * 3
 
 
 class Parameters(NamedTuple):
@@ -146,9 +148,14 @@ def estimated_inertia(nominal: Rotor, parameters: Parameters) -> Mat3:
 
 
 def estimated_rotor(nominal: Rotor, parameters: Parameters) -> Rotor:
-    """The rotor with the estimated error of its inertia."""
+    """The rotor with the estimated error of its inertia; no numbers in the inverse of a singular one.
+
+    An estimate that has come to that is no longer healthy after a prediction, and the filter starts anew.
+    """
     inertia = estimated_inertia(nominal, parameters)
-    return Rotor(inertia, inverse(inertia), nominal.wheel_body_nms)
+    first, second, third = inertia
+    singular = dot(first, cross(second, third)) == 0.0
+    return Rotor(inertia, NO_NUMBERS if singular else inverse(inertia), nominal.wheel_body_nms)
 
 
 def estimated_dipole(m_driven_am2: Vec3, parameters: Parameters) -> Vec3:

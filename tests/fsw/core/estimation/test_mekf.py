@@ -317,6 +317,15 @@ class TestHealthy:
             )
             assert not mekf.healthy(after)
 
+    def test_an_inertia_that_has_come_to_nothing_ends_the_estimate_not_the_loop(self, full):
+        (xx, xy, xz), (_, yy, yz), (_, _, zz) = full.config().rotor.inertia_kgm2
+        gone = (-xx, -yy, -zz, -xy, -xz, -yz)
+        before = full.estimate()
+        before = before._replace(parameters=before.parameters._replace(inertia_error_kgm2=gone))
+        after = predict(before, full.e1_eci, full.b_eci_t, full.gravity_ps2, ZERO, full.config())
+        assert mekf.healthy(before)
+        assert not mekf.healthy(after)
+
 
 class TestBothAtOnce:
     """Field and Sun in one update: what the two give one after the other, behind no laxer gate."""
