@@ -48,14 +48,14 @@ def open_bus(spec: str) -> Bus:
     kind, _, argument = resolve(spec).partition(":")
     # Each kind is imported when it is opened: python-can alone takes longer than all the rest.
     if kind == "loop":
-        from fsw.bus.link import LoopLink  # noqa: PLC0415
+        from fsw.bus.link import LoopLink  # noqa: PLC0415  (loaded if it is used)
 
         return LoopLink(int(argument))
     if kind == "socketcan":
-        from fsw.bus.socketcan import SocketCan  # noqa: PLC0415
+        from fsw.bus.socketcan import SocketCan  # noqa: PLC0415  (loaded if it is used)
 
         return SocketCan(argument)
-    from fsw.bus.slcan import open_slcan  # noqa: PLC0415
+    from fsw.bus.slcan import open_slcan  # noqa: PLC0415  (loaded if it is used)
 
     return open_slcan(argument)
 
@@ -69,6 +69,6 @@ def _port(argument: str, spec: str) -> int:
 
 
 def _interface_is_up(name: str) -> bool:
-    from fsw.bus.socketcan import interface_is_up  # noqa: PLC0415
+    from fsw.bus.socketcan import interface_is_up  # noqa: PLC0415  (loaded if it is used)
 
     return interface_is_up(name)

@@ -190,7 +190,7 @@ def trace(panel: Axes, time: TimeAxis, t_s: Array, y: Array, label: str, colour:
     """One history as a line; few values get a dot each, so that a single one shows."""
     marker = "." if len(t_s) <= 60 else ""
     x, drawn = envelope(time.of(t_s), y)
-    panel.plot(x, drawn, label=label, color=colour, marker=marker, **how)  # type: ignore[arg-type]
+    panel.plot(x, drawn, label=label, color=colour, marker=marker, **how)  # type: ignore[arg-type]  # of any option
 
 
 def legend(panel: Axes) -> None:

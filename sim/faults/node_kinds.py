@@ -148,7 +148,7 @@ def count_doubles(value: Any) -> int:  # noqa: ANN401  (any part of a state)
     return sum(map(count_doubles, _parts(value)))
 
 
-def flip(value: Any, place: int, bit: int) -> Any:  # noqa: ANN401
+def flip(value: Any, place: int, bit: int) -> Any:  # noqa: ANN401  (any part of it)
     """The value with one bit of its double number ``place`` flipped."""
     if isinstance(value, float):
         return flip_bit(value, bit)
@@ -165,7 +165,7 @@ def flip(value: Any, place: int, bit: int) -> Any:  # noqa: ANN401
     raise IndexError(place)
 
 
-def _parts(value: Any) -> list[Any]:  # noqa: ANN401
+def _parts(value: Any) -> list[Any]:  # noqa: ANN401  (any part of it)
     if isinstance(value, tuple):
         return list(value)
     if is_dataclass(value) and not isinstance(value, type):
@@ -173,7 +173,7 @@ def _parts(value: Any) -> list[Any]:  # noqa: ANN401
     return []
 
 
-def _with_part(value: Any, parts: list[Any], index: int, part: Any) -> Any:  # noqa: ANN401
+def _with_part(value: Any, parts: list[Any], index: int, part: Any) -> Any:  # noqa: ANN401  (any part of it)
     if isinstance(value, tuple):
         changed = [*parts[:index], part, *parts[index + 1 :]]
         return value._make(changed) if hasattr(value, "_make") else tuple(changed)

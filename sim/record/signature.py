@@ -34,9 +34,9 @@ def private_key(path: Path) -> PrivateKey:
         HarnessError: the file has no such key, or the package cryptography is missing.
     """
     _require_cryptography("--sign")
-    from cryptography.exceptions import UnsupportedAlgorithm  # noqa: PLC0415
-    from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey  # noqa: PLC0415
-    from cryptography.hazmat.primitives.serialization import load_pem_private_key  # noqa: PLC0415
+    from cryptography.exceptions import UnsupportedAlgorithm  # noqa: PLC0415  (optional)
+    from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey  # noqa: PLC0415  (optional)
+    from cryptography.hazmat.primitives.serialization import load_pem_private_key  # noqa: PLC0415  (optional)
 
     try:
         key = load_pem_private_key(_read_key("--sign", path), password=None)
@@ -54,9 +54,9 @@ def public_key(path: Path) -> PublicKey:
         HarnessError: the file has no such key, or the package cryptography is missing.
     """
     _require_cryptography("--verify")
-    from cryptography.exceptions import UnsupportedAlgorithm  # noqa: PLC0415
-    from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PublicKey  # noqa: PLC0415
-    from cryptography.hazmat.primitives.serialization import load_pem_public_key  # noqa: PLC0415
+    from cryptography.exceptions import UnsupportedAlgorithm  # noqa: PLC0415  (optional)
+    from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PublicKey  # noqa: PLC0415  (optional)
+    from cryptography.hazmat.primitives.serialization import load_pem_public_key  # noqa: PLC0415  (optional)
 
     try:
         key = load_pem_public_key(_read_key("--verify", path))
@@ -78,7 +78,7 @@ def sign(path: Path, key: PrivateKey) -> None:
 
 def signature_fault(path: Path, key: PublicKey) -> str:
     """Why the signature of a file is not valid; empty if it is valid for the key."""
-    from cryptography.exceptions import InvalidSignature  # noqa: PLC0415
+    from cryptography.exceptions import InvalidSignature  # noqa: PLC0415  (optional)
 
     signature = signature_path(path)
     try:
@@ -99,7 +99,7 @@ def signature_path(path: Path) -> Path:
 
 def _require_cryptography(option: str) -> None:
     try:
-        import cryptography  # noqa: F401, PLC0415
+        import cryptography  # noqa: F401, PLC0415  (optional)
     except ImportError:
         raise HarnessError(
             f"{option} needs the package cryptography: pip install 'torquer[sign]' brings it"

@@ -266,7 +266,7 @@ def _seconds(value: float | None) -> str:
     return "–" if value is None else seconds_text(value)
 
 
-def _find(summary: Json, keys: Sequence[str]) -> Any:  # noqa: ANN401
+def _find(summary: Json, keys: Sequence[str]) -> Any:  # noqa: ANN401  (any part of it)
     found: Any = summary
     for key in keys:
         found = found.get(key) if isinstance(found, dict) else None

@@ -63,7 +63,7 @@ class SendMode(TelecommandSection):
     """TC_MODE."""
 
     message: Literal["TC_MODE"]
-    mode: Literal[tuple(Mode.__members__)]  # type: ignore[valid-type]
+    mode: Literal[tuple(Mode.__members__)]  # type: ignore[valid-type]  # those of the table
 
     def messages(self) -> list[CountedMessage]:
         """One message."""
@@ -84,7 +84,7 @@ class SendLaw(TelecommandSection):
     """TC_LAW: the law by its name."""
 
     message: Literal["TC_LAW"]
-    law: Literal[tuple(LAWS)]  # type: ignore[valid-type]
+    law: Literal[tuple(LAWS)]  # type: ignore[valid-type]  # those of the table
 
     def messages(self) -> list[CountedMessage]:
         """One message."""
@@ -119,7 +119,7 @@ class SendElement(TelecommandSection):
     """TC_ORBIT_ELEMENT."""
 
     message: Literal["TC_ORBIT_ELEMENT"]
-    element: Literal[tuple(name.lower() for name in Element.__members__)]  # type: ignore[valid-type]
+    element: Literal[tuple(name.lower() for name in Element.__members__)]  # type: ignore[valid-type]  # those of the table
     value: DecimalValue
 
     def messages(self) -> list[CountedMessage]:
@@ -150,7 +150,7 @@ class SendParameter(TelecommandSection):
     """TC_PARAMETER: a number that the filter estimates, by its name in the DBC, SI units."""
 
     message: Literal["TC_PARAMETER"]
-    component: Literal[tuple(name.lower() for name in Component.__members__)]  # type: ignore[valid-type]
+    component: Literal[tuple(name.lower() for name in Component.__members__)]  # type: ignore[valid-type]  # those of the table
     value: DecimalValue
 
     def messages(self) -> list[CountedMessage]:

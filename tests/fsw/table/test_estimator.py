@@ -77,14 +77,14 @@ class TestStates:
 
 
 class TestLimitsOfThePair:
-    KNOWN = {  # noqa: RUF012
+    KNOWN = {  # noqa: RUF012  (never changed)
         "magnetometer_bias_nt": 700.0,
         "magnetometer_scale_percent": 0.4,
         "magnetometer_misalignment_deg": 1.5,
         "sun_misalignment_deg": 0.25,
         "along_track_km": 70.0,
     }
-    SENSORS = {"magnetometer_sigma_nt": 150.0, "sun_sigma_deg": 0.3}  # noqa: RUF012
+    SENSORS = {"magnetometer_sigma_nt": 150.0, "sun_sigma_deg": 0.3}  # noqa: RUF012  (never changed)
 
     def test_are_the_bounds_and_the_noise_at_the_edge_of_the_gate(self):
         limits = plausibility_config(table_with(uncertainty=self.KNOWN, estimator=self.SENSORS))

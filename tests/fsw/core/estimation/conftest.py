@@ -66,7 +66,7 @@ class Satellite:
     s_eci = unit((-0.8, 0.35, 0.4))
     gravity_ps2 = 3.3e-6
     driven_am2 = (0.0, -8.0, 2.0)
-    sigma = {"field": np.full(3, 2e-7), "sun": np.full(3, radians(0.5))}  # noqa: RUF012
+    sigma = {"field": np.full(3, 2e-7), "sun": np.full(3, radians(0.5))}  # noqa: RUF012  (never changed)
     sigma["both"] = np.concatenate((sigma["field"], sigma["sun"]))
 
     @property
