@@ -12,22 +12,10 @@ Prediction = tuple[Vec3, Matrix]
 """What should be measured, and its sensitivity H, (3, n)."""
 
 
-def expected_field(q_body_from_eci: Quaternion, omega: Vec3, parameters: Parameters, b_eci_t: Vec3) -> Vec3:
-    """The magnetometer's sample, z = (1 + s) o R(turn) C(t - delay) b + bias, R a small turn."""
-    b = _late(rotate(q_body_from_eci, b_eci_t), omega, parameters.delay_s[0])
-    return add(_scaled(_turned(b, parameters.mag_turn_rad), parameters.mag_scale), parameters.mag_bias_t)
-
-
-def expected_sun(q_body_from_eci: Quaternion, omega: Vec3, parameters: Parameters, s_eci: Vec3) -> Vec3:
-    """The Sun sensor's, z = R(turn) C(t - delay) s, R a small turn."""
-    s = _late(rotate(q_body_from_eci, s_eci), omega, parameters.delay_s[1])
-    return _turned(s, parameters.sun_turn_rad)
-
-
 def field_prediction(
     q_body_from_eci: Quaternion, omega: Vec3, parameters: Parameters, b_eci_t: Vec3, config: MekfConfig
 ) -> Prediction:
-    """What the magnetometer should measure, as in ``expected_field``."""
+    """The magnetometer: z = (1 + s) o R(turn) C(t - delay) b + bias, R a small turn; T, body axes."""
     parts, sensitivity = config.layout, config.field_sensitivity.copy()
     b = _late(rotate(q_body_from_eci, b_eci_t), omega, parameters.delay_s[0])
     if parts.delay is not None:
@@ -45,7 +33,7 @@ def field_prediction(
 def sun_prediction(
     q_body_from_eci: Quaternion, omega: Vec3, parameters: Parameters, s_eci: Vec3, config: MekfConfig
 ) -> Prediction:
-    """What the Sun sensor should measure, as in ``expected_sun``."""
+    """The Sun sensor: z = R(turn) C(t - delay) s, R a small turn; body axes."""
     parts, sensitivity = config.layout, config.sun_sensitivity.copy()
     s = _late(rotate(q_body_from_eci, s_eci), omega, parameters.delay_s[1])
     if parts.delay is not None:
