@@ -50,8 +50,8 @@ class FaultFlightRecord:
 
     Attributes:
         tick_hz: ticks a second.
-        onset: tick in which the fault begins; None if it never did.
-        end: first tick without it; None if it is permanent.
+        onset: tick in which the first fault begins; None if none did.
+        end: first tick without any; None if one is permanent.
         entries: SYNC, COIL_STATUS and COIL_BOOT as plant and board sent them.
         coil_drives: the currents that the plant drove in each tick.
         pulses_by_time: pulses of a board with a clock of its own, over true time; else none.

@@ -47,7 +47,12 @@ class Rig:
     def inject(self, fault: Fault, first: int, end: int | None) -> None:
         """Schedule a fault, for the next tick at the earliest."""
         self.plant.inject(ScheduledFault(fault, first, end))
-        self.record.onset, self.record.end = first, end
+        record = self.record
+        if record.onset is None:
+            record.onset, record.end = first, end
+        else:
+            record.onset = min(record.onset, first)
+            record.end = None if end is None or record.end is None else max(record.end, end)
 
     def tick(self) -> None:
         """Fly one tick."""

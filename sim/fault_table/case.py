@@ -2,6 +2,7 @@
 
 import time
 import warnings
+from datetime import UTC, datetime, timedelta
 from math import inf
 from random import Random
 
@@ -11,7 +12,7 @@ from sim.fault_rig.process_rig import ProcessRig, random_strikes
 from sim.fault_rig.record import FaultFlightRecord
 from sim.fault_rig.rig import Rig, prepare
 from sim.fault_table import checks
-from sim.fault_table.isolation import isolations
+from sim.fault_table.isolation import isolation_s
 from sim.fault_table.row import CaseResult, FaultRow, When
 from sim.faults.kinds import KINDS, make
 from sim.scenario.schema import Scenario
@@ -29,12 +30,17 @@ SPACING_S = 37.0
 INITIAL_TURN = ("initial.axis=[0.9, 0.3, -0.2]", "initial.rate_degps=[0.05, -0.07, 0.04]")
 FIRST_DEG, STEP_DEG = 75.0, 47.0
 """Initial attitudes of flights that are faulty from their first tick on."""
+FIRST_UTC, PLACE_S = datetime(2015, 3, 27, 2, 46, 57, tzinfo=UTC), 604.0
+"""Start of flights that begin at one of ten places of the orbit; the time between two of them [s]."""
 
 
 def settings_of(row: FaultRow, phase: int) -> tuple[str, ...]:
     """Settings of the scenario for this row."""
     if row.when is When.BOOT:
         return (*row.settings, *INITIAL_TURN, f"initial.angle_deg={(FIRST_DEG + phase * STEP_DEG) % 180.0}")
+    if row.when is When.ORBIT:
+        start = FIRST_UTC + timedelta(seconds=phase * PLACE_S)
+        return (*row.settings, f'time.epoch_utc="{start:%Y-%m-%dT%H:%M:%SZ}"')
     return (*row.settings, BEFORE_ECLIPSE) if row.when is When.ECLIPSE else row.settings
 
 
@@ -63,17 +69,21 @@ def _fly_strikes(row: FaultRow, phase: int, seed: int, scenario: Scenario) -> Fa
 
 def _fly_fault(row: FaultRow, phase: int, seed: int, rig: Rig, orbit_s: float) -> FaultFlightRecord:
     rng = Random(f"{row.name}/{phase}/{seed}")
-    fault = make(row.kind, row.parameters, rng)
+    faults = [make(fault.kind, fault.parameters, rng) for fault in row.faults]
     hz, record = rig.record.tick_hz, rig.record
     offset_s = phase_s(row.when, phase, rng)
-    reference = _fly_to_reference(row.when, rig, hz)
+    reference = _fly_to_reference(row.when, rig, orbit_s)
     onset = reference + round(offset_s * hz)
-    end = None if row.stays else onset + max(1, round(row.lasts_s * hz))
-    rig.inject(fault, onset, end)
+    for fault, planned in zip(faults, row.faults, strict=True):
+        first = onset + round(planned.after_s * hz)
+        rig.inject(
+            fault, first, None if planned.lasts_s == inf else first + max(1, round(planned.lasts_s * hz))
+        )
+    end = record.end
     watched = (end if end is not None else onset) + round(row.watch_s * hz)
     latest = watched
     if "recovers" in row.expect:
-        latest = max(watched, onset + round((min(row.lasts_s, 1e9) + orbit_s + checks.GOOD_FOR_S) * hz) + 2)
+        latest = max(watched, (end or onset) + round((orbit_s + checks.GOOD_FOR_S) * hz) + 2)
     good = 0
     while rig.plant.tick < latest:
         rig.tick()
@@ -90,19 +100,14 @@ def phase_s(when: When, phase: int, rng: Random) -> float:
     """The start of the fault after the reference tick of its phases [s]."""
     if when is When.PULSE:
         return ORDER[phase] if phase < len(ORDER) else rng.uniform(0.0, CYCLE_S)
-    return 0.0 if when is When.BOOT else phase * SPACING_S
+    return 0.0 if when in (When.BOOT, When.ORBIT) else phase * SPACING_S
 
 
-def _fly_to_reference(when: When, rig: Rig, hz: int) -> int:
+def _fly_to_reference(when: When, rig: Rig, orbit_s: float) -> int:
     """Fly until the reference tick of the phases: the next tick, or the one before."""
-    if when is When.BOOT:
-        until_s = 0.0
-    elif when is When.SUNLIT:
-        until_s = ARMED_S
-    elif when is When.ECLIPSE:
-        until_s = ECLIPSE_S
-    else:
-        until_s = inf
+    hz = rig.record.tick_hz
+    after_s = {When.BOOT: 0.0, When.SUNLIT: ARMED_S, When.ECLIPSE: ECLIPSE_S, When.ORBIT: orbit_s}
+    until_s = after_s.get(when, inf)
     while rig.plant.tick < until_s * hz:
         rig.tick()
         tick = rig.plant.tick
@@ -126,7 +131,7 @@ def _figures(row: FaultRow, record: FaultFlightRecord) -> dict[str, float]:
     after_s = checks.recovery_s(record)
     if after_s is not None and "recovers" in row.expect:
         figures["recovered s"] = after_s
-    ticks = [tick for tick, unit in isolations(record) if unit == row.unit and tick >= onset]
-    if ticks:
-        figures["named s"] = (ticks[0] - onset) / record.tick_hz
+    named_s = [after_s for fault in row.faults if (after_s := isolation_s(fault, record)) is not None]
+    if named_s:
+        figures["named s"] = max(named_s)
     return figures

@@ -15,7 +15,7 @@ from sim.fault_table.isolation import (
     can_isolate,
     enters_safe,
     isolates_faulty_unit,
-    isolates_no_other_unit,
+    isolates_no_healthy_unit,
     isolations,
     monitor_trips,
     monitor_trips_for_silent_board,
@@ -26,6 +26,8 @@ from sim.scenario.schema import Scenario, orbit_period_s
 
 GOOD_DEG = 2.0
 GOOD_FOR_S = 600.0
+WRONG_DEG, WRONG_S = 5.0, 120.0
+"""A valid attitude may be so wrong for so long while a fault that has begun is being found."""
 FAR_DEG, LAST_S = 15.0, 300.0
 """Three times the standard deviation up to which fsw marks an estimate as valid."""
 FORGERY_EVENTS = (Event.STRANGE_SYNC, Event.PLANT_RESTARTED, Event.FALSE_END)
@@ -198,6 +200,22 @@ def reports_forgery(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) ->
     return True, f"reported after {(ticks[0] - onset) / record.tick_hz:.0f} s"
 
 
+def never_wrong_for_long(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
+    """No attitude in the answers is valid and more than 5 deg wrong for over 120 s on end.
+
+    Where both sensors agree on what is wrong, nothing aboard can tell: the row says so.
+    """
+    longest = wrong = 0
+    worst_deg = 0.0
+    for error_deg, done in zip(record.error_deg, record.done, strict=True):
+        wrong = wrong + 1 if done and error_deg is not None and error_deg > WRONG_DEG else 0
+        longest = max(longest, wrong)
+        worst_deg = max(worst_deg, error_deg or 0.0) if wrong else worst_deg
+    longest_s = longest / record.tick_hz
+    finding = f"valid while up to {worst_deg:.0f} deg wrong, for {longest_s:.0f} s on end" if longest else ""
+    return row.agree or longest_s <= WRONG_S, finding
+
+
 def isolates_nothing(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
     """Without a fault no unit is isolated and no monitor trips."""
     units = isolations(record) + monitor_trips(record)
@@ -240,7 +258,8 @@ CHECKS: dict[str, Check] = {
     "board names": board_identifies_unit,
     "silence named": monitor_trips_for_silent_board,
     "named": isolates_faulty_unit,
-    "no other named": isolates_no_other_unit,
+    "no other named": isolates_no_healthy_unit,
+    "honest": never_wrong_for_long,
     "stuck": enters_safe,
 }
 

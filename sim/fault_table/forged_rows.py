@@ -27,7 +27,15 @@ FORGED_ROWS: tuple[FaultRow, ...] = (
     _sync("first", when=When.BOOT, ticks=1e9),
     _sync("first-pair", when=When.BOOT, ticks=1e9, count=2.0),
     FaultRow("end-forged", GROUP, "end_forged", {}, 300.0, expect=("undisturbed", "told", *STEADY)),
-    FaultRow("done-forged-seldom", GROUP, "done_forged", {"part": 0.02}, 300.0, expect=STEADY),
+    FaultRow(
+        "done-forged-seldom",
+        GROUP,
+        "done_forged",
+        {"part": 0.02},
+        300.0,
+        expect=STEADY,
+        unit="second sender",
+    ),
     FaultRow(
         "done-forged",
         GROUP,

@@ -1,13 +1,14 @@
 """Which unit the flight software isolates, by its events; units have the names that rows use."""
 
 from collections.abc import Callable
+from math import inf
 
 from fsw.core.events import Event as Number
 from fsw.core.monitors import Monitor
 from fsw.wire.messages import Mode
 from hil_stub.coils.events import CoilEventCode
 from sim.fault_rig.record import FaultFlightRecord, ReportedEvent
-from sim.fault_table.row import Bounds, FaultRow
+from sim.fault_table.row import Bounds, FaultRow, RowFault
 from sim.flight.isolations import UNITS, isolated_unit
 
 LEAST_PULSES = 5
@@ -72,34 +73,52 @@ def board_identifications(record: FaultFlightRecord) -> list[tuple[int, str]]:
     ]
 
 
+def onset_tick(fault: RowFault, record: FaultFlightRecord) -> int:
+    """The tick in which a fault of the row begins."""
+    return (record.onset or 0) + round(fault.after_s * record.tick_hz)
+
+
+def isolation_s(fault: RowFault, record: FaultFlightRecord) -> float | None:
+    """Time from the onset of a fault to the isolation of its unit [s]; None: it is not isolated."""
+    onset = onset_tick(fault, record)
+    ticks = [tick for tick, unit in isolations(record) if unit == fault.unit and tick >= onset]
+    return (ticks[0] - onset) / record.tick_hz if ticks else None
+
+
 def isolates_faulty_unit(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool | None, str]:
-    """The faulty unit is isolated, and no other."""
-    if not can_isolate(row.unit):
-        return None, f"fsw cannot isolate {row.unit} yet"
-    onset = record.onset or 0
-    units = [(tick, unit) for tick, unit in isolations(record) if tick >= onset]
-    wrong = [(tick, unit) for tick, unit in units if unit != row.unit]
-    right = [tick for tick, unit in units if unit == row.unit]
-    if wrong:
-        return False, f"{wrong[0][1]} isolated in place of {row.unit} in tick {wrong[0][0]}"
-    if not right:
-        return _not_isolated(row, record, onset)
-    return True, f"isolated after {(right[0] - onset) / record.tick_hz:.0f} s"
+    """Each faulty unit is isolated, in the time that the row gives it, and after the onset no other."""
+    onset, units = record.onset or 0, [fault.unit for fault in row.faults]
+    for tick, unit in isolations(record):
+        if tick >= onset and unit not in units:
+            return False, f"{unit} isolated in place of {' or '.join(units)} in tick {tick}"
+    after_s = []
+    for fault in row.faults:
+        named_s = isolation_s(fault, record)
+        if named_s is None:
+            return _not_isolated(row, fault, record)
+        if named_s > row.within_s:
+            return False, f"{fault.unit} isolated after {named_s:.0f} s, later than {row.within_s:g} s"
+        after_s.append(f"{named_s:.0f} s")
+    return True, f"isolated after {', '.join(after_s)}"
 
 
-def isolates_no_other_unit(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
-    """No unit other than the disturbed one is isolated; the disturbed one may be."""
-    others = [(tick, unit) for tick, unit in isolations(record) if unit != row.unit]
-    return not others, f"{others[0][1]} isolated in tick {others[0][0]}" if others else ""
+def isolates_no_healthy_unit(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
+    """No unit is isolated but a faulty one after the onset of its fault; that one may be."""
+    onsets = {fault.unit: onset_tick(fault, record) for fault in row.faults}
+    healthy = [(tick, unit) for tick, unit in isolations(record) if tick < onsets.get(unit, inf)]
+    return not healthy, f"{healthy[0][1]} isolated in tick {healthy[0][0]}" if healthy else ""
 
 
-def _not_isolated(row: FaultRow, record: FaultFlightRecord, onset: int) -> tuple[bool | None, str]:
+def _not_isolated(row: FaultRow, fault: RowFault, record: FaultFlightRecord) -> tuple[bool | None, str]:
     """A coil shows its fault only while it is on: a few pulses are needed as evidence."""
-    if not row.unit.startswith("coil ") or "stuck" in row.expect:
-        return False, f"{row.unit} is not isolated"
-    requests = zip(record.request_ticks, record.request_coils, strict=True)
-    count = sum(tick >= onset and f"coil {coil}" == row.unit for tick, coil in requests)
-    return None if count < LEAST_PULSES else False, f"{row.unit} is not isolated in {count} pulses of its own"
+    if not can_isolate(fault.unit):
+        return None, f"fsw cannot isolate {fault.unit} yet"
+    if not fault.unit.startswith("coil ") or "stuck" in row.expect:
+        return False, f"{fault.unit} is not isolated"
+    requests, onset = zip(record.request_ticks, record.request_coils, strict=True), onset_tick(fault, record)
+    count = sum(tick >= onset and f"coil {coil}" == fault.unit for tick, coil in requests)
+    said = f"{fault.unit} is not isolated in {count} pulses of its own"
+    return None if count < LEAST_PULSES else False, said
 
 
 def board_identifies_unit(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:

@@ -4,10 +4,12 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict
 from itertools import groupby
+from math import inf
 from xml.etree import ElementTree
 
 from sim.drawing.pages import page
-from sim.fault_table.row import CaseResult, CheckVerdict, FaultRow, RowResult
+from sim.fault_table.checks import ALWAYS
+from sim.fault_table.row import CaseResult, CheckVerdict, FaultRow, RowFault, RowResult
 from sim.faults.kinds import KINDS
 
 _COLUMNS = ("row", "injected", "expected", "cases", "measured", "verdict")
@@ -81,7 +83,7 @@ def as_json(results: Sequence[RowResult]) -> str:
             "row": result.row.name,
             "group": result.row.group,
             "injected": injected(result.row),
-            "expected": ["limits", "no exception", "no NaN", "answered", *result.row.expect],
+            "expected": [*ALWAYS, *result.row.expect],
             "verdict": result.verdict.value,
             "measured": result.measured,
             "cases": [asdict(case) for case in result.cases],
@@ -176,20 +178,23 @@ def _kind_row(name: str) -> str:
 
 def injected(row: FaultRow) -> str:
     """What is injected, for a person."""
-    parameters = [f"{name} {value:g}" for name, value in _all_parameters(row).items()]
-    lasts = "stays" if row.stays else f"{row.lasts_s:g} s"
-    return ", ".join([row.kind.replace("_", " "), *parameters, lasts])
+    return "; ".join([*map(_fault, row.faults), *row.settings])
 
 
 def expected(row: FaultRow) -> str:
     """What is expected beside what every row must keep."""
-    names = [f"{name} ({row.unit})" if "named" in name else name for name in row.expect]
-    return ", ".join(names) or "the limits"
+    units = " and ".join(fault.unit for fault in row.faults if fault.unit)
+    within = "" if row.within_s == inf else f", within {row.within_s:g} s"
+    names = [f"{name} ({units}{within})" if "named" in name else name for name in row.expect]
+    return ", ".join([*names, *(["both sensors agree"] if row.agree else [])]) or "the limits"
 
 
-def _all_parameters(row: FaultRow) -> dict[str, float]:
-    defaults = {name: parameter.default for name, parameter in KINDS[row.kind].parameters.items()}
-    return {**defaults, **row.parameters}
+def _fault(fault: RowFault) -> str:
+    defaults = {name: parameter.default for name, parameter in KINDS[fault.kind].parameters.items()}
+    parameters = [f"{name} {value:g}" for name, value in (defaults | fault.parameters).items()]
+    lasts = "stays" if fault.lasts_s == inf else f"{fault.lasts_s:g} s"
+    after = f"after {fault.after_s:g} s " if fault.after_s else ""
+    return ", ".join([after + fault.kind.replace("_", " "), *parameters, lasts])
 
 
 def _found(result: RowResult) -> str:

@@ -30,6 +30,19 @@ class When(StrEnum):
     """The first tick; each phase begins with another attitude."""
     ECLIPSE = "eclipse"
     """The last minutes of sunlight before an eclipse, and the first of it."""
+    ORBIT = "orbit"
+    """After a whole orbit; each phase begins at another place of the orbit."""
+
+
+@dataclass(frozen=True, slots=True)
+class RowFault:
+    """One of the faults of a row: it begins ``after_s`` after the first one."""
+
+    kind: str
+    parameters: dict[str, float]
+    lasts_s: float
+    unit: str
+    after_s: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +57,10 @@ class FaultRow:
         lasts_s: duration of the fault; infinite: permanent.
         when: reference of the phases.
         expect: names of the checks in addition to those of every row.
-        unit: the unit that must be isolated, for the check ``named``.
+        unit: the faulty unit, which may be isolated, and must be for the check ``named``.
+        within_s: by when ``named`` must hold, from the onset of the unit's fault.
+        then: further faults, each with a faulty unit of its own.
+        agree: both sensors agree on what is wrong, so that a wrong attitude may be called valid.
         settings: of the scenario.
         slow: it runs real processes, which takes seconds.
         watch_s: least duration of the flight after the fault; with ``recovers`` until that is decided.
@@ -58,14 +74,22 @@ class FaultRow:
     when: When = When.PULSE
     expect: tuple[str, ...] = ()
     unit: str = ""
+    within_s: float = inf
+    then: tuple[RowFault, ...] = ()
+    agree: bool = False
     settings: tuple[str, ...] = ()
     watch_s: float = 330.0
     slow: bool = False
 
     @property
+    def faults(self) -> tuple[RowFault, ...]:
+        """All faults, in the order in which they begin."""
+        return (RowFault(self.kind, self.parameters, self.lasts_s, self.unit), *self.then)
+
+    @property
     def stays(self) -> bool:
-        """Whether the fault is permanent."""
-        return self.lasts_s == inf
+        """Whether a fault is permanent."""
+        return any(fault.lasts_s == inf for fault in self.faults)
 
 
 @dataclass(frozen=True, slots=True)

@@ -48,8 +48,9 @@ def _sun(name: str, kind: str, **parameters: float) -> tuple[FaultRow, FaultRow]
 
 
 def _sensor(unit: str, name: str, kind: str, parameters: dict[str, float]) -> tuple[FaultRow, FaultRow]:
+    passing = ("goes on", "recovers")
     return (
-        FaultRow(f"{name}-passing", SENSOR, kind, parameters, 300.0, When.SUNLIT, ("goes on", "recovers")),
+        FaultRow(f"{name}-passing", SENSOR, kind, parameters, 300.0, When.SUNLIT, passing, unit),
         FaultRow(
             name,
             SENSOR,
@@ -66,20 +67,10 @@ def _sensor(unit: str, name: str, kind: str, parameters: dict[str, float]) -> tu
 
 def _from_boot(name: str, kind: str, unit: str, **parameters: float) -> tuple[FaultRow, ...]:
     """A fault from boot on: which sensor is faulty is then not always observable."""
-    passing = ("goes on", "no other named", "recovers")
+    passing, lasting = ("goes on", "no other named", "recovers"), ("no other named", "bounded")
     return (
         FaultRow(f"{name}-boot-passing", BOOT, kind, parameters, 300.0, When.BOOT, passing, unit),
-        FaultRow(
-            f"{name}-boot",
-            BOOT,
-            kind,
-            parameters,
-            inf,
-            When.BOOT,
-            ("no other named", "bounded"),
-            unit,
-            watch_s=1500.0,
-        ),
+        FaultRow(f"{name}-boot", BOOT, kind, parameters, inf, When.BOOT, lasting, unit, watch_s=1500.0),
     )
 
 
@@ -116,7 +107,15 @@ ROWS: tuple[FaultRow, ...] = (
     FaultRow("rtr", CORRUPT, "rtr", {"part": 0.3}, 300.0, expect=BROKEN),
     FaultRow("extended-id", CORRUPT, "extended_id", {"part": 0.3}, 300.0, expect=BROKEN),
     FaultRow("error-frames", CORRUPT, "error_frames", {"part": 0.3}, 300.0, expect=BROKEN),
-    FaultRow("random-frames", CORRUPT, "random_frames", {"frames": 100.0}, 200.0, expect=BROKEN),
+    FaultRow(
+        "random-frames",
+        CORRUPT,
+        "random_frames",
+        {"frames": 100.0},
+        200.0,
+        expect=BROKEN,
+        unit="second sender",
+    ),
     FaultRow("flood", FLOOD, "flood", {"frames": 500.0}, 200.0, expect=(*BUS, "recovers")),
     FaultRow(
         "second-sender",
@@ -187,7 +186,9 @@ ROWS: tuple[FaultRow, ...] = (
         unit="magnetometer",
     ),
     FaultRow("sun-board-restarts", BOARD, "sun_board_restarts", {}, 1.0, expect=(*BUS, "recovers")),
-    FaultRow("sun-board-dead", BOARD, "sun_board_dead", {}, 90.0, expect=(*BUS, "recovers")),
+    FaultRow(
+        "sun-board-dead", BOARD, "sun_board_dead", {}, 90.0, expect=(*BUS, "recovers"), unit="sun sensor"
+    ),
     FaultRow("all-restart", BOARD, "all_restart", {}, 5.0, expect=(*BUS, "boots locked", "recovers")),
     FaultRow("sync-lost", CLOCK, "sync_lost", {"part": 0.3}, 300.0, expect=(*BUS, "recovers")),
     FaultRow("sync-repeated", CLOCK, "sync_repeated", {"times": 3.0}, 300.0, expect=(*BUS, "recovers")),

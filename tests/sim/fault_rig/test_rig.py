@@ -10,9 +10,10 @@ from fsw.wire.messages import CoilStatus, PlantEnd
 from sim.errors import HarnessError
 from sim.fault_rig import currents
 from sim.fault_rig.record import FaultFlightRecord, ReportedEvent
+from sim.fault_rig.rig import Rig, prepare
 from sim.fault_table import case, checks
 from sim.fault_table.case import fly
-from sim.fault_table.row import FaultRow, When
+from sim.fault_table.row import FaultRow, RowFault, When
 from sim.fault_table.rows import ROWS, choose_rows
 from sim.faults.fault import Condition, Fault
 from sim.faults.kinds import make
@@ -34,6 +35,33 @@ def test_without_a_fault_it_is_the_flight_of_the_loop(flown):
     assert len(record.request_ticks) == len(currents.pulses(record.coil_drives, 1)) == 4
     assert record.refused == 0
     assert record.crash is None
+
+
+def test_a_record_lasts_from_the_first_fault_to_the_end_of_the_last(rig):
+    bench = rig()
+    bench.inject(nothing(), 5, 9)
+    bench.inject(nothing(), 20, 30)
+    assert (bench.record.onset, bench.record.end) == (5, 30)
+    bench.inject(nothing(), 6, None)
+    bench.inject(nothing(), 7, 8)
+    assert (bench.record.onset, bench.record.end) == (5, None)
+
+
+def test_the_faults_of_a_row_begin_one_after_the_other():
+    wrong = RowFault("mag_bias", {"axis": 1.0, "nt": 9000.0}, 10.0, "magnetometer", after_s=40.0)
+    row = FaultRow("planted", "", "sun_unseen", {}, 5.0, When.BOOT, then=(wrong,), watch_s=20.0)
+    seen = []
+
+    class Watched(Rig):
+        def tick(self):
+            super().tick()
+            seen.append([type(fault).__name__ for fault in self.plant.active])
+
+    case._fly_fault(row, 0, 1, Watched(*prepare("microsat", ()), 1), 6000.0)
+    assert seen[:5] == [["SunBlindness"]] * 5
+    assert seen[5:40] == [[]] * 35
+    assert seen[40:50] == [["WrongFieldReading"]] * 10
+    assert seen[50:] == [[]] * 20
 
 
 def test_a_killed_fsw_ends_no_pulse_early_and_waits_a_full_back_off(flown):
@@ -185,6 +213,23 @@ def test_rows_have_names_of_their_own_and_known_checks():
 def test_an_unknown_row_is_a_sentence():
     with pytest.raises(HarnessError, match="--row nonsense"):
         choose_rows(["nonsense"])
+
+
+def test_a_fault_after_an_orbit_begins_after_an_orbit():
+    row = FaultRow("planted", "", "sun_unseen", {}, 5.0, When.ORBIT, watch_s=10.0)
+    for phase in (0, 3):
+        record = case._fly_fault(row, phase, 1, Rig(*prepare("microsat", ()), 1), 77.0)
+        assert (record.onset, record.end, record.ticks) == (77, 82, 92)
+
+
+def test_phases_go_round_the_orbit():
+    row = FaultRow("planted", "", "none", when=When.ORBIT)
+    starts = [prepare("microsat", case.settings_of(row, phase))[0].epoch_unix_s for phase in range(10)]
+    assert starts[0] == prepare("microsat", ())[0].epoch_unix_s
+    orbit_s = checks.bounds_of(prepare("microsat", ())[0]).orbit_s
+    assert [start - starts[0] for start in starts] == pytest.approx(
+        [phase * orbit_s / 10.0 for phase in range(10)], abs=5.0
+    )
 
 
 def test_phases_go_through_the_pulse():

@@ -2,13 +2,14 @@
 
 import json
 from dataclasses import replace
+from math import inf
 from xml.etree import ElementTree
 
 import pytest
 
 from sim.errors import HarnessError
 from sim.fault_table import command, earlier_rows, render
-from sim.fault_table.row import CaseResult, CheckOutcome, CheckVerdict, RowResult
+from sim.fault_table.row import CaseResult, CheckOutcome, CheckVerdict, FaultRow, RowFault, RowResult
 from sim.fault_table.rows import ROWS, choose_rows
 from sim.faults.kinds import KINDS
 from torquer.cli.main import main
@@ -82,6 +83,26 @@ def test_a_violated_expectation_is_exit_code_1(planted, monkeypatch, capsys):
     assert run("--workers", 1) == 1
     monkeypatch.setattr(command, "fly_rows", lambda *arguments: [planted[0], planted[2]])
     assert run("--workers", 1) == 0
+
+
+def test_a_row_tells_all_its_faults_its_settings_and_by_when_they_must_be_named():
+    row = FaultRow(
+        "planted",
+        "",
+        "mag_late",
+        {"ticks": 7.0},
+        expect=("named",),
+        unit="magnetometer",
+        within_s=900.0,
+        then=(RowFault("sun_swapped", {}, inf, "sun sensor", 60.0),),
+        agree=True,
+        settings=("initial.angle_deg=12.0",),
+    )
+    assert render.injected(row) == (
+        "mag late, ticks 7, jitter 0, 120 s; after 60 s sun swapped, axis 0, stays; initial.angle_deg=12.0"
+    )
+    expected = "named (magnetometer and sun sensor, within 900 s), both sensors agree"
+    assert render.expected(row) == expected
 
 
 def test_the_list_names_every_row(capsys):

@@ -8,7 +8,7 @@ from fsw.core.telemetry import Event as Number
 from hil_stub.coils.events import CoilEventCode
 from sim.fault_rig.record import BoardEvent, FaultFlightRecord, ReportedEvent
 from sim.fault_table import checks, isolation
-from sim.fault_table.row import FaultRow
+from sim.fault_table.row import FaultRow, RowFault
 
 
 def record(*events, board=()):
@@ -49,12 +49,54 @@ def test_the_faulty_unit_must_be_isolated_and_no_other(bounds):
 def test_a_disturbed_sensor_may_be_isolated_but_no_other(bounds):
     row = FaultRow("planted", "", "none", unit="sun sensor")
     right, wrong = isolated(130, Sensor.SUN_SENSOR), isolated(135, Sensor.MAGNETOMETER)
-    assert checks.isolates_no_other_unit(row, record(), bounds)[0]
-    assert checks.isolates_no_other_unit(row, record(right), bounds)[0]
-    assert checks.isolates_no_other_unit(row, record(right, wrong), bounds) == (
+    assert checks.isolates_no_healthy_unit(row, record(), bounds)[0]
+    assert checks.isolates_no_healthy_unit(row, record(right), bounds)[0]
+    assert checks.isolates_no_healthy_unit(row, record(right, wrong), bounds) == (
         False,
         "magnetometer isolated in tick 135",
     )
+
+
+def test_a_unit_is_healthy_before_its_fault(bounds):
+    row = FaultRow("planted", "", "none", unit="sun sensor")
+    early = isolated(99, Sensor.SUN_SENSOR)
+    assert checks.isolates_no_healthy_unit(row, record(early), bounds) == (
+        False,
+        "sun sensor isolated in tick 99",
+    )
+
+
+class TestTwoFaults:
+    """A magnetometer that is faulty from tick 100 on, and a Sun sensor from tick 400 on."""
+
+    ROW = FaultRow(
+        "planted",
+        "",
+        "none",
+        unit="magnetometer",
+        within_s=50.0,
+        then=(RowFault("none", {}, 1.0, "sun sensor", 300.0),),
+    )
+
+    def test_each_unit_must_be_isolated_in_time_from_the_onset_of_its_own_fault(self, bounds):
+        flown = record(isolated(120, Sensor.MAGNETOMETER), isolated(450, Sensor.SUN_SENSOR))
+        assert checks.isolates_faulty_unit(self.ROW, flown, bounds) == (True, "isolated after 20 s, 50 s")
+        assert checks.isolates_no_healthy_unit(self.ROW, flown, bounds)[0]
+
+    def test_one_of_the_two_is_not_enough(self, bounds):
+        flown = record(isolated(120, Sensor.MAGNETOMETER))
+        assert checks.isolates_faulty_unit(self.ROW, flown, bounds) == (False, "sun sensor is not isolated")
+
+    def test_late_is_a_failure(self, bounds):
+        flown = record(isolated(120, Sensor.MAGNETOMETER), isolated(451, Sensor.SUN_SENSOR))
+        assert checks.isolates_faulty_unit(self.ROW, flown, bounds) == (
+            False,
+            "sun sensor isolated after 51 s, later than 50 s",
+        )
+
+    def test_the_second_unit_is_healthy_until_its_own_fault(self, bounds):
+        flown = record(isolated(120, Sensor.MAGNETOMETER), isolated(399, Sensor.SUN_SENSOR))
+        assert not checks.isolates_no_healthy_unit(self.ROW, flown, bounds)[0]
 
 
 def test_a_report_of_a_second_sender_that_is_none_fails(bounds):

@@ -1,0 +1,47 @@
+"""The checks on flights with faults: what they find in records that are made by hand."""
+
+import pytest
+
+from sim.fault_rig.record import FaultFlightRecord
+from sim.fault_table import checks
+from sim.fault_table.row import FaultRow
+
+
+def flown(*errors_deg, tick_hz=1):
+    """A record of a flight whose every tick was answered; None: no valid attitude."""
+    return FaultFlightRecord(tick_hz, error_deg=list(errors_deg), done=[True] * len(errors_deg))
+
+
+class TestHonesty:
+    """A valid attitude may be more than 5 deg wrong for 120 s on end and no longer."""
+
+    ROW = FaultRow("planted", "", "none")
+
+    @pytest.mark.parametrize(("seconds", "holds"), [(120, True), (121, False)])
+    @pytest.mark.parametrize("tick_hz", [1, 4])
+    def test_the_time_is_that_of_the_ticks(self, bounds, seconds, holds, tick_hz):
+        record = flown(*[0.2] * 50, *[5.1] * (seconds * tick_hz), *[0.2] * 50, tick_hz=tick_hz)
+        assert checks.never_wrong_for_long(self.ROW, record, bounds)[0] is holds
+
+    def test_it_counts_to_the_end_of_the_flight_and_says_how_wrong(self, bounds):
+        record = flown(0.1, 4.9, *[7.0] * 100, 63.0, *[9.0] * 99)
+        assert checks.never_wrong_for_long(self.ROW, record, bounds) == (
+            False,
+            "valid while up to 63 deg wrong, for 200 s on end",
+        )
+
+    @pytest.mark.parametrize("between", [4.9, None])
+    def test_an_attitude_that_is_right_or_not_valid_ends_it(self, bounds, between):
+        record = flown(*[30.0] * 100, between, *[30.0] * 100)
+        assert checks.never_wrong_for_long(self.ROW, record, bounds)[0]
+
+    def test_a_flight_software_that_does_not_answer_calls_nothing_valid(self, bounds):
+        record = flown(*[30.0] * 300)
+        record.done = [False] * 300
+        assert checks.never_wrong_for_long(self.ROW, record, bounds) == (True, "")
+
+    def test_where_both_sensors_agree_on_what_is_wrong_nothing_can_be_expected(self, bounds):
+        row = FaultRow("planted", "", "none", agree=True)
+        holds, finding = checks.never_wrong_for_long(row, flown(*[30.0] * 300), bounds)
+        assert holds
+        assert finding == "valid while up to 30 deg wrong, for 300 s on end"
