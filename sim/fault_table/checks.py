@@ -240,6 +240,8 @@ ALWAYS: dict[str, Check] = {
     "no NaN": state_is_finite,
     "answered": answers_every_sync,
     "nobody invented": invents_no_second_sender,
+    "no healthy named": isolates_no_healthy_unit,
+    "honest": never_wrong_for_long,
 }
 CHECKS: dict[str, Check] = {
     **ALWAYS,
@@ -258,8 +260,6 @@ CHECKS: dict[str, Check] = {
     "board names": board_identifies_unit,
     "silence named": monitor_trips_for_silent_board,
     "named": isolates_faulty_unit,
-    "no other named": isolates_no_healthy_unit,
-    "honest": never_wrong_for_long,
     "stuck": enters_safe,
 }
 

@@ -20,9 +20,11 @@ _HEAD = """# Faults
 Written by `torquer faults --write-docs`; do not edit. That command injects the fault of each row, by a seeded
 man in the middle between the nodes, or in boards, plant or process. Every case must keep the limits (pulse at
 most 3 s, 100 s of back-off, one coil, three levels: judged from COIL_STATUS and, by other code, from the
-current that the plant drove), raise no exception in a step, have no NaN in the flight state, and answer every
-SYNC, and meet what its row expects. `not yet`: the flight software has no event that could identify the unit.
-Figures are the worst over all cases.
+current that the plant drove), raise no exception in a step, have no NaN in the flight state, answer every
+SYNC, isolate no healthy unit, call no attitude valid that is more than 5 deg wrong for over 120 s (unless
+both sensors agree on what is wrong), and meet what its row expects. `only UNIT named`: it may be isolated.
+`not yet`: the flight software has no event that could identify the unit. Figures are the worst over all
+cases.
 """
 
 
@@ -186,7 +188,8 @@ def expected(row: FaultRow) -> str:
     units = " and ".join(fault.unit for fault in row.faults if fault.unit)
     within = "" if row.within_s == inf else f", within {row.within_s:g} s"
     names = [f"{name} ({units}{within})" if "named" in name else name for name in row.expect]
-    return ", ".join([*names, *(["both sensors agree"] if row.agree else [])]) or "the limits"
+    may = [f"only {units} named"] if units and not any("named" in name for name in row.expect) else []
+    return ", ".join([*names, *may, *(["both sensors agree"] if row.agree else [])]) or "the limits"
 
 
 def _fault(fault: RowFault) -> str:

@@ -16,16 +16,20 @@ from fsw.core.gate.second_sender import SIGNS
 from fsw.core.gate.sync_watch import LEAP_TICKS
 from fsw.core.monitors import RATE_LIMIT_RADPS, UNIT_TOLERANCE, Monitor
 from fsw.core.orbit.earth import RADIUS_M
+from sim.fault_table.checks import WRONG_DEG, WRONG_S
 
 
 class Requirement(NamedTuple):
-    """A requirement; ``watch`` is the number in the event's argument, ``limit`` the threshold."""
+    """A requirement; ``watch`` is the number in the event's argument, ``limit`` the threshold.
+
+    ``event``: None where no event reports it.
+    """
 
     id: str
     text: str
     limit: str
     watch: IntEnum | None
-    event: Event
+    event: Event | None
 
 
 def _trip(number: int, watch: Monitor, text: str, limit: str) -> Requirement:
@@ -44,6 +48,20 @@ def _coil(number: int, watch: CoilFault, text: str) -> Requirement:
 ISOLATES = "evidence for `fdir.false_alarm_days`"
 
 REQUIREMENTS: tuple[Requirement, ...] = (
+    Requirement(
+        "REQ-FDIR-01",
+        "No healthy unit is isolated, whatever else fails, and however the satellite differs from its table.",
+        "none",
+        None,
+        None,
+    ),
+    Requirement(
+        "REQ-FDIR-02",
+        "No attitude is called valid that is wrong for long, unless both sensors agree on what is wrong.",
+        f"{WRONG_DEG:g} deg for {WRONG_S:g} s on end",
+        None,
+        None,
+    ),
     _trip(1, Monitor.ATTITUDE_FINITE, "Attitude and rate that control uses are numbers.", "finite"),
     _trip(
         2,
@@ -207,10 +225,13 @@ REQUIREMENTS: tuple[Requirement, ...] = (
 
 def document() -> str:
     """The text of ``docs/requirements.md``."""
-    rows = "\n".join(
-        f"| {r.id} | {r.text} | {r.limit} | {_watch(r)} | `{r.event.name}` |" for r in REQUIREMENTS
-    )
+    rows = "\n".join(f"| {r.id} | {r.text} | {r.limit} | {_watch(r)} | {_event(r)} |" for r in REQUIREMENTS)
     return f"{_HEAD}\n{rows}\n"
+
+
+def _event(requirement: Requirement) -> str:
+    event = requirement.event
+    return "" if event is None else f"`{event.name}`"
 
 
 def _watch(requirement: Requirement) -> str:

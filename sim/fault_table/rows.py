@@ -6,11 +6,12 @@ from math import inf
 from sim.errors import HarnessError
 from sim.fault_table.forged_rows import FORGED_ROWS
 from sim.fault_table.row import FaultRow, When
+from sim.fault_table.sly_rows import SLY_ROWS
 
 BUS = ("no extra pulse", "goes on")
 TIMED = ("limits by time", *BUS, "quiet", "recovers")
 BROKEN = (*BUS, "dropped", "recovers")
-BLINDED = ("goes on", "no other named", "recovers")
+BLINDED = ("goes on", "recovers")
 COIL_NAMES = ("coil 0", "coil 1", "coil 2")
 
 NOTHING = "nothing: false alarms"
@@ -67,10 +68,10 @@ def _sensor(unit: str, name: str, kind: str, parameters: dict[str, float]) -> tu
 
 def _from_boot(name: str, kind: str, unit: str, **parameters: float) -> tuple[FaultRow, ...]:
     """A fault from boot on: which sensor is faulty is then not always observable."""
-    passing, lasting = ("goes on", "no other named", "recovers"), ("no other named", "bounded")
+    passing = ("goes on", "recovers")
     return (
         FaultRow(f"{name}-boot-passing", BOOT, kind, parameters, 300.0, When.BOOT, passing, unit),
-        FaultRow(f"{name}-boot", BOOT, kind, parameters, inf, When.BOOT, lasting, unit, watch_s=1500.0),
+        FaultRow(f"{name}-boot", BOOT, kind, parameters, inf, When.BOOT, ("bounded",), unit, watch_s=1500.0),
     )
 
 
@@ -272,9 +273,10 @@ ROWS: tuple[FaultRow, ...] = (
         {"axis": 2.0, "ampere": -0.4},
         inf,
         When.ECLIPSE,
-        ("no other named", "bounded", "stuck", "board names"),
+        ("bounded", "stuck", "board names"),
         "coil 2",
     ),
+    *SLY_ROWS,
     FaultRow("bit-flip", UPSET, "bit_flip", {}, 1.0, expect=(*BUS, "recovers")),
 )
 """All rows, in the order of the page."""
