@@ -1,29 +1,20 @@
 """Plant, boards and flight software in one process, and faults between them. The plant never stops."""
 
 import time
-from functools import cache
 
 from fsw.core.config import FlightConfig
 from fsw.core.gate.sync_watch import near
 from fsw.node import FlightNode
-from fsw.table.config import flight_config
 from fsw.wire.frame import Frame
 from fsw.wire.messages import Sync, TickDone, intact
 from sim.fault_rig.record import FaultFlightRecord
 from sim.faults.fault import Condition, Fault
 from sim.faults.faulty_plant import FaultyPlant, ScheduledFault
 from sim.scenario.assemble import plant_config
-from sim.scenario.schema import Scenario, flight_table, load, parse_settings
+from sim.scenario.schema import Scenario
 
 MOST_WAITING = 4096
 """Frames that wait for a stopped process; the size of a socket's buffer."""
-
-
-@cache
-def prepare(name: str, settings: tuple[str, ...]) -> tuple[Scenario, FlightConfig]:
-    """Load a scenario and its onboard table: slow, and the same for all flights of a row."""
-    scenario = load(name, parse_settings(settings))
-    return scenario, flight_config(flight_table(scenario))
 
 
 class Rig:

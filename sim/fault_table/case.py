@@ -3,21 +3,26 @@
 import time
 import warnings
 from datetime import UTC, datetime, timedelta
+from functools import lru_cache
 from math import inf
 from random import Random
 
+from fsw.core.config import FlightConfig
+from fsw.input.schema import merge
+from fsw.table.config import flight_config
+from sim.campaign import population
 from sim.fault_rig import currents
 from sim.fault_rig.clock_rig import ClockRig
 from sim.fault_rig.process_rig import ProcessRig, random_strikes
 from sim.fault_rig.record import FaultFlightRecord
-from sim.fault_rig.rig import Rig, prepare
+from sim.fault_rig.rig import Rig
 from sim.fault_table import checks
 from sim.fault_table.isolation import isolation_s
 from sim.fault_table.row import CaseResult, FaultRow, When
 from sim.faults.kinds import KINDS, make
-from sim.scenario.schema import Scenario
+from sim.scenario.schema import Scenario, flight_table, load, parse_settings
 
-SCENARIO = "microsat"
+SCENARIO, POPULATION = "microsat", "50kg"
 ARMED_S = 180.0
 """Time in which the flight settles before a fault: boot, first lockout, filter [s]."""
 BEFORE_ECLIPSE = 'time.epoch_utc="2015-03-27T03:13:11Z"'
@@ -34,6 +39,22 @@ FIRST_UTC, PLACE_S = datetime(2015, 3, 27, 2, 46, 57, tzinfo=UTC), 604.0
 """Start of flights that begin at one of ten places of the orbit; the time between two of them [s]."""
 
 
+@lru_cache(maxsize=8)
+def prepare(settings: tuple[str, ...] = (), satellite: int | None = None) -> tuple[Scenario, FlightConfig]:
+    """The scenario and its onboard table, with settings over those of a satellite of the population."""
+    drawn = {} if satellite is None else population.satellite(POPULATION, satellite)
+    scenario = load(SCENARIO, merge(drawn, parse_settings(settings)))
+    return scenario, flight_config(flight_table(scenario))
+
+
+def satellite_of(phase: int, seed: int) -> int | None:
+    """The satellite of the population that a case flies, another in each; None: the scenario's own.
+
+    Every second case has one, in each phase and with each seed.
+    """
+    return (phase << 16) + seed if (phase + seed) % 2 == 0 else None
+
+
 def settings_of(row: FaultRow, phase: int) -> tuple[str, ...]:
     """Settings of the scenario for this row."""
     if row.when is When.BOOT:
@@ -47,7 +68,7 @@ def settings_of(row: FaultRow, phase: int) -> tuple[str, ...]:
 def fly(row: FaultRow, phase: int, seed: int) -> CaseResult:
     """Fly one case and judge it."""
     began = time.perf_counter()
-    scenario, config = prepare(SCENARIO, settings_of(row, phase))
+    scenario, config = prepare(settings_of(row, phase), satellite_of(phase, seed))
     bounds = checks.bounds_of(scenario)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the algebra's, of a state whose bits have flipped

@@ -23,8 +23,8 @@ most 3 s, 100 s of back-off, one coil, three levels: judged from COIL_STATUS and
 current that the plant drove), raise no exception in a step, have no NaN in the flight state, answer every
 SYNC, isolate no healthy unit, call no attitude valid that is more than 5 deg wrong for over 120 s (unless
 both sensors agree on what is wrong), and meet what its row expects. `only UNIT named`: it may be isolated.
-`not yet`: the flight software has no event that could identify the unit. Figures are the worst over all
-cases.
+`not yet`: the flight software has no event that could identify the unit. Every second case flies a satellite
+of the population `50kg` (`sim/campaign/population.py`), each another. Figures are the worst over all cases.
 """
 
 

@@ -17,7 +17,8 @@ from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilBoot, CoilStatus, MagField, PlantEnd, Sync
 from sim.audit.auditor import AuditLimits, AuditReport, audit
 from sim.campaign.claim import Claim, Study
-from sim.fault_rig.rig import Rig, prepare
+from sim.fault_rig.rig import Rig
+from sim.fault_table.case import prepare
 from sim.fault_table.checks import bounds_of
 from sim.flight import virtual
 from sim.record import run_dir
@@ -173,7 +174,7 @@ def fired() -> type[Fired]:
 @pytest.fixture
 def bounds():
     """What flights of the default scenario are judged by."""
-    return bounds_of(prepare("microsat", ())[0])
+    return bounds_of(prepare()[0])
 
 
 @pytest.fixture
@@ -181,7 +182,7 @@ def rig():
     """Makes a rig of the default scenario, with settings laid over it."""
 
     def make(*settings, seed=1):
-        return Rig(*prepare("microsat", settings), seed)
+        return Rig(*prepare(settings), seed)
 
     return make
 

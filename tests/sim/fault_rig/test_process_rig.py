@@ -6,9 +6,8 @@ import pytest
 
 from sim.fault_rig import currents
 from sim.fault_rig.process_rig import WITHIN_TICK_S, ProcessRig, Strike, random_strikes
-from sim.fault_rig.rig import prepare
 from sim.fault_table import checks
-from sim.fault_table.case import SCENARIO
+from sim.fault_table.case import prepare
 from sim.fault_table.row import FaultRow
 
 
@@ -17,7 +16,7 @@ def strike(bounds):
     """Flies a real process that is struck once, in the second tick of a pulse: the record, judged."""
 
     def fly(stop):
-        scenario, _ = prepare(SCENARIO, ())
+        scenario, _ = prepare()
         record = ProcessRig(scenario, seed=1, stop=stop).fly([Strike(0, 0.001)])
         for check in (checks.keeps_limits, checks.no_extra_pulse, checks.waits_after_boot):
             holds, said = check(FaultRow("struck", "", "none"), record, bounds)

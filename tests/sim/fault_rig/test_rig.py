@@ -10,13 +10,14 @@ from fsw.wire.messages import CoilStatus, PlantEnd
 from sim.errors import HarnessError
 from sim.fault_rig import currents
 from sim.fault_rig.record import FaultFlightRecord, ReportedEvent
-from sim.fault_rig.rig import Rig, prepare
+from sim.fault_rig.rig import Rig
 from sim.fault_table import case, checks
-from sim.fault_table.case import fly
+from sim.fault_table.case import fly, prepare
 from sim.fault_table.row import FaultRow, RowFault, When
 from sim.fault_table.rows import ROWS, choose_rows
 from sim.faults.fault import Condition, Fault
 from sim.faults.kinds import make
+from sim.scenario.schema import flight_table
 
 TICKS = 420
 
@@ -57,7 +58,7 @@ def test_the_faults_of_a_row_begin_one_after_the_other():
             super().tick()
             seen.append([type(fault).__name__ for fault in self.plant.active])
 
-    case._fly_fault(row, 0, 1, Watched(*prepare("microsat", ()), 1), 6000.0)
+    case._fly_fault(row, 0, 1, Watched(*prepare(), 1), 6000.0)
     assert seen[:5] == [["SunBlindness"]] * 5
     assert seen[5:40] == [[]] * 35
     assert seen[40:50] == [["WrongFieldReading"]] * 10
@@ -219,18 +220,41 @@ def test_an_unknown_row_is_a_sentence():
         choose_rows(["nonsense"])
 
 
+def test_every_second_case_flies_a_satellite_of_its_own():
+    cases = [[case.satellite_of(phase, seed) for seed in range(1, 6)] for phase in range(10)]
+    drawn = [number for numbers in cases for number in numbers if number is not None]
+    assert len(drawn) == len(set(drawn)) == 25
+    assert {numbers.count(None) for numbers in cases} == {2, 3}
+    assert {numbers.count(None) for numbers in zip(*cases, strict=True)} == {5}
+    assert case.satellite_of(0, 1) is None, "what is flown once is the scenario itself"
+
+
+def test_a_satellite_differs_from_its_table_and_the_row_has_the_last_word():
+    nominal, scenario = prepare()[0], prepare(("sensors.magnetometer.bias_nt=[700.0, -50.0, 20.0]",), 7)[0]
+    assert scenario.sensors.magnetometer.bias_nt == (700.0, -50.0, 20.0)
+    assert scenario.body.inertia != nominal.body.inertia == flight_table(scenario).body.inertia
+    assert scenario.coils.dipole_scale != nominal.coils.dipole_scale
+    assert prepare((), 7)[0] != prepare((), 8)[0]
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
+def test_every_row_can_be_flown_with_a_satellite(row):
+    scenario, _ = prepare(case.settings_of(row, 1), 7)
+    assert scenario.body.inertia != prepare()[0].body.inertia
+
+
 def test_a_fault_after_an_orbit_begins_after_an_orbit():
     row = FaultRow("planted", "", "sun_unseen", {}, 5.0, When.ORBIT, watch_s=10.0)
     for phase in (0, 3):
-        record = case._fly_fault(row, phase, 1, Rig(*prepare("microsat", ()), 1), 77.0)
+        record = case._fly_fault(row, phase, 1, Rig(*prepare(), 1), 77.0)
         assert (record.onset, record.end, record.ticks) == (77, 82, 92)
 
 
 def test_phases_go_round_the_orbit():
     row = FaultRow("planted", "", "none", when=When.ORBIT)
-    starts = [prepare("microsat", case.settings_of(row, phase))[0].epoch_unix_s for phase in range(10)]
-    assert starts[0] == prepare("microsat", ())[0].epoch_unix_s
-    orbit_s = checks.bounds_of(prepare("microsat", ())[0]).orbit_s
+    starts = [prepare(case.settings_of(row, phase))[0].epoch_unix_s for phase in range(10)]
+    assert starts[0] == prepare()[0].epoch_unix_s
+    orbit_s = checks.bounds_of(prepare()[0]).orbit_s
     assert [start - starts[0] for start in starts] == pytest.approx(
         [phase * orbit_s / 10.0 for phase in range(10)], abs=5.0
     )
