@@ -31,10 +31,16 @@ from fsw.core.estimation import mekf
 from fsw.core.estimation.kalman import Matrix
 from fsw.core.estimation.mekf import Estimate, Trace
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.fdir.explanations import CERTAIN, MODEL_ERROR, STRAY, Solution, indices_of, of_pulses
+from fsw.core.fdir.explanations import (
+    CERTAIN,
+    MODEL_ERROR,
+    PULSES,
+    STRAY,
+    Solution,
+    indices_of,
+    of_pulses,
+)
 
-PULSES = 3
-"""Of each coil its latest pulses are solved for, so many."""
 UNEXPLAINED = 1.25
 """Squares of the innovations that may be left for each scalar measured; beyond, no coil is judged."""
 

@@ -40,7 +40,7 @@ class CoilHealthConfig:
 
 
 class CoilHealth(NamedTuple):
-    """By coil: its fault (0: none) and what its currents show against it, nats.
+    """By coil: its fault (0: none) and what its currents, and pulses traced no longer, show against it, nats.
 
     ``strange_ticks``: ticks in a row with a level or a current without a request, ``stray_ma``: a current
     without a level; ``stuck``: there is such a level, or such a current for too long.
@@ -48,6 +48,7 @@ class CoilHealth(NamedTuple):
 
     faults: tuple[int, int, int] = (0, 0, 0)
     nats: Vec3 = ZERO
+    pulse_nats: Vec3 = ZERO
     strange_ticks: int = 0
     stray_ma: int = 0
     stuck: bool = False
@@ -55,6 +56,10 @@ class CoilHealth(NamedTuple):
     def integers(self) -> tuple[int, ...]:
         """For the checksum of the state."""
         return (*self.faults, self.strange_ticks, self.stray_ma, self.stuck)
+
+    def floats(self) -> tuple[float, ...]:
+        """The evidence."""
+        return (*self.nats, *self.pulse_nats)
 
 
 def driven_am2(health: CoilHealth, view: CoilView, config: CoilHealthConfig) -> Vec3:
@@ -171,7 +176,7 @@ def judge_effect(
         begins = health.strange_ticks == 1
         estimate = coil_effects.trace_stray(estimate, kicks_radps, config.pulses.tick_s, begins)
     if due:
-        health, estimate = _isolate(health, estimate, sure, config)
+        health, estimate = _isolate(health, estimate, view.fired.coil if ended else None, sure, config)
     if ended and (view.driven_coil, view.driven_level) == view.fired:
         b_body_t = rotate(estimate.q_body_from_eci, b_eci_t)
         kick_radps = transform(
@@ -198,13 +203,21 @@ def _stray_kicks(health: CoilHealth, b_body_t: Vec3, config: CoilHealthConfig) -
 
 
 def _isolate(
-    health: CoilHealth, estimate: Estimate, sure: bool, config: CoilHealthConfig
+    health: CoilHealth, estimate: Estimate, ended: int | None, sure: bool, config: CoilHealthConfig
 ) -> tuple[CoilHealth, Estimate]:
-    """With the coil isolated that did something else than assumed, if any, and the estimate corrected."""
+    """With the coil isolated that did something else than assumed, if any, and the estimate corrected.
+
+    A pulse of the coil ``ended`` takes the place of its oldest one, whose evidence is kept.
+    """
     weak = explanations.weak_by_gain(estimate, config.mekf, config.weak_part, config.threshold)
     estimate, solution = coil_effects.solve(estimate, config.mekf)
     if solution is not None:
-        weak = explanations.weak_by_pulses(solution, config.weak_part, config.threshold) or weak
+        earlier = health.pulse_nats
+        weak = explanations.weak_by_pulses(solution, earlier, config.weak_part, config.threshold) or weak
+        if ended is not None and sure:
+            oldest = explanations.of_oldest(solution, ended, config.weak_part, config.threshold)
+            nats = weigh(earlier[ended], oldest, config.threshold)
+            health = health._replace(pulse_nats=_with(earlier, ended, nats))
     if weak is not None and sure and _another_is_sound(health, weak[0]):
         health = _with_fault(health, weak[0], _kind(weak[1], config))
     if solution is None or not unattributed_torque(health):

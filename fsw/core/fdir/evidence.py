@@ -26,6 +26,8 @@ MISS = 1e-3
 """Samples of a sound sensor that the filter's gate refuses."""
 CHANCE = 0.8
 """Part of the time in which a faulty sensor looks right, at most."""
+BLIND_S = 120.0
+"""A prediction that nothing has confirmed for longer is not valid: pulses that nobody sees may fail."""
 DAY_S = 86400.0
 
 
@@ -34,6 +36,7 @@ class EvidenceWeights(NamedTuple):
 
     ``against``: a bad sample against a unit, and a good one in its favour; ``fits`` and ``misfits``: a sample
     of an isolated unit; ``agrees``: a pair of samples of which only their angle can be compared.
+    ``blind_ticks``: for so long a prediction without samples stays valid.
     """
 
     threshold: float
@@ -41,6 +44,7 @@ class EvidenceWeights(NamedTuple):
     fits: float
     misfits: float
     agrees: float
+    blind_ticks: int
 
 
 def weights(false_alarm_days: float, tick_s: float) -> EvidenceWeights:
@@ -58,6 +62,7 @@ def weights(false_alarm_days: float, tick_s: float) -> EvidenceWeights:
         fits=part * fits,
         misfits=log(MISS / (1.0 - CHANCE)),
         agrees=part * fits / PAIR_NUMBERS,
+        blind_ticks=round(BLIND_S / tick_s),
     )
 
 
@@ -70,7 +75,7 @@ def weigh(nats: float, by: float, threshold: float) -> float:
     return min(max(0.0, nats + by), threshold)
 
 
-INFLATION = 4.0
+INFLATION = 2.0
 """Of the innovations' covariance under a fault that is too slow for the filter's gate."""
 
 

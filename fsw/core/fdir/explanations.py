@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fsw.core.algebra.vector import Vec3
 from fsw.core.estimation.kalman import Matrix
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
@@ -17,6 +18,8 @@ MODEL_ERROR = 0.05
 """Relative uncertainty of a coil's effect that no measurement takes away."""
 CERTAIN = 4.0
 """A deviation of so many standard deviations is none of noise."""
+PULSES = 3
+"""Of each coil its latest pulses are solved for, so many."""
 STRAY = 3
 """STRAY + j is the number, as a cause, of a stray current in coil j; j itself that of a pulse."""
 
@@ -76,19 +79,41 @@ def of_pulses(solution: Solution) -> list[Explanation]:
     return sorted(found, key=lambda explanation: explanation.distance)
 
 
-def weak_by_pulses(solution: Solution, weak_part: float, threshold: float) -> tuple[int, float] | None:
+def against(solution: Solution, weak_part: float, threshold: float) -> list[float]:
+    """What each cause by itself weighs against its coil, nats, at most half of the threshold.
+
+    The log-likelihood ratio of the part that was measured and of the least that is sound,
+    (weak_part - part)^2 / 2 sigma^2, negative where the part is more.
+    """
+    lacks = weak_part - 1.0 - solution.deviation
+    nats = 0.5 * np.sign(lacks) * lacks**2 / (solution.covariance.diagonal() + MODEL_ERROR**2)
+    return [max(-0.5 * threshold, min(0.5 * threshold, float(one))) for one in nats]
+
+
+def of_oldest(solution: Solution, coil: int, weak_part: float, threshold: float) -> float:
+    """What the oldest pulse of a coil weighs against it, if another takes its place; else nothing."""
+    own = indices_of(coil, solution.causes)
+    return against(solution, weak_part, threshold)[own[-1]] if len(own) == PULSES else 0.0
+
+
+def weak_by_pulses(
+    solution: Solution, earlier: Vec3, weak_part: float, threshold: float
+) -> tuple[int, float] | None:
     """The coil, and its part, that certainly does less than ``weak_part``; None while it may be another.
 
-    The evidence is the log-likelihood ratio of the part that was measured and of the least that is sound,
-    (weak_part - part)^2 / 2 sigma^2, by each pulse by itself, at most half of the threshold. It
-    has to exceed that of every other coil by the threshold.
+    Args:
+        solution: of the latest pulses.
+        earlier: by coil, what those before weigh against it, nats.
+        weak_part: the most that is weak.
+        threshold: of the evidence; it has to exceed that of every other coil by as much.
     """
     likely = [one for one in of_pulses(solution) if one.fits and one.part < weak_part]
-    lacks = weak_part - 1.0 - solution.deviation
-    each = np.sign(lacks) * lacks**2 / (solution.covariance.diagonal() + MODEL_ERROR**2)
+    each = against(solution, weak_part, threshold)
     for one in likely:
-        latest = indices_of(one.coil, solution.causes)[: one.pulses]
-        nats = 0.5 * float(np.clip(each[latest], -threshold, threshold).sum())
+        own = indices_of(one.coil, solution.causes)
+        nats = sum(each[index] for index in own[: one.pulses])
+        if one.pulses == len(own):
+            nats += earlier[one.coil]
         rivals = [other.distance for other in likely if other.coil != one.coil]
         if nats >= threshold and min(rivals, default=inf) - one.distance >= 2.0 * threshold:
             return one.coil, one.part

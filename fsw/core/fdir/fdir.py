@@ -39,7 +39,7 @@ class Health(NamedTuple):
 
     def floats(self) -> tuple[float, ...]:
         """The evidence, and the last samples."""
-        return (*self.sensors.floats(), *self.coils.nats)
+        return (*self.sensors.floats(), *self.coils.floats())
 
 
 class Evidence(NamedTuple):
@@ -120,7 +120,7 @@ def judge(
         )
     if judged.pair.ended:
         estimator, attitude = restart(estimator), UNKNOWN
-    if not judged.pair.valid or coils.unattributed_torque(found):
+    if not pair.valid(judged.pair, config.sensors.weights) or coils.unattributed_torque(found):
         attitude = attitude._replace(valid=False)
     return Health(judged, found), estimator, attitude
 

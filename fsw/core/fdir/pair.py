@@ -21,6 +21,9 @@ from fsw.core.fdir.credibility import CredibilityConfig, sensors_credible
 from fsw.core.fdir.evidence import PAIR_NUMBERS, EvidenceWeights, misfit, weigh
 from fsw.core.fdir.plausibility import Findings
 
+SUSPICIOUS = 0.25
+"""Part of the threshold beyond which doubt about the pair keeps what is refused from counting against one."""
+
 
 class Standing(IntEnum):
     """What is thought of both sensors together.
@@ -40,7 +43,7 @@ class Pair(NamedTuple):
 
     ``proof``: that the estimate is right about both; ``doubt``: that one is wrong; ``accord``: that both are
     right, while they are disputed, or one is isolated and no estimate can tell. ``ended``: the filter is to
-    end in this tick.
+    end in this tick; ``blind_ticks``: for so long it has taken no sample.
     """
 
     standing: Standing = Standing.NEW
@@ -48,11 +51,7 @@ class Pair(NamedTuple):
     doubt: float = 0.0
     accord: float = 0.0
     ended: bool = False
-
-    @property
-    def valid(self) -> bool:
-        """Whether an attitude may be valid that rests on them."""
-        return self.standing in (Standing.NEW, Standing.TRUSTED)
+    blind_ticks: int = 0
 
 
 class Observed(NamedTuple):
@@ -76,10 +75,24 @@ class Observed(NamedTuple):
         """Whether the filter refused any."""
         return self.refused_field or self.refused_sun
 
+    @property
+    def begun(self) -> bool:
+        """Whether the estimate began with the samples of this tick: they are taken, not compared."""
+        return self.estimate is not None and self.used.sun and self.estimate.numbers == 0
+
 
 def proven(pair: Pair, weights: EvidenceWeights) -> bool:
-    """Whether the estimate has shown for long enough, and lately, that it is right about both sensors."""
-    return pair.standing is Standing.TRUSTED and pair.proof >= 0.5 * weights.threshold
+    """Whether the estimate has shown for long enough, and lately, that it is right about both sensors.
+
+    Not while there is doubt: a slow fault of one has then led it away, and it may refuse the other.
+    """
+    shown = pair.proof >= 0.5 * weights.threshold and pair.doubt < SUSPICIOUS * weights.threshold
+    return pair.standing is Standing.TRUSTED and shown
+
+
+def valid(pair: Pair, weights: EvidenceWeights) -> bool:
+    """Whether an attitude may be valid that rests on them: it is proven, and something still shows it."""
+    return pair.standing is Standing.TRUSTED and pair.blind_ticks <= weights.blind_ticks
 
 
 def judge(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: CredibilityConfig) -> Pair:
@@ -98,9 +111,10 @@ def judge(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: Cre
         return Pair(Standing.ON_TRIAL, accord=accord, ended=True)
     if standing is not Standing.DISPUTED and proof >= threshold:
         standing = Standing.TRUSTED
-    elif standing is Standing.TRUSTED and seen.estimate is None:
+    elif standing is Standing.TRUSTED and (seen.estimate is None or seen.begun):
         standing = Standing.NEW
-    return Pair(standing, proof, doubt, accord)
+    blind_ticks = 0 if seen.used.field or seen.used.sun else pair.blind_ticks + 1
+    return Pair(standing, proof, doubt, accord, blind_ticks=blind_ticks)
 
 
 def _misfit(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: CredibilityConfig) -> float:
@@ -126,7 +140,7 @@ def _innovations(estimate: Estimate) -> float:
 
 def _proof(pair: Pair, seen: Observed, weights: EvidenceWeights) -> float:
     """An estimate gains by each pair that it takes, and loses while it takes one alone; on trial slowly."""
-    if seen.estimate is None:
+    if seen.estimate is None or seen.begun:
         return 0.0
     if seen.refused:
         by = 0.0 if pair.standing is Standing.TRUSTED else weights.misfits

@@ -20,7 +20,7 @@ from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.fdir import pair
 from fsw.core.fdir.credibility import CredibilityConfig, credible
-from fsw.core.fdir.evidence import INFLATION, EvidenceWeights, weigh
+from fsw.core.fdir.evidence import EvidenceWeights, weigh
 from fsw.core.fdir.faults import SensorFault
 from fsw.core.fdir.pair import Observed, Pair, Standing
 from fsw.core.fdir.plausibility import Findings, Memory
@@ -28,6 +28,10 @@ from fsw.core.orbit.ephemeris import Reference
 
 LOST = 0.5
 """Part of its weight that a missing sample has: the bus may lose some, in bursts."""
+
+
+TELLING = 4.0
+"""A prediction whose covariance is at most so many times the noise can tell whether a sample is right."""
 
 
 class Watch(NamedTuple):
@@ -48,7 +52,8 @@ class SensorHealth(NamedTuple):
     def integers(self) -> tuple[int, ...]:
         """For the checksum of the state, as is ``floats``."""
         faults = (self.field.fault, self.sun.fault)
-        return (*faults, self.pair.standing, self.pair.ended, *self.memory.integers())
+        both = self.pair
+        return (*faults, both.standing, both.ended, both.blind_ticks, *self.memory.integers())
 
     def floats(self) -> tuple[float, ...]:
         """The evidence, and the last samples."""
@@ -171,6 +176,6 @@ def _fits(
     predicted, sensitivity = prediction
     innovation = np.array(sub(sample, predicted))
     covariance = sensitivity.dot(estimate.covariance).dot(sensitivity.T) + noise
-    if np.trace(covariance) > INFLATION * np.trace(noise):
+    if np.trace(covariance) > TELLING * np.trace(noise):
         return None
     return bool(innovation.dot(inverse(covariance)).dot(innovation) <= mekf.gate_nis)

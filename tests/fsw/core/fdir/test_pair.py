@@ -78,6 +78,15 @@ class TestProof:
         assert later.standing is Standing.TRUSTED
         assert not proven(later, WEIGHTS)
 
+    def test_an_estimate_in_doubt_is_not_and_what_it_then_refuses_counts_against_the_pair(self):
+        """A slow fault has led it away: the other sensor is the one that it refuses."""
+        little, much = (TRUSTED._replace(doubt=part * WEIGHTS.threshold) for part in (0.2, 0.3))
+        assert proven(little, WEIGHTS)
+        assert not proven(much, WEIGHTS)
+        refused = TAKEN._replace(refused_sun=True, used=Used(True, False, False))
+        assert after(little, refused).doubt < little.doubt
+        assert after(much, refused).doubt > much.doubt
+
     def test_without_an_estimate_trust_is_lost(self):
         assert after(TRUSTED, WITHOUT) == Pair(Standing.NEW)
 
