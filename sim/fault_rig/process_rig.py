@@ -139,6 +139,7 @@ class ProcessRig:
             plant.receive(frame)
         record.modes.append(None)
         record.error_deg.append(None)
+        record.lit.append(plant.truth().lit > 0.0)
         plant.end_tick()
         record.coil_drives.append(plant.coil_drive)
 

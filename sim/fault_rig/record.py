@@ -62,6 +62,7 @@ class FaultFlightRecord:
         ended: tick in which fsw ended the run; None if it never did.
         refused: number of COIL_REFUSED.
         error_deg: true error of the estimate; None where fsw has no valid one.
+        lit: by tick, whether the Sun shines on the satellite.
         modes: by tick; None while fsw does not run.
         events: FSW_EVENT.
         board_events: COIL_EVENT.
@@ -87,6 +88,7 @@ class FaultFlightRecord:
     ended: int | None = None
     refused: int = 0
     error_deg: list[float | None] = field(default_factory=list)
+    lit: list[bool] = field(default_factory=list)
     modes: list[Mode | None] = field(default_factory=list)
     events: list[ReportedEvent] = field(default_factory=list)
     board_events: list[BoardEvent] = field(default_factory=list)
@@ -133,6 +135,7 @@ class FaultFlightRecord:
     def note_state(self, tick: int, state: FlightState | None, truth: TruthRow) -> None:
         """Note the estimate of fsw in a tick against the truth."""
         started = state is not None and state.tick >= 0
+        self.lit.append(truth.lit > 0.0)
         self.modes.append(state.modes.mode if state is not None and started else None)
         valid = state is not None and started and state.attitude.valid
         self.error_deg.append(_error_deg(state, truth) if state is not None and valid else None)

@@ -16,11 +16,12 @@ from sim.fault_table.isolation import (
     enters_safe,
     isolates_faulty_unit,
     isolates_no_healthy_unit,
+    isolates_or_doubts_faulty_unit,
     isolations,
     monitor_trips,
     monitor_trips_for_silent_board,
 )
-from sim.fault_table.row import Bounds, Check, CheckOutcome, CheckVerdict, FaultRow
+from sim.fault_table.row import Bounds, Check, CheckOutcome, CheckVerdict, FaultRow, Unseen
 from sim.scenario.coil_limits import coil_limits
 from sim.scenario.schema import Scenario, orbit_period_s
 
@@ -203,17 +204,19 @@ def reports_forgery(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) ->
 def never_wrong_for_long(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
     """No attitude in the answers is valid and more than 5 deg wrong for over 120 s on end.
 
-    Where both sensors agree on what is wrong, nothing aboard can tell: the row says so.
+    Where nothing aboard can tell, because both sensors agree on what is wrong, or in the shadow the only one
+    is, the row says so.
     """
     longest = wrong = 0
     worst_deg = 0.0
-    for error_deg, done in zip(record.error_deg, record.done, strict=True):
-        wrong = wrong + 1 if done and error_deg is not None and error_deg > WRONG_DEG else 0
+    for error_deg, done, lit in zip(record.error_deg, record.done, record.lit, strict=True):
+        counts = done and (lit or row.unseen is not Unseen.IN_SHADOW)
+        wrong = wrong + 1 if counts and error_deg is not None and error_deg > WRONG_DEG else 0
         longest = max(longest, wrong)
         worst_deg = max(worst_deg, error_deg or 0.0) if wrong else worst_deg
     longest_s = longest / record.tick_hz
     finding = f"valid while up to {worst_deg:.0f} deg wrong, for {longest_s:.0f} s on end" if longest else ""
-    return row.agree or longest_s <= WRONG_S, finding
+    return row.unseen is Unseen.ALWAYS or longest_s <= WRONG_S, finding
 
 
 def isolates_nothing(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
@@ -260,6 +263,7 @@ CHECKS: dict[str, Check] = {
     "board names": board_identifies_unit,
     "silence named": monitor_trips_for_silent_board,
     "named": isolates_faulty_unit,
+    "named or doubted": isolates_or_doubts_faulty_unit,
     "stuck": enters_safe,
 }
 

@@ -85,21 +85,47 @@ def isolation_s(fault: RowFault, record: FaultFlightRecord) -> float | None:
     return (ticks[0] - onset) / record.tick_hz if ticks else None
 
 
+def doubt_s(fault: RowFault, record: FaultFlightRecord) -> float | None:
+    """Time from the onset of a sensor's fault until the sensors are said to disagree [s]; None: never."""
+    onset = onset_tick(fault, record)
+    ticks = [event.tick for event in record.events if event.number == Number.SENSORS_DISAGREE]
+    later = [tick for tick in ticks if tick >= onset and not fault.unit.startswith("coil ")]
+    return (later[0] - onset) / record.tick_hz if later else None
+
+
 def isolates_faulty_unit(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool | None, str]:
     """Each faulty unit is isolated, in the time that the row gives it, and after the onset no other."""
+    return _isolates(row, record, lambda fault: isolation_s(fault, record))
+
+
+def isolates_or_doubts_faulty_unit(
+    row: FaultRow, record: FaultFlightRecord, bounds: Bounds
+) -> tuple[bool | None, str]:
+    """Likewise, but where it cannot be told which sensor is faulty it is enough to say that one is."""
+
+    def found_s(fault: RowFault) -> float | None:
+        named_s = isolation_s(fault, record)
+        return doubt_s(fault, record) if named_s is None else named_s
+
+    return _isolates(row, record, found_s)
+
+
+def _isolates(
+    row: FaultRow, record: FaultFlightRecord, found_s: Callable[[RowFault], float | None]
+) -> tuple[bool | None, str]:
     onset, units = record.onset or 0, [fault.unit for fault in row.faults]
     for tick, unit in isolations(record):
         if tick >= onset and unit not in units:
             return False, f"{unit} isolated in place of {' or '.join(units)} in tick {tick}"
     after_s = []
     for fault in row.faults:
-        named_s = isolation_s(fault, record)
+        named_s = found_s(fault)
         if named_s is None:
             return _not_isolated(row, fault, record)
         if named_s > row.within_s:
-            return False, f"{fault.unit} isolated after {named_s:.0f} s, later than {row.within_s:g} s"
+            return False, f"{fault.unit} found after {named_s:.0f} s, later than {row.within_s:g} s"
         after_s.append(f"{named_s:.0f} s")
-    return True, f"isolated after {', '.join(after_s)}"
+    return True, f"found after {', '.join(after_s)}"
 
 
 def isolates_no_healthy_unit(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:

@@ -22,9 +22,10 @@ man in the middle between the nodes, or in boards, plant or process. Every case 
 most 3 s, 100 s of back-off, one coil, three levels: judged from COIL_STATUS and, by other code, from the
 current that the plant drove), raise no exception in a step, have no NaN in the flight state, answer every
 SYNC, isolate no healthy unit, call no attitude valid that is more than 5 deg wrong for over 120 s (unless
-both sensors agree on what is wrong), and meet what its row expects. `only UNIT named`: it may be isolated.
-`not yet`: the flight software has no event that could identify the unit. Every second case flies a satellite
-of the population `50kg` (`sim/campaign/population.py`), each another. Figures are the worst over all cases.
+nothing aboard can tell, as the row says), and meet what its row expects. `only UNIT named`: it may be
+isolated. `named or doubted`: it is isolated, or both sensors are said to disagree. `not yet`: the flight
+software has no event that could identify the unit. Every second case flies a satellite of the population
+`50kg` (`sim/campaign/population.py`), each another. Figures are the worst over all cases.
 """
 
 
@@ -189,7 +190,7 @@ def expected(row: FaultRow) -> str:
     within = "" if row.within_s == inf else f", within {row.within_s:g} s"
     names = [f"{name} ({units}{within})" if "named" in name else name for name in row.expect]
     may = [f"only {units} named"] if units and not any("named" in name for name in row.expect) else []
-    return ", ".join([*names, *may, *(["both sensors agree"] if row.agree else [])]) or "the limits"
+    return ", ".join([*names, *may, *filter(None, [row.unseen])]) or "the limits"
 
 
 def _fault(fault: RowFault) -> str:

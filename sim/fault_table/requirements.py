@@ -57,7 +57,8 @@ REQUIREMENTS: tuple[Requirement, ...] = (
     ),
     Requirement(
         "REQ-FDIR-02",
-        "No attitude is called valid that is wrong for long, unless both sensors agree on what is wrong.",
+        "No attitude is called valid that is wrong for long, unless both sensors agree on what is wrong, or "
+        "the only one in the shadow is wrong.",
         f"{WRONG_DEG:g} deg for {WRONG_S:g} s on end",
         None,
         None,

@@ -34,6 +34,15 @@ class When(StrEnum):
     """After a whole orbit; each phase begins at another place of the orbit."""
 
 
+class Unseen(StrEnum):
+    """When nothing aboard can tell that an attitude is wrong."""
+
+    NEVER = ""
+    IN_SHADOW = "in the shadow nothing shows it"
+    """The sensor that is wrong is the only one there is."""
+    ALWAYS = "both sensors agree"
+
+
 @dataclass(frozen=True, slots=True)
 class RowFault:
     """One of the faults of a row: it begins ``after_s`` after the first one."""
@@ -60,7 +69,7 @@ class FaultRow:
         unit: the faulty unit, which may be isolated, and must be for the check ``named``.
         within_s: by when ``named`` must hold, from the onset of the unit's fault.
         then: further faults, each with a faulty unit of its own.
-        agree: both sensors agree on what is wrong, so that a wrong attitude may be called valid.
+        unseen: when a wrong attitude may be called valid.
         settings: of the scenario.
         slow: it runs real processes, which takes seconds.
         watch_s: least duration of the flight after the fault; with ``recovers`` until that is decided.
@@ -76,7 +85,7 @@ class FaultRow:
     unit: str = ""
     within_s: float = inf
     then: tuple[RowFault, ...] = ()
-    agree: bool = False
+    unseen: Unseen = Unseen.NEVER
     settings: tuple[str, ...] = ()
     watch_s: float = 330.0
     slow: bool = False

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from math import inf
 
-from sim.fault_table.row import FaultRow, RowFault, When
+from sim.fault_table.row import FaultRow, RowFault, Unseen, When
 
 SLOW = "a sensor that drifts, twists or is late"
 FROM_BOOT = "a Sun sensor turned, samples late or a coil weak from the first tick on"
@@ -41,7 +41,11 @@ def _table(name: str, *settings: str) -> FaultRow:
 
 
 def _in_turn(name: str, first: RowFault, second: RowFault, watch_s: float) -> FaultRow:
-    """Both units must be named, each within an orbit of its fault."""
+    """Both units must be named, each within an orbit of its fault, or the sensors be said to disagree.
+
+    Where the first fault begins in the shadow, or where it does not show at once, the other sensor may as
+    well be wrong when both are seen again.
+    """
     return FaultRow(
         name,
         IN_TURN,
@@ -49,7 +53,7 @@ def _in_turn(name: str, first: RowFault, second: RowFault, watch_s: float) -> Fa
         first.parameters,
         first.lasts_s,
         When.ORBIT,
-        ("named",),
+        ("named or doubted",),
         first.unit,
         within_s=ORBIT_S,
         then=(second,),
@@ -57,8 +61,11 @@ def _in_turn(name: str, first: RowFault, second: RowFault, watch_s: float) -> Fa
     )
 
 
-def _stuck(name: str, axis: float, ampere: float) -> FaultRow:
-    """In the shadow its torque is hard to tell; in the sunlight that follows its coil must be named."""
+def _stuck(name: str, axis: float, ampere: float, *expect: str) -> FaultRow:
+    """The flight is safe at once; a large torque shows its coil, a small one only to the board.
+
+    While a current flows the magnetometer is of no use: in the shadow nothing is seen then.
+    """
     return FaultRow(
         name,
         STUCK,
@@ -66,7 +73,7 @@ def _stuck(name: str, axis: float, ampere: float) -> FaultRow:
         {"axis": axis, "ampere": ampere},
         inf,
         When.ECLIPSE,
-        ("named", "stuck", "board names"),
+        (*expect, "stuck", "board names"),
         f"coil {axis:g}",
         watch_s=ORBIT_S,
     )
@@ -85,15 +92,27 @@ def _reversed_coil(after_s: float) -> RowFault:
 
 
 SLY_ROWS: tuple[FaultRow, ...] = (
-    _slow("mag-twist", "mag_turned", MAG, axis=0.0, deg=0.0, per_s=5e-3),
-    _slow("mag-gain", "mag_scale", MAG, "named", within_s=ORBIT_S, axis=0.0, scale=1.0, per_s=0.3 / ORBIT_S),
+    replace(_slow("mag-twist", "mag_turned", MAG, axis=0.0, deg=0.0, per_s=5e-3), unseen=Unseen.IN_SHADOW),
+    _slow(
+        "mag-gain",
+        "mag_scale",
+        MAG,
+        "named or doubted",
+        within_s=ORBIT_S,
+        axis=0.0,
+        scale=1.0,
+        per_s=0.3 / ORBIT_S,
+    ),
     _slow("mag-drift-slow", "mag_bias", MAG, watch_s=9000.0, axis=1.0, nt=0.0, per_s=0.2),
-    _slow("mag-drift", "mag_bias", MAG, "named", within_s=ORBIT_S, axis=1.0, nt=0.0, per_s=1.0),
+    _slow("mag-drift", "mag_bias", MAG, "named or doubted", within_s=ORBIT_S, axis=1.0, nt=0.0, per_s=1.0),
     _slow("mag-late", "mag_late", MAG, watch_s=3000.0),
     _slow("sun-late", "sun_late", SUN, watch_s=3000.0),
     replace(_slow("both-late", "mag_late", MAG, watch_s=3000.0), then=(RowFault("sun_late", {}, inf, SUN),)),
     _from_boot("mag-late-boot", "mag_late", MAG),
-    replace(_from_boot("both-late-boot", "mag_late", MAG, RowFault("sun_late", {}, inf, SUN)), agree=True),
+    replace(
+        _from_boot("both-late-boot", "mag_late", MAG, RowFault("sun_late", {}, inf, SUN)),
+        unseen=Unseen.ALWAYS,
+    ),
     _from_boot("sun-turned-boot", "sun_turned", SUN, axis=2.0, deg=10.0),
     replace(
         _from_boot(
@@ -104,7 +123,7 @@ SLY_ROWS: tuple[FaultRow, ...] = (
             axis=2.0,
             deg=10.0,
         ),
-        agree=True,
+        unseen=Unseen.ALWAYS,
     ),
     _from_boot("coil-weak-boot", "coil_wired", "coil 1", axis=1.0, scale=0.7),
     _table("inertia-permuted", "flight.body.inertia_kgm2=[1.85, 1.95, 1.02]"),
@@ -116,6 +135,6 @@ SLY_ROWS: tuple[FaultRow, ...] = (
     _in_turn("mag-then-coil", _wrong_field(inf), _reversed_coil(600.0), 600.0 + ORBIT_S),
     _in_turn("mag-then-sun", _wrong_field(900.0), _wrong_sun(inf, 3000.0), 3000.0 + ORBIT_S),
     _in_turn("sun-then-mag", _wrong_sun(900.0), _wrong_field(inf, 3000.0), 3000.0 + ORBIT_S),
-    _stuck("coil-stuck-through-eclipse", axis=2.0, ampere=-0.4),
-    _stuck("coil-stuck-low-through-eclipse", axis=1.0, ampere=0.025),
+    _stuck("coil-stuck-through-eclipse", 2.0, -0.4, "named"),
+    _stuck("coil-stuck-low-through-eclipse", 1.0, 0.025),
 )

@@ -4,12 +4,13 @@ import pytest
 
 from sim.fault_rig.record import FaultFlightRecord
 from sim.fault_table import checks
-from sim.fault_table.row import FaultRow
+from sim.fault_table.row import FaultRow, Unseen
 
 
-def flown(*errors_deg, tick_hz=1):
+def flown(*errors_deg, tick_hz=1, lit=True):
     """A record of a flight whose every tick was answered; None: no valid attitude."""
-    return FaultFlightRecord(tick_hz, error_deg=list(errors_deg), done=[True] * len(errors_deg))
+    ticks = len(errors_deg)
+    return FaultFlightRecord(tick_hz, error_deg=list(errors_deg), done=[True] * ticks, lit=[lit] * ticks)
 
 
 class TestHonesty:
@@ -41,7 +42,21 @@ class TestHonesty:
         assert checks.never_wrong_for_long(self.ROW, record, bounds) == (True, "")
 
     def test_where_both_sensors_agree_on_what_is_wrong_nothing_can_be_expected(self, bounds):
-        row = FaultRow("planted", "", "none", agree=True)
+        row = FaultRow("planted", "", "none", unseen=Unseen.ALWAYS)
         holds, finding = checks.never_wrong_for_long(row, flown(*[30.0] * 300), bounds)
         assert holds
         assert finding == "valid while up to 30 deg wrong, for 300 s on end"
+
+    @pytest.mark.parametrize(("unseen", "holds"), [(Unseen.NEVER, False), (Unseen.IN_SHADOW, True)])
+    def test_nor_in_the_shadow_of_the_only_sensor_that_is_left(self, bounds, unseen, holds):
+        row = FaultRow("planted", "", "none", unseen=unseen)
+        assert checks.never_wrong_for_long(row, flown(*[30.0] * 300, lit=False), bounds)[0] is holds
+
+    def test_but_once_the_sun_is_back_it_counts(self, bounds):
+        row = FaultRow("planted", "", "none", unseen=Unseen.IN_SHADOW)
+        record = flown(*[30.0] * 300)
+        record.lit[:150] = [False] * 150
+        assert checks.never_wrong_for_long(row, record, bounds) == (
+            False,
+            "valid while up to 30 deg wrong, for 150 s on end",
+        )

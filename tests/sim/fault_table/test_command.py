@@ -9,7 +9,7 @@ import pytest
 
 from sim.errors import HarnessError
 from sim.fault_table import command, earlier_rows, render
-from sim.fault_table.row import CaseResult, CheckOutcome, CheckVerdict, FaultRow, RowFault, RowResult
+from sim.fault_table.row import CaseResult, CheckOutcome, CheckVerdict, FaultRow, RowFault, RowResult, Unseen
 from sim.fault_table.rows import ROWS, choose_rows
 from sim.faults.kinds import KINDS
 from torquer.cli.main import main
@@ -95,7 +95,7 @@ def test_a_row_tells_all_its_faults_its_settings_and_by_when_they_must_be_named(
         unit="magnetometer",
         within_s=900.0,
         then=(RowFault("sun_swapped", {}, inf, "sun sensor", 60.0),),
-        agree=True,
+        unseen=Unseen.ALWAYS,
         settings=("initial.angle_deg=12.0",),
     )
     assert render.injected(row) == (

@@ -38,12 +38,30 @@ def test_a_second_sender_is_reported_with_any_identifier(identifier):
 def test_the_faulty_unit_must_be_isolated_and_no_other(bounds):
     row = FaultRow("planted", "", "none", unit="magnetometer")
     right, wrong = isolated(130, Sensor.MAGNETOMETER), isolated(125, Sensor.SUN_SENSOR)
-    assert checks.isolates_faulty_unit(row, record(right), bounds) == (True, "isolated after 30 s")
+    assert checks.isolates_faulty_unit(row, record(right), bounds) == (True, "found after 30 s")
     assert checks.isolates_faulty_unit(row, record(), bounds)[0] is False
     assert checks.isolates_faulty_unit(row, record(wrong), bounds)[0] is False
     assert checks.isolates_faulty_unit(row, record(wrong, right), bounds)[0] is False
     before = isolated(99, Sensor.SUN_SENSOR)
     assert checks.isolates_faulty_unit(row, record(before, right), bounds)[0] is True
+
+
+def test_a_sensor_that_is_not_named_may_be_doubted_with_the_other_but_a_coil_must_be_named(bounds):
+    doubted = ReportedEvent(140, Number.SENSORS_DISAGREE, 0)
+    sensor, coil = (FaultRow("planted", "", "none", unit=unit) for unit in ("magnetometer", "coil 1"))
+    assert checks.isolates_or_doubts_faulty_unit(sensor, record(doubted), bounds) == (
+        True,
+        "found after 40 s",
+    )
+    assert checks.isolates_faulty_unit(sensor, record(doubted), bounds)[0] is False
+    assert checks.isolates_or_doubts_faulty_unit(sensor, record(), bounds)[0] is False
+    early = ReportedEvent(99, Number.SENSORS_DISAGREE, 0)
+    assert checks.isolates_or_doubts_faulty_unit(sensor, record(early), bounds)[0] is False
+    wrong = isolated(125, Sensor.SUN_SENSOR)
+    assert checks.isolates_or_doubts_faulty_unit(sensor, record(wrong, doubted), bounds)[0] is False
+    pulsed = record(doubted)
+    pulsed.request_ticks, pulsed.request_coils = list(range(101, 110)), [1] * 9
+    assert checks.isolates_or_doubts_faulty_unit(coil, pulsed, bounds)[0] is False
 
 
 def test_a_disturbed_sensor_may_be_isolated_but_no_other(bounds):
@@ -80,7 +98,7 @@ class TestTwoFaults:
 
     def test_each_unit_must_be_isolated_in_time_from_the_onset_of_its_own_fault(self, bounds):
         flown = record(isolated(120, Sensor.MAGNETOMETER), isolated(450, Sensor.SUN_SENSOR))
-        assert checks.isolates_faulty_unit(self.ROW, flown, bounds) == (True, "isolated after 20 s, 50 s")
+        assert checks.isolates_faulty_unit(self.ROW, flown, bounds) == (True, "found after 20 s, 50 s")
         assert checks.isolates_no_healthy_unit(self.ROW, flown, bounds)[0]
 
     def test_one_of_the_two_is_not_enough(self, bounds):
@@ -91,7 +109,7 @@ class TestTwoFaults:
         flown = record(isolated(120, Sensor.MAGNETOMETER), isolated(451, Sensor.SUN_SENSOR))
         assert checks.isolates_faulty_unit(self.ROW, flown, bounds) == (
             False,
-            "sun sensor isolated after 51 s, later than 50 s",
+            "sun sensor found after 51 s, later than 50 s",
         )
 
     def test_the_second_unit_is_healthy_until_its_own_fault(self, bounds):
