@@ -20,7 +20,7 @@ are not observed kept with their prior as in Schmidt 1966.
 """
 
 import struct
-from math import isfinite, nan
+from math import isfinite, nan, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -46,6 +46,9 @@ from fsw.core.estimation.parameters import (
     estimated_rotor,
 )
 
+LAG_S = 60.0
+"""Time over which innovations are averaged."""
+NO_LAG = (0.0,) * 6
 MAX_VARIANCE = 1e6
 """Beyond it (1000 rad) an estimate is worthless, and the algebra comes near to overflow."""
 
@@ -75,7 +78,8 @@ class Estimate(NamedTuple):
 
     The covariance is (n, n), n being 6 and the parameters that are carried, laid out as in ``Layout``; units
     rad, rad/s and those of ``Parameters``. ``nis``: the normalised innovations squared of this tick, of so
-    many ``numbers``; what the traced deviations explain is not in it.
+    many ``numbers``; what the traced deviations explain is not in it. ``lag``: the mean of the innovations
+    over ``LAG_S``, of field and Sun, each number in its standard deviations.
     """
 
     q_body_from_eci: Quaternion
@@ -85,10 +89,11 @@ class Estimate(NamedTuple):
     trace: Trace | None = None
     nis: float = 0.0
     numbers: int = 0
+    lag: tuple[float, ...] = NO_LAG
 
     def floats(self) -> tuple[float, ...]:
         """For the checksum of the state, as is ``packed``: all but the arrays."""
-        innovation = (self.nis, float(self.numbers))
+        innovation = (self.nis, float(self.numbers), *self.lag)
         return (*self.q_body_from_eci, *self.omega_body_radps, *self.parameters.floats(), *innovation)
 
     def packed(self) -> bytes:
@@ -167,6 +172,7 @@ def predict(
         parameters,
         kalman.P,
         trace if trace is None else _carried(trace, transition),
+        lag=tuple([(1.0 - h / LAG_S) * mean for mean in estimate.lag]),
     )
 
 
@@ -185,7 +191,7 @@ def update_field(estimate: Estimate, b_body_t: Vec3, b_eci_t: Vec3, config: Mekf
 def update_sun(estimate: Estimate, s_body: Vec3, s_eci: Vec3, config: MekfConfig) -> Estimate | None:
     """Take a Sun direction. None when the gate rejects it."""
     predicted, sensitivity = sun_prediction(*estimate[:3], s_eci, config)
-    return _update(estimate, sub(s_body, predicted), sensitivity, config.sun_noise, config)
+    return _update(estimate, sub(s_body, predicted), sensitivity, config.sun_noise, config, 3)
 
 
 def update_both(
@@ -203,9 +209,14 @@ def update_both(
 
 
 def _update(
-    estimate: Estimate, innovation: tuple[float, ...], sensitivity: Matrix, noise: Matrix, config: MekfConfig
+    estimate: Estimate,
+    innovation: tuple[float, ...],
+    sensitivity: Matrix,
+    noise: Matrix,
+    config: MekfConfig,
+    first: int = 0,
 ) -> Estimate | None:
-    """The update of filterpy, judged by its own NIS and folded in."""
+    """The update of filterpy, judged by its own NIS and folded in; ``first``: its place in the ``lag``."""
     kalman = LeanKalmanFilter(config.zero, estimate.covariance)
     kalman.update(np.array(innovation), noise, sensitivity, config.considered)
     nis, trace = float(kalman.y.dot(kalman.SI).dot(kalman.y)), estimate.trace
@@ -219,8 +230,19 @@ def _update(
     if not 0.0 <= nis <= config.gate_nis:  # overflow can make it -inf
         return None
     covariance = 0.5 * (kalman.P + kalman.P.T)
-    taken = Estimate(*estimate[:3], covariance, trace, estimate.nis + nis, estimate.numbers + len(innovation))
+    nis, numbers = estimate.nis + nis, estimate.numbers + len(innovation)
+    lag = _lagging(estimate.lag, kalman, first, config.tick_s / LAG_S)
+    taken = Estimate(*estimate[:3], covariance, trace, nis, numbers, lag)
     return _fold(taken, kalman.x, config.layout)
+
+
+def _lagging(lag: tuple[float, ...], kalman: LeanKalmanFilter, first: int, part: float) -> tuple[float, ...]:
+    """The means with this part of new innovations, the first of which has that place."""
+    means = list(lag)
+    variances: list[float] = kalman.S.diagonal().tolist()
+    for place, (number, variance) in enumerate(zip(kalman.y.tolist(), variances, strict=True), start=first):
+        means[place] += part * number / sqrt(variance)
+    return tuple(means)
 
 
 def unexplained(sums: Matrix) -> float:

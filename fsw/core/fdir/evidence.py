@@ -20,6 +20,8 @@ Source: Wald 1945; Page 1954, Continuous inspection schemes (Biometrika 41); Lor
 from math import log
 from typing import NamedTuple
 
+from fsw.core.estimation.mekf import LAG_S
+
 CORRELATION_S = 2.0
 """Errors of samples closer than this are not independent: twice the sampling time of the slowest sensor."""
 MISS = 1e-3
@@ -36,7 +38,8 @@ class EvidenceWeights(NamedTuple):
 
     ``against``: a bad sample against a unit, and a good one in its favour; ``fits`` and ``misfits``: a sample
     of an isolated unit; ``agrees``: a pair of samples of which only their angle can be compared.
-    ``blind_ticks``: for so long a prediction without samples stays valid.
+    ``blind_ticks``: for so long a prediction without samples stays valid; ``averaged``: samples in the mean
+    of innovations.
     """
 
     threshold: float
@@ -45,6 +48,7 @@ class EvidenceWeights(NamedTuple):
     misfits: float
     agrees: float
     blind_ticks: int
+    averaged: float
 
 
 def weights(false_alarm_days: float, tick_s: float) -> EvidenceWeights:
@@ -63,6 +67,7 @@ def weights(false_alarm_days: float, tick_s: float) -> EvidenceWeights:
         misfits=log(MISS / (1.0 - CHANCE)),
         agrees=part * fits / PAIR_NUMBERS,
         blind_ticks=round(BLIND_S / tick_s),
+        averaged=2.0 * LAG_S / tick_s - 1.0,
     )
 
 
@@ -90,3 +95,22 @@ def misfit(nis: float, numbers: int) -> float:
     """
     weight = 0.5 * (1.0 - 1.0 / INFLATION) * nis - 0.5 * numbers * log(INFLATION)
     return max(-1.0, min(1.0, weight))
+
+
+LASTING = 4.0
+"""Factor by which the covariance of an estimate that is to be used may be too small."""
+
+
+def mean_misfit(means: tuple[float, ...], weights: EvidenceWeights) -> float:
+    """What the mean innovations of the sensor that is further off weigh against the estimate, nats.
+
+    The log-likelihood ratio of a lasting deviation, and of a covariance ``LASTING`` times the filter's: half
+    of the chi square, which of white innovations with that mean over n samples is n / ``LASTING`` its square.
+
+    Args:
+        means: of field and Sun, three numbers each, in standard deviations.
+        weights: of the evidence.
+    """
+    field, sun = means[:3], means[3:]
+    most = max(sum([mean * mean for mean in field]), sum([mean * mean for mean in sun]))
+    return 0.5 * weights.averaged * most / LASTING

@@ -18,7 +18,7 @@ from typing import NamedTuple
 from fsw.core.estimation.estimator import Used
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.fdir.credibility import CredibilityConfig, sensors_credible
-from fsw.core.fdir.evidence import PAIR_NUMBERS, EvidenceWeights, misfit, weigh
+from fsw.core.fdir.evidence import PAIR_NUMBERS, EvidenceWeights, mean_misfit, misfit, weigh
 from fsw.core.fdir.plausibility import Findings
 
 SUSPICIOUS = 0.25
@@ -43,7 +43,8 @@ class Pair(NamedTuple):
 
     ``proof``: that the estimate is right about both; ``doubt``: that one is wrong; ``accord``: that both are
     right, while they are disputed, or one is isolated and no estimate can tell. ``ended``: the filter is to
-    end in this tick; ``blind_ticks``: for so long it has taken no sample.
+    end in this tick; ``blind_ticks``: for so long it has taken no sample; ``owed``: what an
+    estimate that lagged behind both has still to show.
     """
 
     standing: Standing = Standing.NEW
@@ -52,6 +53,7 @@ class Pair(NamedTuple):
     accord: float = 0.0
     ended: bool = False
     blind_ticks: int = 0
+    owed: float = 0.0
 
 
 class Observed(NamedTuple):
@@ -91,8 +93,9 @@ def proven(pair: Pair, weights: EvidenceWeights) -> bool:
 
 
 def valid(pair: Pair, weights: EvidenceWeights) -> bool:
-    """Whether an attitude may be valid that rests on them: it is proven, and something still shows it."""
-    return pair.standing is Standing.TRUSTED and pair.blind_ticks <= weights.blind_ticks
+    """Whether an attitude may be valid that rests on them: proven, shown by something, without a lag."""
+    shown = pair.blind_ticks <= weights.blind_ticks and not pair.owed
+    return pair.standing is Standing.TRUSTED and shown
 
 
 def judge(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: CredibilityConfig) -> Pair:
@@ -114,7 +117,7 @@ def judge(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: Cre
     elif standing is Standing.TRUSTED and (seen.estimate is None or seen.begun):
         standing = Standing.NEW
     blind_ticks = 0 if seen.used.field or seen.used.sun else pair.blind_ticks + 1
-    return Pair(standing, proof, doubt, accord, blind_ticks=blind_ticks)
+    return Pair(standing, proof, doubt, accord, False, blind_ticks, _owed(pair.owed, seen, weights))
 
 
 def _misfit(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: CredibilityConfig) -> float:
@@ -150,6 +153,16 @@ def _proof(pair: Pair, seen: Observed, weights: EvidenceWeights) -> float:
         by = -weights.fits
     slow = PAIR_NUMBERS if pair.standing is Standing.ON_TRIAL else 1
     return weigh(pair.proof, by / slow, weights.threshold)
+
+
+def _owed(owed: float, seen: Observed, weights: EvidenceWeights) -> float:
+    """Innovations whose mean is no chance contradict the covariance: both sensors have to prove it anew."""
+    if seen.estimate is None:
+        return 0.0
+    if mean_misfit(seen.estimate.lag, weights) >= weights.threshold:
+        return weights.threshold
+    both = seen.used.field and seen.used.sun and not seen.refused
+    return max(0.0, owed - weights.fits) if both else owed
 
 
 def _accord(accord: float, findings: Findings, weights: EvidenceWeights) -> float:

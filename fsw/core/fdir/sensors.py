@@ -57,7 +57,7 @@ class SensorHealth(NamedTuple):
 
     def floats(self) -> tuple[float, ...]:
         """The evidence, and the last samples."""
-        return (self.field.nats, self.sun.nats, *self.pair[1:4], *self.memory.floats())
+        return (self.field.nats, self.sun.nats, *self.pair[1:4], self.pair.owed, *self.memory.floats())
 
 
 class SensorConfig(NamedTuple):
