@@ -156,13 +156,18 @@ def _proof(pair: Pair, seen: Observed, weights: EvidenceWeights) -> float:
 
 
 def _owed(owed: float, seen: Observed, weights: EvidenceWeights) -> float:
-    """Innovations whose mean is no chance contradict the covariance: both sensors have to prove it anew."""
+    """Innovations whose mean is no chance contradict the covariance: both sensors have to prove it anew.
+
+    One alone, while the other is isolated, proves it slowly.
+    """
     if seen.estimate is None:
         return 0.0
     if mean_misfit(seen.estimate.lag, weights) >= weights.threshold:
         return weights.threshold
-    both = seen.used.field and seen.used.sun and not seen.refused
-    return max(0.0, owed - weights.fits) if both else owed
+    taken = (seen.used.field + seen.used.sun) * (not seen.refused)
+    if taken == 2:
+        return max(0.0, owed - weights.fits)
+    return max(0.0, owed - weights.fits / PAIR_NUMBERS) if taken and seen.isolated else owed
 
 
 def _accord(accord: float, findings: Findings, weights: EvidenceWeights) -> float:
