@@ -145,12 +145,13 @@ def update(
 def _settled(state: EstimatorState, estimate: Estimate, seen: bool, config: MekfConfig) -> EstimatorState:
     """With the parameters at their priors when a fast turn has ended; attitude and rate go on.
 
-    As every start, this takes field and Sun, ``seen`` in this tick: with one of them the covariance of a
-    start would not shrink.
+    A rate that is hardly known, as after a start, is not fast. As every start, this takes field and Sun,
+    ``seen`` in this tick: with one of them the covariance of a start would not shrink.
     """
     square = dot(estimate.omega_body_radps, estimate.omega_body_radps)
     if square > FAST_RADPS**2:
-        return state._replace(fast=True)
+        known = estimate.covariance.diagonal()[3:6].sum() < SLOW_RADPS**2
+        return state._replace(fast=state.fast or bool(known))
     if not state.fast or square > SLOW_RADPS**2 or not seen:
         return state
     anew = mekf.start(estimate.q_body_from_eci, estimate.omega_body_radps, config)
