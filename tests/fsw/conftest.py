@@ -61,6 +61,14 @@ class World:
         self.plant.end_tick()
         return [CLASSES[frame.can_id].decode(frame.data) for frame in outbox]
 
+    def fly_until_valid(self, most=400):
+        """Until the attitude is proven; the number of ticks flown."""
+        for flown in range(most):
+            if self.state.attitude.valid:
+                return flown
+            self.step()
+        pytest.fail(f"the attitude is not valid after {most} ticks")
+
     def fly(self, ticks, change=lambda inbox: inbox):
         """All messages of so many ticks, a list a tick."""
         return [self.step(change) for _ in range(ticks)]

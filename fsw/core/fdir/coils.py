@@ -17,7 +17,7 @@ from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.fdir import coil_effects, explanations
 from fsw.core.fdir.evidence import weigh
-from fsw.core.fdir.faults import CoilFault
+from fsw.core.fdir.faults import CoilFault, coil_fault
 from fsw.core.gate.readings import Readings
 from fsw.wire.messages import CoilStatus
 
@@ -119,7 +119,8 @@ def judge_current(
     if not ended or not status.level or (status.coil, status.level) != fired:
         return health
     nominal_ma = config.current_ma[abs(status.level) - 1]
-    kind = _kind(status.current_ma / (nominal_ma if status.level > 0 else -nominal_ma), config)
+    part = status.current_ma / (nominal_ma if status.level > 0 else -nominal_ma)
+    kind = coil_fault(part, config.weak_part)
     by = config.threshold / NAME_PULSES
     nats = weigh(health.nats[fired.coil], by if kind else -config.threshold, config.threshold)
     health = health._replace(nats=_with(health.nats, fired.coil, nats))
@@ -219,7 +220,7 @@ def _isolate(
             nats = weigh(earlier[ended], oldest, config.threshold)
             health = health._replace(pulse_nats=_with(earlier, ended, nats))
     if weak is not None and sure and _another_is_sound(health, weak[0]):
-        health = _with_fault(health, weak[0], _kind(weak[1], config))
+        health = _with_fault(health, weak[0], coil_fault(weak[1], config.weak_part))
     if solution is None or not unattributed_torque(health):
         return health, estimate
     conducting = explanations.conducting(solution)
@@ -232,19 +233,6 @@ def _isolate(
 def _another_is_sound(health: CoilHealth, coil: int) -> bool:
     """Whether a coil is left: that all three fail is less likely than that the filter is wrong."""
     return any(not fault for other, fault in enumerate(health.faults) if other != coil)
-
-
-OPEN_PART, REVERSED_PART = 0.2, -0.5
-"""Parts of the nominal current or effect below which nothing flows, and below which it flows backwards."""
-
-
-def _kind(part: float, config: CoilHealthConfig) -> int:
-    """The fault of a coil that does this part of what it should; 0 if none."""
-    if not part < config.weak_part:
-        return 0
-    if part < REVERSED_PART:
-        return CoilFault.REVERSED
-    return CoilFault.OPEN if part < OPEN_PART else CoilFault.WEAK
 
 
 def _with_fault(health: CoilHealth, coil: int, kind: int) -> CoilHealth:

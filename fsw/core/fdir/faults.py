@@ -28,3 +28,16 @@ class CoilFault(IntEnum):
     WEAK = 2
     REVERSED = 3
     STUCK = 4
+
+
+OPEN_PART, REVERSED_PART = 0.2, -0.5
+"""Parts of the nominal current or effect below which nothing flows, and below which it flows backwards."""
+
+
+def coil_fault(part: float, weak_part: float) -> int:
+    """The fault of a coil that does this part of what it should, if that is below ``weak_part``; else 0."""
+    if not part < weak_part:
+        return 0
+    if part < REVERSED_PART:
+        return CoilFault.REVERSED
+    return CoilFault.OPEN if part < OPEN_PART else CoilFault.WEAK

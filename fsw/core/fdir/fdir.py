@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from fsw.core.actuation.actuator import CoilView, unexpected
-from fsw.core.algebra.vector import Vec3
+from fsw.core.algebra.vector import ZERO, Vec3
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.estimation.estimator import EstimatorState, Used, restart, untraced
 from fsw.core.events import Event, Happening
@@ -118,6 +118,8 @@ def judge(
         found, estimator = coils.judge_effect(
             found, evidence.view, reference.b_eci_t, estimator, evidence.tick, sure, doubt, config.coils
         )
+    if changed or judged.pair.ended:
+        found = found._replace(pulse_nats=ZERO)  # a faulty sensor may have shown it
     if judged.pair.ended:
         estimator, attitude = restart(estimator), UNKNOWN
     if not pair.valid(judged.pair, config.sensors.weights) or coils.unattributed_torque(found):

@@ -9,7 +9,8 @@ slow fault for long: it shares it out between both sensors and its parameters. S
   modelled one.
 
 Where that is enough the pair is disputed: both sensors are kept, the filter ends, and none begins before both
-have agreed for long. Its attitude is not valid before it is proven.
+have agreed for long. No attitude is valid before its estimate is proven, nor while nothing has been taken for
+long.
 """
 
 from enum import IntEnum

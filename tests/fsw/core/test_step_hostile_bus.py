@@ -185,20 +185,29 @@ def test_false_samples_from_one_sensor(make_world, seed):
 
 @pytest.mark.parametrize("seed", range(12))
 def test_saboteur(make_world, seed):
+    """From boot on, and again once the attitude is proven, which it is late where samples are lost."""
     world, random = make_world(seed=seed), Random(seed)
     watch, refusals, late = Watch(world.config), 0, []
-    for _ in range(TICKS):
-        honest = world.inbox()
-        frames = late + sabotage(random, honest.frames)
-        late = [frames.pop()] if frames and random.random() < 0.05 else []
-        inbox = honest._replace(frames=tuple(frames))
-        world.state, outbox = step(world.state, inbox, world.config)
-        watch.judge(inbox, world.state, outbox)
-        refusals += any(frame.can_id == CoilRefused.ID for frame in honest.frames)
-        for frame in outbox:
-            world.plant.receive(frame)
-        world.plant.end_tick()
+
+    def fly_sabotaged():
+        nonlocal refusals, late
+        for _ in range(TICKS):
+            honest = world.inbox()
+            frames = late + sabotage(random, honest.frames)
+            late = [frames.pop()] if frames and random.random() < 0.05 else []
+            inbox = honest._replace(frames=tuple(frames))
+            world.state, outbox = step(world.state, inbox, world.config)
+            watch.judge(inbox, world.state, outbox)
+            refusals += any(frame.can_id == CoilRefused.ID for frame in honest.frames)
+            for frame in outbox:
+                world.plant.receive(frame)
+            world.plant.end_tick()
+
+    fly_sabotaged()
     assert watch.fires > 0
+    assert world.state.estimator.estimate is not None
+    world.fly_until_valid()
+    fly_sabotaged()
     assert refusals == 0
     assert world.state.gate.rejected > 0
     assert world.state.attitude.valid

@@ -12,8 +12,8 @@ from fsw.core.algebra.vector import ZERO, add, cross, scale, sub, transform, uni
 from fsw.core.estimation import mekf
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.parameters import Prior
-from fsw.core.fdir.coil_effects import PULSES, settle_stray, solve, trace_pulse, trace_stray
-from fsw.core.fdir.explanations import STRAY, conducting, of_pulses, weak_by_pulses
+from fsw.core.fdir.coil_effects import settle_stray, solve, trace_pulse, trace_stray
+from fsw.core.fdir.explanations import PULSES, STRAY, conducting, of_pulses, weak_by_pulses
 
 INERTIA = ((1.02, 0.07, -0.05), (0.07, 1.85, 0.11), (-0.05, 0.11, 1.45))
 CONFIG = mekf_config(
@@ -211,7 +211,7 @@ def test_the_coil_that_conducts_is_told_from_the_sun_alone(coil, sign):
     estimate, _ = fly_stray(scale(sign, AXES[coil]))
     _, solution = solve(estimate, CONFIG)
     assert conducting(solution) == (coil if sign > 0.0 else None), "the sign of the current is estimate"
-    assert weak_by_pulses(solution, WEAK_PART, THRESHOLD) is None
+    assert weak_by_pulses(solution, ZERO, WEAK_PART, THRESHOLD) is None
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from math import exp, log
 import numpy as np
 import pytest
 
-from fsw.core.fdir.evidence import CORRELATION_S, DAY_S, MISS, misfit, weigh, weights
+from fsw.core.fdir.evidence import BLIND_S, CORRELATION_S, DAY_S, MISS, misfit, weigh, weights
 
 DAYS = 40.0
 
@@ -34,6 +34,7 @@ def test_the_times_do_not_depend_on_the_tick(tick_s):
     assert time_to(known.threshold, known.against, tick_s) == pytest.approx(29.0, abs=1.0)
     assert time_to(known.threshold, known.fits, tick_s) == pytest.approx(129.0, abs=1.0)
     assert time_to(known.threshold, known.agrees, tick_s) == pytest.approx(515.0, abs=2.0)
+    assert known.blind_ticks * tick_s == pytest.approx(BLIND_S)
 
 
 def test_a_good_sample_takes_back_what_a_bad_one_has_brought():
@@ -49,13 +50,15 @@ def test_one_sample_that_does_not_fit_undoes_many_that_do():
 
 
 def test_innovations_of_a_sound_filter_weigh_for_it_and_larger_ones_against():
-    assert misfit(6.0, 6) == -1.0
+    assert misfit(2.0, 6) == -1.0
+    assert misfit(6.0, 6) == pytest.approx(1.5 - 3.0 * log(2.0))
+    assert misfit(8.0, 6) < 0.0 < misfit(9.0, 6)
     assert 0.0 < misfit(11.5, 6) < 1.0
     assert misfit(40.0, 6) == 1.0, "no sample weighs more than a nat in the time of correlation"
     assert misfit(0.0, 0) == 0.0
 
 
-@pytest.mark.parametrize(("inflation", "raises"), [(1.0, False), (1.5, False), (4.0, True)])
+@pytest.mark.parametrize(("inflation", "raises"), [(1.0, False), (1.15, False), (2.0, True)])
 def test_noise_raises_no_alarm_in_a_month_and_innovations_that_are_too_large_do(inflation, raises):
     random, known = np.random.default_rng(7), weights(DAYS, 1.0)
     nats = 0.0

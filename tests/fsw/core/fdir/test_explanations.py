@@ -9,7 +9,9 @@ from fsw.core.estimation.parameters import Prior
 from fsw.core.fdir.explanations import (
     STRAY,
     Solution,
+    against,
     conducting,
+    of_oldest,
     of_pulses,
     weak_by_gain,
     weak_by_pulses,
@@ -24,8 +26,8 @@ def solution(causes, deviation, sigma, correlation=0.0):
     return Solution(tuple(causes), np.array(deviation), shape * np.outer(sigma, sigma))
 
 
-def weak(*arguments):
-    return weak_by_pulses(solution(*arguments), WEAK_PART, THRESHOLD)
+def weak(*arguments, earlier=(0.0, 0.0, 0.0)):
+    return weak_by_pulses(solution(*arguments), earlier, WEAK_PART, THRESHOLD)
 
 
 @pytest.mark.parametrize("coil", [0, 1, 2])
@@ -64,6 +66,38 @@ def test_they_accuse_nobody(causes, deviation, sigma):
 def test_a_coil_that_failed_between_two_pulses_is_accused_by_the_later_ones():
     accused = weak((1, 1, 1, 0), (-1.0, -0.98, 0.03, 0.0), (0.04, 0.04, 0.05, 0.05))
     assert accused == (1, pytest.approx(0.0, abs=0.02))
+
+
+class TestPulsesTracedNoLonger:
+    """Pulses that show little by themselves add up, beyond those that are traced."""
+
+    UNSURE = ((1, 2, 1, 1), (-0.8, 0.02, -0.75, -0.7), (0.2, 0.05, 0.2, 0.2))
+
+    def test_what_each_weighs_is_negative_for_a_sound_one_and_bounded(self):
+        found = solution((2, 0, 1), (-0.7, 0.1, -1.0), (0.12, 0.12, 0.01))
+        assert against(found, WEAK_PART, THRESHOLD) == [
+            pytest.approx(0.5 * 0.4**2 / (0.12**2 + 0.05**2)),
+            pytest.approx(-0.5 * 0.4**2 / (0.12**2 + 0.05**2)),
+            0.5 * THRESHOLD,
+        ]
+        surely_sound = solution((1,), (0.3,), (0.01,))
+        assert against(surely_sound, WEAK_PART, THRESHOLD) == [-0.5 * THRESHOLD]
+
+    def test_the_oldest_gives_its_place_once_so_many_are_traced(self):
+        traced = solution(*self.UNSURE)
+        assert of_oldest(traced, 1, WEAK_PART, THRESHOLD) == pytest.approx(0.5 * 0.4**2 / (0.2**2 + 0.05**2))
+        assert of_oldest(traced, 2, WEAK_PART, THRESHOLD) == 0.0
+        assert of_oldest(traced, 0, WEAK_PART, THRESHOLD) == 0.0
+
+    def test_they_count_with_those_that_are(self):
+        assert weak(*self.UNSURE) is None
+        assert weak(*self.UNSURE, earlier=(0.0, 7.0, 0.0)) == (1, pytest.approx(0.25, abs=0.03))
+        assert weak(*self.UNSURE, earlier=(7.0, 0.0, 7.0)) is None, "those of the coil alone"
+
+    def test_not_against_a_coil_that_has_been_sound_since(self):
+        """It failed within those that are traced, or not at all."""
+        since = ((1, 1, 1), (-0.9, 0.02, 0.03), (0.1, 0.1, 0.1))
+        assert weak(*since, earlier=(0.0, THRESHOLD, 0.0)) is None
 
 
 def test_nobody_is_accused_while_two_coils_cannot_be_told_apart():

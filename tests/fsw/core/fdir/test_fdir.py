@@ -15,6 +15,7 @@ from fsw.core.orbit.ephemeris import reference_at
 
 FROZEN, SILENT = SensorFault.FROZEN, SensorFault.SILENT
 OPEN, WEAK = CoilFault.OPEN, CoilFault.WEAK
+PROVEN = Pair(Standing.TRUSTED, proof=12.0)
 
 
 def sensors(field=0, sun=0, **changes):
@@ -100,11 +101,11 @@ class TestTrusted:
 
 
 class TestJudgement:
-    @pytest.fixture
+    @pytest.fixture(scope="class")
     def judged(self, make_world):
         """Health, estimator and attitude as judged in a sound flight with this health; the state before."""
         world = make_world()
-        world.fly(60)
+        world.fly_until_valid()
         state, config = world.state, world.config
         reference = reference_at(state.ephemeris, state.tick, config.ephemeris)
         findings = fdir.examine(NOTHING, state.health, reference, config.fdir)
@@ -117,7 +118,7 @@ class TestJudgement:
         return judge
 
     def test_a_healthy_flight_goes_on(self, judged):
-        (_, estimator, attitude), state = judged(Health())
+        (_, estimator, attitude), state = judged(sensors(pair=PROVEN))
         assert attitude is state.attitude
         assert attitude.valid
         assert estimator.restarts == state.estimator.restarts
@@ -125,15 +126,40 @@ class TestJudgement:
     @pytest.mark.parametrize(
         "health",
         [
-            Health(coils=CoilHealth(strange_ticks=9, stray_ma=40, stuck=True)),
+            Health(sensors(pair=PROVEN).sensors, CoilHealth(strange_ticks=9, stray_ma=40, stuck=True)),
+            sensors(pair=Pair(Standing.NEW)),
             sensors(pair=Pair(Standing.DISPUTED)),
             sensors(pair=Pair(Standing.ON_TRIAL)),
+            sensors(pair=PROVEN._replace(blind_ticks=120)),
         ],
-        ids=["a current in an unknown coil", "a disputed pair", "a pair on trial"],
+        ids=[
+            "a current in an unknown coil",
+            "an estimate that is not proven",
+            "a disputed pair",
+            "a pair on trial",
+            "nothing taken for too long",
+        ],
     )
     def test_an_attitude_is_not_valid_with(self, judged, health):
         (_, _, attitude), state = judged(health)
         assert attitude == state.attitude._replace(valid=False)
+
+    @pytest.mark.parametrize(
+        "judgement",
+        [
+            SensorHealth(field=Watch(FROZEN), pair=PROVEN),
+            SensorHealth(pair=Pair(Standing.DISPUTED, ended=True)),
+        ],
+        ids=["an isolated sensor", "a dispute"],
+    )
+    def test_what_pulses_showed_is_forgotten_with(self, judged, monkeypatch, judgement):
+        shown = CoilHealth(nats=(1.0, 2.0, 3.0), pulse_nats=(3.0, 0.5, 2.0))
+        before = Health(SensorHealth(pair=PROVEN), shown)
+        (health, _, _), _ = judged(before)
+        assert health.coils == shown
+        monkeypatch.setattr(fdir.sensors, "judge", lambda *of_this_tick: judgement)
+        (health, _, _), _ = judged(before)
+        assert health.coils == shown._replace(pulse_nats=(0.0, 0.0, 0.0))
 
     def test_enough_doubt_ends_the_filter(self, judged, monkeypatch):
         disputed = SensorHealth(pair=Pair(Standing.DISPUTED, ended=True))

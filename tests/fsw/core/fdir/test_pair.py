@@ -10,7 +10,7 @@ from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.parameters import Prior
 from fsw.core.fdir.credibility import credibility_config
 from fsw.core.fdir.evidence import weights
-from fsw.core.fdir.pair import Observed, Pair, Standing, judge, proven
+from fsw.core.fdir.pair import Observed, Pair, Standing, judge, proven, valid
 from fsw.core.fdir.plausibility import Findings, Memory
 
 CONFIG = mekf_config(
@@ -35,6 +35,8 @@ TAKEN = Observed(BOTH, Used(True, True, False), ESTIMATE, False, False, False, F
 WITHOUT = TAKEN._replace(estimate=None, used=Used(False, False, False))
 REFUSED = TAKEN._replace(used=Used(True, False, False), refused_sun=True)
 LARGE = TAKEN._replace(estimate=ESTIMATE._replace(nis=20.0))
+BEGUN = TAKEN._replace(estimate=ESTIMATE._replace(nis=0.0, numbers=0))
+"""The tick in which an estimate begins: both are taken, and nothing is compared."""
 TRUSTED = Pair(Standing.TRUSTED, proof=WEIGHTS.threshold)
 
 
@@ -88,7 +90,45 @@ class TestProof:
         assert after(much, refused).doubt > much.doubt
 
     def test_without_an_estimate_trust_is_lost(self):
-        assert after(TRUSTED, WITHOUT) == Pair(Standing.NEW)
+        assert after(TRUSTED, WITHOUT) == Pair(Standing.NEW, blind_ticks=1)
+
+    def test_an_estimate_that_begins_anew_has_to_be_proven_again(self):
+        """After a fast turn it does so without a tick in between: attitude and rate go on."""
+        assert after(Pair(), BEGUN) == Pair()
+        begun = after(TRUSTED, BEGUN)
+        assert begun == Pair(Standing.NEW)
+        ticks, _ = ticks_until(begun, TAKEN, Standing.TRUSTED)
+        assert 120 < ticks < 140
+
+    def test_without_a_sample_or_with_the_field_alone_nothing_begins(self):
+        for used in (Used(False, False, True), Used(True, False, False)):
+            assert after(TRUSTED, BEGUN._replace(used=used)).standing is Standing.TRUSTED
+
+
+class TestValidity:
+    """Whether an attitude may be valid."""
+
+    @pytest.mark.parametrize("standing", Standing)
+    def test_only_while_the_pair_is_trusted(self, standing):
+        assert valid(Pair(standing, proof=WEIGHTS.threshold), WEIGHTS) is (standing is Standing.TRUSTED)
+
+    def test_not_once_nothing_was_taken_for_two_minutes_and_again_with_the_next_sample(self):
+        blind = TAKEN._replace(
+            findings=ECLIPSE, used=Used(False, False, False), estimate=ESTIMATE._replace(numbers=0)
+        )
+        pair = after(TRUSTED, blind, WEIGHTS.blind_ticks)
+        assert WEIGHTS.blind_ticks == 120
+        assert valid(pair, WEIGHTS)
+        pair = after(pair, blind)
+        assert pair.standing is Standing.TRUSTED
+        assert not valid(pair, WEIGHTS)
+        for used in (Used(True, False, False), Used(False, True, False)):
+            seen = TAKEN._replace(findings=ECLIPSE, used=used)
+            assert valid(after(pair, seen), WEIGHTS)
+
+    def test_while_one_sensor_sees_it_lasts(self):
+        alone = TAKEN._replace(findings=ECLIPSE, used=Used(True, False, False))
+        assert valid(after(TRUSTED, alone, 2000), WEIGHTS)
 
 
 APART = BOTH._replace(apart=True)
@@ -110,7 +150,7 @@ class TestDoubt:
         ticks, pair = ticks_until(pair, seen, Standing.DISPUTED)
         assert 25 < ticks < 35
         assert pair == Pair(Standing.DISPUTED, ended=True)
-        assert not pair.valid
+        assert not valid(pair, WEIGHTS)
         assert not after(pair, WITHOUT).ended, "once"
 
     @pytest.mark.parametrize(
@@ -145,10 +185,10 @@ class TestAccord:
     def test_a_disputed_pair_that_agrees_is_tried_and_then_trusted(self):
         ticks, pair = ticks_until(self.DISPUTED, WITHOUT, Standing.ON_TRIAL)
         assert 500 < ticks < 530
-        assert not pair.valid
+        assert not valid(pair, WEIGHTS)
         ticks, pair = ticks_until(pair._replace(accord=0.0), TAKEN, Standing.TRUSTED)
         assert 500 < ticks < 530
-        assert pair.valid
+        assert valid(pair, WEIGHTS)
 
     def test_one_wrong_angle_undoes_minutes(self):
         pair = after(self.DISPUTED, WITHOUT, 300)
