@@ -245,6 +245,20 @@ class TestByTheRate:
         assert events(said, Event.SENSOR_ISOLATED) == events(said, Event.FILTER_RESTARTED) == []
         assert error_deg(world) < 1.0
 
+    def test_what_a_pulse_showed_is_kept_when_the_next_takes_its_place(self, make_world):
+        """Three pulses of a coil are traced: the fourth takes the place of the first."""
+        world = make_world()
+        world.fly(SETTLED)
+        world.plant._coils._dipole_per_ampere[0] *= 0.5
+        own = 0
+        while own < 4:
+            assert world.state.health.coils.pulse_nats == (0.0, 0.0, 0.0)
+            own += sum(coil == 0 for _, coil in fires(fly(world, 1)))
+        fly(world, world.config.coils.pulses.pulse_ticks)
+        first, *others = world.state.health.coils.pulse_nats
+        assert 1.0 < first < 0.5 * world.config.fdir.coils.threshold
+        assert others == [0.0, 0.0]
+
     @pytest.mark.requirement("REQ-COIL-05")
     def test_sound_coils_are_not(self, make_world):
         world = make_world(seed=5)
