@@ -11,6 +11,8 @@ from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.estimation.parameters import Rotor
 from fsw.core.estimation.torque_maps import TorqueMaps
 
+_IDENTITY = np.eye(6)
+
 
 def process_noise(m_body_am2: Vec3, b_body_t: Vec3, config: MekfConfig) -> Matrix:
     """The noise of a tick; while a coil is driven also that of its dipole, known to ``dipole_sigma`` only."""
@@ -66,21 +68,22 @@ def transition_matrix(
         config: the filter.
     """
     step = config.constant.copy()
+    moving = step[:, 0:6]
     if config.layout.inertia is None:
         change = config.moving.dot((*motion.omega, *around.pull()))
         if motion.m_am2 != ZERO:
             change += config.driven.dot(_outer(motion.m_am2, around.b_t))
-        step[0:6, 0:6] += change.reshape(6, 6)
+        moving += change.reshape(6, 6)
         inverse_h = config.inverse_h
     else:
         inverse_h = config.tick_s * np.array(rotor.inertia_inverse)
-        step[0:3, 0:3] -= np.array(skew(scale(config.tick_s, motion.omega)))
-        step[3:6, 0:6] = inverse_h.dot(_torque_rows(motion, around, rotor, config.torques))
-        step[3:6, 3:6] += config.identity_rows[3:6, 3:6]
+        moving[0:3, 0:3] = skew(scale(-config.tick_s, motion.omega))
+        moving[3:6] = inverse_h.dot(_torque_rows(motion, around, rotor, config.torques))
+        moving += _IDENTITY
     _set_parameter_columns(step, inverse_h, motion, around, m_driven, config)
-    transition: Matrix = step[:, 0:6].dot(step)  # (1 + A h)^2, so that half of it and 1 is the series
-    transition[:, 6:] += step[:, 6:]
-    transition += config.identity_rows
+    transition: Matrix = moving.dot(step)  # (1 + A h)^2, so that half of it and 1 is the series
+    moving[:] = _IDENTITY
+    transition += step
     transition *= 0.5
     return transition
 
@@ -91,7 +94,8 @@ def _torque_rows(motion: BodyMotion, around: BodyFields, rotor: Rotor, maps: Tor
     moving = maps.moving.dot((xx, yy, zz, xy, xz, yz)).reshape(18, 12)
     entries = moving.dot((*motion.omega, *around.pull())) + maps.driven.dot(_outer(motion.m_am2, around.b_t))
     rows: Matrix = entries.reshape(3, 6)
-    rows[:, 3:6] += skew(rotor.wheel_body_nms)
+    if rotor.wheel_body_nms != ZERO:
+        rows[:, 3:6] += skew(rotor.wheel_body_nms)
     return rows
 
 
@@ -120,7 +124,8 @@ def _set_parameter_columns(
 def _outer(a: Vec3, b: Vec3) -> tuple[float, ...]:
     """The dyad a b^T by rows."""
     a1, a2, a3 = a
-    return (*scale(a1, b), *scale(a2, b), *scale(a3, b))
+    b1, b2, b3 = b
+    return (a1 * b1, a1 * b2, a1 * b3, a2 * b1, a2 * b2, a2 * b3, a3 * b1, a3 * b2, a3 * b3)
 
 
 def turn(rotation_rad: Vec3) -> Quaternion:

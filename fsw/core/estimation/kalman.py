@@ -9,13 +9,13 @@ Matrix = NDArray[np.float64]
 
 
 class LeanKalmanFilter(KalmanFilter):  # type: ignore[misc]  # filterpy has no types
-    """filterpy's ``KalmanFilter`` for one prediction or one update of a flat state.
+    """filterpy's ``KalmanFilter`` for one prediction or one update of an error state, which is zero before.
 
-    The operations of ``predict`` and ``update`` are filterpy's own:
+    The operations of ``predict`` and ``update`` are filterpy's own, x = 0:
 
-        predict  x <- F x,  P <- F P F^T + Q
-        update   y = z - H x,  S = H P H^T + R,  K = P H^T S^-1,
-                 x <- x + K y,  P <- (1 - K H) P (1 - K H)^T + K R K^T
+        predict  P <- F P F^T + Q
+        update   y = z,  S = H P H^T + R,  K = P H^T S^-1,
+                 x <- K y,  P <- (1 - K H) P (1 - K H)^T + K R K^T
 
     Most states are constants: only the first rows of F differ from those of the identity, and only they are
     given. The product of three in the update is taken from the left and from the right in turn, so that no
@@ -24,7 +24,7 @@ class LeanKalmanFilter(KalmanFilter):  # type: ignore[misc]  # filterpy has no t
     prediction. No method changes an array in place, so arrays may be shared. The likelihoods are filterpy's.
 
     Attributes:
-        x: state, (n).
+        x: error state after an update, (n).
         P: its covariance, (n, n).
         y: innovation of the update, (m).
         K: gain, (n, m).
@@ -34,24 +34,23 @@ class LeanKalmanFilter(KalmanFilter):  # type: ignore[misc]  # filterpy has no t
     _log_likelihood = _likelihood = _mahalanobis = None
     """Not computed yet: filterpy computes each when it is read."""
 
-    def __init__(self, x: Matrix, P: Matrix) -> None:
-        self.x, self.P = x, P
+    def __init__(self, P: Matrix) -> None:
+        self.P = P
 
     def predict(self, *, F: Matrix, Q: Matrix) -> None:
-        """Carry state and covariance over a step.
+        """Carry the covariance over a step.
 
         Args:
             F: the first rows of the transition, (k, n); the others are those of the identity.
             Q: process noise, (n, n).
         """
         moving = len(F)
-        x, covariance, rows = self.x.copy(), self.P.copy(), F.dot(self.P)
-        x[:moving] = F.dot(self.x)
+        covariance, rows = self.P.copy(), F.dot(self.P)
         covariance[:moving, :moving] = rows.dot(F.T)
         covariance[:moving, moving:] = crossed = rows[:, moving:]
         covariance[moving:, :moving] = crossed.T
         covariance += Q
-        self.x, self.P = x, covariance
+        self.P = covariance
 
     def update(self, z: Matrix, R: Matrix, H: Matrix, considered: slice | None = None) -> None:
         """Take a measurement z, (m), with noise R, (m, m), and sensitivity H, (m, n).
@@ -59,14 +58,14 @@ class LeanKalmanFilter(KalmanFilter):  # type: ignore[misc]  # filterpy has no t
         States that are ``considered`` keep their values: their rows of K are zero, and P remains that of the
         errors (Schmidt 1966).
         """
-        self.y = z - H.dot(self.x)
+        self.y = z
         pht = self.P.dot(H.T)
         self.S = H.dot(pht) + R
         self.SI = inverse(self.S)
         self.K = pht.dot(self.SI)
         if considered is not None:
             self.K[considered] = 0.0
-        self.x = self.x + self.K.dot(self.y)
+        self.x = self.K.dot(z)
         left = self.P - self.K.dot(pht.T)
         self.P = left - left.dot(H.T).dot(self.K.T) + self.K.dot(R).dot(self.K.T)
 

@@ -1,7 +1,5 @@
 """What each sensor should measure, and how that depends on every part of the error state."""
 
-import numpy as np
-
 from fsw.core.algebra.quaternion import Quaternion, rotate
 from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale, skew
 from fsw.core.estimation.kalman import Matrix
@@ -22,11 +20,11 @@ def field_prediction(
         sensitivity[:, parts.delay.start] = cross(omega, b)
         sensitivity[:, 3:6] = skew(scale(-parameters.delay_s[0], b))
     b = _turned(b, parameters.mag_turn_rad)
-    sensitivity[:, 0:3] = turning = skew(b)
+    sensitivity[:, 0:3] = skew(b)
     if parts.mag_turn is not None:
-        sensitivity[:, parts.mag_turn] = turning
+        sensitivity[:, parts.mag_turn] = sensitivity[:, 0:3]
     if parts.mag_scale is not None:
-        sensitivity[:, parts.mag_scale] = np.diag(b)
+        sensitivity[:, parts.mag_scale] = ((b[0], 0.0, 0.0), (0.0, b[1], 0.0), (0.0, 0.0, b[2]))
     return add(_scaled(b, parameters.mag_scale), parameters.mag_bias_t), sensitivity
 
 
@@ -40,9 +38,9 @@ def sun_prediction(
         sensitivity[:, parts.delay.start + 1] = cross(omega, s)
         sensitivity[:, 3:6] = skew(scale(-parameters.delay_s[1], s))
     s = _turned(s, parameters.sun_turn_rad)
-    sensitivity[:, 0:3] = turning = skew(s)
+    sensitivity[:, 0:3] = skew(s)
     if parts.sun_turn is not None:
-        sensitivity[:, parts.sun_turn] = turning
+        sensitivity[:, parts.sun_turn] = sensitivity[:, 0:3]
     return s, sensitivity
 
 

@@ -115,8 +115,8 @@ def corrected(estimate: Estimate, error: Matrix, uncertainty: Matrix, config: Me
         uncertainty: covariance that this adds, (n, n).
         config: the filter.
     """
-    anew = estimate._replace(covariance=estimate.covariance + uncertainty)
-    return _fold(anew, error, config.layout)
+    folded = _fold(estimate, error, config.layout)
+    return Estimate(*folded, estimate.covariance + uncertainty, *estimate[4:])
 
 
 def healthy(estimate: Estimate) -> bool:
@@ -164,7 +164,7 @@ def predict(
     motion = BodyMotion(omega_mid, alpha_mid, m)
     transition = transition_matrix(motion, around_mid, m_body_am2, rotor, config)
 
-    kalman = LeanKalmanFilter(config.zero, covariance)
+    kalman = LeanKalmanFilter(covariance)
     kalman.predict(F=transition, Q=process_noise(m_body_am2, around_mid.b_t, config))
     return Estimate(
         normalise(multiply(q, turn(scale(h, omega_mid)))),
@@ -204,7 +204,7 @@ def update_both(
     b_predicted, b_sensitivity = field_prediction(*estimate[:3], b_eci_t, config)
     s_predicted, s_sensitivity = sun_prediction(*estimate[:3], s_eci, config)
     innovation = (*sub(b_body_t, b_predicted), *sub(s_body, s_predicted))
-    sensitivity = np.vstack((b_sensitivity, s_sensitivity))
+    sensitivity = np.concatenate((b_sensitivity, s_sensitivity))
     return _update(estimate, innovation, sensitivity, config.both_noise, config)
 
 
@@ -217,7 +217,7 @@ def _update(
     first: int = 0,
 ) -> Estimate | None:
     """The update of filterpy, judged by its own NIS and folded in; ``first``: its place in the ``lag``."""
-    kalman = LeanKalmanFilter(config.zero, estimate.covariance)
+    kalman = LeanKalmanFilter(estimate.covariance)
     kalman.update(np.array(innovation), noise, sensitivity, config.considered)
     nis, trace = float(kalman.y.dot(kalman.SI).dot(kalman.y)), estimate.trace
     if trace is not None:
@@ -232,8 +232,7 @@ def _update(
     covariance = 0.5 * (kalman.P + kalman.P.T)
     nis, numbers = estimate.nis + nis, estimate.numbers + len(innovation)
     lag = _lagging(estimate.lag, kalman, first, config.tick_s / LAG_S)
-    taken = Estimate(*estimate[:3], covariance, trace, nis, numbers, lag)
-    return _fold(taken, kalman.x, config.layout)
+    return Estimate(*_fold(estimate, kalman.x, config.layout), covariance, trace, nis, numbers, lag)
 
 
 def _lagging(lag: tuple[float, ...], kalman: LeanKalmanFilter, first: int, part: float) -> tuple[float, ...]:
@@ -258,15 +257,13 @@ def unexplained(sums: Matrix) -> float:
     return float(sums[-1, -1] - explained)
 
 
-def _fold(estimate: Estimate, error: Matrix, parts: Layout) -> Estimate:
-    """Fold the error state into the estimate."""
+def _fold(estimate: Estimate, error: Matrix, parts: Layout) -> tuple[Quaternion, Vec3, Parameters]:
+    """Attitude, rate and parameters with the error state folded in."""
+    q, omega, parameters = estimate[:3]
     values: list[float] = error.tolist()
-    return estimate._replace(
-        q_body_from_eci=normalise(multiply(estimate.q_body_from_eci, from_small_rotation(_three(values, 0)))),
-        omega_body_radps=add(estimate.omega_body_radps, _three(values, 3)),
-        parameters=corrected_parameters(estimate.parameters, values, parts),
+    t1, t2, t3, w1, w2, w3, *_ = values
+    return (
+        normalise(multiply(q, from_small_rotation((t1, t2, t3)))),
+        add(omega, (w1, w2, w3)),
+        corrected_parameters(parameters, values, parts),
     )
-
-
-def _three(values: list[float], first: int) -> Vec3:
-    return (values[first], values[first + 1], values[first + 2])

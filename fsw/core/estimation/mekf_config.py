@@ -23,8 +23,7 @@ class MekfConfig:
     ``torques`` are those of the torque, for estimated parameters; ``inverse_h`` is J^-1 h.
 
     By measurement, field, Sun or both at once: ``..._sensitivity`` is the constant part of H, (3, n), and
-    ``..._noise`` the covariance, (3, 3) or (6, 6). ``zero`` is the error state between updates, (n).
-    ``considered``: the states that no update changes.
+    ``..._noise`` the covariance, (3, 3) or (6, 6). ``considered``: the states that no update changes.
     """
 
     rotor: Rotor
@@ -38,8 +37,6 @@ class MekfConfig:
     driven: Matrix
     torques: TorqueMaps
     inverse_h: Matrix
-    identity_rows: Matrix
-    zero: Matrix
     field_sensitivity: Matrix
     sun_sensitivity: Matrix
     field_noise: Matrix
@@ -97,7 +94,7 @@ def mekf_config(
         prior = priors[NAMES[index]]
         noise[place, place] = np.diag([walk**2 * tick_s for walk in prior.walk])
         variances += [sigma**2 for sigma in prior.sigma]
-    identity_rows, system = np.eye(6, parts.size), np.zeros((6, parts.size))
+    system = np.zeros((6, parts.size))
     system[0:3, 3:6] = np.eye(3)
     system[3:6, 3:6] = j_inverse @ cross_matrix(np.array(wheel_body_nms))
     if parts.torque is not None:
@@ -114,13 +111,11 @@ def mekf_config(
         initial_parameters=_means(priors),
         initial_covariance=np.diag(variances),
         process_noise=noise,
-        constant=identity_rows + tick_s * system,
+        constant=np.eye(6, parts.size) + tick_s * system,
         moving=moving,
         driven=driven,
         torques=TORQUES,
         inverse_h=tick_s * j_inverse,
-        identity_rows=identity_rows,
-        zero=np.zeros(parts.size),
         field_sensitivity=field_sensitivity,
         sun_sensitivity=sun_sensitivity,
         field_noise=np.diag(field_variances),

@@ -41,7 +41,17 @@ class Parameters(NamedTuple):
 
     def floats(self) -> tuple[float, ...]:
         """Every component, in the order of its number on the bus; for the checksum of the state too."""
-        return tuple(number for part in self for number in part)
+        return (
+            *self.mag_bias_t,
+            *self.torque_body_nm,
+            *self.dipole_body_am2,
+            *self.coil_error,
+            *self.inertia_error_kgm2,
+            *self.mag_turn_rad,
+            *self.mag_scale,
+            *self.sun_turn_rad,
+            *self.delay_s,
+        )
 
 
 NOTHING = Parameters()
@@ -104,7 +114,7 @@ def corrected_parameters(parameters: Parameters, error: list[float], places: Lay
     """The parameters plus their part of an error state."""
     parts = list(parameters)
     for index, place in places.carried:
-        parts[index] = tuple(a + b for a, b in zip(parts[index], error[place], strict=True))
+        parts[index] = tuple([a + b for a, b in zip(parts[index], error[place], strict=True)])
     return Parameters._make(parts)
 
 

@@ -75,7 +75,6 @@ class TestPurity:
                 "constant",
                 "moving",
                 "driven",
-                "identity_rows",
             )
         }
         for tick in (100, 250):

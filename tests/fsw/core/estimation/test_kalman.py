@@ -21,11 +21,11 @@ def covariance(random, size):
 
 
 def pair(random, states, measurements):
-    """filterpy's filter and the lean one in the same state."""
-    x, p = random.normal(size=states), covariance(random, states)
+    """filterpy's filter and the lean one with the same covariance, and an error state of zero."""
+    p = covariance(random, states)
     parent = KalmanFilter(dim_x=states, dim_z=measurements)
-    parent.x, parent.P, parent.inv = x, p, inverse
-    return parent, LeanKalmanFilter(x, p)
+    parent.x, parent.P, parent.inv = np.zeros(states), p, inverse
+    return parent, LeanKalmanFilter(p)
 
 
 def transition(random, states, change=1.0):
@@ -57,7 +57,7 @@ def test_a_prediction_is_that_of_filterpy(sizes, seed):
     f, q = transition(random, states), covariance(random, states)
     parent.predict(F=f, Q=q)
     lean.predict(F=f[:MOVING], Q=q)
-    assert_equal(parent, lean, ("x", "P"))
+    assert_equal(parent, lean, ("P",))
 
 
 @given(SIZES, SEEDS)
@@ -67,7 +67,7 @@ def test_all_rows_may_move(sizes, seed):
     f = np.eye(states) + random.normal(size=(states, states))
     parent.predict(F=f, Q=np.zeros((states, states)))
     lean.predict(F=f, Q=np.zeros((states, states)))
-    assert_equal(parent, lean, ("x", "P"))
+    assert_equal(parent, lean, ("P",))
 
 
 @given(SIZES, SEEDS)
@@ -88,6 +88,7 @@ def test_so_is_what_follows_one_upon_the_other(sizes, seed):
     for _ in range(5):
         f, q = transition(random, states, 0.1), np.eye(states)
         z, sensitivity = random.normal(size=measurements), random.normal(size=(measurements, states))
+        parent.x = np.zeros(states)  # once it is folded into the estimate
         parent.predict(F=f, Q=q)
         lean.predict(F=f[:MOVING], Q=q)
         for one in (parent, lean):
@@ -97,11 +98,11 @@ def test_so_is_what_follows_one_upon_the_other(sizes, seed):
 
 def test_arrays_that_go_in_are_not_changed():
     random = np.random.default_rng(1)
-    x, p, f, q = random.normal(size=6), covariance(random, 6), np.eye(6), covariance(random, 6)
+    p, f, q = covariance(random, 6), np.eye(6), covariance(random, 6)
     z, noise, sensitivity = np.ones(3), np.eye(3), random.normal(size=(3, 6))
-    given_arrays = (x, p, f, q, z, noise, sensitivity)
+    given_arrays = (p, f, q, z, noise, sensitivity)
     before = [array.copy() for array in given_arrays]
-    lean = LeanKalmanFilter(x, p)
+    lean = LeanKalmanFilter(p)
     lean.predict(F=f, Q=q)
     lean.update(z, noise, sensitivity)
     assert all(map(np.array_equal, given_arrays, before))

@@ -31,9 +31,8 @@ def test_every_array_has_the_size_of_the_error_state(satellite):
     config, size = satellite.config(), satellite.size()
     assert config.layout.size == size
     assert config.initial_covariance.shape == config.process_noise.shape == (size, size)
-    assert config.constant.shape == config.identity_rows.shape == (6, size)
+    assert config.constant.shape == (6, size)
     assert config.field_sensitivity.shape == config.sun_sensitivity.shape == (3, size)
-    assert config.zero.shape == (size,)
 
 
 def test_the_parameters_begin_at_the_means_of_their_priors(full):
