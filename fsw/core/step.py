@@ -10,8 +10,8 @@ from fsw.core.algebra.quaternion import rotate
 from fsw.core.algebra.vector import ZERO, Vec3, add
 from fsw.core.commands import command
 from fsw.core.config import FlightConfig
-from fsw.core.estimation.attitude import UNKNOWN
-from fsw.core.estimation.estimator import NONE_USED, Used, predict, restart, update
+from fsw.core.estimation.attitude import UNKNOWN, Attitude
+from fsw.core.estimation.estimator import NONE_USED, EstimatorState, Used, predict, restart, update
 from fsw.core.estimation.orbital_attitude import orbital_attitude, perfect_attitude
 from fsw.core.estimation.parameters import NOTHING, UNCHANGED_INERTIA, Parameters, inertia_error
 from fsw.core.estimation.samples import usable_field, usable_sun
@@ -39,11 +39,14 @@ class Observation(NamedTuple):
     """What one tick shows of the satellite.
 
     ``readings`` are those that may be trusted; ``reference`` is what the models expect, None without an
-    orbit; ``used`` is what the filter took.
+    orbit; ``estimator`` and ``attitude`` are those of this tick before they are judged; ``used`` is what the
+    filter took.
     """
 
     readings: Readings
     reference: Reference | None
+    estimator: EstimatorState
+    attitude: Attitude
     used: Used = NONE_USED
     findings: Findings | None = None
 
@@ -66,16 +69,16 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     if belief is Belief.IGNORED or belief is Belief.UNANSWERED:
         state = state._replace(ignored_syncs=state.ignored_syncs + 1, syncs=syncs)
         return state, (_done(state, tick),) if belief is Belief.UNANSWERED else ()
-    state, inbox = _begin(state, inbox, belief, syncs, config)
+    state, inbox = _begin(state, inbox, belief, config)
     model = with_orbit(config.ephemeris, state.orbit)
-    state, readings = _gate(state, inbox, config)
+    state, readings = _gate(state, inbox, syncs, config)
     state, reference = _predict(state, model, tick - before.tick, config)
-    state, observation = _update(state, readings, reference, config)
+    observation = _update(state, readings, reference, config)
     state = _judge(state, observation, config)
     state, violated = supervise(state, config)
     state, acks = command(state, observation.readings, violated is not None, config)
-    state, demand, b_body_t = _control(state, observation, model, config)
-    state, requests = _schedule(state, observation.readings, demand, b_body_t, config)
+    law_input, demand = _control(state, observation, model, config)
+    state, requests = _schedule(state, observation.readings, law_input, demand, config)
     state, frames = _report(before, state, observation, violated, (*requests, *acks), config)
     return state, (*frames, _done(state, tick))
 
@@ -90,7 +93,7 @@ def _done(state: FlightState, tick: int) -> Frame:
 
 
 def _begin(
-    state: FlightState, inbox: Inbox, belief: Belief, syncs: SyncWatch, config: FlightConfig
+    state: FlightState, inbox: Inbox, belief: Belief, config: FlightConfig
 ) -> tuple[FlightState, Inbox]:
     """At the first tick of a count every timer starts in full; ticks that were skipped stop the timers."""
     tick, timing = inbox.tick, config.coils.pulses
@@ -100,10 +103,12 @@ def _begin(
         state = state._replace(pulses=pulses.boot(tick, timing), field_tick=tick, status_tick=tick)
     elif state.tick < tick - 1:
         state = state._replace(pulses=pulses.delay(state.pulses, tick, tick - state.tick - 1))
-    return state._replace(tick=tick, syncs=syncs._replace(strange_tick=-1)), inbox
+    return state, inbox
 
 
-def _gate(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[FlightState, Readings]:
+def _gate(
+    state: FlightState, inbox: Inbox, syncs: SyncWatch, config: FlightConfig
+) -> tuple[FlightState, Readings]:
     """Accept what the boards sent, and compare the coil driver's currents with the requests."""
     tick = inbox.tick
     readings, gate = admit(inbox.frames, state.gate)
@@ -111,6 +116,8 @@ def _gate(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Fligh
     readings = readings._replace(quiet=view.idle_ticks > config.estimator.blank_ticks)
     expected_s = config.epoch_unix_s + tick // config.tick_hz
     state = state._replace(
+        tick=tick,
+        syncs=syncs if syncs.strange_tick < 0 else syncs._replace(strange_tick=-1),
         field_tick=tick if readings.field is not None else state.field_tick,
         status_tick=tick if readings.coil is not None else state.status_tick,
         time_error_s=inbox.unix_time_s - expected_s,
@@ -141,41 +148,37 @@ def _predict(
 
 def _update(
     state: FlightState, readings: Readings, reference: Reference | None, config: FlightConfig
-) -> tuple[FlightState, Observation]:
+) -> Observation:
     """Update the estimate by what may be trusted of the readings."""
     if reference is None:
-        return state._replace(attitude=UNKNOWN), Observation(readings, None)
+        return Observation(readings, None, state.estimator, UNKNOWN)
     if config.estimator.perfect:
-        attitude = perfect_attitude(readings, state.attitude)
-        return state._replace(attitude=attitude), Observation(readings, reference)
+        return Observation(readings, reference, state.estimator, perfect_attitude(readings, state.attitude))
     findings = fdir.examine(readings, state.health, reference, config.fdir)
     readings = fdir.trusted(readings, state.health, findings)
     updated, used = update(state.estimator, readings, reference, config.estimator)
     attitude = orbital_attitude(updated.estimate, reference, config.estimator.valid_sigma_rad)
-    state = state._replace(estimator=updated, attitude=attitude)
-    return state, Observation(readings, reference, used, findings)
+    return Observation(readings, reference, updated, attitude, used, findings)
 
 
 def _judge(state: FlightState, observation: Observation, config: FlightConfig) -> FlightState:
     """Judge sensors and coils by all readings, of isolated sensors too."""
-    reference, findings = observation.reference, observation.findings
-    if reference is None or findings is None:
-        return state
-    evidence = Evidence(state.tick, findings, state.coil, reference, observation.used)
-    health, judged, attitude = fdir.judge(
-        state.health, state.estimator, state.attitude, evidence, config.fdir
-    )
-    return state._replace(health=health, estimator=judged, attitude=attitude)
+    _, reference, estimator, attitude, used, findings = observation
+    health = state.health
+    if reference is not None and findings is not None:
+        evidence = Evidence(state.tick, findings, state.coil, reference, used)
+        health, estimator, attitude = fdir.judge(health, estimator, attitude, evidence, config.fdir)
+    return state._replace(health=health, estimator=estimator, attitude=attitude)
 
 
 def _control(
     state: FlightState, observation: Observation, model: EphemerisModel, config: FlightConfig
-) -> tuple[FlightState, Demand | None, Vec3]:
-    """What the law of this mode asks for, and the field that it used, body axes, T."""
+) -> tuple[LawInput, Demand | None]:
+    """What the law of this mode knows, and what it asks for."""
     law_input = _law_input(state, observation, model)
-    demand = by_mode.demand(state.modes.mode, law_input, state.memory, state.setpoint, config.control)
-    memory = demand.memory if demand is not None else ()
-    return state._replace(sample=law_input.sample, memory=memory), demand, law_input.b_body_t
+    return law_input, by_mode.demand(
+        state.modes.mode, law_input, state.memory, state.setpoint, config.control
+    )
 
 
 def _law_input(state: FlightState, observation: Observation, model: EphemerisModel) -> LawInput:
@@ -212,14 +215,16 @@ def _constant_torque(parameters: Parameters, reference: Reference | None) -> Vec
 
 
 def _schedule(
-    state: FlightState, readings: Readings, demand: Demand | None, b_body_t: Vec3, config: FlightConfig
+    state: FlightState, readings: Readings, law_input: LawInput, demand: Demand | None, config: FlightConfig
 ) -> tuple[FlightState, list[CoilFire | CoilDipole]]:
     """At most one request to the coil driver."""
-    faults = state.health.coils.faults
+    faults, b_body_t = state.health.coils.faults, law_input.b_body_t
     timers, view, request = actuate(
         state.pulses, state.coil, demand, b_body_t, readings, state.tick, config.coils, faults
     )
-    return state._replace(pulses=timers, coil=view), [request] if request is not None else []
+    memory = demand.memory if demand is not None else ()
+    state = state._replace(sample=law_input.sample, memory=memory, pulses=timers, coil=view)
+    return state, [request] if request is not None else []
 
 
 def _report(
