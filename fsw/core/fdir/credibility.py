@@ -4,12 +4,12 @@ A parameter is credible within ``SIGMAS`` standard deviations of its prior. The 
 one that is beyond: a Sun sensor with swapped axes as one that is turned, a twisting magnetometer as a bias.
 """
 
-from math import inf
+from math import sqrt
 from typing import NamedTuple
 
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.estimation.parameters import NAMES
+from fsw.core.estimation.parameters import COMPONENTS, NAMES, component_places
 
 SIGMAS = 4.0
 OF_SENSORS = frozenset({"mag_bias_t", "mag_turn_rad", "mag_scale", "sun_turn_rad", "delay_s"})
@@ -17,26 +17,25 @@ OF_SENSORS = frozenset({"mag_bias_t", "mag_turn_rad", "mag_scale", "sun_turn_rad
 
 
 class CredibilityConfig(NamedTuple):
-    """Least and largest credible value of every number of the ``Parameters``; infinite of those left out.
+    """Place, least and largest credible value of each number that is estimated, among the ``Parameters``.
 
     ``of_sensors`` and ``of_all``: of the parameters of the sensors, and of all.
     """
 
-    of_sensors: tuple[tuple[float, float], ...]
-    of_all: tuple[tuple[float, float], ...]
+    of_sensors: tuple[tuple[int, float, float], ...]
+    of_all: tuple[tuple[int, float, float], ...]
 
 
 def credibility_config(mekf: MekfConfig) -> CredibilityConfig:
     """The limits that follow from the filter's priors."""
-    variances, carried = mekf.initial_covariance.diagonal(), dict(mekf.layout.carried)
+    variances, means = mekf.initial_covariance.diagonal().tolist(), mekf.initial_parameters.floats()
     of_sensors, of_all = [], []
-    for index, (name, means) in enumerate(zip(NAMES, mekf.initial_parameters, strict=True)):
-        limits = [(-inf, inf)] * len(means)
-        if index in carried:
-            widths = (SIGMAS * variances[carried[index]] ** 0.5).tolist()
-            limits = [(mean - width, mean + width) for mean, width in zip(means, widths, strict=True)]
-        of_all += limits
-        of_sensors += limits if name in OF_SENSORS else [(-inf, inf)] * len(means)
+    for number, place in component_places(mekf.layout).items():
+        width = SIGMAS * sqrt(variances[place])
+        limits = (number, means[number] - width, means[number] + width)
+        of_all.append(limits)
+        if NAMES[COMPONENTS[number][0]] in OF_SENSORS:
+            of_sensors.append(limits)
     return CredibilityConfig(tuple(of_sensors), tuple(of_all))
 
 
@@ -50,8 +49,6 @@ def sensors_credible(estimate: Estimate, config: CredibilityConfig) -> bool:
     return _within(estimate, config.of_sensors)
 
 
-def _within(estimate: Estimate, limits: tuple[tuple[float, float], ...]) -> bool:
-    for number, (low, high) in zip(estimate.parameters.floats(), limits, strict=True):
-        if not low <= number <= high:
-            return False
-    return True
+def _within(estimate: Estimate, limits: tuple[tuple[int, float, float], ...]) -> bool:
+    numbers = estimate.parameters.floats()
+    return all(low <= numbers[place] <= high for place, low, high in limits)

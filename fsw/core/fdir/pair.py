@@ -131,7 +131,7 @@ def _misfit(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: C
         if not proven(pair, weights):
             was_proven = pair.standing is Standing.TRUSTED and seen.findings.pair
             wrong = seen.findings.apart or (seen.refused and (was_proven or not seen.sound))
-        wrong = wrong or not (estimate is None or sensors_credible(estimate, credibility))
+        wrong = wrong or not (seen.sound or estimate is None or sensors_credible(estimate, credibility))
     if wrong:
         return 1.0
     return -1.0 if estimate is None else _innovations(estimate)

@@ -134,7 +134,7 @@ class TestValidity:
 APART = BOTH._replace(apart=True)
 DOUBTS = {
     "large innovations": (TRUSTED, LARGE),
-    "parameters beyond their bounds": (TRUSTED, TAKEN._replace(estimate=TURNED)),
+    "parameters beyond their bounds": (TRUSTED, TAKEN._replace(estimate=TURNED, sound=False)),
     "the wrong angle, without an estimate": (Pair(), WITHOUT._replace(findings=APART)),
     "the wrong angle, with a young one": (Pair(), TAKEN._replace(findings=APART)),
     "a refusal by one that is not credible": (Pair(), REFUSED._replace(sound=False)),
