@@ -51,11 +51,11 @@ def total(
     """
     c = matrix(q_body_from_eci)
     e_eci, gradient, b_eci, _ = around
-    ex, ey, ez = transform(c, e_eci)
+    e_body = ex, ey, ez = transform(c, e_eci)
     bx, by, bz = transform(c, b_eci)
     mx, my, mz = m_body_am2
     dx, dy, dz = bias_body_nm
-    fx, fy, fz = transform(inertia_kgm2, (ex, ey, ez))
+    fx, fy, fz = transform(inertia_kgm2, e_body)
     return (
         gradient * (ey * fz - ez * fy) + my * bz - mz * by + dx,
         gradient * (ez * fx - ex * fz) + mz * bx - mx * bz + dy,

@@ -72,6 +72,8 @@ class Coils:
         return self._dipole((x, y, z))
 
     def _dipole(self, current_a: Vec3) -> Vec3:
+        if current_a == ZERO:
+            return ZERO
         (x, y, z), (i, j, k) = self._dipole_per_ampere, current_a
         by_coil = (x * i, y * j, z * k)
         return transform(self._body_from_coils, by_coil) if self._body_from_coils else by_coil

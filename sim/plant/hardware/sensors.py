@@ -33,6 +33,8 @@ class Delay:
         samples.append(now)
         while len(samples) < self._length:
             samples.append(now)
+        if not part:  # whole ticks
+            return samples[1]
         return tuple(late + part * (early - late) for early, late in zip(samples[0], samples[1], strict=True))
 
 
@@ -63,16 +65,18 @@ class MagnetometerPhysics:
             b_body_t: the Earth's field at this instant.
             m_body_am2: the coils' dipole at this instant.
         """
-        config = self._config
-        (bx, by, bz), own = b_body_t, transform(config.coil_coupling_t_per_am2, m_body_am2)
-        sensed: _Values = transform(self._sensor_from_body, (bx + own[0], by + own[1], bz + own[2]))
+        config, noise = self._config, self._noise
+        if m_body_am2 != ZERO:
+            (bx, by, bz), own = b_body_t, transform(config.coil_coupling_t_per_am2, m_body_am2)
+            b_body_t = (bx + own[0], by + own[1], bz + own[2])
+        sensed: _Values = transform(self._sensor_from_body, b_body_t)
         if self._delay:
             sensed = self._delay(sensed)
-        x, y, z = (
-            _quantise(scale * b + bias + config.noise_t * next(self._noise), config.quantum_t)
-            for scale, b, bias in zip(config.scale, sensed, config.bias_t, strict=True)
-        )
-        most = config.saturation_t
+        (bx, by, bz), (sx, sy, sz), (ox, oy, oz) = sensed, config.scale, config.bias_t
+        sigma, quantum, most = config.noise_t, config.quantum_t, config.saturation_t
+        x = _quantise(sx * bx + ox + sigma * next(noise), quantum)
+        y = _quantise(sy * by + oy + sigma * next(noise), quantum)
+        z = _quantise(sz * bz + oz + sigma * next(noise), quantum)
         if -most <= x <= most and -most <= y <= most and -most <= z <= most:
             return (x, y, z), True
         return (min(max(x, -most), most), min(max(y, -most), most), min(max(z, -most), most)), False
