@@ -20,7 +20,6 @@ from sim.campaign.claim import ClaimVerdict
 from sim.campaign.flight import FlightResult
 from sim.campaign.population import POPULATIONS, Tolerances
 from sim.campaign.runner import StudyResult, run
-from sim.campaign.study import summary_number
 from sim.drawing.canvas import AXES_COLOURS, LIMIT, log_y, style
 from sim.errors import HarnessError
 from sim.progress import progress
@@ -100,7 +99,7 @@ def _satellite(flight: FlightResult) -> str:
         f"{found['inertia_percent']:.1f}",
         f"{found['misalignment_deg']:.2f}",
         f"{100.0 * worst_inside(flight):.1f}",
-        f"{summary_number(flight, 'nees_mean'):.1f}",
+        f"{found['nees']:.1f}",
         f"{found['estimate_deg']:.2f}",
         f"{found['pointing_deg']:.2f}",
         "never" if pointed == float("inf") else f"{pointed:.2f}",

@@ -11,7 +11,7 @@ from sim.record.estimates import Estimates
 from sim.record.truth import Histories
 from sim.report.attitude_arrays import angle_rad
 from sim.report.spans import held_from, spans
-from sim.report.summary import converged_tick, estimate_error, within_3sigma
+from sim.report.summary import converged_tick, estimate_error, nees, within_3sigma
 from sim.scenario.schema import Scenario, flight_table, orbit_period_s
 
 Array = NDArray[np.float64]
@@ -25,24 +25,32 @@ def honesty_figures(scenario: Scenario, truth: Histories, estimates: Estimates) 
     """What differs from the onboard table, how honest the filter is, and how well the satellite points.
 
     ``inside_1``, ``_2``, ``_3``: part of the ticks after convergence, attitude valid, with the error about
-    that body axis inside 3 sigma; ``estimate_deg``: RMS of the error in them. ``wrong_5deg_s`` and
-    ``wrong_10deg_s``: longest time of the flight valid with a larger error. ``pointing_deg``: RMS over the
-    last orbits; ``pointed_orbits``: from when on it stays small, infinite if never; ``in_point``: 1 if the
-    flight ends in POINT.
+    that body axis inside 3 sigma; ``estimate_deg``: RMS of the error in them; ``nees``: mean over all ticks
+    after convergence. The same with ``point_`` before the name: from the first tick in POINT on, whatever
+    modes follow. ``wrong_5deg_s`` and ``wrong_10deg_s``: longest time of the whole flight valid with a larger
+    error. ``pointing_deg``: RMS over the last orbits; ``pointed_orbits``: from when on it stays small,
+    infinite if never; ``in_point``: 1 if the flight ends in POINT.
     """
     tick_hz, ticks = scenario.time.tick_hz, len(truth["t_s"])
     orbit_ticks = orbit_period_s(scenario) * tick_hz
     pointing_deg = np.degrees(angle_rad(truth["q_body_from_orbit"]))
     error_deg = np.degrees(angle_rad(estimate_error(truth, estimates)))
     valid = estimates.valid[:ticks]
+    in_point = estimates.mode[:ticks] == Mode.POINT
+    starts = {"": converged_tick(error_deg, tick_hz), "point_": _first(in_point)}
+    inside, consistency = within_3sigma(truth, estimates), nees(truth, estimates)
     pointed = held_from(pointing_deg < POINTED_DEG)
     return {
         **_differences(scenario),
-        **_honesty(error_deg, valid, within_3sigma(truth, estimates), converged_tick(error_deg, tick_hz)),
+        **{
+            f"{prefix}{name}": value
+            for prefix, first in starts.items()
+            for name, value in _honesty(error_deg, valid, inside, consistency, first).items()
+        },
         **{f"wrong_{most:g}deg_s": _longest(valid & (error_deg > most)) / tick_hz for most in WRONG_DEG},
         "pointing_deg": _rms(pointing_deg[-round(LAST_ORBITS * orbit_ticks) :]),
         "pointed_orbits": inf if pointed is None else pointed / orbit_ticks,
-        "in_point": float(estimates.mode[ticks - 1] == Mode.POINT),
+        "in_point": float(in_point[-1]),
     }
 
 
@@ -59,17 +67,26 @@ def _differences(scenario: Scenario) -> Figures:
 
 
 def _honesty(
-    error_deg: Array, valid: NDArray[np.bool_], inside: NDArray[np.bool_], first: int | None
+    error_deg: Array,
+    valid: NDArray[np.bool_],
+    inside: NDArray[np.bool_],
+    consistency: Array,
+    first: int | None,
 ) -> Figures:
-    """From the first tick after convergence on; a filter that never converges is not honest."""
+    """From that tick on; a flight that never comes there is not honest."""
     if first is None or not valid[first:].any():
-        return {"inside_1": 0.0, "inside_2": 0.0, "inside_3": 0.0, "estimate_deg": inf}
-    counted = valid[first:]
+        return {"inside_1": 0.0, "inside_2": 0.0, "inside_3": 0.0, "estimate_deg": inf, "nees": inf}
+    counted, known = valid[first:], np.isfinite(consistency[first:])
     parts = inside[first:][counted].mean(axis=0)
     return {
         **{f"inside_{axis}": float(part) for axis, part in enumerate(parts, start=1)},
         "estimate_deg": _rms(error_deg[first:][counted]),
+        "nees": float(consistency[first:][known].mean()) if known.any() else inf,
     }
+
+
+def _first(holds: NDArray[np.bool_]) -> int | None:
+    return int(holds.argmax()) if holds.any() else None
 
 
 def _longest(holds: NDArray[np.bool_]) -> int:

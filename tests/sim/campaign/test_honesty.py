@@ -31,27 +31,34 @@ def turn(angles_deg, axis):
 
 
 class Made:
-    """A flight turned about axis 3; the estimate errs about it too. Sigma is 0.1, 0.2 and 0.3 deg."""
+    """A flight turned about axis 3; the estimate errs about it too. Sigma is 0.1, 0.2 and 0.3 deg.
+
+    True and estimated rate are zero.
+    """
 
     def __init__(self):
         self.scenario = load("microsat", OVERRIDES)
         self.pointing_deg = np.full(TICKS, 2.0)
         self.error_deg = np.full(TICKS, 0.5)
         self.valid = np.ones(TICKS, dtype=bool)
+        self.mode = np.full(TICKS, Mode.ACQUIRE)
+        self.mode[-1] = Mode.POINT
         self.axis = 3
 
     def figures(self):
         truth = {
             "t_s": np.arange(TICKS, dtype=float),
             "q_body_from_orbit": turn(self.pointing_deg, self.axis),
+            "omega_body_orbit_radps": np.zeros((TICKS, 3)),
         }
         estimates = EstimateRecorder(TICKS).estimates()
         estimates.q_body_from_orbit[:] = turn(self.pointing_deg - self.error_deg, self.axis)
         sigma = np.radians([0.1, 0.2, 0.3])
         estimates.covariance[:] = np.diag([*sigma**2, 1e-10, 1e-10, 1e-10])
         estimates.valid[:] = self.valid
-        estimates.mode[:] = Mode.ACQUIRE
-        estimates.mode[-1] = Mode.POINT
+        estimates.omega_body_orbit_radps[:] = 0.0
+        estimates.omega_body_radps[:] = 0.0
+        estimates.mode[:] = self.mode
         return honesty_figures(self.scenario, truth, estimates)
 
 
@@ -89,13 +96,54 @@ def test_honesty_counts_after_convergence_while_the_attitude_is_valid(made):
     assert found["estimate_deg"] == pytest.approx(np.sqrt(expected))
 
 
+def test_nees_compares_the_error_with_its_covariance_after_convergence(made):
+    """An error of 0.5 deg with a sigma of 0.3 deg."""
+    made.error_deg[:1000] = 20.0
+    assert made.figures()["nees"] == pytest.approx((0.5 / 0.3) ** 2, rel=1e-4)
+
+
+def test_after_the_first_tick_in_point_honesty_is_counted_again_by_itself(made):
+    """A tumble, in which the filter is surer than it may be, comes before; what follows later counts."""
+    tumble, out, quarter = slice(0, ORBIT), slice(2 * ORBIT, 3 * ORBIT), TICKS // 4
+    made.mode[ORBIT:] = Mode.POINT
+    made.mode[out] = Mode.DETUMBLE
+    made.error_deg[tumble] = 1.8
+    assert made.figures()["inside_3"] == pytest.approx(0.75)
+    found = made.figures()
+    assert [found[f"point_inside_{axis}"] for axis in (1, 2, 3)] == [1.0, 1.0, 1.0]
+    assert found["point_estimate_deg"] == pytest.approx(0.5)
+    assert found["point_nees"] == pytest.approx((0.5 / 0.3) ** 2, rel=1e-4)
+    made.error_deg[out] = 1.8
+    found = made.figures()
+    assert found["point_inside_3"] == pytest.approx(1.0 - quarter / (TICKS - ORBIT))
+    assert found["point_nees"] == pytest.approx((2.0 * (0.5 / 0.3) ** 2 + 36.0) / 3.0, rel=1e-3)
+
+
+def test_in_point_a_filter_that_has_not_converged_is_judged_too(made):
+    made.error_deg[:] = 2.5
+    made.mode[ORBIT:] = Mode.POINT
+    found = made.figures()
+    assert (found["point_inside_3"], found["point_estimate_deg"]) == (0.0, pytest.approx(2.5))
+
+
+@pytest.mark.parametrize("how", ["never in POINT", "not valid there"])
+def test_a_satellite_that_never_comes_to_point_with_a_valid_attitude_is_not_honest_there(made, how):
+    made.error_deg[:] = 0.1
+    made.mode[-1] = Mode.ACQUIRE if how == "never in POINT" else Mode.POINT
+    made.valid[-1] = how == "never in POINT"
+    found = made.figures()
+    assert [found[f"point_inside_{axis}"] for axis in (1, 2, 3)] == [0.0, 0.0, 0.0]
+    assert (found["point_estimate_deg"], found["point_nees"]) == (inf, inf)
+    assert found["inside_3"] == 1.0
+
+
 @pytest.mark.parametrize("how", ["large", "not valid"])
 def test_a_filter_that_never_converges_is_not_honest(made, how):
     made.error_deg[:] = 2.5 if how == "large" else 0.1
     made.valid[:] = how == "large"
     found = made.figures()
     assert [found[f"inside_{axis}"] for axis in (1, 2, 3)] == [0.0, 0.0, 0.0]
-    assert found["estimate_deg"] == inf
+    assert (found["estimate_deg"], found["nees"]) == (inf, inf)
 
 
 def test_the_longest_time_that_it_is_valid_and_wrong(made):

@@ -14,6 +14,11 @@ GOOD = {
     "inside_2": 0.998,
     "inside_3": 1.0,
     "estimate_deg": 0.3,
+    "nees": 4.0,
+    "point_inside_1": 0.998,
+    "point_inside_2": 1.0,
+    "point_inside_3": 0.999,
+    "point_nees": 4.5,
     "wrong_10deg_s": 10.0,
     "pointing_deg": 1.5,
     "pointed_orbits": 1.8,
@@ -22,12 +27,10 @@ GOOD = {
 }
 
 
-def flights(study, change=None, nees=4.0, isolated=()):
+def flights(study, change=None, isolated=()):
     """Good flights of a study; the first differs."""
-    found = [FlightResult(task.args[0], {"nees_mean": 4.0, "isolated": []}, GOOD) for task in study.tasks]
-    found[0] = FlightResult(
-        found[0].order, {"nees_mean": nees, "isolated": [*isolated]}, GOOD | (change or {})
-    )
+    found = [FlightResult(task.args[0], {"isolated": []}, GOOD) for task in study.tasks]
+    found[0] = FlightResult(found[0].order, {"isolated": [*isolated]}, GOOD | (change or {}))
     return found
 
 
@@ -117,11 +120,32 @@ def test_a_healthy_unit_that_is_isolated_once_fails(studies):
     ("nees", "expected"), [(800.0, {"nees"}), (inf, {"nees"}), (-250.0, {"nees"}), (9.0, set())]
 )
 def test_nees_is_judged_in_the_mean(studies, nees, expected):
-    assert failed(studies["50kg"], nees=nees) == expected
+    assert failed(studies["50kg"], change={"nees": nees}) == expected
 
 
-def test_at_twice_the_bounds_a_wrong_attitude_is_not_called_valid_for_a_minute(studies):
-    assert failed(studies["twice"], change={"wrong_10deg_s": 61.0}) == {"wrong"}
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        ({"inside_1": 0.5, "nees": 900.0}, set()),
+        ({"point_inside_3": 0.94}, {"inside_worst"}),
+        ({"point_nees": 900.0}, {"nees"}),
+        ({"wrong_10deg_s": 61.0}, {"wrong"}),
+        ({"in_point": 0.0}, {"in_point"}),
+        (
+            {"point_inside_1": 0.0, "point_inside_2": 0.0, "point_inside_3": 0.0, "point_nees": inf},
+            {"inside", "inside_worst", "nees"},
+        ),
+    ],
+    ids=["while it tumbles", "in POINT", "by NEES", "wrong at any time", "not there", "never there"],
+)
+def test_a_satellite_that_tumbled_is_honest_from_point_on(studies, change, expected):
+    for name in ("tumbling", "tumbling_5degps"):
+        assert failed(studies[name], change=change) == expected
+
+
+def test_even_at_twice_the_bounds_a_wrong_attitude_is_not_called_valid_for_a_minute(studies):
+    for name in ("twice", "50kg", "3u", "6u"):
+        assert failed(studies[name], change={"wrong_10deg_s": 61.0}) == {"wrong"}
     assert failed(studies["twice"], change={"inside_1": 0.5, "pointing_deg": 50.0}) == set()
 
 
