@@ -35,7 +35,8 @@ HEAD = """# Populations of real satellites
 Written by `make population`; do not edit. No satellite is what its onboard table says. Here random ones fly,
 drawn by `sim/campaign/population.py` within the tolerances below: the plant gets what is true, the onboard
 table keeps the nominal values. Satellite 7 of a population is the same wherever it flies, and its sensors and
-coils are healthy: none may be isolated.
+coils are healthy: none may be isolated. The 6U has drag and light besides. No Sun sensor sees the light of
+the Earth (`sensors.sun.albedo` would turn it on).
 
 An honest filter has each axis of its error inside 3 sigma for 99.7 % of the time.
 """
@@ -44,11 +45,14 @@ TOLERANCES = (
     ("moments of inertia, each", "inertia_percent", "%"),
     ("products of inertia, of the mean moment", "products_percent", "%"),
     ("residual dipole, any direction, log-uniform", "residual_dipole_am2", "A m^2"),
+    ("part of the dipole that points elsewhere in shadow", "eclipse_dipole_percent", "%"),
+    ("remanence of pulses at the highest level, of the largest dipole", "remanence_percent", "%"),
     ("dipole of a coil", "coil_gain_percent", "%"),
     ("axis of a coil, whole turn", "coil_misalignment_deg", "deg"),
     ("magnetometer bias, by axis", "magnetometer_bias_nt", "nT"),
     ("magnetometer scale, by axis", "magnetometer_scale_percent", "%"),
     ("magnetometer, whole turn", "magnetometer_misalignment_deg", "deg"),
+    ("magnetometer, angles between its axes, within that turn", "non_orthogonality_deg", "deg"),
     ("Sun sensor, whole turn", "sun_misalignment_deg", "deg"),
     ("torque by axis, with its daily variation", "torque_nm", "N m"),
     ("position along the track", "along_track_km", "km"),

@@ -7,6 +7,7 @@ what is true; the onboard table keeps the nominal values of the scenario.
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from functools import cache
+from math import sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,8 +15,7 @@ from numpy.typing import NDArray
 from fsw.input.schema import Nested, merge
 from sim.campaign.flight import Order
 from sim.campaign.honesty import honesty_figures
-from sim.scenario.schema import load
-from sim.scenario.sections import ScenarioBody
+from sim.scenario.schema import Scenario, load
 
 Array = NDArray[np.float64]
 Interval = tuple[float, float]
@@ -27,6 +27,9 @@ START_DEG, START_DEGPS = 60.0, 0.05
 @dataclass(frozen=True, slots=True)
 class Tolerances:
     """By how much a satellite may differ from its table. Uniform within it, but for the dipole.
+
+    The last three have no bound of their own on board; they stay within what the turn of the magnetometer and
+    the dipole leave of theirs.
 
     Attributes:
         residual_dipole_am2: least and most, any direction; its logarithm is uniform.
@@ -43,6 +46,9 @@ class Tolerances:
         sun_misalignment_deg: the whole turn.
         along_track_km: by which the satellite is ahead of its elements, or behind them.
         latency_s: of both sensors; every satellite has it in full.
+        non_orthogonality_deg: by pair of axes of the magnetometer.
+        eclipse_dipole_percent: of the dipole that in the Earth's shadow points in another direction.
+        remanence_percent: that pulses at the highest level may leave behind, of the largest dipole.
     """
 
     residual_dipole_am2: Interval
@@ -58,13 +64,19 @@ class Tolerances:
     sun_misalignment_deg: float = 0.5
     along_track_km: float = 5.0
     latency_s: float = 1.0
+    non_orthogonality_deg: float = 0.1
+    eclipse_dipole_percent: float = 10.0
+    remanence_percent: float = 2.0
 
     def declared(self) -> Nested:
         """The bounds as ``[uncertainty]`` of an onboard table."""
-        values = asdict(self)
+        values = {key: value for key, value in asdict(self).items() if key not in NOT_DECLARED}
         values["residual_dipole_am2"] = self.residual_dipole_am2[1]
         values["torque_nm"] = values.pop("declared_torque_nm")
         return values
+
+
+NOT_DECLARED = ("non_orthogonality_deg", "eclipse_dipole_percent", "remanence_percent")
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,9 +107,12 @@ def satellite(
         declared: the onboard table declares the bounds; else it holds what it takes for ordinary.
     """
     chosen, factor = POPULATIONS[kind], 2.0 if twice else 1.0
-    random = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=tuple(kind.encode())))
-    body = _nominal_body(chosen.scenario)
+    random, more = (_stream(kind, seed, number) for number in ((), (1,)))
+    nominal = nominal_scenario(chosen.scenario)
+    body = nominal.body
     overrides = _hardware(random, chosen.tolerances, factor)
+    unmodelled = _unmodelled(more, overrides, nominal.coils.levels_am2[2], chosen.tolerances, factor)
+    overrides = merge(overrides, unmodelled)
     overrides["initial"] = _start(random, rate_degps)
     overrides["body"] = {
         "inertia_kgm2": _inertia(random, np.array(body.inertia), chosen.tolerances, factor).tolist()
@@ -125,8 +140,13 @@ def population_order(
 
 
 @cache
-def _nominal_body(scenario: str) -> ScenarioBody:
-    return load(scenario).body
+def nominal_scenario(name: str) -> Scenario:
+    """A shipped scenario as it is."""
+    return load(name)
+
+
+def _stream(kind: str, seed: int, number: tuple[int, ...]) -> np.random.Generator:
+    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(*kind.encode(), *number)))
 
 
 def _hardware(random: np.random.Generator, tolerances: Tolerances, factor: float) -> Nested:
@@ -168,6 +188,40 @@ def _hardware(random: np.random.Generator, tolerances: Tolerances, factor: float
     }
 
 
+def _unmodelled(
+    random: np.random.Generator, drawn: Nested, level_am2: float, tolerances: Tolerances, factor: float
+) -> Nested:
+    """What the filter has no parameter for: a skew magnetometer, a dipole that changes.
+
+    No axis of the magnetometer is off by more than the bound on its turn, turn and skew together, nor is the
+    dipole ever larger than its bound: in shadow it has the part p of its size in a random direction, and the
+    cores of all three coils together keep no more than is left.
+
+    Args:
+        random: the stream.
+        drawn: by ``_hardware``.
+        level_am2: nominal dipole of a coil's highest level.
+        tolerances: the bounds.
+        factor: of the bounds.
+    """
+    turn_deg = float(np.linalg.norm(drawn["sensors"]["magnetometer"]["misalignment_deg"]))
+    left_deg = (factor * tolerances.magnetometer_misalignment_deg - turn_deg) / sqrt(2.0)
+    skew_deg = min(factor * tolerances.non_orthogonality_deg, left_deg) * random.uniform(-1.0, 1.0, 3)
+    dipole = np.array(drawn["disturbance"]["residual_dipole_am2"])
+    size, most = float(np.linalg.norm(dipole)), factor * tolerances.residual_dipole_am2[1]
+    elsewhere = 0.01 * tolerances.eclipse_dipole_percent * random.uniform()
+    in_shadow = (1.0 - elsewhere) * dipole + elsewhere * size * _direction(random)
+    kept_am2 = min(0.01 * tolerances.remanence_percent * most, most - size) * random.uniform()
+    pulses_am2 = sqrt(3.0) * level_am2 * max(drawn["coils"]["dipole_scale"])
+    return {
+        "sensors": {"magnetometer": {"non_orthogonality_deg": skew_deg.tolist()}},
+        "disturbance": {
+            "residual_dipole_eclipse_am2": (in_shadow - dipole).tolist(),
+            "remanence_part": kept_am2 / pulses_am2,
+        },
+    }
+
+
 def _start(random: np.random.Generator, rate_degps: Interval | None) -> Nested:
     axis, angle_deg = _direction(random), random.uniform(0.0, START_DEG)
     slow_degps = START_DEGPS * random.uniform(-1.0, 1.0, 3)
@@ -190,9 +244,14 @@ def _inertia(random: np.random.Generator, nominal: Array, tolerances: Tolerances
         upper = np.zeros((3, 3))
         upper[np.triu_indices(3, 1)] = products
         tensor: Array = np.diag(moments) + upper + upper.T
-        principal = np.linalg.eigvalsh(tensor)
-        if principal[0] > 0.0 and principal[2] < principal[0] + principal[1]:
+        if is_rigid(tensor):
             return tensor
+
+
+def is_rigid(inertia_kgm2: Array) -> bool:
+    """Whether a body can have this tensor: positive, no principal moment above the sum of the others."""
+    principal = np.linalg.eigvalsh(inertia_kgm2)
+    return bool(principal[0] > 0.0 and principal[2] < principal[0] + principal[1])
 
 
 def _direction(random: np.random.Generator) -> Array:
