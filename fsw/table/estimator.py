@@ -6,7 +6,14 @@ from fsw.core.estimation.estimator import EstimatorConfig
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.fdir.plausibility import PlausibilityConfig
 from fsw.table.table import FlightTable
-from fsw.table.uncertainty import Uncertainty, bounds, mean_moment, priors
+from fsw.table.uncertainty import (
+    LARGEST_FIELD_T,
+    LEAST_FIELD_T,
+    Uncertainty,
+    bounds,
+    mean_moment,
+    priors,
+)
 
 NT = 1e-9
 GATE_NIS = 16.27
@@ -23,7 +30,6 @@ TORQUE_NOISE_RTS = 0.05
 """White torque noise in parts of the torque's bound, times sqrt(s)."""
 LEAST_NOISE_RTS = 1e-10
 """The least of it in parts of the mean moment of inertia, rad/s^2 sqrt(s): the equations are rounded."""
-LARGEST_FIELD_T, LEAST_FIELD_T = 5.0e-5, 2.0e-5
 ORBIT_RADIUS_M = 7.0e6
 
 

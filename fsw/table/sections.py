@@ -127,6 +127,19 @@ class CoilTable(Section):
         return self.backoff == "shared"
 
     @property
+    def largest_am2(self) -> float:
+        """The largest dipole that a coil is driven to."""
+        continuous = self.max_dipole_am2 if self.driver == "continuous" else None
+        return self.levels_am2[2] if continuous is None else continuous
+
+    @property
+    def on_part(self) -> float:
+        """The largest part of the time in which a coil may be driven."""
+        if self.driver == "continuous":
+            return self.on_fraction
+        return self.pulse_s / (self.pulse_s + self.backoff_s)
+
+    @property
     def levels_ma(self) -> Vec3:
         """Currents of a sound coil at levels 1, 2, 3, mA."""
         first, second, third = (1000.0 * m / self.dipole_per_ampere_am2 for m in self.levels_am2)

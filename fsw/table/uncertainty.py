@@ -9,6 +9,7 @@ sqrt 3; a turn of any axis within an angle, as uniform in that ball: angle / sqr
 between zero and its bound.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import radians, sqrt
 from typing import NamedTuple
@@ -21,20 +22,52 @@ from fsw.input.schema import Section
 
 
 class UncertaintyTable(Section):
-    """Bounds of what the table may be wrong by; None: an ordinary value for a satellite of this size."""
+    """Bounds of what the table may be wrong by; None: an ordinary value for a satellite of this size.
 
-    inertia_percent: float | None = Field(default=None, ge=0.0, le=50.0)
+    Each goes as far as the models hold (docs/uncertainty.md); ``check_bounds`` has what other sections admit.
+    """
+
+    inertia_percent: float | None = Field(default=None, ge=0.0, le=30.0)
     products_percent: float | None = Field(default=None, ge=0.0, le=20.0)
     residual_dipole_am2: float | None = Field(default=None, ge=0.0, allow_inf_nan=False)
     coil_gain_percent: float | None = Field(default=None, ge=0.0, le=50.0)
     coil_misalignment_deg: float | None = Field(default=None, ge=0.0, le=10.0)
-    magnetometer_bias_nt: float | None = Field(default=None, ge=0.0, le=20000.0)
-    magnetometer_scale_percent: float | None = Field(default=None, ge=0.0, le=20.0)
+    magnetometer_bias_nt: float | None = Field(default=None, ge=0.0, le=3000.0)
+    magnetometer_scale_percent: float | None = Field(default=None, ge=0.0, le=10.0)
     magnetometer_misalignment_deg: float | None = Field(default=None, ge=0.0, le=10.0)
     sun_misalignment_deg: float | None = Field(default=None, ge=0.0, le=10.0)
     torque_nm: float | None = Field(default=None, ge=0.0, allow_inf_nan=False)
-    along_track_km: float | None = Field(default=None, ge=0.0, le=500.0)
-    latency_s: float | None = Field(default=None, ge=0.0, le=60.0)
+    along_track_km: float | None = Field(default=None, ge=0.0, le=20.0)
+    latency_s: float | None = Field(default=None, ge=0.0, le=3.0)
+
+
+LARGEST_FIELD_T, LEAST_FIELD_T = 5.0e-5, 2.0e-5
+"""Strengths of the geomagnetic field in a low orbit."""
+
+
+class Ceiling(NamedTuple):
+    """The largest bound that the rest of a table admits, and what it is."""
+
+    largest: float
+    meaning: str
+
+
+def check_bounds(table: UncertaintyTable, ceilings: Mapping[str, Ceiling]) -> None:
+    """Check the bounds that the table gives, by key.
+
+    Raises:
+        ValueError: one is above its ceiling.
+    """
+    for key, (largest, meaning) in ceilings.items():
+        given = getattr(table, key)
+        if given is not None and given > largest * (1.0 + ROUNDING):
+            raise ValueError(
+                f"uncertainty.{key} = {given!r} is not allowed: allowed is a number at least 0 and at most "
+                f"{largest:.4g}, {meaning}"
+            )
+
+
+ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, slots=True)

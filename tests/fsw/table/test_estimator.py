@@ -82,14 +82,14 @@ class TestLimitsOfThePair:
         "magnetometer_scale_percent": 0.4,
         "magnetometer_misalignment_deg": 1.5,
         "sun_misalignment_deg": 0.25,
-        "along_track_km": 70.0,
+        "along_track_km": 7.0,
     }
     SENSORS = {"magnetometer_sigma_nt": 150.0, "sun_sigma_deg": 0.3}  # noqa: RUF012  (never changed)
 
     def test_are_the_bounds_and_the_noise_at_the_edge_of_the_gate(self):
         limits = plausibility_config(table_with(uncertainty=self.KNOWN, estimator=self.SENSORS))
         offset_t = sqrt(3.0) * (700e-9 + sqrt(16.27) * 150e-9)
-        position = 3.0 * 70.0 / 7000.0
+        position = 3.0 * 7.0 / 7000.0
         assert limits.field_t == pytest.approx(offset_t)
         assert limits.field_part == pytest.approx(0.004 + position)
         turns = radians(1.5) + radians(0.25) + 0.004 + position
@@ -125,7 +125,7 @@ class TestLimitsOfThePair:
         )
         for _ in range(2000):
             b, s = random.uniform(2e-5, 5e-5) * direction(random), direction(random)
-            true_b = b + 0.03 * np.linalg.norm(b) * direction(random)
+            true_b = b + 0.003 * np.linalg.norm(b) * direction(random)
             scaled = (1.0 + 0.004 * random.choice([-1.0, 1.0], 3)) * (
                 true_b + np.cross(true_b, radians(1.5) * direction(random))
             )
@@ -138,7 +138,7 @@ class TestLimitsOfThePair:
 
 @pytest.mark.parametrize(
     ("latency_s", "tick_hz", "ticks"),
-    [(0.0, 1, 0), (1.0, 1, 1), (0.3, 1, 1), (1.1, 1, 2), (0.3, 10, 3), (2.0, 4, 8), (60.0, 10, 600)],
+    [(0.0, 1, 0), (1.0, 1, 1), (0.3, 1, 1), (1.1, 1, 2), (0.3, 10, 3), (2.0, 4, 8), (3.0, 10, 30)],
 )
 def test_a_pulse_blanks_the_field_for_as_long_as_a_sample_may_be_late(latency_s, tick_hz, ticks):
     config = configured(time={"tick_hz": tick_hz}, uncertainty={"latency_s": latency_s})

@@ -154,7 +154,7 @@ PLANTED = [
     ("estimator.sun_sigma_deg", 0.0, "a number above 0"),
     ("estimator.rate_sigma_degps", -1.0, "a number above 0"),
     ("estimator.bias", True, "estimator.bias is not a known key"),
-    ("uncertainty.inertia_percent", 50.1, "a number at least 0 and at most 50"),
+    ("uncertainty.inertia_percent", 30.1, "a number at least 0 and at most 30"),
     ("uncertainty.residual_dipole_am2", -0.1, "a number at least 0"),
     ("uncertainty.torque_nm", "small", "a number at least 0"),
     ("uncertainty.dipole_am2", 0.1, "uncertainty.dipole_am2 is not a known key"),

@@ -194,16 +194,16 @@ class TestWhatIsExactIsNotCarried:
 @pytest.mark.parametrize(
     ("key", "largest"),
     [
-        ("inertia_percent", 50.0),
+        ("inertia_percent", 30.0),
         ("products_percent", 20.0),
         ("coil_gain_percent", 50.0),
         ("coil_misalignment_deg", 10.0),
-        ("magnetometer_bias_nt", 20000.0),
-        ("magnetometer_scale_percent", 20.0),
+        ("magnetometer_bias_nt", 3000.0),
+        ("magnetometer_scale_percent", 10.0),
         ("magnetometer_misalignment_deg", 10.0),
         ("sun_misalignment_deg", 10.0),
-        ("along_track_km", 500.0),
-        ("latency_s", 60.0),
+        ("along_track_km", 20.0),
+        ("latency_s", 3.0),
         ("residual_dipole_am2", None),
         ("torque_nm", None),
     ],
@@ -211,12 +211,12 @@ class TestWhatIsExactIsNotCarried:
 class TestRange:
     def told(self, key, value):
         with pytest.raises(TableError) as caught:
-            flight_table({"uncertainty": {key: value}}, "table.toml")
+            flight_table({"uncertainty": {key: value}, "fdir": {"weak_coil_part": 0.3}}, "table.toml")
         return str(caught.value)
 
     def test_zero_and_the_largest_are_in_it(self, key, largest):
-        for value in (0.0, 1e9 if largest is None else largest):
-            table = flight_table({"uncertainty": {key: value}}, "table.toml")
+        for value in (0.0, 1e-9 if largest is None else largest):
+            table = flight_table({"uncertainty": {key: value}, "fdir": {"weak_coil_part": 0.3}}, "table.toml")
             assert getattr(table.uncertainty, key) == value
 
     def test_what_is_not_is_told_in_one_sentence(self, key, largest):
@@ -226,6 +226,38 @@ class TestRange:
             assert told.startswith(f"table.toml: uncertainty.{key} = ")
             assert "allowed is a number at least 0" in told
             assert largest is None or f"and at most {largest:g}" in told
+            assert "\n" not in told
+
+
+COILS = {"levels_am2": [0.4, 1.5, 6.0], "pulse_s": 2.0, "backoff_s": 48.0}
+CONTINUOUS = {"driver": "continuous", "max_dipole_am2": 3.0, "on_fraction": 0.5}
+
+
+@pytest.mark.parametrize(
+    ("key", "section", "largest", "meaning"),
+    [
+        ("residual_dipole_am2", {"coils": COILS}, 6.0, "the largest dipole of a coil"),
+        ("residual_dipole_am2", {"coils": CONTINUOUS}, 3.0, "the largest dipole of a coil"),
+        ("torque_nm", {"coils": COILS}, 6.0 * 0.04 * 2e-5, "what a coil gives in the mean"),
+        ("torque_nm", {"coils": CONTINUOUS}, 3.0 * 0.5 * 2e-5, "what a coil gives in the mean"),
+        ("coil_gain_percent", {"fdir": {"weak_coil_part": 0.9}}, 10.0, "fdir.weak_coil_part"),
+    ],
+)
+class TestCeilings:
+    """What coils and fault detection admit."""
+
+    def test_as_large_is_taken(self, key, section, largest, meaning):
+        table = flight_table({"uncertainty": {key: largest}} | section, "table.toml")
+        assert getattr(table.uncertainty, key) == largest
+
+    def test_larger_is_told_in_one_sentence(self, key, section, largest, meaning):
+        for value in (largest * 1.001, 1e9 if key != "coil_gain_percent" else 50.0):
+            with pytest.raises(TableError) as caught:
+                flight_table({"uncertainty": {key: value}} | section, "table.toml")
+            told = str(caught.value)
+            assert told.startswith(f"table.toml: uncertainty.{key} = {value!r} is not allowed: allowed is ")
+            assert f"a number at least 0 and at most {largest:.4g}, " in told
+            assert meaning in told
             assert "\n" not in told
 
 
