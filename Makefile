@@ -2,7 +2,7 @@
 # make test   all tests; those on a CAN interface are skipped, and reported, where there is none
 # make lint   style, types, layers, generated code, pages and pictures
 # make validate   compute every claim and reference figure, into docs/validation.md: an hour or two
-# make population   fly populations of random satellites, into docs/population.md: an hour or two
+# make population   fly populations of random satellites, into docs/population.md: some hours; stopped, it goes on where it was
 # make replay-elsewhere   does a log of 20 orbits replay with other processor features, into docs/replay.md
 # make faults     every fault in ten phases and with five seeds, 250 real kills among them, into docs/faults.md: an hour or two
 # make soak       72 simulated hours, and an hour on the bench in real time, into docs/soak.md

@@ -48,16 +48,47 @@ class Group:
     orders: tuple[Order, ...]
 
 
-def campaign(study_id: str, source: str, groups: Sequence[Group], figures: Sequence[Figure]) -> Study:
-    """The study that flies all orders and judges every figure."""
+@dataclass(frozen=True, slots=True)
+class FlightStudy(Study):
+    """A study whose tasks are flights.
+
+    Attributes:
+        source: of its claims.
+        counted: what its claims say how many of there are; empty: nothing.
+        groups: its orders.
+        figures: by which they are judged.
+    """
+
+    source: str = ""
+    counted: str = ""
+    groups: tuple[Group, ...] = ()
+    figures: tuple[Figure, ...] = ()
+
+    @property
+    def orders(self) -> tuple[Order, ...]:
+        """The orders of all groups, as its tasks fly them."""
+        return tuple(order for group in self.groups for order in group.orders)
+
+
+def part_of(study: FlightStudy, flies: Callable[[Order], bool]) -> FlightStudy:
+    """The study with these of its orders."""
+    groups = [Group(group.name, tuple(filter(flies, group.orders))) for group in study.groups]
+    return campaign(study.id, study.source, groups, study.figures, study.counted)
+
+
+def campaign(
+    study_id: str, source: str, groups: Sequence[Group], figures: Sequence[Figure], counted: str = ""
+) -> FlightStudy:
+    """The study that flies all orders and judges every figure; ``counted`` as in ``FlightStudy``."""
     names = [group.name for group in groups for _ in group.orders]
     tasks = tuple(partial(fly_order, order) for group in groups for order in group.orders)
+    stated = f"{source}; {len(tasks)} {counted}" if counted else source
 
     def conclude(flights: Sequence[FlightResult]) -> list[ClaimOutcome]:
         named_flights = list(zip(names, flights, strict=True))
-        return [_judge(study_id, source, figure, _counted(figure, named_flights)) for figure in figures]
+        return [_judge(study_id, stated, figure, _counted(figure, named_flights)) for figure in figures]
 
-    return Study(study_id, tasks, conclude, has_flights=True)
+    return FlightStudy(study_id, tasks, conclude, True, source, counted, tuple(groups), tuple(figures))
 
 
 def summary_number(flight: FlightResult, key: str, missing: float = nan) -> float:

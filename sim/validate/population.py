@@ -5,11 +5,10 @@ from math import inf
 
 import numpy as np
 
-from sim.campaign.claim import Study
 from sim.campaign.flight import FlightResult, Order
 from sim.campaign.honesty import LAST_ORBITS, POINTED_DEG
 from sim.campaign.population import population_order
-from sim.campaign.study import Figure, Group, campaign, figure_of
+from sim.campaign.study import Figure, FlightStudy, Group, campaign, figure_of
 
 SOURCE = "Ordinary tolerances of a satellite of this size"
 SATELLITES = {"50kg": 100, "3u": 30, "6u": 30}
@@ -26,7 +25,7 @@ SINCE = {"": "", SINCE_POINT: ", since it first came to POINT"}
 """How the names of figures of honesty begin, by when they count from, and how that is said."""
 
 
-def studies(most: int | None = None) -> list[Study]:
+def studies(most: int | None = None) -> list[FlightStudy]:
     """All of them, each with at most ``most`` satellites, the first ones."""
 
     def seeds(count: int) -> range:
@@ -43,7 +42,7 @@ def studies(most: int | None = None) -> list[Study]:
     ]
 
 
-def microsatellites(seeds: Sequence[int]) -> Study:
+def microsatellites(seeds: Sequence[int]) -> FlightStudy:
     """The 50 kg satellite with shared back-off."""
     figures = (
         *_quiet_and_honest(),
@@ -66,7 +65,7 @@ def microsatellites(seeds: Sequence[int]) -> Study:
     return _study("50kg", orders, figures)
 
 
-def large_dipoles(seeds: Sequence[int]) -> Study:
+def large_dipoles(seeds: Sequence[int]) -> FlightStudy:
     """Those of the 50 kg satellites whose dipole is large, with a back-off of each coil by itself."""
     per_coil = {"coils": {"backoff": "per_coil"}}
     orders = [population_order("50kg", seed, ORBITS, overrides=per_coil) for seed in seeds]
@@ -75,20 +74,20 @@ def large_dipoles(seeds: Sequence[int]) -> Study:
     return _study("50kg_per_coil", large, (ISOLATED, _pointing("pointing", statement, high=4.0)))
 
 
-def cubesats(kind: str, seeds: Sequence[int]) -> Study:
+def cubesats(kind: str, seeds: Sequence[int]) -> FlightStudy:
     """Satellites whose dipole may be more than their coils can counter: honest, and pointing as they can."""
     orders = tuple(population_order(kind, seed, ORBITS) for seed in seeds)
     figures = (*_quiet_and_honest(), _pointing("pointing", "median, reported", of="median"))
     return _study(kind, orders, figures)
 
 
-def tumbling(name: str, rate_degps: tuple[float, float], orbits: float, seeds: Sequence[int]) -> Study:
+def tumbling(name: str, rate_degps: tuple[float, float], orbits: float, seeds: Sequence[int]) -> FlightStudy:
     """50 kg satellites that start by tumbling about any axis: honest once they have come to POINT."""
     orders = tuple(population_order("50kg", seed, orbits, rate_degps=rate_degps) for seed in seeds)
     return _study(name, orders, (*_quiet_and_honest(SINCE_POINT), IN_POINT))
 
 
-def twice_the_bounds(seeds: Sequence[int]) -> Study:
+def twice_the_bounds(seeds: Sequence[int]) -> FlightStudy:
     """50 kg satellites that differ from their table by twice what is declared."""
     orders = tuple(population_order("50kg", seed, ORBITS, twice=True) for seed in seeds)
     return _study("twice", orders, (ISOLATED, WRONG))
@@ -139,9 +138,8 @@ def _pointing(
     return Figure(name, statement, "deg", figure_of("pointing_deg"), of, counts=counts, high=high)
 
 
-def _study(name: str, orders: tuple[Order, ...], figures: Sequence[Figure]) -> Study:
-    source = f"{SOURCE}; {len(orders)} satellites"
-    return campaign(f"population.{name}", source, (Group("", orders),), figures)
+def _study(name: str, orders: tuple[Order, ...], figures: Sequence[Figure]) -> FlightStudy:
+    return campaign(f"population.{name}", SOURCE, (Group("", orders),), figures, "satellites")
 
 
 def _has_small_dipole(flight: FlightResult) -> bool:

@@ -1,15 +1,14 @@
-"""The page of the populations, of flights made up: its tables and its picture."""
+"""``make population``, of flights made up: what is flown is kept, and the page is made of what is kept."""
 
 import sys
-from math import inf
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
 
+from sim.campaign import runner
 from sim.campaign.flight import FlightResult
-from sim.campaign.runner import StudyResult
-from sim.validate.population import studies
+from sim.errors import HarnessError
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
@@ -33,60 +32,101 @@ FIGURES = {
     "inertia_percent": 7.3,
     "misalignment_deg": 1.15,
 }
+FLIGHTS = 7 * 2 - 2 + 3 * 2
+"""Two satellites of each study, of which none of those with a large dipole, and one of two sizes of each."""
 
 
-def flight(order, **change):
-    summary = {"isolated": ["coil 1", "sun sensor"] if change else []}
-    return FlightResult(order, summary, FIGURES | change)
+class Flown:
+    """Instead of flying; ``most``: ends after so many."""
+
+    def __init__(self):
+        self.orders, self.most = [], 1000
+
+    def __call__(self, order):
+        if len(self.orders) == self.most:
+            raise HarnessError("the flight ended before its time")
+        self.orders.append(order)
+        pointing_deg = 1.52 + 0.1 * order.seed
+        return FlightResult(order, {"isolated": [], "events": []}, FIGURES | {"pointing_deg": pointing_deg})
 
 
-@pytest.fixture(scope="module")
-def finished():
-    """Two satellites of each population; the second is off."""
-    done = []
-    for study in studies(most=2):
-        results = tuple(
-            flight(task.args[0], **({"pointed_orbits": inf, "dipole_am2": 0.09} if number else {}))
-            for number, task in enumerate(study.tasks)
-        )
-        done.append(StudyResult(study, tuple(study.conclude(results)), results, 1.0))
-    return done
+@pytest.fixture
+def flown(monkeypatch):
+    made_up = Flown()
+    monkeypatch.setattr(population, "fly_order", made_up)
+    return made_up
 
 
-def test_the_page_has_claims_tolerances_and_satellites(finished):
-    text = population.page(finished, "picture.svg", 12.3)
-    assert "(`population.50kg.isolated`)" in text
-    assert "](picture.svg)" in text
-    limits = "0.001 to 0.1 | 0.0005 to 0.01 | 0.001 to 0.02"
-    assert f"| residual dipole, any direction, log-uniform | {limits} | A m^2 |" in text
-    assert "| 1 | 0.0213 | 7.3 | 1.15 | 91.2 | 4.2 | 0.31 | 1.52 | 1.80 | none |" in text
-    assert text.count("| never | coil 1, sun sensor |") == 3
-    assert [line for line in text.splitlines() if line.startswith("## ")] == [
-        "## What is drawn",
-        "## 50kg",
-        "## 3u",
-        "## 6u",
-    ]
+@pytest.fixture
+def run(tmp_path, flown):
+    """Runs the command in one process; its exit code."""
+    assert runner.run is population.run
+
+    def main(*more):
+        words = ("--satellites", "2", "--sizes", "2", "--per-size", "1", "--workers", "1")
+        files = ("--rows", str(tmp_path / "rows.jsonl"), "--out", str(tmp_path / "page.md"))
+        return population.main((*words, *files, *more))
+
+    return main
 
 
-def test_every_tolerance_is_on_the_page():
-    shown = {key for _, key, _ in population.TOLERANCES}
-    assert shown == set(population.Tolerances.__dataclass_fields__) - {"declared_torque_nm"}
+def test_the_page_has_every_flight_and_both_pictures(run, flown, tmp_path, capsys):
+    assert run() == 1  # an axis inside 3 sigma 91 % of the time
+    assert len(flown.orders) == FLIGHTS
+    text = (tmp_path / "page.md").read_text()
+    assert f"{FLIGHTS} of {FLIGHTS} flights. Python" in text
+    for name in ("page.svg", "page-sweep.svg"):
+        assert f"]({name})" in text
+        ElementTree.parse(tmp_path / name)
+    assert f"flying satellites: {FLIGHTS} of {FLIGHTS}" in capsys.readouterr().err
 
 
-def test_the_picture_is_the_same_for_the_same_flights(finished, tmp_path):
-    for name in ("one.svg", "two.svg"):
-        population.draw(finished, tmp_path / name)
-    text = (tmp_path / "one.svg").read_text()
-    assert text == (tmp_path / "two.svg").read_text()
-    ElementTree.fromstring(text)
-    for words in ("50kg", "3u", "6u", "pointing error, RMS [deg]", "time inside 3 sigma [%]"):
-        assert words in text
+def test_what_is_flown_is_not_flown_again(run, flown, tmp_path):
+    run()
+    first = (tmp_path / "page.md").read_text()
+    flown.orders.clear()
+    run()
+    assert flown.orders == []
+    assert (tmp_path / "page.md").read_text() == first
+    run("--satellites", "3")
+    assert {order.seed for order in flown.orders} == {3}
 
 
-def test_a_page_that_cannot_be_written_is_one_sentence(tmp_path, capsys):
+def test_a_run_that_was_stopped_goes_on_where_it_was(run, flown, capsys):
+    flown.most = 5
+    assert run() == 2
+    assert capsys.readouterr().err.endswith("population: the flight ended before its time\n")
+    flown.orders.clear()
+    flown.most = 1000
+    run()
+    assert len(flown.orders) == FLIGHTS - 5
+
+
+def test_the_page_can_be_drawn_of_what_there_is_without_flying(run, flown, tmp_path):
+    flown.most = 5
+    run()
+    assert run("--render") == 1
+    assert len(flown.orders) == 5
+    text = (tmp_path / "page.md").read_text()
+    assert f"5 of {FLIGHTS} flights." in text
+    assert (
+        "(`population.twice.wrong`) | Ordinary tolerances of a satellite of this size; 0 satellites" in text
+    )
+
+
+def test_pictures_are_the_same_for_the_same_flights(run, tmp_path):
+    run()
+    pictures = [tmp_path / name for name in ("page.svg", "page-sweep.svg")]
+    first = [picture.read_bytes() for picture in pictures]
+    run("--render")
+    assert [picture.read_bytes() for picture in pictures] == first
+
+
+@pytest.mark.parametrize("option", ["--out", "--rows"])
+def test_what_cannot_be_written_is_told_before_anything_is_flown(run, flown, tmp_path, capsys, option):
     (tmp_path / "file").write_text("")
-    assert population.main(("--out", str(tmp_path / "file" / "page.md"))) == 2
+    assert run(option, str(tmp_path / "file" / "page.md")) == 2
     error = capsys.readouterr().err
     assert error.startswith("population: ")
     assert error.count("\n") == 1
+    assert flown.orders == []

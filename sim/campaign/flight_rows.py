@@ -1,0 +1,117 @@
+"""Flights kept in a file, a line each: none is lost when a campaign stops, and none is flown twice."""
+
+import hashlib
+import json
+from functools import cache
+from pathlib import Path
+
+from sim.campaign.flight import FlightResult, Order
+from sim.errors import HarnessError
+from sim.record.run_dir import Json
+
+ROOT = Path(__file__).resolve().parents[2]
+CODE = (
+    "fsw",
+    "hil_stub",
+    "sim/audit",
+    "sim/campaign",
+    "sim/flight",
+    "sim/plant",
+    "sim/report",
+    "sim/scenario",
+)
+"""What a flight and its figures follow from."""
+LEFT_OUT = "events"
+"""Of the summary: they are many, and judged by no campaign."""
+
+
+class FlightRows:
+    """The flights in a file of JSON lines; of each order the last.
+
+    Args:
+        path: the file; it need not exist.
+        of_any_code: also flights of other code than this.
+
+    Raises:
+        HarnessError: the file cannot be read, or holds something else.
+    """
+
+    def __init__(self, path: Path, *, of_any_code: bool = False) -> None:
+        content = _whole_lines(path)
+        rows = [_row(path, number, line) for number, line in enumerate(content.splitlines(), start=1)]
+        self._path, self._end = path, len(content)
+        self._rows = {row["order"]: row for row in rows if of_any_code or row["code"] == code_hash()}
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    @property
+    def other_code(self) -> str:
+        """In words how many flights are not of this code; empty if none."""
+        count = sum(row["code"] != code_hash() for row in self._rows.values())
+        return f", {count} of them by other versions of the code" if count else ""
+
+    def flight(self, order: Order) -> FlightResult | None:
+        """The flight of an order; None if it has none here."""
+        row = self._rows.get(order_hash(order))
+        return None if row is None else FlightResult(order, row["summary"], row["figures"])
+
+    def keep(self, flight: FlightResult) -> None:
+        """Add a flight, in the file at once.
+
+        Raises:
+            HarnessError: the file cannot be written.
+        """
+        row = {
+            "order": order_hash(flight.order),
+            "name": flight.order.name,
+            "code": code_hash(),
+            "summary": {key: value for key, value in flight.summary.items() if key != LEFT_OUT},
+            "figures": flight.figures,
+        }
+        try:
+            self._path.parent.mkdir(parents=True, exist_ok=True)
+            with self._path.open("ab") as file:
+                file.truncate(self._end)
+                self._end += file.write(json.dumps(row).encode() + b"\n")
+        except OSError as error:
+            raise HarnessError(f"{self._path}: cannot be written ({error.strerror})") from None
+        self._rows[row["order"]] = row
+
+
+def order_hash(order: Order) -> str:
+    """What tells one flight from another, whatever it is called."""
+    told = (order.scenario, order.overrides, order.seed, order.orbits)
+    return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()[:16]
+
+
+@cache
+def code_hash() -> str:
+    """What tells this code from other code, as far as flights and their figures follow from it."""
+    digest = hashlib.sha256()
+    for folder in CODE:
+        for path in sorted((ROOT / folder).rglob("*")):
+            if path.suffix in (".py", ".toml", ".dbc"):
+                digest.update(path.relative_to(ROOT).as_posix().encode() + path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def _whole_lines(path: Path) -> bytes:
+    """The content without a last line whose writing was cut off."""
+    try:
+        content = path.read_bytes()
+    except FileNotFoundError:
+        return b""
+    except OSError as error:
+        raise HarnessError(f"{path}: cannot be read ({error.strerror})") from None
+    return content[: content.rfind(b"\n") + 1]
+
+
+def _row(path: Path, number: int, line: bytes) -> Json:
+    try:
+        row = json.loads(line)
+    except ValueError:
+        row = None
+    if not isinstance(row, dict) or not row.keys() >= {"order", "code", "summary", "figures"}:
+        raise HarnessError(f"{path}: line {number} is not a flight")
+    return row

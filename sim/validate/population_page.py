@@ -1,0 +1,133 @@
+"""docs/population.md, made of flights alone."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import inf
+
+from sim.campaign.claim import ClaimOutcome
+from sim.campaign.flight import FlightResult
+from sim.campaign.population import POPULATIONS, Tolerances
+from sim.campaign.sweep import Quantity
+from sim.validate.page import claims_table, platform_line, tally
+from sim.validate.population_pictures import Flights, SizeSpread, worst_inside
+
+HEAD = """# Populations of real satellites
+
+Written by `make population`; do not edit. No satellite is what its onboard table says. Here random ones fly,
+drawn by `sim/campaign/population.py` within the tolerances below: the plant gets what is true, the onboard
+table keeps the nominal values. Satellite 7 of a population is the same wherever it flies, and its sensors and
+coils are healthy: none may be isolated. The 6U has drag and light besides. No Sun sensor sees the light of
+the Earth (`sensors.sun.albedo` would turn it on).
+
+An honest filter has each axis of its error inside 3 sigma for 99.7 % of the time.
+"""
+
+SWEEP = """## One difference alone
+
+Satellites of the 50 kg population, in which one quantity is given sizes from none to twice the bound that is
+declared, the dotted line; all else is as drawn. The dipole keeps its direction, the error of the inertia its
+shape, and the sensors turn about the same axes, the same part of their bounds each.
+"""
+
+TOLERANCES = (
+    ("moments of inertia, each", "inertia_percent", "%"),
+    ("products of inertia, of the mean moment", "products_percent", "%"),
+    ("residual dipole, any direction, log-uniform", "residual_dipole_am2", "A m^2"),
+    ("part of the dipole that points elsewhere in shadow", "eclipse_dipole_percent", "%"),
+    ("remanence of pulses at the highest level, of the largest dipole", "remanence_percent", "%"),
+    ("dipole of a coil", "coil_gain_percent", "%"),
+    ("axis of a coil, whole turn", "coil_misalignment_deg", "deg"),
+    ("magnetometer bias, by axis", "magnetometer_bias_nt", "nT"),
+    ("magnetometer scale, by axis", "magnetometer_scale_percent", "%"),
+    ("magnetometer, whole turn", "magnetometer_misalignment_deg", "deg"),
+    ("magnetometer, angles between its axes, within that turn", "non_orthogonality_deg", "deg"),
+    ("Sun sensor, whole turn", "sun_misalignment_deg", "deg"),
+    ("torque by axis, with its daily variation", "torque_nm", "N m"),
+    ("position along the track", "along_track_km", "km"),
+    ("age of the samples of both sensors", "latency_s", "s"),
+)
+"""Name, attribute and unit of what a population may differ by."""
+
+
+def page(
+    outcomes: Sequence[ClaimOutcome],
+    populations: Mapping[str, Flights],
+    sweep: Mapping[Quantity, Sequence[SizeSpread]],
+    pictures: Sequence[str],
+    flown: str,
+) -> str:
+    """The page.
+
+    Args:
+        outcomes: of all claims.
+        populations: the flights of each population as it is, by its name.
+        sweep: by quantity, its sizes.
+        pictures: file names of that of the satellites and that of the sweep.
+        flown: how many flights it is made of, a sentence.
+    """
+    of_satellites, of_sweep = pictures
+    lines = [HEAD, tally(outcomes) + ".", "", *claims_table(outcomes), ""]
+    lines += [SWEEP, f"![pointing, estimate and honesty over the size of one difference]({of_sweep})", ""]
+    lines += [*sweep_table(sweep), "", "## All differences at once", ""]
+    lines += [f"![pointing and honesty of each satellite over what differs]({of_satellites})", ""]
+    lines += [_row("differs within", *POPULATIONS, "unit"), "|---" * (2 + len(POPULATIONS)) + "|"]
+    drawn = [chosen.tolerances for chosen in POPULATIONS.values()]
+    lines += [_row(name, *(_bound(at, key) for at in drawn), unit) for name, key, unit in TOLERANCES]
+    for name, flights in populations.items():
+        lines += ["", f"## {name}", "", *satellites_table(flights)]
+    return "\n".join([*lines, "", f"{flown} {platform_line()}.", ""])
+
+
+def sweep_table(sweep: Mapping[Quantity, Sequence[SizeSpread]]) -> Iterator[str]:
+    """A row for each size of each quantity."""
+    yield _row("of one alone", "size", "satellites", "pointing [deg]", "estimate [deg]", "inside 3 sigma [%]")
+    yield "|---" * 6 + "|"
+    for quantity, sizes in sweep.items():
+        for at in sizes:
+            pairs = (at.pointing_deg, at.estimate_deg, at.inside_percent)
+            spreads = [f"{middle:.4g}, worst {worst:.4g}" for middle, worst in pairs]
+            yield _row(quantity.label, f"{at.size:.3g}", str(at.satellites), *spreads)
+
+
+def satellites_table(flights: Flights) -> list[str]:
+    """A row for each satellite."""
+    return [_row(*COLUMNS), "|---" * len(COLUMNS) + "|", *map(_satellite, flights)]
+
+
+COLUMNS = (
+    "satellite",
+    "dipole [A m^2]",
+    "inertia [%]",
+    "sensors [deg]",
+    "inside 3 sigma [%]",
+    "NEES",
+    "estimate [deg]",
+    "pointing [deg]",
+    "10 deg from orbit",
+    "isolated",
+)
+
+
+def _satellite(flight: FlightResult) -> str:
+    found = flight.figures
+    pointed = found["pointed_orbits"]
+    return _row(
+        str(flight.order.seed),
+        f"{found['dipole_am2']:.4f}",
+        f"{found['inertia_percent']:.1f}",
+        f"{found['misalignment_deg']:.2f}",
+        f"{100.0 * worst_inside(flight):.1f}",
+        f"{found['nees']:.1f}",
+        f"{found['estimate_deg']:.2f}",
+        f"{found['pointing_deg']:.2f}",
+        "never" if pointed == inf else f"{pointed:.2f}",
+        ", ".join(flight.summary["isolated"]) or "none",
+    )
+
+
+def _bound(tolerances: Tolerances, key: str) -> str:
+    value = getattr(tolerances, key)
+    return f"{value[0]:g} to {value[1]:g}" if isinstance(value, tuple) else f"{value:g}"
+
+
+def _row(*cells: str) -> str:
+    return f"| {' | '.join(cells)} |"

@@ -1,0 +1,99 @@
+"""Flights kept in a file: found by their orders, whole after every one."""
+
+from math import inf
+
+import pytest
+
+from sim.campaign import flight_rows
+from sim.campaign.flight import FlightResult, Order
+from sim.campaign.flight_rows import FlightRows
+from sim.errors import HarnessError
+
+ORDER = Order("microsat", {"disturbance": {"torque_nm": [1e-8, -2e-8, 3e-8]}}, 3, 8.0, name="one")
+
+
+def flight(order=ORDER, pointing_deg=1.25):
+    return FlightResult(
+        order, {"isolated": ["coil 2"], "events": [1, 2]}, {"pointing_deg": pointing_deg, "pointed": inf}
+    )
+
+
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / "build" / "rows.jsonl"
+
+
+def test_a_flight_is_in_the_file_at_once_without_its_events(path):
+    rows = FlightRows(path)
+    assert rows.flight(ORDER) is None
+    rows.keep(flight())
+    for read in (rows, FlightRows(path)):
+        assert read.flight(ORDER) == FlightResult(
+            ORDER, {"isolated": ["coil 2"]}, {"pointing_deg": 1.25, "pointed": inf}
+        )
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        Order("microsat", {"disturbance": {"torque_nm": [1e-8, -2e-8, 4e-8]}}, 3, 8.0, name="one"),
+        Order("microsat", ORDER.overrides, 4, 8.0, name="one"),
+        Order("microsat", ORDER.overrides, 3, 9.0, name="one"),
+        Order("cubesat3u", ORDER.overrides, 3, 8.0, name="one"),
+    ],
+    ids=["overrides", "seed", "orbits", "scenario"],
+)
+def test_another_order_has_another_flight(path, other):
+    rows = FlightRows(path)
+    rows.keep(flight())
+    assert rows.flight(other) is None
+    rows.keep(flight(other, 2.5))
+    assert FlightRows(path).flight(ORDER).figures["pointing_deg"] == 1.25
+    assert FlightRows(path).flight(other).figures["pointing_deg"] == 2.5
+
+
+def test_a_name_makes_no_other_flight(path):
+    rows = FlightRows(path)
+    rows.keep(flight())
+    assert rows.flight(Order("microsat", ORDER.overrides, 3, 8.0, name="two")) is not None
+
+
+def test_a_row_whose_writing_was_cut_off_is_flown_again(path):
+    rows = FlightRows(path)
+    rows.keep(flight())
+    other = Order("microsat", {}, 5, 8.0)
+    rows.keep(flight(other))
+    path.write_bytes(path.read_bytes()[:-20])
+    again = FlightRows(path)
+    assert (again.flight(ORDER) is not None, again.flight(other)) == (True, None)
+    again.keep(flight(other, 7.0))
+    assert FlightRows(path).flight(other).figures["pointing_deg"] == 7.0
+
+
+def test_flights_of_other_code_count_only_where_they_are_asked_for(path, monkeypatch):
+    FlightRows(path).keep(flight())
+    monkeypatch.setattr(flight_rows, "code_hash", lambda: "changed")
+    assert FlightRows(path).flight(ORDER) is None
+    earlier = FlightRows(path, of_any_code=True)
+    assert earlier.flight(ORDER) is not None
+    assert earlier.other_code == ", 1 of them by other versions of the code"
+    earlier.keep(flight(pointing_deg=3.0))
+    assert FlightRows(path).flight(ORDER).figures["pointing_deg"] == 3.0
+    assert FlightRows(path, of_any_code=True).other_code == ""
+
+
+@pytest.mark.parametrize("line", ["[1, 2]", "{}", "pointing 3"])
+def test_what_is_not_a_flight_is_told_in_one_sentence(path, line):
+    FlightRows(path).keep(flight())
+    with path.open("a") as file:
+        file.write(f"{line}\n")
+    with pytest.raises(HarnessError, match=r"rows\.jsonl: line 2 is not a flight"):
+        FlightRows(path)
+
+
+def test_a_file_that_cannot_be_used_is_told(tmp_path):
+    with pytest.raises(HarnessError, match="cannot be read"):
+        FlightRows(tmp_path)
+    (tmp_path / "file").write_text("")
+    with pytest.raises(HarnessError, match=r"rows\.jsonl"):
+        FlightRows(tmp_path / "file" / "rows.jsonl").keep(flight())
