@@ -33,8 +33,9 @@ def bias_torque(disturbance: DisturbanceConfig, t_s: float) -> Vec3:
 def residual_dipole(disturbance: DisturbanceConfig, lit: float, remanence_body_am2: Vec3) -> Vec3:
     """M = m_0 + (1 - lit) m_e + m_r, body axes [A m^2]: constant, by the Earth's shadow, and by remanence.
 
-    m_e is that of the loops in which a current begins or ends when the solar cells are in the dark, which
-    takes no time (Inamori, Sako and Nakasuka 2011).
+    m_e is that of the loops in which a current begins or ends when the solar cells are in the dark: a
+    residual dipole shifts suddenly as the currents on board vary (Soken and Sakai 2014, Investigation of
+    Estimation Methods for Time-varying Residual Magnetic Moment).
 
     Args:
         disturbance: m_0 and m_e.

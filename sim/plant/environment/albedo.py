@@ -4,7 +4,8 @@ from sim.plant.environment.orbit import EARTH_RADIUS_M
 from sim.plant.rotation import Vec3
 
 ALBEDO = 0.3
-"""Part of the sunlight that the Earth reflects on average; from 0.1 over an ocean to 0.8 over clouds."""
+"""Part of the sunlight that the Earth reflects on average; 0.05 over open ocean, 0.6 over high clouds or ice
+(ECSS-E-ST-10-04C, annex F)."""
 
 
 def earthlight(r_eci_m: Vec3, sun_eci: Vec3) -> Vec3:
@@ -15,9 +16,10 @@ def earthlight(r_eci_m: Vec3, sun_eci: Vec3) -> Vec3:
     plate that faces it; the light on all of the Earth in view is taken as that below the satellite. There is
     none where the Sun has set there, and so none in eclipse.
 
-    The integral over a diffuse Earth (Flatley and Moore 1994, NASA TM-104596) is within 0.02 of it, and turns
-    a measured Sun by at most 0.6 deg more, between 500 and 800 km. Clouds and oceans change it from place to
-    place (Bhanderi and Bak 2005, AIAA 2005-6465).
+    The integral over a diffuse Earth, computed in its test, is within 0.02 of it, and turns a measured Sun by
+    at most 0.6 deg more, between 500 and 800 km. A diffuse Earth is also the model of Flatley and Moore 1994
+    (NASA TM-104596). With measured reflectivity it depends on the place as well (Bhanderi and Bak 2005,
+    Modeling Earth Albedo for Satellites in Earth Orbit).
 
     Args:
         r_eci_m: position of the satellite.

@@ -141,8 +141,9 @@ class SunSensorPhysics:
 def _skewed(non_orthogonality_rad: Vec3, axes: Mat3) -> Mat3:
     """N times the sensor's orthogonal axes: the unit vectors along which its three sensors measure.
 
-    x stays, y lies in the plane of x and y; the cosines between them are sin xy, sin xz and sin yz. N is
-    lower triangular, as in Merayo et al. 2000 (Scalar calibration of vector magnetometers).
+    x stays, y lies in the plane of x and y; the cosines between them are sin xy, sin xz and sin yz, so that N
+    is lower triangular. Three such angles are what a scalar calibration finds beside offsets and scales
+    (Merayo et al. 2000, Scalar calibration of vector magnetometers).
 
     Args:
         non_orthogonality_rad: what the angles xy, xz and yz lack of a right angle.
