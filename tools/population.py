@@ -48,17 +48,12 @@ def fly_missing(orders: Sequence[Order], rows: FlightRows, workers: int) -> None
 
 @contextmanager
 def counted(what: str, total: int) -> Iterator[Watch]:
-    """A progress bar; where there is no terminal, a line for every tenth."""
+    """A progress bar; where there is no terminal, a line for each."""
     with progress(what, total) as watch:
         if sys.stderr.isatty():
             yield watch
         else:
-            yield lambda done: _say(f"{what}: {done} of {total}", done % 10 == 0 or done == total)
-
-
-def _say(text: str, worth_it: bool) -> None:
-    if worth_it:
-        print(text, file=sys.stderr, flush=True)
+            yield lambda done: print(f"{what}: {done} of {total}", file=sys.stderr, flush=True)
 
 
 def flights_of(orders: Sequence[Order], rows: FlightRows) -> list[FlightResult]:
@@ -82,12 +77,17 @@ def write(
     draw_satellites(populations, pictures[0])
     draw_sweep(sweep, pictures[1])
     orders = [order for study in studies for order in study.orders] + sweep_orders(sizes, seeds)
-    flown_text = f"{len(flights_of(orders, rows))} of {len(orders)} flights{rows.other_code}."
-    out.write_text(
-        page(outcomes, populations, sweep, [picture.name for picture in pictures], flown_text),
-        encoding="utf-8",
-    )
+    names = [picture.name for picture in pictures]
+    out.write_text(page(outcomes, populations, sweep, names, counts(orders, rows)), encoding="utf-8")
     return outcomes
+
+
+def counts(orders: Sequence[Order], rows: FlightRows) -> str:
+    """How many of the orders are flown, and by which code; a sentence."""
+    flown = [flight.order for flight in flights_of(orders, rows)]
+    others = sum(map(rows.is_of_other_code, flown))
+    earlier = f", {others} of them by other versions of the code" if others else ""
+    return f"{len(flown)} of {len(orders)} flights{earlier}."
 
 
 def _spreads(quantity: Quantity, sizes: int, seeds: Sequence[int], rows: FlightRows) -> Iterator[SizeSpread]:

@@ -37,19 +37,15 @@ class FlightRows:
     """
 
     def __init__(self, path: Path, *, of_any_code: bool = False) -> None:
-        content = _whole_lines(path)
-        rows = [_row(path, number, line) for number, line in enumerate(content.splitlines(), start=1)]
-        self._path, self._end = path, len(content)
+        content = _content(path)
+        whole = content[: content.rfind(b"\n") + 1]  # the writing of a last line may have been cut off
+        rows = [_row(path, number, line) for number, line in enumerate(whole.splitlines(), start=1)]
+        self._path, self._end, self._size = path, len(whole), len(content)
         self._rows = {row["order"]: row for row in rows if of_any_code or row["code"] == code_hash()}
 
-    def __len__(self) -> int:
-        return len(self._rows)
-
-    @property
-    def other_code(self) -> str:
-        """In words how many flights are not of this code; empty if none."""
-        count = sum(row["code"] != code_hash() for row in self._rows.values())
-        return f", {count} of them by other versions of the code" if count else ""
+    def is_of_other_code(self, order: Order) -> bool:
+        """Whether its flight was flown by other code than this."""
+        return bool(self._rows[order_hash(order)]["code"] != code_hash())
 
     def flight(self, order: Order) -> FlightResult | None:
         """The flight of an order; None if it has none here."""
@@ -60,7 +56,7 @@ class FlightRows:
         """Add a flight, in the file at once.
 
         Raises:
-            HarnessError: the file cannot be written.
+            HarnessError: the file cannot be written, or another run adds to it.
         """
         row = {
             "order": order_hash(flight.order),
@@ -72,8 +68,11 @@ class FlightRows:
         try:
             self._path.parent.mkdir(parents=True, exist_ok=True)
             with self._path.open("ab") as file:
+                if file.tell() != self._size:
+                    raise HarnessError(f"{self._path}: another run adds flights to it")
                 file.truncate(self._end)
                 self._end += file.write(json.dumps(row).encode() + b"\n")
+                self._size = self._end
         except OSError as error:
             raise HarnessError(f"{self._path}: cannot be written ({error.strerror})") from None
         self._rows[row["order"]] = row
@@ -96,15 +95,13 @@ def code_hash() -> str:
     return digest.hexdigest()[:16]
 
 
-def _whole_lines(path: Path) -> bytes:
-    """The content without a last line whose writing was cut off."""
+def _content(path: Path) -> bytes:
     try:
-        content = path.read_bytes()
+        return path.read_bytes()
     except FileNotFoundError:
         return b""
     except OSError as error:
         raise HarnessError(f"{path}: cannot be read ({error.strerror})") from None
-    return content[: content.rfind(b"\n") + 1]
 
 
 def _row(path: Path, number: int, line: bytes) -> Json:

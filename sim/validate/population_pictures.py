@@ -118,7 +118,7 @@ def _span(quantity: Quantity) -> tuple[float, float]:
 
 
 def _both(panel: Axes, sizes: Sequence[float], values: Sequence[tuple[float, float]]) -> None:
-    for number, (name, dashes) in enumerate((("median; mean of the time", "-"), ("worst", "--"))):
+    for number, (name, dashes) in enumerate((("median; of honesty the mean", "-"), ("worst", "--"))):
         chosen, colour = [pair[number] for pair in values], AXES_COLOURS[number]
         panel.plot(sizes, chosen, dashes, marker="o", markersize=3.0, label=name, color=colour)
 

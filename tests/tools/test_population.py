@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from sim.campaign import runner
+from sim.campaign import flight_rows, runner
 from sim.campaign.flight import FlightResult
 from sim.errors import HarnessError
 
@@ -112,6 +112,14 @@ def test_the_page_can_be_drawn_of_what_there_is_without_flying(run, flown, tmp_p
     assert (
         "(`population.twice.wrong`) | Ordinary tolerances of a satellite of this size; 0 satellites" in text
     )
+
+
+def test_flights_of_other_code_are_said_to_be(run, tmp_path, monkeypatch):
+    run()
+    monkeypatch.setattr(flight_rows, "code_hash", lambda: "changed")
+    run("--render")
+    text = (tmp_path / "page.md").read_text()
+    assert f"{FLIGHTS} of {FLIGHTS} flights, {FLIGHTS} of them by other versions of the code. Python" in text
 
 
 def test_pictures_are_the_same_for_the_same_flights(run, tmp_path):

@@ -76,10 +76,19 @@ def test_flights_of_other_code_count_only_where_they_are_asked_for(path, monkeyp
     assert FlightRows(path).flight(ORDER) is None
     earlier = FlightRows(path, of_any_code=True)
     assert earlier.flight(ORDER) is not None
-    assert earlier.other_code == ", 1 of them by other versions of the code"
+    assert earlier.is_of_other_code(ORDER)
     earlier.keep(flight(pointing_deg=3.0))
     assert FlightRows(path).flight(ORDER).figures["pointing_deg"] == 3.0
-    assert FlightRows(path, of_any_code=True).other_code == ""
+    assert not FlightRows(path, of_any_code=True).is_of_other_code(ORDER)
+
+
+def test_a_second_run_overwrites_nothing(path):
+    one, other = FlightRows(path), FlightRows(path)
+    one.keep(flight())
+    with pytest.raises(HarnessError, match="another run adds flights to it"):
+        other.keep(flight(Order("microsat", {}, 5, 8.0)))
+    one.keep(flight(Order("microsat", {}, 6, 8.0)))
+    assert FlightRows(path).flight(ORDER) is not None
 
 
 @pytest.mark.parametrize("line", ["[1, 2]", "{}", "pointing 3"])
