@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from math import isfinite
 
 from fsw.core.algebra.quaternion import Quaternion, from_dcm
-from fsw.core.algebra.vector import Vec3, cross, dot, norm, scale
+from fsw.core.algebra.vector import ZERO, Vec3, cross, dot, norm, scale, sub
 from fsw.core.orbit.elements import Elements
 from fsw.core.orbit.field import FieldKind, OnboardField, field_eci_t, prepare_field
 from fsw.core.orbit.igrf_coefficients import MAX_DEGREE
@@ -62,7 +62,8 @@ class EphemerisModel:
 class Reference:
     """Orbit, field and Sun that the satellite expects in one tick.
 
-    Orbit axes: 1 along the radius, 2 ahead, 3 along the orbit normal. ``orbit_rate_radps`` is about axis 3.
+    Orbit axes: 1 along the radius, 2 ahead, 3 along the orbit normal. ``orbit_rate_radps`` is about axis 3;
+    ``b_rate_eci_tps`` is how the field changes along the orbit, T/s, within some percent.
     """
 
     r_eci_m: Vec3
@@ -72,6 +73,7 @@ class Reference:
     lit: bool
     q_orbit_from_eci: Quaternion
     orbit_rate_radps: float
+    b_rate_eci_tps: Vec3 = ZERO
 
 
 def ephemeris_model(
@@ -162,6 +164,7 @@ def reference_at(window: EphemerisWindow, tick: int, model: EphemerisModel) -> R
         lit=lit(r, sun),
         q_orbit_from_eci=from_dcm((e1, cross(e3, e1), e3)),
         orbit_rate_radps=momentum / dot(r, r),
+        b_rate_eci_tps=scale(model.tick_hz / model.node_ticks, sub(n2.b_eci_t, n1.b_eci_t)),
     )
 
 

@@ -1,6 +1,7 @@
 from itertools import pairwise
 from math import dist, hypot
 
+import numpy as np
 import pytest
 
 from fsw.core.algebra.quaternion import rotate
@@ -189,6 +190,16 @@ def test_at_a_node_the_reference_is_the_node(make_model, tick_hz):
     assert reference.r_eci_m == window.nodes[1].r_eci_m
     assert reference.b_eci_t == window.nodes[1].b_eci_t
     assert reference.sun_eci == window.nodes[1].sun_eci
+
+
+def test_the_rate_of_the_field_is_that_of_successive_ticks(make_model):
+    """To some percent, whatever the tick."""
+    model = make_model(5)
+    window = advance(None, 7250, model)
+    before, now = (np.array(reference_at(window, tick, model).b_eci_t) for tick in (7249, 7250))
+    rate = np.array(reference_at(window, 7250, model).b_rate_eci_tps)
+    assert np.linalg.norm(rate) > 1e-8
+    np.testing.assert_allclose(rate, (now - before) * 5, rtol=0.0, atol=0.03 * np.linalg.norm(rate))
 
 
 def test_orbit_axes_are_radius_ahead_and_normal(make_model, itamsat, itamsat_epoch_unix_s):
