@@ -1,11 +1,13 @@
 """From readings to an estimate: start by TRIAD, then the filter, gated, blanked and restarted when lost."""
 
 from dataclasses import dataclass
-from math import radians
+from enum import IntEnum
 from typing import NamedTuple
 
 from fsw.core.algebra.vector import ZERO, Vec3, dot, scale
 from fsw.core.estimation import mekf
+from fsw.core.estimation.error_dynamics import FAST_RADPS, KNOWN_RADPS, SLOW_RADPS
+from fsw.core.estimation.measurement import field_sampled
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig, with_frozen_parameters
 from fsw.core.estimation.parameters import Parameters, component_places, with_component
@@ -15,11 +17,20 @@ from fsw.core.gate.readings import Readings
 from fsw.core.orbit.earth import MU_M3PS2
 from fsw.core.orbit.ephemeris import Reference
 
-FAST_RADPS, SLOW_RADPS = radians(0.5), radians(0.3)
-"""Parameters that were estimated at a rate above the first are started anew when it is below the second: what
-a fast turn leaves in them is beyond their standard deviations."""
 MAX_ELAPSED_TICKS = 60
 """After a longer silence the filter restarts instead of predicting."""
+
+
+class Turning(IntEnum):
+    """Whether the satellite turns fast; the parameters start anew at KNOWN and when it ends.
+
+    KNOWN: so is its rate; before, a sample seems not to depend on its age, and tells the wrong attitude. The
+    turn ends below ``SLOW_RADPS``: what it leaves in the parameters is beyond their standard deviations.
+    """
+
+    NO = 0
+    FAST = 1
+    KNOWN = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,21 +53,20 @@ class EstimatorConfig:
 class EstimatorState(NamedTuple):
     """The estimate, or None before start-up, and the measurements the gate refused in a row.
 
-    ``fast``: the satellite has turned fast since the parameters were started; ``first``: the values from
-    which they start, None: those of the prior; ``frozen``: they are not estimated.
+    ``first``: from where the parameters start, None: the prior's mean; ``frozen``: they are not estimated.
     """
 
     estimate: Estimate | None = None
     rejected_in_a_row: int = 0
     rejected_total: int = 0
     restarts: int = 0
-    fast: bool = False
+    turning: Turning = Turning.NO
     first: Parameters | None = None
     frozen: bool = False
 
     def integers(self) -> tuple[int, ...]:
         """For the checksum of the state, as are the next two."""
-        return (self.rejected_in_a_row, self.rejected_total, self.restarts, self.fast, self.frozen)
+        return (self.rejected_in_a_row, self.rejected_total, self.restarts, self.turning, self.frozen)
 
     def floats(self) -> tuple[float, ...]:
         """The values to start from, and the estimate, if there is one, without its arrays."""
@@ -143,19 +153,23 @@ def update(
 
 
 def _settled(state: EstimatorState, estimate: Estimate, seen: bool, config: MekfConfig) -> EstimatorState:
-    """With the parameters at their priors when a fast turn has ended; attitude and rate go on.
+    """With the parameters at their priors where ``Turning`` has it so; attitude and rate go on.
 
     A rate that is hardly known, as after a start, is not fast. As every start, this takes field and Sun,
     ``seen`` in this tick: with one of them the covariance of a start would not shrink.
     """
     square = dot(estimate.omega_body_radps, estimate.omega_body_radps)
-    if square > FAST_RADPS**2:
-        known = estimate.covariance.diagonal()[3:6].sum() < SLOW_RADPS**2
-        return state._replace(fast=state.fast or bool(known))
-    if not state.fast or square > SLOW_RADPS**2 or not seen:
-        return state
+    rate_variance = max(estimate.covariance.diagonal()[3:6])
+    fast = square > FAST_RADPS**2 and rate_variance < SLOW_RADPS**2
+    after = turning = state.turning or Turning(fast)
+    if square <= SLOW_RADPS**2:
+        after = Turning.NO
+    elif turning and config.layout.delay is not None and rate_variance < KNOWN_RADPS**2:
+        after = Turning.KNOWN
+    if after is turning or not seen:
+        return state._replace(turning=turning)
     anew = mekf.start(estimate.q_body_from_eci, estimate.omega_body_radps, config)
-    return state._replace(estimate=_from_first(anew, state), fast=False)
+    return state._replace(estimate=_from_first(anew, state), turning=after)
 
 
 def _from_first(started: Estimate, state: EstimatorState) -> Estimate:
@@ -167,7 +181,7 @@ def _updated(
     current: Estimate, field: Vec3 | None, sun: Vec3 | None, reference: Reference, config: MekfConfig
 ) -> tuple[Estimate, bool, bool]:
     """The estimate after what was measured, and whether field and Sun were taken."""
-    b, s = reference.b_eci_t, reference.sun_eci
+    b, s = field_sampled(current.parameters, reference.b_eci_t, reference.b_rate_eci_tps), reference.sun_eci
     if field is not None and sun is not None:
         after_both = mekf.update_both(current, field, b, sun, s, config)
         if after_both is not None:
@@ -198,7 +212,7 @@ def untraced(state: EstimatorState) -> EstimatorState:
 
 def restart(state: EstimatorState) -> EstimatorState:
     """Without an estimate: the next pair of good samples starts the filter."""
-    return state._replace(estimate=None, rejected_in_a_row=0, restarts=state.restarts + 1, fast=False)
+    return state._replace(estimate=None, rejected_in_a_row=0, turning=Turning.NO, restarts=state.restarts + 1)
 
 
 def load(state: EstimatorState, component: int, value: float, config: MekfConfig) -> EstimatorState:

@@ -20,26 +20,28 @@ are not observed kept with their prior as in Schmidt 1966.
 """
 
 import struct
-from math import isfinite, nan, sqrt
+from math import inf, isfinite, nan, sqrt
 from typing import NamedTuple
 
 import numpy as np
 
-from fsw.core.algebra.quaternion import Quaternion, from_small_rotation, multiply, normalise, rotate
-from fsw.core.algebra.vector import Vec3, add, scale, sub
+from fsw.core.algebra.quaternion import Quaternion, from_small_rotation, multiply, normalise
+from fsw.core.algebra.vector import Vec3, add, dot, sub
 from fsw.core.estimation.error_dynamics import (
-    BodyFields,
-    BodyMotion,
-    acceleration,
+    FAST_RADPS,
+    Acting,
+    advanced,
+    free_motion,
+    middle,
     process_noise,
     transition_matrix,
     turn,
+    with_age_along,
 )
 from fsw.core.estimation.kalman import LeanKalmanFilter, Matrix
 from fsw.core.estimation.measurement import field_prediction, sun_prediction
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.estimation.parameters import (
-    Layout,
     Parameters,
     corrected_parameters,
     estimated_dipole,
@@ -115,8 +117,7 @@ def corrected(estimate: Estimate, error: Matrix, uncertainty: Matrix, config: Me
         uncertainty: covariance that this adds, (n, n).
         config: the filter.
     """
-    folded = _fold(estimate, error, config.layout)
-    return Estimate(*folded, estimate.covariance + uncertainty, *estimate[4:])
+    return Estimate(*_fold(estimate, error, estimate.covariance + uncertainty, config), *estimate[4:])
 
 
 def healthy(estimate: Estimate) -> bool:
@@ -150,25 +151,21 @@ def predict(
     """
     h, parts = config.tick_s, config.layout
     q, omega, parameters, covariance, trace = estimate[:5]
-    torque, m, rotor = parameters.torque_body_nm, m_body_am2, config.rotor
+    m, rotor = m_body_am2, config.rotor
     if parts.dipole is not None or parts.coils is not None:
         m = estimated_dipole(m, parameters)
     if parts.inertia is not None:
         rotor = estimated_rotor(rotor, parameters)
-    around = BodyFields(rotate(q, e1_eci), rotate(q, b_eci_t), gravity_per_s2)
-    alpha = acceleration(omega, around, m, torque, rotor)
-    omega_mid = add(omega, scale(0.5 * h, alpha))
-    q_mid = multiply(q, from_small_rotation(scale(0.5 * h, omega)))
-    around_mid = BodyFields(rotate(q_mid, e1_eci), rotate(q_mid, b_eci_t), gravity_per_s2)
-    alpha_mid = acceleration(omega_mid, around_mid, m, torque, rotor)
-    motion = BodyMotion(omega_mid, alpha_mid, m)
+    acting = Acting(e1_eci, b_eci_t, gravity_per_s2, m, parameters.torque_body_nm, rotor)
+    around_mid, motion = middle(q, omega, acting, h)
+    rotation, omega_after = advanced(q, omega, motion, acting, h)
     transition = transition_matrix(motion, around_mid, m_body_am2, rotor, config)
 
     kalman = LeanKalmanFilter(covariance)
     kalman.predict(F=transition, Q=process_noise(m_body_am2, around_mid.b_t, config))
     return Estimate(
-        normalise(multiply(q, turn(scale(h, omega_mid)))),
-        add(omega, scale(h, alpha_mid)),
+        normalise(multiply(q, turn(rotation))),
+        omega_after,
         parameters,
         kalman.P,
         trace if trace is None else _carried(trace, transition),
@@ -232,7 +229,7 @@ def _update(
     covariance = 0.5 * (kalman.P + kalman.P.T)
     nis, numbers = estimate.nis + nis, estimate.numbers + len(innovation)
     lag = _lagging(estimate.lag, kalman, first, config.tick_s / LAG_S)
-    return Estimate(*_fold(estimate, kalman.x, config.layout), covariance, trace, nis, numbers, lag)
+    return Estimate(*_fold(estimate, kalman.x, covariance, config), trace, nis, numbers, lag)
 
 
 def _lagging(lag: tuple[float, ...], kalman: LeanKalmanFilter, first: int, part: float) -> tuple[float, ...]:
@@ -240,7 +237,7 @@ def _lagging(lag: tuple[float, ...], kalman: LeanKalmanFilter, first: int, part:
     means = list(lag)
     variances: list[float] = kalman.S.diagonal().tolist()
     for place, (number, variance) in enumerate(zip(kalman.y.tolist(), variances, strict=True), start=first):
-        means[place] += part * number / sqrt(variance)
+        means[place] += part * number / sqrt(variance) if variance > 0.0 else inf
     return tuple(means)
 
 
@@ -257,13 +254,17 @@ def unexplained(sums: Matrix) -> float:
     return float(sums[-1, -1] - explained)
 
 
-def _fold(estimate: Estimate, error: Matrix, parts: Layout) -> tuple[Quaternion, Vec3, Parameters]:
-    """Attitude, rate and parameters with the error state folded in."""
-    q, omega, parameters = estimate[:3]
+def _fold(
+    estimate: Estimate, error: Matrix, covariance: Matrix, config: MekfConfig
+) -> tuple[Quaternion, Vec3, Parameters, Matrix]:
+    """Attitude, rate and parameters with the error state folded in, and the covariance of what they lack."""
+    (q, omega, parameters), parts = estimate[:3], config.layout
     values: list[float] = error.tolist()
     t1, t2, t3, w1, w2, w3, *_ = values
-    return (
-        normalise(multiply(q, from_small_rotation((t1, t2, t3)))),
-        add(omega, (w1, w2, w3)),
-        corrected_parameters(parameters, values, parts),
-    )
+    q_after = normalise(multiply(q, from_small_rotation((t1, t2, t3))))
+    omega_after = add(omega, (w1, w2, w3))
+    after = corrected_parameters(parameters, values, parts)
+    if parts.delay is not None and dot(omega_after, omega_after) >= FAST_RADPS**2:
+        shift = free_motion(omega_after, after, config.rotor) - free_motion(omega, parameters, config.rotor)
+        covariance = with_age_along(shift, covariance, parts.delay)
+    return q_after, omega_after, after, covariance

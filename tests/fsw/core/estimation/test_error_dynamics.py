@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fsw.core.algebra.vector import ZERO
-from fsw.core.estimation.error_dynamics import turn
+from fsw.core.estimation.error_dynamics import free_motion, turn, with_age_along
 from fsw.core.estimation.mekf import predict
 from fsw.core.estimation.parameters import NAMES, UNCHANGED_COILS, UNCHANGED_INERTIA
 
@@ -184,6 +184,49 @@ class TestProcessNoise:
             for sigma in (0.05, 0.0)
         )
         assert np.array_equal(unsure, exact)
+
+
+class TestAgeAlongTheMotion:
+    CHANGE = np.array([2e-3, -3e-3, 1e-3, 4e-5, 5e-5, -6e-5])
+
+    def test_the_free_motion_is_that_of_a_body_without_torque(self, full, nonlinear_flow):
+        """With its own inertia, and a wheel: d(rotation, rate)/dt by differences of the motion."""
+        satellite = replace(full, wheel_body_nms=(0.03, -0.02, 0.04))
+        kept = {"torque_body_nm": ZERO, "dipole_body_am2": ZERO, "coil_error": UNCHANGED_COILS}
+        estimate = satellite.estimate(parameters=full.parameters._replace(**kept))
+        ahead, behind = (nonlinear_flow(estimate, satellite, ZERO, ZERO, 0.0, dt) for dt in (1e-3, -1e-3))
+        found = free_motion(estimate.omega_body_radps, estimate.parameters, satellite.config().rotor)
+        by_differences = (satellite.error(estimate, ahead) - satellite.error(estimate, behind))[:6] / 2e-3
+        np.testing.assert_allclose(found, by_differences, rtol=1e-6, atol=1e-10)
+        assert np.abs(found[3:]).min() > 1e-5
+
+    def test_an_error_of_the_age_stays_along_the_motion(self, full):
+        """Errors of rank one, (motion, common age) dtau, are so about the changed motion too."""
+        delay, motion = full.place("delay_s"), np.array([0.02, -0.03, 0.04, 1e-4, 2e-4, -3e-4])
+        before, after = np.zeros(full.size()), np.zeros(full.size())
+        before[delay] = after[delay] = 0.3
+        before[0:6], after[0:6] = 0.3 * motion, 0.3 * (motion + self.CHANGE)
+        found = with_age_along(self.CHANGE, np.outer(before, before), delay)
+        np.testing.assert_allclose(found, np.outer(after, after), rtol=0.0, atol=1e-15)
+
+    def test_all_else_stays_and_the_covariance_given_too(self, full):
+        """What has nothing to do with the ages, or with their difference only."""
+        delay = full.place("delay_s")
+        alone = full.covariance()
+        alone[delay, :] = alone[:, delay] = 0.0
+        alone[delay, delay] = [[0.09, -0.09], [-0.09, 0.09]]
+        given = alone.copy()
+        np.testing.assert_array_equal(with_age_along(self.CHANGE, given, delay), alone)
+        full_one = full.covariance()
+        kept = full_one.copy()
+        assert not np.array_equal(with_age_along(self.CHANGE, full_one, delay), kept)
+        np.testing.assert_array_equal(full_one, kept)
+
+    def test_it_stays_symmetric_and_positive(self, full):
+        found = with_age_along(self.CHANGE, full.covariance(), full.place("delay_s"))
+        scaled = found / np.outer(full.scales(), full.scales())
+        np.testing.assert_allclose(scaled, scaled.T, rtol=0.0, atol=1e-12)
+        assert np.linalg.eigvalsh(scaled).min() > 1e-3
 
 
 @pytest.mark.parametrize("angle_rad", [0.0, 1e-9, 0.02, 0.5])

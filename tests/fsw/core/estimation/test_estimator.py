@@ -16,10 +16,12 @@ from fsw.core.estimation.estimator import (
     NONE_USED,
     EstimatorConfig,
     EstimatorState,
+    Turning,
     Used,
     predict,
     update,
 )
+from fsw.core.estimation.measurement import field_prediction, sun_prediction
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.orbital_attitude import orbital_attitude
 from fsw.core.estimation.parameters import NAMES, Prior
@@ -28,20 +30,26 @@ from fsw.core.gate.readings import NOTHING
 from fsw.core.orbit.ephemeris import Reference
 from fsw.wire.messages import CoilStatus, MagField, SunVector
 
-MEKF = mekf_config(
-    ((1.02, 0.07, -0.05), (0.07, 1.85, 0.11), (-0.05, 0.11, 1.45)),
-    1.0,
-    {
-        "mag_bias_t": Prior((3e-7,) * 3, (1e-10,) * 3),
-        "torque_body_nm": Prior((1e-7,) * 3, (3e-10,) * 3),
-        "dipole_body_am2": Prior((0.02, 0.03, 0.025), (1e-6,) * 3, mean=(0.001, -0.002, 0.003)),
-    },
-    magnetometer_sigma_t=2e-7,
-    sun_sigma_rad=radians(0.5),
-    attitude_sigma_rad=radians(5.0),
-    rate_sigma_radps=radians(2.0),
-    torque_noise_nm_rts=1e-7,
-    gate_nis=16.27,
+
+def tuned(**priors):
+    """A filter that estimates these parameters besides attitude and rate."""
+    return mekf_config(
+        ((1.02, 0.07, -0.05), (0.07, 1.85, 0.11), (-0.05, 0.11, 1.45)),
+        1.0,
+        priors,
+        magnetometer_sigma_t=2e-7,
+        sun_sigma_rad=radians(0.5),
+        attitude_sigma_rad=radians(5.0),
+        rate_sigma_radps=radians(2.0),
+        torque_noise_nm_rts=1e-7,
+        gate_nis=16.27,
+    )
+
+
+MEKF = tuned(
+    mag_bias_t=Prior((3e-7,) * 3, (1e-10,) * 3),
+    torque_body_nm=Prior((1e-7,) * 3, (3e-10,) * 3),
+    dipole_body_am2=Prior((0.02, 0.03, 0.025), (1e-6,) * 3, mean=(0.001, -0.002, 0.003)),
 )
 SIZE = MEKF.layout.size
 CONFIG = EstimatorConfig(
@@ -53,6 +61,8 @@ CONFIG = EstimatorConfig(
     restart_after_rejections=6,
     valid_sigma_rad=radians(5.0),
 )
+AGED = replace(CONFIG, mekf=tuned(delay_s=Prior((0.3, 0.3), (0.0, 0.0), mean=(0.5, 0.5))))
+"""Where the age of the samples is not known."""
 REFERENCE = Reference(
     r_eci_m=(4.0e6, -5.0e6, 3.0e6),
     radius_m=norm((4.0e6, -5.0e6, 3.0e6)),
@@ -320,12 +330,12 @@ class TestRejections:
 class TestAfterAFastTurn:
     """What a fast turn leaves in the parameters is beyond their deviations: they are started once more."""
 
-    def turning(self, settled, degps, fast=False):
+    def turning(self, settled, degps, turning=Turning.NO):
         """At this rate, with parameters that differ from their start, and sure of it all."""
         rate = scale(radians(degps), unit((0.6, -0.48, 0.64)))
         drawn_away = settled.estimate.parameters._replace(mag_bias_t=(9e-7, -8e-7, 7e-7))
         estimate = settled.estimate._replace(omega_body_radps=rate, parameters=drawn_away)
-        return settled._replace(estimate=estimate, fast=fast)
+        return settled._replace(estimate=estimate, turning=turning)
 
     def begun_anew(self, state):
         same = state.estimate.parameters == MEKF.initial_parameters
@@ -340,24 +350,27 @@ class TestAfterAFastTurn:
         return update(state, seen_from(q, **({"field": field} | changes)), REFERENCE, CONFIG)[0]
 
     @pytest.mark.parametrize(
-        ("fast", "degps", "fast_after", "anew"),
+        ("before", "degps", "expected", "anew"),
         [
-            (False, 0.29, False, False),
-            (False, 0.31, False, False),
-            (False, 0.49, False, False),
-            (False, 0.51, True, False),
-            (False, 5.0, True, False),
-            (True, 5.0, True, False),
-            (True, 0.49, True, False),
-            (True, 0.31, True, False),
-            (True, 0.29, False, True),
+            (Turning.NO, 0.29, Turning.NO, False),
+            (Turning.NO, 0.31, Turning.NO, False),
+            (Turning.NO, 0.49, Turning.NO, False),
+            (Turning.NO, 0.51, Turning.FAST, False),
+            (Turning.NO, 5.0, Turning.FAST, False),
+            (Turning.FAST, 5.0, Turning.FAST, False),
+            (Turning.FAST, 0.49, Turning.FAST, False),
+            (Turning.FAST, 0.31, Turning.FAST, False),
+            (Turning.FAST, 0.29, Turning.NO, True),
+            (Turning.KNOWN, 5.0, Turning.KNOWN, False),
+            (Turning.KNOWN, 0.31, Turning.KNOWN, False),
+            (Turning.KNOWN, 0.29, Turning.NO, True),
         ],
     )
     def test_it_counts_from_half_a_degree_per_second_and_ends_below_0_3(
-        self, settled, fast, degps, fast_after, anew
+        self, settled, before, degps, expected, anew
     ):
-        after = self.seen_tick(self.turning(settled, degps, fast))
-        assert after.fast is fast_after
+        after = self.seen_tick(self.turning(settled, degps, before))
+        assert after.turning is expected
         assert self.begun_anew(after) is anew
 
     def test_a_rate_that_is_hardly_known_is_not_fast(self, settled):
@@ -371,7 +384,7 @@ class TestAfterAFastTurn:
             assert self.seen_tick(unsure._replace(fast=True)).fast
 
     def test_attitude_rate_and_counts_go_on(self, settled):
-        before = self.turning(settled, 0.2, fast=True)._replace(
+        before = self.turning(settled, 0.2, Turning.FAST)._replace(
             rejected_in_a_row=2, rejected_total=7, restarts=3
         )
         after = self.seen_tick(before)
@@ -380,39 +393,106 @@ class TestAfterAFastTurn:
         assert after.estimate.q_body_from_eci == pytest.approx(q, abs=1e-9)
         assert after.estimate.omega_body_radps == pytest.approx(omega, abs=1e-9)
         assert after.estimate.trace is None
-        assert after == EstimatorState(after.estimate, 0, 7, 3, fast=False)
+        assert after == EstimatorState(after.estimate, 0, 7, 3, Turning.NO)
 
     @pytest.mark.parametrize("changes", [{"sun": None}, {"field": None}, {"quiet": False}, {"sun": OFF_SUN}])
     def test_it_waits_for_field_and_sun_as_every_start(self, settled, changes):
         """One alone would not bring a start's covariance down: in eclipse, or while a coil conducts."""
-        waiting = self.turning(settled, 0.2, fast=True)
+        waiting = self.turning(settled, 0.2, Turning.FAST)
         for _ in range(3):
             waiting = self.seen_tick(waiting, **changes)
-            assert waiting.fast
+            assert waiting.turning is Turning.FAST
             assert not self.begun_anew(waiting)
         assert self.begun_anew(self.seen_tick(waiting))
 
     def test_it_happens_once(self, settled):
-        state = self.seen_tick(self.turning(settled, 0.2, fast=True))
+        state = self.seen_tick(self.turning(settled, 0.2, Turning.FAST))
         for _ in range(3):
             state, _ = step(state, seen_from())
             assert not self.begun_anew(state)
-            assert not state.fast
+            assert state.turning is Turning.NO
 
     def test_a_tumble_that_is_braked_ends_in_one_start_of_the_parameters(self, settled):
         """From 1 deg/s to rest and not past 0.5 deg/s again: two crossings of 0.3 deg/s are one turn."""
         state, starts = settled, 0
         for degps in (1.0, 0.7, 0.45, 0.4, 0.25, 0.35, 0.45, 0.25):
-            state = self.seen_tick(self.turning(settled, degps, state.fast))
+            state = self.seen_tick(self.turning(settled, degps, state.turning))
             starts += self.begun_anew(state)
         assert starts == 1
 
     def test_a_filter_that_begins_anew_has_not_turned_fast(self, settled):
-        lost = predict(self.turning(settled, 5.0, fast=True), REFERENCE, ZERO, MAX_ELAPSED_TICKS + 1, CONFIG)
-        assert lost == EstimatorState(None, 0, settled.rejected_total, settled.restarts + 1, fast=False)
+        lost = predict(
+            self.turning(settled, 5.0, Turning.FAST), REFERENCE, ZERO, MAX_ELAPSED_TICKS + 1, CONFIG
+        )
+        assert lost == EstimatorState(None, 0, settled.rejected_total, settled.restarts + 1, Turning.NO)
 
     def test_it_is_in_the_checksum_of_the_state(self, settled):
-        assert settled._replace(fast=True).integers() != settled.integers()
+        assert settled._replace(turning=Turning.FAST).integers() != settled.integers()
+
+
+class TestOfAFastTurnWhoseRateIsKnown:
+    """Samples of unknown age: what they seem to tell before the rate is known is forgotten, once."""
+
+    def seen(self, sigma_degps, config=AGED, turning=Turning.FAST, **changes):
+        """The state after a tick of a turn of 2 deg/s, the rate known so far to this."""
+        begun = mekf.start(Q_BODY_FROM_ECI, scale(radians(2.0), unit((0.6, -0.48, 0.64))), config.mekf)
+        covariance = begun.covariance.copy()
+        covariance[0:6, 0:6] *= np.diag([1e-4] * 3 + [(sigma_degps / 2.0) ** 2] * 3)
+        parameters = begun.parameters._replace(delay_s=(0.8, 0.7))
+        sure = begun._replace(covariance=covariance, parameters=parameters)
+        field, _ = field_prediction(*sure[:3], REFERENCE.b_eci_t, config.mekf)
+        sun, _ = sun_prediction(*sure[:3], REFERENCE.sun_eci, config.mekf)
+        said = {"field": field_message(field), "sun": SunVector(1, *unit(sun))} | changes
+        before = EstimatorState(sure, turning=turning)
+        return sure, update(before, seen_from(**said), REFERENCE, config)[0]
+
+    def begun_anew(self, state, config=AGED):
+        same = state.estimate.parameters == config.mekf.initial_parameters
+        assert same is bool(np.array_equal(state.estimate.covariance, config.mekf.initial_covariance))
+        return same
+
+    def test_the_parameters_start_anew_about_this_rate(self):
+        before, after = self.seen(0.024)
+        assert after.turning is Turning.KNOWN
+        assert self.begun_anew(after)
+        assert angle_rad(after.estimate.q_body_from_eci, before.q_body_from_eci) < 1e-4
+        np.testing.assert_allclose(after.estimate.omega_body_radps, before.omega_body_radps, atol=1e-6)
+
+    def test_not_while_it_is_less_known(self):
+        _, after = self.seen(0.026)
+        assert after.turning is Turning.FAST
+        assert not self.begun_anew(after)
+
+    def test_not_twice(self):
+        _, after = self.seen(0.024, turning=Turning.KNOWN)
+        assert after.turning is Turning.KNOWN
+        assert not self.begun_anew(after)
+
+    @pytest.mark.parametrize("changes", [{"sun": None}, {"field": None}])
+    def test_with_field_and_sun_as_every_start(self, changes):
+        _, after = self.seen(0.024, **changes)
+        assert after.turning is Turning.FAST
+        assert not self.begun_anew(after)
+
+    def test_not_where_samples_are_of_their_tick(self):
+        config = replace(AGED, mekf=MEKF)
+        _, after = self.seen(0.024, config)
+        assert after.turning is Turning.FAST
+        assert not self.begun_anew(after, config)
+
+
+def test_an_old_field_sample_is_of_where_the_satellite_was():
+    """1.5 s ago, where the field was 750 nT different: ten times what shows in the estimate otherwise."""
+    rate = (3e-7, -2e-7, 4e-7)
+    reference = replace(REFERENCE, b_rate_eci_tps=rate)
+    begun = mekf.start(Q_BODY_FROM_ECI, ZERO, AGED.mekf)
+    old = begun._replace(parameters=begun.parameters._replace(delay_s=(1.5, 0.5)))
+    then = add(REFERENCE.b_eci_t, scale(-1.5, rate))
+    sampled = seen_from(field=field_message(rotate(Q_BODY_FROM_ECI, then)), sun=None)
+    after, used = update(EstimatorState(old), sampled, reference, AGED)
+    assert used.field
+    assert after.estimate.nis < 1e-12
+    assert angle_rad(after.estimate.q_body_from_eci, Q_BODY_FROM_ECI) < 1e-9
 
 
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")  # overflow is what is tried

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fsw.core.estimation import estimator
+from fsw.core.estimation.estimator import Turning
 from fsw.core.estimation.kalman import LeanKalmanFilter
 from fsw.core.estimation.parameters import (
     NAMES,
@@ -203,7 +204,7 @@ class TestFastTurn:
         world = make_world(flight={"uncertainty": BOUNDS})
         world.fly(60)
         loaded = estimator.load(world.state.estimator, Component.TORQUE_Z, 3e-8, world.config.estimator.mekf)
-        fast = loaded._replace(fast=True, frozen=frozen)
+        fast = loaded._replace(turning=Turning.FAST, frozen=frozen)
         world.state = world.state._replace(estimator=fast)
         world.step()
         return fast, world.state.estimator
@@ -211,9 +212,9 @@ class TestFastTurn:
     def test_they_start_from_what_the_ground_has_loaded(self, make_world):
         before, after = self.slowed(make_world, frozen=False)
         assert after.estimate.parameters == before.first != before.estimate.parameters
-        assert not after.fast
+        assert after.turning is Turning.NO
 
     def test_frozen_ones_stay(self, make_world):
         before, after = self.slowed(make_world, frozen=True)
         assert after.estimate.parameters == before.estimate.parameters != before.first
-        assert after.fast
+        assert after.turning is Turning.FAST

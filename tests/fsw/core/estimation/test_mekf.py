@@ -10,7 +10,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from fsw.core.algebra.quaternion import conjugate, multiply, normalise, rotate
-from fsw.core.algebra.vector import ZERO, add, cross, norm
+from fsw.core.algebra.vector import ZERO, add, cross, norm, scale
 from fsw.core.estimation import mekf
 from fsw.core.estimation.mekf import predict, start, update_both, update_field, update_sun
 from fsw.core.estimation.parameters import NAMES, NOTHING, Parameters
@@ -90,13 +90,21 @@ class TestPropagation:
         np.testing.assert_allclose(ours.omega_body_radps, plant.omega_body_radps, atol=1e-9)
 
     def test_the_error_falls_with_the_square_of_the_tick(self, satellite):
-        flight = (satellite.omega, satellite.driven_am2)
+        flight = (scale(0.5, satellite.omega), satellite.driven_am2)
         plant = self.by_plant(satellite, 20, *flight)
         coarse, fine = (
             angle_rad(self.flown(satellite, tick_s, 20, *flight).q_body_from_eci, plant.q_body_from_eci)
             for tick_s in (1.0, 0.5)
         )
         assert coarse / fine == pytest.approx(4.0, rel=0.15)
+
+    @pytest.mark.parametrize("degps", [3.0, 5.0])
+    def test_sixty_seconds_of_a_fast_turn(self, full, degps):
+        """The middle of each tick alone would leave hundred times as much."""
+        flight = (tuple(np.radians(degps) * np.array([0.48, -0.64, 0.6])), ZERO)
+        ours, plant = self.flown(full, 1.0, 60, *flight), self.by_plant(full, 60, *flight)
+        assert angle_rad(ours.q_body_from_eci, plant.q_body_from_eci) < 2e-7
+        np.testing.assert_allclose(ours.omega_body_radps, plant.omega_body_radps, rtol=0.0, atol=4e-9)
 
     def test_the_parameters_stay_and_the_quaternion_stays_unit(self, satellite):
         ours = self.flown(satellite, 1.0, 60, satellite.omega, satellite.driven_am2)
@@ -124,6 +132,24 @@ def textbook(estimate, innovation, sensitivity, sigma):
     return scale * (covariance @ h.T @ (innovation / sigma)), covariance * np.outer(scale, scale)
 
 
+def about_the_motion_after(satellite, before, after, covariance):
+    """T P T^T: what the age of both samples hides lies along the motion, w and J^-1 ((J w + h) x w)."""
+    if "delay_s" not in satellite.carried:
+        return covariance
+
+    def motion(estimate):
+        xx, yy, zz, xy, xz, yz = estimate.parameters.inertia_error_kgm2
+        inertia = np.add(satellite.inertia_kgm2, [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        w = np.array(estimate.omega_body_radps)
+        return np.concatenate(
+            (w, np.linalg.solve(inertia, np.cross(inertia @ w + satellite.wheel_body_nms, w)))
+        )
+
+    turned = np.eye(satellite.size())
+    turned[0:6, satellite.place("delay_s")] = 0.5 * np.outer(motion(after) - motion(before), (1.0, 1.0))
+    return turned @ covariance @ turned.T
+
+
 @pytest.mark.parametrize("kind", ["field", "sun", "both"])
 class TestUpdate:
     """At a satellite as in its table, where the sensitivity is exact."""
@@ -140,6 +166,7 @@ class TestUpdate:
         before, after, innovation = self.updated(kind, satellite)
         h = satellite.sensitivity(kind, before, step=1e-3)
         dx, covariance = textbook(before, innovation, h, satellite.sigma[kind])
+        covariance = about_the_motion_after(satellite, before, after, covariance)
         scale = np.sqrt(before.covariance.diagonal())
         unit = np.outer(scale, scale)
         np.testing.assert_allclose(after.covariance / unit, covariance / unit, rtol=0.0, atol=1e-6)
