@@ -4,7 +4,6 @@ The loop, the bus, the audit and the summary are those of ``torquer sil --bus vi
 input is in memory instead of files, and only as much as they need.
 """
 
-from array import array
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -39,8 +38,7 @@ _JUDGED = frozenset({CoilStatus.ID, CoilBoot.ID, CoilRefused.ID, Sync.ID, PlantE
 }
 """Identifiers of the frames that audit and tally evaluate."""
 
-_ROW = 12
-"""Numbers of a row of ``_Truth``."""
+_COLUMNS = {"t_s": 1, "q_body_from_orbit": 4, "omega_body_orbit_radps": 3, "lit": 1, "m_body_am2": 3}
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,26 +148,19 @@ class _Truth:
     """The histories that a summary needs, and with each row the estimate of the flight software."""
 
     def __init__(self, ticks: int, node: FlightNode) -> None:
+        self.histories: Histories = {
+            name: np.zeros(ticks) if width == 1 else np.zeros((ticks, width))
+            for name, width in _COLUMNS.items()
+        }
         self.recorder = EstimateRecorder(ticks)
         self._node = node
-        self._numbers = array("d")
+        self._row = 0
 
     def append(self, row: TruthRow) -> None:
-        q, omega, m = row.q_body_from_orbit, row.omega_body_orbit_radps, row.m_body_am2
-        self._numbers.extend((row.t_s, *q, *omega, row.lit, *m))
+        for name, history in self.histories.items():
+            history[self._row] = getattr(row, name)
         self.recorder.take(self._node.state)
-
-    @property
-    def histories(self) -> Histories:
-        """By name, as in a truth file."""
-        rows = np.array(self._numbers).reshape(-1, _ROW)
-        return {
-            "t_s": rows[:, 0],
-            "q_body_from_orbit": rows[:, 1:5],
-            "omega_body_orbit_radps": rows[:, 5:8],
-            "lit": rows[:, 8],
-            "m_body_am2": rows[:, 9:12],
-        }
+        self._row += 1
 
     def flush(self) -> None:
         """Nothing is buffered."""
