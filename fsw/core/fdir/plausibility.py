@@ -92,13 +92,6 @@ CHECKS: tuple[tuple[Sensor, SensorFault, Callable[[Seen], bool]], ...] = (
 )
 
 
-def _checks_of(sensor: Sensor) -> tuple[tuple[int, Callable[[Seen], bool]], ...]:
-    return tuple((int(cause), check) for of, cause, check in CHECKS if of is sensor)
-
-
-_OF_MAGNETOMETER, _OF_SUN_SENSOR = _checks_of(Sensor.MAGNETOMETER), _checks_of(Sensor.SUN_SENSOR)
-
-
 class Findings(NamedTuple):
     """What the samples of a tick show by themselves.
 
@@ -137,18 +130,14 @@ def examine(memory: Memory, readings: Readings, reference: Reference, limits: Pl
         memory.sun_still > limits.late_ticks,
         limits,
     )
-    b_cause, s_cause = _cause(seen, _OF_MAGNETOMETER), _cause(seen, _OF_SUN_SENSOR)
+    causes = {Sensor.MAGNETOMETER: 0, Sensor.SUN_SENSOR: 0}
+    for sensor, cause, speaks_against in CHECKS:
+        if not causes[sensor] and speaks_against(seen):
+            causes[sensor] = int(cause)
+    b_cause, s_cause = causes[Sensor.MAGNETOMETER], causes[Sensor.SUN_SENSOR]
     pair = field is not None and sun is not None and not (b_cause or s_cause)
     apart = pair and _apart(seen, reference)
     return Findings(b_cause, s_cause, field, sun, pair, apart, memory)
-
-
-def _cause(seen: Seen, checks: tuple[tuple[int, Callable[[Seen], bool]], ...]) -> int:
-    """What the first check finds that speaks against the sensor, 0 if none does."""
-    for cause, speaks_against in checks:
-        if speaks_against(seen):
-            return cause
-    return 0
 
 
 def _remember(memory: Memory, readings: Readings) -> Memory:
