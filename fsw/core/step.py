@@ -166,7 +166,8 @@ def _judge(state: FlightState, observation: Observation, config: FlightConfig) -
     _, reference, estimator, attitude, used, findings = observation
     health = state.health
     if reference is not None and findings is not None:
-        evidence = Evidence(state.tick, findings, state.coil, reference, used)
+        tick, settled = state.tick, state.tick >= state.syncs.settled_tick
+        evidence = Evidence(tick, findings, state.coil, reference, used, settled)
         health, estimator, attitude = fdir.judge(health, estimator, attitude, evidence, config.fdir)
     return state._replace(health=health, estimator=estimator, attitude=attitude)
 

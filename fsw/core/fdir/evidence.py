@@ -80,7 +80,7 @@ def weigh(nats: float, by: float, threshold: float) -> float:
     return min(max(0.0, nats + by), threshold)
 
 
-INFLATION = 2.0
+INFLATION = 4.0
 """Of the innovations' covariance under a fault that is too slow for the filter's gate."""
 
 

@@ -46,7 +46,8 @@ class Evidence(NamedTuple):
     """What health is judged by in one tick.
 
     ``findings`` are of all that the sensors sent; ``view`` is that of the coil driver; ``used`` is what the
-    filter took.
+    filter took. ``settled``: the count of ticks is no longer in doubt; until then field and Sun may be those
+    of another time, and no sensor is judged by them.
     """
 
     tick: int
@@ -54,6 +55,7 @@ class Evidence(NamedTuple):
     view: CoilView
     reference: Reference
     used: Used
+    settled: bool = True
 
 
 def judge_current(
@@ -106,14 +108,17 @@ def judge(
         not valid while a fault may be what it shows.
     """
     reference, findings = evidence.reference, evidence.findings
-    before, found = health.sensors, health.coils
+    before, found, weights = health.sensors, health.coils, config.sensors.weights
+    if not evidence.settled:
+        valid = attitude.valid and pair.valid(before.pair, weights)
+        return health, untraced(estimator), attitude._replace(valid=valid)
     judged = sensors.judge(before, findings, evidence.used, estimator.estimate, reference, config.sensors)
     isolated = bool(judged.field.fault or judged.sun.fault)
     changed = (judged.field.fault, judged.sun.fault) != (before.field.fault, before.sun.fault)
     if changed or judged.pair.standing is not Standing.TRUSTED:
         estimator = untraced(estimator)  # what a faulty sensor has shown proves nothing about a coil
     elif not sensors.suspected(judged):
-        sure = pair.proven(judged.pair, config.sensors.weights) or isolated
+        sure = pair.proven(judged.pair, weights) or isolated
         doubt = judged.pair.doubt > 1.0
         found, estimator = coils.judge_effect(
             found, evidence.view, reference.b_eci_t, estimator, evidence.tick, sure, doubt, config.coils
@@ -122,14 +127,16 @@ def judge(
         found = found._replace(pulse_nats=ZERO)  # a faulty sensor may have shown it
     if judged.pair.ended:
         estimator, attitude = restart(estimator), UNKNOWN
-    if not pair.valid(judged.pair, config.sensors.weights) or coils.unattributed_torque(found):
+    if not pair.valid(judged.pair, weights) or coils.unattributed_torque(found):
         attitude = attitude._replace(valid=False)
     return Health(judged, found), estimator, attitude
 
 
 def plant_restarted(health: Health) -> Health:
     """The health under a new count of ticks: faults stay, what the lost estimate had proved does not."""
-    return Health(health.sensors._replace(pair=health.sensors.pair._replace(proof=0.0)), health.coils)
+    both = health.sensors.pair
+    standing = Standing.NEW if both.standing is Standing.TRUSTED else both.standing
+    return health._replace(sensors=health.sensors._replace(pair=both._replace(standing=standing, proof=0.0)))
 
 
 def happenings(before: Health, after: Health) -> list[Happening]:

@@ -87,10 +87,10 @@ class Observed(NamedTuple):
 def proven(pair: Pair, weights: EvidenceWeights) -> bool:
     """Whether the estimate has shown for long enough, and lately, that it is right about both sensors.
 
-    Not while there is doubt: a slow fault of one has then led it away, and it may refuse the other.
+    Not while there is doubt or it lags: a slow fault of one has then led it away, and it may refuse the other.
     """
     shown = pair.proof >= 0.5 * weights.threshold and pair.doubt < SUSPICIOUS * weights.threshold
-    return pair.standing is Standing.TRUSTED and shown
+    return pair.standing is Standing.TRUSTED and shown and not pair.owed
 
 
 def valid(pair: Pair, weights: EvidenceWeights) -> bool:
@@ -143,15 +143,20 @@ def _innovations(estimate: Estimate) -> float:
 
 
 def _proof(pair: Pair, seen: Observed, weights: EvidenceWeights) -> float:
-    """An estimate gains by each pair that it takes, and loses while it takes one alone; on trial slowly."""
+    """An estimate gains by each pair that it takes; one that is trusted loses while it takes one alone.
+
+    On trial slowly.
+    """
     if seen.estimate is None or seen.begun:
         return 0.0
     if seen.refused:
         by = 0.0 if pair.standing is Standing.TRUSTED else weights.misfits
-    elif seen.used.field and seen.used.sun and seen.sound:
+    elif not seen.sound:
+        by = -weights.fits
+    elif seen.used.field and seen.used.sun:
         by = weights.fits if _innovations(seen.estimate) < 0.0 else 0.0
     else:
-        by = -weights.fits
+        by = -weights.fits if pair.standing is Standing.TRUSTED else 0.0
     slow = PAIR_NUMBERS if pair.standing is Standing.ON_TRIAL else 1
     return weigh(pair.proof, by / slow, weights.threshold)
 

@@ -108,7 +108,8 @@ def judge(
     if both.accord >= weights.threshold:
         return SensorHealth(Watch(), Watch(), both._replace(accord=0.0), findings.memory)
     sure = pair.proven(health.pair, weights)
-    alone = findings.sun is None and health.pair.standing is Standing.TRUSTED  # dynamics do not jump
+    trusted = health.pair.standing is Standing.TRUSTED and not health.pair.owed
+    alone = findings.sun is None and trusted  # dynamics do not jump
     b_refused = seen.refused_field and (alone or (sure and used.sun))
     s_refused = seen.refused_sun and sure and used.field
     unclear = seen.refused and not (b_refused or s_refused)
