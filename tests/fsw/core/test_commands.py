@@ -278,7 +278,7 @@ class TestOrbit:
 
 
 EVERYTHING = {
-    "inertia_percent": 50.0,
+    "inertia_percent": 30.0,
     "products_percent": 20.0,
     "residual_dipole_am2": 0.03,
     "coil_gain_percent": 5.0,
