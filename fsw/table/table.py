@@ -35,7 +35,7 @@ from fsw.table.sections import (
     TimeTable,
     parse_utc,
 )
-from fsw.table.uncertainty import LEAST_FIELD_T, Ceiling, UncertaintyTable, check_bounds
+from fsw.table.uncertainty import LARGEST_FIELD_T, Ceiling, UncertaintyTable, check_bounds
 
 
 class FlightTable(Section):
@@ -58,10 +58,10 @@ class FlightTable(Section):
     def _bounds_can_hold(self) -> Self:
         """Beyond these no controller could hold the satellite, or a sound coil would be called weak."""
         coils, gain = self.coils, 100.0 * (1.0 - self.fdir.weak_coil_part)
-        torque_nm = coils.largest_am2 * coils.on_part * LEAST_FIELD_T
+        torque_nm = coils.largest_am2 * coils.on_part * LARGEST_FIELD_T
         ceilings = {
             "residual_dipole_am2": Ceiling(coils.largest_am2, "the largest dipole of a coil"),
-            "torque_nm": Ceiling(torque_nm, "what a coil gives in the mean in a weak field"),
+            "torque_nm": Ceiling(torque_nm, "what a coil gives in the mean in a strong field"),
             "coil_gain_percent": Ceiling(gain, "so that no sound coil is below fdir.weak_coil_part"),
         }
         check_bounds(self.uncertainty, ceilings)

@@ -60,7 +60,7 @@ def refused(torquer, tmp_path, monkeypatch):
         (("--set", "orbit.along_track_km=1e5"), ["orbit.along_track_km", "20000"]),
         (("--set", "disturbance.torque_daily_part=2"), ["disturbance.torque_daily_part", "1"]),
         (("--set", "disturbance.remanence_part=-1"), ["disturbance.remanence_part", "0"]),
-        (("--set", "flight.uncertainty.torque_nm=30"), ["[flight]: uncertainty.torque_nm = 30", "4.66e-06"]),
+        (("--set", "flight.uncertainty.torque_nm=30"), ["[flight]: uncertainty.torque_nm = 30", "1.165e-05"]),
         (("--set", "sensors.sun.albedo=maybe"), ["sensors.sun.albedo", "maybe"]),
         (("--set", "time.tik_hz=1"), ["time.tik_hz", "not a known key"]),
         (("--set", "time=1"), ["time"]),
