@@ -164,10 +164,9 @@ def _update(
 def _judge(state: FlightState, observation: Observation, config: FlightConfig) -> FlightState:
     """Judge sensors and coils by all readings, of isolated sensors too."""
     _, reference, estimator, attitude, used, findings = observation
-    health = state.health
+    tick, health = state.tick, state.health
     if reference is not None and findings is not None:
-        tick, settled = state.tick, state.tick >= state.syncs.settled_tick
-        evidence = Evidence(tick, findings, state.coil, reference, used, settled)
+        evidence = Evidence(tick, findings, state.coil, reference, used, state.syncs.settled(tick))
         health, estimator, attitude = fdir.judge(health, estimator, attitude, evidence, config.fdir)
     return state._replace(health=health, estimator=estimator, attitude=attitude)
 

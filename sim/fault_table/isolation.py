@@ -119,6 +119,8 @@ def _isolates(
             return False, f"{unit} isolated in place of {' or '.join(units)} in tick {tick}"
     after_s = []
     for fault in row.faults:
+        if not _shows(fault, record):
+            continue
         named_s = found_s(fault)
         if named_s is None:
             return _not_isolated(row, fault, record)
@@ -126,6 +128,13 @@ def _isolates(
             return False, f"{fault.unit} found after {named_s:.0f} s, later than {row.within_s:g} s"
         after_s.append(f"{named_s:.0f} s")
     return True, f"found after {', '.join(after_s)}"
+
+
+def _shows(fault: RowFault, record: FaultFlightRecord) -> bool:
+    """Whether a fault can be found: that of a Sun sensor only where the Sun shines."""
+    first, hz = onset_tick(fault, record), record.tick_hz
+    end = len(record.lit) if fault.lasts_s == inf else first + round(fault.lasts_s * hz)
+    return fault.shows and (fault.unit != "sun sensor" or any(record.lit[first:end]))
 
 
 def isolates_no_healthy_unit(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:

@@ -45,13 +45,17 @@ class Unseen(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class RowFault:
-    """One of the faults of a row: it begins ``after_s`` after the first one."""
+    """One of the faults of a row: it begins ``after_s`` after the first one.
+
+    ``shows``: False where nothing left aboard may show it, so that its unit need not be named.
+    """
 
     kind: str
     parameters: dict[str, float]
     lasts_s: float
     unit: str
     after_s: float = 0.0
+    shows: bool = True
 
 
 @dataclass(frozen=True, slots=True)

@@ -110,7 +110,7 @@ def judge(
     reference, findings = evidence.reference, evidence.findings
     before, found, weights = health.sensors, health.coils, config.sensors.weights
     if not evidence.settled:
-        valid = attitude.valid and pair.valid(before.pair, weights)
+        valid = attitude.valid and pair.valid(before.pair)
         return health, untraced(estimator), attitude._replace(valid=valid)
     judged = sensors.judge(before, findings, evidence.used, estimator.estimate, reference, config.sensors)
     isolated = bool(judged.field.fault or judged.sun.fault)
@@ -127,7 +127,7 @@ def judge(
         found = found._replace(pulse_nats=ZERO)  # a faulty sensor may have shown it
     if judged.pair.ended:
         estimator, attitude = restart(estimator), UNKNOWN
-    if not pair.valid(judged.pair, weights) or coils.unattributed_torque(found):
+    if not pair.valid(judged.pair) or coils.unattributed_torque(found):
         attitude = attitude._replace(valid=False)
     return Health(judged, found), estimator, attitude
 

@@ -45,7 +45,7 @@ class Pair(NamedTuple):
     ``proof``: that the estimate is right about both; ``doubt``: that one is wrong; ``accord``: that both are
     right, while they are disputed, or one is isolated and no estimate can tell. ``ended``: the filter is to
     end in this tick; ``blind_ticks``: for so long it has taken no sample; ``owed``: what an
-    estimate that lagged behind both has still to show.
+    estimate that lagged, or was blind, has still to show.
     """
 
     standing: Standing = Standing.NEW
@@ -87,16 +87,15 @@ class Observed(NamedTuple):
 def proven(pair: Pair, weights: EvidenceWeights) -> bool:
     """Whether the estimate has shown for long enough, and lately, that it is right about both sensors.
 
-    Not while there is doubt or it lags: a slow fault of one has then led it away, and it may refuse the other.
+    Not while there is doubt or it lags: a slow fault of one may have led it away, and it refuses the other.
     """
     shown = pair.proof >= 0.5 * weights.threshold and pair.doubt < SUSPICIOUS * weights.threshold
     return pair.standing is Standing.TRUSTED and shown and not pair.owed
 
 
-def valid(pair: Pair, weights: EvidenceWeights) -> bool:
-    """Whether an attitude may be valid that rests on them: proven, shown by something, without a lag."""
-    shown = pair.blind_ticks <= weights.blind_ticks and not pair.owed
-    return pair.standing is Standing.TRUSTED and shown
+def valid(pair: Pair) -> bool:
+    """Whether an attitude may be valid that rests on them."""
+    return pair.standing is Standing.TRUSTED and not pair.owed
 
 
 def judge(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: CredibilityConfig) -> Pair:
@@ -118,7 +117,8 @@ def judge(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: Cre
     elif standing is Standing.TRUSTED and (seen.estimate is None or seen.begun):
         standing = Standing.NEW
     blind_ticks = 0 if seen.used.field or seen.used.sun else pair.blind_ticks + 1
-    return Pair(standing, proof, doubt, accord, False, blind_ticks, _owed(pair.owed, seen, weights))
+    owed = _owed(pair.owed, blind_ticks, seen, weights)
+    return Pair(standing, proof, doubt, accord, False, blind_ticks, owed)
 
 
 def _misfit(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: CredibilityConfig) -> float:
@@ -161,19 +161,19 @@ def _proof(pair: Pair, seen: Observed, weights: EvidenceWeights) -> float:
     return weigh(pair.proof, by / slow, weights.threshold)
 
 
-def _owed(owed: float, seen: Observed, weights: EvidenceWeights) -> float:
-    """Innovations whose mean is no chance contradict the covariance: both sensors have to prove it anew.
+def _owed(owed: float, blind_ticks: int, seen: Observed, weights: EvidenceWeights) -> float:
+    """What both sensors have to prove anew.
 
-    One alone, while the other is isolated, proves it slowly.
+    After a time without any, in which pulses may have failed; and where innovations have a mean that is no
+    chance, and so contradict the covariance.
     """
     if seen.estimate is None:
         return 0.0
-    if mean_misfit(seen.estimate.lag, weights) >= weights.threshold:
+    lags = mean_misfit(seen.estimate.lag, weights) >= weights.threshold
+    if lags or blind_ticks > weights.blind_ticks:
         return weights.threshold
-    taken = (seen.used.field + seen.used.sun) * (not seen.refused)
-    if taken == 2:
-        return max(0.0, owed - weights.fits)
-    return max(0.0, owed - weights.fits / PAIR_NUMBERS) if taken and seen.isolated else owed
+    both = seen.used.field and seen.used.sun
+    return max(0.0, owed - weights.fits) if both else owed
 
 
 def _accord(accord: float, findings: Findings, weights: EvidenceWeights) -> float:

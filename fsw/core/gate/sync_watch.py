@@ -44,6 +44,10 @@ class SyncWatch(NamedTuple):
     settled_tick: int = 0
     strange_tick: int = -1
 
+    def settled(self, tick: int) -> bool:
+        """Whether the count of ticks is not in doubt."""
+        return tick >= self.settled_tick
+
     def integers(self) -> tuple[int, ...]:
         """For the checksum of the state."""
         return (*self.doubted, self.settled_tick, self.strange_tick)
