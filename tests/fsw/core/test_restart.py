@@ -110,11 +110,11 @@ class TestTwoStrange:
         world = make_world()
         world.fly(240)
         world.plant = make_world().plant
-        fires = [tick for tick, replies in enumerate(world.fly(210)) if of(CoilFire, replies)]
+        fires = [tick for tick, replies in enumerate(world.fly(270)) if of(CoilFire, replies)]
         assert fires
         assert fires[0] >= 1 + BACKOFF
         assert world.state.attitude.valid
-        assert world.state.tick == 209
+        assert world.state.tick == 269
 
     def test_the_true_plant_is_followed_at_its_next_sync(self, world):
         forge(world, FAR)

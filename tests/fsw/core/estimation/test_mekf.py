@@ -186,6 +186,15 @@ class TestUpdate:
         np.testing.assert_array_equal(after.covariance, after.covariance.T)
         assert (after.covariance.diagonal() < before.covariance.diagonal()).all()
 
+    def test_the_mean_of_innovations_moves_towards_these_in_their_standard_deviations(self, kind, satellite):
+        before, after, innovation = self.updated(kind, satellite)
+        h, config = satellite.sensitivity(kind, before, step=1e-3), satellite.config()
+        variances = (h @ before.covariance @ h.T).diagonal() + satellite.sigma[kind] ** 2
+        expected = np.zeros(6)
+        first = 3 if kind == "sun" else 0
+        expected[first : first + len(innovation)] = innovation / np.sqrt(variances)
+        np.testing.assert_allclose(after.lag, config.tick_s / mekf.LAG_S * expected, rtol=1e-4, atol=1e-9)
+
     def test_the_estimate_before_is_not_touched(self, kind, satellite):
         config, before = satellite.config(), satellite.estimate()
         kept, prior = before.covariance.copy(), config.initial_covariance.copy()

@@ -5,7 +5,18 @@ from math import exp, log
 import numpy as np
 import pytest
 
-from fsw.core.fdir.evidence import BLIND_S, CORRELATION_S, DAY_S, MISS, misfit, weigh, weights
+from fsw.core.estimation.mekf import LAG_S
+from fsw.core.fdir.evidence import (
+    BLIND_S,
+    CORRELATION_S,
+    DAY_S,
+    LASTING,
+    MISS,
+    mean_misfit,
+    misfit,
+    weigh,
+    weights,
+)
 
 DAYS = 40.0
 
@@ -50,15 +61,15 @@ def test_one_sample_that_does_not_fit_undoes_many_that_do():
 
 
 def test_innovations_of_a_sound_filter_weigh_for_it_and_larger_ones_against():
-    assert misfit(2.0, 6) == -1.0
-    assert misfit(6.0, 6) == pytest.approx(1.5 - 3.0 * log(2.0))
-    assert misfit(8.0, 6) < 0.0 < misfit(9.0, 6)
+    assert misfit(6.0, 6) == -1.0
+    assert misfit(10.0, 6) == pytest.approx(3.75 - 6.0 * log(2.0))
+    assert misfit(11.0, 6) < 0.0 < misfit(11.2, 6)
     assert 0.0 < misfit(11.5, 6) < 1.0
     assert misfit(40.0, 6) == 1.0, "no sample weighs more than a nat in the time of correlation"
     assert misfit(0.0, 0) == 0.0
 
 
-@pytest.mark.parametrize(("inflation", "raises"), [(1.0, False), (1.15, False), (2.0, True)])
+@pytest.mark.parametrize(("inflation", "raises"), [(1.0, False), (1.5, False), (4.0, True)])
 def test_noise_raises_no_alarm_in_a_month_and_innovations_that_are_too_large_do(inflation, raises):
     random, known = np.random.default_rng(7), weights(DAYS, 1.0)
     nats = 0.0
@@ -76,3 +87,35 @@ def test_what_the_gate_refuses_of_a_sound_sensor_isolates_it_less_often_than_the
         nats = weigh(nats, known.against if refused else -known.against, known.threshold)
         highest = max(highest, nats)
     assert highest < 0.5 * known.threshold
+
+
+class TestMean:
+    """The mean of innovations that are white is small; a filter that lags behind its sensors has one."""
+
+    def test_is_weighed_as_a_chi_square_of_the_sensor_that_is_further_off(self):
+        known = weights(DAYS, 1.0)
+        assert known.averaged == pytest.approx(119.0), "of a mean with a time constant of 60 samples"
+        means = (0.3, -0.4, 0.2, 0.1, 0.0, 0.5)
+        assert mean_misfit(means, known) == pytest.approx(0.5 * 119.0 * 0.29 / LASTING)
+        assert mean_misfit((*means[3:], *means[:3]), known) == mean_misfit(means, known)
+
+    @pytest.mark.parametrize("tick_s", [1.0, 0.1])
+    def test_of_noise_twice_as_large_as_the_filter_says_is_no_contradiction(self, tick_s):
+        random, known = np.random.default_rng(11), weights(DAYS, tick_s)
+        assert self.most(random.normal(0.0, 2.0, (20_000, 6)), known, tick_s) < known.threshold
+
+    @pytest.mark.parametrize("tick_s", [1.0, 0.1])
+    def test_of_a_lag_of_as_much_as_the_noise_is(self, tick_s):
+        random, known = np.random.default_rng(12), weights(DAYS, tick_s)
+        numbers = random.normal(0.0, 1.0, (round(300 / tick_s), 6))
+        assert self.most(numbers, known, tick_s) < known.threshold
+        numbers[:, 1] += 1.2
+        assert self.most(numbers, known, tick_s) > known.threshold
+
+    @staticmethod
+    def most(numbers, known, tick_s):
+        means, most = np.zeros(6), 0.0
+        for number in numbers:
+            means += tick_s / LAG_S * (number - means)
+            most = max(most, mean_misfit(tuple(means), known))
+        return most

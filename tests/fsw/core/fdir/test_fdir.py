@@ -71,7 +71,9 @@ def test_a_restarted_plant_leaves_faults_and_doubts_and_takes_the_proof():
     pair = Pair(Standing.TRUSTED, proof=12.0, doubt=3.0)
     before = Health(SensorHealth(Watch(FROZEN), pair=pair), CoilHealth((OPEN, 0, 0)))
     after = fdir.plant_restarted(before)
-    assert after.sensors.pair == pair._replace(proof=0.0)
+    assert after.sensors.pair == pair._replace(standing=Standing.NEW, proof=0.0)
+    disputed = before._replace(sensors=before.sensors._replace(pair=Pair(Standing.DISPUTED)))
+    assert fdir.plant_restarted(disputed).sensors.pair.standing is Standing.DISPUTED
     assert after._replace(sensors=after.sensors._replace(pair=before.sensors.pair)) == before
 
 
@@ -131,6 +133,7 @@ class TestJudgement:
             sensors(pair=Pair(Standing.DISPUTED)),
             sensors(pair=Pair(Standing.ON_TRIAL)),
             sensors(pair=PROVEN._replace(blind_ticks=120)),
+            sensors(pair=PROVEN._replace(owed=0.1)),
         ],
         ids=[
             "a current in an unknown coil",
@@ -138,6 +141,7 @@ class TestJudgement:
             "a disputed pair",
             "a pair on trial",
             "nothing taken for too long",
+            "an estimate that lagged and has not borne it out yet",
         ],
     )
     def test_an_attitude_is_not_valid_with(self, judged, health):
@@ -160,6 +164,23 @@ class TestJudgement:
         monkeypatch.setattr(fdir.sensors, "judge", lambda *of_this_tick: judgement)
         (health, _, _), _ = judged(before)
         assert health.coils == shown._replace(pulse_nats=(0.0, 0.0, 0.0))
+
+    def test_while_the_time_is_in_doubt_no_sensor_is_judged(self, make_world, monkeypatch):
+        world = make_world()
+        world.fly_until_valid()
+        state, config = world.state, world.config
+        reference = reference_at(state.ephemeris, state.tick, config.ephemeris)
+        findings = fdir.examine(NOTHING, state.health, reference, config.fdir)
+        used = fdir.Used(False, False, False)
+        evidence = Evidence(state.tick, findings, state.coil, reference, used, settled=False)
+        monkeypatch.setattr(fdir.sensors, "judge", None)
+        for before, valid in ((Health(SensorHealth(pair=PROVEN)), True), (Health(), False)):
+            health, estimator, attitude = fdir.judge(
+                before, state.estimator, state.attitude, evidence, config.fdir
+            )
+            assert health is before
+            assert attitude == state.attitude._replace(valid=valid)
+            assert estimator.estimate.trace is None
 
     def test_enough_doubt_ends_the_filter(self, judged, monkeypatch):
         disputed = SensorHealth(pair=Pair(Standing.DISPUTED, ended=True))

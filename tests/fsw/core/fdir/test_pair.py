@@ -110,25 +110,44 @@ class TestValidity:
 
     @pytest.mark.parametrize("standing", Standing)
     def test_only_while_the_pair_is_trusted(self, standing):
-        assert valid(Pair(standing, proof=WEIGHTS.threshold), WEIGHTS) is (standing is Standing.TRUSTED)
+        assert valid(Pair(standing, proof=WEIGHTS.threshold)) is (standing is Standing.TRUSTED)
 
-    def test_not_once_nothing_was_taken_for_two_minutes_and_again_with_the_next_sample(self):
+    def test_not_once_nothing_was_taken_for_two_minutes_and_again_when_both_have_borne_it_out(self):
         blind = TAKEN._replace(
             findings=ECLIPSE, used=Used(False, False, False), estimate=ESTIMATE._replace(numbers=0)
         )
         pair = after(TRUSTED, blind, WEIGHTS.blind_ticks)
         assert WEIGHTS.blind_ticks == 120
-        assert valid(pair, WEIGHTS)
+        assert valid(pair)
         pair = after(pair, blind)
         assert pair.standing is Standing.TRUSTED
-        assert not valid(pair, WEIGHTS)
-        for used in (Used(True, False, False), Used(False, True, False)):
-            seen = TAKEN._replace(findings=ECLIPSE, used=used)
-            assert valid(after(pair, seen), WEIGHTS)
+        assert not valid(pair)
+        assert not proven(pair, WEIGHTS)
+        self.bear_out(pair)
+
+    def test_not_while_innovations_have_a_mean_and_again_when_both_have_borne_it_out(self):
+        lagging = TAKEN._replace(estimate=ESTIMATE._replace(lag=(0.0, 1.1, 0.0, 0.0, 0.0, 0.0)))
+        pair = after(TRUSTED, lagging)
+        assert pair.standing is Standing.TRUSTED
+        assert not valid(pair)
+        assert not proven(pair, WEIGHTS), "it accuses none"
+        self.bear_out(pair)
+
+    def test_a_mean_that_may_be_chance_is_none(self):
+        slight = TAKEN._replace(estimate=ESTIMATE._replace(lag=(0.5, 0.6, -0.5, 0.5, 0.6, -0.5)))
+        assert valid(after(TRUSTED, slight, 500))
+
+    def bear_out(self, pair):
+        alone = (Used(True, False, False), Used(False, True, False))
+        for used in alone:
+            assert not valid(after(pair, TAKEN._replace(findings=ECLIPSE, used=used), 1000))
+        ticks = round(WEIGHTS.threshold / WEIGHTS.fits)
+        assert not valid(after(pair, TAKEN, ticks - 1))
+        assert valid(after(pair, TAKEN, ticks + 1))
 
     def test_while_one_sensor_sees_it_lasts(self):
         alone = TAKEN._replace(findings=ECLIPSE, used=Used(True, False, False))
-        assert valid(after(TRUSTED, alone, 2000), WEIGHTS)
+        assert valid(after(TRUSTED, alone, 2000))
 
 
 APART = BOTH._replace(apart=True)
@@ -150,7 +169,7 @@ class TestDoubt:
         ticks, pair = ticks_until(pair, seen, Standing.DISPUTED)
         assert 25 < ticks < 35
         assert pair == Pair(Standing.DISPUTED, ended=True)
-        assert not valid(pair, WEIGHTS)
+        assert not valid(pair)
         assert not after(pair, WITHOUT).ended, "once"
 
     @pytest.mark.parametrize(
@@ -185,10 +204,10 @@ class TestAccord:
     def test_a_disputed_pair_that_agrees_is_tried_and_then_trusted(self):
         ticks, pair = ticks_until(self.DISPUTED, WITHOUT, Standing.ON_TRIAL)
         assert 500 < ticks < 530
-        assert not valid(pair, WEIGHTS)
+        assert not valid(pair)
         ticks, pair = ticks_until(pair._replace(accord=0.0), TAKEN, Standing.TRUSTED)
         assert 500 < ticks < 530
-        assert valid(pair, WEIGHTS)
+        assert valid(pair)
 
     def test_one_wrong_angle_undoes_minutes(self):
         pair = after(self.DISPUTED, WITHOUT, 300)
