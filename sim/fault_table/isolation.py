@@ -11,6 +11,7 @@ from sim.fault_rig.record import FaultFlightRecord, ReportedEvent
 from sim.fault_table.row import Bounds, FaultRow, RowFault
 from sim.flight.isolations import UNITS, isolated_unit
 
+PULSE_S = 3
 LEAST_PULSES = 5
 """Pulses of a coil that suffice to isolate it if it is faulty."""
 UnitOf = Callable[[ReportedEvent], str]
@@ -157,10 +158,15 @@ def _not_isolated(row: FaultRow, fault: RowFault, record: FaultFlightRecord) -> 
 
 
 def board_identifies_unit(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
-    """The coil driver board identifies the coil by its read-back; itself for a current without a command."""
+    """The coil driver board identifies the coil by its read-back; itself for a current without a command.
+
+    That current may cancel the one of a pulse in which it begins, so that the coil of the pulse has none.
+    """
     unit = "coil driver" if "stuck" in row.expect else row.unit
     onset = record.onset or 0
     units = [(tick, found) for tick, found in board_identifications(record) if tick >= onset]
+    if unit == "coil driver":
+        units = [one for one in units if one[1] == unit or one[0] > onset + PULSE_S * record.tick_hz]
     if not units:
         return False, f"the board does not identify {unit}"
     tick, first = units[0]

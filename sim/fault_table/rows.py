@@ -75,7 +75,9 @@ def _from_boot(name: str, kind: str, unit: str, **parameters: float) -> tuple[Fa
     )
 
 
-def _coils(name: str, kind: str, *expect: str, **parameters: float) -> tuple[FaultRow, ...]:
+def _coils(
+    name: str, kind: str, *expect: str, watch_s: float = 2000.0, **parameters: float
+) -> tuple[FaultRow, ...]:
     """The same fault of each coil."""
     return tuple(
         FaultRow(
@@ -86,7 +88,7 @@ def _coils(name: str, kind: str, *expect: str, **parameters: float) -> tuple[Fau
             inf,
             expect=("named", *expect),
             unit=COIL_NAMES[coil],
-            watch_s=2000.0,
+            watch_s=watch_s,
         )
         for coil in range(3)
     )
@@ -264,7 +266,7 @@ ROWS: tuple[FaultRow, ...] = (
     ),
     *_coils("coil-open", "coil_open", "board names"),
     *_coils("coil-reversed", "coil_wired", scale=-1.0),
-    *_coils("coil-weak", "coil_wired", scale=0.3),
+    *_coils("coil-weak", "coil_wired", watch_s=6000.0, scale=0.3),
     *_coils("coil-stuck-on", "coil_stuck_on", "bounded", "stuck", "board names", ampere=0.4),
     FaultRow(
         "coil-stuck-on-in-eclipse",

@@ -87,10 +87,10 @@ class Observed(NamedTuple):
 def proven(pair: Pair, weights: EvidenceWeights) -> bool:
     """Whether the estimate has shown for long enough, and lately, that it is right about both sensors.
 
-    Not while there is doubt or it lags: a slow fault of one may have led it away, and it refuses the other.
+    Not while there is doubt: a slow fault of one has then led it away, and it may refuse the other.
     """
     shown = pair.proof >= 0.5 * weights.threshold and pair.doubt < SUSPICIOUS * weights.threshold
-    return pair.standing is Standing.TRUSTED and shown and not pair.owed
+    return pair.standing is Standing.TRUSTED and shown
 
 
 def valid(pair: Pair) -> bool:

@@ -22,7 +22,7 @@ from fsw.core.fdir import pair
 from fsw.core.fdir.credibility import CredibilityConfig, credible
 from fsw.core.fdir.evidence import EvidenceWeights, weigh
 from fsw.core.fdir.faults import SensorFault
-from fsw.core.fdir.pair import Observed, Pair, Standing
+from fsw.core.fdir.pair import Observed, Pair
 from fsw.core.fdir.plausibility import Findings, Memory
 from fsw.core.orbit.ephemeris import Reference
 
@@ -107,9 +107,9 @@ def judge(
     both = pair.judge(health.pair, seen, weights, config.credibility)
     if both.accord >= weights.threshold:
         return SensorHealth(Watch(), Watch(), both._replace(accord=0.0), findings.memory)
-    sure = pair.proven(health.pair, weights)
-    trusted = health.pair.standing is Standing.TRUSTED and not health.pair.owed
-    alone = findings.sun is None and trusted  # dynamics do not jump
+    trusted = pair.valid(health.pair)  # one that lags may have been led away
+    sure = trusted and pair.proven(health.pair, weights)
+    alone = trusted and findings.sun is None  # dynamics do not jump
     b_refused = seen.refused_field and (alone or (sure and used.sun))
     s_refused = seen.refused_sun and sure and used.field
     unclear = seen.refused and not (b_refused or s_refused)

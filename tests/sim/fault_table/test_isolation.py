@@ -159,7 +159,12 @@ def test_the_board_identifies_the_coil_that_is_on(bounds):
     beside = BoardEvent(101, CoilEventCode.CURRENT_WRONG, 0)
     assert checks.board_identifies_unit(stuck, record(board=[shorted]), bounds)[0]
     assert checks.board_identifies_unit(stuck, record(board=[beside, shorted]), bounds)[0]
-    assert not checks.board_identifies_unit(stuck, record(board=[other, shorted]), bounds)[0]
+    assert checks.board_identifies_unit(stuck, record(board=[other, shorted]), bounds)[0], "they cancel"
+    later = [
+        BoardEvent(104, CoilEventCode.NO_CURRENT, 0),
+        BoardEvent(105, CoilEventCode.CURRENT_WHILE_OFF, None),
+    ]
+    assert not checks.board_identifies_unit(stuck, record(board=later), bounds)[0]
 
 
 def test_a_coil_that_conducts_by_itself_must_be_isolated_without_any_pulse_of_its_own(bounds):

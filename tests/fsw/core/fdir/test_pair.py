@@ -122,7 +122,6 @@ class TestValidity:
         pair = after(pair, blind)
         assert pair.standing is Standing.TRUSTED
         assert not valid(pair)
-        assert not proven(pair, WEIGHTS)
         self.bear_out(pair)
 
     def test_not_while_innovations_have_a_mean_and_again_when_both_have_borne_it_out(self):
@@ -130,7 +129,6 @@ class TestValidity:
         pair = after(TRUSTED, lagging)
         assert pair.standing is Standing.TRUSTED
         assert not valid(pair)
-        assert not proven(pair, WEIGHTS), "it accuses none"
         self.bear_out(pair)
 
     def test_a_mean_that_may_be_chance_is_none(self):
