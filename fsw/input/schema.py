@@ -83,6 +83,9 @@ def _fault(model: type[Any], detail: Nested) -> str:
         return f"{path} is not a known key"
     if detail["type"] == "missing":
         return f"{path} is missing"
+    if detail["type"] == "union_tag_not_found":
+        name = detail["ctx"]["discriminator"].strip("'")
+        return f"{path}.{name} is missing"
     message = str(detail["msg"]).removeprefix("Value error, ")
     if detail["type"] in ("value_error", "json_invalid"):
         return f"{path}: {message}" if path else message

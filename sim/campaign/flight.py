@@ -16,15 +16,18 @@ from fsw.wire.frame import Frame
 from fsw.wire.messages import NAMES, CoilBoot, CoilRefused, CoilStatus, PlantEnd, Sync
 from sim.audit.auditor import AuditReport, audit
 from sim.audit.limits import limits_in
+from sim.campaign.frame_digest import FrameDigest
+from sim.faults.section import break_frames, make_plant
 from sim.flight.flight_loop import fly
 from sim.flight.record_flight import ticks_of
 from sim.flight.virtual import VirtualBus
-from sim.plant.plant import Plant, TruthRow
+from sim.plant.plant import TruthRow
 from sim.record.candump import LogEntry
 from sim.record.estimates import EstimateRecorder, Estimates
 from sim.record.run_dir import Json
 from sim.record.run_record import FlightRecord
 from sim.record.truth import Histories
+from sim.report.conclude import without_broken_frames
 from sim.report.summary import BusTally, summarise
 from sim.scenario.assemble import plant_config
 from sim.scenario.schema import Scenario, flight_table, load
@@ -81,6 +84,11 @@ class RecordedFlight:
     estimates: Estimates
     audit: AuditReport
     tally: BusTally
+    digest: FrameDigest = field(default_factory=FrameDigest)
+
+    def summary(self) -> Json:
+        """The keys of summary.json."""
+        return summarise(self.scenario, self.run, self.truth, self.estimates, self.audit, self.tally)
 
 
 def fly_order(order: Order) -> FlightResult:
@@ -91,11 +99,8 @@ def fly_order(order: Order) -> FlightResult:
         HarnessError: the flight cannot be flown.
     """
     record = record_order(order)
-    summary = summarise(
-        record.scenario, record.run, record.truth, record.estimates, record.audit, record.tally
-    )
     figures = {} if order.measure is None else order.measure(record.scenario, record.truth, record.estimates)
-    return FlightResult(order, summary, figures)
+    return FlightResult(order, record.summary(), figures)
 
 
 def record_order(order: Order) -> RecordedFlight:
@@ -106,10 +111,20 @@ def record_order(order: Order) -> RecordedFlight:
         HarnessError: the flight cannot be flown.
     """
     scenario = load(order.scenario, order.overrides)
-    ticks = ticks_of(scenario, order.orbits)
+    return record_scenario(scenario, order.seed, order.orbits)
+
+
+def record_scenario(scenario: Scenario, seed: int, orbits: float | None = None) -> RecordedFlight:
+    """Fly a scenario and audit; ``orbits`` None: as it says.
+
+    Raises:
+        TableError: no plant or flight software can have these numbers.
+        HarnessError: the flight cannot be flown.
+    """
+    ticks = ticks_of(scenario, orbits)
     node = FlightNode(flight_config(flight_table(scenario)))
     log, truth = _Frames(), _Truth(ticks, node)
-    plant = Plant(plant_config(scenario, order.seed))
+    plant = make_plant(plant_config(scenario, seed), scenario.fault)
     outcome = fly(
         plant,
         VirtualBus(node),
@@ -124,10 +139,13 @@ def record_order(order: Order) -> RecordedFlight:
     for entry in log.entries:
         tally.take(entry)
     run = FlightRecord(
-        seed=order.seed, flown={"ticks": outcome.ticks, "slips": outcome.slips, "wall_s": outcome.wall_s}
+        seed=seed, flown={"ticks": outcome.ticks, "slips": outcome.slips, "wall_s": outcome.wall_s}
     )
     report = audit(log.entries, limits_in(scenario.model_dump(mode="json"), scenario.name))
-    return RecordedFlight(scenario, run, truth.histories, truth.recorder.estimates(), report, tally)
+    if break_frames(scenario.fault):
+        report = without_broken_frames(report)
+    estimates = truth.recorder.estimates()
+    return RecordedFlight(scenario, run, truth.histories, estimates, report, tally, log.digest)
 
 
 class _Frames:
@@ -135,9 +153,11 @@ class _Frames:
 
     def __init__(self) -> None:
         self.entries: list[LogEntry] = []
+        self.digest = FrameDigest()
         self._line = 0
 
     def write(self, timestamp_us: int, frames: list[Frame]) -> None:
+        self.digest.take(frames)
         for frame in frames:
             self._line += 1
             if frame.can_id in _JUDGED:

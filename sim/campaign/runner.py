@@ -95,7 +95,7 @@ def _results(studies: Sequence[Study], workers: int) -> Iterator[tuple[int, int,
     others = multiprocessing.active_children()
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # one task, one core
     with ProcessPoolExecutor(min(workers, len(tasks)), multiprocessing.get_context("spawn")) as pool:
-        with _children_ignore_interrupt():
+        with children_ignore_interrupt():
             places: dict[Future[tuple[float, Any]], tuple[int, int]] = {
                 pool.submit(_run_timed, task): (place, number) for place, number, task in tasks
             }
@@ -103,18 +103,18 @@ def _results(studies: Sequence[Study], workers: int) -> Iterator[tuple[int, int,
             for future in as_completed(places):
                 yield *places[future], future.result()
         except BrokenProcessPool:
-            _end(others)
+            end_children(others)
             done = sum(future.done() and future.exception() is None for future in places)
             raise WorkerLostError(
                 f"a worker process was ended from outside: {done} of {len(places)} tasks were done"
             ) from None
         except BaseException:
-            _end(others)  # breaks the pool, which then cancels waiting tasks and is joined
+            end_children(others)  # breaks the pool, which then cancels waiting tasks and is joined
             raise
 
 
 @contextmanager
-def _children_ignore_interrupt() -> Iterator[None]:
+def children_ignore_interrupt() -> Iterator[None]:
     """Processes started in the block ignore Ctrl-C: this one ends them."""
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
@@ -123,7 +123,7 @@ def _children_ignore_interrupt() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
 
 
-def _end(others: Sequence[BaseProcess]) -> None:
+def end_children(others: Sequence[BaseProcess]) -> None:
     """End the processes of this one that are not among the others."""
     mine = [process for process in multiprocessing.active_children() if process not in others]
     for process in mine:

@@ -57,7 +57,7 @@ def conclude(path: Path, watch: Watch = lambda tick: None) -> Json:
     assert limits is not None
     report = audit(_tally_entries(read_log(log), tally), limits, expect_end=True)
     if break_frames(scenario.fault):
-        report = _without_broken_frames(report)
+        report = without_broken_frames(report)
     summary = summarise(scenario, run, truth, recorder.estimates(), report, tally)
     summary["replay"] = _replay_json(replay_result)
     senders = run.get("second_senders")
@@ -83,7 +83,7 @@ def _tally_entries(entries: Iterator[LogEntry], tally: BusTally) -> Iterator[Log
         yield entry
 
 
-def _without_broken_frames(report: AuditReport) -> AuditReport:
+def without_broken_frames(report: AuditReport) -> AuditReport:
     """The report without broken frames, where the scenario injects them: they say nothing about the board."""
     others = tuple(violation for violation in report.violations if violation.kind is not ViolationKind.FRAME)
     return replace(report, violations=others)

@@ -152,6 +152,15 @@ def load(name_or_path: str, overrides: Nested | None = None) -> Scenario:
         TableError: not found, not TOML, or a key that is unknown, missing, of the wrong type or out of range.
     """
     values, source = _read(name_or_path)
+    return scenario_of(values, source, overrides)
+
+
+def scenario_of(values: Nested, source: str, overrides: Nested | None = None) -> Scenario:
+    """A scenario from the values of its file, with overrides laid over them.
+
+    Raises:
+        TableError: naming ``source``, and a key that is unknown, missing, of the wrong type or out of range.
+    """
     scenario = validated(Scenario, onboard.lay_over(values, overrides or {}), source)
     flight_table(scenario, source)
     return scenario

@@ -23,6 +23,9 @@ from hypothesis import strategies as st
 import fsw.__main__
 import hil_stub.__main__
 from fsw.input import command_line
+from sim.campaign.definition.campaign_file import load_campaign
+from sim.campaign.one_run import Keep, RunTask
+from sim.campaign.results.store import open_results
 from sim.fault_table import command as faults_command
 from sim.fault_table import earlier_rows
 from sim.fault_table.row import CaseResult, CheckOutcome, CheckVerdict, RowResult
@@ -245,6 +248,48 @@ def test_orbit_elements(mutated, scenario_file, data):
 def sealed(line):
     """The line with the checksum that it needs."""
     return line[:68] + str(sum(int(c) if c in "0123456789" else c == "-" for c in line[:68]) % 10)
+
+
+CAMPAIGN = """
+scenario = "microsat"
+runs = 2
+orbits = 0.0005
+
+[[disperse]]
+key = "sensors.magnetometer.bias_nt"
+distribution = "normal"
+mean = 0.0
+sigma = [10.0, 20.0, 30.0]
+
+[[disperse]]
+keys = ["initial.angle_deg", "initial.axis.2"]
+distribution = "correlated"
+mean = [40.0, 1.0]
+covariance = [[1.0, 0.01], [0.01, 0.1]]
+"""
+
+
+@pytest.mark.parametrize("name", ["campaign.toml", "results.sqlite"])
+def test_a_campaign_of_which_a_run_flies_again(mutated, scenario_file, tmp_path, name):
+    folder, out = tmp_path / "campaign", tmp_path / "out"
+    folder.mkdir()
+    campaign = load_campaign(str(write(tmp_path / "file.toml", CAMPAIGN)), {}, {})
+    campaign.write(folder)
+    with open_results(folder, campaign) as results:
+        results.add(RunTask(campaign, Keep.NONE, folder).fly(0))
+    whole = (folder / name).read_bytes()
+
+    @fuzzed
+    @given(mutated(whole))
+    def mutate(content):
+        for left in folder.glob("results.sqlite-*"):
+            left.unlink()
+        (folder / name).write_bytes(content)
+        shutil.rmtree(out, ignore_errors=True)
+        torquer("sil", "--from", folder, "--run", 0, "--bus", "virtual", "--out", out)
+
+    assert torquer("sil", "--from", folder, "--run", 0, "--bus", "virtual", "--out", out)[0] == 0
+    mutate()
 
 
 def test_a_flight_table(mutated, tmp_path):

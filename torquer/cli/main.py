@@ -23,6 +23,7 @@ COMMANDS = (
     "validate",
     "design",
     "compare",
+    "campaign",
     "faults",
     "hil",
     "plant",

@@ -1,0 +1,169 @@
+"""``torquer campaign``: fly what is not there yet, then show all that is."""
+
+import os
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+
+import click
+
+from fsw.input.schema import Nested
+from sim.campaign.definition.campaign import FILE, SCENARIO, Campaign
+from sim.campaign.definition.campaign_file import load_campaign
+from sim.campaign.executors.cluster import Cluster
+from sim.campaign.executors.interface import Executor
+from sim.campaign.executors.processes import Processes
+from sim.campaign.one_run import Keep, RunTask
+from sim.campaign.results.row import RunRow, Status
+from sim.campaign.results.store import LOCK, RESULTS, Results, open_results
+from sim.errors import HarnessError
+from sim.progress import progress
+from sim.record.destination import check_folder
+from sim.scenario.schema import parse_settings
+from sim.signals import EndedBySignal
+
+PAGE, PARQUET = "campaign.html", "results.parquet"
+LINE_EVERY_S = 60.0
+"""Time between two lines of progress where there is no bar."""
+
+
+def campaign(
+    source: str,
+    over: Nested,
+    settings: tuple[str, ...],
+    workers: int | None,
+    scheduler: str | None,
+    keep: str,
+    retry: bool,
+    parquet: bool,
+    out: Path | None,
+) -> int:
+    """Fly a campaign, or what is left of it.
+
+    Args:
+        source: a campaign file, a scenario, or the folder of a campaign that is to be continued.
+        over: runs, orbits and seed that were given.
+        settings: ``KEY=VALUE``, for all runs.
+        workers: processes; None: as many as there are cores.
+        scheduler: of a Dask cluster, by address or file; None: processes.
+        keep: of which runs log and histories are kept.
+        retry: whether failed runs are flown again.
+        parquet: whether the results are exported.
+        out: folder; None: that of ``source``, else ``campaigns/<name>-<UTC time>``.
+
+    Returns:
+        The exit code: 1 if a run failed or broke the limits of the coils.
+
+    Raises:
+        TableError: the campaign file or the scenario is not valid.
+        HarnessError: the folder or the cluster cannot be used.
+    """
+    if Path(source).is_dir():
+        _check_resumable(source, over, settings, out)
+        out = Path(source)
+    chosen = load_campaign(source, over, parse_settings(settings))
+    folder = out or Path("campaigns") / f"{chosen.name}-{datetime.now(UTC):%Y%m%dT%H%M%SZ}"
+    check_folder(folder, (FILE, SCENARIO, RESULTS, LOCK, PAGE, *([PARQUET] if parquet else [])))
+    executor: Executor = Cluster(scheduler) if scheduler else Processes(workers or os.cpu_count() or 1)
+    with open_results(folder, chosen) as results:
+        chosen = replace(chosen, runs=max([chosen.runs, *(run + 1 for run in results.runs())]))
+        chosen.write(folder)
+        there = set(results.runs(Status.DONE) if retry else results.runs())
+        missing = [run for run in range(chosen.runs) if run not in there]
+        if missing:
+            _check_version(folder, results)
+        task = RunTask(chosen, Keep(keep), folder.absolute())
+        try:
+            _fly(executor, task, missing, results)
+        except (KeyboardInterrupt, EndedBySignal):
+            _say_how_to_resume(folder, chosen, results)
+            raise
+        return _conclude(folder, chosen, results, parquet)
+
+
+def _check_resumable(source: str, over: Nested, settings: tuple[str, ...], out: Path | None) -> None:
+    if settings or out or over.keys() - {"runs"}:
+        raise HarnessError(
+            f"{source} is a campaign that has begun: of its options only the number of runs can change"
+        )
+    if not (Path(source) / FILE).is_file():
+        raise HarnessError(f"{source} has no {FILE}")
+
+
+def _check_version(folder: Path, results: Results) -> None:
+    theirs, ours = results.meta("torquer_version"), version("torquer")
+    if theirs != ours:
+        raise HarnessError(f"{folder} was begun by torquer {theirs}, this is {ours}: choose another --out")
+
+
+def _fly(executor: Executor, task: RunTask, missing: list[int], results: Results) -> None:
+    if not missing:
+        return
+    with _watch(task.campaign.name, len(missing)) as take:
+        for row in executor.rows(task, missing):
+            results.add(row)
+            take(row)
+
+
+@contextmanager
+def _watch(name: str, total: int) -> Iterator[Callable[[RunRow], None]]:
+    """A bar on a terminal; elsewhere a line now and then, with the time left."""
+    began = said = time.monotonic()
+    done = failed = 0
+    with progress(f"flying {name}", total) as bar:
+
+        def take(row: RunRow) -> None:
+            nonlocal done, failed, said
+            done, failed = done + 1, failed + (row.status is Status.FAILED)
+            bar(done)
+            now = time.monotonic()
+            if not sys.stderr.isatty() and (now - said >= LINE_EVERY_S or done == total):
+                said, left_s = now, (now - began) / done * (total - done)
+                rate = 60.0 * done / (now - began)
+                line = f"{done} of {total} runs, {failed} failed, {rate:.1f} a minute"
+                click.echo(f"{line}, {left_s / 60.0:.1f} min left", err=True)
+
+        yield take
+
+
+def _say_how_to_resume(folder: Path, chosen: Campaign, results: Results) -> None:
+    there = len(results.runs())
+    click.echo(
+        f"{there} of {chosen.runs} runs are in {folder}; torquer campaign {folder} flies the rest", err=True
+    )
+
+
+def _conclude(folder: Path, chosen: Campaign, results: Results, parquet: bool) -> int:
+    """Page, export and the lines on the terminal."""
+    from sim.campaign.report.analysis import analyse  # noqa: PLC0415
+    from sim.campaign.report.page import write_page  # noqa: PLC0415  matplotlib loads when something is drawn
+    from sim.campaign.report.text import lines  # noqa: PLC0415
+
+    if parquet:
+        from sim.campaign.results.parquet import export  # noqa: PLC0415  an extra
+
+        export(results, folder / PARQUET)
+    analysis = analyse(chosen, results)
+    for line in lines(chosen, analysis):
+        click.echo(line)
+    write_page(folder / PAGE, chosen, analysis, results.meta("torquer_version"))
+    click.echo(f"results: {folder / RESULTS}{f', {PARQUET}' if parquet else ''}; page: {folder / PAGE}")
+    failed = results.runs(Status.FAILED)
+    broken = [int(str(run)) for run, kept in results.each(("run", "limits_ok"), Status.DONE) if not kept]
+    if failed:
+        click.echo(
+            f"torquer: {_listed(failed)} failed, see the column failure; --retry flies again", err=True
+        )
+    if broken:
+        click.echo(f"torquer: {_listed(broken)} broke the limits of the coils", err=True)
+    return int(bool(failed or broken))
+
+
+def _listed(runs: list[int]) -> str:
+    names = ", ".join(map(str, runs[:5])) + (f" and {len(runs) - 5} more" if len(runs) > 5 else "")
+    return f"run {names}" if len(runs) == 1 else f"runs {names}"

@@ -1,0 +1,153 @@
+"""A campaign, and what it gives for each run: scenario, seed and the values that were drawn."""
+
+import hashlib
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import hypot
+from pathlib import Path
+from typing import Any
+from zlib import crc32
+
+import numpy as np
+import tomli_w
+from pydantic import Field
+
+from fsw.input.schema import Nested, Section
+from sim.campaign.definition.dispersion import Shape
+from sim.campaign.definition.distributions import AnyDispersion, Direction
+from sim.campaign.definition.keys import value_at, with_value
+from sim.campaign.definition.requirements import FigureRequirement
+from sim.record.run_dir import replace_file
+from sim.scenario.schema import Scenario, scenario_of
+
+FILE, SCENARIO = "campaign.toml", "scenario.toml"
+
+
+class StatisticsSection(Section):
+    """What is taken of each run, and how it is judged over all.
+
+    ``last_orbits`` of each run count; ``window_s`` is the time over which MPE takes the mean and RPE the
+    deviation from it; ``probability`` is the part of time and ensemble for which a percentile holds,
+    ``confidence`` that of its bound.
+    """
+
+    last_orbits: float = Field(default=1.0, gt=0.0)
+    window_s: float = Field(default=600.0, gt=0.0)
+    probability: float = Field(default=0.95, gt=0.0, lt=1.0)
+    confidence: float = Field(default=0.9, gt=0.0, lt=1.0)
+
+
+class IndexLimits(Section):
+    """The most that a percentile of each pointing index may be over the campaign, deg."""
+
+    ape: float | None = Field(default=None, gt=0.0)
+    mpe: float | None = Field(default=None, gt=0.0)
+    rpe: float | None = Field(default=None, gt=0.0)
+    ake: float | None = Field(default=None, gt=0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnRun:
+    """A run before it is flown: its seed, the values by key, and the same as overrides of the scenario."""
+
+    run: int
+    seed: int
+    inputs: dict[str, Any]
+    overrides: Nested
+
+
+@dataclass(frozen=True, slots=True)
+class Campaign:
+    """A campaign whose file was checked; all that a worker needs.
+
+    Attributes:
+        name: of the campaign.
+        base: the resolved scenario that every run varies, as in its TOML file.
+        nominal: its values with the whole onboard table.
+        runs: how many; they have the numbers from 0 on.
+        seed: of all random streams.
+        disperse: what is drawn for each run.
+        shapes: for each of ``disperse``, of the values of its keys.
+        requirements: what a run must meet.
+        statistics: what is taken of each run.
+        index: limits on the pointing indices.
+    """
+
+    name: str
+    base: Nested
+    nominal: Nested
+    runs: int
+    seed: int
+    disperse: tuple[AnyDispersion, ...]
+    shapes: tuple[tuple[Shape, ...], ...]
+    requirements: tuple[FigureRequirement, ...]
+    statistics: StatisticsSection
+    index: IndexLimits
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 of all that a row depends on: not of how many there are and what they must show."""
+        content = {**self.as_values(), "scenario": self.base}
+        del content["runs"], content["index"]
+        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+    def as_values(self) -> Nested:
+        """The campaign as in its file, the scenario being the one beside it."""
+        return {
+            "name": self.name,
+            "scenario": SCENARIO,
+            "runs": self.runs,
+            "seed": self.seed,
+            "requirement": {entry.figure: entry.as_value() for entry in self.requirements},
+            "statistics": self.statistics.model_dump(),
+            "index": self.index.model_dump(exclude_none=True),
+            "disperse": [entry.model_dump(mode="json", exclude_none=True) for entry in self.disperse],
+        }
+
+    def write(self, folder: Path) -> None:
+        """Write campaign.toml and scenario.toml, which are read as the same campaign."""
+        replace_file(folder / SCENARIO, tomli_w.dumps(self.base).encode())
+        replace_file(folder / FILE, tomli_w.dumps(self.as_values()).encode())
+
+    def draw(self, run: int) -> DrawnRun:
+        """The values of a run.
+
+        They depend on seed and run alone; those of a dispersion also on its keys, and on no other dispersion.
+        Streams are PCG64 under numpy's SeedSequence, with the run and the CRC-32 of the keys as spawn key.
+        """
+        overrides: Nested = {}
+        inputs: dict[str, Any] = {}
+        for entry, shapes in zip(self.disperse, self.shapes, strict=True):
+            name = crc32(",".join(entry.targets).encode())
+            random = np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=(run, name)))
+            drawn = entry.draw(random, shapes)
+            overrides, values = laid_over(overrides, self.nominal, entry, drawn)
+            inputs |= values
+        state = np.random.SeedSequence(self.seed, spawn_key=(run,)).generate_state(1, np.uint64)
+        return DrawnRun(run, int(state[0] >> 1), inputs, overrides)  # 63 bits: SQLite has signed integers
+
+    def scenario(self, drawn: DrawnRun) -> Scenario:
+        """The scenario of a run.
+
+        Raises:
+            TableError: the values that were drawn are not allowed.
+        """
+        return scenario_of(self.base, f"run {drawn.run}", drawn.overrides)
+
+
+def laid_over(
+    overrides: Nested, nominal: Nested, entry: AnyDispersion, drawn: Sequence[Any]
+) -> tuple[Nested, dict[str, Any]]:
+    """The overrides with a dispersion's values, and these values by key.
+
+    Raises:
+        ValueError: a key picks an element that the scenario has not.
+    """
+    values = {}
+    for key, part in zip(entry.targets, drawn, strict=True):
+        values[key] = entry.applied(value_at(nominal, key), part)
+        if isinstance(entry, Direction):
+            values[f"{key}.length"] = hypot(*values[key])
+        overrides = with_value(overrides, nominal, key, values[key])
+    return overrides, values

@@ -1,0 +1,72 @@
+"""The columns of a run: the keys of its summary with underscores for dots and numbers for elements."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from fsw.core.estimation.parameters import NAMES, SIZES
+from sim.statistics.indices import INDICES
+
+Cell = int | float | str | None
+
+_LAST = ("rms_last_orbit", "max_last_orbit")
+
+
+def _three(name: str) -> tuple[str, ...]:
+    return tuple(f"{name}_{coil}" for coil in range(3))
+
+
+def _parameters() -> Iterator[str]:
+    for name in NAMES:
+        for column in ("value", "sigma", "truth"):
+            yield from (f"parameters_{name}_{column}_{place}" for place in range(SIZES[name]))
+
+
+INDEX_FIGURES = tuple(f"{name}_deg_{figure}" for name in INDICES for figure in ("rms", "max"))
+"""Of the counted part of a run, beside what its summary has."""
+
+NUMBERS: tuple[str, ...] = (
+    *("sim_seconds", "ticks", "slips"),
+    *("pulses_total", *_three("pulses_per_coil"), "pulses_refused"),
+    *(*_three("duty_per_coil"), "duty_total"),
+    *(*_three("min_gap_s_per_coil"), "min_gap_s_any", "max_pulse_s", "limits_ok"),
+    *(f"pointing_deg_{figure}" for figure in ("final", *_LAST)),
+    *(f"axis1_deg_{figure}" for figure in ("final", *_LAST, "mean_last_orbit", "settle_orbits_5deg")),
+    *INDEX_FIGURES,
+    *(f"estimate_deg_{figure}" for figure in ("rms_sunlit", "rms_eclipse", "max", "within_3sigma")),
+    *("converged_at_s", "nees_mean"),
+    *(f"spin_radps_{figure}" for figure in ("reference", "mean_last_orbit", "max_dev_last_orbit")),
+    *("spin_radps_settle_s_1e-3", "spin_radps_pulses_to_settle"),
+    *("isolated_units", "event_count"),
+    *_parameters(),
+)
+"""Figures of a run; NULL where a flight has none."""
+TEXTS = ("mode_final", "isolated")
+
+
+def cells(summary: Mapping[str, Any]) -> dict[str, Cell]:
+    """The figures of a summary by column; those that it does not have are absent."""
+    flat = dict(_flat(summary))
+    known = {name: flat[name] for name in (*NUMBERS, *TEXTS) if name in flat}
+    units = summary["isolated"]
+    return {
+        **known,
+        "isolated": ", ".join(units),
+        "isolated_units": len(units),
+        "event_count": len(summary["events"]),
+    }
+
+
+def input_cells(inputs: Mapping[str, Any]) -> dict[str, Cell]:
+    """The values that were drawn by column, ``input_`` before the key."""
+    return {f"input_{name}": value for name, value in _flat(inputs)}
+
+
+def _flat(values: Mapping[Any, Any], prefix: str = "") -> Iterator[tuple[str, Cell]]:
+    for key, value in values.items():
+        name = prefix + str(key).replace(".", "_")
+        if isinstance(value, dict):
+            yield from _flat(value, f"{name}_")
+        elif isinstance(value, list | tuple):
+            yield from _flat(dict(enumerate(value)), f"{name}_")
+        else:
+            yield name, int(value) if isinstance(value, bool) else value

@@ -1,0 +1,71 @@
+"""Requirements of a campaign: limits on figures of a run."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+from math import inf
+
+from fsw.input.schema import Nested, TableError
+from sim.campaign.definition.columns import NUMBERS
+
+SHORT = {"pointing_deg": "pointing_deg_rms_last_orbit"}
+"""Figures that may be named shorter."""
+_SIDES = {"at_least", "at_most"}
+
+
+@dataclass(frozen=True, slots=True)
+class FigureRequirement:
+    """A figure of a run that must lie between two limits."""
+
+    figure: str
+    at_least: float = -inf
+    at_most: float = inf
+
+    def met_by(self, value: object) -> bool:
+        """Whether a run meets it; one without the figure does not."""
+        return isinstance(value, int | float) and self.at_least <= value <= self.at_most
+
+    def as_value(self) -> object:
+        """The limits as in a campaign file."""
+        if self.at_least == -inf:
+            return self.at_most
+        return {key: getattr(self, key) for key in sorted(_SIDES) if abs(getattr(self, key)) < inf}
+
+    def __str__(self) -> str:
+        if self.at_least == -inf:
+            return f"{self.figure} <= {self.at_most:g}"
+        if self.at_most == inf:
+            return f"{self.figure} >= {self.at_least:g}"
+        return f"{self.at_least:g} <= {self.figure} <= {self.at_most:g}"
+
+
+def requirements_in(values: Nested, source: str) -> tuple[FigureRequirement, ...]:
+    """The requirements in ``[requirement]``: a number is the most, else a table of at_least and at_most.
+
+    Raises:
+        TableError: there is no such figure, or a limit is no number.
+    """
+    return tuple(_requirement(name, limit, source) for name, limit in _flat(values))
+
+
+def _flat(values: Mapping[str, object], prefix: str = "") -> Iterator[tuple[str, object]]:
+    """Limits by figure, its dots as underscores."""
+    for key, value in values.items():
+        if isinstance(value, dict) and not (value and value.keys() <= _SIDES):
+            yield from _flat(value, f"{prefix}{key}_")
+        else:
+            yield f"{prefix}{key}", value
+
+
+def _requirement(name: str, limit: object, source: str) -> FigureRequirement:
+    figure = SHORT.get(name, name)
+    if figure not in NUMBERS:
+        near = get_close_matches(figure, [*SHORT, *NUMBERS], 3, cutoff=0.4)
+        hint = f"near are {', '.join(near)}" if near else f"one is {next(iter(SHORT))}"
+        raise TableError(f"{source}: requirement.{name} is no figure of a run: {hint}")
+    limits: Nested = limit if isinstance(limit, dict) else {"at_most": limit}
+    for side, value in limits.items():
+        if isinstance(value, bool) or not isinstance(value, int | float) or not -inf < value < inf:
+            where = f"requirement.{name}" + (f".{side}" if isinstance(limit, dict) else "")
+            raise TableError(f"{source}: {where} = {value!r} is not allowed: allowed is a number")
+    return FigureRequirement(figure, **{side: float(value) for side, value in limits.items()})

@@ -1,0 +1,78 @@
+"""Runs in processes of this machine, which stay warm from one run to the next."""
+
+import multiprocessing
+import os
+from collections import Counter, deque
+from collections.abc import Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from threading import Thread
+
+from sim.campaign.one_run import RunTask, lost_run
+from sim.campaign.results.row import RunRow
+from sim.campaign.runner import children_ignore_interrupt, end_children
+
+MOST_LOSSES = 3
+"""A run whose worker was ended so many times is given up."""
+HANDED_OUT = 2
+"""Runs for each worker: one in flight and one to follow."""
+
+
+@dataclass(frozen=True, slots=True)
+class Processes:
+    """So many worker processes. When one is killed, the runs that were handed out are flown again."""
+
+    workers: int
+
+    def rows(self, task: RunTask, runs: Sequence[int]) -> Iterator[RunRow]:
+        """The rows of the runs, as they come."""
+        waiting, losses = deque(runs), Counter[int]()
+        while waiting:
+            flying: dict[Future[RunRow], int] = {}
+            yield from self._until_lost(task, waiting, losses, flying)
+            losses.update(flying.values())
+            for run in sorted(flying.values(), reverse=True):
+                if losses[run] < MOST_LOSSES:
+                    waiting.appendleft(run)
+                else:
+                    yield lost_run(task.campaign, run, losses[run])
+
+    def _until_lost(
+        self, task: RunTask, waiting: deque[int], losses: Counter[int], flying: dict[Future[RunRow], int]
+    ) -> Iterator[RunRow]:
+        """Rows until no run is left, or until a worker is: then ``flying`` holds the runs without a row.
+
+        Runs that were flying at a loss go one at a time, which shows the one that is the cause.
+        """
+        others = multiprocessing.active_children()
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # one run, one core
+        workers = min(self.workers, len(waiting))
+        context = multiprocessing.get_context("spawn")
+        with ProcessPoolExecutor(workers, context, initializer=_begin_worker) as pool:
+            try:
+                while waiting or flying:
+                    while waiting and len(flying) < (1 if losses[waiting[0]] else HANDED_OUT * workers):
+                        with children_ignore_interrupt():
+                            flying[pool.submit(task.fly, waiting[0])] = waiting[0]
+                        waiting.popleft()
+                    for future in wait(flying, return_when=FIRST_COMPLETED).done:
+                        row = future.result()
+                        del flying[future]
+                        yield row
+            except BrokenProcessPool:
+                return
+            finally:
+                end_children(others)  # breaks the pool, which is then joined
+
+
+def _begin_worker() -> None:
+    """End this worker when the campaign's process has ended, even by SIGKILL: nobody waits for its rows."""
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+
+    def watch() -> None:
+        parent.join()
+        os._exit(1)
+
+    Thread(target=watch, daemon=True).start()

@@ -1,0 +1,143 @@
+"""One run of a campaign: draw, fly in memory, score. What it gives depends on campaign and number alone."""
+
+import gc
+import os
+import socket
+import time
+import traceback
+from collections.abc import Sequence
+from contextlib import nullcontext, suppress
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from pathlib import Path
+
+import numpy as np
+
+from fsw.input.schema import TableError
+from sim.campaign.definition.campaign import Campaign, DrawnRun
+from sim.campaign.definition.columns import Cell, cells, input_cells
+from sim.campaign.flight import record_scenario
+from sim.campaign.results.row import RunRow, Status
+from sim.campaign.scoring import score
+from sim.errors import HarnessError
+from sim.flight.record_flight import ticks_of
+from sim.flight.virtual import fly_virtual
+from sim.plant.errors import PlantError
+from sim.record import run_dir
+from sim.record.destination import check_folder
+from sim.record.pace import LOCKSTEP
+
+ERROR_HISTORY = "error_deg"
+"""Name of the pointing error over the time of a run among its profiles."""
+LIMITS = "limits of the coils"
+
+
+class Keep(StrEnum):
+    """Of which runs log and histories are kept."""
+
+    NONE = "none"
+    FAILURES = "failures"
+    """Those that were not flown to their end, and those that miss a requirement."""
+    ALL = "all"
+
+
+@dataclass(frozen=True, slots=True)
+class RunTask:
+    """What a worker needs to fly any run of a campaign.
+
+    Attributes:
+        campaign: the campaign.
+        keep: of which runs log and histories are kept.
+        folder: where they are kept.
+    """
+
+    campaign: Campaign
+    keep: Keep
+    folder: Path
+
+    def fly_all(self, runs: Sequence[int]) -> list[RunRow]:
+        """Several runs, one after the other."""
+        return [self.fly(run) for run in runs]
+
+    def fly(self, run: int) -> RunRow:
+        """Fly a run and score it. An error is the result of its run, and ends no other.
+
+        Raises:
+            HarnessError: log and histories cannot be kept.
+        """
+        began, drawn = time.monotonic(), self.campaign.draw(run)
+        try:
+            row = _flown(self.campaign, drawn)
+        except (TableError, HarnessError, PlantError) as error:
+            row = _failed(drawn, str(error))
+        except Exception as error:  # a defect: the sentence says where, and the other runs are flown
+            row = _failed(drawn, f"{type(error).__name__}: {error} ({_place(error)})")
+        if self.keep is Keep.ALL or (self.keep is Keep.FAILURES and not row.success):
+            fails_again = suppress(Exception) if row.status is Status.FAILED else nullcontext()
+            with fails_again:
+                keep_run(run_folder(self.folder, run), self.campaign, drawn)
+        gc.unfreeze()  # the flight has frozen what was loaded, garbage of earlier flights with it
+        gc.collect()
+        worker = f"{socket.gethostname()}:{os.getpid()}"
+        return replace(row, wall_s=time.monotonic() - began, worker=worker)
+
+
+def lost_run(campaign: Campaign, run: int, losses: int) -> RunRow:
+    """The row of a run that no worker survives."""
+    return _failed(campaign.draw(run), f"its worker process was ended from outside {losses} times")
+
+
+def run_folder(folder: Path, run: int) -> Path:
+    """Where log and histories of a run are kept."""
+    return folder / "runs" / f"{run}"
+
+
+def keep_run(path: Path, campaign: Campaign, drawn: DrawnRun) -> None:
+    """Fly a run once more, with log and histories in a run directory; an earlier attempt is replaced.
+
+    Raises:
+        TableError: as of the flight in memory.
+        HarnessError: as of the flight in memory, or the directory cannot be written.
+    """
+    scenario = campaign.scenario(drawn)
+    check_folder(path)
+    for name in run_dir.FILES:
+        (path / name).unlink(missing_ok=True)
+    run_dir.begin(path, scenario, drawn.seed, ticks_of(scenario, None), "virtual", LOCKSTEP)
+    fly_virtual(path, scenario, lambda tick: None)
+
+
+def _flown(campaign: Campaign, drawn: DrawnRun) -> RunRow:
+    record = record_scenario(campaign.scenario(drawn), drawn.seed)
+    scored = score(record, campaign.statistics)
+    found: dict[str, Cell] = {
+        **input_cells(drawn.inputs),
+        **cells(record.summary()),
+        **scored.figures,
+        "frames_sha256": record.digest.frames,
+        "commands_sha256": record.digest.commands,
+    }
+    missed = [str(entry) for entry in campaign.requirements if not entry.met_by(found.get(entry.figure))]
+    if not found["limits_ok"]:
+        missed.append(LIMITS)
+    profiles = {**scored.profiles, ERROR_HISTORY: scored.error_deg}
+    return RunRow(
+        run=drawn.run,
+        status=Status.DONE,
+        failure="",
+        seed=drawn.seed,
+        success=not missed,
+        missed="; ".join(missed),
+        cells=found,
+        profiles={name: np.asarray(values, "<f4").tobytes() for name, values in profiles.items()},
+    )
+
+
+def _failed(drawn: DrawnRun, sentence: str) -> RunRow:
+    inputs = input_cells(drawn.inputs)
+    return RunRow(drawn.run, Status.FAILED, sentence, drawn.seed, success=False, missed="", cells=inputs)
+
+
+def _place(error: Exception) -> str:
+    frame = traceback.extract_tb(error.__traceback__)[-1]
+    return f"{Path(frame.filename).name}:{frame.lineno}"

@@ -1,0 +1,1 @@
+"""What the results of a campaign show: on the terminal, and on a page with pictures."""

@@ -1,0 +1,139 @@
+"""The statistics of a campaign, from its results."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.campaign.definition.campaign import Campaign
+from sim.campaign.definition.requirements import FigureRequirement
+from sim.campaign.one_run import ERROR_HISTORY
+from sim.campaign.results.row import Status
+from sim.campaign.results.store import Results
+from sim.statistics.indices import INDICES, IndexPercentile, Interpretation, table
+from sim.statistics.order_statistics import Percentile, percentile
+from sim.statistics.proportion import Proportion, clopper_pearson
+from sim.statistics.sensitivity import RankCorrelation, spearman
+
+Array = NDArray[np.float64]
+
+MAIN_FIGURES = ("pointing_deg_rms_last_orbit", "pointing_deg_max_last_orbit", "ake_deg_rms", "converged_at_s")
+"""Shown of every campaign, after the figures that have a requirement."""
+WORST = 5
+
+
+@dataclass(frozen=True, slots=True)
+class FigureStatistics:
+    """A figure over all runs that have it.
+
+    Attributes:
+        name: its column.
+        values: of the runs, in order of their number.
+        runs: these numbers.
+        percentiles: 5 %, 50 %, and the probability of the campaign.
+        requirement: the limits; None if there are none.
+    """
+
+    name: str
+    values: Array
+    runs: NDArray[np.int64]
+    percentiles: tuple[Percentile, ...]
+    requirement: FigureRequirement | None
+
+    @property
+    def worst_first(self) -> NDArray[np.int64]:
+        """Places of the runs, the worst first: the largest value, or the least where that is limited."""
+        falls = self.requirement is not None and self.requirement.at_most == np.inf
+        return np.argsort(self.values if falls else -self.values, kind="stable")
+
+
+@dataclass(frozen=True, slots=True)
+class Sensitivity:
+    """The rank correlation of an input with the first figure; None where it cannot be told."""
+
+    column: str
+    correlation: RankCorrelation | None
+
+
+@dataclass(frozen=True, slots=True)
+class CampaignAnalysis:
+    """What the page shows.
+
+    Attributes:
+        done: how many runs were flown.
+        failures: the sentence of each run that failed, by run.
+        success: runs that meet all requirements, of those that are there; one that failed does not.
+        by_requirement: the same for each requirement.
+        figures: the one that runs are ranked by first.
+        indices: percentiles of each pointing index; empty without runs.
+        profiles: of each index, (runs, points).
+        inputs: numeric inputs by column, of the runs that were flown.
+        sensitivities: the strongest first.
+        errors: pointing error over time by run.
+    """
+
+    done: int
+    failures: dict[int, str]
+    success: Proportion
+    by_requirement: dict[FigureRequirement, Proportion]
+    figures: tuple[FigureStatistics, ...]
+    indices: dict[str, dict[Interpretation, IndexPercentile]]
+    profiles: dict[str, Array]
+    inputs: dict[str, Array]
+    sensitivities: tuple[Sensitivity, ...]
+    errors: dict[int, Array]
+
+
+def analyse(campaign: Campaign, results: Results) -> CampaignAnalysis:
+    """The statistics of all runs that are there, at least one."""
+    settings = campaign.statistics
+    done = np.array(results.runs(Status.DONE))
+    failures = {int(str(run)): str(why) for run, why in results.each(("run", "failure"), Status.FAILED)}
+    total = len(done) + len(failures)
+    limited = {entry.figure: entry for entry in campaign.requirements}
+    names = list(dict.fromkeys((*limited, *MAIN_FIGURES)))
+    columns = results.numbers(names)
+    known = [_figure(name, columns[name], done, limited.get(name), campaign) for name in names]
+    figures = tuple(figure for figure in known if len(figure.values))
+    met = {entry: sum(map(entry.met_by, columns[entry.figure].tolist())) for entry in campaign.requirements}
+    successes = int(results.numbers(("success",))["success"].sum())
+    numeric = [name for name, kind in results.kinds().items() if name.startswith("input_") and kind != "TEXT"]
+    inputs = results.numbers(numeric)
+    profiles = (
+        {name: np.array(list(results.profiles(name).values())) for name in INDICES} if len(done) else {}
+    )
+    return CampaignAnalysis(
+        done=len(done),
+        failures=failures,
+        success=clopper_pearson(successes, total, settings.confidence),
+        by_requirement={
+            entry: clopper_pearson(count, total, settings.confidence) for entry, count in met.items()
+        },
+        figures=figures,
+        indices=table(profiles, settings.probability, settings.confidence),
+        profiles=profiles,
+        inputs=inputs,
+        sensitivities=_sensitivities(inputs, columns[figures[0].name], settings.confidence)
+        if figures
+        else (),
+        errors=results.profiles(ERROR_HISTORY),
+    )
+
+
+def _figure(
+    name: str,
+    column: Array,
+    runs: NDArray[np.int64],
+    requirement: FigureRequirement | None,
+    campaign: Campaign,
+) -> FigureStatistics:
+    known = np.isfinite(column)
+    values, settings = column[known], campaign.statistics
+    wanted = sorted({0.05, 0.5, settings.probability}) if len(values) else []
+    percentiles = tuple(percentile(values, each, settings.confidence) for each in wanted)
+    return FigureStatistics(name, values, runs[known], percentiles, requirement)
+
+
+def _sensitivities(inputs: dict[str, Array], results: Array, confidence: float) -> tuple[Sensitivity, ...]:
+    found = [Sensitivity(name, spearman(values, results, confidence)) for name, values in inputs.items()]
+    return tuple(sorted(found, key=lambda each: -abs(each.correlation.value) if each.correlation else 0.0))

@@ -1,0 +1,184 @@
+"""The pictures of a campaign."""
+
+from math import ceil
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
+
+from sim.campaign.definition.campaign import IndexLimits, StatisticsSection
+from sim.campaign.report.analysis import WORST, CampaignAnalysis, FigureStatistics
+from sim.drawing.canvas import AXES_COLOURS, INK, LIMIT, MORE_COLOURS, MUTED, WIDTH_IN, legend, log_y
+from sim.statistics.convergence import convergence
+from sim.statistics.order_statistics import Percentile
+from sim.statistics.proportion import clopper_pearson
+
+Array = NDArray[np.float64]
+
+PANEL_IN = 2.3
+BAND, BAR = "#b9d4e8", "#9dbfd8"
+COLUMNS = 3
+LOGARITHMIC = 30.0
+"""An input that varies by more than this factor is drawn so."""
+MOST_INPUTS, MOST_BINS, MOST_STEPS = 6, 40, 400
+
+
+def distributions(analysis: CampaignAnalysis) -> Figure:
+    """A histogram of each figure; percentiles with their bounds and the requirement on it."""
+    figure, panels = _grid(len(analysis.figures), 2)
+    for panel, shown in zip(panels, analysis.figures, strict=False):
+        bins = min(MOST_BINS, max(6, round(2.0 * len(shown.values) ** 0.5)))
+        panel.hist(shown.values, bins=bins, color=BAR, edgecolor="white", linewidth=0.4)
+        for number, found in enumerate(shown.percentiles):
+            _mark(panel, found, number)
+        _limits(panel, shown)
+        panel.set_title(shown.name)
+        panel.set_ylabel("runs")
+        panel.yaxis.set_major_locator(MaxNLocator(integer=True))
+    return figure
+
+
+def cumulative(analysis: CampaignAnalysis, confidence: float) -> Figure:
+    """The part of runs up to a value, with its bounds, and the requirement."""
+    figure, panels = _grid(len(analysis.figures), 2)
+    for panel, shown in zip(panels, analysis.figures, strict=False):
+        values, count = np.sort(shown.values), len(shown.values)
+        steps = np.unique(np.linspace(1, count, min(count, MOST_STEPS)).round().astype(int))
+        bounds = [clopper_pearson(int(step), count, confidence) for step in steps]
+        x = values[steps - 1]
+        low, high = [each.low for each in bounds], [each.high for each in bounds]
+        panel.fill_between(
+            x, low, high, step="post", color=BAND, linewidth=0.0, label=f"{100.0 * confidence:g} % bounds"
+        )
+        panel.step(x, steps / count, where="post", color=AXES_COLOURS[0], label="part of runs")
+        _limits(panel, shown)
+        panel.set_ylim(0.0, 1.02)
+        panel.set_title(shown.name)
+        legend(panel)
+    return figure
+
+
+def indices(analysis: CampaignAnalysis, probability: float, limits: IndexLimits) -> Figure:
+    """The part of all times of all runs, and of runs at all times, up to a value of each index; limits."""
+    figure, panels = _grid(2, 2)
+    for panel, title in zip(
+        panels, ("mixed: part of all times", "ensemble: part of runs, at all times"), strict=False
+    ):
+        panel.set_title(title)
+        panel.set_xscale("log")
+        panel.set_xlabel("deg")
+        panel.axhline(probability, color=MUTED, linewidth=0.8, linestyle=(0, (4, 3)))
+    for (name, profiles), colour in zip(
+        analysis.profiles.items(), (*AXES_COLOURS, *MORE_COLOURS), strict=False
+    ):
+        for panel, values in zip(panels, (profiles[:, :-1].ravel(), profiles[:, -1]), strict=False):
+            parts = np.linspace(0.0, 1.0, min(MOST_STEPS, len(values)))
+            panel.plot(np.quantile(values, parts), parts, color=colour, label=name.upper())
+            if (limit := getattr(limits, name)) is not None:
+                panel.plot([limit], [probability], "x", color=colour, markersize=7.0)
+    for panel in panels[:2]:
+        panel.set_ylim(0.0, 1.02)
+        legend(panel)
+    return figure
+
+
+def scatter(analysis: CampaignAnalysis) -> Figure:
+    """The first figure over the inputs that it depends on most."""
+    names = [each.column for each in analysis.sensitivities if each.correlation is not None][:MOST_INPUTS]
+    figure, panels = _grid(len(names), COLUMNS)
+    first = analysis.figures[0]
+    flown = np.array(list(analysis.errors))
+    places = np.searchsorted(flown, first.runs)
+    for panel, name in zip(panels, names, strict=False):
+        found = next(each.correlation for each in analysis.sensitivities if each.column == name)
+        assert found is not None
+        x = analysis.inputs[name][places]
+        if x.min() > 0.0 and x.max() > LOGARITHMIC * x.min():
+            panel.set_xscale("log")
+        panel.plot(x, first.values, ".", color=AXES_COLOURS[0], markersize=3.0, alpha=0.6)
+        worst = first.worst_first[:WORST]
+        panel.plot(x[worst], first.values[worst], ".", color=LIMIT, markersize=4.0)
+        if first.requirement and np.isfinite(first.requirement.at_most):
+            panel.axhline(first.requirement.at_most, color=LIMIT, linewidth=0.8)
+        panel.set_title(f"{name.removeprefix('input_')}\nrank correlation {found.value:+.2f}")
+    for panel in panels[::COLUMNS]:
+        panel.set_ylabel(first.name)
+    return figure
+
+
+def worst_runs(analysis: CampaignAnalysis, orbits: float) -> Figure:
+    """The pointing error of the worst runs over that of all: median, half and nine tenths of the runs."""
+    figure = Figure(figsize=(WIDTH_IN, PANEL_IN + 0.9), layout="constrained")
+    panel = figure.subplots()
+    errors = np.array(list(analysis.errors.values()))
+    runs, first = list(analysis.errors), analysis.figures[0]
+    x = (np.arange(errors.shape[1]) + 0.5) * orbits / errors.shape[1]
+    low, quarter, middle, three, high = np.quantile(errors, (0.05, 0.25, 0.5, 0.75, 0.95), axis=0)
+    panel.fill_between(x, low, high, color="#e4edf5", linewidth=0.0, label="90 % of runs")
+    panel.fill_between(x, quarter, three, color=BAND, linewidth=0.0, label="50 %")
+    panel.plot(x, middle, color=INK, label="median")
+    drawn = []
+    for place, colour in zip(first.worst_first[:WORST], (*AXES_COLOURS[1:], *MORE_COLOURS), strict=False):
+        run = int(first.runs[place])
+        drawn.append(errors[runs.index(run)])
+        panel.plot(x, drawn[-1], color=colour, linewidth=0.9, label=f"run {run}")
+    log_y(panel, low, high, *drawn, decades=3.5)
+    panel.margins(x=0.0)
+    panel.set_xlabel("orbits")
+    panel.set_ylabel("pointing error [deg]")
+    panel.set_title("Worst runs over the rest")
+    legend(panel)
+    return figure
+
+
+def converging(analysis: CampaignAnalysis, settings: StatisticsSection) -> Figure:
+    """The percentile of the first figure by number of runs."""
+    figure = Figure(figsize=(WIDTH_IN, PANEL_IN + 0.4), layout="constrained")
+    panel = figure.subplots()
+    first = analysis.figures[0]
+    probability, confidence = settings.probability, settings.confidence
+    found = convergence(first.values, probability, confidence)
+    least, largest = first.values.min(), first.values.max()
+    low, high = np.nan_to_num(found.low, nan=least), np.nan_to_num(found.high, nan=largest)
+    bounds = f"{100.0 * confidence:g} % bounds, all values where runs are too few for one"
+    panel.fill_between(found.runs, low, high, color=BAND, linewidth=0.0, label=bounds)
+    panel.plot(
+        found.runs, found.value, color=AXES_COLOURS[0], label=f"{100.0 * probability:g} % of the runs so far"
+    )
+    panel.set_xlabel("runs")
+    panel.set_ylabel(first.name)
+    panel.margins(x=0.0)
+    panel.set_title("Convergence")
+    legend(panel)
+    return figure
+
+
+def _grid(count: int, columns: int) -> tuple[Figure, list[Axes]]:
+    """A figure of so many panels side by side."""
+    rows = max(1, ceil(count / columns))
+    figure = Figure(figsize=(WIDTH_IN, PANEL_IN * rows), layout="constrained")
+    panels = list(figure.subplots(rows, columns, squeeze=False).ravel())
+    for panel in panels[count:]:
+        panel.remove()
+    return figure, panels[:count]
+
+
+def _mark(panel: Axes, found: Percentile, number: int) -> None:
+    colour = (MUTED, INK, AXES_COLOURS[1])[min(number, 2)]
+    if found.low is not None and found.high is not None:
+        panel.axvspan(found.low, found.high, color=colour, alpha=0.15, linewidth=0.0)
+    panel.axvline(found.value, color=colour, linewidth=1.0)
+    panel.annotate(
+        f"{100.0 * found.probability:g} %", (found.value, 1.0), (2.0, -8.0 - 9.0 * number),
+        ("data", "axes fraction"), "offset points", color=colour, fontsize=7.0,
+    )  # fmt: skip
+
+
+def _limits(panel: Axes, shown: FigureStatistics) -> None:
+    if shown.requirement is None:
+        return
+    for limit in (shown.requirement.at_least, shown.requirement.at_most):
+        if np.isfinite(limit):
+            panel.axvline(limit, color=LIMIT, linewidth=1.2, label="requirement")

@@ -1,0 +1,179 @@
+"""The statistics of a campaign in words: the lines on the terminal, and the tables of the page."""
+
+from collections.abc import Sequence
+
+from sim.campaign.definition.campaign import Campaign
+from sim.campaign.report.analysis import WORST, CampaignAnalysis, FigureStatistics
+from sim.report.tables import Table
+from sim.statistics.indices import IndexPercentile, Interpretation
+from sim.statistics.order_statistics import Percentile, runs_needed
+from sim.statistics.proportion import Proportion
+
+INDEX_NAMES = {
+    "ape": "APE, absolute performance error",
+    "mpe": "MPE, mean performance error",
+    "rpe": "RPE, relative performance error",
+    "ake": "AKE, absolute knowledge error",
+}
+STRONGEST = 3
+"""Dependences on the terminal."""
+VERDICTS = {True: "met", False: "missed", None: "more runs must tell"}
+_ABSENT = "–"
+
+
+def lines(campaign: Campaign, analysis: CampaignAnalysis) -> list[str]:
+    """A few lines for the terminal."""
+    orbits = campaign.base["time"]["orbits"]
+    heading = f"{campaign.name}: {analysis.done + len(analysis.failures)} runs of {orbits:g} orbits"
+    rows = [heading, f"  success    {proportion(analysis.success, campaign)}"]
+    rows += [f"  {figure.name}: {_percentiles(figure)}" for figure in analysis.figures]
+    strongest = [
+        f"{each.column.removeprefix('input_')} {each.correlation.value:+.2f}"
+        for each in analysis.sensitivities
+        if each.correlation and each.correlation.significant
+    ]
+    if strongest:
+        rows.append(f"  depends on {', '.join(strongest[:STRONGEST])} (rank correlation)")
+    if analysis.figures:
+        first = analysis.figures[0]
+        worst = [f"{first.runs[place]} ({first.values[place]:.4g})" for place in first.worst_first[:WORST]]
+        rows.append(f"  worst runs {', '.join(worst)}")
+    limited = [name for name in analysis.indices if getattr(campaign.index, name) is not None]
+    for name in limited:
+        limit, found = getattr(campaign.index, name), analysis.indices[name]
+        verdicts = ", ".join(f"{how} {_index_cell(found[how], how, limit)}" for how in Interpretation)
+        rows.append(f"  {name.upper()} <= {limit:g} deg: {verdicts}")
+    if analysis.failures:
+        run, why = next(iter(analysis.failures.items()))
+        rows.append(f"  failed     {len(analysis.failures)}, first run {run}: {why}")
+    return rows
+
+
+def proportion(found: Proportion, campaign: Campaign) -> str:
+    """A proportion with its bounds."""
+    confidence = 100.0 * campaign.statistics.confidence
+    return (
+        f"{found.count} of {found.total}, {100.0 * found.value:.1f} % "
+        f"({100.0 * found.low:.1f} to {100.0 * found.high:.1f} % with {confidence:g} % confidence)"
+    )
+
+
+def requirement_table(campaign: Campaign, analysis: CampaignAnalysis) -> Table:
+    """How many runs meet each requirement."""
+    rows = [(str(entry), *_cells_of(found)) for entry, found in analysis.by_requirement.items()]
+    rows.append(("all, and the limits of the coils", *_cells_of(analysis.success)))
+    return Table(("requirement", "runs that meet it", "part", "at least", "at most"), rows)
+
+
+def _cells_of(found: Proportion) -> tuple[str, ...]:
+    parts = (f"{100.0 * part:.2f} %" for part in (found.value, found.low, found.high))
+    return f"{found.count} of {found.total}", *parts
+
+
+def figure_table(analysis: CampaignAnalysis) -> Table:
+    """Percentiles of the figures with their bounds."""
+    if not analysis.figures:
+        return Table((), [])
+    names = [f"{100.0 * each.probability:g} %" for each in analysis.figures[0].percentiles]
+    rows = [
+        (
+            figure.name,
+            str(len(figure.values)),
+            f"{figure.values.mean():.4g}",
+            *map(with_bounds, figure.percentiles),
+            f"{figure.values.max():.4g}",
+        )
+        for figure in analysis.figures
+    ]
+    return Table(("figure", "runs", "mean", *names, "largest"), rows)
+
+
+def index_table(campaign: Campaign, analysis: CampaignAnalysis) -> Table:
+    """Percentiles of the pointing indices under the three interpretations, with verdicts where limited."""
+    rows = []
+    for name, found in analysis.indices.items():
+        limit = getattr(campaign.index, name)
+        cells = [_index_cell(found[how], how, limit) for how in Interpretation]
+        rows.append((INDEX_NAMES[name], _ABSENT if limit is None else f"{limit:g}", *cells))
+    percent = f"{100.0 * campaign.statistics.probability:g} %"
+    return Table((f"[deg], {percent}", "limit", *(f"{how}" for how in Interpretation)), rows)
+
+
+def _index_cell(found: IndexPercentile, how: Interpretation, limit: float | None) -> str:
+    """The percentile, its bound where it has one of its own, and the verdict."""
+    bound = "" if how is Interpretation.TEMPORAL else f" (bound {_bound(found.bound)})"
+    verdict = "" if limit is None else f": {VERDICTS[found.within(limit)]}"
+    return f"{found.value:.4g}{bound}{verdict}"
+
+
+def index_note(campaign: Campaign, analysis: CampaignAnalysis) -> str:
+    """What the numbers of the index table mean."""
+    settings = campaign.statistics
+    percent, confidence = f"{100.0 * settings.probability:g} %", f"{100.0 * settings.confidence:g} %"
+    held = next(iter(analysis.indices.values()))[Interpretation.TEMPORAL].held
+    needed = runs_needed(settings.probability, settings.confidence)
+    return (
+        f"Over the last {settings.last_orbits:g} orbits of each run, windows of {settings.window_s:g} s. "
+        f"Ensemble: at all times in {percent} of the runs. Mixed: at {percent} of all times of all runs. "
+        f"Temporal: at {percent} of the time in the worst of these runs, which bounds {100.0 * held:.1f} % "
+        "of the ensemble. "
+        f"Bounds are one-sided with {confidence} confidence; that of the ensemble needs {needed} runs."
+    )
+
+
+def sensitivity_table(analysis: CampaignAnalysis) -> Table:
+    """Rank correlations of the inputs with the first figure."""
+    rows = []
+    for each in analysis.sensitivities:
+        found = each.correlation
+        cells = (
+            (f"{found.value:+.3f}", f"{found.low:+.3f} to {found.high:+.3f}") if found else (_ABSENT, _ABSENT)
+        )
+        rows.append((each.column.removeprefix("input_"), *cells))
+    return Table(("input", "rank correlation", "bounds"), rows)
+
+
+def worst_table(analysis: CampaignAnalysis) -> Table:
+    """The worst runs by the first figure, with what drives it."""
+    if not analysis.figures:
+        return Table((), [])
+    first, inputs = analysis.figures[0], [each.column for each in analysis.sensitivities[:4]]
+    head = (
+        "run",
+        *(figure.name for figure in analysis.figures),
+        *(name.removeprefix("input_") for name in inputs),
+    )
+    flown = {int(run): place for place, run in enumerate(analysis.errors)}
+    rows = []
+    for place in first.worst_first[:WORST]:
+        run = int(first.runs[place])
+        figures = (_value_of(figure, run) for figure in analysis.figures)
+        rows.append((str(run), *figures, *(f"{analysis.inputs[name][flown[run]]:.4g}" for name in inputs)))
+    return Table(head, rows)
+
+
+def failure_table(analysis: CampaignAnalysis) -> Table:
+    """The runs that failed."""
+    return Table(("run", "why"), [(str(run), why) for run, why in analysis.failures.items()])
+
+
+def with_bounds(found: Percentile) -> str:
+    """A percentile with its bounds; a dash where there are too few runs for one."""
+    return f"{found.value:.4g} ({_bound(found.low)} to {_bound(found.high)})"
+
+
+def _bound(value: float | None) -> str:
+    return _ABSENT if value is None else f"{value:.4g}"
+
+
+def _value_of(figure: FigureStatistics, run: int) -> str:
+    place = figure.runs.searchsorted(run)
+    known = place < len(figure.runs) and figure.runs[place] == run
+    return f"{figure.values[place]:.4g}" if known else _ABSENT
+
+
+def _percentiles(figure: FigureStatistics) -> str:
+    named: Sequence[str] = [
+        f"{100.0 * each.probability:g} % {with_bounds(each)}" for each in figure.percentiles[1:]
+    ]
+    return ", ".join(named)

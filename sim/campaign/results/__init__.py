@@ -1,0 +1,1 @@
+"""What a run leaves: a row of SQLite, from which everything else is made."""

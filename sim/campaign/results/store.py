@@ -1,0 +1,207 @@
+"""results.sqlite: one row a run, committed when the run is done.
+
+Table ``runs`` depends on campaign and version alone, however it was flown: the columns are known before the
+first run, and what differs from one flight to the next (wall time, worker, attempts) is in ``attempts``.
+``profiles`` has the arrays of a run, ``meta`` the versions and the campaign that the rows are of.
+"""
+
+import json
+import sqlite3
+from collections.abc import Iterator, Sequence
+from contextlib import closing, contextmanager
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.campaign.definition.campaign import Campaign
+from sim.campaign.definition.columns import NUMBERS, TEXTS, Cell, input_cells
+from sim.campaign.results.row import RunRow, Status
+from sim.errors import HarnessError
+from sim.record.run_dir import fingerprint
+
+RESULTS, LOCK = "results.sqlite", "campaign.lock"
+SCHEMA_VERSION = 1
+DIGESTS = ("frames_sha256", "commands_sha256")
+_TABLES = """
+CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL);
+CREATE TABLE runs (run INTEGER PRIMARY KEY, status TEXT NOT NULL, failure TEXT NOT NULL,
+    seed INTEGER NOT NULL, success INTEGER NOT NULL, missed TEXT NOT NULL{columns});
+CREATE TABLE profiles (run INTEGER NOT NULL, name TEXT NOT NULL, f4 BLOB NOT NULL, PRIMARY KEY (run, name));
+CREATE TABLE attempts (run INTEGER NOT NULL, at_utc TEXT NOT NULL, worker TEXT NOT NULL,
+    wall_s REAL NOT NULL, failure TEXT NOT NULL);
+"""
+Array = NDArray[np.float64]
+
+
+class ResultsLostError(HarnessError):
+    """The results cannot be written any longer."""
+
+    exit_code = 1
+
+
+class Results:
+    """The results of a campaign, open for reading and writing."""
+
+    def __init__(self, connection: sqlite3.Connection, path: Path) -> None:
+        self._connection = connection
+        self.path = path
+
+    def add(self, row: RunRow) -> None:
+        """Store a run, in one transaction; a run that is there is replaced."""
+        values: dict[str, Cell] = {
+            "run": row.run, "status": row.status.value, "failure": row.failure, "seed": row.seed,
+            "success": int(row.success), "missed": row.missed, **row.cells,
+        }  # fmt: skip
+        now = datetime.now(UTC).isoformat(timespec="seconds")
+        with self._connection as connection:
+            connection.execute(
+                f"REPLACE INTO runs ({', '.join(map(_quoted, values))}) VALUES ({_marks(values)})",
+                tuple(values.values()),
+            )
+            connection.execute("DELETE FROM profiles WHERE run = ?", (row.run,))
+            connection.executemany(
+                "INSERT INTO profiles VALUES (?, ?, ?)",
+                [(row.run, name, content) for name, content in row.profiles.items()],
+            )
+            connection.execute(
+                "INSERT INTO attempts VALUES (?, ?, ?, ?, ?)",
+                (row.run, now, row.worker, row.wall_s, row.failure),
+            )
+
+    def runs(self, status: Status | None = None) -> list[int]:
+        """The numbers of the runs that are there, with this status if one is given."""
+        return [run for (run,) in self.each(("run",), status) if isinstance(run, int)]
+
+    def kinds(self) -> dict[str, str]:
+        """The columns of ``runs``, each with its type in SQLite."""
+        return {name: kind for _, name, kind, *_ in self._connection.execute("PRAGMA table_info(runs)")}
+
+    def each(self, names: Sequence[str], status: Status | None = None) -> Iterator[tuple[Cell, ...]]:
+        """These columns of the runs in order."""
+        where, arguments = ("", ()) if status is None else (" WHERE status = ?", (status.value,))
+        wanted = ", ".join(map(_quoted, names))
+        yield from self._connection.execute(f"SELECT {wanted} FROM runs{where} ORDER BY run", arguments)
+
+    def numbers(self, names: Sequence[str]) -> dict[str, Array]:
+        """These columns of the runs that were flown, NaN where a run has no figure."""
+        rows = np.array(list(self.each(names, Status.DONE)), dtype=float).reshape(-1, len(names))
+        return dict(zip(names, rows.T, strict=True))
+
+    def row(self, run: int) -> dict[str, Cell] | None:
+        """All of a run by column; None if it is not there."""
+        cursor = self._connection.execute("SELECT * FROM runs WHERE run = ?", (run,))
+        found = cursor.fetchone()
+        return found and dict(zip((name for name, *_ in cursor.description), found, strict=True))
+
+    def profiles(self, name: str) -> dict[int, Array]:
+        """An array of each run that has it, by run."""
+        rows = self._connection.execute("SELECT run, f4 FROM profiles WHERE name = ? ORDER BY run", (name,))
+        return {run: np.frombuffer(content, "<f4").astype(float) for run, content in rows}
+
+    def meta(self, key: str) -> str:
+        """A value of ``meta``.
+
+        Raises:
+            HarnessError: it is missing.
+        """
+        found = self._connection.execute("SELECT value FROM meta WHERE key = ?", (key,)).fetchone()
+        if found is None:
+            raise HarnessError(f"{self.path}: no results of a campaign: {key} is missing")
+        return str(found[0])
+
+    def all_meta(self) -> dict[str, str]:
+        """All of ``meta``."""
+        return dict(self._connection.execute("SELECT key, value FROM meta"))
+
+
+@contextmanager
+def open_results(folder: Path, campaign: Campaign) -> Iterator[Results]:
+    """The results in a folder, made if there are none; nobody else may write them meanwhile.
+
+    Raises:
+        HarnessError: they are of another campaign or version, being written, or no results at all.
+    """
+    with _lock(folder / LOCK), _database(folder / RESULTS) as results:
+        if not results.kinds():
+            _create(results, campaign)
+        _check(results, campaign)
+        yield results
+
+
+@contextmanager
+def read_results(folder: Path) -> Iterator[Results]:
+    """The results of a campaign, while it is flown or later.
+
+    Raises:
+        HarnessError: there are none, or they are of another version.
+    """
+    path = folder / RESULTS
+    if not path.is_file():
+        raise HarnessError(f"{folder} has no {RESULTS}")
+    with _database(path) as results:
+        _check(results, None)
+        yield results
+
+
+@contextmanager
+def _database(path: Path) -> Iterator[Results]:
+    try:
+        with closing(sqlite3.connect(path, timeout=60.0)) as connection:
+            connection.execute("PRAGMA journal_mode = WAL")
+            connection.execute("PRAGMA synchronous = NORMAL")
+            yield Results(connection, path)
+    except sqlite3.OperationalError as error:  # such as a full disk
+        raise ResultsLostError(f"{path}: {error}") from None
+    except sqlite3.DatabaseError as error:
+        raise HarnessError(f"{path}: {error}") from None
+
+
+@contextmanager
+def _lock(path: Path) -> Iterator[None]:
+    """Hold a lock that ends with this process, however it ends."""
+    with closing(sqlite3.connect(path, timeout=0.0, isolation_level=None)) as connection:
+        try:
+            connection.execute("BEGIN EXCLUSIVE")
+        except sqlite3.OperationalError:
+            raise HarnessError(f"{path.parent}: another process is flying this campaign") from None
+        yield
+
+
+def _create(results: Results, campaign: Campaign) -> None:
+    inputs = input_cells(campaign.draw(0).inputs)
+    kinds = {name: "TEXT" if isinstance(value, str) else "NUMERIC" for name, value in inputs.items()}
+    kinds |= dict.fromkeys(NUMBERS, "REAL") | dict.fromkeys((*TEXTS, *DIGESTS), "TEXT")
+    columns = "".join(f", {_quoted(name)} {kind}" for name, kind in kinds.items())
+    meta = {
+        "schema_version": str(SCHEMA_VERSION),
+        "torquer_version": version("torquer"),
+        "campaign_sha256": campaign.digest,
+        "platform": json.dumps(fingerprint()),
+    }
+    with results._connection as connection:
+        connection.execute("BEGIN IMMEDIATE")  # all tables or none
+        for statement in _TABLES.format(columns=columns).split(";")[:-1]:
+            connection.execute(statement)
+        connection.executemany("INSERT INTO meta VALUES (?, ?)", meta.items())
+
+
+def _check(results: Results, campaign: Campaign | None) -> None:
+    found = results.meta("schema_version")
+    if found != str(SCHEMA_VERSION):
+        raise HarnessError(f"{results.path}: schema_version is {found}, only {SCHEMA_VERSION} can be read")
+    if campaign is not None and results.meta("campaign_sha256") != campaign.digest:
+        raise HarnessError(
+            f"{results.path.parent} holds the runs of another campaign, which differs in more than the "
+            "number of runs: choose another --out"
+        )
+
+
+def _quoted(name: str) -> str:
+    return '"' + name.replace('"', '""') + '"'
+
+
+def _marks(values: dict[str, Cell]) -> str:
+    return ", ".join("?" * len(values))

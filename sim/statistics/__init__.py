@@ -1,0 +1,1 @@
+"""Statistics of many runs: bounds of percentiles and proportions, performance indices, sensitivity."""

@@ -1,0 +1,124 @@
+"""Pointing error indices of ECSS-E-ST-60-10C, and their percentiles under its three interpretations.
+
+With e the pointing error and k the knowledge error, both as rotation vectors, and a time window:
+APE = |e|, MPE = |mean of e over the window|, RPE = |e - that mean|, AKE = |k|.
+A requirement on one of them holds with probability P
+
+- temporal: for a part P of the time in the worst run;
+- ensemble: at all times in a part P of the runs;
+- mixed: for a part P of all times of all runs.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from math import sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtri
+
+from sim.statistics.order_statistics import least_part_bounded, upper_bound
+
+Array = NDArray[np.float64]
+
+INDICES = ("ape", "mpe", "rpe", "ake")
+POINTS = 256
+"""Numbers that stand for the distribution of an index over the time of a run, the last its largest value."""
+
+
+class Interpretation(StrEnum):
+    """How a probability is meant."""
+
+    TEMPORAL = "temporal"
+    ENSEMBLE = "ensemble"
+    MIXED = "mixed"
+
+
+def index_histories(error: Array, knowledge_error: Array, window: int) -> dict[str, Array]:
+    """Each index over the time of a run; MPE has one value a whole window.
+
+    Args:
+        error: rotation vectors of the pointing error, (n, 3).
+        knowledge_error: those of the estimate, (n, 3).
+        window: its length in rows; of fewer rows there is one window.
+    """
+    window = min(window, len(error))
+    count = len(error) // window
+    parts = error[: count * window].reshape(count, window, -1)
+    means = parts.mean(axis=1)
+    return {
+        "ape": np.linalg.norm(error, axis=1),
+        "mpe": np.linalg.norm(means, axis=1),
+        "rpe": np.linalg.norm(parts - means[:, None], axis=2).ravel(),
+        "ake": np.linalg.norm(knowledge_error, axis=1),
+    }
+
+
+def profile(values: Array) -> Array:
+    """The distribution of values over time: ``POINTS`` - 1 quantiles at equal steps, then the largest."""
+    middles = (np.arange(POINTS - 1) + 0.5) / (POINTS - 1)
+    return np.append(np.quantile(values, middles), values.max())
+
+
+@dataclass(frozen=True, slots=True)
+class IndexPercentile:
+    """A percentile over a campaign.
+
+    Attributes:
+        value: the estimate.
+        bound: one-sided upper bound of it with the confidence; None where there are too few runs for one.
+        held: of the temporal interpretation, the part of the ensemble that is at most ``value`` with the
+            confidence; else the probability.
+    """
+
+    value: float
+    bound: float | None
+    held: float
+
+    def within(self, limit: float) -> bool | None:
+        """Whether the percentile is at most the limit; None if more runs would have to tell."""
+        if self.value > limit:
+            return False
+        return True if self.bound is not None and self.bound <= limit else None
+
+
+def percentile(
+    profiles: Array, interpretation: Interpretation, probability: float, confidence: float
+) -> IndexPercentile:
+    """A percentile of an index over runs, from their profiles, (runs, ``POINTS``).
+
+    Temporal takes the worst of the runs, which bounds a part of the ensemble. Ensemble takes the largest
+    value of each run, its bound from order statistics. Mixed pools all runs with equal weight; its bound is
+    that of Woodruff (1952), runs being the clusters.
+    """
+    if interpretation is Interpretation.TEMPORAL:
+        worst = float(np.quantile(profiles[:, :-1], probability, axis=1).max())
+        return IndexPercentile(worst, worst, least_part_bounded(len(profiles), confidence))
+    if interpretation is Interpretation.ENSEMBLE:
+        largest = profiles[:, -1]
+        bound = upper_bound(largest, probability, confidence)
+        return IndexPercentile(float(np.quantile(largest, probability)), bound, probability)
+    pooled = profiles[:, :-1].ravel()
+    value = float(np.quantile(pooled, probability))
+    return IndexPercentile(value, _woodruff(profiles[:, :-1], value, probability, confidence), probability)
+
+
+def _woodruff(profiles: Array, value: float, probability: float, confidence: float) -> float | None:
+    """The pooled quantile at P + z s / sqrt(n), s the deviation between runs of the part up to ``value``."""
+    runs = len(profiles)
+    if runs < 2:
+        return None
+    parts = np.mean(profiles <= value, axis=1)
+    shifted = probability + ndtri(confidence) * float(parts.std(ddof=1)) / sqrt(runs)
+    return float(np.quantile(profiles, shifted)) if shifted < 1.0 else None
+
+
+def table(
+    profiles: Mapping[str, Array], probability: float, confidence: float
+) -> dict[str, dict[Interpretation, IndexPercentile]]:
+    """Every index under every interpretation."""
+    return {
+        name: {how: percentile(values, how, probability, confidence) for how in Interpretation}
+        for name, values in profiles.items()
+    }

@@ -1,0 +1,56 @@
+"""Percentiles of a sample with bounds that hold for any distribution.
+
+Of n independent values in order, the number below the p-quantile of the distribution is binomial (n, p). So
+the k-th value is an upper bound of the quantile with confidence P(B <= k - 1), and a lower bound with
+P(B >= k) (David and Nagaraja, Order Statistics, 2003, section 7.1).
+"""
+
+from dataclasses import dataclass
+from math import ceil, log
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import bdtr
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Percentile:
+    """A percentile of a sample and its bounds; None where there are too few values for one."""
+
+    probability: float
+    value: float
+    low: float | None
+    high: float | None
+
+
+def percentile(values: Array, probability: float, confidence: float) -> Percentile:
+    """A percentile with two-sided bounds, half of what is left of the confidence on each side."""
+    side = 0.5 * (1.0 + confidence)
+    estimate = float(np.quantile(values, probability))
+    low, high = lower_bound(values, probability, side), upper_bound(values, probability, side)
+    return Percentile(probability, estimate, low, high)
+
+
+def upper_bound(values: Array, probability: float, confidence: float) -> float | None:
+    """The least value of the sample that bounds the quantile from above with the confidence."""
+    count = len(values)
+    enough = bdtr(np.arange(count), count, probability) >= confidence
+    return float(np.sort(values)[np.argmax(enough)]) if enough.any() else None
+
+
+def lower_bound(values: Array, probability: float, confidence: float) -> float | None:
+    """The largest value of the sample that bounds the quantile from below with the confidence."""
+    below = upper_bound(-np.asarray(values), 1.0 - probability, confidence)
+    return None if below is None else -below
+
+
+def least_part_bounded(count: int, confidence: float) -> float:
+    """The part of the distribution that the largest of ``count`` values bounds with the confidence."""
+    return float((1.0 - confidence) ** (1.0 / count))
+
+
+def runs_needed(probability: float, confidence: float) -> int:
+    """The least number of values whose largest bounds the quantile with the confidence (Wilks 1941)."""
+    return ceil(log(1.0 - confidence) / log(probability) - 1e-9)

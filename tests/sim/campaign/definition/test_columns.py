@@ -1,0 +1,78 @@
+"""Columns are the keys of the summary with underscores, and nothing that differs between equal flights."""
+
+import pytest
+
+from sim.campaign.definition.columns import NUMBERS, TEXTS, cells, input_cells
+from sim.campaign.flight import record_scenario
+from sim.scenario.schema import load
+
+SUMMARY = {
+    "wall_seconds": 3.0,
+    "pulses": {"total": 17, "per_coil": [10, 4, 3], "refused": 0},
+    "min_gap_s": {"per_coil": [102.0, None, 101.0], "any": 100.0},
+    "limits_ok": True,
+    "estimate_deg": {"within_3sigma": None},
+    "parameters": {"delay_s": {"value": [0.5, 0.25], "sigma": [0.1, 0.2], "bound": [1.0, 1.0]}},
+    "mode_final": "POINT",
+    "isolated": ["coil 1", "sun sensor"],
+    "events": [{}, {}, {}],
+}
+
+
+def test_keys_become_columns():
+    assert cells(SUMMARY) == {
+        "pulses_total": 17,
+        "pulses_per_coil_0": 10,
+        "pulses_per_coil_1": 4,
+        "pulses_per_coil_2": 3,
+        "pulses_refused": 0,
+        "min_gap_s_per_coil_0": 102.0,
+        "min_gap_s_per_coil_1": None,
+        "min_gap_s_per_coil_2": 101.0,
+        "min_gap_s_any": 100.0,
+        "limits_ok": 1,
+        "estimate_deg_within_3sigma": None,
+        "parameters_delay_s_value_0": 0.5,
+        "parameters_delay_s_value_1": 0.25,
+        "parameters_delay_s_sigma_0": 0.1,
+        "parameters_delay_s_sigma_1": 0.2,
+        "mode_final": "POINT",
+        "isolated": "coil 1, sun sensor",
+        "isolated_units": 2,
+        "event_count": 3,
+    }
+
+
+SHARED = {"scenario", "seed", "wall_seconds", "realtime_factor", "events"}
+"""By all runs, or different in each flight."""
+
+
+def flat(values, above=""):
+    for key, value in values.items():
+        below = dict(enumerate(value)) if isinstance(value, list) else value
+        yield from flat(below, f"{above}{key}_") if isinstance(below, dict) else [f"{above}{key}"]
+
+
+@pytest.mark.parametrize("name", ["realsat", "posat1-spin"])
+def test_every_figure_of_a_summary_has_its_column(name):
+    summary = record_scenario(load(name), seed=1, orbits=0.02).summary()
+    figures = {column for column in flat(summary) if "_bound_" not in column} - SHARED
+    figures = {column for column in figures if not column.startswith("events_")}
+    assert figures <= {*NUMBERS, *TEXTS}
+    assert figures <= set(cells(summary))
+    assert len(figures) > 30
+    assert not {"wall_seconds", "realtime_factor"} & {*NUMBERS, *TEXTS}
+
+
+def test_inputs_are_named_by_their_key():
+    drawn = {"a.b": [1.0, 2.0], "c.0": 3.0, "d.length": 4.0, "e": "word", "f": True, "g": [[1.0], [2.0]]}
+    assert input_cells(drawn) == {
+        "input_a_b_0": 1.0,
+        "input_a_b_1": 2.0,
+        "input_c_0": 3.0,
+        "input_d_length": 4.0,
+        "input_e": "word",
+        "input_f": 1,
+        "input_g_0_0": 1.0,
+        "input_g_1_0": 2.0,
+    }

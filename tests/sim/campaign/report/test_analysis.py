@@ -1,0 +1,63 @@
+"""The statistics of made-up results, whose answers are known."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sim.campaign.report.analysis import MAIN_FIGURES, analyse
+from sim.campaign.results.store import open_results
+from sim.statistics.indices import Interpretation
+from sim.statistics.proportion import clopper_pearson
+
+
+def test_success_counts_failed_runs_as_none(campaign_of_40, analysis):
+    assert analysis.done == 38
+    assert list(analysis.failures) == [7, 21]
+    met = [run for run in range(40) if run not in (7, 21) and pointing(run) <= 60.0]
+    assert analysis.success == clopper_pearson(len(met), 40, 0.9)
+    (limit,) = campaign_of_40.requirements
+    assert analysis.by_requirement[limit] == analysis.success
+
+
+def pointing(run):
+    """As in the fixture."""
+    return 20.0 + 1.5 * run
+
+
+def test_figures_begin_with_what_is_required(analysis):
+    assert [figure.name for figure in analysis.figures] == list(MAIN_FIGURES[:2])
+    first = analysis.figures[0]
+    assert first.requirement is not None
+    assert analysis.figures[1].requirement is None
+    assert [each.probability for each in first.percentiles] == [0.05, 0.5, 0.95]
+    assert first.percentiles[1].value == pytest.approx(np.median(first.values))
+
+
+def test_the_worst_come_first(analysis):
+    first = analysis.figures[0]
+    assert first.runs[first.worst_first[:3]].tolist() == [39, 38, 37]
+    falling = replace(first, requirement=replace(first.requirement, at_least=3.0, at_most=np.inf))
+    assert falling.runs[falling.worst_first[:2]].tolist() == [0, 1]
+
+
+def test_inputs_are_ranked_by_what_depends_on_them(analysis):
+    strongest = analysis.sensitivities[0]
+    assert strongest.column == "input_initial_angle_deg"
+    assert strongest.correlation.value == pytest.approx(1.0)
+    assert "input_coils_backoff" not in analysis.inputs
+    assert "input_disturbance_residual_dipole_am2_length" in analysis.inputs
+
+
+def test_indices_are_there_under_every_interpretation(analysis):
+    assert set(analysis.indices) == {"ape", "mpe", "rpe", "ake"}
+    ape = analysis.indices["ape"]
+    assert ape[Interpretation.TEMPORAL].value > ape[Interpretation.MIXED].value
+
+
+def test_without_a_run_that_was_flown_there_are_no_figures(small, tmp_path, failed_row):
+    with open_results(tmp_path, small) as results:
+        results.add(failed_row(3))
+        found = analyse(small, results)
+    assert (found.done, found.figures, found.indices, found.sensitivities) == (0, (), {}, ())
+    assert found.success.count == 0

@@ -1,0 +1,69 @@
+"""The page shows every result, whatever there is of it, escaped and without scripts."""
+
+from html.parser import HTMLParser
+
+import pytest
+
+from sim.campaign.report.analysis import analyse
+from sim.campaign.report.page import write_page
+from sim.campaign.results.store import open_results
+
+
+class Tags(HTMLParser):
+    """Counts the elements of a page."""
+
+    def __init__(self, page):
+        super().__init__()
+        self.seen = []
+        self.feed(page)
+
+    def handle_starttag(self, tag, attributes):
+        self.seen.append((tag, dict(attributes).get("id")))
+
+
+@pytest.fixture(scope="module")
+def page(campaign_of_40, analysis, tmp_path_factory):
+    path = tmp_path_factory.mktemp("page") / "campaign.html"
+    write_page(path, campaign_of_40, analysis, "1.2.3")
+    return path.read_text()
+
+
+def test_it_has_all_sections_and_pictures(page):
+    seen = Tags(page).seen
+    sections = [name for tag, name in seen if tag == "section"]
+    assert sections == [
+        "requirements", "failures", "figures", "indices", "worst", "sensitivity", "convergence",
+    ]  # fmt: skip
+    charts = [name for tag, name in seen if tag == "figure"]
+    assert charts == [
+        f"chart-{name}"
+        for name in ("distributions", "cumulative", "indices", "worst-runs", "scatter", "convergence")
+    ]
+    assert sum(tag == "svg" for tag, _ in seen) == len(charts)
+    assert not any(tag == "script" for tag, _ in seen)
+
+
+def test_it_says_what_was_flown_and_escapes_it(page):
+    for words in ("40 of 40 runs of 0.02 orbits", "seed 11", "torquer 1.2.3", "25 of 40 succeed", "2 failed"):
+        assert words in page
+    assert "run 7: &lt;too&gt; fast" in page
+    assert "<too>" not in page
+
+
+def test_it_is_the_same_each_time(page, campaign_of_40, analysis, tmp_path):
+    write_page(tmp_path / "again.html", campaign_of_40, analysis, "1.2.3")
+    assert (tmp_path / "again.html").read_text() == page
+
+
+@pytest.mark.parametrize(("done", "failed"), [((3,), ()), ((), (3,))])
+def test_few_runs_are_no_error(small, done_row, failed_row, tmp_path, done, failed):
+    with open_results(tmp_path, small) as results:
+        for run in done:
+            results.add(done_row(run))
+        for run in failed:
+            results.add(failed_row(run))
+        found = analyse(small, results)
+    write_page(tmp_path / "page.html", small, found, "1.2.3")
+    seen = Tags((tmp_path / "page.html").read_text()).seen
+    assert (("section", "figures") in seen) == bool(done)
+    assert (("section", "failures") in seen) == bool(failed)

@@ -1,0 +1,150 @@
+"""Results survive whoever writes them, belong to one campaign, and have one writer."""
+
+import sqlite3
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sim.campaign.definition.campaign_file import load_campaign
+from sim.campaign.definition.columns import input_cells
+from sim.campaign.results.row import RunRow, Status
+from sim.campaign.results.store import RESULTS, SCHEMA_VERSION, open_results, read_results
+from sim.errors import HarnessError
+
+
+def row_of(campaign, run, **changes):
+    """A run that was flown, with made-up figures."""
+    drawn = campaign.draw(run)
+    figures = {"limits_ok": 1, "pointing_deg_rms_last_orbit": 1.0 / (run + 3), "mode_final": "POINT"}
+    profiles = {"ape": np.array([0.5, run], "<f4").tobytes()}
+    row = RunRow(
+        run, Status.DONE, "", drawn.seed, True, "", {**input_cells(drawn.inputs), **figures}, profiles, 0.25
+    )
+    return replace(row, **changes)
+
+
+def test_a_row_is_read_as_it_was_written(small, tmp_path):
+    with open_results(tmp_path, small) as results:
+        results.add(row_of(small, 4))
+    with read_results(tmp_path) as results:
+        found = results.row(4)
+        assert results.row(3) is None
+        assert results.profiles("ape")[4].tolist() == [0.5, 4.0]
+        assert results.numbers(("pointing_deg_rms_last_orbit",))["pointing_deg_rms_last_orbit"] == [1.0 / 7.0]
+    assert (found["run"], found["status"], found["seed"]) == (4, "done", small.draw(4).seed)
+    assert found["input_initial_angle_deg"] == small.draw(4).inputs["initial.angle_deg"]
+    assert found["input_coils_backoff"] in ("shared", "per_coil")
+    assert found["pointing_deg_rms_last_orbit"] == 1.0 / 7.0
+    assert found["nees_mean"] is None
+
+
+def test_columns_and_rows_do_not_depend_on_the_order_of_the_runs(small, tmp_path):
+    tables = []
+    for folder, order in (("a", (2, 0, 1)), ("b", (0, 1, 2))):
+        (tmp_path / folder).mkdir()
+        with open_results(tmp_path / folder, small) as results:
+            for run in order:
+                results.add(row_of(small, run, wall_s=float(order[0])))
+        connection = sqlite3.connect(tmp_path / folder / RESULTS)
+        tables.append(
+            (
+                list(connection.execute("SELECT * FROM runs")),
+                connection.execute("SELECT * FROM runs").description,
+            )
+        )
+        connection.close()
+    assert tables[0] == tables[1]
+
+
+def test_a_run_that_is_flown_again_replaces_its_row(small, tmp_path):
+    with open_results(tmp_path, small) as results:
+        results.add(row_of(small, 1, status=Status.FAILED, failure="no fuel", cells={}))
+        assert results.runs(Status.FAILED) == [1]
+        results.add(row_of(small, 1))
+        assert (results.runs(), results.runs(Status.FAILED)) == ([1], [])
+        assert results.row(1)["failure"] == ""
+        attempts = list(sqlite3.connect(results.path).execute("SELECT run, failure FROM attempts"))
+        assert attempts == [(1, "no fuel"), (1, "")]
+
+
+def test_another_campaign_is_refused_and_more_runs_of_this_are_not(small, campaign_file, tmp_path):
+    with open_results(tmp_path, small) as results:
+        results.add(row_of(small, 1))
+    other = load_campaign(str(campaign_file), {"seed": 5}, {})
+    with (
+        pytest.raises(HarnessError, match="holds the runs of another campaign"),
+        open_results(tmp_path, other),
+    ):
+        pass
+    with open_results(tmp_path, replace(small, runs=99)) as results:
+        assert results.runs() == [1]
+
+
+def test_there_is_one_writer_and_any_number_of_readers(small, tmp_path):
+    with open_results(tmp_path, small) as results:
+        results.add(row_of(small, 0))
+        with (
+            pytest.raises(HarnessError, match="another process is flying this campaign"),
+            open_results(tmp_path, small),
+        ):
+            pass
+        mode = sqlite3.connect(results.path).execute("PRAGMA journal_mode").fetchone()
+        assert mode == ("wal",)
+        with read_results(tmp_path) as reader:
+            assert reader.runs() == [0]
+            results.add(row_of(small, 1))
+            assert reader.runs() == [0, 1]
+    with open_results(tmp_path, small) as results:
+        assert results.runs() == [0, 1]
+
+
+KILLED = """
+import os, signal, sys
+from pathlib import Path
+from dataclasses import replace
+from sim.campaign.definition.campaign_file import load_campaign
+from sim.campaign.results.row import RunRow, Status
+from sim.campaign.results.store import open_results
+campaign = load_campaign(sys.argv[1], {}, {})
+with open_results(Path(sys.argv[2]), campaign) as results:
+    for run in range(3):
+        results.add(RunRow(run, Status.DONE, "", 1, True, "", {}))
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def test_what_was_added_before_sigkill_is_there_and_the_lock_is_not(small, campaign_file, tmp_path):
+    done = subprocess.run([sys.executable, "-c", KILLED, campaign_file, tmp_path], check=False)
+    assert done.returncode == -9
+    with open_results(tmp_path, small) as results:
+        assert results.runs() == [0, 1, 2]
+
+
+def test_no_results_or_others_are_one_sentence(small, tmp_path):
+    with pytest.raises(HarnessError, match=f"has no {RESULTS}"), read_results(tmp_path):
+        pass
+    (tmp_path / RESULTS).write_text("no database, but long enough to be taken for one" * 100)
+    with pytest.raises(HarnessError, match="not a database"), read_results(tmp_path):
+        pass
+
+
+def test_results_without_their_version_are_refused(small, tmp_path):
+    with open_results(tmp_path, small):
+        pass
+    with sqlite3.connect(tmp_path / RESULTS) as connection:
+        connection.execute("DELETE FROM meta")
+    with pytest.raises(HarnessError, match="schema_version is missing"), read_results(tmp_path):
+        pass
+
+
+def test_results_of_another_version_are_refused(small, tmp_path):
+    with open_results(tmp_path, small):
+        pass
+    with sqlite3.connect(tmp_path / RESULTS) as connection:
+        connection.execute("UPDATE meta SET value = '99' WHERE key = 'schema_version'")
+    expected = f"schema_version is 99, only {SCHEMA_VERSION} can be read"
+    with pytest.raises(HarnessError, match=expected), open_results(tmp_path, small):
+        pass

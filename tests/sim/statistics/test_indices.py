@@ -1,0 +1,96 @@
+"""Pointing indices of histories whose figures are known, under the three interpretations."""
+
+import numpy as np
+import pytest
+from scipy.special import ndtri
+
+from sim.statistics.indices import POINTS, Interpretation, index_histories, percentile, profile, table
+
+TEMPORAL, ENSEMBLE, MIXED = Interpretation.TEMPORAL, Interpretation.ENSEMBLE, Interpretation.MIXED
+
+
+def test_an_offset_is_all_mean_and_a_jitter_all_relative():
+    jitter = np.where(np.arange(1200) % 2 == 0, 0.3, -0.3)[:, None] * [0.0, 0.6, 0.8]
+    error = np.array([1.0, 2.0, 2.0]) + jitter
+    knowledge = np.tile([0.0, 0.3, -0.4], (1200, 1))
+    found = index_histories(error, knowledge, window=100)
+    assert found["mpe"] == pytest.approx(np.full(12, 3.0))
+    assert found["rpe"] == pytest.approx(np.full(1200, 0.3))
+    assert found["ake"] == pytest.approx(np.full(1200, 0.5))
+    assert found["ape"] == pytest.approx(np.linalg.norm(error, axis=1))
+
+
+def test_a_rest_shorter_than_the_window_has_no_mean():
+    found = index_histories(np.ones((250, 3)), np.zeros((250, 3)), window=100)
+    assert [len(found[name]) for name in ("ape", "mpe", "rpe", "ake")] == [250, 2, 200, 250]
+    assert len(index_histories(np.ones((40, 3)), np.zeros((40, 3)), window=100)["mpe"]) == 1
+
+
+def test_a_profile_has_the_quantiles_and_the_largest():
+    values = np.random.default_rng(8).rayleigh(size=5000)
+    found = profile(values)
+    assert len(found) == POINTS
+    assert found[-1] == values.max()
+    assert np.quantile(found[:-1], 0.8) == pytest.approx(np.quantile(values, 0.8), rel=0.01)
+
+
+def profiles_of(scales, size=4000):
+    """Runs whose index is uniform over time from 0 to a scale."""
+    return np.array([profile(scale * (np.arange(size) + 1.0) / size) for scale in scales])
+
+
+def test_temporal_is_the_worst_run():
+    found = percentile(profiles_of([1.0, 4.0, 2.0]), TEMPORAL, 0.75, 0.9)
+    assert found.value == found.bound == pytest.approx(3.0, rel=0.01)
+    assert found.held == pytest.approx(0.1 ** (1.0 / 3.0))
+
+
+def test_ensemble_is_the_percentile_of_the_largest_values():
+    scales = np.random.default_rng(9).permutation(np.arange(1.0, 101.0))
+    found = percentile(profiles_of(scales), ENSEMBLE, 0.9, 0.9)
+    assert found.value == pytest.approx(np.quantile(scales, 0.9))
+    assert found.bound == 95.0  # P(B(100, 0.9) <= 94) = 0.942, P(B <= 93) = 0.883
+    assert percentile(profiles_of(scales[:20]), ENSEMBLE, 0.9, 0.9).bound is None
+
+
+def test_mixed_pools_all_times_of_all_runs():
+    found = percentile(profiles_of([1.0, 3.0]), MIXED, 0.75, 0.9)
+    assert found.value == pytest.approx(1.5, rel=0.01)  # half of the first run's times and half of 3's
+
+
+def test_the_bound_of_mixed_is_wider_the_more_runs_differ():
+    alike = percentile(profiles_of(np.full(30, 2.0)), MIXED, 0.9, 0.9)
+    differing = percentile(profiles_of(np.linspace(1.0, 3.0, 30)), MIXED, 0.9, 0.9)
+    assert alike.bound == pytest.approx(alike.value)
+    assert differing.bound > 1.01 * differing.value
+
+
+def test_the_bound_of_mixed_covers_the_truth_as_often_as_it_says():
+    """Runs are Gaussian about a mean of their own: the pool is Gaussian with both variances."""
+    random, truth = np.random.default_rng(10), 2.0**0.5 * ndtri(0.9)
+    quantiles = ndtri((np.arange(POINTS - 1) + 0.5) / (POINTS - 1))
+    covered = 0
+    for _ in range(300):
+        pool = random.normal(size=(50, 1)) + quantiles
+        covered += percentile(np.hstack((pool, pool[:, -1:])), MIXED, 0.9, 0.9).bound >= truth
+    assert 0.84 < covered / 300 < 0.97
+
+
+@pytest.mark.parametrize(
+    ("limit", "verdict"), [(89.0, False), (90.5, None), (94.9, None), (95.0, True), (200.0, True)]
+)
+def test_a_limit_is_met_by_the_bound_and_missed_by_the_value(limit, verdict):
+    found = percentile(profiles_of(np.arange(1.0, 101.0)), ENSEMBLE, 0.9, 0.9)
+    assert found.within(limit) is verdict
+
+
+def test_without_a_bound_more_runs_must_tell():
+    found = percentile(profiles_of([1.0, 2.0]), ENSEMBLE, 0.9, 0.9)
+    assert (found.within(1.0), found.within(5.0)) == (False, None)
+
+
+def test_one_run_has_no_bound_and_a_table_has_every_index():
+    profiles = {"ape": profiles_of([1.0]), "mpe": profiles_of([2.0])}
+    found = table(profiles, 0.9, 0.9)
+    assert found["ape"][MIXED].bound is None
+    assert found["mpe"][TEMPORAL].value == pytest.approx(1.8, rel=0.01)
