@@ -1,5 +1,7 @@
 """Which unit the flight software isolates, by its events."""
 
+from math import inf
+
 import pytest
 
 from fsw.core.fdir.faults import Sensor, SensorFault
@@ -12,7 +14,8 @@ from sim.fault_table.row import FaultRow, RowFault
 
 
 def record(*events, board=()):
-    return FaultFlightRecord(1, onset=100, events=list(events), board_events=list(board))
+    lit = [True] * 500
+    return FaultFlightRecord(1, onset=100, events=list(events), board_events=list(board), lit=lit)
 
 
 def isolated(tick, sensor):
@@ -179,3 +182,21 @@ def test_a_coil_that_was_hardly_used_need_not_be_isolated(pulses, holds, bounds)
     flown.request_coils = [2, *[2, 1] * pulses]
     row = FaultRow("planted", "", "none", unit="coil 2")
     assert checks.isolates_faulty_unit(row, flown, bounds)[0] is holds
+
+
+def test_a_fault_of_the_sun_sensor_shows_only_where_the_sun_shines(bounds):
+    row = FaultRow("planted", "", "none", lasts_s=20.0, unit="sun sensor")
+    flown = record()
+    assert checks.isolates_faulty_unit(row, flown, bounds)[0] is False
+    flown.lit[100:120] = [False] * 20
+    assert checks.isolates_faulty_unit(row, flown, bounds)[0] is True
+
+
+def test_a_fault_that_nothing_may_show_need_not_be_named_but_no_other_unit_may_be(bounds):
+    second = RowFault("coil_wired", {}, inf, "coil 1", 10.0, shows=False)
+    row = FaultRow("planted", "", "none", unit="magnetometer", then=(second,))
+    first = isolated(130, Sensor.MAGNETOMETER)
+    assert checks.isolates_faulty_unit(row, record(first), bounds)[0] is True
+    assert (
+        checks.isolates_faulty_unit(row, record(first, isolated(140, Sensor.SUN_SENSOR)), bounds)[0] is False
+    )
