@@ -89,9 +89,14 @@ def isolation_s(fault: RowFault, record: FaultFlightRecord) -> float | None:
 def doubt_s(fault: RowFault, record: FaultFlightRecord) -> float | None:
     """Time from the onset of a sensor's fault until the sensors are said to disagree [s]; None: never."""
     onset = onset_tick(fault, record)
-    ticks = [event.tick for event in record.events if event.number == Number.SENSORS_DISAGREE]
-    later = [tick for tick in ticks if tick >= onset and not fault.unit.startswith("coil ")]
-    return (later[0] - onset) / record.tick_hz if later else None
+    doubted = _doubted(onset, record)
+    return None if doubted == inf or fault.unit.startswith("coil ") else (doubted - onset) / record.tick_hz
+
+
+def _doubted(onset: int, record: FaultFlightRecord) -> float:
+    """The first tick from the onset on in which the sensors are said to disagree; infinite: none."""
+    ticks = (event.tick for event in record.events if event.number == Number.SENSORS_DISAGREE)
+    return min((tick for tick in ticks if tick >= onset), default=inf)
 
 
 def isolates_faulty_unit(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool | None, str]:
@@ -146,13 +151,17 @@ def isolates_no_healthy_unit(row: FaultRow, record: FaultFlightRecord, bounds: B
 
 
 def _not_isolated(row: FaultRow, fault: RowFault, record: FaultFlightRecord) -> tuple[bool | None, str]:
-    """A coil shows its fault only while it is on: a few pulses are needed as evidence."""
+    """A coil shows its fault only while it is on: a few pulses are needed as evidence.
+
+    Those after the sensors are said to disagree are none: there is no estimate to judge them by.
+    """
     if not can_isolate(fault.unit):
         return None, f"fsw cannot isolate {fault.unit} yet"
     if not fault.unit.startswith("coil ") or "stuck" in row.expect:
         return False, f"{fault.unit} is not isolated"
     requests, onset = zip(record.request_ticks, record.request_coils, strict=True), onset_tick(fault, record)
-    count = sum(tick >= onset and f"coil {coil}" == fault.unit for tick, coil in requests)
+    end = _doubted(record.onset or 0, record)
+    count = sum(onset <= tick < end and f"coil {coil}" == fault.unit for tick, coil in requests)
     said = f"{fault.unit} is not isolated in {count} pulses of its own"
     return None if count < LEAST_PULSES else False, said
 
