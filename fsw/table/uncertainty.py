@@ -129,8 +129,6 @@ SIDE = 1.0 / sqrt(3.0)
 BALL = 1.0 / sqrt(5.0)
 """Standard deviation by axis of a vector that is uniform in the ball of radius 1."""
 DAY_S = 86400.0
-ECLIPSE_S = 2000.0
-"""About the time that a low orbit is in shadow."""
 
 
 class Shape(NamedTuple):
@@ -144,7 +142,7 @@ class Shape(NamedTuple):
 SHAPES = {
     "mag_bias_t": Shape(SIDE, walk=0.1 / sqrt(DAY_S)),
     "torque_body_nm": Shape(SIDE, walk=0.2 / sqrt(DAY_S)),
-    "dipole_body_am2": Shape(SIDE, walk=0.1 / sqrt(ECLIPSE_S)),
+    "dipole_body_am2": Shape(SIDE, walk=0.1 / sqrt(DAY_S)),
     "coil_error": Shape(SIDE, walk=0.01),
     "inertia_error_kgm2": Shape(SIDE),
     "mag_turn_rad": Shape(BALL),
@@ -152,9 +150,8 @@ SHAPES = {
     "sun_turn_rad": Shape(BALL),
     "delay_s": Shape(0.5 * SIDE, mean=0.5),
 }
-"""The bias may wander by a tenth of its limit in a day, the disturbance torque by a fifth; the dipole by a
-tenth in an eclipse, in which currents in the solar array end; and the coils by a hundredth in a second, so
-that what a coil loses in flight is found."""
+"""A parameter may wander by a tenth of its limit in a day, the disturbance torque by a fifth, and the coils
+by a hundredth in a second, so that what a coil loses in flight is found."""
 
 
 def priors(known: Uncertainty, inertia_kgm2: Mat3) -> dict[str, Prior]:
