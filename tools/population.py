@@ -16,17 +16,17 @@ from pathlib import Path
 
 from sim.campaign.claim import ClaimOutcome, ClaimVerdict, Study
 from sim.campaign.flight import FlightResult, Order, fly_order
-from sim.campaign.flight_rows import FlightRows, order_hash
 from sim.campaign.population import POPULATIONS
 from sim.campaign.runner import run
 from sim.campaign.study import FlightStudy, part_of
-from sim.campaign.sweep import QUANTITIES, Quantity, sweep_order, sweep_orders
 from sim.errors import HarnessError
 from sim.progress import Watch, progress
 from sim.record.destination import check_file
 from sim.validate import population
 from sim.validate.population_page import page
 from sim.validate.population_pictures import SizeSpread, draw_satellites, draw_sweep, spread_of
+from sim.validate.population_rows import FlightRows, order_hash
+from sim.validate.population_sweep import QUANTITIES, Quantity, sweep_order, sweep_orders
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE, ROWS = ROOT / "docs" / "population.md", ROOT / "build" / "population.jsonl"

@@ -8,11 +8,11 @@ from sim.fault_table.forged_rows import FORGED_ROWS
 from sim.fault_table.row import FaultRow, When
 from sim.fault_table.sly_rows import SLY_ROWS
 
+Rows = tuple[FaultRow, ...]
 BUS = ("no extra pulse", "goes on")
 TIMED = ("limits by time", *BUS, "quiet", "recovers")
 BROKEN = (*BUS, "dropped", "recovers")
 BLINDED = ("goes on", "recovers")
-COIL_NAMES = ("coil 0", "coil 1", "coil 2")
 
 NOTHING = "nothing: false alarms"
 LOSS = "loss 1/10/50 %, bursts; duplicates; reordering; delay, jitter"
@@ -66,7 +66,7 @@ def _sensor(unit: str, name: str, kind: str, parameters: dict[str, float]) -> tu
     )
 
 
-def _from_boot(name: str, kind: str, unit: str, **parameters: float) -> tuple[FaultRow, ...]:
+def _from_boot(name: str, kind: str, unit: str, **parameters: float) -> Rows:
     """A fault from boot on: which sensor is faulty is then not always observable."""
     passing = ("goes on", "recovers")
     return (
@@ -75,9 +75,7 @@ def _from_boot(name: str, kind: str, unit: str, **parameters: float) -> tuple[Fa
     )
 
 
-def _coils(
-    name: str, kind: str, *expect: str, watch_s: float = 2000.0, **parameters: float
-) -> tuple[FaultRow, ...]:
+def _coils(name: str, kind: str, *expect: str, watch_s: float = 2e3, **parameters: float) -> Rows:
     """The same fault of each coil."""
     return tuple(
         FaultRow(
@@ -87,14 +85,14 @@ def _coils(
             {"axis": coil, **parameters},
             inf,
             expect=("named", *expect),
-            unit=COIL_NAMES[coil],
+            unit=f"coil {coil}",
             watch_s=watch_s,
         )
         for coil in range(3)
     )
 
 
-ROWS: tuple[FaultRow, ...] = (
+ROWS: Rows = (
     FaultRow("none", NOTHING, "none", {}, 1.0, expect=(*BUS, "quiet", "recovers"), watch_s=1500.0),
     FaultRow("loss-1", LOSS, "loss", {"part": 0.01}, 300.0, expect=(*BUS, "recovers")),
     FaultRow("loss-10", LOSS, "loss", {"part": 0.1}, 300.0, expect=(*BUS, "recovers")),

@@ -6,9 +6,10 @@ from xml.etree import ElementTree
 
 import pytest
 
-from sim.campaign import flight_rows, runner
+from sim.campaign import runner
 from sim.campaign.flight import FlightResult
 from sim.errors import HarnessError
+from sim.validate import population_rows
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
@@ -116,7 +117,7 @@ def test_the_page_can_be_drawn_of_what_there_is_without_flying(run, flown, tmp_p
 
 def test_flights_of_other_code_are_said_to_be(run, tmp_path, monkeypatch):
     run()
-    monkeypatch.setattr(flight_rows, "code_hash", lambda: "changed")
+    monkeypatch.setattr(population_rows, "code_hash", lambda: "changed")
     run("--render")
     text = (tmp_path / "page.md").read_text()
     assert f"{FLIGHTS} of {FLIGHTS} flights, {FLIGHTS} of them by other versions of the code. Python" in text

@@ -24,8 +24,9 @@ MAX_ELAPSED_TICKS = 60
 class Turning(IntEnum):
     """Whether the satellite turns fast; the parameters start anew at KNOWN and when it ends.
 
-    KNOWN: so is its rate; before, a sample seems not to depend on its age, and tells the wrong attitude. The
-    turn ends below ``SLOW_RADPS``: what it leaves in the parameters is beyond their standard deviations.
+    FAST: or it may, as after a start. KNOWN: so is its rate; before, a sample seems not to depend on its age,
+    and what is learnt of the parameters is wrong. The turn ends below ``SLOW_RADPS``: what it leaves in the
+    parameters is beyond their standard deviations.
     """
 
     NO = 0
@@ -135,7 +136,8 @@ def update(
         started = _start(field, sun, reference, config)
         if started is None:
             return state, Used(False, False, blanked)
-        return state._replace(estimate=_from_first(started, state)), Used(True, True, blanked)
+        begun = state._replace(estimate=_from_first(started, state), turning=Turning.FAST)
+        return begun, Used(True, True, blanked)
 
     tuning = with_frozen_parameters(config.mekf) if state.frozen else config.mekf
     estimate, took_field, took_sun = _updated(state.estimate, field, sun, reference, tuning)
@@ -155,16 +157,15 @@ def update(
 def _settled(state: EstimatorState, estimate: Estimate, seen: bool, config: MekfConfig) -> EstimatorState:
     """With the parameters at their priors where ``Turning`` has it so; attitude and rate go on.
 
-    A rate that is hardly known, as after a start, is not fast. As every start, this takes field and Sun,
-    ``seen`` in this tick: with one of them the covariance of a start would not shrink.
+    A rate that is hardly known, as after a start, is neither fast nor slow. As every start, this takes field
+    and Sun, ``seen`` in this tick: with one of them the covariance of a start would not shrink.
     """
     square = dot(estimate.omega_body_radps, estimate.omega_body_radps)
-    rate_variance = max(estimate.covariance.diagonal()[3:6])
-    fast = square > FAST_RADPS**2 and rate_variance < SLOW_RADPS**2
-    after = turning = state.turning or Turning(fast)
-    if square <= SLOW_RADPS**2:
+    known = max(estimate.covariance.diagonal()[3:6]) < KNOWN_RADPS**2
+    after = turning = state.turning or Turning(known and square > FAST_RADPS**2)
+    if known and square <= SLOW_RADPS**2:
         after = Turning.NO
-    elif turning and config.layout.delay is not None and rate_variance < KNOWN_RADPS**2:
+    elif known and turning and config.layout.delay is not None:
         after = Turning.KNOWN
     if after is turning or not seen:
         return state._replace(turning=turning)

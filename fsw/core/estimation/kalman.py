@@ -1,4 +1,11 @@
-"""filterpy's Kalman filter without the copies that it keeps for inspection, and for few states that move."""
+"""filterpy's Kalman filter without the copies that it keeps for inspection, and for few states that move.
+
+Beside it goes a trace of what unmodelled deviations would do to errors and innovations (Friedland 1969).
+"""
+
+import struct
+from math import nan
+from typing import NamedTuple
 
 import numpy as np
 from filterpy.kalman import KalmanFilter
@@ -77,3 +84,43 @@ def inverse(m: Matrix) -> Matrix:
     """By LAPACK alone, in a fifth of numpy's time; of a singular matrix no numbers, where numpy raises."""
     _, _, inverted, failure = dgesv(m, _UNITS[len(m)])
     return np.full_like(m, np.nan) if failure else inverted
+
+
+class Trace(NamedTuple):
+    """What unmodelled deviations would do to the errors and innovations of the filter.
+
+    ``causes``: for each of k deviations the number of its cause. ``effect`` (n, k + 1): what a unit of each
+    leaves in the error state; the last column only makes room for the innovation. ``sums``
+    (k + 1, k + 1): t^T S^-1 t over all updates, t being the effects as measured, and the innovation last;
+    ``measured``: of how many numbers.
+    """
+
+    causes: tuple[int, ...]
+    effect: Matrix
+    sums: Matrix
+    measured: int
+
+    def packed(self) -> bytes:
+        """For the checksum of the state."""
+        causes = struct.pack(f"<{1 + len(self.causes)}q", self.measured, *self.causes)
+        return causes + self.effect.tobytes() + self.sums.tobytes()
+
+
+def carried(trace: Trace, transition: Matrix) -> Trace:
+    """The trace after a prediction with this transition, (6, n)."""
+    effect = trace.effect.copy()
+    effect[0:6] = transition.dot(trace.effect)
+    return Trace(trace.causes, effect, trace.sums, trace.measured)
+
+
+def unexplained(sums: Matrix) -> float:
+    """The part of the squares of the innovations that no deviation explains, each being 0 +- 1 beforehand.
+
+    What an update adds is its NIS in a filter that solves for the deviations too. NaN of damaged sums.
+    """
+    evidence = sums[:-1, -1]
+    try:
+        explained = evidence.dot(np.linalg.solve(sums[:-1, :-1] + np.eye(len(evidence)), evidence))
+    except np.linalg.LinAlgError:
+        return nan
+    return float(sums[-1, -1] - explained)

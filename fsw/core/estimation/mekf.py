@@ -19,8 +19,7 @@ Source: Lefferts, Markley, Shuster 1982; the dynamics as in Ovchinnikov, Penkov,
 are not observed kept with their prior as in Schmidt 1966.
 """
 
-import struct
-from math import inf, isfinite, nan, sqrt
+from math import inf, isfinite, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -38,7 +37,7 @@ from fsw.core.estimation.error_dynamics import (
     turn,
     with_age_along,
 )
-from fsw.core.estimation.kalman import LeanKalmanFilter, Matrix
+from fsw.core.estimation.kalman import LeanKalmanFilter, Matrix, Trace, carried, unexplained
 from fsw.core.estimation.measurement import field_prediction, sun_prediction
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.estimation.parameters import (
@@ -53,26 +52,6 @@ LAG_S = 60.0
 NO_LAG = (0.0,) * 6
 MAX_VARIANCE = 1e6
 """Beyond it (1000 rad) an estimate is worthless, and the algebra comes near to overflow."""
-
-
-class Trace(NamedTuple):
-    """What unmodelled deviations would do to the errors and innovations of the filter.
-
-    ``causes``: for each of k deviations the number of its cause. ``effect`` (n, k + 1): what a unit of each
-    leaves in the error state; the last column only makes room for the innovation. ``sums``
-    (k + 1, k + 1): t^T S^-1 t over all updates, t being the effects as measured, and the innovation last;
-    ``measured``: of how many numbers.
-    """
-
-    causes: tuple[int, ...]
-    effect: Matrix
-    sums: Matrix
-    measured: int
-
-    def packed(self) -> bytes:
-        """For the checksum of the state."""
-        causes = struct.pack(f"<{1 + len(self.causes)}q", self.measured, *self.causes)
-        return causes + self.effect.tobytes() + self.sums.tobytes()
 
 
 class Estimate(NamedTuple):
@@ -168,15 +147,9 @@ def predict(
         omega_after,
         parameters,
         kalman.P,
-        trace if trace is None else _carried(trace, transition),
+        trace if trace is None else carried(trace, transition),
         lag=tuple([(1.0 - h / LAG_S) * mean for mean in estimate.lag]),
     )
-
-
-def _carried(trace: Trace, transition: Matrix) -> Trace:
-    effect = trace.effect.copy()
-    effect[0:6] = transition.dot(trace.effect)
-    return Trace(trace.causes, effect, trace.sums, trace.measured)
 
 
 def update_field(estimate: Estimate, b_body_t: Vec3, b_eci_t: Vec3, config: MekfConfig) -> Estimate | None:
@@ -239,19 +212,6 @@ def _lagging(lag: tuple[float, ...], kalman: LeanKalmanFilter, first: int, part:
     for place, (number, variance) in enumerate(zip(kalman.y.tolist(), variances, strict=True), start=first):
         means[place] += part * number / sqrt(variance) if variance > 0.0 else inf
     return tuple(means)
-
-
-def unexplained(sums: Matrix) -> float:
-    """The part of the squares of the innovations that no deviation explains, each being 0 +- 1 beforehand.
-
-    What an update adds is its NIS in a filter that solves for the deviations too. NaN of damaged sums.
-    """
-    evidence = sums[:-1, -1]
-    try:
-        explained = evidence.dot(np.linalg.solve(sums[:-1, :-1] + np.eye(len(evidence)), evidence))
-    except np.linalg.LinAlgError:
-        return nan
-    return float(sums[-1, -1] - explained)
 
 
 def _fold(

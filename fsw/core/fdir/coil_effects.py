@@ -28,8 +28,8 @@ import numpy as np
 
 from fsw.core.algebra.vector import Mat3, Vec3, scale
 from fsw.core.estimation import mekf
-from fsw.core.estimation.kalman import Matrix
-from fsw.core.estimation.mekf import Estimate, Trace
+from fsw.core.estimation.kalman import Matrix, Trace, unexplained
+from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.fdir.explanations import (
     CERTAIN,
@@ -122,7 +122,7 @@ def _extended(trace: Trace, causes: tuple[int, ...], effects: Matrix) -> Trace:
     effect, sums = np.zeros((len(trace.effect), size)), np.zeros((size, size))
     effect[:6, :new] = effects
     effect[:, new:], sums[new:, new:] = trace.effect, trace.sums
-    sums[-1, -1] -= mekf.unexplained(trace.sums)
+    sums[-1, -1] -= unexplained(trace.sums)
     return Trace((*causes, *trace.causes), effect, sums, 0)
 
 
@@ -162,7 +162,7 @@ def _solve(estimate: Estimate, trace: Trace, tuning: MekfConfig) -> tuple[Estima
     covariance = 0.5 * (covariance + covariance.T)
     np.linalg.cholesky(covariance)  # raises if it is not positive, lest an inverse of a part of it does later
     deviation = covariance @ trace.sums[:-1, -1]
-    if mekf.unexplained(trace.sums) > UNEXPLAINED * trace.measured:
+    if unexplained(trace.sums) > UNEXPLAINED * trace.measured:
         return estimate, None
     solution = Solution(trace.causes, deviation, covariance)
     if not of_pulses(solution)[0].fits:

@@ -375,13 +375,26 @@ class TestAfterAFastTurn:
 
     def test_a_rate_that_is_hardly_known_is_not_fast(self, settled):
         """The first ones after a start are noise: the parameters would be started again and again."""
-        for sigma_degps, fast in ((1.0, False), (0.31, False), (0.29, True)):
+        for sigma_degps, fast in ((1.0, False), (0.026, False), (0.024, True)):
             state = self.turning(settled, 0.6)
             covariance = state.estimate.covariance.copy()
             covariance[3:6, 3:6] = radians(sigma_degps) ** 2 * np.eye(3)
             unsure = state._replace(estimate=state.estimate._replace(covariance=covariance))
             assert bool(self.seen_tick(unsure).turning) is fast
             assert self.seen_tick(unsure._replace(turning=Turning.FAST)).turning is Turning.FAST
+
+    def test_after_a_start_the_parameters_start_anew_once_the_rate_is_known(self, settled):
+        """What the first noisy rates have taught of them is wrong; a matched satellite is no exception."""
+        begun = update(settled._replace(estimate=None), seen_from(), REFERENCE, CONFIG)[0]
+        assert begun.turning is Turning.FAST
+        slow = self.turning(settled, 0.1, Turning.FAST)
+        covariance = slow.estimate.covariance.copy()
+        covariance[3:6, 3:6] = radians(0.026) ** 2 * np.eye(3)
+        unsure = slow._replace(estimate=slow.estimate._replace(covariance=covariance))
+        for state, anew in ((unsure, False), (slow, True)):
+            after = self.seen_tick(state)
+            assert self.begun_anew(after) is anew
+            assert after.turning is (Turning.NO if anew else Turning.FAST)
 
     def test_attitude_rate_and_counts_go_on(self, settled):
         before = self.turning(settled, 0.2, Turning.FAST)._replace(
