@@ -61,7 +61,9 @@ class FlightTable(Section):
         torque_nm = coils.largest_am2 * coils.on_part * LARGEST_FIELD_T
         ceilings = {
             "residual_dipole_am2": Ceiling(coils.largest_am2, "the largest dipole of a coil"),
-            "torque_nm": Ceiling(torque_nm, "what a coil gives in the mean in a strong field"),
+            "torque_nm": Ceiling(
+                torque_nm, "what a coil gives in the mean, pulse and back-off, in a strong field"
+            ),
             "coil_gain_percent": Ceiling(gain, "so that no sound coil is below fdir.weak_coil_part"),
         }
         check_bounds(self.uncertainty, ceilings)

@@ -153,14 +153,15 @@ def isolates_no_healthy_unit(row: FaultRow, record: FaultFlightRecord, bounds: B
 def _not_isolated(row: FaultRow, fault: RowFault, record: FaultFlightRecord) -> tuple[bool | None, str]:
     """A coil shows its fault only while it is on: a few pulses are needed as evidence.
 
-    Those after the sensors are said to disagree are none: there is no estimate to judge them by.
+    Those after a faulty sensor has made the sensors disagree are none: there is no estimate to judge them by.
     """
     if not can_isolate(fault.unit):
         return None, f"fsw cannot isolate {fault.unit} yet"
     if not fault.unit.startswith("coil ") or "stuck" in row.expect:
         return False, f"{fault.unit} is not isolated"
     requests, onset = zip(record.request_ticks, record.request_coils, strict=True), onset_tick(fault, record)
-    end = _doubted(record.onset or 0, record)
+    of_sensor = not all(other.unit.startswith("coil ") for other in row.faults)
+    end = _doubted(record.onset or 0, record) if of_sensor else inf
     count = sum(onset <= tick < end and f"coil {coil}" == fault.unit for tick, coil in requests)
     said = f"{fault.unit} is not isolated in {count} pulses of its own"
     return None if count < LEAST_PULSES else False, said

@@ -202,10 +202,13 @@ def test_a_fault_that_nothing_may_show_need_not_be_named_but_no_other_unit_may_b
     )
 
 
-def test_no_coil_need_be_isolated_once_the_sensors_disagree(bounds):
+def test_no_coil_need_be_isolated_once_a_faulty_sensor_makes_them_disagree(bounds):
     flown = record(ReportedEvent(110, Number.SENSORS_DISAGREE, 0))
     flown.request_ticks, flown.request_coils = list(range(101, 130)), [1] * 29
-    row = FaultRow("planted", "", "none", unit="coil 1")
-    assert checks.isolates_faulty_unit(row, flown, bounds)[0] is False, "nine before"
+    coil = RowFault("coil_wired", {}, inf, "coil 1")
+    row = FaultRow("planted", "", "none", unit="magnetometer", then=(coil,))
+    assert checks.isolates_or_doubts_faulty_unit(row, flown, bounds)[0] is False, "nine before"
     flown.request_ticks = list(range(107, 136))
-    assert checks.isolates_faulty_unit(row, flown, bounds)[0] is None, "three before"
+    assert checks.isolates_or_doubts_faulty_unit(row, flown, bounds)[0] is None, "three before"
+    alone = FaultRow("planted", "", "none", unit="coil 1")
+    assert checks.isolates_faulty_unit(alone, flown, bounds)[0] is False, "no sensor is faulty"

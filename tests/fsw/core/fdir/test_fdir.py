@@ -103,7 +103,7 @@ class TestTrusted:
 
 
 class TestJudgement:
-    @pytest.fixture(scope="class")
+    @pytest.fixture
     def judged(self, make_world):
         """Health, estimator and attitude as judged in a sound flight with this health; the state before."""
         world = make_world()
