@@ -140,9 +140,9 @@ def _say_how_to_resume(folder: Path, chosen: Campaign, results: Results) -> None
 
 def _conclude(folder: Path, chosen: Campaign, results: Results, parquet: bool) -> int:
     """Page, export and the lines on the terminal."""
-    from sim.campaign.report.analysis import analyse  # noqa: PLC0415
+    from sim.campaign.report.analysis import analyse  # noqa: PLC0415  scipy loads when runs are weighed
     from sim.campaign.report.page import write_page  # noqa: PLC0415  matplotlib loads when something is drawn
-    from sim.campaign.report.text import lines  # noqa: PLC0415
+    from sim.campaign.report.text import lines  # noqa: PLC0415  with the analysis
 
     if parquet:
         from sim.campaign.results.parquet import export  # noqa: PLC0415  an extra

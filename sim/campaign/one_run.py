@@ -73,6 +73,7 @@ class RunTask:
         except Exception as error:  # a defect: the sentence says where, and the other runs are flown
             row = _failed(drawn, f"{type(error).__name__}: {error} ({_place(error)})")
         if self.keep is Keep.ALL or (self.keep is Keep.FAILURES and not row.success):
+            # What has failed fails here too, at the same tick; its log up to there is what is wanted.
             fails_again = suppress(Exception) if row.status is Status.FAILED else nullcontext()
             with fails_again:
                 keep_run(run_folder(self.folder, run), self.campaign, drawn)

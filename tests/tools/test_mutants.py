@@ -7,10 +7,9 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from mutants import mutants
 
 ROOT = Path(__file__).parents[2]
-sys.path.insert(0, str(ROOT / "tools"))
-from mutants import mutants  # noqa: E402
 
 MODULES = [
     module

@@ -1,19 +1,14 @@
 """``make population``, of flights made up: what is flown is kept, and the page is made of what is kept."""
 
-import sys
-from pathlib import Path
 from xml.etree import ElementTree
 
+import population
 import pytest
 
 from sim.campaign import runner
 from sim.campaign.flight import FlightResult
 from sim.errors import HarnessError
 from sim.validate import population_rows
-
-ROOT = Path(__file__).parents[2]
-sys.path.insert(0, str(ROOT / "tools"))
-import population  # noqa: E402
 
 FIGURES = {
     "inside_1": 0.999,

@@ -2,13 +2,9 @@
 
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
-
-ROOT = Path(__file__).parents[2]
-sys.path.insert(0, str(ROOT / "tools"))
-import replay_elsewhere as tool  # noqa: E402
+import replay_elsewhere as tool
 
 EXACT = "bit-exact: 9 ticks, 30 frames, every state CRC equal\n"
 NEARLY = "command-exact, not bit-exact (another platform than the run's): tick 7: state_crc is 1 and 2\n"

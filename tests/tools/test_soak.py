@@ -1,10 +1,9 @@
 """The long run in a short form: flight, judgement, page; and each broken budget is found."""
 
 import json
-import sys
-from pathlib import Path
 
 import pytest
+import soak
 
 from fsw.wire.messages import CoilRefused
 from sim.bench import command
@@ -12,10 +11,6 @@ from sim.bench.budgets import Budgets, judge
 from sim.bench.realtime_loop import BenchMeasurements
 from sim.bench.time_histogram import TimeHistogram
 from torquer.cli import main as cli
-
-ROOT = Path(__file__).parents[2]
-sys.path.insert(0, str(ROOT / "tools"))
-import soak  # noqa: E402
 
 
 @pytest.fixture(scope="module")

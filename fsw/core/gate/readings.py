@@ -178,7 +178,8 @@ def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateSt
         digest = frame.can_id in _IN_ANY_PLACE
         digests[digest] = crc32(frame.data, digests[digest])
     overrun = state.overrun + max(0, len(frames) - INBOX_LIMIT)
-    readings = Readings(*slots, tuple(telecommands), tuple(repeated), under_own_id)  # type: ignore[arg-type, call-arg]
+    rest = (tuple(telecommands), tuple(repeated), under_own_id)
+    readings = Readings(*slots, *rest)  # type: ignore[arg-type, call-arg]  # each slot is of its field's kind
     return readings, GateState(tuple(counters), rejected, missed, overrun, *digests)
 
 

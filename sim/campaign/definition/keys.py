@@ -48,7 +48,7 @@ def with_value(overrides: Nested, nominal: Nested, key: str, value: object) -> N
     return merge(overrides, value)
 
 
-def _replace(within: Any, parts: Sequence[str], value: object, key: str) -> None:  # noqa: ANN401
+def _replace(within: Any, parts: Sequence[str], value: object, key: str) -> None:  # noqa: ANN401  (any value of a scenario)
     *way, last = parts
     for part in way:
         within = value_at(within, part)

@@ -79,9 +79,15 @@ class Cluster:
                 raise HarnessError(f"--scheduler: {worker} has torquer {theirs}, and this is {ours}")
         return sum(client.nthreads().values())
 
-    def _chunks(self, client: Any, task: RunTask, runs: Sequence[int], threads: int) -> Iterator[RunRow]:  # noqa: ANN401
-        from distributed import CancelledError, KilledWorker, as_completed  # noqa: PLC0415
-        from distributed.comm import CommClosedError  # noqa: PLC0415
+    def _chunks(
+        self,
+        client: Any,  # noqa: ANN401  (of an extra)
+        task: RunTask,
+        runs: Sequence[int],
+        threads: int,
+    ) -> Iterator[RunRow]:
+        from distributed import CancelledError, KilledWorker, as_completed  # noqa: PLC0415  an extra
+        from distributed.comm import CommClosedError  # noqa: PLC0415  an extra
 
         size = max(1, min(LARGEST_CHUNK, len(runs) // (CHUNKS_A_THREAD * threads)))
         chunks = iter([runs[first : first + size] for first in range(0, len(runs), size)])
@@ -120,7 +126,7 @@ class Cluster:
 
 
 @contextmanager
-def _closing(client: Any) -> Iterator[None]:  # noqa: ANN401
+def _closing(client: Any) -> Iterator[None]:  # noqa: ANN401  (of an extra)
     try:
         yield
     finally:

@@ -17,7 +17,7 @@ def export(results: Results, path: Path) -> None:
     """
     try:
         import pyarrow as pa  # noqa: PLC0415  an extra
-        import pyarrow.parquet as pq  # noqa: PLC0415
+        import pyarrow.parquet as pq  # noqa: PLC0415  an extra
     except ImportError:
         raise HarnessError("--parquet needs the package pyarrow: pip install 'torquer[parquet]'") from None
     kinds = {"INTEGER": pa.int64(), "TEXT": pa.string(), "REAL": pa.float64(), "NUMERIC": pa.float64()}

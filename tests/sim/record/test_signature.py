@@ -11,7 +11,7 @@ from sim.record import signature
 from sim.record.signature import private_key, public_key, sign, signature_fault, signature_path
 
 serialization = pytest.importorskip("cryptography.hazmat.primitives.serialization")
-from cryptography.hazmat.primitives.asymmetric import ec, ed448, ed25519  # noqa: E402
+from cryptography.hazmat.primitives.asymmetric import ec, ed448, ed25519  # noqa: E402  (only where it is installed)
 
 PEM = serialization.Encoding.PEM
 PKCS8 = serialization.PrivateFormat.PKCS8

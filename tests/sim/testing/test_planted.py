@@ -3,17 +3,10 @@
 From one seed, and without shrinking. ``make planted`` runs it as a user would, from four.
 """
 
-import sys
-from pathlib import Path
-
 import pytest
 from hypothesis import Phase
-
-ROOT = Path(__file__).parents[3]
-sys.path.insert(0, str(ROOT / "tools"))
-
-from planted import Run, row, run  # noqa: E402
-from planted_schedulers import CORRECT, PLANTED  # noqa: E402
+from planted import Run, row, run
+from planted_schedulers import CORRECT, PLANTED
 
 SEED = 1
 UNSHRUNK = (Phase.generate,)
