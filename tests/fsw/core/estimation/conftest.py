@@ -9,11 +9,13 @@ from math import radians
 
 import numpy as np
 import pytest
+from estimator_samples import seen_from, step
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from fsw.core.algebra.quaternion import normalise
 from fsw.core.algebra.vector import unit
+from fsw.core.estimation.estimator import EstimatorState, Used
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.parameters import NAMES, NOTHING, Parameters, Prior
@@ -225,3 +227,14 @@ def full():
 def nonlinear_flow():
     """Integrates the motion of a satellite."""
     return flow
+
+
+@pytest.fixture(scope="module")
+def settled():
+    """A filter that has seen a body at rest for two minutes."""
+    state = EstimatorState()
+    for _ in range(120):
+        state, used = step(state, seen_from())
+    assert used == Used(True, True, False)
+    assert (state.rejected_total, state.restarts) == (0, 0)
+    return state

@@ -5,114 +5,39 @@ from math import inf, nan, radians
 
 import numpy as np
 import pytest
+from estimator_samples import (
+    AGED,
+    CONFIG,
+    IDLE,
+    MEKF,
+    OFF_FIELD,
+    OFF_SUN,
+    Q_BODY_FROM_ECI,
+    REFERENCE,
+    SIZE,
+    angle_rad,
+    field_message,
+    seen_from,
+    step,
+)
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fsw.core.algebra.quaternion import conjugate, multiply, normalise, rotate
+from fsw.core.algebra.quaternion import multiply, normalise, rotate
 from fsw.core.algebra.vector import ZERO, add, cross, norm, scale, unit
 from fsw.core.estimation import mekf
 from fsw.core.estimation.estimator import (
     MAX_ELAPSED_TICKS,
     NONE_USED,
-    EstimatorConfig,
     EstimatorState,
-    Turning,
     Used,
-    predict,
     update,
 )
-from fsw.core.estimation.measurement import field_prediction, sun_prediction
-from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.orbital_attitude import orbital_attitude
-from fsw.core.estimation.parameters import NAMES, Prior
+from fsw.core.estimation.parameters import NAMES
 from fsw.core.estimation.parameters import NOTHING as NO_DIFFERENCE
 from fsw.core.gate.readings import NOTHING
-from fsw.core.orbit.ephemeris import Reference
-from fsw.wire.messages import CoilStatus, MagField, SunVector
-
-
-def tuned(**priors):
-    """A filter that estimates these parameters besides attitude and rate."""
-    return mekf_config(
-        ((1.02, 0.07, -0.05), (0.07, 1.85, 0.11), (-0.05, 0.11, 1.45)),
-        1.0,
-        priors,
-        magnetometer_sigma_t=2e-7,
-        sun_sigma_rad=radians(0.5),
-        attitude_sigma_rad=radians(5.0),
-        rate_sigma_radps=radians(2.0),
-        torque_noise_nm_rts=1e-7,
-        gate_nis=16.27,
-    )
-
-
-MEKF = tuned(
-    mag_bias_t=Prior((3e-7,) * 3, (1e-10,) * 3),
-    torque_body_nm=Prior((1e-7,) * 3, (3e-10,) * 3),
-    dipole_body_am2=Prior((0.02, 0.03, 0.025), (1e-6,) * 3, mean=(0.001, -0.002, 0.003)),
-)
-SIZE = MEKF.layout.size
-CONFIG = EstimatorConfig(
-    mekf=MEKF,
-    perfect=False,
-    max_field_error_t=3e-6,
-    max_angle_error_rad=radians(5.0),
-    min_separation_rad=radians(15.0),
-    restart_after_rejections=6,
-    valid_sigma_rad=radians(5.0),
-)
-AGED = replace(CONFIG, mekf=tuned(delay_s=Prior((0.3, 0.3), (0.0, 0.0), mean=(0.5, 0.5))))
-"""Where the age of the samples is not known."""
-REFERENCE = Reference(
-    r_eci_m=(4.0e6, -5.0e6, 3.0e6),
-    radius_m=norm((4.0e6, -5.0e6, 3.0e6)),
-    b_eci_t=(1.7e-5, -2.3e-5, 3.1e-5),
-    sun_eci=unit((-0.8, 0.35, 0.4)),
-    lit=True,
-    q_orbit_from_eci=normalise((0.3, 0.5, -0.7, 0.4)),
-    orbit_rate_radps=1.04e-3,
-)
-Q_BODY_FROM_ECI = normalise((0.6, -0.4, 0.5, 0.3))
-IDLE = CoilStatus(0, 2, 0, 0, 98000, 0)
-
-
-def field_message(b_body_t, valid=1):
-    return MagField(valid, *(c * 1e9 for c in b_body_t))
-
-
-def seen_from(q_body_from_eci=Q_BODY_FROM_ECI, reference=REFERENCE, **changes):
-    """What ideal sensors of a body in this attitude say, with changes."""
-    readings = NOTHING._replace(
-        field=field_message(rotate(q_body_from_eci, reference.b_eci_t)),
-        sun=SunVector(1, *rotate(q_body_from_eci, reference.sun_eci)),
-        coil=IDLE,
-    )
-    return readings._replace(**changes)
-
-
-def step(state, readings, reference=REFERENCE, dipole=ZERO, elapsed=1, config=CONFIG):
-    return update(predict(state, reference, dipole, elapsed, config), readings, reference, config)
-
-
-@pytest.fixture(scope="module")
-def settled():
-    """A filter that has seen a body at rest for two minutes."""
-    state = EstimatorState()
-    for _ in range(120):
-        state, used = step(state, seen_from())
-    assert used == Used(True, True, False)
-    assert (state.rejected_total, state.restarts) == (0, 0)
-    return state
-
-
-def angle_rad(p, q):
-    turn = multiply(conjugate(p), q)
-    return 2.0 * np.arctan2(norm(turn[1:]), abs(turn[0]))
-
-
-OFF_SUN = SunVector(1, *unit(rotate(Q_BODY_FROM_ECI, add(REFERENCE.sun_eci, scale(9e3, REFERENCE.b_eci_t)))))
-"""About 20 deg nearer to the field than it should be."""
-OFF_FIELD = field_message(scale(1.3, rotate(Q_BODY_FROM_ECI, REFERENCE.b_eci_t)))
+from fsw.wire.messages import MagField, SunVector
 
 
 class TestStart:
@@ -325,173 +250,6 @@ class TestRejections:
             state, _ = step(state, seen_from(turned))
         assert state.restarts == 1
         assert angle_rad(state.estimate.q_body_from_eci, turned) < radians(0.1)
-
-
-class TestAfterAFastTurn:
-    """What a fast turn leaves in the parameters is beyond their deviations: they are started once more."""
-
-    def turning(self, settled, degps, turning=Turning.NO):
-        """At this rate, with parameters that differ from their start, and sure of it all."""
-        rate = scale(radians(degps), unit((0.6, -0.48, 0.64)))
-        drawn_away = settled.estimate.parameters._replace(mag_bias_t=(9e-7, -8e-7, 7e-7))
-        estimate = settled.estimate._replace(omega_body_radps=rate, parameters=drawn_away)
-        return settled._replace(estimate=estimate, turning=turning)
-
-    def begun_anew(self, state):
-        same = state.estimate.parameters == MEKF.initial_parameters
-        assert same is bool(np.array_equal(state.estimate.covariance, MEKF.initial_covariance))
-        return same
-
-    def seen_tick(self, state, **changes):
-        """With samples of the attitude as estimated, from which nothing is to be learned."""
-        q = state.estimate.q_body_from_eci
-        bias = state.estimate.parameters.mag_bias_t
-        field = field_message(add(rotate(q, REFERENCE.b_eci_t), bias))
-        return update(state, seen_from(q, **({"field": field} | changes)), REFERENCE, CONFIG)[0]
-
-    @pytest.mark.parametrize(
-        ("before", "degps", "expected", "anew"),
-        [
-            (Turning.NO, 0.29, Turning.NO, False),
-            (Turning.NO, 0.31, Turning.NO, False),
-            (Turning.NO, 0.49, Turning.NO, False),
-            (Turning.NO, 0.51, Turning.FAST, False),
-            (Turning.NO, 5.0, Turning.FAST, False),
-            (Turning.FAST, 5.0, Turning.FAST, False),
-            (Turning.FAST, 0.49, Turning.FAST, False),
-            (Turning.FAST, 0.31, Turning.FAST, False),
-            (Turning.FAST, 0.29, Turning.NO, True),
-            (Turning.KNOWN, 5.0, Turning.KNOWN, False),
-            (Turning.KNOWN, 0.31, Turning.KNOWN, False),
-            (Turning.KNOWN, 0.29, Turning.NO, True),
-        ],
-    )
-    def test_it_counts_from_half_a_degree_per_second_and_ends_below_0_3(
-        self, settled, before, degps, expected, anew
-    ):
-        after = self.seen_tick(self.turning(settled, degps, before))
-        assert after.turning is expected
-        assert self.begun_anew(after) is anew
-
-    def test_a_rate_that_is_hardly_known_is_not_fast(self, settled):
-        """The first ones after a start are noise: the parameters would be started again and again."""
-        for sigma_degps, fast in ((1.0, False), (0.026, False), (0.024, True)):
-            state = self.turning(settled, 0.6)
-            covariance = state.estimate.covariance.copy()
-            covariance[3:6, 3:6] = radians(sigma_degps) ** 2 * np.eye(3)
-            unsure = state._replace(estimate=state.estimate._replace(covariance=covariance))
-            assert bool(self.seen_tick(unsure).turning) is fast
-            assert self.seen_tick(unsure._replace(turning=Turning.FAST)).turning is Turning.FAST
-
-    def test_after_a_start_the_parameters_start_anew_once_the_rate_is_known(self, settled):
-        """What the first noisy rates have taught of them is wrong; a matched satellite is no exception."""
-        begun = update(settled._replace(estimate=None), seen_from(), REFERENCE, CONFIG)[0]
-        assert begun.turning is Turning.FAST
-        slow = self.turning(settled, 0.1, Turning.FAST)
-        covariance = slow.estimate.covariance.copy()
-        covariance[3:6, 3:6] = radians(0.026) ** 2 * np.eye(3)
-        unsure = slow._replace(estimate=slow.estimate._replace(covariance=covariance))
-        for state, anew in ((unsure, False), (slow, True)):
-            after = self.seen_tick(state)
-            assert self.begun_anew(after) is anew
-            assert after.turning is (Turning.NO if anew else Turning.FAST)
-
-    def test_attitude_rate_and_counts_go_on(self, settled):
-        before = self.turning(settled, 0.2, Turning.FAST)._replace(
-            rejected_in_a_row=2, rejected_total=7, restarts=3
-        )
-        after = self.seen_tick(before)
-        assert self.begun_anew(after)
-        q, omega = before.estimate[:2]
-        assert after.estimate.q_body_from_eci == pytest.approx(q, abs=1e-9)
-        assert after.estimate.omega_body_radps == pytest.approx(omega, abs=1e-9)
-        assert after.estimate.trace is None
-        assert after == EstimatorState(after.estimate, 0, 7, 3, Turning.NO)
-
-    @pytest.mark.parametrize("changes", [{"sun": None}, {"field": None}, {"quiet": False}, {"sun": OFF_SUN}])
-    def test_it_waits_for_field_and_sun_as_every_start(self, settled, changes):
-        """One alone would not bring a start's covariance down: in eclipse, or while a coil conducts."""
-        waiting = self.turning(settled, 0.2, Turning.FAST)
-        for _ in range(3):
-            waiting = self.seen_tick(waiting, **changes)
-            assert waiting.turning is Turning.FAST
-            assert not self.begun_anew(waiting)
-        assert self.begun_anew(self.seen_tick(waiting))
-
-    def test_it_happens_once(self, settled):
-        state = self.seen_tick(self.turning(settled, 0.2, Turning.FAST))
-        for _ in range(3):
-            state, _ = step(state, seen_from())
-            assert not self.begun_anew(state)
-            assert state.turning is Turning.NO
-
-    def test_a_tumble_that_is_braked_ends_in_one_start_of_the_parameters(self, settled):
-        """From 1 deg/s to rest and not past 0.5 deg/s again: two crossings of 0.3 deg/s are one turn."""
-        state, starts = settled, 0
-        for degps in (1.0, 0.7, 0.45, 0.4, 0.25, 0.35, 0.45, 0.25):
-            state = self.seen_tick(self.turning(settled, degps, state.turning))
-            starts += self.begun_anew(state)
-        assert starts == 1
-
-    def test_a_filter_that_begins_anew_has_not_turned_fast(self, settled):
-        lost = predict(
-            self.turning(settled, 5.0, Turning.FAST), REFERENCE, ZERO, MAX_ELAPSED_TICKS + 1, CONFIG
-        )
-        assert lost == EstimatorState(None, 0, settled.rejected_total, settled.restarts + 1, Turning.NO)
-
-    def test_it_is_in_the_checksum_of_the_state(self, settled):
-        assert settled._replace(turning=Turning.FAST).integers() != settled.integers()
-
-
-class TestOfAFastTurnWhoseRateIsKnown:
-    """Samples of unknown age: what they seem to tell before the rate is known is forgotten, once."""
-
-    def seen(self, sigma_degps, config=AGED, turning=Turning.FAST, **changes):
-        """The state after a tick of a turn of 2 deg/s, the rate known so far to this."""
-        begun = mekf.start(Q_BODY_FROM_ECI, scale(radians(2.0), unit((0.6, -0.48, 0.64))), config.mekf)
-        covariance = begun.covariance.copy()
-        covariance[0:6, 0:6] *= np.diag([1e-4] * 3 + [(sigma_degps / 2.0) ** 2] * 3)
-        parameters = begun.parameters._replace(delay_s=(0.8, 0.7))
-        sure = begun._replace(covariance=covariance, parameters=parameters)
-        field, _ = field_prediction(*sure[:3], REFERENCE.b_eci_t, config.mekf)
-        sun, _ = sun_prediction(*sure[:3], REFERENCE.sun_eci, config.mekf)
-        said = {"field": field_message(field), "sun": SunVector(1, *unit(sun))} | changes
-        before = EstimatorState(sure, turning=turning)
-        return sure, update(before, seen_from(**said), REFERENCE, config)[0]
-
-    def begun_anew(self, state, config=AGED):
-        same = state.estimate.parameters == config.mekf.initial_parameters
-        assert same is bool(np.array_equal(state.estimate.covariance, config.mekf.initial_covariance))
-        return same
-
-    def test_the_parameters_start_anew_about_this_rate(self):
-        before, after = self.seen(0.024)
-        assert after.turning is Turning.KNOWN
-        assert self.begun_anew(after)
-        assert angle_rad(after.estimate.q_body_from_eci, before.q_body_from_eci) < 1e-4
-        np.testing.assert_allclose(after.estimate.omega_body_radps, before.omega_body_radps, atol=1e-6)
-
-    def test_not_while_it_is_less_known(self):
-        _, after = self.seen(0.026)
-        assert after.turning is Turning.FAST
-        assert not self.begun_anew(after)
-
-    def test_not_twice(self):
-        _, after = self.seen(0.024, turning=Turning.KNOWN)
-        assert after.turning is Turning.KNOWN
-        assert not self.begun_anew(after)
-
-    @pytest.mark.parametrize("changes", [{"sun": None}, {"field": None}])
-    def test_with_field_and_sun_as_every_start(self, changes):
-        _, after = self.seen(0.024, **changes)
-        assert after.turning is Turning.FAST
-        assert not self.begun_anew(after)
-
-    def test_not_where_samples_are_of_their_tick(self):
-        config = replace(AGED, mekf=MEKF)
-        _, after = self.seen(0.024, config)
-        assert after.turning is Turning.FAST
-        assert not self.begun_anew(after, config)
 
 
 def test_an_old_field_sample_is_of_where_the_satellite_was():
