@@ -19,6 +19,7 @@ class ModeConditions(NamedTuple):
     tripped: bool
     clear: bool
     lost_attitude: bool
+    blind: bool
     slow: bool
     fast: bool
     near: bool
@@ -37,6 +38,7 @@ class Transition(NamedTuple):
 TABLE: tuple[Transition, ...] = (
     Transition(Mode.SAFE, Mode.DETUMBLE, "clear", "recover_s"),
     Transition(Mode.DETUMBLE, Mode.SAFE, "tripped", "none_s"),
+    Transition(Mode.DETUMBLE, Mode.SAFE, "blind", "lose_s"),
     Transition(Mode.DETUMBLE, Mode.ACQUIRE, "slow", "settle_s"),
     Transition(Mode.ACQUIRE, Mode.SAFE, "tripped", "none_s"),
     Transition(Mode.ACQUIRE, Mode.DETUMBLE, "fast", "settle_s"),
@@ -86,18 +88,28 @@ class ModeState(NamedTuple):
 
 
 def judge(
-    attitude: Attitude, spin_radps: float, tripped: bool, state: ModeState, config: ModeConfig
+    attitude: Attitude,
+    spin_radps: float,
+    tripped: bool,
+    has_field: bool,
+    state: ModeState,
+    config: ModeConfig,
 ) -> ModeConditions:
-    """The conditions of the table at this tick; rates are relative to the spin of the setpoint."""
+    """The conditions of the table at this tick; rates are relative to the spin of the setpoint.
+
+    Without a field from the magnetometer (``has_field``) and without an attitude no law can act.
+    """
     q0, q1, q2, q3 = attitude.q_body_from_orbit
     cosine = q0 * q0 + q1 * q1 - q2 * q2 - q3 * q3 if config.axis_only else 2.0 * q0 * q0 - 1.0
     w1, w2, w3 = attitude.omega_body_orbit_radps
     rate = norm((w1 - spin_radps, w2, w3))
     valid = attitude.valid
+    blind = not (valid or has_field)
     return ModeConditions(
         tripped=tripped,
-        clear=not tripped and not state.held and state.trips < config.trips_to_stay_safe,
+        clear=not (tripped or blind or state.held) and state.trips < config.trips_to_stay_safe,
         lost_attitude=not valid,
+        blind=blind,
         slow=valid and rate < config.slow_radps,
         fast=valid and rate > config.fast_radps,
         near=valid and cosine > config.near_cosine,

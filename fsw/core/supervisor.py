@@ -27,7 +27,8 @@ def supervise(state: FlightState, config: FlightConfig) -> tuple[FlightState, Mo
         stale_after_ticks=config.stale_after_ticks,
     )
     violated = first_violation(watched)
+    has_field = not state.health.sensors.field.fault
     situation = modes.judge(
-        state.attitude, state.setpoint.spin_radps, violated is not None, state.modes, config.modes
+        state.attitude, state.setpoint.spin_radps, violated is not None, has_field, state.modes, config.modes
     )
     return state._replace(modes=modes.advance(state.modes, situation, state.tick, config.modes)), violated

@@ -11,6 +11,7 @@ from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.fdir.coils import CoilHealthConfig
 from fsw.core.fdir.credibility import credibility_config
 from fsw.core.fdir.evidence import weights
+from fsw.core.fdir.explanations import weak_test
 from fsw.core.fdir.fdir import FdirConfig
 from fsw.core.fdir.sensors import SensorConfig
 from fsw.core.gate.second_sender import SecondSenderConfig
@@ -119,8 +120,7 @@ def _fdir(table: FlightTable, timing: PulseConfig, mekf: MekfConfig) -> FdirConf
         sensors=SensorConfig(budget, credibility_config(mekf), mekf),
         coils=CoilHealthConfig(
             current_ma=table.coils.levels_ma,
-            weak_part=given.weak_coil_part,
-            threshold=budget.threshold,
+            weak=weak_test(given.weak_coil_part, budget.threshold, mekf),
             stuck_ma=max(1.0, 0.5 * table.coils.levels_ma[0]),
             stuck_ticks=_ticks(table.coils.pulse_s + STUCK_S, tick_hz) + 1,
             pulses=timing,

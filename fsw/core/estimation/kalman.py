@@ -89,13 +89,14 @@ def inverse(m: Matrix) -> Matrix:
 class Trace(NamedTuple):
     """What unmodelled deviations would do to the errors and innovations of the filter.
 
-    ``causes``: for each of k deviations the number of its cause. ``effect`` (n, k + 1): what a unit of each
-    leaves in the error state; the last column only makes room for the innovation. ``sums``
-    (k + 1, k + 1): t^T S^-1 t over all updates, t being the effects as measured, and the innovation last;
-    ``measured``: of how many numbers.
+    ``causes``: for each of k deviations the number of its cause; ``assumed``: which part of a unit the filter
+    took into account. ``effect`` (n, k + 1): what a unit of each leaves in the error state; the last column
+    only makes room for the innovation. ``sums`` (k + 1, k + 1): t^T S^-1 t over all updates, t being the
+    effects as measured, and the innovation last; ``measured``: of how many numbers.
     """
 
     causes: tuple[int, ...]
+    assumed: tuple[float, ...]
     effect: Matrix
     sums: Matrix
     measured: int
@@ -103,14 +104,15 @@ class Trace(NamedTuple):
     def packed(self) -> bytes:
         """For the checksum of the state."""
         causes = struct.pack(f"<{1 + len(self.causes)}q", self.measured, *self.causes)
-        return causes + self.effect.tobytes() + self.sums.tobytes()
+        assumed = struct.pack(f"<{len(self.assumed)}d", *self.assumed)
+        return causes + assumed + self.effect.tobytes() + self.sums.tobytes()
 
 
 def carried(trace: Trace, transition: Matrix) -> Trace:
     """The trace after a prediction with this transition, (6, n)."""
     effect = trace.effect.copy()
     effect[0:6] = transition.dot(trace.effect)
-    return Trace(trace.causes, effect, trace.sums, trace.measured)
+    return Trace(trace.causes, trace.assumed, effect, trace.sums, trace.measured)
 
 
 def unexplained(sums: Matrix) -> float:

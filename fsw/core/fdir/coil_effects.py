@@ -16,17 +16,13 @@ that before any measurement e_j is 0 with a standard deviation of 1. The estimat
 What is left, the sum of y^T S^-1 y less a^T e, is about the number of scalars measured if nothing but the
 coils was wrong; where it is more a sensor may be faulty, and no coil is judged.
 
-A stray current, one without a request, flows in one of the coils, and the supply, which they share, does not
-show in which. For each of the three u_j grows, tick by tick, by what the current would do there: e_j is 1 for
-the one in which it flows and 0 for the others.
-
 Source: Friedland 1969, Treatment of bias in recursive filtering (IEEE Trans. Automatic Control 14), e being
 the bias. Willsky and Jones 1976 estimate the size of jumps by the same sums.
 """
 
 import numpy as np
 
-from fsw.core.algebra.vector import Mat3, Vec3, scale
+from fsw.core.algebra.vector import Vec3, scale
 from fsw.core.estimation import mekf
 from fsw.core.estimation.kalman import Matrix, Trace, unexplained
 from fsw.core.estimation.mekf import Estimate
@@ -51,88 +47,48 @@ def trace_pulse(estimate: Estimate, coil: int, kick_radps: Vec3, pulse_s: float)
     Args:
         estimate: before.
         coil: whose the pulse is.
-        kick_radps: change of rate that the filter assumed, body axes.
+        kick_radps: change of rate by the nominal dipole, body axes.
         pulse_s: its length.
     """
-    trace = estimate.trace or _empty_trace(estimate)
+    trace = estimate.trace or empty_trace(estimate)
     own = indices_of(coil, trace.causes)
     if len(own) == PULSES:
-        trace = _without(trace, own[-1])
+        trace = without(trace, own[-1])
     effect = np.array((*scale(0.5 * pulse_s, kick_radps), *kick_radps))
-    return estimate._replace(trace=_extended(trace, (coil,), effect[:, np.newaxis]))
+    assumed = 1.0 + estimate.parameters.coil_error[4 * coil]
+    return estimate._replace(trace=extended(trace, (coil,), (assumed,), effect[:, np.newaxis]))
 
 
-def trace_stray(estimate: Estimate, kicks_radps: Mat3, tick_s: float, begins: bool) -> Estimate:
-    """Trace a stray current in any of the coils over one more tick.
-
-    Args:
-        estimate: before.
-        kicks_radps: by coil, the change of rate that the current would make in this tick, body axes.
-        tick_s: length of a tick.
-        begins: whether the current began in this tick; an earlier one is then forgotten.
-    """
-    trace = estimate.trace or _empty_trace(estimate)
-    if begins or STRAY not in trace.causes:
-        for cause in (STRAY, STRAY + 1, STRAY + 2):
-            if cause in trace.causes:
-                trace = _without(trace, trace.causes.index(cause))
-        trace = _extended(trace, (STRAY, STRAY + 1, STRAY + 2), np.zeros((6, 3)))
-    effect, first = trace.effect.copy(), trace.causes.index(STRAY)
-    kicks = np.array(kicks_radps).T
-    effect[0:3, first : first + 3] += 0.5 * tick_s * kicks
-    effect[3:6, first : first + 3] += kicks
-    return estimate._replace(trace=trace._replace(effect=effect))
+def empty_trace(estimate: Estimate) -> Trace:
+    """A trace of nothing yet."""
+    return Trace((), (), np.zeros((len(estimate.covariance), 1)), np.zeros((1, 1)), 0)
 
 
-def settle_stray(estimate: Estimate, coil: int, tuning: MekfConfig) -> Estimate:
-    """Correct the estimate by a stray current that certainly flows in this coil, and trace it no longer.
-
-    Args:
-        estimate: before, with the trace of a stray current.
-        coil: in which it flows.
-        tuning: of the filter.
-
-    Raises:
-        ValueError: it has no such trace.
-    """
-    trace = estimate.trace
-    if trace is None or STRAY not in trace.causes:
-        raise ValueError("no stray current is traced")
-    flows = trace.causes.index(STRAY + coil)
-    lacks = trace.effect[:, flows]
-    estimate = mekf.corrected(estimate, lacks, MODEL_ERROR**2 * np.outer(lacks, lacks), tuning)
-    without = np.eye(len(trace.sums))
-    without[flows, -1] = -1.0  # the innovations less what the current has done to them
-    sums = without.T @ trace.sums @ without
-    others = [index for index, cause in enumerate(trace.causes) if cause < STRAY]
-    places = [*others, -1]
-    causes = tuple(trace.causes[index] for index in others)
-    return estimate._replace(
-        trace=Trace(causes, trace.effect[:, places], sums[places][:, places], trace.measured)
-    )
-
-
-def _empty_trace(estimate: Estimate) -> Trace:
-    return Trace((), np.zeros((len(estimate.covariance), 1)), np.zeros((1, 1)), 0)
-
-
-def _extended(trace: Trace, causes: tuple[int, ...], effects: Matrix) -> Trace:
+def extended(trace: Trace, causes: tuple[int, ...], assumed: tuple[float, ...], effects: Matrix) -> Trace:
     """With more causes, by columns of effects on attitude and rate; what is unexplained counts from here."""
     new, size = len(causes), len(causes) + len(trace.sums)
     effect, sums = np.zeros((len(trace.effect), size)), np.zeros((size, size))
     effect[:6, :new] = effects
     effect[:, new:], sums[new:, new:] = trace.effect, trace.sums
     sums[-1, -1] -= unexplained(trace.sums)
-    return Trace((*causes, *trace.causes), effect, sums, 0)
+    return Trace((*causes, *trace.causes), (*assumed, *trace.assumed), effect, sums, 0)
 
 
-def _without(trace: Trace, index: int) -> Trace:
+def without(trace: Trace, index: int) -> Trace:
     """Without one of the causes, its deviation being integrated out."""
-    causes, effect, sums, measured = trace
-    row = sums[index]
-    sums = sums - np.outer(row, row) / (row[index] + 1.0)
-    others = [place for place in range(len(sums)) if place != index]
-    return Trace(causes[:index] + causes[index + 1 :], effect[:, others], sums[others][:, others], measured)
+    row = trace.sums[index]
+    sums = trace.sums - np.outer(row, row) / (row[index] + 1.0)
+    return only(trace, [place for place in range(len(trace.causes)) if place != index], sums)
+
+
+def only(trace: Trace, kept: list[int], sums: Matrix) -> Trace:
+    """With some of the causes only, of these sums."""
+    places = [*kept, -1]
+    causes, assumed = (
+        tuple(trace.causes[place] for place in kept),
+        tuple(trace.assumed[place] for place in kept),
+    )
+    return Trace(causes, assumed, trace.effect[:, places], sums[places][:, places], trace.measured)
 
 
 def solve(estimate: Estimate, tuning: MekfConfig) -> tuple[Estimate, Solution | None]:
@@ -164,12 +120,15 @@ def _solve(estimate: Estimate, trace: Trace, tuning: MekfConfig) -> tuple[Estima
     deviation = covariance @ trace.sums[:-1, -1]
     if unexplained(trace.sums) > UNEXPLAINED * trace.measured:
         return estimate, None
-    solution = Solution(trace.causes, deviation, covariance)
+    solution = Solution(trace.causes, np.array(trace.assumed) + deviation, deviation, covariance)
     if not of_pulses(solution)[0].fits:
         return estimate, None
-    effect = trace.effect[:, :-1]
+    pulses = [index for index, cause in enumerate(trace.causes) if cause < STRAY]
+    effect, deviation, covariance = trace.effect[:, pulses], deviation[pulses], covariance[pulses][:, pulses]
     certain = deviation**2 > CERTAIN**2 * (covariance.diagonal() + MODEL_ERROR**2)
     if (certain & effect.any(axis=0)).any():
         estimate = mekf.corrected(estimate, effect @ deviation, effect @ covariance @ effect.T, tuning)
-        estimate = estimate._replace(trace=trace._replace(effect=np.zeros_like(trace.effect)))
+        left = trace.effect.copy()
+        left[:, pulses] = 0.0
+        estimate = estimate._replace(trace=trace._replace(effect=left))
     return estimate, solution

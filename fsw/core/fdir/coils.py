@@ -11,12 +11,13 @@ from fsw.core.actuation import pulses
 from fsw.core.actuation.actuator import CoilView
 from fsw.core.actuation.pulses import AXES, PulseConfig
 from fsw.core.algebra.quaternion import rotate
-from fsw.core.algebra.vector import ZERO, Mat3, Vec3, cross, scale, transform
+from fsw.core.algebra.vector import ZERO, Vec3, scale, transform
 from fsw.core.estimation.estimator import EstimatorState
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.fdir import coil_effects, explanations
+from fsw.core.fdir import coil_effects, explanations, stray
 from fsw.core.fdir.evidence import weigh
+from fsw.core.fdir.explanations import Solution, WeakTest
 from fsw.core.fdir.faults import CoilFault, coil_fault
 from fsw.core.gate.readings import Readings
 from fsw.wire.messages import CoilStatus
@@ -26,13 +27,11 @@ from fsw.wire.messages import CoilStatus
 class CoilHealthConfig:
     """Current of each level and limits.
 
-    ``weak_part`` of the nominal current or torque is the most that is weak; evidence of ``threshold``, nats,
-    isolates a coil; a stray current means a stuck coil after ``stuck_ticks``.
+    ``weak`` tells a weak coil from a sound one; a stray current means a stuck coil after ``stuck_ticks``.
     """
 
     current_ma: Vec3
-    weak_part: float
-    threshold: float
+    weak: WeakTest
     stuck_ma: float
     stuck_ticks: int
     pulses: PulseConfig
@@ -43,7 +42,8 @@ class CoilHealth(NamedTuple):
     """By coil: its fault (0: none) and what its currents, and pulses traced no longer, show against it, nats.
 
     ``strange_ticks``: ticks in a row with a level or a current without a request, ``stray_ma``: a current
-    without a level; ``stuck``: there is such a level, or such a current for too long.
+    without a level; ``stuck``: there is such a level, or such a current for too long; ``conducts``: by coil,
+    which part of such a current the filter takes into account.
     """
 
     faults: tuple[int, int, int] = (0, 0, 0)
@@ -52,27 +52,30 @@ class CoilHealth(NamedTuple):
     strange_ticks: int = 0
     stray_ma: int = 0
     stuck: bool = False
+    conducts: Vec3 = ZERO
 
     def integers(self) -> tuple[int, ...]:
         """For the checksum of the state."""
         return (*self.faults, self.strange_ticks, self.stray_ma, self.stuck)
 
     def floats(self) -> tuple[float, ...]:
-        """The evidence."""
-        return (*self.nats, *self.pulse_nats)
+        """The evidence, and the parts of a stray current."""
+        return (*self.nats, *self.pulse_nats, *self.conducts)
 
 
 def driven_am2(health: CoilHealth, view: CoilView, config: CoilHealthConfig) -> Vec3:
-    """Dipole over the tick that has ended, body axes, a stray current included if a coil is isolated for it.
+    """Dipole over the tick that has ended, body axes, with what is known of a stray current.
 
     Args:
         health: of this tick.
         view: after what was received in this tick.
         config: limits.
     """
-    if not health.stray_ma or CoilFault.STUCK not in health.faults:
+    stuck = CoilFault.STUCK in health.faults
+    conducts = AXES[health.faults.index(CoilFault.STUCK)] if stuck else health.conducts
+    if not health.stray_ma or conducts == ZERO:
         return view.driven_am2
-    return scale(_stray_am2(health, config), AXES[health.faults.index(CoilFault.STUCK)])
+    return scale(_stray_am2(health, config), conducts)
 
 
 def unattributed_torque(health: CoilHealth) -> bool:
@@ -113,18 +116,17 @@ def judge_current(
     if unasked or (status.level == 0 and abs(status.current_ma) > config.stuck_ma):
         return _strange(health, status, unasked, config)
     if health.strange_ticks:
-        health = health._replace(strange_ticks=0, stray_ma=0, stuck=False)
+        health = health._replace(strange_ticks=0, stray_ma=0, stuck=False, conducts=ZERO)
     fired = view.fired
     ended = tick == view.fired_tick + config.pulses.pulse_ticks
     if not ended or not status.level or (status.coil, status.level) != fired:
         return health
     nominal_ma = config.current_ma[abs(status.level) - 1]
     part = status.current_ma / (nominal_ma if status.level > 0 else -nominal_ma)
-    kind = coil_fault(part, config.weak_part)
-    by = config.threshold / NAME_PULSES
-    nats = weigh(health.nats[fired.coil], by if kind else -config.threshold, config.threshold)
+    kind, threshold = coil_fault(part, config.weak.weak_part), config.weak.threshold
+    nats = weigh(health.nats[fired.coil], threshold / NAME_PULSES if kind else -threshold, threshold)
     health = health._replace(nats=_with(health.nats, fired.coil, nats))
-    return _with_fault(health, fired.coil, kind) if nats >= config.threshold else health
+    return _with_fault(health, fired.coil, kind) if nats >= threshold else health
 
 
 NAME_PULSES = 2
@@ -167,40 +169,26 @@ def judge_effect(
     """
     estimate, age = state.estimate, tick - view.fired_tick
     ended = age == config.pulses.pulse_ticks and view.driven_level != 0
-    stray = _flows_somewhere(health)
-    hurry = age % EARLY_TICKS == 0 and (unexplained or state.rejected_in_a_row > 0 or stray)
+    flows = _flows_somewhere(health)
+    hurry = age % EARLY_TICKS == 0 and (unexplained or state.rejected_in_a_row > 0 or flows)
     due = ended or hurry or age == config.pulses.backoff_ticks
-    if estimate is None or not (due or stray):
+    if estimate is None or not (due or flows):
         return health, state
-    if stray:
-        kicks_radps = _stray_kicks(health, rotate(estimate.q_body_from_eci, b_eci_t), config)
+    if flows:
+        kicks_radps = stray.kicks_radps(_stray_am2(health, config), estimate, b_eci_t, config.mekf)
         begins = health.strange_ticks == 1
-        estimate = coil_effects.trace_stray(estimate, kicks_radps, config.pulses.tick_s, begins)
+        estimate = stray.trace(estimate, health.conducts, kicks_radps, config.mekf.tick_s, begins)
     if due:
         health, estimate = _isolate(health, estimate, view.fired.coil if ended else None, sure, config)
     if ended and (view.driven_coil, view.driven_level) == view.fired:
-        b_body_t = rotate(estimate.q_body_from_eci, b_eci_t)
-        kick_radps = transform(
-            config.mekf.rotor.inertia_inverse, pulses.impulse(view.fired, b_body_t, config.pulses)
-        )
+        impulse_nms = pulses.impulse(view.fired, rotate(estimate.q_body_from_eci, b_eci_t), config.pulses)
+        kick_radps = transform(config.mekf.rotor.inertia_inverse, impulse_nms)
         estimate = coil_effects.trace_pulse(estimate, view.fired.coil, kick_radps, config.pulses.pulse_s)
     return health, state._replace(estimate=estimate)
 
 
 EARLY_TICKS = 5
 """So often while in doubt; else when the next pulse is due: a correction ends what a pulse can still show."""
-
-
-def _stray_kicks(health: CoilHealth, b_body_t: Vec3, config: CoilHealthConfig) -> Mat3:
-    """What the stray current would do to the rate in a tick, by coil, rad/s."""
-    m_am2 = _stray_am2(health, config)
-    first, second, third = (
-        transform(
-            config.mekf.rotor.inertia_inverse, scale(config.pulses.tick_s * m_am2, cross(axis, b_body_t))
-        )
-        for axis in AXES
-    )
-    return first, second, third
 
 
 def _isolate(
@@ -210,29 +198,41 @@ def _isolate(
 
     A pulse of the coil ``ended`` takes the place of its oldest one, whose evidence is kept.
     """
-    weak = explanations.weak_by_gain(estimate, config.mekf, config.weak_part, config.threshold)
+    gain_nats = explanations.by_gain(estimate, config.mekf, config.weak)
+    weak = explanations.weak_by_gain(estimate, gain_nats, config.weak)
     estimate, solution = coil_effects.solve(estimate, config.mekf)
     if solution is not None:
         earlier = health.pulse_nats
-        weak = explanations.weak_by_pulses(solution, earlier, config.weak_part, config.threshold) or weak
-        if ended is not None and sure:
-            oldest = explanations.of_oldest(solution, ended, config.weak_part, config.threshold)
-            nats = weigh(earlier[ended], oldest, config.threshold)
+        weak = explanations.weak_by_pulses(solution, earlier, config.weak) or weak
+        if ended is not None:
+            oldest = explanations.of_oldest(solution, ended, config.weak)
+            nats = weigh(earlier[ended], oldest, config.weak.threshold)
             health = health._replace(pulse_nats=_with(earlier, ended, nats))
-    if weak is not None and sure and _another_is_sound(health, weak[0]):
-        health = _with_fault(health, weak[0], coil_fault(weak[1], config.weak_part))
+    if weak is not None and sure and _others_are_sound(health, weak[0], gain_nats):
+        health = _with_fault(health, weak[0], coil_fault(weak[1], config.weak.weak_part))
     if solution is None or not unattributed_torque(health):
         return health, estimate
-    conducting = explanations.conducting(solution)
-    if conducting is None:
+    return _attribute(health, estimate, solution, config)
+
+
+def _attribute(
+    health: CoilHealth, estimate: Estimate, solution: Solution, config: CoilHealthConfig
+) -> tuple[CoilHealth, Estimate]:
+    """With the coil isolated in which a stray current certainly flows, or with what is known of it."""
+    coil = stray.conducting(solution)
+    if coil is not None:
+        return _with_fault(health, coil, CoilFault.STUCK), stray.settle(estimate, coil, config.mekf)
+    followed = stray.follow(estimate, solution, config.mekf)
+    if followed is None:
         return health, estimate
-    health = _with_fault(health, conducting, CoilFault.STUCK)
-    return health, coil_effects.settle_stray(estimate, conducting, config.mekf)
+    estimate, conducts = followed
+    return health._replace(conducts=conducts), estimate
 
 
-def _another_is_sound(health: CoilHealth, coil: int) -> bool:
-    """Whether a coil is left: that all three fail is less likely than that the filter is wrong."""
-    return any(not fault for other, fault in enumerate(health.faults) if other != coil)
+def _others_are_sound(health: CoilHealth, coil: int, gain_nats: list[float]) -> bool:
+    """Whether another is left, and none seems weak too: a wrong inertia makes all of them seem so."""
+    left = [other for other, fault in enumerate(health.faults) if other != coil and not fault]
+    return bool(left) and all(gain_nats[other] <= 0.0 for other in left)
 
 
 def _with_fault(health: CoilHealth, coil: int, kind: int) -> CoilHealth:

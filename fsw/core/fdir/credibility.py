@@ -16,6 +16,10 @@ OF_SENSORS = frozenset({"mag_bias_t", "mag_turn_rad", "mag_scale", "sun_turn_rad
 """Parameters that say how a sensor measures; the others say how the satellite moves."""
 
 
+OF_COILS = "coil_error"
+"""Says nothing against the estimate: errors beyond the bounds mean that a coil is weak, and it is named."""
+
+
 class CredibilityConfig(NamedTuple):
     """Place, least and largest credible value of each number that is estimated, among the ``Parameters``.
 
@@ -32,9 +36,11 @@ def credibility_config(mekf: MekfConfig) -> CredibilityConfig:
     of_sensors, of_all = [], []
     for number, place in component_places(mekf.layout).items():
         width = SIGMAS * sqrt(variances[place])
+        name = NAMES[COMPONENTS[number][0]]
         limits = (number, means[number] - width, means[number] + width)
-        of_all.append(limits)
-        if NAMES[COMPONENTS[number][0]] in OF_SENSORS:
+        if name != OF_COILS:
+            of_all.append(limits)
+        if name in OF_SENSORS:
             of_sensors.append(limits)
     return CredibilityConfig(tuple(of_sensors), tuple(of_all))
 

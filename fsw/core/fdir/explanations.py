@@ -4,7 +4,7 @@ Every explanation is weighed by its likelihood, and accepted only if what it lea
 one is less likely by the threshold of the evidence.
 """
 
-from math import inf
+from math import inf, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +13,7 @@ from fsw.core.algebra.vector import Vec3
 from fsw.core.estimation.kalman import Matrix
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
+from fsw.core.fdir.credibility import SIGMAS
 
 MODEL_ERROR = 0.05
 """Relative uncertainty of a coil's effect that no measurement takes away."""
@@ -20,14 +21,54 @@ CERTAIN = 4.0
 """A deviation of so many standard deviations is none of noise."""
 PULSES = 3
 """Of each coil its latest pulses are solved for, so many."""
+NONE, ALL = -1, -2
 STRAY = 3
 """STRAY + j is the number, as a cause, of a stray current in coil j; j itself that of a pulse."""
 
 
+class WeakTest(NamedTuple):
+    """The question that decides about a coil: is it weak, or sound?
+
+    ``weak_part`` of the nominal current or effect is the most that is weak, ``sound_part`` the least that the
+    bound of the coils' gains allows; evidence of ``threshold``, nats, isolates a coil.
+    """
+
+    weak_part: float
+    sound_part: float
+    threshold: float
+
+    def nats(self, part: float, variance: float) -> float:
+        """What a measured part weighs against the coil: the likeliest weak against the likeliest sound one.
+
+        (sound - part)^2 / 2 sigma^2 below what is sound, less (part - weak)^2 / 2 sigma^2 above what is weak.
+        """
+        lacks, exceeds = max(0.0, self.sound_part - part), max(0.0, part - self.weak_part)
+        return (lacks**2 - exceeds**2) / (2.0 * variance)
+
+
+def weak_test(weak_part: float, threshold: float, mekf: MekfConfig) -> WeakTest:
+    """The test by the filter's prior of the gains: a sound coil lacks less than is credible of it.
+
+    Args:
+        weak_part: the most that is weak.
+        threshold: of the evidence.
+        mekf: the filter.
+    """
+    place = mekf.layout.coils
+    variance = 0.0 if place is None else float(mekf.initial_covariance[place, place].diagonal()[::4].max())
+    deviation = SIGMAS * sqrt(variance + MODEL_ERROR**2)
+    return WeakTest(weak_part, max(weak_part, 1.0 - deviation), threshold)
+
+
 class Solution(NamedTuple):
-    """What each cause did: its deviation e from what was assumed, and their covariance (k, k)."""
+    """What each cause did.
+
+    ``part``: of its nominal effect, ``deviation``: its part less what the filter assumed, (k), and their
+    covariance, (k, k).
+    """
 
     causes: tuple[int, ...]
+    part: Matrix
     deviation: Matrix
     covariance: Matrix
 
@@ -40,7 +81,8 @@ def indices_of(cause: int, causes: tuple[int, ...]) -> list[int]:
 class Explanation(NamedTuple):
     """What may be wrong: a coil whose latest pulses all had the same part of their effect.
 
-    ``coil`` is -1 where nothing is; ``pulses`` is their number, and ``distance`` the square of what is left,
+    ``coil`` is ``NONE`` where nothing is, and ``ALL`` where every pulse of any coil had that part, as with
+    another inertia; ``pulses`` is their number, and ``distance`` the square of what is left,
     by the covariance: minus twice the log-likelihood.
     """
 
@@ -62,100 +104,85 @@ def of_pulses(solution: Solution) -> list[Explanation]:
     effect; those of the others are sound.
     """
     pulses = [index for index, cause in enumerate(solution.causes) if cause < STRAY]
-    deviation = solution.deviation[pulses]
-    weights = np.linalg.inv(
-        solution.covariance[np.ix_(pulses, pulses)] + MODEL_ERROR**2 * np.eye(len(pulses))
-    )
+    if not pulses:
+        return [Explanation(NONE, 0, 1.0, 0.0)]
+    deviation, measured = solution.deviation[pulses], solution.part[pulses]
+    noise = solution.covariance[np.ix_(pulses, pulses)] + MODEL_ERROR**2 * np.eye(len(pulses))
+    weights = np.asarray(np.linalg.inv(noise), float)
     nothing = float(deviation @ weights @ deviation)
-    found = [Explanation(-1, 0, 1.0, nothing)]
     causes = tuple(solution.causes[index] for index in pulses)
+    common = _common_part(np.ones(len(pulses)), measured, weights)
+    found = [Explanation(NONE, 0, 1.0, nothing), Explanation(ALL, len(pulses), *common)]
     for coil in sorted(set(causes)):
-        latest = np.zeros(len(pulses))
+        latest, off = np.zeros(len(pulses)), deviation.copy()
         for count, index in enumerate(indices_of(coil, causes), start=1):
-            latest[index] = 1.0
-            weight, explained = float(latest @ weights @ latest), float(latest @ weights @ deviation)
-            part, distance = 1.0 + explained / weight, nothing - explained**2 / weight
-            found.append(Explanation(coil, count, part, distance))
+            latest[index], off[index] = 1.0, measured[index]
+            found.append(Explanation(coil, count, *_common_part(latest, off, weights)))
     return sorted(found, key=lambda explanation: explanation.distance)
 
 
-def against(solution: Solution, weak_part: float, threshold: float) -> list[float]:
-    """What each cause by itself weighs against its coil, nats, at most half of the threshold.
-
-    The log-likelihood ratio of the part that was measured and of the least that is sound,
-    (weak_part - part)^2 / 2 sigma^2, negative where the part is more.
-    """
-    lacks = weak_part - 1.0 - solution.deviation
-    nats = 0.5 * np.sign(lacks) * lacks**2 / (solution.covariance.diagonal() + MODEL_ERROR**2)
-    return [max(-0.5 * threshold, min(0.5 * threshold, float(one))) for one in nats]
+def _common_part(alike: Matrix, off: Matrix, weights: Matrix) -> tuple[float, float]:
+    """The likeliest part p of the pulses that are ``alike``, and the square of what ``off`` - p leaves."""
+    weight, explained = float(alike @ weights @ alike), float(alike @ weights @ off)
+    return explained / weight, float(off @ weights @ off) - explained**2 / weight
 
 
-def of_oldest(solution: Solution, coil: int, weak_part: float, threshold: float) -> float:
+def against(solution: Solution, test: WeakTest) -> list[float]:
+    """What each cause by itself weighs against its coil, nats, at most half of the threshold."""
+    most = 0.5 * test.threshold
+    variances = solution.covariance.diagonal() + MODEL_ERROR**2
+    each = zip(solution.part.tolist(), variances.tolist(), strict=True)
+    return [max(-most, min(most, test.nats(part, variance))) for part, variance in each]
+
+
+def of_oldest(solution: Solution, coil: int, test: WeakTest) -> float:
     """What the oldest pulse of a coil weighs against it, if another takes its place; else nothing."""
     own = indices_of(coil, solution.causes)
-    return against(solution, weak_part, threshold)[own[-1]] if len(own) == PULSES else 0.0
+    return against(solution, test)[own[-1]] if len(own) == PULSES else 0.0
 
 
-def weak_by_pulses(
-    solution: Solution, earlier: Vec3, weak_part: float, threshold: float
-) -> tuple[int, float] | None:
-    """The coil, and its part, that certainly does less than ``weak_part``; None while it may be another.
+def weak_by_pulses(solution: Solution, earlier: Vec3, test: WeakTest) -> tuple[int, float] | None:
+    """The coil, and its part, that is certainly weak, not sound; None while it may be another.
 
     Args:
         solution: of the latest pulses.
         earlier: by coil, what those before weigh against it, nats.
-        weak_part: the most that is weak.
-        threshold: of the evidence; it has to exceed that of every other coil by as much.
+        test: whose threshold the evidence has to exceed, and that of every other coil by as much.
     """
-    likely = [one for one in of_pulses(solution) if one.fits and one.part < weak_part]
-    each = against(solution, weak_part, threshold)
+    found = of_pulses(solution)
+    alike = min([one.distance for one in found if one.coil == ALL], default=inf)
+    likely = [one for one in found if one.fits and one.part < test.weak_part and one.coil != ALL]
+    each = against(solution, test)
     for one in likely:
         own = indices_of(one.coil, solution.causes)
         nats = sum(each[index] for index in own[: one.pulses])
         if one.pulses == len(own):
             nats += earlier[one.coil]
         rivals = [other.distance for other in likely if other.coil != one.coil]
-        if nats >= threshold and min(rivals, default=inf) - one.distance >= 2.0 * threshold:
+        told = min(rivals, default=inf) - one.distance >= 2.0 * test.threshold
+        if nats >= test.threshold and told and alike - one.distance > CERTAIN**2:
             return one.coil, one.part
     return None
 
 
-def weak_by_gain(
-    estimate: Estimate, tuning: MekfConfig, weak_part: float, threshold: float
-) -> tuple[int, float] | None:
-    """The coil, and its part, whose gain as the filter estimates it is certainly below ``weak_part``.
+def weak_by_gain(estimate: Estimate, each: list[float], test: WeakTest) -> tuple[int, float] | None:
+    """The coil, and its part, whose gain as the filter estimates it is certainly that of a weak one.
 
     A coil that is weak from the start, or grows weak slowly, hides in the estimated errors of the coils.
+    ``each``: by coil what its gain weighs against it.
     """
-    place = tuning.layout.coils
-    if place is None:
-        return None
-    variances = estimate.covariance.diagonal()[place]
-    for coil in range(3):
+    for coil, nats in enumerate(each):
         part = 1.0 + estimate.parameters.coil_error[4 * coil]
-        if part < weak_part and (weak_part - part) ** 2 > 2.0 * threshold * variances[4 * coil]:
+        if part < test.weak_part and nats >= test.threshold:
             return coil, part
     return None
 
 
-def conducting(solution: Solution) -> int | None:
-    """The coil in which a current flows without a request; None while it may be another, or none.
-
-    Of the four explanations (e = 0, or 1 for one of the coils) the likeliest, if each other is less likely by
-    ``CERTAIN``, and it fits. No false alarm is at stake: it is certain that a current flows. The distance of
-    each is the square of its deviation from the solution, by the covariance, less the prior's share in it.
-    """
-    stray = [index for index, cause in enumerate(solution.causes) if cause >= STRAY]
-    if not stray:
-        return None
-    noise = solution.covariance[np.ix_(stray, stray)] + MODEL_ERROR**2 * np.eye(len(stray))
-    weights = np.linalg.inv(noise)
-    distances = []
-    for explanation in (*np.eye(len(stray)), np.zeros(len(stray))):
-        off = explanation - solution.deviation[stray]
-        distances.append(float(off @ weights @ off - explanation @ explanation))
-    first, second = sorted(distances)[:2]
-    likeliest = distances.index(first)
-    if likeliest == len(stray) or first > CERTAIN**2 or second - first < CERTAIN**2:
-        return None
-    return solution.causes[stray[likeliest]] - STRAY
+def by_gain(estimate: Estimate, tuning: MekfConfig, test: WeakTest) -> list[float]:
+    """By coil what its gain, as the filter estimates it, weighs against it, nats; 0 where it is exact."""
+    place = tuning.layout.coils
+    if place is None:
+        return [0.0, 0.0, 0.0]
+    parts = [1.0 + error for error in estimate.parameters.coil_error[::4]]
+    variances = estimate.covariance.diagonal()[place][::4].tolist()
+    return [test.nats(part, variance) for part, variance in zip(parts, variances, strict=True)]

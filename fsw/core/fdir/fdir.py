@@ -10,8 +10,9 @@ from fsw.core.estimation.estimator import EstimatorState, Used, restart, untrace
 from fsw.core.events import Event, Happening
 from fsw.core.fdir import coils, pair, plausibility, sensors
 from fsw.core.fdir.coils import CoilHealth, CoilHealthConfig
+from fsw.core.fdir.evidence import EvidenceWeights
 from fsw.core.fdir.faults import Sensor
-from fsw.core.fdir.pair import Standing
+from fsw.core.fdir.pair import Pair, Standing
 from fsw.core.fdir.plausibility import Findings, PlausibilityConfig
 from fsw.core.fdir.sensors import SensorConfig, SensorHealth
 from fsw.core.gate.readings import Readings
@@ -127,9 +128,17 @@ def judge(
         found = found._replace(pulse_nats=ZERO)  # a faulty sensor may have shown it
     if judged.pair.ended:
         estimator, attitude = restart(estimator), UNKNOWN
-    if not pair.valid(judged.pair) or coils.unattributed_torque(found):
+    torque_untold = coils.unattributed_torque(found) or _pulses_untold(found, judged.pair, weights)
+    if torque_untold or not pair.valid(judged.pair):
         attitude = attitude._replace(valid=False)
     return Health(judged, found), estimator, attitude
+
+
+def _pulses_untold(found: CoilHealth, both: Pair, weights: EvidenceWeights) -> bool:
+    """Whether a coil may be weak, by half of what isolates it, or else the sensor that shows it is wrong."""
+    each = zip(found.pulse_nats, found.faults, strict=True)
+    suspected = any(nats >= 0.5 * weights.threshold and not fault for nats, fault in each)
+    return suspected and not pair.proven(both, weights)
 
 
 def plant_restarted(health: Health) -> Health:

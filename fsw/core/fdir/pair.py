@@ -43,8 +43,9 @@ class Pair(NamedTuple):
     """The standing of both, and the evidence, nats.
 
     ``proof``: that the estimate is right about both; ``doubt``: that one is wrong; ``accord``: that both are
-    right, while they are disputed, or one is isolated and no estimate can tell. ``ended``: the filter is to
-    end in this tick; ``blind_ticks``: for so long it has taken no sample; ``owed``: what an
+    right, while they are disputed, or one is isolated and no estimate can tell; ``strange``: that the
+    estimate has settled on a satellite that is none of the table, and not this one either. ``ended``: the
+    filter is to end in this tick; ``blind_ticks``: for so long it has taken no sample; ``owed``: what an
     estimate that lagged, or was blind, has still to show.
     """
 
@@ -55,13 +56,15 @@ class Pair(NamedTuple):
     ended: bool = False
     blind_ticks: int = 0
     owed: float = 0.0
+    strange: float = 0.0
 
 
 class Observed(NamedTuple):
     """What one tick shows of both: the samples, what the filter took, and what it refused of those in use.
 
     ``isolated``: one of them is, ``untold``: and no estimate is certain enough to tell whether it still is
-    faulty. ``sound``: the estimate, if there is one, is credible.
+    faulty; ``shown``: what estimates have shown in its favour so far, nats. ``sound``: the estimate, if there
+    is one, is credible.
     """
 
     findings: Findings
@@ -71,6 +74,7 @@ class Observed(NamedTuple):
     refused_sun: bool
     isolated: bool
     untold: bool
+    shown: float
     sound: bool
 
     @property
@@ -110,15 +114,19 @@ def judge(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: Cre
     proof = _proof(pair, seen, weights)
     if doubt >= threshold:
         return Pair(Standing.DISPUTED, ended=True)
-    if accord >= threshold:
-        return Pair(Standing.ON_TRIAL, accord=accord, ended=True)
+    if accord + seen.shown >= threshold:
+        return Pair(Standing.ON_TRIAL, accord=threshold, ended=True)
     if standing is not Standing.DISPUTED and proof >= threshold:
         standing = Standing.TRUSTED
     elif standing is Standing.TRUSTED and (seen.estimate is None or seen.begun):
         standing = Standing.NEW
     blind_ticks = 0 if seen.used.field or seen.used.sun else pair.blind_ticks + 1
-    owed = _owed(pair.owed, blind_ticks, seen, weights)
-    return Pair(standing, proof, doubt, accord, False, blind_ticks, owed)
+    owed = _owed(pair.owed, proof, blind_ticks, seen, weights)
+    lost = owed > 0.0 and seen.used.field and seen.used.sun and not seen.sound
+    strange = weigh(pair.strange, weights.agrees if lost else -weights.agrees, threshold)
+    if strange >= threshold:
+        return Pair(ended=True)
+    return Pair(standing, proof, doubt, accord, False, blind_ticks, owed, strange)
 
 
 def _misfit(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: CredibilityConfig) -> float:
@@ -161,18 +169,20 @@ def _proof(pair: Pair, seen: Observed, weights: EvidenceWeights) -> float:
     return weigh(pair.proof, by / slow, weights.threshold)
 
 
-def _owed(owed: float, blind_ticks: int, seen: Observed, weights: EvidenceWeights) -> float:
+def _owed(owed: float, proof: float, blind_ticks: int, seen: Observed, weights: EvidenceWeights) -> float:
     """What both sensors have to prove anew.
 
-    After a time without any, in which pulses may have failed; and where innovations have a mean that is no
-    chance, and so contradict the covariance.
+    After a time without any, in which pulses may have failed; where innovations have a mean that is no
+    chance, and so contradict the covariance; and where one alone has long been joined with a satellite that
+    the table does not allow.
     """
     if seen.estimate is None:
         return 0.0
-    lags = mean_misfit(seen.estimate.lag, weights) >= weights.threshold
-    if lags or blind_ticks > weights.blind_ticks:
-        return weights.threshold
     both = seen.used.field and seen.used.sun
+    lags = mean_misfit(seen.estimate.lag, weights) >= weights.threshold
+    led_by_model = not (both or seen.sound or proof)
+    if lags or led_by_model or blind_ticks > weights.blind_ticks:
+        return weights.threshold
     return max(0.0, owed - weights.fits) if both else owed
 
 

@@ -2,7 +2,8 @@
 
 The evidence of a tick against one sensor is what a check finds, or that a proven filter refuses it while it
 takes the other. What it refuses of both, or of the Sun sensor while there is no field, does not show which
-is wrong: the sensors, or the estimate.
+is wrong: the sensors, or the estimate; nor do checks that speak against both at once, as after a loss on the
+bus or with a wrong clock.
 
 An isolated sensor is readmitted if it is what the estimate predicts, if that is certain enough to tell; or if
 both sensors have agreed for long, in which case the filter ends, since it did not agree.
@@ -57,7 +58,7 @@ class SensorHealth(NamedTuple):
 
     def floats(self) -> tuple[float, ...]:
         """The evidence, and the last samples."""
-        return (self.field.nats, self.sun.nats, *self.pair[1:4], self.pair.owed, *self.memory.floats())
+        return (self.field.nats, self.sun.nats, *self.pair[1:4], *self.pair[6:8], *self.memory.floats())
 
 
 class SensorConfig(NamedTuple):
@@ -102,6 +103,7 @@ def judge(
         refused_sun=_refused(findings.sun, findings.sun_cause or sun.fault, used.sun, estimate),
         isolated=bool(field.fault or sun.fault),
         untold=bool((field.fault and b_fits is None) or (sun.fault and s_fits is None)),
+        shown=min([watch.nats for watch in (field, sun) if watch.fault], default=0.0),
         sound=estimate is None or credible(estimate, config.credibility),
     )
     both = pair.judge(health.pair, seen, weights, config.credibility)
@@ -112,7 +114,8 @@ def judge(
     alone = trusted and findings.sun is None  # dynamics do not jump
     b_refused = seen.refused_field and (alone or (sure and used.sun))
     s_refused = seen.refused_sun and sure and used.field
-    unclear = seen.refused and not (b_refused or s_refused)
+    common = findings.field_cause and findings.sun_cause and not seen.isolated
+    unclear = common or (seen.refused and not (b_refused or s_refused))
     if field.fault:
         field = _readmitted(field, b_fits, weights)
     else:
@@ -134,10 +137,10 @@ def _refused(sample: Vec3 | None, fault: int, taken: bool, estimate: Estimate | 
 def _accused(watch: Watch, cause: int, unclear: bool, weights: EvidenceWeights) -> Watch:
     """A sensor in use after a tick in which this speaks against it, or nothing; or it is unclear what."""
     by = -weights.against
-    if cause:
-        by = LOST * weights.against if cause == SensorFault.SILENT else weights.against
-    elif unclear:
+    if unclear:
         by = 0.0
+    elif cause:
+        by = LOST * weights.against if cause == SensorFault.SILENT else weights.against
     nats = weigh(watch.nats, by, weights.threshold)
     return Watch(cause) if nats >= weights.threshold else Watch(0, nats)
 

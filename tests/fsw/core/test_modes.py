@@ -10,7 +10,7 @@ from fsw.core.modes import TABLE, ModeConditions, ModeConfig, ModeState, advance
 from fsw.table.sections import ModesTable
 from fsw.wire.messages import Mode
 
-DWELL_TICKS = (30, 0, 60, 0, 61, 300, 600, 0, 62, 301, 601)
+DWELL_TICKS = (30, 0, 302, 60, 0, 61, 300, 600, 0, 62, 301, 601)
 """Different for every row that has one, so that no row can stand in for another."""
 CONFIG = ModeConfig(
     dwell_ticks=DWELL_TICKS,
@@ -150,7 +150,7 @@ class TestTrips:
             attitude = Attitude((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0, 0.0, True)
             modes = set()
             for tick in range(START * trip + 1, START * trip + 900):
-                state = advance(state, judge(attitude, 0.0, False, state, CONFIG), tick, CONFIG)
+                state = advance(state, judge(attitude, 0.0, False, True, state, CONFIG), tick, CONFIG)
                 modes.add(state.mode)
             assert (Mode.DETUMBLE in modes) is (trip < 3)
         assert modes == {Mode.SAFE}
@@ -162,8 +162,8 @@ def known(angle_deg=0.0, rate_degps=0.0, axis=(0.48, 0.64, 0.6)):
     return Attitude((cos(half), *(sin(half) * c for c in axis)), omega, 0.01, 1e-4, True)
 
 
-def judged(attitude, tripped=False, config=CONFIG, spin_radps=0.0, **state):
-    situation = judge(attitude, spin_radps, tripped, ModeState(**state), config)
+def judged(attitude, tripped=False, config=CONFIG, spin_radps=0.0, has_field=True, **state):
+    situation = judge(attitude, spin_radps, tripped, has_field, ModeState(**state), config)
     return {name for name, holds in situation._asdict().items() if holds}
 
 
@@ -232,6 +232,11 @@ class TestConditions:
             for angle in (0.0, 90.0):
                 assert judged(known(angle, rate)._replace(valid=False)) == {"clear", "lost_attitude"}
 
+    def test_without_a_field_and_an_attitude_nothing_can_act(self):
+        lost = known()._replace(valid=False)
+        assert judged(lost, has_field=False) == {"lost_attitude", "blind"}
+        assert judged(known(30.0, 0.45), has_field=False) == {"clear"}
+
     def test_tripped_and_clear(self):
         assert judged(known(30.0, 0.45), tripped=False) == {"clear"}
         assert judged(known(30.0, 0.45), tripped=True) == {"tripped"}
@@ -244,7 +249,7 @@ class TestHysteresis:
     def test_a_rate_that_wavers_about_one_threshold_changes_nothing(self, mode):
         for threshold_degps in (0.3, 0.6):
             wavering = [
-                judge(known(30.0, threshold_degps + 0.01 * sin(n)), 0.0, False, ModeState(), CONFIG)
+                judge(known(30.0, threshold_degps + 0.01 * sin(n)), 0.0, False, True, ModeState(), CONFIG)
                 for n in range(3000)
             ]
             assert set(fly(ModeState(mode), wavering)) == {mode}
@@ -253,19 +258,19 @@ class TestHysteresis:
     def test_an_angle_that_wavers_about_one_threshold_changes_nothing(self, mode):
         for threshold_deg in (20.0, 40.0):
             wavering = [
-                judge(known(threshold_deg + sin(n), 0.1), 0.0, False, ModeState(), CONFIG)
+                judge(known(threshold_deg + sin(n), 0.1), 0.0, False, True, ModeState(), CONFIG)
                 for n in range(3000)
             ]
             assert set(fly(ModeState(mode), wavering)) == {mode}
 
     def test_between_the_thresholds_every_mode_stays(self):
-        between = judge(known(30.0, 0.45), 0.0, False, ModeState(), CONFIG)
+        between = judge(known(30.0, 0.45), 0.0, False, True, ModeState(), CONFIG)
         for mode in (Mode.DETUMBLE, Mode.ACQUIRE, Mode.POINT):
             assert set(fly(ModeState(mode), [between] * 3000)) == {mode}
 
     def test_a_slow_swing_through_both_thresholds_goes_there_and_back_once(self):
         swing = [
-            judge(known(30.0 - 30.0 * cos(pi * n / 5000.0), 0.1), 0.0, False, ModeState(), CONFIG)
+            judge(known(30.0 - 30.0 * cos(pi * n / 5000.0), 0.1), 0.0, False, True, ModeState(), CONFIG)
             for n in range(10000)
         ]
         modes = fly(ModeState(Mode.ACQUIRE), swing)

@@ -1,5 +1,7 @@
 """Which coil a solution isolates: by how much, how surely, and never one of two that look alike."""
 
+from math import hypot
+
 import numpy as np
 import pytest
 
@@ -9,25 +11,54 @@ from fsw.core.estimation.parameters import Prior
 from fsw.core.fdir.explanations import (
     STRAY,
     Solution,
+    WeakTest,
     against,
-    conducting,
+    by_gain,
     of_oldest,
     of_pulses,
     weak_by_gain,
     weak_by_pulses,
+    weak_test,
 )
 
-WEAK_PART, THRESHOLD = 0.7, 14.0
+WEAK = WeakTest(0.7, 0.8, 14.0)
 
 
 def solution(causes, deviation, sigma, correlation=0.0):
     sigma = np.array(sigma)
     shape = np.eye(len(sigma)) + correlation * (1.0 - np.eye(len(sigma)))
-    return Solution(tuple(causes), np.array(deviation), shape * np.outer(sigma, sigma))
+    deviation = np.array(deviation)
+    return Solution(tuple(causes), 1.0 + deviation, deviation, shape * np.outer(sigma, sigma))
 
 
 def weak(*arguments, earlier=(0.0, 0.0, 0.0)):
-    return weak_by_pulses(solution(*arguments), earlier, WEAK_PART, THRESHOLD)
+    return weak_by_pulses(solution(*arguments), earlier, WEAK)
+
+
+class TestWeakTest:
+    """Weak is at most 0.7 of the effect, sound at least 0.8."""
+
+    @pytest.mark.parametrize(
+        ("part", "nats"),
+        [(0.3, 12.5), (0.7, 0.5), (0.75, 0.0), (0.8, -0.5), (1.1, -8.0), (-1.0, 162.0)],
+    )
+    def test_a_part_weighs_the_likeliest_weak_one_against_the_likeliest_sound_one(self, part, nats):
+        assert WEAK.nats(part, 0.1**2) == pytest.approx(nats)
+        assert WEAK.nats(part, 0.2**2) == pytest.approx(0.25 * nats)
+
+    def test_sound_is_what_is_credible_of_a_gain_and_never_less_than_weak(self):
+        inertia = ((1.0, 0.0, 0.0), (0.0, 1.5, 0.0), (0.0, 0.0, 2.0))
+        noise = {"magnetometer_sigma_t": 2e-7, "sun_sigma_rad": 0.01, "torque_noise_nm_rts": 1e-9}
+        start = {"attitude_sigma_rad": 0.1, "rate_sigma_radps": 0.01, "gate_nis": 16.0}
+
+        def least(*sigmas):
+            prior = {"coil_error": Prior(sigmas, (0.0,) * 9)} if sigmas else {}
+            return weak_test(0.7, 14.0, mekf_config(inertia, 1.0, prior, **noise, **start)).sound_part
+
+        assert least() == pytest.approx(0.8)
+        widest = 1.0 - 4.0 * hypot(0.03, 0.05)
+        assert least(0.01, 0.5, 0.5, 0.5, 0.03, 0.5, 0.5, 0.5, 0.02) == pytest.approx(widest)
+        assert least(*(0.2,) * 9) == 0.7
 
 
 @pytest.mark.parametrize("coil", [0, 1, 2])
@@ -74,20 +105,20 @@ class TestPulsesTracedNoLonger:
     UNSURE = ((1, 2, 1, 1), (-0.8, 0.02, -0.75, -0.7), (0.2, 0.05, 0.2, 0.2))
 
     def test_what_each_weighs_is_negative_for_a_sound_one_and_bounded(self):
-        found = solution((2, 0, 1), (-0.7, 0.1, -1.0), (0.12, 0.12, 0.01))
-        assert against(found, WEAK_PART, THRESHOLD) == [
+        found = solution((2, 0, 1), (-0.6, 0.1, -1.0), (0.12, 0.12, 0.01))
+        assert against(found, WEAK) == [
             pytest.approx(0.5 * 0.4**2 / (0.12**2 + 0.05**2)),
             pytest.approx(-0.5 * 0.4**2 / (0.12**2 + 0.05**2)),
-            0.5 * THRESHOLD,
+            0.5 * WEAK.threshold,
         ]
         surely_sound = solution((1,), (0.3,), (0.01,))
-        assert against(surely_sound, WEAK_PART, THRESHOLD) == [-0.5 * THRESHOLD]
+        assert against(surely_sound, WEAK) == [-0.5 * WEAK.threshold]
 
     def test_the_oldest_gives_its_place_once_so_many_are_traced(self):
         traced = solution(*self.UNSURE)
-        assert of_oldest(traced, 1, WEAK_PART, THRESHOLD) == pytest.approx(0.5 * 0.4**2 / (0.2**2 + 0.05**2))
-        assert of_oldest(traced, 2, WEAK_PART, THRESHOLD) == 0.0
-        assert of_oldest(traced, 0, WEAK_PART, THRESHOLD) == 0.0
+        assert of_oldest(traced, 1, WEAK) == pytest.approx(0.5 * 0.5**2 / (0.2**2 + 0.05**2))
+        assert of_oldest(traced, 2, WEAK) == 0.0
+        assert of_oldest(traced, 0, WEAK) == 0.0
 
     def test_they_count_with_those_that_are(self):
         assert weak(*self.UNSURE) is None
@@ -97,12 +128,20 @@ class TestPulsesTracedNoLonger:
     def test_not_against_a_coil_that_has_been_sound_since(self):
         """It failed within those that are traced, or not at all."""
         since = ((1, 1, 1), (-0.9, 0.02, 0.03), (0.1, 0.1, 0.1))
-        assert weak(*since, earlier=(0.0, THRESHOLD, 0.0)) is None
+        assert weak(*since, earlier=(0.0, WEAK.threshold, 0.0)) is None
 
 
 def test_nobody_is_accused_while_two_coils_cannot_be_told_apart():
     alike = ((0, 0, 1, 1), (-0.5, -0.5, -0.5, -0.5), (0.7, 0.7, 0.7, 0.7), -0.33)
     assert weak(*alike) is None
+
+
+def test_what_the_filter_knew_of_a_gain_counts_with_what_it_did_not():
+    """Two thirds of what the coil lacks are in the estimated gain already, the rest is deviation."""
+    deviation, covariance = np.array((-0.2, -0.25, 0.01)), np.diag((0.04, 0.05, 0.03)) ** 2
+    knowing = Solution((1, 1, 0), np.array((0.6, 0.6, 1.0)) + deviation, deviation, covariance)
+    assert weak_by_pulses(knowing, (0.0, 0.0, 0.0), WEAK) == (1, pytest.approx(0.375, abs=0.03))
+    assert weak((1, 1, 0), deviation, (0.04, 0.05, 0.03)) is None
 
 
 def test_sound_pulses_are_best_explained_by_nothing_and_that_fits():
@@ -114,6 +153,10 @@ def test_sound_pulses_are_best_explained_by_nothing_and_that_fits():
 
 def test_a_stray_current_without_effect_is_no_weak_coil():
     assert weak((STRAY, STRAY + 1, STRAY + 2), (-0.9, -0.9, -0.9), (0.03, 0.03, 0.03)) is None
+
+
+def accused(estimate, config):
+    return weak_by_gain(estimate, by_gain(estimate, config, WEAK), WEAK)
 
 
 class TestGain:
@@ -138,9 +181,9 @@ class TestGain:
 
     @pytest.mark.parametrize("coil", [0, 1, 2])
     def test_it_is_accused_once_its_gain_is_certain(self, estimated, coil):
-        assert weak_by_gain(*estimated(coil, -0.5, 0.03), WEAK_PART, THRESHOLD) == (coil, 0.5)
-        assert weak_by_gain(*estimated(coil, -0.5, 0.05), WEAK_PART, THRESHOLD) is None
-        assert weak_by_gain(*estimated(coil, -0.25, 0.001), WEAK_PART, THRESHOLD) is None
+        assert accused(*estimated(coil, -0.5, 0.03)) == (coil, 0.5)
+        assert accused(*estimated(coil, -0.5, 0.06)) is None
+        assert accused(*estimated(coil, -0.25, 0.001)) is None
 
     def test_without_such_a_parameter_there_is_no_evidence(self, estimated):
         estimate, config = estimated(1, -0.9, 0.03)
@@ -155,40 +198,4 @@ class TestGain:
             torque_noise_nm_rts=1e-9,
             gate_nis=16.0,
         )
-        assert weak_by_gain(estimate, plain, WEAK_PART, THRESHOLD) is None
-
-
-def stray(deviation, sigma, correlation=0.0):
-    return conducting(solution((STRAY, STRAY + 1, STRAY + 2), deviation, sigma, correlation))
-
-
-@pytest.mark.parametrize("coil", [0, 1, 2])
-def test_the_coil_whose_effect_is_there_conducts(coil):
-    assert stray(np.eye(3)[coil] + 0.03, (0.05, 0.06, 0.07)) == coil
-
-
-@pytest.mark.parametrize(
-    ("deviation", "sigma", "correlation"),
-    [
-        ((0.0, 0.0, 0.0), (0.05, 0.06, 0.07), 0.0),
-        ((0.5, 0.5, 0.0), (0.05, 0.06, 0.07), 0.0),
-        ((0.0, -1.0, 0.0), (0.05, 0.06, 0.07), 0.0),
-        ((0.02, 0.8, 0.0), (1.0, 0.3, 1.0), 0.0),
-        ((0.5, 0.5, 0.01), (0.7, 0.7, 0.05), -0.99),
-    ],
-    ids=["none", "two", "the other way", "unsure", "one of two"],
-)
-def test_it_names_nobody(deviation, sigma, correlation):
-    sure = stray((0.0, 1.0, 0.0), (0.05, 0.06, 0.07))
-    assert sure == 1
-    assert stray(deviation, sigma, correlation) is None
-
-
-def test_one_is_named_though_its_own_effect_cannot_be_seen_if_it_is_no_other():
-    """Along the field a coil turns nothing; its deviation stays at the prior, those of the others are 0."""
-    assert stray((0.0, 1.0, 0.01), (0.04, 0.04, 1.0)) == 1
-    assert stray((0.0, 0.0, 0.0), (0.04, 0.04, 1.0)) is None, "nor is it told from no current at all"
-
-
-def test_pulses_before_it_do_not_name_a_coil():
-    assert conducting(solution((0, 1), (1.0, 0.0), (0.03, 0.03))) is None
+        assert accused(estimate, plain) is None

@@ -30,7 +30,7 @@ TURNED = ESTIMATE._replace(parameters=ESTIMATE.parameters._replace(mag_bias_t=(2
 B, S = (2e-5, 1e-5, -3e-5), (1.0, 0.0, 0.0)
 BOTH = Findings(0, 0, B, S, True, False, Memory())
 ECLIPSE = BOTH._replace(sun=None, pair=False)
-TAKEN = Observed(BOTH, Used(True, True, False), ESTIMATE, False, False, False, False, True)
+TAKEN = Observed(BOTH, Used(True, True, False), ESTIMATE, False, False, False, False, 0.0, True)
 """A tick in which all is well."""
 WITHOUT = TAKEN._replace(estimate=None, used=Used(False, False, False))
 REFUSED = TAKEN._replace(used=Used(True, False, False), refused_sun=True)
@@ -194,6 +194,49 @@ class TestDoubt:
         assert after(TRUSTED, alone._replace(estimate=TURNED), 100).standing is Standing.TRUSTED
         large = ESTIMATE._replace(nis=15.0, numbers=3)
         assert after(TRUSTED, alone._replace(estimate=large), 35).standing is Standing.DISPUTED
+
+
+class TestLedByTheModel:
+    """One sensor and a satellite that the table does not allow: what it predicts of the rest is not valid."""
+
+    ALONE = TAKEN._replace(used=Used(True, False, False), sound=False)
+
+    def test_an_estimate_is_valid_while_what_both_have_proven_lasts(self):
+        assert valid(after(TRUSTED, self.ALONE, 120))
+        assert not valid(after(TRUSTED, self.ALONE, 140))
+
+    def test_with_one_that_the_table_allows_it_stays_valid(self):
+        assert valid(after(TRUSTED, self.ALONE._replace(sound=True), 1000))
+
+    def test_both_have_to_bear_it_out_anew(self):
+        owing = after(TRUSTED, self.ALONE, 140)
+        assert not valid(after(owing, TAKEN, 120))
+        assert valid(after(owing, TAKEN, 140))
+
+
+class TestStrange:
+    """An estimate that has settled on a satellite that cannot be begins anew, if it does not fit either."""
+
+    LOST = TAKEN._replace(sound=False, estimate=ESTIMATE._replace(lag=(0.0, 1.1, 0.0, 0.0, 0.0, 0.0)))
+
+    def test_it_ends_after_long_and_nobody_is_blamed(self):
+        pair = after(TRUSTED, self.LOST, 510)
+        assert not pair.ended
+        pair = after(pair, self.LOST, 20)
+        assert pair.standing is Standing.NEW
+        assert pair.strange < 0.1 * WEIGHTS.threshold
+
+    @pytest.mark.parametrize(
+        "seen",
+        [
+            LOST._replace(sound=True),
+            LOST._replace(estimate=ESTIMATE),
+            LOST._replace(used=Used(True, False, False)),
+        ],
+        ids=["of the table", "that fits", "of one sensor alone"],
+    )
+    def test_one_goes_on(self, seen):
+        assert after(TRUSTED, seen, 600).strange == 0.0
 
 
 class TestAccord:

@@ -87,6 +87,21 @@ class TestRefused:
         assert faults(health) == (0, 0)
 
 
+@pytest.mark.parametrize(
+    "findings",
+    [
+        SEEN._replace(field_cause=SensorFault.SILENT, sun_cause=SensorFault.SILENT, field=None, sun=None),
+        SEEN._replace(field_cause=SensorFault.STRENGTH, sun_cause=SensorFault.UNLIT),
+    ],
+    ids=["the bus loses both", "the clock is wrong"],
+)
+def test_what_speaks_against_both_at_once_speaks_against_neither(findings):
+    seen = findings._replace(pair=False)
+    assert faults(after(TRUSTED, NEITHER, 300, seen)) == (0, 0)
+    dead = TRUSTED._replace(sun=Watch(SensorFault.SILENT))
+    assert faults(after(dead, NEITHER, 300, seen))[0] == findings.field_cause, "of one that is left it does"
+
+
 def test_a_check_isolates_though_no_filter_is_proven():
     strong = SEEN._replace(field_cause=SensorFault.STRENGTH, pair=False)
     assert faults(after(SensorHealth(), SUN, 29, strong)) == (SensorFault.STRENGTH, 0)
@@ -120,10 +135,17 @@ class TestReadmitted:
             )
 
     def test_not_by_an_estimate_that_is_less_certain_than_the_sensor(self):
-        vague = ESTIMATE._replace(covariance=100.0 * np.asarray(ESTIMATE.covariance))
+        vague = ESTIMATE._replace(covariance=1000.0 * np.asarray(ESTIMATE.covariance))
         fly = partial(after, self.SUN_OUT, FIELD, estimate=vague)
         assert fly(ticks=400).sun.nats == 0.0
         assert fly(ticks=400).pair.accord > 0.0
+
+    def test_what_an_estimate_has_shown_counts_when_it_can_tell_no_longer(self):
+        vague = ESTIMATE._replace(covariance=1000.0 * np.asarray(ESTIMATE.covariance))
+        half = after(self.SUN_OUT, FIELD, 64)
+        assert faults(after(self.SUN_OUT, FIELD, 300, estimate=vague)) == (0, SensorFault.REFUSED)
+        back = after(half, FIELD, 300, estimate=vague)
+        assert faults(back) == (0, 0)
 
     def test_then_by_agreeing_with_the_other_for_longer_and_the_filter_is_tried_anew(self):
         lost = after(self.SUN_OUT, NEITHER, 510, estimate=None)

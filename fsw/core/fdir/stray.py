@@ -1,0 +1,147 @@
+"""A current without a request: in which coil it flows, by what it does to the rate.
+
+The supply, which all coils share, shows the current and not the coil. So for each of the three the effect u_j
+of the current, if it flowed there, is traced beside those of the pulses (``coil_effects``): it grows tick by
+tick, and the part p_j is 1 for the coil in which it flows and 0 for the others. What is known of the parts
+the filter takes into account at once, long before the coil is certain; traced is what it lacks.
+"""
+
+import numpy as np
+
+from fsw.core.actuation.pulses import AXES
+from fsw.core.algebra.quaternion import rotate
+from fsw.core.algebra.vector import Mat3, Vec3, cross, scale, transform
+from fsw.core.estimation import mekf
+from fsw.core.estimation.kalman import Matrix, Trace
+from fsw.core.estimation.mekf import Estimate
+from fsw.core.estimation.mekf_config import MekfConfig
+from fsw.core.fdir import coil_effects
+from fsw.core.fdir.explanations import CERTAIN, MODEL_ERROR, STRAY, Solution
+
+CAUSES = (STRAY, STRAY + 1, STRAY + 2)
+
+
+def kicks_radps(m_am2: float, estimate: Estimate, b_eci_t: Vec3, tuning: MekfConfig) -> Mat3:
+    """What a current of this dipole would do to the rate in a tick, by coil, body axes."""
+    b_body_t = rotate(estimate.q_body_from_eci, b_eci_t)
+    first, second, third = (
+        transform(tuning.rotor.inertia_inverse, scale(tuning.tick_s * m_am2, cross(axis, b_body_t)))
+        for axis in AXES
+    )
+    return first, second, third
+
+
+def trace(estimate: Estimate, conducts: Vec3, kicks_radps: Mat3, tick_s: float, begins: bool) -> Estimate:
+    """Trace a stray current in any of the coils over one more tick.
+
+    Args:
+        estimate: before.
+        conducts: by coil, which part of the current the filter took into account.
+        kicks_radps: by coil, the change of rate that the current would make in this tick, body axes.
+        tick_s: length of a tick.
+        begins: whether the current began in this tick; an earlier one is then forgotten.
+    """
+    traced = estimate.trace or coil_effects.empty_trace(estimate)
+    if begins or STRAY not in traced.causes:
+        for cause in CAUSES:
+            if cause in traced.causes:
+                traced = coil_effects.without(traced, traced.causes.index(cause))
+        traced = coil_effects.extended(traced, CAUSES, conducts, np.zeros((6, 3)))
+    effect, flows = traced.effect.copy(), _places(traced)
+    kicks = np.array(kicks_radps).T
+    effect[0:3, flows] += 0.5 * tick_s * kicks
+    effect[3:6, flows] += kicks
+    return estimate._replace(trace=traced._replace(effect=effect))
+
+
+def _places(traced: Trace) -> slice:
+    first = traced.causes.index(STRAY)
+    return slice(first, first + 3)
+
+
+def follow(estimate: Estimate, solution: Solution, tuning: MekfConfig) -> tuple[Estimate, Vec3] | None:
+    """The estimate with what the current has certainly done, in whichever coils, and the parts that it had.
+
+    None while nothing is certain. The parts stay unknown as before: the trace is of what they lack.
+
+    Args:
+        estimate: before.
+        solution: of this tick.
+        tuning: of the filter.
+    """
+    deviation, weights = _lacking(solution)
+    if not deviation @ weights @ deviation > CERTAIN**2:
+        return None
+    estimate = _shifted(estimate, deviation, np.zeros_like(estimate.covariance), tuning)
+    first = solution.causes.index(STRAY)
+    one, two, three = solution.part[first : first + 3].tolist()
+    return estimate, (one, two, three)
+
+
+def settle(estimate: Estimate, coil: int, tuning: MekfConfig) -> Estimate:
+    """Correct the estimate by a stray current that certainly flows in this coil, and trace it no longer.
+
+    Args:
+        estimate: before, with the trace of a stray current.
+        coil: in which it flows.
+        tuning: of the filter.
+
+    Raises:
+        ValueError: it has no such trace.
+    """
+    traced = estimate.trace
+    if traced is None or STRAY not in traced.causes:
+        raise ValueError("no stray current is traced")
+    lacks = np.eye(3)[coil] - np.array(traced.assumed[_places(traced)])
+    effect = traced.effect[:, _places(traced)][:, coil]
+    estimate = _shifted(estimate, lacks, MODEL_ERROR**2 * np.outer(effect, effect), tuning)
+    return estimate._replace(trace=_without_stray(estimate.trace or traced))
+
+
+def _shifted(estimate: Estimate, parts: Matrix, uncertainty: Matrix, tuning: MekfConfig) -> Estimate:
+    """The estimate, and the trace of what it lacks then, with these parts of the current more."""
+    traced = estimate.trace or coil_effects.empty_trace(estimate)
+    flows = _places(traced)
+    estimate = mekf.corrected(estimate, traced.effect[:, flows] @ parts, uncertainty, tuning)
+    shift = np.eye(len(traced.sums))
+    shift[flows, -1] = -parts  # the innovations less what these parts have done to them
+    assumed = np.array(traced.assumed)
+    assumed[flows] += parts
+    sums = shift.T @ traced.sums @ shift
+    return estimate._replace(trace=traced._replace(assumed=tuple(assumed.tolist()), sums=sums))
+
+
+def _without_stray(traced: Trace) -> Trace:
+    others = [index for index, cause in enumerate(traced.causes) if cause < STRAY]
+    return coil_effects.only(traced, others, traced.sums)
+
+
+def conducting(solution: Solution) -> int | None:
+    """The coil in which a current flows without a request; None while it may be another, or none.
+
+    Of the four explanations (p = 0, or 1 for one of the coils) the likeliest, if each other is less likely by
+    ``CERTAIN``, and it fits. No false alarm is at stake: it is certain that a current flows. The distance of
+    each is the square of what it lacks of the solution, by the covariance, less the prior's share in it.
+    """
+    lacking, weights = _lacking(solution)
+    if not len(lacking):
+        return None
+    first = solution.causes.index(STRAY)
+    part = solution.part[first : first + 3]
+    assumed = part - lacking
+    distances = []
+    for explanation in (*np.eye(3), np.zeros(3)):
+        off, prior = explanation - part, explanation - assumed
+        distances.append(float(off @ weights @ off - prior @ prior))
+    least, second = sorted(distances)[:2]
+    likeliest = distances.index(least)
+    if likeliest == 3 or least > CERTAIN**2 or second - least < CERTAIN**2:
+        return None
+    return likeliest
+
+
+def _lacking(solution: Solution) -> tuple[Matrix, Matrix]:
+    """By coil what the filter lacks of the current's parts, and its weights; empty without a current."""
+    stray = [index for index, cause in enumerate(solution.causes) if cause >= STRAY]
+    noise = solution.covariance[np.ix_(stray, stray)] + MODEL_ERROR**2 * np.eye(len(stray))
+    return solution.deviation[stray], np.asarray(np.linalg.inv(noise), float)

@@ -1,0 +1,190 @@
+"""A current without a request: the coil in which it flows, and what the filter knows of it before that."""
+
+from dataclasses import replace
+from math import radians
+
+import numpy as np
+import pytest
+from pulse_samples import (
+    B_ECI_T,
+    CONFIG,
+    E1_ECI,
+    LEVEL_AM2,
+    PULSE_S,
+    S_ECI,
+    START,
+    WEAK,
+    deviation,
+    error_state,
+    fly,
+    judged,
+    kick_radps,
+    left,
+)
+
+from fsw.core.actuation.pulses import AXES
+from fsw.core.algebra.quaternion import rotate
+from fsw.core.algebra.vector import ZERO, add, cross, scale, unit
+from fsw.core.estimation import mekf
+from fsw.core.fdir import stray
+from fsw.core.fdir.coil_effects import solve, trace_pulse
+from fsw.core.fdir.explanations import STRAY, Solution, weak_by_pulses
+from fsw.core.fdir.stray import conducting
+
+
+def fly_stray(flows, tuning=CONFIG, ticks=30, start=START, actual=START):
+    """The estimate that reckons with 8 A m^2 in any of the coils, ``flows`` being the part in each."""
+    random = np.random.default_rng(5)
+    truth, estimate = actual, start
+    for tick in range(ticks):
+        truth = mekf.predict(truth, E1_ECI, B_ECI_T, 3e-6, scale(LEVEL_AM2, flows), tuning)
+        estimate = mekf.predict(estimate, E1_ECI, B_ECI_T, 3e-6, ZERO, tuning)
+        s = rotate(truth.q_body_from_eci, S_ECI)
+        s = add(s, tuple(radians(0.5) * random.normal(size=3)))
+        estimate = mekf.update_sun(estimate, s, S_ECI, tuning) or estimate
+        kicks = stray.kicks_radps(LEVEL_AM2, estimate, B_ECI_T, tuning)
+        estimate = stray.trace(estimate, ZERO, kicks, 1.0, begins=tick == 0)
+    return estimate, truth
+
+
+@pytest.mark.parametrize("coil", [0, 1, 2])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_the_coil_that_conducts_is_told_from_the_sun_alone(coil, sign):
+    estimate, _ = fly_stray(scale(sign, AXES[coil]))
+    _, solution = solve(estimate, CONFIG)
+    assert conducting(solution) == (coil if sign > 0.0 else None), "the sign of the current is estimate"
+    assert weak_by_pulses(solution, ZERO, WEAK) is None
+
+
+@pytest.mark.parametrize(
+    "flows", [ZERO, (1.0, 1.0, 0.0), (0.0, 0.0, 2.0)], ids=["none", "two", "twice as much"]
+)
+def test_what_one_coil_with_that_current_cannot_have_done_names_nobody(flows):
+    estimate, _ = fly_stray(flows)
+    _, solution = solve(estimate, CONFIG)
+    assert conducting(solution) is None
+
+
+def test_the_gate_lets_through_what_a_deviation_explains_and_nothing_else():
+    narrow = replace(CONFIG, gate_nis=16.3)
+    estimate, truth = fly_stray(AXES[1], narrow, ticks=40)
+    s = rotate(truth.q_body_from_eci, S_ECI)
+    assert estimate.trace.measured == 3 * 39, "all but the first, before anything was carried"
+    assert mekf.update_sun(estimate, s, S_ECI, narrow) is not None
+    assert mekf.update_sun(estimate._replace(trace=None), s, S_ECI, narrow) is None
+    away = unit(add(s, scale(0.15, unit(cross(s, rotate(truth.q_body_from_eci, B_ECI_T))))))
+    assert mekf.update_sun(estimate, away, S_ECI, narrow) is None
+
+
+def test_a_new_current_is_not_taken_for_the_one_before():
+    estimate, _ = fly_stray(AXES[1])
+    pulse = trace_pulse(estimate, 2, kick_radps(estimate, 2), PULSE_S)
+    again = stray.trace(pulse, ZERO, (ZERO, ZERO, ZERO), 1.0, begins=True)
+    assert pulse.trace.causes == (2, STRAY, STRAY + 1, STRAY + 2)
+    assert again.trace.causes == (STRAY, STRAY + 1, STRAY + 2, 2)
+    assert deviation(again) == pytest.approx([0.0] * 4, abs=1e-12)
+    assert stray.trace(again, ZERO, (ZERO, ZERO, ZERO), 1.0, begins=False).trace.causes == again.trace.causes
+
+
+def test_a_current_that_is_known_at_last_sets_the_estimate_right_and_leaves_the_pulses_to_be_judged():
+    weak, moving = fly([1, 0], [1.0, 0.3])
+    estimate, truth = fly_stray(AXES[1], start=weak, actual=moving)
+    before = np.abs(error_state(estimate, truth))
+    settled = stray.settle(estimate, 1, CONFIG)
+    after, isolated = judged(settled)
+    assert np.abs(error_state(after, truth)).max() < 0.1 * before.max()
+    assert isolated == (0, pytest.approx(0.3, abs=0.15))
+    assert (settled.covariance.diagonal()[:6] > estimate.covariance.diagonal()[:6]).all()
+    assert settled.trace.causes == (0, 1)
+    assert left(settled) < 1.3 * settled.trace.measured, "what the current did is no longer unexplained"
+    assert left(stray.settle(estimate, 0, CONFIG)) > 2.0 * settled.trace.measured
+
+
+def fly_followed(coil, ticks=90):
+    """The estimate that takes into account what it knows of the current, and what it knew, tick by tick."""
+    random = np.random.default_rng(7)
+    truth = estimate = START
+    conducts, known = ZERO, []
+    for tick in range(ticks):
+        truth = mekf.predict(truth, E1_ECI, B_ECI_T, 3e-6, scale(LEVEL_AM2, AXES[coil]), CONFIG)
+        estimate = mekf.predict(estimate, E1_ECI, B_ECI_T, 3e-6, scale(LEVEL_AM2, conducts), CONFIG)
+        s = add(rotate(truth.q_body_from_eci, S_ECI), tuple(radians(0.5) * random.normal(size=3)))
+        estimate = mekf.update_sun(estimate, s, S_ECI, CONFIG) or estimate
+        kicks = stray.kicks_radps(LEVEL_AM2, estimate, B_ECI_T, CONFIG)
+        estimate = stray.trace(estimate, conducts, kicks, 1.0, begins=tick == 0)
+        _, solution = solve(estimate, CONFIG)
+        followed = stray.follow(estimate, solution, CONFIG)
+        if followed is not None:
+            estimate, conducts = followed
+        known.append(conducts)
+    return estimate, truth, known
+
+
+@pytest.mark.parametrize("coil", [0, 1, 2])
+def test_what_is_known_of_the_parts_keeps_the_estimate_near_long_before_the_coil_is_certain(coil):
+    estimate, truth, known = fly_followed(coil)
+    assert known[0] == ZERO
+    assert known[-1] != ZERO
+    off = np.linalg.norm(error_state(estimate, truth)[:3])
+    left_alone, other = fly_stray(AXES[coil], ticks=len(known))
+    assert off < 0.1 * np.linalg.norm(error_state(left_alone, other)[:3])
+    assert conducting(solve(estimate, CONFIG)[1]) == coil
+
+
+def test_to_follow_takes_nothing_from_what_the_trace_can_tell():
+    """The parts and their covariance are those of before; only what the filter lacks of them is less."""
+    estimate, _ = fly_stray(AXES[2], ticks=20)
+    _, before = solve(estimate, CONFIG)
+    followed, conducts = stray.follow(estimate, before, CONFIG)
+    _, after = solve(followed, CONFIG)
+    assert conducts == pytest.approx(tuple(before.part))
+    assert after.covariance == pytest.approx(before.covariance)
+    assert np.abs(before.deviation).max() > 0.2
+    assert np.abs(after.deviation).max() < 0.2 * np.abs(before.deviation).max()
+    assert stray.follow(followed, after, CONFIG) is None, "nothing more is certain"
+
+
+def test_a_current_that_was_never_traced_cannot_be_settled():
+    estimate, _ = fly([0], [1.0])
+    for other in (START, estimate):
+        with pytest.raises(ValueError, match="no stray current is traced"):
+            stray.settle(other, 1, CONFIG)
+
+
+def named(deviation, sigma, correlation=0.0):
+    """The coil that a solution names whose parts were not known beforehand."""
+    deviation, shape = np.array(deviation), np.eye(3) + correlation * (1.0 - np.eye(3))
+    return conducting(Solution(stray.CAUSES, deviation, deviation, shape * np.outer(sigma, sigma)))
+
+
+@pytest.mark.parametrize("coil", [0, 1, 2])
+def test_the_coil_whose_effect_is_there_conducts(coil):
+    assert named(np.eye(3)[coil] + 0.03, (0.05, 0.06, 0.07)) == coil
+
+
+@pytest.mark.parametrize(
+    ("deviation", "sigma", "correlation"),
+    [
+        ((0.0, 0.0, 0.0), (0.05, 0.06, 0.07), 0.0),
+        ((0.5, 0.5, 0.0), (0.05, 0.06, 0.07), 0.0),
+        ((0.0, -1.0, 0.0), (0.05, 0.06, 0.07), 0.0),
+        ((0.02, 0.8, 0.0), (1.0, 0.3, 1.0), 0.0),
+        ((0.5, 0.5, 0.01), (0.7, 0.7, 0.05), -0.99),
+    ],
+    ids=["none", "two", "the other way", "unsure", "one of two"],
+)
+def test_it_names_nobody(deviation, sigma, correlation):
+    sure = named((0.0, 1.0, 0.0), (0.05, 0.06, 0.07))
+    assert sure == 1
+    assert named(deviation, sigma, correlation) is None
+
+
+def test_one_is_named_though_its_own_effect_cannot_be_seen_if_it_is_no_other():
+    """Along the field a coil turns nothing; its deviation stays at the prior, those of the others are 0."""
+    assert named((0.0, 1.0, 0.01), (0.04, 0.04, 1.0)) == 1
+    assert named((0.0, 0.0, 0.0), (0.04, 0.04, 1.0)) is None, "nor is it told from no current at all"
+
+
+def test_pulses_before_it_do_not_name_a_coil():
+    parts = np.array((1.0, 0.0))
+    assert conducting(Solution((0, 1), parts, parts, 0.03**2 * np.eye(2))) is None

@@ -1,0 +1,91 @@
+"""What the tests of coil effects fly: a filter, pulses that did part of what they should, and their trace."""
+
+from math import inf, radians
+
+import numpy as np
+
+from fsw.core.actuation.pulses import AXES
+from fsw.core.algebra.quaternion import conjugate, multiply, normalise, rotate
+from fsw.core.algebra.vector import ZERO, add, cross, scale, sub, transform, unit
+from fsw.core.estimation import mekf
+from fsw.core.estimation.mekf_config import mekf_config
+from fsw.core.estimation.parameters import Prior
+from fsw.core.fdir.coil_effects import solve, trace_pulse
+from fsw.core.fdir.explanations import WeakTest, of_pulses
+
+INERTIA = ((1.02, 0.07, -0.05), (0.07, 1.85, 0.11), (-0.05, 0.11, 1.45))
+CONFIG = mekf_config(
+    INERTIA,
+    1.0,
+    {"mag_bias_t": Prior((3e-7,) * 3, (1e-11,) * 3), "torque_body_nm": Prior((1e-7,) * 3, (3e-11,) * 3)},
+    magnetometer_sigma_t=2e-7,
+    sun_sigma_rad=radians(0.5),
+    attitude_sigma_rad=radians(0.1),
+    rate_sigma_radps=radians(0.001),
+    torque_noise_nm_rts=1e-8,
+    gate_nis=inf,
+)
+B_ECI_T, S_ECI, E1_ECI = (1.7e-5, -2.3e-5, 3.1e-5), unit((-0.8, 0.35, 0.4)), unit((0.3, 0.7, -0.5))
+START = mekf.start(normalise((0.6, -0.4, 0.5, 0.3)), (1e-3, -4e-4, 7e-4), CONFIG)
+LEVEL_AM2, PULSE_S, EVERY = 8.0, 3, 100
+WEAK = WeakTest(0.7, 0.8, 14.0)
+
+
+def step(estimate, dipole_am2):
+    return mekf.predict(estimate, E1_ECI, B_ECI_T, 3e-6, dipole_am2, CONFIG)
+
+
+def kick_radps(estimate, coil):
+    impulse_nms = scale(PULSE_S * LEVEL_AM2, cross(AXES[coil], rotate(estimate.q_body_from_eci, B_ECI_T)))
+    return transform(CONFIG.rotor.inertia_inverse, impulse_nms)
+
+
+def fly(coils, parts, ticks=EVERY, noise=1.0, alter=lambda estimate: estimate, level_am2=LEVEL_AM2):
+    """The estimate after pulses of these coils, each with its part of the effect; also the true attitude."""
+    random = np.random.default_rng(3)
+    truth = estimate = START
+    for coil, part in zip(coils, parts, strict=True):
+        for tick in range(ticks):
+            dipole = scale(level_am2, AXES[coil]) if tick < PULSE_S else ZERO
+            truth, estimate = step(truth, scale(part, dipole)), step(estimate, dipole)
+            if tick >= PULSE_S:
+                b, s = (rotate(truth.q_body_from_eci, r) for r in (B_ECI_T, S_ECI))
+                b = add(b, tuple(noise * 2e-7 * random.normal(size=3)))
+                s = add(s, tuple(noise * radians(0.5) * random.normal(size=3)))
+                estimate = mekf.update_both(estimate, b, B_ECI_T, s, S_ECI, CONFIG)
+            elif tick == PULSE_S - 1:
+                kick = scale(level_am2 / LEVEL_AM2, kick_radps(estimate, coil))
+                estimate = trace_pulse(alter(estimate), coil, kick, PULSE_S)
+    return estimate, truth
+
+
+def judged(estimate):
+    """The estimate after the solution, and its likeliest explanation: a coil, and the part of its effect."""
+    estimate, solution = solve(estimate, CONFIG)
+    if solution is None:
+        return estimate, None
+    likeliest = of_pulses(solution)[0]
+    nothing = next(one for one in of_pulses(solution) if one.coil == -1)
+    sure = nothing.distance - likeliest.distance > 2.0 * WEAK.threshold
+    return estimate, (likeliest.coil, likeliest.part) if sure else None
+
+
+def deviation(estimate):
+    sums = estimate.trace.sums
+    return np.linalg.solve(sums[:-1, :-1] + np.eye(len(sums) - 1), sums[:-1, -1])
+
+
+def covariance(estimate):
+    sums = estimate.trace.sums
+    return np.linalg.inv(sums[:-1, :-1] + np.eye(len(sums) - 1))
+
+
+def error_state(estimate, other):
+    """Attitude and rate that ``estimate`` lacks of ``other``."""
+    _, *turn = multiply(conjugate(estimate.q_body_from_eci), other.q_body_from_eci)
+    return np.array((*scale(2.0, tuple(turn)), *sub(other.omega_body_radps, estimate.omega_body_radps)))
+
+
+def left(estimate):
+    """What the pulses do not explain of the squares of the innovations."""
+    return estimate.trace.sums[-1, -1] - deviation(estimate) @ estimate.trace.sums[:-1, -1]
