@@ -27,7 +27,10 @@ from sim.scenario.schema import Scenario, orbit_period_s
 
 GOOD_DEG = 2.0
 GOOD_FOR_S = 600.0
-WRONG_DEG, WRONG_S = 5.0, 120.0
+WRONG_DEG, ALONE_DEG, WRONG_S = 5.0, 15.0, 120.0
+CYCLES = 4.0
+FIRST_S = 600.0
+"""Length of the first minutes, in which both sensors may agree on what is wrong [s]."""
 """A valid attitude may be so wrong for so long while a fault that has begun is being found."""
 FAR_DEG, LAST_S = 15.0, 300.0
 """Three times the standard deviation up to which fsw marks an estimate as valid."""
@@ -114,12 +117,13 @@ def waits_after_boot(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -
 
 
 def control_continues(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool | None, str]:
-    """At the end control continues (a pulse in the last two cycles), or fsw is in SAFE.
+    """At the end control continues (a pulse in the last cycles), or fsw is in SAFE.
 
+    Without a fault up to three cycles pass without one, if the coil that could help lies along the field.
     Of a permanent fault this can only be expected if fsw can isolate the unit.
     """
     cycle = (bounds.backoff_s + 10.0) * record.tick_hz
-    fired = any(tick > record.ticks - 2.0 * cycle for tick in record.request_ticks)
+    fired = any(tick > record.ticks - CYCLES * cycle for tick in record.request_ticks)
     safe = record.modes[-1] is Mode.SAFE
     if fired or safe:
         return True, ""
@@ -204,14 +208,18 @@ def reports_forgery(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) ->
 def never_wrong_for_long(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
     """No attitude in the answers is valid and more than 5 deg wrong for over 120 s on end.
 
-    Where nothing aboard can tell, because both sensors agree on what is wrong, or in the shadow the only one
-    is, the row says so.
+    Where nothing aboard can tell, because both sensors agree on what is wrong, the row says so. Where there
+    is only one, as in the shadow, it is 15 deg, three times the largest sigma of a valid attitude.
     """
     longest = wrong = 0
     worst_deg = 0.0
-    for error_deg, done, lit in zip(record.error_deg, record.done, record.lit, strict=True):
-        counts = done and (lit or row.unseen is not Unseen.IN_SHADOW)
-        wrong = wrong + 1 if counts and error_deg is not None and error_deg > WRONG_DEG else 0
+    first = round(FIRST_S * record.tick_hz) if row.unseen is Unseen.AT_FIRST else 0
+    onset = (record.onset or 0) if row.unseen is Unseen.ALONE else len(record.error_deg)
+    for tick in range(first, len(record.error_deg)):
+        error_deg = record.error_deg[tick]
+        alone = tick >= onset or (row.unseen in (Unseen.IN_SHADOW, Unseen.ALONE) and not record.lit[tick])
+        limit_deg = ALONE_DEG if alone else WRONG_DEG
+        wrong = wrong + 1 if record.done[tick] and error_deg is not None and error_deg > limit_deg else 0
         longest = max(longest, wrong)
         worst_deg = max(worst_deg, error_deg or 0.0) if wrong else worst_deg
     longest_s = longest / record.tick_hz

@@ -162,7 +162,8 @@ def _not_isolated(row: FaultRow, fault: RowFault, record: FaultFlightRecord) -> 
     requests, onset = zip(record.request_ticks, record.request_coils, strict=True), onset_tick(fault, record)
     of_sensor = not all(other.unit.startswith("coil ") for other in row.faults)
     end = _doubted(record.onset or 0, record) if of_sensor else inf
-    count = sum(onset <= tick < end and f"coil {coil}" == fault.unit for tick, coil in requests)
+    seen = ((tick, coil) for tick, coil in requests if onset <= tick < end and record.lit[tick])
+    count = sum(f"coil {coil}" == fault.unit for _, coil in seen)
     said = f"{fault.unit} is not isolated in {count} pulses of its own"
     return None if count < LEAST_PULSES else False, said
 

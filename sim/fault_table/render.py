@@ -22,10 +22,11 @@ man in the middle between the nodes, or in boards, plant or process. Every case 
 most 3 s, 100 s of back-off, one coil, three levels: judged from COIL_STATUS and, by other code, from the
 current that the plant drove), raise no exception in a step, have no NaN in the flight state, answer every
 SYNC, isolate no healthy unit, call no attitude valid that is more than 5 deg wrong for over 120 s (unless
-nothing aboard can tell, as the row says), and meet what its row expects. `only UNIT named`: it may be
-isolated. `named or doubted`: it is isolated, or both sensors are said to disagree. `not yet`: the flight
-software has no event that could identify the unit. Every second case flies a satellite of the population
-`50kg` (`sim/campaign/population.py`), each another. Figures are the worst over all cases.
+nothing aboard can tell, as the row says; with one sensor left 15 deg), and meet what its row expects. `only
+UNIT named`: it may be isolated. `named or doubted`: it is isolated, or both sensors are said to disagree.
+`not yet`: the flight software has no event that could identify the unit. Every second case flies a
+satellite of the population `50kg` (`sim/campaign/population.py`), each another. Figures are the worst over
+all cases.
 """
 
 

@@ -16,7 +16,7 @@ from fsw.core.gate.second_sender import SIGNS
 from fsw.core.gate.sync_watch import LEAP_TICKS
 from fsw.core.monitors import RATE_LIMIT_RADPS, UNIT_TOLERANCE, Monitor
 from fsw.core.orbit.earth import RADIUS_M
-from sim.fault_table.checks import WRONG_DEG, WRONG_S
+from sim.fault_table.checks import ALONE_DEG, WRONG_DEG, WRONG_S
 
 
 class Requirement(NamedTuple):
@@ -57,9 +57,8 @@ REQUIREMENTS: tuple[Requirement, ...] = (
     ),
     Requirement(
         "REQ-FDIR-02",
-        "No attitude is called valid that is wrong for long, unless both sensors agree on what is wrong, or "
-        "the only one in the shadow is wrong.",
-        f"{WRONG_DEG:g} deg for {WRONG_S:g} s on end",
+        "No attitude is called valid that is wrong for long, unless both sensors agree on what is wrong.",
+        f"{WRONG_DEG:g} deg for {WRONG_S:g} s on end; {ALONE_DEG:g} deg where only one sensor is left",
         None,
         None,
     ),

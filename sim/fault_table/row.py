@@ -40,6 +40,10 @@ class Unseen(StrEnum):
     NEVER = ""
     IN_SHADOW = "in the shadow nothing shows it"
     """The sensor that is wrong is the only one there is."""
+    AT_FIRST = "for its first minutes both sensors agree"
+    """The field of a moment ago is that of a magnetometer with a bias, until the satellite has turned."""
+    ALONE = "with one sensor left little shows it"
+    """Pulses of a coil, or a slow drift, turn the satellite about the only direction that is measured."""
     ALWAYS = "both sensors agree"
 
 

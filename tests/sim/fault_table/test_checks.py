@@ -47,16 +47,37 @@ class TestHonesty:
         assert holds
         assert finding == "valid while up to 30 deg wrong, for 300 s on end"
 
-    @pytest.mark.parametrize(("unseen", "holds"), [(Unseen.NEVER, False), (Unseen.IN_SHADOW, True)])
-    def test_nor_in_the_shadow_of_the_only_sensor_that_is_left(self, bounds, unseen, holds):
+    @pytest.mark.parametrize(
+        ("unseen", "deg", "holds"),
+        [
+            (Unseen.NEVER, 14.0, False),
+            (Unseen.IN_SHADOW, 14.0, True),
+            (Unseen.IN_SHADOW, 16.0, False),
+            (Unseen.ALONE, 14.0, True),
+            (Unseen.ALONE, 16.0, False),
+        ],
+    )
+    def test_less_of_the_only_sensor_that_is_left_in_the_shadow(self, bounds, unseen, deg, holds):
         row = FaultRow("planted", "", "none", unseen=unseen)
-        assert checks.never_wrong_for_long(row, flown(*[30.0] * 300, lit=False), bounds)[0] is holds
+        assert checks.never_wrong_for_long(row, flown(*[deg] * 300, lit=False), bounds)[0] is holds
+
+    @pytest.mark.parametrize(("onset", "holds"), [(100, True), (150, False)])
+    def test_or_from_the_fault_of_the_other_on(self, bounds, onset, holds):
+        row = FaultRow("planted", "", "none", unseen=Unseen.ALONE)
+        record = flown(*[14.0] * 300)
+        record.onset = onset
+        assert checks.never_wrong_for_long(row, record, bounds)[0] is holds
+
+    @pytest.mark.parametrize(("wrong", "holds"), [(720, True), (721, False)])
+    def test_nor_in_the_first_ten_minutes_of_some(self, bounds, wrong, holds):
+        row = FaultRow("planted", "", "none", unseen=Unseen.AT_FIRST)
+        assert checks.never_wrong_for_long(row, flown(*[30.0] * wrong), bounds)[0] is holds
 
     def test_but_once_the_sun_is_back_it_counts(self, bounds):
         row = FaultRow("planted", "", "none", unseen=Unseen.IN_SHADOW)
-        record = flown(*[30.0] * 300)
+        record = flown(*[14.0] * 300)
         record.lit[:150] = [False] * 150
         assert checks.never_wrong_for_long(row, record, bounds) == (
             False,
-            "valid while up to 30 deg wrong, for 150 s on end",
+            "valid while up to 14 deg wrong, for 150 s on end",
         )
