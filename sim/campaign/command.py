@@ -87,12 +87,12 @@ def campaign(
 
 
 def _check_resumable(source: str, over: Nested, settings: tuple[str, ...], out: Path | None) -> None:
+    if not (Path(source) / FILE).is_file():
+        raise HarnessError(f"{source} is a folder without a campaign: it has no {FILE}")
     if settings or out or over.keys() - {"runs"}:
         raise HarnessError(
             f"{source} is a campaign that has begun: of its options only the number of runs can change"
         )
-    if not (Path(source) / FILE).is_file():
-        raise HarnessError(f"{source} has no {FILE}")
 
 
 def _check_version(folder: Path, results: Results) -> None:

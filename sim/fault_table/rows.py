@@ -261,8 +261,8 @@ ROWS: Rows = (
         "sun sensor",
         watch_s=900.0,
     ),
-    *_coils("coil-open", "coil_open", "board names"),
-    *_coils("coil-reversed", "coil_wired", scale=-1.0),
+    *_coils("coil-open", "coil_open", "board names", watch_s=6000.0),
+    *_coils("coil-reversed", "coil_wired", watch_s=6000.0, scale=-1.0),
     *_coils("coil-weak", "coil_wired", watch_s=12000.0, scale=0.3),
     *_coils("coil-stuck-on", "coil_stuck_on", "bounded", "stuck", "board names", ampere=0.4),
     FaultRow(

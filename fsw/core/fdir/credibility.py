@@ -16,10 +16,6 @@ OF_SENSORS = frozenset({"mag_bias_t", "mag_turn_rad", "mag_scale", "sun_turn_rad
 """Parameters that say how a sensor measures; the others say how the satellite moves."""
 
 
-OF_COILS = "coil_error"
-"""Says nothing against the estimate: errors beyond the bounds mean that a coil is weak, and it is named."""
-
-
 class CredibilityConfig(NamedTuple):
     """Place, least and largest credible value of each number that is estimated, among the ``Parameters``.
 
@@ -38,8 +34,7 @@ def credibility_config(mekf: MekfConfig) -> CredibilityConfig:
         width = SIGMAS * sqrt(variances[place])
         name = NAMES[COMPONENTS[number][0]]
         limits = (number, means[number] - width, means[number] + width)
-        if name != OF_COILS:
-            of_all.append(limits)
+        of_all.append(limits)
         if name in OF_SENSORS:
             of_sensors.append(limits)
     return CredibilityConfig(tuple(of_sensors), tuple(of_all))

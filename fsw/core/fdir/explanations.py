@@ -101,30 +101,34 @@ def of_pulses(solution: Solution) -> list[Explanation]:
     """What may be wrong with the pulses, the likeliest first.
 
     A coil that is faulty is so from some pulse on, and each of its later pulses has the same part of its
-    effect; those of the others are sound.
+    effect; those of the others are sound. It may have failed within the pulse before: that one may then have
+    any part.
     """
     pulses = [index for index, cause in enumerate(solution.causes) if cause < STRAY]
     if not pulses:
         return [Explanation(NONE, 0, 1.0, 0.0)]
-    deviation, measured = solution.deviation[pulses], solution.part[pulses]
-    noise = solution.covariance[np.ix_(pulses, pulses)] + MODEL_ERROR**2 * np.eye(len(pulses))
-    weights = np.asarray(np.linalg.inv(noise), float)
-    nothing = float(deviation @ weights @ deviation)
-    causes = tuple(solution.causes[index] for index in pulses)
-    common = _common_part(np.ones(len(pulses)), measured, weights)
-    found = [Explanation(NONE, 0, 1.0, nothing), Explanation(ALL, len(pulses), *common)]
-    for coil in sorted(set(causes)):
-        latest, off = np.zeros(len(pulses)), deviation.copy()
-        for count, index in enumerate(indices_of(coil, causes), start=1):
-            latest[index], off[index] = 1.0, measured[index]
-            found.append(Explanation(coil, count, *_common_part(latest, off, weights)))
+    found = [_explained(solution, NONE, pulses, []), _explained(solution, ALL, pulses, pulses)]
+    for coil in sorted({solution.causes[index] for index in pulses}):
+        own = indices_of(coil, solution.causes)
+        for count in range(1, len(own) + 1):
+            found.append(_explained(solution, coil, pulses, own[:count]))
+            if count < len(own):
+                others = [index for index in pulses if index != own[count]]
+                found.append(_explained(solution, coil, others, own[:count]))
     return sorted(found, key=lambda explanation: explanation.distance)
 
 
-def _common_part(alike: Matrix, off: Matrix, weights: Matrix) -> tuple[float, float]:
-    """The likeliest part p of the pulses that are ``alike``, and the square of what ``off`` - p leaves."""
-    weight, explained = float(alike @ weights @ alike), float(alike @ weights @ off)
-    return explained / weight, float(off @ weights @ off) - explained**2 / weight
+def _explained(solution: Solution, coil: int, pulses: list[int], alike: list[int]) -> Explanation:
+    """These pulses, if those ``alike`` had one part of their effect and the others what was assumed."""
+    noise = solution.covariance[np.ix_(pulses, pulses)] + MODEL_ERROR**2 * np.eye(len(pulses))
+    weights = np.linalg.inv(noise)
+    among = np.isin(pulses, alike)
+    off = np.where(among, solution.part[pulses], solution.deviation[pulses])
+    left = float(off @ weights @ off)
+    if not alike:
+        return Explanation(coil, 0, 1.0, left)
+    weight, explained = float(among @ weights @ among), float(among @ weights @ off)
+    return Explanation(coil, len(alike), explained / weight, left - explained**2 / weight)
 
 
 def against(solution: Solution, test: WeakTest) -> list[float]:

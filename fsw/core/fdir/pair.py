@@ -111,7 +111,7 @@ def judge(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: Cre
     if standing is not Standing.DISPUTED:
         by = weights.against * _misfit(pair, seen, weights, credibility)
         doubt = weigh(pair.doubt, by, threshold)
-    proof = _proof(pair, seen, weights)
+    proof = _proof(pair, seen, weights, credibility)
     if doubt >= threshold:
         return Pair(Standing.DISPUTED, ended=True)
     if accord + seen.shown >= threshold:
@@ -123,7 +123,8 @@ def judge(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: Cre
     blind_ticks = 0 if seen.used.field or seen.used.sun else pair.blind_ticks + 1
     owed = _owed(pair.owed, proof, blind_ticks, seen, weights)
     lost = owed > 0.0 and seen.used.field and seen.used.sun and not seen.sound
-    strange = weigh(pair.strange, weights.agrees if lost else -weights.agrees, threshold)
+    slow = weights.agrees / PAIR_NUMBERS  # a faulty coil, which looks the same at first, is found before
+    strange = weigh(pair.strange, slow if lost else -slow, threshold)
     if strange >= threshold:
         return Pair(ended=True)
     return Pair(standing, proof, doubt, accord, False, blind_ticks, owed, strange)
@@ -150,21 +151,23 @@ def _innovations(estimate: Estimate) -> float:
     return misfit(estimate.nis, estimate.numbers) if estimate.numbers else -1.0
 
 
-def _proof(pair: Pair, seen: Observed, weights: EvidenceWeights) -> float:
+def _proof(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: CredibilityConfig) -> float:
     """An estimate gains by each pair that it takes; one that is trusted loses while it takes one alone.
 
-    On trial slowly.
+    On trial slowly. One that is trusted is about its sensors: what turns the satellite may be a coil's fault.
     """
     if seen.estimate is None or seen.begun:
         return 0.0
+    trusted = pair.standing is Standing.TRUSTED
+    sound = sensors_credible(seen.estimate, credibility) if trusted else seen.sound
     if seen.refused:
-        by = 0.0 if pair.standing is Standing.TRUSTED else weights.misfits
-    elif not seen.sound:
+        by = 0.0 if trusted else weights.misfits
+    elif not sound:
         by = -weights.fits
     elif seen.used.field and seen.used.sun:
         by = weights.fits if _innovations(seen.estimate) < 0.0 else 0.0
     else:
-        by = -weights.fits if pair.standing is Standing.TRUSTED else 0.0
+        by = -weights.fits if trusted else 0.0
     slow = PAIR_NUMBERS if pair.standing is Standing.ON_TRIAL else 1
     return weigh(pair.proof, by / slow, weights.threshold)
 

@@ -302,12 +302,19 @@ class TestSilence:
         assert not any(of(CoilFire, replies) for replies in world.fly(200, without(CoilStatus)))
 
     def test_a_board_that_comes_back_is_trusted_again(self, make_world, without):
+        """SAFE is left once the magnetometer is readmitted: without field and attitude no law can act."""
         world = make_world()
         world.fly(90)
         world.fly(70, without(MagField))
         assert world.state.modes.mode is Mode.SAFE
-        modes = [world.state.modes.mode for _ in range(40) if world.step()]
-        assert modes.index(Mode.DETUMBLE) == 5
+        isolated, modes = [], []
+        while world.state.modes.mode is Mode.SAFE:
+            world.step()
+            isolated.append(bool(world.state.health.sensors.field.fault))
+            modes.append(world.state.modes.mode)
+        assert modes[-1] is Mode.DETUMBLE
+        assert isolated.index(False) == len(modes) - 1 - 5
+        assert 100 < len(modes) < 700
         assert world.state.modes.trips == 1
 
     def test_the_third_time_it_stays_safe(self, make_world, without):
@@ -315,7 +322,7 @@ class TestSilence:
         world.fly(40)
         for _ in range(3):
             world.fly(70, without(MagField))
-            world.fly(40)
+            world.fly(700)
         assert (world.state.modes.mode, world.state.modes.trips) == (Mode.SAFE, 3)
         assert not any(of(CoilFire, replies) for replies in world.fly(200))
         assert world.state.modes.mode is Mode.SAFE

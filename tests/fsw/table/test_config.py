@@ -82,7 +82,7 @@ class TestTicks:
     def test_the_budget_of_false_alarms_is_the_threshold_of_every_test(self):
         config = configured(fdir={"false_alarm_days": 200.0}).fdir
         assert config.sensors.weights.threshold == pytest.approx(log(200.0 * 86400.0 / 2.0))
-        assert config.coils.threshold == config.sensors.weights.threshold
+        assert config.coils.weak.threshold == config.sensors.weights.threshold
 
     @pytest.mark.parametrize(
         ("tick_hz", "pulse_ticks", "backoff_ticks", "duration_ms"),

@@ -68,7 +68,7 @@ def test_pulses_too_small_to_be_seen_accuse_nobody():
 
 
 def test_the_estimate_is_set_right_once():
-    estimate, truth = fly([0], [-1.0])
+    estimate, truth = fly([1, 0], [1.0, -1.0])
     before = np.abs(error_state(estimate, truth))
     after, isolated = judged(estimate)
     error = np.abs(error_state(after, truth))

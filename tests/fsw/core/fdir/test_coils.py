@@ -249,7 +249,7 @@ class TestByTheRate:
         """Three pulses of a coil are traced: the fourth takes the place of the first."""
         world = make_world()
         world.fly(SETTLED)
-        world.plant._coils._dipole_per_ampere[0] *= 0.5
+        world.plant._coils._dipole_per_ampere[0] *= 0.65
         own = 0
         while own < 4:
             assert world.state.health.coils.pulse_nats[0] == 0.0

@@ -58,16 +58,3 @@ def test_what_moves_the_satellite_says_nothing_of_its_sensors():
 
 def test_no_number_is_not_credible():
     assert not credible(estimated("mag_bias_t", 2, float("nan")), LIMITS)
-
-
-def test_what_the_coils_do_says_nothing_of_the_estimate():
-    """A coil without any effect is a weak coil, and named as one."""
-    prior = {**PRIORS, "coil_error": Prior((0.03,) * 9, (0.0,) * 9)}
-    noise = {"magnetometer_sigma_t": 2e-7, "sun_sigma_rad": 0.01, "torque_noise_nm_rts": 1e-9}
-    start = {"attitude_sigma_rad": 0.1, "rate_sigma_radps": 0.01, "gate_nis": 16.0}
-    config = mekf_config(CONFIG.rotor.inertia_kgm2, 1.0, prior, **noise, **start)
-    limits = credibility_config(config)
-    estimate = mekf.start((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), config)
-    without = estimate.parameters._replace(coil_error=(-1.0, *(0.3,) * 8))
-    assert credible(estimate._replace(parameters=without), limits)
-    assert not credible(estimate._replace(parameters=without._replace(mag_bias_t=(0.0, 1e-5, 0.0))), limits)

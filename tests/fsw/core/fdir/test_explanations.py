@@ -136,6 +136,21 @@ def test_nobody_is_accused_while_two_coils_cannot_be_told_apart():
     assert weak(*alike) is None
 
 
+def test_a_coil_that_failed_within_a_pulse_is_accused_by_the_later_ones():
+    """The pulse in which it failed has any part of its effect."""
+    within = weak((1, 1, 1, 0), (-2.0, -1.95, -0.66, 0.0), (0.04, 0.04, 0.05, 0.05))
+    assert within == (1, pytest.approx(-1.0, abs=0.05))
+    assert weak((1, 1, 1, 0), (-2.0, -0.66, -0.1, 0.0), (0.04, 0.04, 0.05, 0.05)) is None, "not within two"
+
+
+def test_what_all_coils_lack_alike_is_no_coil():
+    """Another inertia than that of the table turns less by any coil."""
+    alike = ((0, 0, 0, 1, 2), (-0.45, -0.42, -0.44, -0.4, -0.43), (0.03, 0.03, 0.03, 0.05, 0.05))
+    assert weak(*alike) is None
+    assert weak(alike[0], (-0.45, -0.42, -0.44, 0.02, -0.01), alike[2]) == (0, pytest.approx(0.56, abs=0.02))
+    assert weak((0, 0, 0), (-0.45, -0.42, -0.44), (0.03, 0.03, 0.03)) is None, "before another has shown it"
+
+
 def test_what_the_filter_knew_of_a_gain_counts_with_what_it_did_not():
     """Two thirds of what the coil lacks are in the estimated gain already, the rest is deviation."""
     deviation, covariance = np.array((-0.2, -0.25, 0.01)), np.diag((0.04, 0.05, 0.03)) ** 2

@@ -220,9 +220,9 @@ class TestStrange:
     LOST = TAKEN._replace(sound=False, estimate=ESTIMATE._replace(lag=(0.0, 1.1, 0.0, 0.0, 0.0, 0.0)))
 
     def test_it_ends_after_long_and_nobody_is_blamed(self):
-        pair = after(TRUSTED, self.LOST, 510)
-        assert not pair.ended
-        pair = after(pair, self.LOST, 20)
+        pair = after(TRUSTED, self.LOST, 2000)
+        assert pair.standing is Standing.TRUSTED
+        pair = after(pair, self.LOST, 100)
         assert pair.standing is Standing.NEW
         assert pair.strange < 0.1 * WEIGHTS.threshold
 
