@@ -17,7 +17,7 @@ from fsw.core.estimation.parameters import NOTHING, UNCHANGED_INERTIA, Parameter
 from fsw.core.estimation.samples import usable_field, usable_sun
 from fsw.core.fdir import fdir
 from fsw.core.fdir.fdir import Evidence
-from fsw.core.fdir.plausibility import Findings
+from fsw.core.fdir.sensors.plausibility import Findings
 from fsw.core.gate import second_sender
 from fsw.core.gate.readings import Readings, admit
 from fsw.core.gate.sync_watch import Belief, SyncWatch, judge, near

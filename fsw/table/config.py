@@ -8,12 +8,12 @@ from fsw.core.actuation.pulses import PulseConfig, pulse_timing
 from fsw.core.algebra.vector import inverse, product
 from fsw.core.config import FlightConfig
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.fdir.coils import CoilHealthConfig
-from fsw.core.fdir.credibility import credibility_config
+from fsw.core.fdir.coils.explanations import weak_test
+from fsw.core.fdir.coils.health import CoilHealthConfig
 from fsw.core.fdir.evidence import weights
-from fsw.core.fdir.explanations import weak_test
 from fsw.core.fdir.fdir import FdirConfig
-from fsw.core.fdir.sensors import SensorConfig
+from fsw.core.fdir.sensors.credibility import credibility_config
+from fsw.core.fdir.sensors.health import SensorConfig
 from fsw.core.gate.second_sender import SecondSenderConfig
 from fsw.core.laws.interface import ControlConfig, Setpoint
 from fsw.core.laws.table import LAWS

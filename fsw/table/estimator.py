@@ -4,7 +4,7 @@ from math import ceil, radians, sqrt
 
 from fsw.core.estimation.estimator import EstimatorConfig
 from fsw.core.estimation.mekf_config import mekf_config
-from fsw.core.fdir.plausibility import PlausibilityConfig
+from fsw.core.fdir.sensors.plausibility import PlausibilityConfig
 from fsw.table.table import FlightTable
 from fsw.table.uncertainty import (
     LARGEST_FIELD_T,

@@ -62,20 +62,20 @@ GUARDS = {
     ),
     "sensor health": Off(
         "mag-bias",
-        "named",
-        ("fsw.core.fdir.sensors.judge", lambda health, *seen: health),
+        "named or doubted",
+        ("fsw.core.fdir.sensors.health.judge", lambda health, *seen: health),
         watch_s=100.0,
     ),
     "coil health: current": Off(
         "coil-stuck-on-1",
         "stuck",
-        ("fsw.core.fdir.coils.judge_current", lambda health, *seen: health),
+        ("fsw.core.fdir.coils.currents.judge_current", lambda health, *seen: health),
     ),
     "coil health: rate": Off(
         "coil-reversed-1",
         "named",
         (
-            "fsw.core.fdir.coils.judge_effect",
+            "fsw.core.fdir.coils.torques.judge_effect",
             lambda health, view, field, state, *seen: (health, state),
         ),
         watch_s=2000.0,

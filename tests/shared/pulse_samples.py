@@ -10,8 +10,8 @@ from fsw.core.algebra.vector import ZERO, add, cross, scale, sub, transform, uni
 from fsw.core.estimation import mekf
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.parameters import Prior
-from fsw.core.fdir.coil_effects import solve, trace_pulse
-from fsw.core.fdir.explanations import WeakTest, of_pulses
+from fsw.core.fdir.coils.effects import solve, trace_pulse
+from fsw.core.fdir.coils.explanations import WeakTest, of_pulses
 
 INERTIA = ((1.02, 0.07, -0.05), (0.07, 1.85, 0.11), (-0.05, 0.11, 1.45))
 CONFIG = mekf_config(

@@ -8,13 +8,16 @@ from fsw.core.algebra.vector import ZERO, Vec3
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.estimation.estimator import EstimatorState, Used, restart, untraced
 from fsw.core.events import Event, Happening
-from fsw.core.fdir import coils, pair, plausibility, sensors
-from fsw.core.fdir.coils import CoilHealth, CoilHealthConfig
+from fsw.core.fdir.coils import currents, torques
+from fsw.core.fdir.coils import health as coil_health
+from fsw.core.fdir.coils.health import CoilHealth, CoilHealthConfig
 from fsw.core.fdir.evidence import EvidenceWeights
 from fsw.core.fdir.faults import Sensor
-from fsw.core.fdir.pair import Pair, Standing
-from fsw.core.fdir.plausibility import Findings, PlausibilityConfig
-from fsw.core.fdir.sensors import SensorConfig, SensorHealth
+from fsw.core.fdir.sensors import health as sensor_health
+from fsw.core.fdir.sensors import pair, plausibility
+from fsw.core.fdir.sensors.health import SensorConfig, SensorHealth
+from fsw.core.fdir.sensors.pair import Pair, Standing
+from fsw.core.fdir.sensors.plausibility import Findings, PlausibilityConfig
 from fsw.core.gate.readings import Readings
 from fsw.core.orbit.ephemeris import Reference
 
@@ -64,13 +67,13 @@ def judge_current(
 ) -> Health:
     """The health after comparing what the coil driver reports with what was asked of it."""
     unasked = unexpected(view, tick, config.coils.pulses)
-    found = coils.judge_current(health.coils, view, readings, unasked, tick, config.coils)
+    found = currents.judge_current(health.coils, view, readings, unasked, tick, config.coils)
     return Health(health.sensors, found)
 
 
 def driven_am2(health: Health, view: CoilView, config: FdirConfig) -> Vec3:
     """Dipole over the tick that has ended, body axes, that of a stuck coil included."""
-    return coils.driven_am2(health.coils, view, config.coils)
+    return coil_health.driven_am2(health.coils, view, config.coils)
 
 
 def examine(readings: Readings, health: Health, reference: Reference, config: FdirConfig) -> Findings:
@@ -113,22 +116,24 @@ def judge(
     if not evidence.settled:
         valid = attitude.valid and pair.valid(before.pair)
         return health, untraced(estimator), attitude._replace(valid=valid)
-    judged = sensors.judge(before, findings, evidence.used, estimator.estimate, reference, config.sensors)
+    judged = sensor_health.judge(
+        before, findings, evidence.used, estimator.estimate, reference, config.sensors
+    )
     isolated = bool(judged.field.fault or judged.sun.fault)
     changed = (judged.field.fault, judged.sun.fault) != (before.field.fault, before.sun.fault)
     if changed or judged.pair.standing is not Standing.TRUSTED:
         estimator = untraced(estimator)  # what a faulty sensor has shown proves nothing about a coil
-    elif not sensors.suspected(judged):
+    elif not sensor_health.suspected(judged):
         sure = pair.proven(judged.pair, weights) or isolated
         doubt = judged.pair.doubt > 1.0
-        found, estimator = coils.judge_effect(
+        found, estimator = torques.judge_effect(
             found, evidence.view, reference.b_eci_t, estimator, evidence.tick, sure, doubt, config.coils
         )
     if changed or judged.pair.ended:
         found = found._replace(pulse_nats=ZERO)  # a faulty sensor may have shown it
     if judged.pair.ended:
         estimator, attitude = restart(estimator), UNKNOWN
-    torque_untold = coils.unattributed_torque(found) or _pulses_untold(found, judged.pair, weights)
+    torque_untold = coil_health.unattributed_torque(found) or _pulses_untold(found, judged.pair, weights)
     if torque_untold or not pair.valid(judged.pair):
         attitude = attitude._replace(valid=False)
     return Health(judged, found), estimator, attitude

@@ -7,9 +7,9 @@ import pytest
 from fsw.core.commands import HANDLERS, LAW_NAMES, MOST_SIGMAS, command, decimal
 from fsw.core.estimation.parameters import NOTHING as AS_THE_TABLE
 from fsw.core.estimation.parameters import component_places, with_component
-from fsw.core.fdir.coils import CoilHealth
+from fsw.core.fdir.coils.health import CoilHealth
 from fsw.core.fdir.fdir import Health
-from fsw.core.fdir.sensors import SensorHealth, Watch
+from fsw.core.fdir.sensors.health import SensorHealth, Watch
 from fsw.core.gate.readings import NOTHING, TELECOMMANDS
 from fsw.core.laws.table import LAWS
 from fsw.core.modes import ModeState

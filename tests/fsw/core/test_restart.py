@@ -8,7 +8,7 @@ import pytest
 from fsw.core.events import Event
 from fsw.core.fdir.faults import CoilFault, SensorFault
 from fsw.core.fdir.fdir import Health
-from fsw.core.fdir.sensors import Watch
+from fsw.core.fdir.sensors.health import Watch
 from fsw.core.gate.second_sender import SIGNS, SecondSenderWatch
 from fsw.core.gate.sync_watch import LEAP_TICKS
 from fsw.core.modes import request_mode

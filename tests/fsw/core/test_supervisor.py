@@ -6,7 +6,7 @@ from typing import NamedTuple
 import pytest
 
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
-from fsw.core.fdir.coils import CoilHealth
+from fsw.core.fdir.coils.health import CoilHealth
 from fsw.core.fdir.fdir import Health
 from fsw.core.gate.second_sender import SIGNS, SecondSenderWatch
 from fsw.core.modes import ModeState

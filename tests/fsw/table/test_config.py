@@ -5,7 +5,7 @@ from math import cos, log, pi, radians, sqrt
 import numpy as np
 import pytest
 
-from fsw.core.fdir.plausibility import PlausibilityConfig
+from fsw.core.fdir.sensors.plausibility import PlausibilityConfig
 from fsw.core.laws.interface import Setpoint
 from fsw.core.modes import TABLE
 from fsw.core.orbit.propagation import CircularKeplerOrbit, TleOrbit

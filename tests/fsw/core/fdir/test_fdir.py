@@ -4,12 +4,12 @@ import pytest
 
 from fsw.core.events import Event, Happening
 from fsw.core.fdir import fdir
-from fsw.core.fdir.coils import CoilHealth
+from fsw.core.fdir.coils.health import CoilHealth
 from fsw.core.fdir.faults import CoilFault, SensorFault
 from fsw.core.fdir.fdir import Evidence, Health
-from fsw.core.fdir.pair import Pair, Standing
-from fsw.core.fdir.plausibility import Findings, Memory
-from fsw.core.fdir.sensors import SensorHealth, Watch
+from fsw.core.fdir.sensors.health import SensorHealth, Watch
+from fsw.core.fdir.sensors.pair import Pair, Standing
+from fsw.core.fdir.sensors.plausibility import Findings, Memory
 from fsw.core.gate.readings import NOTHING
 from fsw.core.orbit.ephemeris import reference_at
 
@@ -161,7 +161,7 @@ class TestJudgement:
         before = Health(SensorHealth(pair=PROVEN), shown)
         (health, _, _), _ = judged(before)
         assert health.coils == shown
-        monkeypatch.setattr(fdir.sensors, "judge", lambda *of_this_tick: judgement)
+        monkeypatch.setattr(fdir.sensor_health, "judge", lambda *of_this_tick: judgement)
         (health, _, _), _ = judged(before)
         assert health.coils == shown._replace(pulse_nats=(0.0, 0.0, 0.0))
 
@@ -173,7 +173,7 @@ class TestJudgement:
         findings = fdir.examine(NOTHING, state.health, reference, config.fdir)
         used = fdir.Used(False, False, False)
         evidence = Evidence(state.tick, findings, state.coil, reference, used, settled=False)
-        monkeypatch.setattr(fdir.sensors, "judge", None)
+        monkeypatch.setattr(fdir.sensor_health, "judge", None)
         for before, valid in ((Health(SensorHealth(pair=PROVEN)), True), (Health(), False)):
             health, estimator, attitude = fdir.judge(
                 before, state.estimator, state.attitude, evidence, config.fdir
@@ -184,7 +184,7 @@ class TestJudgement:
 
     def test_enough_doubt_ends_the_filter(self, judged, monkeypatch):
         disputed = SensorHealth(pair=Pair(Standing.DISPUTED, ended=True))
-        monkeypatch.setattr(fdir.sensors, "judge", lambda *of_this_tick: disputed)
+        monkeypatch.setattr(fdir.sensor_health, "judge", lambda *of_this_tick: disputed)
         (health, estimator, attitude), state = judged(Health())
         assert health.sensors is disputed
         assert (estimator.estimate, estimator.restarts) == (None, state.estimator.restarts + 1)

@@ -7,7 +7,7 @@ import pytest
 
 from fsw.core.algebra.vector import add, norm, scale
 from fsw.core.fdir.faults import SensorFault
-from fsw.core.fdir.plausibility import SHADOW_M, Memory, PlausibilityConfig, examine
+from fsw.core.fdir.sensors.plausibility import SHADOW_M, Memory, PlausibilityConfig, examine
 from fsw.core.gate.readings import NOTHING
 from fsw.core.orbit.ephemeris import reference_at
 from fsw.wire.messages import CoilStatus, MagField, SunVector

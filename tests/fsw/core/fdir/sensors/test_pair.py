@@ -8,10 +8,10 @@ from fsw.core.estimation import mekf
 from fsw.core.estimation.estimator import Used
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.parameters import Prior
-from fsw.core.fdir.credibility import credibility_config
 from fsw.core.fdir.evidence import weights
-from fsw.core.fdir.pair import Observed, Pair, Standing, judge, proven, valid
-from fsw.core.fdir.plausibility import Findings, Memory
+from fsw.core.fdir.sensors.credibility import credibility_config
+from fsw.core.fdir.sensors.pair import Observed, Pair, Standing, judge, proven, valid
+from fsw.core.fdir.sensors.plausibility import Findings, Memory
 
 CONFIG = mekf_config(
     ((1.02, 0.0, 0.0), (0.0, 1.85, 0.0), (0.0, 0.0, 1.95)),

@@ -1,7 +1,7 @@
 """A current without a request: in which coil it flows, by what it does to the rate.
 
 The supply, which all coils share, shows the current and not the coil. So for each of the three the effect u_j
-of the current, if it flowed there, is traced beside those of the pulses (``coil_effects``): it grows tick by
+of the current, if it flowed there, is traced beside those of the pulses (``effects``): it grows tick by
 tick, and the part p_j is 1 for the coil in which it flows and 0 for the others. What is known of the parts
 the filter takes into account at once, long before the coil is certain; traced is what it lacks.
 """
@@ -15,8 +15,8 @@ from fsw.core.estimation import mekf
 from fsw.core.estimation.kalman import Matrix, Trace
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.fdir import coil_effects
-from fsw.core.fdir.explanations import CERTAIN, MODEL_ERROR, STRAY, Solution
+from fsw.core.fdir.coils import effects
+from fsw.core.fdir.coils.explanations import CERTAIN, MODEL_ERROR, STRAY, Solution
 
 CAUSES = (STRAY, STRAY + 1, STRAY + 2)
 
@@ -41,12 +41,12 @@ def trace(estimate: Estimate, conducts: Vec3, kicks_radps: Mat3, tick_s: float, 
         tick_s: length of a tick.
         begins: whether the current began in this tick; an earlier one is then forgotten.
     """
-    traced = estimate.trace or coil_effects.empty_trace(estimate)
+    traced = estimate.trace or effects.empty_trace(estimate)
     if begins or STRAY not in traced.causes:
         for cause in CAUSES:
             if cause in traced.causes:
-                traced = coil_effects.without(traced, traced.causes.index(cause))
-        traced = coil_effects.extended(traced, CAUSES, conducts, np.zeros((6, 3)))
+                traced = effects.without(traced, traced.causes.index(cause))
+        traced = effects.extended(traced, CAUSES, conducts, np.zeros((6, 3)))
     effect, flows = traced.effect.copy(), _places(traced)
     kicks = np.array(kicks_radps).T
     effect[0:3, flows] += 0.5 * tick_s * kicks
@@ -100,7 +100,7 @@ def settle(estimate: Estimate, coil: int, tuning: MekfConfig) -> Estimate:
 
 def _shifted(estimate: Estimate, parts: Matrix, uncertainty: Matrix, tuning: MekfConfig) -> Estimate:
     """The estimate, and the trace of what it lacks then, with these parts of the current more."""
-    traced = estimate.trace or coil_effects.empty_trace(estimate)
+    traced = estimate.trace or effects.empty_trace(estimate)
     flows = _places(traced)
     estimate = mekf.corrected(estimate, traced.effect[:, flows] @ parts, uncertainty, tuning)
     shift = np.eye(len(traced.sums))
@@ -113,7 +113,7 @@ def _shifted(estimate: Estimate, parts: Matrix, uncertainty: Matrix, tuning: Mek
 
 def _without_stray(traced: Trace) -> Trace:
     others = [index for index, cause in enumerate(traced.causes) if cause < STRAY]
-    return coil_effects.only(traced, others, traced.sums)
+    return effects.only(traced, others, traced.sums)
 
 
 def conducting(solution: Solution) -> int | None:

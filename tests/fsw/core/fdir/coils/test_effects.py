@@ -18,8 +18,8 @@ from pulse_samples import (
 
 from fsw.core.algebra.vector import ZERO, scale
 from fsw.core.estimation import mekf
-from fsw.core.fdir.coil_effects import trace_pulse
-from fsw.core.fdir.explanations import PULSES
+from fsw.core.fdir.coils.effects import trace_pulse
+from fsw.core.fdir.coils.explanations import PULSES
 
 
 def test_the_carried_effect_is_what_a_second_filter_shows_that_knew_of_it():

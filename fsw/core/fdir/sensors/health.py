@@ -19,12 +19,12 @@ from fsw.core.estimation.kalman import Matrix, inverse
 from fsw.core.estimation.measurement import Prediction, field_prediction, sun_prediction
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.fdir import pair
-from fsw.core.fdir.credibility import CredibilityConfig, credible
 from fsw.core.fdir.evidence import EvidenceWeights, weigh
 from fsw.core.fdir.faults import SensorFault
-from fsw.core.fdir.pair import Observed, Pair
-from fsw.core.fdir.plausibility import Findings, Memory
+from fsw.core.fdir.sensors import pair
+from fsw.core.fdir.sensors.credibility import CredibilityConfig, credible
+from fsw.core.fdir.sensors.pair import Observed, Pair
+from fsw.core.fdir.sensors.plausibility import Findings, Memory
 from fsw.core.orbit.ephemeris import Reference
 
 LOST = 0.5

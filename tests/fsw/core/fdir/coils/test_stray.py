@@ -26,10 +26,10 @@ from fsw.core.actuation.pulses import AXES
 from fsw.core.algebra.quaternion import rotate
 from fsw.core.algebra.vector import ZERO, add, cross, scale, unit
 from fsw.core.estimation import mekf
-from fsw.core.fdir import stray
-from fsw.core.fdir.coil_effects import solve, trace_pulse
-from fsw.core.fdir.explanations import STRAY, Solution, weak_by_pulses
-from fsw.core.fdir.stray import conducting
+from fsw.core.fdir.coils import stray
+from fsw.core.fdir.coils.effects import solve, trace_pulse
+from fsw.core.fdir.coils.explanations import STRAY, Solution, weak_by_pulses
+from fsw.core.fdir.coils.stray import conducting
 
 
 def fly_stray(flows, tuning=CONFIG, ticks=30, start=START, actual=START):

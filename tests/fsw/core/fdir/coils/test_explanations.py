@@ -8,7 +8,7 @@ import pytest
 from fsw.core.estimation import mekf
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.parameters import Prior
-from fsw.core.fdir.explanations import (
+from fsw.core.fdir.coils.explanations import (
     STRAY,
     Solution,
     WeakTest,

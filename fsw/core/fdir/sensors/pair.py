@@ -18,9 +18,9 @@ from typing import NamedTuple
 
 from fsw.core.estimation.estimator import Used
 from fsw.core.estimation.mekf import Estimate
-from fsw.core.fdir.credibility import CredibilityConfig, sensors_credible
 from fsw.core.fdir.evidence import PAIR_NUMBERS, EvidenceWeights, mean_misfit, misfit, weigh
-from fsw.core.fdir.plausibility import Findings
+from fsw.core.fdir.sensors.credibility import CredibilityConfig, sensors_credible
+from fsw.core.fdir.sensors.plausibility import Findings
 
 SUSPICIOUS = 0.25
 """Part of the threshold beyond which doubt about the pair keeps what is refused from counting against one."""

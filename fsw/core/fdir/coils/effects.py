@@ -27,7 +27,7 @@ from fsw.core.estimation import mekf
 from fsw.core.estimation.kalman import Matrix, Trace, unexplained
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.fdir.explanations import (
+from fsw.core.fdir.coils.explanations import (
     CERTAIN,
     MODEL_ERROR,
     PULSES,

@@ -5,7 +5,8 @@ from math import acos, degrees
 import pytest
 
 from fsw.core.actuation.actuator import CoilView
-from fsw.core.fdir.coils import CoilHealth, judge_current
+from fsw.core.fdir.coils.currents import judge_current
+from fsw.core.fdir.coils.health import CoilHealth
 from fsw.core.gate.readings import NOTHING
 from fsw.core.telemetry import Event
 from fsw.wire.messages import CoilFire, CoilStatus, FswEvent, Mode, TcClear

@@ -1,0 +1,62 @@
+"""Each coil by its current: that of a pulse at its end against that of the level, and one without a request.
+
+The supply, which all coils share, shows a current and not the coil in which it flows.
+"""
+
+from fsw.core.actuation.actuator import CoilView
+from fsw.core.algebra.vector import ZERO
+from fsw.core.fdir.coils.health import CoilHealth, CoilHealthConfig, with_fault, with_item
+from fsw.core.fdir.evidence import weigh
+from fsw.core.fdir.faults import CoilFault, coil_fault
+from fsw.core.gate.readings import Readings
+from fsw.wire.messages import CoilStatus
+
+
+def judge_current(
+    health: CoilHealth,
+    view: CoilView,
+    readings: Readings,
+    unasked: bool,
+    tick: int,
+    config: CoilHealthConfig,
+) -> CoilHealth:
+    """Compare what the coil driver reports with what was asked of it.
+
+    Args:
+        health: of the tick before.
+        view: after what was received in this tick.
+        readings: what was received.
+        unasked: the driver reports a level that was not requested.
+        tick: this one.
+        config: limits.
+    """
+    status = readings.coil
+    if status is None:
+        return health
+    if unasked or (status.level == 0 and abs(status.current_ma) > config.stuck_ma):
+        return _strange(health, status, unasked, config)
+    if health.strange_ticks:
+        health = health._replace(strange_ticks=0, stray_ma=0, stuck=False, conducts=ZERO)
+    fired = view.fired
+    ended = tick == view.fired_tick + config.pulses.pulse_ticks
+    if not ended or not status.level or (status.coil, status.level) != fired:
+        return health
+    nominal_ma = config.current_ma[abs(status.level) - 1]
+    part = status.current_ma / (nominal_ma if status.level > 0 else -nominal_ma)
+    kind, threshold = coil_fault(part, config.weak.weak_part), config.weak.threshold
+    nats = weigh(health.nats[fired.coil], threshold / NAME_PULSES if kind else -threshold, threshold)
+    health = health._replace(nats=with_item(health.nats, fired.coil, nats))
+    return with_fault(health, fired.coil, kind) if nats >= threshold else health
+
+
+NAME_PULSES = 2
+"""A reading of the current cannot be doubted, but may be of another moment: so many isolate a coil."""
+
+
+def _strange(health: CoilHealth, status: CoilStatus, unasked: bool, config: CoilHealthConfig) -> CoilHealth:
+    """Something flows without a request: stuck if for longer than a pulse that began before a boot."""
+    ticks = health.strange_ticks + 1
+    lasts = ticks >= config.stuck_ticks
+    stray_ma = 0 if status.level else status.current_ma
+    health = health._replace(strange_ticks=ticks, stray_ma=stray_ma, stuck=unasked or lasts)
+    return with_fault(health, status.coil, CoilFault.STUCK) if unasked and lasts else health

@@ -1,0 +1,97 @@
+"""What is found of the coils so far, and what follows from it for the dipole of a tick."""
+
+from dataclasses import dataclass
+from typing import NamedTuple, TypeVar
+
+from fsw.core.actuation.actuator import CoilView
+from fsw.core.actuation.pulses import AXES, PulseConfig
+from fsw.core.algebra.vector import ZERO, Vec3, scale
+from fsw.core.estimation.mekf_config import MekfConfig
+from fsw.core.fdir.coils.explanations import WeakTest
+from fsw.core.fdir.faults import CoilFault
+
+
+@dataclass(frozen=True, slots=True)
+class CoilHealthConfig:
+    """Current of each level and limits.
+
+    ``weak`` tells a weak coil from a sound one; a stray current means a stuck coil after ``stuck_ticks``.
+    """
+
+    current_ma: Vec3
+    weak: WeakTest
+    stuck_ma: float
+    stuck_ticks: int
+    pulses: PulseConfig
+    mekf: MekfConfig
+
+
+class CoilHealth(NamedTuple):
+    """By coil: its fault (0: none) and what its currents, and pulses traced no longer, show against it, nats.
+
+    ``strange_ticks``: ticks in a row with a level or a current without a request, ``stray_ma``: a current
+    without a level; ``stuck``: there is such a level, or such a current for too long; ``conducts``: by coil,
+    which part of such a current the filter takes into account.
+    """
+
+    faults: tuple[int, int, int] = (0, 0, 0)
+    nats: Vec3 = ZERO
+    pulse_nats: Vec3 = ZERO
+    strange_ticks: int = 0
+    stray_ma: int = 0
+    stuck: bool = False
+    conducts: Vec3 = ZERO
+
+    def integers(self) -> tuple[int, ...]:
+        """For the checksum of the state."""
+        return (*self.faults, self.strange_ticks, self.stray_ma, self.stuck)
+
+    def floats(self) -> tuple[float, ...]:
+        """The evidence, and the parts of a stray current."""
+        return (*self.nats, *self.pulse_nats, *self.conducts)
+
+
+def driven_am2(health: CoilHealth, view: CoilView, config: CoilHealthConfig) -> Vec3:
+    """Dipole over the tick that has ended, body axes, with what is known of a stray current.
+
+    Args:
+        health: of this tick.
+        view: after what was received in this tick.
+        config: limits.
+    """
+    stuck = CoilFault.STUCK in health.faults
+    conducts = AXES[health.faults.index(CoilFault.STUCK)] if stuck else health.conducts
+    if not health.stray_ma or conducts == ZERO:
+        return view.driven_am2
+    return scale(stray_am2(health, config), conducts)
+
+
+def unattributed_torque(health: CoilHealth) -> bool:
+    """Whether a stray current turns the satellite, and it is not isolated yet in which coil it flows."""
+    return health.stuck and flows_somewhere(health)
+
+
+def flows_somewhere(health: CoilHealth) -> bool:
+    """Whether there is a stray current, and no coil is isolated for it."""
+    return health.stray_ma != 0 and CoilFault.STUCK not in health.faults
+
+
+def stray_am2(health: CoilHealth, config: CoilHealthConfig) -> float:
+    """Dipole of the stray current in a coil."""
+    return health.stray_ma / config.current_ma[-1] * config.pulses.levels_am2[-1]
+
+
+def with_fault(health: CoilHealth, coil: int, kind: int) -> CoilHealth:
+    """A coil keeps its first fault until the ground clears it, unless it is found stuck."""
+    if health.faults[coil] and kind != CoilFault.STUCK:
+        return health
+    return health._replace(faults=with_item(health.faults, coil, kind))
+
+
+T = TypeVar("T", int, float)
+
+
+def with_item(three: tuple[T, T, T], index: int, value: T) -> tuple[T, T, T]:
+    """The three with another value in one place."""
+    a, b, c = three
+    return ((value, b, c), (a, value, c), (a, b, value))[index]
