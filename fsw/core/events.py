@@ -23,6 +23,7 @@ class Event(IntEnum):
     STRANGE_SYNC = 12  # its tick; of several, that of the last
     PLANT_RESTARTED = 13  # the last tick of the old count
     FALSE_END = 14  # the ticks in PLANT_END
+    COIL_READMITTED = 15  # as in its isolation
 
 
 SEVERITY: dict[Event, Severity] = {
@@ -40,6 +41,7 @@ SEVERITY: dict[Event, Severity] = {
     Event.STRANGE_SYNC: Severity.WARNING,
     Event.PLANT_RESTARTED: Severity.WARNING,
     Event.FALSE_END: Severity.WARNING,
+    Event.COIL_READMITTED: Severity.INFO,
 }
 
 

@@ -125,6 +125,7 @@ def _fdir(table: FlightTable, timing: PulseConfig, mekf: MekfConfig) -> FdirConf
             stuck_ticks=_ticks(table.coils.pulse_s + STUCK_S, tick_hz) + 1,
             pulses=timing,
             mekf=mekf,
+            retest_ticks=_ticks(given.coil_retest_s, tick_hz),
         ),
     )
 

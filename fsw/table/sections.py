@@ -213,11 +213,12 @@ class FdirTable(Section):
     """What fault detection is to guarantee; every other limit follows from bounds and noise.
 
     ``false_alarm_days``: mean time between false alarms of a unit. A coil is weak below ``weak_coil_part`` of
-    its nominal current or effect.
+    its nominal current or effect, and tried again after ``coil_retest_s``.
     """
 
     false_alarm_days: float = Field(ge=1.0, le=36525.0)
     weak_coil_part: float = Field(gt=0.2, lt=1.0)
+    coil_retest_s: Positive
     second_sender_s: Positive
     event_spacing_s: NotNegative
 

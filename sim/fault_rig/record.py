@@ -59,6 +59,7 @@ class FaultFlightRecord:
         request_coils: the coils of these requests.
         boots: ticks in which fsw booted.
         restarts: ticks in which fsw concluded that the plant has restarted.
+        requests_before: by restart, how many requests fsw had sent by then.
         ended: tick in which fsw ended the run; None if it never did.
         refused: number of COIL_REFUSED.
         error_deg: true error of the estimate; None where fsw has no valid one.
@@ -85,6 +86,7 @@ class FaultFlightRecord:
     request_coils: list[int] = field(default_factory=list)
     boots: list[int] = field(default_factory=list)
     restarts: list[int] = field(default_factory=list)
+    requests_before: list[int] = field(default_factory=list)
     ended: int | None = None
     refused: int = 0
     error_deg: list[float | None] = field(default_factory=list)

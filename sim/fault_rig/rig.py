@@ -6,7 +6,7 @@ from fsw.core.config import FlightConfig
 from fsw.core.gate.sync_watch import near
 from fsw.node import FlightNode
 from fsw.wire.frame import Frame
-from fsw.wire.messages import Sync, TickDone, intact
+from fsw.wire.messages import CoilFire, Sync, TickDone, intact
 from sim.fault_rig.record import FaultFlightRecord
 from sim.faults.fault import Condition, Fault
 from sim.faults.faulty_plant import FaultyPlant, ScheduledFault
@@ -109,11 +109,12 @@ class Rig:
             for frame in waiting:
                 before = node.state.tick
                 answer = node.receive(frame)
-                answers += answer
                 if _needs_answer(frame, before) and not _answers_tick(answer, Sync.decode(frame.data).tick):
                     record.unanswered.append(tick)
                 if node.state.tick != before >= 0 and not near(before, node.state.tick):
                     record.restarts.append(tick)
+                    record.requests_before.append(len(record.request_ticks) + _requests(answers))
+                answers += answer
                 if node.ended and record.ended is None:
                     record.ended = tick
         except Exception as error:  # any exception is a finding, for the check "no exception"
@@ -121,6 +122,10 @@ class Rig:
             self._node = None
         record.worst_step_s = max(record.worst_step_s, time.perf_counter() - began)
         return answers
+
+
+def _requests(frames: list[Frame]) -> int:
+    return sum(frame.can_id == CoilFire.ID for frame in frames)
 
 
 def _needs_answer(frame: Frame, before: int) -> bool:

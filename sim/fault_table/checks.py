@@ -20,6 +20,7 @@ from sim.fault_table.isolation import (
     isolations,
     monitor_trips,
     monitor_trips_for_silent_board,
+    uses_unit_again,
 )
 from sim.fault_table.row import Bounds, Check, CheckOutcome, CheckVerdict, FaultRow, Unseen
 from sim.scenario.coil_limits import coil_limits
@@ -109,8 +110,9 @@ def no_extra_pulse(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> 
 def waits_after_boot(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
     """No pulse is requested within a back-off after a boot of fsw or a restart of the plant."""
     full = bounds.backoff_s * record.tick_hz
-    for boot in record.boots + record.restarts:
-        for tick in record.request_ticks:
+    boots = [(tick, 0) for tick in record.boots]
+    for boot, before in [*boots, *zip(record.restarts, record.requests_before, strict=True)]:
+        for tick in record.request_ticks[before:]:
             if boot <= tick < boot + full:
                 return False, f"request in tick {tick} after a start in tick {boot}"
     return True, ""
@@ -272,6 +274,7 @@ CHECKS: dict[str, Check] = {
     "silence named": monitor_trips_for_silent_board,
     "named": isolates_faulty_unit,
     "named or doubted": isolates_or_doubts_faulty_unit,
+    "used again": uses_unit_again,
     "stuck": enters_safe,
 }
 

@@ -170,10 +170,19 @@ REQUIREMENTS: tuple[Requirement, ...] = (
     ),
     Requirement(
         "REQ-COIL-05",
-        "An isolated coil is not fired until the ground sends TC_CLEAR; sound coils are not isolated.",
+        "An isolated coil is not fired until it is tried again or the ground sends TC_CLEAR; sound coils are "
+        "not isolated.",
         "no pulse",
         None,
         Event.COIL_FAULT,
+    ),
+    Requirement(
+        "REQ-COIL-06",
+        "An isolated coil, but for one that conducts by itself, is tried again once the estimate can tell; "
+        "one bad pulse isolates it anew.",
+        "`fdir.coil_retest_s`",
+        None,
+        Event.COIL_READMITTED,
     ),
     Requirement(
         "REQ-BUS-01",

@@ -1,11 +1,12 @@
 """The fault table: for every row the injected fault and the checks."""
 
 from collections.abc import Sequence
+from functools import partial
 from math import inf
 
 from sim.errors import HarnessError
 from sim.fault_table.forged_rows import FORGED_ROWS
-from sim.fault_table.row import FaultRow, When
+from sim.fault_table.row import FaultRow, Unseen, When
 from sim.fault_table.sly_rows import SLY_ROWS
 
 Rows = tuple[FaultRow, ...]
@@ -50,19 +51,11 @@ def _sun(name: str, kind: str, **parameters: float) -> tuple[FaultRow, FaultRow]
 
 def _sensor(unit: str, name: str, kind: str, parameters: dict[str, float]) -> tuple[FaultRow, FaultRow]:
     """One that shows late, as a scale, the filter may follow until either sensor may be wrong."""
+    row = partial(FaultRow, group=SENSOR, kind=kind, parameters=parameters, when=When.SUNLIT, unit=unit)
+    named = ("goes on", "bounded", "named or doubted")
     return (
-        FaultRow(f"{name}-passing", SENSOR, kind, parameters, 300.0, When.SUNLIT, PASSING, unit),
-        FaultRow(
-            name,
-            SENSOR,
-            kind,
-            parameters,
-            inf,
-            When.SUNLIT,
-            ("goes on", "bounded", "named or doubted"),
-            unit,
-            watch_s=1500.0,
-        ),
+        row(f"{name}-passing", lasts_s=300.0, expect=PASSING, unseen=Unseen.ALONE),
+        row(name, lasts_s=inf, expect=named, unseen=Unseen.ALONE, watch_s=1500.0),
     )
 
 

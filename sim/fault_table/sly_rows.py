@@ -8,7 +8,7 @@ from sim.fault_table.row import FaultRow, RowFault, Unseen, When
 SLOW = "a sensor that drifts, twists or is late"
 FROM_BOOT = "a Sun sensor turned, samples late or a coil weak from the first tick on"
 TABLE = "a satellite that is not the one of its table"
-IN_TURN = "a second fault after the first"
+IN_TURN = "a second fault after the first, or none any more"
 STUCK = "a driver that is stuck on from the beginning of an eclipse, for an orbit"
 MAG, SUN = "magnetometer", "sun sensor"
 ORBIT_S = 6042.0
@@ -138,6 +138,18 @@ SLY_ROWS: tuple[FaultRow, ...] = (
     _in_turn("mag-then-coil", _wrong_field(inf), _reversed_coil(600.0, shows=False), 600.0 + ORBIT_S),
     _in_turn("mag-then-sun", _wrong_field(900.0), _wrong_sun(inf, 3000.0), 3000.0 + ORBIT_S),
     _in_turn("sun-then-mag", _wrong_sun(900.0), _wrong_field(inf, 3000.0), 3000.0 + ORBIT_S),
+    FaultRow(
+        "coil-open-passing",
+        IN_TURN,
+        "coil_open",
+        {"axis": 0.0},
+        1500.0,
+        When.ORBIT,
+        ("named", "used again"),
+        "coil 0",
+        settings=("flight.fdir.coil_retest_s=1800.0",),
+        watch_s=ORBIT_S,
+    ),
     _stuck("coil-stuck-through-eclipse", 2.0, -0.4),
     _stuck("coil-stuck-low-through-eclipse", 1.0, 0.025),
 )

@@ -8,7 +8,7 @@ from fsw.core.algebra.vector import ZERO, Vec3
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.estimation.estimator import EstimatorState, Used, restart, untraced
 from fsw.core.events import Event, Happening
-from fsw.core.fdir.coils import currents, torques
+from fsw.core.fdir.coils import currents, retest, torques
 from fsw.core.fdir.coils import health as coil_health
 from fsw.core.fdir.coils.health import CoilHealth, CoilHealthConfig
 from fsw.core.fdir.evidence import EvidenceWeights
@@ -126,6 +126,7 @@ def judge(
     elif not sensor_health.suspected(judged):
         sure = pair.proven(judged.pair, weights) or isolated
         doubt = judged.pair.doubt > 1.0
+        found, estimator = retest.retest(found, estimator, sure and not isolated, config.coils)
         found, estimator = torques.judge_effect(
             found, evidence.view, reference.b_eci_t, estimator, evidence.tick, sure, doubt, config.coils
         )
@@ -175,9 +176,9 @@ def _sensor(sensor: Sensor, before: int, after: int) -> list[Happening]:
 
 
 def _coils(before: tuple[int, int, int], after: tuple[int, int, int]) -> list[Happening]:
-    """Coils whose fault is new."""
+    """Coils whose fault is new or gone."""
     return [
-        Happening(Event.COIL_FAULT, 100 * coil + fault)
+        Happening(Event.COIL_FAULT if fault else Event.COIL_READMITTED, 100 * coil + (fault or was))
         for coil, (was, fault) in enumerate(zip(before, after, strict=True), start=1)
-        if fault and fault != was
+        if fault != was
     ]

@@ -257,6 +257,7 @@ class TestEvents:
             "STRANGE_SYNC": 12,
             "PLANT_RESTARTED": 13,
             "FALSE_END": 14,
+            "COIL_READMITTED": 15,
         }
 
     def test_every_event_has_a_severity_and_fits_its_signal(self):

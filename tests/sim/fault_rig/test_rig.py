@@ -183,7 +183,7 @@ class TestForgery:
         assert checks.estimate_continues(None, record, bounds)[0]
         record.events.append(ReportedEvent(5, Number.FILTER_RESTARTED, 2))
         assert not checks.estimate_continues(None, record, bounds)[0]
-        record.events, record.restarts = [], [5]
+        record.events, record.restarts, record.requests_before = [], [5], [0]
         assert not checks.estimate_continues(None, record, bounds)[0]
 
     @pytest.mark.parametrize("number", [Number.STRANGE_SYNC, Number.PLANT_RESTARTED, Number.FALSE_END])
@@ -194,10 +194,16 @@ class TestForgery:
         assert checks.reports_forgery(None, record, bounds)[0]
 
     def test_a_request_soon_after_a_restart_is_found(self, record, bounds):
-        record.restarts, record.request_ticks = [50], [149]
+        record.restarts, record.requests_before, record.request_ticks = [50], [0], [149]
         assert not checks.waits_after_boot(None, record, bounds)[0]
         record.request_ticks = [150]
         assert checks.waits_after_boot(None, record, bounds)[0]
+
+    def test_one_before_the_restart_in_the_same_tick_is_none(self, record, bounds):
+        record.restarts, record.requests_before, record.request_ticks = [50], [1], [50]
+        assert checks.waits_after_boot(None, record, bounds)[0]
+        record.requests_before = [0]
+        assert not checks.waits_after_boot(None, record, bounds)[0]
 
     def test_an_accepted_false_end_is_found(self, flown, bounds):
         class End(Fault):

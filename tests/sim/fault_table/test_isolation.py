@@ -1,5 +1,6 @@
 """Which unit the flight software isolates, by its events."""
 
+from dataclasses import replace
 from math import inf
 
 import pytest
@@ -212,3 +213,34 @@ def test_no_coil_need_be_isolated_once_a_faulty_sensor_makes_them_disagree(bound
     assert checks.isolates_or_doubts_faulty_unit(row, flown, bounds)[0] is None, "three before"
     alone = FaultRow("planted", "", "none", unit="coil 1")
     assert checks.isolates_faulty_unit(alone, flown, bounds)[0] is False, "no sensor is faulty"
+
+
+class TestUsedAgain:
+    """A coil whose fault has passed is brought back after it, fired, and not isolated again."""
+
+    ROW = FaultRow("planted", "", "coil_open", {"axis": 1.0}, unit="coil 1")
+    NAMED, BACK = ReportedEvent(120, Number.COIL_FAULT, 201), ReportedEvent(250, Number.COIL_READMITTED, 201)
+
+    def judged(self, bounds, *events, fired=((300, 1),)):
+        flown = record(*events)
+        flown.end = 200
+        flown.request_ticks, flown.request_coils = [list(each) for each in zip(*fired, strict=True)]
+        return isolation.uses_unit_again(self.ROW, flown, bounds)
+
+    def test_it_is(self, bounds):
+        assert self.judged(bounds, self.NAMED, self.BACK) == (True, "coil 1 fired 1 times")
+
+    def test_brought_back_while_it_was_faulty_it_is_not(self, bounds):
+        early = replace(self.BACK, tick=199)
+        assert self.judged(bounds, self.NAMED, early) == (False, "coil 1 is not brought back")
+        other = replace(self.BACK, argument=301)
+        assert self.judged(bounds, self.NAMED, other) == (False, "coil 1 is not brought back")
+
+    @pytest.mark.parametrize("fired", [((240, 1), (300, 2)), ((250, 1),)])
+    def test_nor_without_a_pulse_since(self, bounds, fired):
+        assert not self.judged(bounds, self.NAMED, self.BACK, fired=fired)[0]
+
+    def test_nor_isolated_again(self, bounds):
+        again = replace(self.NAMED, tick=310)
+        holds, finding = self.judged(bounds, self.NAMED, self.BACK, again)
+        assert (holds, finding) == (False, "coil 1 fired 1 times, and isolated again")

@@ -46,7 +46,7 @@ def judge_current(
     kind, threshold = coil_fault(part, config.weak.weak_part), config.weak.threshold
     nats = weigh(health.nats[fired.coil], threshold / NAME_PULSES if kind else -threshold, threshold)
     health = health._replace(nats=with_item(health.nats, fired.coil, nats))
-    return with_fault(health, fired.coil, kind) if nats >= threshold else health
+    return with_fault(health, fired.coil, kind, config) if nats >= threshold else health
 
 
 NAME_PULSES = 2
@@ -59,4 +59,4 @@ def _strange(health: CoilHealth, status: CoilStatus, unasked: bool, config: Coil
     lasts = ticks >= config.stuck_ticks
     stray_ma = 0 if status.level else status.current_ma
     health = health._replace(strange_ticks=ticks, stray_ma=stray_ma, stuck=unasked or lasts)
-    return with_fault(health, status.coil, CoilFault.STUCK) if unasked and lasts else health
+    return with_fault(health, status.coil, CoilFault.STUCK, config) if unasked and lasts else health

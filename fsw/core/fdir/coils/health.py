@@ -24,6 +24,7 @@ class CoilHealthConfig:
     stuck_ticks: int
     pulses: PulseConfig
     mekf: MekfConfig
+    retest_ticks: int
 
 
 class CoilHealth(NamedTuple):
@@ -31,7 +32,8 @@ class CoilHealth(NamedTuple):
 
     ``strange_ticks``: ticks in a row with a level or a current without a request, ``stray_ma``: a current
     without a level; ``stuck``: there is such a level, or such a current for too long; ``conducts``: by coil,
-    which part of such a current the filter takes into account.
+    which part of such a current the filter takes into account. ``until_retest``: ticks until an isolated coil
+    is tried again.
     """
 
     faults: tuple[int, int, int] = (0, 0, 0)
@@ -41,10 +43,11 @@ class CoilHealth(NamedTuple):
     stray_ma: int = 0
     stuck: bool = False
     conducts: Vec3 = ZERO
+    until_retest: tuple[int, int, int] = (0, 0, 0)
 
     def integers(self) -> tuple[int, ...]:
         """For the checksum of the state."""
-        return (*self.faults, self.strange_ticks, self.stray_ma, self.stuck)
+        return (*self.faults, self.strange_ticks, self.stray_ma, self.stuck, *self.until_retest)
 
     def floats(self) -> tuple[float, ...]:
         """The evidence, and the parts of a stray current."""
@@ -81,11 +84,14 @@ def stray_am2(health: CoilHealth, config: CoilHealthConfig) -> float:
     return health.stray_ma / config.current_ma[-1] * config.pulses.levels_am2[-1]
 
 
-def with_fault(health: CoilHealth, coil: int, kind: int) -> CoilHealth:
-    """A coil keeps its first fault until the ground clears it, unless it is found stuck."""
+def with_fault(health: CoilHealth, coil: int, kind: int, config: CoilHealthConfig) -> CoilHealth:
+    """A coil keeps its first fault until it is tried again or cleared, unless it is found stuck."""
     if health.faults[coil] and kind != CoilFault.STUCK:
         return health
-    return health._replace(faults=with_item(health.faults, coil, kind))
+    return health._replace(
+        faults=with_item(health.faults, coil, kind),
+        until_retest=with_item(health.until_retest, coil, config.retest_ticks),
+    )
 
 
 T = TypeVar("T", int, float)

@@ -37,6 +37,7 @@ class TestHappenings:
             (sensors(), sensors(pair=Pair(Standing.DISPUTED)), Event.SENSORS_DISAGREE, 0),
             (coils(0, 0, 0), coils(0, WEAK, 0), Event.COIL_FAULT, 200 + WEAK),
             (coils(0, WEAK, 0), coils(0, OPEN, 0), Event.COIL_FAULT, 200 + OPEN),
+            (coils(0, WEAK, OPEN), coils(0, WEAK, 0), Event.COIL_READMITTED, 300 + OPEN),
         ],
     )
     def test_each_change_is_an_event(self, before, after, event, argument):
@@ -49,10 +50,9 @@ class TestHappenings:
             (sensors(pair=Pair(Standing.DISPUTED)), sensors(pair=Pair(Standing.DISPUTED))),
             (sensors(pair=Pair(Standing.DISPUTED)), sensors()),
             (coils(OPEN, 0, WEAK), coils(OPEN, 0, WEAK)),
-            (coils(OPEN, 0, WEAK), coils(0, 0, 0)),
         ],
     )
-    def test_what_lasts_and_what_the_ground_clears_is_none(self, before, after):
+    def test_what_lasts_and_a_dispute_that_ends_is_none(self, before, after):
         assert fdir.happenings(before, after) == []
 
     def test_they_are_in_a_fixed_order(self):

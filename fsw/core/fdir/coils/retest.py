@@ -1,0 +1,49 @@
+"""A coil that was isolated is tried again: the fault may have passed, or the estimate may have been wrong.
+
+Half of the evidence that isolates it stays: one bad pulse isolates it again, and good ones take it back. What
+the filter has learnt of its gain is forgotten.
+"""
+
+from fsw.core.estimation.estimator import EstimatorState, load, untraced
+from fsw.core.estimation.mekf_config import MekfConfig
+from fsw.core.estimation.parameters import COMPONENTS, NAMES, component_places
+from fsw.core.fdir.coils.health import CoilHealth, CoilHealthConfig, with_item
+from fsw.core.fdir.faults import CoilFault
+
+TRIED = (CoilFault.OPEN, CoilFault.WEAK, CoilFault.REVERSED)
+"""Not one that conducts by itself: it does so without being tried."""
+GAINS = tuple(COMPONENTS.index((NAMES.index("coil_error"), 4 * coil)) for coil in range(3))
+
+
+def retest(
+    health: CoilHealth, estimator: EstimatorState, sure: bool, config: CoilHealthConfig
+) -> tuple[CoilHealth, EstimatorState]:
+    """Bring back a coil whose time has come.
+
+    Args:
+        health: of the tick before.
+        estimator: after the samples of this tick.
+        sure: the estimate is proven by both sensors, and will show what the coil does.
+        config: limits.
+    """
+    if not any(health.faults):
+        return health, estimator
+    first, second, third = (max(0, ticks - 1) for ticks in health.until_retest)
+    health = health._replace(until_retest=(first, second, third))
+    half = 0.5 * config.weak.threshold
+    for coil, fault in enumerate(health.faults):
+        if sure and fault in TRIED and not health.until_retest[coil]:
+            health = health._replace(
+                faults=with_item(health.faults, coil, 0),
+                nats=with_item(health.nats, coil, half),
+                pulse_nats=with_item(health.pulse_nats, coil, half),
+            )
+            estimator = _forget_gain(untraced(estimator), GAINS[coil], config.mekf)
+    return health, estimator
+
+
+def _forget_gain(state: EstimatorState, component: int, mekf: MekfConfig) -> EstimatorState:
+    if state.frozen or component not in component_places(mekf.layout):
+        return state
+    known = state.first or mekf.initial_parameters
+    return load(state, component, known.floats()[component], mekf)
