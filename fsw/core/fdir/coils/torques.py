@@ -77,21 +77,21 @@ def _isolate(
 
     A pulse of the coil ``ended`` takes the place of its oldest one, whose evidence is kept.
     """
-    gain_nats, weak = explanations.by_gain(estimate, config.mekf, config.weak), None
+    gain_nats, earlier = explanations.by_gain(estimate, config.mekf, config.weak), health.pulse_nats
     estimate, solution = effects.solve(estimate, config.mekf)
-    if solution is not None:
-        earlier = health.pulse_nats
-        weak = explanations.weak_by_pulses(solution, earlier, config.weak)
-        weak = weak or explanations.weak_by_gain(estimate, gain_nats, config.weak)
-        if ended is not None:
-            oldest = explanations.of_oldest(solution, ended, config.weak)
-            nats = weigh(earlier[ended], oldest, config.weak.threshold)
-            health = health._replace(pulse_nats=with_item(earlier, ended, nats))
+    if solution is None:
+        return health, estimate
+    weak = explanations.weak_by_pulses(solution, earlier, config.weak)
+    weak = weak or explanations.weak_by_gain(estimate, gain_nats, config.weak)
+    if ended is not None:
+        oldest = explanations.of_oldest(solution, ended, config.weak)
+        nats = weigh(earlier[ended], oldest, config.weak.threshold)
+        health = health._replace(pulse_nats=with_item(earlier, ended, nats))
     if weak is not None and sure and _others_are_sound(health, weak[0], gain_nats):
         health = with_fault(health, weak[0], coil_fault(weak[1], config.weak.weak_part), config)
-    if solution is None or not unattributed_torque(health):
-        return health, estimate
-    return _attribute(health, estimate, solution, config)
+    return (
+        _attribute(health, estimate, solution, config) if unattributed_torque(health) else (health, estimate)
+    )
 
 
 def _attribute(
