@@ -8,9 +8,8 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from fsw.core.events import Event
-from fsw.core.fdir.evidence import PAIR_NUMBERS
+from fsw.core.fdir.evidence import PAIR_NUMBERS, SIGMAS
 from fsw.core.fdir.faults import CoilFault, SensorFault
-from fsw.core.fdir.sensors.credibility import SIGMAS
 from fsw.core.fdir.sensors.plausibility import SHADOW_M
 from fsw.core.gate.second_sender import SIGNS
 from fsw.core.gate.sync_watch import LEAP_TICKS

@@ -30,6 +30,8 @@ CHANCE = 0.8
 """Part of the time in which a faulty sensor looks right, at most."""
 BLIND_S = 120.0
 """A prediction that nothing has confirmed for longer is not valid: pulses that nobody sees may fail."""
+SIGMAS = 4.0
+"""A number that the table bounds is credible within so many standard deviations."""
 DAY_S = 86400.0
 
 

@@ -13,7 +13,7 @@ from fsw.core.algebra.vector import Vec3
 from fsw.core.estimation.kalman import Matrix
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.fdir.sensors.credibility import SIGMAS
+from fsw.core.fdir.evidence import SIGMAS
 
 MODEL_ERROR = 0.05
 """Relative uncertainty of a coil's effect that no measurement takes away."""

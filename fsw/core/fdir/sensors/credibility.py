@@ -10,8 +10,8 @@ from typing import NamedTuple
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.estimation.parameters import COMPONENTS, NAMES, component_places
+from fsw.core.fdir.evidence import SIGMAS
 
-SIGMAS = 4.0
 OF_SENSORS = frozenset({"mag_bias_t", "mag_turn_rad", "mag_scale", "sun_turn_rad", "delay_s"})
 """Parameters that say how a sensor measures; the others say how the satellite moves."""
 

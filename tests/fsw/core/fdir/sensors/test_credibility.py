@@ -5,7 +5,8 @@ import pytest
 from fsw.core.estimation import mekf
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.parameters import Prior
-from fsw.core.fdir.sensors.credibility import SIGMAS, credibility_config, credible, sensors_credible
+from fsw.core.fdir.evidence import SIGMAS
+from fsw.core.fdir.sensors.credibility import credibility_config, credible, sensors_credible
 
 PRIORS = {
     "mag_bias_t": Prior((3e-7, 4e-7, 5e-7), (0.0,) * 3),
