@@ -31,7 +31,7 @@ CHANCE = 0.8
 BLIND_S = 120.0
 """A prediction that nothing has confirmed for longer is not valid: pulses that nobody sees may fail."""
 SIGMAS = 4.0
-"""A number that the table bounds is credible within so many standard deviations."""
+"""Beyond so many standard deviations a number is none that the table allows, and no noise."""
 DAY_S = 86400.0
 
 
@@ -83,7 +83,8 @@ def weigh(nats: float, by: float, threshold: float) -> float:
 
 
 INFLATION = 4.0
-"""Of the innovations' covariance under a fault that is too slow for the filter's gate."""
+"""Factor by which a covariance is wrong if it is: of the innovations under a fault that is too slow for the
+filter's gate, of an estimate that is to be used, of a prediction that is to tell if a sample is right."""
 
 
 def misfit(nis: float, numbers: int) -> float:
@@ -99,15 +100,11 @@ def misfit(nis: float, numbers: int) -> float:
     return max(-1.0, min(1.0, weight))
 
 
-LASTING = 4.0
-"""Factor by which the covariance of an estimate that is to be used may be too small."""
-
-
 def mean_misfit(means: tuple[float, ...], weights: EvidenceWeights) -> float:
     """What the mean innovations of the sensor that is further off weigh against the estimate, nats.
 
-    The log-likelihood ratio of a lasting deviation, and of a covariance ``LASTING`` times the filter's: half
-    of the chi square, which of white innovations with that mean over n samples is n / ``LASTING`` its square.
+    The log-likelihood ratio of a lasting deviation, and of a covariance ``INFLATION`` times the filter's:
+    half of chi square, which of white innovations with that mean over n samples is n / ``INFLATION`` m^2.
 
     Args:
         means: of field and Sun, three numbers each, in standard deviations.
@@ -115,4 +112,4 @@ def mean_misfit(means: tuple[float, ...], weights: EvidenceWeights) -> float:
     """
     field, sun = means[:3], means[3:]
     most = max(sum([mean * mean for mean in field]), sum([mean * mean for mean in sun]))
-    return 0.5 * weights.averaged * most / LASTING
+    return 0.5 * weights.averaged * most / INFLATION

@@ -22,6 +22,8 @@ def judge_current(
 ) -> CoilHealth:
     """Compare what the coil driver reports with what was asked of it.
 
+    A reading of the current cannot be doubted, but may be of another moment: two isolate a coil.
+
     Args:
         health: of the tick before.
         view: after what was received in this tick.
@@ -44,13 +46,9 @@ def judge_current(
     nominal_ma = config.current_ma[abs(status.level) - 1]
     part = status.current_ma / (nominal_ma if status.level > 0 else -nominal_ma)
     kind, threshold = coil_fault(part, config.weak.weak_part), config.weak.threshold
-    nats = weigh(health.nats[fired.coil], threshold / NAME_PULSES if kind else -threshold, threshold)
+    nats = weigh(health.nats[fired.coil], 0.5 * threshold if kind else -threshold, threshold)
     health = health._replace(nats=with_item(health.nats, fired.coil, nats))
     return with_fault(health, fired.coil, kind, config) if nats >= threshold else health
-
-
-NAME_PULSES = 2
-"""A reading of the current cannot be doubted, but may be of another moment: so many isolate a coil."""
 
 
 def _strange(health: CoilHealth, status: CoilStatus, unasked: bool, config: CoilHealthConfig) -> CoilHealth:

@@ -28,7 +28,6 @@ from fsw.core.estimation.kalman import Matrix, Trace, unexplained
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.fdir.coils.explanations import (
-    CERTAIN,
     MODEL_ERROR,
     PULSES,
     STRAY,
@@ -36,6 +35,7 @@ from fsw.core.fdir.coils.explanations import (
     indices_of,
     of_pulses,
 )
+from fsw.core.fdir.evidence import SIGMAS
 
 UNEXPLAINED = 1.25
 """Squares of the innovations that may be left for each scalar measured; beyond, no coil is judged."""
@@ -125,7 +125,7 @@ def _solve(estimate: Estimate, trace: Trace, tuning: MekfConfig) -> tuple[Estima
         return estimate, None
     pulses = [index for index, cause in enumerate(trace.causes) if cause < STRAY]
     effect, deviation, covariance = trace.effect[:, pulses], deviation[pulses], covariance[pulses][:, pulses]
-    certain = deviation**2 > CERTAIN**2 * (covariance.diagonal() + MODEL_ERROR**2)
+    certain = deviation**2 > SIGMAS**2 * (covariance.diagonal() + MODEL_ERROR**2)
     if (certain & effect.any(axis=0)).any():
         estimate = mekf.corrected(estimate, effect @ deviation, effect @ covariance @ effect.T, tuning)
         left = trace.effect.copy()

@@ -17,8 +17,6 @@ from fsw.core.fdir.evidence import SIGMAS
 
 MODEL_ERROR = 0.05
 """Relative uncertainty of a coil's effect that no measurement takes away."""
-CERTAIN = 4.0
-"""A deviation of so many standard deviations is none of noise."""
 PULSES = 3
 """Of each coil its latest pulses are solved for, so many."""
 NONE, ALL = -1, -2
@@ -94,7 +92,7 @@ class Explanation(NamedTuple):
     @property
     def fits(self) -> bool:
         """Whether what is left is noise."""
-        return self.distance <= CERTAIN**2
+        return self.distance <= SIGMAS**2
 
 
 def of_pulses(solution: Solution) -> list[Explanation]:
@@ -164,7 +162,7 @@ def weak_by_pulses(solution: Solution, earlier: Vec3, test: WeakTest) -> tuple[i
             nats += earlier[one.coil]
         rivals = [other.distance for other in likely if other.coil != one.coil]
         told = min(rivals, default=inf) - one.distance >= 2.0 * test.threshold
-        if nats >= test.threshold and told and alike - one.distance > CERTAIN**2:
+        if nats >= test.threshold and told and alike - one.distance > SIGMAS**2:
             return one.coil, one.part
     return None
 

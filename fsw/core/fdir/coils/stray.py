@@ -16,7 +16,8 @@ from fsw.core.estimation.kalman import Matrix, Trace
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.fdir.coils import effects
-from fsw.core.fdir.coils.explanations import CERTAIN, MODEL_ERROR, STRAY, Solution
+from fsw.core.fdir.coils.explanations import MODEL_ERROR, STRAY, Solution
+from fsw.core.fdir.evidence import SIGMAS
 
 CAUSES = (STRAY, STRAY + 1, STRAY + 2)
 
@@ -70,7 +71,7 @@ def follow(estimate: Estimate, solution: Solution, tuning: MekfConfig) -> tuple[
         tuning: of the filter.
     """
     deviation, weights = _lacking(solution)
-    if not deviation @ weights @ deviation > CERTAIN**2:
+    if not deviation @ weights @ deviation > SIGMAS**2:
         return None
     estimate = _shifted(estimate, deviation, np.zeros_like(estimate.covariance), tuning)
     first = solution.causes.index(STRAY)
@@ -120,7 +121,7 @@ def conducting(solution: Solution) -> int | None:
     """The coil in which a current flows without a request; None while it may be another, or none.
 
     Of the four explanations (p = 0, or 1 for one of the coils) the likeliest, if each other is less likely by
-    ``CERTAIN``, and it fits. No false alarm is at stake: it is certain that a current flows. The distance of
+    ``SIGMAS``, and it fits. No false alarm is at stake: it is certain that a current flows. The distance of
     each is the square of what it lacks of the solution, by the covariance, less the prior's share in it.
     """
     lacking, weights = _lacking(solution)
@@ -135,7 +136,7 @@ def conducting(solution: Solution) -> int | None:
         distances.append(float(off @ weights @ off - prior @ prior))
     least, second = sorted(distances)[:2]
     likeliest = distances.index(least)
-    if likeliest == 3 or least > CERTAIN**2 or second - least < CERTAIN**2:
+    if likeliest == 3 or least > SIGMAS**2 or second - least < SIGMAS**2:
         return None
     return likeliest
 

@@ -19,7 +19,7 @@ from fsw.core.estimation.kalman import Matrix, inverse
 from fsw.core.estimation.measurement import Prediction, field_prediction, sun_prediction
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.fdir.evidence import EvidenceWeights, weigh
+from fsw.core.fdir.evidence import INFLATION, EvidenceWeights, weigh
 from fsw.core.fdir.faults import SensorFault
 from fsw.core.fdir.sensors import pair
 from fsw.core.fdir.sensors.credibility import CredibilityConfig, credible
@@ -29,10 +29,6 @@ from fsw.core.orbit.ephemeris import Reference
 
 LOST = 0.5
 """Part of its weight that a missing sample has: the bus may lose some, in bursts."""
-
-
-TELLING = 4.0
-"""A prediction whose covariance is at most so many times the noise can tell whether a sample is right."""
 
 
 class Watch(NamedTuple):
@@ -180,6 +176,6 @@ def _fits(
     predicted, sensitivity = prediction
     innovation = np.array(sub(sample, predicted))
     covariance = sensitivity.dot(estimate.covariance).dot(sensitivity.T) + noise
-    if np.trace(covariance) > TELLING * np.trace(noise):
+    if np.trace(covariance) > INFLATION * np.trace(noise):
         return None
     return bool(innovation.dot(inverse(covariance)).dot(innovation) <= mekf.gate_nis)

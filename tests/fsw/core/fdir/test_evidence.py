@@ -10,7 +10,7 @@ from fsw.core.fdir.evidence import (
     BLIND_S,
     CORRELATION_S,
     DAY_S,
-    LASTING,
+    INFLATION,
     MISS,
     mean_misfit,
     misfit,
@@ -96,7 +96,7 @@ class TestMean:
         known = weights(DAYS, 1.0)
         assert known.averaged == pytest.approx(119.0), "of a mean with a time constant of 60 samples"
         means = (0.3, -0.4, 0.2, 0.1, 0.0, 0.5)
-        assert mean_misfit(means, known) == pytest.approx(0.5 * 119.0 * 0.29 / LASTING)
+        assert mean_misfit(means, known) == pytest.approx(0.5 * 119.0 * 0.29 / INFLATION)
         assert mean_misfit((*means[3:], *means[:3]), known) == mean_misfit(means, known)
 
     @pytest.mark.parametrize("tick_s", [1.0, 0.1])
