@@ -238,6 +238,10 @@ PLANTED = {
     "what flies does not know what stays on the ground": ("fsw/node.py", "import sim.plant.plant"),
     "fsw: the node over its table": ("fsw/core/step.py", "from fsw.bus import interface"),
     "fsw.core: a step over what it is made of": ("fsw/core/algebra/vector.py", "import fsw.core.laws.pd"),
+    "what is thought of the sensors and of the coils": (
+        "fsw/core/fdir/coils/effects.py",
+        "import fsw.core.fdir.sensors.pair",
+    ),
     "boards: what starts them over the bench": ("hil_stub/node.py", "def f():\n    import hil_stub.bench"),
     "boards know the wire, and what starts them": ("hil_stub/process/runner.py", "import fsw.core.state"),
     "boards on their own know the wire alone": ("hil_stub/coils/interlock.py", "import fsw.bus.hub"),

@@ -121,10 +121,10 @@ def test_a_single_wrong_current_names_nobody(make_world):
 
 
 @pytest.mark.requirement("REQ-COIL-05")
-def test_a_coil_that_is_named_is_not_fired_until_the_ground_clears_it(make_world):
+def test_a_coil_that_is_named_is_not_fired_before_its_time_or_until_the_ground_clears_it(make_world):
     world = make_world()
     world.fly(SETTLED)
-    health = world.state.health.coils._replace(faults=(1, 0, 3))
+    health = world.state.health.coils._replace(faults=(1, 0, 3), until_retest=(2000, 0, 2000))
     world.state = world.state._replace(health=world.state.health._replace(coils=health))
     said = fly(world, 900)
     assert {coil for _, coil in fires(said)} == {1}
