@@ -1,20 +1,23 @@
 """Fault detection, isolation and recovery as the flight loop calls it: one state, one configuration."""
 
 from dataclasses import dataclass
+from math import inf
 from typing import NamedTuple
 
 from fsw.core.actuation.actuator import CoilView, unexpected
 from fsw.core.algebra.vector import ZERO, Vec3
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.estimation.estimator import EstimatorState, Used, restart, untraced
+from fsw.core.estimation.mekf import Estimate
 from fsw.core.events import Event, Happening
 from fsw.core.fdir.coils import currents, retest, torques
 from fsw.core.fdir.coils import health as coil_health
 from fsw.core.fdir.coils.health import CoilHealth, CoilHealthConfig
 from fsw.core.fdir.evidence import EvidenceWeights
-from fsw.core.fdir.faults import Sensor
+from fsw.core.fdir.faults import OPEN_PART, Sensor
 from fsw.core.fdir.sensors import health as sensor_health
 from fsw.core.fdir.sensors import pair, plausibility
+from fsw.core.fdir.sensors.credibility import credible
 from fsw.core.fdir.sensors.health import SensorConfig, SensorHealth
 from fsw.core.fdir.sensors.pair import Pair, Standing
 from fsw.core.fdir.sensors.plausibility import Findings, PlausibilityConfig
@@ -124,9 +127,9 @@ def judge(
     if changed or judged.pair.standing is not Standing.TRUSTED:
         estimator = untraced(estimator)  # what a faulty sensor has shown proves nothing about a coil
     elif not sensor_health.suspected(judged):
-        sure = pair.proven(judged.pair, weights) or isolated
-        doubt = judged.pair.doubt > 1.0
-        found, estimator = retest.retest(found, estimator, sure and not isolated, config.coils)
+        proven, doubt = pair.proven(judged.pair, weights), judged.pair.doubt > 1.0
+        found, estimator = retest.retest(found, estimator, proven and not isolated, config.coils)
+        sure = _believed_below(estimator.estimate, proven or isolated, config)
         found, estimator = torques.judge_effect(
             found, evidence.view, reference.b_eci_t, estimator, evidence.tick, sure, doubt, config.coils
         )
@@ -138,6 +141,16 @@ def judge(
     if torque_untold or not pair.valid(judged.pair):
         attitude = attitude._replace(valid=False)
     return Health(judged, found), estimator, attitude
+
+
+def _believed_below(estimate: Estimate | None, proven: bool, config: FdirConfig) -> float:
+    """Which parts of their effect are believed of pulses: none, those of a weak coil, or of an open one.
+
+    What the filter assumes beyond the table may come from that coil, or make a sound one seem somewhat weak.
+    """
+    if not proven or estimate is None:
+        return -inf
+    return config.coils.weak.weak_part if credible(estimate, config.sensors.credibility) else OPEN_PART
 
 
 def _pulses_untold(found: CoilHealth, both: Pair, weights: EvidenceWeights) -> bool:

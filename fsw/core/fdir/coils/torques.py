@@ -27,7 +27,7 @@ def judge_effect(
     b_eci_t: Vec3,
     state: EstimatorState,
     tick: int,
-    sure: bool,
+    believed_below: float,
     unexplained: bool,
     config: CoilHealthConfig,
 ) -> tuple[CoilHealth, EstimatorState]:
@@ -39,7 +39,7 @@ def judge_effect(
         b_eci_t: field as modelled.
         state: of the estimator, after the samples of this tick.
         tick: this one.
-        sure: nothing but a coil may be what the filter corrected.
+        believed_below: so small a part of its effect is believed to be a coil's own fault.
         unexplained: there is doubt about both sensors.
         config: limits.
 
@@ -58,7 +58,9 @@ def judge_effect(
         begins = health.strange_ticks == 1
         estimate = stray.trace(estimate, health.conducts, kicks_radps, config.mekf.tick_s, begins)
     if due:
-        health, estimate = _isolate(health, estimate, view.fired.coil if ended else None, sure, config)
+        health, estimate = _isolate(
+            health, estimate, view.fired.coil if ended else None, believed_below, config
+        )
     if ended and (view.driven_coil, view.driven_level) == view.fired:
         impulse_nms = pulses.impulse(view.fired, rotate(estimate.q_body_from_eci, b_eci_t), config.pulses)
         kick_radps = transform(config.mekf.rotor.inertia_inverse, impulse_nms)
@@ -71,7 +73,7 @@ EARLY_TICKS = 5
 
 
 def _isolate(
-    health: CoilHealth, estimate: Estimate, ended: int | None, sure: bool, config: CoilHealthConfig
+    health: CoilHealth, estimate: Estimate, ended: int | None, believed_below: float, config: CoilHealthConfig
 ) -> tuple[CoilHealth, Estimate]:
     """With the coil isolated that did something else than assumed, if any, and the estimate corrected.
 
@@ -87,7 +89,7 @@ def _isolate(
         oldest = explanations.of_oldest(solution, ended, config.weak)
         nats = weigh(earlier[ended], oldest, config.weak.threshold)
         health = health._replace(pulse_nats=with_item(earlier, ended, nats))
-    if weak is not None and sure and _others_are_sound(health, weak[0], gain_nats):
+    if weak is not None and weak[1] < believed_below and _others_are_sound(health, weak[0], gain_nats):
         health = with_fault(health, weak[0], coil_fault(weak[1], config.weak.weak_part), config)
     return (
         _attribute(health, estimate, solution, config) if unattributed_torque(health) else (health, estimate)

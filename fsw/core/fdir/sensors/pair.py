@@ -121,7 +121,7 @@ def judge(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: Cre
     elif standing is Standing.TRUSTED and (seen.estimate is None or seen.begun):
         standing = Standing.NEW
     blind_ticks = 0 if seen.used.field or seen.used.sun else pair.blind_ticks + 1
-    owed = _owed(pair.owed, proof, blind_ticks, seen, weights)
+    owed = _owed(pair.owed, blind_ticks, seen, weights)
     lost = owed > 0.0 and seen.used.field and seen.used.sun and not seen.sound
     slow = weights.agrees / PAIR_NUMBERS  # a faulty coil, which looks the same at first, is found before
     strange = weigh(pair.strange, slow if lost else -slow, threshold)
@@ -172,20 +172,18 @@ def _proof(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: Cr
     return weigh(pair.proof, by / slow, weights.threshold)
 
 
-def _owed(owed: float, proof: float, blind_ticks: int, seen: Observed, weights: EvidenceWeights) -> float:
+def _owed(owed: float, blind_ticks: int, seen: Observed, weights: EvidenceWeights) -> float:
     """What both sensors have to prove anew.
 
-    After a time without any, in which pulses may have failed; where innovations have a mean that is no
-    chance, and so contradict the covariance; and where one alone has long been joined with a satellite that
-    the table does not allow.
+    After a time without any, in which pulses may have failed; and where innovations have a mean that is no
+    chance, and so contradict the covariance.
     """
     if seen.estimate is None:
         return 0.0
-    both = seen.used.field and seen.used.sun
     lags = mean_misfit(seen.estimate.lag, weights) >= weights.threshold
-    led_by_model = not (both or seen.sound or proof)
-    if lags or led_by_model or blind_ticks > weights.blind_ticks:
+    if lags or blind_ticks > weights.blind_ticks:
         return weights.threshold
+    both = seen.used.field and seen.used.sun
     return max(0.0, owed - weights.fits) if both else owed
 
 

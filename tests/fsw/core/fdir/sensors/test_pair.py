@@ -196,24 +196,6 @@ class TestDoubt:
         assert after(TRUSTED, alone._replace(estimate=large), 35).standing is Standing.DISPUTED
 
 
-class TestLedByTheModel:
-    """One sensor and a satellite that the table does not allow: what it predicts of the rest is not valid."""
-
-    ALONE = TAKEN._replace(used=Used(True, False, False), sound=False)
-
-    def test_an_estimate_is_valid_while_what_both_have_proven_lasts(self):
-        assert valid(after(TRUSTED, self.ALONE, 120))
-        assert not valid(after(TRUSTED, self.ALONE, 140))
-
-    def test_with_one_that_the_table_allows_it_stays_valid(self):
-        assert valid(after(TRUSTED, self.ALONE._replace(sound=True), 1000))
-
-    def test_both_have_to_bear_it_out_anew(self):
-        owing = after(TRUSTED, self.ALONE, 140)
-        assert not valid(after(owing, TAKEN, 120))
-        assert valid(after(owing, TAKEN, 140))
-
-
 class TestStrange:
     """An estimate that has settled on a satellite that cannot be begins anew, if it does not fit either."""
 
