@@ -154,9 +154,9 @@ def _believed_below(estimate: Estimate | None, proven: bool, config: FdirConfig)
 
 
 def _pulses_untold(found: CoilHealth, both: Pair, weights: EvidenceWeights) -> bool:
-    """Whether a coil may be weak, by half of what isolates it, or else the sensor that shows it is wrong."""
+    """Whether a coil may be weak, by over half of what isolates it, or the sensor that shows it is wrong."""
     each = zip(found.pulse_nats, found.faults, strict=True)
-    suspected = any(nats >= 0.5 * weights.threshold and not fault for nats, fault in each)
+    suspected = any(nats > 0.5 * weights.threshold and not fault for nats, fault in each)
     return suspected and not pair.proven(both, weights)
 
 

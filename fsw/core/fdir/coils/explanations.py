@@ -1,4 +1,4 @@
-"""What explains the deviations of pulses: which coil is weak, or conducts by itself, or that it is no coil.
+"""What explains the deviations of pulses: which coil is weak, or all of them alike, or that it is no coil.
 
 Every explanation is weighed by its likelihood, and accepted only if what it leaves is noise and if each other
 one is less likely by the threshold of the evidence.
@@ -20,6 +20,7 @@ MODEL_ERROR = 0.05
 PULSES = 3
 """Of each coil its latest pulses are solved for, so many."""
 NONE, ALL = -1, -2
+"""In place of a coil: no coil is faulty, or every one does as little as the others."""
 STRAY = 3
 """STRAY + j is the number, as a cause, of a stray current in coil j; j itself that of a pulse."""
 

@@ -1,7 +1,7 @@
 """A coil that was isolated is tried again: the fault may have passed, or the estimate may have been wrong.
 
 Half of the evidence that isolates it stays: one bad pulse isolates it again, and good ones take it back. What
-the filter has learnt of its gain is forgotten.
+the filter has learnt of its gain is forgotten. Ticks in which a sensor is in doubt do not count.
 """
 
 from fsw.core.estimation.estimator import EstimatorState, load, untraced

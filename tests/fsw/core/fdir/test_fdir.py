@@ -126,6 +126,19 @@ class TestJudgement:
         assert estimator.restarts == state.estimator.restarts
 
     @pytest.mark.parametrize(
+        ("part", "proof", "valid"), [(0.5, 0.0, True), (0.6, 0.0, False), (0.6, 1.0, True)]
+    )
+    def test_over_half_against_a_coil_needs_an_estimate_that_is_proven(
+        self, make_world, judged, part, proof, valid
+    ):
+        """A coil that is tried again has half against it, and costs no attitude in the shadow."""
+        threshold = make_world().config.fdir.sensors.weights.threshold
+        pair = PROVEN._replace(proof=proof * threshold)
+        shown = CoilHealth(pulse_nats=(0.0, part * threshold, 0.0))
+        (_, _, attitude), _ = judged(Health(sensors(pair=pair).sensors, shown))
+        assert attitude.valid is valid
+
+    @pytest.mark.parametrize(
         "health",
         [
             Health(sensors(pair=PROVEN).sensors, CoilHealth(strange_ticks=9, stray_ma=40, stuck=True)),
