@@ -17,7 +17,7 @@ from fsw.core.fdir.evidence import EvidenceWeights
 from fsw.core.fdir.faults import OPEN_PART, Sensor
 from fsw.core.fdir.sensors import health as sensor_health
 from fsw.core.fdir.sensors import pair, plausibility
-from fsw.core.fdir.sensors.credibility import credible
+from fsw.core.fdir.sensors.credibility import credible_but_coils
 from fsw.core.fdir.sensors.health import SensorConfig, SensorHealth
 from fsw.core.fdir.sensors.pair import Pair, Standing
 from fsw.core.fdir.sensors.plausibility import Findings, PlausibilityConfig
@@ -150,7 +150,8 @@ def _believed_below(estimate: Estimate | None, proven: bool, config: FdirConfig)
     """
     if not proven or estimate is None:
         return -inf
-    return config.coils.weak.weak_part if credible(estimate, config.sensors.credibility) else OPEN_PART
+    known = credible_but_coils(estimate, config.sensors.credibility)
+    return config.coils.weak.weak_part if known else OPEN_PART
 
 
 def _pulses_untold(found: CoilHealth, both: Pair, weights: EvidenceWeights) -> bool:

@@ -19,30 +19,39 @@ OF_SENSORS = frozenset({"mag_bias_t", "mag_turn_rad", "mag_scale", "sun_turn_rad
 class CredibilityConfig(NamedTuple):
     """Place, least and largest credible value of each number that is estimated, among the ``Parameters``.
 
-    ``of_sensors`` and ``of_all``: of the parameters of the sensors, and of all.
+    ``of_sensors``, ``of_all`` and ``but_coils``: of the parameters of the sensors, of all, and of all but
+    those of the coils.
     """
 
     of_sensors: tuple[tuple[int, float, float], ...]
     of_all: tuple[tuple[int, float, float], ...]
+    but_coils: tuple[tuple[int, float, float], ...]
 
 
 def credibility_config(mekf: MekfConfig) -> CredibilityConfig:
     """The limits that follow from the filter's priors."""
     variances, means = mekf.initial_covariance.diagonal().tolist(), mekf.initial_parameters.floats()
-    of_sensors, of_all = [], []
+    of_sensors, of_all, but_coils = [], [], []
     for number, place in component_places(mekf.layout).items():
         width = SIGMAS * sqrt(variances[place])
         name = NAMES[COMPONENTS[number][0]]
         limits = (number, means[number] - width, means[number] + width)
         of_all.append(limits)
+        if name != "coil_error":
+            but_coils.append(limits)
         if name in OF_SENSORS:
             of_sensors.append(limits)
-    return CredibilityConfig(tuple(of_sensors), tuple(of_all))
+    return CredibilityConfig(tuple(of_sensors), tuple(of_all), tuple(but_coils))
 
 
 def credible(estimate: Estimate, config: CredibilityConfig) -> bool:
     """Whether the satellite that the estimate assumes can be the one of the table."""
     return _within(estimate, config.of_all)
+
+
+def credible_but_coils(estimate: Estimate, config: CredibilityConfig) -> bool:
+    """Whether it can be but for what its coils do: a weak one has a gain that is not credible."""
+    return _within(estimate, config.but_coils)
 
 
 def sensors_credible(estimate: Estimate, config: CredibilityConfig) -> bool:

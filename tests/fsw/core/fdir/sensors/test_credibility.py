@@ -6,7 +6,12 @@ from fsw.core.estimation import mekf
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.parameters import Prior
 from fsw.core.fdir.evidence import SIGMAS
-from fsw.core.fdir.sensors.credibility import credibility_config, credible, sensors_credible
+from fsw.core.fdir.sensors.credibility import (
+    credibility_config,
+    credible,
+    credible_but_coils,
+    sensors_credible,
+)
 
 PRIORS = {
     "mag_bias_t": Prior((3e-7, 4e-7, 5e-7), (0.0,) * 3),
@@ -59,3 +64,17 @@ def test_what_moves_the_satellite_says_nothing_of_its_sensors():
 
 def test_no_number_is_not_credible():
     assert not credible(estimated("mag_bias_t", 2, float("nan")), LIMITS)
+
+
+def test_a_weak_coil_is_none_of_the_table_but_the_rest_of_the_satellite_is():
+    prior = {**PRIORS, "coil_error": Prior((0.03,) * 9, (0.0,) * 9)}
+    noise = {"magnetometer_sigma_t": 2e-7, "sun_sigma_rad": 0.01, "torque_noise_nm_rts": 1e-9}
+    start = {"attitude_sigma_rad": 0.1, "rate_sigma_radps": 0.01, "gate_nis": 16.0}
+    config = mekf_config(CONFIG.rotor.inertia_kgm2, 1.0, prior, **noise, **start)
+    limits = credibility_config(config)
+    estimate = mekf.start((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), config)
+    weak = estimate.parameters._replace(coil_error=(-0.7, *(0.0,) * 8))
+    assert not credible(estimate._replace(parameters=weak), limits)
+    assert credible_but_coils(estimate._replace(parameters=weak), limits)
+    heavy = weak._replace(dipole_body_am2=(0.0, 0.3, 0.0))
+    assert not credible_but_coils(estimate._replace(parameters=heavy), limits)
