@@ -4,9 +4,9 @@ from math import inf, radians
 
 import numpy as np
 
-from fsw.core.actuation.pulses import AXES
+from fsw.core.actuation.pulses import AXES, Pulse, PulseConfig, impulse
 from fsw.core.algebra.quaternion import conjugate, multiply, normalise, rotate
-from fsw.core.algebra.vector import ZERO, add, cross, scale, sub, transform, unit
+from fsw.core.algebra.vector import ZERO, add, scale, sub, transform, unit
 from fsw.core.estimation import mekf
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.parameters import Prior
@@ -27,7 +27,8 @@ CONFIG = mekf_config(
 )
 B_ECI_T, S_ECI, E1_ECI = (1.7e-5, -2.3e-5, 3.1e-5), unit((-0.8, 0.35, 0.4)), unit((0.3, 0.7, -0.5))
 START = mekf.start(normalise((0.6, -0.4, 0.5, 0.3)), (1e-3, -4e-4, 7e-4), CONFIG)
-LEVEL_AM2, PULSE_S, EVERY = 8.0, 3, 100
+LEVEL_AM2, PULSE_S, EVERY, UNUSED = 8.0, 3, 100, (ZERO, ZERO, ZERO)
+PULSES = PulseConfig(PULSE_S, EVERY, 3000, True, (0.02, 4.0, LEVEL_AM2), PULSE_S, 1.0, 300.0, UNUSED, UNUSED)
 WEAK = WeakTest(0.7, 0.8, 14.0)
 
 
@@ -35,18 +36,26 @@ def step(estimate, dipole_am2):
     return mekf.predict(estimate, E1_ECI, B_ECI_T, 3e-6, dipole_am2, CONFIG)
 
 
+def b_body_t(estimate):
+    return rotate(estimate.q_body_from_eci, B_ECI_T)
+
+
 def kick_radps(estimate, coil):
-    impulse_nms = scale(PULSE_S * LEVEL_AM2, cross(AXES[coil], rotate(estimate.q_body_from_eci, B_ECI_T)))
+    impulse_nms = impulse(Pulse(coil, 3), b_body_t(estimate), PULSES)
     return transform(CONFIG.rotor.inertia_inverse, impulse_nms)
 
 
-def fly(coils, parts, ticks=EVERY, noise=1.0, alter=lambda estimate: estimate, level_am2=LEVEL_AM2):
+def traced(estimate, pulse, b_eci_t=B_ECI_T):
+    return trace_pulse(estimate, pulse, b_eci_t, PULSES, CONFIG)
+
+
+def fly(coils, parts, ticks=EVERY, noise=1.0, alter=lambda estimate: estimate, level=3):
     """The estimate after pulses of these coils, each with its part of the effect; also the true attitude."""
     random = np.random.default_rng(3)
     truth = estimate = START
     for coil, part in zip(coils, parts, strict=True):
         for tick in range(ticks):
-            dipole = scale(level_am2, AXES[coil]) if tick < PULSE_S else ZERO
+            dipole = scale(PULSES.levels_am2[level - 1], AXES[coil]) if tick < PULSE_S else ZERO
             truth, estimate = step(truth, scale(part, dipole)), step(estimate, dipole)
             if tick >= PULSE_S:
                 b, s = (rotate(truth.q_body_from_eci, r) for r in (B_ECI_T, S_ECI))
@@ -54,8 +63,7 @@ def fly(coils, parts, ticks=EVERY, noise=1.0, alter=lambda estimate: estimate, l
                 s = add(s, tuple(noise * radians(0.5) * random.normal(size=3)))
                 estimate = mekf.update_both(estimate, b, B_ECI_T, s, S_ECI, CONFIG)
             elif tick == PULSE_S - 1:
-                kick = scale(level_am2 / LEVEL_AM2, kick_radps(estimate, coil))
-                estimate = trace_pulse(alter(estimate), coil, kick, PULSE_S)
+                estimate = traced(alter(estimate), Pulse(coil, level))
     return estimate, truth
 
 

@@ -86,33 +86,46 @@ def inverse(m: Matrix) -> Matrix:
     return np.full_like(m, np.nan) if failure else inverted
 
 
+class Cause(NamedTuple):
+    """Of a deviation: its number, and which part of a unit the filter took into account.
+
+    ``uncertain``: relative standard deviation of a unit that no measurement takes away.
+    """
+
+    number: int
+    assumed: float
+    uncertain: float
+
+
 class Trace(NamedTuple):
     """What unmodelled deviations would do to the errors and innovations of the filter.
 
-    ``causes``: for each of k deviations the number of its cause; ``assumed``: which part of a unit the filter
-    took into account. ``effect`` (n, k + 1): what a unit of each leaves in the error state; the last column
-    only makes room for the innovation. ``sums`` (k + 1, k + 1): t^T S^-1 t over all updates, t being the
-    effects as measured, and the innovation last; ``measured``: of how many numbers.
+    ``causes``: those of k deviations. ``effect`` (n, k + 1): what a unit of each leaves in the error state;
+    the last column only makes room for the innovation. ``sums`` (k + 1, k + 1): t^T S^-1 t over all updates,
+    t being the effects as measured, and the innovation last; ``measured``: of how many numbers.
     """
 
-    causes: tuple[int, ...]
-    assumed: tuple[float, ...]
+    causes: tuple[Cause, ...]
     effect: Matrix
     sums: Matrix
     measured: int
 
+    @property
+    def numbers(self) -> tuple[int, ...]:
+        """Those of the causes."""
+        return tuple([cause.number for cause in self.causes])
+
     def packed(self) -> bytes:
         """For the checksum of the state."""
-        causes = struct.pack(f"<{1 + len(self.causes)}q", self.measured, *self.causes)
-        assumed = struct.pack(f"<{len(self.assumed)}d", *self.assumed)
-        return causes + assumed + self.effect.tobytes() + self.sums.tobytes()
+        causes = b"".join([struct.pack("<q2d", *cause) for cause in self.causes])
+        return struct.pack("<q", self.measured) + causes + self.effect.tobytes() + self.sums.tobytes()
 
 
 def carried(trace: Trace, transition: Matrix) -> Trace:
     """The trace after a prediction with this transition, (6, n)."""
     effect = trace.effect.copy()
     effect[0:6] = transition.dot(trace.effect)
-    return Trace(trace.causes, trace.assumed, effect, trace.sums, trace.measured)
+    return trace._replace(effect=effect)
 
 
 def unexplained(sums: Matrix) -> float:

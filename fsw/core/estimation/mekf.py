@@ -197,7 +197,7 @@ def _update(
         if nis > 2.0 * len(traced):  # else there is nothing to explain
             nis = unexplained(sums) - unexplained(trace.sums)
         effect, measured = trace.effect - kalman.K.dot(traced), trace.measured + len(traced)
-        trace = Trace(trace.causes, trace.assumed, effect, sums, measured)
+        trace = Trace(trace.causes, effect, sums, measured)
     if not 0.0 <= nis <= config.gate_nis:  # overflow can make it -inf
         return None
     covariance = 0.5 * (kalman.P + kalman.P.T)

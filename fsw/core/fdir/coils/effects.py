@@ -20,11 +20,15 @@ Source: Friedland 1969, Treatment of bias in recursive filtering (IEEE Trans. Au
 the bias. Willsky and Jones 1976 estimate the size of jumps by the same sums.
 """
 
+from math import hypot
+
 import numpy as np
 
-from fsw.core.algebra.vector import Vec3, scale
+from fsw.core.actuation.pulses import Pulse, PulseConfig, impulse
+from fsw.core.algebra.quaternion import rotate
+from fsw.core.algebra.vector import Vec3, norm, scale, transform
 from fsw.core.estimation import mekf
-from fsw.core.estimation.kalman import Matrix, Trace, unexplained
+from fsw.core.estimation.kalman import Cause, Matrix, Trace, unexplained
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.fdir.coils.explanations import (
@@ -41,37 +45,50 @@ UNEXPLAINED = 1.25
 """Squares of the innovations that may be left for each scalar measured; beyond, no coil is judged."""
 
 
-def trace_pulse(estimate: Estimate, coil: int, kick_radps: Vec3, pulse_s: float) -> Estimate:
+def trace_pulse(
+    estimate: Estimate, pulse: Pulse, b_eci_t: Vec3, pulses: PulseConfig, tuning: MekfConfig
+) -> Estimate:
     """Trace one more pulse, which ends now, and the oldest of its coil no longer.
+
+    Its effect is as uncertain as ``MODEL_ERROR``, and as the part of it that the disturbance torque would do
+    by the next pulse: if that is not what the filter takes it for, the pulse seems to have done it.
 
     Args:
         estimate: before.
-        coil: whose the pulse is.
-        kick_radps: change of rate by the nominal dipole, body axes.
-        pulse_s: its length.
+        pulse: asked for and done.
+        b_eci_t: the field in it.
+        pulses: configuration of pulses.
+        tuning: of the filter.
     """
-    trace = estimate.trace or empty_trace(estimate)
-    own = indices_of(coil, trace.causes)
+    trace, coil = estimate.trace or empty_trace(estimate), pulse.coil
+    own = indices_of(coil, trace.numbers)
     if len(own) == PULSES:
         trace = without(trace, own[-1])
-    effect = np.array((*scale(0.5 * pulse_s, kick_radps), *kick_radps))
-    assumed = 1.0 + estimate.parameters.coil_error[4 * coil]
-    return estimate._replace(trace=extended(trace, (coil,), (assumed,), effect[:, np.newaxis]))
+    impulse_nms = impulse(pulse, rotate(estimate.q_body_from_eci, b_eci_t), pulses)
+    kick_radps = transform(tuning.rotor.inertia_inverse, impulse_nms)
+    effect = np.array((*scale(0.5 * pulses.pulse_s, kick_radps), *kick_radps))
+    drift_nms = pulses.backoff_ticks * pulses.tick_s * norm(estimate.parameters.torque_body_nm)
+    cause = Cause(
+        coil,
+        assumed=1.0 + estimate.parameters.coil_error[4 * coil],
+        uncertain=hypot(MODEL_ERROR, drift_nms / (max(drift_nms, norm(impulse_nms)) or 1.0)),
+    )
+    return estimate._replace(trace=extended(trace, (cause,), effect[:, np.newaxis]))
 
 
 def empty_trace(estimate: Estimate) -> Trace:
     """A trace of nothing yet."""
-    return Trace((), (), np.zeros((len(estimate.covariance), 1)), np.zeros((1, 1)), 0)
+    return Trace((), np.zeros((len(estimate.covariance), 1)), np.zeros((1, 1)), 0)
 
 
-def extended(trace: Trace, causes: tuple[int, ...], assumed: tuple[float, ...], effects: Matrix) -> Trace:
+def extended(trace: Trace, causes: tuple[Cause, ...], effects: Matrix) -> Trace:
     """With more causes, by columns of effects on attitude and rate; what is unexplained counts from here."""
     new, size = len(causes), len(causes) + len(trace.sums)
     effect, sums = np.zeros((len(trace.effect), size)), np.zeros((size, size))
     effect[:6, :new] = effects
     effect[:, new:], sums[new:, new:] = trace.effect, trace.sums
     sums[-1, -1] -= unexplained(trace.sums)
-    return Trace((*causes, *trace.causes), (*assumed, *trace.assumed), effect, sums, 0)
+    return Trace((*causes, *trace.causes), effect, sums, 0)
 
 
 def without(trace: Trace, index: int) -> Trace:
@@ -84,11 +101,8 @@ def without(trace: Trace, index: int) -> Trace:
 def only(trace: Trace, kept: list[int], sums: Matrix) -> Trace:
     """With some of the causes only, of these sums."""
     places = [*kept, -1]
-    causes, assumed = (
-        tuple(trace.causes[place] for place in kept),
-        tuple(trace.assumed[place] for place in kept),
-    )
-    return Trace(causes, assumed, trace.effect[:, places], sums[places][:, places], trace.measured)
+    causes = tuple(trace.causes[place] for place in kept)
+    return Trace(causes, trace.effect[:, places], sums[places][:, places], trace.measured)
 
 
 def solve(estimate: Estimate, tuning: MekfConfig) -> tuple[Estimate, Solution | None]:
@@ -120,12 +134,16 @@ def _solve(estimate: Estimate, trace: Trace, tuning: MekfConfig) -> tuple[Estima
     deviation = covariance @ trace.sums[:-1, -1]
     if unexplained(trace.sums) > UNEXPLAINED * trace.measured:
         return estimate, None
-    solution = Solution(trace.causes, np.array(trace.assumed) + deviation, deviation, covariance)
+    assumed, uncertain = (
+        np.array([cause.assumed for cause in trace.causes]),
+        np.array([cause.uncertain for cause in trace.causes]),
+    )
+    solution = Solution(trace.numbers, assumed + deviation, deviation, covariance, uncertain)
     if not of_pulses(solution)[0].fits:
         return estimate, None
-    pulses = [index for index, cause in enumerate(trace.causes) if cause < STRAY]
+    pulses = [index for index, number in enumerate(trace.numbers) if number < STRAY]
     effect, deviation, covariance = trace.effect[:, pulses], deviation[pulses], covariance[pulses][:, pulses]
-    certain = deviation**2 > SIGMAS**2 * (covariance.diagonal() + MODEL_ERROR**2)
+    certain = deviation**2 > SIGMAS**2 * solution.noise(pulses).diagonal()
     if (certain & effect.any(axis=0)).any():
         estimate = mekf.corrected(estimate, effect @ deviation, effect @ covariance @ effect.T, tuning)
         left = trace.effect.copy()

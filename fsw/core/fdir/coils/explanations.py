@@ -21,6 +21,8 @@ PULSES = 3
 """Of each coil its latest pulses are solved for, so many."""
 NONE, ALL = -1, -2
 """In place of a coil: no coil is faulty, or every one does as little as the others."""
+REVERSED = -1.0
+"""Least part of its effect that a coil can do."""
 STRAY = 3
 """STRAY + j is the number, as a cause, of a stray current in coil j; j itself that of a pulse."""
 
@@ -39,9 +41,10 @@ class WeakTest(NamedTuple):
     def nats(self, part: float, variance: float) -> float:
         """What a measured part weighs against the coil: the likeliest weak against the likeliest sound one.
 
-        (sound - part)^2 / 2 sigma^2 below what is sound, less (part - weak)^2 / 2 sigma^2 above what is weak.
+        (sound - part)^2 / 2 sigma^2 below what is sound, less (part - weak)^2 / 2 sigma^2 above what is weak,
+        or the like below what the most that is reversed does.
         """
-        lacks, exceeds = max(0.0, self.sound_part - part), max(0.0, part - self.weak_part)
+        lacks, exceeds = max(0.0, self.sound_part - part), max(0.0, part - self.weak_part, REVERSED - part)
         return (lacks**2 - exceeds**2) / (2.0 * variance)
 
 
@@ -63,13 +66,19 @@ class Solution(NamedTuple):
     """What each cause did.
 
     ``part``: of its nominal effect, ``deviation``: its part less what the filter assumed, (k), and their
-    covariance, (k, k).
+    covariance, (k, k); ``uncertain``: what of the parts is uncertain beyond it, standard deviations, (k).
     """
 
     causes: tuple[int, ...]
     part: Matrix
     deviation: Matrix
     covariance: Matrix
+    uncertain: Matrix
+
+    def noise(self, indices: list[int]) -> Matrix:
+        """Covariance of what was measured of some causes and of what is uncertain in any case."""
+        covariance: Matrix = self.covariance[np.ix_(indices, indices)]
+        return covariance + np.diag(self.uncertain[indices] ** 2)
 
 
 def indices_of(cause: int, causes: tuple[int, ...]) -> list[int]:
@@ -119,21 +128,21 @@ def of_pulses(solution: Solution) -> list[Explanation]:
 
 def _explained(solution: Solution, coil: int, pulses: list[int], alike: list[int]) -> Explanation:
     """These pulses, if those ``alike`` had one part of their effect and the others what was assumed."""
-    noise = solution.covariance[np.ix_(pulses, pulses)] + MODEL_ERROR**2 * np.eye(len(pulses))
-    weights = np.linalg.inv(noise)
+    weights = np.linalg.inv(solution.noise(pulses))
     among = np.isin(pulses, alike)
     off = np.where(among, solution.part[pulses], solution.deviation[pulses])
     left = float(off @ weights @ off)
     if not alike:
         return Explanation(coil, 0, 1.0, left)
     weight, explained = float(among @ weights @ among), float(among @ weights @ off)
-    return Explanation(coil, len(alike), explained / weight, left - explained**2 / weight)
+    part = max(REVERSED, explained / weight)
+    return Explanation(coil, len(alike), part, left - 2.0 * part * explained + part**2 * weight)
 
 
 def against(solution: Solution, test: WeakTest) -> list[float]:
     """What each cause by itself weighs against its coil, nats, at most half of the threshold."""
     most = 0.5 * test.threshold
-    variances = solution.covariance.diagonal() + MODEL_ERROR**2
+    variances = solution.covariance.diagonal() + solution.uncertain**2
     each = zip(solution.part.tolist(), variances.tolist(), strict=True)
     return [max(-most, min(most, test.nats(part, variance))) for part, variance in each]
 

@@ -12,7 +12,7 @@ from fsw.core.actuation.pulses import AXES
 from fsw.core.algebra.quaternion import rotate
 from fsw.core.algebra.vector import Mat3, Vec3, cross, scale, transform
 from fsw.core.estimation import mekf
-from fsw.core.estimation.kalman import Matrix, Trace
+from fsw.core.estimation.kalman import Cause, Matrix, Trace
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.fdir.coils import effects
@@ -43,11 +43,12 @@ def trace(estimate: Estimate, conducts: Vec3, kicks_radps: Mat3, tick_s: float, 
         begins: whether the current began in this tick; an earlier one is then forgotten.
     """
     traced = estimate.trace or effects.empty_trace(estimate)
-    if begins or STRAY not in traced.causes:
-        for cause in CAUSES:
-            if cause in traced.causes:
-                traced = effects.without(traced, traced.causes.index(cause))
-        traced = effects.extended(traced, CAUSES, conducts, np.zeros((6, 3)))
+    if begins or STRAY not in traced.numbers:
+        for number in CAUSES:
+            if number in traced.numbers:
+                traced = effects.without(traced, traced.numbers.index(number))
+        causes = [Cause(number, part, MODEL_ERROR) for number, part in zip(CAUSES, conducts, strict=True)]
+        traced = effects.extended(traced, tuple(causes), np.zeros((6, 3)))
     effect, flows = traced.effect.copy(), _places(traced)
     kicks = np.array(kicks_radps).T
     effect[0:3, flows] += 0.5 * tick_s * kicks
@@ -56,7 +57,7 @@ def trace(estimate: Estimate, conducts: Vec3, kicks_radps: Mat3, tick_s: float, 
 
 
 def _places(traced: Trace) -> slice:
-    first = traced.causes.index(STRAY)
+    first = traced.numbers.index(STRAY)
     return slice(first, first + 3)
 
 
@@ -91,9 +92,9 @@ def settle(estimate: Estimate, coil: int, tuning: MekfConfig) -> Estimate:
         ValueError: it has no such trace.
     """
     traced = estimate.trace
-    if traced is None or STRAY not in traced.causes:
+    if traced is None or STRAY not in traced.numbers:
         raise ValueError("no stray current is traced")
-    lacks = np.eye(3)[coil] - np.array(traced.assumed[_places(traced)])
+    lacks = np.eye(3)[coil] - np.array([cause.assumed for cause in traced.causes[_places(traced)]])
     effect = traced.effect[:, _places(traced)][:, coil]
     estimate = _shifted(estimate, lacks, MODEL_ERROR**2 * np.outer(effect, effect), tuning)
     return estimate._replace(trace=_without_stray(estimate.trace or traced))
@@ -106,14 +107,17 @@ def _shifted(estimate: Estimate, parts: Matrix, uncertainty: Matrix, tuning: Mek
     estimate = mekf.corrected(estimate, traced.effect[:, flows] @ parts, uncertainty, tuning)
     shift = np.eye(len(traced.sums))
     shift[flows, -1] = -parts  # the innovations less what these parts have done to them
-    assumed = np.array(traced.assumed)
-    assumed[flows] += parts
+    causes = list(traced.causes)
+    causes[flows] = [
+        cause._replace(assumed=cause.assumed + part)
+        for cause, part in zip(causes[flows], parts.tolist(), strict=True)
+    ]
     sums = shift.T @ traced.sums @ shift
-    return estimate._replace(trace=traced._replace(assumed=tuple(assumed.tolist()), sums=sums))
+    return estimate._replace(trace=traced._replace(causes=tuple(causes), sums=sums))
 
 
 def _without_stray(traced: Trace) -> Trace:
-    others = [index for index, cause in enumerate(traced.causes) if cause < STRAY]
+    others = [index for index, number in enumerate(traced.numbers) if number < STRAY]
     return effects.only(traced, others, traced.sums)
 
 
@@ -144,5 +148,4 @@ def conducting(solution: Solution) -> int | None:
 def _lacking(solution: Solution) -> tuple[Matrix, Matrix]:
     """By coil what the filter lacks of the current's parts, and its weights; empty without a current."""
     stray = [index for index, cause in enumerate(solution.causes) if cause >= STRAY]
-    noise = solution.covariance[np.ix_(stray, stray)] + MODEL_ERROR**2 * np.eye(len(stray))
-    return solution.deviation[stray], np.asarray(np.linalg.inv(noise), float)
+    return solution.deviation[stray], np.asarray(np.linalg.inv(solution.noise(stray)), float)

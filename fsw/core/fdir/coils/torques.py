@@ -1,9 +1,7 @@
 """Each coil by its torque: what pulses and currents did, as the filter sees it, against what they should."""
 
-from fsw.core.actuation import pulses
 from fsw.core.actuation.actuator import CoilView
-from fsw.core.algebra.quaternion import rotate
-from fsw.core.algebra.vector import Vec3, transform
+from fsw.core.algebra.vector import Vec3
 from fsw.core.estimation.estimator import EstimatorState
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.fdir.coils import effects, explanations, stray
@@ -62,9 +60,7 @@ def judge_effect(
             health, estimate, view.fired.coil if ended else None, believed_below, config
         )
     if ended and (view.driven_coil, view.driven_level) == view.fired:
-        impulse_nms = pulses.impulse(view.fired, rotate(estimate.q_body_from_eci, b_eci_t), config.pulses)
-        kick_radps = transform(config.mekf.rotor.inertia_inverse, impulse_nms)
-        estimate = effects.trace_pulse(estimate, view.fired.coil, kick_radps, config.pulses.pulse_s)
+        estimate = effects.trace_pulse(estimate, view.fired, b_eci_t, config.pulses, config.mekf)
     return health, state._replace(estimate=estimate)
 
 

@@ -1,12 +1,13 @@
 """What the coils did, by the innovations of the filter: against one that knew, truth, and in doubt."""
 
-from math import inf, isfinite, nan
+from math import hypot, inf, isfinite, nan
 
 import numpy as np
 import pytest
 from pulse_samples import (
     CONFIG,
     PULSE_S,
+    START,
     covariance,
     deviation,
     error_state,
@@ -14,11 +15,13 @@ from pulse_samples import (
     judged,
     kick_radps,
     left,
+    traced,
 )
 
+from fsw.core.actuation.pulses import Pulse
+from fsw.core.algebra.quaternion import conjugate, rotate
 from fsw.core.algebra.vector import ZERO, scale
 from fsw.core.estimation import mekf
-from fsw.core.fdir.coils.effects import trace_pulse
 from fsw.core.fdir.coils.explanations import PULSES
 
 
@@ -37,6 +40,23 @@ def test_the_carried_effect_is_what_a_second_filter_shows_that_knew_of_it():
     assert np.linalg.norm(carried[:3]) > 1e-3
     assert shown[:3] == pytest.approx(carried[:3], rel=2e-3, abs=1e-6)
     assert shown[3:] == pytest.approx(carried[3:], rel=2e-3, abs=1e-8)
+
+
+@pytest.mark.parametrize(("level", "torque_nm", "ratio"), [(2, 0.0, 0.0), (2, 3e-6, 0.833), (3, 3e-6, 0.417)])
+def test_a_pulse_proves_little_beside_a_torque_that_does_as_much_by_the_next(level, torque_nm, ratio):
+    pushed = START._replace(parameters=START.parameters._replace(torque_body_nm=(0.0, torque_nm, 0.0)))
+    across = rotate(conjugate(START.q_body_from_eci), (0.0, 0.0, 3e-5))
+    cause = traced(pushed, Pulse(1, level), across).trace.causes[0]
+    assert cause.uncertain == pytest.approx(hypot(0.05, ratio), rel=1e-3)
+    assert cause[:2] == (1, 1.0)
+    weakest = traced(pushed, Pulse(1, 1), across).trace.causes[0]
+    assert weakest.uncertain == pytest.approx(hypot(0.05, 1.0 if torque_nm else 0.0))
+
+
+def test_a_pulse_along_the_field_is_traced_though_it_does_nothing():
+    along = rotate(conjugate(START.q_body_from_eci), (0.0, 3e-5, 0.0))
+    assert np.isfinite(traced(START, Pulse(1, 3), along).trace.causes[0]).all()
+    assert traced(START, Pulse(1, 3), ZERO).trace.causes[0].uncertain == 0.05
 
 
 @pytest.mark.parametrize("part", [0.3, 0.0, -1.0, 1.2])
@@ -63,7 +83,7 @@ def test_sound_coils_are_not_accused_and_the_estimate_is_left_alone():
 
 
 def test_pulses_too_small_to_be_seen_accuse_nobody():
-    estimate, _ = fly([0, 1], [0.0, 0.0], level_am2=0.02)
+    estimate, _ = fly([0, 1], [0.0, 0.0], level=1)
     assert judged(estimate)[1] is None
 
 
@@ -83,9 +103,9 @@ def test_the_estimate_is_set_right_once():
 def test_of_each_coil_the_latest_pulses_are_kept_and_what_is_forgotten_changes_nothing_else():
     coils = [0, *[2] * PULSES]
     estimate, _ = fly(coils, [0.3, *[1.0] * PULSES])
-    fuller = trace_pulse(estimate, 2, ZERO, PULSE_S)
-    assert estimate.trace.causes == (*[2] * PULSES, 0)
-    assert fuller.trace.causes == estimate.trace.causes
+    fuller = traced(estimate, Pulse(2, 3))
+    assert estimate.trace.numbers == (*[2] * PULSES, 0)
+    assert fuller.trace.numbers == estimate.trace.numbers
     kept = [0, 1, 3]  # of those before: the oldest of coil 2 is gone
     assert deviation(fuller)[1:] == pytest.approx(deviation(estimate)[kept])
     assert covariance(fuller)[1:, 1:] == pytest.approx(covariance(estimate)[np.ix_(kept, kept)])
@@ -99,7 +119,7 @@ def test_a_weak_coil_leaves_noise_and_where_more_is_left_nobody_is_judged():
     sums[-1, -1] += 0.7 * estimate.trace.measured
     doubtful = estimate._replace(trace=estimate.trace._replace(sums=sums))
     assert judged(doubtful) == (doubtful, None)
-    begun = trace_pulse(doubtful, 1, kick_radps(estimate, 1), PULSE_S)
+    begun = traced(doubtful, Pulse(1, 3))
     assert left(begun) == pytest.approx(0.0, abs=1e-9), "what was left before is of the past"
     assert begun.trace.measured == 0
     assert judged(begun)[1] is not None

@@ -9,6 +9,7 @@ from fsw.core.estimation import mekf
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.parameters import Prior
 from fsw.core.fdir.coils.explanations import (
+    MODEL_ERROR,
     STRAY,
     Solution,
     WeakTest,
@@ -24,11 +25,12 @@ from fsw.core.fdir.coils.explanations import (
 WEAK = WeakTest(0.7, 0.8, 14.0)
 
 
-def solution(causes, deviation, sigma, correlation=0.0):
+def solution(causes, deviation, sigma, correlation=0.0, uncertain=MODEL_ERROR):
     sigma = np.array(sigma)
     shape = np.eye(len(sigma)) + correlation * (1.0 - np.eye(len(sigma)))
     deviation = np.array(deviation)
-    return Solution(tuple(causes), 1.0 + deviation, deviation, shape * np.outer(sigma, sigma))
+    covariance, uncertain = shape * np.outer(sigma, sigma), np.broadcast_to(uncertain, sigma.shape)
+    return Solution(tuple(causes), 1.0 + deviation, deviation, covariance, uncertain)
 
 
 def weak(*arguments, earlier=(0.0, 0.0, 0.0)):
@@ -154,9 +156,25 @@ def test_what_all_coils_lack_alike_is_no_coil():
 def test_what_the_filter_knew_of_a_gain_counts_with_what_it_did_not():
     """Two thirds of what the coil lacks are in the estimated gain already, the rest is deviation."""
     deviation, covariance = np.array((-0.2, -0.25, 0.01)), np.diag((0.04, 0.05, 0.03)) ** 2
-    knowing = Solution((1, 1, 0), np.array((0.6, 0.6, 1.0)) + deviation, deviation, covariance)
+    knowing = Solution(
+        (1, 1, 0), np.array((0.6, 0.6, 1.0)) + deviation, deviation, covariance, np.full(3, MODEL_ERROR)
+    )
     assert weak_by_pulses(knowing, (0.0, 0.0, 0.0), WEAK) == (1, pytest.approx(0.375, abs=0.03))
     assert weak((1, 1, 0), deviation, (0.04, 0.05, 0.03)) is None
+
+
+def test_pulses_whose_effect_is_uncertain_prove_little():
+    pulses = ((0, 0, 0, 1), (-0.77, -0.87, -0.8, 0.02), (0.05, 0.06, 0.05, 0.04))
+    assert weak(*pulses) == (0, pytest.approx(0.2, abs=0.05))
+    assert weak(*pulses, 0.0, (0.4, 0.45, 0.4, 0.05)) is None
+    assert weak(*pulses, 0.0, (0.4, 0.05, 0.05, 0.05)) == (0, pytest.approx(0.17, abs=0.03)), "two suffice"
+
+
+def test_no_coil_does_more_the_other_way_than_a_reversed_one():
+    reversed_coil = ((0, 0, 1), (-2.03, -1.98, 0.01), (0.05, 0.05, 0.05))
+    assert weak(*reversed_coil) == (0, pytest.approx(-1.0, abs=0.03))
+    assert weak(reversed_coil[0], (-2.6, -2.5, 0.01), reversed_coil[2]) is None
+    assert weak(reversed_coil[0], (-2.6, -2.5, 0.01), (0.4, 0.4, 0.05)) == (0, -1.0), "if it may be noise"
 
 
 def test_sound_pulses_are_best_explained_by_nothing_and_that_fits():

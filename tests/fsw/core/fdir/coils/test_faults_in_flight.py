@@ -266,4 +266,4 @@ class TestByTheRate:
         said = fly(world, 3000)
         assert len(fires(said)) > 15
         assert events(said, Event.COIL_FAULT) == []
-        assert set(world.state.estimator.estimate.trace.causes) == {0, 1, 2}
+        assert set(world.state.estimator.estimate.trace.numbers) == {0, 1, 2}

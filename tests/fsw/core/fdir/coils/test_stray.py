@@ -10,7 +10,6 @@ from pulse_samples import (
     CONFIG,
     E1_ECI,
     LEVEL_AM2,
-    PULSE_S,
     S_ECI,
     START,
     WEAK,
@@ -18,16 +17,16 @@ from pulse_samples import (
     error_state,
     fly,
     judged,
-    kick_radps,
     left,
+    traced,
 )
 
-from fsw.core.actuation.pulses import AXES
+from fsw.core.actuation.pulses import AXES, Pulse
 from fsw.core.algebra.quaternion import rotate
 from fsw.core.algebra.vector import ZERO, add, cross, scale, unit
 from fsw.core.estimation import mekf
 from fsw.core.fdir.coils import stray
-from fsw.core.fdir.coils.effects import solve, trace_pulse
+from fsw.core.fdir.coils.effects import solve
 from fsw.core.fdir.coils.explanations import STRAY, Solution, weak_by_pulses
 from fsw.core.fdir.coils.stray import conducting
 
@@ -78,10 +77,10 @@ def test_the_gate_lets_through_what_a_deviation_explains_and_nothing_else():
 
 def test_a_new_current_is_not_taken_for_the_one_before():
     estimate, _ = fly_stray(AXES[1])
-    pulse = trace_pulse(estimate, 2, kick_radps(estimate, 2), PULSE_S)
+    pulse = traced(estimate, Pulse(2, 3))
     again = stray.trace(pulse, ZERO, (ZERO, ZERO, ZERO), 1.0, begins=True)
-    assert pulse.trace.causes == (2, STRAY, STRAY + 1, STRAY + 2)
-    assert again.trace.causes == (STRAY, STRAY + 1, STRAY + 2, 2)
+    assert pulse.trace.numbers == (2, STRAY, STRAY + 1, STRAY + 2)
+    assert again.trace.numbers == (STRAY, STRAY + 1, STRAY + 2, 2)
     assert deviation(again) == pytest.approx([0.0] * 4, abs=1e-12)
     assert stray.trace(again, ZERO, (ZERO, ZERO, ZERO), 1.0, begins=False).trace.causes == again.trace.causes
 
@@ -95,7 +94,7 @@ def test_a_current_that_is_known_at_last_sets_the_estimate_right_and_leaves_the_
     assert np.abs(error_state(after, truth)).max() < 0.1 * before.max()
     assert isolated == (0, pytest.approx(0.3, abs=0.15))
     assert (settled.covariance.diagonal()[:6] > estimate.covariance.diagonal()[:6]).all()
-    assert settled.trace.causes == (0, 1)
+    assert settled.trace.numbers == (0, 1)
     assert left(settled) < 1.3 * settled.trace.measured, "what the current did is no longer unexplained"
     assert left(stray.settle(estimate, 0, CONFIG)) > 2.0 * settled.trace.measured
 
@@ -151,10 +150,13 @@ def test_a_current_that_was_never_traced_cannot_be_settled():
             stray.settle(other, 1, CONFIG)
 
 
+SURE = np.full(3, 0.05)
+
+
 def named(deviation, sigma, correlation=0.0):
     """The coil that a solution names whose parts were not known beforehand."""
     deviation, shape = np.array(deviation), np.eye(3) + correlation * (1.0 - np.eye(3))
-    return conducting(Solution(stray.CAUSES, deviation, deviation, shape * np.outer(sigma, sigma)))
+    return conducting(Solution(stray.CAUSES, deviation, deviation, shape * np.outer(sigma, sigma), SURE))
 
 
 @pytest.mark.parametrize("coil", [0, 1, 2])
@@ -187,4 +189,4 @@ def test_one_is_named_though_its_own_effect_cannot_be_seen_if_it_is_no_other():
 
 def test_pulses_before_it_do_not_name_a_coil():
     parts = np.array((1.0, 0.0))
-    assert conducting(Solution((0, 1), parts, parts, 0.03**2 * np.eye(2))) is None
+    assert conducting(Solution((0, 1), parts, parts, 0.03**2 * np.eye(2), SURE[:2])) is None
