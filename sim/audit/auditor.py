@@ -246,7 +246,7 @@ class _Auditor:
                 self._judge_tick(tick, boards)
         self._interrupt()
         judge = self._by_ticks or self._by_timestamps
-        pulses = () if judge is None else tuple(sorted(judge.pulses, key=lambda pulse: pulse.start_s))
+        pulses = () if judge is None else judge.pulses.by_start()
         seconds = self._clock.seconds
         return AuditReport(
             limits=self._limits,

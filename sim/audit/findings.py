@@ -1,6 +1,6 @@
 """The result of an audit of the actuator limits, as values."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
@@ -102,7 +102,7 @@ class AuditReport:
     """
 
     limits: AuditLimits
-    pulses: tuple[DrivenPulse, ...]
+    pulses: Sequence[DrivenPulse]
     violations: tuple[Violation, ...]
     notes: tuple[str, ...]
     statuses: int
@@ -125,7 +125,7 @@ class AuditReport:
     @property
     def pulses_per_coil(self) -> list[int]:
         """Number of pulses of each coil."""
-        return [len(self._of(coil)) for coil in COILS]
+        return [sum(1 for _ in self._of(coil)) for coil in COILS]
 
     @property
     def duty_per_coil(self) -> list[float]:
@@ -152,8 +152,8 @@ class AuditReport:
         """Least time from a pulse to the next of the same coil, for each coil."""
         return [_min_gap(self._of(coil)) for coil in COILS]
 
-    def _of(self, coil: int) -> tuple[DrivenPulse, ...]:
-        return tuple(pulse for pulse in self.pulses if pulse.coil == coil)
+    def _of(self, coil: int) -> Iterator[DrivenPulse]:
+        return (pulse for pulse in self.pulses if pulse.coil == coil)
 
     def _duty(self, pulses: Iterable[DrivenPulse]) -> float:
         driven_s = sum((pulse.length_s for pulse in pulses), Fraction(0))

@@ -3,8 +3,9 @@
 from dataclasses import dataclass, field
 
 from fsw.wire.messages import CoilStatus
-from sim.audit.findings import COILS, AuditLimits, DrivenPulse, Violation, ViolationKind, seconds_text
+from sim.audit.findings import COILS, AuditLimits, Violation, ViolationKind, seconds_text
 from sim.audit.log_clock import LogClock
+from sim.audit.pulse_table import PulseTable
 
 
 @dataclass(slots=True)
@@ -27,7 +28,7 @@ class PulseJudge:
     """Assembles pulses from statuses, in order of time, and reports each that breaks a limit."""
 
     def __init__(self, clock: LogClock, limits: AuditLimits) -> None:
-        self.pulses: list[DrivenPulse] = []
+        self.pulses = PulseTable(clock.seconds(1))
         self.violations: list[Violation] = []
         self._clock = clock
         self._limits = limits
@@ -105,7 +106,7 @@ class PulseJudge:
         end = max(drive.end, min(drive.announced, until))
         self._ended[drive.coil] = end
         seconds = self._clock.seconds
-        self.pulses.append(DrivenPulse(drive.coil, drive.level, seconds(drive.start), seconds(end)))
+        self.pulses.add(drive.coil, drive.level, drive.start, end)
         limit = f"{seconds_text(seconds(self._longest))} s"
         if end - drive.start > self._longest:
             length = seconds_text(seconds(end - drive.start))

@@ -28,6 +28,7 @@ from sim.record.run_dir import Json
 from sim.record.run_record import FlightRecord
 from sim.record.truth import Histories
 from sim.report.conclude import without_broken_frames
+from sim.report.figures.performance import perform
 from sim.report.summary import BusTally, summarise
 from sim.scenario.assemble import plant_config
 from sim.scenario.schema import Scenario, flight_table, load
@@ -88,7 +89,8 @@ class RecordedFlight:
 
     def summary(self) -> Json:
         """The keys of summary.json."""
-        return summarise(self.scenario, self.run, self.truth, self.estimates, self.audit, self.tally)
+        performance = perform(self.scenario, self.truth, self.estimates)
+        return summarise(self.scenario, self.run, performance, self.audit, self.tally)
 
 
 def fly_order(order: Order) -> FlightResult:

@@ -9,9 +9,9 @@ from fsw.wire.messages import Mode
 from sim.campaign.flight import Figures
 from sim.record.estimates import Estimates
 from sim.record.truth import Histories
-from sim.report.attitude_arrays import angle_rad
-from sim.report.spans import held_from, spans
-from sim.report.summary import converged_tick, estimate_error, nees, within_3sigma
+from sim.report.figures.attitude_arrays import angle_rad
+from sim.report.figures.estimate_error import converged_tick, estimate_error, nees, within_3sigma
+from sim.report.figures.spans import held_from, spans
 from sim.scenario.schema import Scenario, flight_table, orbit_period_s
 
 Array = NDArray[np.float64]

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from sim.campaign.definition.campaign import StatisticsSection
 from sim.campaign.flight import RecordedFlight
-from sim.report.attitude_arrays import angle_rad, axis1_angle_rad, relative
-from sim.report.summary import estimate_error
+from sim.report.figures.attitude_arrays import angle_rad, axis1_angle_rad, relative
+from sim.report.figures.estimate_error import estimate_error
 from sim.scenario.schema import flight_table, orbit_period_s
 from sim.statistics.indices import index_histories, profile
 

@@ -10,7 +10,7 @@ from fsw.core.laws.table import LAWS
 from sim.compare.case import Driver
 from sim.compare.score import WINDOW_ORBITS, Result
 from sim.drawing.canvas import AXES_COLOURS, INK, MORE_COLOURS, MUTED, log_y, stacked, style, trace
-from sim.report.summary import SETTLED_DEG
+from sim.report.figures.performance import SETTLED_DEG
 
 COLOURS = (*AXES_COLOURS, *MORE_COLOURS, INK, "#7b3fa0", "#8a6d3b", "#8f9a1f")
 DASHES: tuple[object, ...] = ("-", (0, (5, 1.5)), (0, (1.5, 1.2)))

@@ -14,8 +14,10 @@ from sim.compare.case import ComparisonCase, Driver
 from sim.drawing.canvas import TimeAxis
 from sim.errors import HarnessError
 from sim.record.truth import Histories
-from sim.report.histories import FlightHistories
-from sim.report.summary import SETTLED_DEG
+from sim.report.drawn_flight import whole_flight
+from sim.report.figures.histories import FlightHistories
+from sim.report.figures.performance import SETTLED_DEG
+from sim.report.figures.spans import spans
 from sim.scenario.schema import Scenario, flight_table, orbit_period_s
 
 Array = NDArray[np.float64]
@@ -117,14 +119,17 @@ def history(record: RecordedFlight) -> History:
 
     The window of a quarter of an orbit takes out the dips where the error passes zero.
     """
-    flight = FlightHistories.of(record.scenario, record.truth, record.estimates, record.audit)
-    ticks, orbits = flight.ticks, flight.length_s / flight.orbit_s
-    points = min(ticks, MOST_POINTS, max(2, round(POINTS_AN_ORBIT * orbits)))
+    tick_hz, orbit_s = record.scenario.time.tick_hz, orbit_period_s(record.scenario)
+    flight = FlightHistories(record.truth, record.estimates)
+    ticks, length_s = flight.ticks, flight.ticks / tick_hz
+    points = min(ticks, MOST_POINTS, max(2, round(POINTS_AN_ORBIT * length_s / orbit_s)))
     at = np.linspace(0, ticks - 1, points).round().astype(int)
-    half = round(0.5 * WINDOW_ORBITS * flight.orbit_s * flight.tick_hz)
+    half = round(0.5 * WINDOW_ORBITS * orbit_s * tick_hz)
     first, past = np.maximum(at - half, 0), np.minimum(at + half + 1, ticks)
     total = np.concatenate(([0.0], np.cumsum(pointing_error_deg(record) ** 2)))
-    return History(flight.time, flight.t_s[at], np.sqrt((total[past] - total[first]) / (past - first)))
+    eclipses = tuple((begin / tick_hz, end / tick_hz) for begin, end in spans(flight.dark))
+    time = whole_flight(length_s, orbit_s, eclipses)
+    return History(time, record.truth["t_s"][at], np.sqrt((total[past] - total[first]) / (past - first)))
 
 
 def by_axis1(scenario: Scenario) -> bool:
@@ -134,7 +139,7 @@ def by_axis1(scenario: Scenario) -> bool:
 
 def pointing_error_deg(record: RecordedFlight) -> Array:
     """The angle from nominal at each tick."""
-    flight = FlightHistories.of(record.scenario, record.truth, record.estimates, record.audit)
+    flight = FlightHistories(record.truth, record.estimates)
     return flight.axis1_deg if by_axis1(record.scenario) else flight.pointing_deg
 
 

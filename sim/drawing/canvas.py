@@ -14,6 +14,8 @@ from matplotlib.path import Path
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 from numpy.typing import NDArray
 
+from sim.drawing.envelope import BINS, Envelope
+
 Array = NDArray[np.float64]
 Span = tuple[float, float]
 
@@ -27,9 +29,6 @@ WIDTH_IN = 8.2
 LEFT_IN, RIGHT_IN, BOTTOM_IN = 0.72, 0.12, 0.42
 TITLE_IN, LEGEND_IN = 0.32, 0.19
 """Margins: the same in all charts, so that their times stand under each other."""
-BINS = 700
-"""Bins along a time axis; a longer history is drawn as the envelope of each."""
-
 _STYLE: dict[Any, Any] = {
     "font.family": "sans-serif",
     "font.sans-serif": ["DejaVu Sans"],
@@ -171,26 +170,14 @@ def _joined(spans: Sequence[Span], least_s: float) -> list[Span]:
     return joined
 
 
-def envelope(t: Array, y: Array) -> tuple[Array, Array]:
-    """The history itself if it is short, else least and largest value of each of ``BINS`` bins in turn.
-
-    NaN are passed over; a bin of nothing else stays NaN.
-    """
-    if len(t) <= 2 * BINS:
-        return t, y
-    starts = np.linspace(0, len(t), BINS, endpoint=False).astype(int)
-    both = np.stack((np.fmin.reduceat(y, starts), np.fmax.reduceat(y, starts)), axis=1)
-    middles = (starts + np.append(starts[1:], len(t))) // 2
-    rising = y[starts] <= y[np.append(starts[1:], len(t)) - 1]
-    both[~rising] = both[~rising, ::-1]
-    return np.stack((t[starts], t[middles]), axis=1).ravel(), both.ravel()
-
-
 def trace(panel: Axes, time: TimeAxis, t_s: Array, y: Array, label: str, colour: str, **how: object) -> None:
-    """One history as a line; few values get a dot each, so that a single one shows."""
+    """One history as a line, a long one as its envelope; few values get a dot each."""
+    if len(t_s) > 0:
+        envelope = Envelope(len(t_s), 1)
+        envelope.take(y[:, None])
+        t_s, y = t_s[envelope.places], envelope.points[:, 0]
     marker = "." if len(t_s) <= 60 else ""
-    x, drawn = envelope(time.of(t_s), y)
-    panel.plot(x, drawn, label=label, color=colour, marker=marker, **how)  # type: ignore[arg-type]  # of any option
+    panel.plot(time.of(t_s), y, label=label, color=colour, marker=marker, **how)  # type: ignore[arg-type]  # of any option
 
 
 def legend(panel: Axes) -> None:

@@ -18,8 +18,8 @@ from sim.scenario.assemble import plant_config
 from sim.scenario.schema import Scenario, flight_table, orbit_period_s
 from sim.scenario.telecommands import uplink
 
-MOST_TICKS = 2**24 - 1
-"""The largest count of PLANT_END."""
+MOST_TICKS = 2**32 - 1
+"""The largest tick of SYNC; PLANT_END counts modulo 2^24."""
 
 
 def ticks_of(scenario: Scenario, orbits: float | None) -> int:

@@ -27,11 +27,24 @@ class Estimates:
     mode: NDArray[np.int64]
     last: Estimate | None = None
 
+    def part(self, rows: slice) -> "Estimates":
+        """Those of some ticks; ``last`` stays."""
+        return Estimates(
+            self.q_body_from_orbit[rows],
+            self.omega_body_orbit_radps[rows],
+            self.omega_body_radps[rows],
+            self.covariance[rows],
+            self.valid[rows],
+            self.mode[rows],
+            self.last,
+        )
+
 
 class EstimateRecorder:
-    """Records flight states tick by tick."""
+    """Records flight states tick by tick: so many ticks, of which ``first`` is the first."""
 
-    def __init__(self, ticks: int) -> None:
+    def __init__(self, ticks: int, first: int = 0) -> None:
+        self.first = first
         self._estimates = Estimates(
             q_body_from_orbit=np.full((ticks, 4), np.nan),
             omega_body_orbit_radps=np.full((ticks, 3), np.nan),
@@ -43,9 +56,9 @@ class EstimateRecorder:
         self._last: Estimate | None = None
 
     def take(self, state: FlightState) -> None:
-        """Store the estimate of the state's tick; ticks beyond the histories are ignored."""
-        tick, into = state.tick, self._estimates
-        if tick >= len(into.valid):
+        """Store the estimate of the state's tick; other ticks are ignored."""
+        tick, into = state.tick - self.first, self._estimates
+        if not 0 <= tick < len(into.valid):
             return
         into.mode[tick] = state.modes.mode
         into.valid[tick] = state.attitude.valid

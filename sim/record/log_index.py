@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import BinaryIO, NamedTuple
 from zlib import crc32
 
-from fsw.input.regular_file import read_regular
+from fsw.input.regular_file import check_regular
 
 VERSION = 1
 SUFFIX = ".index"
@@ -70,8 +70,8 @@ class Block(NamedTuple):
 
 
 _PIECE_BYTES = 1 << 20
-_MOST_INDEX_BYTES = 64_000_000
-"""An index of 2^24 ticks has 30 MB."""
+_LONGEST = 200
+"""Bytes of a line of the index, at most."""
 _FIRST = Block(0, 0, b"", end=False)
 
 
@@ -134,9 +134,9 @@ def check_against_index(log: Path) -> IndexCheck:
     """Compare a log with its index; any content of the two files gives a result, never an error."""
     name = index_path(log).name
     try:
-        content = read_regular(index_path(log), _MOST_INDEX_BYTES)
-        with log.open("rb") as file:
-            return _compare(name, file, _blocks(name, content))
+        check_regular(index_path(log))
+        with index_path(log).open("rb") as index, log.open("rb") as file:
+            return _compare(name, file, _blocks(name, index))
     except FileNotFoundError:
         return IndexCheck(LogStanding.UNKNOWN, f"nothing vouches for the log: there is no {name} beside it")
     except OSError as error:
@@ -175,18 +175,18 @@ def _digest(file: BinaryIO, size: int, before: bytes) -> bytes:
     return digest.digest()
 
 
-def _blocks(name: str, content: bytes) -> Iterator[Block]:
+def _blocks(name: str, index: BinaryIO) -> Iterator[Block]:
     """The blocks of an index; an incomplete last line, as left by a kill, is ignored."""
-    lines = content.splitlines(keepends=True)
-    title = _unseal(lines[0]) if lines else None
+    title = _unseal(index.readline(_LONGEST))
     if title is None or not title.startswith(_TITLE.encode()):
         raise _BrokenError(f"{name} is damaged in its line 1, or no index of a log")
     version = title.decode("latin-1").split()[-1]
     if version != str(VERSION):
         raise _BrokenError(f"{name} is of version {version}, and only version {VERSION} can be read")
-    last = _FIRST
-    for number, line in enumerate(lines[1:], 2):
-        if number == len(lines) and not line.endswith(b"\n"):
+    last, number = _FIRST, 1
+    while line := index.readline(_LONGEST):
+        number += 1
+        if len(line) < _LONGEST and not line.endswith(b"\n"):
             return
         block = _block(line)
         if block is None or last.end or block.size < last.size:

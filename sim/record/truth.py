@@ -9,6 +9,8 @@ import errno
 import os
 import re
 from array import array
+from collections.abc import Iterator
+from contextlib import contextmanager
 from itertools import chain, islice
 from pathlib import Path
 from types import TracebackType
@@ -128,26 +130,81 @@ _DAMAGE = (OSError, KeyError, RuntimeError, TypeError, ValueError)
 """What h5py raises for a file that is not HDF5, or is damaged."""
 
 
+class TruthReader:
+    """Reads the histories in blocks, of a file that is whole or cut.
+
+    Raises:
+        HarnessError: missing or not a truth file; so does ``rows``.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        with self._damage_told():
+            check_regular(path)
+            self._file = h5py.File(path, "r")
+        try:
+            with self._damage_told():
+                self._names = _names(self._file, path.stat().st_size)
+            self.complete = self._complete_rows()
+            """Rows before the first that is not whole."""
+        except HarnessError:
+            self._file.close()
+            raise
+
+    def rows(self, first: int, past: int) -> Histories:
+        """Some rows of every dataset, by name."""
+        with self._damage_told():
+            histories = {name: self._file[name][first:past] for name in self._names}
+        for name, history in histories.items():
+            if (np.abs(history) > LARGEST).any():
+                raise HarnessError(f"{self._path}: {name} holds a magnitude above {LARGEST:g}")
+        return histories
+
+    def _complete_rows(self) -> int:
+        total = len(self._file["t_s"])
+        for first in range(0, total, BLOCK_ROWS):
+            past = min(first + BLOCK_ROWS, total)
+            complete = min(map(_complete_rows, self.rows(first, past).values()))
+            if complete < past - first:
+                return first + complete
+        return total
+
+    @contextmanager
+    def _damage_told(self) -> Iterator[None]:
+        try:
+            yield
+        except _DAMAGE as error:
+            raise HarnessError(f"{self._path}: cannot be read as plant histories ({error})") from None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._file.close()
+
+
 def read_truth(path: Path) -> Histories:
     """The complete rows of every dataset, by name.
 
     Raises:
         HarnessError: missing or not a truth file.
     """
-    try:
-        check_regular(path)
-        with h5py.File(path, "r") as file:
-            widths = {name: width for name, width, *_ in COLUMNS}
-            widths |= {f"torque_body_nm/{source}": 3 for source in _sources(file)}
-            _check_layout(file, widths, path.stat().st_size)
-            histories = {name: file[name][:] for name in widths}
-    except _DAMAGE as error:
-        raise HarnessError(f"{path}: cannot be read as plant histories ({error})") from None
-    for name, history in histories.items():
-        if (np.abs(history) > LARGEST).any():
-            raise HarnessError(f"{path}: {name} holds a magnitude above {LARGEST:g}")
-    complete = min(map(_complete_rows, histories.values()))
-    return {name: history[:complete] for name, history in histories.items()}
+    with TruthReader(path) as reader:
+        return reader.rows(0, reader.complete)
+
+
+def _names(file: h5py.File, size: int) -> tuple[str, ...]:
+    """The names of its datasets.
+
+    Raises:
+        ValueError: the layout is not that of ``TruthFile``.
+    """
+    widths = {name: width for name, width, *_ in COLUMNS}
+    widths |= {f"torque_body_nm/{source}": 3 for source in _sources(file)}
+    _check_layout(file, widths, size)
+    return tuple(widths)
 
 
 def _sources(file: h5py.File) -> list[str]:

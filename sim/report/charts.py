@@ -16,7 +16,7 @@ from sim.drawing.canvas import (
     stacked,
     trace,
 )
-from sim.report.histories import FlightHistories
+from sim.report.drawn_flight import DrawnFlight
 
 MODE_COLOURS = {
     Mode.SAFE: "#b3261e",
@@ -27,15 +27,14 @@ MODE_COLOURS = {
 SETTLED_DEG = 5.0
 
 
-def modes(flight: FlightHistories) -> Figure:
+def modes(flight: DrawnFlight) -> Figure:
     """The mode of the controller."""
     time = flight.time
     figure, (panel,) = stacked(time, (0.9,), legends=False)
     rows = len(Mode)
     for row, mode in enumerate(Mode):
         low, high = (row + 0.18) / rows, (row + 0.82) / rows
-        spans = flight.spans(flight.estimates.mode[: flight.ticks] == mode)
-        shade(panel, time, spans, low, high, MODE_COLOURS[mode], f"mode-{mode.name}")
+        shade(panel, time, flight.in_mode(mode), low, high, MODE_COLOURS[mode], f"mode-{mode.name}")
     panel.set_ylim(0.0, rows)
     panel.set_yticks(np.arange(rows) + 0.5, [mode.name for mode in Mode])
     panel.tick_params(axis="y", length=0.0)
@@ -44,11 +43,11 @@ def modes(flight: FlightHistories) -> Figure:
     return figure
 
 
-def pointing(flight: FlightHistories) -> Figure:
+def pointing(flight: DrawnFlight) -> Figure:
     """The angle of the whole attitude and that of axis 1."""
     time = flight.time
     figure, (panel,) = stacked(time, (2.3,))
-    total, axis1 = flight.pointing_deg, flight.axis1_deg
+    total, axis1 = flight.line("pointing_deg"), flight.line("axis1_deg")
     trace(panel, time, flight.t_s, axis1, "axis 1 from the vertical", AXES_COLOURS[0])
     trace(panel, time, flight.t_s, total, "whole attitude", INK, linewidth=1.2)
     panel.axhline(SETTLED_DEG, color=MUTED, linewidth=0.8, linestyle=(0, (4, 3)), label=f"{SETTLED_DEG:g}°")
@@ -59,17 +58,16 @@ def pointing(flight: FlightHistories) -> Figure:
     return figure
 
 
-def rates(flight: FlightHistories) -> Figure:
+def rates(flight: DrawnFlight) -> Figure:
     """Rates relative to the orbital frame: components, and magnitude on a logarithmic scale."""
     time = flight.time
     figure, (components, magnitude) = stacked(time, (1.6, 1.3))
-    omega = 1000.0 * np.degrees(flight.truth["omega_body_orbit_radps"])
+    omega, total = 1e3 * flight.line("omega_degps"), 1e3 * flight.line("rate_degps")
     for axis, colour in enumerate(AXES_COLOURS):
         trace(components, time, flight.t_s, omega[:, axis], f"axis {axis + 1}", colour)
     components.set_ylabel("rate [mdeg/s]")
     components.set_title("Rates relative to the orbital frame, body axes")
     legend(components)
-    total = np.linalg.norm(omega, axis=1)
     trace(magnitude, time, flight.t_s, total, "magnitude", INK)
     log_y(magnitude, total, decades=4.0)
     magnitude.set_ylabel("rate [mdeg/s]")
@@ -77,15 +75,16 @@ def rates(flight: FlightHistories) -> Figure:
     return figure
 
 
-def estimate(flight: FlightHistories) -> Figure:
+def estimate(flight: DrawnFlight) -> Figure:
     """True errors of the estimated attitude and rate beside the 3 sigma that the filter expects."""
     time = flight.time
     figure, panels = stacked(time, (1.9, 1.6))
     histories = (
-        ("Attitude estimate", "error [deg]", flight.attitude_error_deg, flight.sigma3_deg(0)),
-        ("Rate estimate", "error [mdeg/s]", 1e3 * flight.rate_error_degps, 1e3 * flight.sigma3_deg(3)),
+        ("Attitude estimate", "error [deg]", "attitude_error_deg", "attitude_sigma3_deg", 1.0),
+        ("Rate estimate", "error [mdeg/s]", "rate_error_degps", "rate_sigma3_degps", 1e3),
     )
-    for panel, (title, label, error, sigma3) in zip(panels, histories, strict=True):
+    for panel, (title, label, error_name, sigma3_name, unit) in zip(panels, histories, strict=True):
+        error, sigma3 = unit * flight.line(error_name), unit * flight.line(sigma3_name)
         trace(panel, time, flight.t_s, error, "true error", AXES_COLOURS[0])
         trace(panel, time, flight.t_s, sigma3, "3σ of the filter", AXES_COLOURS[1], linewidth=1.3)
         log_y(panel, error, sigma3, decades=4.0)
@@ -95,12 +94,12 @@ def estimate(flight: FlightHistories) -> Figure:
     return figure
 
 
-def field_and_dipole(flight: FlightHistories) -> Figure:
+def field_and_dipole(flight: DrawnFlight) -> Figure:
     """The geomagnetic field and the true dipole of the coils, body axes."""
     time = flight.time
     figure, (field, dipole) = stacked(time, (1.6, 1.4))
-    b_ut, m_am2 = 1e6 * flight.truth["b_body_t"], flight.truth["m_body_am2"]
-    trace(field, time, flight.t_s, np.linalg.norm(b_ut, axis=1), "magnitude", MUTED)
+    b_ut, m_am2 = 1e6 * flight.line("b_body_t"), flight.line("m_body_am2")
+    trace(field, time, flight.t_s, 1e6 * flight.line("field_t"), "magnitude", MUTED)
     for axis, colour in enumerate(AXES_COLOURS):
         trace(field, time, flight.t_s, b_ut[:, axis], f"axis {axis + 1}", colour)
         trace(dipole, time, flight.t_s, m_am2[:, axis], f"axis {axis + 1}", colour, linewidth=0.7)
@@ -113,11 +112,11 @@ def field_and_dipole(flight: FlightHistories) -> Figure:
     return figure
 
 
-def torques(flight: FlightHistories) -> Figure:
+def torques(flight: DrawnFlight) -> Figure:
     """Magnitudes of the torques by source."""
     time = flight.time
     figure, (panel,) = stacked(time, (2.0,))
-    torques_unm = {source: 1e6 * torque for source, torque in flight.torques().items()}
+    torques_unm = {source: 1e6 * torque for source, torque in flight.lines.torques().items()}
     colours = {"coils": INK, "gravity_gradient": AXES_COLOURS[0], "bias": AXES_COLOURS[1]}
     spare = iter((AXES_COLOURS[2], *MORE_COLOURS, LIMIT) * 4)
     for source, torque in torques_unm.items():

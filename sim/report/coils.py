@@ -12,7 +12,6 @@ from matplotlib.ticker import MaxNLocator
 from sim.audit.findings import COILS, DrivenPulse
 from sim.drawing.canvas import (
     AXES_COLOURS,
-    BINS,
     BOTTOM_IN,
     INK,
     LEFT_IN,
@@ -28,7 +27,8 @@ from sim.drawing.canvas import (
     stacked,
     trace,
 )
-from sim.report.histories import FlightHistories
+from sim.drawing.envelope import BINS
+from sim.report.drawn_flight import DrawnFlight
 
 ZOOM_S = 1200.0
 MARKS = 300
@@ -38,7 +38,7 @@ _REACH = 0.42
 """Height of a bar of the highest level; lanes are 1 apart."""
 
 
-def raster(flight: FlightHistories) -> Figure:
+def raster(flight: DrawnFlight) -> Figure:
     """Every pulse of the flight: a lane a coil, a bar up or down by polarity, as high as its level."""
     time = flight.time
     figure, (panel,) = stacked(time, (2.1,), legends=bool(flight.audit.violations))
@@ -57,7 +57,7 @@ def raster(flight: FlightHistories) -> Figure:
     return figure
 
 
-def zoom(flight: FlightHistories) -> Figure:
+def zoom(flight: DrawnFlight) -> Figure:
     """The twenty minutes with the most pulses: their lengths, and the back-off after each."""
     time = flight.window(flight.busiest(ZOOM_S), min(ZOOM_S, flight.length_s))
     figure, (panel,) = stacked(time, (2.3,), legends=bool(flight.audit.violations))
@@ -90,7 +90,7 @@ def zoom(flight: FlightHistories) -> Figure:
     return figure
 
 
-def duty(flight: FlightHistories) -> Figure:
+def duty(flight: DrawnFlight) -> Figure:
     """Duty over the orbit before each time, against what pulse length and back-off allow."""
     time, limits = flight.time, flight.audit.limits
     figure, (panel,) = stacked(time, (1.8,))
@@ -113,7 +113,7 @@ def duty(flight: FlightHistories) -> Figure:
     return figure
 
 
-def gaps_and_levels(flight: FlightHistories) -> Figure:
+def gaps_and_levels(flight: DrawnFlight) -> Figure:
     """The lengths of the gaps against the back-off, and the levels of the pulses."""
     height_in = 2.6
     figure = Figure(figsize=(WIDTH_IN, height_in))
@@ -134,7 +134,7 @@ def gaps_and_levels(flight: FlightHistories) -> Figure:
     return figure
 
 
-def _gaps(panel: Axes, flight: FlightHistories) -> None:
+def _gaps(panel: Axes, flight: DrawnFlight) -> None:
     limits, gaps_s = flight.audit.limits, flight.gaps_s()
     limit_s = max(limits.backoff_us / 1e6, 1.0)
     least = float(np.clip(gaps_s.min(initial=limit_s / 2.0), 0.1, limit_s / 2.0))
@@ -157,7 +157,7 @@ def _gaps(panel: Axes, flight: FlightHistories) -> None:
     legend(panel)
 
 
-def _levels(panel: Axes, flight: FlightHistories) -> None:
+def _levels(panel: Axes, flight: DrawnFlight) -> None:
     highest = flight.audit.limits.max_level
     levels = range(-highest, highest + 1)
     for coil, colour in zip(COILS, AXES_COLOURS, strict=True):
@@ -182,7 +182,7 @@ def _lane_fractions(coil: int) -> tuple[float, float]:
     return (_lane(coil) + 0.04) / len(COILS), (_lane(coil) + 0.96) / len(COILS)
 
 
-def _lanes(panel: Axes, flight: FlightHistories) -> None:
+def _lanes(panel: Axes, flight: DrawnFlight) -> None:
     highest = flight.audit.limits.max_level
     panel.set_ylim(-0.5, len(COILS) - 0.5)
     panel.set_yticks([_lane(coil) for coil in COILS], [f"coil {coil}" for coil in COILS])
@@ -222,7 +222,7 @@ def _backoff_spans(pulses: Sequence[DrivenPulse], backoff_s: float, time: TimeAx
     return [(end, end + backoff_s) for end in ends if end < time.end_s and end + backoff_s > time.start_s]
 
 
-def _violations(panel: Axes, flight: FlightHistories, time: TimeAxis) -> None:
+def _violations(panel: Axes, flight: DrawnFlight, time: TimeAxis) -> None:
     violations = [v for v in flight.audit.violations if time.start_s <= v.time_s <= time.end_s][:MARKS]
     if violations:
         x = [float(one.time_s) / time.unit_s for one in violations]

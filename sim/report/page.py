@@ -6,11 +6,10 @@ from typing import Any
 from sim.audit.auditor import AuditReport
 from sim.drawing.pages import page
 from sim.record import run_dir
-from sim.record.estimates import Estimates
 from sim.record.run_record import RunRecord
-from sim.record.truth import Histories
 from sim.report import tables
-from sim.report.parameters import parameter_table
+from sim.report.lines import Lines
+from sim.report.parameter_table import parameter_table
 from sim.scenario.schema import Scenario
 
 
@@ -18,8 +17,7 @@ def write_report(
     path: Path,
     scenario: Scenario,
     summary: dict[str, Any],
-    truth: Histories,
-    estimates: Estimates,
+    lines: Lines,
     audit: AuditReport,
 ) -> None:
     """Write the report of a run, complete or not; ``run.json`` is read where it lies beside the report.
@@ -45,7 +43,7 @@ def write_report(
         key_figures=tables.key_figures(summary),
         coils=tables.coil_table(summary, audit),
         longest_pulse=tables.longest_pulse(summary, audit),
-        charts=sections(scenario, truth, estimates, audit),
+        charts=sections(scenario, lines, audit),
         parameters=parameter_table(summary),
         events=events,
         events_open=len(events.rows) <= tables.EVENTS_OPEN,

@@ -10,14 +10,13 @@ from sim.audit.auditor import AuditReport
 from sim.audit.findings import AuditLimits
 from sim.drawing.canvas import style
 from sim.drawing.inline_svg import svg
-from sim.record.estimates import Estimates
-from sim.record.truth import Histories
 from sim.report import charts as charts_of
 from sim.report import coils
-from sim.report.histories import FlightHistories
+from sim.report.drawn_flight import DrawnFlight
+from sim.report.lines import Lines
 from sim.scenario.schema import Scenario
 
-Drawing = tuple[Callable[[FlightHistories], Figure], str]
+Drawing = tuple[Callable[[DrawnFlight], Figure], str]
 """What draws a chart, and the words under it."""
 
 
@@ -38,29 +37,27 @@ class ChartSection(NamedTuple):
     note: str = ""
 
 
-def sections(
-    scenario: Scenario, truth: Histories, estimates: Estimates, audit: AuditReport
-) -> list[ChartSection]:
+def sections(scenario: Scenario, lines: Lines, audit: AuditReport) -> list[ChartSection]:
     """All sections with charts."""
-    if len(truth["t_s"]) == 0:
+    if lines.ticks == 0:
         return [ChartSection("attitude", "Flight", note="No tick was flown: there is nothing to draw.")]
-    histories = FlightHistories.of(scenario, truth, estimates, audit)
+    flight = DrawnFlight.of(scenario, lines, audit)
     with style():
         return [
-            ChartSection("attitude", "Attitude", _charts(histories, _ATTITUDE)),
-            ChartSection("estimate", "Estimate", _charts(histories, _ESTIMATE))
-            if histories.has_estimates
+            ChartSection("attitude", "Attitude", _charts(flight, _ATTITUDE)),
+            ChartSection("estimate", "Estimate", _charts(flight, _ESTIMATE))
+            if lines.has_estimates
             else ChartSection("estimate", "Estimate", note=_NO_ESTIMATE[scenario.knowledge]),
-            ChartSection("coils", _COILS_TITLE, _charts(histories, _coils(audit.limits)))
+            ChartSection("coils", _COILS_TITLE, _charts(flight, _coils(audit.limits)))
             if audit.pulses
             else ChartSection("coils", _COILS_TITLE, note="No coil was driven."),
-            ChartSection("environment", "Field, dipole and torques", _charts(histories, _ENVIRONMENT)),
+            ChartSection("environment", "Field, dipole and torques", _charts(flight, _ENVIRONMENT)),
         ]
 
 
-def _charts(histories: FlightHistories, drawings: tuple[Drawing, ...]) -> tuple[Chart, ...]:
+def _charts(flight: DrawnFlight, drawings: tuple[Drawing, ...]) -> tuple[Chart, ...]:
     return tuple(
-        Chart(draw.__name__, Markup(svg(draw(histories), draw.__name__)), words) for draw, words in drawings
+        Chart(draw.__name__, Markup(svg(draw(flight), draw.__name__)), words) for draw, words in drawings
     )
 
 

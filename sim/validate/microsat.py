@@ -18,9 +18,9 @@ from sim.plant.environment.orbit import Sgp4Orbit
 from sim.plant.environment.sun import illumination, sun_eci_m
 from sim.record.estimates import Estimates
 from sim.record.truth import Histories
-from sim.report.attitude_arrays import angle_rad, relative
-from sim.report.spans import held_from
-from sim.report.summary import nees
+from sim.report.figures.attitude_arrays import angle_rad, relative
+from sim.report.figures.estimate_error import nees
+from sim.report.figures.spans import held_from
 from sim.scenario.schema import Scenario, flight_table, load, orbit_period_s
 from sim.validate.reference.comparison import Array
 

@@ -13,7 +13,7 @@ from sim.plant.dynamics import torques
 from sim.plant.dynamics.rigid_body import Motion, RigidBody
 from sim.plant.environment.surroundings import Surroundings
 from sim.plant.rotation import ZERO, Mat3, Quaternion, Vec3, matrix, normalise
-from sim.report.attitude_arrays import angle_rad, relative
+from sim.report.figures.attitude_arrays import angle_rad, relative
 from sim.validate.reference.comparison import Array, ReferenceComparison, largest
 from sim.validate.reference.reference_table import ReferenceTable, names_of
 from sim.validate.reference.two_body import two_body

@@ -12,7 +12,7 @@ from fsw.core.estimation.mekf import Estimate, start, update_both
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.triad import triad
 from sim.errors import HarnessError
-from sim.report.attitude_arrays import angle_rad, relative
+from sim.report.figures.attitude_arrays import angle_rad, relative
 from sim.validate.reference.comparison import Array, ReferenceComparison
 from sim.validate.reference.reference_table import ReferenceTable, names_of
 

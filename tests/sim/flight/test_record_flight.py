@@ -36,11 +36,16 @@ class TestLength:
     @pytest.mark.parametrize("orbits", [1e5, inf, nan])
     def test_has_a_limit(self, orbits):
         with pytest.raises(HarnessError, match=rf"--orbits {orbits:g}: a run has at most {MOST_TICKS} ticks"):
-            ticks_of(load("microsat"), orbits)
+            ticks_of(load("microsat", parse_settings(("time.tick_hz=10",))), orbits)
+
+    def test_allows_a_month_at_ten_hertz(self):
+        month = load("microsat", parse_settings(("time.tick_hz=10",)))
+        orbits = 30 * 86400 / orbit_period_s(month)
+        assert ticks_of(month, orbits) == 25_920_000
 
     def test_of_a_scenario_names_its_key(self):
         with pytest.raises(HarnessError, match=r"^time\.orbits=90000: a run has at most"):
-            ticks_of(load("microsat", parse_settings(("time.orbits=90000",))), None)
+            ticks_of(load("microsat", parse_settings(("time.orbits=90000", "time.tick_hz=10"))), None)
 
 
 def test_what_the_flight_software_cannot_fly_is_refused_before_the_run_begins():

@@ -18,7 +18,9 @@ from sim.audit.findings import DrivenPulse, Violation
 from sim.record.estimates import Estimates
 from sim.record.truth import Histories
 from sim.report.conclude import conclude
-from sim.report.histories import FlightHistories
+from sim.report.drawn_flight import DrawnFlight
+from sim.report.figures.performance import blocks, perform
+from sim.report.lines import Lines
 from sim.report.page import write_report
 from sim.report.summary import BusTally, summarise
 from sim.scenario.schema import Scenario, load
@@ -140,17 +142,25 @@ class Run:
             complete=self.complete,
         )
 
-    def flown(self, **truth: np.ndarray) -> FlightHistories:
-        return FlightHistories.of(self.scenario, self.truth() | truth, self.estimates(), self.audit())
+    def flown(self, **truth: np.ndarray) -> DrawnFlight:
+        return DrawnFlight.of(self.scenario, self.lines(self.truth() | truth, self.estimates()), self.audit())
+
+    def lines(self, truth: Histories, estimates: Estimates) -> Lines:
+        lines = Lines(self.ticks, self.scenario.time.tick_hz)
+        for block in blocks(truth, estimates):
+            lines.take(*block)
+        return lines
 
     def write(self, path: Path, estimates: Estimates | None = None, **truth: np.ndarray) -> Page:
         histories = self.truth() | truth
         estimates = estimates or self.estimates()
         tally = BusTally(0, self.refused, self.events, self.isolated)
-        summary = summarise(self.scenario, {"seed": 7}, histories, estimates, self.audit(), tally)
+        performance = perform(self.scenario, histories, estimates)
+        summary = summarise(self.scenario, {"seed": 7}, performance, self.audit(), tally)
         if self.replay is not None:
             summary["replay"] = self.replay
-        write_report(path / "report.html", self.scenario, summary, histories, estimates, self.audit())
+        lines = self.lines(histories, estimates)
+        write_report(path / "report.html", self.scenario, summary, lines, self.audit())
         return Page((path / "report.html").read_text(encoding="utf-8"))
 
 

@@ -11,7 +11,9 @@ from fsw.core.events import Event
 from fsw.wire.messages import CoilRefused, FswEvent, Mode, PlantEvent, TickDone
 from sim.record.candump import LogEntry
 from sim.record.estimates import Estimates
-from sim.report.summary import BusTally, nees, summarise, summary_text, within_3sigma
+from sim.report.figures.estimate_error import nees, within_3sigma
+from sim.report.figures.performance import perform
+from sim.report.summary import BusTally, summarise, summary_text
 from sim.scenario.schema import load, orbit_period_s, parse_settings
 
 TICKS = 2400
@@ -48,7 +50,8 @@ class Made:
 
     def summary(self, audit, settings=(), tally=None):
         scenario = load("microsat", parse_settings(settings))
-        return summarise(scenario, {"seed": 1}, self.truth, self.estimates, audit, tally or BusTally(0))
+        performance = perform(scenario, self.truth, self.estimates)
+        return summarise(scenario, {"seed": 1}, performance, audit, tally or BusTally(0))
 
 
 def error_of(degrees_by_tick):
@@ -336,7 +339,8 @@ def test_a_flight_without_a_tick_has_a_summary_too(audit):
         "lit": np.zeros(0),
     }
     made = Made(error_of(np.full(1, 1.0)))
-    summary = summarise(load("microsat"), {"seed": 1}, empty, made.estimates, audit, BusTally(0))
+    performance = perform(load("microsat"), empty, made.estimates)
+    summary = summarise(load("microsat"), {"seed": 1}, performance, audit, BusTally(0))
     assert (summary["ticks"], summary["sim_seconds"]) == (0, 0.0)
     assert "pointing_deg" not in summary
     assert summary_text(summary)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sim.report.spans import held_from, spans
+from sim.report.figures.spans import held_from, spans
 
 
 @pytest.mark.parametrize(

@@ -1,47 +1,30 @@
 """What the filter estimates besides attitude and rate, beside the bounds of its table and the truth."""
 
-from math import degrees
 from typing import Any
 
-from fsw.core.estimation.mekf import healthy
-from fsw.core.estimation.parameters import COMPONENTS, NAMES, layout
+from fsw.core.estimation.mekf import Estimate, healthy
+from fsw.core.estimation.parameters import NAMES, layout
 from fsw.table.estimator import table_bounds
 from fsw.table.table import FlightTable
 from fsw.table.uncertainty import limits, priors
-from fsw.wire.messages import Component
 from sim.plant.config import PlantConfig
 from sim.plant.dynamics.disturbances import bias_torque, effects, residual_dipole
 from sim.plant.rotation import ZERO, from_vector, matrix
-from sim.record.estimates import Estimates
 from sim.record.truth import Histories
-from sim.report.tables import Table
 from sim.scenario.assemble import plant_config
 from sim.scenario.schema import Scenario, flight_table
 
 Json = dict[str, Any]
 Values = tuple[float, ...]
 
-UNITS = {
-    "mag_bias_t": ("nT", 1e9),
-    "torque_body_nm": ("N m", 1.0),
-    "dipole_body_am2": ("A m²", 1.0),
-    "coil_error": ("%", 100.0),
-    "inertia_error_kgm2": ("kg m²", 1.0),
-    "mag_turn_rad": ("°", degrees(1.0)),
-    "mag_scale": ("%", 100.0),
-    "sun_turn_rad": ("°", degrees(1.0)),
-    "delay_s": ("s", 1.0),
-}
-"""The unit in which the page shows a parameter, and how many of it are one of SI."""
 
-
-def parameter_figures(scenario: Scenario, truth: Histories, estimates: Estimates) -> Json | None:
+def parameter_figures(scenario: Scenario, truth: Histories, estimate: Estimate | None) -> Json | None:
     """The last estimate of each parameter that the filter carries; None where there is no sound one.
 
     By name in ``Parameters``, each a list by component, SI units: ``value``, ``sigma``, ``bound`` of the
     onboard table, and ``truth`` where the plant has one.
     """
-    estimate, table = estimates.last, flight_table(scenario)
+    table = flight_table(scenario)
     if estimate is None or not healthy(estimate):
         return None
     known, inertia = table_bounds(table), table.body.inertia
@@ -58,19 +41,6 @@ def parameter_figures(scenario: Scenario, truth: Histories, estimates: Estimates
         if name in true:
             figures[name]["truth"] = list(true[name])
     return figures
-
-
-def parameter_table(summary: Json) -> Table:
-    """The same in the units of people, a row a component, named as on the bus."""
-    figures = summary.get("parameters", {})
-    rows = []
-    for component, (index, offset) in zip(Component, COMPONENTS, strict=True):
-        if NAMES[index] in figures:
-            unit, factor = UNITS[NAMES[index]]
-            columns = [figures[NAMES[index]].get(key) for key in ("bound", "value", "sigma", "truth")]
-            cells = ["–" if column is None else f"{factor * column[offset]:.4g}" for column in columns]
-            rows.append((component.name.lower(), unit, *cells))
-    return Table(("", "unit", "bound", "estimate at the end", "sigma", "truth"), rows)
 
 
 def _truth(plant: PlantConfig, table: FlightTable, truth: Histories) -> dict[str, Values]:

@@ -8,7 +8,7 @@ import pytest
 
 from sim.audit.auditor import AuditLimits
 from sim.audit.findings import DrivenPulse
-from sim.report.histories import FlightHistories
+from sim.report.figures.histories import FlightHistories
 
 
 @pytest.mark.parametrize(("lit", "dark"), [(0.0, True), (0.49, True), (0.5, False), (1.0, False)])
@@ -52,12 +52,13 @@ def test_the_rate_error_is_that_of_the_inertial_rate(made_run):
     off = replace(run.estimates(), q_body_from_orbit=q, omega_body_radps=np.tile([0.0, 0.0, 1.0e-3], (50, 1)))
     off.omega_body_orbit_radps[:] = 0.0
     still = {"q_body_from_orbit": q, "omega_body_orbit_radps": np.tile([2e-5, 0.0, 0.0], (50, 1))}
-    flown = FlightHistories.of(run.scenario, run.truth() | still, off, run.audit())
+    flown = FlightHistories(run.truth() | still, off)
     assert flown.rate_error_degps == pytest.approx(np.degrees(2e-5))
 
 
 def test_three_sigma_is_thrice_the_root_of_the_trace(made_run):
-    flown = made_run(ticks=5).flown()
+    run = made_run(ticks=5)
+    flown = FlightHistories(run.truth(), run.estimates())
     assert flown.sigma3_deg(0) == pytest.approx(np.degrees(3.0 * np.sqrt(3e-6)))
     assert flown.sigma3_deg(3) == pytest.approx(np.degrees(3.0 * np.sqrt(3e-10)))
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from fsw.core.algebra.quaternion import canonical, conjugate, dcm, multiply, rotate
-from sim.report.attitude_arrays import angle_rad, axis1_angle_rad, normal_in_body, relative
+from sim.report.figures.attitude_arrays import angle_rad, axis1_angle_rad, normal_in_body, relative
 
 seeds = st.integers(0, 2**32 - 1)
 

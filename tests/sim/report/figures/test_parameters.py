@@ -1,14 +1,13 @@
 """What the filter estimates, in summary and report: values, deviations, bounds and truth by component."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.parameters import NOTHING
-from sim.report.parameters import UNITS, parameter_figures, parameter_table
+from sim.report.figures.parameters import parameter_figures
+from sim.report.parameter_table import UNITS, parameter_table
 from sim.scenario.schema import load
 
 UNLIKE = {
@@ -63,19 +62,18 @@ COILS = (COILS - np.eye(3)).ravel()
 """G of the three coils by rows."""
 
 
-def estimates_of(made_run, parameters, variances):
-    last = Estimate((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), parameters, np.diag(variances))
-    return replace(made_run(ticks=5).estimates(), last=last)
+def estimate_of(parameters, variances):
+    return Estimate((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), parameters, np.diag(variances))
 
 
 @pytest.fixture(scope="module")
-def figures(made_run):
+def figures():
     """Of a filter that carries all, every value and deviation another."""
     parameters = NOTHING._replace(
         mag_bias_t=(1e-7, -2e-7, 3e-7), coil_error=tuple(0.01 * n for n in range(9)), delay_s=(0.3, 0.6)
     )
-    estimates = estimates_of(made_run, parameters, [(1.0 + n) ** 2 for n in range(41)])
-    return parameter_figures(load("microsat", UNLIKE), TRUTH, estimates)
+    estimate = estimate_of(parameters, [(1.0 + n) ** 2 for n in range(41)])
+    return parameter_figures(load("microsat", UNLIKE), TRUTH, estimate)
 
 
 class TestFigures:
@@ -123,24 +121,24 @@ class TestFigures:
     def test_the_truth_is_the_plant_s(self, figures, name, truth):
         assert figures[name]["truth"] == pytest.approx([*truth], abs=1e-15)
 
-    def test_of_an_exact_table_there_are_only_bias_and_torque(self, made_run):
-        estimates = estimates_of(made_run, NOTHING, [1.0] * 12)
-        assert [*parameter_figures(load("microsat"), TRUTH, estimates)] == ["mag_bias_t", "torque_body_nm"]
+    def test_of_an_exact_table_there_are_only_bias_and_torque(self):
+        estimate = estimate_of(NOTHING, [1.0] * 12)
+        assert [*parameter_figures(load("microsat"), TRUTH, estimate)] == ["mag_bias_t", "torque_body_nm"]
 
-    def test_a_torque_that_follows_the_motion_has_no_one_truth(self, made_run):
-        estimates = estimates_of(made_run, NOTHING, [1.0] * 12)
+    def test_a_torque_that_follows_the_motion_has_no_one_truth(self):
+        estimate = estimate_of(NOTHING, [1.0] * 12)
         eddy = load("microsat", {"disturbance": {"eddy_nms_per_t2": 100.0}})
-        found = parameter_figures(eddy, TRUTH, estimates)
+        found = parameter_figures(eddy, TRUTH, estimate)
         assert "truth" not in found["torque_body_nm"]
         assert found["mag_bias_t"]["truth"] == [0.0, 0.0, 0.0]
 
     @pytest.mark.parametrize("variance", [-1e-20, np.nan])
-    def test_of_an_estimate_that_is_not_sound_there_are_none(self, made_run, variance):
-        estimates = estimates_of(made_run, NOTHING, [1.0] * 11 + [variance])
-        assert parameter_figures(load("microsat"), TRUTH, estimates) is None
+    def test_of_an_estimate_that_is_not_sound_there_are_none(self, variance):
+        estimate = estimate_of(NOTHING, [1.0] * 11 + [variance])
+        assert parameter_figures(load("microsat"), TRUTH, estimate) is None
 
-    def test_without_a_filter_there_are_none(self, made_run):
-        assert parameter_figures(load("microsat"), TRUTH, made_run(ticks=5).estimates()) is None
+    def test_without_a_filter_there_are_none(self):
+        assert parameter_figures(load("microsat"), TRUTH, None) is None
 
 
 class TestTable:

@@ -1,0 +1,1 @@
+"""What a flight achieved, in figures: against the plant's truth, tick by tick and as a whole."""

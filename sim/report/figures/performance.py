@@ -1,0 +1,261 @@
+"""The figures of a flight against the plant's truth, gathered block by block."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fsw.core.estimation.mekf import Estimate
+from fsw.wire.messages import Mode
+from sim.record.estimates import Estimates
+from sim.record.truth import Histories
+from sim.report.figures import parameters
+from sim.report.figures.attitude_arrays import angle_rad, axis1_angle_rad
+from sim.report.figures.estimate_error import (
+    CONVERGED_DEG,
+    CONVERGED_FOR_S,
+    estimate_error,
+    nees,
+    within_3sigma,
+)
+from sim.report.figures.spans import spans
+from sim.scenario.schema import Scenario, orbit_period_s
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Json = dict[str, Any]
+
+BLOCK_TICKS = 4096
+"""Sums are taken over blocks of so many ticks, however a flight is handed over: so they are the same bits."""
+SETTLED_DEG = 5.0
+SPIN_SETTLED_RADPS = 1e-3
+
+
+@dataclass(slots=True)
+class Mean:
+    """Number, sum, sum of squares and maximum of values."""
+
+    count: int = 0
+    total: float = 0.0
+    squares: float = 0.0
+    most: float = -np.inf
+
+    def take(self, values: Array) -> None:
+        """Take more of them."""
+        if len(values):
+            self.count += len(values)
+            self.total += float(values.sum())
+            self.squares += float((values**2).sum())
+            self.most = max(self.most, float(values.max()))
+
+    @property
+    def mean(self) -> float:
+        """Of at least one."""
+        return self.total / self.count
+
+    @property
+    def rms(self) -> float:
+        """Root of the mean of squares, of at least one."""
+        return float(np.sqrt(self.squares / self.count))
+
+
+@dataclass(slots=True)
+class _Angle:
+    """An angle from nominal, in the last orbit and at the end, and the tick from which it stays small."""
+
+    last_orbit: Mean = field(default_factory=Mean)
+    final_deg: float = np.nan
+    held_from: int = 0
+
+    def take(self, angle_deg: Array, first: int, recent: slice) -> None:
+        self.last_orbit.take(angle_deg[recent])
+        self.final_deg = float(angle_deg[-1])
+        large = np.flatnonzero(~(angle_deg < SETTLED_DEG))
+        if len(large):
+            self.held_from = first + int(large[-1]) + 1
+
+    def figures(self) -> Json:
+        return {
+            "final": self.final_deg,
+            "rms_last_orbit": self.last_orbit.rms,
+            "max_last_orbit": self.last_orbit.most,
+        }
+
+
+@dataclass(slots=True)
+class _Honesty:
+    """Of the estimate from a tick on: its errors, and whether its covariance tells them."""
+
+    sunlit: Mean = field(default_factory=Mean)
+    eclipse: Mean = field(default_factory=Mean)
+    consistency: Mean = field(default_factory=Mean)
+    counted: int = 0
+    inside: int = 0
+
+    def take(self, truth: Histories, estimates: Estimates, error_deg: Array, since: int) -> None:
+        """A block, from its row ``since`` on."""
+        ticks, estimated = len(error_deg), np.isfinite(error_deg)
+        estimated[:since] = False  # also where a filter that starts anew has no estimate for a while
+        lit = truth["lit"] > 0.5
+        self.sunlit.take(error_deg[lit & estimated])
+        self.eclipse.take(error_deg[~lit & estimated])
+        consistency = nees(truth, estimates)[since:]
+        self.consistency.take(consistency[np.isfinite(consistency)])
+        counted = estimates.valid[:ticks] & np.isfinite(estimates.covariance[:ticks]).all(axis=(1, 2))
+        counted[:since] = False
+        self.counted += int(counted.sum())
+        self.inside += int(within_3sigma(truth, estimates)[counted].all(axis=1).sum())
+
+    def figures(self) -> Json:
+        named = (("rms_sunlit", self.sunlit), ("rms_eclipse", self.eclipse))
+        result: Json = {
+            "estimate_deg": {key: errors.rms for key, errors in named if errors.count}
+            | {
+                "max": max(self.sunlit.most, self.eclipse.most),
+                "within_3sigma": self.inside / self.counted if self.counted else None,
+            }
+        }
+        if self.consistency.count:
+            result["nees_mean"] = self.consistency.mean
+        return result
+
+
+@dataclass(slots=True)
+class _Convergence:
+    """Finds the first ten minutes with a small error, and judges the estimate from their first tick on.
+
+    What follows the first tick of a span that may become long enough counts from then on; where the span ends
+    too early, it is forgotten.
+    """
+
+    length: int
+    first: int | None = None
+    found: bool = False
+    honesty: _Honesty = field(default_factory=_Honesty)
+
+    def take(self, truth: Histories, estimates: Estimates, begin: int) -> None:
+        error_deg = np.degrees(angle_rad(estimate_error(truth, estimates)))
+        if not self.found:
+            since = self._search(error_deg, begin)
+            if since is None:
+                return
+        else:
+            since = 0
+        self.honesty.take(truth, estimates, error_deg, since)
+
+    def _search(self, error_deg: Array, begin: int) -> int | None:
+        """The row from which this block counts; None if it does not."""
+        small = spans(error_deg < CONVERGED_DEG)
+        if self.first is not None and not (small and small[0][0] == 0):
+            self.first, self.honesty = None, _Honesty()
+        for row, past in small:
+            goes_on = self.first is not None and row == 0
+            first = self.first if goes_on and self.first is not None else begin + row
+            self.found = begin + past - first >= self.length
+            if self.found or past == len(error_deg):
+                if not goes_on:
+                    self.first, self.honesty = first, _Honesty()
+                return 0 if goes_on else row
+            self.first, self.honesty = None, _Honesty()
+        return None
+
+
+@dataclass(slots=True)
+class _Spin:
+    """The spin about body axis 1 against its reference."""
+
+    reference_radps: float
+    last_orbit: Mean = field(default_factory=Mean)
+    deviation: Mean = field(default_factory=Mean)
+    settled: int | None = None
+
+    def take(self, spin_radps: Array, first: int, recent: slice) -> None:
+        deviation = np.abs(spin_radps - self.reference_radps)
+        self.last_orbit.take(spin_radps[recent])
+        self.deviation.take(deviation[recent])
+        inside = np.flatnonzero(deviation < SPIN_SETTLED_RADPS)
+        if self.settled is None and len(inside):
+            self.settled = first + int(inside[0])
+
+
+class Performance:
+    """What a flight of so many ticks achieves, from its blocks in order.
+
+    Args:
+        scenario: that was flown.
+        ticks: of the whole flight.
+    """
+
+    def __init__(self, scenario: Scenario, ticks: int) -> None:
+        self._scenario = scenario
+        self._hz, self._orbit_s = scenario.time.tick_hz, orbit_period_s(scenario)
+        self._last_orbit_from = max(0, ticks - round(self._orbit_s * self._hz))
+        self.ticks = 0
+        """Taken so far."""
+        self._pointing, self._axis1 = _Angle(), _Angle()
+        self._convergence = _Convergence(round(CONVERGED_FOR_S * self._hz))
+        self._spin = _Spin(scenario.control.spin_radps)
+        self._last: tuple[Histories, Estimates] | None = None
+        self.last_estimate: Estimate | None = None
+        """That of the filter, whole."""
+
+    def take(self, truth: Histories, estimates: Estimates) -> None:
+        """The next block of ``BLOCK_TICKS``; the last one may be shorter, but is not empty."""
+        first, rows = self.ticks, len(truth["t_s"])
+        q = truth["q_body_from_orbit"]
+        recent = slice(max(0, self._last_orbit_from - first), rows)
+        self._pointing.take(np.degrees(angle_rad(q)), first, recent)
+        self._axis1.take(np.degrees(axis1_angle_rad(q)), first, recent)
+        self._convergence.take(truth, estimates, first)
+        self._spin.take(truth["omega_body_orbit_radps"][:, 0], first, recent)
+        self._last = truth, estimates
+        self.last_estimate = estimates.last or self.last_estimate
+        self.ticks += rows
+
+    def figures(self) -> Json:
+        """The keys of summary.json on attitude, estimate and mode; none of a flight without ticks."""
+        if self._last is None:
+            return {}
+        truth, estimates = self._last
+        axis1 = self._axis1.figures() | {"mean_last_orbit": self._axis1.last_orbit.mean}
+        if self._axis1.held_from < self.ticks:
+            axis1["settle_orbits_5deg"] = self._axis1.held_from / self._hz / self._orbit_s
+        result: Json = {"pointing_deg": self._pointing.figures(), "axis1_deg": axis1}
+        if self._convergence.found and self._convergence.first is not None:
+            result |= self._convergence.honesty.figures()
+            result["converged_at_s"] = self._convergence.first / self._hz
+        result["parameters"] = parameters.parameter_figures(self._scenario, truth, self.last_estimate)
+        result["mode_final"] = Mode(int(estimates.mode[len(truth["t_s"]) - 1])).name
+        return result
+
+    def spin(self) -> Json | None:
+        """How the spin follows its reference; None without a reference, or without a tick."""
+        spin = self._spin
+        if spin.reference_radps == 0.0 or self._last is None:
+            return None
+        result: Json = {
+            "reference": spin.reference_radps,
+            "mean_last_orbit": spin.last_orbit.mean,
+            "max_dev_last_orbit": spin.deviation.most,
+        }
+        if spin.settled is not None:
+            result["settle_s_1e-3"] = spin.settled / self._hz
+        return result
+
+
+def perform(scenario: Scenario, truth: Histories, estimates: Estimates) -> Performance:
+    """Of a flight whose histories are whole."""
+    performance = Performance(scenario, len(truth["t_s"]))
+    for truth_block, estimates_block in blocks(truth, estimates):
+        performance.take(truth_block, estimates_block)
+    return performance
+
+
+def blocks(truth: Histories, estimates: Estimates) -> Iterator[tuple[Histories, Estimates]]:
+    """Histories in blocks, in order."""
+    ticks = len(truth["t_s"])
+    for first in range(0, ticks, BLOCK_TICKS):
+        rows = slice(first, min(first + BLOCK_TICKS, ticks))
+        yield {name: history[rows] for name, history in truth.items()}, estimates.part(rows)
