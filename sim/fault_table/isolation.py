@@ -151,17 +151,17 @@ def isolates_no_healthy_unit(row: FaultRow, record: FaultFlightRecord, bounds: B
 
 
 def uses_unit_again(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
-    """A coil whose fault has passed is brought back, fired, and not isolated again."""
+    """A coil is brought back, fired once its fault has passed, and not isolated again."""
     coil = int(row.unit.removeprefix("coil "))
     back = [
         event.tick
         for event in record.events
         if event.number == Number.COIL_READMITTED and event.argument // 100 == coil + 1
     ]
-    if not back or back[-1] < (record.end or 0):
+    if not back:
         return False, f"{row.unit} is not brought back"
     fired = zip(record.request_ticks, record.request_coils, strict=True)
-    count = sum(tick > back[-1] and one == coil for tick, one in fired)
+    count = sum(tick > max(back[-1], record.end or 0) and one == coil for tick, one in fired)
     again = any(tick > back[-1] and unit == row.unit for tick, unit in isolations(record))
     return count > 0 and not again, f"{row.unit} fired {count} times" + ", and isolated again" * again
 

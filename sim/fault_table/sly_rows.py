@@ -144,7 +144,7 @@ SLY_ROWS: tuple[FaultRow, ...] = (
         IN_TURN,
         "coil_open",
         {"axis": 0.0},
-        1500.0,
+        ORBIT_S,
         When.ORBIT,
         ("named", "used again"),
         "coil 0",

@@ -216,7 +216,7 @@ def test_no_coil_need_be_isolated_once_a_faulty_sensor_makes_them_disagree(bound
 
 
 class TestUsedAgain:
-    """A coil whose fault has passed is brought back after it, fired, and not isolated again."""
+    """A coil is brought back, fired once its fault has passed, and not isolated again."""
 
     ROW = FaultRow("planted", "", "coil_open", {"axis": 1.0}, unit="coil 1")
     NAMED, BACK = ReportedEvent(120, Number.COIL_FAULT, 201), ReportedEvent(250, Number.COIL_READMITTED, 201)
@@ -230,9 +230,13 @@ class TestUsedAgain:
     def test_it_is(self, bounds):
         assert self.judged(bounds, self.NAMED, self.BACK) == (True, "coil 1 fired 1 times")
 
-    def test_brought_back_while_it_was_faulty_it_is_not(self, bounds):
-        early = replace(self.BACK, tick=199)
-        assert self.judged(bounds, self.NAMED, early) == (False, "coil 1 is not brought back")
+    def test_brought_back_while_it_was_faulty_it_is_if_it_stays_in_use(self, bounds):
+        early = replace(self.BACK, tick=150)
+        assert self.judged(bounds, self.NAMED, early) == (True, "coil 1 fired 1 times")
+        assert not self.judged(bounds, self.NAMED, early, fired=((199, 1),))[0], "not fired since"
+        assert not self.judged(bounds, self.NAMED, early, replace(self.NAMED, tick=190))[0]
+
+    def test_it_is_not_if_another_is_brought_back(self, bounds):
         other = replace(self.BACK, argument=301)
         assert self.judged(bounds, self.NAMED, other) == (False, "coil 1 is not brought back")
 
