@@ -14,7 +14,7 @@ from sim.compare.case import ComparisonCase, Driver
 from sim.drawing.canvas import TimeAxis
 from sim.errors import HarnessError
 from sim.record.truth import Histories
-from sim.report.drawn_flight import whole_flight
+from sim.report.charts.drawn_flight import whole_flight
 from sim.report.figures.histories import FlightHistories
 from sim.report.figures.performance import SETTLED_DEG
 from sim.report.figures.spans import spans

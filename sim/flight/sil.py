@@ -118,7 +118,7 @@ def _fly_processes(
         return
     tick = last_tick(path, scenario)
     name, process = failed[0] if failed else ("flight software", fsw)
-    why = run.get("ended") or f"the {name} {_exit_text(process.returncode)} at tick {tick}"
+    why = run.get("ended") or f"the {name} {exit_text(process.returncode)} at tick {tick}"
     if stalled_s:
         why = f"the plant is stalled: its log has not grown for {stalled_s:.0f} s after tick {tick}"
     if run.get("second_senders"):
@@ -148,12 +148,21 @@ def last_tick(path: Path, scenario: Scenario) -> int:
     return round((float(stamps[-1]) - scenario.epoch_unix_s) * scenario.time.tick_hz)
 
 
-def start_node(module: str, *arguments: str) -> subprocess.Popen[bytes]:
-    """Start a node as a process of the same code. Ctrl-C reaches this process only, which ends its nodes."""
+def start_node(module: str, *arguments: str, **pipes: int) -> subprocess.Popen[bytes]:
+    """Start a node as a process of the same code. Ctrl-C reaches this process only, which ends its nodes.
+
+    ``pipes``: of ``stdin``, ``stdout`` and ``stderr``, as ``subprocess`` takes them.
+    """
     words = [sys.executable, "-m", module, *arguments]
     path = {"PYTHONPATH": os.pathsep.join(sys.path), "PYTHONSAFEPATH": "1"}  # not from the current directory
     environment = {**os.environ, **path, "OPENBLAS_NUM_THREADS": "1"}
-    return subprocess.Popen(words, env=environment, start_new_session=True)
+    popen: subprocess.Popen[bytes] = subprocess.Popen(
+        words,
+        env=environment,
+        start_new_session=True,
+        **pipes,  # type: ignore[call-overload]  # one of three keys
+    )
+    return popen
 
 
 def _serve(hub: Hub | None, seconds: float) -> None:
@@ -182,7 +191,8 @@ def _end(processes: Sequence[subprocess.Popen[bytes]], hub: Hub | None) -> None:
         process.wait()
 
 
-def _exit_text(code: int | None) -> str:
+def exit_text(code: int | None) -> str:
+    """How a process ended, as the end of a sentence."""
     if code is not None and code < 0:
         return f"was ended by signal {-code}"
     return f"ended with exit code {code}"

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import NamedTuple
+from typing import BinaryIO, NamedTuple
 
 from fsw.input.regular_file import check_regular
 from fsw.wire.candump_line import LONGEST, LineReader, is_beginning, is_fd
@@ -37,8 +37,16 @@ class LogEntry(NamedTuple):
     frame: Frame
 
 
-def read_log(path: Path) -> Iterator[LogEntry]:
+More = Callable[[], bool]
+"""Called at the end of a log that is being written: waits, and says whether to look for more."""
+
+
+def read_log(path: Path, more: More | None = None) -> Iterator[LogEntry]:
     """The frames of a candump log, one by one, in the order of the file.
+
+    Args:
+        path: of the log.
+        more: given where the log is still being written.
 
     Raises:
         LogTruncatedError: at the end, if the last line is cut; every whole line has been yielded by then.
@@ -47,9 +55,23 @@ def read_log(path: Path) -> Iterator[LogEntry]:
     try:
         check_regular(path)
         with path.open("rb") as file:
-            yield from _entries(path, file.readline)
+            yield from _entries(path, file.readline if more is None else _growing(file, more))
     except OSError as error:
         raise LogError(f"{path}: cannot be read: {error.strerror}") from None
+
+
+def _growing(file: BinaryIO, more: More) -> Callable[[int], bytes]:
+    """Reads whole lines as they are written, and what is left once there is no more."""
+
+    def readline(most: int) -> bytes:
+        while True:
+            begin = file.tell()
+            text = file.readline(most)
+            if text.endswith(b"\n") or len(text) == most or not more():
+                return text
+            file.seek(begin)
+
+    return readline
 
 
 def _entries(path: Path, readline: Callable[[int], bytes]) -> Iterator[LogEntry]:

@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from itertools import chain, islice
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import Protocol, Self
 
 import h5py
 import numpy as np
@@ -130,6 +130,43 @@ _DAMAGE = (OSError, KeyError, RuntimeError, TypeError, ValueError)
 """What h5py raises for a file that is not HDF5, or is damaged."""
 
 
+class TruthBlocks(Protocol):
+    """Histories that can be read block by block.
+
+    Attributes:
+        complete: rows that there are.
+    """
+
+    complete: int
+
+    def rows(self, first: int, past: int) -> Histories:
+        """Some rows of every dataset, by name."""
+
+
+class GrowingTruth:
+    """Histories that another process is still writing: its structure is final, and its rows come in order.
+
+    Args:
+        path: of the file.
+        ticks: rows that it will have.
+    """
+
+    def __init__(self, path: Path, ticks: int) -> None:
+        self._path = path
+        self.complete = ticks
+
+    def rows(self, first: int, past: int) -> Histories:
+        """Some rows of every dataset, by name; they have been written.
+
+        The file is opened anew each time, so that nothing read before is taken for what is there now.
+
+        Raises:
+            HarnessError: it cannot be read.
+        """
+        with TruthReader(self._path, being_written=True) as reader:
+            return reader.rows(first, past)
+
+
 class TruthReader:
     """Reads the histories in blocks, of a file that is whole or cut.
 
@@ -137,15 +174,15 @@ class TruthReader:
         HarnessError: missing or not a truth file; so does ``rows``.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, being_written: bool = False) -> None:
         self._path = path
         with self._damage_told():
             check_regular(path)
-            self._file = h5py.File(path, "r")
+            self._file = h5py.File(path, "r", locking=not being_written)
         try:
             with self._damage_told():
                 self._names = _names(self._file, path.stat().st_size)
-            self.complete = self._complete_rows()
+            self.complete = 0 if being_written else self._complete_rows()
             """Rows before the first that is not whole."""
         except HarnessError:
             self._file.close()

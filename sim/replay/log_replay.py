@@ -25,7 +25,7 @@ from fsw.wire.messages import (
     TickDone,
     intact,
 )
-from sim.record.candump import LogEntry, LogTruncatedError, read_log
+from sim.record.candump import LogEntry, LogTruncatedError, More, read_log
 from sim.replay.replayed_software import OnTick, ReplayedSoftware
 
 FROM_FSW = frozenset(can_id for can_id, sender in SENDERS.items() if sender == "FSW")
@@ -83,7 +83,11 @@ class ReplayResult:
 
 
 def replay(
-    log: Path, config: FlightConfig, on_tick: OnTick = lambda state: None, forged: bool = False
+    log: Path,
+    config: FlightConfig,
+    on_tick: OnTick = lambda state: None,
+    forged: bool = False,
+    more: More | None = None,
 ) -> ReplayResult:
     """Replay a log.
 
@@ -96,6 +100,7 @@ def replay(
         on_tick: called with the flight state after every replayed tick.
         forged: the scenario injects frames under identifiers of the flight software: such a frame between two
             answers is received, not compared.
+        more: given where the log is still being written.
 
     Raises:
         LogError: the file is no candump log, or was altered so that it no longer is one.
@@ -106,7 +111,7 @@ def replay(
     end: int | None = None
     doubt: tuple[bool, Difference] | None = None  # a broken frame is noise if the whole answer follows
     cut = False
-    for entry in _whole_entries(log):
+    for entry in _whole_entries(log, more):
         if entry is None:
             cut = True
             break
@@ -151,10 +156,10 @@ def replay(
     )
 
 
-def _whole_entries(log: Path) -> Iterator[LogEntry | None]:
+def _whole_entries(log: Path, more: More | None) -> Iterator[LogEntry | None]:
     """The entries; a last None where the log is cut inside a line."""
     try:
-        yield from read_log(log)
+        yield from read_log(log, more)
     except LogTruncatedError:
         yield None
 

@@ -1,7 +1,7 @@
 """Conclude a run: audit, replay, summary and report; only then is the run complete."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from fsw.core.state import FlightState
@@ -11,17 +11,16 @@ from sim.audit.check import limits_beside
 from sim.errors import HarnessError
 from sim.faults.section import break_frames, forge_answers
 from sim.record import binding, run_dir
-from sim.record.candump import LogEntry, read_log
+from sim.record.candump import LogEntry, More, read_log
 from sim.record.destination import check_folder
 from sim.record.estimates import Estimates
 from sim.record.log_index import check_against_index
 from sim.record.run_dir import Json
-from sim.record.run_record import RunRecord
-from sim.record.truth import Histories, TruthReader
+from sim.record.truth import GrowingTruth, Histories, TruthBlocks, TruthReader
 from sim.replay.log_replay import ReplayResult, replay
+from sim.report.charts.lines import Lines
 from sim.report.figures.performance import Performance
-from sim.report.history_blocks import HistoryBlocks, TakeBlock
-from sim.report.lines import Lines
+from sim.report.history_blocks import HistoryBlocks
 from sim.report.page import write_report
 from sim.report.summary import BusTally, summarise
 from sim.report.verdict import Verdict, failures
@@ -39,58 +38,55 @@ def conclude(path: Path, watch: Watch = lambda tick: None) -> Json:
     Raises:
         HarnessError: the directory is no run or cannot be written, or one of its files is damaged.
     """
-    run, scenario = run_dir.read_run(path), run_dir.read_scenario(path)
+    scenario = run_dir.read_scenario(path)
     check_folder(path, run_dir.RESULTS)
-    log = path / run_dir.BUS_LOG
     with TruthReader(path / run_dir.TRUTH) as truth:
-        _check_rows(path / run_dir.TRUTH, truth.complete, run)
-        performance = Performance(scenario, truth.complete)
-        lines = Lines(truth.complete, scenario.time.tick_hz)
-        replay_result = _replay(log, scenario, truth, (performance.take, lines.take), watch)
-    tally = BusTally(scenario.epoch_unix_s * 1_000_000)
-    limits = limits_beside(log)
-    assert limits is not None
-    report = audit(_tally_entries(read_log(log), tally), limits, expect_end=True)
-    if break_frames(scenario.fault):
-        report = without_broken_frames(report)
-    summary = summarise(scenario, run, performance, report, tally)
-    summary["replay"] = _replay_json(replay_result)
-    senders = run.get("second_senders")
-    failed_checks = failures(run, summary["ticks"], report, replay_result, check_against_index(log))
-    summary |= {
-        key: found for key, found in (("second_senders", senders), ("failures", failed_checks)) if found
-    }
-    flight_is_bound = run_dir.BUS_LOG in binding.digests(run)
-    if flight_is_bound:
-        binding.release(path, run_dir.SUMMARY)
-    run_dir.write_json(path / run_dir.SUMMARY, summary)
-    write_report(path / run_dir.REPORT, scenario, summary, lines, report)
-    if flight_is_bound:
-        binding.bind(path, run_dir.TRUTH, run_dir.SUMMARY)
-    if Verdict.COMPLETE not in failed_checks:
-        run_dir.update(path, complete=True)
-    return summary
+        _check_rows(path, truth.complete)
+        replayed = _replay(path, scenario, truth, watch)
+    return _write_results(path, scenario, replayed)
 
 
-def _check_rows(path: Path, rows: int, run: RunRecord) -> None:
-    """A flight that came to its end has as many rows as ticks.
+def conclude_flight(path: Path, more: More, watch: Watch = lambda tick: None) -> Json:
+    """The same of a run that is being flown: the replay follows the flight.
+
+    Args:
+        path: the run directory.
+        more: waits; whether the flight goes on.
+        watch: called with each tick that was replayed.
 
     Raises:
-        HarnessError: it has not.
+        HarnessError: the run cannot be concluded, or the flight was cut short.
     """
-    flight = run.get("flown")
-    if flight is not None and rows != flight["ticks"]:
-        raise HarnessError(f"{path}: {rows} whole rows, but {flight['ticks']} ticks were flown")
+    scenario, ticks = run_dir.read_scenario(path), run_dir.read_run(path)["ticks"]
+    while not (path / run_dir.BUS_LOG).exists() and more():
+        pass
+    replayed = _replay(path, scenario, GrowingTruth(path / run_dir.TRUTH, ticks), watch, more)
+    with TruthReader(path / run_dir.TRUTH) as truth:
+        if truth.complete != ticks:
+            raise HarnessError(f"{path / run_dir.TRUTH}: {truth.complete} whole rows, not {ticks}")
+    _check_rows(path, ticks)
+    check_folder(path, run_dir.RESULTS)
+    return _write_results(path, scenario, replayed)
+
+
+@dataclass(frozen=True, slots=True)
+class _Replayed:
+    """What one pass over log and histories has gathered."""
+
+    result: ReplayResult
+    performance: Performance
+    lines: Lines
 
 
 def _replay(
-    log: Path, scenario: Scenario, truth: TruthReader, takers: tuple[TakeBlock, ...], watch: Watch
-) -> ReplayResult:
-    """Replay, and hand over truth and estimates block by block."""
+    path: Path, scenario: Scenario, truth: TruthBlocks, watch: Watch, more: More | None = None
+) -> _Replayed:
+    performance = Performance(scenario, truth.complete)
+    lines = Lines(truth.complete, scenario.time.tick_hz)
 
     def take_block(histories: Histories, estimates: Estimates) -> None:
-        for take in takers:
-            take(histories, estimates)
+        performance.take(histories, estimates)
+        lines.take(histories, estimates)
 
     blocks = HistoryBlocks(truth, take_block)
 
@@ -99,9 +95,52 @@ def _replay(
         watch(state.tick)
 
     config, forged = flight_config(flight_table(scenario)), forge_answers(scenario.fault)
-    result = replay(log, config, on_tick, forged)
+    result = replay(path / run_dir.BUS_LOG, config, on_tick, forged, more)
+    while more is not None and more():  # a replay that differs ends before the flight
+        pass
     blocks.finish()
-    return result
+    return _Replayed(result, performance, lines)
+
+
+def _write_results(path: Path, scenario: Scenario, replayed: _Replayed) -> Json:
+    """Audit, summary and page; the run is then complete, if nothing speaks against it."""
+    run, log = run_dir.read_run(path), path / run_dir.BUS_LOG
+    tally = BusTally(scenario.epoch_unix_s * 1_000_000)
+    limits = limits_beside(log)
+    assert limits is not None
+    report = audit(_tally_entries(read_log(log), tally), limits, expect_end=True)
+    if break_frames(scenario.fault):
+        report = without_broken_frames(report)
+    summary = summarise(scenario, run, replayed.performance, report, tally)
+    summary["replay"] = _replay_json(replayed.result)
+    senders = run.get("second_senders")
+    failed_checks = failures(run, summary["ticks"], report, replayed.result, check_against_index(log))
+    summary |= {
+        key: found for key, found in (("second_senders", senders), ("failures", failed_checks)) if found
+    }
+    flight_is_bound = run_dir.BUS_LOG in binding.digests(run)
+    if flight_is_bound:
+        binding.release(path, run_dir.SUMMARY)
+    run_dir.write_json(path / run_dir.SUMMARY, summary)
+    write_report(path / run_dir.REPORT, scenario, summary, replayed.lines, report)
+    if flight_is_bound:
+        binding.bind(path, run_dir.TRUTH, run_dir.SUMMARY)
+    if Verdict.COMPLETE not in failed_checks:
+        run_dir.update(path, complete=True)
+    return summary
+
+
+def _check_rows(path: Path, rows: int) -> None:
+    """A flight that came to its end has as many rows as ticks.
+
+    Raises:
+        HarnessError: it has not.
+    """
+    flight = run_dir.read_run(path).get("flown")
+    if flight is not None and rows != flight["ticks"]:
+        raise HarnessError(
+            f"{path / run_dir.TRUTH}: {rows} whole rows, but {flight['ticks']} ticks were flown"
+        )
 
 
 def _tally_entries(entries: Iterator[LogEntry], tally: BusTally) -> Iterator[LogEntry]:

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from fsw.core.state import FlightState
 from sim.record.estimates import EstimateRecorder, Estimates
-from sim.record.truth import Histories, TruthReader
+from sim.record.truth import Histories, TruthBlocks
 from sim.report.figures.performance import BLOCK_TICKS
 
 TakeBlock = Callable[[Histories, Estimates], None]
@@ -20,7 +20,7 @@ class HistoryBlocks:
         take: what is called with each block, in order.
     """
 
-    def __init__(self, truth: TruthReader, take: TakeBlock) -> None:
+    def __init__(self, truth: TruthBlocks, take: TakeBlock) -> None:
         self._truth = truth
         self._take = take
         self._now = EstimateRecorder(self._length(0), 0)

@@ -8,7 +8,7 @@ from sim.drawing.pages import page
 from sim.record import run_dir
 from sim.record.run_record import RunRecord
 from sim.report import tables
-from sim.report.lines import Lines
+from sim.report.charts.lines import Lines
 from sim.report.parameter_table import parameter_table
 from sim.scenario.schema import Scenario
 
@@ -25,7 +25,7 @@ def write_report(
     Raises:
         HarnessError: that ``run.json`` is damaged.
     """
-    from sim.report.sections import sections  # noqa: PLC0415 matplotlib loads when something is drawn
+    from sim.report.charts.sections import sections  # noqa: PLC0415 matplotlib loads when something is drawn
 
     run = run_dir.read_run(path.parent) if (path.parent / run_dir.RUN).is_file() else None
     events = tables.events(summary)

@@ -89,7 +89,7 @@ def run(flown, tmp_path):
 @pytest.fixture
 def no_charts(monkeypatch):
     """They take a second."""
-    monkeypatch.setattr("sim.report.sections.sections", lambda *given: [])
+    monkeypatch.setattr("sim.report.charts.sections.sections", lambda *given: [])
 
 
 CHECK, REPLAY, PLANT, REPORT = ("check",), ("replay",), ("replay", "--plant"), ("report",)

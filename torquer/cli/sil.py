@@ -51,6 +51,7 @@ def sil(
     from sim.record import run_dir
     from sim.record.pace import parse_pace
     from sim.record.signature import private_key
+    from sim.report.follow import follow
     from sim.scenario.schema import load, parse_settings
 
     key = None if sign is None else private_key(sign)
@@ -68,22 +69,25 @@ def sil(
         from sim.flight.virtual import fly_virtual
 
         run_dir.begin(path, chosen, seed, ticks, bus, chosen_pace)
-        with progress(flying, ticks) as watch:
-            fly_virtual(path, chosen, watch)
+        with follow(path, ticks) as conclude:
+            with progress(flying, ticks) as watch:
+                fly_virtual(path, chosen, watch)
+            with progress("replaying", ticks) as watch:
+                summary = conclude(watch)
     else:
         with serve_bus(bus) as (spec, hub):
             kind = spec.partition(":")[0]
             run_dir.begin(path, chosen, seed, ticks, kind, chosen_pace)
             if bus == "auto":
                 click.echo(f"bus: {kind} (auto)", err=True)
-            with progress(flying, ticks) as watch:
-                fly_processes(path, chosen, spec, hub, watch)
+            with follow(path, ticks) as conclude:
+                with progress(flying, ticks) as watch:
+                    fly_processes(path, chosen, spec, hub, watch)
+                with progress("replaying", ticks) as watch:
+                    summary = conclude(watch)
     from sim.record.binding import sign_run  # loaded after the flight, which does not need it
-    from sim.report.conclude import conclude
     from sim.report.summary import summary_text
 
-    with progress("replaying", ticks) as watch:
-        summary = conclude(path, watch)
     if key is not None:
         sign_run(path, key)
     click.echo(summary_text(summary))

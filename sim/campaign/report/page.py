@@ -13,7 +13,7 @@ from sim.campaign.report.analysis import CampaignAnalysis
 from sim.drawing.canvas import style
 from sim.drawing.inline_svg import svg
 from sim.drawing.pages import page
-from sim.report.sections import Chart
+from sim.report.charts.sections import Chart
 from sim.report.tables import Table, Tile
 
 MOST_TILES = 4

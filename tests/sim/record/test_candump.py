@@ -201,3 +201,36 @@ def test_a_log_with_altered_bytes_is_refused_or_read_whole(data):
         content[data.draw(st.integers(0, len(content) - 1))] = data.draw(st.integers(0, 255))
     entries, refusal = read_in_new_file(bytes(content))
     assert len(entries) == bytes(content).count(b"\n") or refusal is not None
+
+
+class TestGrowing:
+    """A log that is read while it is being written."""
+
+    def grown(self, tmp_path, *parts):
+        """The lines read of a log to which a part is added whenever the reader asks for more."""
+        log, left = tmp_path / "bus.log", [part.encode() for part in parts]
+        log.write_bytes(left.pop(0))
+
+        def more():
+            if not left:
+                return False
+            with log.open("ab") as file:
+                file.write(left.pop(0))
+            return True
+
+        return [entry.line for entry in read_log(log, more)]
+
+    def test_what_is_added_is_read(self, tmp_path):
+        assert self.grown(tmp_path, "", LINE, "", LINE + LINE) == [1, 2, 3]
+
+    @pytest.mark.parametrize("cut", [1, 20, len(LINE) - 1])
+    def test_a_line_in_parts_is_one_line(self, tmp_path, cut):
+        assert self.grown(tmp_path, LINE + LINE[:cut], "", LINE[cut:] + LINE) == [1, 2, 3]
+
+    def test_a_line_that_is_never_finished_is_truncated(self, tmp_path):
+        with pytest.raises(LogTruncatedError, match="line 2 is incomplete"):
+            self.grown(tmp_path, LINE, LINE[:20])
+
+    def test_what_is_no_line_is_refused_at_once(self, tmp_path):
+        with pytest.raises(LogError, match="line 2 is not a candump line"):
+            self.grown(tmp_path, LINE + "no line\n", LINE)

@@ -12,7 +12,7 @@ import pytest
 from sim.errors import HarnessError
 from sim.plant.dynamics.torques import SOURCES
 from sim.plant.plant import TruthRow
-from sim.record.truth import BLOCK_ROWS, COLUMNS, TruthFile, read_truth
+from sim.record.truth import BLOCK_ROWS, COLUMNS, TruthFile, TruthReader, read_truth
 
 
 def row(tick):
@@ -70,6 +70,40 @@ def test_a_flight_that_ended_early_has_the_rows_it_flew(tmp_path):
 def test_a_flight_that_never_flew_has_none(tmp_path):
     write(tmp_path / "truth.h5", 1000, 0)
     assert {len(history) for history in read_truth(tmp_path / "truth.h5").values()} == {0}
+
+
+READ = """
+import sys
+from pathlib import Path
+from sim.record.truth import GrowingTruth
+
+path, rows, past = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+growing = GrowingTruth(Path(path), rows)
+print(growing.complete, growing.rows(0, past)["t_s"].tolist())
+"""
+
+
+def test_rows_that_another_process_still_writes_are_read_as_they_are_written(tmp_path):
+    path, rows = tmp_path / "truth.h5", 3 * BLOCK_ROWS
+
+    def read(past):
+        command = (sys.executable, "-c", READ, path, str(rows), str(past))
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+
+    with TruthFile(path, rows, SOURCES) as truth:
+        for tick in range(2 * BLOCK_ROWS):
+            truth.append(row(tick))
+            if tick + 1 in (BLOCK_ROWS, 2 * BLOCK_ROWS):
+                assert read(tick + 1) == f"{rows} {[row(before).t_s for before in range(tick + 1)]}"
+
+
+def test_blocks_of_a_cut_file_are_those_of_the_whole(tmp_path):
+    path, rows = tmp_path / "truth.h5", 2 * BLOCK_ROWS + 5
+    write(path, 4 * BLOCK_ROWS, rows)
+    with TruthReader(path) as reader:
+        assert reader.complete == rows
+        parts = [reader.rows(first, min(first + 100, rows)) for first in range(0, rows, 100)]
+    assert_rows({name: np.concatenate([part[name] for part in parts]) for name in parts[0]}, rows)
 
 
 def test_names_and_units_are_those_of_the_contract(tmp_path):

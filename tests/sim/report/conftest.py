@@ -17,10 +17,10 @@ from sim.audit.check import check
 from sim.audit.findings import DrivenPulse, Violation
 from sim.record.estimates import Estimates
 from sim.record.truth import Histories
+from sim.report.charts.drawn_flight import DrawnFlight
+from sim.report.charts.lines import Lines
 from sim.report.conclude import conclude
-from sim.report.drawn_flight import DrawnFlight
 from sim.report.figures.performance import blocks, perform
-from sim.report.lines import Lines
 from sim.report.page import write_report
 from sim.report.summary import BusTally, summarise
 from sim.scenario.schema import Scenario, load

@@ -27,7 +27,7 @@ def charts(page):
 @pytest.fixture
 def no_charts(monkeypatch):
     """For what is said beside them: they take a second."""
-    monkeypatch.setattr("sim.report.sections.sections", lambda *given: [])
+    monkeypatch.setattr("sim.report.charts.sections.sections", lambda *given: [])
 
 
 def test_the_page_needs_nothing_but_itself(page):
@@ -278,7 +278,7 @@ def test_who_draws_nothing_does_not_wait_for_matplotlib():
     code = (
         "import sys, sim.report.page\n"
         "assert not [name for name in sys.modules if name.startswith('matplotlib')]\n"
-        "import sim.report.sections\n"
+        "import sim.report.charts.sections\n"
         "assert 'matplotlib.pyplot' not in sys.modules\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True)

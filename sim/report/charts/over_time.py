@@ -16,7 +16,7 @@ from sim.drawing.canvas import (
     stacked,
     trace,
 )
-from sim.report.drawn_flight import DrawnFlight
+from sim.report.charts.drawn_flight import DrawnFlight
 
 MODE_COLOURS = {
     Mode.SAFE: "#b3261e",

@@ -11,7 +11,7 @@ from fsw.wire.messages import Mode
 from sim.audit.auditor import AuditReport
 from sim.audit.findings import COILS, DrivenPulse
 from sim.drawing.canvas import Span, TimeAxis
-from sim.report.lines import Lines
+from sim.report.charts.lines import Lines
 from sim.scenario.schema import Scenario, orbit_period_s
 
 Array = NDArray[np.float64]

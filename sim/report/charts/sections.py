@@ -10,10 +10,9 @@ from sim.audit.auditor import AuditReport
 from sim.audit.findings import AuditLimits
 from sim.drawing.canvas import style
 from sim.drawing.inline_svg import svg
-from sim.report import charts as charts_of
-from sim.report import coils
-from sim.report.drawn_flight import DrawnFlight
-from sim.report.lines import Lines
+from sim.report.charts import coils, over_time
+from sim.report.charts.drawn_flight import DrawnFlight
+from sim.report.charts.lines import Lines
 from sim.scenario.schema import Scenario
 
 Drawing = tuple[Callable[[DrawnFlight], Figure], str]
@@ -63,28 +62,28 @@ def _charts(flight: DrawnFlight, drawings: tuple[Drawing, ...]) -> tuple[Chart, 
 
 _ATTITUDE: tuple[Drawing, ...] = (
     (
-        charts_of.pointing,
+        over_time.pointing,
         "True angle from the nominal attitude, and of body axis 1 from the local vertical. Grey bands, here "
         "and in all charts against time, are eclipses. A long history is drawn as the span between its least "
         "and largest values.",
     ),
-    (charts_of.modes, "Mode of the controller."),
+    (over_time.modes, "Mode of the controller."),
     (
-        charts_of.rates,
+        over_time.rates,
         "True rate of the body relative to the orbital frame.",
     ),
 )
 _ESTIMATE: tuple[Drawing, ...] = (
     (
-        charts_of.estimate,
+        over_time.estimate,
         "True error of the estimate, over all three axes, and three times the standard deviation that the "
         "filter states for it, 3 √tr P. A filter that knows what it does not know stays under the line.",
     ),
 )
 _ENVIRONMENT: tuple[Drawing, ...] = (
-    (charts_of.field_and_dipole, "As the plant has them. Coil 0, 1, 2 drives along body axis 1, 2, 3."),
+    (over_time.field_and_dipole, "As the plant has them. Coil 0, 1, 2 drives along body axis 1, 2, 3."),
     (
-        charts_of.torques,
+        over_time.torques,
         "As the plant has them, magnitudes. The coils act in pulses: theirs is the magnitude of the mean "
         "torque over ten minutes.",
     ),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fsw.wire.messages import Mode
-from sim.report.lines import MEAN_S, Lines, Spans
+from sim.report.charts.lines import MEAN_S, Lines, Spans
 
 
 def in_blocks(run, *cuts, **truth):

@@ -28,7 +28,7 @@ from sim.drawing.canvas import (
     trace,
 )
 from sim.drawing.envelope import BINS
-from sim.report.drawn_flight import DrawnFlight
+from sim.report.charts.drawn_flight import DrawnFlight
 
 ZOOM_S = 1200.0
 MARKS = 300

@@ -1,0 +1,1 @@
+"""The charts of the report: a flight as it is drawn."""

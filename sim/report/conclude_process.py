@@ -1,0 +1,70 @@
+"""``python -m sim.report.conclude_process RUN``: the process that replays a run while it is being flown.
+
+On its standard input comes ``OVER`` once the flight is over, or the end of the file if whoever flies has
+ended. Then it writes on its standard output how many ticks it has replayed, a line now and then.
+"""
+
+import os
+import signal
+import sys
+import time
+from pathlib import Path
+from threading import Event, Thread
+
+import click
+
+from fsw.input import command_line
+from fsw.input.error_text import error_text
+from sim.errors import HarnessError
+from sim.report.conclude import conclude_flight
+from sim.report.follow import OVER
+
+POLL_S = 0.02
+TOLD_S = 0.2
+"""How often the progress is written."""
+
+
+class _Flight:
+    """The flight that is followed."""
+
+    def __init__(self) -> None:
+        self._over = Event()
+        self._last_look = False
+        self._told_s = 0.0
+        Thread(target=self._await_end, daemon=True).start()
+
+    def _await_end(self) -> None:
+        if sys.stdin.buffer.readline() != OVER:
+            os.kill(os.getpid(), signal.SIGTERM)
+        self._over.set()
+
+    def more(self) -> bool:
+        """Whether to look for more in the log: while the flight goes on, and once after it."""
+        if self._over.is_set():
+            first, self._last_look = not self._last_look, True
+            return first
+        time.sleep(POLL_S)
+        return True
+
+    def tell(self, tick: int) -> None:
+        """Write the tick, if someone waits."""
+        now_s = time.monotonic()
+        if self._over.is_set() and now_s - self._told_s > TOLD_S:
+            self._told_s = now_s
+            click.echo(tick)
+
+
+@click.command()
+@click.argument("path", metavar="RUN", type=click.Path(path_type=Path))
+def main(path: Path) -> None:
+    """Replay the run while it is being flown, and conclude it."""
+    flight = _Flight()
+    try:
+        conclude_flight(path, flight.more, flight.tell)
+    except HarnessError as error:
+        click.echo(error_text(error), err=True)
+        sys.exit(error.exit_code)
+
+
+if __name__ == "__main__":
+    sys.exit(command_line.run(main, "sim.report.conclude_process"))

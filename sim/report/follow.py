@@ -1,0 +1,67 @@
+"""Replays a run in another process while it is being flown: on two processors that takes little longer."""
+
+import json
+import os
+import subprocess
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from sim.errors import HarnessError
+from sim.flight.sil import exit_text, start_node
+from sim.record import run_dir
+from sim.record.run_dir import Json
+
+Watch = Callable[[int], None]
+Conclude = Callable[[Watch], Json]
+"""Concludes the run, once it has been flown; called with what is to be told how many ticks are replayed."""
+
+OVER = b"over\n"
+"""Tells that process that the flight is over."""
+LEAST_TICKS = 10_000
+"""A shorter flight is replayed after it: a process takes a second to start."""
+
+
+@contextmanager
+def follow(path: Path, ticks: int) -> Iterator[Conclude]:
+    """While a run that was begun is being flown, replay it in another process, where that pays.
+
+    Args:
+        path: the run directory.
+        ticks: length of the flight.
+
+    Yields:
+        What concludes the run; it raises ``HarnessError`` as ``conclude`` does.
+    """
+    if ticks < LEAST_TICKS or (os.cpu_count() or 1) < 2:
+        from sim.report.conclude import conclude  # noqa: PLC0415 the flight does not need it
+
+        yield lambda watch: conclude(path, watch)
+        return
+    pipe = subprocess.PIPE
+    process = start_node("sim.report.conclude_process", str(path), stdin=pipe, stdout=pipe, stderr=pipe)
+    try:
+        yield lambda watch: _results(process, path, watch)
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def _results(process: subprocess.Popen[bytes], path: Path, watch: Watch) -> Json:
+    assert process.stdin is not None
+    assert process.stdout is not None
+    assert process.stderr is not None
+    with suppress(BrokenPipeError):  # it has ended: its exit code says why
+        process.stdin.write(OVER)
+        process.stdin.flush()
+    for line in process.stdout:
+        watch(int(line))
+    sentence = process.stderr.read().decode().strip()
+    code = process.wait()
+    if code:
+        what = f"the process that replays the flight {exit_text(code)}: torquer report {path} concludes it"
+        error = HarnessError(sentence.splitlines()[-1] if sentence else what)
+        error.exit_code = max(code, 1)
+        raise error
+    summary: Json = json.loads((path / run_dir.SUMMARY).read_text(encoding="utf-8"))
+    return summary
