@@ -35,6 +35,7 @@ WITH_BOARDS = frozenset({"PLANT", "COIL", "MAG", "SUN"})
 ALONE = frozenset({"PLANT"})
 """The same where the boards are nodes of their own."""
 
+_FROM_FSW = frozenset(can_id for can_id, sender in SENDERS.items() if sender == "FSW")
 _ONCE = frozenset(
     {CoilFire.ID, CoilDipole.ID, NavAttitude.ID, NavRate.ID, NavQuality.ID, NavParameter.ID, FswHeartbeat.ID}
 )
@@ -88,12 +89,16 @@ class SenderWatch:
         """
         if again:
             self._again = tick
-        received = [frame for frame in before + answers if intact(frame)]
-        strange = [(frame.can_id, tick) for frame in received if frame.can_id in self._own]
-        from_fsw = [frame for frame in received if SENDERS[frame.can_id] == "FSW"]
-        if Sync.ID not in self._found and all(can_id != Sync.ID for can_id, _ in strange):
+        received = [frame for frame in (*before, *answers) if intact(frame)]
+        from_fsw = [frame for frame in received if frame.can_id in _FROM_FSW]
+        strange = (
+            [(frame.can_id, tick) for frame in received if frame.can_id in self._own]
+            if len(from_fsw) < len(received)
+            else []
+        )
+        if Sync.ID not in self._found and not any(can_id == Sync.ID for can_id, _ in strange):
             # else the flight software may have answered a SYNC that was not the plant's
-            early = sum(SENDERS[frame.can_id] == "FSW" for frame in before if intact(frame))
+            early = sum([frame.can_id in _FROM_FSW for frame in before if intact(frame)])
             strange += (
                 self._in_lockstep(tick, from_fsw, early) if self._lockstep else self._in_time(tick, from_fsw)
             )

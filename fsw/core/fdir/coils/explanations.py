@@ -115,28 +115,43 @@ def of_pulses(solution: Solution) -> list[Explanation]:
     pulses = [index for index, cause in enumerate(solution.causes) if cause < STRAY]
     if not pulses:
         return [Explanation(NONE, 0, 1.0, 0.0)]
-    found = [_explained(solution, NONE, pulses, []), _explained(solution, ALL, pulses, pulses)]
+    whole = _Among.of(solution, pulses)
+    found = [whole.explained(NONE, []), whole.explained(ALL, pulses)]
     for coil in sorted({solution.causes[index] for index in pulses}):
         own = indices_of(coil, solution.causes)
         for count in range(1, len(own) + 1):
-            found.append(_explained(solution, coil, pulses, own[:count]))
+            found.append(whole.explained(coil, own[:count]))
             if count < len(own):
-                others = [index for index in pulses if index != own[count]]
-                found.append(_explained(solution, coil, others, own[:count]))
+                others = _Among.of(solution, [index for index in pulses if index != own[count]])
+                found.append(others.explained(coil, own[:count]))
     return sorted(found, key=lambda explanation: explanation.distance)
 
 
-def _explained(solution: Solution, coil: int, pulses: list[int], alike: list[int]) -> Explanation:
-    """These pulses, if those ``alike`` had one part of their effect and the others what was assumed."""
-    weights = np.linalg.inv(solution.noise(pulses))
-    among = np.isin(pulses, alike)
-    off = np.where(among, solution.part[pulses], solution.deviation[pulses])
-    left = float(off @ weights @ off)
-    if not alike:
-        return Explanation(coil, 0, 1.0, left)
-    weight, explained = float(among @ weights @ among), float(among @ weights @ off)
-    part = max(REVERSED, explained / weight)
-    return Explanation(coil, len(alike), part, left - 2.0 * part * explained + part**2 * weight)
+class _Among(NamedTuple):
+    """Some pulses, of which only these are to be explained, and their weights."""
+
+    solution: Solution
+    pulses: list[int]
+    weights: Matrix
+
+    @classmethod
+    def of(cls, solution: Solution, pulses: list[int]) -> "_Among":
+        """Of these pulses."""
+        return cls(solution, pulses, np.asarray(np.linalg.inv(solution.noise(pulses)), float))
+
+    def explained(self, coil: int, alike: list[int]) -> Explanation:
+        """If those ``alike`` had one part of their effect and the others what was assumed."""
+        part, deviation = self.solution.part, self.solution.deviation
+        off = np.array([part[index] if index in alike else deviation[index] for index in self.pulses])
+        weighted = self.weights @ off
+        left = float(off @ weighted)
+        if not alike:
+            return Explanation(coil, 0, 1.0, left)
+        among = np.array([float(index in alike) for index in self.pulses])
+        weight, explained = float(among @ self.weights @ among), float(among @ weighted)
+        part_of_all = max(REVERSED, explained / weight)
+        distance = left - 2.0 * part_of_all * explained + part_of_all**2 * weight
+        return Explanation(coil, len(alike), part_of_all, distance)
 
 
 def against(solution: Solution, test: WeakTest) -> list[float]:
