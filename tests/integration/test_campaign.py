@@ -109,6 +109,18 @@ def test_the_page_and_the_text_say_what_happened(campaign):
     assert "<script" not in page
 
 
+def test_a_scenario_whose_runs_differ_by_their_seed_alone_is_a_campaign(tmp_path):
+    """Nothing is dispersed: there is no input to correlate with, and no picture of any."""
+    ended = torquer(
+        "campaign", "microsat", "--runs", "3", "--orbits", "0.02", "--workers", "1", "--out", tmp_path
+    )
+    assert ended.exit_code == 0, ended.output
+    assert "3 of 3" in ended.output
+    assert [status for _, status, *_ in rows_in(tmp_path)] == ["done"] * 3
+    assert len({frames for _, _, frames, _ in rows_in(tmp_path)}) == 3
+    assert "<svg" in (tmp_path / "campaign.html").read_text()
+
+
 @pytest.mark.usefixtures("no_report")
 @pytest.mark.parametrize("bus", ["virtual", "loop"])
 def test_a_run_flies_again_equal_bit_for_bit(campaign, bus, tmp_path):

@@ -87,6 +87,8 @@ class Results:
 
     def numbers(self, names: Sequence[str]) -> dict[str, Array]:
         """These columns of the runs that were flown, NaN where a run has no figure."""
+        if not names:
+            return {}
         rows = np.array(list(self.each(names, Status.DONE)), dtype=float).reshape(-1, len(names))
         return dict(zip(names, rows.T, strict=True))
 

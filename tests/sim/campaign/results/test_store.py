@@ -33,6 +33,7 @@ def test_a_row_is_read_as_it_was_written(small, tmp_path):
         found = results.row(4)
         assert results.row(3) is None
         assert results.profiles("ape")[4].tolist() == [0.5, 4.0]
+        assert results.numbers(()) == {}, "no columns are no error"
         assert results.numbers(("pointing_deg_rms_last_orbit",))["pointing_deg_rms_last_orbit"] == [1.0 / 7.0]
     assert (found["run"], found["status"], found["seed"]) == (4, "done", small.draw(4).seed)
     assert found["input_initial_angle_deg"] == small.draw(4).inputs["initial.angle_deg"]

@@ -1,0 +1,214 @@
+"""Measure how fast flights are, each beside a peer in the same minute, and write docs/performance.md.
+
+The peer is Basilisk (benchmarks/basilisk_flight.py), which is installed into an environment of its own under
+build/. Everything is run in turn, round by round, and compared within its round, so that a machine whose
+speed drifts does not matter; the page gives medians. Needs a machine that does nothing else.
+"""
+
+import argparse
+import json
+import os
+import platform
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from importlib.metadata import version
+from pathlib import Path
+from tempfile import TemporaryDirectory, TemporaryFile
+from typing import Any, NamedTuple
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGE = ROOT / "docs" / "performance.md"
+BENCHMARKS = ROOT / "benchmarks"
+IGRF = ROOT / "sim" / "plant" / "environment" / "igrf14.shc"
+PEER = ROOT / "build" / "basilisk"
+PEER_PACKAGE = "bsk>=2.12"
+ORBIT_S = 6041.3
+CAMPAIGN_RUNS = 8
+
+
+class Measured(NamedTuple):
+    """What a command has shown: its speed, its whole time, and the most memory of one of its processes."""
+
+    realtime_factor: float
+    wall_s: float
+    peak_mb: float
+
+
+def run(command: list[str], read: Callable[[str, float], float]) -> Measured:
+    """Run a command in an empty folder; ``read`` takes its output and time and gives its speed."""
+    with TemporaryDirectory() as folder, TemporaryFile("w+") as output:
+        begin_s = time.perf_counter()
+        process = subprocess.Popen(command, cwd=folder, env=environment(), stdout=output)
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        wall_s = time.perf_counter() - begin_s
+        if process.returncode:
+            sys.exit(f"{' '.join(command)} ended with exit code {process.returncode}")
+        output.seek(0)
+        return Measured(read(output.read(), wall_s), wall_s, usage.ru_maxrss / 1e3)
+
+
+def environment() -> dict[str, str]:
+    """Of the processes: this project, one thread for linear algebra."""
+    return {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONSAFEPATH": "1", "OPENBLAS_NUM_THREADS": "1"}
+
+
+def one_process(scenario: str, orbits: float) -> Measured:
+    """One flight in one process, without replay and report."""
+    command = [sys.executable, str(BENCHMARKS / "fly_once.py"), scenario, str(orbits)]
+    return run(command, lambda output, wall_s: float(json.loads(output)["realtime_factor"]))
+
+
+def parts_of(scenario: str, orbits: float) -> dict[str, Any]:
+    """Where the time of a tick goes."""
+    command = [sys.executable, str(BENCHMARKS / "fly_once.py"), scenario, str(orbits), "--parts"]
+    done = subprocess.run(command, env=environment(), capture_output=True, text=True, check=True)
+    figures: dict[str, Any] = json.loads(done.stdout)
+    return figures
+
+
+def whole_run(bus: str, orbits: float) -> tuple[Measured, float]:
+    """``torquer sil`` from start to report: the speed of its flight, and its time over that of the flight."""
+    flight_s: list[float] = []
+
+    def read(output: str, wall_s: float) -> float:
+        summary = json.loads(Path(folder, "run", "summary.json").read_text())
+        flight_s.append(summary["wall_seconds"])
+        return float(summary["realtime_factor"])
+
+    with TemporaryDirectory() as folder:
+        options = ["--bus", bus, "--orbits", str(orbits), "--out", str(Path(folder, "run"))]
+        measured = run([sys.executable, "-m", "torquer", "sil", "microsat", *options], read)
+    return measured, measured.wall_s / flight_s[0]
+
+
+def campaign(orbits: float) -> Measured:
+    """A campaign on two workers, with its start and end."""
+    words = [
+        "microsat",
+        "--runs",
+        str(CAMPAIGN_RUNS),
+        "--orbits",
+        str(orbits),
+        "--workers",
+        "2",
+        "--out",
+        "out",
+    ]
+    flown_s = CAMPAIGN_RUNS * orbits * ORBIT_S
+    command = [sys.executable, "-m", "torquer", "campaign", *words]
+    return run(command, lambda output, wall_s: flown_s / wall_s)
+
+
+def peer(*options: str) -> Measured:
+    """The closed loop in Basilisk."""
+    command = [str(PEER / "bin" / "python"), str(BENCHMARKS / "basilisk_flight.py"), str(IGRF), *options]
+    return run(command, lambda output, wall_s: float(output))
+
+
+def install_peer() -> str:
+    """Install Basilisk into its own environment, if it is not there; its version."""
+    python = PEER / "bin" / "python"
+    if not python.exists():
+        subprocess.run([sys.executable, "-m", "venv", str(PEER)], check=True)
+    subprocess.run([str(python), "-m", "pip", "install", "--quiet", PEER_PACKAGE], check=True)
+    show = [str(python), "-c", "from importlib.metadata import version; print(version('bsk'))"]
+    return subprocess.run(show, capture_output=True, text=True, check=True).stdout.strip()
+
+
+class Row(NamedTuple):
+    """A row of the page: what was run, and what it showed in each round."""
+
+    name: str
+    factors: list[float]
+    peak_mb: float
+
+
+def measure(rounds: int, orbits: float) -> tuple[list[Row], list[float]]:
+    """All figures, round by round; the first row is the peer. Also whole run over flight."""
+    runs: dict[str, Callable[[], Measured]] = {
+        "Basilisk, control in C": lambda: peer(str(20.0 * orbits)),
+        "Basilisk, control in Python": lambda: peer(str(10.0 * orbits), "--python"),
+        "microsat, one process": lambda: one_process("microsat", orbits),
+        "realsat, one process": lambda: one_process("realsat", orbits),
+        "microsat, two processes over loop": lambda: whole_run("loop", orbits)[0],
+        "campaign of microsat, two workers": lambda: campaign(orbits),
+    }
+    found: dict[str, list[Measured]] = {name: [] for name in runs}
+    overheads = []
+    for number in range(1, rounds + 1):
+        for name, take in runs.items():
+            found[name].append(take())
+            print(
+                f"round {number} of {rounds}: {name} {found[name][-1].realtime_factor:.0f}", file=sys.stderr
+            )
+        overheads.append(whole_run("virtual", orbits)[1])
+    rows = [
+        Row(name, [one.realtime_factor for one in each], max(one.peak_mb for one in each))
+        for name, each in found.items()
+    ]
+    return rows, overheads
+
+
+def page(rows: list[Row], overheads: list[float], parts: dict[str, dict[str, Any]], peer_version: str) -> str:
+    """The page."""
+    reference = rows[0].factors
+    lines = [
+        "# Performance",
+        "",
+        "Written by `make bench`, not by hand. How many times faster than real time, each in turn with a",
+        f"closed loop in Basilisk {peer_version} with its modules in C, which has no filter, no bus and no",
+        f"quantised pulses (`benchmarks/basilisk_flight.py`); medians of {len(reference)} rounds, ratios",
+        "within a round; memory is the most of one process.",
+        "",
+        f"{platform.platform()}, {os.cpu_count()} processors, Python {platform.python_version()}, numpy",
+        f"{version('numpy')}, torquer {version('torquer')}.",
+        "",
+        "| what | times real time | of Basilisk in C | memory |",
+        "|---|---|---|---|",
+    ]
+    for row in rows:
+        ratio = statistics.median(mine / its for mine, its in zip(row.factors, reference, strict=True))
+        factor = statistics.median(row.factors)
+        lines.append(f"| {row.name} | {factor:.0f} | {ratio:.3f} | {row.peak_mb:.0f} MB |")
+    whole = statistics.median(overheads)
+    lines += [
+        "",
+        f"`torquer sil` from start to report takes {whole:.2f} of the time of its flight (in one process).",
+    ]
+    for scenario, figures in parts.items():
+        lines += [
+            "",
+            f"## A tick of {scenario}",
+            "",
+            f"{figures['tick_us']:.0f} µs with the sampler running.",
+            "",
+        ]
+        lines += ["| part | µs |", "|---|---|"]
+        lines += [
+            f"| `{part}` | {share * figures['tick_us']:.0f} |"
+            for part, share in figures["parts"].items()
+            if share * figures["tick_us"] >= 1.0
+        ]
+    return "\n".join([*lines, ""])
+
+
+def main() -> None:
+    """Measure and write the page."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--orbits", type=float, default=3.0, help="of each flight")
+    parser.add_argument("--out", type=Path, default=PAGE)
+    options = parser.parse_args()
+    peer_version = install_peer()
+    rows, overheads = measure(options.rounds, options.orbits)
+    parts = {scenario: parts_of(scenario, options.orbits) for scenario in ("microsat", "realsat")}
+    options.out.write_text(page(rows, overheads, parts, peer_version), encoding="utf-8")
+    print(options.out)
+
+
+if __name__ == "__main__":
+    main()
