@@ -25,6 +25,9 @@ from fsw.core.fdir.sensors.plausibility import Findings
 SUSPICIOUS = 0.25
 """Part of the threshold beyond which doubt about the pair keeps what is refused from counting against one."""
 
+ALONE = 0.4
+"""Part of the threshold at which a lag counts that one sensor shows alone: the other cannot contradict it."""
+
 
 class Standing(IntEnum):
     """What is thought of both sensors together.
@@ -176,11 +179,13 @@ def _owed(owed: float, blind_ticks: int, seen: Observed, weights: EvidenceWeight
     """What both sensors have to prove anew.
 
     After a time without any, in which pulses may have failed; and where innovations have a mean that is no
-    chance, and so contradict the covariance.
+    chance, and so contradict the covariance; with one sensor alone, as in the shadow, sooner.
     """
     if seen.estimate is None:
         return 0.0
-    lags = mean_misfit(seen.estimate.lag, weights) >= weights.threshold
+    alone = seen.used.field != seen.used.sun
+    most = ALONE * weights.threshold if alone else weights.threshold
+    lags = mean_misfit(seen.estimate.lag, weights) >= most
     if lags or blind_ticks > weights.blind_ticks:
         return weights.threshold
     both = seen.used.field and seen.used.sun

@@ -135,6 +135,13 @@ class TestValidity:
         slight = TAKEN._replace(estimate=ESTIMATE._replace(lag=(0.5, 0.6, -0.5, 0.5, 0.6, -0.5)))
         assert valid(after(TRUSTED, slight, 500))
 
+    @pytest.mark.parametrize("used", [Used(True, False, False), Used(False, True, False)])
+    def test_a_smaller_one_counts_that_a_sensor_shows_alone(self, used):
+        for lag, holds in (((0.0, 0.8, 0.0, 0.0, 0.8, 0.0), False), ((0.0, 0.5, 0.0, 0.0, 0.5, 0.0), True)):
+            lagging = TAKEN._replace(estimate=ESTIMATE._replace(lag=lag))
+            assert valid(after(TRUSTED, lagging)), "with both it may be chance"
+            assert valid(after(TRUSTED, lagging._replace(findings=ECLIPSE, used=used))) is holds
+
     def bear_out(self, pair):
         alone = (Used(True, False, False), Used(False, True, False))
         for used in alone:
