@@ -19,7 +19,7 @@ from sim.audit.limits import limits_in
 from sim.campaign.frame_digest import FrameDigest
 from sim.faults.section import break_frames, make_plant
 from sim.flight.flight_loop import fly
-from sim.flight.record_flight import ticks_of
+from sim.flight.record_flight import MOST_IN_MEMORY, ticks_of
 from sim.flight.virtual import VirtualBus
 from sim.plant.plant import TruthRow
 from sim.record.candump import LogEntry
@@ -123,7 +123,7 @@ def record_scenario(scenario: Scenario, seed: int, orbits: float | None = None) 
         TableError: no plant or flight software can have these numbers.
         HarnessError: the flight cannot be flown.
     """
-    ticks = ticks_of(scenario, orbits)
+    ticks = ticks_of(scenario, orbits, MOST_IN_MEMORY)
     node = FlightNode(flight_config(flight_table(scenario)))
     log, truth = _Frames(), _Truth(ticks, node)
     plant = make_plant(plant_config(scenario, seed), scenario.fault)

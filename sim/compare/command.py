@@ -15,7 +15,7 @@ from sim.compare.picture import picture
 from sim.compare.score import Result, Score, by_axis1, fly_case
 from sim.compare.table import as_csv, as_json, as_text, ranked
 from sim.errors import HarnessError
-from sim.flight.record_flight import ticks_of
+from sim.flight.record_flight import MOST_IN_MEMORY, ticks_of
 from sim.progress import progress
 from sim.record.destination import check_folder
 from sim.record.run_dir import write_json
@@ -58,7 +58,7 @@ def compare(
     chosen = chosen_laws(scenario, laws)
     drivers = tuple(Driver) if driver == "both" else (Driver(driver),)
     chosen_cases = cases(name, values, chosen, drivers, seed, orbits)
-    ticks = ticks_of(scenario, orbits)
+    ticks = ticks_of(scenario, orbits, MOST_IN_MEMORY)
     folder = _new_folder(out or _default_folder(scenario))
     studies = [
         Study(f"{case.law}-{case.driver}", (partial(fly_case, case),), lambda results: [], has_flights=True)

@@ -20,20 +20,22 @@ from sim.scenario.telecommands import uplink
 
 MOST_TICKS = 2**32 - 1
 """The largest tick of SYNC; PLANT_END counts modulo 2^24."""
+MOST_IN_MEMORY = 2**24 - 1
+"""Ticks of a flight whose histories are kept in memory."""
 
 
-def ticks_of(scenario: Scenario, orbits: float | None) -> int:
+def ticks_of(scenario: Scenario, orbits: float | None, most: int = MOST_TICKS) -> int:
     """How many ticks a flight of so many orbits takes; None: as the scenario says. At least one.
 
     Raises:
-        HarnessError: more than a run can have.
+        HarnessError: more than ``most``.
     """
     ticks_per_orbit = orbit_period_s(scenario) * scenario.time.tick_hz
     chosen = scenario.time.orbits if orbits is None else orbits
-    if not chosen * ticks_per_orbit <= MOST_TICKS:  # not a number, either
+    if not chosen * ticks_per_orbit <= most:  # not a number, either
         option = f"time.orbits={chosen:g}" if orbits is None else f"--orbits {chosen:g}"
-        most = MOST_TICKS / ticks_per_orbit
-        raise HarnessError(f"{option}: a run has at most {MOST_TICKS} ticks, here {most:.0f} orbits")
+        most_orbits = most / ticks_per_orbit
+        raise HarnessError(f"{option}: a run has at most {most} ticks, here {most_orbits:.0f} orbits")
     return max(1, round(chosen * ticks_per_orbit))
 
 

@@ -11,7 +11,7 @@ from sim.campaign.definition.dispersion import Shape
 from sim.campaign.definition.distributions import AnyDispersion
 from sim.campaign.definition.keys import nominal_values, value_at
 from sim.campaign.definition.requirements import requirements_in
-from sim.flight.record_flight import ticks_of
+from sim.flight.record_flight import MOST_IN_MEMORY, ticks_of
 from sim.scenario.names import Name
 from sim.scenario.schema import load, scenario_of
 
@@ -68,7 +68,7 @@ def _campaign(content: CampaignTable, scenario_name: str, source: str, settings:
         scenario = load(scenario_name, fixed)
     except TableError as error:
         raise TableError(f"{source}: {error}" if scenario_name != source else str(error)) from None
-    ticks_of(scenario, None)
+    ticks_of(scenario, None, MOST_IN_MEMORY)
     nominal = nominal_values(scenario)
     _check_keys(content, source)
     campaign = Campaign(
