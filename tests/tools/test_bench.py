@@ -1,0 +1,40 @@
+"""The page of the benchmarks: ratios are taken within a round, then their median."""
+
+import re
+
+import bench
+import pytest
+
+ROWS = [
+    bench.Row("peer", [100.0, 50.0, 400.0], 300.0),
+    bench.Row("mine", [10.0, 10.0, 20.0], 120.4),
+]
+PARTS = {"microsat": {"tick_us": 400.0, "parts": {"fsw/core": 0.5, "sim/plant": 0.25, "other": 0.001}}}
+
+
+@pytest.fixture(scope="module")
+def page():
+    return bench.page(ROWS, [1.2, 1.5, 1.3], PARTS, "2.12.1")
+
+
+def test_a_ratio_is_the_median_of_those_within_a_round(page):
+    assert "| mine | 10 | 0.100 | 120 MB |" in page
+    assert "| peer | 100 | 1.000 | 300 MB |" in page
+    assert "takes 1.30 of the time" in page
+
+
+def test_parts_are_in_microseconds_and_what_is_next_to_nothing_is_left_out(page):
+    assert re.findall(r"\| `(.*?)` \| (\d+) \|", page) == [("fsw/core", "200"), ("sim/plant", "100")]
+
+
+def test_a_command_that_fails_ends_the_benchmark():
+    with pytest.raises(SystemExit, match="ended with exit code 3"):
+        bench.run([bench.sys.executable, "-c", "raise SystemExit(3)"], lambda output, wall_s: 1.0)
+
+
+def test_a_command_is_measured():
+    words = [bench.sys.executable, "-c", "import time; time.sleep(0.2); print(7)"]
+    measured = bench.run(words, lambda output, wall_s: float(output))
+    assert measured.realtime_factor == 7.0
+    assert 0.2 < measured.wall_s < 5.0
+    assert measured.peak_mb > 3.0
