@@ -143,6 +143,10 @@ class TruthBlocks(Protocol):
         """Some rows of every dataset, by name."""
 
 
+class RowsMissingError(HarnessError):
+    """Rows that were asked for have not been written."""
+
+
 class GrowingTruth:
     """Histories that another process is still writing: its structure is final, and its rows come in order.
 
@@ -156,15 +160,19 @@ class GrowingTruth:
         self.complete = ticks
 
     def rows(self, first: int, past: int) -> Histories:
-        """Some rows of every dataset, by name; they have been written.
+        """Some rows of every dataset, by name.
 
         The file is opened anew each time, so that nothing read before is taken for what is there now.
 
         Raises:
+            RowsMissingError: not all of them have been written.
             HarnessError: it cannot be read.
         """
         with TruthReader(self._path, being_written=True) as reader:
-            return reader.rows(first, past)
+            histories = reader.rows(first, past)
+        if min(map(_complete_rows, histories.values())) < past - first:
+            raise RowsMissingError(f"{self._path}: rows {first} to {past - 1} have not been written")
+        return histories
 
 
 class TruthReader:

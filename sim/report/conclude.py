@@ -16,7 +16,7 @@ from sim.record.destination import check_folder
 from sim.record.estimates import Estimates
 from sim.record.log_index import check_against_index
 from sim.record.run_dir import Json
-from sim.record.truth import GrowingTruth, Histories, TruthBlocks, TruthReader
+from sim.record.truth import GrowingTruth, Histories, RowsMissingError, TruthBlocks, TruthReader
 from sim.replay.log_replay import ReplayResult, replay
 from sim.report.charts.lines import Lines
 from sim.report.figures.performance import Performance
@@ -49,6 +49,9 @@ def conclude(path: Path, watch: Watch = lambda tick: None) -> Json:
 def conclude_flight(path: Path, more: More, watch: Watch = lambda tick: None) -> Json:
     """The same of a run that is being flown: the replay follows the flight.
 
+    Where a stranger has led the flight software's count of ticks away from the plant's, the histories cannot
+    be followed by it: then the run is concluded once it is over.
+
     Args:
         path: the run directory.
         more: waits; whether the flight goes on.
@@ -60,7 +63,13 @@ def conclude_flight(path: Path, more: More, watch: Watch = lambda tick: None) ->
     scenario, ticks = run_dir.read_scenario(path), run_dir.read_run(path)["ticks"]
     while not (path / run_dir.BUS_LOG).exists() and more():
         pass
-    replayed = _replay(path, scenario, GrowingTruth(path / run_dir.TRUTH, ticks), watch, more)
+    growing = GrowingTruth(path / run_dir.TRUTH, ticks)
+    try:
+        replayed = _replay(path, scenario, growing, watch, more)
+    except RowsMissingError:
+        while more():
+            pass
+        return conclude(path, watch)
     with TruthReader(path / run_dir.TRUTH) as truth:
         if truth.complete != ticks:
             raise HarnessError(f"{path / run_dir.TRUTH}: {truth.complete} whole rows, not {ticks}")

@@ -13,8 +13,10 @@ from sim.errors import HarnessError
 from sim.flight import virtual
 from sim.record import run_dir
 from sim.record.pace import LOCKSTEP
+from sim.record.truth import RowsMissingError
+from sim.report import conclude as conclude_module
 from sim.report import follow as following
-from sim.report.conclude import conclude
+from sim.report.conclude import conclude, conclude_flight
 from sim.report.follow import follow
 from sim.scenario.schema import load
 
@@ -76,6 +78,25 @@ def test_its_results_are_those_of_a_replay_after_the_flight(begin):
     followed = results(begun)
     assert conclude(begun) == summary
     assert results(begun) == followed
+
+
+def test_what_cannot_be_followed_is_concluded_after_the_flight(begun, monkeypatch):
+    """A count of ticks that runs ahead of the plant's asks for rows that are not there yet."""
+    left = [True, True]
+    fly(begun)
+    monkeypatch.setattr(conclude_module, "GrowingTruth", AheadOfPlant)
+    summary = conclude_flight(begun, lambda: bool(left and left.pop()))
+    assert (summary["ticks"], summary["replay"]["bit_exact"], left) == (TICKS, True, [])
+
+
+class AheadOfPlant:
+    """Histories without rows."""
+
+    def __init__(self, path, ticks):
+        self.complete = ticks
+
+    def rows(self, first, past):
+        raise RowsMissingError("not yet")
 
 
 def test_a_short_flight_and_one_processor_need_no_other_process(begun, started, monkeypatch):

@@ -12,7 +12,15 @@ import pytest
 from sim.errors import HarnessError
 from sim.plant.dynamics.torques import SOURCES
 from sim.plant.plant import TruthRow
-from sim.record.truth import BLOCK_ROWS, COLUMNS, TruthFile, TruthReader, read_truth
+from sim.record.truth import (
+    BLOCK_ROWS,
+    COLUMNS,
+    GrowingTruth,
+    RowsMissingError,
+    TruthFile,
+    TruthReader,
+    read_truth,
+)
 
 
 def row(tick):
@@ -70,6 +78,14 @@ def test_a_flight_that_ended_early_has_the_rows_it_flew(tmp_path):
 def test_a_flight_that_never_flew_has_none(tmp_path):
     write(tmp_path / "truth.h5", 1000, 0)
     assert {len(history) for history in read_truth(tmp_path / "truth.h5").values()} == {0}
+
+
+def test_rows_that_have_not_been_written_are_missed(tmp_path):
+    write(tmp_path / "truth.h5", 3 * BLOCK_ROWS, BLOCK_ROWS)
+    growing = GrowingTruth(tmp_path / "truth.h5", 3 * BLOCK_ROWS)
+    assert_rows(growing.rows(0, BLOCK_ROWS), BLOCK_ROWS)
+    with pytest.raises(RowsMissingError, match=f"rows 0 to {BLOCK_ROWS} have not been written"):
+        growing.rows(0, BLOCK_ROWS + 1)
 
 
 READ = """
