@@ -161,14 +161,15 @@ def _settled(state: EstimatorState, estimate: Estimate, seen: bool, config: Mekf
     and Sun, ``seen`` in this tick: with one of them the covariance of a start would not shrink.
     """
     square = dot(estimate.omega_body_radps, estimate.omega_body_radps)
-    known = max(estimate.covariance.diagonal()[3:6]) < KNOWN_RADPS**2
+    variances: list[float] = estimate.covariance.diagonal()[3:6].tolist()
+    known = max(variances) < KNOWN_RADPS**2
     after = turning = state.turning or Turning(known and square > FAST_RADPS**2)
     if known and square <= SLOW_RADPS**2:
         after = Turning.NO
     elif known and turning and config.layout.delay is not None:
         after = Turning.KNOWN
     if after is turning or not seen:
-        return state._replace(turning=turning)
+        return state if turning is state.turning else state._replace(turning=turning)
     anew = mekf.start(estimate.q_body_from_eci, estimate.omega_body_radps, config)
     return state._replace(estimate=_from_first(anew, state), turning=after)
 

@@ -61,4 +61,4 @@ def sensors_credible(estimate: Estimate, config: CredibilityConfig) -> bool:
 
 def _within(estimate: Estimate, limits: tuple[tuple[int, float, float], ...]) -> bool:
     numbers = estimate.parameters.floats()
-    return all(low <= numbers[place] <= high for place, low, high in limits)
+    return all([low <= numbers[place] <= high for place, low, high in limits])
