@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from itertools import chain, islice
 from pathlib import Path
 from types import TracebackType
-from typing import Protocol, Self
+from typing import Self
 
 import h5py
 import numpy as np
@@ -128,19 +128,6 @@ MOST_SOURCES = 16
 _SOURCE = re.compile("[a-z][a-z0-9_]{0,39}")
 _DAMAGE = (OSError, KeyError, RuntimeError, TypeError, ValueError)
 """What h5py raises for a file that is not HDF5, or is damaged."""
-
-
-class TruthBlocks(Protocol):
-    """Histories that can be read block by block.
-
-    Attributes:
-        complete: rows that there are.
-    """
-
-    complete: int
-
-    def rows(self, first: int, past: int) -> Histories:
-        """Some rows of every dataset, by name."""
 
 
 class RowsMissingError(HarnessError):

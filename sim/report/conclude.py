@@ -16,11 +16,11 @@ from sim.record.destination import check_folder
 from sim.record.estimates import Estimates
 from sim.record.log_index import check_against_index
 from sim.record.run_dir import Json
-from sim.record.truth import GrowingTruth, Histories, RowsMissingError, TruthBlocks, TruthReader
+from sim.record.truth import GrowingTruth, Histories, RowsMissingError, TruthReader
 from sim.replay.log_replay import ReplayResult, replay
 from sim.report.charts.lines import Lines
 from sim.report.figures.performance import Performance
-from sim.report.history_blocks import HistoryBlocks
+from sim.report.history_blocks import HistoryBlocks, TruthBlocks
 from sim.report.page import write_report
 from sim.report.summary import BusTally, summarise
 from sim.report.verdict import Verdict, failures

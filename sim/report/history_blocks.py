@@ -1,13 +1,27 @@
 """Joins what a replay estimates with the plant's histories, in blocks of ticks, as the replay goes on."""
 
 from collections.abc import Callable
+from typing import Protocol
 
 from fsw.core.state import FlightState
 from sim.record.estimates import EstimateRecorder, Estimates
-from sim.record.truth import Histories, TruthBlocks
+from sim.record.truth import Histories
 from sim.report.figures.performance import BLOCK_TICKS
 
 TakeBlock = Callable[[Histories, Estimates], None]
+
+
+class TruthBlocks(Protocol):
+    """Histories that can be read block by block.
+
+    Attributes:
+        complete: rows that there are.
+    """
+
+    complete: int
+
+    def rows(self, first: int, past: int) -> Histories:
+        """Some rows of every dataset, by name."""
 
 
 class HistoryBlocks:
