@@ -161,8 +161,7 @@ def _settled(state: EstimatorState, estimate: Estimate, seen: bool, config: Mekf
     and Sun, ``seen`` in this tick: with one of them the covariance of a start would not shrink.
     """
     square = dot(estimate.omega_body_radps, estimate.omega_body_radps)
-    variances: list[float] = estimate.covariance.diagonal()[3:6].tolist()
-    known = max(variances) < KNOWN_RADPS**2
+    known = max(estimate.covariance.diagonal()[3:6].tolist()) < KNOWN_RADPS**2
     after = turning = state.turning or Turning(known and square > FAST_RADPS**2)
     if known and square <= SLOW_RADPS**2:
         after = Turning.NO
