@@ -131,7 +131,7 @@ _DAMAGE = (OSError, KeyError, RuntimeError, TypeError, ValueError)
 
 
 class RowsMissingError(HarnessError):
-    """Rows that were asked for have not been written."""
+    """Rows that were asked for have not been written, or cannot be read while they are."""
 
 
 class GrowingTruth:
@@ -152,11 +152,13 @@ class GrowingTruth:
         The file is opened anew each time, so that nothing read before is taken for what is there now.
 
         Raises:
-            RowsMissingError: not all of them have been written.
-            HarnessError: it cannot be read.
+            RowsMissingError: not all of them have been written, or the file is locked by who writes it.
         """
-        with TruthReader(self._path, being_written=True) as reader:
-            histories = reader.rows(first, past)
+        try:
+            with TruthReader(self._path, being_written=True) as reader:
+                histories = reader.rows(first, past)
+        except HarnessError as error:
+            raise RowsMissingError(str(error)) from None
         if min(map(_complete_rows, histories.values())) < past - first:
             raise RowsMissingError(f"{self._path}: rows {first} to {past - 1} have not been written")
         return histories

@@ -34,7 +34,8 @@ class _Flight:
         Thread(target=self._await_end, daemon=True).start()
 
     def _await_end(self) -> None:
-        if sys.stdin.buffer.readline() != OVER:
+        # not by sys.stdin: a thread that waits in its buffer aborts the end of the process
+        if os.read(sys.stdin.fileno(), len(OVER)) != OVER:
             os.kill(os.getpid(), signal.SIGTERM)
         self._over.set()
 

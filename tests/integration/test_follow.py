@@ -125,6 +125,24 @@ def test_a_process_that_is_killed_is_told_and_the_run_can_be_concluded(begun, st
     assert conclude(begun)["replay"]["bit_exact"]
 
 
+def test_a_file_that_is_locked_while_it_is_written_is_read_after_the_flight(begin, monkeypatch):
+    monkeypatch.setenv("HDF5_USE_FILE_LOCKING", "TRUE")
+    path = begin(LONG)
+    with follow(path, LONG) as conclude_run:
+        fly(path)
+        assert conclude_run(lambda tick: None)["replay"]["bit_exact"]
+    assert run_dir.read_run(path)["complete"] is True
+
+
+def test_a_run_that_cannot_be_replayed_is_told_before_the_flight_is_over(begun, started):
+    """The process ends by itself, while it still waits for the end of the flight."""
+    (begun / run_dir.SCENARIO).write_text("no = 'scenario'")
+    with follow(begun, TICKS) as conclude_run:
+        started[0].wait(30.0)
+        with pytest.raises(HarnessError, match=r"scenario\.toml"):
+            conclude_run(lambda tick: None)
+
+
 def test_a_log_that_is_altered_during_the_flight_is_told_in_one_sentence(begun):
     with follow(begun, TICKS) as conclude_run:
         fly(begun)
