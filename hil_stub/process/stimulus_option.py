@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from fsw.input.regular_file import check_regular
+from fsw.input.gzip_text import open_text, stored
 from fsw.input.toml_text import load_toml
 from fsw.wire.candump_line import LONGEST
 from fsw.wire.messages import MagField, SunVector
@@ -84,9 +84,7 @@ def stimulus_of(
         path = Path(words[0])
         if path.suffix == ".toml":
             return scripted(_toml(path).get("step"), key, tick_hz, convert)
-        log = path / "bus.log" if os.path.isdir(path) else path
-        check_regular(log)
-        return recorded(_lines(log), message, scale)
+        return recorded(_lines(stored(path / "bus.log") if os.path.isdir(path) else path), message, scale)
     except StimulusError as error:
         raise click.UsageError(f"--stimulus {' '.join(words)}: {error}") from None
     except OSError as error:
@@ -118,6 +116,6 @@ def _toml(path: Path) -> dict[str, object]:
 
 def _lines(log: Path) -> Iterator[bytes]:
     """The lines of a log; what is longer than any frame's comes in pieces, which are none."""
-    with log.open("rb") as file:
+    with open_text(log) as file:
         while line := file.readline(LONGEST):
             yield line

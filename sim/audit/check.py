@@ -11,12 +11,12 @@ from sim.audit.auditor import audit
 from sim.audit.findings import AuditLimits, AuditReport, seconds_text
 from sim.audit.limits import is_shared, limits_in
 from sim.errors import HarnessError
+from sim.record import run_dir
 from sim.record.binding import compare
 from sim.record.candump import LogEntry, read_log
 from sim.record.log_index import LogStanding, check_against_index
 from sim.record.signature import PublicKey
 
-LOG_NAME = "bus.log"
 SCENARIO_NAME = "scenario.toml"
 CONTRACT_VERSION = 1
 """Version of the bus contract that is judged here; each node reports its own in its boot message."""
@@ -40,9 +40,9 @@ def check(path: Path, backoff: str | None, key: PublicKey | None = None) -> Audi
             cannot be used.
     """
     folder = os.path.isdir(path)  # unlike Path's, never an error, whatever the name
-    log = path / LOG_NAME if folder else path
+    log = run_dir.bus_log(path) if folder else path
     if not os.path.isfile(log):
-        raise HarnessError(f"{path}: no {LOG_NAME} in it" if folder else f"{path}: no such file")
+        raise HarnessError(f"{path}: no {run_dir.BUS_LOG} in it" if folder else f"{path}: no such file")
     binding = compare(log.parent, log, key)
     mismatched = SCENARIO_NAME in binding.mismatches
     stated = AuditLimits() if mismatched else limits_beside(log)

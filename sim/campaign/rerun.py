@@ -51,7 +51,7 @@ def compare(flown: CampaignRun, path: Path) -> tuple[bool, str]:
     name = f"run {flown.run} of {flown.folder}"
     if flown.row is None or flown.row["status"] != Status.DONE:
         return True, f"{name} has no result to compare with"
-    digest = digest_of(path / run_dir.BUS_LOG)
+    digest = digest_of(run_dir.bus_log(path))
     frames, commands = (flown.row[column] for column in DIGESTS)
     if digest.frames == frames:
         return True, f"equal to {name} bit for bit: SHA-256 of all frames {digest.frames[:16]}"

@@ -79,6 +79,7 @@ def record_flight(
         BusError: the bus failed.
     """
     run = run_dir.read_run(path)
+    log_name = run_dir.COMPRESSED_LOG if run.get("compressed") else run_dir.BUS_LOG
     plant = make_plant(plant_config(scenario, run["seed"]), scenario.fault)
     pace = Pace(run["pace_factor"])
     senders = SenderWatch(lockstep=pace.factor is None)
@@ -92,7 +93,7 @@ def record_flight(
 
     try:
         with (
-            BusLog(path / run_dir.BUS_LOG, bus.name) as log,
+            BusLog(path / log_name, bus.name) as log,
             TruthFile(path / run_dir.TRUTH, run["ticks"], plant.torque_sources) as truth,
         ):
             outcome = fly(

@@ -21,6 +21,7 @@ from sim.flight.second_senders import describe_senders
 from sim.flight.stall_detector import StallDetector
 from sim.flight.table_file import write_flight_table
 from sim.record import run_dir
+from sim.record.candump import last_lines
 from sim.scenario.schema import Scenario
 
 POLL_S = 0.1
@@ -130,19 +131,12 @@ def _stall_detector(path: Path, scenario: Scenario, patience: Patience) -> Stall
     factor = run_dir.read_run(path)["pace_factor"]
     two_ticks_s = 2.0 / (scenario.time.tick_hz * factor) if factor else 0.0
     longest_s = patience.answer_s + MARGIN_S + two_ticks_s
-    return StallDetector(path / run_dir.BUS_LOG, patience.boot_s + MARGIN_S, longest_s)
+    return StallDetector(path, patience.boot_s + MARGIN_S, longest_s)
 
 
 def last_tick(path: Path, scenario: Scenario) -> int:
     """The tick of the last line in the log so far; 0 while there is none."""
-    try:
-        with (path / run_dir.BUS_LOG).open("rb") as log:
-            log.seek(0, os.SEEK_END)
-            log.seek(max(0, log.tell() - 256))
-            tail = log.read()
-    except OSError:
-        return 0
-    stamps = [line[1:].partition(b")")[0] for line in tail.splitlines() if line.startswith(b"(")]
+    stamps = [line[1:].partition(b")")[0] for line in last_lines(run_dir.bus_log(path))]
     if not stamps:
         return 0
     return round((float(stamps[-1]) - scenario.epoch_unix_s) * scenario.time.tick_hz)

@@ -3,18 +3,20 @@
 import time
 from pathlib import Path
 
+from sim.record import run_dir
+
 
 class StallDetector:
     """Observes a log that another process writes.
 
     Args:
-        log: the file.
+        path: the run directory.
         first_s: longest time until its first line [s].
         next_s: longest time between two of its lines [s].
     """
 
-    def __init__(self, log: Path, first_s: float, next_s: float) -> None:
-        self._log = log
+    def __init__(self, path: Path, first_s: float, next_s: float) -> None:
+        self._path = path
         self._first_s = first_s
         self._next_s = next_s
         self._size = -1
@@ -23,7 +25,7 @@ class StallDetector:
     def stalled_s(self) -> float:
         """The time for which nothing has been written [s]; 0 while it is within the limit."""
         try:
-            size = self._log.stat().st_size
+            size = run_dir.bus_log(self._path).stat().st_size
         except OSError:
             size = -1
         now = time.monotonic()

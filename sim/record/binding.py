@@ -5,11 +5,13 @@ forger who rewrites run.json too: for that there is its signature (``sim.record.
 """
 
 import hashlib
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
+from fsw.input.gzip_text import open_text
 from fsw.input.schema import TableError
 from sim.errors import HarnessError
 from sim.progress import Watch, progress
@@ -83,7 +85,7 @@ def compare(folder: Path, log: Path | None = None, key: PublicKey | None = None)
 
     Args:
         folder: of the run; without a run.json nothing is bound.
-        log: a log that is to be the run's; None: its bus.log.
+        log: a log that is to be the run's; None: its own.
         key: run.json must be signed by its private half, and have a digest of every file.
 
     Raises:
@@ -93,7 +95,7 @@ def compare(folder: Path, log: Path | None = None, key: PublicKey | None = None)
         return Binding({} if key is None else {RUN: f"{folder} has no {RUN}, so that nothing is signed"})
     run = run_dir.read_run(folder)
     recorded = digests(run)
-    paths = {name: folder / name for name in (*FILES, *recorded)}
+    paths = {name: _path(folder, name) for name in (*FILES, *recorded)}
     if log is not None:
         paths[BUS_LOG] = log
     mismatches = {}
@@ -108,6 +110,10 @@ def compare(folder: Path, log: Path | None = None, key: PublicKey | None = None)
     return Binding(mismatches, _note(run, unbound))
 
 
+def _path(folder: Path, name: str) -> Path:
+    return run_dir.bus_log(folder) if name == BUS_LOG else folder / name
+
+
 def digests(run: RunRecord) -> dict[str, str]:
     """The SHA-256 of each file that a run.json binds, by name."""
     return {SCENARIO: run[SCENARIO_DIGEST], **run.get(DIGESTS, {})}
@@ -116,7 +122,7 @@ def digests(run: RunRecord) -> dict[str, str]:
 def bind(folder: Path, *names: str) -> None:
     """Add the digests of finished files; a digest that is there already stays."""
     recorded = run_dir.read_run(folder)[DIGESTS]
-    added = {name: sha256_of(folder / name) for name in names if name not in recorded}
+    added = {name: sha256_of(_path(folder, name)) for name in names if name not in recorded}
     run_dir.update(folder, **{DIGESTS: {**recorded, **added}})
 
 
@@ -144,17 +150,19 @@ def sign_run(folder: Path, key: PrivateKey) -> None:
 
 
 def sha256_of(path: Path, watch: Watch = lambda size: None) -> str:
-    """The digest of a file in hex; ``watch`` is called with the number of bytes read.
+    """The digest of a file in hex, of a compressed one that of its text.
+
+    ``watch`` is called with how much of the file has been read, in bytes.
 
     Raises:
         HarnessError: it cannot be read.
     """
     sha256 = hashlib.sha256()
     try:
-        with path.open("rb") as file:
+        with open_text(path) as file:
             while chunk := file.read(CHUNK):
                 sha256.update(chunk)
-                watch(file.tell())
+                watch(os.lseek(file.fileno(), 0, os.SEEK_CUR))
     except OSError as error:
         raise HarnessError(f"{path}: cannot be read: {error.strerror}") from None
     return sha256.hexdigest()

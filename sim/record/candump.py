@@ -1,10 +1,11 @@
 """The bus log: a file in candump's format, one frame a line (``fsw.wire.candump_line``)."""
 
+import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
-from fsw.input.regular_file import check_regular
+from fsw.input.gzip_text import is_compressed, last_member, open_text
 from fsw.wire.candump_line import LONGEST, LineReader, is_beginning, is_fd
 from fsw.wire.frame import Frame
 from sim.errors import HarnessError
@@ -37,6 +38,8 @@ class LogEntry(NamedTuple):
     frame: Frame
 
 
+TAIL_BYTES = 1 << 16
+"""More than a block of a log."""
 More = Callable[[], bool]
 """Called at the end of a log that is being written: waits, and says whether to look for more."""
 
@@ -53,23 +56,35 @@ def read_log(path: Path, more: More | None = None) -> Iterator[LogEntry]:
         LogError: the file cannot be read, or one of its lines is not a candump line.
     """
     try:
-        check_regular(path)
-        with path.open("rb") as file:
+        with open_text(path) as file:
             yield from _entries(path, file.readline if more is None else _growing(file, more))
     except OSError as error:
         raise LogError(f"{path}: cannot be read: {error.strerror}") from None
+
+
+def last_lines(path: Path) -> list[bytes]:
+    """The last whole lines of a log that is being written; none while there are none."""
+    try:
+        with path.open("rb") as file:
+            size = file.seek(0, os.SEEK_END)
+            file.seek(max(0, size - TAIL_BYTES))
+            tail = file.read()
+    except OSError:
+        return []
+    if is_compressed(path):
+        tail = last_member(tail)
+    return [line for line in tail.splitlines(keepends=True)[1:] if line.endswith(b"\n")]
 
 
 def _growing(file: BinaryIO, more: More) -> Callable[[int], bytes]:
     """Reads whole lines as they are written, and what is left once there is no more."""
 
     def readline(most: int) -> bytes:
+        text = b""
         while True:
-            begin = file.tell()
-            text = file.readline(most)
+            text += file.readline(most - len(text))
             if text.endswith(b"\n") or len(text) == most or not more():
                 return text
-            file.seek(begin)
 
     return readline
 

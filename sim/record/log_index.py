@@ -1,16 +1,16 @@
 """The index of a bus log, by which one can check that the log is whole and unaltered.
 
 ``bus.log.index`` is written during the flight. Its first line has its version; then comes a line for each
-block of the log, a block being the text of ``BLOCK_WRITES`` writes (as a rule ticks):
+block of the log, a block being what was written at once:
 
     torquer-log-index 1 crc32
     <lines> <bytes> <sha256> crc32
     <lines> <bytes> <sha256> end crc32
 
-Lines and bytes count from the start of the log. The digest is SHA-256 over the digest before it (of the first
-block: nothing) and the block, so that every digest depends on the whole log before it. ``end`` is on the last
-line of a completed flight. Each line has a CRC-32 of its text, which distinguishes damage to the index from
-damage to the log.
+Lines and bytes count from the start of the log, before it is compressed. The digest is SHA-256 over the
+digest before it (of the first block: nothing) and the block, so that every digest depends on the whole log
+before it. ``end`` is on the last line of a completed flight. Each line has a CRC-32 of its text, which
+distinguishes damage to the index from damage to the log.
 
 A digest without a key protects against accidents, not against a forger who rewrites both files.
 """
@@ -25,11 +25,11 @@ from pathlib import Path
 from typing import BinaryIO, NamedTuple
 from zlib import crc32
 
+from fsw.input.gzip_text import is_compressed, open_text
 from fsw.input.regular_file import check_regular
 
 VERSION = 1
 SUFFIX = ".index"
-BLOCK_WRITES = 64
 _TITLE = "torquer-log-index"
 _SEALED = re.compile(rb"(.{1,160}) ([0-9a-f]{8})\n")
 _BLOCK = re.compile(rb"(\d{1,12}) (\d{1,15}) ([0-9a-f]{64})( end)?")
@@ -76,8 +76,9 @@ _FIRST = Block(0, 0, b"", end=False)
 
 
 def index_path(log: Path) -> Path:
-    """The path of the index of a log."""
-    return log.with_name(log.name + SUFFIX)
+    """The path of the index of a log, compressed or not."""
+    name = log.stem if is_compressed(log) else log.name
+    return log.with_name(name + SUFFIX)
 
 
 class LogIndex:
@@ -89,32 +90,26 @@ class LogIndex:
 
     def __init__(self, log: Path) -> None:
         self._descriptor = os.open(index_path(log), os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
-        self._lines = self._size = self._writes = self._own_size = 0
-        self._hash = hashlib.sha256()
+        self._lines = self._size = self._own_size = 0
+        self._digest = b""
         self._put(f"{_TITLE} {VERSION}")
 
     def add(self, text: bytes, lines: int) -> None:
-        """Add text that has just been written to the log: whole lines."""
-        self._hash.update(text)
+        """Add a block that has just been written to the log: whole lines."""
+        digest = hashlib.sha256(self._digest + text).digest()
+        self._put(f"{self._lines + lines} {self._size + len(text)} {digest.hex()}")
+        self._digest = digest
         self._lines += lines
         self._size += len(text)
-        self._writes += 1
-        if self._writes == BLOCK_WRITES:
-            self._close_block("")
 
     def close(self, ended: bool) -> None:
-        """Add the last block; ``ended``: the flight was completed."""
+        """Close it; ``ended``: the flight was completed."""
         try:
-            if ended or self._writes:
-                self._close_block(" end" if ended else "")
+            if ended:
+                digest = hashlib.sha256(self._digest).hexdigest()
+                self._put(f"{self._lines} {self._size} {digest} end")
         finally:
             os.close(self._descriptor)
-
-    def _close_block(self, end: str) -> None:
-        digest = self._hash.digest()
-        self._put(f"{self._lines} {self._size} {digest.hex()}{end}")
-        self._hash = hashlib.sha256(digest)
-        self._writes = 0
 
     def _put(self, text: str) -> None:
         sealed = text.encode("ascii")
@@ -135,7 +130,7 @@ def check_against_index(log: Path) -> IndexCheck:
     name = index_path(log).name
     try:
         check_regular(index_path(log))
-        with index_path(log).open("rb") as index, log.open("rb") as file:
+        with index_path(log).open("rb") as index, open_text(log) as file:
             return _compare(name, file, _blocks(name, index))
     except FileNotFoundError:
         return IndexCheck(LogStanding.UNKNOWN, f"nothing vouches for the log: there is no {name} beside it")
@@ -146,33 +141,36 @@ def check_against_index(log: Path) -> IndexCheck:
 
 
 def _compare(name: str, file: BinaryIO, blocks: Iterator[Block]) -> IndexCheck:
-    log_size = os.fstat(file.fileno()).st_size
     last = _FIRST
     for block in blocks:
-        if log_size < block.size:
-            raise _BrokenError(f"truncated: the log has {log_size} bytes, its index covers {block.size}")
-        if _digest(file, block.size - last.size, last.digest) != block.digest:
+        digest, missing = _digest(file, block.size - last.size, last.digest)
+        if missing:
+            raise _BrokenError(
+                f"truncated: the log has {block.size - missing} bytes, its index covers {block.size}"
+            )
+        if digest != block.digest:
             raise _BrokenError(f"altered: lines {last.lines + 1} to {block.lines} are not what was flown")
         last = block
-    if last.end and log_size > last.size:
+    more = bool(file.read(1))
+    if last.end and more:
         raise _BrokenError(f"altered: something was added after line {last.lines}")
     if last.end:
         return IndexCheck(LogStanding.VOUCHED, "")
     rest = (
         f"nothing vouches for what follows line {last.lines}"
-        if log_size > last.size
-        else "the flight did not come to its end"
+        if more
+        else "the flight did not come to its end, and its last second may be missing"
     )
     return IndexCheck(LogStanding.OPEN, f"{name} has no end mark: {rest}")
 
 
-def _digest(file: BinaryIO, size: int, before: bytes) -> bytes:
-    """SHA-256 over the digest before and the next so many bytes: a block is as large as its index says."""
+def _digest(file: BinaryIO, size: int, before: bytes) -> tuple[bytes, int]:
+    """SHA-256 over the digest before and the next so many bytes, and how many of these are missing."""
     digest = hashlib.sha256(before)
     while size and (piece := file.read(min(size, _PIECE_BYTES))):
         digest.update(piece)
         size -= len(piece)
-    return digest.digest()
+    return digest.digest(), size
 
 
 def _blocks(name: str, index: BinaryIO) -> Iterator[Block]:

@@ -12,6 +12,7 @@ from typing import Any, Final
 import numpy as np
 import tomli_w
 
+from fsw.input import gzip_text
 from fsw.input.schema import TableError
 from sim.errors import HarnessError
 from sim.record.destination import check_folder
@@ -31,7 +32,8 @@ RUN, SCENARIO, BUS_LOG, TRUTH, SUMMARY, REPORT = (
 SCENARIO_DIGEST: Final = "scenario_sha256"
 DIGESTS: Final = "digests"
 """Keys of run.json: SHA-256 of the scenario, and of further files by name, added when each is finished."""
-FILES = (RUN, SCENARIO, BUS_LOG, BUS_LOG + SUFFIX, TRUTH, SUMMARY, REPORT)
+COMPRESSED_LOG = BUS_LOG + gzip_text.SUFFIX
+FILES = (RUN, SCENARIO, BUS_LOG, COMPRESSED_LOG, BUS_LOG + SUFFIX, TRUTH, SUMMARY, REPORT)
 RESULTS = (RUN, SUMMARY, REPORT)
 """Files written when a flight is over, and again by ``torquer report``."""
 
@@ -48,8 +50,17 @@ def default_path(scenario: Scenario) -> Path:
     return path
 
 
-def begin(path: Path, scenario: Scenario, seed: int, ticks: int, bus: str, pace: Pace) -> None:
+def bus_log(folder: Path) -> Path:
+    """The log of a run, compressed or not."""
+    return gzip_text.stored(folder / BUS_LOG)
+
+
+def begin(
+    path: Path, scenario: Scenario, seed: int, ticks: int, bus: str, pace: Pace, compress: bool = False
+) -> None:
     """Create the directory with scenario.toml and a run.json that says ``complete: false``.
+
+    ``compress``: its log will be compressed.
 
     Raises:
         HarnessError: the directory holds a run already, or cannot be written.
@@ -74,6 +85,7 @@ def begin(path: Path, scenario: Scenario, seed: int, ticks: int, bus: str, pace:
                 "bus": bus,
                 "pace": "lockstep" if pace.factor is None else "realtime",
                 "pace_factor": pace.factor,
+                "compressed": compress,
                 "platform": fingerprint(),
                 DIGESTS: {},
                 "complete": False,
@@ -133,7 +145,7 @@ def locate(run_or_log: Path) -> tuple[Path, Path]:
         HarnessError: neither exists.
     """
     if os.path.isdir(run_or_log):  # unlike Path.is_dir, never an error, whatever the name
-        log = run_or_log / BUS_LOG
+        log = bus_log(run_or_log)
         if not log.is_file():
             raise HarnessError(f"{run_or_log} has no {BUS_LOG}")
         return log, run_or_log

@@ -74,6 +74,7 @@ class RunRecord(FlightRecord):
     pace_factor: Annotated[float, Field(gt=0.0, le=1e6)] | None
     platform: Platform
     complete: bool
+    compressed: NotRequired[bool]
     digests: NotRequired[dict[Name, Digest]]
     second_senders: NotRequired[list[SenderRecord]]
     ended: NotRequired[Text]

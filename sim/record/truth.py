@@ -8,6 +8,7 @@ the space is allocated at once, so that a disk that is too small is found before
 import errno
 import os
 import re
+import time
 from array import array
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -25,6 +26,8 @@ from sim.errors import HarnessError
 from sim.plant.plant import TruthRow
 
 BLOCK_ROWS = 1024
+BLOCK_S = 0.5
+"""A block that is older is written with the next row, however short."""
 ROOM_FOR_STRUCTURE = 8192
 
 Histories = dict[str, NDArray[np.float64]]
@@ -43,7 +46,7 @@ COLUMNS: tuple[tuple[str, int, str, str], ...] = (
 
 
 class TruthFile:
-    """Writes one row per tick, in blocks.
+    """Writes one row per tick, in blocks: a kill leaves whole rows, at most a block short.
 
     Raises:
         HarnessError: the disk cannot hold the histories of so many ticks.
@@ -67,13 +70,15 @@ class TruthFile:
             self._datasets.append((dataset, width))
         self._buffer = array("d")
         self._written = 0
+        self._written_s = time.monotonic()
         self._file.flush()
         _allocate(path, path.stat().st_size)
 
     def append(self, row: TruthRow) -> None:
         """Add the row of the next tick."""
         self._buffer.fromlist(_flat(row))
-        if len(self._buffer) >= BLOCK_ROWS * self._columns:
+        full = len(self._buffer) >= BLOCK_ROWS * self._columns
+        if full or time.monotonic() - self._written_s >= BLOCK_S:
             self.flush()
 
     def flush(self) -> None:
@@ -89,6 +94,7 @@ class TruthFile:
             dataset[here] = values[:, 0] if width == 1 else values
             column += width
         self._written = here.stop
+        self._written_s = time.monotonic()
         self._file.flush()
 
     def __enter__(self) -> Self:

@@ -61,7 +61,7 @@ def conclude_flight(path: Path, more: More, watch: Watch = lambda tick: None) ->
         HarnessError: the run cannot be concluded, or the flight was cut short.
     """
     scenario, ticks = run_dir.read_scenario(path), run_dir.read_run(path)["ticks"]
-    while not (path / run_dir.BUS_LOG).exists() and more():
+    while not run_dir.bus_log(path).exists() and more():
         pass
     growing = GrowingTruth(path / run_dir.TRUTH, ticks)
     try:
@@ -104,7 +104,7 @@ def _replay(
         watch(state.tick)
 
     config, forged = flight_config(flight_table(scenario)), forge_answers(scenario.fault)
-    result = replay(path / run_dir.BUS_LOG, config, on_tick, forged, more)
+    result = replay(run_dir.bus_log(path), config, on_tick, forged, more)
     while more is not None and more():  # a replay that differs ends before the flight
         pass
     blocks.finish()
@@ -113,7 +113,7 @@ def _replay(
 
 def _write_results(path: Path, scenario: Scenario, replayed: _Replayed) -> Json:
     """Audit, summary and page; the run is then complete, if nothing speaks against it."""
-    run, log = run_dir.read_run(path), path / run_dir.BUS_LOG
+    run, log = run_dir.read_run(path), run_dir.bus_log(path)
     tally = BusTally(scenario.epoch_unix_s * 1_000_000)
     limits = limits_beside(log)
     assert limits is not None

@@ -23,6 +23,9 @@ RUN_OR_LOG = click.argument("run_or_log", metavar="RUN|LOG", type=click.Path(pat
 SETTINGS = click.option(
     "--set", "settings", multiple=True, metavar="KEY=VALUE", help="Override a key of the scenario."
 )
+COMPRESS = click.option(
+    "--compress", is_flag=True, help="Write the log as bus.log.gz, a fourth of the size of bus.log."
+)
 
 SIGN = click.option(
     "--sign",

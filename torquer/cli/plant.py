@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from torquer.cli.options import BUSES, SEEDS, SETTINGS, sentences
+from torquer.cli.options import BUSES, COMPRESS, SEEDS, SETTINGS, sentences
 
 WAITING_NOTE_S = 30.0
 """Interval of the notes that there is no flight software yet."""
@@ -22,6 +22,7 @@ WAITING_NOTE_S = 30.0
 @click.option("--seed", default=1, show_default=True, type=SEEDS, help="Of all random streams.")
 @click.option("--pace", default="lockstep", show_default=True, help="lockstep or realtime[:FACTOR].")
 @click.option("--out", type=click.Path(path_type=Path), help="Run directory; default runs/<scenario>-<time>.")
+@COMPRESS
 @SETTINGS
 @sentences
 def plant(
@@ -31,6 +32,7 @@ def plant(
     seed: int,
     pace: str,
     out: Path | None,
+    compress: bool,
     settings: tuple[str, ...],
 ) -> None:
     """Fly SCENARIO against a flight software on the same bus: waits for its FSW_BOOT, then begins tick 0."""
@@ -49,7 +51,7 @@ def plant(
     check_plant(chosen, seed)
     link = open_bus(spec)
     directory = out or run_dir.default_path(chosen)
-    run_dir.begin(directory, chosen, seed, ticks, spec.partition(":")[0], chosen_pace)
+    run_dir.begin(directory, chosen, seed, ticks, spec.partition(":")[0], chosen_pace, compress)
     click.echo(f"plant on {spec}: waiting for the flight software", err=True)
     with progress(f"flying {chosen.name}", ticks) as watch:
         record_flight(directory, chosen, link, watch, waiting=_still_waiting())

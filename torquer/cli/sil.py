@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import click
 
 from sim.errors import HarnessError
-from torquer.cli.options import BUSES, SEEDS, SETTINGS, SIGN, report_failures, sentences
+from torquer.cli.options import BUSES, COMPRESS, SEEDS, SETTINGS, SIGN, report_failures, sentences
 
 if TYPE_CHECKING:
     from sim.campaign.rerun import CampaignRun
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     help="Fly a run of this campaign again.",
 )
 @click.option("--run", type=click.IntRange(min=0), help="Its number. With --from.")
+@COMPRESS
 @SIGN
 @SETTINGS
 @sentences
@@ -39,6 +40,7 @@ def sil(
     orbits: float | None,
     seed: int | None,
     out: Path | None,
+    compress: bool,
     source: Path | None,
     run: int | None,
     sign: Path | None,
@@ -68,7 +70,7 @@ def sil(
     if bus == "virtual":
         from sim.flight.virtual import fly_virtual
 
-        run_dir.begin(path, chosen, seed, ticks, bus, chosen_pace)
+        run_dir.begin(path, chosen, seed, ticks, bus, chosen_pace, compress)
         with follow(path, ticks) as conclude:
             with progress(flying, ticks) as watch:
                 fly_virtual(path, chosen, watch)
@@ -77,7 +79,7 @@ def sil(
     else:
         with serve_bus(bus) as (spec, hub):
             kind = spec.partition(":")[0]
-            run_dir.begin(path, chosen, seed, ticks, kind, chosen_pace)
+            run_dir.begin(path, chosen, seed, ticks, kind, chosen_pace, compress)
             if bus == "auto":
                 click.echo(f"bus: {kind} (auto)", err=True)
             with follow(path, ticks) as conclude:

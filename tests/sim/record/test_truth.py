@@ -12,6 +12,7 @@ import pytest
 from sim.errors import HarnessError
 from sim.plant.dynamics.torques import SOURCES
 from sim.plant.plant import TruthRow
+from sim.record import truth as truth_module
 from sim.record.truth import (
     BLOCK_ROWS,
     COLUMNS,
@@ -187,6 +188,19 @@ with TruthFile(Path({path!r}), 100_000, SOURCES) as truth:
         print(tick, flush=True)
         truth.append(row(tick))
 """
+
+
+def test_in_real_time_rows_are_never_a_second_behind(tmp_path, monkeypatch):
+    now_s = 100.0
+    monkeypatch.setattr(truth_module.time, "monotonic", lambda: now_s)
+    path = tmp_path / "truth.h5"
+    with TruthFile(path, 40, SOURCES) as truth:
+        for tick in range(40):
+            now_s += 0.125
+            truth.append(row(tick))
+            with h5py.File(path, "r+") as file:
+                assert np.isfinite(file["t_s"][:]).sum() == (tick + 1) // 4 * 4
+    assert_rows(read_truth(path), 40)
 
 
 @pytest.mark.parametrize("tick", [0, 200, BLOCK_ROWS, 3 * BLOCK_ROWS - 1, 1000])
