@@ -77,7 +77,7 @@ def test_what_no_verdict_depends_on_is_given_away_by_the_index_alone(run, torque
     (run / "bus.log").write_text("".join(lines))
     for done in judged(torquer, run):
         assert done.code == 1
-        assert "altered: lines 1 to " in done.out
+        assert "altered: lines " in done.out
 
 
 def test_a_bare_log_is_judged_and_said_to_be_one(run, torquer):
