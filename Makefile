@@ -6,6 +6,7 @@
 # make replay-elsewhere   does a log of 20 orbits replay with other processor features, into docs/replay.md
 # make faults     every fault in ten phases and with five seeds, 250 real kills among them, into docs/faults.md: an hour or two
 # make bench      how fast flights are beside Basilisk in the same minutes, into docs/performance.md: ten minutes
+# make scaling    what a campaign costs beside its flights, and what 10^6 runs take, into docs/scaling.md: ten minutes
 # make soak       72 simulated hours, and an hour on the bench in real time, into docs/soak.md
 # make golden     record the golden logs again: after a change that means to alter the answers of fsw
 # make test-vcan   the tests on a CAN interface, in a user-mode Linux guest where this kernel has no vcan
@@ -24,7 +25,7 @@ bin := .venv/bin
 installed := .venv/.installed
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv sil test lint test-vcan golden validate fuzz attack differential replay-elsewhere faults bench population soak planted mutation coverage
+.PHONY: help venv sil test lint test-vcan golden validate fuzz attack differential replay-elsewhere faults bench scaling population soak planted mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -80,6 +81,9 @@ faults: venv
 
 bench: venv
 	$(bin)/python tools/bench.py
+
+scaling: venv
+	$(bin)/python tools/scaling.py
 
 population: venv
 	$(bin)/python tools/population.py $(POPULATION)
