@@ -129,6 +129,8 @@ def advance(state: ModeState, situation: ModeConditions, tick: int, config: Mode
             held[index] = tick
         if tick - held[index] >= config.dwell_ticks[index]:
             return ModeState(row.target, tick, (-1,) * len(TABLE), trips)
+    if trips == state.trips and held == list(state.held_since):
+        return state
     return ModeState(state.mode, state.since_tick, tuple(held), trips, state.held)
 
 

@@ -113,7 +113,8 @@ def _gate(
     tick = inbox.tick
     readings, gate = admit(inbox.frames, state.gate)
     view = update_view(state.coil, readings, tick, config.coils)
-    readings = readings._replace(quiet=view.idle_ticks > config.estimator.blank_ticks)
+    if view.idle_ticks <= config.estimator.blank_ticks:
+        readings = readings._replace(quiet=False)
     expected_s = config.epoch_unix_s + tick // config.tick_hz
     state = state._replace(
         tick=tick,

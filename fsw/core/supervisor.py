@@ -31,4 +31,5 @@ def supervise(state: FlightState, config: FlightConfig) -> tuple[FlightState, Mo
     situation = modes.judge(
         state.attitude, state.setpoint.spin_radps, violated is not None, has_field, state.modes, config.modes
     )
-    return state._replace(modes=modes.advance(state.modes, situation, state.tick, config.modes)), violated
+    after = modes.advance(state.modes, situation, state.tick, config.modes)
+    return state if after is state.modes else state._replace(modes=after), violated

@@ -63,6 +63,7 @@ def record_flight(
     watch: ProgressCallback = lambda tick: None,
     patience: Patience | None = None,
     waiting: Callable[[float], None] = lambda waited_s: None,
+    alone: bool = False,
 ) -> None:
     """Fly a run that was begun, and record its log, its histories and its second senders.
 
@@ -73,6 +74,7 @@ def record_flight(
         watch: called with the tick now and then.
         patience: how long to wait for the flight software; None: without limit until it boots.
         waiting: called every second until the flight software boots, with the time waited [s].
+        alone: nobody else can be on the bus, so that nobody has to be looked for.
 
     Raises:
         FlightError: the flight software gives no answer.
@@ -88,7 +90,7 @@ def record_flight(
         run_dir.update(path, second_senders=[sender.as_json() for sender in senders.found])
 
     def overhear(tick: int, before: list[Frame], answers: list[Frame], again: bool) -> None:
-        if senders.take(tick, before, answers, again):
+        if not alone and senders.take(tick, before, answers, again):
             store_senders()
 
     try:

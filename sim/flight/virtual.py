@@ -42,4 +42,4 @@ class VirtualBus:
 def fly_virtual(path: Path, scenario: Scenario, watch: ProgressCallback) -> None:
     """Fly with plant and flight software in this process."""
     node = FlightNode(flight_config(flight_table(scenario)))
-    record_flight(path, scenario, VirtualBus(node), watch)
+    record_flight(path, scenario, VirtualBus(node), watch, alone=True)

@@ -1,6 +1,5 @@
 """From the demand of a law to a request to the coil driver, and the view of the driver's reports."""
 
-from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from fsw.core.actuation import dipoles, pulses
@@ -17,8 +16,7 @@ MOST_IDLE_TICKS = 10_000
 """So many are counted: longer than any sample is late."""
 
 
-@dataclass(frozen=True, slots=True)
-class CoilView:
+class CoilView(NamedTuple):
     """The last reports of the coil driver, and the last request to it.
 
     ``lockout_ms`` by coil, -1 where the board has not reported it yet; ``driven_coil`` and ``driven_level``
@@ -134,13 +132,13 @@ def actuate(
         Scheduler state, view, and the request to send or None.
     """
     if demand is None:
-        return replace(state, owed_impulse_body_nms=ZERO, held_am2=ZERO), view, None
+        return state._replace(owed_impulse_body_nms=ZERO, held_am2=ZERO), view, None
     if config.dipoles is not None:
         state, request = dipoles.request(state, demand, b_body_t, tick, config.dipoles, config.pulses)
         return state, view, request if readings.dipole is not None else None
     if _refused(view, readings, tick):
-        state = replace(state, owed_impulse_body_nms=add(state.owed_impulse_body_nms, view.paid_body_nms))
-        view = replace(view, fired=NO_PULSE, paid_body_nms=ZERO)
+        state = state._replace(owed_impulse_body_nms=add(state.owed_impulse_body_nms, view.paid_body_nms))
+        view = view._replace(fired=NO_PULSE, paid_body_nms=ZERO)
     return _pulse(state, view, demand, b_body_t, readings.coil is not None, tick, config.pulses, faults)
 
 
@@ -168,12 +166,13 @@ def _pulse(
         state = pulses.owe(state, torque_body_nm, b_body_t, config)
         wanted, metric = pulses.due(state, torque_body_nm, b_body_t, config), config.rate_metric
     else:
-        state = replace(state, owed_impulse_body_nms=ZERO)
+        if state.owed_impulse_body_nms != ZERO:
+            state = state._replace(owed_impulse_body_nms=ZERO)
         wanted, metric = demand.impulse_body_nms, config.energy_metric
     pulse = pulses.choose(state, wanted, metric, tick, b_body_t, config, faults)
     if pulse is None or not status_fresh or view.lockout_ms[pulse.coil] != 0:
         return state, view, None
     request = CoilFire(pulse.level, pulse.coil, (view.seq + 1) & 0xFF, tick, config.duration_ms)
     paid = ZERO if demand.impulse_body_nms is not None else pulses.impulse(pulse, b_body_t, config)
-    view = replace(view, fired_tick=tick, fired=pulse, paid_body_nms=paid)
+    view = view._replace(fired_tick=tick, fired=pulse, paid_body_nms=paid)
     return pulses.fire(state, pulse, paid, tick, config), view, request

@@ -4,7 +4,7 @@ The board drives each request over the first part of one tick and nothing withou
 samples while it is off. An impulse law has the timing of the pulses; only the choice of the dipole is wider.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import isfinite
 
 from fsw.core.actuation.pulses import PulseConfig, PulseState
@@ -41,7 +41,7 @@ def request(
     if demand.impulse_body_nms is None:
         return state, saturate(demand.m_body_am2, config)
     if tick >= state.busy_until:
-        state = replace(state, held_am2=ZERO)
+        state = state._replace(held_am2=ZERO)
         if tick >= max(state.ready_tick) and dot(b_body_t, b_body_t) > 0.0:
             state = _begin(state, demand.impulse_body_nms, b_body_t, tick, config, timing)
     return state, saturate(state.held_am2, config)
@@ -70,7 +70,7 @@ def _begin(
         m_body_am2 = scale(1.0 / (timing.pulse_s * dot(b_body_t, b_body_t)), cross(b_body_t, paid))
     end = tick + timing.pulse_ticks
     again = end + timing.backoff_ticks
-    return replace(state, ready_tick=(again, again, again), busy_until=end, held_am2=m_body_am2)
+    return state._replace(ready_tick=(again, again, again), busy_until=end, held_am2=m_body_am2)
 
 
 def saturate(m_body_am2: Vec3, config: DipoleConfig) -> CoilDipole:

@@ -14,7 +14,7 @@ Least is by a metric: the rate that is left, or its energy.
 Source: Tavares et al. (ConSat, PoSAT-1) for the limits and the choice; the modulator is this project's.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import copysign
 from typing import NamedTuple
 
@@ -39,8 +39,7 @@ class PulseConfig:
     energy_metric: Mat3
 
 
-@dataclass(frozen=True, slots=True)
-class PulseState:
+class PulseState(NamedTuple):
     """Own timers and the impulse still owed.
 
     ``ready_tick[coil]`` is the first tick in answer to which that coil may fire again; ``busy_until`` the
@@ -95,7 +94,7 @@ def delay(state: PulseState, tick: int, skipped: int) -> PulseState:
     before = tick - skipped - 1
     a, b, c = (ready + skipped if ready > before else ready for ready in state.ready_tick)
     busy = state.busy_until
-    return replace(state, ready_tick=(a, b, c), busy_until=busy + skipped if busy > before else busy)
+    return state._replace(ready_tick=(a, b, c), busy_until=busy + skipped if busy > before else busy)
 
 
 def owe(state: PulseState, torque_body_nm: Vec3, b_body_t: Vec3, config: PulseConfig) -> PulseState:

@@ -27,7 +27,8 @@ def field_prediction(
     if parts.mag_turn is not None:
         sensitivity[:, parts.mag_turn] = turning
     if parts.mag_scale is not None:
-        sensitivity[:, parts.mag_scale] = ((b[0], 0.0, 0.0), (0.0, b[1], 0.0), (0.0, 0.0, b[2]))
+        first = parts.mag_scale.start
+        sensitivity[0, first], sensitivity[1, first + 1], sensitivity[2, first + 2] = b
     return add(_scaled(b, parameters.mag_scale), parameters.mag_bias_t), sensitivity
 
 

@@ -107,7 +107,9 @@ def healthy(estimate: Estimate) -> bool:
     """
     variances: list[float] = estimate.covariance.diagonal().tolist()
     positive = min(variances[:6]) > 0.0 and min(variances) >= 0.0
-    return isfinite(sum(estimate.floats())) and positive and sum(variances) < MAX_VARIANCE
+    parts = (estimate.q_body_from_eci, estimate.omega_body_radps, estimate.lag, *estimate.parameters)
+    numbers = sum(map(sum, parts)) + estimate.nis
+    return isfinite(numbers) and positive and sum(variances) < MAX_VARIANCE
 
 
 def predict(

@@ -71,7 +71,7 @@ def judge_current(
     """The health after comparing what the coil driver reports with what was asked of it."""
     unasked = unexpected(view, tick, config.coils.pulses)
     found = currents.judge_current(health.coils, view, readings, unasked, tick, config.coils)
-    return Health(health.sensors, found)
+    return health if found is health.coils else Health(health.sensors, found)
 
 
 def driven_am2(health: Health, view: CoilView, config: FdirConfig) -> Vec3:

@@ -245,7 +245,7 @@ class Search:
         outcomes: dict[tuple[Own, CoilFire | None], list[int | None]] = {}
         for demand, (owed, b_body_t) in DEMANDS.items():
             state, after, request = actuator.actuate(
-                replace(timers, owed_impulse_body_nms=owed),
+                timers._replace(owed_impulse_body_nms=owed),
                 view,
                 Demand(),
                 b_body_t,

@@ -35,7 +35,7 @@ def booting(first_of: Callable) -> Planting:
     """When the own timers run out after boot: ``first_of(tick, config)``, by coil."""
 
     def wrong(boot, tick, config):
-        return replace(boot(tick, config), ready_tick=first_of(tick, config))
+        return boot(tick, config)._replace(ready_tick=first_of(tick, config))
 
     return around(pulses, "boot", wrong)
 
@@ -63,7 +63,7 @@ def firing(
             for coil, before in enumerate(state.ready_tick)
         )
         after = fire(state, pulse, paid_body_nms, tick, config)
-        return replace(after, ready_tick=ready_tick, busy_until=busy_until(tick, config))
+        return after._replace(ready_tick=ready_tick, busy_until=busy_until(tick, config))
 
     return around(pulses, "fire", wrong)
 
@@ -84,7 +84,7 @@ def hearing(lockout_of: Callable) -> Planting:
         if readings.coil is None:
             return after
         before = view.lockout_ms if readings.coil_boot is None else actuator.LOCKOUT_UNKNOWN
-        return replace(after, lockout_ms=tuple(lockout_of(after.lockout_ms, before, readings.coil)))
+        return after._replace(lockout_ms=tuple(lockout_of(after.lockout_ms, before, readings.coil)))
 
     return around(actuator, "update_view", wrong)
 
@@ -97,8 +97,8 @@ def asking_the_word(seen: Callable) -> Planting:
     """What the decision to fire sees of the board's word: ``seen(lockouts)``."""
 
     def wrong(pulse, state, view, *rest):
-        state, after, request = pulse(state, replace(view, lockout_ms=seen(view.lockout_ms)), *rest)
-        return state, replace(after, lockout_ms=view.lockout_ms), request
+        state, after, request = pulse(state, view._replace(lockout_ms=seen(view.lockout_ms)), *rest)
+        return state, after._replace(lockout_ms=view.lockout_ms), request
 
     return around(actuator, "_pulse", wrong)
 
@@ -293,17 +293,17 @@ UNSAFE = {
     ),
     "own timers not asked": (
         own_timers_alone,
-        choosing(lambda state: replace(state, ready_tick=(0, 0, 0))),
+        choosing(lambda state: state._replace(ready_tick=(0, 0, 0))),
         BOTH,
     ),
     "own timers asked a tick early": (
         own_timers_alone,
-        choosing(lambda state: replace(state, ready_tick=tuple(ready - 1 for ready in state.ready_tick))),
+        choosing(lambda state: state._replace(ready_tick=tuple(ready - 1 for ready in state.ready_tick))),
         BOTH,
     ),
     "a pulse into another": (
         own_timers_alone,
-        choosing(lambda state: replace(state, busy_until=0)),
+        choosing(lambda state: state._replace(busy_until=0)),
         (PER_COIL,),
     ),
     "a pulse a tick long": (own_timers_alone, PULSE_A_TICK_LONG, BOTH),

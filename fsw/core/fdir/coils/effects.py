@@ -36,8 +36,8 @@ from fsw.core.fdir.coils.explanations import (
     PULSES,
     STRAY,
     Solution,
+    explained,
     indices_of,
-    of_pulses,
 )
 from fsw.core.fdir.evidence import SIGMAS
 
@@ -138,8 +138,8 @@ def _solve(estimate: Estimate, trace: Trace, tuning: MekfConfig) -> tuple[Estima
         np.array([cause.assumed for cause in trace.causes]),
         np.array([cause.uncertain for cause in trace.causes]),
     )
-    solution = Solution(trace.numbers, assumed + deviation, deviation, covariance, uncertain)
-    if not of_pulses(solution)[0].fits:
+    solution = explained(Solution(trace.numbers, assumed + deviation, deviation, covariance, uncertain))
+    if not solution.explanations[0].fits:
         return estimate, None
     pulses = [index for index, number in enumerate(trace.numbers) if number < STRAY]
     effect, deviation, covariance = trace.effect[:, pulses], deviation[pulses], covariance[pulses][:, pulses]

@@ -67,6 +67,7 @@ class Solution(NamedTuple):
 
     ``part``: of its nominal effect, ``deviation``: its part less what the filter assumed, (k), and their
     covariance, (k, k); ``uncertain``: what of the parts is uncertain beyond it, standard deviations, (k).
+    ``explanations``: what may be wrong with its pulses, once ``explained``; the likeliest first.
     """
 
     causes: tuple[int, ...]
@@ -74,6 +75,7 @@ class Solution(NamedTuple):
     deviation: Matrix
     covariance: Matrix
     uncertain: Matrix
+    explanations: "tuple[Explanation, ...]" = ()
 
     def noise(self, indices: list[int]) -> Matrix:
         """Covariance of what was measured of some causes and of what is uncertain in any case."""
@@ -103,6 +105,11 @@ class Explanation(NamedTuple):
     def fits(self) -> bool:
         """Whether what is left is noise."""
         return self.distance <= SIGMAS**2
+
+
+def explained(solution: Solution) -> Solution:
+    """With its explanations."""
+    return solution._replace(explanations=tuple(of_pulses(solution)))
 
 
 def of_pulses(solution: Solution) -> list[Explanation]:
@@ -172,11 +179,11 @@ def weak_by_pulses(solution: Solution, earlier: Vec3, test: WeakTest) -> tuple[i
     """The coil, and its part, that is certainly weak, not sound; None while it may be another.
 
     Args:
-        solution: of the latest pulses.
+        solution: of the latest pulses, explained.
         earlier: by coil, what those before weigh against it, nats.
         test: whose threshold the evidence has to exceed, and that of every other coil by as much.
     """
-    found = of_pulses(solution)
+    found = solution.explanations
     alike = min([one.distance for one in found if one.coil == ALL], default=inf)
     likely = [one for one in found if one.fits and one.part < test.weak_part and one.coil != ALL]
     each = against(solution, test)

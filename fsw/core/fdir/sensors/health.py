@@ -138,7 +138,9 @@ def _accused(watch: Watch, cause: int, unclear: bool, weights: EvidenceWeights) 
     elif cause:
         by = LOST * weights.against if cause == SensorFault.SILENT else weights.against
     nats = weigh(watch.nats, by, weights.threshold)
-    return Watch(cause) if nats >= weights.threshold else Watch(0, nats)
+    if nats >= weights.threshold:
+        return Watch(cause)
+    return watch if nats == watch.nats else Watch(0, nats)
 
 
 def _readmitted(watch: Watch, fits: bool | None, weights: EvidenceWeights) -> Watch:

@@ -162,7 +162,7 @@ def _proof(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: Cr
     if seen.estimate is None or seen.begun:
         return 0.0
     trusted = pair.standing is Standing.TRUSTED
-    sound = sensors_credible(seen.estimate, credibility) if trusted else seen.sound
+    sound = seen.sound or (trusted and sensors_credible(seen.estimate, credibility))
     if seen.refused:
         by = 0.0 if trusted else weights.misfits
     elif not sound:

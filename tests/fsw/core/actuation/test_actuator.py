@@ -49,7 +49,7 @@ COILS = ActuatorConfig(CONFIG, dipoles=None)
 
 def ready(owed=OWED_FOR[0]):
     """All own timers ran out long ago."""
-    return replace(pulses.boot(0, CONFIG), ready_tick=(0, 0, 0), owed_impulse_body_nms=owed)
+    return pulses.boot(0, CONFIG)._replace(ready_tick=(0, 0, 0), owed_impulse_body_nms=owed)
 
 
 def status(coil, lockout_ms=0, level=0, seq=0):
@@ -99,7 +99,7 @@ WANTED = {
 @pytest.mark.parametrize("kind", WANTED)
 def test_the_request_names_pulse_answer_and_length_and_is_remembered(kind):
     state, demand, paid = WANTED[kind]
-    state, view, request = run(state, replace(ALL_FREE, seq=41), demand, tick=0x1234)
+    state, view, request = run(state, ALL_FREE._replace(seq=41), demand, tick=0x1234)
     assert request == CoilFire(level=3, coil=0, seq=42, tick=0x1234, duration_ms=3000)
     assert CoilFire.decode(request.encode().data).tick == 0x34
     assert (view.fired_tick, view.fired) == (0x1234, Pulse(0, 3))
@@ -156,7 +156,7 @@ def test_a_pulse_goes_out_when_more_than_half_of_the_lowest_is_due(asked_am2, fi
 def test_a_pulse_goes_out_only_if_the_word_on_exactly_its_coil_is_zero(coil, lockout_ms):
     """Whatever the word on the others; and no other coil is taken in its place."""
     owed = OWED_FOR[coil]
-    state, view, request = run(ready(owed), replace(ALL_FREE, lockout_ms=lockout_ms))
+    state, view, request = run(ready(owed), ALL_FREE._replace(lockout_ms=lockout_ms))
     if lockout_ms[coil] == 0:
         assert request.coil == coil
     else:
@@ -173,7 +173,7 @@ def test_a_pulse_waits_for_a_tick_with_a_status():
 
 
 def test_a_board_that_is_free_does_not_shorten_the_own_timers():
-    locked = replace(ready(), ready_tick=(TICK + 1,) * 3)
+    locked = ready()._replace(ready_tick=(TICK + 1,) * 3)
     assert run(locked)[2] is None
     assert run(locked, tick=TICK + 1)[2] is not None
 
@@ -270,12 +270,12 @@ def test_a_refused_impulse_is_not_owed():
 @pytest.mark.parametrize("lockout_ms", [(0, 0, 0), (10, -1, 0)])
 def test_without_a_law_nothing_is_fired_and_nothing_owed(fresh, lockout_ms):
     """Nor what was owed before; the timers run on."""
-    timers = replace(ready(), ready_tick=(TICK - 5, TICK, TICK + 9), busy_until=TICK - 20)
-    before = replace(timers, held_am2=(1.0, -2.0, 3.0))
-    view = replace(ALL_FREE, lockout_ms=lockout_ms)
+    timers = ready()._replace(ready_tick=(TICK - 5, TICK, TICK + 9), busy_until=TICK - 20)
+    before = timers._replace(held_am2=(1.0, -2.0, 3.0))
+    view = ALL_FREE._replace(lockout_ms=lockout_ms)
     after, found, request = run_safe(before, view, BOARD_IS_THERE if fresh else NOTHING)
     assert request is None
-    assert after == replace(timers, owed_impulse_body_nms=ZERO)
+    assert after == timers._replace(owed_impulse_body_nms=ZERO)
     assert found == view
 
 
@@ -310,10 +310,10 @@ def test_seq_never_repeats_the_last_accepted_one():
 
 def test_seq_follows_what_the_board_accepted_not_what_was_asked():
     """A lost request leaves no gap: its number comes again, and the board has never seen it."""
-    state, view, request = run(view=replace(ALL_FREE, seq=7))
+    state, view, request = run(view=ALL_FREE._replace(seq=7))
     assert request.seq == 8
     view = update_view(view, NOTHING._replace(coil=status(0, seq=7)), TICK + 1, COILS)
-    _, _, again = run(replace(state, owed_impulse_body_nms=OWED_FOR[0]), view, tick=TICK + 103)
+    _, _, again = run(state._replace(owed_impulse_body_nms=OWED_FOR[0]), view, tick=TICK + 103)
     assert again.seq == 8
 
 
@@ -326,7 +326,7 @@ def starts(shared, tick_hz, coils, ticks):
     state, view, asked = pulses.boot(0, config), ALL_FREE, []
     for tick in range(ticks):
         for coil in coils:
-            state = replace(state, owed_impulse_body_nms=OWED_FOR[coil])
+            state = state._replace(owed_impulse_body_nms=OWED_FOR[coil])
             state, view, request = run(state, view, tick=tick, config=config)
             if request is not None:
                 asked.append((tick, request.coil))
@@ -359,8 +359,8 @@ def test_only_how_long_the_timers_still_run_matters(ready_in, busy_in, lockout_m
     config = make_config(shared)
 
     def answer(tick, ready_in, busy_in, lockout_ms):
-        state = replace(
-            ready(owed), ready_tick=tuple(tick + left for left in ready_in), busy_until=tick + busy_in
+        state = ready(owed)._replace(
+            ready_tick=tuple(tick + left for left in ready_in), busy_until=tick + busy_in
         )
         view = CoilView(lockout_ms=lockout_ms)
         after, _, request = run(state, view, tick=tick, config=config)

@@ -1,7 +1,5 @@
 """The view of the coil driver: lockout of each coil, what it drove, and whether that was requested."""
 
-from dataclasses import replace
-
 import pytest
 
 from fsw.core.actuation.actuator import LOCKOUT_UNKNOWN, MOST_IDLE_TICKS, CoilView, unexpected, update_view
@@ -57,7 +55,7 @@ def test_without_a_status_the_last_word_stands_and_the_own_request_counts_as_dri
     """For as long as it was asked for: a status that was lost is no reason to think the coil was off."""
     after = update_view(FIRED, NOTHING, TICK + ticks_after, coils)
     dipole_am2 = (0.0, -8.0 if level else 0.0, 0.0)
-    assert after == replace(FIRED, driven_coil=1, driven_level=level, driven_am2=dipole_am2)
+    assert after == FIRED._replace(driven_coil=1, driven_level=level, driven_am2=dipole_am2)
     assert not unexpected(after, TICK + ticks_after, coils.pulses)
 
 
@@ -79,8 +77,7 @@ def test_a_board_that_has_booted_has_not_told_its_lockouts(coil, coils):
     if coil is not None:
         booted = booted._replace(coil=status(coil, 99_000, seq=9))
     expected = [99_000 if coil == reports else -1 for reports in range(3)]
-    assert update_view(replace(FIRED, lockout_ms=(0, 10, 0)), booted, TICK + 50, coils) == replace(
-        FIRED,
+    assert update_view(FIRED._replace(lockout_ms=(0, 10, 0)), booted, TICK + 50, coils) == FIRED._replace(
         lockout_ms=tuple(expected),
         driven_coil=1 if coil is None else coil,
         idle_ticks=0 if coil is None else 1,

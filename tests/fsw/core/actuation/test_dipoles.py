@@ -205,7 +205,7 @@ class TestActuate:
     HEARD = NOTHING._replace(dipole=CoilDipoleStatus(0.0, 0.0, 0.0))
 
     def run(self, demand, readings=HEARD, tick=500):
-        state = replace(pulses.boot(0, TIMING), ready_tick=(0, 0, 0), owed_impulse_body_nms=(1.0, 1.0, 1.0))
+        state = pulses.boot(0, TIMING)._replace(ready_tick=(0, 0, 0), owed_impulse_body_nms=(1.0, 1.0, 1.0))
         return actuate(state, CoilView(), demand, B_BODY_T, readings, tick, self.COILS)
 
     def test_a_request_goes_out_at_once(self):

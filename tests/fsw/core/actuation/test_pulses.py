@@ -1,6 +1,5 @@
 """The scheduler by itself: its timing, its own timers, and what it owes."""
 
-from dataclasses import replace
 from math import exp, inf
 
 import numpy as np
@@ -37,8 +36,7 @@ def make_config(tick_hz=1, shared=True, leak_s=300.0):
 
 def owing(config, impulse_nms, ready_tick=(0, 0, 0), busy_until=0):
     """A state that owes an impulse; unless told otherwise its timers ran out long ago."""
-    return replace(
-        pulses.boot(0, config),
+    return pulses.boot(0, config)._replace(
         ready_tick=ready_tick,
         busy_until=busy_until,
         owed_impulse_body_nms=impulse_nms,

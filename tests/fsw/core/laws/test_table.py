@@ -1,6 +1,6 @@
 """The table of laws: complete, unmistakable, and no law asks for what it cannot know."""
 
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import fields, is_dataclass
 from math import isfinite
 
 import pytest
@@ -137,8 +137,8 @@ def test_what_is_held_and_paid_and_driven_shows_in_the_checksum():
     state = boot(CONFIG)
     one = (0.0, 5e-324, 0.0)
     changed = [
-        state._replace(pulses=replace(state.pulses, held_am2=one)),
-        state._replace(coil=replace(state.coil, paid_body_nms=one)),
-        state._replace(coil=replace(state.coil, driven_am2=one)),
+        state._replace(pulses=state.pulses._replace(held_am2=one)),
+        state._replace(coil=state.coil._replace(paid_body_nms=one)),
+        state._replace(coil=state.coil._replace(driven_am2=one)),
     ]
     assert len({checksum(each) for each in (state, *changed)}) == 4

@@ -15,6 +15,7 @@ from fsw.core.fdir.coils.explanations import (
     WeakTest,
     against,
     by_gain,
+    explained,
     of_oldest,
     of_pulses,
     weak_by_gain,
@@ -30,7 +31,7 @@ def solution(causes, deviation, sigma, correlation=0.0, uncertain=MODEL_ERROR):
     shape = np.eye(len(sigma)) + correlation * (1.0 - np.eye(len(sigma)))
     deviation = np.array(deviation)
     covariance, uncertain = shape * np.outer(sigma, sigma), np.broadcast_to(uncertain, sigma.shape)
-    return Solution(tuple(causes), 1.0 + deviation, deviation, covariance, uncertain)
+    return explained(Solution(tuple(causes), 1.0 + deviation, deviation, covariance, uncertain))
 
 
 def weak(*arguments, earlier=(0.0, 0.0, 0.0)):
@@ -159,7 +160,7 @@ def test_what_the_filter_knew_of_a_gain_counts_with_what_it_did_not():
     knowing = Solution(
         (1, 1, 0), np.array((0.6, 0.6, 1.0)) + deviation, deviation, covariance, np.full(3, MODEL_ERROR)
     )
-    assert weak_by_pulses(knowing, (0.0, 0.0, 0.0), WEAK) == (1, pytest.approx(0.375, abs=0.03))
+    assert weak_by_pulses(explained(knowing), (0.0, 0.0, 0.0), WEAK) == (1, pytest.approx(0.375, abs=0.03))
     assert weak((1, 1, 0), deviation, (0.04, 0.05, 0.03)) is None
 
 
