@@ -177,9 +177,8 @@ def _control(
 ) -> tuple[LawInput, Demand | None]:
     """What the law of this mode knows, and what it asks for."""
     law_input = _law_input(state, observation, model)
-    return law_input, by_mode.demand(
-        state.modes.mode, law_input, state.memory, state.setpoint, config.control
-    )
+    demand = by_mode.demand(state.modes.mode, law_input, state.memory, state.setpoint, config.control)
+    return law_input, demand
 
 
 def _law_input(state: FlightState, observation: Observation, model: EphemerisModel) -> LawInput:

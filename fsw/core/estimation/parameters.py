@@ -1,6 +1,5 @@
 """What the filter estimates besides attitude and rate: constants that the table knows within bounds only."""
 
-import operator
 from dataclasses import dataclass
 from math import nan
 from typing import Any, NamedTuple
@@ -115,7 +114,7 @@ def corrected_parameters(parameters: Parameters, error: list[float], places: Lay
     """The parameters plus their part of an error state."""
     parts = list(parameters)
     for index, place in places.carried:
-        parts[index] = tuple(map(operator.add, parts[index], error[place]))
+        parts[index] = tuple(map(float.__add__, parts[index], error[place]))
     return Parameters._make(parts)
 
 
