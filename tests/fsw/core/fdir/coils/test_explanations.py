@@ -4,9 +4,9 @@ from math import hypot
 
 import numpy as np
 import pytest
+from estimator_samples import tuned
 
 from fsw.core.estimation import mekf
-from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.parameters import Prior
 from fsw.core.fdir.coils.explanations import (
     MODEL_ERROR,
@@ -50,13 +50,9 @@ class TestWeakTest:
         assert WEAK.nats(part, 0.2**2) == pytest.approx(0.25 * nats)
 
     def test_sound_is_what_is_credible_of_a_gain_and_never_less_than_weak(self):
-        inertia = ((1.0, 0.0, 0.0), (0.0, 1.5, 0.0), (0.0, 0.0, 2.0))
-        noise = {"magnetometer_sigma_t": 2e-7, "sun_sigma_rad": 0.01, "torque_noise_nm_rts": 1e-9}
-        start = {"attitude_sigma_rad": 0.1, "rate_sigma_radps": 0.01, "gate_nis": 16.0}
-
         def least(*sigmas):
             prior = {"coil_error": Prior(sigmas, (0.0,) * 9)} if sigmas else {}
-            return weak_test(0.7, 14.0, mekf_config(inertia, 1.0, prior, **noise, **start)).sound_part
+            return weak_test(0.7, 14.0, tuned(**prior)).sound_part
 
         assert least() == pytest.approx(0.8)
         widest = 1.0 - 4.0 * hypot(0.03, 0.05)
@@ -198,13 +194,9 @@ class TestGain:
 
     @pytest.fixture
     def estimated(self):
-        sigmas = {"magnetometer_sigma_t": 2e-7, "sun_sigma_rad": 0.01}
-        start = {"attitude_sigma_rad": 0.1, "rate_sigma_radps": 0.01, "torque_noise_nm_rts": 1e-9}
-        inertia = ((1.0, 0.0, 0.0), (0.0, 1.5, 0.0), (0.0, 0.0, 2.0))
-
         def make(coil, gain, sigma):
             prior = {"coil_error": Prior((sigma,) * 9, (0.0,) * 9)}
-            config = mekf_config(inertia, 1.0, prior, **sigmas, **start, gate_nis=16.0)
+            config = tuned(**prior)
             errors = [0.01] * 9
             errors[4 * coil] = gain
             estimate = mekf.start((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), config)
@@ -220,16 +212,5 @@ class TestGain:
         assert accused(*estimated(coil, -0.25, 0.001)) is None
 
     def test_without_such_a_parameter_there_is_no_evidence(self, estimated):
-        estimate, config = estimated(1, -0.9, 0.03)
-        plain = mekf_config(
-            config.rotor.inertia_kgm2,
-            1.0,
-            {},
-            magnetometer_sigma_t=2e-7,
-            sun_sigma_rad=0.01,
-            attitude_sigma_rad=0.1,
-            rate_sigma_radps=0.01,
-            torque_noise_nm_rts=1e-9,
-            gate_nis=16.0,
-        )
-        assert accused(estimate, plain) is None
+        estimate, _ = estimated(1, -0.9, 0.03)
+        assert accused(estimate, tuned()) is None

@@ -1,9 +1,9 @@
 """Which estimates can be right: every parameter within four standard deviations of its prior."""
 
 import pytest
+from estimator_samples import tuned
 
 from fsw.core.estimation import mekf
-from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.parameters import Prior
 from fsw.core.fdir.evidence import SIGMAS
 from fsw.core.fdir.sensors.credibility import (
@@ -19,17 +19,7 @@ PRIORS = {
     "sun_turn_rad": Prior((0.002, 0.003, 0.004), (0.0,) * 3),
     "delay_s": Prior((0.2, 0.3), (0.0, 0.0), (0.5, 0.6)),
 }
-CONFIG = mekf_config(
-    ((1.02, 0.0, 0.0), (0.0, 1.85, 0.0), (0.0, 0.0, 1.95)),
-    1.0,
-    PRIORS,
-    magnetometer_sigma_t=2e-7,
-    sun_sigma_rad=0.01,
-    attitude_sigma_rad=0.1,
-    rate_sigma_radps=0.01,
-    torque_noise_nm_rts=1e-9,
-    gate_nis=16.0,
-)
+CONFIG = tuned(**PRIORS)
 LIMITS = credibility_config(CONFIG)
 
 
@@ -68,9 +58,7 @@ def test_no_number_is_not_credible():
 
 def test_a_weak_coil_is_none_of_the_table_but_the_rest_of_the_satellite_is():
     prior = {**PRIORS, "coil_error": Prior((0.03,) * 9, (0.0,) * 9)}
-    noise = {"magnetometer_sigma_t": 2e-7, "sun_sigma_rad": 0.01, "torque_noise_nm_rts": 1e-9}
-    start = {"attitude_sigma_rad": 0.1, "rate_sigma_radps": 0.01, "gate_nis": 16.0}
-    config = mekf_config(CONFIG.rotor.inertia_kgm2, 1.0, prior, **noise, **start)
+    config = tuned(**prior)
     limits = credibility_config(config)
     estimate = mekf.start((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), config)
     weak = estimate.parameters._replace(coil_error=(-0.7, *(0.0,) * 8))

@@ -3,27 +3,17 @@
 from itertools import count
 
 import pytest
+from estimator_samples import tuned
 
 from fsw.core.estimation import mekf
 from fsw.core.estimation.estimator import Used
-from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.parameters import Prior
 from fsw.core.fdir.evidence import weights
 from fsw.core.fdir.sensors.credibility import credibility_config
 from fsw.core.fdir.sensors.pair import Observed, Pair, Standing, judge, proven, valid
 from fsw.core.fdir.sensors.plausibility import Findings, Memory
 
-CONFIG = mekf_config(
-    ((1.02, 0.0, 0.0), (0.0, 1.85, 0.0), (0.0, 0.0, 1.95)),
-    1.0,
-    {"mag_bias_t": Prior((3e-7,) * 3, (0.0,) * 3)},
-    magnetometer_sigma_t=2e-7,
-    sun_sigma_rad=0.01,
-    attitude_sigma_rad=0.1,
-    rate_sigma_radps=0.01,
-    torque_noise_nm_rts=1e-9,
-    gate_nis=16.0,
-)
+CONFIG = tuned(mag_bias_t=Prior((3e-7,) * 3, (0.0,) * 3))
 LIMITS, WEIGHTS = credibility_config(CONFIG), weights(40.0, 1.0)
 ESTIMATE = mekf.start((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), CONFIG)._replace(nis=5.0, numbers=6)
 TURNED = ESTIMATE._replace(parameters=ESTIMATE.parameters._replace(mag_bias_t=(2e-6, 0.0, 0.0)))
