@@ -191,7 +191,9 @@ def tell(what: str) -> None:
 
 def page(figures: Figures) -> str:
     """The page: the template ``scaling.md.j2`` with the figures."""
-    template = Environment(undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True, autoescape=False)
+    template = Environment(
+        undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True
+    )
     text = TEMPLATE.read_text(encoding="utf-8")
     return template.from_string(text).render(
         f=figures,
