@@ -8,8 +8,8 @@ from fsw.core.actuation.pulses import PulseConfig, pulse_timing
 from fsw.core.algebra.vector import inverse, product
 from fsw.core.config import FlightConfig
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.fdir.coils.explanations import weak_test
 from fsw.core.fdir.coils.health import CoilHealthConfig
+from fsw.core.fdir.coils.weak_test import weak_test
 from fsw.core.fdir.evidence import weights
 from fsw.core.fdir.fdir import FdirConfig
 from fsw.core.fdir.sensors.credibility import credibility_config

@@ -11,7 +11,8 @@ from fsw.core.estimation import mekf
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.parameters import Prior
 from fsw.core.fdir.coils.effects import solve, trace_pulse
-from fsw.core.fdir.coils.explanations import WeakTest, of_pulses
+from fsw.core.fdir.coils.explanations import of_pulses
+from fsw.core.fdir.coils.weak_test import WeakTest
 
 INERTIA = ((1.02, 0.07, -0.05), (0.07, 1.85, 0.11), (-0.05, 0.11, 1.45))
 CONFIG = mekf_config(

@@ -5,7 +5,7 @@ from math import inf
 from typing import NamedTuple
 
 from fsw.core.actuation.actuator import CoilView, unexpected
-from fsw.core.algebra.vector import ZERO, Vec3
+from fsw.core.algebra.vector import Vec3
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.estimation.estimator import EstimatorState, Used, restart, untraced
 from fsw.core.estimation.mekf import Estimate
@@ -13,7 +13,6 @@ from fsw.core.events import Event, Happening
 from fsw.core.fdir.coils import currents, retest, torques
 from fsw.core.fdir.coils import health as coil_health
 from fsw.core.fdir.coils.health import CoilHealth, CoilHealthConfig
-from fsw.core.fdir.evidence import EvidenceWeights
 from fsw.core.fdir.faults import OPEN_PART, Sensor
 from fsw.core.fdir.sensors import health as sensor_health
 from fsw.core.fdir.sensors import pair, plausibility
@@ -134,10 +133,10 @@ def judge(
             found, evidence.view, reference.b_eci_t, estimator, evidence.tick, sure, doubt, config.coils
         )
     if changed or judged.pair.ended:
-        found = found._replace(pulse_nats=ZERO)  # a faulty sensor may have shown it
+        found = found._replace(older=coil_health.NONE_OLDER)  # a faulty sensor may have shown it
     if judged.pair.ended:
         estimator, attitude = restart(estimator), UNKNOWN
-    torque_untold = coil_health.unattributed_torque(found) or _pulses_untold(found, judged.pair, weights)
+    torque_untold = coil_health.unattributed_torque(found) or _pulses_untold(found, judged.pair, config)
     if torque_untold or not pair.valid(judged.pair):
         attitude = attitude._replace(valid=False)
     return Health(judged, found), estimator, attitude
@@ -154,11 +153,11 @@ def _believed_below(estimate: Estimate | None, proven: bool, config: FdirConfig)
     return config.coils.weak.weak_part if known else OPEN_PART
 
 
-def _pulses_untold(found: CoilHealth, both: Pair, weights: EvidenceWeights) -> bool:
+def _pulses_untold(found: CoilHealth, both: Pair, config: FdirConfig) -> bool:
     """Whether a coil may be weak, by over half of what isolates it, or the sensor that shows it is wrong."""
-    each = zip(found.pulse_nats, found.faults, strict=True)
-    suspected = any(nats > 0.5 * weights.threshold and not fault for nats, fault in each)
-    return suspected and not pair.proven(both, weights)
+    weak, each = config.coils.weak, zip(found.older, found.faults, strict=True)
+    suspected = any(older.nats(weak) > 0.5 * weak.threshold and not fault for older, fault in each)
+    return suspected and not pair.proven(both, config.sensors.weights)
 
 
 def plant_restarted(health: Health) -> Health:

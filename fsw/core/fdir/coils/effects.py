@@ -31,14 +31,8 @@ from fsw.core.estimation import mekf
 from fsw.core.estimation.kalman import Cause, Matrix, Trace, unexplained
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.fdir.coils.explanations import (
-    MODEL_ERROR,
-    PULSES,
-    STRAY,
-    Solution,
-    explained,
-    indices_of,
-)
+from fsw.core.fdir.coils.explanations import PULSES, STRAY, Solution, explained, indices_of
+from fsw.core.fdir.coils.weak_test import MODEL_ERROR
 from fsw.core.fdir.evidence import SIGMAS
 
 UNEXPLAINED = 1.25
@@ -114,7 +108,8 @@ def solve(estimate: Estimate, tuning: MekfConfig) -> tuple[Estimate, Solution | 
 
     Returns:
         The estimate, corrected where a deviation is certain, and the solution, if the causes explain what was
-        measured.
+        measured. Pulses that no fault of a coil explains are traced no longer: what they show is no coil's,
+        and it would remain when the one that contradicts the others is gone.
     """
     trace = estimate.trace
     if trace is None:
@@ -140,7 +135,7 @@ def _solve(estimate: Estimate, trace: Trace, tuning: MekfConfig) -> tuple[Estima
     )
     solution = explained(Solution(trace.numbers, assumed + deviation, deviation, covariance, uncertain))
     if not solution.explanations[0].fits:
-        return estimate, None
+        return estimate._replace(trace=None), None
     pulses = [index for index, number in enumerate(trace.numbers) if number < STRAY]
     effect, deviation, covariance = trace.effect[:, pulses], deviation[pulses], covariance[pulses][:, pulses]
     certain = deviation**2 > SIGMAS**2 * solution.noise(pulses).diagonal()

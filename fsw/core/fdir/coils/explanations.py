@@ -4,62 +4,31 @@ Every explanation is weighed by its likelihood, and accepted only if what it lea
 one is less likely by the threshold of the evidence.
 """
 
-from math import inf, sqrt
+from math import inf
 from typing import NamedTuple
 
 import numpy as np
 
-from fsw.core.algebra.vector import Vec3
 from fsw.core.estimation.kalman import Matrix
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
+from fsw.core.fdir.coils.weak_test import (
+    NO_PULSES,
+    NOTHING_OLDER,
+    REVERSED,
+    Older,
+    PartSum,
+    WeakTest,
+    pulse,
+)
 from fsw.core.fdir.evidence import SIGMAS
 
-MODEL_ERROR = 0.05
-"""Relative uncertainty of a coil's effect that no measurement takes away."""
 PULSES = 3
 """Of each coil its latest pulses are solved for, so many."""
 NONE, ALL = -1, -2
 """In place of a coil: no coil is faulty, or every one does as little as the others."""
-REVERSED = -1.0
-"""Least part of its effect that a coil can do."""
 STRAY = 3
 """STRAY + j is the number, as a cause, of a stray current in coil j; j itself that of a pulse."""
-
-
-class WeakTest(NamedTuple):
-    """The question that decides about a coil: is it weak, or sound?
-
-    ``weak_part`` of the nominal current or effect is the most that is weak, ``sound_part`` the least that the
-    bound of the coils' gains allows; evidence of ``threshold``, nats, isolates a coil.
-    """
-
-    weak_part: float
-    sound_part: float
-    threshold: float
-
-    def nats(self, part: float, variance: float) -> float:
-        """What a measured part weighs against the coil: the likeliest weak against the likeliest sound one.
-
-        (sound - part)^2 / 2 sigma^2 below what is sound, less (part - weak)^2 / 2 sigma^2 above what is weak,
-        or the like below what the most that is reversed does.
-        """
-        lacks, exceeds = max(0.0, self.sound_part - part), max(0.0, part - self.weak_part, REVERSED - part)
-        return (lacks**2 - exceeds**2) / (2.0 * variance)
-
-
-def weak_test(weak_part: float, threshold: float, mekf: MekfConfig) -> WeakTest:
-    """The test by the filter's prior of the gains: a sound coil lacks less than is credible of it.
-
-    Args:
-        weak_part: the most that is weak.
-        threshold: of the evidence.
-        mekf: the filter.
-    """
-    place = mekf.layout.coils
-    variance = 0.0 if place is None else float(mekf.initial_covariance[place, place].diagonal()[::4].max())
-    deviation = SIGMAS * sqrt(variance + MODEL_ERROR**2)
-    return WeakTest(weak_part, max(weak_part, 1.0 - deviation), threshold)
 
 
 class Solution(NamedTuple):
@@ -161,37 +130,38 @@ class _Among(NamedTuple):
         return Explanation(coil, len(alike), part_of_all, distance)
 
 
-def against(solution: Solution, test: WeakTest) -> list[float]:
-    """What each cause by itself weighs against its coil, nats, at most half of the threshold."""
-    most = 0.5 * test.threshold
-    variances = solution.covariance.diagonal() + solution.uncertain**2
-    each = zip(solution.part.tolist(), variances.tolist(), strict=True)
-    return [max(-most, min(most, test.nats(part, variance))) for part, variance in each]
+def shown(solution: Solution, indices: list[int], test: WeakTest) -> PartSum:
+    """What some pulses of a coil show of it, each by itself."""
+    variances = solution.covariance.diagonal()[indices] + solution.uncertain[indices] ** 2
+    found = NO_PULSES
+    for part, variance in zip(solution.part[indices].tolist(), variances.tolist(), strict=True):
+        found = found.plus(pulse(part, variance, test))
+    return found
 
 
-def of_oldest(solution: Solution, coil: int, test: WeakTest) -> float:
-    """What the oldest pulse of a coil weighs against it, if another takes its place; else nothing."""
+def of_oldest(solution: Solution, coil: int, test: WeakTest) -> PartSum:
+    """What the oldest pulse of a coil shows, if another takes its place; else nothing."""
     own = indices_of(coil, solution.causes)
-    return against(solution, test)[own[-1]] if len(own) == PULSES else 0.0
+    return shown(solution, own[-1:] if len(own) == PULSES else [], test)
 
 
-def weak_by_pulses(solution: Solution, earlier: Vec3, test: WeakTest) -> tuple[int, float] | None:
+def weak_by_pulses(
+    solution: Solution, earlier: tuple[Older, Older, Older], test: WeakTest
+) -> tuple[int, float] | None:
     """The coil, and its part, that is certainly weak, not sound; None while it may be another.
 
     Args:
         solution: of the latest pulses, explained.
-        earlier: by coil, what those before weigh against it, nats.
+        earlier: by coil, what those before show.
         test: whose threshold the evidence has to exceed, and that of every other coil by as much.
     """
     found = solution.explanations
     alike = min([one.distance for one in found if one.coil == ALL], default=inf)
     likely = [one for one in found if one.fits and one.part < test.weak_part and one.coil != ALL]
-    each = against(solution, test)
     for one in likely:
         own = indices_of(one.coil, solution.causes)
-        nats = sum(each[index] for index in own[: one.pulses])
-        if one.pulses == len(own):
-            nats += earlier[one.coil]
+        older = earlier[one.coil] if one.pulses == len(own) else NOTHING_OLDER
+        nats = older.with_pulses(shown(solution, own[: one.pulses], test)).nats(test)
         rivals = [other.distance for other in likely if other.coil != one.coil]
         told = min(rivals, default=inf) - one.distance >= 2.0 * test.threshold
         if nats >= test.threshold and told and alike - one.distance > SIGMAS**2:

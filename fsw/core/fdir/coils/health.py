@@ -7,7 +7,7 @@ from fsw.core.actuation.actuator import CoilView
 from fsw.core.actuation.pulses import AXES, PulseConfig
 from fsw.core.algebra.vector import ZERO, Vec3, scale
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.fdir.coils.explanations import WeakTest
+from fsw.core.fdir.coils.weak_test import NOTHING_OLDER, Older, WeakTest
 from fsw.core.fdir.faults import CoilFault
 
 
@@ -27,8 +27,11 @@ class CoilHealthConfig:
     retest_ticks: int
 
 
+NONE_OLDER = (NOTHING_OLDER, NOTHING_OLDER, NOTHING_OLDER)
+
+
 class CoilHealth(NamedTuple):
-    """By coil: its fault (0: none) and what its currents, and pulses traced no longer, show against it, nats.
+    """By coil: its fault (0: none), what its currents show against it, nats, and its ``older`` pulses.
 
     ``strange_ticks``: ticks in a row with a level or a current without a request, ``stray_ma``: a current
     without a level; ``stuck``: there is such a level, or such a current for too long; ``conducts``: by coil,
@@ -38,7 +41,7 @@ class CoilHealth(NamedTuple):
 
     faults: tuple[int, int, int] = (0, 0, 0)
     nats: Vec3 = ZERO
-    pulse_nats: Vec3 = ZERO
+    older: tuple[Older, Older, Older] = NONE_OLDER
     strange_ticks: int = 0
     stray_ma: int = 0
     stuck: bool = False
@@ -47,11 +50,13 @@ class CoilHealth(NamedTuple):
 
     def integers(self) -> tuple[int, ...]:
         """For the checksum of the state."""
-        return (*self.faults, self.strange_ticks, self.stray_ma, self.stuck, *self.until_retest)
+        older = [one.parts.pulses for one in self.older]
+        return (*self.faults, *older, self.strange_ticks, self.stray_ma, self.stuck, *self.until_retest)
 
     def floats(self) -> tuple[float, ...]:
         """The evidence, and the parts of a stray current."""
-        return (*self.nats, *self.pulse_nats, *self.conducts)
+        first, second, third = [(*one.parts[1:], one.kept) for one in self.older]
+        return (*self.nats, *first, *second, *third, *self.conducts)
 
 
 def driven_am2(health: CoilHealth, view: CoilView, config: CoilHealthConfig) -> Vec3:
@@ -94,7 +99,7 @@ def with_fault(health: CoilHealth, coil: int, kind: int, config: CoilHealthConfi
     )
 
 
-T = TypeVar("T", int, float)
+T = TypeVar("T")
 
 
 def with_item(three: tuple[T, T, T], index: int, value: T) -> tuple[T, T, T]:

@@ -8,6 +8,7 @@ from fsw.core.estimation.estimator import EstimatorState, load, untraced
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.estimation.parameters import COMPONENTS, NAMES, component_places
 from fsw.core.fdir.coils.health import CoilHealth, CoilHealthConfig, with_item
+from fsw.core.fdir.coils.weak_test import Older
 from fsw.core.fdir.faults import CoilFault
 
 TRIED = (CoilFault.OPEN, CoilFault.WEAK, CoilFault.REVERSED)
@@ -36,7 +37,7 @@ def retest(
             health = health._replace(
                 faults=with_item(health.faults, coil, 0),
                 nats=with_item(health.nats, coil, half),
-                pulse_nats=with_item(health.pulse_nats, coil, half),
+                older=with_item(health.older, coil, Older(kept=half)),
             )
             estimator = _forget_gain(untraced(estimator), GAINS[coil], config.mekf)
     return health, estimator

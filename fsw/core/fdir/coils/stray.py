@@ -16,7 +16,8 @@ from fsw.core.estimation.kalman import Cause, Matrix, Trace
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.fdir.coils import effects
-from fsw.core.fdir.coils.explanations import MODEL_ERROR, STRAY, Solution
+from fsw.core.fdir.coils.explanations import STRAY, Solution
+from fsw.core.fdir.coils.weak_test import MODEL_ERROR
 from fsw.core.fdir.evidence import SIGMAS
 
 CAUSES = (STRAY, STRAY + 1, STRAY + 2)

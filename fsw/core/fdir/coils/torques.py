@@ -7,6 +7,7 @@ from fsw.core.estimation.mekf import Estimate
 from fsw.core.fdir.coils import effects, explanations, stray
 from fsw.core.fdir.coils.explanations import Solution
 from fsw.core.fdir.coils.health import (
+    NONE_OLDER,
     CoilHealth,
     CoilHealthConfig,
     flows_somewhere,
@@ -15,7 +16,6 @@ from fsw.core.fdir.coils.health import (
     with_fault,
     with_item,
 )
-from fsw.core.fdir.evidence import weigh
 from fsw.core.fdir.faults import CoilFault, coil_fault
 
 
@@ -75,16 +75,16 @@ def _isolate(
 
     A pulse of the coil ``ended`` takes the place of its oldest one, whose evidence is kept.
     """
-    gain_nats, earlier = explanations.by_gain(estimate, config.mekf, config.weak), health.pulse_nats
+    gain_nats, earlier = explanations.by_gain(estimate, config.mekf, config.weak), health.older
     estimate, solution = effects.solve(estimate, config.mekf)
     if solution is None:
-        return health, estimate
+        return (health if estimate.trace else health._replace(older=NONE_OLDER)), estimate
     weak = explanations.weak_by_pulses(solution, earlier, config.weak)
     weak = weak or explanations.weak_by_gain(estimate, gain_nats, config.weak)
     if ended is not None:
         oldest = explanations.of_oldest(solution, ended, config.weak)
-        nats = weigh(earlier[ended], oldest, config.weak.threshold)
-        health = health._replace(pulse_nats=with_item(earlier, ended, nats))
+        older = earlier[ended].with_pulses(oldest).bounded(config.weak)
+        health = health._replace(older=with_item(earlier, ended, older))
     if weak is not None and weak[1] < believed_below and _others_are_sound(health, weak[0], gain_nats):
         health = with_fault(health, weak[0], coil_fault(weak[1], config.weak.weak_part), config)
     return (

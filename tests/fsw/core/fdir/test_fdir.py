@@ -4,7 +4,8 @@ import pytest
 
 from fsw.core.events import Event, Happening
 from fsw.core.fdir import fdir
-from fsw.core.fdir.coils.health import CoilHealth
+from fsw.core.fdir.coils.health import NONE_OLDER, CoilHealth
+from fsw.core.fdir.coils.weak_test import NOTHING_OLDER, Older, PartSum
 from fsw.core.fdir.faults import CoilFault, SensorFault
 from fsw.core.fdir.fdir import Evidence, Health
 from fsw.core.fdir.sensors.health import SensorHealth, Watch
@@ -134,7 +135,7 @@ class TestJudgement:
         """A coil that is tried again has half against it, and costs no attitude in the shadow."""
         threshold = make_world().config.fdir.sensors.weights.threshold
         pair = PROVEN._replace(proof=proof * threshold)
-        shown = CoilHealth(pulse_nats=(0.0, part * threshold, 0.0))
+        shown = CoilHealth(older=(NOTHING_OLDER, Older(kept=part * threshold), NOTHING_OLDER))
         (_, _, attitude), _ = judged(Health(sensors(pair=pair).sensors, shown))
         assert attitude.valid is valid
 
@@ -170,13 +171,14 @@ class TestJudgement:
         ids=["an isolated sensor", "a dispute"],
     )
     def test_what_pulses_showed_is_forgotten_with(self, judged, monkeypatch, judgement):
-        shown = CoilHealth(nats=(1.0, 2.0, 3.0), pulse_nats=(3.0, 0.5, 2.0))
+        older = Older(PartSum(2, 30.0, 9.0, 2.7), kept=1.0)
+        shown = CoilHealth(nats=(1.0, 2.0, 3.0), older=(older, older, older))
         before = Health(SensorHealth(pair=PROVEN), shown)
         (health, _, _), _ = judged(before)
         assert health.coils == shown
         monkeypatch.setattr(fdir.sensor_health, "judge", lambda *of_this_tick: judgement)
         (health, _, _), _ = judged(before)
-        assert health.coils == shown._replace(pulse_nats=(0.0, 0.0, 0.0))
+        assert health.coils == shown._replace(older=NONE_OLDER)
 
     def test_while_the_time_is_in_doubt_no_sensor_is_judged(self, make_world, monkeypatch):
         world = make_world()

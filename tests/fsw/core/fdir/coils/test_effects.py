@@ -125,6 +125,16 @@ def test_a_weak_coil_leaves_noise_and_where_more_is_left_nobody_is_judged():
     assert judged(begun)[1] is not None
 
 
+def test_pulses_that_no_fault_of_a_coil_explains_prove_nothing_later():
+    contradictory, _ = fly([0, 1, 0, 1], [0.2, 0.2, 1.6, 1.6])
+    after, isolated = judged(contradictory)
+    assert isolated is None
+    assert after.trace is None, "the latest would be explained as soon as the first are forgotten"
+    assert after.covariance is contradictory.covariance
+    explained, _ = fly([0, 1, 0, 1], [0.2, 1.0, 0.2, 1.0])
+    assert judged(explained)[0].trace is not None
+
+
 @pytest.mark.parametrize("value", [nan, inf, -1.0, -1.5])
 @pytest.mark.parametrize("place", ["sums", "effect"])
 def test_damaged_sums_accuse_nobody_and_raise_nothing(place, value):

@@ -1,7 +1,5 @@
 """Which coil a solution isolates: by how much, how surely, and never one of two that look alike."""
 
-from math import hypot
-
 import numpy as np
 import pytest
 from estimator_samples import tuned
@@ -9,18 +7,24 @@ from estimator_samples import tuned
 from fsw.core.estimation import mekf
 from fsw.core.estimation.parameters import Prior
 from fsw.core.fdir.coils.explanations import (
-    MODEL_ERROR,
     STRAY,
     Solution,
-    WeakTest,
-    against,
     by_gain,
     explained,
     of_oldest,
     of_pulses,
+    shown,
     weak_by_gain,
     weak_by_pulses,
-    weak_test,
+)
+from fsw.core.fdir.coils.health import NONE_OLDER
+from fsw.core.fdir.coils.weak_test import (
+    MODEL_ERROR,
+    NO_PULSES,
+    NOTHING_OLDER,
+    Older,
+    PartSum,
+    WeakTest,
 )
 
 WEAK = WeakTest(0.7, 0.8, 14.0)
@@ -34,30 +38,8 @@ def solution(causes, deviation, sigma, correlation=0.0, uncertain=MODEL_ERROR):
     return explained(Solution(tuple(causes), 1.0 + deviation, deviation, covariance, uncertain))
 
 
-def weak(*arguments, earlier=(0.0, 0.0, 0.0)):
+def weak(*arguments, earlier=NONE_OLDER):
     return weak_by_pulses(solution(*arguments), earlier, WEAK)
-
-
-class TestWeakTest:
-    """Weak is at most 0.7 of the effect, sound at least 0.8."""
-
-    @pytest.mark.parametrize(
-        ("part", "nats"),
-        [(0.3, 12.5), (0.7, 0.5), (0.75, 0.0), (0.8, -0.5), (1.1, -8.0), (-1.0, 162.0)],
-    )
-    def test_a_part_weighs_the_likeliest_weak_one_against_the_likeliest_sound_one(self, part, nats):
-        assert WEAK.nats(part, 0.1**2) == pytest.approx(nats)
-        assert WEAK.nats(part, 0.2**2) == pytest.approx(0.25 * nats)
-
-    def test_sound_is_what_is_credible_of_a_gain_and_never_less_than_weak(self):
-        def least(*sigmas):
-            prior = {"coil_error": Prior(sigmas, (0.0,) * 9)} if sigmas else {}
-            return weak_test(0.7, 14.0, tuned(**prior)).sound_part
-
-        assert least() == pytest.approx(0.8)
-        widest = 1.0 - 4.0 * hypot(0.03, 0.05)
-        assert least(0.01, 0.5, 0.5, 0.5, 0.03, 0.5, 0.5, 0.5, 0.02) == pytest.approx(widest)
-        assert least(*(0.2,) * 9) == 0.7
 
 
 @pytest.mark.parametrize("coil", [0, 1, 2])
@@ -102,32 +84,40 @@ class TestPulsesTracedNoLonger:
     """Pulses that show little by themselves add up, beyond those that are traced."""
 
     UNSURE = ((1, 2, 1, 1), (-0.8, 0.02, -0.75, -0.7), (0.2, 0.05, 0.2, 0.2))
+    WEIGHT = 1.0 / (0.2**2 + 0.05**2)
 
-    def test_what_each_weighs_is_negative_for_a_sound_one_and_bounded(self):
-        found = solution((2, 0, 1), (-0.6, 0.1, -1.0), (0.12, 0.12, 0.01))
-        assert against(found, WEAK) == [
-            pytest.approx(0.5 * 0.4**2 / (0.12**2 + 0.05**2)),
-            pytest.approx(-0.5 * 0.4**2 / (0.12**2 + 0.05**2)),
-            0.5 * WEAK.threshold,
-        ]
-        surely_sound = solution((1,), (0.3,), (0.01,))
-        assert against(surely_sound, WEAK) == [-0.5 * WEAK.threshold]
+    def sums(self, part):
+        return self.WEIGHT, self.WEIGHT * part, self.WEIGHT * part**2
+
+    def older(self, coil, part, pulses=2):
+        parts = PartSum(*(pulses * each for each in (1, *self.sums(part))))
+        return tuple(Older(parts) if coil == other else NOTHING_OLDER for other in range(3))
+
+    def test_what_pulses_show_is_their_part_by_its_variance_and_what_is_uncertain(self):
+        found = shown(solution((2, 0, 1, 2), (-0.6, 0.1, -1.0, -0.5), (0.12, 0.2, 0.01, 0.12)), [0, 3], WEAK)
+        first = second = 1.0 / (0.12**2 + 0.05**2)
+        squares = 0.4**2 * first + 0.5**2 * second
+        assert found == pytest.approx((2, first + second, 0.4 * first + 0.5 * second, squares))
 
     def test_the_oldest_gives_its_place_once_so_many_are_traced(self):
         traced = solution(*self.UNSURE)
-        assert of_oldest(traced, 1, WEAK) == pytest.approx(0.5 * 0.5**2 / (0.2**2 + 0.05**2))
-        assert of_oldest(traced, 2, WEAK) == 0.0
-        assert of_oldest(traced, 0, WEAK) == 0.0
+        assert of_oldest(traced, 1, WEAK) == pytest.approx((1, *self.sums(0.3)))
+        assert of_oldest(traced, 2, WEAK) == of_oldest(traced, 0, WEAK) == NO_PULSES
 
     def test_they_count_with_those_that_are(self):
         assert weak(*self.UNSURE) is None
-        assert weak(*self.UNSURE, earlier=(0.0, 7.0, 0.0)) == (1, pytest.approx(0.25, abs=0.03))
-        assert weak(*self.UNSURE, earlier=(7.0, 0.0, 7.0)) is None, "those of the coil alone"
+        assert weak(*self.UNSURE, earlier=self.older(1, 0.25)) == (1, pytest.approx(0.25, abs=0.03))
+        assert weak(*self.UNSURE, earlier=self.older(0, 0.25)) is None, "those of the coil alone"
+
+    def test_not_where_they_did_another_part(self):
+        """A coil that does a part of its effect does it at every pulse."""
+        assert weak(*self.UNSURE, earlier=self.older(1, 0.95)) is None
+        assert weak(*self.UNSURE, earlier=self.older(1, 0.95, 20)) is None
 
     def test_not_against_a_coil_that_has_been_sound_since(self):
         """It failed within those that are traced, or not at all."""
         since = ((1, 1, 1), (-0.9, 0.02, 0.03), (0.1, 0.1, 0.1))
-        assert weak(*since, earlier=(0.0, WEAK.threshold, 0.0)) is None
+        assert weak(*since, earlier=self.older(1, 0.1, 20)) is None
 
 
 def test_nobody_is_accused_while_two_coils_cannot_be_told_apart():
@@ -156,7 +146,7 @@ def test_what_the_filter_knew_of_a_gain_counts_with_what_it_did_not():
     knowing = Solution(
         (1, 1, 0), np.array((0.6, 0.6, 1.0)) + deviation, deviation, covariance, np.full(3, MODEL_ERROR)
     )
-    assert weak_by_pulses(explained(knowing), (0.0, 0.0, 0.0), WEAK) == (1, pytest.approx(0.375, abs=0.03))
+    assert weak_by_pulses(explained(knowing), NONE_OLDER, WEAK) == (1, pytest.approx(0.375, abs=0.03))
     assert weak((1, 1, 0), deviation, (0.04, 0.05, 0.03)) is None
 
 

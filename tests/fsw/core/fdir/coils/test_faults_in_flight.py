@@ -7,6 +7,7 @@ import pytest
 from fsw.core.actuation.actuator import CoilView
 from fsw.core.fdir.coils.currents import judge_current
 from fsw.core.fdir.coils.health import CoilHealth
+from fsw.core.fdir.coils.weak_test import NOTHING_OLDER
 from fsw.core.gate.readings import NOTHING
 from fsw.core.telemetry import Event
 from fsw.wire.messages import CoilFire, CoilStatus, FswEvent, Mode, TcClear
@@ -253,11 +254,12 @@ class TestByTheRate:
         world.plant._coils._dipole_per_ampere[0] *= 0.65
         own = 0
         while own < 4:
-            assert world.state.health.coils.pulse_nats[0] == 0.0
+            assert world.state.health.coils.older[0] == NOTHING_OLDER
             own += sum(coil == 0 for _, coil in fires(fly(world, 1)))
         fly(world, world.config.coils.pulses.pulse_ticks)
-        first, *others = world.state.health.coils.pulse_nats
-        assert 1.0 < first < 0.5 * world.config.fdir.coils.weak.threshold
+        weak = world.config.fdir.coils.weak
+        first, *others = [older.nats(weak) for older in world.state.health.coils.older]
+        assert 1.0 < first < 0.5 * weak.threshold
         assert max(others) < 0.1 * first
 
     @pytest.mark.requirement("REQ-COIL-05")

@@ -4,6 +4,7 @@ import pytest
 
 from fsw.core.fdir.coils.health import CoilHealth
 from fsw.core.fdir.coils.retest import GAINS, TRIED, retest
+from fsw.core.fdir.coils.weak_test import NOTHING_OLDER, Older
 from fsw.core.fdir.faults import CoilFault
 from fsw.core.telemetry import Event
 from fsw.wire.messages import CoilFire, CoilStatus, FswEvent
@@ -84,7 +85,8 @@ class TestTime:
         assert (health.faults, health.until_retest, same) == ((0, 0, fault), (6, 8, 1), estimator)
         health, other = retest(health, estimator, True, config)
         half = (0.0, 0.0, 0.5 * config.weak.threshold)
-        assert (health.faults, health.nats, health.pulse_nats) == ((0, 0, 0), half, half)
+        older = (NOTHING_OLDER, NOTHING_OLDER, Older(kept=0.5 * config.weak.threshold))
+        assert (health.faults, health.nats, health.older) == ((0, 0, 0), half, older)
         assert other.estimate.trace is None
 
     def test_not_while_the_estimate_could_not_tell(self, world, config):

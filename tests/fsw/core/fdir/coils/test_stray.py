@@ -28,6 +28,7 @@ from fsw.core.estimation import mekf
 from fsw.core.fdir.coils import stray
 from fsw.core.fdir.coils.effects import solve
 from fsw.core.fdir.coils.explanations import STRAY, Solution, weak_by_pulses
+from fsw.core.fdir.coils.health import NONE_OLDER
 from fsw.core.fdir.coils.stray import conducting
 
 
@@ -52,7 +53,7 @@ def test_the_coil_that_conducts_is_told_from_the_sun_alone(coil, sign):
     estimate, _ = fly_stray(scale(sign, AXES[coil]))
     _, solution = solve(estimate, CONFIG)
     assert conducting(solution) == (coil if sign > 0.0 else None), "the sign of the current is estimate"
-    assert weak_by_pulses(solution, ZERO, WEAK) is None
+    assert weak_by_pulses(solution, NONE_OLDER, WEAK) is None
 
 
 @pytest.mark.parametrize(

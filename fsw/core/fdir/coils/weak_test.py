@@ -1,0 +1,125 @@
+"""The question that decides about a coil, and what its pulses say to it: is it weak, or sound?
+
+A coil that does a part of its effect does that part at every pulse. So its pulses count by the part on which
+they agree, not each by the one that suits it: pulses that contradict each other prove little.
+"""
+
+from math import sqrt
+from typing import NamedTuple
+
+from fsw.core.estimation.mekf_config import MekfConfig
+from fsw.core.fdir.evidence import SIGMAS
+
+MODEL_ERROR = 0.05
+"""Relative uncertainty of a coil's effect that no measurement takes away."""
+MOST = 0.6
+"""Part of the threshold that a pulse weighs at most: one isolates no coil, two that agree do."""
+REVERSED = -1.0
+"""Least part of its effect that a coil can do."""
+
+
+class WeakTest(NamedTuple):
+    """The question that decides about a coil: is it weak, or sound?
+
+    ``weak_part`` of the nominal current or effect is the most that is weak, ``sound_part`` the least that the
+    bound of the coils' gains allows; evidence of ``threshold``, nats, isolates a coil.
+    """
+
+    weak_part: float
+    sound_part: float
+    threshold: float
+
+    def nats(self, part: float, variance: float) -> float:
+        """What a measured part weighs against the coil: the likeliest weak against the likeliest sound one.
+
+        (sound - part)^2 / 2 sigma^2 below what is sound, less (part - weak)^2 / 2 sigma^2 above what is weak,
+        or the like below what the most that is reversed does.
+        """
+        lacks, exceeds = max(0.0, self.sound_part - part), max(0.0, part - self.weak_part, REVERSED - part)
+        return (lacks**2 - exceeds**2) / (2.0 * variance)
+
+
+def weak_test(weak_part: float, threshold: float, mekf: MekfConfig) -> WeakTest:
+    """The test by the filter's prior of the gains: a sound coil lacks less than is credible of it.
+
+    Args:
+        weak_part: the most that is weak.
+        threshold: of the evidence.
+        mekf: the filter.
+    """
+    place = mekf.layout.coils
+    variance = 0.0 if place is None else float(mekf.initial_covariance[place, place].diagonal()[::4].max())
+    deviation = SIGMAS * sqrt(variance + MODEL_ERROR**2)
+    return WeakTest(weak_part, max(weak_part, 1.0 - deviation), threshold)
+
+
+class PartSum(NamedTuple):
+    """Pulses of a coil: how many, and the sums of w, w p and w p^2, w being the weight of a part p."""
+
+    pulses: int = 0
+    weight: float = 0.0
+    weighted: float = 0.0
+    squares: float = 0.0
+
+    def nats(self, test: WeakTest) -> float:
+        """What they weigh against the coil by their mean part.
+
+        Less half of what their chi square about it exceeds their number.
+        """
+        if not self.weight > 0.0:
+            return 0.0
+        mean = self.weighted / self.weight
+        nats = test.nats(mean, 1.0 / self.weight)
+        scatter = max(0.0, self.squares - mean * self.weighted - self.pulses)
+        return max(0.0, nats - 0.5 * scatter) if nats > 0.0 else nats
+
+    def plus(self, more: "PartSum") -> "PartSum":
+        """With more pulses."""
+        return PartSum(
+            self.pulses + more.pulses,
+            self.weight + more.weight,
+            self.weighted + more.weighted,
+            self.squares + more.squares,
+        )
+
+    def scaled(self, part: float) -> "PartSum":
+        """As if there had been only so many."""
+        return PartSum(
+            round(part * self.pulses), part * self.weight, part * self.weighted, part * self.squares
+        )
+
+
+NO_PULSES = PartSum()
+
+
+def pulse(part: float, variance: float, test: WeakTest) -> PartSum:
+    """One pulse, by its variance; but no pulse weighs more than ``MOST`` by itself."""
+    nats, most = abs(test.nats(part, variance)), MOST * test.threshold
+    weight = (most / nats if nats > most else 1.0) / variance
+    return PartSum(1, weight, weight * part, weight * part**2)
+
+
+class Older(NamedTuple):
+    """What is left of pulses that are traced no longer: what they show, and ``kept`` from a fault before."""
+
+    parts: PartSum = NO_PULSES
+    kept: float = 0.0
+
+    def nats(self, test: WeakTest) -> float:
+        """What all of it weighs against the coil."""
+        return self.kept + self.parts.nats(test)
+
+    def with_pulses(self, more: PartSum) -> "Older":
+        """With more pulses."""
+        return Older(self.parts.plus(more), self.kept)
+
+    def bounded(self, test: WeakTest) -> "Older":
+        """Nothing, once nothing speaks against the coil; at most the threshold, so that good pulses count."""
+        nats = self.nats(test)
+        if nats <= 0.0:
+            return NOTHING_OLDER
+        part = min(1.0, test.threshold / nats)
+        return Older(self.parts.scaled(part), part * self.kept) if part < 1.0 else self
+
+
+NOTHING_OLDER = Older()

@@ -1,0 +1,34 @@
+"""What is known of a coil after the pulses that showed it: kept with them, forgotten with them."""
+
+import pytest
+from pulse_samples import B_ECI_T, CONFIG, EVERY, PULSES, WEAK, fly
+
+from fsw.core.actuation.actuator import CoilView
+from fsw.core.estimation.estimator import EstimatorState
+from fsw.core.fdir.coils.health import NONE_OLDER, CoilHealth, CoilHealthConfig
+from fsw.core.fdir.coils.torques import judge_effect
+from fsw.core.fdir.coils.weak_test import Older, PartSum
+
+HEALTH = CoilHealth(older=(Older(PartSum(2, 30.0, 9.0, 2.7)), Older(kept=1.0), Older()))
+LIMITS = CoilHealthConfig((40.0, 120.0, 400.0), WEAK, 1.0, 5, PULSES, CONFIG, 3000)
+
+
+def judged(estimate):
+    """The health when the next pulse is due."""
+    view = CoilView(fired_tick=1000 - EVERY)
+    return judge_effect(HEALTH, view, B_ECI_T, EstimatorState(estimate), 1000, 0.7, False, LIMITS)
+
+
+def test_pulses_that_no_fault_of_a_coil_explains_take_what_was_known_before_with_them():
+    contradictory, _ = fly([0, 1, 0, 1], [0.2, 0.2, 1.6, 1.6])
+    health, state = judged(contradictory)
+    assert state.estimate.trace is None
+    assert health == HEALTH._replace(older=NONE_OLDER)
+
+
+@pytest.mark.parametrize("parts", [(1.0, 1.0, 1.0, 1.0), (0.9, 1.0, 0.9, 1.0)])
+def test_pulses_that_are_explained_leave_it(parts):
+    explained, _ = fly([0, 1, 0, 1], parts)
+    health, state = judged(explained)
+    assert state.estimate.trace is not None
+    assert health == HEALTH
