@@ -33,7 +33,8 @@ class Standing(IntEnum):
     """What is thought of both sensors together.
 
     ``NEW``: no estimate has been proven yet. ``TRUSTED``: this one has. ``DISPUTED``: one sensor is wrong,
-    and nothing shows which. ``ON_TRIAL``: they have agreed since, and the estimate is still to be proven.
+    and nothing shows which. ``ON_TRIAL``: they have agreed since, or a trusted estimate has contradicted them
+    until it ended; the new one is still to be proven.
     """
 
     NEW = 0
@@ -122,7 +123,7 @@ def judge(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: Cre
     if standing is not Standing.DISPUTED and proof >= threshold:
         standing = Standing.TRUSTED
     elif standing is Standing.TRUSTED and (seen.estimate is None or seen.begun):
-        standing = Standing.NEW
+        standing = Standing.ON_TRIAL if pair.owed else Standing.NEW
     blind_ticks = 0 if seen.used.field or seen.used.sun else pair.blind_ticks + 1
     owed = _owed(pair.owed, blind_ticks, seen, weights)
     lost = owed > 0.0 and seen.used.field and seen.used.sun and not seen.sound

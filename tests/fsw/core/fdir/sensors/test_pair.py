@@ -90,6 +90,14 @@ class TestProof:
         ticks, _ = ticks_until(begun, TAKEN, Standing.TRUSTED)
         assert 120 < ticks < 140
 
+    @pytest.mark.parametrize("seen", [WITHOUT, BEGUN], ids=["without one", "with another"])
+    def test_where_it_had_contradicted_them_until_it_ended_the_next_is_on_trial(self, seen):
+        """One of them may be wrong, and what begins with both then agrees with the wrong one."""
+        lagged = after(TRUSTED._replace(owed=0.3), seen)
+        assert lagged.standing is Standing.ON_TRIAL
+        ticks, _ = ticks_until(after(lagged, BEGUN), TAKEN, Standing.TRUSTED)
+        assert 480 < ticks < 560
+
     def test_without_a_sample_or_with_the_field_alone_nothing_begins(self):
         for used in (Used(False, False, True), Used(True, False, False)):
             assert after(TRUSTED, BEGUN._replace(used=used)).standing is Standing.TRUSTED
