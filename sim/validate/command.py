@@ -45,11 +45,11 @@ def validate(
         The exit code: 1 if a claim fails, else 0.
 
     Raises:
-        HarnessError: reference data are malformed, an id is unknown, or the page cannot be written.
+        HarnessError: reference data are malformed or missing, an id is unknown, the page cannot be written.
     """
     began = time.monotonic()
     repository = find_repository(Path.cwd())
-    studies = reference.studies(folder) if folder is not None else all_studies(repository, satellites)
+    studies = reference.studies(folder) if folder is not None else all_studies(satellites)
     studies = choose_studies(studies, only, quick)
     whole = folder is None and not only and not quick and satellites is None
     page = out or (_default_page(repository) if whole else None)
@@ -62,6 +62,9 @@ def validate(
         for study in finished:
             _print(study)
     outcomes = [outcome for study in finished for outcome in study.outcomes]
+    if all(outcome.verdict is ClaimVerdict.ABSENT for outcome in outcomes):
+        names = ", ".join(outcome.claim.source for outcome in outcomes)
+        raise HarnessError(f"nothing was checked: {folder} does not hold {names}")
     wall_s = time.monotonic() - began
     if page is not None:
         _write(page, render(finished, wall_s))

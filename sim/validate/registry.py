@@ -8,15 +8,15 @@ from sim.errors import HarnessError
 from sim.validate import computed, microsat, population, posat1
 from sim.validate.reference import reference
 
-REFERENCE_FOLDER = Path("tests", "reference")
 
+def all_studies(satellites: int | None = None) -> list[Study]:
+    """All studies. ``satellites``: at most, of each population.
 
-def all_studies(repository: Path | None, satellites: int | None = None) -> list[Study]:
-    """All studies; reference data are only in the repository. ``satellites``: at most, of each population."""
-    folder = None if repository is None else repository / REFERENCE_FOLDER
-    checks = reference.studies(folder) if folder is not None and folder.is_dir() else reference.absent()
+    Raises:
+        HarnessError: reference data that ship are missing.
+    """
     return [
-        *checks,
+        *reference.shipped_studies(),
         *computed.studies(),
         *posat1.studies(),
         *microsat.studies(),

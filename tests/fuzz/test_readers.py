@@ -33,6 +33,7 @@ from sim.fault_table.rows import ROWS
 from sim.report import conclude
 from sim.scenario.schema import load
 from sim.validate.reference.reference import CHECKS, ELEMENTS
+from sim.validate.reference.reference_table import DATA
 from torquer.cli.main import main
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -357,7 +358,7 @@ def write(path, text):
 @pytest.mark.parametrize("pattern", [*CHECKS, ELEMENTS])
 def test_reference_data(mutated, tmp_path, pattern):
     """The first rows of each file; the header is of the check, so that it is altered too."""
-    whole = sorted((ROOT / "tests" / "reference").glob(pattern))[-1]
+    whole = sorted(DATA.glob(pattern))[-1]
     lines = whole.read_bytes().splitlines(keepends=True)
     names = next((place for place, line in enumerate(lines) if not line.startswith(b"#")), 0)
     head = b"".join(lines[: names + 4])

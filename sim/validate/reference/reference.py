@@ -21,7 +21,7 @@ from sim.validate.reference import (
     triad_check,
 )
 from sim.validate.reference.comparison import ReferenceComparison
-from sim.validate.reference.reference_table import ReferenceTable
+from sim.validate.reference.reference_table import DATA, ReferenceTable
 
 Check = Callable[[ReferenceTable], Iterator[ReferenceComparison]]
 
@@ -63,9 +63,15 @@ def studies(folder: Path) -> list[Study]:
     return [study for pattern in patterns for study in _studies(pattern, files[pattern])]
 
 
-def absent() -> list[Study]:
-    """The studies without a folder: all formats are absent."""
-    return [study for pattern in [*CHECKS, ELEMENTS] for study in _studies(pattern, [])]
+def shipped_studies(folder: Path = DATA) -> list[Study]:
+    """The checks of the reference files that ship.
+
+    Raises:
+        HarnessError: one of the formats is missing there.
+    """
+    if missing := [pattern for pattern in [*CHECKS, ELEMENTS] if not any(folder.glob(pattern))]:
+        raise HarnessError(f"{folder}: the reference data are not installed: {', '.join(missing)}")
+    return studies(folder)
 
 
 def check_file(path: Path, pattern: str) -> FileResult:

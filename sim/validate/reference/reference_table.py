@@ -16,6 +16,9 @@ Array = NDArray[np.float64]
 
 MOST_BYTES = 16_000_000
 
+DATA = Path(__file__).with_name("data")
+"""The reference files that ship; its README.md says what made each."""
+
 _LABELS = ("case", "name", "kind", "utc_iso", "t_s")
 """Columns that identify a row for a reader."""
 

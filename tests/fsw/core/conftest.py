@@ -6,9 +6,9 @@ import pytest
 
 from fsw.core.orbit.propagation import sgp4_orbit
 from fsw.wire.messages import Element, TcOrbitElement
+from sim.validate.reference.reference_table import DATA
 
 ROOT = Path(__file__).resolve().parents[3]
-REFERENCE = ROOT / "tests" / "reference"
 
 
 def unix_of(utc_iso):
@@ -27,7 +27,7 @@ def reference_rows():
     """Rows of a reference table as dictionaries of text, with ``unix_s`` added."""
 
     def rows(name):
-        lines = (REFERENCE / name).read_text(encoding="utf-8").splitlines()
+        lines = (DATA / name).read_text(encoding="utf-8").splitlines()
         table = list(csv.DictReader(line for line in lines if not line.startswith("#")))
         return [row | {"unix_s": unix_of(row["utc_iso"])} for row in table]
 
@@ -74,7 +74,7 @@ def tle():
     """Element lines by satellite name."""
     lines = [
         line
-        for line in (REFERENCE / "tle.txt").read_text(encoding="utf-8").splitlines()
+        for line in (DATA / "tle.txt").read_text(encoding="utf-8").splitlines()
         if line and not line.startswith("#")
     ]
     return {lines[i]: (lines[i + 1], lines[i + 2]) for i in range(0, len(lines), 3)}

@@ -13,9 +13,10 @@ from sim.design import command
 from sim.design.theory.floquet import degree_of_stability, monodromy
 from sim.design.theory.linear import Gains, closed_loop
 from sim.scenario.schema import load
+from sim.validate.reference.reference_table import DATA
 from torquer.cli.main import main
 
-REFERENCE = Path(__file__).parents[2] / "reference" / "floquet.csv"
+REFERENCE = DATA / "floquet.csv"
 
 
 @pytest.fixture

@@ -2,7 +2,6 @@
 
 import csv
 from math import radians
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -22,8 +21,7 @@ from sim.plant.config import (
 from sim.plant.plant import Plant
 from sim.plant.rotation import from_vector
 from sim.plant.sensor_config import MagnetometerConfig, SunSensorConfig
-
-REFERENCE = Path(__file__).parents[2] / "reference"
+from sim.validate.reference.reference_table import DATA
 
 
 class Reference(NamedTuple):
@@ -47,7 +45,7 @@ class Reference(NamedTuple):
 @pytest.fixture(scope="session")
 def reference():
     def read(name):
-        lines = (REFERENCE / name).read_text().splitlines()
+        lines = (DATA / name).read_text().splitlines()
         comments = [line.removeprefix("# ") for line in lines if line.startswith("#")]
         return Reference(comments, list(csv.DictReader(line for line in lines if not line.startswith("#"))))
 
@@ -57,7 +55,7 @@ def reference():
 @pytest.fixture(scope="session")
 def elements():
     """Two-line elements by name."""
-    lines = [line for line in (REFERENCE / "tle.txt").read_text().splitlines() if not line.startswith("#")]
+    lines = [line for line in (DATA / "tle.txt").read_text().splitlines() if not line.startswith("#")]
     return {lines[i]: (lines[i + 1], lines[i + 2]) for i in range(0, len(lines), 3)}
 
 

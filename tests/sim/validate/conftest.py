@@ -1,11 +1,10 @@
 """Copies of the reference files, cut short and spoiled where a test says so."""
 
 import shutil
-from pathlib import Path
 
 import pytest
 
-REFERENCE = Path(__file__).parents[2] / "reference"
+from sim.validate.reference.reference_table import DATA
 
 
 class Folder:
@@ -16,7 +15,7 @@ class Folder:
 
     def copy(self, name, rows=None, as_name=None):
         """A copy, cut to so many rows."""
-        lines = (REFERENCE / name).read_text().splitlines()
+        lines = (DATA / name).read_text().splitlines()
         first = next((i for i, line in enumerate(lines) if not line.startswith("#")), 0)
         kept = lines if rows is None else lines[: first + 1 + rows]
         target = self.path / (as_name or name)
@@ -55,7 +54,7 @@ def folder(tmp_path):
 @pytest.fixture
 def whole_folder(folder):
     """Every reference file, cut to a few rows where rows cost time."""
-    for path in sorted(REFERENCE.iterdir()):
+    for path in sorted(DATA.iterdir()):
         if path.name.startswith("attitude"):
             folder.copy(path.name, rows=8)
         else:

@@ -4,6 +4,7 @@ import pytest
 from click.testing import CliRunner
 
 from sim.validate import command
+from sim.validate.reference import reference
 from torquer.cli.main import main
 
 
@@ -38,6 +39,19 @@ class TestCommand:
         expected = f"torquer: {folder.path / 'eclipse.csv'}, line {line_number}, column sun_x_km: 'far'"
         assert result.stderr == f"{expected} is no finite number\n"
 
+    def test_nothing_to_check_by_is_exit_code_2(self, folder, monkeypatch):
+        folder.copy("eclipse.csv", rows=4)
+        page = folder.path / "page.md"
+        one = self.call("--reference", folder.path, "--only", "reference.igrf14", "--out", page)
+        assert (one.exit_code, one.stderr.count("\n")) == (2, 1)
+        assert f"nothing was checked: {folder.path} does not hold igrf14.csv" in one.stderr
+        assert not page.exists()
+        monkeypatch.setattr(reference.shipped_studies, "__defaults__", (folder.path,))
+        for words in ((), ("--only", "reference")):
+            bare = self.call(*words)
+            assert (bare.exit_code, bare.stderr.count("\n")) == (2, 1)
+            assert "the reference data are not installed: igrf14.csv, earth_sun.csv, att" in bare.stderr
+
     @pytest.mark.parametrize("words", [("--reference", "nowhere"), ("--only", "nothing"), ("--workers", "0")])
     def test_what_cannot_be_done_is_exit_code_2(self, words):
         result = self.call(*words)
@@ -47,7 +61,7 @@ class TestCommand:
 
     def test_only_a_whole_validation_writes_the_page_by_itself(self, tmp_path, monkeypatch, study):
         parts = [study("a", [1.0]), study("b", [2.0], has_flights=True)]
-        monkeypatch.setattr(command, "all_studies", lambda repository, satellites: parts)
+        monkeypatch.setattr(command, "all_studies", lambda satellites: parts)
         monkeypatch.setattr(command, "find_repository", lambda start: tmp_path)
         page = tmp_path / "docs" / "validation.md"
         for words in (["--quick"], ["--only", "a"]):

@@ -2,7 +2,6 @@
 
 import csv
 from math import inf, nan
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,6 +16,7 @@ from fsw.core.estimation.parameters import NAMES, NOTHING, Parameters
 from sim.plant.dynamics import torques
 from sim.plant.dynamics.rigid_body import Motion, RigidBody
 from sim.plant.environment.surroundings import Surroundings
+from sim.validate.reference.reference_table import DATA
 
 SLOW = (0.0011, -0.0009, 0.0013)
 """A rate of flight, 0.1 deg/s."""
@@ -207,7 +207,7 @@ class TestUpdate:
         np.testing.assert_array_equal(config.initial_covariance, prior)
 
 
-REFERENCE = Path(__file__).parents[3] / "reference" / "triad_mekf.csv"
+REFERENCE = DATA / "triad_mekf.csv"
 
 
 def reference_cases():

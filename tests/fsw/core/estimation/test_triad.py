@@ -2,7 +2,6 @@
 
 import csv
 from math import degrees, radians
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,8 +10,9 @@ from scipy.spatial.transform import Rotation
 from fsw.core.algebra.quaternion import conjugate, multiply, normalise, rotate
 from fsw.core.algebra.vector import add, cross, norm, scale, unit
 from fsw.core.estimation.triad import consistent, triad
+from sim.validate.reference.reference_table import DATA
 
-REFERENCE = Path(__file__).parents[3] / "reference" / "triad_mekf.csv"
+REFERENCE = DATA / "triad_mekf.csv"
 TOLERANCE_RAD = 1e-9
 """As the reference states."""
 

@@ -1,13 +1,13 @@
 """Bodies and reference multipliers for the design tests."""
 
 import csv
-from pathlib import Path
 
 import pytest
 
 from sim.design.theory.bodies import Body, diagonal
+from sim.validate.reference.reference_table import DATA
 
-REFERENCE = Path(__file__).parents[3] / "reference" / "floquet.csv"
+REFERENCE = DATA / "floquet.csv"
 
 
 def reference_rows():
