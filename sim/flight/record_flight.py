@@ -85,6 +85,7 @@ def record_flight(
     plant = make_plant(plant_config(scenario, run["seed"]), scenario.fault)
     pace = Pace(run["pace_factor"])
     senders = SenderWatch(lockstep=pace.factor is None)
+    identity = run_dir.identity(scenario, run["seed"])
 
     def store_senders() -> None:
         run_dir.update(path, second_senders=[sender.as_json() for sender in senders.found])
@@ -96,7 +97,7 @@ def record_flight(
     try:
         with (
             BusLog(path / log_name, bus.name) as log,
-            TruthFile(path / run_dir.TRUTH, run["ticks"], plant.torque_sources) as truth,
+            TruthFile(path / run_dir.TRUTH, run["ticks"], plant.torque_sources, identity) as truth,
         ):
             outcome = fly(
                 plant,

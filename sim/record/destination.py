@@ -1,5 +1,6 @@
 """Checks that results can be written, made before anything is computed, so that no work is lost."""
 
+import errno
 import os
 from collections.abc import Sequence
 from pathlib import Path
@@ -7,6 +8,9 @@ from tempfile import TemporaryFile
 
 from fsw.input.regular_file import check_regular
 from sim.errors import HarnessError
+
+_NOT_SUPPORTED = (errno.EBADF, errno.EINVAL, errno.EOPNOTSUPP)
+"""Errors of a file system that allocates no space in advance; it is then allocated as it is written."""
 
 
 def check_folder(folder: Path, names: Sequence[str] = ()) -> None:
@@ -33,6 +37,23 @@ def check_file(path: Path) -> None:
     """
     check_folder(path.parent)
     _check_target(path)
+
+
+def allocate(path: Path, size: int) -> None:
+    """Allocate the space of a file of histories on the disk.
+
+    Raises:
+        HarnessError: the disk has not enough.
+    """
+    try:
+        with path.open("ab") as file:
+            os.posix_fallocate(file.fileno(), 0, size)
+    except OSError as error:
+        if error.errno in _NOT_SUPPORTED:
+            return
+        raise HarnessError(
+            f"{path}: histories of this length need {size / 1e6:.1f} MB: {error.strerror}"
+        ) from None
 
 
 def _check_target(path: Path) -> None:

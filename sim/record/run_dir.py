@@ -138,6 +138,18 @@ def replace_file(path: Path, content: bytes) -> None:
     temporary.replace(path)
 
 
+def identity(scenario: Scenario, seed: int) -> dict[str, int | str]:
+    """What identifies a flight in files that may leave its directory."""
+    return {
+        "scenario": scenario.name,
+        "seed": seed,
+        "epoch_utc": datetime.fromtimestamp(scenario.epoch_unix_s, UTC).isoformat(),
+        "epoch_unix_s": scenario.epoch_unix_s,
+        "tick_hz": scenario.time.tick_hz,
+        "torquer_version": version("torquer"),
+    }
+
+
 def locate(run_or_log: Path) -> tuple[Path, Path]:
     """(log, folder) of a run directory or of a log file.
 

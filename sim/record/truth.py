@@ -5,12 +5,10 @@ only rows change, never the structure, so that a process killed at any moment le
 the space is allocated at once, so that a disk that is too small is found before the flight.
 """
 
-import errno
-import os
 import re
 import time
 from array import array
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from itertools import chain, islice
 from pathlib import Path
@@ -24,6 +22,7 @@ from numpy.typing import NDArray
 from fsw.input.regular_file import check_regular
 from sim.errors import HarnessError
 from sim.plant.plant import TruthRow
+from sim.record.destination import allocate
 
 BLOCK_ROWS = 1024
 BLOCK_S = 0.5
@@ -31,6 +30,8 @@ BLOCK_S = 0.5
 ROOM_FOR_STRUCTURE = 8192
 
 Histories = dict[str, NDArray[np.float64]]
+Attributes = Mapping[str, int | str]
+"""What identifies the flight: scenario, seed, epoch, tick rate, version."""
 
 COLUMNS: tuple[tuple[str, int, str, str], ...] = (
     ("t_s", 1, "s", "time since tick 0"),
@@ -48,14 +49,23 @@ COLUMNS: tuple[tuple[str, int, str, str], ...] = (
 class TruthFile:
     """Writes one row per tick, in blocks: a kill leaves whole rows, at most a block short.
 
+    Args:
+        path: of the file.
+        ticks: rows that it will have.
+        torque_sources: names of the torques.
+        attributes: of the file.
+
     Raises:
         HarnessError: the disk cannot hold the histories of so many ticks.
     """
 
-    def __init__(self, path: Path, ticks: int, torque_sources: tuple[str, ...]) -> None:
+    def __init__(
+        self, path: Path, ticks: int, torque_sources: tuple[str, ...], attributes: Attributes | None = None
+    ) -> None:
         self._columns = sum(width for _, width, *_ in COLUMNS) + 3 * len(torque_sources)
-        _allocate(path, 8 * ticks * self._columns + ROOM_FOR_STRUCTURE)
+        allocate(path, 8 * ticks * self._columns + ROOM_FOR_STRUCTURE)
         self._file = h5py.File(path, "w", libver="earliest")
+        self._file.attrs.update(attributes or {})
         torques = tuple(
             (f"torque_body_nm/{source}", 3, "N m", f"torque by {source}, body axes")
             for source in torque_sources
@@ -72,7 +82,7 @@ class TruthFile:
         self._written = 0
         self._written_s = time.monotonic()
         self._file.flush()
-        _allocate(path, path.stat().st_size)
+        allocate(path, path.stat().st_size)
 
     def append(self, row: TruthRow) -> None:
         """Add the row of the next tick."""
@@ -105,27 +115,6 @@ class TruthFile:
     ) -> None:
         self.flush()
         self._file.close()
-
-
-_NOT_SUPPORTED = (errno.EBADF, errno.EINVAL, errno.EOPNOTSUPP)
-"""Errors of a file system without this call; the space is then allocated as it is written."""
-
-
-def _allocate(path: Path, size: int) -> None:
-    """Allocate the space of a file on the disk.
-
-    Raises:
-        HarnessError: the disk has not enough.
-    """
-    try:
-        with path.open("ab") as file:
-            os.posix_fallocate(file.fileno(), 0, size)
-    except OSError as error:
-        if error.errno in _NOT_SUPPORTED:
-            return
-        raise HarnessError(
-            f"{path}: histories of this length need {size / 1e6:.1f} MB: {error.strerror}"
-        ) from None
 
 
 LARGEST = 1e15
@@ -185,6 +174,8 @@ class TruthReader:
         try:
             with self._damage_told():
                 self._names = _names(self._file, path.stat().st_size)
+                self.attributes: dict[str, object] = dict(self._file.attrs)
+                """What identifies the flight; none in a file of an older version."""
             self.complete = 0 if being_written else self._complete_rows()
             """Rows before the first that is not whole."""
         except HarnessError:

@@ -2,6 +2,8 @@
 
 import hashlib
 import json
+from datetime import UTC, datetime
+from importlib.metadata import version
 from math import inf, nan
 
 import pytest
@@ -15,7 +17,7 @@ from sim.flight.record_flight import MOST_TICKS, check_can_fly, check_plant, rec
 from sim.record import run_dir
 from sim.record.candump import read_log
 from sim.record.pace import LOCKSTEP
-from sim.record.truth import read_truth
+from sim.record.truth import TruthReader
 from sim.scenario.schema import load, orbit_period_s, parse_settings
 
 TICKS = 5
@@ -73,7 +75,16 @@ class TestRecord:
         assert (kept["flown"]["ticks"], kept["flown"]["slips"]) == (TICKS, 0)
         assert kept["digests"]["bus.log"] == hashlib.sha256(log.read_bytes()).hexdigest()
         assert "second_senders" not in kept or kept["second_senders"] == []
-        assert len(read_truth(path / "truth.h5")["t_s"]) == TICKS
+        with TruthReader(path / "truth.h5") as truth:
+            assert truth.complete == TICKS
+            assert truth.attributes == {
+                "scenario": "microsat",
+                "seed": 3,
+                "epoch_utc": datetime.fromtimestamp(scenario.epoch_unix_s, UTC).isoformat(),
+                "epoch_unix_s": scenario.epoch_unix_s,
+                "tick_hz": 1,
+                "torquer_version": version("torquer"),
+            }
         assert bus.closed
 
     def test_names_a_second_sender(self, run, bus_of):

@@ -144,6 +144,24 @@ def test_names_and_units_are_those_of_the_contract(tmp_path):
     }
 
 
+IDENTITY = {"scenario": "microsat", "seed": 2**64 - 1, "epoch_unix_s": 1742000000, "tick_hz": 10}
+
+
+def test_the_file_says_which_flight_it_is_of(tmp_path):
+    path = tmp_path / "truth.h5"
+    with TruthFile(path, 20, SOURCES, IDENTITY) as truth:
+        truth.append(row(0))
+    with TruthReader(path) as reader:
+        assert reader.attributes == IDENTITY
+    assert_rows(read_truth(path), 1)
+
+
+def test_a_file_without_that_is_read_as_before(tmp_path):
+    write(tmp_path / "truth.h5", 20, 20)
+    with TruthReader(tmp_path / "truth.h5") as reader:
+        assert (reader.attributes, reader.complete) == ({}, 20)
+
+
 def test_a_flush_cut_between_two_datasets_leaves_the_rows_that_are_whole(tmp_path):
     write(tmp_path / "truth.h5", 100, 60)
     with h5py.File(tmp_path / "truth.h5", "r+") as file:
