@@ -4,6 +4,7 @@ import sys
 
 import click
 
+from fsw.bus.open_bus import KINDS
 from fsw.input import command_line
 from fsw.input.error_text import error_text
 from fsw.input.schema import TableError
@@ -13,9 +14,7 @@ from fsw.table.table import load_flight_table
 
 @click.command()
 @click.option("--table", metavar="FILE", help="Onboard table to fly; default the one that ships.")
-@click.option(
-    "--bus", default="auto", show_default=True, help="auto, loop[:PORT], socketcan:NAME, slcan:PORT."
-)
+@click.option("--bus", default="auto", show_default=True, help=f"auto, {KINDS}.")
 @click.option("--disarmed", is_flag=True, help="Let no request to drive a coil get on the bus.")
 @click.option("--bench", is_flag=True, help="On a bench: no PLANT_END ends it.")
 @click.option("--parent", type=int, hidden=True)

@@ -1,1 +1,1 @@
-"""A node's way onto a bus: SocketCAN, the loop bus and serial adapters behind one small interface."""
+"""A node's way onto a bus: SocketCAN, loop bus, serial adapters, python-can behind one small interface."""

@@ -1,14 +1,18 @@
-"""Buses: one small interface over SocketCAN, the loop bus and serial adapters, opened by a spec.
+"""Buses: one small interface over SocketCAN, the loop bus, serial adapters and python-can, opened by a spec.
 
 | spec | bus | ``name`` |
 |---|---|---|
 | ``socketcan:NAME`` | a CAN interface of this Linux machine, such as vcan0 | NAME |
 | ``loop``, ``loop:PORT`` | frames over TCP on 127.0.0.1; whoever opens first hosts it | ``loop`` |
 | ``slcan:PORT`` | a serial CAN adapter (needs pyserial) | the port's last component |
+| ``can:INTERFACE:CHANNEL``, ``can`` | any other of python-can, by its configuration | that of the channel |
 | ``auto`` | ``socketcan:vcan0`` where it is up, else ``loop`` | |
 """
 
 from fsw.bus.interface import DEFAULT_LOOP_PORT, Bus, BusError
+
+KINDS = "loop[:PORT], socketcan:NAME, slcan:PORT, can:INTERFACE:CHANNEL"
+"""What a spec may be, besides ``auto``."""
 
 _AUTO_INTERFACE = "vcan0"
 
@@ -21,6 +25,10 @@ def resolve(spec: str) -> str:
     """
     kind, _, argument = spec.partition(":")
     match kind:
+        case "can":
+            from fsw.bus.python_can import resolve_python_can  # noqa: PLC0415  (loaded if it is used)
+
+            return resolve_python_can(argument)
         case "auto" if not argument:
             return resolve(f"socketcan:{_AUTO_INTERFACE}" if _interface_is_up(_AUTO_INTERFACE) else "loop")
         case "loop":
@@ -36,7 +44,7 @@ def resolve(spec: str) -> str:
                 "bus 'virtual' joins nodes of one process: it cannot be opened by a node of its own"
             )
         case _:
-            raise BusError(f"unknown bus '{spec}': use socketcan:NAME, loop, loop:PORT, slcan:PORT or auto")
+            raise BusError(f"unknown bus '{spec}': use {KINDS} or auto")
 
 
 def open_bus(spec: str) -> Bus:
@@ -45,7 +53,8 @@ def open_bus(spec: str) -> Bus:
     Raises:
         BusError: the spec is wrong, or the bus cannot be opened here.
     """
-    kind, _, argument = resolve(spec).partition(":")
+    resolved = resolve(spec)
+    kind, _, argument = resolved.partition(":")
     # Each kind is imported when it is opened: python-can alone takes longer than all the rest.
     if kind == "loop":
         from fsw.bus.link import LoopLink  # noqa: PLC0415  (loaded if it is used)
@@ -55,6 +64,10 @@ def open_bus(spec: str) -> Bus:
         from fsw.bus.socketcan import SocketCan  # noqa: PLC0415  (loaded if it is used)
 
         return SocketCan(argument)
+    if kind == "can":
+        from fsw.bus.python_can import open_python_can  # noqa: PLC0415  (loaded if it is used)
+
+        return open_python_can(resolved)
     from fsw.bus.slcan import open_slcan  # noqa: PLC0415  (loaded if it is used)
 
     return open_slcan(argument)

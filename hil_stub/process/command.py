@@ -6,7 +6,7 @@ from typing import TextIO
 import click
 
 from fsw.bus.interface import BusError
-from fsw.bus.open_bus import open_bus, resolve
+from fsw.bus.open_bus import KINDS, open_bus, resolve
 from fsw.wire.messages import MagField, SunVector
 from hil_stub.bench import (
     DEADMAN_MS,
@@ -25,9 +25,7 @@ from hil_stub.sensors.stimulus import Vec3, direction, scaled
 
 NT = 1e-9
 
-_bus = click.option(
-    "--bus", "spec", required=True, help="socketcan:NAME, loop, loop:PORT, slcan:PORT or auto."
-)
+_bus = click.option("--bus", "spec", required=True, help=f"auto, {KINDS}.")
 _tick_hz = click.option(
     "--tick-hz", type=click.IntRange(1, 1000), default=1, show_default=True, help="Ticks a second."
 )

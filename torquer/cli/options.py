@@ -9,6 +9,7 @@ from typing import ParamSpec
 import click
 
 from fsw.bus.interface import BusError
+from fsw.bus.open_bus import KINDS
 from fsw.input.error_text import error_text
 from fsw.input.schema import TableError
 from sim.errors import HarnessError
@@ -18,7 +19,7 @@ from sim.signals import EndedBySignal, raise_on_signals
 Parameters = ParamSpec("Parameters")
 
 SEEDS = click.IntRange(0, 2**64 - 1)
-BUSES = "auto, loop[:PORT], socketcan:NAME, slcan:PORT"
+BUSES = f"auto, {KINDS}"
 RUN_OR_LOG = click.argument("run_or_log", metavar="RUN|LOG", type=click.Path(path_type=Path))
 SETTINGS = click.option(
     "--set", "settings", multiple=True, metavar="KEY=VALUE", help="Override a key of the scenario."

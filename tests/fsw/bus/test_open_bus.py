@@ -34,7 +34,10 @@ def test_auto_is_vcan0_where_it_is_up_and_else_loop(monkeypatch, up, full):
 @pytest.mark.parametrize(
     ("spec", "says"),
     [
-        ("canopen:1", "unknown bus 'canopen:1': use socketcan:NAME, loop, loop:PORT, slcan:PORT or auto"),
+        (
+            "canopen:1",
+            "unknown bus 'canopen:1': use loop[:PORT], socketcan:NAME, slcan:PORT, can:INTERFACE:CHANNEL",
+        ),
         ("", "unknown bus ''"),
         ("auto:vcan1", "unknown bus 'auto:vcan1'"),
         ("socketcan", "names no interface"),
