@@ -1,21 +1,54 @@
-"""A progress bar on stderr where that is a terminal; elsewhere nothing."""
+"""What is shown on stderr while something runs: a bar on a terminal, a line in a notebook, and notes."""
 
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 Watch = Callable[[int], None]
 
+_SHOWN = ContextVar("shown", default=True)
+LINE_EVERY_S = 0.5
+"""Time between two states of the line in a notebook."""
+
+
+@contextmanager
+def shown(whether: bool) -> Iterator[None]:
+    """Whether progress and notes are shown in the block; of other threads nothing changes."""
+    before = _SHOWN.set(whether)
+    try:
+        yield
+    finally:
+        _SHOWN.reset(before)
+
+
+def note(text: str) -> None:
+    """A line on stderr."""
+    if _SHOWN.get():
+        print(text, file=sys.stderr, flush=True)
+
 
 @contextmanager
 def progress(what: str, total: int) -> Iterator[Watch]:
     """Yield a function to be called with the number of units done, of ``total``."""
-    if not sys.stderr.isatty():
+    if not _SHOWN.get():
         yield lambda done: None
-        return
+    elif sys.stderr.isatty():
+        with _bar(what, total) as watch:
+            yield watch
+    elif "ipykernel" in sys.modules:
+        with _line(what, total) as watch:
+            yield watch
+    else:
+        yield lambda done: None
+
+
+@contextmanager
+def _bar(what: str, total: int) -> Iterator[Watch]:
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -25,3 +58,19 @@ def progress(what: str, total: int) -> Iterator[Watch]:
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(what, total=total)
         yield lambda done: bar.update(task, completed=done)
+
+
+@contextmanager
+def _line(what: str, total: int) -> Iterator[Watch]:
+    """A line that is written over itself, as cells of notebooks show it."""
+    written_s = 0.0
+
+    def watch(done: int) -> None:
+        nonlocal written_s
+        if time.monotonic() - written_s >= LINE_EVERY_S:
+            written_s = time.monotonic()
+            print(f"\r{what}: {100.0 * done / max(total, 1):3.0f} %", end="", file=sys.stderr, flush=True)
+
+    yield watch
+    if written_s:
+        print(f"\r{what}: done ", file=sys.stderr, flush=True)

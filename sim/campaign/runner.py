@@ -10,6 +10,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing.process import BaseProcess
+from threading import current_thread, main_thread
 from typing import Any
 
 from sim.campaign.claim import ClaimOutcome, Study, Task
@@ -115,7 +116,13 @@ def _results(studies: Sequence[Study], workers: int) -> Iterator[tuple[int, int,
 
 @contextmanager
 def children_ignore_interrupt() -> Iterator[None]:
-    """Processes started in the block ignore Ctrl-C: this one ends them."""
+    """Processes started in the block ignore Ctrl-C: this one ends them.
+
+    Only the main thread can arrange for that; what another thread starts ignores it once it has begun.
+    """
+    if current_thread() is not main_thread():
+        yield
+        return
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         yield

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from threading import RLock
 from typing import Any
 
 import matplotlib
@@ -67,11 +68,14 @@ _STYLE: dict[Any, Any] = {
     "svg.hashsalt": "torquer",
 }
 
+SETTINGS = RLock()
+"""Held while the settings of matplotlib are changed: those of the whole process."""
+
 
 @contextmanager
 def style() -> Iterator[None]:
     """The look of the report, whatever the user's own matplotlib settings are; they are left as they were."""
-    with matplotlib.rc_context():
+    with SETTINGS, matplotlib.rc_context():
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(_STYLE)
         yield

@@ -7,6 +7,8 @@ from xml.etree import ElementTree
 import matplotlib
 from matplotlib.figure import Figure
 
+from sim.drawing.canvas import SETTINGS
+
 _NUMBER = frozenset("0123456789.-e")
 _UNUSED = frozenset(("metadata", "style"))
 _VERBATIM = frozenset(("id", "class", "xlink:href"))
@@ -25,7 +27,7 @@ def svg(figure: Figure, salt: str) -> str:
     """
     into = StringIO()
     nothing = {"Date": None, "Creator": None, "Format": None, "Type": None}
-    with matplotlib.rc_context({"svg.hashsalt": salt}):
+    with SETTINGS, matplotlib.rc_context({"svg.hashsalt": salt}):
         figure.savefig(into, format="svg", metadata=nothing)
     root = ElementTree.fromstring(into.getvalue())
     _simplify(root)

@@ -24,6 +24,8 @@ from sim.record import run_dir
 from sim.record.candump import last_lines
 from sim.scenario.schema import Scenario
 
+HOUSE = str(Path(__file__).parents[2])
+"""The folder that holds the packages of torquer."""
 POLL_S = 0.1
 GRACE_S = 5.0
 PATIENCE = Patience(boot_s=60.0, answer_s=ANSWER_TIMEOUT_S, silence_s=ANSWER_TIMEOUT_S)
@@ -145,10 +147,13 @@ def last_tick(path: Path, scenario: Scenario) -> int:
 def start_node(module: str, *arguments: str, **pipes: int) -> subprocess.Popen[bytes]:
     """Start a node as a process of the same code. Ctrl-C reaches this process only, which ends its nodes.
 
+    Its packages are found where this process has found them, whatever the current directory holds.
+
     ``pipes``: of ``stdin``, ``stdout`` and ``stderr``, as ``subprocess`` takes them.
     """
     words = [sys.executable, "-m", module, *arguments]
-    path = {"PYTHONPATH": os.pathsep.join(sys.path), "PYTHONSAFEPATH": "1"}  # not from the current directory
+    folders = [*filter(None, sys.path), HOUSE]
+    path = {"PYTHONPATH": os.pathsep.join(folders), "PYTHONSAFEPATH": "1"}
     environment = {**os.environ, **path, "OPENBLAS_NUM_THREADS": "1"}
     popen: subprocess.Popen[bytes] = subprocess.Popen(
         words,

@@ -1,5 +1,6 @@
 """The virtual bus: plant and flight software in one process, the same frames in an in-process queue."""
 
+import gc
 import time
 from collections import deque
 from collections.abc import Sequence
@@ -40,6 +41,9 @@ class VirtualBus:
 
 
 def fly_virtual(path: Path, scenario: Scenario, watch: ProgressCallback) -> None:
-    """Fly with plant and flight software in this process."""
+    """Fly with plant and flight software in this process, whose garbage is collected again afterwards."""
     node = FlightNode(flight_config(flight_table(scenario)))
-    record_flight(path, scenario, VirtualBus(node), watch, alone=True)
+    try:
+        record_flight(path, scenario, VirtualBus(node), watch, alone=True)
+    finally:
+        gc.unfreeze()

@@ -2,12 +2,16 @@
 
 import multiprocessing
 import os
+import signal
+import sys
 from collections import Counter, deque
 from collections.abc import Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from dataclasses import dataclass
 from threading import Thread
+from types import ModuleType
 
 from sim.campaign.one_run import RunTask, lost_run
 from sim.campaign.results.row import RunRow
@@ -53,7 +57,7 @@ class Processes:
             try:
                 while waiting or flying:
                     while waiting and len(flying) < (1 if losses[waiting[0]] else HANDED_OUT * workers):
-                        with children_ignore_interrupt():
+                        with children_ignore_interrupt(), _without_script():
                             flying[pool.submit(task.fly, waiting[0])] = waiting[0]
                         waiting.popleft()
                     for future in wait(flying, return_when=FIRST_COMPLETED).done:
@@ -66,8 +70,20 @@ class Processes:
                 end_children(others)  # breaks the pool, which is then joined
 
 
+@contextmanager
+def _without_script() -> Iterator[None]:
+    """Processes started in the block do not run the script of this one: it may lack a ``__main__`` guard."""
+    script = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = script
+
+
 def _begin_worker() -> None:
     """End this worker when the campaign's process has ended, even by SIGKILL: nobody waits for its rows."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = multiprocessing.parent_process()
     assert parent is not None
 

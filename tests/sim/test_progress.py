@@ -1,0 +1,54 @@
+"""What is shown on stderr while something runs."""
+
+import sys
+from io import StringIO
+from threading import Thread
+
+import pytest
+
+from sim import progress as module
+from sim.progress import note, progress, shown
+
+
+class Terminal(StringIO):
+    def isatty(self):
+        return True
+
+
+def written(monkeypatch, stream, show=True):
+    monkeypatch.setattr(sys, "stderr", stream)
+    with shown(show):
+        note("a note")
+        with progress("flying", 4) as watch:
+            for done in range(5):
+                watch(done)
+    return stream.getvalue()
+
+
+def test_notes_are_written_everywhere_and_a_bar_on_a_terminal(monkeypatch):
+    assert written(monkeypatch, StringIO()) == "a note\n"
+    assert "flying" in written(monkeypatch, Terminal())
+
+
+def test_a_notebook_has_a_line_that_is_written_over(monkeypatch):
+    monkeypatch.setitem(sys.modules, "ipykernel", sys)
+    monkeypatch.setattr(module, "LINE_EVERY_S", 0.0)
+    text = written(monkeypatch, StringIO())
+    assert "\rflying:  50 %" in text
+    assert text.endswith("\rflying: done \n")
+
+
+@pytest.mark.parametrize("stream", [StringIO, Terminal])
+def test_nothing_is_written_where_it_is_hidden(monkeypatch, stream):
+    assert written(monkeypatch, stream(), show=False) == ""
+
+
+def test_what_one_thread_hides_another_still_shows(monkeypatch):
+    stream = StringIO()
+    monkeypatch.setattr(sys, "stderr", stream)
+    with shown(False):
+        other = Thread(target=note, args=("of another thread",))
+        other.start()
+        other.join()
+        note("hidden")
+    assert stream.getvalue() == "of another thread\n"
