@@ -1,1 +1,83 @@
-"""Torquer for its users: the command line over flight software, boards and simulator."""
+"""Torquer for its users: magnetic attitude control flown, replayed, audited and designed.
+
+``torquer.fly("microsat", orbits=3)`` flies a scenario and gives its ``Run``; every function does what the
+command of its name does. What is not asked for is not loaded: ``import torquer`` is quick.
+"""
+
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from torquer.api.audit import Audit, check
+    from torquer.api.campaign import CampaignRuns, campaign
+    from torquer.api.design import Design, design
+    from torquer.api.errors import Error, InputError
+    from torquer.api.flight import fly, report
+    from torquer.api.replay import replay
+    from torquer.api.run import Run, load
+    from torquer.api.scenarios import scenarios
+
+_MODULES = {
+    "Audit": "audit",
+    "CampaignRuns": "campaign",
+    "Design": "design",
+    "Error": "errors",
+    "InputError": "errors",
+    "Run": "run",
+    "campaign": "campaign",
+    "check": "audit",
+    "design": "design",
+    "fly": "flight",
+    "load": "run",
+    "replay": "replay",
+    "report": "flight",
+    "scenarios": "scenarios",
+}
+"""Modules of ``torquer.api`` by what they hold."""
+
+__all__ = [
+    "Audit",
+    "CampaignRuns",
+    "Design",
+    "Error",
+    "InputError",
+    "Run",
+    "campaign",
+    "check",
+    "design",
+    "fly",
+    "load",
+    "replay",
+    "report",
+    "scenarios",
+]
+
+
+def __getattr__(name: str) -> object:
+    """A function or class of ``torquer.api``, loaded when it is first asked for."""
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    _check_packages()
+    found: object = getattr(import_module(f"torquer.api.{_MODULES[name]}"), name)
+    globals()[name] = found
+    return found
+
+
+def __dir__() -> list[str]:
+    return __all__
+
+
+def _check_packages() -> None:
+    """The packages that torquer is made of are those beside it.
+
+    Raises:
+        ImportError: another one of the same name comes first, such as a folder of the user's.
+    """
+    house = Path(__file__).resolve().parents[1]
+    for name in ("fsw", "hil_stub", "sim"):
+        spec = find_spec(name)
+        found = Path(spec.origin).resolve().parent if spec and spec.origin else None
+        if found != house / name:
+            raise ImportError(f"torquer needs {house / name}, but {found} comes first on sys.path: rename it")

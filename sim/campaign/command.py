@@ -5,12 +5,10 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
-
-import click
 
 from fsw.input.schema import Nested
 from sim.campaign.definition.campaign import FILE, SCENARIO, Campaign
@@ -19,12 +17,12 @@ from sim.campaign.executors.cluster import Cluster
 from sim.campaign.executors.interface import Executor
 from sim.campaign.executors.processes import Processes
 from sim.campaign.one_run import Keep, RunTask
+from sim.campaign.report.analysis import CampaignAnalysis, analyse
 from sim.campaign.results.row import RunRow, Status
 from sim.campaign.results.store import LOCK, RESULTS, Results, open_results
 from sim.errors import HarnessError
-from sim.progress import progress
+from sim.progress import note, progress
 from sim.record.destination import check_folder
-from sim.scenario.schema import parse_settings
 from sim.signals import EndedBySignal
 
 PAGE, PARQUET = "campaign.html", "results.parquet"
@@ -32,32 +30,63 @@ LINE_EVERY_S = 60.0
 """Time between two lines of progress where there is no bar."""
 
 
+@dataclass(frozen=True, slots=True)
+class FlownCampaign:
+    """A campaign whose runs have been flown.
+
+    Attributes:
+        folder: it holds results and page.
+        campaign: as it was flown.
+        analysis: the statistics of its runs.
+        failed: runs that have no result.
+        broken: runs that broke the limits of the coils.
+    """
+
+    folder: Path
+    campaign: Campaign
+    analysis: CampaignAnalysis
+    failed: tuple[int, ...]
+    broken: tuple[int, ...]
+
+    @property
+    def ok(self) -> bool:
+        """Every run was flown and kept the limits of the coils."""
+        return not (self.failed or self.broken)
+
+    @property
+    def complaints(self) -> list[str]:
+        """What is not ok, a sentence each."""
+        sentences = []
+        if self.failed:
+            sentences.append(f"{_listed(self.failed)} failed, see the column failure; --retry flies again")
+        if self.broken:
+            sentences.append(f"{_listed(self.broken)} broke the limits of the coils")
+        return sentences
+
+
 def campaign(
     source: str,
     over: Nested,
-    settings: tuple[str, ...],
+    settings: Nested,
     workers: int | None,
     scheduler: str | None,
     keep: str,
     retry: bool,
     parquet: bool,
     out: Path | None,
-) -> int:
+) -> FlownCampaign:
     """Fly a campaign, or what is left of it.
 
     Args:
         source: a campaign file, a scenario, or the folder of a campaign that is to be continued.
         over: runs, orbits and seed that were given.
-        settings: ``KEY=VALUE``, for all runs.
+        settings: laid over the scenario of all runs.
         workers: processes; None: as many as there are cores.
         scheduler: of a Dask cluster, by address or file; None: processes.
         keep: of which runs log and histories are kept.
         retry: whether failed runs are flown again.
         parquet: whether the results are exported.
         out: folder; None: that of ``source``, else ``campaigns/<name>-<UTC time>``.
-
-    Returns:
-        The exit code: 1 if a run failed or broke the limits of the coils.
 
     Raises:
         TableError: the campaign file or the scenario is not valid.
@@ -66,7 +95,7 @@ def campaign(
     if Path(source).is_dir():
         _check_resumable(source, over, settings, out)
         out = Path(source)
-    chosen = load_campaign(source, over, parse_settings(settings))
+    chosen = load_campaign(source, over, settings)
     folder = out or Path("campaigns") / f"{chosen.name}-{datetime.now(UTC):%Y%m%dT%H%M%SZ}"
     check_folder(folder, (FILE, SCENARIO, RESULTS, LOCK, PAGE, *([PARQUET] if parquet else [])))
     executor: Executor = Cluster(scheduler) if scheduler else Processes(workers or os.cpu_count() or 1)
@@ -86,7 +115,7 @@ def campaign(
         return _conclude(folder, chosen, results, parquet)
 
 
-def _check_resumable(source: str, over: Nested, settings: tuple[str, ...], out: Path | None) -> None:
+def _check_resumable(source: str, over: Nested, settings: Nested, out: Path | None) -> None:
     if not (Path(source) / FILE).is_file():
         raise HarnessError(f"{source} is a folder without a campaign: it has no {FILE}")
     if settings or out or over.keys() - {"runs"}:
@@ -126,44 +155,31 @@ def _watch(name: str, total: int) -> Iterator[Callable[[RunRow], None]]:
                 said, left_s = now, (now - began) / done * (total - done)
                 rate = 60.0 * done / (now - began)
                 line = f"{done} of {total} runs, {failed} failed, {rate:.1f} a minute"
-                click.echo(f"{line}, {left_s / 60.0:.1f} min left", err=True)
+                note(f"{line}, {left_s / 60.0:.1f} min left")
 
         yield take
 
 
 def _say_how_to_resume(folder: Path, chosen: Campaign, results: Results) -> None:
     there = len(results.runs())
-    click.echo(
-        f"{there} of {chosen.runs} runs are in {folder}; torquer campaign {folder} flies the rest", err=True
-    )
+    note(f"{there} of {chosen.runs} runs are in {folder}; torquer campaign {folder} flies the rest")
 
 
-def _conclude(folder: Path, chosen: Campaign, results: Results, parquet: bool) -> int:
-    """Page, export and the lines on the terminal."""
-    from sim.campaign.report.analysis import analyse  # noqa: PLC0415  scipy loads when runs are weighed
+def _conclude(folder: Path, chosen: Campaign, results: Results, parquet: bool) -> FlownCampaign:
+    """Page and export."""
     from sim.campaign.report.page import write_page  # noqa: PLC0415  matplotlib loads when something is drawn
-    from sim.campaign.report.text import lines  # noqa: PLC0415  with the analysis
 
     if parquet:
         from sim.campaign.results.parquet import export  # noqa: PLC0415  an extra
 
         export(results, folder / PARQUET)
     analysis = analyse(chosen, results)
-    for line in lines(chosen, analysis):
-        click.echo(line)
     write_page(folder / PAGE, chosen, analysis, results.meta("torquer_version"))
-    click.echo(f"results: {folder / RESULTS}{f', {PARQUET}' if parquet else ''}; page: {folder / PAGE}")
-    failed = results.runs(Status.FAILED)
     broken = [int(str(run)) for run, kept in results.each(("run", "limits_ok"), Status.DONE) if not kept]
-    if failed:
-        click.echo(
-            f"torquer: {_listed(failed)} failed, see the column failure; --retry flies again", err=True
-        )
-    if broken:
-        click.echo(f"torquer: {_listed(broken)} broke the limits of the coils", err=True)
-    return int(bool(failed or broken))
+    failed = results.runs(Status.FAILED)
+    return FlownCampaign(folder, chosen, analysis, tuple(failed), tuple(broken))
 
 
-def _listed(runs: list[int]) -> str:
+def _listed(runs: tuple[int, ...]) -> str:
     names = ", ".join(map(str, runs[:5])) + (f" and {len(runs) - 5} more" if len(runs) > 5 else "")
     return f"run {names}" if len(runs) == 1 else f"runs {names}"

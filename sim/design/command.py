@@ -1,14 +1,12 @@
 """``torquer design``: searches or evaluates gains; prints, draws and writes the result."""
 
-import json
+from dataclasses import dataclass, replace
 from pathlib import Path
-
-import click
 
 from sim.design.analysis import ANALYSIS_STEPS, Analysis, analyse, picture_maps
 from sim.design.from_scenario import body_of, pulsing_of
 from sim.design.pictures import gain_picture, robustness_picture
-from sim.design.render import as_json, as_text
+from sim.design.render import as_json
 from sim.design.scenario_file import check_writable, write_gains
 from sim.design.theory.bodies import Body
 from sim.design.theory.linear import Gains
@@ -17,7 +15,7 @@ from sim.errors import HarnessError
 from sim.progress import progress
 from sim.record.destination import check_folder
 from sim.record.run_dir import write_json
-from sim.scenario.schema import Scenario, load, parse_settings
+from sim.scenario.schema import Scenario
 
 GAIN_PICTURE, ROBUSTNESS_PICTURE, RESULT = "gains.png", "robustness.png", "design.json"
 
@@ -25,41 +23,56 @@ MAX_GAIN_RATIO = 1e6
 """Gains are accepted up to this multiple of the natural ones; beyond it the numbers overflow."""
 
 
+@dataclass(frozen=True, slots=True)
+class GainDesign:
+    """What ``design`` has found and written.
+
+    Attributes:
+        scenario: the gains are for it.
+        analysis: of the best gains, or of those given.
+        pictures: that were drawn.
+        written: the scenario file that has the gains now.
+    """
+
+    scenario: Scenario
+    analysis: Analysis
+    pictures: tuple[Path, ...] = ()
+    written: Path | None = None
+
+    @property
+    def ok(self) -> bool:
+        """Gains were given, or a search has found some that stabilise."""
+        return self.analysis.search is None or self.analysis.stabilised
+
+
 def design(
-    name: str,
-    settings: tuple[str, ...],
-    gains: tuple[float, float] | None,
-    as_json_only: bool,
-    write: bool,
-    out: Path | None,
-) -> int:
-    """The command; exit code 1 if a search found no gains that stabilise.
+    scenario: Scenario, gains: tuple[float, float] | None, folder: Path | None, write: str | None
+) -> GainDesign:
+    """Gains for a scenario: the best, or those given.
+
+    Args:
+        scenario: the satellite.
+        gains: k_w [N m s/T^2] and k_a [N m/T^2]; None: they are searched.
+        folder: of pictures and ``design.json``; None: nothing is drawn.
+        write: the scenario file into which gains that stabilise are written; None: none.
 
     Raises:
         HarnessError: gains out of range, or a file that cannot be written.
-        TableError: a scenario that cannot be used.
     """
-    target = check_writable(name) if write else None
-    scenario = load(name, parse_settings(settings))
-    folder = out or Path("runs") / f"design-{scenario.name}"
-    drawing = out is not None or not as_json_only
-    if drawing:
+    target = None if write is None else check_writable(write)
+    if folder is not None:
         check_folder(folder, (GAIN_PICTURE, ROBUSTNESS_PICTURE, RESULT))
     body, given = body_of(scenario), None if gains is None else Gains(*gains)
     if given is not None:
         _check(given, body)
     with progress(f"gains for {scenario.name}", ANALYSIS_STEPS) as watch:
         analysis = analyse(body, pulsing_of(scenario), given, watch)
-    click.echo(json.dumps(as_json(analysis), indent=2) if as_json_only else as_text(analysis, scenario))
-    if drawing:
-        _draw(folder, analysis, scenario)
-        click.echo(f"pictures: {folder / GAIN_PICTURE}, {folder / ROBUSTNESS_PICTURE}", err=as_json_only)
-    if not analysis.stabilised and given is None:
-        return 1
-    if target is not None:
-        write_gains(target, analysis.chosen.gains)
-        click.echo(f"written: k_w and k_a of {target}", err=as_json_only)
-    return 0
+    pictures = () if folder is None else _draw(folder, analysis, scenario)
+    found = GainDesign(scenario, analysis, pictures)
+    if target is None or not found.ok:
+        return found
+    write_gains(target, analysis.chosen.gains)
+    return replace(found, written=target)
 
 
 def _check(gains: Gains, body: Body) -> None:
@@ -70,7 +83,7 @@ def _check(gains: Gains, body: Body) -> None:
             raise HarnessError(f"--gains: {name} = {gain:g} is not allowed: for this body 0 to {most:.1g}")
 
 
-def _draw(folder: Path, analysis: Analysis, scenario: Scenario) -> None:
+def _draw(folder: Path, analysis: Analysis, scenario: Scenario) -> tuple[Path, ...]:
     of_scenario = Gains(scenario.control.k_w, scenario.control.k_a)
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -80,3 +93,4 @@ def _draw(folder: Path, analysis: Analysis, scenario: Scenario) -> None:
         write_json(folder / RESULT, as_json(analysis))
     except OSError as error:
         raise HarnessError(f"{folder}: cannot be written ({error.strerror or error})") from None
+    return folder / GAIN_PICTURE, folder / ROBUSTNESS_PICTURE

@@ -4,8 +4,10 @@ import hashlib
 import json
 import os
 import platform
+from contextlib import suppress
 from datetime import UTC, datetime
 from importlib.metadata import version
+from itertools import count
 from pathlib import Path
 from typing import Any, Final
 
@@ -40,13 +42,20 @@ RESULTS = (RUN, SUMMARY, REPORT)
 Json = dict[str, Any]
 
 
-def default_path(scenario: Scenario) -> Path:
-    """``runs/<scenario>-<UTC time>``; a number is added if that exists."""
+def new_folder(scenario: Scenario) -> Path:
+    """Create ``runs/<scenario>-<UTC time>``, with a number added if that exists; each call, another folder.
+
+    Raises:
+        HarnessError: it cannot be created.
+    """
+    runs = Path("runs")
+    check_folder(runs)
     stem = f"{scenario.name}-{datetime.now(UTC):%Y%m%dT%H%M%SZ}"
-    path, number = Path("runs") / stem, 1
-    while path.exists():
-        number += 1
-        path = Path("runs") / f"{stem}-{number}"
+    for number in count(1):
+        path = runs / (stem if number == 1 else f"{stem}-{number}")
+        with suppress(FileExistsError):
+            path.mkdir()
+            break
     return path
 
 
@@ -56,15 +65,26 @@ def bus_log(folder: Path) -> Path:
 
 
 def begin(
-    path: Path, scenario: Scenario, seed: int, ticks: int, bus: str, pace: Pace, compress: bool = False
-) -> None:
+    out: Path | None, scenario: Scenario, seed: int, ticks: int, bus: str, pace: Pace, compress: bool = False
+) -> Path:
     """Create the directory with scenario.toml and a run.json that says ``complete: false``.
 
-    ``compress``: its log will be compressed.
+    Args:
+        out: the directory; None: a new folder of ``runs``.
+        scenario: of the run.
+        seed: of all random streams.
+        ticks: length of the flight.
+        bus: kind of the bus.
+        pace: of the flight.
+        compress: whether its log will be compressed.
+
+    Returns:
+        The directory.
 
     Raises:
         HarnessError: the directory holds a run already, or cannot be written.
     """
+    path = out or new_folder(scenario)
     check_folder(path)
     if any((path / name).exists() for name in FILES):
         raise HarnessError(f"{path} already holds a run: choose another --out")
@@ -93,6 +113,7 @@ def begin(
         )
     except OSError as error:
         raise HarnessError(f"{path}: cannot be written ({error.strerror})") from None
+    return path
 
 
 def update(path: Path, **values: object) -> None:

@@ -3,13 +3,13 @@
 import time
 from collections.abc import Iterator
 from contextlib import suppress
+from dataclasses import dataclass
 from itertools import groupby, islice, zip_longest
 from pathlib import Path
 from typing import NamedTuple
 
-import click
-
 from fsw.bus.open_bus import open_bus
+from fsw.input.schema import Nested
 from fsw.table.config import flight_config
 from fsw.wire.candump_line import format_time
 from fsw.wire.frame import Frame
@@ -24,9 +24,9 @@ from sim.record.candump import LogEntry, LogTruncatedError, read_log
 from sim.record.log_index import check_against_index
 from sim.record.run_record import RunRecord
 from sim.record.signature import PublicKey
-from sim.replay.log_replay import replay
+from sim.replay.log_replay import ReplayResult, replay
 from sim.scenario.assemble import plant_config
-from sim.scenario.schema import Scenario, flight_table, load, parse_settings
+from sim.scenario.schema import Scenario, flight_table, load
 
 LONGEST_PAUSE_S = 86_400.0
 """In a log that is played onto a bus: a longer pause means that it was not recorded in one piece."""
@@ -45,8 +45,27 @@ class LoggedRun(NamedTuple):
         return self.record["ticks"] if self.record else 0
 
 
+@dataclass(frozen=True, slots=True)
+class ReplayReport:
+    """What a replay has found.
+
+    Attributes:
+        ok: what was replayed is as exact as this platform allows, and log and files are those of the run.
+        lines: the result in words, a line each.
+        result: of a replay through the flight software; None of the others.
+    """
+
+    ok: bool
+    lines: tuple[str, ...]
+    result: ReplayResult | None = None
+
+    def __str__(self) -> str:
+        """The lines."""
+        return "\n".join(self.lines)
+
+
 def locate(
-    run_or_log: Path, scenario: str | None, settings: tuple[str, ...], key: PublicKey | None = None
+    run_or_log: Path, scenario: str | None, settings: Nested, key: PublicKey | None = None
 ) -> tuple[Path, LoggedRun]:
     """The log and its run; with a key, the run must be signed by its private half.
 
@@ -62,11 +81,11 @@ def locate(
         beside = folder / run_dir.SCENARIO
         if scenario is None and not beside.is_file():
             raise HarnessError(f"{log}: no {run_dir.SCENARIO} beside it: name its scenario by --scenario")
-        return log, LoggedRun(load(scenario or str(beside), parse_settings(settings)), record, binding)
+        return log, LoggedRun(load(scenario or str(beside), settings), record, binding)
 
 
-def through_flight_software(log: Path, run: LoggedRun) -> int:
-    """Print the result; 0 if the replay is as exact as this platform allows, and the log complete."""
+def through_flight_software(log: Path, run: LoggedRun) -> ReplayReport:
+    """Compare the answers of the flight software; the log must be complete."""
     config = flight_config(flight_table(run.scenario))
     with progress("replaying", run.ticks) as watch:
         result = replay(
@@ -74,32 +93,33 @@ def through_flight_software(log: Path, run: LoggedRun) -> int:
         )
     same_platform = run.record is None or run.record["platform"] == run_dir.fingerprint()
     exact = result.bit_exact or (result.command_exact and not same_platform)
+    holds, binding_lines = _binding(log, run)
+    lines = [*_found(result, same_platform), *binding_lines]
+    if result.command_exact and not result.ended:
+        how = "inside a line" if result.cut else "without its end mark"
+        end = f"after line {result.end_line}, at tick {max(result.last_tick, 0)}"
+        lines.append(f"incomplete: the log ends {how} {end}")
+    return ReplayReport(exact and holds and result.ended, tuple(lines), result)
+
+
+def _found(result: ReplayResult, same_platform: bool) -> list[str]:
+    """How exact a replay is, in words."""
     if result.bit_exact:
-        click.echo(f"bit-exact: {result.ticks} ticks, {result.frames} frames, every state CRC equal")
-    elif result.command_exact:
+        return [f"bit-exact: {result.ticks} ticks, {result.frames} frames, every state CRC equal"]
+    if result.command_exact:
         need = (
             "bit-exact is required: the platform is the run's"
             if same_platform
             else "another platform than the run's"
         )
-        click.echo(f"command-exact, not bit-exact ({need}): {result.first_bit_difference}")
-    else:
-        click.echo(f"differs: {result.first_bit_difference}")
-        if result.first_command_difference != result.first_bit_difference:
-            click.echo(f"first command that differs: {result.first_command_difference}")
-        _report_binding(log, run)
-        return 1
-    holds = _report_binding(log, run)
-    if result.ended:
-        return 0 if exact and holds else 1
-    how = "inside a line" if result.cut else "without its end mark"
-    click.echo(
-        f"incomplete: the log ends {how} after line {result.end_line}, at tick {max(result.last_tick, 0)}"
-    )
-    return 1
+        return [f"command-exact, not bit-exact ({need}): {result.first_bit_difference}"]
+    lines = [f"differs: {result.first_bit_difference}"]
+    if result.first_command_difference != result.first_bit_difference:
+        lines.append(f"first command that differs: {result.first_command_difference}")
+    return lines
 
 
-def through_plant(log: Path, run: LoggedRun) -> int:
+def through_plant(log: Path, run: LoggedRun) -> ReplayReport:
     """Feed the recorded commands to the plant: its frames must be those of the log."""
     if run.record is None:
         raise HarnessError(f"{log}: --plant needs the seed: no {run_dir.RUN} beside it")
@@ -108,35 +128,31 @@ def through_plant(log: Path, run: LoggedRun) -> int:
     with progress("replaying", run.ticks) as watch:
         for logged, is_last in _by_time(log):
             if is_last and logged == [plant.end()]:
-                click.echo(f"plant reproduced: {ticks} ticks, every frame equal")
-                return 0 if _report_binding(log, run) else 1
+                holds, lines = _binding(log, run)
+                return ReplayReport(holds, (f"plant reproduced: {ticks} ticks, every frame equal", *lines))
             sent = plant.begin_tick()
             begin = _beginning(logged, sent)
             end = begin + len(sent)
             difference = _difference(sent, logged[begin:end])
             if difference is not None:
-                click.echo(f"differs: tick {ticks}: {difference}")
-                _report_binding(log, run)
-                return 1
+                _, lines = _binding(log, run)
+                return ReplayReport(False, (f"differs: tick {ticks}: {difference}", *lines))
             for frame in logged[:begin] + logged[end:]:
                 plant.receive(frame)
             plant.slips += not has_answer(logged, ticks)
             plant.end_tick()
             ticks += 1
             watch(ticks)
-    _report_binding(log, run)
-    click.echo(f"incomplete: the log ends without its end mark at tick {max(ticks - 1, 0)}")
-    return 1
+    _, lines = _binding(log, run)
+    end_line = f"incomplete: the log ends without its end mark at tick {max(ticks - 1, 0)}"
+    return ReplayReport(False, (*lines, end_line))
 
 
-def _report_binding(log: Path, run: LoggedRun) -> bool:
-    """Print what index and run.json say of the log; whether both hold for it."""
+def _binding(log: Path, run: LoggedRun) -> tuple[bool, list[str]]:
+    """Whether index and run.json hold for the log, and what they say of it."""
     voucher = check_against_index(log)
-    if voucher.sentence:
-        click.echo(f"{'note' if voucher.holds else 'index'}: {voucher.sentence}")
-    for line in run.binding.lines:
-        click.echo(line)
-    return voucher.holds and run.binding.holds
+    lines = [f"{'note' if voucher.holds else 'index'}: {voucher.sentence}"] if voucher.sentence else []
+    return voucher.holds and run.binding.holds, lines + run.binding.lines
 
 
 def _beginning(logged: list[Frame], sent: list[Frame]) -> int:
@@ -157,8 +173,8 @@ def _difference(sent: list[Frame], logged: list[Frame]) -> str | None:
     return None
 
 
-def play(log: Path, run: LoggedRun, spec: str) -> int:
-    """Send every frame of the log onto a bus, spaced as its timestamps are; 0 if it is that of its run.
+def play(log: Path, run: LoggedRun, spec: str) -> ReplayReport:
+    """Send every frame of the log onto a bus, spaced as its timestamps are.
 
     Raises:
         HarnessError: the log pauses for longer than a day.
@@ -175,9 +191,7 @@ def play(log: Path, run: LoggedRun, spec: str) -> int:
                 bus.send([entry.frame for entry in group])
     finally:
         bus.close()
-    for line in run.binding.lines:
-        click.echo(line)
-    return 0 if run.binding.holds else 1
+    return ReplayReport(run.binding.holds, tuple(run.binding.lines))
 
 
 def _by_time(log: Path) -> Iterator[tuple[list[Frame], bool]]:

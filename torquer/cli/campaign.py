@@ -49,8 +49,27 @@ def campaign(
 
     The same command with the same --out, or with DIR in place of the file, flies what is missing.
     """
-    from sim.campaign import command
+    from sim.campaign.command import PARQUET
+    from sim.campaign.results.store import RESULTS
+    from sim.scenario.schema import parse_settings
+    from torquer.api.campaign import campaign
 
-    given = {"runs": runs, "orbits": orbits, "seed": seed}
-    over = {name: value for name, value in given.items() if value is not None}
-    return command.campaign(source, over, settings, workers, scheduler, keep, retry, parquet, out)
+    done = campaign(
+        source,
+        runs=runs,
+        orbits=orbits,
+        seed=seed,
+        set=parse_settings(settings),
+        workers=workers,
+        scheduler=scheduler,
+        keep=keep,
+        retry=retry,
+        parquet=parquet,
+        out=out,
+        progress=True,
+    )
+    click.echo(str(done))
+    click.echo(f"results: {done.path / RESULTS}{f', {PARQUET}' if parquet else ''}; page: {done.page}")
+    for sentence in done.flown.complaints:
+        click.echo(f"torquer: {sentence}", err=True)
+    return int(not done.ok)

@@ -14,9 +14,8 @@ from torquer.cli.options import RUN_OR_LOG, VERIFY, sentences
 @sentences
 def check(run_or_log: Path, backoff: str | None, verify: Path | None) -> int:
     """Audit the actuator limits in a candump log, independently of the controller."""
-    from sim.audit.check import check, render
-    from sim.record.signature import public_key
+    from torquer.api.audit import check
 
-    report = check(run_or_log, backoff, None if verify is None else public_key(verify))
-    click.echo(render(report))
-    return report.exit_code
+    audit = check(run_or_log, backoff=backoff, verify=verify, progress=True)
+    click.echo(str(audit))
+    return int(not audit.ok)

@@ -1,5 +1,6 @@
 """``torquer design``: gains from Floquet theory."""
 
+import json
 from pathlib import Path
 
 import click
@@ -26,6 +27,16 @@ def design(
     settings: tuple[str, ...],
 ) -> int:
     """Gains of the PD law for SCENARIO by Floquet theory: exponents, margins, maps, best gains."""
-    from sim.design import command
+    from sim.scenario.schema import load, parse_settings
+    from torquer.api.design import design
 
-    return command.design(scenario, settings, gains, as_json, write, out)
+    over = parse_settings(settings)
+    if out is None and not as_json:
+        out = Path("runs") / f"design-{load(scenario, over).name}"
+    found = design(scenario, gains=gains, set=over, write=write, out=out, progress=True)
+    click.echo(json.dumps(found.values, indent=2) if as_json else str(found))
+    if found.pictures:
+        click.echo(f"pictures: {', '.join(map(str, found.pictures))}", err=as_json)
+    if found.written:
+        click.echo(f"written: k_w and k_a of {found.written}", err=as_json)
+    return int(not found.ok)

@@ -1,7 +1,7 @@
 """Options that commands share, and the way from their errors to a sentence and an exit code."""
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import wraps
 from pathlib import Path
 from typing import ParamSpec
@@ -15,6 +15,7 @@ from fsw.input.schema import TableError
 from sim.errors import HarnessError
 from sim.plant.errors import PlantError
 from sim.signals import EndedBySignal, raise_on_signals
+from torquer.api.errors import Error
 
 Parameters = ParamSpec("Parameters")
 
@@ -50,7 +51,7 @@ def sentences(command: Callable[Parameters, int | None]) -> Callable[Parameters,
         try:
             with raise_on_signals():
                 code = command(*args, **kwargs)
-        except (TableError, BusError, HarnessError, PlantError) as error:
+        except (Error, TableError, BusError, HarnessError, PlantError) as error:
             click.echo(f"torquer: {error_text(error)}", err=True)
             code = getattr(error, "exit_code", 2)
         except KeyboardInterrupt:
@@ -64,7 +65,7 @@ def sentences(command: Callable[Parameters, int | None]) -> Callable[Parameters,
     return run
 
 
-def report_failures(failures: dict[str, str]) -> int:
+def report_failures(failures: Mapping[str, str]) -> int:
     """Print what failed, in one sentence; return the exit code."""
     from sim.report.verdict import flight_failed
 

@@ -50,8 +50,7 @@ def plant(
     ticks, chosen_pace, spec = ticks_of(chosen, orbits), parse_pace(pace), resolve(bus)
     check_plant(chosen, seed)
     link = open_bus(spec)
-    directory = out or run_dir.default_path(chosen)
-    run_dir.begin(directory, chosen, seed, ticks, spec.partition(":")[0], chosen_pace, compress)
+    directory = run_dir.begin(out, chosen, seed, ticks, spec.partition(":")[0], chosen_pace, compress)
     click.echo(f"plant on {spec}: waiting for the flight software", err=True)
     with progress(f"flying {chosen.name}", ticks) as watch:
         record_flight(directory, chosen, link, watch, waiting=_still_waiting())

@@ -24,14 +24,13 @@ def replay(
     settings: tuple[str, ...],
 ) -> int:
     """Replay a log through the flight software and compare its answers byte for byte."""
-    from sim.record.signature import public_key
-    from sim.replay import command as commands
+    from sim.scenario.schema import parse_settings
+    from torquer.api.replay import replay
 
-    key = None if verify is None else public_key(verify)
-    log, run = commands.locate(run_or_log, scenario, settings, key)
-    with run.binding.beside_errors():
-        if onto is not None:
-            return commands.play(log, run, onto)
-        if plant:
-            return commands.through_plant(log, run)
-        return commands.through_flight_software(log, run)
+    over = parse_settings(settings)
+    report = replay(
+        run_or_log, scenario=scenario, set=over, plant=plant, onto=onto, verify=verify, progress=True
+    )
+    for line in report.lines:
+        click.echo(line)
+    return int(not report.ok)

@@ -9,7 +9,7 @@ from torquer.cli.options import sentences
 @sentences
 def scenarios() -> None:
     """List the shipped scenarios, one line each."""
-    from sim.scenario.schema import shipped
+    from torquer.api.scenarios import scenarios
 
-    for scenario in shipped():
-        click.echo(f"{scenario.name:<14} {scenario.summary}")
+    for name, scenario in scenarios().items():
+        click.echo(f"{name:<14} {scenario.summary}")

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from fsw.input.error_text import error_text
 from sim.errors import HarnessError
 from torquer.cli.options import BUSES, COMPRESS, SEEDS, SETTINGS, SIGN, report_failures, sentences
 
@@ -47,60 +48,34 @@ def sil(
     settings: tuple[str, ...],
 ) -> int:
     """Fly SCENARIO (realsat): plant and flight software as two processes on a bus (virtual: in one)."""
-    from sim.flight.record_flight import check_can_fly, ticks_of
-    from sim.flight.sil import fly_processes, serve_bus
-    from sim.progress import progress
-    from sim.record import run_dir
-    from sim.record.pace import parse_pace
-    from sim.record.signature import private_key
-    from sim.report.follow import follow
-    from sim.scenario.schema import load, parse_settings
+    from sim.scenario.schema import parse_settings
+    from torquer.api.flight import fly
 
-    key = None if sign is None else private_key(sign)
     again = _campaign_run(source, run, scenario, orbits, seed, settings)
-    if again is not None:
-        chosen, seed = again.scenario, again.seed
-    else:
-        chosen = load("realsat" if scenario is None else scenario, parse_settings(settings))
-        seed = 1 if seed is None else seed
-    chosen_pace = parse_pace(pace)
-    ticks, path = ticks_of(chosen, orbits), out or run_dir.default_path(chosen)
-    check_can_fly(chosen, seed)
-    flying = f"flying {chosen.name}"
-    if bus == "virtual":
-        from sim.flight.virtual import fly_virtual
-
-        run_dir.begin(path, chosen, seed, ticks, bus, chosen_pace, compress)
-        with follow(path, ticks) as conclude:
-            with progress(flying, ticks) as watch:
-                fly_virtual(path, chosen, watch)
-            with progress("replaying", ticks) as watch:
-                summary = conclude(watch)
-    else:
-        with serve_bus(bus) as (spec, hub):
-            kind = spec.partition(":")[0]
-            run_dir.begin(path, chosen, seed, ticks, kind, chosen_pace, compress)
-            if bus == "auto":
-                click.echo(f"bus: {kind} (auto)", err=True)
-            with follow(path, ticks) as conclude:
-                with progress(flying, ticks) as watch:
-                    fly_processes(path, chosen, spec, hub, watch)
-                with progress("replaying", ticks) as watch:
-                    summary = conclude(watch)
-    from sim.record.binding import sign_run  # loaded after the flight, which does not need it
-    from sim.report.summary import summary_text
-
-    if key is not None:
-        sign_run(path, key)
-    click.echo(summary_text(summary))
-    click.echo(f"report: {path / run_dir.REPORT}")
+    flown = fly(
+        again.scenario if again else "realsat" if scenario is None else scenario,
+        orbits=orbits,
+        seed=again.seed if again else 1 if seed is None else seed,
+        bus=bus,
+        pace=pace,
+        set=parse_settings(settings),
+        out=out,
+        compress=compress,
+        sign=sign,
+        progress=True,
+    )
+    if not flown.concluded:
+        click.echo(f"torquer: {error_text(flown)}", err=True)
+        return 1
+    click.echo(str(flown))
+    click.echo(f"report: {flown.report}")
     equal = True
     if again is not None:
         from sim.campaign.rerun import compare
 
-        equal, sentence = compare(again, path)
+        equal, sentence = compare(again, flown.path)
         click.echo(sentence)
-    return report_failures(summary.get("failures", {})) or int(not equal)
+    return report_failures(flown.failures) or int(not equal)
 
 
 def _campaign_run(

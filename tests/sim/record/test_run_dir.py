@@ -149,10 +149,10 @@ def test_the_default_place_is_new_each_time(tmp_path, monkeypatch, scenario):
     monkeypatch.chdir(tmp_path)
     seen = set()
     for _ in range(3):
-        path = run_dir.default_path(scenario)
+        path = run_dir.new_folder(scenario)
         assert path.parts[0] == "runs"
         assert path.name.startswith("microsat-")
-        path.mkdir(parents=True)
+        assert list(path.iterdir()) == []
         seen.add(path)
     assert len(seen) == 3
 

@@ -1,0 +1,46 @@
+"""The statistics of a campaign as values of JSON."""
+
+from dataclasses import asdict
+from typing import Any
+
+from sim.campaign.definition.campaign import Campaign
+from sim.campaign.report.analysis import CampaignAnalysis, FigureStatistics
+from sim.statistics.proportion import Proportion
+
+Json = dict[str, Any]
+
+
+def as_json(campaign: Campaign, analysis: CampaignAnalysis) -> Json:
+    """The figures of the page; a bound for which there are too few runs is None."""
+    return {
+        "name": campaign.name,
+        "runs": analysis.done + len(analysis.failures),
+        "failed": len(analysis.failures),
+        "probability": campaign.statistics.probability,
+        "confidence": campaign.statistics.confidence,
+        "success": _proportion(analysis.success),
+        "requirements": {str(entry): _proportion(met) for entry, met in analysis.by_requirement.items()},
+        "figures": {figure.name: _figure(figure) for figure in analysis.figures},
+        "indices_deg": {
+            name: {how.value: asdict(percentile) for how, percentile in found.items()}
+            for name, found in analysis.indices.items()
+        },
+        "rank_correlations": {
+            each.column.removeprefix("input_"): asdict(each.correlation)
+            for each in analysis.sensitivities
+            if each.correlation
+        },
+    }
+
+
+def _proportion(found: Proportion) -> Json:
+    return {**asdict(found), "value": found.value}
+
+
+def _figure(figure: FigureStatistics) -> Json:
+    return {
+        "runs": len(figure.values),
+        "mean": float(figure.values.mean()),
+        "largest": float(figure.values.max()),
+        "percentiles": {f"{each.probability:g}": asdict(each) for each in figure.percentiles},
+    }

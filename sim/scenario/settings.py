@@ -1,0 +1,55 @@
+"""Settings of a program, laid over a scenario: keys with dots, values of Python and numpy."""
+
+from collections.abc import Mapping
+from functools import reduce
+from pathlib import PurePath
+
+import numpy as np
+
+from fsw.input.schema import Nested, TableError, merge
+from fsw.input.toml_text import MOST_LEVELS
+
+
+def nested(settings: Mapping[str, object] | None) -> Nested:
+    """Settings as the sections of a scenario: ``{"time.tick_hz": 10}`` is ``{"time": {"tick_hz": 10}}``.
+
+    Arrays and numbers of numpy become lists and numbers, as TOML has them.
+
+    Raises:
+        TableError: no mapping, a key that is none, or values that are nested too deeply.
+    """
+    if settings is None:
+        return {}
+    if not isinstance(settings, Mapping):
+        raise TableError(f"set = {settings!r:.80}: give a dictionary such as {{'time.tick_hz': 10}}")
+    return reduce(merge, (_section(key, value) for key, value in settings.items()), {})
+
+
+def plain(value: object, levels: int = MOST_LEVELS) -> object:
+    """A value as TOML has it, of at most so many levels.
+
+    Raises:
+        TableError: it has more.
+    """
+    if not levels:
+        raise TableError(f"set: a value has more than {MOST_LEVELS} levels")
+    match value:
+        case np.generic() | np.ndarray():
+            return value.tolist()
+        case PurePath():
+            return str(value)
+        case Mapping():
+            return {key: plain(one, levels - 1) for key, one in value.items()}
+        case list() | tuple():
+            return [plain(one, levels - 1) for one in value]
+    return value
+
+
+def _section(key: object, value: object) -> Nested:
+    parts = key.strip().split(".") if isinstance(key, str) else [""]
+    if not all(parts) or len(parts) > MOST_LEVELS:
+        raise TableError(f"set: {key!r:.80} is no key of a scenario such as 'time.tick_hz'")
+    section: Nested = {parts[-1]: plain(value)}
+    for part in reversed(parts[:-1]):
+        section = {part: section}
+    return section

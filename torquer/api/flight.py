@@ -1,0 +1,145 @@
+"""``torquer.fly`` and ``torquer.report``: a flight, and what is made of it."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from os import PathLike
+from pathlib import Path
+
+from pydantic import Field
+
+from fsw.input.schema import Section, TableError
+from sim.errors import FlightError
+from sim.flight.record_flight import check_can_fly, ticks_of
+from sim.flight.sil import fly_processes, serve_bus
+from sim.flight.virtual import fly_virtual
+from sim.progress import Watch, note, shown
+from sim.progress import progress as progress_of
+from sim.record import run_dir
+from sim.record.binding import require_sources, sign_run
+from sim.record.pace import parse_pace
+from sim.record.signature import private_key, signature_path
+from sim.report.conclude import conclude
+from sim.report.follow import follow
+from sim.scenario.schema import Scenario
+from torquer.api.arguments import ScenarioLike, Settings, checked, chosen_scenario, optional_path, path_text
+from torquer.api.audit import optional_key
+from torquer.api.errors import one_sentence
+from torquer.api.run import Run
+
+Flight = Callable[[Path, Watch], None]
+"""Flies a run that was begun; called with its directory and what is to be told the ticks."""
+
+
+class _FlightOptions(Section):
+    orbits: float | None = Field(allow_inf_nan=True)  # judged with the length of an orbit
+    seed: int = Field(ge=0, le=2**64 - 1)
+    bus: str
+    pace: str
+    compress: bool
+
+
+@one_sentence
+def fly(
+    scenario: ScenarioLike = "realsat",
+    *,
+    orbits: float | None = None,
+    seed: int = 1,
+    bus: str = "virtual",
+    pace: str = "lockstep",
+    set: Settings | None = None,
+    out: str | PathLike[str] | None = None,
+    compress: bool = False,
+    sign: str | PathLike[str] | None = None,
+    progress: bool = False,
+) -> Run:
+    """Fly a scenario, as ``torquer sil`` does, which flies as two processes where no bus is given.
+
+    The same scenario and seed give the same log on every bus, byte for byte. A flight that fails raises
+    nothing: ``ok`` and ``failures`` of the run tell. Flights may run in several threads at once.
+
+    Args:
+        scenario: name of a shipped scenario, path of a file, or a scenario.
+        orbits: how long; None: as the scenario says.
+        seed: of all random streams.
+        bus: ``virtual``: in this process; ``loop``, ``auto``, ``socketcan:NAME``, ``slcan:PORT``: as two.
+        pace: ``lockstep``, or ``realtime[:FACTOR]``.
+        set: values laid over the scenario by key: ``{"time.tick_hz": 10}`` or ``{"time": {"tick_hz": 10}}``.
+        out: directory of the run; None: a new one, ``runs/<scenario>-<UTC time>``.
+        compress: write the log as ``bus.log.gz``.
+        sign: private Ed25519 key in PEM with which the run is signed.
+        progress: show progress on stderr.
+
+    Raises:
+        InputError: an argument, the scenario, a key of it, or the directory; nothing was flown.
+        Error: the flight cannot be concluded.
+    """
+    options = checked(_FlightOptions, "fly", orbits=orbits, seed=seed, bus=bus, pace=pace, compress=compress)
+    if options.orbits is not None and options.orbits <= 0.0:
+        raise TableError(f"fly: orbits = {options.orbits:g} is not allowed: allowed is a number above 0")
+    key = None if sign is None else private_key(Path(path_text(sign, "sign")))
+    chosen, folder = chosen_scenario(scenario, set), optional_path(out, "out")
+    chosen_pace = parse_pace(options.pace)
+    ticks = ticks_of(chosen, options.orbits)
+    check_can_fly(chosen, options.seed)
+    with shown(progress), _flight_on(options.bus, chosen) as (kind, flight):
+        path = run_dir.begin(folder, chosen, options.seed, ticks, kind, chosen_pace, options.compress)
+        if options.bus == "auto":
+            note(f"bus: {kind} (auto)")
+        with follow(path, ticks) as conclude_flight:
+            try:
+                with progress_of(f"flying {chosen.name}", ticks) as watch:
+                    flight(path, watch)
+            except FlightError as error:
+                return Run(path, ended=str(error))
+            with progress_of("replaying", ticks) as watch:
+                conclude_flight(watch)
+    if key is not None:
+        sign_run(path, key)
+    return Run(path)
+
+
+@contextmanager
+def _flight_on(bus: str, scenario: Scenario) -> Iterator[tuple[str, Flight]]:
+    """The kind of a bus, and what flies on it."""
+    if bus == "virtual":
+        yield bus, lambda path, watch: fly_virtual(path, scenario, watch)
+        return
+    with serve_bus(bus) as (spec, hub):
+        yield spec.partition(":")[0], lambda path, watch: fly_processes(path, scenario, spec, hub, watch)
+
+
+@one_sentence
+def report(
+    run: str | PathLike[str],
+    *,
+    sign: str | PathLike[str] | None = None,
+    verify: str | PathLike[str] | None = None,
+    progress: bool = False,
+) -> Run:
+    """Make summary and report of a run again, as ``torquer report`` does; also of one that was cut short.
+
+    Args:
+        run: its directory.
+        sign: private Ed25519 key in PEM with which the run is signed.
+        verify: public Ed25519 key in PEM; the run must be signed by its private half.
+        progress: show progress on stderr.
+
+    Returns:
+        The run; its ``notes`` say what of its files does not agree with its digests.
+
+    Raises:
+        InputError: the directory holds no run, or one of its files is damaged.
+        Error: one of its files is not its own.
+    """
+    path = Path(path_text(run, "run"))
+    key = None if sign is None else private_key(Path(path_text(sign, "sign")))
+    with shown(progress):
+        binding = require_sources(path, optional_key(verify))
+        before = (path / run_dir.RUN).read_bytes()
+        with progress_of("replaying", run_dir.read_run(path)["ticks"]) as watch:
+            conclude(path, watch)
+        if key is not None:
+            sign_run(path, key)
+        elif signature_path(path / run_dir.RUN).exists() and (path / run_dir.RUN).read_bytes() != before:
+            note(f"note: {run_dir.RUN} is no longer what was signed: --sign KEY signs it again")
+    return Run(path, mismatched=not binding.holds, notes=tuple(binding.lines))

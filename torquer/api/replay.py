@@ -1,0 +1,47 @@
+"""``torquer.replay``: a log through the flight software, through the plant, or onto a bus."""
+
+from os import PathLike
+from pathlib import Path
+
+from sim.progress import shown
+from sim.replay import command
+from sim.replay.command import ReplayReport
+from sim.scenario.settings import nested
+from torquer.api.arguments import Settings, path_text
+from torquer.api.audit import optional_key
+from torquer.api.errors import one_sentence
+
+
+@one_sentence
+def replay(
+    run_or_log: str | PathLike[str],
+    *,
+    scenario: str | PathLike[str] | None = None,
+    set: Settings | None = None,
+    plant: bool = False,
+    onto: str | None = None,
+    verify: str | PathLike[str] | None = None,
+    progress: bool = False,
+) -> ReplayReport:
+    """Replay a log and compare the answers of the flight software byte for byte, as ``torquer replay`` does.
+
+    Args:
+        run_or_log: a run directory, or a log.
+        scenario: of a bare log, by name or path; None: the ``scenario.toml`` beside it.
+        set: values laid over the scenario by key.
+        plant: feed the recorded commands to the plant instead, and compare its frames.
+        onto: play the log onto this bus instead, at its own pace.
+        verify: public Ed25519 key in PEM; the run must be signed by its private half.
+        progress: show progress on stderr.
+
+    Raises:
+        InputError: there is no such log or no scenario of it, or the bus cannot be used.
+    """
+    path = Path(path_text(run_or_log, "run_or_log"))
+    of_log = None if scenario is None else path_text(scenario, "scenario")
+    with shown(progress):
+        log, run = command.locate(path, of_log, nested(set), optional_key(verify))
+        with run.binding.beside_errors():
+            if onto is not None:
+                return command.play(log, run, onto)
+            return command.through_plant(log, run) if plant else command.through_flight_software(log, run)

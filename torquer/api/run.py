@@ -1,0 +1,157 @@
+"""A run: what a flight has left in its directory, for programs."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from sim.errors import HarnessError
+from sim.record import run_dir
+from sim.record.run_record import RunRecord
+from sim.replay.command import ReplayReport
+from sim.report.summary import summary_text
+from sim.report.verdict import Verdict
+from sim.scenario.schema import Scenario
+from torquer.api.arguments import path_text
+from torquer.api.audit import Audit, check
+from torquer.api.errors import one_sentence
+from torquer.api.replay import replay
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+
+@dataclass(frozen=True)
+class Run:
+    """The directory of a flight. What takes time is computed when it is first asked for, and kept.
+
+    Attributes:
+        path: the directory.
+        ended: why the flight ended before its time, as far as ``fly`` knows; empty otherwise.
+        mismatched: whether ``torquer.report`` found a file that had been changed since it was written.
+        notes: what it found, a line each.
+    """
+
+    path: Path
+    ended: str = ""
+    mismatched: bool = False
+    notes: tuple[str, ...] = ()
+
+    @cached_property
+    @one_sentence
+    def record(self) -> RunRecord:
+        """``run.json``: seed, bus, platform, digests."""
+        return run_dir.read_run(self.path)
+
+    @cached_property
+    @one_sentence
+    def scenario(self) -> Scenario:
+        """The scenario that was flown, with all settings."""
+        return run_dir.read_scenario(self.path)
+
+    @property
+    def concluded(self) -> bool:
+        """Whether there is a summary; of a flight that was interrupted ``torquer.report`` makes it."""
+        return (self.path / run_dir.SUMMARY).is_file()
+
+    @cached_property
+    @one_sentence
+    def summary(self) -> Mapping[str, Any]:
+        """``summary.json``: pulses, duty, pointing, estimate, events, judged by the truth of the plant."""
+        path = self.path / run_dir.SUMMARY
+        if not self.concluded:
+            raise HarnessError(f"{self.path} has no {path.name}: torquer report {self.path} makes it")
+        try:
+            summary = json.loads(path.read_text(encoding="utf-8"))
+        except (OSError, ValueError) as error:
+            raise HarnessError(f"{path}: cannot be read ({error})") from None
+        if not isinstance(summary, dict):
+            raise HarnessError(f"{path}: no summary of a flight")
+        return summary
+
+    @property
+    def failures(self) -> Mapping[str, str]:
+        """What failed, a clause each, by ``limits``, ``replay``, ``second_senders``, ``complete``."""
+        if self.concluded:
+            failed: Mapping[str, str] = self.summary.get("failures", {})
+            return failed
+        why = self.record.get("ended", "the flight was interrupted")
+        unfinished = f"{why}: the run is not complete, its files are in {self.path}"
+        return {Verdict.COMPLETE.value: self.ended or unfinished}
+
+    @property
+    def ok(self) -> bool:
+        """Nothing failed: the limits were kept, the replay is exact, the run complete."""
+        return not self.failures
+
+    @property
+    def report(self) -> Path:
+        """The page ``report.html``."""
+        return self.path / run_dir.REPORT
+
+    @property
+    def log(self) -> Path:
+        """The log of the bus, in candump format."""
+        return run_dir.bus_log(self.path)
+
+    def replay(self, *, plant: bool = False, progress: bool = False) -> ReplayReport:
+        """Replay the run through the flight software, or through the plant, as ``torquer.replay`` does."""
+        return replay(self.path, plant=plant, progress=progress)
+
+    def check(self) -> Audit:
+        """Audit the limits of the coils in the log, as ``torquer.check`` does."""
+        return check(self.path)
+
+    @cached_property
+    @one_sentence
+    def truth(self) -> "xr.Dataset":
+        """The histories of the plant, a row a tick: attitude, rates, field, Sun, dipole, position, torques.
+
+        Every variable has its unit in ``attrs["units"]``, its meaning in ``attrs["long_name"]``, and in its
+        name the quantity, its frame and its unit. Needs ``torquer[data]``.
+        """
+        from torquer.api.datasets import truth  # noqa: PLC0415  an extra
+
+        return truth(self.path, self.scenario, self.record)
+
+    @cached_property
+    @one_sentence
+    def estimate(self) -> "xr.Dataset":
+        """What the flight software estimated at every tick, from a replay of the log: NaN where it had none.
+
+        Attitude, rates, their 1 sigma, the error against the plant's truth, validity and mode, with units as
+        in ``truth``. A replay takes about as long as the flight. Needs ``torquer[data]``.
+        """
+        from torquer.api.datasets import estimate  # noqa: PLC0415  an extra
+
+        return estimate(self.path, self.scenario, self.record)
+
+    @cached_property
+    @one_sentence
+    def pulses(self) -> "pd.DataFrame":
+        """The pulses that the coil driver reports, by start. Needs ``torquer[data]``."""
+        from torquer.api.tables import pulses  # noqa: PLC0415  an extra
+
+        return pulses(self.check().report, self.scenario)
+
+    def __str__(self) -> str:
+        return summary_text(dict(self.summary)) if self.concluded else self.failures[Verdict.COMPLETE.value]
+
+    def __repr__(self) -> str:
+        return f"<Run {self.path}>"
+
+
+@one_sentence
+def load(path: str | PathLike[str]) -> Run:
+    """The run in a directory, flown here or elsewhere, complete or not.
+
+    Raises:
+        InputError: the directory holds no run.
+    """
+    folder = Path(path_text(path, "path"))
+    run_dir.read_run(folder)
+    return Run(folder)
