@@ -10,6 +10,7 @@
 # make soak       72 simulated hours, and an hour on the bench in real time, into docs/soak.md
 # make golden     record the golden logs again: after a change that means to alter the answers of fsw
 # make test-vcan   the tests on a CAN interface, in a user-mode Linux guest where this kernel has no vcan
+# make test-chromium   the pages in a headless browser, Debian's chromium
 # make fuzz       a million random frames, a thousand mutations of each kind of input file: half an hour
 # make attack     a million requests and forged frames to a coil board, ten minutes on the real process: half an hour
 # make differential scheduler against interlock over 100 orbits of whole flights: some minutes
@@ -25,7 +26,7 @@ bin := .venv/bin
 installed := .venv/.installed
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv sil test lint test-vcan golden validate fuzz attack differential replay-elsewhere faults bench scaling population soak planted mutation coverage
+.PHONY: help venv sil test lint test-vcan test-chromium golden validate fuzz attack differential replay-elsewhere faults bench scaling population soak planted mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -57,6 +58,9 @@ lint: venv
 
 test-vcan: venv
 	TORQUER_REQUIRE_VCAN=1 tests/with-vcan $(bin)/pytest -q -rs -p no:cacheprovider -m vcan
+
+test-chromium: venv
+	TORQUER_REQUIRE_CHROMIUM=1 $(bin)/pytest -q -rs -p no:cacheprovider -m chromium tests/sim
 
 golden: venv
 	$(bin)/python tests/golden/record.py

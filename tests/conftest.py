@@ -1,13 +1,64 @@
-"""Settings of all tests.
+"""Settings of all tests, and the browser of those that look at pages.
 
 Property tests take the same examples each time (profile ``ci``), so that a failure is there again on the next
 run and on the next machine. With ``HYPOTHESIS_PROFILE=dev`` they look for new ones.
 """
 
 import os
+from shutil import which
 
+import pytest
 from hypothesis import settings
 
 settings.register_profile("ci", derandomize=True, deadline=None, print_blob=True)
 settings.register_profile("dev", deadline=None, print_blob=True)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "ci"))
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    for item in items:
+        if "chromium" in getattr(item, "fixturenames", ()):
+            item.add_marker("chromium")
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    """A headless Chromium, driven by playwright."""
+    path = which("chromium")
+    if path is None:
+        if os.environ.get("TORQUER_REQUIRE_CHROMIUM") == "1":
+            pytest.fail("there is no chromium, but TORQUER_REQUIRE_CHROMIUM=1 requires it")
+        pytest.skip("there is no chromium: make test-chromium runs this test where there is one")
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=path, args=["--no-sandbox"])  # root has no sandbox
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def look(chromium):
+    """Opens a page of a file: whatever the browser complains of, or asks of the network, fails the test."""
+    complaints, contexts = [], []
+
+    def open_page(path, width=1400, dark=False, scripts=True):
+        context = chromium.new_context(
+            viewport={"width": width, "height": 900},
+            color_scheme="dark" if dark else "light",
+            java_script_enabled=scripts,
+        )
+        contexts.append(context)
+        page = context.new_page()
+        page.on("console", lambda message: complaints.append(message.text))
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.on("request", lambda request: complaints.append(request.url))
+        page.goto(path.as_uri())
+        assert complaints.pop(0) == path.as_uri()
+        return page
+
+    yield open_page
+    for context in contexts:
+        context.close()
+    assert complaints == []

@@ -18,12 +18,13 @@ class Envelope:
     Args:
         length: number of samples.
         width: number of histories.
+        bins: how many.
     """
 
-    def __init__(self, length: int, width: int) -> None:
-        whole = length <= 2 * BINS
+    def __init__(self, length: int, width: int, bins: int = BINS) -> None:
+        whole = length <= 2 * bins
         self._starts = (
-            np.arange(length) if whole else np.linspace(0, length, BINS, endpoint=False).astype(int)
+            np.arange(length) if whole else np.linspace(0, length, bins, endpoint=False).astype(int)
         )
         self._ends = np.append(self._starts[1:], length)
         self._least, self._largest, self._first, self._last = np.full((4, len(self._starts), width), np.nan)

@@ -8,6 +8,7 @@ import matplotlib
 from matplotlib.figure import Figure
 
 from sim.drawing.canvas import SETTINGS
+from sim.drawing.palette import themed
 
 _NUMBER = frozenset("0123456789.-e")
 _UNUSED = frozenset(("metadata", "style"))
@@ -44,9 +45,7 @@ def _simplify(element: ElementTree.Element) -> None:
         name = attributes.pop("id")
         if not _is_numbered(name):
             attributes = {"class": name, **attributes}
-    element.attrib = {
-        name: value if name in _VERBATIM else _shortened(value) for name, value in attributes.items()
-    }
+    element.attrib = {name: _written(name, value) for name, value in attributes.items()}
     element.text = (element.text or "").strip()
     for child in list(element):
         if _plain(child.tag) in _UNUSED:
@@ -54,6 +53,13 @@ def _simplify(element: ElementTree.Element) -> None:
             continue
         _simplify(child)
         child.tail = "\n"
+
+
+def _written(name: str, value: str) -> str:
+    """An attribute: colours that suit the page, short numbers."""
+    if name in _VERBATIM:
+        return value
+    return themed(_shortened(value)) if name == "style" else _shortened(value)
 
 
 def _plain(name: str) -> str:

@@ -1,29 +1,69 @@
 """Self-contained HTML pages of one look, by Jinja2: all content is escaped, unless it is Markup."""
 
+from base64 import b64encode
+from collections.abc import Sequence
+from hashlib import sha256
 from importlib import resources
+from typing import Any
 
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
+from jinja2.utils import htmlsafe_json_dumps
 from markupsafe import Markup
 
+from sim.drawing import palette
 
-def page(package: str, template: str, **content: object) -> str:
-    """The page without scripts that a template makes of its content.
+Json = dict[str, Any]
+
+OWN = "sim.drawing"
+THEME = "script/theme.js"
+PLOTTING = ("vendor/uPlot.iife.min.js", "script/clock.js", "script/charts.js")
+
+
+def page(
+    package: str, template: str, data: Json | None = None, scripts: Sequence[str] = (), **content: object
+) -> str:
+    """The page that a template makes of its content.
+
+    The browser runs the scripts of the page by their digests and loads nothing, whatever the content holds.
 
     Args:
         package: whose folder ``templates`` holds the template; it may use those beside this module.
         template: name of the file.
+        data: what the charts against time are drawn from; None: the page has none.
+        scripts: of the package, by their paths, that draw more of the data.
         content: what the template names.
 
     Raises:
         jinja2.TemplateError: the template names what is not there, or is malformed.
+        ValueError: the data hold a number that JSON has not.
     """
     environment = Environment(
-        loader=ChoiceLoader([PackageLoader(package), PackageLoader("sim.drawing")]),
+        loader=ChoiceLoader([PackageLoader(package), PackageLoader(OWN)]),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    css = resources.files("sim.drawing").joinpath("report.css").read_text(encoding="utf-8")
-    return environment.get_template(template).render(css=Markup(css), **content)
+    css = _read(OWN, "report.css").replace("/* colours of charts */", palette.css())
+    run = [_read(OWN, THEME)]
+    if data is not None:
+        css = _read(OWN, "vendor/uPlot.min.css") + "\n" + css
+        run += [*(_read(OWN, name) for name in PLOTTING), *(_read(package, name) for name in scripts)]
+    return environment.get_template(template).render(
+        css=Markup(css),
+        data=None if data is None else htmlsafe_json_dumps(data, allow_nan=False, separators=(",", ":")),
+        scripts=[Markup(text) for text in run],
+        policy=f"default-src 'none'; style-src 'unsafe-inline'; img-src data:; script-src {_digests(run)}",
+        **content,
+    )
+
+
+def _read(package: str, name: str) -> str:
+    return resources.files(package).joinpath(name).read_text(encoding="utf-8")
+
+
+def _digests(scripts: Sequence[str]) -> str:
+    """The scripts as sources of a content security policy."""
+    digests = (b64encode(sha256(script.encode()).digest()).decode("ascii") for script in scripts)
+    return " ".join(f"'sha256-{digest}'" for digest in digests)

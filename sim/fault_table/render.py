@@ -129,7 +129,7 @@ def _junit_case(suite: ElementTree.Element, case: CaseResult) -> None:
 
 
 def html(results: Sequence[RowResult]) -> str:
-    """One self-contained page without scripts."""
+    """One self-contained page."""
     bad = any(result.verdict is CheckVerdict.FAIL for result in results)
     return page(
         "sim.fault_table",

@@ -1,4 +1,4 @@
-"""report.html of a run: one self-contained page without scripts, the same for the same inputs."""
+"""report.html of a run: one self-contained page, the same for the same inputs."""
 
 from pathlib import Path
 from typing import Any
@@ -9,8 +9,11 @@ from sim.record import run_dir
 from sim.record.run_record import RunRecord
 from sim.report import tables
 from sim.report.charts.lines import Lines
+from sim.report.event_words import event_table
 from sim.report.parameter_table import parameter_table
 from sim.scenario.schema import Scenario
+
+SCRIPTS = ("script/attitude.js", "script/track.js")
 
 
 def write_report(
@@ -25,13 +28,17 @@ def write_report(
     Raises:
         HarnessError: that ``run.json`` is damaged.
     """
+    from sim.report.charts.page_data import page_data  # noqa: PLC0415 as the sections
     from sim.report.charts.sections import sections  # noqa: PLC0415 matplotlib loads when something is drawn
 
     run = run_dir.read_run(path.parent) if (path.parent / run_dir.RUN).is_file() else None
-    events = tables.events(summary)
+    events = event_table(summary, scenario)
+    charts = sections(scenario, lines, audit)
     html = page(
         "sim.report",
         "report.html",
+        data=page_data(scenario, summary, lines, audit, charts),
+        scripts=SCRIPTS,
         name=scenario.name,
         about=scenario.summary,
         facts=_facts(summary, run),
@@ -43,7 +50,8 @@ def write_report(
         key_figures=tables.key_figures(summary),
         coils=tables.coil_table(summary, audit),
         longest_pulse=tables.longest_pulse(summary, audit),
-        charts=sections(scenario, lines, audit),
+        charts=charts,
+        moves=lines.ticks > 0,
         parameters=parameter_table(summary),
         events=events,
         events_open=len(events.rows) <= tables.EVENTS_OPEN,

@@ -6,9 +6,8 @@ from typing import Any, NamedTuple
 
 import tomli_w
 
-from fsw.core.events import Event
 from fsw.core.orbit.tle import read_tle, tle_elements
-from fsw.wire.messages import Mode, Severity
+from fsw.wire.messages import Mode
 from sim.audit.auditor import AuditReport
 from sim.audit.findings import COILS, seconds_text
 from sim.flight.second_senders import describe_senders
@@ -179,20 +178,6 @@ def violations(audit: AuditReport) -> Table:
     return Table(("t [s]", "coil", "limit", "what"), rows, "Limits broken")
 
 
-def events(summary: Json) -> Table:
-    """What the nodes reported, in order."""
-    rows = [
-        (
-            seconds_text(one["t_s"]),
-            one["node"],
-            Severity(one["severity"]).name.lower() if one["severity"] in set(Severity) else "",
-            _event_text(one),
-        )
-        for one in summary.get("events", [])
-    ]
-    return Table(("t [s]", "node", "severity", "event"), rows)
-
-
 def versions(run: RunRecord | None) -> Sequence[str]:
     """What wrote the run, for the foot of the page."""
     if run is None:
@@ -221,16 +206,6 @@ def _replay_badge(replay: Json | None) -> tuple[str, str]:
     if replay["bit_exact"]:
         return "good", "✓ replay bit-exact"
     return ("note", "! replay command-exact only") if replay["command_exact"] else ("bad", "✗ replay differs")
-
-
-def _event_text(one: Json) -> str:
-    number, argument = one["event"], one["argument"]
-    if one["node"] == "FSW" and number in set(Event):
-        event = Event(number)
-        if event is Event.MODE_CHANGED and argument in set(Mode):
-            return f"mode {Mode(argument).name}"
-        return f"{event.name.replace('_', ' ').lower()} ({argument})"
-    return f"event {number} ({argument})"
 
 
 def _orbit(scenario: Scenario) -> str:

@@ -1,4 +1,4 @@
-"""campaign.html: one self-contained page without scripts."""
+"""campaign.html: one self-contained page."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

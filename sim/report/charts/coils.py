@@ -25,10 +25,11 @@ from sim.drawing.canvas import (
     legend,
     shade,
     stacked,
-    trace,
 )
 from sim.drawing.envelope import BINS
+from sim.drawing.time_chart import DrawnChart, Level, Panel, Series, TimeChart, draw
 from sim.report.charts.drawn_flight import DrawnFlight
+from sim.report.charts.pulse_lanes import pulse_lanes
 
 ZOOM_S = 1200.0
 MARKS = 300
@@ -38,7 +39,7 @@ _REACH = 0.42
 """Height of a bar of the highest level; lanes are 1 apart."""
 
 
-def raster(flight: DrawnFlight) -> Figure:
+def raster(flight: DrawnFlight) -> DrawnChart:
     """Every pulse of the flight: a lane a coil, a bar up or down by polarity, as high as its level."""
     time = flight.time
     figure, (panel,) = stacked(time, (2.1,), legends=bool(flight.audit.violations))
@@ -54,10 +55,10 @@ def raster(flight: DrawnFlight) -> Figure:
         _bars(panel, coil, [(x, x, level) for x, level in centres], colour, flight.audit.limits.max_level)
     panel.set_title("Every pulse of the flight")
     _violations(panel, flight, time)
-    return figure
+    return DrawnChart(figure, {"panels": [pulse_lanes(flight)]})
 
 
-def zoom(flight: DrawnFlight) -> Figure:
+def zoom(flight: DrawnFlight) -> DrawnChart:
     """The twenty minutes with the most pulses: their lengths, and the back-off after each."""
     time = flight.window(flight.busiest(ZOOM_S), min(ZOOM_S, flight.length_s))
     figure, (panel,) = stacked(time, (2.3,), legends=bool(flight.audit.violations))
@@ -87,33 +88,36 @@ def zoom(flight: DrawnFlight) -> Figure:
     part = f"The {ZOOM_S / 60.0:g} minutes with the most pulses" if flight.length_s > ZOOM_S else "The same"
     panel.set_title(f"{part}, to scale, back-off shaded")
     _violations(panel, flight, time)
-    return figure
+    return DrawnChart(figure)
 
 
-def duty(flight: DrawnFlight) -> Figure:
+def duty(flight: DrawnFlight) -> DrawnChart:
     """Duty over the orbit before each time, against what pulse length and back-off allow."""
-    time, limits = flight.time, flight.audit.limits
-    figure, (panel,) = stacked(time, (1.8,))
+    limits, t_s = flight.audit.limits, flight.t_s
     cycle_s = (limits.pulse_us + limits.backoff_us) / 1e6
-    at_s = np.linspace(min(5.0 * cycle_s, flight.length_s / 4.0), flight.length_s, 2 * BINS)
-    coils = [100.0 * flight.duty(coil, at_s) for coil in COILS]
-    for coil, colour in zip(COILS, AXES_COLOURS, strict=True):
-        trace(panel, time, at_s, coils[coil], f"coil {coil}", colour)
+    known = t_s >= min(5.0 * cycle_s, flight.length_s / 4.0)
+    duties = [np.where(known, 100.0 * flight.duty(coil, t_s), np.nan) for coil in COILS]
+    series = [
+        Series(f"coil {coil}", duty, colour)
+        for coil, duty, colour in zip(COILS, duties, AXES_COLOURS, strict=True)
+    ]
     if limits.shared:
-        trace(panel, time, at_s, sum(coils, np.zeros_like(at_s)), "all", INK, linewidth=1.3)
+        series.append(Series("all", sum(duties, np.zeros_like(t_s)), INK, 1.3))
     bound = 100.0 * limits.pulse_us / (limits.pulse_us + limits.backoff_us)
     what = "all coils" if limits.shared else "each coil"
-    panel.axhline(
-        bound, color=LIMIT, linestyle=(0, (4, 2)), linewidth=1.1, label=f"{bound:.2f} %: limit of {what}"
+    most = max([bound, *(float(np.nanmax(duty)) for duty in duties if known.any())])
+    panel = Panel(
+        "Duty over the last orbit",
+        "duty [%]",
+        1.8,
+        series,
+        levels=(Level(bound, f"{bound:.2f} %: limit of {what}", LIMIT),),
+        reach=(0.0, 1.15 * most),
     )
-    panel.set_ylim(0.0, 1.15 * max(bound, *(float(duty.max()) for duty in coils)))
-    panel.set_ylabel("duty [%]")
-    panel.set_title("Duty over the last orbit")
-    legend(panel)
-    return figure
+    return draw(flight.time, TimeChart(t_s, (panel,)))
 
 
-def gaps_and_levels(flight: DrawnFlight) -> Figure:
+def gaps_and_levels(flight: DrawnFlight) -> DrawnChart:
     """The lengths of the gaps against the back-off, and the levels of the pulses."""
     height_in = 2.6
     figure = Figure(figsize=(WIDTH_IN, height_in))
@@ -131,7 +135,7 @@ def gaps_and_levels(flight: DrawnFlight) -> Figure:
     )
     _gaps(gaps, flight)
     _levels(levels, flight)
-    return figure
+    return DrawnChart(figure)
 
 
 def _gaps(panel: Axes, flight: DrawnFlight) -> None:

@@ -40,17 +40,19 @@ class DrawnFlight:
         audit: pulses, violations and the limits.
         tick_hz: ticks a second.
         orbit_s: period of the orbit.
+        start_unix_s: UTC of tick 0.
     """
 
     lines: Lines
     audit: AuditReport
     tick_hz: int
     orbit_s: float
+    start_unix_s: int
 
     @classmethod
     def of(cls, scenario: Scenario, lines: Lines, audit: AuditReport) -> "DrawnFlight":
         """That of a scenario."""
-        return cls(lines, audit, scenario.time.tick_hz, orbit_period_s(scenario))
+        return cls(lines, audit, scenario.time.tick_hz, orbit_period_s(scenario), scenario.epoch_unix_s)
 
     @property
     def length_s(self) -> float:

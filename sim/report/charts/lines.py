@@ -7,6 +7,7 @@ from fsw.wire.messages import Mode
 from sim.drawing.envelope import Envelope
 from sim.record.estimates import Estimates
 from sim.record.truth import Histories
+from sim.report.charts.motion import MotionSamples
 from sim.report.figures.histories import FlightHistories
 from sim.report.figures.spans import spans
 
@@ -16,6 +17,8 @@ TORQUE = "torque_body_nm/"
 """Begins the name of a torque, in the histories and here."""
 MEAN_S = 600.0
 """Coils act in pulses: their torque is drawn as the magnitude of its mean over so long."""
+FINE_BINS = 2500
+"""Bins along a flight; a picture shows fewer, but the page can be zoomed."""
 ROUNDING = 1e-9
 """A torque below this fraction of the largest so far is the rounding error of a mean."""
 
@@ -82,6 +85,7 @@ class Lines:
         self.ticks = ticks
         self.dark = Spans()
         self.modes = {mode: Spans() for mode in Mode}
+        self.motion = MotionSamples(ticks)
         self.has_estimates = False
         """Whether the controller estimated with a filter, at some tick."""
         self._torques = _Torques(round(MEAN_S * tick_hz))
@@ -92,6 +96,7 @@ class Lines:
         """The next block, of at least one tick."""
         flight = FlightHistories(truth, estimates)
         self.dark.take(flight.dark)
+        self.motion.take(truth)
         for mode, ticks in self.modes.items():
             ticks.take(estimates.mode[: flight.ticks] == mode)
         self.has_estimates |= bool(np.isfinite(estimates.covariance[: flight.ticks, 0, 0]).any())
@@ -103,7 +108,7 @@ class Lines:
                 name: slice(begin, end)
                 for name, begin, end in zip(drawn, (0, *ends[:-1].tolist()), ends.tolist(), strict=True)
             }
-            self._envelope = Envelope(self.ticks, samples.shape[1])
+            self._envelope = Envelope(self.ticks, samples.shape[1], FINE_BINS)
         self._envelope.take(samples)
 
     @property

@@ -1,21 +1,10 @@
 """The charts of the report that show the flight: modes, attitude, rates, estimate, field and torques."""
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from fsw.wire.messages import Mode
-from sim.drawing.canvas import (
-    AXES_COLOURS,
-    INK,
-    LIMIT,
-    MORE_COLOURS,
-    MUTED,
-    legend,
-    log_y,
-    shade,
-    stacked,
-    trace,
-)
+from sim.drawing.canvas import AXES_COLOURS, INK, LIMIT, MORE_COLOURS, MUTED, Array, Span, shade, stacked
+from sim.drawing.time_chart import DrawnChart, Json, Level, Panel, Series, TimeChart, draw
 from sim.report.charts.drawn_flight import DrawnFlight
 
 MODE_COLOURS = {
@@ -25,9 +14,11 @@ MODE_COLOURS = {
     Mode.POINT: "#009e73",
 }
 SETTLED_DEG = 5.0
+MOST_SPANS = 2000
+"""Spans in which the controller stays in a mode."""
 
 
-def modes(flight: DrawnFlight) -> Figure:
+def modes(flight: DrawnFlight) -> DrawnChart:
     """The mode of the controller."""
     time = flight.time
     figure, (panel,) = stacked(time, (0.9,), legends=False)
@@ -40,90 +31,100 @@ def modes(flight: DrawnFlight) -> Figure:
     panel.tick_params(axis="y", length=0.0)
     panel.grid(axis="y", visible=False)
     panel.set_title("Mode")
-    return figure
+    return DrawnChart(figure, {"panels": [_mode_lanes(flight)]})
 
 
-def pointing(flight: DrawnFlight) -> Figure:
+def _mode_lanes(flight: DrawnFlight) -> Json:
+    lanes = [
+        {"label": mode.name, "colour": MODE_COLOURS[mode], "spans_s": _few(flight.in_mode(mode))}
+        for mode in Mode
+    ]
+    return {"title": "Mode", "height": 100, "lanes": lanes}
+
+
+def _few(spans: tuple[Span, ...]) -> list[Span]:
+    """The longest of them, in order, where a controller that chatters has very many."""
+    longest = sorted(spans, key=lambda span: span[0] - span[1])[:MOST_SPANS]
+    return sorted(longest)
+
+
+def pointing(flight: DrawnFlight) -> DrawnChart:
     """The angle of the whole attitude and that of axis 1."""
-    time = flight.time
-    figure, (panel,) = stacked(time, (2.3,))
-    total, axis1 = flight.line("pointing_deg"), flight.line("axis1_deg")
-    trace(panel, time, flight.t_s, axis1, "axis 1 from the vertical", AXES_COLOURS[0])
-    trace(panel, time, flight.t_s, total, "whole attitude", INK, linewidth=1.2)
-    panel.axhline(SETTLED_DEG, color=MUTED, linewidth=0.8, linestyle=(0, (4, 3)), label=f"{SETTLED_DEG:g}°")
-    log_y(panel, total, axis1, decades=3.5)
-    panel.set_ylabel("angle [deg]")
-    panel.set_title("Pointing error")
-    legend(panel)
-    return figure
-
-
-def rates(flight: DrawnFlight) -> Figure:
-    """Rates relative to the orbital frame: components, and magnitude on a logarithmic scale."""
-    time = flight.time
-    figure, (components, magnitude) = stacked(time, (1.6, 1.3))
-    omega, total = 1e3 * flight.line("omega_degps"), 1e3 * flight.line("rate_degps")
-    for axis, colour in enumerate(AXES_COLOURS):
-        trace(components, time, flight.t_s, omega[:, axis], f"axis {axis + 1}", colour)
-    components.set_ylabel("rate [mdeg/s]")
-    components.set_title("Rates relative to the orbital frame, body axes")
-    legend(components)
-    trace(magnitude, time, flight.t_s, total, "magnitude", INK)
-    log_y(magnitude, total, decades=4.0)
-    magnitude.set_ylabel("rate [mdeg/s]")
-    magnitude.set_title("Their magnitude")
-    return figure
-
-
-def estimate(flight: DrawnFlight) -> Figure:
-    """True errors of the estimated attitude and rate beside the 3 sigma that the filter expects."""
-    time = flight.time
-    figure, panels = stacked(time, (1.9, 1.6))
-    histories = (
-        ("Attitude estimate", "error [deg]", "attitude_error_deg", "attitude_sigma3_deg", 1.0),
-        ("Rate estimate", "error [mdeg/s]", "rate_error_degps", "rate_sigma3_degps", 1e3),
+    panel = Panel(
+        "Pointing error",
+        "angle [deg]",
+        2.3,
+        (
+            Series("axis 1 from the vertical", flight.line("axis1_deg"), AXES_COLOURS[0]),
+            Series("whole attitude", flight.line("pointing_deg"), INK, 1.2),
+        ),
+        decades=3.5,
+        levels=(Level(SETTLED_DEG, f"{SETTLED_DEG:g}°"),),
     )
-    for panel, (title, label, error_name, sigma3_name, unit) in zip(panels, histories, strict=True):
-        error, sigma3 = unit * flight.line(error_name), unit * flight.line(sigma3_name)
-        trace(panel, time, flight.t_s, error, "true error", AXES_COLOURS[0])
-        trace(panel, time, flight.t_s, sigma3, "3σ of the filter", AXES_COLOURS[1], linewidth=1.3)
-        log_y(panel, error, sigma3, decades=4.0)
-        panel.set_ylabel(label)
-        panel.set_title(title)
-        legend(panel)
-    return figure
+    return draw(flight.time, TimeChart(flight.t_s, (panel,)))
 
 
-def field_and_dipole(flight: DrawnFlight) -> Figure:
+def rates(flight: DrawnFlight) -> DrawnChart:
+    """Rates relative to the orbital frame: components, and magnitude on a logarithmic scale."""
+    omega, total = 1e3 * flight.line("omega_degps"), 1e3 * flight.line("rate_degps")
+    components = Panel(
+        "Rates relative to the orbital frame, body axes", "rate [mdeg/s]", 1.6, _by_axis(omega)
+    )
+    magnitude = Panel(
+        "Their magnitude", "rate [mdeg/s]", 1.3, (Series("magnitude", total, INK),), decades=4.0
+    )
+    return draw(flight.time, TimeChart(flight.t_s, (components, magnitude)))
+
+
+def estimate(flight: DrawnFlight) -> DrawnChart:
+    """True errors of the estimated attitude and rate beside the 3 sigma that the filter expects."""
+    histories = (
+        ("Attitude estimate", "error [deg]", 1.9, "attitude_error_deg", "attitude_sigma3_deg", 1.0),
+        ("Rate estimate", "error [mdeg/s]", 1.6, "rate_error_degps", "rate_sigma3_degps", 1e3),
+    )
+    panels = [
+        Panel(
+            title,
+            label,
+            height_in,
+            (
+                Series("true error", unit * flight.line(error), AXES_COLOURS[0]),
+                Series("3σ of the filter", unit * flight.line(sigma3), AXES_COLOURS[1], 1.3),
+            ),
+            decades=4.0,
+        )
+        for title, label, height_in, error, sigma3, unit in histories
+    ]
+    return draw(flight.time, TimeChart(flight.t_s, panels))
+
+
+def field_and_dipole(flight: DrawnFlight) -> DrawnChart:
     """The geomagnetic field and the true dipole of the coils, body axes."""
-    time = flight.time
-    figure, (field, dipole) = stacked(time, (1.6, 1.4))
     b_ut, m_am2 = 1e6 * flight.line("b_body_t"), flight.line("m_body_am2")
-    trace(field, time, flight.t_s, 1e6 * flight.line("field_t"), "magnitude", MUTED)
-    for axis, colour in enumerate(AXES_COLOURS):
-        trace(field, time, flight.t_s, b_ut[:, axis], f"axis {axis + 1}", colour)
-        trace(dipole, time, flight.t_s, m_am2[:, axis], f"axis {axis + 1}", colour, linewidth=0.7)
-    field.set_ylabel("field [µT]")
-    field.set_title("Geomagnetic field, body axes")
-    dipole.set_ylabel("dipole [A m²]")
-    dipole.set_title("Coil dipole, body axes")
-    legend(field)
-    legend(dipole)
-    return figure
+    magnitude = Series("magnitude", 1e6 * flight.line("field_t"), MUTED)
+    field = Panel("Geomagnetic field, body axes", "field [µT]", 1.6, (magnitude, *_by_axis(b_ut)))
+    dipole = Panel("Coil dipole, body axes", "dipole [A m²]", 1.4, _by_axis(m_am2, 0.7))
+    return draw(flight.time, TimeChart(flight.t_s, (field, dipole)))
 
 
-def torques(flight: DrawnFlight) -> Figure:
+def torques(flight: DrawnFlight) -> DrawnChart:
     """Magnitudes of the torques by source."""
-    time = flight.time
-    figure, (panel,) = stacked(time, (2.0,))
-    torques_unm = {source: 1e6 * torque for source, torque in flight.lines.torques().items()}
     colours = {"coils": INK, "gravity_gradient": AXES_COLOURS[0], "bias": AXES_COLOURS[1]}
     spare = iter((AXES_COLOURS[2], *MORE_COLOURS, LIMIT) * 4)
-    for source, torque in torques_unm.items():
-        label = source.replace("_", " ") + (", mean of 10 min" if source == "coils" else "")
-        trace(panel, time, flight.t_s, torque, label, colours.get(source) or next(spare))
-    log_y(panel, *torques_unm.values(), decades=3.5)
-    panel.set_ylabel("torque [µN m]")
-    panel.set_title("Torques by source")
-    legend(panel)
-    return figure
+    series = [
+        Series(
+            source.replace("_", " ") + (", mean of 10 min" if source == "coils" else ""),
+            1e6 * torque,
+            colours.get(source) or next(spare),
+        )
+        for source, torque in flight.lines.torques().items()
+    ]
+    panel = Panel("Torques by source", "torque [µN m]", 2.0, series, decades=3.5)
+    return draw(flight.time, TimeChart(flight.t_s, (panel,)))
+
+
+def _by_axis(vectors: Array, width: float = 1.0) -> tuple[Series, ...]:
+    return tuple(
+        Series(f"axis {axis + 1}", vectors[:, axis], colour, width)
+        for axis, colour in enumerate(AXES_COLOURS)
+    )

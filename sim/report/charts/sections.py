@@ -1,30 +1,32 @@
 """The sections of the report that hold charts, and the words under each chart."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from markupsafe import Markup
-from matplotlib.figure import Figure
 
 from sim.audit.auditor import AuditReport
 from sim.audit.findings import AuditLimits
 from sim.drawing.canvas import style
 from sim.drawing.inline_svg import svg
-from sim.report.charts import coils, over_time
+from sim.drawing.time_chart import DrawnChart
+from sim.report.charts import coils, ground_track, over_time
 from sim.report.charts.drawn_flight import DrawnFlight
 from sim.report.charts.lines import Lines
 from sim.scenario.schema import Scenario
 
-Drawing = tuple[Callable[[DrawnFlight], Figure], str]
+Json = dict[str, Any]
+Drawing = tuple[Callable[[DrawnFlight], DrawnChart], str]
 """What draws a chart, and the words under it."""
 
 
 class Chart(NamedTuple):
-    """A chart as it stands on the page."""
+    """A chart as it stands on the page; without data it is a picture alone."""
 
     name: str
     svg: Markup
     words: str
+    data: Json | None = None
 
 
 class ChartSection(NamedTuple):
@@ -43,6 +45,7 @@ def sections(scenario: Scenario, lines: Lines, audit: AuditReport) -> list[Chart
     flight = DrawnFlight.of(scenario, lines, audit)
     with style():
         return [
+            ChartSection("track", "Ground track", _charts(flight, _TRACK)),
             ChartSection("attitude", "Attitude", _charts(flight, _ATTITUDE)),
             ChartSection("estimate", "Estimate", _charts(flight, _ESTIMATE))
             if lines.has_estimates
@@ -55,11 +58,19 @@ def sections(scenario: Scenario, lines: Lines, audit: AuditReport) -> list[Chart
 
 
 def _charts(flight: DrawnFlight, drawings: tuple[Drawing, ...]) -> tuple[Chart, ...]:
-    return tuple(
-        Chart(draw.__name__, Markup(svg(draw(flight), draw.__name__)), words) for draw, words in drawings
-    )
+    charts = []
+    for draw, words in drawings:
+        drawn = draw(flight)
+        charts.append(Chart(draw.__name__, Markup(svg(drawn.picture, draw.__name__)), words, drawn.data))
+    return tuple(charts)
 
 
+_TRACK: tuple[Drawing, ...] = (
+    (
+        ground_track.track,
+        "Where the satellite was above the Earth; thick in eclipse. Dots: where each coil was driven.",
+    ),
+)
 _ATTITUDE: tuple[Drawing, ...] = (
     (
         over_time.pointing,

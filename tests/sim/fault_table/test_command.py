@@ -165,7 +165,7 @@ def test_pages_name_the_failed_case_and_escape(planted):
     assert "phase 3 seed 1" in page
     assert "said <1>" not in page
     assert "said &lt;1&gt;" in page
-    assert "http" not in page
+    assert "://" not in page
     markdown = render.markdown(planted, 4, 1)
     assert "1 rows pass, 1 fail, 1 not yet" in markdown
     assert "1 of 2: check 1, said <1>, phase 3 seed 1" in markdown

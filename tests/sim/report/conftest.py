@@ -36,6 +36,7 @@ class Page(HTMLParser):
         self.source = text
         self.tags: list[str] = []
         self.attributes: list[tuple[str, str, str]] = []
+        self.scripts: list[str] = []
         self.text: list[str] = []
         self.texts: dict[str, list[str]] = {}
         self.paths: dict[str, list[str]] = {}
@@ -51,6 +52,8 @@ class Page(HTMLParser):
 
     def handle_startendtag(self, tag, attrs):
         self.tags.append(tag)
+        if tag == "script":
+            self.scripts.append("")
         self.attributes += [(tag, name, value or "") for name, value in attrs]
         figure = self._figure()
         if tag == "path" and figure:
@@ -61,12 +64,24 @@ class Page(HTMLParser):
         assert opened == tag
 
     def handle_data(self, data):
-        if data.strip() and self._open[-1][0] != "style":
+        if self._open and self._open[-1][0] == "script":
+            self.scripts[-1] += data
+        elif data.strip() and self._open[-1][0] != "style":
             self.text.append(data.strip())
             self.texts.setdefault(self._figure() or "", []).append(data.strip())
 
     def _figure(self):
         return next((figure for _, figure in reversed(self._open) if figure), None)
+
+    @property
+    def data(self):
+        """What the scripts draw."""
+        return json.loads(self.scripts[1])
+
+    @property
+    def written(self):
+        """The source without the scripts of all pages."""
+        return re.sub("<script.*?</script>", "", self.source, flags=re.DOTALL)
 
     def values(self, name):
         return [value for _, attribute, value in self.attributes if attribute == name]

@@ -31,14 +31,14 @@ def no_charts(monkeypatch):
 
 
 def test_the_page_needs_nothing_but_itself(page):
-    assert not {"script", "link", "iframe", "object", "embed", "img", "image", "base", "form"} & set(
-        page.tags
-    )
+    assert not {"link", "iframe", "object", "embed", "img", "image", "base", "form"} & set(page.tags)
     assert not [name for _, name, _ in page.attributes if name.startswith("on")]
     for name in ("src", "href", "xlink:href", "action", "data", "srcset"):
         assert [value for value in page.values(name) if not value.startswith("#")] == []
     assert set(re.findall(r"url\(\s*(.)", page.source)) == {"#"}
     for word in ("@import", "@font-face", "://", "<!DOCTYPE svg", "<?xml"):
+        assert word not in page.written
+    for word in ("fetch(", "XMLHttpRequest", "import(", "WebSocket", "EventSource"):
         assert word not in page.source
 
 
@@ -46,7 +46,7 @@ def test_ids_are_unique_and_every_reference_finds_its_own(page):
     ids = page.values("id")
     assert len(ids) == len(set(ids))
     referred = [value[1:] for value in page.values("xlink:href") + page.values("href")]
-    referred += re.findall(r"url\(#([^)]*)\)", page.source)
+    referred += re.findall(r"url\(#([^)]*)\)", page.written)
     assert referred
     assert set(referred) <= set(ids)
 
@@ -138,7 +138,7 @@ def test_thousands_of_broken_limits_do_not_drown_the_page(tmp_path, made_run):
     page = made_run(violations=many).write(tmp_path)
     assert "✗ limits broken: 5000" in page.text
     assert "and 4950 more" in page.text
-    assert len(page.source) < 1_500_000
+    assert len(page.source) < 2_000_000
 
 
 @pytest.mark.usefixtures("no_charts")
@@ -241,7 +241,8 @@ def test_whatever_a_scenario_is_called_stays_text(tmp_path, made_run):
     event = {"t_s": 1.0, "node": "<i>COIL</i>", "event": 9, "severity": 99, "argument": 0}
     page = made_run(ticks=20, pulses=(), scenario=scenario, events=[event]).write(tmp_path)
     assert {name, summary, "<i>COIL</i>"} <= set(page.text)
-    assert not {"script", "img", "i"} & set(page.tags)
+    assert not {"img", "i"} & set(page.tags)
+    assert "alert(1)" not in page.scripts
 
 
 def test_events_are_told_in_words(tmp_path, made_run):
@@ -250,7 +251,9 @@ def test_events_are_told_in_words(tmp_path, made_run):
         {"t_s": 95.5, "node": "COIL", "event": 200, "severity": 2, "argument": 4},
     ]
     page = made_run(ticks=20, pulses=(), events=events).write(tmp_path)
-    assert "91.000 FSW info mode ACQUIRE 95.500 COIL error event 200 (4)" in " ".join(page.text)
+    text = " ".join(page.text)
+    assert "91.000 0.02 FSW info mode ACQUIRE The attitude is estimated and turned towards nominal." in text
+    assert "95.500 0.02 COIL error event 200 (4)" in text
 
 
 # --- size and time
@@ -268,7 +271,7 @@ def test_a_hundred_orbits_stay_small(tmp_path, made_run, charts):
     started = time.perf_counter()
     page = run.write(tmp_path, chatter, omega_body_orbit_radps=1e-4 * noise, lit=lit)
     assert time.perf_counter() - started < 30.0
-    assert len(page.source.encode()) < 1_500_000
+    assert len(page.source.encode()) < 3_000_000
     assert charts <= set(page.values("id"))
     (bands,) = page.drawn("chart-pointing", "eclipse")
     assert bands.count("M") == 100

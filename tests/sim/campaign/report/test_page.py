@@ -1,4 +1,4 @@
-"""The page shows every result, whatever there is of it, escaped and without scripts."""
+"""The page shows every result, whatever there is of it, escaped."""
 
 from html.parser import HTMLParser
 
@@ -40,7 +40,6 @@ def test_it_has_all_sections_and_pictures(page):
         for name in ("distributions", "cumulative", "indices", "worst-runs", "scatter", "convergence")
     ]
     assert sum(tag == "svg" for tag, _ in seen) == len(charts)
-    assert not any(tag == "script" for tag, _ in seen)
 
 
 def test_it_says_what_was_flown_and_escapes_it(page):

@@ -1,0 +1,163 @@
+"""Events in words: what happened, when, and what it means."""
+
+from collections.abc import Callable, Mapping
+from enum import IntEnum
+from typing import Any, NamedTuple
+
+from fsw.core.events import Event
+from fsw.core.fdir.faults import CoilFault, SensorFault
+from fsw.core.monitors import Monitor
+from fsw.wire.messages import CoilRefusedReason, Mode, Severity
+from hil_stub.coils.events import CoilEventCode
+from sim.audit.findings import seconds_text
+from sim.flight.isolations import UNITS
+from sim.report.tables import Table
+from sim.scenario.schema import Scenario, orbit_period_s
+
+Json = dict[str, Any]
+Words = tuple[Callable[[int], str], str]
+"""What happened, by the argument; what it means."""
+
+
+class EventInWords(NamedTuple):
+    """An event as a person reads it; the meaning is empty where it is unknown."""
+
+    t_s: float
+    node: str
+    severity: str
+    what: str
+    meaning: str
+
+
+_MODES = {
+    Mode.SAFE: "Coils are off. Control begins again when what tripped it is gone.",
+    Mode.DETUMBLE: "The coils damp the rate; the attitude is not controlled.",
+    Mode.ACQUIRE: "The attitude is estimated and turned towards nominal.",
+    Mode.POINT: "The error is small: the attitude is held.",
+}
+_MONITORS: dict[int, str] = {
+    Monitor.ATTITUDE_FINITE: "attitude or rate is no number",
+    Monitor.QUATERNION_UNIT: "the quaternion has no unit norm",
+    Monitor.RATE_BOUNDED: "the rate is larger than a satellite can have",
+    Monitor.OWED_FINITE: "the owed impulse is no number",
+    Monitor.FIELD_FRESH: "the magnetometer is silent",
+    Monitor.COIL_STATUS_FRESH: "the coil board is silent",
+    Monitor.COIL_AS_COMMANDED: "a coil is driven that was not requested",
+    Monitor.ORBIT_KNOWN: "the orbit has no position",
+    Monitor.NO_SECOND_SENDER: "another node sends as the flight software",
+}
+_FSW: dict[int, Words] = {
+    Event.FILTER_STARTED: (
+        lambda count: "filter started" if not count else f"filter started, {count} restarts before",
+        "From here on attitude and rate are estimated.",
+    ),
+    Event.FILTER_RESTARTED: (
+        lambda count: f"filter restarted, restart {count}",
+        "The estimate contradicted the sensors and was given up; it converges anew.",
+    ),
+    Event.MONITOR_TRIPPED: (
+        lambda number: f"monitor tripped: {_named(_MONITORS, number)}",
+        "A check of the flight software failed: it goes to SAFE, coils off.",
+    ),
+    Event.REQUEST_REFUSED: (
+        lambda reason: f"pulse refused by the coil board: {_name(CoilRefusedReason, reason)}",
+        "The interlock of the board held; this pulse was not fired.",
+    ),
+    Event.TIME_MISMATCH: (
+        lambda seconds: f"SYNC is {seconds} s off the expected time",
+        "The clock on the bus jumped.",
+    ),
+    Event.SENSOR_ISOLATED: (
+        lambda argument: _unit(Event.SENSOR_ISOLATED, argument, SensorFault),
+        "Its samples are not used any more.",
+    ),
+    Event.SENSOR_READMITTED: (
+        lambda argument: _unit(Event.SENSOR_ISOLATED, argument, SensorFault, "used again"),
+        "It has been sound for long enough.",
+    ),
+    Event.SENSORS_DISAGREE: (
+        lambda _: "magnetometer and Sun sensor disagree",
+        "Without an estimate it cannot be told which is wrong.",
+    ),
+    Event.COIL_FAULT: (
+        lambda argument: _unit(Event.COIL_FAULT, argument, CoilFault),
+        "Control does without this coil.",
+    ),
+    Event.COIL_READMITTED: (
+        lambda argument: _unit(Event.COIL_FAULT, argument, CoilFault, "used again"),
+        "Its pulses act as they should.",
+    ),
+    Event.SECOND_SENDER: (
+        lambda can_id: f"another node sends under 0x{can_id:03X}",
+        "While it does, no pulse is requested.",
+    ),
+    Event.STRANGE_SYNC: (lambda tick: f"SYNC of tick {tick} is out of turn", "It was passed over."),
+    Event.PLANT_RESTARTED: (
+        lambda tick: f"the count of ticks began again after tick {tick}",
+        "The plant was started again.",
+    ),
+    Event.FALSE_END: (
+        lambda ticks: f"PLANT_END after {ticks} ticks is false",
+        "The flight goes on: someone else sent it.",
+    ),
+}
+_COIL: dict[int, Words] = {
+    CoilEventCode.SELF_TEST_FAILED: (
+        lambda ma: f"self-test failed, {ma} mA",
+        "Current flows while all coils are off, or cannot be measured.",
+    ),
+    CoilEventCode.DEAD_MAN: (lambda _: "no SYNC: coils switched off", "A full lockout follows."),
+    CoilEventCode.CURRENT_WHILE_OFF: (
+        lambda ma: f"current while off, {ma} mA",
+        "The interlock cannot stop it; every request is refused.",
+    ),
+    CoilEventCode.NO_CURRENT: (lambda ma: f"no current, {ma} mA", "A coil is on, but nothing flows."),
+    CoilEventCode.CURRENT_REVERSED: (
+        lambda ma: f"current reversed, {ma} mA",
+        "A coil is on with the wrong sign.",
+    ),
+    CoilEventCode.CURRENT_WRONG: (
+        lambda ma: f"current wrong, {ma} mA",
+        "It differs from the nominal one by more than 20 %.",
+    ),
+}
+_WORDS = {"FSW": _FSW, "COIL": _COIL}
+"""By node, then by the number of the event."""
+
+
+def in_words(event: Json) -> EventInWords:
+    """An event of summary.json; one of an unknown number by its number."""
+    number, argument = event["event"], event["argument"]
+    if event["node"] == "FSW" and number == Event.MODE_CHANGED and argument in _MODES:
+        what, meaning = f"mode {Mode(argument).name}", _MODES[Mode(argument)]
+    else:
+        unknown: Words = (lambda value: f"event {number} ({value})", "")
+        describe, meaning = _WORDS.get(event["node"], {}).get(number, unknown)
+        what = describe(argument)
+    severity = _name(Severity, event["severity"]) if event["severity"] in set(Severity) else ""
+    return EventInWords(event["t_s"], event["node"], severity, what, meaning)
+
+
+def event_table(summary: Json, scenario: Scenario) -> Table:
+    """What the nodes reported, in order."""
+    orbit_s = orbit_period_s(scenario)
+    events = [in_words(one) for one in summary.get("events", [])]
+    rows = [
+        (seconds_text(one.t_s), f"{one.t_s / orbit_s:.2f}", one.node, one.severity, one.what, one.meaning)
+        for one in events
+    ]
+    return Table(("t [s]", "orbit", "node", "severity", "what happened", "what it means"), rows)
+
+
+def _unit(event: Event, argument: int, faults: type[IntEnum], now: str = "isolated") -> str:
+    unit, fault = divmod(argument, 100)
+    return f"{_named(UNITS[event], unit)} {now}: {_name(faults, fault)}"
+
+
+def _named(names: Mapping[int, str], number: int) -> str:
+    return names.get(number, f"number {number}")
+
+
+def _name(kind: type[IntEnum], number: int) -> str:
+    """The name of a number in words, or the number where it has none."""
+    return kind(number).name.replace("_", " ").lower() if number in set(kind) else f"number {number}"

@@ -1,0 +1,61 @@
+"""Events in words: all that the nodes can report has a sentence, and a strange number does no harm."""
+
+import pytest
+
+from fsw.core.events import SEVERITY, Event
+from hil_stub.coils.events import CoilEventCode
+from sim.report.event_words import event_table, in_words
+from sim.scenario.schema import load
+
+
+def words(node, event, argument=0, severity=0):
+    return in_words(
+        {"t_s": 1.0, "node": node, "event": int(event), "severity": severity, "argument": argument}
+    )
+
+
+@pytest.mark.parametrize(
+    ("node", "event"), [*(("FSW", event) for event in Event), *(("COIL", event) for event in CoilEventCode)]
+)
+def test_every_event_has_words_and_a_meaning(node, event):
+    found = words(node, event)
+    assert found.meaning
+    assert not found.what.startswith("event ")
+
+
+@pytest.mark.parametrize(
+    ("event", "argument", "what"),
+    [
+        (Event.MODE_CHANGED, 3, "mode POINT"),
+        (Event.MODE_CHANGED, 9, "event 1 (9)"),
+        (Event.FILTER_STARTED, 0, "filter started"),
+        (Event.MONITOR_TRIPPED, 5, "monitor tripped: the magnetometer is silent"),
+        (Event.MONITOR_TRIPPED, 99, "monitor tripped: number 99"),
+        (Event.REQUEST_REFUSED, 8, "pulse refused by the coil board: lockout"),
+        (Event.SENSOR_ISOLATED, 205, "sun sensor isolated: silent"),
+        (Event.SENSOR_READMITTED, 101, "magnetometer used again: saturated"),
+        (Event.COIL_FAULT, 301, "coil 2 isolated: open"),
+        (Event.COIL_FAULT, 999, "number 9 isolated: number 99"),
+        (200, 4, "event 200 (4)"),
+    ],
+)
+def test_what_happened_is_said_with_its_argument(event, argument, what):
+    assert words("FSW", event, argument).what == what
+
+
+def test_a_strange_node_severity_or_number_is_no_error():
+    found = words("MAG", 7, severity=99)
+    assert (found.what, found.meaning, found.severity) == ("event 7 (0)", "", "")
+
+
+def test_the_table_tells_the_orbit_too():
+    event = {
+        "t_s": 6041.0,
+        "node": "FSW",
+        "event": 1,
+        "severity": SEVERITY[Event.MODE_CHANGED],
+        "argument": 0,
+    }
+    table = event_table({"events": [event]}, load("microsat"))
+    assert table.rows[0][:5] == ("6041.000", "1.00", "FSW", "info", "mode SAFE")
+    assert event_table({}, load("microsat")).rows == []
