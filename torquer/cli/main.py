@@ -29,6 +29,9 @@ COMMANDS = (
     "plant",
     "fsw",
     "board",
+    "export",
+    "dbc",
+    "xtce",
 )
 """The commands; each is in the module of its name."""
 

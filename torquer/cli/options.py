@@ -29,6 +29,10 @@ COMPRESS = click.option(
     "--compress", is_flag=True, help="Write the log as bus.log.gz, a fourth of the size of bus.log."
 )
 
+OUT_FILE = click.option(
+    "--out", required=True, metavar="FILE", type=click.Path(path_type=Path), help="The file to write."
+)
+
 SIGN = click.option(
     "--sign",
     metavar="KEY",

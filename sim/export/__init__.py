@@ -1,0 +1,1 @@
+"""Runs and the bus contract in the formats of other tools."""

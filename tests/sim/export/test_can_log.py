@@ -1,0 +1,40 @@
+"""``.blf`` and ``.asc``, read again by python-can: every frame, in order, at its time."""
+
+import can
+import pytest
+
+from fsw.bus.can_message import frame_of
+from fsw.wire.frame import Frame
+from sim.export.can_log import write_asc, write_blf
+from sim.export.source import open_source
+
+
+def test_blf_holds_every_frame_to_the_microsecond(flight, exported):
+    with can.BLFReader(exported("blf")) as reader:
+        messages = list(reader)
+    assert [frame_of(message) for message in messages] == [entry.frame for entry in flight.entries]
+    assert [round(1e6 * message.timestamp) for message in messages] == [
+        entry.timestamp_us for entry in flight.entries
+    ]
+
+
+def test_asc_holds_every_frame_at_its_time_from_the_first(flight, exported):
+    with can.ASCReader(exported("asc")) as reader:
+        messages = list(reader)
+    first_us = flight.entries[0].timestamp_us
+    assert [frame_of(message) for message in messages] == [entry.frame for entry in flight.entries]
+    assert [round(1e6 * message.timestamp) for message in messages] == [
+        entry.timestamp_us - first_us for entry in flight.entries
+    ]
+
+
+@pytest.mark.parametrize(("write", "reader"), [(write_blf, can.BLFReader), (write_asc, can.ASCReader)])
+def test_frames_of_strangers_are_kept(tmp_path, write, reader):
+    log = tmp_path / "any.log"
+    log.write_text("(1700000000.000250) can7 18DAF110#0102\n(1700000001.500000) can7 123#R\n")
+    assert "no end mark" in write(open_source(log), tmp_path / "out", lambda done: None)[0]
+    with reader(tmp_path / "out") as messages:
+        assert [frame_of(message) for message in messages] == [
+            Frame(0x98DAF110, b"\x01\x02"),
+            Frame(0x40000123, b""),
+        ]

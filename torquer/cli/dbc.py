@@ -1,0 +1,27 @@
+"""``torquer dbc``: the bus contract as a DBC file."""
+
+from pathlib import Path
+
+import click
+
+from torquer.cli.options import OUT_FILE, sentences
+
+
+@click.command()
+@OUT_FILE
+@click.option(
+    "--tick-hz",
+    type=click.IntRange(1, 100),
+    default=1,
+    show_default=True,
+    help="Ticks a second, for the cycle times.",
+)
+@click.option("--force", is_flag=True, help="Replace FILE if it is there.")
+@sentences
+def dbc(out: Path, tick_hz: int, force: bool) -> None:
+    """Write the messages of the bus as a DBC with cycle times, for CANalyzer, SavvyCAN, cantools."""
+    from sim.export.dbc import dbc_text
+    from sim.export.destination import write_text
+
+    write_text(out, dbc_text(tick_hz), force)
+    click.echo(f"written: {out}")

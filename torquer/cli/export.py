@@ -1,0 +1,29 @@
+"""``torquer export``: a run in the format of another tool."""
+
+from pathlib import Path
+
+import click
+
+from torquer.cli.options import OUT_FILE, RUN_OR_LOG, sentences
+
+
+@click.command()
+@RUN_OR_LOG
+@click.option(
+    "--format",
+    "name",
+    type=click.Choice(["mcap", "blf", "asc", "csv", "parquet", "netcdf"]),
+    help="Default: by the suffix of FILE.",
+)
+@OUT_FILE
+@click.option("--force", is_flag=True, help="Replace FILE if it is there.")
+@sentences
+def export(run_or_log: Path, name: str | None, out: Path, force: bool) -> int:
+    """Write a run for Foxglove (mcap), CANalyzer and SavvyCAN (blf, asc), pandas or xarray.
+
+    mcap, blf and asc hold the bus log, and a LOG alone will do; csv, parquet and netcdf the histories of
+    plant and estimates, a row a tick. docs/export.md says what opens them.
+    """
+    from sim.export import command
+
+    return command.export(run_or_log, name, out, force)
