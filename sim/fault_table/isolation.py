@@ -93,6 +93,16 @@ def doubt_s(fault: RowFault, record: FaultFlightRecord) -> float | None:
     return None if doubted == inf or fault.unit.startswith("coil ") else (doubted - onset) / record.tick_hz
 
 
+def _given_up_s(fault: RowFault, record: FaultFlightRecord) -> float | None:
+    """Length of a fault in the shadow at whose end the attitude is not valid [s]; None: it is another one."""
+    first, hz = onset_tick(fault, record), record.tick_hz
+    if fault.lasts_s == inf:
+        return None
+    end = first + round(fault.lasts_s * hz)
+    given_up = not any(record.lit[first:end]) and record.error_deg[end - 1] is None
+    return fault.lasts_s if given_up else None
+
+
 def _doubted(onset: int, record: FaultFlightRecord) -> float:
     """The first tick from the onset on in which the sensors are said to disagree; infinite: none."""
     ticks = (event.tick for event in record.events if event.number == Number.SENSORS_DISAGREE)
@@ -107,11 +117,16 @@ def isolates_faulty_unit(row: FaultRow, record: FaultFlightRecord, bounds: Bound
 def isolates_or_doubts_faulty_unit(
     row: FaultRow, record: FaultFlightRecord, bounds: Bounds
 ) -> tuple[bool | None, str]:
-    """Likewise, but where it cannot be told which sensor is faulty it is enough to say that one is."""
+    """Likewise, but where it cannot be told which sensor is faulty it is enough to say that one is.
+
+    A fault that begins and ends in the shadow is the one of a sensor without another: it is enough that the
+    attitude is not valid when it ends.
+    """
 
     def found_s(fault: RowFault) -> float | None:
         named_s = isolation_s(fault, record)
-        return doubt_s(fault, record) if named_s is None else named_s
+        found = doubt_s(fault, record) if named_s is None else named_s
+        return _given_up_s(fault, record) if found is None or found > row.within_s else found
 
     return _isolates(row, record, found_s)
 

@@ -68,6 +68,30 @@ def test_a_sensor_that_is_not_named_may_be_doubted_with_the_other_but_a_coil_mus
     assert checks.isolates_or_doubts_faulty_unit(coil, pulsed, bounds)[0] is False
 
 
+@pytest.mark.parametrize(
+    ("lit", "valid", "lasts_s", "accepted"),
+    [
+        (False, False, 60.0, True),
+        (True, False, 60.0, False),
+        (False, True, 60.0, False),
+        (False, False, inf, False),
+    ],
+    ids=["given up in the shadow", "in sunlight", "held to be valid", "one that lasts"],
+)
+@pytest.mark.parametrize(
+    "later", [(), (ReportedEvent(400, Number.SENSORS_DISAGREE, 0),)], ids=["", "found later"]
+)
+def test_the_only_sensor_that_is_left_need_not_be_named_if_its_attitude_is_given_up(
+    bounds, lit, valid, lasts_s, accepted, later
+):
+    row = FaultRow("planted", "", "none", unit="magnetometer", lasts_s=lasts_s, within_s=200.0)
+    flown = record(*later)
+    flown.lit = [lit] * 500
+    flown.error_deg = [0.3] * 120 + [0.3 if valid else None] * 380
+    assert checks.isolates_or_doubts_faulty_unit(row, flown, bounds)[0] is accepted
+    assert checks.isolates_faulty_unit(row, flown, bounds)[0] is False, "where it must be named"
+
+
 def test_a_disturbed_sensor_may_be_isolated_but_no_other(bounds):
     row = FaultRow("planted", "", "none", unit="sun sensor")
     right, wrong = isolated(130, Sensor.SUN_SENSOR), isolated(135, Sensor.MAGNETOMETER)
