@@ -40,7 +40,7 @@ def chromium():
 
 @pytest.fixture
 def look(chromium):
-    """Opens a page of a file: whatever the browser complains of, or asks of the network, fails the test."""
+    """Opens a page by path or address: what the browser complains of, or asks for more, fails the test."""
     complaints, contexts = [], []
 
     def open_page(path, width=1400, dark=False, scripts=True):
@@ -54,8 +54,9 @@ def look(chromium):
         page.on("console", lambda message: complaints.append(message.text))
         page.on("pageerror", lambda error: complaints.append(str(error)))
         page.on("request", lambda request: complaints.append(request.url))
-        page.goto(path.as_uri())
-        assert complaints.pop(0) == path.as_uri()
+        address = path if isinstance(path, str) else path.as_uri()
+        page.goto(address)
+        assert complaints.pop(0) == address
         return page
 
     yield open_page

@@ -16,7 +16,9 @@ Json = dict[str, Any]
 
 OWN = "sim.drawing"
 THEME = "script/theme.js"
-PLOTTING = ("vendor/uPlot.iife.min.js", "script/clock.js", "script/charts.js")
+UPLOT, UPLOT_CSS = "vendor/uPlot.iife.min.js", "vendor/uPlot.min.css"
+PLOTTING = (UPLOT, "script/clock.js", "script/charts.js")
+LOOPBACK = "ws://127.0.0.1:* ws://localhost:*"
 
 
 def page(
@@ -37,6 +39,31 @@ def page(
         jinja2.TemplateError: the template names what is not there, or is malformed.
         ValueError: the data hold a number that JSON has not.
     """
+    css, run = "", [_read(OWN, THEME)]
+    if data is not None:
+        css = _read(OWN, UPLOT_CSS) + "\n"
+        run += [*(_read(OWN, name) for name in PLOTTING), *(_read(package, name) for name in scripts)]
+    text = None if data is None else htmlsafe_json_dumps(data, allow_nan=False, separators=(",", ":"))
+    return _render(package, template, css, run, "", {**content, "data": text})
+
+
+def live_page(package: str, template: str, scripts: Sequence[str], **content: object) -> str:
+    """A page whose scripts draw what comes over a websocket of this machine; they load nothing else.
+
+    Args:
+        package: as of ``page``.
+        template: as of ``page``.
+        scripts: of the package, by their paths; they have uPlot.
+        content: what the template names.
+    """
+    run = [_read(OWN, THEME), _read(OWN, UPLOT), *(_read(package, name) for name in scripts)]
+    css = _read(OWN, UPLOT_CSS) + "\n"
+    return _render(package, template, css, run, f"; connect-src {LOOPBACK}", {**content, "data": None})
+
+
+def _render(
+    package: str, template: str, css: str, scripts: list[str], allowed: str, content: dict[str, object]
+) -> str:
     environment = Environment(
         loader=ChoiceLoader([PackageLoader(package), PackageLoader(OWN)]),
         autoescape=True,
@@ -45,17 +72,10 @@ def page(
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    css = _read(OWN, "report.css").replace("/* colours of charts */", palette.css())
-    run = [_read(OWN, THEME)]
-    if data is not None:
-        css = _read(OWN, "vendor/uPlot.min.css") + "\n" + css
-        run += [*(_read(OWN, name) for name in PLOTTING), *(_read(package, name) for name in scripts)]
+    css += _read(OWN, "report.css").replace("/* colours of charts */", palette.css())
+    policy = f"default-src 'none'; style-src 'unsafe-inline'; img-src data:; script-src {_digests(scripts)}"
     return environment.get_template(template).render(
-        css=Markup(css),
-        data=None if data is None else htmlsafe_json_dumps(data, allow_nan=False, separators=(",", ":")),
-        scripts=[Markup(text) for text in run],
-        policy=f"default-src 'none'; style-src 'unsafe-inline'; img-src data:; script-src {_digests(run)}",
-        **content,
+        css=Markup(css), scripts=[Markup(text) for text in scripts], policy=policy + allowed, **content
     )
 
 

@@ -236,6 +236,7 @@ def test_the_contracts_are_kept():
 
 PLANTED = {
     "what flies does not know what stays on the ground": ("fsw/node.py", "import sim.plant.plant"),
+    "torquer: the command line over": ("torquer/api/run.py", "import torquer.cli.main"),
     "fsw: the node over its table": ("fsw/core/step.py", "from fsw.bus import interface"),
     "fsw.core: a step over what it is made of": ("fsw/core/algebra/vector.py", "import fsw.core.laws.pd"),
     "what is thought of the sensors and of the coils": (

@@ -26,6 +26,7 @@ COMMANDS = (
     "campaign",
     "faults",
     "hil",
+    "watch",
     "plant",
     "fsw",
     "board",

@@ -5,12 +5,10 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from foxglove.messages import Quaternion
 from mcap.reader import make_reader
 
 from fsw.wire.messages import CLASSES, NAMES, intact
 from sim.export.mcap import write_mcap
-from sim.export.mcap_scene import _from_x_axis
 from sim.export.source import open_source
 
 UNITS = ("_nt", "_rad", "_radps", "_ms", "_s", "_ma")
@@ -136,18 +134,6 @@ def test_attitudes_are_transforms_that_foxglove_knows(flight, recording):
     assert abs(float(estimated[-1] @ true)) > 0.9999
     assert recording.schemas["/scene"].name == "foxglove.SceneUpdate"
     assert len(recording.by_topic["/scene"]) == 400
-
-
-@pytest.mark.parametrize(
-    "direction", [(1, 0, 0), (-2, 0, 0), (0, 3, 0), (0, 0, -1), (1, -2, 0.5), (-1, 1e-9, 0)]
-)
-def test_an_arrow_points_along_its_vector(direction):
-    """An arrow is drawn along x: its orientation turns x there."""
-    text = repr(_from_x_axis(list(map(float, direction))))
-    assert isinstance(_from_x_axis([1.0, 0.0, 0.0]), Quaternion)
-    x, y, z, w = (float(part.split("=")[1].strip(" )")) for part in text.partition("(")[2].split(","))
-    turned = np.array([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)])
-    assert turned == pytest.approx(np.array(direction) / np.linalg.norm(direction), abs=1e-6)
 
 
 def test_the_file_says_which_flight_it_is_of(recording):

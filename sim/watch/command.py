@@ -1,0 +1,92 @@
+"""What ``torquer watch`` does: a source of frames, what they show, and one of three ways to show it."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from sim.errors import HarnessError
+from sim.progress import note
+from sim.record.pace import Pace
+from sim.scenario.schema import Scenario, load
+from sim.watch.directions import nothing_around, onboard_around
+from sim.watch.seen import FlightView
+from sim.watch.source import BusSource, FrameSource, LogSource, batches
+
+
+@dataclass(frozen=True, slots=True)
+class Watched:
+    """A source and what its frames have shown."""
+
+    source: FrameSource
+    seen: FlightView
+
+
+def watch(what: str, pace: Pace, scenario: str | None) -> Watched:
+    """Open a bus or a log.
+
+    Args:
+        what: a run directory or a log, if there is one of that name; else a bus.
+        pace: of a log.
+        scenario: of the satellite, by whose orbit field and Sun are predicted; None: that of the run.
+
+    Raises:
+        BusError: there is no such bus.
+        TableError: there is no such scenario.
+        HarnessError: the log cannot be read.
+    """
+    flown: Scenario | None = None if scenario is None else load(scenario)
+    if Path(what).exists() or "/" in what.partition(":")[0]:
+        log = LogSource(Path(what), pace)
+        flown = log.scenario() if flown is None else flown
+        source: FrameSource = log
+    else:
+        source = BusSource(what)
+    return Watched(source, FlightView(nothing_around if flown is None else onboard_around(flown)))
+
+
+def show_on_terminal(watched: Watched) -> None:
+    """Show it on standard output until there is no more.
+
+    Raises:
+        HarnessError: a log ends in the middle of a line.
+    """
+    from sim.watch.terminal import show  # noqa: PLC0415  rich loads when something is drawn
+
+    show(watched.seen, batches(watched.source, watched.seen), watched.source.name)
+    _check_whole(watched.source)
+
+
+def serve_page(watched: Watched, port: int) -> None:
+    """Serve it as a page until Ctrl-C.
+
+    Raises:
+        HarnessError: a package is missing, or the port is taken.
+    """
+    from sim.watch.web import LiveView, serve  # noqa: PLC0415  an extra
+
+    serve(LiveView(watched.source, watched.seen), port, note)
+
+
+def serve_foxglove(watched: Watched, port: int) -> None:
+    """Serve it to Foxglove until there is no more, or Ctrl-C.
+
+    Raises:
+        HarnessError: the package is missing, the port is taken, or a log ends in the middle of a line.
+    """
+    from sim.watch.foxglove import foxglove_server  # noqa: PLC0415  an extra
+
+    with foxglove_server(port) as publisher:
+        note(f"Foxglove: open a connection to ws://127.0.0.1:{publisher.port}")
+        for _ in batches(watched.source, watched.seen):
+            publisher.publish(watched.seen)
+    _check_whole(watched.source)
+
+
+def _check_whole(source: FrameSource) -> None:
+    if isinstance(source, LogSource) and source.cut_short:
+        raise LogCutError(f"{source.path}: the log was cut short: its last line is incomplete")
+
+
+class LogCutError(HarnessError):
+    """All of a log was shown, but it has no end."""
+
+    exit_code = 1

@@ -1,0 +1,100 @@
+"""The live view in Foxglove: attitude and directions in its 3-D panel, series, events, by its own server."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from fsw.core.algebra.quaternion import IDENTITY
+from sim.errors import HarnessError
+from sim.watch.happening import Weight
+from sim.watch.seen import FlightView
+from sim.watch.snapshot import STATE_SCHEMA, state
+
+if TYPE_CHECKING:
+    from foxglove import Context
+
+HOST = "127.0.0.1"
+COLOURS: dict[str, dict[str, float]] = {
+    "body 1": {"r": 0.0, "g": 0.45, "b": 0.70},
+    "body 2": {"r": 0.84, "g": 0.37, "b": 0.0},
+    "body 3": {"r": 0.0, "g": 0.62, "b": 0.45},
+    "field": {"r": 0.48, "g": 0.25, "b": 0.63},
+    "Sun": {"r": 0.90, "g": 0.62, "b": 0.0},
+}
+"""Of arrows; the others are grey."""
+GREY = {"r": 0.5, "g": 0.5, "b": 0.5}
+
+
+@contextmanager
+def foxglove_server(port: int) -> Iterator["Publisher"]:
+    """A server for Foxglove on this machine alone.
+
+    Args:
+        port: of TCP; 0: any that is free.
+
+    Raises:
+        HarnessError: the package is not installed, or the port is taken.
+    """
+    try:
+        import foxglove  # noqa: PLC0415  (of an extra)
+    except ImportError:
+        raise HarnessError("--foxglove needs foxglove-sdk: pip install 'torquer[watch]'") from None
+    context = foxglove.Context()
+    try:
+        server = foxglove.start_server(name="torquer", host=HOST, port=port, context=context)
+    except RuntimeError as error:
+        raise HarnessError(f"--port {port}: no server can be started there: {error}") from None
+    try:
+        yield Publisher(context, server.port)
+    finally:
+        server.stop()
+
+
+class Publisher:
+    """Sends what is seen to whoever is connected, on /tf, /scene, /state and /events.
+
+    Args:
+        context: of foxglove.
+        port: on which it is served.
+    """
+
+    def __init__(self, context: "Context", port: int) -> None:
+        from foxglove import Channel  # noqa: PLC0415
+        from foxglove.channels import FrameTransformsChannel, LogChannel, SceneUpdateChannel  # noqa: PLC0415
+
+        self.port = port
+        self._transforms = FrameTransformsChannel("/tf", context=context)
+        self._scene = SceneUpdateChannel("/scene", context=context)
+        self._events = LogChannel("/events", context=context)
+        self._state = Channel("/state", schema=STATE_SCHEMA, context=context)
+        self._told = 0
+
+    def publish(self, seen: FlightView) -> None:
+        """Everything of this moment, and what has happened since the last one."""
+        from foxglove.messages import Color, Log, LogLevel, SceneEntity, SceneUpdate  # noqa: PLC0415
+
+        from sim.drawing.foxglove_scene import ESTIMATE, ORBIT, arrow, attitude, stamp_of  # noqa: PLC0415
+
+        if seen.unix_s is None:
+            return
+        now_ns = seen.unix_s * 10**9
+        self._transforms.log(attitude(ESTIMATE, seen.attitude or IDENTITY, now_ns), log_time=now_ns)
+        arrows = [
+            SceneEntity(
+                id=name,
+                frame_id=ORBIT,
+                timestamp=stamp_of(now_ns),
+                arrows=[arrow(vector, Color(**COLOURS.get(name, GREY), a=1.0))],
+            )
+            for name, vector in seen.arrows().items()
+        ]
+        self._scene.log(SceneUpdate(entities=arrows), log_time=now_ns)
+        self._state.log(state(seen), log_time=now_ns)
+        levels = {Weight.WARNING: LogLevel.Warning, Weight.ERROR: LogLevel.Error}
+        for one in seen.happenings:
+            if one.number > self._told:
+                then_ns = (one.unix_s or seen.unix_s) * 10**9
+                level = levels.get(one.weight, LogLevel.Info)
+                log = Log(timestamp=stamp_of(then_ns), level=level, message=one.words, name="bus")
+                self._events.log(log, log_time=then_ns)
+                self._told = one.number

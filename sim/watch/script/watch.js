@@ -1,0 +1,213 @@
+"use strict";
+// The live view: snapshots come over a websocket several times a second; what is drawn is the last one.
+const watch = (() => {
+  const MOST_SAMPLES = 3600, MOST_ROWS = 200;
+  const series = [[], [], [], [], [], []];  // time, turn, 3 sigma, rate, field off, Sun off
+  const watchers = [];
+  let last = null, connected = false;
+
+  connect();
+
+  function connect() {
+    const socket = new WebSocket(`ws://${location.host}/live`);
+    socket.onopen = () => {
+      connected = true;
+      for (const list of series) list.length = 0;
+      document.getElementById("happenings").replaceChildren();
+    };
+    socket.onmessage = (event) => take(JSON.parse(event.data));
+    socket.onclose = () => {
+      connected = false;
+      tell();
+      setTimeout(connect, 1000);
+    };
+  }
+
+  function take(snapshot) {
+    if (snapshot.samples.length && series[0].length && snapshot.samples[0][0] < series[0].at(-1)) {
+      for (const list of series) list.length = 0;  // the time of the satellite went back
+    }
+    for (const sample of snapshot.samples) sample.forEach((value, column) => series[column].push(value));
+    for (const list of series) list.splice(0, list.length - MOST_SAMPLES);
+    last = snapshot;
+    tell();
+    for (const watcher of watchers) watcher(snapshot, series);
+  }
+
+  const text = (id, words) => { document.getElementById(id).textContent = words; };
+  const number = (value, unit, digits = 2) => (value === null ? "–" : `${value.toFixed(digits)} ${unit}`);
+
+  function tell() {
+    const badges = [];
+    if (!connected) badges.push(["bad", "not connected to torquer watch"]);
+    if (last) {
+      const { state } = last;
+      badges.push(["note", state.mode ?? "no mode yet"]);
+      badges.push(state.valid ? ["good", "attitude valid"] : ["bad", "attitude not valid"]);
+      if (last.used) {
+        badges.push(["note", `magnetometer ${last.used.mag_blanked ? "blanked" : last.used.mag_used ? "used" : "not used"}`]);
+        badges.push(["note", `Sun sensor ${last.used.eclipse ? "in the shadow" : last.used.sun_used ? "used" : "not used"}`]);
+      }
+      if (state.refused) badges.push(["bad", `${state.refused} pulses refused`]);
+      if (last.broken) badges.push(["bad", `${last.broken} broken frames`]);
+      if (last.ended) badges.push(["note", "the flight is over"]);
+      text("when", last.time ? `${last.time} UTC · tick ${state.tick}` : "waiting for SYNC");
+      text("numbers", [
+        `${number(state.turn_deg, "°")} off the orbit axes`, `3σ ${number(state.sigma3_deg, "°")}`,
+        `rate ${number(state.rate_degps, "°/s", 3)}`, `field off ${number(state.field_off_deg, "°")}`,
+        `Sun off ${number(state.sun_off_deg, "°")}`,
+      ].join(" · "));
+      text("load", `${(100 * state.bus_load).toFixed(1)} % of 125 kbit/s · ${last.frames_per_s.toFixed(0)} frames/s`);
+      tellCoils();
+      rows("frames", last.frames, false);
+      rows("happenings", last.happenings.map(([, time, tick, weight, words]) => [time, tick ?? "", weight, words]), true);
+    }
+    document.getElementById("badges").replaceChildren(...badges.map(([kind, words]) => made("li", words, kind)));
+  }
+
+  function tellCoils() {
+    const { state, fractions, lockout_ms } = last;
+    const list = [0, 1, 2].map((coil) => {
+      const level = state[`level_${coil}`];
+      if (fractions) return `coil ${coil}: ${(100 * fractions[coil]).toFixed(0)} % of full`;
+      const locked = lockout_ms[coil] ? `locked out for ${Math.ceil(lockout_ms[coil] / 1000)} s` : "free";
+      return `coil ${coil}: ${level ? `level ${level > 0 ? "+" : ""}${level}, ${state.current_ma} mA` : "off"}, ${locked}`;
+    });
+    list.push(`${state.pulses} pulses, ${state.refused} refused`);
+    document.getElementById("coils").replaceChildren(...list.map((words) => made("p", words, "meta")));
+  }
+
+  function made(tag, words, kind = "") {
+    const element = document.createElement(tag);
+    element.textContent = words;
+    if (kind) element.className = kind;
+    return element;
+  }
+
+  // Rows of a table; new happenings come on top of those that are there.
+  function rows(id, values, prepended) {
+    const body = document.getElementById(id);
+    const made_rows = values.map((cells) => {
+      const row = document.createElement("tr");
+      row.append(...cells.map((cell) => made("td", cell)));
+      return row;
+    });
+    if (!prepended) body.replaceChildren(...made_rows);
+    else if (made_rows.length) body.prepend(...made_rows.reverse());
+    while (body.children.length > MOST_ROWS) body.lastChild.remove();
+  }
+
+  return { watch: (watcher) => watchers.push(watcher), state: () => last };
+})();
+
+(() => {
+  const canvas = document.getElementById("attitude");
+  const COLOURS = {
+    "body 1": "#0072b2", "body 2": "#d55e00", "body 3": "#009e73", field: "#7b3fa0", Sun: "#e69f00",
+    nadir: "#5b6b7b", ahead: "#5b6b7b",
+  };
+  const camera = { azimuth: -0.9, elevation: 0.45 };
+
+  // Right and up, of a vector in orbit axes; the radius is up.
+  function project([radius, along, normal]) {
+    const [ca, sa] = [Math.cos(camera.azimuth), Math.sin(camera.azimuth)];
+    const right = -sa * along + ca * normal, ahead = ca * along + sa * normal;
+    return [right, Math.cos(camera.elevation) * radius - Math.sin(camera.elevation) * ahead];
+  }
+
+  function draw() {
+    const size = Math.min(canvas.clientWidth, 520), ratio = devicePixelRatio || 1;
+    if (!size) return;
+    canvas.width = canvas.height = Math.round(size * ratio);
+    const ctx = canvas.getContext("2d");
+    ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
+    ctx.strokeStyle = theme.colour("#8a97a5");
+    ctx.beginPath();
+    ctx.arc(size / 2, size / 2, 0.36 * size, 0, 2 * Math.PI);
+    ctx.stroke();
+    const last = watch.state();
+    for (const [name, vector] of Object.entries(last ? last.arrows : {})) {
+      const [right, up] = project(vector);
+      const [x, y] = [size / 2 + 0.36 * size * right, size / 2 - 0.36 * size * up];
+      const level = /^body/.test(name) ? last.state[`level_${Number(name.at(-1)) - 1}`] : 0;
+      const turn = Math.atan2(y - size / 2, x - size / 2);
+      ctx.strokeStyle = ctx.fillStyle = theme.colour(COLOURS[name] ?? "#5b6b7b");
+      ctx.lineWidth = level ? 7 : 2.5;
+      ctx.beginPath();
+      ctx.moveTo(size / 2, size / 2);
+      ctx.lineTo(x, y);
+      ctx.stroke();
+      ctx.beginPath();
+      ctx.moveTo(x, y);
+      for (const side of [-1, 1]) ctx.lineTo(x - 11 * Math.cos(turn + side * 0.4), y - 11 * Math.sin(turn + side * 0.4));
+      ctx.fill();
+      ctx.font = "600 13px system-ui, sans-serif";
+      ctx.textAlign = "center";
+      ctx.textBaseline = "middle";
+      ctx.fillText(level ? `${name}, coil at ${level}` : name, x + 26 * Math.cos(turn), y + 16 * Math.sin(turn));
+    }
+  }
+
+  function turnBy(azimuth, elevation) {
+    camera.azimuth -= azimuth;
+    camera.elevation = Math.min(Math.max(camera.elevation + elevation, -1.5), 1.5);
+    draw();
+  }
+
+  let from = null;
+  canvas.addEventListener("pointerdown", (event) => {
+    from = [event.clientX, event.clientY];
+    canvas.setPointerCapture(event.pointerId);
+  });
+  canvas.addEventListener("pointermove", (event) => {
+    if (!from) return;
+    turnBy(0.01 * (event.clientX - from[0]), 0.01 * (event.clientY - from[1]));
+    from = [event.clientX, event.clientY];
+  });
+  for (const over of ["pointerup", "pointercancel"]) canvas.addEventListener(over, () => { from = null; });
+  canvas.addEventListener("keydown", (event) => {
+    const turns = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, -0.1], ArrowDown: [0, 0.1] };
+    if (!(event.key in turns)) return;
+    turnBy(...turns[event.key]);
+    event.preventDefault();
+  });
+
+  watch.watch(draw);
+  theme.watch(draw);
+  new ResizeObserver(draw).observe(canvas);
+  draw();
+})();
+
+(() => {
+  const place = document.getElementById("charts");
+  const CHARTS = [
+    ["Attitude [deg]", [[1, "off the orbit axes", "#0072b2"], [2, "3 sigma", "#8a97a5"]]],
+    ["Rate [deg/s]", [[3, "rate", "#d55e00"]]],
+    ["Measured against predicted [deg]", [[4, "field", "#7b3fa0"], [5, "Sun", "#e69f00"]]],
+  ];
+  const HOURS = [[60, "{HH}:{mm}", null, null, null, null, null, null, 1], [1, "{HH}:{mm}:{ss}", null, null, null, null, null, null, 1]];
+  const plots = CHARTS.map(([title, lines]) => {
+    const head = document.createElement("h3"), host = document.createElement("div");
+    head.textContent = title;
+    place.append(head, host);
+    const ink = () => theme.colour("#1b2733"), grid = () => theme.colour("#c9d2dc");
+    const axis = { stroke: ink, grid: { stroke: grid, width: 0.5 }, ticks: { stroke: grid } };
+    const options = {
+      width: Math.max(host.clientWidth, 200), height: 170, tzDate: (seconds) => uPlot.tzDate(new Date(seconds * 1e3), "UTC"),
+      scales: { y: { range: (_, low, high) => [0, high > 0 ? 1.1 * high : 1] } },
+      axes: [{ ...axis, values: HOURS }, { ...axis, size: 60 }],
+      series: [{ label: "UTC", value: "{HH}:{mm}:{ss}" }, ...lines.map(([, label, colour]) => ({
+        label, stroke: () => theme.colour(colour), width: 1.5, points: { show: false },
+        value: (_, value) => (value === null ? "–" : value.toFixed(3)),
+      }))],
+    };
+    return { plot: new uPlot(options, [[], ...lines.map(() => [])], host), columns: [0, ...lines.map(([column]) => column)], host };
+  });
+
+  watch.watch((snapshot, series) => {
+    if (!snapshot.samples.length) return;
+    for (const { plot, columns } of plots) plot.setData(columns.map((column) => series[column].slice()));
+  });
+  theme.watch(() => plots.forEach(({ plot }) => plot.redraw(false, true)));
+  new ResizeObserver(() => plots.forEach(({ plot, host }) => plot.setSize({ width: Math.max(host.clientWidth, 200), height: 170 }))).observe(place);
+})();

@@ -1,0 +1,242 @@
+"""What the frames of a bus have shown so far: attitude, coils, sensors, modes, events, load of the bus.
+
+Time is that of the satellite, by SYNC; only the load of the bus goes by the time at which frames came.
+"""
+
+from collections import Counter, deque
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from math import acos, degrees, sqrt
+
+from fsw.core.algebra.quaternion import Quaternion
+from fsw.core.algebra.vector import Vec3, norm
+from fsw.wire.frame import Frame
+from fsw.wire.messages import (
+    CLASSES,
+    NAMES,
+    SENDERS,
+    CoilBoot,
+    CoilDipoleStatus,
+    CoilRefused,
+    CoilRefusedReason,
+    CoilStatus,
+    FswBoot,
+    MagBoot,
+    MagField,
+    Mode,
+    NavAttitude,
+    NavQuality,
+    NavRate,
+    PlantBoot,
+    PlantEnd,
+    SunBoot,
+    SunVector,
+    Sync,
+    intact,
+)
+from sim.watch.directions import Around, AroundAt, arrows, nothing_around, off_deg
+from sim.watch.happening import Occurrence, Weight, event_words
+from sim.watch.load import Load
+
+MOST_HAPPENINGS, MOST_SAMPLES = 500, 3600
+"""What is kept: happenings, and samples of the time series, one for each second of the satellite."""
+
+
+@dataclass(frozen=True, slots=True)
+class SecondSample:
+    """One second of the flight, for the time series; None where nothing is known.
+
+    ``turn_deg``: angle between body and orbit axes, as estimated; ``sigma3_deg``: three standard deviations
+    of it; ``rate_degps``: of the body against the orbit; ``field_off_deg``, ``sun_off_deg``: angle between
+    what a sensor measures and what the estimate predicts, if the orbit is known.
+    """
+
+    unix_s: int
+    turn_deg: float | None
+    sigma3_deg: float | None
+    rate_degps: float | None
+    field_off_deg: float | None
+    sun_off_deg: float | None
+
+
+@dataclass(slots=True)
+class CoilsReported:
+    """The coils as their board reports them, levels of the pulse under way, current, time locked out."""
+
+    levels: list[int] = field(default_factory=lambda: [0, 0, 0])
+    current_ma: int = 0
+    remaining_ms: int = 0
+    lockout_ms: list[int | None] = field(default_factory=lambda: [None, None, None])
+    fractions: Vec3 | None = None
+    """Of the full dipole, where the driver is a continuous one."""
+    pulses: int = 0
+    refused: int = 0
+
+
+class FlightView:
+    """What has been seen so far.
+
+    Args:
+        around_at: of a tick of the satellite; None where the orbit is not known.
+    """
+
+    def __init__(self, around_at: AroundAt = nothing_around) -> None:
+        self.tick: int | None = None
+        self.unix_s: int | None = None
+        self.mode: Mode | None = None
+        self.quality: NavQuality | None = None
+        self.attitude: Quaternion | None = None
+        """q_body_from_orbit, while it is valid."""
+        self.omega_body_orbit_radps: Vec3 | None = None
+        self.field: MagField | None = None
+        self.sun: SunVector | None = None
+        self.around: Around | None = None
+        self.coils = CoilsReported()
+        self.samples: deque[SecondSample] = deque(maxlen=MOST_SAMPLES)
+        self.sampled = 0
+        self.happenings: deque[Occurrence] = deque(maxlen=MOST_HAPPENINGS)
+        self.happened = 0
+        """As ``sampled``: how many so far, those that are kept no longer included."""
+        self.ended = False
+        self.frames: Counter[int] = Counter()
+        self.broken = 0
+        """Frames of a known identifier with a wrong length or CRC."""
+        self.load = Load()
+        self.around_at = around_at
+        self._driven = False  # a coil, in this tick or in the one before
+        self._takes: dict[int, Callable[[bytes], None]] = {
+            Sync.ID: self._take_sync,
+            CoilStatus.ID: self._take_coil,
+            CoilDipoleStatus.ID: self._take_dipole,
+            CoilRefused.ID: self._take_refusal,
+            MagField.ID: self._take_field,
+            SunVector.ID: self._take_sun,
+            NavAttitude.ID: self._take_attitude,
+            NavRate.ID: self._take_rate,
+            NavQuality.ID: self._take_quality,
+            PlantEnd.ID: self._take_end,
+        }
+
+    def take(self, frame: Frame, now_s: float) -> None:
+        """Take one frame that came at ``now_s``."""
+        can_id, data = frame
+        self.frames[can_id] += 1
+        self.load.take(frame, now_s)
+        if can_id not in NAMES:
+            return
+        if not intact(frame):
+            self.broken += 1
+            return
+        take = self._takes.get(can_id)
+        if take is not None:
+            take(data)
+        elif NAMES[can_id].endswith("_EVENT"):
+            values = CLASSES[can_id].decode(data)._asdict()
+            self._happens(*event_words(can_id, values["severity"], values["event"], values["argument"]))
+        elif can_id in _BOOTS:
+            self._happens(Weight.INFO, f"{SENDERS[can_id].lower()}: started")
+
+    def _take_sync(self, data: bytes) -> None:
+        """The tick begins: what came in the one before is whole."""
+        sync = Sync.decode(data)
+        if self.unix_s is not None and sync.unix_time_s != self.unix_s:
+            self.samples.append(self._sample(self.unix_s))
+            self.sampled += 1
+        if self.tick is not None and sync.tick < self.tick:
+            self._happens(Weight.WARNING, f"the count of ticks went back from {self.tick} to {sync.tick}")
+            self.samples.clear()
+            self.ended = False
+        self.tick, self.unix_s = sync.tick, sync.unix_time_s
+        self.around = self.around_at(sync.tick)
+
+    def _take_coil(self, data: bytes) -> None:
+        status, coils = CoilStatus.decode(data), self.coils
+        if status.coil > 2:
+            return
+        if status.level and not coils.levels[status.coil]:
+            coils.pulses += 1
+            words = f"coil {status.coil} driven at level {status.level:+d}, {status.current_ma} mA"
+            self._happens(Weight.PULSE, words)
+        self._driven = bool(status.level or any(coils.levels))
+        coils.levels = [status.level if coil == status.coil else 0 for coil in range(3)]
+        coils.current_ma, coils.remaining_ms = status.current_ma, status.remaining_ms
+        coils.lockout_ms[status.coil] = status.lockout_ms
+
+    def _take_dipole(self, data: bytes) -> None:
+        dipole = CoilDipoleStatus.decode(data)
+        self.coils.fractions = (dipole.m_x, dipole.m_y, dipole.m_z)
+        self._driven = any(self.coils.fractions)
+
+    def _take_refusal(self, data: bytes) -> None:
+        refusal = CoilRefused.decode(data)
+        self.coils.refused += 1
+        why = _REASONS.get(refusal.reason, f"reason {refusal.reason}")
+        self._happens(Weight.WARNING, f"coil: refused a pulse of coil {refusal.coil}: {why}")
+
+    def _take_field(self, data: bytes) -> None:
+        self.field = MagField.decode(data)
+
+    def _take_sun(self, data: bytes) -> None:
+        self.sun = SunVector.decode(data)
+
+    def _take_attitude(self, data: bytes) -> None:
+        nav = NavAttitude.decode(data)
+        square = nav.q_x**2 + nav.q_y**2 + nav.q_z**2
+        q = (sqrt(max(0.0, 1.0 - square)), nav.q_x, nav.q_y, nav.q_z)
+        self.attitude = q if nav.valid else None
+
+    def _take_rate(self, data: bytes) -> None:
+        nav = NavRate.decode(data)
+        self.omega_body_orbit_radps = (nav.w_x, nav.w_y, nav.w_z)
+
+    def _take_quality(self, data: bytes) -> None:
+        self.quality = NavQuality.decode(data)
+        self.mode = Mode(self.quality.mode) if self.quality.mode in Mode.__members__.values() else None
+
+    def _take_end(self, data: bytes) -> None:
+        self.ended = True
+        self._happens(Weight.INFO, "the flight is over")
+
+    def _happens(self, weight: Weight, words: str) -> None:
+        self.happened += 1
+        self.happenings.append(Occurrence(self.happened, self.tick, self.unix_s, weight, words))
+
+    def field_off_deg(self) -> float | None:
+        """Angle between the measured field and the predicted one, while no coil disturbs it."""
+        if self.field is None or not self.field.valid or self._driven or self.around is None:
+            return None
+        measured = (self.field.b_x, self.field.b_y, self.field.b_z)
+        return off_deg(self.attitude, measured, self.around.b_orbit_t)
+
+    def sun_off_deg(self) -> float | None:
+        """The same of the Sun, while it is seen."""
+        if self.sun is None or not self.sun.valid or self.around is None:
+            return None
+        return off_deg(self.attitude, (self.sun.s_x, self.sun.s_y, self.sun.s_z), self.around.sun_orbit)
+
+    def arrows(self) -> dict[str, Vec3]:
+        """Directions by name, as of ``directions.arrows``."""
+        field = None if self.field is None else (self.field.b_x, self.field.b_y, self.field.b_z)
+        seen = self.sun is not None and self.sun.valid
+        sun = (self.sun.s_x, self.sun.s_y, self.sun.s_z) if self.sun is not None and seen else None
+        return arrows(self.attitude, field, sun)
+
+    def sample(self) -> SecondSample | None:
+        """Of this moment; None before the first SYNC."""
+        return None if self.unix_s is None else self._sample(self.unix_s)
+
+    def _sample(self, unix_s: int) -> SecondSample:
+        q, omega, quality = self.attitude, self.omega_body_orbit_radps, self.quality
+        known = q is not None
+        return SecondSample(
+            unix_s,
+            None if q is None else degrees(2.0 * acos(min(1.0, q[0]))),
+            degrees(quality.sigma3_attitude) if quality is not None and known else None,
+            degrees(norm(omega)) if omega is not None and known else None,
+            self.field_off_deg(),
+            self.sun_off_deg(),
+        )
+
+
+_REASONS = {reason.value: reason.name.lower().replace("_", " ") for reason in CoilRefusedReason}
+_BOOTS = frozenset(boot.ID for boot in (PlantBoot, FswBoot, CoilBoot, MagBoot, SunBoot))

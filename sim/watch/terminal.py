@@ -1,0 +1,190 @@
+"""The live view on a terminal; where the output is no terminal, a line for each thing that happens."""
+
+from collections.abc import Iterator
+from datetime import UTC, datetime
+from time import monotonic
+
+from rich.bar import Bar
+from rich.console import Console, RenderableType
+from rich.layout import Layout
+from rich.live import Live
+from rich.panel import Panel
+from rich.table import Table
+from rich.text import Text
+
+from fsw.core.algebra.vector import norm
+from fsw.wire.messages import NAMES
+from sim.watch.dots import picture, sparkline
+from sim.watch.happening import Occurrence, Weight
+from sim.watch.seen import FlightView, SecondSample
+
+REFRESH_HZ = 8
+LAST_ROWS = 40
+"""Of the picture that stays on the terminal."""
+STYLES = {Weight.PULSE: "cyan", Weight.INFO: "", Weight.WARNING: "yellow", Weight.ERROR: "bold red"}
+ARROWS = {
+    "body 1": "bright_blue",
+    "body 2": "bright_red",
+    "body 3": "bright_green",
+    "nadir": "white",
+    "ahead": "white",
+    "field": "magenta",
+    "Sun": "yellow",
+}
+HEAVIEST = 8
+"""Messages that are listed with the load of the bus."""
+
+
+def show(seen: FlightView, batches: Iterator[None], source: str) -> None:
+    """Draw what is seen on standard output until there is no more.
+
+    Args:
+        seen: what the frames have shown.
+        batches: advances to the next frames.
+        source: name of bus or log.
+    """
+    console = Console()
+    if not console.is_terminal:
+        _print_happenings(seen, batches)
+        return
+    drawn_s = 0.0
+    with Live(console=console, screen=True, auto_refresh=False) as live:
+        for _ in batches:
+            if monotonic() - drawn_s >= 1.0 / REFRESH_HZ:
+                live.update(screen(seen, source, *console.size), refresh=True)
+                drawn_s = monotonic()
+    console.print(screen(seen, source, console.width, LAST_ROWS), height=LAST_ROWS)
+
+
+def _print_happenings(seen: FlightView, batches: Iterator[None]) -> None:
+    told = 0
+    for _ in batches:
+        for happening in seen.happenings:
+            if happening.number > told:
+                print(line(happening), flush=True)
+                told = happening.number
+
+
+def line(happening: Occurrence) -> str:
+    """A happening as a line of text."""
+    tick = "" if happening.tick is None else f"tick {happening.tick}"
+    return f"{time_text(happening.unix_s)}  {tick:>12}  {happening.weight.value:7}  {happening.words}"
+
+
+def time_text(unix_s: int | None) -> str:
+    """The satellite's time in UTC."""
+    return " " * 19 if unix_s is None else f"{datetime.fromtimestamp(unix_s, UTC):%Y-%m-%d %H:%M:%S}"
+
+
+def screen(seen: FlightView, source: str, width: int, height: int) -> RenderableType:
+    """All panels, for a terminal of this size."""
+    layout = Layout()
+    layout.split_column(Layout(_head(seen, source), size=3), Layout(name="middle"), Layout(name="foot"))
+    layout["middle"].split_row(Layout(name="attitude"), Layout(name="numbers"))
+    columns, rows = max(10, width // 2 - 4), max(4, (height - 3) // 2 - 2)
+    layout["attitude"].update(Panel(_attitude(seen, columns, rows), title="attitude", subtitle=_frame(seen)))
+    layout["numbers"].split_column(
+        Layout(Panel(_coils(seen), title="coils"), size=6), Layout(Panel(_estimate(seen), title="estimate"))
+    )
+    layout["foot"].split_row(
+        Layout(Panel(_happenings(seen, max(1, (height - 3) // 2 - 2)), title="events and pulses"), ratio=2),
+        Layout(Panel(_load(seen), title="bus")),
+    )
+    return layout
+
+
+def _head(seen: FlightView, source: str) -> Panel:
+    mode = "no mode yet" if seen.mode is None else seen.mode.name
+    valid = Text("attitude valid", "green") if seen.attitude else Text("attitude not valid", "bold red")
+    state = "over" if seen.ended else ("" if seen.tick is not None else "waiting for SYNC")
+    parts = (
+        source,
+        time_text(seen.unix_s).strip(),
+        f"tick {seen.tick}" if seen.tick is not None else "",
+        mode,
+    )
+    words = Text("   ".join(part for part in (*parts, state) if part) + "   ", "bold")
+    return Panel(words + valid)
+
+
+def _frame(seen: FlightView) -> str:
+    return "up: radius, N: nadir, A: ahead" if seen.attitude else "body axes: no valid attitude"
+
+
+def _attitude(seen: FlightView, columns: int, rows: int) -> Text:
+    text = Text()
+    for row in picture(seen.arrows(), columns, rows):
+        for cell in row:
+            text.append(cell.text, ARROWS.get(cell.name, "bright_black"))
+        text.append("\n")
+    return text
+
+
+def _coils(seen: FlightView) -> Table:
+    table = Table.grid(padding=(0, 2), expand=True)
+    for coil in range(3):
+        level, lockout = seen.coils.levels[coil], seen.coils.lockout_ms[coil]
+        if seen.coils.fractions is not None:
+            state: RenderableType = f"{100.0 * seen.coils.fractions[coil]:+.0f} % of full"
+        else:
+            state = Text(f"level {level:+d}, {seen.coils.current_ma} mA", "bold cyan") if level else "off"
+        locked = Bar(100_000, 0, lockout or 0, width=12) if lockout else Text("")
+        left = "" if lockout is None else (f"{lockout / 1000:.0f} s locked" if lockout else "free")
+        table.add_row(f"coil {coil}", state, locked, left)
+    table.add_row(f"{seen.coils.pulses} pulses", f"{seen.coils.refused} refused", "", "")
+    return table
+
+
+def _number(value: float | None, unit: str, digits: int = 2) -> str:
+    return "-" if value is None else f"{value:.{digits}f} {unit}"
+
+
+def _estimate(seen: FlightView) -> Table:
+    table = Table.grid(padding=(0, 2), expand=True)
+    samples = list(seen.samples)
+    latest = samples[-1] if samples else None
+    rows: tuple[tuple[str, str, str], ...] = (
+        ("off the orbit axes", "turn_deg", "deg"),
+        ("3 sigma", "sigma3_deg", "deg"),
+        ("rate", "rate_degps", "deg/s"),
+        ("field off prediction", "field_off_deg", "deg"),
+        ("Sun off prediction", "sun_off_deg", "deg"),
+    )
+    for title, name, unit in rows:
+        value = getattr(latest, name) if latest else None
+        table.add_row(title, _number(value, unit, 3), sparkline(_every(samples, name), 30))
+    field = seen.field
+    strength = None if field is None else norm((field.b_x, field.b_y, field.b_z)) * 1e-3
+    table.add_row("field", _number(strength, "uT", 1), _used(seen))
+    return table
+
+
+def _every(samples: list[SecondSample], name: str) -> list[float | None]:
+    """Every so many samples, so that 30 of them cover the last 20 minutes."""
+    return [getattr(sample, name) for sample in samples[-1200::40]]
+
+
+def _used(seen: FlightView) -> str:
+    quality = seen.quality
+    if quality is None:
+        return ""
+    field = "blanked" if quality.mag_blanked else ("used" if quality.mag_used else "not used")
+    sun = "shadow" if quality.eclipse else ("used" if quality.sun_used else "not used")
+    return f"magnetometer {field}, Sun sensor {sun}"
+
+
+def _happenings(seen: FlightView, most: int) -> Text:
+    text = Text(no_wrap=True, overflow="ellipsis")
+    for happening in list(seen.happenings)[-most:]:
+        text.append(line(happening) + "\n", STYLES[happening.weight])
+    return text
+
+
+def _load(seen: FlightView) -> Table:
+    table = Table.grid(padding=(0, 2), expand=True)
+    table.add_row("load of 125 kbit/s", f"{100.0 * seen.load.part:.1f} %")
+    table.add_row("frames", f"{seen.load.frames_per_s:.0f} /s")
+    table.add_row("broken frames", str(seen.broken))
+    for can_id, count in seen.frames.most_common(HEAVIEST):
+        table.add_row(NAMES.get(can_id, f"0x{can_id:03X}"), str(count))
+    return table

@@ -1,0 +1,66 @@
+"""What ``torquer watch`` opens: a log where there is one of that name, else a bus."""
+
+import pytest
+from click.testing import CliRunner
+
+from fsw.bus.interface import BusError
+from fsw.input.schema import TableError
+from sim.errors import HarnessError
+from sim.record.pace import LOCKSTEP
+from sim.watch import command
+from sim.watch.source import BusSource, LogSource
+from torquer.cli.main import main
+
+
+@pytest.fixture
+def log(tmp_path):
+    path = tmp_path / "some.log"
+    path.write_text("(1.000000) x 180#0500000001000000\n(2.000000) x 510#0001000000000000\n")
+    return path
+
+
+def run(*arguments):
+    result = CliRunner().invoke(main, ["watch", *map(str, arguments)])
+    return result.exit_code, result.stdout, result.stderr
+
+
+def test_a_log_a_bus_and_a_path_that_is_missing(log, tmp_path):
+    assert isinstance(command.watch(str(log), LOCKSTEP, None).source, LogSource)
+    assert isinstance(command.watch("loop:28990", LOCKSTEP, None).source, BusSource)
+    with pytest.raises(HarnessError, match="no such file"):
+        command.watch(str(tmp_path / "none.log"), LOCKSTEP, None)
+    with pytest.raises(BusError, match="unknown bus 'lop'"):
+        command.watch("lop", LOCKSTEP, None)
+
+
+def test_the_orbit_is_that_of_the_run_or_of_a_scenario(log, recorded_run):
+    assert command.watch(str(log), LOCKSTEP, None).seen.around_at(0) is None
+    for watched in (
+        command.watch(str(log), LOCKSTEP, "microsat"),
+        command.watch(str(recorded_run), LOCKSTEP, None),
+    ):
+        assert watched.seen.around_at(0) is not None
+    with pytest.raises(TableError, match="nosat"):
+        command.watch(str(log), LOCKSTEP, "nosat")
+
+
+def test_a_log_that_was_cut_short_is_shown_and_fails(log):
+    log.write_text(log.read_text()[:-3])
+    code, _, errors = run(log, "--pace", "lockstep")
+    assert (code, errors) == (1, f"torquer: {log}: the log was cut short: its last line is incomplete\n")
+
+
+@pytest.mark.parametrize(
+    ("options", "complaint"),
+    [
+        (["--web", "--foxglove"], "exclude each other"),
+        (["--port", "8025"], "--port belongs to"),
+        (["--pace", "slow"], "--pace slow"),
+        (["--scenario", "nosat"], "nosat"),
+    ],
+)
+def test_wrong_options_are_one_sentence(log, options, complaint):
+    code, out, errors = run(log, *options)
+    assert (code, out) == (2, "")
+    assert complaint in errors
+    assert len(errors.splitlines()) == 1

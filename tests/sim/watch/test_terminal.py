@@ -1,0 +1,84 @@
+"""What stands on the terminal: every panel, at every stage of a flight, in any room."""
+
+import pytest
+from rich.console import Console
+
+from fsw.wire.messages import CoilStatus, FswBoot, MagField, Mode, NavAttitude, NavQuality, NavRate, Sync
+from sim.watch.seen import FlightView
+from sim.watch.terminal import screen, show
+
+
+def text(seen, width=120, height=40):
+    console = Console(width=width, height=height, record=True, file=open("/dev/null", "w"))  # noqa: SIM115
+    console.print(screen(seen, "loop:28011", width, height), height=height)
+    return console.export_text()
+
+
+@pytest.fixture
+def flying():
+    seen = FlightView()
+    quality = NavQuality(Mode.POINT, 0.005, 1e-5, 1, 0, 1, 0, 1, 0, 0)
+    flight = (
+        Sync(7, 1427424417),
+        NavAttitude(1, 0.1, 0.0, 0.0),
+        NavRate(1, 0.001, 0.0, 0.0),
+        quality,
+        MagField(1, 20000.0, 0.0, 30000.0),
+        CoilStatus(-3, 1, 2000, -400, 100_000, 1),
+        CoilStatus(0, 0, 0, 0, 40_000, 1),
+        CoilStatus(-3, 1, 2000, -400, 100_000, 1),
+        Sync(8, 1427424418),
+    )
+    for message in flight:
+        seen.take(message.encode(), 0.0)
+    return seen
+
+
+def test_it_shows_mode_attitude_coils_sensors_and_pulses(flying):
+    shown = text(flying)
+    for words in (
+        "loop:28011",
+        "2015-03-27 02:46:58",
+        "tick 8",
+        "POINT",
+        "attitude valid",
+        "level -3, -400 mA",
+        "100 s locked",
+        "40 s locked",
+        "36.1 uT",
+        "Sun sensor not used",
+        "coil 1 driven at level -3",
+        "MAG_FIELD",
+    ):
+        assert words in shown
+
+
+def test_before_anything_came_it_says_that_it_waits():
+    shown = text(FlightView())
+    assert "waiting for SYNC" in shown
+    assert "attitude not valid" in shown
+    assert "no mode yet" in shown
+
+
+@pytest.mark.parametrize(("width", "height"), [(40, 12), (80, 24), (240, 70), (10, 3)])
+def test_any_room_is_enough(flying, width, height):
+    lines = text(flying, width, height).splitlines()
+    assert len(lines) <= height
+    assert max(map(len, lines)) <= width
+
+
+def test_into_a_file_it_is_a_line_for_each_thing_that_happens(capsys):
+    seen = FlightView()
+
+    def flight():
+        seen.take(FswBoot(0, 1, 5).encode(), 0.0)
+        yield
+        seen.take(Sync(3, 1427424417).encode(), 0.0)
+        seen.take(CoilStatus(2, 0, 2000, 100, 100_000, 1).encode(), 0.0)
+        yield
+        yield
+
+    show(seen, flight(), "some.log")
+    first, second = capsys.readouterr().out.splitlines()
+    assert first.endswith("fsw: started")
+    assert second == "2015-03-27 02:46:57        tick 3  pulse    coil 0 driven at level +2, 100 mA"

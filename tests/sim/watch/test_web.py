@@ -1,0 +1,143 @@
+"""The page of the live view: for this machine alone, and what comes over its websocket."""
+
+import http.client
+import json
+import re
+import socket
+import threading
+
+import pytest
+import uvicorn
+from websockets.exceptions import ConnectionClosed, InvalidStatus
+from websockets.sync.client import connect
+
+from fsw.wire.messages import CoilStatus, FswBoot, Sync
+from sim.errors import HarnessError
+from sim.watch.seen import FlightView
+from sim.watch.source import Batch
+from sim.watch.web import WEBSOCKETS, LiveView, application, listening
+
+
+class Flight:
+    """A source whose name could break a page."""
+
+    name = "</title><script>alert(1)</script>"
+
+    def batches(self):
+        yield Batch([(FswBoot(0, 1, 5).encode(), 0.0), (Sync(0, 1427424417).encode(), 0.0)], 0.0)
+        frames = [Sync(1, 1427424418).encode(), CoilStatus(-2, 2, 2000, -100, 100_000, 1).encode()]
+        yield Batch([(frame, 1.0) for frame in frames], 1.0)
+
+
+@pytest.fixture
+def view():
+    return LiveView(Flight(), FlightView())
+
+
+@pytest.fixture
+def port(view):
+    """Of a server of the page, until the end of the test."""
+    server = uvicorn.Server(uvicorn.Config(application(view), log_level="error", ws=WEBSOCKETS))
+    with listening(0) as listener:
+        thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
+        thread.start()
+        yield listener.getsockname()[1]
+        server.should_exit = True
+        thread.join(10.0)
+
+
+def get(port, host=None):
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=10.0)
+    connection.request("GET", "/", headers={"Host": host} if host else {})
+    response = connection.getresponse()
+    return response.status, response.read().decode()
+
+
+def connected(port, origin):
+    return connect(f"ws://127.0.0.1:{port}/live", origin=origin, open_timeout=10.0)
+
+
+def test_the_page_loads_nothing_from_elsewhere_and_escapes_its_source(port):
+    status, page = get(port)
+    assert status == 200
+    assert "<script>alert(1)" not in page
+    assert "default-src &#39;none&#39;" in page
+    assert "connect-src ws://127.0.0.1:* ws://localhost:*" in page
+    assert not re.findall(r"<(?:script|link|img)[^>]*(?:src|href)=|@import|url\(", page)
+
+
+@pytest.mark.parametrize("host", ["evil.example", "127.0.0.1.evil.example"])
+def test_another_host_name_is_refused(port, host):
+    assert get(port, host)[0] == 400
+
+
+@pytest.mark.parametrize("origin", [None, "http://evil.example", "null"])
+def test_the_websocket_is_for_its_own_page_alone(port, origin):
+    with pytest.raises((InvalidStatus, ConnectionClosed)), connected(port, origin) as live:
+        live.recv(5.0)
+
+
+def test_a_page_gets_all_that_was_seen_and_then_what_is_new(view, port):
+    view.read()
+    with connected(port, f"http://127.0.0.1:{port}") as live:
+        first, second = (json.loads(live.recv(5.0)) for _ in range(2))
+    assert first["state"]["tick"] == 1
+    assert first["state"]["level_2"] == -2
+    assert first["lockout_ms"] == [None, None, 100_000]
+    assert [words for *_, words in first["happenings"]] == [
+        "fsw: started",
+        "coil 2 driven at level -2, -100 mA",
+    ]
+    assert [sample[0] for sample in first["samples"]] == [1427424417]
+    assert (second["happenings"], second["samples"]) == ([], [])
+
+
+def test_what_ends_the_source_is_kept(view):
+    class Broken(Flight):
+        def batches(self):
+            yield Batch([], 0.0)
+            raise HarnessError("line 3 is not a candump line")
+
+    view.source = Broken()
+    view.read()
+    assert str(view.failure) == "line 3 is not a candump line"
+
+
+def test_a_port_that_is_taken_is_named():
+    with socket.socket() as other:
+        other.bind(("127.0.0.1", 0))
+        other.listen()
+        with (
+            pytest.raises(HarnessError, match=f"--port {other.getsockname()[1]}"),
+            listening(other.getsockname()[1]),
+        ):
+            pass
+
+
+@pytest.mark.parametrize("width", [390, 1400])
+def test_a_browser_draws_attitude_series_and_events_as_they_come(look, view, port, width):
+    page = look(f"http://127.0.0.1:{port}/", width)
+    page.get_by_text("attitude not valid").wait_for()
+    view.read()
+    page.get_by_text("coil 2 driven at level -2, -100 mA").wait_for()
+    assert page.locator("#happenings tr").count() == 2
+    assert "level -2" in page.locator("#coils").inner_text()
+    assert page.evaluate("document.querySelectorAll('#charts canvas').length") == 3
+    pixels = "canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.buffer"
+    colours = page.locator("#attitude").evaluate(f"canvas => new Set(new Uint32Array({pixels})).size")
+    assert colours > 4
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+
+
+def test_a_page_whose_server_is_gone_says_so(look, view):
+    with listening(0) as listener:
+        port = listener.getsockname()[1]
+        server = uvicorn.Server(uvicorn.Config(application(view), log_level="error", ws=WEBSOCKETS))
+        thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
+        thread.start()
+        page = look(f"http://127.0.0.1:{port}/")
+        page.get_by_text("attitude not valid").wait_for()
+        server.force_exit = server.should_exit = True
+        thread.join(10.0)
+    page.get_by_text("not connected to torquer watch").wait_for()
+    page.close()
