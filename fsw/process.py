@@ -10,6 +10,7 @@ from fsw.input.schema import TableError
 from fsw.node import FlightNode
 from fsw.runner import run
 from fsw.table.config import flight_config
+from fsw.table.own_law import LawError
 from fsw.table.table import FlightTable
 
 MOST_DISCARDED = 10_000
@@ -38,7 +39,7 @@ def fly(
     try:
         _discard_backlog(link)
         run(node, link, parent, bench)
-    except BusError as error:
+    except (BusError, LawError) as error:
         return _failed(error, 1)
     except KeyboardInterrupt:
         return 130

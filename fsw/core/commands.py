@@ -16,7 +16,7 @@ from fsw.core.estimation.parameters import component_places, estimated_inertia
 from fsw.core.fdir.fdir import Health
 from fsw.core.gate.readings import Readings, Telecommand
 from fsw.core.laws.interface import MAX_SPIN_RADPS
-from fsw.core.laws.table import LAWS
+from fsw.core.laws.table import LAWS, OWN_NUMBER
 from fsw.core.orbit.elements import RANGES, Upload
 from fsw.core.orbit.ephemeris import advance, with_orbit
 from fsw.core.orbit.propagation import element_orbit
@@ -115,7 +115,8 @@ def _clear(state: FlightState, message: TcClear, situation: Situation) -> Outcom
 
 def _law(state: FlightState, message: TcLaw, situation: Situation) -> Outcome:
     """A law begins without a memory; the current one goes on with its own."""
-    name = LAW_NAMES.get(message.law)
+    own = situation.config.control.own
+    name = own.name if own is not None and message.law == OWN_NUMBER else LAW_NAMES.get(message.law)
     if name is None:
         return TcAckResult.UNKNOWN
     if name == state.setpoint.law:

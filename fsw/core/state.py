@@ -13,7 +13,7 @@ from fsw.core.gate.readings import GateState
 from fsw.core.gate.second_sender import NO_SIGNS, SecondSenderWatch
 from fsw.core.gate.sync_watch import SyncWatch
 from fsw.core.laws.interface import FieldSample, Memory, Setpoint
-from fsw.core.laws.table import LAWS
+from fsw.core.laws.table import number_of
 from fsw.core.modes import ModeState
 from fsw.core.orbit.elements import Elements, Upload
 from fsw.core.orbit.ephemeris import EphemerisWindow
@@ -80,7 +80,7 @@ class FlightState(NamedTuple):
             self.attitude.valid,
             *self.modes.integers(),
             self.sample.tick,
-            LAWS[self.setpoint.law].number,
+            number_of(self.setpoint.law),
             *self.pulses.integers(),
             *self.coil.integers(),
             *self.events.integers(),

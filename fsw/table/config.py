@@ -24,6 +24,7 @@ from fsw.core.orbit.propagation import Orbit, circular_orbit, sgp4_orbit
 from fsw.core.rates import RateGroup, RateTable
 from fsw.input.schema import TableError
 from fsw.table.estimator import estimator_config, plausibility_config
+from fsw.table.own_law import with_own_law
 from fsw.table.schedules import schedules
 from fsw.table.sections import CoilTable, ModesTable, OrbitTable, TelemetryTable
 from fsw.table.table import FlightTable
@@ -86,8 +87,8 @@ def _control(table: FlightTable, orbit: Orbit) -> ControlConfig:
         mean_dipole_am2 = _full_scale(coils)
     else:
         mean_dipole_am2 = coils.levels_am2[2] * coils.pulse_s / (coils.pulse_s + coils.backoff_s)
-    return ControlConfig(
-        setpoint=Setpoint(control.law, control.k_w, control.k_a, control.k_i, control.spin_radps),
+    config = ControlConfig(
+        setpoint=Setpoint(control.law_name, control.k_w, control.k_a, control.k_i, control.spin_radps),
         gains=gains,
         inertia_kgm2=inertia,
         inertia_inverse=inverse(inertia),
@@ -98,6 +99,7 @@ def _control(table: FlightTable, orbit: Orbit) -> ControlConfig:
         mean_dipole_am2=mean_dipole_am2,
         schedules=schedules(table, orbit, gains),
     )
+    return with_own_law(config, control) if control.own else config
 
 
 def _dipoles(table: FlightTable) -> DipoleConfig | None:

@@ -4,12 +4,13 @@ from dataclasses import fields
 from datetime import UTC, date, datetime
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, Strict, field_validator, model_validator
+from pydantic import Field, Strict, ValidationInfo, field_validator, model_validator
 
 from fsw.core.algebra.vector import Mat3, Vec3
 from fsw.core.laws.interface import MAX_SPIN_RADPS
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit.propagation import sgp4_orbit
+from fsw.input.own_code import short_name
 from fsw.input.schema import (
     NotNegative,
     Positive,
@@ -150,10 +151,13 @@ class ControlTable(Section):
     """Pointing law and its gains, spin about body axis 1, leak time of the owed impulse.
 
     Units: ``k_w`` N m s/T^2, ``k_a`` N m/T^2, ``k_i`` N m/(T^2 s). ``gains`` holds, by law, that law's own
-    parameters. ``minimiser`` is how a continuous driver finds the dipole of a predictive law.
+    parameters. ``minimiser`` is how a continuous driver finds the dipole of a predictive law. A law that is
+    not in the table of laws is ``FILE.py:NAME`` or the name of an entry point; ``law_sha256`` is the digest
+    of its source, by which it is known again.
     """
 
-    law: Literal[tuple(LAWS)]  # type: ignore[valid-type]  # the names are those of the loaded table
+    law_sha256: str | None = Field(default=None, pattern="^[0-9a-f]{64}$")
+    law: str = Field(max_length=1000)
     k_w: NotNegative
     k_a: NotNegative
     k_i: NotNegative = 0.0
@@ -162,9 +166,36 @@ class ControlTable(Section):
     minimiser: Literal["closed_form", "genetic"] = "closed_form"
     gains: dict[str, dict[str, float]] = Field(default_factory=dict)
 
+    @property
+    def own(self) -> bool:
+        """Whether the law is not in the table of laws."""
+        return self.law not in LAWS
+
+    @property
+    def law_name(self) -> str:
+        """The law as the setpoint and ``gains`` call it: of FILE.py:NAME the NAME."""
+        return short_name(self.law)
+
+    @field_validator("law")
+    @classmethod
+    def _law_is_known(cls, law: str, info: ValidationInfo) -> str:
+        named = info.data.get("law_sha256") is not None
+        if law not in LAWS and not named:
+            names = ", ".join(map(repr, LAWS))
+            raise ValueError(
+                f"{law!r} is not allowed: allowed is {names}, FILE.py:NAME or the entry point of a package"
+            )
+        if law not in LAWS and short_name(law) in LAWS:
+            raise ValueError(f"{law!r} is called like a law of the table: give it another name")
+        if law in LAWS and named:
+            raise ValueError(f"{law!r} is a law of the table, which has no law_sha256")
+        return law
+
     @model_validator(mode="after")
     def _gains_are_known(self) -> Self:
         for law, given in self.gains.items():
+            if self.own and law == self.law_name:
+                continue  # its source knows them
             own = LAWS[law].gains if law in LAWS else None
             if own is None:
                 allowed = ", ".join(name for name, row in LAWS.items() if row.gains is not None)

@@ -13,7 +13,9 @@ from typing import Literal, Self
 
 from pydantic import model_validator
 
+from fsw.core.laws.table import LAWS
 from fsw.core.orbit.tle import tle_epoch_unix_s
+from fsw.input.own_code import short_name
 from fsw.input.schema import (
     Nested,
     Section,
@@ -21,6 +23,7 @@ from fsw.input.schema import (
     read_toml,
     validated,
 )
+from fsw.table.own_law import named
 from fsw.table.sections import (
     CIRCULAR_KEYS,
     BodyTable,
@@ -76,8 +79,13 @@ class FlightTable(Section):
 
     @property
     def crc(self) -> int:
-        """CRC-32 of the table in canonical JSON."""
-        return zlib.crc32(json.dumps(self.model_dump(mode="json"), sort_keys=True).encode())
+        """CRC-32 of the table in canonical JSON; of one's own law the digest counts, and no path."""
+        values = self.model_dump(mode="json")
+        if self.control.own:
+            values["control"]["law"] = self.control.law_name
+        else:
+            del values["control"]["law_sha256"]
+        return zlib.crc32(json.dumps(values, sort_keys=True).encode())
 
 
 DEFAULT_EPOCH_UTC = "2025-03-20T09:00:00Z"
@@ -108,12 +116,30 @@ def flight_table(values: Nested, source: str) -> FlightTable:
 
 
 def lay_over(base: Nested, over: Nested) -> Nested:
-    """``over`` laid over ``base`` section by section; an orbit of the other kind replaces the one below."""
+    """``over`` laid over ``base`` section by section.
+
+    An orbit of the other kind replaces the one below, and so does a law, with what is of a law of one's own.
+    """
     below, above = base.get("orbit"), over.get("orbit")
     if isinstance(below, dict) and isinstance(above, dict):
         replaced = CIRCULAR_KEYS if "tle" in above else ("tle",) if above.keys() & set(CIRCULAR_KEYS) else ()
         base = {**base, "orbit": {key: value for key, value in below.items() if key not in replaced}}
+    below, above = base.get("control"), over.get("control")
+    if isinstance(below, dict) and isinstance(above, dict) and "law" in above:
+        base = {**base, "control": _without_law(below, above["law"])}
     return merge(base, over)
+
+
+def _without_law(control: Nested, new: object) -> Nested:
+    """The section without the digest of its own law, and without the gains of that law if another follows."""
+    kept = {key: value for key, value in control.items() if key != "law_sha256"}
+    old, gains = control.get("law"), control.get("gains")
+    if not isinstance(old, str) or old in LAWS or not isinstance(gains, dict):
+        return kept
+    name = short_name(old)
+    if isinstance(new, str) and short_name(new) == name:
+        return kept
+    return {**kept, "gains": {law: given for law, given in gains.items() if law != name}}
 
 
 def load_flight_table(path: str | None) -> FlightTable:
@@ -124,4 +150,4 @@ def load_flight_table(path: str | None) -> FlightTable:
     """
     if path is None:
         return flight_table({}, "fsw/flight.toml")
-    return flight_table(read_toml(Path(path)), path)
+    return flight_table(named(read_toml(Path(path)), Path(path).parent), path)

@@ -11,6 +11,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from fsw.input.schema import Nested
+from fsw.table.config import flight_config
 from sim.campaign.definition.campaign import FILE, SCENARIO, Campaign
 from sim.campaign.definition.campaign_file import load_campaign
 from sim.campaign.executors.cluster import Cluster
@@ -23,6 +24,7 @@ from sim.campaign.results.store import LOCK, RESULTS, Results, open_results
 from sim.errors import HarnessError
 from sim.progress import note, progress
 from sim.record.destination import check_folder
+from sim.scenario.schema import flight_table, scenario_of
 from sim.signals import EndedBySignal
 
 PAGE, PARQUET = "campaign.html", "results.parquet"
@@ -96,6 +98,8 @@ def campaign(
         _check_resumable(source, over, settings, out)
         out = Path(source)
     chosen = load_campaign(source, over, settings)
+    if (nominal := scenario_of(chosen.base, source)).own_law is not None:
+        flight_config(flight_table(nominal))  # a fault of it would be that of every run
     folder = out or Path("campaigns") / f"{chosen.name}-{datetime.now(UTC):%Y%m%dT%H%M%SZ}"
     check_folder(folder, (FILE, SCENARIO, RESULTS, LOCK, PAGE, *([PARQUET] if parquet else [])))
     executor: Executor = Cluster(scheduler) if scheduler else Processes(workers or os.cpu_count() or 1)

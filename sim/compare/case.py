@@ -5,6 +5,8 @@ from enum import StrEnum
 
 from fsw.core.laws.table import LAWS, Aim
 from fsw.input.schema import Nested, merge
+from fsw.table.own_law import declared
+from fsw.table.table import lay_over
 from sim.campaign.flight import Order
 from sim.errors import HarnessError
 from sim.scenario.schema import Scenario, load
@@ -24,17 +26,34 @@ class ComparisonCase:
     """One flight of a comparison: a law, a driver, and the order to fly them."""
 
     law: str
+    aim: Aim
     driver: Driver
     order: Order
 
-    @property
-    def aim(self) -> Aim:
-        """The aim of its law."""
-        return LAWS[self.law].aim
+
+@dataclass(frozen=True, slots=True)
+class Candidates:
+    """The laws that can be compared on a scenario: by name, the aim of each, and how a scenario names it."""
+
+    aims: dict[str, Aim]
+    references: dict[str, str]
+
+
+def candidates(scenario: Scenario) -> Candidates:
+    """The laws of the table, and the scenario's own.
+
+    Raises:
+        TableError: the scenario's own law cannot be loaded.
+    """
+    control = scenario.control
+    aims, references = {name: row.aim for name, row in LAWS.items()}, {name: name for name in LAWS}
+    if control.own:
+        aims[control.law_name], references[control.law_name] = declared(control).aim, control.law
+    return Candidates(aims, references)
 
 
 def chosen_laws(scenario: Scenario, text: str | None) -> tuple[str, ...]:
-    """The laws to compare, in the order of the table of laws.
+    """The laws to compare, in the order of the table of laws, the scenario's own last.
 
     Args:
         scenario: without ``text``, all laws with the aim of its own.
@@ -43,17 +62,18 @@ def chosen_laws(scenario: Scenario, text: str | None) -> tuple[str, ...]:
     Raises:
         HarnessError: a name that is neither a law nor an aim.
     """
-    words = [LAWS[scenario.control.law].aim.value]
+    known = candidates(scenario).aims
+    words = [known[scenario.control.law_name].value]
     if text is not None:
         words = [word.strip() for word in text.split(",")]
     aims = [aim.value for aim in Aim]
     for word in words:
-        if word not in {*LAWS, *aims, "all"}:
+        if word not in {*known, *aims, "all"}:
             raise HarnessError(
-                f"--laws {text}: there is no law '{word}': choose among {', '.join(LAWS)}, "
+                f"--laws {text}: there is no law '{word}': choose among {', '.join(known)}, "
                 f"all laws of an aim ({', '.join(aims)}), or all"
             )
-    return tuple(name for name, row in LAWS.items() if {name, row.aim.value, "all"} & set(words))
+    return tuple(name for name, aim in known.items() if {name, aim.value, "all"} & set(words))
 
 
 def cases(
@@ -69,13 +89,15 @@ def cases(
     Raises:
         TableError: the scenario is not valid, or not with one of the drivers.
     """
+    known = candidates(load(name_or_path, settings))
     all_cases = []
     for driver in drivers:
         values = merge(settings, _coils(load(name_or_path, settings), driver))
         load(name_or_path, values)
         for law in laws:
-            overrides = merge(values, {"control": {"law": law}})
-            all_cases.append(ComparisonCase(law, driver, Order(name_or_path, overrides, seed, orbits)))
+            overrides = lay_over(values, {"control": {"law": known.references[law]}})
+            order = Order(name_or_path, overrides, seed, orbits)
+            all_cases.append(ComparisonCase(law, known.aims[law], driver, order))
     return tuple(all_cases)
 
 

@@ -28,7 +28,8 @@ def picture(path: Path, title: str, results: Sequence[Result]) -> None:
     if not flights:
         return
     drivers = [driver for driver in Driver if any(result.score.driver is driver for result in flights)]
-    laws = [law for law in LAWS if any(result.score.law == law for result in flights)]
+    drawn = {result.score.law for result in flights}
+    laws = [*(law for law in LAWS if law in drawn), *sorted(drawn - set(LAWS))]
     errors = [result.history.error_deg for result in flights if result.history is not None]
     assert flights[0].history is not None
     with style():

@@ -189,7 +189,8 @@ def _notes(analysis: Analysis, scenario: Scenario) -> str:
             f"exponents are those of the equations linearised about it nonetheless"
         )
     if scenario.control.law != "pd":
-        rows.append(f"note: the scenario flies the law {scenario.control.law}; these gains are those of pd")
+        law = scenario.control.law_name
+        rows.append(f"note: the scenario flies the law {law}; these gains are those of pd")
     if scenario.orbit.tle is not None:
         rows.append("note: of the TLE, mean motion and inclination count")
     return "\n".join(rows)

@@ -26,6 +26,7 @@ from sim.record.run_record import RunRecord
 from sim.record.signature import PublicKey
 from sim.replay.log_replay import ReplayResult, replay
 from sim.scenario.assemble import plant_config
+from sim.scenario.law_named import with_law_named
 from sim.scenario.schema import Scenario, flight_table, load
 
 LONGEST_PAUSE_S = 86_400.0
@@ -33,11 +34,15 @@ LONGEST_PAUSE_S = 86_400.0
 
 
 class LoggedRun(NamedTuple):
-    """The run that a log is of: its scenario, its run.json where there is one, and the check of its files."""
+    """The run that a log is of: its scenario, its run.json where there is one, and the check of its files.
+
+    ``law`` is the law of one's own that was named again; without it none is executed.
+    """
 
     scenario: Scenario
     record: RunRecord | None
     binding: Binding
+    law: str | None = None
 
     @property
     def ticks(self) -> int:
@@ -65,7 +70,11 @@ class ReplayReport:
 
 
 def locate(
-    run_or_log: Path, scenario: str | None, settings: Nested, key: PublicKey | None = None
+    run_or_log: Path,
+    scenario: str | None,
+    settings: Nested,
+    key: PublicKey | None = None,
+    law: str | None = None,
 ) -> tuple[Path, LoggedRun]:
     """The log and its run; with a key, the run must be signed by its private half.
 
@@ -81,12 +90,13 @@ def locate(
         beside = folder / run_dir.SCENARIO
         if scenario is None and not beside.is_file():
             raise HarnessError(f"{log}: no {run_dir.SCENARIO} beside it: name its scenario by --scenario")
-        return log, LoggedRun(load(scenario or str(beside), settings), record, binding)
+        return log, LoggedRun(load(scenario or str(beside), settings), record, binding, law)
 
 
 def through_flight_software(log: Path, run: LoggedRun) -> ReplayReport:
     """Compare the answers of the flight software; the log must be complete."""
-    config = flight_config(flight_table(run.scenario))
+    scenario, note = with_law_named(run.scenario, run.law, of_run=False)
+    config = flight_config(flight_table(scenario))
     with progress("replaying", run.ticks) as watch:
         result = replay(
             log, config, lambda state: watch(state.tick), forged=forge_answers(run.scenario.fault)
@@ -94,7 +104,7 @@ def through_flight_software(log: Path, run: LoggedRun) -> ReplayReport:
     same_platform = run.record is None or run.record["platform"] == run_dir.fingerprint()
     exact = result.bit_exact or (result.command_exact and not same_platform)
     holds, binding_lines = _binding(log, run)
-    lines = [*_found(result, same_platform), *binding_lines]
+    lines = [*([f"note: {note}"] if note else []), *_found(result, same_platform), *binding_lines]
     if result.command_exact and not result.ended:
         how = "inside a line" if result.cut else "without its end mark"
         end = f"after line {result.end_line}, at tick {max(result.last_tick, 0)}"

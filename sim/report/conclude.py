@@ -24,21 +24,29 @@ from sim.report.history_blocks import HistoryBlocks, TruthBlocks
 from sim.report.page import write_report
 from sim.report.summary import BusTally, summarise
 from sim.report.verdict import Verdict, failures
+from sim.scenario.law_named import with_law_named
 from sim.scenario.schema import Scenario, flight_table
 
 Watch = Callable[[int], None]
 
 
-def conclude(path: Path, watch: Watch = lambda tick: None) -> Json:
+def conclude(path: Path, watch: Watch = lambda tick: None, law: str | None = None) -> Json:
     """Write summary.json and report.html of a run, complete or not; bind and mark complete a whole one.
 
     The log is replayed through the flight software: that gives its estimates at full precision, and shows
     each time that the replay is exact.
 
+    Args:
+        path: the run directory.
+        watch: called with each tick that was replayed.
+        law: the law of one's own that the run flew, named again; None: none is executed.
+
     Raises:
-        HarnessError: the directory is no run or cannot be written, or one of its files is damaged.
+        HarnessError: the directory is no run or cannot be written, or one of its files is damaged; or it flew
+            a law of one's own which is not named, or whose source has changed.
+        LawError: that law fails.
     """
-    scenario = run_dir.read_scenario(path)
+    scenario, _ = with_law_named(run_dir.read_scenario(path), law)
     check_folder(path, run_dir.RESULTS)
     with TruthReader(path / run_dir.TRUTH) as truth:
         _check_rows(path, truth.complete)
@@ -46,7 +54,7 @@ def conclude(path: Path, watch: Watch = lambda tick: None) -> Json:
     return _write_results(path, scenario, replayed)
 
 
-def conclude_flight(path: Path, more: More, watch: Watch = lambda tick: None) -> Json:
+def conclude_flight(path: Path, more: More, watch: Watch = lambda tick: None, law: str | None = None) -> Json:
     """The same of a run that is being flown: the replay follows the flight.
 
     Where a stranger has led the flight software's count of ticks away from the plant's, the histories cannot
@@ -56,11 +64,13 @@ def conclude_flight(path: Path, more: More, watch: Watch = lambda tick: None) ->
         path: the run directory.
         more: waits; whether the flight goes on.
         watch: called with each tick that was replayed.
+        law: as for ``conclude``.
 
     Raises:
         HarnessError: the run cannot be concluded, or the flight was cut short.
     """
-    scenario, ticks = run_dir.read_scenario(path), run_dir.read_run(path)["ticks"]
+    scenario, _ = with_law_named(run_dir.read_scenario(path), law)
+    ticks = run_dir.read_run(path)["ticks"]
     while not run_dir.bus_log(path).exists() and more():
         pass
     growing = GrowingTruth(path / run_dir.TRUTH, ticks)
@@ -69,7 +79,7 @@ def conclude_flight(path: Path, more: More, watch: Watch = lambda tick: None) ->
     except RowsMissingError:
         while more():
             pass
-        return conclude(path, watch)
+        return conclude(path, watch, law)
     with TruthReader(path / run_dir.TRUTH) as truth:
         if truth.complete != ticks:
             raise HarnessError(f"{path / run_dir.TRUTH}: {truth.complete} whole rows, not {ticks}")

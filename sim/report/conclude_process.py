@@ -15,6 +15,7 @@ import click
 
 from fsw.input import command_line
 from fsw.input.error_text import error_text
+from fsw.input.schema import TableError
 from sim.errors import HarnessError
 from sim.report.conclude import conclude_flight
 from sim.report.follow import OVER
@@ -57,14 +58,15 @@ class _Flight:
 
 @click.command()
 @click.argument("path", metavar="RUN", type=click.Path(path_type=Path))
-def main(path: Path) -> None:
+@click.option("--law", help="The law of its own that the run flies.")
+def main(path: Path, law: str | None) -> None:
     """Replay the run while it is being flown, and conclude it."""
     flight = _Flight()
     try:
-        conclude_flight(path, flight.more, flight.tell)
-    except HarnessError as error:
+        conclude_flight(path, flight.more, flight.tell, law)
+    except (HarnessError, TableError) as error:
         click.echo(error_text(error), err=True)
-        sys.exit(error.exit_code)
+        sys.exit(getattr(error, "exit_code", 2))
 
 
 if __name__ == "__main__":

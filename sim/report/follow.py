@@ -23,12 +23,13 @@ LEAST_TICKS = 10_000
 
 
 @contextmanager
-def follow(path: Path, ticks: int) -> Iterator[Conclude]:
+def follow(path: Path, ticks: int, law: str | None = None) -> Iterator[Conclude]:
     """While a run that was begun is being flown, replay it in another process, where that pays.
 
     Args:
         path: the run directory.
         ticks: length of the flight.
+        law: the law of one's own that it flies; None: it flies one of the table.
 
     Yields:
         What concludes the run; it raises ``HarnessError`` as ``conclude`` does.
@@ -36,10 +37,11 @@ def follow(path: Path, ticks: int) -> Iterator[Conclude]:
     if ticks < LEAST_TICKS or (os.cpu_count() or 1) < 2:
         from sim.report.conclude import conclude  # noqa: PLC0415 the flight does not need it
 
-        yield lambda watch: conclude(path, watch)
+        yield lambda watch: conclude(path, watch, law)
         return
     pipe = subprocess.PIPE
-    process = start_node("sim.report.conclude_process", str(path), stdin=pipe, stdout=pipe, stderr=pipe)
+    words = [str(path), *(() if law is None else ("--law", law))]
+    process = start_node("sim.report.conclude_process", *words, stdin=pipe, stdout=pipe, stderr=pipe)
     try:
         yield lambda watch: _results(process, path, watch)
     finally:

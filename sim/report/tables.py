@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import tomli_w
 
 from fsw.core.orbit.tle import read_tle, tle_elements
+from fsw.input.own_code import display
 from fsw.wire.messages import Mode
 from sim.audit.auditor import AuditReport
 from sim.audit.findings import COILS, seconds_text
@@ -158,7 +159,7 @@ def scenario_in_words(scenario: Scenario) -> tuple[Pairs, Pairs]:
         ("Knowledge", _KNOWLEDGE[scenario.knowledge]),
         ("Magnetometer", f"{magnetometer.noise_nt:g} nT noise, bias {_triple(magnetometer.bias_nt)} nT"),
         ("Sun sensor", f"{scenario.sensors.sun.noise_deg:g}° noise"),
-        ("Law", f"{control.law}, k_w {control.k_w:g} N m s/T², k_a {control.k_a:g} N m/T²"),
+        ("Law", f"{display(control.law)}, k_w {control.k_w:g} N m s/T², k_a {control.k_a:g} N m/T²"),
         ("Tick rate", f"{scenario.time.tick_hz} Hz"),
     ]
     return left, right

@@ -28,6 +28,7 @@ from fsw.input.schema import (
 )
 from fsw.input.toml_text import MOST_LEVELS, BoundsError, parse_toml
 from fsw.table import table as onboard
+from fsw.table.own_law import named
 from fsw.table.sections import CIRCULAR_KEYS, CoilTable, ControlTable, TimeTable
 from fsw.table.table import FlightTable
 from sim.faults.section import Faults
@@ -131,6 +132,12 @@ class Scenario(Section):
         """Time of tick 0, Unix seconds."""
         return onboard.epoch_unix_s(self.time, self.orbit)
 
+    @property
+    def own_law(self) -> str | None:
+        """The law of one's own that the onboard table names; None: it is one of the table of laws."""
+        control = flight_table(self).control
+        return control.law if control.own else None
+
 
 def orbit_period_s(scenario: Scenario) -> float:
     """The period of the scenario's orbit: from the mean motion of the TLE, or of the circle."""
@@ -152,7 +159,7 @@ def load(name_or_path: str, overrides: Nested | None = None) -> Scenario:
         TableError: not found, not TOML, or a key that is unknown, missing, of the wrong type or out of range.
     """
     values, source = _read(name_or_path)
-    return scenario_of(values, source, overrides)
+    return scenario_of(values, source, named(overrides or {}, Path()))
 
 
 def scenario_of(values: Nested, source: str, overrides: Nested | None = None) -> Scenario:
@@ -242,7 +249,8 @@ def _with_floor(sigma: float, floor: float) -> float:
 
 def _read(name_or_path: str) -> tuple[Nested, str]:
     if name_or_path.endswith(".toml"):
-        return read_toml(Path(name_or_path)), name_or_path
+        path = Path(name_or_path)
+        return named(read_toml(path), path.parent), name_or_path
     names = _names()
     if name_or_path not in names:
         raise TableError(

@@ -12,7 +12,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, Strict, field_validator
 
-from fsw.core.laws.table import LAWS
+from fsw.core.laws.table import LAWS, number_of
 from fsw.core.orbit.propagation import sgp4_orbit
 from fsw.core.orbit.tle import tle_elements
 from fsw.input.schema import Section
@@ -81,14 +81,14 @@ class SendClear(TelecommandSection):
 
 
 class SendLaw(TelecommandSection):
-    """TC_LAW: the law by its name."""
+    """TC_LAW: the law by its name, or ``own`` for that of the scenario which is not in the table."""
 
     message: Literal["TC_LAW"]
-    law: Literal[tuple(LAWS)]  # type: ignore[valid-type]  # those of the table
+    law: Literal[(*LAWS, "own")]  # type: ignore[valid-type]  # those of the table
 
     def messages(self) -> list[CountedMessage]:
         """One message."""
-        return [TcLaw(LAWS[self.law].number)]
+        return [TcLaw(number_of(self.law))]
 
 
 class SendSpin(TelecommandSection):

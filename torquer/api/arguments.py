@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from os import PathLike, fspath
 from pathlib import Path
 
-from fsw.input.schema import Model, TableError, validated
+from fsw.input.schema import Model, TableError, merge, validated
+from fsw.table.own_law import named
 from sim.scenario.schema import Scenario, load, scenario_of
 from sim.scenario.settings import nested, plain
 
@@ -14,13 +15,16 @@ Settings = Mapping[str, object]
 """Values by key, ``{"time.tick_hz": 10}`` or ``{"time": {"tick_hz": 10}}``."""
 
 
-def chosen_scenario(scenario: ScenarioLike, settings: Settings | None) -> Scenario:
-    """The scenario with settings laid over it.
+def chosen_scenario(
+    scenario: ScenarioLike, settings: Settings | None, law: str | PathLike[str] | None = None
+) -> Scenario:
+    """The scenario with a law of one's own and settings laid over it.
 
     Raises:
         TableError: there is none, or a key is unknown or out of range.
     """
-    over = nested(settings)
+    given = {} if law is None else {"control": {"law": path_text(law, "law")}}
+    over = named(merge(given, nested(settings)), Path())
     if isinstance(scenario, Scenario) and not over:
         return scenario
     if isinstance(scenario, Scenario):

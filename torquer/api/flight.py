@@ -8,6 +8,7 @@ from pathlib import Path
 from pydantic import Field
 
 from fsw.input.schema import Section, TableError
+from fsw.table.own_law import LawError
 from sim.errors import FlightError
 from sim.flight.record_flight import check_can_fly, ticks_of
 from sim.flight.sil import fly_processes, serve_bus
@@ -47,6 +48,7 @@ def fly(
     bus: str = "virtual",
     pace: str = "lockstep",
     set: Settings | None = None,
+    law: str | PathLike[str] | None = None,
     out: str | PathLike[str] | None = None,
     compress: bool = False,
     sign: str | PathLike[str] | None = None,
@@ -64,6 +66,7 @@ def fly(
         bus: ``virtual``: in this process; ``loop``, ``auto``, ``socketcan:NAME``, ``slcan:PORT``: as two.
         pace: ``lockstep``, or ``realtime[:FACTOR]``.
         set: values laid over the scenario by key: ``{"time.tick_hz": 10}`` or ``{"time": {"tick_hz": 10}}``.
+        law: ``FILE.py:NAME``, a law of one's own, or an installed one by its name; None: the scenario's.
         out: directory of the run; None: a new one, ``runs/<scenario>-<UTC time>``.
         compress: write the log as ``bus.log.gz``.
         sign: private Ed25519 key in PEM with which the run is signed.
@@ -77,7 +80,7 @@ def fly(
     if options.orbits is not None and options.orbits <= 0.0:
         raise TableError(f"fly: orbits = {options.orbits:g} is not allowed: allowed is a number above 0")
     key = None if sign is None else private_key(Path(path_text(sign, "sign")))
-    chosen, folder = chosen_scenario(scenario, set), optional_path(out, "out")
+    chosen, folder = chosen_scenario(scenario, set, law), optional_path(out, "out")
     chosen_pace = parse_pace(options.pace)
     ticks = ticks_of(chosen, options.orbits)
     check_can_fly(chosen, options.seed)
@@ -85,17 +88,17 @@ def fly(
         path = run_dir.begin(folder, chosen, options.seed, ticks, kind, chosen_pace, options.compress)
         if options.bus == "auto":
             note(f"bus: {kind} (auto)")
-        with follow(path, ticks) as conclude_flight:
+        with follow(path, ticks, chosen.own_law) as conclude_flight:
             try:
                 with progress_of(f"flying {chosen.name}", ticks) as watch:
                     flight(path, watch)
-            except FlightError as error:
-                return Run(path, ended=str(error))
+            except (FlightError, LawError) as error:
+                return Run(path, chosen.own_law, ended=str(error))
             with progress_of("replaying", ticks) as watch:
                 conclude_flight(watch)
     if key is not None:
         sign_run(path, key)
-    return Run(path)
+    return Run(path, chosen.own_law)
 
 
 @contextmanager
@@ -112,6 +115,7 @@ def _flight_on(bus: str, scenario: Scenario) -> Iterator[tuple[str, Flight]]:
 def report(
     run: str | PathLike[str],
     *,
+    law: str | PathLike[str] | None = None,
     sign: str | PathLike[str] | None = None,
     verify: str | PathLike[str] | None = None,
     progress: bool = False,
@@ -120,6 +124,7 @@ def report(
 
     Args:
         run: its directory.
+        law: the law of its own that the run flew, named again; without it none is executed.
         sign: private Ed25519 key in PEM with which the run is signed.
         verify: public Ed25519 key in PEM; the run must be signed by its private half.
         progress: show progress on stderr.
@@ -133,13 +138,14 @@ def report(
     """
     path = Path(path_text(run, "run"))
     key = None if sign is None else private_key(Path(path_text(sign, "sign")))
+    named = None if law is None else path_text(law, "law")
     with shown(progress):
         binding = require_sources(path, optional_key(verify))
         before = (path / run_dir.RUN).read_bytes()
         with progress_of("replaying", run_dir.read_run(path)["ticks"]) as watch:
-            conclude(path, watch)
+            conclude(path, watch, named)
         if key is not None:
             sign_run(path, key)
         elif signature_path(path / run_dir.RUN).exists() and (path / run_dir.RUN).read_bytes() != before:
             note(f"note: {run_dir.RUN} is no longer what was signed: --sign KEY signs it again")
-    return Run(path, mismatched=not binding.holds, notes=tuple(binding.lines))
+    return Run(path, named, mismatched=not binding.holds, notes=tuple(binding.lines))

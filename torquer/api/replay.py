@@ -20,6 +20,7 @@ def replay(
     set: Settings | None = None,
     plant: bool = False,
     onto: str | None = None,
+    law: str | PathLike[str] | None = None,
     verify: str | PathLike[str] | None = None,
     progress: bool = False,
 ) -> ReplayReport:
@@ -31,6 +32,7 @@ def replay(
         set: values laid over the scenario by key.
         plant: feed the recorded commands to the plant instead, and compare its frames.
         onto: play the log onto this bus instead, at its own pace.
+        law: the law of its own that the run flew, named again; without it none is executed.
         verify: public Ed25519 key in PEM; the run must be signed by its private half.
         progress: show progress on stderr.
 
@@ -39,8 +41,9 @@ def replay(
     """
     path = Path(path_text(run_or_log, "run_or_log"))
     of_log = None if scenario is None else path_text(scenario, "scenario")
+    named = None if law is None else path_text(law, "law")
     with shown(progress):
-        log, run = command.locate(path, of_log, nested(set), optional_key(verify))
+        log, run = command.locate(path, of_log, nested(set), optional_key(verify), named)
         with run.binding.beside_errors():
             if onto is not None:
                 return command.play(log, run, onto)

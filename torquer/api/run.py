@@ -14,6 +14,7 @@ from sim.record.run_record import RunRecord
 from sim.replay.command import ReplayReport
 from sim.report.summary import summary_text
 from sim.report.verdict import Verdict
+from sim.scenario.law_named import with_law_named
 from sim.scenario.schema import Scenario
 from torquer.api.arguments import path_text
 from torquer.api.audit import Audit, check
@@ -31,12 +32,14 @@ class Run:
 
     Attributes:
         path: the directory.
+        law: the law of its own that it flew, which may be executed again; None: none.
         ended: why the flight ended before its time, as far as ``fly`` knows; empty otherwise.
         mismatched: whether ``torquer.report`` found a file that had been changed since it was written.
         notes: what it found, a line each.
     """
 
     path: Path
+    law: str | None = None
     ended: str = ""
     mismatched: bool = False
     notes: tuple[str, ...] = ()
@@ -100,7 +103,7 @@ class Run:
 
     def replay(self, *, plant: bool = False, progress: bool = False) -> ReplayReport:
         """Replay the run through the flight software, or through the plant, as ``torquer.replay`` does."""
-        return replay(self.path, plant=plant, progress=progress)
+        return replay(self.path, plant=plant, law=self.law, progress=progress)
 
     def check(self) -> Audit:
         """Audit the limits of the coils in the log, as ``torquer.check`` does."""
@@ -128,7 +131,7 @@ class Run:
         """
         from torquer.api.datasets import estimate  # noqa: PLC0415  an extra
 
-        return estimate(self.path, self.scenario, self.record)
+        return estimate(self.path, with_law_named(self.scenario, self.law)[0], self.record)
 
     @cached_property
     @one_sentence
@@ -146,12 +149,16 @@ class Run:
 
 
 @one_sentence
-def load(path: str | PathLike[str]) -> Run:
+def load(path: str | PathLike[str], *, law: str | PathLike[str] | None = None) -> Run:
     """The run in a directory, flown here or elsewhere, complete or not.
+
+    Args:
+        path: the directory.
+        law: the law of its own that the run flew, named again; without it none is executed.
 
     Raises:
         InputError: the directory holds no run.
     """
     folder = Path(path_text(path, "path"))
     run_dir.read_run(folder)
-    return Run(folder)
+    return Run(folder, None if law is None else path_text(law, "law"))

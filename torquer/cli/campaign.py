@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from torquer.cli.options import SETTINGS, sentences
+from torquer.cli.options import law_and_settings, sentences
 
 
 @click.command()
@@ -30,7 +30,7 @@ from torquer.cli.options import SETTINGS, sentences
 @click.option("--retry", is_flag=True, help="Fly runs that failed again.")
 @click.option("--parquet", is_flag=True, help="Export to DIR/results.parquet too. Needs torquer[parquet].")
 @click.option("--out", type=click.Path(path_type=Path), help="Folder. Default: campaigns/<name>-<UTC time>.")
-@SETTINGS
+@law_and_settings
 @sentences
 def campaign(
     source: str,

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from torquer.cli.options import SEEDS, SETTINGS, sentences
+from torquer.cli.options import SEEDS, law_and_settings, sentences
 
 
 @click.command()
@@ -21,7 +21,7 @@ from torquer.cli.options import SEEDS, SETTINGS, sentences
 @click.option(
     "--out", type=click.Path(path_type=Path), help="Folder. Default: compare/<scenario>-<UTC time>."
 )
-@SETTINGS
+@law_and_settings
 @sentences
 def compare(
     scenario: str,

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from torquer.cli.options import SETTINGS, sentences
+from torquer.cli.options import law_and_settings, sentences
 
 
 @click.command()
@@ -16,7 +16,7 @@ from torquer.cli.options import SETTINGS, sentences
 @click.option(
     "--out", type=click.Path(path_type=Path), help="Folder of pictures; default: runs/design-<scenario>."
 )
-@SETTINGS
+@law_and_settings
 @sentences
 def design(
     scenario: str,

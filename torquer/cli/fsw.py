@@ -2,13 +2,13 @@
 
 import click
 
-from torquer.cli.options import BUSES, SETTINGS, sentences
+from torquer.cli.options import BUSES, law_and_settings, sentences
 
 
 @click.command()
 @click.argument("scenario", default="realsat")
 @click.option("--bus", default="auto", show_default=True, help=BUSES)
-@SETTINGS
+@law_and_settings
 @click.option("--disarmed", is_flag=True, help="Send no request to drive a coil.")
 @click.option("--bench", is_flag=True, help="On a bench: PLANT_END does not end it.")
 @sentences

@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from sim.errors import HarnessError
-from torquer.cli.options import BUSES, SEEDS, SETTINGS, sentences
+from torquer.cli.options import BUSES, SEEDS, law_and_settings, sentences
 
 
 @click.command()
@@ -53,7 +53,7 @@ from torquer.cli.options import BUSES, SEEDS, SETTINGS, sentences
 @click.option("--seed", default=1, show_default=True, type=SEEDS, help="Of the plant.")
 @click.option("--out", type=click.Path(path_type=Path), help="Write log and numbers into this folder.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON alone.")
-@SETTINGS
+@law_and_settings
 @sentences
 def hil(
     scenario: str,

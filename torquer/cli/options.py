@@ -4,7 +4,7 @@ import sys
 from collections.abc import Callable, Mapping
 from functools import wraps
 from pathlib import Path
-from typing import ParamSpec
+from typing import Any, ParamSpec
 
 import click
 
@@ -24,6 +24,9 @@ BUSES = f"auto, {KINDS}"
 RUN_OR_LOG = click.argument("run_or_log", metavar="RUN|LOG", type=click.Path(path_type=Path))
 SETTINGS = click.option(
     "--set", "settings", multiple=True, metavar="KEY=VALUE", help="Override a key of the scenario."
+)
+LAW_AGAIN = click.option(
+    "--law", metavar="FILE.py:NAME", help="The law of its own that the run flew: only then it is executed."
 )
 COMPRESS = click.option(
     "--compress", is_flag=True, help="Write the log as bus.log.gz, a fourth of the size of bus.log."
@@ -65,6 +68,21 @@ def sentences(command: Callable[Parameters, int | None]) -> Callable[Parameters,
             click.echo(f"torquer: {end}", err=True)
             code = end.exit_code
         sys.exit(code or 0)
+
+    return run
+
+
+def law_and_settings(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The options of a command that flies a scenario: ``--set``, and ``--law`` for a law of one's own."""
+
+    @SETTINGS
+    @click.option(
+        "--law", metavar="FILE.py:NAME", help="Fly this law of your own, or an installed one by its name."
+    )
+    @wraps(command)
+    def run(*args: Any, law: str | None, settings: tuple[str, ...], **kwargs: Any) -> Any:  # noqa: ANN401  (as click calls it)
+        named = () if law is None else (f"control.law={law}",)
+        return command(*args, settings=(*named, *settings), **kwargs)
 
     return run
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from torquer.cli.options import BUSES, COMPRESS, SEEDS, SETTINGS, sentences
+from torquer.cli.options import BUSES, COMPRESS, SEEDS, law_and_settings, sentences
 
 WAITING_NOTE_S = 30.0
 """Interval of the notes that there is no flight software yet."""
@@ -23,7 +23,7 @@ WAITING_NOTE_S = 30.0
 @click.option("--pace", default="lockstep", show_default=True, help="lockstep or realtime[:FACTOR].")
 @click.option("--out", type=click.Path(path_type=Path), help="Run directory; default runs/<scenario>-<time>.")
 @COMPRESS
-@SETTINGS
+@law_and_settings
 @sentences
 def plant(
     scenario: str,
@@ -55,7 +55,7 @@ def plant(
     with progress(f"flying {chosen.name}", ticks) as watch:
         record_flight(directory, chosen, link, watch, waiting=_still_waiting())
     with progress("replaying", ticks) as watch:
-        summary = conclude(directory, watch)
+        summary = conclude(directory, watch, chosen.own_law)
     click.echo(f"run: {directory}", err=True)
     if "failures" in summary:
         raise FlightError(flight_failed(summary["failures"]))

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from torquer.cli.options import RUN_OR_LOG, SETTINGS, VERIFY, sentences
+from torquer.cli.options import LAW_AGAIN, RUN_OR_LOG, SETTINGS, VERIFY, sentences
 
 
 @click.command()
@@ -13,6 +13,7 @@ from torquer.cli.options import RUN_OR_LOG, SETTINGS, VERIFY, sentences
 @click.option("--plant", is_flag=True, help="Replay the recorded commands through the plant instead.")
 @click.option("--onto", metavar="BUS", help="Play the log on a bus instead, at its own pace.")
 @VERIFY
+@LAW_AGAIN
 @SETTINGS
 @sentences
 def replay(
@@ -21,6 +22,7 @@ def replay(
     plant: bool,
     onto: str | None,
     verify: Path | None,
+    law: str | None,
     settings: tuple[str, ...],
 ) -> int:
     """Replay a log through the flight software and compare its answers byte for byte."""
@@ -29,7 +31,7 @@ def replay(
 
     over = parse_settings(settings)
     report = replay(
-        run_or_log, scenario=scenario, set=over, plant=plant, onto=onto, verify=verify, progress=True
+        run_or_log, scenario=scenario, set=over, plant=plant, onto=onto, law=law, verify=verify, progress=True
     )
     for line in report.lines:
         click.echo(line)

@@ -7,7 +7,7 @@ import click
 
 from fsw.input.error_text import error_text
 from sim.errors import HarnessError
-from torquer.cli.options import BUSES, COMPRESS, SEEDS, SETTINGS, SIGN, report_failures, sentences
+from torquer.cli.options import BUSES, COMPRESS, SEEDS, SIGN, law_and_settings, report_failures, sentences
 
 if TYPE_CHECKING:
     from sim.campaign.rerun import CampaignRun
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 @click.option("--run", type=click.IntRange(min=0), help="Its number. With --from.")
 @COMPRESS
 @SIGN
-@SETTINGS
+@law_and_settings
 @sentences
 def sil(
     scenario: str | None,

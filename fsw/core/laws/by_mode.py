@@ -2,9 +2,9 @@
 
 from fsw.core.algebra.vector import sub
 from fsw.core.laws.damping import bdot, rate_damping
-from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
+from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, OwnLaw, Setpoint
 from fsw.core.laws.predictive import predictive
-from fsw.core.laws.table import LAWS
+from fsw.core.laws.table import LAWS, LawEntry
 from fsw.wire.messages import Mode
 
 
@@ -26,9 +26,15 @@ def demand(
         case Mode.DETUMBLE:
             return detumble(inputs, memory, setpoint, config)._replace(memory=())
         case Mode.ACQUIRE:
-            return _net(LAWS[setpoint.law].acquire(inputs, memory, setpoint, config), inputs)
+            return _net(_forms(setpoint, config).acquire(inputs, memory, setpoint, config), inputs)
         case Mode.POINT:
-            return _net(LAWS[setpoint.law].point(inputs, memory, setpoint, config), inputs)
+            return _net(_forms(setpoint, config).point(inputs, memory, setpoint, config), inputs)
+
+
+def _forms(setpoint: Setpoint, config: ControlConfig) -> LawEntry | OwnLaw:
+    """The law of the setpoint."""
+    own = config.own
+    return own if own is not None and own.name == setpoint.law else LAWS[setpoint.law]
 
 
 def _net(wanted: Demand, inputs: LawInput) -> Demand:

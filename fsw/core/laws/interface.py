@@ -67,6 +67,14 @@ class Setpoint(NamedTuple):
         return self[1:]
 
 
+class OwnLaw(NamedTuple):
+    """A law that is not in the table of laws: its name in the setpoint, its forms in ACQUIRE and POINT."""
+
+    name: str
+    acquire: "Law"
+    point: "Law"
+
+
 @dataclass(frozen=True, slots=True)
 class ControlConfig:
     """Parameters of the laws that the onboard table fixes.
@@ -82,6 +90,7 @@ class ControlConfig:
         horizon_s: length of a pulse: how far a predictive law looks.
         mean_dipole_am2: dipole per axis that the coils can give in the mean.
         schedules: by law, the gains over an orbit of the periodic laws.
+        own: a law beside those of the table.
     """
 
     setpoint: Setpoint
@@ -94,6 +103,7 @@ class ControlConfig:
     horizon_s: float
     mean_dipole_am2: float
     schedules: dict[str, Schedule] = field(default_factory=dict)
+    own: OwnLaw | None = None
 
 
 class Demand(NamedTuple):

@@ -65,6 +65,9 @@ class LawEntry(NamedTuple):
     gains: type | None = None
 
 
+OWN_NUMBER = 255
+"""The number of a law that is not in this table."""
+
 LAWS: dict[str, LawEntry] = {
     "pd": LawEntry(0, Aim.THREE_AXIS, pd_far, pd),
     "rate_damping": LawEntry(1, Aim.RATE, rate_damping, rate_damping),
@@ -91,3 +94,8 @@ LAWS: dict[str, LawEntry] = {
         61, Aim.THREE_AXIS, sliding_integral, sliding_integral, SlidingIntegralGains
     ),
 }
+
+
+def number_of(law: str) -> int:
+    """The number of a law by its name."""
+    return LAWS[law].number if law in LAWS else OWN_NUMBER

@@ -1,5 +1,6 @@
 """Telecommands: each is carried out whole or refused whole, and acknowledged once."""
 
+from dataclasses import replace
 from math import dist
 
 import pytest
@@ -11,7 +12,8 @@ from fsw.core.fdir.coils.health import CoilHealth
 from fsw.core.fdir.fdir import Health
 from fsw.core.fdir.sensors.health import SensorHealth, Watch
 from fsw.core.gate.readings import NOTHING, TELECOMMANDS
-from fsw.core.laws.table import LAWS
+from fsw.core.laws.interface import OwnLaw
+from fsw.core.laws.table import LAWS, OWN_NUMBER
 from fsw.core.modes import ModeState
 from fsw.core.orbit.elements import RANGES, Elements, Upload
 from fsw.core.orbit.ephemeris import advance, with_orbit
@@ -167,6 +169,15 @@ class TestLaw:
 
     def test_the_law_that_flies_already_goes_on_with_its_memory(self, obey, state):
         assert obey(state, TcLaw(LAWS[state.setpoint.law].number)) == (state, [TcAckResult.ACCEPTED])
+
+    def test_of_ones_own_has_the_last_number(self, obey, state, config):
+        own = OwnLaw("mine", LAWS["pd"].acquire, LAWS["pd"].point)
+        with_own = replace(config, control=replace(config.control, own=own))
+        after, results = obey(state, TcLaw(OWN_NUMBER), config=with_own)
+        assert results == [TcAckResult.ACCEPTED]
+        assert after == state._replace(setpoint=state.setpoint._replace(law="mine"), memory=())
+        back, _ = obey(after, TcLaw(LAWS[state.setpoint.law].number), config=with_own)
+        assert back.setpoint == state.setpoint
 
     @pytest.mark.parametrize("number", [*sorted(set(range(256)) - set(LAW_NAMES))[::23], 255])
     def test_that_is_not_there(self, refused, number):

@@ -54,9 +54,13 @@ class TestDefault:
     def test_every_key_of_the_schema_is_written_in_it(self):
         """So that who reads the file sees all that can be set."""
         values = default_values()
-        optional = {"time.epoch_utc", "control.spin_radps", "control.gains", "coils.max_dipole_am2"} | {
-            f"orbit.{key}" for key in ("altitude_km", "inclination_deg", "raan_deg", "u0_deg")
-        }
+        optional = {
+            "time.epoch_utc",
+            "control.spin_radps",
+            "control.gains",
+            "control.law_sha256",
+            "coils.max_dipole_am2",
+        } | {f"orbit.{key}" for key in ("altitude_km", "inclination_deg", "raan_deg", "u0_deg")}
         optional |= {f"uncertainty.{key}" for key in UncertaintyTable.model_fields}
         for name, field in FlightTable.model_fields.items():
             inner = getattr(field.annotation, "model_fields", None)

@@ -5,6 +5,7 @@ from math import cos, radians, sin
 import numpy as np
 import pytest
 
+from fsw.core.laws.table import LAWS
 from fsw.wire.messages import Mode
 from sim.audit.auditor import AuditLimits, audit
 from sim.campaign.flight import Order, RecordedFlight
@@ -48,4 +49,6 @@ def plant_record(bus_log, fired):
 @pytest.fixture
 def case_of():
     """The case of a law and a driver, of no flight in particular."""
-    return lambda law="pd", driver=Driver.PULSED: ComparisonCase(law, driver, Order("microsat"))
+    return lambda law="pd", driver=Driver.PULSED: ComparisonCase(
+        law, LAWS[law].aim, driver, Order("microsat")
+    )

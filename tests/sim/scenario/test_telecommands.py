@@ -9,7 +9,7 @@ from random import Random
 
 import pytest
 
-from fsw.core.laws.table import LAWS
+from fsw.core.laws.table import LAWS, OWN_NUMBER
 from fsw.core.orbit.elements import RANGES, Elements
 from fsw.core.orbit.propagation import element_orbit, sgp4_orbit, state_eci
 from fsw.input.schema import TableError
@@ -47,7 +47,7 @@ from sim.record.pace import Pace
 from sim.record.run_dir import BUS_LOG
 from sim.replay.log_replay import replay
 from sim.scenario.schema import flight_table, load
-from sim.scenario.telecommands import digits_of, elements_of, uplink
+from sim.scenario.telecommands import SendLaw, digits_of, elements_of, uplink
 
 ITAMSAT = (
     "1 22826U 93061D   15086.11593543  .00000251  00000-0  11414-3 0  9992",
@@ -306,3 +306,8 @@ def test_commands_by_hand_replay_too_wherever_they_meet_the_tick(tmp_path):
     assert bus.count > 150
     assert shown.bit_exact, shown.first_bit_difference
     assert shown.ended
+
+
+def test_the_law_of_ones_own_is_sent_by_the_last_number():
+    (message,) = SendLaw(message="TC_LAW", at_s=0.0, law="own").messages()
+    assert message == TcLaw(OWN_NUMBER)

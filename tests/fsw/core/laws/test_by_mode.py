@@ -9,7 +9,7 @@ from fsw.core.algebra.vector import ZERO, Mat3, cross, inverse, sub
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.laws import by_mode
 from fsw.core.laws.damping import bdot, bdot_dipole, rate_damping, rate_damping_dipole
-from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, LawInput, Setpoint
+from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, LawInput, OwnLaw, Setpoint
 from fsw.core.laws.pd import attitude_error, far_error, pd_dipole
 from fsw.core.laws.predictive import predictive
 from fsw.core.laws.table import LAWS
@@ -228,3 +228,21 @@ class TestBdot:
     def test_a_sample_of_tick_zero_counts(self):
         before = FieldSample(BEFORE.b_body_t, 0)
         assert self.by_bdot(FieldSample(SAMPLE.b_body_t, 4), before) == BY_BDOT
+
+
+class TestOwnLaw:
+    """A law that is not in the table, beside those that are."""
+
+    OWN = OwnLaw("mine", lambda *given: Demand((1.0, 0.0, 0.0)), lambda *given: Demand((0.0, 1.0, 0.0)))
+    CONFIG = replace(CONFIG, own=OWN)
+
+    def test_it_flies_in_both_modes(self):
+        mine = PD._replace(law="mine")
+        assert run(Mode.ACQUIRE, mine, config=self.CONFIG) == Demand((1.0, 0.0, 0.0))
+        assert run(Mode.POINT, mine, config=self.CONFIG) == Demand((0.0, 1.0, 0.0))
+
+    def test_damping_and_the_other_laws_stay(self):
+        mine = PD._replace(law="mine")
+        assert run(Mode.DETUMBLE, mine, config=self.CONFIG) == BY_PREDICTION
+        assert run(Mode.SAFE, mine, config=self.CONFIG) is None
+        assert run(Mode.POINT, PD, config=self.CONFIG) == BY_PD

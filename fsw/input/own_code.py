@@ -1,0 +1,165 @@
+"""Code of one's own that a table names: ``FILE.py:NAME``, or the name of an entry point.
+
+Finding it reads its source and gives its SHA-256; only loading it executes it, and only where its source is
+the one that was named.
+"""
+
+import hashlib
+import re
+import sys
+import traceback
+from importlib.metadata import EntryPoint, entry_points
+from importlib.util import find_spec
+from pathlib import Path
+from types import ModuleType
+from typing import NamedTuple
+
+from fsw.input.regular_file import read_regular
+from fsw.input.schema import TableError
+
+MOST_BYTES = 1_000_000
+LONGEST_ERROR = 300
+"""Characters of an error of somebody else's code in a sentence."""
+
+_IN_FILE = re.compile(r"(?P<file>.+\.py):(?P<name>[A-Za-z_]\w{0,99})", re.S)
+
+
+class Found(NamedTuple):
+    """Code that a table names: the reference, with an absolute path, and the SHA-256 of its source in hex."""
+
+    reference: str
+    sha256: str
+
+
+def in_file(reference: str) -> bool:
+    """Whether a reference is of the form ``FILE.py:NAME``."""
+    return _IN_FILE.fullmatch(reference) is not None
+
+
+def short_name(reference: str) -> str:
+    """The NAME of ``FILE.py:NAME``; the name of an entry point as it is."""
+    match = _IN_FILE.fullmatch(reference)
+    return match["name"] if match else reference
+
+
+def display(reference: str) -> str:
+    """A reference without the folders of its file."""
+    match = _IN_FILE.fullmatch(reference)
+    return f"{match['name']} of {Path(match['file']).name}" if match else reference
+
+
+def find(reference: str, folder: Path, group: str) -> Found | None:
+    """Where the code is, and its digest; nothing is executed.
+
+    Args:
+        reference: as a table has it.
+        folder: against which a relative path counts.
+        group: of entry points.
+
+    Returns:
+        None: there is no entry point of that name.
+
+    Raises:
+        TableError: the source cannot be read.
+    """
+    match = _IN_FILE.fullmatch(reference)
+    if match:
+        path = (folder / match["file"]).absolute()
+        return Found(f"{path}:{match['name']}", _sha256([path], path.parent))
+    entry = _entry(reference, group)
+    return None if entry is None else Found(reference, _package_sha256(entry))
+
+
+def load(reference: str, sha256: str | None, group: str) -> object:
+    """Execute the code, and return what it has under the name.
+
+    Args:
+        reference: as ``find`` gives it.
+        sha256: which its source must have; None: any.
+        group: of entry points.
+
+    Raises:
+        TableError: it is not there, its source is another one, it fails, or it has no such name.
+    """
+    found = find(reference, Path(), group)
+    if found is None:
+        raise TableError(f"{reference!r} is not installed: no package offers it in the group {group}")
+    if sha256 not in (None, found.sha256):
+        raise TableError(
+            f"{reference}: its source has the SHA-256 {found.sha256[:16]}..., not {str(sha256)[:16]}..."
+        )
+    match = _IN_FILE.fullmatch(reference)
+    if match:
+        return _of_file(Path(match["file"]), match["name"], found.sha256)
+    entry = _entry(reference, group)
+    assert entry is not None
+    try:
+        return entry.load()
+    except (Exception, SystemExit) as error:
+        raise TableError(f"{reference} ({entry.value}): {error_clause(error)}") from None
+
+
+def error_clause(error: BaseException, file: str = "") -> str:
+    """An error of somebody else's code: its kind, its text, and the line of their file where it began."""
+    text = f"{type(error).__name__}: {_text(error)}".rstrip(": ")
+    if isinstance(error, SyntaxError):
+        return f"line {error.lineno}: {error.msg}"
+    lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == file]
+    return f"line {lines[-1]}: {text}" if lines else text
+
+
+def _text(error: BaseException) -> str:
+    try:
+        return str(error)[:LONGEST_ERROR]
+    except Exception:  # their __str__ fails too
+        return "without a text"
+
+
+def _of_file(path: Path, name: str, sha256: str) -> object:
+    """Execute the file as a fresh module, so that nothing is left of an earlier flight."""
+    module = ModuleType(f"torquer_own_{sha256[:16]}")
+    module.__file__ = str(path)
+    source = _read(path)
+    if hashlib.sha256(source).hexdigest() != sha256:
+        raise TableError(f"{path} has changed while it was read")
+    sys.modules[module.__name__] = module  # dataclasses look their module up
+    try:
+        exec(compile(source, str(path), "exec"), module.__dict__)
+    except (Exception, SystemExit) as error:
+        raise TableError(f"{path}: {error_clause(error, str(path))}") from None
+    if name not in module.__dict__:
+        raise TableError(f"{path}: there is no {name} in it")
+    found: object = module.__dict__[name]
+    return found
+
+
+def _entry(name: str, group: str) -> EntryPoint | None:
+    return next(iter(entry_points(group=group, name=name)), None)
+
+
+def _package_sha256(entry: EntryPoint) -> str:
+    """Digest of the top package of an entry point, which is not imported for it."""
+    top = entry.module.partition(".")[0]
+    spec = find_spec(top)
+    if spec is None or spec.origin is None:
+        raise TableError(f"{entry.name} ({entry.value}): there is no module {top}")
+    origin = Path(spec.origin)
+    files = sorted(origin.parent.rglob("*.py")) if spec.submodule_search_locations else [origin]
+    return _sha256(files, origin.parent)
+
+
+def _sha256(files: list[Path], folder: Path) -> str:
+    """Of a file its own; of several that of their names and digests."""
+    digests = [hashlib.sha256(_read(file)).hexdigest() for file in files]
+    if len(files) == 1:
+        return digests[0]
+    named = zip(files, digests, strict=True)
+    text = "".join(f"{digest}  {file.relative_to(folder).as_posix()}\n" for file, digest in named)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _read(path: Path) -> bytes:
+    try:
+        return read_regular(path, MOST_BYTES)
+    except OSError as error:
+        raise TableError(f"{path}: cannot be read ({error.strerror or error})") from None

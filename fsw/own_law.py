@@ -1,0 +1,55 @@
+"""What a control law of one's own is written with; docs/own-law.md shows one.
+
+A law is a function of the form ``Law``: called once a tick in ACQUIRE and POINT, pure, with whatever it must
+remember in ``Demand.memory``. Without gains of its own the function is all that a file needs; with gains, or
+another form in ACQUIRE, it is named by a ``ControlLaw``. Its gains are in ``config.gains[setpoint.law]``.
+"""
+
+from dataclasses import dataclass
+
+from fsw.core.laws.interface import (
+    ControlConfig,
+    Demand,
+    FieldSample,
+    Law,
+    LawInput,
+    Memory,
+    Setpoint,
+)
+from fsw.core.laws.table import Aim
+from fsw.input.quantities import quantity
+
+GROUP = "torquer.laws"
+"""Group of the entry points by which installed packages offer laws."""
+
+__all__ = [
+    "GROUP",
+    "Aim",
+    "ControlConfig",
+    "ControlLaw",
+    "Demand",
+    "FieldSample",
+    "Law",
+    "LawInput",
+    "Memory",
+    "Setpoint",
+    "quantity",
+]
+
+
+@dataclass(frozen=True)
+class ControlLaw:
+    """A law with what belongs to it.
+
+    Attributes:
+        point: its form in POINT.
+        acquire: its form in ACQUIRE; None: the same.
+        gains: its own parameters, a frozen dataclass of numbers with defaults, or None. ``quantity`` gives a
+            number its unit and its range.
+        aim: what it is for; laws of one aim are compared.
+    """
+
+    point: Law
+    acquire: Law | None = None
+    gains: type | None = None
+    aim: Aim = Aim.THREE_AXIS

@@ -1,0 +1,200 @@
+"""A law of one's own as the onboard table names it: its digest, its gains, and a guard around each call."""
+
+import signal
+from dataclasses import dataclass, replace
+from itertools import islice
+from math import isfinite
+from pathlib import Path
+from threading import current_thread, main_thread
+from types import FrameType
+from typing import Any
+
+from fsw.core.laws.interface import ControlConfig, Demand, Law, LawInput, Memory, OwnLaw, Setpoint
+from fsw.core.laws.table import LAWS
+from fsw.input import own_code
+from fsw.input.own_code import error_clause
+from fsw.input.quantities import with_values
+from fsw.input.schema import Nested, TableError
+from fsw.own_law import GROUP, ControlLaw
+from fsw.table.sections import ControlTable
+
+LONGEST_S = 5.0
+"""Processor time after which a call is given up."""
+MOST_MEMORY = 1000
+"""Numbers that a law may carry from one tick to the next."""
+ASKED_TWICE = 16
+"""In each tick that is a multiple of this the law is called twice; a pure one gives the same answer."""
+
+
+class LawError(TableError):
+    """A law of one's own has failed in flight; the message is a sentence that names law, tick and what."""
+
+    exit_code = 1
+
+
+def named(values: Nested, folder: Path) -> Nested:
+    """The values of a table in which a law of one's own has an absolute path and the digest of its source.
+
+    Nothing is executed. A law that has a digest already stays as it is: it may be that of a run, whose source
+    need not be here.
+
+    Args:
+        values: of an onboard table, or of a scenario with its ``[flight]``.
+        folder: of the file that has them.
+
+    Raises:
+        TableError: the source cannot be read.
+    """
+    control, below = values.get("control"), values.get("flight")
+    if isinstance(below, dict):
+        values = {**values, "flight": named(below, folder)}
+    law = control.get("law") if isinstance(control, dict) else None
+    if not isinstance(control, dict) or not isinstance(law, str) or law in LAWS or "law_sha256" in control:
+        return values
+    found = own_code.find(law, folder, GROUP)
+    if found is None:
+        return values
+    return {**values, "control": {**control, "law": found.reference, "law_sha256": found.sha256}}
+
+
+def declared(control: ControlTable) -> ControlLaw:
+    """What the source of the table's own law declares; it is executed.
+
+    Raises:
+        TableError: it cannot be loaded, or is no law.
+    """
+    found = own_code.load(control.law, control.law_sha256, GROUP)
+    if isinstance(found, ControlLaw):
+        parts = {"point": found.point, "acquire": found.acquire or found.point}
+        if wrong := [name for name, part in parts.items() if not callable(part)]:
+            raise TableError(f"{control.law}: {wrong[0]} is no function")
+        return found
+    if callable(found) and not isinstance(found, type):
+        return ControlLaw(found)
+    kind = f"the class {found.__name__}" if isinstance(found, type) else f"of type {type(found).__name__}"
+    raise TableError(f"{control.law} is {kind}, not a law: neither a function nor a ControlLaw")
+
+
+def with_own_law(config: ControlConfig, control: ControlTable) -> ControlConfig:
+    """The configuration with the table's own law and its gains.
+
+    Raises:
+        TableError: it cannot be loaded, is no law, or a gain is not allowed.
+    """
+    law, name = declared(control), control.law_name
+    gains, given = dict(config.gains), control.gains.get(name, {})
+    if law.gains is not None:
+        gains[name] = with_values(law.gains, given, f"control.gains.{name}", control.law)
+    elif given:
+        raise TableError(f"{control.law}: control.gains.{name}: the law has no gains of its own")
+    called = own_code.display(control.law)
+    file = control.law.rpartition(":")[0]
+    acquire, point = (GuardedLaw(form, called, file) for form in (law.acquire or law.point, law.point))
+    return replace(config, gains=gains, own=OwnLaw(name, acquire, point))
+
+
+@dataclass(frozen=True, slots=True)
+class GuardedLaw:
+    """A law of one's own, of whose answers only a whole ``Demand`` of finite numbers gets further.
+
+    Attributes:
+        law: the function.
+        name: of the law, for messages.
+        file: of its source; empty: an installed package.
+    """
+
+    law: Law
+    name: str
+    file: str = ""
+
+    def __call__(self, inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+        """The demand of the law.
+
+        Raises:
+            LawError: it fails, gives anything else, takes too long, or is not pure.
+        """
+        demand = self._ask(inputs, memory, setpoint, config)
+        if inputs.tick % ASKED_TWICE == 0 and self._ask(inputs, memory, setpoint, config) != demand:
+            raise self._error(
+                inputs,
+                "it gives two answers to the same input: it keeps state outside Demand.memory, "
+                "draws random numbers or reads a clock",
+            )
+        return demand
+
+    def _ask(self, inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+        try:
+            answer = _within(LONGEST_S, self.law, inputs, memory, setpoint, config)
+        except _TooLongError:
+            raise self._error(inputs, f"it takes more than {LONGEST_S:g} s") from None
+        except (Exception, SystemExit) as error:
+            raise self._error(inputs, f"it fails: {error_clause(error, self.file)}") from None
+        try:
+            return _whole(answer)
+        except ValueError as error:
+            raise self._error(inputs, str(error)) from None
+
+    def _error(self, inputs: LawInput, what: str) -> LawError:
+        return LawError(f"the law {self.name}, tick {inputs.tick}: {what}")
+
+
+def _whole(answer: object) -> Demand:
+    """The answer of a law, its numbers as floats.
+
+    Raises:
+        ValueError: it is no demand of finite numbers.
+    """
+    if not isinstance(answer, Demand):
+        raise ValueError(f"it returns {_kind(answer)}, not a Demand")
+    impulse = answer.impulse_body_nms
+    return Demand(
+        _vector("m_body_am2", answer.m_body_am2),
+        None if impulse is None else _vector("impulse_body_nms", impulse),
+        _numbers("memory", answer.memory),
+    )
+
+
+def _vector(name: str, values: object) -> tuple[float, float, float]:
+    numbers = _numbers(name, values)
+    if len(numbers) != 3:
+        raise ValueError(f"{name} has {len(numbers)} numbers, not 3")
+    x, y, z = numbers
+    return (x, y, z)
+
+
+def _numbers(name: str, values: object) -> tuple[float, ...]:
+    try:
+        given = islice(iter(values), MOST_MEMORY + 1)  # type: ignore[call-overload]  # whatever they gave
+        numbers = tuple(map(float, given))
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} is {_kind(values)}, not a sequence of numbers") from None
+    if len(numbers) > MOST_MEMORY:
+        raise ValueError(f"{name} has more than {MOST_MEMORY} numbers")
+    if not all(map(isfinite, numbers)):
+        raise ValueError(f"{name} is not finite: {', '.join(f'{number:g}' for number in numbers[:6])}")
+    return numbers
+
+
+def _kind(value: object) -> str:
+    return "nothing" if value is None else f"a {type(value).__name__}"
+
+
+class _TooLongError(BaseException):
+    """No Exception, so that a law which catches those does not catch it."""
+
+
+def _interrupt(signum: int, frame: FrameType | None) -> None:
+    raise _TooLongError
+
+
+def _within(seconds: float, law: Law, *arguments: Any) -> object:  # noqa: ANN401  (those of the law)
+    """Call a law for no longer than this much processor time; only the main thread can interrupt it."""
+    if current_thread() is not main_thread() or not hasattr(signal, "setitimer"):
+        return law(*arguments)
+    before = signal.signal(signal.SIGVTALRM, _interrupt)
+    signal.setitimer(signal.ITIMER_VIRTUAL, seconds)
+    try:
+        return law(*arguments)
+    finally:
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
+        signal.signal(signal.SIGVTALRM, before)

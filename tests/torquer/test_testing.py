@@ -1,0 +1,96 @@
+"""The pytest plugin: a fixture that flies, and expressions over the summary."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+from torquer import InputError
+from torquer.api.run import Run
+from torquer.testing import ExpressionError, FlownScenario
+
+SUMMARY = {"limits_ok": True, "mode_final": "POINT", "pulses": {"total": 7}, "pointing_deg": {"final": 2.5}}
+
+
+@pytest.fixture
+def flown(tmp_path):
+    (tmp_path / "summary.json").write_text(json.dumps(SUMMARY))
+    return FlownScenario(Run(tmp_path))
+
+
+@pytest.mark.parametrize(
+    "expression",
+    [
+        "pointing_deg.final < 3",
+        "pointing_deg.final<3.0",
+        " pulses.total == 7 ",
+        "pulses.total >= 7",
+        "pulses.total <= 7",
+        "pulses.total != 8",
+        "pulses.total > 6.5",
+        "mode_final == POINT",
+        'mode_final == "POINT"',
+        "limits_ok == true",
+    ],
+)
+def test_what_holds(flown, expression):
+    flown.expect(expression)
+
+
+def test_all_that_does_not_hold_is_named_with_its_value(flown):
+    with pytest.raises(AssertionError) as caught:
+        flown.expect("pointing_deg.final < 2", "pulses.total == 7", "limits_ok == false")
+    message = str(caught.value)
+    assert "pointing_deg.final < 2 does not hold: 2.5" in message
+    assert "limits_ok == false does not hold: True" in message
+    assert "pulses" not in message
+
+
+@pytest.mark.parametrize(
+    ("expression", "what"),
+    [
+        ("", "is none"),
+        ("pulses.total", "is none"),
+        ("pulses.total = 7", "is none"),
+        ("pulses.totl == 7", "no 'totl' in the summary, of total"),
+        ("pulses.total.sum == 7", "no 'sum' in the summary, of none"),
+        ("mode_final < 3", "not supported between"),
+    ],
+)
+def test_what_cannot_be_judged_is_no_pass(flown, expression, what):
+    with pytest.raises(ExpressionError, match=what):
+        flown.expect(expression)
+
+
+def test_a_flight_as_a_fixture(fly):
+    flight = fly("microsat", orbits=0.03, seed=7, control={"k_w": 5e6})
+    flight.expect("limits_ok == true", "seed == 7", "ticks == 181", "replay.bit_exact == true")
+    assert flight.audit().ok
+    assert "k_w = 5000000.0" in (flight.run.path / "scenario.toml").read_text()
+
+
+def test_a_flight_that_fails_fails_the_test(fly, monkeypatch):
+    monkeypatch.setattr(
+        "sim.report.conclude.failures", lambda *args, **named: {"limits": "the limits are broken"}
+    )
+    with pytest.raises(AssertionError, match="the limits are broken"):
+        fly("microsat", orbits=0.005)
+
+
+def test_a_flight_that_cannot_be_flown_is_an_error(fly):
+    with pytest.raises(InputError, match="at most"):
+        fly("microsat", orbits=1e9)
+
+
+def test_the_plugin_is_light(pytester_process):
+    assert pytester_process("import torquer.testing, sys; print('numpy' in sys.modules)") == "False"
+
+
+@pytest.fixture
+def pytester_process():
+    def run(code):
+        done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+        return done.stdout.strip()
+
+    return run

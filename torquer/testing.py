@@ -1,0 +1,143 @@
+"""A pytest plugin, there as soon as torquer is installed: fly a scenario in a test, and assert what it shows.
+
+::
+
+    def test_my_law_points(fly):
+        flight = fly("microsat", orbits=3, seed=2, law="my_law.py:damp")
+        flight.expect("pointing_deg.rms_last_orbit < 3", "mode_final == POINT")
+        assert flight.audit().ok
+
+The fixture ``fly`` flies on the virtual bus, in the test's own process, into a folder of pytest's. A flight
+that fails (limits broken, replay not exact, a law that raises) fails the test.
+"""
+
+import operator
+import re
+import tomllib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol
+
+import pytest
+
+if TYPE_CHECKING:
+    from torquer.api.audit import Audit
+    from torquer.api.run import Run
+
+_COMPARISONS: dict[str, Callable[[Any, Any], bool]] = {
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+    "==": operator.eq,
+    "!=": operator.ne,
+}
+_EXPRESSION = re.compile(r"\s*(?P<key>[\w.]+)\s*(?P<sign><=|>=|==|!=|<|>)\s*(?P<value>\S.*?)\s*")
+
+
+class ExpressionError(ValueError):
+    """An expression that cannot be judged: it is none, or the summary has no such figure."""
+
+
+@dataclass(frozen=True, slots=True)
+class FlownScenario:
+    """A flight that did not fail.
+
+    Attributes:
+        run: with its ``path``, ``summary``, ``truth`` and whatever else ``torquer.load`` gives.
+    """
+
+    run: "Run"
+
+    def expect(self, *expressions: str) -> None:
+        """Assert figures of the summary.
+
+        Args:
+            expressions: ``KEY SIGN VALUE``: a dotted key of summary.json, one of < <= > >= == !=, and a
+                value as in TOML or a bare word.
+
+        Raises:
+            AssertionError: one does not hold; all that do not are named.
+            ExpressionError: one cannot be judged.
+        """
+        missed = [clause for clause in map(self._missed, expressions) if clause]
+        assert not missed, f"{self.run.path}: {'; '.join(missed)}"
+
+    def audit(self) -> "Audit":
+        """The audit of its log, as by ``torquer check``: ``ok`` and ``violations``."""
+        return self.run.check()
+
+    def _missed(self, expression: str) -> str:
+        """How an expression is missed, as a clause; empty if it holds."""
+        found = _EXPRESSION.fullmatch(expression)
+        if found is None:
+            raise ExpressionError(
+                f"{expression!r} is none: write for instance pointing_deg.rms_last_orbit < 3"
+            )
+        value: Any = self.run.summary
+        for part in found["key"].split("."):
+            if not isinstance(value, Mapping) or part not in value:
+                allowed = ", ".join(value) if isinstance(value, Mapping) else "none"
+                raise ExpressionError(f"{expression!r}: no {part!r} in the summary, of {allowed}")
+            value = value[part]
+        try:
+            holds = _COMPARISONS[found["sign"]](value, _value(found["value"]))
+        except TypeError as error:
+            raise ExpressionError(f"{expression!r}: {error}") from None
+        return "" if holds else f"{expression} does not hold: {value!r}"
+
+
+class Fly(Protocol):
+    """What the fixture ``fly`` gives."""
+
+    def __call__(
+        self,
+        scenario: str,
+        *,
+        orbits: float | None = None,
+        seed: int = 1,
+        law: str | None = None,
+        **sections: dict[str, Any],
+    ) -> FlownScenario:
+        """Fly a scenario by its name or path.
+
+        Args:
+            scenario: a shipped one, or a path that ends in .toml.
+            orbits: how long; None: as the scenario says.
+            seed: of all random streams.
+            law: FILE.py:NAME or an installed law, instead of the scenario's.
+            sections: laid over the scenario, for instance ``control={"k_w": 1e6}``.
+
+        Raises:
+            AssertionError: the flight fails.
+            InputError: the scenario or the law cannot be used.
+        """
+
+
+@pytest.fixture(scope="session")
+def fly(tmp_path_factory: pytest.TempPathFactory) -> Fly:
+    """Flies a scenario on the virtual bus, and gives its summary to be judged."""
+
+    def fly_once(
+        scenario: str,
+        *,
+        orbits: float | None = None,
+        seed: int = 1,
+        law: str | None = None,
+        **sections: dict[str, Any],
+    ) -> FlownScenario:
+        import torquer
+
+        out = tmp_path_factory.mktemp("flight") / "run"
+        run = torquer.fly(scenario, orbits=orbits, seed=seed, set=sections, law=law, out=out)
+        assert run.ok, f"{run.path}: {'; '.join(run.failures.values())}"
+        return FlownScenario(run)
+
+    return fly_once
+
+
+def _value(text: str) -> object:
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text
