@@ -57,12 +57,27 @@ def named(values: Nested, folder: Path) -> Nested:
     return {**values, "control": {**control, "law": found.reference, "law_sha256": found.sha256}}
 
 
+def withheld(control: ControlTable) -> str:
+    """Why the source of the table's own law is not executed, as a sentence."""
+    return (
+        f"the run flew a law of its own ({flown(control)}), which is executed only where it is named again: "
+        f"--law {control.law}"
+    )
+
+
+def flown(control: ControlTable) -> str:
+    """The table's own law and its digest, in words."""
+    return f"{own_code.display(control.law)}, SHA-256 {str(control.law_sha256)[:16]}..."
+
+
 def declared(control: ControlTable) -> ControlLaw:
     """What the source of the table's own law declares; it is executed.
 
     Raises:
-        TableError: it cannot be loaded, or is no law.
+        TableError: it is withheld, cannot be loaded, or is no law.
     """
+    if control.law_withheld:
+        raise TableError(withheld(control))
     found = own_code.load(control.law, control.law_sha256, GROUP)
     if isinstance(found, ControlLaw):
         parts = {"point": found.point, "acquire": found.acquire or found.point}

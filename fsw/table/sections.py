@@ -153,10 +153,11 @@ class ControlTable(Section):
     Units: ``k_w`` N m s/T^2, ``k_a`` N m/T^2, ``k_i`` N m/(T^2 s). ``gains`` holds, by law, that law's own
     parameters. ``minimiser`` is how a continuous driver finds the dipole of a predictive law. A law that is
     not in the table of laws is ``FILE.py:NAME`` or the name of an entry point; ``law_sha256`` is the digest
-    of its source, by which it is known again.
+    of its source, by which it is known again; ``law_withheld`` keeps that source from being executed.
     """
 
     law_sha256: str | None = Field(default=None, pattern="^[0-9a-f]{64}$")
+    law_withheld: bool | None = None
     law: str = Field(max_length=1000)
     k_w: NotNegative
     k_a: NotNegative

@@ -85,6 +85,7 @@ class FlightTable(Section):
             values["control"]["law"] = self.control.law_name
         else:
             del values["control"]["law_sha256"]
+        del values["control"]["law_withheld"]
         return zlib.crc32(json.dumps(values, sort_keys=True).encode())
 
 
@@ -132,7 +133,7 @@ def lay_over(base: Nested, over: Nested) -> Nested:
 
 def _without_law(control: Nested, new: object) -> Nested:
     """The section without the digest of its own law, and without the gains of that law if another follows."""
-    kept = {key: value for key, value in control.items() if key != "law_sha256"}
+    kept = {key: value for key, value in control.items() if key not in ("law_sha256", "law_withheld")}
     old, gains = control.get("law"), control.get("gains")
     if not isinstance(old, str) or old in LAWS or not isinstance(gains, dict):
         return kept

@@ -33,7 +33,7 @@ FORMATS = {
 }
 
 
-def export(run_or_log: Path, name: str | None, out: Path, force: bool) -> int:
+def export(run_or_log: Path, name: str | None, out: Path, force: bool, law: str | None = None) -> int:
     """Write the file; say what of the flight is missing in it.
 
     Args:
@@ -41,6 +41,7 @@ def export(run_or_log: Path, name: str | None, out: Path, force: bool) -> int:
         name: of the format; None: by the suffix of ``out``.
         out: the file.
         force: replace one that is there.
+        law: the law of its own that the run flew, named again: the histories need it.
 
     Returns:
         The exit code: 1 if a file of the run is not that of its run.json, else 0.
@@ -49,7 +50,7 @@ def export(run_or_log: Path, name: str | None, out: Path, force: bool) -> int:
         HarnessError: there is no such run or format, or the file cannot be written.
     """
     chosen = FORMATS[name or _by_suffix(out)]
-    source = open_source(run_or_log)
+    source = open_source(run_or_log, law)
     total = LogPass(source.log).duration_us() if chosen.of_log else _ticks(source)
     with whole_file(out, force) as path, progress(f"exporting {out.name}", total) as watch:
         notes = chosen.write(source, path, watch)

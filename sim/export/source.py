@@ -10,6 +10,7 @@ from sim.record import run_dir
 from sim.record.binding import Binding, compare
 from sim.record.candump import LogEntry, LogTruncatedError, last_lines, read_log
 from sim.record.run_record import RunRecord
+from sim.scenario.law_named import with_law_named
 from sim.scenario.schema import Scenario
 
 
@@ -31,8 +32,12 @@ class Source(NamedTuple):
         return run_dir.identity(self.scenario, self.record["seed"]) | flown
 
 
-def open_source(run_or_log: Path) -> Source:
+def open_source(run_or_log: Path, law: str | None = None) -> Source:
     """Find what belongs to a run directory or to a log.
+
+    Args:
+        run_or_log: a run directory, or a log.
+        law: the law of its own that the run flew, named again; without it none is executed.
 
     Raises:
         HarnessError: neither exists, or the run's own files cannot be read.
@@ -43,6 +48,8 @@ def open_source(run_or_log: Path) -> Source:
         return Source(log, None, None, None, binding)
     with binding.beside_errors():
         record, scenario = run_dir.read_run(folder), run_dir.read_scenario(folder)
+        if law is not None:
+            scenario, _ = with_law_named(scenario, law)
     truth = folder / run_dir.TRUTH
     return Source(log, record, scenario, truth if truth.exists() else None, binding)
 

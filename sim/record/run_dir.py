@@ -21,6 +21,7 @@ from sim.record.destination import check_folder
 from sim.record.log_index import SUFFIX
 from sim.record.pace import Pace
 from sim.record.run_record import SCHEMA_VERSION, RunRecord, read_record
+from sim.scenario.law_named import with_law_withheld
 from sim.scenario.schema import Scenario, flight_table, load
 
 RUN, SCENARIO, BUS_LOG, TRUTH, SUMMARY, REPORT = (
@@ -136,13 +137,13 @@ def read_run(path: Path) -> RunRecord:
 
 
 def read_scenario(path: Path) -> Scenario:
-    """The resolved scenario of a run.
+    """The resolved scenario of a run; a law of its own is withheld until it is named again.
 
     Raises:
         HarnessError: missing or no longer valid.
     """
     try:
-        return load(str(path / SCENARIO))
+        return with_law_withheld(load(str(path / SCENARIO)))
     except TableError as error:
         raise HarnessError(str(error)) from None
 

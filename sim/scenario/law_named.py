@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from fsw.input import own_code
-from fsw.input.own_code import display
 from fsw.own_law import GROUP
+from fsw.table.own_law import flown, withheld
 from sim.errors import HarnessError
 from sim.scenario.schema import Scenario, flight_table
 
@@ -29,18 +29,14 @@ def with_law_named(scenario: Scenario, law: str | None, of_run: bool = True) -> 
         if law is not None:
             raise HarnessError(f"--law {law}: the run flew {control.law!r}, a law of the table")
         return scenario, ""
-    flown = f"{display(control.law)}, SHA-256 {str(control.law_sha256)[:16]}..."
     if law is None:
-        raise HarnessError(
-            f"the run flew a law of its own ({flown}), which is executed only where it is named again: "
-            f"--law {control.law}"
-        )
+        raise HarnessError(withheld(control))
     found = own_code.find(law, Path(), GROUP)
     if found is None:
         raise HarnessError(f"--law {law}: neither FILE.py:NAME nor an installed law")
     if own_code.short_name(law) != control.law_name:
-        raise HarnessError(f"--law {law}: the run flew another law ({flown})")
-    changed = _with(scenario, found)
+        raise HarnessError(f"--law {law}: the run flew another law ({flown(control)})")
+    changed = _with(scenario, law=found.reference, law_sha256=found.sha256, law_withheld=None)
     if found.sha256 == control.law_sha256:
         return changed, ""
     sentence = (
@@ -52,10 +48,15 @@ def with_law_named(scenario: Scenario, law: str | None, of_run: bool = True) -> 
     return changed, sentence
 
 
-def _with(scenario: Scenario, found: own_code.Found) -> Scenario:
-    """The scenario that names this source where it named the law, in ``[flight]`` or for all."""
-    named = {"law": found.reference, "law_sha256": found.sha256}
+def with_law_withheld(scenario: Scenario) -> Scenario:
+    """The scenario of a run, of which no flight software can be made as long as its own law is not named."""
+    return scenario if scenario.own_law is None else _with(scenario, law_withheld=True)
+
+
+def _with(scenario: Scenario, **values: object) -> Scenario:
+    """The scenario with these values where it names the law, in ``[flight]`` or for all."""
     below = scenario.flight.get("control")
     if isinstance(below, dict) and "law" in below:
-        return scenario.model_copy(update={"flight": {**scenario.flight, "control": {**below, **named}}})
-    return scenario.model_copy(update={"control": scenario.control.model_copy(update=named)})
+        control = {key: value for key, value in {**below, **values}.items() if value is not None}
+        return scenario.model_copy(update={"flight": {**scenario.flight, "control": control}})
+    return scenario.model_copy(update={"control": scenario.control.model_copy(update=values)})

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from torquer.cli.options import OUT_FILE, RUN_OR_LOG, sentences
+from torquer.cli.options import LAW_AGAIN, OUT_FILE, RUN_OR_LOG, sentences
 
 
 @click.command()
@@ -17,8 +17,9 @@ from torquer.cli.options import OUT_FILE, RUN_OR_LOG, sentences
 )
 @OUT_FILE
 @click.option("--force", is_flag=True, help="Replace FILE if it is there.")
+@LAW_AGAIN
 @sentences
-def export(run_or_log: Path, name: str | None, out: Path, force: bool) -> int:
+def export(run_or_log: Path, name: str | None, out: Path, force: bool, law: str | None) -> int:
     """Write a run for Foxglove (mcap), CANalyzer and SavvyCAN (blf, asc), pandas or xarray.
 
     mcap, blf and asc hold the bus log, and a LOG alone will do; csv, parquet and netcdf the histories of
@@ -26,4 +27,4 @@ def export(run_or_log: Path, name: str | None, out: Path, force: bool) -> int:
     """
     from sim.export import command
 
-    return command.export(run_or_log, name, out, force)
+    return command.export(run_or_log, name, out, force, law)

@@ -59,6 +59,7 @@ class TestDefault:
             "control.spin_radps",
             "control.gains",
             "control.law_sha256",
+            "control.law_withheld",
             "coils.max_dipole_am2",
         } | {f"orbit.{key}" for key in ("altitude_km", "inclination_deg", "raan_deg", "u0_deg")}
         optional |= {f"uncertainty.{key}" for key in UncertaintyTable.model_fields}

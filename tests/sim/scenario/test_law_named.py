@@ -4,7 +4,9 @@ import shutil
 
 import pytest
 
-from fsw.input.schema import merge
+import torquer
+from fsw.input.schema import TableError, merge
+from fsw.table.config import flight_config
 from fsw.table.own_law import LawError
 from sim.errors import HarnessError
 from sim.flight import virtual
@@ -14,7 +16,7 @@ from sim.record.pace import Pace
 from sim.replay import command
 from sim.report.conclude import conclude
 from sim.scenario.law_named import with_law_named
-from sim.scenario.schema import load
+from sim.scenario.schema import flight_table, load
 
 TICKS = 260
 
@@ -96,6 +98,20 @@ def test_without_its_name_no_code_is_executed(flown, what):
         what(flown / "run", None)
     assert caught.value.exit_code == 2
     assert not (flown / "law.py.trace").exists()
+
+
+def test_no_flight_software_can_be_made_of_the_scenario_of_a_run(flown):
+    for scenario in (run_dir.read_scenario(flown / "run"), torquer.load(flown / "run").scenario):
+        with pytest.raises(TableError, match="only where it is named again"):
+            flight_config(flight_table(scenario))
+    assert not (flown / "law.py.trace").exists()
+
+
+def test_a_program_names_it_again(flown):
+    with pytest.raises(torquer.InputError, match="only where it is named again"):
+        torquer.load(flown / "run").replay()
+    assert torquer.load(flown / "run", law=f"{flown / 'law.py'}:damp").replay().ok
+    (flown / "law.py.trace").unlink()
 
 
 def test_what_needs_no_law_goes_without(flown):
