@@ -11,6 +11,7 @@ from sim.export import can_log, mcap, netcdf, tables
 from sim.export.destination import whole_file
 from sim.export.source import LogPass, Source, open_source
 from sim.progress import Watch, progress
+from sim.record import run_dir
 
 Write = Callable[[Source, Path, Watch], list[str]]
 
@@ -51,6 +52,9 @@ def export(run_or_log: Path, name: str | None, out: Path, force: bool, law: str 
     """
     chosen = FORMATS[name or _by_suffix(out)]
     source = open_source(run_or_log, law)
+    own = {(source.log.parent / name).resolve() for name in (*run_dir.FILES, source.log.name)}
+    if out.resolve() in own:
+        raise HarnessError(f"{out} is a file of the run itself: name another by --out")
     total = LogPass(source.log).duration_us() if chosen.of_log else _ticks(source)
     with whole_file(out, force) as path, progress(f"exporting {out.name}", total) as watch:
         notes = chosen.write(source, path, watch)

@@ -79,8 +79,16 @@ class TestConfiguration:
         (home / ".canrc").write_text("[default]\ninterface = slcan\nchannel = /dev/ttyACM7\n")
         assert resolve("can") == "can:slcan:/dev/ttyACM7"
 
-    def test_further_options_reach_the_driver(self, hub, home):
+    def test_no_option_gives_a_node_its_own_frames(self, home, monkeypatch):
         (home / ".canrc").write_text("[default]\nreceive_own_messages = True\n")
+        drivers = can.Bus
+        monkeypatch.setattr(can, "Bus", lambda **given: drivers(**given | {"interface": "virtual"}))
+        bus = open_bus("can:pcan:PCAN_USBBUS1")
+        bus.send([Frame(0x123, b"abc")])
+        assert bus.receive(0.0) is None
+        bus.close()
+
+    def test_frames_pass_and_the_channel_names_the_bus(self, hub):
         opened = [open_bus(f"can:loop:{hub.port}") for _ in "ab"]
         opened[0].send([Frame(0x123, b"abc")])
         assert opened[1].receive(PATIENCE_S) == Frame(0x123, b"abc")

@@ -33,8 +33,10 @@ def test_frames_of_strangers_are_kept(tmp_path, write, reader):
     log = tmp_path / "any.log"
     log.write_text("(1700000000.000250) can7 18DAF110#0102\n(1700000001.500000) can7 123#R\n")
     assert "no end mark" in write(open_source(log), tmp_path / "out", lambda done: None)[0]
-    with reader(tmp_path / "out") as messages:
-        assert [frame_of(message) for message in messages] == [
-            Frame(0x98DAF110, b"\x01\x02"),
-            Frame(0x40000123, b""),
-        ]
+    with reader(tmp_path / "out", relative_timestamp=True) as opened:
+        messages = list(opened)
+    assert [frame_of(message) for message in messages] == [
+        Frame(0x98DAF110, b"\x01\x02"),
+        Frame(0x40000123, b""),
+    ]
+    assert messages[1].timestamp - messages[0].timestamp == pytest.approx(1.49975, abs=5e-7)

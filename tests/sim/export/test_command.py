@@ -50,6 +50,14 @@ def test_a_file_is_replaced_by_force_alone(flight, tmp_path, csv_text):
     assert out.read_text() == csv_text
 
 
+@pytest.mark.parametrize("name", ["bus.log", "truth.h5", "summary.json"])
+def test_a_run_is_never_written_over(cut, name):
+    before = {path.name: path.read_bytes() for path in cut.iterdir()}
+    says = one_sentence(call(cut, "--format", "csv", "--out", cut / "." / name, "--force"))
+    assert "is a file of the run itself" in says
+    assert {path.name: path.read_bytes() for path in cut.iterdir()} == before
+
+
 @pytest.mark.parametrize("fault", [OSError(28, "No space left on device"), KeyboardInterrupt()])
 def test_an_export_that_fails_leaves_what_was_there(flight, tmp_path, monkeypatch, fault):
     out = tmp_path / "run.csv"

@@ -6,6 +6,8 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
+from sim.export.source import open_source
+from sim.export.tables import write_csv, write_parquet
 from sim.record.truth import COLUMNS
 
 
@@ -53,9 +55,6 @@ def test_parquet_is_the_same_table_with_units(flight, exported, rows):
 
 
 def test_ticks_that_were_not_replayed_have_no_estimate(cut, tmp_path):
-    from sim.export.source import open_source
-    from sim.export.tables import write_csv
-
     notes = write_csv(open_source(cut), tmp_path / "out.csv", lambda done: None)
     with (tmp_path / "out.csv").open() as file:
         rows = list(csv.DictReader(file))
@@ -63,3 +62,6 @@ def test_ticks_that_were_not_replayed_have_no_estimate(cut, tmp_path):
     assert rows[-1]["estimate_q_body_from_orbit_w"] == rows[-1]["mode"] == rows[-1]["estimate_valid"] == ""
     assert rows[100]["mode"] != ""
     assert any("cut short" in note for note in notes)
+    write_parquet(open_source(cut), tmp_path / "out.parquet", lambda done: None)
+    modes = pq.read_table(tmp_path / "out.parquet")["mode"].to_pylist()
+    assert [value is None for value in modes] == [row["mode"] == "" for row in rows]
