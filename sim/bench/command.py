@@ -34,7 +34,7 @@ from sim.scenario.schema import Scenario
 
 BOARDS = {"coil": "COIL", "magnetometer": "MAG", "sun": "SUN"}
 SENSORS = ("magnetometer", "sun")
-NUMBERS = "hil.json"
+NUMBERS, PAGE = "hil.json", "hil.html"
 BOOT_S = 30.0
 ASK_AGAIN_S = 0.5
 
@@ -90,7 +90,7 @@ def hil(settings: HilSettings, as_json: bool = False) -> int:
         HarnessError: a node does not start, or the scenario does not fit the bench.
     """
     if settings.out is not None:
-        check_folder(settings.out, (NUMBERS,))
+        check_folder(settings.out, (NUMBERS, PAGE))
     if settings.stimulus != "plant" and settings.scenario.knowledge == "perfect":
         raise HarnessError("a scenario with knowledge = 'perfect' needs the plant: --stimulus plant")
     with (
@@ -114,6 +114,7 @@ def hil(settings: HilSettings, as_json: bool = False) -> int:
         numbers["ended"] = {process.name: process.last_error() for process in lost}
     if settings.out is not None:
         run_dir.write_json(settings.out / NUMBERS, numbers)
+        _write_page(settings.out / PAGE, numbers, settings.scenario.epoch_unix_s)
         bind(settings.out, run_dir.BUS_LOG, NUMBERS)
     if as_json:
         click.echo(json.dumps(numbers, indent=2))
@@ -124,6 +125,12 @@ def hil(settings: HilSettings, as_json: bool = False) -> int:
     if failures:
         click.echo(f"torquer: {'; '.join(failures)}", err=True)
     return int(bool(failures))
+
+
+def _write_page(path: Path, numbers: Json, start_unix_s: float) -> None:
+    from sim.bench.page import hil_page  # noqa: PLC0415  matplotlib loads when something is drawn
+
+    path.write_text(hil_page(numbers, start_unix_s), encoding="utf-8")
 
 
 def _begin(settings: HilSettings, folder: Path, spec: str) -> None:

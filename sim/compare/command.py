@@ -11,6 +11,7 @@ import click
 from sim.campaign.claim import Study
 from sim.campaign.runner import StudyResult, run
 from sim.compare.case import Driver, cases, chosen_laws
+from sim.compare.page import compare_page
 from sim.compare.picture import picture
 from sim.compare.score import Result, Score, by_axis1, fly_case
 from sim.compare.table import as_csv, as_json, as_text, ranked
@@ -21,7 +22,7 @@ from sim.record.destination import check_folder
 from sim.record.run_dir import write_json
 from sim.scenario.schema import Scenario, load, parse_settings
 
-JSON, CSV, PICTURE = "compare.json", "compare.csv", "compare.png"
+JSON, CSV, PICTURE, PAGE = "compare.json", "compare.csv", "compare.png", "compare.html"
 
 
 def compare(
@@ -86,10 +87,10 @@ def compare(
     finally:  # flights that are done are written when the rest is given up
         scores = ranked(result.score for result in results)
         description["complete"] = len(results) == len(studies)
-        _write(folder, scores, description, f"{scenario.name}, seed {seed}", results)
+        _write(folder, scenario, scores, description, results)
     click.echo(_heading(scenario, seed, ticks))
     click.echo(as_text(scores))
-    click.echo(f"files: {folder / JSON}, {CSV}, {PICTURE}")
+    click.echo(f"files: {folder / JSON}, {CSV}, {PICTURE}, {PAGE}")
     broken = [f"{score.law} ({score.driver})" for score in scores if score.limits_ok is False]
     if broken:
         click.echo(f"torquer: the limits are broken by {', '.join(broken)}", err=True)
@@ -105,19 +106,29 @@ def _heading(scenario: Scenario, seed: int, ticks: int) -> str:
 
 
 def _write(
-    folder: Path, scores: list[Score], description: dict[str, object], title: str, results: list[Result]
+    folder: Path,
+    scenario: Scenario,
+    scores: list[Score],
+    description: dict[str, object],
+    results: list[Result],
 ) -> None:
+    seed = f"seed {description['seed']}"
+    judged = "by axis 1" if description["pointing"] == "axis1" else "by the whole attitude"
+    facts = [seed, f"{description['sim_seconds']:.0f} s", f"judged {judged}"]
+    if not description["complete"]:
+        facts.append("given up before all had flown")
     try:
         write_json(folder / JSON, as_json(scores, description))
         (folder / CSV).write_text(as_csv(scores), encoding="utf-8")
-        picture(folder / PICTURE, title, results)
+        picture(folder / PICTURE, f"{scenario.name}, {seed}", results)
+        (folder / PAGE).write_text(compare_page(scenario, facts, scores, results), encoding="utf-8")
     except OSError as error:
         raise HarnessError(f"{folder}: cannot be written ({error.strerror or error})") from None
 
 
 def _new_folder(folder: Path) -> Path:
     """The folder, made before anything is flown."""
-    check_folder(folder, (JSON, CSV, PICTURE))
+    check_folder(folder, (JSON, CSV, PICTURE, PAGE))
     if (folder / JSON).exists():
         raise HarnessError(f"{folder} already holds a comparison: choose another --out")
     return folder

@@ -49,6 +49,11 @@ def picture(path: Path, title: str, results: Sequence[Result]) -> None:
         )
 
 
+def colour_of(number: int) -> str:
+    """That of a law, by its number among those drawn."""
+    return COLOURS[number % len(COLOURS)]
+
+
 def _settled(panel: Axes) -> None:
     panel.axhline(SETTLED_DEG, color=MUTED, linewidth=0.8, linestyle=(0, (4, 3)))
     panel.annotate(
@@ -62,7 +67,7 @@ def _lines(panel: Axes, laws: Sequence[str], results: Sequence[Result]) -> None:
     for score, history in results:
         assert history is not None
         number = laws.index(score.law)
-        colour, dashes = COLOURS[number % len(COLOURS)], DASHES[number // len(COLOURS) % len(DASHES)]
+        colour, dashes = colour_of(number), DASHES[number // len(COLOURS) % len(DASHES)]
         trace(panel, history.time, history.t_s, history.error_deg, score.law, colour, linestyle=dashes)
         ends.append((_height(panel, float(history.error_deg[-1])), score, colour))
     ends.sort(key=lambda end: end[0])

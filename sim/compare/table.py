@@ -10,6 +10,7 @@ from typing import Any
 
 from fsw.core.laws.table import Aim
 from sim.compare.score import Score
+from sim.drawing.page_parts import Table
 
 SCHEMA_VERSION = 1
 BY_RATE = frozenset({Aim.RATE, Aim.SPIN, Aim.SUN})
@@ -58,6 +59,13 @@ def as_text(scores: Sequence[Score]) -> str:
         lines.append("  ".join(cells).rstrip())
     lines += [f"{score.law}, {score.driver}: {score.failure}" for score in scores if score.failure]
     return "\n".join(lines)
+
+
+def as_table(scores: Sequence[Score]) -> Table:
+    """The table of a page."""
+    head = [f"{heading} [{unit}]" if unit else heading for _, heading, unit, _ in _COLUMNS]
+    rows = [[_cell(getattr(score, name), write) for name, _, _, write in _COLUMNS] for score in scores]
+    return Table(head, rows)
 
 
 def as_csv(scores: Sequence[Score]) -> str:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from sim.design.analysis import ANALYSIS_STEPS, Analysis, analyse, picture_maps
 from sim.design.from_scenario import body_of, pulsing_of
+from sim.design.page import design_page
 from sim.design.pictures import gain_picture, robustness_picture
 from sim.design.render import as_json
 from sim.design.scenario_file import check_writable, write_gains
@@ -17,7 +18,8 @@ from sim.record.destination import check_folder
 from sim.record.run_dir import write_json
 from sim.scenario.schema import Scenario
 
-GAIN_PICTURE, ROBUSTNESS_PICTURE, RESULT = "gains.png", "robustness.png", "design.json"
+GAIN_PICTURE, ROBUSTNESS_PICTURE = "gains.png", "robustness.png"
+PAGE, RESULT = "design.html", "design.json"
 
 MAX_GAIN_RATIO = 1e6
 """Gains are accepted up to this multiple of the natural ones; beyond it the numbers overflow."""
@@ -53,7 +55,7 @@ def design(
     Args:
         scenario: the satellite.
         gains: k_w [N m s/T^2] and k_a [N m/T^2]; None: they are searched.
-        folder: of pictures and ``design.json``; None: nothing is drawn.
+        folder: of pictures, ``design.html`` and ``design.json``; None: nothing is drawn.
         write: the scenario file into which gains that stabilise are written; None: none.
 
     Raises:
@@ -61,7 +63,7 @@ def design(
     """
     target = None if write is None else check_writable(write)
     if folder is not None:
-        check_folder(folder, (GAIN_PICTURE, ROBUSTNESS_PICTURE, RESULT))
+        check_folder(folder, (GAIN_PICTURE, ROBUSTNESS_PICTURE, PAGE, RESULT))
     body, given = body_of(scenario), None if gains is None else Gains(*gains)
     if given is not None:
         _check(given, body)
@@ -90,6 +92,7 @@ def _draw(folder: Path, analysis: Analysis, scenario: Scenario) -> tuple[Path, .
         maps = picture_maps(analysis)
         gain_picture(folder / GAIN_PICTURE, analysis, maps, of_scenario)
         robustness_picture(folder / ROBUSTNESS_PICTURE, analysis, maps.inertia)
+        (folder / PAGE).write_text(design_page(analysis, scenario, maps), encoding="utf-8")
         write_json(folder / RESULT, as_json(analysis))
     except OSError as error:
         raise HarnessError(f"{folder}: cannot be written ({error.strerror or error})") from None

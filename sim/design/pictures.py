@@ -13,11 +13,13 @@ from sim.design.theory.bodies import Body
 from sim.design.theory.linear import Array, Gains
 from sim.design.theory.robustness import PAIRS, InertiaMaps
 from sim.design.theory.search import GainMap
-from sim.drawing.canvas import AXES_COLOURS, INK, LIMIT, style
+from sim.drawing.canvas import AXES_COLOURS, LIMIT, style
 
 AXIS_NAMES = ("1, radius", "2, along-track", "3, normal")
 COLOURS = "RdBu_r"
 DOTS_PER_INCH = 120
+ON_MAP, MARK = "#14202b", "#fdfdfd"
+"""On the colours of a map, which are the same on a dark page."""
 LEAST_SCALE = 0.2
 """The colours reach at least to this degree."""
 
@@ -26,7 +28,19 @@ Marks = dict[str, tuple[str, Gains]]
 
 
 def gain_picture(path: Path, analysis: Analysis, maps: PictureMaps, of_scenario: Gains) -> None:
-    """The degree of stability over (k_w, k_a), for the continuous dipole and for pulses, as PNG."""
+    """The figure of the gains as PNG."""
+    with style():
+        _save(path, gain_figure(analysis, maps, of_scenario))
+
+
+def robustness_picture(path: Path, analysis: Analysis, maps: InertiaMaps) -> None:
+    """The figure of robustness as PNG."""
+    with style():
+        _save(path, robustness_figure(analysis, maps))
+
+
+def gain_figure(analysis: Analysis, maps: PictureMaps, of_scenario: Gains) -> Figure:
+    """The degree of stability over (k_w, k_a), for the continuous dipole and for pulses."""
     found, pulsed = analysis.search, analysis.pulsed
     marks = {"continuous dipole": _marks(analysis, of_scenario), "pulses": {"scenario": ("x", of_scenario)}}
     if found is None:
@@ -36,38 +50,34 @@ def gain_picture(path: Path, analysis: Analysis, maps: PictureMaps, of_scenario:
             "best": ("*", pulsed.search.best.gains),
             "steady": ("o", pulsed.search.steady.gains),
         }
-    with style():
-        figure = Figure(
-            figsize=(5.2 * len(maps.degree_maps) + 1.0, 5.2), layout="constrained", facecolor="white"
-        )
-        panels = figure.subplots(1, len(maps.degree_maps), squeeze=False)[0]
-        reach = _reach(*(one.degree for one in maps.degree_maps.values()))
-        for panel, (name, one) in zip(panels, maps.degree_maps.items(), strict=True):
-            panel.set_title(name)
-            _gain_panel(panel, one, marks[name], reach)
-        _colour_bar(figure, panels, reach)
-        figure.suptitle(_title(analysis.body, "degree of stability over the gains"))
-        _save(path, figure)
+    figure = Figure(figsize=(5.2 * len(maps.degree_maps) + 1.0, 5.2), layout="constrained", facecolor="white")
+    panels = figure.subplots(1, len(maps.degree_maps), squeeze=False)[0]
+    reach = _reach(*(one.degree for one in maps.degree_maps.values()))
+    for panel, (name, one) in zip(panels, maps.degree_maps.items(), strict=True):
+        panel.set_title(name)
+        _gain_panel(panel, one, marks[name], reach)
+    _colour_bar(figure, panels, reach)
+    figure.suptitle(_title(analysis.body, "degree of stability over the gains"))
+    return figure
 
 
-def robustness_picture(path: Path, analysis: Analysis, maps: InertiaMaps) -> None:
-    """The degree of stability against errors of the inertia, as PNG."""
+def robustness_figure(analysis: Analysis, maps: InertiaMaps) -> Figure:
+    """The degree of stability against errors of the inertia."""
     gains = analysis.chosen.gains
-    with style():
-        figure = Figure(figsize=(10.5, 9.0), layout="constrained", facecolor="white")
-        panels, reach = figure.subplots(2, 2).ravel(), _reach(maps.degree)
-        for panel, (one, other), degree in zip(panels[:3], PAIRS, maps.degree, strict=True):
-            percent = 100.0 * maps.errors
-            _field(panel, percent, percent, degree, reach)
-            panel.plot(0.0, 0.0, "+", color=INK, markersize=9)
-            panel.set_xlabel(f"error of the mass spread along axis {AXIS_NAMES[one]} (%)")
-            panel.set_ylabel(f"error of the mass spread along axis {AXIS_NAMES[other]} (%)")
-            panel.set_title(f"spreads along axes {one + 1} and {other + 1}")
-        _tilt_panel(panels[3], maps)
-        _colour_bar(figure, list(panels[:3]), reach)
-        gains_text = f"k_w {float(gains.k_w):.5g}, k_a {float(gains.k_a):.5g}"
-        figure.suptitle(_title(analysis.body, f"degree of stability on another inertia, {gains_text}"))
-        _save(path, figure)
+    figure = Figure(figsize=(10.5, 9.0), layout="constrained", facecolor="white")
+    panels, reach = figure.subplots(2, 2).ravel(), _reach(maps.degree)
+    for panel, (one, other), degree in zip(panels[:3], PAIRS, maps.degree, strict=True):
+        percent = 100.0 * maps.errors
+        _field(panel, percent, percent, degree, reach)
+        panel.plot(0.0, 0.0, "+", color=ON_MAP, markersize=9)
+        panel.set_xlabel(f"error of the mass spread along axis {AXIS_NAMES[one]} (%)")
+        panel.set_ylabel(f"error of the mass spread along axis {AXIS_NAMES[other]} (%)")
+        panel.set_title(f"spreads along axes {one + 1} and {other + 1}")
+    _tilt_panel(panels[3], maps)
+    _colour_bar(figure, list(panels[:3]), reach)
+    gains_text = f"k_w {float(gains.k_w):.5g}, k_a {float(gains.k_a):.5g}"
+    figure.suptitle(_title(analysis.body, f"degree of stability on another inertia, {gains_text}"))
+    return figure
 
 
 def _marks(analysis: Analysis, of_scenario: Gains) -> Marks:
@@ -89,8 +99,8 @@ def _gain_panel(panel: Axes, one: GainMap, marks: Marks, reach: float) -> None:
         inside = one.k_w[0] <= gains.k_w <= one.k_w[-1] and one.k_a[0] <= gains.k_a <= one.k_a[-1]
         if inside:
             panel.plot(
-                gains.k_w, gains.k_a, marker, label=label, color="#ffd84d" if marker == "*" else "white",
-                markeredgecolor=INK, markersize=13 if marker == "*" else 8, linestyle="none",
+                gains.k_w, gains.k_a, marker, label=label, color="#ffd84d" if marker == "*" else MARK,
+                markeredgecolor=ON_MAP, markersize=13 if marker == "*" else 8, linestyle="none",
             )  # fmt: skip
     panel.legend(loc="upper left", frameon=True, facecolor="white", framealpha=1.0)
 
@@ -104,7 +114,7 @@ def _field(panel: Axes, x: Array, y: Array, degree: Array, reach: float) -> None
     """Colours of the degree, thin lines every tenth, a thick one where stability ends."""
     shown = np.clip(degree, -reach, reach)
     panel.contourf(x, y, shown, levels=np.linspace(-reach, reach, 41), cmap=COLOURS, extend="both")
-    lines = panel.contour(x, y, shown, levels=np.arange(-2.0, 0.0, 0.1), colors=INK, linewidths=0.4)
+    lines = panel.contour(x, y, shown, levels=np.arange(-2.0, 0.0, 0.1), colors=ON_MAP, linewidths=0.4)
     panel.clabel(lines, fmt="%.1f", fontsize=6.5)
     if shown.min() < 0.0 < shown.max():
         panel.contour(x, y, shown, levels=[0.0], colors=LIMIT, linewidths=1.6)

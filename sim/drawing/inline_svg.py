@@ -2,13 +2,18 @@
 
 from io import StringIO
 from itertools import groupby
+from typing import Any
 from xml.etree import ElementTree
 
 import matplotlib
+from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from sim.drawing.canvas import SETTINGS
+from sim.drawing.page_parts import Chart
 from sim.drawing.palette import themed
+
+Json = dict[str, Any]
 
 _NUMBER = frozenset("0123456789.-e")
 _UNUSED = frozenset(("metadata", "style"))
@@ -35,6 +40,11 @@ def svg(figure: Figure, salt: str) -> str:
     for name in _OF_THE_ROOT:
         root.attrib.pop(name, None)
     return ElementTree.tostring(root, encoding="unicode")
+
+
+def chart(name: str, picture: Figure, words: str, data: Json | None = None) -> Chart:
+    """A chart of a page, of a figure that was drawn within ``canvas.style``."""
+    return Chart(name, Markup(svg(picture, name)), words, data)
 
 
 def _simplify(element: ElementTree.Element) -> None:

@@ -10,8 +10,8 @@ from fsw.core.monitors import Monitor
 from fsw.wire.messages import CoilRefusedReason, Mode, Severity
 from hil_stub.coils.events import CoilEventCode
 from sim.audit.findings import seconds_text
+from sim.drawing.page_parts import Table
 from sim.flight.isolations import UNITS
-from sim.report.tables import Table
 from sim.scenario.schema import Scenario, orbit_period_s
 
 Json = dict[str, Any]

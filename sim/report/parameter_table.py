@@ -5,7 +5,7 @@ from typing import Any
 
 from fsw.core.estimation.parameters import COMPONENTS, NAMES
 from fsw.wire.messages import Component
-from sim.report.tables import Table
+from sim.drawing.page_parts import Table
 
 Json = dict[str, Any]
 

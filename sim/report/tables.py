@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
-from typing import Any, NamedTuple
+from typing import Any
 
 import tomli_w
 
@@ -11,6 +11,7 @@ from fsw.input.own_code import display
 from fsw.wire.messages import Mode
 from sim.audit.auditor import AuditReport
 from sim.audit.findings import COILS, seconds_text
+from sim.drawing.page_parts import Table, Tile
 from sim.flight.second_senders import describe_senders
 from sim.record.run_record import RunRecord
 from sim.scenario.schema import Scenario, orbit_period_s
@@ -18,22 +19,6 @@ from sim.scenario.schema import Scenario, orbit_period_s
 Json = dict[str, Any]
 Pairs = list[tuple[str, str]]
 """Names and values."""
-
-
-class Table(NamedTuple):
-    """A table of text."""
-
-    head: Sequence[str]
-    rows: Sequence[Sequence[str]]
-    caption: str = ""
-
-
-class Tile(NamedTuple):
-    """A figure that is looked at first."""
-
-    name: str
-    value: str
-    note: str
 
 
 VIOLATIONS_SHOWN = 50

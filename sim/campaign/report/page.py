@@ -1,33 +1,16 @@
 """campaign.html: one self-contained page."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
-
-from markupsafe import Markup
-from matplotlib.figure import Figure
 
 from sim.campaign.definition.campaign import Campaign
 from sim.campaign.report import pictures, text
 from sim.campaign.report.analysis import CampaignAnalysis
 from sim.drawing.canvas import style
-from sim.drawing.inline_svg import svg
-from sim.drawing.pages import page
-from sim.report.charts.sections import Chart
-from sim.report.tables import Table, Tile
+from sim.drawing.inline_svg import chart
+from sim.drawing.page_parts import PageHeader, PageSection, Tile, sections_page
 
 MOST_TILES = 4
-
-
-@dataclass(frozen=True, slots=True)
-class CampaignSection:
-    """A part of the page: tables and charts, what they mean in the note."""
-
-    anchor: str
-    title: str
-    note: str
-    tables: tuple[Table, ...]
-    charts: tuple[Chart, ...] = ()
 
 
 def write_page(path: Path, campaign: Campaign, analysis: CampaignAnalysis, version: str) -> None:
@@ -35,10 +18,9 @@ def write_page(path: Path, campaign: Campaign, analysis: CampaignAnalysis, versi
     with style():
         sections = list(_sections(campaign, analysis))
     runs = analysis.done + len(analysis.failures)
-    html = page(
-        "sim.campaign.report",
-        "campaign.html",
-        name=campaign.name,
+    header = PageHeader(
+        "Campaign",
+        campaign.name,
         facts=[
             f"{runs} of {campaign.runs} runs of {campaign.base['time']['orbits']:g} orbits",
             f"scenario {campaign.base['name']}",
@@ -48,8 +30,8 @@ def write_page(path: Path, campaign: Campaign, analysis: CampaignAnalysis, versi
         ],
         badges=_badges(analysis),
         tiles=_tiles(campaign, analysis),
-        sections=sections,
     )
+    html = sections_page(header, sections)
     path.write_text(html, encoding="utf-8")
 
 
@@ -73,45 +55,41 @@ def _tiles(campaign: Campaign, analysis: CampaignAnalysis) -> list[Tile]:
     ]
 
 
-def _sections(campaign: Campaign, analysis: CampaignAnalysis) -> Iterator[CampaignSection]:
+def _sections(campaign: Campaign, analysis: CampaignAnalysis) -> Iterator[PageSection]:
     confidence = f"{100.0 * campaign.statistics.confidence:g} % confidence"
     note = f"Parts of the runs, with two-sided bounds by Clopper and Pearson, {confidence}."
-    yield CampaignSection("requirements", "Requirements", note, (text.requirement_table(campaign, analysis),))
+    yield PageSection("requirements", "Requirements", note, (text.requirement_table(campaign, analysis),))
     if analysis.failures:
         note = "Not flown to their end; they count as runs that meet nothing."
-        yield CampaignSection("failures", "Runs that failed", note, (text.failure_table(analysis),))
+        yield PageSection("failures", "Runs that failed", note, (text.failure_table(analysis),))
     if not analysis.figures:
         return
     first = analysis.figures[0].name
     note = f"Percentiles over runs, in brackets two-sided bounds by order statistics, {confidence}."
-    yield CampaignSection("figures", "Figures", note, (text.figure_table(analysis),), (
-        _chart("distributions", pictures.distributions(analysis),
+    yield PageSection("figures", "Figures", note, (text.figure_table(analysis),), (
+        chart("distributions", pictures.distributions(analysis),
                "Distribution of each figure, its percentiles with bounds; red: requirement."),
-        _chart("cumulative", pictures.cumulative(analysis, campaign.statistics.confidence),
+        chart("cumulative", pictures.cumulative(analysis, campaign.statistics.confidence),
                "Part of the runs up to each value; red: requirement."),
     ))  # fmt: skip
     note, title = text.index_note(campaign, analysis), "Pointing indices of ECSS-E-ST-60-10C"
-    yield CampaignSection("indices", title, note, (text.index_table(campaign, analysis),), (
-        _chart("indices", pictures.indices(analysis, campaign.statistics.probability, campaign.index),
+    yield PageSection("indices", title, note, (text.index_table(campaign, analysis),), (
+        chart("indices", pictures.indices(analysis, campaign.statistics.probability, campaign.index),
                "Cumulative distribution of each index, over all times and over runs alone; crosses: limits."),
     ))  # fmt: skip
     note = f"By {first}. torquer sil --from DIR --run NUMBER flies one again."
-    yield CampaignSection("worst", "Worst runs", note, (text.worst_table(analysis),), (
-        _chart("worst-runs", pictures.worst_runs(analysis, campaign.base["time"]["orbits"]),
+    yield PageSection("worst", "Worst runs", note, (text.worst_table(analysis),), (
+        chart("worst-runs", pictures.worst_runs(analysis, campaign.base["time"]["orbits"]),
                "Pointing error over the flight, RMS of short stretches."),
     ))  # fmt: skip
     if any(each.correlation for each in analysis.sensitivities):
         note = f"Spearman's rank correlation of each input with {first}, bounds {confidence}."
         tables = (text.sensitivity_table(analysis),)
-        yield CampaignSection("sensitivity", "What it depends on", note, tables, (
-            _chart("scatter", pictures.scatter(analysis),
+        yield PageSection("sensitivity", "What it depends on", note, tables, (
+            chart("scatter", pictures.scatter(analysis),
                    f"{first} over the inputs with the strongest correlation; red: the worst runs."),
         ))  # fmt: skip
-    yield CampaignSection("convergence", "Convergence", "Whether more runs would change the result.", (), (
-        _chart("convergence", pictures.converging(analysis, campaign.statistics),
+    yield PageSection("convergence", "Convergence", "Whether more runs would change the result.", (), (
+        chart("convergence", pictures.converging(analysis, campaign.statistics),
                f"Percentile of {first} over the first runs, by their number."),
     ))  # fmt: skip
-
-
-def _chart(name: str, figure: Figure, words: str) -> Chart:
-    return Chart(name, Markup(svg(figure, name)), words)

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from sim.campaign.definition.campaign import Campaign
 from sim.campaign.report.analysis import WORST, CampaignAnalysis, FigureStatistics
-from sim.report.tables import Table
+from sim.drawing.page_parts import Table
 from sim.statistics.indices import IndexPercentile, Interpretation
 from sim.statistics.order_statistics import Percentile, runs_needed
 from sim.statistics.proportion import Proportion

@@ -84,7 +84,7 @@ const charts = (() => {
   function asSeries(one) {
     return {
       label: one.label, width: one.width * 1.2, stroke: () => theme.colour(one.colour),
-      points: { show: times.length <= 60, size: 4 }, spanGaps: false,
+      points: { show: times.length <= 60, size: 4, fill: () => theme.colour(one.colour) }, spanGaps: false,
     };
   }
 

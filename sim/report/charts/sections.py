@@ -1,32 +1,21 @@
 """The sections of the report that hold charts, and the words under each chart."""
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
-
-from markupsafe import Markup
+from typing import NamedTuple
 
 from sim.audit.auditor import AuditReport
 from sim.audit.findings import AuditLimits
 from sim.drawing.canvas import style
-from sim.drawing.inline_svg import svg
+from sim.drawing.inline_svg import chart
+from sim.drawing.page_parts import Chart
 from sim.drawing.time_chart import DrawnChart
 from sim.report.charts import coils, ground_track, over_time
 from sim.report.charts.drawn_flight import DrawnFlight
 from sim.report.charts.lines import Lines
 from sim.scenario.schema import Scenario
 
-Json = dict[str, Any]
 Drawing = tuple[Callable[[DrawnFlight], DrawnChart], str]
 """What draws a chart, and the words under it."""
-
-
-class Chart(NamedTuple):
-    """A chart as it stands on the page; without data it is a picture alone."""
-
-    name: str
-    svg: Markup
-    words: str
-    data: Json | None = None
 
 
 class ChartSection(NamedTuple):
@@ -61,7 +50,7 @@ def _charts(flight: DrawnFlight, drawings: tuple[Drawing, ...]) -> tuple[Chart, 
     charts = []
     for draw, words in drawings:
         drawn = draw(flight)
-        charts.append(Chart(draw.__name__, Markup(svg(drawn.picture, draw.__name__)), words, drawn.data))
+        charts.append(chart(draw.__name__, drawn.picture, words, drawn.data))
     return tuple(charts)
 
 

@@ -82,7 +82,12 @@ def test_the_best_gains_are_printed_and_drawn(design, as_searched):
         pixels = imread(Path("here") / name)
         assert min(pixels.shape[:2]) > 500
         assert len(np.unique(pixels.reshape(-1, pixels.shape[2]), axis=0)) > 100
-    assert len(list(Path("here").iterdir())) == 3
+    assert {path.name for path in Path("here").iterdir()} == {
+        "gains.png",
+        "robustness.png",
+        "design.html",
+        "design.json",
+    }
 
 
 def test_what_is_written_flies_with_the_degree_that_was_printed(design, as_searched, searched, scenario_file):

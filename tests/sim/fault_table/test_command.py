@@ -172,6 +172,14 @@ def test_pages_name_the_failed_case_and_escape(planted):
     assert all(f"| `{kind}` |" in markdown for kind in KINDS)
 
 
+@pytest.mark.parametrize("width", [390, 1400])
+def test_the_page_is_shown_in_a_browser_without_standing_out_sideways(look, tmp_path, planted, width):
+    (tmp_path / "faults.html").write_text(render.html(planted), encoding="utf-8")
+    page = look(tmp_path / "faults.html", width=width, dark=True)
+    assert page.locator("td.bad").count() == 1
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+
+
 def test_the_page_holds_nothing_of_the_wall_clock(planted):
     slower = [replace(one, cases=tuple(replace(case, wall_s=9.0) for case in one.cases)) for one in planted]
     assert render.markdown(planted, 1, 1) == render.markdown(slower, 1, 1)

@@ -28,6 +28,18 @@ def page(campaign_of_40, analysis, tmp_path_factory):
     return path.read_text()
 
 
+@pytest.mark.parametrize("width", [390, 1400])
+def test_it_is_shown_in_the_dark_without_standing_out_sideways(look, tmp_path, page, width):
+    (tmp_path / "campaign.html").write_text(page)
+    shown = look(tmp_path / "campaign.html", width=width, dark=True)
+    assert shown.evaluate("document.documentElement.scrollWidth") <= width
+    assert (
+        shown.evaluate("getComputedStyle(document.querySelector('header')).backgroundColor")
+        == "rgb(22, 28, 35)"
+    )
+    assert shown.locator("svg").first.is_visible()
+
+
 def test_it_has_all_sections_and_pictures(page):
     seen = Tags(page).seen
     sections = [name for tag, name in seen if tag == "section"]

@@ -1,0 +1,82 @@
+"""compare.html: the laws side by side, by their table and over time."""
+
+from collections.abc import Sequence
+
+from fsw.core.laws.table import LAWS
+from sim.compare.case import Driver
+from sim.compare.picture import colour_of
+from sim.compare.score import WINDOW_ORBITS, Result, Score
+from sim.compare.table import as_table
+from sim.drawing.canvas import style
+from sim.drawing.inline_svg import chart
+from sim.drawing.page_parts import PageHeader, PageSection, Tile, sections_page
+from sim.drawing.time_chart import Level, Panel, Series, TimeChart, draw, time_data
+from sim.report.figures.performance import SETTLED_DEG
+from sim.scenario.schema import Scenario
+
+PANEL_IN = 2.8
+_MEANING = (
+    "Settled: under 5° from then on. RMS, max and rate over the last orbit; ∫ m² is the energy lost in the "
+    "coils but for a factor. Best first, each aim of laws for itself."
+)
+
+
+def compare_page(
+    scenario: Scenario, facts: Sequence[str], scores: Sequence[Score], results: Sequence[Result]
+) -> str:
+    """The page of a comparison; without a flight it has no chart."""
+    flights = [result for result in results if result.history is not None]
+    sections = [PageSection("scores", "The laws", _MEANING, (as_table(scores),), text=_failures(scores))]
+    time = None
+    if flights and flights[0].history is not None:
+        first = flights[0].history
+        time = time_data(first.time, first.t_s, scenario.epoch_unix_s)
+        with style():
+            drawn = draw(first.time, TimeChart(first.t_s, _panels(flights)))
+            words = f"RMS of {WINDOW_ORBITS:g} orbits about each time. Grey bands are eclipses."
+            charts = (chart("pointing", drawn.picture, words, drawn.data),)
+        sections.append(PageSection("pointing", "Pointing error over time", charts=charts))
+    header = PageHeader("Comparison of control laws", scenario.name, facts, _badges(scores), _tiles(scores))
+    return sections_page(header, sections, time)
+
+
+def _panels(flights: Sequence[Result]) -> list[Panel]:
+    laws = [law for law in LAWS if any(result.score.law == law for result in flights)]
+    panels = []
+    for driver in Driver:
+        series = [
+            Series(score.law, history.error_deg, colour_of(laws.index(score.law)))
+            for score, history in flights
+            if score.driver is driver and history is not None
+        ]
+        if series:
+            settled = (Level(SETTLED_DEG, f"{SETTLED_DEG:g}°"),)
+            title = f"{driver.value.capitalize()} coil driver"
+            panels.append(Panel(title, "pointing error [deg]", PANEL_IN, series, 3.5, settled))
+    return panels
+
+
+def _badges(scores: Sequence[Score]) -> list[tuple[str, str]]:
+    broken = [score for score in scores if score.limits_ok is False]
+    grounded = [score for score in scores if score.failure]
+    badges = [("bad", f"✗ limits broken by {len(broken)}") if broken else ("good", "✓ limits kept")]
+    if grounded:
+        badges.append(("note", f"! {len(grounded)} did not fly"))
+    return badges
+
+
+def _tiles(scores: Sequence[Score]) -> list[Tile]:
+    """The best of each driver."""
+    tiles = []
+    for driver in Driver:
+        flown = [score for score in scores if score.driver is driver and score.pointing_rms_deg is not None]
+        if flown:
+            best = min(flown, key=lambda score: score.pointing_rms_deg or 0.0)
+            tiles.append(
+                Tile(f"Best, {driver.value}", best.law, f"{best.pointing_rms_deg:.2f}° RMS, last orbit")
+            )
+    return tiles
+
+
+def _failures(scores: Sequence[Score]) -> str:
+    return "\n".join(f"{score.law}, {score.driver}: {score.failure}" for score in scores if score.failure)

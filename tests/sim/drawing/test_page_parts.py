@@ -1,0 +1,46 @@
+"""A page of a header and sections: what is empty is left out, what is text stays text."""
+
+import pytest
+from markupsafe import Markup
+
+from sim.drawing.page_parts import Chart, PageHeader, PageSection, Table, Tile, sections_page
+
+HEADER = PageHeader(
+    "Kind of page", "a <name>", ("one", "two"), [("good", "✓ kept")], [Tile("tile", "5", "note")]
+)
+
+
+def test_the_header_says_what_it_is_about():
+    page = sections_page(HEADER, [])
+    assert "<title>a &lt;name&gt;: kind of page</title>" in page
+    for words in (
+        "Kind of page",
+        "one · two",
+        '<li class="good">✓ kept</li>',
+        "<dd>5<small>note</small></dd>",
+    ):
+        assert words in page
+
+
+def test_a_section_has_its_tables_charts_and_text():
+    picture = Chart("x", Markup("<svg></svg>"), "words")
+    section = PageSection(
+        "here", "Title", "note", (Table(("head",), [("cell",)]),), (picture,), "text < text"
+    )
+    page = sections_page(HEADER, [section])
+    for words in ('<section id="here">', "<p>note</p>", "<td>cell</td>", "<svg></svg>", "text &lt; text"):
+        assert words in page
+    assert "data-chart" not in page.partition("<main>")[2]
+
+
+def test_what_is_empty_is_left_out():
+    page = sections_page(PageHeader("Kind", "name"), [PageSection("here", "Title")])
+    body = page.partition("<main>")[2]
+    for words in ("<p></p>", "<pre", "<table", "tiles", "time-bar", "application/json"):
+        assert words not in body
+
+
+def test_a_number_that_json_has_not_is_no_page():
+    chart = Chart("x", Markup(""), "words", {"panels": [{"y": float("nan")}]})
+    with pytest.raises(ValueError, match="JSON"):
+        sections_page(HEADER, [PageSection("here", "Title", charts=(chart,))], time={"end_s": 1.0})
