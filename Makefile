@@ -9,6 +9,7 @@
 # make scaling    what a campaign costs beside its flights, and what 10^6 runs take, into docs/scaling.md: ten minutes
 # make soak       72 simulated hours, and an hour on the bench in real time, into docs/soak.md
 # make golden     record the golden logs again: after a change that means to alter the answers of fsw
+# make notebooks   execute the notebooks of docs/notebooks, into build/notebooks: a minute or two
 # make test-vcan   the tests on a CAN interface, in a user-mode Linux guest where this kernel has no vcan
 # make test-chromium   the pages in a headless browser, Debian's chromium
 # make fuzz       a million random frames, a thousand mutations of each kind of input file: half an hour
@@ -26,7 +27,7 @@ bin := .venv/bin
 installed := .venv/.installed
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv sil test lint test-vcan test-chromium golden validate fuzz attack differential replay-elsewhere faults bench scaling population soak planted mutation coverage
+.PHONY: help venv sil test lint notebooks test-vcan test-chromium golden validate fuzz attack differential replay-elsewhere faults bench scaling population soak planted mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -55,6 +56,9 @@ lint: venv
 	$(bin)/python tools/generate_icd.py --check
 	$(bin)/python tools/write_requirements.py --check
 	$(bin)/python tools/draw_design.py --check
+
+notebooks: venv
+	$(bin)/python tools/run_notebooks.py $(NOTEBOOKS)
 
 test-vcan: venv
 	TORQUER_REQUIRE_VCAN=1 tests/with-vcan $(bin)/pytest -q -rs -p no:cacheprovider -m vcan

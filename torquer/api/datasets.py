@@ -145,11 +145,6 @@ def _dataset(
     dataset: xr.Dataset = xarray.Dataset(
         data,
         coordinates,
-        {
-            "scenario": scenario.name,
-            "seed": record["seed"],
-            "epoch_unix_s": scenario.epoch_unix_s,
-            "torquer_version": record["torquer_version"],
-        },
+        run_dir.identity(scenario, record["seed"]) | {"torquer_version": record["torquer_version"]},
     )
     return dataset

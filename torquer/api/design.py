@@ -7,7 +7,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Annotated
 
-from pydantic import Strict
+from pydantic import Field, Strict
 
 from fsw.input.schema import Section
 from sim.design.command import GainDesign
@@ -17,9 +17,12 @@ from sim.progress import shown
 from torquer.api.arguments import ScenarioLike, Settings, checked, chosen_scenario, optional_path, path_text
 from torquer.api.errors import one_sentence
 
+_Gain = Annotated[float, Field(allow_inf_nan=True)]
+"""Judged with the natural gains of the body."""
+
 
 class _GivenGains(Section):
-    gains: Annotated[tuple[float, float], Strict(False)] | None
+    gains: Annotated[tuple[_Gain, _Gain], Strict(False)] | None
 
 
 @dataclass(frozen=True)
