@@ -1,6 +1,7 @@
 """``torquer.fly`` and ``torquer.report``: what the commands do, from scripts, notebooks and threads."""
 
 import _thread
+import gc
 import json
 import multiprocessing
 import subprocess
@@ -52,6 +53,12 @@ def test_settings_have_dots_or_sections_and_values_of_numpy(tmp_path):
     assert (flown.time.tick_hz, flown.coils.backoff, flown.initial.axis) == (2, "per_coil", (0.0, 1.0, 0.0))
 
 
+def test_what_the_caller_holds_is_collected_as_before(tmp_path):
+    before = gc.get_freeze_count()
+    torquer.fly("microsat", orbits=SHORT, out=tmp_path / "run")
+    assert gc.get_freeze_count() == before
+
+
 def test_the_scenario_of_a_run_can_be_flown_again(flown, tmp_path):
     again = torquer.fly(flown.scenario, orbits=0.05, seed=np.uint64(7), out=tmp_path / "again")
     assert again.log.read_bytes() == flown.log.read_bytes()
@@ -63,12 +70,11 @@ def test_two_processes_say_nothing_and_give_the_same_log(flown, tmp_path, capfd)
     assert bus_of(run) == bus_of(flown)
 
 
-def test_with_progress_it_says_which_bus_it_took(tmp_path, monkeypatch, capfd):
+@pytest.mark.parametrize(("progress", "said"), [(True, "bus: loop (auto)\n"), (False, "")])
+def test_which_bus_it_took_is_said_if_progress_is_wanted(progress, said, tmp_path, monkeypatch, capfd):
     monkeypatch.setattr(sil, "resolve", lambda spec: "loop:28011")
-    torquer.fly("microsat", orbits=SHORT, bus="auto", out=tmp_path / "run", progress=True)
-    out, err = capfd.readouterr()
-    assert out == ""
-    assert "bus: loop (auto)" in err
+    torquer.fly("microsat", orbits=SHORT, bus="auto", out=tmp_path / "run", progress=progress)
+    assert capfd.readouterr() == ("", said)
 
 
 def test_flights_at_once_in_threads_are_those_that_fly_alone(flown, tmp_path, monkeypatch):
@@ -84,14 +90,21 @@ def test_flights_at_once_in_threads_are_those_that_fly_alone(flown, tmp_path, mo
 
 
 UNGUARDED = """
+from threading import Thread
 import torquer
+
+def campaign():
+    print(len(torquer.campaign("microsat", runs=2, orbits=0.005, workers=2).results))
+
 print("once")
 assert torquer.fly("microsat", orbits=0.005, bus="loop").ok
-print(len(torquer.campaign("microsat", runs=2, orbits=0.005, workers=2).results))
+thread = Thread(target=campaign)
+thread.start()
+thread.join()
 """
 
 
-def test_a_script_needs_no_guard(tmp_path):
+def test_a_script_needs_no_guard_and_may_fly_in_a_thread(tmp_path):
     (tmp_path / "script.py").write_text(UNGUARDED)
     done = subprocess.run(
         [sys.executable, "script.py"], cwd=tmp_path, capture_output=True, text=True, check=False
@@ -175,7 +188,7 @@ def test_wrong_input_is_one_sentence_and_leaves_nothing(arguments, says, tmp_pat
         torquer.fly(**{"scenario": "microsat", **arguments})
     assert "\n" not in str(caught.value)
     assert caught.value.exit_code == 2
-    assert caught.value.__suppress_context__
+    assert (caught.value.__cause__, caught.value.__suppress_context__) == (None, True)
     assert list(tmp_path.iterdir()) == []
 
 
