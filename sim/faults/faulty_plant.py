@@ -8,6 +8,7 @@ from sim.faults.fault import Fault
 from sim.plant.config import PlantConfig
 from sim.plant.hardware.actuators import Actuator, CoilDrive
 from sim.plant.interference import Interference
+from sim.plant.own_effects import NO_EFFECTS, OwnEffects
 from sim.plant.plant import Plant
 from sim.plant.rotation import Vec3
 
@@ -30,12 +31,18 @@ class FaultyPlant(Plant):
         config: the plant.
         faults: scheduled from the start.
         actuator: drives the coils in place of the plant's own board.
+        effects: what else acts on body and sensors, before the faults.
     """
 
     def __init__(
-        self, config: PlantConfig, faults: Sequence[ScheduledFault] = (), actuator: Actuator | None = None
+        self,
+        config: PlantConfig,
+        faults: Sequence[ScheduledFault] = (),
+        actuator: Actuator | None = None,
+        effects: OwnEffects = NO_EFFECTS,
     ) -> None:
-        super().__init__(config, actuator)
+        super().__init__(config, actuator, effects)
+        self._always = (effects,) if effects.any else ()
         self._waiting = list(faults)
         self._schedule: list[ScheduledFault] = []
         self._to_boards: list[Frame] = []
@@ -90,7 +97,7 @@ class FaultyPlant(Plant):
             one.fault.begin(self)
         if over or due:
             self.active = tuple(one.fault for one in self._schedule)
-            self.interference = _Chain(self.active)
+            self.interference = _Chain((*self._always, *self.active))
         for fault in self.active:
             fault.before(tick, self)
 
@@ -98,7 +105,7 @@ class FaultyPlant(Plant):
 class _Chain(Interference):
     """All faults, one after the other."""
 
-    def __init__(self, faults: tuple[Fault, ...]) -> None:
+    def __init__(self, faults: tuple[Interference, ...]) -> None:
         self._faults = faults
 
     def field(self, b_body_t: Vec3, valid: bool) -> tuple[Vec3, bool]:

@@ -11,6 +11,7 @@ from fsw.input.schema import Positive, Section, TableError
 from sim.faults.faulty_plant import FaultyPlant, ScheduledFault
 from sim.faults.kinds import KINDS, make
 from sim.plant.config import PlantConfig
+from sim.plant.own_effects import NO_EFFECTS, OwnEffects
 from sim.plant.plant import Plant
 
 
@@ -53,7 +54,9 @@ def forge_answers(faults: Sequence[FaultSection]) -> bool:
     return any(KINDS[fault.kind].forges for fault in faults)
 
 
-def make_plant(config: PlantConfig, faults: Sequence[FaultSection]) -> Plant:
+def make_plant(
+    config: PlantConfig, faults: Sequence[FaultSection], effects: OwnEffects = NO_EFFECTS
+) -> Plant:
     """The plant of a flight with its faults scheduled; their random numbers come from the plant's seed.
 
     Raises:
@@ -62,8 +65,9 @@ def make_plant(config: PlantConfig, faults: Sequence[FaultSection]) -> Plant:
     """
     try:
         if not faults:
-            return Plant(config)
-        return FaultyPlant(config, [_schedule(number, fault, config) for number, fault in enumerate(faults)])
+            return Plant(config, own=effects)
+        scheduled = [_schedule(number, fault, config) for number, fault in enumerate(faults)]
+        return FaultyPlant(config, scheduled, effects=effects)
     except ValueError as error:
         raise TableError(f"the scenario's plant: {error}") from None
 

@@ -15,6 +15,7 @@ from sim.record.bus_log import BusLog
 from sim.record.pace import Pace
 from sim.record.truth import TruthFile
 from sim.scenario.assemble import plant_config
+from sim.scenario.own_effects import own_effects
 from sim.scenario.schema import Scenario, flight_table, orbit_period_s
 from sim.scenario.telecommands import uplink
 
@@ -53,7 +54,7 @@ def check_can_fly(scenario: Scenario, seed: int) -> None:
 
 def check_plant(scenario: Scenario, seed: int) -> None:
     """The same of the plant alone."""
-    make_plant(plant_config(scenario, seed), scenario.fault)
+    make_plant(plant_config(scenario, seed), scenario.fault, own_effects(scenario.effect))
 
 
 def record_flight(
@@ -82,7 +83,7 @@ def record_flight(
     """
     run = run_dir.read_run(path)
     log_name = run_dir.COMPRESSED_LOG if run.get("compressed") else run_dir.BUS_LOG
-    plant = make_plant(plant_config(scenario, run["seed"]), scenario.fault)
+    plant = make_plant(plant_config(scenario, run["seed"]), scenario.fault, own_effects(scenario.effect))
     pace = Pace(run["pace_factor"])
     senders = SenderWatch(lockstep=pace.factor is None)
     identity = run_dir.identity(scenario, run["seed"])

@@ -20,6 +20,7 @@ from sim.plant.hardware.actuators import Actuator, CoilDrive, make_actuator
 from sim.plant.hardware.coils import Coils
 from sim.plant.hardware.sensors import MagnetometerPhysics, SunSensorPhysics
 from sim.plant.interference import NO_INTERFERENCE, Interference
+from sim.plant.own_effects import NO_EFFECTS, Moment, OwnEffects
 from sim.plant.rotation import (
     ZERO,
     Quaternion,
@@ -66,12 +67,15 @@ class Plant:
     Args:
         config: the plant.
         actuator: drives the coils in place of the plant's own board.
+        own: effects of one's own on body and sensors.
 
     Raises:
         ValueError: the orbit elements are malformed, or orbit or field do not exist at the epoch.
     """
 
-    def __init__(self, config: PlantConfig, actuator: Actuator | None = None) -> None:
+    def __init__(
+        self, config: PlantConfig, actuator: Actuator | None = None, own: OwnEffects = NO_EFFECTS
+    ) -> None:
         self._config = config
         self.substeps = ceil(1.0 / (config.tick_hz * config.max_substep_s))
         """Integration steps a tick."""
@@ -79,8 +83,9 @@ class Plant:
         self._environment = Environment(config, self.substeps)
         self._body = RigidBody(config.body.inertia_kgm2, config.body.wheel_body_nms)
         effect_by_name, self._noise = effects(config), torque_noise(config)
-        self._effects = tuple(effect_by_name.values())
-        self.torque_sources = (*torques.SOURCES, *effect_by_name, *(("noise",) if self._noise else ()))
+        self._effects, self._own = tuple(effect_by_name.values()), own
+        last = (*(("noise",) if self._noise else ()), *own.torque_sources)
+        self.torque_sources = (*torques.SOURCES, *effect_by_name, *last)
         """Names of the torques, in the order of ``TruthRow.torque_body_nm``."""
         self._coils = Coils(config.coils)
         self._magnetometer = MagnetometerPhysics(config.magnetometer, config.seed, config.tick_hz)
@@ -88,13 +93,12 @@ class Plant:
         self._actuator = actuator or make_actuator(config)
         self._magnetometer_board = Magnetometer(config.tick_hz)
         self._sun_sensor_board = SunSensor(config.tick_hz)
-        self.interference: Interference = NO_INTERFERENCE
+        self.interference: Interference = own if own.any else NO_INTERFERENCE
         """The effect of faults between physics and boards."""
         self.coil_drive = CoilDrive(ZERO, 0.0)
         """The currents that flowed over the last complete tick."""
         self._tick = 0
-        self._mean_dipole_am2 = ZERO
-        self._noise_body_nm = ZERO
+        self._mean_dipole_am2 = self._noise_body_nm = ZERO
         self.motion = self._initial_motion()
         """Attitude and rate against the inertial frame at the instant of the tick."""
         self._observe()
@@ -202,6 +206,7 @@ class Plant:
                     for effect in self._effects
                 ),
                 *((self._noise_body_nm,) if self._noise else ()),
+                *self._own.torques_body_nm,
             ),
         )
 
@@ -217,6 +222,8 @@ class Plant:
         dipole = (mx + rx, my + ry, mz + rz)
         (bx, by, bz), (nx, ny, nz) = self._bias_body_nm(), self._noise_body_nm
         bias = (bx + nx, by + ny, bz + nz)
+        for tx, ty, tz in self._own.torques_body_nm:
+            bias = (bias[0] + tx, bias[1] + ty, bias[2] + tz)
         if not found:
             return lambda q, omega, around: torques.total(inertia, q, around, dipole, bias)
 
@@ -250,6 +257,9 @@ class Plant:
         self._body_from_eci = matrix(self.motion.q_body_from_eci)
         self._b_body_t = transform(self._body_from_eci, sample.b_eci_t)
         self._sun_body = transform(self._body_from_eci, sample.sun_eci)
+        if self._own.any:
+            seen = self._b_body_t, self._sun_body
+            self._own.observe(Moment(self.t_s, *self.motion, *seen, sample.lit, sample.r_eci_m))
 
     def _earthlight_body(self) -> Vec3:
         """The Earth's light in parts of the Sun's, for a Sun sensor that it disturbs."""

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from fsw.bus.open_bus import open_bus
+from fsw.input.own_code import display
 from fsw.input.schema import Nested
 from fsw.table.config import flight_config
 from fsw.wire.candump_line import format_time
@@ -27,6 +28,7 @@ from sim.record.signature import PublicKey
 from sim.replay.log_replay import ReplayResult, replay
 from sim.scenario.assemble import plant_config
 from sim.scenario.law_named import with_law_named
+from sim.scenario.own_effects import own_effects
 from sim.scenario.schema import Scenario, flight_table, load
 
 LONGEST_PAUSE_S = 86_400.0
@@ -36,13 +38,15 @@ LONGEST_PAUSE_S = 86_400.0
 class LoggedRun(NamedTuple):
     """The run that a log is of: its scenario, its run.json where there is one, and the check of its files.
 
-    ``law`` is the law of one's own that was named again; without it none is executed.
+    ``law`` is the law of one's own that was named again; without it none is executed, and without ``effects``
+    no effect of one's own.
     """
 
     scenario: Scenario
     record: RunRecord | None
     binding: Binding
     law: str | None = None
+    effects: bool = False
 
     @property
     def ticks(self) -> int:
@@ -75,6 +79,7 @@ def locate(
     settings: Nested,
     key: PublicKey | None = None,
     law: str | None = None,
+    effects: bool = False,
 ) -> tuple[Path, LoggedRun]:
     """The log and its run; with a key, the run must be signed by its private half.
 
@@ -90,7 +95,7 @@ def locate(
         beside = folder / run_dir.SCENARIO
         if scenario is None and not beside.is_file():
             raise HarnessError(f"{log}: no {run_dir.SCENARIO} beside it: name its scenario by --scenario")
-        return log, LoggedRun(load(scenario or str(beside), settings), record, binding, law)
+        return log, LoggedRun(load(scenario or str(beside), settings), record, binding, law, effects)
 
 
 def through_flight_software(log: Path, run: LoggedRun) -> ReplayReport:
@@ -133,7 +138,11 @@ def through_plant(log: Path, run: LoggedRun) -> ReplayReport:
     """Feed the recorded commands to the plant: its frames must be those of the log."""
     if run.record is None:
         raise HarnessError(f"{log}: --plant needs the seed: no {run_dir.RUN} beside it")
-    plant = make_plant(plant_config(run.scenario, run.record["seed"]), run.scenario.fault)
+    if run.scenario.effect and not run.effects:
+        named = ", ".join(display(effect.use) for effect in run.scenario.effect)
+        raise HarnessError(f"{log}: the run has effects of its own ({named}): --effects executes them")
+    effects = own_effects(run.scenario.effect)
+    plant = make_plant(plant_config(run.scenario, run.record["seed"]), run.scenario.fault, effects)
     ticks = 0
     with progress("replaying", run.ticks) as watch:
         for logged, is_last in _by_time(log):

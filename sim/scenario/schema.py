@@ -33,6 +33,7 @@ from fsw.table.sections import CIRCULAR_KEYS, CoilTable, ControlTable, TimeTable
 from fsw.table.table import FlightTable
 from sim.faults.section import Faults
 from sim.scenario.names import Name
+from sim.scenario.own_effects import Effects, with_digests
 from sim.scenario.sections import DisturbanceSection, ScenarioBody, ScenarioOrbit, SensorsSection
 from sim.scenario.telecommands import Telecommands
 
@@ -106,6 +107,7 @@ class Scenario(Section):
     plant: PlantSection = PlantSection()
     telecommand: Telecommands = ()
     fault: Faults = ()
+    effect: Effects = ()
     flight: dict[str, Any] = Field(default_factory=dict)
 
     @model_validator(mode="after")
@@ -250,7 +252,7 @@ def _with_floor(sigma: float, floor: float) -> float:
 def _read(name_or_path: str) -> tuple[Nested, str]:
     if name_or_path.endswith(".toml"):
         path = Path(name_or_path)
-        return named(read_toml(path), path.parent), name_or_path
+        return with_digests(named(read_toml(path), path.parent), path.parent), name_or_path
     names = _names()
     if name_or_path not in names:
         raise TableError(

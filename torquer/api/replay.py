@@ -21,6 +21,7 @@ def replay(
     plant: bool = False,
     onto: str | None = None,
     law: str | PathLike[str] | None = None,
+    effects: bool = False,
     verify: str | PathLike[str] | None = None,
     progress: bool = False,
 ) -> ReplayReport:
@@ -33,6 +34,7 @@ def replay(
         plant: feed the recorded commands to the plant instead, and compare its frames.
         onto: play the log onto this bus instead, at its own pace.
         law: the law of its own that the run flew, named again; without it none is executed.
+        effects: execute the effects of its own that the run names; ``plant`` needs them.
         verify: public Ed25519 key in PEM; the run must be signed by its private half.
         progress: show progress on stderr.
 
@@ -43,7 +45,7 @@ def replay(
     of_log = None if scenario is None else path_text(scenario, "scenario")
     named = None if law is None else path_text(law, "law")
     with shown(progress):
-        log, run = command.locate(path, of_log, nested(set), optional_key(verify), named)
+        log, run = command.locate(path, of_log, nested(set), optional_key(verify), named, effects)
         with run.binding.beside_errors():
             if onto is not None:
                 return command.play(log, run, onto)

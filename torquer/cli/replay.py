@@ -14,6 +14,7 @@ from torquer.cli.options import LAW_AGAIN, RUN_OR_LOG, SETTINGS, VERIFY, sentenc
 @click.option("--onto", metavar="BUS", help="Play the log on a bus instead, at its own pace.")
 @VERIFY
 @LAW_AGAIN
+@click.option("--effects", is_flag=True, help="With --plant: execute the effects of its own of the run.")
 @SETTINGS
 @sentences
 def replay(
@@ -23,6 +24,7 @@ def replay(
     onto: str | None,
     verify: Path | None,
     law: str | None,
+    effects: bool,
     settings: tuple[str, ...],
 ) -> int:
     """Replay a log through the flight software and compare its answers byte for byte."""
@@ -31,7 +33,15 @@ def replay(
 
     over = parse_settings(settings)
     report = replay(
-        run_or_log, scenario=scenario, set=over, plant=plant, onto=onto, law=law, verify=verify, progress=True
+        run_or_log,
+        scenario=scenario,
+        set=over,
+        plant=plant,
+        onto=onto,
+        law=law,
+        effects=effects,
+        verify=verify,
+        progress=True,
     )
     for line in report.lines:
         click.echo(line)
