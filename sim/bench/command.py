@@ -30,6 +30,7 @@ from sim.record.bus_log import BusLog
 from sim.record.destination import check_folder
 from sim.record.pace import Pace
 from sim.scenario.assemble import plant_config
+from sim.scenario.own_effects import own_effects
 from sim.scenario.schema import Scenario
 
 BOARDS = {"coil": "COIL", "magnetometer": "MAG", "sun": "SUN"}
@@ -218,7 +219,8 @@ def _tick_source(settings: HilSettings, stubs: dict[str, BenchProcess]) -> TickS
         return SyncOnly(scenario.epoch_unix_s, scenario.time.tick_hz)
     pipes = {name: stubs[name].popen.stdin for name in SENSORS if name in stubs}
     lines = {name: line_to(pipe.fileno()) for name, pipe in pipes.items() if pipe is not None}
-    return PlantTicks(plant_config(scenario, settings.seed), lines.get("magnetometer"), lines.get("sun"))
+    config, own = plant_config(scenario, settings.seed), own_effects(scenario.effect)
+    return PlantTicks(config, lines.get("magnetometer"), lines.get("sun"), own)
 
 
 def _await_boots(bus: Bus, starting: dict[str, BenchProcess], ask: bool = False) -> list[Frame]:

@@ -18,6 +18,7 @@ from fsw.wire.messages import (
 )
 from sim.plant.config import PlantConfig
 from sim.plant.hardware.actuators import Board, CoilDrive
+from sim.plant.own_effects import NO_EFFECTS, OwnEffects
 from sim.plant.plant import Plant
 from sim.plant.rotation import ZERO
 
@@ -128,11 +129,18 @@ class PlantTicks:
         config: the plant.
         magnetometer: writes lines to the magnetometer; None: it is real, and so is its field.
         sun: the same for the Sun sensor.
+        own: effects of one's own; of those on sensors none, for the sensors are boards.
     """
 
-    def __init__(self, config: PlantConfig, magnetometer: Line | None, sun: Line | None) -> None:
+    def __init__(
+        self,
+        config: PlantConfig,
+        magnetometer: Line | None,
+        sun: Line | None,
+        own: OwnEffects = NO_EFFECTS,
+    ) -> None:
         self._drive = ReportedDrive(config)
-        self._plant = Plant(config, self._drive)
+        self._plant = Plant(config, self._drive, own)
         self._sensors = {MagField.ID: magnetometer, SunVector.ID: sun}
         self._own: list[Frame] = []
         self._show()

@@ -11,7 +11,7 @@ from pydantic import Field, Strict
 from fsw.input import own_code
 from fsw.input.quantities import with_values
 from fsw.input.schema import Nested, Section, TableError
-from sim.plant.own_effects import ACTIONS, OwnEffect, OwnEffects
+from sim.plant.own_effects import ACTIONS, NO_EFFECTS, OwnEffect, OwnEffects
 
 GROUP = "torquer.effects"
 """Group of the entry points by which installed packages offer effects."""
@@ -43,12 +43,14 @@ def with_digests(values: Nested, folder: Path) -> Nested:
     return {**values, "effect": [_with_digest(entry, folder) for entry in entries]}
 
 
-def own_effects(sections: Sequence[EffectSection]) -> OwnEffects:
+def own_effects(sections: Sequence[EffectSection] | None) -> OwnEffects:
     """The effects of a scenario; their sources are executed.
 
     Raises:
         TableError: one cannot be loaded, is no effect, or a parameter is not allowed.
     """
+    if not sections:
+        return NO_EFFECTS
     return OwnEffects(
         [
             OwnEffect(

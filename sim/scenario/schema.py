@@ -107,7 +107,7 @@ class Scenario(Section):
     plant: PlantSection = PlantSection()
     telecommand: Telecommands = ()
     fault: Faults = ()
-    effect: Effects = ()
+    effect: Effects | None = None
     flight: dict[str, Any] = Field(default_factory=dict)
 
     @model_validator(mode="after")

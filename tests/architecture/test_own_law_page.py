@@ -1,0 +1,38 @@
+"""The code of docs/own-law.md does what the page says."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+import torquer
+
+PAGE = (Path(__file__).parents[2] / "docs" / "own-law.md").read_text(encoding="utf-8")
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """The files of the page, each beginning with a comment that is its name."""
+    for block in re.findall(r"```(?:python|toml)\n(# (\w+\.\w+)\n.*?)```", PAGE, re.S):
+        (tmp_path / block[1]).write_text(block[0])
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("sim.report.conclude.write_report", lambda path, *rest: path.write_text(""))
+    return tmp_path
+
+
+def test_its_law_flies_with_the_gain_of_the_page(folder):
+    run = torquer.fly("microsat", law="my_law.py:damp", orbits=0.04, out=folder / "run", set=GAIN)
+    assert run.ok
+    assert run.replay().ok
+
+
+GAIN = {"control.gains.damp.damping_nms_per_t2": 3e6}
+
+
+def test_its_effects_fly(folder):
+    shipped = Path(__file__).parents[2] / "sim" / "scenario" / "shipped" / "microsat.toml"
+    sections = (folder / "effects.toml").read_text()
+    (folder / "sat.toml").write_text(shipped.read_text(encoding="utf-8") + sections)
+    run = torquer.fly(folder / "sat.toml", orbits=0.005, out=folder / "run")
+    assert run.ok
+    assert [effect.parameters for effect in run.scenario.effect] == [{"torque_nm": 2e-6}, {}]
