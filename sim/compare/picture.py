@@ -10,7 +10,7 @@ from fsw.core.laws.table import LAWS
 from sim.compare.case import Driver
 from sim.compare.score import WINDOW_ORBITS, Result
 from sim.drawing.canvas import AXES_COLOURS, INK, MORE_COLOURS, MUTED, log_y, stacked, style, trace
-from sim.report.figures.performance import SETTLED_DEG
+from sim.report.figures.controlled import SETTLED_DEG
 
 COLOURS = (*AXES_COLOURS, *MORE_COLOURS, INK, "#7b3fa0", "#8a6d3b", "#8f9a1f")
 DASHES: tuple[object, ...] = ("-", (0, (5, 1.5)), (0, (1.5, 1.2)))
@@ -69,15 +69,14 @@ def _lines(panel: Axes, laws: Sequence[str], results: Sequence[Result]) -> None:
         number = laws.index(score.law)
         colour, dashes = colour_of(number), DASHES[number // len(COLOURS) % len(DASHES)]
         trace(panel, history.time, history.t_s, history.error_deg, score.law, colour, linestyle=dashes)
-        ends.append((_height(panel, float(history.error_deg[-1])), score, colour))
+        end_deg = float(history.error_deg[-1])
+        ends.append((_height(panel, end_deg), score.law, end_deg, colour))
     ends.sort(key=lambda end: end[0])
-    panel.text(
-        1.035, 1.03, "RMS, last orbit", transform=panel.transAxes, color=MUTED, fontsize=7.0, va="bottom"
-    )
-    places = spread([height for height, _, _ in ends], min(LINE_HEIGHT, 1.0 / len(ends)))
-    for (height, score, colour), at in zip(ends, places, strict=True):
+    panel.text(1.035, 1.03, "at the end", transform=panel.transAxes, color=MUTED, fontsize=7.0, va="bottom")
+    places = spread([height for height, *_ in ends], min(LINE_HEIGHT, 1.0 / len(ends)))
+    for (height, law, end_deg, colour), at in zip(ends, places, strict=True):
         panel.annotate(
-            f"{score.law}  {score.pointing_rms_deg:.3g}°",
+            f"{law}  {end_deg:.3g}°",
             xy=(1.0, height),
             xytext=(1.035, at),
             xycoords="axes fraction",

@@ -86,3 +86,12 @@ def test_names_stay_in_the_panel_and_apart(heights):
     places = spread(heights, 0.05)
     assert all(0.0 <= place <= 1.0 for place in places)
     assert np.diff(places).min() >= 0.05 - 1e-12
+
+
+def test_the_figure_at_the_end_of_a_line_is_where_it_ends(drawn):
+    error = 0.5 + 40.0 * np.exp(-T_S / 6000.0)
+    score = Score("pd", LAWS["pd"].aim, Driver.PULSED, pointing_rms_deg=17.0)
+    (panel,), _ = drawn([Result(score, History(TIME, T_S, error))])
+    texts = [text.get_text() for text in panel.texts]
+    assert f"pd  {error[-1]:.3g}°" in texts
+    assert "at the end" in texts
