@@ -15,6 +15,7 @@
 # make fuzz       a million random frames, a thousand mutations of each kind of input file: half an hour
 # make attack     a million requests and forged frames to a coil board, ten minutes on the real process: half an hour
 # make differential scheduler against interlock over 100 orbits of whole flights: some minutes
+# make verdicts   all flights that miss a requirement for a known reason: is it told, and no wrong one: a minute
 # make planted    schedulers with planted faults, and correct ones, through sim.testing as a user would run it: some minutes
 # make mutation     change scheduler, interlock, auditor and codec one thing at a time: do the tests notice? an hour
 # make coverage     branch coverage of the same modules, which must be complete, into the same page: a minute
@@ -27,7 +28,7 @@ bin := .venv/bin
 installed := .venv/.installed
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv sil test lint notebooks test-vcan test-chromium golden validate fuzz attack differential replay-elsewhere faults bench scaling population soak planted mutation coverage
+.PHONY: help venv sil test lint notebooks test-vcan test-chromium golden validate fuzz attack differential replay-elsewhere faults bench scaling population soak verdicts planted mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -98,6 +99,9 @@ population: venv
 
 soak: venv
 	$(bin)/python tools/soak.py $(SOAK)
+
+verdicts: venv
+	TORQUER_FAILING_FLIGHTS=all $(bin)/pytest -q tests/sim/report/requirements/test_failing_flights.py
 
 planted: venv
 	TORQUER_SCHEDULER_FLIGHTS=200 $(bin)/pytest -q --timeout 1800 tests/sim/testing/test_audit_scheduler.py

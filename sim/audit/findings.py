@@ -42,6 +42,14 @@ class AuditLimits:
     shared: bool = True
     tick_hz: int | None = None
 
+    def most_duty(self, time_s: float) -> float:
+        """The largest part of a time that pulses under one back-off can take; a short one fits more."""
+        pulse_s, cycle_s = self.pulse_us / 1e6, (self.pulse_us + self.backoff_us) / 1e6
+        if time_s <= 0.0 or cycle_s <= 0.0:
+            return 1.0
+        cycles = time_s // cycle_s
+        return (cycles * pulse_s + min(time_s - cycles * cycle_s, pulse_s)) / time_s
+
 
 @dataclass(frozen=True, slots=True)
 class DrivenPulse:
@@ -146,6 +154,13 @@ class AuditReport:
     def min_gap_any_s(self) -> float | None:
         """Least time from a pulse to the next, of whatever coil; None with fewer than two pulses."""
         return _min_gap(self.pulses)
+
+    @property
+    def min_gap_limited_s(self) -> float | None:
+        """Least of the gaps that the back-off limits: from any pulse, or from one of the same coil."""
+        if self.limits.shared:
+            return self.min_gap_any_s
+        return min((gap for gap in self.min_gap_per_coil_s if gap is not None), default=None)
 
     @property
     def min_gap_per_coil_s(self) -> list[float | None]:

@@ -20,7 +20,8 @@ from sim.flight.record_flight import MOST_IN_MEMORY, ticks_of
 from sim.progress import progress
 from sim.record.destination import check_folder
 from sim.record.run_dir import write_json
-from sim.scenario.schema import Scenario, load, parse_settings
+from sim.report.figures.controlled import SETTLED_DEG
+from sim.scenario.schema import Scenario, load, orbit_period_s, parse_settings
 
 JSON, CSV, PICTURE, PAGE = "compare.json", "compare.csv", "compare.png", "compare.html"
 
@@ -99,9 +100,12 @@ def compare(
 
 def _heading(scenario: Scenario, seed: int, ticks: int) -> str:
     what = "axis 1 from the vertical" if by_axis1(scenario) else "the whole attitude"
+    flown_s = ticks / scenario.time.tick_hz
+    orbits = flown_s / orbit_period_s(scenario)
+    window = "the last orbit" if orbits >= 0.999 else f"the whole flight of {orbits:.2g} orbits"
     return (
-        f"{scenario.name}, seed {seed}, {ticks / scenario.time.tick_hz:.0f} s: {what}; settled: under "
-        "5 deg from then on; RMS, max and rate over the last orbit"
+        f"{scenario.name}, seed {seed}, {flown_s:.0f} s: {what}; settled: under {SETTLED_DEG:g} deg from "
+        f"then on; RMS, max and rate over {window}"
     )
 
 
@@ -140,5 +144,5 @@ def _default_folder(scenario: Scenario) -> Path:
 
 def _line(finished: StudyResult) -> str:
     score = finished.results[0].score
-    figure = score.failure or f"{score.pointing_rms_deg:.2f} deg RMS over the last orbit"
+    figure = score.failure or f"{score.pointing_rms_deg:.2f} deg RMS"
     return f"{score.law}, {score.driver}: {figure} ({finished.wall_s:.0f} s)"

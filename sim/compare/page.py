@@ -11,7 +11,7 @@ from sim.drawing.canvas import style
 from sim.drawing.inline_svg import chart
 from sim.drawing.page_parts import PageHeader, PageSection, Tile, sections_page
 from sim.drawing.time_chart import Level, Panel, Series, TimeChart, draw, time_data
-from sim.report.figures.performance import SETTLED_DEG
+from sim.report.figures.controlled import SETTLED_DEG
 from sim.scenario.schema import Scenario
 
 PANEL_IN = 2.8

@@ -15,8 +15,9 @@ from sim.drawing.canvas import TimeAxis
 from sim.errors import HarnessError
 from sim.record.truth import Histories
 from sim.report.charts.drawn_flight import whole_flight
+from sim.report.figures.coil_effort import dipole_squared_a2m4s, driven_s
+from sim.report.figures.controlled import SETTLED_DEG
 from sim.report.figures.histories import FlightHistories
-from sim.report.figures.performance import SETTLED_DEG
 from sim.report.figures.spans import spans
 from sim.scenario.schema import Scenario, flight_table, orbit_period_s
 
@@ -25,8 +26,6 @@ Array = NDArray[np.float64]
 POINTS_AN_ORBIT = 60
 MOST_POINTS = 1200
 WINDOW_ORBITS = 0.25
-RESIDUAL = 1e-5
-"""Part of full scale under which a coil is not driven: less than the least dipole on the wire."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,9 +105,11 @@ def judge(case: ComparisonCase, record: RecordedFlight) -> Score:
         pointing_rms_deg=_rms(error_deg[last_orbit]),
         pointing_max_deg=float(error_deg[last_orbit].max()),
         rate_rms_degps=_rms(_rate_error_degps(scenario, truth)[last_orbit]),
-        dipole_squared_a2m4s=_dipole_squared_a2m4s(scenario, truth),
+        dipole_squared_a2m4s=dipole_squared_a2m4s(scenario, truth["m_body_am2"]),
         pulses=None if continuous else len(audit.pulses),
-        duty=_continuous_duty(scenario, truth) if continuous else float(audit.duty_total),
+        duty=driven_s(scenario, truth["m_body_am2"]) / (len(error_deg) / tick_hz)
+        if continuous
+        else float(audit.duty_total),
         mode_final=Mode(int(record.estimates.mode[len(error_deg) - 1])).name,
         limits_ok=audit.ok,
     )
@@ -147,24 +148,6 @@ def _rate_error_degps(scenario: Scenario, truth: Histories) -> Array:
     wanted = np.array([scenario.control.spin_radps, 0.0, 0.0])
     result: Array = np.degrees(np.linalg.norm(truth["omega_body_orbit_radps"] - wanted, axis=1))
     return result
-
-
-def _dipole_squared_a2m4s(scenario: Scenario, truth: Histories) -> float:
-    """Integral of |m|^2 from the mean dipole of each tick.
-
-    A continuous driver drives 1 / f times the mean over the fraction f of a tick. The rise of the current is
-    passed over: it is short beside a tick.
-    """
-    coils = scenario.coils
-    fraction = coils.on_fraction if coils.driver == "continuous" else 1.0
-    return float(np.sum(truth["m_body_am2"] ** 2)) / fraction / scenario.time.tick_hz
-
-
-def _continuous_duty(scenario: Scenario, truth: Histories) -> float:
-    """Fraction of ticks in which the dipole is more than a current that dies away, times that of a tick."""
-    full_scale_am2 = scenario.coils.on_fraction * (scenario.coils.max_dipole_am2 or 0.0)
-    driven = np.abs(truth["m_body_am2"]).max(axis=1) > RESIDUAL * full_scale_am2
-    return scenario.coils.on_fraction * float(np.mean(driven))
 
 
 def _rms(values: Array) -> float:

@@ -12,8 +12,20 @@ UNITS: Mapping[int, Mapping[int, str]] = {
 """Units by event, and by the hundreds of its argument. Coils have the number that they have on the bus."""
 
 
+ISOLATED_BY: Mapping[int, int] = {
+    Event.SENSOR_READMITTED: Event.SENSOR_ISOLATED,
+    Event.COIL_READMITTED: Event.COIL_FAULT,
+}
+"""The event that a readmission takes back; its argument is the same."""
+
+
 def isolated_unit(event: int, argument: int) -> str | None:
     """The unit that an event of the flight software isolates; None if it isolates none."""
     if event not in UNITS:
         return None
     return UNITS[event].get(argument // 100, f"unit {argument}")
+
+
+def readmitted_unit(event: int, argument: int) -> str | None:
+    """The unit that an event of the flight software readmits; None if it readmits none."""
+    return isolated_unit(ISOLATED_BY[event], argument) if event in ISOLATED_BY else None

@@ -133,7 +133,14 @@ def _write_results(path: Path, scenario: Scenario, replayed: _Replayed) -> Json:
     summary = summarise(scenario, run, replayed.performance, report, tally)
     summary["replay"] = _replay_json(replayed.result)
     senders = run.get("second_senders")
-    failed_checks = failures(run, summary["ticks"], report, replayed.result, check_against_index(log))
+    failed_checks = failures(
+        run,
+        summary["ticks"],
+        report,
+        replayed.result,
+        check_against_index(log),
+        summary["requirements"],
+    )
     summary |= {
         key: found for key, found in (("second_senders", senders), ("failures", failed_checks)) if found
     }

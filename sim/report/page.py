@@ -7,7 +7,7 @@ from sim.audit.auditor import AuditReport
 from sim.drawing.pages import page
 from sim.record import run_dir
 from sim.record.run_record import RunRecord
-from sim.report import tables
+from sim.report import headline, tables
 from sim.report.charts.lines import Lines
 from sim.report.event_words import event_table
 from sim.report.parameter_table import parameter_table
@@ -42,8 +42,10 @@ def write_report(
         name=scenario.name,
         about=scenario.summary,
         facts=_facts(summary, run),
-        badges=tables.badges(summary, run, audit),
-        tiles=tables.tiles(summary),
+        headline=headline.headline(summary),
+        badges=headline.badges(summary, run, audit),
+        tiles=headline.tiles(summary),
+        requirements=headline.requirement_table(summary),
         violations=tables.violations(audit),
         violations_left_out=max(0, len(audit.violations) - tables.VIOLATIONS_SHOWN),
         notes=audit.notes,

@@ -1,6 +1,6 @@
-"""Words and tables of the report as values: verdicts, key figures, scenario, events, violations."""
+"""Words and tables of the report as values: key figures, coils, scenario, events, violations."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from datetime import UTC, datetime
 from typing import Any
 
@@ -8,12 +8,11 @@ import tomli_w
 
 from fsw.core.orbit.tle import read_tle, tle_elements
 from fsw.input.own_code import display
-from fsw.wire.messages import Mode
 from sim.audit.auditor import AuditReport
 from sim.audit.findings import COILS, seconds_text
-from sim.drawing.page_parts import Table, Tile
-from sim.flight.second_senders import describe_senders
+from sim.drawing.page_parts import Table
 from sim.record.run_record import RunRecord
+from sim.report.summary_text import last_orbit
 from sim.scenario.schema import Scenario, orbit_period_s
 
 Json = dict[str, Any]
@@ -25,22 +24,11 @@ VIOLATIONS_SHOWN = 50
 EVENTS_OPEN = 12
 """More events than these are folded away."""
 
-_TILES = (
-    ("Pointing", ("pointing_deg", "rms_last_orbit"), "{:.2f}°", "RMS, last orbit"),
-    ("Axis 1 from vertical", ("axis1_deg", "rms_last_orbit"), "{:.2f}°", "RMS, last orbit"),
-    ("Attitude estimate", ("estimate_deg", "rms_sunlit"), "{:.3f}°", "RMS in sunlight"),
-    ("Duty", ("duty", "total"), "{:.2%}", "all coils, whole flight"),
-    ("Pulses", ("pulses", "total"), "{:d}", "of all coils"),
-)
 _ATTITUDE = (
-    ("Pointing, RMS over the last orbit", ("pointing_deg", "rms_last_orbit"), "{:.3f}°"),
-    ("Pointing, largest over the last orbit", ("pointing_deg", "max_last_orbit"), "{:.3f}°"),
-    ("Pointing at the end", ("pointing_deg", "final"), "{:.3f}°"),
-    ("Axis 1, RMS over the last orbit", ("axis1_deg", "rms_last_orbit"), "{:.3f}°"),
-    ("Axis 1, mean over the last orbit", ("axis1_deg", "mean_last_orbit"), "{:.3f}°"),
-    ("Axis 1, largest over the last orbit", ("axis1_deg", "max_last_orbit"), "{:.3f}°"),
-    ("Axis 1, under 5° from orbit", ("axis1_deg", "settle_orbits_5deg"), "{:.2f}"),
-    ("Final mode", ("mode_final",), "{}"),
+    (", RMS over {window}", "rms_last_orbit"),
+    (", largest over {window}", "max_last_orbit"),
+    (", mean over {window}", "mean_last_orbit"),
+    (" at the end", "final"),
 )
 _ESTIMATE = (
     ("Estimate, RMS in sunlight", ("estimate_deg", "rms_sunlit"), "{:.4f}°"),
@@ -59,42 +47,27 @@ _FLIGHT = (
 _KNOWLEDGE = {"filter": "filter on the sensors", "perfect": "perfect, from the plant"}
 
 
-def badges(summary: Json, run: RunRecord | None, audit: AuditReport) -> list[tuple[str, str]]:
-    """The verdicts with their classes of style: limits, refusals, replay, mode, isolation, completeness."""
-    shown = [_limits_badge(audit)]
-    refused = summary["pulses"]["refused"]
-    shown.append(("note", f"! {refused} refused") if refused else ("good", "✓ no refusals"))
-    shown.append(_replay_badge(summary.get("replay")))
-    mode = summary.get("mode_final")
-    if mode is not None:
-        shown.append(("good" if mode == Mode.POINT.name else "note", f"mode {mode}"))
-    if summary["isolated"]:
-        shown.append(("note", f"! isolated: {', '.join(summary['isolated'])}"))
-    if not whole(run, audit):
-        planned = f" of {run['ticks']}" if run else ""
-        shown.append(("bad", f"✗ incomplete: {summary['ticks']}{planned} ticks"))
-    if summary.get("second_senders"):
-        shown.append(("bad", f"✗ {describe_senders(summary['second_senders'])}"))
-    return shown
-
-
-def whole(run: RunRecord | None, audit: AuditReport) -> bool:
-    """The flight ran to its end, and its log is whole."""
-    return audit.complete and (run is None or "flown" in run)
-
-
-def tiles(summary: Json) -> list[Tile]:
-    """The few figures that are looked at first."""
-    return [
-        Tile(name, _value(summary, keys, pattern), note)
-        for name, keys, pattern, note in _TILES
-        if _has(summary, keys)
-    ]
-
-
 def key_figures(summary: Json) -> tuple[Pairs, Pairs]:
     """All figures of the summary in two columns: of the attitude; of estimate and flight."""
-    return _present(summary, _ATTITUDE), _present(summary, (*_ESTIMATE, *_FLIGHT))
+    return [*_attitude(summary)], _present(summary, (*_ESTIMATE, *_FLIGHT))
+
+
+def _attitude(summary: Json) -> Iterator[tuple[str, str]]:
+    """What is controlled first, with its settling; the whole attitude only where that is controlled."""
+    if "controlled" not in summary:
+        return
+    found, window = summary["controlled"], last_orbit(summary)
+    unit = "°" if found["unit"] == "deg" else f" {found['unit']}"
+    settled = f"{found['settle_orbits']:.2f} orbits" if "settle_orbits" in found else "not settled"
+    yield f"Controlled: {found['words']}, under {found['threshold']:g}{unit} from", settled
+    if found["what"] == "rate":
+        yield f"Rate, RMS over {window}", f"{found['rms_last_orbit']:.4f} °/s"
+    named = (("Pointing", "pointing_deg"), ("Axis 1", "axis1_deg"))
+    for name, key in named[found["what"] == "axis" :]:
+        for words, figure in _ATTITUDE:
+            if figure in summary[key]:
+                yield f"{name}{words.format(window=window)}", f"{summary[key][figure]:.3f}°"
+    yield "Final mode", summary["mode_final"]
 
 
 def coil_table(summary: Json, audit: AuditReport) -> Table:
@@ -106,8 +79,9 @@ def coil_table(summary: Json, audit: AuditReport) -> Table:
             COILS, summary["pulses"]["per_coil"], duty["per_coil"], gap["per_coil"], strict=True
         )
     ]
-    total = ("all", str(summary["pulses"]["total"]), f"{duty['total']:.2%}", _seconds(gap["any"]))
-    most_duty = f"≤ {limits.pulse_us / (limits.pulse_us + limits.backoff_us):.2%}"
+    any_gap = _seconds(gap["any"]) if limits.shared else ""
+    total = ("all", str(summary["pulses"]["total"]), f"{duty['total']:.2%}", any_gap)
+    most_duty = f"≤ {limits.most_duty(float(audit.span_s)):.2%}"
     least_gap = f"≥ {limits.backoff_us / 1e6:g}"
     rows += (
         [total, ("limit of all", "", most_duty, least_gap)]
@@ -178,22 +152,6 @@ def versions(run: RunRecord | None) -> Sequence[str]:
     )
 
 
-def _limits_badge(audit: AuditReport) -> tuple[str, str]:
-    if audit.ok:
-        return "good", "✓ limits kept"
-    if not audit.violations:
-        return "note", "! limits not judged: no coil status"
-    return "bad", f"✗ limits broken: {len(audit.violations)}"
-
-
-def _replay_badge(replay: Json | None) -> tuple[str, str]:
-    if replay is None:
-        return "note", "not replayed"
-    if replay["bit_exact"]:
-        return "good", "✓ replay bit-exact"
-    return ("note", "! replay command-exact only") if replay["command_exact"] else ("bad", "✗ replay differs")
-
-
 def _orbit(scenario: Scenario) -> str:
     orbit = scenario.orbit
     period = f"{orbit_period_s(scenario) / 60.0:.1f} min"
@@ -227,20 +185,23 @@ def _seconds(value: float | None) -> str:
     return "–" if value is None else seconds_text(value)
 
 
-def _find(summary: Json, keys: Sequence[str]) -> Any:  # noqa: ANN401  (any part of it)
+def find(summary: Json, keys: Sequence[str]) -> Any:  # noqa: ANN401  (any part of it)
+    """A part of the summary; None if it has none."""
     found: Any = summary
     for key in keys:
         found = found.get(key) if isinstance(found, dict) else None
     return found
 
 
-def _has(summary: Json, keys: Sequence[str]) -> bool:
-    return _find(summary, keys) is not None
+def has(summary: Json, keys: Sequence[str]) -> bool:
+    """Whether the summary has that part."""
+    return find(summary, keys) is not None
 
 
-def _value(summary: Json, keys: Sequence[str], pattern: str) -> str:
-    return pattern.format(_find(summary, keys))
+def value(summary: Json, keys: Sequence[str], pattern: str) -> str:
+    """A part of the summary, written."""
+    return pattern.format(find(summary, keys))
 
 
 def _present(summary: Json, rows: Sequence[tuple[str, Sequence[str], str]]) -> Pairs:
-    return [(name, _value(summary, keys, pattern)) for name, keys, pattern in rows if _has(summary, keys)]
+    return [(name, value(summary, keys, pattern)) for name, keys, pattern in rows if has(summary, keys)]

@@ -1,4 +1,4 @@
-"""Whether a run failed, and why: its limits, its replay, second senders on its bus, its completeness."""
+"""Whether a run failed, and why: limits, replay, second senders on its bus, completeness, requirements."""
 
 from collections.abc import Mapping, Sequence
 from enum import StrEnum
@@ -7,8 +7,10 @@ from sim.audit.findings import AuditReport, Violation
 from sim.flight.second_senders import describe_senders
 from sim.record import run_dir
 from sim.record.log_index import IndexCheck
+from sim.record.run_dir import Json
 from sim.record.run_record import RunRecord
 from sim.replay.log_replay import ReplayResult
+from sim.report.requirements.judge import Outcome
 
 
 class Verdict(StrEnum):
@@ -18,6 +20,7 @@ class Verdict(StrEnum):
     REPLAY = "replay"
     SECOND_SENDERS = "second_senders"
     COMPLETE = "complete"
+    REQUIREMENTS = "requirements"
 
 
 def failures(
@@ -26,6 +29,7 @@ def failures(
     audit_report: AuditReport,
     replay_result: ReplayResult,
     voucher: IndexCheck,
+    requirements: Sequence[Json] = (),
 ) -> dict[str, str]:
     """What fails, each as a clause of a sentence; empty where nothing fails.
 
@@ -35,6 +39,7 @@ def failures(
         audit_report: the audit of the whole log.
         replay_result: the result of the replay.
         voucher: the check of the log against its index.
+        requirements: of the scenario, as in summary.json.
     """
     senders = run.get("second_senders")
     clauses = {
@@ -42,6 +47,7 @@ def failures(
         Verdict.REPLAY: _replay(replay_result, run.get("platform") == run_dir.fingerprint()),
         Verdict.SECOND_SENDERS: describe_senders(senders) if senders else "",
         Verdict.COMPLETE: _incomplete(run, ticks, audit_report.complete, voucher),
+        Verdict.REQUIREMENTS: _missed([one for one in requirements if one["verdict"] == Outcome.FAILED]),
     }
     return {verdict.value: clause for verdict, clause in clauses.items() if clause}
 
@@ -62,6 +68,14 @@ def _replay(replay_result: ReplayResult, same_platform: bool) -> str:
     if replay_result.bit_exact or (replay_result.command_exact and not same_platform):
         return ""
     return f"the replay is not exact: {replay_result.first_bit_difference}"
+
+
+def _missed(failed: Sequence[Json]) -> str:
+    if not failed:
+        return ""
+    others = f", and {len(failed) - 1} more" if len(failed) > 1 else ""
+    reason = f" ({failed[0]['reasons'][0]['text']})" if failed[0]["reasons"] else ""
+    return f"a requirement is missed: {failed[0]['text']}{reason}{others}"
 
 
 def _incomplete(run: RunRecord, ticks: int, ended: bool, voucher: IndexCheck) -> str:

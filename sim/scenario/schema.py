@@ -6,6 +6,7 @@ table, for instance the inertia that the controller assumes.
 """
 
 import tomllib
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from importlib import resources
 from math import pi, sqrt
@@ -34,6 +35,7 @@ from fsw.table.table import FlightTable
 from sim.faults.section import Faults
 from sim.scenario.names import Name
 from sim.scenario.own_effects import Effects, with_digests
+from sim.scenario.requirements import Requirements, expectation
 from sim.scenario.sections import DisturbanceSection, ScenarioBody, ScenarioOrbit, SensorsSection
 from sim.scenario.telecommands import Telecommands
 
@@ -72,7 +74,8 @@ class InitialState(Section):
 class ScenarioCoils(CoilTable):
     """Limits and levels, and the physics of coil and driver.
 
-    ``misalignment_deg`` holds, by coil, the rotation vector that turns its axis, body axes.
+    ``misalignment_deg`` holds, by coil, the rotation vector that turns its axis, body axes. By
+    ``resistance_ohm``, that of each coil, the energy lost in them is judged.
     """
 
     pulse_s: float = Field(default=3.0, gt=0.0, le=3.0)
@@ -81,6 +84,7 @@ class ScenarioCoils(CoilTable):
     time_constant_s: Positive = 0.01
     dipole_scale: Triple = (1.0, 1.0, 1.0)
     misalignment_deg: Square = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    resistance_ohm: Positive | None = None
 
 
 class PlantSection(Section):
@@ -108,6 +112,7 @@ class Scenario(Section):
     telecommand: Telecommands = ()
     fault: Faults = ()
     effect: Effects | None = None
+    requirement: Requirements = ()
     flight: dict[str, Any] = Field(default_factory=dict)
 
     @model_validator(mode="after")
@@ -117,6 +122,8 @@ class Scenario(Section):
                 raise ValueError(f"disturbance.{name} needs body.plates, the flat parts of the surface")
         if self.coils.driver == "continuous" and self.knowledge == "filter":
             self._check_decay()
+        if self.coils.resistance_ohm is None and any(one.index == "energy" for one in self.requirement):
+            raise ValueError("a requirement on energy needs coils.resistance_ohm")
         return self
 
     def _check_decay(self) -> None:
@@ -173,6 +180,18 @@ def scenario_of(values: Nested, source: str, overrides: Nested | None = None) ->
     scenario = validated(Scenario, onboard.lay_over(values, overrides or {}), source)
     flight_table(scenario, source)
     return scenario
+
+
+def expecting(scenario: Scenario, texts: Sequence[str], orbits: float) -> Scenario:
+    """The scenario with further requirements, texts such as ``ape<2``, on a flight of so many orbits.
+
+    Raises:
+        TableError: one of them cannot be read, or the scenario lacks what it needs.
+    """
+    expected = tuple(expectation(text, orbits) for text in texts)
+    values = scenario.model_dump(mode="json", exclude_none=True)
+    values["requirement"] += [one.model_dump(mode="json", exclude_none=True) for one in expected]
+    return validated(Scenario, values, "--expect") if expected else scenario
 
 
 def flight_table(scenario: Scenario, source: str = "scenario") -> FlightTable:

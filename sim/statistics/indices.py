@@ -43,16 +43,23 @@ def index_histories(error: Array, knowledge_error: Array, window: int) -> dict[s
         knowledge_error: those of the estimate, (n, 3).
         window: its length in rows; of fewer rows there is one window.
     """
+    mpe, rpe = mean_and_relative(error, window)
+    return {"ape": magnitudes(error), "mpe": mpe, "rpe": rpe, "ake": magnitudes(knowledge_error)}
+
+
+def magnitudes(error: Array) -> Array:
+    """APE of pointing errors, AKE of knowledge errors: |e| of each row, (n,)."""
+    result: Array = np.linalg.norm(error, axis=1)
+    return result
+
+
+def mean_and_relative(error: Array, window: int) -> tuple[Array, Array]:
+    """MPE, one value a whole window, and RPE, one value a row of them; of fewer rows there is one window."""
     window = min(window, len(error))
     count = len(error) // window
     parts = error[: count * window].reshape(count, window, -1)
     means = parts.mean(axis=1)
-    return {
-        "ape": np.linalg.norm(error, axis=1),
-        "mpe": np.linalg.norm(means, axis=1),
-        "rpe": np.linalg.norm(parts - means[:, None], axis=2).ravel(),
-        "ake": np.linalg.norm(knowledge_error, axis=1),
-    }
+    return np.linalg.norm(means, axis=1), np.linalg.norm(parts - means[:, None], axis=2).ravel()
 
 
 def profile(values: Array) -> Array:

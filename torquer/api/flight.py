@@ -1,11 +1,12 @@
 """``torquer.fly`` and ``torquer.report``: a flight, and what is made of it."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
+from typing import Annotated
 
-from pydantic import Field
+from pydantic import Field, Strict
 
 from fsw.input.schema import Section, TableError
 from fsw.table.own_law import LawError
@@ -21,7 +22,7 @@ from sim.record.pace import parse_pace
 from sim.record.signature import private_key, signature_path
 from sim.report.conclude import conclude
 from sim.report.follow import follow
-from sim.scenario.schema import Scenario
+from sim.scenario.schema import Scenario, expecting, orbit_period_s
 from torquer.api.arguments import ScenarioLike, Settings, checked, chosen_scenario, optional_path, path_text
 from torquer.api.audit import optional_key
 from torquer.api.errors import one_sentence
@@ -37,6 +38,7 @@ class _FlightOptions(Section):
     bus: str
     pace: str
     compress: bool
+    expect: Annotated[tuple[str, ...], Strict(False)]
 
 
 @one_sentence
@@ -49,6 +51,7 @@ def fly(
     pace: str = "lockstep",
     set: Settings | None = None,
     law: str | PathLike[str] | None = None,
+    expect: Sequence[str] = (),
     out: str | PathLike[str] | None = None,
     compress: bool = False,
     sign: str | PathLike[str] | None = None,
@@ -67,6 +70,7 @@ def fly(
         pace: ``lockstep``, or ``realtime[:FACTOR]``.
         set: values laid over the scenario by key: ``{"time.tick_hz": 10}`` or ``{"time": {"tick_hz": 10}}``.
         law: ``FILE.py:NAME``, a law of one's own, or an installed one by its name; None: the scenario's.
+        expect: requirements beside those of the scenario, such as ``ape<2``, judged at the end of the flight.
         out: directory of the run; None: a new one, ``runs/<scenario>-<UTC time>``.
         compress: write the log as ``bus.log.gz``.
         sign: private Ed25519 key in PEM with which the run is signed.
@@ -76,13 +80,16 @@ def fly(
         InputError: an argument, the scenario, a key of it, or the directory; nothing was flown.
         Error: the flight cannot be concluded.
     """
-    options = checked(_FlightOptions, "fly", orbits=orbits, seed=seed, bus=bus, pace=pace, compress=compress)
+    options = checked(
+        _FlightOptions, "fly", orbits=orbits, seed=seed, bus=bus, pace=pace, compress=compress, expect=expect
+    )
     if options.orbits is not None and options.orbits <= 0.0:
         raise TableError(f"fly: orbits = {options.orbits:g} is not allowed: allowed is a number above 0")
     key = None if sign is None else private_key(Path(path_text(sign, "sign")))
     chosen, folder = chosen_scenario(scenario, set, law), optional_path(out, "out")
     chosen_pace = parse_pace(options.pace)
     ticks = ticks_of(chosen, options.orbits)
+    chosen = expecting(chosen, options.expect, ticks / chosen.time.tick_hz / orbit_period_s(chosen))
     check_can_fly(chosen, options.seed)
     with shown(progress), _flight_on(options.bus, chosen) as (kind, flight):
         path = run_dir.begin(folder, chosen, options.seed, ticks, kind, chosen_pace, options.compress)

@@ -12,7 +12,7 @@ from sim.errors import HarnessError
 from sim.record import run_dir
 from sim.record.run_record import RunRecord
 from sim.replay.command import ReplayReport
-from sim.report.summary import summary_text
+from sim.report.summary_text import summary_text
 from sim.report.verdict import Verdict
 from sim.scenario.law_named import with_law_named
 from sim.scenario.schema import Scenario
@@ -78,7 +78,7 @@ class Run:
 
     @property
     def failures(self) -> Mapping[str, str]:
-        """What failed, a clause each, by ``limits``, ``replay``, ``second_senders``, ``complete``."""
+        """What failed, a clause each by ``Verdict``: ``limits``, ``replay``, ``requirements`` and so on."""
         if self.concluded:
             failed: Mapping[str, str] = self.summary.get("failures", {})
             return failed
@@ -88,7 +88,7 @@ class Run:
 
     @property
     def ok(self) -> bool:
-        """Nothing failed: the limits were kept, the replay is exact, the run complete."""
+        """Nothing failed: limits kept, replay exact, run complete, no requirement missed."""
         return not self.failures
 
     @property

@@ -30,6 +30,13 @@ if TYPE_CHECKING:
     help="Fly a run of this campaign again.",
 )
 @click.option("--run", type=click.IntRange(min=0), help="Its number. With --from.")
+@click.option(
+    "--expect",
+    "expected",
+    multiple=True,
+    metavar="INDEX<VALUE",
+    help="A requirement beside the scenario's, such as 'ape<2' or 'settling.axis<3'; judged at the end.",
+)
 @COMPRESS
 @SIGN
 @law_and_settings
@@ -44,6 +51,7 @@ def sil(
     compress: bool,
     source: Path | None,
     run: int | None,
+    expected: tuple[str, ...],
     sign: Path | None,
     settings: tuple[str, ...],
 ) -> int:
@@ -51,7 +59,7 @@ def sil(
     from sim.scenario.schema import parse_settings
     from torquer.api.flight import fly
 
-    again = _campaign_run(source, run, scenario, orbits, seed, settings)
+    again = _campaign_run(source, run, scenario, orbits, seed, expected, settings)
     flown = fly(
         again.scenario if again else "realsat" if scenario is None else scenario,
         orbits=orbits,
@@ -59,6 +67,7 @@ def sil(
         bus=bus,
         pace=pace,
         set=parse_settings(settings),
+        expect=expected,
         out=out,
         compress=compress,
         sign=sign,
@@ -69,13 +78,17 @@ def sil(
         return 1
     click.echo(str(flown))
     click.echo(f"report: {flown.report}")
-    equal = True
-    if again is not None:
-        from sim.campaign.rerun import compare
-
-        equal, sentence = compare(again, flown.path)
-        click.echo(sentence)
+    equal = again is None or _equals(again, flown.path)
     return report_failures(flown.failures) or int(not equal)
+
+
+def _equals(again: "CampaignRun", path: Path) -> bool:
+    """Whether the run is the campaign's, bit for bit, and say so."""
+    from sim.campaign.rerun import compare
+
+    equal, sentence = compare(again, path)
+    click.echo(sentence)
+    return equal
 
 
 def _campaign_run(
@@ -84,6 +97,7 @@ def _campaign_run(
     scenario: str | None,
     orbits: float | None,
     seed: int | None,
+    expected: tuple[str, ...],
     settings: tuple[str, ...],
 ) -> "CampaignRun | None":
     """The run of a campaign that is to be flown; None if none is asked for."""
@@ -91,7 +105,13 @@ def _campaign_run(
         return None
     if source is None or run is None:
         raise HarnessError("--from DIR and --run NUMBER belong together")
-    given = {"SCENARIO": scenario, "--orbits": orbits, "--seed": seed, "--set": settings or None}
+    given = {
+        "SCENARIO": scenario,
+        "--orbits": orbits,
+        "--seed": seed,
+        "--expect": expected or None,
+        "--set": settings or None,
+    }
     if wrong := [name for name, value in given.items() if value is not None]:
         raise HarnessError(f"{', '.join(wrong)}: with --from the run is as its campaign drew it")
     from sim.campaign.rerun import campaign_run

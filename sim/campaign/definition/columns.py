@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from fsw.core.estimation.parameters import NAMES, SIZES
+from sim.report.requirements.judge import Outcome
 from sim.statistics.indices import INDICES
 
 Cell = int | float | str | None
@@ -25,10 +26,11 @@ INDEX_FIGURES = tuple(f"{name}_deg_{figure}" for name in INDICES for figure in (
 """Of the counted part of a run, beside what its summary has."""
 
 NUMBERS: tuple[str, ...] = (
-    *("sim_seconds", "ticks", "slips"),
+    *("sim_seconds", "ticks", "slips", "orbits"),
     *("pulses_total", *_three("pulses_per_coil"), "pulses_refused"),
     *(*_three("duty_per_coil"), "duty_total"),
-    *(*_three("min_gap_s_per_coil"), "min_gap_s_any", "max_pulse_s", "limits_ok"),
+    *(*_three("min_gap_s_per_coil"), "min_gap_s_any", "min_gap_s_limited", "max_pulse_s", "limits_ok"),
+    *(f"controlled_{figure}" for figure in (*_LAST, "settle_orbits")),
     *(f"pointing_deg_{figure}" for figure in ("final", *_LAST)),
     *(f"axis1_deg_{figure}" for figure in ("final", *_LAST, "mean_last_orbit", "settle_orbits_5deg")),
     *INDEX_FIGURES,
@@ -36,7 +38,7 @@ NUMBERS: tuple[str, ...] = (
     *("converged_at_s", "nees_mean"),
     *(f"spin_radps_{figure}" for figure in ("reference", "mean_last_orbit", "max_dev_last_orbit")),
     *("spin_radps_settle_s_1e-3", "spin_radps_pulses_to_settle"),
-    *("isolated_units", "event_count"),
+    *("requirements_failed", "isolated_units", "event_count"),
     *_parameters(),
 )
 """Figures of a run; NULL where a flight has none."""
@@ -50,6 +52,7 @@ def cells(summary: Mapping[str, Any]) -> dict[str, Cell]:
     units = summary["isolated"]
     return {
         **known,
+        "requirements_failed": sum(one["verdict"] == Outcome.FAILED for one in summary["requirements"]),
         "isolated": ", ".join(units),
         "isolated_units": len(units),
         "event_count": len(summary["events"]),

@@ -27,7 +27,7 @@ from sim.drawing.canvas import (
     stacked,
 )
 from sim.drawing.envelope import BINS
-from sim.drawing.time_chart import DrawnChart, Level, Panel, Series, TimeChart, draw
+from sim.drawing.time_chart import DrawnChart, Panel, Series, TimeChart, draw
 from sim.report.charts.drawn_flight import DrawnFlight
 from sim.report.charts.pulse_lanes import pulse_lanes
 
@@ -103,15 +103,16 @@ def duty(flight: DrawnFlight) -> DrawnChart:
     ]
     if limits.shared:
         series.append(Series("all", sum(duties, np.zeros_like(t_s)), INK, 1.3))
-    bound = 100.0 * limits.pulse_us / (limits.pulse_us + limits.backoff_us)
+    long_run = 100.0 * limits.pulse_us / (limits.pulse_us + limits.backoff_us)
     what = "all coils" if limits.shared else "each coil"
-    most = max([bound, *(float(np.nanmax(duty)) for duty in duties if known.any())])
+    bound = np.where(known, 100.0 * flight.most_duty(t_s), np.nan)
+    series.append(Series(f"{long_run:.2f} %: limit of {what}", bound, LIMIT, 1.3))
+    most = max([long_run, *(float(np.nanmax(line)) for line in (bound, *duties) if known.any())])
     panel = Panel(
         "Duty over the last orbit",
         "duty [%]",
         1.8,
         series,
-        levels=(Level(bound, f"{bound:.2f} %: limit of {what}", LIMIT),),
         reach=(0.0, 1.15 * most),
     )
     return draw(flight.time, TimeChart(t_s, (panel,)))

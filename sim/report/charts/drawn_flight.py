@@ -91,6 +91,11 @@ class DrawnFlight:
         result: Array = driven_s / np.clip(at_s, 1.0 / self.tick_hz, self.orbit_s)
         return result
 
+    def most_duty(self, at_s: Array) -> Array:
+        """The most that ``duty`` of each coil, or of all that share a back-off, can be at each time."""
+        window_s = np.clip(at_s, 1.0 / self.tick_hz, self.orbit_s)
+        return np.array([self.audit.limits.most_duty(float(one)) for one in window_s])
+
     def gaps_s(self) -> Array:
         """The gaps that the back-off limits: between any pulses, or between those of one coil."""
         groups = [COILS] if self.audit.limits.shared else [(coil,) for coil in COILS]

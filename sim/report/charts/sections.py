@@ -110,7 +110,8 @@ def _coils(limits: AuditLimits) -> tuple[Drawing, ...]:
         ),
         (
             coils.duty,
-            "Fraction of the orbit before each time, or of the flight so far, for which a coil was driven.",
+            "Fraction of the orbit before each time, or of the flight so far, for which a coil was driven, "
+            "and the most that the limits admit in that time: pulses fit a little more into a short one.",
         ),
         (
             coils.gaps_and_levels,

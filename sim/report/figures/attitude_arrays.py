@@ -37,3 +37,27 @@ def normal_in_body(q_body_from_orbit: Array) -> Array:
     return np.stack(
         (2.0 * (q1 * q3 - q0 * q2), 2.0 * (q2 * q3 + q0 * q1), q0**2 - q1**2 - q2**2 + q3**2), axis=1
     )
+
+
+def rotation_vectors(turn: Array) -> Array:
+    """Angle times axis of quaternions whose scalar part is at least 0, (n, 3), rad."""
+    angle, vector = angle_rad(turn), turn[:, 1:]
+    size = np.linalg.norm(vector, axis=1)
+    factor = np.divide(angle, size, out=np.full_like(angle, 2.0), where=size > 0.0)
+    result: Array = factor[:, None] * vector
+    return result
+
+
+def errors(q: Array) -> Array:
+    """The turn from nominal to each attitude, (n, 3), rad, body axes."""
+    return rotation_vectors(relative(np.tile((1.0, 0.0, 0.0, 0.0), (len(q), 1)), q))
+
+
+def axis1_errors(q: Array) -> Array:
+    """The turn from body axis 1 to the vertical, (n, 3), rad, body axes; 0 about axis 1."""
+    q0, q1, q2, q3 = q.T
+    across = np.stack((np.zeros_like(q0), -2.0 * (q1 * q3 + q0 * q2), 2.0 * (q1 * q2 - q0 * q3)), axis=1)
+    size = np.linalg.norm(across, axis=1)
+    factor = np.divide(axis1_angle_rad(q), size, out=np.zeros_like(size), where=size > 0.0)
+    result: Array = factor[:, None] * across
+    return result

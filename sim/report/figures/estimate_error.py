@@ -5,19 +5,28 @@ from numpy.typing import NDArray
 
 from sim.record.estimates import Estimates
 from sim.record.truth import Histories
-from sim.report.figures.attitude_arrays import normal_in_body, relative
+from sim.report.figures.attitude_arrays import normal_in_body, relative, rotation_vectors
 from sim.report.figures.spans import spans
 
 Array = NDArray[np.float64]
 
 CONVERGED_DEG = 2.0
 CONVERGED_FOR_S = 600.0
+NO_ESTIMATE_RAD = np.pi
+"""Counts as the knowledge error of a filter that has no estimate."""
 
 
 def estimate_error(truth: Histories, estimates: Estimates) -> Array:
     """The rotation from the estimated to the true attitude at each tick, (n, 4); NaN before the first."""
     ticks = len(truth["t_s"])
     return relative(estimates.q_body_from_orbit[:ticks], truth["q_body_from_orbit"])
+
+
+def knowledge_errors(truth: Histories, estimates: Estimates) -> Array:
+    """Rotation vectors from the estimated to the true attitude, (n, 3), rad, body axes."""
+    knowledge = rotation_vectors(estimate_error(truth, estimates))
+    knowledge[~np.isfinite(knowledge).all(axis=1)] = (NO_ESTIMATE_RAD, 0.0, 0.0)
+    return knowledge
 
 
 def converged_tick(error_deg: Array, tick_hz: int) -> int | None:

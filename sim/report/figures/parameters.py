@@ -28,7 +28,7 @@ def parameter_figures(scenario: Scenario, truth: Histories, estimate: Estimate |
     if estimate is None or not healthy(estimate):
         return None
     known, inertia = table_bounds(table), table.body.inertia
-    bounds, true = limits(known, inertia), _truth(plant_config(scenario, seed=0), table, truth)
+    bounds, true = limits(known, inertia), true_parameters(scenario, table, truth)
     sigma = estimate.covariance.diagonal() ** 0.5
     figures: Json = {}
     for index, place in layout(set(priors(known, inertia))).carried:
@@ -43,8 +43,9 @@ def parameter_figures(scenario: Scenario, truth: Histories, estimate: Estimate |
     return figures
 
 
-def _truth(plant: PlantConfig, table: FlightTable, truth: Histories) -> dict[str, Values]:
+def true_parameters(scenario: Scenario, table: FlightTable, truth: Histories) -> dict[str, Values]:
     """What the parameters really are; torque and dipole, which may vary, at the end, without remanence."""
+    plant = plant_config(scenario, seed=0)
     true = {
         "mag_bias_t": plant.magnetometer.bias_t,
         "dipole_body_am2": residual_dipole(plant.disturbance, truth["lit"][-1], ZERO),

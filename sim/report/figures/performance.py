@@ -13,6 +13,7 @@ from sim.record.estimates import Estimates
 from sim.record.truth import Histories
 from sim.report.figures import parameters
 from sim.report.figures.attitude_arrays import angle_rad, axis1_angle_rad
+from sim.report.figures.controlled import SETTLED_DEG, ControlledError, controlled
 from sim.report.figures.estimate_error import (
     CONVERGED_DEG,
     CONVERGED_FOR_S,
@@ -20,7 +21,9 @@ from sim.report.figures.estimate_error import (
     nees,
     within_3sigma,
 )
+from sim.report.figures.mean import Mean
 from sim.report.figures.spans import spans
+from sim.report.requirements.judge import Judgement
 from sim.scenario.schema import Scenario, orbit_period_s
 
 Array = NDArray[np.float64]
@@ -29,36 +32,7 @@ Json = dict[str, Any]
 
 BLOCK_TICKS = 4096
 """Sums are taken over blocks of so many ticks, however a flight is handed over: so they are the same bits."""
-SETTLED_DEG = 5.0
 SPIN_SETTLED_RADPS = 1e-3
-
-
-@dataclass(slots=True)
-class Mean:
-    """Number, sum, sum of squares and maximum of values."""
-
-    count: int = 0
-    total: float = 0.0
-    squares: float = 0.0
-    most: float = -np.inf
-
-    def take(self, values: Array) -> None:
-        """Take more of them."""
-        if len(values):
-            self.count += len(values)
-            self.total += float(values.sum())
-            self.squares += float((values**2).sum())
-            self.most = max(self.most, float(values.max()))
-
-    @property
-    def mean(self) -> float:
-        """Of at least one."""
-        return self.total / self.count
-
-    @property
-    def rms(self) -> float:
-        """Root of the mean of squares, of at least one."""
-        return float(np.sqrt(self.squares / self.count))
 
 
 @dataclass(slots=True)
@@ -197,6 +171,9 @@ class Performance:
         self._pointing, self._axis1 = _Angle(), _Angle()
         self._convergence = _Convergence(round(CONVERGED_FOR_S * self._hz))
         self._spin = _Spin(scenario.control.spin_radps)
+        self._controlled = ControlledError(controlled(scenario), scenario.control.spin_radps)
+        self.judgement = Judgement(scenario, ticks)
+        """By the requirements of the scenario."""
         self._last: tuple[Histories, Estimates] | None = None
         self.last_estimate: Estimate | None = None
         """That of the filter, whole."""
@@ -210,6 +187,8 @@ class Performance:
         self._axis1.take(np.degrees(axis1_angle_rad(q)), first, recent)
         self._convergence.take(truth, estimates, first)
         self._spin.take(truth["omega_body_orbit_radps"][:, 0], first, recent)
+        self._controlled.take(truth, recent)
+        self.judgement.take(truth, estimates)
         self._last = truth, estimates
         self.last_estimate = estimates.last or self.last_estimate
         self.ticks += rows
@@ -222,7 +201,12 @@ class Performance:
         axis1 = self._axis1.figures() | {"mean_last_orbit": self._axis1.last_orbit.mean}
         if self._axis1.held_from < self.ticks:
             axis1["settle_orbits_5deg"] = self._axis1.held_from / self._hz / self._orbit_s
-        result: Json = {"pointing_deg": self._pointing.figures(), "axis1_deg": axis1}
+        result: Json = {
+            "orbits": self.ticks / self._hz / self._orbit_s,
+            "controlled": self._controlled.figures(self._orbit_s * self._hz),
+            "pointing_deg": self._pointing.figures(),
+            "axis1_deg": axis1,
+        }
         if self._convergence.found and self._convergence.first is not None:
             result |= self._convergence.honesty.figures()
             result["converged_at_s"] = self._convergence.first / self._hz

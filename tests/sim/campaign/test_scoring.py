@@ -6,8 +6,8 @@ from scipy.spatial.transform import Rotation
 
 from sim.campaign.definition.campaign import StatisticsSection
 from sim.campaign.flight import record_scenario
-from sim.campaign.scoring import axis1_errors, rotation_vectors, score
-from sim.report.figures.attitude_arrays import angle_rad
+from sim.campaign.scoring import score
+from sim.report.figures.attitude_arrays import angle_rad, axis1_errors, rotation_vectors
 from sim.scenario.schema import load
 
 ORBITS = 0.1

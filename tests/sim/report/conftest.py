@@ -93,6 +93,10 @@ class Page(HTMLParser):
         return re.findall(rf'<g class="{group}">\s*<path d="([^"]*)"', figure_text)
 
 
+MET = {"index": "ape", "at_most_deg": 60.0, "by_orbit": 1.0}
+"""What a flight made up points to, if it lasts for an orbit."""
+
+
 @dataclass
 class Run:
     """A flight made up: a libration that decays, an estimate a little off, pulses as they are given."""
@@ -110,7 +114,7 @@ class Run:
     replay: dict[str, object] | None = field(
         default_factory=lambda: {"bit_exact": True, "command_exact": True}
     )
-    scenario: Scenario = field(default_factory=lambda: load("microsat"))
+    scenario: Scenario = field(default_factory=lambda: load("microsat", {"requirement": [MET]}))
     events: list[dict[str, object]] = field(default_factory=list)
     isolated: list[str] = field(default_factory=list)
 

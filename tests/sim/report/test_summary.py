@@ -11,7 +11,7 @@ from sim.record import run_dir
 from sim.record.candump import read_log
 from sim.record.truth import read_truth
 from sim.report.conclude import conclude
-from sim.report.summary import summary_text
+from sim.report.summary_text import summary_text
 
 CONTRACT = {
     "scenario": None,
@@ -147,6 +147,6 @@ class TestRealFlight:
     def test_the_text_tells_settling_and_spin_where_there_are_some(self, summary):
         axis1 = summary["axis1_deg"] | {"settle_orbits_5deg": 1.594}
         spin = {"reference": 0.02, "mean_last_orbit": 0.019871, "max_dev_last_orbit": 0.000312}
-        text = summary_text(summary | {"axis1_deg": axis1, "spin_radps": spin})
+        text = summary_text(summary | {"axis1_deg": axis1, "spin_radps": spin, "orbits": 3.0})
         assert "under 5 deg from 1.59 orbits on" in text
         assert "0.01987 rad/s in the mean of the last orbit, 0.00031 at most off 0.02" in text

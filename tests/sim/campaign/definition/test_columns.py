@@ -14,6 +14,7 @@ SUMMARY = {
     "estimate_deg": {"within_3sigma": None},
     "parameters": {"delay_s": {"value": [0.5, 0.25], "sigma": [0.1, 0.2], "bound": [1.0, 1.0]}},
     "mode_final": "POINT",
+    "requirements": [{"verdict": "met"}, {"verdict": "failed"}, {"verdict": "not judged"}],
     "isolated": ["coil 1", "sun sensor"],
     "events": [{}, {}, {}],
 }
@@ -37,6 +38,7 @@ def test_keys_become_columns():
         "parameters_delay_s_sigma_0": 0.1,
         "parameters_delay_s_sigma_1": 0.2,
         "mode_final": "POINT",
+        "requirements_failed": 1,
         "isolated": "coil 1, sun sensor",
         "isolated_units": 2,
         "event_count": 3,
@@ -45,6 +47,9 @@ def test_keys_become_columns():
 
 SHARED = {"scenario", "seed", "wall_seconds", "realtime_factor", "events"}
 """By all runs, or different in each flight."""
+SHARED |= {f"controlled_{key}" for key in ("what", "words", "unit", "threshold")}
+LISTS = ("events_", "requirements_")
+"""Of them the columns hold how many."""
 
 
 def flat(values, above=""):
@@ -57,7 +62,7 @@ def flat(values, above=""):
 def test_every_figure_of_a_summary_has_its_column(name):
     summary = record_scenario(load(name), seed=1, orbits=0.02).summary()
     figures = {column for column in flat(summary) if "_bound_" not in column} - SHARED
-    figures = {column for column in figures if not column.startswith("events_")}
+    figures = {column for column in figures if not column.startswith(LISTS)}
     assert figures <= {*NUMBERS, *TEXTS}
     assert figures <= set(cells(summary))
     assert len(figures) > 30

@@ -1,0 +1,31 @@
+"""What the coils of a continuous driver were driven, from the plant's mean dipole of each tick."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.scenario.schema import Scenario
+
+Array = NDArray[np.float64]
+
+RESIDUAL = 1e-5
+"""Part of full scale under which a coil is not driven: less than the least dipole on the wire."""
+
+
+def dipole_squared_a2m4s(scenario: Scenario, dipole_am2: Array) -> float:
+    """Integral of |m|^2 from the mean dipole of each tick, (n, 3); of a pulsed driver too.
+
+    A continuous driver drives 1 / f times the mean over the fraction f of a tick. The rise of the current is
+    passed over: it is short beside a tick. Times resistance over (dipole an ampere)^2 it is the energy lost
+    in the coils.
+    """
+    coils = scenario.coils
+    fraction = coils.on_fraction if coils.driver == "continuous" else 1.0
+    return float(np.sum(dipole_am2**2)) / fraction / scenario.time.tick_hz
+
+
+def driven_s(scenario: Scenario, dipole_am2: Array) -> float:
+    """Time for which a continuous driver drove any coil, a part of each tick; not what dies away."""
+    coils = scenario.coils
+    full_scale_am2 = coils.on_fraction * (coils.max_dipole_am2 or 0.0)
+    driven = np.abs(dipole_am2).max(axis=1, initial=0.0) > RESIDUAL * full_scale_am2
+    return coils.on_fraction * float(np.count_nonzero(driven)) / scenario.time.tick_hz

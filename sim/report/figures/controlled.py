@@ -1,0 +1,88 @@
+"""The quantity that a scenario's modes and law control, its errors by tick, and when it has settled."""
+
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fsw.core.laws.table import LAWS, Aim
+from sim.record.truth import Histories
+from sim.report.figures.attitude_arrays import axis1_errors, errors
+from sim.report.figures.mean import Mean
+from sim.scenario.schema import Scenario, flight_table
+
+Array = NDArray[np.float64]
+Json = dict[str, Any]
+
+SETTLED_DEG = 5.0
+
+
+class Controlled(NamedTuple):
+    """What is controlled: its name in requirements, in words, and the error under which it has settled."""
+
+    what: str
+    words: str
+    unit: str
+    threshold: float
+
+
+def controlled(scenario: Scenario) -> Controlled:
+    """Body axis 1 or the whole attitude, as the modes judge; the rate under a law that does not point."""
+    modes, aim = flight_table(scenario).modes, LAWS[scenario.control.law].aim
+    if modes.axis_only:
+        return Controlled("axis", "axis 1", "deg", SETTLED_DEG)
+    if aim in (Aim.THREE_AXIS, Aim.AXIS):
+        return Controlled("attitude", "whole attitude", "deg", SETTLED_DEG)
+    return Controlled("rate", "rate", "deg/s", modes.slow_degps)
+
+
+def error_vectors(what: str, truth: Histories, spin_radps: float) -> Array:
+    """The error of what is controlled, (n, 3) or (n, 1), deg or deg/s, body axes.
+
+    ``attitude``: the rotation vector from nominal; ``axis``: that from body axis 1 to the vertical;
+    ``rate``: relative to the orbital frame, less the spin reference; ``spin``: its component about axis 1.
+    """
+    if what == "attitude":
+        return np.degrees(errors(truth["q_body_from_orbit"]))
+    if what == "axis":
+        return np.degrees(axis1_errors(truth["q_body_from_orbit"]))
+    rate: Array = np.degrees(truth["omega_body_orbit_radps"] - np.array([spin_radps, 0.0, 0.0]))
+    return rate[:, :1] if what == "spin" else rate
+
+
+def held_from(error: Array, threshold: float) -> int:
+    """The first row after the last error that is not under the threshold; their number if there is none."""
+    large = np.flatnonzero(~(error < threshold))
+    return int(large[-1]) + 1 if len(large) else 0
+
+
+@dataclass(slots=True)
+class ControlledError:
+    """The error of what is controlled over the last orbit, and the tick from which it stays small."""
+
+    of: Controlled
+    spin_radps: float
+    last_orbit: Mean = field(default_factory=Mean)
+    settled: int = 0
+    taken: int = 0
+
+    def take(self, truth: Histories, recent: slice) -> Array:
+        """The next block, and what of it is in the last orbit; returns the errors' magnitudes."""
+        error: Array = np.linalg.norm(error_vectors(self.of.what, truth, self.spin_radps), axis=1)
+        self.last_orbit.take(error[recent])
+        row = held_from(error, self.of.threshold)
+        self.settled = self.taken + row if row else self.settled
+        self.taken += len(error)
+        return error
+
+    def figures(self, ticks_per_orbit: float) -> Json:
+        """For summary.json; no ``settle_orbits`` unless it has settled."""
+        figures = {
+            **self.of._asdict(),
+            "rms_last_orbit": self.last_orbit.rms,
+            "max_last_orbit": self.last_orbit.most,
+        }
+        if self.settled < self.taken:
+            figures["settle_orbits"] = self.settled / ticks_per_orbit
+        return figures

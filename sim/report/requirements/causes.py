@@ -1,0 +1,265 @@
+"""Why a requirement is missed: a table of causes, each a pure function of what is known of the flight."""
+
+from collections.abc import Callable, Sequence
+from math import exp, inf, log
+from typing import NamedTuple
+
+import numpy as np
+
+from fsw.wire.messages import Mode
+from sim.design.from_scenario import body_of, pulsing_of
+from sim.design.theory.floquet import NEUTRAL, degree_of_stability, monodromy
+from sim.design.theory.linear import Gains, closed_loop
+from sim.design.theory.pulsed import PulsedLoop
+from sim.report.requirements.evidence import FlightEvidence
+from sim.report.requirements.mismatch import beyond_bounds
+from sim.report.requirements.sizing import (
+    damping_level_am2,
+    least_error_deg,
+    mean_dipole,
+    pulse_turn_deg,
+)
+from sim.report.requirements.words import number, orbits, part
+from sim.scenario.schema import flight_table
+
+TREND = 3
+"""Half orbits in which a trend is seen."""
+COARSE = 4.0
+"""Times the limit that a pulse may turn the body: the law fires where it takes from a libration, so that the
+error is about a fifth of it."""
+LATE = 0.4
+"""Part of a flight after which it is late for what must come first: attitude, low rate."""
+
+
+class Missed(NamedTuple):
+    """A requirement that a flight misses.
+
+    Attributes:
+        name: of its index.
+        what: what it is of.
+        limit: the most it may be, or the error under which it has settled; None where it is no angle.
+    """
+
+    name: str
+    what: str
+    limit: float | None
+
+
+Find = Callable[[Missed, FlightEvidence], str]
+"""The sentence of a cause; empty where it is none."""
+
+
+class Diagnosis(NamedTuple):
+    """A cause: its name, the indices that it explains, what finds it, and the causes that lead to it."""
+
+    name: str
+    indices: frozenset[str]
+    find: Find
+    unless: frozenset[str] = frozenset()
+
+
+class Reason(NamedTuple):
+    """A cause that was found, in words."""
+
+    cause: str
+    text: str
+
+
+def reasons(missed: Missed, evidence: FlightEvidence) -> list[Reason]:
+    """All causes that are found, in the order of the table; one that says so if there is none."""
+    found: list[Reason] = []
+    for cause in CAUSES:
+        if missed.name not in cause.indices or cause.unless & {reason.cause for reason in found}:
+            continue
+        if text := cause.find(missed, evidence):
+            found.append(Reason(cause.name, text))
+    return found or [Reason("unknown", "none of the causes that can be told from the flight")]
+
+
+def _isolated(missed: Missed, evidence: FlightEvidence) -> str:
+    since = [f"{unit} since {orbits(at)}" for unit, at in evidence.isolated.items()]
+    return f"isolated: {', '.join(since)}" if since else ""
+
+
+def _safe(missed: Missed, evidence: FlightEvidence) -> str:
+    in_safe = evidence.in_mode.get(Mode.SAFE, 0.0)
+    return f"the controller was in SAFE for {part(in_safe)} of the flight" if in_safe > LATE else ""
+
+
+def _dark(missed: Missed, evidence: FlightEvidence) -> str:
+    if evidence.scenario.knowledge != "filter" or evidence.lit_from == 0.0:
+        return ""
+    lit, valid = evidence.lit_from or inf, evidence.first_valid or inf
+    if evidence.first_valid == 0.0 or valid < lit or valid < LATE * evidence.orbits:
+        return ""
+    seen = f"until {orbits(lit)}" if lit < inf else "and does not leave it"
+    known = f"known from {orbits(valid)} on" if valid < inf else "never known"
+    return f"the flight begins in eclipse {seen}: the attitude is {known}"
+
+
+def _tumbling(missed: Missed, evidence: FlightEvidence) -> str:
+    modes = flight_table(evidence.scenario).modes
+    slow = inf if evidence.slow_from is None else evidence.slow_from
+    if evidence.rate_degps <= modes.fast_degps or slow <= LATE * evidence.orbits:
+        return ""
+    last = f"still {number(evidence.rate_last_degps)} deg/s" if slow == inf else f"slow since {orbits(slow)}"
+    return (
+        f"tumbling: {number(evidence.rate_degps)} deg/s at the start, {last}; "
+        f"ACQUIRE begins under {modes.slow_degps:g} deg/s"
+    )
+
+
+def _estimate(missed: Missed, evidence: FlightEvidence) -> str:
+    if evidence.scenario.knowledge != "filter":
+        return ""
+    if evidence.first_valid is None:
+        return "the estimate never converged: no attitude was called valid"
+    if evidence.valid_part < 0.5 or evidence.estimate_deg is None:
+        return f"the attitude was called valid for {part(evidence.valid_part)} of the last orbit only"
+    share = 1.0 if missed.name == "ake" else 0.4
+    if missed.limit is None or evidence.estimate_deg < share * missed.limit:
+        return ""
+    honest = evidence.within_3sigma
+    wrong = f"the estimate is wrong by {number(evidence.estimate_deg)} deg RMS"
+    if honest is not None and honest < 0.9:
+        return f"{wrong}, and dishonest: inside its own 3 sigma {part(honest)} of the time"
+    return f"{wrong}, as it states itself"
+
+
+def _mismatch(missed: Missed, evidence: FlightEvidence) -> str:
+    found = beyond_bounds(evidence.scenario)
+    return f"the satellite is not within the bounds of its onboard table: {'; '.join(found)}" if found else ""
+
+
+def _any_law(missed: Missed, evidence: FlightEvidence) -> str:
+    if missed.limit is None or missed.what != "attitude" or not any(evidence.torque_nm):
+        return ""
+    least = least_error_deg(evidence.scenario, evidence.torque_nm)
+    if least is None or least < 0.8 * missed.limit:
+        return ""
+    torque = number(float(np.linalg.norm(evidence.torque_nm)))
+    return (
+        f"a torque of {torque} N m on the mean leaves {number(least)} deg whatever the law: "
+        "coils give none along the field"
+    )
+
+
+def _disturbance(missed: Missed, evidence: FlightEvidence) -> str:
+    dipole = mean_dipole(evidence.scenario, evidence.torque_nm)
+    if dipole.needed < 0.7 * dipole.given:
+        return ""
+    by = "disturbance torque" if dipole.torque > dipole.residual else "residual dipole"
+    level = 2.0 * dipole.needed / evidence.scenario.coils.on_part
+    return (
+        f"the {by} takes {number(dipole.needed)} A m^2 on the mean, the coils give {number(dipole.given)}: "
+        f"a highest level of {number(level)} A m^2 would do"
+    )
+
+
+def _unstable(missed: Missed, evidence: FlightEvidence) -> str:
+    control, body = evidence.scenario.control, body_of(evidence.scenario)
+    if control.law != "pd" or evidence.scenario.telecommand:
+        return ""
+    gains, pulsing = Gains(control.k_w, control.k_a, control.k_i or None), pulsing_of(evidence.scenario)
+    if pulsing is None:
+        degree = float(degree_of_stability(monodromy(closed_loop(body, gains))))
+    else:
+        degree = float(PulsedLoop(body, pulsing, 6 if gains.k_i is None else 9).degree(gains))
+    if degree < NEUTRAL:
+        return ""
+    growth = number(exp(min(2.0 * np.pi * degree, 700.0)))
+    return f"the gains are unstable by Floquet theory: a deviation grows {growth} times an orbit"
+
+
+def _coarse(missed: Missed, evidence: FlightEvidence) -> str:
+    lowest, total = evidence.levels[0], sum(evidence.levels)
+    if (
+        evidence.scenario.coils.driver == "continuous"
+        or missed.limit is None
+        or 2 * lowest < total
+        or not total
+    ):
+        return ""
+    turn, level = pulse_turn_deg(evidence.scenario, missed.what), evidence.scenario.coils.levels_am2[0]
+    if turn < COARSE * missed.limit:
+        return ""
+    return (
+        f"the levels are too coarse: a pulse at level 1, {number(level)} A m^2, makes a libration of up to "
+        f"{number(turn)} deg; {number(0.5 * COARSE * level * missed.limit / turn)} A m^2 would do"
+    )
+
+
+def _weak(missed: Missed, evidence: FlightEvidence) -> str:
+    highest, total = evidence.levels[2], sum(evidence.levels)
+    most = evidence.saturated_part if not total else highest / total
+    if most < 0.6 or (total and total < 5):
+        return ""
+    level = damping_level_am2(evidence.scenario, evidence.trend[-1] if evidence.trend else 60.0)
+    least = max(level, 2.0 * evidence.scenario.coils.largest_am2)
+    of = "the pulses of the last orbit" if total else "the last orbit"
+    return (
+        f"the coils are too weak: at the highest level in {part(most)} of {of}; "
+        f"one of {number(least)} A m^2 would do"
+    )
+
+
+def _never_in_point(missed: Missed, evidence: FlightEvidence) -> str:
+    if evidence.first_in_point is not None:
+        return ""
+    modes = flight_table(evidence.scenario).modes
+    longest = max(evidence.in_mode, key=lambda mode: evidence.in_mode[mode], default=Mode.SAFE)
+    needs = {
+        Mode.DETUMBLE: f", which ends under {modes.slow_degps:g} deg/s for {modes.settle_s:g} s",
+        Mode.ACQUIRE: f", which ends under {modes.near_deg:g} deg for {modes.hold_s:g} s",
+    }
+    return (
+        f"mode POINT was never reached: {longest.name} for {part(evidence.in_mode.get(longest, 0.0))} of the "
+        f"flight{needs.get(longest, '')}"
+    )
+
+
+def _short(missed: Missed, evidence: FlightEvidence) -> str:
+    near = sum(evidence.in_mode.get(mode, 0.0) for mode in (Mode.ACQUIRE, Mode.POINT))
+    if len(evidence.trend) >= TREND or near < 0.5:
+        return ""
+    return f"{orbits(evidence.orbits)} are too short to settle, or to tell when it would"
+
+
+def _not_settled(missed: Missed, evidence: FlightEvidence) -> str:
+    trend = evidence.trend
+    if len(trend) < TREND or missed.limit is None or min(trend) <= 0.0 or trend[-1] <= missed.limit:
+        return ""
+    slope = float(np.polyfit(np.arange(len(trend)) / 2.0, np.log(trend), 1)[0])
+    if slope > log(0.9) or trend[-1] > 0.9 * trend[0]:
+        return ""
+    when = evidence.orbits + log(missed.limit / trend[-1]) / slope
+    return (
+        f"not settled yet: the error falls to {part(exp(slope))} of itself an orbit, "
+        f"and would be {number(missed.limit)} at about {orbits(when)}"
+    )
+
+
+POINTING = frozenset(("ape", "mpe", "rpe", "settling", "rate"))
+KNOWING = POINTING | {"ake"}
+ALL = KNOWING | {"duty", "energy"}
+BEFORE_POINTING = frozenset(("safe", "dark", "tumbling", "estimate"))
+CANNOT_POINT = frozenset(("isolated", "unstable", "disturbance", "any_law"))
+POINT_IS_LOST = BEFORE_POINTING | CANNOT_POINT | {"coarse", "weak", "not_settled"}
+
+CAUSES: Sequence[Diagnosis] = (
+    Diagnosis("isolated", ALL, _isolated),
+    Diagnosis("safe", KNOWING, _safe, frozenset(("isolated",))),
+    Diagnosis("dark", KNOWING, _dark),
+    Diagnosis("tumbling", KNOWING, _tumbling),
+    Diagnosis("estimate", KNOWING, _estimate, frozenset(("isolated", "safe", "dark", "tumbling"))),
+    Diagnosis("mismatch", ALL, _mismatch),
+    Diagnosis("any_law", POINTING, _any_law),
+    Diagnosis("disturbance", ALL - {"ake"}, _disturbance),
+    Diagnosis("unstable", ALL - {"ake"}, _unstable),
+    Diagnosis("coarse", POINTING, _coarse, BEFORE_POINTING | CANNOT_POINT),
+    Diagnosis("weak", POINTING, _weak, BEFORE_POINTING | CANNOT_POINT),
+    Diagnosis("not_settled", POINTING, _not_settled, CANNOT_POINT | {"coarse"}),
+    Diagnosis("short", POINTING, _short, POINT_IS_LOST),
+    Diagnosis("never_in_point", POINTING, _never_in_point, POINT_IS_LOST | {"short"}),
+)
+"""In the order in which one leads to the next."""

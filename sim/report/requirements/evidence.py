@@ -1,0 +1,182 @@
+"""What is known of a flight when a requirement is missed: truth, estimate, modes, coils, disturbances."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fsw.wire.messages import Mode
+from sim.audit.findings import AuditReport
+from sim.record.estimates import Estimates
+from sim.record.truth import Histories
+from sim.report.figures.controlled import error_vectors
+from sim.report.figures.estimate_error import knowledge_errors, within_3sigma
+from sim.report.figures.mean import Mean
+from sim.scenario.schema import Scenario, flight_table, orbit_period_s
+from sim.statistics.indices import magnitudes
+
+Array = NDArray[np.float64]
+
+HALF_ORBITS = 6
+"""Of the end of the flight, in which the trend of the error is seen."""
+NOT_DISTURBANCES = ("gravity_gradient", "coils", "residual_dipole")
+"""Torques that are the body's own, the coils' or known as a dipole."""
+
+
+@dataclass(frozen=True, slots=True)
+class FlightEvidence:
+    """Figures of a flight, times in orbits; of the last orbit, or of the whole of a shorter flight.
+
+    Attributes:
+        scenario: what was flown.
+        orbits: length of the flight.
+        trend: RMS of the error of what is controlled by half orbit, the last ones of the flight.
+        estimate_deg: RMS of the knowledge error while the attitude is called valid; None if it never is.
+        valid_part: part of the last orbit in which the attitude is called valid.
+        within_3sigma: part of that in which each axis of the error is inside the filter's 3 sigma.
+        first_valid: since when the attitude was called valid first; None: never.
+        lit_from: since when the Sun was seen first; None: never.
+        in_mode: part of the flight in each mode.
+        first_in_point: None: never.
+        rate_degps: at the start, relative to the orbital frame and the spin reference.
+        rate_last_degps: RMS of the same.
+        slow_from: since when the rate stays under that of ACQUIRE; None: it does not.
+        isolated: the units that are out of use at the end, and since when.
+        torque_nm: disturbance torque on the mean, body axes.
+        levels: pulses at each level, least first.
+        saturated_part: part of the time in which a continuous driver gives all it can.
+    """
+
+    scenario: Scenario
+    orbits: float
+    trend: tuple[float, ...] = ()
+    estimate_deg: float | None = None
+    valid_part: float = 1.0
+    within_3sigma: float | None = None
+    first_valid: float | None = 0.0
+    lit_from: float | None = 0.0
+    in_mode: Mapping[Mode, float] = field(default_factory=dict)
+    first_in_point: float | None = 0.0
+    rate_degps: float = 0.0
+    rate_last_degps: float = 0.0
+    slow_from: float | None = 0.0
+    isolated: Mapping[str, float] = field(default_factory=dict)
+    torque_nm: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    levels: tuple[int, int, int] = (0, 0, 0)
+    saturated_part: float = 0.0
+
+
+class EvidenceGatherer:
+    """Gathers the evidence block by block, in constant memory."""
+
+    def __init__(self, scenario: Scenario, what: str, ticks: int) -> None:
+        self._scenario, self._what, self._ticks = scenario, what, ticks
+        self._orbit = orbit_period_s(scenario) * scenario.time.tick_hz
+        self._last_from = max(0, ticks - round(self._orbit))
+        self._halves = [Mean() for _ in range(min(HALF_ORBITS, int(2.0 * ticks / self._orbit)))]
+        self._slow_degps = flight_table(scenario).modes.slow_degps
+        self._taken = 0
+        self._estimate, self._rate, self._torque = Mean(), Mean(), np.zeros(3)
+        self._valid = self._inside = self._saturated = 0
+        self._modes = np.zeros(max(Mode) + 1, np.int64)
+        self._first: dict[str, int] = {}
+        self._slow_from = 0
+        self._rate_at_start = 0.0
+
+    def take(self, truth: Histories, estimates: Estimates) -> None:
+        """The next block."""
+        first, rows = self._taken, len(truth["t_s"])
+        self._taken += rows
+        recent = slice(max(0, self._last_from - first), rows)
+        spin = self._scenario.control.spin_radps
+        self._take_trend(first, magnitudes(error_vectors(self._what, truth, spin)))
+        self._take_rate(first, magnitudes(error_vectors("rate", truth, spin)), recent)
+        self._modes += np.bincount(estimates.mode[:rows], minlength=len(self._modes))
+        self._note("valid", first, estimates.valid[:rows])
+        self._note("lit", first, truth["lit"] > 0.5)
+        self._note("point", first, estimates.mode[:rows] == Mode.POINT)
+        self._torque += _disturbance(self._scenario, truth)
+        self._saturated += int(_saturated(self._scenario, truth)[recent].sum())
+        if recent.start < rows:
+            self._take_estimate(truth, estimates, recent)
+
+    def evidence(self, audit: AuditReport, isolated_s: Mapping[str, float]) -> FlightEvidence:
+        """All of it; ``isolated_s`` are the units out of use at the end, and when they were isolated."""
+        orbit_s = self._orbit / self._scenario.time.tick_hz
+        last = max(1, self._ticks - self._last_from)
+        since_s = self._last_from / self._scenario.time.tick_hz
+        levels = [abs(pulse.level) for pulse in audit.pulses if pulse.start_s >= since_s]
+        x, y, z = (self._torque / max(1, self._taken)).tolist()
+        return FlightEvidence(
+            scenario=self._scenario,
+            orbits=self._ticks / self._orbit,
+            trend=tuple(half.rms for half in self._halves if half.count),
+            estimate_deg=self._estimate.rms if self._estimate.count else None,
+            valid_part=self._valid / last,
+            within_3sigma=self._inside / self._valid if self._valid else None,
+            first_valid=self._since("valid"),
+            lit_from=self._since("lit"),
+            in_mode={mode: self._modes[mode] / max(1, self._taken) for mode in Mode},
+            first_in_point=self._since("point"),
+            rate_degps=self._rate_at_start,
+            rate_last_degps=self._rate.rms,
+            slow_from=self._slow_from / self._orbit if self._slow_from < self._taken else None,
+            isolated={unit: at_s / orbit_s for unit, at_s in isolated_s.items()},
+            torque_nm=(x, y, z),
+            levels=(levels.count(1), levels.count(2), levels.count(3)),
+            saturated_part=self._saturated / last,
+        )
+
+    def _take_trend(self, first: int, error: Array) -> None:
+        past, half = self._ticks - len(self._halves) * self._orbit / 2.0, self._orbit / 2.0
+        for number, mean in enumerate(self._halves):
+            begin, end = (round(past + place * half) - first for place in (number, number + 1))
+            mean.take(error[max(0, begin) : max(0, end)])
+
+    def _take_rate(self, first: int, rate_degps: Array, recent: slice) -> None:
+        if first == 0:
+            self._rate_at_start = float(rate_degps[0])
+        self._rate.take(rate_degps[recent])
+        fast = np.flatnonzero(rate_degps >= self._slow_degps)
+        if len(fast):
+            self._slow_from = first + int(fast[-1]) + 1
+
+    def _take_estimate(self, truth: Histories, estimates: Estimates, recent: slice) -> None:
+        valid = estimates.valid[: len(truth["t_s"])].copy()
+        valid[: recent.start] = False
+        self._valid += int(valid.sum())
+        self._estimate.take(np.degrees(magnitudes(knowledge_errors(truth, estimates)[valid])))
+        if self._scenario.knowledge == "filter":
+            self._inside += int(within_3sigma(truth, estimates)[valid].all(axis=1).sum())
+        else:
+            self._inside += int(valid.sum())
+
+    def _note(self, name: str, first: int, holds: NDArray[np.bool_]) -> None:
+        if name not in self._first and holds.any():
+            self._first[name] = first + int(holds.argmax())
+
+    def _since(self, name: str) -> float | None:
+        return self._first[name] / self._orbit if name in self._first else None
+
+
+def _disturbance(scenario: Scenario, truth: Histories) -> Array:
+    """The sum over the block of the disturbance torques: the plant's, or those that the scenario states."""
+    named = {name.partition("/")[2]: history for name, history in truth.items() if "/" in name}
+    if not named:
+        return len(truth["t_s"]) * np.array(scenario.disturbance.torque_nm)
+    found: Array = np.zeros(3)
+    for name, torque in named.items():
+        if name not in NOT_DISTURBANCES:
+            found = found + torque.sum(axis=0)
+    return found
+
+
+def _saturated(scenario: Scenario, truth: Histories) -> NDArray[np.bool_]:
+    """Ticks in which a continuous driver gives all it can; none of a pulsed one."""
+    coils = scenario.coils
+    if coils.driver != "continuous":
+        return np.zeros(len(truth["t_s"]), dtype=bool)
+    full_scale_am2 = coils.on_fraction * coils.largest_am2
+    result: NDArray[np.bool_] = np.abs(truth["m_body_am2"]).max(axis=1) > 0.98 * full_scale_am2
+    return result

@@ -1,0 +1,127 @@
+"""Gathers one index over the window of a requirement, block by block, in constant memory."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.record.estimates import Estimates
+from sim.record.truth import Histories
+from sim.report.figures.coil_effort import dipole_squared_a2m4s, driven_s
+from sim.report.figures.controlled import controlled, error_vectors, held_from
+from sim.report.figures.estimate_error import knowledge_errors
+from sim.report.requirements.statistic import Statistic
+from sim.scenario.requirements import RequirementSection
+from sim.scenario.schema import Scenario, orbit_period_s
+from sim.statistics.indices import magnitudes, mean_and_relative
+
+Array = NDArray[np.float64]
+
+WHOLE = 1e-6
+"""Orbits by which a flight may fall short: its ticks are whole."""
+
+
+class Gathered:
+    """The values of an index over its window.
+
+    Args:
+        section: the requirement.
+        scenario: of the flight.
+        ticks: of the whole flight.
+    """
+
+    def __init__(self, section: RequirementSection, scenario: Scenario, ticks: int) -> None:
+        self.section = section
+        self.what = section.what or _pointed(scenario)
+        self.ticks_per_orbit = orbit_period_s(scenario) * scenario.time.tick_hz
+        self.ticks = ticks
+        self.judged = ticks + 0.5 >= section.by_orbit * self.ticks_per_orbit * (1.0 - WHOLE)
+        self.settled_at = 0
+        """Tick from which the error of what is controlled stays under its threshold."""
+        self.driven_s = 0.0
+        self.dipole_squared_a2m4s = 0.0
+        """Of a continuous driver, over the window."""
+        self.statistic = Statistic(section.probability)
+        self._scenario = scenario
+        self._taken = 0
+        self._average = max(1, round(section.average_s * scenario.time.tick_hz))
+        self._waiting = np.empty((0, 3))
+
+    @property
+    def threshold(self) -> float:
+        """Under which what is controlled has settled."""
+        return self.section.settled_degps if self.what == "spin" else self.section.settled_deg
+
+    @property
+    def settled(self) -> bool:
+        """Whether it has settled by the end of the flight."""
+        return self._taken > 0 and self.settled_at < self._taken
+
+    @property
+    def window_from(self) -> int:
+        """The first tick of the window."""
+        if self.section.window == "settled":
+            return self.settled_at
+        return max(0, self.ticks - round(self.section.last_orbits * self.ticks_per_orbit))
+
+    @property
+    def window_orbits(self) -> float:
+        """The length of the window."""
+        return (self.ticks - self.window_from) / self.ticks_per_orbit
+
+    def take(self, truth: Histories, estimates: Estimates) -> None:
+        """The next block."""
+        first, rows = self._taken, len(truth["t_s"])
+        self._taken += rows
+        error = error_vectors(self.what, truth, self._scenario.control.spin_radps)
+        row = held_from(magnitudes(error), self.threshold)
+        if row:
+            self.settled_at = first + row
+            if self.section.window == "settled":
+                self.statistic, self._waiting = Statistic(self.section.probability), np.empty((0, 3))
+        since = max(0, self.window_from - first)
+        if since < rows:
+            self._take(truth, estimates, error, slice(since, rows))
+
+    def value(self) -> float | None:
+        """The statistic of the index over the window; None where nothing was in it."""
+        if len(self._waiting) and not self.statistic.mean.count:
+            self._take_means(self._waiting)
+        return self.statistic.value
+
+    def _take(self, truth: Histories, estimates: Estimates, error: Array, rows: slice) -> None:
+        index = self.section.index
+        if index in ("duty", "energy"):
+            if self._scenario.coils.driver != "continuous":
+                return
+            dipole_am2 = truth["m_body_am2"][rows]
+            self.driven_s += driven_s(self._scenario, dipole_am2)
+            self.dipole_squared_a2m4s += dipole_squared_a2m4s(self._scenario, dipole_am2)
+            return
+        if index == "settling":
+            return
+        if index in ("mpe", "rpe"):
+            self._average_over(error[rows])
+            return
+        if index == "ake":
+            error = np.degrees(knowledge_errors(truth, estimates))
+        elif index == "rate":
+            error = error_vectors("rate", truth, self._scenario.control.spin_radps)
+        values = magnitudes(error[rows])
+        self.statistic.take(values[truth["lit"][rows] > 0.5] if self.section.sunlit else values)
+
+    def _average_over(self, error: Array) -> None:
+        """Count the means over whole windows; the rest waits for the next block."""
+        waiting = np.concatenate((self._waiting.reshape(-1, error.shape[1]), error))
+        whole = len(waiting) // self._average * self._average
+        self._waiting = waiting[whole:]
+        if whole:
+            self._take_means(waiting[:whole])
+
+    def _take_means(self, error: Array) -> None:
+        mean, relative = mean_and_relative(error, self._average)
+        self.statistic.take(mean if self.section.index == "mpe" else relative)
+
+
+def _pointed(scenario: Scenario) -> str:
+    """What a requirement is of where it does not say so."""
+    what = controlled(scenario).what
+    return "attitude" if what == "rate" else what

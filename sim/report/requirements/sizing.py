@@ -1,0 +1,75 @@
+"""What the coils of a scenario can give on the mean, and what its disturbances and levels make of it."""
+
+from dataclasses import dataclass
+from math import degrees, radians, sin, sqrt
+
+import numpy as np
+
+from sim.design.from_scenario import body_of
+from sim.design.theory.bodies import Body
+from sim.design.theory.feedforward import least_error
+from sim.scenario.schema import Scenario
+
+Vec3 = tuple[float, float, float]
+
+
+def mean_field_t(body: Body) -> float:
+    """Root mean square of the direct dipole's field along the orbit, B0 sqrt(1 + 3/2 sin^2 i)."""
+    return body.field_t * sqrt(1.0 + 1.5 * sin(radians(body.inclination_deg)) ** 2)
+
+
+@dataclass(frozen=True, slots=True)
+class MeanDipole:
+    """Dipoles on the mean over an orbit, A m^2.
+
+    Attributes:
+        given: the most that the coils can give along any one axis.
+        torque: that balances the disturbance torque.
+        residual: that balances the residual dipole.
+    """
+
+    given: float
+    torque: float
+    residual: float
+
+    @property
+    def needed(self) -> float:
+        """For both."""
+        return self.torque + self.residual
+
+
+def mean_dipole(scenario: Scenario, torque_nm: Vec3) -> MeanDipole:
+    """What coils can give, on_part m_3, beside |T| / |B| and the largest residual dipole of an axis."""
+    residual = max(abs(m) for m in scenario.disturbance.residual_dipole_am2)
+    torque = float(np.linalg.norm(torque_nm)) / mean_field_t(body_of(scenario))
+    return MeanDipole(scenario.coils.on_part * scenario.coils.largest_am2, torque, residual)
+
+
+def least_error_deg(scenario: Scenario, torque_nm: Vec3) -> float | None:
+    """The least RMS error of the whole attitude under a constant torque, whatever the law.
+
+    None of a body that the gravity gradient leaves free, for which there is no periodic motion.
+    """
+    try:
+        return degrees(least_error(body_of(scenario), torque_nm).rms_rad)
+    except np.linalg.LinAlgError:
+        return None
+
+
+def pulse_turn_deg(scenario: Scenario, what: str) -> float:
+    """Amplitude of the libration that a pulse at level 1 can make, half of (m_1 |B| T_p / J) / w0, deg.
+
+    J is the least moment of inertia about an axis that matters: of axis 1 those of axes 2 and 3.
+    """
+    body, coils = body_of(scenario), scenario.coils
+    moments = [scenario.body.inertia[axis][axis] for axis in ((1, 2) if what == "axis" else (0, 1, 2))]
+    rate_radps = coils.levels_am2[0] * mean_field_t(body) * coils.pulse_s / min(moments)
+    return degrees(0.5 * rate_radps / body.rate_radps)
+
+
+def damping_level_am2(scenario: Scenario, error_deg: float) -> float:
+    """Highest level that takes a libration down by e in an orbit: J w0^2 theta / (2 pi |B| on_part)."""
+    body = body_of(scenario)
+    largest = max(scenario.body.inertia[axis][axis] for axis in range(3))
+    torque_nm = largest * body.rate_radps**2 * radians(min(error_deg, 60.0)) / (2.0 * np.pi)
+    return float(torque_nm / mean_field_t(body) / scenario.coils.on_part)

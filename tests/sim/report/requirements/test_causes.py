@@ -1,0 +1,180 @@
+"""Each cause is found where it is one, and is silent in a sound flight and beside the others."""
+
+from dataclasses import replace
+
+import pytest
+
+from fsw.wire.messages import Mode
+from sim.report.requirements.causes import CAUSES, Missed, reasons
+from sim.report.requirements.evidence import FlightEvidence
+from sim.scenario.schema import load, parse_settings
+
+POINTED = {Mode.SAFE: 0.001, Mode.DETUMBLE: 0.02, Mode.ACQUIRE: 0.1, Mode.POINT: 0.879}
+APE = Missed("ape", "attitude", 2.0)
+
+
+def sound(*settings, name="microsat"):
+    """A flight of five orbits in which nothing is amiss but the requirement."""
+    return FlightEvidence(
+        scenario=load(name, parse_settings(settings)),
+        orbits=5.0,
+        trend=(2.6, 2.5, 2.6, 2.4, 2.5, 2.6),
+        estimate_deg=0.1,
+        valid_part=1.0,
+        within_3sigma=0.997,
+        first_valid=0.01,
+        lit_from=0.0,
+        in_mode=POINTED,
+        first_in_point=0.4,
+        rate_degps=0.09,
+        rate_last_degps=0.002,
+        slow_from=0.0,
+        torque_nm=(3e-8, 3e-8, 3e-8),
+        levels=(20, 25, 10),
+    )
+
+
+def names(evidence, missed=APE):
+    return [reason.cause for reason in reasons(missed, evidence)]
+
+
+def text(evidence, missed=APE):
+    (reason,) = reasons(missed, evidence)
+    return reason.text
+
+
+def test_of_a_sound_flight_no_cause_is_told():
+    assert names(sound()) == ["unknown"]
+
+
+@pytest.mark.parametrize("name", ["microsat", "realsat", "cubesat3u", "cubesat6u", "kalman-1u", "kalman-50kg",
+                                  "kalman-tons", "posat1", "posat1-ekf", "tumbling"])  # fmt: skip
+def test_no_shipped_scenario_carries_a_cause_of_its_own(name):
+    scenario = load(name)
+    evidence = replace(sound(name=name), torque_nm=scenario.disturbance.torque_nm)
+    what = "axis" if name.startswith("posat1") else "attitude"
+    limit = next(one.limit for one in scenario.requirement if one.index == "ape")
+    assert names(evidence, Missed("ape", what, limit)) == ["unknown"]
+
+
+DIPOLE = ("disturbance.residual_dipole_am2=[0.3,0,0]", "flight.uncertainty.residual_dipole_am2=0.3")
+STUCK = {Mode.DETUMBLE: 0.99, Mode.ACQUIRE: 0.01}
+FOUND = {
+    "isolated": replace(sound(), isolated={"coil 1": 0.41}),
+    "safe": replace(sound(), in_mode={Mode.SAFE: 0.7, Mode.POINT: 0.3}),
+    "dark": replace(sound(), orbits=0.5, lit_from=0.3, first_valid=0.32, trend=(30.0,)),
+    "tumbling": replace(sound(), rate_degps=5.2, slow_from=None, rate_last_degps=4.7),
+    "estimate": replace(sound(), estimate_deg=7.0, within_3sigma=0.12),
+    "mismatch": sound("flight.body.inertia_kgm2=[1.95,1.85,1.02]"),
+    "any_law": replace(sound(), torque_nm=(3e-7, 3e-7, 3e-7)),
+    "disturbance": sound(*DIPOLE, "coils.levels_am2=[0.5,2,11]"),
+    "unstable": sound("control.law=pd", "control.k_w=1e9"),
+    "coarse": replace(sound("coils.levels_am2=[20,40,80]"), levels=(40, 5, 0)),
+    "weak": replace(sound("coils.levels_am2=[0.25,1.0,4.0]"), levels=(0, 3, 50)),
+    "not_settled": replace(sound(), trend=(16.0, 11.0, 8.0, 5.6, 4.0, 2.8)),
+    "never_in_point": replace(sound(), in_mode=STUCK, first_in_point=None),
+    "short": replace(sound(), orbits=0.5, trend=(40.0,)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("cause", FOUND)
+def test_a_cause_is_found_and_no_other(cause):
+    assert names(FOUND[cause]) == [cause]
+
+
+def test_every_cause_of_the_table_is_tried():
+    assert {cause.name for cause in CAUSES} == set(FOUND)
+
+
+@pytest.mark.parametrize(
+    ("cause", "words"),
+    [
+        ("isolated", "coil 1 since 0.41 orbits"),
+        ("dark", "begins in eclipse until 0.30 orbits: the attitude is known from 0.32 orbits on"),
+        ("tumbling", "5.2 deg/s at the start, still 4.7 deg/s; ACQUIRE begins under 0.3 deg/s"),
+        ("estimate", "wrong by 7 deg RMS, and dishonest: inside its own 3 sigma 12 % of the time"),
+        ("mismatch", "inertia off by 0.93 kg m^2, its bound is 0"),
+        ("any_law", "a torque of 5.20e-07 N m on the mean leaves 4.23 deg whatever the law"),
+        ("disturbance", "the residual dipole takes 0.302 A m^2 on the mean, the coils give 0.32"),
+        ("coarse", "a pulse at level 1, 20 A m^2"),
+        ("weak", "at the highest level in 94 % of the pulses"),
+        ("not_settled", "falls to 50 % of itself an orbit, and would be 2 at about 5.49 orbits"),
+        ("never_in_point", "DETUMBLE for 99 % of the flight, which ends under 0.3 deg/s for 60 s"),
+        ("short", "0.50 orbits are too short"),
+    ],
+)
+def test_a_cause_is_told_with_its_figures(cause, words):
+    assert words in text(FOUND[cause])
+
+
+class TestWhatWouldDo:
+    def test_a_level_that_is_fine_enough_is_no_longer_too_coarse(self):
+        coarse = FOUND["coarse"]
+        told = float(text(coarse).rpartition(";")[2].split()[0])
+        finer = replace(sound(f"coils.levels_am2=[{told},40,80]"), levels=coarse.levels)
+        assert names(finer) == ["unknown"]
+
+    def test_a_level_that_is_strong_enough_balances_the_disturbance(self):
+        told = float(text(FOUND["disturbance"]).rpartition("level of ")[2].split()[0])
+        stronger = sound(*DIPOLE, f"coils.levels_am2=[0.5,2,{told}]")
+        assert names(stronger) == ["unknown"]
+
+
+class TestSilence:
+    def test_a_unit_that_was_readmitted_is_none(self):
+        assert "isolated" not in names(replace(sound(), isolated={}))
+
+    def test_a_flight_that_begins_in_the_dark_and_soon_knows_its_attitude(self):
+        assert names(replace(sound(), lit_from=0.3, first_valid=0.32)) == ["unknown"]
+
+    def test_a_rate_that_was_damped_early(self):
+        assert names(replace(sound(), rate_degps=5.2, slow_from=1.0)) == ["unknown"]
+
+    def test_an_estimate_that_is_small_beside_the_limit_however_dishonest(self):
+        assert names(replace(sound(), estimate_deg=0.3, within_3sigma=0.5)) == ["unknown"]
+
+    def test_perfect_knowledge_has_no_wrong_estimate_nor_wrong_sensors(self):
+        perfect = sound("knowledge=perfect", "sensors.magnetometer.bias_nt=[9000,0,0]")
+        assert names(replace(perfect, estimate_deg=50.0, first_valid=None)) == ["unknown"]
+
+    def test_a_difference_within_its_bound_is_no_mismatch(self):
+        settings = (
+            "flight.uncertainty.residual_dipole_am2=0.01",
+            "disturbance.residual_dipole_am2=[0.01,0,0]",
+        )
+        assert names(sound(*settings)) == ["unknown"]
+
+    def test_stable_gains_and_those_of_other_laws(self):
+        assert "unstable" not in names(sound("control.law=pd"))
+        assert "unstable" not in names(sound("control.k_w=1e9"))
+
+    def test_an_error_that_has_reached_its_floor_is_settled(self):
+        assert "not_settled" not in names(replace(sound(), trend=(2.9, 2.8, 2.9, 2.8, 2.7, 2.8)))
+
+    def test_few_pulses_at_the_highest_level_are_no_weakness(self):
+        assert "weak" not in names(replace(sound(), levels=(0, 0, 4)))
+
+    def test_a_continuous_driver_has_no_levels(self):
+        assert names(replace(sound(name="kalman-50kg"), levels=(0, 0, 0), torque_nm=(0.0, 0.0, 0.0))) == [
+            "unknown"
+        ]
+
+
+def test_a_continuous_driver_at_full_scale_is_too_weak():
+    evidence = replace(sound(name="kalman-50kg"), levels=(0, 0, 0), saturated_part=0.8, torque_nm=(0.0,) * 3)
+    assert names(evidence) == ["weak"]
+    assert "at the highest level in 80 % of the last orbit" in text(evidence)
+
+
+def test_knowledge_is_not_explained_by_the_coils():
+    missed = Missed("ake", "attitude", 0.05)
+    assert names(replace(FOUND["weak"], estimate_deg=0.1), missed) == ["estimate"]
+    assert names(replace(FOUND["weak"], estimate_deg=0.01), missed) == ["unknown"]
+
+
+def test_what_leads_to_another_cause_is_told_alone():
+    fallen = replace(
+        FOUND["tumbling"], in_mode={Mode.DETUMBLE: 1.0}, first_in_point=None, first_valid=None,
+        estimate_deg=None, valid_part=0.0, within_3sigma=None, trend=(120.0, 130.0, 125.0), levels=(0, 0, 50),
+    )  # fmt: skip
+    assert names(fallen) == ["tumbling"]
