@@ -5,6 +5,7 @@ from dataclasses import MISSING, Field, field, fields, is_dataclass
 from math import inf, isfinite
 from typing import Any, NamedTuple, TypeGuard
 
+from fsw.input.own_code import error_clause
 from fsw.input.schema import TableError
 
 _KEY = "torquer"
@@ -49,8 +50,8 @@ def with_values(kind: type[Any], given: Mapping[str, object], key: str, source: 
             raise TableError(f"{source}: {key}.{name} = {value!r} is not allowed: allowed is {allowed_range}")
     try:
         return kind(**{name: float(value) for name, value in given.items() if _is_number(value)})
-    except Exception as error:  # of its own __post_init__
-        raise TableError(f"{source}: {key}: {error}") from None
+    except (Exception, SystemExit) as error:  # of its own __post_init__
+        raise TableError(f"{source}: {key}: {error_clause(error)}") from None
 
 
 def _fields(kind: type[Any], source: str) -> dict[str, Field[Any]]:
@@ -59,7 +60,7 @@ def _fields(kind: type[Any], source: str) -> dict[str, Field[Any]]:
     Raises:
         TableError: it is no frozen dataclass of numbers with defaults, or a default is out of its range.
     """
-    if not is_dataclass(kind) or not kind.__dataclass_params__.frozen:  # type: ignore[attr-defined]
+    if not isinstance(kind, type) or not is_dataclass(kind) or not kind.__dataclass_params__.frozen:  # type: ignore[attr-defined]
         raise TableError(f"{source}: {getattr(kind, '__name__', kind)!s:.80} is no frozen dataclass")
     found = {each.name: each for each in fields(kind) if each.init}
     for name, each in found.items():

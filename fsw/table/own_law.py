@@ -10,7 +10,7 @@ from types import FrameType
 from typing import Any
 
 from fsw.core.laws.interface import ControlConfig, Demand, Law, LawInput, Memory, OwnLaw, Setpoint
-from fsw.core.laws.table import LAWS
+from fsw.core.laws.table import LAWS, Aim
 from fsw.input import own_code
 from fsw.input.own_code import error_clause
 from fsw.input.quantities import with_values
@@ -83,6 +83,10 @@ def declared(control: ControlTable) -> ControlLaw:
         parts = {"point": found.point, "acquire": found.acquire or found.point}
         if wrong := [name for name, part in parts.items() if not callable(part)]:
             raise TableError(f"{control.law}: {wrong[0]} is no function")
+        if not isinstance(found.aim, Aim):
+            raise TableError(
+                f"{control.law}: its aim is none of {', '.join(f'Aim.{aim.name}' for aim in Aim)}"
+            )
         return found
     if callable(found) and not isinstance(found, type):
         return ControlLaw(found)

@@ -49,7 +49,8 @@ def compare(
         out: folder of the files; None: ``compare/<scenario>-<UTC time>``.
 
     Returns:
-        The exit code: 1 if a flight broke the limits; how well a law does is no failure.
+        The exit code: 1 if a flight broke the limits, or a law of one's own could not be flown; how well
+        a law does is no failure.
 
     Raises:
         TableError: there is no such scenario, or it is not valid.
@@ -95,7 +96,11 @@ def compare(
     broken = [f"{score.law} ({score.driver})" for score in scores if score.limits_ok is False]
     if broken:
         click.echo(f"torquer: the limits are broken by {', '.join(broken)}", err=True)
-    return int(bool(broken))
+    own = scenario.control.law_name if scenario.control.own else None
+    failed = [score.failure for score in scores if score.law == own and score.failure]
+    if failed:
+        click.echo(f"torquer: {failed[0]}", err=True)
+    return int(bool(broken or failed))
 
 
 def _heading(scenario: Scenario, seed: int, ticks: int) -> str:

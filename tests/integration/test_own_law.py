@@ -100,6 +100,13 @@ def test_it_is_compared_with_those_of_the_table(torquer, folder):
     }
 
 
+def test_a_comparison_fails_where_it_fails(torquer, folder):
+    words = ("--laws", "law", "--driver", "pulsed", *SHORT, "--workers", "1", "--law", "bad.py:law")
+    ended = torquer("compare", "microsat", *words, "--out", "failed")
+    assert ended.code == 1
+    assert "torquer: the law law of bad.py, tick 200: it fails" in ended.err
+
+
 def test_an_installed_law_flies_by_its_name(torquer, folder, monkeypatch):
     info = folder / "projected_pd-0.1.0.dist-info"
     info.mkdir()

@@ -55,7 +55,7 @@ def test_the_ends_of_a_range_are_allowed(value):
         ({"share": inf}, "share = inf is not allowed: allowed is a finite number"),
         ({"share": True}, "share = True is not allowed"),
         ({"share": "1"}, "share = '1' is not allowed"),
-        ({"share": 1.5}, "control.gains.mine: share must not be above 1"),
+        ({"share": 1.5}, "control.gains.mine: ValueError: share must not be above 1"),
     ],
 )
 def test_what_is_not_allowed_is_named_with_the_range(given, what):
@@ -92,6 +92,7 @@ class Made:
     [
         (Thawed, "Thawed is no frozen dataclass"),
         (int, "int is no frozen dataclass"),
+        (Gains(), "is no frozen dataclass"),
         (WithoutDefault, "WithoutDefault.k has the default None"),
         (OfText, "OfText.k has the default 'much'"),
         (Beyond, "Beyond.k has the default 2.0: it must be a finite number at most 1"),

@@ -34,6 +34,7 @@ plain = point
 number = 3
 broken = ControlLaw(3)
 unsound = ControlLaw(point, gains=int)
+aimless = ControlLaw(point, aim="three_axis")
 pd = point
 """
 
@@ -120,6 +121,7 @@ class TestLoaded:
             ("Gains", {}, "is the class Gains, not a law"),
             ("broken", {}, "point is no function"),
             ("unsound", {}, "int is no frozen dataclass"),
+            ("aimless", {}, r"its aim is none of Aim\.THREE_AXIS"),
             ("missing", {}, "there is no missing in it"),
         ],
     )
