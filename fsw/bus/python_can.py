@@ -142,4 +142,4 @@ def _configuration(spec: str, given: dict[str, str]) -> Mapping[str, Any]:
 
 def _name(interface: str, channel: str) -> str:
     """A name for logs, in which it is one word."""
-    return re.sub(r"[^\w.:-]", "_", PurePath(channel).name)[:LONGEST_NAME] or interface
+    return re.sub(r"[^A-Za-z0-9_.:-]", "_", PurePath(channel).name)[:LONGEST_NAME] or interface

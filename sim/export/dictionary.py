@@ -12,7 +12,6 @@ DBC = Path(fsw.wire.__file__).with_name("torquer.dbc")
 
 SLUGS = {"nT": "nt", "rad": "rad", "rad/s": "radps", "ms": "ms", "s": "s", "mA": "ma"}
 """Ending of a name by the unit of the signal; a fraction has none."""
-CODES = ("counter", "crc")
 
 
 @dataclass(frozen=True, slots=True)

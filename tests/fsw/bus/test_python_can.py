@@ -88,6 +88,23 @@ class TestConfiguration:
         assert bus.receive(0.0) is None
         bus.close()
 
+    @pytest.mark.parametrize(
+        ("channel", "name"),
+        [
+            ("/dev/ttyACM0", "ttyACM0"),
+            ("ff15::6", "ff15::6"),
+            ("Kanal é 1", "Kanal___1"),
+            ("", "pcan"),
+            (99 * "x", 64 * "x"),
+        ],
+    )
+    def test_the_name_of_a_bus_is_one_word_of_ascii(self, monkeypatch, channel, name):
+        driver = can.Bus(interface="virtual")
+        monkeypatch.setattr(can, "Bus", lambda **given: driver)
+        bus = open_bus(f"can:pcan:{channel}")
+        bus.close()
+        assert bus.name == name
+
     def test_frames_pass_and_the_channel_names_the_bus(self, hub):
         opened = [open_bus(f"can:loop:{hub.port}") for _ in "ab"]
         opened[0].send([Frame(0x123, b"abc")])
