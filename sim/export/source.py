@@ -13,6 +13,9 @@ from sim.record.run_record import RunRecord
 from sim.scenario.law_named import with_law_named
 from sim.scenario.schema import Scenario
 
+LATEST_US = 7_258_118_400_000_000
+"""The year 2200: nanoseconds since 1970 fit into 64 bits until 2262."""
+
 
 class Source(NamedTuple):
     """A log, and where it is that of a run, the run's record, scenario and histories."""
@@ -61,7 +64,7 @@ class LogPass:
         log: a candump log.
 
     Raises:
-        LogError: while it is read: the file is no candump log.
+        HarnessError: while it is read: the file is no candump log, or its time is beyond all formats.
     """
 
     def __init__(self, log: Path) -> None:
@@ -72,6 +75,8 @@ class LogPass:
         last: LogEntry | None = None
         try:
             for entry in read_log(self._log):
+                if entry.timestamp_us > LATEST_US:
+                    raise HarnessError(f"{self._log}: line {entry.line} is stamped later than the year 2200")
                 yield entry
                 last = entry
         except LogTruncatedError as cut:

@@ -5,7 +5,9 @@ import pytest
 
 from fsw.bus.can_message import frame_of
 from fsw.wire.frame import Frame
+from sim.errors import HarnessError
 from sim.export.can_log import write_asc, write_blf
+from sim.export.mcap import write_mcap
 from sim.export.source import open_source
 
 
@@ -40,3 +42,30 @@ def test_frames_of_strangers_are_kept(tmp_path, write, reader):
         Frame(0x40000123, b""),
     ]
     assert messages[1].timestamp - messages[0].timestamp == pytest.approx(1.49975, abs=5e-7)
+
+
+def exported_to(tmp_path, write, *lines):
+    log = tmp_path / "any.log"
+    log.write_text("".join(f"{line}\n" for line in lines))
+    return write(open_source(log), tmp_path / "out", lambda done: None)
+
+
+@pytest.mark.parametrize(("write", "reader"), [(write_blf, can.BLFReader), (write_asc, can.ASCReader)])
+def test_a_frame_stamped_before_the_first_is_noted(tmp_path, write, reader):
+    notes = exported_to(tmp_path, write, "(1700000010.000000) c 110#01", "(1700000001.000000) c 111#02")
+    assert "1 frames are stamped earlier than the first" in notes[-1]
+    with reader(tmp_path / "out") as opened:
+        first, second = opened
+    assert first.timestamp == second.timestamp
+
+
+@pytest.mark.parametrize("write", [write_blf, write_asc])
+@pytest.mark.parametrize("channel", ["can65534", "can65535", "can" + 40 * "9", "loop"])
+def test_any_name_of_a_bus_is_written(tmp_path, write, channel):
+    exported_to(tmp_path, write, f"(1700000010.000000) {channel} 110#01")
+
+
+@pytest.mark.parametrize("write", [write_blf, write_asc, write_mcap])
+def test_a_time_beyond_all_formats_is_refused(tmp_path, write):
+    with pytest.raises(HarnessError, match="line 2 is stamped later than the year 2200"):
+        exported_to(tmp_path, write, "(0000000000.000000) c 110#01", "(999999999999.000000) c 110#01")
