@@ -16,8 +16,8 @@ Json = dict[str, Any]
 
 OWN = "sim.drawing"
 THEME = "script/theme.js"
-UPLOT, UPLOT_CSS = "vendor/uPlot.iife.min.js", "vendor/uPlot.min.css"
-PLOTTING = (UPLOT, "script/clock.js", "script/charts.js")
+UPLOT, UPLOT_CSS, UPLOT_LICENCE = "vendor/uPlot.iife.min.js", "vendor/uPlot.min.css", "vendor/uPlot.LICENSE"
+PLOTTING = ("script/clock.js", "script/charts.js")
 LOOPBACK = "ws://127.0.0.1:* ws://localhost:*"
 
 
@@ -42,7 +42,11 @@ def page(
     css, run = "", [_read(OWN, THEME)]
     if data is not None:
         css = _read(OWN, UPLOT_CSS) + "\n"
-        run += [*(_read(OWN, name) for name in PLOTTING), *(_read(package, name) for name in scripts)]
+        run += [
+            _uplot(),
+            *(_read(OWN, name) for name in PLOTTING),
+            *(_read(package, name) for name in scripts),
+        ]
     text = None if data is None else htmlsafe_json_dumps(data, allow_nan=False, separators=(",", ":"))
     return _render(package, template, css, run, "", {**content, "data": text})
 
@@ -56,7 +60,7 @@ def live_page(package: str, template: str, scripts: Sequence[str], **content: ob
         scripts: of the package, by their paths; they have uPlot.
         content: what the template names.
     """
-    run = [_read(OWN, THEME), _read(OWN, UPLOT), *(_read(package, name) for name in scripts)]
+    run = [_read(OWN, THEME), _uplot(), *(_read(package, name) for name in scripts)]
     css = _read(OWN, UPLOT_CSS) + "\n"
     return _render(package, template, css, run, f"; connect-src {LOOPBACK}", {**content, "data": None})
 
@@ -77,6 +81,11 @@ def _render(
     return environment.get_template(template).render(
         css=Markup(css), scripts=[Markup(text) for text in scripts], policy=policy + allowed, **content
     )
+
+
+def _uplot() -> str:
+    """The plot library with its licence, which every copy must bear."""
+    return f"/*\n{_read(OWN, UPLOT_LICENCE)}*/\n{_read(OWN, UPLOT)}"
 
 
 def _read(package: str, name: str) -> str:

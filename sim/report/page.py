@@ -13,7 +13,7 @@ from sim.report.event_words import event_table
 from sim.report.parameter_table import parameter_table
 from sim.scenario.schema import Scenario
 
-SCRIPTS = ("script/attitude.js", "script/track.js")
+SCRIPTS = ("script/attitude.js", "script/track.js", "script/events.js")
 
 
 def write_report(

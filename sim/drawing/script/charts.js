@@ -5,6 +5,7 @@ const charts = (() => {
   const unit_s = flight.time.unit_s;
   const plots = [];
   const INK = "#1b2733", GRID = "#c9d2dc", ECLIPSE = "#dde4ee", SPINE = "#8a97a5", BACKOFF = "#f7e3d3";
+  const WARNING = "#e69f00", LIMIT = "#b3261e";
   const REACH = 0.42;
   let sharing = false;
 
@@ -52,7 +53,7 @@ const charts = (() => {
       series: [{}, ...(laned ? [{ show: false }] : series.map(asSeries))],
       hooks: {
         drawClear: [(u) => bands(u, flight.time.eclipses, ECLIPSE)],
-        draw: [(u) => (laned ? drawLanes(u, panel) : drawLevels(u, panel))],
+        draw: [(u) => (laned ? drawLanes(u, panel) : drawLevels(u, panel)), drawEvents],
         setScale: [(u, key) => {
           if (key === "x" && !sharing) showSpan(u.scales.x.min * unit_s, u.scales.x.max * unit_s);
         }],
@@ -228,6 +229,23 @@ const charts = (() => {
           ctx.fillRect(x, Math.min(top, bottom), width, Math.abs(bottom - top));
         });
       });
+    });
+  }
+
+  // A mark at the top for each event that is more than information.
+  function drawEvents(u) {
+    const size = 5 * devicePixelRatio;
+    clipped(u, (ctx) => {
+      for (const { t_s, severity } of flight.events ?? []) {
+        if (severity === "info") continue;
+        const x = u.valToPos(t_s / unit_s, "x", true);
+        ctx.fillStyle = theme.colour(severity === "warning" ? WARNING : LIMIT);
+        ctx.beginPath();
+        ctx.moveTo(x - size, u.bbox.top);
+        ctx.lineTo(x + size, u.bbox.top);
+        ctx.lineTo(x, u.bbox.top + 2 * size);
+        ctx.fill();
+      }
     });
   }
 

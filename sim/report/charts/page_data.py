@@ -34,7 +34,7 @@ def page_data(
     return {
         "time": time_data(flight.time, flight.t_s, flight.start_unix_s),
         "charts": {chart.name: chart.data for section in sections for chart in section.charts if chart.data},
-        "events": [{"t_s": one.t_s, "severity": one.severity, "what": one.what} for one in events],
+        "events": [{"t_s": one.t_s, "severity": one.severity} for one in events],
         "motion": _motion(scenario, flight),
     }
 

@@ -35,14 +35,11 @@
       ctx.fill();
       ctx.stroke();
     }
-    const inView = (at) => motion.t_s[at] >= view.state.from_s - 1 && motion.t_s[at] <= view.state.to_s + 1;
-    for (let at = 1; at < motion.count; at += 1) {
-      if (Math.abs(motion.longitude[at] - motion.longitude[at - 1]) > 180) continue;
-      const dark = motion.lit[at] < 0.5;
-      ctx.globalAlpha = inView(at) ? 1 : 0.18;
+    for (const dark of [false, true]) for (const inView of [false, true]) {
+      ctx.globalAlpha = inView ? 1 : 0.18;
       ctx.strokeStyle = theme.colour(dark ? MUTED : INK);
       ctx.lineWidth = (dark ? 2.6 : 1.2) * ratio;
-      stroke(ctx, [[motion.longitude[at - 1], motion.latitude[at - 1]], [motion.longitude[at], motion.latitude[at]]]);
+      drawPart(ctx, dark, inView);
     }
     ctx.globalAlpha = 1;
     for (const lane of lanes) {
@@ -61,6 +58,20 @@
   function stroke(ctx, points) {
     ctx.beginPath();
     for (const [longitude, latitude] of points) ctx.lineTo(x(longitude), y(latitude));
+    ctx.stroke();
+  }
+
+  // All of the track that is dark, or not, in the part that the charts show, or outside of it.
+  function drawPart(ctx, dark, inView) {
+    const { from_s, to_s } = view.state;
+    ctx.beginPath();
+    for (let at = 1; at < motion.count; at += 1) {
+      const shown = motion.t_s[at] >= from_s && motion.t_s[at - 1] <= to_s;
+      const leaps = Math.abs(motion.longitude[at] - motion.longitude[at - 1]) > 180;
+      if (leaps || shown !== inView || (motion.lit[at] < 0.5) !== dark) continue;
+      ctx.moveTo(x(motion.longitude[at - 1]), y(motion.latitude[at - 1]));
+      ctx.lineTo(x(motion.longitude[at]), y(motion.latitude[at]));
+    }
     ctx.stroke();
   }
 

@@ -122,6 +122,13 @@ def test_a_series_is_put_out_and_on_by_mouse_and_keyboard(look, report):
     assert (item.get_attribute("aria-pressed"), page.evaluate(shown)) == ("true", True)
 
 
+def test_a_click_on_an_event_shows_its_time(look, report):
+    page = look(report)
+    page.locator("#events tbody button").first.click()
+    assert page.evaluate("clock.state.t_s") == 91.0
+    assert values(page, "modes") == ["–", "–", "on", "–"]
+
+
 def test_the_flight_can_be_played(look, report):
     page = look(report)
     page.get_by_label("Pace", exact=True).select_option("1000")
