@@ -145,7 +145,8 @@ const charts = (() => {
   function rounded(u, splits) {
     const decades = Math.log10(u.scales.y.max / u.scales.y.min);
     return splits.map((value) => {
-      const leading = Math.round(value / 10 ** Math.floor(Math.log10(value) + 1e-9));
+      const first = value / 10 ** Math.floor(Math.log10(value) + 1e-9), leading = Math.round(first);
+      if (Math.abs(first - leading) > 1e-6) return null;
       return leading === 1 || (decades < 2 && (leading === 2 || leading === 5)) || decades < 0.5 ? value : null;
     });
   }

@@ -43,6 +43,7 @@ def _motion(scenario: Scenario, flight: DrawnFlight) -> Json:
     motion = flight.lines.motion
     longitude, latitude = below_deg(flight)
     return {
+        "orbit_s": flight.orbit_s,
         "t_s": packed(motion.places / flight.tick_hz),
         "q": packed(motion.samples("q_body_from_orbit").ravel()),
         "b_t": packed(motion.samples("b_body_t").ravel()),

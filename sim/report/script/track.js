@@ -35,10 +35,11 @@
       ctx.fill();
       ctx.stroke();
     }
+    const orbits = (view.state.to_s - view.state.from_s) / flight.motion.orbit_s, faint = Math.min(1, 5 / orbits);
     for (const dark of [false, true]) for (const inView of [false, true]) {
-      ctx.globalAlpha = inView ? 1 : 0.18;
+      ctx.globalAlpha = inView ? Math.max(0.3, faint) : 0.15;
       ctx.strokeStyle = theme.colour(dark ? MUTED : INK);
-      ctx.lineWidth = (dark ? 2.6 : 1.2) * ratio;
+      ctx.lineWidth = (dark ? 2.6 : 1.2) * Math.max(0.5, faint) * ratio;
       drawPart(ctx, dark, inView);
     }
     ctx.globalAlpha = 1;
@@ -48,7 +49,7 @@
         if (to_s < view.state.from_s || from_s > view.state.to_s) continue;
         const [longitude, latitude] = below(from_s);
         ctx.beginPath();
-        ctx.arc(x(longitude), y(latitude), Math.max(width / 300, 1.4) * ratio, 0, 7);
+        ctx.arc(x(longitude), y(latitude), Math.max((width / 300) * Math.max(0.55, faint), 1.4) * ratio, 0, 7);
         ctx.fill();
       }
     }
