@@ -46,6 +46,20 @@ _MONITORS: dict[int, str] = {
     Monitor.ORBIT_KNOWN: "the orbit has no position",
     Monitor.NO_SECOND_SENDER: "another node sends as the flight software",
 }
+_SENSOR_FAULTS: dict[int, str] = {
+    SensorFault.SATURATED: "saturated",
+    SensorFault.STRENGTH: "wrong strength",
+    SensorFault.FROZEN: "frozen",
+    SensorFault.REFUSED: "refused by the filter",
+    SensorFault.SILENT: "silent",
+    SensorFault.UNLIT: "no Sun in sunlight",
+}
+_COIL_FAULTS: dict[int, str] = {
+    CoilFault.OPEN: "open",
+    CoilFault.WEAK: "weak",
+    CoilFault.REVERSED: "reversed",
+    CoilFault.STUCK: "stuck",
+}
 _FSW: dict[int, Words] = {
     Event.FILTER_STARTED: (
         lambda count: "filter started" if not count else f"filter started, {count} restarts before",
@@ -68,11 +82,11 @@ _FSW: dict[int, Words] = {
         "The clock on the bus jumped.",
     ),
     Event.SENSOR_ISOLATED: (
-        lambda argument: _unit(Event.SENSOR_ISOLATED, argument, SensorFault),
+        lambda argument: _unit(Event.SENSOR_ISOLATED, argument, _SENSOR_FAULTS),
         "Its samples are not used any more.",
     ),
     Event.SENSOR_READMITTED: (
-        lambda argument: _unit(Event.SENSOR_ISOLATED, argument, SensorFault, "used again"),
+        lambda argument: _unit(Event.SENSOR_ISOLATED, argument, _SENSOR_FAULTS, "used again after"),
         "It has been sound for long enough.",
     ),
     Event.SENSORS_DISAGREE: (
@@ -80,11 +94,11 @@ _FSW: dict[int, Words] = {
         "Without an estimate it cannot be told which is wrong.",
     ),
     Event.COIL_FAULT: (
-        lambda argument: _unit(Event.COIL_FAULT, argument, CoilFault),
+        lambda argument: _unit(Event.COIL_FAULT, argument, _COIL_FAULTS),
         "Control does without this coil.",
     ),
     Event.COIL_READMITTED: (
-        lambda argument: _unit(Event.COIL_FAULT, argument, CoilFault, "used again"),
+        lambda argument: _unit(Event.COIL_FAULT, argument, _COIL_FAULTS, "used again after"),
         "Its pulses act as they should.",
     ),
     Event.SECOND_SENDER: (
@@ -149,9 +163,9 @@ def event_table(summary: Json, scenario: Scenario) -> Table:
     return Table(("t [s]", "orbit", "node", "severity", "what happened", "what it means"), rows)
 
 
-def _unit(event: Event, argument: int, faults: type[IntEnum], now: str = "isolated") -> str:
+def _unit(event: Event, argument: int, faults: Mapping[int, str], now: str = "isolated") -> str:
     unit, fault = divmod(argument, 100)
-    return f"{_named(UNITS[event], unit)} {now}: {_name(faults, fault)}"
+    return f"{_named(UNITS[event], unit)} {now}: {_named(faults, fault)}"
 
 
 def _named(names: Mapping[int, str], number: int) -> str:

@@ -33,7 +33,7 @@ def test_every_event_has_words_and_a_meaning(node, event):
         (Event.MONITOR_TRIPPED, 99, "monitor tripped: number 99"),
         (Event.REQUEST_REFUSED, 8, "pulse refused by the coil board: lockout"),
         (Event.SENSOR_ISOLATED, 205, "sun sensor isolated: silent"),
-        (Event.SENSOR_READMITTED, 101, "magnetometer used again: saturated"),
+        (Event.SENSOR_READMITTED, 101, "magnetometer used again after: saturated"),
         (Event.COIL_FAULT, 301, "coil 2 isolated: open"),
         (Event.COIL_FAULT, 999, "number 9 isolated: number 99"),
         (200, 4, "event 200 (4)"),
