@@ -3,10 +3,11 @@
 import tomllib
 from itertools import islice
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, Field, Strict, ValidationError
 
+from fsw.input.near import did_you_mean
 from fsw.input.toml_text import BoundsError, load_toml
 
 Triple = Annotated[tuple[float, float, float], Strict(False)]
@@ -80,7 +81,7 @@ def faults(model: type[Any], error: ValidationError) -> str:
 def _fault(model: type[Any], detail: Nested) -> str:
     path = ".".join(str(part) for part in detail["loc"])
     if detail["type"] == "extra_forbidden":
-        return f"{path} is not a known key"
+        return f"{path} is not a known key{_near_key(model, detail['loc'])}"
     if detail["type"] == "missing":
         return f"{path} is missing"
     if detail["type"] == "union_tag_not_found":
@@ -91,7 +92,45 @@ def _fault(model: type[Any], detail: Nested) -> str:
         return f"{path}: {message}" if path else message
     allowed = _allowed_range(model, detail["loc"]) or _KINDS.get(detail["type"], "")
     hint = f"allowed is {allowed}" if allowed else f"{message[0].lower()}{message[1:]}"
+    if detail["type"] == "literal_error":
+        hint += _near_value(model, detail["loc"], detail["input"])
     return f"{path} = {_shortened(detail['input'])} is not allowed: {hint}"
+
+
+def section_in(annotation: object) -> type[BaseModel] | None:
+    """The section that a key of this type holds, also one of a list of them; None for any other value."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return annotation
+    return next(filter(None, map(section_in, get_args(annotation))), None)
+
+
+def words_of(annotation: object) -> tuple[str, ...]:
+    """The words that a key of this type may be; none for one that is no choice of words."""
+    if annotation is bool:
+        return ("true", "false")
+    if get_origin(annotation) is Literal:
+        return tuple(str(word) for word in get_args(annotation))
+    return next(filter(None, map(words_of, get_args(annotation))), ())
+
+
+def _owner(model: type[Any], location: tuple[int | str, ...]) -> type[BaseModel] | None:
+    """The section that holds the last part of a location."""
+    owner: type[BaseModel] | None = model
+    for part in location[:-1]:
+        if isinstance(part, str) and owner is not None and part in owner.model_fields:
+            owner = section_in(owner.model_fields[part].annotation)
+    return owner
+
+
+def _near_key(model: type[Any], location: tuple[int | str, ...]) -> str:
+    owner = _owner(model, location)
+    return "" if owner is None else did_you_mean(str(location[-1]), owner.model_fields)
+
+
+def _near_value(model: type[Any], location: tuple[int | str, ...], given: object) -> str:
+    owner = _owner(model, location)
+    field = None if owner is None else owner.model_fields.get(str(location[-1]))
+    return "" if field is None else did_you_mean(str(given), words_of(field.annotation))
 
 
 def _shortened(value: object) -> str:

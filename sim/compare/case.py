@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from fsw.core.laws.table import LAWS, Aim
+from fsw.input.near import did_you_mean
 from fsw.input.schema import Nested, merge
 from fsw.table.own_law import declared
 from fsw.table.table import lay_over
@@ -69,8 +70,9 @@ def chosen_laws(scenario: Scenario, text: str | None) -> tuple[str, ...]:
     aims = [aim.value for aim in Aim]
     for word in words:
         if word not in {*known, *aims, "all"}:
+            hint = did_you_mean(word, [*known, *aims])
             raise HarnessError(
-                f"--laws {text}: there is no law '{word}': choose among {', '.join(known)}, "
+                f"--laws {text}: there is no law '{word}'{hint}: choose among {', '.join(known)}, "
                 f"all laws of an aim ({', '.join(aims)}), or all"
             )
     return tuple(name for name, aim in known.items() if {name, aim.value, "all"} & set(words))

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from functools import partial
 from math import inf
 
+from fsw.input.near import did_you_mean
 from sim.errors import HarnessError
 from sim.fault_table.forged_rows import FORGED_ROWS
 from sim.fault_table.row import FaultRow, Unseen, When
@@ -282,7 +283,10 @@ def choose_rows(names: Sequence[str], slow: bool = False) -> list[FaultRow]:
     """
     for name in names:
         if not any(_matches(row, name) for row in ROWS):
-            raise HarnessError(f"--row {name}: there is no such row; `torquer faults --list` names them")
+            hint = did_you_mean(name, (row.name for row in ROWS))
+            raise HarnessError(
+                f"--row {name}: there is no such row{hint}; `torquer faults --list` names them"
+            )
     if not names:
         return [row for row in ROWS if slow or not row.slow]
     return [row for row in ROWS if any(_matches(row, name) for name in names)]

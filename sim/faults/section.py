@@ -7,6 +7,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, Strict, model_validator
 
+from fsw.input.near import did_you_mean
 from fsw.input.schema import Positive, Section, TableError
 from sim.faults.faulty_plant import FaultyPlant, ScheduledFault
 from sim.faults.kinds import KINDS, make
@@ -27,13 +28,16 @@ class FaultSection(Section):
     def _is_of_the_table(self) -> Self:
         kind = KINDS.get(self.kind)
         if kind is None or not kind.in_plant:
-            names = ", ".join(name for name, kind in KINDS.items() if kind.in_plant)
-            raise ValueError(f"kind '{self.kind}' is none of {names}")
+            names = [name for name, kind in KINDS.items() if kind.in_plant]
+            raise ValueError(
+                f"kind '{self.kind}'{did_you_mean(self.kind, names)} is none of {', '.join(names)}"
+            )
         for name, value in self.parameters.items():
             allowed = kind.parameters.get(name)
             if allowed is None:
-                names = ", ".join(kind.parameters) or "none"
-                raise ValueError(f"parameters.{name}: {self.kind} has no such parameter, but {names}")
+                there = ", ".join(kind.parameters) or "none"
+                hint = did_you_mean(name, kind.parameters)
+                raise ValueError(f"parameters.{name}: {self.kind} has no such parameter{hint}, but {there}")
             if not allowed.low <= value <= allowed.high:
                 raise ValueError(
                     f"parameters.{name} = {value:g} is outside {allowed.low:g} to {allowed.high:g}"

@@ -16,6 +16,7 @@ from typing import Any, Literal, Self
 from pydantic import Field, model_validator
 
 from fsw.core.orbit.tle import tle_elements
+from fsw.input.near import did_you_mean
 from fsw.input.schema import (
     Nested,
     Positive,
@@ -158,7 +159,7 @@ def orbit_period_s(scenario: Scenario) -> float:
 
 def shipped() -> list[Scenario]:
     """The scenarios that ship, by name."""
-    return [load(name) for name in _names()]
+    return [load(name) for name in shipped_names()]
 
 
 def load(name_or_path: str, overrides: Nested | None = None) -> Scenario:
@@ -272,17 +273,17 @@ def _read(name_or_path: str) -> tuple[Nested, str]:
     if name_or_path.endswith(".toml"):
         path = Path(name_or_path)
         return with_digests(named(read_toml(path), path.parent), path.parent), name_or_path
-    names = _names()
+    names = shipped_names()
     if name_or_path not in names:
         raise TableError(
-            f"there is no scenario {name_or_path!r}: choose one of {', '.join(names)}, "
-            "or a path that ends in .toml"
+            f"there is no scenario {name_or_path!r}{did_you_mean(name_or_path, names)}: choose one of "
+            f"{', '.join(names)}, or a path that ends in .toml"
         )
     shipped_file = resources.files("sim.scenario.shipped").joinpath(f"{name_or_path}.toml")
     return tomllib.loads(shipped_file.read_text(encoding="utf-8")), f"scenario {name_or_path}"
 
 
-def _names() -> list[str]:
+def shipped_names() -> list[str]:
     """The names of the scenarios that ship."""
     folder = resources.files("sim.scenario.shipped")
     return sorted(

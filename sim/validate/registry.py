@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from fsw.input.near import did_you_mean
 from sim.campaign.claim import Study
 from sim.errors import HarnessError
 from sim.validate import computed, microsat, population, posat1
@@ -32,8 +33,10 @@ def choose_studies(studies: Sequence[Study], only: Sequence[str], quick: bool) -
     """
     for word in only:
         if not any(_begins(study.id, word) for study in studies):
-            ids = ", ".join(study.id for study in studies)
-            raise HarnessError(f"--only {word}: no such claims; there are {ids}")
+            ids = [study.id for study in studies]
+            raise HarnessError(
+                f"--only {word}: no such claims{did_you_mean(word, ids)}; there are {', '.join(ids)}"
+            )
     studies_left = [study for study in studies if not only or any(_begins(study.id, word) for word in only)]
     studies_left = [study for study in studies_left if not (quick and study.has_flights)]
     if not studies_left:

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 from math import inf
 
+from fsw.input.near import did_you_mean
 from fsw.input.schema import Nested, TableError
 from sim.campaign.definition.columns import NUMBERS
 
@@ -60,9 +60,8 @@ def _flat(values: Mapping[str, object], prefix: str = "") -> Iterator[tuple[str,
 def _requirement(name: str, limit: object, source: str) -> FigureRequirement:
     figure = SHORT.get(name, name)
     if figure not in NUMBERS:
-        near = get_close_matches(figure, [*SHORT, *NUMBERS], 3, cutoff=0.4)
-        hint = f"near are {', '.join(near)}" if near else f"one is {next(iter(SHORT))}"
-        raise TableError(f"{source}: requirement.{name} is no figure of a run: {hint}")
+        hint = did_you_mean(figure, [*SHORT, *NUMBERS]) or f": one is {next(iter(SHORT))}"
+        raise TableError(f"{source}: requirement.{name} is no figure of a run{hint}")
     limits: Nested = limit if isinstance(limit, dict) else {"at_most": limit}
     for side, value in limits.items():
         if isinstance(value, bool) or not isinstance(value, int | float) or not -inf < value < inf:

@@ -28,7 +28,10 @@ def field_nt(frames):
         ({"kind": "loss"}, "fault.0.at_s"),
         ({"kind": "loss", "at_s": 1.0, "lasts_s": 0.0}, "fault.0.lasts_s"),
         ({"kind": "loss", "at_s": 1.0, "parameters": {"part": 1.1}}, "part = 1.1 is outside 0 to 1"),
-        ({"kind": "loss", "at_s": 1.0, "parameters": {"parts": 0.1}}, "no such parameter, but part"),
+        (
+            {"kind": "loss", "at_s": 1.0, "parameters": {"parts": 0.1}},
+            r"no such parameter \(did you mean 'part'\?\), but part",
+        ),
         ({"kind": "loss", "at_s": 1.0, "often": True}, "fault.0.often"),
         ({"kind": "mag_late", "at_s": 1.0, "parameters": {"ticks": 0.0}}, "ticks = 0 is outside 1 to 1000"),
         ({"kind": "sun_turned", "at_s": 1.0, "parameters": {"nt": 1.0}}, "sun_turned has no such parameter"),

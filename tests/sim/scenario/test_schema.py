@@ -98,7 +98,7 @@ class TestFinding:
         file = tmp_path / "mine.toml"
         text = resources.files("sim.scenario.shipped").joinpath("microsat.toml").read_text(encoding="utf-8")
         file.write_text(text.replace("angle_deg = 40.0", "angel_deg = 40.0"), encoding="utf-8")
-        assert fault(str(file)) == f"{file}: initial.angel_deg is not a known key"
+        assert fault(str(file)) == f"{file}: initial.angel_deg is not a known key (did you mean 'angle_deg'?)"
 
 
 class TestSettings:

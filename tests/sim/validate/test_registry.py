@@ -27,9 +27,17 @@ class TestChoice:
         with pytest.raises(HarnessError, match="--quick"):
             ids("posat1", quick=True)
 
-    @pytest.mark.parametrize("word", ["refer", "posat", "nothing", ""])
-    def test_words_that_fit_nothing_are_refused(self, word, ids):
-        with pytest.raises(HarnessError, match=r"no such claims; there are reference\.igrf14, "):
+    @pytest.mark.parametrize(
+        ("word", "hint"),
+        [
+            ("refer", r" \(did you mean 'reference\.igrf14' or 'reference\.tle'\?\)"),
+            ("posat", r" \(did you mean 'posat1'\?\)"),
+            ("nothing", ""),
+            ("", ""),
+        ],
+    )
+    def test_words_that_fit_nothing_are_refused(self, word, hint, ids):
+        with pytest.raises(HarnessError, match=rf"no such claims{hint}; there are reference\.igrf14, "):
             ids(word)
 
     def test_every_format_of_reference_data_ships(self):

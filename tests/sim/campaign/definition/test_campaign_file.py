@@ -94,7 +94,7 @@ REFUSED = {
         disperse(ANGLE, NORMAL) + f'\n[[disperse]]\nkey = "{ANGLE}"\n{NORMAL}',
         "gives initial.angle_deg twice",
     ),
-    "requirement": (HEAD + "requirement.pointing = 3.0", "requirement.pointing is no figure .* pointing_deg"),
+    "requirement": (HEAD + "requirement.pointing = 3.0", "requirement.pointing is no figure .*'pointing_deg"),
     "limit": (
         HEAD + 'requirement.pointing_deg = "x"',
         "pointing_deg = 'x' is not allowed: allowed is a number",

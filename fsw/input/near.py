@@ -1,0 +1,28 @@
+"""What a user may have meant: the known words nearest to one that is not known."""
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+LEAST_LIKENESS = 0.6
+MOST = 3
+
+
+def near(word: str, known: Iterable[str]) -> list[str]:
+    """The known words like ``word``, the likest first; none where none is like it.
+
+    Upper case and the choice between ``-`` and ``_`` do not count. What begins with the word is like it.
+    """
+    plain = {_plain(one): one for one in known}
+    found = get_close_matches(_plain(word), plain, MOST, LEAST_LIKENESS)
+    begin_alike = [one for one in plain if len(word) > 2 and one.startswith(_plain(word))]
+    return [plain[one] for one in dict.fromkeys([*found, *begin_alike])][:MOST]
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """What follows an unknown word: `` (did you mean 'x' or 'y'?)``; empty where nothing is near."""
+    words = " or ".join(repr(one) for one in near(word, known))
+    return f" (did you mean {words}?)" if words else ""
+
+
+def _plain(word: str) -> str:
+    return word.lower().replace("_", "-")
