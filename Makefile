@@ -57,6 +57,7 @@ lint: venv
 	$(bin)/python tools/generate_icd.py --check
 	$(bin)/python tools/write_requirements.py --check
 	$(bin)/python tools/draw_design.py --check
+	$(bin)/python tools/write_cli.py --check
 
 notebooks: venv
 	$(bin)/python tools/run_notebooks.py $(NOTEBOOKS)

@@ -17,7 +17,12 @@ MOST_DISCARDED = 10_000
 
 
 def fly(
-    table: FlightTable, spec: str, disarmed: bool = False, bench: bool = False, parent: int | None = None
+    table: FlightTable,
+    spec: str,
+    disarmed: bool = False,
+    bench: bool = False,
+    parent: int | None = None,
+    quiet: bool = False,
 ) -> int:
     """Run the flight software on a bus until the run ends: the exit code.
 
@@ -27,6 +32,7 @@ def fly(
         disarmed: let no request to drive a coil get on the bus.
         bench: no PLANT_END ends it.
         parent: process that started this one; when it is gone the run is over.
+        quiet: print failures only.
     """
     try:
         node = FlightNode(flight_config(table))
@@ -34,7 +40,7 @@ def fly(
         link = Disarmed(link) if disarmed else link
     except (TableError, BusError) as error:
         return _failed(error, 2)
-    if parent is None:
+    if parent is None and not quiet:
         click.echo(f"fsw on {resolve(spec)}", err=True)
     try:
         _discard_backlog(link)

@@ -9,6 +9,8 @@ from contextvars import ContextVar
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
+from sim.console import current
+
 Watch = Callable[[int], None]
 
 _SHOWN = ContextVar("shown", default=True)
@@ -27,15 +29,15 @@ def shown(whether: bool) -> Iterator[None]:
 
 
 def note(text: str) -> None:
-    """A line on stderr."""
-    if _SHOWN.get():
+    """A line on stderr, of what is no part of the result."""
+    if _is_shown():
         print(text, file=sys.stderr, flush=True)
 
 
 @contextmanager
 def progress(what: str, total: int) -> Iterator[Watch]:
     """Yield a function to be called with the number of units done, of ``total``."""
-    if not _SHOWN.get():
+    if not _is_shown():
         yield lambda done: None
     elif sys.stderr.isatty():
         with _bar(what, total) as watch:
@@ -45,6 +47,10 @@ def progress(what: str, total: int) -> Iterator[Watch]:
             yield watch
     else:
         yield lambda done: None
+
+
+def _is_shown() -> bool:
+    return _SHOWN.get() and not current().quiet
 
 
 @contextmanager

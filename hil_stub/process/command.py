@@ -1,12 +1,15 @@
 """The command line of a board: kind, bus, limits and stimulus."""
 
 from collections.abc import Callable
-from typing import TextIO
+from importlib.metadata import version
+from platform import python_version
+from typing import Any, TextIO
 
 import click
 
 from fsw.bus.interface import BusError
 from fsw.bus.open_bus import KINDS, open_bus, resolve
+from fsw.input.near import did_you_mean
 from fsw.wire.messages import MagField, SunVector
 from hil_stub.bench import (
     DEADMAN_MS,
@@ -32,10 +35,40 @@ _tick_hz = click.option(
 _WITH_STIMULUS = {"ignore_unknown_options": True}  # so that --stimulus takes negative numbers
 
 
-@click.group()
+EXAMPLES = """\b
+Examples:
+  torquer board coil --bus socketcan:vcan0
+  torquer board magnetometer --bus loop --stimulus 20000 0 -30000
+  torquer board sun --bus loop --tick-hz 10"""
+
+
+class Boards(click.Group):
+    """The boards by name."""
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """The board that the arguments begin with.
+
+        Raises:
+            UsageError: there is no such board.
+        """
+        if args and not ctx.resilient_parsing and args[0] not in self.commands and args[0][:1] != "-":
+            hint = did_you_mean(args[0], self.commands)
+            raise click.UsageError(
+                f"there is no board {args[0]!r}{hint}: choose from {', '.join(self.commands)}"
+            )
+        return super().resolve_command(ctx, args)
+
+
+@click.group(cls=Boards, epilog=EXAMPLES)
 @click.option("--parent", type=int, hidden=True)
-def board(parent: int | None) -> None:
+@click.option("-q", "--quiet", is_flag=True, help="Print failures only.")
+@click.option("-v", "--verbose", is_flag=True, help="Say on stderr what runs, of which version.")
+def board(parent: int | None, quiet: bool, verbose: bool) -> None:
     """Run one board on a bus, until Ctrl-C; PLANT_END does not end it."""
+    if verbose:
+        click.echo(f"board: torquer {version('torquer')}, Python {python_version()}", err=True)
 
 
 @board.command()
@@ -161,9 +194,11 @@ def _serve(
         bus = open_bus(spec)
     except BusError as error:
         raise click.UsageError(str(error)) from error
-    click.echo(f"on {resolve(spec)}", err=True)
+    group = _group()
+    if not group["quiet"]:
+        click.echo(f"on {resolve(spec)}", err=True)
     try:
-        parent = _parent()
+        parent: int | None = group["parent"]
         run(bench, bus, PinLog(pins) if pins is not None else None, parent)
     except BusError as error:
         raise click.ClickException(str(error)) from error
@@ -173,8 +208,7 @@ def _serve(
         bus.close()
 
 
-def _parent() -> int | None:
-    """The option --parent of the group of commands."""
+def _group() -> dict[str, Any]:
+    """The options of the group of commands."""
     group = click.get_current_context().parent
-    parent: int | None = group.params["parent"] if group is not None else None
-    return parent
+    return {"parent": None, "quiet": False} if group is None else group.params

@@ -1,6 +1,5 @@
 """``torquer hil``: the flight software in real time against boards, each its own process or real hardware."""
 
-import json
 import os
 import time
 from contextlib import AbstractContextManager
@@ -8,10 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-import click
-
 from fsw.bus.interface import Bus
 from fsw.bus.open_bus import open_bus
+from fsw.input.near import did_you_mean
 from fsw.wire.frame import Frame
 from fsw.wire.messages import PlantBoot
 from sim.bench.budgets import Budgets, Json, judge, render
@@ -19,6 +17,7 @@ from sim.bench.memory import MemoryMonitor, scheduling
 from sim.bench.processes import BenchProcess, BenchProcesses, hub_of
 from sim.bench.realtime_loop import RealtimeLoop, is_boot
 from sim.bench.tick_source import PlantTicks, SyncOnly, TickSource, line_to
+from sim.console import answer, fail, say
 from sim.errors import HarnessError
 from sim.flight.bus_in_use import FLIGHT_NODES, refuse_bus_in_use
 from sim.flight.second_senders import describe_senders
@@ -79,11 +78,14 @@ def real_boards(names: str | None) -> frozenset[str]:
     """
     given = frozenset(name.strip() for name in names.split(",")) if names else frozenset()
     if strange := sorted(given - set(BOARDS)):
-        raise HarnessError(f"--real {names}: {strange[0]!r} is no board: choose from {', '.join(BOARDS)}")
+        hint = did_you_mean(strange[0], BOARDS)
+        raise HarnessError(
+            f"--real {names}: {strange[0]!r} is no board{hint}: choose from {', '.join(BOARDS)}"
+        )
     return given
 
 
-def hil(settings: HilSettings, as_json: bool = False) -> int:
+def hil(settings: HilSettings) -> int:
     """Run the bench: exit code 1 if a budget is broken, a node has ended early, or there is a second sender.
 
     Raises:
@@ -106,9 +108,8 @@ def hil(settings: HilSettings, as_json: bool = False) -> int:
             folder = settings.out or Path(scratch)
             _begin(settings, folder, spec)
             table = write_flight_table(Path(scratch), settings.scenario)
-            if not as_json:
-                click.echo(_heading(settings, spec))
-            numbers = _run(settings, spec, hub_pid, bus, processes, folder, table, as_json)
+            say(_heading(settings, spec))
+            numbers = _run(settings, spec, hub_pid, bus, processes, folder, table)
         finally:
             bus.close()
         lost = [process for process in processes.by_name.values() if not process.alive]
@@ -117,14 +118,13 @@ def hil(settings: HilSettings, as_json: bool = False) -> int:
         run_dir.write_json(settings.out / NUMBERS, numbers)
         _write_page(settings.out / PAGE, numbers, settings.scenario.epoch_unix_s)
         bind(settings.out, run_dir.BUS_LOG, NUMBERS)
-    if as_json:
-        click.echo(json.dumps(numbers, indent=2))
+    answer(numbers)
     failures = [f"{name} ended before its time: {last}" for name, last in numbers["ended"].items()]
     failures += [describe_senders(numbers["second_senders"])] if numbers["second_senders"] else []
     broken = [line["name"] for line in numbers["budgets"] if not line["kept"]]
     failures += [f"over budget: {', '.join(broken)}"] if broken else []
     if failures:
-        click.echo(f"torquer: {'; '.join(failures)}", err=True)
+        fail("; ".join(failures))
     return int(bool(failures))
 
 
@@ -153,7 +153,6 @@ def _run(
     processes: BenchProcesses,
     folder: Path,
     table: Path,
-    as_json: bool,
 ) -> Json:
     scenario, ticks = settings.scenario, _ticks(settings)
     tick_hz = scenario.time.tick_hz
@@ -179,8 +178,7 @@ def _run(
     numbers |= {"real": sorted(settings.real), "memory": memory.history(), "scheduling": scheduling()}
     numbers["second_senders"] = [sender.as_json() for sender in measured.second_senders]
     numbers["budgets"] = [{**line._asdict(), "kept": line.kept} for line in lines]
-    if not as_json:
-        click.echo(render(numbers, lines))
+    say(render(numbers, lines))
     return numbers
 
 

@@ -21,11 +21,13 @@ from sim.campaign.one_run import Keep, RunTask
 from sim.campaign.report.analysis import CampaignAnalysis, analyse
 from sim.campaign.results.row import RunRow, Status
 from sim.campaign.results.store import LOCK, RESULTS, Results, open_results
+from sim.console import detail, warn
 from sim.errors import HarnessError
 from sim.progress import note, progress
 from sim.record.destination import check_folder
 from sim.scenario.schema import flight_table, scenario_of
 from sim.signals import EndedBySignal
+from sim.sizing.doubts import doubts
 
 PAGE, PARQUET = "campaign.html", "results.parquet"
 LINE_EVERY_S = 60.0
@@ -98,8 +100,11 @@ def campaign(
         _check_resumable(source, over, settings, out)
         out = Path(source)
     chosen = load_campaign(source, over, settings)
-    if (nominal := scenario_of(chosen.base, source)).own_law is not None:
+    nominal = scenario_of(chosen.base, source)
+    if nominal.own_law is not None:
         flight_config(flight_table(nominal))  # a fault of it would be that of every run
+    for doubt in doubts(nominal):
+        warn(doubt)
     folder = out or Path("campaigns") / f"{chosen.name}-{datetime.now(UTC):%Y%m%dT%H%M%SZ}"
     check_folder(folder, (FILE, SCENARIO, RESULTS, LOCK, PAGE, *([PARQUET] if parquet else [])))
     executor: Executor = Cluster(scheduler) if scheduler else Processes(workers or os.cpu_count() or 1)
@@ -110,6 +115,7 @@ def campaign(
         missing = [run for run in range(chosen.runs) if run not in there]
         if missing:
             _check_version(folder, results)
+        detail(f"{len(missing)} of {chosen.runs} runs are not in {folder}")
         task = RunTask(chosen, Keep(keep), folder.absolute())
         try:
             _fly(executor, task, missing, results)

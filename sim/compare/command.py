@@ -6,8 +6,6 @@ from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 
-import click
-
 from sim.campaign.claim import Study
 from sim.campaign.runner import StudyResult, run
 from sim.compare.case import Driver, cases, chosen_laws
@@ -15,9 +13,10 @@ from sim.compare.page import compare_page
 from sim.compare.picture import picture
 from sim.compare.score import Result, Score, by_axis1, fly_case
 from sim.compare.table import as_csv, as_json, as_text, ranked
+from sim.console import answer, fail, say
 from sim.errors import HarnessError
 from sim.flight.record_flight import MOST_IN_MEMORY, ticks_of
-from sim.progress import progress
+from sim.progress import note, progress
 from sim.record.destination import check_folder
 from sim.record.run_dir import write_json
 from sim.report.figures.controlled import SETTLED_DEG
@@ -81,7 +80,7 @@ def compare(
     def take(finished: StudyResult) -> None:
         results.append(finished.results[0])
         if not bar:
-            click.echo(_line(finished), err=True)
+            note(_line(finished))
 
     try:
         with progress(f"comparing {len(chosen)} laws on {scenario.name}", len(studies)) as watch:
@@ -90,16 +89,18 @@ def compare(
         scores = ranked(result.score for result in results)
         description["complete"] = len(results) == len(studies)
         _write(folder, scenario, scores, description, results)
-    click.echo(_heading(scenario, seed, ticks))
-    click.echo(as_text(scores))
-    click.echo(f"files: {folder / JSON}, {CSV}, {PICTURE}, {PAGE}")
+    say(_heading(scenario, seed, ticks))
+    say(as_text(scores))
+    say(f"files: {folder / JSON}, {CSV}, {PICTURE}, {PAGE}")
+    names = (JSON, CSV, PICTURE, PAGE)
+    answer({**as_json(scores, description), "files": [folder / name for name in names]})
     broken = [f"{score.law} ({score.driver})" for score in scores if score.limits_ok is False]
     if broken:
-        click.echo(f"torquer: the limits are broken by {', '.join(broken)}", err=True)
+        fail(f"the limits are broken by {', '.join(broken)}")
     own = scenario.control.law_name if scenario.control.own else None
     failed = [score.failure for score in scores if score.law == own and score.failure]
     if failed:
-        click.echo(f"torquer: {failed[0]}", err=True)
+        fail(str(failed[0]))
     return int(bool(broken or failed))
 
 

@@ -1,23 +1,19 @@
-"""``torquer hil --conformance``: one board, checked over its bus; the results as text or JSON."""
+"""``torquer hil --conformance``: one board, checked over its bus."""
 
-import json
 import time
-
-import click
 
 from fsw.bus.open_bus import open_bus, resolve
 from sim.conformance.board_link import BOARD_KINDS, BoardLink
 from sim.conformance.board_under_test import BoardLimits
 from sim.conformance.check_runner import CheckResult, run_checks
+from sim.console import answer, say
 from sim.scenario.coil_limits import coil_limits
 from sim.scenario.schema import Scenario
 
 _MARKS = {True: "ok    ", False: "FAILED"}
 
 
-def conformance(
-    scenario: Scenario, kind: str, bus: str, armed: bool, deadman_s: float, as_json: bool = False
-) -> int:
+def conformance(scenario: Scenario, kind: str, bus: str, armed: bool, deadman_s: float) -> int:
     """Check the board of ``kind`` on ``bus`` against docs/icd.md, its limits being those of the scenario.
 
     Raises:
@@ -29,27 +25,18 @@ def conformance(
     limits = BoardLimits(board.pulse_ms, board.backoff_ms, board.shared, deadman_s)
     spec = resolve(bus)
     can_bus = open_bus(spec)
-    if not as_json:
-        click.echo(f"{kind} on {spec}, {tick_hz} Hz, {_limits_text(limits)}")
+    say(f"{kind} on {spec}, {tick_hz} Hz, {_limits_text(limits)}")
     began = time.monotonic()
     try:
-        results = run_checks(
-            BoardLink(can_bus, BOARD_KINDS[kind], tick_hz),
-            limits,
-            armed,
-            lambda result: _echo(result, as_json),
-        )
+        results = run_checks(BoardLink(can_bus, BOARD_KINDS[kind], tick_hz), limits, armed, _say)
     finally:
         can_bus.close()
     failed = [result for result in results if result.failure]
     unarmed = [result for result in results if not result.ran]
-    if as_json:
-        wall_s = time.monotonic() - began
-        checks = [result._asdict() for result in results]
-        click.echo(json.dumps({"board": kind, "bus": spec, "seconds": wall_s, "checks": checks}, indent=2))
-    else:
-        skipped = f", {len(unarmed)} not run: they drive coils and need --arm" if unarmed else ""
-        click.echo(f"{len(results) - len(failed) - len(unarmed)} kept, {len(failed)} failed{skipped}")
+    skipped = f", {len(unarmed)} not run: they drive coils and need --arm" if unarmed else ""
+    say(f"{len(results) - len(failed) - len(unarmed)} kept, {len(failed)} failed{skipped}")
+    checks = [result._asdict() for result in results]
+    answer({"board": kind, "bus": spec, "seconds": time.monotonic() - began, "checks": checks})
     return int(bool(failed))
 
 
@@ -61,8 +48,6 @@ def _limits_text(limits: BoardLimits) -> str:
     )
 
 
-def _echo(result: CheckResult, as_json: bool) -> None:
-    if as_json:
-        return
+def _say(result: CheckResult) -> None:
     mark = _MARKS[result.failure is None] if result.ran else "not run"
-    click.echo(f"{mark:<8}{result.name:<20} {result.failure or result.what}")
+    say(f"{mark:<8}{result.name:<20} {result.failure or result.what}", failed=bool(result.failure))

@@ -4,8 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
-import click
-
+from sim.console import say
 from sim.errors import HarnessError
 from sim.export import can_log, mcap, netcdf, tables
 from sim.export.destination import whole_file
@@ -58,9 +57,9 @@ def export(run_or_log: Path, name: str | None, out: Path, force: bool, law: str 
     total = LogPass(source.log).duration_us() if chosen.of_log else _ticks(source)
     with whole_file(out, force) as path, progress(f"exporting {out.name}", total) as watch:
         notes = chosen.write(source, path, watch)
-    click.echo(f"exported: {out}")
+    say(f"exported: {out}")
     for line in (*source.binding.lines, *(f"note: {note}" for note in notes)):
-        click.echo(line)
+        say(line)
     return int(not source.binding.holds)
 
 

@@ -5,8 +5,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-import click
-
+from sim.console import answer, say
 from sim.errors import HarnessError
 from sim.fault_table import earlier_rows, render
 from sim.fault_table.campaign import fly_rows
@@ -22,7 +21,8 @@ PAGE, JUNIT, HTML, JSON = "faults.md", "faults.xml", "faults.html", "faults.json
 def list_rows(names: Sequence[str]) -> int:
     """Print the rows."""
     for row in choose_rows(names, slow=True):
-        click.echo(render.listed(row))
+        say(render.listed(row))
+    answer({"rows": [render.listed_json(row) for row in choose_rows(names, slow=True)]})
     return 0
 
 
@@ -30,12 +30,12 @@ def faults(
     names: Sequence[str],
     phases: int,
     seeds: int,
-    as_json: bool,
     out: Path | None,
     workers: int | None,
     write_docs: bool,
     slow: bool = False,
     keep: Path | None = None,
+    junit: Path | None = None,
 ) -> int:
     """Fly the rows, print each result, write the requested files.
 
@@ -43,12 +43,12 @@ def faults(
         names: of rows, or first words of names; none: all.
         phases: of each row.
         seeds: of each phase.
-        as_json: print JSON alone.
         out: folder for faults.xml, faults.html and faults.json; None: not written.
         workers: processes; None: one a core.
         slow: include rows that run real processes.
         keep: faults.json of an earlier campaign, for the rows that are not in this one.
         write_docs: write docs/faults.md of the repository.
+        junit: file for the verdicts as JUnit XML; None: not written.
 
     Returns:
         The exit code: 1 if an expectation is violated, else 0.
@@ -63,27 +63,29 @@ def faults(
         check_file(page)
     if out is not None:
         check_folder(out, (JUNIT, HTML, JSON))
-    quiet = as_json or sys.stderr.isatty()  # then the rows are printed after the progress bar
+    if junit is not None:
+        check_file(junit)
+    bar = sys.stderr.isatty()  # then the rows are printed after it
     count = len(rows) * phases * seeds
     with progress("injecting faults", count) as watch:
         results = fly_rows(
-            rows, phases, seeds, workers or os.cpu_count() or 1, watch, _print_later if quiet else _print
+            rows, phases, seeds, workers or os.cpu_count() or 1, watch, _print_later if bar else _print
         )
     by_name = earlier | {result.row.name: result for result in results}
     results = [by_name[row.name] for row in ROWS if row.name in by_name]
-    if as_json:
-        click.echo(render.as_json(results))
-    else:
-        for result in results if quiet else ():
-            _print(result)
-        click.echo(render.tally(results))
+    for result in results if bar else ():
+        _print(result)
+    say(render.tally(results))
+    answer(render.json_values(results))
+    if junit is not None:
+        _write(junit, render.junit(results))
     if out is not None:
         _write(out / JUNIT, render.junit(results))
         _write(out / HTML, render.html(results))
         _write(out / JSON, render.as_json(results))
     if page is not None:
         _write(page, render.markdown(results, phases, seeds))
-        click.echo(f"page: {page}", err=as_json)
+        say(f"page: {page}")
     return int(any(result.verdict is CheckVerdict.FAIL for result in results))
 
 
@@ -97,7 +99,7 @@ def _docs_page(names: set[str]) -> Path:
 
 
 def _print(result: RowResult) -> None:
-    click.echo(render.line(result))
+    say(render.line(result), failed=result.verdict is CheckVerdict.FAIL)
 
 
 def _print_later(result: RowResult) -> None:

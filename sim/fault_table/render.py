@@ -5,12 +5,15 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from itertools import groupby
 from math import inf
-from xml.etree import ElementTree
+from typing import Any
 
 from sim.drawing.pages import page
 from sim.fault_table.checks import ALWAYS
 from sim.fault_table.row import CaseResult, CheckVerdict, FaultRow, RowFault, RowResult
 from sim.faults.kinds import KINDS
+from sim.junit import JunitCase, junit_xml
+
+Json = dict[str, Any]
 
 _COLUMNS = ("row", "injected", "expected", "cases", "measured", "verdict")
 _REPEATABLE = ("pulses", "refused", "rejected", "worst error deg", "recovered s", "named s")
@@ -80,8 +83,18 @@ def listed(row: FaultRow) -> str:
     return f"{row.name:<24} {injected(row)}; expected: {expected(row)}"
 
 
+def listed_json(row: FaultRow) -> Json:
+    """One row for ``--list --json``."""
+    return {"row": row.name, "group": row.group, "injected": injected(row), "expected": expected(row)}
+
+
 def as_json(results: Sequence[RowResult]) -> str:
     """Everything, for programs."""
+    return json.dumps(json_values(results), indent=1)
+
+
+def json_values(results: Sequence[RowResult]) -> Json:
+    """The same as values of JSON."""
     rows = [
         {
             "row": result.row.name,
@@ -94,38 +107,24 @@ def as_json(results: Sequence[RowResult]) -> str:
         }
         for result in results
     ]
-    return json.dumps({"tally": tally(results), "rows": rows}, indent=1)
+    return {"tally": tally(results), "rows": rows}
 
 
 def junit(results: Sequence[RowResult]) -> str:
     """JUnit XML: a suite a row, a test a case; what is not yet to be expected counts as skipped."""
-    root = ElementTree.Element("testsuites", name="torquer faults")
-    for result in results:
-        cases = result.cases
-        suite = ElementTree.SubElement(
-            root,
-            "testsuite",
-            name=result.row.name,
-            tests=str(len(cases)),
-            failures=str(sum(case.failed for case in cases)),
-            skipped=str(sum(not case.failed and bool(_with(case, CheckVerdict.OPEN)) for case in cases)),
-            time=f"{sum(case.wall_s for case in cases):.3f}",
-        )
-        for case in cases:
-            _junit_case(suite, case)
-    return ElementTree.tostring(root, encoding="unicode", xml_declaration=True)
+    suites = {result.row.name: [_test(case) for case in result.cases] for result in results}
+    return junit_xml("torquer faults", suites)
 
 
-def _junit_case(suite: ElementTree.Element, case: CaseResult) -> None:
-    name = f"phase {case.phase} seed {case.seed}"
-    test = ElementTree.SubElement(
-        suite, "testcase", classname=f"faults.{case.row}", name=name, time=f"{case.wall_s:.3f}"
-    )
+def _test(case: CaseResult) -> JunitCase:
     failed, waiting = _with(case, CheckVerdict.FAIL), _with(case, CheckVerdict.OPEN)
-    if failed:
-        ElementTree.SubElement(test, "failure", message="; ".join(failed))
-    elif waiting:
-        ElementTree.SubElement(test, "skipped", message="; ".join(waiting))
+    return JunitCase(
+        f"faults.{case.row}",
+        f"phase {case.phase} seed {case.seed}",
+        case.wall_s,
+        failure="; ".join(failed),
+        skipped="" if failed else "; ".join(waiting),
+    )
 
 
 def html(results: Sequence[RowResult]) -> str:

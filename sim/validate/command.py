@@ -6,14 +6,14 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-import click
-
 from sim.campaign.claim import ClaimVerdict
 from sim.campaign.runner import StudyResult, run
+from sim.console import answer, say
 from sim.errors import HarnessError
+from sim.junit import write_junit
 from sim.progress import progress
 from sim.record.destination import check_file
-from sim.validate.page import line, render, tally
+from sim.validate.page import as_json, line, render, suites, tally
 from sim.validate.reference import reference
 from sim.validate.registry import all_studies, choose_studies, find_repository
 
@@ -27,6 +27,7 @@ def validate(
     quick: bool,
     workers: int | None,
     satellites: int | None = None,
+    junit: Path | None = None,
 ) -> int:
     """Run the studies, print each outcome, write the page.
 
@@ -40,6 +41,7 @@ def validate(
         quick: leave out flights.
         workers: processes; None: as many as there are cores.
         satellites: at most so many of each population; None: all.
+        junit: file for the verdicts as JUnit XML; None: not written.
 
     Returns:
         The exit code: 1 if a claim fails, else 0.
@@ -53,8 +55,8 @@ def validate(
     studies = choose_studies(studies, only, quick)
     whole = folder is None and not only and not quick and satellites is None
     page = out or (_default_page(repository) if whole else None)
-    if page is not None:
-        check_file(page)
+    for file in filter(None, (page, junit)):
+        check_file(file)
     bar = sys.stderr.isatty()  # then the outcomes are printed after the progress bar
     with progress("validating", sum(len(study.tasks) for study in studies)) as watch:
         finished = run(studies, workers or os.cpu_count() or 1, watch, _print_later if bar else _print)
@@ -68,8 +70,11 @@ def validate(
     wall_s = time.monotonic() - began
     if page is not None:
         _write(page, render(finished, wall_s))
-        click.echo(f"page: {page}")
-    click.echo(f"{tally(outcomes)}; {wall_s:.0f} s")
+        say(f"page: {page}")
+    if junit is not None:
+        write_junit(junit, "torquer validate", suites(finished))
+    say(f"{tally(outcomes)}; {wall_s:.0f} s")
+    answer({"wall_s": wall_s, "page": page, "claims": [as_json(outcome) for outcome in outcomes]})
     return int(any(outcome.verdict is ClaimVerdict.FAIL for outcome in outcomes))
 
 
@@ -79,7 +84,7 @@ def _default_page(repository: Path | None) -> Path:
 
 def _print(finished: StudyResult) -> None:
     for outcome in finished.outcomes:
-        click.echo(line(outcome))
+        say(line(outcome), failed=outcome.verdict is ClaimVerdict.FAIL)
 
 
 def _print_later(finished: StudyResult) -> None:

@@ -8,6 +8,7 @@ import scipy
 
 from sim.campaign.claim import ClaimOutcome, ClaimVerdict
 from sim.campaign.runner import StudyResult
+from sim.junit import JunitCase
 from sim.validate.reference.reference import FileResult
 
 _HEAD = """# Validation
@@ -43,6 +44,37 @@ def line(outcome: ClaimOutcome) -> str:
     where = f"  [{outcome.where}]" if outcome.where else ""
     figure = f"{_figure(outcome)} ({outcome.claim.limits})"
     return f"{outcome.verdict.value:<6} {outcome.claim.id}: {outcome.claim.statement}: {figure}{where}"
+
+
+def as_json(outcome: ClaimOutcome) -> dict[str, object]:
+    """One outcome, for programs; a side without a limit is infinite."""
+    claim = outcome.claim
+    return {
+        "id": claim.id,
+        "statement": claim.statement,
+        "source": claim.source,
+        "verdict": outcome.verdict.value,
+        "ours": outcome.ours,
+        "unit": claim.unit,
+        "low": claim.low,
+        "high": claim.high,
+        "where": outcome.where,
+    }
+
+
+def suites(finished: Sequence[StudyResult]) -> dict[str, list[JunitCase]]:
+    """The outcomes as tests, by study; a claim without its data was not judged."""
+    return {study.study.id: [_test(outcome) for outcome in study.outcomes] for study in finished}
+
+
+def _test(outcome: ClaimOutcome) -> JunitCase:
+    said = {outcome.verdict: line(outcome)}
+    return JunitCase(
+        "validate",
+        outcome.claim.id,
+        failure=said.get(ClaimVerdict.FAIL, ""),
+        skipped=said.get(ClaimVerdict.ABSENT, ""),
+    )
 
 
 def tally(outcomes: Sequence[ClaimOutcome]) -> str:

@@ -4,11 +4,18 @@ from pathlib import Path
 
 import click
 
-from torquer.cli.options import law_and_settings, sentences
+from torquer.cli.completions import of_scenarios
+from torquer.cli.options import JSON, JUNIT, examples, law_and_settings, sentences
+
+EXAMPLES = examples(
+    "torquer campaign examples/campaigns/quick.toml --runs 20 --out quick",
+    "torquer campaign quick                                  # fly what is missing",
+    "torquer campaign cubesat3u --runs 20 --orbits 3 --junit campaign.xml",
+)
 
 
-@click.command()
-@click.argument("source", metavar="CAMPAIGN.toml|SCENARIO|DIR")
+@click.command(epilog=EXAMPLES)
+@click.argument("source", metavar="CAMPAIGN.toml|SCENARIO|DIR", shell_complete=of_scenarios)
 @click.option("--runs", type=click.IntRange(1, 10**7), help="Default: those of the file; 100 of a scenario.")
 @click.option(
     "--orbits", type=click.FloatRange(min=0.0, min_open=True), help="Of each run. Default: as the file says."
@@ -31,6 +38,8 @@ from torquer.cli.options import law_and_settings, sentences
 @click.option("--parquet", is_flag=True, help="Export to DIR/results.parquet too. Needs torquer[parquet].")
 @click.option("--out", type=click.Path(path_type=Path), help="Folder. Default: campaigns/<name>-<UTC time>.")
 @law_and_settings
+@JUNIT
+@JSON
 @sentences
 def campaign(
     source: str,
@@ -44,16 +53,21 @@ def campaign(
     parquet: bool,
     out: Path | None,
     settings: tuple[str, ...],
+    junit: Path | None,
 ) -> int:
     """Fly many runs, drawn from the dispersions of CAMPAIGN.toml; those of a SCENARIO differ by seed alone.
 
     The same command with the same --out, or with DIR in place of the file, flies what is missing.
     """
     from sim.campaign.command import PARQUET
+    from sim.campaign.report.documents import suites
     from sim.campaign.results.store import RESULTS
+    from sim.console import answer, fail, say
+    from sim.junit import prepare_junit, write_junit
     from sim.scenario.schema import parse_settings
     from torquer.api.campaign import campaign
 
+    prepare_junit(junit)
     done = campaign(
         source,
         runs=runs,
@@ -68,8 +82,11 @@ def campaign(
         out=out,
         progress=True,
     )
-    click.echo(str(done))
-    click.echo(f"results: {done.path / RESULTS}{f', {PARQUET}' if parquet else ''}; page: {done.page}")
+    say(str(done))
+    say(f"results: {done.path / RESULTS}{f', {PARQUET}' if parquet else ''}; page: {done.page}")
     for sentence in done.flown.complaints:
-        click.echo(f"torquer: {sentence}", err=True)
+        fail(sentence)
+    flown = done.flown
+    answer({**done.statistics, "folder": done.path, "page": done.page, "limits_broken": flown.broken})
+    write_junit(junit, "torquer campaign", suites(flown.campaign, flown.analysis, flown.broken))
     return int(not done.ok)

@@ -4,12 +4,31 @@ from pathlib import Path
 
 import click
 
-from torquer.cli.options import SEEDS, law_and_settings, sentences
+from torquer.cli.completions import of_laws
+from torquer.cli.options import (
+    JSON,
+    SEEDS,
+    examples,
+    law_and_settings,
+    load_scenario,
+    scenario_argument,
+    sentences,
+)
+
+EXAMPLES = examples(
+    "torquer compare microsat",
+    "torquer compare cubesat6u --laws pd,mpc --driver pulsed --orbits 3",
+)
 
 
-@click.command()
-@click.argument("scenario", default="microsat")
-@click.option("--laws", metavar="A,B", help="Laws, aims or all. Default: all with the aim of the scenario's.")
+@click.command(epilog=EXAMPLES)
+@scenario_argument("microsat")
+@click.option(
+    "--laws",
+    metavar="A,B",
+    shell_complete=of_laws,
+    help="Laws, aims or all. Default: all with the aim of the scenario's.",
+)
 @click.option(
     "--driver", default="both", show_default=True, type=click.Choice(["pulsed", "continuous", "both"])
 )
@@ -22,6 +41,7 @@ from torquer.cli.options import SEEDS, law_and_settings, sentences
     "--out", type=click.Path(path_type=Path), help="Folder. Default: compare/<scenario>-<UTC time>."
 )
 @law_and_settings
+@JSON
 @sentences
 def compare(
     scenario: str,
@@ -36,4 +56,5 @@ def compare(
     """Fly every applicable control law on SCENARIO, all else the same: table and picture."""
     from sim.compare import command
 
+    load_scenario(scenario, settings)
     return command.compare(scenario, settings, laws, driver, orbits, seed, workers, out)

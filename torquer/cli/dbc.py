@@ -4,10 +4,15 @@ from pathlib import Path
 
 import click
 
-from torquer.cli.options import OUT_FILE, sentences
+from torquer.cli.options import OUT_FILE, examples, sentences
+
+EXAMPLES = examples(
+    "torquer dbc --out torquer.dbc",
+    "torquer dbc --tick-hz 10 --out torquer.dbc --force",
+)
 
 
-@click.command()
+@click.command(epilog=EXAMPLES)
 @OUT_FILE
 @click.option(
     "--tick-hz",
@@ -20,8 +25,9 @@ from torquer.cli.options import OUT_FILE, sentences
 @sentences
 def dbc(out: Path, tick_hz: int, force: bool) -> None:
     """Write the messages of the bus as a DBC with cycle times, for CANalyzer, SavvyCAN, cantools."""
+    from sim.console import say
     from sim.export.dbc import dbc_text
     from sim.export.destination import write_text
 
     write_text(out, dbc_text(tick_hz), force)
-    click.echo(f"written: {out}")
+    say(f"written: {out}")

@@ -4,10 +4,15 @@ from pathlib import Path
 
 import click
 
-from torquer.cli.options import LAW_AGAIN, OUT_FILE, RUN_OR_LOG, sentences
+from torquer.cli.options import LAW_AGAIN, OUT_FILE, RUN_OR_LOG, examples, sentences
+
+EXAMPLES = examples(
+    "torquer export runs/microsat-20250320T120000Z --out run.mcap",
+    "torquer export runs/microsat-20250320T120000Z --format parquet --out run.parquet",
+)
 
 
-@click.command()
+@click.command(epilog=EXAMPLES)
 @RUN_OR_LOG
 @click.option(
     "--format",

@@ -4,14 +4,27 @@ from pathlib import Path
 
 import click
 
-from torquer.cli.options import sentences
+from torquer.cli.completions import of_fault_rows
+from torquer.cli.options import JSON, JUNIT, examples, sentences
+
+EXAMPLES = examples(
+    "torquer faults --list",
+    "torquer faults --row mag-bias --phases 4 --seeds 3",
+    "torquer faults --junit faults.xml --quiet",
+)
 
 
-@click.command()
-@click.option("--row", "rows", multiple=True, metavar="NAME", help="These rows alone, by their first words.")
+@click.command(epilog=EXAMPLES)
+@click.option(
+    "--row",
+    "rows",
+    multiple=True,
+    metavar="NAME",
+    shell_complete=of_fault_rows,
+    help="These rows alone, by their first words.",
+)
 @click.option("--phases", default=1, show_default=True, type=click.IntRange(min=1), help="Of each row.")
 @click.option("--seeds", default=1, show_default=True, type=click.IntRange(min=1), help="Of each phase.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON alone.")
 @click.option("--list", "listing", is_flag=True, help="Print the rows and what they expect.")
 @click.option("--out", type=click.Path(path_type=Path), help="Folder of faults.xml (JUnit), .html and .json.")
 @click.option("--workers", type=click.IntRange(min=1), help="Processes. Default: one a core.")
@@ -20,22 +33,24 @@ from torquer.cli.options import sentences
     "--keep", type=click.Path(path_type=Path), help="Take the rows that do not run now from this faults.json."
 )
 @click.option("--write-docs", is_flag=True, help="Write docs/faults.md of the repository.")
+@JUNIT
+@JSON
 @sentences
 def faults(
     rows: tuple[str, ...],
     phases: int,
     seeds: int,
-    as_json: bool,
     listing: bool,
     out: Path | None,
     workers: int | None,
     slow: bool,
     keep: Path | None,
     write_docs: bool,
+    junit: Path | None,
 ) -> int:
     """Inject every fault of the table, in several phases and with several seeds: a verdict per row."""
     from sim.fault_table import command
 
     if listing:
         return command.list_rows(rows)
-    return command.faults(rows, phases, seeds, as_json, out, workers, write_docs, slow, keep)
+    return command.faults(rows, phases, seeds, out, workers, write_docs, slow, keep, junit)

@@ -2,12 +2,24 @@
 
 import click
 
-from torquer.cli.options import BUSES, law_and_settings, sentences
+from torquer.cli.options import (
+    bus_option,
+    examples,
+    law_and_settings,
+    load_scenario,
+    scenario_argument,
+    sentences,
+)
+
+EXAMPLES = examples(
+    "torquer fsw microsat --bus socketcan:vcan0",
+    "torquer fsw microsat --bus loop --disarmed",
+)
 
 
-@click.command()
-@click.argument("scenario", default="realsat")
-@click.option("--bus", default="auto", show_default=True, help=BUSES)
+@click.command(epilog=EXAMPLES)
+@scenario_argument("realsat")
+@bus_option()
 @law_and_settings
 @click.option("--disarmed", is_flag=True, help="Send no request to drive a coil.")
 @click.option("--bench", is_flag=True, help="On a bench: PLANT_END does not end it.")
@@ -15,6 +27,8 @@ from torquer.cli.options import BUSES, law_and_settings, sentences
 def fsw(scenario: str, bus: str, settings: tuple[str, ...], disarmed: bool, bench: bool) -> int:
     """Fly on a bus: answer the SYNC of a plant, with the onboard table of SCENARIO."""
     from fsw.process import fly
-    from sim.scenario.schema import flight_table, load, parse_settings
+    from sim.console import current
+    from sim.scenario.schema import flight_table
 
-    return fly(flight_table(load(scenario, parse_settings(settings))), bus, disarmed, bench)
+    table = flight_table(load_scenario(scenario, settings))
+    return fly(table, bus, disarmed, bench, quiet=current().quiet)

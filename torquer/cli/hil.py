@@ -5,12 +5,27 @@ from pathlib import Path
 import click
 
 from sim.errors import HarnessError
-from torquer.cli.options import BUSES, SEEDS, law_and_settings, sentences
+from torquer.cli.options import (
+    JSON,
+    SEEDS,
+    bus_option,
+    examples,
+    law_and_settings,
+    load_scenario,
+    scenario_argument,
+    sentences,
+)
+
+EXAMPLES = examples(
+    "torquer hil microsat --seconds 60                       # all boards as stubs",
+    "torquer hil microsat --bus socketcan:can0 --real coil   # not armed: coils stay off",
+    "torquer hil microsat --bus socketcan:can0 --conformance coil --arm",
+)
 
 
-@click.command()
-@click.argument("scenario", default="microsat")
-@click.option("--bus", default="auto", show_default=True, help=BUSES)
+@click.command(epilog=EXAMPLES)
+@scenario_argument("microsat")
+@bus_option()
 @click.option("--real", metavar="A,B", help="Boards that are hardware: coil, magnetometer, sun.")
 @click.option("--arm", is_flag=True, help="Let coils be driven; without it no request reaches the bus.")
 @click.option(
@@ -52,8 +67,8 @@ from torquer.cli.options import BUSES, SEEDS, law_and_settings, sentences
 )
 @click.option("--seed", default=1, show_default=True, type=SEEDS, help="Of the plant.")
 @click.option("--out", type=click.Path(path_type=Path), help="Write log and numbers into this folder.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON alone.")
 @law_and_settings
+@JSON
 @sentences
 def hil(
     scenario: str,
@@ -73,20 +88,17 @@ def hil(
     conformance: str | None,
     seed: int,
     out: Path | None,
-    as_json: bool,
     settings: tuple[str, ...],
 ) -> int:
     """SCENARIO in real time: flight software against boards, each its own process or real hardware."""
-    from sim.scenario.schema import load, parse_settings
-
     rate = (f"time.tick_hz={tick_hz}",) if tick_hz is not None else ()
-    chosen = load(scenario, parse_settings((*settings, *rate)))
+    chosen = load_scenario(scenario, (*settings, *rate))
     if conformance is not None and out is not None:
         raise HarnessError("--out: a conformance run writes no log")
     if conformance is not None:
         from sim.conformance.command import conformance as conform
 
-        return conform(chosen, conformance, bus, arm, deadman_s, as_json)
+        return conform(chosen, conformance, bus, arm, deadman_s)
     from sim.bench import command
     from sim.bench.budgets import Budgets
 
@@ -97,4 +109,4 @@ def hil(
     run_settings = command.HilSettings(
         chosen, bus, boards, arm, seconds, stimulus, deadman_s, budgets, warm_s, seed, out
     )
-    return command.hil(run_settings, as_json)
+    return command.hil(run_settings)

@@ -12,28 +12,47 @@ from typing import Any
 import click
 
 from fsw.input.error_text import error_text
+from fsw.input.near import did_you_mean
 from sim.errors import DISK_FULL
 
-COMMANDS = (
-    "scenarios",
-    "sil",
-    "replay",
-    "check",
-    "report",
-    "validate",
-    "design",
-    "compare",
-    "campaign",
-    "faults",
-    "hil",
-    "watch",
-    "plant",
-    "fsw",
-    "board",
-    "export",
-    "dbc",
-    "xtce",
-)
+GROUPS = {
+    "Fly": {
+        "sil": "Fly SCENARIO (realsat): plant and flight software as two processes on a bus.",
+        "hil": "SCENARIO in real time: flight software against boards, stubs or hardware.",
+        "plant": "Fly SCENARIO against a flight software on the same bus.",
+        "fsw": "Fly on a bus: answer the SYNC of a plant.",
+        "board": "Run one board on a bus, until Ctrl-C.",
+    },
+    "Look at a flight": {
+        "watch": "Watch a bus, or a log at any pace; it only listens.",
+        "report": "Rebuild summary.json and report.html of a run.",
+        "check": "Audit the actuator limits in a candump log.",
+        "replay": "Replay a log and compare the answers byte for byte.",
+    },
+    "Your own satellite": {
+        "scenarios": "List the shipped scenarios, one line each.",
+        "new": "Write a scenario for your own satellite, which flies at once.",
+        "size": "Coil levels, and what pointing to expect.",
+        "design": "Gains of the PD law by Floquet theory.",
+    },
+    "Many flights": {
+        "compare": "Fly every applicable control law on SCENARIO, all else the same.",
+        "campaign": "Fly many runs, drawn from the dispersions of CAMPAIGN.toml.",
+        "faults": "Inject every fault of the table: a verdict per row.",
+        "validate": "Check every published figure and reference.",
+    },
+    "Other tools": {
+        "export": "Write a run for Foxglove, CANalyzer, SavvyCAN, pandas or xarray.",
+        "dbc": "Write the messages of the bus as a DBC with cycle times.",
+        "xtce": "Write the messages of the bus as XTCE, for mission control systems.",
+    },
+    "This machine": {
+        "doctor": "What torquer needs: what is there, what is missing, what to type.",
+        "completion": "Print the completion script of a shell.",
+    },
+}
+"""The commands by what a user wants to do, with what they do: help need not load them for it."""
+COMMANDS = tuple(name for group in GROUPS.values() for name in group)
 """The commands; each is in the module of its name."""
 
 
@@ -41,7 +60,7 @@ class Commands(click.Group):
     """The commands; a wrong option, like any other error, is one sentence, without the usage before it."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """In the order in which they are used."""
+        """In the order in which they are shown."""
         return list(COMMANDS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
@@ -50,6 +69,25 @@ class Commands(click.Group):
             return None
         command: click.Command = getattr(import_module(f"torquer.cli.{cmd_name}"), cmd_name)
         return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """The command that the arguments begin with.
+
+        Raises:
+            UsageError: there is no such command.
+        """
+        if args and not ctx.resilient_parsing and args[0] not in COMMANDS and not args[0].startswith("-"):
+            hint = did_you_mean(args[0], COMMANDS)
+            raise click.UsageError(f"there is no command {args[0]!r}{hint}; `torquer --help` lists them")
+        return super().resolve_command(ctx, args)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """The commands, by group."""
+        for heading, commands in GROUPS.items():
+            with formatter.section(heading):
+                formatter.write_dl([(name.ljust(10), line) for name, line in commands.items()])
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Parse the arguments; none may hold a NUL character."""
@@ -64,7 +102,7 @@ class Commands(click.Group):
         try:
             code = super().main(*args, **{**kwargs, "standalone_mode": False})
         except click.ClickException as error:
-            click.echo(f"torquer: {error_text(error.format_message())}", err=True)
+            click.echo(f"torquer: {error_text(_sentence(error))}", err=True)
             code = error.exit_code
         except OSError as error:
             if error.errno not in DISK_FULL:
@@ -78,8 +116,25 @@ class Commands(click.Group):
         sys.exit(code)
 
 
+def _sentence(error: click.ClickException) -> str:
+    """What click says of a wrong option or value, with what may have been meant."""
+    if isinstance(error, click.NoSuchOption) and error.ctx is not None:
+        options = [word for one in error.ctx.command.params for word in (*one.opts, *one.secondary_opts)]
+        known = [word for word in options if word.startswith("-")]
+        return f"{error.message.rstrip('.')}{did_you_mean(error.option_name, known)}"
+    text = error.format_message()
+    kind = error.param.type if isinstance(error, click.BadParameter) and error.param is not None else None
+    if isinstance(kind, click.Choice):
+        given = text.partition("'")[2].rpartition("' is not")[0].rpartition("'")[2]
+        text = f"{text.rstrip('.')}{did_you_mean(given, map(str, kind.choices))}"
+    return text
+
+
 @click.group(
-    cls=Commands, invoke_without_command=True, context_settings={"help_option_names": ["-h", "--help"]}
+    cls=Commands,
+    invoke_without_command=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog="Each command has a help of its own, with examples: torquer sil --help",
 )
 @click.version_option(package_name="torquer", prog_name="torquer")
 @click.pass_context

@@ -1,21 +1,20 @@
 """Options that commands share, and the way from their errors to a sentence and an exit code."""
 
 import sys
+import time
 from collections.abc import Callable, Mapping
 from functools import wraps
 from pathlib import Path
-from typing import Any, ParamSpec
+from typing import TYPE_CHECKING, Any, ParamSpec
 
 import click
 
-from fsw.bus.interface import BusError
 from fsw.bus.open_bus import KINDS
-from fsw.input.error_text import error_text
-from fsw.input.schema import TableError
-from sim.errors import HarnessError
-from sim.plant.errors import PlantError
-from sim.signals import EndedBySignal, raise_on_signals
-from torquer.api.errors import Error
+from sim.console import Console, detail, fail, print_document, speaking, warn
+from torquer.cli.completions import of_buses, of_laws, of_scenarios, of_settings
+
+if TYPE_CHECKING:
+    from sim.scenario.schema import Scenario
 
 Parameters = ParamSpec("Parameters")
 
@@ -23,7 +22,12 @@ SEEDS = click.IntRange(0, 2**64 - 1)
 BUSES = f"auto, {KINDS}"
 RUN_OR_LOG = click.argument("run_or_log", metavar="RUN|LOG", type=click.Path(path_type=Path))
 SETTINGS = click.option(
-    "--set", "settings", multiple=True, metavar="KEY=VALUE", help="Override a key of the scenario."
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="KEY=VALUE",
+    shell_complete=of_settings,
+    help="Override a key of the scenario.",
 )
 LAW_AGAIN = click.option(
     "--law", metavar="FILE.py:NAME", help="The law of its own that the run flew: only then it is executed."
@@ -31,11 +35,16 @@ LAW_AGAIN = click.option(
 COMPRESS = click.option(
     "--compress", is_flag=True, help="Write the log as bus.log.gz, a fourth of the size of bus.log."
 )
-
+JSON = click.option("--json", "as_json", is_flag=True, help="Print one JSON document alone on stdout.")
+JUNIT = click.option(
+    "--junit",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Write the verdicts as JUnit XML.",
+)
 OUT_FILE = click.option(
     "--out", required=True, metavar="FILE", type=click.Path(path_type=Path), help="The file to write."
 )
-
 SIGN = click.option(
     "--sign",
     metavar="KEY",
@@ -48,28 +57,90 @@ VERIFY = click.option(
     type=click.Path(path_type=Path),
     help="The run must be signed: its public Ed25519 key in PEM. Needs torquer[sign].",
 )
+_QUIET = click.option("-q", "--quiet", is_flag=True, help="Print failures only.")
+_VERBOSE = click.option(
+    "-v", "--verbose", is_flag=True, help="Say on stderr what is done, with which files, in what time."
+)
+_MODES = ("quiet", "verbose", "as_json")
 
 
-def sentences(command: Callable[Parameters, int | None]) -> Callable[Parameters, None]:
-    """Turn an error that the user can correct into one sentence on stderr and an exit code."""
+def scenario_argument(default: str | None = None, required: bool = True) -> Callable[..., Any]:
+    """The argument SCENARIO, a name or a path; one with a default is not required."""
+    return click.argument(
+        "scenario",
+        default=default,
+        required=required and default is None,
+        metavar="SCENARIO" if required and default is None else "[SCENARIO]",
+        shell_complete=of_scenarios,
+    )
 
+
+def bus_option(more: str = "") -> Callable[..., Any]:
+    """The option ``--bus``."""
+    return click.option(
+        "--bus", default="auto", show_default=True, shell_complete=of_buses, help=BUSES + more
+    )
+
+
+def examples(*lines: str) -> str:
+    """The end of a command's help: command lines that work as they stand, what they do behind a ``#``."""
+    return "\b\nExamples:\n" + "\n".join(f"  {line}" for line in lines)
+
+
+def sentences(command: Callable[Parameters, int | None]) -> Callable[..., None]:
+    """The options of every command, and an error that the user can correct as one sentence with an exit code.
+
+    With ``--json`` the document is printed once the command has ended with a verdict: an error leaves stdout
+    empty.
+    """
+
+    @_QUIET
+    @_VERBOSE
     @wraps(command)
-    def run(*args: Parameters.args, **kwargs: Parameters.kwargs) -> None:
-        try:
-            with raise_on_signals():
-                code = command(*args, **kwargs)
-        except (Error, TableError, BusError, HarnessError, PlantError) as error:
-            click.echo(f"torquer: {error_text(error)}", err=True)
-            code = getattr(error, "exit_code", 2)
-        except KeyboardInterrupt:
-            click.echo("torquer: interrupted; what was written so far is kept", err=True)
-            code = 130
-        except EndedBySignal as end:
-            click.echo(f"torquer: {end}", err=True)
-            code = end.exit_code
-        sys.exit(code or 0)
+    def run(*args: Any, **kwargs: Any) -> None:  # noqa: ANN401  (those of the command, and of this wrapper)
+        name = click.get_current_context().command.name or ""
+        quiet, verbose, as_json = (bool(kwargs.pop(mode, False)) for mode in _MODES)
+        with speaking(Console(name, quiet, verbose, as_json)) as console:
+            began = _begin(name)
+            code, judged = _verdict(command, *args, **kwargs)
+            detail(f"{name}: exit code {code} after {time.monotonic() - began:.1f} s")
+            if console.as_json and judged:
+                print_document(console, code)
+        sys.exit(code)
 
     return run
+
+
+def _begin(name: str) -> float:
+    """Say what runs; the time."""
+    from importlib.metadata import version
+    from platform import platform, python_version
+
+    detail(f"{name}: torquer {version('torquer')}, Python {python_version()}, {platform()}")
+    return time.monotonic()
+
+
+def _verdict(command: Callable[..., int | None], *args: Any, **kwargs: Any) -> tuple[int, bool]:  # noqa: ANN401
+    """The exit code, and whether the command itself gave it."""
+    from fsw.bus.interface import BusError
+    from fsw.input.schema import TableError
+    from sim.errors import HarnessError
+    from sim.plant.errors import PlantError
+    from sim.signals import EndedBySignal, raise_on_signals
+    from torquer.api.errors import Error
+
+    try:
+        with raise_on_signals():
+            return command(*args, **kwargs) or 0, True
+    except (Error, TableError, BusError, HarnessError, PlantError) as error:
+        fail(str(error))
+        return getattr(error, "exit_code", 2), False
+    except KeyboardInterrupt:
+        fail("interrupted; what was written so far is kept")
+        return 130, False
+    except EndedBySignal as end:
+        fail(str(end))
+        return end.exit_code, False
 
 
 def law_and_settings(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -77,7 +148,10 @@ def law_and_settings(command: Callable[..., Any]) -> Callable[..., Any]:
 
     @SETTINGS
     @click.option(
-        "--law", metavar="FILE.py:NAME", help="Fly this law of your own, or an installed one by its name."
+        "--law",
+        metavar="FILE.py:NAME",
+        shell_complete=of_laws,
+        help="Fly this law of your own, or an installed one by its name.",
     )
     @wraps(command)
     def run(*args: Any, law: str | None, settings: tuple[str, ...], **kwargs: Any) -> Any:  # noqa: ANN401  (as click calls it)
@@ -87,10 +161,32 @@ def law_and_settings(command: Callable[..., Any]) -> Callable[..., Any]:
     return run
 
 
+def load_scenario(name_or_path: str, settings: tuple[str, ...]) -> "Scenario":
+    """The scenario with settings laid over it; what is most likely wrong in it is said.
+
+    Raises:
+        TableError: not found, or not valid.
+    """
+    from sim.scenario.schema import load, parse_settings
+
+    scenario = load(name_or_path, parse_settings(settings))
+    detail(f"scenario {scenario.name} of {name_or_path}{', ' + ', '.join(settings) if settings else ''}")
+    warn_of(scenario)
+    return scenario
+
+
+def warn_of(scenario: "Scenario") -> None:
+    """Say what is most likely wrong in a scenario."""
+    from sim.sizing.doubts import doubts
+
+    for doubt in doubts(scenario):
+        warn(doubt)
+
+
 def report_failures(failures: Mapping[str, str]) -> int:
     """Print what failed, in one sentence; return the exit code."""
     from sim.report.verdict import flight_failed
 
     if failures:
-        click.echo(f"torquer: {flight_failed(failures)}", err=True)
+        fail(flight_failed(failures))
     return int(bool(failures))

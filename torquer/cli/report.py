@@ -4,24 +4,38 @@ from pathlib import Path
 
 import click
 
-from torquer.cli.options import LAW_AGAIN, SIGN, VERIFY, report_failures, sentences
+from torquer.cli.options import JSON, JUNIT, LAW_AGAIN, SIGN, VERIFY, examples, report_failures, sentences
+
+EXAMPLES = examples(
+    "torquer report runs/microsat-20250320T120000Z",
+    "torquer report runs/microsat-20250320T120000Z --json   # summary.json and the verdicts",
+)
 
 
-@click.command()
+@click.command(epilog=EXAMPLES)
 @click.argument("run", type=click.Path(path_type=Path))
 @SIGN
 @VERIFY
 @LAW_AGAIN
+@JUNIT
+@JSON
 @sentences
-def report(run: Path, sign: Path | None, verify: Path | None, law: str | None) -> int:
+def report(run: Path, sign: Path | None, verify: Path | None, law: str | None, junit: Path | None) -> int:
     """Rebuild summary.json and report.html of a run; a run that was cut short is noted, and no failure."""
+    from sim.console import answer, say
+    from sim.junit import prepare_junit, write_junit
+    from sim.report.documents import suites
     from sim.report.verdict import Verdict
     from torquer.api.flight import report
 
+    prepare_junit(junit)
     rebuilt = report(run, sign=sign, verify=verify, law=law, progress=True)
     for line in rebuilt.notes:
-        click.echo(line)
-    click.echo(str(rebuilt))
-    click.echo(f"report: {rebuilt.report}")
+        say(line, failed=rebuilt.mismatched)
+    say(str(rebuilt))
+    say(f"report: {rebuilt.report}")
+    answer({"run": rebuilt.path, "report": rebuilt.report, "summary": rebuilt.summary})
+    answer({"binding": rebuilt.notes})
+    write_junit(junit, "torquer report", suites(rebuilt.summary))
     failed_in_flight = {name: why for name, why in rebuilt.failures.items() if name != Verdict.COMPLETE}
     return report_failures(failed_in_flight) or int(rebuilt.mismatched)

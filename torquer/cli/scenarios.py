@@ -2,14 +2,20 @@
 
 import click
 
-from torquer.cli.options import sentences
+from torquer.cli.options import JSON, examples, sentences
+
+EXAMPLES = examples("torquer scenarios", "torquer scenarios --json")
 
 
-@click.command()
+@click.command(epilog=EXAMPLES)
+@JSON
 @sentences
 def scenarios() -> None:
     """List the shipped scenarios, one line each."""
+    from sim.console import answer, say
     from torquer.api.scenarios import scenarios
 
-    for name, scenario in scenarios().items():
-        click.echo(f"{name:<14} {scenario.summary}")
+    every = scenarios()
+    for name, scenario in every.items():
+        say(f"{name:<14} {scenario.summary}")
+    answer({"scenarios": [{"name": name, "summary": scenario.summary} for name, scenario in every.items()]})

@@ -5,17 +5,37 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fsw.input.error_text import error_text
 from sim.errors import HarnessError
-from torquer.cli.options import BUSES, COMPRESS, SEEDS, SIGN, law_and_settings, report_failures, sentences
+from torquer.cli.options import (
+    COMPRESS,
+    JSON,
+    JUNIT,
+    SEEDS,
+    SIGN,
+    bus_option,
+    examples,
+    law_and_settings,
+    load_scenario,
+    report_failures,
+    scenario_argument,
+    sentences,
+)
 
 if TYPE_CHECKING:
     from sim.campaign.rerun import CampaignRun
 
 
-@click.command()
-@click.argument("scenario", required=False, metavar="[SCENARIO]")
-@click.option("--bus", default="auto", show_default=True, help=BUSES + " or virtual.")
+EXAMPLES = examples(
+    "torquer sil                                             # the default scenario, ten orbits",
+    "torquer sil microsat --bus virtual --orbits 3 --seed 2",
+    "torquer sil my-satellite.toml --set coils.backoff=per_coil --set time.tick_hz=10",
+    "torquer sil --from campaigns/tolerances --run 17        # a run of a campaign again",
+)
+
+
+@click.command(epilog=EXAMPLES)
+@scenario_argument(required=False)
+@bus_option(" or virtual.")
 @click.option("--pace", default="lockstep", show_default=True, help="lockstep or realtime[:FACTOR].")
 @click.option(
     "--orbits", type=click.FloatRange(min=0.0, min_open=True), help="Default: those of the scenario."
@@ -40,6 +60,8 @@ if TYPE_CHECKING:
 @COMPRESS
 @SIGN
 @law_and_settings
+@JUNIT
+@JSON
 @sentences
 def sil(
     scenario: str | None,
@@ -54,19 +76,22 @@ def sil(
     expected: tuple[str, ...],
     sign: Path | None,
     settings: tuple[str, ...],
+    junit: Path | None,
 ) -> int:
     """Fly SCENARIO (realsat): plant and flight software as two processes on a bus (virtual: in one)."""
-    from sim.scenario.schema import parse_settings
+    from sim.console import answer, detail, fail, say
+    from sim.junit import prepare_junit, write_junit
     from torquer.api.flight import fly
 
+    prepare_junit(junit)
     again = _campaign_run(source, run, scenario, orbits, seed, expected, settings)
+    chosen = again.scenario if again else load_scenario(scenario or "realsat", settings)
     flown = fly(
-        again.scenario if again else "realsat" if scenario is None else scenario,
+        chosen,
         orbits=orbits,
         seed=again.seed if again else 1 if seed is None else seed,
         bus=bus,
         pace=pace,
-        set=parse_settings(settings),
         expect=expected,
         out=out,
         compress=compress,
@@ -74,10 +99,15 @@ def sil(
         progress=True,
     )
     if not flown.concluded:
-        click.echo(f"torquer: {error_text(flown)}", err=True)
+        fail(str(flown))
         return 1
-    click.echo(str(flown))
-    click.echo(f"report: {flown.report}")
+    from sim.report.documents import suites  # loaded after the flight, which does not need it
+
+    detail(f"files in {flown.path}: {', '.join(sorted(file.name for file in flown.path.iterdir()))}")
+    say(str(flown))
+    say(f"report: {flown.report}")
+    answer({"run": flown.path, "report": flown.report, "summary": flown.summary})
+    write_junit(junit, "torquer sil", suites(flown.summary))
     equal = again is None or _equals(again, flown.path)
     return report_failures(flown.failures) or int(not equal)
 
@@ -85,9 +115,11 @@ def sil(
 def _equals(again: "CampaignRun", path: Path) -> bool:
     """Whether the run is the campaign's, bit for bit, and say so."""
     from sim.campaign.rerun import compare
+    from sim.console import answer, say
 
     equal, sentence = compare(again, path)
-    click.echo(sentence)
+    say(sentence, failed=not equal)
+    answer({"equal": equal})
     return equal
 
 

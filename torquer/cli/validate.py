@@ -4,10 +4,16 @@ from pathlib import Path
 
 import click
 
-from torquer.cli.options import sentences
+from torquer.cli.options import JSON, JUNIT, examples, sentences
+
+EXAMPLES = examples(
+    "torquer validate --quick",
+    "torquer validate --only posat1 --out posat1.md",
+    "torquer validate --only population --satellites 20",
+)
 
 
-@click.command()
+@click.command(epilog=EXAMPLES)
 @click.option(
     "--reference",
     metavar="DIR",
@@ -27,6 +33,8 @@ from torquer.cli.options import sentences
     type=click.Path(path_type=Path),
     help="The page. Default, if all is run: docs/validation.md of the repository, else validation.md.",
 )
+@JUNIT
+@JSON
 @sentences
 def validate(
     reference: Path | None,
@@ -35,8 +43,9 @@ def validate(
     satellites: int | None,
     workers: int | None,
     out: Path | None,
+    junit: Path | None,
 ) -> int:
     """Check every published figure and reference: claim, source, our figure, verdict."""
     from sim.validate.command import validate
 
-    return validate(reference, only, out, quick, workers, satellites)
+    return validate(reference, only, out, quick, workers, satellites, junit)

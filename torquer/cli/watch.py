@@ -2,18 +2,29 @@
 
 import click
 
-from torquer.cli.options import sentences
+from torquer.cli.completions import of_buses, of_scenarios
+from torquer.cli.options import examples, sentences
+
+EXAMPLES = examples(
+    "torquer watch socketcan:vcan0",
+    "torquer watch runs/microsat-20250320T120000Z --pace realtime:600",
+    "torquer watch loop --web",
+)
 
 
-@click.command()
-@click.argument("source", default="auto", metavar="[BUS|RUN|LOG]")
+@click.command(epilog=EXAMPLES)
+@click.argument("source", default="auto", metavar="[BUS|RUN|LOG]", shell_complete=of_buses)
 @click.option(
     "--pace",
     default="realtime:60",
     show_default=True,
     help="Of a log: realtime[:FACTOR], or lockstep: as fast as it can be read.",
 )
-@click.option("--scenario", help="Of the satellite: predicts field and Sun. Default: that of the run.")
+@click.option(
+    "--scenario",
+    shell_complete=of_scenarios,
+    help="Of the satellite: predicts field and Sun. Default: that of the run.",
+)
 @click.option("--web", is_flag=True, help="As a page on this machine. Needs torquer[watch].")
 @click.option("--foxglove", is_flag=True, help="For Foxglove, on this machine. Needs torquer[watch].")
 @click.option(

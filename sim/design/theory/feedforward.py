@@ -9,8 +9,9 @@ is the result. In the long run no law does better, on the direct dipole's field 
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from sim.design.theory.bodies import Body, Vec3
+from sim.design.theory.bodies import Body
 from sim.design.theory.linear import Array, dipole_field, free_motion, skew
 
 NODES = 32
@@ -33,12 +34,13 @@ class PeriodicResponse(NamedTuple):
     dipole_am2: Array
 
 
-def least_error(body: Body, torque_nm: Vec3, nodes: int = NODES) -> PeriodicResponse:
-    """The periodic dipole with the least mean square of theta under a constant torque.
+def least_error(body: Body, torque_nm: ArrayLike, nodes: int = NODES) -> PeriodicResponse:
+    """The periodic dipole with the least mean square of theta under a constant or periodic torque.
 
     Args:
         body: the satellite and its orbit.
-        torque_nm: constant torque, body axes, beside that on the body at rest in the nominal attitude.
+        torque_nm: torque, body axes, beside that on the body at rest in the nominal attitude: constant, (3,),
+            or at the nodes, (N, 3).
         nodes: their number, even.
     """
     u = 2.0 * np.pi / nodes * np.arange(nodes, dtype=np.float64)
@@ -46,7 +48,8 @@ def least_error(body: Body, torque_nm: Vec3, nodes: int = NODES) -> PeriodicResp
     motion = np.kron(_derivative(nodes), np.eye(6)) - np.kron(np.eye(nodes), free_motion(body))
     response = np.linalg.inv(motion).reshape(nodes, 6, nodes, 6)[:, 3:, :, :3]
     by_torque = np.einsum("kilj,jm->kilm", response, inverse)
-    turned = by_torque.sum(axis=2) @ np.asarray(torque_nm) / w0**2
+    given_nm = np.broadcast_to(np.asarray(torque_nm), (nodes, 3))
+    turned = np.einsum("kilm,lm->ki", by_torque, given_nm) / w0**2
     by_dipole = np.einsum("kilm,lmn->kiln", by_torque, -skew(dipole_field(u, body)))
     rows = by_dipole.reshape(3 * nodes, 3 * nodes)
     dipoles = np.linalg.lstsq(rows, -turned.ravel(), rcond=TOLERANCE)[0]

@@ -100,8 +100,8 @@ def test_what_is_written_flies_with_the_degree_that_was_printed(design, as_searc
 
 
 def test_given_gains_are_written_as_they_are(design, as_searched, scenario_file):
-    code, _, err = design(scenario_file, "--gains", "5.5e6", "1200", "--write", "--json")
-    assert (code, err) == (0, f"written: k_w and k_a of {scenario_file}\n")
+    code, out, err = design(scenario_file, "--gains", "5.5e6", "1200", "--write", "--json")
+    assert (code, err, json.loads(out)["written"]) == (0, "", str(scenario_file))
     control = load(str(scenario_file)).control
     assert (control.k_w, control.k_a) == (5.5e6, 1200.0)
 

@@ -8,7 +8,7 @@ import click
 import pytest
 from click.testing import CliRunner
 
-from torquer.cli.main import COMMANDS, main
+from torquer.cli.main import COMMANDS, GROUPS, main
 
 LOAD_AND_LIST = """
 import json, sys
@@ -42,6 +42,9 @@ def test_help_lists_all_commands_and_loads_no_numerics(words):
     *text, loaded = done.stdout.splitlines()
     code, modules = json.loads(loaded)
     assert code == 0
-    after_heading = text[text.index("Commands:") + 1 :]
-    assert [line.split()[0] for line in after_heading if line[2:3].strip()] == list(COMMANDS)
+    begin, end = text.index("Fly:"), next(n for n, line in enumerate(text) if "a help of its own" in line)
+    assert [line.split()[0] for line in text[begin:end] if line[2:3].strip() and line[0] == " "] == list(
+        COMMANDS
+    )
+    assert [line[:-1] for line in text[begin:end] if line.endswith(":")] == list(GROUPS)
     assert {"numpy", "matplotlib"}.isdisjoint(modules)

@@ -1,0 +1,131 @@
+"""``torquer new``: a commented scenario, checked as any other before it is written."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from fsw.input.toml_text import parse_toml
+from sim.console import answer, say, warn
+from sim.errors import HarnessError
+from sim.new_scenario.satellite import NewSatellite, gains_for
+from sim.record.destination import check_file
+from sim.scenario.names import ALLOWED, is_name
+from sim.scenario.schema import scenario_of, shipped_names
+from sim.sizing.doubts import doubts
+from sim.sizing.expectation import expect
+from sim.sizing.levels import levels_against, two_digits
+
+DIPOLE_BOUND_AM2, TORQUE_BOUND_NM = 0.1, 3e-8
+"""Ordinary bounds of a 50 kg satellite, as in ``fsw/table/uncertainty.py``; they grow with the volume."""
+ASSUMED = 0.1
+"""Part of the bounds that the satellite is assumed to have."""
+STRONGEST_A = 0.4
+"""Current at the strongest level, for a coil of which nothing is known."""
+COIL_FIELD_NT = 24_000.0
+"""Field at the magnetometer of the strongest coil, for one of which nothing is known."""
+
+
+def new(satellite: NewSatellite, out: Path | None) -> int:
+    """Write the scenario, and say how to fly it.
+
+    Args:
+        satellite: what the user gave.
+        out: the file; None: NAME.toml here.
+
+    Raises:
+        HarnessError: figures are missing, the name is taken, the file exists or cannot be written.
+        TableError: the figures make no satellite.
+    """
+    file = out or Path(f"{satellite.name}.toml")
+    check_new(satellite.name, file)
+    text = scenario_text(satellite, file.name)
+    scenario = scenario_of(parse_toml(text), str(file))
+    try:
+        with file.open("x", encoding="utf-8") as target:
+            target.write(text)
+    except OSError as error:
+        raise HarnessError(f"{file}: cannot be written ({error.strerror})") from None
+    for doubt in doubts(scenario):
+        warn(doubt)
+    expectation = expect(scenario)
+    say(f"written: {file}; about {expectation.pointing_deg:.1f} deg RMS to expect (torquer size {file})")
+    say(f"fly it: torquer sil {file}")
+    answer({"file": file, "name": scenario.name, "pointing_rms_deg": expectation.pointing_deg})
+    return 0
+
+
+def check_new(name: str, file: Path) -> None:
+    """Check that there can be a scenario of this name in this file.
+
+    Raises:
+        HarnessError: the name cannot be part of a path or is that of a scenario that ships; the file exists.
+    """
+    if not is_name(name):
+        raise HarnessError(f"{name!r} is no name of a scenario: allowed are {ALLOWED}")
+    if name in shipped_names():
+        raise HarnessError(f"{name!r} is a scenario that ships: choose another name")
+    if file.suffix != ".toml":
+        raise HarnessError(f"{file}: a scenario's file ends in .toml")
+    if file.exists():
+        raise HarnessError(f"{file} exists, and is not overwritten: choose another name or --out")
+    check_file(file)
+
+
+def scenario_text(satellite: NewSatellite, file: str) -> str:
+    """The text of the scenario, with its comments; where no levels are given, those that would do.
+
+    Raises:
+        HarnessError: figures are missing.
+        TableError: the figures make no satellite.
+    """
+    text = _rendered(satellite, file)
+    if satellite.levels_am2 is not None:
+        return text
+    scenario = scenario_of(parse_toml(text), file)
+    levels = levels_against(scenario, expect(scenario))
+    return _rendered(replace(satellite, levels_am2=levels), file)
+
+
+def _rendered(satellite: NewSatellite, file: str) -> str:
+    environment = Environment(
+        loader=PackageLoader("sim.new_scenario"),
+        undefined=StrictUndefined,
+        keep_trailing_newline=True,
+        autoescape=False,
+    )
+    return environment.get_template("scenario.toml.j2").render(file=file, **_figures(satellite))
+
+
+def _figures(satellite: NewSatellite) -> dict[str, Any]:
+    body, moments, levels = satellite.body, satellite.moments_kgm2, satellite.levels
+    gains, strongest = gains_for(body), levels[2]
+    torque_nm, dipole_am2 = TORQUE_BOUND_NM * satellite.volume, DIPOLE_BOUND_AM2 * satellite.volume
+    mass = f"{satellite.mass_kg:g} kg, " if satellite.mass_kg else ""
+    orbit = f"{body.altitude_km:.0f} km, {body.inclination_deg:.1f} deg"
+    return {
+        "name": satellite.name,
+        "summary": f"{mass}{orbit}, pulsed coils with {'own' if satellite.per_coil else 'shared'} back-off",
+        "tle": satellite.tle,
+        "epoch": f"{satellite.epoch:%Y-%m-%dT%H:%M:%SZ}",
+        "altitude_km": satellite.altitude_km,
+        "inclination_deg": satellite.inclination_deg,
+        "mass_kg": satellite.mass_kg,
+        "edges": None if satellite.inertia_kgm2 else satellite.edges_m,
+        "moments": [float(f"{moment:.6g}") for moment in moments],
+        "unstable": not moments[0] < moments[1] < moments[2],
+        "levels": levels,
+        "backoff": "per_coil" if satellite.per_coil else "shared",
+        "dipole_per_ampere": two_digits(strongest / STRONGEST_A),
+        "coil_field": two_digits(COIL_FIELD_NT / strongest),
+        "magnetometer_nt": satellite.magnetometer_nt,
+        "sun_deg": satellite.sun_deg,
+        "torque": two_digits(ASSUMED * torque_nm),
+        "dipole": two_digits(ASSUMED * dipole_am2),
+        "torque_bound": two_digits(torque_nm),
+        "dipole_bound": two_digits(dipole_am2),
+        "k_w": gains.k_w,
+        "k_a": gains.k_a,
+        "exact": satellite.exact,
+    }

@@ -1,0 +1,116 @@
+"""The few figures that a new scenario is made of, and what follows from them."""
+
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from math import pi
+
+import numpy as np
+
+from fsw.core.orbit.tle import tle_elements
+from fsw.table.uncertainty import REFERENCE_KGM2
+from sim.design.theory.bodies import EARTH_RADIUS_KM, MU_M3PS2, Body, Vec3, diagonal
+from sim.design.theory.floquet import ROUGH_STEPS
+from sim.design.theory.linear import Gains
+from sim.design.theory.search import continuous, natural_gains
+from sim.errors import HarnessError
+from sim.sizing.levels import Levels, levels_for, two_digits
+
+PULSE_S = 3.0
+_FACTORS = np.geomspace(0.5, 8.0, 9)
+"""Of the natural gains: between them lie the best of all bodies that the gravity gradient holds."""
+_NODE_DAYS_S = 86400.0
+
+
+@dataclass(frozen=True, slots=True)
+class NewSatellite:
+    """What the user gives.
+
+    Attributes:
+        name: of the scenario.
+        tle: two lines; None: a circular orbit.
+        altitude_km: of the circular orbit.
+        inclination_deg: of the circular orbit.
+        mass_kg: with ``size_m`` in place of the inertia.
+        size_m: edges of a homogeneous box; the longest becomes axis 1, the shortest axis 3.
+        inertia_kgm2: principal moments; None: from mass and size.
+        levels_am2: of the coils; None: as ``sim.sizing`` suggests.
+        per_coil: each coil has a back-off of its own.
+        magnetometer_nt: noise, standard deviation.
+        sun_deg: noise of the Sun sensor.
+        exact: the onboard table is right but for bias and torque; else its bounds are ordinary ones.
+        epoch: time of tick 0 of a circular orbit.
+    """
+
+    name: str
+    tle: tuple[str, str] | None = None
+    altitude_km: float | None = None
+    inclination_deg: float | None = None
+    mass_kg: float | None = None
+    size_m: Vec3 | None = None
+    inertia_kgm2: Vec3 | None = None
+    levels_am2: Levels | None = None
+    per_coil: bool = False
+    magnetometer_nt: float = 200.0
+    sun_deg: float = 0.5
+    exact: bool = True
+    epoch: datetime = datetime(2025, 3, 20, 9, tzinfo=UTC)
+
+    @property
+    def edges_m(self) -> Vec3 | None:
+        """The edges along axis 1, 2, 3."""
+        if self.size_m is None:
+            return None
+        longest, middle, shortest = sorted(self.size_m, reverse=True)
+        return longest, middle, shortest
+
+    @property
+    def moments_kgm2(self) -> Vec3:
+        """The principal moments along the body axes: given, or m/12 (b^2 + c^2) of the box.
+
+        Raises:
+            HarnessError: neither inertia nor mass and size are given.
+        """
+        if self.inertia_kgm2 is not None:
+            return self.inertia_kgm2
+        if self.mass_kg is None or self.edges_m is None:
+            raise HarnessError("give --inertia-kgm2 A B C, or --mass-kg and --size-m A B C")
+        a, b, c = self.edges_m
+        factor = self.mass_kg / 12.0
+        return factor * (b * b + c * c), factor * (a * a + c * c), factor * (a * a + b * b)
+
+    @property
+    def body(self) -> Body:
+        """Inertia and circular orbit.
+
+        Raises:
+            HarnessError: no orbit is given.
+        """
+        if self.tle is not None:
+            elements = tle_elements(*self.tle)
+            period_s = _NODE_DAYS_S / elements.motion_revpday
+            altitude_km = 1e-3 * (MU_M3PS2 * (period_s / (2.0 * pi)) ** 2) ** (1.0 / 3.0) - EARTH_RADIUS_KM
+            return Body(self.name, diagonal(self.moments_kgm2), altitude_km, elements.inclination_deg)
+        if self.altitude_km is None or self.inclination_deg is None:
+            raise HarnessError("give --tle FILE, or --altitude-km and --inclination-deg")
+        return Body(self.name, diagonal(self.moments_kgm2), self.altitude_km, self.inclination_deg)
+
+    @property
+    def levels(self) -> Levels:
+        """The levels given, or those of a body without disturbances."""
+        return self.levels_am2 or levels_for(self.body, PULSE_S)
+
+    @property
+    def volume(self) -> float:
+        """Volume over that of the 50 kg satellite, as ``fsw/table/uncertainty.py`` takes it."""
+        return float((sum(self.moments_kgm2) / 3.0 / REFERENCE_KGM2) ** 0.6)
+
+
+def gains_for(body: Body) -> Gains:
+    """Gains of the pd law with the least degree of stability on a coarse grid about the natural ones.
+
+    ``torquer design`` finds better ones in a minute.
+    """
+    natural, degree = natural_gains(body), continuous(body, ROUGH_STEPS)
+    k_w, k_a = np.meshgrid(natural.k_w * _FACTORS, natural.k_a * _FACTORS)
+    place = np.unravel_index(int(degree(Gains(k_w, k_a)).argmin()), k_w.shape)
+    return Gains(two_digits(float(k_w[place])), two_digits(float(k_a[place])))

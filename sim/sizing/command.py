@@ -1,0 +1,97 @@
+"""``torquer size``: coil levels, and what pointing to expect, of a scenario's satellite."""
+
+from math import pi
+
+import numpy as np
+
+from sim.console import answer, say
+from sim.design.from_scenario import body_of
+from sim.scenario.schema import Scenario
+from sim.sizing.expectation import Expectation, expect
+from sim.sizing.levels import MOST_LOAD, Levels, levels_against
+
+SMALL_DEG = 15.0
+"""Above it a floor by small angles is no figure: the satellite will not point."""
+SURE_DEG = 3.0
+"""Up to it flights agree with the figure."""
+MOST_SPREAD = 20.0
+"""Ratio of the moments of inertia up to which the least level is judged by the lightest axis."""
+
+
+def size(scenario: Scenario) -> int:
+    """Print what is expected and what levels would do; 1 if the coils cannot balance the disturbance."""
+    expectation = expect(scenario)
+    levels = levels_against(scenario, expectation)
+    say(as_text(scenario, expectation, levels), failed=expectation.load > 1.0)
+    answer(as_json(scenario, expectation, levels))
+    return int(expectation.load > 1.0)
+
+
+def as_json(scenario: Scenario, expectation: Expectation, levels: Levels) -> dict[str, object]:
+    """The same for programs."""
+    body = body_of(scenario)
+    return {
+        "scenario": scenario.name,
+        "inertia_kgm2": body.inertia_kgm2,
+        "altitude_km": body.altitude_km,
+        "inclination_deg": body.inclination_deg,
+        "levels_am2": scenario.coils.levels_am2,
+        "suggested_levels_am2": levels,
+        "field_across_coil_t": expectation.field_t,
+        "disturbance_rms_nm": expectation.disturbance_nm,
+        "load": expectation.load,
+        "pointing_rms_deg": expectation.pointing_deg if points(expectation) else None,
+        "floor_deg": expectation.floor_deg,
+        "quantum_deg": expectation.quantum_deg,
+        "ripple_deg": expectation.ripple_deg,
+        "knowledge_deg": expectation.knowledge_deg,
+        "points": points(expectation),
+    }
+
+
+def points(expectation: Expectation) -> bool:
+    """Whether there is a pointing error to expect: the disturbance is balanced, by small angles."""
+    return expectation.load <= 1.0 and expectation.floor_deg <= SMALL_DEG
+
+
+def as_text(scenario: Scenario, expectation: Expectation, levels: Levels) -> str:
+    """What is given, what to expect and why, what levels would do."""
+    body, coils = body_of(scenario), scenario.coils
+    moments = "/".join(f"{moment:.3g}" for moment in np.linalg.eigvalsh(np.asarray(body.inertia_kgm2)))
+    lines = [
+        f"{scenario.name}: J {moments} kg m^2, {body.altitude_km:.0f} km, {body.inclination_deg:.1f} deg; "
+        f"orbit {pi / body.rate_radps / 30.0:.1f} min, {1e6 * expectation.field_t:.1f} uT across a coil",
+        f"  pulses     {coils.pulse_s:g} s every {coils.pulse_s + coils.backoff_s:g} s, levels "
+        f"{_levels(coils.levels_am2)} A m^2",
+        f"  disturbed by {expectation.disturbance_nm:.2e} N m RMS: balancing it takes {expectation.load:.1%} "
+        "of what the coils can give",
+        _pointing(expectation),
+        f"  levels     {_levels(levels)} A m^2 would do",
+    ]
+    if expectation.load > MOST_LOAD:
+        lines.append(f"  note: over {MOST_LOAD:.0%} of the coils' time: they hardly turn and damp as well")
+    if points(expectation) and expectation.floor_deg > SURE_DEG:
+        lines.append("  note: so large an error is a lower bound: flights had it or several times as much")
+    if _spread(body.inertia_kgm2) > MOST_SPREAD:
+        lines.append("  note: about its lightest axis such a body turns freely: judge it by axis 1 alone")
+    return "\n".join(lines)
+
+
+def _pointing(expectation: Expectation) -> str:
+    parts = (
+        f"{expectation.floor_deg:.2f} disturbance, {expectation.quantum_deg:.2f} least level, "
+        f"{expectation.ripple_deg:.2f} between pulses, "
+        f"{expectation.knowledge_deg:.2f} estimate"
+    )
+    if not points(expectation):
+        return f"  pointing   none to expect: the disturbance is too strong ({parts} deg)"
+    return f"  pointing   {expectation.pointing_deg:.2f} deg RMS once settled ({parts})"
+
+
+def _levels(levels_am2: Levels) -> str:
+    return ", ".join(f"{level:g}" for level in levels_am2)
+
+
+def _spread(inertia_kgm2: object) -> float:
+    moments = np.linalg.eigvalsh(np.asarray(inertia_kgm2))
+    return float(moments[-1] / moments[0])

@@ -1,0 +1,208 @@
+"""What a scenario says that is allowed and most likely wrong, each a sentence with what may be meant."""
+
+from collections.abc import Callable, Iterator
+from datetime import UTC, datetime
+from math import hypot
+
+import numpy as np
+
+from fsw.core.orbit.tle import tle_elements
+from fsw.table.uncertainty import ROUNDING, bounds
+from sim.design.from_scenario import body_of
+from sim.scenario.schema import Scenario, flight_table
+from sim.sizing.expectation import expect, field_across
+from sim.sizing.levels import levels_against
+
+DAY_S = 86400.0
+OLD_TLE_DAYS = 366.0
+"""A TLE is good for days; what is a year from its epoch is another year's."""
+WILD_STEP, FAINT_STEP = 30.0, 1e-3
+"""Change of rate by a pulse of the strongest level, in orbital rates: 0.1 to 0.5 in a sound design."""
+MOST_LOAD = 0.5
+FASTEST_DEGPS = 30.0
+LEAST_INCLINATION_DEG = 10.0
+NOISE_NT, NOISE_DEG = (1.0, 5000.0), (1e-3, 10.0)
+"""Plausible noise of a magnetometer and of a Sun sensor; none at all is a deliberate choice."""
+SLIGHT, SLIGHT_NT, SLIGHT_KM = 0.01, 100.0, 1.0
+"""Beyond its bound, but of no consequence: part of what the coils can give, bias, way along the track."""
+LEAST_CURRENT_MA, MOST_CURRENT_MA = 1.0, 10_000.0
+
+
+def doubts(scenario: Scenario) -> list[str]:
+    """The doubts, in the order of the sections of a scenario; none for one that is plausible."""
+    return [doubt for judge in _JUDGES for doubt in judge(scenario)]
+
+
+def _epoch(scenario: Scenario) -> Iterator[str]:
+    if scenario.orbit.tle is None:
+        return
+    elements = tle_elements(*scenario.orbit.tle)
+    tle_s = DAY_S * (elements.epoch_day + elements.epoch_fraction)
+    days = (scenario.epoch_unix_s - tle_s) / DAY_S
+    if abs(days) > OLD_TLE_DAYS:
+        dates = (f"{datetime.fromtimestamp(when, UTC):%Y-%m-%d}" for when in (tle_s, scenario.epoch_unix_s))
+        yield (
+            "orbit.tle is of {} and the flight begins on {}, {:.1f} years {}: elements are good for days; "
+            "leave out time.epoch_utc to begin at theirs".format(
+                *dates, abs(days) / 365.25, "later" if days > 0.0 else "earlier"
+            )
+        )
+
+
+def _orbit(scenario: Scenario) -> Iterator[str]:
+    inclination_deg = body_of(scenario).inclination_deg
+    given = scenario.orbit.tle is not None or "inclination_deg" in scenario.orbit.model_fields_set
+    left_out = "" if given else "; where the key is left out it is 0"
+    if min(inclination_deg, 180.0 - inclination_deg) < LEAST_INCLINATION_DEG:
+        yield (
+            f"orbit.inclination_deg = {inclination_deg:g}: over the equator the field hardly turns, and "
+            f"coils cannot turn the satellite about it{left_out}"
+        )
+
+
+def _step(scenario: Scenario) -> Iterator[str]:
+    """Change of rate of the heaviest axis by the strongest pulse, in orbital rates."""
+    body, coils = body_of(scenario), scenario.coils
+    heaviest = float(np.linalg.eigvalsh(np.asarray(body.inertia_kgm2))[-1])
+    driven_s = coils.pulse_s if coils.driver == "pulsed" else coils.on_fraction * coils.pulse_s
+    step = coils.largest_am2 * field_across(body) * driven_s / (heaviest * body.rate_radps)
+    key = "coils.levels_am2" if coils.driver == "pulsed" else "coils.max_dipole_am2"
+    change = f"{driven_s:g} s of the strongest dipole change the rate by {step:.2g} orbital rates"
+    if step > WILD_STEP:
+        yield (
+            f"{change}: body.inertia_kgm2 is too small for {key}; is it in kg m^2, and the dipole in A m^2, "
+            "not in mA m^2?"
+        )
+    elif step < FAINT_STEP:
+        yield (
+            f"{change}: body.inertia_kgm2 is too large for {key}; is it in kg m^2, not in g m^2 (1000 times "
+            "as much) or kg mm^2 (10^6 times)?"
+        )
+
+
+def _load(scenario: Scenario) -> Iterator[str]:
+    if scenario.coils.driver != "pulsed":
+        return
+    expectation = expect(scenario)
+    if expectation.load > MOST_LOAD:
+        high = levels_against(scenario, expectation)[2]
+        yield (
+            f"balancing the disturbance of {expectation.disturbance_nm:.2g} N m takes "
+            f"{expectation.load:.0%} of what coils.levels_am2 can give in pulses: too weak to point with; "
+            f"a strongest level of {high:g} A m^2 would do"
+        )
+
+
+def _ticks(scenario: Scenario) -> Iterator[str]:
+    tick_hz, coils = scenario.time.tick_hz, scenario.coils
+    for name, value_s, becomes in (
+        ("pulse_s", coils.pulse_s, "shorter"),
+        ("backoff_s", coils.backoff_s, "longer"),
+    ):
+        ticks = value_s * tick_hz
+        if coils.driver == "pulsed" and abs(ticks - round(ticks)) > 1e-9:
+            yield (
+                f"coils.{name} = {value_s:g} is not a whole number of ticks of {1.0 / tick_hz:g} s: the "
+                f"scheduler makes it {becomes}"
+            )
+    cycle_s = coils.pulse_s + coils.backoff_s
+    if coils.driver == "pulsed" and scenario.control.leak_s < cycle_s:
+        yield (
+            f"control.leak_s = {scenario.control.leak_s:g} is less than the {cycle_s:g} s from one pulse to "
+            "the next: what the law demands is forgotten before a coil may pay it"
+        )
+
+
+def _currents(scenario: Scenario) -> Iterator[str]:
+    low, _, high = scenario.coils.levels_ma
+    if low < LEAST_CURRENT_MA or high > MOST_CURRENT_MA:
+        yield (
+            f"coils.dipole_per_ampere_am2 = {scenario.coils.dipole_per_ampere_am2:g} makes the levels "
+            f"{low:.3g} to {high:.3g} mA: the read-back counts whole mA, and coils take some 10 mA to 1 A; "
+            "is it A m^2 per A?"
+        )
+
+
+def _sensors(scenario: Scenario) -> Iterator[str]:
+    if scenario.knowledge == "perfect":
+        return
+    magnetometer, sun = scenario.sensors.magnetometer, scenario.sensors.sun
+    for key, value, (least, most), unit in (
+        ("magnetometer.noise_nt", magnetometer.noise_nt, NOISE_NT, "nT"),
+        ("sun.noise_deg", sun.noise_deg, NOISE_DEG, "deg"),
+    ):
+        if value > most or 0.0 < value < least:
+            much = "noisier" if value > most else "better"
+            yield (
+                f"sensors.{key} = {value:g} is {much} than such a sensor is, {least:g} to {most:g}: "
+                f"is it in {unit}?"
+            )
+    strongest_nt = 1e9 * 2.0 * body_of(scenario).field_t
+    if magnetometer.saturation_nt < strongest_nt:
+        yield (
+            f"sensors.magnetometer.saturation_nt = {magnetometer.saturation_nt:g} is less than the field "
+            f"over the poles of this orbit, {strongest_nt:.0f} nT"
+        )
+
+
+def _start(scenario: Scenario) -> Iterator[str]:
+    rate_degps = hypot(*scenario.initial.rate_degps)
+    if rate_degps > FASTEST_DEGPS:
+        yield f"initial.rate_degps is {rate_degps:.3g} deg/s, which coils take days to stop: is it in deg/s?"
+
+
+def _beyond_bounds(scenario: Scenario) -> Iterator[str]:
+    """What the satellite is differs from what the onboard table says by more than its bound admits."""
+    if scenario.knowledge == "perfect":
+        return
+    table = flight_table(scenario)
+    known = bounds(table.uncertainty, table.body.inertia, 1.0 / scenario.time.tick_hz)
+    disturbance, coils = scenario.disturbance, scenario.coils
+    dipole_am2 = SLIGHT * coils.largest_am2 * coils.on_part
+    gains = tuple(factor - 1.0 for factor in coils.dipole_scale)
+    torque_nm = dipole_am2 * field_across(body_of(scenario))
+    for key, off, bound, slight, of_table in (
+        ("disturbance.torque_nm", disturbance.torque_nm, known.torque_nm, torque_nm, "torque_nm"),
+        (
+            "disturbance.residual_dipole_am2",
+            disturbance.residual_dipole_am2,
+            known.dipole_am2,
+            dipole_am2,
+            "residual_dipole_am2",
+        ),
+        (
+            "sensors.magnetometer.bias_nt",
+            scenario.sensors.magnetometer.bias_nt,
+            1e9 * known.mag_bias_t,
+            SLIGHT_NT,
+            "magnetometer_bias_nt",
+        ),
+        ("coils.dipole_scale", gains, known.coil_gain_part, SLIGHT, "coil_gain_percent"),
+        (
+            "orbit.along_track_km",
+            (scenario.orbit.along_track_km,),
+            1e-3 * known.along_track_m,
+            SLIGHT_KM,
+            "along_track_km",
+        ),
+    ):
+        worst = max(map(abs, off))
+        if worst > max(bound * (1.0 + ROUNDING), slight):
+            admitted = 100.0 * bound if of_table.endswith("_percent") else bound
+            yield (
+                f"{key} is off by {worst:.3g}, and flight.uncertainty.{of_table} = {admitted:g}: the filter "
+                "is not made for it"
+            )
+
+
+_JUDGES: tuple[Callable[[Scenario], Iterator[str]], ...] = (
+    _epoch,
+    _orbit,
+    _step,
+    _start,
+    _ticks,
+    _currents,
+    _sensors,
+    _load,
+    _beyond_bounds,
+)

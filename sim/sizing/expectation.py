@@ -1,0 +1,110 @@
+"""What pointing to expect of pulsed coils, and how much of their time it takes.
+
+Four parts that do not depend on each other add up by their squares:
+
+- the floor: a dipole gives no torque along the field, so that a torque d(u) is balanced on the mean alone, by
+  the periodic motion with the least mean square (``sim/design/theory/feedforward.py``). No law does better.
+- the quantum: by how much the least level turns the body from one pulse to the next, about the axis that it
+  turns most, q = m_1 B T_p (T_p + T_b) / J_min.
+- the ripple: by how much the disturbance d turns that axis in the same time, r = d (T_p + T_b)^2 / J_min.
+- the knowledge: the Sun sensor's noise over ``AVERAGED`` samples, and its misalignment within its bound a,
+  a ball: s^2 / n + 3 a^2 / 5.
+
+The load is the part of the coils' time that balancing takes: the mean over an orbit of |m_1| + |m_2| + |m_3|
+of the balancing dipole, over what one coil at a time gives, m_3 T_p / (T_p + T_b). Damping, turns and what
+the filter does not know need the rest.
+
+Equal principal moments are taken apart by ``SPREAD``: about such an axis nothing holds the body, and the
+linear motion has no periodic answer to a torque, which the coils give it all the same.
+
+B is the root mean square of the direct dipole's field across a coil's axis, B_0 sqrt(1 + 3/2 sin^2 i)
+sqrt(2/3), since B^2 = B_0^2 (1 + 3 sin^2 i sin^2 u).
+"""
+
+from dataclasses import dataclass, replace
+from math import degrees, hypot, radians, sin, sqrt
+
+import numpy as np
+
+from sim.design.from_scenario import body_of
+from sim.design.theory.bodies import Body
+from sim.design.theory.feedforward import least_error
+from sim.scenario.schema import Scenario, flight_table
+from sim.sizing.torques import disturbance_torque
+
+SPREAD = 1e-3
+AVERAGED = 30
+"""Samples over which the filter averages, in effect."""
+SUN_MISALIGNMENT_DEG = 0.5
+"""Its bound where the onboard table has none, as in ``fsw/table/uncertainty.py``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Expectation:
+    """What to expect.
+
+    Attributes:
+        field_t: B, across a coil's axis.
+        disturbance_nm: root mean square of the disturbance torque over an orbit.
+        floor_deg: error that no law avoids.
+        quantum_deg: step of the least level.
+        ripple_deg: turn by the disturbance between two pulses.
+        knowledge_deg: error of the estimate.
+        load: part of the coils' time that balancing the disturbance takes; above 1 it cannot be balanced.
+    """
+
+    field_t: float
+    disturbance_nm: float
+    floor_deg: float
+    quantum_deg: float
+    ripple_deg: float
+    knowledge_deg: float
+    load: float
+
+    @property
+    def pointing_deg(self) -> float:
+        """Root mean square of the pointing error once settled."""
+        return hypot(self.floor_deg, self.quantum_deg, self.ripple_deg, self.knowledge_deg)
+
+
+def expect(scenario: Scenario) -> Expectation:
+    """What to expect of a scenario's satellite, body = orbit, its coils pulsed."""
+    body, coils, torque_nm = _apart(body_of(scenario)), scenario.coils, disturbance_torque(scenario)
+    response = least_error(body, torque_nm)
+    field_t = field_across(body)
+    cycle_s = coils.pulse_s + coils.backoff_s
+    least_kgm2 = float(np.linalg.eigvalsh(np.asarray(body.inertia_kgm2))[0])
+    quantum_rad = coils.levels_am2[0] * field_t * coils.pulse_s * cycle_s / least_kgm2
+    balancing_am2 = float(np.abs(response.dipole_am2).sum(axis=1).mean())
+    disturbance_nm = float(np.sqrt(np.mean(np.sum(torque_nm**2, axis=1))))
+    return Expectation(
+        field_t=field_t,
+        disturbance_nm=disturbance_nm,
+        floor_deg=degrees(response.rms_rad),
+        quantum_deg=degrees(quantum_rad),
+        ripple_deg=degrees(disturbance_nm * cycle_s**2 / least_kgm2),
+        knowledge_deg=_knowledge_deg(scenario),
+        load=balancing_am2 * cycle_s / (coils.levels_am2[2] * coils.pulse_s),
+    )
+
+
+def _apart(body: Body) -> Body:
+    """The body with moments about axes 2 and 3 that are a little larger, by unlike parts of their mean."""
+    inertia = np.asarray(body.inertia_kgm2)
+    inertia = inertia + np.diag([0.0, 0.5, 1.0]) * SPREAD * float(np.trace(inertia)) / 3.0
+    rows = ((float(a), float(b), float(c)) for a, b, c in inertia)
+    return replace(body, inertia_kgm2=(next(rows), next(rows), next(rows)))
+
+
+def field_across(body: Body) -> float:
+    """B, the root mean square of the field across a coil's axis [T]."""
+    sine = sin(radians(body.inclination_deg))
+    return body.field_t * sqrt((1.0 + 1.5 * sine * sine) * 2.0 / 3.0)
+
+
+def _knowledge_deg(scenario: Scenario) -> float:
+    if scenario.knowledge == "perfect":
+        return 0.0
+    given = flight_table(scenario).uncertainty.sun_misalignment_deg
+    bound_deg = SUN_MISALIGNMENT_DEG if given is None else given
+    return hypot(scenario.sensors.sun.noise_deg / sqrt(AVERAGED), bound_deg * sqrt(0.6))

@@ -1,0 +1,64 @@
+"""The disturbance torques on a satellite at rest in the nominal attitude, over one orbit."""
+
+import numpy as np
+
+from sim.design.from_scenario import body_of
+from sim.design.theory.feedforward import NODES
+from sim.design.theory.linear import Array, dipole_field, resting_torque
+from sim.plant.config import OrbitConfig, PlantConfig
+from sim.plant.dynamics import surfaces
+from sim.plant.environment.atmosphere import altitude_m, density_kgpm3, flow_mps
+from sim.plant.environment.orbit import CircularOrbit
+from sim.plant.environment.sun import AU_M, illumination, sun_eci_m
+from sim.scenario.assemble import plant_config
+from sim.scenario.schema import Scenario, orbit_period_s
+
+LIGHT_MPS = 299792458.0
+
+
+def disturbance_torque(scenario: Scenario) -> Array:
+    """Torque at the nodes u = 2 pi k / N of the circular orbit, body axes [N m], (N, 3).
+
+    The sum of the constant torque, residual dipole x field of the direct dipole, drag and sunlight on the
+    plates, and what the gravity gradient leaves on a body whose principal axes are not the body axes.
+    """
+    body, config = body_of(scenario), plant_config(scenario, 0)
+    u = 2.0 * np.pi / NODES * np.arange(NODES, dtype=np.float64)
+    residual_am2 = np.asarray(scenario.disturbance.residual_dipole_am2)
+    magnetic = np.cross(residual_am2, dipole_field(u, body) * body.field_t)
+    constant = np.asarray(scenario.disturbance.torque_nm) + resting_torque(body)
+    torque: Array = constant + magnetic + _surface_torque(scenario, config)
+    return torque
+
+
+def _surface_torque(scenario: Scenario, config: PlantConfig) -> Array:
+    """Drag and pressure of sunlight on the plates, (N, 3)."""
+    body, period_s = body_of(scenario), orbit_period_s(scenario)
+    orbit = CircularOrbit(
+        OrbitConfig(
+            altitude_m=1e3 * body.altitude_km,
+            inclination_rad=float(np.radians(body.inclination_deg)),
+            raan_rad=float(np.radians(scenario.orbit.raan_deg)),
+        )
+    )
+    t_s = period_s / NODES * np.arange(NODES, dtype=np.float64)
+    r_m, v_mps = orbit.at(t_s)
+    sun_m = sun_eci_m(config.epoch_unix_s, t_s)
+    radius_m = np.linalg.norm(r_m, axis=1, keepdims=True)
+    ahead_mps = v_mps / np.linalg.norm(v_mps, axis=1, keepdims=True)
+    radial = r_m / radius_m
+    axes = np.stack([radial, ahead_mps, np.cross(radial, ahead_mps)], axis=1)  # rows: orbital axes, eci
+    to_sun_m = sun_m - r_m
+    distance_m = np.linalg.norm(to_sun_m, axis=1)
+    section = config.disturbance
+    density = (section.density_scale or 0.0) * density_kgpm3(altitude_m(r_m))
+    pressure_pa = (section.solar_flux_wpm2 or 0.0) / LIGHT_MPS * (AU_M / distance_m) ** 2
+    pressure_pa = pressure_pa * illumination(r_m, sun_m)
+    flow = np.einsum("kij,kj->ki", axes, flow_mps(r_m, v_mps))
+    sun = np.einsum("kij,kj->ki", axes, to_sun_m / distance_m[:, None])
+    rows = []
+    for k in range(NODES):
+        air = surfaces.drag(config.body.plates, tuple(flow[k]), float(density[k]))
+        light = surfaces.solar_pressure(config.body.plates, tuple(sun[k]), float(pressure_pa[k]))
+        rows.append(np.add(air, light))
+    return np.array(rows)

@@ -1,0 +1,130 @@
+"""``torquer new``: the scenario it writes, and what it refuses to overwrite."""
+
+import json
+
+import pytest
+
+from fsw.input.toml_text import parse_toml
+from sim.console import Console, speaking
+from sim.errors import HarnessError
+from sim.new_scenario.command import check_new, new, scenario_text
+from sim.new_scenario.satellite import NewSatellite
+from sim.scenario.schema import load, scenario_of
+from sim.sizing.doubts import doubts
+from sim.sizing.expectation import expect
+
+TLE = (
+    "1 22826U 93061D   15086.11593543  .00000251  00000-0  11414-3 0  9992",
+    "2 22826  98.6946  36.4208 0008932 173.8349 186.2944 14.30166407121352",
+)
+SATELLITES = {
+    "3U": NewSatellite("my-3u", None, 550.0, 97.6, 4.0, (0.1, 0.34, 0.1)),
+    "50 kg": NewSatellite("my-50kg", TLE, inertia_kgm2=(1.0, 1.9, 2.0), levels_am2=(0.5, 2.0, 8.0)),
+    "6U": NewSatellite("my-6u", None, 500.0, 51.6, 10.0, (0.1, 0.2263, 0.366), exact=False, per_coil=True),
+    "cube": NewSatellite("my-cube", None, 700.0, 98.0, 50.0, (0.5, 0.5, 0.5)),
+    "tons": NewSatellite("my-tons", None, 700.0, 98.0, 2000.0, (4.0, 2.0, 1.5)),
+}
+
+
+def written(satellite):
+    return scenario_of(parse_toml(scenario_text(satellite, "mine.toml")), "mine.toml")
+
+
+@pytest.mark.parametrize("satellite", SATELLITES.values(), ids=SATELLITES)
+def test_a_new_scenario_is_valid_and_not_doubted(satellite):
+    scenario = written(satellite)
+    assert scenario.name == satellite.name
+    assert doubts(scenario) == []
+    assert expect(scenario).pointing_deg < 5.0
+
+
+def test_what_was_given_stands_in_it():
+    scenario = written(SATELLITES["50 kg"])
+    assert scenario.orbit.tle == TLE
+    assert scenario.body.inertia_kgm2 == (1.0, 1.9, 2.0)
+    assert scenario.coils.levels_am2 == (0.5, 2.0, 8.0)
+    sixu = written(SATELLITES["6U"])
+    assert (sixu.orbit.altitude_km, sixu.orbit.inclination_deg) == (500.0, 51.6)
+    assert sixu.coils.backoff == "per_coil"
+    assert "inertia_percent" not in sixu.flight["uncertainty"]
+
+
+def test_the_longest_edge_of_a_box_points_up():
+    low, middle, high = written(SATELLITES["6U"]).body.inertia_kgm2
+    assert (low, middle, high) == pytest.approx(
+        (
+            10.0 / 12.0 * (0.2263**2 + 0.1**2),
+            10.0 / 12.0 * (0.366**2 + 0.1**2),
+            10.0 / 12.0 * (0.366**2 + 0.2263**2),
+        ),
+        rel=1e-5,
+    )
+
+
+def test_a_body_that_the_gravity_gradient_turns_over_is_said_to_be_one():
+    turned = NewSatellite("mine", None, 550.0, 97.6, inertia_kgm2=(0.03, 0.03, 0.01))
+    assert "does not hold this body upright" in scenario_text(turned, "mine.toml")
+    assert "does not hold" not in scenario_text(SATELLITES["6U"], "mine.toml")
+
+
+@pytest.mark.parametrize("satellite", SATELLITES.values(), ids=SATELLITES)
+def test_every_key_has_a_comment(satellite):
+    lines = scenario_text(satellite, "mine.toml").splitlines()
+    keys = [line for line in lines if " = " in line and not line.startswith(("#", " "))]
+    named = {line.split(" = ")[0] for line in keys}
+    plain = {line.split(" = ")[0] for line in keys if "#" not in line}
+    assert plain <= {"name", "summary", "altitude_km", "inclination_deg", "tle", "angle_deg", "axis"}
+    assert {"tick_hz", "levels_am2", "noise_nt", "law", "torque_nm"} <= named
+
+
+def test_the_file_loads_and_the_way_on_is_said(tmp_path, capsys):
+    file = tmp_path / "my-3u.toml"
+    with speaking(Console("new")) as console:
+        assert new(SATELLITES["3U"], file) == 0
+    assert load(str(file)) == written(SATELLITES["3U"])
+    assert f"fly it: torquer sil {file}" in capsys.readouterr().out
+    assert console.answer["file"] == file
+    assert console.answer["pointing_rms_deg"] == expect(load(str(file))).pointing_deg
+
+
+def test_nothing_is_overwritten(tmp_path):
+    file = tmp_path / "my-3u.toml"
+    file.write_text("mine")
+    with pytest.raises(HarnessError, match="exists, and is not overwritten"):
+        new(SATELLITES["3U"], file)
+    assert file.read_text() == "mine"
+
+
+@pytest.mark.parametrize(
+    ("name", "file", "sentence"),
+    [
+        ("../x", "x.toml", "is no name of a scenario"),
+        ("", "x.toml", "is no name of a scenario"),
+        ("microsat", "x.toml", "is a scenario that ships"),
+        ("mine", "mine.txt", "ends in .toml"),
+    ],
+)
+def test_names_that_cannot_be(name, file, sentence, tmp_path):
+    with pytest.raises(HarnessError, match=sentence):
+        check_new(name, tmp_path / file)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("satellite", "sentence"),
+    [
+        (NewSatellite("x", None, 550.0, 97.6), "give --inertia-kgm2"),
+        (NewSatellite("x", None, 550.0, 97.6, mass_kg=4.0), "give --inertia-kgm2"),
+        (NewSatellite("x", None, 550.0, None, inertia_kgm2=(1.0, 1.0, 1.0)), "give --tle FILE"),
+    ],
+)
+def test_what_is_missing_is_named(satellite, sentence, tmp_path):
+    with pytest.raises(HarnessError, match=sentence):
+        new(satellite, tmp_path / "x.toml")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_name_cannot_break_the_file():
+    json.dumps(
+        scenario_text(NewSatellite("a.b-c_1", None, 550.0, 97.6, inertia_kgm2=(1.0, 1.0, 1.0)), "x.toml")
+    )

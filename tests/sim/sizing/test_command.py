@@ -1,0 +1,55 @@
+"""``torquer size``: what it prints and what it ends with."""
+
+import pytest
+
+from sim.console import Console, speaking
+from sim.scenario.schema import load, parse_settings
+from sim.sizing.command import size
+
+KEYS = {
+    "scenario": str,
+    "inertia_kgm2": tuple,
+    "altitude_km": float,
+    "inclination_deg": float,
+    "levels_am2": tuple,
+    "suggested_levels_am2": tuple,
+    "field_across_coil_t": float,
+    "disturbance_rms_nm": float,
+    "load": float,
+    "pointing_rms_deg": float | None,
+    "floor_deg": float,
+    "quantum_deg": float,
+    "ripple_deg": float,
+    "knowledge_deg": float,
+    "points": bool,
+}
+
+
+def sized(name, *settings):
+    """(exit code, document) of a scenario."""
+    with speaking(Console("size")) as console:
+        return size(load(name, parse_settings(settings))), console.answer
+
+
+def test_a_sound_satellite(capsys):
+    code, values = sized("cubesat6u")
+    assert code == 0
+    assert {name: isinstance(values[name], kind) for name, kind in KEYS.items()} == dict.fromkeys(KEYS, True)
+    assert values["points"]
+    out = capsys.readouterr().out
+    assert f"{values['pointing_rms_deg']:.2f} deg RMS once settled" in out
+    assert "0.02, 0.1, 0.5 A m^2" in out
+
+
+@pytest.mark.parametrize(
+    ("settings", "code", "words"),
+    [
+        (["disturbance.torque_nm=[1e-7,0,0]"], 1, "none to expect: the disturbance is too strong"),
+        (["disturbance.torque_nm=[6e-9,6e-9,6e-9]"], 0, "so large an error is a lower bound"),
+        (["disturbance.torque_nm=[6e-9,6e-9,6e-9]"], 0, "they hardly turn and damp as well"),
+        (["body.inertia_kgm2=[0.001,0.033,0.0335]"], 0, "judge it by axis 1 alone"),
+    ],
+)
+def test_what_is_doubtful_is_said(settings, code, words, capsys):
+    assert sized("cubesat3u", *settings)[0] == code
+    assert words in capsys.readouterr().out

@@ -1,0 +1,79 @@
+"""What is allowed and most likely wrong."""
+
+import pytest
+
+from sim.scenario.schema import load, parse_settings, shipped
+from sim.sizing.doubts import doubts
+
+
+def found(name, *settings):
+    return doubts(load(name, parse_settings(settings)))
+
+
+@pytest.mark.parametrize("scenario", shipped(), ids=lambda scenario: scenario.name)
+def test_no_scenario_that_ships_is_doubted(scenario):
+    assert doubts(scenario) == []
+
+
+@pytest.mark.parametrize(
+    ("setting", "words"),
+    [
+        ("body.inertia_kgm2=[6.7,33,33.5]", ["body.inertia_kgm2 is too large", "g m^2"]),
+        ("body.inertia_kgm2=[6.7e-6,33e-6,33.5e-6]", ["body.inertia_kgm2 is too small", "kg m^2"]),
+        ("coils.levels_am2=[3,12,48]", ["too small for coils.levels_am2", "mA m^2"]),
+        (
+            "disturbance.torque_nm=[1e-7,0,0]",
+            ["balancing the disturbance of 1e-07 N m takes 4", "A m^2 would do"],
+        ),
+        ("orbit.inclination_deg=0", ["orbit.inclination_deg = 0", "over the equator"]),
+        ("coils.backoff_s=100.5", ["coils.backoff_s = 100.5", "ticks of 1 s", "longer"]),
+        ("coils.pulse_s=2.5", ["coils.pulse_s = 2.5", "ticks of 1 s", "shorter"]),
+        (
+            "sensors.magnetometer.noise_nt=0.2",
+            ["sensors.magnetometer.noise_nt = 0.2", "better", "is it in nT?"],
+        ),
+        ("sensors.magnetometer.noise_nt=9e3", ["noisier"]),
+        ("sensors.sun.noise_deg=30", ["sensors.sun.noise_deg = 30", "noisier", "is it in deg?"]),
+        ("sensors.magnetometer.saturation_nt=30000", ["saturation_nt = 30000", "field over the poles"]),
+        ("initial.rate_degps=[60,0,0]", ["initial.rate_degps is 60 deg/s"]),
+        ("control.leak_s=30", ["control.leak_s = 30", "103 s"]),
+        ("coils.dipole_per_ampere_am2=0.0005", ["coils.dipole_per_ampere_am2 = 0.0005", "mA"]),
+        ("disturbance.residual_dipole_am2=[0.002,0,0]", ["residual_dipole_am2 is off by 0.002", "= 0"]),
+        ("sensors.magnetometer.bias_nt=[0,5000,0]", ["bias_nt is off by 5e+03", "= 500"]),
+        ("coils.dipole_scale=[1,1.2,1]", ["coils.dipole_scale is off by 0.2", "coil_gain_percent"]),
+        ("orbit.along_track_km=8", ["orbit.along_track_km is off by 8", "along_track_km = 0"]),
+    ],
+    ids=lambda value: value if isinstance(value, str) else "",
+)
+def test_a_mistake_is_named_with_key_and_figure(setting, words):
+    told = found("cubesat3u", setting)
+    assert any(all(word in doubt for word in words) for doubt in told), told
+
+
+def test_a_tle_of_another_year():
+    (doubt,) = found("microsat", "time.epoch_utc=2025-04-01T00:00:00Z")
+    assert "orbit.tle is of 2015-03-27 and the flight begins on 2025-04-01, 10.0 years later" in doubt
+    (doubt,) = found("microsat", "time.epoch_utc=2013-03-27T03:00:00Z")
+    assert "2.0 years earlier" in doubt
+    assert found("microsat", "time.epoch_utc=2015-05-01T00:00:00Z") == []
+
+
+def test_an_inclination_that_was_left_out():
+    values = load("cubesat3u").model_dump(exclude_unset=True)
+    del values["orbit"]["inclination_deg"]
+    from sim.scenario.schema import scenario_of
+
+    (doubt,) = doubts(scenario_of(values, "mine"))
+    assert "where the key is left out it is 0" in doubt
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        ("knowledge=perfect", "sensors.sun.noise_deg=30"),
+        ("sensors.magnetometer.noise_nt=0", "sensors.sun.noise_deg=0"),
+        ("coils.driver=continuous", "coils.max_dipole_am2=0.1", "coils.backoff_s=100.5"),
+    ],
+)
+def test_what_does_not_matter_is_not_doubted(settings):
+    assert found("cubesat3u", *settings) == []

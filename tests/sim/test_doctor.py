@@ -1,0 +1,63 @@
+"""``torquer doctor``: what is there, what is missing, what to type."""
+
+import pytest
+
+from sim.console import Console, speaking
+from sim.doctor import Finding, Presence, can_interfaces, examine, report
+
+FOUND = [
+    Finding("Python", Presence.OK, "3.11"),
+    Finding("vcan0", Presence.OPTIONAL, "there is none", "sudo modprobe vcan"),
+]
+MISSING = Finding("packages", Presence.MISSING, "scipy is not installed", "pip install 'torquer'")
+
+
+def test_this_machine_has_what_the_tests_need():
+    found = {finding.name: finding for finding in examine()}
+    assert {"Python", "packages", "folder", "disk", "timing", "SocketCAN"} <= set(found)
+    assert "torquer[dev]" not in found
+    for name in ("Python", "packages", "folder", "disk"):
+        assert found[name].presence is Presence.OK, found[name]
+    assert "numpy" in found["packages"].found
+
+
+@pytest.mark.parametrize(("findings", "code"), [(FOUND, 0), ([*FOUND, MISSING], 1)])
+def test_only_what_flights_need_fails(findings, code, capsys):
+    with speaking(Console("doctor")) as console:
+        assert report(findings) == code
+    assert console.answer["ok"] is (code == 0)
+    assert [one["name"] for one in console.answer["findings"]] == [one.name for one in findings]
+    assert "type: sudo modprobe vcan" in capsys.readouterr().out
+
+
+def test_a_quiet_doctor_names_what_is_missing_alone(capsys):
+    with speaking(Console("doctor", quiet=True)):
+        report([*FOUND, MISSING])
+    out = capsys.readouterr().out
+    assert "scipy is not installed" in out
+    assert "pip install 'torquer'" in out
+    assert "vcan" not in out
+
+
+def test_a_package_that_is_missing_or_old_is_named(monkeypatch):
+    wanted = [
+        "numpy>=99.0",
+        "no-such-thing>=1.0",
+        'cryptography>=999; extra == "sign"',
+        'pytest>=8; extra == "dev"',
+    ]
+    monkeypatch.setattr("sim.doctor.requires", lambda name: wanted)
+    found = {finding.name: finding for finding in examine()}
+    assert found["packages"].presence is Presence.MISSING
+    assert "is older than 99.0, no-such-thing is not installed" in found["packages"].found
+    assert found["torquer[sign]"].presence is Presence.OPTIONAL
+    assert found["torquer[sign]"].remedy == "pip install 'torquer[sign]'"
+
+
+def test_the_interfaces_of_a_machine(tmp_path):
+    for name, kind, flags in (("lo", "772", "0x9"), ("vcan0", "280", "0x40081"), ("can0", "280", "0x40080")):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "type").write_text(kind + "\n")
+        (tmp_path / name / "flags").write_text(flags + "\n")
+    assert can_interfaces(tmp_path) == {"can0": False, "vcan0": True}
+    assert can_interfaces(tmp_path / "none") == {}

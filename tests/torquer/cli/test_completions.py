@@ -1,0 +1,57 @@
+"""What a shell may complete."""
+
+import shutil
+import subprocess
+
+import click
+import pytest
+
+from torquer.cli import completions
+from torquer.cli.completion import script
+from torquer.cli.main import main
+
+
+def found(complete, begun, command="sil"):
+    context = click.Context(main.get_command(click.Context(main), command), info_name=command)
+    return [item.value for item in complete(context, context.command.params[0], begun)]
+
+
+def test_scenarios_by_name_else_files():
+    assert found(completions.of_scenarios, "cube") == ["cubesat3u", "cubesat6u"]
+    assert found(completions.of_scenarios, "my-") == ["my-"]
+
+
+@pytest.mark.parametrize(
+    ("begun", "completed"),
+    [
+        ("coils.back", ["coils.backoff_s=", "coils.backoff="]),
+        ("coils.backoff=", ["coils.backoff=shared", "coils.backoff=per_coil"]),
+        ("control.law=m", ["control.law=mpc"]),
+        ("sensors.sun.alb", ["sensors.sun.albedo="]),
+        ("sensors.sun.albedo=t", ["sensors.sun.albedo=true"]),
+        ("disturbance.drag.", ["disturbance.drag.density_scale="]),
+        ("time.tick_hz=", []),
+        ("zzz", []),
+    ],
+)
+def test_keys_of_settings_and_their_values(begun, completed):
+    assert sorted(found(completions.of_settings, begun)) == sorted(completed)
+
+
+def test_buses():
+    assert found(completions.of_buses, "v") == ["virtual"]
+    assert found(completions.of_buses, "v", "plant") == []
+    assert "auto" in found(completions.of_buses, "")
+
+
+def test_laws_after_a_comma_and_rows():
+    assert found(completions.of_laws, "pd,mp", "compare") == ["pd,mpc"]
+    assert "mag-bias" in {row[:8] for row in found(completions.of_fault_rows, "mag-", "faults")}
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_the_script_of_a_shell_is_one(shell):
+    text = script(shell)
+    assert "_TORQUER_COMPLETE" in text
+    if shutil.which(shell):
+        subprocess.run([shell, "-n"], input=text, text=True, check=True)

@@ -1,0 +1,53 @@
+"""What a user mistypes is answered with what may have been meant: one sentence on stderr, exit code 2."""
+
+import pytest
+
+from torquer.cli.main import main
+
+
+def run(capsys, *words):
+    """(exit code, stdout, stderr) of a command line."""
+    with pytest.raises(SystemExit) as ended:
+        main.main(list(words), prog_name="torquer")
+    return ended.value.code, *capsys.readouterr()
+
+
+@pytest.mark.parametrize(
+    ("words", "meant"),
+    [
+        (["sli"], "'sil'"),
+        (["Replay", "x"], "'replay'"),
+        (["sil", "--orbit", "3"], "'--orbits'"),
+        (["sil", "--json", "--sett", "a=1"], "'--set'"),
+        (["sil", "microsta"], "'microsat'"),
+        (["design", "cubesat-3u"], "'cubesat3u'"),
+        (["sil", "--set", "control.lwa=pd"], "'law'"),
+        (["sil", "--set", "controll.law=pd"], "'control'"),
+        (["sil", "--set", "control.law=mcp"], "'mpc'"),
+        (["sil", "--set", "coils.backoff=percoil"], "'per_coil'"),
+        (["sil", "--set", "sensors.magnetometer.noise=1"], "'noise_nt'"),
+        (["sil", "--set", "flight.control.lwa=pd"], "'law'"),
+        (["compare", "microsat", "--laws", "slidng"], "'sliding'"),
+        (["compare", "--driver", "pulse"], "'pulsed'"),
+        (["faults", "--row", "mag-bais"], "'mag-bias"),
+        (["validate", "--only", "posta1"], "'posat1"),
+        (["hil", "--real", "coils"], "'coil'"),
+        (["board", "magnetmeter", "--bus", "loop"], "'magnetometer'"),
+        (["completion", "bahs"], "'bash'"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else "",
+)
+def test_what_may_have_been_meant(words, meant, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    code, out, err = run(capsys, *words)
+    assert (code, out) == (2, "")
+    assert f"did you mean {meant}" in err
+    assert err.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("words", [["sil", "zzz"], ["zzz"], ["sil", "--zzz"], ["sil", "--set", "zzz=1"]])
+def test_nothing_is_guessed_where_nothing_is_near(words, capsys):
+    code, _, err = run(capsys, *words)
+    assert code == 2
+    assert "did you mean" not in err

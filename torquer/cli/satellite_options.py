@@ -1,0 +1,102 @@
+"""The figures of a satellite as options of ``new`` and ``size``, and as questions on a terminal."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from sim.errors import HarnessError
+
+if TYPE_CHECKING:
+    from sim.new_scenario.satellite import NewSatellite
+
+_ABOVE_0 = click.FloatRange(min=0.0, min_open=True)
+_THREE = (float, float, float)
+_OPTIONS = (
+    click.option("--tle", metavar="FILE", type=click.Path(path_type=Path), help="Orbit: two TLE lines."),
+    click.option("--altitude-km", type=click.FloatRange(150.0, 40_000.0), help="Orbit: circular."),
+    click.option("--inclination-deg", type=click.FloatRange(0.0, 180.0), help="Of the circular orbit."),
+    click.option("--mass-kg", type=_ABOVE_0, help="Of a homogeneous box, with --size-m."),
+    click.option("--size-m", type=_THREE, metavar="A B C", help="Its edges; the longest points up."),
+    click.option("--inertia-kgm2", type=_THREE, metavar="A B C", help="Principal moments, kg m^2."),
+    click.option("--levels-am2", type=_THREE, metavar="A B C", help="Of the coils. Default: as suggested."),
+)
+
+
+def satellite_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The options of orbit, body and coils."""
+    for option in reversed(_OPTIONS):
+        command = option(command)
+    return command
+
+
+def satellite(name: str, tle: Path | None, figures: dict[str, Any]) -> "NewSatellite":
+    """The satellite of these options.
+
+    Raises:
+        HarnessError: the TLE cannot be read, or a figure contradicts another.
+    """
+    from sim.new_scenario.satellite import NewSatellite
+
+    if tle is not None and (figures["altitude_km"] is not None or figures["inclination_deg"] is not None):
+        raise HarnessError("--tle and --altitude-km, --inclination-deg exclude each other")
+    if figures["inertia_kgm2"] is not None and figures["size_m"] is not None:
+        raise HarnessError("--inertia-kgm2 and --size-m exclude each other")
+    if min(figures["size_m"] or (1.0,)) <= 0.0:
+        raise HarnessError("--size-m: every edge must be above 0")
+    return NewSatellite(name, None if tle is None else tle_lines(tle), **figures)
+
+
+def tle_lines(file: Path) -> tuple[str, str]:
+    """The two lines of a file; one with the satellite's name may stand before them.
+
+    Raises:
+        HarnessError: it cannot be read, or holds no two lines that are elements.
+    """
+    from fsw.core.orbit.tle import read_tle
+
+    try:
+        lines = [line.rstrip() for line in file.read_text(encoding="ascii").splitlines() if line.strip()]
+    except (OSError, UnicodeDecodeError) as error:
+        raise HarnessError(f"{file}: cannot be read ({getattr(error, 'strerror', None) or error})") from None
+    if len(lines) not in (2, 3):
+        raise HarnessError(f"{file}: {len(lines)} lines, and a TLE has two, or three with a name")
+    first, second = lines[-2:]
+    try:
+        read_tle(first, second)
+    except ValueError as error:
+        raise HarnessError(f"{file}: {error}") from None
+    return first, second
+
+
+def asked(figures: dict[str, Any], tle: Path | None) -> tuple[dict[str, Any], Path | None]:
+    """The figures that are missing, asked for on the terminal; Enter takes what stands in brackets."""
+    found = dict(figures)
+    if tle is None and found["altitude_km"] is None:
+        path = click.prompt("File with the TLE (Enter: a circular orbit)", default="", show_default=False)
+        tle = Path(path) if path else None
+        if tle is None:
+            found["altitude_km"] = click.prompt("Altitude, km", 550.0, type=click.FloatRange(150.0, 40_000.0))
+    if tle is None and found["inclination_deg"] is None:
+        found["inclination_deg"] = click.prompt("Inclination, deg", 97.6, type=click.FloatRange(0.0, 180.0))
+    if found["inertia_kgm2"] is None and found["size_m"] is None:
+        text = click.prompt(
+            "Principal moments of inertia, kg m^2 (Enter: from mass and size)", default="", show_default=False
+        )
+        found["inertia_kgm2"] = _three(text) if text else None
+    if found["inertia_kgm2"] is None:
+        found["mass_kg"] = found["mass_kg"] or click.prompt("Mass, kg", 4.0, type=_ABOVE_0)
+        found["size_m"] = found["size_m"] or _three(click.prompt("Edges, m", "0.34 0.1 0.1"))
+    if found["levels_am2"] is None:
+        text = click.prompt("Coil levels, A m^2 (Enter: as suggested)", default="", show_default=False)
+        found["levels_am2"] = _three(text) if text else None
+    return found, tle
+
+
+def _three(text: str) -> tuple[float, float, float]:
+    try:
+        first, second, third = (float(word) for word in text.replace(",", " ").split())
+    except ValueError:
+        raise HarnessError(f"{text!r}: three numbers are needed") from None
+    return first, second, third

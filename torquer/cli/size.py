@@ -1,0 +1,49 @@
+"""``torquer size``: coil levels, and what pointing to expect."""
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from sim.errors import HarnessError
+from torquer.cli.options import JSON, SETTINGS, examples, load_scenario, scenario_argument, sentences, warn_of
+from torquer.cli.satellite_options import satellite, satellite_options
+
+EXAMPLES = examples(
+    "torquer size microsat",
+    "torquer size my-satellite.toml --set disturbance.torque_nm=[1e-7,1e-7,1e-7]",
+    "torquer size --altitude-km 550 --inclination-deg 97.6 --mass-kg 4 --size-m 0.34 0.1 0.1",
+)
+
+
+@click.command(epilog=EXAMPLES)
+@scenario_argument(required=False)
+@satellite_options
+@SETTINGS
+@JSON
+@sentences
+def size(
+    scenario: str | None,
+    tle: Path | None,
+    settings: tuple[str, ...],
+    **figures: Any,  # noqa: ANN401
+) -> int:
+    """Coil levels that would do, and what pointing to expect of SCENARIO or of the satellite given.
+
+    Exit code 1: the coils cannot balance the disturbance. Equations and how well they agree with flights are
+    in docs/sizing.md.
+    """
+    from fsw.input.toml_text import parse_toml
+    from sim.new_scenario.command import scenario_text
+    from sim.scenario.schema import parse_settings, scenario_of
+    from sim.sizing.command import size as command
+
+    given = [name for name, value in {"tle": tle, **figures}.items() if value is not None]
+    if scenario is not None and given:
+        raise HarnessError(f"SCENARIO and --{given[0].replace('_', '-')} exclude each other")
+    if scenario is not None:
+        return command(load_scenario(scenario, settings))
+    text = scenario_text(satellite("satellite", tle, figures), "satellite.toml")
+    given_here = scenario_of(parse_toml(text), "the satellite", parse_settings(settings))
+    warn_of(given_here)
+    return command(given_here)
