@@ -19,8 +19,8 @@ from sim.sizing.levels import levels_against, two_digits
 
 DIPOLE_BOUND_AM2, TORQUE_BOUND_NM = 0.1, 3e-8
 """Ordinary bounds of a 50 kg satellite, as in ``fsw/table/uncertainty.py``; they grow with the volume."""
-ASSUMED = 0.1
-"""Part of the bounds that the satellite is assumed to have."""
+TORQUE_PART, DIPOLE_PART = 0.1, 0.03
+"""Parts of the bounds that the satellite is assumed to have: one that was built magnetically clean."""
 STRONGEST_A = 0.4
 """Current at the strongest level, for a coil of which nothing is known."""
 COIL_FIELD_NT = 24_000.0
@@ -80,6 +80,7 @@ def scenario_text(satellite: NewSatellite, file: str) -> str:
         HarnessError: figures are missing.
         TableError: the figures make no satellite.
     """
+    satellite.check()
     text = _rendered(satellite, file)
     if satellite.levels_am2 is not None:
         return text
@@ -121,8 +122,8 @@ def _figures(satellite: NewSatellite) -> dict[str, Any]:
         "coil_field": two_digits(COIL_FIELD_NT / strongest),
         "magnetometer_nt": satellite.magnetometer_nt,
         "sun_deg": satellite.sun_deg,
-        "torque": two_digits(ASSUMED * torque_nm),
-        "dipole": two_digits(ASSUMED * dipole_am2),
+        "torque": two_digits(TORQUE_PART * torque_nm),
+        "dipole": two_digits(DIPOLE_PART * dipole_am2),
         "torque_bound": two_digits(torque_nm),
         "dipole_bound": two_digits(dipole_am2),
         "k_w": gains.k_w,

@@ -7,6 +7,7 @@ from math import pi
 import numpy as np
 
 from fsw.core.orbit.tle import tle_elements
+from fsw.table.inertia import check_inertia
 from fsw.table.uncertainty import REFERENCE_KGM2
 from sim.design.theory.bodies import EARTH_RADIUS_KM, MU_M3PS2, Body, Vec3, diagonal
 from sim.design.theory.floquet import ROUGH_STEPS
@@ -16,6 +17,17 @@ from sim.errors import HarnessError
 from sim.sizing.levels import Levels, levels_for, two_digits
 
 PULSE_S = 3.0
+RANGES = {
+    "altitude_km": (150.0, 40_000.0),
+    "inclination_deg": (0.0, 180.0),
+    "mass_kg": (0.01, 1e6),
+    "size_m": (0.01, 100.0),
+    "inertia_kgm2": (1e-7, 1e9),
+    "levels_am2": (1e-6, 1e5),
+    "magnetometer_nt": (0.0, 1e6),
+    "sun_deg": (0.0, 90.0),
+}
+"""What a figure may be: from a PocketQube to a space station."""
 _FACTORS = np.geomspace(0.5, 8.0, 9)
 """Of the natural gains: between them lie the best of all bodies that the gravity gradient holds."""
 _NODE_DAYS_S = 86400.0
@@ -54,6 +66,23 @@ class NewSatellite:
     sun_deg: float = 0.5
     exact: bool = True
     epoch: datetime = datetime(2025, 3, 20, 9, tzinfo=UTC)
+
+    def check(self) -> None:
+        """Check that the figures are those of a satellite.
+
+        Raises:
+            HarnessError: one is not; the message names it and what is allowed.
+        """
+        for name, (least, most) in RANGES.items():
+            given = getattr(self, name)
+            for value in given if isinstance(given, tuple) else (given,):
+                if value is not None and not least <= value <= most:
+                    option = name.replace("_", "-")
+                    raise HarnessError(f"--{option}: {value:g} is not allowed: {least:g} to {most:g} is")
+        try:
+            check_inertia(diagonal(self.moments_kgm2))
+        except ValueError as error:
+            raise HarnessError(f"--inertia-kgm2: {error}") from None
 
     @property
     def edges_m(self) -> Vec3 | None:

@@ -22,7 +22,7 @@ sqrt(2/3), since B^2 = B_0^2 (1 + 3 sin^2 i sin^2 u).
 """
 
 from dataclasses import dataclass, replace
-from math import degrees, hypot, radians, sin, sqrt
+from math import degrees, hypot, inf, isnan, radians, sin, sqrt
 
 import numpy as np
 
@@ -68,7 +68,12 @@ class Expectation:
 
 
 def expect(scenario: Scenario) -> Expectation:
-    """What to expect of a scenario's satellite, body = orbit, its coils pulsed."""
+    """What to expect of a satellite at body = orbit, its coils pulsed; what overflows is infinite."""
+    with np.errstate(all="ignore"):
+        return _expect(scenario)
+
+
+def _expect(scenario: Scenario) -> Expectation:
     body, coils, torque_nm = _apart(body_of(scenario)), scenario.coils, disturbance_torque(scenario)
     response = least_error(body, torque_nm)
     field_t = field_across(body)
@@ -79,13 +84,18 @@ def expect(scenario: Scenario) -> Expectation:
     disturbance_nm = float(np.sqrt(np.mean(np.sum(torque_nm**2, axis=1))))
     return Expectation(
         field_t=field_t,
-        disturbance_nm=disturbance_nm,
-        floor_deg=degrees(response.rms_rad),
-        quantum_deg=degrees(quantum_rad),
-        ripple_deg=degrees(disturbance_nm * cycle_s**2 / least_kgm2),
+        disturbance_nm=_or_inf(disturbance_nm),
+        floor_deg=_or_inf(degrees(response.rms_rad)),
+        quantum_deg=_or_inf(degrees(quantum_rad)),
+        ripple_deg=_or_inf(degrees(disturbance_nm * cycle_s**2 / least_kgm2)),
         knowledge_deg=_knowledge_deg(scenario),
-        load=balancing_am2 * cycle_s / (coils.levels_am2[2] * coils.pulse_s),
+        load=_or_inf(balancing_am2 * cycle_s / (coils.levels_am2[2] * coils.pulse_s)),
     )
+
+
+def _or_inf(figure: float) -> float:
+    """What is no number has overflowed on its way."""
+    return inf if isnan(figure) else figure
 
 
 def _apart(body: Body) -> Body:

@@ -9,7 +9,7 @@ of inertia J_min <= ... <= J_max:
 - the middle one is their geometric mean.
 """
 
-from math import floor, log10, sqrt
+from math import sqrt
 
 import numpy as np
 
@@ -45,4 +45,4 @@ def _rounded(low_am2: float, high_am2: float) -> Levels:
 
 def two_digits(value: float) -> float:
     """A positive number to two significant digits."""
-    return round(value, 1 - floor(log10(value)))
+    return float(f"{value:.2g}")

@@ -11,6 +11,30 @@ EXAMPLES = examples(
     "torquer completion fish > ~/.config/fish/completions/torquer.fish",
 )
 VARIABLE = "_TORQUER_COMPLETE"
+BASH = """\
+_torquer_completion() {
+    local IFS=$'\\n' line=${COMP_LINE:0:COMP_POINT} type value words
+    IFS=' ' read -ra words <<< "$line"
+    [[ $line == *' ' ]] && words+=("''")
+    local last=${words[${#words[@]}-1]}
+    local before=${last%"${last##*[=:]}"}  # bash replaces what follows = or :
+    COMPREPLY=()
+    for completion in $(IFS=' ' COMP_WORDS="${words[*]}" COMP_CWORD=$((${#words[@]}-1)) \\
+        _TORQUER_COMPLETE=bash_complete $1); do
+        IFS=',' read -r type value <<< "$completion"
+        if [[ $type == dir ]]; then
+            compopt -o dirnames
+        elif [[ $type == file ]]; then
+            compopt -o default
+        else
+            COMPREPLY+=("${value#"$before"}")
+            [[ $value == *[=:] ]] && compopt -o nospace
+        fi
+    done
+}
+complete -o nosort -F _torquer_completion torquer
+"""
+"""The script of click splits the line at = and :, of which keys of --set and buses have many."""
 
 
 @click.command(epilog=EXAMPLES)
@@ -22,7 +46,9 @@ def completion(shell: str) -> None:
 
 
 def script(shell: str) -> str:
-    """The script of click for this shell."""
+    """The script for this shell: for bash an own one, else that of click."""
+    if shell == "bash":
+        return BASH
     from torquer.cli.main import main
 
     kind = get_completion_class(shell)

@@ -43,8 +43,6 @@ def satellite(name: str, tle: Path | None, figures: dict[str, Any]) -> "NewSatel
         raise HarnessError("--tle and --altitude-km, --inclination-deg exclude each other")
     if figures["inertia_kgm2"] is not None and figures["size_m"] is not None:
         raise HarnessError("--inertia-kgm2 and --size-m exclude each other")
-    if min(figures["size_m"] or (1.0,)) <= 0.0:
-        raise HarnessError("--size-m: every edge must be above 0")
     return NewSatellite(name, None if tle is None else tle_lines(tle), **figures)
 
 
@@ -73,30 +71,38 @@ def tle_lines(file: Path) -> tuple[str, str]:
 def asked(figures: dict[str, Any], tle: Path | None) -> tuple[dict[str, Any], Path | None]:
     """The figures that are missing, asked for on the terminal; Enter takes what stands in brackets."""
     found = dict(figures)
-    if tle is None and found["altitude_km"] is None:
-        path = click.prompt("File with the TLE (Enter: a circular orbit)", default="", show_default=False)
-        tle = Path(path) if path else None
-        if tle is None:
-            found["altitude_km"] = click.prompt("Altitude, km", 550.0, type=click.FloatRange(150.0, 40_000.0))
-    if tle is None and found["inclination_deg"] is None:
-        found["inclination_deg"] = click.prompt("Inclination, deg", 97.6, type=click.FloatRange(0.0, 180.0))
-    if found["inertia_kgm2"] is None and found["size_m"] is None:
-        text = click.prompt(
-            "Principal moments of inertia, kg m^2 (Enter: from mass and size)", default="", show_default=False
-        )
-        found["inertia_kgm2"] = _three(text) if text else None
+    has_orbit = tle is not None or None not in (found["altitude_km"], found["inclination_deg"])
+    has_body = found["inertia_kgm2"] is not None or None not in (found["mass_kg"], found["size_m"])
+    if not has_orbit and found["altitude_km"] is None and found["inclination_deg"] is None:
+        tle = _optional("File with the TLE (Enter: a circular orbit)", Path)
+    if tle is None:
+        for name, text, usual, kind in (
+            ("altitude_km", "Altitude, km", 550.0, click.FloatRange(150.0, 40_000.0)),
+            ("inclination_deg", "Inclination, deg", 97.6, click.FloatRange(0.0, 180.0)),
+        ):
+            if found[name] is None:
+                found[name] = click.prompt(text, usual, type=kind)
+    if not has_body and found["mass_kg"] is None and found["size_m"] is None:
+        found["inertia_kgm2"] = _optional("Moments of inertia, kg m^2 (Enter: by mass and size)", _three)
     if found["inertia_kgm2"] is None:
         found["mass_kg"] = found["mass_kg"] or click.prompt("Mass, kg", 4.0, type=_ABOVE_0)
-        found["size_m"] = found["size_m"] or _three(click.prompt("Edges, m", "0.34 0.1 0.1"))
-    if found["levels_am2"] is None:
-        text = click.prompt("Coil levels, A m^2 (Enter: as suggested)", default="", show_default=False)
-        found["levels_am2"] = _three(text) if text else None
+        found["size_m"] = found["size_m"] or click.prompt("Edges, m", "0.34 0.1 0.1", value_proc=_three)
+    if found["levels_am2"] is None and not (has_orbit and has_body):
+        found["levels_am2"] = _optional("Coil levels, A m^2 (Enter: as suggested)", _three)
     return found, tle
 
 
+def _optional(question: str, read: Callable[[str], Any]) -> Any:  # noqa: ANN401  (what is read)
+    """An answer, or None."""
+    return click.prompt(
+        question, default="", show_default=False, value_proc=lambda text: read(text) if text else None
+    )
+
+
 def _three(text: str) -> tuple[float, float, float]:
+    """Three numbers; what is none is asked for again."""
     try:
         first, second, third = (float(word) for word in text.replace(",", " ").split())
     except ValueError:
-        raise HarnessError(f"{text!r}: three numbers are needed") from None
+        raise click.BadParameter(f"{text!r}: three numbers are needed") from None
     return first, second, third

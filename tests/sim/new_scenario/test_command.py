@@ -1,9 +1,11 @@
 """``torquer new``: the scenario it writes, and what it refuses to overwrite."""
 
 import json
+from math import inf, nan
 
 import pytest
 
+import torquer
 from fsw.input.toml_text import parse_toml
 from sim.console import Console, speaking
 from sim.errors import HarnessError
@@ -36,6 +38,15 @@ def test_a_new_scenario_is_valid_and_not_doubted(satellite):
     assert scenario.name == satellite.name
     assert doubts(scenario) == []
     assert expect(scenario).pointing_deg < 5.0
+
+
+@pytest.mark.parametrize("name", ["3U", "50 kg", "6U"])
+def test_it_flies_at_once(name, tmp_path):
+    scenario = written(SATELLITES[name])
+    flown = torquer.fly(scenario, orbits=0.1, out=tmp_path / "run")
+    assert flown.ok
+    assert flown.summary["converged_at_s"] < 500.0
+    assert flown.summary["pulses"]["total"] > 1
 
 
 def test_what_was_given_stands_in_it():
@@ -116,6 +127,11 @@ def test_names_that_cannot_be(name, file, sentence, tmp_path):
         (NewSatellite("x", None, 550.0, 97.6), "give --inertia-kgm2"),
         (NewSatellite("x", None, 550.0, 97.6, mass_kg=4.0), "give --inertia-kgm2"),
         (NewSatellite("x", None, 550.0, None, inertia_kgm2=(1.0, 1.0, 1.0)), "give --tle FILE"),
+        (NewSatellite("x", None, 550.0, 97.6, inertia_kgm2=(1.0, 1.0, 3.0)), "no principal moment above"),
+        (NewSatellite("x", None, 550.0, 97.6, inertia_kgm2=(1e300,) * 3), "--inertia-kgm2: 1e.300 is not"),
+        (NewSatellite("x", None, 550.0, 97.6, mass_kg=inf, size_m=(1.0,) * 3), "--mass-kg: inf is not"),
+        (NewSatellite("x", None, nan, 97.6, inertia_kgm2=(1.0,) * 3), "--altitude-km: nan is not"),
+        (NewSatellite("x", None, 550.0, 97.6, 4.0, (0.0, 1.0, 1.0)), "--size-m: 0 is not"),
     ],
 )
 def test_what_is_missing_is_named(satellite, sentence, tmp_path):

@@ -2,6 +2,7 @@
 
 import shutil
 import subprocess
+import sys
 
 import click
 import pytest
@@ -55,3 +56,25 @@ def test_the_script_of_a_shell_is_one(shell):
     assert "_TORQUER_COMPLETE" in text
     if shutil.which(shell):
         subprocess.run([shell, "-n"], input=text, text=True, check=True)
+
+
+COMPLETE = """
+compopt() { :; }
+source ./script
+for COMP_LINE in "torquer sil micro" "torquer sil --set coils.backoff=pe" "torquer sil --bus "; do
+    COMP_POINT=${#COMP_LINE}
+    _torquer_completion ./torquer
+    echo "${COMPREPLY[*]}"
+done
+"""
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="no bash")
+def test_bash_completes_what_follows_an_equals_sign(tmp_path):
+    (tmp_path / "script").write_text(script("bash"))
+    (tmp_path / "torquer").write_text(f'#!/bin/sh\nexec {sys.executable} -m torquer "$@"\n')
+    (tmp_path / "torquer").chmod(0o755)
+    done = subprocess.run(["bash", "-c", COMPLETE], cwd=tmp_path, capture_output=True, text=True, check=True)
+    first, second, third = done.stdout.splitlines()
+    assert (first, second) == ("microsat", "per_coil")
+    assert third.startswith("auto loop slcan: ")

@@ -1,0 +1,81 @@
+"""``torquer new``: options, and questions where they are left out on a terminal."""
+
+import pytest
+
+from sim.errors import HarnessError
+from sim.scenario.schema import load
+from torquer.cli import satellite_options
+from torquer.cli.main import main
+from torquer.cli.satellite_options import asked, satellite, tle_lines
+
+NOTHING = dict.fromkeys(("altitude_km", "inclination_deg", "mass_kg", "size_m", "inertia_kgm2", "levels_am2"))
+TLE = load("microsat").orbit.tle
+
+
+def answered(monkeypatch, *answers, tle=None, **given):
+    """What is asked for, with these answers."""
+    left = list(answers)
+    monkeypatch.setattr("click.termui.visible_prompt_func", lambda prompt: left.pop(0))
+    found = asked({**NOTHING, **given}, tle)
+    assert left == []
+    return found
+
+
+def test_enter_takes_what_is_usual(monkeypatch):
+    found, tle = answered(monkeypatch, "", "", "", "", "", "", "")
+    assert tle is None
+    assert found == {
+        "altitude_km": 550.0,
+        "inclination_deg": 97.6,
+        "mass_kg": 4.0,
+        "size_m": (0.34, 0.1, 0.1),
+        "inertia_kgm2": None,
+        "levels_am2": None,
+    }
+
+
+def test_what_is_no_answer_is_asked_for_again(monkeypatch, capsys):
+    answers = ("", "high", "600", "97", "1 2", "1, 1.9, 2", "a b c", "0.5 2 8")
+    found, _ = answered(monkeypatch, *answers)
+    assert (found["inertia_kgm2"], found["levels_am2"]) == ((1.0, 1.9, 2.0), (0.5, 2.0, 8.0))
+    assert "three numbers are needed" in capsys.readouterr().out
+
+
+def test_nothing_is_asked_that_was_given(monkeypatch):
+    given = {"altitude_km": 600.0, "inclination_deg": 50.0, "inertia_kgm2": (1.0, 2.0, 2.0)}
+    assert answered(monkeypatch, **given) == ({**NOTHING, **given}, None)
+
+
+def test_a_tle_has_two_lines_or_three(tmp_path):
+    file = tmp_path / "x.tle"
+    file.write_text("ITAMSAT\n" + "\n".join(TLE) + "\n")
+    assert tle_lines(file) == TLE
+    for text, sentence in (
+        (TLE[0], "1 lines, and a TLE has two"),
+        ("\n".join(TLE).replace("15086", "15087"), "checksum"),
+        ("ä\nb", "cannot be read"),
+    ):
+        file.write_text(text)
+        with pytest.raises(HarnessError, match=sentence):
+            tle_lines(file)
+    with pytest.raises(HarnessError, match="No such file"):
+        tle_lines(tmp_path / "none")
+
+
+@pytest.mark.parametrize(
+    ("tle", "given"),
+    [("x", {"altitude_km": 500.0}), (None, {"inertia_kgm2": (1.0,) * 3, "size_m": (1.0,) * 3})],
+)
+def test_what_contradicts_is_refused(tle, given):
+    with pytest.raises(HarnessError, match="exclude each other"):
+        satellite("mine", tle, {**NOTHING, **given})
+
+
+def test_without_a_terminal_nothing_is_asked(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(satellite_options, "asked", lambda *given: pytest.fail("asked"))
+    with pytest.raises(SystemExit) as ended:
+        main.main(["new", "mine"], prog_name="torquer")
+    assert ended.value.code == 2
+    assert capsys.readouterr().err.startswith("torquer: give ")
+    assert list(tmp_path.iterdir()) == []
