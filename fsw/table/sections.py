@@ -10,6 +10,7 @@ from fsw.core.algebra.vector import Mat3, Vec3
 from fsw.core.laws.interface import MAX_SPIN_RADPS
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit.propagation import sgp4_orbit
+from fsw.input.near import did_you_mean
 from fsw.input.own_code import short_name
 from fsw.input.schema import (
     NotNegative,
@@ -184,7 +185,8 @@ class ControlTable(Section):
         if law not in LAWS and not named:
             names = ", ".join(map(repr, LAWS))
             raise ValueError(
-                f"{law!r} is not allowed: allowed is {names}, FILE.py:NAME or the entry point of a package"
+                f"{law!r}{did_you_mean(law, LAWS)} is not allowed: allowed is {names}, FILE.py:NAME or the "
+                "entry point of a package"
             )
         if law not in LAWS and short_name(law) in LAWS:
             raise ValueError(f"{law!r} is called like a law of the table: give it another name")

@@ -22,11 +22,13 @@ def of_scenarios(context: click.Context, parameter: click.Parameter, begun: str)
 
 def of_settings(context: click.Context, parameter: click.Parameter, begun: str) -> _Items:
     """Keys of a scenario, each with its ``=``; after it the values, where they are words."""
+    from fsw.core.laws.table import LAWS
     from sim.scenario.schema import Scenario
 
     key, equals, _ = begun.partition("=")
+    values = {**dict(keys_of(Scenario)), "control.law": tuple(LAWS)}
     words = (
-        (f"{key}={value}" for value in dict(keys_of(Scenario)).get(key, ()))
+        (f"{key}={value}" for value in values.get(key, ()))
         if equals
         else (f"{key}=" for key, _ in keys_of(Scenario))
     )
