@@ -24,7 +24,7 @@ def report(run: Path, sign: Path | None, verify: Path | None, law: str | None, j
     """Rebuild summary.json and report.html of a run; a run that was cut short is noted, and no failure."""
     from sim.console import answer, say
     from sim.junit import prepare_junit, write_junit
-    from sim.report.documents import suites
+    from sim.report.requirements.documents import suites
     from sim.report.verdict import Verdict
     from torquer.api.flight import report
 

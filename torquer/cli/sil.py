@@ -101,7 +101,7 @@ def sil(
     if not flown.concluded:
         fail(str(flown))
         return 1
-    from sim.report.documents import suites  # loaded after the flight, which does not need it
+    from sim.report.requirements.documents import suites  # loaded after the flight, which does not need it
 
     detail(f"files in {flown.path}: {', '.join(sorted(file.name for file in flown.path.iterdir()))}")
     say(str(flown))

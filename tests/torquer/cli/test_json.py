@@ -105,13 +105,16 @@ def test_a_flight(capsys, tmp_path, monkeypatch):
     )
     has_shape(values, "sil")
     assert values["summary"] == json.loads(Path("r/summary.json").read_text())
-    (suite,) = ElementTree.parse("r.xml").getroot()
-    assert [(case.get("name"), len(case)) for case in suite] == [
+    flight, requirements = ElementTree.parse("r.xml").getroot()
+    assert [(case.get("name"), len(case)) for case in flight] == [
         ("limits of the coils", 0),
         ("replay exact", 0),
         ("no second sender", 0),
         ("run complete", 0),
     ]
+    judged = values["summary"]["requirements"]
+    assert [case[0].tag for case in requirements] == ["skipped"] * len(judged)
+    assert [case[0].get("message") for case in requirements] == [one["text"] for one in judged]
 
 
 def test_a_run_judged_again(capsys, flown):
