@@ -15,9 +15,6 @@ from sim.statistics.indices import magnitudes, mean_and_relative
 
 Array = NDArray[np.float64]
 
-WHOLE = 1e-6
-"""Orbits by which a flight may fall short: its ticks are whole."""
-
 
 class Gathered:
     """The values of an index over its window.
@@ -33,7 +30,7 @@ class Gathered:
         self.what = section.what or _pointed(scenario)
         self.ticks_per_orbit = orbit_period_s(scenario) * scenario.time.tick_hz
         self.ticks = ticks
-        self.judged = ticks + 0.5 >= section.by_orbit * self.ticks_per_orbit * (1.0 - WHOLE)
+        self.judged = ticks + 0.5 >= section.by_orbit * self.ticks_per_orbit
         self.settled_at = 0
         """Tick from which the error of what is controlled stays under its threshold."""
         self.driven_s = 0.0

@@ -110,7 +110,10 @@ def _measured(one: Gathered, scenario: Scenario, audit: AuditReport) -> tuple[fl
     if value is None:
         return None, f"has no value over {_window(one)}, {limit}"
     statistic = "" if section.index in ("duty", "energy") else f" {one.statistic.words}"
-    return value, f"{number(value)} {section.unit.symbol}{statistic} over {_window(one)}, {limit}"
+    shown = number(value)
+    if value > section.limit and float(shown) <= section.limit:
+        shown = f"{value:.7g}"
+    return value, f"{shown} {section.unit.symbol}{statistic} over {_window(one)}, {limit}"
 
 
 def _of_coils(one: Gathered, scenario: Scenario, audit: AuditReport) -> float:

@@ -29,6 +29,11 @@ def test_a_missed_one_says_by_how_much_and_why(judge_made, orbit_ticks):
     assert one["reasons"]
 
 
+def test_a_figure_just_over_its_limit_does_not_read_as_the_limit(judge_made, orbit_ticks):
+    (one,) = judge_made([ape()], np.full(orbit_ticks, 2.001))
+    assert "2.001 deg RMS" in one["text"]
+
+
 def test_only_the_last_orbit_counts(judge_made, orbit_ticks):
     turn = np.concatenate((np.full(orbit_ticks, 90.0), np.full(orbit_ticks, 1.5)))
     (last,) = judge_made([ape()], turn)
