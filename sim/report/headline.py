@@ -31,8 +31,8 @@ def headline(summary: Json) -> Badge:
     if not found:
         return "note", "Not judged: the scenario has no requirements."
     if failed:
-        others = f" {len(failed) - 1} more of {len(found)} are missed." if len(failed) > 1 else ""
-        return "bad", f"Requirement missed: {failed[0]['text']}.{others}"
+        several = f"{len(failed)} of {len(found)} requirements missed"
+        return "bad", f"{several if len(failed) > 1 else 'Requirement missed'}: {failed[0]['text']}."
     if unjudged:
         return "note", f"Not judged: {unjudged[0]['text']}."
     return "good", f"Requirements met: all {len(found)}." if len(found) > 1 else f"Met: {found[0]['text']}."
@@ -41,7 +41,11 @@ def headline(summary: Json) -> Badge:
 def requirement_table(summary: Json) -> Table:
     """A row a requirement, with the causes of one that is missed."""
     rows = [
-        (one["verdict"], one["text"], "; ".join(reason["text"] for reason in one["reasons"]))
+        (
+            one["verdict"],
+            one["text"],
+            "; ".join(reason["text"] for reason in one["reasons"]).replace("m^2", "m²"),
+        )
         for one in summary["requirements"]
     ]
     return Table(("verdict", "requirement", "why"), rows)

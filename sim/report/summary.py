@@ -93,7 +93,7 @@ def summarise(
     }
     summary |= performance.figures()
     summary["spin_radps"] = _spin(performance.spin(), audit)
-    summary["requirements"] = performance.judgement.outcomes(audit, tally.out_of_use)
+    summary["requirements"] = performance.judgement.outcomes(audit, tally.out_of_use, "flown" in run)
     summary["isolated"] = tally.isolated
     summary["events"] = tally.events
     return {key: value for key, value in summary.items() if value is not None}

@@ -30,7 +30,8 @@ class Gathered:
         self.what = section.what or _pointed(scenario)
         self.ticks_per_orbit = orbit_period_s(scenario) * scenario.time.tick_hz
         self.ticks = ticks
-        self.judged = ticks + 0.5 >= section.by_orbit * self.ticks_per_orbit
+        self.judged = ticks + 1 > section.by_orbit * self.ticks_per_orbit
+        """Whether the flight is long enough, to within a tick."""
         self.settled_at = 0
         """Tick from which the error of what is controlled stays under its threshold."""
         self.driven_s = 0.0
@@ -58,6 +59,11 @@ class Gathered:
         if self.section.window == "settled":
             return self.settled_at
         return max(0, self.ticks - round(self.section.last_orbits * self.ticks_per_orbit))
+
+    @property
+    def flown_orbits(self) -> float:
+        """The length of the flight."""
+        return self.ticks / self.ticks_per_orbit
 
     @property
     def window_orbits(self) -> float:

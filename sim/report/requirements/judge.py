@@ -46,49 +46,58 @@ class Judgement:
         for evidence in self._evidence.values():
             evidence.take(truth, estimates)
 
-    def outcomes(self, audit: AuditReport, isolated_s: Mapping[str, float]) -> list[Json]:
+    def outcomes(self, audit: AuditReport, isolated_s: Mapping[str, float], ended: bool = True) -> list[Json]:
         """Each requirement with what was measured, in their order.
 
         Args:
             audit: of the log, with the pulses.
             isolated_s: the units out of use at the end, and when they were isolated, s.
+            ended: whether the flight came to its end; one that was cut short is not judged.
         """
-        return [self._outcome(one, audit, isolated_s) for one in self._gathered]
+        outcomes = []
+        for one in self._gathered:
+            if not ended:
+                outcome = _not_judged("the flight did not come to its end")
+            elif not one.judged:
+                outcome = _not_judged(
+                    f"judged by orbit {one.section.by_orbit:g}, flown were {orbits(one.flown_orbits)}"
+                )
+            else:
+                outcome = self._judged(one, audit, isolated_s)
+            outcomes.append(_stated(one) | outcome | {"text": f"{_name(one)}{outcome['text']}"})
+        return outcomes
 
-    def _outcome(self, one: Gathered, audit: AuditReport, isolated_s: Mapping[str, float]) -> Json:
+    def _judged(self, one: Gathered, audit: AuditReport, isolated_s: Mapping[str, float]) -> Json:
         section = one.section
-        result: Json = {
-            "index": section.index,
-            "what": one.what if INDICES[section.index].of else None,
-            "limit": section.limit,
-            "unit": section.unit.symbol,
-            "window": _window(one),
-            "by_orbit": section.by_orbit,
-        }
-        if not one.judged:
-            flown = one.ticks / one.ticks_per_orbit
-            return result | {
-                "measured": None,
-                "verdict": Outcome.NOT_JUDGED.value,
-                "text": f"{_name(one)}: judged by orbit {section.by_orbit:g}, flown were {orbits(flown)}",
-                "reasons": [],
-            }
         measured, text = _measured(one, self._scenario, audit)
-        met = measured is not None and measured <= section.limit
-        result |= {
+        if measured is not None and measured <= section.limit:
+            return {"measured": measured, "verdict": Outcome.MET.value, "text": f" {text}", "reasons": []}
+        limits = {DEG: section.limit, ORBITS: one.threshold}
+        evidence = self._evidence[one.what].evidence(audit, isolated_s)
+        found = reasons(Missed(section.index, one.what, limits.get(section.unit)), evidence)
+        return {
             "measured": measured,
-            "verdict": (Outcome.MET if met else Outcome.FAILED).value,
-            "text": f"{_name(one)} {text}",
-            "reasons": [],
+            "verdict": Outcome.FAILED.value,
+            "text": f" {text}",
+            "reasons": [reason._asdict() for reason in found],
         }
-        if not met:
-            limit = (
-                section.limit if section.unit is DEG else one.threshold if section.unit is ORBITS else None
-            )
-            evidence = self._evidence[one.what].evidence(audit, isolated_s)
-            found = reasons(Missed(section.index, one.what, limit), evidence)
-            result["reasons"] = [reason._asdict() for reason in found]
-        return result
+
+
+def _stated(one: Gathered) -> Json:
+    """What is required."""
+    section = one.section
+    return {
+        "index": section.index,
+        "what": one.what if INDICES[section.index].of else None,
+        "limit": section.limit,
+        "unit": section.unit.symbol,
+        "window": _window(one),
+        "by_orbit": section.by_orbit,
+    }
+
+
+def _not_judged(why: str) -> Json:
+    return {"measured": None, "verdict": Outcome.NOT_JUDGED.value, "text": f": {why}", "reasons": []}
 
 
 def _measured(one: Gathered, scenario: Scenario, audit: AuditReport) -> tuple[float | None, str]:

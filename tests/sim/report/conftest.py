@@ -93,6 +93,8 @@ class Page(HTMLParser):
         return re.findall(rf'<g class="{group}">\s*<path d="([^"]*)"', figure_text)
 
 
+FLOWN = {"seed": 7, "flown": {"ticks": 7000, "slips": 0, "wall_s": None}}
+"""Of run.json, what a summary needs of a flight that came to its end."""
 MET = {"index": "ape", "at_most_deg": 60.0, "by_orbit": 1.0}
 """What a flight made up points to, if it lasts for an orbit."""
 
@@ -175,7 +177,7 @@ class Run:
         estimates = estimates or self.estimates()
         tally = BusTally(0, self.refused, self.events, self.isolated)
         performance = perform(self.scenario, histories, estimates)
-        summary = summarise(self.scenario, {"seed": 7}, performance, self.audit(), tally)
+        summary = summarise(self.scenario, FLOWN, performance, self.audit(), tally)
         if self.replay is not None:
             summary["replay"] = self.replay
         lines = self.lines(histories, estimates)

@@ -13,6 +13,7 @@ from sim.report.summary import BusTally, summarise
 from sim.report.summary_text import summary_text
 from sim.scenario.schema import load, orbit_period_s
 
+FLOWN = {"seed": 7, "flown": {"ticks": 7000, "slips": 0, "wall_s": None}}
 APE = {"index": "ape", "at_most_deg": 60.0, "by_orbit": 1.0}
 
 
@@ -24,7 +25,7 @@ def summary_of(made_run):
         run = made_run(scenario=load(scenario, {"requirement": list(requirement)}), ticks=ticks, **values)
         audit, tally = run.audit(), BusTally(0, isolated=run.isolated)
         performance = perform(run.scenario, run.truth(), run.estimates())
-        return summarise(run.scenario, {"seed": 7}, performance, audit, tally) | {"replay": run.replay}, audit
+        return summarise(run.scenario, FLOWN, performance, audit, tally) | {"replay": run.replay}, audit
 
     return make
 
@@ -75,7 +76,18 @@ class TestVerdict:
         assert not table.rows[1][2]
         text = summary_text(summary)
         assert "required   FAILED: APE of whole attitude" in text
-        assert f"- {table.rows[0][2]}" in text
+        assert f"- {table.rows[0][2].replace('²', '^2')}" in text
+
+
+def test_a_flight_that_was_cut_short_is_not_judged(made_run):
+    run = made_run()
+    performance = perform(run.scenario, run.truth(), run.estimates())
+    summary = summarise(run.scenario, {"seed": 7}, performance, run.audit(), BusTally(0))
+    assert [one["verdict"] for one in summary["requirements"]] == ["not judged"]
+    assert headline.headline(summary) == (
+        "note",
+        "Not judged: APE of whole attitude: the flight did not come to its end.",
+    )
 
 
 class TestWhatIsControlled:
@@ -98,7 +110,7 @@ class TestWhatIsControlled:
         scenario = load("microsat", {"control": {"law": "bdot"}, "requirement": []})
         run = made_run(scenario=scenario)
         performance = perform(scenario, run.truth(), run.estimates())
-        summary = summarise(scenario, {"seed": 7}, performance, run.audit(), BusTally(0))
+        summary = summarise(scenario, FLOWN, performance, run.audit(), BusTally(0))
         assert summary["controlled"]["what"] == "rate"
         assert summary["controlled"]["threshold"] == 0.3
         assert headline.tiles(summary)[0].name == "Rate"

@@ -150,3 +150,13 @@ class TestRealFlight:
         text = summary_text(summary | {"axis1_deg": axis1, "spin_radps": spin, "orbits": 3.0})
         assert "under 5 deg from 1.59 orbits on" in text
         assert "0.01987 rad/s in the mean of the last orbit, 0.00031 at most off 0.02" in text
+
+
+def test_the_summary_of_an_older_version_is_told_too(summary):
+    """It has no requirements, and does not say what is controlled."""
+    older = {key: value for key, value in summary.items() if key not in ("requirements", "controlled", "orbits")}
+    older["min_gap_s"] = {key: summary["min_gap_s"][key] for key in ("per_coil", "any")}
+    text = summary_text(older)
+    assert "deg RMS over the last orbit" in text
+    assert "least gap" in text
+    assert "required" not in text
