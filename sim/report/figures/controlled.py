@@ -7,6 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fsw.core.laws.table import LAWS, Aim
+from fsw.table.own_law import declared
+from fsw.table.sections import ControlTable
 from sim.record.truth import Histories
 from sim.report.figures.attitude_arrays import axis1_errors, errors
 from sim.report.figures.mean import Mean
@@ -29,12 +31,20 @@ class Controlled(NamedTuple):
 
 def controlled(scenario: Scenario) -> Controlled:
     """Body axis 1 or the whole attitude, as the modes judge; the rate under a law that does not point."""
-    modes, aim = flight_table(scenario).modes, LAWS[scenario.control.law].aim
+    table = flight_table(scenario)
+    modes = table.modes
     if modes.axis_only:
         return Controlled("axis", "axis 1", "deg", SETTLED_DEG)
-    if aim in (Aim.THREE_AXIS, Aim.AXIS):
+    if _aim(table.control) in (Aim.THREE_AXIS, Aim.AXIS):
         return Controlled("attitude", "whole attitude", "deg", SETTLED_DEG)
     return Controlled("rate", "rate", "deg/s", modes.slow_degps)
+
+
+def _aim(control: ControlTable) -> Aim:
+    """Of the law that flies; one whose source is withheld is taken to point."""
+    if control.own:
+        return Aim.THREE_AXIS if control.law_withheld else declared(control).aim
+    return LAWS[control.law].aim
 
 
 def error_vectors(what: str, truth: Histories, spin_radps: float) -> Array:

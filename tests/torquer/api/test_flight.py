@@ -53,6 +53,14 @@ def test_settings_have_dots_or_sections_and_values_of_numpy(tmp_path):
     assert (flown.time.tick_hz, flown.coils.backoff, flown.initial.axis) == (2, "per_coil", (0.0, 1.0, 0.0))
 
 
+def test_what_is_expected_is_judged_and_a_failure_of_the_run(tmp_path):
+    run = torquer.fly("microsat", orbits=SHORT, expect=["ape<2", "ape<90"], out=tmp_path / "run")
+    assert [one["verdict"] for one in run.summary["requirements"][-2:]] == ["failed", "met"]
+    assert not run.ok
+    assert "APE of whole attitude" in run.failures["requirements"]
+    assert len(run.scenario.requirement) == len(run.summary["requirements"])
+
+
 def test_what_the_caller_holds_is_collected_as_before(tmp_path):
     before = gc.get_freeze_count()
     torquer.fly("microsat", orbits=SHORT, out=tmp_path / "run")
@@ -179,6 +187,9 @@ def test_a_flight_whose_node_ends_raises_nothing_and_tells(tmp_path, monkeypatch
         ({"out": 3}, "out = 3"),
         ({"out": ""}, "out = ''"),
         ({"sign": "nowhere.pem"}, "nowhere.pem"),
+        ({"expect": ["ape>2"]}, "--expect 'ape>2'"),
+        ({"expect": "ape<2"}, "expect = 'ape<2' .* allowed is a list"),
+        ({"expect": [2.0]}, "expect.0 = 2.0"),
     ],
     ids=str,
 )
