@@ -14,7 +14,7 @@ from sim.design.theory.pulsed import PulsedLoop
 from sim.report.requirements.evidence import FlightEvidence
 from sim.report.requirements.mismatch import beyond_bounds
 from sim.report.requirements.sizing import (
-    damping_level_am2,
+    gradient_level_am2,
     least_error_deg,
     mean_dipole,
     pulse_turn_deg,
@@ -152,7 +152,7 @@ def _disturbance(missed: Missed, evidence: FlightEvidence) -> str:
     level = 2.0 * dipole.needed / evidence.scenario.coils.on_part
     return (
         f"the {by} takes {number(dipole.needed)} A m^2 on the mean, the coils give {number(dipole.given)}: "
-        f"a highest level of {number(level)} A m^2 would do"
+        f"it takes a highest level of at least {number(level)} A m^2"
     )
 
 
@@ -194,12 +194,11 @@ def _weak(missed: Missed, evidence: FlightEvidence) -> str:
     most = evidence.saturated_part if not total else highest / total
     if most < 0.6 or (total and total < 5):
         return ""
-    level = damping_level_am2(evidence.scenario, evidence.trend[-1] if evidence.trend else 60.0)
-    least = max(level, 2.0 * evidence.scenario.coils.largest_am2)
+    least = max(gradient_level_am2(evidence.scenario), 2.0 * evidence.scenario.coils.largest_am2)
     of = "the pulses of the last orbit" if total else "the last orbit"
     return (
         f"the coils are too weak: at the highest level in {part(most)} of {of}; "
-        f"one of {number(least)} A m^2 would do"
+        f"it takes one of at least {number(least)} A m^2"
     )
 
 
@@ -230,7 +229,7 @@ def _not_settled(missed: Missed, evidence: FlightEvidence) -> str:
     if len(trend) < TREND or missed.limit is None or min(trend) <= 0.0 or trend[-1] <= missed.limit:
         return ""
     slope = float(np.polyfit(np.arange(len(trend)) / 2.0, np.log(trend), 1)[0])
-    if slope > log(0.9) or trend[-1] > 0.9 * trend[0]:
+    if slope > log(0.9):
         return ""
     when = evidence.orbits + log(missed.limit / trend[-1]) / slope
     return (

@@ -67,9 +67,12 @@ def pulse_turn_deg(scenario: Scenario, what: str) -> float:
     return degrees(0.5 * rate_radps / body.rate_radps)
 
 
-def damping_level_am2(scenario: Scenario, error_deg: float) -> float:
-    """Highest level that takes a libration down by e in an orbit: J w0^2 theta / (2 pi |B| on_part)."""
+def gradient_level_am2(scenario: Scenario) -> float:
+    """Highest level that gives on the mean the largest gravity gradient, 3/2 w0^2 (C - A) / |B| / on_part.
+
+    Weaker coils do not turn a body back that the gravity gradient holds upside down.
+    """
     body = body_of(scenario)
-    largest = max(scenario.body.inertia[axis][axis] for axis in range(3))
-    torque_nm = largest * body.rate_radps**2 * radians(min(error_deg, 60.0)) / (2.0 * np.pi)
+    moments = np.linalg.eigvalsh(np.array(scenario.body.inertia))
+    torque_nm = 1.5 * body.rate_radps**2 * float(moments[-1] - moments[0])
     return float(torque_nm / mean_field_t(body) / scenario.coils.on_part)

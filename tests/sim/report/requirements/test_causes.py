@@ -115,9 +115,17 @@ class TestWhatWouldDo:
         assert names(finer) == ["unknown"]
 
     def test_a_level_that_is_strong_enough_balances_the_disturbance(self):
-        told = float(text(FOUND["disturbance"]).rpartition("level of ")[2].split()[0])
+        told = float(text(FOUND["disturbance"]).rpartition("at least ")[2].split()[0])
         stronger = sound(*DIPOLE, f"coils.levels_am2=[0.5,2,{told}]")
         assert names(stronger) == ["unknown"]
+
+    def test_a_highest_level_that_turns_the_body_is_at_least_that_of_the_gravity_gradient(self):
+        """A flight with 1.5 A m^2 settles within two orbits, one with 0.4 ends upside down."""
+        weak = replace(
+            sound("coils.levels_am2=[0.05,0.1,0.2]", "flight.uncertainty.torque_nm=0"), levels=(0, 0, 9)
+        )
+        told = float(text(replace(weak, torque_nm=(0.0, 0.0, 0.0))).rpartition("at least ")[2].split()[0])
+        assert told == pytest.approx(1.5, rel=0.05)
 
 
 class TestSilence:
