@@ -42,11 +42,17 @@ def progress(what: str, total: int) -> Iterator[Watch]:
     elif sys.stderr.isatty():
         with _bar(what, total) as watch:
             yield watch
-    elif "ipykernel" in sys.modules:
+    elif _in_notebook():
         with _line(what, total) as watch:
             yield watch
     else:
         yield lambda done: None
+
+
+def _in_notebook() -> bool:
+    """Whether this process is the kernel of a notebook."""
+    kernel = sys.modules.get("ipykernel.kernelapp")
+    return kernel is not None and bool(kernel.IPKernelApp.initialized())
 
 
 def _is_shown() -> bool:

@@ -2,9 +2,8 @@
 
 from collections.abc import Sequence
 
-from fsw.core.laws.table import LAWS
 from sim.compare.case import Driver
-from sim.compare.picture import colour_of
+from sim.compare.picture import colour_of, laws_of
 from sim.compare.score import WINDOW_ORBITS, Result, Score
 from sim.compare.table import as_table
 from sim.drawing.canvas import style
@@ -41,7 +40,7 @@ def compare_page(
 
 
 def _panels(flights: Sequence[Result]) -> list[Panel]:
-    laws = [law for law in LAWS if any(result.score.law == law for result in flights)]
+    laws = laws_of(flights)
     panels = []
     for driver in Driver:
         series = [

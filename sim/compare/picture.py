@@ -28,8 +28,7 @@ def picture(path: Path, title: str, results: Sequence[Result]) -> None:
     if not flights:
         return
     drivers = [driver for driver in Driver if any(result.score.driver is driver for result in flights)]
-    drawn = {result.score.law for result in flights}
-    laws = [*(law for law in LAWS if law in drawn), *sorted(drawn - set(LAWS))]
+    laws = laws_of(flights)
     errors = [result.history.error_deg for result in flights if result.history is not None]
     assert flights[0].history is not None
     with style():
@@ -47,6 +46,12 @@ def picture(path: Path, title: str, results: Sequence[Result]) -> None:
         figure.savefig(
             path, format="png", dpi=DOTS_PER_INCH, facecolor="white", metadata={"Software": "torquer"}
         )
+
+
+def laws_of(flights: Sequence[Result]) -> list[str]:
+    """The laws that were flown, in the order of their table; those of one's own are last."""
+    flown = {flight.score.law for flight in flights}
+    return [*(law for law in LAWS if law in flown), *sorted(flown - LAWS.keys())]
 
 
 def colour_of(number: int) -> str:

@@ -103,7 +103,7 @@ def test_an_armed_bench_flies_in_real_time_and_its_log_is_as_good_as_any(benches
     assert 0.0 < numbers["latency_ms"]["p50"] <= numbers["latency_ms"]["p99"] <= numbers["latency_ms"]["max"]
     assert 2.0 < numbers["bus_load_percent"]["mean"] < 20.0
     assert numbers["messages"]["TICK_DONE"] >= 45
-    assert json.loads((run / "hil.json").read_text()) == numbers
+    assert json.loads((run / "hil.json").read_text()).items() <= numbers.items()
     audited = torquer("check", str(run))
     assert audited.returncode == 0, audited.stdout + audited.stderr
     reflown = torquer("replay", str(run))

@@ -3,6 +3,7 @@
 import sys
 from io import StringIO
 from threading import Thread
+from types import SimpleNamespace
 
 import pytest
 
@@ -30,12 +31,14 @@ def test_notes_are_written_everywhere_and_a_bar_on_a_terminal(monkeypatch):
     assert "flying" in written(monkeypatch, Terminal())
 
 
-def test_a_notebook_has_a_line_that_is_written_over(monkeypatch):
-    monkeypatch.setitem(sys.modules, "ipykernel", sys)
+@pytest.mark.parametrize("running", [True, False], ids=["a kernel", "a program that has loaded one"])
+def test_a_notebook_has_a_line_that_is_written_over(monkeypatch, running):
+    kernel = SimpleNamespace(IPKernelApp=SimpleNamespace(initialized=lambda: running))
+    monkeypatch.setitem(sys.modules, "ipykernel.kernelapp", kernel)
     monkeypatch.setattr(module, "LINE_EVERY_S", 0.0)
     text = written(monkeypatch, StringIO())
-    assert "\rflying:  50 %" in text
-    assert text.endswith("\rflying: done \n")
+    assert ("\rflying:  50 %" in text) is running
+    assert text.endswith("\rflying: done \n") is running
 
 
 @pytest.mark.parametrize("stream", [StringIO, Terminal])

@@ -106,7 +106,7 @@ def test_what_is_not_there_is_one_sentence(tmp_path, capsys):
 def test_the_bench_is_armed_at_10_hz_and_held_to_the_budget(monkeypatch, tmp_path):
     benches, words = [], []
     monkeypatch.setattr(soak.subprocess, "run", lambda command, **_: words.extend(command[3:]))
-    monkeypatch.setattr(command, "hil", lambda bench, as_json: benches.append(bench) or 0)
+    monkeypatch.setattr(command, "hil", lambda bench: benches.append(bench) or 0)
     soak.bench(tmp_path / "hil", "microsat", 3600.0, None, ("--memory-percent", "1.5"))
     with pytest.raises(SystemExit):
         cli.main(words)

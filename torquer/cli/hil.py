@@ -92,13 +92,15 @@ def hil(
 ) -> int:
     """SCENARIO in real time: flight software against boards, each its own process or real hardware."""
     rate = (f"time.tick_hz={tick_hz}",) if tick_hz is not None else ()
-    chosen = load_scenario(scenario, (*settings, *rate))
     if conformance is not None and out is not None:
         raise HarnessError("--out: a conformance run writes no log")
     if conformance is not None:
         from sim.conformance.command import conformance as conform
+        from sim.scenario.schema import load, parse_settings
 
+        chosen = load(scenario, parse_settings((*settings, *rate)))  # of its limits, none is a mistake
         return conform(chosen, conformance, bus, arm, deadman_s)
+    chosen = load_scenario(scenario, (*settings, *rate))
     from sim.bench import command
     from sim.bench.budgets import Budgets
 
