@@ -9,6 +9,8 @@
 # make scaling    what a campaign costs beside its flights, and what 10^6 runs take, into docs/scaling.md: ten minutes
 # make soak       72 simulated hours, and an hour on the bench in real time, into docs/soak.md
 # make golden     record the golden logs again: after a change that means to alter the answers of fsw
+# make docs      build the documentation into build/docs, each warning an error: half a minute
+# make docs-gallery   the same, with notebooks and gallery executed: some minutes
 # make notebooks   execute the notebooks of docs/notebooks, into build/notebooks: a minute or two
 # make test-vcan   the tests on a CAN interface, in a user-mode Linux guest where this kernel has no vcan
 # make test-chromium   the pages in a headless browser, Debian's chromium
@@ -28,7 +30,7 @@ bin := .venv/bin
 installed := .venv/.installed
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv sil test lint notebooks test-vcan test-chromium golden validate fuzz attack differential replay-elsewhere faults bench scaling population soak verdicts planted mutation coverage
+.PHONY: help venv sil test lint docs docs-gallery notebooks test-vcan test-chromium golden validate fuzz attack differential replay-elsewhere faults bench scaling population soak verdicts planted mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -56,8 +58,24 @@ lint: venv
 	$(bin)/python tools/generate_messages.py --check
 	$(bin)/python tools/generate_icd.py --check
 	$(bin)/python tools/write_requirements.py --check
+	$(bin)/python tools/write_scenario_keys.py --check
 	$(bin)/python tools/draw_design.py --check
 	$(bin)/python tools/write_cli.py --check
+
+docs_installed := .venv/.docs-installed
+sphinx := $(bin)/sphinx-build -W -n --keep-going --quiet -b html
+
+$(docs_installed): $(installed)
+	$(bin)/pip install --quiet --disable-pip-version-check --editable '.[docs]'
+	@touch $@
+
+docs: $(docs_installed)
+	$(sphinx) docs build/docs
+	@echo build/docs/index.html
+
+docs-gallery: $(docs_installed)
+	$(sphinx) -D plot_gallery=True -D nb_execution_mode=force docs build/docs-gallery
+	@echo build/docs-gallery/index.html
 
 notebooks: venv
 	$(bin)/python tools/run_notebooks.py $(NOTEBOOKS)

@@ -77,7 +77,7 @@ class CampaignRuns:
     @cached_property
     @one_sentence
     def results(self) -> "pd.DataFrame":
-        """A row a run: status, seed, drawn values as ``input_KEY``, figures. Needs ``torquer[data]``."""
+        """A row a run, with status, seed, drawn values as ``input_KEY``, figures. Needs ``torquer[data]``."""
         from torquer.api.tables import results  # noqa: PLC0415  an extra
 
         return results(self.path)

@@ -88,7 +88,7 @@ class Run:
 
     @property
     def ok(self) -> bool:
-        """Nothing failed: limits kept, replay exact, run complete, no requirement missed."""
+        """Nothing failed. Limits were kept, the replay is exact, the run complete, no requirement missed."""
         return not self.failures
 
     @property
@@ -112,7 +112,7 @@ class Run:
     @cached_property
     @one_sentence
     def truth(self) -> "xr.Dataset":
-        """The histories of the plant, a row a tick: attitude, rates, field, Sun, dipole, position, torques.
+        """The histories of the plant, a row a tick, of attitude, rates, field, Sun, dipole, orbit, torques.
 
         Every variable has its unit in ``attrs["units"]``, its meaning in ``attrs["long_name"]``, and in its
         name the quantity, its frame and its unit. Needs ``torquer[data]``.
@@ -124,7 +124,7 @@ class Run:
     @cached_property
     @one_sentence
     def estimate(self) -> "xr.Dataset":
-        """What the flight software estimated at every tick, from a replay of the log: NaN where it had none.
+        """What the flight software estimated at every tick, from a replay of the log; NaN where it had none.
 
         Attitude, rates, their 1 sigma, the error against the plant's truth, validity and mode, with units as
         in ``truth``. A replay takes about as long as the flight. Needs ``torquer[data]``.

@@ -1,0 +1,72 @@
+"""How Sphinx builds the documentation: make docs, and make docs-gallery with everything executed."""
+
+from importlib.metadata import version as installed
+
+from docutils.nodes import Element, SkipNode
+from docutils.utils.math.latex2mathml import tex2mathml
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxTranslator
+
+project = "Torquer"
+version = release = installed("torquer")
+copyright = "Apache-2.0"
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_gallery.gen_gallery"]
+
+html_theme = "pydata_sphinx_theme"
+html_title = "Torquer"
+html_theme_options = {
+    "show_prev_next": False,
+    "navigation_with_keys": False,
+    "footer_start": [],
+    "footer_end": [],
+}
+html_show_sourcelink = False
+html_copy_source = False
+html_static_path = ["_static"]
+html_css_files = ["torquer.css"]
+html_extra_path = ["scenario.schema.json"]
+html_math_renderer = "mathml"
+exclude_patterns = ["gallery/*.ipynb", "gallery/*.py"]
+
+myst_enable_extensions = ["dollarmath"]
+myst_heading_anchors = 4
+nb_execution_mode = "off"
+nb_execution_timeout = 600
+nb_execution_raise_on_error = True
+
+autodoc_typehints = "description"
+autodoc_member_order = "bysource"
+autodoc_default_options = {"exclude-members": "__new__, __init__"}
+napoleon_numpy_docstring = False
+nitpick_ignore_regex = [  # documented elsewhere; a build needs no network, and so looks at no inventory
+    (r"py:.*", r"(pathlib|collections|os|typing|numpy|np|pandas|pd|xarray|xr|pydantic)\..*"),
+    (r"py:.*", r"(sim|fsw|torquer\.api)\..*"),  # inner parts, which docs/design.md describes
+]
+
+plot_gallery = "False"  # sphinx-gallery reads a text here
+sphinx_gallery_conf = {
+    "examples_dirs": "../examples/gallery",
+    "gallery_dirs": "gallery",
+    "filename_pattern": r"/\w+\.py",
+    "within_subsection_order": "FileNameSortKey",
+    "download_all_examples": False,
+    "show_memory": False,
+    "write_computation_times": False,
+    "remove_config_comments": True,
+    "abort_on_example_error": True,
+}
+
+
+def _inline(translator: SphinxTranslator, node: Element) -> None:
+    translator.body.append(tex2mathml(node.astext(), as_block=False))
+    raise SkipNode
+
+
+def _display(translator: SphinxTranslator, node: Element) -> None:
+    translator.body.append(f'<div class="math">{tex2mathml(node.astext(), as_block=True)}</div>')
+    raise SkipNode
+
+
+def setup(app: Sphinx) -> None:
+    """Equations become MathML, which browsers show without scripts or a network."""
+    app.add_html_math_renderer("mathml", (_inline, None), (_display, None))

@@ -1,0 +1,129 @@
+"""The page of all keys of a scenario, written from the schema."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from sim.scenario.keys.editor_schema import json_schema, unit_of
+
+HEAD = """# Scenario keys
+
+Written from the schema by `tools/write_scenario_keys.py`. Every key of a scenario file, by section, with
+its unit, what is allowed, and its default; a key without a default must be given. A name ends with its
+unit, components are in body axes. `torquer sil --set SECTION.KEY=VALUE` lays a value over any of them.
+
+`torquer scenarios --schema > scenario.schema.json` writes the schema as JSON Schema. Editors with Taplo
+(VS Code: Even Better TOML) complete and check a file that begins with `#:schema scenario.schema.json`.
+"""
+FLIGHT = """## [flight]
+
+Values of the onboard table that differ from those above, for instance the inertia that the controller
+assumes. Values that both share (orbit, body, coils, control, time) are taken from the scenario, all
+others from `fsw/flight.toml`. `[flight.uncertainty]` says how far the table may be off:
+[uncertainty.md](uncertainty.md).
+"""
+_BOUNDS = {
+    "minimum": "at least",
+    "exclusiveMinimum": "above",
+    "maximum": "at most",
+    "exclusiveMaximum": "below",
+}
+_TYPES = {
+    "string": "text",
+    "number": "number",
+    "integer": "whole number",
+    "boolean": "true or false",
+    "object": "section",
+}
+_ONBOARD_ALONE = ("field", "uncertainty", "estimator", "modes", "fdir", "telemetry")
+"""Sections of the onboard table that a scenario has not, or with other keys."""
+
+
+def page() -> str:
+    """The page as Markdown."""
+    schema = json_schema()
+    sections = schema["$defs"]
+    parts = [HEAD, "## Top level\n", _table(_plain(schema), schema["required"])]
+    for name, value in schema["properties"].items():
+        if name != "flight":
+            parts += _section(name, value, sections)
+    parts.append(FLIGHT)
+    onboard = schema["properties"]["flight"]["properties"]
+    for name in _ONBOARD_ALONE:
+        parts += _section(f"flight.{name}", onboard[name], sections)
+    return "\n".join(parts)
+
+
+def _section(name: str, value: dict[str, Any], sections: dict[str, Any]) -> list[str]:
+    """Heading, text and table of a section, and of those in it; nothing for a plain key."""
+    parts: list[str] = []
+    for target, repeated in _targets(value):
+        section = sections[target]
+        message = section["properties"].get("message", {}).get("const")
+        heading = f"[[{name}]]" if repeated else f"[{name}]"
+        parts += [f"## {heading}{f' {message}' if message else ''}\n", f"{_text(section)}\n"]
+        plain = _plain(section)
+        if plain:
+            parts.append(_table(plain, section.get("required", ())))
+        for key, inner in section["properties"].items():
+            parts += _section(f"{name}.{key}", inner, sections)
+    return parts
+
+
+def _targets(value: dict[str, Any]) -> list[tuple[str, bool]]:
+    """The sections that a value refers to, and whether there may be several of each."""
+    if "$ref" in value:
+        return [(value["$ref"].rpartition("/")[2], False)]
+    items = value.get("items", {})
+    inner = [*value.get("anyOf", ()), *items.get("oneOf", ()), *([items] if "$ref" in items else ())]
+    repeated = "items" in value
+    return [(target, repeated or again) for each in inner for target, again in _targets(each)]
+
+
+def _plain(section: dict[str, Any]) -> dict[str, Any]:
+    return {
+        key: value for key, value in section["properties"].items() if key != "flight" and not _targets(value)
+    }
+
+
+def _text(section: dict[str, Any]) -> str:
+    return str(section.get("description", "")).replace("``", "`")
+
+
+def _table(keys: dict[str, Any], required: Sequence[str]) -> str:
+    rows = ["| key | unit | allowed | default |", "|---|---|---|---|"]
+    for key, value in keys.items():
+        rows.append(f"| `{key}` | {unit_of(key)} | {_allowed(value)} | {_default(key, value, required)} |")
+    return "\n".join([*rows, ""])
+
+
+def _default(key: str, value: dict[str, Any], required: Sequence[str]) -> str:
+    if key in required:
+        return "must be given"
+    default = value.get("default")
+    if default in (None, [], {}):
+        return ""
+    text = str(default).lower() if isinstance(default, bool) else str(default)
+    return f"`{text}`"
+
+
+def _allowed(value: dict[str, Any]) -> str:
+    """What a value may be, in words."""
+    if "const" in value:
+        return f"`{value['const']}`"
+    if "enum" in value:
+        return ", ".join(f"`{each}`" for each in value["enum"])
+    if "anyOf" in value:
+        return " or ".join(_allowed(each) for each in value["anyOf"] if each.get("type") != "null")
+    if value.get("type") == "array":
+        return _list(value)
+    bounds = [f"{word} {value[name]:g}" for name, word in _BOUNDS.items() if name in value]
+    return f"{_TYPES[value.get('type', 'object')]} {' and '.join(bounds)}".strip()
+
+
+def _list(value: dict[str, Any]) -> str:
+    parts = value.get("prefixItems")
+    if not parts:
+        return f"list of: {_allowed(value.get('items', {'type': 'number'}))}"
+    if parts[0].get("type") == "array":
+        return f"{len(parts)} lists of {_list(parts[0])}"
+    return f"{len(parts)} of: {_allowed(parts[0])}"

@@ -1,0 +1,65 @@
+"""The commands of the quick start and of the tutorial do what they say, in order, on short orbits."""
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from torquer.cli.main import main
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+SHORT = (
+    (r"--orbits [\d.]+", "--orbits 0.02"),
+    (r"(?m)^orbits = [\d.]+", "orbits = 0.02"),
+    (r"(?m)^runs = \d+", "runs = 4"),
+    ("at_s=3000", "at_s=30"),
+    ("at_s=9000", "at_s=60"),
+    ("lasts_s=6000", "lasts_s=30"),
+)
+"""What makes the flights of a page short, and nothing else different."""
+
+
+def shortened(page):
+    text = (DOCS / page).read_text(encoding="utf-8")
+    for pattern, short in SHORT:
+        text = re.sub(pattern, short, text)
+    return text
+
+
+def files(text):
+    """Name and content of the files that a page shows, each beginning with a comment that is its name."""
+    return [
+        (name, body)
+        for body, name in re.findall(r"```(?:python|toml)\n(# (\w[\w-]*\.\w+)\n.*?)```", text, re.S)
+    ]
+
+
+def commands(text):
+    blocks = re.findall(r"```console\n(.*?)```", text, re.S)
+    return re.findall(r"(?m)^\$ torquer (.*)$", "\n".join(blocks))
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("sim.report.conclude.write_report", lambda path, *rest: path.write_text(""))
+    return tmp_path
+
+
+@pytest.mark.parametrize(("page", "least"), [("quickstart.md", 3), ("tutorial.md", 11)])
+def test_its_commands_run(page, least, folder):
+    text = shortened(page)
+    for name, body in files(text):
+        (folder / name).write_text(body, encoding="utf-8")
+    told = commands(text)
+    assert len(told) >= least
+    for command in told:
+        done = CliRunner().invoke(main, shlex.split(command))
+        assert done.exit_code == 0, f"torquer {command}\n{done.output}"
+
+
+def test_the_python_of_the_quick_start_runs(folder):
+    (code,) = re.findall(r"```python\n(.*?)```", (DOCS / "quickstart.md").read_text(encoding="utf-8"), re.S)
+    exec(code.replace("orbits=4", "orbits=0.02"), {})
