@@ -75,6 +75,7 @@ docs: $(docs_installed)
 
 docs-gallery: $(docs_installed)
 	$(sphinx) -D plot_gallery=True -D nb_execution_mode=force docs build/docs-gallery
+	@rm -rf examples/gallery/runs examples/gallery/campaigns
 	@echo build/docs-gallery/index.html
 
 notebooks: venv

@@ -23,7 +23,7 @@ for polarity, colour in ((1, "tab:blue"), (-1, "tab:red")):
         label="positive" if polarity > 0 else "negative",
     )
 axes.set(xlabel="time, min", yticks=[0, 1, 2], yticklabels=["coil 0", "coil 1", "coil 2"])
-axes.legend(ncols=2, loc="upper right")
+figure.legend(ncols=2, loc="outside upper right")
 
 # %%
 # How long each coil was driven, by level:

@@ -30,7 +30,7 @@ done = torquer.campaign(definition, out=folder / "runs")
 
 results = done.results
 figure, axes = plt.subplots(figsize=(8, 4), layout="constrained")
-axes.scatter(results["input_initial.angle_deg"], results["pointing_deg_rms_last_orbit"])
+axes.scatter(results["input_initial_angle_deg"], results["pointing_deg_rms_last_orbit"])
 axes.set(xlabel="angle at the start, deg", ylabel="pointing error over the flight, deg RMS")
 
 # %%
