@@ -24,9 +24,8 @@ class Frame:
     page: str
 
     def _repr_html_(self):
-        return (
-            f'<iframe srcdoc="{escape(self.page)}" title="report" style="width: 100%; height: 50em"></iframe>'
-        )
+        page = escape(self.page)
+        return f'<iframe title="report" width="100%" height="800" srcdoc="{page}"></iframe>'
 
 
 Frame(run.report.read_text(encoding="utf-8"))
