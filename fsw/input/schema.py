@@ -114,8 +114,8 @@ def words_of(annotation: object) -> tuple[str, ...]:
 
 
 def _owner(model: type[Any], location: tuple[int | str, ...]) -> type[BaseModel] | None:
-    """The section that holds the last part of a location."""
-    owner: type[BaseModel] | None = model
+    """The section that holds the last part of a location; None where a model has no sections."""
+    owner: type[BaseModel] | None = model if issubclass(model, BaseModel) else None
     for part in location[:-1]:
         if isinstance(part, str) and owner is not None and part in owner.model_fields:
             owner = section_in(owner.model_fields[part].annotation)
