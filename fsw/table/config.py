@@ -18,7 +18,7 @@ from fsw.core.gate.second_sender import SecondSenderConfig
 from fsw.core.laws.interface import ControlConfig, Setpoint
 from fsw.core.laws.table import LAWS
 from fsw.core.modes import TABLE, ModeConfig
-from fsw.core.orbit.ephemeris import ephemeris_model
+from fsw.core.orbit.ephemeris import EphemerisModel, ephemeris_model
 from fsw.core.orbit.field import FieldKind
 from fsw.core.orbit.propagation import Orbit, circular_orbit, sgp4_orbit
 from fsw.core.rates import RateGroup, RateTable
@@ -49,14 +49,7 @@ def flight_config(table: FlightTable) -> FlightConfig:
             tick_hz=tick_hz,
             epoch_unix_s=table.epoch_unix_s,
             table_crc=table.crc,
-            ephemeris=ephemeris_model(
-                orbit,
-                table.epoch_unix_s,
-                tick_hz,
-                FieldKind(table.field.model),
-                table.field.degree,
-                table.telemetry.ephemeris_s,
-            ),
+            ephemeris=_ephemeris(table, orbit),
             estimator=estimator,
             control=_control(table, orbit),
             coils=ActuatorConfig(timing, _dipoles(table)),
@@ -69,6 +62,29 @@ def flight_config(table: FlightTable) -> FlightConfig:
         )
     except ValueError as error:
         raise TableError(f"flight table: {error}") from None
+
+
+def onboard_ephemeris(table: FlightTable) -> EphemerisModel:
+    """The onboard model of orbit, field and Sun alone; a law of one's own is not executed for it.
+
+    Raises:
+        TableError: the orbit has no position at the epoch, or the field does not hold there.
+    """
+    try:
+        return _ephemeris(table, _orbit(table.orbit, table.epoch_unix_s))
+    except ValueError as error:
+        raise TableError(f"flight table: {error}") from None
+
+
+def _ephemeris(table: FlightTable, orbit: Orbit) -> EphemerisModel:
+    return ephemeris_model(
+        orbit,
+        table.epoch_unix_s,
+        table.time.tick_hz,
+        FieldKind(table.field.model),
+        table.field.degree,
+        table.telemetry.ephemeris_s,
+    )
 
 
 def _orbit(orbit: OrbitTable, epoch_unix_s: int) -> Orbit:

@@ -7,7 +7,7 @@ from math import acos, degrees
 from fsw.core.algebra.quaternion import Quaternion, conjugate, rotate
 from fsw.core.algebra.vector import Vec3, dot, norm, unit
 from fsw.core.orbit.ephemeris import EphemerisWindow, advance, reference_at
-from fsw.table.config import flight_config
+from fsw.table.config import onboard_ephemeris
 from sim.scenario.schema import Scenario, flight_table
 
 AXES: tuple[Vec3, Vec3, Vec3] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -34,7 +34,7 @@ def onboard_around(scenario: Scenario) -> AroundAt:
     Raises:
         TableError: the onboard table cannot be used.
     """
-    model = flight_config(flight_table(scenario)).ephemeris
+    model = onboard_ephemeris(flight_table(scenario))
     window: EphemerisWindow | None = None
 
     def around_at(tick: int) -> Around | None:

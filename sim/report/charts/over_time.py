@@ -6,6 +6,7 @@ from fsw.wire.messages import Mode
 from sim.drawing.canvas import AXES_COLOURS, INK, LIMIT, MORE_COLOURS, MUTED, Array, Span, shade, stacked
 from sim.drawing.time_chart import DrawnChart, Json, Level, Panel, Series, TimeChart, draw
 from sim.report.charts.drawn_flight import DrawnFlight
+from sim.report.figures.controlled import SETTLED_DEG
 
 MODE_COLOURS = {
     Mode.SAFE: "#b3261e",
@@ -13,7 +14,6 @@ MODE_COLOURS = {
     Mode.ACQUIRE: "#56b4e9",
     Mode.POINT: "#009e73",
 }
-SETTLED_DEG = 5.0
 MOST_SPANS = 2000
 """Spans in which the controller stays in a mode."""
 

@@ -8,7 +8,7 @@ from sim.flight.sil import start_node
 def test_a_package_in_the_current_directory_is_not_that_of_a_node(tmp_path, monkeypatch):
     for name in ("fsw", "sim"):
         (tmp_path / f"{name}.py").write_text("raise RuntimeError")
-    monkeypatch.setattr(sys, "path", ["", *sys.path])  # as in an interactive session
+    monkeypatch.setattr(sys, "path", ["", *sys.path])  # as at the prompt of Python
     monkeypatch.chdir(tmp_path)
     for module in ("fsw", "sim.flight.plant_process"):
         node = start_node(module, "--help", stdout=-3)

@@ -6,6 +6,7 @@ import pytest
 
 from fsw.core.algebra.quaternion import conjugate, from_small_rotation, normalise, rotate
 from fsw.core.algebra.vector import norm, unit
+from sim.scenario.law_named import with_law_withheld
 from sim.scenario.schema import load
 from sim.watch.directions import arrows, off_deg, onboard_around
 
@@ -64,3 +65,12 @@ def test_without_an_attitude_they_are_in_body_axes_and_nothing_is_said_of_the_or
         "body 3": (0.0, 0.0, 1.0),
         "field": (0.0, 1.0, 0.0),
     }
+
+
+def test_a_law_of_ones_own_is_not_executed_for_it(tmp_path):
+    law, trace = tmp_path / "law.py", tmp_path / "executed"
+    law.write_text(f"open({str(trace)!r}, 'w').close()\nlaw = None\n")
+    scenario = load("microsat", {"control": {"law": f"{law}:law"}})
+    assert onboard_around(scenario)(0) is not None
+    assert onboard_around(with_law_withheld(scenario))(0) is not None, "as of a run that was recorded"
+    assert not trace.exists()

@@ -2,14 +2,14 @@
 
 import json
 
+import foxglove
 import pytest
+from mcap.reader import make_reader
 
 from fsw.wire.messages import FswBoot, MagField, NavAttitude, Sync
 from sim.errors import HarnessError
 from sim.watch.foxglove import Publisher, foxglove_server
 from sim.watch.seen import FlightView
-
-foxglove = pytest.importorskip("foxglove")
 
 
 def test_attitude_directions_series_and_events_are_sent(tmp_path):
@@ -27,11 +27,10 @@ def test_attitude_directions_series_and_events_are_sent(tmp_path):
         publisher = Publisher(context, 0)
         publisher.publish(seen)
         publisher.publish(seen)
-    reader = pytest.importorskip("mcap.reader")
     with path.open("rb") as file:
         found = [
             (channel.topic, schema.name, message.data)
-            for schema, channel, message in reader.make_reader(file).iter_messages()
+            for schema, channel, message in make_reader(file).iter_messages()
         ]
     topics = [topic for topic, _, _ in found]
     assert topics.count("/tf") == topics.count("/scene") == topics.count("/state") == 2

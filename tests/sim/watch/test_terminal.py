@@ -1,5 +1,7 @@
 """What stands on the terminal: every panel, at every stage of a flight, in any room."""
 
+from io import StringIO
+
 import pytest
 from rich.console import Console
 
@@ -9,7 +11,7 @@ from sim.watch.terminal import screen, show
 
 
 def text(seen, width=120, height=40):
-    console = Console(width=width, height=height, record=True, file=open("/dev/null", "w"))  # noqa: SIM115
+    console = Console(width=width, height=height, record=True, file=StringIO())
     console.print(screen(seen, "loop:28011", width, height), height=height)
     return console.export_text()
 
