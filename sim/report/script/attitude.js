@@ -72,15 +72,7 @@ const pulsesNow = (() => {
   const words = document.getElementById("attitude-words");
   const INK = "#1b2733", MUTED = "#5b6b7b", PAPER = "#ffffff", AXES = ["#0072b2", "#d55e00", "#009e73"];
   const FIELD = "#7b3fa0", SUN = "#e69f00", NADIR = "#5b6b7b";
-  const camera = { azimuth: -0.9, elevation: 0.45 };
-
-  // Right, up and towards the viewer, of a vector in orbital axes; radius is up.
-  function project([radius, along, normal]) {
-    const [ca, sa] = [Math.cos(camera.azimuth), Math.sin(camera.azimuth)];
-    const [ce, se] = [Math.cos(camera.elevation), Math.sin(camera.elevation)];
-    const right = -sa * along + ca * normal, ahead = ca * along + sa * normal;
-    return [right, ce * radius - se * ahead, se * radius + ce * ahead];
-  }
+  const { project } = turnedView(canvas, draw);
 
   function draw() {
     const size = Math.min(canvas.clientWidth, 520), ratio = devicePixelRatio || 1;
@@ -197,30 +189,11 @@ const pulsesNow = (() => {
     ].join(" · ");
   }
 
-  let from = null;
-  canvas.addEventListener("pointerdown", (event) => {
-    from = [event.clientX, event.clientY];
-    canvas.setPointerCapture(event.pointerId);
-  });
-  canvas.addEventListener("pointermove", (event) => {
-    if (!from) return;
-    turnBy(0.01 * (event.clientX - from[0]), 0.01 * (event.clientY - from[1]));
-    from = [event.clientX, event.clientY];
-  });
-  for (const over of ["pointerup", "pointercancel"]) canvas.addEventListener(over, () => { from = null; });
   canvas.addEventListener("keydown", (event) => {
-    const turns = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, -0.1], ArrowDown: [0, 0.1] };
-    if (event.key === " ") clock.set({ playing: !clock.state.playing });
-    else if (event.key in turns) turnBy(...turns[event.key]);
-    else return;
+    if (event.key !== " ") return;
+    clock.set({ playing: !clock.state.playing });
     event.preventDefault();
   });
-
-  function turnBy(azimuth, elevation) {
-    camera.azimuth -= azimuth;
-    camera.elevation = Math.min(Math.max(camera.elevation + elevation, -1.5), 1.5);
-    draw();
-  }
 
   clock.watch(draw);
   theme.watch(draw);

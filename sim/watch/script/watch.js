@@ -106,14 +106,7 @@ const watch = (() => {
     "body 1": "#0072b2", "body 2": "#d55e00", "body 3": "#009e73", field: "#7b3fa0", Sun: "#e69f00",
     nadir: "#5b6b7b", ahead: "#5b6b7b",
   };
-  const camera = { azimuth: -0.9, elevation: 0.45 };
-
-  // Right and up, of a vector in orbit axes; the radius is up.
-  function project([radius, along, normal]) {
-    const [ca, sa] = [Math.cos(camera.azimuth), Math.sin(camera.azimuth)];
-    const right = -sa * along + ca * normal, ahead = ca * along + sa * normal;
-    return [right, Math.cos(camera.elevation) * radius - Math.sin(camera.elevation) * ahead];
-  }
+  const { project } = turnedView(canvas, draw);
 
   function draw() {
     const size = Math.min(canvas.clientWidth, 520), ratio = devicePixelRatio || 1;
@@ -147,30 +140,6 @@ const watch = (() => {
       ctx.fillText(level ? `${name}, coil at ${level}` : name, x + 26 * Math.cos(turn), y + 16 * Math.sin(turn));
     }
   }
-
-  function turnBy(azimuth, elevation) {
-    camera.azimuth -= azimuth;
-    camera.elevation = Math.min(Math.max(camera.elevation + elevation, -1.5), 1.5);
-    draw();
-  }
-
-  let from = null;
-  canvas.addEventListener("pointerdown", (event) => {
-    from = [event.clientX, event.clientY];
-    canvas.setPointerCapture(event.pointerId);
-  });
-  canvas.addEventListener("pointermove", (event) => {
-    if (!from) return;
-    turnBy(0.01 * (event.clientX - from[0]), 0.01 * (event.clientY - from[1]));
-    from = [event.clientX, event.clientY];
-  });
-  for (const over of ["pointerup", "pointercancel"]) canvas.addEventListener(over, () => { from = null; });
-  canvas.addEventListener("keydown", (event) => {
-    const turns = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, -0.1], ArrowDown: [0, 0.1] };
-    if (!(event.key in turns)) return;
-    turnBy(...turns[event.key]);
-    event.preventDefault();
-  });
 
   watch.watch(draw);
   theme.watch(draw);
