@@ -25,7 +25,7 @@ from fsw.core.rates import RateGroup, RateTable
 from fsw.input.schema import TableError
 from fsw.table.estimator import estimator_config, plausibility_config
 from fsw.table.own_law import with_own_law
-from fsw.table.schedules import schedules
+from fsw.table.schedules import planned_pulses, schedules
 from fsw.table.sections import CoilTable, ModesTable, OrbitTable, TelemetryTable
 from fsw.table.table import FlightTable
 
@@ -114,6 +114,7 @@ def _control(table: FlightTable, orbit: Orbit) -> ControlConfig:
         horizon_s=coils.pulse_s,
         mean_dipole_am2=mean_dipole_am2,
         schedules=schedules(table, orbit, gains),
+        pulse_model=planned_pulses(table, orbit, gains, _pulses(table)),
     )
     return with_own_law(config, control) if control.own else config
 

@@ -1,39 +1,82 @@
-"""Gain schedules of the periodic regulators, computed once when the onboard table is loaded."""
+"""What the periodic laws compute once, when the onboard table is loaded: gain schedules, steps of pulses."""
 
 from functools import lru_cache
 from math import atan2, hypot, sqrt
-from typing import Any
+from typing import Any, NamedTuple
 
+from fsw.core.actuation.pulses import PulseConfig
 from fsw.core.algebra.vector import cross, dot, norm
+from fsw.core.laws.cost_to_go import rounded_problem, rounded_schedule
 from fsw.core.laws.lqr import LqrGains, schedule
-from fsw.core.laws.riccati import Schedule
+from fsw.core.laws.pulse_model import PulseModel, pulse_model
+from fsw.core.laws.riccati import Schedule, regulator_problem
 from fsw.core.orbit.earth import DIPOLE_TM3, MU_M3PS2
 from fsw.core.orbit.propagation import Orbit, state_eci
 from fsw.table.table import FlightTable
 
-SCHEDULED = ("lqr", "mpc")
+SCHEDULED = ("lqr", "mpc", "pulse_mpc")
 """The laws that need a schedule."""
 
 _schedule = lru_cache(maxsize=16)(schedule)
-"""Pure, and the same for both laws unless their weights differ."""
+"""Pure, and the same for several laws unless their weights differ."""
 
 
-def schedules(table: FlightTable, orbit: Orbit, gains: dict[str, Any]) -> dict[str, Schedule]:
-    """By law, the schedule for this body and the circle of this orbit's size and plane."""
-    state = state_eci(orbit, table.epoch_unix_s)
+class Circle(NamedTuple):
+    """The circle of an orbit's size and plane, and the field above the equator there."""
+
+    rate_radps: float
+    inclination_rad: float
+    field_t: float
+
+
+def circle(orbit: Orbit, unix_s: float) -> Circle | None:
+    """The circle; None where the orbit has no position."""
+    state = state_eci(orbit, unix_s)
     if state is None:
-        return {}
+        return None
     r, v = state
     semi_axis_m = 1.0 / (2.0 / norm(r) - dot(v, v) / MU_M3PS2)
     n1, n2, n3 = cross(r, v)
-    return {
+    rate_radps = sqrt(MU_M3PS2 / semi_axis_m**3)
+    return Circle(rate_radps, atan2(hypot(n1, n2), n3), DIPOLE_TM3 / semi_axis_m**3)
+
+
+def schedules(table: FlightTable, orbit: Orbit, gains: dict[str, Any]) -> dict[str, Schedule]:
+    """By law, the schedule for this body and the circle of its orbit."""
+    round_orbit = circle(orbit, table.epoch_unix_s)
+    if round_orbit is None:
+        return {}
+    found = {
         law: _schedule(
             table.body.inertia,
             table.body.wheel_nms,
-            sqrt(MU_M3PS2 / semi_axis_m**3),
-            atan2(hypot(n1, n2), n3),
-            DIPOLE_TM3 / semi_axis_m**3,
+            *round_orbit,
             LqrGains(gains[law].rate, gains[law].effort),
         )
         for law in SCHEDULED
     }
+    return found | {"pulse_mpc": rounded_schedule(found["pulse_mpc"])}
+
+
+def planned_pulses(
+    table: FlightTable, orbit: Orbit, gains: dict[str, Any], timing: PulseConfig
+) -> PulseModel | None:
+    """What pulsed coils can do at each opportunity; None with a continuous driver.
+
+    With a back-off by coil the three take turns.
+    """
+    round_orbit = circle(orbit, table.epoch_unix_s)
+    if round_orbit is None or table.coils.driver != "pulsed":
+        return None
+    rest = 1 if timing.shared else 3
+    step_ticks = -(-(timing.pulse_ticks + timing.backoff_ticks) // rest)
+    problem = regulator_problem(
+        table.body.inertia,
+        table.body.wheel_nms,
+        round_orbit.rate_radps,
+        round_orbit.field_t,
+        step_ticks * timing.tick_s,
+        gains["pulse_mpc"].rate,
+        gains["pulse_mpc"].effort,
+    )
+    return pulse_model(timing.levels_am2, timing.pulse_s, step_ticks, rest, rounded_problem(problem))

@@ -4,7 +4,7 @@ from math import inf, radians
 
 import numpy as np
 
-from fsw.core.actuation.pulses import AXES, Pulse, PulseConfig, impulse
+from fsw.core.actuation.pulses import PulseConfig, impulse
 from fsw.core.algebra.quaternion import conjugate, multiply, normalise, rotate
 from fsw.core.algebra.vector import ZERO, add, scale, sub, transform, unit
 from fsw.core.estimation import mekf
@@ -13,6 +13,7 @@ from fsw.core.estimation.parameters import Prior
 from fsw.core.fdir.coils.effects import solve, trace_pulse
 from fsw.core.fdir.coils.explanations import of_pulses
 from fsw.core.fdir.coils.weak_test import WeakTest
+from fsw.core.laws.pulse_model import AXES, Pulse
 
 INERTIA = ((1.02, 0.07, -0.05), (0.07, 1.85, 0.11), (-0.05, 0.11, 1.45))
 CONFIG = mekf_config(

@@ -1,16 +1,17 @@
 """From the demand of a law to a request to the coil driver, and the view of the driver's reports."""
 
+from math import ceil
 from typing import NamedTuple
 
 from fsw.core.actuation import dipoles, pulses
 from fsw.core.actuation.dipoles import DipoleConfig
-from fsw.core.actuation.pulses import AXES, Pulse, PulseConfig, PulseState
+from fsw.core.actuation.pulses import PulseConfig, PulseState
 from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale
 from fsw.core.gate.readings import Readings
 from fsw.core.laws.interface import Demand
+from fsw.core.laws.pulse_model import AXES, NEVER, NO_PULSE, Pulse
 from fsw.wire.messages import CoilDipole, CoilFire
 
-NO_PULSE = Pulse(0, 0)
 LOCKOUT_UNKNOWN = (-1, -1, -1)
 MOST_IDLE_TICKS = 10_000
 """So many are counted: longer than any sample is late."""
@@ -99,6 +100,29 @@ def _requested_level(view: CoilView, tick: int, config: PulseConfig) -> int:
     return view.fired.level if under_way else 0
 
 
+def wait_ticks(
+    state: PulseState,
+    view: CoilView,
+    readings: Readings,
+    tick: int,
+    config: PulseConfig,
+    faults: tuple[int, int, int],
+) -> tuple[int, int, int]:
+    """By coil, ticks until own timer and board let it fire, as far as is known; ``NEVER`` with a fault.
+
+    What the board has not reported may be reported in the next tick.
+    """
+    own = pulses.wait_ticks(state, tick, faults)
+    if 0 not in own:
+        return own
+    fresh, tick_ms = readings.coil is not None, 1000.0 * config.tick_s
+    a, b, c = (
+        wait if wait == NEVER or (fresh and lockout_ms == 0) else max(wait, 1, ceil(lockout_ms / tick_ms))
+        for wait, lockout_ms in zip(own, view.lockout_ms, strict=True)
+    )
+    return a, b, c
+
+
 def unexpected(view: CoilView, tick: int, config: PulseConfig) -> bool:
     """Whether the board drove something that was not requested."""
     if view.driven_level == 0:
@@ -161,18 +185,35 @@ def _pulse(
     faults: tuple[int, int, int],
 ) -> tuple[PulseState, CoilView, CoilFire | None]:
     """At most one pulse: only when the own timer and the board's last report of that coil agree."""
-    if demand.impulse_body_nms is None:
-        torque_body_nm = cross(demand.m_body_am2, b_body_t)
-        state = pulses.owe(state, torque_body_nm, b_body_t, config)
-        wanted, metric = pulses.due(state, torque_body_nm, b_body_t, config), config.rate_metric
-    else:
-        if state.owed_impulse_body_nms != ZERO:
-            state = state._replace(owed_impulse_body_nms=ZERO)
-        wanted, metric = demand.impulse_body_nms, config.energy_metric
-    pulse = pulses.choose(state, wanted, metric, tick, b_body_t, config, faults)
+    owing = demand.impulse_body_nms is None and demand.pulse is None
+    if owing:
+        state = pulses.owe(state, cross(demand.m_body_am2, b_body_t), b_body_t, config)
+    elif state.owed_impulse_body_nms != ZERO:
+        state = state._replace(owed_impulse_body_nms=ZERO)
+    pulse = _chosen(state, demand, b_body_t, tick, config, faults)
     if pulse is None or not status_fresh or view.lockout_ms[pulse.coil] != 0:
         return state, view, None
     request = CoilFire(pulse.level, pulse.coil, (view.seq + 1) & 0xFF, tick, config.duration_ms)
-    paid = ZERO if demand.impulse_body_nms is not None else pulses.impulse(pulse, b_body_t, config)
+    paid = pulses.impulse(pulse, b_body_t, config) if owing else ZERO
     view = view._replace(fired_tick=tick, fired=pulse, paid_body_nms=paid)
     return pulses.fire(state, pulse, paid, tick, config), view, request
+
+
+def _chosen(
+    state: PulseState,
+    demand: Demand,
+    b_body_t: Vec3,
+    tick: int,
+    config: PulseConfig,
+    faults: tuple[int, int, int],
+) -> Pulse | None:
+    """The pulse that the law asks for if its coil's own timer has run out, else the one that leaves least."""
+    if demand.pulse is not None:
+        may_fire = demand.pulse.level != 0 and pulses.wait_ticks(state, tick, faults)[demand.pulse.coil] == 0
+        return demand.pulse if may_fire else None
+    if demand.impulse_body_nms is not None:
+        wanted, metric = demand.impulse_body_nms, config.energy_metric
+    else:
+        torque_body_nm = cross(demand.m_body_am2, b_body_t)
+        wanted, metric = pulses.due(state, torque_body_nm, b_body_t, config), config.rate_metric
+    return pulses.choose(state, wanted, metric, tick, b_body_t, config, faults)

@@ -19,8 +19,7 @@ from math import copysign
 from typing import NamedTuple
 
 from fsw.core.algebra.vector import ZERO, Mat3, Vec3, add, cross, dot, norm, scale, sub, transform
-
-AXES: Mat3 = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+from fsw.core.laws.pulse_model import AXES, NEVER, Pulse
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,13 +58,6 @@ class PulseState(NamedTuple):
     def floats(self) -> tuple[float, ...]:
         """For the checksum of the state."""
         return (*self.owed_impulse_body_nms, *self.held_am2)
-
-
-class Pulse(NamedTuple):
-    """A pulse to fire: coil 0..2, level -3..3 without zero."""
-
-    coil: int
-    level: int
 
 
 def pulse_timing(tick_hz: int, pulse_ms: int, backoff_ms: int) -> tuple[int, int, int]:
@@ -123,6 +115,17 @@ def _within_a_pulse(impulse_body_nms: Vec3, b_body_t: Vec3, config: PulseConfig)
     """The impulse, shortened to the largest that one pulse can pay."""
     size, limit = norm(impulse_body_nms), config.pulse_s * config.levels_am2[2] * norm(b_body_t)
     return scale(limit / size, impulse_body_nms) if size > limit else impulse_body_nms
+
+
+def wait_ticks(
+    state: PulseState, tick: int, faults: tuple[int, int, int] = (0, 0, 0)
+) -> tuple[int, int, int]:
+    """By coil, ticks until its own timer lets it fire, 0 in answer to this tick; ``NEVER`` with a fault."""
+    a, b, c = (
+        NEVER if fault else max(ready - tick, state.busy_until - tick, 0)
+        for ready, fault in zip(state.ready_tick, faults, strict=True)
+    )
+    return a, b, c
 
 
 def choose(

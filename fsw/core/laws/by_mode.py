@@ -39,6 +39,6 @@ def _forms(setpoint: Setpoint, config: ControlConfig) -> LawEntry | OwnLaw:
 
 def _net(wanted: Demand, inputs: LawInput) -> Demand:
     """The dipole wanted, less the residual dipole, which turns the satellite as the coils do."""
-    if wanted.impulse_body_nms is not None or not inputs.attitude.valid:
+    if wanted.impulse_body_nms is not None or wanted.pulse is not None or not inputs.attitude.valid:
         return wanted
     return wanted._replace(m_body_am2=sub(wanted.m_body_am2, inputs.dipole_body_am2))

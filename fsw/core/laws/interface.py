@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 from fsw.core.algebra.vector import ZERO, Mat3, Vec3
 from fsw.core.estimation.attitude import Attitude
+from fsw.core.laws.pulse_model import NEVER, Pulse, PulseModel
 from fsw.core.laws.riccati import Schedule
 from fsw.core.orbit.ephemeris import EphemerisModel, Reference
 
@@ -30,7 +31,8 @@ class LawInput(NamedTuple):
     where no orbit is known; ``torque_body_nm`` is the estimated torque on
     the nominal attitude, that of an inertia off the table's included, and ``dipole_body_am2`` the estimated
     residual dipole, which is taken off a demanded dipole by ``by_mode``, not by the law; ``tick`` is this
-    tick; ``ephemeris`` gives orbit and field at later times.
+    tick; ``ephemeris`` gives orbit and field at later times; ``wait_ticks`` are the ticks until each coil may
+    be fired as far as is known, 0 for in answer to this one, ``NEVER`` for one with a fault.
     """
 
     attitude: Attitude
@@ -43,6 +45,7 @@ class LawInput(NamedTuple):
     dipole_body_am2: Vec3 = ZERO
     tick: int = 0
     ephemeris: EphemerisModel | None = None
+    wait_ticks: tuple[int, int, int] = (NEVER, NEVER, NEVER)
 
 
 MAX_SPIN_RADPS = 0.1
@@ -90,6 +93,7 @@ class ControlConfig:
         horizon_s: length of a pulse: how far a predictive law looks.
         mean_dipole_am2: dipole per axis that the coils can give in the mean.
         schedules: by law, the gains over an orbit of the periodic laws.
+        pulse_model: what pulsed coils can do, for a law that plans pulses; None with a continuous driver.
         own: a law beside those of the table.
     """
 
@@ -103,18 +107,21 @@ class ControlConfig:
     horizon_s: float
     mean_dipole_am2: float
     schedules: dict[str, Schedule] = field(default_factory=dict)
+    pulse_model: PulseModel | None = None
     own: OwnLaw | None = None
 
 
 class Demand(NamedTuple):
-    """The demand of a law: a mean dipole, or an angular impulse to be given at the next opportunity.
+    """The demand of a law: a mean dipole, an angular impulse to be given at the next opportunity, or a pulse.
 
-    An impulse law leaves the dipole to the actuator, which chooses the one with the least energy left.
+    An impulse law leaves the dipole to the actuator, which chooses the one with the least energy left. A law
+    of pulses says in each tick which one is to be fired in answer to it; ``NO_PULSE``: none.
     """
 
     m_body_am2: Vec3 = ZERO
     impulse_body_nms: Vec3 | None = None
     memory: Memory = ()
+    pulse: Pulse | None = None
 
 
 Law = Callable[[LawInput, Memory, Setpoint, ControlConfig], Demand]

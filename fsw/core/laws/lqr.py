@@ -110,13 +110,18 @@ def dipole(gain: Sequence[float], attitude: Attitude, torque_body_nm: Vec3) -> V
         attitude: theta is 2 qv of its quaternion.
         torque_body_nm: d, body axes.
     """
-    c = dcm(attitude.q_body_from_orbit)
-    back = transpose(c)
-    omega = transform(back, attitude.omega_body_orbit_radps)
-    state = (*omega, *rotation(attitude.q_body_from_orbit), *transform(back, torque_body_nm))
+    state = orbital_state(attitude, torque_body_nm)
     return transform(
-        c, (_product(gain[0:9], state), _product(gain[9:18], state), _product(gain[18:27], state))
+        dcm(attitude.q_body_from_orbit),
+        (_product(gain[0:9], state), _product(gain[9:18], state), _product(gain[18:27], state)),
     )
+
+
+def orbital_state(attitude: Attitude, torque_body_nm: Vec3) -> tuple[float, ...]:
+    """(Omega, theta, d), orbital axes: nine numbers."""
+    back = transpose(dcm(attitude.q_body_from_orbit))
+    omega = transform(back, attitude.omega_body_orbit_radps)
+    return (*omega, *rotation(attitude.q_body_from_orbit), *transform(back, torque_body_nm))
 
 
 def _product(row: Sequence[float], state: tuple[float, ...]) -> float:

@@ -65,7 +65,8 @@ def field_ahead(model: EphemerisModel, unix_s: float, step_s: float, steps: int)
     e1 = r / np.linalg.norm(r, axis=-1, keepdims=True)
     e3 = normal / np.linalg.norm(normal, axis=-1, keepdims=True)
     axes = np.stack([e1, np.cross(e3, e1), e3], axis=1)
-    return np.asarray(np.einsum("kij,kj->ki", axes, b), dtype=np.float64)
+    turned: Array = np.add.reduce(axes * b[:, None, :], axis=-1)
+    return turned
 
 
 def plan(table: Schedule, b_orbit_t: Array, end_node: int) -> Array:

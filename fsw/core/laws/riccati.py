@@ -103,8 +103,8 @@ def free_step(inertia_kgm2: Mat3, wheel_body_nms: Vec3, orbit_rate_radps: float,
     """(F G), 6 x 9: the state after a step of the state and of a constant torque before."""
     j, w0 = np.array(inertia_kgm2), orbit_rate_radps
     e1, e3 = np.array(skew(E1)), np.array(skew(E3))
-    gyroscopic = w0 * (_skews(j[:, 2]) - e3 @ j) + np.array(skew(wheel_body_nms))
-    gravity = 3.0 * w0**2 * (e1 @ j - _skews(j[:, 0])) @ e1
+    gyroscopic = w0 * (skews(j[:, 2]) - e3 @ j) + np.array(skew(wheel_body_nms))
+    gravity = 3.0 * w0**2 * (e1 @ j - skews(j[:, 0])) @ e1
     change = np.zeros((9, 9))
     change[:3] = np.linalg.solve(j, np.hstack([gyroscopic, w0 * gyroscopic @ e3 + gravity, np.eye(3)]))
     change[:3, :3] -= w0 * e3
@@ -213,10 +213,10 @@ def _joined(first: tuple[Array, ...], second: tuple[Array, ...]) -> tuple[Array,
 
 def _pushes(problem: Problem, b_orbit_t: Array) -> Array:
     """-G [b x] of each step, (n, 6, 3): what a dipole adds to the state."""
-    pushes: Array = -problem.free[:, 6:] @ _skews(b_orbit_t)
+    pushes: Array = -problem.free[:, 6:] @ skews(b_orbit_t)
     return pushes
 
 
-def _skews(v: Array) -> Array:
+def skews(v: Array) -> Array:
     """[v x], shape (..., 3, 3) for v of shape (..., 3)."""
     return np.cross(np.eye(3), v[..., None, :]).swapaxes(-1, -2) * -1.0

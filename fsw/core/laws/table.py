@@ -1,8 +1,8 @@
 """The control laws by name, each far from the goal and near it.
 
-Of the estimated disturbances ``predictive`` uses torque and dipole, ``lqr`` and ``mpc`` the torque. From the
-dipole that any law demands ``by_mode`` takes the residual one off. The other laws have no use for the torque:
-coils can oppose only its part normal to the field, which gains little at once; ``pd`` and
+Of the estimated disturbances ``predictive`` and ``pulse_mpc`` use torque and dipole, ``lqr`` and ``mpc`` the
+torque. From the dipole that any law demands ``by_mode`` takes the residual one off. The other laws have no
+use for the torque: coils can oppose only its part normal to the field, which gains little at once; ``pd`` and
 ``sliding_integral`` answer its mean by their integral.
 """
 
@@ -31,6 +31,7 @@ from fsw.core.laws.projection import (
     weighted,
     weighted_far,
 )
+from fsw.core.laws.pulse_mpc import PulseMpcGains, pulse_mpc
 from fsw.core.laws.sliding import SlidingGains, SlidingIntegralGains, sliding, sliding_integral
 from fsw.core.laws.spin import SpinGains, nutation, spin_up, y_thomson
 from fsw.core.laws.spin_axis import SpinAxisGains, ThreeTermGains, reorientation, spin_relay, three_term
@@ -86,6 +87,7 @@ LAWS: dict[str, LawEntry] = {
     "sun_pointing": LawEntry(30, Aim.SUN, sun_pointing, sun_pointing),
     "lqr": LawEntry(40, Aim.THREE_AXIS, without_memory, lqr, LqrGains),
     "mpc": LawEntry(41, Aim.THREE_AXIS, without_memory, mpc, MpcGains),
+    "pulse_mpc": LawEntry(42, Aim.THREE_AXIS, without_memory, pulse_mpc, PulseMpcGains),
     "pd_weighted": LawEntry(50, Aim.THREE_AXIS, weighted_far, weighted, WeightGains),
     "pd_regularised": LawEntry(51, Aim.THREE_AXIS, regularised_far, regularised, RegularGains),
     "output_feedback": LawEntry(52, Aim.THREE_AXIS, output_feedback, output_feedback, FilterGains),

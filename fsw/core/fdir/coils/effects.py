@@ -24,7 +24,7 @@ from math import hypot
 
 import numpy as np
 
-from fsw.core.actuation.pulses import Pulse, PulseConfig, impulse
+from fsw.core.actuation.pulses import PulseConfig, impulse
 from fsw.core.algebra.quaternion import rotate
 from fsw.core.algebra.vector import Vec3, norm, scale, transform
 from fsw.core.estimation import mekf
@@ -34,6 +34,7 @@ from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.fdir.coils.explanations import PULSES, STRAY, Solution, explained, indices_of
 from fsw.core.fdir.coils.weak_test import MODEL_ERROR
 from fsw.core.fdir.evidence import SIGMAS
+from fsw.core.laws.pulse_model import Pulse
 
 UNEXPLAINED = 1.25
 """Squares of the innovations that may be left for each scalar measured; beyond, no coil is judged."""

@@ -4,11 +4,12 @@ from dataclasses import dataclass
 from typing import NamedTuple, TypeVar
 
 from fsw.core.actuation.actuator import CoilView
-from fsw.core.actuation.pulses import AXES, PulseConfig
+from fsw.core.actuation.pulses import PulseConfig
 from fsw.core.algebra.vector import ZERO, Vec3, scale
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.fdir.coils.weak_test import NOTHING_OLDER, Older, WeakTest
 from fsw.core.fdir.faults import CoilFault
+from fsw.core.laws.pulse_model import AXES
 
 
 @dataclass(frozen=True, slots=True)

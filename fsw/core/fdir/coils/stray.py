@@ -8,7 +8,6 @@ the filter takes into account at once, long before the coil is certain; traced i
 
 import numpy as np
 
-from fsw.core.actuation.pulses import AXES
 from fsw.core.algebra.quaternion import rotate
 from fsw.core.algebra.vector import Mat3, Vec3, cross, scale, transform
 from fsw.core.estimation import mekf
@@ -19,6 +18,7 @@ from fsw.core.fdir.coils import effects
 from fsw.core.fdir.coils.explanations import STRAY, Solution
 from fsw.core.fdir.coils.weak_test import MODEL_ERROR
 from fsw.core.fdir.evidence import SIGMAS
+from fsw.core.laws.pulse_model import AXES
 
 CAUSES = (STRAY, STRAY + 1, STRAY + 2)
 

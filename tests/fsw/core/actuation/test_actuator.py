@@ -10,9 +10,10 @@ from hypothesis import strategies as st
 
 from fsw.core.actuation import pulses
 from fsw.core.actuation.actuator import ActuatorConfig, CoilView, actuate, update_view
-from fsw.core.actuation.pulses import Pulse, PulseConfig
+from fsw.core.actuation.pulses import PulseConfig
 from fsw.core.gate.readings import NOTHING
 from fsw.core.laws.interface import Demand
+from fsw.core.laws.pulse_model import Pulse
 from fsw.wire.messages import CoilBoot, CoilFire, CoilRefused, CoilRefusedReason, CoilStatus
 
 IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))

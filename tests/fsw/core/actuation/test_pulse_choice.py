@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from fsw.core.actuation import pulses
-from fsw.core.actuation.pulses import Pulse, PulseConfig
+from fsw.core.actuation.pulses import PulseConfig
+from fsw.core.laws.pulse_model import Pulse
 
 IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 TICK = 10_000

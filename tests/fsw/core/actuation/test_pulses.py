@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fsw.core.actuation import pulses
-from fsw.core.actuation.pulses import Pulse, PulseConfig
+from fsw.core.actuation.pulses import PulseConfig
+from fsw.core.laws.pulse_model import Pulse
 
 RATES = (1, 2, 3, 7, 10, 50)
 SHARED_OR_NOT = pytest.mark.parametrize("shared", [True, False], ids=["shared", "per_coil"])

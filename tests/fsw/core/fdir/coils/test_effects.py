@@ -18,11 +18,11 @@ from pulse_samples import (
     traced,
 )
 
-from fsw.core.actuation.pulses import Pulse
 from fsw.core.algebra.quaternion import conjugate, rotate
 from fsw.core.algebra.vector import ZERO, scale
 from fsw.core.estimation import mekf
 from fsw.core.fdir.coils.explanations import PULSES
+from fsw.core.laws.pulse_model import Pulse
 
 
 def test_the_carried_effect_is_what_a_second_filter_shows_that_knew_of_it():

@@ -1,0 +1,116 @@
+"""Optimal pulses: at each opportunity the first pulse of the best sequence of the opportunities to come.
+
+Unlike ``mpc``, whose mean dipole the actuator then turns into pulses, this law plans with the pulses that
+the coils can give: their levels, one coil at a time, and their back-off. Torque and residual dipole are those
+that the filter estimates. After the opportunities searched, what remains is worth what a dipole with no limit
+would leave along the field to come. A sequence is flown for one pulse, and then made anew.
+
+Source: as of ``pulse_plan``.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fsw.core.algebra.quaternion import dcm
+from fsw.core.algebra.vector import Vec3, cross, transform, transpose
+from fsw.core.laws.cost_to_go import cost_to_go
+from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
+from fsw.core.laws.lqr import STEPS, check_weights, expected_torque, latitude_argument, node, orbital_state
+from fsw.core.laws.mpc import field_ahead
+from fsw.core.laws.pulse_model import NEVER, NO_PULSE, Pulse, PulseModel, kicks
+from fsw.core.laws.pulse_plan import BARRED, Opportunity, first_pulse
+from fsw.core.laws.riccati import Schedule
+from fsw.core.orbit.ephemeris import EphemerisModel, Reference
+
+SEARCHED = 6
+"""Opportunities that are searched, where one coil's pulse bars all; as long in time where it does not."""
+RETRY = 8
+"""Part of the time between opportunities after which it is asked again whether a pulse helps."""
+
+
+@dataclass(frozen=True, slots=True)
+class PulseMpcGains:
+    """Weights as for ``lqr``, and how far the field is looked at beyond the pulses searched, in orbits.
+
+    The effort is that of a dipole without limits, which stands for the pulses after those searched.
+    """
+
+    rate: float = 0.0
+    effort: float = 0.001
+    horizon_orbits: float = 0.25
+
+    def __post_init__(self) -> None:
+        """Check what the equations need, and that a plan is soon made.
+
+        Raises:
+            ValueError: a weight or the horizon out of range.
+        """
+        check_weights(self.rate, self.effort)
+        if not 0.05 <= self.horizon_orbits <= 1.0:
+            raise ValueError(
+                f"control.gains.pulse_mpc.horizon_orbits must be 0.05 to 1, not {self.horizon_orbits:g}"
+            )
+
+
+def pulse_mpc(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """The pulse to fire in answer to this tick; memory is the tick until which none is asked for."""
+    pulses, schedule = config.pulse_model, config.schedules.get("pulse_mpc")
+    known = inputs.attitude.valid and inputs.reference is not None and inputs.ephemeris is not None
+    if not known or pulses is None or schedule is None or 0 not in inputs.wait_ticks:
+        return Demand(memory=memory, pulse=NO_PULSE)
+    if len(memory) == 1 and 0.0 < memory[0] - inputs.tick <= pulses.step_ticks:
+        return Demand(memory=memory, pulse=NO_PULSE)
+    pulse = _planned(inputs, pulses, schedule, config)
+    pause = pulses.step_ticks if pulse.level else -(-pulses.step_ticks // RETRY)
+    return Demand(memory=(float(inputs.tick + pause),), pulse=pulse)
+
+
+def _planned(inputs: LawInput, pulses: PulseModel, schedule: Schedule, config: ControlConfig) -> Pulse:
+    """The first pulse of the best sequence; none where the orbit has no position."""
+    reference, model = inputs.reference, inputs.ephemeris
+    if reference is None or model is None:
+        return NO_PULSE
+    ahead = _ahead(inputs, reference, model, pulses, schedule, config)
+    state = orbital_state(inputs.attitude, expected_torque(inputs, schedule))
+    a, b, c = (BARRED if ticks == NEVER else -(-ticks // pulses.step_ticks) for ticks in inputs.wait_ticks)
+    return first_pulse(state, ahead, pulses, (a, b, c))
+
+
+def _ahead(
+    inputs: LawInput,
+    reference: Reference,
+    model: EphemerisModel,
+    pulses: PulseModel,
+    schedule: Schedule,
+    config: ControlConfig,
+) -> list[Opportunity]:
+    """The opportunities searched; none where the orbit has no position.
+
+    The field of each is that in the middle of its pulse. At the first the attitude is the estimated one, at
+    the others nearly the nominal one.
+    """
+    problem, count = pulses.problem, SEARCHED * pulses.rest
+    now_s = model.epoch_unix_s + inputs.tick * config.tick_s
+    end_s = now_s + count * problem.step_s
+    b_orbit_t = field_ahead(model, now_s + 0.5 * (config.horizon_s - problem.step_s), problem.step_s, count)
+    later_t = field_ahead(model, end_s, schedule.problem.step_s, _later_steps(config))
+    if b_orbit_t is None or later_t is None:
+        return []
+    u_rad = latitude_argument(reference) + reference.orbit_rate_radps * (count * problem.step_s)
+    last = schedule.costs[(node(u_rad) + len(later_t)) % STEPS]
+    last = cost_to_go(schedule.problem, later_t, last)[0] * (schedule.problem.step_s / problem.step_s)
+    costs = [*cost_to_go(problem, b_orbit_t, last)[1:], last]
+    fields: list[Vec3] = [(b1, b2, b3) for b1, b2, b3 in b_orbit_t.tolist()]
+    turned = [kicks(pulses, b_t, config.inertia_inverse) for b_t in fields]
+    back = transpose(dcm(inputs.attitude.q_body_from_orbit))
+    turned[0] = [transform(back, kick) for kick in kicks(pulses, inputs.b_body_t, config.inertia_inverse)]
+    return [
+        Opportunity(np.array(kick), cross(inputs.dipole_body_am2, b_t), cost)
+        for kick, b_t, cost in zip(turned, fields, costs, strict=True)
+    ]
+
+
+def _later_steps(config: ControlConfig) -> int:
+    horizon_orbits: float = config.gains["pulse_mpc"].horizon_orbits
+    return round(horizon_orbits * STEPS)
