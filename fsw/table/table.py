@@ -38,7 +38,7 @@ from fsw.table.sections import (
     TimeTable,
     parse_utc,
 )
-from fsw.table.uncertainty import LARGEST_FIELD_T, Ceiling, UncertaintyTable, check_bounds
+from fsw.table.uncertainty import LARGEST_FIELD_T, Ceiling, UncertaintyTable, bounds, check_bounds
 
 
 class FlightTable(Section):
@@ -66,6 +66,10 @@ class FlightTable(Section):
             "residual_dipole_am2": Ceiling(coils.largest_am2, "the largest dipole of a coil"),
             "torque_nm": Ceiling(
                 torque_nm, "what a coil gives in the mean, pulse and back-off, in a strong field"
+            ),
+            "torque_variation_nm": Ceiling(
+                2.0 * bounds(self.uncertainty, self.body.inertia, 1.0).torque_nm,
+                "from one bound of the torque, uncertainty.torque_nm, to the other",
             ),
             "coil_gain_percent": Ceiling(gain, "so that no sound coil is below fdir.weak_coil_part"),
         }

@@ -37,6 +37,7 @@ class UncertaintyTable(Section):
     magnetometer_misalignment_deg: float | None = Field(default=None, ge=0.0, le=10.0)
     sun_misalignment_deg: float | None = Field(default=None, ge=0.0, le=10.0)
     torque_nm: float | None = Field(default=None, ge=0.0, allow_inf_nan=False)
+    torque_variation_nm: float | None = Field(default=None, ge=0.0, allow_inf_nan=False)
     along_track_km: float | None = Field(default=None, ge=0.0, le=20.0)
     latency_s: float | None = Field(default=None, ge=0.0, le=3.0)
 
@@ -84,6 +85,7 @@ class Uncertainty:
     mag_turn_rad: float
     sun_turn_rad: float
     torque_nm: float
+    torque_variation_nm: float
     along_track_m: float
     latency_s: float
 
@@ -99,6 +101,7 @@ def bounds(table: UncertaintyTable, inertia_kgm2: Mat3, tick_s: float) -> Uncert
     moment of inertia to the power of 3/5.
     """
     volume = (mean_moment(inertia_kgm2) / REFERENCE_KGM2) ** 0.6
+    torque_nm = _or(table.torque_nm, 3e-8 * volume)
     return Uncertainty(
         inertia_part=0.01 * _or(table.inertia_percent, 10.0),
         products_part=0.01 * _or(table.products_percent, 2.0),
@@ -109,7 +112,8 @@ def bounds(table: UncertaintyTable, inertia_kgm2: Mat3, tick_s: float) -> Uncert
         mag_scale_part=0.01 * _or(table.magnetometer_scale_percent, 0.5),
         mag_turn_rad=radians(_or(table.magnetometer_misalignment_deg, 1.0)),
         sun_turn_rad=radians(_or(table.sun_misalignment_deg, 0.5)),
-        torque_nm=_or(table.torque_nm, 3e-8 * volume),
+        torque_nm=torque_nm,
+        torque_variation_nm=_or(table.torque_variation_nm, 0.2 * torque_nm),
         along_track_m=1000.0 * _or(table.along_track_km, 5.0),
         latency_s=_or(table.latency_s, tick_s),
     )
@@ -141,7 +145,7 @@ class Shape(NamedTuple):
 
 SHAPES = {
     "mag_bias_t": Shape(SIDE, walk=0.1 / sqrt(DAY_S)),
-    "torque_body_nm": Shape(SIDE, walk=0.2 / sqrt(DAY_S)),
+    "torque_body_nm": Shape(SIDE),
     "dipole_body_am2": Shape(SIDE, walk=0.1 / sqrt(DAY_S)),
     "coil_error": Shape(SIDE, walk=0.01),
     "inertia_error_kgm2": Shape(SIDE),
@@ -150,17 +154,21 @@ SHAPES = {
     "sun_turn_rad": Shape(BALL),
     "delay_s": Shape(0.5 * SIDE, mean=0.5),
 }
-"""A parameter may wander by a tenth of its limit in a day, the disturbance torque by a fifth, and the coils
-by a hundredth in a second, so that what a coil loses in flight is found."""
+"""A parameter may wander by a tenth of its limit in a day, the disturbance torque by its own bound, and the
+coils by a hundredth in a second, so that what a coil loses in flight is found."""
 
 
 def priors(known: Uncertainty, inertia_kgm2: Mat3) -> dict[str, Prior]:
     """The prior of each parameter of the filter whose bound is not zero."""
-    return {
+    found = {
         name: Prior(*(tuple(part * limit for limit in largest) for part in SHAPES[name]))
         for name, largest in limits(known, inertia_kgm2).items()
         if any(largest)
     }
+    if "torque_body_nm" in found:
+        walk = (known.torque_variation_nm / sqrt(DAY_S),) * 3
+        found["torque_body_nm"] = found["torque_body_nm"]._replace(walk=walk)
+    return found
 
 
 def limits(known: Uncertainty, inertia_kgm2: Mat3) -> dict[str, tuple[float, ...]]:

@@ -73,6 +73,7 @@ class Tolerances:
         values = {key: value for key, value in asdict(self).items() if key not in NOT_DECLARED}
         values["residual_dipole_am2"] = self.residual_dipole_am2[1]
         values["torque_nm"] = values.pop("declared_torque_nm")
+        values["torque_variation_nm"] = 0.2 * values["torque_nm"]
         return values
 
 

@@ -110,17 +110,21 @@ def wait_ticks(
 ) -> tuple[int, int, int]:
     """By coil, ticks until own timer and board let it fire, as far as is known; ``NEVER`` with a fault.
 
-    What the board has not reported may be reported in the next tick.
+    A board that has not reported a coil since its boot holds it for a back-off.
     """
     own = pulses.wait_ticks(state, tick, faults)
     if 0 not in own:
         return own
-    fresh, tick_ms = readings.coil is not None, 1000.0 * config.tick_s
+    soonest = 0 if readings.coil is not None else 1
     a, b, c = (
-        wait if wait == NEVER or (fresh and lockout_ms == 0) else max(wait, 1, ceil(lockout_ms / tick_ms))
+        wait if wait == NEVER else max(wait, soonest, _lockout_ticks(lockout_ms, config))
         for wait, lockout_ms in zip(own, view.lockout_ms, strict=True)
     )
     return a, b, c
+
+
+def _lockout_ticks(lockout_ms: int, config: PulseConfig) -> int:
+    return config.backoff_ticks if lockout_ms < 0 else ceil(lockout_ms / (1000.0 * config.tick_s))
 
 
 def unexpected(view: CoilView, tick: int, config: PulseConfig) -> bool:

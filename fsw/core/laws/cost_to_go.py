@@ -37,19 +37,20 @@ def rounded_schedule(schedule: Schedule) -> Schedule:
     return replace(schedule, problem=problem, costs=rounded(schedule.costs))
 
 
-def cost_to_go(problem: Problem, b_orbit_t: Array, last: Array) -> list[Array]:
-    """(P S) at the beginning of each step, from the first to the last.
+def cost_to_go(problem: Problem, b_orbit_t: Array, drifts: Array, last: Array) -> list[Array]:
+    """(P S s) at the beginning of each step, in their order; the cost is x^T P x + 2 x^T (S d + s) + ...
 
     Args:
         problem: the problem.
         b_orbit_t: field of each step, orbital axes, T, shape (n, 3).
-        last: (P S) at the end of the last step, shape (6, 9).
+        drifts: what else is known to be added to the state in each step, shape (n, 6); s is due to it.
+        last: (P S s) at the end of the last step, shape (6, 10).
     """
     costs: list[Array] = []
     back, ahead = problem.free[:, :6].T, last
-    for across in skews(b_orbit_t)[::-1]:
+    for across, drift in zip(skews(b_orbit_t)[::-1], drifts[::-1], strict=True):
         push = -times(problem.free[:, 6:], across)
-        reached = times(ahead[:, :6], problem.free)
+        reached = times(ahead[:, :6], np.hstack([problem.free, drift[:, None]]))
         reached[:, 6:] += ahead[:, 6:]
         pushed = times(ahead[:, :6], push)
         gain = times(_answer(times(push.T, pushed), problem.effort), times(push.T, reached))

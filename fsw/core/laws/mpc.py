@@ -13,6 +13,7 @@ Source: Ovchinnikov, Roldugin 2019, section 3.3 (after Silani, Lovera 2005); equ
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -50,11 +51,19 @@ class MpcGains:
             )
 
 
-def field_ahead(model: EphemerisModel, unix_s: float, step_s: float, steps: int) -> Array | None:
-    """The field in the middle of each coming step, orbital axes then, T, shape (steps, 3).
+class OrbitAhead(NamedTuple):
+    """The field in the middle of each coming step, orbital axes then, T, and the change of the orbit's rate.
 
-    None where the orbit has no position.
+    ``b_orbit_t`` has shape (steps, 3), ``rate_change_radps2`` (steps,): how fast the orbital frame turns ever
+    faster about its axis 3, which is zero on a circle.
     """
+
+    b_orbit_t: Array
+    rate_change_radps2: Array
+
+
+def orbit_ahead(model: EphemerisModel, unix_s: float, step_s: float, steps: int) -> OrbitAhead | None:
+    """The coming orbit; None where it has no position."""
     times = [unix_s + (k + 0.5) * step_s for k in range(steps)]
     states = [state for state in (state_eci(model.orbit, t) for t in times) if state is not None]
     if len(states) < steps:
@@ -62,11 +71,12 @@ def field_ahead(model: EphemerisModel, unix_s: float, step_s: float, steps: int)
     r, v = (np.array(part) for part in zip(*states, strict=True))
     b = np.array([field_eci_t(model.field, r_m, t) for (r_m, _), t in zip(states, times, strict=True)])
     normal = np.cross(r, v)
-    e1 = r / np.linalg.norm(r, axis=-1, keepdims=True)
-    e3 = normal / np.linalg.norm(normal, axis=-1, keepdims=True)
+    radius, momentum = (np.sqrt(np.add.reduce(vector * vector, axis=-1))[:, None] for vector in (r, normal))
+    e1, e3 = r / radius, normal / momentum
     axes = np.stack([e1, np.cross(e3, e1), e3], axis=1)
-    turned: Array = np.add.reduce(axes * b[:, None, :], axis=-1)
-    return turned
+    climb = np.add.reduce(r * v, axis=-1)
+    rate_change = -2.0 * (momentum / radius**4)[:, 0] * climb
+    return OrbitAhead(np.add.reduce(axes * b[:, None, :], axis=-1), rate_change)
 
 
 def plan(table: Schedule, b_orbit_t: Array, end_node: int) -> Array:
@@ -91,11 +101,11 @@ def mpc(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlCon
         steps = round(config.gains["mpc"].horizon_orbits * STEPS)
         model, step_s = inputs.ephemeris, table.problem.step_s
         unix_s = model.epoch_unix_s + inputs.tick * config.tick_s
-        b_orbit_t = field_ahead(model, unix_s, step_s, steps)
-        if b_orbit_t is None:
+        ahead = orbit_ahead(model, unix_s, step_s, steps)
+        if ahead is None:
             return Demand()
         end = node(latitude_argument(inputs.reference)) + steps
-        gains = plan(table, b_orbit_t, end % STEPS)
+        gains = plan(table, ahead.b_orbit_t, end % STEPS)
         memory, step = (float(inputs.tick), *gains.ravel().tolist()), 0
     first = 1 + step * _NUMBERS
     wanted = dipole(memory[first : first + _NUMBERS], inputs.attitude, expected_torque(inputs, table))

@@ -13,18 +13,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from fsw.core.algebra.quaternion import dcm
-from fsw.core.algebra.vector import Vec3, cross, transform, transpose
-from fsw.core.laws.cost_to_go import cost_to_go
+from fsw.core.algebra.vector import Vec3, transform, transpose
+from fsw.core.laws.cost_to_go import cost_to_go, times
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 from fsw.core.laws.lqr import STEPS, check_weights, expected_torque, latitude_argument, node, orbital_state
-from fsw.core.laws.mpc import field_ahead
+from fsw.core.laws.mpc import OrbitAhead, orbit_ahead
 from fsw.core.laws.pulse_model import NEVER, NO_PULSE, Pulse, PulseModel, kicks
 from fsw.core.laws.pulse_plan import BARRED, Opportunity, first_pulse
-from fsw.core.laws.riccati import Schedule
+from fsw.core.laws.riccati import Array, Problem, Schedule
 from fsw.core.orbit.ephemeris import EphemerisModel, Reference
 
 SEARCHED = 6
 """Opportunities that are searched, where one coil's pulse bars all; as long in time where it does not."""
+REPORTED_TICKS = 3
+"""The board reports the lockout of one coil a tick: a coil that is ready is soon known to be."""
 RETRY = 8
 """Part of the time between opportunities after which it is asked again whether a pulse helps."""
 
@@ -54,13 +56,15 @@ class PulseMpcGains:
 
 
 def pulse_mpc(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The pulse to fire in answer to this tick; memory is the tick until which none is asked for."""
+    """The pulse to fire in answer to this tick; memory is the tick from which on one may be asked for."""
     pulses, schedule = config.pulse_model, config.schedules.get("pulse_mpc")
     known = inputs.attitude.valid and inputs.reference is not None and inputs.ephemeris is not None
     if not known or pulses is None or schedule is None or 0 not in inputs.wait_ticks:
         return Demand(memory=memory, pulse=NO_PULSE)
-    if len(memory) == 1 and 0.0 < memory[0] - inputs.tick <= pulses.step_ticks:
-        return Demand(memory=memory, pulse=NO_PULSE)
+    begin = memory[0] if len(memory) == 1 and memory[0] - inputs.tick <= pulses.step_ticks else inputs.tick
+    late = inputs.tick - begin
+    if late < 0 or (late < REPORTED_TICKS and any(0 < wait <= REPORTED_TICKS for wait in inputs.wait_ticks)):
+        return Demand(memory=(float(begin),), pulse=NO_PULSE)
     pulse = _planned(inputs, pulses, schedule, config)
     pause = pulses.step_ticks if pulse.level else -(-pulses.step_ticks // RETRY)
     return Demand(memory=(float(inputs.tick + pause),), pulse=pulse)
@@ -92,23 +96,37 @@ def _ahead(
     """
     problem, count = pulses.problem, SEARCHED * pulses.rest
     now_s = model.epoch_unix_s + inputs.tick * config.tick_s
-    end_s = now_s + count * problem.step_s
-    b_orbit_t = field_ahead(model, now_s + 0.5 * (config.horizon_s - problem.step_s), problem.step_s, count)
-    later_t = field_ahead(model, end_s, schedule.problem.step_s, _later_steps(config))
-    if b_orbit_t is None or later_t is None:
+    span_s = count * problem.step_s
+    at_pulses = orbit_ahead(model, now_s + 0.5 * (config.horizon_s - problem.step_s), problem.step_s, count)
+    later = orbit_ahead(model, now_s + span_s, schedule.problem.step_s, _later_steps(config))
+    if at_pulses is None or later is None:
         return []
-    u_rad = latitude_argument(reference) + reference.orbit_rate_radps * (count * problem.step_s)
-    last = schedule.costs[(node(u_rad) + len(later_t)) % STEPS]
-    last = cost_to_go(schedule.problem, later_t, last)[0] * (schedule.problem.step_s / problem.step_s)
-    costs = [*cost_to_go(problem, b_orbit_t, last)[1:], last]
-    fields: list[Vec3] = [(b1, b2, b3) for b1, b2, b3 in b_orbit_t.tolist()]
+    between = at_pulses._replace(
+        b_orbit_t=0.5 * (at_pulses.b_orbit_t + np.concatenate([at_pulses.b_orbit_t[1:], later.b_orbit_t[:1]]))
+    )
+    u_rad = latitude_argument(reference) + reference.orbit_rate_radps * span_s
+    end = np.hstack([schedule.costs[(node(u_rad) + len(later.b_orbit_t)) % STEPS], np.zeros((6, 1))])
+    after = _costs(schedule.problem, later, inputs.dipole_body_am2, end)[1][0]
+    drifts, costs = _costs(
+        problem, between, inputs.dipole_body_am2, after * (schedule.problem.step_s / problem.step_s)
+    )
+    fields: list[Vec3] = [(b1, b2, b3) for b1, b2, b3 in at_pulses.b_orbit_t.tolist()]
     turned = [kicks(pulses, b_t, config.inertia_inverse) for b_t in fields]
     back = transpose(dcm(inputs.attitude.q_body_from_orbit))
     turned[0] = [transform(back, kick) for kick in kicks(pulses, inputs.b_body_t, config.inertia_inverse)]
     return [
-        Opportunity(np.array(kick), cross(inputs.dipole_body_am2, b_t), cost)
-        for kick, b_t, cost in zip(turned, fields, costs, strict=True)
+        Opportunity(np.array(kick), drift, cost)
+        for kick, drift, cost in zip(turned, drifts, costs[1:], strict=True)
     ]
+
+
+def _costs(problem: Problem, ahead: OrbitAhead, dipole_am2: Vec3, last: Array) -> tuple[Array, list[Array]]:
+    """The known drift of each step, and (P S s) from the beginning of the first to the end of the last."""
+    h, torque_nm = problem.step_s, np.cross(np.array(dipole_am2), ahead.b_orbit_t)
+    drifts = times(torque_nm, problem.free[:, 6:].T)
+    drifts[:, 2] -= h * ahead.rate_change_radps2
+    drifts[:, 5] -= 0.5 * h * h * ahead.rate_change_radps2
+    return drifts, [*cost_to_go(problem, ahead.b_orbit_t, drifts, last), last]
 
 
 def _later_steps(config: ControlConfig) -> int:

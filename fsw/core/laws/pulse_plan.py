@@ -3,10 +3,11 @@
 At an opportunity a coil may give one of three levels of either sign, or none does: 19 choices. A pulse turns
 the rate at once, and the body then moves freely until the next opportunity, as in ``riccati``:
 
-    x+ = F (x + (J^-1 (T_p m x b), 0)) + G (d + m_r x b)
+    x+ = F (x + (J^-1 (T_p m x b), 0)) + G (d + m_r x b) - (w0' h, w0' h^2 / 2) e3
 
-d the constant torque, m_r the residual dipole. Sought is the sequence with the least sum of |theta|^2 and,
-after its end, of what a dipole without limits would leave, x^T P x + 2 x^T S d; by a beam: only those
+d the constant torque, m_r the residual dipole, w0' how the rate of an orbit that is no circle changes, h the
+time between opportunities. Sought is the sequence with the least sum of |theta|^2 and,
+after its end, of what a dipole without limits would leave, x^T P x + 2 x^T (S d + s); by a beam: only those
 sequences go on from an opportunity whose cost so far and to go is least. No sum and no choice depends on how
 a processor orders its work.
 
@@ -20,7 +21,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from fsw.core.algebra.vector import Vec3
 from fsw.core.laws.cost_to_go import times
 from fsw.core.laws.pulse_model import NO_PULSE, Pulse, PulseModel
 from fsw.core.laws.riccati import Array
@@ -36,12 +36,12 @@ Numbers = NDArray[np.int64]
 class Opportunity(NamedTuple):
     """What is known of one, in orbital axes.
 
-    ``kicks`` are the changes of rate by each choice, rad/s, shape (19, 3), ``dipole_torque_nm`` is m_r x b
-    until the next one, and ``cost`` is (P S) at the next one, shape (6, 9).
+    ``kicks`` are the changes of rate by each choice, rad/s, shape (19, 3), ``drift`` is what is known to be
+    added to the state until the next one, shape (6,), and ``cost`` is (P S s) at the next one, shape (6, 10).
     """
 
     kicks: Array
-    dipole_torque_nm: Vec3
+    drift: Array
     cost: Array
 
 
@@ -62,14 +62,15 @@ def first_pulse(
     problem, pulses = model.problem, model.pulses
     f, g, by_coil = problem.free[:, :6], problem.free[:, 6:], len(pulses) // 3
     x, torque_nm = np.array(state[:6]).reshape(6, 1), np.array(state[6:]).reshape(3, 1)
+    known = np.array([*state[6:], 1.0]).reshape(4, 1)
     spent, waiting = np.zeros(1), np.array(waits).reshape(3, 1)
     first, best = np.zeros(0, dtype=np.int64), 0
     for opportunity in ahead:
         p, s = opportunity.cost[:, :6], opportunity.cost[:, 6:]
         spent = spent + np.add.reduce(problem.cost[:, None] * x * x, axis=0)
-        drifted = times(f, x) + times(g, torque_nm + np.array(opportunity.dipole_torque_nm)[:, None])
+        drifted = times(f, x) + (times(g, torque_nm) + opportunity.drift[:, None])
         pushes = times(f[:, :3], opportunity.kicks.T)
-        total = spent[:, None] + _to_go(drifted, pushes, p, times(s, torque_nm))
+        total = spent[:, None] + _to_go(drifted, pushes, p, times(s, known))
         total[:, 1:].reshape(len(spent), 3, by_coil)[waiting.T > 0] = np.inf
         sequence, choice = np.divmod(_least(total.ravel()), len(pulses))
         best = int(np.argmin(total[sequence, choice]))
