@@ -117,7 +117,8 @@ def _law(state: FlightState, message: TcLaw, situation: Situation) -> Outcome:
     """A law begins without a memory; the current one goes on with its own."""
     own = situation.config.control.own
     name = own.name if own is not None and message.law == OWN_NUMBER else LAW_NAMES.get(message.law)
-    if name is None:
+    config = situation.config.control
+    if name is None or (name in LAWS and LAWS[name].plans_pulses and config.pulse_model is None):
         return TcAckResult.UNKNOWN
     if name == state.setpoint.law:
         return state

@@ -5,21 +5,24 @@ from typing import NamedTuple
 
 from fsw.core import telemetry
 from fsw.core.actuation import pulses
-from fsw.core.actuation.actuator import actuate, update_view
+from fsw.core.actuation.actuator import actuate, update_view, wait_ticks
+from fsw.core.algebra.quaternion import rotate
 from fsw.core.commands import command
 from fsw.core.config import FlightConfig
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.estimation.estimator import NONE_USED, EstimatorState, Used, predict, restart, update
 from fsw.core.estimation.orbital_attitude import orbital_attitude, perfect_attitude
+from fsw.core.estimation.parameters import NOTHING
+from fsw.core.estimation.samples import usable_field, usable_sun
 from fsw.core.fdir import fdir
 from fsw.core.fdir.fdir import Evidence
 from fsw.core.fdir.sensors.plausibility import Findings
 from fsw.core.gate import second_sender
 from fsw.core.gate.readings import Readings, admit
 from fsw.core.gate.sync_watch import Belief, SyncWatch, judge, near
-from fsw.core.law_input import gather
 from fsw.core.laws import by_mode
-from fsw.core.laws.interface import Demand, LawInput
+from fsw.core.laws.constant_torque import constant_torque
+from fsw.core.laws.interface import Demand, FieldSample, LawInput
 from fsw.core.monitors import Monitor
 from fsw.core.orbit.ephemeris import EphemerisModel, Reference, advance, plausible, reference_at, with_orbit
 from fsw.core.restart import restarted
@@ -172,9 +175,37 @@ def _control(
     state: FlightState, observation: Observation, model: EphemerisModel, config: FlightConfig
 ) -> tuple[LawInput, Demand | None]:
     """What the law of this mode knows, and what it asks for."""
-    law_input = gather(state, observation.readings, observation.reference, model, config.coils.pulses)
+    law_input = _law_input(state, observation, model, config)
     demand = by_mode.demand(state.modes.mode, law_input, state.memory, state.setpoint, config.control)
     return law_input, demand
+
+
+def _law_input(
+    state: FlightState, observation: Observation, model: EphemerisModel, config: FlightConfig
+) -> LawInput:
+    """The field is the modelled one where the attitude is valid, else the last one measured."""
+    readings, reference, attitude = observation.readings, observation.reference, state.attitude
+    usable = usable_field(readings)
+    sample = FieldSample(usable, state.tick) if usable is not None else state.sample
+    b_body_t = sample.b_body_t
+    if attitude.valid and reference is not None:
+        b_orbit_t = rotate(reference.q_orbit_from_eci, reference.b_eci_t)
+        b_body_t = rotate(attitude.q_body_from_orbit, b_orbit_t)
+    estimate, faults = state.estimator.estimate, state.health.coils.faults
+    parameters = estimate.parameters if estimate is not None else NOTHING
+    return LawInput(
+        attitude,
+        b_body_t,
+        sample,
+        state.sample,
+        usable_sun(readings),
+        reference,
+        constant_torque(parameters, reference),
+        parameters.dipole_body_am2,
+        state.tick,
+        model,
+        wait_ticks(state.pulses, state.coil, readings, state.tick, config.coils.pulses, faults),
+    )
 
 
 def _schedule(

@@ -76,6 +76,16 @@ class FlightTable(Section):
         check_bounds(self.uncertainty, ceilings)
         return self
 
+    @model_validator(mode="after")
+    def _law_has_its_coils(self) -> Self:
+        law = LAWS.get(self.control.law)
+        if law is not None and law.plans_pulses and self.coils.driver == "continuous":
+            raise ValueError(
+                f"control.law = {self.control.law!r} is not allowed with coils.driver = 'continuous': "
+                "it plans pulses; allowed is coils.driver = 'pulsed'"
+            )
+        return self
+
     @property
     def epoch_unix_s(self) -> int:
         """Time of tick 0, Unix seconds."""
@@ -83,8 +93,13 @@ class FlightTable(Section):
 
     @property
     def crc(self) -> int:
-        """CRC-32 of the table in canonical JSON; of one's own law the digest counts, and no path."""
+        """CRC-32 of the table in canonical JSON; of one's own law the digest counts, and no path.
+
+        A key that is left out does not count if there were tables before it.
+        """
         values = self.model_dump(mode="json")
+        if self.uncertainty.torque_variation_nm is None:
+            del values["uncertainty"]["torque_variation_nm"]
         if self.control.own:
             values["control"]["law"] = self.control.law_name
         else:

@@ -86,7 +86,7 @@ def cases(
     seed: int,
     orbits: float | None,
 ) -> tuple[ComparisonCase, ...]:
-    """Every law by every driver, all else the same.
+    """Every law by every driver that it has a use for, all else the same.
 
     Raises:
         TableError: the scenario is not valid, or not with one of the drivers.
@@ -95,12 +95,18 @@ def cases(
     all_cases = []
     for driver in drivers:
         values = merge(settings, _coils(load(name_or_path, settings), driver))
-        load(name_or_path, values)
-        for law in laws:
+        suited = [law for law in laws if driver is Driver.PULSED or not _plans_pulses(law)]
+        for law in suited:
             overrides = lay_over(values, {"control": {"law": known.references[law]}})
+            if law == suited[0]:
+                load(name_or_path, overrides)
             order = Order(name_or_path, overrides, seed, orbits)
             all_cases.append(ComparisonCase(law, known.aims[law], driver, order))
     return tuple(all_cases)
+
+
+def _plans_pulses(law: str) -> bool:
+    return law in LAWS and LAWS[law].plans_pulses
 
 
 def _coils(scenario: Scenario, driver: Driver) -> Nested:

@@ -63,7 +63,7 @@ class OrbitAhead(NamedTuple):
 
 
 def orbit_ahead(model: EphemerisModel, unix_s: float, step_s: float, steps: int) -> OrbitAhead | None:
-    """The coming orbit; None where it has no position."""
+    """The coming orbit, of two steps or more; None where it has no position."""
     times = [unix_s + (k + 0.5) * step_s for k in range(steps)]
     states = [state for state in (state_eci(model.orbit, t) for t in times) if state is not None]
     if len(states) < steps:
@@ -74,9 +74,10 @@ def orbit_ahead(model: EphemerisModel, unix_s: float, step_s: float, steps: int)
     radius, momentum = (np.sqrt(np.add.reduce(vector * vector, axis=-1))[:, None] for vector in (r, normal))
     e1, e3 = r / radius, normal / momentum
     axes = np.stack([e1, np.cross(e3, e1), e3], axis=1)
-    climb = np.add.reduce(r * v, axis=-1)
-    rate_change = -2.0 * (momentum / radius**4)[:, 0] * climb
-    return OrbitAhead(np.add.reduce(axes * b[:, None, :], axis=-1), rate_change)
+    rates_radps = (momentum / (radius * radius))[:, 0]
+    return OrbitAhead(
+        np.add.reduce(axes * b[:, None, :], axis=-1), np.asarray(np.gradient(rates_radps, step_s))
+    )
 
 
 def plan(table: Schedule, b_orbit_t: Array, end_node: int) -> Array:

@@ -59,7 +59,9 @@ def pulse_mpc(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Cont
     """The pulse to fire in answer to this tick; memory is the tick from which on one may be asked for."""
     pulses, schedule = config.pulse_model, config.schedules.get("pulse_mpc")
     known = inputs.attitude.valid and inputs.reference is not None and inputs.ephemeris is not None
-    if not known or pulses is None or schedule is None or 0 not in inputs.wait_ticks:
+    if not known or pulses is None or schedule is None:
+        return Demand(memory=memory)
+    if 0 not in inputs.wait_ticks:
         return Demand(memory=memory, pulse=NO_PULSE)
     begin = memory[0] if len(memory) == 1 and memory[0] - inputs.tick <= pulses.step_ticks else inputs.tick
     late = inputs.tick - begin

@@ -71,7 +71,7 @@ def first_pulse(
         drifted = times(f, x) + (times(g, torque_nm) + opportunity.drift[:, None])
         pushes = times(f[:, :3], opportunity.kicks.T)
         total = spent[:, None] + _to_go(drifted, pushes, p, times(s, known))
-        total[:, 1:].reshape(len(spent), 3, by_coil)[waiting.T > 0] = np.inf
+        total[:, 1:][np.repeat(waiting.T > 0, by_coil, axis=1)] = np.inf
         sequence, choice = np.divmod(_least(total.ravel()), len(pulses))
         best = int(np.argmin(total[sequence, choice]))
         first = first[sequence] if len(first) else choice
@@ -93,9 +93,10 @@ def _to_go(states: Array, pushes: Array, p: Array, slope: Array) -> Array:
 
 
 def _least(costs: Array) -> Numbers:
-    """The places of the least costs, in their order of place; of equal ones the first."""
-    if len(costs) <= SEQUENCES:
-        return np.arange(len(costs))
+    """The places of the least costs that are finite; of equal ones the first."""
+    finite = np.flatnonzero(costs < np.inf)
+    if len(finite) <= SEQUENCES:
+        return finite
     bound = np.partition(costs, SEQUENCES - 1)[SEQUENCES - 1]
     below, at = np.flatnonzero(costs < bound), np.flatnonzero(costs == bound)
-    return np.sort(np.concatenate([below, at[: SEQUENCES - len(below)]]))
+    return np.concatenate([below, at[: SEQUENCES - len(below)]])

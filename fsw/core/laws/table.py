@@ -56,7 +56,8 @@ class Aim(StrEnum):
 class LawEntry(NamedTuple):
     """A law: its number in telecommands, its aim, its forms in ACQUIRE and POINT, and its own parameters.
 
-    The parameters are a class, a frozen dataclass of floats with defaults, or None for a law with none.
+    The parameters are a class, a frozen dataclass of floats with defaults, or None for a law with none. A law
+    that plans pulses has no use for a continuous driver.
     """
 
     number: int
@@ -64,6 +65,7 @@ class LawEntry(NamedTuple):
     acquire: Law
     point: Law
     gains: type | None = None
+    plans_pulses: bool = False
 
 
 OWN_NUMBER = 255
@@ -87,7 +89,7 @@ LAWS: dict[str, LawEntry] = {
     "sun_pointing": LawEntry(30, Aim.SUN, sun_pointing, sun_pointing),
     "lqr": LawEntry(40, Aim.THREE_AXIS, without_memory, lqr, LqrGains),
     "mpc": LawEntry(41, Aim.THREE_AXIS, without_memory, mpc, MpcGains),
-    "pulse_mpc": LawEntry(42, Aim.THREE_AXIS, without_memory, pulse_mpc, PulseMpcGains),
+    "pulse_mpc": LawEntry(42, Aim.THREE_AXIS, without_memory, pulse_mpc, PulseMpcGains, plans_pulses=True),
     "pd_weighted": LawEntry(50, Aim.THREE_AXIS, weighted_far, weighted, WeightGains),
     "pd_regularised": LawEntry(51, Aim.THREE_AXIS, regularised_far, regularised, RegularGains),
     "output_feedback": LawEntry(52, Aim.THREE_AXIS, output_feedback, output_feedback, FilterGains),

@@ -25,6 +25,7 @@ GIVEN = {
     "magnetometer_misalignment_deg": 1.5,
     "sun_misalignment_deg": 0.25,
     "torque_nm": 7e-8,
+    "torque_variation_nm": 9e-9,
     "along_track_km": 11.0,
     "latency_s": 1.8,
 }
@@ -39,6 +40,7 @@ CARRIED_BY = {
     "magnetometer_misalignment_deg": "mag_turn_rad",
     "sun_misalignment_deg": "sun_turn_rad",
     "torque_nm": "torque_body_nm",
+    "torque_variation_nm": None,
     "along_track_km": None,
     "latency_s": "delay_s",
 }
@@ -65,6 +67,7 @@ class TestBounds:
             mag_turn_rad=pytest.approx(radians(1.5)),
             sun_turn_rad=pytest.approx(radians(0.25)),
             torque_nm=7e-8,
+            torque_variation_nm=9e-9,
             along_track_m=pytest.approx(11e3),
             latency_s=1.8,
         )
@@ -82,6 +85,7 @@ class TestBounds:
             mag_turn_rad=pytest.approx(radians(1.0)),
             sun_turn_rad=pytest.approx(radians(0.5)),
             torque_nm=pytest.approx(3e-8),
+            torque_variation_nm=pytest.approx(6e-9),
             along_track_m=pytest.approx(5e3),
             latency_s=0.25,
         )
@@ -99,7 +103,8 @@ class TestBounds:
 
     @pytest.mark.parametrize("key", GIVEN)
     def test_each_is_taken_for_itself_and_zero_is_no_ordinary_value(self, key):
-        ordinary, exact = bounds_of(), bounds_of(**{key: 0.0})
+        given = {"torque_variation_nm": 6e-9} if key == "torque_nm" else {}  # else it is a part of that one
+        ordinary, exact = bounds_of(**given), bounds_of(**given, **{key: 0.0})
         changed = [
             field.name
             for field in fields(Uncertainty)
@@ -154,13 +159,17 @@ class TestPriors:
         ("name", "bound", "daily"),
         [
             ("mag_bias_t", 9e-7, 0.1),
-            ("torque_body_nm", 7e-8, 0.2),
             ("dipole_body_am2", 0.04, 0.1),
         ],
     )
     def test_what_wanders_in_a_day_is_a_part_of_the_bound(self, name, bound, daily):
         walk = np.array(priors_of(**GIVEN)[name].walk)
         np.testing.assert_allclose(walk * sqrt(86400.0), daily * bound, rtol=1e-12)
+
+    @pytest.mark.parametrize(("given", "in_a_day"), [({}, 1.4e-8), ({"torque_variation_nm": 3e-9}, 3e-9)])
+    def test_the_torque_wanders_as_is_declared_else_by_a_fifth_of_its_bound(self, given, in_a_day):
+        walk = np.array(priors_of(torque_nm=7e-8, **given)["torque_body_nm"].walk)
+        np.testing.assert_allclose(walk * sqrt(86400.0), in_a_day, rtol=1e-12)
 
     def test_coils_wander_faster_and_turns_scale_delay_and_inertia_not_at_all(self):
         found = priors_of(**GIVEN)
