@@ -62,7 +62,7 @@ class TestStates:
     @pytest.mark.parametrize("key", UncertaintyTable.model_fields)
     def test_with_any_one_of_them_the_filter_is_sound(self, key):
         """Also where a part of a parameter is exact, as the gains of coils that are turned alone."""
-        bound = {"residual_dipole_am2": 0.05, "torque_nm": 1e-7}.get(key, 1.0)
+        bound = {"residual_dipole_am2": 0.05, "torque_nm": 1e-7, "torque_variation_nm": 0.0}.get(key, 1.0)
         config = configured(uncertainty=EXACT | {key: bound}).mekf
         q, b, s = normalise((0.6, -0.4, 0.5, 0.3)), (1.7e-5, -2.3e-5, 3.1e-5), (0.6, -0.48, 0.64)
         estimate = mekf.start(q, (0.001, -0.002, 0.003), config)
@@ -183,6 +183,7 @@ def test_no_bound_is_left_unread():
             )
             or changed.mekf.layout.size != ordinary.mekf.layout.size
             or not np.array_equal(changed.mekf.initial_covariance, ordinary.mekf.initial_covariance)
+            or not np.array_equal(changed.mekf.process_noise, ordinary.mekf.process_noise)
         )
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from fsw.core.estimation.parameters import NAMES, SIZES
-from fsw.input.schema import TableError
+from fsw.input.schema import TableError, merge
 from fsw.table.table import flight_table
 from fsw.table.uncertainty import Uncertainty, UncertaintyTable, bounds, priors
 
@@ -245,6 +245,7 @@ CONTINUOUS = {"driver": "continuous", "max_dipole_am2": 3.0, "on_fraction": 0.5}
         ("residual_dipole_am2", {"coils": CONTINUOUS}, 3.0, "the largest dipole of a coil"),
         ("torque_nm", {"coils": COILS}, 6.0 * 0.04 * 5e-5, "what a coil gives in the mean"),
         ("torque_nm", {"coils": CONTINUOUS}, 3.0 * 0.5 * 5e-5, "what a coil gives in the mean"),
+        ("torque_variation_nm", {"uncertainty": {"torque_nm": 4e-8}}, 8e-8, "from one bound of the torque"),
         ("coil_gain_percent", {"fdir": {"weak_coil_part": 0.9}}, 10.0, "fdir.weak_coil_part"),
     ],
 )
@@ -252,13 +253,13 @@ class TestCeilings:
     """What coils and fault detection admit."""
 
     def test_as_large_is_taken(self, key, section, largest, meaning):
-        table = flight_table({"uncertainty": {key: largest}} | section, "table.toml")
+        table = flight_table(merge(section, {"uncertainty": {key: largest}}), "table.toml")
         assert getattr(table.uncertainty, key) == largest
 
     def test_larger_is_told_in_one_sentence(self, key, section, largest, meaning):
         for value in (largest * 1.001, 1e9 if key != "coil_gain_percent" else 50.0):
             with pytest.raises(TableError) as caught:
-                flight_table({"uncertainty": {key: value}} | section, "table.toml")
+                flight_table(merge(section, {"uncertainty": {key: value}}), "table.toml")
             told = str(caught.value)
             assert told.startswith(f"table.toml: uncertainty.{key} = {value!r} is not allowed: allowed is ")
             assert f"a number at least 0 and at most {largest:.4g}, " in told
