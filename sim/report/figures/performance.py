@@ -138,20 +138,20 @@ class _Convergence:
 
 @dataclass(slots=True)
 class _Spin:
-    """The spin about body axis 1 against its reference."""
+    """The spin about body axis 1 against its reference, and the tick from which it stays near it."""
 
     reference_radps: float
     last_orbit: Mean = field(default_factory=Mean)
     deviation: Mean = field(default_factory=Mean)
-    settled: int | None = None
+    held_from: int = 0
 
     def take(self, spin_radps: Array, first: int, recent: slice) -> None:
         deviation = np.abs(spin_radps - self.reference_radps)
         self.last_orbit.take(spin_radps[recent])
         self.deviation.take(deviation[recent])
-        inside = np.flatnonzero(deviation < SPIN_SETTLED_RADPS)
-        if self.settled is None and len(inside):
-            self.settled = first + int(inside[0])
+        outside = np.flatnonzero(~(deviation < SPIN_SETTLED_RADPS))
+        if len(outside):
+            self.held_from = first + int(outside[-1]) + 1
 
 
 class Performance:
@@ -224,8 +224,8 @@ class Performance:
             "mean_last_orbit": spin.last_orbit.mean,
             "max_dev_last_orbit": spin.deviation.most,
         }
-        if spin.settled is not None:
-            result["settle_s_1e-3"] = spin.settled / self._hz
+        if spin.held_from < self.ticks:
+            result["settle_s_1e-3"] = spin.held_from / self._hz
         return result
 
 
