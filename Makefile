@@ -19,6 +19,7 @@
 # make differential scheduler against interlock over 100 orbits of whole flights: some minutes
 # make verdicts   all flights that miss a requirement for a known reason: is it told, and no wrong one: a minute
 # make planted    schedulers with planted faults, and correct ones, through sim.testing as a user would run it: some minutes
+# make validate-planted   errors planted in laws, models and filter: does validate end with exit code 1? some minutes
 # make mutation     change scheduler, interlock, auditor and codec one thing at a time: do the tests notice? an hour
 # make coverage     branch coverage of the same modules, which must be complete, into the same page: a minute
 
@@ -30,7 +31,7 @@ bin := .venv/bin
 installed := .venv/.installed
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv sil test lint docs docs-gallery notebooks test-vcan test-chromium golden validate fuzz attack differential replay-elsewhere faults bench scaling population soak verdicts planted mutation coverage
+.PHONY: help venv sil test lint docs docs-gallery notebooks test-vcan test-chromium golden validate fuzz attack differential replay-elsewhere faults bench scaling population soak verdicts planted validate-planted mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -126,6 +127,9 @@ verdicts: venv
 planted: venv
 	TORQUER_SCHEDULER_FLIGHTS=200 $(bin)/pytest -q --timeout 1800 tests/sim/testing/test_audit_scheduler.py
 	$(bin)/python tools/planted.py $(PLANTED)
+
+validate-planted: venv
+	$(bin)/python tools/validate_planted.py $(PLANTED)
 
 mutation: venv
 	$(bin)/python tools/mutate.py $(MUTATE)

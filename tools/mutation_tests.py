@@ -123,7 +123,7 @@ class Judge:
 
     def __init__(self, module: str, stages: list[list[str]]) -> None:
         self._folder = Path(tempfile.mkdtemp(prefix="copy-"))
-        _copy_repository(self._folder)
+        copy_repository(self._folder, COPIED)
         self._path = self._folder / module
         self._source = self._path.read_text(encoding="utf-8")
         _prepare(self._folder)
@@ -159,8 +159,8 @@ class Judge:
             compiled.unlink()
 
 
-def _copy_repository(folder: Path) -> None:
-    for name in COPIED:
+def copy_repository(folder: Path, names: tuple[str, ...]) -> None:
+    for name in names:
         if (ROOT / name).is_dir():
             shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
         elif (ROOT / name).exists():

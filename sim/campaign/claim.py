@@ -6,12 +6,32 @@ from enum import StrEnum
 from math import inf
 from typing import Any
 
+MOST_ROOM = 10.0
+"""By what factor a figure may be better than a limit that is chosen here."""
+
+
+class Threshold(StrEnum):
+    """Whose the limits of a claim are."""
+
+    PAPER = "paper"
+    """As the source prints them, or as its statistics give them."""
+    REFERENCE = "reference file"
+    """As the header of the reference file says."""
+    PROTOTYPE = "own prototype"
+    """What an earlier computation of this project's own has found."""
+    OWN = "own choice"
+    """Chosen here, near what is measured, so that a change shows."""
+    FITTED = "fitted"
+    """The paper's figure, to which a number of the scenario was fitted: its being met shows nothing."""
+
 
 class ClaimVerdict(StrEnum):
     """The verdict on a claim."""
 
     PASS = "PASS"
     FAIL = "FAIL"
+    FITTED = "fitted"
+    """Within its limits, but fitted to them."""
     ABSENT = "absent"
     """The data to judge it by are missing."""
 
@@ -27,6 +47,8 @@ class Claim:
         unit: of figure and limits.
         low: least that passes.
         high: most that passes.
+        threshold: whose the limits are.
+        wide: why limits of one's own are far from the figure; empty where they are near.
     """
 
     id: str
@@ -35,22 +57,53 @@ class Claim:
     unit: str
     low: float = -inf
     high: float = inf
+    threshold: Threshold = Threshold.OWN
+    wide: str = ""
 
-    def judge(self, ours: float, where: str = "") -> "ClaimOutcome":
+    def judge(self, ours: float, where: str = "", spread: "Spread | None" = None) -> "ClaimOutcome":
         """The outcome of a figure; one that is not a number fails."""
-        passed = self.low <= ours <= self.high
-        return ClaimOutcome(self, ClaimVerdict.PASS if passed else ClaimVerdict.FAIL, ours, where)
+        met = ClaimVerdict.FITTED if self.threshold is Threshold.FITTED else ClaimVerdict.PASS
+        return ClaimOutcome(self, met if self.meets(ours) else ClaimVerdict.FAIL, ours, where, spread)
+
+    def meets(self, ours: float) -> bool:
+        """Whether a figure is within the limits."""
+        return self.low <= ours <= self.high
+
+    def is_loose(self, ours: float) -> bool:
+        """Whether a limit of this project's own is far from the figure, without a reason given."""
+        own = self.threshold in (Threshold.OWN, Threshold.PROTOTYPE)
+        return own and not self.wide and self.room(ours) > MOST_ROOM
+
+    def room(self, ours: float) -> float:
+        """By what factor a figure could be worse, at the side where it could be most; infinite from zero."""
+        limits = [limit for limit in (self.low, self.high) if abs(limit) != inf and limit != ours]
+        return max((_factor(limit, ours) for limit in limits), default=1.0)
 
     @property
     def limits(self) -> str:
         """The limits as text."""
-        if self.low == -inf and self.high == inf:
-            return "no limit"
         if self.low == -inf:
             return "0" if self.high == 0.0 else f"<= {self.high:.6g}"
         if self.high == inf:
             return f">= {self.low:.6g}"
         return f"{self.low:.6g} to {self.high:.6g}"
+
+
+def _factor(limit: float, ours: float) -> float:
+    """The larger of two numbers over the smaller one, by their sizes; infinite across zero."""
+    small, large = sorted((abs(limit), abs(ours)))
+    return large / small if small > 0.0 and limit * ours > 0.0 else inf
+
+
+@dataclass(frozen=True, slots=True)
+class Spread:
+    """What all flights give of which a claim takes one figure: how many meet its limits, and the range."""
+
+    flights: int
+    meet: int
+    least: float
+    median: float
+    most: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +114,7 @@ class ClaimOutcome:
     verdict: ClaimVerdict
     ours: float | None = None
     where: str = ""
+    spread: Spread | None = None
 
 
 Task = Callable[[], Any]

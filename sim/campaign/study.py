@@ -7,7 +7,7 @@ from math import inf, isnan, nan
 from statistics import fmean, median
 
 from fsw.input.schema import Nested
-from sim.campaign.claim import Claim, ClaimOutcome, ClaimVerdict, Study
+from sim.campaign.claim import Claim, ClaimOutcome, ClaimVerdict, Spread, Study, Threshold
 from sim.campaign.flight import FlightResult, Order, fly_order
 
 Pick = Callable[[FlightResult], float]
@@ -27,6 +27,8 @@ class Figure:
         counts: which of them count; None: all.
         low: least that passes.
         high: most that passes.
+        threshold: whose the limits are.
+        wide: why limits of one's own are far from the figure; empty where they are near.
     """
 
     id: str
@@ -38,6 +40,8 @@ class Figure:
     counts: Callable[[FlightResult], bool] | None = None
     low: float = -inf
     high: float = inf
+    threshold: Threshold = Threshold.OWN
+    wide: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,14 +130,31 @@ def _counted(figure: Figure, named_flights: Sequence[tuple[str, FlightResult]]) 
 
 
 def _judge(study_id: str, source: str, figure: Figure, flights: Sequence[FlightResult]) -> ClaimOutcome:
-    claim = Claim(f"{study_id}.{figure.id}", figure.statement, source, figure.unit, figure.low, figure.high)
+    claim = Claim(
+        f"{study_id}.{figure.id}",
+        figure.statement,
+        source,
+        figure.unit,
+        figure.low,
+        figure.high,
+        figure.threshold,
+        figure.wide,
+    )
     if not flights:
         return ClaimOutcome(claim, ClaimVerdict.ABSENT)
     values = [figure.pick(flight) for flight in flights]
     excess = [inf if isnan(value) else max(figure.low - value, value - figure.high) for value in values]
     worst = max(range(len(values)), key=lambda place: excess[place])
     value = _COMBINATIONS[figure.of](values) if figure.of in _COMBINATIONS else values[worst]
-    return claim.judge(value, f"worst: {describe_order(flights[worst].order)}: {values[worst]:.3g}")
+    where = f"worst: {describe_order(flights[worst].order)}: {values[worst]:.3g}"
+    return claim.judge(value, where, spread_of(claim, values))
+
+
+def spread_of(claim: Claim, values: Sequence[float]) -> Spread:
+    """What all flights give; one without a number counts as the largest, and does not meet the claim."""
+    numbers = sorted(inf if isnan(value) else value for value in values)
+    meet = sum(map(claim.meets, values))
+    return Spread(len(values), meet, numbers[0], median(numbers), numbers[-1])
 
 
 def _flat(values: Nested, prefix: str = "") -> Iterator[tuple[str, object]]:

@@ -8,12 +8,12 @@ from pathlib import Path
 
 from sim.campaign.claim import ClaimVerdict
 from sim.campaign.runner import StudyResult, run
-from sim.console import answer, say
+from sim.console import answer, say, warn
 from sim.errors import HarnessError
 from sim.junit import write_junit
 from sim.progress import progress
 from sim.record.destination import check_file
-from sim.validate.page import as_json, line, render, suites, tally
+from sim.validate.page import as_json, line, loose, render, suites, tally
 from sim.validate.reference import reference
 from sim.validate.registry import all_studies, choose_studies, find_repository
 
@@ -73,6 +73,8 @@ def validate(
         say(f"page: {page}")
     if junit is not None:
         write_junit(junit, "torquer validate", suites(finished))
+    if far := loose(outcomes):
+        warn(f"own limits more than ten times off, without a reason: {', '.join(far)}")
     say(f"{tally(outcomes)}; {wall_s:.0f} s")
     answer({"wall_s": wall_s, "page": page, "claims": [as_json(outcome) for outcome in outcomes]})
     return int(any(outcome.verdict is ClaimVerdict.FAIL for outcome in outcomes))

@@ -2,11 +2,12 @@
 
 import platform
 from collections.abc import Sequence
+from dataclasses import asdict
 
 import numpy as np
 import scipy
 
-from sim.campaign.claim import ClaimOutcome, ClaimVerdict
+from sim.campaign.claim import ClaimOutcome, ClaimVerdict, Spread
 from sim.campaign.runner import StudyResult
 from sim.junit import JunitCase
 from sim.validate.reference.reference import FileResult
@@ -16,6 +17,13 @@ _HEAD = """# Validation
 Written by `torquer validate`; do not edit. That command computes each row: a claim or a reference figure, its
 source, the figure of this code, and the tolerance. Of the rows of a reference file the one nearest to its
 tolerance counts.
+
+Whose the tolerance is, stands beside it. *paper*: as the source prints it. *reference file*: as its header
+says. *own prototype*: what an earlier computation of this project has found. *own choice*: set here near the
+figure, at most ten times off, or with the reason. *fitted*: the paper's figure, to which a number of the
+scenario was fitted; that it is met shows nothing, so it does not count. A paper tells one flight; what all
+starts give stands in the column *all starts*: least, median and most, and how many meet the tolerance.
+Settled means from then on, to the end.
 """
 
 
@@ -23,6 +31,10 @@ def render(finished: Sequence[StudyResult], wall_s: float) -> str:
     """The page: the table of claims, what was left out of the reference files, wall time and platform."""
     outcomes = [outcome for study in finished for outcome in study.outcomes]
     lines = [_HEAD, tally(outcomes) + ".", "", *claims_table(outcomes), ""]
+    lines += [
+        f"Own limits more than ten times off, without a reason: {', '.join(loose(outcomes)) or 'none'}.",
+        "",
+    ]
     files = [result for study in finished for result in study.results if isinstance(result, FileResult)]
     if files:
         lines += ["| reference file | rows | columns not used |", "|---|---|---|"]
@@ -32,9 +44,15 @@ def render(finished: Sequence[StudyResult], wall_s: float) -> str:
     return "\n".join(lines)
 
 
+def loose(outcomes: Sequence[ClaimOutcome]) -> list[str]:
+    """The claims whose limit is this project's own and far from the figure, without a reason."""
+    return [one.claim.id for one in outcomes if one.ours is not None and one.claim.is_loose(one.ours)]
+
+
 def claims_table(outcomes: Sequence[ClaimOutcome]) -> list[str]:
     """The lines of a table of claims with figures and verdicts."""
-    return ["| claim | source | ours | tolerance | verdict |", "|---|---|---|---|---|", *map(_row, outcomes)]
+    head = "| claim | source | ours | all starts | tolerance | whose | verdict |"
+    return [head, "|---" * 7 + "|", *map(_row, outcomes)]
 
 
 def line(outcome: ClaimOutcome) -> str:
@@ -42,7 +60,7 @@ def line(outcome: ClaimOutcome) -> str:
     if outcome.ours is None:
         return f"{outcome.verdict.value:<6} {outcome.claim.id}"
     where = f"  [{outcome.where}]" if outcome.where else ""
-    figure = f"{_figure(outcome)} ({outcome.claim.limits})"
+    figure = f"{_figure(outcome)} ({outcome.claim.limits}, {outcome.claim.threshold.value})"
     return f"{outcome.verdict.value:<6} {outcome.claim.id}: {outcome.claim.statement}: {figure}{where}"
 
 
@@ -58,12 +76,16 @@ def as_json(outcome: ClaimOutcome) -> dict[str, object]:
         "unit": claim.unit,
         "low": claim.low,
         "high": claim.high,
+        "threshold": claim.threshold.value,
+        "wide": claim.wide,
+        "room": None if outcome.ours is None else claim.room(outcome.ours),
         "where": outcome.where,
+        "spread": None if outcome.spread is None else asdict(outcome.spread),
     }
 
 
 def suites(finished: Sequence[StudyResult]) -> dict[str, list[JunitCase]]:
-    """The outcomes as tests, by study; a claim without its data was not judged."""
+    """The outcomes as tests, by study; one without its data, or fitted, is skipped."""
     return {study.study.id: [_test(outcome) for outcome in study.outcomes] for study in finished}
 
 
@@ -73,15 +95,16 @@ def _test(outcome: ClaimOutcome) -> JunitCase:
         "validate",
         outcome.claim.id,
         failure=said.get(ClaimVerdict.FAIL, ""),
-        skipped=said.get(ClaimVerdict.ABSENT, ""),
+        skipped=said.get(ClaimVerdict.ABSENT, said.get(ClaimVerdict.FITTED, "")),
     )
 
 
 def tally(outcomes: Sequence[ClaimOutcome]) -> str:
-    """How many claims hold, fail, and could not be judged."""
+    """How many claims hold, fail, are fitted, and could not be judged."""
     count = {verdict: sum(outcome.verdict is verdict for outcome in outcomes) for verdict in ClaimVerdict}
     text = f"{count[ClaimVerdict.PASS]} claims hold, {count[ClaimVerdict.FAIL]} fail"
-    return text + (f", {count[ClaimVerdict.ABSENT]} absent" if count[ClaimVerdict.ABSENT] else "")
+    others = (ClaimVerdict.FITTED, ClaimVerdict.ABSENT)
+    return text + "".join(f", {count[verdict]} {verdict.value}" for verdict in others if count[verdict])
 
 
 def platform_line() -> str:
@@ -98,8 +121,23 @@ def _row(outcome: ClaimOutcome) -> str:
     if outcome.verdict is ClaimVerdict.FAIL and outcome.where:
         ours += f" at {outcome.where}"
     limits = f"{claim.limits} {_unit(claim.unit)}".strip() if outcome.ours is not None else ""
-    cells = (f"{claim.statement} (`{claim.id}`)", claim.source, ours, limits, outcome.verdict.value)
+    limits += f" ({claim.wide})" if claim.wide and limits else ""
+    cells = (
+        f"{claim.statement} (`{claim.id}`)",
+        claim.source,
+        ours,
+        "" if outcome.spread is None else _spread(outcome.spread),
+        limits,
+        claim.threshold.value,
+        outcome.verdict.value,
+    )
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+
+
+def _spread(spread: Spread) -> str:
+    """Least, median and most, and how many meet the claim."""
+    values = " / ".join(f"{value:.3g}" for value in (spread.least, spread.median, spread.most))
+    return f"{values}; {spread.meet} of {spread.flights}"
 
 
 def _figure(outcome: ClaimOutcome) -> str:

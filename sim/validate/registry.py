@@ -6,7 +6,8 @@ from pathlib import Path
 from fsw.input.near import did_you_mean
 from sim.campaign.claim import Study
 from sim.errors import HarnessError
-from sim.validate import computed, microsat, population, posat1
+from sim.validate import computed, microsat, population, shipped
+from sim.validate.consat import minimisers, posat1, prediction
 from sim.validate.reference import reference
 
 
@@ -19,8 +20,11 @@ def all_studies(satellites: int | None = None) -> list[Study]:
     return [
         *reference.shipped_studies(),
         *computed.studies(),
+        *prediction.studies(),
+        *minimisers.studies(),
         *posat1.studies(),
         *microsat.studies(),
+        *shipped.studies(),
         *population.studies(satellites),
     ]
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sim.campaign.claim import Claim, ClaimOutcome
+from sim.campaign.claim import Claim, ClaimOutcome, Threshold
 from sim.validate.reference.reference_table import ReferenceTable
 
 Array = NDArray[np.float64]
@@ -21,6 +21,8 @@ class ReferenceComparison:
         unit: of deviation and tolerance.
         deviation: one a row, (n,).
         tolerance: for all rows or one a row.
+        threshold: whose it is.
+        wide: why it is far from what is found, if it is one's own.
     """
 
     id: str
@@ -28,6 +30,8 @@ class ReferenceComparison:
     unit: str
     deviation: Array
     tolerance: ArrayLike
+    threshold: Threshold = Threshold.REFERENCE
+    wide: str = ""
 
     def outcome(self, table: ReferenceTable) -> ClaimOutcome:
         """The verdict on the row with the largest ratio of deviation to tolerance."""
@@ -41,6 +45,8 @@ class ReferenceComparison:
             source=f"{table.path.name}: {table.comments[0]}" if table.comments else table.path.name,
             unit=self.unit,
             high=float(tolerance[worst]),
+            threshold=self.threshold,
+            wide=self.wide,
         )
         where = "" if claim.high == self.deviation[worst] == 0.0 else table.label(worst)
         return claim.judge(float(self.deviation[worst]), where)

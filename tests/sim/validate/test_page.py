@@ -1,41 +1,80 @@
-"""The page: a row per claim, and the text around the table."""
+"""The page: a row per claim, whose its tolerance is, what all starts give, and the text around the table."""
 
 import pytest
 
-from sim.campaign.claim import Claim, ClaimOutcome, ClaimVerdict
+from sim.campaign.claim import Claim, ClaimOutcome, ClaimVerdict, Spread, Threshold
 from sim.campaign.runner import StudyResult
-from sim.validate.page import line, render
+from sim.validate.page import as_json, line, loose, render, suites, tally
 
-CLAIM = Claim("a.b", "Least | most", "Somebody 2001", "deg", low=1.0, high=2.0)
+CLAIM = Claim("a.b", "Least | most", "Somebody 2001", "deg", low=1.0, high=2.0, threshold=Threshold.PAPER)
+SPREAD = Spread(flights=12, meet=11, least=1.25, median=1.5, most=2.125)
 
 
 class TestPage:
     def outcomes(self):
         return (
-            CLAIM.judge(1.5, "row 7"),
-            Claim("a.c", "Too much", "Her", "1", high=1e-9).judge(2e-9, "row 8"),
+            CLAIM.judge(1.5, "row 7", SPREAD),
+            Claim("a.c", "Too much", "Her", "1", high=1e-9, wide="rounding").judge(2e-9, "row 8"),
+            Claim("a.e", "Fitted", "Him", "s", high=3.0, threshold=Threshold.FITTED).judge(2.0),
             ClaimOutcome(Claim("a.d", "Not there", "Nobody", ""), ClaimVerdict.ABSENT),
         )
 
     @pytest.fixture
-    def page(self, study):
-        return render([StudyResult(study("a", []), self.outcomes(), (), 1.0)], 61.4)
+    def finished(self, study):
+        return [StudyResult(study("a", []), self.outcomes(), (), 1.0)]
+
+    @pytest.fixture
+    def page(self, finished):
+        return render(finished, 61.4)
 
     def test_a_row_a_claim(self, page):
         rows = [row for row in page.splitlines() if row.startswith("| ") and "`a." in row]
         assert rows == [
-            r"| Least \| most (`a.b`) | Somebody 2001 | 1.5 deg | 1 to 2 deg | PASS |",
-            "| Too much (`a.c`) | Her | 2e-09 at row 8 | <= 1e-09 | FAIL |",
-            "| Not there (`a.d`) | Nobody |  |  | absent |",
+            r"| Least \| most (`a.b`) | Somebody 2001 | 1.5 deg | 1.25 / 1.5 / 2.12; 11 of 12 | 1 to 2 deg "
+            "| paper | PASS |",
+            "| Too much (`a.c`) | Her | 2e-09 at row 8 |  | <= 1e-09 (rounding) | own choice | FAIL |",
+            "| Fitted (`a.e`) | Him | 2 s |  | <= 3 s | fitted | fitted |",
+            "| Not there (`a.d`) | Nobody |  |  |  | own choice | absent |",
         ]
 
     def test_what_stands_around_the_table(self, page):
         assert page.startswith("# Validation\n")
-        assert "1 claims hold, 1 fail, 1 absent." in page
+        assert "1 claims hold, 1 fail, 1 fitted, 1 absent." in page
         assert "Wall time 61 s. Python 3." in page
-        assert "| claim | source | ours | tolerance | verdict |" in page
+        assert "| claim | source | ours | all starts | tolerance | whose | verdict |" in page
+        for threshold in Threshold:
+            assert f"*{threshold.value}*:" in page, "each is explained"
 
-    def test_the_terminal_names_the_worst_row(self):
+    def test_the_terminal_names_the_worst_row_and_whose_the_limit_is(self):
         texts = [line(outcome) for outcome in self.outcomes()]
-        assert texts[1] == "FAIL   a.c: Too much: 2e-09 (<= 1e-09)  [row 8]"
-        assert texts[2] == "absent a.d"
+        assert texts[1] == "FAIL   a.c: Too much: 2e-09 (<= 1e-09, own choice)  [row 8]"
+        assert texts[3] == "absent a.d"
+
+    def test_a_program_is_told_the_same(self):
+        paper, own, *_ = map(as_json, self.outcomes())
+        assert (paper["threshold"], own["threshold"], own["wide"]) == ("paper", "own choice", "rounding")
+        assert paper["spread"] == {"flights": 12, "meet": 11, "least": 1.25, "median": 1.5, "most": 2.125}
+        assert own["spread"] is None
+
+    def test_what_is_fitted_is_no_test_that_passes(self, finished):
+        cases = {case.name: case for case in suites(finished)["a"]}
+        assert "fitted" in cases["a.e"].skipped
+        assert not cases["a.e"].failure
+        assert not cases["a.b"].skipped
+
+    def test_a_limit_of_one_s_own_far_from_the_figure_is_named_unless_it_says_why(self, study):
+        outcomes = [
+            Claim("a.near", "", "", "1", high=1e-2).judge(2e-3),
+            Claim("a.far", "", "", "1", high=1e-2).judge(9e-4),
+            Claim("a.reason", "", "", "1", high=1e-2, wide="rounding").judge(9e-4),
+            Claim("a.paper", "", "", "1", high=1e-2, threshold=Threshold.PAPER).judge(9e-4),
+            Claim("a.prototype", "", "", "1", high=1e-2, threshold=Threshold.PROTOTYPE).judge(9e-4),
+        ]
+        assert loose(outcomes) == ["a.far", "a.prototype"]
+        page = render([StudyResult(study("a", []), tuple(outcomes), (), 1.0)], 1.0)
+        assert "off, without a reason: a.far, a.prototype." in page
+
+    def test_the_tally_counts_only_what_shows_something(self):
+        fitted = Claim("a.e", "Fitted", "Him", "s", high=3.0, threshold=Threshold.FITTED)
+        assert tally([fitted.judge(2.0)]) == "0 claims hold, 0 fail, 1 fitted"
+        assert tally([fitted.judge(4.0)]) == "0 claims hold, 1 fail", "what was fitted must stay met"

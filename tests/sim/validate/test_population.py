@@ -164,8 +164,17 @@ def test_medians_and_means_are_those_of_all_satellites(studies, change, expected
     assert {o.claim.id.rpartition(".")[2] for o in outcomes if o.verdict is ClaimVerdict.FAIL} == expected
 
 
-def test_pointing_of_cubesats_is_reported(studies):
-    outcome = next(
-        o for o in studies["3u"].conclude(flights(studies["3u"])) if o.claim.id.endswith("pointing")
-    )
-    assert (outcome.ours, outcome.claim.limits) == (1.5, "no limit")
+def test_pointing_of_cubesats_is_judged_where_their_coils_can_point_them(studies):
+    study = studies["6u"]
+    bad = [
+        FlightResult(flight.order, flight.summary, GOOD | {"pointing_deg": 8.1}) for flight in flights(study)
+    ]
+    assert {o.claim.id for o in study.conclude(bad) if o.verdict is ClaimVerdict.FAIL} == {
+        "population.6u.pointing"
+    }
+    assert not [figure for figure in studies["3u"].figures if figure.id == "pointing"]
+
+
+def test_every_claim_has_a_limit(studies):
+    for study in studies.values():
+        assert all(figure.low > -inf or figure.high < inf for figure in study.figures)
