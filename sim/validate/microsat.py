@@ -116,9 +116,9 @@ def consistency() -> Study:
     Attitude: any. Rate, bias and torque: any direction; the rate's size uniform up to ``RATE_DEGPS``, the
     logarithm of the bias's and torque's sizes uniform within ``BIAS_SIZES_NT`` and ``TORQUES_NM``. The torque
     varies in a day by up to ``DAILY_PART`` of itself, which the table declares, and holds no white noise, of
-    which the filter assumes some. So the mean NEES need not be that of chi-square, 6 for six states: what is less uncertain than
-    assumed lowers it. Above the one-sided bound of chi-square for so many runs the filter claims more than it
-    knows.
+    which the filter assumes some. So the mean NEES need not be that of chi-square, 6 for six states: what is
+    less uncertain than assumed lowers it. Above the one-sided bound of chi-square for so many runs the filter
+    claims more than it knows.
     """
     high = float(chi2.ppf(NEES_CONFIDENCE, NEES_STATES * NEES_RUNS)) / NEES_RUNS
     statement = f"Mean NEES of attitude and rate after one orbit, {NEES_RUNS} runs, truth not of its priors"
