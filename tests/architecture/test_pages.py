@@ -56,3 +56,20 @@ SOURCES = "\n".join(
 )
 def test_a_name_that_the_glossary_gives_is_in_the_code(name):
     assert re.search(rf"\b{name}\b", SOURCES)
+
+
+LAWS_PAGE = (ROOT / "docs" / "laws.md").read_text(encoding="utf-8")
+FIGURES = re.split(r"\n- ", LAWS_PAGE.partition("Each figure below")[2])[1:]
+
+
+def test_the_page_of_laws_has_its_figures_at_its_end_alone():
+    assert len(FIGURES) > 10
+    before = LAWS_PAGE.partition("Each figure below")[0]
+    assert not re.findall(r"\d deg RMS|\d %", before)
+
+
+@pytest.mark.parametrize("figures", FIGURES, ids=lambda text: text.partition("`")[2].partition("`")[0])
+def test_figures_of_a_law_name_the_test_or_the_command_that_gives_them(figures):
+    tests = re.findall(r"`(test_\w+\.py)`", figures)
+    assert tests or re.search(r"`(torquer|make) ", figures)
+    assert all((ROOT / "tests" / "fsw" / "core" / "laws" / name).exists() for name in tests)
