@@ -35,10 +35,11 @@ class Real(NamedTuple):
 class ErrorLimits(NamedTuple):
     """Of the pointing in the last orbit and of the estimate, RMS in deg, and of settling under 5 deg.
 
-    None where the law cannot come so near: ``pd`` has no answer to a constant torque but its stiffness.
+    None where the satellite cannot do it: ``pd`` answers a constant torque by its stiffness alone, and the
+    pulses of the 3U, 0.048 A m^2 for 3 s of 103 s, are in the mean less than such a dipole. The rest is judged.
     """
 
-    pointing_deg: float
+    pointing_deg: float | None
     estimate_deg: float
     settle_orbits: float | None
 
@@ -57,25 +58,11 @@ class Case(NamedTuple):
 
 CASES = (
     Case("kalman-1u", 6.0, Real(2e-9, 2e-3), ErrorLimits(2.0, 0.3, 3.0), ErrorLimits(15.0, 0.5, None)),
-    Case("kalman-50kg", 6.0, Real(1e-7, 0.1), ErrorLimits(3.0, 0.3, 3.0), ErrorLimits(5.0, 0.4, 6.0)),
-    Case("kalman-tons", 6.0, Real(1e-4, 3.0), ErrorLimits(2.5, 0.3, 3.0), ErrorLimits(2.5, 0.3, 3.0)),
-    Case(
-        "posat1-ekf",
-        6.0,
-        Real(2e-6, 0.3),
-        ErrorLimits(9.0, 9.0, 9.0),
-        ErrorLimits(9.0, 9.0, 9.0),
-        turned=False,
-    ),
-    Case("cubesat3u", 6.0, Real(3e-9, 2e-3), ErrorLimits(9.0, 9.0, 9.0), ErrorLimits(9.0, 9.0, 9.0)),
-    Case(
-        "tumbling",
-        9.0,
-        Real(1e-7, 0.03),
-        ErrorLimits(9.0, 9.0, 9.0),
-        ErrorLimits(9.0, 9.0, 9.0),
-        turned=False,
-    ),
+    Case("kalman-50kg", 6.0, Real(1e-7, 0.1), ErrorLimits(3.0, 0.3, 3.0), ErrorLimits(5.0, 0.5, 6.0)),
+    Case("kalman-tons", 6.0, Real(1e-4, 3.0), ErrorLimits(2.0, 0.3, 3.0), ErrorLimits(2.0, 0.3, 3.0)),
+    Case("posat1-ekf", 6.0, Real(2e-6, 0.3), ErrorLimits(4.0, 0.3, 3.0), ErrorLimits(4.0, 0.3, 3.0), False),
+    Case("cubesat3u", 6.0, Real(3e-9, 2e-3), ErrorLimits(2.5, 0.3, 3.0), ErrorLimits(None, 0.5, None)),
+    Case("tumbling", 9.0, Real(1e-7, 0.03), ErrorLimits(3.0, 0.3, 8.0), ErrorLimits(9.0, 0.5, 9.0), False),
 )
 
 

@@ -43,8 +43,9 @@ class TestCase:
         flights = [flight(task.args[0], **values) for task in study.tasks]
         flights[place] = flight(study.tasks[place].args[0], **values | {what: 99.0})
         failed = {o.claim.id for o in study.conclude(flights) if o.verdict is ClaimVerdict.FAIL}
-        no_limit = what == "settling" and (case.shipped, case.disturbed)[place].settle_orbits is None
-        assert failed == (set() if no_limit else {f"scenario-{case.scenario}.{what}_{group}"})
+        limits = (case.shipped, case.disturbed)[place]
+        limit = {"pointing": limits.pointing_deg, "settling": limits.settle_orbits}.get(what, 1.0)
+        assert failed == (set() if limit is None else {f"scenario-{case.scenario}.{what}_{group}"})
 
 
 def flight(order, pointing, estimate, settling):
