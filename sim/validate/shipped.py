@@ -36,7 +36,8 @@ class ErrorLimits(NamedTuple):
     """Of the pointing in the last orbit and of the estimate, RMS in deg, and of settling under 5 deg.
 
     None where the satellite cannot do it: ``pd`` answers a constant torque by its stiffness alone, and the
-    pulses of the 3U, 0.048 A m^2 for 3 s of 103 s, are in the mean less than such a dipole. The rest is judged.
+    pulses of the 3U, 0.048 A m^2 for 3 s of 103 s, are in the mean less than such a dipole. What is judged
+    then is the rest.
     """
 
     pointing_deg: float | None
@@ -62,7 +63,7 @@ CASES = (
     Case("kalman-tons", 6.0, Real(1e-4, 3.0), ErrorLimits(2.0, 0.3, 3.0), ErrorLimits(2.0, 0.3, 3.0)),
     Case("posat1-ekf", 6.0, Real(2e-6, 0.3), ErrorLimits(4.0, 0.3, 3.0), ErrorLimits(4.0, 0.3, 3.0), False),
     Case("cubesat3u", 6.0, Real(3e-9, 2e-3), ErrorLimits(2.5, 0.3, 3.0), ErrorLimits(None, 0.5, None)),
-    Case("tumbling", 9.0, Real(1e-7, 0.03), ErrorLimits(3.0, 0.3, 8.0), ErrorLimits(9.0, 0.5, 9.0), False),
+    Case("tumbling", 9.0, Real(1e-7, 0.03), ErrorLimits(3.0, 0.3, 8.0), ErrorLimits(3.5, 0.5, 8.0), False),
 )
 
 
