@@ -8,13 +8,14 @@
         assert flight.audit().ok
 
 The fixture ``fly`` flies on the virtual bus, in the test's own process, into a folder of pytest's. A flight
-that fails (limits broken, replay not exact, a law that raises) fails the test.
+that fails (limits broken, replay not exact, a requirement missed, a law that raises) fails the test.
+``flight.expect("requirements == met")`` demands that the requirements of the scenario were judged as well.
 """
 
 import operator
 import re
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -32,6 +33,8 @@ _COMPARISONS: dict[str, Callable[[Any, Any], bool]] = {
     "==": operator.eq,
     "!=": operator.ne,
 }
+_WORST_FIRST = ("failed", "not judged", "met")
+"""Verdicts of requirements."""
 _EXPRESSION = re.compile(r"\s*(?P<key>[\w.]+)\s*(?P<sign><=|>=|==|!=|<|>)\s*(?P<value>\S.*?)\s*")
 
 
@@ -54,7 +57,8 @@ class FlownScenario:
 
         Args:
             expressions: ``KEY SIGN VALUE``: a dotted key of summary.json, one of < <= > >= == !=, and a
-                value as in TOML or a bare word.
+                value as in TOML or a bare word. ``requirements`` is the verdict of all requirements of the
+                scenario together, met, failed or not judged; ``requirements.ape`` that of one index.
 
         Raises:
             AssertionError: one does not hold; all that do not are named.
@@ -74,6 +78,8 @@ class FlownScenario:
             raise ExpressionError(
                 f"{expression!r} is none: write for instance pointing_deg.rms_last_orbit < 3"
             )
+        if found["key"].partition(".")[0] == "requirements":
+            return self._requirements_missed(expression, found)
         value: Any = self.run.summary
         for part in found["key"].split("."):
             if not isinstance(value, Mapping) or part not in value:
@@ -85,6 +91,23 @@ class FlownScenario:
         except TypeError as error:
             raise ExpressionError(f"{expression!r}: {error}") from None
         return "" if holds else f"{expression} does not hold: {value!r}"
+
+    def _requirements_missed(self, expression: str, found: re.Match[str]) -> str:
+        """The same over the requirements of the scenario: the worst verdict of those that are meant."""
+        index = found["key"].partition(".")[2]
+        stated: Sequence[Mapping[str, Any]] = self.run.summary["requirements"]
+        meant = [one for one in stated if index in ("", one["index"])]
+        if not meant:
+            there = ", ".join(dict.fromkeys(one["index"] for one in stated)) or "none"
+            raise ExpressionError(f"{expression!r}: no such requirement in the scenario, of {there}")
+        if found["sign"] not in ("==", "!=") or found["value"] not in _WORST_FIRST:
+            allowed = ", ".join(_WORST_FIRST)
+            raise ExpressionError(f"{expression!r}: a verdict is == or != one of {allowed}")
+        worst = min((one["verdict"] for one in meant), key=_WORST_FIRST.index)
+        if _COMPARISONS[found["sign"]](worst, found["value"]):
+            return ""
+        told = "; ".join(f"{one['verdict']}: {one['text']}" for one in meant if one["verdict"] == worst)
+        return f"{expression} does not hold: {told}"
 
 
 class Fly(Protocol):

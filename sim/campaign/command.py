@@ -19,6 +19,7 @@ from sim.campaign.executors.interface import Executor
 from sim.campaign.executors.processes import Processes
 from sim.campaign.one_run import Keep, RunTask
 from sim.campaign.report.analysis import CampaignAnalysis, analyse
+from sim.campaign.report.verdicts import CampaignVerdict, verdicts
 from sim.campaign.results.row import RunRow, Status
 from sim.campaign.results.store import LOCK, RESULTS, Results, open_results
 from sim.console import detail, warn
@@ -54,8 +55,13 @@ class FlownCampaign:
 
     @property
     def ok(self) -> bool:
-        """Every run was flown and kept the limits of the coils."""
-        return not (self.failed or self.broken)
+        """Every run was flown and kept the limits of the coils; no requirement of the campaign is missed."""
+        return not self.complaints
+
+    @property
+    def verdicts(self) -> list[CampaignVerdict]:
+        """Of the requirements and the limits on indices."""
+        return verdicts(self.campaign, self.analysis)
 
     @property
     def complaints(self) -> list[str]:
@@ -65,6 +71,7 @@ class FlownCampaign:
             sentences.append(f"{_listed(self.failed)} failed, see the column failure; --retry flies again")
         if self.broken:
             sentences.append(f"{_listed(self.broken)} broke the limits of the coils")
+        sentences += [str(one) for one in self.verdicts if one.met is False]
         return sentences
 
 

@@ -63,6 +63,59 @@ def test_what_cannot_be_judged_is_no_pass(flown, expression, what):
         flown.expect(expression)
 
 
+REQUIREMENTS = [
+    {"index": "settling", "verdict": "met", "text": "settling of whole attitude from 0.9 orbits on"},
+    {"index": "ape", "verdict": "not judged", "text": "APE: judged by orbit 5, flown were 4.00 orbits"},
+]
+
+
+@pytest.fixture
+def required(tmp_path):
+    def flown(requirements):
+        (tmp_path / "summary.json").write_text(json.dumps({**SUMMARY, "requirements": requirements}))
+        return FlownScenario(Run(tmp_path))
+
+    return flown
+
+
+class TestRequirementsOfTheScenario:
+    def test_are_met_if_each_is(self, required):
+        flown = required(REQUIREMENTS[:1])
+        flown.expect("requirements == met", "requirements.settling == met", "requirements != failed")
+
+    def test_that_were_not_judged_are_not_met(self, required):
+        flown = required(REQUIREMENTS)
+        flown.expect("requirements.settling == met", "requirements == not judged")
+        with pytest.raises(AssertionError, match="not judged: APE: judged by orbit 5") as caught:
+            flown.expect("requirements == met")
+        assert "settling" not in str(caught.value)
+
+    def test_one_that_failed_counts_more_than_one_not_judged(self, required):
+        failed = {"index": "ake", "verdict": "failed", "text": "AKE 3 deg RMS, at most 1 deg"}
+        with pytest.raises(AssertionError, match="failed: AKE 3 deg RMS"):
+            required([*REQUIREMENTS, failed]).expect("requirements == met")
+
+    @pytest.mark.parametrize(
+        ("expression", "what"),
+        [
+            ("requirements == ok", "one of failed, not judged, met"),
+            ("requirements < met", "== or !="),
+            ("requirements.rate == met", "no such requirement in the scenario, of settling, ape"),
+        ],
+    )
+    def test_what_cannot_be_judged_is_no_pass(self, required, expression, what):
+        with pytest.raises(ExpressionError, match=what):
+            required(REQUIREMENTS).expect(expression)
+
+    def test_a_scenario_without_any_meets_none(self, required):
+        with pytest.raises(ExpressionError, match="no such requirement in the scenario, of none"):
+            required([]).expect("requirements == met")
+
+    def test_of_a_real_flight(self, fly):
+        flight = fly("microsat", orbits=0.005)
+        flight.expect("requirements == not judged", "requirements.ake != met")
+
+
 def test_a_flight_as_a_fixture(fly):
     flight = fly("microsat", orbits=0.03, seed=7, control={"k_w": 5e6})
     flight.expect("limits_ok == true", "seed == 7", "ticks == 181", "replay.bit_exact == true")

@@ -58,7 +58,7 @@ class CampaignRuns:
 
     @property
     def ok(self) -> bool:
-        """Every run was flown and kept the limits of the coils; ``statistics`` has the requirements."""
+        """Every run was flown and kept the limits of the coils; no requirement of the campaign is missed."""
         return self.flown.ok
 
     @property

@@ -88,5 +88,5 @@ def campaign(
         fail(sentence)
     flown = done.flown
     answer({**done.statistics, "folder": done.path, "page": done.page, "limits_broken": flown.broken})
-    write_junit(junit, "torquer campaign", suites(flown.campaign, flown.analysis, flown.broken))
+    write_junit(junit, "torquer campaign", suites(flown.verdicts, flown.analysis, flown.broken))
     return int(not done.ok)

@@ -6,6 +6,7 @@ from pathlib import Path
 from sim.campaign.definition.campaign import Campaign
 from sim.campaign.report import pictures, text
 from sim.campaign.report.analysis import CampaignAnalysis
+from sim.campaign.report.verdicts import verdicts
 from sim.drawing.canvas import style
 from sim.drawing.inline_svg import chart
 from sim.drawing.page_parts import PageHeader, PageSection, Tile, sections_page
@@ -28,18 +29,20 @@ def write_page(path: Path, campaign: Campaign, analysis: CampaignAnalysis, versi
             f"{len(analysis.inputs)} dispersed numbers",
             f"torquer {version}",
         ],
-        badges=_badges(analysis),
+        badges=_badges(campaign, analysis),
         tiles=_tiles(campaign, analysis),
     )
     html = sections_page(header, sections)
     path.write_text(html, encoding="utf-8")
 
 
-def _badges(analysis: CampaignAnalysis) -> list[tuple[str, str]]:
+def _badges(campaign: Campaign, analysis: CampaignAnalysis) -> list[tuple[str, str]]:
     success = analysis.success
     badges = [
         ("good" if success.count == success.total else "note", f"{success.count} of {success.total} succeed")
     ]
+    if missed := sum(one.met is False for one in verdicts(campaign, analysis)):
+        badges.append(("bad", f"{missed} of its limits missed"))
     if analysis.failures:
         badges.append(("bad", f"{len(analysis.failures)} failed"))
     return badges

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from sim.campaign.definition.campaign import Campaign
 from sim.campaign.report.analysis import WORST, CampaignAnalysis, FigureStatistics
+from sim.campaign.report.verdicts import WORDS, meets, proportion, verdicts
 from sim.drawing.page_parts import Table
 from sim.statistics.indices import IndexPercentile, Interpretation
 from sim.statistics.order_statistics import Percentile, runs_needed
@@ -17,7 +18,6 @@ INDEX_NAMES = {
 }
 STRONGEST = 3
 """Dependences on the terminal."""
-VERDICTS = {True: "met", False: "missed", None: "more runs must tell"}
 _ABSENT = "–"
 
 
@@ -26,6 +26,7 @@ def lines(campaign: Campaign, analysis: CampaignAnalysis) -> list[str]:
     orbits = campaign.base["time"]["orbits"]
     heading = f"{campaign.name}: {analysis.done + len(analysis.failures)} runs of {orbits:g} orbits"
     rows = [heading, f"  success    {proportion(analysis.success, campaign)}"]
+    rows += [f"  required   {one}" for one in verdicts(campaign, analysis) if one.group == "requirement"]
     rows += [f"  {figure.name}: {_percentiles(figure)}" for figure in analysis.figures]
     strongest = [
         f"{each.column.removeprefix('input_')} {each.correlation.value:+.2f}"
@@ -41,28 +42,23 @@ def lines(campaign: Campaign, analysis: CampaignAnalysis) -> list[str]:
     limited = [name for name in analysis.indices if getattr(campaign.index, name) is not None]
     for name in limited:
         limit, found = getattr(campaign.index, name), analysis.indices[name]
-        verdicts = ", ".join(f"{how} {_index_cell(found[how], how, limit)}" for how in Interpretation)
-        rows.append(f"  {name.upper()} <= {limit:g} deg: {verdicts}")
+        cells = ", ".join(f"{how} {_index_cell(found[how], how, limit)}" for how in Interpretation)
+        rows.append(f"  {name.upper()} <= {limit:g} deg: {cells}")
     if analysis.failures:
         run, why = next(iter(analysis.failures.items()))
         rows.append(f"  failed     {len(analysis.failures)}, first run {run}: {why}")
     return rows
 
 
-def proportion(found: Proportion, campaign: Campaign) -> str:
-    """A proportion with its bounds."""
-    confidence = 100.0 * campaign.statistics.confidence
-    return (
-        f"{found.count} of {found.total}, {100.0 * found.value:.1f} % "
-        f"({100.0 * found.low:.1f} to {100.0 * found.high:.1f} % with {confidence:g} % confidence)"
-    )
-
-
 def requirement_table(campaign: Campaign, analysis: CampaignAnalysis) -> Table:
-    """How many runs meet each requirement."""
-    rows = [(str(entry), *_cells_of(found)) for entry, found in analysis.by_requirement.items()]
-    rows.append(("all, and the limits of the coils", *_cells_of(analysis.success)))
-    return Table(("requirement", "runs that meet it", "part", "at least", "at most"), rows)
+    """How many runs meet each requirement, and whether that is the probability of the campaign."""
+    wanted = f"of {100.0 * campaign.statistics.probability:g} %"
+    rows = [
+        (str(entry), *_cells_of(found), WORDS[meets(found, campaign)])
+        for entry, found in analysis.by_requirement.items()
+    ]
+    rows.append(("all, and the limits of the coils", *_cells_of(analysis.success), _ABSENT))
+    return Table(("requirement", "runs that meet it", "part", "at least", "at most", wanted), rows)
 
 
 def _cells_of(found: Proportion) -> tuple[str, ...]:
@@ -102,7 +98,7 @@ def index_table(campaign: Campaign, analysis: CampaignAnalysis) -> Table:
 def _index_cell(found: IndexPercentile, how: Interpretation, limit: float | None) -> str:
     """The percentile, its bound where it has one of its own, and the verdict."""
     bound = "" if how is Interpretation.TEMPORAL else f" (bound {_bound(found.bound)})"
-    verdict = "" if limit is None else f": {VERDICTS[found.within(limit)]}"
+    verdict = "" if limit is None else f": {WORDS[found.within(limit)]}"
     return f"{found.value:.4g}{bound}{verdict}"
 
 

@@ -5,6 +5,7 @@ from typing import Any
 
 from sim.campaign.definition.campaign import Campaign
 from sim.campaign.report.analysis import CampaignAnalysis, FigureStatistics
+from sim.campaign.report.verdicts import meets, verdicts
 from sim.statistics.proportion import Proportion
 
 Json = dict[str, Any]
@@ -19,7 +20,11 @@ def as_json(campaign: Campaign, analysis: CampaignAnalysis) -> Json:
         "probability": campaign.statistics.probability,
         "confidence": campaign.statistics.confidence,
         "success": _proportion(analysis.success),
-        "requirements": {str(entry): _proportion(met) for entry, met in analysis.by_requirement.items()},
+        "requirements": {
+            str(entry): {**_proportion(found), "met": meets(found, campaign)}
+            for entry, found in analysis.by_requirement.items()
+        },
+        "missed": [str(one) for one in verdicts(campaign, analysis) if one.met is False],
         "figures": {figure.name: _figure(figure) for figure in analysis.figures},
         "indices_deg": {
             name: {how.value: asdict(percentile) for how, percentile in found.items()}

@@ -25,6 +25,8 @@ from sim.record.run_dir import fingerprint
 RESULTS, LOCK = "results.sqlite", "campaign.lock"
 SCHEMA_VERSION = 1
 DIGESTS = ("frames_sha256", "commands_sha256")
+FIGURES = dict.fromkeys(NUMBERS, "REAL") | dict.fromkeys((*TEXTS, *DIGESTS), "TEXT")
+"""Columns that every campaign has, each with its type in SQLite."""
 _TABLES = """
 CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL);
 CREATE TABLE runs (run INTEGER PRIMARY KEY, status TEXT NOT NULL, failure TEXT NOT NULL,
@@ -175,7 +177,7 @@ def _lock(path: Path) -> Iterator[None]:
 def _create(results: Results, campaign: Campaign) -> None:
     inputs = input_cells(campaign.draw(0).inputs)
     kinds = {name: "TEXT" if isinstance(value, str) else "NUMERIC" for name, value in inputs.items()}
-    kinds |= dict.fromkeys(NUMBERS, "REAL") | dict.fromkeys((*TEXTS, *DIGESTS), "TEXT")
+    kinds |= FIGURES
     columns = "".join(f", {_quoted(name)} {kind}" for name, kind in kinds.items())
     meta = {
         "schema_version": str(SCHEMA_VERSION),
@@ -194,10 +196,17 @@ def _check(results: Results, campaign: Campaign | None) -> None:
     found = results.meta("schema_version")
     if found != str(SCHEMA_VERSION):
         raise HarnessError(f"{results.path}: schema_version is {found}, only {SCHEMA_VERSION} can be read")
-    if campaign is not None and results.meta("campaign_sha256") != campaign.digest:
+    if campaign is None:
+        return
+    folder, kinds = results.path.parent, results.kinds()
+    if absent := [name for name in FIGURES if name not in kinds]:
         raise HarnessError(
-            f"{results.path.parent} holds the runs of another campaign, which differs in more than the "
-            "number of runs: choose another --out"
+            f"{folder} was begun by an older torquer, whose runs have no {absent[0]}: choose another --out"
+        )
+    if results.meta("campaign_sha256") != campaign.digest:
+        raise HarnessError(
+            f"{folder} holds the runs of another campaign, which differs in more than the number of runs, "
+            "or of another version of torquer: choose another --out"
         )
 
 

@@ -7,7 +7,8 @@ def test_lines_say_what_matters(campaign_of_40, analysis):
     lines = text.lines(campaign_of_40, analysis)
     assert lines[0] == "microsat: 40 runs of 0.02 orbits"
     assert lines[1] == "  success    25 of 40, 62.5 % (48.3 to 75.3 % with 90 % confidence)"
-    assert lines[2].startswith("  pointing_deg_rms_last_orbit: 50 % 49.25 (41 to 59)")
+    assert lines[2].startswith("  required   missed: pointing_deg_rms_last_orbit <= 60: 25 of 40, ")
+    assert lines[3].startswith("  pointing_deg_rms_last_orbit: 50 % 49.25 (41 to 59)")
     assert "depends on initial_angle_deg +1.00" in "\n".join(lines)
     assert "  worst runs 39 (78.5), 38 (77), 37 (75.5), 36 (74), 35 (72.5)" in lines
     assert lines[-1] == "  failed     2, first run 7: run 7: <too> fast"

@@ -149,3 +149,16 @@ def test_results_of_another_version_are_refused(small, tmp_path):
     expected = f"schema_version is 99, only {SCHEMA_VERSION} can be read"
     with pytest.raises(HarnessError, match=expected), open_results(tmp_path, small):
         pass
+
+
+def test_a_campaign_of_an_older_torquer_is_refused_and_left_as_it_was(small, tmp_path):
+    with open_results(tmp_path, small) as results:
+        results.add(row_of(small, 0))
+    with sqlite3.connect(tmp_path / RESULTS) as connection:
+        connection.execute("ALTER TABLE runs DROP COLUMN requirements_failed")
+        connection.execute("UPDATE meta SET value = 'x' WHERE key = 'campaign_sha256'")
+    says = "was begun by an older torquer, whose runs have no requirements_failed: choose another --out"
+    with pytest.raises(HarnessError, match=says), open_results(tmp_path, small):
+        pass
+    with read_results(tmp_path) as results:
+        assert results.runs() == [0], "what is there can still be read and flown again"

@@ -1,0 +1,73 @@
+"""Each requirement of a campaign, and each limit on an index: met, missed, or more runs must tell."""
+
+from typing import NamedTuple
+
+from sim.campaign.definition.campaign import Campaign
+from sim.campaign.report.analysis import CampaignAnalysis
+from sim.statistics.proportion import Proportion
+
+WORDS = {True: "met", False: "missed", None: "more runs must tell"}
+
+
+class CampaignVerdict(NamedTuple):
+    """One of them.
+
+    Attributes:
+        group: requirement or index.
+        name: the limit, as text.
+        met: None if more runs would have to tell.
+        found: what the runs show.
+    """
+
+    group: str
+    name: str
+    met: bool | None
+    found: str
+
+    def __str__(self) -> str:
+        return f"{WORDS[self.met]}: {self.name}: {self.found}"
+
+
+def meets(found: Proportion, campaign: Campaign) -> bool | None:
+    """Whether the part of the runs that meet a requirement is the probability of the campaign or more.
+
+    None if more runs would have to tell: it is, but its lower bound is not.
+    """
+    if found.value < campaign.statistics.probability:
+        return False
+    return True if found.low >= campaign.statistics.probability else None
+
+
+def verdicts(campaign: Campaign, analysis: CampaignAnalysis) -> list[CampaignVerdict]:
+    """Of the requirements in their order, then of the limits on indices under each interpretation."""
+    wanted = 100.0 * campaign.statistics.probability
+    requirements = [
+        CampaignVerdict(
+            "requirement",
+            str(entry),
+            meets(found, campaign),
+            f"{proportion(found, campaign)}, to be {wanted:g} %",
+        )
+        for entry, found in analysis.by_requirement.items()
+    ]
+    indices = [
+        CampaignVerdict(
+            "index",
+            f"{name} <= {limit:g} deg, {how}",
+            found.within(limit),
+            f"it is {found.value:.4g} deg",
+        )
+        for name, percentiles in analysis.indices.items()
+        if (limit := getattr(campaign.index, name)) is not None
+        for how, found in percentiles.items()
+    ]
+    return requirements + indices
+
+
+def proportion(found: Proportion, campaign: Campaign) -> str:
+    """A proportion with its bounds."""
+    confidence = 100.0 * campaign.statistics.confidence
+    return (
+        f"{found.count} of {found.total}, {100.0 * found.value:.1f} % "
+        f"({100.0 * found.low:.1f} to {100.0 * found.high:.1f} % with {confidence:g} % confidence)"
+    )
