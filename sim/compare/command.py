@@ -20,6 +20,7 @@ from sim.progress import note, progress
 from sim.record.destination import check_folder
 from sim.record.run_dir import write_json
 from sim.report.figures.controlled import SETTLED_DEG
+from sim.report.summary_text import last_orbit
 from sim.scenario.schema import Scenario, load, orbit_period_s, parse_settings
 
 JSON, CSV, PICTURE, PAGE = "compare.json", "compare.csv", "compare.png", "compare.html"
@@ -88,7 +89,7 @@ def compare(
     finally:  # flights that are done are written when the rest is given up
         scores = ranked(result.score for result in results)
         description["complete"] = len(results) == len(studies)
-        _write(folder, scenario, scores, description, results)
+        _write(folder, scenario, scores, description, results, _window(scenario, ticks))
     say(_heading(scenario, seed, ticks))
     say(as_text(scores))
     say(f"files: {folder / JSON}, {CSV}, {PICTURE}, {PAGE}")
@@ -107,12 +108,15 @@ def compare(
 def _heading(scenario: Scenario, seed: int, ticks: int) -> str:
     what = "axis 1 from the vertical" if by_axis1(scenario) else "the whole attitude"
     flown_s = ticks / scenario.time.tick_hz
-    orbits = flown_s / orbit_period_s(scenario)
-    window = "the last orbit" if orbits >= 0.999 else f"the whole flight of {orbits:.2g} orbits"
     return (
         f"{scenario.name}, seed {seed}, {flown_s:.0f} s: {what}; settled: under {SETTLED_DEG:g} deg from "
-        f"then on; RMS, max and rate over {window}"
+        f"then on; RMS, max and rate over {_window(scenario, ticks)}"
     )
+
+
+def _window(scenario: Scenario, ticks: int) -> str:
+    """The part of a flight that its figures are over."""
+    return last_orbit({"orbits": ticks / scenario.time.tick_hz / orbit_period_s(scenario)})
 
 
 def _write(
@@ -121,6 +125,7 @@ def _write(
     scores: list[Score],
     description: dict[str, object],
     results: list[Result],
+    window: str,
 ) -> None:
     seed = f"seed {description['seed']}"
     judged = "by axis 1" if description["pointing"] == "axis1" else "by the whole attitude"
@@ -131,7 +136,8 @@ def _write(
         write_json(folder / JSON, as_json(scores, description))
         (folder / CSV).write_text(as_csv(scores), encoding="utf-8")
         picture(folder / PICTURE, f"{scenario.name}, {seed}", results)
-        (folder / PAGE).write_text(compare_page(scenario, facts, scores, results), encoding="utf-8")
+        page = compare_page(scenario, facts, scores, results, window)
+        (folder / PAGE).write_text(page, encoding="utf-8")
     except OSError as error:
         raise HarnessError(f"{folder}: cannot be written ({error.strerror or error})") from None
 

@@ -15,17 +15,25 @@ from sim.scenario.schema import Scenario
 
 PANEL_IN = 2.8
 _MEANING = (
-    "Settled: under 5° from then on. RMS, max and rate over the last orbit; ∫ m² is the energy lost in the "
+    "Settled: under 5° from then on. RMS, max and rate over {window}; ∫ m² is the energy lost in the "
     "coils but for a factor. Best first, each aim of laws for itself."
 )
 
 
 def compare_page(
-    scenario: Scenario, facts: Sequence[str], scores: Sequence[Score], results: Sequence[Result]
+    scenario: Scenario,
+    facts: Sequence[str],
+    scores: Sequence[Score],
+    results: Sequence[Result],
+    window: str,
 ) -> str:
-    """The page of a comparison; without a flight it has no chart."""
+    """The page of a comparison whose figures are over ``window``; without a flight it has no chart."""
     flights = [result for result in results if result.history is not None]
-    sections = [PageSection("scores", "The laws", _MEANING, (as_table(scores),), text=_failures(scores))]
+    sections = [
+        PageSection(
+            "scores", "The laws", _MEANING.format(window=window), (as_table(scores),), text=_failures(scores)
+        )
+    ]
     time = None
     if flights and flights[0].history is not None:
         first = flights[0].history
@@ -35,7 +43,9 @@ def compare_page(
             words = f"RMS of {WINDOW_ORBITS:g} orbits about each time. Grey bands are eclipses."
             charts = (chart("pointing", drawn.picture, words, drawn.data),)
         sections.append(PageSection("pointing", "Pointing error over time", charts=charts))
-    header = PageHeader("Comparison of control laws", scenario.name, facts, _badges(scores), _tiles(scores))
+    header = PageHeader(
+        "Comparison of control laws", scenario.name, facts, _badges(scores), _tiles(scores, window)
+    )
     return sections_page(header, sections, time)
 
 
@@ -64,16 +74,15 @@ def _badges(scores: Sequence[Score]) -> list[tuple[str, str]]:
     return badges
 
 
-def _tiles(scores: Sequence[Score]) -> list[Tile]:
+def _tiles(scores: Sequence[Score], window: str) -> list[Tile]:
     """The best of each driver."""
     tiles = []
     for driver in Driver:
         flown = [score for score in scores if score.driver is driver and score.pointing_rms_deg is not None]
         if flown:
             best = min(flown, key=lambda score: score.pointing_rms_deg or 0.0)
-            tiles.append(
-                Tile(f"Best, {driver.value}", best.law, f"{best.pointing_rms_deg:.2f}° RMS, last orbit")
-            )
+            note = f"{best.pointing_rms_deg:.2f}° RMS, {window.removeprefix('the ')}"
+            tiles.append(Tile(f"Best, {driver.value}", best.law, note))
     return tiles
 
 

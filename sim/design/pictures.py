@@ -102,7 +102,9 @@ def _gain_panel(panel: Axes, one: GainMap, marks: Marks, reach: float) -> None:
                 gains.k_w, gains.k_a, marker, label=label, color="#ffd84d" if marker == "*" else MARK,
                 markeredgecolor=ON_MAP, markersize=13 if marker == "*" else 8, linestyle="none",
             )  # fmt: skip
-    panel.legend(loc="upper left", frameon=True, facecolor="white", framealpha=1.0)
+    panel.legend(
+        loc="upper left", frameon=True, facecolor=MARK, labelcolor=ON_MAP, framealpha=1.0, borderpad=0.5
+    )
 
 
 def _reach(*degrees: Array) -> float:
@@ -129,7 +131,7 @@ def _tilt_panel(panel: Axes, maps: InertiaMaps) -> None:
     panel.set_ylabel("degree of stability (1/rad)")
     panel.set_title("directions of the principal axes")
     panel.margins(x=0.0)
-    panel.legend(loc="best", frameon=True, facecolor="white")
+    panel.legend(loc="best", frameon=True, facecolor="white", borderpad=0.5)
 
 
 def _colour_bar(figure: Figure, panels: list[Axes], reach: float) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
@@ -30,6 +31,8 @@ WIDTH_IN = 8.2
 LEFT_IN, RIGHT_IN, BOTTOM_IN = 0.72, 0.12, 0.42
 TITLE_IN, LEGEND_IN = 0.32, 0.19
 """Margins: the same in all charts, so that their times stand under each other."""
+NEAR = 4.0
+"""Values whose factor is smaller are drawn on a linear axis."""
 _STYLE: dict[Any, Any] = {
     "font.family": "sans-serif",
     "font.sans-serif": ["DejaVu Sans"],
@@ -202,11 +205,23 @@ def log_y(panel: Axes, *histories: Array, decades: float) -> None:
         return
     top = min(float(values.max()), 5.0 * float(np.quantile(values, 0.995)))
     bottom = max(float(values.min()), top / 10.0**decades)
-    if top / bottom < 4.0:
+    if top < NEAR * bottom:
         return
     panel.set_yscale("log")
     panel.set_ylim(bottom / 1.3, top * 1.3)
-    few = top / bottom < 50.0
-    panel.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if few else (1.0,)))
-    panel.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    panel.yaxis.set_minor_locator(NullLocator())
+    _plain_numbers(panel.yaxis, top / bottom)
+
+
+def log_x(panel: Axes, low: float, high: float) -> None:
+    """A logarithmic abscissa with plain numbers, for values between two positive ones; linear if near."""
+    if high < NEAR * low:
+        return
+    panel.set_xscale("log")
+    _plain_numbers(panel.xaxis, high / low)
+
+
+def _plain_numbers(axis: Axis, factor: float) -> None:
+    """Powers of ten alone, or 1, 2, 5 where the axis spans a small factor: none runs into the next."""
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if factor < 50.0 else (1.0,)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_locator(NullLocator())

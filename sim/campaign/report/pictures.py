@@ -1,6 +1,7 @@
 """The pictures of a campaign."""
 
 from math import ceil
+from textwrap import wrap
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from sim.campaign.definition.campaign import IndexLimits, StatisticsSection
 from sim.campaign.report.analysis import WORST, CampaignAnalysis, FigureStatistics
-from sim.drawing.canvas import AXES_COLOURS, INK, LIMIT, MORE_COLOURS, MUTED, WIDTH_IN, legend, log_y
+from sim.drawing.canvas import AXES_COLOURS, INK, LIMIT, MORE_COLOURS, MUTED, WIDTH_IN, legend, log_x, log_y
 from sim.statistics.convergence import convergence
 from sim.statistics.order_statistics import Percentile
 from sim.statistics.proportion import clopper_pearson
@@ -23,6 +24,8 @@ COLUMNS = 3
 LOGARITHMIC = 30.0
 """An input that varies by more than this factor is drawn so."""
 MOST_INPUTS, MOST_BINS, MOST_STEPS = 6, 40, 400
+MOST_TICKS, TITLE_WIDTH = 4, 34
+"""Of a panel of the scatter: numbers on its abscissa, characters in a line of its title."""
 
 
 def distributions(analysis: CampaignAnalysis) -> Figure:
@@ -67,7 +70,6 @@ def indices(analysis: CampaignAnalysis, probability: float, limits: IndexLimits)
         panels, ("mixed: part of all times", "ensemble: part of runs, at all times"), strict=False
     ):
         panel.set_title(title)
-        panel.set_xscale("log")
         panel.set_xlabel("deg")
         panel.axhline(probability, color=MUTED, linewidth=0.8, linestyle=(0, (4, 3)))
     for (name, profiles), colour in zip(
@@ -78,7 +80,9 @@ def indices(analysis: CampaignAnalysis, probability: float, limits: IndexLimits)
             panel.plot(np.quantile(values, parts), parts, color=colour, label=name.upper())
             if (limit := getattr(limits, name)) is not None:
                 panel.plot([limit], [probability], "x", color=colour, markersize=7.0)
-    for panel in panels[:2]:
+    for panel, points in zip(panels, (slice(-1), slice(-1, None)), strict=True):
+        values = np.concatenate([profiles[:, points].ravel() for profiles in analysis.profiles.values()])
+        log_x(panel, float(values[values > 0.0].min()), float(values.max()))
         panel.set_ylim(0.0, 1.02)
         legend(panel)
     return figure
@@ -96,13 +100,16 @@ def scatter(analysis: CampaignAnalysis) -> Figure:
         assert found is not None
         x = analysis.inputs[name][places]
         if x.min() > 0.0 and x.max() > LOGARITHMIC * x.min():
-            panel.set_xscale("log")
+            log_x(panel, float(x.min()), float(x.max()))
+        else:
+            panel.xaxis.set_major_locator(MaxNLocator(MOST_TICKS))
         panel.plot(x, first.values, ".", color=AXES_COLOURS[0], markersize=3.0, alpha=0.6)
         worst = first.worst_first[:WORST]
         panel.plot(x[worst], first.values[worst], ".", color=LIMIT, markersize=4.0)
         if first.requirement and np.isfinite(first.requirement.at_most):
             panel.axhline(first.requirement.at_most, color=LIMIT, linewidth=0.8)
-        panel.set_title(f"{name.removeprefix('input_')}\nrank correlation {found.value:+.2f}")
+        title = "\n".join(_words(name.removeprefix("input_")))
+        panel.set_title(f"{title}\nrank correlation {found.value:+.2f}")
     for panel in panels[::COLUMNS]:
         panel.set_ylabel(first.name)
     return figure
@@ -163,6 +170,12 @@ def _grid(count: int, columns: int) -> tuple[Figure, list[Axes]]:
     for panel in panels[count:]:
         panel.remove()
     return figure, panels[:count]
+
+
+def _words(column: str) -> list[str]:
+    """The name of a column in lines that a narrow panel has room for, broken behind underscores."""
+    lines = wrap(column.replace("_", "_ "), TITLE_WIDTH, break_long_words=False)
+    return [line.replace(" ", "") for line in lines]
 
 
 def _mark(panel: Axes, found: Percentile, number: int) -> None:

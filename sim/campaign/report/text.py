@@ -108,8 +108,9 @@ def index_note(campaign: Campaign, analysis: CampaignAnalysis) -> str:
     percent, confidence = f"{100.0 * settings.probability:g} %", f"{100.0 * settings.confidence:g} %"
     held = next(iter(analysis.indices.values()))[Interpretation.TEMPORAL].held
     needed = runs_needed(settings.probability, settings.confidence)
+    counted = "orbit" if settings.last_orbits == 1.0 else f"{settings.last_orbits:g} orbits"
     return (
-        f"Over the last {settings.last_orbits:g} orbits of each run, windows of {settings.window_s:g} s. "
+        f"Over the last {counted} of each run, windows of {settings.window_s:g} s. "
         f"Ensemble: at all times in {percent} of the runs. Mixed: at {percent} of all times of all runs. "
         f"Temporal: at {percent} of the time in the worst of these runs, which bounds {100.0 * held:.1f} % "
         "of the ensemble. "

@@ -36,3 +36,14 @@ function turnedView(canvas, draw) {
 
   return { project };
 }
+
+// Heights of the labels of a picture, by their middles and half their widths: none stands on another.
+function labelPlaces() {
+  const taken = [];
+  return (middle, height, half) => {
+    const over = ([x, y, width]) => Math.abs(x - middle) < width + half && Math.abs(y - height) < 14;
+    while (taken.some(over)) height += 14;
+    taken.push([middle, height, half]);
+    return height;
+  };
+}

@@ -88,6 +88,7 @@ const pulsesNow = (() => {
     const t_s = clock.state.t_s;
     const C = motion.matrix(motion.quaternion(t_s));
     const body = (v) => motion.turned(C, v);
+    const placed = labelPlaces();
 
     const line = (from, to, colour, width, dash = []) => {
       ctx.strokeStyle = theme.colour(colour);
@@ -115,8 +116,9 @@ const pulsesNow = (() => {
       const [lx, ly] = [x + 13 * Math.cos(turn), y + 13 * Math.sin(turn)];
       const half = ctx.measureText(label).width / 2;
       const tx = Math.min(Math.max(lx + half * Math.cos(turn), half + 2), size - half - 2);
-      ctx.strokeText(label, tx, ly);
-      ctx.fillText(label, tx, ly);
+      const ty = placed(tx, ly, half);
+      ctx.strokeText(label, tx, ty);
+      ctx.fillText(label, tx, ty);
     };
 
     for (const [axis, label] of [[[1.75, 0, 0], "radius"], [[0, 1.75, 0], "along-track"], [[0, 0, 1.75], "normal"]]) {

@@ -35,22 +35,22 @@ const watch = (() => {
   }
 
   const text = (id, words) => { document.getElementById(id).textContent = words; };
-  const number = (value, unit, digits = 2) => (value === null ? "–" : `${value.toFixed(digits)} ${unit}`);
+  const number = (value, unit, digits = 2) => (value === null ? "–" : `${value.toFixed(digits)}${unit}`);
 
   function tell() {
     const badges = [];
     if (!connected) badges.push(["bad", "not connected to torquer watch"]);
     if (last) {
       const { state } = last;
-      badges.push(["note", state.mode ?? "no mode yet"]);
+      badges.push(["plain", state.mode ?? "no mode yet"]);
       badges.push(state.valid ? ["good", "attitude valid"] : ["bad", "attitude not valid"]);
       if (last.used) {
-        badges.push(["note", `magnetometer ${last.used.mag_blanked ? "blanked" : last.used.mag_used ? "used" : "not used"}`]);
-        badges.push(["note", `Sun sensor ${last.used.eclipse ? "in the shadow" : last.used.sun_used ? "used" : "not used"}`]);
+        badges.push(["plain", `magnetometer ${last.used.mag_blanked ? "blanked" : last.used.mag_used ? "used" : "not used"}`]);
+        badges.push(["plain", `Sun sensor ${last.used.eclipse ? "in the shadow" : last.used.sun_used ? "used" : "not used"}`]);
       }
       if (state.refused) badges.push(["bad", `${state.refused} pulses refused`]);
       if (last.broken) badges.push(["bad", `${last.broken} broken frames`]);
-      if (last.ended) badges.push(["note", "the flight is over"]);
+      if (last.ended) badges.push(["plain", "the flight is over"]);
       text("when", last.time ? `${last.time} UTC · tick ${state.tick}` : "waiting for SYNC");
       text("numbers", [
         `${number(state.turn_deg, "°")} off the orbit axes`, `3σ ${number(state.sigma3_deg, "°")}`,
@@ -118,7 +118,7 @@ const watch = (() => {
     ctx.beginPath();
     ctx.arc(size / 2, size / 2, 0.36 * size, 0, 2 * Math.PI);
     ctx.stroke();
-    const last = watch.state();
+    const last = watch.state(), placed = labelPlaces();
     for (const [name, vector] of Object.entries(last ? last.arrows : {})) {
       const [right, up] = project(vector);
       const [x, y] = [size / 2 + 0.36 * size * right, size / 2 - 0.36 * size * up];
@@ -137,7 +137,10 @@ const watch = (() => {
       ctx.font = "600 13px system-ui, sans-serif";
       ctx.textAlign = "center";
       ctx.textBaseline = "middle";
-      ctx.fillText(level ? `${name}, coil at ${level}` : name, x + 26 * Math.cos(turn), y + 16 * Math.sin(turn));
+      const label = level ? `${name}, coil at ${level}` : name;
+      const half = ctx.measureText(label).width / 2;
+      const middle = Math.min(Math.max(x + 26 * Math.cos(turn), half + 2), size - half - 2);
+      ctx.fillText(label, middle, placed(middle, y + 16 * Math.sin(turn), half));
     }
   }
 

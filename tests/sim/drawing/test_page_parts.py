@@ -28,9 +28,27 @@ def test_a_section_has_its_tables_charts_and_text():
         "here", "Title", "note", (Table(("head",), [("cell",)]),), (picture,), "text < text"
     )
     page = sections_page(HEADER, [section])
-    for words in ('<section id="here">', "<p>note</p>", "<td>cell</td>", "<svg></svg>", "text &lt; text"):
+    for words in (
+        '<section id="here">',
+        "<p>note</p>",
+        '<td class="short">cell</td>',
+        "<svg></svg>",
+        "text &lt; text",
+    ):
         assert words in page
     assert "data-chart" not in page.partition("<main>")[2]
+
+
+def test_a_table_breaks_its_heads_behind_underscores_and_no_short_cell():
+    table = Table(("a_long_<name>",), [("3.006e-08",), ("x" * 22,), ("a sentence that is rather long",)])
+    page = sections_page(HEADER, [PageSection("here", "Title", "", (table,))])
+    for words in (
+        "<th>a_<wbr>long_<wbr>&lt;name&gt;</th>",
+        '<td class="short">3.006e-08</td>',
+        f"<td>{'x' * 22}</td>",
+        '<td class="long">a sentence',
+    ):
+        assert words in page
 
 
 def test_what_is_empty_is_left_out():

@@ -127,6 +127,23 @@ def test_a_browser_draws_attitude_series_and_events_as_they_come(look, view, por
     colours = page.locator("#attitude").evaluate(f"canvas => new Set(new Uint32Array({pixels})).size")
     assert colours > 4
     assert page.evaluate("document.documentElement.scrollWidth") <= width
+    assert page.locator(".badges .note").count() == 0, "nothing to be warned of"
+
+
+def test_labels_of_arrows_that_point_the_same_way_stand_below_each_other(look, view, port):
+    page = look(f"http://127.0.0.1:{port}/")
+    heights = page.evaluate(
+        "(() => { const placed = labelPlaces();"
+        " return [placed(50, 20, 15), placed(55, 22, 15), placed(52, 21, 15), placed(150, 20, 15)]; })()"
+    )
+    assert heights[3] == heights[0] == 20, "what stands beside is no hindrance"
+    assert min(heights[1] - heights[0], heights[2] - heights[1]) >= 12
+
+
+def test_many_events_leave_the_messages_in_sight(look, view, port):
+    page = look(f"http://127.0.0.1:{port}/")
+    page.evaluate("document.getElementById('happenings').innerHTML = '<tr><td>x</td></tr>'.repeat(200)")
+    assert page.evaluate("document.documentElement.scrollHeight") < 4000
 
 
 def test_a_page_whose_server_is_gone_says_so(look, view):

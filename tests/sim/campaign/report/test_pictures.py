@@ -1,0 +1,81 @@
+"""What is written in the pictures can be read: no number and no title runs into the next."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.text import Text
+
+from sim.campaign.report import pictures
+from sim.drawing.canvas import style
+from sim.statistics.sensitivity import spearman
+
+LONG = "input_disturbance_residual_dipole_am2_length"
+
+
+def boxes(texts, renderer):
+    shown = [text for text in texts if text.get_visible() and text.get_text()]
+    return sorted((text.get_window_extent(renderer) for text in shown), key=lambda box: box.x0)
+
+
+def rows_of(figure, renderer):
+    """The numbers on each abscissa, and the titles of the panels side by side."""
+    for panel in figure.axes:
+        low, high = panel.get_window_extent(renderer).intervalx
+        numbers = [*panel.xaxis.get_ticklabels(), *panel.xaxis.get_ticklabels(minor=True)]
+        yield [box for box in boxes(numbers, renderer) if low - 1 <= (box.x0 + box.x1) / 2 <= high + 1]
+    rows = {}
+    for panel in figure.axes:
+        titles = [child for child in panel.get_children() if isinstance(child, Text) and child.get_text()]
+        rows.setdefault(round(panel.get_position().y0, 3), []).extend(titles)
+    for titles in rows.values():
+        yield boxes(titles, renderer)
+
+
+def assert_readable(draw):
+    with style():
+        figure = draw()
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
+        renderer = canvas.get_renderer()
+        for row in rows_of(figure, renderer):
+            for left, right in pairwise(row):
+                assert left.x1 < right.x0
+
+
+@pytest.fixture
+def narrow(analysis):
+    """The statistics with indices within less than a decade, and inputs of long names and small numbers."""
+    profiles = {name: values / values.max() * 6.0 + 0.4 for name, values in analysis.profiles.items()}
+    runs = analysis.done
+    inputs = {
+        f"{LONG}_{number}": low + np.linspace(0.0, span, runs)
+        for number, (low, span) in enumerate([(-0.0075, 0.0125), (1.5, 48.0), (0.001, 0.009), (-2e-5, 5e-5)])
+    }
+    sensitivities = tuple(
+        replace(
+            analysis.sensitivities[0],
+            column=name,
+            correlation=spearman(values, analysis.figures[0].values, 0.9),
+        )
+        for name, values in inputs.items()
+    )
+    return replace(analysis, profiles=profiles, inputs=inputs, sensitivities=sensitivities)
+
+
+def test_indices_within_a_decade(narrow, small):
+    assert_readable(lambda: pictures.indices(narrow, 0.95, small.index))
+
+
+def test_indices_over_many_decades(analysis, small):
+    wide = {
+        name: np.geomspace(1e-4, 40.0, values.size).reshape(values.shape)
+        for name, values in analysis.profiles.items()
+    }
+    assert_readable(lambda: pictures.indices(replace(analysis, profiles=wide), 0.95, small.index))
+
+
+def test_inputs_of_long_names_and_small_numbers(narrow):
+    assert_readable(lambda: pictures.scatter(narrow))
