@@ -8,6 +8,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 
+from sim.campaign.definition.campaign import IndexLimits
 from sim.campaign.report import pictures
 from sim.drawing.canvas import style
 from sim.statistics.sensitivity import spearman
@@ -47,8 +48,7 @@ def assert_readable(draw):
 
 @pytest.fixture
 def narrow(analysis):
-    """The statistics with indices within less than a decade, and inputs of long names and small numbers."""
-    profiles = {name: values / values.max() * 6.0 + 0.4 for name, values in analysis.profiles.items()}
+    """The statistics with inputs of long names and small numbers."""
     runs = analysis.done
     inputs = {
         f"{LONG}_{number}": low + np.linspace(0.0, span, runs)
@@ -62,19 +62,16 @@ def narrow(analysis):
         )
         for name, values in inputs.items()
     )
-    return replace(analysis, profiles=profiles, inputs=inputs, sensitivities=sensitivities)
+    return replace(analysis, inputs=inputs, sensitivities=sensitivities)
 
 
-def test_indices_within_a_decade(narrow, small):
-    assert_readable(lambda: pictures.indices(narrow, 0.95, small.index))
-
-
-def test_indices_over_many_decades(analysis, small):
-    wide = {
-        name: np.geomspace(1e-4, 40.0, values.size).reshape(values.shape)
+@pytest.mark.parametrize(("low", "high"), [(0.25, 8.0), (2.0, 3.0), (1e-4, 40.0)])
+def test_indices(analysis, low, high):
+    profiles = {
+        name: np.geomspace(low, high, values.size).reshape(values.shape)
         for name, values in analysis.profiles.items()
     }
-    assert_readable(lambda: pictures.indices(replace(analysis, profiles=wide), 0.95, small.index))
+    assert_readable(lambda: pictures.indices(replace(analysis, profiles=profiles), 0.95, IndexLimits()))
 
 
 def test_inputs_of_long_names_and_small_numbers(narrow):
