@@ -11,8 +11,9 @@ from sim.design.from_scenario import body_of, pulsing_of
 from sim.design.theory.floquet import NEUTRAL, degree_of_stability, monodromy
 from sim.design.theory.linear import Gains, closed_loop
 from sim.design.theory.pulsed import PulsedLoop
-from sim.report.requirements.evidence import FlightEvidence
+from sim.report.requirements.evidence import FlightEvidence, Missed
 from sim.report.requirements.mismatch import beyond_bounds
+from sim.report.requirements.settling import fell_back, left_again, slow, swings
 from sim.report.requirements.sizing import (
     gradient_level_am2,
     least_error_deg,
@@ -29,20 +30,6 @@ COARSE = 4.0
 error is about a fifth of it."""
 LATE = 0.4
 """Part of a flight after which it is late for what must come first: attitude, low rate."""
-
-
-class Missed(NamedTuple):
-    """A requirement that a flight misses.
-
-    Attributes:
-        name: of its index.
-        what: what it is of.
-        limit: the most it may be, or the error under which it has settled; None where it is no angle.
-    """
-
-    name: str
-    what: str
-    limit: float | None
 
 
 Find = Callable[[Missed, FlightEvidence], str]
@@ -73,7 +60,14 @@ def reasons(missed: Missed, evidence: FlightEvidence) -> list[Reason]:
             continue
         if text := cause.find(missed, evidence):
             found.append(Reason(cause.name, text))
-    return found or [Reason("unknown", "none of the causes that can be told from the flight")]
+    return found or [_unknown(missed)]
+
+
+def _unknown(missed: Missed) -> Reason:
+    ruled_out = [cause.name.replace("_", " ") for cause in CAUSES if missed.name in cause.indices]
+    return Reason(
+        "unknown", f"none of the causes that can be told from the flight; ruled out: {', '.join(ruled_out)}"
+    )
 
 
 def _isolated(missed: Missed, evidence: FlightEvidence) -> str:
@@ -117,7 +111,7 @@ def _estimate(missed: Missed, evidence: FlightEvidence) -> str:
     if evidence.valid_part < 0.5 or evidence.estimate_deg is None:
         return f"the attitude was called valid for {part(evidence.valid_part)} of the last orbit only"
     share = 1.0 if missed.name == "ake" else 0.4
-    if missed.limit is None or evidence.estimate_deg < share * missed.limit:
+    if missed.limit is None or missed.what == "spin" or evidence.estimate_deg < share * missed.limit:
         return ""
     honest = evidence.within_3sigma
     wrong = f"the estimate is wrong by {number(evidence.estimate_deg)} deg RMS"
@@ -176,6 +170,7 @@ def _coarse(missed: Missed, evidence: FlightEvidence) -> str:
     if (
         evidence.scenario.coils.driver == "continuous"
         or missed.limit is None
+        or missed.what == "spin"
         or 2 * lowest < total
         or not total
     ):
@@ -190,12 +185,15 @@ def _coarse(missed: Missed, evidence: FlightEvidence) -> str:
 
 
 def _weak(missed: Missed, evidence: FlightEvidence) -> str:
-    highest, total = evidence.levels[2], sum(evidence.levels)
+    highest, total, of = evidence.levels[2], sum(evidence.levels), "the last orbit"
+    if missed.name == "settling" and missed.settled is not None and evidence.pulses:
+        before = [level for at, level in evidence.pulses if at < missed.settled]
+        highest, total, of = before.count(3), len(before), f"{orbits(missed.settled)}"
     most = evidence.saturated_part if not total else highest / total
     if most < 0.6 or (total and total < 5):
         return ""
     least = max(gradient_level_am2(evidence.scenario), 2.0 * evidence.scenario.coils.largest_am2)
-    of = "the pulses of the last orbit" if total else "the last orbit"
+    of = f"the pulses of {of}" if total else of
     return (
         f"the coils are too weak: at the highest level in {part(most)} of {of}; "
         f"it takes one of at least {number(least)} A m^2"
@@ -239,6 +237,7 @@ def _not_settled(missed: Missed, evidence: FlightEvidence) -> str:
 
 
 POINTING = frozenset(("ape", "mpe", "rpe", "settling", "rate"))
+SETTLING = frozenset(("settling",))
 KNOWING = POINTING | {"ake"}
 ALL = KNOWING | {"duty", "energy"}
 BEFORE_POINTING = frozenset(("safe", "dark", "tumbling", "estimate"))
@@ -260,5 +259,11 @@ CAUSES: Sequence[Diagnosis] = (
     Diagnosis("not_settled", POINTING, _not_settled, CANNOT_POINT | {"coarse"}),
     Diagnosis("short", POINTING, _short, POINT_IS_LOST),
     Diagnosis("never_in_point", POINTING, _never_in_point, POINT_IS_LOST | {"short"}),
+    Diagnosis("fell_back", SETTLING, fell_back, frozenset(("safe", "tumbling"))),
+    Diagnosis("left_again", SETTLING, left_again, POINT_IS_LOST | {"fell_back"}),
+    Diagnosis("slow", SETTLING, slow, POINT_IS_LOST | {"fell_back", "left_again"}),
+    Diagnosis(
+        "swings", SETTLING, swings, POINT_IS_LOST | {"fell_back", "left_again", "short", "never_in_point"}
+    ),
 )
 """In the order in which one leads to the next."""

@@ -1,7 +1,8 @@
 """What is known of a flight when a requirement is missed: truth, estimate, modes, coils, disturbances."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,22 @@ HALF_ORBITS = 6
 """Of the end of the flight, in which the trend of the error is seen."""
 NOT_DISTURBANCES = ("gravity_gradient", "coils", "residual_dipole")
 """Torques that are the body's own, the coils' or known as a dipole."""
+
+
+class Missed(NamedTuple):
+    """A requirement that a flight misses.
+
+    Attributes:
+        name: of its index.
+        what: what it is of.
+        limit: the most it may be, or the error under which it has settled; None where it is no angle.
+        settled: since when it has, in orbits; None: never.
+    """
+
+    name: str
+    what: str
+    limit: float | None
+    settled: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +63,9 @@ class FlightEvidence:
         torque_nm: disturbance torque on the mean, body axes.
         levels: pulses at each level, least first.
         saturated_part: part of the time in which a continuous driver gives all it can.
+        course: RMS of the error of what is controlled by half orbit, from the start.
+        pulses: start in orbits and size of the level of each pulse of the flight.
+        fell_back: since when and for how long the controller was in SAFE or DETUMBLE after a better mode.
     """
 
     scenario: Scenario
@@ -65,6 +85,9 @@ class FlightEvidence:
     torque_nm: tuple[float, float, float] = (0.0, 0.0, 0.0)
     levels: tuple[int, int, int] = (0, 0, 0)
     saturated_part: float = 0.0
+    course: tuple[float, ...] = ()
+    pulses: tuple[tuple[float, int], ...] = ()
+    fell_back: tuple[tuple[Mode, float, float], ...] = ()
 
 
 class EvidenceGatherer:
@@ -82,6 +105,9 @@ class EvidenceGatherer:
         self._modes = np.zeros(max(Mode) + 1, np.int64)
         self._first: dict[str, int] = {}
         self._slow_from = 0
+        self._course: list[Mean] = []
+        self._course_end = 0
+        self._mode: list[tuple[int, int]] = []
         self._rate_at_start = 0.0
 
     def take(self, truth: Histories, estimates: Estimates) -> None:
@@ -92,6 +118,7 @@ class EvidenceGatherer:
         spin = self._scenario.control.spin_radps
         self._take_trend(first, magnitudes(error_vectors(self._what, truth, spin)))
         self._take_rate(first, magnitudes(error_vectors("rate", truth, spin)), recent)
+        self._take_mode(first, estimates.mode[:rows])
         self._modes += np.bincount(estimates.mode[:rows], minlength=len(self._modes))
         self._note("valid", first, estimates.valid[:rows])
         self._note("lit", first, truth["lit"] > 0.5)
@@ -126,6 +153,9 @@ class EvidenceGatherer:
             torque_nm=(x, y, z),
             levels=(levels.count(1), levels.count(2), levels.count(3)),
             saturated_part=self._saturated / last,
+            course=tuple(half.rms for half in self._course),
+            pulses=tuple((float(pulse.start_s) / orbit_s, abs(pulse.level)) for pulse in audit.pulses),
+            fell_back=tuple(self._fell_back()),
         )
 
     def _take_trend(self, first: int, error: Array) -> None:
@@ -133,6 +163,30 @@ class EvidenceGatherer:
         for number, mean in enumerate(self._halves):
             begin, end = (round(past + place * half) - first for place in (number, number + 1))
             mean.take(error[max(0, begin) : max(0, end)])
+
+        half_ticks = round(self._orbit / 2.0)
+        while self._course_end < first + len(error):
+            begin = self._course_end - first
+            place, inside = divmod(self._course_end, half_ticks)
+            if place == len(self._course):
+                self._course.append(Mean())
+            end = min(len(error), begin + half_ticks - inside)
+            self._course[place].take(error[begin:end])
+            self._course_end = first + end
+
+    def _take_mode(self, first: int, mode: NDArray[np.integer]) -> None:
+        """Each mode and the tick since when it is."""
+        before = self._mode[-1][1] if self._mode else -1
+        changes = np.flatnonzero(np.diff(mode, prepend=before))
+        self._mode += [(first + int(place), int(mode[place])) for place in changes]
+
+    def _fell_back(self) -> Iterator[tuple[Mode, float, float]]:
+        ends = [*(tick for tick, _ in self._mode[1:]), self._taken]
+        best = Mode.SAFE
+        for (tick, mode), end in zip(self._mode, ends, strict=True):
+            best = max(best, Mode(mode))
+            if mode <= Mode.DETUMBLE < best:
+                yield Mode(mode), tick / self._orbit, (end - tick) / self._orbit
 
     def _take_rate(self, first: int, rate_degps: Array, recent: slice) -> None:
         if first == 0:

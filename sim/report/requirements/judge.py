@@ -7,8 +7,8 @@ from typing import Any
 from sim.audit.findings import AuditReport
 from sim.record.estimates import Estimates
 from sim.record.truth import Histories
-from sim.report.requirements.causes import Missed, reasons
-from sim.report.requirements.evidence import EvidenceGatherer
+from sim.report.requirements.causes import reasons
+from sim.report.requirements.evidence import EvidenceGatherer, Missed
 from sim.report.requirements.gather import Gathered
 from sim.report.requirements.words import number, orbits
 from sim.scenario.requirements import DEG, INDICES, OF, ORBITS
@@ -74,7 +74,8 @@ class Judgement:
             return {"measured": measured, "verdict": Outcome.MET.value, "text": f" {text}", "reasons": []}
         limits = {DEG: section.limit, ORBITS: one.threshold}
         evidence = self._evidence[one.what].evidence(audit, isolated_s)
-        found = reasons(Missed(section.index, one.what, limits.get(section.unit)), evidence)
+        settled = one.settled_at / one.ticks_per_orbit if one.settled else None
+        found = reasons(Missed(section.index, one.what, limits.get(section.unit), settled), evidence)
         return {
             "measured": measured,
             "verdict": Outcome.FAILED.value,

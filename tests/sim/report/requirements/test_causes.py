@@ -58,6 +58,11 @@ def test_no_shipped_scenario_carries_a_cause_of_its_own(name):
 
 
 DIPOLE = ("disturbance.residual_dipole_am2=[0.3,0,0]", "flight.uncertainty.residual_dipole_am2=0.3")
+LATE, NEVER = (Missed("settling", "attitude", 5.0, settled) for settled in (3.27, None))
+BACK = (40.0, 20.0, 3.0, 30.0, 20.0, 10.0, 4.0, 1.0, 0.5, 0.5)
+SLOW = tuple(40.0 * 0.72**half for half in range(10))
+MISSED = {"fell_back": LATE, "left_again": LATE, "slow": LATE, "swings": NEVER}
+"""What a flight of a cause has missed, where that is not APE."""
 STUCK = {Mode.DETUMBLE: 0.99, Mode.ACQUIRE: 0.01}
 FOUND = {
     "isolated": replace(sound(), isolated={"coil 1": 0.41}),
@@ -74,12 +79,16 @@ FOUND = {
     "not_settled": replace(sound(), trend=(16.0, 11.0, 8.0, 5.6, 4.0, 2.8)),
     "never_in_point": replace(sound(), in_mode=STUCK, first_in_point=None),
     "short": replace(sound(), orbits=0.5, trend=(40.0,)),
+    "fell_back": replace(sound(), course=BACK, fell_back=((Mode.DETUMBLE, 1.54, 0.19),)),
+    "left_again": replace(sound(), course=BACK),
+    "slow": replace(sound(), course=SLOW),
+    "swings": replace(sound(), course=(40.0, *9 * [4.1]), trend=(4.1, 4.3, 3.9, 4.2, 4.0, 4.1)),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("cause", FOUND)
 def test_a_cause_is_found_and_no_other(cause):
-    assert names(FOUND[cause]) == [cause]
+    assert names(FOUND[cause], MISSED.get(cause, APE)) == [cause]
 
 
 def test_every_cause_of_the_table_is_tried():
@@ -101,10 +110,14 @@ def test_every_cause_of_the_table_is_tried():
         ("not_settled", "falls to 50 % of itself an orbit, and would be 2 at about 5.49 orbits"),
         ("never_in_point", "DETUMBLE for 99 % of the flight, which ends under 0.3 deg/s for 60 s"),
         ("short", "0.50 orbits are too short"),
+        ("fell_back", "fell back to DETUMBLE from 1.54 orbits on for 0.19 orbits"),
+        ("left_again", "under 5 deg at 1 orbit and left it again: 30 deg RMS in the half orbit from 1.50"),
+        ("slow", "from 40 deg RMS in the first half orbit the error fell to 52 % of itself an orbit"),
+        ("swings", "3.9 to 4.3 deg RMS in each of the last 6 half orbits, and more than 5 at times"),
     ],
 )
 def test_a_cause_is_told_with_its_figures(cause, words):
-    assert words in text(FOUND[cause])
+    assert words in text(FOUND[cause], MISSED.get(cause, APE))
 
 
 class TestWhatWouldDo:
@@ -178,6 +191,35 @@ def test_knowledge_is_not_explained_by_the_coils():
     missed = Missed("ake", "attitude", 0.05)
     assert names(replace(FOUND["weak"], estimate_deg=0.1), missed) == ["estimate"]
     assert names(replace(FOUND["weak"], estimate_deg=0.01), missed) == ["unknown"]
+
+
+def test_without_a_cause_the_causes_that_are_ruled_out_are_named():
+    told = text(sound())
+    assert told.startswith("none of the causes that can be told from the flight; ruled out: isolated, safe, ")
+    assert "never in point" in told
+    assert "fell back" not in told, "that is asked of settling alone"
+
+
+def test_what_settles_late_is_too_weak_by_the_pulses_until_then():
+    strong_at_the_end = replace(
+        sound("coils.levels_am2=[0.25,1.0,4.0]"), course=SLOW, levels=(50, 0, 0),
+        pulses=(*((0.01 * step, 3) for step in range(300)), *((3.3 + 0.01 * step, 1) for step in range(900))),
+    )  # fmt: skip
+    assert names(strong_at_the_end, LATE) == ["weak"]
+    assert "at the highest level in 100 % of the pulses of 3.27 orbits" in text(strong_at_the_end, LATE)
+    assert names(replace(strong_at_the_end, pulses=()), LATE) == ["slow"]
+
+
+def test_a_fall_that_is_told_often_is_told_three_times():
+    spans = tuple((Mode.SAFE, float(orbit), 0.1) for orbit in range(5))
+    told = text(replace(sound(), fell_back=spans), LATE)
+    assert (told.count("SAFE from"), told.endswith("and 2 times more")) == (3, True)
+
+
+def test_a_spin_rate_has_its_own_unit():
+    spin = Missed("settling", "spin", 0.06, 3.27)
+    assert "from 40 deg/s RMS" in text(FOUND["slow"], spin)
+    assert "coarse" not in names(FOUND["coarse"], spin), "its figure is an angle"
 
 
 def test_what_leads_to_another_cause_is_told_alone():
