@@ -36,3 +36,18 @@ def test_its_effects_fly(folder):
     run = torquer.fly(folder / "sat.toml", orbits=0.005, out=folder / "run")
     assert run.ok
     assert [effect.parameters for effect in run.scenario.effect] == [{"torque_nm": 2e-6}, {}]
+
+
+@pytest.mark.usefixtures("folder")
+def test_its_test_holds_on_a_short_flight(fly):
+    (code,) = re.findall(r"```python\n(def test_my_law.*?)```", PAGE, re.S)
+    for length, short in (
+        ("orbits=1,", "orbits=0.05,"),
+        ('"by_orbit": 1.0', '"by_orbit": 0.05, "last_orbits": 0.05'),
+        ("0.06", "0.09"),
+    ):
+        assert length in code
+        code = code.replace(length, short)
+    found = {}
+    exec(code, found)
+    found["test_my_law_damps"](fly)

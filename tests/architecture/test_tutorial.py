@@ -17,8 +17,9 @@ SHORT = (
     ("at_s=3000", "at_s=30"),
     ("at_s=9000", "at_s=60"),
     ("lasts_s=6000", "lasts_s=30"),
+    (r"(?m)^pointing_deg = 5.0$", "pointing_deg = 180.0"),
 )
-"""What makes the flights of a page short, and nothing else different."""
+"""What makes the flights of a page short, and what such flights can meet; nothing else is different."""
 
 
 def shortened(page):
@@ -58,6 +59,27 @@ def test_its_commands_run(page, least, folder):
     for command in told:
         done = CliRunner().invoke(main, shlex.split(command))
         assert done.exit_code == 0, f"torquer {command}\n{done.output}"
+
+
+def labels(lines):
+    """What stands at the beginning of the lines of a summary; None for those that are left out."""
+    return [None if line.strip() == "..." else line[2:13].strip() for line in lines if line.startswith("  ")]
+
+
+def test_the_quick_start_shows_the_lines_that_are_printed(folder):
+    text = shortened("quickstart.md")
+    (shown,) = re.findall(r"```console\n\$ torquer sil .*\n((?:.*\n)*?)report: ", text)
+    done = CliRunner().invoke(main, shlex.split(commands(text)[0]))
+    printed = labels(done.output.splitlines())
+    begin, end = (list(part) for part in _around(labels(shown.splitlines())))
+    assert len(begin) > 3
+    assert printed[: len(begin)] == begin
+    assert printed[len(printed) - len(end) :] == end
+
+
+def _around(told):
+    place = told.index(None)
+    return told[:place], told[place + 1 :]
 
 
 def test_the_python_of_the_quick_start_runs(folder):

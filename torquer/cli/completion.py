@@ -6,9 +6,10 @@ from click.shell_completion import get_completion_class
 from torquer.cli.options import examples, sentences
 
 EXAMPLES = examples(
+    "mkdir -p ~/.local/share/bash-completion/completions ~/.zfunc ~/.config/fish/completions",
     "torquer completion bash > ~/.local/share/bash-completion/completions/torquer",
-    "torquer completion zsh > ~/.zfunc/_torquer   # with fpath+=~/.zfunc and compinit in ~/.zshrc",
     "torquer completion fish > ~/.config/fish/completions/torquer.fish",
+    "torquer completion zsh > ~/.zfunc/_torquer   # ~/.zshrc: fpath+=~/.zfunc; autoload compinit; compinit",
 )
 VARIABLE = "_TORQUER_COMPLETE"
 BASH = """\
@@ -36,6 +37,9 @@ complete -o nosort -F _torquer_completion torquer
 """
 """The script of click splits the line at = and :, of which keys of --set and buses have many."""
 
+ONLY_FIRST, EACH_TIME = "$zsh_eval_context[-1] == loadautofunc", "$funcstack[1] == _torquer"
+"""The script of click for zsh completes when it is loaded, and then not the next time."""
+
 
 @click.command(epilog=EXAMPLES)
 @click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
@@ -46,11 +50,11 @@ def completion(shell: str) -> None:
 
 
 def script(shell: str) -> str:
-    """The script for this shell: for bash an own one, else that of click."""
+    """The script for this shell: for bash an own one, else that of click, mended for zsh."""
     if shell == "bash":
         return BASH
     from torquer.cli.main import main
 
     kind = get_completion_class(shell)
     assert kind is not None
-    return kind(main, {}, "torquer", VARIABLE).source()
+    return kind(main, {}, "torquer", VARIABLE).source().replace(ONLY_FIRST, EACH_TIME)

@@ -16,8 +16,7 @@ def of_scenarios(context: click.Context, parameter: click.Parameter, begun: str)
     """The scenarios that ship, by name, and files."""
     from sim.scenario.schema import shipped_names
 
-    found = [CompletionItem(name) for name in shipped_names() if name.startswith(begun)]
-    return found or [CompletionItem(begun, type="file")]
+    return _or_files(begun, shipped_names())
 
 
 def of_settings(context: click.Context, parameter: click.Parameter, begun: str) -> _Items:
@@ -36,20 +35,21 @@ def of_settings(context: click.Context, parameter: click.Parameter, begun: str) 
 
 
 def of_buses(context: click.Context, parameter: click.Parameter, begun: str) -> _Items:
-    """Kinds of bus, and the CAN interfaces of this machine."""
+    """Kinds of bus, and the CAN interfaces of this machine; of a command that takes a run, files."""
     from sim.doctor import can_interfaces
 
     in_one_process = ["virtual"] if context.command.name == "sil" else []
     interfaces = (f"socketcan:{name}" for name in can_interfaces())
-    return _beginning(begun, ["auto", "loop", "slcan:", *in_one_process, *interfaces])
+    words = ["auto", "loop", "slcan:", *in_one_process, *interfaces]
+    return _or_files(begun, words) if parameter.param_type_name == "argument" else _beginning(begun, words)
 
 
 def of_laws(context: click.Context, parameter: click.Parameter, begun: str) -> _Items:
-    """Laws, the last of a list with commas."""
+    """Laws, the last of a list with commas; files, of which one may have a law."""
     from fsw.core.laws.table import LAWS
 
     before, comma, _ = begun.rpartition(",")
-    return _beginning(begun, (f"{before}{comma}{name}" for name in LAWS))
+    return _or_files(begun, (f"{before}{comma}{name}" for name in LAWS))
 
 
 def of_fault_rows(context: click.Context, parameter: click.Parameter, begun: str) -> _Items:
@@ -69,6 +69,10 @@ def keys_of(model: "type[BaseModel]", prefix: str = "") -> Iterator[tuple[str, t
             yield from keys_of(below, f"{prefix}{name}.")
         else:
             yield f"{prefix}{name}", words_of(field.annotation)
+
+
+def _or_files(begun: str, words: Iterable[str]) -> _Items:
+    return _beginning(begun, words) or [CompletionItem(begun, type="file")]
 
 
 def _beginning(begun: str, words: Iterable[str]) -> _Items:

@@ -74,7 +74,7 @@ def asked(figures: dict[str, Any], tle: Path | None) -> tuple[dict[str, Any], Pa
     has_orbit = tle is not None or None not in (found["altitude_km"], found["inclination_deg"])
     has_body = found["inertia_kgm2"] is not None or None not in (found["mass_kg"], found["size_m"])
     if not has_orbit and found["altitude_km"] is None and found["inclination_deg"] is None:
-        tle = _optional("File with the TLE (Enter: a circular orbit)", Path)
+        tle = _optional("File with the TLE (Enter: a circular orbit)", _tle_file)
     if tle is None:
         for name, text, usual, kind in (
             ("altitude_km", "Altitude, km", 550.0, click.FloatRange(150.0, 40_000.0)),
@@ -97,6 +97,16 @@ def _optional(question: str, read: Callable[[str], Any]) -> Any:  # noqa: ANN401
     return click.prompt(
         question, default="", show_default=False, value_proc=lambda text: read(text) if text else None
     )
+
+
+def _tle_file(text: str) -> Path:
+    """A file with two lines; another one is asked for again."""
+    file = Path(text)
+    try:
+        tle_lines(file)
+    except HarnessError as error:
+        raise click.BadParameter(str(error)) from None
+    return file
 
 
 def _three(text: str) -> tuple[float, float, float]:

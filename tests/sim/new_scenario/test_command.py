@@ -49,6 +49,14 @@ def test_it_flies_at_once(name, tmp_path):
     assert flown.summary["pulses"]["total"] > 0
 
 
+def test_the_requirement_that_it_proposes_is_one():
+    text, begin = scenario_text(SATELLITES["3U"], "mine.toml"), "# [[requirement]]"
+    before, _, after = text.partition(begin)
+    scenario = scenario_of(parse_toml(before + "[[requirement]]" + after.replace("\n# ", "\n")), "mine.toml")
+    (required,) = scenario.requirement
+    assert (required.index, required.limit, required.by_orbit) == ("ape", 5.0, 5.0)
+
+
 def test_what_was_given_stands_in_it():
     scenario = written(SATELLITES["50 kg"])
     assert scenario.orbit.tle == TLE

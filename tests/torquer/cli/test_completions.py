@@ -12,9 +12,11 @@ from torquer.cli.completion import script
 from torquer.cli.main import main
 
 
-def found(complete, begun, command="sil"):
+def found(complete, begun, command="sil", parameter=None):
     context = click.Context(main.get_command(click.Context(main), command), info_name=command)
-    return [item.value for item in complete(context, context.command.params[0], begun)]
+    params = {each.name: each for each in context.command.params}
+    completed = params[parameter] if parameter else context.command.params[0]
+    return [item.value for item in complete(context, completed, begun)]
 
 
 def test_scenarios_by_name_else_files():
@@ -40,12 +42,18 @@ def test_keys_of_settings_and_their_values(begun, completed):
 
 
 def test_buses():
-    assert found(completions.of_buses, "v") == ["virtual"]
-    assert found(completions.of_buses, "v", "plant") == []
-    assert "auto" in found(completions.of_buses, "")
+    assert found(completions.of_buses, "v", parameter="bus") == ["virtual"]
+    assert found(completions.of_buses, "v", "plant", "bus") == []
+    assert "auto" in found(completions.of_buses, "", parameter="bus")
+
+
+def test_a_bus_else_files_where_a_run_may_stand():
+    watched = found(completions.of_buses, "lo", "watch"), found(completions.of_buses, "my-r", "watch")
+    assert watched == (["loop"], ["my-r"])
 
 
 def test_laws_after_a_comma_and_rows():
+    assert found(completions.of_laws, "my_l") == ["my_l"], "a file"
     assert found(completions.of_laws, "pd,mp", "compare") == ["pd,mpc"]
     assert "mag-bias" in {row[:8] for row in found(completions.of_fault_rows, "mag-", "faults")}
 
@@ -56,6 +64,12 @@ def test_the_script_of_a_shell_is_one(shell):
     assert "_TORQUER_COMPLETE" in text
     if shutil.which(shell):
         subprocess.run([shell, "-n"], input=text, text=True, check=True)
+
+
+def test_the_script_for_zsh_completes_each_time_it_is_called():
+    text = script("zsh")
+    assert "if [[ $funcstack[1] == _torquer ]]; then" in text
+    assert "loadautofunc ]]" not in text
 
 
 COMPLETE = """

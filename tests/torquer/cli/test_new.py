@@ -41,6 +41,14 @@ def test_what_is_no_answer_is_asked_for_again(monkeypatch, capsys):
     assert "three numbers are needed" in capsys.readouterr().out
 
 
+def test_a_file_without_a_tle_is_asked_for_again_at_once(monkeypatch, capsys, tmp_path):
+    file = tmp_path / "x.tle"
+    file.write_text("\n".join(TLE))
+    _, tle = answered(monkeypatch, "550", str(file), "1 1.9 2", "")
+    assert tle == file
+    assert "550: cannot be read (No such file or directory)" in capsys.readouterr().out
+
+
 def test_nothing_is_asked_that_was_given(monkeypatch):
     given = {"altitude_km": 600.0, "inclination_deg": 50.0, "inertia_kgm2": (1.0, 2.0, 2.0)}
     assert answered(monkeypatch, **given) == ({**NOTHING, **given}, None)
