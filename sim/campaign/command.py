@@ -20,6 +20,7 @@ from sim.campaign.executors.processes import Processes
 from sim.campaign.one_run import Keep, RunTask
 from sim.campaign.report.analysis import CampaignAnalysis, analyse
 from sim.campaign.report.verdicts import CampaignVerdict, verdicts
+from sim.campaign.results.parquet import check_parquet, export
 from sim.campaign.results.row import RunRow, Status
 from sim.campaign.results.store import LOCK, RESULTS, Results, open_results
 from sim.console import detail, warn
@@ -106,6 +107,8 @@ def campaign(
     if Path(source).is_dir():
         _check_resumable(source, over, settings, out)
         out = Path(source)
+    if parquet:
+        check_parquet()
     chosen = load_campaign(source, over, settings)
     nominal = scenario_of(chosen.base, source)
     if nominal.own_law is not None:
@@ -187,8 +190,6 @@ def _conclude(folder: Path, chosen: Campaign, results: Results, parquet: bool) -
     from sim.campaign.report.page import write_page  # noqa: PLC0415  matplotlib loads when something is drawn
 
     if parquet:
-        from sim.campaign.results.parquet import export  # noqa: PLC0415  an extra
-
         export(results, folder / PARQUET)
     analysis = analyse(chosen, results)
     write_page(folder / PAGE, chosen, analysis, results.meta("torquer_version"))

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import fsw.wire
-from sim.errors import HarnessError
+from sim.errors import needing
 
 DBC = Path(fsw.wire.__file__).with_name("torquer.dbc")
 
@@ -77,10 +77,8 @@ def messages() -> tuple[Message, ...]:
     Raises:
         HarnessError: the package cantools, which reads the DBC, is missing.
     """
-    try:
+    with needing("the DBC", "cantools", "export"):
         import cantools  # noqa: PLC0415  an extra
-    except ImportError:
-        raise HarnessError("the DBC needs the package cantools: pip install 'torquer[export]'") from None
     database = cantools.database.load_file(DBC, database_format="dbc")
     return tuple(_message(found) for found in sorted(database.messages, key=lambda found: found.frame_id))
 

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CLASSES, NavAttitude, intact
-from sim.errors import HarnessError
+from sim.errors import needing
 from sim.export.dictionary import Message, messages
 from sim.export.history_table import AXES
 from sim.export.source import LogPass, Source
@@ -41,10 +41,8 @@ def write_mcap(source: Source, path: Path, watch: Watch) -> list[str]:
     Raises:
         HarnessError: the package foxglove-sdk is missing.
     """
-    try:
+    with needing("mcap", "foxglove-sdk", "export"):
         from foxglove import Context, open_mcap  # noqa: PLC0415  an extra
-    except ImportError:
-        raise HarnessError("mcap needs the package foxglove-sdk: pip install 'torquer[export]'") from None
     from sim.export.mcap_scene import Scene  # noqa: PLC0415  needs foxglove
 
     log, context = LogPass(source.log), Context()

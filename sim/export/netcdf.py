@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from sim.errors import HarnessError
+from sim.errors import needing
 from sim.export.history_table import AXES, Block, HistoryTable
 from sim.export.source import Source
 from sim.progress import Watch
@@ -19,10 +19,8 @@ def write_netcdf(source: Source, path: Path, watch: Watch) -> list[str]:
     Raises:
         HarnessError: the package h5netcdf is missing.
     """
-    try:
+    with needing("netcdf", "h5netcdf", "export"):
         import h5netcdf  # noqa: PLC0415  an extra
-    except ImportError:
-        raise HarnessError("netcdf needs the package h5netcdf: pip install 'torquer[export]'") from None
     table = HistoryTable(source)
     with h5netcdf.File(path, "w") as file:
         file.dimensions = {"time": table.ticks} | {name: len(name) for name in _AXES.values()}

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.errors import HarnessError
+from sim.errors import needing
 from sim.export.history_table import Block, HistoryTable
 from sim.export.source import Source
 from sim.progress import Watch
@@ -38,11 +38,9 @@ def write_parquet(source: Source, path: Path, watch: Watch) -> list[str]:
     Raises:
         HarnessError: the package pyarrow is missing.
     """
-    try:
+    with needing("parquet", "pyarrow", "export"):
         import pyarrow as pa  # noqa: PLC0415  an extra
         import pyarrow.parquet as pq  # noqa: PLC0415  an extra
-    except ImportError:
-        raise HarnessError("parquet needs the package pyarrow: pip install 'torquer[export]'") from None
     table = HistoryTable(source)
     fields = [
         pa.field(name, pa.float64(), metadata={"unit": quantity.unit, "meaning": quantity.meaning})

@@ -8,7 +8,7 @@ the lowest of each byte, as Yamcs does it in this order.
 from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
 
-from sim.errors import HarnessError
+from sim.errors import needing
 from sim.export.dictionary import Message, Signal, messages
 
 if TYPE_CHECKING:
@@ -28,10 +28,8 @@ def xtce_text() -> str:
     Raises:
         HarnessError: the package yamcs-pymdb is missing.
     """
-    try:
+    with needing("XTCE", "yamcs-pymdb", "xtce"):
         from yamcs import pymdb  # noqa: PLC0415  an extra
-    except ImportError:
-        raise HarnessError("XTCE needs the package yamcs-pymdb: pip install 'torquer[xtce]'") from None
     system = pymdb.System("torquer", short_description="Bus of Torquer: one container a CAN message")
     encoding = pymdb.IntegerEncoding(bits=ID_BITS)
     identifier = pymdb.IntegerParameter(

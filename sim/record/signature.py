@@ -6,7 +6,7 @@ A signature is over the bytes of run.json and lies beside it as 64 bytes: openss
 from pathlib import Path
 from typing import Protocol
 
-from sim.errors import HarnessError
+from sim.errors import HarnessError, needing
 from sim.record.run_dir import replace_file
 
 SUFFIX = ".sig"
@@ -98,12 +98,8 @@ def signature_path(path: Path) -> Path:
 
 
 def _require_cryptography(option: str) -> None:
-    try:
+    with needing(option, "cryptography", "sign"):
         import cryptography  # noqa: F401, PLC0415  (optional)
-    except ImportError:
-        raise HarnessError(
-            f"{option} needs the package cryptography: pip install 'torquer[sign]' brings it"
-        ) from None
 
 
 def _read_key(option: str, path: Path) -> bytes:

@@ -5,7 +5,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from fsw.core.algebra.quaternion import IDENTITY
-from sim.errors import HarnessError
+from sim.errors import HarnessError, needing
 from sim.watch.happening import Weight
 from sim.watch.seen import FlightView
 from sim.watch.snapshot import STATE_SCHEMA, state
@@ -35,10 +35,8 @@ def foxglove_server(port: int) -> Iterator["Publisher"]:
     Raises:
         HarnessError: the package is not installed, or the port is taken.
     """
-    try:
+    with needing("--foxglove", "foxglove-sdk", "watch"):
         import foxglove  # noqa: PLC0415  (of an extra)
-    except ImportError:
-        raise HarnessError("--foxglove needs foxglove-sdk: pip install 'torquer[watch]'") from None
     context = foxglove.Context()
     try:
         server = foxglove.start_server(name="torquer", host=HOST, port=port, context=context)

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Literal
 
 from sim.drawing.pages import live_page
-from sim.errors import HarnessError
+from sim.errors import HarnessError, needing
 from sim.watch.seen import FlightView
 from sim.watch.snapshot import snapshot
 from sim.watch.source import FrameSource, take_batch
@@ -128,13 +128,9 @@ def serve(view: LiveView, port: int, announce: Callable[[str], None]) -> None:
     Raises:
         HarnessError: a package is not installed, or the port is taken.
     """
-    try:
+    with needing("--web", "starlette, uvicorn and websockets", "watch"):
         import uvicorn  # noqa: PLC0415  (of an extra)
         import websockets  # noqa: F401, PLC0415
-    except ImportError:
-        raise HarnessError(
-            "--web needs starlette, uvicorn and websockets: pip install 'torquer[watch]'"
-        ) from None
     with listening(port) as listener:
         server = uvicorn.Server(
             uvicorn.Config(application(view), log_level="warning", ws=WEBSOCKETS, timeout_graceful_shutdown=1)

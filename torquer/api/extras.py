@@ -3,7 +3,7 @@
 from importlib import import_module
 from types import ModuleType
 
-from sim.errors import HarnessError
+from sim.errors import needing
 
 
 def required(package: str, for_what: str) -> ModuleType:
@@ -12,7 +12,5 @@ def required(package: str, for_what: str) -> ModuleType:
     Raises:
         HarnessError: it is missing.
     """
-    try:
+    with needing(for_what, package, "data"):
         return import_module(package)
-    except ImportError:
-        raise HarnessError(f"{for_what} needs the package {package}: pip install 'torquer[data]'") from None

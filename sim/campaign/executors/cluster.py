@@ -14,7 +14,7 @@ from typing import Any
 
 from sim.campaign.one_run import RunTask, lost_run
 from sim.campaign.results.row import RunRow
-from sim.errors import FlightError, HarnessError
+from sim.errors import FlightError, HarnessError, needing
 
 CHUNKS_A_THREAD = 4
 """Handed out at a time, so that no worker waits for the next."""
@@ -40,12 +40,8 @@ class Cluster:
             HarnessError: the package is missing, there is no scheduler, or a worker has another torquer.
             ClusterLostError: the scheduler ended.
         """
-        try:
+        with needing("--scheduler", "distributed", "cluster"):
             from distributed import Client  # noqa: PLC0415  an extra
-        except ImportError:
-            raise HarnessError(
-                "--scheduler needs the package distributed: pip install 'torquer[cluster]'"
-            ) from None
         logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # what is lost is a sentence here
         where = (
             {"scheduler_file": self.scheduler}

@@ -4,9 +4,19 @@ from itertools import islice
 from pathlib import Path
 
 from sim.campaign.results.store import Results
-from sim.errors import HarnessError
+from sim.errors import needing
 
 ROWS_A_GROUP = 10_000
+
+
+def check_parquet() -> None:
+    """Check that the results can be exported, before anything is flown.
+
+    Raises:
+        HarnessError: the package pyarrow is missing.
+    """
+    with needing("--parquet", "pyarrow", "parquet"):
+        import pyarrow.parquet  # noqa: F401, PLC0415  an extra
 
 
 def export(results: Results, path: Path) -> None:
@@ -15,11 +25,10 @@ def export(results: Results, path: Path) -> None:
     Raises:
         HarnessError: the package pyarrow is missing.
     """
-    try:
-        import pyarrow as pa  # noqa: PLC0415  an extra
-        import pyarrow.parquet as pq  # noqa: PLC0415  an extra
-    except ImportError:
-        raise HarnessError("--parquet needs the package pyarrow: pip install 'torquer[parquet]'") from None
+    check_parquet()
+    import pyarrow as pa  # noqa: PLC0415  an extra
+    import pyarrow.parquet as pq  # noqa: PLC0415  an extra
+
     kinds = {"INTEGER": pa.int64(), "TEXT": pa.string(), "REAL": pa.float64(), "NUMERIC": pa.float64()}
     schema = pa.schema([(name, kinds[kind]) for name, kind in results.kinds().items()])
     schema = schema.with_metadata(results.all_meta())

@@ -37,6 +37,17 @@ function turnedView(canvas, draw) {
   return { project };
 }
 
+// The head of an arrow that ends there, turned so; what is written next stands about its point.
+function arrowHead(ctx, x, y, turn) {
+  ctx.beginPath();
+  ctx.moveTo(x, y);
+  for (const side of [-1, 1]) ctx.lineTo(x - 10 * Math.cos(turn + side * 0.4), y - 10 * Math.sin(turn + side * 0.4));
+  ctx.fill();
+  ctx.font = "600 13px system-ui, sans-serif";
+  ctx.textAlign = "center";
+  ctx.textBaseline = "middle";
+}
+
 // Heights of the labels of a picture, by their middles and half their widths: none stands on another.
 function labelPlaces() {
   const taken = [];

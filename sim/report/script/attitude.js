@@ -104,13 +104,7 @@ const pulsesNow = (() => {
       line(from, v, colour, width, dash);
       const [x, y] = at(v), [x0, y0] = at(from), turn = Math.atan2(y - y0, x - x0);
       ctx.fillStyle = theme.colour(colour);
-      ctx.beginPath();
-      ctx.moveTo(x, y);
-      for (const side of [-1, 1]) ctx.lineTo(x - 10 * Math.cos(turn + side * 0.4), y - 10 * Math.sin(turn + side * 0.4));
-      ctx.fill();
-      ctx.font = "600 13px system-ui, sans-serif";
-      ctx.textAlign = "center";
-      ctx.textBaseline = "middle";
+      arrowHead(ctx, x, y, turn);
       ctx.lineWidth = 3;
       ctx.strokeStyle = theme.colour(PAPER);
       const [lx, ly] = [x + 13 * Math.cos(turn), y + 13 * Math.sin(turn)];

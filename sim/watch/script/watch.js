@@ -130,13 +130,7 @@ const watch = (() => {
       ctx.moveTo(size / 2, size / 2);
       ctx.lineTo(x, y);
       ctx.stroke();
-      ctx.beginPath();
-      ctx.moveTo(x, y);
-      for (const side of [-1, 1]) ctx.lineTo(x - 11 * Math.cos(turn + side * 0.4), y - 11 * Math.sin(turn + side * 0.4));
-      ctx.fill();
-      ctx.font = "600 13px system-ui, sans-serif";
-      ctx.textAlign = "center";
-      ctx.textBaseline = "middle";
+      arrowHead(ctx, x, y, turn);
       const label = level ? `${name}, coil at ${level}` : name;
       const half = ctx.measureText(label).width / 2;
       const middle = Math.min(Math.max(x + 26 * Math.cos(turn), half + 2), size - half - 2);

@@ -1,6 +1,7 @@
 """``torquer.campaign``: results as a table, statistics as values, runs flown again."""
 
 import json
+import sys
 
 import pytest
 
@@ -72,6 +73,14 @@ def test_a_run_is_flown_again_bit_for_bit(done, tmp_path):
     assert digest_of(run.log).frames == done.results.frames_sha256[2]
     with pytest.raises(torquer.InputError, match="--run 4"):
         done.fly(4)
+
+
+def test_an_export_that_cannot_be_made_is_refused_before_anything_flies(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setitem(sys.modules, "pyarrow.parquet", None)
+    with pytest.raises(torquer.InputError, match=r"--parquet needs pyarrow: .*torquer\[parquet\]"):
+        torquer.campaign("microsat", runs=1, orbits=0.005, parquet=True)
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize(

@@ -85,7 +85,7 @@ def test_without_the_extra_only_tables_and_histories_are_missing(copy, monkeypat
     for package in ("xarray", "pandas"):
         monkeypatch.setitem(sys.modules, package, None)
     for name, package in (("truth", "xarray"), ("estimate", "xarray"), ("pulses", "pandas")):
-        with pytest.raises(torquer.InputError, match=rf"needs the package {package}: .*torquer\[data\]"):
+        with pytest.raises(torquer.InputError, match=rf"needs {package}: .*torquer\[data\]"):
             getattr(copy, name)
     assert copy.summary["limits_ok"]
     assert copy.check().ok
