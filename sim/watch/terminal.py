@@ -21,6 +21,8 @@ from sim.watch.seen import FlightView, SecondSample
 REFRESH_HZ = 8
 LAST_ROWS = 40
 """Of the picture that stays on the terminal."""
+HEAD, NUMBERS, WIDE = 3, 14, 100
+"""Lines of the head, of the panels with the numbers; columns from which on courses and bars have room."""
 STYLES = {Weight.PULSE: "cyan", Weight.INFO: "", Weight.WARNING: "yellow", Weight.ERROR: "bold red"}
 ARROWS = {
     "body 1": "bright_blue",
@@ -71,6 +73,13 @@ def line(happening: Occurrence) -> str:
     return f"{time_text(happening.unix_s)}  {tick:>12}  {happening.weight.value:7}  {happening.words}"
 
 
+def short_line(happening: Occurrence) -> str:
+    """The same for half a terminal: the head has day and tick, the words say whether it is a pulse."""
+    grave = happening.weight in (Weight.WARNING, Weight.ERROR)
+    sign = f"{happening.weight.value}: " if grave else ""
+    return f"{time_text(happening.unix_s)[-8:]}  {sign}{happening.words}"
+
+
 def time_text(unix_s: int | None) -> str:
     """The satellite's time in UTC."""
     return " " * 19 if unix_s is None else f"{datetime.fromtimestamp(unix_s, UTC):%Y-%m-%d %H:%M:%S}"
@@ -78,16 +87,21 @@ def time_text(unix_s: int | None) -> str:
 
 def screen(seen: FlightView, source: str, width: int, height: int) -> RenderableType:
     """All panels, for a terminal of this size."""
+    middle = min(max(NUMBERS, (height - HEAD) // 2), max(1, height - HEAD - 1))
+    foot, wide = max(1, height - HEAD - middle), width >= WIDE
     layout = Layout()
-    layout.split_column(Layout(_head(seen, source), size=3), Layout(name="middle"), Layout(name="foot"))
+    layout.split_column(
+        Layout(_head(seen, source), size=HEAD), Layout(name="middle", size=middle), Layout(name="foot")
+    )
     layout["middle"].split_row(Layout(name="attitude"), Layout(name="numbers"))
-    columns, rows = max(10, width // 2 - 4), max(4, (height - 3) // 2 - 2)
+    columns, rows = max(10, width // 2 - 4), max(4, middle - 2)
     layout["attitude"].update(Panel(_attitude(seen, columns, rows), title="attitude", subtitle=_frame(seen)))
     layout["numbers"].split_column(
-        Layout(Panel(_coils(seen), title="coils"), size=6), Layout(Panel(_estimate(seen), title="estimate"))
+        Layout(Panel(_coils(seen, wide), title="coils"), size=6),
+        Layout(Panel(_estimate(seen, wide), title="estimate")),
     )
     layout["foot"].split_row(
-        Layout(Panel(_happenings(seen, max(1, (height - 3) // 2 - 2)), title="events and pulses"), ratio=2),
+        Layout(Panel(_happenings(seen, max(1, foot - 2)), title="events and pulses"), ratio=2),
         Layout(Panel(_load(seen), title="bus")),
     )
     return layout
@@ -120,15 +134,16 @@ def _attitude(seen: FlightView, columns: int, rows: int) -> Text:
     return text
 
 
-def _coils(seen: FlightView) -> Table:
+def _coils(seen: FlightView, wide: bool) -> Table:
     table = Table.grid(padding=(0, 2), expand=True)
     for coil in range(3):
         level, lockout = seen.coils.levels[coil], seen.coils.lockout_ms[coil]
         if seen.coils.fractions is not None:
             state: RenderableType = f"{100.0 * seen.coils.fractions[coil]:+.0f} % of full"
         else:
-            state = Text(f"level {level:+d}, {seen.coils.current_ma} mA", "bold cyan") if level else "off"
-        locked = Bar(100_000, 0, lockout or 0, width=12) if lockout else Text("")
+            driven = f"{'level ' if wide else ''}{level:+d}, {seen.coils.current_ma} mA"
+            state = Text(driven, "bold cyan") if level else "off"
+        locked = Bar(100_000, 0, lockout or 0, width=12) if lockout and wide else Text("")
         left = "" if lockout is None else (f"{lockout / 1000:.0f} s locked" if lockout else "free")
         table.add_row(f"coil {coil}", state, locked, left)
     table.add_row(f"{seen.coils.pulses} pulses", f"{seen.coils.refused} refused", "", "")
@@ -139,7 +154,7 @@ def _number(value: float | None, unit: str, digits: int = 2) -> str:
     return "-" if value is None else f"{value:.{digits}f} {unit}"
 
 
-def _estimate(seen: FlightView) -> Table:
+def _estimate(seen: FlightView, wide: bool) -> Table:
     table = Table.grid(padding=(0, 2), expand=True)
     samples = list(seen.samples)
     latest = samples[-1] if samples else None
@@ -152,10 +167,11 @@ def _estimate(seen: FlightView) -> Table:
     )
     for title, name, unit in rows:
         value = getattr(latest, name) if latest else None
-        table.add_row(title, _number(value, unit, 3), sparkline(_every(samples, name), 30))
+        course = sparkline(_every(samples, name), 30) if wide else ""
+        table.add_row(title, _number(value, unit, 3), course)
     field = seen.field
     strength = None if field is None else norm((field.b_x, field.b_y, field.b_z)) * 1e-3
-    table.add_row("field", _number(strength, "uT", 1), _used(seen))
+    table.add_row("field", _number(strength, "uT", 1), _used(seen) if wide else "")
     return table
 
 
@@ -176,13 +192,13 @@ def _used(seen: FlightView) -> str:
 def _happenings(seen: FlightView, most: int) -> Text:
     text = Text(no_wrap=True, overflow="ellipsis")
     for happening in list(seen.happenings)[-most:]:
-        text.append(line(happening) + "\n", STYLES[happening.weight])
+        text.append(short_line(happening) + "\n", STYLES[happening.weight])
     return text
 
 
 def _load(seen: FlightView) -> Table:
     table = Table.grid(padding=(0, 2), expand=True)
-    table.add_row("load of 125 kbit/s", f"{100.0 * seen.load.part:.1f} %")
+    table.add_row("125 kbit/s used", f"{100.0 * seen.load.part:.1f} %")
     table.add_row("frames", f"{seen.load.frames_per_s:.0f} /s")
     table.add_row("broken frames", str(seen.broken))
     for can_id, count in seen.frames.most_common(HEAVIEST):

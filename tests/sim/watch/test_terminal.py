@@ -6,8 +6,9 @@ import pytest
 from rich.console import Console
 
 from fsw.wire.messages import CoilStatus, FswBoot, MagField, Mode, NavAttitude, NavQuality, NavRate, Sync
+from sim.watch.happening import Occurrence, Weight
 from sim.watch.seen import FlightView
-from sim.watch.terminal import screen, show
+from sim.watch.terminal import screen, short_line, show
 
 
 def text(seen, width=120, height=40):
@@ -67,6 +68,26 @@ def test_any_room_is_enough(flying, width, height):
     lines = text(flying, width, height).splitlines()
     assert len(lines) <= height
     assert max(map(len, lines)) <= width
+
+
+def test_a_terminal_of_80_columns_shows_every_number_and_whole_pulses(flying):
+    shown = text(flying, 80, 24)
+    assert "coil 1 driven at level -3, -400 mA" in shown
+    for words in (
+        "125 kbit/s used",
+        "coil 2",
+        "refused",
+        "off the orbit axes",
+        "Sun off prediction",
+        "36.1 uT",
+    ):
+        assert words in shown
+
+
+def test_a_warning_is_called_one_beside_its_colour():
+    warned = Occurrence(1, 3, 1427424417, Weight.WARNING, "fsw: something")
+    assert short_line(warned) == "02:46:57  warning: fsw: something"
+    assert short_line(warned._replace(weight=Weight.PULSE)) == "02:46:57  fsw: something"
 
 
 def test_into_a_file_it_is_a_line_for_each_thing_that_happens(capsys):
