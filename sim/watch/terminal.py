@@ -135,7 +135,7 @@ def _attitude(seen: FlightView, columns: int, rows: int) -> Text:
 
 
 def _coils(seen: FlightView, wide: bool) -> Table:
-    table = Table.grid(padding=(0, 2), expand=True)
+    table = Table.grid(padding=(0, 2 if wide else 1), expand=True)
     for coil in range(3):
         level, lockout = seen.coils.levels[coil], seen.coils.lockout_ms[coil]
         if seen.coils.fractions is not None:
