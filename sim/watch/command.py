@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+from fsw.bus.interface import BusError
 from sim.errors import HarnessError
 from sim.progress import note
 from sim.record.pace import Pace
@@ -39,8 +40,15 @@ def watch(what: str, pace: Pace, scenario: str | None) -> Watched:
         flown = log.scenario() if flown is None else flown
         source: FrameSource = log
     else:
-        source = BusSource(what)
+        source = _bus(what)
     return Watched(source, FlightView(nothing_around if flown is None else onboard_around(flown)))
+
+
+def _bus(what: str) -> BusSource:
+    try:
+        return BusSource(what)
+    except BusError as error:
+        raise BusError(f"{error}; nor is there a run or a log of that name") from None
 
 
 def show_on_terminal(watched: Watched) -> None:

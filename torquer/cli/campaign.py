@@ -8,9 +8,9 @@ from torquer.cli.completions import of_scenarios
 from torquer.cli.options import JSON, JUNIT, examples, law_and_settings, sentences
 
 EXAMPLES = examples(
-    "torquer campaign examples/campaigns/quick.toml --runs 20 --out quick",
-    "torquer campaign quick                                  # fly what is missing",
-    "torquer campaign cubesat3u --runs 20 --orbits 3 --junit campaign.xml",
+    "torquer campaign cubesat3u --runs 20 --orbits 3 --out series",
+    "torquer campaign series --runs 40                       # fly what is missing, and 20 more",
+    "torquer campaign campaign.toml --junit campaign.xml     # with dispersions: docs/campaigns.md",
 )
 
 
