@@ -48,6 +48,8 @@ def _bus(what: str) -> BusSource:
     try:
         return BusSource(what)
     except BusError as error:
+        if ":" in what:
+            raise
         raise BusError(f"{error}; nor is there a run or a log of that name") from None
 
 

@@ -31,6 +31,9 @@ def test_a_log_a_bus_and_a_path_that_is_missing(log, tmp_path):
         command.watch(str(tmp_path / "none.log"), LOCKSTEP, None)
     with pytest.raises(BusError, match=r"unknown bus 'lop'.*; nor is there a run or a log of that name"):
         command.watch("lop", LOCKSTEP, None)
+    with pytest.raises(BusError) as caught:
+        command.watch("socketcan:", LOCKSTEP, None)
+    assert "a run" not in str(caught.value), "it can be nothing but a bus"
 
 
 def test_the_orbit_is_that_of_the_run_or_of_a_scenario(log, recorded_run):
