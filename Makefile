@@ -11,7 +11,7 @@
 # make golden     record the golden logs again: after a change that means to alter the answers of fsw
 # make docs      build the documentation into build/docs, each warning an error: half a minute
 # make docs-gallery   the same, with notebooks and gallery executed: some minutes
-# make notebooks   execute the notebooks of docs/notebooks, into build/notebooks: a minute or two
+# make notebooks   execute the notebooks of docs/notebooks, into build/notebooks: some minutes
 # make test-vcan   the tests on a CAN interface, in a user-mode Linux guest where this kernel has no vcan
 # make test-chromium   the pages in a headless browser, Debian's chromium
 # make fuzz       a million random frames, a thousand mutations of each kind of input file: half an hour

@@ -186,7 +186,7 @@ def _coarse(missed: Missed, evidence: FlightEvidence) -> str:
 
 def _weak(missed: Missed, evidence: FlightEvidence) -> str:
     highest, total, of = evidence.levels[2], sum(evidence.levels), "the last orbit"
-    if missed.name == "settling" and missed.settled is not None and evidence.pulses:
+    if missed.settled is not None and _has_settled(missed) and evidence.pulses:
         before = [level for at, level in evidence.pulses if at < missed.settled]
         highest, total, of = before.count(3), len(before), f"{orbits(missed.settled)}"
     most = evidence.saturated_part if not total else highest / total
@@ -215,15 +215,22 @@ def _never_in_point(missed: Missed, evidence: FlightEvidence) -> str:
     )
 
 
+def _has_settled(missed: Missed) -> bool:
+    """It has, if later than it should."""
+    return missed.name == "settling" and missed.settled is not None
+
+
 def _short(missed: Missed, evidence: FlightEvidence) -> str:
     near = sum(evidence.in_mode.get(mode, 0.0) for mode in (Mode.ACQUIRE, Mode.POINT))
-    if len(evidence.trend) >= TREND or near < 0.5:
+    if len(evidence.trend) >= TREND or near < 0.5 or _has_settled(missed):
         return ""
     return f"{orbits(evidence.orbits)} are too short to settle, or to tell when it would"
 
 
 def _not_settled(missed: Missed, evidence: FlightEvidence) -> str:
     trend = evidence.trend
+    if _has_settled(missed):
+        return ""
     if len(trend) < TREND or missed.limit is None or min(trend) <= 0.0 or trend[-1] <= missed.limit:
         return ""
     slope = float(np.polyfit(np.arange(len(trend)) / 2.0, np.log(trend), 1)[0])

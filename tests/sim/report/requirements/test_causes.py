@@ -135,7 +135,12 @@ class TestWhatWouldDo:
     def test_a_highest_level_that_turns_the_body_is_at_least_that_of_the_gravity_gradient(self):
         """A flight with 1.5 A m^2 settles within two orbits, one with 0.4 ends upside down."""
         weak = replace(
-            sound("coils.levels_am2=[0.05,0.1,0.2]", "flight.uncertainty.torque_nm=0"), levels=(0, 0, 9)
+            sound(
+                "coils.levels_am2=[0.05,0.1,0.2]",
+                "flight.uncertainty.torque_nm=0",
+                "flight.uncertainty.torque_variation_nm=0",
+            ),
+            levels=(0, 0, 9),
         )
         told = float(text(replace(weak, torque_nm=(0.0, 0.0, 0.0))).rpartition("at least ")[2].split()[0])
         assert told == pytest.approx(1.5, rel=0.05)
@@ -208,6 +213,14 @@ def test_what_settles_late_is_too_weak_by_the_pulses_until_then():
     assert names(strong_at_the_end, LATE) == ["weak"]
     assert "at the highest level in 100 % of the pulses of 3.27 orbits" in text(strong_at_the_end, LATE)
     assert names(replace(strong_at_the_end, pulses=()), LATE) == ["slow"]
+
+
+def test_what_has_settled_at_last_is_not_called_unsettled():
+    """The last half orbit began before it had settled."""
+    one = replace(sound(), orbits=1.7, trend=(70.0, 40.0, 17.0), course=(70.0, 40.0, 17.0, 2.0))
+    assert names(one, Missed("settling", "attitude", 5.0, 1.32)) == ["slow"]
+    assert names(one, Missed("settling", "attitude", 5.0)) == ["not_settled"]
+    assert names(replace(one, trend=(40.0, 17.0)), Missed("settling", "attitude", 5.0, 1.32)) == ["slow"]
 
 
 def test_a_fall_that_is_told_often_is_told_three_times():

@@ -13,7 +13,11 @@ from sim.report.requirements.judge import Outcome
 from sim.scenario.schema import expecting, load, parse_settings
 
 PERFECT = "knowledge=perfect"
-UNDISTURBED = ("disturbance.torque_nm=[0,0,0]", "flight.uncertainty.torque_nm=0.0")
+UNDISTURBED = (
+    "disturbance.torque_nm=[0,0,0]",
+    "flight.uncertainty.torque_nm=0.0",
+    "flight.uncertainty.torque_variation_nm=0.0",
+)
 
 
 class Flight(NamedTuple):
@@ -57,6 +61,17 @@ FLIGHTS = {
     ),
     "wrong estimate": Flight(("sensors.sun.misalignment_deg=[15.0,0,0]",), 0.4, "estimate", {"mismatch"}),
     "not settled yet": Flight((PERFECT,), 1.7, "not_settled", expected="ape<0.7", quick=False),
+    "slow": Flight((PERFECT,), 1.1, "slow", expected="settling<0.3", quick=False),
+    "upside down": Flight(
+        (PERFECT, "initial.angle_deg=175"), 1.7, "slow", expected="settling<0.3", quick=False
+    ),
+    "sent back to DETUMBLE": Flight(
+        (PERFECT, 'telecommand=[{message="TC_MODE",mode="DETUMBLE",at_s=2000.0}]'),
+        1.1,
+        "fell_back",
+        expected="settling<0.3",
+        quick=False,
+    ),
     "too short": Flight((PERFECT,), 0.3, "short"),
 }
 ALL = os.environ.get("TORQUER_FAILING_FLIGHTS") == "all"
