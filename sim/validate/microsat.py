@@ -6,7 +6,7 @@ from math import inf
 import numpy as np
 from scipy.stats import chi2
 
-from fsw.input.schema import Nested
+from fsw.input.schema import Nested, merge
 from fsw.wire.messages import Mode
 from sim.campaign.claim import Study, Threshold
 from sim.campaign.flight import Figures, Order
@@ -51,7 +51,7 @@ def studies() -> list[Study]:
 def pointing() -> Study:
     """Ten seeds for each bias torque, from attitudes up to 60 deg off."""
     groups = [
-        Group(name, tuple(_pointing_order(seed, torque_nm) for seed in range(1, POINTING_RUNS + 1)))
+        Group(name, tuple(pointing_order(seed, torque_nm) for seed in range(1, POINTING_RUNS + 1)))
         for name, torque_nm, _ in BIAS_TORQUES
     ]
     figures = [
@@ -182,13 +182,14 @@ def pointing_deg(truth: Histories) -> Array:
     return np.degrees(angle_rad(relative(upright, q)))
 
 
-def _pointing_order(seed: int, torque_nm: float) -> Order:
+def pointing_order(seed: int, torque_nm: float, changed: Nested | None = None) -> Order:
+    """A flight from an attitude up to 60 deg off, with ``changed`` laid over the scenario."""
     random = np.random.default_rng(seed)
     overrides: Nested = {
         "initial": {"axis": direction(random), "angle_deg": float(random.uniform(0.0, STARTS_WITHIN_DEG))},
         "disturbance": {"torque_nm": [torque_nm] * 3},
     }
-    return Order(SCENARIO, overrides, seed=seed, measure=pointing_figures)
+    return Order(SCENARIO, merge(overrides, changed or {}), seed=seed, measure=pointing_figures)
 
 
 def _acquisition_order(run: int) -> Order:

@@ -6,8 +6,9 @@ from pathlib import Path
 from fsw.input.near import did_you_mean
 from sim.campaign.claim import Study
 from sim.errors import HarnessError
-from sim.validate import computed, microsat, population, shipped
+from sim.validate import computed, microsat, optimal_pulses, shipped
 from sim.validate.consat import minimisers, posat1, prediction
+from sim.validate.population import claims
 from sim.validate.reference import reference
 
 
@@ -25,7 +26,8 @@ def all_studies(satellites: int | None = None) -> list[Study]:
         *posat1.studies(),
         *microsat.studies(),
         *shipped.studies(),
-        *population.studies(satellites),
+        *optimal_pulses.studies(satellites),
+        *claims.studies(satellites),
     ]
 
 

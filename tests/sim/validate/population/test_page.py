@@ -7,9 +7,9 @@ import pytest
 
 from sim.campaign.flight import FlightResult
 from sim.campaign.population import Tolerances, population_order
-from sim.validate.population_page import TOLERANCES, page, satellites_table
-from sim.validate.population_pictures import draw_satellites, draw_sweep, spread_of
-from sim.validate.population_sweep import QUANTITIES
+from sim.validate.population.page import TOLERANCES, page, satellites_table
+from sim.validate.population.pictures import draw_satellites, draw_sweep, spread_of
+from sim.validate.population.sweep import QUANTITIES
 
 FIGURES = {
     "inside_1": 0.999,

@@ -7,8 +7,8 @@ from sim.campaign.claim import ClaimOutcome
 from sim.campaign.flight import FlightResult
 from sim.campaign.population import POPULATIONS, Tolerances
 from sim.validate.page import claims_table, platform_line, tally
-from sim.validate.population_pictures import Flights, SizeSpread, worst_inside
-from sim.validate.population_sweep import Quantity
+from sim.validate.population.pictures import Flights, SizeSpread, worst_inside
+from sim.validate.population.sweep import Quantity
 
 HEAD = """# Populations of real satellites
 

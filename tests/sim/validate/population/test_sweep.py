@@ -6,7 +6,7 @@ import pytest
 from sim.campaign.honesty import honesty_figures
 from sim.campaign.population import satellite
 from sim.scenario.schema import flight_table, load
-from sim.validate.population_sweep import QUANTITIES, sweep_order, sweep_orders
+from sim.validate.population.sweep import QUANTITIES, sweep_order, sweep_orders
 
 DIPOLE, INERTIA, TURNS = QUANTITIES
 KEYS = {

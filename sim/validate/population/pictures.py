@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 
 from sim.campaign.flight import FlightResult
 from sim.drawing.canvas import AXES_COLOURS, LIMIT, MUTED, log_y, style
-from sim.validate.population import inside
-from sim.validate.population_sweep import Quantity
+from sim.validate.population.claims import inside
+from sim.validate.population.sweep import Quantity
 
 HONEST_PERCENT = 99.7
 """Part of the time that a normal error is inside 3 sigma."""

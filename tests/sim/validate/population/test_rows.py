@@ -6,8 +6,7 @@ import pytest
 
 from sim.campaign.flight import FlightResult, Order
 from sim.errors import HarnessError
-from sim.validate import population_rows
-from sim.validate.population_rows import FlightRows
+from sim.validate.population.rows import FlightRows
 
 ORDER = Order("microsat", {"disturbance": {"torque_nm": [1e-8, -2e-8, 3e-8]}}, 3, 8.0, name="one")
 
@@ -72,7 +71,7 @@ def test_a_row_whose_writing_was_cut_off_is_flown_again(path):
 
 def test_flights_of_other_code_count_only_where_they_are_asked_for(path, monkeypatch):
     FlightRows(path).keep(flight())
-    monkeypatch.setattr(population_rows, "code_hash", lambda: "changed")
+    monkeypatch.setattr("sim.validate.population.rows.code_hash", lambda: "changed")
     assert FlightRows(path).flight(ORDER) is None
     earlier = FlightRows(path, of_any_code=True)
     assert earlier.flight(ORDER) is not None

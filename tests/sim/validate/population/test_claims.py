@@ -7,7 +7,7 @@ import pytest
 from sim.campaign.claim import ClaimVerdict
 from sim.campaign.flight import FlightResult
 from sim.scenario.schema import load
-from sim.validate import population
+from sim.validate.population import claims as population
 
 GOOD = {
     "inside_1": 0.999,

@@ -44,7 +44,7 @@ def studies(most: int | None = None) -> list[FlightStudy]:
 def microsatellites(seeds: Sequence[int]) -> FlightStudy:
     """The 50 kg satellite with shared back-off."""
     figures = (
-        *_quiet_and_honest(),
+        *quiet_and_honest(),
         Figure("estimate", "RMS error of the estimate, median", "deg", ESTIMATE, "median", high=0.4),
         Figure("estimate_worst", "RMS error of the estimate, all", "deg", ESTIMATE, high=0.7),
         IN_POINT,
@@ -82,13 +82,13 @@ def cubesats(kind: str, seeds: Sequence[int], pointing_deg: float | None = None)
     pointing = (
         [] if pointing_deg is None else [_pointing("pointing", "median", of="median", high=pointing_deg)]
     )
-    return _study(kind, orders, (*_quiet_and_honest(), *pointing))
+    return _study(kind, orders, (*quiet_and_honest(), *pointing))
 
 
 def tumbling(name: str, rate_degps: tuple[float, float], orbits: float, seeds: Sequence[int]) -> FlightStudy:
     """50 kg satellites that start by tumbling about any axis: honest once they have come to POINT."""
     orders = tuple(population_order("50kg", seed, orbits, rate_degps=rate_degps) for seed in seeds)
-    return _study(name, orders, (*_quiet_and_honest(SINCE_POINT), IN_POINT))
+    return _study(name, orders, (*quiet_and_honest(SINCE_POINT), IN_POINT))
 
 
 def twice_the_bounds(seeds: Sequence[int]) -> FlightStudy:
@@ -120,7 +120,8 @@ WRONG = Figure(
 IN_POINT = Figure("in_point", "In POINT at the end, all", "1", figure_of("in_point"), low=1.0)
 
 
-def _quiet_and_honest(since: str = "") -> tuple[Figure, ...]:
+def quiet_and_honest(since: str = "") -> tuple[Figure, ...]:
+    """Nothing healthy isolated, and the filter as sure as it may be; ``since``: a key of ``SINCE``."""
     pooled, each = "Time inside 3 sigma by axis, pooled", "Time inside 3 sigma, worst axis, all"
     nees, when = "Mean NEES of attitude and rate", SINCE[since]
     return (
