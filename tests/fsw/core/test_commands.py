@@ -179,6 +179,10 @@ class TestLaw:
         back, _ = obey(after, TcLaw(LAWS[state.setpoint.law].number), config=with_own)
         assert back.setpoint == state.setpoint
 
+    def test_that_plans_pulses_is_none_of_a_continuous_driver(self, refused, config):
+        continuous = replace(config, control=replace(config.control, pulse_model=None))
+        refused(TcAckResult.UNKNOWN, TcLaw(LAWS["pulse_mpc"].number), config=continuous)
+
     @pytest.mark.parametrize("number", [*sorted(set(range(256)) - set(LAW_NAMES))[::23], 255])
     def test_that_is_not_there(self, refused, number):
         refused(TcAckResult.UNKNOWN, TcLaw(number))

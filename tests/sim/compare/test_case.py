@@ -49,6 +49,17 @@ def test_all_else_is_the_same():
         assert (case.order.seed, case.order.orbits) == (7, 0.5)
 
 
+@pytest.mark.parametrize("scenario", ["microsat", "realsat"])
+def test_a_law_that_plans_pulses_is_not_flown_by_a_continuous_driver(scenario):
+    """Not even where it is the scenario's own."""
+    found = cases(scenario, {}, ("mpc", "pulse_mpc"), BOTH, 1, None)
+    assert [(case.law, case.driver) for case in found] == [
+        ("mpc", Driver.PULSED),
+        ("pulse_mpc", Driver.PULSED),
+        ("mpc", Driver.CONTINUOUS),
+    ]
+
+
 def test_full_scale_is_the_highest_level_unless_the_scenario_has_one():
     def full_scale(scenario, settings=None):
         (case,) = cases(scenario, settings or {}, ("pd",), (Driver.CONTINUOUS,), 1, None)

@@ -11,7 +11,7 @@ from sim.sizing.expectation import expect, field_across
 RESIDUAL = ("flight.uncertainty.residual_dipole_am2=0.1",)
 FLOWN_DEG = {
     ("microsat", ()): 0.45,
-    ("realsat", ()): 1.44,
+    ("realsat", ()): 1.64,
     ("cubesat3u", ()): 1.46,
     ("cubesat6u", ()): 2.00,
     ("microsat", ("coils.levels_am2=[2.0,8.0,30.0]",)): 1.11,
