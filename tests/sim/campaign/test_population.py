@@ -179,6 +179,7 @@ def test_what_is_declared_is_the_bounds_and_not_the_truth():
         "magnetometer_misalignment_deg": 1.0,
         "sun_misalignment_deg": 0.5,
         "torque_nm": 1.5e-7,
+        "torque_variation_nm": pytest.approx(3e-8),
         "along_track_km": 5.0,
         "latency_s": 1.0,
     }

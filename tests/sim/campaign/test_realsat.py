@@ -29,9 +29,11 @@ def test_is_a_satellite_of_the_50_kg_population_rounded():
 
 
 def test_the_onboard_table_is_that_of_microsat():
-    """But for what microsat declares of itself, and a demand that lasts is forgotten more slowly."""
+    """But for what microsat declares of itself, the law, and a demand that lasts is forgotten more slowly."""
     real, nominal = flight_table(load("realsat")), flight_table(load("microsat"))
     for section in ("orbit", "body", "coils", "time", "estimator"):
         assert getattr(real, section) == getattr(nominal, section), section
     assert real.control.leak_s == 2.0 * nominal.control.leak_s
-    assert real.control.model_copy(update={"leak_s": nominal.control.leak_s}) == nominal.control
+    assert (real.control.law, nominal.control.law) == ("pulse_mpc", "mpc")
+    same = {"leak_s": nominal.control.leak_s, "law": nominal.control.law}
+    assert real.control.model_copy(update=same) == nominal.control
