@@ -16,6 +16,7 @@ from fsw.core.laws.interface import (
     Memory,
     Setpoint,
 )
+from fsw.core.laws.pulse_model import NO_PULSE, Pulse
 from fsw.core.laws.table import Aim
 from fsw.input.quantities import quantity
 
@@ -24,6 +25,7 @@ GROUP = "torquer.laws"
 
 __all__ = [
     "GROUP",
+    "NO_PULSE",
     "Aim",
     "ControlConfig",
     "ControlLaw",
@@ -32,6 +34,7 @@ __all__ = [
     "Law",
     "LawInput",
     "Memory",
+    "Pulse",
     "Setpoint",
     "quantity",
 ]

@@ -4,12 +4,14 @@ import signal
 from dataclasses import dataclass, replace
 from itertools import islice
 from math import isfinite
+from operator import index
 from pathlib import Path
 from threading import current_thread, main_thread
 from types import FrameType
 from typing import Any
 
 from fsw.core.laws.interface import ControlConfig, Demand, Law, LawInput, Memory, OwnLaw, Setpoint
+from fsw.core.laws.pulse_model import Pulse
 from fsw.core.laws.table import LAWS, Aim
 from fsw.input import own_code
 from fsw.input.own_code import error_clause
@@ -170,7 +172,18 @@ def _whole(answer: object) -> Demand:
         _vector("m_body_am2", answer.m_body_am2),
         None if impulse is None else _vector("impulse_body_nms", impulse),
         _numbers("memory", answer.memory),
+        None if answer.pulse is None else _pulse(answer.pulse),
     )
+
+
+def _pulse(value: object) -> Pulse:
+    try:
+        coil, level = map(index, value)  # type: ignore[call-overload]  # whatever they gave
+    except (TypeError, ValueError):
+        coil, level = -1, 0
+    if coil not in range(3) or level not in range(-3, 4):
+        raise ValueError("pulse is not a coil 0 to 2 and a level -3 to 3")
+    return Pulse(coil, level)
 
 
 def _vector(name: str, values: object) -> tuple[float, float, float]:

@@ -9,6 +9,7 @@ import pytest
 
 from fsw.core.estimation.attitude import UNKNOWN
 from fsw.core.laws.interface import Demand, FieldSample, LawInput
+from fsw.core.laws.pulse_model import Pulse
 from fsw.core.laws.table import LAWS, Aim
 from fsw.input.schema import TableError
 from fsw.table import own_law
@@ -155,6 +156,11 @@ class TestInFlight:
         assert type(demand.m_body_am2[0]) is float
         assert type(demand.memory) is tuple
 
+    def test_a_pulse_stays_one(self):
+        demand = answer_of(returning(Demand(pulse=(np.int64(2), True))))
+        assert demand == Demand(pulse=Pulse(2, 1))
+        assert [type(number) for number in demand.pulse] == [int, int]
+
     @pytest.mark.parametrize(
         ("answer", "what"),
         [
@@ -166,6 +172,10 @@ class TestInFlight:
             (Demand(None), "m_body_am2 is nothing"),
             (Demand(np.zeros((3, 3))), "m_body_am2 is a ndarray"),
             (Demand(impulse_body_nms=(1.0, float("inf"), 0.0)), "impulse_body_nms is not finite"),
+            (Demand(pulse=(3, 1)), "pulse is not a coil 0 to 2 and a level -3 to 3"),
+            (Demand(pulse=(0, 4)), "pulse is not a coil 0 to 2 and a level -3 to 3"),
+            (Demand(pulse=(0.0, 1)), "pulse is not a coil 0 to 2 and a level -3 to 3"),
+            (Demand(pulse="01"), "pulse is not a coil 0 to 2 and a level -3 to 3"),
             (Demand(memory=range(2000)), "memory has more than 1000 numbers"),
             (Demand(memory=("x",)), "memory is a tuple"),
         ],
