@@ -6,6 +6,7 @@ from typing import NamedTuple
 from fsw.core import telemetry
 from fsw.core.actuation import pulses
 from fsw.core.actuation.actuator import actuate, update_view, wait_ticks
+from fsw.core.actuation.driven import driven
 from fsw.core.algebra.quaternion import rotate
 from fsw.core.commands import command
 from fsw.core.config import FlightConfig
@@ -71,7 +72,7 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     state, inbox = _begin(state, inbox, belief, config)
     model = with_orbit(config.ephemeris, state.orbit)
     state, readings = _gate(state, inbox, syncs, config)
-    state, reference = _predict(state, model, tick - before.tick, config)
+    state, reference = _predict(state, model, before.tick, config)
     observation = _update(state, readings, reference, config)
     state = _judge(state, observation, config)
     state, violated = supervise(state, config)
@@ -132,7 +133,7 @@ def _gate(
 
 
 def _predict(
-    state: FlightState, model: EphemerisModel, elapsed_ticks: int, config: FlightConfig
+    state: FlightState, model: EphemerisModel, before: int, config: FlightConfig
 ) -> tuple[FlightState, Reference | None]:
     """Carry ephemeris and estimate to this tick; the reference is None where the orbit has no position."""
     ephemeris = advance(state.ephemeris, state.tick, model)
@@ -141,9 +142,13 @@ def _predict(
     reference = reference_at(ephemeris, state.tick, config.ephemeris)
     if not plausible(reference):
         return state._replace(ephemeris=None, estimator=restart(state.estimator)), None
-    driven_am2 = fdir.driven_am2(state.health, state.coil, config.fdir)
-    predicted = predict(state.estimator, reference, driven_am2, elapsed_ticks, config.estimator)
-    return state._replace(ephemeris=ephemeris, estimator=predicted), reference
+    state = state._replace(ephemeris=ephemeris)
+    if state.estimator.estimate is None:
+        return state, reference
+    tick, view, coils = state.tick, state.coil, config.coils
+    driven_am2 = fdir.driven_am2(state.health, view, config.fdir)
+    drives = driven(view, driven_am2, state.status_tick == tick, range(before + 1, tick + 1), coils)
+    return state._replace(estimator=predict(state.estimator, reference, drives, config.estimator)), reference
 
 
 def _update(

@@ -6,7 +6,8 @@ from math import radians
 import numpy as np
 
 from fsw.core.algebra.quaternion import conjugate, multiply, normalise, rotate
-from fsw.core.algebra.vector import ZERO, add, norm, scale, unit
+from fsw.core.algebra.vector import add, norm, scale, unit
+from fsw.core.estimation.error_dynamics import NOT_DRIVEN
 from fsw.core.estimation.estimator import (
     EstimatorConfig,
     predict,
@@ -78,8 +79,8 @@ def seen_from(q_body_from_eci=Q_BODY_FROM_ECI, reference=REFERENCE, **changes):
     return readings._replace(**changes)
 
 
-def step(state, readings, reference=REFERENCE, dipole=ZERO, elapsed=1, config=CONFIG):
-    return update(predict(state, reference, dipole, elapsed, config), readings, reference, config)
+def step(state, readings, reference=REFERENCE, driven=(NOT_DRIVEN,), config=CONFIG):
+    return update(predict(state, reference, driven, config), readings, reference, config)
 
 
 def angle_rad(p, q):

@@ -74,7 +74,7 @@ def update_view(view: CoilView, readings: Readings, tick: int, config: ActuatorC
         lockout[status.coil] = status.lockout_ms
         coil, level, seq = status.coil, status.level, status.seq
     else:
-        coil, level, seq = view.fired.coil, _requested_level(view, tick, config.pulses), view.seq
+        coil, level, seq = view.fired.coil, requested_level(view, tick, config.pulses), view.seq
     if config.dipoles is None:
         driven_am2 = scale(pulses.dipole_am2(level, config.pulses.levels_am2), AXES[coil])
     else:
@@ -94,7 +94,7 @@ def update_view(view: CoilView, readings: Readings, tick: int, config: ActuatorC
     )
 
 
-def _requested_level(view: CoilView, tick: int, config: PulseConfig) -> int:
+def requested_level(view: CoilView, tick: int, config: PulseConfig) -> int:
     """The level that the own request drives over the tick that just ended, 0 if it does not."""
     under_way = view.fired_tick < tick <= view.fired_tick + config.pulse_ticks
     return view.fired.level if under_way else 0
@@ -131,7 +131,7 @@ def unexpected(view: CoilView, tick: int, config: PulseConfig) -> bool:
     """Whether the board drove something that was not requested."""
     if view.driven_level == 0:
         return False
-    return (view.driven_coil, view.driven_level) != (view.fired.coil, _requested_level(view, tick, config))
+    return (view.driven_coil, view.driven_level) != (view.fired.coil, requested_level(view, tick, config))
 
 
 def actuate(

@@ -15,15 +15,29 @@ from fsw.core.estimation.torque_maps import TorqueMaps
 _IDENTITY = np.eye(6)
 
 
-def process_noise(m_body_am2: Vec3, b_body_t: Vec3, config: MekfConfig) -> Matrix:
+class Driven(NamedTuple):
+    """The dipole that the coils drove over a tick, and the standard deviation of what it is in doubt by.
+
+    Both in body axes, A m^2; a coil that is in doubt is so along its axis.
+    """
+
+    m_body_am2: Vec3
+    doubted_am2: Vec3 = ZERO
+
+
+def process_noise(driven: Driven, b_body_t: Vec3, config: MekfConfig) -> Matrix:
     """The noise of a tick; while a coil is driven also that of its dipole, known to ``dipole_sigma`` only."""
-    if m_body_am2 == ZERO:
+    if driven == NOT_DRIVEN:
         return config.process_noise
-    turn = scale(config.dipole_sigma * config.tick_s, cross(m_body_am2, b_body_t))
-    kick = np.array(transform(config.rotor.inertia_inverse, turn))
     noise = config.process_noise.copy()
-    noise[3:6, 3:6] += np.outer(kick, kick)
+    for sigma_am2 in (scale(config.dipole_sigma, driven.m_body_am2), driven.doubted_am2):
+        turn = scale(config.tick_s, cross(sigma_am2, b_body_t))
+        kick = np.array(transform(config.rotor.inertia_inverse, turn))
+        noise[3:6, 3:6] += np.outer(kick, kick)
     return noise
+
+
+NOT_DRIVEN = Driven(ZERO)
 
 
 FAST_RADPS, SLOW_RADPS = radians(0.5), radians(0.3)

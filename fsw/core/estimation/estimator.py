@@ -1,12 +1,13 @@
 """From readings to an estimate: start by TRIAD, then the filter, gated, blanked and restarted when lost."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import NamedTuple
 
 from fsw.core.algebra.vector import ZERO, Vec3, dot, scale
 from fsw.core.estimation import mekf
-from fsw.core.estimation.error_dynamics import FAST_RADPS, KNOWN_RADPS, SLOW_RADPS
+from fsw.core.estimation.error_dynamics import FAST_RADPS, KNOWN_RADPS, SLOW_RADPS, Driven
 from fsw.core.estimation.measurement import field_sampled
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig, with_frozen_parameters
@@ -93,8 +94,7 @@ NONE_USED = Used(False, False, False)
 def predict(
     state: EstimatorState,
     reference: Reference,
-    m_body_am2: Vec3,
-    elapsed_ticks: int,
+    driven: Sequence[Driven],
     config: EstimatorConfig,
 ) -> EstimatorState:
     """Carry the estimate, if there is one, to this tick; without it where it is too old or no longer sound.
@@ -102,20 +102,20 @@ def predict(
     Args:
         state: of the tick before.
         reference: field, Sun and orbit at this tick.
-        m_body_am2: dipole driven over the tick that ends now, body axes.
-        elapsed_ticks: ticks since ``state``; more than one where a SYNC was lost.
+        driven: over each tick since ``state``, the last of which ends now; several where a SYNC was lost.
         config: tuning.
     """
     estimate = state.estimate
     if estimate is None:
         return state
-    if elapsed_ticks > MAX_ELAPSED_TICKS:
+    if len(driven) > MAX_ELAPSED_TICKS:
         return restart(state)
     gravity = 3.0 * MU_M3PS2 / reference.radius_m**3
     e1_eci = scale(1.0 / reference.radius_m, reference.r_eci_m)
-    for remaining in range(elapsed_ticks, 0, -1):
-        dipole = m_body_am2 if remaining == 1 else ZERO
-        estimate = mekf.predict(estimate, e1_eci, reference.b_eci_t, gravity, dipole, config.mekf)
+    for m_body_am2, doubted_am2 in driven:
+        estimate = mekf.predict(
+            estimate, e1_eci, reference.b_eci_t, gravity, m_body_am2, config.mekf, doubted_am2
+        )
     return state._replace(estimate=estimate) if mekf.healthy(estimate) else restart(state)
 
 

@@ -25,10 +25,11 @@ from typing import NamedTuple
 import numpy as np
 
 from fsw.core.algebra.quaternion import Quaternion, from_small_rotation, multiply, normalise
-from fsw.core.algebra.vector import Vec3, add, dot, sub
+from fsw.core.algebra.vector import ZERO, Vec3, add, dot, sub
 from fsw.core.estimation.error_dynamics import (
     FAST_RADPS,
     Acting,
+    Driven,
     advanced,
     free_motion,
     middle,
@@ -119,6 +120,7 @@ def predict(
     gravity_per_s2: float,
     m_body_am2: Vec3,
     config: MekfConfig,
+    doubted_am2: Vec3 = ZERO,
 ) -> Estimate:
     """Carry estimate and covariance over one tick.
 
@@ -129,6 +131,7 @@ def predict(
         gravity_per_s2: 3 mu / r^3, 1/s^2.
         m_body_am2: dipole driven over the tick, body axes, A m^2.
         config: the filter.
+        doubted_am2: what that dipole is in doubt by, as in ``Driven``.
     """
     h, parts = config.tick_s, config.layout
     q, omega, parameters, covariance, trace = estimate[:5]
@@ -143,7 +146,7 @@ def predict(
     transition = transition_matrix(motion, around_mid, m_body_am2, rotor, config)
 
     kalman = LeanKalmanFilter(covariance)
-    kalman.predict(F=transition, Q=process_noise(m_body_am2, around_mid.b_t, config))
+    kalman.predict(F=transition, Q=process_noise(Driven(m_body_am2, doubted_am2), around_mid.b_t, config))
     return Estimate(
         normalise(multiply(q, turn(rotation))),
         omega_after,

@@ -171,6 +171,18 @@ class TestProcessNoise:
         expected[3:6, 3:6] = np.outer(kick, kick)
         np.testing.assert_allclose(with_it - without, expected, rtol=0.0, atol=1e-6 * kick @ kick)
 
+    def test_a_doubted_dipole_adds_the_kick_it_may_have_given(self, satellite):
+        """Whether or not the coil is taken to be driven."""
+        h, config = 0.5, satellite.config(tick_s=0.5)
+        doubted_am2, b_eci_t = (0.0, 5.0, -1.0), satellite.b_eci_t
+        kick = h * np.linalg.solve(satellite.inertia_kgm2, np.cross(doubted_am2, b_eci_t))
+        expected = np.zeros((satellite.size(), satellite.size()))
+        expected[3:6, 3:6] = np.outer(kick, kick)
+        for driven_am2 in (ZERO, satellite.driven_am2):
+            flight = (self.still(satellite), satellite.e1_eci, b_eci_t, 0.0, driven_am2, config)
+            added = predict(*flight, doubted_am2).covariance - predict(*flight).covariance
+            np.testing.assert_allclose(added, expected, rtol=0.0, atol=1e-6 * kick @ kick)
+
     def test_an_unsure_dipole_that_is_not_driven_adds_nothing(self, satellite):
         unsure, exact = (
             predict(

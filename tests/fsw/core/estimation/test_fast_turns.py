@@ -19,8 +19,9 @@ from estimator_samples import (
 )
 
 from fsw.core.algebra.quaternion import rotate
-from fsw.core.algebra.vector import ZERO, add, scale, unit
+from fsw.core.algebra.vector import add, scale, unit
 from fsw.core.estimation import mekf
+from fsw.core.estimation.error_dynamics import NOT_DRIVEN
 from fsw.core.estimation.estimator import (
     MAX_ELAPSED_TICKS,
     EstimatorState,
@@ -139,9 +140,8 @@ class TestAfterAFastTurn:
         assert starts == 1
 
     def test_a_filter_that_begins_anew_has_not_turned_fast(self, settled):
-        lost = predict(
-            self.turning(settled, 5.0, Turning.FAST), REFERENCE, ZERO, MAX_ELAPSED_TICKS + 1, CONFIG
-        )
+        silence = [NOT_DRIVEN] * (MAX_ELAPSED_TICKS + 1)
+        lost = predict(self.turning(settled, 5.0, Turning.FAST), REFERENCE, silence, CONFIG)
         assert lost == EstimatorState(None, 0, settled.rejected_total, settled.restarts + 1, Turning.NO)
 
     def test_it_is_in_the_checksum_of_the_state(self, settled):

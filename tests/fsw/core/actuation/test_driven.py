@@ -1,0 +1,106 @@
+"""What the coils drove since the tick before, and how far it is in doubt."""
+
+from math import sqrt
+
+import numpy as np
+import pytest
+
+from fsw.core.actuation.actuator import CoilView, update_view
+from fsw.core.actuation.dipoles import DipoleConfig
+from fsw.core.actuation.driven import driven
+from fsw.core.estimation.error_dynamics import Driven
+from fsw.core.gate.readings import NOTHING
+from fsw.core.laws.pulse_model import Pulse
+from fsw.wire.messages import CoilStatus
+
+ZERO = (0.0, 0.0, 0.0)
+IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+TICK = 10_000
+FIRED = CoilView((0, 0, 0), fired_tick=TICK, fired=Pulse(1, -3))
+ASKED_AM2 = (0.0, -8.0, 0.0)
+DOUBTED_AM2 = pytest.approx((0.0, -8.0 * sqrt(3.0), 0.0))
+UNKNOWN = (ASKED_AM2, DOUBTED_AM2)
+
+
+@pytest.fixture(scope="module")
+def coils(make_world):
+    """At 1 Hz: pulses of 3 s, levels of 0.5, 2 and 8 A m^2."""
+    return make_world().config.coils
+
+
+@pytest.fixture(scope="module")
+def drives(coils):
+    """Those up to so many ticks after the request, with what the board says, if it does."""
+
+    def over(ticks_after, status=None, skipped=0, view=FIRED):
+        tick = TICK + ticks_after
+        after = update_view(view, NOTHING._replace(coil=status), tick, coils)
+        ticks = range(tick - skipped, tick + 1)
+        return driven(after, after.driven_am2, status is not None, ticks, coils)
+
+    return over
+
+
+def says(coil, level):
+    return CoilStatus(level, coil, 0, 0, 0, 0)
+
+
+@pytest.mark.parametrize(("ticks_after", "level"), [(0, 0), (1, -3), (2, -3), (3, -3), (4, 0)])
+def test_what_is_reported_as_it_was_asked_for_is_certain(drives, ticks_after, level):
+    (now,) = drives(ticks_after, says(1, level))
+    assert now == Driven((0.0, -8.0 if level else 0.0, 0.0), ZERO)
+
+
+@pytest.mark.parametrize("ticks_after", [1, 2, 3])
+def test_without_a_report_all_that_was_asked_for_is_in_doubt(drives, ticks_after):
+    assert drives(ticks_after) == [UNKNOWN]
+
+
+@pytest.mark.parametrize("ticks_after", [0, 4, 100])
+def test_without_a_report_and_a_request_under_way_nothing_is(drives, ticks_after):
+    assert drives(ticks_after) == [(ZERO, ZERO)]
+    assert drives(ticks_after, view=CoilView()) == [(ZERO, ZERO)]
+
+
+@pytest.mark.parametrize(
+    ("ticks_after", "said", "driven_am2", "off_am2"),
+    [
+        (2, (1, 0), ZERO, (0.0, -8.0, 0.0)),
+        (2, (1, -2), (0.0, -2.0, 0.0), (0.0, -6.0, 0.0)),
+        (2, (0, 1), (0.5, 0.0, 0.0), (-0.5, -8.0, 0.0)),
+        (4, (1, -3), ASKED_AM2, (0.0, 8.0, 0.0)),
+        (50, (2, 2), (0.0, 0.0, 2.0), (0.0, 0.0, -2.0)),
+    ],
+    ids=["not driven", "lower", "another coil", "of a tick before", "not asked for"],
+)
+def test_a_report_of_something_else_is_in_doubt_by_the_difference(
+    drives, ticks_after, said, driven_am2, off_am2
+):
+    (now,) = drives(ticks_after, says(*said))
+    assert now.m_body_am2 == driven_am2
+    assert now.doubted_am2 == pytest.approx([sqrt(3.0) * number for number in off_am2])
+
+
+def test_a_request_goes_on_in_ticks_that_were_skipped(drives):
+    off = (ZERO, ZERO)
+    assert drives(6, says(1, 0), skipped=6) == [off, UNKNOWN, UNKNOWN, UNKNOWN, off, off, off]
+    assert drives(3, says(1, -3), skipped=1) == [UNKNOWN, (ASKED_AM2, ZERO)]
+    assert drives(3, skipped=2) == [UNKNOWN, UNKNOWN, UNKNOWN]
+
+
+@pytest.mark.parametrize("unknown_ticks", [(1,), (1, 2), (1, 2, 3)])
+def test_whatever_ticks_of_a_pulse_are_unknown_their_sum_is_in_doubt_by_no_less(drives, unknown_ticks):
+    """The filter adds up squares, as of ticks that have nothing to do with each other."""
+    doubts = [drives(ticks_after)[0].doubted_am2 for ticks_after in unknown_ticks]
+    assert np.linalg.norm(doubts) >= 8.0 * len(unknown_ticks) * (1.0 - 1e-12)
+
+
+def test_a_stray_current_that_the_filter_knows_of_is_no_doubt(coils):
+    now = driven(FIRED, (0.3, 0.0, 0.0), True, range(TICK + 50, TICK + 51), coils)
+    assert now == [Driven((0.3, 0.0, 0.0), ZERO)]
+
+
+def test_a_continuous_driver_reports_dipoles_and_has_no_pulses(coils):
+    continuous = coils._replace(dipoles=DipoleConfig(9.6, IDENTITY, genetic=False))
+    said_am2, ticks = (4.8, -2.4, 1.2), range(TICK + 1, TICK + 4)
+    assert driven(FIRED, said_am2, False, ticks, continuous) == [(ZERO, ZERO), (ZERO, ZERO), (said_am2, ZERO)]
