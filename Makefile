@@ -3,6 +3,7 @@
 # make lint   style, types, layers, generated code, pages and pictures
 # make validate   compute every claim and reference figure, into docs/validation.md: an hour or two
 # make population   fly populations of random satellites, into docs/population.md: some hours; stopped, it goes on where it was
+# make pulse-limits   how near mpc and pulse_mpc come to the least error, over the coils and the disturbances, into docs/pulse-limits.md: ten minutes
 # make replay-elsewhere   does a log of 20 orbits replay with other processor features, into docs/replay.md
 # make faults     every fault in ten phases and with five seeds, 250 real kills among them, into docs/faults.md: an hour or two
 # make bench      how fast flights are beside Basilisk in the same minutes, into docs/performance.md: ten minutes
@@ -31,7 +32,7 @@ bin := .venv/bin
 installed := .venv/.installed
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv sil test lint docs docs-gallery notebooks test-vcan test-chromium golden validate fuzz attack differential replay-elsewhere faults bench scaling population soak verdicts planted validate-planted mutation coverage
+.PHONY: help venv sil test lint docs docs-gallery notebooks test-vcan test-chromium golden validate fuzz attack differential replay-elsewhere faults bench scaling population pulse-limits soak verdicts planted validate-planted mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -117,6 +118,9 @@ scaling: venv
 
 population: venv
 	$(bin)/python tools/population.py $(POPULATION)
+
+pulse-limits: venv
+	$(bin)/python tools/pulse_limits.py $(PULSE_LIMITS)
 
 soak: venv
 	$(bin)/python tools/soak.py $(SOAK)
