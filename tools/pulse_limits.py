@@ -102,8 +102,11 @@ def read(path: Path) -> Rows:
     """
     try:
         rows: Rows = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+        numbers = all(isinstance(value, float) for values in rows.values() for value in values)
+    except (OSError, ValueError, AttributeError, TypeError) as error:
         raise HarnessError(f"{path}: no rows can be read ({error})") from None
+    if not numbers:
+        raise HarnessError(f"{path}: no rows can be read (an error is no number)")
     return rows
 
 
@@ -113,7 +116,9 @@ def main(words: Sequence[str] | None = None) -> int:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--rows", type=Path, default=ROWS, help="where the errors are kept")
-    parser.add_argument("--keep", action="store_true", help="fly only what there is no row of")
+    parser.add_argument(
+        "--keep", action="store_true", help="fly only what there is no row of; rows of other code stay"
+    )
     parser.add_argument("--render", action="store_true", help="fly nothing")
     parser.add_argument("--out", type=Path, default=PAGE, help="the page; its picture lies beside it")
     arguments = parser.parse_args(words)

@@ -3,6 +3,7 @@
 import json
 
 import pulse_limits
+import pytest
 from pulse_limits import WHOLE, faults, main
 
 from sim.design.limits.sweep import BOUND, all_orders
@@ -43,6 +44,12 @@ def test_without_rows_nothing_is_rendered(tmp_path, capsys):
     assert main(words) == 2
     assert "none.json: no rows can be read" in capsys.readouterr().err
     assert not (tmp_path / "page.md").exists()
+
+
+@pytest.mark.parametrize("rows", [[1.0], {"mpc": 1.0}, {"mpc": ["none"]}, 3])
+def test_what_is_no_rows_is_told(rows, tmp_path, capsys):
+    assert main(written(tmp_path, rows)) == 2
+    assert "no rows can be read" in capsys.readouterr().err
 
 
 def test_what_is_kept_is_not_flown_again(tmp_path, monkeypatch):
