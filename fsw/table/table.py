@@ -67,12 +67,13 @@ class FlightTable(Section):
             "torque_nm": Ceiling(
                 torque_nm, "what a coil gives in the mean, pulse and back-off, in a strong field"
             ),
-            "torque_variation_nm": Ceiling(
-                2.0 * bounds(self.uncertainty, self.body.inertia, 1.0).torque_nm,
-                "from one bound of the torque, uncertainty.torque_nm, to the other",
-            ),
             "coil_gain_percent": Ceiling(gain, "so that no sound coil is below fdir.weak_coil_part"),
         }
+        bound_nm = bounds(self.uncertainty, self.body.inertia, 1.0).torque_nm
+        if bound_nm > 0.0:  # else no torque is carried that could vary
+            ceilings["torque_variation_nm"] = Ceiling(
+                2.0 * bound_nm, "from one bound of the torque, uncertainty.torque_nm, to the other"
+            )
         check_bounds(self.uncertainty, ceilings)
         return self
 

@@ -267,6 +267,13 @@ class TestCeilings:
             assert "\n" not in told
 
 
+def test_without_a_torque_how_far_it_varies_does_not_matter():
+    """As where a satellite's torque is set to zero, and its variation left as it was."""
+    given = EXACT | {"torque_variation_nm": 1e-9}
+    assert flight_table({"uncertainty": given}, "table.toml").uncertainty.torque_nm == 0.0
+    assert priors_of(**given) == {}
+
+
 def in_ball(random, count):
     """Vectors that are uniform in the ball of radius 1."""
     direction = random.normal(size=(count, 3))

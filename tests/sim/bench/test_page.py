@@ -44,7 +44,7 @@ def test_it_says_what_is_kept_and_what_is_not():
         "✗ 1 budgets broken",
         "✗ coil ended before its time",
         "micro&lt;sat&gt;",
-        "<td>BROKEN</td>",
+        ">BROKEN</td>",
     ):
         assert words in page
     assert "inf" not in page.partition("<main>")[2].partition("<script")[0].replace("information", "")

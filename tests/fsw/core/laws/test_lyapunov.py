@@ -197,7 +197,7 @@ class TestInTheLimitOfAShortPulseTheCandidateFalls:
         rounding = np.linalg.norm(state.omega) * np.linalg.norm(torque)
         assert abs(candidate_rate(state, change) - power) <= 1e-9 * (rounding + scale_of(state) + 1e-15)
         over_the_pulse = SHORT_S * np.linalg.norm(free_change(state)) * np.linalg.norm(torque)
-        assert power <= over_the_pulse + 1e-12 * rounding
+        assert power <= over_the_pulse + 1e-12 * rounding + 1e-200  # below it products become zero
 
     @CHOICES
     def test_it_falls_wherever_a_dipole_can_take_energy_away(self, choice):
