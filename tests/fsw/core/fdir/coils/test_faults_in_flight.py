@@ -249,7 +249,7 @@ class TestByTheRate:
 
     @pytest.mark.parametrize("seed", [2, 5])
     def test_what_a_pulse_showed_is_kept_when_the_next_takes_its_place(self, make_world, seed):
-        """Three pulses of a coil are traced: the fourth takes the place of the first, which showed something."""
+        """Three pulses of a coil are traced: the fourth replaces the first, which showed something."""
         world = make_world(seed=seed)
         world.fly(SETTLED)
         world.plant._coils._dipole_per_ampere[0] *= 0.65
