@@ -5,11 +5,12 @@ import json
 from functools import cache
 from pathlib import Path
 
+import sim
 from sim.campaign.flight import FlightResult, Order
 from sim.errors import HarnessError
 from sim.record.run_dir import Json
 
-ROOT = Path(__file__).resolve().parents[2]
+HOUSE = Path(sim.__file__).resolve().parents[1]
 CODE = (
     "fsw",
     "hil_stub",
@@ -17,10 +18,12 @@ CODE = (
     "sim/campaign",
     "sim/flight",
     "sim/plant",
+    "sim/record",
     "sim/report",
     "sim/scenario",
 )
 """What a flight and its figures follow from."""
+SUFFIXES = (".py", ".toml", ".dbc")
 LEFT_OUT = "events"
 """Of the summary: they are many, and judged by no campaign."""
 
@@ -80,18 +83,25 @@ class FlightRows:
 
 def order_hash(order: Order) -> str:
     """What tells one flight from another, whatever it is called."""
-    told = (order.scenario, order.overrides, order.seed, order.orbits)
+    measured = None if order.measure is None else f"{order.measure.__module__}.{order.measure.__qualname__}"
+    told = (order.scenario, order.overrides, order.seed, order.orbits, measured)
     return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()[:16]
 
 
 @cache
-def code_hash() -> str:
-    """What tells this code from other code, as far as flights and their figures follow from it."""
+def code_hash(house: Path = HOUSE) -> str:
+    """What tells this code from other code, as far as flights and their figures follow from it.
+
+    Raises:
+        HarnessError: a part of the code is not there, so that its changes would go unnoticed.
+    """
     digest = hashlib.sha256()
     for folder in CODE:
-        for path in sorted((ROOT / folder).rglob("*")):
-            if path.suffix in (".py", ".toml", ".dbc"):
-                digest.update(path.relative_to(ROOT).as_posix().encode() + path.read_bytes())
+        files = [path for path in sorted((house / folder).rglob("*")) if path.suffix in SUFFIXES]
+        if not files:
+            raise HarnessError(f"{house / folder}: holds no code to tell these flights from others by")
+        for path in files:
+            digest.update(path.relative_to(house).as_posix().encode() + path.read_bytes())
     return digest.hexdigest()[:16]
 
 

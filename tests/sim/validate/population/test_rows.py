@@ -1,12 +1,15 @@
 """Flights kept in a file: found by their orders, whole after every one."""
 
+import shutil
+from dataclasses import replace
 from math import inf
+from pathlib import Path
 
 import pytest
 
 from sim.campaign.flight import FlightResult, Order
 from sim.errors import HarnessError
-from sim.validate.population.rows import FlightRows
+from sim.validate.population.rows import CODE, FlightRows, code_hash
 
 ORDER = Order("microsat", {"disturbance": {"torque_nm": [1e-8, -2e-8, 3e-8]}}, 3, 8.0, name="one")
 
@@ -55,6 +58,38 @@ def test_a_name_makes_no_other_flight(path):
     rows = FlightRows(path)
     rows.keep(flight())
     assert rows.flight(Order("microsat", ORDER.overrides, 3, 8.0, name="two")) is not None
+
+
+def test_a_flight_that_was_measured_otherwise_is_another(path):
+    rows = FlightRows(path)
+    rows.keep(flight())
+    assert rows.flight(replace(ORDER, measure=test_a_flight_that_was_measured_otherwise_is_another)) is None
+
+
+@pytest.fixture(scope="module")
+def house(tmp_path_factory):
+    """A copy of all that a flight follows from."""
+    copied, here = tmp_path_factory.mktemp("house"), Path(__file__).parents[4]
+    for folder in CODE:
+        shutil.copytree(here / folder, copied / folder, ignore=shutil.ignore_patterns("__pycache__"))
+    return copied
+
+
+class TestCodeHash:
+    def test_is_the_same_for_the_same_code_elsewhere(self, house):
+        assert code_hash.__wrapped__(house) == code_hash()
+
+    @pytest.mark.parametrize("folder", CODE)
+    def test_is_another_where_a_line_of_any_part_is(self, house, folder):
+        file = next((house / folder).rglob("*.py"))
+        before, content = code_hash.__wrapped__(house), file.read_bytes()
+        file.write_bytes(content + b"# changed\n")
+        assert code_hash.__wrapped__(house) != before
+        file.write_bytes(content)
+
+    def test_a_part_that_is_not_there_is_told(self, tmp_path):
+        with pytest.raises(HarnessError, match="fsw: holds no code"):
+            code_hash.__wrapped__(tmp_path)
 
 
 def test_a_row_whose_writing_was_cut_off_is_flown_again(path):
