@@ -1,14 +1,17 @@
 """What the periodic laws compute once, when the onboard table is loaded: gain schedules, steps of pulses."""
 
 from functools import lru_cache
-from math import atan2, hypot, sqrt
+from math import atan2, ceil, hypot, pi, sqrt
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from fsw.core.actuation.pulses import PulseConfig
-from fsw.core.algebra.vector import cross, dot, norm
+from fsw.core.algebra.vector import cross, dot, inverse, norm
 from fsw.core.laws.cost_to_go import rounded_problem, rounded_schedule
-from fsw.core.laws.lqr import LqrGains, schedule
-from fsw.core.laws.pulse_model import PulseModel, pulse_model
+from fsw.core.laws.lqr import STEPS, LqrGains, schedule
+from fsw.core.laws.orbit_ahead import sight
+from fsw.core.laws.pulse_model import PulseModel, choices
 from fsw.core.laws.riccati import Schedule, regulator_problem
 from fsw.core.orbit.earth import DIPOLE_TM3, MU_M3PS2
 from fsw.core.orbit.propagation import Orbit, state_eci
@@ -16,6 +19,11 @@ from fsw.table.table import FlightTable
 
 SCHEDULED = ("lqr", "mpc", "pulse_mpc")
 """The laws that need a schedule."""
+
+LEAST_STEP_S = 60.0
+"""From one opportunity to the next, where the coils could be fired sooner: pulses that close gain little."""
+LEAST_SEARCHED, SEARCHED_S = 6, 600.0
+"""Opportunities that are searched, and for how long at least."""
 
 _schedule = lru_cache(maxsize=16)(schedule)
 """Pure, and the same for several laws unless their weights differ."""
@@ -69,14 +77,28 @@ def planned_pulses(
     if round_orbit is None or table.coils.driver != "pulsed":
         return None
     rest = 1 if timing.shared else 3
-    step_ticks = -(-(timing.pulse_ticks + timing.backoff_ticks) // rest)
+    soonest_ticks = -(-(timing.pulse_ticks + timing.backoff_ticks) // rest)
+    step_ticks = max(soonest_ticks, ceil(LEAST_STEP_S / rest / timing.tick_s))
+    step_s = step_ticks * timing.tick_s
+    searched = max(LEAST_SEARCHED, ceil(SEARCHED_S / step_s))
     problem = regulator_problem(
         table.body.inertia,
         table.body.wheel_nms,
         round_orbit.rate_radps,
         round_orbit.field_t,
-        step_ticks * timing.tick_s,
+        step_s,
         gains["pulse_mpc"].rate,
         gains["pulse_mpc"].effort,
     )
-    return pulse_model(timing.levels_am2, timing.pulse_s, step_ticks, rest, rounded_problem(problem))
+    orbit_s = 2.0 * pi / round_orbit.rate_radps
+    steps_s = np.arange(round(gains["pulse_mpc"].horizon_orbits * STEPS)) * orbit_s / STEPS
+    pulses_s, after_s = np.arange(searched) * step_s, searched * step_s - 0.5 * timing.pulse_s
+    wanted_s = [*pulses_s, *(pulses_s + 0.5 * step_s), *(after_s + 0.5 * orbit_s / STEPS + steps_s)]
+    return PulseModel(
+        *choices(timing.levels_am2, timing.pulse_s, inverse(table.body.inertia)),
+        step_ticks,
+        rest,
+        rounded_problem(problem),
+        searched,
+        sight(wanted_s, orbit_s),
+    )

@@ -48,13 +48,13 @@ def cost_to_go(problem: Problem, b_orbit_t: Array, drifts: Array, last: Array) -
     """
     costs: list[Array] = []
     back, ahead = problem.free[:, :6].T, last
-    for across, drift in zip(skews(b_orbit_t)[::-1], drifts[::-1], strict=True):
-        push = -times(problem.free[:, 6:], across)
-        reached = times(ahead[:, :6], np.hstack([problem.free, drift[:, None]]))
-        reached[:, 6:] += ahead[:, 6:]
-        pushed = times(ahead[:, :6], push)
-        gain = times(_answer(times(push.T, pushed), problem.effort), times(push.T, reached))
-        ahead = times(back, reached + times(pushed, gain))
+    pushes = [-times(problem.free[:, 6:], across) for across in skews(b_orbit_t)]
+    for push, drift in zip(pushes[::-1], drifts[::-1], strict=True):
+        reached = times(ahead[:, :6], np.hstack([problem.free, drift[:, None], push]))
+        reached[:, 6:10] += ahead[:, 6:]
+        curvature = times(push.T, reached)
+        gain = times(_answer(curvature[:, 10:], problem.effort), curvature[:, :10])
+        ahead = times(back, reached[:, :10] + times(reached[:, 10:], gain))
         ahead[range(6), range(6)] += problem.cost
         costs.append(ahead)
     return costs[::-1]

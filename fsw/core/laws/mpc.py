@@ -13,16 +13,11 @@ Source: Ovchinnikov, Roldugin 2019, section 3.3 (after Silani, Lovera 2005); equ
 """
 
 from dataclasses import dataclass
-from typing import NamedTuple
-
-import numpy as np
 
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 from fsw.core.laws.lqr import STEPS, check_weights, dipole, expected_torque, latitude_argument, node, within
+from fsw.core.laws.orbit_ahead import check_horizon, orbit_ahead
 from fsw.core.laws.riccati import Array, Schedule, backward
-from fsw.core.orbit.ephemeris import EphemerisModel
-from fsw.core.orbit.field import field_eci_t
-from fsw.core.orbit.propagation import state_eci
 
 APPLIED_STEPS = 5
 """Steps of a plan that are applied."""
@@ -44,40 +39,8 @@ class MpcGains:
         Raises:
             ValueError: a weight or the horizon out of range.
         """
-        check_weights(self.rate, self.effort)
-        if not 0.1 <= self.horizon_orbits <= 4.0:
-            raise ValueError(
-                f"control.gains.mpc.horizon_orbits must be 0.1 to 4, not {self.horizon_orbits:g}"
-            )
-
-
-class OrbitAhead(NamedTuple):
-    """The field in the middle of each coming step, orbital axes then, T, and the change of the orbit's rate.
-
-    ``b_orbit_t`` has shape (steps, 3), ``rate_change_radps2`` (steps,): how fast the orbital frame turns ever
-    faster about its axis 3, which is zero on a circle.
-    """
-
-    b_orbit_t: Array
-    rate_change_radps2: Array
-
-
-def orbit_ahead(model: EphemerisModel, unix_s: float, step_s: float, steps: int) -> OrbitAhead | None:
-    """The coming orbit, of two steps or more; None where it has no position."""
-    times = [unix_s + (k + 0.5) * step_s for k in range(steps)]
-    states = [state for state in (state_eci(model.orbit, t) for t in times) if state is not None]
-    if len(states) < steps:
-        return None
-    r, v = (np.array(part) for part in zip(*states, strict=True))
-    b = np.array([field_eci_t(model.field, r_m, t) for (r_m, _), t in zip(states, times, strict=True)])
-    normal = np.cross(r, v)
-    radius, momentum = (np.sqrt(np.add.reduce(vector * vector, axis=-1))[:, None] for vector in (r, normal))
-    e1, e3 = r / radius, normal / momentum
-    axes = np.stack([e1, np.cross(e3, e1), e3], axis=1)
-    rates_radps = (momentum / (radius * radius))[:, 0]
-    return OrbitAhead(
-        np.add.reduce(axes * b[:, None, :], axis=-1), np.asarray(np.gradient(rates_radps, step_s))
-    )
+        check_weights("mpc", self.rate, self.effort)
+        check_horizon("mpc", self.horizon_orbits, 0.1, 4.0)
 
 
 def plan(table: Schedule, b_orbit_t: Array, end_node: int) -> Array:
@@ -102,7 +65,7 @@ def mpc(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlCon
         steps = round(config.gains["mpc"].horizon_orbits * STEPS)
         model, step_s = inputs.ephemeris, table.problem.step_s
         unix_s = model.epoch_unix_s + inputs.tick * config.tick_s
-        ahead = orbit_ahead(model, unix_s, step_s, steps)
+        ahead = orbit_ahead(model, [unix_s + (k + 0.5) * step_s for k in range(steps)])
         if ahead is None:
             return Demand()
         end = node(latitude_argument(inputs.reference)) + steps

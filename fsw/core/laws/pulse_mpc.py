@@ -13,18 +13,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from fsw.core.algebra.quaternion import dcm
-from fsw.core.algebra.vector import Vec3, transform, transpose
+from fsw.core.algebra.vector import Vec3
 from fsw.core.laws.cost_to_go import cost_to_go, times
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 from fsw.core.laws.lqr import STEPS, check_weights, expected_torque, latitude_argument, node, orbital_state
-from fsw.core.laws.mpc import OrbitAhead, orbit_ahead
+from fsw.core.laws.orbit_ahead import OrbitAhead, check_horizon, seen
 from fsw.core.laws.pulse_model import NEVER, NO_PULSE, Pulse, PulseModel, kicks
 from fsw.core.laws.pulse_plan import BARRED, Opportunity, first_pulse
 from fsw.core.laws.riccati import Array, Problem, Schedule
 from fsw.core.orbit.ephemeris import EphemerisModel, Reference
 
-SEARCHED = 6
-"""Opportunities that are searched, where one coil's pulse bars all; as long in time where it does not."""
 REPORTED_TICKS = 3
 """The board reports the lockout of one coil a tick: a coil that is ready is soon known to be."""
 RETRY = 8
@@ -48,11 +46,8 @@ class PulseMpcGains:
         Raises:
             ValueError: a weight or the horizon out of range.
         """
-        check_weights(self.rate, self.effort)
-        if not 0.05 <= self.horizon_orbits <= 1.0:
-            raise ValueError(
-                f"control.gains.pulse_mpc.horizon_orbits must be 0.05 to 1, not {self.horizon_orbits:g}"
-            )
+        check_weights("pulse_mpc", self.rate, self.effort)
+        check_horizon("pulse_mpc", self.horizon_orbits, 0.05, 1.0)
 
 
 def pulse_mpc(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
@@ -96,41 +91,32 @@ def _ahead(
     The field of each is that in the middle of its pulse. At the first the attitude is the estimated one, at
     the others nearly the nominal one.
     """
-    problem, count = pulses.problem, SEARCHED * pulses.rest
     now_s = model.epoch_unix_s + inputs.tick * config.tick_s
-    span_s = count * problem.step_s
-    at_pulses = orbit_ahead(model, now_s + 0.5 * (config.horizon_s - problem.step_s), problem.step_s, count)
-    later = orbit_ahead(model, now_s + span_s, schedule.problem.step_s, _later_steps(config))
-    if at_pulses is None or later is None:
+    ahead = seen(model, now_s + 0.5 * config.horizon_s, pulses.sight)
+    if ahead is None:
         return []
-    between = at_pulses._replace(
-        b_orbit_t=0.5 * (at_pulses.b_orbit_t + np.concatenate([at_pulses.b_orbit_t[1:], later.b_orbit_t[:1]]))
+    count, problem = pulses.searched, pulses.problem
+    between, later = (
+        OrbitAhead(*(part[steps] for part in ahead))
+        for steps in (slice(count, 2 * count), slice(2 * count, None))
     )
-    u_rad = latitude_argument(reference) + reference.orbit_rate_radps * span_s
+    u_rad = latitude_argument(reference) + reference.orbit_rate_radps * count * problem.step_s
     end = np.hstack([schedule.costs[(node(u_rad) + len(later.b_orbit_t)) % STEPS], np.zeros((6, 1))])
     after = _costs(schedule.problem, later, inputs.dipole_body_am2, end)[1][0]
     drifts, costs = _costs(
         problem, between, inputs.dipole_body_am2, after * (schedule.problem.step_s / problem.step_s)
     )
-    fields: list[Vec3] = [(b1, b2, b3) for b1, b2, b3 in at_pulses.b_orbit_t.tolist()]
-    turned = [kicks(pulses, b_t, config.inertia_inverse) for b_t in fields]
-    back = transpose(dcm(inputs.attitude.q_body_from_orbit))
-    turned[0] = [transform(back, kick) for kick in kicks(pulses, inputs.b_body_t, config.inertia_inverse)]
-    return [
-        Opportunity(np.array(kick), drift, cost)
-        for kick, drift, cost in zip(turned, drifts, costs[1:], strict=True)
-    ]
+    turned = kicks(pulses, ahead.b_orbit_t[:count])
+    turned[0] = times(
+        kicks(pulses, np.array(inputs.b_body_t)), np.array(dcm(inputs.attitude.q_body_from_orbit))
+    )
+    return [Opportunity(*known) for known in zip(turned, drifts, costs[1:], strict=True)]
 
 
 def _costs(problem: Problem, ahead: OrbitAhead, dipole_am2: Vec3, last: Array) -> tuple[Array, list[Array]]:
     """The known drift of each step, and (P S s) from the beginning of the first to the end of the last."""
     h, torque_nm = problem.step_s, np.cross(np.array(dipole_am2), ahead.b_orbit_t)
-    drifts = times(torque_nm, problem.free[:, 6:].T)
-    drifts[:, 2] -= h * ahead.rate_change_radps2
-    drifts[:, 5] -= 0.5 * h * h * ahead.rate_change_radps2
+    drifts, rate_changes_radps2 = times(torque_nm, problem.free[:, 6:].T), np.gradient(ahead.rate_radps, h)
+    drifts[:, 2] -= h * rate_changes_radps2
+    drifts[:, 5] -= 0.5 * h * h * rate_changes_radps2
     return drifts, [*cost_to_go(problem, ahead.b_orbit_t, drifts, last), last]
-
-
-def _later_steps(config: ControlConfig) -> int:
-    horizon_orbits: float = config.gains["pulse_mpc"].horizon_orbits
-    return round(horizon_orbits * STEPS)

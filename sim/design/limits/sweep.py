@@ -42,7 +42,6 @@ class Setting:
     label: str
     at: float
     overrides: Nested
-    laws: tuple[str, ...] = LAWS
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,8 +128,7 @@ def orders_of(setting: Setting, line: Line) -> list[LinearOrder]:
     overrides = setting.overrides if line.torque else merge(setting.overrides, NO_TORQUE)
     if line.law == BOUND:
         return [LinearOrder(BOUND, overrides)]
-    starts = range(len(STARTS_RAD)) if line.law in setting.laws else ()
-    return [LinearOrder(line.law, overrides, start) for start in starts]
+    return [LinearOrder(line.law, overrides, start) for start in range(len(STARTS_RAD))]
 
 
 def all_orders() -> list[LinearOrder]:
@@ -164,8 +162,8 @@ def better_than_bound(flown: Mapping[str, float]) -> list[str]:
     return found
 
 
-def _backoff(seconds: float, laws: tuple[str, ...] = LAWS) -> Setting:
-    return Setting(f"{seconds:g}", seconds, {"coils": {"backoff_s": seconds}}, laws)
+def _backoff(seconds: float) -> Setting:
+    return Setting(f"{seconds:g}", seconds, {"coils": {"backoff_s": seconds}})
 
 
 def _pulse(seconds: float, tick_hz: int = 1) -> Setting:
@@ -199,10 +197,7 @@ QUANTITIES = (
         "Back-off",
         "back-off [s]",
         "linear",
-        (
-            *(_backoff(seconds, ("mpc",)) for seconds in (0.0, 10.0)),
-            *map(_backoff, (20.0, 40.0, 70.0, 100.0, 130.0, 160.0)),
-        ),
+        (*map(_backoff, (0.0, 10.0, 20.0, 40.0, 70.0, 100.0, 130.0, 160.0)),),
     ),
     Sweep("Length of a pulse", "pulse [s]", "linear", (_pulse(0.5, 2), *map(_pulse, (1.0, 2.0, 3.0)))),
     Sweep(

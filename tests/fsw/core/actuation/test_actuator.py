@@ -5,78 +5,31 @@ from itertools import product
 from math import inf
 
 import pytest
+from actuator_samples import (
+    ALL_FREE,
+    B_BODY_T,
+    BOARD_IS_THERE,
+    COILS,
+    CONFIG,
+    OWED_FOR,
+    TICK,
+    ZERO,
+    make_config,
+    ready,
+    refusal,
+    run,
+    run_safe,
+    status,
+)
 from hypothesis import event, given, settings
 from hypothesis import strategies as st
 
 from fsw.core.actuation import pulses
-from fsw.core.actuation.actuator import ActuatorConfig, CoilView, actuate, update_view, wait_ticks
-from fsw.core.actuation.pulses import PulseConfig
+from fsw.core.actuation.actuator import CoilView, actuate, update_view
 from fsw.core.gate.readings import NOTHING
 from fsw.core.laws.interface import Demand
-from fsw.core.laws.pulse_model import NEVER, NO_PULSE, Pulse
-from fsw.wire.messages import CoilBoot, CoilFire, CoilRefused, CoilRefusedReason, CoilStatus
-
-IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-UNEVEN = ((9.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-ZERO = (0.0, 0.0, 0.0)
-TICK = 10_000
-
-B_BODY_T = (0.0, 0.0, 2e-5)
-"""Along axis 3: coil 0 turns about axis 2, coil 1 about axis 1, coil 2 does nothing."""
-
-OWED_FOR = {0: (0.0, -3.0 * 8.0 * 2e-5, 0.0), 1: (3.0 * 8.0 * 2e-5, 0.0, 0.0)}
-"""Impulses that the highest level of that coil pays in full."""
-
-
-def make_config(shared=True, tick_hz=1):
-    pulse_ticks, backoff_ticks, duration_ms = pulses.pulse_timing(tick_hz, 3000, 100_000)
-    return PulseConfig(
-        pulse_ticks=pulse_ticks,
-        backoff_ticks=backoff_ticks,
-        duration_ms=duration_ms,
-        shared=shared,
-        levels_am2=(0.5, 2.0, 8.0),
-        pulse_s=3.0,
-        tick_s=1.0 / tick_hz,
-        leak_s=300.0,
-        rate_metric=IDENTITY,
-        energy_metric=UNEVEN,
-    )
-
-
-CONFIG = make_config()
-COILS = ActuatorConfig(CONFIG, dipoles=None)
-
-
-def ready(owed=OWED_FOR[0]):
-    """All own timers ran out long ago."""
-    return pulses.boot(0, CONFIG)._replace(ready_tick=(0, 0, 0), owed_impulse_body_nms=owed)
-
-
-def status(coil, lockout_ms=0, level=0, seq=0):
-    return CoilStatus(level, coil, 0, 0, lockout_ms, seq)
-
-
-ALL_FREE = CoilView(lockout_ms=(0, 0, 0))
-
-
-BOARD_IS_THERE = NOTHING._replace(coil=status(0))
-
-
-def run(state=None, view=ALL_FREE, demand=None, readings=BOARD_IS_THERE, tick=TICK, config=CONFIG):
-    """Under a law that asks for nothing more, unless told otherwise."""
-    asked = Demand() if demand is None else demand
-    coils = ActuatorConfig(config, dipoles=None)
-    return actuate(ready() if state is None else state, view, asked, B_BODY_T, readings, tick, coils)
-
-
-def run_safe(state, view, readings=BOARD_IS_THERE, tick=TICK):
-    """While no law flies."""
-    return actuate(state, view, None, B_BODY_T, readings, tick, COILS)
-
-
-def refusal(tick):
-    return CoilRefused(0, 9, CoilRefusedReason.LOCKOUT, tick & 0xFF)
+from fsw.core.laws.pulse_model import Pulse
+from fsw.wire.messages import CoilBoot, CoilFire
 
 
 def test_after_a_boot_of_the_board_nothing_goes_out_before_its_word_is_heard():
@@ -376,70 +329,3 @@ def test_only_how_long_the_timers_still_run_matters(ready_in, busy_in, lockout_m
         max(0, busy_in),
         tuple(min(left, 1) for left in lockout_ms),
     )
-
-
-class TestPlannedPulses:
-    """A law that plans pulses says itself which one is fired."""
-
-    @pytest.mark.parametrize(("coil", "level"), list(product(range(3), (-3, -1, 2))))
-    def test_are_fired_as_they_are_and_nothing_is_owed(self, coil, level):
-        state, view, request = run(ready(), demand=Demand(pulse=Pulse(coil, level)))
-        assert (request.coil, request.level, request.tick) == (coil, level, TICK)
-        assert state.owed_impulse_body_nms == ZERO
-        assert view.fired == Pulse(coil, level)
-        assert view.paid_body_nms == ZERO
-
-    def test_none_is_none_whatever_was_owed(self):
-        state, _, request = run(ready(), demand=Demand(pulse=NO_PULSE))
-        assert request is None
-        assert state.owed_impulse_body_nms == ZERO
-
-    @pytest.mark.parametrize("hindrance", ["own timer", "busy", "lockout", "no status", "fault"])
-    def test_are_not_fired_before_timer_and_board_agree(self, hindrance):
-        state, view, readings, faults = ready(), ALL_FREE, BOARD_IS_THERE, (0, 0, 0)
-        if hindrance == "own timer":
-            state = state._replace(ready_tick=(0, TICK + 1, 0))
-        elif hindrance == "busy":
-            state = state._replace(busy_until=TICK + 1)
-        elif hindrance == "lockout":
-            view = view._replace(lockout_ms=(0, 20, 0))
-        elif hindrance == "no status":
-            readings = NOTHING
-        else:
-            faults = (0, 1, 0)
-        demand = Demand(pulse=Pulse(1, 2))
-        _, _, request = actuate(state, view, demand, B_BODY_T, readings, TICK, COILS, faults)
-        assert request is None
-
-    def test_that_are_refused_are_not_owed(self):
-        _, view, _ = run(ready(ZERO), demand=Demand(pulse=Pulse(1, 2)))
-        readings = BOARD_IS_THERE._replace(refused=refusal(TICK))
-        after, view, _ = run(ready(ZERO), view, Demand(pulse=NO_PULSE), readings, TICK + 1)
-        assert after.owed_impulse_body_nms == ZERO
-        assert view.fired == NO_PULSE
-
-
-class TestWaits:
-    """How long each coil has still to be left alone, as far as is known."""
-
-    def waits(self, state, view=ALL_FREE, readings=BOARD_IS_THERE, faults=(0, 0, 0)):
-        return wait_ticks(state, view, readings, TICK, CONFIG, faults)
-
-    def test_are_those_of_the_own_timers(self):
-        state = ready()._replace(ready_tick=(TICK - 5, TICK + 7, TICK + 40))
-        assert self.waits(state) == (0, 7, 40)
-        assert self.waits(state._replace(busy_until=TICK + 9)) == (9, 9, 40)
-
-    def test_or_of_the_board_if_longer(self):
-        view = ALL_FREE._replace(lockout_ms=(0, 1, 2500))
-        assert self.waits(ready(), view) == (0, 1, 3)
-
-    def test_are_a_back_off_for_a_coil_of_which_the_board_has_not_spoken(self):
-        view = ALL_FREE._replace(lockout_ms=(0, 0, -1))
-        assert self.waits(ready(), view) == (0, 0, CONFIG.backoff_ticks)
-
-    def test_are_at_least_a_tick_without_a_status(self):
-        assert self.waits(ready(), readings=NOTHING) == (1, 1, 1)
-
-    def test_have_no_end_with_a_fault(self):
-        assert self.waits(ready(), faults=(0, 3, 0)) == (0, NEVER, 0)

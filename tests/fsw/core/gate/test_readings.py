@@ -1,11 +1,25 @@
 """The decode gate: a frame is taken whole or not at all, and everything else is counted."""
 
-from random import Random
 from zlib import crc32
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from gate_samples import (
+    BOOT,
+    COIL,
+    COUNTED,
+    DIPOLE,
+    END,
+    EVERY_COUNTED,
+    EVERY_KIND,
+    EVERY_MESSAGE,
+    FIELD,
+    REFUSED,
+    SLOT,
+    SUN,
+    admitted,
+    broken,
+    frames,
+)
 
 from fsw.core.gate.readings import (
     INBOX_LIMIT,
@@ -13,68 +27,20 @@ from fsw.core.gate.readings import (
     NOTHING,
     TELECOMMANDS,
     GateState,
-    Readings,
     admit,
 )
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame
 from fsw.wire.messages import (
-    CLASSES,
-    SENDERS,
-    CoilBoot,
-    CoilDipoleStatus,
     CoilHeartbeat,
-    CoilRefused,
-    CoilStatus,
     MagBoot,
-    MagField,
     NavQuality,
     NavRate,
     PlantBoot,
-    PlantEnd,
     RefAttitude,
-    RefRate,
     SunVector,
     Sync,
-    TcClear,
-    TcFreeze,
-    TcGain,
-    TcLaw,
-    TcMode,
-    TcOrbitElement,
-    TcOrbitLoad,
-    TcParameter,
-    TcSpin,
     TickDone,
-    intact,
 )
-
-FIELD = MagField(1, 20000.0, -7000.0, 31000.0, counter=5)
-SUN = SunVector(1, 0.599975586, -0.47998046875, 0.64001464, counter=6)
-COIL = CoilStatus(-2, 1, 2000, -150, 103000, 9, counter=7)
-REFUSED = CoilRefused(2, 9, 8, 0xC3, counter=8)
-ATTITUDE = RefAttitude(1, 0.5, -0.25, 0.125, counter=9)
-RATE = RefRate(1, 2.0**-7, -(2.0**-8), 2.0**-9, counter=10)
-DIPOLE = CoilDipoleStatus(0.5, -0.25, 2.0**-16, counter=11)
-BOOT = CoilBoot(1, 1, 0x89ABCDEF, counter=12)
-COUNTED = (FIELD, SUN, COIL, REFUSED, ATTITUDE, RATE, DIPOLE)
-END = PlantEnd(9000, counter=13)
-EVERY_KIND = (*COUNTED, BOOT, END)
-SLOT = {message.ID: slot for slot, message in enumerate(EVERY_KIND)}
-EVERY_MESSAGE = pytest.mark.parametrize("message", EVERY_KIND, ids=lambda m: type(m).__name__)
-EVERY_COUNTED = pytest.mark.parametrize("message", COUNTED, ids=lambda m: type(m).__name__)
-
-
-def frames(*messages):
-    return tuple(message.encode() for message in messages)
-
-
-def admitted(*messages, state=None):
-    raw = tuple(m if isinstance(m, Frame) else m.encode() for m in messages)
-    return admit(raw, state or GateState())
-
-
-def broken(frame):
-    return frame._replace(data=bytes((frame.data[0] ^ 0x20,)) + frame.data[1:])
 
 
 def test_an_empty_inbox_tells_nothing_and_changes_nothing():
@@ -296,117 +262,3 @@ class TestOverrun:
         readings, state = admit((*noise, FIELD.encode()), GateState())
         assert readings == NOTHING
         assert (state.rejected, state.overrun) == (INBOX_LIMIT, 1)
-
-
-TELECOMMAND_OF = {
-    TcMode.ID: TcMode(2, counter=3),
-    TcClear.ID: TcClear(counter=3),
-    TcLaw.ID: TcLaw(10, counter=3),
-    TcSpin.ID: TcSpin(-(2.0**-9), counter=3),
-    TcGain.ID: TcGain(1, -1, 16149, counter=3),
-    TcOrbitElement.ID: TcOrbitElement(4, -7, 8932, counter=3),
-    TcOrbitLoad.ID: TcOrbitLoad(counter=3),
-    TcParameter.ID: TcParameter(17, -9, -45678, counter=3),
-    TcFreeze.ID: TcFreeze(1, counter=3),
-}
-
-
-@pytest.mark.parametrize("message", TELECOMMAND_OF.values(), ids=lambda m: type(m).__name__)
-class TestTelecommands:
-    """None is lost: all of one tick count, in their order, and a repeated one is told from a new one."""
-
-    def test_is_the_only_one_heard(self, message):
-        readings, state = admitted(message)
-        assert readings == NOTHING._replace(telecommands=(message,))
-        assert (state.input_crc, state.command_crc) == (0, crc32(message.encode().data))
-        assert (state.rejected, state.missed) == (0, 0)
-
-    def test_all_of_one_kind_count(self, message):
-        sent = tuple(message._replace(counter=n & 0xF) for n in range(14, 20))
-        readings, state = admitted(*sent)
-        assert readings.telecommands == sent
-        assert (state.rejected, state.missed) == (0, 0)
-
-    def test_one_with_the_counter_of_the_one_before_is_told_apart(self, message):
-        readings, state = admitted(message, message)
-        assert (readings.telecommands, readings.repeated) == ((message,), (message,))
-        assert state.rejected == 1
-        readings, later = admitted(message, state=state)
-        assert (readings.telecommands, readings.repeated) == ((), (message,))
-        assert (later.rejected, later.command_crc) == (2, state.command_crc)
-
-    def test_gaps_are_counted(self, message):
-        readings, state = admitted(message, message._replace(counter=9))
-        assert len(readings.telecommands) == 2
-        assert state.missed == 5
-
-    @pytest.mark.parametrize(
-        "change", [lambda d: bytes((d[0] ^ 0x20,)) + d[1:], lambda d: d[:-1], lambda d: b""]
-    )
-    def test_a_broken_one_is_counted_and_nothing_else(self, message, change):
-        frame = message.encode()
-        assert admitted(frame._replace(data=change(frame.data))) == (NOTHING, GateState(rejected=1))
-
-
-def test_telecommands_of_all_kinds_stay_in_their_order():
-    sent = tuple(TELECOMMAND_OF[can_id] for can_id in reversed(TELECOMMANDS))
-    readings, _ = admitted(FIELD, *sent[:3], COIL, *sent[3:])
-    assert readings == NOTHING._replace(field=FIELD, coil=COIL, telecommands=sent)
-
-
-def test_where_a_telecommand_stands_among_the_boards_messages_does_not_count():
-    one = (TELECOMMAND_OF[TcSpin.ID], TELECOMMAND_OF[TcLaw.ID])
-    orders = [(*one, FIELD, COIL), (one[0], FIELD, one[1], COIL), (FIELD, COIL, *one)]
-    assert len({admitted(*order) for order in orders}) == 1
-    assert admitted(*reversed(one), FIELD, COIL) != admitted(*orders[0])
-
-
-def test_every_telecommand_is_listened_to():
-    assert set(TELECOMMANDS) == {can_id for can_id, sender in SENDERS.items() if sender == "GROUND"}
-    assert {can_id: CLASSES[can_id] for can_id in TELECOMMANDS} == TELECOMMANDS
-
-
-def random_frame(random):
-    """Nearly right: listened identifiers and right lengths often, flags and nonsense now and then."""
-    can_id = random.choice([*INPUT_MESSAGES, *TELECOMMANDS, *CLASSES, random.getrandbits(11)])
-    if random.random() < 0.1:
-        can_id |= random.choice([EXTENDED_FLAG, REMOTE_FLAG, ERROR_FLAG])
-    known = CLASSES.get(can_id)
-    length = known.LENGTH if known is not None and random.random() < 0.8 else random.randrange(9)
-    return Frame(can_id, random.randbytes(length))
-
-
-def test_of_ten_thousand_random_frames_none_is_taken_unless_intact():
-    random, state, taken = Random(20000), GateState(), 0
-    for _ in range(10_000):
-        frame = random_frame(random)
-        readings, after = admit((frame,), state)
-        accepted = [message for message in (*readings[:-4], *readings.telecommands) if message is not None]
-        if accepted:
-            taken += 1
-            assert intact(frame)
-            assert accepted == [CLASSES[frame.can_id].decode(frame.data)]
-            assert after.rejected == state.rejected
-        elif frame.can_id in (*INPUT_MESSAGES, *TELECOMMANDS) or not intact(frame):
-            assert after == state._replace(rejected=state.rejected + 1)
-        state = after
-    assert 0 < taken < 10_000 / 100  # a CRC of 8 bits lets one in 256 pass
-
-
-@given(
-    st.lists(
-        st.builds(
-            Frame,
-            st.integers(0, 2**32 - 1) | st.sampled_from([*INPUT_MESSAGES, *TELECOMMANDS]),
-            st.binary(max_size=64),
-        ),
-        max_size=80,
-    )
-)
-@settings(max_examples=200, deadline=None)
-def test_no_content_raises_and_every_frame_is_accounted_for(inbox):
-    readings, state = admit(tuple(inbox), GateState())
-    assert isinstance(readings, Readings)
-    assert state.overrun == max(0, len(inbox) - INBOX_LIMIT)
-    assert state.rejected <= len(inbox)
-    assert all(-1 <= counter <= 15 for counter in state.counters)

@@ -9,11 +9,11 @@ import pytest
 from fsw.core.estimation.attitude import UNKNOWN
 from fsw.core.laws import by_mode
 from fsw.core.laws.lqr import STEPS, LqrGains, lqr, schedule
-from fsw.core.laws.mpc import APPLIED_STEPS, MpcGains, mpc, orbit_ahead, plan
+from fsw.core.laws.mpc import APPLIED_STEPS, MpcGains, mpc, plan
 from fsw.core.laws.riccati import backward
 from fsw.core.orbit.ephemeris import ephemeris_model
 from fsw.core.orbit.field import FieldKind, field_eci_t
-from fsw.core.orbit.propagation import circular_orbit, sgp4_orbit, state_eci
+from fsw.core.orbit.propagation import circular_orbit
 from fsw.wire.messages import Mode
 
 EPOCH = 1742461200
@@ -50,44 +50,6 @@ def inputs(bench, turned):
     c_body_from_eci = turned((1, -2, 3), 15.0) @ orbit.c_orbit_from_eci(30.0)
     given = bench.inputs_at(orbit, 3, STEP_S, c_body_from_eci, np.array([1e-4, 2e-4, 1.3e-3]), None)
     return given._replace(ephemeris=model_of(FieldKind.DIRECT_DIPOLE, orbit))
-
-
-def test_the_field_ahead_is_that_of_the_orbit_to_come(bench):
-    orbit = bench.Orbit()
-    ahead = orbit_ahead(model_of(FieldKind.DIRECT_DIPOLE, orbit), EPOCH + 500.0, 60.0, 100)
-    times = 500.0 + 60.0 * (np.arange(100) + 0.5)
-    expected = [orbit.c_orbit_from_eci(t) @ orbit.b_eci_t(t) for t in times]
-    assert ahead.b_orbit_t == pytest.approx(np.array(expected), abs=1e-10)
-    assert ahead.rate_change_radps2 == pytest.approx(np.zeros(100), abs=1e-18)
-
-
-TLE = (
-    "1 22826U 93061D   15086.11593543  .00000251  00000-0  11414-3 0  9992",
-    "2 22826  98.6946  36.4208 0008932 173.8349 186.2944 14.30166407121352",
-)
-
-
-def test_the_orbit_ahead_turns_faster_towards_its_perigee():
-    """By the difference of the rates |r x v| / r^2 half a second before and after."""
-    orbit = sgp4_orbit(*TLE)
-    model = ephemeris_model(orbit, EPOCH, 1, FieldKind.DIRECT_DIPOLE)
-    ahead = orbit_ahead(model, EPOCH, 60.0, 100)
-
-    def rate_radps(unix_s):
-        r, v = map(np.array, state_eci(orbit, unix_s))
-        return np.linalg.norm(np.cross(r, v)) / (r @ r)
-
-    times = EPOCH + 60.0 * (np.arange(100) + 0.5)
-    expected = [rate_radps(t + 0.5) - rate_radps(t - 0.5) for t in times]
-    assert np.abs(expected).max() > 1e-9
-    wrong = np.abs(ahead.rate_change_radps2 - expected) / np.abs(expected).max()
-    assert wrong[1:-1].max() < 0.01
-    assert wrong.max() < 0.1, "at the ends the difference is to one side"
-
-
-def test_no_orbit_ahead_where_the_orbit_has_no_position(bench, monkeypatch):
-    monkeypatch.setattr("fsw.core.laws.mpc.state_eci", lambda orbit, unix_s: None)
-    assert orbit_ahead(model_of(FieldKind.DIRECT_DIPOLE, bench.Orbit()), EPOCH, 60.0, 10) is None
 
 
 @pytest.mark.parametrize("steps", [APPLIED_STEPS, STEPS // 3, STEPS, 2 * STEPS])

@@ -7,7 +7,8 @@ import pytest
 
 from fsw.core.laws.cost_to_go import cost_to_go
 from fsw.core.laws.lqr import LqrGains, schedule
-from fsw.core.laws.pulse_model import NO_PULSE, Pulse, kicks, pulse_model
+from fsw.core.laws.orbit_ahead import sight
+from fsw.core.laws.pulse_model import NO_PULSE, Pulse, PulseModel, choices, kicks
 from fsw.core.laws.pulse_plan import BARRED, SEQUENCES, Opportunity, first_pulse
 from fsw.core.laws.riccati import regulator_problem
 
@@ -15,7 +16,7 @@ INERTIA = ((1.02, 0.03, -0.05), (0.03, 1.85, 0.02), (-0.05, 0.02, 1.95))
 INVERSE = tuple(map(tuple, np.linalg.inv(INERTIA).tolist()))
 PROBLEM = regulator_problem(INERTIA, (0.001, -0.002, 0.003), 1.04e-3, 2.1e-5, 103.0, 0.01, 0.001)
 LEVELS, PULSE_S = (0.5, 2.0, 8.0), 3.0
-SHARED = pulse_model(LEVELS, PULSE_S, 103, 1, PROBLEM)
+SHARED = PulseModel(*choices(LEVELS, PULSE_S, INVERSE), 103, 1, PROBLEM, 6, sight([103.0], 6000.0))
 READY = (0, 0, 0)
 
 
@@ -24,13 +25,11 @@ def opportunities(random, count, model=SHARED):
     ahead = []
     for _ in range(count):
         root = random.normal(size=(6, 6)) * np.repeat([3e3, 3.0], 3)[:, None]
-        b_t = tuple((random.normal(size=3) * 3e-5).tolist())
+        b_t = random.normal(size=3) * 3e-5
         rest = random.normal(size=(6, 4)) * np.repeat([1e9, 1e6], 3)[:, None]
         rest[:, 3] *= 1e-7
         drift = random.normal(size=6) * np.repeat([1e-5, 1e-3], 3)
-        ahead.append(
-            Opportunity(np.array(kicks(model, b_t, INVERSE)), drift, np.hstack([root @ root.T, rest]))
-        )
+        ahead.append(Opportunity(kicks(model, b_t), drift, np.hstack([root @ root.T, rest])))
     return ahead
 
 
@@ -77,11 +76,11 @@ class TestChoices:
 
     @pytest.mark.parametrize("place", range(19))
     def test_turn_the_body_as_pulse_and_field_do(self, place):
-        (coil, level), b_t = SHARED.pulses[place], (1.7e-5, -2.3e-5, 3.1e-5)
+        (coil, level), b_t = SHARED.pulses[place], np.array([1.7e-5, -2.3e-5, 3.1e-5])
         m = np.zeros(3)
         m[coil] = np.sign(level) * (0.0, *LEVELS)[abs(level)]
         expected = np.linalg.solve(INERTIA, PULSE_S * np.cross(m, b_t))
-        assert kicks(SHARED, b_t, INVERSE)[place] == pytest.approx(expected, rel=1e-12, abs=1e-20)
+        assert kicks(SHARED, b_t)[place] == pytest.approx(expected, rel=1e-12, abs=1e-20)
 
 
 @pytest.mark.parametrize("seed", range(30))
@@ -154,8 +153,7 @@ def along_an_orbit(random, count):
     last = np.hstack([table.costs[0], np.zeros((6, 1))])
     costs = [*cost_to_go(PROBLEM, fields, np.zeros((count, 6)), last)[1:], last]
     return [
-        Opportunity(np.array(kicks(SHARED, tuple(b_t), INVERSE)), np.zeros(6), cost)
-        for b_t, cost in zip(fields.tolist(), costs, strict=True)
+        Opportunity(kicks(SHARED, b_t), np.zeros(6), cost) for b_t, cost in zip(fields, costs, strict=True)
     ]
 
 

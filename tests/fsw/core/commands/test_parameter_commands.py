@@ -1,0 +1,143 @@
+"""Parameters of the filter by telecommand: loaded, frozen, thawed."""
+
+import pytest
+
+from fsw.core.commands import MOST_SIGMAS
+from fsw.core.estimation.parameters import NOTHING as AS_THE_TABLE
+from fsw.core.estimation.parameters import component_places, with_component
+from fsw.wire.messages import (
+    Component,
+    TcAckResult,
+    TcFreeze,
+    TcParameter,
+)
+
+TICK = 40
+
+
+EVERYTHING = {
+    "inertia_percent": 30.0,
+    "products_percent": 20.0,
+    "residual_dipole_am2": 0.03,
+    "coil_gain_percent": 5.0,
+    "coil_misalignment_deg": 0.7,
+    "magnetometer_scale_percent": 0.4,
+    "magnetometer_misalignment_deg": 0.9,
+    "sun_misalignment_deg": 0.6,
+    "latency_s": 0.8,
+}
+
+
+@pytest.fixture(scope="module")
+def estimating(make_world):
+    """A flight with every parameter carried: configuration, and state with an estimate."""
+    world = make_world(flight={"uncertainty": EVERYTHING})
+    world.fly(TICK + 1)
+    assert world.state.tick == TICK
+    return world.config, world.state
+
+
+def range_of(config, parameter):
+    """The least and the largest value that may be loaded."""
+    mekf = config.estimator.mekf
+    place, mean = component_places(mekf.layout)[parameter], mekf.initial_parameters.floats()[parameter]
+    most = MOST_SIGMAS * float(mekf.initial_covariance[place, place]) ** 0.5
+    return mean - most, mean + most
+
+
+class TestParameter:
+    @pytest.mark.parametrize("parameter", Component)
+    def test_the_filter_goes_on_from_the_value_and_starts_from_it(self, obey, estimating, parameter):
+        config, state = estimating
+        exponent = -15 if parameter.name.startswith("TORQUE") else -9
+        after, results = obey(state, TcParameter(parameter, exponent, -321), config=config)
+        value = float(f"-321e{exponent}")
+        before = state.estimator.estimate
+        assert results == [TcAckResult.ACCEPTED]
+        assert after.estimator.estimate.parameters == with_component(before.parameters, parameter, value)
+        first = config.estimator.mekf.initial_parameters
+        assert after.estimator.first == with_component(first, parameter, value)
+        assert after._replace(estimator=state.estimator) == state
+
+    def test_a_second_one_keeps_the_first(self, obey, estimating):
+        config, state = estimating
+        sent = (TcParameter(Component.TORQUE_Y, -10, 7), TcParameter(Component.SUN_DELAY, -1, 3, counter=1))
+        after, _ = obey(state, *sent, config=config)
+        assert after.estimator.first == AS_THE_TABLE._replace(
+            torque_body_nm=(0.0, 7e-10, 0.0), delay_s=(0.4, 0.3)
+        )
+
+    def test_before_the_filter_has_started_it_waits_for_the_start(self, obey, estimating):
+        config, state = estimating
+        waiting = state._replace(estimator=state.estimator._replace(estimate=None))
+        after, results = obey(waiting, TcParameter(Component.MAG_BIAS_Z, -9, 250), config=config)
+        assert results == [TcAckResult.ACCEPTED]
+        assert after.estimator.estimate is None
+        assert after.estimator.first == AS_THE_TABLE._replace(
+            mag_bias_t=(0.0, 0.0, 2.5e-7), delay_s=(0.4, 0.4)
+        )
+
+    @pytest.mark.parametrize("parameter", [Component.MAG_BIAS_X, Component.COIL_YZ, Component.MAG_DELAY])
+    def test_of_ten_standard_deviations_is_the_most(self, obey, refused, estimating, parameter):
+        config, state = estimating
+        for limit, outward in zip(range_of(config, parameter), (-1, 1), strict=True):
+            edge = int(1e9 * limit)
+            inside, beyond = (TcParameter(parameter, -9, edge + step) for step in (-outward, outward))
+            assert obey(state, inside, config=config)[1] == [TcAckResult.ACCEPTED]
+            refused(TcAckResult.OUT_OF_RANGE, beyond, start=state, config=config)
+
+    @pytest.mark.parametrize(
+        "sent",
+        [
+            [TcParameter(Component.INERTIA_XX, -2, -103)],
+            [TcParameter(Component.INERTIA_XY, -2, 150)],
+            [
+                TcParameter(Component.INERTIA_YY, -2, -140),
+                TcParameter(Component.INERTIA_XY, -2, 90, counter=1),
+            ],
+        ],
+        ids=["a moment below zero", "a product too large", "both together"],
+    )
+    def test_of_an_inertia_that_no_body_has_is_refused(self, refused, estimating, sent):
+        config, state = estimating
+        for start in (state, state._replace(estimator=state.estimator._replace(estimate=None))):
+            refused(TcAckResult.OUT_OF_RANGE, *sent, start=start, config=config)
+
+    def test_that_the_filter_does_not_carry(self, refused, config):
+        known = component_places(config.estimator.mekf.layout)
+        assert 0 < len(known) < len(Component)
+        for parameter in set(Component) - set(known):
+            refused(TcAckResult.NOT_ALLOWED, TcParameter(parameter, -12, 1))
+
+    def test_without_a_filter(self, refused, make_world, state):
+        perfect = make_world(knowledge="perfect").config
+        refused(TcAckResult.NOT_ALLOWED, TcParameter(Component.TORQUE_X, -9, 1), start=state, config=perfect)
+
+    @pytest.mark.parametrize("number", range(len(Component), 64))
+    def test_there_are_no_more(self, refused, estimating, number):
+        config, state = estimating
+        refused(TcAckResult.UNKNOWN, TcParameter(number, -12, 1), start=state, config=config)
+
+
+class TestFreeze:
+    def test_values_stay_and_are_those_of_the_next_start(self, obey, estimating):
+        config, state = estimating
+        after, results = obey(state, TcFreeze(1), config=config)
+        assert results == [TcAckResult.ACCEPTED]
+        assert after.estimator.frozen
+        assert after.estimator.first == state.estimator.estimate.parameters != AS_THE_TABLE
+        assert after.estimator.estimate is not None
+
+    def test_thaw_estimates_again_and_keeps_the_start(self, obey, estimating):
+        config, state = estimating
+        frozen, _ = obey(state, TcFreeze(1), config=config)
+        after, results = obey(frozen, TcFreeze(0, 1), config=config)
+        assert results == [TcAckResult.ACCEPTED]
+        assert after.estimator == frozen.estimator._replace(frozen=False)
+
+    def test_before_the_filter_has_started_what_was_loaded_is_kept(self, obey, state):
+        sent = (TcParameter(Component.TORQUE_Z, -9, -40), TcFreeze(1))
+        after, results = obey(state, *sent)
+        assert results == [TcAckResult.ACCEPTED] * 2
+        first = AS_THE_TABLE._replace(torque_body_nm=(0.0, 0.0, -4e-8))
+        assert after.estimator == state.estimator._replace(first=first, frozen=True)

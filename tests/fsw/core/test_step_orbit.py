@@ -1,0 +1,55 @@
+"""The flight loop when the orbit has ended, or its ephemeris is spoiled."""
+
+from dataclasses import replace
+from math import inf, nan
+
+import pytest
+from replies import of
+
+from fsw.core.state import Inbox, checksum
+from fsw.core.step import step
+from fsw.core.telemetry import Event
+from fsw.wire.messages import (
+    CoilFire,
+    FswEvent,
+    Mode,
+    TickDone,
+)
+
+
+def test_an_orbit_that_has_decayed_leads_to_safe(make_world, decaying):
+    """A month on, SGP4 has no position for these elements any more: reported, safe, and no exception."""
+    world = make_world(orbit={"tle": list(decaying)})
+    world.fly(40)
+    assert world.state.modes.mode is not Mode.SAFE
+    tick = 30 * 86400
+    world.state = world.state._replace(tick=tick - 1, field_tick=tick - 1, status_tick=tick - 1)
+    inbox = Inbox(tick, world.config.epoch_unix_s + tick, world.inbox().frames)
+    state, outbox = step(world.state, inbox, world.config)
+    assert state.modes.mode is Mode.SAFE
+    assert state.ephemeris is None
+    assert not state.attitude.valid
+    assert outbox[-1] == TickDone(tick, checksum(state)).encode()
+    reports = [FswEvent.decode(frame.data) for frame in outbox if frame.can_id == FswEvent.ID]
+    assert (Event.MONITOR_TRIPPED, 8) in [(message.event, message.argument) for message in reports]
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+@pytest.mark.parametrize("vector", ["r_eci_m", "v_eci_mps", "b_eci_t", "sun_eci"])
+@pytest.mark.parametrize("broken", [nan, inf])
+def test_an_ephemeris_of_what_is_no_number_is_made_anew(make_world, vector, broken):
+    world = make_world()
+    world.fly(205)
+    assert world.state.attitude.valid
+    whole = world.state.ephemeris
+    spoiled = replace(whole.nodes[1], **{vector: (broken, 1.0, 1.0)})
+    world.state = world.state._replace(
+        ephemeris=replace(whole, nodes=(whole.nodes[0], spoiled, *whole.nodes[2:]))
+    )
+    replies = world.step()
+    assert not world.state.attitude.valid
+    assert not of(CoilFire, replies)
+    world.fly(2)
+    assert world.state.ephemeris.nodes[1] == whole.nodes[1]
+    assert world.state.estimator.estimate is not None
+    world.fly_until_valid()

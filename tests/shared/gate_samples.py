@@ -1,0 +1,48 @@
+"""A message of each kind that the controller listens to, and the gate that admits it."""
+
+import pytest
+
+from fsw.core.gate.readings import (
+    GateState,
+    admit,
+)
+from fsw.wire.frame import Frame
+from fsw.wire.messages import (
+    CoilBoot,
+    CoilDipoleStatus,
+    CoilRefused,
+    CoilStatus,
+    MagField,
+    PlantEnd,
+    RefAttitude,
+    RefRate,
+    SunVector,
+)
+
+FIELD = MagField(1, 20000.0, -7000.0, 31000.0, counter=5)
+SUN = SunVector(1, 0.599975586, -0.47998046875, 0.64001464, counter=6)
+COIL = CoilStatus(-2, 1, 2000, -150, 103000, 9, counter=7)
+REFUSED = CoilRefused(2, 9, 8, 0xC3, counter=8)
+ATTITUDE = RefAttitude(1, 0.5, -0.25, 0.125, counter=9)
+RATE = RefRate(1, 2.0**-7, -(2.0**-8), 2.0**-9, counter=10)
+DIPOLE = CoilDipoleStatus(0.5, -0.25, 2.0**-16, counter=11)
+BOOT = CoilBoot(1, 1, 0x89ABCDEF, counter=12)
+COUNTED = (FIELD, SUN, COIL, REFUSED, ATTITUDE, RATE, DIPOLE)
+END = PlantEnd(9000, counter=13)
+EVERY_KIND = (*COUNTED, BOOT, END)
+SLOT = {message.ID: slot for slot, message in enumerate(EVERY_KIND)}
+EVERY_MESSAGE = pytest.mark.parametrize("message", EVERY_KIND, ids=lambda m: type(m).__name__)
+EVERY_COUNTED = pytest.mark.parametrize("message", COUNTED, ids=lambda m: type(m).__name__)
+
+
+def frames(*messages):
+    return tuple(message.encode() for message in messages)
+
+
+def admitted(*messages, state=None):
+    raw = tuple(m if isinstance(m, Frame) else m.encode() for m in messages)
+    return admit(raw, state or GateState())
+
+
+def broken(frame):
+    return frame._replace(data=bytes((frame.data[0] ^ 0x20,)) + frame.data[1:])
