@@ -43,7 +43,7 @@ _judge: Judge | None = None
 
 def judge_mutant(module: str, target: Target, source: str) -> tuple[str, str]:
     """Judge one mutant, in a worker process that imports one module only."""
-    global _judge  # noqa: PLW0603
+    global _judge  # noqa: PLW0603  one a process
     if _judge is None:
         _judge = Judge(module, [target.quick, target.slow])
     return _judge.judge(source)

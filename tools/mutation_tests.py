@@ -169,7 +169,7 @@ def copy_repository(folder: Path, names: tuple[str, ...]) -> None:
 
 def _prepare(folder: Path) -> None:
     """Set up what every child uses."""
-    from hypothesis import Phase, settings  # noqa: PLC0415
+    from hypothesis import Phase, settings  # noqa: PLC0415  in the child alone
 
     settings.register_profile(
         "mutation",
@@ -222,7 +222,7 @@ def _imported(tree: ast.AST) -> Iterator[str]:
 
 
 def _in_child(folder: Path, tests: list[str], order: PytestOrder, first: bool) -> int:
-    import pytest  # noqa: PLC0415
+    import pytest  # noqa: PLC0415  in the child alone
 
     sink = os.open(os.environ.get("MUTATION_OUTPUT", os.devnull), os.O_WRONLY | os.O_CREAT | os.O_APPEND)
     os.dup2(sink, 1)

@@ -36,7 +36,7 @@ def foxglove_server(port: int) -> Iterator["Publisher"]:
         HarnessError: the package is not installed, or the port is taken.
     """
     with needing("--foxglove", "foxglove-sdk", "watch"):
-        import foxglove  # noqa: PLC0415  (of an extra)
+        import foxglove
     context = foxglove.Context()
     try:
         server = foxglove.start_server(name="torquer", host=HOST, port=port, context=context)
@@ -57,8 +57,8 @@ class Publisher:
     """
 
     def __init__(self, context: "Context", port: int) -> None:
-        from foxglove import Channel  # noqa: PLC0415
-        from foxglove.channels import FrameTransformsChannel, LogChannel, SceneUpdateChannel  # noqa: PLC0415
+        from foxglove import Channel
+        from foxglove.channels import FrameTransformsChannel, LogChannel, SceneUpdateChannel
 
         self.port = port
         self._transforms = FrameTransformsChannel("/tf", context=context)
@@ -69,9 +69,9 @@ class Publisher:
 
     def publish(self, seen: FlightView) -> None:
         """Everything of this moment, and what has happened since the last one."""
-        from foxglove.messages import Color, Log, LogLevel, SceneEntity, SceneUpdate  # noqa: PLC0415
+        from foxglove.messages import Color, Log, LogLevel, SceneEntity, SceneUpdate
 
-        from sim.drawing.foxglove_scene import ESTIMATE, ORBIT, arrow, attitude, stamp_of  # noqa: PLC0415
+        from sim.drawing.foxglove_scene import ESTIMATE, ORBIT, arrow, attitude, stamp_of
 
         if seen.unix_s is None:
             return

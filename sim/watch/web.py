@@ -60,11 +60,11 @@ class LiveView:
 
 def application(view: LiveView) -> "Starlette":
     """The page and its websocket; answers to this machine's names alone, and to pages that it served."""
-    from starlette.applications import Starlette  # noqa: PLC0415  (of an extra)
-    from starlette.middleware import Middleware  # noqa: PLC0415
-    from starlette.middleware.trustedhost import TrustedHostMiddleware  # noqa: PLC0415
-    from starlette.responses import HTMLResponse  # noqa: PLC0415
-    from starlette.routing import Route, WebSocketRoute  # noqa: PLC0415
+    from starlette.applications import Starlette
+    from starlette.middleware import Middleware
+    from starlette.middleware.trustedhost import TrustedHostMiddleware
+    from starlette.responses import HTMLResponse
+    from starlette.routing import Route, WebSocketRoute
 
     html = live_page("sim.watch", "watch.html", SCRIPTS, source=view.source.name)
 
@@ -86,7 +86,7 @@ def application(view: LiveView) -> "Starlette":
 
 async def _send(socket: "WebSocket", view: LiveView) -> None:
     """Snapshots, until the page is closed."""
-    from starlette.websockets import WebSocketDisconnect  # noqa: PLC0415
+    from starlette.websockets import WebSocketDisconnect
 
     after = sampled = 0
     try:
@@ -129,8 +129,8 @@ def serve(view: LiveView, port: int, announce: Callable[[str], None]) -> None:
         HarnessError: a package is not installed, or the port is taken.
     """
     with needing("--web", "starlette, uvicorn and websockets", "watch"):
-        import uvicorn  # noqa: PLC0415  (of an extra)
-        import websockets  # noqa: F401, PLC0415
+        import uvicorn
+        import websockets  # noqa: F401
     with listening(port) as listener:
         server = uvicorn.Server(
             uvicorn.Config(application(view), log_level="warning", ws=WEBSOCKETS, timeout_graceful_shutdown=1)
