@@ -4,10 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from fsw.core.commands import command, decimal
+from fsw.core.commands import command
 from fsw.core.gate.readings import NOTHING
 from fsw.core.modes import ModeState
-from fsw.core.orbit.elements import Elements
 from fsw.core.orbit.ephemeris import advance
 from fsw.core.orbit.propagation import sgp4_orbit
 from fsw.core.step import boot
@@ -146,12 +145,6 @@ def digits():
 def elements():
     """Makes the telecommands that upload these elements."""
     return elements_of
-
-
-@pytest.fixture(scope="module")
-def itamsat(digits):
-    """The elements as an orbit is made from them."""
-    return Elements(*(decimal(*number) for number in digits.values()))
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ from math import dist
 
 import pytest
 
-from fsw.core.commands import HANDLERS, LAW_NAMES, command
+from fsw.core.commands import HANDLERS, LAW_NAMES, command, decimal
 from fsw.core.fdir.coils.health import CoilHealth
 from fsw.core.fdir.fdir import Health
 from fsw.core.fdir.sensors.health import SensorHealth, Watch
@@ -13,7 +13,7 @@ from fsw.core.gate.readings import NOTHING, TELECOMMANDS
 from fsw.core.laws.interface import OwnLaw
 from fsw.core.laws.table import LAWS, OWN_NUMBER
 from fsw.core.modes import ModeState
-from fsw.core.orbit.elements import RANGES, Upload
+from fsw.core.orbit.elements import RANGES, Elements, Upload
 from fsw.core.orbit.ephemeris import advance, with_orbit
 from fsw.core.orbit.propagation import element_orbit, sgp4_orbit, state_eci
 from fsw.core.state import checksum
@@ -36,6 +36,12 @@ from fsw.wire.messages import (
 )
 
 TICK = 40
+
+
+@pytest.fixture(scope="module")
+def itamsat(digits):
+    """The elements as an orbit is made from them."""
+    return Elements(*(decimal(*number) for number in digits.values()))
 
 
 def test_there_is_a_handler_for_each_telecommand():
