@@ -31,7 +31,7 @@ from fsw.core.estimation import mekf
 from fsw.core.estimation.kalman import Cause, Matrix, Trace, unexplained
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.fdir.coils.explanations import PULSES, STRAY, Solution, explained, indices_of
+from fsw.core.fdir.coils.explanations import PULSES, STRAY, Solution, explained, indices_of, most_by_chance
 from fsw.core.fdir.coils.weak_test import MODEL_ERROR
 from fsw.core.fdir.evidence import SIGMAS
 from fsw.core.laws.pulse_model import Pulse
@@ -110,7 +110,8 @@ def solve(estimate: Estimate, tuning: MekfConfig) -> tuple[Estimate, Solution | 
     Returns:
         The estimate, corrected where a deviation is certain, and the solution, if the causes explain what was
         measured. Pulses that no fault of a coil explains are traced no longer: what they show is no coil's,
-        and it would remain when the one that contradicts the others is gone.
+        and it would remain when the one that contradicts the others is gone. The trace begins anew if noise
+        may leave as much of so many pulses, else there is none: what was known before is in doubt too.
     """
     trace = estimate.trace
     if trace is None:
@@ -135,9 +136,10 @@ def _solve(estimate: Estimate, trace: Trace, tuning: MekfConfig) -> tuple[Estima
         np.array([cause.uncertain for cause in trace.causes]),
     )
     solution = explained(Solution(trace.numbers, assumed + deviation, deviation, covariance, uncertain))
-    if not solution.explanations[0].fits:
-        return estimate._replace(trace=None), None
     pulses = [index for index, number in enumerate(trace.numbers) if number < STRAY]
+    if not solution.explanations[0].fits:
+        by_chance = solution.explanations[0].distance <= most_by_chance(len(pulses))
+        return estimate._replace(trace=empty_trace(estimate) if by_chance else None), None
     effect, deviation, covariance = trace.effect[:, pulses], deviation[pulses], covariance[pulses][:, pulses]
     certain = deviation**2 > SIGMAS**2 * solution.noise(pulses).diagonal()
     if (certain & effect.any(axis=0)).any():

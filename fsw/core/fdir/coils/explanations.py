@@ -4,7 +4,7 @@ Every explanation is weighed by its likelihood, and accepted only if what it lea
 one is less likely by the threshold of the evidence.
 """
 
-from math import inf
+from math import inf, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -74,6 +74,15 @@ class Explanation(NamedTuple):
     def fits(self) -> bool:
         """Whether what is left is noise."""
         return self.distance <= SIGMAS**2
+
+
+def most_by_chance(numbers: int) -> float:
+    """The square of what noise may leave of so many numbers, as hardly ever as one is beyond ``SIGMAS``.
+
+    The quantile of chi square, k (1 - 2 / 9 k + z sqrt(2 / 9 k))^3 (Wilson, Hilferty 1931).
+    """
+    width = 2.0 / (9.0 * numbers)
+    return float(numbers * (1.0 - width + SIGMAS * sqrt(width)) ** 3)
 
 
 def explained(solution: Solution) -> Solution:

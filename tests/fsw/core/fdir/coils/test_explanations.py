@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from estimator_samples import tuned
+from scipy.stats import chi2, norm
 
 from fsw.core.estimation import mekf
 from fsw.core.estimation.parameters import Prior
@@ -11,6 +12,7 @@ from fsw.core.fdir.coils.explanations import (
     Solution,
     by_gain,
     explained,
+    most_by_chance,
     of_oldest,
     of_pulses,
     shown,
@@ -26,6 +28,7 @@ from fsw.core.fdir.coils.weak_test import (
     PartSum,
     WeakTest,
 )
+from fsw.core.fdir.evidence import SIGMAS
 
 WEAK = WeakTest(0.7, 0.8, 14.0)
 
@@ -204,3 +207,9 @@ class TestGain:
     def test_without_such_a_parameter_there_is_no_evidence(self, estimated):
         estimate, _ = estimated(1, -0.9, 0.03)
         assert accused(estimate, tuned()) is None
+
+
+@pytest.mark.parametrize("numbers", range(1, 10))
+def test_what_noise_may_leave_is_the_quantile_of_chi_square(numbers):
+    exact = chi2.isf(norm.sf(SIGMAS), numbers)
+    assert exact <= most_by_chance(numbers) < 1.1 * exact

@@ -5,6 +5,7 @@ from pulse_samples import B_ECI_T, CONFIG, EVERY, PULSES, WEAK, fly
 
 from fsw.core.actuation.actuator import CoilView
 from fsw.core.estimation.estimator import EstimatorState
+from fsw.core.fdir.coils.effects import solve
 from fsw.core.fdir.coils.health import NONE_OLDER, CoilHealth, CoilHealthConfig
 from fsw.core.fdir.coils.torques import judge_effect
 from fsw.core.fdir.coils.weak_test import Older, PartSum
@@ -24,6 +25,16 @@ def test_pulses_that_no_fault_of_a_coil_explains_take_what_was_known_before_with
     health, state = judged(contradictory)
     assert state.estimate.trace is None
     assert health == HEALTH._replace(older=NONE_OLDER)
+
+
+def test_where_noise_may_leave_as_much_of_so_many_pulses_what_was_known_before_stays():
+    """Sixteen is much for one pulse, and twenty-five hardly too much for eight."""
+    odd, _ = fly([0, 1, 2, 0, 1, 2, 0, 1], [1.18, 0.85, 1.2, 0.86, 1.18, 0.84, 1.15, 0.9])
+    _, solution = solve(odd, CONFIG)
+    assert solution is None
+    health, state = judged(odd)
+    assert state.estimate.trace.numbers == ()
+    assert health == HEALTH
 
 
 @pytest.mark.parametrize("parts", [(1.0, 1.0, 1.0, 1.0), (0.9, 1.0, 0.9, 1.0)])
