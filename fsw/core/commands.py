@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 from fsw.core import modes
 from fsw.core.algebra.vector import positive_definite
 from fsw.core.config import FlightConfig
-from fsw.core.estimation.estimator import freeze, load, thaw, untraced
+from fsw.core.estimation.estimator import untraced
+from fsw.core.estimation.loaded import freeze, load, thaw
 from fsw.core.estimation.parameters import component_places, estimated_inertia
 from fsw.core.fdir.fdir import Health
 from fsw.core.gate.readings import Readings, Telecommand

@@ -143,7 +143,7 @@ def _predict(
     if not plausible(reference):
         return state._replace(ephemeris=None, estimator=restart(state.estimator)), None
     state = state._replace(ephemeris=ephemeris)
-    if state.estimator.estimate is None:
+    if state.estimator.estimate is None and not state.estimator.batch.samples:
         return state, reference
     tick, view, coils = state.tick, state.coil, config.coils
     driven_am2 = fdir.driven_am2(state.health, view, config.fdir)

@@ -1,14 +1,17 @@
 """The estimator's configuration: its noise from the table, its priors and limits from the bounds."""
 
-from math import ceil, radians, sqrt
+from math import ceil, hypot, radians, sqrt
 
 from fsw.core.estimation.estimator import EstimatorConfig
 from fsw.core.estimation.mekf_config import mekf_config
+from fsw.core.estimation.start.first import StartLimits
 from fsw.core.fdir.sensors.plausibility import PlausibilityConfig
+from fsw.table.cells import cell_set
 from fsw.table.table import FlightTable
 from fsw.table.uncertainty import (
     LARGEST_FIELD_T,
     LEAST_FIELD_T,
+    SIDE,
     Uncertainty,
     bounds,
     mean_moment,
@@ -20,6 +23,8 @@ GATE_NIS = 16.27
 """Chi-square of 3 degrees of freedom: of sound samples 1 in 1000 is refused."""
 START_SIGMA_RAD = radians(5.0)
 """Of the attitude that TRIAD gives at worst."""
+CELLS_START = 1.5
+"""The same by cells, in parts of their excess: one of the three may see the Earth and not the Sun."""
 MIN_SEPARATION_RAD = radians(15.0)
 """Of field and Sun at the start: TRIAD's error about the axis between them is then below 4 times theirs."""
 MAX_REFUSALS = 60
@@ -36,6 +41,7 @@ ORBIT_RADIUS_M = 7.0e6
 def estimator_config(table: FlightTable) -> EstimatorConfig:
     """Prepare the estimator."""
     tuning, known, tick_s = table.estimator, table_bounds(table), 1.0 / table.time.tick_hz
+    cells = None if table.cells is None else cell_set(table.cells, SIDE * known.cell_excess)
     limits = plausibility_config(table)
     return EstimatorConfig(
         mekf=mekf_config(
@@ -44,19 +50,24 @@ def estimator_config(table: FlightTable) -> EstimatorConfig:
             priors(known, table.body.inertia),
             wheel_body_nms=table.body.wheel_nms,
             magnetometer_sigma_t=tuning.magnetometer_sigma_nt * NT,
-            sun_sigma_rad=radians(tuning.sun_sigma_deg),
-            attitude_sigma_rad=START_SIGMA_RAD,
+            sun_sigma_rad=_sun_sigma_rad(table),
+            attitude_sigma_rad=START_SIGMA_RAD
+            if cells is None
+            else max(START_SIGMA_RAD, 2.0 * cells.excess_sigma),
             rate_sigma_radps=radians(tuning.rate_sigma_degps),
             torque_noise_nm_rts=max(
                 TORQUE_NOISE_RTS * known.torque_nm, LEAST_NOISE_RTS * mean_moment(table.body.inertia)
             ),
             dipole_sigma=DRIVE_SIGMA,
             gate_nis=GATE_NIS,
+            cells=cells,
         ),
         perfect=table.knowledge == "perfect",
-        max_field_error_t=limits.field_t + limits.field_part * LARGEST_FIELD_T,
-        max_angle_error_rad=limits.angle_rad + limits.field_t / LEAST_FIELD_T,
-        min_separation_rad=MIN_SEPARATION_RAD,
+        start=StartLimits(
+            max_field_error_t=limits.field_t + limits.field_part * LARGEST_FIELD_T,
+            max_angle_error_rad=limits.angle_rad + limits.field_t / LEAST_FIELD_T,
+            min_separation_rad=MIN_SEPARATION_RAD,
+        ),
         restart_after_rejections=MAX_REFUSALS,
         valid_sigma_rad=radians(tuning.valid_sigma_deg),
         blank_ticks=ceil(known.latency_s * table.time.tick_hz - 1e-9),
@@ -65,7 +76,15 @@ def estimator_config(table: FlightTable) -> EstimatorConfig:
 
 def table_bounds(table: FlightTable) -> Uncertainty:
     """The bounds of the whole table."""
-    return bounds(table.uncertainty, table.body.inertia, 1.0 / table.time.tick_hz)
+    albedo = None if table.cells is None else table.cells.albedo
+    return bounds(table.uncertainty, table.body.inertia, 1.0 / table.time.tick_hz, albedo)
+
+
+def _sun_sigma_rad(table: FlightTable) -> float:
+    """The noise of the Sun's direction: by Sun cells what they show beyond their model."""
+    if table.cells is None:
+        return radians(table.estimator.sun_sigma_deg)
+    return hypot(0.01 * table.cells.noise_percent, SIDE * table_bounds(table).cell_excess)
 
 
 def plausibility_config(table: FlightTable) -> PlausibilityConfig:
@@ -75,7 +94,7 @@ def plausibility_config(table: FlightTable) -> PlausibilityConfig:
     flown.
     """
     known, tuning, sigmas = table_bounds(table), table.estimator, sqrt(GATE_NIS)
-    noise_t, noise_rad = tuning.magnetometer_sigma_nt * NT, radians(tuning.sun_sigma_deg)
+    noise_t, noise_rad = tuning.magnetometer_sigma_nt * NT, _sun_sigma_rad(table)
     model = known.mag_scale_part + 3.0 * known.along_track_m / ORBIT_RADIUS_M
     return PlausibilityConfig(
         field_t=sqrt(3.0) * (known.mag_bias_t + sigmas * noise_t),
@@ -83,4 +102,5 @@ def plausibility_config(table: FlightTable) -> PlausibilityConfig:
         angle_rad=known.mag_turn_rad + known.sun_turn_rad + model + sigmas * noise_rad,
         sun_norm=sigmas * noise_rad,
         late_ticks=ceil(known.latency_s * table.time.tick_hz - 1e-9),
+        cells=None if table.cells is None else cell_set(table.cells, SIDE * known.cell_excess),
     )

@@ -23,6 +23,7 @@ from fsw.input.schema import (
     read_toml,
     validated,
 )
+from fsw.table.cells import CellTable
 from fsw.table.own_law import named
 from fsw.table.sections import (
     CIRCULAR_KEYS,
@@ -40,6 +41,9 @@ from fsw.table.sections import (
 )
 from fsw.table.uncertainty import LARGEST_FIELD_T, Ceiling, UncertaintyTable, bounds, check_bounds
 
+LATER_BOUNDS = ("torque_variation_nm", "cell_gain_percent", "cell_light_percent")
+"""Keys of ``[uncertainty]`` that tables were written without."""
+
 
 class FlightTable(Section):
     """A whole onboard table."""
@@ -53,6 +57,7 @@ class FlightTable(Section):
     control: ControlTable
     uncertainty: UncertaintyTable = UncertaintyTable()
     estimator: EstimatorTable
+    cells: CellTable | None = None
     modes: ModesTable
     fdir: FdirTable
     telemetry: TelemetryTable
@@ -99,8 +104,11 @@ class FlightTable(Section):
         A key that is left out does not count if there were tables before it.
         """
         values = self.model_dump(mode="json")
-        if self.uncertainty.torque_variation_nm is None:
-            del values["uncertainty"]["torque_variation_nm"]
+        for key in LATER_BOUNDS:
+            if getattr(self.uncertainty, key) is None:
+                del values["uncertainty"][key]
+        if self.cells is None:
+            del values["cells"]
         if self.control.own:
             values["control"]["law"] = self.control.law_name
         else:

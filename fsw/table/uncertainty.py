@@ -11,13 +11,13 @@ between zero and its bound.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import radians, sqrt
+from math import hypot, radians, sqrt
 from typing import NamedTuple
 
 from pydantic import Field
 
 from fsw.core.algebra.vector import Mat3
-from fsw.core.estimation.parameters import Prior
+from fsw.core.estimation.parameters import MOST_CELLS, Prior
 from fsw.input.schema import Section
 
 
@@ -40,6 +40,8 @@ class UncertaintyTable(Section):
     torque_variation_nm: float | None = Field(default=None, ge=0.0, allow_inf_nan=False)
     along_track_km: float | None = Field(default=None, ge=0.0, le=20.0)
     latency_s: float | None = Field(default=None, ge=0.0, le=3.0)
+    cell_gain_percent: float | None = Field(default=None, ge=0.0, le=30.0)
+    cell_light_percent: float | None = Field(default=None, ge=0.0, le=50.0)
 
 
 LARGEST_FIELD_T, LEAST_FIELD_T = 5.0e-5, 2.0e-5
@@ -88,17 +90,21 @@ class Uncertainty:
     torque_variation_nm: float
     along_track_m: float
     latency_s: float
+    cell_excess: float = 0.0
 
 
 REFERENCE_KGM2 = 1.6
 """Mean moment of inertia of the 50 kg satellite for which the ordinary dipole and torque hold."""
 
 
-def bounds(table: UncertaintyTable, inertia_kgm2: Mat3, tick_s: float) -> Uncertainty:
+def bounds(
+    table: UncertaintyTable, inertia_kgm2: Mat3, tick_s: float, albedo: float | None = None
+) -> Uncertainty:
     """The bounds of the table, ordinary ones where it has none.
 
     Residual dipole and disturbance torque grow with the volume: of bodies of one density and shape as the
-    moment of inertia to the power of 3/5.
+    moment of inertia to the power of 3/5. ``albedo`` is that which Sun cells are reckoned with, None of a
+    satellite without them: half of it is ordinary to be wrong by, and all of the Earth's light where it is 0.
     """
     volume = (mean_moment(inertia_kgm2) / REFERENCE_KGM2) ** 0.6
     torque_nm = _or(table.torque_nm, 3e-8 * volume)
@@ -116,7 +122,13 @@ def bounds(table: UncertaintyTable, inertia_kgm2: Mat3, tick_s: float) -> Uncert
         torque_variation_nm=_or(table.torque_variation_nm, 0.2 * torque_nm),
         along_track_m=1000.0 * _or(table.along_track_km, 5.0),
         latency_s=_or(table.latency_s, tick_s),
+        cell_excess=0.0 if albedo is None else _cell_excess(table, albedo),
     )
+
+
+def _cell_excess(table: UncertaintyTable, albedo: float) -> float:
+    gain, light = _or(table.cell_gain_percent, 10.0), _or(table.cell_light_percent, 50.0 * albedo or 30.0)
+    return 0.01 * hypot(gain, light)
 
 
 def _or(given: float | None, ordinary: float) -> float:
@@ -153,6 +165,7 @@ SHAPES = {
     "mag_scale": Shape(SIDE),
     "sun_turn_rad": Shape(BALL),
     "delay_s": Shape(0.5 * SIDE, mean=0.5),
+    "cell_excess": Shape(SIDE),
 }
 """A parameter may wander by a tenth of its limit in a day, the disturbance torque by its own bound, and the
 coils by a hundredth in a second, so that what a coil loses in flight is found."""
@@ -186,4 +199,5 @@ def limits(known: Uncertainty, inertia_kgm2: Mat3) -> dict[str, tuple[float, ...
         "mag_scale": (known.mag_scale_part,) * 3,
         "sun_turn_rad": (known.sun_turn_rad,) * 3,
         "delay_s": (known.latency_s,) * 2,
+        "cell_excess": (known.cell_excess,) * MOST_CELLS,
     }

@@ -80,6 +80,12 @@ class Component(IntEnum):
     SUN_TURN_Z = 32
     MAG_DELAY = 33
     SUN_DELAY = 34
+    CELL_1 = 35
+    CELL_2 = 36
+    CELL_3 = 37
+    CELL_4 = 38
+    CELL_5 = 39
+    CELL_6 = 40
 
 
 class CoilRefusedReason(IntEnum):
@@ -133,6 +139,7 @@ _COIL_DIPOLE_STATUS = id_register(0x101)
 _COIL_REFUSED = id_register(0x108)
 _MAG_FIELD = id_register(0x110)
 _SUN_VECTOR = id_register(0x118)
+_SUN_CELLS = id_register(0x119)
 _REF_ATTITUDE = id_register(0x120)
 _REF_RATE = id_register(0x121)
 _NAV_ATTITUDE = id_register(0x200)
@@ -712,6 +719,55 @@ class SunVector(_SunVector):
             ((word >> 8 & 0xFFFF ^ 0x8000) - 0x8000) * 6.103515625e-05,
             ((word >> 24 & 0xFFFF ^ 0x8000) - 0x8000) * 6.103515625e-05,
             ((word >> 40 & 0xFFFF ^ 0x8000) - 0x8000) * 6.103515625e-05,
+            (word & 0xF),
+        )
+
+
+class _SunCells(NamedTuple):
+    valid: int  # 0 when the board failed its self-test
+    cell_1: float  # [1]; in parts of the nominal current in full sunlight, as are the others
+    cell_2: float  # [1]
+    cell_3: float  # [1]
+    cell_4: float  # [1]
+    cell_5: float  # [1]
+    cell_6: float  # [1]
+    counter: int = 0
+
+
+class SunCells(_SunCells):
+    """Currents of up to six Sun cells, every tick from tick 0, in place of SUN_VECTOR; 0 where there is no cell."""
+
+    __slots__ = ()
+
+    ID: Final = 0x119
+    LENGTH: Final = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.valid & 0x1) << 4
+            | raw(self.cell_1, 0.0078125, 0, 255) << 8
+            | raw(self.cell_2, 0.0078125, 0, 255) << 16
+            | raw(self.cell_3, 0.0078125, 0, 255) << 24
+            | raw(self.cell_4, 0.0078125, 0, 255) << 32
+            | raw(self.cell_5, 0.0078125, 0, 255) << 40
+            | raw(self.cell_6, 0.0078125, 0, 255) << 48
+        )
+        return seal(0x119, word, 8, _SUN_CELLS)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "SunCells":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0x1),
+            (word >> 8 & 0xFF) * 0.0078125,
+            (word >> 16 & 0xFF) * 0.0078125,
+            (word >> 24 & 0xFF) * 0.0078125,
+            (word >> 32 & 0xFF) * 0.0078125,
+            (word >> 40 & 0xFF) * 0.0078125,
+            (word >> 48 & 0xFF) * 0.0078125,
             (word & 0xF),
         )
 
@@ -1700,6 +1756,7 @@ CountedMessage = (
     | CoilRefused
     | MagField
     | SunVector
+    | SunCells
     | RefAttitude
     | RefRate
     | NavAttitude
@@ -1744,6 +1801,7 @@ CLASSES: dict[int, type[AnyMessage]] = {
     0x108: CoilRefused,
     0x110: MagField,
     0x118: SunVector,
+    0x119: SunCells,
     0x120: RefAttitude,
     0x121: RefRate,
     0x180: Sync,
@@ -1789,6 +1847,7 @@ NAMES: dict[int, str] = {
     0x108: "COIL_REFUSED",
     0x110: "MAG_FIELD",
     0x118: "SUN_VECTOR",
+    0x119: "SUN_CELLS",
     0x120: "REF_ATTITUDE",
     0x121: "REF_RATE",
     0x180: "SYNC",
@@ -1834,6 +1893,7 @@ SENDERS: dict[int, str] = {
     0x108: "COIL",
     0x110: "MAG",
     0x118: "SUN",
+    0x119: "SUN",
     0x120: "PLANT",
     0x121: "PLANT",
     0x180: "PLANT",
@@ -1879,6 +1939,7 @@ _SHAPES: dict[int, tuple[int, int | None]] = {
     0x108: (5, _COIL_REFUSED),
     0x110: (8, _MAG_FIELD),
     0x118: (8, _SUN_VECTOR),
+    0x119: (8, _SUN_CELLS),
     0x120: (8, _REF_ATTITUDE),
     0x121: (8, _REF_RATE),
     0x180: (8, None),

@@ -120,6 +120,12 @@ class _Chain(Interference):
             sun_body, valid = fault.sun(sun_body, valid)
         return sun_body, valid
 
+    def cells(self, currents: tuple[float, ...]) -> tuple[float, ...]:
+        """Apply all faults."""
+        for fault in self._faults:
+            currents = fault.cells(currents)
+        return currents
+
     def coil_drive(self, drive: CoilDrive) -> CoilDrive:
         """Apply all faults."""
         for fault in self._faults:

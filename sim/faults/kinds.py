@@ -7,6 +7,7 @@ from typing import NamedTuple
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG
 from fsw.wire.messages import MagField, SunVector
 from sim.faults import bus_kinds as bus
+from sim.faults import cell_kinds as cell
 from sim.faults import forged_kinds as forged
 from sim.faults import node_kinds as node
 from sim.faults import plant_kinds as plant
@@ -42,6 +43,7 @@ class FaultKind(NamedTuple):
 
 PART = {"part": Parameter(0.1, 0.0, 1.0)}
 ALWAYS = {"part": Parameter(1.0, 0.0, 1.0)}
+CELL = {"cell": Parameter(1.0, 1.0, 6.0)}
 AXIS = {"axis": Parameter(0.0, 0.0, 2.0)}
 PER_S = {"per_s": Parameter(0.0, -1000.0, 1000.0)}
 TURN = {**AXIS, "deg": Parameter(10.0, -180.0, 180.0), **PER_S}
@@ -108,6 +110,9 @@ KINDS: dict[str, FaultKind] = {
     "sun_late": FaultKind(bus.sample_delay(SunVector.ID), LATE),
     "sun_unseen": FaultKind(plant.SunBlindness),
     "albedo": FaultKind(plant.SunDeflection, {"part": Parameter(0.4, 0.0, 1.0)}),
+    "cell_dead": FaultKind(cell.CellDead, CELL),
+    "cell_scaled": FaultKind(cell.CellScaled, {**CELL, "scale": Parameter(0.5, 0.0, 10.0)}),
+    "cell_stuck": FaultKind(cell.CellStuck, {**CELL, "percent": Parameter(0.0, 0.0, 199.0)}),
     "extreme_codes": FaultKind(plant.ExtremeCodes, {"sun": Parameter(0.0, 0.0, 1.0)}),
     "coil_open": FaultKind(plant.CoilOpen, AXIS),
     "coil_wired": FaultKind(plant.CoilRescaling, {**AXIS, "scale": Parameter(-1.0, -2.0, 2.0)}),

@@ -6,7 +6,11 @@ from fsw.core.events import Event
 from fsw.core.fdir.faults import Sensor
 
 UNITS: Mapping[int, Mapping[int, str]] = {
-    Event.SENSOR_ISOLATED: {Sensor.MAGNETOMETER: "magnetometer", Sensor.SUN_SENSOR: "sun sensor"},
+    Event.SENSOR_ISOLATED: {
+        Sensor.MAGNETOMETER: "magnetometer",
+        Sensor.SUN_SENSOR: "sun sensor",
+        **{sensor: f"cell {sensor - Sensor.SUN_SENSOR}" for sensor in Sensor if sensor > Sensor.SUN_SENSOR},
+    },
     Event.COIL_FAULT: {1: "coil 0", 2: "coil 1", 3: "coil 2"},
 }
 """Units by event, and by the hundreds of its argument. Coils have the number that they have on the bus."""

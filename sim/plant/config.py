@@ -10,6 +10,7 @@ from sim.plant.sensor_config import (
     PERFECT_MAGNETOMETER,
     PERFECT_SUN_SENSOR,
     MagnetometerConfig,
+    SunCellsConfig,
     SunSensorConfig,
 )
 
@@ -230,7 +231,7 @@ class PlantConfig:
         initial: attitude and rate at the epoch.
         disturbance: disturbance torques and dipoles.
         magnetometer: its errors.
-        sun_sensor: its errors.
+        sun_sensor: its errors; or the cells in its place.
         coils: the coils.
         limits: what the coil driver's interlock enforces.
         max_substep_s: longest integration step.
@@ -249,7 +250,7 @@ class PlantConfig:
     initial: InitialConfig = InitialConfig()
     disturbance: DisturbanceConfig = DisturbanceConfig()
     magnetometer: MagnetometerConfig = PERFECT_MAGNETOMETER
-    sun_sensor: SunSensorConfig = PERFECT_SUN_SENSOR
+    sun_sensor: SunSensorConfig | SunCellsConfig = PERFECT_SUN_SENSOR
     coils: CoilConfig
     limits: CoilLimits
     max_substep_s: float = 1.0

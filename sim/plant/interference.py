@@ -15,6 +15,10 @@ class Interference:
         """The Sun sensor's reading as its board gets it."""
         return sun_body, valid
 
+    def cells(self, currents: tuple[float, ...]) -> tuple[float, ...]:
+        """The currents of the Sun cells as their board gets them."""
+        return currents
+
     def coil_drive(self, drive: CoilDrive) -> CoilDrive:
         """The currents that flow where the coil driver board commands ``drive``."""
         return drive

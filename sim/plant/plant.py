@@ -8,17 +8,16 @@ from fsw.wire.frame import Frame
 from fsw.wire.messages import PlantBoot, PlantEnd, PlantHeartbeat, RefAttitude, RefRate, Sync
 from hil_stub.node import CONTRACT_VERSION, HEARTBEAT_S
 from hil_stub.sensors.magnetometer import Magnetometer
-from hil_stub.sensors.sun_sensor import SunSensor
 from sim.plant.config import PlantConfig
 from sim.plant.dynamics import torques
 from sim.plant.dynamics.disturbances import bias_torque, effects, residual_dipole, torque_noise
 from sim.plant.dynamics.rigid_body import Motion, RigidBody, Torque
-from sim.plant.environment.albedo import earthlight
 from sim.plant.environment.surroundings import Environment, Surroundings
 from sim.plant.errors import PlantError
 from sim.plant.hardware.actuators import Actuator, CoilDrive, make_actuator
 from sim.plant.hardware.coils import Coils
-from sim.plant.hardware.sensors import MagnetometerPhysics, SunSensorPhysics
+from sim.plant.hardware.sensors import MagnetometerPhysics
+from sim.plant.hardware.sun_sensing import SunView, make_sun_sensing
 from sim.plant.interference import NO_INTERFERENCE, Interference
 from sim.plant.own_effects import NO_EFFECTS, Moment, OwnEffects
 from sim.plant.rotation import (
@@ -89,10 +88,9 @@ class Plant:
         """Names of the torques, in the order of ``TruthRow.torque_body_nm``."""
         self._coils = Coils(config.coils)
         self._magnetometer = MagnetometerPhysics(config.magnetometer, config.seed, config.tick_hz)
-        self._sun_sensor = SunSensorPhysics(config.sun_sensor, config.seed, config.tick_hz)
+        self._sun = make_sun_sensing(config)
         self._actuator = actuator or make_actuator(config)
         self._magnetometer_board = Magnetometer(config.tick_hz)
-        self._sun_sensor_board = SunSensor(config.tick_hz)
         self.interference: Interference = own if own.any else NO_INTERFERENCE
         """The effect of faults between physics and boards."""
         self.coil_drive = CoilDrive(ZERO, 0.0)
@@ -118,17 +116,17 @@ class Plant:
     def begin_tick(self) -> list[Frame]:
         """The frames of this tick, in the order in which they are sent.
 
-        Magnetometer, Sun sensor, coil driver, the plant itself, and ``SYNC`` last; at tick 0 each node begins
-        with its boot message.
+        Magnetometer, Sun sensor or cells, coil driver, the plant itself, and ``SYNC`` last; at tick 0 each
+        node begins with its boot message.
         """
         tick, coils = self._tick, self._coils
         faulty = self.interference
         b_t, b_valid = faulty.field(*self._magnetometer.measure(self._b_body_t, coils.dipole_body_am2))
-        seen = self._sun_sensor.measure(self._sun_body, self._sample.lit, self._earthlight_body())
-        sun, sun_valid = faulty.sun(*seen)
+        sample = self._sample
+        view = SunView(self._body_from_eci, sample.r_eci_m, sample.sun_eci, self._sun_body, sample.lit)
         return [
             *self._magnetometer_board.begin_tick(tick, b_t, b_valid),
-            *self._sun_sensor_board.begin_tick(tick, sun, sun_valid),
+            *self._sun.begin_tick(tick, view, faulty),
             *self._actuator.board.begin_tick(tick, coils.readback_a),
             *self._own_frames(),
             Sync(tick, self._config.epoch_unix_s + tick // self._config.tick_hz).encode(),
@@ -145,7 +143,7 @@ class Plant:
             case "magnetometer":
                 self._magnetometer_board = Magnetometer(config.tick_hz)
             case "sun":
-                self._sun_sensor_board = SunSensor(config.tick_hz)
+                self._sun.restart()
             case "coil":
                 self._actuator = make_actuator(config)
 
@@ -260,12 +258,6 @@ class Plant:
         if self._own.any:
             seen = self._b_body_t, self._sun_body
             self._own.observe(Moment(self.t_s, *self.motion, *seen, sample.lit, sample.r_eci_m))
-
-    def _earthlight_body(self) -> Vec3:
-        """The Earth's light in parts of the Sun's, for a Sun sensor that it disturbs."""
-        if not self._config.sun_sensor.albedo:
-            return ZERO
-        return transform(self._body_from_eci, earthlight(self._sample.r_eci_m, self._sample.sun_eci))
 
     def _relative(self) -> tuple[Quaternion, Vec3]:
         """Attitude and rate relative to the orbital frame."""

@@ -58,5 +58,50 @@ class SunSensorConfig:
     albedo: bool = False
 
 
+@dataclass(frozen=True, slots=True)
+class CellConfig:
+    """A Sun cell.
+
+    Attributes:
+        normal_body: nominal unit normal, body axes.
+        gain: true current over the nominal one.
+        turn_rad: rotation vector that turns the normal out of its nominal place, body axes.
+        shades: cones in which the satellite takes the Sun from it: unit axis, cosine of half the angle.
+    """
+
+    normal_body: Vec3
+    gain: float = 1.0
+    turn_rad: Vec3 = ZERO
+    shades: tuple[tuple[Vec3, float], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class SunCellsConfig:
+    """Up to six Sun cells; currents are in parts of the nominal one in full sunlight.
+
+    Attributes:
+        cells: each of them.
+        noise: standard deviation per sample.
+        threshold: below it a current is 0.
+        albedo: mean part of the sunlight that the Earth reflects, 0 for none.
+        albedo_spread: standard deviation of its variation over the clouds, as a part of it.
+        latency_s: age of the values in a sample.
+
+    Raises:
+        ValueError: there is no cell, or more than six.
+    """
+
+    cells: tuple[CellConfig, ...]
+    noise: float = 0.0
+    threshold: float = 0.0
+    albedo: float = 0.0
+    albedo_spread: float = 0.0
+    latency_s: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not 1 <= len(self.cells) <= 6:
+            raise ValueError(f"{len(self.cells)} Sun cells: from 1 to 6 can be read")
+
+
 PERFECT_MAGNETOMETER = MagnetometerConfig()
 PERFECT_SUN_SENSOR = SunSensorConfig()

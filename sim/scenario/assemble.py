@@ -14,9 +14,10 @@ from sim.plant.config import (
     PlantConfig,
     PlateConfig,
 )
-from sim.plant.sensor_config import MagnetometerConfig, SunSensorConfig
+from sim.plant.sensor_config import CellConfig, MagnetometerConfig, SunCellsConfig, SunSensorConfig
 from sim.scenario.coil_limits import coil_limits
 from sim.scenario.schema import Scenario
+from sim.scenario.sections import CellsSection
 
 NT = 1e-9
 Vec3 = tuple[float, float, float]
@@ -35,7 +36,7 @@ def plant_config(scenario: Scenario, seed: int) -> PlantConfig:
 
 
 def _config(scenario: Scenario, seed: int) -> PlantConfig:
-    tick_hz = scenario.time.tick_hz
+    tick_hz, cells = scenario.time.tick_hz, scenario.sensors.cells
     return PlantConfig(
         epoch_unix_s=scenario.epoch_unix_s,
         tick_hz=tick_hz,
@@ -46,7 +47,7 @@ def _config(scenario: Scenario, seed: int) -> PlantConfig:
         initial=_initial(scenario),
         disturbance=_disturbance(scenario),
         magnetometer=_magnetometer(scenario),
-        sun_sensor=_sun_sensor(scenario),
+        sun_sensor=_sun_sensor(scenario) if cells is None else _sun_cells(cells),
         coils=_coils(scenario),
         limits=coil_limits(scenario.coils, tick_hz),
         max_substep_s=scenario.plant.max_substep_s,
@@ -150,6 +151,28 @@ def _sun_sensor(scenario: Scenario) -> SunSensorConfig:
         boresights_body=tuple(_unit(axis) for axis in section.boresights),
         albedo=section.albedo,
     )
+
+
+def _sun_cells(section: CellsSection) -> SunCellsConfig:
+    count = len(section.normals)
+    gains, turns = section.gain or (1.0,) * count, section.turn_deg or ((0.0, 0.0, 0.0),) * count
+    each = zip(section.normals, gains, turns, strict=True)
+    return SunCellsConfig(
+        cells=tuple(
+            CellConfig(_unit(normal), gain, _radians(turn_deg), _shades(section, number))
+            for number, (normal, gain, turn_deg) in enumerate(each, start=1)
+        ),
+        noise=0.01 * section.noise_percent,
+        threshold=0.01 * section.threshold_percent,
+        albedo=section.albedo,
+        albedo_spread=section.albedo_spread,
+        latency_s=section.latency_s,
+    )
+
+
+def _shades(section: CellsSection, number: int) -> tuple[tuple[Vec3, float], ...]:
+    of_cell = [shade for shade in section.shades if shade.cell == number]
+    return tuple((_unit(shade.axis), cos(radians(shade.half_deg))) for shade in of_cell)
 
 
 def _scaled(v: Vec3, factor: float) -> Vec3:

@@ -37,7 +37,13 @@ from sim.faults.section import Faults
 from sim.scenario.names import Name
 from sim.scenario.own_effects import Effects, with_digests
 from sim.scenario.requirements import Requirements, expectation
-from sim.scenario.sections import DisturbanceSection, ScenarioBody, ScenarioOrbit, SensorsSection
+from sim.scenario.sections import (
+    DisturbanceSection,
+    ScenarioBody,
+    ScenarioOrbit,
+    SensorsSection,
+    onboard_cells,
+)
 from sim.scenario.telecommands import Telecommands
 
 MU_M3PS2 = 3.986004418e14
@@ -227,6 +233,8 @@ def flight_table(scenario: Scenario, source: str = "scenario") -> FlightTable:
         "magnetometer_sigma_nt": _with_floor(scenario.sensors.magnetometer.noise_nt, FIELD_MODEL_ERROR_NT),
         "sun_sigma_deg": _with_floor(scenario.sensors.sun.noise_deg, SUN_MODEL_ERROR_DEG),
     }
+    if scenario.sensors.cells is not None:
+        shared["cells"] = onboard_cells(scenario.sensors.cells)
     defaults = onboard.default_values()
     defaults.pop("orbit")
     values = onboard.lay_over(merge(defaults, shared), scenario.flight)

@@ -4,7 +4,8 @@ from typing import Annotated, Self
 
 from pydantic import Field, Strict, model_validator
 
-from fsw.input.schema import NotNegative, Positive, Section, Triple
+from fsw.input.schema import Nested, NotNegative, Positive, Section, Triple
+from fsw.table.cells import CellShapes
 from fsw.table.sections import BodyTable, OrbitTable
 
 Part = Annotated[float, Field(ge=0.0, le=1.0)]
@@ -90,11 +91,37 @@ class SunSensorSection(Section):
         return self
 
 
+class CellsSection(CellShapes):
+    """Physics of Sun cells, which take the place of the Sun sensor; by cell what is given for ``normals``.
+
+    ``gain`` is the current over the nominal one, ``turn_deg`` the rotation vector that turns the normal, body
+    axes. Currents are in percent of the nominal one in full sunlight. ``albedo`` is the mean part of the
+    sunlight that the Earth reflects, ``albedo_spread`` how far it varies over the clouds, as a part of it.
+    """
+
+    gain: Annotated[tuple[Positive, ...], Strict(False)] | None = None
+    turn_deg: Annotated[tuple[Triple, ...], Strict(False)] | None = None
+    noise_percent: NotNegative = 1.0
+    threshold_percent: NotNegative = 2.0
+    albedo: Part = 0.3
+    albedo_spread: Part = 0.3
+    latency_s: Latency = 0.0
+
+    @model_validator(mode="after")
+    def _each_has_its_errors(self) -> Self:
+        for name in ("gain", "turn_deg"):
+            given = getattr(self, name)
+            if given is not None and len(given) != len(self.normals):
+                raise ValueError(f"{name} must have {len(self.normals)} entries, one for each of normals")
+        return self
+
+
 class SensorsSection(Section):
-    """Both sensors."""
+    """Magnetometer, and Sun sensor or Sun cells."""
 
     magnetometer: MagnetometerSection = MagnetometerSection()
     sun: SunSensorSection = SunSensorSection()
+    cells: CellsSection | None = None
 
 
 class DragSection(Section):
@@ -127,3 +154,12 @@ class DisturbanceSection(Section):
     torque_noise_nm_rts: NotNegative = 0.0
     drag: DragSection | None = None
     solar_pressure: SolarPressureSection | None = None
+
+
+def onboard_cells(section: CellsSection) -> Nested:
+    """The cells as the onboard table has them: what is nominal, with the mean of the Earth's light."""
+    nominal = section.model_dump(include={"normals", "shades", "albedo"})
+    return {**nominal, "noise_percent": max(section.noise_percent, LEAST_CELL_NOISE_PERCENT)}
+
+
+LEAST_CELL_NOISE_PERCENT = 0.1

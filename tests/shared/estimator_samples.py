@@ -15,6 +15,7 @@ from fsw.core.estimation.estimator import (
 )
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.parameters import Prior
+from fsw.core.estimation.start.first import StartLimits
 from fsw.core.gate.readings import NOTHING
 from fsw.core.orbit.ephemeris import Reference
 from fsw.wire.messages import CoilStatus, MagField, SunVector
@@ -44,9 +45,7 @@ SIZE = MEKF.layout.size
 CONFIG = EstimatorConfig(
     mekf=MEKF,
     perfect=False,
-    max_field_error_t=3e-6,
-    max_angle_error_rad=radians(5.0),
-    min_separation_rad=radians(15.0),
+    start=StartLimits(3e-6, radians(5.0), radians(15.0)),
     restart_after_rejections=6,
     valid_sigma_rad=radians(5.0),
 )

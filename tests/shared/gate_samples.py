@@ -16,6 +16,7 @@ from fsw.wire.messages import (
     PlantEnd,
     RefAttitude,
     RefRate,
+    SunCells,
     SunVector,
 )
 
@@ -29,7 +30,8 @@ DIPOLE = CoilDipoleStatus(0.5, -0.25, 2.0**-16, counter=11)
 BOOT = CoilBoot(1, 1, 0x89ABCDEF, counter=12)
 COUNTED = (FIELD, SUN, COIL, REFUSED, ATTITUDE, RATE, DIPOLE)
 END = PlantEnd(9000, counter=13)
-EVERY_KIND = (*COUNTED, BOOT, END)
+CELLS = SunCells(1, 0.5, 0.25, 1.125, 0.0078125, 1.9921875, 0.75, counter=14)
+EVERY_KIND = (*COUNTED, BOOT, END, CELLS)
 SLOT = {message.ID: slot for slot, message in enumerate(EVERY_KIND)}
 EVERY_MESSAGE = pytest.mark.parametrize("message", EVERY_KIND, ids=lambda m: type(m).__name__)
 EVERY_COUNTED = pytest.mark.parametrize("message", COUNTED, ids=lambda m: type(m).__name__)

@@ -5,21 +5,28 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import NamedTuple
 
-from fsw.core.algebra.vector import ZERO, Vec3, dot, scale
+from fsw.core.algebra.vector import Vec3, dot, norm, scale
 from fsw.core.estimation import mekf
+from fsw.core.estimation.cells.cell_set import light
+from fsw.core.estimation.cells.update import NO_CELLS, CellsUsed, faded, update_cells
 from fsw.core.estimation.error_dynamics import FAST_RADPS, KNOWN_RADPS, SLOW_RADPS, Driven
 from fsw.core.estimation.measurement import field_sampled
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig, with_frozen_parameters
-from fsw.core.estimation.parameters import Parameters, component_places, with_component
-from fsw.core.estimation.samples import usable_field, usable_sun
-from fsw.core.estimation.triad import consistent, triad
+from fsw.core.estimation.parameters import Parameters
+from fsw.core.estimation.samples import sensed_sun, usable_cells, usable_field, usable_sun
+from fsw.core.estimation.start.batch import EMPTY, SampleBatch, waited
+from fsw.core.estimation.start.first import StartLimits, first_estimate, from_batch
 from fsw.core.gate.readings import Readings
 from fsw.core.orbit.earth import MU_M3PS2
 from fsw.core.orbit.ephemeris import Reference
 
 MAX_ELAPSED_TICKS = 60
 """After a longer silence the filter restarts instead of predicting."""
+
+
+CELLS_ANEW = 2.0
+"""By this attitude and rate are less certain where the parameters start anew, with cells."""
 
 
 class Turning(IntEnum):
@@ -44,9 +51,7 @@ class EstimatorConfig:
 
     mekf: MekfConfig
     perfect: bool
-    max_field_error_t: float
-    max_angle_error_rad: float
-    min_separation_rad: float
+    start: StartLimits
     restart_after_rejections: int
     valid_sigma_rad: float
     blank_ticks: int = 0
@@ -56,6 +61,7 @@ class EstimatorState(NamedTuple):
     """The estimate, or None before start-up, and the measurements the gate refused in a row.
 
     ``first``: from where the parameters start, None: the prior's mean; ``frozen``: they are not estimated.
+    ``batch``: samples for a start from fewer than three lit cells.
     """
 
     estimate: Estimate | None = None
@@ -65,15 +71,17 @@ class EstimatorState(NamedTuple):
     turning: Turning = Turning.NO
     first: Parameters | None = None
     frozen: bool = False
+    batch: SampleBatch = EMPTY
 
     def integers(self) -> tuple[int, ...]:
         """For the checksum of the state, as are the next two."""
-        return (self.rejected_in_a_row, self.rejected_total, self.restarts, self.turning, self.frozen)
+        counts = (self.rejected_in_a_row, self.rejected_total, self.restarts, self.turning, self.frozen)
+        return (*counts, *self.batch.integers())
 
     def floats(self) -> tuple[float, ...]:
         """The values to start from, and the estimate, if there is one, without its arrays."""
         first = () if self.first is None else self.first.floats()
-        return first if self.estimate is None else (*first, *self.estimate.floats())
+        return (*first, *self.batch.floats()) if self.estimate is None else (*first, *self.estimate.floats())
 
     def packed(self) -> bytes:
         """The arrays of the estimate."""
@@ -81,11 +89,12 @@ class EstimatorState(NamedTuple):
 
 
 class Used(NamedTuple):
-    """Which measurements were taken in this tick."""
+    """Which measurements were taken in this tick; of Sun cells ``sun`` is whether any was."""
 
     field: bool
     sun: bool
     blanked: bool
+    cells: CellsUsed = NO_CELLS
 
 
 NONE_USED = Used(False, False, False)
@@ -105,18 +114,26 @@ def predict(
         driven: over each tick since ``state``, the last of which ends now; several where a SYNC was lost.
         config: tuning.
     """
-    estimate = state.estimate
-    if estimate is None:
-        return state
+    if state.estimate is None:
+        batch = state.batch
+        for m_body_am2, _ in driven:
+            batch = waited(batch, m_body_am2, config.mekf.tick_s)
+        return state._replace(batch=batch)
     if len(driven) > MAX_ELAPSED_TICKS:
         return restart(state)
+    estimate = _predicted(state.estimate, reference, driven, config.mekf)
+    return state._replace(estimate=estimate) if mekf.healthy(estimate) else restart(state)
+
+
+def _predicted(
+    estimate: Estimate, reference: Reference, driven: Sequence[Driven], config: MekfConfig
+) -> Estimate:
     gravity = 3.0 * MU_M3PS2 / reference.radius_m**3
     e1_eci = scale(1.0 / reference.radius_m, reference.r_eci_m)
     for m_body_am2, doubted_am2 in driven:
-        estimate = mekf.predict(
-            estimate, e1_eci, reference.b_eci_t, gravity, m_body_am2, config.mekf, doubted_am2
-        )
-    return state._replace(estimate=estimate) if mekf.healthy(estimate) else restart(state)
+        estimate = mekf.predict(estimate, e1_eci, reference.b_eci_t, gravity, m_body_am2, config, doubted_am2)
+        estimate = faded(estimate, config)
+    return estimate
 
 
 def update(
@@ -130,18 +147,31 @@ def update(
         reference: field, Sun and orbit at this tick.
         config: tuning.
     """
-    field, sun = usable_field(readings), usable_sun(readings)
+    field, sun, cells = usable_field(readings), usable_sun(readings), config.mekf.cells
+    currents = usable_cells(readings, cells)
     blanked = field is None and readings.field is not None
     if state.estimate is None:
-        started = _start(field, sun, reference, config)
+        batch = state.batch
+        if cells is None:
+            started = first_estimate(field, sun, reference, config.start, config.mekf)
+        else:
+            batch, started = from_batch(batch, field, currents, reference, config.start, config.mekf)
         if started is None:
-            return state, Used(False, False, blanked)
-        begun = state._replace(estimate=_from_first(started, state), turning=Turning.FAST)
+            return state._replace(batch=batch), Used(False, False, blanked)
+        slow = norm(started.omega_body_radps) > 0.0 and norm(started.omega_body_radps) < SLOW_RADPS
+        turning = Turning.NO if slow else Turning.FAST  # of one tick no rate is known
+        begun = state._replace(estimate=_from_first(started, state), turning=turning, batch=EMPTY)
         return begun, Used(True, True, blanked)
 
     tuning = with_frozen_parameters(config.mekf) if state.frozen else config.mekf
     estimate, took_field, took_sun = _updated(state.estimate, field, sun, reference, tuning)
     rejected = (field is not None and not took_field) + (sun is not None and not took_sun)
+    by_cell = NO_CELLS
+    if cells is not None and currents:
+        lit = light(reference.r_eci_m, reference.sun_eci, cells.albedo)
+        estimate, by_cell = update_cells(estimate, currents, lit, tuning)
+        took_sun = bool(by_cell.taken)
+        rejected += len(by_cell.refused) > 1 and not took_sun  # one alone may be faulty
     in_a_row = state.rejected_in_a_row + rejected
     if not rejected and (took_field or took_sun):
         in_a_row = 0
@@ -149,9 +179,10 @@ def update(
         estimate=estimate, rejected_in_a_row=in_a_row, rejected_total=state.rejected_total + rejected
     )
     if not state.frozen:
-        updated = _settled(updated, estimate, took_field and took_sun, config.mekf)
+        known = took_field and took_sun and (cells is None or sensed_sun(readings, cells) is not None)
+        updated = _settled(updated, estimate, known, config.mekf)
     lost = in_a_row >= config.restart_after_rejections or not mekf.healthy(estimate)
-    return (restart(updated) if lost else updated), Used(took_field, took_sun, blanked)
+    return (restart(updated) if lost else updated), Used(took_field, took_sun, blanked, by_cell)
 
 
 def _settled(state: EstimatorState, estimate: Estimate, seen: bool, config: MekfConfig) -> EstimatorState:
@@ -170,6 +201,10 @@ def _settled(state: EstimatorState, estimate: Estimate, seen: bool, config: Mekf
     if after is turning or not seen:
         return state if turning is state.turning else state._replace(turning=turning)
     anew = mekf.start(estimate.q_body_from_eci, estimate.omega_body_radps, config)
+    if config.cells is not None:  # from an attitude as uncertain as cells have it the filter would go astray
+        covariance = anew.covariance.copy()
+        covariance[0:6, 0:6] = CELLS_ANEW**2 * estimate.covariance[0:6, 0:6]
+        anew = anew._replace(covariance=covariance)
     return state._replace(estimate=_from_first(anew, state), turning=after)
 
 
@@ -193,18 +228,6 @@ def _updated(
     return after_sun or current, after_field is not None, after_sun is not None
 
 
-def _start(
-    field: Vec3 | None, sun: Vec3 | None, reference: Reference, config: EstimatorConfig
-) -> Estimate | None:
-    if field is None or sun is None or not reference.lit:
-        return None
-    b, s = reference.b_eci_t, reference.sun_eci
-    limits = (config.max_field_error_t, config.max_angle_error_rad, config.min_separation_rad)
-    if not consistent(field, sun, b, s, *limits):
-        return None
-    return mekf.start(triad(sun, field, s, b), ZERO, config.mekf)
-
-
 def untraced(state: EstimatorState) -> EstimatorState:
     """Without the trace of deviations."""
     estimate = state.estimate
@@ -213,38 +236,6 @@ def untraced(state: EstimatorState) -> EstimatorState:
 
 def restart(state: EstimatorState) -> EstimatorState:
     """Without an estimate: the next pair of good samples starts the filter."""
-    return state._replace(estimate=None, rejected_in_a_row=0, turning=Turning.NO, restarts=state.restarts + 1)
-
-
-def load(state: EstimatorState, component: int, value: float, config: MekfConfig) -> EstimatorState:
-    """With another value of a component of the parameters, now and whenever the filter starts.
-
-    Its error is then that of the prior, and has nothing to do with the others.
-
-    Args:
-        state: before.
-        component: its number, one that is carried.
-        value: SI units.
-        config: the filter.
-    """
-    estimate = state.estimate
-    first = with_component(state.first or config.initial_parameters, component, value)
-    if estimate is None:
-        return state._replace(first=first)
-    place = component_places(config.layout)[component]
-    covariance = estimate.covariance.copy()
-    covariance[place, :] = covariance[:, place] = config.initial_covariance[place]
-    parameters = with_component(estimate.parameters, component, value)
-    loaded = estimate._replace(parameters=parameters, covariance=covariance, trace=None)
-    return state._replace(first=first, estimate=loaded)
-
-
-def freeze(state: EstimatorState) -> EstimatorState:
-    """With the parameters as they are, now and whenever the filter starts, until ``thaw``."""
-    first = state.first if state.estimate is None else state.estimate.parameters
-    return untraced(state)._replace(first=first, frozen=True)
-
-
-def thaw(state: EstimatorState) -> EstimatorState:
-    """With the parameters estimated again."""
-    return state._replace(frozen=False)
+    return state._replace(
+        estimate=None, rejected_in_a_row=0, turning=Turning.NO, restarts=state.restarts + 1, batch=EMPTY
+    )

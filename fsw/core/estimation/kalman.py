@@ -77,7 +77,7 @@ class LeanKalmanFilter(KalmanFilter):  # type: ignore[misc]  # filterpy has no t
         self.P = left - left.dot(H.T).dot(self.K.T) + self.K.dot(R).dot(self.K.T)
 
 
-_UNITS = {size: np.eye(size) for size in (3, 6)}
+_UNITS = {size: np.eye(size) for size in (1, 3, 6)}
 
 
 def inverse(m: Matrix) -> Matrix:

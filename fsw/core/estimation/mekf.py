@@ -160,13 +160,13 @@ def predict(
 def update_field(estimate: Estimate, b_body_t: Vec3, b_eci_t: Vec3, config: MekfConfig) -> Estimate | None:
     """Take a magnetometer sample. None when the gate rejects it."""
     predicted, sensitivity = field_prediction(*estimate[:3], b_eci_t, config)
-    return _update(estimate, sub(b_body_t, predicted), sensitivity, config.field_noise, config)
+    return take(estimate, sub(b_body_t, predicted), sensitivity, config.field_noise, config, config.gate_nis)
 
 
 def update_sun(estimate: Estimate, s_body: Vec3, s_eci: Vec3, config: MekfConfig) -> Estimate | None:
     """Take a Sun direction. None when the gate rejects it."""
     predicted, sensitivity = sun_prediction(*estimate[:3], s_eci, config)
-    return _update(estimate, sub(s_body, predicted), sensitivity, config.sun_noise, config, 3)
+    return take(estimate, sub(s_body, predicted), sensitivity, config.sun_noise, config, config.gate_nis, 3)
 
 
 def update_both(
@@ -180,18 +180,22 @@ def update_both(
     s_predicted, s_sensitivity = sun_prediction(*estimate[:3], s_eci, config)
     innovation = (*sub(b_body_t, b_predicted), *sub(s_body, s_predicted))
     sensitivity = np.concatenate((b_sensitivity, s_sensitivity))
-    return _update(estimate, innovation, sensitivity, config.both_noise, config)
+    return take(estimate, innovation, sensitivity, config.both_noise, config, config.gate_nis)
 
 
-def _update(
+def take(
     estimate: Estimate,
     innovation: tuple[float, ...],
     sensitivity: Matrix,
     noise: Matrix,
     config: MekfConfig,
+    gate_nis: float,
     first: int = 0,
 ) -> Estimate | None:
-    """The update of filterpy, judged by its own NIS and folded in; ``first``: its place in the ``lag``."""
+    """The update of filterpy, judged by its own NIS and folded in; None beyond the gate.
+
+    ``first`` is its place in the ``lag``, in which a single number does not count.
+    """
     kalman = LeanKalmanFilter(estimate.covariance)
     kalman.update(np.array(innovation), noise, sensitivity, config.considered)
     nis, trace = float(kalman.y.dot(kalman.SI).dot(kalman.y)), estimate.trace
@@ -203,11 +207,13 @@ def _update(
             nis = unexplained(sums) - unexplained(trace.sums)
         effect, measured = trace.effect - kalman.K.dot(traced), trace.measured + len(traced)
         trace = Trace(trace.causes, effect, sums, measured)
-    if not 0.0 <= nis <= config.gate_nis:  # overflow can make it -inf
+    if not 0.0 <= nis <= gate_nis:  # overflow can make it -inf
         return None
     covariance = 0.5 * (kalman.P + kalman.P.T)
     nis, numbers = estimate.nis + nis, estimate.numbers + len(innovation)
-    lag = _lagging(estimate.lag, kalman, first, config.tick_s / LAG_S)
+    lag = (
+        estimate.lag if len(innovation) == 1 else _lagging(estimate.lag, kalman, first, config.tick_s / LAG_S)
+    )
     return Estimate(*_fold(estimate, kalman.x, covariance, config), trace, nis, numbers, lag)
 
 

@@ -6,8 +6,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fsw.core.algebra.vector import ZERO, Mat3, Vec3, inverse
+from fsw.core.estimation.cells.cell_set import CellSet
 from fsw.core.estimation.kalman import Matrix
-from fsw.core.estimation.parameters import NAMES, NOTHING, Layout, Parameters, Prior, Rotor, layout
+from fsw.core.estimation.parameters import (
+    MOST_CELLS,
+    NAMES,
+    NOTHING,
+    Layout,
+    Parameters,
+    Prior,
+    Rotor,
+    layout,
+)
 from fsw.core.estimation.torque_maps import TORQUES, TorqueMaps, cross_matrix, system_maps
 
 
@@ -24,6 +34,7 @@ class MekfConfig:
 
     By measurement, field, Sun or both at once: ``..._sensitivity`` is the constant part of H, (3, n), and
     ``..._noise`` the covariance, (3, 3) or (6, 6). ``considered``: the states that no update changes.
+    ``cells``: Sun cells in place of a Sun sensor.
     """
 
     rotor: Rotor
@@ -45,6 +56,7 @@ class MekfConfig:
     dipole_sigma: float
     gate_nis: float
     considered: slice | None = None
+    cells: CellSet | None = None
 
 
 def with_frozen_parameters(config: MekfConfig) -> MekfConfig:
@@ -65,6 +77,7 @@ def mekf_config(
     torque_noise_nm_rts: float,
     dipole_sigma: float = 0.0,
     gate_nis: float,
+    cells: CellSet | None = None,
 ) -> MekfConfig:
     """Prepare the filter.
 
@@ -80,6 +93,7 @@ def mekf_config(
         torque_noise_nm_rts: white torque noise, N m sqrt(s).
         dipole_sigma: relative error of a driven dipole.
         gate_nis: largest normalised innovation squared that is taken.
+        cells: Sun cells, which take the place of a Sun sensor.
     """
     parts = layout(set(priors))
     j, inverse_j = np.array(inertia_kgm2), inverse(inertia_kgm2)
@@ -123,9 +137,11 @@ def mekf_config(
         both_noise=np.diag(field_variances + sun_variances),
         dipole_sigma=dipole_sigma,
         gate_nis=gate_nis,
+        cells=cells,
     )
 
 
 def _means(priors: Mapping[str, Prior]) -> Parameters:
     given = [priors[name].mean if name in priors else () for name in NAMES]
-    return Parameters._make(mean or none for mean, none in zip(given, NOTHING, strict=True))
+    means = Parameters._make(mean or none for mean, none in zip(given, NOTHING, strict=True))
+    return means._replace(cell_excess=(0.0,) * MOST_CELLS) if "cell_excess" in priors else means

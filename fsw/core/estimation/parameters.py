@@ -11,6 +11,7 @@ Symmetric = tuple[float, float, float, float, float, float]
 
 UNCHANGED_COILS: Matrix3x3 = (0.0,) * 9
 UNCHANGED_INERTIA: Symmetric = (0.0,) * 6
+MOST_CELLS = 6
 NO_NUMBERS: Mat3 = ((nan, nan, nan),) * 3
 
 
@@ -27,6 +28,8 @@ class Parameters(NamedTuple):
         mag_scale: relative error of its scale, by axis.
         sun_turn_rad: small turn of the Sun sensor's axes, rad.
         delay_s: age of the samples of magnetometer and Sun sensor, s.
+        cell_excess: what each Sun cell shows beyond its model, in parts of full sunlight; of a satellite with
+            a Sun sensor instead there is nothing.
     """
 
     mag_bias_t: Vec3 = ZERO
@@ -38,6 +41,7 @@ class Parameters(NamedTuple):
     mag_scale: Vec3 = ZERO
     sun_turn_rad: Vec3 = ZERO
     delay_s: tuple[float, float] = (0.0, 0.0)
+    cell_excess: tuple[float, ...] = ()
 
     def floats(self) -> tuple[float, ...]:
         """Every component, in the order of its number on the bus; for the checksum of the state too."""
@@ -51,6 +55,7 @@ class Parameters(NamedTuple):
             *self.mag_scale,
             *self.sun_turn_rad,
             *self.delay_s,
+            *self.cell_excess,
         )
 
 
@@ -58,9 +63,9 @@ NOTHING = Parameters()
 """A satellite that is as its table says, as far as is known."""
 
 NAMES = Parameters._fields
-SIZES = dict(zip(NAMES, map(len, NOTHING), strict=True))
-"""How many numbers each has."""
-COMPONENTS = tuple((index, offset) for index, part in enumerate(NOTHING) for offset in range(len(part)))
+SIZES = {**dict(zip(NAMES, map(len, NOTHING), strict=True)), "cell_excess": MOST_CELLS}
+"""How many numbers each has if it is carried."""
+COMPONENTS = tuple((index, offset) for index, name in enumerate(NAMES) for offset in range(SIZES[name]))
 """By its number on the bus, of which parameter each component is, and which of its numbers."""
 
 
@@ -93,6 +98,7 @@ class Layout:
     mag_scale: slice | None
     sun_turn: slice | None
     delay: slice | None
+    cells: slice | None
 
 
 def layout(carried: set[str]) -> Layout:
@@ -131,7 +137,7 @@ def component_places(places: Layout) -> dict[int, int]:
 def with_component(parameters: Parameters, number: int, value: float) -> Parameters:
     """The parameters with another value of one component."""
     index, offset = COMPONENTS[number]
-    part = list(parameters[index])
+    part = list(parameters[index] or (0.0,) * SIZES[NAMES[index]])
     part[offset] = value
     changed: dict[str, Any] = {NAMES[index]: tuple(part)}
     return parameters._replace(**changed)

@@ -1,6 +1,8 @@
 """Which samples of the boards the filter may use."""
 
 from fsw.core.algebra.vector import Vec3
+from fsw.core.estimation.cells.cell_set import CellSet
+from fsw.core.estimation.cells.coarse_sun import coarse_sun
 from fsw.core.gate.readings import Readings
 
 TESLA_PER_NT = 1e-9
@@ -24,3 +26,21 @@ def usable_sun(readings: Readings) -> Vec3 | None:
     """The measured Sun direction, or None."""
     sun = readings.sun
     return (sun.s_x, sun.s_y, sun.s_z) if sun is not None and sun.valid else None
+
+
+def usable_cells(readings: Readings, cells: CellSet | None) -> tuple[float | None, ...]:
+    """What each Sun cell shows, in parts of full sunlight; None for one that is not to be used."""
+    sample = readings.cells
+    if cells is None or sample is None or not sample.valid:
+        return ()
+    return tuple(
+        [
+            None if cell in readings.unusable_cells else current / full
+            for cell, (current, full) in enumerate(zip(sample[1:7], cells.full_sun, strict=False))
+        ]
+    )
+
+
+def sensed_sun(readings: Readings, cells: CellSet | None) -> Vec3 | None:
+    """The direction of the Sun from its sensor, or the coarse one of the cells; None where there is none."""
+    return usable_sun(readings) if cells is None else coarse_sun(usable_cells(readings, cells), cells)

@@ -4,10 +4,16 @@ from enum import IntEnum
 
 
 class Sensor(IntEnum):
-    """Numbers of the sensors."""
+    """Numbers of the sensors; Sun cells together are the Sun sensor."""
 
     MAGNETOMETER = 1
     SUN_SENSOR = 2
+    CELL_1 = 3
+    CELL_2 = 4
+    CELL_3 = 5
+    CELL_4 = 6
+    CELL_5 = 7
+    CELL_6 = 8
 
 
 class SensorFault(IntEnum):

@@ -16,6 +16,7 @@ from fsw.core.fdir.coils.health import CoilHealth, CoilHealthConfig
 from fsw.core.fdir.faults import OPEN_PART, Sensor
 from fsw.core.fdir.sensors import health as sensor_health
 from fsw.core.fdir.sensors import pair, plausibility
+from fsw.core.fdir.sensors.cells import cell_changes, unusable
 from fsw.core.fdir.sensors.credibility import credible_but_coils
 from fsw.core.fdir.sensors.health import SensorConfig, SensorHealth
 from fsw.core.fdir.sensors.pair import Pair, Standing
@@ -93,8 +94,8 @@ def trusted(readings: Readings, health: Health, findings: Findings) -> Readings:
     if field.fault or findings.field_cause:
         readings = readings._replace(field=None)
     if sun.fault or findings.sun_cause or found.pair.standing is Standing.DISPUTED:
-        readings = readings._replace(sun=None)
-    return readings
+        readings = readings._replace(sun=None, cells=None)
+    return readings._replace(unusable_cells=unusable(found.cells)) if found.cells else readings
 
 
 def judge(
@@ -122,7 +123,7 @@ def judge(
         before, findings, evidence.used, estimator.estimate, reference, config.sensors
     )
     isolated = bool(judged.field.fault or judged.sun.fault)
-    changed = (judged.field.fault, judged.sun.fault) != (before.field.fault, before.sun.fault)
+    changed = sensor_health.faults(judged) != sensor_health.faults(before)
     if changed or judged.pair.standing is not Standing.TRUSTED:
         estimator = untraced(estimator)  # what a faulty sensor has shown proves nothing about a coil
     elif not sensor_health.suspected(judged):
@@ -171,6 +172,8 @@ def happenings(before: Health, after: Health) -> list[Happening]:
     """An event for each fault that is new or gone."""
     found = _sensor(Sensor.MAGNETOMETER, before.sensors.field.fault, after.sensors.field.fault)
     found += _sensor(Sensor.SUN_SENSOR, before.sensors.sun.fault, after.sensors.sun.fault)
+    for cell, fault, now_fault in cell_changes(before.sensors.cells, after.sensors.cells):
+        found += _sensor(Sensor(Sensor.CELL_1 + cell), fault, now_fault)
     was, now = before.sensors.pair.standing, after.sensors.pair.standing
     if now is Standing.DISPUTED and was is not now:
         found.append(Happening(Event.SENSORS_DISAGREE, 0))

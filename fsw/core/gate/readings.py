@@ -18,6 +18,7 @@ from fsw.wire.messages import (
     PlantEnd,
     RefAttitude,
     RefRate,
+    SunCells,
     SunVector,
     TcClear,
     TcFreeze,
@@ -44,6 +45,7 @@ InputMessage = (
     | CoilDipoleStatus
     | CoilBoot
     | PlantEnd
+    | SunCells
 )
 
 INPUT_MESSAGES: dict[int, type[InputMessage]] = {
@@ -56,6 +58,7 @@ INPUT_MESSAGES: dict[int, type[InputMessage]] = {
     CoilDipoleStatus.ID: CoilDipoleStatus,
     CoilBoot.ID: CoilBoot,
     PlantEnd.ID: PlantEnd,
+    SunCells.ID: SunCells,
 }
 
 Telecommand = (
@@ -80,6 +83,7 @@ _IN_ANY_PLACE = frozenset({*TELECOMMANDS, PlantEnd.ID})
 """Identifiers of messages that other nodes may send between those of the boards."""
 _OWN = frozenset(can_id for can_id, sender in SENDERS.items() if sender == "FSW")
 """Identifiers of fsw: no other node is to use them."""
+_CELLS_SLOT = _SLOT[SunCells.ID]
 _COIL_SLOTS = [slot for can_id, slot in _SLOT.items() if SENDERS[can_id] == "COIL"]
 
 
@@ -89,7 +93,7 @@ class Readings(NamedTuple):
     Telecommands are all taken, in order of reception; ``repeated`` are those with the counter of the one
     before. ``under_own_id`` is the lowest identifier of fsw itself under which a whole frame came, 0 if there
     is none. ``end`` is a PLANT_END after which the flight has gone on. ``quiet``: no coil has driven for as
-    long as a field sample may be old.
+    long as a field sample may be old. ``unusable_cells``: those of ``cells`` that are not to be trusted.
     """
 
     field: MagField | None
@@ -101,10 +105,12 @@ class Readings(NamedTuple):
     dipole: CoilDipoleStatus | None = None
     coil_boot: CoilBoot | None = None
     end: PlantEnd | None = None
+    cells: SunCells | None = None
     telecommands: tuple[Telecommand, ...] = ()
     repeated: tuple[Telecommand, ...] = ()
     under_own_id: int = 0
     quiet: bool = True
+    unusable_cells: tuple[int, ...] = ()
 
 
 NOTHING = Readings(None, None, None, None, None, None)
@@ -126,8 +132,11 @@ class GateState(NamedTuple):
     command_crc: int = 0
 
     def integers(self) -> tuple[int, ...]:
-        """For the checksum of the state."""
-        return (*self.counters, *self[1:])
+        """For the checksum of the state; the cells count where there are any."""
+        counters = self.counters
+        if counters[_CELLS_SLOT] < 0:
+            counters = counters[:_CELLS_SLOT] + counters[_CELLS_SLOT + 1 :]
+        return (*counters, *self[1:])
 
 
 def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateState]:

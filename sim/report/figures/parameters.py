@@ -10,6 +10,7 @@ from fsw.table.uncertainty import limits, priors
 from sim.plant.config import PlantConfig
 from sim.plant.dynamics.disturbances import bias_torque, effects, residual_dipole
 from sim.plant.rotation import ZERO, from_vector, matrix
+from sim.plant.sensor_config import SunSensorConfig
 from sim.record.truth import Histories
 from sim.scenario.assemble import plant_config
 from sim.scenario.schema import Scenario, flight_table
@@ -53,9 +54,10 @@ def true_parameters(scenario: Scenario, table: FlightTable, truth: Histories) ->
         "inertia_error_kgm2": _inertia_error(plant, table),
         "mag_turn_rad": plant.magnetometer.misalignment_rad,
         "mag_scale": tuple(scale - 1.0 for scale in plant.magnetometer.scale),
-        "sun_turn_rad": plant.sun_sensor.misalignment_rad,
         "delay_s": (plant.magnetometer.latency_s, plant.sun_sensor.latency_s),
     }
+    if isinstance(plant.sun_sensor, SunSensorConfig):  # cells are turned each by itself
+        true["sun_turn_rad"] = plant.sun_sensor.misalignment_rad
     if not effects(plant):  # torques that follow the motion have no one value
         true["torque_body_nm"] = bias_torque(plant.disturbance, truth["t_s"][-1])
     return true

@@ -10,7 +10,7 @@ from fsw.core.algebra.quaternion import normalise
 from fsw.core.algebra.vector import ZERO, Vec3
 from fsw.core.estimation.mekf import Estimate, start, update_both
 from fsw.core.estimation.mekf_config import mekf_config
-from fsw.core.estimation.triad import triad
+from fsw.core.estimation.start.triad import triad
 from sim.errors import HarnessError
 from sim.report.figures.attitude_arrays import angle_rad, relative
 from sim.validate.reference.comparison import Array, ReferenceComparison

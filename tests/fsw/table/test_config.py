@@ -39,8 +39,8 @@ def test_metrics_of_what_a_pulse_leaves():
 def test_filter_and_fault_detection_go_by_the_same_limits():
     config = configured(uncertainty={"magnetometer_bias_nt": 2000.0, "along_track_km": 13.0})
     estimator, limits = config.estimator, config.fdir.plausibility
-    assert estimator.max_field_error_t == limits.field_t + limits.field_part * 5e-5
-    assert estimator.max_angle_error_rad == limits.angle_rad + limits.field_t / 2e-5
+    assert estimator.start.max_field_error_t == limits.field_t + limits.field_part * 5e-5
+    assert estimator.start.max_angle_error_rad == limits.angle_rad + limits.field_t / 2e-5
 
 
 class TestTicks:

@@ -55,7 +55,7 @@ class TestStates:
     def test_their_priors_are_those_of_the_bounds(self):
         table = table_with(uncertainty={"inertia_percent": 8.0, "latency_s": 2.5})
         config, expected = estimator_config(table).mekf, priors(table_bounds(table), table.body.inertia)
-        sigma = np.concatenate([expected[name].sigma for name in NAMES])
+        sigma = np.concatenate([expected[name].sigma for name in NAMES if name != "cell_excess"])
         np.testing.assert_allclose(np.sqrt(config.initial_covariance.diagonal()[6:]), sigma, rtol=1e-12)
         assert config.initial_parameters.delay_s == (1.25, 1.25)
 
@@ -114,8 +114,8 @@ class TestLimitsOfThePair:
     def test_the_start_goes_by_them(self):
         table = table_with(uncertainty=self.KNOWN)
         config, limits = estimator_config(table), plausibility_config(table)
-        assert config.max_field_error_t == limits.field_t + limits.field_part * 5e-5
-        assert config.max_angle_error_rad == limits.angle_rad + limits.field_t / 2e-5
+        assert config.start.max_field_error_t == limits.field_t + limits.field_part * 5e-5
+        assert config.start.max_angle_error_rad == limits.angle_rad + limits.field_t / 2e-5
 
     def test_every_pair_within_the_bounds_passes_them(self):
         """Drawn at the bounds: biased, scaled, turned sensors and a field from elsewhere on the orbit."""
@@ -153,7 +153,7 @@ def test_an_ordinary_sample_is_up_to_one_tick_old():
 def test_what_no_bound_tells():
     config = configured(estimator={"valid_sigma_deg": 4.0})
     assert config.valid_sigma_rad == pytest.approx(radians(4.0))
-    assert config.min_separation_rad == pytest.approx(radians(15.0))
+    assert config.start.min_separation_rad == pytest.approx(radians(15.0))
     assert config.restart_after_rejections == 60
     assert (config.mekf.gate_nis, config.mekf.dipole_sigma) == (16.27, 0.002)
 
@@ -172,9 +172,9 @@ def test_inertia_and_wheel_are_the_table_s():
 
 def test_no_bound_is_left_unread():
     """Each changes the estimator's configuration."""
-    ordinary = configured()
     for key in UncertaintyTable.model_fields:
-        changed = configured(uncertainty={key: 0.0})
+        cells = {"cells": {"normals": [[1.0, 0.0, 0.0]]}} if key.startswith("cell_") else {}
+        ordinary, changed = configured(**cells), configured(uncertainty={key: 0.0}, **cells)
         assert (
             any(
                 getattr(changed, field.name) != getattr(ordinary, field.name)

@@ -31,6 +31,7 @@ CONTRACT = {
     "SYNC": ("PLANT", {"tick": 32, "unix_time_s": 32}),
     "MAG_FIELD": ("MAG", {"b_x": -16, "b_y": -16, "b_z": -16, "valid": 1}),
     "SUN_VECTOR": ("SUN", {"s_x": -16, "s_y": -16, "s_z": -16, "valid": 1}),
+    "SUN_CELLS": ("SUN", {"valid": 1, **{f"cell_{number}": 8 for number in range(1, 7)}}),
     "COIL_FIRE": ("FSW", {"coil": 2, "level": -4, "duration_ms": 16, "seq": 8, "tick": 8}),
     "COIL_STATUS": (
         "COIL",

@@ -4,7 +4,8 @@ Half of the evidence that isolates it stays: one bad pulse isolates it again, an
 the filter has learnt of its gain is forgotten. Ticks in which a sensor is in doubt do not count.
 """
 
-from fsw.core.estimation.estimator import EstimatorState, load, untraced
+from fsw.core.estimation.estimator import EstimatorState, untraced
+from fsw.core.estimation.loaded import load
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.estimation.parameters import COMPONENTS, NAMES, component_places
 from fsw.core.fdir.coils.health import CoilHealth, CoilHealthConfig, with_item

@@ -35,6 +35,8 @@ def credibility_config(mekf: MekfConfig) -> CredibilityConfig:
     for number, place in component_places(mekf.layout).items():
         width = SIGMAS * sqrt(variances[place])
         name = NAMES[COMPONENTS[number][0]]
+        if name == "cell_excess":  # each cell is judged by itself
+            continue
         limits = (number, means[number] - width, means[number] + width)
         of_all.append(limits)
         if name != "coil_error":

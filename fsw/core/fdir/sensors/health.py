@@ -14,28 +14,21 @@ from typing import NamedTuple
 import numpy as np
 
 from fsw.core.algebra.vector import Vec3, sub
+from fsw.core.estimation.cells.cell_set import light
 from fsw.core.estimation.estimator import Used
 from fsw.core.estimation.kalman import Matrix, inverse
 from fsw.core.estimation.measurement import Prediction, field_prediction, sun_prediction
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.fdir.evidence import INFLATION, EvidenceWeights, weigh
+from fsw.core.fdir.evidence import INFLATION, EvidenceWeights
 from fsw.core.fdir.faults import SensorFault
-from fsw.core.fdir.sensors import pair
+from fsw.core.fdir.sensors import cells, pair
+from fsw.core.fdir.sensors.cells import CellEvidence, CellsHealth
 from fsw.core.fdir.sensors.credibility import CredibilityConfig, credible
 from fsw.core.fdir.sensors.pair import Observed, Pair
 from fsw.core.fdir.sensors.plausibility import Findings, Memory
+from fsw.core.fdir.sensors.watch import Watch, accused, readmitted
 from fsw.core.orbit.ephemeris import Reference
-
-LOST = 0.5
-"""Part of its weight that a missing sample has: the bus may lose some, in bursts."""
-
-
-class Watch(NamedTuple):
-    """One sensor: its fault (0: none), and the evidence against it; while it is isolated, for it; nats."""
-
-    fault: int = 0
-    nats: float = 0.0
 
 
 class SensorHealth(NamedTuple):
@@ -45,16 +38,19 @@ class SensorHealth(NamedTuple):
     sun: Watch = Watch()
     pair: Pair = Pair()
     memory: Memory = Memory()
+    cells: CellsHealth = ()
 
     def integers(self) -> tuple[int, ...]:
         """For the checksum of the state, as is ``floats``."""
         faults = (self.field.fault, self.sun.fault)
-        both = self.pair
-        return (*faults, both.standing, both.ended, both.blind_ticks, *self.memory.integers())
+        both, by_cell = self.pair, [number for one in self.cells for number in (one.watch.fault, one.still)]
+        return (*faults, both.standing, both.ended, both.blind_ticks, *self.memory.integers(), *by_cell)
 
     def floats(self) -> tuple[float, ...]:
         """The evidence, and the last samples."""
-        return (self.field.nats, self.sun.nats, *self.pair[1:4], *self.pair[6:8], *self.memory.floats())
+        both, memory = (*self.pair[1:4], *self.pair[6:8]), self.memory.floats()
+        by_cell = [number for one in self.cells for number in (one.watch.nats, one.shown, one.predicted)]
+        return (self.field.nats, self.sun.nats, *both, *memory, *by_cell)
 
 
 class SensorConfig(NamedTuple):
@@ -65,9 +61,15 @@ class SensorConfig(NamedTuple):
     mekf: MekfConfig
 
 
+def faults(health: SensorHealth) -> tuple[int, ...]:
+    """Those of each sensor and cell."""
+    return (health.field.fault, health.sun.fault, *[one.watch.fault for one in health.cells])
+
+
 def suspected(health: SensorHealth) -> bool:
     """Whether there is evidence against a sensor in use."""
-    return any(watch.nats > 0.0 and not watch.fault for watch in (health.field, health.sun))
+    watches = (health.field, health.sun, *[one.watch for one in health.cells])
+    return any(watch.nats > 0.0 and not watch.fault for watch in watches)
 
 
 def judge(
@@ -103,52 +105,50 @@ def judge(
         sound=estimate is None or credible(estimate, config.credibility),
     )
     both = pair.judge(health.pair, seen, weights, config.credibility)
-    if both.accord >= weights.threshold:
-        return SensorHealth(Watch(), Watch(), both._replace(accord=0.0), findings.memory)
     trusted = pair.valid(health.pair)  # one that lags may have been led away
     sure = trusted and pair.proven(health.pair, weights)
+    by_cell = _cells(health, findings, used, estimate, reference, sure, config)
+    if both.accord >= weights.threshold:
+        return SensorHealth(Watch(), Watch(), both._replace(accord=0.0), findings.memory, by_cell)
     alone = trusted and findings.sun is None  # dynamics do not jump
     b_refused = seen.refused_field and (alone or (sure and used.sun))
     s_refused = seen.refused_sun and sure and used.field
     common = findings.field_cause and findings.sun_cause and not seen.isolated
     unclear = common or (seen.refused and not (b_refused or s_refused))
     if field.fault:
-        field = _readmitted(field, b_fits, weights)
+        field = readmitted(field, b_fits, weights)
     else:
         cause = findings.field_cause or (SensorFault.REFUSED if b_refused else 0)
-        field = _accused(field, cause, unclear, weights)
+        field = accused(field, cause, unclear, weights)
     if sun.fault:
-        sun = _readmitted(sun, s_fits, weights)
+        sun = readmitted(sun, s_fits, weights)
     else:
         cause = findings.sun_cause or (SensorFault.REFUSED if s_refused else 0)
-        sun = _accused(sun, cause, unclear, weights)
-    return SensorHealth(field, sun, both, findings.memory)
+        sun = accused(sun, cause, unclear, weights)
+    return SensorHealth(field, sun, both, findings.memory, by_cell)
+
+
+def _cells(
+    health: SensorHealth,
+    findings: Findings,
+    used: Used,
+    estimate: Estimate | None,
+    reference: Reference,
+    sure: bool,
+    config: SensorConfig,
+) -> CellsHealth:
+    """Each Sun cell after the samples of this tick."""
+    if config.mekf.cells is None:
+        return ()
+    seen = light(reference.r_eci_m, reference.sun_eci, config.mekf.cells.albedo)
+    sure = sure and used.field
+    evidence = CellEvidence(findings.currents, used.cells, estimate, seen, findings.shadow, sure)
+    return cells.judge(health.cells, evidence, config.weights, config.mekf)
 
 
 def _refused(sample: Vec3 | None, fault: int, taken: bool, estimate: Estimate | None) -> bool:
     """Whether the filter had a sample of a sensor in use, against which nothing spoke, and refused it."""
     return not (estimate is None or sample is None or fault or taken)
-
-
-def _accused(watch: Watch, cause: int, unclear: bool, weights: EvidenceWeights) -> Watch:
-    """A sensor in use after a tick in which this speaks against it, or nothing; or it is unclear what."""
-    by = -weights.against
-    if unclear:
-        by = 0.0
-    elif cause:
-        by = LOST * weights.against if cause == SensorFault.SILENT else weights.against
-    nats = weigh(watch.nats, by, weights.threshold)
-    if nats >= weights.threshold:
-        return Watch(cause)
-    return watch if nats == watch.nats else Watch(0, nats)
-
-
-def _readmitted(watch: Watch, fits: bool | None, weights: EvidenceWeights) -> Watch:
-    """An isolated sensor after a tick in which its sample fits, or not, or nothing shows it."""
-    if fits is None:
-        return watch
-    nats = weigh(watch.nats, weights.fits if fits else weights.misfits, weights.threshold)
-    return Watch() if nats >= weights.threshold else Watch(watch.fault, nats)
 
 
 def _field_fits(

@@ -8,7 +8,8 @@ from math import acos
 from typing import NamedTuple
 
 from fsw.core.algebra.vector import ZERO, Vec3, dot, norm
-from fsw.core.estimation.samples import coils_idle, usable_field, usable_sun
+from fsw.core.estimation.cells.cell_set import CellSet
+from fsw.core.estimation.samples import coils_idle, sensed_sun, usable_cells, usable_field
 from fsw.core.fdir.faults import Sensor, SensorFault
 from fsw.core.gate.readings import Readings
 from fsw.core.orbit.earth import RADIUS_M
@@ -25,7 +26,8 @@ DARK: Vec3 = (0.0, 0.0, 0.0)
 class PlausibilityConfig(NamedTuple):
     """Largest deviations if all is well: of the field, T and in parts of it, and of directions, rad.
 
-    ``sun_norm``: of the Sun vector's length; ``late_ticks``: for so long a sample may be repeated.
+    ``sun_norm``: of the Sun vector's length; ``late_ticks``: for so long a sample may be repeated; ``cells``:
+    those that give the Sun in place of a sensor.
     """
 
     field_t: float
@@ -33,6 +35,7 @@ class PlausibilityConfig(NamedTuple):
     angle_rad: float
     sun_norm: float
     late_ticks: int
+    cells: CellSet | None = None
 
 
 class Memory(NamedTuple):
@@ -81,7 +84,7 @@ CHECKS: tuple[tuple[Sensor, SensorFault, Callable[[Seen], bool]], ...] = (
             and not abs(norm(s.field) - s.modelled_t) <= s.limits.field_t + s.limits.field_part * s.modelled_t
         ),
     ),
-    (Sensor.SUN_SENSOR, SensorFault.SILENT, lambda s: s.readings.sun is None),
+    (Sensor.SUN_SENSOR, SensorFault.SILENT, lambda s: s.readings.sun is None and s.readings.cells is None),
     (Sensor.SUN_SENSOR, SensorFault.UNLIT, lambda s: s.sun is not None and s.shadow),
     (
         Sensor.SUN_SENSOR,
@@ -97,7 +100,7 @@ class Findings(NamedTuple):
 
     ``field_cause`` and ``sun_cause``: what speaks against each, 0 if nothing does; ``field`` and ``sun``: the
     samples that could be used if nothing did; ``pair``: both can be compared, ``apart``: by an angle that is
-    not the modelled one.
+    not the modelled one. ``currents`` are those of Sun cells, and ``shadow`` says if none can see the Sun.
     """
 
     field_cause: int
@@ -107,6 +110,8 @@ class Findings(NamedTuple):
     pair: bool
     apart: bool
     memory: Memory
+    currents: tuple[float | None, ...] = ()
+    shadow: bool = False
 
 
 def examine(memory: Memory, readings: Readings, reference: Reference, limits: PlausibilityConfig) -> Findings:
@@ -119,7 +124,7 @@ def examine(memory: Memory, readings: Readings, reference: Reference, limits: Pl
         limits: largest deviations if all is well.
     """
     memory = _remember(memory, readings)
-    field, sun = usable_field(readings), usable_sun(readings)
+    field, sun = usable_field(readings), sensed_sun(readings, limits.cells)
     seen = Seen(
         readings,
         field,
@@ -137,7 +142,10 @@ def examine(memory: Memory, readings: Readings, reference: Reference, limits: Pl
     b_cause, s_cause = causes[Sensor.MAGNETOMETER], causes[Sensor.SUN_SENSOR]
     pair = field is not None and sun is not None and not (b_cause or s_cause)
     apart = pair and _apart(seen, reference)
-    return Findings(b_cause, s_cause, field, sun, pair, apart, memory)
+    if limits.cells is None:
+        return Findings(b_cause, s_cause, field, sun, pair, apart, memory)
+    currents, shadow = usable_cells(readings, limits.cells), _in_shadow(reference)
+    return Findings(b_cause, s_cause, field, sun, pair, apart, memory, currents, shadow)
 
 
 def _remember(memory: Memory, readings: Readings) -> Memory:

@@ -18,7 +18,7 @@ from fsw.core.algebra.vector import unit
 from fsw.core.estimation.estimator import EstimatorState, Used
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import mekf_config
-from fsw.core.estimation.parameters import NAMES, NOTHING, Parameters, Prior
+from fsw.core.estimation.parameters import MOST_CELLS, NAMES, SIZES, Parameters, Prior
 
 LAYOUTS = {
     "none": (),
@@ -39,6 +39,7 @@ PRIORS = Parameters(
     mag_scale=Prior((0.003, 0.004, 0.002), (0.0,) * 3),
     sun_turn_rad=Prior((0.004, 0.003, 0.005), (0.0,) * 3),
     delay_s=Prior((0.5, 0.6), (0.0, 0.0)),
+    cell_excess=Prior((0.1, 0.12, 0.08, 0.09, 0.11, 0.07), (0.0,) * 6),
 )
 TRUE = Parameters(
     mag_bias_t=(3e-7, -5e-7, 2e-7),
@@ -50,6 +51,7 @@ TRUE = Parameters(
     mag_scale=(0.002, -0.003, 0.0015),
     sun_turn_rad=(-0.003, 0.002, 0.004),
     delay_s=(0.4, 0.7),
+    cell_excess=(0.05, -0.08, 0.03, 0.09, -0.04, 0.06),
 )
 """How a satellite differs from its table: about as much as the priors expect."""
 
@@ -94,14 +96,12 @@ class Satellite:
         return mekf_config(self.inertia_kgm2, priors=priors, **(values | changes))
 
     def size(self):
-        return 6 + sum(len(getattr(NOTHING, name)) for name in self.carried)
+        return 6 + sum(SIZES[name] for name in self.carried)
 
     def place(self, name):
         """Where a parameter stands in the error state: behind attitude and rate, in the order of names."""
-        before = sum(
-            len(getattr(NOTHING, other)) for other in NAMES[: NAMES.index(name)] if other in self.carried
-        )
-        return slice(6 + before, 6 + before + len(getattr(NOTHING, name)))
+        before = sum(SIZES[other] for other in NAMES[: NAMES.index(name)] if other in self.carried)
+        return slice(6 + before, 6 + before + SIZES[name])
 
     def scales(self):
         """A typical deviation of each part of the error state of a filter that has settled."""
@@ -117,7 +117,10 @@ class Satellite:
     def estimate(self, covariance=None, parameters=None):
         """An estimate with everything carried nonzero."""
         covariance = self.covariance() if covariance is None else covariance
-        return Estimate(self.q, self.omega, self.parameters if parameters is None else parameters, covariance)
+        parameters = self.parameters if parameters is None else parameters
+        if "cell_excess" in self.carried and not parameters.cell_excess:
+            parameters = parameters._replace(cell_excess=(0.0,) * MOST_CELLS)
+        return Estimate(self.q, self.omega, parameters, covariance)
 
     def moved(self, estimate, error):
         """The estimate plus an error state; the attitude by an exact rotation."""

@@ -8,6 +8,7 @@ import pytest
 from fsw.core.estimation import estimator
 from fsw.core.estimation.estimator import Turning
 from fsw.core.estimation.kalman import LeanKalmanFilter
+from fsw.core.estimation.loaded import freeze, load, thaw
 from fsw.core.estimation.parameters import (
     NAMES,
     NOTHING,
@@ -28,6 +29,7 @@ ON_THE_BUS = {
     "mag_scale": "MAG_SCALE_",
     "sun_turn_rad": "SUN_TURN_",
     "delay_s": "_DELAY",
+    "cell_excess": "CELL_",
 }
 BOUNDS = {"residual_dipole_am2": 0.03, "magnetometer_scale_percent": 0.4, "latency_s": 0.8}
 
@@ -111,7 +113,7 @@ class TestLoad:
     @pytest.fixture
     def both(self, settled):
         state, config = settled
-        return state, estimator.load(state, self.NUMBER, self.VALUE, config.mekf), config
+        return state, load(state, self.NUMBER, self.VALUE, config.mekf), config
 
     def test_its_deviation_is_that_of_the_prior_and_correlated_with_nothing(self, both):
         before, after, config = both
@@ -142,7 +144,7 @@ class TestFreeze:
     def test_values_stay_through_updates_and_attitude_and_rate_do_not(self, make_world):
         world = make_world(flight={"uncertainty": BOUNDS})
         world.fly(110)
-        world.state = world.state._replace(estimator=estimator.freeze(world.state.estimator))
+        world.state = world.state._replace(estimator=freeze(world.state.estimator))
         frozen = [world.state.estimator.estimate]
         for _ in range(30):
             world.step()
@@ -159,13 +161,13 @@ class TestFreeze:
     def test_what_pulses_did_before_corrects_them_no_more(self, settled):
         state, _ = settled
         assert state.estimate.trace.effect[6:].any()
-        assert estimator.freeze(state).estimate.trace is None
+        assert freeze(state).estimate.trace is None
 
     def test_of_a_filter_that_estimates_none_changes_no_bit_of_the_estimate(self, make_world):
         worlds = [make_world(flight={"uncertainty": dict.fromkeys(NONE, 0.0)}) for _ in range(2)]
         for world in worlds:
             world.fly(60)
-        worlds[1].state = worlds[1].state._replace(estimator=estimator.freeze(worlds[1].state.estimator))
+        worlds[1].state = worlds[1].state._replace(estimator=freeze(worlds[1].state.estimator))
         for world in worlds:
             world.fly(30)
         free, frozen = (world.state.estimator.estimate for world in worlds)
@@ -175,11 +177,11 @@ class TestFreeze:
 
     def test_a_restart_keeps_what_the_ground_has_set(self, settled):
         state, _ = settled
-        frozen = estimator.freeze(state)
+        frozen = freeze(state)
         again = estimator.restart(frozen)
         assert (again.first, again.frozen) == (state.estimate.parameters, True)
         assert (again.estimate, again.restarts) == (None, state.restarts + 1)
-        assert estimator.thaw(again) == again._replace(frozen=False)
+        assert thaw(again) == again._replace(frozen=False)
 
 
 NONE = (
@@ -203,7 +205,7 @@ class TestFastTurn:
         """The estimator before the first slow tick after a fast turn, a torque being loaded, and after it."""
         world = make_world(flight={"uncertainty": BOUNDS})
         world.fly(60)
-        loaded = estimator.load(world.state.estimator, Component.TORQUE_Z, 3e-8, world.config.estimator.mekf)
+        loaded = load(world.state.estimator, Component.TORQUE_Z, 3e-8, world.config.estimator.mekf)
         fast = loaded._replace(turning=Turning.FAST, frozen=frozen)
         world.state = world.state._replace(estimator=fast)
         world.step()

@@ -22,11 +22,11 @@ class TestLayout:
         places = layout(set())
         assert (places.size, places.carried) == (6, ())
         assert places.mag_bias is places.torque is places.dipole is places.coils is places.inertia is None
-        assert places.mag_turn is places.mag_scale is places.sun_turn is places.delay is None
+        assert places.mag_turn is places.mag_scale is places.sun_turn is places.delay is places.cells is None
 
     def test_all_of_them_stand_in_their_order_without_a_gap(self):
         places = layout(set(NAMES))
-        assert places.size == 6 + sum(SIZES.values()) == 41
+        assert places.size == 6 + sum(SIZES.values()) == 47
         assert (places.mag_bias, places.torque, places.dipole) == (slice(6, 9), slice(9, 12), slice(12, 15))
         assert (places.coils, places.inertia) == (slice(15, 24), slice(24, 30))
         assert (places.mag_turn, places.mag_scale, places.sun_turn) == (
@@ -34,7 +34,7 @@ class TestLayout:
             slice(33, 36),
             slice(36, 39),
         )
-        assert places.delay == slice(39, 41)
+        assert (places.delay, places.cells) == (slice(39, 41), slice(41, 47))
 
     @pytest.mark.parametrize("name", NAMES)
     def test_one_alone_comes_first_and_one_left_out_leaves_no_gap(self, name):
@@ -42,7 +42,7 @@ class TestLayout:
         alone = layout({name})
         assert alone.carried == ((index, slice(6, 6 + SIZES[name])),)
         without = layout(set(NAMES) - {name})
-        assert without.size == 41 - SIZES[name]
+        assert without.size == 47 - SIZES[name]
         assert index not in [known for known, _ in without.carried]
         ends = [place.stop for _, place in without.carried]
         assert [place.start for _, place in without.carried] == [6, *ends[:-1]]
@@ -59,6 +59,7 @@ class TestLayout:
             "mag_scale": "mag_scale",
             "sun_turn_rad": "sun_turn",
             "delay_s": "delay",
+            "cell_excess": "cells",
         }
         places = layout({name})
         assert {field for field in own.values() if getattr(places, field) is not None} == {own[name]}
@@ -119,6 +120,6 @@ class TestDipole:
 
 
 def test_the_checksum_of_the_state_has_every_number():
-    numbers = iter(range(1, 36))
+    numbers = iter(range(1, 42))
     parameters = Parameters._make(tuple(next(numbers) for _ in range(SIZES[name])) for name in NAMES)
-    assert parameters.floats() == tuple(range(1, 36))
+    assert parameters.floats() == tuple(range(1, 42))

@@ -13,9 +13,10 @@ from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.fdir.evidence import weights
 from fsw.core.fdir.faults import SensorFault
 from fsw.core.fdir.sensors.credibility import credibility_config
-from fsw.core.fdir.sensors.health import SensorConfig, SensorHealth, Watch, judge, suspected
+from fsw.core.fdir.sensors.health import SensorConfig, SensorHealth, judge, suspected
 from fsw.core.fdir.sensors.pair import Pair, Standing
 from fsw.core.fdir.sensors.plausibility import Findings, Memory
+from fsw.core.fdir.sensors.watch import Watch
 
 MEKF = mekf_config(
     ((1.02, 0.0, 0.0), (0.0, 1.85, 0.0), (0.0, 0.0, 1.95)),

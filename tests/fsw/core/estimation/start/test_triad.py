@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from fsw.core.algebra.quaternion import conjugate, multiply, normalise, rotate
 from fsw.core.algebra.vector import add, cross, norm, scale, unit
-from fsw.core.estimation.triad import consistent, triad
+from fsw.core.estimation.start.triad import consistent, triad
 from sim.validate.reference.reference_table import DATA
 
 REFERENCE = DATA / "triad_mekf.csv"

@@ -1,0 +1,47 @@
+"""The direction of the Sun from three lit cells, coarse: the Earth's light is in it."""
+
+from collections.abc import Sequence
+
+from fsw.core.algebra.vector import Mat3, Vec3, cross, dot, inverse, norm, transform
+from fsw.core.estimation.cells.cell_set import CellSet
+
+BRIGHT = 0.12
+"""Part of full sunlight above which a cell is taken to see the Sun; the Earth alone seldom gives as much."""
+LENGTHS = (0.7, 1.4)
+"""Of the vector: a shorter one is the Earth's light alone, in a longer one there is too much of it."""
+LEAST_VOLUME = 0.3
+"""Of three normals: below it errors of the currents turn the direction too much."""
+
+
+def coarse_sun(currents: Sequence[float | None], cells: CellSet) -> Vec3 | None:
+    """The vector s with n . s = c for the three brightest cells that span space; None without three.
+
+    Its length is 1 where the cells are as the table has them and no other light falls on them; None where it
+    is outside ``LENGTHS``.
+
+    Args:
+        currents: by cell, parts of full sunlight; None: not to be used.
+        cells: as the table has them.
+    """
+    bright = [(current, cell) for cell, current in enumerate(currents) if current and current > BRIGHT]
+    rows: list[Vec3] = []
+    values: list[float] = []
+    for current, cell in sorted(bright, reverse=True):
+        normal = cells.normals_body[cell]
+        if _spans(rows, normal):
+            rows, values = [*rows, normal], [*values, current]
+        if len(rows) == 3:
+            normals: Mat3 = (rows[0], rows[1], rows[2])
+            sun = transform(inverse(normals), (values[0], values[1], values[2]))
+            return sun if LENGTHS[0] <= norm(sun) <= LENGTHS[1] else None
+    return None
+
+
+def _spans(rows: list[Vec3], normal: Vec3) -> bool:
+    """Whether a normal points out of the space of those before."""
+    if not rows:
+        return True
+    if len(rows) == 1:
+        out = cross(rows[0], normal)
+        return dot(out, out) > LEAST_VOLUME**2
+    return abs(dot(cross(rows[0], rows[1]), normal)) > LEAST_VOLUME

@@ -1,0 +1,1 @@
+"""How an estimate begins: by field and Sun in one tick, or by a batch of field and cells."""

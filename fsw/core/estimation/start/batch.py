@@ -1,0 +1,110 @@
+"""The start from Sun cells: the samples that field and cells give over minutes.
+
+Three lit cells and the field give an attitude, some 10 deg off, and no rate: from there a filter would go
+astray, so the samples of ``SHORT_S`` are fitted together. One or two lit cells leave the turn about the field
+open, which the motion over ``LEAST_S`` does not. A sample is kept every ``SPACING_S``, with the dipole driven
+since the one before; ``batch_fit`` looks for the motion behind them.
+"""
+
+from typing import NamedTuple
+
+from fsw.core.algebra.vector import ZERO, Vec3, add, scale
+
+SPACING_S = 20.0
+SHORT_S, LEAST_S, MOST_S = 100.0, 400.0, 1200.0
+"""The motion is looked for from the first on where three cells are lit all the time, else from the second on,
+at most over the third."""
+AGAIN_S = 100.0
+"""Time until it is looked for again."""
+GAP_S = 60.0
+"""After a longer time without a sample the batch begins anew."""
+UNKNOWN = -1.0
+"""The current of a cell that is not to be used."""
+
+
+class BatchSample(NamedTuple):
+    """What was measured and modelled in one tick, and what was driven since the sample before.
+
+    ``field_t`` in body axes; ``currents`` in parts of full sunlight; ``earth`` is the Earth's light, as in
+    ``Light``, of which nothing and no Sun is there unless ``lit``; ``coarse`` is the Sun by three lit cells.
+    """
+
+    since_s: float
+    m_body_am2: Vec3
+    field_t: Vec3
+    currents: tuple[float, ...]
+    b_eci_t: Vec3
+    s_eci: Vec3
+    r_eci_m: Vec3
+    lit: float
+    earth: float
+    coarse: Vec3 | None = None
+
+    def floats(self) -> tuple[float, ...]:
+        """For the checksum of the state."""
+        vectors = (*self.m_body_am2, *self.field_t, *self.b_eci_t, *self.s_eci, *self.r_eci_m)
+        return (self.since_s, *self.currents, *vectors, self.lit, self.earth, *(self.coarse or ()))
+
+
+class SampleBatch(NamedTuple):
+    """The samples, oldest first; time and impulse driven, A m^2 s, since the last; time since a search."""
+
+    samples: tuple[BatchSample, ...] = ()
+    since_s: float = 0.0
+    driven_am2s: Vec3 = ZERO
+    searched_s: float = 0.0
+
+    def integers(self) -> tuple[int, ...]:
+        """For the checksum of the state, as is ``floats``; nothing where nothing has been kept."""
+        return (len(self.samples),) if self.samples else ()
+
+    def floats(self) -> tuple[float, ...]:
+        """Every number."""
+        if not self.samples:
+            return ()
+        kept = [number for sample in self.samples for number in sample.floats()]
+        return (self.since_s, *self.driven_am2s, self.searched_s, *kept)
+
+    @property
+    def span_s(self) -> float:
+        """From the first sample to the last."""
+        return sum(sample.since_s for sample in self.samples[1:])
+
+    @property
+    def lit(self) -> int:
+        """How many samples are of sunlight; a cell that is dark in it tells where the Sun is not."""
+        return sum(1 for sample in self.samples if sample.lit)
+
+
+EMPTY = SampleBatch()
+
+
+def waited(batch: SampleBatch, m_body_am2: Vec3, tick_s: float) -> SampleBatch:
+    """The batch a tick later, over which this dipole was driven; anew after too long a gap."""
+    if not batch.samples:
+        return batch
+    since_s = batch.since_s + tick_s
+    if since_s > GAP_S:
+        return EMPTY
+    driven = add(batch.driven_am2s, scale(tick_s, m_body_am2))
+    return batch._replace(since_s=since_s, driven_am2s=driven, searched_s=batch.searched_s + tick_s)
+
+
+def kept(batch: SampleBatch, sample: BatchSample) -> SampleBatch:
+    """The batch with a sample, if one is due."""
+    if batch.samples and batch.since_s < SPACING_S:
+        return batch
+    if batch.samples:
+        mean = scale(1.0 / batch.since_s, batch.driven_am2s)
+        sample = sample._replace(since_s=batch.since_s, m_body_am2=mean)
+    samples = (*batch.samples, sample)[-round(MOST_S / SPACING_S) :]
+    return SampleBatch(samples, searched_s=batch.searched_s)
+
+
+def due(batch: SampleBatch) -> bool:
+    """Whether the motion is to be looked for, with the sample just kept."""
+    if batch.since_s or not batch.samples or batch.searched_s < min(AGAIN_S, batch.span_s):
+        return False
+    coarse = all(sample.coarse for sample in batch.samples)
+    enough = batch.span_s >= (SHORT_S if coarse else LEAST_S)
+    return enough and 2 * batch.lit >= len(batch.samples)

@@ -1,0 +1,154 @@
+"""Which Sun cell is faulty: dead, stuck, or with a current that nothing allowed by the table explains.
+
+Each cell is compared with what the estimate predicts, while that is proven by the field and has been taken
+with it. What speaks against a cell:
+
+- it gives a current in the Earth's shadow;
+- it is lit, and the filter refuses what it shows, or it shows nothing;
+- what it shows beyond its model is more than ``SIGMAS`` standard deviations of what the table allows;
+- the Sun is behind it, and it is brighter than the Earth and that excess can make it;
+- its current does not change by a bit while the predicted one moves by ``STILL``.
+
+A cell that is still is not used from the next tick on, whatever the evidence.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from fsw.core.algebra.quaternion import rotate
+from fsw.core.algebra.vector import dot
+from fsw.core.estimation.cells.cell_set import CellSet, Light
+from fsw.core.estimation.cells.update import LEAST_COSINE, CellsUsed, most_behind, prediction, taken
+from fsw.core.estimation.mekf import Estimate
+from fsw.core.estimation.mekf_config import MekfConfig
+from fsw.core.fdir.evidence import SIGMAS, EvidenceWeights
+from fsw.core.fdir.faults import SensorFault
+from fsw.core.fdir.sensors.watch import Watch, accused, readmitted
+
+STILL = 0.06
+"""By so much of full sunlight a current is predicted to move, which has not: eight steps of it on the bus."""
+NO_CURRENT = -1.0
+
+
+class CellWatch(NamedTuple):
+    """One cell: the evidence, what it has shown so far without a change, and what was predicted then.
+
+    ``still``: the prediction has moved since, and the current has not.
+    """
+
+    watch: Watch = Watch()
+    shown: float = NO_CURRENT
+    predicted: float = 0.0
+    still: bool = False
+
+
+CellsHealth = tuple[CellWatch, ...]
+
+
+class CellEvidence(NamedTuple):
+    """What one tick shows of all cells.
+
+    ``currents`` are of isolated cells too; ``seen`` is None in the shadow, and ``shadow`` says that this is
+    certain. ``sure``: the estimate is proven, and the field bears it out.
+    """
+
+    currents: Sequence[float | None]
+    used: CellsUsed
+    estimate: Estimate | None
+    seen: Light | None
+    shadow: bool
+    sure: bool
+
+
+def judge(
+    health: CellsHealth, evidence: CellEvidence, weights: EvidenceWeights, config: MekfConfig
+) -> CellsHealth:
+    """The cells after a tick; none where the satellite has none."""
+    cells = config.cells
+    if cells is None or not evidence.currents:
+        return health
+    watches = health or (CellWatch(),) * len(cells.normals_body)
+    return tuple(
+        [
+            watch if current is None else _judged(watch, cell, current, evidence, weights, config, cells)
+            for cell, (watch, current) in enumerate(zip(watches, evidence.currents, strict=True))
+        ]
+    )
+
+
+def unusable(health: CellsHealth) -> tuple[int, ...]:
+    """Numbers of the cells that the filter is not to take."""
+    return tuple([cell for cell, one in enumerate(health) if one.watch.fault or one.still])
+
+
+def cell_changes(before: CellsHealth, after: CellsHealth) -> list[tuple[int, int, int]]:
+    """(number, fault before, fault after) of each cell whose fault has changed."""
+    was = before or (CellWatch(),) * len(after)
+    return [
+        (cell, one.watch.fault, other.watch.fault)
+        for cell, (one, other) in enumerate(zip(was, after, strict=True))
+        if one.watch.fault != other.watch.fault
+    ]
+
+
+def _judged(
+    before: CellWatch,
+    cell: int,
+    current: float,
+    evidence: CellEvidence,
+    weights: EvidenceWeights,
+    config: MekfConfig,
+    cells: CellSet,
+) -> CellWatch:
+    if evidence.seen is None:
+        bright = evidence.shadow and current > cells.dark
+        return CellWatch(_weighed(before.watch, SensorFault.STRENGTH if bright else None, False, weights))
+    if evidence.estimate is None or not evidence.sure:
+        return before
+    estimate, seen, normal = evidence.estimate, evidence.seen, cells.normals_body[cell]
+    s = rotate(estimate.q_body_from_eci, seen.s_eci)
+    if cells.shaded(cell, s):
+        return CellWatch(before.watch)
+    if dot(normal, s) <= LEAST_COSINE:
+        bright = dot(normal, s) < -LEAST_COSINE and current > most_behind(
+            estimate.q_body_from_eci, normal, seen, cells
+        )
+        return CellWatch(_weighed(before.watch, SensorFault.STRENGTH if bright else None, False, weights))
+    predicted, _ = prediction(estimate, cell, seen, config, cells)
+    shown = before._replace(still=False)
+    if current != before.shown:
+        shown = CellWatch(before.watch, current, predicted)
+    shown = shown._replace(still=abs(predicted - shown.predicted) > STILL)
+    unclear = len(evidence.used.refused) > max(1, len(evidence.used.taken))
+    verdict = _verdict(shown, cell, current, evidence.used, estimate, cells)
+    if verdict is None and before.watch.fault and not evidence.used.refused:
+        fits = taken(estimate, cell, current, seen, config, cells) is not None
+        verdict = 0 if fits else SensorFault.REFUSED
+    return shown._replace(watch=_weighed(before.watch, verdict, unclear, weights))
+
+
+def _verdict(
+    shown: CellWatch,
+    cell: int,
+    current: float,
+    used: CellsUsed,
+    estimate: Estimate,
+    cells: CellSet,
+) -> int | None:
+    """What speaks against a cell that is lit, 0: it is as predicted, None: the filter had no part in it."""
+    if shown.still:
+        return SensorFault.FROZEN
+    if current <= cells.dark or abs(estimate.parameters.cell_excess[cell]) > SIGMAS * cells.excess_sigma:
+        return SensorFault.STRENGTH
+    if cell in used.refused:
+        return SensorFault.REFUSED
+    return 0 if cell in used.taken else None
+
+
+def _weighed(watch: Watch, verdict: int | None, unclear: bool, weights: EvidenceWeights) -> Watch:
+    """In use a cell is accused, isolated it may be readmitted; without a comparison nothing changes."""
+    if verdict is None:
+        return watch
+    if watch.fault:
+        return readmitted(watch, not verdict, weights)
+    return accused(watch, verdict, unclear, weights)

@@ -1,0 +1,49 @@
+"""The board of the Sun cells: their currents as frames."""
+
+from collections.abc import Sequence
+from math import isnan
+
+from fsw.wire.frame import Frame
+from fsw.wire.messages import SunBoot, SunCells, SunHeartbeat
+from hil_stub.node import Node
+
+CELLS = 6
+_MOST = 255.0 / 128.0
+"""Range of the signals ``cell_1`` to ``cell_6``."""
+
+
+class SunCellBoard:
+    """Up to six Sun cells on the bus, in the place of the Sun sensor.
+
+    Args:
+        tick_hz: ticks a second.
+    """
+
+    def __init__(self, tick_hz: int) -> None:
+        self._node = Node(SunBoot, SunHeartbeat, tick_hz)
+        self._samples = 0
+
+    def begin_tick(self, tick: int, currents: Sequence[float], valid: bool) -> list[Frame]:
+        """Enter ``tick``: ``SUN_BOOT`` at the first, ``SUN_CELLS``, ``SUN_HEARTBEAT`` every 60 s.
+
+        A current beyond the range is sent as its end. One that is not a number makes the sample invalid: all
+        currents are then zero. A tick that does not rise is ignored.
+
+        Args:
+            tick: number of the tick that begins.
+            currents: by cell, in parts of the nominal current in full sunlight; at most six.
+            valid: False when the board has failed its self-test.
+
+        Raises:
+            ValueError: more than six currents.
+        """
+        if len(currents) > CELLS:
+            raise ValueError(f"the board has inputs for {CELLS} cells, not {len(currents)}")
+        if self._node.advance(tick) is None:
+            return []
+        sound = valid and not any(map(isnan, currents))
+        held = [min(max(current, 0.0), _MOST) if sound else 0.0 for current in currents]
+        first, second, third, fourth, fifth, sixth = held + [0.0] * (CELLS - len(held))
+        sample = SunCells(int(sound), first, second, third, fourth, fifth, sixth, counter=self._samples)
+        self._samples += 1
+        return [*self._node.boot(), sample.encode(), *self._node.heartbeat()]

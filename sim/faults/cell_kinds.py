@@ -1,0 +1,53 @@
+"""Faults of Sun cells."""
+
+from random import Random
+
+from sim.faults.fault import Fault, Parameters
+
+
+class WrongCurrent(Fault):
+    """One cell has another current."""
+
+    def __init__(self, rng: Random, parameters: Parameters) -> None:
+        super().__init__(rng, parameters)
+        self._cell = round(parameters["cell"]) - 1
+
+    def cells(self, currents: tuple[float, ...]) -> tuple[float, ...]:
+        """The currents with that of the faulty cell, if there is one of that number."""
+        if self._cell >= len(currents):
+            return currents
+        wrong = self.wrong(currents[self._cell])
+        return (*currents[: self._cell], wrong, *currents[self._cell + 1 :])
+
+    def wrong(self, current: float) -> float:
+        """What it has in place of this current."""
+        raise NotImplementedError
+
+
+class CellDead(WrongCurrent):
+    """It has none."""
+
+    def wrong(self, current: float) -> float:
+        """None."""
+        return 0.0
+
+
+class CellScaled(WrongCurrent):
+    """It has ``scale`` times what it should."""
+
+    def wrong(self, current: float) -> float:
+        """The wrong current."""
+        return self.parameters["scale"] * current
+
+
+class CellStuck(WrongCurrent):
+    """It stays at what it has at the onset, or at ``percent`` of full sunlight if that is above 0."""
+
+    def __init__(self, rng: Random, parameters: Parameters) -> None:
+        super().__init__(rng, parameters)
+        self._held = 0.01 * parameters["percent"] or None
+
+    def wrong(self, current: float) -> float:
+        """The held current."""
+        self._held = current if self._held is None else self._held
+        return self._held

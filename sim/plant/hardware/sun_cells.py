@@ -1,0 +1,81 @@
+"""The physics of coarse Sun cells: cosine, gain, shading, the Earth's light, threshold, noise."""
+
+from math import exp, sqrt
+
+import numpy as np
+
+from sim.plant.environment.earth_view import earth_view
+from sim.plant.hardware.sensors import Delay
+from sim.plant.random_streams import normals
+from sim.plant.rotation import Mat3, Vec3, from_vector, matrix, transform
+from sim.plant.sensor_config import CellConfig, SunCellsConfig
+
+CLOUDS_S = 300.0
+"""Time in which a low orbit leads over other clouds."""
+
+
+class SunCellPhysics:
+    """c = g (lit max(0, n . s) + A light(n)) + noise, and 0 below the threshold.
+
+    n is the true normal, s the Sun, A the part of the light that the Earth reflects. It varies over the
+    clouds as a first-order Markov process of time constant ``CLOUDS_S``; ``earth_view`` has what the Earth
+    gives. A cell in the shade of the satellite itself gets that alone. All is of ``latency_s`` ago.
+
+    Args:
+        config: the cells.
+        seed: of the streams ``sun_cells`` and ``clouds``.
+        tick_hz: samples a second.
+    """
+
+    def __init__(self, config: SunCellsConfig, seed: int, tick_hz: int = 1) -> None:
+        self._config = config
+        self._delay = Delay(config.latency_s, tick_hz) if config.latency_s else None
+        self._normals = [_turned(cell.normal_body, cell.turn_rad) for cell in config.cells]
+        self._noise, self._clouds = normals(seed, "sun_cells"), normals(seed, "clouds")
+        self._keep = exp(-1.0 / (CLOUDS_S * tick_hz))
+        self._cloud = next(self._clouds)
+
+    def measure(self, body_from_eci: Mat3, r_eci_m: Vec3, sun_eci: Vec3, lit: float) -> tuple[float, ...]:
+        """The current of each cell, in parts of the nominal one in full sunlight.
+
+        Args:
+            body_from_eci: rows of the true attitude's matrix.
+            r_eci_m: position.
+            sun_eci: unit vector to the Sun.
+            lit: visible fraction of the Sun's disc.
+        """
+        config, sun_body = self._config, transform(body_from_eci, sun_eci)
+        light = [
+            lit * _cosine(cell, normal, sun_body)
+            for cell, normal in zip(config.cells, self._normals, strict=True)
+        ]
+        if config.albedo:
+            seen = earth_view(r_eci_m, sun_eci, np.array(self._normals) @ np.array(body_from_eci))
+            reflected = self._reflected()
+            light = [own + reflected * part for own, part in zip(light, seen.tolist(), strict=True)]
+        if self._delay:
+            light = list(self._delay(tuple(light)))
+        return tuple([self._current(cell, part) for cell, part in zip(config.cells, light, strict=True)])
+
+    def _reflected(self) -> float:
+        """The part of the light that the Earth in view reflects now."""
+        keep, config = self._keep, self._config
+        self._cloud = keep * self._cloud + sqrt(1.0 - keep * keep) * next(self._clouds)
+        return config.albedo * min(max(0.0, 1.0 + config.albedo_spread * self._cloud), 2.0)
+
+    def _current(self, cell: CellConfig, light: float) -> float:
+        current = cell.gain * light + self._config.noise * next(self._noise)
+        return current if current >= self._config.threshold else 0.0
+
+
+def _cosine(cell: CellConfig, normal: Vec3, sun_body: Vec3) -> float:
+    """Of the Sun's incidence; 0 from behind and in the shade."""
+    (x, y, z), (nx, ny, nz) = sun_body, normal
+    shaded = any(ax * x + ay * y + az * z > cosine for (ax, ay, az), cosine in cell.shades)
+    return 0.0 if shaded else max(0.0, nx * x + ny * y + nz * z)
+
+
+def _turned(normal: Vec3, turn_rad: Vec3) -> Vec3:
+    """A direction after a turn; the transpose turns the direction, not the axes."""
+    x, y, z = turn_rad
+    return transform(matrix(from_vector((-x, -y, -z))), normal)

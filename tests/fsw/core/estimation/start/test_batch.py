@@ -1,0 +1,109 @@
+"""The batch of samples: what is kept, what is driven in between, and when the motion is looked for."""
+
+import pytest
+
+from fsw.core.algebra.vector import ZERO
+from fsw.core.estimation.start.batch import (
+    AGAIN_S,
+    EMPTY,
+    GAP_S,
+    LEAST_S,
+    MOST_S,
+    SHORT_S,
+    SPACING_S,
+    BatchSample,
+    due,
+    kept,
+    waited,
+)
+
+SUN = (0.6, -0.48, 0.64)
+
+
+def sample(lit=1.0, coarse=None):
+    return BatchSample(
+        0.0,
+        ZERO,
+        (2e-5, -1e-5, 3e-5),
+        (0.5, 0.0, 0.2),
+        (3e-5, 1e-5, -2e-5),
+        SUN,
+        (7e6, 1e5, 2e5),
+        lit,
+        0.1,
+        coarse,
+    )
+
+
+def filled(seconds, coarse=None, lit=1.0, tick_s=1.0):
+    batch = kept(EMPTY, sample(lit, coarse))
+    for _ in range(round(seconds / tick_s)):
+        batch = kept(waited(batch, (0.1, 0.0, -0.2), tick_s), sample(lit, coarse))
+    return batch
+
+
+def test_nothing_is_kept_and_no_number_counts_before_the_first_sample():
+    assert waited(EMPTY, (1.0, 2.0, 3.0), 1.0) == EMPTY
+    assert (EMPTY.integers(), EMPTY.floats()) == ((), ())
+
+
+@pytest.mark.parametrize("tick_s", [1.0, 0.25, 7.0])
+def test_a_sample_is_kept_when_it_is_due(tick_s):
+    batch = filled(90.0, tick_s=tick_s)
+    spacing = [one.since_s for one in batch.samples[1:]]
+    assert all(SPACING_S <= since < SPACING_S + tick_s for since in spacing)
+    assert batch.span_s == pytest.approx(sum(spacing))
+
+
+def test_the_dipole_of_a_leg_is_the_mean_of_what_was_driven():
+    batch = kept(EMPTY, sample())
+    for tick in range(20):
+        batch = waited(batch, (0.6, 0.0, -0.3) if tick < 5 else ZERO, 1.0)
+    batch = kept(batch, sample())
+    assert batch.samples[1].m_body_am2 == pytest.approx((0.15, 0.0, -0.075))
+    assert batch.driven_am2s == ZERO
+
+
+def test_after_a_gap_it_begins_anew():
+    batch = filled(100.0)
+    for _ in range(round(GAP_S)):
+        batch = waited(batch, ZERO, 1.0)
+    assert len(batch.samples) == 6
+    assert waited(batch, ZERO, 1.0) == EMPTY
+
+
+def test_the_oldest_are_dropped():
+    assert filled(3000.0).span_s <= MOST_S
+
+
+class TestDue:
+    @pytest.mark.parametrize(("coarse", "least_s"), [(None, LEAST_S), (SUN, SHORT_S)])
+    def test_with_three_lit_cells_sooner(self, coarse, least_s):
+        assert not due(filled(least_s - SPACING_S, coarse))
+        assert due(filled(least_s, coarse))
+
+    def test_one_sample_without_three_lit_cells_makes_it_the_long_one(self):
+        batch = filled(SHORT_S, SUN)
+        changed = batch.samples[2]._replace(coarse=None)
+        batch = batch._replace(samples=(*batch.samples[:2], changed, *batch.samples[3:]))
+        assert not due(batch)
+
+    def test_only_with_a_sample_just_kept(self):
+        assert not due(waited(filled(LEAST_S), ZERO, 1.0))
+        assert not due(EMPTY)
+
+    def test_not_in_the_shadow(self):
+        assert not due(filled(LEAST_S, lit=0.0))
+
+    def test_again_after_a_while(self):
+        batch = filled(LEAST_S)._replace(searched_s=0.0)
+        for _ in range(round(AGAIN_S) - 1):
+            batch = kept(waited(batch, ZERO, 1.0), sample())
+            assert not due(batch)
+        assert due(kept(waited(batch, ZERO, 1.0), sample()))
+
+
+def test_every_number_of_a_batch_counts():
+    batch = filled(60.0, SUN)
+    assert len(batch.floats()) == 5 + 4 * (1 + 3 + 15 + 2 + 3)
+    assert batch.integers() == (4,)

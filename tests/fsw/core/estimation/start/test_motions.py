@@ -1,0 +1,78 @@
+"""Many motions at once against the filter's own motion, one tick after the other."""
+
+import numpy as np
+import pytest
+
+from fsw.core.algebra.quaternion import multiply, normalise, rotate
+from fsw.core.algebra.vector import ZERO, inverse, unit
+from fsw.core.estimation.error_dynamics import Acting, advanced, middle, turn
+from fsw.core.estimation.parameters import Rotor
+from fsw.core.estimation.start.motions import Disturbed, Leg, crossed, flown, in_body, turned_by
+
+INERTIA = ((1.02, 0.07, -0.05), (0.07, 1.85, 0.11), (-0.05, 0.11, 1.45))
+CHANGE = (0.03, -0.04, 0.02, 0.01, -0.015, 0.02)
+WHEEL = (0.01, -0.02, 0.015)
+E1, B, GRAVITY = unit((0.3, 0.7, -0.5)), (1.7e-5, -2.3e-5, 3.1e-5), 3.3e-6
+M, D, T = (0.5, -0.8, 0.3), (0.02, 0.03, -0.01), (4e-8, -2e-8, 3e-8)
+RANDOM = np.random.default_rng(7)
+Q = np.array([normalise(tuple(v)) for v in RANDOM.normal(size=(5, 4))])
+OMEGA = RANDOM.uniform(-0.006, 0.006, (5, 3))
+
+
+def rows(v):
+    return np.tile(v, (5, 1)).astype(float)
+
+
+def leg(length_s):
+    return Leg(length_s, np.array(E1), np.array(B), GRAVITY, np.array(M))
+
+
+def test_in_body_and_cross_product_are_those_of_the_core():
+    v = (0.3, -1.2, 0.7)
+    for q, found in zip(Q, in_body(Q, np.array(v)), strict=True):
+        assert found == pytest.approx(rotate(tuple(q), v))
+    np.testing.assert_allclose(crossed(OMEGA, rows(v)), np.cross(OMEGA, rows(v)))
+
+
+def test_turned_by_is_a_further_turn_of_the_body():
+    small = (1e-4, -2e-4, 1.5e-4)
+    for q, found in zip(Q, turned_by(Q, rows(small)), strict=True):
+        expected = normalise(multiply(tuple(q), (1.0, *(0.5 * part for part in small))))
+        assert found == pytest.approx(expected)
+
+
+def stepped(q, omega, torque, rotor, seconds):
+    """The filter's own motion, a second at a time."""
+    m = tuple(np.add(M, D))
+    for _ in range(seconds):
+        acting = Acting(E1, B, GRAVITY, m, torque, rotor)
+        _, motion = middle(q, omega, acting, 1.0)
+        rotation, omega = advanced(q, omega, motion, acting, 1.0)
+        q = normalise(multiply(q, turn(rotation)))
+    return q, omega
+
+
+@pytest.mark.parametrize("wheel", [ZERO, WHEEL])
+def test_a_leg_leads_where_single_ticks_lead(wheel):
+    rotor = Rotor(INERTIA, inverse(INERTIA), wheel)
+    disturbed = Disturbed(rows(D), rows(T), np.zeros((5, 6)))
+    ends, rates = flown(Q, OMEGA, leg(20.0), disturbed, rotor)
+    for q, omega, end, rate in zip(Q, OMEGA, ends, rates, strict=True):
+        expected, after = stepped(tuple(q), tuple(omega), T, rotor, 20)
+        assert abs(np.dot(end, expected)) == pytest.approx(1.0, abs=1e-7)
+        np.testing.assert_allclose(rate, after, atol=2e-6)
+
+
+def test_another_inertia_is_that_to_first_order():
+    xx, yy, zz, xy, xz, yz = CHANGE
+    changed = np.add(INERTIA, [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    true = Rotor(
+        tuple(map(tuple, changed.tolist())), tuple(map(tuple, np.linalg.inv(changed).tolist())), WHEEL
+    )
+    rotor = Rotor(INERTIA, inverse(INERTIA), WHEEL)
+    fast = 10.0 * OMEGA
+    none = np.zeros((5, 6))
+    _, exact = flown(Q, fast, leg(5.0), Disturbed(rows(D), rows(T), none), true)
+    _, nominal = flown(Q, fast, leg(5.0), Disturbed(rows(D), rows(T), none), rotor)
+    _, first = flown(Q, fast, leg(5.0), Disturbed(rows(D), rows(T), rows(CHANGE)), rotor)
+    assert np.abs(first - exact).max() < 0.15 * np.abs(nominal - exact).max()

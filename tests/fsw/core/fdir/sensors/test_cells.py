@@ -1,0 +1,174 @@
+"""Which Sun cell is faulty: dead, stuck, too bright; and that a sound one is not called so."""
+
+import numpy as np
+import pytest
+from cell_samples import CELLS, Q_BODY_FROM_ECI, REFERENCE, cell_filter
+
+from fsw.core.algebra.quaternion import multiply, normalise, rotate
+from fsw.core.estimation import mekf
+from fsw.core.estimation.cells.cell_set import light
+from fsw.core.estimation.cells.update import sunlit, update_cells
+from fsw.core.fdir.evidence import weights
+from fsw.core.fdir.faults import SensorFault
+from fsw.core.fdir.sensors.cells import CellEvidence, CellWatch, cell_changes, judge, unusable
+from fsw.core.fdir.sensors.watch import Watch
+
+CONFIG = cell_filter()
+WEIGHTS = weights(40.0, 1.0)
+SEEN = light(REFERENCE.r_eci_m, REFERENCE.sun_eci, CELLS.albedo)
+LIT = sunlit(Q_BODY_FROM_ECI, SEEN, CELLS)
+DARK = [cell for cell in range(6) if cell not in LIT]
+ENOUGH = 40
+
+
+def ideal(q=Q_BODY_FROM_ECI):
+    s, e = rotate(q, SEEN.s_eci), rotate(q, SEEN.e_eci)
+    return [
+        max(0.0, float(np.dot(normal, s))) + SEEN.earth * (0.5 + 0.5 * float(np.dot(normal, e))) ** 2
+        for normal in CELLS.normals_body
+    ]
+
+
+def attitude(tick):
+    """A slow turn, so that currents change."""
+    return normalise(multiply(Q_BODY_FROM_ECI, (1.0, 0.0008 * tick, -0.0006 * tick, 0.0005 * tick)))
+
+
+def watched(change, ticks=ENOUGH, health=(), *, sure=True, seen=SEEN, shadow=False, turning=True, first=0):
+    """The cells after so many ticks of an estimate that is right; ``change`` makes the currents wrong."""
+    random = np.random.default_rng(3)
+    for tick in range(first, first + ticks):
+        q = attitude(tick) if turning else Q_BODY_FROM_ECI
+        estimate = mekf.start(q, (0.0,) * 3, CONFIG)
+        currents = [max(0.0, one + 0.01 * random.normal()) if seen else 0.0 for one in ideal(q)]
+        currents = change(list(currents))
+        usable = [None if cell in unusable(health) else one for cell, one in enumerate(currents)]
+        estimate, used = update_cells(estimate, usable, seen, CONFIG)
+        evidence = CellEvidence(currents, used, estimate, seen, shadow, sure)
+        health = judge(health, evidence, WEIGHTS, CONFIG)
+    return health
+
+
+def set_to(cell, value):
+    def change(currents):
+        currents[cell] = value
+        return currents
+
+    return change
+
+
+def sound(currents):
+    return currents
+
+
+def faults(health):
+    return [one.watch.fault for one in health]
+
+
+def test_sound_cells_are_not_accused():
+    health = watched(sound, 300)
+    assert faults(health) == [0] * 6
+    assert all(one.watch.nats < 3.0 for one in health)
+
+
+@pytest.mark.parametrize("cell", LIT)
+def test_a_dead_cell_is_found_while_it_should_be_lit(cell):
+    health = watched(set_to(cell, 0.0))
+    assert health[cell].watch.fault == SensorFault.STRENGTH
+    assert faults(health).count(0) == 5
+    assert unusable(health) == (cell,)
+
+
+@pytest.mark.parametrize("cell", DARK)
+def test_a_dead_cell_in_the_dark_looks_as_it_should(cell):
+    assert faults(watched(set_to(cell, 0.0))) == [0] * 6
+
+
+def test_one_that_is_bright_with_the_sun_behind_it_is_found():
+    s = rotate(Q_BODY_FROM_ECI, SEEN.s_eci)
+    behind = min(range(6), key=lambda cell: np.dot(CELLS.normals_body[cell], s))
+    health = watched(set_to(behind, 0.9), turning=False)
+    assert health[behind].watch.fault == SensorFault.STRENGTH
+    assert faults(health).count(0) == 5
+
+
+@pytest.mark.parametrize(("shadow", "fault"), [(True, SensorFault.STRENGTH), (False, 0)])
+def test_light_in_the_shadow_counts_where_the_shadow_is_certain(shadow, fault):
+    health = watched(set_to(2, 0.3), seen=None, shadow=shadow)
+    assert faults(health) == [0, 0, fault, 0, 0, 0]
+
+
+def test_a_stuck_cell_is_put_aside_as_soon_as_its_prediction_has_moved():
+    """Though what it shows is near enough for the filter to take it."""
+    cell = LIT[0]
+    stuck = set_to(cell, ideal()[cell])
+    unused = next(ticks for ticks in range(1, 200) if cell in unusable(watched(stuck, ticks)))
+    assert 10 < unused < 150
+    health = watched(stuck, unused + ENOUGH)
+    assert health[cell].watch.fault == SensorFault.FROZEN
+    assert faults(health).count(0) == 5
+
+
+def test_a_current_that_rightly_stays_is_not_stuck():
+    health = watched(set_to(LIT[0], ideal()[LIT[0]]), 200, turning=False)
+    assert faults(health) == [0] * 6
+
+
+def test_an_excess_that_no_bound_allows_is_found():
+    estimate = mekf.start(Q_BODY_FROM_ECI, (0.0,) * 3, CONFIG)
+    cell, excess = LIT[1], [0.0] * 6
+    excess[cell] = 4.1 * CELLS.excess_sigma
+    estimate = estimate._replace(parameters=estimate.parameters._replace(cell_excess=tuple(excess)))
+    health = ()
+    for number in range(ENOUGH):
+        currents = [one + 0.001 * (number % 7) for one in ideal()]
+        _, used = update_cells(estimate, currents, SEEN, CONFIG)
+        evidence = CellEvidence(currents, used, estimate, SEEN, False, True)
+        health = judge(health, evidence, WEIGHTS, CONFIG)
+    assert health[cell].watch.fault == SensorFault.STRENGTH
+    assert faults(health).count(0) == 5
+
+
+@pytest.mark.parametrize("cell", LIT)
+def test_none_is_accused_before_the_estimate_is_proven(cell):
+    assert faults(watched(set_to(cell, 0.0), sure=False)) in ([], [0] * 6)
+
+
+def test_where_most_are_refused_it_is_not_clear_that_a_cell_is_wrong():
+    estimate = mekf.start(Q_BODY_FROM_ECI, (0.0,) * 3, CONFIG)
+    currents = [one + 0.9 if cell in LIT else one for cell, one in enumerate(ideal())]
+    health = ()
+    for _ in range(ENOUGH):
+        _, used = update_cells(estimate, currents, SEEN, CONFIG)
+        assert len(used.refused) == len(LIT)
+        health = judge(health, CellEvidence(currents, used, estimate, SEEN, False, True), WEIGHTS, CONFIG)
+    assert faults(health) == [0] * 6
+
+
+def test_no_single_sample_isolates():
+    health = watched(set_to(LIT[0], 0.0), 20)
+    assert faults(health) == [0] * 6
+    assert health[LIT[0]].watch.nats > 5.0
+
+
+def test_one_that_is_right_again_is_readmitted_after_a_while():
+    dead = watched(set_to(LIT[0], 0.0))
+    assert watched(sound, 60, dead)[LIT[0]].watch.fault
+    assert faults(watched(sound, 300, dead)) == [0] * 6
+
+
+def test_one_that_stays_dead_is_not():
+    dead = watched(set_to(LIT[0], 0.0))
+    assert watched(set_to(LIT[0], 0.0), 400, dead)[LIT[0]].watch.fault == SensorFault.STRENGTH
+
+
+def test_changes_are_told_by_cell():
+    before = (CellWatch(), CellWatch(Watch(2, 1.0)), CellWatch())
+    after = (CellWatch(Watch(4)), CellWatch(), CellWatch())
+    assert cell_changes(before, after) == [(0, 0, 4), (1, 2, 0)]
+    assert cell_changes((), after) == [(0, 0, 4)]
+    assert cell_changes((), ()) == []
+
+
+def test_without_cells_there_is_no_health_of_them():
+    assert judge((), CellEvidence((), None, None, None, False, False), WEIGHTS, CONFIG) == ()

@@ -1,0 +1,95 @@
+"""The section of the onboard table for Sun cells, and the bounds and priors that follow."""
+
+from math import cos, hypot, radians, sqrt
+
+import numpy as np
+import pytest
+
+from fsw.input.schema import TableError
+from fsw.table.cells import QUANTUM, cell_set
+from fsw.table.config import flight_config
+from fsw.table.estimator import estimator_config, plausibility_config
+from fsw.table.table import flight_table
+
+NORMALS = [[2.0, 0.0, 0.0], [0.0, -3.0, 4.0], [0.0, 0.0, 0.5]]
+
+
+def table(cells=None, **sections):
+    return flight_table({"cells": {"normals": NORMALS, **(cells or {})}, **sections}, "a table")
+
+
+def test_normals_are_made_unit_and_the_rest_goes_to_si():
+    shade = {"cell": 2, "axis": [0.0, 2.0, 0.0], "half_deg": 30.0}
+    given = table({"full_sun": [1.0, 0.8, 1.1], "noise_percent": 2.0, "dark_percent": 8.0, "shades": [shade]})
+    cells = cell_set(given.cells, 0.07)
+    np.testing.assert_allclose(cells.normals_body, [(1.0, 0.0, 0.0), (0.0, -0.6, 0.8), (0.0, 0.0, 1.0)])
+    assert cells.full_sun == (1.0, 0.8, 1.1)
+    assert [len(shades) for shades in cells.shades] == [0, 1, 0]
+    assert cells.shades[1][0].axis_body == (0.0, 1.0, 0.0)
+    assert cells.shades[1][0].cosine == pytest.approx(cos(radians(30.0)))
+    assert (cells.dark, cells.excess_sigma, cells.albedo) == (pytest.approx(0.08), 0.07, 0.3)
+    assert cells.sigma == pytest.approx(hypot(0.02, QUANTUM / sqrt(12.0)))
+
+
+def test_full_sun_is_nominal_unless_it_is_given():
+    assert cell_set(table().cells, 0.1).full_sun == (1.0, 1.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"normals": []}, "cells.normals"),
+        ({"normals": [[1.0, 0.0, 0.0]] * 7}, "cells.normals"),
+        ({"normals": [[0.0, 0.0, 0.0]]}, "must not be zero"),
+        ({"full_sun": [1.0]}, "full_sun must be 3 numbers"),
+        ({"shades": [{"cell": 4, "axis": [1.0, 0.0, 0.0], "half_deg": 5.0}]}, "no such cell"),
+        ({"shades": [{"cell": 1, "axis": [0.0, 0.0, 0.0], "half_deg": 5.0}]}, "axis must not be zero"),
+        ({"albedo": 1.5}, "cells.albedo"),
+        ({"gain": [1.0]}, "cells.gain is not a known key"),
+    ],
+)
+def test_what_cannot_be_is_refused_in_a_sentence(wrong, said):
+    with pytest.raises(TableError, match=said) as error:
+        table(wrong)
+    assert str(error.value).startswith("a table: cells")
+
+
+class TestExcess:
+    @pytest.mark.parametrize(
+        ("albedo", "bounds", "expected"),
+        [
+            (0.3, {}, hypot(0.10, 0.15)),
+            (0.2, {}, hypot(0.10, 0.10)),
+            (0.0, {}, hypot(0.10, 0.30)),
+            (0.3, {"cell_gain_percent": 4.0, "cell_light_percent": 3.0}, 0.05),
+        ],
+    )
+    def test_is_what_gain_and_light_may_be_wrong_by(self, albedo, bounds, expected):
+        config = estimator_config(table({"albedo": albedo}, uncertainty=bounds)).mekf
+        variances = config.initial_covariance.diagonal()[config.layout.cells]
+        np.testing.assert_allclose(np.sqrt(variances), expected / sqrt(3.0))
+        assert config.cells.excess_sigma == pytest.approx(expected / sqrt(3.0))
+
+    def test_of_a_satellite_without_cells_is_not_carried(self):
+        config = estimator_config(flight_table({}, "a table")).mekf
+        assert (config.cells, config.layout.cells) == (None, None)
+        assert config.initial_parameters.cell_excess == ()
+
+
+def test_the_noise_of_a_sun_sensor_has_no_part_where_there_are_cells():
+    limits = [plausibility_config(table(estimator={"sun_sigma_deg": deg})) for deg in (0.1, 3.0)]
+    assert limits[0] == limits[1]
+    assert limits[0].cells is not None
+
+
+def test_a_table_without_cells_has_the_checksum_of_before():
+    """Pinned: of a software that knew no cells."""
+    assert flight_table({}, "a table").crc == PINNED_CRC
+    assert table().crc != table({"albedo": 0.2}).crc
+
+
+def test_it_makes_a_config():
+    assert flight_config(table()).estimator.mekf.cells is not None
+
+
+PINNED_CRC = 974539391
