@@ -7,7 +7,7 @@ import numpy as np
 
 from fsw.core.algebra.quaternion import conjugate, multiply, normalise, rotate
 from fsw.core.algebra.vector import add, norm, scale, unit
-from fsw.core.estimation.error_dynamics import NOT_DRIVEN
+from fsw.core.estimation.dynamics.error_dynamics import NOT_DRIVEN
 from fsw.core.estimation.estimator import (
     EstimatorConfig,
     predict,

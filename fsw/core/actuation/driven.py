@@ -10,7 +10,7 @@ from math import sqrt
 from fsw.core.actuation.actuator import ActuatorConfig, CoilView, requested_level
 from fsw.core.actuation.pulses import PulseConfig, dipole_am2
 from fsw.core.algebra.vector import Vec3, scale, sub
-from fsw.core.estimation.error_dynamics import NOT_DRIVEN, Driven
+from fsw.core.estimation.dynamics.error_dynamics import NOT_DRIVEN, Driven
 from fsw.core.laws.pulse_model import AXES
 
 

@@ -9,7 +9,7 @@ from fsw.core.algebra.vector import Vec3, dot, norm, scale
 from fsw.core.estimation import mekf
 from fsw.core.estimation.cells.cell_set import light
 from fsw.core.estimation.cells.update import NO_CELLS, CellsUsed, faded, update_cells
-from fsw.core.estimation.error_dynamics import FAST_RADPS, KNOWN_RADPS, SLOW_RADPS, Driven
+from fsw.core.estimation.dynamics.error_dynamics import FAST_RADPS, KNOWN_RADPS, SLOW_RADPS, Driven
 from fsw.core.estimation.measurement import field_sampled
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig, with_frozen_parameters

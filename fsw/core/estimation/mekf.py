@@ -26,27 +26,19 @@ import numpy as np
 
 from fsw.core.algebra.quaternion import Quaternion, from_small_rotation, multiply, normalise
 from fsw.core.algebra.vector import ZERO, Vec3, add, dot, sub
-from fsw.core.estimation.error_dynamics import (
+from fsw.core.estimation.dynamics.error_dynamics import (
     FAST_RADPS,
-    Acting,
     Driven,
-    advanced,
     free_motion,
-    middle,
     process_noise,
     transition_matrix,
-    turn,
     with_age_along,
 )
+from fsw.core.estimation.dynamics.motion import Acting, advanced, middle, turn
 from fsw.core.estimation.kalman import LeanKalmanFilter, Matrix, Trace, carried, unexplained
 from fsw.core.estimation.measurement import field_prediction, sun_prediction
-from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.estimation.parameters import (
-    Parameters,
-    corrected_parameters,
-    estimated_dipole,
-    estimated_rotor,
-)
+from fsw.core.estimation.mekf_config import MekfConfig, piece_of_tick, pieces_of_tick
+from fsw.core.estimation.parameters import Parameters, corrected_parameters, estimated_dipole, estimated_rotor
 
 LAG_S = 60.0
 """Time over which innovations are averaged."""
@@ -133,9 +125,21 @@ def predict(
         config: the filter.
         doubted_am2: what that dipole is in doubt by, as in ``Driven``.
     """
+    count = pieces_of_tick(estimate.omega_body_radps, config.tick_s)
+    step = config if count == 1 else piece_of_tick(config, count)
+    driven = Driven(m_body_am2, doubted_am2)
+    for _ in range(count):
+        estimate = _predicted(estimate, e1_eci, b_eci_t, gravity_per_s2, driven, step)
+    return estimate
+
+
+def _predicted(
+    estimate: Estimate, e1_eci: Vec3, b_eci_t: Vec3, gravity_per_s2: float, driven: Driven, config: MekfConfig
+) -> Estimate:
+    """Over a tick or a piece of it."""
     h, parts = config.tick_s, config.layout
     q, omega, parameters, covariance, trace = estimate[:5]
-    m, rotor = m_body_am2, config.rotor
+    m, rotor = driven.m_body_am2, config.rotor
     if parts.dipole is not None or parts.coils is not None:
         m = estimated_dipole(m, parameters)
     if parts.inertia is not None:
@@ -143,10 +147,10 @@ def predict(
     acting = Acting(e1_eci, b_eci_t, gravity_per_s2, m, parameters.torque_body_nm, rotor)
     around_mid, motion = middle(q, omega, acting, h)
     rotation, omega_after = advanced(q, omega, motion, acting, h)
-    transition = transition_matrix(motion, around_mid, m_body_am2, rotor, config)
+    transition = transition_matrix(motion, around_mid, driven.m_body_am2, rotor, config)
 
     kalman = LeanKalmanFilter(covariance)
-    kalman.predict(F=transition, Q=process_noise(Driven(m_body_am2, doubted_am2), around_mid.b_t, config))
+    kalman.predict(F=transition, Q=process_noise(driven, around_mid.b_t, config))
     return Estimate(
         normalise(multiply(q, turn(rotation))),
         omega_after,

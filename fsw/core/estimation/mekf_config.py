@@ -2,11 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from math import ceil, sqrt
 
 import numpy as np
 
-from fsw.core.algebra.vector import ZERO, Mat3, Vec3, inverse
+from fsw.core.algebra.vector import ZERO, Mat3, Vec3, dot, inverse
 from fsw.core.estimation.cells.cell_set import CellSet
+from fsw.core.estimation.dynamics.torque_maps import TORQUES, TorqueMaps, cross_matrix, system_maps
 from fsw.core.estimation.kalman import Matrix
 from fsw.core.estimation.parameters import (
     MOST_CELLS,
@@ -18,7 +20,6 @@ from fsw.core.estimation.parameters import (
     Rotor,
     layout,
 )
-from fsw.core.estimation.torque_maps import TORQUES, TorqueMaps, cross_matrix, system_maps
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +36,7 @@ class MekfConfig:
     By measurement, field, Sun or both at once: ``..._sensitivity`` is the constant part of H, (3, n), and
     ``..._noise`` the covariance, (3, 3) or (6, 6). ``considered``: the states that no update changes.
     ``cells``: Sun cells in place of a Sun sensor.
+    ``pieces``: of so many equal pieces of a tick this is one, ``tick_s`` being its length.
     """
 
     rotor: Rotor
@@ -57,6 +59,42 @@ class MekfConfig:
     gate_nis: float
     considered: slice | None = None
     cells: CellSet | None = None
+    pieces: int = 1
+
+
+WHOLE_RAD = 0.3
+"""Up to this turn a tick is predicted at once."""
+PIECE_RAD, MOST_PIECES = 0.1, 32
+"""In a faster one by pieces of at most this turn; half a revolution, beyond which samples show another
+rate."""
+
+
+def pieces_of_tick(omega_radps: Vec3, tick_s: float) -> int:
+    """How many pieces of a tick are predicted one after the other at a rate; one where that is no number."""
+    square = dot(omega_radps, omega_radps)
+    if not square * tick_s * tick_s > WHOLE_RAD**2:
+        return 1
+    return ceil(min(sqrt(square) * tick_s / PIECE_RAD, MOST_PIECES))
+
+
+def piece_of_tick(config: MekfConfig, pieces: int) -> MekfConfig:
+    """The filter that predicts one of so many equal pieces of a tick; all together add the tick's noise."""
+    part, size = 1.0 / pieces, config.layout.size
+    noise = part * config.process_noise
+    noise[0:3, 0:3] *= part * part
+    noise[0:3, 3:6] *= part
+    noise[3:6, 0:3] *= part
+    identity = np.eye(6, size)
+    return replace(
+        config,
+        tick_s=part * config.tick_s,
+        process_noise=noise,
+        constant=identity + part * (config.constant - identity),
+        moving=part * config.moving,
+        driven=part * config.driven,
+        inverse_h=part * config.inverse_h,
+        pieces=pieces,
+    )
 
 
 def with_frozen_parameters(config: MekfConfig) -> MekfConfig:

@@ -8,7 +8,7 @@ import pytest
 from fsw.core.actuation.actuator import CoilView, update_view
 from fsw.core.actuation.dipoles import DipoleConfig
 from fsw.core.actuation.driven import driven
-from fsw.core.estimation.error_dynamics import Driven
+from fsw.core.estimation.dynamics.error_dynamics import Driven
 from fsw.core.gate.readings import NOTHING
 from fsw.core.laws.pulse_model import Pulse
 from fsw.wire.messages import CoilStatus

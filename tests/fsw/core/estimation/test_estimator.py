@@ -26,7 +26,7 @@ from hypothesis import strategies as st
 from fsw.core.algebra.quaternion import multiply, normalise, rotate
 from fsw.core.algebra.vector import ZERO, add, cross, norm, scale, unit
 from fsw.core.estimation import mekf
-from fsw.core.estimation.error_dynamics import NOT_DRIVEN, Driven
+from fsw.core.estimation.dynamics.error_dynamics import NOT_DRIVEN, Driven
 from fsw.core.estimation.estimator import (
     MAX_ELAPSED_TICKS,
     NONE_USED,

@@ -21,7 +21,7 @@ from estimator_samples import (
 from fsw.core.algebra.quaternion import rotate
 from fsw.core.algebra.vector import add, scale, unit
 from fsw.core.estimation import mekf
-from fsw.core.estimation.error_dynamics import NOT_DRIVEN
+from fsw.core.estimation.dynamics.error_dynamics import NOT_DRIVEN
 from fsw.core.estimation.estimator import (
     MAX_ELAPSED_TICKS,
     EstimatorState,

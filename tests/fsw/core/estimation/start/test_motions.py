@@ -5,7 +5,7 @@ import pytest
 
 from fsw.core.algebra.quaternion import multiply, normalise, rotate
 from fsw.core.algebra.vector import ZERO, inverse, unit
-from fsw.core.estimation.error_dynamics import Acting, advanced, middle, turn
+from fsw.core.estimation.dynamics.motion import Acting, advanced, middle, turn
 from fsw.core.estimation.parameters import Rotor
 from fsw.core.estimation.start.motions import Disturbed, Leg, crossed, flown, in_body, turned_by
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from fsw.core.algebra.vector import ZERO
-from fsw.core.estimation.error_dynamics import free_motion, turn, with_age_along
+from fsw.core.estimation.dynamics.error_dynamics import free_motion, with_age_along
+from fsw.core.estimation.dynamics.motion import turn
 from fsw.core.estimation.mekf import predict
 from fsw.core.estimation.parameters import NAMES, UNCHANGED_COILS, UNCHANGED_INERTIA
 
