@@ -6,13 +6,15 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from sim.campaign.claim import ClaimVerdict
+from sim.campaign.claim import ClaimVerdict, Study
 from sim.campaign.runner import StudyResult, run
 from sim.console import answer, say, warn
 from sim.errors import HarnessError
 from sim.junit import write_junit
-from sim.progress import progress
+from sim.progress import note, progress
 from sim.record.destination import check_file
+from sim.validate.flight_data import claims
+from sim.validate.flight_data.passes import CALIBRATED_BY
 from sim.validate.page import as_json, line, loose, render, suites, tally
 from sim.validate.reference import reference
 from sim.validate.registry import all_studies, choose_studies, find_repository
@@ -28,6 +30,7 @@ def validate(
     workers: int | None,
     satellites: int | None = None,
     junit: Path | None = None,
+    flight_data: Path | None = None,
 ) -> int:
     """Run the studies, print each outcome, write the page.
 
@@ -42,6 +45,7 @@ def validate(
         workers: processes; None: as many as there are cores.
         satellites: at most so many of each population; None: all.
         junit: file for the verdicts as JUnit XML; None: not written.
+        flight_data: run only the claims on the recorded passes in this folder.
 
     Returns:
         The exit code: 1 if a claim fails, else 0.
@@ -51,9 +55,9 @@ def validate(
     """
     began = time.monotonic()
     repository = find_repository(Path.cwd())
-    studies = reference.studies(folder) if folder is not None else all_studies(satellites)
+    studies = _studies(folder, flight_data, satellites)
     studies = choose_studies(studies, only, quick)
-    whole = folder is None and not only and not quick and satellites is None
+    whole = folder is None and flight_data is None and not only and not quick and satellites is None
     page = out or (_default_page(repository) if whole else None)
     for file in filter(None, (page, junit)):
         check_file(file)
@@ -75,9 +79,20 @@ def validate(
         write_junit(junit, "torquer validate", suites(finished))
     if far := loose(outcomes):
         warn(f"own limits more than ten times off, without a reason: {', '.join(far)}")
+    if flight_data is not None:
+        say(claims.NOT_CLAIMED)
     say(f"{tally(outcomes)}; {wall_s:.0f} s")
     answer({"wall_s": wall_s, "page": page, "claims": [as_json(outcome) for outcome in outcomes]})
     return int(any(outcome.verdict is ClaimVerdict.FAIL for outcome in outcomes))
+
+
+def _studies(folder: Path | None, flight_data: Path | None, satellites: int | None) -> list[Study]:
+    if folder is not None and flight_data is not None:
+        raise HarnessError("--reference and --flight-data each run nothing else: give one of them")
+    if flight_data is not None:
+        note(f"calibrating by {CALIBRATED_BY}")
+        return claims.studies(flight_data)
+    return reference.studies(folder) if folder is not None else all_studies(satellites)
 
 
 def _default_page(repository: Path | None) -> Path:

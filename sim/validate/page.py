@@ -10,6 +10,8 @@ import scipy
 from sim.campaign.claim import ClaimOutcome, ClaimVerdict, Spread
 from sim.campaign.runner import StudyResult
 from sim.junit import JunitCase
+from sim.validate.flight_data.passes import PassFigures
+from sim.validate.flight_data.table import as_table
 from sim.validate.reference.reference import FileResult
 
 _HEAD = """# Validation
@@ -40,6 +42,9 @@ def render(finished: Sequence[StudyResult], wall_s: float) -> str:
         lines += ["| reference file | rows | columns not used |", "|---|---|---|"]
         lines += [f"| {file.name} | {file.rows} | {', '.join(file.unused) or 'none'} |" for file in files]
         lines.append("")
+    passes = [result for study in finished for result in study.results if isinstance(result, PassFigures)]
+    if passes:
+        lines += [*as_table(passes), ""]
     lines += [f"Wall time {wall_s:.0f} s. {platform_line()}.", ""]
     return "\n".join(lines)
 

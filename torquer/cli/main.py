@@ -23,6 +23,10 @@ GROUPS = {
         "fsw": "Fly on a bus: answer the SYNC of a plant.",
         "board": "Run one board on a bus, until Ctrl-C.",
     },
+    "From bench to orbit": {
+        "calibrate": "Calibrate magnetometer, Sun cells and body by recorded telemetry.",
+        "telemetry": "Run the flight filter over recorded telemetry, judged by what it did not use.",
+    },
     "Look at a flight": {
         "watch": "Watch a bus, or a log at any pace; it only listens.",
         "report": "Rebuild summary.json and report.html of a run.",

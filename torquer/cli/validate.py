@@ -21,6 +21,12 @@ EXAMPLES = examples(
     help="Check against the reference files in this folder alone.",
 )
 @click.option(
+    "--flight-data",
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    help="Make the claims on recorded passes, s3_*.csv and tle.txt in this folder, alone.",
+)
+@click.option(
     "--only", multiple=True, metavar="ID", help="These claims alone, by the first words of their ids."
 )
 @click.option("--quick", is_flag=True, help="Leave out flights.")
@@ -38,6 +44,7 @@ EXAMPLES = examples(
 @sentences
 def validate(
     reference: Path | None,
+    flight_data: Path | None,
     only: tuple[str, ...],
     quick: bool,
     satellites: int | None,
@@ -48,4 +55,4 @@ def validate(
     """Check every published figure and reference: claim, source, our figure, verdict."""
     from sim.validate.command import validate
 
-    return validate(reference, only, out, quick, workers, satellites, junit)
+    return validate(reference, only, out, quick, workers, satellites, junit, flight_data)

@@ -54,6 +54,8 @@ def test_every_command_can_be_quiet_and_verbose(name):
         "report",
         "scenarios",
         "design",
+        "calibrate",
+        "telemetry",
         "compare",
         "campaign",
         "faults",

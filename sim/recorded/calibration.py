@@ -1,0 +1,120 @@
+"""What calibration knows of a satellite's sensors and body, and the file that carries it."""
+
+from math import sqrt
+from pathlib import Path
+from typing import Annotated, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, Strict
+from scipy.spatial.transform import Rotation
+
+from fsw.input.schema import Positive, Section, Square, Triple, read_toml, validated
+
+Array = NDArray[np.float64]
+
+_IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+class PassMagnetometerTable(Section):
+    """``[calibration.magnetometer]``: the field in body axes is matrix (raw - offset)."""
+
+    offset_nt: Triple = (0.0, 0.0, 0.0)
+    matrix: Square = _IDENTITY
+
+
+class PassCellTable(Section):
+    """``[[calibration.cell]]``: its current is full_scale times the cosine between face and Sun."""
+
+    name: str
+    face_body: Triple
+    full_scale: Positive
+
+
+class PassBodyTable(Section):
+    """``[calibration.body]``: moments of inertia as parts of the greatest, about axes that are turned.
+
+    ``principal_axes_turn_deg`` is the rotation vector that turns the body axes into the principal axes.
+    """
+
+    inertia_ratios: Annotated[tuple[Positive, Positive, Positive], Strict(False)] = (1.0, 1.0, 1.0)
+    principal_axes_turn_deg: Triple = (0.0, 0.0, 0.0)
+
+
+class PassCalibrationTable(Section):
+    """``[calibration]``."""
+
+    magnetometer: PassMagnetometerTable = PassMagnetometerTable()
+    cell: Annotated[tuple[PassCellTable, ...], Strict(False)] = Field(default=(), max_length=12)
+    body: PassBodyTable = PassBodyTable()
+
+
+class _File(Section):
+    calibration: PassCalibrationTable = PassCalibrationTable()
+    uncertainty: dict[str, Any] = Field(default_factory=dict)
+
+
+class KnownCell(NamedTuple):
+    """A Sun cell: its name, the normal of its face in body axes, its current at normal incidence."""
+
+    name: str
+    face_body: Array
+    full_scale: float
+
+
+class PassCalibration(NamedTuple):
+    """What is known of sensors and body.
+
+    ``inertia``: tensor in body axes, the greatest principal moment being 1; only ratios show without torque.
+    """
+
+    offset_nt: Array
+    matrix: Array
+    cells: tuple[KnownCell, ...]
+    inertia: Array
+
+    def field_nt(self, mag_nt: Array) -> Array:
+        """Samples of the magnetometer, (n, 3), as fields in body axes."""
+        field: Array = (mag_nt - self.offset_nt) @ self.matrix.T
+        return field
+
+    @property
+    def spin_axis(self) -> Array:
+        """The axis of greatest inertia, about which a body spins in the end; its largest part > 0."""
+        axis: Array = np.linalg.eigh(self.inertia)[1][:, -1]
+        return axis * float(np.copysign(1.0, axis[np.argmax(np.abs(axis))]))
+
+
+def read_calibration(path: Path) -> PassCalibration:
+    """The calibration in a TOML file.
+
+    Raises:
+        TableError: it cannot be read, a key is unknown, or a value is out of range.
+    """
+    return calibration(validated(_File, read_toml(path), str(path)).calibration)
+
+
+def calibration(table: PassCalibrationTable) -> PassCalibration:
+    """The values of a table; without one, raw samples of a body that is a sphere."""
+    cells = tuple(_cell(one) for one in table.cell)
+    ratios, turn = table.body.inertia_ratios, np.radians(table.body.principal_axes_turn_deg)
+    inertia = turned_inertia(np.array(ratios), turn)
+    return PassCalibration(
+        np.array(table.magnetometer.offset_nt), np.array(table.magnetometer.matrix), cells, inertia
+    )
+
+
+def turned_inertia(ratios: Array, turn_rad: Array) -> Array:
+    """The inertia tensor of these principal moments about the body axes turned so; the greatest is 1."""
+    axes = Rotation.from_rotvec(turn_rad).as_matrix()
+    inertia: Array = axes @ np.diag(ratios / np.max(ratios)) @ axes.T
+    return inertia
+
+
+UNCALIBRATED = calibration(PassCalibrationTable())
+
+
+def _cell(table: PassCellTable) -> KnownCell:
+    face = np.array(table.face_body)
+    length = sqrt(float(face @ face))
+    return KnownCell(table.name, face / length if length > 0.0 else face, table.full_scale)

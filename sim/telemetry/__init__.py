@@ -1,0 +1,1 @@
+"""The flight filter over recorded telemetry, judged by what it did not use."""

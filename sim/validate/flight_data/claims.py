@@ -1,0 +1,201 @@
+"""The claims on flight data, and the passes that miss them, with the cause.
+
+Every limit is judged over the passes whose motion the judge believes; of the others no motion is claimed.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+from sim.campaign.claim import Claim, ClaimOutcome, Study
+from sim.campaign.study import spread_of
+from sim.validate.flight_data.passes import (
+    CALIBRATED_BY,
+    TWO_SOLUTIONS,
+    Believed,
+    PassFigures,
+    believed,
+    carried,
+    files,
+    judged,
+)
+
+SOURCE = "SUCHAI-3 in orbit, 2022 to 2024: github.com/spel-uchile/Experimental-Attitude-Dataset (MIT)"
+NOT_CLAIMED = (
+    "Not claimed: the absolute attitude, which nothing on board shows to this accuracy; how coils act, which "
+    "took no part; that normalised innovations are of the size that the filter expects. The data are public, "
+    "so that this is no blind test; calibration and inertia ratios are those of 2023-12-11 alone."
+)
+GYRO_SCALE, GYRO_BIAS_DEGPS = 0.985, -0.20
+"""gyro_y = 0.985 rate_y - 0.20 deg/s, over 22 passes."""
+LONG_ROWS, SHORT_ROWS = 1000, 150
+
+WEAK = "field of 20 uT, in which 1 uT of the sensor's own error is 3 deg, and 200 s to learn from"
+MOMENTS = "gaps and bursts: times are whole seconds, and a second of doubt is a turn of up to 75 deg"
+OLD = "elements 14 to 16 days old: |B| off by 2 uT, and the bias along the axis takes it up"
+
+
+MISSES: Mapping[str, Mapping[str, str]] = MappingProxyType({})
+"""By claim, the passes that miss it, with the cause."""
+
+
+class Limit(NamedTuple):
+    """A claim, and the figure of a pass that it is on; None where it is on none of that pass."""
+
+    claim: Claim
+    figure: Callable[[PassFigures], float | None]
+
+
+def studies(folder: Path) -> list[Study]:
+    """The passes of a folder with the calibration by one of them.
+
+    Raises:
+        HarnessError: the folder does not hold it, or a file is malformed.
+    """
+    paths, known = files(folder), carried(folder)
+    doubled = [path for path in paths if path.stem in TWO_SOLUTIONS]
+    return [
+        Study("flight-data", tuple(partial(judged, path, known) for path in paths), conclude),
+        Study("two-solutions", tuple(partial(believed, path, known) for path in doubled), conclude_believed),
+    ]
+
+
+def conclude(found: Sequence[Any]) -> list[ClaimOutcome]:
+    """The outcome of each limit: the worst of the passes that are not known to miss it."""
+    return [outcome for limit in LIMITS if (outcome := _outcome(limit, found)) is not None]
+
+
+def _outcome(limit: Limit, found: Sequence[PassFigures]) -> ClaimOutcome | None:
+    misses = MISSES.get(limit.claim.id.removeprefix("flight-data."), {})
+    figures = {one.name: limit.figure(one) for one in found}
+    values = {name: value for name, value in figures.items() if value is not None}
+    counted = {name: value for name, value in values.items() if name not in misses}
+    if not counted:
+        return None
+    worst = max(counted, key=lambda name: counted[name])
+    said = [f"{name} {values[name]:.3g}: {cause}" for name, cause in misses.items() if name in values]
+    where = "; ".join([f"worst {worst}", *(f"missed by {one}" for one in said)])
+    return limit.claim.judge(counted[worst], where, spread_of(limit.claim, list(values.values())))
+
+
+def conclude_believed(found: Sequence[Any]) -> list[ClaimOutcome]:
+    """No wrong motion is believed."""
+    claim = Claim(
+        "two-solutions",
+        "Wrong motions, which the field alone allows, that were reported as converged",
+        SOURCE,
+        "1",
+        high=0.0,
+    )
+    results: list[Believed] = list(found)
+    where = "; ".join(
+        f"{one.name}: {one.judged} offered, {', '.join(one.wrong) or 'none'}" for one in results
+    )
+    return [claim.judge(float(sum(len(one.wrong) for one in results)), where)]
+
+
+def _of(key: str) -> Callable[[PassFigures], float | None]:
+    """A figure of the passes that are believed."""
+    return lambda one: one.found[key] if one.found["converged"] else None
+
+
+def _if(condition: Callable[[PassFigures], bool], figure: Callable[[PassFigures], float | None]) -> Any:  # noqa: ANN401
+    return lambda one: figure(one) if condition(one) else None
+
+
+def _carried(one: PassFigures) -> bool:
+    return one.name != CALIBRATED_BY
+
+
+def _in_2024(one: PassFigures) -> bool:
+    return one.name.startswith("s3_2024")
+
+
+def _raw_gyro(one: PassFigures) -> float | None:
+    gyro = one.found["gyro_y_degps_mean"]
+    if not one.found["converged"] or gyro is None:
+        return None
+    return float(abs(one.found["rate_y_degps_mean"] - gyro) / (0.025 * abs(gyro) + 0.1))
+
+
+def _corrected_gyro(one: PassFigures) -> float | None:
+    gyro = one.found["gyro_y_degps_mean"]
+    if not one.found["converged"] or gyro is None:
+        return None
+    return float(abs(one.found["rate_y_degps_mean"] - (gyro - GYRO_BIAS_DEGPS) / GYRO_SCALE))
+
+
+def _coast(horizon: str) -> Callable[[PassFigures], float | None]:
+    return lambda one: one.found["coast_deg_rms"][horizon] if one.found["converged"] else None
+
+
+def _azimuth(key: str) -> Callable[[PassFigures], float | None]:
+    def figure(one: PassFigures) -> float | None:
+        value = one.found["sun_azimuth_deg"][key]
+        return abs(value) if one.found["converged"] and value is not None else None
+
+    return figure
+
+
+def _unbelieved(one: PassFigures) -> float | None:
+    return float(not one.found["converged"])
+
+
+def _claim(name: str, statement: str, unit: str, high: float) -> Claim:
+    return Claim(f"flight-data.{name}", statement, SOURCE, unit, high=high, wide="limit of the requirement")
+
+
+LIMITS = (
+    Limit(
+        _claim("own-fit", "|B| after 9 parameters fitted to a pass of 1000 to 2000 s", "nT RMS", 700.0),
+        lambda one: one.own_fit_nt if 990.0 < one.span_s < 2100.0 else None,
+    ),
+    Limit(
+        _claim("own-fit-orbit", "|B| after 9 parameters fitted to an orbit or two", "nT RMS", 3000.0),
+        lambda one: one.own_fit_nt if one.span_s > 5000.0 else None,
+    ),
+    Limit(
+        _claim("strength", "|B| with the carried calibration and running bias, 2023", "nT RMS", 1000.0),
+        _if(lambda one: not _in_2024(one), _of("field_norm_nt_rms")),
+    ),
+    Limit(
+        _claim("strength-2024", "|B| with the carried calibration and running bias, 2024", "nT RMS", 2500.0),
+        _if(_in_2024, _of("field_norm_nt_rms")),
+    ),
+    Limit(
+        _claim("direction", "Field direction ahead of each sample, pass of the calibration", "deg RMS", 2.0),
+        _if(lambda one: not _carried(one), _of("field_direction_deg_rms")),
+    ),
+    Limit(
+        _claim("direction-carried", "The same, calibration carried, 1000 rows and more", "deg RMS", 2.5),
+        _if(lambda one: _carried(one) and one.found["rows"] >= LONG_ROWS, _of("field_direction_deg_rms")),
+    ),
+    Limit(
+        _claim("direction-short", "The same, passes of 150 to 300 rows", "deg RMS", 3.0),
+        _if(lambda one: SHORT_ROWS <= one.found["rows"] < LONG_ROWS, _of("field_direction_deg_rms")),
+    ),
+    Limit(
+        _claim("rate", "Spin rate less raw gyro, in parts of 2.5 % + 0.1 deg/s", "1", 1.0),
+        _raw_gyro,
+    ),
+    Limit(
+        _claim("rate-corrected", "Spin rate less gyro as corrected over 22 passes", "deg/s", 0.3),
+        _corrected_gyro,
+    ),
+    Limit(_claim("coast-60", "Coasting 60 s", "deg RMS", 3.0), _coast("60")),
+    Limit(_claim("coast-120", "Coasting 120 s", "deg RMS", 5.0), _coast("120")),
+    Limit(
+        _claim("azimuth-scatter", "Scatter of the Sun's azimuth by cells held back", "deg RMS", 5.0),
+        _azimuth("rms"),
+    ),
+    Limit(
+        _claim("azimuth", "Median of the Sun's azimuth by cells held back, size", "deg", 15.0),
+        _azimuth("median"),
+    ),
+    Limit(
+        _claim("believed", "Passes of 150 rows and more whose motion is not told", "1", 0.0),
+        _if(lambda one: one.found["rows"] >= SHORT_ROWS, _unbelieved),
+    ),
+)

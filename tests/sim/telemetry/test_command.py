@@ -1,0 +1,77 @@
+"""``torquer telemetry``: words, document, page and exit codes; bad input is one sentence."""
+
+import json
+
+import pytest
+from click.testing import CliRunner
+from recorded_samples import DATA, TLE
+
+from torquer.cli.main import main
+
+PASS = DATA / "s3_20240426T041442Z.csv"
+CALIBRATION = DATA / "calibration.toml"
+
+
+@pytest.fixture(scope="module")
+def short(tmp_path_factory):
+    """A minute of a pass: fast to follow, too short to be believed."""
+    path = tmp_path_factory.mktemp("short") / "short.csv"
+    path.write_text("\n".join(PASS.read_text().splitlines()[:71]) + "\n")
+    return path
+
+
+def run(*arguments):
+    return CliRunner().invoke(main, ["telemetry", *map(str, arguments)])
+
+
+def test_the_document_has_the_keys_that_are_documented(short):
+    result = run(short, "--tle", TLE, "--calibration", CALIBRATION, "--json")
+    assert result.exit_code == 1
+    found = json.loads(result.stdout)
+    assert found["command"] == "telemetry"
+    assert found["converged"] is False
+    assert found["rows"] == 70
+    for key in ("field_norm_nt_rms", "field_direction_deg_rms", "rate_y_degps_mean", "gyro_y_degps_mean"):
+        assert isinstance(found[key], float)
+    assert set(found["coast_deg_rms"]) == {"10", "30", "60", "120"}
+    assert found["coast_deg_rms"]["120"] is None
+    assert found["sun_azimuth_deg"] == {"median": None, "rms": None, "rows": 0}
+
+
+def test_the_words_say_what_was_not_used_and_the_page_is_written(short, tmp_path):
+    page = tmp_path / "page.html"
+    result = run(short, "--tle", TLE, "--calibration", CALIBRATION, "--page", page)
+    assert result.exit_code == 1
+    assert "by the gyro, not used, 64." in result.stdout
+    assert "not converged: " in result.stdout
+    text = page.read_text()
+    assert "Not claimed: the absolute attitude" in text
+    assert "<svg" in text
+    assert "short" in text
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("none.csv", "--tle", TLE), "none.csv: cannot be read (No such file or directory)"),
+        ((PASS, "--tle", PASS), "there is no two-line element set in it"),
+        ((PASS,), "Missing option '--tle'"),
+        ((PASS, "--tle", TLE, "--calibration", TLE), "not TOML"),
+        ((TLE, "--tle", TLE), "there is no column 'utc_unix_s'"),
+        ((PASS, "--tle", TLE, "--start", "3"), "3.0 is not in the range"),
+        ((PASS, "--tle", TLE, "--page", "/proc/none/x.html"), "cannot be written"),
+    ],
+)
+def test_bad_input_is_one_sentence(arguments, said):
+    result = run(*arguments)
+    assert result.exit_code == 2
+    assert said in result.stderr
+    assert len(result.stderr.splitlines()) == 1
+    assert result.stdout == ""
+
+
+def test_old_elements_are_warned_of(short, tmp_path):
+    old = tmp_path / "old.txt"
+    old.write_text("\n".join(TLE.read_text().splitlines()[:3]))
+    result = run(short, "--tle", old, "--calibration", CALIBRATION)
+    assert "the nearest element set is 136 days away: its field may be off" in result.stderr
