@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.progress import progress
 from sim.recorded.along import Along
 from sim.recorded.calibration import KnownCell, PassCalibration
 from sim.telemetry.follow import Followed, directions_body, without_sample
@@ -117,12 +118,14 @@ def coasts_deg(around: Along, known: PassCalibration, followed: Followed, settle
     starts = np.linspace(
         settled, len(followed.ticks) - 1, min(COASTS, max(2, int(span_s / 20.0))), endpoint=False
     )
-    for start in starts.astype(int).tolist():
-        for ticks, angle_deg in without_sample(around, known, followed.ticks[start], followed.config):
-            elapsed_s = ticks * around.tick_s
-            if elapsed_s > HORIZONS_S[-1]:
-                break
-            for horizon in HORIZONS_S:
-                if abs(elapsed_s - horizon) < 0.5 * around.tick_s:
-                    found[horizon].append(angle_deg)
+    with progress(f"{around.recorded.name}, coasting", len(starts)) as watch:
+        for done, start in enumerate(starts.astype(int).tolist()):
+            for ticks, angle_deg in without_sample(around, known, followed.ticks[start], followed.config):
+                elapsed_s = ticks * around.tick_s
+                if elapsed_s > HORIZONS_S[-1]:
+                    break
+                for horizon in HORIZONS_S:
+                    if abs(elapsed_s - horizon) < 0.5 * around.tick_s:
+                        found[horizon].append(angle_deg)
+            watch(done)
     return {horizon: np.array(angles) for horizon, angles in found.items()}

@@ -15,8 +15,8 @@ def test_the_file_of_a_satellite_in_orbit():
     assert all(np.linalg.norm(cell.face_body) == pytest.approx(1.0) for cell in known.cells)
     assert np.linalg.eigvalsh(known.inertia) == pytest.approx([0.1784, 0.9987, 1.0], abs=1e-9)
     assert known.spin_axis == pytest.approx([0.0895, 0.9956, 0.026], abs=1e-3)
-    raw = np.array([[98266.4 + 1000.0, -30675.3, -28062.1]])
-    assert known.field_nt(raw)[0] == pytest.approx(1000.0 * known.matrix[:, 0], abs=0.1)
+    raw = known.offset_nt + np.array((1000.0, 0.0, 0.0))
+    assert known.field_nt(raw[None])[0] == pytest.approx(1000.0 * known.matrix[:, 0], abs=0.1)
 
 
 def test_without_a_calibration_samples_are_as_they_are():
