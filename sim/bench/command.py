@@ -94,6 +94,11 @@ def hil(settings: HilSettings) -> int:
     """
     if settings.out is not None:
         check_folder(settings.out, (NUMBERS, PAGE))
+    if settings.scenario.sensors.cells is not None:
+        raise HarnessError(
+            "the scenario has Sun cells, whose board is no process of its own: fly it by torquer sil, or "
+            "take out [sensors.cells]: it then has a Sun sensor"
+        )
     if settings.stimulus != "plant" and settings.scenario.knowledge == "perfect":
         raise HarnessError("a scenario with knowledge = 'perfect' needs the plant: --stimulus plant")
     with (

@@ -20,7 +20,7 @@ def found(complete, begun, command="sil", parameter=None):
 
 
 def test_scenarios_by_name_else_files():
-    assert found(completions.of_scenarios, "cube") == ["cubesat3u", "cubesat6u"]
+    assert found(completions.of_scenarios, "cube") == ["cubesat-cells", "cubesat3u", "cubesat6u"]
     assert found(completions.of_scenarios, "my-") == ["my-"]
 
 
