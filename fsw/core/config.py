@@ -3,8 +3,10 @@
 from dataclasses import dataclass
 
 from fsw.core.actuation.actuator import ActuatorConfig
+from fsw.core.actuation.own_field import OwnField
 from fsw.core.estimation.estimator import EstimatorConfig
 from fsw.core.fdir.fdir import FdirConfig
+from fsw.core.gate.calibration import NO_CALIBRATION, Calibration
 from fsw.core.gate.second_sender import SecondSenderConfig
 from fsw.core.laws.interface import ControlConfig
 from fsw.core.modes import ModeConfig
@@ -29,3 +31,5 @@ class FlightConfig:
     second_sender: SecondSenderConfig
     stale_after_ticks: int
     event_spacing_ticks: int
+    calibration: Calibration = NO_CALIBRATION
+    own_field: OwnField | None = None

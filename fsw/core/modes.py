@@ -91,20 +91,21 @@ def judge(
     attitude: Attitude,
     spin_radps: float,
     tripped: bool,
-    has_field: bool,
+    can_act: bool,
     state: ModeState,
     config: ModeConfig,
 ) -> ModeConditions:
     """The conditions of the table at this tick; rates are relative to the spin of the setpoint.
 
-    Without a field from the magnetometer (``has_field``) and without an attitude no law can act.
+    ``can_act``: there is a field from the magnetometer, or the law needs none; otherwise, and without an
+    attitude, no law can act.
     """
     q0, q1, q2, q3 = attitude.q_body_from_orbit
     cosine = q0 * q0 + q1 * q1 - q2 * q2 - q3 * q3 if config.axis_only else 2.0 * q0 * q0 - 1.0
     w1, w2, w3 = attitude.omega_body_orbit_radps
     rate = norm((w1 - spin_radps, w2, w3))
     valid = attitude.valid
-    blind = not (valid or has_field)
+    blind = not (valid or can_act)
     return ModeConditions(
         tripped=tripped,
         clear=not (tripped or blind or state.held) and state.trips < config.trips_to_stay_safe,

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from fsw.core import telemetry
-from fsw.core.actuation import pulses
+from fsw.core.actuation import own_field, pulses
 from fsw.core.actuation.actuator import actuate, update_view, wait_ticks
 from fsw.core.actuation.driven import driven
 from fsw.core.algebra.quaternion import rotate
@@ -18,7 +18,7 @@ from fsw.core.estimation.samples import usable_field, usable_sun
 from fsw.core.fdir import fdir
 from fsw.core.fdir.fdir import Evidence
 from fsw.core.fdir.sensors.plausibility import Findings
-from fsw.core.gate import second_sender
+from fsw.core.gate import calibration, second_sender
 from fsw.core.gate.readings import Readings, admit
 from fsw.core.gate.sync_watch import Belief, SyncWatch, judge, near
 from fsw.core.laws import by_mode
@@ -102,7 +102,8 @@ def _begin(
     if state.tick < 0:
         state = state._replace(pulses=pulses.boot(tick, timing), field_tick=tick, status_tick=tick)
     elif state.tick < tick - 1:
-        state = state._replace(pulses=pulses.delay(state.pulses, tick, tick - state.tick - 1))
+        timers = pulses.delay(state.pulses, tick, tick - state.tick - 1)
+        state = state._replace(pulses=timers, coil=state.coil._replace(past_am2=()))
     return state, inbox
 
 
@@ -112,9 +113,9 @@ def _gate(
     """Accept what the boards sent, and compare the coil driver's currents with the requests."""
     tick = inbox.tick
     readings, gate = admit(inbox.frames, state.gate)
+    readings = calibration.calibrated(readings, config.calibration)
     view = update_view(state.coil, readings, tick, config.coils)
-    if view.idle_ticks <= config.estimator.blank_ticks:
-        readings = readings._replace(quiet=False)
+    view, readings = own_field.taken_off(view, readings, config.estimator.blank_ticks, config.own_field)
     expected_s = config.epoch_unix_s + tick // config.tick_hz
     state = state._replace(
         tick=tick,
@@ -223,7 +224,7 @@ def _schedule(
     )
     memory = demand.memory if demand is not None else ()
     state = state._replace(sample=law_input.sample, memory=memory, pulses=timers, coil=view)
-    return state, [request] if request is not None else []
+    return state, [] if request is None else [calibration.for_outputs(request, config.calibration)]
 
 
 def _report(

@@ -2,6 +2,7 @@
 
 from fsw.core import modes
 from fsw.core.config import FlightConfig
+from fsw.core.laws.table import open_loop
 from fsw.core.monitors import Monitor, MonitorInput, first_violation
 from fsw.core.state import FlightState
 
@@ -27,9 +28,9 @@ def supervise(state: FlightState, config: FlightConfig) -> tuple[FlightState, Mo
         stale_after_ticks=config.stale_after_ticks,
     )
     violated = first_violation(watched)
-    has_field = not state.health.sensors.field.fault
+    can_act = not state.health.sensors.field.fault or open_loop(state.setpoint)
     situation = modes.judge(
-        state.attitude, state.setpoint.spin_radps, violated is not None, has_field, state.modes, config.modes
+        state.attitude, state.setpoint.spin_radps, violated is not None, can_act, state.modes, config.modes
     )
     after = modes.advance(state.modes, situation, state.tick, config.modes)
     return state if after is state.modes else state._replace(modes=after), violated

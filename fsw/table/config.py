@@ -5,7 +5,7 @@ from math import ceil, cos, radians
 from fsw.core.actuation.actuator import ActuatorConfig
 from fsw.core.actuation.dipoles import DipoleConfig
 from fsw.core.actuation.pulses import PulseConfig, pulse_timing
-from fsw.core.algebra.vector import inverse, product
+from fsw.core.algebra.vector import inverse, product, transpose
 from fsw.core.config import FlightConfig
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.fdir.coils.health import CoilHealthConfig
@@ -16,6 +16,7 @@ from fsw.core.fdir.sensors.credibility import credibility_config
 from fsw.core.fdir.sensors.health import SensorConfig
 from fsw.core.gate.second_sender import SecondSenderConfig
 from fsw.core.laws.interface import ControlConfig, Setpoint
+from fsw.core.laws.pulse_model import AXES
 from fsw.core.laws.table import LAWS
 from fsw.core.modes import TABLE, ModeConfig
 from fsw.core.orbit.ephemeris import EphemerisModel, ephemeris_model
@@ -23,6 +24,7 @@ from fsw.core.orbit.field import FieldKind
 from fsw.core.orbit.propagation import Orbit, circular_orbit, sgp4_orbit
 from fsw.core.rates import RateGroup, RateTable
 from fsw.input.schema import TableError
+from fsw.table.calibration import calibration, coil_axes, own_field
 from fsw.table.estimator import estimator_config, plausibility_config
 from fsw.table.own_law import with_own_law
 from fsw.table.schedules import planned_pulses, schedules
@@ -53,6 +55,8 @@ def flight_config(table: FlightTable) -> FlightConfig:
             estimator=estimator,
             control=_control(table, orbit),
             coils=ActuatorConfig(timing, _dipoles(table)),
+            calibration=calibration(table.calibration),
+            own_field=own_field(table.calibration.coils, table.coils, tick_hz),
             fdir=_fdir(table, timing, estimator.mekf),
             modes=_modes(table.modes, tick_hz),
             rates=_rates(table.telemetry, tick_hz),
@@ -123,7 +127,9 @@ def _dipoles(table: FlightTable) -> DipoleConfig | None:
     if table.coils.driver == "pulsed":
         return None
     genetic = table.control.minimiser == "genetic"
-    return DipoleConfig(_full_scale(table.coils), table.body.inertia, genetic)
+    columns = coil_axes(table.calibration.coils)
+    matrices = (transpose(columns), inverse(transpose(columns))) if columns != AXES else (None, None)
+    return DipoleConfig(_full_scale(table.coils), table.body.inertia, genetic, *matrices)
 
 
 def _full_scale(coils: CoilTable) -> float:
@@ -173,6 +179,7 @@ def _pulses(table: FlightTable) -> PulseConfig:
         leak_s=table.control.leak_s,
         rate_metric=product(inverse_j, inverse_j),
         energy_metric=inverse_j,
+        coil_axes=coil_axes(table.calibration.coils),
     )
 
 

@@ -95,7 +95,7 @@ def planned_pulses(
     pulses_s, after_s = np.arange(searched) * step_s, searched * step_s - 0.5 * timing.pulse_s
     wanted_s = [*pulses_s, *(pulses_s + 0.5 * step_s), *(after_s + 0.5 * orbit_s / STEPS + steps_s)]
     return PulseModel(
-        *choices(timing.levels_am2, timing.pulse_s, inverse(table.body.inertia)),
+        *choices(timing.levels_am2, timing.pulse_s, inverse(table.body.inertia), timing.coil_axes),
         step_ticks,
         rest,
         rounded_problem(problem),

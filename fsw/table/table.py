@@ -23,6 +23,7 @@ from fsw.input.schema import (
     read_toml,
     validated,
 )
+from fsw.table.calibration import CalibrationTable
 from fsw.table.cells import CellTable
 from fsw.table.own_law import named
 from fsw.table.sections import (
@@ -61,6 +62,7 @@ class FlightTable(Section):
     modes: ModesTable
     fdir: FdirTable
     telemetry: TelemetryTable
+    calibration: CalibrationTable = CalibrationTable()
 
     @model_validator(mode="after")
     def _bounds_can_hold(self) -> Self:
@@ -80,6 +82,16 @@ class FlightTable(Section):
                 2.0 * bound_nm, "from one bound of the torque, uncertainty.torque_nm, to the other"
             )
         check_bounds(self.uncertainty, ceilings)
+        return self
+
+    @model_validator(mode="after")
+    def _own_field_is_of_pulses(self) -> Self:
+        coils = self.calibration.coils
+        if coils is not None and coils.field_nt_per_am2 is not None and self.coils.driver == "continuous":
+            raise ValueError(
+                "calibration.coils.field_nt_per_am2 is not allowed with coils.driver = 'continuous': the "
+                "magnetometer samples while it is off"
+            )
         return self
 
     @model_validator(mode="after")
@@ -109,6 +121,9 @@ class FlightTable(Section):
                 del values["uncertainty"][key]
         if self.cells is None:
             del values["cells"]
+        values |= {"calibration": self.calibration.model_dump(mode="json", exclude_none=True)}
+        if not values["calibration"]:
+            del values["calibration"]
         if self.control.own:
             values["control"]["law"] = self.control.law_name
         else:

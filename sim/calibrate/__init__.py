@@ -1,1 +1,1 @@
-"""Calibration of magnetometer, Sun cells and body by what was recorded; and what the data cannot tell."""
+"""Calibration of sensors, coils and body by what was sent or recorded; and what the data cannot tell."""

@@ -7,11 +7,13 @@ from typing import Literal
 from hil_stub.coils.coil_driver import CoilLimits
 from sim.plant.rotation import ONES, ZERO, Mat3, Quaternion, Vec3
 from sim.plant.sensor_config import (
+    AS_NAMED,
     PERFECT_MAGNETOMETER,
     PERFECT_SUN_SENSOR,
     MagnetometerConfig,
     SunCellsConfig,
     SunSensorConfig,
+    Wiring,
 )
 
 FieldModel = Literal["igrf14", "tilted_dipole", "direct_dipole"]
@@ -192,6 +194,7 @@ class CoilConfig:
         continuous: the continuous driver; None: one that gives pulses of the levels.
         misalignment_rad: by coil, the rotation vector that turns its axis out of the body axis, body axes.
         remanence_part: of the dipole of a coil's last pulse, which it keeps until its next.
+        wiring: by output of the driver, the number of the body axis of its coil, negative for its opposite.
 
     Raises:
         ValueError: the levels do not rise from above zero, or a quantity is out of range.
@@ -204,6 +207,7 @@ class CoilConfig:
     continuous: ContinuousConfig | None = None
     misalignment_rad: Mat3 = (ZERO, ZERO, ZERO)
     remanence_part: float = 0.0
+    wiring: Wiring = AS_NAMED
 
     def __post_init__(self) -> None:
         low, middle, high = self.levels_am2

@@ -5,6 +5,9 @@ from math import pi
 
 from sim.plant.rotation import ONES, ZERO, Mat3, Vec3
 
+Wiring = tuple[int, int, int]
+"""By channel or output, the number of the axis it belongs to, negative for the other sense."""
+AS_NAMED: Wiring = (1, 2, 3)
 NO_COUPLING: Mat3 = (ZERO, ZERO, ZERO)
 
 
@@ -22,6 +25,7 @@ class MagnetometerConfig:
         saturation_t: largest magnitude of an axis; beyond it the sample is not valid.
         coil_coupling_t_per_am2: column j is the field at the sensor, body axes, per dipole along body axis j.
         latency_s: age of the values in a sample.
+        wiring: by channel, the number of the sensor axis that it shows, negative for its opposite.
     """
 
     noise_t: float = 0.0
@@ -33,6 +37,7 @@ class MagnetometerConfig:
     saturation_t: float = 65e-6
     coil_coupling_t_per_am2: Mat3 = NO_COUPLING
     latency_s: float = 0.0
+    wiring: Wiring = AS_NAMED
 
 
 @dataclass(frozen=True, slots=True)

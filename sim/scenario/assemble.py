@@ -14,7 +14,7 @@ from sim.plant.config import (
     PlantConfig,
     PlateConfig,
 )
-from sim.plant.sensor_config import CellConfig, MagnetometerConfig, SunCellsConfig, SunSensorConfig
+from sim.plant.sensor_config import AS_NAMED, CellConfig, MagnetometerConfig, SunCellsConfig, SunSensorConfig
 from sim.scenario.coil_limits import coil_limits
 from sim.scenario.schema import Scenario
 from sim.scenario.sections import CellsSection
@@ -113,6 +113,7 @@ def _coils(scenario: Scenario) -> CoilConfig:
         continuous,
         (_radians(first), _radians(second), _radians(third)),
         scenario.disturbance.remanence_part,
+        coils.wiring or AS_NAMED,
     )
 
 
@@ -137,6 +138,7 @@ def _magnetometer(scenario: Scenario) -> MagnetometerConfig:
         saturation_t=section.saturation_nt * NT,
         coil_coupling_t_per_am2=(_scaled(first, NT), _scaled(second, NT), _scaled(third, NT)),
         latency_s=section.latency_s,
+        wiring=section.wiring or AS_NAMED,
     )
 
 

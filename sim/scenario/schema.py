@@ -19,9 +19,7 @@ from fsw.core.orbit.tle import tle_elements
 from fsw.input.near import did_you_mean
 from fsw.input.schema import (
     Nested,
-    Positive,
     Section,
-    Square,
     TableError,
     Triple,
     merge,
@@ -31,7 +29,7 @@ from fsw.input.schema import (
 from fsw.input.toml_text import MOST_LEVELS, BoundsError, parse_toml
 from fsw.table import table as onboard
 from fsw.table.own_law import named
-from fsw.table.sections import CIRCULAR_KEYS, CoilTable, ControlTable, TimeTable
+from fsw.table.sections import CIRCULAR_KEYS, ControlTable, TimeTable
 from fsw.table.table import FlightTable
 from sim.faults.section import Faults
 from sim.scenario.names import Name
@@ -40,6 +38,7 @@ from sim.scenario.requirements import Requirements, expectation
 from sim.scenario.sections import (
     DisturbanceSection,
     ScenarioBody,
+    ScenarioCoils,
     ScenarioOrbit,
     SensorsSection,
     onboard_cells,
@@ -76,22 +75,6 @@ class InitialState(Section):
         if not any(self.axis):
             raise ValueError("axis must not be zero")
         return self
-
-
-class ScenarioCoils(CoilTable):
-    """Limits and levels, and the physics of coil and driver.
-
-    ``misalignment_deg`` holds, by coil, the rotation vector that turns its axis, body axes. By
-    ``resistance_ohm``, that of each coil, the energy lost in them is judged.
-    """
-
-    pulse_s: float = Field(default=3.0, gt=0.0, le=3.0)
-    backoff_s: float = Field(default=100.0, ge=0.0, le=160.0)
-    backoff: Literal["shared", "per_coil"] = "shared"
-    time_constant_s: Positive = 0.01
-    dipole_scale: Triple = (1.0, 1.0, 1.0)
-    misalignment_deg: Square = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-    resistance_ohm: Positive | None = None
 
 
 class PlantSection(Section):

@@ -1,16 +1,25 @@
 """Sections of a scenario with keys that only the plant uses: orbit, surface, sensors, disturbances."""
 
-from typing import Annotated, Self
+from typing import Annotated, Literal, Self
 
-from pydantic import Field, Strict, model_validator
+from pydantic import AfterValidator, Field, Strict, model_validator
 
-from fsw.input.schema import Nested, NotNegative, Positive, Section, Triple
+from fsw.input.schema import Nested, NotNegative, Positive, Section, Square, Triple
 from fsw.table.cells import CellShapes
-from fsw.table.sections import BodyTable, OrbitTable
+from fsw.table.sections import BodyTable, CoilTable, OrbitTable
 
 Part = Annotated[float, Field(ge=0.0, le=1.0)]
 Skew = Annotated[float, Field(ge=-10.0, le=10.0)]
 Latency = Annotated[float, Field(ge=0.0, le=60.0)]
+
+
+def _signed_axes(wiring: tuple[int, int, int]) -> tuple[int, int, int]:
+    if sorted(map(abs, wiring)) != [1, 2, 3]:
+        raise ValueError("must be 1, 2 and 3 in any order, each with either sign")
+    return wiring
+
+
+Wiring = Annotated[tuple[int, int, int], Strict(False), AfterValidator(_signed_axes)]
 
 
 class ScenarioOrbit(OrbitTable):
@@ -47,10 +56,29 @@ class ScenarioBody(BodyTable):
     plates: Annotated[tuple[PlateSection, ...], Strict(False)] = ()
 
 
+class ScenarioCoils(CoilTable):
+    """Limits and levels, and the physics of coil and driver.
+
+    ``misalignment_deg`` holds, by coil, the rotation vector that turns its axis, body axes; ``wiring``, by
+    output of the driver, the axis of its coil, negative for its opposite. By ``resistance_ohm``, that of each
+    coil, the energy lost in them is judged.
+    """
+
+    pulse_s: float = Field(default=3.0, gt=0.0, le=3.0)
+    backoff_s: float = Field(default=100.0, ge=0.0, le=160.0)
+    backoff: Literal["shared", "per_coil"] = "shared"
+    time_constant_s: Positive = 0.01
+    dipole_scale: Triple = (1.0, 1.0, 1.0)
+    misalignment_deg: Square = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    resistance_ohm: Positive | None = None
+    wiring: Wiring | None = None
+
+
 class MagnetometerSection(Section):
     """Physics of the magnetometer, body axes.
 
-    ``non_orthogonality_deg`` is what the angles xy, xz and yz between its axes lack of a right angle.
+    ``non_orthogonality_deg`` is what the angles xy, xz and yz between its axes lack of a right angle,
+    ``wiring``, by channel, the sensor axis that it shows, negative for its opposite.
     """
 
     noise_nt: NotNegative = 200.0
@@ -66,6 +94,7 @@ class MagnetometerSection(Section):
         (0.0, 2000.0, 0.0),
         (0.0, 0.0, 2000.0),
     )
+    wiring: Wiring | None = None
 
 
 class SunSensorSection(Section):

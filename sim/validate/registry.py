@@ -6,7 +6,7 @@ from pathlib import Path
 from fsw.input.near import did_you_mean
 from sim.campaign.claim import Study
 from sim.errors import HarnessError
-from sim.validate import cells, computed, microsat, optimal_pulses, shipped
+from sim.validate import calibrated, cells, computed, microsat, optimal_pulses, shipped, wirings
 from sim.validate.consat import minimisers, posat1, prediction
 from sim.validate.population import claims
 from sim.validate.reference import reference
@@ -29,6 +29,8 @@ def all_studies(satellites: int | None = None) -> list[Study]:
         *optimal_pulses.studies(satellites),
         *cells.studies(satellites),
         *claims.studies(satellites),
+        *wirings.studies(),
+        *calibrated.studies(satellites),
     ]
 
 

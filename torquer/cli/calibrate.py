@@ -1,12 +1,14 @@
-"""``torquer calibrate``: sensors and body from what was recorded."""
+"""``torquer calibrate``: sensors, coils and body from what they sent, or what was recorded."""
 
 from pathlib import Path
 
 import click
 
-from torquer.cli.options import JSON, OUT_FILE, examples, sentences
+from sim.errors import HarnessError
+from torquer.cli.options import JSON, SETTINGS, examples, sentences
 
 EXAMPLES = examples(
+    "torquer calibrate RUN --out calibration.toml --page calibration.html    # flown with law phasing",
     "torquer calibrate PASS.csv --tle tle.txt --out calibration.toml",
     "torquer calibrate PASS.csv --tle tle.txt --inertia-ratios 0.9987,1,0.178 --out cal.toml --page cal.html",
 )
@@ -36,15 +38,15 @@ class Ratios(click.ParamType[tuple[float, ...]]):
 
 
 @click.command(epilog=EXAMPLES)
-@click.argument("recorded", metavar="PASS.csv", type=click.Path(path_type=Path))
+@click.argument("source", metavar="RUN|LOG|PASS.csv", type=click.Path(path_type=Path))
+@click.option("--scenario", metavar="SCENARIO", help="Of a log that has none beside it.")
 @click.option(
     "--tle",
-    required=True,
     metavar="FILE",
     type=click.Path(path_type=Path),
-    help="Two-line element sets; of many the nearest is taken.",
+    help="Two-line element sets of a PASS.csv; of many the nearest is taken.",
 )
-@OUT_FILE
+@click.option("--out", metavar="FILE", type=click.Path(path_type=Path), help="The file to write.")
 @click.option(
     "--page", metavar="FILE", type=click.Path(path_type=Path), help="Write the residuals as an HTML page too."
 )
@@ -52,26 +54,48 @@ class Ratios(click.ParamType[tuple[float, ...]]):
     "--inertia-ratios",
     "ratios",
     type=Ratios(),
-    help="Moments of inertia about the body axes, in any unit. Default: a sphere's.",
+    help="Of a PASS.csv: moments of inertia about the body axes, in any unit. Default: a sphere's.",
 )
 @click.option(
     "--parameters",
     default="9",
     show_default=True,
     type=click.Choice(["9", "12"]),
-    help="Of the magnetometer: offset and symmetric matrix, or a turn of its axes besides.",
+    help="Of a PASS.csv: offset and symmetric matrix, or a turn of the axes besides.",
 )
+@SETTINGS
 @JSON
 @sentences
 def calibrate(
-    recorded: Path, tle: Path, out: Path, page: Path | None, ratios: tuple[float, ...] | None, parameters: str
+    source: Path,
+    scenario: str | None,
+    tle: Path | None,
+    out: Path | None,
+    page: Path | None,
+    ratios: tuple[float, ...] | None,
+    parameters: str,
+    settings: tuple[str, ...],
 ) -> int:
-    """Calibrate magnetometer, Sun cells and body by telemetry in PASS.csv, recorded in orbit.
+    """Calibrate sensors, coils and body by a RUN or LOG with pulses, or by telemetry in PASS.csv.
 
-    The columns say quantity, axis and unit: utc_unix_s, mag_x_nt (or ut, mg, t), gyro_x_degps (or radps),
-    sun_cell_NAME_raw (or ma, a), temperature_degc. Each value comes with its uncertainty and with the verdict
-    whether the data tell it.
+    Of a log: magnetometer by twelve numbers, the coils' field, delay and dipoles; --out writes the tables
+    [calibration] and [uncertainty], in a scenario under [flight]. Exit code 1: it does not tell everything.
+
+    Of PASS.csv: magnetometer, Sun cells and body. The columns say quantity, axis and unit: utc_unix_s,
+    mag_x_nt (or ut, mg, t), gyro_x_degps (or radps), sun_cell_NAME_raw (or ma, a), temperature_degc. Each
+    value comes with its uncertainty and with the verdict whether the data tell it.
     """
-    from sim.calibrate.command import calibrate_recorded
+    if source.suffix.lower() == ".csv":
+        from sim.calibrate.command import calibrate_recorded
 
-    return calibrate_recorded(recorded, tle, out, page, ratios, int(parameters))
+        if tle is None or out is None:
+            raise HarnessError(
+                f"{source}: recorded telemetry needs {'--tle' if tle is None else '--out'} FILE"
+            )
+        return calibrate_recorded(source, tle, out, page, ratios, int(parameters))
+    if tle is not None or ratios is not None:
+        raise HarnessError(f"--{'tle' if tle is not None else 'inertia-ratios'}: {source} is no PASS.csv")
+    from sim.calibrate.flown import command
+    from sim.scenario.schema import parse_settings
+
+    return command.calibrate(source, scenario, parse_settings(settings), out, page)

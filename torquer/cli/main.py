@@ -24,7 +24,8 @@ GROUPS = {
         "board": "Run one board on a bus, until Ctrl-C.",
     },
     "From bench to orbit": {
-        "calibrate": "Calibrate magnetometer, Sun cells and body by recorded telemetry.",
+        "phasing": "Which way coils and magnetometer are wired, from pulses of each coil.",
+        "calibrate": "Calibrate sensors, coils and body by a log with pulses or recorded telemetry.",
         "telemetry": "Run the flight filter over recorded telemetry, judged by what it did not use.",
     },
     "Look at a flight": {

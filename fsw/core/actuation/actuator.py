@@ -9,7 +9,7 @@ from fsw.core.actuation.pulses import PulseConfig, PulseState
 from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale
 from fsw.core.gate.readings import Readings
 from fsw.core.laws.interface import Demand
-from fsw.core.laws.pulse_model import AXES, NEVER, NO_PULSE, Pulse
+from fsw.core.laws.pulse_model import NEVER, NO_PULSE, Pulse
 from fsw.wire.messages import CoilDipole, CoilFire
 
 LOCKOUT_UNKNOWN = (-1, -1, -1)
@@ -23,7 +23,8 @@ class CoilView(NamedTuple):
     ``lockout_ms`` by coil, -1 where the board has not reported it yet; ``driven_coil`` and ``driven_level``
     over the tick that just ended, ``driven_am2`` the mean dipole over it, body axes; ``fired_tick`` is -1
     before the first request; ``paid_body_nms`` is the impulse of the last request; ``idle_ticks``: reports in
-    a row of no level and no current.
+    a row of no level and no current. ``past_am2``: the dipoles commanded over the last ticks, the newest
+    first, where the own field of the coils is known.
     """
 
     lockout_ms: tuple[int, int, int] = LOCKOUT_UNKNOWN
@@ -36,6 +37,7 @@ class CoilView(NamedTuple):
     fired: Pulse = NO_PULSE
     paid_body_nms: Vec3 = ZERO
     idle_ticks: int = 0
+    past_am2: tuple[Vec3, ...] = ()
 
     def integers(self) -> tuple[int, ...]:
         """For the checksum of the state."""
@@ -52,7 +54,8 @@ class CoilView(NamedTuple):
 
     def floats(self) -> tuple[float, ...]:
         """For the checksum of the state."""
-        return (*self.driven_am2, *self.paid_body_nms)
+        past = [part for m_am2 in self.past_am2 for part in m_am2]
+        return (*self.driven_am2, *self.paid_body_nms, *past)
 
 
 class ActuatorConfig(NamedTuple):
@@ -76,7 +79,7 @@ def update_view(view: CoilView, readings: Readings, tick: int, config: ActuatorC
     else:
         coil, level, seq = view.fired.coil, requested_level(view, tick, config.pulses), view.seq
     if config.dipoles is None:
-        driven_am2 = scale(pulses.dipole_am2(level, config.pulses.levels_am2), AXES[coil])
+        driven_am2 = scale(pulses.dipole_am2(level, config.pulses.levels_am2), config.pulses.coil_axes[coil])
     else:
         driven_am2 = dipoles.driven_dipole_am2(readings.dipole, config.dipoles)
     idle = status is not None and status.level == 0 and status.current_ma == 0
@@ -91,6 +94,7 @@ def update_view(view: CoilView, readings: Readings, tick: int, config: ActuatorC
         fired=view.fired,
         paid_body_nms=view.paid_body_nms,
         idle_ticks=min(view.idle_ticks + 1, MOST_IDLE_TICKS) if idle else 0,
+        past_am2=view.past_am2,
     )
 
 

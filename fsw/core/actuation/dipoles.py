@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from math import isfinite
 
 from fsw.core.actuation.pulses import PulseConfig, PulseState
-from fsw.core.algebra.vector import ZERO, Mat3, Vec3, cross, dot, scale
+from fsw.core.algebra.vector import ZERO, Mat3, Vec3, cross, dot, scale, transform
 from fsw.core.laws.genetic import search
 from fsw.core.laws.interface import Demand
 from fsw.core.laws.predictive import best_impulse
@@ -20,18 +20,24 @@ MOST = 1.0 - 2.0**-16
 
 @dataclass(frozen=True, slots=True)
 class DipoleConfig:
-    """Mean dipole over a tick at full scale, A m^2, the inertia, and the way to the best one."""
+    """Mean dipole over a tick at full scale, A m^2, the inertia, and the way to the best one.
+
+    ``body_from_coils`` has the coils' dipoles per nominal one as columns, body axes; None: they are as said.
+    """
 
     full_scale_am2: float
     inertia_kgm2: Mat3
     genetic: bool
+    body_from_coils: Mat3 | None = None
+    coils_from_body: Mat3 | None = None
 
 
 def driven_dipole_am2(status: CoilDipoleStatus | None, config: DipoleConfig) -> Vec3:
     """The mean dipole over the tick that just ended, body axes, A m^2; zero without a report of the board."""
     if status is None:
         return ZERO
-    return scale(config.full_scale_am2, (status.m_x, status.m_y, status.m_z))
+    driven_am2 = scale(config.full_scale_am2, (status.m_x, status.m_y, status.m_z))
+    return driven_am2 if config.body_from_coils is None else transform(config.body_from_coils, driven_am2)
 
 
 def request(
@@ -78,6 +84,8 @@ def saturate(m_body_am2: Vec3, config: DipoleConfig) -> CoilDipole:
 
     A dipole that is not finite becomes zero: on the wire it would be full scale.
     """
+    if config.coils_from_body is not None:
+        m_body_am2 = transform(config.coils_from_body, m_body_am2)
     fractions = scale(1.0 / config.full_scale_am2, m_body_am2)
     if not isfinite(sum(fractions)):
         return CoilDipole(0.0, 0.0, 0.0)

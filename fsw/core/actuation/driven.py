@@ -11,7 +11,6 @@ from fsw.core.actuation.actuator import ActuatorConfig, CoilView, requested_leve
 from fsw.core.actuation.pulses import PulseConfig, dipole_am2
 from fsw.core.algebra.vector import Vec3, scale, sub
 from fsw.core.estimation.dynamics.error_dynamics import NOT_DRIVEN, Driven
-from fsw.core.laws.pulse_model import AXES
 
 
 def driven(
@@ -44,4 +43,4 @@ def driven(
 
 def _requested_am2(view: CoilView, tick: int, config: PulseConfig) -> Vec3:
     level = requested_level(view, tick, config)
-    return scale(dipole_am2(level, config.levels_am2), AXES[view.fired.coil])
+    return scale(dipole_am2(level, config.levels_am2), config.coil_axes[view.fired.coil])

@@ -24,7 +24,10 @@ from fsw.core.laws.pulse_model import AXES, NEVER, Pulse
 
 @dataclass(frozen=True, slots=True)
 class PulseConfig:
-    """Limits and levels, in ticks and SI; J^-2 and J^-1 as the metrics of an impulse that is left."""
+    """Limits and levels, in ticks and SI; J^-2 and J^-1 as the metrics of an impulse that is left.
+
+    ``coil_axes`` are the coils' dipoles per nominal one, body axes.
+    """
 
     pulse_ticks: int
     backoff_ticks: int
@@ -36,6 +39,7 @@ class PulseConfig:
     leak_s: float
     rate_metric: Mat3
     energy_metric: Mat3
+    coil_axes: Mat3 = AXES
 
 
 class PulseState(NamedTuple):
@@ -158,7 +162,7 @@ def choose(
     for coil in range(3):
         if tick < state.ready_tick[coil] or faults[coil]:
             continue
-        gain = scale(config.pulse_s, cross(AXES[coil], b_body_t))
+        gain = scale(config.pulse_s, cross(config.coil_axes[coil], b_body_t))
         along, square = dot(weighted, gain), dot(gain, transform(metric, gain))
         for index, level_am2 in enumerate(config.levels_am2, start=1):
             change = level_am2 * (level_am2 * square - 2.0 * abs(along))
@@ -184,7 +188,7 @@ def fire(state: PulseState, pulse: Pulse, paid_body_nms: Vec3, tick: int, config
 
 def impulse(pulse: Pulse, b_body_t: Vec3, config: PulseConfig) -> Vec3:
     """The impulse of a pulse, T_p m x b, body axes, N m s."""
-    dipole = scale(dipole_am2(pulse.level, config.levels_am2), AXES[pulse.coil])
+    dipole = scale(dipole_am2(pulse.level, config.levels_am2), config.coil_axes[pulse.coil])
     return scale(config.pulse_s, cross(dipole, b_body_t))
 
 

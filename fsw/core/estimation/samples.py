@@ -9,7 +9,7 @@ TESLA_PER_NT = 1e-9
 
 
 def usable_field(readings: Readings) -> Vec3 | None:
-    """The field sample, T; None where a coil was driven, its current still flowed, or either may be."""
+    """The field sample, T; None where a coil may add a field of its own that is not known."""
     field = readings.field
     if field is None or not field.valid or not coils_idle(readings):
         return None
@@ -17,8 +17,10 @@ def usable_field(readings: Readings) -> Vec3 | None:
 
 
 def coils_idle(readings: Readings) -> bool:
-    """Whether no coil adds its own field to what the magnetometer senses."""
+    """Whether no coil adds its own field to what the magnetometer senses, but what has been taken off."""
     coil = readings.coil
+    if readings.settled:
+        return readings.quiet
     return readings.quiet and coil is not None and coil.level == 0 and coil.current_ma == 0
 
 

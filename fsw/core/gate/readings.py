@@ -94,6 +94,7 @@ class Readings(NamedTuple):
     before. ``under_own_id`` is the lowest identifier of fsw itself under which a whole frame came, 0 if there
     is none. ``end`` is a PLANT_END after which the flight has gone on. ``quiet``: no coil has driven for as
     long as a field sample may be old. ``unusable_cells``: those of ``cells`` that are not to be trusted.
+    ``settled``: what the coils add to the field sample is known, and has been taken off.
     """
 
     field: MagField | None
@@ -111,6 +112,7 @@ class Readings(NamedTuple):
     under_own_id: int = 0
     quiet: bool = True
     unusable_cells: tuple[int, ...] = ()
+    settled: bool = False
 
 
 NOTHING = Readings(None, None, None, None, None, None)

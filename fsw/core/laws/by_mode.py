@@ -4,7 +4,7 @@ from fsw.core.algebra.vector import sub
 from fsw.core.laws.damping import bdot, rate_damping
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, OwnLaw, Setpoint
 from fsw.core.laws.predictive import predictive
-from fsw.core.laws.table import LAWS, LawEntry
+from fsw.core.laws.table import LAWS, LawEntry, open_loop
 from fsw.wire.messages import Mode
 
 
@@ -19,13 +19,16 @@ def detumble(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Contr
 def demand(
     mode: Mode, inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig
 ) -> Demand | None:
-    """The demand of the law of this mode; None in SAFE. From a dipole the residual one is taken off."""
+    """The demand of the law of this mode; None in SAFE. From a dipole the residual one is taken off.
+
+    In DETUMBLE it is that of ``detumble``, but a law that is ``open_loop``.
+    """
     match mode:
         case Mode.SAFE:
             return None
-        case Mode.DETUMBLE:
+        case Mode.DETUMBLE if not open_loop(setpoint):
             return detumble(inputs, memory, setpoint, config)._replace(memory=())
-        case Mode.ACQUIRE:
+        case Mode.ACQUIRE | Mode.DETUMBLE:
             return _net(_forms(setpoint, config).acquire(inputs, memory, setpoint, config), inputs)
         case Mode.POINT:
             return _net(_forms(setpoint, config).point(inputs, memory, setpoint, config), inputs)

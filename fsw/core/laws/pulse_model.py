@@ -43,10 +43,12 @@ class PulseModel(NamedTuple):
     sight: Sight
 
 
-def choices(levels_am2: Vec3, pulse_s: float, inertia_inverse: Mat3) -> tuple[tuple[Pulse, ...], Array]:
-    """``pulses`` and ``turns`` of coils with these levels, on a body of this inertia."""
+def choices(
+    levels_am2: Vec3, pulse_s: float, inertia_inverse: Mat3, coil_axes: Mat3 = AXES
+) -> tuple[tuple[Pulse, ...], Array]:
+    """``pulses`` and ``turns`` of coils with these levels, and dipoles per nominal one, of a body."""
     fired = [
-        (Pulse(coil, sign * level), scale(sign * levels_am2[level - 1] * pulse_s, AXES[coil]))
+        (Pulse(coil, sign * level), scale(sign * levels_am2[level - 1] * pulse_s, coil_axes[coil]))
         for coil in range(3)
         for level in (1, 2, 3)
         for sign in (1, -1)

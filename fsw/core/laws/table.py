@@ -17,11 +17,12 @@ from fsw.core.laws.field_tracking import (
     pd_after_tracking,
     tracking_before_pd,
 )
-from fsw.core.laws.interface import Law
+from fsw.core.laws.interface import Law, Setpoint
 from fsw.core.laws.lqr import LqrGains, lqr, without_memory
 from fsw.core.laws.mpc import MpcGains, mpc
 from fsw.core.laws.output_feedback import FilterGains, output_feedback
 from fsw.core.laws.pd import pd, pd_far
+from fsw.core.laws.phasing import PhasingGains, phasing
 from fsw.core.laws.predictive import predictive
 from fsw.core.laws.projection import (
     RegularGains,
@@ -51,13 +52,15 @@ class Aim(StrEnum):
     """A spin is built up, or the axis of one is turned."""
     SUN = "sun"
     """An axis is turned to the Sun."""
+    CHECK = "check"
+    """Nothing is held: it shows what coils and sensors do."""
 
 
 class LawEntry(NamedTuple):
     """A law: its number in telecommands, its aim, its forms in ACQUIRE and POINT, and its own parameters.
 
     The parameters are a class, a frozen dataclass of floats with defaults, or None for a law with none. A law
-    that plans pulses has no use for a continuous driver.
+    that plans pulses has no use for a continuous driver. One that is ``open_loop`` is flown in DETUMBLE too.
     """
 
     number: int
@@ -66,6 +69,7 @@ class LawEntry(NamedTuple):
     point: Law
     gains: type | None = None
     plans_pulses: bool = False
+    open_loop: bool = False
 
 
 OWN_NUMBER = 255
@@ -97,7 +101,13 @@ LAWS: dict[str, LawEntry] = {
     "sliding_integral": LawEntry(
         61, Aim.THREE_AXIS, sliding_integral, sliding_integral, SlidingIntegralGains
     ),
+    "phasing": LawEntry(70, Aim.CHECK, phasing, phasing, PhasingGains, plans_pulses=True, open_loop=True),
 }
+
+
+def open_loop(setpoint: Setpoint) -> bool:
+    """Whether the law of the setpoint acts without looking."""
+    return setpoint.law in LAWS and LAWS[setpoint.law].open_loop
 
 
 def number_of(law: str) -> int:

@@ -5,6 +5,7 @@ from math import exp, expm1
 from sim.plant.config import CoilConfig
 from sim.plant.hardware.remanence import Remanence
 from sim.plant.rotation import ZERO, Mat3, Vec3, from_vector, matrix, transform
+from sim.plant.sensor_config import AS_NAMED, Wiring
 
 _EXTINCT_A = 1e-15
 """A current below this counts as zero."""
@@ -13,7 +14,7 @@ _EXTINCT_A = 1e-15
 class Coils:
     """Currents that follow their targets with a first-order lag: di/dt = (i_driven - i) / tau.
 
-    Their dipole is m = sum of k_j i_j R(turn_j) e_j, k_j the true dipole of one ampere.
+    Their dipole is m = sum of k_j i_j R(turn_j) e(j), k_j the true dipole of one ampere, e(j) by ``wiring``.
 
     Args:
         config: the coils.
@@ -23,7 +24,7 @@ class Coils:
         self._config = config
         self._tau_s = config.time_constant_s
         self._dipole_per_ampere = [config.dipole_per_ampere_am2 * scale for scale in config.dipole_scale]
-        self._body_from_coils = _body_from_coils(config.misalignment_rad)
+        self._body_from_coils = _body_from_coils(config.misalignment_rad, config.wiring)
         self._remanence = Remanence(config.remanence_part)
         self._current_a = [0.0, 0.0, 0.0]
 
@@ -94,10 +95,13 @@ class Coils:
         return target_a * time_s - gap_a * self._tau_s * expm1(-x), target_a + gap_a * exp(-x)
 
 
-def _body_from_coils(turns_rad: Mat3) -> Mat3 | None:
+def _body_from_coils(turns_rad: Mat3, wiring: Wiring) -> Mat3 | None:
     """The matrix whose columns are the coils' axes, in body axes; None where they are the body axes."""
-    if turns_rad == (ZERO, ZERO, ZERO):
+    if turns_rad == (ZERO, ZERO, ZERO) and wiring == AS_NAMED:
         return None
     # C(q) takes body axes to the turned ones: its row j is the turned axis j
-    a, b, c = (matrix(from_vector(turn))[coil] for coil, turn in enumerate(turns_rad))
+    turned = [matrix(from_vector(turn))[abs(axis) - 1] for turn, axis in zip(turns_rad, wiring, strict=True)]
+    a, b, c = (
+        row if axis > 0 else (-row[0], -row[1], -row[2]) for row, axis in zip(turned, wiring, strict=True)
+    )
     return ((a[0], b[0], c[0]), (a[1], b[1], c[1]), (a[2], b[2], c[2]))

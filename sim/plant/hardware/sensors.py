@@ -5,7 +5,7 @@ from math import cos, sin, sqrt
 
 from sim.plant.random_streams import normals
 from sim.plant.rotation import ZERO, Mat3, Vec3, from_vector, matrix, transform
-from sim.plant.sensor_config import MagnetometerConfig, SunSensorConfig
+from sim.plant.sensor_config import AS_NAMED, MagnetometerConfig, SunSensorConfig, Wiring
 
 LEAST_LIT = 0.5
 """Visible fraction of the Sun's disc below which the Sun sensor has no reading."""
@@ -42,7 +42,8 @@ class MagnetometerPhysics:
     """b = scale (N R (b_body + K m)) + bias + noise, then quantised and limited to the range.
 
     R turns body into sensor axes, N takes them to the directions in which the three sensors point, which need
-    not be orthogonal; K m is the coils' own field. All are those of ``latency_s`` ago.
+    not be orthogonal; K m is the coils' own field. All are those of ``latency_s`` ago. At last the
+    wiring leads the three values to the channels.
 
     Args:
         config: the errors.
@@ -78,8 +79,9 @@ class MagnetometerPhysics:
         y = _quantise(sy * by + oy + sigma * next(noise), quantum)
         z = _quantise(sz * bz + oz + sigma * next(noise), quantum)
         if -most <= x <= most and -most <= y <= most and -most <= z <= most:
-            return (x, y, z), True
-        return (min(max(x, -most), most), min(max(y, -most), most), min(max(z, -most), most)), False
+            return wired((x, y, z), config.wiring), True
+        limited = (min(max(x, -most), most), min(max(y, -most), most), min(max(z, -most), most))
+        return wired(limited, config.wiring), False
 
 
 class SunSensorPhysics:
@@ -136,6 +138,14 @@ class SunSensorPhysics:
         x, y, z = light_body
         least = self._cos_half * sqrt(x * x + y * y + z * z)
         return any(x * bx + y * by + z * bz >= least for bx, by, bz in boresights)
+
+
+def wired(by_axis: Vec3, wiring: Wiring) -> Vec3:
+    """By channel, the values by axis."""
+    if wiring == AS_NAMED:
+        return by_axis
+    x, y, z = (by_axis[abs(axis) - 1] * (1.0 if axis > 0 else -1.0) for axis in wiring)
+    return x, y, z
 
 
 def _skewed(non_orthogonality_rad: Vec3, axes: Mat3) -> Mat3:

@@ -9,6 +9,7 @@ import pytest
 
 from fsw.core.laws.table import LAWS
 from fsw.input.schema import TableError, merge
+from fsw.table.calibration import CalibrationTable
 from fsw.table.config import flight_config
 from fsw.table.sections import parse_utc
 from fsw.table.table import (
@@ -63,6 +64,7 @@ class TestDefault:
             "coils.max_dipole_am2",
         } | {f"orbit.{key}" for key in ("altitude_km", "inclination_deg", "raan_deg", "u0_deg")}
         optional |= {f"uncertainty.{key}" for key in UncertaintyTable.model_fields}
+        optional |= {f"calibration.{key}" for key in CalibrationTable.model_fields}
         for name, field in FlightTable.model_fields.items():
             inner = getattr(field.annotation, "model_fields", None)
             for key in inner or ():

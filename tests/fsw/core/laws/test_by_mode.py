@@ -12,6 +12,7 @@ from fsw.core.laws.damping import bdot, bdot_dipole, rate_damping, rate_damping_
 from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, LawInput, OwnLaw, Setpoint
 from fsw.core.laws.pd import attitude_error, far_error, pd_dipole
 from fsw.core.laws.predictive import predictive
+from fsw.core.laws.pulse_model import Pulse
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit.ephemeris import Reference
 from fsw.wire.messages import Mode
@@ -130,7 +131,7 @@ def with_a_residual_dipole(mode, law, attitude=KNOWN):
     return tuple(by_mode.demand(mode, case, (), setpoint, CONFIG) for case in (known, given))
 
 
-@pytest.mark.parametrize("law", [law for law in LAWS if law != "predictive"])
+@pytest.mark.parametrize("law", [law for law in LAWS if law not in ("predictive", "phasing")])
 @pytest.mark.parametrize("mode", [Mode.ACQUIRE, Mode.POINT])
 def test_from_every_dipole_the_residual_one_is_taken_off(law, mode):
     known, without = with_a_residual_dipole(mode, law)
@@ -158,7 +159,15 @@ def test_safe_asks_for_nothing_whatever_the_law(law):
     assert run(Mode.SAFE, PD._replace(law=law)) is None
 
 
-@EVERY_LAW
+@pytest.mark.parametrize("attitude", [KNOWN, NOT_VALID, UNKNOWN])
+@pytest.mark.parametrize("mode", [Mode.DETUMBLE, Mode.ACQUIRE, Mode.POINT])
+def test_a_law_that_acts_without_looking_is_flown_in_each_mode_and_remembers(mode, attitude):
+    ready = inputs(attitude)._replace(wait_ticks=(0, 0, 0))
+    demand = by_mode.demand(mode, ready, (4.0,), PD._replace(law="phasing"), CONFIG)
+    assert demand == Demand(memory=(5.0,), pulse=Pulse(1, -3))
+
+
+@pytest.mark.parametrize("law", [law for law, row in LAWS.items() if not row.open_loop])
 @pytest.mark.parametrize("attitude", [KNOWN, NOT_VALID, UNKNOWN])
 def test_detumble_flies_the_same_whatever_the_law_and_forgets(law, attitude):
     with_memory = run(Mode.DETUMBLE, PD._replace(law=law), attitude, memory=(1.0, 2.0, 3.0))

@@ -201,3 +201,12 @@ class TestRemanence:
     def test_a_part_that_is_none_is_refused(self, part):
         with pytest.raises(ValueError, match="remanence_part must lie between 0 and 1"):
             replace(CONFIG, remanence_part=part)
+
+
+def test_an_output_drives_the_coil_that_it_is_wired_to_with_its_own_gain_and_turn():
+    """Output 2 lies against axis 3: its gain and its turn go with the output."""
+    turns = ((0.0, 0.0, 0.0), (0.0, 0.05, 0.0), (0.0, 0.0, 0.0))
+    coils = Coils(replace(CONFIG, wiring=(2, -3, 1), misalignment_rad=turns))
+    coils.advance(one(1, 3), 100.0, 100.0)
+    turned = Rotation.from_rotvec(turns[1]).apply([0.0, 0.0, -1.0])
+    assert coils.dipole_body_am2 == pytest.approx(8.0 * -1.02 * turned)

@@ -320,3 +320,15 @@ class TestEarthlight:
         lights = [(0.0, -0.02 * k, -0.1) for k in range(6)]
         expected = [prompt.measure(S, 1.0, light) for light in lights]
         assert [late.measure(S, 1.0, light) for light in lights][2:] == expected[:-2]
+
+
+def test_the_wiring_leads_values_and_their_errors_to_the_channels():
+    errors = {"bias_t": (3e-7, -2e-7, 1e-7), "scale": (1.01, 0.98, 1.03), "noise_t": 2e-7}
+    x, y, z = read_field(MagnetometerConfig(**errors))[0]
+    assert read_field(MagnetometerConfig(**errors, wiring=(-2, 3, 1)))[0] == (-y, z, x)
+
+
+def test_a_saturated_sample_is_wired_too():
+    reading, valid = read_field(MagnetometerConfig(saturation_t=2e-5, wiring=(3, -1, 2)))
+    assert reading == (2e-5, -1.1e-5, -2e-5)
+    assert not valid

@@ -1,0 +1,78 @@
+"""The coils' own field on the magnetometer: taken off a sample where it is known, else the sample is blanked.
+
+A sample shows the coils as they were ``newest`` to ``oldest`` ticks before. Where over those ticks one
+dipole m was driven, or none, and each was reported, b = z - F m. Else a coil may have been switched within
+the age of the sample.
+"""
+
+from dataclasses import dataclass
+
+from fsw.core.actuation.actuator import CoilView
+from fsw.core.actuation.pulses import dipole_am2
+from fsw.core.algebra.vector import ZERO, Mat3, Vec3, scale, transform
+from fsw.core.gate.readings import Readings
+from fsw.core.laws.pulse_model import AXES
+
+SOUND = (0.7, 1.3)
+"""Parts of its nominal current between which a driven coil has about its nominal field."""
+
+
+@dataclass(frozen=True, slots=True)
+class OwnField:
+    """The field F m of the coils at the magnetometer, nT, body axes, and at which ages it shows, ticks.
+
+    ``field_nt_per_am2``: column j is the field of a nominal dipole of 1 A m^2 of the coil along axis j;
+    ``levels_am2`` and ``current_ma`` are those of levels 1, 2, 3.
+    """
+
+    field_nt_per_am2: Mat3
+    newest: int
+    oldest: int
+    levels_am2: Vec3
+    current_ma: Vec3
+
+
+def taken_off(
+    view: CoilView, readings: Readings, blank_ticks: int, config: OwnField | None
+) -> tuple[CoilView, Readings]:
+    """The view with what was driven in this tick, and the readings with a field sample that is free of it.
+
+    Args:
+        view: after ``update_view``.
+        readings: of this tick, in body axes.
+        blank_ticks: so long after a pulse a sample may be of its time, where the field is not known.
+        config: None: the field is not known.
+    """
+    if config is None:
+        return view, readings if view.idle_ticks > blank_ticks else readings._replace(quiet=False)
+    view = _remembered(view, readings, config)
+    shown = view.past_am2[config.newest : config.oldest + 1]
+    if len(shown) <= config.oldest - config.newest or any(m_am2 != shown[0] for m_am2 in shown):
+        return view, readings._replace(quiet=False)
+    return view, _corrected(readings, shown[0], config)
+
+
+def _remembered(view: CoilView, readings: Readings, config: OwnField) -> CoilView:
+    """The view with what was driven in the tick that just ended; all is forgotten where it is not certain."""
+    if not _certain(readings, config):
+        return view._replace(past_am2=())
+    m_am2 = scale(dipole_am2(view.driven_level, config.levels_am2), AXES[view.driven_coil])
+    return view._replace(past_am2=(m_am2, *view.past_am2)[: config.oldest + 1])
+
+
+def _certain(readings: Readings, config: OwnField) -> bool:
+    """Whether the driver has reported, and the current is that of the level."""
+    status = readings.coil
+    if status is None or status.level == 0:
+        return status is not None and status.current_ma == 0
+    low, high = (part * config.current_ma[abs(status.level) - 1] for part in SOUND)
+    return low <= (status.current_ma if status.level > 0 else -status.current_ma) <= high
+
+
+def _corrected(readings: Readings, m_am2: Vec3, config: OwnField) -> Readings:
+    field = readings.field
+    if field is None or m_am2 == ZERO:
+        return readings._replace(settled=True)
+    x, y, z = transform(config.field_nt_per_am2, m_am2)
+    field = field._replace(b_x=field.b_x - x, b_y=field.b_y - y, b_z=field.b_z - z)
+    return readings._replace(field=field, settled=True)

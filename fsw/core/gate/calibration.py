@@ -1,0 +1,95 @@
+"""The calibration of sensors and coil driver: from what the boards count to body axes, and back.
+
+Magnetometer: b_body = M (z - o), z the reading, o its offset; M may mirror, as wrongly wired axes do. Sun
+sensor: s_body = R z. Coil driver: of its three outputs each drives the coil along one body axis, in one of
+two senses. Beyond this module coil j is the coil along body axis j, with the sense of that axis. Its gain and
+its true axis are in ``coil_axes`` of the actuation.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from fsw.core.algebra.vector import Mat3, Vec3, sub, transform
+from fsw.core.gate.readings import Readings
+from fsw.wire.messages import CoilDipole, CoilFire, MagField, SunVector
+
+
+class MagnetometerCalibration(NamedTuple):
+    """b_body = ``matrix`` (z - ``offset_nt``), nT."""
+
+    offset_nt: Vec3
+    matrix: Mat3
+
+
+class Outputs(NamedTuple):
+    """By output of the coil driver, the body axis of its coil, and the sense: +1 or -1."""
+
+    axis: tuple[int, int, int]
+    sign: tuple[int, int, int]
+
+    def of_axis(self, axis: int) -> int:
+        """The output that drives the coil along a body axis."""
+        return self.axis.index(axis)
+
+
+@dataclass(frozen=True, slots=True)
+class Calibration:
+    """None: as the boards send it."""
+
+    magnetometer: MagnetometerCalibration | None = None
+    sun: Mat3 | None = None
+    outputs: Outputs | None = None
+
+
+NO_CALIBRATION = Calibration()
+
+
+def calibrated(readings: Readings, calibration: Calibration) -> Readings:
+    """The readings in body axes, those of the coil driver by axis of the coils."""
+    if calibration is NO_CALIBRATION:
+        return readings
+    field, sun, outputs = readings.field, readings.sun, calibration.outputs
+    if field is not None and calibration.magnetometer is not None:
+        readings = readings._replace(field=_body_field(field, calibration.magnetometer))
+    if sun is not None and calibration.sun is not None:
+        readings = readings._replace(sun=_body_sun(sun, calibration.sun))
+    return readings if outputs is None else _by_axis(readings, outputs)
+
+
+def _body_field(sample: MagField, calibration: MagnetometerCalibration) -> MagField:
+    x, y, z = transform(calibration.matrix, sub((sample.b_x, sample.b_y, sample.b_z), calibration.offset_nt))
+    return sample._replace(b_x=x, b_y=y, b_z=z)
+
+
+def _body_sun(sample: SunVector, body_from_sensor: Mat3) -> SunVector:
+    x, y, z = transform(body_from_sensor, (sample.s_x, sample.s_y, sample.s_z))
+    return sample._replace(s_x=x, s_y=y, s_z=z)
+
+
+def _by_axis(readings: Readings, outputs: Outputs) -> Readings:
+    coil, refused, dipole = readings.coil, readings.refused, readings.dipole
+    if coil is not None:
+        sign = outputs.sign[coil.coil]
+        coil = coil._replace(
+            coil=outputs.axis[coil.coil], level=sign * coil.level, current_ma=sign * coil.current_ma
+        )
+    if refused is not None and refused.coil < len(outputs.axis):
+        refused = refused._replace(coil=outputs.axis[refused.coil])
+    if dipole is not None:
+        driven = (dipole.m_x, dipole.m_y, dipole.m_z)
+        x, y, z = (outputs.sign[o] * driven[o] for o in map(outputs.of_axis, range(3)))
+        dipole = dipole._replace(m_x=x, m_y=y, m_z=z)
+    return readings._replace(coil=coil, refused=refused, dipole=dipole)
+
+
+def for_outputs(request: CoilFire | CoilDipole, calibration: Calibration) -> CoilFire | CoilDipole:
+    """A request by axis of the coils as one to the outputs of the coil driver."""
+    outputs = calibration.outputs
+    if outputs is None:
+        return request
+    if isinstance(request, CoilFire):
+        output = outputs.of_axis(request.coil)
+        return request._replace(coil=output, level=outputs.sign[output] * request.level)
+    wanted = (request.m_x, request.m_y, request.m_z)
+    x, y, z = (sign * wanted[axis] for axis, sign in zip(*outputs, strict=True))
+    return request._replace(m_x=x, m_y=y, m_z=z)

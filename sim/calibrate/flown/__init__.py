@@ -1,0 +1,1 @@
+"""Calibration from runs and logs with pulses, along the modelled orbit."""

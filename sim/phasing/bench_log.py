@@ -1,0 +1,213 @@
+"""A bench log of magnetometers against dipole commands, as CSV: the response to each command, level by level.
+
+Columns: ``log_time_s``, ``channel`` (``cmd``, or the name of a magnetometer), ``mag_x_nt``, ``mag_y_nt``,
+``mag_z_nt``, ``cmd_x_am2``, ``cmd_y_am2``, ``cmd_z_am2``. Each change of the command is a step: what the
+readings are after it, less what they were before.
+"""
+
+import csv
+from dataclasses import dataclass
+from itertools import pairwise
+from math import isfinite
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.errors import HarnessError
+
+Array = NDArray[np.float64]
+
+TIME, CHANNEL, COMMAND = "log_time_s", "channel", "cmd"
+FIELD = ("mag_x_nt", "mag_y_nt", "mag_z_nt")
+COMMANDED = ("cmd_x_am2", "cmd_y_am2", "cmd_z_am2")
+LONGEST_S = 8.0
+"""Of the readings before and after a step that are compared."""
+SETTLED_S = 1.0
+"""After a step the readings have settled, unless the delay shows otherwise."""
+SIGMAS = 5.0
+WEAK_SIGMAS = 20.0
+"""Below so many standard deviations a single sample does not show the phase of a step."""
+CHANGED = 0.9
+"""Part of a step from which a sample shows it."""
+TIED_PART = 0.99
+"""Of the samples in which an axis is the same or the opposite of another, for it to be no axis of its own."""
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """The times and readings of each magnetometer, and those of the commands."""
+
+    fields: dict[str, tuple[Array, Array]]
+    commands: tuple[Array, Array]
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """The response of a magnetometer to one command, all its rises and falls taken together.
+
+    Attributes:
+        command_am2: what was commanded, by axis.
+        response_nt, sigma_nt: on less off, and the standard deviation of that.
+        edges: how many rises and falls.
+        unchanged_s: age of the last sample after an edge that shows none of the step, mean; 0: there is none.
+        changed_s: age of the first sample that shows all of it, mean; NaN where the step is too weak.
+    """
+
+    command_am2: tuple[float, float, float]
+    response_nt: Array
+    sigma_nt: Array
+    edges: int
+    unchanged_s: float
+    changed_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class BenchResponse:
+    """What one magnetometer shows.
+
+    Attributes:
+        steps: by command.
+        noise_nt: standard deviation of a reading with no command, about its mean in each off phase.
+        tied: axes that only repeat another one, as words.
+        drift_nt: between the first and the last phase without a command.
+    """
+
+    name: str
+    steps: tuple[Step, ...]
+    noise_nt: Array
+    tied: tuple[str, ...]
+    drift_nt: Array
+
+
+def is_bench_log(path: Path) -> bool:
+    """Whether the file is such a CSV."""
+    return path.suffix.lower() == ".csv"
+
+
+def read_recording(path: Path) -> Recording:
+    """The content of such a CSV.
+
+    Raises:
+        HarnessError: it cannot be read, or a column or number is not as it should be.
+    """
+    fields: dict[str, list[tuple[float, ...]]] = {}
+    commands: list[tuple[float, ...]] = []
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            reader = csv.DictReader(file)
+            missing = sorted({TIME, CHANNEL, *FIELD, *COMMANDED} - set(reader.fieldnames or ()))
+            if missing:
+                raise HarnessError(f"{path}: column {missing[0]} is missing: it is no bench log")
+            for row in reader:
+                is_command = row[CHANNEL] == COMMAND
+                numbers = _numbers(path, reader.line_num, row, COMMANDED if is_command else FIELD)
+                (commands if is_command else fields.setdefault(row[CHANNEL], [])).append(numbers)
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise HarnessError(f"{path}: cannot be read: {error}") from None
+    if not commands or not fields:
+        raise HarnessError(f"{path}: it holds no commands (channel {COMMAND}), or no readings")
+    return Recording({name: _split(rows) for name, rows in fields.items()}, _split(commands))
+
+
+def _numbers(path: Path, line: int, row: dict[str, str], columns: tuple[str, ...]) -> tuple[float, ...]:
+    found = []
+    for column in (TIME, *columns):
+        try:
+            number = float(row[column] or "nan")
+        except (TypeError, ValueError):
+            number = float("nan")
+        if not isfinite(number):
+            raise HarnessError(f"{path}: line {line}: {column} is {row[column]!r}, which is no number")
+        found.append(number)
+    return tuple(found)
+
+
+def _split(rows: list[tuple[float, ...]]) -> tuple[Array, Array]:
+    table = np.array(rows)
+    table = table[np.argsort(table[:, 0], kind="stable")]
+    return table[:, 0], table[:, 1:4]
+
+
+def bench_responses(recording: Recording) -> list[BenchResponse]:
+    """The response of each magnetometer."""
+    return [_response(name, *recording.fields[name], recording.commands) for name in sorted(recording.fields)]
+
+
+def _response(name: str, time_s: Array, field_nt: Array, commands: tuple[Array, Array]) -> BenchResponse:
+    phases = _phases(*commands)
+    inside = [(begin, end, command, _between(time_s, begin, end)) for begin, end, command in phases]
+    settled = [(command, rows[time_s[rows] > begin + SETTLED_S]) for begin, _, command, rows in inside]
+    idle = [rows for command, rows in settled if not any(command) and len(rows) > 3]
+    spread = [field_nt[rows] - field_nt[rows].mean(axis=0) for rows in idle]
+    noise = np.sqrt(np.mean(np.vstack(spread) ** 2, axis=0)) if spread else np.full(3, np.nan)
+    by_command: dict[tuple[float, float, float], list[tuple[Array, Array, float, float]]] = {}
+    for before, after in pairwise(inside):
+        rise = not any(before[2])
+        if rise == (not any(after[2])) or len(before[3]) < 3 or len(after[3]) < 3:
+            continue
+        command = after[2] if rise else before[2]
+        by_command.setdefault(command, []).append(_edge(time_s, field_nt, before, after, rise))
+    steps = [_step(command, edges) for command, edges in sorted(by_command.items())]
+    drift = field_nt[idle[-1]].mean(axis=0) - field_nt[idle[0]].mean(axis=0) if idle else np.full(3, np.nan)
+    return BenchResponse(name, tuple(steps), noise, _tied(field_nt, noise), drift)
+
+
+Phase = tuple[float, float, tuple[float, float, float], NDArray[np.int64]]
+
+
+def _phases(time_s: Array, commands: Array) -> list[tuple[float, float, tuple[float, float, float]]]:
+    """Begin, end and command of each run of one command."""
+    changes = [0, *(np.flatnonzero(np.any(np.diff(commands, axis=0) != 0.0, axis=1)) + 1).tolist()]
+    found = []
+    for place, begin in enumerate(changes):
+        end = changes[place + 1] if place + 1 < len(changes) else None
+        x, y, z = commands[begin].tolist()
+        found.append((float(time_s[begin]), float(time_s[end]) if end else np.inf, (x, y, z)))
+    return found
+
+
+def _between(time_s: Array, begin_s: float, end_s: float) -> NDArray[np.int64]:
+    return np.flatnonzero((time_s > begin_s) & (time_s < end_s))
+
+
+def _edge(
+    time_s: Array, field_nt: Array, before: Phase, after: Phase, rise: bool
+) -> tuple[Array, Array, float, float]:
+    """Step of an edge, its variance, and the ages of the last sample without it and of the first with it."""
+    edge_s = after[0]
+    old = before[3][time_s[before[3]] > edge_s - LONGEST_S]
+    new = after[3][(time_s[after[3]] > edge_s + SETTLED_S) & (time_s[after[3]] < edge_s + LONGEST_S)]
+    step = field_nt[new].mean(axis=0) - field_nt[old].mean(axis=0)
+    quantum = np.full(3, np.unique(np.abs(np.diff(np.unique(field_nt)))).min() ** 2 / 12.0)
+    variance = sum(np.maximum(field_nt[rows].var(axis=0), quantum) / len(rows) for rows in (old, new))
+    weight = step / max(float(step @ step), 1e-30)
+    parts = (field_nt[after[3]] - field_nt[old].mean(axis=0)) @ weight
+    ages_s = time_s[after[3]] - edge_s
+    changed = int(np.argmax(parts > CHANGED)) if (parts > CHANGED).any() else len(parts) - 1
+    unchanged_s = float(ages_s[changed - 1]) if changed and parts[changed - 1] < 1.0 - CHANGED else 0.0
+    return (step if rise else -step), np.asarray(variance, float), unchanged_s, float(ages_s[changed])
+
+
+def _step(command: tuple[float, float, float], edges: list[tuple[Array, Array, float, float]]) -> Step:
+    steps = np.array([edge[0] for edge in edges])
+    sigma = np.sqrt(sum(edge[1] for edge in edges)) / len(edges)
+    if len(edges) > 1:  # of the scatter between edges, drift included, what the mean of them keeps
+        sigma = np.maximum(sigma, steps.std(axis=0, ddof=1) / np.sqrt(len(edges)))
+    clear = [
+        edge for edge in edges if float(np.linalg.norm(edge[0])) > WEAK_SIGMAS * float(np.linalg.norm(sigma))
+    ]
+    ages = [float(np.mean([edge[at] for edge in clear])) if clear else float("nan") for at in (2, 3)]
+    return Step(command, steps.mean(axis=0), np.asarray(sigma, float), len(edges), ages[0], ages[1])
+
+
+def _tied(field_nt: Array, noise: Array) -> tuple[str, ...]:
+    """Axes that repeat another one, or its opposite, within a step of the reading in nearly every sample."""
+    quantum = float(np.unique(np.abs(np.diff(np.unique(field_nt)))).min())
+    found = []
+    for one, other in ((0, 1), (0, 2), (1, 2)):
+        for sign, word in ((1.0, ""), (-1.0, "-")):
+            same = np.abs(field_nt[:, other] - sign * field_nt[:, one]) <= quantum
+            if same.mean() > TIED_PART:
+                found.append(f"{'xyz'[other]} = {word}{'xyz'[one]}")
+    return tuple(found)

@@ -1,0 +1,148 @@
+"""Claims on calibration: random satellites, calibrated by an orbit of pulses, and flown by what was found."""
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from statistics import median
+from tempfile import TemporaryDirectory
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fsw.input.schema import Nested, merge
+from sim.calibrate.flown.run_fit import RunCalibration, calibrated
+from sim.calibrate.flown.samples import read_samples
+from sim.calibrate.flown.tables import tables
+from sim.campaign.claim import Claim, ClaimOutcome, Study
+from sim.flight.virtual import fly_virtual
+from sim.plant.hardware.sensors import MagnetometerPhysics
+from sim.plant.sensor_config import MagnetometerConfig
+from sim.record import run_dir
+from sim.record.pace import Pace
+from sim.record.truth import read_truth
+from sim.scenario.assemble import plant_config
+from sim.scenario.schema import Scenario, flight_table, load
+from sim.validate.wirings import SCENARIO, satellite
+
+Array = NDArray[np.float64]
+
+SATELLITES = 30
+ORBIT_TICKS = 6040
+POINTING_TICKS = 4 * ORBIT_TICKS
+POINTED = {"initial": {"angle_deg": 12.0, "axis": [1.0, 1.0, -0.5], "rate_degps": [0.02, -0.01, 0.02]}}
+SOURCE = "Offset to 60 uT, scale 5 %, non-orthogonality 2 deg, coil field 20 uT, delay 0 to 2 ticks"
+INSIDE = "Part of the true values inside 3 sigma: offset, matrix, coils' field, delay, all satellites"
+BESIDE = "RMS pointing error of the last of 4 orbits over that with the true calibration"
+MOST_WORSE = 1.10
+
+
+class Flown(NamedTuple):
+    """One satellite: errors in standard deviations, pointing error by what was found and by the truth."""
+
+    number: int
+    off: tuple[float, ...]
+    found_deg: float
+    perfect_deg: float
+
+
+class TrueCalibration(NamedTuple):
+    """Of the plant: body from channels, offset, coils' field by output, delay."""
+
+    matrix: Array
+    offset_nt: Array
+    field_nt_per_am2: Array
+    delay_s: float
+
+
+def true_calibration(scenario: Scenario) -> TrueCalibration:
+    """What a perfect calibration finds, by asking the plant's own sensor for unit fields."""
+    section, config = scenario.sensors.magnetometer, plant_config(scenario, 1).magnetometer
+    bare = MagnetometerConfig(
+        bias_t=config.bias_t,
+        scale=config.scale,
+        misalignment_rad=config.misalignment_rad,
+        non_orthogonality_rad=config.non_orthogonality_rad,
+        saturation_t=1.0,
+    )
+    sensor = MagnetometerPhysics(bare, 1)
+    still = np.array(sensor.measure((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))[0])
+    unit = [np.array(sensor.measure(tuple(row), (0.0, 0.0, 0.0))[0]) - still for row in np.eye(3) * 1e-4]
+    matrix: Array = np.asarray(np.linalg.inv(np.array(unit).T / 1e-4), float)
+    return TrueCalibration(
+        matrix,
+        1e9 * still,
+        np.array(section.coil_field_nt_per_am2),
+        section.latency_s,
+    )
+
+
+def errors(found: RunCalibration, true: TrueCalibration, tick_s: float) -> tuple[float, ...]:
+    """Found less true, in standard deviations."""
+    sigma = np.sqrt(found.field.covariance.diagonal())
+    late, late_sigma = found.response.delay_ticks, found.response.delay_sigma
+    assert late is not None
+    assert late_sigma is not None
+    parts = [
+        (found.field.matrix - true.matrix).ravel() / sigma[:9],
+        (found.field.offset_nt - true.offset_nt) / sigma[9:],
+        ((found.field_nt_per_am2 - true.field_nt_per_am2) / found.field_sigma).ravel(),
+        np.array([(late * tick_s - true.delay_s) / (late_sigma * tick_s)]),
+    ]
+    return tuple(np.concatenate(parts).tolist())
+
+
+def flown(number: int) -> Flown:
+    """Tumble for an orbit with pulses, calibrate, and point by what was found and by the truth."""
+    settings = satellite(number)
+    tumbling = load(SCENARIO, merge(settings, {"control": {"law": "phasing"}}))
+    with TemporaryDirectory() as scratch:
+        log = _fly(Path(scratch) / "tumbling", tumbling, number, ORBIT_TICKS) / run_dir.BUS_LOG
+        table = flight_table(tumbling)
+        found = calibrated(read_samples(log, tumbling.time.tick_hz), table)
+        given = tables(found, table)
+        true = true_calibration(tumbling)
+        pointing = [
+            _pointing_deg(Path(scratch) / name, merge(merge(settings, POINTED), {"flight": values}), number)
+            for name, values in (("found", given), ("perfect", merge(given, _as_table(true))))
+        ]
+    return Flown(number, errors(found, true, 1.0 / tumbling.time.tick_hz), *pointing)
+
+
+def _as_table(true: TrueCalibration) -> Nested:
+    coils = {"field_nt_per_am2": true.field_nt_per_am2.tolist(), "field_delay_s": true.delay_s}
+    magnetometer = {"offset_nt": true.offset_nt.tolist(), "matrix": true.matrix.tolist()}
+    return {"calibration": {"magnetometer": magnetometer, "coils": coils}}
+
+
+def _fly(folder: Path, scenario: Scenario, seed: int, ticks: int) -> Path:
+    run_dir.begin(folder, scenario, seed, ticks, "virtual", Pace())
+    fly_virtual(folder, scenario, lambda tick: None)
+    return folder
+
+
+def _pointing_deg(folder: Path, settings: Nested, seed: int) -> float:
+    """RMS of the angle from the orbital frame over the last orbit."""
+    path = _fly(folder, load(SCENARIO, settings), seed, POINTING_TICKS)
+    q0 = np.abs(read_truth(path / run_dir.TRUTH)["q_body_from_orbit"][-ORBIT_TICKS:, 0])
+    angle_deg = np.degrees(2.0 * np.arccos(np.clip(q0, 0.0, 1.0)))
+    return float(np.sqrt(np.mean(angle_deg**2)))
+
+
+def studies(most: int | None = None) -> list[Study]:
+    """All of them, of at most so many satellites."""
+    count = SATELLITES if most is None else min(SATELLITES, most)
+    tasks = tuple(partial(flown, number) for number in range(1, 1 + count))
+    return [Study("calibration", tasks, conclude, has_flights=True)]
+
+
+def conclude(flights: Sequence[Any]) -> list[ClaimOutcome]:
+    """The values are right within their uncertainty, and good enough to fly by."""
+    off = np.abs(np.array([one.off for one in flights]))
+    worst = flights[int(np.argmax(off.max(axis=1)))]
+    inside = Claim("calibration.inside", INSIDE, SOURCE, "1", low=0.95)
+    ratios = [one.found_deg / one.perfect_deg for one in flights]
+    where = f"worst: satellite {flights[int(np.argmax(ratios))].number}: {max(ratios):.3f}"
+    beside = Claim("calibration.pointing", f"{BESIDE}: median", SOURCE, "1", high=MOST_WORSE)
+    largest = f"worst: satellite {worst.number}: {off.max():.1f} sigma"
+    return [inside.judge(float(np.mean(off < 3.0)), largest), beside.judge(median(ratios), where)]
