@@ -21,6 +21,8 @@ Array = NDArray[np.float64]
 UT_PER_NT = 1e-3
 BIAS_SIGMA_UT, MATRIX_SIGMA = 200.0, 0.1
 """Priors: of a bias component about the best one of an undistorted sensor, of each number of M about 1."""
+LEAST = 1e-12
+"""In place of the size of a field that is zero, which has no direction."""
 TOLD_NT = 1500.0
 """A number is told where one standard deviation of it moves the field by at most this: 3 deg in 30 uT."""
 NAMES = ("b_x", "b_y", "b_z", "m_xx", "m_yy", "m_zz", "m_xy", "m_xz", "m_yz")
@@ -111,7 +113,8 @@ def _residuals(x: Array, samples: Array, strength: Array, prior: Array, scale_ut
     """
     sigma = np.concatenate((np.full(3, BIAS_SIGMA_UT), np.full(6, MATRIX_SIGMA)))
     turned = (samples - x[:3]) @ _matrix(x[3:])
-    felt = np.sqrt(np.sum((turned @ _matrix(x[3:])) ** 2, axis=1) / np.sum(turned**2, axis=1))
+    size = np.maximum(np.sum(turned**2, axis=1), LEAST)
+    felt = np.maximum(np.sqrt(np.sum((turned @ _matrix(x[3:])) ** 2, axis=1) / size), LEAST)
     return np.concatenate((_errors(x, samples, strength) / (felt * scale_ut), (x - prior) / sigma))
 
 
@@ -142,7 +145,7 @@ def sensitivity(offset: Array, matrix: Array, samples: Array) -> Array:
     """How |M (m - b)| of samples, (n, 3), goes with b and with xx, yy, zz, xy, xz, yz of M, (n, 9)."""
     near = samples - offset
     turned = near @ matrix
-    along = turned / np.sqrt(np.sum(turned**2, axis=1))[:, None]
+    along = turned / np.maximum(np.sqrt(np.sum(turned**2, axis=1)), LEAST)[:, None]
     columns = [-along @ matrix]
     for i, j in _PLACES:
         change = np.zeros((3, 3))

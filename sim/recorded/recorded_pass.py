@@ -110,6 +110,8 @@ def _checked(path: Path, numbers: Array, where: Places) -> RecordedPass:
     mag_nt = where.field_factor * numbers[:, list(where.field)]
     if np.isfinite(mag_nt).all(axis=1).sum() < LEAST_ROWS:
         raise HarnessError(f"{path}: fewer than {LEAST_ROWS} rows have a field sample")
+    if not np.nanmax(np.ptp(mag_nt[np.isfinite(mag_nt).all(axis=1)], axis=0)) > 0.0:
+        raise HarnessError(f"{path}: all field samples are equal: that is no magnetometer that works")
     return RecordedPass(
         name=path.stem,
         utc_unix_s=numbers[:, where.time],

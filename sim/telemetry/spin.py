@@ -22,6 +22,8 @@ MOST_SPINS = 3
 WORSE = 2.5
 """Of a spin that is considered: by this factor the fit may be worse than the best, plus ``LEAST_DEG``."""
 LEAST_DEG = 2.0
+LEAST_NT = 1e-6
+"""A sample without a direction counts for nothing."""
 CHUNK = 64
 """Rates whose rotations are held in memory at once."""
 
@@ -100,7 +102,7 @@ def _fits(
     t_s: Array, field_nt: Array, b_eci_nt: Array, axis: Array, rates_degps: Array
 ) -> tuple[Array, Array]:
     """RMS misfit, deg, and attitude at time 0 of the best fit at each rate, (k) and (k, 3, 3)."""
-    body = field_nt / np.linalg.norm(field_nt, axis=1)[:, None]
+    body = field_nt / np.maximum(np.linalg.norm(field_nt, axis=1), LEAST_NT)[:, None]
     space = b_eci_nt / np.linalg.norm(b_eci_nt, axis=1)[:, None]
     cross = np.cross(axis, body)
     along = np.outer(body @ axis, axis)

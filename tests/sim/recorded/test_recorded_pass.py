@@ -50,6 +50,7 @@ def test_units_are_converted_and_empty_fields_are_no_numbers(tmp_path):
         (ROWS[:2], "2 rows are too few"),
         ((*ROWS[:2], "1800000000,1.5,-2,3,0.1,0.2,0.3,7,0"), "the rows span 1157 days"),
         ([row.replace(",-2,", ",,") for row in ROWS], "fewer than 3 rows have a field sample"),
+        (3 * ROWS[:1], "all field samples are equal"),
     ],
 )
 def test_bad_rows_are_named(tmp_path, rows, said):

@@ -57,3 +57,11 @@ def test_the_axis_is_that_across_which_samples_differ():
     axis = spin_axis(calibrated(truth))
     assert np.degrees(np.arccos(axis @ AXIS)) < 1.5
     assert axis[np.argmax(np.abs(axis))] > 0.0
+
+
+def test_a_sample_of_no_field_counts_for_nothing():
+    truth = made_up(150, 31.0)
+    field_nt = calibrated(truth)
+    field_nt[40] = 0.0
+    (best, *_) = spins(truth.t_s, field_nt, truth.b_eci_nt, AXIS)
+    assert off_deg(best, truth) < 12.0
