@@ -14,13 +14,16 @@ from pathlib import Path
 import cantools
 from cantools.database.can import Database, Message, Signal
 
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT))  # the tree in which this stands, not the one that is installed
+
 from fsw.wire.frame import crc8
 from fsw.wire.messages import CoilFire, CoilRefusedReason, CoilStatus
 from hil_stub import bench, node
 from hil_stub.coils import coil_driver, events, interlock, read_back
 from sim.conformance.check_runner import CHECKS
 
-ROOT = Path(__file__).resolve().parent.parent
 DBC = ROOT / "fsw" / "wire" / "torquer.dbc"
 TEMPLATE = ROOT / "tools" / "icd.md.in"
 TARGET = ROOT / "docs" / "icd.md"
