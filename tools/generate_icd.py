@@ -14,7 +14,6 @@ from pathlib import Path
 import cantools
 from cantools.database.can import Database, Message, Signal
 
-
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))  # the tree in which this stands, not the one that is installed
 
