@@ -29,14 +29,16 @@ def test_a_pass_in_shadow_is_dark():
 
 def test_of_rows_of_one_second_the_first_alone_counts_and_gaps_stay(tmp_path):
     head, *rows = made_up(10).text.splitlines()
-    again = rows[3].split(",")
-    rows.insert(4, ",".join([again[0], "", *again[2:]]))
+    rows.insert(4, ",".join([rows[3].split(",")[0], *rows[4].split(",")[1:]]))
+    empty = rows[6].split(",")
+    rows[6] = ",".join([empty[0], "", *empty[2:]])
     path = tmp_path / "gaps.csv"
-    path.write_text("\n".join([head, *rows[:6], *rows[8:]]) + "\n")
+    path.write_text("\n".join([head, *rows[:7], *rows[8:]]) + "\n")
     recorded = read_pass(path)
     around = along(recorded, nearest_elements(TLE, recorded.middle_unix_s))
-    assert around.tick.tolist() == [0, 1, 2, 3, 3, 4, 7, 8, 9]
-    assert sampled(around).tolist() == [0, 1, 2, 3, 5, 6, 7, 8]
+    assert around.tick.tolist() == [0, 1, 2, 3, 3, 4, 5, 7, 8, 9]
+    assert around.first_of_tick.tolist() == [True] * 4 + [False] + [True] * 5
+    assert sampled(around).tolist() == [0, 1, 2, 3, 5, 7, 8, 9]
 
 
 def test_faster_samples_have_shorter_ticks(tmp_path):

@@ -85,6 +85,13 @@ class TestOfAPassInShadow:
         assert not verdict.converged
         assert "without samples the field is off by" in verdict.reason
 
+    def test_one_that_nothing_bears_out_is_not_believed_though_it_stands_alone(self, eclipsed):
+        best = eclipsed.best
+        short = replace(best, coasts_deg={10: best.coasts_deg[10], 30: best.coasts_deg[30]})
+        _, verdict = told_apart([short])
+        assert verdict == (False, "field", "neither cells nor a minute of coasting bear the motion out")
+        assert told_apart([best])[1].converged
+
     def test_its_figures(self, eclipsed):
         found = figures(eclipsed)
         assert found["sun_azimuth_deg"] == {"median": None, "rms": None, "rows": 0}
