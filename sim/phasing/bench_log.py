@@ -104,7 +104,8 @@ def read_recording(path: Path) -> Recording:
                 numbers = _numbers(path, reader.line_num, row, COMMANDED if is_command else FIELD)
                 (commands if is_command else fields.setdefault(row[CHANNEL], [])).append(numbers)
     except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise HarnessError(f"{path}: cannot be read: {error}") from None
+        why = getattr(error, "strerror", None) or error
+        raise HarnessError(f"{path}: cannot be read: {why}") from None
     if not commands or not fields:
         raise HarnessError(f"{path}: it holds no commands (channel {COMMAND}), or no readings")
     return Recording({name: _split(rows) for name, rows in fields.items()}, _split(commands))

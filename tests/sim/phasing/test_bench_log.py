@@ -56,3 +56,8 @@ def test_a_broken_file_is_told_in_a_sentence(bench_csv, tmp_path, change, says):
     path.write_text(change(bench_csv.read_text()))
     with pytest.raises(HarnessError, match=says):
         read_recording(path)
+
+
+def test_a_file_that_is_not_there_is_told_in_a_sentence(tmp_path):
+    with pytest.raises(HarnessError, match=r"none\.csv: cannot be read: No such file"):
+        read_recording(tmp_path / "none.csv")
