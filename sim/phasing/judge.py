@@ -74,7 +74,11 @@ def phasing(samples: Samples, table: FlightTable, known: Known, dipoles: Judged 
     """Judge the samples of a log by all evidence there is."""
     response = coil_response(samples, table.coils.levels_am2)
     samples = in_time(samples, response.delay_ticks or 0.0)
-    missing = [f"output {n} was never fired" for n, count in enumerate(response.pulses, 1) if not count]
+    missing = [
+        f"output {n} gave no pulse that can be used"
+        for n, count in enumerate(response.pulses, 1)
+        if not count
+    ]
     fits: dict[Wiring, FieldFit] = {}
     motion: dict[Wiring, tuple[CoilAxes, list[OutputAxes]]] = {}
     sensors: list[Wiring] = list(WIRINGS)
