@@ -40,7 +40,7 @@ def as_toml(found: RecordedCalibration, ratios: Array) -> str:
 def _cell(cell: CellFit) -> list[str]:
     return [
         "",
-        "[[calibration.cell]]",
+        "[[recorded.cell]]",
         f'name = "{cell.name}"',
         f"face_body = {_numbers(cell.face_body, 4)}  # +- {cell.face_sigma_deg:.1f} deg",
         f"full_scale = {cell.full_scale:.1f}  # +- {cell.full_scale_sigma:.1f}, by {cell.rows} rows",
@@ -51,7 +51,7 @@ def _body(body: BodyFit, declared: Array) -> list[str]:
     shown = ", ".join("told" if told else "as declared" for told in body.told)
     return [
         "",
-        "[calibration.body]",
+        "[recorded.body]",
         f"# {shown}; declared were {_plain(declared, 5)}",
         f"inertia_ratios = {_numbers(body.ratios, 5)}",
         f"# the axis of greatest inertia +- {body.axis_sigma_deg:.1f} deg; a turn about it is not told",

@@ -24,7 +24,7 @@ class PassMagnetometerTable(Section):
 
 
 class PassCellTable(Section):
-    """``[[calibration.cell]]``: its current is full_scale times the cosine between face and Sun."""
+    """``[[recorded.cell]]``: its current is full_scale times the cosine between face and Sun."""
 
     name: str
     face_body: Triple
@@ -32,7 +32,7 @@ class PassCellTable(Section):
 
 
 class PassBodyTable(Section):
-    """``[calibration.body]``: moments of inertia as parts of the greatest, about axes that are turned.
+    """``[recorded.body]``: moments of inertia as parts of the greatest, about axes that are turned.
 
     ``principal_axes_turn_deg`` is the rotation vector that turns the body axes into the principal axes.
     """
@@ -41,16 +41,24 @@ class PassBodyTable(Section):
     principal_axes_turn_deg: Triple = (0.0, 0.0, 0.0)
 
 
-class PassCalibrationTable(Section):
-    """``[calibration]``."""
+class PassSensorsTable(Section):
+    """``[calibration]``, as in the onboard table."""
 
     magnetometer: PassMagnetometerTable = PassMagnetometerTable()
+
+
+class RecordedTable(Section):
+    """``[recorded]``: what the onboard table has no place for, and a recorded pass needs."""
+
     cell: Annotated[tuple[PassCellTable, ...], Strict(False)] = Field(default=(), max_length=12)
     body: PassBodyTable = PassBodyTable()
 
 
-class _File(Section):
-    calibration: PassCalibrationTable = PassCalibrationTable()
+class PassCalibrationTable(Section):
+    """The file; ``[uncertainty]`` is for the onboard table alone."""
+
+    calibration: PassSensorsTable = PassSensorsTable()
+    recorded: RecordedTable = RecordedTable()
     uncertainty: dict[str, Any] = Field(default_factory=dict)
 
 
@@ -91,17 +99,16 @@ def read_calibration(path: Path) -> PassCalibration:
     Raises:
         TableError: it cannot be read, a key is unknown, or a value is out of range.
     """
-    return calibration(validated(_File, read_toml(path), str(path)).calibration)
+    return calibration(validated(PassCalibrationTable, read_toml(path), str(path)))
 
 
 def calibration(table: PassCalibrationTable) -> PassCalibration:
     """The values of a table; without one, raw samples of a body that is a sphere."""
-    cells = tuple(_cell(one) for one in table.cell)
-    ratios, turn = table.body.inertia_ratios, np.radians(table.body.principal_axes_turn_deg)
-    inertia = turned_inertia(np.array(ratios), turn)
-    return PassCalibration(
-        np.array(table.magnetometer.offset_nt), np.array(table.magnetometer.matrix), cells, inertia
-    )
+    magnetometer, recorded = table.calibration.magnetometer, table.recorded
+    cells = tuple(_cell(one) for one in recorded.cell)
+    turn = np.radians(recorded.body.principal_axes_turn_deg)
+    inertia = turned_inertia(np.array(recorded.body.inertia_ratios), turn)
+    return PassCalibration(np.array(magnetometer.offset_nt), np.array(magnetometer.matrix), cells, inertia)
 
 
 def turned_inertia(ratios: Array, turn_rad: Array) -> Array:

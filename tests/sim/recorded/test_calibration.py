@@ -35,8 +35,8 @@ def test_the_turn_leads_from_body_axes_to_principal_axes():
     [
         ("[calibration.magnetometer]\noffset = [1.0, 2.0, 3.0]", "calibration.magnetometer.offset"),
         ("[calibration.magnetometer]\noffset_nt = [1.0, 2.0]", "calibration.magnetometer.offset_nt"),
-        ('[[calibration.cell]]\nname = "a"\nface_body = [1.0, 0.0, 0.0]\nfull_scale = -1.0', "full_scale"),
-        ("[calibration.body]\ninertia_ratios = [1.0, 0.0, 1.0]", "inertia_ratios"),
+        ('[[recorded.cell]]\nname = "a"\nface_body = [1.0, 0.0, 0.0]\nfull_scale = -1.0', "full_scale"),
+        ("[recorded.body]\ninertia_ratios = [1.0, 0.0, 1.0]", "inertia_ratios"),
         ("offset_nt = 3", "offset_nt"),
     ],
 )
