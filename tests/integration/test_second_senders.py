@@ -159,7 +159,7 @@ def test_of_two_flights_at_once_no_two_succeed(port, start, torquer, tmp_path):
         if flight.code:
             assert "second sender" in flight.sentence or "is in use" in flight.sentence
     codes = sorted(flight.code for flight in ended)
-    assert codes in ([0, 2], [1, 1]), ended
+    assert codes in ([0, 2], [1, 1], [1, 2]), ended
 
 
 def test_a_plant_by_hand_ends_at_once_where_another_flies(port, start, tmp_path):

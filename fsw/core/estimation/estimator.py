@@ -81,7 +81,8 @@ class EstimatorState(NamedTuple):
     def floats(self) -> tuple[float, ...]:
         """The values to start from, and the estimate, if there is one, without its arrays."""
         first = () if self.first is None else self.first.floats()
-        return (*first, *self.batch.floats()) if self.estimate is None else (*first, *self.estimate.floats())
+        known = () if self.estimate is None else self.estimate.floats()
+        return (*first, *self.batch.floats(), *known)
 
     def packed(self) -> bytes:
         """The arrays of the estimate."""

@@ -28,6 +28,9 @@ EVERYTHING = {
 }
 
 
+OF_CELLS = [component for component in Component if component.name.startswith("CELL_")]
+
+
 @pytest.fixture(scope="module")
 def estimating(make_world):
     """A flight with every parameter carried: configuration, and state with an estimate."""
@@ -46,7 +49,7 @@ def range_of(config, parameter):
 
 
 class TestParameter:
-    @pytest.mark.parametrize("parameter", Component)
+    @pytest.mark.parametrize("parameter", [one for one in Component if one not in OF_CELLS])
     def test_the_filter_goes_on_from_the_value_and_starts_from_it(self, obey, estimating, parameter):
         config, state = estimating
         exponent = -15 if parameter.name.startswith("TORQUE") else -9
@@ -117,6 +120,11 @@ class TestParameter:
     def test_there_are_no_more(self, refused, estimating, number):
         config, state = estimating
         refused(TcAckResult.UNKNOWN, TcParameter(number, -12, 1), start=state, config=config)
+
+    @pytest.mark.parametrize("parameter", OF_CELLS)
+    def test_a_satellite_without_cells_has_no_excess_of_them(self, refused, estimating, parameter):
+        config, state = estimating
+        refused(TcAckResult.NOT_ALLOWED, TcParameter(parameter, -3, 1), start=state, config=config)
 
 
 class TestFreeze:

@@ -55,12 +55,12 @@ class SampleBatch(NamedTuple):
     searched_s: float = 0.0
 
     def integers(self) -> tuple[int, ...]:
-        """For the checksum of the state, as is ``floats``; nothing where nothing has been kept."""
-        return (len(self.samples),) if self.samples else ()
+        """For the checksum of the state, as is ``floats``; nothing of a batch that has not begun."""
+        return () if self == EMPTY else (len(self.samples),)
 
     def floats(self) -> tuple[float, ...]:
         """Every number."""
-        if not self.samples:
+        if self == EMPTY:
             return ()
         kept = [number for sample in self.samples for number in sample.floats()]
         return (self.since_s, *self.driven_am2s, self.searched_s, *kept)

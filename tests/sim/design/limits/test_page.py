@@ -15,7 +15,7 @@ AGREEMENTS = [Agreement("`mpc`, no torque", 0.25, (0.24, 0.26))]
 def test_the_page_has_each_quantity_and_what_pulses_add():
     text = page(FLOWN | dict.fromkeys(LOST, inf), AGREEMENTS, "here")
     assert "| 160 | 0.4 | > 20 | 0.5 | 0.4 | 0.5 | 0.5 |" in text
-    assert "| 0 | 0.4 | 0.5 |  | 0.4 | 0.5 |  |" in text
+    assert "| 0 | 0.4 | 0.5 | 0.5 | 0.4 | 0.5 | 0.5 |" in text
     assert "add 0.3 deg by `mpc`" in text
     assert "| `mpc`, no torque | 0.250 | 0.240, 0.260 |" in text
     assert f"{len(FLOWN)} of {len(FLOWN)} flights and bounds" in text
