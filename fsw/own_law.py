@@ -16,7 +16,7 @@ from fsw.core.laws.interface import (
     Memory,
     Setpoint,
 )
-from fsw.core.laws.pulse_model import NO_PULSE, Pulse
+from fsw.core.laws.plan.pulse_model import NO_PULSE, Pulse
 from fsw.core.laws.table import Aim
 from fsw.input.quantities import quantity
 

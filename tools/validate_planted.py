@@ -36,28 +36,28 @@ class Plant(NamedTuple):
 PLANTS = (
     Plant(
         "sign of the attitude in pd",
-        "fsw/core/laws/pd.py",
+        "fsw/core/laws/feedback/pd.py",
         "cross((k_w * w1 + k_a * s1, k_w",
         "cross((k_w * w1 - k_a * s1, k_w",
         "linearisation",
     ),
     Plant(
         "sign of the impulse in predictive",
-        "fsw/core/laws/predictive.py",
+        "fsw/core/laws/predictive/predictive.py",
         "sub(reference_radps, predicted)",
         "sub(predicted, reference_radps)",
         "prediction",
     ),
     Plant(
         "sign of the torque in the genetic search",
-        "fsw/core/laws/genetic.py",
+        "fsw/core/laws/predictive/genetic.py",
         "cross(dipole(point), b_body_t)",
         "cross(b_body_t, dipole(point))",
         "genetic",
     ),
     Plant(
         "sign of the torque in lqr and mpc",
-        "fsw/core/laws/lqr.py",
+        "fsw/core/laws/optimal/lqr.py",
         "return add(inputs.torque_body_nm, table.problem.resting_nm)",
         "return add(scale(-1.0, inputs.torque_body_nm), table.problem.resting_nm)",
         "scenario-cubesat3u",

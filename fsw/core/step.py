@@ -22,8 +22,8 @@ from fsw.core.gate import calibration, second_sender
 from fsw.core.gate.readings import Readings, admit
 from fsw.core.gate.sync_watch import Belief, SyncWatch, judge, near
 from fsw.core.laws import by_mode
-from fsw.core.laws.constant_torque import constant_torque
 from fsw.core.laws.interface import Demand, FieldSample, LawInput
+from fsw.core.laws.plan.constant_torque import constant_torque
 from fsw.core.monitors import Monitor
 from fsw.core.orbit.ephemeris import EphemerisModel, Reference, advance, plausible, reference_at, with_orbit
 from fsw.core.restart import restarted

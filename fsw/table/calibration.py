@@ -13,7 +13,7 @@ from pydantic import Field, model_validator
 from fsw.core.actuation.own_field import OwnField
 from fsw.core.algebra.vector import Mat3, Vec3, dot, norm, product, scale, transpose
 from fsw.core.gate.calibration import NO_CALIBRATION, Calibration, MagnetometerCalibration, Outputs
-from fsw.core.laws.pulse_model import AXES
+from fsw.core.laws.plan.pulse_model import AXES
 from fsw.input.schema import Section, Square, Triple
 from fsw.table.sections import CoilTable
 

@@ -16,7 +16,7 @@ from fsw.core.fdir.sensors.credibility import credibility_config
 from fsw.core.fdir.sensors.health import SensorConfig
 from fsw.core.gate.second_sender import SecondSenderConfig
 from fsw.core.laws.interface import ControlConfig, Setpoint
-from fsw.core.laws.pulse_model import AXES
+from fsw.core.laws.plan.pulse_model import AXES
 from fsw.core.laws.table import LAWS
 from fsw.core.modes import TABLE, ModeConfig
 from fsw.core.orbit.ephemeris import EphemerisModel, ephemeris_model

@@ -11,7 +11,7 @@ from types import FrameType
 from typing import Any
 
 from fsw.core.laws.interface import ControlConfig, Demand, Law, LawInput, Memory, OwnLaw, Setpoint
-from fsw.core.laws.pulse_model import Pulse
+from fsw.core.laws.plan.pulse_model import Pulse
 from fsw.core.laws.table import LAWS, Aim
 from fsw.input import own_code
 from fsw.input.own_code import error_clause

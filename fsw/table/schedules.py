@@ -8,11 +8,11 @@ import numpy as np
 
 from fsw.core.actuation.pulses import PulseConfig
 from fsw.core.algebra.vector import cross, dot, inverse, norm
-from fsw.core.laws.cost_to_go import rounded_problem, rounded_schedule
-from fsw.core.laws.lqr import STEPS, LqrGains, schedule
-from fsw.core.laws.orbit_ahead import sight
-from fsw.core.laws.pulse_model import PulseModel, choices
-from fsw.core.laws.riccati import Schedule, regulator_problem
+from fsw.core.laws.optimal.lqr import STEPS, LqrGains, schedule
+from fsw.core.laws.plan.cost_to_go import rounded_problem, rounded_schedule
+from fsw.core.laws.plan.orbit_ahead import sight
+from fsw.core.laws.plan.pulse_model import PulseModel, choices
+from fsw.core.laws.plan.riccati import Schedule, regulator_problem
 from fsw.core.orbit.earth import DIPOLE_TM3, MU_M3PS2
 from fsw.core.orbit.propagation import Orbit, state_eci
 from fsw.table.table import FlightTable

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fsw.core.gate.calibration import Outputs
-from fsw.core.laws.pulse_model import AXES
+from fsw.core.laws.plan.pulse_model import AXES
 from fsw.table.calibration import MagnetometerTable, outputs_of
 from fsw.table.table import FlightTable
 from sim.calibrate.flown.coil_axes import CoilAxes

@@ -8,7 +8,7 @@ from fsw.core.actuation.actuator import ActuatorConfig, CoilView, actuate, updat
 from fsw.core.actuation.pulses import PulseConfig, PulseState
 from fsw.core.gate.readings import NOTHING
 from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, Law, LawInput, Memory
-from fsw.core.laws.pulse_model import AXES
+from fsw.core.laws.plan.pulse_model import AXES
 from fsw.wire.messages import CoilBoot, CoilFire
 from sim.testing.scheduler_flight import Fire, Heard, Limits, MakeScheduler, Scheduler
 

@@ -238,7 +238,11 @@ PLANTED = {
     "what flies does not know what stays on the ground": ("fsw/node.py", "import sim.plant.plant"),
     "torquer: the command line over": ("torquer/api/run.py", "import torquer.cli.main"),
     "fsw: the node over its table": ("fsw/core/step.py", "from fsw.bus import interface"),
-    "fsw.core: a step over what it is made of": ("fsw/core/algebra/vector.py", "import fsw.core.laws.pd"),
+    "fsw.core: a step over what it is made of": ("fsw/core/algebra/vector.py", "import fsw.core.laws.table"),
+    "fsw.core.laws: the choice among them, the laws, what they share": (
+        "fsw/core/laws/plan/riccati.py",
+        "import fsw.core.laws.feedback.pd",
+    ),
     "what is thought of the sensors and of the coils": (
         "fsw/core/fdir/coils/effects.py",
         "import fsw.core.fdir.sensors.pair",

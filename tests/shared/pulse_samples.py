@@ -13,7 +13,7 @@ from fsw.core.estimation.parameters import Prior
 from fsw.core.fdir.coils.effects import solve, trace_pulse
 from fsw.core.fdir.coils.explanations import of_pulses
 from fsw.core.fdir.coils.weak_test import WeakTest
-from fsw.core.laws.pulse_model import AXES, Pulse
+from fsw.core.laws.plan.pulse_model import AXES, Pulse
 
 INERTIA = ((1.02, 0.07, -0.05), (0.07, 1.85, 0.11), (-0.05, 0.11, 1.45))
 CONFIG = mekf_config(

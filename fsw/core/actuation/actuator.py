@@ -9,7 +9,7 @@ from fsw.core.actuation.pulses import PulseConfig, PulseState
 from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale
 from fsw.core.gate.readings import Readings
 from fsw.core.laws.interface import Demand
-from fsw.core.laws.pulse_model import NEVER, NO_PULSE, Pulse
+from fsw.core.laws.plan.pulse_model import NEVER, NO_PULSE, Pulse
 from fsw.wire.messages import CoilDipole, CoilFire
 
 LOCKOUT_UNKNOWN = (-1, -1, -1)

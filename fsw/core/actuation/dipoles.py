@@ -9,9 +9,9 @@ from math import isfinite
 
 from fsw.core.actuation.pulses import PulseConfig, PulseState
 from fsw.core.algebra.vector import ZERO, Mat3, Vec3, cross, dot, scale, transform
-from fsw.core.laws.genetic import search
 from fsw.core.laws.interface import Demand
-from fsw.core.laws.predictive import best_impulse
+from fsw.core.laws.predictive.genetic import search
+from fsw.core.laws.predictive.predictive import best_impulse
 from fsw.wire.messages import CoilDipole, CoilDipoleStatus
 
 MOST = 1.0 - 2.0**-16

@@ -11,7 +11,7 @@ from fsw.core.actuation.actuator import CoilView
 from fsw.core.actuation.pulses import dipole_am2
 from fsw.core.algebra.vector import ZERO, Mat3, Vec3, scale, transform
 from fsw.core.gate.readings import Readings
-from fsw.core.laws.pulse_model import AXES
+from fsw.core.laws.plan.pulse_model import AXES
 
 SOUND = (0.7, 1.3)
 """Parts of its nominal current between which a driven coil has about its nominal field."""

@@ -19,7 +19,7 @@ from math import copysign
 from typing import NamedTuple
 
 from fsw.core.algebra.vector import ZERO, Mat3, Vec3, add, cross, dot, norm, scale, sub, transform
-from fsw.core.laws.pulse_model import AXES, NEVER, Pulse
+from fsw.core.laws.plan.pulse_model import AXES, NEVER, Pulse
 
 
 @dataclass(frozen=True, slots=True)

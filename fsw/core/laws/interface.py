@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 
 from fsw.core.algebra.vector import ZERO, Mat3, Vec3
 from fsw.core.estimation.attitude import Attitude
-from fsw.core.laws.pulse_model import NEVER, Pulse, PulseModel
-from fsw.core.laws.riccati import Schedule
+from fsw.core.laws.plan.pulse_model import NEVER, Pulse, PulseModel
+from fsw.core.laws.plan.riccati import Schedule
 from fsw.core.orbit.ephemeris import EphemerisModel, Reference
 
 Memory = tuple[float, ...]

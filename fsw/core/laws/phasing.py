@@ -8,7 +8,7 @@ attitude, and is flown in every mode but SAFE: a satellite that is wired wrongly
 from dataclasses import dataclass
 
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
-from fsw.core.laws.pulse_model import NO_PULSE, Pulse
+from fsw.core.laws.plan.pulse_model import NO_PULSE, Pulse
 
 COILS = 3
 

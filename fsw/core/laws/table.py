@@ -9,22 +9,10 @@ use for the torque: coils can oppose only its part normal to the field, which ga
 from enum import StrEnum
 from typing import NamedTuple
 
-from fsw.core.laws.damping import SwitchedGains, bdot, bdot_switched, rate_damping
-from fsw.core.laws.dual_spin import DualSpinGains, dual_spin
-from fsw.core.laws.field_tracking import (
-    HandOverGains,
-    field_tracking,
-    pd_after_tracking,
-    tracking_before_pd,
-)
-from fsw.core.laws.interface import Law, Setpoint
-from fsw.core.laws.lqr import LqrGains, lqr, without_memory
-from fsw.core.laws.mpc import MpcGains, mpc
-from fsw.core.laws.output_feedback import FilterGains, output_feedback
-from fsw.core.laws.pd import pd, pd_far
-from fsw.core.laws.phasing import PhasingGains, phasing
-from fsw.core.laws.predictive import predictive
-from fsw.core.laws.projection import (
+from fsw.core.laws.damping.damping import SwitchedGains, bdot, bdot_switched, rate_damping
+from fsw.core.laws.feedback.output_feedback import FilterGains, output_feedback
+from fsw.core.laws.feedback.pd import pd, pd_far
+from fsw.core.laws.feedback.projection import (
     RegularGains,
     WeightGains,
     regularised,
@@ -32,11 +20,23 @@ from fsw.core.laws.projection import (
     weighted,
     weighted_far,
 )
-from fsw.core.laws.pulse_mpc import PulseMpcGains, pulse_mpc
-from fsw.core.laws.sliding import SlidingGains, SlidingIntegralGains, sliding, sliding_integral
-from fsw.core.laws.spin import SpinGains, nutation, spin_up, y_thomson
-from fsw.core.laws.spin_axis import SpinAxisGains, ThreeTermGains, reorientation, spin_relay, three_term
-from fsw.core.laws.sun_pointing import sun_pointing
+from fsw.core.laws.interface import Law, Setpoint
+from fsw.core.laws.one_axis.field_tracking import (
+    HandOverGains,
+    field_tracking,
+    pd_after_tracking,
+    tracking_before_pd,
+)
+from fsw.core.laws.one_axis.sun_pointing import sun_pointing
+from fsw.core.laws.optimal.lqr import LqrGains, lqr, without_memory
+from fsw.core.laws.phasing import PhasingGains, phasing
+from fsw.core.laws.predictive.mpc import MpcGains, mpc
+from fsw.core.laws.predictive.predictive import predictive
+from fsw.core.laws.predictive.pulse_mpc import PulseMpcGains, pulse_mpc
+from fsw.core.laws.sliding.sliding import SlidingGains, SlidingIntegralGains, sliding, sliding_integral
+from fsw.core.laws.spin.spin import SpinGains, nutation, spin_up, y_thomson
+from fsw.core.laws.spin.spin_axis import SpinAxisGains, ThreeTermGains, reorientation, spin_relay, three_term
+from fsw.core.laws.wheel.dual_spin import DualSpinGains, dual_spin
 
 
 class Aim(StrEnum):

@@ -13,7 +13,7 @@ import numpy as np
 
 from fsw.core.algebra.vector import Vec3, add
 from fsw.core.config import FlightConfig
-from fsw.core.laws.riccati import free_step, resting_torque, skews
+from fsw.core.laws.plan.riccati import free_step, resting_torque, skews
 from sim.design.limits.linear_flight import COUNTED, Array, Passed, orbit_rate_radps
 
 HELD_S = 60.0

@@ -1,7 +1,7 @@
 """A flight of a linear body with the shipped law and scheduler, all that the law is told being true.
 
-About the nominal attitude the body moves as in ``fsw/core/laws/riccati.py``, a tick at a time, in body axes;
-orbit and field are those of the controller's own models, and a pulse acts over its whole length:
+About the nominal attitude the body moves as in ``fsw/core/laws/plan/riccati.py``, a tick at a time, in body
+axes; orbit and field are those of the controller's own models, and a pulse acts over its whole length:
 
     x+ = F x + G (d + (m + m_r) x b) - (w0' h, w0' h^2 / 2) e3
 
@@ -28,8 +28,8 @@ from fsw.core.estimation.attitude import Attitude
 from fsw.core.gate.readings import NOTHING
 from fsw.core.laws import by_mode
 from fsw.core.laws.interface import FieldSample, LawInput, Memory
-from fsw.core.laws.pulse_model import AXES
-from fsw.core.laws.riccati import free_step, resting_torque
+from fsw.core.laws.plan.pulse_model import AXES
+from fsw.core.laws.plan.riccati import free_step, resting_torque
 from fsw.core.orbit.ephemeris import EphemerisModel, Reference, advance, reference_at
 from fsw.table.config import flight_config
 from fsw.wire.messages import CoilFire, CoilStatus, Mode

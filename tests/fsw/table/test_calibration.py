@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fsw.core.gate.calibration import NO_CALIBRATION
-from fsw.core.laws.pulse_model import AXES
+from fsw.core.laws.plan.pulse_model import AXES
 from fsw.input.schema import TableError
 from fsw.table.config import flight_config
 from fsw.table.table import flight_table

@@ -9,7 +9,7 @@ import pytest
 
 from fsw.core.estimation.attitude import UNKNOWN
 from fsw.core.laws.interface import Demand, FieldSample, LawInput
-from fsw.core.laws.pulse_model import Pulse
+from fsw.core.laws.plan.pulse_model import Pulse
 from fsw.core.laws.table import LAWS, Aim
 from fsw.input.schema import TableError
 from fsw.table import own_law

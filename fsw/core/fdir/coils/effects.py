@@ -34,7 +34,7 @@ from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.fdir.coils.explanations import PULSES, STRAY, Solution, explained, indices_of, most_by_chance
 from fsw.core.fdir.coils.weak_test import MODEL_ERROR
 from fsw.core.fdir.evidence import SIGMAS
-from fsw.core.laws.pulse_model import Pulse
+from fsw.core.laws.plan.pulse_model import Pulse
 
 UNEXPLAINED = 1.25
 """Squares of the innovations that may be left for each scalar measured; beyond, no coil is judged."""

@@ -9,7 +9,7 @@ from fsw.core.algebra.vector import ZERO, Vec3, scale
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.fdir.coils.weak_test import NOTHING_OLDER, Older, WeakTest
 from fsw.core.fdir.faults import CoilFault
-from fsw.core.laws.pulse_model import AXES
+from fsw.core.laws.plan.pulse_model import AXES
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,7 +18,7 @@ from fsw.core.fdir.coils import effects
 from fsw.core.fdir.coils.explanations import STRAY, Solution
 from fsw.core.fdir.coils.weak_test import MODEL_ERROR
 from fsw.core.fdir.evidence import SIGMAS
-from fsw.core.laws.pulse_model import AXES
+from fsw.core.laws.plan.pulse_model import AXES
 
 CAUSES = (STRAY, STRAY + 1, STRAY + 2)
 

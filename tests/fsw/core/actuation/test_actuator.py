@@ -28,7 +28,7 @@ from fsw.core.actuation import pulses
 from fsw.core.actuation.actuator import CoilView, actuate, update_view
 from fsw.core.gate.readings import NOTHING
 from fsw.core.laws.interface import Demand
-from fsw.core.laws.pulse_model import Pulse
+from fsw.core.laws.plan.pulse_model import Pulse
 from fsw.wire.messages import CoilBoot, CoilFire
 
 

@@ -4,7 +4,7 @@ import pytest
 
 from fsw.core.actuation.actuator import LOCKOUT_UNKNOWN, MOST_IDLE_TICKS, CoilView, unexpected, update_view
 from fsw.core.gate.readings import NOTHING
-from fsw.core.laws.pulse_model import Pulse
+from fsw.core.laws.plan.pulse_model import Pulse
 from fsw.wire.messages import CoilBoot, CoilRefused, CoilRefusedReason, CoilStatus
 
 ZERO = (0.0, 0.0, 0.0)

@@ -10,7 +10,7 @@ from fsw.core.actuation.dipoles import DipoleConfig
 from fsw.core.actuation.driven import driven
 from fsw.core.estimation.dynamics.error_dynamics import Driven
 from fsw.core.gate.readings import NOTHING
-from fsw.core.laws.pulse_model import Pulse
+from fsw.core.laws.plan.pulse_model import Pulse
 from fsw.wire.messages import CoilStatus
 
 ZERO = (0.0, 0.0, 0.0)

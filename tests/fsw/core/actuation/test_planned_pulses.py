@@ -19,7 +19,7 @@ from actuator_samples import (
 from fsw.core.actuation.actuator import actuate, wait_ticks
 from fsw.core.gate.readings import NOTHING
 from fsw.core.laws.interface import Demand
-from fsw.core.laws.pulse_model import NEVER, NO_PULSE, Pulse
+from fsw.core.laws.plan.pulse_model import NEVER, NO_PULSE, Pulse
 
 
 class TestPlannedPulses:

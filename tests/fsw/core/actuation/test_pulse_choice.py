@@ -8,7 +8,7 @@ import pytest
 
 from fsw.core.actuation import pulses
 from fsw.core.actuation.pulses import PulseConfig
-from fsw.core.laws.pulse_model import Pulse
+from fsw.core.laws.plan.pulse_model import Pulse
 
 IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 TICK = 10_000

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from fsw.core.actuation import pulses
 from fsw.core.actuation.pulses import PulseConfig
-from fsw.core.laws.pulse_model import Pulse
+from fsw.core.laws.plan.pulse_model import Pulse
 
 RATES = (1, 2, 3, 7, 10, 50)
 SHARED_OR_NOT = pytest.mark.parametrize("shared", [True, False], ids=["shared", "per_coil"])

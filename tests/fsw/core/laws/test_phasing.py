@@ -9,7 +9,7 @@ from fsw.core.algebra.vector import ZERO
 from fsw.core.estimation.attitude import UNKNOWN
 from fsw.core.laws.interface import FieldSample, LawInput
 from fsw.core.laws.phasing import PhasingGains, phasing
-from fsw.core.laws.pulse_model import NEVER, NO_PULSE
+from fsw.core.laws.plan.pulse_model import NEVER, NO_PULSE
 from fsw.core.laws.table import LAWS
 
 

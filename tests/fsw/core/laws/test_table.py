@@ -9,7 +9,7 @@ from fsw.core.algebra.quaternion import normalise
 from fsw.core.algebra.vector import ZERO
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.laws.interface import Demand, FieldSample, LawInput
-from fsw.core.laws.pulse_model import NO_PULSE
+from fsw.core.laws.plan.pulse_model import NO_PULSE
 from fsw.core.laws.table import LAWS
 from fsw.core.state import checksum
 from fsw.core.step import boot

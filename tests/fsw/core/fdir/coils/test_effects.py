@@ -22,7 +22,7 @@ from fsw.core.algebra.quaternion import conjugate, rotate
 from fsw.core.algebra.vector import ZERO, scale
 from fsw.core.estimation import mekf
 from fsw.core.fdir.coils.explanations import PULSES
-from fsw.core.laws.pulse_model import Pulse
+from fsw.core.laws.plan.pulse_model import Pulse
 
 
 def test_the_carried_effect_is_what_a_second_filter_shows_that_knew_of_it():

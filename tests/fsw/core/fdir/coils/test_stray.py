@@ -29,7 +29,7 @@ from fsw.core.fdir.coils.effects import solve
 from fsw.core.fdir.coils.explanations import STRAY, Solution, weak_by_pulses
 from fsw.core.fdir.coils.health import NONE_OLDER
 from fsw.core.fdir.coils.stray import conducting
-from fsw.core.laws.pulse_model import AXES, Pulse
+from fsw.core.laws.plan.pulse_model import AXES, Pulse
 
 
 def fly_stray(flows, tuning=CONFIG, ticks=30, start=START, actual=START):

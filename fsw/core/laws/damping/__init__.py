@@ -1,0 +1,1 @@
+"""Laws that take the rate away."""

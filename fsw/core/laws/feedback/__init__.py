@@ -1,0 +1,1 @@
+"""Laws that feed attitude and rate back."""

@@ -1,0 +1,1 @@
+"""Laws that point one axis, where something else holds the others."""

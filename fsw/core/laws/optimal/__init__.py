@@ -1,0 +1,1 @@
+"""Laws with the least cost of a linear model."""

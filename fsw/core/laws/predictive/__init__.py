@@ -1,0 +1,1 @@
+"""Laws that look at what each choice will lead to."""

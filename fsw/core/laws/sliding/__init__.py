@@ -1,0 +1,1 @@
+"""Laws that hold the motion to a sliding surface."""

@@ -1,0 +1,1 @@
+"""Laws that build up a spin, and turn its axis."""

@@ -1,0 +1,1 @@
+"""Laws of a satellite with a momentum wheel."""

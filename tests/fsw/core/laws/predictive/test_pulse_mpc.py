@@ -1,0 +1,232 @@
+"""Optimal pulses: when they are asked for, and how closely they point with nothing unknown."""
+
+from dataclasses import dataclass, replace
+from math import sqrt
+
+import numpy as np
+import pytest
+
+from fsw.core.actuation.pulses import PulseConfig
+from fsw.core.algebra.quaternion import rotate
+from fsw.core.estimation.attitude import UNKNOWN, Attitude
+from fsw.core.laws import by_mode
+from fsw.core.laws.interface import FieldSample, LawInput
+from fsw.core.laws.plan.pulse_model import NEVER, NO_PULSE, kicks
+from fsw.core.laws.plan.riccati import free_step
+from fsw.core.laws.predictive.pulse_mpc import REPORTED_TICKS, RETRY, PulseMpcGains, pulse_mpc
+from fsw.core.orbit.ephemeris import advance, reference_at
+from fsw.table.config import flight_config
+from fsw.table.table import flight_table
+from fsw.wire.messages import Mode
+
+ZERO = (0.0, 0.0, 0.0)
+READY = (0, 0, 0)
+BODY = {"inertia_kgm2": [[1.02, 0.002, -0.001], [0.002, 1.85, 0.003], [-0.001, 0.003, 1.95]]}
+
+
+def config_of(**sections):
+    control = {"law": "pulse_mpc"} | sections.pop("control", {})
+    values = {"body": BODY, "coils": {"levels_am2": [0.5, 2.0, 8.0]}, "control": control}
+    return flight_config(flight_table(values | sections, "test"))
+
+
+CONFIG = config_of()
+BALANCED = config_of(body={"inertia_kgm2": [1.02, 1.85, 1.95]})
+"""Without products of inertia no torque is on the nominal attitude."""
+PER_COIL = config_of(coils={"levels_am2": [0.5, 2.0, 8.0], "backoff": "per_coil"})
+
+
+def inputs_at(tick, theta_rad, omega_radps=ZERO, waits=READY, config=CONFIG, torque_nm=ZERO, dipole_am2=ZERO):
+    """A satellite turned by a small angle, all known."""
+    model = config.ephemeris
+    reference = reference_at(advance(None, tick, model), tick, model)
+    half = 0.5 * np.asarray(theta_rad)
+    q = (sqrt(1.0 - half @ half), *half.tolist())
+    attitude = Attitude(q, rotate(q, tuple(omega_radps)), 1e-3, 1e-6, True)
+    b_body_t = rotate(q, rotate(reference.q_orbit_from_eci, reference.b_eci_t))
+    sample = FieldSample(b_body_t, tick)
+    return LawInput(
+        attitude, b_body_t, sample, sample, None, reference, torque_nm, dipole_am2, tick, model, waits
+    )
+
+
+def ask(inputs, memory=(), config=CONFIG):
+    return pulse_mpc(inputs, memory, config.control.setpoint, config.control)
+
+
+TURNED = (0.06, -0.04, 0.05)
+STILL = (1e-9, -1e-9, 1e-9)
+
+
+class TestWhen:
+    def test_a_turned_body_gets_a_pulse_and_then_none_for_a_back_off(self):
+        asked = ask(inputs_at(500, TURNED))
+        assert asked.pulse.level
+        assert asked.memory == (500.0 + 103.0,)
+        for tick in (501, 550, 602):
+            later = ask(inputs_at(tick, TURNED), asked.memory)
+            assert later.pulse == NO_PULSE
+            assert later.memory == asked.memory
+        assert ask(inputs_at(603, TURNED), asked.memory).pulse.level
+
+    def test_a_body_that_needs_none_is_looked_at_again_sooner(self):
+        asked = ask(inputs_at(500, STILL, config=BALANCED), config=BALANCED)
+        assert asked.pulse == NO_PULSE
+        assert asked.memory == (500.0 + -(-103 // RETRY),)
+        assert ask(inputs_at(512, TURNED), asked.memory).pulse == NO_PULSE
+        assert ask(inputs_at(513, TURNED), asked.memory).pulse.level
+
+    @pytest.mark.parametrize("waits", [(40, 40, 40), (1, 2, 3), (NEVER, NEVER, NEVER)])
+    def test_none_is_asked_for_while_no_coil_may_be_fired(self, waits):
+        asked = ask(inputs_at(500, TURNED, waits=waits))
+        assert asked.pulse == NO_PULSE
+        assert asked.memory == ()
+
+    def test_the_others_reports_are_waited_for_but_not_for_ever(self):
+        """A board that does not report one coil does not bar the others."""
+        memory = ()
+        for tick in range(500, 500 + REPORTED_TICKS):
+            asked = ask(inputs_at(tick, TURNED, waits=(0, 0, 2)), memory)
+            assert asked.pulse == NO_PULSE
+            memory = asked.memory
+        asked = ask(inputs_at(500 + REPORTED_TICKS, TURNED, waits=(0, 0, 2)), memory)
+        assert asked.pulse.level
+        assert asked.pulse.coil != 2
+
+    def test_a_coil_that_rests_long_is_not_waited_for(self):
+        waits = (50, 0, 90)
+        found = {ask(inputs_at(tick, TURNED, waits=waits)).pulse for tick in range(0, 6000, 500)}
+        assert {pulse.coil for pulse in found if pulse.level} == {1}
+
+    @pytest.mark.parametrize("coil", range(3))
+    def test_a_coil_with_a_fault_is_never_fired(self, coil):
+        waits = tuple(NEVER if number == coil else 0 for number in range(3))
+        found = {ask(inputs_at(tick, TURNED, waits=waits)).pulse for tick in range(0, 6000, 500)}
+        assert {pulse.coil for pulse in found if pulse.level} == {0, 1, 2} - {coil}
+
+    @pytest.mark.parametrize("memory", [(1.0, 2.0), (9e9,), (0.0,) * 136])
+    def test_what_another_law_remembered_is_not_looked_at(self, memory):
+        assert ask(inputs_at(500, TURNED), memory) == ask(inputs_at(500, TURNED))
+
+    def test_coils_with_a_back_off_of_their_own_take_turns(self):
+        memory, fired, free_at = (), [], [0, 0, 0]
+        for tick in range(400):
+            waits = tuple(max(at - tick, 0) for at in free_at)
+            asked = ask(inputs_at(tick, TURNED, waits=waits, config=PER_COIL), memory, PER_COIL)
+            memory = asked.memory
+            if asked.pulse.level:
+                fired.append((tick, asked.pulse.coil))
+                free_at[asked.pulse.coil] = tick + 103
+        ticks = [tick for tick, _ in fired]
+        assert len(fired) > 400 / 103 + 1
+        assert min(np.diff(ticks)) >= 35
+
+
+@pytest.mark.parametrize("missing", ["attitude", "reference", "ephemeris", "schedule", "pulses"])
+def test_without_knowledge_nothing_is_asked_for(missing):
+    inputs, control = inputs_at(500, TURNED), CONFIG.control
+    if missing == "schedule":
+        control = replace(control, schedules={})
+    elif missing == "pulses":
+        control = replace(control, pulse_model=None)
+    else:
+        inputs = inputs._replace(**{missing: UNKNOWN if missing == "attitude" else None})
+    asked = pulse_mpc(inputs, (7.0,), control.setpoint, control)
+    assert (asked.pulse, asked.m_body_am2, asked.memory) == (None, ZERO, (7.0,))
+
+
+def test_in_point_a_pulse_is_asked_for_as_it_is_without_taking_off_the_residual_dipole():
+    inputs = inputs_at(500, TURNED, dipole_am2=(0.05, -0.03, 0.08))
+    control = CONFIG.control
+    asked = by_mode.demand(Mode.POINT, inputs, (), control.setpoint, control)
+    assert asked == ask(inputs)
+    assert asked.m_body_am2 == ZERO
+
+
+@pytest.mark.parametrize(
+    ("gains", "told"),
+    [
+        ({"horizon_orbits": 0.01}, "horizon_orbits must be 0.05 to 1, not 0.01"),
+        ({"horizon_orbits": 2.0}, "horizon_orbits must be 0.05 to 1, not 2"),
+        ({"effort": 0.0}, "effort 1e-6 to 1e6"),
+    ],
+)
+def test_gains_out_of_range_are_told(gains, told):
+    with pytest.raises(ValueError, match=told):
+        PulseMpcGains(**gains)
+
+
+@dataclass
+class Flight:
+    """A linear body about the nominal attitude, a tick at a time, with all that the law is told true."""
+
+    torque_nm: tuple = ZERO
+    dipole_am2: tuple = ZERO
+    told_dipole: bool = True
+    config: object = CONFIG
+
+    def rms_deg(self, orbits, last):
+        control, timing = self.config.control, self.config.coils.pulses
+        model, pulses = self.config.ephemeris, control.pulse_model
+        problem = control.schedules["pulse_mpc"].problem
+        rate = reference_at(advance(None, 0, model), 0, model).orbit_rate_radps
+        free = free_step(control.inertia_kgm2, ZERO, rate, 1.0)
+        x, memory, ready, squares = np.array([0.0, 0.0, 0.0, 0.03, 0.04, -0.02]), (), 0, []
+        ticks = int(orbits * 2.0 * np.pi / rate)
+        constant = np.array(self.torque_nm) + np.array(problem.resting_nm)
+        field = np.zeros(3)
+        for tick in range(ticks):
+            if tick % 20 == 0:
+                reference = reference_at(advance(None, tick, model), tick, model)
+                field = np.array(rotate(reference.q_orbit_from_eci, reference.b_eci_t))
+            if tick >= ready:
+                told = self.dipole_am2 if self.told_dipole else ZERO
+                waits, known = READY, {"torque_nm": self.torque_nm, "dipole_am2": told, "config": self.config}
+                if len(memory) == 0 or tick >= memory[0]:
+                    asked = ask(inputs_at(tick, x[3:], x[:3], waits, **known), memory, self.config)
+                    memory = asked.memory
+                    if asked.pulse.level:
+                        x[:3] += kicks(pulses, field)[pulses.pulses.index(asked.pulse)]
+                        ready = tick + timing.pulse_ticks + timing.backoff_ticks
+            x = free[:, :6] @ x + free[:, 6:] @ (constant + np.cross(self.dipole_am2, field))
+            squares.append(x[3:] @ x[3:])
+        return float(np.degrees(np.sqrt(np.mean(squares[-int(last * ticks / orbits) :]))))
+
+
+class TestPointing:
+    def test_with_nothing_unknown_a_torque_costs_hardly_more_than_it_must(self):
+        """No periodic dipole leaves less than 0.43 deg of 3e-8 N m about each axis of the 50 kg satellite."""
+        flight = Flight(torque_nm=(3e-8, 3e-8, 3e-8), config=BALANCED)
+        assert 0.4 < flight.rms_deg(2.5, 1.0) < 0.55
+
+    def test_a_residual_dipole_that_is_known_costs_little_and_one_that_is_not_much(self):
+        dipole = (0.006, -0.005, 0.008)
+        known = Flight(dipole_am2=dipole).rms_deg(2.0, 1.0)
+        unknown = Flight(dipole_am2=dipole, told_dipole=False).rms_deg(2.0, 1.0)
+        assert known < 0.4
+        assert unknown > 1.5 * known
+
+
+@pytest.mark.parametrize(
+    ("backoff_s", "backoff"), [(0, "shared"), (20, "shared"), (0, "per_coil"), (160, "shared")]
+)
+def test_ten_minutes_are_searched_however_short_the_back_off(backoff_s, backoff):
+    """Pulses may be fired sooner than planned, never later."""
+    coils = {"levels_am2": [0.5, 2.0, 8.0], "backoff_s": backoff_s, "backoff": backoff}
+    config = config_of(coils=coils)
+    timing, model = config.coils.pulses, config.control.pulse_model
+    assert model.rest * model.step_ticks >= max(60, timing.pulse_ticks + timing.backoff_ticks)
+    assert model.searched * model.problem.step_s >= 600.0
+    assert 6 <= model.searched <= 30
+
+
+def test_levels_and_timing_of_the_plan_are_those_of_the_scheduler():
+    for config, rest in ((CONFIG, 1), (PER_COIL, 3)):
+        timing, model = config.coils.pulses, config.control.pulse_model
+        assert isinstance(timing, PulseConfig)
+        assert model.rest == rest
+        assert model.rest * model.step_ticks >= timing.pulse_ticks + timing.backoff_ticks
+        assert model.problem.step_s == pytest.approx(model.step_ticks * timing.tick_s)
+        body = np.array(config.control.inertia_kgm2)
+        impulses_am2_s = np.abs(body @ model.turns)
+        assert impulses_am2_s.max() == pytest.approx(timing.levels_am2[2] * timing.pulse_s)
