@@ -7,6 +7,7 @@ another form in ACQUIRE, it is named by a ``ControlLaw``. Its gains are in ``con
 
 from dataclasses import dataclass
 
+from fsw.core.laws.entry import Aim
 from fsw.core.laws.interface import (
     ControlConfig,
     Demand,
@@ -17,7 +18,6 @@ from fsw.core.laws.interface import (
     Setpoint,
 )
 from fsw.core.laws.plan.pulse_model import NO_PULSE, Pulse
-from fsw.core.laws.table import Aim
 from fsw.input.quantities import quantity
 
 GROUP = "torquer.laws"

@@ -10,9 +10,10 @@ from threading import current_thread, main_thread
 from types import FrameType
 from typing import Any
 
+from fsw.core.laws.entry import Aim
 from fsw.core.laws.interface import ControlConfig, Demand, Law, LawInput, Memory, OwnLaw, Setpoint
 from fsw.core.laws.plan.pulse_model import Pulse
-from fsw.core.laws.table import LAWS, Aim
+from fsw.core.laws.table import LAWS
 from fsw.input import own_code
 from fsw.input.own_code import error_clause
 from fsw.input.quantities import with_values

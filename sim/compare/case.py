@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
-from fsw.core.laws.table import LAWS, Aim
+from fsw.core.laws.entry import Aim
+from fsw.core.laws.table import LAWS
 from fsw.input.near import did_you_mean
 from fsw.input.schema import Nested, merge
 from fsw.table.own_law import declared

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from fsw.core.laws.table import Aim
+from fsw.core.laws.entry import Aim
 from fsw.input.schema import TableError
 from fsw.wire.messages import Mode
 from sim.campaign.flight import RecordedFlight, record_order

@@ -8,7 +8,7 @@ from io import StringIO
 from math import inf
 from typing import Any
 
-from fsw.core.laws.table import Aim
+from fsw.core.laws.entry import Aim
 from sim.compare.score import Score
 from sim.drawing.page_parts import Table
 

@@ -10,6 +10,7 @@ from sim.validate import calibrated, cells, computed, microsat, optimal_pulses, 
 from sim.validate.consat import minimisers, posat1, prediction
 from sim.validate.population import claims
 from sim.validate.reference import reference
+from sim.validate.review import damping, feedback, one_axis, optimal, predictive, sliding, spin, wheel
 
 
 def all_studies(satellites: int | None = None) -> list[Study]:
@@ -28,6 +29,11 @@ def all_studies(satellites: int | None = None) -> list[Study]:
         *shipped.studies(),
         *optimal_pulses.studies(satellites),
         *cells.studies(satellites),
+        *(
+            study
+            for section in (damping, spin, wheel, one_axis, feedback, sliding, optimal, predictive)
+            for study in section.studies()
+        ),
         *claims.studies(satellites),
         *wirings.studies(),
         *calibrated.studies(satellites),

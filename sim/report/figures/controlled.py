@@ -6,7 +6,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from fsw.core.laws.table import LAWS, Aim
+from fsw.core.laws.entry import Aim
+from fsw.core.laws.table import LAWS
 from fsw.table.own_law import declared
 from fsw.table.sections import ControlTable
 from sim.record.truth import Histories

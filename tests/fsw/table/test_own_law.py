@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from fsw.core.estimation.attitude import UNKNOWN
+from fsw.core.laws.entry import Aim
 from fsw.core.laws.interface import Demand, FieldSample, LawInput
 from fsw.core.laws.plan.pulse_model import Pulse
-from fsw.core.laws.table import LAWS, Aim
+from fsw.core.laws.table import LAWS
 from fsw.input.schema import TableError
 from fsw.table import own_law
 from fsw.table.config import flight_config

@@ -2,7 +2,8 @@
 
 import pytest
 
-from fsw.core.laws.table import LAWS, Aim
+from fsw.core.laws.entry import Aim
+from fsw.core.laws.table import LAWS
 from sim.compare.case import Driver, cases, chosen_laws
 from sim.errors import HarnessError
 from sim.scenario.schema import load

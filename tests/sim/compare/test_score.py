@@ -6,7 +6,7 @@ from math import degrees, sqrt
 import numpy as np
 import pytest
 
-from fsw.core.laws.table import Aim
+from fsw.core.laws.entry import Aim
 from sim.compare.case import Driver, cases
 from sim.compare.score import fly_case, history, judge
 from sim.scenario.schema import load, orbit_period_s

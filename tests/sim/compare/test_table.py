@@ -7,7 +7,7 @@ from io import StringIO
 
 import pytest
 
-from fsw.core.laws.table import Aim
+from fsw.core.laws.entry import Aim
 from sim.compare.case import Driver
 from sim.compare.score import Score
 from sim.compare.table import as_csv, as_json, as_text, ranked

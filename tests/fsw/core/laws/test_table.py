@@ -1,16 +1,19 @@
 """The table of laws: complete, unmistakable, and no law asks for what it cannot know."""
 
 from dataclasses import fields, is_dataclass
+from importlib import import_module
 from math import isfinite
+from pathlib import Path
 
 import pytest
 
+from fsw.core import laws
 from fsw.core.algebra.quaternion import normalise
 from fsw.core.algebra.vector import ZERO
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.laws.interface import Demand, FieldSample, LawInput
 from fsw.core.laws.plan.pulse_model import NO_PULSE
-from fsw.core.laws.table import LAWS
+from fsw.core.laws.table import CHECK, LAWS
 from fsw.core.state import checksum
 from fsw.core.step import boot
 from fsw.table.config import flight_config
@@ -50,6 +53,15 @@ def test_numbers_are_unique_and_fit_a_telecommand():
     numbers = [row.number for row in LAWS.values()]
     assert len(set(numbers)) == len(numbers)
     assert all(0 <= number <= 255 for number in numbers)
+
+
+def test_no_chapter_takes_the_name_of_a_law_of_another():
+    chapters = [
+        import_module(f"fsw.core.laws.{folder.name}.table").LAWS
+        for folder in Path(laws.__file__).parent.iterdir()
+        if (folder / "table.py").exists()
+    ]
+    assert len(LAWS) == sum(map(len, chapters)) + len(CHECK)
 
 
 def test_the_numbers_of_the_first_laws_stay_what_they_were():

@@ -1,0 +1,14 @@
+"""The laws that build up a spin and turn its axis, by name."""
+
+from fsw.core.laws.entry import Aim, LawEntry
+from fsw.core.laws.spin.spin import SpinGains, nutation, spin_up, y_thomson
+from fsw.core.laws.spin.spin_axis import SpinAxisGains, ThreeTermGains, reorientation, spin_relay, three_term
+
+LAWS: dict[str, LawEntry] = {
+    "nutation": LawEntry(11, Aim.SPIN, nutation, nutation, SpinGains),
+    "spin_up": LawEntry(12, Aim.SPIN, spin_up, spin_up, SpinGains),
+    "y_thomson": LawEntry(13, Aim.SPIN, y_thomson, y_thomson, SpinGains),
+    "spin_relay": LawEntry(14, Aim.SPIN, spin_relay, spin_relay, SpinAxisGains),
+    "reorientation": LawEntry(15, Aim.SPIN, reorientation, reorientation, SpinAxisGains),
+    "three_term": LawEntry(16, Aim.SPIN, three_term, three_term, ThreeTermGains),
+}

@@ -1,0 +1,8 @@
+"""Claims: three axes, sliding control (section 3.1)."""
+
+from sim.campaign.claim import Study
+
+
+def studies() -> list[Study]:
+    """All of this section."""
+    return []
