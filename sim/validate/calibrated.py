@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fsw.input.schema import Nested, merge
-from sim.calibrate.flown.run_fit import RunCalibration, calibrated
-from sim.calibrate.flown.samples import read_samples
-from sim.calibrate.flown.tables import tables
 from sim.campaign.claim import Claim, ClaimOutcome, Study
+from sim.commissioning.calibrate.flown.run_fit import RunCalibration, calibrated
+from sim.commissioning.calibrate.flown.samples import read_samples
+from sim.commissioning.calibrate.flown.tables import tables
 from sim.flight.virtual import fly_virtual
 from sim.plant.hardware.sensors import MagnetometerPhysics
 from sim.plant.sensor_config import MagnetometerConfig

@@ -18,14 +18,14 @@ from numpy.typing import NDArray
 
 from fsw.input.schema import Nested
 from fsw.table.table import FlightTable
-from sim.calibrate.flown.coil_axes import CoilAxes, coil_axes
-from sim.calibrate.flown.expected import Expected
-from sim.calibrate.flown.samples import Samples, read_samples
-from sim.calibrate.flown.wiring import WIRINGS, Wiring, channels_from_body
 from sim.campaign.claim import Claim, ClaimOutcome, Study
+from sim.commissioning.calibrate.flown.coil_axes import CoilAxes, coil_axes
+from sim.commissioning.calibrate.flown.expected import Expected
+from sim.commissioning.calibrate.flown.samples import Samples, read_samples
+from sim.commissioning.calibrate.flown.wiring import WIRINGS, Wiring, channels_from_body
+from sim.commissioning.phasing.command import sequence_ticks, with_sequence
+from sim.commissioning.phasing.judge import Known, phasing
 from sim.flight.virtual import fly_virtual
-from sim.phasing.command import sequence_ticks, with_sequence
-from sim.phasing.judge import Known, phasing
 from sim.record import run_dir
 from sim.record.pace import Pace
 from sim.scenario.schema import flight_table, load

@@ -251,6 +251,10 @@ PLANTED = {
     "boards know the wire, and what starts them": ("hil_stub/process/runner.py", "import fsw.core.state"),
     "boards on their own know the wire alone": ("hil_stub/coils/interlock.py", "import fsw.bus.hub"),
     "sim: from the plant over flights": ("sim/record/candump.py", "import sim.replay.log_replay"),
+    "sim.commissioning: wiring and calibration over": (
+        "sim/commissioning/recorded/columns.py",
+        "import sim.commissioning.telemetry.follow",
+    ),
     "sim.campaign: commands over their workers": ("sim/campaign/flight.py", "import sim.campaign.one_run"),
     "sim.plant: boards and physics over": ("sim/plant/rotation.py", "import sim.plant.hardware.coils"),
     "the plant knows the wire": (

@@ -86,7 +86,7 @@ def calibrate(
     value comes with its uncertainty and with the verdict whether the data tell it.
     """
     if source.suffix.lower() == ".csv":
-        from sim.calibrate.command import calibrate_recorded
+        from sim.commissioning.calibrate.command import calibrate_recorded
 
         if tle is None or out is None:
             raise HarnessError(
@@ -95,7 +95,7 @@ def calibrate(
         return calibrate_recorded(source, tle, out, page, ratios, int(parameters))
     if tle is not None or ratios is not None:
         raise HarnessError(f"--{'tle' if tle is not None else 'inertia-ratios'}: {source} is no PASS.csv")
-    from sim.calibrate.flown import command
+    from sim.commissioning.calibrate.flown import command
     from sim.scenario.schema import parse_settings
 
     return command.calibrate(source, scenario, parse_settings(settings), out, page)

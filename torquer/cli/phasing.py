@@ -69,9 +69,9 @@ def phasing(
     import numpy as np
 
     from sim.bench.command import real_boards
-    from sim.phasing import command
-    from sim.phasing.bench_log import is_bench_log
-    from sim.phasing.judge import Known
+    from sim.commissioning.phasing import command
+    from sim.commissioning.phasing.bench_log import is_bench_log
+    from sim.commissioning.phasing.judge import Known
     from sim.scenario.schema import parse_settings
 
     path = Path(source)

@@ -46,6 +46,6 @@ def telemetry(recorded: Path, tle: Path, calibration: Path | None, start_s: floa
     It uses the magnetometer alone, and is judged by what it did not use: gyros, Sun cells, samples to come.
     Exit code 1: the motion cannot be told, or what was not used speaks against it.
     """
-    from sim.telemetry.command import telemetry
+    from sim.commissioning.telemetry.command import telemetry
 
     return telemetry(recorded, tle, calibration, page, start_s)

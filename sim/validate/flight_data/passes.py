@@ -8,15 +8,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sim.calibrate.magnetometer import fit_magnetometer
-from sim.calibrate.recorded import calibrate_pass
+from sim.commissioning.calibrate.magnetometer import fit_magnetometer
+from sim.commissioning.calibrate.recorded import calibrate_pass
+from sim.commissioning.recorded.along import Along, along
+from sim.commissioning.recorded.calibration import PassCalibration
+from sim.commissioning.recorded.element_sets import nearest_elements
+from sim.commissioning.recorded.recorded_pass import read_pass
+from sim.commissioning.telemetry.follow import Noise
+from sim.commissioning.telemetry.judge import figures, judge, told_apart
 from sim.errors import HarnessError
-from sim.recorded.along import Along, along
-from sim.recorded.calibration import PassCalibration
-from sim.recorded.element_sets import nearest_elements
-from sim.recorded.recorded_pass import read_pass
-from sim.telemetry.follow import Noise
-from sim.telemetry.judge import figures, judge, told_apart
 
 ELEMENTS, CALIBRATED_BY = "tle.txt", "s3_20231211T151930Z"
 INERTIA = np.array([38478.7, 38528.7, 6873.7])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sim.calibrate.flown.wiring import body_from_outputs, channels_from_body
+from sim.commissioning.calibrate.flown.wiring import body_from_outputs, channels_from_body
 from sim.flight.virtual import fly_virtual
 from sim.record import run_dir
 from sim.record.pace import Pace

@@ -3,9 +3,9 @@
 import pytest
 from recorded_samples import DATA
 
+from sim.commissioning.recorded.calibration import read_calibration
+from sim.commissioning.telemetry import held_back
 from sim.errors import HarnessError
-from sim.recorded.calibration import read_calibration
-from sim.telemetry import held_back
 from sim.validate.flight_data import passes
 from sim.validate.flight_data.passes import believed, files, judged
 

@@ -1,0 +1,1 @@
+"""A satellite made ready: its wiring found, its sensors calibrated, the filter flown on recorded samples."""

@@ -1,0 +1,169 @@
+"""The coils' field on the magnetometer, and how late a sample shows it, from the pulses of a log.
+
+Around each pulse the reading of a channel is a cubic in time, the Earth's field as the body turns, plus the
+response of the output that is driven:
+
+    z(k) = p3(k) + D_j m(k - d),   m(k - d) linear between ticks
+
+m(k) the dipole driven over the tick that ended at k, d the delay. D is linear, and found for each d on a grid
+by least squares; d is where the squares are least.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.commissioning.calibrate.flown.samples import Samples, whole
+
+Array = NDArray[np.float64]
+Numbers = NDArray[np.int64]
+
+AROUND = 12
+"""Ticks before and after a pulse that show the field without it."""
+LONGEST_DELAY = 4.0
+STEP = 0.02
+"""Of the grid of delays, ticks."""
+CUBIC = 4
+SEEN_SIGMAS = 6.0
+"""A delay is known where the response is above so many of its standard deviations."""
+
+
+@dataclass(frozen=True, slots=True)
+class CoilResponse:
+    """Response of the channels to the outputs of the coil driver.
+
+    Attributes:
+        nt_per_am2: column j is the response to a nominal 1 A m^2 of output j, channels of the magnetometer.
+        sigma: its standard deviations.
+        pulses: of each output.
+        delay_ticks, delay_sigma: how late it shows; None where no response is seen.
+        noise_nt: standard deviation of a reading about the fit.
+        residual_nt, residual_phase: what the fit leaves, and the ticks since the pulse's request.
+    """
+
+    nt_per_am2: Array
+    sigma: Array
+    pulses: tuple[int, int, int]
+    delay_ticks: float | None
+    delay_sigma: float | None
+    noise_nt: float
+    residual_nt: Array
+    residual_phase: Array
+
+
+@dataclass(frozen=True, slots=True)
+class _Window:
+    """One pulse: its output, the readings about their cubic, and what takes a cubic off a drive."""
+
+    output: int
+    rows: Numbers
+    begin: int
+    readings: Array
+    without_cubic: Array
+
+
+def coil_response(samples: Samples, levels_am2: tuple[float, float, float]) -> CoilResponse:
+    """The response to the pulses of a log.
+
+    Args:
+        samples: of the log.
+        levels_am2: nominal dipoles of levels 1, 2, 3.
+    """
+    driven = np.zeros((len(samples), 3))
+    dipoles = np.array([0.0, *levels_am2])[np.abs(samples.level)] * np.sign(samples.level)
+    driven[np.arange(len(samples)), np.clip(samples.coil, 0, 2)] = dipoles
+    windows = _windows(samples, driven)
+    delays = np.arange(0.0, LONGEST_DELAY + 0.5 * STEP, STEP)
+    fits = [_at_delay(windows, driven, delay) for delay in delays.tolist()]
+    costs = np.array([fit.cost for fit in fits])
+    best = int(np.argmin(costs)) if windows else 0
+    fit = fits[best]
+    numbers = sum(3 * len(window.rows) for window in windows)
+    free = numbers - sum(3 * CUBIC for _ in windows) - 10
+    noise = float(np.sqrt(fit.cost / free)) if free > 0 else float("inf")
+    sigma = noise / np.sqrt(np.maximum(fit.weight, 1e-300))[None, :] * np.ones((3, 1))
+    seen = bool((np.abs(fit.response) > SEEN_SIGMAS * sigma).any()) and free > 0
+    delay, delay_sigma = _refined(delays, costs, best, noise) if seen else (None, None)
+    residual, phase = _residuals(windows, driven, fit, delays[best])
+    counts = [sum(window.output == output for window in windows) for output in range(3)]
+    return CoilResponse(
+        fit.response, sigma, (counts[0], counts[1], counts[2]), delay, delay_sigma, noise, residual, phase
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Fit:
+    response: Array
+    weight: Array
+    cost: float
+
+
+def _windows(samples: Samples, driven: Array) -> list[_Window]:
+    on = np.any(driven != 0.0, axis=1)
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], on.astype(int), [0]])))
+    windows = []
+    for begin, end in zip(edges[0::2].tolist(), edges[1::2].tolist(), strict=True):
+        output = int(np.argmax(np.abs(driven[begin])))
+        rows = np.arange(max(0, begin - AROUND), min(len(samples), end + AROUND + int(LONGEST_DELAY)))
+        others = [r for first, last in pairwise_runs(edges) if first != begin for r in range(first, last + 5)]
+        rows = rows[~np.isin(rows, others)]
+        rows = rows[whole(samples.field_nt[rows])]
+        before, after = (rows < begin).sum(), (rows >= end + LONGEST_DELAY).sum()
+        if before < 2 or after < 2 or len(rows) < CUBIC + 6:
+            continue
+        x = (rows - begin) / AROUND
+        basis, _ = np.linalg.qr(np.vander(x, CUBIC))
+        without = np.eye(len(rows)) - basis @ basis.T
+        windows.append(_Window(output, rows, begin, without @ samples.field_nt[rows], without))
+    return windows
+
+
+def pairwise_runs(edges: Numbers) -> list[tuple[int, int]]:
+    """Begin and end of each run."""
+    return [(first, last) for place, (first, last) in enumerate(pairwise(edges.tolist())) if place % 2 == 0]
+
+
+def _drive(driven: Array, window: _Window, delay: float) -> Array:
+    """What the samples of a window show of the dipole, less its cubic."""
+    late, part = int(delay), delay - int(delay)
+    own = driven[:, window.output]
+    newer = own[np.maximum(window.rows - late, 0)] * (window.rows - late >= 0)
+    older = own[np.maximum(window.rows - late - 1, 0)] * (window.rows - late - 1 >= 0)
+    shown: Array = window.without_cubic @ ((1.0 - part) * newer + part * older)
+    return shown
+
+
+def _at_delay(windows: list[_Window], driven: Array, delay: float) -> _Fit:
+    along, weight, total = np.zeros((3, 3)), np.zeros(3), 0.0
+    for window in windows:
+        shown = _drive(driven, window, delay)
+        along[:, window.output] += window.readings.T @ shown
+        weight[window.output] += shown @ shown
+        total += float((window.readings**2).sum())
+    safe = np.where(weight > 0.0, weight, np.inf)
+    return _Fit(along / safe, weight, total - float((along**2 / safe).sum()))
+
+
+def _refined(delays: Array, costs: Array, best: int, noise: float) -> tuple[float, float]:
+    """The least of a parabola through the costs about the best delay, and where it has risen by noise^2.
+
+    At whole ticks the costs have a corner, so that the curvature is the least of both sides.
+    """
+    reach = 4
+    if best == 0:
+        low, mid, high = costs[reach], costs[0], costs[reach]
+    else:
+        left, right = max(0, best - reach), min(len(costs) - 1, best + reach)
+        low, mid, high = costs[left], costs[best], costs[right]
+    step = reach * STEP
+    rise = max(min(low - mid, high - mid), 1e-30) / step**2
+    return float(delays[best]), float(np.hypot(noise / np.sqrt(rise), STEP / np.sqrt(12.0)))
+
+
+def _residuals(windows: list[_Window], driven: Array, fit: _Fit, delay: float) -> tuple[Array, Array]:
+    if not windows:
+        return np.zeros((0, 3)), np.zeros(0)
+    left = [w.readings - np.outer(_drive(driven, w, delay), fit.response[:, w.output]) for w in windows]
+    return np.vstack(left), np.concatenate([w.rows - w.begin for w in windows]).astype(float)

@@ -1,0 +1,159 @@
+"""Magnetometer by twelve numbers: offset o, and M of scale, non-orthogonality, turn against the Sun sensor.
+
+    b_body = M (z - o)
+    |b_body| = |B|,   s_body . b_body = S . B
+
+z the reading, s_body the reading of the Sun sensor, B and S field and Sun of the models: two numbers of a
+sample that do not depend on the attitude. Without the Sun only |b_body| counts, which leaves any turn of M
+open. Each sample's two residuals are weighted by their common covariance; what is known beforehand of M and o
+counts as measured. Gauss and Newton, damped.
+
+Source: Merayo et al. 2000, Scalar calibration of vector magnetometers, for the first; Alonso, Shuster 2002,
+TWOSTEP, for the start; the second is the dot-product constraint of Lerner, Shuster 1981.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.commissioning.calibrate.flown.samples import whole
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class FreeSamples:
+    """Samples without the coils' field.
+
+    Attributes:
+        field_nt: readings of the magnetometer, (n, 3).
+        sun: readings of the Sun sensor at the age of those of the field, NaN where there is none, (n, 3).
+        b_eci_nt, sun_eci: of the models, (n, 3).
+        field_sigma_nt: noise of a channel.
+        sun_sigma_rad: noise of the Sun direction.
+    """
+
+    field_nt: Array
+    sun: Array
+    b_eci_nt: Array
+    sun_eci: Array
+    field_sigma_nt: float
+    sun_sigma_rad: float
+
+    def rows(self, chosen: slice | NDArray[np.bool_]) -> "FreeSamples":
+        """Some of them."""
+        parts = (self.field_nt[chosen], self.sun[chosen], self.b_eci_nt[chosen], self.sun_eci[chosen])
+        return FreeSamples(*parts, self.field_sigma_nt, self.sun_sigma_rad)
+
+    def every(self, step: int) -> "FreeSamples":
+        """Every so many of them."""
+        return self.rows(slice(None, None, step))
+
+
+@dataclass(frozen=True, slots=True)
+class FitPrior:
+    """What is known beforehand: M near ``matrix`` within ``matrix_sigma``, o near zero within so many nT."""
+
+    matrix: Array
+    matrix_sigma: float
+    offset_sigma_nt: float
+
+
+@dataclass(frozen=True, slots=True)
+class FieldFit:
+    """M, o and their covariance, (12, 12): M by rows, then o.
+
+    ``chi2`` is the sum of the squares of the whitened residuals and of what is off the prior, ``numbers`` of
+    so many; ``residual`` are the whitened ones, by sample, of strength and of angle (NaN without the Sun),
+    ``residual_nt`` those of strength and of the component along the Sun as they are.
+    """
+
+    matrix: Array
+    offset_nt: Array
+    covariance: Array
+    chi2: float
+    numbers: int
+    residual: Array
+    residual_nt: Array
+
+
+def joint_fit(observed: FreeSamples, prior: FitPrior, rounds: int = 12) -> FieldFit:
+    """The fit of both numbers."""
+    x = np.concatenate([prior.matrix.ravel(), _first_offset(observed, prior)])
+    centre = np.concatenate([prior.matrix.ravel(), np.zeros(3)])
+    weight = np.concatenate([np.full(9, prior.matrix_sigma**-2), np.full(3, prior.offset_sigma_nt**-2)])
+    damping, (cost, gradient, hessian, residual) = 1e-3, _normal(observed, x, centre, weight)
+    for _ in range(rounds):
+        step = np.linalg.solve(hessian + damping * np.diag(np.diag(hessian)), -gradient)
+        trial = _normal(observed, x + step, centre, weight)
+        if trial[0] <= cost:
+            done = cost - trial[0] < 1e-6 * cost
+            x, (cost, gradient, hessian, residual), damping = x + step, trial, 0.1 * damping
+            if done:
+                break
+        else:
+            damping *= 10.0
+    numbers = int(np.isfinite(residual).sum())
+    covariance: Array = np.asarray(np.linalg.inv(hessian), float)
+    matrix, offset = x[:9].reshape(3, 3), x[9:]
+    return FieldFit(matrix, offset, covariance, cost, numbers, residual, _left_nt(observed, matrix, offset))
+
+
+def _left_nt(observed: FreeSamples, matrix: Array, offset: Array) -> Array:
+    """What the fit leaves of strength and of the component along the Sun."""
+    body, b = (observed.field_nt - offset) @ matrix.T, observed.b_eci_nt
+    strength = np.linalg.norm(body, axis=1) - np.linalg.norm(b, axis=1)
+    along = np.sum(observed.sun * body, axis=1) - np.sum(observed.sun_eci * b, axis=1)
+    return np.column_stack([strength, along])
+
+
+def _first_offset(observed: FreeSamples, prior: FitPrior) -> Array:
+    """An offset to begin with: |z|^2 - 2 z . o + |o|^2 = |B|^2 and s . M (z - o) = S . B are linear in it."""
+    z, b = observed.field_nt, observed.b_eci_nt
+    strength = np.linalg.norm(b, axis=1)
+    rows = np.hstack([z / strength[:, None], -0.5 / strength[:, None]])
+    values = (np.sum(z * z, axis=1) - strength**2) / (2.0 * strength)
+    lit = whole(observed.sun)
+    turned = observed.sun[lit] @ prior.matrix
+    angle = np.hstack([turned, np.zeros((int(lit.sum()), 1))])
+    known = np.sum(turned * z[lit], axis=1) - np.sum(b[lit] * observed.sun_eci[lit], axis=1)
+    sigma = 0.05 * float(strength.mean())  # as exact as M is known
+    a = np.vstack([rows, angle]) / sigma
+    y = np.concatenate([values, known]) / sigma
+    limits = np.array([*[prior.offset_sigma_nt**-2] * 3, 1e-30])
+    found: Array = np.asarray(np.linalg.solve(a.T @ a + np.diag(limits), a.T @ y), float)
+    return found[:3]
+
+
+def _normal(
+    observed: FreeSamples, x: Array, centre: Array, weight: Array
+) -> tuple[float, Array, Array, Array]:
+    """Cost, half its gradient and Hessian, and the whitened residuals at x."""
+    matrix, offset = x[:9].reshape(3, 3), x[9:]
+    moved = observed.field_nt - offset
+    body = moved @ matrix.T
+    size = np.maximum(np.linalg.norm(body, axis=1), 1.0)
+    b, s = observed.b_eci_nt, observed.sun_eci
+    strength = np.linalg.norm(b, axis=1)
+    along = np.sum(b * s, axis=1)
+    lit = whole(observed.sun)
+    sun = np.where(lit[:, None], observed.sun, 0.0)
+    first = size - strength
+    second = np.sum(sun * body, axis=1) - along
+    unit = body / size[:, None]
+    by_first = np.hstack([(unit[:, :, None] * moved[:, None, :]).reshape(-1, 9), -unit @ matrix])
+    by_second = np.hstack([(sun[:, :, None] * moved[:, None, :]).reshape(-1, 9), -sun @ matrix])
+    # the noise of z is in both: covariance sigma^2 [[1, c], [c, 1 + q^2]], whitened by its Cholesky factor
+    sigma = observed.field_sigma_nt
+    c = np.clip(along / strength, -0.999, 0.999)
+    across = strength * np.sqrt(1.0 - c * c) * observed.sun_sigma_rad / sigma
+    rest = np.sqrt(1.0 + across**2 - c * c)
+    r1, j1 = first / sigma, by_first / sigma
+    r2 = (second / sigma - c * r1) / rest
+    j2 = (by_second / sigma - c[:, None] * j1) / rest[:, None]
+    off = x - centre
+    cost = float(r1 @ r1 + r2[lit] @ r2[lit] + off @ (weight * off))
+    gradient = j1.T @ r1 + j2[lit].T @ r2[lit] + weight * off
+    hessian = j1.T @ j1 + j2[lit].T @ j2[lit] + np.diag(weight)
+    return cost, gradient, hessian, np.column_stack([r1, np.where(lit, r2, np.nan)])

@@ -1,0 +1,108 @@
+"""Where the satellite was in each tick of a pass, by its elements, with the field and the Sun there."""
+
+from dataclasses import dataclass
+from math import inf
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fsw.core.orbit.ephemeris import EphemerisModel, Reference, advance, ephemeris_model, reference_at
+from sim.commissioning.recorded.element_sets import ElementSet
+from sim.commissioning.recorded.recorded_pass import RecordedPass
+from sim.errors import HarnessError
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+NT_PER_T = 1e9
+FASTEST_HZ = 100
+
+
+@dataclass(frozen=True, slots=True)
+class Along:
+    """The pass beside what the elements give, row by row.
+
+    Attributes:
+        recorded: the pass.
+        elements: those that were used.
+        tick_s: length of a tick.
+        tick: of each row, (n), from that of the first row on.
+        first_of_tick: whether no earlier row has the tick: later ones are of an unknown moment, (n).
+        references: by tick, for every tick that a row has.
+        b_eci_nt: field, (n, 3); ``sun_eci``: unit vector, (n, 3); ``lit``: (n).
+    """
+
+    recorded: RecordedPass
+    elements: ElementSet
+    tick_s: float
+    tick: Integers
+    first_of_tick: NDArray[np.bool_]
+    references: dict[int, Reference]
+    b_eci_nt: Array
+    sun_eci: Array
+    lit: NDArray[np.bool_]
+
+    @property
+    def t_s(self) -> Array:
+        """Time of each row since the first one, (n)."""
+        t_s: Array = np.asarray(self.tick * self.tick_s, dtype=np.float64)
+        return t_s
+
+    @property
+    def strength_nt(self) -> Array:
+        """Strength of the field, (n)."""
+        strength: Array = np.sqrt(np.sum(self.b_eci_nt**2, axis=1))
+        return strength
+
+
+def along(recorded: RecordedPass, elements: ElementSet) -> Along:
+    """The field and the Sun along the elements as the flight software has them (SGP4, IGRF-14, almanac Sun).
+
+    Raises:
+        HarnessError: SGP4 finds no orbit, or the field does not hold at that time.
+    """
+    start_unix_s = int(recorded.utc_unix_s[0])
+    hertz = _tick_hz(recorded.utc_unix_s)
+    try:
+        model = ephemeris_model(elements.orbit, start_unix_s, hertz)
+    except ValueError as error:
+        raise HarnessError(f"{recorded.name}: {error}") from None
+    tick = np.rint((recorded.utc_unix_s - start_unix_s) * hertz).astype(np.int64)
+    references = _references(recorded.name, tick, model)
+    rows = [references[number] for number in tick.tolist()]
+    return Along(
+        recorded=recorded,
+        elements=elements,
+        tick_s=1.0 / hertz,
+        tick=tick,
+        first_of_tick=np.diff(tick, prepend=tick[0] - 1) > 0,
+        references=references,
+        b_eci_nt=NT_PER_T * np.array([row.b_eci_t for row in rows]),
+        sun_eci=np.array([row.sun_eci for row in rows]),
+        lit=np.array([row.lit for row in rows]),
+    )
+
+
+def _tick_hz(unix_s: Array) -> int:
+    """The rate of the samples, 1 Hz if they are slower."""
+    steps = np.diff(unix_s)
+    steps = steps[steps > 0.0]
+    usual_s = float(np.median(steps)) if len(steps) else inf
+    return min(max(round(1.0 / usual_s), 1), FASTEST_HZ)
+
+
+def _references(name: str, ticks: Integers, model: EphemerisModel) -> dict[int, Reference]:
+    window, references = None, {}
+    for tick in ticks.tolist():
+        window = advance(window, tick, model)
+        if window is None:
+            raise HarnessError(f"{name}: SGP4 finds no orbit {tick / model.tick_hz:.0f} s into the pass")
+        references[tick] = reference_at(window, tick, model)
+    return references
+
+
+def sampled(around: Along) -> Integers:
+    """The rows with a field sample whose moment is known, in order."""
+    finite = np.isfinite(around.recorded.mag_nt).all(axis=1)
+    rows: Integers = np.flatnonzero(finite & around.first_of_tick)
+    return rows

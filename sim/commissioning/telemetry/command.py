@@ -1,0 +1,99 @@
+"""``torquer telemetry``: the flight filter over recorded passes, in words, as JSON, as a page."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from sim.commissioning.recorded.along import along
+from sim.commissioning.recorded.calibration import UNCALIBRATED, PassCalibration, read_calibration
+from sim.commissioning.recorded.element_sets import nearest_elements
+from sim.commissioning.recorded.recorded_pass import read_pass
+from sim.commissioning.telemetry.follow import Noise
+from sim.commissioning.telemetry.judge import Judged, figures, judge
+from sim.commissioning.telemetry.page import telemetry_page
+from sim.console import answer, say, warn
+from sim.errors import HarnessError
+from sim.record.destination import check_file
+
+OLD_DAYS = 7.0
+
+
+def telemetry(path: Path, tle: Path, calibration: Path | None, page: Path | None, start_s: float) -> int:
+    """Follow a recorded pass, say how well, and write the page if it is wanted.
+
+    Returns:
+        The exit code: 1 where the motion cannot be believed, else 0.
+
+    Raises:
+        HarnessError, TableError: a file cannot be read or written, or is malformed.
+    """
+    if page is not None:
+        check_file(page)
+    known = UNCALIBRATED if calibration is None else read_calibration(calibration)
+    judged = judged_pass(path, tle, known, start_s)
+    found = figures(judged)
+    for line in in_words(judged, found):
+        say(line)
+    if page is not None:
+        try:
+            page.write_text(telemetry_page(judged, known, found), encoding="utf-8")
+        except OSError as error:
+            raise HarnessError(f"{page}: cannot be written ({error.strerror})") from None
+        say(f"page: {page}")
+    answer({"pass": judged.around.recorded.name, **found, "page": page})
+    return int(not judged.verdict.converged)
+
+
+def judged_pass(path: Path, tle: Path, known: PassCalibration, start_s: float) -> Judged:
+    """The pass in a file, followed and judged.
+
+    Raises:
+        HarnessError: a file cannot be read, or is malformed.
+    """
+    recorded = read_pass(path)
+    around = along(recorded, nearest_elements(tle, recorded.middle_unix_s))
+    age_days = around.elements.age_days(recorded.middle_unix_s)
+    if abs(age_days) > OLD_DAYS:
+        warn(f"{tle}: the nearest element set is {abs(age_days):.0f} days away: its field may be off")
+    return judge(around, known, Noise(), start_s)
+
+
+def in_words(judged: Judged, found: dict[str, Any]) -> Sequence[str]:
+    """The figures for people."""
+    around, verdict = judged.around, judged.verdict
+    lines = [
+        f"{around.recorded.name}: {found['rows']} rows in {around.t_s[-1]:.0f} s, elements "
+        f"{found['elements_age_days']:.2f} days old",
+        f"field: direction {found['field_direction_deg_rms']:.2f} deg RMS ahead of each sample, "
+        f"strength {found['field_norm_nt_rms']:.0f} nT RMS",
+        f"rate about y: {found['rate_y_degps_mean']:.3f} deg/s" + _gyro(found),
+        "without samples: " + _coasts(found["coast_deg_rms"]),
+        "Sun by cells held back: " + _azimuth(found["sun_azimuth_deg"]),
+    ]
+    if found["rows_of_unknown_moment"] or found["rejected"]:
+        lines.append(
+            f"not used: {found['rows_of_unknown_moment']} rows of one moment with others, "
+            f"{found['rejected']} samples that the filter refused"
+        )
+    told = {"field": "by the field", "cells": "by the cells", "coasting": "by coasting"}.get(verdict.by, "")
+    others = [f"{rate:.2f}" for rate in found["motions_degps"][1:]]
+    if others and told:
+        lines.append(f"told from {' and '.join(others)} deg/s {told}")
+    lines.append("converged" if verdict.converged else f"not converged: {verdict.reason}")
+    return lines
+
+
+def _gyro(found: dict[str, Any]) -> str:
+    gyro = found["gyro_y_degps_mean"]
+    return "" if gyro is None else f", by the gyro, not used, {gyro:.3f}"
+
+
+def _coasts(coasts: dict[str, float | None]) -> str:
+    said = [f"{error:.1f} deg after {horizon} s" for horizon, error in coasts.items() if error is not None]
+    return ", ".join(said) or "the pass is too short"
+
+
+def _azimuth(azimuth: dict[str, Any]) -> str:
+    if azimuth["median"] is None:
+        return "none with two cells lit"
+    return f"azimuth off by {azimuth['median']:.1f} deg, scatter {azimuth['rms']:.1f}, {azimuth['rows']} rows"

@@ -1,0 +1,45 @@
+"""Response of the channels to the coils, and how late it shows."""
+
+import numpy as np
+import pytest
+
+from sim.commissioning.calibrate.flown.coil_field import coil_response
+
+RESPONSE = np.array([[1800.0, -300.0, 90.0], [-700.0, 40.0, 2500.0], [250.0, -1900.0, -600.0]])
+LEVELS = (0.5, 2.0, 8.0)
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.3, 1.0, 1.46, 2.0])
+def test_response_and_delay_are_found_in_a_field_that_turns(pulsed, delay):
+    found = coil_response(pulsed(RESPONSE, delay), LEVELS)
+    assert found.nt_per_am2 == pytest.approx(RESPONSE, abs=3.0)
+    assert found.delay_ticks == pytest.approx(delay, abs=0.011)
+    assert found.pulses == (2, 2, 2)
+
+
+def test_errors_are_as_large_as_it_says(pulsed):
+    found = coil_response(pulsed(RESPONSE, 1.46, noise_nt=200.0, pulses=18), LEVELS)
+    off = (found.nt_per_am2 - RESPONSE) / found.sigma
+    assert np.abs(off).max() < 4.0
+    assert 0.5 < np.sqrt(np.mean(off**2)) < 1.6
+    assert abs(found.delay_ticks - 1.46) < 3.0 * found.delay_sigma
+    assert found.noise_nt == pytest.approx(200.0, rel=0.1)
+
+
+def test_where_nothing_shows_there_is_no_delay(pulsed):
+    found = coil_response(pulsed(0.0 * RESPONSE, 1.0, noise_nt=200.0), LEVELS)
+    assert found.delay_ticks is None
+    assert np.abs(found.nt_per_am2).max() < 5.0 * found.sigma.max()
+
+
+def test_an_output_that_was_not_fired_is_not_known(pulsed):
+    found = coil_response(pulsed(RESPONSE, 0.0, pulses=2), LEVELS)
+    assert found.pulses == (1, 1, 0)
+    assert np.isinf(found.sigma[:, 2]).all() or found.sigma[:, 2].min() > 1e6
+
+
+def test_a_pulse_at_the_edge_of_the_log_is_left_out(pulsed):
+    samples = pulsed(RESPONSE, 0.0)
+    cut = slice(0, 226)  # the last pulse begins at 220
+    parts = [getattr(samples, name)[cut] for name in samples.__slots__]
+    assert coil_response(type(samples)(*parts), LEVELS).pulses == (2, 2, 1)

@@ -1,0 +1,63 @@
+"""The response in a recorded bench log, level by level, and what it cannot tell."""
+
+import numpy as np
+import pytest
+
+from sim.commissioning.phasing.bench_log import bench_responses, read_recording
+from sim.commissioning.phasing.bench_words import NOT_TOLD, findings, lines
+from sim.errors import HarnessError
+
+
+@pytest.fixture(scope="module")
+def responses(bench_csv):
+    return {one.name: one for one in bench_responses(read_recording(bench_csv))}
+
+
+def test_size_by_level_within_its_uncertainty(responses):
+    steps = responses["mag1"].steps
+    assert [step.command_am2 for step in steps] == [(m, 0.0, 0.0) for m in (0.01, 0.02, 0.04, 0.08)]
+    for step in steps:
+        m = step.command_am2[0]
+        expected = np.array([3e5, -5e5, 5e5]) * m
+        assert (np.abs(step.response_nt - expected) < 4.0 * step.sigma_nt + 50.0).all()
+    assert [step.edges for step in steps] == [6, 5, 4, 4]
+
+
+def test_phase_is_between_the_last_sample_without_it_and_the_first_with_it(responses):
+    strong = responses["mag1"].steps[-1]
+    assert strong.changed_s == pytest.approx(0.19, abs=1e-6)
+    assert strong.unchanged_s == 0.0
+
+
+def test_an_axis_that_repeats_another_is_told(responses):
+    assert responses["mag1"].tied == ("z = -y",)
+
+
+def test_a_response_out_of_proportion_is_told(responses):
+    assert any("not proportional to a command along x" in text for text in findings(responses["mag2"]))
+    assert not any("not proportional" in text for text in findings(responses["mag1"]))
+
+
+def test_no_axis_is_claimed(responses):
+    assert lines(list(responses.values()))[-1] == NOT_TOLD
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (lambda text: text.replace("mag_y_nt", "mag_why"), "column mag_y_nt is missing"),
+        (lambda text: text.replace(",mag1,20000", ",mag1,twenty", 1), "line 2: mag_x_nt is 'twenty'"),
+        (lambda text: text.replace(",cmd,", ",other,"), "is"),
+        (lambda text: text.splitlines()[0] + "\n", "no commands"),
+    ],
+)
+def test_a_broken_file_is_told_in_a_sentence(bench_csv, tmp_path, change, says):
+    path = tmp_path / "broken.csv"
+    path.write_text(change(bench_csv.read_text()))
+    with pytest.raises(HarnessError, match=says):
+        read_recording(path)
+
+
+def test_a_file_that_is_not_there_is_told_in_a_sentence(tmp_path):
+    with pytest.raises(HarnessError, match=r"none\.csv: cannot be read: No such file"):
+        read_recording(tmp_path / "none.csv")

@@ -1,0 +1,63 @@
+"""The orbit beside a pass: the plant's own field and Sun at every row."""
+
+import numpy as np
+import pytest
+from recorded_samples import DATA, TLE, made_up
+
+from sim.commissioning.recorded.along import along, sampled
+from sim.commissioning.recorded.element_sets import nearest_elements
+from sim.commissioning.recorded.recorded_pass import read_pass
+from sim.errors import HarnessError
+
+
+def test_field_and_sun_are_those_of_the_plant(tmp_path):
+    truth = made_up(90)
+    around = truth.along(tmp_path)
+    np.testing.assert_allclose(around.b_eci_nt, truth.b_eci_nt, atol=30.0)
+    np.testing.assert_allclose(around.sun_eci, truth.sun_eci, atol=1e-4)
+    np.testing.assert_allclose(around.strength_nt, np.linalg.norm(truth.b_eci_nt, axis=1), atol=30.0)
+    assert around.lit.all()
+    assert around.tick_s == 1.0
+
+
+def test_a_pass_in_shadow_is_dark():
+    recorded = read_pass(DATA / "s3_20240426T041442Z.csv")
+    around = along(recorded, nearest_elements(TLE, recorded.middle_unix_s))
+    assert not around.lit.any()
+    assert all(current.max() == 0.0 for current in around.recorded.cells.values())
+
+
+def test_of_rows_of_one_second_the_first_alone_counts_and_gaps_stay(tmp_path):
+    head, *rows = made_up(10).text.splitlines()
+    rows.insert(4, ",".join([rows[3].split(",")[0], *rows[4].split(",")[1:]]))
+    empty = rows[6].split(",")
+    rows[6] = ",".join([empty[0], "", *empty[2:]])
+    path = tmp_path / "gaps.csv"
+    path.write_text("\n".join([head, *rows[:7], *rows[8:]]) + "\n")
+    recorded = read_pass(path)
+    around = along(recorded, nearest_elements(TLE, recorded.middle_unix_s))
+    assert around.tick.tolist() == [0, 1, 2, 3, 3, 4, 5, 7, 8, 9]
+    assert around.first_of_tick.tolist() == [True] * 4 + [False] + [True] * 5
+    assert sampled(around).tolist() == [0, 1, 2, 3, 5, 7, 8, 9]
+
+
+def test_faster_samples_have_shorter_ticks(tmp_path):
+    head, *rows = made_up(12).text.splitlines()
+    start = float(rows[0].split(",")[0])
+    faster = [",".join([f"{start + 0.25 * n:.2f}", *row.split(",")[1:]]) for n, row in enumerate(rows)]
+    path = tmp_path / "fast.csv"
+    path.write_text("\n".join([head, *faster]) + "\n")
+    recorded = read_pass(path)
+    around = along(recorded, nearest_elements(TLE, recorded.middle_unix_s))
+    assert around.tick_s == 0.25
+    assert around.tick.tolist() == list(range(12))
+    np.testing.assert_allclose(around.t_s, 0.25 * np.arange(12))
+
+
+def test_a_time_without_a_field_model_is_refused(tmp_path):
+    text = made_up(5).text.replace("17023079", "23023079")
+    path = tmp_path / "late.csv"
+    path.write_text(text)
+    recorded = read_pass(path)
+    with pytest.raises(HarnessError, match="late: "):
+        along(recorded, nearest_elements(TLE, recorded.middle_unix_s))

@@ -1,0 +1,117 @@
+"""Which motion is believed: cells or coasting tell it, and one that nothing bears out has not converged."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from recorded_samples import DATA, TLE
+
+from sim.commissioning.recorded.along import along
+from sim.commissioning.recorded.calibration import read_calibration
+from sim.commissioning.recorded.element_sets import nearest_elements
+from sim.commissioning.recorded.recorded_pass import read_pass
+from sim.commissioning.telemetry.follow import Noise
+from sim.commissioning.telemetry.held_back import NO_AZIMUTHS
+from sim.commissioning.telemetry.judge import figures, judge, told_apart
+
+KNOWN = read_calibration(DATA / "calibration.toml")
+
+
+def judged(name):
+    recorded = read_pass(DATA / f"s3_{name}.csv")
+    return judge(along(recorded, nearest_elements(TLE, recorded.middle_unix_s)), KNOWN, Noise())
+
+
+@pytest.fixture(scope="module")
+def sunlit():
+    """200 s of 24 deg/s, calibrated three months before."""
+    return judged("20240314T153551Z")
+
+
+@pytest.fixture(scope="module")
+def eclipsed():
+    """200 s of 66 deg/s in shadow."""
+    return judged("20240426T041442Z")
+
+
+class TestOfAPassInTheSun:
+    def test_the_field_allows_two_motions_and_the_cells_tell_one(self, sunlit):
+        best, other = sunlit.motions
+        assert sunlit.verdict == (True, "cells", "")
+        assert best.direction_deg_rms == pytest.approx(other.direction_deg_rms, rel=0.02)
+        assert abs(best.followed.rate_degps[-1, 1] - other.followed.rate_degps[-1, 1]) > 0.05
+        assert abs(best.azimuths.median_deg) < 5.0
+        assert abs(other.azimuths.median_deg) > 15.0
+
+    def test_the_wrong_one_alone_is_not_reported_as_converged(self, sunlit):
+        _, verdict = told_apart([sunlit.motions[1]])
+        assert not verdict.converged
+        assert "the Sun that the cells see is off by" in verdict.reason
+
+    def test_without_cells_neither_is(self, sunlit):
+        blind = [replace(motion, azimuths=NO_AZIMUTHS) for motion in sunlit.motions]
+        _, verdict = told_apart(blind)
+        assert not verdict.converged
+        assert "fit the field alike, and neither cells nor coasting tell them apart" in verdict.reason
+
+    def test_cells_that_told_the_motion_do_not_count_as_held_back(self, sunlit):
+        told = sunlit.best.held_back("cells").rows
+        assert told.min() >= 100
+        assert len(told) < len(sunlit.best.held_back("field").rows)
+
+    def test_its_figures(self, sunlit):
+        found = figures(sunlit)
+        assert found["field_norm_nt_rms"] < 1000.0
+        assert found["field_direction_deg_rms"] < 2.5
+        assert found["gyro_y_degps_mean"] == pytest.approx(23.28, abs=0.01)
+        assert found["rate_y_degps_mean"] == pytest.approx(23.277, abs=0.1 + 0.025 * 23.277)
+        assert found["rate_y_degps_mean"] == pytest.approx((23.277 + 0.2) / 0.985, abs=0.3)
+        assert set(found["coast_deg_rms"]) == {"10", "30", "60", "120"}
+        assert found["coast_deg_rms"]["120"] < 5.0
+        assert abs(found["sun_azimuth_deg"]["median"]) < 15.0
+        assert found["sun_azimuth_deg"]["rms"] < 5.0
+        assert found["converged"]
+
+
+class TestOfAPassInShadow:
+    def test_coasting_tells_one_of_two_motions(self, eclipsed):
+        best, other = eclipsed.motions
+        assert eclipsed.verdict == (True, "coasting", "")
+        assert other.longest_coast()[1] > 2.0 * best.longest_coast()[1]
+        assert other.direction_deg_rms < 2.5
+
+    def test_the_wrong_one_alone_is_not_reported_as_converged(self, eclipsed):
+        _, verdict = told_apart([eclipsed.motions[1]])
+        assert not verdict.converged
+        assert "without samples the field is off by" in verdict.reason
+
+    def test_one_that_nothing_bears_out_is_not_believed_though_it_stands_alone(self, eclipsed):
+        best = eclipsed.best
+        short = replace(best, coasts_deg={10: best.coasts_deg[10], 30: best.coasts_deg[30]})
+        _, verdict = told_apart([short])
+        assert verdict == (False, "field", "neither cells nor a minute of coasting bear the motion out")
+        assert told_apart([best])[1].converged
+
+    def test_its_figures(self, eclipsed):
+        found = figures(eclipsed)
+        assert found["sun_azimuth_deg"] == {"median": None, "rms": None, "rows": 0}
+        assert found["field_direction_deg_rms"] < 2.5
+        assert found["rate_y_degps_mean"] == pytest.approx((64.59 + 0.2) / 0.985, abs=0.3)
+
+
+def test_too_short_a_pass_has_no_coasting_and_is_not_believed(tmp_path):
+    lines = (DATA / "s3_20240426T041442Z.csv").read_text().splitlines()
+    path = tmp_path / "short.csv"
+    path.write_text("\n".join(lines[:41]) + "\n")
+    recorded = read_pass(path)
+    found = judge(along(recorded, nearest_elements(TLE, recorded.middle_unix_s)), KNOWN, Noise())
+    assert not found.verdict.converged
+    assert figures(found)["coast_deg_rms"]["60"] is None
+
+
+def test_a_rate_is_right_without_a_calibration_of_the_body(sunlit):
+    """A sphere spins about what axis it has: that across which the field turns."""
+    recorded = sunlit.around.recorded
+    sphere = KNOWN._replace(inertia=np.eye(3))
+    found = judge(along(recorded, nearest_elements(TLE, recorded.middle_unix_s)), sphere, Noise())
+    assert found.best.followed.rate_degps[-50:, 1].mean() == pytest.approx(23.9, abs=0.2)
