@@ -6,7 +6,7 @@
 z the reading, s_body the reading of the Sun sensor, B and S field and Sun of the models: two numbers of a
 sample that do not depend on the attitude. Without the Sun only |b_body| counts, which leaves any turn of M
 open. Each sample's two residuals are weighted by their common covariance; what is known beforehand of M and o
-counts as measured. Gauss and Newton, damped.
+counts as measured.
 
 Source: Merayo et al. 2000, Scalar calibration of vector magnetometers, for the first; Alonso, Shuster 2002,
 TWOSTEP, for the start; the second is the dot-product constraint of Lerner, Shuster 1981.
@@ -16,6 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import least_squares
 
 from sim.commissioning.calibrate.flown.samples import whole
 
@@ -78,26 +79,36 @@ class FieldFit:
     residual_nt: Array
 
 
-def joint_fit(observed: FreeSamples, prior: FitPrior, rounds: int = 12) -> FieldFit:
+def joint_fit(observed: FreeSamples, prior: FitPrior) -> FieldFit:
     """The fit of both numbers."""
-    x = np.concatenate([prior.matrix.ravel(), _first_offset(observed, prior)])
     centre = np.concatenate([prior.matrix.ravel(), np.zeros(3)])
-    weight = np.concatenate([np.full(9, prior.matrix_sigma**-2), np.full(3, prior.offset_sigma_nt**-2)])
-    damping, (cost, gradient, hessian, residual) = 1e-3, _normal(observed, x, centre, weight)
-    for _ in range(rounds):
-        step = np.linalg.solve(hessian + damping * np.diag(np.diag(hessian)), -gradient)
-        trial = _normal(observed, x + step, centre, weight)
-        if trial[0] <= cost:
-            done = cost - trial[0] < 1e-6 * cost
-            x, (cost, gradient, hessian, residual), damping = x + step, trial, 0.1 * damping
-            if done:
-                break
-        else:
-            damping *= 10.0
-    numbers = int(np.isfinite(residual).sum())
-    covariance: Array = np.asarray(np.linalg.inv(hessian), float)
-    matrix, offset = x[:9].reshape(3, 3), x[9:]
-    return FieldFit(matrix, offset, covariance, cost, numbers, residual, _left_nt(observed, matrix, offset))
+    sigma = np.concatenate([np.full(9, prior.matrix_sigma), np.full(3, prior.offset_sigma_nt)])
+    lit = whole(observed.sun)
+
+    def errors(x: Array) -> Array:
+        first, second = _whitened(observed, x)[0].T
+        return np.concatenate([first, second[lit], (x - centre) / sigma])
+
+    def slopes(x: Array) -> Array:
+        _, first, second = _whitened(observed, x)
+        return np.vstack([first, second[lit], np.diag(1.0 / sigma)])
+
+    start = np.concatenate([prior.matrix.ravel(), _first_offset(observed, prior)])
+    found = least_squares(errors, start, slopes, x_scale="jac")
+    slope = slopes(found.x)
+    covariance: Array = np.asarray(np.linalg.inv(slope.T @ slope), float)
+    first, second = _whitened(observed, found.x)[0].T
+    residual = np.column_stack([first, np.where(lit, second, np.nan)])
+    matrix, offset = found.x[:9].reshape(3, 3), found.x[9:]
+    return FieldFit(
+        matrix=matrix,
+        offset_nt=offset,
+        covariance=covariance,
+        chi2=2.0 * float(found.cost),
+        numbers=int(np.isfinite(residual).sum()),
+        residual=residual,
+        residual_nt=_left_nt(observed, matrix, offset),
+    )
 
 
 def _left_nt(observed: FreeSamples, matrix: Array, offset: Array) -> Array:
@@ -126,10 +137,12 @@ def _first_offset(observed: FreeSamples, prior: FitPrior) -> Array:
     return found[:3]
 
 
-def _normal(
-    observed: FreeSamples, x: Array, centre: Array, weight: Array
-) -> tuple[float, Array, Array, Array]:
-    """Cost, half its gradient and Hessian, and the whitened residuals at x."""
+def _whitened(observed: FreeSamples, x: Array) -> tuple[Array, Array, Array]:
+    """By sample both residuals, (n, 2), and their slopes, (n, 12) each; in the dark the first alone counts.
+
+    The noise of a reading is in both: their covariance sigma^2 [[1, c], [c, 1 + q^2]] is taken out by its
+    Cholesky factor.
+    """
     matrix, offset = x[:9].reshape(3, 3), x[9:]
     moved = observed.field_nt - offset
     body = moved @ matrix.T
@@ -137,23 +150,15 @@ def _normal(
     b, s = observed.b_eci_nt, observed.sun_eci
     strength = np.linalg.norm(b, axis=1)
     along = np.sum(b * s, axis=1)
-    lit = whole(observed.sun)
-    sun = np.where(lit[:, None], observed.sun, 0.0)
-    first = size - strength
-    second = np.sum(sun * body, axis=1) - along
+    sun = np.where(whole(observed.sun)[:, None], observed.sun, 0.0)
     unit = body / size[:, None]
     by_first = np.hstack([(unit[:, :, None] * moved[:, None, :]).reshape(-1, 9), -unit @ matrix])
     by_second = np.hstack([(sun[:, :, None] * moved[:, None, :]).reshape(-1, 9), -sun @ matrix])
-    # the noise of z is in both: covariance sigma^2 [[1, c], [c, 1 + q^2]], whitened by its Cholesky factor
     sigma = observed.field_sigma_nt
     c = np.clip(along / strength, -0.999, 0.999)
     across = strength * np.sqrt(1.0 - c * c) * observed.sun_sigma_rad / sigma
     rest = np.sqrt(1.0 + across**2 - c * c)
-    r1, j1 = first / sigma, by_first / sigma
-    r2 = (second / sigma - c * r1) / rest
-    j2 = (by_second / sigma - c[:, None] * j1) / rest[:, None]
-    off = x - centre
-    cost = float(r1 @ r1 + r2[lit] @ r2[lit] + off @ (weight * off))
-    gradient = j1.T @ r1 + j2[lit].T @ r2[lit] + weight * off
-    hessian = j1.T @ j1 + j2[lit].T @ j2[lit] + np.diag(weight)
-    return cost, gradient, hessian, np.column_stack([r1, np.where(lit, r2, np.nan)])
+    first = (size - strength) / sigma
+    second = ((np.sum(sun * body, axis=1) - along) / sigma - c * first) / rest
+    slope = by_first / sigma
+    return np.column_stack([first, second]), slope, (by_second / sigma - c[:, None] * slope) / rest[:, None]

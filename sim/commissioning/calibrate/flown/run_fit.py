@@ -131,9 +131,9 @@ def _convolved(rows: Array, weights: Array) -> Array:
 def _robust(observed: FreeSamples, wiring: Wiring) -> tuple[FieldFit, Flags]:
     """The fit, once more without the samples that lie far off."""
     prior = FitPrior(channels_from_body(wiring).T, MATRIX_SIGMA, OFFSET_SIGMA_NT)
-    first = joint_fit(observed, prior, rounds=30)
+    first = joint_fit(observed, prior)
     kept = without_outliers(first)
-    return (first if kept.all() else joint_fit(observed.rows(kept), prior, rounds=30)), kept
+    return (first if kept.all() else joint_fit(observed.rows(kept), prior)), kept
 
 
 def _widening(field: FieldFit) -> float:

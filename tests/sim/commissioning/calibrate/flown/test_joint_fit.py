@@ -10,7 +10,7 @@ NEAR = FitPrior(np.eye(3), 0.1, 1e5)
 
 def test_without_noise_it_finds_what_is_there(observed, truth):
     matrix, offset = truth
-    found = joint_fit(observed(), NEAR, rounds=30)
+    found = joint_fit(observed(), NEAR)
     assert found.matrix == pytest.approx(matrix, abs=2e-5)
     assert found.offset_nt == pytest.approx(offset, abs=1.0)
 
@@ -20,7 +20,7 @@ def test_errors_are_as_large_as_it_says(observed, truth):
     matrix, offset = truth
     off = []
     for seed in range(12):
-        found = joint_fit(observed(400, 50.0, 0.002, seed=seed), NEAR, rounds=30)
+        found = joint_fit(observed(400, 50.0, 0.002, seed=seed), NEAR)
         error = np.concatenate([(found.matrix - matrix).ravel(), found.offset_nt - offset])
         off.append(error / np.sqrt(found.covariance.diagonal()))
     assert 0.85 < np.sqrt(np.mean(np.square(off))) < 1.15
@@ -29,7 +29,7 @@ def test_errors_are_as_large_as_it_says(observed, truth):
 
 def test_without_the_sun_the_turn_stays_as_unknown_as_before(observed, truth):
     """|b| is blind to a turn; offset and scale it tells."""
-    found = joint_fit(observed(noise_nt=50.0, sun=False), NEAR, rounds=30)
+    found = joint_fit(observed(noise_nt=50.0, sun=False), NEAR)
     sigma = np.sqrt(found.covariance.diagonal())
     turn = np.sqrt(found.covariance[1, 1] + found.covariance[3, 3] - 2.0 * found.covariance[1, 3])
     assert turn > 1.3 * 0.1
@@ -47,7 +47,7 @@ def test_a_body_that_does_not_turn_with_a_field_that_hardly_does_leaves_the_offs
         50.0,
         0.002,
     )
-    sigma = np.sqrt(joint_fit(samples, NEAR, rounds=30).covariance.diagonal())
+    sigma = np.sqrt(joint_fit(samples, NEAR).covariance.diagonal())
     assert sigma[9:].max() > 1000.0
 
 
@@ -57,7 +57,7 @@ def test_a_mirrored_sensor_is_found_from_a_mirrored_start(observed, truth):
     mirrored = type(samples)(
         samples.field_nt @ mirror, *(getattr(samples, name) for name in samples.__slots__[1:])
     )
-    found = joint_fit(mirrored, FitPrior(mirror, 0.1, 1e5), rounds=30)
+    found = joint_fit(mirrored, FitPrior(mirror, 0.1, 1e5))
     assert found.matrix == pytest.approx(truth[0] @ mirror, abs=2e-5)
-    wrong = joint_fit(mirrored, NEAR, rounds=30)
+    wrong = joint_fit(mirrored, NEAR)
     assert wrong.chi2 > 300.0 > 100.0 * found.chi2  # it must leave what is known beforehand
