@@ -45,8 +45,10 @@ def trace_pulse(
 ) -> Estimate:
     """Trace one more pulse, which ends now, and the oldest of its coil no longer.
 
-    Its effect is as uncertain as ``MODEL_ERROR``, and as the part of it that the disturbance torque would do
-    by the next pulse: if that is not what the filter takes it for, the pulse seems to have done it.
+    The trace begins anew where the innovations since the pulse before were certainly no coil's: what misled
+    the filter has then misled it about those pulses too. The effect of this one is as uncertain as
+    ``MODEL_ERROR``, and as the part of it that the disturbance torque would do by the next pulse: if that is
+    not what the filter takes it for, the pulse seems to have done it.
 
     Args:
         estimate: before.
@@ -55,7 +57,7 @@ def trace_pulse(
         pulses: configuration of pulses.
         tuning: of the filter.
     """
-    trace, coil = estimate.trace or empty_trace(estimate), pulse.coil
+    trace, coil = _of_coils_alone(estimate.trace) or empty_trace(estimate), pulse.coil
     own = indices_of(coil, trace.numbers)
     if len(own) == PULSES:
         trace = without(trace, own[-1])
@@ -69,6 +71,14 @@ def trace_pulse(
         uncertain=hypot(MODEL_ERROR, drift_nms / (max(drift_nms, norm(impulse_nms)) or 1.0)),
     )
     return estimate._replace(trace=extended(trace, (cause,), effect[:, np.newaxis]))
+
+
+def _of_coils_alone(trace: Trace | None) -> Trace | None:
+    """A trace, unless more of what was measured is unexplained than chance leaves."""
+    if trace is None or not trace.measured:
+        return trace
+    most = max(UNEXPLAINED * trace.measured, most_by_chance(trace.measured))
+    return trace if unexplained(trace.sums) <= most else None
 
 
 def empty_trace(estimate: Estimate) -> Trace:

@@ -119,10 +119,18 @@ def test_a_weak_coil_leaves_noise_and_where_more_is_left_nobody_is_judged():
     sums[-1, -1] += 0.7 * estimate.trace.measured
     doubtful = estimate._replace(trace=estimate.trace._replace(sums=sums))
     assert judged(doubtful) == (doubtful, None)
-    begun = traced(doubtful, Pulse(1, 3))
-    assert left(begun) == pytest.approx(0.0, abs=1e-9), "what was left before is of the past"
-    assert begun.trace.measured == 0
-    assert judged(begun)[1] is not None
+
+
+@pytest.mark.parametrize(("more", "kept"), [(0.1, (1, 0)), (0.7, (1,))], ids=["noise", "more than noise"])
+def test_what_was_shown_of_pulses_while_something_else_misled_the_filter_proves_nothing_later(more, kept):
+    estimate, _ = fly([0], [0.3])
+    sums = estimate.trace.sums.copy()
+    sums[-1, -1] += more * estimate.trace.measured
+    after = traced(estimate._replace(trace=estimate.trace._replace(sums=sums)), Pulse(1, 3))
+    assert left(after) == pytest.approx(0.0, abs=1e-9), "what was left before is of the past"
+    assert after.trace.measured == 0
+    assert after.trace.numbers == kept
+    assert (judged(after)[1] is None) == (0 not in kept)
 
 
 def test_pulses_that_no_fault_of_a_coil_explains_prove_nothing_later():
