@@ -13,6 +13,11 @@ NO_SAMPLE = FieldSample()
 SUN = np.array([0.6, 0.0, 0.8])
 NEEDS = {
     "bdot_switched": {"second sample"},
+    "rate_damping_matrix": {"attitude"},
+    "bdot_held": {"second sample"},
+    "least_momentum": {"attitude", "orbit"},
+    "least_energy": {"attitude", "orbit"},
+    "rate_model": {"attitude", "orbit"},
     "nutation": {"second sample"},
     "spin_up": {"attitude", "orbit"},
     "y_thomson": {"attitude", "orbit"},
