@@ -1,5 +1,100 @@
-"""Stabilisation by spin (section 2.1)."""
+"""Stabilisation by spin (section 2.1 of the review)."""
 
-from sim.methods.method import Method
+from sim.methods.method import Kind, Method
 
-METHODS: tuple[Method, ...] = ()
+METHODS: tuple[Method, ...] = (
+    Method(
+        "three stages by relays: nutation, spin, direction",
+        "[O19] 2.1 [29]",
+        Kind.FLOWN,
+        "fsw/core/laws/spin/relay_stages.py",
+        "Relays with a switching function for each stage, one after the other.",
+        ("review.spin.relay_stages",),
+        "The review names the functions without printing them; they are derived.",
+    ),
+    Method(
+        "relay on the momentum",
+        "[O19] 2.1 eq. 3 [30]",
+        Kind.FLOWN,
+        "fsw/core/laws/spin/spin_axis.py",
+        "Each coil fully on with the sign of h . (e_j x b): spin by coils 1 and 2, nutation by coil 3.",
+        ("review.spin.relay",),
+        "The h of the equation must be the error of the momentum.",
+    ),
+    Method(
+        "nutation damping by one coil",
+        "[O19] 2.1 [31-33]",
+        Kind.FLOWN,
+        "fsw/core/laws/spin/spin.py",
+        "The rate across the axis is damped, that along it is not.",
+        ("review.spin.nutation", "review.spin.nutation_spin"),
+    ),
+    Method(
+        "spin-up by two coils",
+        "[O19] 2.1 [31, 32]",
+        Kind.FLOWN,
+        "fsw/core/laws/spin/spin.py",
+        "The torque about the axis is k times the square of the field across it.",
+        ("review.spin.spin_up",),
+    ),
+    Method(
+        "Y-Thomson",
+        "[O19] 2.1 [34]",
+        Kind.FLOWN,
+        "fsw/core/laws/spin/spin.py",
+        "The satellite spins about the axis normal to the orbit at the rate wanted.",
+        ("review.spin.y_thomson",),
+    ),
+    Method(
+        "reorientation of the spin axis by one coil",
+        "[O19] 2.1 [31, 32]",
+        Kind.FLOWN,
+        "fsw/core/laws/spin/spin_axis.py",
+        "The momentum is turned to its direction and keeps its size.",
+        ("review.spin.reorientation",),
+    ),
+    Method(
+        "two errors of the momentum",
+        "[O19] 2.1 [35]",
+        Kind.FLOWN,
+        "fsw/core/laws/spin/spin_axis.py",
+        "One error, in space, gives the direction; the other, in the body, gives the spin.",
+        ("review.spin.relay",),
+    ),
+    Method(
+        "three terms",
+        "[O19] 2.1 [36]",
+        Kind.FLOWN,
+        "fsw/core/laws/spin/spin_axis.py",
+        "Nutation, spin and direction by the terms of one law.",
+        ("review.spin.three_term",),
+    ),
+    Method(
+        "precession by the roll angle",
+        "[O19] 2.1 eq. 4 [37]",
+        Kind.FLOWN,
+        "fsw/core/laws/spin/roll_precession.py",
+        "Asymptotically stable by the gains; gains from the analysis and Floquet theory.",
+        ("review.spin.roll_precession", "review.spin.roll_floquet"),
+        "Gains: sim/design/spin/roll_precession.py.",
+    ),
+    Method(
+        "precession with any function of the errors",
+        "[O19] 2.1 eq. 5 [38]",
+        Kind.FLOWN,
+        "fsw/core/laws/spin/target_precession.py",
+        "Any f with x f(x) > 0; f(x) = x is mostly satisfactory.",
+        ("review.spin.target_precession",),
+        "For an f that bends the torque is along the target only in the mean over a turn.",
+    ),
+    Method(
+        "piecewise constant dipole",
+        "[O19] 2.1 [39]",
+        Kind.FLOWN,
+        "fsw/core/laws/spin/stepped_precession.py",
+        "Piecewise constant control, from simple errors of angles and rates.",
+        ("review.spin.stepped_precession",),
+        "The review prints no equation; it is derived from the torque.",
+    ),
+)
+"""In the order of the review."""

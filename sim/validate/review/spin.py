@@ -1,8 +1,264 @@
-"""Claims: stabilisation by spin (section 2.1)."""
+"""Claims: stabilisation by spin (section 2.1 of the review)."""
 
-from sim.campaign.claim import Study
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+from math import cos, inf, radians, sin
+
+import numpy as np
+
+from fsw.core.laws.spin.relay_stages import StageGains
+from fsw.core.laws.spin.roll_precession import RollGains
+from fsw.core.laws.spin.spin import SpinGains
+from fsw.core.laws.spin.spin_axis import SpinAxisGains, ThreeTermGains
+from fsw.core.laws.spin.stepped_precession import StepGains
+from fsw.core.laws.spin.target_precession import PrecessionGains
+from sim.campaign.claim import Claim, Study
+from sim.design.spin import roll_precession
+from sim.plant.environment.orbit import EARTH_RADIUS_M, MU_M3PS2, Array
+from sim.validate.review.figures import one_figure
+from sim.validate.review.law_flight import Flown, LawFlight, angle_deg, fly
+
+REVIEW = "Ovchinnikov, Roldugin 2019, section 2.1"
+INERTIA = ((1.2, 0.0, 0.0), (0.0, 1.2, 0.0), (0.0, 0.0, 2.0))
+TARGET = (0.3, -0.5, 0.8)
+INCLINATION_DEG, ALTITUDE_KM = 98.6, 800.0
+NORMAL = (0.0, -sin(radians(INCLINATION_DEG)), cos(radians(INCLINATION_DEG)))
+RADIUS_M = EARTH_RADIUS_M + 1e3 * ALTITUDE_KM
+RATE_RADPS = float(np.sqrt(MU_M3PS2 / RADIUS_M**3))
+SPIN_RADPS = 0.1
+TILT_RAD = (0.35, 0.26, 0.0)
+GAIN_C = 0.4
+"""Gain of the precession by roll, without unit; see ``sim.design.spin.roll_precession``."""
+
+SPINNING = LawFlight(
+    "nutation",
+    INERTIA,
+    k_w=3e6,
+    spin_radps=SPIN_RADPS,
+    rotation_rad=TILT_RAD,
+    omega_body_radps=(0.0, 0.0, SPIN_RADPS),
+    gravity=False,
+    step_s=4.0,
+    most_am2=5.0,
+)
+"""Pure spin about axis 3, its axis 25 deg from the orbit normal, 80 deg and more from the target."""
+TUMBLING = replace(SPINNING, omega_body_radps=(0.03, -0.02, 0.03))
+
+
+@dataclass(frozen=True, slots=True)
+class _Row:
+    """A claim whose figure a function of a flight gives."""
+
+    name: str
+    statement: str
+    source: str
+    unit: str
+    low: float
+    high: float
+    case: LawFlight
+    figure: str
+
+
+def _across(flown: Flown) -> Array:
+    across: Array = np.linalg.norm(flown.omega_body_radps[:, :2], axis=1)
+    return across
+
+
+def _spin(flown: Flown) -> Array:
+    return flown.omega_body_radps[:, 2]
+
+
+FIGURES: dict[str, Callable[[Flown, LawFlight], float]] = {
+    "across_share": lambda flown, case: _across(flown)[-1] / _across(flown)[0],
+    "spin_change": lambda flown, case: abs(_spin(flown)[-1] / _spin(flown)[0] - 1.0),
+    "spin_share": lambda flown, case: _spin(flown)[-1] / case.spin_radps,
+    "target_deg": lambda flown, case: angle_deg(flown.momentum_eci_nms, TARGET)[-1],
+    "momentum_normal_deg": lambda flown, case: angle_deg(flown.momentum_eci_nms, NORMAL)[-1],
+    "normal_deg": lambda flown, case: flown.orbit_axis_deg(2, 2)[-1],
+}
+"""Figures at the end of a flight."""
+
+ROWS: tuple[_Row, ...] = (
+    _Row(
+        "nutation",
+        "Nutation damping by one coil: rate across the axis after an orbit, of that at the start",
+        "[31-33]: nutation is damped",
+        "1",
+        -inf,
+        0.02,
+        replace(TUMBLING, gains=SpinGains(3.0)),
+        "across_share",
+    ),
+    _Row(
+        "nutation_spin",
+        "The same: change of the spin of a body that is symmetric about it, of the spin",
+        "[31, 33]: the rate along the axis of symmetry is not damped",
+        "1",
+        -inf,
+        1e-9,
+        replace(TUMBLING, gains=SpinGains(3.0)),
+        "spin_change",
+    ),
+    _Row(
+        "spin_up",
+        "Spin-up: spin after two orbits, of the wanted",
+        "[31, 32]",
+        "1",
+        0.95,
+        1.01,
+        replace(TUMBLING, law="spin_up", gains=SpinGains(3.0), orbits=2.0),
+        "spin_share",
+    ),
+    _Row(
+        "y_thomson",
+        "Y-Thomson: angle of the axis from the orbit normal after four orbits from 25",
+        "[34]: spin about the axis normal to the orbit",
+        "deg",
+        -inf,
+        2.0,
+        replace(
+            SPINNING,
+            law="y_thomson",
+            gains=SpinGains(3.0),
+            spin_radps=0.02,
+            omega_body_radps=(0.0, 0.0, 0.02),
+            k_w=6e6,
+            orbits=4.0,
+        ),
+        "normal_deg",
+    ),
+    _Row(
+        "relay",
+        "Relay law on both momentum errors (1 A m^2): momentum from the target after 2.5 orbits of a tumble",
+        "eq. 3 [30, 35]: spin and direction at once",
+        "deg",
+        -inf,
+        5.0,
+        replace(TUMBLING, law="spin_relay", gains=SpinAxisGains(3.0, *TARGET), orbits=2.5, most_am2=1.0),
+        "target_deg",
+    ),
+    _Row(
+        "reorientation",
+        "Reorientation by one coil: momentum from the target after two orbits",
+        "[31, 32]",
+        "deg",
+        -inf,
+        10.0,
+        replace(SPINNING, law="reorientation", gains=SpinAxisGains(3.0, *TARGET, 3e6), orbits=2.0),
+        "target_deg",
+    ),
+    _Row(
+        "three_term",
+        "Three terms at once: momentum from the target after two orbits of a tumble",
+        "[36]: nutation, spin and direction by one law",
+        "deg",
+        -inf,
+        0.3,
+        replace(TUMBLING, law="three_term", gains=ThreeTermGains(3.0, *TARGET), orbits=2.0),
+        "target_deg",
+    ),
+    _Row(
+        "relay_stages",
+        "Three stages by relays (3 A m^2): momentum from the target after four orbits of a tumble",
+        "[29]: nutation, spin and direction, each by its switching function",
+        "deg",
+        -inf,
+        3.0,
+        replace(
+            TUMBLING,
+            law="relay_stages",
+            gains=StageGains(3.0, *TARGET),
+            orbits=4.0,
+            most_am2=3.0,
+        ),
+        "target_deg",
+    ),
+    _Row(
+        "target_precession",
+        "Precession with f(x) cut at 0.3: momentum from the target after two orbits",
+        "eq. 5 [38]: any f with x f(x) > 0 serves",
+        "deg",
+        -inf,
+        20.0,
+        replace(
+            SPINNING,
+            law="target_precession",
+            gains=PrecessionGains(3.0, *TARGET, 1e6, 0.3),
+            orbits=2.0,
+            most_am2=20.0,
+        ),
+        "target_deg",
+    ),
+    _Row(
+        "stepped_precession",
+        "Steps of 120 s at three levels (2 A m^2): momentum from the normal after two orbits, from 25 deg",
+        "[39]: piecewise constant",
+        "deg",
+        -inf,
+        3.0,
+        replace(SPINNING, law="stepped_precession", gains=StepGains(3.0), orbits=2.0, most_am2=2.0),
+        "momentum_normal_deg",
+    ),
+)
 
 
 def studies() -> list[Study]:
     """All of this section."""
-    return []
+    return [
+        *(
+            one_figure(
+                Claim(
+                    f"review.spin.{row.name}",
+                    row.statement,
+                    f"{REVIEW}, {row.source}",
+                    row.unit,
+                    low=row.low,
+                    high=row.high,
+                    wide="rounding alone" if row.name == "nutation_spin" else "",
+                ),
+                partial(flown_figure, row.case, row.figure),
+            )
+            for row in ROWS
+        ),
+        one_figure(
+            Claim(
+                "review.spin.roll_floquet",
+                "Precession by roll: decay by Floquet theory, of k_h B0^2 sin^2 i / 8 by averaging, c = 0.4",
+                f"{REVIEW}, eq. 4 [37]: stable by the gains; Floquet theory",
+                "1",
+                low=0.99,
+                high=1.01,
+            ),
+            floquet_share,
+        ),
+        one_figure(
+            Claim(
+                "review.spin.roll_precession",
+                "Its angle from the normal in the plant, five orbits on, in decays of the slower exponent",
+                f"{REVIEW}, eq. 4 [37]: asymptotically stable",
+                "1",
+                low=0.9,
+                high=2.0,
+            ),
+            roll_decays,
+        ),
+    ]
+
+
+def flown_figure(case: LawFlight, figure: str) -> float:
+    """The figure of that name at the end of a flight."""
+    return float(FIGURES[figure](fly(case), case))
+
+
+def floquet_share() -> float:
+    """Floquet theory over averaging."""
+    return roll_precession.degree(GAIN_C) / roll_precession.averaged(GAIN_C)[0]
+
+
+def roll_decays() -> float:
+    """Logarithm of the angle lost in five orbits, of what the slower exponent loses."""
+    k_h = roll_precession.gain_of(GAIN_C, RATE_RADPS, RADIUS_M, radians(INCLINATION_DEG))
+    case = replace(SPINNING, law="roll_precession", gains=RollGains(3.0, k_h), most_am2=20.0, orbits=5.0)
+    angle = angle_deg(fly(case).momentum_eci_nms, NORMAL)
+    return float(np.log(angle[0] / angle[-1]) / (-roll_precession.degree(GAIN_C) * 10.0 * np.pi))

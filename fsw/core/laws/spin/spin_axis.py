@@ -21,18 +21,16 @@ from fsw.core.laws.spin.spin import AXES, SpinGains
 
 
 @dataclass(frozen=True, slots=True)
-class SpinAxisGains(SpinGains):
+class TargetGains(SpinGains):
     """The body axis that spins, and the direction wanted of the momentum, in eci, of any length.
 
     Attributes:
         target_1: first component of the direction, as the next two.
-        k_h: gain of momentum errors, 1 / (T^2 s): the error decays at about k_h |b|^2.
     """
 
     target_1: float = 0.0
     target_2: float = 0.0
     target_3: float = 1.0
-    k_h: float = 1.0e6
 
     def __post_init__(self) -> None:
         SpinGains.__post_init__(self)
@@ -43,6 +41,17 @@ class SpinAxisGains(SpinGains):
     def target_eci(self) -> Vec3:
         """Unit vector."""
         return unit((self.target_1, self.target_2, self.target_3))
+
+
+@dataclass(frozen=True, slots=True)
+class SpinAxisGains(TargetGains):
+    """The same, and the gain of momentum errors.
+
+    Attributes:
+        k_h: 1 / (T^2 s): the error decays at about k_h |b|^2.
+    """
+
+    k_h: float = 1.0e6
 
 
 @dataclass(frozen=True, slots=True)

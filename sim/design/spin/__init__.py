@@ -1,0 +1,1 @@
+"""Gains of the laws of a spinning satellite."""
