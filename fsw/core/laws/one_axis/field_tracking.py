@@ -52,14 +52,18 @@ def field_tracking(inputs: LawInput, memory: Memory, setpoint: Setpoint, config:
     sample, reference = inputs.sample, inputs.reference
     if reference is None or sample.tick < 0:
         return Demand()
-    if memory and sample.tick == memory[0]:
-        return Demand(memory=memory)
     expected_t = rotate(reference.q_orbit_from_eci, reference.b_eci_t)
-    error_t = sub(sample.b_body_t, expected_t)
-    tracked = (float(sample.tick), *error_t)
+    return track(sub(sample.b_body_t, expected_t), sample.tick, memory, setpoint, config)
+
+
+def track(error_t: Vec3, tick: int, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """The dipole of an error of the field sampled at a tick, and of its change since the sample before."""
+    if memory and tick == memory[0]:
+        return Demand(memory=memory)
+    tracked = (float(tick), *error_t)
     if not memory:
         return Demand(memory=tracked)
-    interval_s = (sample.tick - memory[0]) * config.tick_s
+    interval_s = (tick - memory[0]) * config.tick_s
     if interval_s > MAX_DIFFERENCE_S:
         return Demand(memory=tracked)
     rate_tps = scale(1.0 / interval_s, sub(error_t, (memory[1], memory[2], memory[3])))

@@ -68,6 +68,7 @@ class Body:
     gravity: bool = True
     torque: tuple = (0.0, 0.0, 0.0)  # constant, body axes
     dipole: tuple = (0.0, 0.0, 0.0)  # its own, body axes
+    vane_nm: float = 0.0  # turns axis 2 ahead, as feathers behind do in the air
 
 
 @dataclass
@@ -182,19 +183,20 @@ def fly(
     ticks = int(seconds / step_s)
     half_steps_s = 0.5 * step_s * np.arange(2 * ticks + 1)
     c_orbit, b_eci = orbit.c_orbit_from_eci(half_steps_s), orbit.b_eci_t(half_steps_s)
-    around = np.stack([b_eci, c_orbit[:, 0]], axis=2)  # columns: field, radius
+    around = np.stack([b_eci, c_orbit[:, 0], c_orbit[:, 1]], axis=2)  # columns: field, radius, ahead
     # columns: the axes of eci in the body, and the momentum with the wheel's
     state = np.column_stack([c0 @ c_orbit[0], body.inertia @ np.array(omega_body) + wheel])
     before, memory, rows = FieldSample(), (), []
 
     def change(state, around, m):
-        b, vertical = (state[:, :3] @ around).T.tolist()
+        b, vertical, (a1, _, a3) = (state[:, :3] @ around).T.tolist()
         w1, w2, w3 = (inverse @ (state[:, 3] - wheel)).tolist()
         out = np.array([[0.0, w3, -w2], [-w3, 0.0, w1], [w2, -w1, 0.0]]) @ state
         gravity = cross(vertical, (body.inertia @ vertical).tolist())
         whole = [coils + own for coils, own in zip(m, body.dipole, strict=True)]
-        parts = zip(cross(whole, b), gravity, body.torque, strict=True)
-        out[:, 3] += [magnetic + pull * g + constant for magnetic, g, constant in parts]
+        vane = (body.vane_nm * a3, 0.0, -body.vane_nm * a1)
+        parts = zip(cross(whole, b), gravity, body.torque, vane, strict=True)
+        out[:, 3] += [magnetic + pull * g + constant + air for magnetic, g, constant, air in parts]
         return out
 
     for tick in range(ticks):

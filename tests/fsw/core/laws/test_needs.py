@@ -32,6 +32,11 @@ NEEDS = {
     "field_tracking": {"orbit", "second sample"},
     "field_tracking_pd": {"orbit", "second sample"},
     "sun_pointing": {"orbit", "sun"},
+    "pd_when_slow": {"attitude"},
+    "slow_spin": {"second sample"},
+    "sun_panels": {"attitude", "orbit", "sun"},
+    "sun_critical": {"attitude", "orbit", "sun"},
+    "direction_tracking": {"orbit", "second sample"},
 }
 
 

@@ -28,7 +28,7 @@ B_BODY_T = (1.7e-5, -2.3e-5, 3.1e-5)
 SAMPLE = FieldSample((1.6e-5, -2.4e-5, 3.2e-5), tick=44)
 BEFORE = FieldSample((1.5e-5, -2.6e-5, 3.3e-5), tick=43)
 
-MEASURED = {"bdot", "bdot_held", "bdot_switched", "nutation", "y_thomson", "spin_up"}
+MEASURED = {"bdot", "bdot_held", "bdot_switched", "nutation", "y_thomson", "spin_up", "slow_spin"}
 """Laws that fly on the magnetometer alone, and may speak before the attitude is known."""
 
 EVERY_LAW = pytest.mark.parametrize("name", LAWS)

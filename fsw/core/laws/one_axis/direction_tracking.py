@@ -1,0 +1,34 @@
+"""Field tracking by direction: the field's direction is turned onto the expected one, its size left alone."""
+
+from fsw.core.algebra.quaternion import rotate
+from fsw.core.algebra.vector import ZERO, Vec3, norm, scale, sub, unit
+from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
+from fsw.core.laws.one_axis.field_tracking import track
+
+
+def direction_error(b_body_t: Vec3, expected_t: Vec3) -> Vec3:
+    """|B| (b/|b| - B/|B|), T: b - B without the error in size.
+
+    As the demand -k1 of it pulls b onto B, it turns the body about b x B and about no axis along the field,
+    where the air must turn it.
+
+    Args:
+        b_body_t: field in body axes.
+        expected_t: B, field in orbit axes, component by component.
+
+    Source: Psiaki 2004, as in Ovchinnikov, Roldugin 2019, section 2.4 [64]: a modification of eq. 7 that
+    makes the fields in body and orbit axes coincide, one axis, while the air holds another. The scan has lost
+    its equation; taken here as eq. 7 of directions.
+    """
+    return scale(norm(expected_t), sub(unit(b_body_t), unit(expected_t)))
+
+
+def direction_tracking(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """M = -2 k_a e - k_w de/dt, e the direction error; magnetometer and orbit alone. Memory as there."""
+    sample, reference = inputs.sample, inputs.reference
+    if reference is None or sample.tick < 0:
+        return Demand()
+    expected_t = rotate(reference.q_orbit_from_eci, reference.b_eci_t)
+    if ZERO in (sample.b_body_t, expected_t):
+        return Demand(memory=memory)
+    return track(direction_error(sample.b_body_t, expected_t), sample.tick, memory, setpoint, config)

@@ -1,0 +1,1 @@
+"""Gains of the laws that point one axis."""
