@@ -18,8 +18,8 @@ METHODS: tuple[Method, ...] = (
         "fsw/core/laws/one_axis/field_tracking.py",
         "For a body that the gravity gradient holds it gives turns about the vertical too.",
         ("review.one_axis.field_tracking_boom", "review.one_axis.field_tracking_microsat"),
-        "A body without a boom or wheel is hardly stable with any gains, and unstable with those of PD; gains: "
-        "sim/design/one_axis/field_tracking.py.",
+        "A body without a boom or wheel is hardly stable with any gains, and unstable with those of PD; "
+        "gains: sim/design/one_axis/field_tracking.py.",
     ),
     Method(
         "field tracking handed over to PD",
