@@ -2,7 +2,15 @@
 
 from fsw.core.laws.entry import Aim, LawEntry
 from fsw.core.laws.wheel.dual_spin import DualSpinGains, dual_spin
+from fsw.core.laws.wheel.horizon_roll import HorizonRollGains, horizon_roll
+from fsw.core.laws.wheel.six_gain import SixGainGains, six_gain
+from fsw.core.laws.wheel.wheel_integral import wheel_integral, wheel_integral_far
+from fsw.core.laws.wheel.wheel_relay import WheelRelayGains, wheel_relay
 
 LAWS: dict[str, LawEntry] = {
     "dual_spin": LawEntry(20, Aim.AXIS, dual_spin, dual_spin, DualSpinGains),
+    "horizon_roll": LawEntry(23, Aim.AXIS, horizon_roll, horizon_roll, HorizonRollGains),
+    "six_gain": LawEntry(24, Aim.AXIS, six_gain, six_gain, SixGainGains),
+    "wheel_integral": LawEntry(25, Aim.AXIS, wheel_integral_far, wheel_integral),
+    "wheel_relay": LawEntry(26, Aim.AXIS, wheel_relay, wheel_relay, WheelRelayGains),
 }
