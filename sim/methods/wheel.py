@@ -1,5 +1,64 @@
 """A wheel beside the coils (sections 2.2, 2.4)."""
 
-from sim.methods.method import Method
+from sim.methods.method import Kind, Method
 
-METHODS: tuple[Method, ...] = ()
+METHODS: tuple[Method, ...] = (
+    Method(
+        "roll of a horizon sensor alone",
+        "[O19] 2.2 [41]",
+        Kind.FLOWN,
+        "fsw/core/laws/wheel/horizon_roll.py",
+        "Near the equator an infrared horizon sensor's roll stands for the magnetometer's data.",
+        ("review.wheel.horizon_roll",),
+        "The equation is not printed and was not found; derived from the torque of the two coils in the "
+        "orbit plane. Roll destabilises the nutation unless its rate outweighs it (Routh).",
+    ),
+    Method(
+        "six gains",
+        "[O19] 2.2 [45]",
+        Kind.FLOWN,
+        "fsw/core/laws/wheel/six_gain.py",
+        "The earlier laws compared and made one, in which six gains are to be chosen.",
+        ("review.wheel.six_gain.lean", "review.wheel.six_gain.yaw"),
+        "The scan lost signs and dots; they follow from the laws that it contains. Yaw is worth more than "
+        "a factor of two in two orbits.",
+    ),
+    Method(
+        "nutation on an elliptic orbit",
+        "[O19] 2.2 [46]",
+        Kind.GROUND,
+        "sim/design/wheel/elliptic.py",
+        "The nutation of a satellite with a pitch wheel is damped on an elliptic orbit too.",
+        ("review.wheel.elliptic.slowest", "review.wheel.elliptic.nutation"),
+        "By the coils, with the law of six gains. The product of inertia of the title needs a driven wheel.",
+    ),
+    Method(
+        "integral part",
+        "[O19] 2.2 [47]",
+        Kind.FLOWN,
+        "fsw/core/laws/wheel/wheel_integral.py",
+        "An integral part is added to the feedback.",
+        ("review.wheel.wheel_integral",),
+        "The equation is not printed and was not found; derived. It takes the mean error away, not what "
+        "swings with the field.",
+    ),
+    Method(
+        "sliding relay over the poles",
+        "[O19] 2.2 [51]",
+        Kind.FLOWN,
+        "fsw/core/laws/wheel/wheel_relay.py",
+        "A relay with a layer around a surface whose four gains go with the field; on a polar orbit.",
+        ("review.wheel.wheel_relay",),
+        "The four gains are not printed and were not found; derived. Without a lead the surface alone turns "
+        "the lean with the field, and does not straighten it.",
+    ),
+    Method(
+        "closed expressions for the speed of a dual-spin satellite",
+        "[O19] 2.2 [40]",
+        Kind.GROUND,
+        "sim/design/wheel/convergence.py",
+        "Closed expressions say how fast a satellite with a pitch wheel comes to rest.",
+        ("review.wheel.convergence", "review.wheel.strong_wheel"),
+        "The expressions are not printed and were not found; derived by averaging.",
+    ),
+)

@@ -46,7 +46,7 @@ class LawFlight:
     Attributes:
         law: name in the table of laws.
         inertia_kgm2: body axes.
-        k_w, k_a, spin_radps: of the setpoint.
+        k_w, k_a, k_i, spin_radps: of the setpoint.
         gains: the law's own; None for its defaults.
         near: whether the form of POINT is flown, else that of ACQUIRE.
         hand_over_orbits: after so many orbits the form of POINT takes over.
@@ -82,6 +82,7 @@ class LawFlight:
     inclination_deg: float = 98.6
     extra: Extra | None = None
     known: bool = True
+    k_i: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,7 +245,7 @@ def _torque(case: LawFlight, m: Vec3, velocity: Vec3) -> Torque:
 
 
 def _setpoint(case: LawFlight) -> Setpoint:
-    return Setpoint(case.law, case.k_w, case.k_a, 0.0, case.spin_radps)
+    return Setpoint(case.law, case.k_w, case.k_a, case.k_i, case.spin_radps)
 
 
 def _settings(case: LawFlight) -> ControlConfig:

@@ -1,0 +1,29 @@
+"""Claims on a pitch wheel: each is met, and a satellite that is off misses it."""
+
+from dataclasses import replace
+
+import pytest
+
+from fsw.core.laws.wheel.six_gain import SixGainGains
+from sim.design.wheel.elliptic import WheelLaw
+from sim.validate.review import wheel
+
+
+@pytest.mark.parametrize("study", wheel.studies(), ids=lambda study: study.id)
+def test_each_claim_is_met(study):
+    outcomes = study.conclude([task() for task in study.tasks])
+    assert [outcome.verdict.value for outcome in outcomes] == ["PASS"]
+
+
+def test_a_law_of_the_wrong_sign_would_miss_its_claim():
+    short = replace(wheel.WHEELED, orbits=0.7)
+    right, wrong = (
+        wheel.last_lean_deg(replace(short, gains=SixGainGains(k2=k2), k_w=k_w))
+        for k2, k_w in ((1.0, 1e7), (-1.0, 0.0))
+    )
+    assert wrong > 1.2 * right
+
+
+def test_without_its_rate_part_the_ellipse_misses_its_claim(monkeypatch):
+    monkeypatch.setattr(wheel, "LAW", WheelLaw(8000.0, 0.0))
+    assert wheel.slowest_decay() > -0.01
