@@ -82,5 +82,32 @@ METHODS: tuple[Method, ...] = (
         ("review.one_axis.aerodynamic", "review.one_axis.aerodynamic_without_air"),
         "The scan has lost the equation; taken as eq. 7 of directions.",
     ),
+    Method(
+        "Lorentz force on a charged body",
+        "[O19] 2.4 [65]",
+        Kind.FLOWN,
+        "sim/effects/lorentz.py",
+        "Used beside a magnetic system.",
+        ("review.one_axis.lorentz", "review.one_axis.lorentz_polar"),
+        "An effect of the plant. It reaches the axis along the field, but where that is along the velocity.",
+    ),
+    Method(
+        "solar pressure",
+        "[O19] 2.4 [66]",
+        Kind.FLOWN,
+        "sim/effects/solar_flaps.py",
+        "Flaps beside magnets near the equator.",
+        ("review.one_axis.coils_pitch", "review.one_axis.solar_flaps"),
+        "An effect of the plant; light on any plates: sim/plant/dynamics/surfaces.py.",
+    ),
+    Method(
+        "ring of conducting fluid",
+        "[O19] 2.4 [67]",
+        Kind.FLOWN,
+        "sim/effects/fluid_ring.py",
+        "Used beside a magnetic system.",
+        ("review.one_axis.fluid_ring",),
+        "An effect of the plant, with a pump of constant pressure.",
+    ),
 )
 """In the order of the review."""

@@ -32,6 +32,7 @@ class Moment(NamedTuple):
     lit: float = 1.0
     """Visible fraction of the Sun's disc."""
     r_eci_m: Vec3 = ZERO
+    v_eci_mps: Vec3 = ZERO
 
 
 class OwnEffect(NamedTuple):

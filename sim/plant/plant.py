@@ -257,7 +257,9 @@ class Plant:
         self._sun_body = transform(self._body_from_eci, sample.sun_eci)
         if self._own.any:
             seen = self._b_body_t, self._sun_body
-            self._own.observe(Moment(self.t_s, *self.motion, *seen, sample.lit, sample.r_eci_m))
+            self._own.observe(
+                Moment(self.t_s, *self.motion, *seen, sample.lit, sample.r_eci_m, sample.v_eci_mps)
+            )
 
     def _relative(self) -> tuple[Quaternion, Vec3]:
         """Attitude and rate relative to the orbital frame."""

@@ -70,6 +70,7 @@ class Sample(NamedTuple):
     """Unit vector from the satellite to the Sun."""
     lit: float
     """Visible fraction of the Sun's disc."""
+    v_eci_mps: Vec3
 
 
 class Environment:
@@ -184,6 +185,7 @@ def _samples(rows: Array) -> list[Sample]:
         _tuples(b_t),
         _tuples(to_sun / np.linalg.norm(to_sun, axis=1)[:, None]),
         illumination(r_m, sun_m).tolist(),
+        _tuples(v_mps),
     )
     return [Sample(*row) for row in zip(*columns, strict=True)]
 

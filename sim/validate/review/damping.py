@@ -12,7 +12,7 @@ from fsw.core.laws.damping.optimal import EnergyGains, ModelGains, MomentumGains
 from sim.campaign.claim import Claim, Study, Threshold
 from sim.plant.dynamics.jacobi import jacobi_integral
 from sim.validate.review.figures import one_figure
-from sim.validate.review.law_flight import Flown, LawFlight, fly
+from sim.validate.review.law_flight import LawFlight, LawHistory, fly
 
 FULL = ((1.02, 0.03, -0.02), (0.03, 1.85, 0.05), (-0.02, 0.05, 1.95))
 SPHERE = ((1.9, 0.0, 0.0), (0.0, 1.9, 0.0), (0.0, 0.0, 1.9))
@@ -194,7 +194,7 @@ def time_share(law: str, gains: object, share: float, against: str = "bdot") -> 
     return time_to(fly(case), share) / time_to(fly(other), share)
 
 
-def time_to(flown: Flown, share: float) -> float:
+def time_to(flown: LawHistory, share: float) -> float:
     """Orbits until the momentum is under a share of its first value; infinite if it never is."""
     momentum = np.linalg.norm(flown.momentum_eci_nms, axis=1)
     under = momentum < share * momentum[0]

@@ -1,8 +1,46 @@
 """Small studies: a claim whose one figure a function gives."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
 
 from sim.campaign.claim import Claim, Study
+from sim.validate.review.law_flight import LawFlight
+
+
+@dataclass(frozen=True, slots=True)
+class FlownClaim:
+    """A claim on one figure of the flight of a law.
+
+    Attributes:
+        name: last part of the id.
+        statement, source, unit, low, high, wide: as ``Claim`` has them.
+        case: the flight.
+        figure: name of the figure.
+    """
+
+    name: str
+    statement: str
+    source: str
+    unit: str
+    low: float
+    high: float
+    case: LawFlight
+    figure: str
+    wide: str = ""
+
+    def study(self, section: str, review: str, figure_of: Callable[[LawFlight, str], float]) -> Study:
+        """Its study; ``figure_of`` must be picklable."""
+        claim = Claim(
+            f"review.{section}.{self.name}",
+            self.statement,
+            f"{review} {self.source}",
+            self.unit,
+            low=self.low,
+            high=self.high,
+            wide=self.wide,
+        )
+        return one_figure(claim, partial(figure_of, self.case, self.figure))
 
 
 def one_figure(claim: Claim, figure: Callable[[], float]) -> Study:

@@ -86,7 +86,7 @@ class LawFlight:
 
 
 @dataclass(frozen=True, slots=True)
-class Flown:
+class LawHistory:
     """Histories, a row a step: absolute and relative rate, attitudes, momentum, dipole."""
 
     t_s: Array
@@ -129,7 +129,7 @@ def angle_deg(vectors: Array, direction: Vec3) -> Array:
     return angle
 
 
-def fly(case: LawFlight) -> Flown:
+def fly(case: LawFlight) -> LawHistory:
     """Fly it; the dipole holds over a step."""
     row, settings, setpoint = LAWS[case.law], _settings(case), _setpoint(case)
     rigid = RigidBody(case.inertia_kgm2, case.wheel_body_nms)
@@ -264,13 +264,13 @@ def _settings(case: LawFlight) -> ControlConfig:
     )
 
 
-def _flown(case: LawFlight, rate: float, rows: list[Any]) -> Flown:
+def _flown(case: LawFlight, rate: float, rows: list[Any]) -> LawHistory:
     t_s, q, omega, relative, from_orbit, m = map(np.array, zip(*rows, strict=True))
     c_eci = np.array([matrix(tuple(row)) for row in q.tolist()])
     c_orbit = np.array([matrix(tuple(row)) for row in from_orbit.tolist()])
     momentum = omega @ np.array(case.inertia_kgm2).T + np.array(case.wheel_body_nms)
     h_eci = np.einsum("tji,tj->ti", c_eci, momentum)
-    return Flown(t_s, rate, omega, relative, from_orbit, c_orbit, c_eci, h_eci, m)
+    return LawHistory(t_s, rate, omega, relative, from_orbit, c_orbit, c_eci, h_eci, m)
 
 
 def _clipped(m: Vec3, most: float) -> Vec3:

@@ -1,7 +1,7 @@
 """Claims: gravity gradient, Sun, drag and other help (sections 2.3, 2.4 of the review)."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from math import inf, sqrt
 
@@ -15,11 +15,11 @@ from fsw.core.laws.spin.spin import SpinGains
 from sim.campaign.claim import Claim, Study
 from sim.design.one_axis.field_tracking import best_tracking
 from sim.design.theory.bodies import Body
-from sim.plant.config import PlateConfig
-from sim.plant.dynamics.surfaces import drag
-from sim.plant.rotation import Mat3, Vec3, transform
-from sim.validate.review.figures import one_figure
-from sim.validate.review.law_flight import Flown, LawFlight, angle_deg, fly
+from sim.plant.rotation import Mat3
+from sim.validate.review import effects
+from sim.validate.review.feathers import SHUTTLECOCK
+from sim.validate.review.figures import FlownClaim, one_figure
+from sim.validate.review.law_flight import LawFlight, LawHistory, angle_deg, fly
 
 REVIEW = "Ovchinnikov, Roldugin 2019, section"
 FIRM = ((0.3, 0.0, 0.0), (0.0, 2.0, 0.0), (0.0, 0.0, 2.2))
@@ -29,27 +29,6 @@ MICROSAT = ((1.02, 0.0, 0.0), (0.0, 1.85, 0.0), (0.0, 0.0, 1.95))
 SUN = (0.2 / sqrt(0.78), -0.7 / sqrt(0.78), 0.5 / sqrt(0.78))
 TURNED = (1.0, 0.5, -1.0)
 SHARES = HandOverGains(0.3, 0.5)
-FEATHER, REAR_M = 0.5, 0.35
-"""Sine of the angle by which a feather stands out to the flow, and its distance behind the mass centre."""
-
-
-@dataclass(frozen=True, slots=True)
-class Feathers:
-    """Drag of four panels that stand out behind, in air of one density."""
-
-    density_kgpm3: float = 4e-12
-
-    def __call__(self, c_body_from_eci: Mat3, velocity_eci_mps: Vec3) -> Vec3:
-        """The torque, body axes, N m; the air at rest in space."""
-        return drag(_PLATES, transform(c_body_from_eci, velocity_eci_mps), self.density_kgpm3)
-
-
-_OUT = sqrt(1.0 - FEATHER**2)
-_PLATES = tuple(
-    PlateConfig(0.03, (x * _OUT, FEATHER, z * _OUT), (0.05 * x, -REAR_M, 0.05 * z))
-    for x, z in ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
-)
-
 TRACKED = LawFlight(
     "field_tracking_pd",
     FIRM,
@@ -72,39 +51,9 @@ SUNNED = LawFlight(
     step_s=2.5,
     sun_eci=SUN,
 )
-SHUTTLECOCK = LawFlight(
-    "direction_tracking",
-    ((0.040, 0.0, 0.0), (0.0, 0.012, 0.0), (0.0, 0.0, 0.042)),
-    k_w=1e5,
-    k_a=20.0,
-    rotation_rad=(0.2, 0.5, -0.3),
-    relative=True,
-    omega_body_radps=(0.001, 0.001, -0.001),
-    orbits=4.0,
-    altitude_km=400.0,
-    inclination_deg=80.0,
-    extra=Feathers(),
-    known=False,
-)
-"""A 3U satellite with four feathers, its long axis 2 ahead."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Row:
-    """A claim whose figure a function of a flight gives."""
-
-    name: str
-    statement: str
-    source: str
-    unit: str
-    low: float
-    high: float
-    case: LawFlight
-    figure: str
-    wide: str = ""
-
-
-FIGURES: dict[str, Callable[[Flown], float]] = {
+FIGURES: dict[str, Callable[[LawHistory], float]] = {
     "angle_deg": lambda flown: flown.angle_deg[-1],
     "least_angle_deg": lambda flown: flown.angle_deg[flown.orbits > flown.orbits[-1] - 1.0].min(),
     "vertical_deg": lambda flown: min(flown.orbit_axis_deg(0, 0)[-1], 180.0 - flown.orbit_axis_deg(0, 0)[-1]),
@@ -116,8 +65,8 @@ FIGURES: dict[str, Callable[[Flown], float]] = {
 }
 """At the end of a flight."""
 
-ROWS: tuple[_Row, ...] = (
-    _Row(
+ROWS: tuple[FlownClaim, ...] = (
+    FlownClaim(
         "gravity_damping",
         "A body with a boom, damping alone: the boom from the local vertical after four orbits",
         "2.3 [52]: the gravity gradient made asymptotically stable by damping",
@@ -136,7 +85,7 @@ ROWS: tuple[_Row, ...] = (
         ),
         "vertical_deg",
     ),
-    _Row(
+    FlownClaim(
         "hand_over",
         "A body with a boom from 150 deg, field tracking for 3.5 orbits, then PD: angle after six",
         "2.3 [43, 53]: (7) in the transient, then handed over to (8)",
@@ -147,7 +96,7 @@ ROWS: tuple[_Row, ...] = (
         "angle_deg",
         "PD goes on to nothing",
     ),
-    _Row(
+    FlownClaim(
         "pd_when_slow",
         "A tumble of 2.5 deg/s, damped, then PD under 4 mrad/s: angle after five orbits",
         "2.3 [54]: stable at small rates; else damping alone",
@@ -168,7 +117,7 @@ ROWS: tuple[_Row, ...] = (
         "angle_deg",
         "it comes nearer with each orbit",
     ),
-    _Row(
+    FlownClaim(
         "slow_spin",
         "Two coils along K (e3 x b) and B-dot: the axis from the orbit normal after four orbits",
         "2.4 [59]: one axis without a fast spin",
@@ -187,7 +136,7 @@ ROWS: tuple[_Row, ...] = (
         ),
         "normal_deg",
     ),
-    _Row(
+    FlownClaim(
         "sun_panels",
         "Currents of panels and rate alone: axis 1 from the Sun after four orbits",
         "2.4 [60]: the difference of two panels, and the panel with the most",
@@ -208,7 +157,7 @@ ROWS: tuple[_Row, ...] = (
         ),
         "sun_1_deg",
     ),
-    _Row(
+    FlownClaim(
         "sun_pointing",
         "Sun sensor alone: momentum from the Sun after 0.8 of an orbit",
         "2.4 [61, 62]: the momentum turns to the Sun",
@@ -219,7 +168,7 @@ ROWS: tuple[_Row, ...] = (
         "sun_momentum_deg",
         "it comes nearer with each orbit",
     ),
-    _Row(
+    FlownClaim(
         "sun_critical",
         "Critical damping, xi an orbital rate, gravity gradient on: axis 2 from the Sun after four orbits",
         "2.4 [63]",
@@ -237,7 +186,7 @@ ROWS: tuple[_Row, ...] = (
         ),
         "sun_2_deg",
     ),
-    _Row(
+    FlownClaim(
         "sun_critical_fast",
         "The same with four times that xi: rate that is left, where the projected torque no longer damps",
         "2.4 [63]",
@@ -255,7 +204,7 @@ ROWS: tuple[_Row, ...] = (
         ),
         "orbit_rates",
     ),
-    _Row(
+    FlownClaim(
         "aerodynamic",
         "A 3U satellite with four feathers at 400 km, magnetometer and orbit alone: angle after four orbits",
         "2.4 [64]: the air gives one axis, the field the other: three axes",
@@ -265,7 +214,7 @@ ROWS: tuple[_Row, ...] = (
         SHUTTLECOCK,
         "angle_deg",
     ),
-    _Row(
+    FlownClaim(
         "aerodynamic_without_air",
         "The same without air: least angle in the fourth orbit",
         "2.4 [64]",
@@ -281,20 +230,11 @@ ROWS: tuple[_Row, ...] = (
 def studies() -> list[Study]:
     """All of these sections."""
     return [
-        one_figure(
-            Claim(
-                f"review.one_axis.{row.name}",
-                row.statement,
-                f"{REVIEW} {row.source}",
-                row.unit,
-                low=row.low,
-                high=row.high,
-                wide=row.wide,
-            ),
-            partial(flown_figure, row.case, row.figure),
-        )
-        for row in ROWS
-    ] + [_tracking("boom", FIRM, -inf, -0.2), _tracking("microsat", MICROSAT, -0.01, -0.003)]
+        *(row.study("one_axis", REVIEW, flown_figure) for row in ROWS),
+        _tracking("boom", FIRM, -inf, -0.2),
+        _tracking("microsat", MICROSAT, -0.01, -0.003),
+        *effects.studies(),
+    ]
 
 
 def _tracking(name: str, inertia: Mat3, low: float, high: float) -> Study:

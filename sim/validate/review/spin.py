@@ -1,8 +1,7 @@
 """Claims: stabilisation by spin (section 2.1 of the review)."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import replace
 from math import cos, inf, radians, sin
 
 import numpy as np
@@ -16,8 +15,8 @@ from fsw.core.laws.spin.target_precession import PrecessionGains
 from sim.campaign.claim import Claim, Study
 from sim.design.spin import roll_precession
 from sim.plant.environment.orbit import EARTH_RADIUS_M, MU_M3PS2, Array
-from sim.validate.review.figures import one_figure
-from sim.validate.review.law_flight import Flown, LawFlight, angle_deg, fly
+from sim.validate.review.figures import FlownClaim, one_figure
+from sim.validate.review.law_flight import LawFlight, LawHistory, angle_deg, fly
 
 REVIEW = "Ovchinnikov, Roldugin 2019, section 2.1"
 INERTIA = ((1.2, 0.0, 0.0), (0.0, 1.2, 0.0), (0.0, 0.0, 2.0))
@@ -46,30 +45,16 @@ SPINNING = LawFlight(
 TUMBLING = replace(SPINNING, omega_body_radps=(0.03, -0.02, 0.03))
 
 
-@dataclass(frozen=True, slots=True)
-class _Row:
-    """A claim whose figure a function of a flight gives."""
-
-    name: str
-    statement: str
-    source: str
-    unit: str
-    low: float
-    high: float
-    case: LawFlight
-    figure: str
-
-
-def _across(flown: Flown) -> Array:
+def _across(flown: LawHistory) -> Array:
     across: Array = np.linalg.norm(flown.omega_body_radps[:, :2], axis=1)
     return across
 
 
-def _spin(flown: Flown) -> Array:
+def _spin(flown: LawHistory) -> Array:
     return flown.omega_body_radps[:, 2]
 
 
-FIGURES: dict[str, Callable[[Flown, LawFlight], float]] = {
+FIGURES: dict[str, Callable[[LawHistory, LawFlight], float]] = {
     "across_share": lambda flown, case: _across(flown)[-1] / _across(flown)[0],
     "spin_change": lambda flown, case: abs(_spin(flown)[-1] / _spin(flown)[0] - 1.0),
     "spin_share": lambda flown, case: _spin(flown)[-1] / case.spin_radps,
@@ -79,8 +64,8 @@ FIGURES: dict[str, Callable[[Flown, LawFlight], float]] = {
 }
 """Figures at the end of a flight."""
 
-ROWS: tuple[_Row, ...] = (
-    _Row(
+ROWS: tuple[FlownClaim, ...] = (
+    FlownClaim(
         "nutation",
         "Nutation damping by one coil: rate across the axis after an orbit, of that at the start",
         "[31-33]: nutation is damped",
@@ -90,7 +75,7 @@ ROWS: tuple[_Row, ...] = (
         replace(TUMBLING, gains=SpinGains(3.0)),
         "across_share",
     ),
-    _Row(
+    FlownClaim(
         "nutation_spin",
         "The same: change of the spin of a body that is symmetric about it, of the spin",
         "[31, 33]: the rate along the axis of symmetry is not damped",
@@ -99,8 +84,9 @@ ROWS: tuple[_Row, ...] = (
         1e-9,
         replace(TUMBLING, gains=SpinGains(3.0)),
         "spin_change",
+        "rounding alone",
     ),
-    _Row(
+    FlownClaim(
         "spin_up",
         "Spin-up: spin after two orbits, of the wanted",
         "[31, 32]",
@@ -110,7 +96,7 @@ ROWS: tuple[_Row, ...] = (
         replace(TUMBLING, law="spin_up", gains=SpinGains(3.0), orbits=2.0),
         "spin_share",
     ),
-    _Row(
+    FlownClaim(
         "y_thomson",
         "Y-Thomson: angle of the axis from the orbit normal after four orbits from 25",
         "[34]: spin about the axis normal to the orbit",
@@ -128,7 +114,7 @@ ROWS: tuple[_Row, ...] = (
         ),
         "normal_deg",
     ),
-    _Row(
+    FlownClaim(
         "relay",
         "Relay law on both momentum errors (1 A m^2): momentum from the target after 2.5 orbits of a tumble",
         "eq. 3 [30, 35]: spin and direction at once",
@@ -138,7 +124,7 @@ ROWS: tuple[_Row, ...] = (
         replace(TUMBLING, law="spin_relay", gains=SpinAxisGains(3.0, *TARGET), orbits=2.5, most_am2=1.0),
         "target_deg",
     ),
-    _Row(
+    FlownClaim(
         "reorientation",
         "Reorientation by one coil: momentum from the target after two orbits",
         "[31, 32]",
@@ -148,7 +134,7 @@ ROWS: tuple[_Row, ...] = (
         replace(SPINNING, law="reorientation", gains=SpinAxisGains(3.0, *TARGET, 3e6), orbits=2.0),
         "target_deg",
     ),
-    _Row(
+    FlownClaim(
         "three_term",
         "Three terms at once: momentum from the target after two orbits of a tumble",
         "[36]: nutation, spin and direction by one law",
@@ -158,7 +144,7 @@ ROWS: tuple[_Row, ...] = (
         replace(TUMBLING, law="three_term", gains=ThreeTermGains(3.0, *TARGET), orbits=2.0),
         "target_deg",
     ),
-    _Row(
+    FlownClaim(
         "relay_stages",
         "Three stages by relays (3 A m^2): momentum from the target after four orbits of a tumble",
         "[29]: nutation, spin and direction, each by its switching function",
@@ -174,7 +160,7 @@ ROWS: tuple[_Row, ...] = (
         ),
         "target_deg",
     ),
-    _Row(
+    FlownClaim(
         "target_precession",
         "Precession with f(x) cut at 0.3: momentum from the target after two orbits",
         "eq. 5 [38]: any f with x f(x) > 0 serves",
@@ -190,7 +176,7 @@ ROWS: tuple[_Row, ...] = (
         ),
         "target_deg",
     ),
-    _Row(
+    FlownClaim(
         "stepped_precession",
         "Steps of 120 s at three levels (2 A m^2): momentum from the normal after two orbits, from 25 deg",
         "[39]: piecewise constant",
@@ -206,21 +192,7 @@ ROWS: tuple[_Row, ...] = (
 def studies() -> list[Study]:
     """All of this section."""
     return [
-        *(
-            one_figure(
-                Claim(
-                    f"review.spin.{row.name}",
-                    row.statement,
-                    f"{REVIEW}, {row.source}",
-                    row.unit,
-                    low=row.low,
-                    high=row.high,
-                    wide="rounding alone" if row.name == "nutation_spin" else "",
-                ),
-                partial(flown_figure, row.case, row.figure),
-            )
-            for row in ROWS
-        ),
+        *(row.study("spin", f"{REVIEW},", flown_figure) for row in ROWS),
         one_figure(
             Claim(
                 "review.spin.roll_floquet",

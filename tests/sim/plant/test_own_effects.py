@@ -100,6 +100,9 @@ def test_it_sees_the_instant_of_the_tick(make_config):
         assert (moment.b_body_t, moment.sun_body) == (row.b_body_t, row.sun_body)
         assert (moment.lit, moment.r_eci_m) == (row.lit, row.r_eci_m)
     assert moments[0].omega_body_radps != moments[1].omega_body_radps
+    flown_m = np.subtract(moments[2].r_eci_m, moments[0].r_eci_m)
+    middle_mps = flown_m / (moments[2].t_s - moments[0].t_s)
+    assert moments[1].v_eci_mps == pytest.approx(tuple(middle_mps), rel=1e-5)
 
 
 def test_faults_come_after_it(make_config):

@@ -1,0 +1,1 @@
+"""Effects that ship, for ``[[effect]]``: torques that few satellites have."""
