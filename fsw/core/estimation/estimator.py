@@ -85,8 +85,8 @@ class EstimatorState(NamedTuple):
         return (*first, *self.batch.floats(), *known)
 
     def packed(self) -> bytes:
-        """The arrays of the estimate."""
-        return b"" if self.estimate is None else self.estimate.packed()
+        """The arrays of the estimate, and of the search for one."""
+        return (b"" if self.estimate is None else self.estimate.packed()) + self.batch.packed()
 
 
 class Used(NamedTuple):

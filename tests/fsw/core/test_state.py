@@ -6,6 +6,7 @@ from math import nextafter
 
 import numpy as np
 import pytest
+from batch_samples import search_under_way
 
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit.elements import Elements, Upload
@@ -20,12 +21,13 @@ ELEMENTS = Elements(
 
 @pytest.fixture(scope="module")
 def run(make_world):
-    """A state in which everything has happened: ephemeris, estimate, a pulse, a law that remembers."""
+    """A state in which everything has happened: ephemeris, estimate, search, pulse, a law that remembers."""
     world = make_world(control={"law": "pd"})
     world.fly(230)
     state = world.state._replace(orbit=ELEMENTS, upload=Upload().with_element(Element.BSTAR, 1e-5))
     assert state.estimator.estimate.trace is not None
-    state = state._replace(estimator=state.estimator._replace(first=state.estimator.estimate.parameters))
+    first, batch = state.estimator.estimate.parameters, search_under_way()
+    state = state._replace(estimator=state.estimator._replace(first=first, batch=batch))
     assert state.coil.fired_tick >= 0
     assert any(state.pulses.owed_impulse_body_nms)
     assert state.memory

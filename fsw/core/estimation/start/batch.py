@@ -3,12 +3,14 @@
 Three lit cells and the field give an attitude, some 10 deg off, and no rate: from there a filter would go
 astray, so the samples of ``SHORT_S`` are fitted together. One or two lit cells leave the turn about the field
 open, which the motion over ``LEAST_S`` does not. A sample is kept every ``SPACING_S``, with the dipole driven
-since the one before; ``batch_fit`` looks for the motion behind them.
+since the one before; ``search`` looks for the motion behind them, a piece in each tick.
 """
 
 from typing import NamedTuple
 
 from fsw.core.algebra.vector import ZERO, Vec3, add, scale
+from fsw.core.estimation.start.batch_sample import BatchSample
+from fsw.core.estimation.start.search import MotionSearch
 
 SPACING_S = 20.0
 SHORT_S, LEAST_S, MOST_S = 100.0, 400.0, 1200.0
@@ -18,45 +20,24 @@ AGAIN_S = 100.0
 """Time until it is looked for again."""
 GAP_S = 60.0
 """After a longer time without a sample the batch begins anew."""
-UNKNOWN = -1.0
-"""The current of a cell that is not to be used."""
-
-
-class BatchSample(NamedTuple):
-    """What was measured and modelled in one tick, and what was driven since the sample before.
-
-    ``field_t`` in body axes; ``currents`` in parts of full sunlight; ``earth`` is the Earth's light, as in
-    ``Light``, of which nothing and no Sun is there unless ``lit``; ``coarse`` is the Sun by three lit cells.
-    """
-
-    since_s: float
-    m_body_am2: Vec3
-    field_t: Vec3
-    currents: tuple[float, ...]
-    b_eci_t: Vec3
-    s_eci: Vec3
-    r_eci_m: Vec3
-    lit: float
-    earth: float
-    coarse: Vec3 | None = None
-
-    def floats(self) -> tuple[float, ...]:
-        """For the checksum of the state."""
-        vectors = (*self.m_body_am2, *self.field_t, *self.b_eci_t, *self.s_eci, *self.r_eci_m)
-        return (self.since_s, *self.currents, *vectors, self.lit, self.earth, *(self.coarse or ()))
 
 
 class SampleBatch(NamedTuple):
-    """The samples, oldest first; time and impulse driven, A m^2 s, since the last; time since a search."""
+    """The samples, oldest first; time and impulse driven, A m^2 s, since the last.
+
+    ``search`` is the one that is under way, and ``searched_s`` the time since the last one began.
+    """
 
     samples: tuple[BatchSample, ...] = ()
     since_s: float = 0.0
     driven_am2s: Vec3 = ZERO
     searched_s: float = 0.0
+    search: MotionSearch | None = None
 
     def integers(self) -> tuple[int, ...]:
         """For the checksum of the state, as is ``floats``; nothing of a batch that has not begun."""
-        return () if self == EMPTY else (len(self.samples),)
+        under_way = () if self.search is None else self.search.integers()
+        return () if self == EMPTY else (len(self.samples), *under_way)
 
     def floats(self) -> tuple[float, ...]:
         """Every number."""
@@ -64,6 +45,10 @@ class SampleBatch(NamedTuple):
             return ()
         kept = [number for sample in self.samples for number in sample.floats()]
         return (self.since_s, *self.driven_am2s, self.searched_s, *kept)
+
+    def packed(self) -> bytes:
+        """The arrays of the search."""
+        return b"" if self.search is None else self.search.packed()
 
     @property
     def span_s(self) -> float:
@@ -97,13 +82,28 @@ def kept(batch: SampleBatch, sample: BatchSample) -> SampleBatch:
     if batch.samples:
         mean = scale(1.0 / batch.since_s, batch.driven_am2s)
         sample = sample._replace(since_s=batch.since_s, m_body_am2=mean)
-    samples = (*batch.samples, sample)[-round(MOST_S / SPACING_S) :]
-    return SampleBatch(samples, searched_s=batch.searched_s)
+    samples = (*batch.samples, sample)
+    if batch.search is None:  # which counts the samples from the first on
+        samples = samples[-round(MOST_S / SPACING_S) :]
+    return SampleBatch(samples, searched_s=batch.searched_s, search=batch.search)
+
+
+def rest(batch: SampleBatch, b_eci_t: Vec3, s_eci: Vec3, r_eci_m: Vec3) -> BatchSample | None:
+    """What was driven from the last sample to this tick, as a sample of which nothing is measured."""
+    if not batch.since_s:
+        return None
+    mean = scale(1.0 / batch.since_s, batch.driven_am2s)
+    return BatchSample(batch.since_s, mean, ZERO, (), b_eci_t, s_eci, r_eci_m, 0.0, 0.0)
 
 
 def due(batch: SampleBatch) -> bool:
     """Whether the motion is to be looked for, with the sample just kept."""
-    if batch.since_s or not batch.samples or batch.searched_s < min(AGAIN_S, batch.span_s):
+    if (
+        batch.search is not None
+        or batch.since_s
+        or not batch.samples
+        or batch.searched_s < min(AGAIN_S, batch.span_s)
+    ):
         return False
     coarse = all(sample.coarse for sample in batch.samples)
     enough = batch.span_s >= (SHORT_S if coarse else LEAST_S)

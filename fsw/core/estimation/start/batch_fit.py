@@ -1,15 +1,15 @@
-"""The motion behind a batch of samples, by least squares from many starts.
+"""The equations of motions and samples, and what follows from them: a step that improves, an estimate.
 
-Unknown are attitude and rate at the first sample, and with their priors residual dipole, torque, inertia, the
-bias of the field and the excess of each cell, taken as constant over the batch. Starts are all turns about
-the first field, with rates that the field's own motion leaves open; the best of them are improved by the
-method of Levenberg and Marquardt. The motion is found if no other one, that ends by ``APART`` or more away,
-comes within ``LEAD`` nats of it.
+Numbers of a motion: attitude, rate, residual dipole, torque, inertia, bias of the field, excess of each of c
+cells, k = 18 + 3 + c. With z the samples, h(x) what the motion x should show, H its derivative, R and P the
+covariances of samples and priors,
 
-Source: Marquardt 1963; batch estimators as in Crassidis and Junkins 2012, section 1.6.
+    N = H^T R^-1 H + P^-1,  g = H^T R^-1 (h(x) - z) + P^-1 x,
+
+and the least squares are at N dx = -g. H is by differences, as the motion is known by its equation only.
 """
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,92 +17,79 @@ from fsw.core.algebra.vector import Vec3
 from fsw.core.estimation import mekf
 from fsw.core.estimation.kalman import Matrix
 from fsw.core.estimation.mekf import Estimate
-from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.estimation.start.batch import BatchSample
-from fsw.core.estimation.start.batch_model import MOVING, BatchProblem, Motions, motion, problem_of, starts
+from fsw.core.estimation.start.batch_model import MOVING, BatchModel, Motions, measured
+from fsw.core.estimation.start.batch_sample import BatchSample
+from fsw.core.estimation.start.motions import turned_by
 
-IMPROVED, STEPS = 14, 12
 MOST_TURN_RAD, MOST_RATE_RADPS = 0.5, 0.005
-LEAD = 8.0
-APART = 0.9848
-"""Cosine of half the angle, 20 deg."""
-MOST_MISFIT = 3.0
-"""Chi square of a found motion over its numbers, at most."""
 INFLATION = 2.0
 """Of the standard deviations that are found: the equations are not linear, nor is the noise white."""
 
 
-def fitted(samples: tuple[BatchSample, ...], config: MekfConfig) -> Estimate | None:
-    """The estimate at the last sample; None where the samples leave more than one motion, or none fits.
+class Equations(NamedTuple):
+    """By motion: N, (n, k, k), g, (n, k), half of chi square, and how many numbers were measured, (n)."""
+
+    normal: Matrix
+    gradient: Matrix
+    costs: Matrix
+    measured: Matrix
+
+
+def at_priors(motions: Motions, model: BatchModel, going: int) -> Equations:
+    """Of the priors alone; N and g of none, where no motion is varied.
 
     Args:
-        samples: oldest first.
-        config: the filter.
+        motions: n of them.
+        model: what the table says.
+        going: how many go through the samples, n or with those that are varied 19 n.
     """
-    if config.cells is None:
-        return None
-    problem = problem_of(samples, config, config.cells)
-    try:
-        with np.errstate(over="ignore", invalid="ignore"):  # of a motion that is absurd the cost is no number
-            return _found(problem)
-    except np.linalg.LinAlgError:  # the equations of damaged samples
-        return None
+    count = len(motions.q)
+    size = model.prior.size if going > count else 0
+    precision = model.prior**-2.0
+    own = motions.numbers[:, 3:]
+    gradient = np.hstack((np.zeros((count, 6)), own * precision[6:]))[:, :size]
+    known = own / model.prior[6:]
+    costs = 0.5 * (known * known).sum(axis=1)
+    normal = np.tile(np.diag(precision[:size]), (count, 1, 1))
+    return Equations(normal, gradient, costs, np.zeros(count))
 
 
-def _found(problem: BatchProblem) -> Estimate | None:
-    begun = starts(problem)
-    seen = motion(problem, begun)[2]
-    best = _order(_cost(problem, begun, seen))[:IMPROVED]
-    improved, costs = _improved(problem, begun.chosen(best))
-    ends = motion(problem, improved)[0][-1]
-    order = _order(costs)
-    first = order[0]
-    others = [one for one in order[1:] if abs(ends[one].dot(ends[first])) < APART]
-    alone = all(costs[one] - costs[first] > LEAD for one in others)
-    fits = 2.0 * costs[first] <= MOST_MISFIT * np.count_nonzero(problem.weights)
-    return _estimate(problem, improved.chosen(order[:1])) if alone and fits else None
+def add_sample(
+    equations: Equations, motions: Motions, seen: Matrix, sample: BatchSample, model: BatchModel
+) -> Equations:
+    """With one sample more.
+
+    Args:
+        equations: before.
+        motions: n of them.
+        seen: what they should show, and behind it what those varied should, (n or 19 n, 3 + c).
+        sample: what was measured.
+        model: what the table says.
+    """
+    count = len(motions.q)
+    values, weights = measured(sample, model)
+    here = seen[:count]
+    left = (here + motions.numbers[:, MOVING - 3 :] - values) * weights
+    costs = equations.costs + 0.5 * (left * left).sum(axis=1)
+    numbers = equations.measured + np.count_nonzero(weights)
+    if len(seen) == count:
+        return equations._replace(costs=costs, measured=numbers)
+    there = seen[count:].reshape(MOVING, count, -1)
+    moving = ((there - here) / model.differences[:, None, None]).transpose(1, 2, 0) * weights[:, None]
+    constant = np.broadcast_to(np.diag(weights), (count, weights.size, weights.size))
+    slopes = np.concatenate((moving, constant), axis=2)
+    across = slopes.transpose(0, 2, 1)
+    normal = equations.normal + across @ slopes
+    gradient = equations.gradient + (across @ left[:, :, None])[:, :, 0]
+    return Equations(normal, gradient, costs, numbers)
 
 
-def _order(costs: Matrix) -> list[int]:
-    """The numbers of the motions, the cheapest first."""
-    order: list[int] = np.argsort(costs, kind="stable").tolist()
-    return order
-
-
-def _cost(problem: BatchProblem, motions: Motions, seen: Matrix) -> Matrix:
-    """Half of chi square of each motion, (n)."""
-    left = _residuals(problem, motions, seen)
-    known = motions.numbers[:, 3:] / problem.prior[6:]
-    half: Matrix = 0.5 * ((left * left).sum(axis=(0, 2)) + (known * known).sum(axis=1))
-    return half
-
-
-def _residuals(problem: BatchProblem, motions: Motions, seen: Matrix) -> Matrix:
-    """What is left of the samples, in their standard deviations, (m, n, 3 + c)."""
-    shown = motions.numbers[:, MOVING - 3 :]
-    left: Matrix = (seen + shown - problem.measured[:, None, :]) * problem.weights[:, None, :]
-    return left
-
-
-def _improved(problem: BatchProblem, motions: Motions) -> tuple[Motions, Matrix]:
-    """The motions after ``STEPS`` of Levenberg and Marquardt, and their costs."""
-    damping = np.full(len(motions.q), 1e-2)
-    normal, gradient, costs = _equations(problem, motions)
-    for _ in range(STEPS):
-        diagonal = np.einsum("nii->ni", normal)
-        damped = normal + (damping[:, None] * diagonal)[:, :, None] * np.eye(normal.shape[1])
-        tried = motions.changed(_limited(_solved(damped, -gradient)))
-        equations = _equations(problem, tried)
-        better = equations[2] < costs
-        motions = Motions(
-            np.where(better[:, None], tried.q, motions.q),
-            np.where(better[:, None], tried.numbers, motions.numbers),
-        )
-        normal = np.where(better[:, None, None], equations[0], normal)
-        gradient = np.where(better[:, None], equations[1], gradient)
-        costs = np.where(better, equations[2], costs)
-        damping = np.where(better, 0.2 * damping, 10.0 * damping)
-    return motions, costs
+def improving_step(equations: Equations, damping: Matrix) -> Matrix:
+    """The change of the numbers by Levenberg and Marquardt, (n, k), of limited attitude and rate."""
+    normal = equations.normal
+    diagonal = np.einsum("nii->ni", normal)
+    damped = normal + (damping[:, None] * diagonal)[:, :, None] * np.eye(normal.shape[1])
+    return _limited(_solved(damped, -equations.gradient))
 
 
 def _limited(steps: Matrix) -> Matrix:
@@ -121,45 +108,38 @@ def _solved(normal: Matrix, right: Matrix) -> Matrix:
     return solution
 
 
-def _equations(problem: BatchProblem, motions: Motions) -> tuple[Matrix, Matrix, Matrix]:
-    """Normal matrix (n, k, k), gradient (n, k) and cost (n) of each motion, k = 18 + 3 + c."""
-    count, own = len(motions.q), problem.prior.size - MOVING
-    seen = motion(problem, _varied(problem, motions))[2]
-    here, there = seen[:, :count], np.split(seen[:, count:], MOVING, axis=1)
-    columns = [(one - here) / step for one, step in zip(there, problem.differences, strict=True)]
-    moving = np.stack(columns, axis=-1) * problem.weights[:, None, :, None]
-    constant = np.broadcast_to(problem.weights[:, None, :, None] * np.eye(own), (*moving.shape[:3], own))
-    slopes = np.concatenate((moving, constant), axis=-1)
-    normal = np.einsum("mnri,mnrj->nij", slopes, slopes, optimize=True)
-    gradient = np.einsum("mnri,mnr->ni", slopes, _residuals(problem, motions, here), optimize=True)
-    precision = problem.prior**-2.0
-    gradient[:, 6:] += motions.numbers[:, 3:] * precision[6:]
-    return normal + np.diag(precision), gradient, _cost(problem, motions, here)
+def estimate_of(
+    found: Motions, equations: Equations, q: Matrix, omega: Matrix, model: BatchModel
+) -> tuple[Estimate | None, float]:
+    """The estimate where a motion has arrived, None if it is no sound one; and half of chi square there.
 
+    Samples that were not there when the motion was found change it by one step more.
 
-def _varied(problem: BatchProblem, motions: Motions) -> Motions:
-    """The motions, and behind them 18 times as many, each with one of the differences."""
-    shape = (len(motions.q), 3 + motions.numbers.shape[1])
-    varied = [motions]
-    for index, difference in enumerate(problem.differences):
-        step = np.zeros(shape)
-        step[:, index] = difference
-        varied.append(motions.changed(step))
-    return Motions(*(np.concatenate([one[part] for one in varied]) for part in (0, 1)))
-
-
-def _estimate(problem: BatchProblem, found: Motions) -> Estimate:
-    """The estimate at the last sample, with what the fit has found of the parameters and left of all."""
-    config, (normal, _, _) = problem.config, _equations(problem, found)
-    size = np.sqrt(normal[0].diagonal())
-    left = INFLATION**2 * np.linalg.inv(normal[0] / np.outer(size, size)) / np.outer(size, size)
-    attitudes, rates, _ = motion(problem, _varied(problem, found))
-    q, rate, numbers = attitudes[-1, 0], rates[-1, 0], found.numbers[0]
+    Args:
+        found: the motion.
+        equations: of it.
+        q: its attitude, and behind it those with one of its numbers varied, (19, 4).
+        omega: rates, (19, 3).
+        model: what the table says.
+    """
+    normal, gradient = equations.normal[0], equations.gradient[0]
+    step = _solved(equations.normal, -equations.gradient)[0]
+    size = np.sqrt(normal.diagonal())
+    left = INFLATION**2 * np.linalg.inv(normal / np.outer(size, size)) / np.outer(size, size)
     flow = np.eye(len(left))
-    moved = np.hstack((2.0 * _difference(q, attitudes[-1, 1:]), rates[-1, 1:] - rate))
-    flow[0:6, 0:MOVING] = moved.T / problem.differences
-    left = flow.dot(left).dot(flow.T)
-    begun = mekf.start(_four(q), _three(rate), config)
+    moved = np.hstack((2.0 * _difference(q[0], q[1:]), omega[1:] - omega[0]))
+    flow[0:6, 0:MOVING] = moved.T / model.differences
+    change = flow.dot(step)
+    attitude = turned_by(q[:1], change[None, 0:3])[0]
+    begun = mekf.start(_four(attitude), _three(omega[0] + change[3:6]), model.config)
+    estimate = _with_parameters(begun, found.numbers[0] + step[3:], flow.dot(left).dot(flow.T), model)
+    cost = float(equations.costs[0] + 0.5 * gradient.dot(step))
+    return (estimate if mekf.healthy(estimate) else None), cost
+
+
+def _with_parameters(begun: Estimate, numbers: Matrix, left: Matrix, model: BatchModel) -> Estimate:
+    """With what was found of the parameters, and the covariance that is left of all."""
+    config = model.config
     covariance, parameters = config.initial_covariance.copy(), begun.parameters
     parts, places = config.layout, list(range(6))
     kept = list(range(6))

@@ -14,8 +14,8 @@ from fsw.core.algebra.vector import Vec3, add, cross, dot, norm, scale, unit
 from fsw.core.estimation.cells.cell_set import CellSet
 from fsw.core.estimation.kalman import Matrix
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.estimation.start.batch import BatchSample
-from fsw.core.estimation.start.motions import Disturbed, Leg, flown, in_body, turned_by
+from fsw.core.estimation.start.batch_sample import BatchSample
+from fsw.core.estimation.start.motions import Disturbed, Leg, all_in_body, in_body, turned_by
 from fsw.core.estimation.start.triad import triad
 from fsw.core.orbit.earth import MU_M3PS2
 
@@ -48,45 +48,38 @@ class Motions(NamedTuple):
         return Motions(self.q[rows], self.numbers[rows])
 
 
-class BatchProblem(NamedTuple):
-    """A batch as arrays: legs between m samples, field and currents measured, (m, 3 + c).
+class BatchModel(NamedTuple):
+    """What the table says of a batch: standard deviations of a field component, T, and of a current.
 
-    ``weights`` (m, 3 + c): one over each standard deviation, 0 where there is no sample; ``prior``
-    (18 + 3 + c): standard deviations, infinite of attitude and rate; ``differences`` (18): for derivatives.
+    ``prior`` (18 + 3 + c): standard deviations, infinite of attitude and rate; ``differences`` (18): for
+    derivatives; ``normals`` (c, 3): of the cells, body axes.
     """
 
-    legs: tuple[Leg, ...]
-    samples: tuple[BatchSample, ...]
-    measured: Matrix
-    weights: Matrix
+    field_sigma_t: float
+    current_sigma: float
     prior: Matrix
     differences: Matrix
     normals: Matrix
     config: MekfConfig
 
 
-def problem_of(samples: tuple[BatchSample, ...], config: MekfConfig, cells: CellSet) -> BatchProblem:
-    """The samples, and what is known beforehand, as arrays."""
-    legs = tuple(_leg(samples[number], samples[number + 1]) for number in range(len(samples) - 1))
-    currents = np.array([sample.currents for sample in samples])
-    lit = np.array([sample.lit for sample in samples])
+def model_of(config: MekfConfig, cells: CellSet) -> BatchModel:
+    """By the bounds of the table."""
     parts = config.layout
     bias_t = hypot(_sigmas(config, parts.mag_bias, 3)[0], TURN_T)
-    noise_t = hypot(sqrt(float(config.field_noise[0, 0])), VARYING * bias_t)
-    noise = hypot(cells.sigma, VARYING * cells.excess_sigma)
-    of_cells = np.where((currents >= 0.0) & (lit > 0.0)[:, None], 1.0 / noise, 0.0)
-    weights = np.hstack((np.full((len(samples), 3), 1.0 / noise_t), of_cells))
     moving = (
         *np.maximum(_sigmas(config, parts.dipole, 3), LEAST_SIGMAS["dipole"]).tolist(),
         *np.maximum(_sigmas(config, parts.torque, 3), LEAST_SIGMAS["torque"]).tolist(),
         *np.maximum(_sigmas(config, parts.inertia, 6), LEAST_SIGMAS["inertia"]).tolist(),
     )
-    shown = (bias_t,) * 3 + (cells.excess_sigma,) * currents.shape[1]
-    prior = np.array((np.inf,) * 6 + moving + shown)
-    differences = np.concatenate(((1e-3,) * 3, (1e-5,) * 3, 0.1 * np.array(moving)))
-    measured = np.hstack((np.array([sample.field_t for sample in samples]), currents))
-    return BatchProblem(
-        legs, samples, measured, weights, prior, differences, np.array(cells.normals_body), config
+    shown = (bias_t,) * 3 + (cells.excess_sigma,) * len(cells.normals_body)
+    return BatchModel(
+        field_sigma_t=hypot(sqrt(float(config.field_noise[0, 0])), VARYING * bias_t),
+        current_sigma=hypot(cells.sigma, VARYING * cells.excess_sigma),
+        prior=np.array((np.inf,) * 6 + moving + shown),
+        differences=np.array((1e-3,) * 3 + (1e-5,) * 3 + tuple([0.1 * sigma for sigma in moving])),
+        normals=np.array(cells.normals_body),
+        config=config,
     )
 
 
@@ -95,16 +88,25 @@ def _sigmas(config: MekfConfig, place: slice | None, size: int) -> Matrix:
     return np.zeros(size) if place is None else np.sqrt(config.initial_covariance.diagonal()[place])
 
 
-def _leg(before: BatchSample, after: BatchSample) -> Leg:
+def measured(sample: BatchSample, model: BatchModel) -> tuple[Matrix, Matrix]:
+    """Field and currents, and one over the standard deviation of each, 0 where there is none, (3 + c)."""
+    weight = 1.0 / model.current_sigma if sample.lit else 0.0
+    of_cells = tuple([weight if current >= 0.0 else 0.0 for current in sample.currents])
+    weights = (1.0 / model.field_sigma_t,) * 3 + of_cells
+    return np.array(sample.field_t + sample.currents), np.array(weights)
+
+
+def leg(before: BatchSample, after: BatchSample) -> Leg:
+    """What acts between two samples."""
     middle = scale(0.5, add(before.r_eci_m, after.r_eci_m))
     b = np.array(scale(0.5, add(before.b_eci_t, after.b_eci_t)))
     gravity = 3.0 * MU_M3PS2 / norm(middle) ** 3
     return Leg(after.since_s, np.array(unit(middle)), b, gravity, np.array(after.m_body_am2))
 
 
-def starts(problem: BatchProblem) -> Motions:
+def starts(samples: tuple[BatchSample, ...], model: BatchModel) -> Motions:
     """Attitudes about the first field, and rates that take it to the second, with any about the field."""
-    first, second = problem.samples[0], problem.samples[1]
+    first, second = samples[0], samples[1]
     field = unit(first.field_t)
     attitudes, rates = [], []
     for attitude in _attitudes(first):
@@ -113,7 +115,7 @@ def starts(problem: BatchProblem) -> Motions:
         for rate in RATES_DEGPS:
             attitudes.append(attitude)
             rates.append(add(turning, scale(radians(rate), field)))
-    rest = np.zeros((len(rates), problem.prior.size - 6))
+    rest = np.zeros((len(rates), model.prior.size - 6))
     return Motions(np.array(attitudes), np.hstack((np.array(rates), rest)))
 
 
@@ -140,22 +142,25 @@ def _rotation(before: Vec3, after: Vec3) -> Vec3:
     return scale(float(np.arctan2(sine, cosine)) / sine, axis) if sine > 0.0 else axis
 
 
-def motion(problem: BatchProblem, motions: Motions) -> tuple[Matrix, Matrix, Matrix]:
-    """Attitudes (m, n, 4) and rates (m, n, 3) at the samples, and what is seen there, (m, n, 3 + c)."""
-    q, numbers, rotor = motions.q, motions.numbers, problem.config.rotor
-    omega, disturbed = numbers[:, 0:3], Disturbed(numbers[:, 3:6], numbers[:, 6:9], numbers[:, 9:15])
-    attitudes, rates = [q], [omega]
-    for leg in problem.legs:
-        q, omega = flown(q, omega, leg, disturbed, rotor)
-        attitudes.append(q)
-        rates.append(omega)
-    seen = [_expected(at, sample, problem) for at, sample in zip(attitudes, problem.samples, strict=True)]
-    return np.array(attitudes), np.array(rates), np.array(seen)
+def varied(motions: Motions, model: BatchModel) -> Motions:
+    """The motions, and behind them 18 times as many, each with one of the differences."""
+    steps = np.zeros((1 + MOVING, *(len(motions.q), 3 + motions.numbers.shape[1])))
+    steps[range(1, 1 + MOVING), :, range(MOVING)] = model.differences[:, None]
+    times = (1 + MOVING, 1)
+    again = Motions(np.tile(motions.q, times), np.tile(motions.numbers, times))
+    return again.changed(steps.reshape(len(again.q), -1))
 
 
-def _expected(q: Matrix, sample: BatchSample, problem: BatchProblem) -> Matrix:
-    """Field and currents at one sample, (n, 3 + c)."""
-    sun = in_body(q, np.array(sample.s_eci)).dot(problem.normals.T)
-    earth = in_body(q, np.array(scale(-1.0 / norm(sample.r_eci_m), sample.r_eci_m))).dot(problem.normals.T)
+def disturbances(motions: Motions) -> Disturbed:
+    """What disturbs them."""
+    numbers = motions.numbers
+    return Disturbed(numbers[:, 3:6], numbers[:, 6:9], numbers[:, 9:15])
+
+
+def expected(q: Matrix, sample: BatchSample, model: BatchModel) -> Matrix:
+    """Field and currents at one sample without bias and excess, (n, 3 + c)."""
+    down = scale(-1.0 / norm(sample.r_eci_m), sample.r_eci_m)
+    b, s, e = all_in_body(q, np.array((sample.b_eci_t, sample.s_eci, down)))
+    sun, earth = model.normals.dot(s), model.normals.dot(e)
     light = np.maximum(0.0, sun) + sample.earth * (0.5 + 0.5 * earth) ** 2
-    return np.hstack((in_body(q, np.array(sample.b_eci_t)), light))
+    return np.vstack((b, light)).T

@@ -4,12 +4,14 @@ from typing import NamedTuple
 
 from fsw.core.algebra.vector import ZERO, Vec3, norm
 from fsw.core.estimation import mekf
-from fsw.core.estimation.cells.cell_set import light
+from fsw.core.estimation.cells.cell_set import CellSet, light
 from fsw.core.estimation.cells.coarse_sun import coarse_sun
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.estimation.start.batch import UNKNOWN, BatchSample, SampleBatch, due, kept
-from fsw.core.estimation.start.batch_fit import fitted
+from fsw.core.estimation.start.batch import SampleBatch, due, kept, rest
+from fsw.core.estimation.start.batch_model import BatchModel, model_of
+from fsw.core.estimation.start.batch_sample import UNKNOWN, BatchSample
+from fsw.core.estimation.start.search import PIECES, at_end, begun, worked
 from fsw.core.estimation.start.triad import consistent, triad
 from fsw.core.orbit.ephemeris import Reference
 
@@ -50,7 +52,7 @@ def from_batch(
     limits: StartLimits,
     config: MekfConfig,
 ) -> tuple[SampleBatch, Estimate | None]:
-    """The batch with the samples of this tick, and the estimate if its motion is found.
+    """The batch with the samples of this tick and a tick's work of its search; the estimate if that ends it.
 
     Args:
         batch: of the ticks before.
@@ -60,17 +62,50 @@ def from_batch(
         limits: what is accepted of the field's strength.
         config: the filter.
     """
-    cells, b = config.cells, reference.b_eci_t
-    if cells is None or field is None or not currents:
+    cells = config.cells
+    if cells is None:
         return batch, None
-    if abs(norm(field) - norm(b)) > limits.max_field_error_t:
+    sample = _sample(field, currents, reference, limits, cells)
+    if sample is not None:
+        batch = kept(batch, sample)
+    starts_now = due(batch)
+    if batch.search is None and not starts_now:
         return batch, None
+    model = model_of(config, cells)
+    if starts_now:
+        batch = batch._replace(searched_s=0.0, search=begun(batch.samples, model))
+    return _searched(batch, sample is not None, reference, model)
+
+
+def _sample(
+    field: Vec3 | None,
+    currents: tuple[float | None, ...],
+    reference: Reference,
+    limits: StartLimits,
+    cells: CellSet,
+) -> BatchSample | None:
+    """Of this tick, if field and cells are there and the field is as strong as the model has it."""
+    b = reference.b_eci_t
+    if field is None or not currents or abs(norm(field) - norm(b)) > limits.max_field_error_t:
+        return None
     seen = light(reference.r_eci_m, reference.sun_eci, cells.albedo)
     known = tuple([UNKNOWN if current is None else current for current in currents])
     lit, earth = (0.0, 0.0) if seen is None else (1.0, seen.earth)
     coarse = None if seen is None else coarse_sun(currents, cells)
-    sample = BatchSample(0.0, ZERO, field, known, b, reference.sun_eci, reference.r_eci_m, lit, earth, coarse)
-    batch = kept(batch, sample)
-    if not due(batch):
-        return batch, None
-    return batch._replace(searched_s=0.0), fitted(batch.samples, config)
+    return BatchSample(0.0, ZERO, field, known, b, reference.sun_eci, reference.r_eci_m, lit, earth, coarse)
+
+
+def _searched(
+    batch: SampleBatch, measured: bool, reference: Reference, model: BatchModel
+) -> tuple[SampleBatch, Estimate | None]:
+    """After the pieces of a tick; an estimate begins in a tick with a sample."""
+    search = batch.search
+    since = rest(batch, reference.b_eci_t, reference.sun_eci, reference.r_eci_m)
+    for _ in range(PIECES):
+        if search is None or (at_end(search, batch.samples) and not measured):
+            break
+        after = worked(search, batch.samples, since, model)
+        if isinstance(after, Estimate):
+            return batch._replace(search=None), after
+        search = after
+    return batch._replace(search=search), None

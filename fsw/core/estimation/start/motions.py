@@ -7,6 +7,9 @@ import numpy as np
 from fsw.core.estimation.kalman import Matrix
 from fsw.core.estimation.parameters import Rotor
 
+AFTER, BEFORE = [1, 2, 0], [2, 0, 1]
+"""The axes after and before each one."""
+
 
 class Leg(NamedTuple):
     """What acts between two samples: its length, s, radius direction and field, T, eci, in its middle.
@@ -21,26 +24,6 @@ class Leg(NamedTuple):
     m_body_am2: Matrix
 
 
-def in_body(q: Matrix, v: Matrix) -> Matrix:
-    """C(q_body_from_eci) v for each attitude, (n, 3)."""
-    scalar, vector = q[:, :1], q[:, 1:]
-    along = vector.dot(v)[:, None]
-    square = scalar * scalar - (vector * vector).sum(axis=1)[:, None]
-    turned: Matrix = square * v + 2.0 * along * vector - 2.0 * scalar * crossed(vector, v)
-    return turned
-
-
-def crossed(a: Matrix, b: Matrix) -> Matrix:
-    """The cross product by rows."""
-    product: Matrix = a[..., [1, 2, 0]] * b[..., [2, 0, 1]] - a[..., [2, 0, 1]] * b[..., [1, 2, 0]]
-    return product
-
-
-def turned_by(q: Matrix, rotation: Matrix) -> Matrix:
-    """Attitudes after small further turns, body axes, (n, 4)."""
-    return _unit(q + 0.5 * _product(q, rotation))
-
-
 class Disturbed(NamedTuple):
     """What disturbs each motion: residual dipole, A m^2, and torque, N m, body axes, (n, 3) each.
 
@@ -50,6 +33,25 @@ class Disturbed(NamedTuple):
     dipole_am2: Matrix
     torque_nm: Matrix
     inertia_kgm2: Matrix
+
+
+def in_body(q: Matrix, v: Matrix) -> Matrix:
+    """C(q_body_from_eci) v for each attitude, (n, 3)."""
+    turned: Matrix = all_in_body(q, v[None, :])[0].T
+    return turned
+
+
+def all_in_body(q: Matrix, directions: Matrix) -> Matrix:
+    """As ``in_body`` of several vectors, (k, 3), by components, (k, 3, n)."""
+    return _in_body(q.T[0], q.T[1:], directions[:, :, None])
+
+
+def turned_by(q: Matrix, rotation: Matrix) -> Matrix:
+    """Attitudes after small further turns, body axes, (n, 4)."""
+    x = q.T
+    turned = x + 0.5 * np.vstack(_product(x[0], x[1:], rotation.T))
+    unit: Matrix = turned / np.sqrt((turned * turned).sum(axis=0))
+    return unit.T
 
 
 def flown(q: Matrix, omega: Matrix, leg: Leg, disturbed: Disturbed, rotor: Rotor) -> tuple[Matrix, Matrix]:
@@ -62,44 +64,70 @@ def flown(q: Matrix, omega: Matrix, leg: Leg, disturbed: Disturbed, rotor: Rotor
         disturbed: what acts on each.
         rotor: inertia.
     """
-    h = leg.length_s
-    k1 = _rates(q, omega, leg, disturbed, rotor)
-    k2 = _rates(q + 0.5 * h * k1[0], omega + 0.5 * h * k1[1], leg, disturbed, rotor)
-    k3 = _rates(q + 0.5 * h * k2[0], omega + 0.5 * h * k2[1], leg, disturbed, rotor)
-    k4 = _rates(q + h * k3[0], omega + h * k3[1], leg, disturbed, rotor)
-    turn, change = (a + 2.0 * (b + c) + d for a, b, c, d in zip(k1, k2, k3, k4, strict=True))
-    return _unit(q + h / 6.0 * turn), omega + h / 6.0 * change
+    acting, h = _acting(leg, disturbed, rotor), leg.length_s
+    x = np.vstack((q.T, omega.T))
+    k1 = _rates(x, acting)
+    k2 = _rates(x + 0.5 * h * k1, acting)
+    k3 = _rates(x + 0.5 * h * k2, acting)
+    k4 = _rates(x + h * k3, acting)
+    x = x + h / 6.0 * (k1 + 2.0 * (k2 + k3) + k4)
+    q = x[:4] / np.sqrt((x[:4] * x[:4]).sum(axis=0))
+    return q.T, x[4:].T
 
 
-def _rates(q: Matrix, omega: Matrix, leg: Leg, disturbed: Disturbed, rotor: Rotor) -> tuple[Matrix, Matrix]:
-    """dq/dt = 1/2 q (0, w), J dw/dt = (m + d) x b + 3 mu/r^3 e1 x J e1 - w x (J w + h) + t."""
-    inertia, inverse, e1 = (
-        np.array(rotor.inertia_kgm2),
-        np.array(rotor.inertia_inverse),
-        in_body(q, leg.e1_eci),
+class _Acting(NamedTuple):
+    """A leg by components: radius direction and field, (2, 3, 1); inertia, (3, 3, n); J^-1 - J^-1 dJ J^-1."""
+
+    seen: Matrix
+    gravity_per_s2: float
+    wheel_nms: Matrix
+    dipole_am2: Matrix
+    torque_nm: Matrix
+    inertia: Matrix
+    response: Matrix
+
+
+def _acting(leg: Leg, disturbed: Disturbed, rotor: Rotor) -> _Acting:
+    inverse = np.array(rotor.inertia_inverse)
+    change = disturbed.inertia_kgm2.T[[0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(3, 3, -1)
+    less = np.einsum("ij,jkn,kl->iln", inverse, change, inverse)
+    return _Acting(
+        np.array((leg.e1_eci, leg.b_eci_t))[:, :, None],
+        leg.gravity_per_s2,
+        np.array(rotor.wheel_body_nms)[:, None],
+        leg.m_body_am2[:, None] + disturbed.dipole_am2.T,
+        disturbed.torque_nm.T,
+        np.array(rotor.inertia_kgm2)[:, :, None] + change,
+        inverse[:, :, None] - less,
     )
-    change, gravity = disturbed.inertia_kgm2, leg.gravity_per_s2
-    torque = gravity * crossed(e1, e1.dot(inertia) + _symmetric(change, e1))
-    torque -= crossed(omega, omega.dot(inertia) + _symmetric(change, omega) + np.array(rotor.wheel_body_nms))
-    torque += crossed(leg.m_body_am2 + disturbed.dipole_am2, in_body(q, leg.b_eci_t)) + disturbed.torque_nm
-    return 0.5 * _product(q, omega), (torque - _symmetric(change, torque.dot(inverse))).dot(inverse)
 
 
-def _symmetric(entries: Matrix, v: Matrix) -> Matrix:
-    """M v by rows, M being given by xx, yy, zz, xy, xz, yz."""
-    first, second = entries[:, [0, 3, 4]], entries[:, [3, 1, 5]]
-    product: Matrix = np.stack(
-        ((first * v).sum(axis=1), (second * v).sum(axis=1), (entries[:, [4, 5, 2]] * v).sum(axis=1)), axis=1
-    )
+def _rates(x: Matrix, acting: _Acting) -> Matrix:
+    """dq/dt = 1/2 q (0, w), J dw/dt = (m + d) x b + 3 mu/r^3 e1 x J e1 - w x (J w + h) + t, (7, n)."""
+    scalar, vector, omega = x[0], x[1:4], x[4:7]
+    e1, b = _in_body(scalar, vector, acting.seen)
+    turned = (acting.inertia * np.stack((e1, omega))[:, None]).sum(axis=2)
+    first = np.stack((acting.gravity_per_s2 * e1, -omega, acting.dipole_am2))
+    second = np.stack((turned[0], turned[1] + acting.wheel_nms, b))
+    torque = _crossed(first, second).sum(axis=0) + acting.torque_nm
+    q_rate = _product(scalar, vector, 0.5 * omega)
+    return np.vstack((*q_rate, (acting.response * torque).sum(axis=1)))
+
+
+def _in_body(scalar: Matrix, vector: Matrix, directions: Matrix) -> Matrix:
+    """Directions, (k, 3, 1), seen in the body, (k, 3, n)."""
+    along = (directions * vector).sum(axis=1)[:, None]
+    square = scalar * scalar - (vector * vector).sum(axis=0)
+    turned: Matrix = square * directions + 2.0 * (along * vector - scalar * _crossed(vector, directions))
+    return turned
+
+
+def _crossed(a: Matrix, b: Matrix) -> Matrix:
+    """The cross product of components along the last axis but one."""
+    product: Matrix = a[..., AFTER, :] * b[..., BEFORE, :] - a[..., BEFORE, :] * b[..., AFTER, :]
     return product
 
 
-def _product(q: Matrix, v: Matrix) -> Matrix:
-    """Q (x) (0, v) by rows."""
-    scalar = -(q[:, 1:] * v).sum(axis=1)[:, None]
-    return np.hstack((scalar, q[:, :1] * v + crossed(q[:, 1:], v)))
-
-
-def _unit(q: Matrix) -> Matrix:
-    scaled: Matrix = q / np.sqrt((q * q).sum(axis=1))[:, None]
-    return scaled
+def _product(scalar: Matrix, vector: Matrix, v: Matrix) -> tuple[Matrix, Matrix]:
+    """Scalar and vector of q (x) (0, v)."""
+    return -(vector * v).sum(axis=0), scalar * v + _crossed(vector, v)

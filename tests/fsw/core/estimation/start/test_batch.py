@@ -11,11 +11,12 @@ from fsw.core.estimation.start.batch import (
     MOST_S,
     SHORT_S,
     SPACING_S,
-    BatchSample,
     due,
     kept,
+    rest,
     waited,
 )
+from fsw.core.estimation.start.batch_sample import BatchSample
 
 SUN = (0.6, -0.48, 0.64)
 
@@ -76,6 +77,25 @@ def test_the_oldest_are_dropped():
     assert filled(3000.0).span_s <= MOST_S
 
 
+def test_while_a_search_is_under_way_none_is_dropped():
+    full = filled(MOST_S)
+    searched = kept(waited(full, ZERO, SPACING_S)._replace(search="under way"), sample())
+    assert searched.samples[:-1] == full.samples
+    assert searched.search == "under way"
+    ended = kept(waited(searched._replace(search=None), ZERO, SPACING_S), sample())
+    assert len(ended.samples) == len(full.samples)
+
+
+def test_the_rest_is_what_was_driven_since_the_last_sample():
+    batch = filled(40.0)
+    assert rest(batch, ZERO, SUN, ZERO) is None
+    for tick in range(8):
+        batch = waited(batch, (0.6, 0.0, -0.3) if tick < 2 else ZERO, 1.0)
+    since = rest(batch, (1e-5, 2e-5, 3e-5), SUN, (7e6, 0.0, 1e5))
+    assert (since.since_s, since.b_eci_t, since.r_eci_m) == (8.0, (1e-5, 2e-5, 3e-5), (7e6, 0.0, 1e5))
+    assert since.m_body_am2 == pytest.approx((0.15, 0.0, -0.075))
+
+
 class TestDue:
     @pytest.mark.parametrize(("coarse", "least_s"), [(None, LEAST_S), (SUN, SHORT_S)])
     def test_with_three_lit_cells_sooner(self, coarse, least_s):
@@ -91,6 +111,9 @@ class TestDue:
     def test_only_with_a_sample_just_kept(self):
         assert not due(waited(filled(LEAST_S), ZERO, 1.0))
         assert not due(EMPTY)
+
+    def test_not_while_a_search_is_under_way(self):
+        assert not due(filled(LEAST_S)._replace(search="under way"))
 
     def test_not_in_the_shadow(self):
         assert not due(filled(LEAST_S, lit=0.0))

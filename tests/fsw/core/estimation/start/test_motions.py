@@ -7,7 +7,7 @@ from fsw.core.algebra.quaternion import multiply, normalise, rotate
 from fsw.core.algebra.vector import ZERO, inverse, unit
 from fsw.core.estimation.dynamics.motion import Acting, advanced, middle, turn
 from fsw.core.estimation.parameters import Rotor
-from fsw.core.estimation.start.motions import Disturbed, Leg, crossed, flown, in_body, turned_by
+from fsw.core.estimation.start.motions import Disturbed, Leg, all_in_body, flown, in_body, turned_by
 
 INERTIA = ((1.02, 0.07, -0.05), (0.07, 1.85, 0.11), (-0.05, 0.11, 1.45))
 CHANGE = (0.03, -0.04, 0.02, 0.01, -0.015, 0.02)
@@ -27,11 +27,13 @@ def leg(length_s):
     return Leg(length_s, np.array(E1), np.array(B), GRAVITY, np.array(M))
 
 
-def test_in_body_and_cross_product_are_those_of_the_core():
-    v = (0.3, -1.2, 0.7)
+def test_in_body_is_the_turn_of_the_core():
+    v, w = (0.3, -1.2, 0.7), (-2.0, 0.4, 1.1)
     for q, found in zip(Q, in_body(Q, np.array(v)), strict=True):
         assert found == pytest.approx(rotate(tuple(q), v))
-    np.testing.assert_allclose(crossed(OMEGA, rows(v)), np.cross(OMEGA, rows(v)))
+    both = all_in_body(Q, np.array((v, w)))
+    np.testing.assert_array_equal(both[0].T, in_body(Q, np.array(v)))
+    np.testing.assert_array_equal(both[1].T, in_body(Q, np.array(w)))
 
 
 def test_turned_by_is_a_further_turn_of_the_body():

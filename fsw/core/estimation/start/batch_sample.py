@@ -1,0 +1,32 @@
+"""One sample of a batch: field and cells of a tick, and what was driven since the sample before."""
+
+from typing import NamedTuple
+
+from fsw.core.algebra.vector import Vec3
+
+UNKNOWN = -1.0
+"""The current of a cell that is not to be used."""
+
+
+class BatchSample(NamedTuple):
+    """What was measured and modelled in one tick, and what was driven since the sample before.
+
+    ``field_t`` in body axes; ``currents`` in parts of full sunlight; ``earth`` is the Earth's light, as in
+    ``Light``, of which nothing and no Sun is there unless ``lit``; ``coarse`` is the Sun by three lit cells.
+    """
+
+    since_s: float
+    m_body_am2: Vec3
+    field_t: Vec3
+    currents: tuple[float, ...]
+    b_eci_t: Vec3
+    s_eci: Vec3
+    r_eci_m: Vec3
+    lit: float
+    earth: float
+    coarse: Vec3 | None = None
+
+    def floats(self) -> tuple[float, ...]:
+        """For the checksum of the state."""
+        vectors = (*self.m_body_am2, *self.field_t, *self.b_eci_t, *self.s_eci, *self.r_eci_m)
+        return (self.since_s, *self.currents, *vectors, self.lit, self.earth, *(self.coarse or ()))

@@ -1,0 +1,241 @@
+"""The search for the motion behind a batch of samples, a piece in each tick.
+
+Unknown are attitude and rate at the first sample, and with their priors residual dipole, torque, inertia, the
+bias of the field and the excess of each cell, taken as constant over the batch. Starts are all turns about
+the first field, with rates that the field's own motion leaves open; the best of them are improved by the
+method of Levenberg and Marquardt. The motion is found if no other one, that ends by ``APART`` or more away,
+comes within ``LEAD`` nats of it. It is then carried on through the samples that have come meanwhile.
+
+All motions go through the samples side by side. A piece is one leg of them, from one sample to the next, or
+what there is to do at the end. So a tick takes the same time however many samples there are.
+
+Source: Marquardt 1963; batch estimators as in Crassidis and Junkins 2012, section 1.6.
+"""
+
+from enum import IntEnum
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fsw.core.estimation.kalman import Matrix
+from fsw.core.estimation.mekf import Estimate
+from fsw.core.estimation.start.batch_fit import (
+    Equations,
+    add_sample,
+    at_priors,
+    estimate_of,
+    improving_step,
+)
+from fsw.core.estimation.start.batch_model import (
+    BatchModel,
+    Motions,
+    disturbances,
+    expected,
+    leg,
+    starts,
+    varied,
+)
+from fsw.core.estimation.start.batch_sample import BatchSample
+from fsw.core.estimation.start.motions import flown
+
+PIECES = 4
+"""In a tick."""
+IMPROVED, STEPS = 14, 12
+LEAD = 8.0
+APART = 0.9848
+"""Cosine of half the angle, 20 deg."""
+MOST_MISFIT = 3.0
+"""Chi square of a found motion over its numbers, at most."""
+
+
+class Stage(IntEnum):
+    """SURVEY: the cost of all starts; IMPROVE: the best of them; CARRY: what is found, to this tick."""
+
+    SURVEY = 0
+    IMPROVE = 1
+    CARRY = 2
+
+
+class Best(NamedTuple):
+    """The motions as far as they are improved, their equations, attitudes at the end, (n, 4), and damping."""
+
+    motions: Motions
+    equations: Equations
+    ends: Matrix
+    damping: Matrix
+
+
+class MotionSearch(NamedTuple):
+    """A search under way.
+
+    ``searched``: so many samples of the batch are fitted, from the first on; ``at``: the number of the one
+    which the motions have reached; ``steps``: how often they were improved. ``motions`` are those that go
+    through the samples, from their beginning; ``q`` and ``omega`` where they are, and behind them, but in
+    the survey, where each is with one of its numbers varied; ``equations`` are of the samples so far.
+    """
+
+    searched: int
+    stage: Stage
+    at: int
+    steps: int
+    motions: Motions
+    q: Matrix
+    omega: Matrix
+    equations: Equations
+    best: Best | None = None
+
+    def integers(self) -> tuple[int, ...]:
+        """For the checksum of the state."""
+        return (self.searched, self.stage, self.at, self.steps)
+
+    def packed(self) -> bytes:
+        """The arrays."""
+        best = self.best
+        known = () if best is None else (*best.motions, *best.equations, best.ends, best.damping)
+        arrays = (*self.motions, self.q, self.omega, *self.equations, *known)
+        return b"".join([array.tobytes() for array in arrays])
+
+
+Ended = Estimate | None
+"""None where the samples leave more than one motion, or none fits."""
+
+
+def begun(samples: tuple[BatchSample, ...], model: BatchModel) -> MotionSearch:
+    """Over these samples."""
+    return _passing(Stage.SURVEY, len(samples), 0, starts(samples, model), samples[0], model)
+
+
+def at_end(search: MotionSearch, samples: tuple[BatchSample, ...]) -> bool:
+    """Whether the next piece is the last one."""
+    return search.stage is Stage.CARRY and search.at >= len(samples) - 1
+
+
+def worked(
+    search: MotionSearch, samples: tuple[BatchSample, ...], rest: BatchSample | None, model: BatchModel
+) -> MotionSearch | Ended:
+    """The search after a piece of work, or the estimate at this tick with which it ends.
+
+    Args:
+        search: before.
+        samples: of the batch, oldest first; there may be more than when it began.
+        rest: what was driven since the last of them; None: nothing, this tick has it.
+        model: what the table says.
+    """
+    last = len(samples) - 1 if search.stage is Stage.CARRY else search.searched - 1
+    try:
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # an absurd motion has no cost
+            if search.at < last:
+                return _leg_on(search, samples, model)
+            if search.stage is Stage.SURVEY:
+                return _chosen(search, samples[0], model)
+            if search.stage is Stage.IMPROVE:
+                return _improved(search, samples[0], model)
+            return _estimate(search, samples, rest, model)
+    except np.linalg.LinAlgError:  # the equations of damaged samples
+        return None
+
+
+def _passing(
+    stage: Stage,
+    count: int,
+    steps: int,
+    motions: Motions,
+    first: BatchSample,
+    model: BatchModel,
+    best: Best | None = None,
+) -> MotionSearch:
+    """Motions at the first sample, which counts."""
+    going = motions if stage is Stage.SURVEY else varied(motions, model)
+    equations = at_priors(motions, model, len(going.q))
+    equations = add_sample(equations, motions, expected(going.q, first, model), first, model)
+    return MotionSearch(count, stage, 0, steps, motions, going.q, going.numbers[:, 0:3], equations, best)
+
+
+def _leg_on(search: MotionSearch, samples: tuple[BatchSample, ...], model: BatchModel) -> MotionSearch:
+    """The motions at the next sample, which counts."""
+    before, after = samples[search.at], samples[search.at + 1]
+    q, omega = _flown(search, before, after, model)
+    seen = expected(q, after, model)
+    equations = add_sample(search.equations, search.motions, seen, after, model)
+    return search._replace(at=search.at + 1, q=q, omega=omega, equations=equations)
+
+
+def _flown(
+    search: MotionSearch, before: BatchSample, after: BatchSample, model: BatchModel
+) -> tuple[Matrix, Matrix]:
+    going = search.motions if search.stage is Stage.SURVEY else varied(search.motions, model)
+    return flown(search.q, search.omega, leg(before, after), disturbances(going), model.config.rotor)
+
+
+def _chosen(search: MotionSearch, first: BatchSample, model: BatchModel) -> MotionSearch:
+    """The best of the starts go through the samples again."""
+    best = _order(search.equations.costs)[:IMPROVED]
+    motions = search.motions.chosen(best)
+    return _passing(Stage.IMPROVE, search.searched, 0, motions, first, model)
+
+
+def _order(costs: Matrix) -> list[int]:
+    """The numbers of the motions, the cheapest first."""
+    order: list[int] = np.argsort(costs, kind="stable").tolist()
+    return order
+
+
+def _improved(search: MotionSearch, first: BatchSample, model: BatchModel) -> MotionSearch | None:
+    """Those that are better than before are kept, and all changed by a step, as long as there are steps."""
+    best = _better(search)
+    if search.steps >= STEPS:
+        return _found(search.searched, best, first, model)
+    tried = best.motions.changed(improving_step(best.equations, best.damping))
+    return _passing(Stage.IMPROVE, search.searched, search.steps + 1, tried, first, model, best)
+
+
+def _better(search: MotionSearch) -> Best:
+    """The best so far, after those that have just gone through the samples."""
+    size, before = len(search.motions.q), search.best
+    now = Best(search.motions, search.equations, search.q[:size], np.full(size, 1e-2))
+    if before is None:
+        return now
+    better = now.equations.costs < before.equations.costs
+    return Best(
+        Motions(*_where(better, now.motions, before.motions)),
+        Equations(*_where(better, now.equations, before.equations)),
+        _where(better, (now.ends,), (before.ends,))[0],
+        np.where(better, 0.2 * before.damping, 10.0 * before.damping),
+    )
+
+
+def _where(better: NDArray[np.bool_], one: tuple[Matrix, ...], other: tuple[Matrix, ...]) -> list[Matrix]:
+    """By motion the rows of one or the other."""
+    return [
+        np.where(better.reshape(-1, *(1,) * (mine.ndim - 1)), mine, theirs)
+        for mine, theirs in zip(one, other, strict=True)
+    ]
+
+
+def _found(count: int, best: Best, first: BatchSample, model: BatchModel) -> MotionSearch | None:
+    """The best motion goes through the samples once more, if it is the only one that they allow."""
+    costs, ends = best.equations.costs, best.ends
+    order = _order(costs)
+    chosen = order[0]
+    others = [one for one in order[1:] if abs(ends[one].dot(ends[chosen])) < APART]
+    alone = all(costs[one] - costs[chosen] > LEAD for one in others)
+    if not (alone and _fits(float(costs[chosen]), best.equations)):
+        return None
+    return _passing(Stage.CARRY, count, 0, best.motions.chosen([chosen]), first, model)
+
+
+def _fits(cost: float, equations: Equations) -> bool:
+    """Whether half of chi square is small enough for the numbers that were measured."""
+    return 2.0 * cost <= MOST_MISFIT * float(equations.measured[0])
+
+
+def _estimate(
+    search: MotionSearch, samples: tuple[BatchSample, ...], rest: BatchSample | None, model: BatchModel
+) -> Ended:
+    """The estimate at this tick."""
+    q, omega = search.q, search.omega
+    if rest is not None:
+        q, omega = _flown(search, samples[-1], rest, model)
+    estimate, cost = estimate_of(search.motions, search.equations, q, omega, model)
+    return estimate if _fits(cost, search.equations) else None

@@ -1,0 +1,253 @@
+"""The motion behind a batch: found where the samples tell it, as uncertain as it is, a piece at a time."""
+
+from dataclasses import replace
+from functools import partial
+from math import inf
+
+import numpy as np
+import pytest
+from batch_samples import BIAS_T, CONFIG, STARTS, flight
+from cell_samples import CELLS, REFERENCE
+from scipy.optimize import least_squares
+
+from fsw.core.algebra.quaternion import conjugate, multiply
+from fsw.core.algebra.vector import norm
+from fsw.core.estimation.mekf import Estimate, healthy
+from fsw.core.estimation.start import search as search_module
+from fsw.core.estimation.start.batch import EMPTY, SPACING_S, waited
+from fsw.core.estimation.start.batch_model import Motions, disturbances, expected, leg, measured, model_of
+from fsw.core.estimation.start.batch_sample import UNKNOWN
+from fsw.core.estimation.start.first import StartLimits, from_batch
+from fsw.core.estimation.start.motions import flown
+from fsw.core.estimation.start.search import IMPROVED, PIECES, MotionSearch, Stage, begun, worked
+from sim.faults.node_kinds import count_doubles, flip
+
+MODEL = model_of(CONFIG, CELLS)
+NONE = {0, 1, 2, 3, 4, 5}
+LIMITS = StartLimits(3e-6, inf, 0.0)
+MOVED_AM2 = (0.02, -0.03, 0.01)
+
+
+def error(estimate, q, omega):
+    """Attitude and rate, rad and rad/s, (6), of the truth less the estimate."""
+    turn = np.array(multiply(conjugate(estimate.q_body_from_eci), tuple(q)))
+    turn *= np.sign(turn[0])
+    return np.concatenate((2.0 * turn[1:], omega - np.array(estimate.omega_body_radps)))
+
+
+def fitted(samples):
+    """The whole search at once."""
+    search = begun(samples, MODEL)
+    while isinstance(search, MotionSearch):
+        search = worked(search, samples, None, MODEL)
+    return search
+
+
+@pytest.mark.parametrize(("q", "omega"), STARTS)
+def test_over_minutes_three_cells_tell_the_motion(q, omega):
+    """Also where only one or two of them ever see the Sun."""
+    samples, end, rate = flight(q, omega, 25, unused=(1, 3, 5))
+    estimate = fitted(samples)
+    off = error(estimate, end, rate)
+    assert np.degrees(np.linalg.norm(off[:3])) < 6.0
+    nees = off @ np.linalg.solve(estimate.covariance[0:6, 0:6], off)
+    assert nees < 16.8  # chi-square of 6, 1 in 100
+    assert np.degrees(np.sqrt(estimate.covariance.diagonal()[0:3])).max() < 12.0
+
+
+def test_three_lit_cells_tell_it_sooner():
+    q, omega = STARTS[0]
+    samples, end, rate = flight(q, omega, 6, coarse=True)
+    assert all(sample.coarse for sample in samples)
+    estimate = fitted(samples)
+    off = error(estimate, end, rate)
+    assert off @ np.linalg.solve(estimate.covariance[0:6, 0:6], off) < 16.8
+    assert np.degrees(np.linalg.norm(off[:3])) < 12.0
+
+
+def test_the_field_alone_does_not():
+    samples, _, _ = flight(*STARTS[0], 8, unused=NONE)
+    assert fitted(samples) is None
+
+
+def test_what_fits_no_motion_is_not_believed():
+    """Cells 1 and 3 connected crosswise."""
+    samples, _, _ = flight(*STARTS[0], 25)
+    crossed = [
+        sample._replace(
+            currents=(*sample.currents[2:3], sample.currents[1], sample.currents[0], *sample.currents[3:])
+        )
+        for sample in samples
+    ]
+    assert fitted(tuple(crossed)) is None
+
+
+def test_what_it_finds_of_the_parameters_goes_into_the_filter_with_what_is_left():
+    samples, _, _ = flight(*STARTS[0], 25)
+    estimate, parts = fitted(samples), CONFIG.layout
+    bias = np.array(estimate.parameters.mag_bias_t)
+    assert np.linalg.norm(bias - BIAS_T) < np.linalg.norm(BIAS_T)
+    assert np.abs(estimate.covariance[0:3, parts.dipole]).max() > 0.0
+    np.testing.assert_array_equal(estimate.covariance, estimate.covariance.T)
+    assert (
+        np.linalg.eigvalsh(
+            estimate.covariance / np.outer(*2 * [np.sqrt(estimate.covariance.diagonal())])
+        ).min()
+        > 0.0
+    )
+    assert estimate.parameters.cell_excess == (0.0,) * 6
+
+
+@pytest.mark.parametrize("bad", [float("nan"), 1e300])
+def test_damaged_samples_give_none(bad):
+    samples, _, _ = flight(*STARTS[0], 25)
+    broken = samples[4]._replace(field_t=(bad, 0.0, 0.0))
+    assert fitted((*samples[:4], broken, *samples[5:])) is None
+
+
+def left_over(numbers, q, samples):
+    """What each of n motions leaves of all samples and priors, in standard deviations, and where it ends."""
+    count = len(numbers)
+    motions = Motions(np.tile(q, (count, 1)), np.zeros((count, MODEL.prior.size - 3))).changed(numbers)
+    q, omega, parts = motions.q, motions.numbers[:, 0:3], []
+    for number, sample in enumerate(samples):
+        if number:
+            after = leg(samples[number - 1], sample)
+            q, omega = flown(q, omega, after, disturbances(motions), CONFIG.rotor)
+        values, weights = measured(sample, MODEL)
+        parts.append((expected(q, sample, MODEL) + motions.numbers[:, 15:] - values) * weights)
+    return np.hstack((*parts, motions.numbers[:, 3:] / MODEL.prior[6:])), q[0], omega[0]
+
+
+@pytest.mark.parametrize(("q", "omega"), STARTS[:2])
+def test_it_ends_where_least_squares_of_all_samples_at_once_end(q, omega):
+    """Which another method finds from the true motion, with all residuals in one vector."""
+    samples, _, _ = flight(q, omega, 25, unused=(1, 3, 5))
+    estimate = fitted(samples)
+    first = np.concatenate((np.zeros(3), omega, np.zeros(MODEL.prior.size - 6)))
+    size = 0.01 * np.concatenate((MODEL.differences, MODEL.prior[18:]))
+
+    def slopes(x):
+        there = left_over(x + np.diag(size), q, samples)[0]
+        back = left_over(x - np.diag(size), q, samples)[0]
+        return (0.5 * (there - back) / size[:, None]).T
+
+    whole = least_squares(lambda x: left_over(x[None], q, samples)[0][0], first, slopes, x_scale="jac")
+    _, end, rate = left_over(whole.x[None], q, samples)
+    sigmas = np.sqrt(estimate.covariance.diagonal()[0:6])
+    assert np.abs(error(estimate, end, rate) / sigmas).max() < 0.1
+
+
+def ticks_of(samples):
+    """For each tick of 1 s field and currents, nothing between the samples, and the models."""
+    for number, sample in enumerate(samples):
+        r, b = sample.r_eci_m, sample.b_eci_t
+        reference = replace(REFERENCE, r_eci_m=r, b_eci_t=b, radius_m=norm(r))
+        if number:
+            for _ in range(round(SPACING_S) - 1):
+                yield None, (), reference
+        currents = tuple([None if one == UNKNOWN else one for one in sample.currents])
+        yield sample.field_t, currents, reference
+
+
+def started(samples, after_tick=lambda batch: None):
+    """By single ticks, over each of which a dipole is driven: the batch, and the estimate that it gives."""
+    batch = EMPTY
+    for field, currents, reference in ticks_of(samples):
+        batch = waited(batch, MOVED_AM2, 1.0)
+        batch, estimate = from_batch(batch, field, currents, reference, LIMITS, CONFIG)
+        after_tick(batch)
+        if estimate is not None:
+            return batch, estimate
+    return batch, None
+
+
+@pytest.fixture(scope="module")
+def samples():
+    """Enough for a search, and for what comes while it is under way."""
+    return flight(*STARTS[1], 27, unused=(0, 1, 3), driven_am2=MOVED_AM2)[0]
+
+
+@pytest.fixture(scope="module")
+def batches(samples):
+    """The batch after each tick."""
+    found = []
+    started(samples, found.append)
+    return found
+
+
+class TestByTicks:
+    def test_the_motion_is_found_and_carried_to_the_tick_with_the_samples_that_came_meanwhile(self, samples):
+        batch, estimate = started(samples)
+        assert len(batch.samples) > 22
+        assert batch.search is None
+        known = flight(*STARTS[1], len(batch.samples), driven_am2=MOVED_AM2)
+        off = error(estimate, *known[1:])
+        assert off @ np.linalg.solve(estimate.covariance[0:6, 0:6], off) < 16.8
+        assert np.degrees(np.linalg.norm(off[:3])) < 6.0
+
+    def test_it_is_bit_for_bit_what_it_is_at_once(self, samples, batches):
+        """From the samples that were there when it began, then on through the rest."""
+        batch, estimate = started(samples)
+        searched = next(one.search.searched for one in batches if one.search)
+        assert searched < len(batch.samples)
+        search = begun(batch.samples[:searched], MODEL)
+        while isinstance(search, MotionSearch):
+            search = worked(search, batch.samples, None, MODEL)
+        assert search[:3] == estimate[:3]
+        np.testing.assert_array_equal(search.covariance, estimate.covariance)
+
+    def test_no_tick_does_more_than_its_pieces(self, samples, monkeypatch):
+        legs = []
+        monkeypatch.setattr(search_module, "flown", partial(noted, legs))
+        tick_ends, passes = [], []
+
+        def tick_over(batch):
+            tick_ends.append(len(legs))
+            passes.append(None if batch.search is None else (batch.search.stage, batch.search.steps))
+
+        started(samples, tick_over)
+        by_tick = np.diff([0, *tick_ends])
+        assert by_tick.max() == PIECES
+        assert max(legs) == 19 * IMPROVED
+        assert sum(tick > 0 for tick in by_tick) > 60
+        begins = [one != other for one, other in zip(passes[1:], passes, strict=False)]
+        assert all(by_tick[1:][begins] <= PIECES)
+        assert {one[0] for one in passes if one} == set(Stage)
+
+    def test_a_gap_ends_it(self, batches):
+        batch = next(one for one in batches if one.search)
+        for _ in range(61):
+            batch = waited(batch, MOVED_AM2, 1.0)
+        assert batch == EMPTY
+
+    def test_it_goes_on_without_samples_but_starts_nothing_without(self, samples, batches):
+        batch = next(one for one in reversed(batches) if one.search)
+        assert batch.search.stage is Stage.CARRY
+        reference = list(ticks_of(samples))[-1][2]
+        for _ in range(30):
+            batch, estimate = from_batch(batch, None, (), reference, LIMITS, CONFIG)
+            assert estimate is None
+        assert batch.search.at == len(batch.samples) - 1
+
+    def test_every_number_counts(self, batches):
+        search = next(one.search for one in batches if one.search and one.search.steps == 2)
+        assert search.integers() == (search.searched, Stage.IMPROVE, search.at, 2)
+        whole, sound = count_doubles(search), search.packed()
+        assert len(sound) == 8 * whole
+        for place in range(0, whole, 997):
+            assert flip(search, place, 3).packed() != sound
+
+    @pytest.mark.filterwarnings("error")
+    def test_a_flipped_bit_ends_in_an_estimate_that_is_one_or_none(self, batches):
+        batch = next(one for one in batches if one.search and one.search.steps == 12)
+        for number in range(0, 64 * count_doubles(batch.search), 64 * 3001 + 13):
+            ended = flip(batch.search, *divmod(number, 64))
+            while isinstance(ended, MotionSearch):
+                ended = worked(ended, batch.samples, None, MODEL)
+            assert ended is None or (isinstance(ended, Estimate) and healthy(ended))
+
+
+def noted(legs, q, *others):
+    legs.append(len(q))
+    return flown(q, *others)
