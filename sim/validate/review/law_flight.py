@@ -1,11 +1,11 @@
-"""A law of the table flown on the plant's rigid body: circular orbit, direct dipole, all known, any dipole.
+"""A law of the table flown on the plant's rigid body: circular orbit, all known, any dipole.
 
 Physics are the plant's, the law is that of the flight software; filter, sampling noise and pulses are left
 out, so that a claim on a law is not a claim on them.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import radians
 from typing import Any
 
@@ -15,12 +15,13 @@ from fsw.core.algebra.quaternion import from_dcm, rotate
 from fsw.core.algebra.vector import inverse
 from fsw.core.estimation.attitude import Attitude
 from fsw.core.laws.interface import ControlConfig, FieldSample, LawInput, Memory, Setpoint
+from fsw.core.laws.plan.riccati import Schedule
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit.ephemeris import Reference
 from sim.plant.config import OrbitConfig
 from sim.plant.dynamics import torques
 from sim.plant.dynamics.rigid_body import Motion, RigidBody, Torque
-from sim.plant.environment.field import DirectDipole
+from sim.plant.environment.field import DirectDipole, RotatingIgrf
 from sim.plant.environment.orbit import Array, CircularOrbit
 from sim.plant.environment.surroundings import Surroundings
 from sim.plant.rotation import (
@@ -34,6 +35,9 @@ from sim.plant.rotation import (
     multiply,
     transform,
 )
+
+DEGREE, EPOCH_UNIX_S = 13, 1_742_461_200
+"""Of the true field."""
 
 Extra = Callable[[Mat3, Vec3], Vec3]
 """A further torque, body axes [N m], from C(body from eci) and the velocity in eci [m/s]."""
@@ -59,6 +63,8 @@ class LawFlight:
         gravity: whether the gravity gradient acts.
         extra: a further torque.
         known: whether attitude and rate are.
+        schedules: by law, of the periodic laws.
+        igrf: whether the field is the true one, else the direct dipole's.
     """
 
     law: str
@@ -83,6 +89,8 @@ class LawFlight:
     extra: Extra | None = None
     known: bool = True
     k_i: float = 0.0
+    schedules: dict[str, Schedule] = field(default_factory=dict)
+    igrf: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,7 +195,8 @@ def _orbit(case: LawFlight) -> _Orbit:
     steps = int(case.orbits * 2.0 * np.pi / rate / case.step_s)
     times = 0.5 * case.step_s * np.arange(2 * steps + 1, dtype=np.float64)
     r_m, v_mps = circular.at(times)
-    return _Orbit(r_m, v_mps, DirectDipole().at(times, r_m), 3.0 * rate**2 if case.gravity else 0.0)
+    b_t = (RotatingIgrf(DEGREE, EPOCH_UNIX_S) if case.igrf else DirectDipole()).at(times, r_m)
+    return _Orbit(r_m, v_mps, b_t, 3.0 * rate**2 if case.gravity else 0.0)
 
 
 def _start(case: LawFlight, orbit: _Orbit, rate: float) -> Motion:
@@ -261,6 +270,7 @@ def _settings(case: LawFlight) -> ControlConfig:
         tick_s=case.step_s,
         horizon_s=case.step_s,
         mean_dipole_am2=case.most_am2,
+        schedules=case.schedules,
     )
 
 

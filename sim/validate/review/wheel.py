@@ -18,8 +18,9 @@ from sim.design.wheel.convergence import convergence
 from sim.design.wheel.elliptic import Ellipse, WheelLaw, decays
 from sim.plant.environment.orbit import Array
 from sim.plant.rotation import Mat3, Vec3
+from sim.validate.review import gurwin
 from sim.validate.review.figures import one_figure
-from sim.validate.review.law_flight import Flown, LawFlight, fly
+from sim.validate.review.law_flight import LawFlight, LawHistory, fly
 
 REVIEW = "Ovchinnikov, Roldugin 2019, section 2.2"
 WHEEL_NMS: Vec3 = (0.0, 0.0, 0.05)
@@ -102,7 +103,7 @@ class _Row:
 
 def studies() -> list[Study]:
     """All of this section."""
-    return [_study(row) for row in ROWS]
+    return [*(_study(row) for row in ROWS), *gurwin.studies()]
 
 
 def last_lean_deg(case: LawFlight) -> float:
@@ -242,11 +243,11 @@ def _study(row: _Row) -> Study:
     return one_figure(claim, row.figure)
 
 
-def _lean_deg(flown: Flown) -> Array:
+def _lean_deg(flown: LawHistory) -> Array:
     return flown.orbit_axis_deg(2, 2)
 
 
-def _mean_roll(flown: Flown) -> float:
+def _mean_roll(flown: LawHistory) -> float:
     """Half of S_2 on the mean of the last orbit, rad."""
     c = flown.c_body_from_orbit[flown.orbits > flown.orbits[-1] - 1.0]
     return float(0.5 * (c[:, 2, 0] - c[:, 0, 2]).mean())
