@@ -242,7 +242,7 @@ def _tracking(name: str, inertia: Mat3, low: float, high: float) -> Study:
     body = Body(name, inertia, 800.0, 98.6)
     claim = Claim(
         f"review.one_axis.field_tracking_{name}",
-        f"Field tracking alone: best degree of stability of {body.name}, over all gains",
+        f"Field tracking alone: best degree of stability of {body.name}, over a grid of gains",
         f"{REVIEW} 2.3 [43]: for a body that the gravity gradient holds",
         "1/rad",
         low=low,
