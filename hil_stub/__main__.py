@@ -1,4 +1,4 @@
-"""Run one board on a named bus: ``python -m hil_stub coil|dipole|magnetometer|sun --bus BUS``."""
+"""Run one board on a named bus: ``python -m hil_stub coil|dipole|magnetometer|sun|cells --bus BUS``."""
 
 import sys
 

@@ -9,7 +9,8 @@ from hil_stub.coils.coil_driver import CoilDriver, CoilLimits, Pin
 from hil_stub.coils.dipole_driver import DipoleDriver
 from hil_stub.coils.read_back import ReadBack
 from hil_stub.sensors.magnetometer import Magnetometer
-from hil_stub.sensors.stimulus import Stimulus, Vec3
+from hil_stub.sensors.stimulus import Stimulus, Values, three
+from hil_stub.sensors.sun_cells import SunCellBoard
 from hil_stub.sensors.sun_sensor import SunSensor
 
 DEADMAN_MS = 5000
@@ -53,7 +54,7 @@ class CoilBoard:
         level_a: currents at levels 1, 2, 3 [A].
     """
 
-    def __init__(self, limits: CoilLimits, level_a: Vec3 = LEVEL_A) -> None:
+    def __init__(self, limits: CoilLimits, level_a: tuple[float, float, float] = LEVEL_A) -> None:
         self._driver = CoilDriver(limits, ReadBack(level_a))
         self._level_a = (0.0, *level_a)
 
@@ -120,14 +121,14 @@ class DipoleBoard(Untimed):
 class SensorBoard(Untimed):
     """A sensor, which ignores received frames, time and silence."""
 
-    def __init__(self, begin_tick: Callable[[int, Vec3, bool], list[Frame]], stimulus: Stimulus) -> None:
+    def __init__(self, begin_tick: Callable[[int, Values, bool], list[Frame]], stimulus: Stimulus) -> None:
         self._begin_tick = begin_tick
         self._stimulus = stimulus
 
     def begin_tick(self, tick: int, clock_ms: int | None) -> list[Frame]:
         """Enter ``tick``."""
-        vector, valid = self._stimulus(tick)
-        return self._begin_tick(tick, vector, valid)
+        values, valid = self._stimulus(tick)
+        return self._begin_tick(tick, values, valid)
 
     def receive(self, frame: Frame, clock_ms: int | None) -> None:
         """A sensor ignores all frames."""
@@ -137,14 +138,23 @@ class MagnetometerBoard(SensorBoard):
     """A magnetometer whose stimulus is a field [T]."""
 
     def __init__(self, tick_hz: int, stimulus: Stimulus) -> None:
-        super().__init__(Magnetometer(tick_hz).begin_tick, stimulus)
+        board = Magnetometer(tick_hz)
+        super().__init__(lambda tick, field, valid: board.begin_tick(tick, three(field), valid), stimulus)
 
 
 class SunBoard(SensorBoard):
     """A Sun sensor whose stimulus is a direction."""
 
     def __init__(self, tick_hz: int, stimulus: Stimulus) -> None:
-        super().__init__(SunSensor(tick_hz).begin_tick, stimulus)
+        board = SunSensor(tick_hz)
+        super().__init__(lambda tick, sun, valid: board.begin_tick(tick, three(sun), valid), stimulus)
+
+
+class CellsBoard(SensorBoard):
+    """Sun cells whose stimulus is their currents."""
+
+    def __init__(self, tick_hz: int, stimulus: Stimulus) -> None:
+        super().__init__(SunCellBoard(tick_hz).begin_tick, stimulus)
 
 
 class Bench:

@@ -10,12 +10,13 @@ import click
 from fsw.bus.interface import BusError
 from fsw.bus.open_bus import KINDS, open_bus, resolve
 from fsw.input.near import did_you_mean
-from fsw.wire.messages import MagField, SunVector
+from fsw.wire.messages import MagField, SunCells, SunVector
 from hil_stub.bench import (
     DEADMAN_MS,
     LEVEL_A,
     Bench,
     BenchBoard,
+    CellsBoard,
     CoilBoard,
     DipoleBoard,
     MagnetometerBoard,
@@ -24,7 +25,8 @@ from hil_stub.bench import (
 from hil_stub.coils.coil_driver import CoilLimits
 from hil_stub.process.runner import PinLog, run
 from hil_stub.process.stimulus_option import stimulus_of, stimulus_words
-from hil_stub.sensors.stimulus import Vec3, direction, scaled
+from hil_stub.sensors.stimulus import currents, direction, scaled, three
+from hil_stub.sensors.sun_cells import CELLS
 
 NT = 1e-9
 
@@ -123,7 +125,7 @@ def coil(
     backoff: str,
     pulse_s: float,
     backoff_s: float,
-    levels_ma: Vec3,
+    levels_ma: tuple[float, float, float],
     deadman_s: float,
     clock: str,
     pins: TextIO | None,
@@ -132,7 +134,7 @@ def coil(
     limits = CoilLimits(tick_hz, round(1000.0 * pulse_s), round(1000.0 * backoff_s), backoff == "shared")
     if not 0.0 < levels_ma[0] < levels_ma[1] < levels_ma[2]:
         raise click.UsageError("--levels-ma must be three rising currents above 0")
-    level_a = scaled(levels_ma, 1e-3)
+    level_a = three(scaled(levels_ma, 1e-3))
     _serve(spec, lambda: CoilBoard(limits, level_a), deadman_s, clock, pins)
 
 
@@ -179,6 +181,22 @@ def sun(spec: str, tick_hz: int, stimulus: str | None, rest: tuple[str, ...]) ->
         stimulus_words(stimulus, rest, "1 0 0"), "sun", SunVector, tick_hz, 1.0, direction
     )
     _serve(spec, lambda: SunBoard(tick_hz, sample_at))
+
+
+@board.command(context_settings=_WITH_STIMULUS)
+@_bus
+@_tick_hz
+@click.option("--stimulus", help="Currents of six Sun cells, of full sunlight. Default: 0.8 0 0.6 0 0 0.")
+@click.argument("rest", nargs=-1, type=click.UNPROCESSED, metavar="")
+def cells(spec: str, tick_hz: int, stimulus: str | None, rest: tuple[str, ...]) -> None:
+    """The Sun cells, with their currents as the stimulus; in place of the Sun sensor.
+
+    --stimulus C1 C2 C3 C4 C5 C6 is a constant, 0 where there is no cell; RUN or LOG its samples there, tick
+    by tick; FILE.toml a script.
+    """
+    words = stimulus_words(stimulus, rest, "0.8 0 0.6 0 0 0")
+    sample_at = stimulus_of(words, "cells", SunCells, tick_hz, 1.0, currents, CELLS)
+    _serve(spec, lambda: CellsBoard(tick_hz, sample_at))
 
 
 def _serve(

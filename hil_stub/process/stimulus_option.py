@@ -1,4 +1,4 @@
-"""The stimulus of ``--stimulus``: three numbers, a log or a run, a script, or readings on standard input."""
+"""The stimulus of ``--stimulus``: numbers, a log or a run, a script, or readings on standard input."""
 
 import os
 import select
@@ -11,18 +11,19 @@ import click
 from fsw.input.gzip_text import open_text, stored
 from fsw.input.toml_text import load_toml
 from fsw.wire.candump_line import LONGEST
-from fsw.wire.messages import MagField, SunVector
 from hil_stub.sensors.stimulus import (
+    COUNTS,
     NOTHING,
     Reading,
+    SensorMessage,
     Stimulus,
     StimulusError,
-    Vec3,
+    Values,
     constant,
+    finite_numbers,
     recorded,
     scaled,
     scripted,
-    three_numbers,
 )
 
 PIPE_PATIENCE_S = 1.0
@@ -30,7 +31,7 @@ PIPE_PATIENCE_S = 1.0
 
 
 class PipedStimulus:
-    """Readings as lines on stdin, ``tick x y z valid``: waits a bounded time for the tick.
+    """Readings as lines on stdin, ``tick``, the values, ``valid``: waits a bounded time for the tick.
 
     Args:
         scale: from the numbers of the lines to the reading.
@@ -59,31 +60,34 @@ class PipedStimulus:
         text = os.read(self._descriptor, 65536)
         *lines, self._partial = (self._partial + text).split(b"\n")
         for line in lines:
-            number, x, y, z, valid = line.split()
-            vector = scaled((float(x), float(y), float(z)), self._scale)
-            self._readings[int(number)] = Reading(vector, valid == b"1")
+            number, *words, valid = line.split()
+            values = scaled(tuple(map(float, words)), self._scale)
+            self._readings[int(number)] = Reading(values, valid == b"1")
         return bool(text)
 
 
 def stimulus_of(
     words: tuple[str, ...],
     key: str,
-    message: type[MagField] | type[SunVector],
+    message: SensorMessage,
     tick_hz: int,
     scale: float,
-    convert: Callable[[Vec3], Vec3],
+    convert: Callable[[Values], Values],
+    count: int = 3,
 ) -> Stimulus:
-    """The stimulus of the option's words: three numbers, a log or a run, a script, or ``-`` for stdin."""
+    """The stimulus of the option's words: so many numbers, a log or a run, a script, or ``-`` for stdin."""
     try:
-        if len(words) == 3:
-            return constant(convert(three_numbers([_number(word) for word in words])))
+        if len(words) == count:
+            return constant(convert(finite_numbers([_number(word, count) for word in words], count)))
         if words == ("-",):
             return PipedStimulus(scale)
         if len(words) != 1:
-            raise StimulusError("must be three numbers, a run, a log, a script that ends in .toml, or -")
+            raise StimulusError(
+                f"must be {COUNTS[count]} numbers, a run, a log, a script that ends in .toml, or -"
+            )
         path = Path(words[0])
         if path.suffix == ".toml":
-            return scripted(_toml(path).get("step"), key, tick_hz, convert)
+            return scripted(_toml(path).get("step"), key, tick_hz, convert, count)
         return recorded(_lines(stored(path / "bus.log") if os.path.isdir(path) else path), message, scale)
     except StimulusError as error:
         raise click.UsageError(f"--stimulus {' '.join(words)}: {error}") from None
@@ -100,11 +104,11 @@ def stimulus_words(first: str | None, rest: tuple[str, ...], default: str) -> tu
     return tuple(default.split())
 
 
-def _number(word: str) -> float:
+def _number(word: str, count: int) -> float:
     try:
         return float(word)
     except ValueError:
-        raise StimulusError("must be three finite numbers") from None
+        raise StimulusError(f"must be {COUNTS[count]} finite numbers") from None
 
 
 def _toml(path: Path) -> dict[str, object]:

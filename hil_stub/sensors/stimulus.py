@@ -5,20 +5,24 @@ from math import ceil, hypot, isfinite
 from typing import NamedTuple
 
 from fsw.wire.candump_line import LineReader
-from fsw.wire.messages import MagField, SunVector, Sync, intact
+from fsw.wire.messages import MagField, SunCells, SunVector, Sync, intact
 
-Vec3 = tuple[float, float, float]
+Values = tuple[float, ...]
+"""Three components of a vector, or the currents of six cells."""
+COUNTS = {3: "three", 6: "six"}
 
 
 class Reading(NamedTuple):
-    """What the instrument reads: a field [T] or the unit vector to the Sun, body axes."""
+    """What the instrument reads: a field [T] or the unit vector to the Sun, body axes; currents of cells."""
 
-    vector: Vec3
+    values: Values
     valid: bool
 
 
 NOTHING = Reading((0.0, 0.0, 0.0), False)
+"""Of cells too: the board then sends no current."""
 
+SensorMessage = type[MagField] | type[SunVector] | type[SunCells]
 Stimulus = Callable[[int], Reading]
 """The reading at a tick."""
 
@@ -27,12 +31,12 @@ class StimulusError(Exception):
     """A stimulus that cannot be used; the message is one sentence for the user."""
 
 
-def constant(vector: Vec3) -> Stimulus:
+def constant(values: Values) -> Stimulus:
     """The same at every tick."""
-    return lambda tick: Reading(vector, True)
+    return lambda tick: Reading(values, True)
 
 
-def recorded(lines: Iterable[bytes], message: type[MagField] | type[SunVector], scale: float) -> Stimulus:
+def recorded(lines: Iterable[bytes], message: SensorMessage, scale: float) -> Stimulus:
     """The samples of the sensor in a candump log, at the same ticks; nothing where it was silent or broken.
 
     Args:
@@ -50,8 +54,8 @@ def recorded(lines: Iterable[bytes], message: type[MagField] | type[SunVector], 
         if logged is None or not intact(frame := logged[2]):
             continue
         if frame.can_id == message.ID:
-            valid, x, y, z, _ = message.decode(frame.data)
-            latest = Reading(scaled((x, y, z), scale), bool(valid))
+            valid, *values, _ = message.decode(frame.data)
+            latest = Reading(scaled(tuple(values), scale), bool(valid))
         elif frame.can_id == Sync.ID:
             if latest is not NOTHING:
                 readings[Sync.decode(frame.data).tick] = latest
@@ -61,15 +65,18 @@ def recorded(lines: Iterable[bytes], message: type[MagField] | type[SunVector], 
     return lambda tick: readings.get(tick, NOTHING)
 
 
-def scripted(steps: object, key: str, tick_hz: int, convert: Callable[[Vec3], Vec3]) -> Stimulus:
+def scripted(
+    steps: object, key: str, tick_hz: int, convert: Callable[[Values], Values], count: int = 3
+) -> Stimulus:
     """The stimulus of a script: the value of ``key`` in the last step that has begun and has that key.
 
     Args:
-        steps: tables with ``t_s``, the time from which they hold, rising from 0; three numbers under ``key``,
-            or false for an invalid sample.
+        steps: tables with ``t_s``, the time from which they hold, rising from 0; numbers under ``key``, or
+            false for an invalid sample.
         key: the sensor's.
         tick_hz: ticks a second.
         convert: the numbers of the script into a reading.
+        count: how many numbers.
 
     Raises:
         StimulusError: a step of another form.
@@ -84,7 +91,7 @@ def scripted(steps: object, key: str, tick_hz: int, convert: Callable[[Vec3], Ve
             raise StimulusError(f"step {number}: t_s must be a time in seconds, later than the step before")
         last_s = t_s
         if key in step:
-            reading = _reading(step[key], convert, f"step {number}: {key}")
+            reading = _reading(step[key], convert, count, f"step {number}: {key}")
             begun.append((ceil(t_s * tick_hz - 1e-9), reading))
 
     def at(tick: int) -> Reading:
@@ -93,35 +100,49 @@ def scripted(steps: object, key: str, tick_hz: int, convert: Callable[[Vec3], Ve
     return at
 
 
-def scaled(vector: Vec3, factor: float) -> Vec3:
-    """The vector times a factor."""
-    x, y, z = vector
-    return (x * factor, y * factor, z * factor)
+def scaled(values: Values, factor: float) -> Values:
+    """The values times a factor."""
+    return tuple([value * factor for value in values])
 
 
-def direction(vector: Vec3) -> Vec3:
+def currents(values: Values) -> Values:
+    """Currents of cells as they are.
+
+    Raises:
+        StimulusError: one is negative.
+    """
+    if min(values) < 0.0:
+        raise StimulusError("must be currents in parts of full sunlight, none below 0")
+    return values
+
+
+def direction(vector: Values) -> Values:
     """The unit vector along ``vector``.
 
     Raises:
         StimulusError: it is zero.
     """
-    x, y, z = vector
-    length = hypot(x, y, z)
+    length = hypot(*vector)
     if length == 0.0:
         raise StimulusError("must be a direction: give three numbers that are not all 0")
-    return (x / length, y / length, z / length)
+    return tuple([component / length for component in vector])
 
 
-def three_numbers(values: object) -> Vec3:
-    """Three finite numbers.
+def finite_numbers(values: object, count: int) -> Values:
+    """So many finite numbers.
 
     Raises:
         StimulusError: it is something else.
     """
     numbers = values if isinstance(values, list | tuple) else ()
-    if len(numbers) != 3 or not all(type(v) in (int, float) and isfinite(v) for v in numbers):
-        raise StimulusError("must be three finite numbers")
-    x, y, z = map(float, numbers)
+    if len(numbers) != count or not all(type(v) in (int, float) and isfinite(v) for v in numbers):
+        raise StimulusError(f"must be {COUNTS[count]} finite numbers")
+    return tuple(map(float, numbers))
+
+
+def three(values: Values) -> tuple[float, float, float]:
+    """The components of a vector."""
+    x, y, z = values
     return (x, y, z)
 
 
@@ -133,10 +154,10 @@ def _time(step: object) -> float | None:
     return float(t_s)
 
 
-def _reading(value: object, convert: Callable[[Vec3], Vec3], name: str) -> Reading:
+def _reading(value: object, convert: Callable[[Values], Values], count: int, name: str) -> Reading:
     if value is False:
         return NOTHING
     try:
-        return Reading(convert(three_numbers(value)), True)
+        return Reading(convert(finite_numbers(value, count)), True)
     except StimulusError as error:
         raise StimulusError(f"{name} {error}, or false for nothing") from None

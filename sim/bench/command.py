@@ -32,8 +32,9 @@ from sim.scenario.assemble import plant_config
 from sim.scenario.own_effects import own_effects
 from sim.scenario.schema import Scenario
 
-BOARDS = {"coil": "COIL", "magnetometer": "MAG", "sun": "SUN"}
-SENSORS = ("magnetometer", "sun")
+BOARDS = {"coil": "COIL", "magnetometer": "MAG", "sun": "SUN", "cells": "SUN"}
+"""The nodes; a satellite has a Sun sensor or Sun cells."""
+SENSORS = ("magnetometer", "sun", "cells")
 NUMBERS, PAGE = "hil.json", "hil.html"
 BOOT_S = 30.0
 ASK_AGAIN_S = 0.5
@@ -85,6 +86,12 @@ def real_boards(names: str | None) -> frozenset[str]:
     return given
 
 
+def boards_of(scenario: Scenario) -> tuple[str, ...]:
+    """The names of the boards of a satellite."""
+    other = "cells" if scenario.sensors.cells is None else "sun"
+    return tuple(name for name in BOARDS if name != other)
+
+
 def hil(settings: HilSettings) -> int:
     """Run the bench: exit code 1 if a budget is broken, a node has ended early, or there is a second sender.
 
@@ -94,11 +101,9 @@ def hil(settings: HilSettings) -> int:
     """
     if settings.out is not None:
         check_folder(settings.out, (NUMBERS, PAGE))
-    if settings.scenario.sensors.cells is not None:
-        raise HarnessError(
-            "the scenario has Sun cells, whose board is no process of its own: fly it by torquer sil, or "
-            "take out [sensors.cells]: it then has a Sun sensor"
-        )
+    if absent := sorted(settings.real - set(boards_of(settings.scenario))):
+        has = "Sun cells, and no Sun sensor" if absent == ["sun"] else "a Sun sensor, and no Sun cells"
+        raise HarnessError(f"--real {absent[0]}: {settings.scenario.name} has {has}")
     if settings.stimulus != "plant" and settings.scenario.knowledge == "perfect":
         raise HarnessError("a scenario with knowledge = 'perfect' needs the plant: --stimulus plant")
     with (
@@ -165,7 +170,11 @@ def _run(
     arguments = ("--table", str(table), "--bench", "--bus", spec, "--parent", str(os.getpid()), *arming)
     fsw = processes.start("fsw", "fsw", *arguments)
     booted = _await_boots(bus, {"FSW": fsw}, ask=True)[-1:]
-    stubs = {name: _board(settings, processes, name, spec) for name in BOARDS if name not in settings.real}
+    stubs = {
+        name: _board(settings, processes, name, spec)
+        for name in boards_of(scenario)
+        if name not in settings.real
+    }
     source = _tick_source(settings, stubs)
     booted += _await_boots(bus, {BOARDS[name]: stub for name, stub in stubs.items()})
     memory = MemoryMonitor(_pids(processes, hub_pid), ticks, tick_hz, settings.warm_s)
@@ -178,7 +187,7 @@ def _run(
 
         loop = RealtimeLoop(bus, source, log, scenario.epoch_unix_s, tick_hz, on_tick)
         measured = loop.run(ticks, booted)
-    numbers, lines = judge(measured, settings.budgets, tuple(BOARDS), tick_hz, memory.growth_percent())
+    numbers, lines = judge(measured, settings.budgets, boards_of(scenario), tick_hz, memory.growth_percent())
     numbers |= {"scenario": scenario.name, "bus": spec, "tick_hz": tick_hz, "armed": settings.armed}
     numbers |= {"real": sorted(settings.real), "memory": memory.history(), "scheduling": scheduling()}
     numbers["second_senders"] = [sender.as_json() for sender in measured.second_senders]
@@ -223,7 +232,7 @@ def _tick_source(settings: HilSettings, stubs: dict[str, BenchProcess]) -> TickS
     pipes = {name: stubs[name].popen.stdin for name in SENSORS if name in stubs}
     lines = {name: line_to(pipe.fileno()) for name, pipe in pipes.items() if pipe is not None}
     config, own = plant_config(scenario, settings.seed), own_effects(scenario.effect)
-    return PlantTicks(config, lines.get("magnetometer"), lines.get("sun"), own)
+    return PlantTicks(config, lines, own)
 
 
 def _await_boots(bus: Bus, starting: dict[str, BenchProcess], ask: bool = False) -> list[Frame]:
@@ -259,7 +268,9 @@ class NoLog(AbstractContextManager["NoLog"]):
 
 def _heading(settings: HilSettings, spec: str) -> str:
     scenario = settings.scenario
-    boards = ", ".join(f"{name} ({'real' if name in settings.real else 'stub'})" for name in BOARDS)
+    boards = ", ".join(
+        f"{name} ({'real' if name in settings.real else 'stub'})" for name in boards_of(scenario)
+    )
     arming = "ARMED: coils are driven" if settings.armed else "not armed: no request reaches the bus"
     return (
         f"{scenario.name} at {scenario.time.tick_hz} Hz for {settings.seconds:g} s on {spec}\n"

@@ -8,14 +8,24 @@ from dataclasses import dataclass, field
 
 from fsw.bus.interface import Bus
 from fsw.wire.frame import Frame
-from fsw.wire.messages import NAMES, SENDERS, CoilStatus, MagField, PlantEnd, SunVector, TickDone, intact
+from fsw.wire.messages import (
+    NAMES,
+    SENDERS,
+    CoilStatus,
+    MagField,
+    PlantEnd,
+    SunCells,
+    SunVector,
+    TickDone,
+    intact,
+)
 from sim.bench.bus_load import frame_bits
 from sim.bench.tick_source import TickSource
 from sim.bench.time_histogram import TimeHistogram
 from sim.flight.flight_loop import FrameLog
 from sim.flight.second_senders import ALONE, SecondSenderFrames, SenderWatch
 
-SAMPLES = {CoilStatus.ID: "coil", MagField.ID: "magnetometer", SunVector.ID: "sun"}
+SAMPLES = {CoilStatus.ID: "coil", MagField.ID: "magnetometer", SunVector.ID: "sun", SunCells.ID: "cells"}
 """The message that each board sends exactly once a tick."""
 LEAD = 0.3
 """Fraction of a tick before its end at which the source advances without the coil board's status."""

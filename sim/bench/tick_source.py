@@ -1,17 +1,19 @@
 """The source of the ticks of a bench, and of what its sensors see: the plant in real time, or SYNC alone."""
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Protocol
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
+    CLASSES,
     SENDERS,
     CoilDipoleStatus,
     CoilFire,
     CoilStatus,
     MagField,
     PlantBoot,
+    SunCells,
     SunVector,
     Sync,
     intact,
@@ -23,6 +25,8 @@ from sim.plant.plant import Plant
 from sim.plant.rotation import ZERO
 
 OFF = CoilDrive(ZERO, 0.0)
+SENSORS = {MagField.ID: "magnetometer", SunVector.ID: "sun", SunCells.ID: "cells"}
+"""By the message that they send."""
 Line = Callable[[bytes], None]
 """Writes a line to a sensor's standard input."""
 
@@ -127,21 +131,19 @@ class PlantTicks:
 
     Args:
         config: the plant.
-        magnetometer: writes lines to the magnetometer; None: it is real, and so is its field.
-        sun: the same for the Sun sensor.
+        lines: by name of a sensor, what writes lines to it; one without is real, and so is what it sees.
         own: effects of one's own; of those on sensors none, for the sensors are boards.
     """
 
     def __init__(
         self,
         config: PlantConfig,
-        magnetometer: Line | None,
-        sun: Line | None,
+        lines: Mapping[str, Line],
         own: OwnEffects = NO_EFFECTS,
     ) -> None:
         self._drive = ReportedDrive(config)
         self._plant = Plant(config, self._drive, own)
-        self._sensors = {MagField.ID: magnetometer, SunVector.ID: sun}
+        self._lines = lines
         self._own: list[Frame] = []
         self._show()
 
@@ -164,10 +166,10 @@ class PlantTicks:
         for frame in self._plant.begin_tick():
             if SENDERS[frame.can_id] == "PLANT":
                 self._own += [frame] if frame.can_id != PlantBoot.ID else []  # all have booted by now
-            elif write := self._sensors.get(frame.can_id):
-                message = MagField if frame.can_id == MagField.ID else SunVector
-                valid, x, y, z, _ = message.decode(frame.data)
-                write(f"{tick} {x!r} {y!r} {z!r} {valid}\n".encode())
+            elif write := self._lines.get(SENSORS.get(frame.can_id, "")):
+                sample = CLASSES[frame.can_id].decode(frame.data)
+                valid, values = sample[0], sample[1:-1]
+                write(f"{tick} {' '.join(map(repr, values))} {valid}\n".encode())
 
 
 def line_to(descriptor: int) -> Line:

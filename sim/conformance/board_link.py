@@ -20,6 +20,7 @@ from fsw.wire.messages import (
     MagHeartbeat,
     PlantBoot,
     SunBoot,
+    SunCells,
     SunHeartbeat,
     SunVector,
     Sync,
@@ -38,7 +39,7 @@ class BoardKind(NamedTuple):
 
     node: str
     boot: type[CoilBoot] | type[MagBoot] | type[SunBoot]
-    sample: type[CoilStatus] | type[MagField] | type[SunVector]
+    sample: type[CoilStatus] | type[MagField] | type[SunVector] | type[SunCells]
     heartbeat: type[CoilHeartbeat] | type[MagHeartbeat] | type[SunHeartbeat]
 
 
@@ -46,6 +47,7 @@ BOARD_KINDS = {
     "coil": BoardKind("COIL", CoilBoot, CoilStatus, CoilHeartbeat),
     "magnetometer": BoardKind("MAG", MagBoot, MagField, MagHeartbeat),
     "sun": BoardKind("SUN", SunBoot, SunVector, SunHeartbeat),
+    "cells": BoardKind("SUN", SunBoot, SunCells, SunHeartbeat),
 }
 
 

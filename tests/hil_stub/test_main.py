@@ -20,6 +20,7 @@ from fsw.wire.messages import (
     MagField,
     PlantEnd,
     SunBoot,
+    SunCells,
     SunVector,
     Sync,
     TickDone,
@@ -69,10 +70,13 @@ BOARDS = [
     (("coil", "--backoff", "per_coil"), CoilBoot, CoilStatus),
     (("magnetometer", "--stimulus", "100", "-200", "300"), MagBoot, MagField),
     (("sun", "--stimulus", "0", "0", "-5"), SunBoot, SunVector),
+    (("cells", "--stimulus", "0.5", "0", "1", "0.25", "3", "0"), SunBoot, SunCells),
 ]
 
 
-@pytest.mark.parametrize(("arguments", "boot", "sample"), BOARDS, ids=["coil", "magnetometer", "sun"])
+@pytest.mark.parametrize(
+    ("arguments", "boot", "sample"), BOARDS, ids=["coil", "magnetometer", "sun", "cells"]
+)
 def test_it_follows_the_bus_whatever_end_a_plant_tells_of(bus, start, arguments, boot, sample):
     process = start(*arguments)
     assert [type(message) for message in hear(bus, 2)] == [boot, sample]
@@ -84,6 +88,8 @@ def test_it_follows_the_bus_whatever_end_a_plant_tells_of(bus, start, arguments,
         assert message[:4] == (1, 100.0, -200.0, 300.0)
     if sample is SunVector:
         assert message[:4] == (1, 0.0, 0.0, -1.0)
+    if sample is SunCells:
+        assert message[:7] == (1, 0.5, 0.0, 1.0, 0.25, 255.0 / 128.0, 0.0)
     assert process.poll() is None
 
 

@@ -26,7 +26,7 @@ EXAMPLES = examples(
 @click.command(epilog=EXAMPLES)
 @scenario_argument("microsat")
 @bus_option()
-@click.option("--real", metavar="A,B", help="Boards that are hardware: coil, magnetometer, sun.")
+@click.option("--real", metavar="A,B", help="Boards that are hardware: coil, magnetometer, sun, cells.")
 @click.option("--arm", is_flag=True, help="Let coils be driven; without it no request reaches the bus.")
 @click.option(
     "--seconds",
@@ -62,7 +62,7 @@ EXAMPLES = examples(
 )
 @click.option(
     "--conformance",
-    type=click.Choice(["coil", "magnetometer", "sun"]),
+    type=click.Choice(["coil", "magnetometer", "sun", "cells"]),
     help="Instead, check one board, alone on the bus, against docs/icd.md; its limits are SCENARIO's.",
 )
 @click.option("--seed", default=1, show_default=True, type=SEEDS, help="Of the plant.")

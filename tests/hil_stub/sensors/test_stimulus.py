@@ -5,18 +5,19 @@ import os
 import pytest
 
 from fsw.wire.candump_line import format_line
-from fsw.wire.messages import CoilBoot, MagField, SunVector, Sync
+from fsw.wire.messages import CoilBoot, MagField, SunCells, SunVector, Sync
 from hil_stub.process.stimulus_option import PipedStimulus
 from hil_stub.sensors.stimulus import (
     NOTHING,
     Reading,
     StimulusError,
     constant,
+    currents,
     direction,
+    finite_numbers,
     recorded,
     scaled,
     scripted,
-    three_numbers,
 )
 
 
@@ -40,12 +41,16 @@ class TestLog:
             line(Sync(2, 2)),
         ]
         field = recorded(log, MagField, 1e-9)
-        assert field(0).vector == pytest.approx((1e-7, -2e-7, 3e-7))
+        assert field(0).values == pytest.approx((1e-7, -2e-7, 3e-7))
         assert field(0).valid
         assert field(1) is NOTHING, "it was silent"
         assert field(2) == Reading((0.0, 0.0, 2e-9), False)
         assert field(3) is NOTHING, "the log has ended"
         assert recorded(log, SunVector, 1.0)(0) == Reading((0.0, 0.5, 0.0), True)
+
+    def test_cells_show_all_of_their_currents(self):
+        log = [line(SunCells(1, 0.5, 0.25, 0.0, 1.0, 0.125, 1.5)), line(Sync(0, 0))]
+        assert recorded(log, SunCells, 1.0)(0) == Reading((0.5, 0.25, 0.0, 1.0, 0.125, 1.5), True)
 
     def test_broken_frames_and_other_lines_show_nothing(self):
         good = line(MagField(1, 100.0, -200.0, 300.0))
@@ -76,13 +81,13 @@ class TestScript:
 
     def test_a_step_holds_until_the_next_that_names_the_sensor(self):
         field = scripted(list(self.STEPS), "field_nt", 2, from_nt)
-        shown = [field(tick).vector for tick in (0, 3, 5, 6, 1000)]
+        shown = [field(tick).values for tick in (0, 3, 5, 6, 1000)]
         assert shown == [pytest.approx(from_nt((20000.0, 0.0, -30000.0)))] * 3 + [(0.0, 5e-9, 0.0)] * 2
 
     def test_false_is_nothing_and_a_direction_has_length_one(self):
         sun = scripted(list(self.STEPS), "sun", 2, direction)
         assert [sun(tick).valid for tick in (0, 2, 3, 5, 6)] == [True, True, False, False, True]
-        assert sun(6).vector == (0.0, 0.6, 0.8)
+        assert sun(6).values == (0.0, 0.6, 0.8)
 
     def test_before_its_first_step_there_is_nothing(self):
         assert scripted([{"t_s": 0.0}, {"t_s": 5.0, "sun": [1, 0, 0]}], "sun", 1, direction)(4) is NOTHING
@@ -113,8 +118,8 @@ def test_a_constant_is_there_at_every_tick():
     assert {constant((1.0, 2.0, 3.0))(tick) for tick in (0, 7, 10**9)} == {Reading((1.0, 2.0, 3.0), True)}
 
 
-def test_three_numbers_may_be_whole_ones():
-    assert three_numbers([1, 2.5, -3]) == (1.0, 2.5, -3.0)
+def test_finite_numbers_may_be_whole_ones():
+    assert finite_numbers([1, 2.5, -3], 3) == (1.0, 2.5, -3.0)
 
 
 class TestPipe:
@@ -140,3 +145,23 @@ class TestPipe:
         shown, end = pipe
         os.close(end)
         assert shown(0) is NOTHING
+
+
+class TestCells:
+    def test_a_script_gives_six_currents(self):
+        steps = [{"t_s": 0.0, "cells": [0.5, 0, 0.25, 0, 1, 0]}, {"t_s": 3.0, "cells": False}]
+        shown = scripted(steps, "cells", 2, currents, 6)
+        assert shown(5) == Reading((0.5, 0.0, 0.25, 0.0, 1.0, 0.0), True)
+        assert shown(6) is NOTHING
+
+    @pytest.mark.parametrize(
+        ("given", "reason"),
+        [
+            ([0.5, 0.1, 0.2], "must be six finite numbers"),
+            ([0.5, 0.1, 0.2, 0.0, 0.0, float("nan")], "must be six finite numbers"),
+            ([0.5, 0.1, 0.2, 0.0, 0.0, -0.1], "none below 0"),
+        ],
+    )
+    def test_what_is_no_six_currents_is_told(self, given, reason):
+        with pytest.raises(StimulusError, match=f"step 1: cells .*{reason}"):
+            scripted([{"t_s": 0.0, "cells": given}], "cells", 1, currents, 6)

@@ -8,6 +8,7 @@ from fsw.wire.messages import (
     CoilFire,
     CoilStatus,
     MagField,
+    SunCells,
     SunVector,
     Sync,
 )
@@ -32,6 +33,22 @@ def dipoles(tick):
     return [CoilDipole(0.5, -0.25, 0.125 * (tick % 5)).encode()] if tick % 4 else []
 
 
+def test_cells_are_shown_all_of_their_currents():
+    config = plant_config(load("cubesat-cells"), seed=7)
+    own, lines = Plant(config), []
+    source = PlantTicks(config, {"cells": lines.append})
+    for tick in range(20):
+        frames = {frame.can_id: frame for frame in own.begin_tick()}
+        assert source.frames()[-1] == frames[Sync.ID]
+        sample = SunCells.decode(frames[SunCells.ID].data)
+        number, *currents, valid = lines[-1].split()
+        assert (int(number), int(valid)) == (tick, sample.valid)
+        assert tuple(map(float, currents)) == sample[1:7]
+        assert sum(current > 0.2 for current in sample[1:7]) >= 2
+        own.end_tick()
+        source.advance()
+
+
 @pytest.mark.parametrize(
     ("changes", "frames_of"), [(PULSED, requests), (CONTINUOUS, dipoles)], ids=["pulsed", "continuous"]
 )
@@ -39,7 +56,7 @@ def test_what_a_board_reports_drives_the_plant_as_its_own_board_does(changes, fr
     config = plant_config(load("microsat", changes), seed=7)
     own = Plant(config)
     lines = {"magnetometer": [], "sun": []}
-    source = PlantTicks(config, lines["magnetometer"].append, lines["sun"].append)
+    source = PlantTicks(config, {name: of.append for name, of in lines.items()})
     limits, continuous = config.limits, config.coils.continuous
     board = DipoleDriver(config.tick_hz, continuous.on_fraction) if continuous else CoilDriver(limits)
     board.begin_tick(0, 0.0)
@@ -66,13 +83,13 @@ def test_what_a_board_reports_drives_the_plant_as_its_own_board_does(changes, fr
 
 def test_without_a_status_nothing_was_driven():
     config = plant_config(load("microsat", PULSED), seed=7)
-    source, quiet = PlantTicks(config, None, None), Plant(config)
+    source, quiet = PlantTicks(config, {}), Plant(config)
     source.receive(CoilStatus(3, 0, 1500, 300, 9000, 1).encode())
     for _ in range(3):
         quiet.end_tick()
         source.advance()
     assert source._plant.motion != quiet.motion, "the first tick was driven"
-    other = PlantTicks(config, None, None)
+    other = PlantTicks(config, {})
     for _ in range(3):
         other.advance()
     assert other._plant.motion == quiet.motion
@@ -80,13 +97,13 @@ def test_without_a_status_nothing_was_driven():
 
 @pytest.mark.parametrize("level", [-8, 7, 4])
 def test_a_level_that_does_not_exist_drives_nothing(level):
-    source = PlantTicks(plant_config(load("microsat", PULSED), seed=7), None, None)
+    source = PlantTicks(plant_config(load("microsat", PULSED), seed=7), {})
     assert source.receive(CoilStatus(level, 3, 1500, 300, 9000, 1).encode())
     assert not any(source._drive.drive().current_a)
 
 
 def test_the_status_of_the_other_kind_of_board_is_ignored():
-    source = PlantTicks(plant_config(load("microsat", PULSED), seed=7), None, None)
+    source = PlantTicks(plant_config(load("microsat", PULSED), seed=7), {})
     assert not source.receive(CoilDipoleStatus(0.5, 0.5, 0.5).encode())
     broken = CoilStatus(3, 0, 1500, 300, 9000, 1).encode()
     assert not source.receive(broken._replace(data=broken.data[:-1] + b"\0"))

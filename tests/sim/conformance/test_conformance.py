@@ -11,7 +11,7 @@ from fsw.wire.messages import (
     CoilStatus,
     Sync,
 )
-from hil_stub.bench import CoilBoard, MagnetometerBoard, SunBoard
+from hil_stub.bench import CellsBoard, CoilBoard, MagnetometerBoard, SunBoard
 from hil_stub.coils import coil_driver, guard, interlock
 from hil_stub.coils.coil_driver import CoilLimits
 from hil_stub.coils.events import CoilEventCode
@@ -54,12 +54,22 @@ def test_it_conforms_with_other_limits(link_to, pulse_ms, backoff_ms, deadman_s,
     [
         ("magnetometer", lambda: MagnetometerBoard(1, constant((1e-5, 2e-5, 3e-5)))),
         ("sun", lambda: SunBoard(1, constant((1.0, 0.0, 0.0)))),
+        ("cells", lambda: CellsBoard(1, constant((0.8, 0.0, 0.6, 0.0, 0.1, 0.0)))),
     ],
 )
 def test_sensors_conform(link_to, kind, make, failures):
     verdicts = run_checks(link_to(make, kind=kind), BoardLimits(), armed=False)
     assert [verdict.name for verdict in verdicts] == ["boot", "noise", "lost_count", "all_along"]
     assert failures(verdicts) == {}
+
+
+@pytest.mark.parametrize(("kind", "board", "shown"), [("sun", CellsBoard, 6), ("cells", SunBoard, 3)])
+def test_the_board_of_one_is_not_taken_for_that_of_the_other(link_to, kind, board, shown, failures):
+    """Both are the node SUN."""
+    verdicts = run_checks(
+        link_to(lambda: board(1, constant((0.5,) * shown)), kind=kind), BoardLimits(), False
+    )
+    assert "all_along" in failures(verdicts)
 
 
 def test_without_arm_no_request_is_ever_sent(link_to, failures):
