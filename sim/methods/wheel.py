@@ -51,6 +51,15 @@ METHODS: tuple[Method, ...] = (
         "a factor of two in two orbits.",
     ),
     Method(
+        "comparison of the laws of a pitch wheel",
+        "[O19] 2.2 [45]",
+        Kind.GROUND,
+        "sim/design/wheel/comparison.py",
+        "The laws proposed before are compared.",
+        ("review.wheel.six_gain.springs",),
+        "Yaw speeds the slowest mode up; springs add a ninth to it, whatever their sign.",
+    ),
+    Method(
         "nutation on an elliptic orbit",
         "[O19] 2.2 [46]",
         Kind.GROUND,

@@ -34,7 +34,7 @@ import numpy as np
 from sim.design.theory.bodies import Body
 
 
-class Convergence(NamedTuple):
+class ModeDecays(NamedTuple):
     """Degrees of stability of the three modes, per radian of u; negative: it decays."""
 
     pitch: float
@@ -42,7 +42,7 @@ class Convergence(NamedTuple):
     nutation: float
 
 
-def convergence(body: Body, k_w: float) -> Convergence:
+def convergence(body: Body, k_w: float) -> ModeDecays:
     """The decay of each mode under rate damping.
 
     Args:
@@ -72,7 +72,7 @@ def convergence(body: Body, k_w: float) -> Convergence:
         return -k * driven / (2.0 * total - 4.0 * product * square)
 
     fast = (total + sqrt(discriminant)) / (2.0 * product)
-    return Convergence(-k * d3 / (2.0 * c_moment), decay(yaw * roll / (product * fast)), decay(fast))
+    return ModeDecays(-k * d3 / (2.0 * c_moment), decay(yaw * roll / (product * fast)), decay(fast))
 
 
 def _mean_damping(inclination_deg: float) -> tuple[float, float, float]:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from sim.validate.review import gurwin
+from sim.validate.review.flown import gurwin
 
 
 def test_without_its_wheel_the_satellite_does_not_recover():

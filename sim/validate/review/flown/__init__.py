@@ -1,0 +1,1 @@
+"""Claims on satellites that have flown the laws of the review."""
