@@ -36,7 +36,7 @@ class StageGains(TargetGains):
             raise ValueError("nutation_deg, spin_band_radps and dead of relay_stages must be positive")
 
 
-class Stage(Enum):
+class SpinStage(Enum):
     """What is done now."""
 
     NUTATION = "nutation"
@@ -61,11 +61,11 @@ def direction_switch(b_body_t: Vec3, target_body: Vec3, axis: int) -> float:
     return b_body_t[u] * target_body[v] - b_body_t[v] * target_body[u]
 
 
-def stage(nutation_deg: float, lacking_radps: float, gains: StageGains) -> Stage:
+def stage(nutation_deg: float, lacking_radps: float, gains: StageGains) -> SpinStage:
     """Nutation first, then spin, then direction."""
     if nutation_deg > gains.nutation_deg:
-        return Stage.NUTATION
-    return Stage.SPIN if abs(lacking_radps) > gains.spin_band_radps else Stage.DIRECTION
+        return SpinStage.NUTATION
+    return SpinStage.SPIN if abs(lacking_radps) > gains.spin_band_radps else SpinStage.DIRECTION
 
 
 def relay(switch: float, dead: float, m_am2: float) -> float:
@@ -87,9 +87,9 @@ def relay_stages(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: C
     b, axis, m0 = inputs.b_body_t, gains.number, config.mean_dipole_am2
     lacking = setpoint.spin_radps - moving.omega_body_radps[axis]
     now, dead_t = stage(_nutation_deg(moving, axis), lacking, gains), gains.dead * norm(b)
-    if now is Stage.NUTATION:
+    if now is SpinStage.NUTATION:
         return Demand(scale(_nutation_am2(inputs, moving, axis, gains.dead, config), AXES[axis]))
-    if now is Stage.SPIN:
+    if now is SpinStage.SPIN:
         switch_u, switch_v = spin_switches(b, lacking, axis)
         m = [0.0, 0.0, 0.0]
         m[(axis + 1) % 3], m[(axis + 2) % 3] = relay(switch_u, dead_t, m0), relay(switch_v, dead_t, m0)

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from fsw.core.laws.interface import FieldSample
 from fsw.core.laws.spin.relay_stages import (
-    Stage,
+    SpinStage,
     StageGains,
     direction_switch,
     nutation_switch,
@@ -139,9 +139,9 @@ class TestStages:
 
     def test_nutation_comes_first_and_direction_last(self):
         gains = StageGains(nutation_deg=3.0, spin_band_radps=0.003)
-        assert stage(4.0, 0.1, gains) is Stage.NUTATION
-        assert stage(2.0, -0.1, gains) is Stage.SPIN
-        assert stage(2.0, 0.002, gains) is Stage.DIRECTION
+        assert stage(4.0, 0.1, gains) is SpinStage.NUTATION
+        assert stage(2.0, -0.1, gains) is SpinStage.SPIN
+        assert stage(2.0, 0.002, gains) is SpinStage.DIRECTION
 
     def test_a_tumble_ends_in_the_spin_along_the_target(self, spinning):
         gains = StageGains(3.0, *TARGET)
