@@ -19,6 +19,10 @@ class Aim(StrEnum):
     """A spin is built up, or the axis of one is turned."""
     SUN = "sun"
     """An axis is turned to the Sun."""
+    INERTIAL = "inertial"
+    """The whole attitude is held among the stars."""
+    VERTICAL = "vertical"
+    """An axis is held to the local vertical, the body free to turn about it."""
     CHECK = "check"
     """Nothing is held: it shows what coils and sensors do."""
 

@@ -17,6 +17,7 @@ from fsw.core.algebra.quaternion import dcm
 from fsw.core.algebra.vector import Mat3, Vec3, add, cross, dot, scale, sub, transform, transpose
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 from fsw.core.orbit.earth import MU_M3PS2
+from fsw.core.orbit.ephemeris import Reference
 
 
 def free_rate_change(
@@ -45,6 +46,19 @@ def free_rate_change(
     gyroscopic = cross(omega, add(transform(inertia_kgm2, omega), wheel_body_nms))
     turning = scale(orbit_rate_radps, cross(omega_body_orbit_radps, e3))
     return add(transform(inertia_inverse, sub(gravity, gyroscopic)), turning)
+
+
+def free_change(inputs: LawInput, reference: Reference, config: ControlConfig) -> Vec3:
+    """The same of what a law sees, with a valid attitude and the orbit ``reference``."""
+    return free_rate_change(
+        inputs.attitude.omega_body_orbit_radps,
+        dcm(inputs.attitude.q_body_from_orbit),
+        reference.orbit_rate_radps,
+        reference.radius_m,
+        config.inertia_kgm2,
+        config.inertia_inverse,
+        config.wheel_body_nms,
+    )
 
 
 def missing_impulse(
@@ -78,15 +92,7 @@ def predictive(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Con
     attitude, reference = inputs.attitude, inputs.reference
     if not attitude.valid or reference is None:
         return Demand()
-    change = free_rate_change(
-        attitude.omega_body_orbit_radps,
-        dcm(attitude.q_body_from_orbit),
-        reference.orbit_rate_radps,
-        reference.radius_m,
-        config.inertia_kgm2,
-        config.inertia_inverse,
-        config.wheel_body_nms,
-    )
+    change = free_change(inputs, reference, config)
     disturbed = transform(config.inertia_inverse, disturbance_nm(inputs))
     wanted = (setpoint.spin_radps, 0.0, 0.0)
     return Demand(

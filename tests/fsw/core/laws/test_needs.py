@@ -41,6 +41,18 @@ NEEDS = {
     "sun_panels": {"attitude", "orbit", "sun"},
     "sun_critical": {"attitude", "orbit", "sun"},
     "direction_tracking": {"orbit", "second sample"},
+    "pd_inertial": {"attitude", "orbit"},
+    "field_direction": {"orbit", "second sample"},
+    "pd_held": {"attitude"},
+    "pd_delayed": {"attitude"},
+    "two_step": {"attitude", "orbit"},
+    "sphere_vertical": {"attitude"},
+    "sphere_output": {"attitude", "orbit"},
+    "sliding_realisable": {"attitude", "orbit"},
+    "sliding_rate": {"attitude", "orbit"},
+    "sliding_rate_modified": {"attitude", "orbit"},
+    "sliding_twisting": {"attitude", "orbit"},
+    "sliding_sphere": {"attitude", "orbit"},
 }
 
 

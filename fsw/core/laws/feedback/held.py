@@ -1,0 +1,96 @@
+"""The PD dipole held over many ticks: computed once in a cycle, with coils off while the field is measured.
+
+    m = -(1 / share) b x (k_w Omega + k_a S), of the tick in which it is computed, held for ``act_s``;
+    m = 0 for ``measure_s`` before it,     share = act_s / (measure_s + act_s).
+
+``pd_held`` has no time of measuring; ``pd_apart`` has one as long as that of acting, after which the field of
+the coils has died away. A held dipole lags: half a cycle on the mean, by which the field and the attitude
+have moved on. For each length of the cycle there are gains small enough (``sim/design/feedback/held.py``).
+
+Source: Ovchinnikov, Roldugin 2019, section 3.1, after Celani 2016a (the dipole constant over a control
+interval of several steps) and Celani 2016b (measuring and acting apart). The share, which keeps the mean
+torque, is this project's.
+"""
+
+from dataclasses import dataclass
+
+from fsw.core.algebra.quaternion import dcm
+from fsw.core.algebra.vector import ZERO, Vec3, scale
+from fsw.core.laws.feedback.pd import attitude_error, far_error, pd_dipole
+from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
+
+
+@dataclass(frozen=True, slots=True)
+class HeldGains:
+    """Length of the cycle, s."""
+
+    hold_s: float = 60.0
+
+    def __post_init__(self) -> None:
+        """Raises ValueError: not a length."""
+        if self.hold_s <= 0.0:
+            raise ValueError("hold_s must be greater than 0")
+
+
+@dataclass(frozen=True, slots=True)
+class ApartGains:
+    """Lengths of measuring and of acting, s."""
+
+    measure_s: float = 30.0
+    act_s: float = 30.0
+
+    def __post_init__(self) -> None:
+        """Raises ValueError: no length."""
+        if self.measure_s < 0.0 or self.act_s <= 0.0:
+            raise ValueError("measure_s must not be less than 0, and act_s must be greater than 0")
+
+
+def pd_held(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """The dipole of one tick for the whole cycle, by S."""
+    gains: HeldGains = config.gains["pd_held"]
+    return _cycle(inputs, memory, setpoint, config, (0.0, gains.hold_s), near=True)
+
+
+def pd_held_far(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """The same by the error that does not vanish upside down."""
+    gains: HeldGains = config.gains["pd_held"]
+    return _cycle(inputs, memory, setpoint, config, (0.0, gains.hold_s), near=False)
+
+
+def pd_apart(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """Measuring, then acting, by S."""
+    gains: ApartGains = config.gains["pd_apart"]
+    return _cycle(inputs, memory, setpoint, config, (gains.measure_s, gains.act_s), near=True)
+
+
+def pd_apart_far(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """The same by the error that does not vanish upside down."""
+    gains: ApartGains = config.gains["pd_apart"]
+    return _cycle(inputs, memory, setpoint, config, (gains.measure_s, gains.act_s), near=False)
+
+
+def _cycle(
+    inputs: LawInput,
+    memory: Memory,
+    setpoint: Setpoint,
+    config: ControlConfig,
+    spans_s: tuple[float, float],
+    *,
+    near: bool,
+) -> Demand:
+    """One tick of the cycle; memory: its first tick, whether the dipole is computed (1 or 0), the dipole."""
+    if not inputs.attitude.valid:
+        return Demand()
+    measure_s, act_s = spans_s
+    begun, computed, held = float(inputs.tick), 0.0, ZERO
+    if len(memory) == 5 and (inputs.tick - memory[0]) * config.tick_s < measure_s + act_s:
+        begun, computed, held = memory[0], memory[1], (memory[2], memory[3], memory[4])
+    if not computed and (inputs.tick - begun) * config.tick_s >= measure_s:
+        computed, held = 1.0, scale((measure_s + act_s) / act_s, _pd(inputs, setpoint, near=near))
+    return Demand(held, memory=(begun, computed, *held))
+
+
+def _pd(inputs: LawInput, setpoint: Setpoint, *, near: bool) -> Vec3:
+    q, omega = inputs.attitude.q_body_from_orbit, inputs.attitude.omega_body_orbit_radps
+    error = attitude_error(dcm(q)) if near else far_error(q)
+    return pd_dipole(inputs.b_body_t, omega, error, setpoint.k_w, setpoint.k_a)

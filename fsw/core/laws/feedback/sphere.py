@@ -1,0 +1,130 @@
+"""Laws for a sphere, which has no gyroscopic torque: dOmega/dt = u but for the turning of the orbit.
+
+An axis a of the body is held to the local vertical r, whichever way the body turns about it, by
+V = 1/2 J |Omega|^2 + 2 k_a |b|^2 (1 - a . r), which the torque lowers but for the part along the field:
+
+    M_ref = |b|^2 (2 k_a a x r - k_w Omega),     m = b x M_ref / |b|^2.
+
+Without a rate, an observer follows attitude and rate by the sphere's own equations. With d = 2 vec(z^-1 q),
+z its quaternion, w its rate, M the torque of the last tick's dipole:
+
+    z' = 1/2 z (0, w + 2 a d),   w' = M / J + w0 w x e3 + a^2 d,   m = -k_w b x w - k_a b x E,   E = 4 qv.
+
+Its error decays as that of a critically damped filter of bandwidth a, and as it knows the torque it does not
+lag as the filter of ``output_feedback`` does; on another body what it leaves out of dOmega/dt is its error.
+
+Source: Ovchinnikov, Roldugin 2019, section 3.1: the vertical after Bushenkov, Ovchinnikov, Smirnov 2002; the
+law without a rate after Reyhanoglu, Drakunov 2008 and Reyhanoglu, Ton, Drakunov 2009. The review prints no
+equation; both are derived here from what it says of them. Smirnov's law to the field is ``field_direction``
+with a target.
+"""
+
+from dataclasses import dataclass
+
+from fsw.core.algebra.quaternion import Quaternion, canonical, conjugate, multiply, normalise, rotate
+from fsw.core.algebra.vector import ZERO, Vec3, add, cross, dot, scale, unit
+from fsw.core.laws.feedback.pd import far_error, pd_dipole
+from fsw.core.laws.feedback.projection import torque_dipole
+from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
+
+RADIUS: Vec3 = (1.0, 0.0, 0.0)
+NORMAL: Vec3 = (0.0, 0.0, 1.0)
+"""Axes of the orbital frame."""
+
+
+@dataclass(frozen=True, slots=True)
+class VerticalGains:
+    """The axis a in body axes, of any length but zero."""
+
+    axis_1: float = 1.0
+    axis_2: float = 0.0
+    axis_3: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Raises ValueError: no axis."""
+        if not any((self.axis_1, self.axis_2, self.axis_3)):
+            raise ValueError("axis_1, axis_2 and axis_3 must not all be 0")
+
+
+@dataclass(frozen=True, slots=True)
+class ObserverGains:
+    """Bandwidth a of the observer, rad/s."""
+
+    bandwidth_radps: float = 0.02
+
+    def __post_init__(self) -> None:
+        """Raises ValueError: an observer that does not follow."""
+        if self.bandwidth_radps <= 0.0:
+            raise ValueError("bandwidth_radps must be greater than 0")
+
+
+def vertical_torque(
+    b_body_t: Vec3, omega_body_orbit_radps: Vec3, axis: Vec3, radius_body: Vec3, k_w: float, k_a: float
+) -> Vec3:
+    """M_ref = |b|^2 (2 k_a a x r - k_w Omega), body axes, N m.
+
+    Args:
+        b_body_t: field, T.
+        omega_body_orbit_radps: Omega, rad/s.
+        axis: a, unit vector.
+        radius_body: r, unit vector, body axes.
+        k_w: N m s / T^2.
+        k_a: N m / T^2.
+    """
+    wanted = add(scale(2.0 * k_a, cross(axis, radius_body)), scale(-k_w, omega_body_orbit_radps))
+    return scale(dot(b_body_t, b_body_t), wanted)
+
+
+def sphere_vertical(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """The axis to the vertical."""
+    if not inputs.attitude.valid:
+        return Demand()
+    gains: VerticalGains = config.gains["sphere_vertical"]
+    axis = unit((gains.axis_1, gains.axis_2, gains.axis_3))
+    radius = rotate(inputs.attitude.q_body_from_orbit, RADIUS)
+    omega = inputs.attitude.omega_body_orbit_radps
+    torque = vertical_torque(inputs.b_body_t, omega, axis, radius, setpoint.k_w, setpoint.k_a)
+    return Demand(torque_dipole(torque, inputs.b_body_t))
+
+
+def observed(
+    followed: Quaternion,
+    rate_radps: Vec3,
+    q_body_from_orbit: Quaternion,
+    change_radps2: Vec3,
+    bandwidth_radps: float,
+    tick_s: float,
+) -> tuple[Quaternion, Vec3]:
+    """The observer's quaternion z and rate w one tick later.
+
+    Args:
+        followed: z.
+        rate_radps: w, body axes.
+        q_body_from_orbit: q, measured.
+        change_radps2: dOmega/dt as expected.
+        bandwidth_radps: a.
+        tick_s: length of a tick.
+    """
+    _, d1, d2, d3 = canonical(multiply(conjugate(followed), q_body_from_orbit))
+    d, a = scale(2.0, (d1, d2, d3)), bandwidth_radps
+    t1, t2, t3 = scale(0.5 * tick_s, add(rate_radps, scale(2.0 * a, d)))
+    turned = normalise(multiply(followed, (1.0, t1, t2, t3)))
+    return turned, add(rate_radps, scale(tick_s, add(change_radps2, scale(a * a, d))))
+
+
+def sphere_output(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """The PD law on the observer's rate; memory: z, w and the dipole of the last tick."""
+    if not inputs.attitude.valid or inputs.reference is None:
+        return Demand()
+    gains: ObserverGains = config.gains["sphere_output"]
+    q, w0 = inputs.attitude.q_body_from_orbit, inputs.reference.orbit_rate_radps
+    z, w = q, ZERO
+    if len(memory) == 10:
+        z0, z1, z2, z3, w1, w2, w3, m1, m2, m3 = memory
+        (j1, _, _), (_, j2, _), (_, _, j3) = config.inertia_kgm2
+        pushed = scale(3.0 / (j1 + j2 + j3), cross((m1, m2, m3), inputs.b_body_t))
+        turning = scale(w0, cross((w1, w2, w3), rotate(q, NORMAL)))
+        change = add(pushed, turning)
+        z, w = observed((z0, z1, z2, z3), (w1, w2, w3), q, change, gains.bandwidth_radps, config.tick_s)
+    dipole = pd_dipole(inputs.b_body_t, w, far_error(q), setpoint.k_w, setpoint.k_a)
+    return Demand(dipole, memory=(*z, *w, *dipole))

@@ -1,0 +1,55 @@
+"""Sliding control of a sphere: a relay of the coils on a surface in the rate alone.
+
+Attitude gives the rate to fly, -K q; the surface is the rate's difference to it, s = Omega + K q, in which no
+moment of inertia stands. For a sphere of moment J, V = 1/2 J |s|^2 changes by the coils at s . (m x b) =
+m . (b x s), which is least with every coil against its component of b x s:
+
+    m_j = -m_0 sat((b x s)_j / (|b| layer)).
+
+On a body of unequal moments the coils' part of dV/dt is s . J^-1 (m x b), of no certain sign.
+
+Source: Ovchinnikov, Roldugin 2019, section 3.1, after Wang, Shtessel 1998: the rate alone in the surface,
+shown to be asymptotically stable for a sphere. The review prints no equation; surface and relay are derived.
+"""
+
+from dataclasses import dataclass
+
+from fsw.core.algebra.quaternion import canonical
+from fsw.core.algebra.vector import Vec3, cross, norm
+from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
+from fsw.core.laws.sliding.rate_surface import rate_surface
+
+
+@dataclass(frozen=True, slots=True)
+class SphereSlidingGains:
+    """K = slope w0, layer = layer w0; m_0 is ``part`` of the dipole that the coils can give in the mean."""
+
+    slope: float = 0.5
+    layer: float = 0.5
+    part: float = 0.02
+
+    def __post_init__(self) -> None:
+        """Raises ValueError: one that is not greater than 0, or more than the whole dipole."""
+        if min(self.slope, self.layer) <= 0.0 or not 0.0 < self.part <= 1.0:
+            raise ValueError("slope and layer must be greater than 0, and part between 0 and 1")
+
+
+def relay_dipole(s_radps: Vec3, b_body_t: Vec3, m0_am2: float, layer_radps: float) -> Vec3:
+    """m_j = -m_0 sat((b x s)_j / (|b| layer)), A m^2; none without a field."""
+    size = norm(b_body_t) * layer_radps
+    if size <= 0.0:
+        return (0.0, 0.0, 0.0)
+    x, y, z = (-m0_am2 * max(-1.0, min(1.0, part / size)) for part in cross(b_body_t, s_radps))
+    return (x, y, z)
+
+
+def sliding_sphere(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """The relay on the surface of the rate."""
+    if not inputs.attitude.valid or inputs.reference is None:
+        return Demand()
+    gains: SphereSlidingGains = config.gains["sliding_sphere"]
+    w0 = inputs.reference.orbit_rate_radps
+    _, q1, q2, q3 = canonical(inputs.attitude.q_body_from_orbit)
+    s = rate_surface(inputs.attitude.omega_body_orbit_radps, (q1, q2, q3), gains.slope * w0)
+    m0 = gains.part * config.mean_dipole_am2
+    return Demand(relay_dipole(s, inputs.b_body_t, m0, gains.layer * w0))

@@ -1,0 +1,133 @@
+"""Gains for the least settling time from the worst of many starts, with coils of limited dipole.
+
+Pointing among the stars by m = -b x (k_w omega + k_a E), E = 4 qv, each coil limited to its dipole, on a
+circular orbit in the direct dipole's field. From each start the attitude has settled once its error stays
+under an angle; the cost of (k_w, k_a) is the longest of these times, which a simplex lowers. It has no
+derivative, and without the limit it would ask for ever larger dipoles.
+
+Source: Ovchinnikov, Roldugin 2019, section 3.1, after Bruni, Celani 2017. Theirs is a search by a global
+method over uncertain starts; here a local one over starts that are given.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import minimize
+
+from sim.design.theory.bodies import Body
+from sim.design.theory.linear import Array, Gains, dipole_field
+
+STEP_S = 20.0
+SETTLED_DEG = 5.0
+ROUNDS = 24
+"""Costs that the search computes, if not told otherwise."""
+
+
+@dataclass(frozen=True, slots=True)
+class Starts:
+    """Where flights begin: q_body_from_target, (k, 4), and absolute rates in body axes, (k, 3), rad/s."""
+
+    q: Array
+    omega_radps: Array
+
+
+def spread_starts(count: int, angle_deg: float, rate_radps: float) -> Starts:
+    """Starts of one angle and one rate, about axes spread by the golden angle; the rates across them."""
+    height = 1.0 - (2.0 * np.arange(count) + 1.0) / count
+    turn = np.pi * (3.0 - np.sqrt(5.0)) * np.arange(count)
+    flat = np.sqrt(1.0 - height**2)
+    axes = np.stack([flat * np.cos(turn), flat * np.sin(turn), height], axis=-1)
+    half = 0.5 * np.radians(angle_deg)
+    q = np.concatenate([np.full((count, 1), np.cos(half)), np.sin(half) * axes], axis=-1)
+    return Starts(q, rate_radps * np.roll(axes, 1, axis=1))
+
+
+def settling_orbits(body: Body, gains: Gains, most_am2: float, starts: Starts, orbits: float) -> Array:
+    """Orbits after which the error of each start stays under ``SETTLED_DEG``; else more than ``orbits``.
+
+    Args:
+        body: with a diagonal inertia tensor or not; its wheel is left out.
+        gains: k_w and k_a, numbers.
+        most_am2: of each coil.
+        starts: k of them.
+        orbits: length of the flight.
+
+    Returns:
+        (k,); of an unsettled start ``orbits`` and its last error in half turns: a slope for the search.
+    """
+    w0, inertia = body.rate_radps, np.asarray(body.inertia_kgm2)
+    steps = int(orbits * 2.0 * np.pi / w0 / STEP_S)
+    u = np.linspace(0.0, STEP_S * w0 * steps, 2 * steps + 1)
+    fields = inertial_field(u, body) * body.field_t
+    loop = _Loop(inertia, np.linalg.inv(inertia), gains, most_am2)
+    x, last = np.concatenate([starts.q, starts.omega_radps], axis=-1), np.zeros(len(starts.q))
+    for step in range(steps):
+        x = loop.step(x, fields[2 * step : 2 * step + 3])
+        last = np.where(_angle_deg(x) > SETTLED_DEG, (step + 1.0) / steps * orbits, last)
+    return np.where(last >= orbits, orbits + _angle_deg(x) / 180.0, last)
+
+
+def inertial_field(u: Array, body: Body) -> Array:
+    """The direct dipole's field in units of B0, in the axes of the orbit at u = 0: (k, 3)."""
+    b1, b2, b3 = np.moveaxis(dipole_field(u, body), -1, 0)
+    cosine, sine = np.cos(u), np.sin(u)
+    return np.stack([cosine * b1 - sine * b2, sine * b1 + cosine * b2, b3], axis=-1)
+
+
+def minimax(
+    body: Body, start: Gains, most_am2: float, starts: Starts, orbits: float, rounds: int = ROUNDS
+) -> tuple[Gains, float]:
+    """The gains with the least longest settling time found from ``start``, and that, orbits."""
+    k_w, k_a = float(np.asarray(start.k_w)), float(np.asarray(start.k_a))
+
+    def gains(logs: Array) -> Gains:
+        return Gains(k_w * float(np.exp(logs[0])), k_a * float(np.exp(logs[1])))
+
+    def cost(logs: Array) -> float:
+        return float(settling_orbits(body, gains(logs), most_am2, starts, orbits).max())
+
+    simplex = 0.5 * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    place: Array = np.zeros(2)
+    found = minimize(
+        cost, place, method="Nelder-Mead", options={"initial_simplex": simplex, "maxfev": rounds}
+    )
+    return gains(np.asarray(found.x, dtype=np.float64)), float(found.fun)
+
+
+@dataclass(frozen=True, slots=True)
+class _Loop:
+    """The controlled motion of many starts at once: x = (q_body_from_target, omega)."""
+
+    inertia: Array
+    inverse: Array
+    gains: Gains
+    most_am2: float
+
+    def step(self, x: Array, fields: Array) -> Array:
+        """Runge-Kutta of fourth order; the field at the start, the middle and the end."""
+        start, middle, end = fields
+        k1 = self.rates(x, start)
+        k2 = self.rates(x + 0.5 * STEP_S * k1, middle)
+        k3 = self.rates(x + 0.5 * STEP_S * k2, middle)
+        k4 = self.rates(x + STEP_S * k3, end)
+        moved = x + STEP_S / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
+        moved[:, :4] /= np.linalg.norm(moved[:, :4], axis=1)[:, None]
+        return moved
+
+    def rates(self, x: Array, b_t: Array) -> Array:
+        """dx/dt."""
+        q0, qv, omega = x[:, :1], x[:, 1:4], x[:, 4:]
+        twice = 2.0 * np.cross(b_t, qv)  # C(q) b = b - 2 q0 qv x b + 2 qv x (qv x b)
+        b = b_t + q0 * twice - np.cross(qv, twice)
+        error = np.where(q0 >= 0.0, 4.0, -4.0) * qv
+        wanted = -np.cross(b, self.gains.k_w * omega + self.gains.k_a * error)
+        m = np.clip(wanted, -self.most_am2, self.most_am2)
+        torque = np.cross(m, b) - np.cross(omega, omega @ self.inertia.T)
+        q0_rate = -0.5 * np.sum(qv * omega, axis=1, keepdims=True)
+        qv_rate = 0.5 * (q0 * omega + np.cross(qv, omega))
+        return np.concatenate([q0_rate, qv_rate, torque @ self.inverse.T], axis=1)
+
+
+def _angle_deg(x: Array) -> Array:
+    angle: Array = np.degrees(2.0 * np.arctan2(np.linalg.norm(x[:, 1:4], axis=1), np.abs(x[:, 0])))
+    return angle

@@ -1,0 +1,157 @@
+"""Claims: gains of the simple feedback (section 3.1), found on the ground."""
+
+from functools import partial
+
+import numpy as np
+
+from sim.campaign.claim import Claim, Study
+from sim.design.feedback.bifurcation import bifurcation
+from sim.design.feedback.held import longest_hold_s, weaker
+from sim.design.feedback.inertial import best_of_all, best_on_line
+from sim.design.feedback.minimax import minimax, settling_orbits, spread_starts
+from sim.design.feedback.robust import robust_share, worst_degree
+from sim.design.theory.bodies import BODIES
+from sim.design.theory.linear import Gains
+from sim.validate.review.sliding import SECTION, flight, judged, last_orbit_deg
+
+BEST = Gains(6.2694e6, 1614.9)
+"""The PD law's gains of the 50 kg satellite, by Floquet theory."""
+BODY = BODIES[2]
+BOUNDS = 0.5
+"""Relative error of each moment of inertia."""
+WEAK_AM2 = 0.2
+
+
+def studies() -> list[Study]:
+    """All of gains."""
+    return [scheme(), limit(), robust(), settling(), hold()]
+
+
+def scheme() -> Study:
+    """The scheme for pointing among the stars."""
+    claim = Claim(
+        "review.feedback.scheme",
+        "Best degree of stability on the line of averaging over that of all gains, least of six bodies",
+        f"{SECTION}, after Ovchinnikov, Roldugin, Penkov 2015 [71]",
+        "1",
+        low=0.5,
+    )
+    return Study(claim.id, (least_share,), partial(judged, (claim,)))
+
+
+def hold() -> Study:
+    """Gains for long intervals."""
+    claim = Claim(
+        "review.feedback.hold",
+        "Longest interval that is stable with gains 0.3 k_w, 0.09 k_a over that with the best gains",
+        f"{SECTION}, after Celani 2016 [78]",
+        "1",
+        low=1.5,
+    )
+    return Study(claim.id, (longer_hold,), partial(judged, (claim,)))
+
+
+def limit() -> Study:
+    """The largest attitude gain."""
+    source = f"{SECTION}, after Della Rossa, Bergamasco, Lovera 2012 [70]"
+    claims = (
+        Claim(
+            "review.feedback.limit.factor",
+            "Attitude gain at which the nominal attitude of the 50 kg satellite is lost, over the best one",
+            source,
+            "1",
+            low=1.4,
+            high=1.65,
+        ),
+        Claim(
+            "review.feedback.limit.under",
+            "Pointing error of pd in the last of eight orbits, from 5 deg, 10 % under that gain",
+            source,
+            "deg",
+            high=1.0,
+        ),
+        Claim(
+            "review.feedback.limit.over",
+            "The same 20 % over it: the nominal attitude repels",
+            source,
+            "deg",
+            low=10.0,
+        ),
+    )
+    tasks = (limit_factor, partial(beside_limit_deg, 0.9), partial(beside_limit_deg, 1.2))
+    return Study("review.feedback.limit", tasks, partial(judged, claims))
+
+
+def robust() -> Study:
+    """Gains for bounds on the inertia."""
+    source = f"{SECTION}, after Celani 2015 [74]"
+    claims = (
+        Claim(
+            "review.feedback.robust.broken",
+            "Degree of stability of the best inertial gains with each moment off by half, at worst",
+            source,
+            "1/rad",
+            low=0.05,
+        ),
+        Claim(
+            "review.feedback.robust.share",
+            "Largest e of gains e k_w, e^2 k_a that hold for all of them",
+            source,
+            "1",
+            low=0.5,
+            high=1.0,
+        ),
+    )
+    return Study("review.feedback.robust", (broken_degree, share_that_holds), partial(judged, claims))
+
+
+def settling() -> Study:
+    """Minimax gains with weak coils."""
+    claim = Claim(
+        "review.feedback.minimax",
+        f"Longest settling from 120 deg, coils of {WEAK_AM2:g} A m^2, minimax gains over those of the scheme",
+        f"{SECTION}, after Bruni, Celani 2017 [75]",
+        "1",
+        high=0.95,
+    )
+    return Study(claim.id, (settling_ratio,), partial(judged, (claim,)))
+
+
+def least_share() -> float:
+    """Of all bodies, the best degree on the line over the best of all."""
+    return min(best_on_line(body)[1] / best_of_all(body)[1] for body in BODIES)
+
+
+def limit_factor() -> float:
+    """k_a at the bifurcation over the best one."""
+    found = bifurcation(BODY, BEST)
+    return np.inf if found is None else found.k_a / float(np.asarray(BEST.k_a))
+
+
+def beside_limit_deg(factor: float) -> float:
+    """The pointing error in the last of eight orbits at ``factor`` times the largest k_a."""
+    gains = {"k_w": 6.2694e6, "k_a": 1614.9 * limit_factor() * factor}
+    return last_orbit_deg(flight("pd", 5.0, orbits=8.0, **gains))
+
+
+def broken_degree() -> float:
+    """The worst degree of the best inertial gains within the bounds."""
+    return worst_degree(BODY, best_of_all(BODY)[0], BOUNDS)
+
+
+def share_that_holds() -> float:
+    """The largest e within the bounds; 0 where there is none."""
+    return robust_share(BODY, best_of_all(BODY)[0], BOUNDS) or 0.0
+
+
+def settling_ratio() -> float:
+    """The longest settling with minimax gains over that with the scheme's."""
+    gains, _ = best_on_line(BODY)
+    starts = spread_starts(8, 120.0, 2e-3)
+    before = settling_orbits(BODY, gains, WEAK_AM2, starts, 2.0).max()
+    return minimax(BODY, gains, WEAK_AM2, starts, 2.0)[1] / float(before)
+
+
+def longer_hold() -> float:
+    """The longest interval with weaker gains over that with the best."""
+    return longest_hold_s(BODY, weaker(BEST, 0.3)) / longest_hold_s(BODY, BEST)

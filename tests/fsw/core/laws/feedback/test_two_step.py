@@ -1,0 +1,107 @@
+"""Two turns across the field for one about it: the split is exact, and a sphere over the equator makes it."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fsw.core.algebra.quaternion import conjugate, multiply, normalise
+from fsw.core.laws.feedback.pd import pd_far
+from fsw.core.laws.feedback.two_step import FIRST, FREE, SECOND, TwoStepGains, first_turn, two_step
+
+SPHERE = np.diag([1.6, 1.6, 1.6])
+K_W, K_A = 6.2694e6, 1614.9
+component = st.floats(-1.0, 1.0, allow_subnormal=False)
+directions = st.tuples(component, component, component).filter(lambda v: np.linalg.norm(v) > 0.1)
+quaternions = st.tuples(component, component, component, component).filter(
+    lambda q: np.linalg.norm(q) > 0.1 and np.linalg.norm(q[1:]) > 0.01
+)
+
+
+@given(quaternions, directions)
+def test_both_turns_are_across_the_field_and_make_the_whole(q, n):
+    q, n = normalise(q), tuple((np.array(n) / np.linalg.norm(n)).tolist())
+    p = first_turn(q, n)
+    a = multiply(q, conjugate(p))
+    assert np.linalg.norm(p) == pytest.approx(1.0)
+    assert np.dot(p[1:], n) == pytest.approx(0.0, abs=1e-9)
+    assert np.dot(a[1:], n) == pytest.approx(0.0, abs=1e-7)
+    assert abs(a[0]) == pytest.approx(abs(p[0]), abs=1e-7)
+
+
+@given(quaternions, directions)
+def test_of_both_signs_the_smaller_turns_are_taken(q, n):
+    """A quarter turn about the field never needs more than the half turns that a small one does."""
+    q, n = normalise(q), tuple((np.array(n) / np.linalg.norm(n)).tolist())
+    z = float(np.dot(q[1:], n))
+    least = min(((1.0 - s) ** 2 + z * z) / (2.0 * (1.0 - s)) for s in (q[0], -q[0]) if s < 1.0)
+    assert 1.0 - first_turn(q, n)[0] ** 2 == pytest.approx(least, abs=1e-7)
+
+
+def test_a_turn_about_the_field_alone_takes_two_half_turns():
+    p = first_turn(normalise((0.98, 0.0, 0.0, 0.2)), (0.0, 0.0, 1.0))
+    assert p[0] == pytest.approx(0.0, abs=1e-7)
+
+
+@pytest.fixture(scope="module")
+def fly(bench, turned):
+    def run(law, inclination_deg=0.0, orbits=3.0):
+        orbit, c = bench.Orbit(inclination_deg=inclination_deg), turned((0.2, 0.1, 1.0), 40.0)
+        return bench.fly(
+            law,
+            bench.setpoint(k_w=K_W, k_a=K_A),
+            gains={"two_step": TwoStepGains()},
+            orbit=orbit,
+            body=bench.Body(SPHERE, most_am2=5.0),
+            c_body_from_orbit=c,
+            omega_body=orbit.rate_radps * c[:, 2],
+            seconds=orbits * orbit.period_s,
+            step_s=10.0,
+        )
+
+    return run
+
+
+def test_over_the_equator_it_brings_a_sphere_home_where_pd_cannot(fly):
+    """The claim of the source: three axes although the field never turns."""
+    plain, own = fly(pd_far), fly(two_step)
+    assert plain.angle_deg[-100:].min() > 35.0
+    assert own.angle_deg.max() > 100.0
+    assert own.angle_deg[-600:].max() < 2.0
+
+
+@pytest.fixture
+def asked(bench, turned):
+    orbit = bench.Orbit(inclination_deg=0.0)
+    settings = bench.config(bench.Body(SPHERE), 1.0, {"two_step": TwoStepGains()})
+
+    def ask(q, memory=(), rate=0.0):
+        c = turned((0, 0, 1), 0.0) @ orbit.c_orbit_from_eci(700.0)
+        inputs = bench.inputs_at(orbit, 700, 1.0, c, np.zeros(3), None)
+        attitude = inputs.attitude._replace(q_body_from_orbit=q, omega_body_orbit_radps=(rate, 0.0, 0.0))
+        return two_step(
+            inputs._replace(attitude=attitude), memory, bench.setpoint(k_w=K_W, k_a=K_A), settings
+        )
+
+    return ask
+
+
+def test_the_stages_follow_each_other_at_rest_only(asked):
+    away = normalise((0.9, 0.1, 0.0, 0.4))
+    first = asked(away)
+    stage, *p = first.memory
+    assert stage == FIRST
+    assert asked(tuple(p), first.memory, rate=0.01).memory[0] == FIRST
+    second = asked(tuple(p), first.memory)
+    assert second.memory == (SECOND, *p)
+    assert asked((1.0, 0.0, 0.0, 0.0), second.memory).memory[0] == FREE
+
+
+def test_a_small_turn_about_the_field_is_left(asked):
+    assert asked(normalise((0.99, 0.1, 0.0, 0.05))).memory[0] == FREE
+
+
+@pytest.mark.parametrize("changed", [{"begin_deg": 2.0}, {"done_deg": 0.0}, {"done_degps": 0.0}])
+def test_gains_out_of_range_are_refused(changed):
+    with pytest.raises(ValueError, match="done_deg"):
+        TwoStepGains(**changed)

@@ -1,0 +1,47 @@
+"""Gains among the stars: the line of averaging, and how near it comes to the best of all."""
+
+import numpy as np
+import pytest
+
+from sim.design.feedback.inertial import (
+    best_of_all,
+    best_on_line,
+    critical_gains,
+    inertial_degree,
+    inertial_projection,
+    natural_k_w,
+    slowest,
+)
+from sim.design.theory.bodies import BODIES, Body, diagonal
+from sim.design.theory.linear import Gains, projection
+
+FIFTY = BODIES[2]
+SPHERE = Body("sphere", diagonal((1.6, 1.6, 1.6)), 800.0, 98.6)
+
+
+def test_at_the_node_the_axes_are_the_orbits_and_half_an_orbit_later_turned_about():
+    u = np.array([0.0, np.pi])
+    turned, plain = inertial_projection(u, FIFTY), projection(u, FIFTY)
+    assert turned[0] == pytest.approx(plain[0])
+    about = np.diag([-1.0, -1.0, 1.0])
+    assert turned[1] == pytest.approx(about @ plain[1] @ about)
+
+
+def test_the_slowest_axis_of_a_polar_orbit_over_a_sphere():
+    """<G> of B = (-3/2 sin 2u, 3/2 cos 2u - 1/2, 0): diag(11/8, 9/8, 5/2)."""
+    polar = Body("polar", diagonal((2.0, 2.0, 2.0)), 800.0, 90.0)
+    assert slowest(polar) == pytest.approx(9.0 / 8.0 / 2.0, rel=1e-6)
+
+
+@pytest.mark.parametrize(("stiffness", "decay"), [(4.0, 0.05), (0.4, 0.05 * (1.0 - 0.6**0.5))])
+def test_weak_gains_decay_as_averaging_says(stiffness, decay):
+    """A twentieth of the natural k_w: exp(-0.05 u) above the critical k_a, the slower real root below."""
+    gains = critical_gains(SPHERE, 0.05 * natural_k_w(SPHERE))
+    stiff = Gains(gains.k_w, stiffness * gains.k_a)
+    assert inertial_degree(SPHERE, stiff) == pytest.approx(-decay, rel=0.03)
+
+
+def test_the_best_of_the_line_is_near_the_best_of_all():
+    """The claim of the source: a simple scheme will do."""
+    (_, line), (_, best) = best_on_line(FIFTY), best_of_all(FIFTY)
+    assert best <= line < 0.75 * best < 0.0

@@ -1,0 +1,56 @@
+"""Minimax gains: the flights of many starts at once are those of one, and the search shortens the longest."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from sim.design.feedback import minimax as module
+from sim.design.feedback.inertial import best_on_line
+from sim.design.feedback.minimax import minimax, settling_orbits, spread_starts
+from sim.design.theory.bodies import BODIES
+from sim.design.theory.linear import Gains
+
+FIFTY = BODIES[2]
+STARTS = spread_starts(6, 120.0, 2e-3)
+
+
+def test_starts_are_of_one_angle_and_one_rate():
+    assert 2.0 * np.degrees(np.arccos(STARTS.q[:, 0])) == pytest.approx(120.0)
+    assert np.linalg.norm(STARTS.omega_radps, axis=1) == pytest.approx(2e-3)
+    assert np.linalg.norm(STARTS.q, axis=1) == pytest.approx(1.0)
+    assert np.linalg.matrix_rank(STARTS.q[:, 1:]) == 3
+
+
+def test_the_field_in_the_body_is_turned_as_the_attitude_is():
+    """At rest, k_a = 0 and k_w = 1: m = -b x omega shows b; against scipy's rotation."""
+    loop = module._Loop(np.eye(3), np.eye(3), Gains(1e6, 0.0), 1e9)
+    b_t, omega = np.array([2e-5, -1e-5, 3e-5]), np.array([[1e-3, 2e-3, -1e-3]] * 6)
+    x = np.concatenate([STARTS.q, omega], axis=1)
+    q = STARTS.q
+    b = Rotation.from_quat(q[:, [1, 2, 3, 0]]).inv().apply(b_t)
+    expected = np.cross(np.cross(omega, b) * 1e6, b)
+    assert loop.rates(x, b_t)[:, 4:] == pytest.approx(expected, rel=1e-9)
+
+
+def test_no_coil_gives_more_than_its_dipole():
+    """A torque no larger than that of three saturated coils."""
+    loop = module._Loop(np.eye(3), np.eye(3), Gains(1e12, 1e9), 0.2)
+    b_t = np.array([2e-5, -1e-5, 3e-5])
+    rates = loop.rates(np.concatenate([STARTS.q, 0.0 * STARTS.omega_radps], axis=1), b_t)
+    assert np.linalg.norm(rates[:, 4:], axis=1).max() <= 0.2 * np.sqrt(3.0) * np.linalg.norm(b_t)
+
+
+def test_the_search_shortens_the_longest_settling():
+    """The claim of the source, beside gains chosen for the end of the motion."""
+    start, _ = best_on_line(FIFTY)
+    before = settling_orbits(FIFTY, start, 0.2, STARTS, 1.6).max()
+    found, after = minimax(FIFTY, start, 0.2, STARTS, 1.6, rounds=9)
+    assert after < 0.95 * before
+    assert settling_orbits(FIFTY, found, 0.2, STARTS, 1.6).max() == after
+
+
+def test_weak_coils_settle_later_and_none_never():
+    start, _ = best_on_line(FIFTY)
+    slow = settling_orbits(FIFTY, start, 0.02, STARTS, 1.0)
+    assert slow.max() > settling_orbits(FIFTY, start, 0.2, STARTS, 1.0).min()
+    assert settling_orbits(FIFTY, start, 0.0, STARTS, 0.2).min() > 0.2
