@@ -18,7 +18,7 @@ from sim.design.theory.bodies import Body
 from sim.design.theory.floquet import NEUTRAL, degree_of_stability, product, transitions
 from sim.design.theory.linear import Array, Gains, dipole_field, feedback_scales, free_motion, skew
 
-MOST_HOLDS, LEAST_HOLDS = 120, 3
+MOST_HOLDS, LEAST_HOLDS = 40, 3
 STEPS_AN_ORBIT = 48
 """Least steps of the integration over an orbit."""
 

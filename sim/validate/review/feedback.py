@@ -16,8 +16,9 @@ from sim.plant.environment.field import DirectDipole
 from sim.plant.environment.orbit import Array, CircularOrbit
 from sim.plant.rotation import Vec3
 from sim.validate.review import feedback_gains
+from sim.validate.review.figures import judged
 from sim.validate.review.law_flight import Flown, LawFlight, angle_deg, fly
-from sim.validate.review.sliding import FIFTY, SECTION, SPHERE, flight, judged, last_orbit_deg
+from sim.validate.review.sliding import FIFTY, SECTION, SPHERE, flight, last_orbit_deg
 
 PD: dict[str, Any] = {"k_w": 6.2694e6, "k_a": 1614.9}
 """The PD law's gains of the 50 kg satellite, by Floquet theory."""

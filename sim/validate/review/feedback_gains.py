@@ -12,7 +12,8 @@ from sim.design.feedback.minimax import minimax, settling_orbits, spread_starts
 from sim.design.feedback.robust import robust_share, worst_degree
 from sim.design.theory.bodies import BODIES
 from sim.design.theory.linear import Gains
-from sim.validate.review.sliding import SECTION, flight, judged, last_orbit_deg
+from sim.validate.review.figures import judged
+from sim.validate.review.sliding import SECTION, flight, last_orbit_deg
 
 BEST = Gains(6.2694e6, 1614.9)
 """The PD law's gains of the 50 kg satellite, by Floquet theory."""

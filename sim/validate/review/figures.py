@@ -1,10 +1,10 @@
-"""Small studies: a claim whose one figure a function gives."""
+"""Small studies: claims whose figures functions give, one a claim."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from sim.campaign.claim import Claim, Study
+from sim.campaign.claim import Claim, ClaimOutcome, Study
 from sim.validate.review.law_flight import LawFlight
 
 
@@ -46,3 +46,8 @@ class FlownClaim:
 def one_figure(claim: Claim, figure: Callable[[], float]) -> Study:
     """The study of a claim of the same id; ``figure`` must be picklable."""
     return Study(claim.id, (figure,), lambda found: [claim.judge(found[0])])
+
+
+def judged(claims: Sequence[Claim], figures: Sequence[float]) -> list[ClaimOutcome]:
+    """Each figure by its claim, in order."""
+    return [claim.judge(figure) for claim, figure in zip(claims, figures, strict=True)]

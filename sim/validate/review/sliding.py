@@ -1,13 +1,13 @@
 """Claims: three axes, sliding control (section 3.1)."""
 
-from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
 import numpy as np
 
 from fsw.core.laws.sliding.realisable import RealisableGains
-from sim.campaign.claim import Claim, ClaimOutcome, Study
+from sim.campaign.claim import Claim, Study
+from sim.validate.review.figures import judged
 from sim.validate.review.law_flight import LawFlight, fly
 
 SECTION = "Ovchinnikov, Roldugin 2019, section 3.1"
@@ -125,8 +125,3 @@ def last_orbit_deg(case: LawFlight) -> float:
 def largest_deg(case: LawFlight) -> float:
     """The largest of the whole flight."""
     return float(fly(case).angle_deg.max())
-
-
-def judged(claims: Sequence[Claim], figures: Sequence[Any]) -> list[ClaimOutcome]:
-    """Each figure by its claim, in order."""
-    return [claim.judge(figure) for claim, figure in zip(claims, figures, strict=True)]

@@ -33,12 +33,12 @@ def test_the_slowest_axis_of_a_polar_orbit_over_a_sphere():
     assert slowest(polar) == pytest.approx(9.0 / 8.0 / 2.0, rel=1e-6)
 
 
-@pytest.mark.parametrize(("stiffness", "decay"), [(4.0, 0.05), (0.4, 0.05 * (1.0 - 0.6**0.5))])
+@pytest.mark.parametrize(("stiffness", "decay"), [(4.0, 0.02), (0.4, 0.02 * (1.0 - 0.6**0.5))])
 def test_weak_gains_decay_as_averaging_says(stiffness, decay):
-    """A twentieth of the natural k_w: exp(-0.05 u) above the critical k_a, the slower real root below."""
-    gains = critical_gains(SPHERE, 0.05 * natural_k_w(SPHERE))
+    """A fiftieth of the natural k_w: exp(-0.02 u) above the critical k_a, the slower real root below."""
+    gains = critical_gains(SPHERE, 0.02 * natural_k_w(SPHERE))
     stiff = Gains(gains.k_w, stiffness * gains.k_a)
-    assert inertial_degree(SPHERE, stiff) == pytest.approx(-decay, rel=0.03)
+    assert inertial_degree(SPHERE, stiff) == pytest.approx(-decay, rel=0.04)
 
 
 def test_the_best_of_the_line_is_near_the_best_of_all():
