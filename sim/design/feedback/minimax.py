@@ -17,7 +17,7 @@ from scipy.optimize import minimize
 from sim.design.theory.bodies import Body
 from sim.design.theory.linear import Array, Gains, dipole_field
 
-STEP_S = 20.0
+STEP_S = 40.0
 SETTLED_DEG = 5.0
 ROUNDS = 24
 """Costs that the search computes, if not told otherwise."""
