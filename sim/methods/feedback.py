@@ -39,6 +39,15 @@ METHODS: tuple[Method, ...] = (
         "A local search over given starts, not a global one.",
     ),
     Method(
+        "gains by the regulator, as flown by TANGO",
+        "[O19] 3.1 [76, 77]",
+        Kind.GROUND,
+        "sim/design/feedback/lqr_gains.py",
+        "The PD law with gains by LQR did its work aboard TANGO, with an accuracy of 10 to 20 deg.",
+        ("review.feedback.tango.none", "review.feedback.tango.dipole"),
+        "A residual dipole of 0.02 A m^2 about each axis, unknown to the law, gives as much; fitted.",
+    ),
+    Method(
         "dipole held over several steps",
         "[O19] 3.1 [78]",
         Kind.FLOWN,

@@ -4,14 +4,19 @@ from functools import partial
 
 import numpy as np
 
-from sim.campaign.claim import Claim, Study
+from fsw.input.schema import Nested
+from sim.campaign.claim import Claim, Study, Threshold
+from sim.campaign.flight import Order
+from sim.campaign.study import Figure, Group, campaign, figure_of
 from sim.design.feedback.bifurcation import bifurcation
 from sim.design.feedback.held import longest_hold_s, weaker
 from sim.design.feedback.inertial import best_of_all, best_on_line
+from sim.design.feedback.lqr_gains import lqr_gains
 from sim.design.feedback.minimax import minimax, settling_orbits, spread_starts
 from sim.design.feedback.robust import robust_share, worst_degree
 from sim.design.theory.bodies import BODIES
 from sim.design.theory.linear import Gains
+from sim.validate.microsat import pointing_figures
 from sim.validate.review.figures import judged
 from sim.validate.review.sliding import SECTION, flight, last_orbit_deg
 
@@ -21,11 +26,15 @@ BODY = BODIES[2]
 BOUNDS = 0.5
 """Relative error of each moment of inertia."""
 WEAK_AM2 = 0.2
+EFFORT = 0.1
+TANGO_AM2 = 0.02
+"""Residual dipole of each axis at which the 50 kg satellite points as TANGO did."""
+TANGO_ORBITS = 7.0
 
 
 def studies() -> list[Study]:
     """All of gains."""
-    return [scheme(), limit(), robust(), settling(), hold()]
+    return [scheme(), limit(), robust(), settling(), hold(), tango()]
 
 
 def scheme() -> Study:
@@ -38,6 +47,33 @@ def scheme() -> Study:
         low=0.5,
     )
     return Study(claim.id, (least_share,), partial(judged, (claim,)))
+
+
+def tango() -> Study:
+    """PD with gains by the regulator as flown: a residual dipole of which nothing is known."""
+    figures = (
+        Figure(
+            "none",
+            "RMS error of pd, gains by the regulator, orbits 4 to 7, attitude known, no residual dipole",
+            "deg",
+            figure_of("rms_deg"),
+            group="none",
+            high=1.0,
+        ),
+        Figure(
+            "dipole",
+            f"The same with a residual dipole of {TANGO_AM2:g} A m^2 about each axis, unknown (TANGO: 10 to 20)",
+            "deg",
+            figure_of("rms_deg"),
+            group="dipole",
+            low=10.0,
+            high=20.0,
+            threshold=Threshold.FITTED,
+        ),
+    )
+    groups = (Group("none", (tango_order(0.0),)), Group("dipole", (tango_order(TANGO_AM2),)))
+    source = f"{SECTION}, after Chasset et al. 2013 [76, 77]"
+    return campaign("review.feedback.tango", source, groups, figures)
 
 
 def hold() -> Study:
@@ -156,3 +192,24 @@ def settling_ratio() -> float:
 def longer_hold() -> float:
     """The longest interval with weaker gains over that with the best."""
     return longest_hold_s(BODY, weaker(BEST, 0.3)) / longest_hold_s(BODY, BEST)
+
+
+def tango_order(dipole_am2: float) -> Order:
+    """A flight with continuous coils from 40 deg."""
+    gains = lqr_gains(BODY, EFFORT)
+    control: Nested = {
+        "law": "pd",
+        "k_w": float(np.asarray(gains.k_w)),
+        "k_a": float(np.asarray(gains.k_a)),
+        "k_i": 0.0,
+    }
+    overrides: Nested = {
+        "knowledge": "perfect",
+        "coils": {"driver": "continuous", "max_dipole_am2": 8.0},
+        "disturbance": {
+            "torque_nm": [0.0, 0.0, 0.0],
+            "residual_dipole_am2": [dipole_am2, -dipole_am2, dipole_am2],
+        },
+        "control": control,
+    }
+    return Order("microsat", overrides, orbits=TANGO_ORBITS, measure=pointing_figures)
