@@ -62,7 +62,7 @@ def tango() -> Study:
         ),
         Figure(
             "dipole",
-            f"The same with a residual dipole of {TANGO_AM2:g} A m^2 about each axis, unknown (TANGO: 10 to 20)",
+            f"The same with a residual dipole of {TANGO_AM2:g} A m^2 an axis, unknown (TANGO: 10 to 20)",
             "deg",
             figure_of("rms_deg"),
             group="dipole",
