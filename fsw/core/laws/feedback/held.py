@@ -21,7 +21,7 @@ from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Set
 
 
 @dataclass(frozen=True, slots=True)
-class HeldGains:
+class HoldGains:
     """Length of the cycle, s."""
 
     hold_s: float = 60.0
@@ -47,13 +47,13 @@ class ApartGains:
 
 def pd_held(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The dipole of one tick for the whole cycle, by S."""
-    gains: HeldGains = config.gains["pd_held"]
+    gains: HoldGains = config.gains["pd_held"]
     return _cycle(inputs, memory, setpoint, config, (0.0, gains.hold_s), near=True)
 
 
 def pd_held_far(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The same by the error that does not vanish upside down."""
-    gains: HeldGains = config.gains["pd_held"]
+    gains: HoldGains = config.gains["pd_held"]
     return _cycle(inputs, memory, setpoint, config, (0.0, gains.hold_s), near=False)
 
 

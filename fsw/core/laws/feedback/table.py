@@ -5,7 +5,7 @@ from fsw.core.laws.feedback.delayed import DelayGains, delayed
 from fsw.core.laws.feedback.field_direction import FieldDirectionGains, field_direction
 from fsw.core.laws.feedback.held import (
     ApartGains,
-    HeldGains,
+    HoldGains,
     pd_apart,
     pd_apart_far,
     pd_held,
@@ -32,7 +32,7 @@ LAWS: dict[str, LawEntry] = {
     "output_feedback": LawEntry(52, Aim.THREE_AXIS, output_feedback, output_feedback, FilterGains),
     "pd_inertial": LawEntry(53, Aim.INERTIAL, inertial_far, inertial, InertialGains),
     "field_direction": LawEntry(54, Aim.THREE_AXIS, field_direction, field_direction, FieldDirectionGains),
-    "pd_held": LawEntry(55, Aim.THREE_AXIS, pd_held_far, pd_held, HeldGains),
+    "pd_held": LawEntry(55, Aim.THREE_AXIS, pd_held_far, pd_held, HoldGains),
     "pd_apart": LawEntry(56, Aim.THREE_AXIS, pd_apart_far, pd_apart, ApartGains),
     "pd_delayed": LawEntry(57, Aim.THREE_AXIS, delayed, delayed, DelayGains),
     "two_step": LawEntry(58, Aim.THREE_AXIS, two_step, two_step, TwoStepGains),

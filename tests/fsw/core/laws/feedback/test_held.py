@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fsw.core.estimation.attitude import UNKNOWN
-from fsw.core.laws.feedback.held import ApartGains, HeldGains
+from fsw.core.laws.feedback.held import ApartGains, HoldGains
 from fsw.core.laws.feedback.pd import pd
 from fsw.core.laws.table import LAWS
 
@@ -31,7 +31,7 @@ def dipoles(bench, turned):
 
 
 def test_the_dipole_of_a_cycles_first_tick_is_held(dipoles):
-    rows = dipoles("pd_held", HeldGains(5.0), 12)
+    rows = dipoles("pd_held", HoldGains(5.0), 12)
     own, plain = zip(*rows, strict=True)
     assert own == (*[plain[0]] * 5, *[plain[5]] * 5, *[plain[10]] * 2)
     assert plain[0] != plain[4]
@@ -62,7 +62,7 @@ def test_upside_down_the_far_form_turns_and_the_near_form_rests(bench, turned, n
     orbit = bench.Orbit()
     c = turned((0, 1, 0), 180.0) @ orbit.c_orbit_from_eci(700.0)
     inputs = bench.inputs_at(orbit, 700, 1.0, c, orbit.rate_radps * c[:, 2], None)
-    own = HeldGains() if name == "pd_held" else ApartGains(measure_s=0.0)
+    own = HoldGains() if name == "pd_held" else ApartGains(measure_s=0.0)
     settings, point = bench.config(bench.Body(), 1.0, {name: own}), bench.setpoint(k_w=0.0, k_a=K_A)
     assert np.linalg.norm(LAWS[name].acquire(inputs, (), point, settings).m_body_am2) > 1e-3
     assert np.linalg.norm(LAWS[name].point(inputs, (), point, settings).m_body_am2) < 1e-9
@@ -92,7 +92,7 @@ def last_deg(bench, turned):
 
 def test_held_for_minutes_the_attitude_still_converges(last_deg):
     """The claim of the source."""
-    assert last_deg("pd_held", HeldGains(200.0)) < 0.5
+    assert last_deg("pd_held", HoldGains(200.0)) < 0.5
 
 
 def test_measuring_as_long_as_acting_it_does_too(last_deg):
@@ -100,12 +100,12 @@ def test_measuring_as_long_as_acting_it_does_too(last_deg):
 
 
 def test_held_too_long_for_its_gains_it_diverges(last_deg):
-    assert last_deg("pd_held", HeldGains(600.0)) > 90.0
+    assert last_deg("pd_held", HoldGains(600.0)) > 90.0
 
 
 @pytest.mark.parametrize(
     ("kind", "changed"),
-    [(HeldGains, {"hold_s": 0.0}), (ApartGains, {"act_s": 0.0}), (ApartGains, {"measure_s": -1.0})],
+    [(HoldGains, {"hold_s": 0.0}), (ApartGains, {"act_s": 0.0}), (ApartGains, {"measure_s": -1.0})],
 )
 def test_lengths_out_of_range_are_refused(kind, changed):
     with pytest.raises(ValueError, match="must"):

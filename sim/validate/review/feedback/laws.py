@@ -1,4 +1,4 @@
-"""Claims: three axes, simple feedback (section 3.1)."""
+"""Claims: laws of simple feedback (section 3.1), flown with nothing unknown."""
 
 from functools import partial
 from math import radians
@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from fsw.core.laws.feedback.field_direction import FieldDirectionGains
-from fsw.core.laws.feedback.held import ApartGains, HeldGains
+from fsw.core.laws.feedback.held import ApartGains, HoldGains
 from sim.campaign.claim import Claim, Study
 from sim.design.feedback.inertial import best_on_line
 from sim.design.theory.bodies import BODIES
@@ -15,9 +15,8 @@ from sim.plant.config import OrbitConfig
 from sim.plant.environment.field import DirectDipole
 from sim.plant.environment.orbit import Array, CircularOrbit
 from sim.plant.rotation import Vec3
-from sim.validate.review import feedback_gains
 from sim.validate.review.figures import judged
-from sim.validate.review.law_flight import Flown, LawFlight, angle_deg, fly
+from sim.validate.review.law_flight import LawFlight, LawHistory, angle_deg, fly
 from sim.validate.review.sliding import FIFTY, SECTION, SPHERE, flight, last_orbit_deg
 
 PD: dict[str, Any] = {"k_w": 6.2694e6, "k_a": 1614.9}
@@ -28,7 +27,7 @@ OFF_DEG = 40.0
 
 def studies() -> list[Study]:
     """All of this section."""
-    return [inertial(), held(), delayed(), direction(), sphere(), two_step(), *feedback_gains.studies()]
+    return [inertial(), held(), delayed(), direction(), sphere(), two_step()]
 
 
 def inertial() -> Study:
@@ -81,8 +80,8 @@ def held() -> Study:
         ),
     )
     tasks = (
-        partial(last_orbit_deg, flight("pd_held", 20.0, gains=HeldGains(200.0), **PD)),
-        partial(last_orbit_deg, flight("pd_held", 20.0, gains=HeldGains(600.0), **PD)),
+        partial(last_orbit_deg, flight("pd_held", 20.0, gains=HoldGains(200.0), **PD)),
+        partial(last_orbit_deg, flight("pd_held", 20.0, gains=HoldGains(600.0), **PD)),
         partial(last_orbit_deg, flight("pd_apart", 20.0, gains=ApartGains(120.0, 120.0), **PD)),
     )
     return Study("review.feedback.held", tasks, partial(judged, claims))
@@ -221,12 +220,13 @@ def needle_deg() -> float:
     return float(axis[flown.orbits > 1.0].max())
 
 
-def fields_in_body(flown: Flown) -> Array:
+def fields_in_body(flown: LawHistory) -> Array:
     """The field at each step, body axes, T; the orbit is that of every flight here."""
     orbit = OrbitConfig(None, 1e3 * BODY.altitude_km, radians(BODY.inclination_deg), 0.0, 0.0)
     r_m, _ = CircularOrbit(orbit).at(flown.t_s)
     b_eci_t = DirectDipole().at(flown.t_s, r_m)
-    return (flown.c_body_from_eci @ b_eci_t[:, :, None])[:, :, 0]
+    b_body_t: Array = (flown.c_body_from_eci @ b_eci_t[:, :, None])[:, :, 0]
+    return b_body_t
 
 
 def vertical_deg() -> float:
