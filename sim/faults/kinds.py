@@ -5,7 +5,7 @@ from random import Random
 from typing import NamedTuple
 
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG
-from fsw.wire.messages import MagField, SunVector
+from fsw.wire.messages import MagField, SunCells, SunVector
 from sim.faults import bus_kinds as bus
 from sim.faults import cell_kinds as cell
 from sim.faults import forged_kinds as forged
@@ -108,6 +108,7 @@ KINDS: dict[str, FaultKind] = {
     "sun_turned": FaultKind(plant.sun_fault(plant.turn, "deg"), TURN),
     "sun_swapped": FaultKind(plant.sun_fault(plant.swap_axes), AXIS),
     "sun_late": FaultKind(bus.sample_delay(SunVector.ID), LATE),
+    "cells_late": FaultKind(bus.sample_delay(SunCells.ID), LATE),
     "sun_unseen": FaultKind(plant.SunBlindness),
     "albedo": FaultKind(plant.SunDeflection, {"part": Parameter(0.4, 0.0, 1.0)}),
     "cell_dead": FaultKind(cell.CellDead, CELL),

@@ -7,7 +7,7 @@ from random import Random
 from typing import Literal
 
 from fsw.wire.frame import Frame
-from fsw.wire.messages import SENDERS, MagField, SunVector
+from fsw.wire.messages import SENDERS, MagField, SunCells, SunVector
 from sim.faults.fault import Fault, Parameters
 from sim.plant.hardware.actuators import CoilDrive
 from sim.plant.plant import Plant
@@ -16,7 +16,7 @@ from sim.plant.rotation import ZERO, Vec3, from_vector, matrix, transform
 BoardName = Literal["magnetometer", "sun", "coil"]
 _NODE: dict[BoardName, str] = {"magnetometer": "MAG", "sun": "SUN", "coil": "COIL"}
 T_PER_NT = 1e-9
-FULL_FIELD_NT, FULL_SUN = 65534.0, 1.9999
+FULL_FIELD_NT, FULL_SUN, FULL_CELL = 65534.0, 1.9999, 255.0 / 128.0
 Reading = Callable[[Vec3, Parameters], Vec3]
 
 
@@ -171,6 +171,10 @@ class ExtremeCodes(Fault):
         if frame.can_id == SunVector.ID and sun:
             counter = SunVector.decode(frame.data).counter
             return SunVector(1, a * FULL_SUN, b * FULL_SUN, c * FULL_SUN, counter).encode()
+        if frame.can_id == SunCells.ID and sun:
+            counter = SunCells.decode(frame.data).counter
+            d, e, f, g, h, i = (self.rng.choice((0.0, FULL_CELL)) for _ in range(6))
+            return SunCells(1, d, e, f, g, h, i, counter).encode()
         return frame
 
 

@@ -5,7 +5,7 @@ from random import Random
 import pytest
 
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame
-from fsw.wire.messages import CoilFire, MagField, PlantEnd, SunVector, Sync, TickDone, intact
+from fsw.wire.messages import CoilFire, MagField, PlantEnd, SunCells, SunVector, Sync, TickDone, intact
 from sim.faults import kinds
 from sim.faults.kinds import KINDS, make
 
@@ -74,17 +74,21 @@ def test_jitter_loses_nothing():
     assert come != sorted(come)
 
 
-@pytest.mark.parametrize(("kind", "sample"), [("mag_late", 0), ("sun_late", 1)])
+@pytest.mark.parametrize(("kind", "sample"), [("mag_late", 0), ("sun_late", 1), ("cells_late", 2)])
 def test_late_samples_are_those_of_one_sensor_in_their_order(kind, sample):
     late = fault(kind, ticks=3.0)
     numbers = []
     for tick in range(10):
-        frames = [MagField(1, 20000.0, -7000.0, 31000.0, tick), SunVector(1, 0.6, -0.64, 0.48, tick)]
+        frames = [
+            MagField(1, 20000.0, -7000.0, 31000.0, tick),
+            SunVector(1, 0.6, -0.64, 0.48, tick),
+            SunCells(1, 0.5, 0.25, 0.0, 1.0, 0.125, 1.5, tick),
+        ]
         come = late.from_boards(tick, [frame.encode() for frame in frames])
-        other = frames.pop(1 - sample)
-        assert other.encode() in come
+        delayed = frames.pop(sample)
+        assert all(other.encode() in come for other in frames)
         assert late.to_boards(tick, list(FRAMES)) == FRAMES
-        numbers += [type(frames[0]).decode(f.data).counter for f in come if f.can_id == frames[0].ID]
+        numbers += [type(delayed).decode(f.data).counter for f in come if f.can_id == delayed.ID]
     assert numbers == list(range(7))
 
 

@@ -6,7 +6,7 @@ from random import Random
 
 import pytest
 
-from fsw.wire.messages import CoilBoot, CoilFire, CoilStatus, MagField, SunVector
+from fsw.wire.messages import CoilBoot, CoilFire, CoilStatus, MagField, SunCells, SunVector
 from sim.faults.faulty_plant import FaultyPlant, ScheduledFault
 from sim.faults.kinds import make
 from sim.faults.node_kinds import count_doubles, flip, flip_bit
@@ -111,6 +111,15 @@ def test_extreme_codes_are_whole_frames_of_the_sensors_alone():
     assert {abs(decoded.b_x), abs(decoded.b_y), abs(decoded.b_z)} == {65534.0}
     assert (decoded.valid, decoded.counter) == (1, 7)
     assert status == frames[1]
+
+
+def test_extreme_codes_of_cells_are_whole_frames_too():
+    frame = SunCells(1, 0.5, 0.25, 0.0, 1.0, 0.125, 1.5, 7).encode()
+    extreme = fault("extreme_codes", sun=1.0)
+    found = [SunCells.decode(extreme.from_boards(tick, [frame])[0].data) for tick in range(20)]
+    assert {current for one in found for current in one[1:7]} == {0.0, 255.0 / 128.0}
+    assert {(one.valid, one.counter) for one in found} == {(1, 7)}
+    assert fault("extreme_codes").from_boards(0, [frame]) == [frame], "of the magnetometer alone"
 
 
 def test_coils_that_are_cut_or_stuck():
