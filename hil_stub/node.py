@@ -8,6 +8,8 @@ from fsw.wire.messages import (
     MagHeartbeat,
     SunBoot,
     SunHeartbeat,
+    WheelBoot,
+    WheelHeartbeat,
 )
 
 CONTRACT_VERSION = 1
@@ -16,8 +18,8 @@ CONTRACT_VERSION = 1
 HEARTBEAT_S = 60
 _MOST = 0xFFFF
 
-BootMessage = type[CoilBoot] | type[MagBoot] | type[SunBoot]
-HeartbeatMessage = type[CoilHeartbeat] | type[MagHeartbeat] | type[SunHeartbeat]
+BootMessage = type[CoilBoot] | type[MagBoot] | type[SunBoot] | type[WheelBoot]
+HeartbeatMessage = type[CoilHeartbeat] | type[MagHeartbeat] | type[SunHeartbeat] | type[WheelHeartbeat]
 
 
 class Node:

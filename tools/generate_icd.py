@@ -21,6 +21,7 @@ from fsw.wire.frame import crc8
 from fsw.wire.messages import CoilFire, CoilRefusedReason, CoilStatus
 from hil_stub import bench, node
 from hil_stub.coils import coil_driver, events, interlock, read_back
+from hil_stub.wheel import wheel_driver, wheel_guard
 from sim.conformance.check_runner import CHECKS
 
 DBC = ROOT / "fsw" / "wire" / "torquer.dbc"
@@ -157,9 +158,30 @@ def coil_events() -> str:
 def identifiers() -> str:
     kinds = ("BOOT", "HEARTBEAT", "EVENT")
     ids = {m.name: f"0x{m.frame_id:03X}" for m in database().messages}
-    return table(
-        ("", *kinds), [(board, *(ids[f"{board}_{kind}"] for kind in kinds)) for board in ("MAG", "SUN")]
-    )
+    boards = ("MAG", "SUN", "WHEEL")
+    return table(("", *kinds), [(board, *(ids[f"{board}_{kind}"] for kind in kinds)) for board in boards])
+
+
+def wheel_results() -> str:
+    given = texts("wheel_result", [result.name.lower() for result in wheel_guard.REFUSAL_ORDER])
+    rows = [
+        (n, result.value, f"`{result.name.lower()}`", given[result.name.lower()])
+        for n, result in enumerate(wheel_guard.REFUSAL_ORDER, 1)
+    ]
+    return table(("", "`result`", "name", "if"), rows)
+
+
+def wheel_states() -> str:
+    return ", ".join(f"{state.value} {state.name}" for state in wheel_driver.WheelBoardState)
+
+
+def wheel_events() -> str:
+    given = texts("wheel_event", [code.name for code in wheel_driver.WheelEventCode])
+    rows = [
+        (code.value, f"`{code.name.lower()}`", wheel_driver.SEVERITY[code].name, given[code.name])
+        for code in wheel_driver.WheelEventCode
+    ]
+    return table(("`event`", "name", "severity", "if"), rows)
 
 
 def board_in(tick: int, tick_hz: int, duration_ms: int) -> coil_driver.CoilDriver:
@@ -220,6 +242,9 @@ PIECES = {
     "identifiers": identifiers,
     "pulse_table": pulse_table,
     "skip_table": skip_table,
+    "wheel_events": wheel_events,
+    "wheel_results": wheel_results,
+    "wheel_states": wheel_states,
 }
 
 

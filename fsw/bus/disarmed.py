@@ -1,12 +1,12 @@
-"""A bench that is not armed: no request to drive a coil ever gets on the bus."""
+"""A bench that is not armed: no request to drive a coil or a wheel ever gets on the bus."""
 
 from collections.abc import Sequence
 
 from fsw.bus.interface import Bus
 from fsw.wire.frame import Frame
-from fsw.wire.messages import CoilDipole, CoilFire
+from fsw.wire.messages import CoilDipole, CoilFire, WheelTorque
 
-REQUESTS = frozenset((CoilFire.ID, CoilDipole.ID))
+REQUESTS = frozenset((CoilFire.ID, CoilDipole.ID, WheelTorque.ID))
 
 
 class Disarmed:
@@ -17,7 +17,7 @@ class Disarmed:
         self._bus = bus
 
     def send(self, frames: Sequence[Frame]) -> None:
-        """Send the frames that ask for no current."""
+        """Send the frames that ask for no current and no torque."""
         self._bus.send([frame for frame in frames if frame.can_id not in REQUESTS])
 
     def receive(self, timeout_s: float | None) -> Frame | None:

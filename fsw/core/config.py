@@ -8,7 +8,7 @@ from fsw.core.estimation.estimator import EstimatorConfig
 from fsw.core.fdir.fdir import FdirConfig
 from fsw.core.gate.calibration import NO_CALIBRATION, Calibration
 from fsw.core.gate.second_sender import SecondSenderConfig
-from fsw.core.laws.interface import ControlConfig
+from fsw.core.laws.interface import ControlConfig, Wheel
 from fsw.core.modes import ModeConfig
 from fsw.core.orbit.ephemeris import EphemerisModel
 from fsw.core.rates import RateTable
@@ -33,3 +33,8 @@ class FlightConfig:
     event_spacing_ticks: int
     calibration: Calibration = NO_CALIBRATION
     own_field: OwnField | None = None
+
+    @property
+    def wheel(self) -> Wheel | None:
+        """A wheel that can be driven; None: there is none."""
+        return self.control.wheel

@@ -8,6 +8,7 @@ stay: a forged SYNC must not bring back an isolated coil or sensor, nor lead out
 
 from fsw.core.actuation.actuator import LOCKOUT_UNKNOWN, CoilView
 from fsw.core.actuation.pulses import boot
+from fsw.core.actuation.wheel import WheelView
 from fsw.core.config import FlightConfig
 from fsw.core.estimation.attitude import UNKNOWN
 from fsw.core.estimation.estimator import restart
@@ -43,4 +44,5 @@ def restarted(state: FlightState, tick: int, config: FlightConfig) -> FlightStat
         pulses=boot(tick, config.coils.pulses),
         coil=CoilView(LOCKOUT_UNKNOWN, seq=state.coil.seq, refusals=state.coil.refusals),
         events=Throttle(reported, events.held_back),
+        wheel=None if state.wheel is None else WheelView(refused=state.wheel.refused),
     )

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from fsw.core.actuation.actuator import CoilView
 from fsw.core.actuation.pulses import PulseState
+from fsw.core.actuation.wheel import WheelView
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.estimation.estimator import EstimatorState
 from fsw.core.fdir.fdir import Health
@@ -36,7 +37,8 @@ class FlightState(NamedTuple):
     holds those in doubt; ``field_tick`` and ``status_tick`` are the last ticks with an
     intact MAG_FIELD and COIL_STATUS, ``time_error_s`` the last SYNC's time less the expected; ``setpoint``
     and ``memory`` are the control law's; ``orbit`` and ``upload`` are elements from the ground, those in use
-    (None: the table's orbit) and those not loaded yet; ``sent`` are the counters of fsw's own messages.
+    (None: the table's orbit) and those not loaded yet; ``sent`` are the counters of fsw's own messages;
+    ``wheel`` is None without a wheel that can be driven.
     """
 
     tick: int
@@ -61,6 +63,7 @@ class FlightState(NamedTuple):
     coil: CoilView
     events: Throttle
     sent: tuple[int, ...]
+    wheel: WheelView | None = None
 
     def integers(self) -> tuple[int, ...]:
         """Every integer and flag, in the order that recorded logs fix."""
@@ -85,6 +88,7 @@ class FlightState(NamedTuple):
             *self.coil.integers(),
             *self.events.integers(),
             *self.sent,
+            *(self.wheel.integers() if self.wheel is not None else ()),
         )
 
     def floats(self) -> tuple[float, ...]:
@@ -101,6 +105,7 @@ class FlightState(NamedTuple):
             *(self.orbit or ()),
             *(self.ephemeris.floats() if self.ephemeris is not None else ()),
             *self.estimator.floats(),
+            *(self.wheel.floats() if self.wheel is not None else ()),
         )
 
 
@@ -114,7 +119,9 @@ def checksum(state: FlightState) -> int:
     return zlib.crc32(state.estimator.packed(), zlib.crc32(numbers))
 
 
-def initial_state(pulses: PulseState, setpoint: Setpoint, sent: tuple[int, ...]) -> FlightState:
+def initial_state(
+    pulses: PulseState, setpoint: Setpoint, sent: tuple[int, ...], wheel: WheelView | None = None
+) -> FlightState:
     """The state at boot, before the first SYNC."""
     return FlightState(
         tick=-1,
@@ -139,4 +146,5 @@ def initial_state(pulses: PulseState, setpoint: Setpoint, sent: tuple[int, ...])
         coil=CoilView(),
         events=Throttle(),
         sent=sent,
+        wheel=wheel,
     )

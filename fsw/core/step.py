@@ -1,60 +1,47 @@
 """The flight loop as one pure function, from what the boards sent to what is sent and reported."""
 
-from collections.abc import Sequence
-from typing import NamedTuple
+from dataclasses import replace
 
 from fsw.core import telemetry
-from fsw.core.actuation import own_field, pulses
+from fsw.core.actuation import own_field, pulses, wheel
 from fsw.core.actuation.actuator import actuate, update_view, wait_ticks
 from fsw.core.actuation.driven import driven
+from fsw.core.actuation.wheel import WheelView
 from fsw.core.algebra.quaternion import rotate
 from fsw.core.commands import command
 from fsw.core.config import FlightConfig
-from fsw.core.estimation.attitude import UNKNOWN, Attitude
-from fsw.core.estimation.estimator import NONE_USED, EstimatorState, Used, predict, restart, update
+from fsw.core.estimation.attitude import UNKNOWN
+from fsw.core.estimation.estimator import predict, restart, update
 from fsw.core.estimation.orbital_attitude import orbital_attitude, perfect_attitude
 from fsw.core.estimation.parameters import NOTHING
 from fsw.core.estimation.samples import usable_field, usable_sun
 from fsw.core.fdir import fdir
 from fsw.core.fdir.fdir import Evidence
-from fsw.core.fdir.sensors.plausibility import Findings
+from fsw.core.fdir.observation import Observation
 from fsw.core.gate import calibration, second_sender
 from fsw.core.gate.readings import Readings, admit
 from fsw.core.gate.sync_watch import Belief, SyncWatch, judge, near
 from fsw.core.laws import by_mode
 from fsw.core.laws.interface import Demand, FieldSample, LawInput
 from fsw.core.laws.plan.constant_torque import constant_torque
-from fsw.core.monitors import Monitor
 from fsw.core.orbit.ephemeris import EphemerisModel, Reference, advance, plausible, reference_at, with_orbit
 from fsw.core.restart import restarted
 from fsw.core.state import FlightState, Inbox, checksum, initial_state
 from fsw.core.supervisor import supervise
 from fsw.wire.frame import Frame
-from fsw.wire.messages import CoilDipole, CoilFire, CountedMessage, TickDone
+from fsw.wire.messages import CoilDipole, CoilFire, TickDone, WheelTorque
 
 Outbox = tuple[Frame, ...]
 
 
-class Observation(NamedTuple):
-    """What one tick shows of the satellite.
-
-    ``readings`` are those that may be trusted; ``reference`` is what the models expect, None without an
-    orbit; ``estimator`` and ``attitude`` are those of this tick before they are judged; ``used`` is what the
-    filter took.
-    """
-
-    readings: Readings
-    reference: Reference | None
-    estimator: EstimatorState
-    attitude: Attitude
-    used: Used = NONE_USED
-    findings: Findings | None = None
-
-
 def boot(config: FlightConfig) -> FlightState:
     """The state before the first SYNC."""
+    driven = config.wheel is not None
     return initial_state(
-        pulses.boot(0, config.coils.pulses), config.control.setpoint, telemetry.FIRST_COUNTERS
+        pulses.boot(0, config.coils.pulses),
+        config.control.setpoint,
+        telemetry.first_counters(with_wheel=driven),
+        WheelView() if driven else None,
     )
 
 
@@ -72,6 +59,7 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     state, inbox = _begin(state, inbox, belief, config)
     model = with_orbit(config.ephemeris, state.orbit)
     state, readings = _gate(state, inbox, syncs, config)
+    config = _with_wheel(state, before.tick, config)
     state, reference = _predict(state, model, before.tick, config)
     observation = _update(state, readings, reference, config)
     state = _judge(state, observation, config)
@@ -79,7 +67,8 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     state, acks = command(state, observation.readings, violated is not None, config)
     law_input, demand = _control(state, observation, model, config)
     state, requests = _schedule(state, observation.readings, law_input, demand, config)
-    state, frames = _report(before, state, observation, violated, (*requests, *acks), config)
+    replies = (*requests, *acks)
+    state, frames = telemetry.report(before, state, observation, violated, replies, config)
     return state, (*frames, _done(state, tick))
 
 
@@ -128,9 +117,19 @@ def _gate(
             state.second_sender, readings, view.seq, config.coils.dipoles is None, tick, config.second_sender
         ),
         coil=view,
+        wheel=wheel.seen(state.wheel, readings, tick, config.wheel),
         health=fdir.judge_current(state.health, view, readings, tick, config.fdir),
     )
     return state, readings
+
+
+def _with_wheel(state: FlightState, before: int, config: FlightConfig) -> FlightConfig:
+    """The tables with an estimator that reckons with the driven wheel, if there is one."""
+    if state.wheel is None:
+        return config
+    ticks = state.tick - before if before >= 0 else 1
+    seen = wheel.estimating(config.estimator, state.wheel, state.tick, ticks, config.wheel)
+    return replace(config, estimator=seen)
 
 
 def _predict(
@@ -211,40 +210,20 @@ def _law_input(
         state.tick,
         model,
         wait_ticks(state.pulses, state.coil, readings, state.tick, config.coils.pulses, faults),
+        wheel.momentum_nms(state.wheel, config.wheel),
     )
 
 
 def _schedule(
     state: FlightState, readings: Readings, law_input: LawInput, demand: Demand | None, config: FlightConfig
-) -> tuple[FlightState, list[CoilFire | CoilDipole]]:
-    """At most one request to the coil driver."""
+) -> tuple[FlightState, list[CoilFire | CoilDipole | WheelTorque]]:
+    """At most one request to the coil driver, and one to the wheel."""
     faults, b_body_t = state.health.coils.faults, law_input.b_body_t
     timers, view, request = actuate(
         state.pulses, state.coil, demand, b_body_t, readings, state.tick, config.coils, faults
     )
     memory = demand.memory if demand is not None else ()
-    state = state._replace(sample=law_input.sample, memory=memory, pulses=timers, coil=view)
-    return state, [] if request is None else [calibration.for_outputs(request, config.calibration)]
-
-
-def _report(
-    before: FlightState,
-    state: FlightState,
-    observation: Observation,
-    violated: Monitor | None,
-    replies: Sequence[CountedMessage],
-    config: FlightConfig,
-) -> tuple[FlightState, list[Frame]]:
-    """The frames of this tick: request and acknowledgements, then telemetry as it is due."""
-    events, event_messages = telemetry.event_messages(
-        before, state, observation.readings, violated, config.event_spacing_ticks
-    )
-    messages = [
-        *replies,
-        *telemetry.navigation_messages(state, observation.used, observation.reference, config.rates),
-        *telemetry.parameter_messages(state, config.estimator.mekf.layout, config.rates),
-        *event_messages,
-        *telemetry.heartbeat_messages(state, config.rates),
-    ]
-    frames, sent = telemetry.number(messages, state.sent)
-    return state._replace(events=events, sent=sent), frames
+    turning, torque = wheel.request(state.wheel, demand, state.tick, config.wheel)
+    state = state._replace(sample=law_input.sample, memory=memory, pulses=timers, coil=view, wheel=turning)
+    coils = [] if request is None else [calibration.for_outputs(request, config.calibration)]
+    return state, [*coils, *([] if torque is None else [torque])]

@@ -1,7 +1,9 @@
 """What fsw reports: navigation, events, heartbeat. Every message has a counter of its own in the state."""
 
+from collections.abc import Sequence
 from math import sqrt
 
+from fsw.core.config import FlightConfig
 from fsw.core.estimation import mekf
 from fsw.core.estimation.attitude import Attitude
 from fsw.core.estimation.estimator import Used
@@ -9,6 +11,7 @@ from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.parameters import Layout, component_places
 from fsw.core.events import SEVERITY, Event, Happening
 from fsw.core.fdir import fdir
+from fsw.core.fdir.observation import Observation
 from fsw.core.gate.readings import Readings
 from fsw.core.gate.sync_watch import near
 from fsw.core.modes import ModeState
@@ -30,6 +33,7 @@ from fsw.wire.messages import (
     NavQuality,
     NavRate,
     TcAck,
+    WheelTorque,
 )
 
 CONTRACT_VERSION = 1
@@ -43,14 +47,42 @@ COUNTED = (
     TcAck.ID,
     FswEvent.ID,
     FswHeartbeat.ID,
+    WheelTorque.ID,
 )
 _SLOT = {can_id: slot for slot, can_id in enumerate(COUNTED)}
-FIRST_COUNTERS = (0,) * len(COUNTED)
+
+
+def first_counters(with_wheel: bool) -> tuple[int, ...]:
+    """The counters of fsw's messages at boot; there is that of ``WHEEL_TORQUE`` where there is a wheel."""
+    return (0,) * (len(COUNTED) - (not with_wheel))
 
 
 def boot_frame(table_crc: int) -> Frame:
     """FSW_BOOT: sent once, before the first SYNC."""
     return FswBoot(reason=0, version=CONTRACT_VERSION, table_crc=table_crc).encode()
+
+
+def report(
+    before: FlightState,
+    state: FlightState,
+    observation: Observation,
+    violated: Monitor | None,
+    replies: Sequence[CountedMessage],
+    config: FlightConfig,
+) -> tuple[FlightState, list[Frame]]:
+    """The frames of this tick: requests and acknowledgements, then telemetry as it is due."""
+    events, of_events = event_messages(
+        before, state, observation.readings, violated, config.event_spacing_ticks
+    )
+    messages = [
+        *replies,
+        *navigation_messages(state, observation.used, observation.reference, config.rates),
+        *parameter_messages(state, config.estimator.mekf.layout, config.rates),
+        *of_events,
+        *heartbeat_messages(state, config.rates),
+    ]
+    frames, sent = number(messages, state.sent)
+    return state._replace(events=events, sent=sent), frames
 
 
 def navigation_messages(

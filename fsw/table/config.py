@@ -30,6 +30,7 @@ from fsw.table.own_law import with_own_law
 from fsw.table.schedules import planned_pulses, schedules
 from fsw.table.sections import CoilTable, ModesTable, OrbitTable, TelemetryTable
 from fsw.table.table import FlightTable
+from fsw.table.wheel import driven_wheel
 
 CHATTER_S = 10.0
 """Longest time between signs of a second sender of reports."""
@@ -119,6 +120,7 @@ def _control(table: FlightTable, orbit: Orbit) -> ControlConfig:
         mean_dipole_am2=mean_dipole_am2,
         schedules=schedules(table, orbit, gains),
         pulse_model=planned_pulses(table, orbit, gains, _pulses(table)),
+        wheel=driven_wheel(table.wheel, table.time.tick_hz),
     )
     return with_own_law(config, control) if control.own else config
 

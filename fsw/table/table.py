@@ -41,6 +41,7 @@ from fsw.table.sections import (
     parse_utc,
 )
 from fsw.table.uncertainty import LARGEST_FIELD_T, Ceiling, UncertaintyTable, bounds, check_bounds
+from fsw.table.wheel import WheelTable, check_wheel_inertia
 
 LATER_BOUNDS = ("torque_variation_nm", "cell_gain_percent", "cell_light_percent")
 """Keys of ``[uncertainty]`` that tables were written without."""
@@ -63,6 +64,7 @@ class FlightTable(Section):
     fdir: FdirTable
     telemetry: TelemetryTable
     calibration: CalibrationTable = CalibrationTable()
+    wheel: WheelTable | None = None
 
     @model_validator(mode="after")
     def _bounds_can_hold(self) -> Self:
@@ -104,6 +106,16 @@ class FlightTable(Section):
             )
         return self
 
+    @model_validator(mode="after")
+    def _wheel_fits(self) -> Self:
+        if self.wheel is not None and self.cells is not None:
+            raise ValueError(
+                "wheel is not allowed with cells: the start from cells reckons with a constant momentum"
+            )
+        if self.wheel is not None:
+            check_wheel_inertia(self.wheel, self.body.inertia)
+        return self
+
     @property
     def epoch_unix_s(self) -> int:
         """Time of tick 0, Unix seconds."""
@@ -119,8 +131,9 @@ class FlightTable(Section):
         for key in LATER_BOUNDS:
             if getattr(self.uncertainty, key) is None:
                 del values["uncertainty"][key]
-        if self.cells is None:
-            del values["cells"]
+        for section in ("cells", "wheel"):
+            if getattr(self, section) is None:
+                del values[section]
         values |= {"calibration": self.calibration.model_dump(mode="json", exclude_none=True)}
         if not values["calibration"]:
             del values["calibration"]

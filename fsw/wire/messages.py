@@ -103,6 +103,19 @@ class CoilRefusedReason(IntEnum):
     WRONG_BOARD = 10
 
 
+class WheelStatusResult(IntEnum):
+    """Values of ``result``."""
+
+    NONE = 0
+    DRIVEN = 1
+    MALFORMED = 2
+    WRONG_TICK = 3
+    SECOND_TORQUE = 4
+    BAD_TORQUE = 5
+    TOO_FAST = 6
+    NO_SPEED = 7
+
+
 class TcAckResult(IntEnum):
     """Values of ``result``."""
 
@@ -125,6 +138,7 @@ class Severity(IntEnum):
 
 _COIL_FIRE = id_register(0x080)
 _COIL_DIPOLE = id_register(0x088)
+_WHEEL_TORQUE = id_register(0x090)
 _TC_MODE = id_register(0x0A0)
 _TC_CLEAR = id_register(0x0A1)
 _TC_LAW = id_register(0x0A2)
@@ -142,6 +156,7 @@ _SUN_VECTOR = id_register(0x118)
 _SUN_CELLS = id_register(0x119)
 _REF_ATTITUDE = id_register(0x120)
 _REF_RATE = id_register(0x121)
+_WHEEL_STATUS = id_register(0x128)
 _NAV_ATTITUDE = id_register(0x200)
 _NAV_RATE = id_register(0x201)
 _NAV_QUALITY = id_register(0x202)
@@ -152,16 +167,19 @@ _FSW_EVENT = id_register(0x410)
 _COIL_EVENT = id_register(0x420)
 _MAG_EVENT = id_register(0x430)
 _SUN_EVENT = id_register(0x440)
+_WHEEL_EVENT = id_register(0x450)
 _PLANT_BOOT = id_register(0x500)
 _FSW_BOOT = id_register(0x510)
 _COIL_BOOT = id_register(0x520)
 _MAG_BOOT = id_register(0x530)
 _SUN_BOOT = id_register(0x540)
+_WHEEL_BOOT = id_register(0x550)
 _PLANT_HEARTBEAT = id_register(0x600)
 _FSW_HEARTBEAT = id_register(0x610)
 _COIL_HEARTBEAT = id_register(0x620)
 _MAG_HEARTBEAT = id_register(0x630)
 _SUN_HEARTBEAT = id_register(0x640)
+_WHEEL_HEARTBEAT = id_register(0x650)
 _PLANT_END = id_register(0x700)
 
 
@@ -241,6 +259,40 @@ class CoilDipole(_CoilDipole):
             ((word >> 4 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
             ((word >> 21 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
             ((word >> 38 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
+            (word & 0xF),
+        )
+
+
+class _WheelTorque(NamedTuple):
+    torque: float  # [N m]; the body gets the opposite
+    tick: int  # low 8 bits of the tick answered
+    counter: int = 0
+
+
+class WheelTorque(_WheelTorque):
+    """Motor torque on the wheel, about its axis, over the tick it answers. There is no OFF."""
+
+    __slots__ = ()
+
+    ID: Final = 0x090
+    LENGTH: Final = 6
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (raw(self.torque, 5.960464477539063e-08, -8388608, 8388607) & 0xFFFFFF) << 8
+            | (self.tick & 0xFF) << 32
+        )
+        return seal(0x090, word, 6, _WHEEL_TORQUE)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "WheelTorque":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            ((word >> 8 & 0xFFFFFF ^ 0x800000) - 0x800000) * 5.960464477539063e-08,
+            (word >> 32 & 0xFF),
             (word & 0xF),
         )
 
@@ -852,6 +904,46 @@ class RefRate(_RefRate):
         )
 
 
+class _WheelStatus(NamedTuple):
+    valid: int  # 0 when the speed cannot be measured
+    result: int  # what became of the last request in the tick that ends
+    speed: float  # [rad/s]; about its axis, relative to the body
+    torque: float  # [N m]; that the motor was set to in the tick that ends at this tick
+    counter: int = 0
+
+
+class WheelStatus(_WheelStatus):
+    """Exactly one a tick: the speed of the wheel, and its motor torque in the tick that ends."""
+
+    __slots__ = ()
+
+    ID: Final = 0x128
+    LENGTH: Final = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.valid & 0x1) << 4
+            | (self.result & 0x7) << 5
+            | (raw(self.speed, 0.000244140625, -8388608, 8388607) & 0xFFFFFF) << 8
+            | (raw(self.torque, 5.960464477539063e-08, -8388608, 8388607) & 0xFFFFFF) << 32
+        )
+        return seal(0x128, word, 8, _WHEEL_STATUS)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "WheelStatus":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0x1),
+            (word >> 5 & 0x7),
+            ((word >> 8 & 0xFFFFFF ^ 0x800000) - 0x800000) * 0.000244140625,
+            ((word >> 32 & 0xFFFFFF ^ 0x800000) - 0x800000) * 5.960464477539063e-08,
+            (word & 0xF),
+        )
+
+
 class _Sync(NamedTuple):
     tick: int
     unix_time_s: int  # [s]
@@ -1326,6 +1418,46 @@ class SunEvent(_SunEvent):
         )
 
 
+class _WheelEvent(NamedTuple):
+    severity: int
+    event: int  # number of the event in this node's list
+    tick: int  # low 8 bits of the tick
+    argument: int
+    counter: int = 0
+
+
+class WheelEvent(_WheelEvent):
+    """Something worth knowing happened in WHEEL."""
+
+    __slots__ = ()
+
+    ID: Final = 0x450
+    LENGTH: Final = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.severity & 0xF) << 4
+            | (self.event & 0xFF) << 8
+            | (self.tick & 0xFF) << 16
+            | (self.argument & 0xFFFFFFFF) << 24
+        )
+        return seal(0x450, word, 8, _WHEEL_EVENT)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "WheelEvent":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0xF),
+            (word >> 8 & 0xFF),
+            (word >> 16 & 0xFF),
+            ((word >> 24 & 0xFFFFFFFF ^ 0x80000000) - 0x80000000),
+            (word & 0xF),
+        )
+
+
 class _PlantBoot(NamedTuple):
     reason: int
     version: int  # version of this bus contract
@@ -1501,6 +1633,43 @@ class SunBoot(_SunBoot):
 
     @classmethod
     def decode(cls, data: bytes) -> "SunBoot":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0xF),
+            (word >> 8 & 0xFF),
+            (word >> 16 & 0xFFFFFFFF),
+            (word & 0xF),
+        )
+
+
+class _WheelBoot(NamedTuple):
+    reason: int
+    version: int  # version of this bus contract
+    table_crc: int  # CRC-32 of the node's table
+    counter: int = 0
+
+
+class WheelBoot(_WheelBoot):
+    """WHEEL has started."""
+
+    __slots__ = ()
+
+    ID: Final = 0x550
+    LENGTH: Final = 7
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.reason & 0xF) << 4
+            | (self.version & 0xFF) << 8
+            | (self.table_crc & 0xFFFFFFFF) << 16
+        )
+        return seal(0x550, word, 7, _WHEEL_BOOT)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "WheelBoot":
         """The values in the data bytes, unjudged."""
         word = int.from_bytes(data, "little")
         return cls(
@@ -1711,6 +1880,46 @@ class SunHeartbeat(_SunHeartbeat):
         )
 
 
+class _WheelHeartbeat(NamedTuple):
+    state: int
+    rejects: int  # frames rejected since boot, at most 65535
+    slips: int  # missed deadlines since boot, at most 65535
+    tick: int  # low 16 bits of the tick
+    counter: int = 0
+
+
+class WheelHeartbeat(_WheelHeartbeat):
+    """WHEEL is alive."""
+
+    __slots__ = ()
+
+    ID: Final = 0x650
+    LENGTH: Final = 8
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        word = (
+            (self.counter & 0xF)
+            | (self.state & 0xF) << 4
+            | (self.rejects & 0xFFFF) << 8
+            | (self.slips & 0xFFFF) << 24
+            | (self.tick & 0xFFFF) << 40
+        )
+        return seal(0x650, word, 8, _WHEEL_HEARTBEAT)
+
+    @classmethod
+    def decode(cls, data: bytes) -> "WheelHeartbeat":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return cls(
+            (word >> 4 & 0xF),
+            (word >> 8 & 0xFFFF),
+            (word >> 24 & 0xFFFF),
+            (word >> 40 & 0xFFFF),
+            (word & 0xF),
+        )
+
+
 class _PlantEnd(NamedTuple):
     ticks: int  # ticks flown, modulo 2^24
     counter: int = 0
@@ -1742,6 +1951,7 @@ class PlantEnd(_PlantEnd):
 CountedMessage = (
     CoilFire
     | CoilDipole
+    | WheelTorque
     | TcMode
     | TcClear
     | TcLaw
@@ -1759,6 +1969,7 @@ CountedMessage = (
     | SunCells
     | RefAttitude
     | RefRate
+    | WheelStatus
     | NavAttitude
     | NavRate
     | NavQuality
@@ -1769,16 +1980,19 @@ CountedMessage = (
     | CoilEvent
     | MagEvent
     | SunEvent
+    | WheelEvent
     | PlantBoot
     | FswBoot
     | CoilBoot
     | MagBoot
     | SunBoot
+    | WheelBoot
     | PlantHeartbeat
     | FswHeartbeat
     | CoilHeartbeat
     | MagHeartbeat
     | SunHeartbeat
+    | WheelHeartbeat
     | PlantEnd
 )
 
@@ -1787,6 +2001,7 @@ AnyMessage = CountedMessage | Sync | TickDone
 CLASSES: dict[int, type[AnyMessage]] = {
     0x080: CoilFire,
     0x088: CoilDipole,
+    0x090: WheelTorque,
     0x0A0: TcMode,
     0x0A1: TcClear,
     0x0A2: TcLaw,
@@ -1804,6 +2019,7 @@ CLASSES: dict[int, type[AnyMessage]] = {
     0x119: SunCells,
     0x120: RefAttitude,
     0x121: RefRate,
+    0x128: WheelStatus,
     0x180: Sync,
     0x200: NavAttitude,
     0x201: NavRate,
@@ -1816,16 +2032,19 @@ CLASSES: dict[int, type[AnyMessage]] = {
     0x420: CoilEvent,
     0x430: MagEvent,
     0x440: SunEvent,
+    0x450: WheelEvent,
     0x500: PlantBoot,
     0x510: FswBoot,
     0x520: CoilBoot,
     0x530: MagBoot,
     0x540: SunBoot,
+    0x550: WheelBoot,
     0x600: PlantHeartbeat,
     0x610: FswHeartbeat,
     0x620: CoilHeartbeat,
     0x630: MagHeartbeat,
     0x640: SunHeartbeat,
+    0x650: WheelHeartbeat,
     0x700: PlantEnd,
 }
 """Class of each message."""
@@ -1833,6 +2052,7 @@ CLASSES: dict[int, type[AnyMessage]] = {
 NAMES: dict[int, str] = {
     0x080: "COIL_FIRE",
     0x088: "COIL_DIPOLE",
+    0x090: "WHEEL_TORQUE",
     0x0A0: "TC_MODE",
     0x0A1: "TC_CLEAR",
     0x0A2: "TC_LAW",
@@ -1850,6 +2070,7 @@ NAMES: dict[int, str] = {
     0x119: "SUN_CELLS",
     0x120: "REF_ATTITUDE",
     0x121: "REF_RATE",
+    0x128: "WHEEL_STATUS",
     0x180: "SYNC",
     0x200: "NAV_ATTITUDE",
     0x201: "NAV_RATE",
@@ -1862,16 +2083,19 @@ NAMES: dict[int, str] = {
     0x420: "COIL_EVENT",
     0x430: "MAG_EVENT",
     0x440: "SUN_EVENT",
+    0x450: "WHEEL_EVENT",
     0x500: "PLANT_BOOT",
     0x510: "FSW_BOOT",
     0x520: "COIL_BOOT",
     0x530: "MAG_BOOT",
     0x540: "SUN_BOOT",
+    0x550: "WHEEL_BOOT",
     0x600: "PLANT_HEARTBEAT",
     0x610: "FSW_HEARTBEAT",
     0x620: "COIL_HEARTBEAT",
     0x630: "MAG_HEARTBEAT",
     0x640: "SUN_HEARTBEAT",
+    0x650: "WHEEL_HEARTBEAT",
     0x700: "PLANT_END",
 }
 """Name of each message in the DBC."""
@@ -1879,6 +2103,7 @@ NAMES: dict[int, str] = {
 SENDERS: dict[int, str] = {
     0x080: "FSW",
     0x088: "FSW",
+    0x090: "FSW",
     0x0A0: "GROUND",
     0x0A1: "GROUND",
     0x0A2: "GROUND",
@@ -1896,6 +2121,7 @@ SENDERS: dict[int, str] = {
     0x119: "SUN",
     0x120: "PLANT",
     0x121: "PLANT",
+    0x128: "WHEEL",
     0x180: "PLANT",
     0x200: "FSW",
     0x201: "FSW",
@@ -1908,16 +2134,19 @@ SENDERS: dict[int, str] = {
     0x420: "COIL",
     0x430: "MAG",
     0x440: "SUN",
+    0x450: "WHEEL",
     0x500: "PLANT",
     0x510: "FSW",
     0x520: "COIL",
     0x530: "MAG",
     0x540: "SUN",
+    0x550: "WHEEL",
     0x600: "PLANT",
     0x610: "FSW",
     0x620: "COIL",
     0x630: "MAG",
     0x640: "SUN",
+    0x650: "WHEEL",
     0x700: "PLANT",
 }
 """Node that sends each message."""
@@ -1925,6 +2154,7 @@ SENDERS: dict[int, str] = {
 _SHAPES: dict[int, tuple[int, int | None]] = {
     0x080: (7, _COIL_FIRE),
     0x088: (8, _COIL_DIPOLE),
+    0x090: (6, _WHEEL_TORQUE),
     0x0A0: (2, _TC_MODE),
     0x0A1: (2, _TC_CLEAR),
     0x0A2: (3, _TC_LAW),
@@ -1942,6 +2172,7 @@ _SHAPES: dict[int, tuple[int, int | None]] = {
     0x119: (8, _SUN_CELLS),
     0x120: (8, _REF_ATTITUDE),
     0x121: (8, _REF_RATE),
+    0x128: (8, _WHEEL_STATUS),
     0x180: (8, None),
     0x200: (8, _NAV_ATTITUDE),
     0x201: (8, _NAV_RATE),
@@ -1954,16 +2185,19 @@ _SHAPES: dict[int, tuple[int, int | None]] = {
     0x420: (8, _COIL_EVENT),
     0x430: (8, _MAG_EVENT),
     0x440: (8, _SUN_EVENT),
+    0x450: (8, _WHEEL_EVENT),
     0x500: (7, _PLANT_BOOT),
     0x510: (7, _FSW_BOOT),
     0x520: (7, _COIL_BOOT),
     0x530: (7, _MAG_BOOT),
     0x540: (7, _SUN_BOOT),
+    0x550: (7, _WHEEL_BOOT),
     0x600: (8, _PLANT_HEARTBEAT),
     0x610: (8, _FSW_HEARTBEAT),
     0x620: (8, _COIL_HEARTBEAT),
     0x630: (8, _MAG_HEARTBEAT),
     0x640: (8, _SUN_HEARTBEAT),
+    0x650: (8, _WHEEL_HEARTBEAT),
     0x700: (5, _PLANT_END),
 }
 

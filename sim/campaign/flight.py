@@ -21,7 +21,7 @@ from sim.faults.section import break_frames, make_plant
 from sim.flight.flight_loop import fly
 from sim.flight.record_flight import MOST_IN_MEMORY, ticks_of
 from sim.flight.virtual import VirtualBus
-from sim.plant.plant import TruthRow
+from sim.plant.truth_row import TruthRow
 from sim.record.candump import LogEntry
 from sim.record.estimates import EstimateRecorder, Estimates
 from sim.record.run_dir import Json

@@ -10,7 +10,7 @@ from sim.errors import needing
 
 DBC = Path(fsw.wire.__file__).with_name("torquer.dbc")
 
-SLUGS = {"nT": "nt", "rad": "rad", "rad/s": "radps", "ms": "ms", "s": "s", "mA": "ma"}
+SLUGS = {"nT": "nt", "rad": "rad", "rad/s": "radps", "ms": "ms", "s": "s", "mA": "ma", "N m": "nm"}
 """Ending of a name by the unit of the signal; a fraction has none."""
 
 

@@ -13,7 +13,7 @@ from sim.export.source import Source, histories
 from sim.faults.section import forge_answers
 from sim.progress import Watch
 from sim.record.estimates import Estimates
-from sim.record.truth import COLUMNS, Histories, TruthReader
+from sim.record.truth import COLUMNS, OF_WHEEL, Histories, TruthReader
 from sim.replay.log_replay import ReplayResult, replay
 from sim.report.figures.histories import FlightHistories
 from sim.report.history_blocks import HistoryBlocks
@@ -117,7 +117,10 @@ class HistoryTable:
         with TruthReader(self._path) as truth:
             self.ticks = truth.complete
             names = tuple(truth.rows(0, 0))
-        known = {name: HistoryQuantity(name, width, unit, meaning) for name, width, unit, meaning in COLUMNS}
+        known = {
+            name: HistoryQuantity(name, width, unit, meaning)
+            for name, width, unit, meaning in (*COLUMNS, OF_WHEEL)
+        }
         self._truth = {name: known.get(name) or _torque(name) for name in names}
         self.quantities = (
             *self._truth.values(),

@@ -19,7 +19,7 @@ from fsw.wire.messages import (
 )
 from sim.fault_rig.currents import CurrentPulse
 from sim.plant.hardware.actuators import CoilDrive
-from sim.plant.plant import TruthRow
+from sim.plant.truth_row import TruthRow
 from sim.record.candump import LogEntry
 
 _AUDITED = frozenset((CoilStatus.ID, CoilBoot.ID, Sync.ID))

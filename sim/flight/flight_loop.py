@@ -24,7 +24,8 @@ from sim.flight.fsw_answers import (
     lockstep_answers,
     waiting_frames,
 )
-from sim.plant.plant import Plant, TruthRow
+from sim.plant.plant import Plant
+from sim.plant.truth_row import TruthRow
 from sim.record.inbox_order import split_at_sync
 from sim.record.pace import LOCKSTEP, Pace
 from sim.scenario.telecommands import Uplink

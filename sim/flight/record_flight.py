@@ -86,7 +86,7 @@ def record_flight(
     plant = make_plant(plant_config(scenario, run["seed"]), scenario.fault, own_effects(scenario.effect))
     pace = Pace(run["pace_factor"])
     senders = SenderWatch(lockstep=pace.factor is None)
-    identity = run_dir.identity(scenario, run["seed"])
+    identity, wheel = run_dir.identity(scenario, run["seed"]), scenario.wheel is not None
 
     def store_senders() -> None:
         run_dir.update(path, second_senders=[sender.as_json() for sender in senders.found])
@@ -98,7 +98,7 @@ def record_flight(
     try:
         with (
             BusLog(path / log_name, bus.name) as log,
-            TruthFile(path / run_dir.TRUTH, run["ticks"], plant.torque_sources, identity) as truth,
+            TruthFile(path / run_dir.TRUTH, run["ticks"], plant.torque_sources, identity, wheel) as truth,
         ):
             outcome = fly(
                 plant,

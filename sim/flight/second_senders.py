@@ -26,18 +26,28 @@ from fsw.wire.messages import (
     NavRate,
     Sync,
     TickDone,
+    WheelTorque,
     intact,
 )
 from sim.record.run_record import SenderRecord
 
-WITH_BOARDS = frozenset({"PLANT", "COIL", "MAG", "SUN"})
+WITH_BOARDS = frozenset({"PLANT", "COIL", "MAG", "SUN", "WHEEL"})
 """Senders in the plant's process where the boards are part of the plant."""
 ALONE = frozenset({"PLANT"})
 """The same where the boards are nodes of their own."""
 
 _FROM_FSW = frozenset(can_id for can_id, sender in SENDERS.items() if sender == "FSW")
 _ONCE = frozenset(
-    {CoilFire.ID, CoilDipole.ID, NavAttitude.ID, NavRate.ID, NavQuality.ID, NavParameter.ID, FswHeartbeat.ID}
+    {
+        CoilFire.ID,
+        CoilDipole.ID,
+        WheelTorque.ID,
+        NavAttitude.ID,
+        NavRate.ID,
+        NavQuality.ID,
+        NavParameter.ID,
+        FswHeartbeat.ID,
+    }
 )
 """Messages that an answer of the flight software contains once at most."""
 

@@ -1,5 +1,6 @@
 """The configuration of a plant: every number that the physics needs, in SI, as frozen values."""
 
+import dataclasses
 from dataclasses import dataclass
 from math import isclose
 from typing import Literal
@@ -15,6 +16,7 @@ from sim.plant.sensor_config import (
     SunSensorConfig,
     Wiring,
 )
+from sim.plant.wheel_config import WheelConfig
 
 FieldModel = Literal["igrf14", "tilted_dipole", "direct_dipole"]
 
@@ -240,6 +242,7 @@ class PlantConfig:
         limits: what the coil driver's interlock enforces.
         max_substep_s: longest integration step.
         perfect_knowledge: whether the plant sends its true attitude and rate.
+        wheel: a reaction wheel that is driven; None: there is none.
 
     Raises:
         ValueError: a number is out of range, or the tick rates of board and plant differ.
@@ -259,6 +262,7 @@ class PlantConfig:
     limits: CoilLimits
     max_substep_s: float = 1.0
     perfect_knowledge: bool = False
+    wheel: WheelConfig | None = dataclasses.field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         if self.tick_hz < 1:
@@ -271,3 +275,5 @@ class PlantConfig:
             raise ValueError("seed must not be negative")
         if not 0 <= self.epoch_unix_s < 2**32:
             raise ValueError("epoch_unix_s must fit into 32 bits")
+        if self.wheel is not None:
+            BodyConfig(self.wheel.rest_of(self.body.inertia_kgm2))  # raises if none is left

@@ -1,7 +1,7 @@
 """The plant: physics and boards, tick by tick, with frames as output and input."""
 
-from math import ceil, isfinite
-from typing import Literal, NamedTuple
+from math import ceil
+from typing import Literal
 from zlib import crc32
 
 from fsw.wire.frame import Frame
@@ -18,6 +18,7 @@ from sim.plant.hardware.actuators import Actuator, CoilDrive, make_actuator
 from sim.plant.hardware.coils import Coils
 from sim.plant.hardware.sensors import MagnetometerPhysics
 from sim.plant.hardware.sun_sensing import SunView, make_sun_sensing
+from sim.plant.hardware.wheel_unit import WheelUnit
 from sim.plant.interference import NO_INTERFERENCE, Interference
 from sim.plant.own_effects import NO_EFFECTS, Moment, OwnEffects
 from sim.plant.rotation import (
@@ -32,28 +33,10 @@ from sim.plant.rotation import (
     normalise,
     transform,
 )
+from sim.plant.truth_row import TruthRow
 
 _REF_RATE_RANGE_RADPS = 0.125
 """Range of ``REF_RATE``; beyond it the rate is sent as not valid."""
-
-
-class TruthRow(NamedTuple):
-    """The truth at a sampled instant t_k."""
-
-    t_s: float
-    q_body_from_orbit: Quaternion
-    """Scalar part >= 0."""
-    omega_body_orbit_radps: Vec3
-    b_body_t: Vec3
-    sun_body: Vec3
-    """Unit vector from the satellite to the Sun."""
-    lit: float
-    """Visible fraction of the Sun's disc."""
-    m_body_am2: Vec3
-    """Mean true dipole of the coils over the tick that ends at t_k."""
-    r_eci_m: Vec3
-    torque_body_nm: tuple[Vec3, ...]
-    """At t_k, by ``Plant.torque_sources``; the coils' is m x b of this row, the noise that before t_k."""
 
 
 class Plant:
@@ -80,10 +63,16 @@ class Plant:
         """Integration steps a tick."""
         self._step_s = 1.0 / (config.tick_hz * self.substeps)
         self._environment = Environment(config, self.substeps)
-        self._body = RigidBody(config.body.inertia_kgm2, config.body.wheel_body_nms)
+        inertia, wheel = config.body.inertia_kgm2, config.wheel
+        own_inertia = inertia if wheel is None else wheel.rest_of(inertia)
+        self._body = RigidBody(own_inertia, config.body.wheel_body_nms)
         effect_by_name, self._noise = effects(config), torque_noise(config)
         self._effects, self._own = tuple(effect_by_name.values()), own
-        last = (*(("noise",) if self._noise else ()), *own.torque_sources)
+        last = (
+            *(("noise",) if self._noise else ()),
+            *(("wheel",) if wheel is not None else ()),
+            *own.torque_sources,
+        )
         self.torque_sources = (*torques.SOURCES, *effect_by_name, *last)
         """Names of the torques, in the order of ``TruthRow.torque_body_nm``."""
         self._coils = Coils(config.coils)
@@ -99,6 +88,9 @@ class Plant:
         self._mean_dipole_am2 = self._noise_body_nm = ZERO
         self.motion = self._initial_motion()
         """Attitude and rate against the inertial frame at the instant of the tick."""
+        omega = self.motion.omega_body_radps
+        self._wheel = None if wheel is None else WheelUnit(wheel, config.tick_hz, omega)
+        self._reactions_nm: tuple[Vec3, ...] = () if wheel is None else (ZERO,)  # on the body, in a substep
         self._observe()
         self.slips = 0
         """Deadlines missed since boot: counted by the real-time loop, reported in the heartbeat."""
@@ -128,15 +120,18 @@ class Plant:
             *self._magnetometer_board.begin_tick(tick, b_t, b_valid),
             *self._sun.begin_tick(tick, view, faulty),
             *self._actuator.board.begin_tick(tick, coils.readback_a),
+            *(self._wheel.begin_tick(tick, self.motion.omega_body_radps) if self._wheel else ()),
             *self._own_frames(),
             Sync(tick, self._config.epoch_unix_s + tick // self._config.tick_hz).encode(),
         ]
 
     def receive(self, frame: Frame) -> None:
-        """Hand a frame of this tick's answer to the coil driver board."""
+        """Hand a frame of this tick's answer to the boards that take requests."""
         self._actuator.board.receive(frame)
+        if self._wheel is not None:
+            self._wheel.receive(frame)
 
-    def restart(self, board: Literal["magnetometer", "sun", "coil"]) -> None:
+    def restart(self, board: Literal["magnetometer", "sun", "coil", "wheel"]) -> None:
         """Power-cycle a board before a tick begins: it boots in that tick, without memory of before."""
         config = self._config
         match board:
@@ -146,6 +141,8 @@ class Plant:
                 self._sun.restart()
             case "coil":
                 self._actuator = make_actuator(config)
+            case "wheel" if self._wheel is not None:
+                self._wheel.restart()
 
     def scale_coil(self, coil: int, scale: float) -> None:
         """Scale the dipole that a coil gives for the same current; -1 reverses it."""
@@ -161,15 +158,21 @@ class Plant:
         driven_a, fraction = self.coil_drive
         if self._noise:
             self._noise_body_nm = next(self._noise)
-        substeps, step_s, motion = self.substeps, self._step_s, self.motion
+        substeps, step_s, motion, wheel = self.substeps, self._step_s, self.motion, self._wheel
+        if wheel is not None:
+            wheel.drive()
         sx = sy = sz = 0.0
         for substep in range(substeps):
             on_s = step_s * min(max(fraction * substeps - substep, 0.0), 1.0)
             mx, my, mz = self._coils.advance(driven_a, on_s, step_s)
             sx, sy, sz = sx + mx, sy + my, sz + mz
-            torque = self._torque((mx, my, mz))
-            motion = self._body.step(motion, torque, self._around[2 * substep : 2 * substep + 3], step_s)
-            if not _is_motion(motion):
+            momenta = None
+            if wheel is not None:
+                momenta, reaction_nm = wheel.advance(motion.omega_body_radps, step_s)
+                self._reactions_nm = (reaction_nm,)
+            torque, around = self._torque((mx, my, mz)), self._around[2 * substep : 2 * substep + 3]
+            motion = self._body.step(motion, torque, around, step_s, momenta)
+            if not motion.sound:
                 raise PlantError(f"the motion diverges in tick {self._tick}: too fast for the integration")
         self.motion = motion
         self._mean_dipole_am2 = (sx / substeps, sy / substeps, sz / substeps)
@@ -204,8 +207,10 @@ class Plant:
                     for effect in self._effects
                 ),
                 *((self._noise_body_nm,) if self._noise else ()),
+                *self._reactions_nm,
                 *self._own.torques_body_nm,
             ),
+            wheel_nms=self._wheel.momentum_nms(self.motion.omega_body_radps) if self._wheel else None,
         )
 
     def end(self) -> Frame:
@@ -220,7 +225,7 @@ class Plant:
         dipole = (mx + rx, my + ry, mz + rz)
         (bx, by, bz), (nx, ny, nz) = self._bias_body_nm(), self._noise_body_nm
         bias = (bx + nx, by + ny, bz + nz)
-        for tx, ty, tz in self._own.torques_body_nm:
+        for tx, ty, tz in (*self._reactions_nm, *self._own.torques_body_nm):
             bias = (bias[0] + tx, bias[1] + ty, bias[2] + tz)
         if not found:
             return lambda q, omega, around: torques.total(inertia, q, around, dipole, bias)
@@ -275,7 +280,8 @@ class Plant:
     def _own_frames(self) -> list[Frame]:
         tick, frames = self._tick, []
         if tick == 0:
-            table_crc = crc32(repr(self._config).encode())
+            wheel = self._config.wheel
+            table_crc = crc32(f"{self._config!r}{'' if wheel is None else repr(wheel)}".encode())
             frames.append(PlantBoot(reason=0, version=CONTRACT_VERSION, table_crc=table_crc).encode())
         if self._config.perfect_knowledge:
             (_, x, y, z), omega = self._relative()
@@ -286,9 +292,3 @@ class Plant:
         if beats and not rest:
             frames.append(PlantHeartbeat(0, 0, self.slips, tick, counter=beats - 1).encode())
         return frames
-
-
-def _is_motion(motion: Motion) -> bool:
-    """Whether attitude and rate are finite, and the quaternion is near unit norm."""
-    (q0, q1, q2, q3), (x, y, z) = motion
-    return isfinite(x + y + z) and 0.5 < q0 * q0 + q1 * q1 + q2 * q2 + q3 * q3 < 2.0

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from fsw.input.regular_file import check_regular
 from sim.errors import HarnessError
-from sim.plant.plant import TruthRow
+from sim.plant.truth_row import TruthRow
 from sim.record.destination import allocate
 
 BLOCK_ROWS = 1024
@@ -44,6 +44,8 @@ COLUMNS: tuple[tuple[str, int, str, str], ...] = (
     ("r_eci_m", 3, "m", "position, TEME of date"),
 )
 """Name, width, unit and meaning of the datasets; torques follow, one dataset per source."""
+OF_WHEEL = ("wheel_nms", 1, "N m s", "momentum of the driven wheel relative to the body, along its axis")
+"""The last dataset, where there is such a wheel."""
 
 
 class TruthFile:
@@ -54,15 +56,21 @@ class TruthFile:
         ticks: rows that it will have.
         torque_sources: names of the torques.
         attributes: of the file.
+        wheel: the satellite has a wheel that is driven.
 
     Raises:
         HarnessError: the disk cannot hold the histories of so many ticks.
     """
 
     def __init__(
-        self, path: Path, ticks: int, torque_sources: tuple[str, ...], attributes: Attributes | None = None
+        self,
+        path: Path,
+        ticks: int,
+        torque_sources: tuple[str, ...],
+        attributes: Attributes | None = None,
+        wheel: bool = False,
     ) -> None:
-        self._columns = sum(width for _, width, *_ in COLUMNS) + 3 * len(torque_sources)
+        self._columns = sum(width for _, width, *_ in COLUMNS) + 3 * len(torque_sources) + wheel
         allocate(path, 8 * ticks * self._columns + ROOM_FOR_STRUCTURE)
         self._file = h5py.File(path, "w", libver="earliest")
         self._file.attrs.update(attributes or {})
@@ -71,7 +79,7 @@ class TruthFile:
             for source in torque_sources
         )
         self._datasets = []
-        for name, width, unit, meaning in COLUMNS + torques:
+        for name, width, unit, meaning in (*COLUMNS, *torques, *((OF_WHEEL,) if wheel else ())):
             shape = (ticks,) if width == 1 else (ticks, width)
             dataset = self._file.create_dataset(name, shape, dtype="f8", fillvalue=np.nan)
             dataset.attrs["unit"] = unit
@@ -234,6 +242,8 @@ def _names(file: h5py.File, size: int) -> tuple[str, ...]:
     """
     widths = {name: width for name, width, *_ in COLUMNS}
     widths |= {f"torque_body_nm/{source}": 3 for source in _sources(file)}
+    if OF_WHEEL[0] in file:
+        widths |= {OF_WHEEL[0]: OF_WHEEL[1]}
     _check_layout(file, widths, size)
     return tuple(widths)
 
@@ -285,4 +295,5 @@ def _flat(row: TruthRow) -> list[float]:
         *row.m_body_am2,
         *row.r_eci_m,
         *chain.from_iterable(row.torque_body_nm),
+        *(() if row.wheel_nms is None else (row.wheel_nms,)),
     ]

@@ -15,9 +15,10 @@ from sim.plant.config import (
     PlateConfig,
 )
 from sim.plant.sensor_config import AS_NAMED, CellConfig, MagnetometerConfig, SunCellsConfig, SunSensorConfig
+from sim.plant.wheel_config import WheelConfig
 from sim.scenario.coil_limits import coil_limits
 from sim.scenario.schema import Scenario
-from sim.scenario.sections import CellsSection
+from sim.scenario.sections import CellsSection, ScenarioWheel
 
 NT = 1e-9
 Vec3 = tuple[float, float, float]
@@ -52,6 +53,7 @@ def _config(scenario: Scenario, seed: int) -> PlantConfig:
         limits=coil_limits(scenario.coils, tick_hz),
         max_substep_s=scenario.plant.max_substep_s,
         perfect_knowledge=scenario.knowledge == "perfect",
+        wheel=None if scenario.wheel is None else _wheel(scenario.wheel),
     )
 
 
@@ -83,6 +85,21 @@ def _body(scenario: Scenario) -> BodyConfig:
         for plate in body.plates
     )
     return BodyConfig(body.inertia, body.wheel_nms, plates)
+
+
+def _wheel(section: ScenarioWheel) -> WheelConfig:
+    friction = section.friction_scale
+    return WheelConfig(
+        _unit(section.axis),
+        section.inertia_kgm2,
+        section.max_torque_nm,
+        section.max_momentum_nms,
+        friction * section.viscous_nms,
+        friction * section.coulomb_nm,
+        section.time_constant_s,
+        section.torque_scale,
+        section.momentum_nms,
+    )
 
 
 def _disturbance(scenario: Scenario) -> DisturbanceConfig:

@@ -40,8 +40,10 @@ from sim.scenario.sections import (
     ScenarioBody,
     ScenarioCoils,
     ScenarioOrbit,
+    ScenarioWheel,
     SensorsSection,
     onboard_cells,
+    onboard_wheel,
 )
 from sim.scenario.telecommands import Telecommands
 
@@ -95,6 +97,7 @@ class Scenario(Section):
     body: ScenarioBody
     initial: InitialState = InitialState()
     coils: ScenarioCoils
+    wheel: ScenarioWheel | None = None
     sensors: SensorsSection = SensorsSection()
     disturbance: DisturbanceSection = DisturbanceSection()
     control: ControlTable
@@ -218,6 +221,8 @@ def flight_table(scenario: Scenario, source: str = "scenario") -> FlightTable:
     }
     if scenario.sensors.cells is not None:
         shared["cells"] = onboard_cells(scenario.sensors.cells)
+    if scenario.wheel is not None:
+        shared["wheel"] = onboard_wheel(scenario.wheel)
     defaults = onboard.default_values()
     defaults.pop("orbit")
     values = onboard.lay_over(merge(defaults, shared), scenario.flight)

@@ -7,6 +7,7 @@ from pydantic import AfterValidator, Field, Strict, model_validator
 from fsw.input.schema import Nested, NotNegative, Positive, Section, Square, Triple
 from fsw.table.cells import CellShapes
 from fsw.table.sections import BodyTable, CoilTable, OrbitTable
+from fsw.table.wheel import WheelTable
 
 Part = Annotated[float, Field(ge=0.0, le=1.0)]
 Skew = Annotated[float, Field(ge=-10.0, le=10.0)]
@@ -72,6 +73,30 @@ class ScenarioCoils(CoilTable):
     misalignment_deg: Square = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     resistance_ohm: Positive | None = None
     wiring: Wiring | None = None
+
+
+class ScenarioWheel(WheelTable):
+    """A reaction wheel that is driven, and the physics of wheel and motor.
+
+    ``momentum_nms`` is its momentum at the epoch, relative to the body; the motor torque follows a request
+    with ``time_constant_s``. ``torque_scale`` and ``friction_scale`` are true over nominal.
+    """
+
+    momentum_nms: float = 0.0
+    time_constant_s: NotNegative = 0.05
+    torque_scale: Positive = 1.0
+    friction_scale: NotNegative = 1.0
+
+    @model_validator(mode="after")
+    def _begins_within_its_range(self) -> Self:
+        if abs(self.momentum_nms) > self.max_momentum_nms:
+            raise ValueError(f"momentum_nms must lie within max_momentum_nms, {self.max_momentum_nms:g}")
+        return self
+
+
+def onboard_wheel(section: ScenarioWheel) -> Nested:
+    """The wheel as the onboard table has it."""
+    return section.model_dump(include=set(WheelTable.model_fields))
 
 
 class MagnetometerSection(Section):

@@ -121,7 +121,7 @@ def stages():
 
 
 def test_the_stages_of_a_step_are_found():
-    own = {"_gate", "_predict", "_update", "_judge", "_control", "_schedule", "_report"}
+    own = {"_gate", "_predict", "_update", "_judge", "_control", "_schedule", "telemetry.report"}
     assert own | {"supervise", "command"} < set(stages())
 
 

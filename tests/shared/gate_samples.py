@@ -18,6 +18,7 @@ from fsw.wire.messages import (
     RefRate,
     SunCells,
     SunVector,
+    WheelStatus,
 )
 
 FIELD = MagField(1, 20000.0, -7000.0, 31000.0, counter=5)
@@ -31,7 +32,8 @@ BOOT = CoilBoot(1, 1, 0x89ABCDEF, counter=12)
 COUNTED = (FIELD, SUN, COIL, REFUSED, ATTITUDE, RATE, DIPOLE)
 END = PlantEnd(9000, counter=13)
 CELLS = SunCells(1, 0.5, 0.25, 1.125, 0.0078125, 1.9921875, 0.75, counter=14)
-EVERY_KIND = (*COUNTED, BOOT, END, CELLS)
+WHEEL = WheelStatus(1, 1, -312.5, 0.001953125, counter=15)
+EVERY_KIND = (*COUNTED, BOOT, END, CELLS, WHEEL)
 SLOT = {message.ID: slot for slot, message in enumerate(EVERY_KIND)}
 EVERY_MESSAGE = pytest.mark.parametrize("message", EVERY_KIND, ids=lambda m: type(m).__name__)
 EVERY_COUNTED = pytest.mark.parametrize("message", COUNTED, ids=lambda m: type(m).__name__)

@@ -144,7 +144,10 @@ def _predicted(
         m = estimated_dipole(m, parameters)
     if parts.inertia is not None:
         rotor = estimated_rotor(rotor, parameters)
-    acting = Acting(e1_eci, b_eci_t, gravity_per_s2, m, parameters.torque_body_nm, rotor)
+    torque = parameters.torque_body_nm
+    if config.reaction_body_nm != ZERO:
+        torque = add(torque, config.reaction_body_nm)
+    acting = Acting(e1_eci, b_eci_t, gravity_per_s2, m, torque, rotor)
     around_mid, motion = middle(q, omega, acting, h)
     rotation, omega_after = advanced(q, omega, motion, acting, h)
     transition = transition_matrix(motion, around_mid, driven.m_body_am2, rotor, config)

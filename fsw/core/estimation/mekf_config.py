@@ -6,7 +6,7 @@ from math import ceil, sqrt
 
 import numpy as np
 
-from fsw.core.algebra.vector import ZERO, Mat3, Vec3, dot, inverse
+from fsw.core.algebra.vector import ZERO, Mat3, Vec3, add, dot, inverse, transform
 from fsw.core.estimation.cells.cell_set import CellSet
 from fsw.core.estimation.dynamics.torque_maps import TORQUES, TorqueMaps, cross_matrix, system_maps
 from fsw.core.estimation.kalman import Matrix
@@ -37,6 +37,7 @@ class MekfConfig:
     ``..._noise`` the covariance, (3, 3) or (6, 6). ``considered``: the states that no update changes.
     ``cells``: Sun cells in place of a Sun sensor.
     ``pieces``: of so many equal pieces of a tick this is one, ``tick_s`` being its length.
+    ``reaction_body_nm``: torque of a driven wheel on the body over this tick, N m.
     """
 
     rotor: Rotor
@@ -60,6 +61,7 @@ class MekfConfig:
     considered: slice | None = None
     cells: CellSet | None = None
     pieces: int = 1
+    reaction_body_nm: Vec3 = ZERO
 
 
 WHOLE_RAD = 0.3
@@ -100,6 +102,36 @@ def piece_of_tick(config: MekfConfig, pieces: int) -> MekfConfig:
 def with_frozen_parameters(config: MekfConfig) -> MekfConfig:
     """The filter that estimates attitude and rate alone, and reckons with the error of its parameters."""
     return replace(config, considered=slice(6, config.layout.size))
+
+
+def with_wheel(
+    config: MekfConfig, momentum_body_nms: Vec3, reaction_body_nm: Vec3, doubted_body_nms: Vec3
+) -> MekfConfig:
+    """The filter of a satellite with a driven wheel, in a tick in which its momentum was measured.
+
+    J omega and the torques are those of the whole satellite, its wheel counted: with the momentum h relative
+    to the body J domega/dt = T - omega x (J omega + h) - dh/dt holds exactly.
+
+    Args:
+        config: without it.
+        momentum_body_nms: h, its mean over the tick, what is constant left out; body axes.
+        reaction_body_nm: -dh/dt, the mean over the tick, body axes.
+        doubted_body_nms: standard deviation of the change of h over the tick, along the wheel's axis.
+    """
+    rotor, h = config.rotor, config.tick_s
+    momentum_nms = add(rotor.wheel_body_nms, momentum_body_nms)
+    constant = config.constant.copy()
+    constant[3:6, 3:6] += h * np.array(rotor.inertia_inverse) @ cross_matrix(np.array(momentum_body_nms))
+    noise = config.process_noise.copy()
+    kick = np.array(transform(rotor.inertia_inverse, doubted_body_nms))
+    noise[3:6, 3:6] += np.outer(kick, kick)
+    return replace(
+        config,
+        rotor=rotor._replace(wheel_body_nms=momentum_nms),
+        constant=constant,
+        process_noise=noise,
+        reaction_body_nm=reaction_body_nm,
+    )
 
 
 def mekf_config(

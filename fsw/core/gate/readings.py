@@ -29,6 +29,7 @@ from fsw.wire.messages import (
     TcOrbitLoad,
     TcParameter,
     TcSpin,
+    WheelStatus,
     intact,
 )
 
@@ -46,6 +47,7 @@ InputMessage = (
     | CoilBoot
     | PlantEnd
     | SunCells
+    | WheelStatus
 )
 
 INPUT_MESSAGES: dict[int, type[InputMessage]] = {
@@ -59,6 +61,7 @@ INPUT_MESSAGES: dict[int, type[InputMessage]] = {
     CoilBoot.ID: CoilBoot,
     PlantEnd.ID: PlantEnd,
     SunCells.ID: SunCells,
+    WheelStatus.ID: WheelStatus,
 }
 
 Telecommand = (
@@ -83,7 +86,8 @@ _IN_ANY_PLACE = frozenset({*TELECOMMANDS, PlantEnd.ID})
 """Identifiers of messages that other nodes may send between those of the boards."""
 _OWN = frozenset(can_id for can_id, sender in SENDERS.items() if sender == "FSW")
 """Identifiers of fsw: no other node is to use them."""
-_CELLS_SLOT = _SLOT[SunCells.ID]
+_OPTIONAL_SLOTS = (_SLOT[SunCells.ID], _SLOT[WheelStatus.ID])
+"""Of messages that few satellites have."""
 _COIL_SLOTS = [slot for can_id, slot in _SLOT.items() if SENDERS[can_id] == "COIL"]
 
 
@@ -107,6 +111,7 @@ class Readings(NamedTuple):
     coil_boot: CoilBoot | None = None
     end: PlantEnd | None = None
     cells: SunCells | None = None
+    wheel: WheelStatus | None = None
     telecommands: tuple[Telecommand, ...] = ()
     repeated: tuple[Telecommand, ...] = ()
     under_own_id: int = 0
@@ -134,10 +139,11 @@ class GateState(NamedTuple):
     command_crc: int = 0
 
     def integers(self) -> tuple[int, ...]:
-        """For the checksum of the state; the cells count where there are any."""
-        counters = self.counters
-        if counters[_CELLS_SLOT] < 0:
-            counters = counters[:_CELLS_SLOT] + counters[_CELLS_SLOT + 1 :]
+        """For the checksum of the state; cells and wheel count where there are any."""
+        counters = list(self.counters)
+        for slot in reversed(_OPTIONAL_SLOTS):
+            if counters[slot] < 0:
+                del counters[slot]
         return (*counters, *self[1:])
 
 

@@ -32,7 +32,9 @@ class LawInput(NamedTuple):
     the nominal attitude, that of an inertia off the table's included, and ``dipole_body_am2`` the estimated
     residual dipole, which is taken off a demanded dipole by ``by_mode``, not by the law; ``tick`` is this
     tick; ``ephemeris`` gives orbit and field at later times; ``wait_ticks`` are the ticks until each coil may
-    be fired as far as is known, 0 for in answer to this one, ``NEVER`` for one with a fault.
+    be fired as far as is known, 0 for in answer to this one, ``NEVER`` for one with a fault; ``wheel_nms`` is
+    the momentum of a driven wheel relative to the body, along its axis, None where there is none or it is not
+    known.
     """
 
     attitude: Attitude
@@ -46,6 +48,32 @@ class LawInput(NamedTuple):
     tick: int = 0
     ephemeris: EphemerisModel | None = None
     wait_ticks: tuple[int, int, int] = (NEVER, NEVER, NEVER)
+    wheel_nms: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Wheel:
+    """A reaction wheel that can be driven, as the onboard table knows it.
+
+    Attributes:
+        axis_body: unit vector along its axis, body axes.
+        inertia_kgm2: of the wheel about its axis.
+        max_torque_nm: of its motor.
+        max_momentum_nms: relative to the body.
+        viscous_nms: c of the friction c W, W its speed against the body.
+        coulomb_nm: friction that is nearly constant.
+        tick_s: length of a tick.
+        stale_ticks: age of its last report from which its momentum counts as unknown.
+    """
+
+    axis_body: Vec3
+    inertia_kgm2: float
+    max_torque_nm: float
+    max_momentum_nms: float
+    viscous_nms: float
+    coulomb_nm: float
+    tick_s: float
+    stale_ticks: int
 
 
 MAX_SPIN_RADPS = 0.1
@@ -95,6 +123,7 @@ class ControlConfig:
         schedules: by law, the gains over an orbit of the periodic laws.
         pulse_model: what pulsed coils can do, for a law that plans pulses; None with a continuous driver.
         own: a law beside those of the table.
+        wheel: a wheel that can be driven; None: there is none.
     """
 
     setpoint: Setpoint
@@ -109,19 +138,23 @@ class ControlConfig:
     schedules: dict[str, Schedule] = field(default_factory=dict)
     pulse_model: PulseModel | None = None
     own: OwnLaw | None = None
+    wheel: Wheel | None = None
 
 
 class Demand(NamedTuple):
     """The demand of a law: a mean dipole, an angular impulse to be given at the next opportunity, or a pulse.
 
     An impulse law leaves the dipole to the actuator, which chooses the one with the least energy left. A law
-    of pulses says in each tick which one is to be fired in answer to it; ``NO_PULSE``: none.
+    of pulses says in each tick which one is to be fired in answer to it; ``NO_PULSE``: none. Beside any of
+    them ``wheel_torque_nm`` is the torque on the wheel about its axis, the opposite of that on the body;
+    None: the wheel coasts.
     """
 
     m_body_am2: Vec3 = ZERO
     impulse_body_nms: Vec3 | None = None
     memory: Memory = ()
     pulse: Pulse | None = None
+    wheel_torque_nm: float | None = None
 
 
 Law = Callable[[LawInput, Memory, Setpoint, ControlConfig], Demand]

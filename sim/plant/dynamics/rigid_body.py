@@ -1,6 +1,7 @@
 """The rigid body: attitude and rate integrated by the classic Runge-Kutta method, on plain floats."""
 
 from collections.abc import Callable, Sequence
+from math import isfinite
 from typing import NamedTuple
 
 from sim.plant.environment.surroundings import Surroundings
@@ -17,6 +18,12 @@ class Motion(NamedTuple):
     omega_body_radps: Vec3
     """Inertial rate, body axes."""
 
+    @property
+    def sound(self) -> bool:
+        """Whether attitude and rate are finite, and the quaternion is near unit norm."""
+        (q0, q1, q2, q3), (x, y, z) = self
+        return isfinite(x + y + z) and 0.5 < q0 * q0 + q1 * q1 + q2 * q2 + q3 * q3 < 2.0
+
 
 class RigidBody:
     """dq/dt = 1/2 q (x) (0, w), J dw/dt = T - w x (J w + h).
@@ -31,7 +38,14 @@ class RigidBody:
         self._wheel = wheel_body_nms
         self._inverse = _inverse(inertia_kgm2)
 
-    def step(self, motion: Motion, torque: Torque, around: Sequence[Surroundings], step_s: float) -> Motion:
+    def step(
+        self,
+        motion: Motion,
+        torque: Torque,
+        around: Sequence[Surroundings],
+        step_s: float,
+        momenta_nms: tuple[Vec3, Vec3, Vec3] | None = None,
+    ) -> Motion:
         """One Runge-Kutta step of fourth order; the torque is evaluated at each of its four stages.
 
         Args:
@@ -39,13 +53,15 @@ class RigidBody:
             torque: torque on the body.
             around: surroundings at the start, the middle and the end of the step.
             step_s: length of the step.
+            momenta_nms: of a driven wheel at the start, the middle and the end, body axes.
         """
         start, middle, end = around
+        h_start, h_middle, h_end = momenta_nms or (None, None, None)
         half = 0.5 * step_s
-        k1 = self.rates(motion, torque, start)
-        k2 = self.rates(_advance(motion, k1, half), torque, middle)
-        k3 = self.rates(_advance(motion, k2, half), torque, middle)
-        k4 = self.rates(_advance(motion, k3, step_s), torque, end)
+        k1 = self.rates(motion, torque, start, h_start)
+        k2 = self.rates(_advance(motion, k1, half), torque, middle, h_middle)
+        k3 = self.rates(_advance(motion, k2, half), torque, middle, h_middle)
+        k4 = self.rates(_advance(motion, k3, step_s), torque, end, h_end)
         (a1, b1, c1, d1), (x1, y1, z1) = k1
         (a2, b2, c2, d2), (x2, y2, z2) = k2
         (a3, b3, c3, d3), (x3, y3, z3) = k3
@@ -62,11 +78,15 @@ class RigidBody:
         q, w = _advance(motion, mean, step_s / 6.0)
         return Motion(normalise(q), w)
 
-    def rates(self, motion: "Stage", torque: Torque, around: Surroundings) -> "Rates":
+    def rates(
+        self, motion: "Stage", torque: Torque, around: Surroundings, driven_nms: Vec3 | None = None
+    ) -> "Rates":
         """dq/dt [1/s] and dw/dt [rad/s^2], the right-hand side that ``step`` integrates."""
         q, w = motion
         tx, ty, tz = torque(q, w, around)
         (x, y, z), (hx, hy, hz) = transform(self._inertia, w), self._wheel
+        if driven_nms is not None:
+            hx, hy, hz = hx + driven_nms[0], hy + driven_nms[1], hz + driven_nms[2]
         gx, gy, gz = cross(w, (x + hx, y + hy, z + hz))
         q0, q1, q2, q3 = q
         wx, wy, wz = 0.5 * w[0], 0.5 * w[1], 0.5 * w[2]

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from batch_samples import search_under_way
 
+from fsw.core.actuation.wheel import WheelView
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit.elements import Elements, Upload
 from fsw.core.state import FlightState, checksum
@@ -28,6 +29,7 @@ def run(make_world):
     assert state.estimator.estimate.trace is not None
     first, batch = state.estimator.estimate.parameters, search_under_way()
     state = state._replace(estimator=state.estimator._replace(first=first, batch=batch))
+    state = state._replace(wheel=WheelView(123.5, 229, 2e-4, -3e-4, 2, known=True))
     assert state.coil.fired_tick >= 0
     assert any(state.pulses.owed_impulse_body_nms)
     assert state.memory

@@ -16,7 +16,7 @@ from fsw.core.modes import ModeState
 from fsw.core.monitors import Monitor
 from fsw.core.rates import RateGroup, RateTable
 from fsw.core.step import boot
-from fsw.core.telemetry import COUNTED, FIRST_COUNTERS, SEVERITY, Event, Happening
+from fsw.core.telemetry import COUNTED, SEVERITY, Event, Happening, first_counters
 from fsw.wire.messages import (
     CLASSES,
     CoilDipole,
@@ -33,9 +33,11 @@ from fsw.wire.messages import (
     NavRate,
     Severity,
     TcAck,
+    WheelTorque,
     intact,
 )
 
+FIRST = first_counters(with_wheel=True)
 ATTITUDE = Attitude((0.8, 0.36, -0.288, 0.384), (0.011, -0.007, 0.005), 0.02, 3e-4, True)
 
 
@@ -160,7 +162,7 @@ class TestParameter:
 class TestNumbering:
     def test_each_message_counts_for_itself(self):
         nav, rate, beat = NavAttitude(1, 0.1, 0.2, 0.3), NavRate(1, 0.0, 0.0, 0.0), FswHeartbeat(0, 0, 0, 0)
-        counters, observed = FIRST_COUNTERS, {NavAttitude.ID: [], NavRate.ID: [], FswHeartbeat.ID: []}
+        counters, observed = FIRST, {NavAttitude.ID: [], NavRate.ID: [], FswHeartbeat.ID: []}
         for tick in range(40):
             frames, counters = telemetry.number([nav, rate] + [beat] * (tick % 5 == 0), counters)
             for frame in frames:
@@ -171,17 +173,17 @@ class TestNumbering:
 
     def test_several_of_a_kind_in_one_tick(self):
         event = FswEvent(0, 1, 2, 3)
-        frames, counters = telemetry.number([event] * 3, FIRST_COUNTERS)
+        frames, counters = telemetry.number([event] * 3, FIRST)
         assert [FswEvent.decode(frame.data).counter for frame in frames] == [0, 1, 2]
         assert counters[COUNTED.index(FswEvent.ID)] == 3
 
     def test_order_and_values_stay(self):
         messages = [CoilFire(-2, 1, 5, 7, 3000), NavAttitude(1, 0.5, -0.25, 0.125)]
-        frames, _ = telemetry.number(messages, FIRST_COUNTERS)
+        frames, _ = telemetry.number(messages, FIRST)
         assert [CLASSES[frame.can_id].decode(frame.data) for frame in frames] == messages
 
     def test_all_that_fsw_sends_now_and_then_is_numbered(self):
-        assert len(set(COUNTED)) == len(COUNTED) == len(FIRST_COUNTERS)
+        assert len(set(COUNTED)) == len(COUNTED) == len(FIRST)
         assert set(COUNTED) == {
             m.ID
             for m in (
@@ -194,8 +196,13 @@ class TestNumbering:
                 TcAck,
                 FswEvent,
                 FswHeartbeat,
+                WheelTorque,
             )
         }
+
+    def test_without_a_wheel_there_is_no_counter_of_its_torque(self):
+        assert len(first_counters(with_wheel=False)) == len(COUNTED) - 1
+        assert COUNTED[-1] == WheelTorque.ID
 
 
 class TestEvents:

@@ -21,7 +21,9 @@ from fsw.wire.messages import (
     Mode,
     Severity,
     TcAckResult,
+    WheelStatusResult,
 )
+from hil_stub.wheel.wheel_driver import WheelEventCode
 
 ROOT = Path(__file__).parents[3]
 FULL = {"SYNC", "TICK_DONE"}
@@ -39,6 +41,8 @@ CONTRACT = {
     ),
     "COIL_REFUSED": ("COIL", {"seq": 8, "reason": 8}),
     "COIL_DIPOLE": ("FSW", {}),
+    "WHEEL_TORQUE": ("FSW", {"torque": -24, "tick": 8}),
+    "WHEEL_STATUS": ("WHEEL", {"valid": 1, "result": 3, "speed": -24, "torque": -24}),
     "NAV_ATTITUDE": ("FSW", {}),
     "NAV_RATE": ("FSW", {}),
     "NAV_QUALITY": ("FSW", {"mode": 3}),
@@ -130,13 +134,15 @@ def test_units_that_others_rely_on(dbc):
 
     assert {unit("MAG_FIELD", f"b_{axis}") for axis in "xyz"} == {"nT"}
     assert unit("SYNC", "unix_time_s") == "s"
+    assert unit("WHEEL_TORQUE", "torque") == unit("WHEEL_STATUS", "torque") == "N m"
+    assert unit("WHEEL_STATUS", "speed") == "rad/s"
     assert unit("COIL_FIRE", "duration_ms") == unit("COIL_STATUS", "lockout_ms") == "ms"
     assert dbc.get_message_by_name("COIL_STATUS").get_signal_by_name("lockout_ms").scale == 10
 
 
 def test_every_node_boots_beats_and_tells_events_under_ids_of_its_own(dbc):
     nodes = {node.name for node in dbc.nodes} - {"GROUND"}  # it has no clock on board
-    assert nodes == {"PLANT", "FSW", "COIL", "MAG", "SUN"}
+    assert nodes == {"PLANT", "FSW", "COIL", "MAG", "SUN", "WHEEL"}
     for node in nodes:
         for kind in ("BOOT", "EVENT", "HEARTBEAT"):
             assert dbc.get_message_by_name(f"{node}_{kind}").senders == [node]
@@ -172,6 +178,8 @@ def test_the_codec_knows_the_dbc_s_messages_and_senders(dbc):
         (Component, "TC_PARAMETER", "component"),
         (Component, "NAV_PARAMETER", "component"),
         (TcAckResult, "TC_ACK", "result"),
+        (WheelStatusResult, "WHEEL_STATUS", "result"),
+        (WheelEventCode, "WHEEL_EVENT", "event"),
     ],
 )
 def test_enums_are_the_dbc_s_choices(dbc, enum, message, signal):

@@ -1,9 +1,12 @@
 """The laws of a satellite with a momentum wheel, by name."""
 
 from fsw.core.laws.entry import Aim, LawEntry
+from fsw.core.laws.wheel.allocation import AllocationGains, wheel_allocation
 from fsw.core.laws.wheel.dual_spin import DualSpinGains, dual_spin
 from fsw.core.laws.wheel.horizon_roll import HorizonRollGains, horizon_roll
+from fsw.core.laws.wheel.pitch_wheel import PitchWheelGains, pitch_wheel
 from fsw.core.laws.wheel.six_gain import SixGainGains, six_gain
+from fsw.core.laws.wheel.two_coils import TwoCoilsGains, two_coils, two_coils_far
 from fsw.core.laws.wheel.wheel_integral import wheel_integral, wheel_integral_far
 from fsw.core.laws.wheel.wheel_relay import WheelRelayGains, wheel_relay
 
@@ -13,4 +16,7 @@ LAWS: dict[str, LawEntry] = {
     "six_gain": LawEntry(24, Aim.AXIS, six_gain, six_gain, SixGainGains),
     "wheel_integral": LawEntry(25, Aim.AXIS, wheel_integral_far, wheel_integral),
     "wheel_relay": LawEntry(26, Aim.AXIS, wheel_relay, wheel_relay, WheelRelayGains),
+    "two_coils": LawEntry(120, Aim.THREE_AXIS, two_coils_far, two_coils, TwoCoilsGains),
+    "wheel_allocation": LawEntry(121, Aim.THREE_AXIS, wheel_allocation, wheel_allocation, AllocationGains),
+    "pitch_wheel": LawEntry(122, Aim.THREE_AXIS, pitch_wheel, pitch_wheel, PitchWheelGains),
 }

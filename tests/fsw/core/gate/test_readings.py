@@ -17,6 +17,7 @@ from gate_samples import (
     REFUSED,
     SLOT,
     SUN,
+    WHEEL,
     admitted,
     broken,
     frames,
@@ -53,13 +54,13 @@ def test_what_is_listened_to_is_what_this_test_sends():
 
 
 def test_every_kind_is_taken_as_sent():
-    as_sent = (BOOT, *COUNTED, CELLS, END)  # a board that starts says so first
+    as_sent = (BOOT, *COUNTED, CELLS, WHEEL, END)  # a board that starts says so first
     readings, state = admit(frames(*as_sent), GateState())
     assert tuple(readings[: len(EVERY_KIND)]) == tuple(type(m).decode(m.encode().data) for m in EVERY_KIND)
     assert readings.coil == COIL
     assert readings.field == FIELD
     input_crc = crc32(b"".join(message.encode().data for message in as_sent[:-1]))
-    counters = (*range(5, 15), *(-1,) * len(TELECOMMANDS))
+    counters = (*range(5, 16), *(-1,) * len(TELECOMMANDS))
     assert state == GateState(counters, input_crc=input_crc, command_crc=crc32(END.encode().data))
 
 
@@ -265,9 +266,13 @@ class TestOverrun:
         assert (state.rejected, state.overrun) == (INBOX_LIMIT, 1)
 
 
-def test_on_a_bus_without_cells_the_checksum_is_that_of_a_software_that_knows_none():
+def test_on_a_bus_without_cells_and_wheel_the_checksum_is_that_of_a_software_that_knows_none():
     """So that logs of before are flown again bit by bit."""
     _, without = admitted(*COUNTED)
     _, with_cells = admitted(*COUNTED, CELLS)
-    assert len(without.integers()) + 1 == len(with_cells.integers())
+    _, with_wheel = admitted(*COUNTED, WHEEL)
+    _, with_both = admitted(*COUNTED, CELLS, WHEEL)
+    places = len(without.integers())
+    assert len(with_cells.integers()) == len(with_wheel.integers()) == places + 1
+    assert len(with_both.integers()) == places + 2
     assert without.integers()[:9] == (*range(5, 12), -1, -1)

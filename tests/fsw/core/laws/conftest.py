@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from fsw.core.algebra.quaternion import from_dcm
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
-from fsw.core.laws.interface import ControlConfig, FieldSample, LawInput, Setpoint
+from fsw.core.laws.interface import ControlConfig, FieldSample, LawInput, Setpoint, Wheel
 from fsw.core.orbit.ephemeris import Reference
 
 MU = 3.986004418e14
@@ -60,7 +60,7 @@ def cross(a, b):
 
 @dataclass
 class Body:
-    """Inertia, a wheel of constant momentum, and the coils' limit."""
+    """Inertia, a wheel of constant momentum or one that can be driven, and the coils' limit."""
 
     inertia: np.ndarray = field(default_factory=lambda: np.diag([1.02, 1.85, 1.95]))
     wheel: tuple = (0.0, 0.0, 0.0)
@@ -69,6 +69,8 @@ class Body:
     torque: tuple = (0.0, 0.0, 0.0)  # constant, body axes
     dipole: tuple = (0.0, 0.0, 0.0)  # its own, body axes
     vane_nm: float = 0.0  # turns axis 2 ahead, as feathers behind do in the air
+    driven: Wheel | None = None
+    driven_nms: float = 0.0  # its momentum at the start
 
 
 @dataclass
@@ -83,6 +85,7 @@ class Flown:
     momentum_eci: np.ndarray  # wheel included
     energy_j: np.ndarray  # of the body's own rotation
     m_body: np.ndarray
+    wheel_nms: np.ndarray  # of the driven wheel
 
     @property
     def angle_deg(self):
@@ -121,6 +124,7 @@ def config(body, step_s, gains=None):
         tick_s=step_s,
         horizon_s=3.0,
         mean_dipole_am2=min(body.most_am2, 1e3),
+        wheel=body.driven,
     )
 
 
@@ -185,12 +189,14 @@ def fly(
     c_orbit, b_eci = orbit.c_orbit_from_eci(half_steps_s), orbit.b_eci_t(half_steps_s)
     around = np.stack([b_eci, c_orbit[:, 0], c_orbit[:, 1]], axis=2)  # columns: field, radius, ahead
     # columns: the axes of eci in the body, and the momentum with the wheel's
-    state = np.column_stack([c0 @ c_orbit[0], body.inertia @ np.array(omega_body) + wheel])
+    axis = np.array(body.driven.axis_body) if body.driven else np.zeros(3)
+    h = body.driven_nms
+    state = np.column_stack([c0 @ c_orbit[0], body.inertia @ np.array(omega_body) + wheel + h * axis])
     before, memory, rows = FieldSample(), (), []
 
-    def change(state, around, m):
+    def change(state, around, m, h):
         b, vertical, (a1, _, a3) = (state[:, :3] @ around).T.tolist()
-        w1, w2, w3 = (inverse @ (state[:, 3] - wheel)).tolist()
+        w1, w2, w3 = (inverse @ (state[:, 3] - wheel - h * axis)).tolist()
         out = np.array([[0.0, w3, -w2], [-w3, 0.0, w1], [w2, -w1, 0.0]]) @ state
         gravity = cross(vertical, (body.inertia @ vertical).tolist())
         whole = [coils + own for coils, own in zip(m, body.dipole, strict=True)]
@@ -202,18 +208,22 @@ def fly(
     for tick in range(ticks):
         if switch is not None and tick * step_s >= switch[0]:
             law = switch[1]
-        c_body_from_eci, omega = state[:, :3], inverse @ (state[:, 3] - wheel)
+        c_body_from_eci, omega = state[:, :3], inverse @ (state[:, 3] - wheel - h * axis)
         now = c_orbit[2 * tick], b_eci[2 * tick]
         inputs = inputs_in(orbit, tick, *now, c_body_from_eci, omega, before, sun, known)
+        inputs = inputs._replace(wheel_nms=h if body.driven else None)
         demand = law(look(inputs), memory, law_setpoint, settings)
         before, memory = inputs.sample, demand.memory
         m = [max(-body.most_am2, min(body.most_am2, part)) for part in demand.m_body_am2]
-        rows.append((tick * step_s, omega, c_body_from_eci @ now[0].T, state, m))
+        rows.append((tick * step_s, omega, c_body_from_eci @ now[0].T, state, m, h))
         start, middle, end = around[2 * tick : 2 * tick + 3]
-        k1 = change(state, start, m)
-        k2 = change(state + 0.5 * step_s * k1, middle, m)
-        k3 = change(state + 0.5 * step_s * k2, middle, m)
-        k4 = change(state + step_s * k3, end, m)
+        motor = (demand.wheel_torque_nm or 0.0) if body.driven else 0.0
+        halfway, after = h + 0.5 * step_s * motor, h + step_s * motor
+        k1 = change(state, start, m, h)
+        k2 = change(state + 0.5 * step_s * k1, middle, m, halfway)
+        k3 = change(state + 0.5 * step_s * k2, middle, m, halfway)
+        k4 = change(state + step_s * k3, end, m, after)
+        h = after
         state = state + step_s / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
         c = state[:, :3]
         state[:, :3] = 1.5 * c - 0.5 * c @ c.T @ c  # orthogonal again
@@ -221,7 +231,7 @@ def fly(
 
 
 def flown(rows, orbit, body):
-    t_s, omega, c_body_from_orbit, state, m = map(np.array, zip(*rows, strict=True))
+    t_s, omega, c_body_from_orbit, state, m, h = map(np.array, zip(*rows, strict=True))
     return Flown(
         t_s,
         omega,
@@ -231,6 +241,7 @@ def flown(rows, orbit, body):
         np.einsum("tji,tj->ti", state[:, :, :3], state[:, :, 3]),
         0.5 * np.einsum("ti,ij,tj->t", omega, body.inertia, omega),
         m,
+        h,
     )
 
 

@@ -1,0 +1,147 @@
+"""A reaction wheel seen from the controller: which reports of its speed count, and what it is asked for.
+
+A report counts if it is valid, within the wheel's range, and no further from the last one than motor and
+friction can have brought the wheel since. One that is not is counted, and the last one stands until it is too
+old; then the wheel is not driven, and the next report within the range counts again.
+
+The filter gets the momentum that was measured, and the torque on the body from what it has changed by: so
+lag, friction and a refused request need no model there. Where a report is missing it takes the change with
+the next.
+"""
+
+from dataclasses import replace
+from math import isfinite, sqrt
+from typing import NamedTuple
+
+from fsw.core.algebra.vector import scale
+from fsw.core.estimation.estimator import EstimatorConfig
+from fsw.core.estimation.mekf_config import with_wheel
+from fsw.core.gate.readings import Readings
+from fsw.core.laws.interface import Demand, Wheel
+from fsw.wire.messages import WheelTorque
+
+MARGIN = 1.25
+"""A report may be beyond range and reach by this factor."""
+CHANGE_SIGMA = 0.005
+"""Standard deviation of a measured change of the momentum, in parts of it: the wheel's inertia is known so
+well."""
+BODY_RADPS = 0.2
+"""The speed against the body also changes with the body's rate, between two reports by no more than this."""
+SMOOTH_RADPS = 1.0
+"""Below this speed the Coulomb friction is less than its value."""
+UNIT_NM = 2.0**-24
+"""Of the torque on the wire; so much less than the limit is asked for at most."""
+MOST_REFUSED = 1_000_000
+
+
+class WheelView(NamedTuple):
+    """The last report that was believed, at ``tick``, -1: none counts; the refused reports.
+
+    ``change_nms``: of the momentum in this tick's report since the one before, zero without a report;
+    ``asked_nm``: the motor torque of the last request.
+    """
+
+    speed_radps: float = 0.0
+    tick: int = -1
+    change_nms: float = 0.0
+    asked_nm: float = 0.0
+    refused: int = 0
+    known: bool = False
+    """Whether there has been a report since boot."""
+
+    def integers(self) -> tuple[int, ...]:
+        """For the checksum of the state."""
+        return (self.tick, self.refused, self.known)
+
+    def floats(self) -> tuple[float, ...]:
+        """For the checksum of the state."""
+        return (self.speed_radps, self.change_nms, self.asked_nm)
+
+
+def seen(view: WheelView | None, readings: Readings, tick: int, wheel: Wheel | None) -> WheelView | None:
+    """The view after the reports of this tick; None without a wheel."""
+    if view is None or wheel is None:
+        return None
+    if view.tick >= 0 and tick - view.tick > wheel.stale_ticks:
+        view = view._replace(tick=-1)
+    status = readings.wheel
+    if status is None:
+        return view._replace(change_nms=0.0)
+    if not status.valid or not _possible(status.speed, view, tick, wheel):
+        return view._replace(change_nms=0.0, refused=min(view.refused + 1, MOST_REFUSED))
+    change_nms = wheel.inertia_kgm2 * (status.speed - view.speed_radps) if view.known else 0.0
+    return view._replace(speed_radps=status.speed, tick=tick, change_nms=change_nms, known=True)
+
+
+def _possible(speed_radps: float, view: WheelView, tick: int, wheel: Wheel) -> bool:
+    """Whether the wheel can turn so fast: within its range, and within reach since the last report."""
+    most_radps = wheel.max_momentum_nms / wheel.inertia_kgm2
+    if not abs(speed_radps) <= MARGIN * most_radps:
+        return False
+    if view.tick < 0:
+        return True
+    torque_nm = wheel.max_torque_nm + wheel.viscous_nms * most_radps + wheel.coulomb_nm
+    reach_radps = MARGIN * torque_nm * (tick - view.tick) * wheel.tick_s / wheel.inertia_kgm2 + BODY_RADPS
+    return abs(speed_radps - view.speed_radps) <= reach_radps
+
+
+def momentum_nms(view: WheelView | None, wheel: Wheel | None) -> float | None:
+    """Its momentum relative to the body, along its axis; None: there is none, or it is not known."""
+    if view is None or wheel is None or view.tick < 0:
+        return None
+    return wheel.inertia_kgm2 * view.speed_radps
+
+
+def estimating(
+    estimator: EstimatorConfig, view: WheelView | None, tick: int, ticks: int, wheel: Wheel | None
+) -> EstimatorConfig:
+    """The estimator that reckons with the wheel over the ticks that end now.
+
+    Args:
+        estimator: as the table has it.
+        view: of this tick.
+        tick: this one.
+        ticks: since the tick before.
+        wheel: None: there is none.
+    """
+    if view is None or wheel is None:
+        return estimator
+    middle_nms = wheel.inertia_kgm2 * view.speed_radps - 0.5 * view.change_nms
+    rate_nm = view.change_nms / (max(ticks, 1) * wheel.tick_s)
+    reported = view.tick == tick
+    doubted_nms = CHANGE_SIGMA * abs(view.change_nms) if reported else abs(view.asked_nm) * wheel.tick_s
+    axis = wheel.axis_body
+    parts = (scale(middle_nms, axis), scale(-rate_nm, axis), scale(doubted_nms, axis))
+    mekf = with_wheel(estimator.mekf, *parts)
+    return replace(estimator, mekf=mekf)
+
+
+def request(
+    view: WheelView | None, demand: Demand | None, tick: int, wheel: Wheel | None
+) -> tuple[WheelView | None, WheelTorque | None]:
+    """The request of this tick, friction added, within the limits; none where nothing is demanded.
+
+    Args:
+        view: of this tick.
+        demand: of the law.
+        tick: that is answered.
+        wheel: None: there is none.
+    """
+    wanted_nm = None if demand is None else demand.wheel_torque_nm
+    if view is None or wheel is None:
+        return view, None
+    if wanted_nm is None or view.tick < 0 or not isfinite(wanted_nm):
+        return view._replace(asked_nm=0.0), None
+    torque_nm = wanted_nm + friction_nm(view.speed_radps, wheel)
+    limit_nm = wheel.max_torque_nm - UNIT_NM
+    torque_nm = min(max(torque_nm, -limit_nm), limit_nm)
+    full = abs(view.speed_radps) * wheel.inertia_kgm2 >= wheel.max_momentum_nms
+    if full and torque_nm * view.speed_radps > 0.0:
+        torque_nm = 0.0
+    return view._replace(asked_nm=torque_nm), WheelTorque(torque_nm, tick)
+
+
+def friction_nm(speed_radps: float, wheel: Wheel) -> float:
+    """The torque that keeps the wheel at its speed, as the table knows it."""
+    smooth = speed_radps / sqrt(speed_radps * speed_radps + SMOOTH_RADPS * SMOOTH_RADPS)
+    return wheel.viscous_nms * speed_radps + wheel.coulomb_nm * smooth

@@ -1,0 +1,1 @@
+"""The board of a reaction wheel, which guards its motor by itself."""

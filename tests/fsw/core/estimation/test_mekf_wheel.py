@@ -1,0 +1,84 @@
+"""The filter of a satellite with a driven wheel: its motion beside the plant's, its noise, its matrices."""
+
+from math import radians
+
+import numpy as np
+import pytest
+
+from fsw.core.algebra.vector import ZERO
+from fsw.core.estimation.mekf import predict, start
+from fsw.core.estimation.mekf_config import mekf_config, with_wheel
+from sim.plant.dynamics.rigid_body import Motion, RigidBody
+from sim.plant.dynamics.wheel import SpinningWheel
+from sim.plant.environment.surroundings import Surroundings
+from sim.plant.wheel_config import WheelConfig
+
+AXIS = (0.48, -0.6, 0.64)
+INERTIA = ((1.02, 0.07, -0.05), (0.07, 1.85, 0.11), (-0.05, 0.11, 1.45))
+STILL = Surroundings((1.0, 0.0, 0.0), 0.0, ZERO)
+TICK_S = 0.5
+
+
+def tuned(wheel_body_nms=ZERO):
+    return mekf_config(
+        INERTIA,
+        TICK_S,
+        {},
+        wheel_body_nms=wheel_body_nms,
+        magnetometer_sigma_t=2e-7,
+        sun_sigma_rad=radians(0.5),
+        attitude_sigma_rad=radians(5.0),
+        rate_sigma_radps=radians(2.0),
+        torque_noise_nm_rts=1e-7,
+        gate_nis=16.27,
+    )
+
+
+def along(size):
+    return tuple(size * part for part in AXIS)
+
+
+def test_a_steady_wheel_is_one_of_constant_momentum():
+    driven, constant = with_wheel(tuned(), along(0.3), ZERO, ZERO), tuned(along(0.3))
+    assert driven.rotor == constant.rotor
+    np.testing.assert_allclose(driven.constant, constant.constant, rtol=0, atol=1e-15)
+    np.testing.assert_array_equal(driven.process_noise, constant.process_noise)
+
+
+def test_the_momentum_comes_on_top_of_a_constant_one():
+    assert with_wheel(tuned(along(0.1)), along(0.3), ZERO, ZERO).rotor.wheel_body_nms == pytest.approx(
+        along(0.4)
+    )
+
+
+def test_what_is_in_doubt_is_noise_of_the_rate_along_its_kick():
+    before, after = tuned(), with_wheel(tuned(), along(0.3), ZERO, along(2e-4))
+    kick = np.linalg.inv(INERTIA) @ along(2e-4)
+    added = after.process_noise - before.process_noise
+    np.testing.assert_allclose(added[3:6, 3:6], np.outer(kick, kick), rtol=1e-9, atol=1e-22)
+    assert not added[0:3].any()
+
+
+@pytest.mark.parametrize("motor_nm", [0.0, 2e-3, -1.5e-3])
+def test_by_measured_speeds_alone_it_turns_as_the_plant(motor_nm):
+    """Friction, lag and all: the filter knows momentum and change, and no model of the wheel."""
+    config = WheelConfig(
+        AXIS, 4e-3, 0.02, 0.9, viscous_nms=2e-6, coulomb_nm=1e-4, time_constant_s=0.4, momentum_nms=0.05
+    )
+    motion = Motion((0.5, -0.5, 0.5, 0.5), (2e-3, -3e-3, 5e-3))
+    wheel, body = SpinningWheel(config, motion.omega_body_radps), RigidBody(config.rest_of(INERTIA))
+    estimate = start(*motion, tuned())
+    before = wheel.relative_nms(motion.omega_body_radps)
+    for _ in range(60):
+        for _ in range(10):
+            momenta, reaction = wheel.advance(motor_nm, motion.omega_body_radps, 0.1 * TICK_S)
+            motion = body.step(
+                motion, lambda q, w, around, r=reaction: r, (STILL,) * 3, 0.1 * TICK_S, momenta
+            )
+        after = wheel.relative_nms(motion.omega_body_radps)
+        step = with_wheel(tuned(), along(0.5 * (before + after)), along((before - after) / TICK_S), ZERO)
+        estimate = predict(estimate, STILL.e_eci, ZERO, 0.0, ZERO, step)
+        before = after
+    assert np.abs(np.array(motion.omega_body_radps)).max() > 5e-3
+    assert estimate.omega_body_radps == pytest.approx(motion.omega_body_radps, abs=2e-6)
+    assert estimate.q_body_from_eci == pytest.approx(motion.q_body_from_eci, abs=2e-5)

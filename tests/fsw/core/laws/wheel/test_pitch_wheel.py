@@ -1,0 +1,96 @@
+"""A pitch wheel whose speed is controlled: pitch by the wheel, its axis and its momentum by the coils."""
+
+import numpy as np
+import pytest
+
+from fsw.core.laws.interface import Wheel
+from fsw.core.laws.wheel.pitch_wheel import (
+    PitchWheelGains,
+    momentum_dipole,
+    pitch_torque,
+    pitch_wheel,
+)
+
+WHEEL = Wheel((0.0, 0.0, 1.0), 2e-4, 2e-3, 0.12, 0.0, 0.0, tick_s=4.0, stale_ticks=10)
+B = (2.1e-5, -1.4e-5, 0.9e-5)
+
+
+def test_the_pitch_is_that_of_a_damped_spring():
+    gains = PitchWheelGains(pitch_rad=0.3, frequency_radps=0.05, damping=0.8)
+    turning = 0.05**2 * np.sin(0.3 - 0.1)
+    expected = 1.95 * (turning - 2.0 * 0.8 * 0.05 * 2e-3)
+    assert pitch_torque(0.1, 2e-3, 1.95, gains) == pytest.approx(expected, rel=1e-12)
+
+
+def test_the_coils_take_an_excess_of_momentum_away_about_axis_3():
+    torque = np.cross(momentum_dipole(B, 0.02, 1e-3), B)
+    across = (B[0] ** 2 + B[1] ** 2) / np.dot(B, B)
+    assert torque[2] == pytest.approx(-1e-3 * 0.02 * across, rel=1e-12)
+    assert momentum_dipole((0.0, 0.0, 0.0), 0.02, 1e-3) == (0.0, 0.0, 0.0)
+
+
+def flown(bench, turned, first=((1, -2, 3), 15.0), orbits=2.0, begin_nms=0.05, k_w=1e7, **gains):
+    orbit = bench.Orbit(500.0, 80.0)
+    wheel = gains.pop("wheel", WHEEL)
+    return bench.fly(
+        pitch_wheel,
+        bench.setpoint("pitch_wheel", k_w=k_w, k_a=4000.0),
+        gains={"pitch_wheel": PitchWheelGains(**gains)},
+        orbit=orbit,
+        body=bench.Body(most_am2=8.0, driven=wheel, driven_nms=begin_nms),
+        c_body_from_orbit=turned(*first),
+        omega_body=(0.0, 0.0, orbit.rate_radps),
+        seconds=orbits * orbit.period_s,
+    )
+
+
+def pitches_deg(flight):
+    c = flight.c_body_from_orbit
+    return np.degrees(np.arctan2(c[:, 0, 1] - c[:, 1, 0], c[:, 0, 0] + c[:, 1, 1]))
+
+
+def test_a_turn_in_pitch_takes_minutes_and_the_wheel_gives_it(bench, turned):
+    """The coils of ``dual_spin`` take orbits for it: (1 + w_n t) exp(-w_n t) here."""
+    flight = flown(bench, turned, first=((0, 0, 1), 20.0), orbits=0.1)
+    expected = 20.0 * (1.0 + 0.02 * flight.t_s) * np.exp(-0.02 * flight.t_s)
+    assert np.abs(pitches_deg(flight)) == pytest.approx(expected, abs=1.0)
+    assert np.abs(flight.wheel_nms - 0.05).max() > 1e-3
+
+
+def test_all_three_axes_come_to_rest(bench, turned):
+    flight = flown(bench, turned, orbits=4.0)
+    assert flight.angle_deg[-300:].max() < 1.5
+    assert flight.angle_deg[-300:].max() < 0.1 * flight.angle_deg[0]
+
+
+@pytest.mark.parametrize("begin_nms", [0.08, 0.02])
+def test_the_momentum_is_brought_to_its_bias(bench, turned, begin_nms):
+    flight = flown(bench, turned, begin_nms=begin_nms, orbits=2.0)
+    assert flight.wheel_nms[-1] == pytest.approx(0.05, abs=2e-3)
+
+
+def test_a_pitch_of_its_own_is_held(bench, turned):
+    flight = flown(bench, turned, first=((0, 0, 1), 0.0), pitch_rad=0.35, orbits=0.5)
+    assert pitches_deg(flight)[-1] == pytest.approx(np.degrees(0.35), abs=0.3)
+
+
+def test_a_wheel_along_another_axis_is_not_driven(bench, turned):
+    wheel = Wheel((0.0, 1.0, 0.0), 2e-4, 2e-3, 0.12, 0.0, 0.0, tick_s=4.0, stale_ticks=10)
+    flight = flown(bench, turned, wheel=wheel, orbits=0.05)
+    assert (flight.wheel_nms == 0.05).all()
+    assert not flight.m_body.any()
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"frequency_radps": 0.0},
+        {"damping": 20.0},
+        {"pitch_rad": 4.0},
+        {"bias_nms": 0.0},
+        {"unload_per_s": 1.0},
+    ],
+)
+def test_gains_out_of_range_are_refused(wrong):
+    with pytest.raises(ValueError, match=f"control.gains.pitch_wheel.{next(iter(wrong))}"):
+        PitchWheelGains(**wrong)
