@@ -70,6 +70,6 @@ def test_the_page_of_laws_has_its_figures_at_its_end_alone():
 
 @pytest.mark.parametrize("figures", FIGURES, ids=lambda text: text.partition("`")[2].partition("`")[0])
 def test_figures_of_a_law_name_the_test_or_the_command_that_gives_them(figures):
-    tests = re.findall(r"`(test_\w+\.py)`", figures)
+    tests = re.findall(r"`((?:\w+/)*test_\w+\.py)`", figures)
     assert tests or re.search(r"`(torquer|make) ", figures)
     assert all(list((ROOT / "tests" / "fsw" / "core" / "laws").rglob(name)) for name in tests)
