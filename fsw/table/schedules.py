@@ -1,5 +1,6 @@
 """What the periodic laws compute once, when the onboard table is loaded: gain schedules, steps of pulses."""
 
+from collections.abc import Callable
 from functools import lru_cache
 from math import atan2, ceil, hypot, pi, sqrt
 from typing import Any, NamedTuple
@@ -7,7 +8,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fsw.core.actuation.pulses import PulseConfig
-from fsw.core.algebra.vector import cross, dot, inverse, norm
+from fsw.core.algebra.vector import Mat3, Vec3, cross, dot, inverse, norm
+from fsw.core.laws.optimal.averaged import averaged_schedule
+from fsw.core.laws.optimal.disturbed import disturbed_schedule
+from fsw.core.laws.optimal.field_only import field_only_schedule
+from fsw.core.laws.optimal.h_infinity import robust_schedule
 from fsw.core.laws.optimal.lqr import STEPS, LqrGains, schedule
 from fsw.core.laws.plan.cost_to_go import rounded_problem, rounded_schedule
 from fsw.core.laws.plan.orbit_ahead import sight
@@ -17,16 +22,37 @@ from fsw.core.orbit.earth import DIPOLE_TM3, MU_M3PS2
 from fsw.core.orbit.propagation import Orbit, state_eci
 from fsw.table.table import FlightTable
 
-SCHEDULED = ("lqr", "mpc", "pulse_mpc")
-"""The laws that need a schedule."""
+SCHEDULERS: dict[str, Callable[..., Schedule]] = {
+    "lqr": schedule,
+    "mpc": schedule,
+    "pulse_mpc": schedule,
+    "sdre": schedule,
+    "mpc_box": schedule,
+    "mpc_fitted": schedule,
+    "mpc_held": schedule,
+    "h_infinity": robust_schedule,
+    "lqr_averaged": averaged_schedule,
+    "lqr_disturbed": disturbed_schedule,
+    "lqg_field": field_only_schedule,
+}
+"""How the schedule of each law that needs one is made, of body, circle and weights."""
 
 LEAST_STEP_S = 60.0
 """From one opportunity to the next, where the coils could be fired sooner: pulses that close gain little."""
 LEAST_SEARCHED, SEARCHED_S = 6, 600.0
 """Opportunities that are searched, and for how long at least."""
 
-_schedule = lru_cache(maxsize=16)(schedule)
-"""Pure, and the same for several laws unless their weights differ."""
+
+@lru_cache(maxsize=32)
+def _made(
+    make: Callable[..., Schedule],
+    inertia_kgm2: Mat3,
+    wheel_body_nms: Vec3,
+    round_orbit: "Circle",
+    weights: Any,  # noqa: ANN401  (each law has its own class)
+) -> Schedule:
+    """Pure, and the same for several laws unless their weights differ."""
+    return make(inertia_kgm2, wheel_body_nms, *round_orbit, weights)
 
 
 class Circle(NamedTuple):
@@ -55,15 +81,15 @@ def schedules(table: FlightTable, orbit: Orbit, gains: dict[str, Any]) -> dict[s
     if round_orbit is None:
         return {}
     found = {
-        law: _schedule(
-            table.body.inertia,
-            table.body.wheel_nms,
-            *round_orbit,
-            LqrGains(gains[law].rate, gains[law].effort),
-        )
-        for law in SCHEDULED
+        law: _made(make, table.body.inertia, table.body.wheel_nms, round_orbit, _weights(make, gains[law]))
+        for law, make in SCHEDULERS.items()
     }
     return found | {"pulse_mpc": rounded_schedule(found["pulse_mpc"])}
+
+
+def _weights(make: Callable[..., Schedule], gains: Any) -> Any:  # noqa: ANN401  (each law has its own class)
+    """What the schedule depends on: of the plain regulator the two weights alone, whichever law it is for."""
+    return LqrGains(gains.rate, gains.effort) if make is schedule else gains
 
 
 def planned_pulses(

@@ -1,5 +1,60 @@
 """Three axes, optimal control of a linear model (section 3.2)."""
 
-from sim.methods.method import Method
+from sim.methods.method import Kind, Method
 
-METHODS: tuple[Method, ...] = ()
+LAWS = "fsw/core/laws/optimal"
+ROBUST = "sim/design/robust"
+
+METHODS: tuple[Method, ...] = (
+    Method(
+        "Periodic H2 control of a satellite with a wheel",
+        "[O19] 2.2 [48]",
+        Kind.FLOWN,
+        f"{LAWS}/h_infinity.py",
+        "Least H2 norm by a periodic gain, the body turning quickly about the wheel's axis.",
+        ("review.optimal.h2.wheel",),
+        "with the whole state known the H2 gain is that of lqr; the norms are computed for both",
+    ),
+    Method(
+        "Periodic H-infinity control of a satellite with a wheel",
+        "[O19] 2.2 [49, 50]",
+        Kind.FLOWN,
+        f"{LAWS}/h_infinity.py",
+        "Least answer to the worst torque by a periodic gain.",
+        ("review.optimal.h_infinity.wheel",),
+    ),
+    Method(
+        "Least-squares realisable torque within the coils' limits",
+        "[O19] 3.2 [97]",
+        Kind.FLOWN,
+        f"{LAWS}/boxed.py",
+        "Better than the plain projection.",
+        ("review.optimal.boxed",),
+        "nearer to the torque by some percent where a limit is met; a flight is no quicker (test_boxed.py)",
+    ),
+    Method(
+        "Periodic LQR solved by one invariant subspace",
+        "[O19] 3.2 [100]",
+        Kind.GROUND,
+        f"{ROBUST}/invariant.py",
+        "The periodic Riccati equation by one inverse of A and one Schur form.",
+        ("review.optimal.riccati",),
+        "loses its digits where effort is cheap, which is checked and refused",
+    ),
+    Method(
+        "H2 control of three axes",
+        "[O19] 3.2 [104]",
+        Kind.FLOWN,
+        f"{LAWS}/field_only.py",
+        "Periodic filter and regulator hold the attitude by the magnetometer alone.",
+        ("review.optimal.h2.three_axis",),
+    ),
+    Method(
+        "H-infinity gains of the law (9)",
+        "[O19] 3.2 [105]",
+        Kind.GROUND,
+        f"{ROBUST}/pd_gains.py",
+        "Gains with the least answer to the worst torque.",
+        ("review.optimal.pd_h_infinity",),
+    ),
+)

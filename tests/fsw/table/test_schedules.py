@@ -9,7 +9,7 @@ from fsw.core.laws.optimal.lqr import STEPS
 from fsw.core.laws.table import LAWS
 from fsw.input.schema import TableError
 from fsw.table.config import flight_config
-from fsw.table.schedules import SCHEDULED
+from fsw.table.schedules import SCHEDULERS
 from fsw.table.table import flight_table
 from sim.design.theory.bodies import Body
 from sim.design.theory.periodic_lqr import Augmented, Weights, design
@@ -54,7 +54,7 @@ def test_every_orbit_and_body_has_a_finite_schedule(inclination_deg, inertia):
 
 
 def test_the_scheduled_laws_are_laws_with_the_weights_they_need():
-    for law in SCHEDULED:
+    for law in SCHEDULERS:
         assert {"rate", "effort"} <= {field.name for field in fields(LAWS[law].gains)}
 
 

@@ -13,6 +13,7 @@ Source: Ovchinnikov, Roldugin 2019, section 3.2; the equations stand in ``riccat
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import atan2, cos, pi, sin
+from typing import Protocol
 
 import numpy as np
 
@@ -21,7 +22,15 @@ from fsw.core.algebra.vector import Mat3, Vec3, add, scale, transform, transpose
 from fsw.core.estimation.attitude import Attitude
 from fsw.core.laws.feedback.pd import pd_far
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
-from fsw.core.laws.plan.riccati import NotHeldError, Schedule, backward, periodic, regulator_problem
+from fsw.core.laws.plan.riccati import (
+    Array,
+    NotHeldError,
+    Problem,
+    Schedule,
+    backward,
+    periodic,
+    regulator_problem,
+)
 from fsw.core.orbit.ephemeris import Reference
 
 STEPS = 48
@@ -56,13 +65,53 @@ def check_weights(law: str, rate: float, effort: float) -> None:
         )
 
 
+class Weights(Protocol):
+    """What the cost of a law is made of."""
+
+    @property
+    def rate(self) -> float:
+        """Weight of the rate, of w0, against that of a radian."""
+
+    @property
+    def effort(self) -> float:
+        """Weight of the dipole, of the one that turns the mean moment by w0^2, against that of a radian."""
+
+
+def middles() -> Array:
+    """The arguments of latitude in the middle of the steps, rad."""
+    u: Array = 2.0 * pi / STEPS * (np.arange(STEPS, dtype=np.float64) + 0.5)
+    return u
+
+
+def orbit_problem(
+    inertia_kgm2: Mat3,
+    wheel_body_nms: Vec3,
+    orbit_rate_radps: float,
+    inclination_rad: float,
+    field_t: float,
+    weights: Weights,
+) -> tuple[Problem, Array]:
+    """The problem of a step, and the direct dipole's field in the middle of each, orbital axes, T, (n, 3).
+
+    Arguments: as of ``schedule``.
+    """
+    u = middles()
+    across, along = sin(inclination_rad), np.full(STEPS, cos(inclination_rad))
+    b_orbit_t = field_t * np.stack([-2.0 * across * np.sin(u), across * np.cos(u), along], axis=-1)
+    step_s = 2.0 * pi / STEPS / orbit_rate_radps
+    problem = regulator_problem(
+        inertia_kgm2, wheel_body_nms, orbit_rate_radps, field_t, step_s, weights.rate, weights.effort
+    )
+    return problem, b_orbit_t
+
+
 def schedule(
     inertia_kgm2: Mat3,
     wheel_body_nms: Vec3,
     orbit_rate_radps: float,
     inclination_rad: float,
     field_t: float,
-    weights: LqrGains,
+    weights: Weights,
 ) -> Schedule:
     """The periodic solution on the direct dipole's field of a circular orbit.
 
@@ -77,12 +126,8 @@ def schedule(
         field_t: B0 = mu_e / r^3, the field above the equator.
         weights: of the cost.
     """
-    u = 2.0 * pi / STEPS * (np.arange(STEPS) + 0.5)
-    across, along = sin(inclination_rad), np.full(STEPS, cos(inclination_rad))
-    b_orbit_t = field_t * np.stack([-2.0 * across * np.sin(u), across * np.cos(u), along], axis=-1)
-    step_s = 2.0 * pi / STEPS / orbit_rate_radps
-    problem = regulator_problem(
-        inertia_kgm2, wheel_body_nms, orbit_rate_radps, field_t, step_s, weights.rate, weights.effort
+    problem, b_orbit_t = orbit_problem(
+        inertia_kgm2, wheel_body_nms, orbit_rate_radps, inclination_rad, field_t, weights
     )
     try:
         gains, costs = periodic(problem, b_orbit_t)
@@ -146,7 +191,11 @@ def within(m_body_am2: Vec3, most_am2: float) -> Vec3:
 
 def lqr(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """M = M(u) (Omega, theta, d), d the estimated torque and what rests on the nominal attitude."""
-    table = config.schedules.get("lqr")
+    return by_schedule(inputs, config.schedules.get("lqr"), config)
+
+
+def by_schedule(inputs: LawInput, table: Schedule | None, config: ControlConfig) -> Demand:
+    """The dipole by the gain tabulated for this argument of latitude; nothing without what it needs."""
     if not inputs.attitude.valid or inputs.reference is None or table is None:
         return Demand()
     gain = table.gains[node(latitude_argument(inputs.reference))].ravel().tolist()

@@ -19,7 +19,7 @@ Source: Ovchinnikov, Roldugin 2019, section 3.2 (after Wisniewski 1996); damaged
 The sums by halves and the doubling: Chu, Fan, Lin, Wang 2004 (periodic Riccati equations).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,11 +62,15 @@ class Problem:
 
 @dataclass(frozen=True, slots=True)
 class Schedule:
-    """A periodic solution: M and (P S) of each step of an orbit, shapes (n, 3, 9) and (n, 6, 9)."""
+    """A periodic solution: M and (P S) of each step of an orbit, shapes (n, 3, 9) and (n, 6, 9).
+
+    ``observer`` is the covariance of what a law estimates by itself, (n, 6, 6), empty for other laws.
+    """
 
     problem: Problem
     gains: Array
     costs: Array
+    observer: Array = field(default_factory=lambda: np.empty((0, 6, 6)))
 
 
 def regulator_problem(
@@ -135,7 +139,7 @@ def backward(problem: Problem, b_orbit_t: Array, last: Array) -> tuple[Array, Ar
         M of each step, (n, 3, 9), and (P S) at the beginning of each, (n, 6, 9).
     """
     gains, costs = np.empty((len(b_orbit_t), 3, 9)), np.empty((len(b_orbit_t), 6, 9))
-    pushes = _pushes(problem, b_orbit_t)
+    pushes = pushes_of(problem, b_orbit_t)
     f, ahead = problem.free[:, :6], last
     for k in range(len(b_orbit_t) - 1, -1, -1):
         push = pushes[k]
@@ -165,10 +169,11 @@ def periodic(problem: Problem, b_orbit_t: Array) -> tuple[Array, Array]:
     Raises:
         NotHeldError: no periodic dipole holds the attitude.
     """
-    f, pushes = problem.free[:, :6], _pushes(problem, b_orbit_t)
+    f, pushes = problem.free[:, :6], pushes_of(problem, b_orbit_t)
     try:
         with np.errstate(all="ignore"):
-            last = np.hstack([_orbit_cost(problem, pushes), np.zeros((6, 3))])
+            reach = pushes @ pushes.swapaxes(-1, -2) / problem.effort
+            last = np.hstack([orbit_cost(problem, reach), np.zeros((6, 3))])
             gains, costs = backward(problem, b_orbit_t, last)
             closed = np.eye(6)
             for push, gain in zip(pushes, gains, strict=True):
@@ -184,12 +189,17 @@ def periodic(problem: Problem, b_orbit_t: Array) -> tuple[Array, Array]:
     return gains, costs
 
 
-def _orbit_cost(problem: Problem, pushes: Array) -> Array:
-    """P at the beginning of an orbit of many, (6, 6)."""
-    shape = (len(pushes), 6, 6)
+def orbit_cost(problem: Problem, reach: Array) -> Array:
+    """P at the beginning of an orbit of many, (6, 6).
+
+    Args:
+        problem: the problem.
+        reach: G of each step, the pushes squared over their effort, shape (n, 6, 6).
+    """
+    shape = reach.shape
     parts: tuple[Array, ...] = (
         np.broadcast_to(problem.free[:, :6], shape),
-        pushes @ pushes.swapaxes(-1, -2) / problem.effort,
+        reach,
         np.broadcast_to(np.diag(problem.cost), shape),
     )
     while (count := len(parts[0])) > 1:
@@ -211,7 +221,7 @@ def _joined(first: tuple[Array, ...], second: tuple[Array, ...]) -> tuple[Array,
     return through @ a1, g2 + through @ g1 @ a2.swapaxes(-1, -2), h1 + back @ a1
 
 
-def _pushes(problem: Problem, b_orbit_t: Array) -> Array:
+def pushes_of(problem: Problem, b_orbit_t: Array) -> Array:
     """-G [b x] of each step, (n, 6, 3): what a dipole adds to the state."""
     pushes: Array = -problem.free[:, 6:] @ skews(b_orbit_t)
     return pushes

@@ -12,6 +12,7 @@ points worse if the residual dipole is opposed in part only.
 Source: Ovchinnikov, Roldugin 2019, section 3.3 (after Silani, Lovera 2005); equations: ``riccati``.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
@@ -29,6 +30,7 @@ from fsw.core.laws.plan.riccati import Array, Schedule, backward
 
 APPLIED_STEPS = 5
 """Steps of a plan that are applied."""
+FieldAhead = Callable[[LawInput, int, float, ControlConfig], Array | None]
 _NUMBERS = 3 * 9
 """Of a gain."""
 
@@ -65,28 +67,60 @@ def plan(table: Schedule, b_orbit_t: Array, end_node: int) -> Array:
 
 def mpc(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The step of the plan in memory (tick of its start, its gains); a new plan where it has ended."""
-    table = config.schedules.get("mpc")
-    if not inputs.attitude.valid or inputs.reference is None or inputs.ephemeris is None or table is None:
+    if inputs.ephemeris is None:
         return Demand(memory=memory)
-    step = _step(memory, inputs.tick, config.tick_s / table.problem.step_s)
+    return by_plan("mpc", _model_field, inputs, memory, config)
+
+
+def _model_field(inputs: LawInput, steps: int, step_s: float, config: ControlConfig) -> Array | None:
+    """The field of the model in the middle of each step."""
+    model = inputs.ephemeris
+    if model is None:
+        return None
+    unix_s = model.epoch_unix_s + inputs.tick * config.tick_s
+    ahead = orbit_ahead(model, [unix_s + (k + 0.5) * step_s for k in range(steps)])
+    return None if ahead is None else ahead.b_orbit_t
+
+
+def by_plan(
+    law: str,
+    field_ahead: FieldAhead,
+    inputs: LawInput,
+    memory: Memory,
+    config: ControlConfig,
+    applied: int = APPLIED_STEPS,
+) -> Demand:
+    """The step of the plan in memory, or the first of a new one along the field that ``field_ahead`` gives.
+
+    Args:
+        law: whose schedule and horizon count.
+        field_ahead: of the inputs, a number of steps, their length and the configuration, the field in the
+            middle of each, orbital axes, T, shape (steps, 3); None where there is none.
+        inputs: as of the law, as the next two.
+        memory: tick of the plan's start, and its gains.
+        config: the configuration.
+        applied: steps of a plan that are applied, at most as many as it has.
+    """
+    table = config.schedules.get(law)
+    if not inputs.attitude.valid or inputs.reference is None or table is None:
+        return Demand(memory=memory)
+    step = _step(memory, inputs.tick, config.tick_s / table.problem.step_s, applied)
     if step is None:
-        steps = round(config.gains["mpc"].horizon_orbits * STEPS)
-        model, step_s = inputs.ephemeris, table.problem.step_s
-        unix_s = model.epoch_unix_s + inputs.tick * config.tick_s
-        ahead = orbit_ahead(model, [unix_s + (k + 0.5) * step_s for k in range(steps)])
-        if ahead is None:
+        steps = round(config.gains[law].horizon_orbits * STEPS)
+        b_orbit_t = field_ahead(inputs, steps, table.problem.step_s, config)
+        if b_orbit_t is None:
             return Demand()
         end = node(latitude_argument(inputs.reference)) + steps
-        gains = plan(table, ahead.b_orbit_t, end % STEPS)
+        gains = plan(table, b_orbit_t, end % STEPS)[:applied]
         memory, step = (float(inputs.tick), *gains.ravel().tolist()), 0
     first = 1 + step * _NUMBERS
     wanted = dipole(memory[first : first + _NUMBERS], inputs.attitude, expected_torque(inputs, table))
     return Demand(within(wanted, config.mean_dipole_am2), memory=memory)
 
 
-def _step(memory: Memory, tick: int, steps_per_tick: float) -> int | None:
+def _step(memory: Memory, tick: int, steps_per_tick: float, applied: int) -> int | None:
     """The step of the plan in memory that this tick belongs to; None where there is none."""
-    if len(memory) != 1 + APPLIED_STEPS * _NUMBERS or tick < memory[0]:
+    if len(memory) != 1 + applied * _NUMBERS or tick < memory[0]:
         return None
     step = int((tick - memory[0]) * steps_per_tick)
-    return step if step < APPLIED_STEPS else None
+    return step if step < applied else None

@@ -3,7 +3,7 @@
 Written apart from the plant: direction cosines instead of a quaternion, and the momentum as the state.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import cos, radians, sin, sqrt
 
 import numpy as np
@@ -13,10 +13,15 @@ from scipy.spatial.transform import Rotation
 from fsw.core.algebra.quaternion import from_dcm
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.laws.interface import ControlConfig, FieldSample, LawInput, Setpoint, Wheel
-from fsw.core.orbit.ephemeris import Reference
+from fsw.core.laws.table import LAWS
+from fsw.core.orbit.ephemeris import Reference, ephemeris_model
+from fsw.core.orbit.field import FieldKind
+from fsw.core.orbit.propagation import circular_orbit
+from fsw.table.schedules import SCHEDULERS
 
 MU = 3.986004418e14
 MU_E = 7.812e15
+EPOCH_UNIX_S = 1742461200
 
 
 @dataclass(frozen=True)
@@ -245,12 +250,28 @@ def flown(rows, orbit, body):
     )
 
 
+def scheduled(body, step_s, law, gains=None, orbit=Orbit(), also=()):
+    """The settings of a law that flies by a schedule of its body and orbit; ``also`` are further laws."""
+    own = {name: LAWS[name].gains(**(gains or {} if name == law else {})) for name in (law, *also)}
+    ready = config(body, step_s, own)
+    circle = (orbit.rate_radps, radians(orbit.inclination_deg), orbit.dipole * MU_E / orbit.radius_m**3)
+    made = {name: SCHEDULERS[name](ready.inertia_kgm2, body.wheel, *circle, own[name]) for name in own}
+    return replace(ready, mean_dipole_am2=min(body.most_am2, 1e3), schedules=made)
+
+
+def model_of(orbit, kind=FieldKind.DIRECT_DIPOLE):
+    """Orbit and field as a controller knows them, in ticks of a second."""
+    circle = circular_orbit(orbit.altitude_km, orbit.inclination_deg, 0.0, 0.0, EPOCH_UNIX_S)
+    return ephemeris_model(circle, EPOCH_UNIX_S, 1, kind, degree=4)
+
+
 class Bench:
     """What the tests of the laws use."""
 
     Orbit, Body = Orbit, Body
     fly, inputs_at = staticmethod(fly), staticmethod(inputs_at)
     setpoint, config = staticmethod(setpoint), staticmethod(config)
+    scheduled, model_of = staticmethod(scheduled), staticmethod(model_of)
     angles_deg = staticmethod(angles_deg)
 
 

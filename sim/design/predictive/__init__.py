@@ -1,0 +1,1 @@
+"""Predictive control studied on the ground."""

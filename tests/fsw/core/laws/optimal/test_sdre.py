@@ -1,0 +1,95 @@
+"""The state-dependent regulator: its factors are the motion, and from far off it costs less than ``lqr``."""
+
+import numpy as np
+import pytest
+
+from fsw.core.algebra.quaternion import dcm, normalise
+from fsw.core.estimation.attitude import UNKNOWN
+from fsw.core.laws.optimal.lqr import lqr
+from fsw.core.laws.optimal.sdre import factors, sdre, stepped
+from fsw.core.laws.plan.riccati import free_step, resting_torque
+from fsw.core.laws.predictive.predictive import free_rate_change
+from fsw.core.orbit.earth import MU_M3PS2
+
+INERTIA = ((1.02, 0.03, -0.02), (0.03, 1.85, 0.05), (-0.02, 0.05, 1.95))
+WHEEL = (0.002, -0.003, 0.01)
+RADIUS_M = 7178137.0
+W0 = float(np.sqrt(MU_M3PS2 / RADIUS_M**3))
+ATTITUDES = [(1.0, 0.0, 0.0, 0.0), (0.7, 0.3, -0.5, 0.4), (-0.2, 0.5, 0.6, -0.3), (0.05, -0.9, 0.3, 0.2)]
+
+
+@pytest.mark.parametrize("q", ATTITUDES)
+def test_the_factors_times_the_state_are_the_motion(q):
+    """At any attitude and rate, beside the predictive law's equation; and the kinematics of a quaternion."""
+    q, omega = normalise(q), (8e-4, -2e-3, 1.5e-3)
+    a = factors(q, omega, W0, INERTIA, WHEEL)
+    sign = 1.0 if q[0] >= 0.0 else -1.0
+    vector = sign * np.array(q[1:])
+    rest = resting_torque(INERTIA, WHEEL, W0)
+    change = a @ np.concatenate([omega, 2.0 * vector, rest])
+    inverse = tuple(map(tuple, np.linalg.inv(INERTIA).tolist()))
+    expected = free_rate_change(omega, dcm(q), W0, RADIUS_M, INERTIA, inverse, WHEEL)
+    assert change[:3] == pytest.approx(expected, rel=1e-9, abs=1e-13)
+    kinematics = sign * q[0] * np.array(omega) + np.cross(vector, omega)
+    assert change[3:] == pytest.approx(kinematics)
+
+
+def test_about_the_nominal_attitude_the_step_is_that_of_the_regulator():
+    a = factors((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), W0, INERTIA, WHEEL)
+    expected = free_step(INERTIA, WHEEL, W0, 126.0)
+    assert stepped(a, 126.0) == pytest.approx(expected, rel=1e-9, abs=1e-9)
+
+
+@pytest.fixture(scope="module")
+def flight(bench, turned):
+    def fly(law, angle_deg, orbits):
+        orbit, c = bench.Orbit(), turned((1, 2, 3), angle_deg)
+        body, model = bench.Body(np.diag([1.02, 1.85, 1.95]), most_am2=2.0), bench.model_of(bench.Orbit())
+        return bench.fly(
+            law,
+            bench.setpoint(),
+            orbit=orbit,
+            body=body,
+            c_body_from_orbit=c,
+            omega_body=orbit.rate_radps * c[:, 2],
+            seconds=orbits * orbit.period_s,
+            step_s=20.0,
+            look=lambda inputs: inputs._replace(ephemeris=model, tick=20 * inputs.tick),
+            settings=bench.scheduled(body, 1.0, "sdre", also=("lqr",)),
+        )
+
+    return fly
+
+
+def test_from_far_off_it_costs_less_than_the_linear_regulator(flight):
+    """120 deg: the sum of the squared angle over an orbit."""
+    by_sdre, by_lqr = (np.sum(flight(law, 120.0, 1.0).angle_deg ** 2) for law in (sdre, lqr))
+    assert by_sdre < 0.85 * by_lqr
+
+
+def test_near_the_goal_it_points(flight):
+    assert flight(sdre, 15.0, 1.6).angle_deg[-1] < 1.0
+
+
+@pytest.mark.parametrize("missing", ["attitude", "reference", "ephemeris", "schedule"])
+def test_without_knowledge_nothing_is_asked_for(bench, missing):
+    body, orbit = bench.Body(np.diag([1.02, 1.85, 1.95]), most_am2=2.0), bench.Orbit()
+    full, none = bench.scheduled(body, 1.0, "sdre"), bench.scheduled(body, 1.0, "lqr")
+    inputs = bench.inputs_at(orbit, 9, 1.0, np.eye(3), np.array([1e-3, 2e-3, 1e-3]), None)
+    inputs = inputs._replace(ephemeris=bench.model_of(orbit))
+    assert any(sdre(inputs, (), bench.setpoint(), full).m_body_am2)
+    if missing != "schedule":
+        inputs = inputs._replace(**{missing: UNKNOWN if missing == "attitude" else None})
+    settings = none if missing == "schedule" else full
+    assert sdre(inputs, (), bench.setpoint(), settings).m_body_am2 == (0.0, 0.0, 0.0)
+
+
+def test_a_solution_is_flown_for_its_steps_and_then_made_anew(bench):
+    body, orbit = bench.Body(np.diag([1.02, 1.85, 1.95]), most_am2=2.0), bench.Orbit()
+    settings = bench.scheduled(body, 1.0, "sdre")
+    inputs = bench.inputs_at(orbit, 9, 1.0, np.eye(3), np.array([1e-3, 2e-3, 1e-3]), None)
+    inputs = inputs._replace(ephemeris=bench.model_of(orbit))
+    memory = sdre(inputs, (), bench.setpoint(), settings).memory
+    last = int(2.0 * settings.schedules["sdre"].problem.step_s)
+    assert sdre(inputs._replace(tick=9 + last), memory, bench.setpoint(), settings).memory == memory
+    assert sdre(inputs._replace(tick=10 + last), memory, bench.setpoint(), settings).memory[0] == 10 + last
