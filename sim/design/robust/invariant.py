@@ -7,8 +7,8 @@ and costate (x, p), p = P x, is
 
 one inverse, of A, for all. The product over an orbit has six decaying modes; with (V1; V2) a basis of them,
 by an ordered Schur form, P = V2 V1^-1 at the beginning of the orbit. The other steps follow by recursion.
-The product loses digits as its modes grow apart: where effort is cheap P does not come again after an orbit, which
-is checked.
+The product loses digits as its modes grow apart: where effort is cheap P does not come again after an orbit,
+which is checked.
 
 Source: Yang 2017, as in Ovchinnikov, Roldugin 2019, section 3.2.
 """

@@ -58,7 +58,7 @@ def explicit() -> Study:
     """How many pieces the explicit form has."""
     claim = Claim(
         "review.predictive.explicit",
-        f"Pieces of the explicit law met by {STATES} states, horizon of {HORIZONS[1]} steps over {HORIZONS[0]}",
+        f"Pieces of the explicit law that {STATES} states meet, {HORIZONS[1]} steps over {HORIZONS[0]}",
         f"{REVIEW} [110]",
         "1",
         low=2.0,

@@ -52,7 +52,7 @@ def averaged_schedule(
 ) -> Schedule:
     """The constant (P S) in each step, and the gains on the direct dipole's field.
 
-    Where nothing holds the body, as with a steady field along an axis that is free, P looks half an orbit ahead.
+    Where nothing holds the body, as with a steady field along a free axis, P looks half an orbit ahead.
     """
     problem, b_orbit_t = orbit_problem(
         inertia_kgm2, wheel_body_nms, orbit_rate_radps, inclination_rad, field_t, gains
@@ -60,8 +60,11 @@ def averaged_schedule(
     pushes = pushes_of(problem, b_orbit_t)
     reach = np.mean(pushes @ pushes.swapaxes(-1, -2), axis=0) / problem.effort
     f, g = problem.free[:, :6], problem.free[:, 6:]
-    with np.errstate(all="ignore"):
-        cost = orbit_cost(problem, np.broadcast_to(reach, (STEPS, 6, 6)))
+    try:
+        with np.errstate(all="ignore"):
+            cost = orbit_cost(problem, np.broadcast_to(reach, (STEPS, 6, 6)))
+    except np.linalg.LinAlgError:
+        cost = np.full((6, 6), np.inf)  # grown beyond what can be inverted
     closed = _closed(f, reach, cost)
     if not np.isfinite(cost).all() or np.abs(np.linalg.eigvals(closed)).max() >= 1.0:
         cost = np.zeros((6, 6))
@@ -76,6 +79,8 @@ def averaged_schedule(
 
 def _closed(f: Array, reach: Array, cost: Array) -> Array:
     """Fc = (E + R P)^-1 F; not finite as far as P is not."""
+    if not np.isfinite(cost).all():
+        return 2.0 * np.eye(6)
     bent = np.eye(6) + reach @ cost
     if not np.isfinite(bent).all() or np.linalg.matrix_rank(bent) < len(bent):
         return 2.0 * np.eye(6)
