@@ -65,7 +65,7 @@ def check_weights(law: str, rate: float, effort: float) -> None:
         )
 
 
-class Weights(Protocol):
+class CostWeights(Protocol):
     """What the cost of a law is made of."""
 
     @property
@@ -89,7 +89,7 @@ def orbit_problem(
     orbit_rate_radps: float,
     inclination_rad: float,
     field_t: float,
-    weights: Weights,
+    weights: CostWeights,
 ) -> tuple[Problem, Array]:
     """The problem of a step, and the direct dipole's field in the middle of each, orbital axes, T, (n, 3).
 
@@ -111,7 +111,7 @@ def schedule(
     orbit_rate_radps: float,
     inclination_rad: float,
     field_t: float,
-    weights: Weights,
+    weights: CostWeights,
 ) -> Schedule:
     """The periodic solution on the direct dipole's field of a circular orbit.
 

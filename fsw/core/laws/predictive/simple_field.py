@@ -35,7 +35,7 @@ class FittedGains(MpcGains):
 
 
 @dataclass(frozen=True, slots=True)
-class HeldGains:
+class HeldFieldGains:
     """Weights as for ``lqr``, and a short horizon, in orbits."""
 
     rate: float = 0.0

@@ -5,7 +5,7 @@ import pytest
 
 from fsw.core.estimation.attitude import UNKNOWN
 from fsw.core.laws.predictive.mpc import mpc
-from fsw.core.laws.predictive.simple_field import FittedGains, HeldGains, fitted, mpc_fitted, mpc_held
+from fsw.core.laws.predictive.simple_field import FittedGains, HeldFieldGains, fitted, mpc_fitted, mpc_held
 from fsw.core.orbit.field import FieldKind
 
 DIAGONAL = np.diag([1.02, 1.85, 1.95])
@@ -103,6 +103,6 @@ def test_the_held_field_is_renewed_each_step_and_the_fit_each_five(asked):
 @pytest.mark.parametrize("gains", [{"horizon_orbits": 0.6}, {"horizon_orbits": 0.0}, {"effort": 0.0}])
 def test_numbers_out_of_range_are_refused(gains):
     with pytest.raises(ValueError, match="must be"):
-        HeldGains(**gains)
+        HeldFieldGains(**gains)
     with pytest.raises(ValueError, match="must be"):
         FittedGains(**({"horizon_orbits": 5.0} if gains.get("horizon_orbits") == 0.6 else gains))
