@@ -97,4 +97,43 @@ METHODS: tuple[Method, ...] = (
         ("review.wheel.convergence", "review.wheel.strong_wheel"),
         "The expressions are not printed and were not found; derived by averaging.",
     ),
+    Method(
+        "two coils and one wheel",
+        "[O19] 2.4 [56]",
+        Kind.FLOWN,
+        "fsw/core/laws/wheel/two_coils.py",
+        "With one wheel beside two coils any torque wanted is given in full.",
+        (
+            "review.wheel.two_coils",
+            "review.wheel.two_coils_held",
+            "review.wheel.two_coils_growth",
+            "review.wheel.two_coils_polar",
+        ),
+        "Only where the field has a component along the wheel: the dipole grows as one over it, so that a "
+        "pitch wheel serves in inclined orbits and not over the poles.",
+    ),
+    Method(
+        "torque shared between coils and wheels",
+        "[O19] 2.4 [57]",
+        Kind.FLOWN,
+        "fsw/core/laws/wheel/allocation.py",
+        "The torque is shared for different numbers of wheels.",
+        (
+            "review.wheel.allocation_effort",
+            "review.wheel.allocation_limits",
+            "review.wheel.flight.final",
+            "review.wheel.flight.honest",
+        ),
+        "The review gives no equation; weighted least squares of any number of wheels, of which one is "
+        "flown. With one wheel and the attitude held nothing is left to choose its momentum by.",
+    ),
+    Method(
+        "pitch wheel whose speed is controlled",
+        "[O19] 2.4 [58]",
+        Kind.FLOWN,
+        "fsw/core/laws/wheel/pitch_wheel.py",
+        "The wheel is a pitch wheel, and its speed can be controlled.",
+        ("review.wheel.pitch_speed", "review.wheel.pitch_momentum"),
+        "The review gives no equation; derived from the torques of coils and wheel.",
+    ),
 )

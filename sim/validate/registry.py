@@ -6,7 +6,7 @@ from pathlib import Path
 from fsw.input.near import did_you_mean
 from sim.campaign.claim import Study
 from sim.errors import HarnessError
-from sim.validate import calibrated, cells, computed, microsat, optimal_pulses, shipped, wirings
+from sim.validate import calibrated, cells, computed, driven_wheel, microsat, optimal_pulses, shipped, wirings
 from sim.validate.consat import minimisers, posat1, prediction
 from sim.validate.population import claims
 from sim.validate.reference import reference
@@ -34,6 +34,7 @@ def all_studies(satellites: int | None = None) -> list[Study]:
             for section in (damping, spin, wheel, one_axis, feedback, sliding, optimal, predictive)
             for study in section.studies()
         ),
+        *driven_wheel.studies(),
         *claims.studies(satellites),
         *wirings.studies(),
         *calibrated.studies(satellites),

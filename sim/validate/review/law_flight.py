@@ -14,13 +14,14 @@ import numpy as np
 from fsw.core.algebra.quaternion import from_dcm, rotate
 from fsw.core.algebra.vector import inverse
 from fsw.core.estimation.attitude import Attitude
-from fsw.core.laws.interface import ControlConfig, FieldSample, LawInput, Memory, Setpoint
+from fsw.core.laws.interface import ControlConfig, FieldSample, LawInput, Memory, Setpoint, Wheel
 from fsw.core.laws.plan.riccati import Schedule
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit.ephemeris import Reference
 from sim.plant.config import OrbitConfig
 from sim.plant.dynamics import torques
 from sim.plant.dynamics.rigid_body import Motion, RigidBody, Torque
+from sim.plant.dynamics.wheel import SpinningWheel
 from sim.plant.environment.field import DirectDipole, RotatingIgrf
 from sim.plant.environment.orbit import Array, CircularOrbit
 from sim.plant.environment.surroundings import Surroundings
@@ -35,6 +36,7 @@ from sim.plant.rotation import (
     multiply,
     transform,
 )
+from sim.plant.wheel_config import WheelConfig
 
 DEGREE, EPOCH_UNIX_S = 13, 1_742_461_200
 """Of the true field."""
@@ -65,6 +67,7 @@ class LawFlight:
         known: whether attitude and rate are.
         schedules: by law, of the periodic laws.
         igrf: whether the field is the true one, else the direct dipole's.
+        wheel: a wheel that the law may drive; its friction is not compensated.
     """
 
     law: str
@@ -91,6 +94,7 @@ class LawFlight:
     k_i: float = 0.0
     schedules: dict[str, Schedule] = field(default_factory=dict)
     igrf: bool = False
+    wheel: WheelConfig | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,6 +110,7 @@ class LawHistory:
     c_body_from_eci: Array
     momentum_eci_nms: Array
     m_body_am2: Array
+    wheel_nms: Array
 
     @property
     def orbits(self) -> Array:
@@ -140,22 +145,28 @@ def angle_deg(vectors: Array, direction: Vec3) -> Array:
 def fly(case: LawFlight) -> LawHistory:
     """Fly it; the dipole holds over a step."""
     row, settings, setpoint = LAWS[case.law], _settings(case), _setpoint(case)
-    rigid = RigidBody(case.inertia_kgm2, case.wheel_body_nms)
-    orbit = _orbit(case)
+    own = case.inertia_kgm2 if case.wheel is None else case.wheel.rest_of(case.inertia_kgm2)
+    rigid, orbit = RigidBody(own, case.wheel_body_nms), _orbit(case)
     rate = float(np.linalg.norm(np.cross(orbit.r_m[0], orbit.v_mps[0])) / np.linalg.norm(orbit.r_m[0]) ** 2)
     hand_over_s = case.hand_over_orbits * 2.0 * np.pi / rate
     motion, before, rows = _start(case, orbit, rate), FieldSample(), []
+    wheel = None if case.wheel is None else SpinningWheel(case.wheel, motion.omega_body_radps)
     memory: Memory = ()
     for tick in range((len(orbit.r_m) - 1) // 2):
-        near = case.near or tick * case.step_s >= hand_over_s
-        place = 2 * tick
+        near, place = case.near or tick * case.step_s >= hand_over_s, 2 * tick
         inputs, relative, from_orbit = _inputs(case, orbit, place, rate, motion, before, tick)
+        h = None if wheel is None else wheel.relative_nms(motion.omega_body_radps)
+        inputs = inputs._replace(wheel_nms=h)
         demand = (row.point if near else row.acquire)(inputs, memory, setpoint, settings)
         before, memory = inputs.sample, demand.memory
         m = _clipped(demand.m_body_am2, case.most_am2)
-        rows.append((tick * case.step_s, *motion, relative, from_orbit, m))
-        velocity = orbit.velocity(place)
-        motion = rigid.step(motion, _torque(case, m, velocity), orbit.around(place), case.step_s)
+        rows.append((tick * case.step_s, *motion, relative, from_orbit, m, h or 0.0))
+        momenta, reaction = None, ZERO
+        if wheel is not None:
+            asked, omega = demand.wheel_torque_nm or 0.0, motion.omega_body_radps
+            momenta, reaction = wheel.advance(asked, omega, case.step_s)
+        torque = _torque(case, m, _vec3(orbit.v_mps[place]), reaction)
+        motion = rigid.step(motion, torque, orbit.around(place), case.step_s, momenta)
     return _flown(case, rate, rows)
 
 
@@ -175,10 +186,6 @@ class _Orbit:
             for r, b in zip(self.r_m[place : place + 3], self.b_t[place : place + 3], strict=True)
         ]
 
-    def velocity(self, place: int) -> Vec3:
-        """At a half step."""
-        return _vec3(self.v_mps[place])
-
     def axes(self, place: int) -> Mat3:
         """Rows: radius, ahead, normal."""
         e1 = self.r_m[place] / np.linalg.norm(self.r_m[place])
@@ -188,8 +195,8 @@ class _Orbit:
 
 
 def _orbit(case: LawFlight) -> _Orbit:
-    config = OrbitConfig(None, 1e3 * case.altitude_km, radians(case.inclination_deg), 0.0, 0.0)
-    circular = CircularOrbit(config)
+    height_m, inclination_rad = 1e3 * case.altitude_km, radians(case.inclination_deg)
+    circular = CircularOrbit(OrbitConfig(None, height_m, inclination_rad, 0.0, 0.0))
     (r, v) = (part[0] for part in circular.at(np.array([0.0])))
     rate = float(np.linalg.norm(np.cross(r, v)) / (r @ r))
     steps = int(case.orbits * 2.0 * np.pi / rate / case.step_s)
@@ -210,13 +217,7 @@ def _start(case: LawFlight, orbit: _Orbit, rate: float) -> Motion:
 
 
 def _inputs(
-    case: LawFlight,
-    orbit: _Orbit,
-    place: int,
-    rate: float,
-    motion: Motion,
-    before: FieldSample,
-    tick: int,
+    case: LawFlight, orbit: _Orbit, place: int, rate: float, motion: Motion, before: FieldSample, tick: int
 ) -> tuple[LawInput, Vec3, Quaternion]:
     axes, c = orbit.axes(place), matrix(motion.q_body_from_eci)
     q_orbit = from_dcm(axes)
@@ -237,14 +238,13 @@ def _inputs(
         q_orbit_from_eci=q_orbit,
         orbit_rate_radps=rate,
     )
-    attitude = Attitude(from_orbit, relative, 0.0, 0.0, case.known)
-    sample = FieldSample(b_body, tick)
+    attitude, sample = Attitude(from_orbit, relative, 0.0, 0.0, case.known), FieldSample(b_body, tick)
     return LawInput(attitude, b_body, sample, before, sun, reference, tick=tick), relative, from_orbit
 
 
-def _torque(case: LawFlight, m: Vec3, velocity: Vec3) -> Torque:
+def _torque(case: LawFlight, m: Vec3, velocity: Vec3, reaction: Vec3) -> Torque:
     def torque(q: Quaternion, omega: Vec3, around: Surroundings) -> Vec3:
-        x, y, z = torques.total(case.inertia_kgm2, q, around, m, ZERO)
+        x, y, z = torques.total(case.inertia_kgm2, q, around, m, reaction)
         if case.extra is None:
             return (x, y, z)
         ex, ey, ez = case.extra(matrix(q), velocity)
@@ -271,16 +271,23 @@ def _settings(case: LawFlight) -> ControlConfig:
         horizon_s=case.step_s,
         mean_dipole_am2=case.most_am2,
         schedules=case.schedules,
+        wheel=None if case.wheel is None else _onboard(case.wheel, case.step_s),
     )
 
 
+def _onboard(w: WheelConfig, step_s: float) -> Wheel:
+    limits = (w.inertia_kgm2, w.max_torque_nm, w.max_momentum_nms)
+    return Wheel(w.axis_body, *limits, w.viscous_nms, w.coulomb_nm, step_s, stale_ticks=1)
+
+
 def _flown(case: LawFlight, rate: float, rows: list[Any]) -> LawHistory:
-    t_s, q, omega, relative, from_orbit, m = map(np.array, zip(*rows, strict=True))
+    t_s, q, omega, relative, from_orbit, m, h = map(np.array, zip(*rows, strict=True))
     c_eci = np.array([matrix(tuple(row)) for row in q.tolist()])
     c_orbit = np.array([matrix(tuple(row)) for row in from_orbit.tolist()])
-    momentum = omega @ np.array(case.inertia_kgm2).T + np.array(case.wheel_body_nms)
+    axis = ZERO if case.wheel is None else case.wheel.axis_body
+    momentum = omega @ np.array(case.inertia_kgm2).T + np.array(case.wheel_body_nms) + np.outer(h, axis)
     h_eci = np.einsum("tji,tj->ti", c_eci, momentum)
-    return LawHistory(t_s, rate, omega, relative, from_orbit, c_orbit, c_eci, h_eci, m)
+    return LawHistory(t_s, rate, omega, relative, from_orbit, c_orbit, c_eci, h_eci, m, h)
 
 
 def _clipped(m: Vec3, most: float) -> Vec3:

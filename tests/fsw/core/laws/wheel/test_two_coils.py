@@ -7,8 +7,8 @@ import pytest
 
 from fsw.core.algebra.quaternion import normalise
 from fsw.core.estimation.attitude import Attitude
-from fsw.core.laws.interface import Wheel
-from fsw.core.laws.wheel.effort import Effort, shortened, wanted_torque
+from fsw.core.laws.interface import FieldSample, Wheel
+from fsw.core.laws.wheel.effort import Effort, held_torque, shortened, wanted_torque
 from fsw.core.laws.wheel.two_coils import TwoCoilsGains, two_coils, two_coils_and_wheel, two_coils_far
 
 B = (2.1e-5, -1.4e-5, 0.9e-5)
@@ -71,6 +71,23 @@ def test_the_shorter_way_is_taken():
         wanted_torque(Attitude(one, (0.0,) * 3, 0.0, 0.0, True), J, 0.02, 1.0) for one in (q, other)
     )
     assert there == pytest.approx(back, rel=1e-12)
+
+
+def test_what_acts_at_the_goal_is_answered_at_once(bench, turned):
+    """At rest in a turned attitude: omega x h of the wheel is added, and the estimated torque taken off."""
+    orbit, tick, disturbance = bench.Orbit(500.0, 51.6), 100, (2e-7, -3e-7, 5e-7)
+    c = turned((1, -2, 3), 20.0) @ orbit.c_orbit_from_eci(tick)
+    omega = orbit.rate_radps * (c @ orbit.c_orbit_from_eci(tick).T)[:, 2]
+    settings = bench.config(bench.Body(driven=WHEEL), 1.0)
+    inputs = bench.inputs_at(orbit, tick, 1.0, c, omega, FieldSample())
+    inputs = inputs._replace(wheel_nms=0.07, torque_body_nm=disturbance)
+    spring = wanted_torque(inputs.attitude, settings.inertia_kgm2, 0.02, 0.7)
+    added = np.cross(omega, (0.0, 0.0, 0.07)) - disturbance
+    assert np.abs(added).min() > 1e-7
+    assert held_torque(inputs, settings, 0.02, 0.7) == pytest.approx(np.array(spring) + added, rel=1e-9)
+    assert held_torque(inputs._replace(reference=None), settings, 0.02, 0.7) == pytest.approx(
+        np.array(spring) - disturbance, rel=1e-9
+    )
 
 
 def flown(bench, turned, law=two_coils, inclination_deg=51.6, first_deg=15.0, seconds=2000.0, **body):

@@ -1,0 +1,272 @@
+"""Claims: a wheel beside the coils that can be driven (section 2.4 of the review)."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+from math import inf, radians
+
+import numpy as np
+
+from fsw.core.laws.wheel.allocation import affordable
+from fsw.core.laws.wheel.dual_spin import DualSpinGains
+from fsw.core.laws.wheel.pitch_wheel import PitchWheelGains
+from fsw.core.laws.wheel.two_coils import two_coils_and_wheel
+from sim.campaign.claim import Claim, Study
+from sim.campaign.flight import Order
+from sim.campaign.study import Figure, Group, campaign, summary_value
+from sim.plant.environment.orbit import Array
+from sim.plant.rotation import Vec3
+from sim.plant.wheel_config import WheelConfig
+from sim.validate.review.figures import one_figure
+from sim.validate.review.law_flight import LawFlight, LawHistory, fly
+
+REVIEW = "Ovchinnikov, Roldugin 2019, section 2.4"
+INERTIA = ((1.02, 0.0, 0.0), (0.0, 1.85, 0.0), (0.0, 0.0, 1.95))
+WHEEL = WheelConfig((0.0, 0.0, 1.0), 2e-4, 2e-3, 0.12)
+TORQUE_NM = 1e-6
+"""About each axis, constant."""
+SPRING_DEG = 0.70
+"""What the spring of 0.01 rad/s leaves of it: T / (J w_n^2) about each axis, 0.56, 0.31 and 0.29 deg."""
+DRAWN = 2000
+
+HELD = LawFlight(
+    "two_coils",
+    INERTIA,
+    near=True,
+    rotation_rad=(radians(0.4), radians(-0.3), radians(0.3)),
+    relative=True,
+    orbits=0.8,
+    most_am2=8.0,
+    altitude_km=500.0,
+    inclination_deg=51.6,
+    extra=lambda c, v: (TORQUE_NM, -TORQUE_NM, TORQUE_NM),
+    wheel=WHEEL,
+)
+"""Held against a torque, the wheel along the orbit normal."""
+TURNED = replace(HELD, extra=None, rotation_rad=(0.0, 0.0, radians(20.0)), orbits=0.5, k_w=1e7, k_a=4000.0)
+"""20 deg off in pitch."""
+BIAS_NMS = 0.05
+BIASED = replace(WHEEL, momentum_nms=BIAS_NMS)
+
+
+@dataclass(frozen=True, slots=True)
+class _WheelRow:
+    """A claim whose figure a function gives."""
+
+    name: str
+    statement: str
+    source: str
+    unit: str
+    low: float
+    high: float
+    figure: Callable[[], float]
+    wide: str = ""
+
+
+def _last_half(values: Array) -> Array:
+    return values[len(values) // 2 :]
+
+
+def _dipole_am2(flown: LawHistory) -> float:
+    return float(np.sqrt(np.mean(np.sum(_last_half(flown.m_body_am2) ** 2, axis=1))))
+
+
+def given_share() -> float:
+    """The largest part of a torque that two coils and a wheel lack, for any torque, field and axis."""
+    random, worst = np.random.default_rng(56), 0.0
+    for _ in range(DRAWN):
+        torque, field, axis = (_unit(random) for _ in range(3))
+        effort = two_coils_and_wheel(torque, field, axis)
+        assert effort is not None
+        given = np.cross(effort.m_body_am2, field) - effort.wheel_torque_nm * np.array(axis)
+        size = max(1.0, float(np.linalg.norm(effort.m_body_am2)))
+        worst = max(worst, float(np.linalg.norm(given - torque)) / size)
+    return worst
+
+
+def _unit(random: np.random.Generator) -> Vec3:
+    x, y, z = random.standard_normal(3)
+    size = float(np.sqrt(x * x + y * y + z * z))
+    return (float(x) / size, float(y) / size, float(z) / size)
+
+
+def held_off_spring_deg() -> float:
+    """The largest difference from what the spring leaves, at 51.6 deg."""
+    return float(np.abs(_last_half(fly(HELD).angle_deg) - SPRING_DEG).max())
+
+
+def dipole_growth() -> float:
+    """The dipole at 80 deg inclination over that at the equator, times the cosine."""
+    steep, flat = (fly(replace(HELD, inclination_deg=inclination)) for inclination in (80.0, 0.0))
+    return _dipole_am2(steep) / _dipole_am2(flat) * float(np.cos(radians(80.0)))
+
+
+def polar_growth() -> float:
+    """The dipole over the poles, where the field has no component along the wheel, over that at 51.6 deg."""
+    return _dipole_am2(fly(replace(HELD, inclination_deg=90.0))) / _dipole_am2(fly(HELD))
+
+
+def effort_share() -> float:
+    """The dipole of the allocation over that of two coils, held against the same torque."""
+    return _dipole_am2(fly(replace(HELD, law="wheel_allocation"))) / _dipole_am2(fly(HELD))
+
+
+def beyond_limits() -> float:
+    """The largest effort of the allocation, in parts of what coils and wheel can give, for any torque."""
+    random, worst = np.random.default_rng(57), 0.0
+    for _ in range(DRAWN):
+        torque, field, axis = (_unit(random) for _ in range(3))
+        size = float(10.0 ** random.uniform(-7.0, -2.0))
+        asked = (size * torque[0], size * torque[1], size * torque[2])
+        effort = affordable(asked, (3e-5 * field[0], 3e-5 * field[1], 3e-5 * field[2]), axis, 8.0, 2e-3)
+        assert effort is not None
+        m, wheel = float(np.linalg.norm(effort.m_body_am2)) / 8.0, abs(effort.wheel_torque_nm) / 2e-3
+        worst = max(worst, m, wheel)
+    return worst
+
+
+def pitch_speed() -> float:
+    """Time under 1 deg from 20 deg in pitch by the wheel's speed, over that by the coils of dual spin."""
+    by_wheel = replace(TURNED, law="pitch_wheel", gains=PitchWheelGains(bias_nms=BIAS_NMS), wheel=BIASED)
+    by_coils = replace(
+        TURNED, law="dual_spin", gains=DualSpinGains(), wheel=None, wheel_body_nms=(0.0, 0.0, BIAS_NMS)
+    )
+    return _settled_s(fly(by_wheel)) / _settled_s(fly(replace(by_coils, orbits=4.0)))
+
+
+def _settled_s(flown: LawHistory) -> float:
+    """The time after which the angle stays under 1 deg; infinite where it does not."""
+    above = np.flatnonzero(flown.angle_deg >= 1.0)
+    if len(above) == len(flown.t_s) or above[-1] == len(flown.t_s) - 1:
+        return inf
+    return float(flown.t_s[above[-1] + 1])
+
+
+def momentum_left() -> float:
+    """Of 0.03 N m s above the bias, what is left after an orbit."""
+    begun = replace(WHEEL, momentum_nms=0.08)
+    gains = PitchWheelGains(bias_nms=BIAS_NMS)
+    case = replace(TURNED, law="pitch_wheel", gains=gains, wheel=begun, inclination_deg=80.0, orbits=1.0)
+    return float(abs(fly(case).wheel_nms[-1] - BIAS_NMS) / 0.03)
+
+
+ROWS: tuple[_WheelRow, ...] = (
+    _WheelRow(
+        "two_coils",
+        "Two coils and one wheel: largest part of the torque wanted that they lack, any field and axis",
+        "[56]: any torque wanted is given in full",
+        "1",
+        -inf,
+        1e-12,
+        given_share,
+        "rounding alone",
+    ),
+    _WheelRow(
+        "two_coils_held",
+        "1e-6 N m held at 51.6 deg inclination: difference from what the spring asked for leaves",
+        "[56]: any torque wanted is given in full",
+        "deg",
+        -inf,
+        0.005,
+        held_off_spring_deg,
+    ),
+    _WheelRow(
+        "two_coils_growth",
+        "Its dipole at 80 deg inclination over that at the equator, times the cosine of 80 deg",
+        "[56]: the matrix has b along the wheel for its pivots; direct dipole",
+        "1",
+        0.8,
+        1.25,
+        dipole_growth,
+    ),
+    _WheelRow(
+        "two_coils_polar",
+        "The same torque in a polar orbit, the field normal to the wheel: dipole over that at 51.6 deg",
+        "[56]: the matrix is singular there",
+        "1",
+        20.0,
+        inf,
+        polar_growth,
+    ),
+    _WheelRow(
+        "allocation_effort",
+        "Three coils and the wheel with the least effort: dipole over that of two coils, 51.6 deg",
+        "[57]: the torque is shared among coils and wheels",
+        "1",
+        -inf,
+        0.9,
+        effort_share,
+    ),
+    _WheelRow(
+        "allocation_limits",
+        "Largest effort that the sharing asks for, of what coils and wheel can give, any torque",
+        "[57]",
+        "1",
+        0.99,
+        1.0 + 1e-9,
+        beyond_limits,
+    ),
+    _WheelRow(
+        "pitch_speed",
+        "Pitch by the wheel's speed: time under 1 deg from 20 deg, of that by the coils of dual spin",
+        "[58]: a pitch wheel whose speed can be controlled",
+        "1",
+        -inf,
+        0.2,
+        pitch_speed,
+    ),
+    _WheelRow(
+        "pitch_momentum",
+        "The coils bring its momentum back: part of 0.03 N m s left after an orbit at 80 deg inclination",
+        "[58]",
+        "1",
+        -inf,
+        0.2,
+        momentum_left,
+    ),
+)
+
+
+def studies() -> list[Study]:
+    """All of this section."""
+    return [*map(_study, ROWS), flown()]
+
+
+def _study(row: _WheelRow) -> Study:
+    claim = Claim(
+        f"review.wheel.{row.name}",
+        row.statement,
+        f"{REVIEW}, {row.source}",
+        row.unit,
+        low=row.low,
+        high=row.high,
+        wide=row.wide,
+    )
+    return one_figure(claim, partial(_figure, row.name))
+
+
+def _figure(name: str) -> float:
+    """The figure of a row, by its name."""
+    return next(row for row in ROWS if row.name == name).figure()
+
+
+def flown() -> Study:
+    """The whole chain: filter, frames, boards, friction and lag."""
+    figures = (
+        Figure(
+            "final",
+            "From 40 deg, filter, boards and a real motor in the loop: error after a quarter of an orbit",
+            "deg",
+            summary_value("pointing_deg.final"),
+            high=1.5,
+        ),
+        Figure(
+            "honest",
+            "Part of the time in which the estimate is inside its 3 sigma, the wheel running",
+            "1",
+            summary_value("estimate_deg.within_3sigma"),
+            low=0.99,
+        ),
+    )
+    orders = (Order("microsat-wheel", {}, seed=1, orbits=0.25),)
+    return campaign("review.wheel.flight", f"{REVIEW}, [56-58]", (Group("", orders),), figures)
