@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import sin
 
 from fsw.core.algebra.quaternion import dcm
-from fsw.core.algebra.vector import Vec3, add, dot
+from fsw.core.algebra.vector import ZERO, Vec3, add, dot
 from fsw.core.laws.feedback.pd import attitude_error
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 from fsw.core.laws.wheel.dual_spin import pitch, pitch_dipole, wheel_axis_dipole
@@ -95,7 +95,7 @@ def pitch_wheel(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Co
     c, omega = dcm(inputs.attitude.q_body_from_orbit), inputs.attitude.omega_body_orbit_radps
     torque_nm = pitch_torque(pitch(c), omega[2], config.inertia_kgm2[2][2], gains)
     unloading = momentum_dipole(inputs.b_body_t, h - gains.bias_nms, gains.unload_per_s)
-    if h <= 0.0:
-        return Demand(unloading, wheel_torque_nm=-torque_nm)
-    holding = wheel_axis_dipole(inputs.b_body_t, omega, attitude_error(c)[1], setpoint.k_w, setpoint.k_a)
+    holding = ZERO
+    if h > 0.0:
+        holding = wheel_axis_dipole(inputs.b_body_t, omega, attitude_error(c)[1], setpoint.k_w, setpoint.k_a)
     return Demand(add(holding, unloading), wheel_torque_nm=-torque_nm)

@@ -69,6 +69,16 @@ def test_the_momentum_is_brought_to_its_bias(bench, turned, begin_nms):
     assert flight.wheel_nms[-1] == pytest.approx(0.05, abs=2e-3)
 
 
+def test_a_wheel_that_turns_the_other_way_is_only_spun_up(bench, turned):
+    """Its axis would be driven away from the normal; the pitch is held meanwhile."""
+    flight = flown(bench, turned, first=((0, 0, 1), 5.0), begin_nms=-0.01, orbits=0.2)
+    backwards = flight.wheel_nms < 0.0
+    assert 50 < np.sum(backwards) < len(backwards) - 50
+    assert not flight.m_body[backwards, 2].any()
+    assert flight.m_body[~backwards, 2].any()
+    assert np.abs(pitches_deg(flight)[-20:]).max() < 0.5
+
+
 def test_a_pitch_of_its_own_is_held(bench, turned):
     flight = flown(bench, turned, first=((0, 0, 1), 0.0), pitch_rad=0.35, orbits=0.5)
     assert pitches_deg(flight)[-1] == pytest.approx(np.degrees(0.35), abs=0.3)
