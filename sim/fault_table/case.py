@@ -18,16 +18,17 @@ from sim.fault_rig.record import FaultFlightRecord
 from sim.fault_rig.rig import Rig
 from sim.fault_table import checks
 from sim.fault_table.isolation import isolation_s
-from sim.fault_table.row import CaseResult, FaultRow, When
+from sim.fault_table.row import SCENARIO, CaseResult, FaultRow, When
 from sim.faults.kinds import KINDS, make
 from sim.scenario.schema import Scenario, flight_table, load, parse_settings
 
-SCENARIO, POPULATION = "microsat", "50kg"
+POPULATION = "50kg"
 ARMED_S = 180.0
 """Time in which the flight settles before a fault: boot, first lockout, filter [s]."""
 BEFORE_ECLIPSE = 'time.epoch_utc="2015-03-27T03:13:11Z"'
 """Start of a flight 600 s before an eclipse."""
 ECLIPSE_S = 500.0
+PLACE_DEG = 36.0
 CYCLE_S = 103.0
 ORDER = (1.0, 0.0, 2.0, 3.0, 102.0, 50.0, 4.0, 101.0, 99.0, 25.0, 100.0, 75.0)
 """First phases in a pulse and its back-off [s]; further ones are random."""
@@ -40,10 +41,12 @@ FIRST_UTC, PLACE_S = datetime(2015, 3, 27, 2, 46, 57, tzinfo=UTC), 604.0
 
 
 @lru_cache(maxsize=8)
-def prepare(settings: tuple[str, ...] = (), satellite: int | None = None) -> tuple[Scenario, FlightConfig]:
+def prepare(
+    settings: tuple[str, ...] = (), satellite: int | None = None, name: str = SCENARIO
+) -> tuple[Scenario, FlightConfig]:
     """The scenario and its onboard table, with settings over those of a satellite of the population."""
     drawn = {} if satellite is None else population.satellite(POPULATION, satellite)
-    scenario = load(SCENARIO, merge(drawn, parse_settings(settings)))
+    scenario = load(name, merge(drawn, parse_settings(settings)))
     return scenario, flight_config(flight_table(scenario))
 
 
@@ -59,6 +62,8 @@ def settings_of(row: FaultRow, phase: int) -> tuple[str, ...]:
     """Settings of the scenario for this row."""
     if row.when is When.BOOT:
         return (*row.settings, *INITIAL_TURN, f"initial.angle_deg={(FIRST_DEG + phase * STEP_DEG) % 180.0}")
+    if row.when is When.ORBIT and row.scenario != SCENARIO:  # whose orbit is a circle
+        return (*row.settings, f"orbit.u0_deg={phase * PLACE_DEG % 360.0}")
     if row.when is When.ORBIT:
         start = FIRST_UTC + timedelta(seconds=phase * PLACE_S)
         return (*row.settings, f'time.epoch_utc="{start:%Y-%m-%dT%H:%M:%SZ}"')
@@ -68,7 +73,8 @@ def settings_of(row: FaultRow, phase: int) -> tuple[str, ...]:
 def fly(row: FaultRow, phase: int, seed: int) -> CaseResult:
     """Fly one case and judge it."""
     began = time.perf_counter()
-    scenario, config = prepare(settings_of(row, phase), satellite_of(phase, seed))
+    satellite = satellite_of(phase, seed) if row.scenario == SCENARIO else None
+    scenario, config = prepare(settings_of(row, phase), satellite, row.scenario)
     bounds = checks.bounds_of(scenario)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the algebra's, of a state whose bits have flipped

@@ -29,10 +29,10 @@ from sim.scenario.schema import Scenario, orbit_period_s
 GOOD_DEG = 2.0
 GOOD_FOR_S = 600.0
 WRONG_DEG, ALONE_DEG, WRONG_S = 5.0, 15.0, 120.0
+"""A valid attitude may be so wrong for so long while a fault that has begun is being found."""
 CYCLES = 4.0
 FIRST_S = 600.0
 """Length of the first minutes, in which both sensors may agree on what is wrong [s]."""
-"""A valid attitude may be so wrong for so long while a fault that has begun is being found."""
 FAR_DEG, LAST_S = 15.0, 300.0
 """Three times the standard deviation up to which fsw marks an estimate as valid."""
 FORGERY_EVENTS = (Event.STRANGE_SYNC, Event.PLANT_RESTARTED, Event.FALSE_END)

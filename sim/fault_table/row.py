@@ -9,6 +9,8 @@ from sim.audit.findings import AuditLimits
 from sim.fault_rig.currents import CurrentLimits
 from sim.fault_rig.record import FaultFlightRecord
 
+SCENARIO = "microsat"
+
 
 class CheckVerdict(StrEnum):
     """The verdict of a check."""
@@ -79,6 +81,7 @@ class FaultRow:
         then: further faults, each with a faulty unit of its own.
         unseen: when a wrong attitude may be called valid.
         settings: of the scenario.
+        scenario: that is flown; every second case of the usual one flies a satellite of the population.
         slow: it runs real processes, which takes seconds.
         watch_s: least duration of the flight after the fault; with ``recovers`` until that is decided.
     """
@@ -95,6 +98,7 @@ class FaultRow:
     then: tuple[RowFault, ...] = ()
     unseen: Unseen = Unseen.NEVER
     settings: tuple[str, ...] = ()
+    scenario: str = SCENARIO
     watch_s: float = 330.0
     slow: bool = False
 

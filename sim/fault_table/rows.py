@@ -6,6 +6,7 @@ from math import inf
 
 from fsw.input.near import did_you_mean
 from sim.errors import HarnessError
+from sim.fault_table.cell_rows import CELL_ROWS
 from sim.fault_table.forged_rows import FORGED_ROWS
 from sim.fault_table.row import FaultRow, Unseen, When
 from sim.fault_table.sly_rows import SLY_ROWS
@@ -270,6 +271,7 @@ ROWS: Rows = (
         "coil 2",
     ),
     *SLY_ROWS,
+    *CELL_ROWS,
     FaultRow("bit-flip", UPSET, "bit_flip", {}, 1.0, expect=(*BUS, "recovers")),
 )
 """All rows, in the order of the page."""

@@ -13,7 +13,7 @@ from sim.fault_rig.record import FaultFlightRecord, ReportedEvent
 from sim.fault_rig.rig import Rig
 from sim.fault_table import case, checks
 from sim.fault_table.case import fly, prepare
-from sim.fault_table.row import FaultRow, RowFault, When
+from sim.fault_table.row import SCENARIO, FaultRow, RowFault, When
 from sim.fault_table.rows import ROWS, choose_rows
 from sim.faults.fault import Condition, Fault
 from sim.faults.kinds import make
@@ -245,7 +245,11 @@ def test_a_satellite_differs_from_its_table_and_the_row_has_the_last_word():
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
-def test_every_row_can_be_flown_with_a_satellite(row):
+def test_every_row_can_be_flown(row):
+    """Those of the usual scenario with a satellite of the population."""
+    if row.scenario != SCENARIO:
+        assert prepare(case.settings_of(row, 1), None, row.scenario)[0].name == row.scenario
+        return
     scenario, _ = prepare(case.settings_of(row, 1), 7)
     assert scenario.body.inertia != prepare()[0].body.inertia
 
@@ -255,6 +259,14 @@ def test_a_fault_after_an_orbit_begins_after_an_orbit():
     for phase in (0, 3):
         record = case._fly_fault(row, phase, 1, Rig(*prepare(), 1), 77.0)
         assert (record.onset, record.end, record.ticks) == (77, 82, 92)
+
+
+def test_phases_of_another_scenario_go_round_its_orbit():
+    row = FaultRow("planted", "", "none", when=When.ORBIT, scenario="cubesat-cells")
+    starts = [
+        prepare(case.settings_of(row, phase), None, row.scenario)[0].orbit.u0_deg for phase in range(10)
+    ]
+    assert starts == pytest.approx([36.0 * phase for phase in range(10)])
 
 
 def test_phases_go_round_the_orbit():

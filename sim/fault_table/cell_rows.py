@@ -1,0 +1,83 @@
+"""Rows of the satellite with Sun cells: a cell that is wrong, cells wired otherwise, light, message."""
+
+from math import inf
+
+from sim.fault_table.row import FaultRow, When
+
+CUBESAT = "cubesat-cells"
+CELLS = "a Sun cell: dead, stuck, of half the current; two crosswise; more light from the Earth"
+MESSAGE = "the message of the Sun cells: late, lost, corrupted, with extreme values"
+ORBIT_S = 5740.0
+"""Period of the scenario's orbit."""
+CROSSED = (
+    "flight.cells.normals=[[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], "
+    "[0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]"
+)
+"""The table has the first cell where the third is, and the third where the first is."""
+BRIGHT = ("sensors.cells.albedo=0.45", "sensors.cells.albedo_spread=0.4", "flight.cells.albedo=0.3")
+"""Half as much light again from the Earth as the table reckons with."""
+
+
+def _cell(name: str, kind: str, cell: int, **parameters: float) -> FaultRow:
+    """A fault of one cell that begins after a whole orbit, and stays."""
+    return FaultRow(
+        name,
+        CELLS,
+        kind,
+        {"cell": float(cell), **parameters},
+        inf,
+        When.ORBIT,
+        ("goes on", "bounded", "named"),
+        f"cell {cell}",
+        watch_s=1.5 * ORBIT_S,
+        scenario=CUBESAT,
+    )
+
+
+def _table(name: str, settings: tuple[str, ...], *expect: str) -> FaultRow:
+    """No fault: cells and table differ."""
+    return FaultRow(
+        name,
+        CELLS,
+        "none",
+        {},
+        1.0,
+        When.ORBIT,
+        expect,
+        settings=settings,
+        watch_s=ORBIT_S,
+        scenario=CUBESAT,
+    )
+
+
+def _message(name: str, kind: str, *expect: str, **parameters: float) -> FaultRow:
+    """A fault of ten minutes, after a whole orbit; with the last of it control goes on."""
+    return FaultRow(
+        name,
+        MESSAGE,
+        kind,
+        parameters,
+        600.0,
+        When.ORBIT,
+        ("goes on", "recovers", *expect),
+        "sun sensor",
+        watch_s=1200.0,
+        scenario=CUBESAT,
+    )
+
+
+CELL_ROWS: tuple[FaultRow, ...] = (
+    _table("cells-none", (), "goes on", "quiet"),
+    _cell("cell-dead", "cell_dead", 6),
+    _cell("cell-stuck", "cell_stuck", 4),
+    _cell("cell-stuck-bright", "cell_stuck", 5, percent=90.0),
+    _cell("cell-halved", "cell_scaled", 2, scale=0.5),
+    _table("cells-crossed", (CROSSED,)),
+    _table("cells-albedo", BRIGHT, "goes on", "quiet"),
+    _message("cells-late", "cells_late", "quiet", ticks=5.0),
+    _message("cells-lost", "loss", part=0.5),
+    _message("cells-board-dead", "sun_board_dead"),
+    _message("cells-corrupted", "corruption", "dropped", part=0.3),
+    _message("cells-extreme-codes", "extreme_codes", sun=1.0),
+)
+"""All of them, in the order of the page."""
