@@ -129,7 +129,7 @@ def judge(
     elif not sensor_health.suspected(judged):
         proven, doubt = pair.proven(judged.pair, weights), judged.pair.doubt > 1.0
         found, estimator = retest.retest(found, estimator, proven and not isolated, config.coils)
-        sure = _believed_below(estimator.estimate, proven or isolated, config)
+        sure = _believed_below(estimator.estimate, judged.pair, proven or isolated, config)
         found, estimator = torques.judge_effect(
             found, evidence.view, reference.b_eci_t, estimator, evidence.tick, sure, doubt, config.coils
         )
@@ -143,14 +143,15 @@ def judge(
     return Health(judged, found), estimator, attitude
 
 
-def _believed_below(estimate: Estimate | None, proven: bool, config: FdirConfig) -> float:
+def _believed_below(estimate: Estimate | None, both: Pair, proven: bool, config: FdirConfig) -> float:
     """Which parts of their effect are believed of pulses: none, those of a weak coil, or of an open one.
 
-    What the filter assumes beyond the table may come from that coil, or make a sound one seem somewhat weak.
+    What the filter assumes beyond the table may come from that coil, or make a sound one seem somewhat weak;
+    and so may what misled a filter that lagged.
     """
     if not proven or estimate is None:
         return -inf
-    known = credible_but_coils(estimate, config.sensors.credibility)
+    known = not both.owed and credible_but_coils(estimate, config.sensors.credibility)
     return config.coils.weak.weak_part if known else OPEN_PART
 
 
