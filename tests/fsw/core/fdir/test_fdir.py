@@ -1,12 +1,14 @@
 """The interface of the fault detection: its events, and what it does to estimate and attitude."""
 
+from math import inf
+
 import pytest
 
 from fsw.core.events import Event, Happening
 from fsw.core.fdir import fdir
 from fsw.core.fdir.coils.health import NONE_OLDER, CoilHealth
 from fsw.core.fdir.coils.weak_test import NOTHING_OLDER, Older, PartSum
-from fsw.core.fdir.faults import CoilFault, SensorFault
+from fsw.core.fdir.faults import OPEN_PART, CoilFault, SensorFault
 from fsw.core.fdir.fdir import Evidence, Health
 from fsw.core.fdir.sensors.health import SensorHealth, Watch
 from fsw.core.fdir.sensors.pair import Pair, Standing
@@ -179,6 +181,30 @@ class TestJudgement:
         monkeypatch.setattr(fdir.sensor_health, "judge", lambda *of_this_tick: judgement)
         (health, _, _), _ = judged(before)
         assert health.coils == shown._replace(older=NONE_OLDER)
+
+    @pytest.mark.parametrize(
+        ("pair", "believed"),
+        [
+            (PROVEN, "what a weak coil does"),
+            (PROVEN._replace(owed=5.0), "next to nothing"),
+            (PROVEN._replace(proof=0.0), "nothing at all"),
+        ],
+        ids=["proven", "lagged", "not proven"],
+    )
+    def test_what_is_believed_of_a_coil_while_the_estimate_is(
+        self, make_world, judged, monkeypatch, pair, believed
+    ):
+        asked = []
+
+        def judge_effect(health, view, b_eci_t, state, tick, believed_below, *others):
+            asked.append(believed_below)
+            return health, state
+
+        monkeypatch.setattr(fdir.torques, "judge_effect", judge_effect)
+        judged(sensors(pair=pair))
+        weak_part = make_world().config.fdir.coils.weak.weak_part
+        parts = {"what a weak coil does": weak_part, "next to nothing": OPEN_PART, "nothing at all": -inf}
+        assert asked == [parts[believed]]
 
     def test_while_the_time_is_in_doubt_no_sensor_is_judged(self, make_world, monkeypatch):
         world = make_world()
