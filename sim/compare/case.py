@@ -10,6 +10,8 @@ from fsw.input.schema import Nested, merge
 from fsw.table.own_law import declared
 from fsw.table.table import lay_over
 from sim.campaign.flight import Order
+from sim.design.tuning.applicable import aims_of, coils_of
+from sim.design.tuning.kept import KeptGains
 from sim.errors import HarnessError
 from sim.scenario.schema import Scenario, load
 
@@ -25,12 +27,16 @@ class Driver(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class ComparisonCase:
-    """One flight of a comparison: a law, a driver, and the order to fly them."""
+    """One flight of a comparison: a law, a driver, and the order to fly them.
+
+    ``tuned``: with the best gains that were found, not with the scenario's.
+    """
 
     law: str
     aim: Aim
     driver: Driver
     order: Order
+    tuned: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,16 +64,17 @@ def chosen_laws(scenario: Scenario, text: str | None) -> tuple[str, ...]:
     """The laws to compare, in the order of the table of laws, the scenario's own last.
 
     Args:
-        scenario: without ``text``, all laws with the aim of its own.
+        scenario: without ``text``, all laws that are meant for its body, its own among them.
         text: names of laws or aims, or ``all``, with commas between.
 
     Raises:
         HarnessError: a name that is neither a law nor an aim.
     """
     known = candidates(scenario).aims
-    words = [known[scenario.control.law_name].value]
-    if text is not None:
-        words = [word.strip() for word in text.split(",")]
+    if text is None:
+        aimed = aims_of(scenario)
+        return tuple(name for name, aim in known.items() if aim in aimed)
+    words = [word.strip() for word in text.split(",")]
     aims = [aim.value for aim in Aim]
     for word in words:
         if word not in {*known, *aims, "all"}:
@@ -86,8 +93,11 @@ def cases(
     drivers: tuple[Driver, ...],
     seed: int,
     orbits: float | None,
+    kept: KeptGains | None = None,
 ) -> tuple[ComparisonCase, ...]:
-    """Every law by every driver that it has a use for, all else the same.
+    """Every law by every driver that it has a use for, all else the same but the gains that are kept for it.
+
+    What ``settings`` say stands before those gains.
 
     Raises:
         TableError: the scenario is not valid, or not with one of the drivers.
@@ -95,26 +105,18 @@ def cases(
     known = candidates(load(name_or_path, settings))
     all_cases = []
     for driver in drivers:
-        values = merge(settings, _coils(load(name_or_path, settings), driver))
+        coils = coils_of(load(name_or_path, settings), driver.value)
         suited = [law for law in laws if driver is Driver.PULSED or not _plans_pulses(law)]
         for law in suited:
+            found = None if kept is None else kept.control(driver.value, law)
+            values = merge(merge({"control": found or {}}, settings), coils)
             overrides = lay_over(values, {"control": {"law": known.references[law]}})
             if law == suited[0]:
                 load(name_or_path, overrides)
             order = Order(name_or_path, overrides, seed, orbits)
-            all_cases.append(ComparisonCase(law, known.aims[law], driver, order))
+            all_cases.append(ComparisonCase(law, known.aims[law], driver, order, bool(found)))
     return tuple(all_cases)
 
 
 def _plans_pulses(law: str) -> bool:
     return law in LAWS and LAWS[law].plans_pulses
-
-
-def _coils(scenario: Scenario, driver: Driver) -> Nested:
-    """The keys of a driver; full scale of a continuous one is the highest level if the scenario has none."""
-    if driver is Driver.PULSED:
-        return {"coils": {"driver": driver.value}}
-    coils = scenario.coils
-    return {
-        "coils": {"driver": driver.value, "max_dipole_am2": coils.max_dipole_am2 or max(coils.levels_am2)}
-    }

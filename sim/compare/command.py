@@ -14,6 +14,7 @@ from sim.compare.picture import picture
 from sim.compare.score import Result, Score, by_axis1, fly_case
 from sim.compare.table import as_csv, as_json, as_text, ranked
 from sim.console import answer, fail, say
+from sim.design.tuning.kept import KeptGains, body_checksum, read_gains, shipped_gains
 from sim.errors import HarnessError
 from sim.flight.record_flight import MOST_IN_MEMORY, ticks_of
 from sim.progress import note, progress
@@ -23,6 +24,8 @@ from sim.report.figures.controlled import SETTLED_DEG
 from sim.report.summary_text import last_orbit
 from sim.scenario.schema import Scenario, load, orbit_period_s, parse_settings
 
+BEST, SCENARIO = "best", "scenario"
+"""Gains: those that were found for the body, or the scenario's."""
 JSON, CSV, PICTURE, PAGE = "compare.json", "compare.csv", "compare.png", "compare.html"
 
 
@@ -35,6 +38,7 @@ def compare(
     seed: int,
     workers: int | None,
     out: Path | None,
+    gains: str = BEST,
 ) -> int:
     """Fly every law by every driver and compare.
 
@@ -47,6 +51,8 @@ def compare(
         seed: of the plant's random streams, the same in all flights.
         workers: processes; None: as many as there are cores.
         out: folder of the files; None: ``compare/<scenario>-<UTC time>``.
+        gains: ``best``: those of ``torquer design --laws`` that ship for this body, where there are some;
+            ``scenario``: the scenario's own; else the path of a file of that command.
 
     Returns:
         The exit code: 1 if a flight broke the limits, or a law of one's own could not be flown; how well
@@ -60,7 +66,8 @@ def compare(
     scenario = load(name, values)
     chosen = chosen_laws(scenario, laws)
     drivers = tuple(Driver) if driver == "both" else (Driver(driver),)
-    chosen_cases = cases(name, values, chosen, drivers, seed, orbits)
+    kept = _kept(gains, scenario)
+    chosen_cases = cases(name, values, chosen, drivers, seed, orbits, kept)
     ticks = ticks_of(scenario, orbits, MOST_IN_MEMORY)
     folder = _new_folder(out or _default_folder(scenario))
     studies = [
@@ -74,6 +81,7 @@ def compare(
         "ticks": ticks,
         "sim_seconds": ticks / scenario.time.tick_hz,
         "pointing": "axis1" if by_axis1(scenario) else "attitude",
+        "gains": gains if kept is not None else SCENARIO,
     }
     results: list[Result] = []
     bar = sys.stderr.isatty()  # else each flight's line is the progress
@@ -89,7 +97,7 @@ def compare(
     finally:  # flights that are done are written when the rest is given up
         scores = ranked(result.score for result in results)
         description["complete"] = len(results) == len(studies)
-        _write(folder, scenario, scores, description, results, _window(scenario, ticks))
+        _write(folder, scenario, scores, description, results, _window(scenario, ticks), kept)
     say(_heading(scenario, seed, ticks))
     say(as_text(scores))
     say(f"files: {folder / JSON}, {CSV}, {PICTURE}, {PAGE}")
@@ -103,6 +111,19 @@ def compare(
     if failed:
         fail(str(failed[0]))
     return int(bool(broken or failed))
+
+
+def _kept(gains: str, scenario: Scenario) -> KeptGains | None:
+    if gains == SCENARIO:
+        return None
+    if gains == BEST:
+        return shipped_gains(scenario)
+    kept = read_gains(Path(gains))
+    if kept is None:
+        raise HarnessError(f"--gains {gains}: there is no such file: give best, scenario or a file")
+    if kept.body != body_checksum(scenario):
+        raise HarnessError(f"--gains {gains}: found for another body, orbit, start, coils or torque")
+    return kept
 
 
 def _heading(scenario: Scenario, seed: int, ticks: int) -> str:
@@ -126,6 +147,7 @@ def _write(
     description: dict[str, object],
     results: list[Result],
     window: str,
+    kept: KeptGains | None,
 ) -> None:
     seed = f"seed {description['seed']}"
     judged = "by axis 1" if description["pointing"] == "axis1" else "by the whole attitude"
@@ -136,7 +158,7 @@ def _write(
         write_json(folder / JSON, as_json(scores, description))
         (folder / CSV).write_text(as_csv(scores), encoding="utf-8")
         picture(folder / PICTURE, f"{scenario.name}, {seed}", results)
-        page = compare_page(scenario, facts, scores, results, window)
+        page = compare_page(scenario, facts, scores, results, window, kept)
         (folder / PAGE).write_text(page, encoding="utf-8")
     except OSError as error:
         raise HarnessError(f"{folder}: cannot be written ({error.strerror or error})") from None

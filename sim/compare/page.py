@@ -6,9 +6,10 @@ from sim.compare.case import Driver
 from sim.compare.picture import colour_of, laws_of
 from sim.compare.score import WINDOW_ORBITS, Result, Score
 from sim.compare.table import as_table
+from sim.design.tuning.kept import KeptGains, gains_text
 from sim.drawing.canvas import style
 from sim.drawing.inline_svg import chart
-from sim.drawing.page_parts import PageHeader, PageSection, Tile, sections_page
+from sim.drawing.page_parts import PageHeader, PageSection, Table, Tile, sections_page
 from sim.drawing.time_chart import Level, Panel, Series, TimeChart, draw, time_data
 from sim.report.figures.controlled import SETTLED_DEG
 from sim.scenario.schema import Scenario
@@ -20,14 +21,25 @@ _MEANING = (
 )
 
 
+_FOUND = (
+    "The best of {flights} flights for each law of {orbits:g} orbits each, on the rigid body in the direct "
+    "dipole, nothing unknown: by torquer design --laws. Cost: share of the flight until the error stays "
+    "under 5°, and log2(1 + RMS / 5°) of the last orbit; in deg/s for a law that does not point."
+)
+
+
 def compare_page(
     scenario: Scenario,
     facts: Sequence[str],
     scores: Sequence[Score],
     results: Sequence[Result],
     window: str,
+    kept: KeptGains | None = None,
 ) -> str:
-    """The page of a comparison whose figures are over ``window``; without a flight it has no chart."""
+    """The page of a comparison whose figures are over ``window``; without a flight it has no chart.
+
+    With gains ``kept`` for the body it tells those of each law, and what they cost on the rigid body.
+    """
     flights = [result for result in results if result.history is not None]
     sections = [
         PageSection(
@@ -43,10 +55,33 @@ def compare_page(
             words = f"RMS of {WINDOW_ORBITS:g} orbits about each time. Grey bands are eclipses."
             charts = (chart("pointing", drawn.picture, words, drawn.data),)
         sections.append(PageSection("pointing", "Pointing error over time", charts=charts))
+    if kept is not None:
+        words = _FOUND.format(flights=kept.flights, orbits=kept.orbits)
+        sections.append(PageSection("gains", "The gains", words, (_gains_table(kept, scores),)))
     header = PageHeader(
         "Comparison of control laws", scenario.name, facts, _badges(scores), _tiles(scores, window)
     )
     return sections_page(header, sections, time)
+
+
+def _gains_table(kept: KeptGains, scores: Sequence[Score]) -> Table:
+    rows = []
+    for score in scores:
+        row = kept.rows.get(score.driver.value, {}).get(score.law)
+        if row is not None:
+            settled = row.get("settle_orbits")
+            rows.append(
+                [
+                    score.law,
+                    score.driver.value,
+                    "never" if settled is None else f"{settled:.2f}",
+                    f"{row['rms']:.3g}",
+                    f"{row['cost']:.3f}",
+                    f"{row['cost_before']:.3f}",
+                    gains_text(row["control"]),
+                ]
+            )
+    return Table(["law", "driver", "settled [orbits]", "RMS", "cost", "as shipped", "gains"], rows)
 
 
 def _panels(flights: Sequence[Result]) -> list[Panel]:

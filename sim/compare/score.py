@@ -47,6 +47,7 @@ class Score:
         mode_final: of the controller.
         limits_ok: whether the coil driver kept its limits.
         failure: why there was no flight, then all figures are None; else empty.
+        tuned: whether it flew with the best gains that were found, not with the scenario's.
     """
 
     law: str
@@ -62,6 +63,7 @@ class Score:
     mode_final: str | None = None
     limits_ok: bool | None = None
     failure: str = ""
+    tuned: bool = False
 
 
 class History(NamedTuple):
@@ -84,7 +86,7 @@ def fly_case(case: ComparisonCase) -> Result:
     try:
         record = record_order(case.order)
     except (TableError, HarnessError) as error:
-        return Result(Score(case.law, case.aim, case.driver, failure=str(error)), None)
+        return Result(Score(case.law, case.aim, case.driver, failure=str(error), tuned=case.tuned), None)
     return Result(judge(case, record), history(record))
 
 
@@ -112,6 +114,7 @@ def judge(case: ComparisonCase, record: RecordedFlight) -> Score:
         else float(audit.duty_total),
         mode_final=Mode(int(record.estimates.mode[len(error_deg) - 1])).name,
         limits_ok=audit.ok,
+        tuned=case.tuned,
     )
 
 

@@ -20,6 +20,7 @@ _ABSENT = "-"
 _COLUMNS: tuple[tuple[str, str, str, Callable[[Any], str]], ...] = (
     ("law", "law", "", str),
     ("driver", "driver", "", str),
+    ("tuned", "gains", "", lambda tuned: "best" if tuned else "scenario"),
     ("settle_orbits_5deg", "settle", "orbits", "{:.2f}".format),
     ("pointing_rms_deg", "RMS", "deg", "{:.2f}".format),
     ("pointing_max_deg", "max", "deg", "{:.2f}".format),
@@ -31,7 +32,7 @@ _COLUMNS: tuple[tuple[str, str, str, Callable[[Any], str]], ...] = (
     ("limits_ok", "limits", "", lambda ok: "kept" if ok else "BROKEN"),
 )
 """Field of a score, heading, unit, format."""
-_LEFT = frozenset({"law", "driver", "mode_final", "limits_ok"})
+_LEFT = frozenset({"law", "driver", "tuned", "mode_final", "limits_ok"})
 
 
 def ranked(scores: Iterable[Score]) -> list[Score]:

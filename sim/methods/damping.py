@@ -4,7 +4,7 @@ from sim.methods.method import Kind, Method
 
 METHODS: tuple[Method, ...] = (
     Method(
-        "damping by the rate, m = k omega x b",
+        "damping by the rate, m = k omega x b (`rate_damping`)",
         "[O19] 1 [18, 20-24]",
         Kind.FLOWN,
         "fsw/core/laws/damping/damping.py",
@@ -12,7 +12,7 @@ METHODS: tuple[Method, ...] = (
         ("review.damping.rate", "review.damping.inclination"),
     ),
     Method(
-        "B-dot",
+        "B-dot (`bdot`)",
         "[O19] 1 [18, 19]",
         Kind.FLOWN,
         "fsw/core/laws/damping/damping.py",
@@ -45,7 +45,7 @@ METHODS: tuple[Method, ...] = (
         ("review.damping.bdot_held",),
     ),
     Method(
-        "two values of the gain",
+        "two values of the gain (`bdot_switched`)",
         "[O19] 1 [27]",
         Kind.FLOWN,
         "fsw/core/laws/damping/damping.py",
@@ -53,7 +53,7 @@ METHODS: tuple[Method, ...] = (
         ("review.damping.bdot_switched",),
     ),
     Method(
-        "optimal law for momentum and energy",
+        "optimal law for momentum and energy (`least_momentum`, `least_energy`)",
         "[O19] 1 [28]",
         Kind.FLOWN,
         "fsw/core/laws/damping/optimal.py",
@@ -62,7 +62,7 @@ METHODS: tuple[Method, ...] = (
         "The relay is derived; it is optimal at each instant, not over the whole of the damping.",
     ),
     Method(
-        "rate damped as a reference model",
+        "rate damped as a reference model (`rate_model`)",
         "[O19] 1 [28]",
         Kind.FLOWN,
         "fsw/core/laws/damping/optimal.py",

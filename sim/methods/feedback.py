@@ -4,6 +4,42 @@ from sim.methods.method import Kind, Method
 
 METHODS: tuple[Method, ...] = (
     Method(
+        name="PD law by its projection (`pd`)",
+        source="[O19] 3.1 [68, 69], eq. 9",
+        kind=Kind.FLOWN,
+        where="fsw/core/laws/feedback/pd.py",
+        claim=(
+            "With small enough gains the nominal attitude is asymptotically stable, though the "
+            "projection is not the Lyapunov law."
+        ),
+        claims=(
+            "exponents",
+            "review.feedback.pd.final",
+        ),
+    ),
+    Method(
+        name="The law by a filtered attitude, without the rate (`output_feedback`)",
+        source="[O19] 3.1 [68]",
+        kind=Kind.FLOWN,
+        where="fsw/core/laws/feedback/output_feedback.py",
+        claim="The attitude converges without a measured rate.",
+        claims=("review.feedback.output.final",),
+    ),
+    Method(
+        "bound on the control",
+        "[O19] 3.1 [70]",
+        Kind.GROUND,
+        "sim/design/feedback/bifurcation.py",
+        "Gains need care, the control a bound: too large a step leads away; damping bears more.",
+        (
+            "review.feedback.pd.bound",
+            "review.feedback.limit.factor",
+            "review.feedback.limit.under",
+            "review.feedback.limit.over",
+        ),
+        "A multiplier leaves at +1: a fold.",
+    ),
+    Method(
         "PD dipole among the stars, gains by averaging and Floquet theory",
         "[O19] 3.1 [71]",
         Kind.FLOWN,
@@ -13,13 +49,28 @@ METHODS: tuple[Method, ...] = (
         "Formula not printed in the review: the critical line of the averaged motion is derived.",
     ),
     Method(
-        "bound on the control",
-        "[O19] 3.1 [70]",
-        Kind.GROUND,
-        "sim/design/feedback/bifurcation.py",
-        "Gains need care, the control a bound: too large a step leads away; damping bears more.",
-        ("review.feedback.limit.factor", "review.feedback.limit.under", "review.feedback.limit.over"),
-        "A multiplier leaves at +1: a fold.",
+        name="Best gains by Floquet theory, orbital frame",
+        source="[O19] 3.1 [72]",
+        kind=Kind.GROUND,
+        where="sim/design/theory/floquet.py",
+        claim=(
+            "The multipliers of the linear periodic motion give the gains with the least degree of stability."
+        ),
+        claims=(
+            "linearisation",
+            "exponents",
+            "best_gains.50_kg",
+            "reference.floquet.degree",
+        ),
+    ),
+    Method(
+        name="Inertia off the table",
+        source="[O19] 3.1 [73]",
+        kind=Kind.GROUND,
+        where="sim/design/theory/robustness.py",
+        claim="The law is sensitive to the inertia above all; a small error may break it.",
+        claims=("review.feedback.inertia.margin",),
+        remark="`torquer design` gives the margin of every body, and maps.",
     ),
     Method(
         "gains for bounds on the inertia",
@@ -56,6 +107,21 @@ METHODS: tuple[Method, ...] = (
         ("review.feedback.held.long", "review.feedback.held.too_long", "review.feedback.hold"),
     ),
     Method(
+        name="Gains for the pulses of the flight software",
+        source="[O19] 3.1 [78, 79]",
+        kind=Kind.GROUND,
+        where="sim/design/theory/pulsed.py",
+        claim=(
+            "The law works held over an interval, and measured before it acts; short intervals, or "
+            "pulses of their own gains."
+        ),
+        claims=("review.feedback.pulses.degree",),
+        remark=(
+            "The pulses of the flight software, magnetometer and coils apart in time; their degree of "
+            "stability is `torquer design`'s."
+        ),
+    ),
+    Method(
         "measuring and acting apart",
         "[O19] 3.1 [79]",
         Kind.FLOWN,
@@ -71,6 +137,28 @@ METHODS: tuple[Method, ...] = (
         "Three axes by attitude and delayed attitude.",
         ("review.feedback.delayed",),
         "Equation not found (searched: pages, documentation); the mean rate over the delay is derived.",
+    ),
+    Method(
+        name="Projection weighted by axes (`pd_weighted`)",
+        source="[O19] 3.1 [81]",
+        kind=Kind.FLOWN,
+        where="fsw/core/laws/feedback/projection.py",
+        claim=("A weight on the axis of small moment points it far better at some cost of the others."),
+        claims=(
+            "review.feedback.weighted.gain",
+            "review.feedback.weighted.cost",
+        ),
+    ),
+    Method(
+        name="Regularised inverse (`pd_regularised`)",
+        source="[O19] 3.1 [82, 83]",
+        kind=Kind.FLOWN,
+        where="fsw/core/laws/feedback/projection.py",
+        claim=(
+            "A small addition makes the matrix of the cross product regular; the law stays that of "
+            "the projection."
+        ),
+        claims=("review.feedback.regularised.final",),
     ),
     Method(
         "error of the field's direction",
@@ -120,5 +208,16 @@ METHODS: tuple[Method, ...] = (
             "review.feedback.two_step.inclined",
         ),
         "Split derived. At 5 deg inclination the field turns too far between the turns, and it fails.",
+    ),
+    Method(
+        name="Shortest dipole for an energy law",
+        source="[T] eq. 5, Wisniewski 1997",
+        kind=Kind.FLOWN,
+        where="fsw/core/laws/damping/damping.py",
+        claim="m = h Omega x b damps libration as the predictive law does.",
+        claims=(
+            "posat1.energy_law",
+            "posat1.dissipation",
+        ),
     ),
 )

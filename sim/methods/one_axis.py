@@ -12,7 +12,7 @@ METHODS: tuple[Method, ...] = (
         ("review.one_axis.gravity_damping",),
     ),
     Method(
-        "field tracking",
+        "field tracking (`field_tracking`)",
         "[O19] 2.3 eq. 7 [43]",
         Kind.FLOWN,
         "fsw/core/laws/one_axis/field_tracking.py",
@@ -22,7 +22,7 @@ METHODS: tuple[Method, ...] = (
         "gains: sim/design/one_axis/field_tracking.py.",
     ),
     Method(
-        "field tracking handed over to PD",
+        "field tracking handed over to PD (`field_tracking_pd`)",
         "[O19] 2.3 eq. 7, 8 [43, 53]",
         Kind.FLOWN,
         "fsw/core/laws/one_axis/field_tracking.py",
@@ -57,7 +57,7 @@ METHODS: tuple[Method, ...] = (
         "stay up to 45 deg off. The damping is added.",
     ),
     Method(
-        "Sun by one sensor",
+        "Sun by one sensor (`sun_pointing`)",
         "[O19] 2.4 [61, 62]",
         Kind.FLOWN,
         "fsw/core/laws/one_axis/sun_pointing.py",

@@ -33,6 +33,17 @@ METHODS: tuple[Method, ...] = (
         "nearer to the torque by some percent where a limit is met; a flight is no quicker (test_boxed.py)",
     ),
     Method(
+        name="Periodic linear quadratic regulator (`lqr`)",
+        source="[O19] 3.2 [98]",
+        kind=Kind.FLOWN,
+        where="fsw/core/laws/optimal/lqr.py",
+        claim=(
+            "It copes with disturbances and with an inertia that is off; it costs less than feedback "
+            "with fixed gains."
+        ),
+        claims=("review.optimal.lqr.cost",),
+    ),
+    Method(
         "Periodic LQR solved by one invariant subspace",
         "[O19] 3.2 [100]",
         Kind.GROUND,

@@ -6,6 +6,32 @@ LAWS = "fsw/core/laws/predictive"
 
 METHODS: tuple[Method, ...] = (
     Method(
+        name="Model predictive control (`mpc`)",
+        source="[O19] 3.3 [12, 108, 109]",
+        kind=Kind.FLOWN,
+        where="fsw/core/laws/predictive/mpc.py",
+        claim=(
+            "The field of the orbit ahead is used, and planned anew again and again; a constant "
+            "disturbance is a state."
+        ),
+        claims=(
+            "microsat.rms_zero",
+            "microsat.rms_3e-8",
+            "microsat.rms_1e-7",
+        ),
+    ),
+    Method(
+        name="Sequences of pulses with the cost to go (`pulse_mpc`)",
+        source="[T] the choice, [O19] 3.3 [12]",
+        kind=Kind.FLOWN,
+        where="fsw/core/laws/predictive/pulse_mpc.py",
+        claim="The choice among pulses looks beyond the next one; the search is this project's.",
+        claims=(
+            "pulse_mpc.median",
+            "pulse_mpc.none_worse",
+        ),
+    ),
+    Method(
         "Prediction within the coils' limits as a quadratic programme",
         "[O19] 3.3 [108, 110]",
         Kind.FLOWN,
@@ -30,5 +56,30 @@ METHODS: tuple[Method, ...] = (
         "The rule saves most of the search.",
         ("review.predictive.stopping",),
         "damps no sooner than the damping law with its coils at their limits",
+    ),
+    Method(
+        name="Predictive law of pulses (`predictive`)",
+        source="[T] eq. 5, 14-18",
+        kind=Kind.FLOWN,
+        where="fsw/core/laws/predictive/predictive.py",
+        claim=("60 deg of libration under 5 deg in 3 orbits, 4 with spin; each choice takes energy away."),
+        claims=(
+            "posat1.median",
+            "posat1.all",
+            "posat1-spin.all",
+            "posat1-spinup.time",
+            "prediction.rate",
+        ),
+    ),
+    Method(
+        name="Unrestricted coils by a genetic search",
+        source="[T] sec. on implementation",
+        kind=Kind.FLOWN,
+        where="fsw/core/laws/predictive/genetic.py",
+        claim="Restricted actuators do nearly as well as the search over all dipoles.",
+        claims=(
+            "genetic.median",
+            "posat1.restricted",
+        ),
     ),
 )

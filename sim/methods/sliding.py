@@ -13,6 +13,16 @@ METHODS: tuple[Method, ...] = (
         "Equation not found (searched: pages, documentation); surface and relay are derived.",
     ),
     Method(
+        name="Surface of momentum and attitude (`sliding`)",
+        source="[O19] 3.1 [91], eq. 10",
+        kind=Kind.FLOWN,
+        where="fsw/core/laws/sliding/sliding.py",
+        claim=(
+            "The torque is parallel to the surface, the coils give its projection; the attitude is reached."
+        ),
+        claims=("review.sliding.plain.final",),
+    ),
+    Method(
         "surface without the inertia, classical and modified",
         "[O19] 3.1 [92]",
         Kind.FLOWN,
@@ -20,6 +30,19 @@ METHODS: tuple[Method, ...] = (
         "A surface without a matrix of weights for the rate.",
         ("review.sliding.rate.classical", "review.sliding.rate.modified"),
         "The torques are derived; without the torque that holds the surface it is reached sooner.",
+    ),
+    Method(
+        name="Surface with integrals (`sliding_integral`)",
+        source="[O19] 3.1 [93, 94]",
+        kind=Kind.FLOWN,
+        where="fsw/core/laws/sliding/sliding.py",
+        claim=(
+            "The integral of the attitude and of the torque that was lost take disturbances into account."
+        ),
+        claims=(
+            "review.sliding.integral.rms",
+            "review.sliding.integral.gain",
+        ),
     ),
     Method(
         "surface that the coils can realise",

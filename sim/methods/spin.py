@@ -13,7 +13,7 @@ METHODS: tuple[Method, ...] = (
         "The review names the functions without printing them; they are derived.",
     ),
     Method(
-        "relay on the momentum",
+        "relay on the momentum (`spin_relay`)",
         "[O19] 2.1 eq. 3 [30]",
         Kind.FLOWN,
         "fsw/core/laws/spin/spin_axis.py",
@@ -22,7 +22,7 @@ METHODS: tuple[Method, ...] = (
         "The h of the equation must be the error of the momentum.",
     ),
     Method(
-        "nutation damping by one coil",
+        "nutation damping by one coil (`nutation`)",
         "[O19] 2.1 [31-33]",
         Kind.FLOWN,
         "fsw/core/laws/spin/spin.py",
@@ -30,7 +30,7 @@ METHODS: tuple[Method, ...] = (
         ("review.spin.nutation", "review.spin.nutation_spin"),
     ),
     Method(
-        "spin-up by two coils",
+        "spin-up by two coils (`spin_up`)",
         "[O19] 2.1 [31, 32]",
         Kind.FLOWN,
         "fsw/core/laws/spin/spin.py",
@@ -38,7 +38,7 @@ METHODS: tuple[Method, ...] = (
         ("review.spin.spin_up",),
     ),
     Method(
-        "Y-Thomson",
+        "Y-Thomson (`y_thomson`)",
         "[O19] 2.1 [34]",
         Kind.FLOWN,
         "fsw/core/laws/spin/spin.py",
@@ -46,7 +46,7 @@ METHODS: tuple[Method, ...] = (
         ("review.spin.y_thomson",),
     ),
     Method(
-        "reorientation of the spin axis by one coil",
+        "reorientation of the spin axis by one coil (`reorientation`)",
         "[O19] 2.1 [31, 32]",
         Kind.FLOWN,
         "fsw/core/laws/spin/spin_axis.py",
@@ -62,7 +62,7 @@ METHODS: tuple[Method, ...] = (
         ("review.spin.relay",),
     ),
     Method(
-        "three terms",
+        "three terms (`three_term`)",
         "[O19] 2.1 [36]",
         Kind.FLOWN,
         "fsw/core/laws/spin/spin_axis.py",

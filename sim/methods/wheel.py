@@ -4,6 +4,31 @@ from sim.methods.method import Kind, Method
 
 METHODS: tuple[Method, ...] = (
     Method(
+        name="Wheel to the orbit normal by one coil (`dual_spin`)",
+        source="[O19] 2.2 [18], eq. 6",
+        kind=Kind.FLOWN,
+        where="fsw/core/laws/wheel/dual_spin.py",
+        claim="The coil along the wheel makes its place on the orbit normal asymptotically stable.",
+        claims=("review.wheel.dual_spin.tilt",),
+    ),
+    Method(
+        name="Turn in the orbit plane by the other two coils (`dual_spin`)",
+        source="[O19] 2.2 [40]",
+        kind=Kind.FLOWN,
+        where="fsw/core/laws/wheel/dual_spin.py",
+        claim="The body is turned about the wheel to any pitch.",
+        claims=("review.wheel.dual_spin.pitch",),
+    ),
+    Method(
+        "closed expressions for the speed of a dual-spin satellite",
+        "[O19] 2.2 [40]",
+        Kind.GROUND,
+        "sim/design/wheel/convergence.py",
+        "Closed expressions say how fast a satellite with a pitch wheel comes to rest.",
+        ("review.wheel.convergence", "review.wheel.strong_wheel"),
+        "The expressions are not printed and were not found; derived by averaging.",
+    ),
+    Method(
         "roll of a horizon sensor alone",
         "[O19] 2.2 [41]",
         Kind.FLOWN,
@@ -14,13 +39,12 @@ METHODS: tuple[Method, ...] = (
         "orbit plane. Roll destabilises the nutation unless its rate outweighs it (Routh).",
     ),
     Method(
-        "field tracking on a satellite with a pitch wheel",
-        "[O19] 2.2 eq. 7 [42]",
-        Kind.FLOWN,
-        "fsw/core/laws/one_axis/field_tracking.py",
-        "Flown on Gurwin: the field is turned onto that of the nominal attitude, by the magnetometer alone.",
-        ("review.wheel.gurwin.recovery",),
-        "It recovers from a tumble without any other knowledge; the wheel holds what the field leaves free.",
+        name="Field tracking with a wheel (`field_tracking`)",
+        source="[O19] 2.2 [42], eq. 7",
+        kind=Kind.FLOWN,
+        where="fsw/core/laws/one_axis/field_tracking.py",
+        claim="The raw magnetometer brings a satellite with a wheel to its attitude.",
+        claims=("review.wheel.tracking.wheel", "review.wheel.tracking.bare"),
     ),
     Method(
         "linear-quadratic regulator with a pitch wheel",
@@ -89,15 +113,6 @@ METHODS: tuple[Method, ...] = (
         "the lean with the field, and does not straighten it.",
     ),
     Method(
-        "closed expressions for the speed of a dual-spin satellite",
-        "[O19] 2.2 [40]",
-        Kind.GROUND,
-        "sim/design/wheel/convergence.py",
-        "Closed expressions say how fast a satellite with a pitch wheel comes to rest.",
-        ("review.wheel.convergence", "review.wheel.strong_wheel"),
-        "The expressions are not printed and were not found; derived by averaging.",
-    ),
-    Method(
         "two coils and one wheel",
         "[O19] 2.4 [56]",
         Kind.FLOWN,
@@ -135,5 +150,14 @@ METHODS: tuple[Method, ...] = (
         "The wheel is a pitch wheel, and its speed can be controlled.",
         ("review.wheel.pitch_speed", "review.wheel.pitch_momentum"),
         "The review gives no equation; derived from the torques of coils and wheel.",
+    ),
+    Method(
+        "field tracking on a satellite with a pitch wheel",
+        "[O19] 2.2 eq. 7 [42]",
+        Kind.FLOWN,
+        "fsw/core/laws/one_axis/field_tracking.py",
+        "Flown on Gurwin: the field is turned onto that of the nominal attitude, by the magnetometer alone.",
+        ("review.wheel.gurwin.recovery",),
+        "It recovers from a tumble without any other knowledge; the wheel holds what the field leaves free.",
     ),
 )

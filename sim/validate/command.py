@@ -15,6 +15,7 @@ from sim.progress import note, progress
 from sim.record.destination import check_file
 from sim.validate.flight_data import claims
 from sim.validate.flight_data.passes import CALIBRATED_BY
+from sim.validate.outcomes import as_outcomes, as_text, read_outcomes, with_outcomes
 from sim.validate.page import as_json, line, loose, render, suites, tally
 from sim.validate.reference import reference
 from sim.validate.registry import all_studies, choose_studies, find_repository
@@ -31,11 +32,12 @@ def validate(
     satellites: int | None = None,
     junit: Path | None = None,
     flight_data: Path | None = None,
+    record: bool = False,
 ) -> int:
     """Run the studies, print each outcome, write the page.
 
-    Without ``out`` only a complete validation writes its page: into docs/ of the repository, else into the
-    current directory.
+    Without ``out`` only a complete validation writes its page, and the figures beside it as
+    ``validation.json``: into docs/ of the repository, else into the current directory.
 
     Args:
         folder: run only the checks of the reference files in this folder.
@@ -46,6 +48,7 @@ def validate(
         satellites: at most so many of each population; None: all.
         junit: file for the verdicts as JUnit XML; None: not written.
         flight_data: run only the claims on the recorded passes in this folder.
+        record: put the outcomes into ``validation.json``, where the page would stand, the others of it kept.
 
     Returns:
         The exit code: 1 if a claim fails, else 0.
@@ -59,8 +62,10 @@ def validate(
     studies = choose_studies(studies, only, quick)
     whole = folder is None and flight_data is None and not only and not quick and satellites is None
     page = out or (_default_page(repository) if whole else None)
-    for file in filter(None, (page, junit)):
+    figures = (out or _default_page(repository)).with_suffix(".json") if whole or record else None
+    for file in filter(None, (page, junit, figures)):
         check_file(file)
+    before = read_outcomes(figures) if record and figures is not None else {}
     bar = sys.stderr.isatty()  # then the outcomes are printed after the progress bar
     with progress("validating", sum(len(study.tasks) for study in studies)) as watch:
         finished = run(studies, workers or os.cpu_count() or 1, watch, _print_later if bar else _print)
@@ -75,6 +80,9 @@ def validate(
     if page is not None:
         _write(page, render(finished, wall_s))
         say(f"page: {page}")
+    if figures is not None:
+        _write(figures, as_text(with_outcomes(before, as_outcomes(outcomes))))
+        say(f"figures: {figures}")
     if junit is not None:
         write_junit(junit, "torquer validate", suites(finished))
     if far := loose(outcomes):

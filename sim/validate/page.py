@@ -65,7 +65,7 @@ def line(outcome: ClaimOutcome) -> str:
     if outcome.ours is None:
         return f"{outcome.verdict.value:<6} {outcome.claim.id}"
     where = f"  [{outcome.where}]" if outcome.where else ""
-    figure = f"{_figure(outcome)} ({outcome.claim.limits}, {outcome.claim.threshold.value})"
+    figure = f"{figure_text(outcome)} ({outcome.claim.limits}, {outcome.claim.threshold.value})"
     return f"{outcome.verdict.value:<6} {outcome.claim.id}: {outcome.claim.statement}: {figure}{where}"
 
 
@@ -122,7 +122,7 @@ def platform_line() -> str:
 
 def _row(outcome: ClaimOutcome) -> str:
     claim = outcome.claim
-    ours = "" if outcome.ours is None else _figure(outcome)
+    ours = "" if outcome.ours is None else figure_text(outcome)
     if outcome.verdict is ClaimVerdict.FAIL and outcome.where:
         ours += f" at {outcome.where}"
     limits = f"{claim.limits} {_unit(claim.unit)}".strip() if outcome.ours is not None else ""
@@ -145,7 +145,8 @@ def _spread(spread: Spread) -> str:
     return f"{values}; {spread.meet} of {spread.flights}"
 
 
-def _figure(outcome: ClaimOutcome) -> str:
+def figure_text(outcome: ClaimOutcome) -> str:
+    """The figure with its unit; the claim has one."""
     return f"{outcome.ours:.4g} {_unit(outcome.claim.unit)}".strip()
 
 

@@ -10,7 +10,17 @@ from sim.validate import calibrated, cells, computed, driven_wheel, microsat, op
 from sim.validate.consat import minimisers, posat1, prediction
 from sim.validate.population import claims
 from sim.validate.reference import reference
-from sim.validate.review import damping, feedback, one_axis, optimal, predictive, sliding, spin, wheel
+from sim.validate.review import (
+    damping,
+    feedback,
+    one_axis,
+    optimal,
+    predictive,
+    sliding,
+    spin,
+    wheel,
+)
+from sim.validate.review.rigid import fixed_wheel, pointing
 
 
 def all_studies(satellites: int | None = None) -> list[Study]:
@@ -31,7 +41,10 @@ def all_studies(satellites: int | None = None) -> list[Study]:
         *cells.studies(satellites),
         *(
             study
-            for section in (damping, spin, wheel, one_axis, feedback, sliding, optimal, predictive)
+            for section in (
+                *(damping, spin, wheel, one_axis, feedback, sliding, optimal, predictive),
+                *(fixed_wheel, pointing),
+            )
             for study in section.studies()
         ),
         *driven_wheel.studies(),

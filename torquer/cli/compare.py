@@ -27,10 +27,17 @@ EXAMPLES = examples(
     "--laws",
     metavar="A,B",
     shell_complete=of_laws,
-    help="Laws, aims or all. Default: all with the aim of the scenario's.",
+    help="Laws, aims or all. Default: all that are meant for the body.",
 )
 @click.option(
     "--driver", default="both", show_default=True, type=click.Choice(["pulsed", "continuous", "both"])
+)
+@click.option(
+    "--gains",
+    default="best",
+    show_default=True,
+    metavar="best|scenario|FILE",
+    help="Those found for the body that ship, the scenario's, or of `torquer design --laws`.",
 )
 @click.option(
     "--orbits", type=click.FloatRange(min=0.0, min_open=True), help="Default: those of the scenario."
@@ -47,6 +54,7 @@ def compare(
     scenario: str,
     laws: str | None,
     driver: str,
+    gains: str,
     orbits: float | None,
     seed: int,
     workers: int | None,
@@ -57,4 +65,4 @@ def compare(
     from sim.compare import command
 
     load_scenario(scenario, settings)
-    return command.compare(scenario, settings, laws, driver, orbits, seed, workers, out)
+    return command.compare(scenario, settings, laws, driver, orbits, seed, workers, out, gains)

@@ -4,12 +4,14 @@ from pathlib import Path
 
 import click
 
+from torquer.cli.completions import of_laws
 from torquer.cli.options import JSON, examples, law_and_settings, scenario_argument, sentences
 
 EXAMPLES = examples(
     "torquer design microsat",
     "torquer design microsat --gains 6.3e6 1600",
     "torquer design my-satellite.toml --write",
+    "torquer design my-satellite.toml --laws pd,lqr,sliding",
 )
 
 
@@ -17,6 +19,16 @@ EXAMPLES = examples(
 @scenario_argument()
 @click.option("--gains", nargs=2, type=float, metavar="K_W K_A", help="Evaluate these instead of searching.")
 @click.option("--write", is_flag=True, help="Write the gains into SCENARIO, a file.")
+@click.option(
+    "--laws",
+    metavar="A,B|all",
+    shell_complete=of_laws,
+    help="Search the gains of these laws by flights.",
+)
+@click.option(
+    "--keep", type=click.Path(path_type=Path), help="With --laws: their file. Default: SCENARIO-gains.toml."
+)
+@click.option("--flights", type=click.IntRange(min=4), help="With --laws: flights for each. Default: 24.")
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
@@ -29,15 +41,27 @@ def design(
     scenario: str,
     gains: tuple[float, float] | None,
     write: bool,
+    laws: str | None,
+    keep: Path | None,
+    flights: int | None,
     out: Path | None,
     settings: tuple[str, ...],
 ) -> int:
-    """Gains of the PD law for SCENARIO by Floquet theory: exponents, margins, maps, best gains."""
+    """Gains of the PD law for SCENARIO by Floquet theory: exponents, margins, maps, best gains.
+
+    With --laws those of any law, by flights of the rigid body under rules that are the same for all.
+    """
     from sim.console import answer, current, say
     from sim.scenario.schema import load, parse_settings
     from torquer.api.design import design
 
     over = parse_settings(settings)
+    if laws is not None:
+        from sim.design.tuning.command import design_laws
+
+        kept = design_laws(scenario, over, laws, keep, flights)
+        answer({"gains": kept.rows})
+        return 0
     if out is None and not current().as_json:
         out = Path("runs") / f"design-{load(scenario, over).name}"
     found = design(scenario, gains=gains, set=over, write=write, out=out, progress=True)

@@ -10,6 +10,7 @@ EXAMPLES = examples(
     "torquer validate --quick",
     "torquer validate --only posat1 --out posat1.md",
     "torquer validate --only population --satellites 20",
+    "torquer validate --only review --record",
 )
 
 
@@ -39,6 +40,11 @@ EXAMPLES = examples(
     type=click.Path(path_type=Path),
     help="The page. Default, if all is run: docs/validation.md of the repository, else validation.md.",
 )
+@click.option(
+    "--record",
+    is_flag=True,
+    help="Put the figures into validation.json by the page, others kept.",
+)
 @JUNIT
 @JSON
 @sentences
@@ -51,8 +57,9 @@ def validate(
     workers: int | None,
     out: Path | None,
     junit: Path | None,
+    record: bool,
 ) -> int:
     """Check every published figure and reference: claim, source, our figure, verdict."""
     from sim.validate.command import validate
 
-    return validate(reference, only, out, quick, workers, satellites, junit, flight_data)
+    return validate(reference, only, out, quick, workers, satellites, junit, flight_data, record)

@@ -5,6 +5,7 @@ import pytest
 from fsw.core.laws.entry import Aim
 from fsw.core.laws.table import LAWS
 from sim.compare.case import Driver, cases, chosen_laws
+from sim.design.tuning.kept import KeptGains
 from sim.errors import HarnessError
 from sim.scenario.schema import load
 
@@ -19,9 +20,29 @@ def test_laws_of_the_scenarios_own_aim_by_default():
     three_axis = chosen_laws(load("microsat"), None)
     assert {"pd", "lqr", "sliding", "output_feedback"} <= set(three_axis)
     assert not {"bdot", "sun_pointing", "spin_up", "dual_spin"} & set(three_axis)
-    damping = chosen_laws(load("posat1"), None)
+    damping = chosen_laws(load("tumbling", {"control": {"law": "bdot"}}), None)
     assert {"predictive", "rate_damping", "bdot"} <= set(damping)
     assert "pd" not in damping
+
+
+def test_with_a_boom_or_a_wheel_laws_of_the_whole_attitude_too():
+    boom = chosen_laws(load("posat1"), None)
+    assert {"predictive", "rate_damping", "pd", "lqr"} <= set(boom)
+    wheel = chosen_laws(load("pitch-wheel"), None)
+    assert {"dual_spin", "pd", "field_tracking"} <= set(wheel)
+    spinner = chosen_laws(load("spinner"), None)
+    assert {"three_term", "spin_up"} <= set(spinner)
+    assert "pd" not in spinner
+
+
+def test_gains_that_are_kept_stand_under_the_settings():
+    kept = KeptGains(0, 24, 4.0, {"pulsed": {"pd": {"control": {"k_w": 1e6, "k_a": 100.0}}}})
+    settings = {"control": {"k_a": 200.0}}
+    pd, lqr = cases("microsat", settings, ("pd", "lqr"), (Driver.PULSED,), 1, None, kept)
+    assert (pd.tuned, lqr.tuned) == (True, False)
+    control = load("microsat", pd.order.overrides).control
+    assert (control.k_w, control.k_a) == (1e6, 200.0)
+    assert load("microsat", lqr.order.overrides).control.k_w == load("microsat").control.k_w
 
 
 def test_laws_and_aims_by_name_in_the_order_of_the_table():

@@ -109,5 +109,5 @@ def test_a_law_that_cannot_be_flown_is_a_line():
     score, drawn = fly_case(case)
     assert drawn is None
     assert "effort" in score.failure
-    filled = {"law", "aim", "driver", "failure"}
+    filled = {"law", "aim", "driver", "failure", "tuned"}
     assert {key for key, value in asdict(score).items() if value is not None} == filled

@@ -47,17 +47,16 @@ def test_best_pointing_first_and_damping_by_rate():
 
 def test_text_has_a_line_each_and_says_what_is_missing():
     heading, units, *lines, why = as_text(SCORES).splitlines()
-    assert heading.split()[:5] == ["law", "driver", "settle", "RMS", "max"]
+    assert heading.split()[:6] == ["law", "driver", "gains", "settle", "RMS", "max"]
     assert units.split()[:3] == ["orbits", "deg", "deg"]
     cells = [line.split() for line in lines]
-    assert cells[0] == (
-        ["pd", "pulsed", "1.23", "0.71", "1.77", "0.0040", "1.235e+04", "231", "2.87", "POINT", "kept"]
-    )
-    assert cells[1] == ["lqr", "pulsed", *"-" * 9]
+    figures = ["1.23", "0.71", "1.77", "0.0040", "1.235e+04", "231", "2.87"]
+    assert cells[0] == ["pd", "pulsed", "scenario", *figures, "POINT", "kept"]
+    assert cells[1] == ["lqr", "pulsed", "scenario", *"-" * 9]
     assert cells[3][-1] == "BROKEN"
-    assert cells[4][2] == "-"
+    assert cells[4][3] == "-"
     assert cells[4][-2] == "DETUMBLE"
-    assert cells[5][7] == "-"
+    assert cells[5][8] == "-"
     assert why == "lqr, pulsed: no periodic dipole holds this body"
 
 

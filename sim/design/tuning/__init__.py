@@ -1,0 +1,1 @@
+"""Gains of any law: searched over flights of a rigid body, kept in files, compared under equal rules."""

@@ -1,0 +1,37 @@
+"""Which laws are meant for a body, by their aim and what the scenario has; its coils with either driver."""
+
+from fsw.core.laws.entry import Aim
+from fsw.core.laws.table import LAWS
+from fsw.input.schema import Nested
+from fsw.table.own_law import declared
+from sim.scenario.schema import Scenario, flight_table
+
+
+def aims_of(scenario: Scenario) -> frozenset[Aim]:
+    """The aim of the scenario's own law; with a boom or a wheel all laws that hold the whole attitude too.
+
+    Raises:
+        TableError: the scenario's own law cannot be loaded.
+    """
+    control = scenario.control
+    own = declared(control).aim if control.own else LAWS[control.law].aim
+    held = flight_table(scenario).modes.axis_only or any(scenario.body.wheel_nms)
+    return frozenset({own, Aim.THREE_AXIS} if held and own is not Aim.SPIN else {own})
+
+
+def laws_for(scenario: Scenario) -> tuple[str, ...]:
+    """The laws of the table that are meant for the body, in the order of the table.
+
+    Raises:
+        TableError: the scenario's own law cannot be loaded.
+    """
+    aims = aims_of(scenario)
+    return tuple(name for name, entry in LAWS.items() if entry.aim in aims)
+
+
+def coils_of(scenario: Scenario, driver: str) -> Nested:
+    """The keys of a driver; full scale of a continuous one is the highest level if the scenario has none."""
+    if driver == "pulsed":
+        return {"coils": {"driver": driver}}
+    coils = scenario.coils
+    return {"coils": {"driver": driver, "max_dipole_am2": coils.max_dipole_am2 or max(coils.levels_am2)}}

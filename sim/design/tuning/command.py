@@ -1,0 +1,108 @@
+"""``torquer design --laws``: the best gains of each law on a body, kept as they are found."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from fsw.core.laws.table import LAWS
+from fsw.input.near import did_you_mean
+from fsw.input.schema import Nested, merge
+from sim.console import say
+from sim.design.tuning.applicable import coils_of, laws_for
+from sim.design.tuning.kept import KeptGains, body_checksum, gains_text, read_gains, write_gains
+from sim.design.tuning.rigid_flight import STEP_S
+from sim.design.tuning.search import BUDGET, ORBITS, TunedGains, tune
+from sim.errors import HarnessError
+from sim.progress import Watch, progress
+from sim.scenario.schema import Scenario, load
+
+DRIVERS = ("pulsed", "continuous")
+FASTEST_RAD = 0.4
+"""By so much a body may turn in a step of a flight."""
+
+
+def design_laws(
+    name: str,
+    over: Nested,
+    laws: str,
+    path: Path | None,
+    flights: int | None = None,
+    orbits: float = ORBITS,
+) -> KeptGains:
+    """Search the gains of laws for a scenario, print them, and keep each in the file once it is found.
+
+    A law that the file has for this body and under these rules is not searched again.
+
+    Args:
+        name: of the scenario, or its path.
+        over: laid over it.
+        laws: names with commas between, or ``all`` that suit the body.
+        path: the file; None: ``<scenario>-gains.toml``.
+        flights: for each law; None: ``BUDGET``.
+        orbits: length of each flight.
+
+    Raises:
+        TableError: the scenario is not valid.
+        HarnessError: there is no such law, or the file cannot be read or written.
+    """
+    scenario, budget = load(name, over), flights or BUDGET
+    chosen = _chosen(scenario, laws)
+    path = path or Path(f"{scenario.name}-gains.toml")
+    rules = KeptGains(body_checksum(scenario), budget, orbits)
+    before = read_gains(path)
+    same = before is not None and (before.body, before.flights, before.orbits) == (
+        rules.body,
+        rules.flights,
+        rules.orbits,
+    )
+    kept = before if same and before is not None else rules
+    wanted = [
+        (driver, law)
+        for driver in DRIVERS
+        for law in chosen
+        if not (driver == "continuous" and LAWS[law].plans_pulses) and kept.control(driver, law) is None
+    ]
+    with progress(f"gains of {len(chosen)} laws for {scenario.name}", len(wanted) * budget) as watch:
+        for number, (driver, law) in enumerate(wanted):
+            values = merge(over, coils_of(scenario, driver))
+            onward = _after(watch, number * budget)
+            found = tune(name, values, law, budget, orbits, step_s(scenario), onward)
+            kept = kept.with_row(found)
+            write_gains(path, kept)
+            say(line(found))
+    say(f"gains: {path}")
+    return kept
+
+
+def _after(watch: Watch, done_before: int) -> Watch:
+    """Counts on from what was done before."""
+    return lambda done: watch(done_before + done)
+
+
+def step_s(scenario: Scenario) -> float:
+    """The steps of the flights: shorter for a body that spins."""
+    spin = abs(scenario.control.spin_radps)
+    return STEP_S if spin == 0.0 else max(2.0, min(STEP_S, 2.0 * (FASTEST_RAD / spin // 2.0)))
+
+
+def line(found: TunedGains) -> str:
+    """One law for the terminal."""
+    settled = found.cost.settle_orbits
+    when = "never settled" if settled is None else f"settled after {settled:.2f} orbits"
+    gains = gains_text(found.control)
+    return (
+        f"{found.law}, {found.driver}: {when}, then {found.cost.rms:.3g} RMS; cost {found.cost.total:.3f}, "
+        f"before {found.before.total:.3f}; {gains}"
+    )
+
+
+def _chosen(scenario: Scenario, laws: str) -> Sequence[str]:
+    if laws == "all":
+        return laws_for(scenario)
+    words = [word.strip() for word in laws.split(",")]
+    for word in words:
+        if word not in LAWS:
+            raise HarnessError(
+                f"--laws {laws}: there is no law '{word}'{did_you_mean(word, LAWS)}: "
+                f"give all, or names of {', '.join(LAWS)}"
+            )
+    return words

@@ -1,0 +1,56 @@
+"""What a flight costs, the same for every law: how late it settles, and what error is left.
+
+    cost = T_s / T + log2(1 + RMS / 5 deg)
+
+T the length of the flight, T_s when the error is under 5 deg from then on (T if it never is), RMS that of
+the last orbit. The error is the angle from the nominal attitude, with ``modes.axis_only`` that of body axis 1
+from the vertical; of laws that do not point it is the rate less the one wanted, 0.05 deg/s in place of 5 deg.
+"""
+
+from math import log2
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fsw.core.laws.entry import Aim
+from sim.design.tuning.flown import RigidFlight
+from sim.scenario.schema import Scenario, flight_table
+
+Array = NDArray[np.float64]
+BY_RATE = frozenset({Aim.RATE, Aim.SPIN, Aim.SUN})
+"""Laws of these aims do not point: the rate tells them apart."""
+SETTLED_DEG, SETTLED_DEGPS = 5.0, 0.05
+LOST = 10.0
+"""The cost of a flight that was none, more than that of any."""
+
+
+class Cost(NamedTuple):
+    """Of a flight: the cost, the orbits until it settled (None: never), and the RMS of its last orbit.
+
+    The RMS is in deg, or in deg/s for a law that does not point.
+    """
+
+    total: float
+    settle_orbits: float | None
+    rms: float
+
+
+def cost_of(flight: RigidFlight, scenario: Scenario, aim: Aim) -> Cost:
+    """The cost of a flight of a scenario by a law with an aim."""
+    axis_only = flight_table(scenario).modes.axis_only
+    pointing = axis_only or aim not in BY_RATE
+    if pointing:
+        error, settled = flight.axis1_deg if axis_only else flight.pointing_deg, SETTLED_DEG
+    else:
+        wanted = np.array([scenario.control.spin_radps, 0.0, 0.0])
+        error = np.degrees(np.linalg.norm(flight.relative_body_radps - wanted, axis=1))
+        settled = SETTLED_DEGPS
+    outside = np.flatnonzero(~(error < settled))
+    first = int(outside[-1]) + 1 if len(outside) else 0
+    rms = float(np.sqrt(np.mean(error[flight.orbit(-1)] ** 2)))
+    step_s = float(flight.t_s[1])
+    settle_orbits = first * step_s / flight.orbit_s if first < len(error) else None
+    if not np.isfinite(rms):
+        return Cost(LOST, None, rms)
+    return Cost(first / len(error) + log2(1.0 + rms / settled), settle_orbits, rms)

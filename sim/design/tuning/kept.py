@@ -1,0 +1,128 @@
+"""The gains that were found, kept in files: found/NAME.toml here for scenarios that ship.
+
+A file says for which body, start and coils they were found, and under which rules; for another one they are
+none.
+"""
+
+import json
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+from zlib import crc32
+
+import tomli_w
+
+from fsw.input.regular_file import read_regular
+from fsw.input.schema import Nested
+from fsw.input.toml_text import MOST_BYTES, BoundsError
+from sim.design.tuning.search import TunedGains
+from sim.errors import HarnessError
+from sim.scenario.schema import Scenario
+
+FOLDER = Path(__file__).parent / "found"
+_HEAD = "# Written by `torquer design --laws`: the best gains of each law, found under equal rules.\n\n"
+
+
+@dataclass(frozen=True, slots=True)
+class KeptGains:
+    """The gains of a file.
+
+    Attributes:
+        body: checksum of what they were found for.
+        flights: the budget of each law.
+        orbits: length of each flight.
+        rows: by driver and law: ``control``, ``cost``, ``settle_orbits`` (absent: never) and ``rms``.
+    """
+
+    body: int
+    flights: int
+    orbits: float
+    rows: dict[str, dict[str, Nested]] = field(default_factory=dict)
+
+    def control(self, driver: str, law: str) -> Nested | None:
+        """The keys of ``[control]``; None: none were found."""
+        row = self.rows.get(driver, {}).get(law)
+        return None if row is None else dict(row["control"])
+
+    def with_row(self, found: TunedGains) -> "KeptGains":
+        """These gains with those of one law more, or in its place."""
+        row: Nested = {
+            "cost": round(found.cost.total, 6),
+            "cost_before": round(found.before.total, 6),
+            "rms": float(f"{found.cost.rms:.4g}"),
+            "control": found.control,
+        }
+        if found.cost.settle_orbits is not None:
+            row["settle_orbits"] = round(found.cost.settle_orbits, 4)
+        of_driver = dict(sorted({**self.rows.get(found.driver, {}), found.law: row}.items()))
+        return KeptGains(self.body, self.flights, self.orbits, {**self.rows, found.driver: of_driver})
+
+
+def body_checksum(scenario: Scenario) -> int:
+    """Of what the gains depend on: body, orbit, start, coils but for their driver, disturbing torque."""
+    parts = {
+        "body": scenario.body.model_dump(mode="json", include={"inertia_kgm2", "wheel_nms"}),
+        "orbit": scenario.orbit.model_dump(mode="json"),
+        "initial": scenario.initial.model_dump(mode="json"),
+        "coils": scenario.coils.model_dump(
+            mode="json", include={"levels_am2", "pulse_s", "backoff_s", "backoff"}
+        ),
+        "torque": scenario.disturbance.model_dump(mode="json", include={"torque_nm"}),
+        "spin": scenario.control.spin_radps,
+    }
+    return crc32(json.dumps(parts, sort_keys=True).encode())
+
+
+def shipped_gains(scenario: Scenario) -> KeptGains | None:
+    """The gains that ship for a scenario as it is; None: there are none.
+
+    Raises:
+        HarnessError: the file cannot be read.
+    """
+    kept = read_gains(FOLDER / f"{scenario.name}.toml")
+    return kept if kept is not None and kept.body == body_checksum(scenario) else None
+
+
+def gains_text(control: Nested) -> str:
+    """The gains of ``[control]`` in a line."""
+    flat = ", ".join(f"{key} {value:.4g}" for key, value in _flat(control))
+    return flat or "the scenario's"
+
+
+def read_gains(path: Path) -> KeptGains | None:
+    """The gains of a file; None if there is no file.
+
+    Raises:
+        HarnessError: it cannot be read, or holds something else.
+    """
+    if not path.exists():
+        return None
+    try:
+        values = tomllib.loads(read_regular(path, MOST_BYTES).decode("utf-8"))
+        rules = values.pop("found")
+        return KeptGains(int(rules["body"]), int(rules["flights"]), float(rules["orbits"]), values)
+    except (OSError, BoundsError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise HarnessError(f"{path}: gains cannot be read: {error}") from None
+    except (KeyError, TypeError, ValueError) as error:
+        raise HarnessError(f"{path}: no gains of torquer design --laws: {error}") from None
+
+
+def write_gains(path: Path, kept: KeptGains) -> None:
+    """Write the file anew.
+
+    Raises:
+        HarnessError: it cannot be written.
+    """
+    rules: Nested = {"found": {"body": kept.body, "flights": kept.flights, "orbits": kept.orbits}}
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(_HEAD + tomli_w.dumps(rules | kept.rows), encoding="utf-8")
+    except OSError as error:
+        raise HarnessError(f"{path}: cannot be written ({error.strerror or error})") from None
+
+
+def _flat(control: Nested, above: str = "") -> list[tuple[str, float]]:
+    rows: list[tuple[str, float]] = []
+    for key, value in control.items():
+        rows += _flat(value, f"{above}{key}.") if isinstance(value, dict) else [(f"{above}{key}", value)]
+    return rows

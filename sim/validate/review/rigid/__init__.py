@@ -1,0 +1,1 @@
+"""Claims that flights of a rigid body in the direct dipole show."""

@@ -1,0 +1,248 @@
+"""Claims on the laws that hold the whole attitude (sections 3.1, 3.2), flown rigidly."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from math import inf, pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fsw.core.laws.optimal.lqr import LqrGains
+from fsw.input.schema import Nested
+from sim.campaign.claim import Claim, ClaimOutcome, Study
+from sim.design.theory.bodies import BODIES, Body
+from sim.design.theory.controllability import conditioning
+from sim.design.theory.floquet import ROUGH_STEPS
+from sim.design.theory.linear import Gains
+from sim.design.theory.pulsed import PulsedLoop, Pulsing
+from sim.design.theory.robustness import margins
+from sim.design.theory.search import continuous
+from sim.design.tuning.flown import RigidFlight
+from sim.validate.review.rigid.trial import NEAR, REVIEW, Flown, Judged, Trial, gains, over
+
+Array = NDArray[np.float64]
+Flights = Sequence[RigidFlight]
+
+BEST = (6.2694e6, 1614.9)
+"""k_w and k_a of the 50 kg satellite by Floquet theory."""
+TORQUE: Nested = {"disturbance": {"torque_nm": [1e-7, 1e-7, 1e-7]}}
+SLENDER: Nested = {"body": {"inertia_kgm2": [0.2, 1.9, 1.95]}, "coils": {"max_dipole_am2": 5.0}}
+ENDS = "decays without end"
+_MEAN_MOMENT, _FIELD_T = (1.02 + 1.85 + 1.95) / 3.0, 7.812e15 / 7178.137e3**3
+
+
+def feedback_trials() -> list[Trial]:
+    """Section 3.1, feedback."""
+    k_w, k_a = BEST
+    even, heavy = ({"q1": q1, "q2": 1.0, "q3": 1.0} for q1 in (1.0, 10.0))
+    return [
+        Trial(
+            "review.feedback.pd",
+            "section 3.1 [68-70]",
+            (
+                Flown("pd", NEAR, 6.0),
+                Flown("pd", over(NEAR, gains("pd", k_w, k_a=300.0 * k_a)), 6.0),
+            ),
+            (
+                _final("final", "PD law with the best gains"),
+                Judged(
+                    "bound",
+                    "The same with 300 times the gain of the attitude: it is lost",
+                    "deg RMS",
+                    lambda flights: _rms_deg(flights[1]),
+                    low=20.0,
+                ),
+            ),
+        ),
+        Trial(
+            "review.feedback.output",
+            "section 3.1 [68]",
+            (Flown("output_feedback", NEAR, 6.0),),
+            (_final("final", "Output feedback, without a rate"),),
+        ),
+        Trial(
+            "review.feedback.regularised",
+            "section 3.1 [82, 83]",
+            (Flown("pd_regularised", NEAR, 6.0),),
+            (_final("final", "PD law by the regularised inverse"),),
+        ),
+        Trial(
+            "review.feedback.weighted",
+            "section 3.1 [81]",
+            tuple(
+                Flown("pd_weighted", over(NEAR, TORQUE, SLENDER, gains("pd_weighted", k_w, q, k_a)), 8.0)
+                for q in (even, heavy)
+            ),
+            (
+                Judged(
+                    "gain",
+                    "RMS about the axis of small moment with a weight of 10 on it, over that with equal ones",
+                    "1",
+                    lambda flights: float(_axes_deg(flights[1])[0] / _axes_deg(flights[0])[0]),
+                    high=0.4,
+                ),
+                Judged(
+                    "cost",
+                    "The same about the other axes, the lesser",
+                    "1",
+                    lambda flights: float((_axes_deg(flights[1]) / _axes_deg(flights[0]))[1:].min()),
+                    low=1.0,
+                ),
+            ),
+        ),
+    ]
+
+
+def other_trials() -> list[Trial]:
+    """Sliding control and the regulator."""
+    return [
+        Trial(
+            "review.sliding.plain",
+            "section 3.1 [91]",
+            (Flown("sliding", NEAR, 6.0),),
+            (_final("final", "Sliding law"),),
+        ),
+        Trial(
+            "review.sliding.integral",
+            "section 3.1 [93, 94]",
+            tuple(Flown(law, over(NEAR, TORQUE), 10.0) for law in ("sliding", "sliding_integral")),
+            (
+                Judged(
+                    "rms",
+                    "With integrals under 1e-7 N m about each axis, tenth orbit",
+                    "deg RMS",
+                    lambda flights: _rms_deg(flights[1]),
+                    high=2.5,
+                ),
+                Judged(
+                    "gain",
+                    "Without integrals over with them",
+                    "1",
+                    lambda flights: _rms_deg(flights[0]) / _rms_deg(flights[1]),
+                    low=4.0,
+                ),
+            ),
+        ),
+        Trial(
+            "review.optimal.lqr",
+            "section 3.2 [98]",
+            (Flown("lqr", NEAR, 6.0), Flown("pd", NEAR, 6.0)),
+            (
+                _final("final", "Periodic regulator"),
+                Judged(
+                    "cost",
+                    "What the regulator makes least, theta^2 and dipole^2, over that of the PD law",
+                    "1",
+                    lambda flights: _cost(flights[0]) / _cost(flights[1]),
+                    high=0.9,
+                ),
+            ),
+        ),
+    ]
+
+
+def linear_studies() -> list[Study]:
+    """Margins of the inertia, and the pulses, by Floquet theory; controllability."""
+    return [
+        Study("review.feedback.inertia", (inertia_margin,), _judge_inertia),
+        Study("review.feedback.pulses", (pulsed_degree,), _judge_pulses),
+        Study("review.controllability", (controlled,), _judge_controlled),
+    ]
+
+
+def studies() -> list[Study]:
+    """All of this module."""
+    return [
+        *(trial.study() for trial in (*feedback_trials(), *other_trials())),
+        *linear_studies(),
+    ]
+
+
+def inertia_margin() -> float:
+    """The least relative error of the moments that makes the best gains of a boom satellite unstable."""
+    body = _body("boom")
+    found = margins(body, Gains(3.2433e8, 4.7969e4), continuous(body, ROUGH_STEPS)).moments
+    return inf if found is None else found
+
+
+def pulsed_degree() -> float:
+    """Degree of stability of the 50 kg satellite under pulses, 1/rad."""
+    body = _body("50 kg")
+    return float(PulsedLoop(body, Pulsing(3.0, 100.0, 300.0, True)).degree(Gains(*BEST)))
+
+
+def _judge_inertia(found: Sequence[float]) -> list[ClaimOutcome]:
+    claim = Claim(
+        "review.feedback.inertia.margin",
+        "Least error of the moments at which the best gains of a satellite with a boom become unstable",
+        f"{REVIEW}, section 3.1 [73]",
+        "1",
+        high=0.02,
+    )
+    return [claim.judge(found[0])]
+
+
+def _judge_pulses(found: Sequence[float]) -> list[ClaimOutcome]:
+    claim = Claim(
+        "review.feedback.pulses.degree",
+        "Degree of stability of 50 kg with its best gains, the dipole in pulses of 3 s each 103 s",
+        f"{REVIEW}, section 3.1 [78, 79]",
+        "1/rad",
+        high=-0.2,
+    )
+    return [claim.judge(found[0])]
+
+
+def controlled() -> tuple[float, float]:
+    """Least over greatest eigenvalue of the Gramian of an orbit: of 50 kg, and the same at the equator."""
+    body = _body("50 kg")
+    return conditioning(body), conditioning(replace(body, inclination_deg=0.0))
+
+
+def _judge_controlled(found: Sequence[tuple[float, float]]) -> list[ClaimOutcome]:
+    source = f"{REVIEW}, introduction [4, 5, 9]"
+    statement = "Least over greatest eigenvalue of the Gramian of an orbit, 50 kg, direct dipole"
+    inclined = Claim("review.controllability.orbit", statement, source, "1", low=0.01)
+    equator = Claim(
+        "review.controllability.equator",
+        f"{statement}, orbit over the equator",
+        source,
+        "1",
+        high=1e-12,
+        wide="it is zero but for rounding",
+    )
+    return [inclined.judge(found[0][0]), equator.judge(found[0][1])]
+
+
+def _body(name: str) -> Body:
+    return next(body for body in BODIES if body.name == name)
+
+
+def _final(name: str, what: str) -> Judged:
+    return Judged(
+        name,
+        f"{what}: attitude error in the sixth orbit, from 20 deg",
+        "deg RMS",
+        lambda flights: _rms_deg(flights[0]),
+        high=0.3,
+        wide=ENDS,
+    )
+
+
+def _rms_deg(flight: RigidFlight) -> float:
+    """Over the last orbit."""
+    return float(np.sqrt(np.mean(flight.pointing_deg[flight.orbit(-1)] ** 2)))
+
+
+def _axes_deg(flight: RigidFlight) -> Array:
+    """RMS about each body axis over the last two orbits, (3,)."""
+    last = 2.0 * flight.q_body_from_orbit[flight.orbit(-2).start :, 1:]
+    axes: Array = np.degrees(np.sqrt(np.mean(last**2, axis=0)))
+    return axes
+
+
+def _cost(flight: RigidFlight) -> float:
+    """The integral of |theta|^2 + effort |m|^2, over the steps."""
+    unit_am2 = _MEAN_MOMENT * (2.0 * pi / flight.orbit_s) ** 2 / _FIELD_T
+    dipoles = np.sum((flight.m_body_am2 / unit_am2) ** 2)
+    return float(np.sum(np.radians(flight.pointing_deg) ** 2) + LqrGains().effort * dipoles)

@@ -1,0 +1,119 @@
+"""Gains in a file: read back as they were, refused for another body, continued where a search stopped."""
+
+import pytest
+
+from sim.design.tuning import command, kept
+from sim.design.tuning.cost import Cost
+from sim.design.tuning.kept import (
+    KeptGains,
+    body_checksum,
+    gains_text,
+    read_gains,
+    shipped_gains,
+    write_gains,
+)
+from sim.design.tuning.search import TunedGains
+from sim.errors import HarnessError
+from sim.scenario.schema import load, shipped_names
+
+FOUND = TunedGains(
+    "lqr",
+    "pulsed",
+    {"k_w": 1e6, "gains": {"lqr": {"effort": 0.2}}},
+    Cost(0.5, 1.25, 0.3),
+    Cost(0.9, None, 2.0),
+    24,
+)
+
+
+@pytest.fixture
+def gains():
+    return KeptGains(7, 24, 4.0).with_row(FOUND)
+
+
+def test_a_file_is_read_back(gains, tmp_path):
+    write_gains(tmp_path / "deep" / "a.toml", gains)
+    assert read_gains(tmp_path / "deep" / "a.toml") == gains
+    assert gains.control("pulsed", "lqr") == FOUND.control
+    assert gains.control("continuous", "lqr") is None
+    assert read_gains(tmp_path / "none.toml") is None
+
+
+@pytest.mark.parametrize("text", ["a = ", "a = 1", "[found]\nbody = 1\n", "\xff"])
+def test_another_file_is_refused_by_its_name(tmp_path, text):
+    path = tmp_path / "a.toml"
+    path.write_text(text, encoding="latin-1")
+    with pytest.raises(HarnessError, match=r"a\.toml: (no gains of|gains cannot be read)"):
+        read_gains(path)
+
+
+@pytest.mark.parametrize(
+    "over",
+    [
+        {"body": {"inertia_kgm2": [1.0, 1.85, 1.95]}},
+        {"initial": {"angle_deg": 41.0}},
+        {"coils": {"backoff_s": 50.0}},
+        {"disturbance": {"torque_nm": [0.0, 0.0, 0.0]}},
+        {"control": {"spin_radps": 0.01}},
+    ],
+)
+def test_gains_are_for_one_body_start_coils_and_torque(over):
+    assert body_checksum(load("microsat", over)) != body_checksum(load("microsat"))
+
+
+def test_driver_law_and_gains_are_not_the_body():
+    other = {"control": {"law": "pd", "k_w": 1.0}, "coils": {"driver": "continuous", "max_dipole_am2": 8.0}}
+    assert body_checksum(load("microsat", other)) == body_checksum(load("microsat"))
+
+
+def test_those_that_ship_are_for_the_scenario_as_it_is():
+    for path in kept.FOLDER.glob("*.toml"):
+        assert path.stem in shipped_names()
+        scenario = load(path.stem)
+        assert shipped_gains(scenario) == read_gains(path)
+        assert shipped_gains(load(path.stem, {"initial": {"angle_deg": 12.0}})) is None
+
+
+def test_the_gains_in_a_line():
+    assert gains_text(FOUND.control) == "k_w 1e+06, gains.lqr.effort 0.2"
+    assert gains_text({}) == "the scenario's"
+
+
+class TestCommand:
+    @pytest.fixture
+    def searched(self, monkeypatch):
+        laws = []
+
+        def tune(name, over, law, *_):
+            laws.append((law, over["coils"]["driver"]))
+            driver = over["coils"]["driver"]
+            return TunedGains(law, driver, {"k_w": 1.0}, Cost(0.5, 1.0, 0.3), Cost(0.9, None, 2.0), 4)
+
+        monkeypatch.setattr(command, "tune", tune)
+        return laws
+
+    def test_each_law_by_each_driver_that_it_has_a_use_for(self, searched, tmp_path, capsys):
+        path = tmp_path / "a.toml"
+        found = command.design_laws("microsat", {}, "pd,pulse_mpc", path)
+        assert searched == [("pd", "pulsed"), ("pulse_mpc", "pulsed"), ("pd", "continuous")]
+        assert read_gains(path) == found
+        assert "pd, pulsed: settled after 1.00 orbits, then 0.3 RMS" in capsys.readouterr().out
+
+    def test_what_the_file_has_is_not_searched_again(self, searched, tmp_path):
+        path = tmp_path / "a.toml"
+        command.design_laws("microsat", {}, "pd", path)
+        searched.clear()
+        command.design_laws("microsat", {}, "pd,lqr", path)
+        assert {law for law, _ in searched} == {"lqr"}
+        searched.clear()
+        command.design_laws("microsat", {"initial": {"angle_deg": 10.0}}, "pd", path)
+        assert {law for law, _ in searched} == {"pd"}, "another start"
+
+    def test_an_unknown_law_is_named(self, tmp_path):
+        with pytest.raises(HarnessError, match="--laws pdd: there is no law 'pdd'"):
+            command.design_laws("microsat", {}, "pdd", tmp_path / "a.toml")
+
+    def test_a_body_that_spins_has_shorter_steps(self):
+        assert command.step_s(load("microsat")) == 10.0
+        assert command.step_s(load("spinner")) == 8.0
+        assert command.step_s(load("spinner", {"control": {"spin_radps": 0.1}})) == 4.0

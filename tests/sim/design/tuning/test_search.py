@@ -1,0 +1,89 @@
+"""The search: within its budget, never worse than the scenario's gains, the same each time; what is free."""
+
+import pytest
+
+from fsw.core.laws.entry import Aim
+from fsw.core.laws.table import LAWS
+from sim.design.from_scenario import body_of
+from sim.design.theory.search import natural_gains
+from sim.design.tuning import search
+from sim.design.tuning.cost import Cost
+from sim.design.tuning.free_gains import FreeGain, as_control, common_gains, own_gains
+from sim.design.tuning.search import tune
+from sim.scenario.schema import load
+
+PULSED = {"coils": {"driver": "pulsed"}}
+
+
+@pytest.fixture
+def bowl(monkeypatch):
+    """In place of a flight: a cost that is least at k_w = 1e7 and k_a = 4000, and counts its flights."""
+    flown = []
+
+    def flight(scenario, orbits, step_s):
+        flown.append((scenario.control.k_w, scenario.control.k_a))
+        return scenario.control
+
+    def cost(control, scenario, aim):
+        away = abs(control.k_w / 1e7 - 1.0) + abs(control.k_a / 4000.0 - 1.0)
+        return Cost(away, 1.0, 0.1)
+
+    monkeypatch.setattr(search, "fly", flight)
+    monkeypatch.setattr(search, "cost_of", cost)
+    return flown
+
+
+def test_it_keeps_to_its_budget_and_finds_the_least(bowl):
+    found = tune("microsat", PULSED, "pd", budget=60)
+    assert len(bowl) == found.flights <= 60
+    assert found.cost.total < 0.2 < found.before.total
+    assert found.control["k_w"] == pytest.approx(1e7, rel=0.2)
+
+
+def test_twice_the_same(bowl):
+    assert tune("microsat", PULSED, "pd", budget=20) == tune("microsat", PULSED, "pd", budget=20)
+
+
+def test_a_gain_that_the_law_does_not_use_is_not_searched(monkeypatch, bowl):
+    monkeypatch.setattr(search, "cost_of", lambda control, *_: Cost(abs(control.k_w / 1e7 - 1.0), 1.0, 0.1))
+    tune("microsat", PULSED, "pd", budget=20)
+    searched = [k_a for _, k_a in bowl[3:]]
+    assert set(searched) == {load("microsat").control.k_a}
+
+
+def test_the_scenarios_gains_stay_where_nothing_better_is_found(monkeypatch, bowl):
+    monkeypatch.setattr(search, "cost_of", lambda *_: Cost(1.0, None, 5.0))
+    found = tune("microsat", PULSED, "pd", budget=8)
+    assert (found.control, found.cost) == ({}, found.before)
+
+
+def test_a_value_that_no_table_allows_is_a_lost_flight(monkeypatch, bowl):
+    monkeypatch.setattr(search, "own_gains", lambda law: (FreeGain("gains.lqr.effort", 1e-9, 1e-8),))
+    found = tune("microsat", PULSED, "lqr", budget=12)
+    assert "gains" not in found.control
+
+
+class TestFreeGains:
+    def test_the_common_ones_span_those_of_the_map_of_gains(self):
+        natural = natural_gains(body_of(load("microsat")))
+        k_w, k_a = common_gains(load("microsat"))
+        assert k_w.low < natural.k_w < k_w.high
+        assert k_a.low < natural.k_a < k_a.high
+
+    def test_own_ones_are_those_that_say_how_hard(self):
+        assert [gain.key for gain in own_gains("mpc")] == ["gains.mpc.effort"]
+        assert {gain.key for gain in own_gains("three_term")} == {
+            "gains.three_term.k_h",
+            "gains.three_term.k_spin",
+        }
+        assert own_gains("pd") == ()
+
+    @pytest.mark.parametrize("law", LAWS)
+    def test_of_every_law_they_are_positive_and_have_room(self, law):
+        for gain in own_gains(law):
+            assert 0.0 < gain.low < gain.high
+        assert isinstance(LAWS[law].aim, Aim)
+
+    def test_they_become_the_keys_of_control(self):
+        free = (FreeGain("k_w", 1.0, 2.0), FreeGain("gains.lqr.effort", 0.1, 0.2))
+        assert as_control(free, (1.23456789, 0.15)) == {"k_w": 1.23457, "gains": {"lqr": {"effort": 0.15}}}

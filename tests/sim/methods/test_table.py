@@ -1,0 +1,106 @@
+"""The table of methods: every row says where, by what it is measured, and every law is in it."""
+
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from fsw.core.laws.table import CHECK, LAWS
+from sim.methods.method import Kind
+from sim.methods.references import LAST, missing
+from sim.methods.table import METHODS
+from sim.validate.outcomes import read_outcomes
+from sim.validate.registry import all_studies
+
+ROOT = Path(__file__).resolve().parents[3]
+EVERY_METHOD = pytest.mark.parametrize("method", METHODS, ids=lambda method: method.name)
+
+
+def module_of(law):
+    return LAWS[law].point.__module__.replace(".", "/") + ".py"
+
+
+def unnamed_laws(methods):
+    """Laws that no row names in backquotes, and that are not the only law of a row's module."""
+    words = " ".join(f"{method.name} {method.claim} {method.remark}" for method in methods)
+    modules, laws = {method.where for method in methods}, Counter(map(module_of, LAWS))
+    return [
+        law
+        for law in LAWS
+        if law not in CHECK
+        and f"`{law}`" not in words
+        and not (module_of(law) in modules and laws[module_of(law)] == 1)
+    ]
+
+
+def unknown_claims(methods, studies, measured):
+    """Ids that are no claims of a study; where a study's figures are written, they say which it has."""
+
+    def known(claim):
+        study = max((one for one in studies if f"{claim}.".startswith(f"{one}.")), key=len, default=None)
+        others = [one for one in measured if f"{one}.".startswith(f"{study}.")]
+        return study is not None and (claim in measured or not others)
+
+    return [claim for method in methods for claim in method.claims if not known(claim)]
+
+
+@pytest.fixture(scope="module")
+def studies():
+    return [study.id for study in all_studies()]
+
+
+@EVERY_METHOD
+def test_what_is_built_is_where_the_row_says(method):
+    assert method.name
+    assert method.claim
+    if method.kind is Kind.PASSED_OVER:
+        assert not method.where
+        assert not method.claims
+        assert method.remark, "the reason, and what was searched"
+    else:
+        assert (ROOT / method.where).is_file(), method.where
+
+
+@EVERY_METHOD
+def test_a_source_is_one_of_the_three_papers(method):
+    assert method.source.startswith(("[O19] ", "[O15] ", "[T] "))
+
+
+def test_no_two_rows_are_the_same_method():
+    rows = Counter((method.name, method.source) for method in METHODS)
+    assert max(rows.values()) == 1
+
+
+def test_every_claim_is_one_of_torquer_validate(studies):
+    assert unknown_claims(METHODS, studies, read_outcomes(ROOT / "docs" / "validation.json")) == []
+
+
+@pytest.mark.parametrize("claim", ["nothing.at_all", "jacob", "genetic.most", "genetic"])
+def test_a_claim_that_is_none_is_found(studies, claim):
+    measured = read_outcomes(ROOT / "docs" / "validation.json")
+    assert "genetic.median" in measured
+    assert unknown_claims([replace(METHODS[0], claims=(claim,))], studies, measured) == [claim]
+
+
+def test_every_law_that_flies_is_in_a_row():
+    assert unnamed_laws(METHODS) == []
+
+
+@pytest.mark.parametrize("law", ["pd", "spin_up", "pd_weighted"])
+def test_a_law_that_no_row_names_is_found(law):
+    others = [
+        method
+        for method in METHODS
+        if f"`{law}`" not in f"{method.name} {method.claim} {method.remark}"
+        and method.where != module_of(law)
+    ]
+    assert law in unnamed_laws(others)
+
+
+def test_the_references_that_no_row_names_stand_on_the_page():
+    """They are told, so that it can be seen what is missing; the surveys and the history have rows too."""
+    text = (ROOT / "docs" / "seeds.md").read_text(encoding="utf-8")
+    listed = ", ".join(map(str, missing(METHODS))) or "none"
+    assert f"References of the review that no method names: {listed}.\n" in text
+    assert missing([]) == list(range(1, LAST + 1))

@@ -1,0 +1,26 @@
+"""Write docs/seeds.md from methods and docs/validation.json; with --check, exit 1 when it is stale."""
+
+import sys
+from pathlib import Path
+
+from sim.methods.page import page
+from sim.methods.table import METHODS
+from sim.validate.outcomes import read_outcomes
+
+DOCS = Path(__file__).resolve().parent.parent / "docs"
+TARGET = DOCS / "seeds.md"
+
+
+def main() -> int:
+    text = page(METHODS, read_outcomes(DOCS / "validation.json"))
+    if "--check" in sys.argv[1:]:
+        stale = not TARGET.is_file() or TARGET.read_text(encoding="utf-8") != text
+        if stale:
+            print(f"{TARGET} is stale: run tools/write_seeds.py")
+        return int(stale)
+    TARGET.write_text(text, encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
