@@ -40,7 +40,7 @@ METHODS: tuple[Method, ...] = (
         "A multiplier leaves at +1: a fold.",
     ),
     Method(
-        "PD dipole among the stars, gains by averaging and Floquet theory",
+        "PD dipole among the stars (`pd_inertial`), gains by averaging and Floquet theory",
         "[O19] 3.1 [71]",
         Kind.FLOWN,
         "fsw/core/laws/feedback/inertial.py, sim/design/feedback/inertial.py",
@@ -99,7 +99,7 @@ METHODS: tuple[Method, ...] = (
         "A residual dipole of 0.02 A m^2 about each axis, unknown to the law, gives as much; fitted.",
     ),
     Method(
-        "dipole held over several steps",
+        "dipole held over several steps (`pd_held`)",
         "[O19] 3.1 [78]",
         Kind.FLOWN,
         "fsw/core/laws/feedback/held.py, sim/design/feedback/held.py",
@@ -122,7 +122,7 @@ METHODS: tuple[Method, ...] = (
         ),
     ),
     Method(
-        "measuring and acting apart",
+        "measuring and acting apart (`pd_apart`)",
         "[O19] 3.1 [79]",
         Kind.FLOWN,
         "fsw/core/laws/feedback/held.py",
@@ -170,7 +170,7 @@ METHODS: tuple[Method, ...] = (
         "The scan loses the torque; derived. Three axes need a wheel or a firm gravity gradient.",
     ),
     Method(
-        "sphere, no rate",
+        "sphere, no rate (`sphere_output`)",
         "[O19] 3.1 [85, 86]",
         Kind.FLOWN,
         "fsw/core/laws/feedback/sphere.py",
@@ -179,7 +179,7 @@ METHODS: tuple[Method, ...] = (
         "Equation not found (searched: pages, documentation); an observer of a sphere's motion is derived.",
     ),
     Method(
-        "sphere to the local vertical",
+        "sphere to the local vertical (`sphere_vertical`)",
         "[O19] 3.1 [87]",
         Kind.FLOWN,
         "fsw/core/laws/feedback/sphere.py",

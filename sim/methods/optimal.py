@@ -12,7 +12,7 @@ METHODS: tuple[Method, ...] = (
         Kind.FLOWN,
         f"{LAWS}/h_infinity.py",
         "Least H2 norm by a periodic gain, the body turning quickly about the wheel's axis.",
-        ("review.optimal.h2.wheel",),
+        ("review.optimal.norms.wheel.h2",),
         "with the whole state known the H2 gain is that of lqr; the norms are computed for both",
     ),
     Method(
@@ -21,7 +21,7 @@ METHODS: tuple[Method, ...] = (
         Kind.FLOWN,
         f"{LAWS}/h_infinity.py",
         "Least answer to the worst torque by a periodic gain.",
-        ("review.optimal.h_infinity.wheel",),
+        ("review.optimal.norms.wheel.h_infinity",),
     ),
     Method(
         "Least-squares realisable torque within the coils' limits",
@@ -58,7 +58,7 @@ METHODS: tuple[Method, ...] = (
         Kind.FLOWN,
         f"{LAWS}/field_only.py",
         "Periodic filter and regulator hold the attitude by the magnetometer alone.",
-        ("review.optimal.h2.three_axis",),
+        ("review.optimal.norms.three_axis.h2",),
     ),
     Method(
         "H-infinity gains of the law (9)",

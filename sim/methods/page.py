@@ -55,7 +55,7 @@ def verdict(method: Method, figures: Figures) -> str:
 
 
 def _cells(method: Method, figures: Figures) -> tuple[str, ...]:
-    where = f"`{method.where}`" if method.where else "-"
+    where = ", ".join(f"`{place}`" for place in method.where.split(", ")) if method.where else "-"
     said = f"{method.claim} {method.remark}".strip()
     measured = "; ".join(_measured(claim, figures) for claim in method.claims) or "-"
     return (

@@ -23,7 +23,7 @@ METHODS: tuple[Method, ...] = (
         claims=("review.sliding.plain.final",),
     ),
     Method(
-        "surface without the inertia, classical and modified",
+        "surface without the inertia, classical (`sliding_rate`) and modified (`sliding_rate_modified`)",
         "[O19] 3.1 [92]",
         Kind.FLOWN,
         "fsw/core/laws/sliding/rate_surface.py",

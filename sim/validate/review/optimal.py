@@ -38,7 +38,7 @@ def robust(wheel: bool) -> Study:
     of = "with a wheel of 0.05 N m s" if wheel else "without a wheel"
     claims = (
         Claim(
-            f"review.optimal.h_infinity.{name}",
+            f"review.optimal.norms.{name}.h_infinity",
             f"H-infinity norm, robust over plain regulator, {of}: less",
             f"{REVIEW} [49, 50, 105]",
             "1",
@@ -46,7 +46,7 @@ def robust(wheel: bool) -> Study:
             threshold=Threshold.PAPER,
         ),
         Claim(
-            f"review.optimal.h2.{name}",
+            f"review.optimal.norms.{name}.h2",
             f"H2 norm, plain over robust regulator, {of}: less",
             f"{REVIEW} [48, 104]",
             "1",
@@ -62,7 +62,7 @@ def robust(wheel: bool) -> Study:
             claims[1].judge(plain.h2 / bold.h2, f"{plain.h2:.3g} rad"),
         ]
 
-    return Study(claims[0].id, (partial(both_norms, wheel),), conclude)
+    return Study(f"review.optimal.norms.{name}", (partial(both_norms, wheel),), conclude)
 
 
 def both_norms(wheel: bool) -> tuple[Norms, Norms]:
