@@ -10,7 +10,7 @@ from sim.errors import HarnessError
 from sim.fault_table import earlier_rows, render
 from sim.fault_table.campaign import fly_rows
 from sim.fault_table.row import CheckVerdict, RowResult
-from sim.fault_table.rows import ROWS, choose_rows
+from sim.fault_table.rows.table import ROWS, choose_rows
 from sim.progress import progress
 from sim.record.destination import check_file, check_folder
 from sim.validate.registry import find_repository

@@ -10,7 +10,7 @@ from fsw.input.schema import faults
 from sim.errors import HarnessError
 from sim.fault_table.render import injected
 from sim.fault_table.row import CaseResult, RowResult
-from sim.fault_table.rows import ROWS
+from sim.fault_table.rows.table import ROWS
 
 MOST_BYTES = 64_000_000
 """A whole campaign of ten phases and five seeds takes 3 MB."""

@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from sim.methods.method import Kind, Method
-from sim.methods.references import missing
+from sim.methods.table import missing
 
 Figures = Mapping[str, Mapping[str, str]]
 """By claim its ``figure``, ``limits`` and ``verdict``, as docs/validation.json has them."""

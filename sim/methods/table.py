@@ -1,4 +1,10 @@
-"""All methods, in the order of the review; then those of the other papers and of its introduction."""
+"""All methods, in the order of the review; then those of the other papers and of its introduction.
+
+And which of the review's references none of them names.
+"""
+
+import re
+from collections.abc import Iterable
 
 from sim.methods.damping import METHODS as DAMPING
 from sim.methods.feedback import METHODS as FEEDBACK
@@ -22,3 +28,26 @@ METHODS: tuple[Method, ...] = (
     *PREDICTIVE,
     *PAPERS,
 )
+
+LAST = 113
+"""The review [O19] has so many references."""
+
+_LIST = re.compile(r"\[(\d[\d,\s-]*)\]")
+
+
+def numbers(source: str) -> set[int]:
+    """The numbers in a source: ``[O19] 1 [18, 20-23]`` has 18 and 20 to 23; one of another paper has none."""
+    if "[O19]" not in source:
+        return set()
+    found: set[int] = set()
+    for listed in _LIST.findall(source):
+        for part in listed.split(","):
+            first, _, last = part.strip().partition("-")
+            found |= set(range(int(first), int(last or first) + 1))
+    return found
+
+
+def missing(methods: Iterable[Method]) -> list[int]:
+    """The references that no method names, in order."""
+    named = set().union(*(numbers(method.source) for method in methods))
+    return [number for number in range(1, LAST + 1) if number not in named]

@@ -6,12 +6,13 @@ from pathlib import Path
 from fsw.input.near import did_you_mean
 from sim.campaign.claim import Study
 from sim.errors import HarnessError
-from sim.validate import calibrated, cells, computed, driven_wheel, microsat, optimal_pulses, shipped, wirings
+from sim.validate import calibrated, cells, computed, microsat, optimal_pulses, shipped, wirings
 from sim.validate.consat import minimisers, posat1, prediction
 from sim.validate.population import claims
 from sim.validate.reference import reference
 from sim.validate.review import (
     damping,
+    driven_wheel,
     feedback,
     one_axis,
     optimal,

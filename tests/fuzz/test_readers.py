@@ -29,7 +29,7 @@ from sim.campaign.results.store import open_results
 from sim.fault_table import command as faults_command
 from sim.fault_table import earlier_rows
 from sim.fault_table.row import CaseResult, CheckOutcome, CheckVerdict, RowResult
-from sim.fault_table.rows import ROWS
+from sim.fault_table.rows.table import ROWS
 from sim.report import conclude
 from sim.scenario.schema import load
 from sim.validate.reference.reference import CHECKS, ELEMENTS

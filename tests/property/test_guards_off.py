@@ -14,7 +14,7 @@ from fsw.core.gate.sync_watch import Belief
 from fsw.core.monitors import MONITORS, Monitor
 from sim.fault_table.case import fly
 from sim.fault_table.row import CheckVerdict
-from sim.fault_table.rows import ROWS
+from sim.fault_table.rows.table import ROWS
 
 
 class Off(NamedTuple):

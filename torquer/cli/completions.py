@@ -54,7 +54,7 @@ def of_laws(context: click.Context, parameter: click.Parameter, begun: str) -> _
 
 def of_fault_rows(context: click.Context, parameter: click.Parameter, begun: str) -> _Items:
     """Rows of the table of faults."""
-    from sim.fault_table.rows import ROWS
+    from sim.fault_table.rows.table import ROWS
 
     return _beginning(begun, (row.name for row in ROWS))
 

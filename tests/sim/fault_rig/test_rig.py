@@ -14,7 +14,7 @@ from sim.fault_rig.rig import Rig
 from sim.fault_table import case, checks
 from sim.fault_table.case import fly, prepare
 from sim.fault_table.row import SCENARIO, FaultRow, RowFault, When
-from sim.fault_table.rows import ROWS, choose_rows
+from sim.fault_table.rows.table import ROWS, choose_rows
 from sim.faults.fault import Condition, Fault
 from sim.faults.kinds import make
 from sim.scenario.schema import flight_table

@@ -10,7 +10,7 @@ import pytest
 from sim.errors import HarnessError
 from sim.fault_table import command, earlier_rows, render
 from sim.fault_table.row import CaseResult, CheckOutcome, CheckVerdict, FaultRow, RowFault, RowResult, Unseen
-from sim.fault_table.rows import ROWS, choose_rows
+from sim.fault_table.rows.table import ROWS, choose_rows
 from sim.faults.kinds import KINDS
 from torquer.cli.main import main
 

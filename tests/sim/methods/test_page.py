@@ -4,7 +4,7 @@ import pytest
 
 from sim.methods.method import Kind, Method
 from sim.methods.page import page, verdict
-from sim.methods.references import missing, numbers
+from sim.methods.table import missing, numbers
 
 FIGURES = {
     "a.one": {"figure": "1.5 deg", "limits": "<= 2", "verdict": "PASS"},

@@ -8,8 +8,7 @@ import pytest
 
 from fsw.core.laws.table import CHECK, LAWS
 from sim.methods.method import Kind
-from sim.methods.references import LAST, missing
-from sim.methods.table import METHODS
+from sim.methods.table import LAST, METHODS, missing
 from sim.validate.outcomes import read_outcomes
 from sim.validate.registry import all_studies
 

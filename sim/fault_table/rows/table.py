@@ -6,10 +6,10 @@ from math import inf
 
 from fsw.input.near import did_you_mean
 from sim.errors import HarnessError
-from sim.fault_table.cell_rows import CELL_ROWS
-from sim.fault_table.forged_rows import FORGED_ROWS
 from sim.fault_table.row import FaultRow, Unseen, When
-from sim.fault_table.sly_rows import SLY_ROWS
+from sim.fault_table.rows.cells import CELL_ROWS
+from sim.fault_table.rows.forged import FORGED_ROWS
+from sim.fault_table.rows.sly import SLY_ROWS
 
 Rows = tuple[FaultRow, ...]
 BUS = ("no extra pulse", "goes on")
