@@ -13,12 +13,20 @@ from sim.drawing.canvas import AXES_COLOURS, INK, MORE_COLOURS, MUTED, log_y, st
 from sim.report.figures.controlled import SETTLED_DEG
 
 COLOURS = (*AXES_COLOURS, *MORE_COLOURS, INK, "#7b3fa0", "#8a6d3b", "#8f9a1f")
-DASHES: tuple[object, ...] = ("-", (0, (5, 1.5)), (0, (1.5, 1.2)))
+DASHES: tuple[object, ...] = (
+    "-",
+    (0, (5, 1.5)),
+    (0, (1.5, 1.2)),
+    (0, (8, 1.5, 1.5, 1.5)),
+    (0, (10, 4)),
+    (0, (1, 3)),
+    (0, (5, 1.5, 1, 1.5, 1, 1.5)),
+    (0, (10, 1.5, 4, 1.5)),
+)
 """A law has its colour in all panels; when the colours are used up, the same again dashed."""
 
-PANEL_IN, NAMES_IN = 3.1, 1.6
-LINE_HEIGHT = 0.052
-"""Of a name, as a fraction of a panel's height."""
+PANEL_IN, NAMES_IN, LINE_IN = 3.1, 1.6, 0.16
+"""Least height of a panel, width of the names beside it, and height of one of them."""
 DOTS_PER_INCH = 150
 
 
@@ -32,7 +40,8 @@ def picture(path: Path, title: str, results: Sequence[Result]) -> None:
     errors = [result.history.error_deg for result in flights if result.history is not None]
     assert flights[0].history is not None
     with style():
-        heights_in = [PANEL_IN] * len(drivers)
+        height_in = max(PANEL_IN, LINE_IN * len(laws))
+        heights_in = [height_in] * len(drivers)
         figure, panels = stacked(flights[0].history.time, heights_in, legends=False, right_in=NAMES_IN)
         shaded = "; eclipses shaded" if flights[0].history.time.eclipses else ""
         smoothed = f"RMS of {WINDOW_ORBITS:g} orbits about each time"
@@ -42,7 +51,12 @@ def picture(path: Path, title: str, results: Sequence[Result]) -> None:
             _settled(panel)
             panel.set_ylabel("pointing error [deg]")
             panel.set_title(f"{title}: {driver.value} coil driver")
-            _lines(panel, laws, [result for result in flights if result.score.driver is driver])
+            _lines(
+                panel,
+                LINE_IN / height_in,
+                laws,
+                [result for result in flights if result.score.driver is driver],
+            )
         figure.savefig(
             path, format="png", dpi=DOTS_PER_INCH, facecolor="white", metadata={"Software": "torquer"}
         )
@@ -67,7 +81,7 @@ def _settled(panel: Axes) -> None:
     )  # fmt: skip
 
 
-def _lines(panel: Axes, laws: Sequence[str], results: Sequence[Result]) -> None:
+def _lines(panel: Axes, line_height: float, laws: Sequence[str], results: Sequence[Result]) -> None:
     ends = []
     for score, history in results:
         assert history is not None
@@ -78,7 +92,7 @@ def _lines(panel: Axes, laws: Sequence[str], results: Sequence[Result]) -> None:
         ends.append((_height(panel, end_deg), score.law, end_deg, colour))
     ends.sort(key=lambda end: end[0])
     panel.text(1.035, 1.03, "at the end", transform=panel.transAxes, color=MUTED, fontsize=7.0, va="bottom")
-    places = spread([height for height, *_ in ends], min(LINE_HEIGHT, 1.0 / len(ends)))
+    places = spread([height for height, *_ in ends], line_height)
     for (height, law, end_deg, colour), at in zip(ends, places, strict=True):
         panel.annotate(
             f"{law}  {end_deg:.3g}°",

@@ -44,7 +44,7 @@ REPORTED = NOTHING._replace(coil=CoilStatus(0, 0, 0, 0, 0, 0, 0))
 """The board bars no coil: the scheduler's own timers are the limit."""
 
 
-class Coils(NamedTuple):
+class SteppedCoils(NamedTuple):
     """The driver of a flight, its timing in steps; a pulse acts for ``share`` of its steps."""
 
     timing: PulseConfig
@@ -81,7 +81,7 @@ def fly(scenario: Scenario, orbits: float, step_s: float | None = None) -> Rigid
 
 
 def _fly(
-    scenario: Scenario, config: FlightConfig, coils: Coils, path: Path, step_s: float, orbit_s: float
+    scenario: Scenario, config: FlightConfig, coils: SteppedCoils, path: Path, step_s: float, orbit_s: float
 ) -> RigidFlight:
     control = config.control
     body = RigidBody(control.inertia_kgm2, control.wheel_body_nms)
@@ -121,7 +121,7 @@ def _fly(
         omega = motion.omega_body_radps
         relative = seen.attitude.omega_body_orbit_radps
         rows.append((motion.q_body_from_eci, seen.attitude.q_body_from_orbit, omega, relative, m_am2))
-        acting = _Torque(control, add(m_am2, disturbing.residual_dipole_am2), disturbing.torque_nm)
+        acting = _Acting(control, add(m_am2, disturbing.residual_dipole_am2), disturbing.torque_nm)
         motion = body.step(motion, acting, path.around[2 * tick : 2 * tick + 3], step_s)
     return _recorded(rows, control, step_s, orbit_s)
 
@@ -147,7 +147,7 @@ def law_input(
 
 
 @dataclass(frozen=True, slots=True)
-class _Torque:
+class _Acting:
     """Gravity gradient, dipole and a constant torque, as ``RigidBody`` takes them."""
 
     control: ControlConfig
@@ -167,7 +167,7 @@ def _mode(mode: Mode, attitude: Attitude, config: FlightConfig) -> Mode:
     return Mode.ACQUIRE if cosine < modes.far_cosine else Mode.POINT
 
 
-def _coils(config: FlightConfig, step_s: float) -> Coils:
+def _coils(config: FlightConfig, step_s: float) -> SteppedCoils:
     """The driver with its timing in steps."""
     timing = config.coils.pulses
     pulse_steps = max(1, int(timing.pulse_s / step_s + 1e-9))
@@ -177,7 +177,7 @@ def _coils(config: FlightConfig, step_s: float) -> Coils:
     stepped = replace(
         timing, pulse_ticks=pulse_steps, backoff_ticks=period_steps - pulse_steps, tick_s=step_s
     )
-    return Coils(stepped, config.coils.dipoles, timing.pulse_s / (pulse_steps * step_s))
+    return SteppedCoils(stepped, config.coils.dipoles, timing.pulse_s / (pulse_steps * step_s))
 
 
 def _first(scenario: Scenario, reference: Reference) -> Motion:

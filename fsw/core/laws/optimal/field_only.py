@@ -18,7 +18,6 @@ they are the periodic separation theorem for the step of ``riccati``.
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
 from math import pi
 
 import numpy as np
@@ -44,7 +43,6 @@ ORBITS = 60
 SETTLED = 1e-6
 FIRST_RAD = 1.0
 """Uncertainty of the attitude with which the covariance begins; its rate's is that by w0."""
-_free = lru_cache(maxsize=8)(free_step)
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,7 +151,7 @@ def _moved(
 ) -> Array:
     """The state after so long under the dipole given and the torque on the nominal attitude."""
     w0 = 2.0 * pi / STEPS / table.problem.step_s
-    free = _free(config.inertia_kgm2, config.wheel_body_nms, w0, seconds)
+    free = free_step(config.inertia_kgm2, config.wheel_body_nms, w0, seconds)
     torque = np.cross(m_orbit_am2, np.array(b_orbit)) + np.array(table.problem.resting_nm)
     moved: Array = free @ np.concatenate([x, torque])
     return moved

@@ -7,7 +7,7 @@ import numpy as np
 from fsw.input.schema import Nested
 from sim.campaign.claim import Study
 from sim.design.tuning.flown import RigidFlight
-from sim.validate.review.rigid.trial import NEAR, Flown, Judged, Trial, gains, over
+from sim.validate.review.rigid.trial import NEAR, RigidTrial, Trial, TrialFigure, gains, over
 
 NORMAL = (0.0, -sin(radians(98.6)), cos(radians(98.6)))
 """Of the orbit, eci."""
@@ -22,16 +22,16 @@ def trials() -> list[Trial]:
         Trial(
             "review.wheel.dual_spin",
             "section 2.2 [18, 40]",
-            (Flown("dual_spin", over(WHEEL, NEAR, gains("dual_spin", 1e7, stiff, 4000.0)), 4.0),),
+            (RigidTrial("dual_spin", over(WHEEL, NEAR, gains("dual_spin", 1e7, stiff, 4000.0)), 4.0),),
             (
-                Judged(
+                TrialFigure(
                     "tilt",
                     "The momentum from the orbit normal after 4 orbits, from 11 deg",
                     "deg",
                     lambda flights: float(flights[0].momentum_to_deg(NORMAL)[-1]),
                     high=1.2,
                 ),
-                Judged(
+                TrialFigure(
                     "pitch",
                     "The body from its pitch of 0.5 rad then",
                     "deg",
@@ -44,18 +44,20 @@ def trials() -> list[Trial]:
             "review.wheel.tracking",
             "section 2.2 [42]",
             (
-                Flown("field_tracking", over(WHEEL, NEAR, gains("field_tracking", 1e7, k_a=2000.0)), 4.0),
-                Flown("field_tracking", over(NEAR, gains("field_tracking", 6.27e6, k_a=1614.0)), 4.0),
+                RigidTrial(
+                    "field_tracking", over(WHEEL, NEAR, gains("field_tracking", 1e7, k_a=2000.0)), 4.0
+                ),
+                RigidTrial("field_tracking", over(NEAR, gains("field_tracking", 6.27e6, k_a=1614.0)), 4.0),
             ),
             (
-                Judged(
+                TrialFigure(
                     "wheel",
                     "Attitude error by field tracking with a wheel after 4 orbits, from 20 deg",
                     "deg",
                     lambda flights: float(flights[0].pointing_deg[-1]),
                     high=0.5,
                 ),
-                Judged(
+                TrialFigure(
                     "bare",
                     "The same without a wheel, by gains that suit the PD law: it is driven away",
                     "deg",

@@ -18,7 +18,7 @@ from sim.design.theory.pulsed import PulsedLoop, Pulsing
 from sim.design.theory.robustness import margins
 from sim.design.theory.search import continuous
 from sim.design.tuning.flown import RigidFlight
-from sim.validate.review.rigid.trial import NEAR, REVIEW, Flown, Judged, Trial, gains, over
+from sim.validate.review.rigid.trial import NEAR, REVIEW, RigidTrial, Trial, TrialFigure, gains, over
 
 Array = NDArray[np.float64]
 Flights = Sequence[RigidFlight]
@@ -40,12 +40,12 @@ def feedback_trials() -> list[Trial]:
             "review.feedback.pd",
             "section 3.1 [68-70]",
             (
-                Flown("pd", NEAR, 6.0),
-                Flown("pd", over(NEAR, gains("pd", k_w, k_a=300.0 * k_a)), 6.0),
+                RigidTrial("pd", NEAR, 6.0),
+                RigidTrial("pd", over(NEAR, gains("pd", k_w, k_a=300.0 * k_a)), 6.0),
             ),
             (
                 _final("final", "PD law with the best gains"),
-                Judged(
+                TrialFigure(
                     "bound",
                     "The same with 300 times the gain of the attitude: it is lost",
                     "deg RMS",
@@ -57,31 +57,31 @@ def feedback_trials() -> list[Trial]:
         Trial(
             "review.feedback.output",
             "section 3.1 [68]",
-            (Flown("output_feedback", NEAR, 6.0),),
+            (RigidTrial("output_feedback", NEAR, 6.0),),
             (_final("final", "Output feedback, without a rate"),),
         ),
         Trial(
             "review.feedback.regularised",
             "section 3.1 [82, 83]",
-            (Flown("pd_regularised", NEAR, 6.0),),
+            (RigidTrial("pd_regularised", NEAR, 6.0),),
             (_final("final", "PD law by the regularised inverse"),),
         ),
         Trial(
             "review.feedback.weighted",
             "section 3.1 [81]",
             tuple(
-                Flown("pd_weighted", over(NEAR, TORQUE, SLENDER, gains("pd_weighted", k_w, q, k_a)), 8.0)
+                RigidTrial("pd_weighted", over(NEAR, TORQUE, SLENDER, gains("pd_weighted", k_w, q, k_a)), 8.0)
                 for q in (even, heavy)
             ),
             (
-                Judged(
+                TrialFigure(
                     "gain",
                     "RMS about the axis of small moment with a weight of 10 on it, over that with equal ones",
                     "1",
                     lambda flights: float(_axes_deg(flights[1])[0] / _axes_deg(flights[0])[0]),
                     high=0.4,
                 ),
-                Judged(
+                TrialFigure(
                     "cost",
                     "The same about the other axes, the lesser",
                     "1",
@@ -99,22 +99,22 @@ def other_trials() -> list[Trial]:
         Trial(
             "review.sliding.plain",
             "section 3.1 [91]",
-            (Flown("sliding", NEAR, 6.0),),
+            (RigidTrial("sliding", NEAR, 6.0),),
             (_final("final", "Sliding law"),),
         ),
         Trial(
             "review.sliding.integral",
             "section 3.1 [93, 94]",
-            tuple(Flown(law, over(NEAR, TORQUE), 10.0) for law in ("sliding", "sliding_integral")),
+            tuple(RigidTrial(law, over(NEAR, TORQUE), 10.0) for law in ("sliding", "sliding_integral")),
             (
-                Judged(
+                TrialFigure(
                     "rms",
                     "With integrals under 1e-7 N m about each axis, tenth orbit",
                     "deg RMS",
                     lambda flights: _rms_deg(flights[1]),
                     high=2.5,
                 ),
-                Judged(
+                TrialFigure(
                     "gain",
                     "Without integrals over with them",
                     "1",
@@ -126,10 +126,10 @@ def other_trials() -> list[Trial]:
         Trial(
             "review.optimal.lqr",
             "section 3.2 [98]",
-            (Flown("lqr", NEAR, 6.0), Flown("pd", NEAR, 6.0)),
+            (RigidTrial("lqr", NEAR, 6.0), RigidTrial("pd", NEAR, 6.0)),
             (
                 _final("final", "Periodic regulator"),
-                Judged(
+                TrialFigure(
                     "cost",
                     "What the regulator makes least, theta^2 and dipole^2, over that of the PD law",
                     "1",
@@ -218,8 +218,8 @@ def _body(name: str) -> Body:
     return next(body for body in BODIES if body.name == name)
 
 
-def _final(name: str, what: str) -> Judged:
-    return Judged(
+def _final(name: str, what: str) -> TrialFigure:
+    return TrialFigure(
         name,
         f"{what}: attitude error in the sixth orbit, from 20 deg",
         "deg RMS",

@@ -29,7 +29,7 @@ Measure = Callable[[Sequence[RigidFlight]], float]
 
 
 @dataclass(frozen=True, slots=True)
-class Flown:
+class RigidTrial:
     """A flight: the law, what is laid over ``BASE``, how long, in what steps (None: as ``fly`` has them)."""
 
     law: str
@@ -44,7 +44,7 @@ class Flown:
 
 
 @dataclass(frozen=True, slots=True)
-class Judged:
+class TrialFigure:
     """A claim on the flights of a trial, and its figure.
 
     Attributes:
@@ -79,8 +79,8 @@ class Trial:
 
     id: str
     source: str
-    flights: tuple[Flown, ...]
-    judged: tuple[Judged, ...]
+    flights: tuple[RigidTrial, ...]
+    judged: tuple[TrialFigure, ...]
 
     def study(self) -> Study:
         """The study of the trial."""
