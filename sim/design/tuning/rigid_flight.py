@@ -121,7 +121,7 @@ def _fly(
         omega = motion.omega_body_radps
         relative = seen.attitude.omega_body_orbit_radps
         rows.append((motion.q_body_from_eci, seen.attitude.q_body_from_orbit, omega, relative, m_am2))
-        acting = _Acting(control, add(m_am2, disturbing.residual_dipole_am2), disturbing.torque_nm)
+        acting = _RigidTorque(control, add(m_am2, disturbing.residual_dipole_am2), disturbing.torque_nm)
         motion = body.step(motion, acting, path.around[2 * tick : 2 * tick + 3], step_s)
     return _recorded(rows, control, step_s, orbit_s)
 
@@ -147,7 +147,7 @@ def law_input(
 
 
 @dataclass(frozen=True, slots=True)
-class _Acting:
+class _RigidTorque:
     """Gravity gradient, dipole and a constant torque, as ``RigidBody`` takes them."""
 
     control: ControlConfig
