@@ -44,6 +44,8 @@ class Unseen(StrEnum):
     """The sensor that is wrong is the only one there is."""
     AT_FIRST = "for its first minutes both sensors agree"
     """The field of a moment ago is that of a magnetometer with a bias, until the satellite has turned."""
+    SETTLING = "in the orbit after its start an estimate from Sun cells settles"
+    """Gains, places of the cells and the light of the Earth are learned while the cells take turns."""
     ALONE = "with one sensor left little shows it"
     """Pulses of a coil, or a slow drift, turn the satellite about the only direction that is measured."""
     ALWAYS = "both sensors agree"

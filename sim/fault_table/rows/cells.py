@@ -2,7 +2,7 @@
 
 from math import inf
 
-from sim.fault_table.row import FaultRow, When
+from sim.fault_table.row import FaultRow, RowFault, Unseen, When
 
 CUBESAT = "cubesat-cells"
 CELLS = "a Sun cell: dead, stuck, of half the current; two crosswise; more light from the Earth"
@@ -30,6 +30,7 @@ def _cell(name: str, kind: str, cell: int, **parameters: float) -> FaultRow:
         ("goes on", "bounded", "named"),
         f"cell {cell}",
         watch_s=1.5 * ORBIT_S,
+        unseen=Unseen.SETTLING,
         scenario=CUBESAT,
     )
 
@@ -46,12 +47,35 @@ def _table(name: str, settings: tuple[str, ...], *expect: str) -> FaultRow:
         expect,
         settings=settings,
         watch_s=ORBIT_S,
+        unseen=Unseen.SETTLING,
+        scenario=CUBESAT,
+    )
+
+
+def _crossed() -> FaultRow:
+    """Two cells are each where the table has the other: both are wrong from boot on, and not always told."""
+    return FaultRow(
+        "cells-crossed",
+        CELLS,
+        "none",
+        {},
+        inf,
+        When.BOOT,
+        (),
+        "cell 1",
+        then=(RowFault("none", {}, inf, "cell 3"),),
+        unseen=Unseen.SETTLING,
+        settings=(CROSSED,),
+        watch_s=2.0 * ORBIT_S,
         scenario=CUBESAT,
     )
 
 
 def _message(name: str, kind: str, *expect: str, **parameters: float) -> FaultRow:
-    """A fault of ten minutes, after a whole orbit; with the last of it control goes on."""
+    """A fault of ten minutes, after a whole orbit; with the last of it control goes on.
+
+    The cells of a message that is wrong may be named one by one.
+    """
     return FaultRow(
         name,
         MESSAGE,
@@ -61,18 +85,20 @@ def _message(name: str, kind: str, *expect: str, **parameters: float) -> FaultRo
         When.ORBIT,
         ("goes on", "recovers", *expect),
         "sun sensor",
+        then=tuple(RowFault("none", {}, 600.0, f"cell {cell}", shows=False) for cell in range(1, 7)),
         watch_s=1200.0,
+        unseen=Unseen.SETTLING,
         scenario=CUBESAT,
     )
 
 
 CELL_ROWS: tuple[FaultRow, ...] = (
     _table("cells-none", (), "goes on", "quiet"),
-    _cell("cell-dead", "cell_dead", 6),
+    _cell("cell-dead", "cell_dead", 1),
     _cell("cell-stuck", "cell_stuck", 4),
     _cell("cell-stuck-bright", "cell_stuck", 5, percent=90.0),
-    _cell("cell-halved", "cell_scaled", 2, scale=0.5),
-    _table("cells-crossed", (CROSSED,)),
+    _cell("cell-halved", "cell_scaled", 3, scale=0.5),
+    _crossed(),
     _table("cells-albedo", BRIGHT, "goes on", "quiet"),
     _message("cells-late", "cells_late", "quiet", ticks=5.0),
     _message("cells-lost", "loss", part=0.5),

@@ -1,8 +1,11 @@
 """The checks on flights with faults: what they find in records that are made by hand."""
 
+from dataclasses import replace
+
 import pytest
 
-from sim.fault_rig.record import FaultFlightRecord
+from fsw.core.events import Event
+from sim.fault_rig.record import FaultFlightRecord, ReportedEvent
 from sim.fault_table import checks
 from sim.fault_table.row import FaultRow, Unseen
 
@@ -72,6 +75,19 @@ class TestHonesty:
     def test_nor_in_the_first_ten_minutes_of_some(self, bounds, wrong, holds):
         row = FaultRow("planted", "", "none", unseen=Unseen.AT_FIRST)
         assert checks.never_wrong_for_long(row, flown(*[30.0] * wrong), bounds)[0] is holds
+
+    @pytest.mark.parametrize(
+        ("deg", "wrong_s", "holds"), [(14.0, 3000, True), (16.0, 121, False), (14.0, 3121, False)]
+    )
+    def test_less_of_cells_in_the_orbit_after_each_start(self, bounds, deg, wrong_s, holds):
+        """Of an orbit of 3000 s, and of one start long after the first."""
+        row, orbit = FaultRow("planted", "", "none", unseen=Unseen.SETTLING), replace(bounds, orbit_s=3000.0)
+        record = flown(*[0.2] * 5000, *[deg] * wrong_s)
+        record.events = [
+            ReportedEvent(10, Event.FILTER_STARTED, 0),
+            ReportedEvent(5000, Event.FILTER_STARTED, 1),
+        ]
+        assert checks.never_wrong_for_long(row, record, orbit)[0] is holds
 
     def test_but_once_the_sun_is_back_it_counts(self, bounds):
         row = FaultRow("planted", "", "none", unseen=Unseen.IN_SHADOW)
