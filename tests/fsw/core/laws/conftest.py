@@ -235,6 +235,13 @@ def fly(
     return flown(rows, orbit, body)
 
 
+def fly_from_rest(law, law_setpoint, *, c_body_from_orbit, orbits, orbit=Orbit(), **more):
+    """From an attitude at rest in the orbital frame; further arguments as of ``fly``."""
+    omega_body = orbit.rate_radps * c_body_from_orbit[:, 2]
+    start = {"c_body_from_orbit": c_body_from_orbit, "omega_body": omega_body}
+    return fly(law, law_setpoint, orbit=orbit, seconds=orbits * orbit.period_s, **start, **more)
+
+
 def flown(rows, orbit, body):
     t_s, omega, c_body_from_orbit, state, m, h = map(np.array, zip(*rows, strict=True))
     return Flown(
@@ -269,7 +276,7 @@ class Bench:
     """What the tests of the laws use."""
 
     Orbit, Body = Orbit, Body
-    fly, inputs_at = staticmethod(fly), staticmethod(inputs_at)
+    fly, fly_from_rest, inputs_at = staticmethod(fly), staticmethod(fly_from_rest), staticmethod(inputs_at)
     setpoint, config = staticmethod(setpoint), staticmethod(config)
     scheduled, model_of = staticmethod(scheduled), staticmethod(model_of)
     angles_deg = staticmethod(angles_deg)

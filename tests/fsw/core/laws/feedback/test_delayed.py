@@ -78,16 +78,13 @@ def test_an_unknown_attitude_asks_for_nothing_and_forgets(bench, seen):
 
 @pytest.mark.parametrize(("delay_s", "low", "high"), [(60.0, 0.0, 0.3), (600.0, 30.0, 181.0)])
 def test_it_converges_without_a_rate_while_the_delay_is_short(bench, turned, delay_s, low, high):
-    orbit, c = bench.Orbit(), turned((1, 2, 3), 20.0)
-    run = bench.fly(
+    run = bench.fly_from_rest(
         delayed,
         bench.setpoint(k_w=K_W, k_a=K_A),
         gains={"pd_delayed": DelayGains(delay_s)},
-        orbit=orbit,
         body=bench.Body(most_am2=5.0),
-        c_body_from_orbit=c,
-        omega_body=orbit.rate_radps * c[:, 2],
-        seconds=5.0 * orbit.period_s,
+        c_body_from_orbit=turned((1, 2, 3), 20.0),
+        orbits=5.0,
         step_s=10.0,
         look=lambda inputs: inputs._replace(
             attitude=inputs.attitude._replace(omega_body_orbit_radps=(nan, nan, nan))

@@ -37,16 +37,13 @@ def test_turning_across_the_field_is_braked(b, omega):
 @pytest.fixture
 def fly(bench, turned):
     def run(own, body, orbits=4.0, k_w=1e7, k_a=2000.0, angle_deg=20.0):
-        orbit, c = bench.Orbit(), turned((1, 1, 1), angle_deg)
-        return orbit, bench.fly(
+        return bench.Orbit(), bench.fly_from_rest(
             field_direction,
             bench.setpoint(k_w=k_w, k_a=k_a),
             gains={"field_direction": own},
-            orbit=orbit,
             body=body,
-            c_body_from_orbit=c,
-            omega_body=orbit.rate_radps * c[:, 2],
-            seconds=orbits * orbit.period_s,
+            c_body_from_orbit=turned((1, 1, 1), angle_deg),
+            orbits=orbits,
             step_s=5.0,
             known=False,
         )

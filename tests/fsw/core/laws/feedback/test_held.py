@@ -73,16 +73,13 @@ def last_deg(bench, turned):
     """Largest angle in the last of four orbits, from 20 deg."""
 
     def run(name, own, share=1.0):
-        orbit, c = bench.Orbit(), turned((1, 2, 3), 20.0)
-        flight = bench.fly(
+        flight = bench.fly_from_rest(
             LAWS[name].point,
             bench.setpoint(k_w=share * K_W, k_a=share**2 * K_A),
             gains={name: own},
-            orbit=orbit,
             body=bench.Body(most_am2=5.0),
-            c_body_from_orbit=c,
-            omega_body=orbit.rate_radps * c[:, 2],
-            seconds=4.0 * orbit.period_s,
+            c_body_from_orbit=turned((1, 2, 3), 20.0),
+            orbits=4.0,
             step_s=10.0,
         )
         return flight.angle_deg[-600:].max()

@@ -134,16 +134,13 @@ def axes_deg(bench, turned):
     """RMS about each axis over the last two of eight orbits, in a constant torque, by weights."""
 
     def run(own):
-        orbit, c = bench.Orbit(), turned((1, 2, 3), 20.0)
-        flight = bench.fly(
+        flight = bench.fly_from_rest(
             weighted,
             bench.setpoint(k_w=K_W, k_a=K_A),
             gains={"pd_weighted": own},
-            orbit=orbit,
             body=bench.Body(UNEQUAL, most_am2=5.0, torque=(1e-7, 1e-7, 1e-7)),
-            c_body_from_orbit=c,
-            omega_body=orbit.rate_radps * c[:, 2],
-            seconds=8.0 * orbit.period_s,
+            c_body_from_orbit=turned((1, 2, 3), 20.0),
+            orbits=8.0,
             step_s=10.0,
         )
         c = flight.c_body_from_orbit[-len(flight.t_s) // 4 :]

@@ -40,16 +40,13 @@ def test_any_rate_is_braked():
 @pytest.fixture(scope="module")
 def fly(bench, turned):
     def run(law, own, angle_deg, look=lambda inputs: inputs):
-        orbit, c = bench.Orbit(), turned((0, 1, 2), angle_deg)
-        return bench.fly(
+        return bench.fly_from_rest(
             law,
             bench.setpoint(k_w=K_W, k_a=K_A),
             gains=own,
-            orbit=orbit,
             body=bench.Body(SPHERE, most_am2=5.0),
-            c_body_from_orbit=c,
-            omega_body=orbit.rate_radps * c[:, 2],
-            seconds=4.0 * orbit.period_s,
+            c_body_from_orbit=turned((0, 1, 2), angle_deg),
+            orbits=4.0,
             step_s=10.0,
             look=look,
         )

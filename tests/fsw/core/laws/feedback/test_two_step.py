@@ -46,16 +46,14 @@ def test_a_turn_about_the_field_alone_takes_two_half_turns():
 @pytest.fixture(scope="module")
 def fly(bench, turned):
     def run(law, inclination_deg=0.0, orbits=3.0):
-        orbit, c = bench.Orbit(inclination_deg=inclination_deg), turned((0.2, 0.1, 1.0), 40.0)
-        return bench.fly(
+        return bench.fly_from_rest(
             law,
             bench.setpoint(k_w=K_W, k_a=K_A),
             gains={"two_step": TwoStepGains()},
-            orbit=orbit,
+            orbit=bench.Orbit(inclination_deg=inclination_deg),
             body=bench.Body(SPHERE, most_am2=5.0),
-            c_body_from_orbit=c,
-            omega_body=orbit.rate_radps * c[:, 2],
-            seconds=orbits * orbit.period_s,
+            c_body_from_orbit=turned((0.2, 0.1, 1.0), 40.0),
+            orbits=orbits,
             step_s=10.0,
         )
 

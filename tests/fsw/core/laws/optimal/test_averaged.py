@@ -76,16 +76,13 @@ def test_the_dipole_turns_with_the_field(bench):
 @pytest.mark.parametrize("factor", [(1.0, 1.0, 1.0), (1.2, 0.85, 1.1), (0.8, 1.15, 0.95)])
 def test_it_points_though_the_moments_are_others_than_it_thinks(bench, turned, factor):
     """The source: not sensitive to the inertia."""
-    orbit, c = bench.Orbit(), turned((1, 2, 3), 20.0)
     thought = bench.Body(DIAGONAL, most_am2=2.0)
-    flown = bench.fly(
+    flown = bench.fly_from_rest(
         lqr_averaged,
         bench.setpoint(),
-        orbit=orbit,
         body=bench.Body(DIAGONAL * np.array(factor), most_am2=2.0),
-        c_body_from_orbit=c,
-        omega_body=orbit.rate_radps * c[:, 2],
-        seconds=2.0 * orbit.period_s,
+        c_body_from_orbit=turned((1, 2, 3), 20.0),
+        orbits=2.0,
         step_s=20.0,
         settings=bench.scheduled(thought, 20.0, "lqr_averaged"),
     )

@@ -60,18 +60,15 @@ def test_without_a_field_there_is_no_dipole():
 
 def test_with_coils_at_their_limits_it_flies_as_pd_does(bench, turned):
     """10 mA m^2: the sum of the squared angle from 40 deg. A nearer torque is not a quicker flight."""
-    orbit, c = bench.Orbit(), turned((1, 2, 3), 40.0)
     body = bench.Body(np.diag([1.02, 1.85, 1.95]), most_am2=0.01)
 
     def cost(law):
-        flown = bench.fly(
+        flown = bench.fly_from_rest(
             law,
             bench.setpoint(k_w=6.2694e6, k_a=1614.9),
-            orbit=orbit,
             body=body,
-            c_body_from_orbit=c,
-            omega_body=orbit.rate_radps * c[:, 2],
-            seconds=1.5 * orbit.period_s,
+            c_body_from_orbit=turned((1, 2, 3), 40.0),
+            orbits=1.5,
             step_s=20.0,
         )
         return np.sum(flown.angle_deg**2)

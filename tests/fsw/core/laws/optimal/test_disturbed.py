@@ -56,16 +56,13 @@ def flight(bench, turned):
     """Flights with a residual dipole that nobody knows: its torque is periodic as the field is."""
 
     def fly(law, name, gains=None, orbits=5.0, dipole=DIPOLE_AM2):
-        orbit, c = bench.Orbit(), turned((1, 2, 3), 5.0)
         body = bench.Body(DIAGONAL, most_am2=2.0, dipole=dipole)
-        return bench.fly(
+        return bench.fly_from_rest(
             law,
             bench.setpoint(),
-            orbit=orbit,
             body=body,
-            c_body_from_orbit=c,
-            omega_body=orbit.rate_radps * c[:, 2],
-            seconds=orbits * orbit.period_s,
+            c_body_from_orbit=turned((1, 2, 3), 5.0),
+            orbits=orbits,
             step_s=20.0,
             settings=bench.scheduled(body, 20.0, name, gains),
         )

@@ -63,16 +63,13 @@ def test_the_periodic_covariance_repeats(bench):
 @pytest.fixture(scope="module")
 def flight(bench, turned):
     def fly(angle_deg=15.0, orbits=2.5, known=False, dipole=(0.0, 0.0, 0.0)):
-        orbit, c = bench.Orbit(), turned((1, 2, 3), angle_deg)
         body = bench.Body(DIAGONAL, most_am2=2.0, dipole=dipole)
-        return bench.fly(
+        return bench.fly_from_rest(
             lqg_field,
             bench.setpoint(),
-            orbit=orbit,
             body=body,
-            c_body_from_orbit=c,
-            omega_body=orbit.rate_radps * c[:, 2],
-            seconds=orbits * orbit.period_s,
+            c_body_from_orbit=turned((1, 2, 3), angle_deg),
+            orbits=orbits,
             step_s=10.0,
             known=known,
             settings=bench.scheduled(body, 10.0, "lqg_field"),

@@ -23,16 +23,13 @@ def table(bench, wheel=(0.0, 0.0, 0.0), **gains):
 
 @pytest.fixture(scope="module")
 def flight(bench, turned):
-    def fly(law, name, body, orbits=1.0, gains=None, torque=lambda t_s: (0.0, 0.0, 0.0)):
-        orbit, c = bench.Orbit(), turned((1, -2, 3), 15.0)
-        return bench.fly(
+    def fly(law, name, body, orbits=1.0, gains=None):
+        return bench.fly_from_rest(
             law,
             bench.setpoint(),
-            orbit=orbit,
             body=body,
-            c_body_from_orbit=c,
-            omega_body=orbit.rate_radps * c[:, 2],
-            seconds=orbits * orbit.period_s,
+            c_body_from_orbit=turned((1, -2, 3), 15.0),
+            orbits=orbits,
             step_s=20.0,
             settings=bench.scheduled(body, 20.0, name, gains),
         )

@@ -48,15 +48,12 @@ def flight(bench, settings, turned):
     """A flight over some orbits from an angle about (1, 2, 3), by a law that may know the constant torque."""
 
     def fly(law, angle_deg=20.0, orbits=3.0, torque=(0.0, 0.0, 0.0), known=True):
-        orbit, c = bench.Orbit(), turned((1, 2, 3), angle_deg)
-        return bench.fly(
+        return bench.fly_from_rest(
             law,
             bench.setpoint(k_w=K_W, k_a=K_A),
-            orbit=orbit,
             body=bench.Body(INERTIA, most_am2=MOST_AM2, torque=torque),
-            c_body_from_orbit=c,
-            omega_body=orbit.rate_radps * c[:, 2],
-            seconds=orbits * orbit.period_s,
+            c_body_from_orbit=turned((1, 2, 3), angle_deg),
+            orbits=orbits,
             step_s=10.0,
             look=lambda inputs: inputs._replace(torque_body_nm=torque if known else (0.0, 0.0, 0.0)),
             settings=settings,

@@ -43,16 +43,13 @@ def test_about_the_nominal_attitude_the_step_is_that_of_the_regulator():
 @pytest.fixture(scope="module")
 def flight(bench, turned):
     def fly(law, angle_deg, orbits):
-        orbit, c = bench.Orbit(), turned((1, 2, 3), angle_deg)
         body, model = bench.Body(np.diag([1.02, 1.85, 1.95]), most_am2=2.0), bench.model_of(bench.Orbit())
-        return bench.fly(
+        return bench.fly_from_rest(
             law,
             bench.setpoint(),
-            orbit=orbit,
             body=body,
-            c_body_from_orbit=c,
-            omega_body=orbit.rate_radps * c[:, 2],
-            seconds=orbits * orbit.period_s,
+            c_body_from_orbit=turned((1, 2, 3), angle_deg),
+            orbits=orbits,
             step_s=20.0,
             look=lambda inputs: inputs._replace(ephemeris=model, tick=20 * inputs.tick),
             settings=bench.scheduled(body, 1.0, "sdre", also=("lqr",)),

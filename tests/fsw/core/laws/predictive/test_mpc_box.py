@@ -53,19 +53,16 @@ def test_without_limits_it_is_the_plan_of_the_regulator(table, field):
 @pytest.fixture(scope="module")
 def flight(bench, turned):
     def fly(law, most_am2):
-        orbit, c = bench.Orbit(), turned((1, 2, 3), 20.0)
         body, model = (
             bench.Body(np.diag([1.02, 1.85, 1.95]), most_am2=most_am2),
             bench.model_of(bench.Orbit()),
         )
-        return bench.fly(
+        return bench.fly_from_rest(
             law,
             bench.setpoint(),
-            orbit=orbit,
             body=body,
-            c_body_from_orbit=c,
-            omega_body=orbit.rate_radps * c[:, 2],
-            seconds=1.5 * orbit.period_s,
+            c_body_from_orbit=turned((1, 2, 3), 20.0),
+            orbits=1.5,
             step_s=20.0,
             look=lambda inputs: inputs._replace(ephemeris=model, tick=20 * inputs.tick),
             settings=bench.scheduled(body, 1.0, "mpc_box", also=("mpc",)),

@@ -30,16 +30,13 @@ def test_what_the_functions_do_not_have_is_averaged_out():
 @pytest.fixture(scope="module")
 def flight(bench, turned):
     def fly(law, name, gains=None, orbits=2.0):
-        orbit, c = bench.Orbit(), turned((1, 2, 3), 20.0)
         body, model = bench.Body(DIAGONAL, most_am2=2.0), bench.model_of(bench.Orbit())
-        return bench.fly(
+        return bench.fly_from_rest(
             law,
             bench.setpoint(),
-            orbit=orbit,
             body=body,
-            c_body_from_orbit=c,
-            omega_body=orbit.rate_radps * c[:, 2],
-            seconds=orbits * orbit.period_s,
+            c_body_from_orbit=turned((1, 2, 3), 20.0),
+            orbits=orbits,
             step_s=20.0,
             look=lambda inputs: inputs._replace(ephemeris=model, tick=20 * inputs.tick),
             settings=bench.scheduled(body, 1.0, name, gains),

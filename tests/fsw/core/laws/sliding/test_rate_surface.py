@@ -75,16 +75,13 @@ def test_the_classical_law_adds_what_holds_the_surface(dipoles, bench):
 @pytest.fixture(scope="module")
 def rms_deg(bench, turned):
     def run(name):
-        orbit, c = bench.Orbit(), turned((1, 2, 3), 20.0)
-        flight = bench.fly(
+        flight = bench.fly_from_rest(
             LAWS[name].point,
             bench.setpoint(),
             gains={name: RateSurfaceGains()},
-            orbit=orbit,
             body=bench.Body(most_am2=5.0),
-            c_body_from_orbit=c,
-            omega_body=orbit.rate_radps * c[:, 2],
-            seconds=4.0 * orbit.period_s,
+            c_body_from_orbit=turned((1, 2, 3), 20.0),
+            orbits=4.0,
             step_s=10.0,
         )
         return [float(np.sqrt(np.mean(part**2))) for part in np.array_split(flight.angle_deg, 4)]

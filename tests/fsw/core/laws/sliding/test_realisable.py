@@ -113,16 +113,13 @@ def rms_deg(bench, turned):
     """In each of five orbits."""
 
     def run(angle_deg, **changed):
-        orbit, c = bench.Orbit(), turned((1, 2, 3), angle_deg)
-        flight = bench.fly(
+        flight = bench.fly_from_rest(
             sliding_realisable,
             bench.setpoint(),
             gains={"sliding_realisable": RealisableGains(**changed)},
-            orbit=orbit,
             body=bench.Body(most_am2=5.0),
-            c_body_from_orbit=c,
-            omega_body=orbit.rate_radps * c[:, 2],
-            seconds=5.0 * orbit.period_s,
+            c_body_from_orbit=turned((1, 2, 3), angle_deg),
+            orbits=5.0,
             step_s=10.0,
         )
         return [float(np.sqrt(np.mean(part**2))) for part in np.array_split(flight.angle_deg, 5)]

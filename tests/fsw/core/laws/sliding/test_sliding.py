@@ -29,16 +29,13 @@ def flight(bench, turned):
     """From 20 deg off."""
 
     def fly(name, own=None, orbits=5.0, torque=(0.0, 0.0, 0.0)):
-        orbit, c = bench.Orbit(), turned((1, 2, 3), 20.0)
-        return bench.fly(
+        return bench.fly_from_rest(
             LAWS[name].point,
             bench.setpoint(),
             gains={name: own or OWN[name]()},
-            orbit=orbit,
             body=bench.Body(INERTIA, most_am2=MOST_AM2, torque=torque),
-            c_body_from_orbit=c,
-            omega_body=orbit.rate_radps * c[:, 2],
-            seconds=orbits * orbit.period_s,
+            c_body_from_orbit=turned((1, 2, 3), 20.0),
+            orbits=orbits,
             step_s=10.0,
         )
 

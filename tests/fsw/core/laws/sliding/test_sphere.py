@@ -40,16 +40,13 @@ def test_without_a_field_nothing_is_asked_for():
 
 def test_a_sphere_comes_to_the_nominal_attitude(bench, turned):
     """The claim of the source."""
-    orbit, c = bench.Orbit(), turned((1, 2, 3), 20.0)
-    flight = bench.fly(
+    flight = bench.fly_from_rest(
         sliding_sphere,
         bench.setpoint(),
         gains={"sliding_sphere": SphereSlidingGains()},
-        orbit=orbit,
         body=bench.Body(np.diag([1.6, 1.6, 1.6]), most_am2=5.0),
-        c_body_from_orbit=c,
-        omega_body=orbit.rate_radps * c[:, 2],
-        seconds=5.0 * orbit.period_s,
+        c_body_from_orbit=turned((1, 2, 3), 20.0),
+        orbits=5.0,
         step_s=10.0,
     )
     assert np.sqrt(np.mean(flight.angle_deg[-600:] ** 2)) < 0.3

@@ -84,16 +84,13 @@ def test_the_integral_is_limited_to_what_the_coils_can_hold(asked):
 
 
 def test_the_attitude_converges(bench, turned):
-    orbit, c = bench.Orbit(), turned((1, 2, 3), 20.0)
-    flight = bench.fly(
+    flight = bench.fly_from_rest(
         sliding_twisting,
         bench.setpoint(),
         gains={"sliding_twisting": SuperTwistingGains()},
-        orbit=orbit,
         body=bench.Body(most_am2=5.0),
-        c_body_from_orbit=c,
-        omega_body=orbit.rate_radps * c[:, 2],
-        seconds=5.0 * orbit.period_s,
+        c_body_from_orbit=turned((1, 2, 3), 20.0),
+        orbits=5.0,
         step_s=10.0,
     )
     assert np.sqrt(np.mean(flight.angle_deg[-600:] ** 2)) < 1.5
