@@ -62,7 +62,8 @@ METHODS: tuple[Method, ...] = (
         "sim/design/wheel/harmonics.py",
         "The disturbing torques are taken as simple periodic functions at once and twice the orbital rate.",
         ("review.wheel.gurwin.constant", "review.wheel.gurwin.harmonics"),
-        "A residual dipole's torque has no constant part to speak of, and an eighth beyond these rates.",
+        "A residual dipole's torque has no constant part to speak of, and an eighth beyond these rates. "
+        "`lqr_disturbed` learns such functions in flight.",
     ),
     Method(
         "six gains",

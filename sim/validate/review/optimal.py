@@ -17,6 +17,7 @@ from sim.design.robust.invariant import periodic_cost
 from sim.design.robust.norms import Norms, norms
 from sim.design.robust.pd_gains import best_pd, pd_tabulated
 from sim.design.theory.bodies import BODIES, Vec3
+from sim.validate.review.flown import regulators
 
 BODY, WHEEL_NMS = BODIES[2], (0.0, 0.0, 0.05)
 REVIEW = "Ovchinnikov, Roldugin 2019, sections 2.2 and 3.2"
@@ -29,7 +30,14 @@ FIELD_T, TORQUE_NM = 2e-5, 2e-5
 
 def studies() -> list[Study]:
     """All of this section."""
-    return [robust(False), robust(True), worst_torque_gains(), riccati(), boxed()]
+    return [
+        robust(False),
+        robust(True),
+        worst_torque_gains(),
+        riccati(),
+        boxed(),
+        *regulators.studies(),
+    ]
 
 
 def robust(wheel: bool) -> Study:

@@ -1,1 +1,1 @@
-"""Claims on satellites that have flown the laws of the review."""
+"""Claims that flights of the laws show: of satellites that have flown them, and of the rest of a section."""
