@@ -94,4 +94,13 @@ METHODS: tuple[Method, ...] = (
         "Gains with the least answer to the worst torque.",
         ("review.optimal.pd_h_infinity",),
     ),
+    Method(
+        "H-infinity control of a discrete system with models of measurement and disturbance",
+        "[O19] 3.2 [106]",
+        Kind.GROUND,
+        f"{ROBUST}/measured.py",
+        "The worst of torque and error of the measured field is borne best.",
+        ("review.optimal.measured.h_infinity", "review.optimal.measured.bound"),
+        "only the method is named; the equations are those of the game with a delayed measurement",
+    ),
 )

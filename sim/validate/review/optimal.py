@@ -14,6 +14,7 @@ from fsw.core.laws.optimal.lqr import LqrGains, orbit_problem, schedule
 from fsw.core.laws.plan.riccati import periodic
 from sim.campaign.claim import Claim, ClaimOutcome, Study, Threshold
 from sim.design.robust.invariant import periodic_cost
+from sim.design.robust.measured import Measured, central, least, norm
 from sim.design.robust.norms import Norms, norms
 from sim.design.robust.pd_gains import best_pd, pd_tabulated
 from sim.design.theory.bodies import BODIES, Vec3
@@ -26,6 +27,8 @@ GAMMA = {False: 2.0, True: 0.4}
 """Near the least that can be had, without the wheel and with it."""
 MOST_AM2, CASES = 0.5, 200
 FIELD_T, TORQUE_NM = 2e-5, 2e-5
+ERROR = 0.01
+"""Of the field above the equator."""
 
 
 def studies() -> list[Study]:
@@ -36,6 +39,7 @@ def studies() -> list[Study]:
         worst_torque_gains(),
         riccati(),
         boxed(),
+        measured(),
         *regulators.studies(),
     ]
 
@@ -150,6 +154,43 @@ def mean_miss() -> float:
             misses.append([float(np.linalg.norm(np.cross(m, b) - torque)) for m in dipoles])
     ours, cut = np.mean(misses, axis=0)
     return float(ours / cut)
+
+
+def measured() -> Study:
+    """The robust law that sees the field alone beside LQG, which sees it too."""
+    claims = (
+        Claim(
+            "review.optimal.measured.h_infinity",
+            "H-infinity norm from torque and field's error, robust law of the measured field over LQG: less",
+            f"{REVIEW} [106]",
+            "1",
+            high=1.0,
+            threshold=Threshold.PAPER,
+        ),
+        Claim(
+            "review.optimal.measured.bound",
+            "That norm over the bound for which the law was made, by another computation",
+            f"{REVIEW} [106]",
+            "1",
+            low=0.9,
+            high=1.0,
+        ),
+    )
+
+    def conclude(found: Sequence[Any]) -> list[ClaimOutcome]:
+        gamma, robust, plain = found[0]
+        return [claims[0].judge(robust / plain, f"{robust:.3g} rad"), claims[1].judge(robust / gamma)]
+
+    return Study("review.optimal.measured", (measured_norms,), conclude)
+
+
+def measured_norms() -> tuple[float, float, float]:
+    """The bound, and the norms of the law made for it and of LQG."""
+    problem, field = orbit_problem(*_orbit((0.0, 0.0, 0.0)), LqrGains())
+    case = Measured(problem, field, _unit_nm(), ERROR * BODY.field_t)
+    plain = norm(case, central(case, np.inf))
+    gamma, found = least(case, 0.3 * plain, 1.1 * plain)
+    return gamma, norm(case, found), plain
 
 
 def _orbit(wheel_nms: Vec3) -> tuple[Any, Vec3, float, float, float]:
