@@ -103,4 +103,14 @@ METHODS: tuple[Method, ...] = (
         ("review.optimal.measured.h_infinity", "review.optimal.measured.bound"),
         "only the method is named; the equations are those of the game with a delayed measurement",
     ),
+    Method(
+        "Slew of least time with a penalty on the final error",
+        "[O19] 3.2 [107]",
+        Kind.GROUND,
+        "sim/design/predictive/time_optimal.py",
+        "The course of least time is found on the ground and followed by prediction.",
+        ("review.predictive.slew.time", "review.predictive.slew.copy"),
+        "its dipoles are nearly always at their limits; copied without a look at the attitude, an error of "
+        "the moments spoils the end",
+    ),
 )

@@ -15,7 +15,7 @@ from fsw.core.laws.predictive.mpc_box import programme
 from sim.campaign.claim import Claim, ClaimOutcome, Study, Threshold
 from sim.design.predictive.explicit import pieces
 from sim.design.theory.bodies import BODIES
-from sim.validate.review.flown import prediction
+from sim.validate.review.flown import prediction, slew
 
 BODY = BODIES[2]
 REVIEW = "Ovchinnikov, Roldugin 2019, section 3.3"
@@ -25,7 +25,7 @@ TUMBLING_DEGPS, HORIZON_S, STEPS = 5.0, 60.0, 12
 
 def studies() -> list[Study]:
     """All of this section."""
-    return [limits(), explicit(), stopping(), *prediction.studies()]
+    return [limits(), explicit(), stopping(), *prediction.studies(), *slew.studies()]
 
 
 def limits() -> Study:
