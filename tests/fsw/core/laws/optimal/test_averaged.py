@@ -102,3 +102,23 @@ def test_without_knowledge_nothing_is_asked_for(bench, missing):
     if missing == "reference":
         inputs = inputs._replace(reference=None)
     assert lqr_averaged(inputs, (), bench.setpoint(), settings).m_body_am2 == (0.0, 0.0, 0.0)
+
+
+def test_of_a_turned_body_under_a_torque_the_dipole_is_that_of_the_equation(bench, turned):
+    """In orbital axes, 40 deg off, from P, S and the measured field by numpy alone; then in the body's."""
+    orbit, c, torque = bench.Orbit(), turned((1, -2, 3), 40.0), np.array([3e-6, -2e-6, 4e-6])
+    settings = bench.scheduled(bench.Body(INERTIA), 1.0, "lqr_averaged")
+    c_orbit, relative = orbit.c_orbit_from_eci(900.0), np.array([1e-4, -2e-4, 3e-4])
+    omega = relative + orbit.rate_radps * c[:, 2]
+    inputs = bench.inputs_at(orbit, 900, 1.0, c @ c_orbit, omega, None)
+    asked = lqr_averaged(inputs._replace(torque_body_nm=tuple(torque)), (), bench.setpoint(), settings)
+    table = settings.schedules["lqr_averaged"]
+    problem, both = table.problem, table.costs[0]
+    known = c.T @ (torque + problem.resting_nm)
+    x = np.concatenate(
+        [c.T @ relative, 2.0 * np.sin(np.radians(20.0)) * np.array([1, -2, 3]) / np.sqrt(14.0)]
+    )
+    push = -problem.free[:, 6:] @ skews(c_orbit @ orbit.b_eci_t(900.0))
+    moved = both[:, :6] @ problem.free @ np.concatenate([x, known]) + both[:, 6:] @ known
+    curved = push.T @ both[:, :6] @ push + problem.effort * np.eye(3)
+    assert asked.m_body_am2 == pytest.approx(c @ -np.linalg.solve(curved, push.T @ moved), rel=1e-6)

@@ -120,3 +120,56 @@ def test_without_knowledge_nothing_is_asked_for_and_nothing_forgotten(asked, mis
 def test_numbers_out_of_range_are_refused(gains):
     with pytest.raises(ValueError, match="must be"):
         DisturbedGains(**gains)
+
+
+@pytest.fixture
+def turned_15(turned):
+    return turned((1, -2, 3), 15.0)
+
+
+def test_what_is_learned_is_a_torque_of_orbital_axes(asked, bench, turned_15):
+    """A rate that is more by a little: J times it, turned back, over the functions of latitude."""
+    more, memory = np.array([2e-6, -1e-6, 3e-6]), asked().memory
+    orbit, tick = bench.Orbit(), 201
+    omega = asked_rate(orbit, turned_15)
+    plain, other = (
+        np.array(asked(memory, tick=tick, attitude=attitude_of(bench, turned_15, rate)).memory[10:])
+        for rate in (omega, omega + more)
+    )
+    share = DisturbedGains().learning / orbit.period_s
+    expected = np.kron(
+        share * np.array([1.0, 2.0, 2.0, 2.0, 2.0]) * functions(orbit.rate_radps * 10.0 * tick),
+        turned_15.T @ INERTIA @ more,
+    )
+    assert other - plain == pytest.approx(expected, rel=0.02, abs=1e-2 * np.abs(expected).max())
+
+
+def asked_rate(orbit, c):
+    return np.array([1e-4, 2e-4, 1.3e-3]) - orbit.rate_radps * c[:, 2]
+
+
+def attitude_of(bench, c, relative):
+    orbit = bench.Orbit()
+    omega = relative + orbit.rate_radps * c[:, 2]
+    return bench.inputs_at(orbit, 201, 10.0, c @ orbit.c_orbit_from_eci(2010.0), omega, None).attitude
+
+
+def test_a_torque_that_the_filter_knows_is_not_learned_again(asked, bench, turned_15):
+    """Of its impulse that of the half step in which it is known is taken off."""
+    torque, memory = np.array([3e-6, -2e-6, 4e-6]), asked().memory
+    orbit = bench.Orbit()
+    plain, other = (
+        np.array(asked(memory, tick=201, torque_body_nm=tuple(part * torque)).memory[10:])
+        for part in (0.0, 1.0)
+    )
+    share = DisturbedGains().learning / orbit.period_s
+    assert (other - plain)[:3] == pytest.approx(-share * 0.5 * 10.0 * turned_15.T @ torque, rel=1e-6)
+
+
+def test_of_a_turned_body_the_answer_to_what_is_learned_is_in_its_axes(asked, table, bench, turned_15):
+    """Beside the same memory without it."""
+    memory, learned = asked().memory, 1e-8 * np.random.default_rng(4).standard_normal(15)
+    full, empty = (*memory[:10], *learned), (*memory[:10], *(0.0,) * 15)
+    more = np.subtract(*(asked(one, tick=200).m_body_am2 for one in (full, empty)))
+    step = int(bench.Orbit().rate_radps * 2000.0 * STEPS / (2.0 * np.pi)) % STEPS
+    assert more == pytest.approx(turned_15 @ table.gains[step, :, 9:] @ learned, rel=1e-3)

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 from scipy.linalg import block_diag
+from scipy.spatial.transform import Rotation
 
 from fsw.core.laws.optimal.field_only import FieldOnlyGains, covariances, lqg_field
-from fsw.core.laws.optimal.lqr import LqrGains, orbit_problem
-from fsw.core.laws.plan.riccati import skews
+from fsw.core.laws.optimal.lqr import STEPS, LqrGains, orbit_problem
+from fsw.core.laws.plan.riccati import free_step, resting_torque, skews
 
 INERTIA = np.array([[1.02, 0.02, 0.01], [0.02, 1.85, -0.03], [0.01, -0.03, 1.95]])
 DIAGONAL = np.diag([1.02, 1.85, 1.95])
@@ -122,3 +123,30 @@ def test_without_an_orbit_nothing_is_asked_for(asked):
 def test_numbers_out_of_range_are_refused(gains):
     with pytest.raises(ValueError, match="must be"):
         FieldOnlyGains(**gains)
+
+
+def test_without_a_sample_the_estimate_moves_under_the_torque_on_the_nominal_attitude(asked, bench):
+    """From rest without a dipole, over three seconds."""
+    rows, w0 = tuple(map(tuple, INERTIA.tolist())), bench.Orbit().rate_radps
+    moved = asked((6.0, *(0.0,) * 9), sampled=False).memory[1:7]
+    torque = resting_torque(rows, (0.0, 0.0, 0.0), w0)
+    expected = free_step(rows, (0.0, 0.0, 0.0), w0, 3.0)[:, 6:] @ torque
+    assert moved == pytest.approx(expected, rel=1e-6)
+    assert np.abs(torque).max() > 1e-9
+
+
+def test_the_dipole_is_the_regulators_for_what_is_estimated(asked, bench):
+    """In orbital axes in memory, in the estimated body's as demanded; the torque at rest is answered too."""
+    table = bench.scheduled(bench.Body(INERTIA, most_am2=2.0), 1.0, "lqg_field").schedules["lqg_field"]
+    x = np.array([2e-5, -1e-5, 3e-5, 0.05, -0.1, 0.15])
+    demand = asked((8.0, *x, *(0.0,) * 3), sampled=False)
+    x = np.array(demand.memory[1:7])
+    c = Rotation.from_rotvec(x[3:]).as_matrix().T
+    step = int(9.0 / bench.Orbit().period_s * STEPS)
+    given = table.gains[step] @ np.concatenate([x, c.T @ table.problem.resting_nm])
+    assert np.array(demand.memory[7:10]) == pytest.approx(given, abs=0.02 * np.abs(given).max())
+    assert np.array(demand.m_body_am2) == pytest.approx(
+        c @ demand.memory[7:10], abs=1e-2 * np.abs(given).max()
+    )
+    rest = table.gains[step, :, 6:] @ table.problem.resting_nm
+    assert np.abs(rest).max() > 0.03 * np.abs(given).max()

@@ -103,3 +103,26 @@ def test_what_is_good_enough_is_not_searched_further():
     _, better, more = descend(CASE, np.zeros((4, 3)), start_cost * (1.0 - 1e-6), 60)
     assert 1 <= more < 60
     assert better < start_cost
+
+
+def test_the_reference_is_that_of_the_field_then():
+    """A body too heavy to turn: of each step the dipole at its beginning, in the cost that at its end."""
+    rate = np.array([2e-7, 1e-7, -3e-7])
+    heavy = replace(
+        CASE,
+        inertia_kgm2=1e12 * np.eye(3),
+        omega_body_radps=np.array([1e-9, -2e-9, 3e-9]),
+        wheel_body_nms=np.zeros(3),
+        effort=0.0,
+        steepness=1e13,
+    )
+
+    def reference(t_s):
+        b = CASE.c_body_from_eci @ (CASE.b_eci_t + t_s * rate)
+        return reference_dipole(b, heavy.omega_body_radps, 2.0, 1e13)
+
+    expected = np.array([reference(10.0 * k) for k in range(4)])
+    assert damping_course(heavy) == pytest.approx(expected, rel=1e-5, abs=1e-6)
+    squares = [np.sum(reference(10.0 * (k + 1)) ** 2) for k in range(4)]
+    energy = 0.5 * 1e12 * heavy.omega_body_radps @ heavy.omega_body_radps
+    assert costs(heavy, expected[None])[0] - energy == pytest.approx(0.7 * np.mean(squares), rel=1e-4)

@@ -118,3 +118,17 @@ def test_numbers_out_of_range_are_refused(gains):
 
 def test_the_default_reaches_half_an_orbit():
     assert round(BoxGains().horizon_orbits * STEPS) == STEPS // 2
+
+
+def test_of_a_turned_body_the_dipole_is_in_its_axes(asked, bench, turned, table):
+    """No limit met: the plan of the regulator along the model's field, turned from orbital axes."""
+    orbit, c, body = bench.Orbit(), turned((1, -2, 3), 15.0), bench.Body(INERTIA, most_am2=1e3)
+    steps = round(BoxGains().horizon_orbits * STEPS)
+    times = 9.0 + (np.arange(steps) + 0.5) * table.problem.step_s
+    field = np.array([orbit.c_orbit_from_eci(t) @ orbit.b_eci_t(t) for t in times])
+    gain = backward(table.problem, field, table.costs[steps])[0][0]
+    relative = np.array([1e-3, 0.0, 1e-3]) - orbit.rate_radps * c[:, 2]
+    theta = 2.0 * np.sin(np.radians(7.5)) * np.array([1.0, -2.0, 3.0]) / np.sqrt(14.0)
+    x = np.concatenate([c.T @ relative, theta, c.T @ np.array(table.problem.resting_nm)])
+    found = asked(settings=bench.scheduled(body, 1.0, "mpc_box")).m_body_am2
+    assert found == pytest.approx(c @ gain @ x, rel=1e-2, abs=1e-2 * np.abs(gain @ x).max())

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fsw.core.estimation.attitude import UNKNOWN
+from fsw.core.laws.motion import motion
 from fsw.core.laws.plan import tumbling
 from fsw.core.laws.predictive import nmpc
 from fsw.core.laws.predictive.nmpc import NmpcGains, NmpcReferenceGains, nmpc_damping, nmpc_reference
@@ -125,3 +126,17 @@ def test_without_a_field_nothing_is_asked_for(asked, bench, law, name, kind):
 def test_numbers_out_of_range_are_refused(gains):
     with pytest.raises(ValueError, match="must be"):
         NmpcGains(**gains)
+
+
+def test_what_is_planned_for_is_what_is_known(bench, turned):
+    """Wheel and change of the field too, which a flight of a minute hardly shows."""
+    orbit, c = bench.Orbit(), turned((1, -2, 3), 15.0)
+    settings = bench.config(bench.Body(np.diag([1.02, 1.85, 1.95]), (0.01, -0.02, 0.03)), 1.0)
+    inputs = bench.inputs_at(orbit, 9, 1.0, c, np.array(RATE), None)
+    reference = replace(inputs.reference, b_rate_eci_tps=(1e-8, -2e-8, 3e-8))
+    moving = motion(inputs, settings)
+    case = nmpc.case_of(moving, reference, NmpcGains(), None, settings)
+    assert case.wheel_body_nms.tolist() == [0.01, -0.02, 0.03]
+    assert case.b_rate_eci_tps.tolist() == [1e-8, -2e-8, 3e-8]
+    assert case.c_body_from_eci == pytest.approx(c)
+    assert case.omega_body_radps == pytest.approx(np.array(RATE))

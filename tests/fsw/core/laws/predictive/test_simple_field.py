@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from fsw.core.estimation.attitude import UNKNOWN
+from fsw.core.laws.optimal.lqr import STEPS
+from fsw.core.laws.plan.riccati import backward
 from fsw.core.laws.predictive.mpc import mpc
 from fsw.core.laws.predictive.simple_field import FittedGains, HeldFieldGains, fitted, mpc_fitted, mpc_held
 from fsw.core.orbit.field import FieldKind
@@ -103,3 +105,18 @@ def test_numbers_out_of_range_are_refused(gains):
         HeldFieldGains(**gains)
     with pytest.raises(ValueError, match="must be"):
         FittedGains(**({"horizon_orbits": 5.0} if gains.get("horizon_orbits") == 0.6 else gains))
+
+
+def test_the_held_field_is_that_of_orbital_axes(asked, bench, turned):
+    """Of a turned body the plan is that along the field seen from the orbit, not from the body."""
+    orbit, c, body = bench.Orbit(), turned((1, -2, 3), 15.0), bench.Body(DIAGONAL, most_am2=2.0)
+    table = bench.scheduled(body, 1.0, "mpc_held").schedules["mpc_held"]
+    b_orbit = orbit.c_orbit_from_eci(9.0) @ orbit.b_eci_t(9.0)
+    steps = round(HeldFieldGains().horizon_orbits * STEPS)
+    gain = backward(table.problem, np.tile(b_orbit, (steps, 1)), table.costs[steps])[0][0]
+    relative = np.array([1e-3, 0.0, 1e-3]) - orbit.rate_radps * c[:, 2]
+    theta = 2.0 * np.sin(np.radians(7.5)) * np.array([1.0, -2.0, 3.0]) / np.sqrt(14.0)
+    x = np.concatenate([c.T @ relative, theta, c.T @ np.array(table.problem.resting_nm)])
+    expected = c @ gain @ x
+    expected *= min(1.0, 2.0 / np.abs(expected).max())
+    assert asked(mpc_held, "mpc_held").m_body_am2 == pytest.approx(expected, rel=1e-6)
