@@ -113,4 +113,17 @@ METHODS: tuple[Method, ...] = (
         "its dipoles are nearly always at their limits; copied without a look at the attitude, an error of "
         "the moments spoils the end",
     ),
+    Method(
+        "Error of two directions averaged over orbits, with a rate error like B-dot",
+        "[O19] 3.2 [102, 103]",
+        Kind.GROUND,
+        "sim/design/feedback/averaged_error.py",
+        "The field turns, so that a body is controlled on the mean; gains by an evolutionary search.",
+        (
+            "review.feedback.averaged.orbits",
+            "review.feedback.averaged.equator",
+            "review.feedback.averaged.cost",
+        ),
+        "on a polar orbit it holds, over the equator no gains do; the error itself is brought down sooner",
+    ),
 )

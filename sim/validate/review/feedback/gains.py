@@ -1,20 +1,23 @@
 """Claims: gains of the simple feedback (section 3.1), found on the ground."""
 
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from fsw.input.schema import Nested
-from sim.campaign.claim import Claim, Study, Threshold
+from sim.campaign.claim import Claim, ClaimOutcome, Study, Threshold
 from sim.campaign.flight import Order
 from sim.campaign.study import Figure, Group, campaign, figure_of
+from sim.design.feedback.averaged_error import search
 from sim.design.feedback.bifurcation import bifurcation
 from sim.design.feedback.held import longest_hold_s, weaker
 from sim.design.feedback.inertial import best_of_all, best_on_line
 from sim.design.feedback.lqr_gains import lqr_gains
 from sim.design.feedback.minimax import minimax, settling_orbits, spread_starts
 from sim.design.feedback.robust import robust_share, worst_degree
-from sim.design.theory.bodies import BODIES
+from sim.design.theory.bodies import BODIES, Body
 from sim.design.theory.linear import Gains
 from sim.validate.microsat import pointing_figures
 from sim.validate.review.figures import judged
@@ -34,7 +37,7 @@ TANGO_ORBITS = 7.0
 
 def studies() -> list[Study]:
     """All of gains."""
-    return [scheme(), limit(), robust(), settling(), hold(), tango()]
+    return [scheme(), limit(), robust(), settling(), hold(), tango(), averaged()]
 
 
 def scheme() -> Study:
@@ -47,6 +50,46 @@ def scheme() -> Study:
         low=0.5,
     )
     return Study(claim.id, (least_share,), partial(judged, (claim,)))
+
+
+def averaged() -> Study:
+    """Feedback of an error averaged over three orbits, on the orbit and over the equator."""
+    source = "Ovchinnikov, Roldugin 2019, section 3.2 [102, 103]"
+    statement = "Best degree of stability with the error averaged over three orbits"
+    claims = (
+        Claim("review.feedback.averaged.orbits", f"{statement}, 50 kg", source, "1/rad", high=-0.1),
+        Claim(
+            "review.feedback.averaged.equator",
+            f"{statement}, over the equator",
+            source,
+            "1/rad",
+            low=-1e-3,
+            wide="it is zero but for rounding",
+        ),
+        Claim(
+            "review.feedback.averaged.cost",
+            f"{statement}, over that with the error itself",
+            source,
+            "1",
+            high=0.5,
+        ),
+    )
+
+    def conclude(found: Sequence[float]) -> list[ClaimOutcome]:
+        orbits, equator, itself = found
+        return judged(claims, (orbits, equator, orbits / itself))
+
+    searches = (
+        partial(averaged_degree, BODY, 3.0),
+        partial(averaged_degree, replace(BODY, inclination_deg=0.0), 3.0),
+        partial(averaged_degree, BODY, 0.0),
+    )
+    return Study("review.feedback.averaged", searches, conclude)
+
+
+def averaged_degree(body: Body, orbits: float) -> float:
+    """The best degree of a law with an error averaged over so many orbits."""
+    return search(body, orbits).degree
 
 
 def tango() -> Study:
