@@ -1,6 +1,8 @@
 """From a checked onboard table to the config the core uses: units of the file to SI, seconds to ticks."""
 
+from collections.abc import Mapping
 from math import ceil, cos, radians
+from typing import Any
 
 from fsw.core.actuation.actuator import ActuatorConfig
 from fsw.core.actuation.dipoles import DipoleConfig
@@ -101,9 +103,7 @@ def _orbit(orbit: OrbitTable, epoch_unix_s: int) -> Orbit:
 
 def _control(table: FlightTable, orbit: Orbit) -> ControlConfig:
     control, coils, inertia = table.control, table.coils, table.body.inertia
-    gains = {
-        name: law.gains(**control.gains.get(name, {})) for name, law in LAWS.items() if law.gains is not None
-    }
+    gains = _gains(control.gains)
     if coils.driver == "continuous":
         mean_dipole_am2 = _full_scale(coils)
     else:
@@ -123,6 +123,22 @@ def _control(table: FlightTable, orbit: Orbit) -> ControlConfig:
         wheel=driven_wheel(table.wheel, table.time.tick_hz),
     )
     return with_own_law(config, control) if control.own else config
+
+
+def _gains(given: Mapping[str, Mapping[str, float]]) -> dict[str, Any]:
+    """The own gains of each law of the table: defaults but for those given.
+
+    Raises:
+        ValueError: a law does not take them; the sentence names its section.
+    """
+    gains = {}
+    for name, law in LAWS.items():
+        if law.gains is not None:
+            try:
+                gains[name] = law.gains(**given.get(name, {}))
+            except ValueError as error:
+                raise ValueError(f"control.gains.{name}: {error}") from None
+    return gains
 
 
 def _dipoles(table: FlightTable) -> DipoleConfig | None:

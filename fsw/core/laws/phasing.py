@@ -27,9 +27,9 @@ class PhasingGains:
             ValueError: no such level, or a part of a round.
         """
         if self.level not in (1.0, 2.0, 3.0):
-            raise ValueError(f"control.gains.phasing.level must be 1, 2 or 3, not {self.level:g}")
+            raise ValueError(f"level must be 1, 2 or 3, not {self.level:g}")
         if not (0.0 <= self.rounds <= 1e6 and self.rounds.is_integer()):
-            raise ValueError(f"control.gains.phasing.rounds must be a whole number, not {self.rounds:g}")
+            raise ValueError(f"rounds must be a whole number, not {self.rounds:g}")
 
 
 def phasing(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:

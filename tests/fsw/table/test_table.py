@@ -209,6 +209,23 @@ class TestGains:
         assert gains == {name: row.gains() for name, row in LAWS.items() if row.gains is not None}
         assert gains
 
+    @pytest.mark.parametrize(
+        ("law", "wrong"),
+        [
+            ("lqr", {"effort": 0.0}),
+            ("lqg_field", {"effort": 0.0}),
+            ("mpc_fitted", {"horizon_orbits": 9.0}),
+            ("two_step", {"done_deg": 20.0}),
+            ("six_gain", {"k2": 99.0}),
+            ("phasing", {"level": 2.5}),
+        ],
+    )
+    def test_that_a_law_does_not_take_are_told_with_its_section(self, law, wrong):
+        """Of a law whose gains are another's in form too."""
+        table = flight_table({"control": {"gains": {law: wrong}}}, "x")
+        with pytest.raises(TableError, match=rf"control\.gains\.{law}: .*{next(iter(wrong))}"):
+            flight_config(table)
+
     def test_they_count_in_the_checksum(self):
         other = flight_table({"control": {"gains": {"three_term": {"k_spin": 7.0}}}}, "x")
         assert other.crc != flight_table({}, "x").crc

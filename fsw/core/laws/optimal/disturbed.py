@@ -74,7 +74,7 @@ class DisturbedGains(LqrGains):
         """
         LqrGains.__post_init__(self)
         if not 0.0 <= self.learning <= 20.0:
-            raise ValueError(f"control.gains.lqr_disturbed: learning must be 0 to 20, not {self.learning:g}")
+            raise ValueError(f"learning must be 0 to 20, not {self.learning:g}")
 
 
 class Learned(NamedTuple):

@@ -67,8 +67,7 @@ class FieldOnlyGains(LqrGains):
         LqrGains.__post_init__(self)
         if not (1e-6 <= self.noise <= 10.0 and 1e-6 <= self.torque <= 100.0):
             raise ValueError(
-                "control.gains.lqg_field: noise must be 1e-6 to 10 and torque 1e-6 to 100, "
-                f"not {self.noise:g} and {self.torque:g}"
+                f"noise must be 1e-6 to 10 and torque 1e-6 to 100, not {self.noise:g} and {self.torque:g}"
             )
 
 

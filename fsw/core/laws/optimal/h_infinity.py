@@ -44,7 +44,7 @@ class HInfinityGains(LqrGains):
         """
         LqrGains.__post_init__(self)
         if not 1e-3 <= self.gamma <= 1e6:
-            raise ValueError(f"control.gains.h_infinity: gamma must be 1e-3 to 1e6 rad, not {self.gamma:g}")
+            raise ValueError(f"gamma must be 1e-3 to 1e6 rad, not {self.gamma:g}")
 
 
 def price(gamma_rad: float, inertia_kgm2: Mat3, orbit_rate_radps: float) -> float:

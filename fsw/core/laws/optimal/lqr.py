@@ -50,19 +50,17 @@ class LqrGains:
         Raises:
             ValueError: a weight out of range.
         """
-        check_weights("lqr", self.rate, self.effort)
+        check_weights(self.rate, self.effort)
 
 
-def check_weights(law: str, rate: float, effort: float) -> None:
+def check_weights(rate: float, effort: float) -> None:
     """Check that the weights are in range.
 
     Raises:
         ValueError: a weight out of range.
     """
     if not (0.0 <= rate <= 1e6 and 1e-6 <= effort <= 1e6):
-        raise ValueError(
-            f"control.gains.{law}: rate must be 0 to 1e6 and effort 1e-6 to 1e6, not {rate:g} and {effort:g}"
-        )
+        raise ValueError(f"rate must be 0 to 1e6 and effort 1e-6 to 1e6, not {rate:g} and {effort:g}")
 
 
 class CostWeights(Protocol):

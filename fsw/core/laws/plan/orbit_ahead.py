@@ -24,14 +24,14 @@ NODES, NODES_PER_ORBIT = 4, 12
 """From 300 km on IGRF-14 is then met within 0.3 uT over a third of an orbit, 2 uT over a whole one."""
 
 
-def check_horizon(law: str, orbits: float, least: float, most: float) -> None:
+def check_horizon(orbits: float, least: float, most: float) -> None:
     """Check that a plan reaches as far as it must and is soon made.
 
     Raises:
         ValueError: it does not.
     """
     if not least <= orbits <= most:
-        raise ValueError(f"control.gains.{law}.horizon_orbits must be {least:g} to {most:g}, not {orbits:g}")
+        raise ValueError(f"horizon_orbits must be {least:g} to {most:g}, not {orbits:g}")
 
 
 class OrbitAhead(NamedTuple):

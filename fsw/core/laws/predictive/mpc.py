@@ -49,8 +49,8 @@ class MpcGains:
         Raises:
             ValueError: a weight or the horizon out of range.
         """
-        check_weights("mpc", self.rate, self.effort)
-        check_horizon("mpc", self.horizon_orbits, 0.1, 4.0)
+        check_weights(self.rate, self.effort)
+        check_horizon(self.horizon_orbits, 0.1, 4.0)
 
 
 def plan(table: Schedule, b_orbit_t: Array, end_node: int) -> Array:

@@ -46,8 +46,8 @@ class BoxGains:
         Raises:
             ValueError: a weight or the horizon out of range.
         """
-        check_weights("mpc_box", self.rate, self.effort)
-        check_horizon("mpc_box", self.horizon_orbits, 0.03, 1.0)
+        check_weights(self.rate, self.effort)
+        check_horizon(self.horizon_orbits, 0.03, 1.0)
 
 
 def programme(

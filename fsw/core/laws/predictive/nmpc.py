@@ -56,13 +56,11 @@ class NmpcGains:
         """
         if not (1.0 <= self.horizon_s <= 600.0 and 1.0 <= self.iterations <= 100.0):
             raise ValueError(
-                "control.gains: horizon_s must be 1 to 600 and iterations 1 to 100, "
+                "horizon_s must be 1 to 600 and iterations 1 to 100, "
                 f"not {self.horizon_s:g} and {self.iterations:g}"
             )
         if not (0.0 <= self.weight <= 1e6 and 0.0 <= self.effort <= 1e6):
-            raise ValueError(
-                f"control.gains: weight and effort must be 0 to 1e6, not {self.weight:g} and {self.effort:g}"
-            )
+            raise ValueError(f"weight and effort must be 0 to 1e6, not {self.weight:g} and {self.effort:g}")
 
 
 @dataclass(frozen=True, slots=True)

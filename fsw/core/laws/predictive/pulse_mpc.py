@@ -53,8 +53,8 @@ class PulseMpcGains:
         Raises:
             ValueError: a weight or the horizon out of range.
         """
-        check_weights("pulse_mpc", self.rate, self.effort)
-        check_horizon("pulse_mpc", self.horizon_orbits, 0.05, 1.0)
+        check_weights(self.rate, self.effort)
+        check_horizon(self.horizon_orbits, 0.05, 1.0)
 
 
 def pulse_mpc(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:

@@ -48,8 +48,8 @@ class HeldFieldGains:
         Raises:
             ValueError: a weight or the horizon out of range.
         """
-        check_weights("mpc_held", self.rate, self.effort)
-        check_horizon("mpc_held", self.horizon_orbits, 0.03, 0.5)
+        check_weights(self.rate, self.effort)
+        check_horizon(self.horizon_orbits, 0.03, 0.5)
 
 
 def fitted(angles_rad: Array, b_orbit_t: Array, wanted_rad: Array) -> Array:

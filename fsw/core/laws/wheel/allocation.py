@@ -32,7 +32,7 @@ class AllocationGains:
         Raises:
             ValueError: one is out of range.
         """
-        check_frequency("wheel_allocation", self.frequency_radps, self.damping)
+        check_frequency(self.frequency_radps, self.damping)
 
 
 class Shares(NamedTuple):

@@ -56,14 +56,12 @@ def held_torque(inputs: LawInput, config: ControlConfig, frequency_radps: float,
     return sub(add(wanted, cross(omega, momentum)), inputs.torque_body_nm)
 
 
-def check_frequency(law: str, frequency_radps: float, damping: float) -> None:
+def check_frequency(frequency_radps: float, damping: float) -> None:
     """Check natural frequency and damping ratio of a law.
 
     Raises:
-        ValueError: one is out of range; the sentence names the key.
+        ValueError: one is out of range.
     """
     for name, value, most in (("frequency_radps", frequency_radps, MOST_RADPS), ("damping", damping, 10.0)):
         if not 0.0 < value <= most:
-            raise ValueError(
-                f"control.gains.{law}.{name} must be above 0 and at most {most:g}, not {value:g}"
-            )
+            raise ValueError(f"{name} must be above 0 and at most {most:g}, not {value:g}")

@@ -23,10 +23,7 @@ class HorizonRollGains:
             ValueError: the bandwidth is out of range.
         """
         if not 1e-4 <= self.bandwidth_radps <= 100.0:
-            raise ValueError(
-                "control.gains.horizon_roll: bandwidth_radps must be 1e-4 to 100, "
-                f"not {self.bandwidth_radps:g}"
-            )
+            raise ValueError(f"bandwidth_radps must be 1e-4 to 100, not {self.bandwidth_radps:g}")
 
 
 def horizon_roll_angle(c_body_from_orbit: Mat3) -> float:

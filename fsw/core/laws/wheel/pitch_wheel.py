@@ -41,14 +41,12 @@ class PitchWheelGains:
         Raises:
             ValueError: one is out of range.
         """
-        check_frequency("pitch_wheel", self.frequency_radps, self.damping)
+        check_frequency(self.frequency_radps, self.damping)
         limits = (("pitch_rad", -3.2, 3.2), ("bias_nms", 1e-6, 100.0), ("unload_per_s", 0.0, 0.1))
         for name, low, high in limits:
             value = getattr(self, name)
             if not low <= value <= high:
-                raise ValueError(
-                    f"control.gains.pitch_wheel.{name} must be {low:g} to {high:g}, not {value:g}"
-                )
+                raise ValueError(f"{name} must be {low:g} to {high:g}, not {value:g}")
 
 
 def pitch_torque(angle_rad: float, rate_radps: float, inertia_kgm2: float, gains: PitchWheelGains) -> float:

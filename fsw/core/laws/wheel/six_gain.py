@@ -32,7 +32,7 @@ class SixGainGains:
         for name in ("k2", "k4", "k5", "k6"):
             value = getattr(self, name)
             if not -10.0 <= value <= 10.0:
-                raise ValueError(f"control.gains.six_gain: {name} must be -10 to 10, not {value:g}")
+                raise ValueError(f"{name} must be -10 to 10, not {value:g}")
 
 
 def six_gain_dipole(b_body_t: Vec3, motion: RollYaw, k1: float, k3: float, gains: SixGainGains) -> Vec3:

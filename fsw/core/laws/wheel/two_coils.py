@@ -30,7 +30,7 @@ class TwoCoilsGains:
         Raises:
             ValueError: one is out of range.
         """
-        check_frequency("two_coils", self.frequency_radps, self.damping)
+        check_frequency(self.frequency_radps, self.damping)
 
 
 def two_coils_and_wheel(torque_body_nm: Vec3, b_body_t: Vec3, axis_body: Vec3) -> Effort | None:

@@ -32,13 +32,12 @@ class WheelRelayGains:
         """
         if not (0.0 < self.dipole_am2 <= 1e4 and 0.0 <= self.lead <= 10.0):
             raise ValueError(
-                "control.gains.wheel_relay: dipole_am2 must be above 0 and at most 1e4 and lead 0 to 10, "
+                "dipole_am2 must be above 0 and at most 1e4 and lead 0 to 10, "
                 f"not {self.dipole_am2:g} and {self.lead:g}"
             )
         if not (0.0 <= self.rate_s <= 1e6 and 0.0 <= self.layer_rad <= 1.0):
             raise ValueError(
-                "control.gains.wheel_relay: rate_s must be 0 to 1e6 and layer_rad 0 to 1, "
-                f"not {self.rate_s:g} and {self.layer_rad:g}"
+                f"rate_s must be 0 to 1e6 and layer_rad 0 to 1, not {self.rate_s:g} and {self.layer_rad:g}"
             )
 
 

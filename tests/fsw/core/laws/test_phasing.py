@@ -58,7 +58,7 @@ def test_a_continuous_driver_is_asked_for_nothing():
 
 @pytest.mark.parametrize("wrong", [{"level": 0.0}, {"level": 2.5}, {"rounds": -1.0}, {"rounds": 0.5}])
 def test_gains_are_whole(wrong):
-    with pytest.raises(ValueError, match=r"control\.gains\.phasing"):
+    with pytest.raises(ValueError, match="must be"):
         PhasingGains(**wrong)
 
 

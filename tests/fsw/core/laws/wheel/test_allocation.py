@@ -129,5 +129,5 @@ class TestInFlight:
 
 @pytest.mark.parametrize("wrong", [{"frequency_radps": 0.0}, {"damping": -1.0}])
 def test_gains_out_of_range_are_refused(wrong):
-    with pytest.raises(ValueError, match=f"control.gains.wheel_allocation.{next(iter(wrong))}"):
+    with pytest.raises(ValueError, match=next(iter(wrong))):
         AllocationGains(**wrong)

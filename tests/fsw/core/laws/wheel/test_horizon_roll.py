@@ -44,7 +44,7 @@ def test_the_filter_follows_a_steady_rate_exactly_and_smooths_a_jump():
 
 @pytest.mark.parametrize("value", [0.0, -1.0, 101.0, float("nan")])
 def test_a_bandwidth_out_of_range_is_named(value):
-    with pytest.raises(ValueError, match="horizon_roll: bandwidth_radps must be"):
+    with pytest.raises(ValueError, match="bandwidth_radps must be"):
         HorizonRollGains(value)
 
 

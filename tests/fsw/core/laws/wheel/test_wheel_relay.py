@@ -54,7 +54,7 @@ def test_without_a_layer_nothing_is_asked_for_on_the_surface():
     ],
 )
 def test_a_gain_out_of_range_is_named(gains, named):
-    with pytest.raises(ValueError, match=f"control.gains.wheel_relay: .*{named}"):
+    with pytest.raises(ValueError, match=named):
         WheelRelayGains(**gains)
 
 
