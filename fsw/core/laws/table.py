@@ -1,9 +1,10 @@
 """The control laws by name, each far from the goal and near it.
 
-Of the estimated disturbances ``predictive`` and ``pulse_mpc`` use torque and dipole, ``lqr`` and ``mpc`` the
+Of the estimated disturbances ``predictive`` and ``pulse_mpc`` use torque and dipole; ``lqr`` and its variants
+with the attitude known, ``sdre``, ``mpc`` and its variants, ``two_coils`` and ``wheel_allocation`` use the
 torque. From the dipole that any law demands ``by_mode`` takes the residual one off. The other laws have no
-use for the torque: coils can oppose only its part normal to the field, which gains little at once; ``pd`` and
-``sliding_integral`` answer its mean by their integral.
+use for the torque: coils can oppose only its part normal to the field, which gains little at once;
+``pd``, ``sliding_integral`` and ``wheel_integral`` answer its mean by their integral.
 """
 
 from fsw.core.laws.damping.table import LAWS as DAMPING

@@ -1,11 +1,11 @@
-"""Three axes from the attitude and the attitude some time ago: the delay stands for the rate.
+"""PD law without a rate: the attitude and the attitude some time ago give it.
 
 With q now and q_T of a time T earlier, as W(q)^T q = 0 for W of ``output_feedback``,
 
     Omega_T = 2 W(q)^T (q - q_T) / T,     m = -k_w b x Omega_T - k_a b x E,     E = 4 qv.
 
-Omega_T is the mean rate of the last T, which lags by T / 2. The attitude is kept every ``delay_s``, so that T
-goes from once to twice that: a memory of two attitudes instead of one for each tick.
+Omega_T is the mean rate over the last T and lags by T / 2. The attitude is kept every ``delay_s``, so that T
+lies between once and twice that (less after the first attitude): two attitudes in memory, not one a tick.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1, after Xu, Luo, Yang 2017 (delayed output feedback). The
 review prints no equation; this one is derived.
@@ -14,7 +14,7 @@ review prints no equation; this one is derived.
 from dataclasses import dataclass
 
 from fsw.core.algebra.quaternion import Quaternion
-from fsw.core.laws.feedback.output_feedback import lagged_rate
+from fsw.core.laws.feedback.output_feedback import lagged_rate, nearer_sign
 from fsw.core.laws.feedback.pd import far_error, pd_dipole
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 
@@ -34,11 +34,14 @@ class DelayGains:
 def mean_rate(
     q_body_from_orbit: Quaternion, earlier: Quaternion, interval_s: float
 ) -> tuple[float, float, float]:
-    """Omega_T = 2 W(q)^T (q - q_T) / T, body axes, rad/s; of q_T and -q_T the one nearer to q."""
-    near = sum(a * b for a, b in zip(q_body_from_orbit, earlier, strict=True)) >= 0.0
-    e0, e1, e2, e3 = earlier
-    signed = earlier if near else (-e0, -e1, -e2, -e3)
-    return lagged_rate(q_body_from_orbit, signed, 1.0 / interval_s)
+    """Omega_T = 2 W(q)^T (q - q_T) / T, body axes, rad/s.
+
+    Args:
+        q_body_from_orbit: q.
+        earlier: q_T; of q_T and -q_T the one nearer to q is taken.
+        interval_s: T, greater than 0.
+    """
+    return lagged_rate(q_body_from_orbit, nearer_sign(earlier, q_body_from_orbit), 1.0 / interval_s)
 
 
 def delayed(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:

@@ -1,17 +1,17 @@
 """A direction of the body held to the field, by the magnetometer alone.
 
-With n = b / |b| and t the direction in body axes that is to lie along the field, the error is e = t - n. A
-rate omega moves n by n x omega, so that the shortest turn of t onto the field is about e x n = t x n, and
+With n = b / |b| and t the direction in body axes that is to lie along the field, the error is e = t - n. The
+shortest turn of t onto n is about t x n = e x n, and dn/dt = n x omega in a field that does not turn, so that
 
     M_ref = |b|^2 (2 k_a e + k_w de/dt) x n,     m = b x M_ref / |b|^2,
 
-de/dt by the difference of two samples. A target of its own is an axis that follows the field as a compass
-needle does, for any body. Without one t is the direction of the field expected in the nominal attitude: then
-the whole attitude follows on the mean, as with ``field_tracking`` and under its conditions; being made of
-directions the error is none where model and magnetometer differ in size alone.
+de/dt by the difference of two samples: a spring and a damper. With a ``target`` the body axis t follows the
+field as a bar magnet would, for any body. Without one t is the direction of the field expected in the nominal
+attitude, and on the mean the whole attitude follows, under the conditions of ``field_tracking``; as e has
+directions alone, an error in the size of the modelled or the measured field does not matter.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1, after Gulmammadov, Kahraman, Yavuzyilmaz, Tufekci, Subasi
-2010, and for the compass Smirnov 2001. The scan loses the torque and keeps e; the torque is derived here.
+2010, and with a target Smirnov 2001. The scan loses the torque and keeps e; the torque is derived here.
 """
 
 from dataclasses import dataclass
@@ -47,7 +47,7 @@ def direction_torque(b_body_t: Vec3, error: Vec3, error_rate_ps: Vec3, k_w: floa
 
 
 def field_direction(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """By the magnetometer, and the orbit where there is no target. Memory: tick of the last sample, its e."""
+    """By the magnetometer, and the orbit where there is no target; memory: tick of the last sample, its e."""
     sample, target = inputs.sample, _target(inputs, config)
     if target is None or sample.tick < 0 or dot(sample.b_body_t, sample.b_body_t) <= 0.0:
         return Demand()

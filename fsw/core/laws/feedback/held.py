@@ -1,11 +1,11 @@
-"""The PD dipole held over many ticks: computed once in a cycle, with coils off while the field is measured.
+"""The PD dipole held over many ticks: computed once a cycle, after a time of measuring with the coils off.
 
-    m = -(1 / share) b x (k_w Omega + k_a S), of the tick in which it is computed, held for ``act_s``;
-    m = 0 for ``measure_s`` before it,     share = act_s / (measure_s + act_s).
+    m = 0 for ``measure_s``, then for ``act_s``, with the values at the first tick of these,
+    m = -(1 / share) b x (k_w Omega + k_a S),     share = act_s / (measure_s + act_s).
 
-``pd_held`` has no time of measuring; ``pd_apart`` has one as long as that of acting, after which the field of
-the coils has died away. A held dipole lags: half a cycle on the mean, by which the field and the attitude
-have moved on. For each length of the cycle there are gains small enough (``sim/design/feedback/held.py``).
+``pd_held`` has no time of measuring. ``pd_apart`` measures as long as it acts, by default, so that the field
+of the coils has died away when b is taken. On the mean a held dipole is half of ``act_s`` old. For each
+length of the cycle there are gains small enough (``sim/design/feedback/held.py``).
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1, after Celani 2016a (the dipole constant over a control
 interval of several steps) and Celani 2016b (measuring and acting apart). The share, which keeps the mean
@@ -27,7 +27,7 @@ class HoldGains:
     hold_s: float = 60.0
 
     def __post_init__(self) -> None:
-        """Raises ValueError: not a length."""
+        """Raises ValueError: a length that is not greater than 0."""
         if self.hold_s <= 0.0:
             raise ValueError("hold_s must be greater than 0")
 
@@ -40,31 +40,31 @@ class ApartGains:
     act_s: float = 30.0
 
     def __post_init__(self) -> None:
-        """Raises ValueError: no length."""
+        """Raises ValueError: a negative length, or no time to act."""
         if self.measure_s < 0.0 or self.act_s <= 0.0:
             raise ValueError("measure_s must not be less than 0, and act_s must be greater than 0")
 
 
 def pd_held(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The dipole of one tick for the whole cycle, by S."""
+    """Near the goal, by S: one dipole for the whole cycle."""
     gains: HoldGains = config.gains["pd_held"]
     return _cycle(inputs, memory, setpoint, config, (0.0, gains.hold_s), near=True)
 
 
 def pd_held_far(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The same by the error that does not vanish upside down."""
+    """The same far from it, by the error that does not vanish upside down."""
     gains: HoldGains = config.gains["pd_held"]
     return _cycle(inputs, memory, setpoint, config, (0.0, gains.hold_s), near=False)
 
 
 def pd_apart(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """Measuring, then acting, by S."""
+    """Near the goal, by S: measuring, then acting."""
     gains: ApartGains = config.gains["pd_apart"]
     return _cycle(inputs, memory, setpoint, config, (gains.measure_s, gains.act_s), near=True)
 
 
 def pd_apart_far(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The same by the error that does not vanish upside down."""
+    """The same far from it, by the error that does not vanish upside down."""
     gains: ApartGains = config.gains["pd_apart"]
     return _cycle(inputs, memory, setpoint, config, (gains.measure_s, gains.act_s), near=False)
 

@@ -1,10 +1,10 @@
-"""PD dipole law for three-axis pointing among the stars.
+"""PD dipole law for inertial three-axis pointing.
 
     m = -k_w b x omega - k_a b x S,     S = (a23 - a32, a31 - a13, a12 - a21) of C(body from target),
 
-omega the absolute rate and the target an attitude fixed in ``eci``; far from it 4 qv stands for S, as for
-``pd``. Along an orbit the field turns twice in the inertial frame, so that on the mean each axis is reached;
-the gravity gradient is a disturbance here, largest where the radius is halfway between principal axes.
+omega the absolute rate, body axes, and the target an attitude fixed in ``eci``; far from it 4 qv stands for
+S, as for ``pd``. In an orbit the field turns twice in the inertial frame, so that on the mean the coils reach
+each axis. The gravity gradient is a disturbance, largest where the radius is 45 deg from two principal axes.
 
 Gains are those of ``sim/design/feedback/inertial.py``: averaging gives the ratio of k_a to k_w^2, Floquet
 theory k_w.
@@ -55,7 +55,7 @@ def inertial(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Contr
     moving = motion(inputs, config)
     if moving is None:
         return Demand()
-    error = attitude_error(dcm(_off(moving.q_body_from_eci, config)))
+    error = attitude_error(dcm(_q_body_from_target(moving.q_body_from_eci, config)))
     return _demand(inputs, moving.omega_body_radps, error, setpoint)
 
 
@@ -64,11 +64,11 @@ def inertial_far(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: C
     moving = motion(inputs, config)
     if moving is None:
         return Demand()
-    error = far_error(_off(moving.q_body_from_eci, config))
+    error = far_error(_q_body_from_target(moving.q_body_from_eci, config))
     return _demand(inputs, moving.omega_body_radps, error, setpoint)
 
 
-def _off(q_body_from_eci: Quaternion, config: ControlConfig) -> Quaternion:
+def _q_body_from_target(q_body_from_eci: Quaternion, config: ControlConfig) -> Quaternion:
     gains: InertialGains = config.gains["pd_inertial"]
     return from_target(q_body_from_eci, gains.q_target_from_eci)
 

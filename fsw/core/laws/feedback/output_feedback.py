@@ -1,11 +1,11 @@
-"""Three axes without a rate: from the attitude and a filter that follows it.
+"""PD law without a rate: a filter that follows the attitude gives it.
 
-A filter follows the quaternion, z' = a (q - z). Its lag gives the rate: q - z is q' / a where the motion is
-slow against a, and as q' = 1/2 W(q) Omega with W^T W = E,
+The filter is z' = a (q - z). Where the motion is slow against a its lag q - z is q' / a, and as
+q' = 1/2 W(q) Omega with W^T W = E,
 
     Omega ~ 2 a W(q)^T (q - z),     W(q)^T y = q0 yv - y0 qv - qv x yv.
 
-The PD law uses it: m = -k_w b x Omega_z - k_a b x E, with E = 4 qv. No estimated rate is used.
+The dipole is m = -k_w b x Omega_z - k_a b x E, E = 4 qv.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1, after Lovera, Astolfi 2004: delta' = alpha (q - eps lambda
 delta), u = -eps^2 (k1 q + k2 alpha lambda W^T (q - eps lambda delta)). The scan damages it; here
@@ -32,7 +32,7 @@ def lagged_rate(q_body_from_orbit: Quaternion, followed: Quaternion, bandwidth_r
 
     Args:
         q_body_from_orbit: q, the attitude now.
-        followed: z, the filter's state, of q's sign.
+        followed: z, the filter's state, of z and -z the one nearer to q.
         bandwidth_radps: a.
     """
     q0, q1, q2, q3 = q_body_from_orbit
@@ -47,8 +47,14 @@ def lagged_rate(q_body_from_orbit: Quaternion, followed: Quaternion, bandwidth_r
     )
 
 
+def nearer_sign(z: Quaternion, q: Quaternion) -> Quaternion:
+    """Of z and -z, which are the same attitude, the one nearer to q."""
+    near = z[0] * q[0] + z[1] * q[1] + z[2] * q[2] + z[3] * q[3] >= 0.0
+    return z if near else (-z[0], -z[1], -z[2], -z[3])
+
+
 def follow(q_body_from_orbit: Quaternion, followed: Quaternion, part: float) -> Quaternion:
-    """Z <- z + part (q - z), ``part`` from 0 to 1."""
+    """The filter's next state, z + part (q - z), ``part`` from 0 to 1."""
     q0, q1, q2, q3 = q_body_from_orbit
     z0, z1, z2, z3 = followed
     return (z0 + part * (q0 - z0), z1 + part * (q1 - z1), z2 + part * (q2 - z2), z3 + part * (q3 - z3))
@@ -60,17 +66,11 @@ def output_feedback(inputs: LawInput, memory: Memory, setpoint: Setpoint, config
         return Demand()
     q = inputs.attitude.q_body_from_orbit
     gains: FilterGains = config.gains["output_feedback"]
-    z = _of_sign(memory, q)
+    z = q
+    if len(memory) == 4:
+        z0, z1, z2, z3 = memory
+        z = nearer_sign((z0, z1, z2, z3), q)
     omega = lagged_rate(q, z, gains.bandwidth_radps)
     step = gains.bandwidth_radps * config.tick_s
     dipole = pd_dipole(inputs.b_body_t, omega, far_error(q), setpoint.k_w, setpoint.k_a)
     return Demand(dipole, memory=follow(q, z, step / (1.0 + step)))
-
-
-def _of_sign(memory: Memory, q: Quaternion) -> Quaternion:
-    """Z of the sign nearer to q, as q and -q are one attitude; q without memory."""
-    if len(memory) != 4:
-        return q
-    z0, z1, z2, z3 = memory
-    near = z0 * q[0] + z1 * q[1] + z2 * q[2] + z3 * q[3] >= 0.0
-    return (z0, z1, z2, z3) if near else (-z0, -z1, -z2, -z3)

@@ -22,12 +22,12 @@ def far_error(q_body_from_orbit: Quaternion) -> Vec3:
 
 
 def pd_dipole(b_body_t: Vec3, omega_body_orbit_radps: Vec3, error: Vec3, k_w: float, k_a: float) -> Vec3:
-    """M = -k_w b x Omega - k_a b x S.
+    """The dipole m = -k_w b x Omega - k_a b x S.
 
     Args:
         b_body_t: field in body axes, T.
         omega_body_orbit_radps: body rate relative to the orbital frame, body axes, rad/s.
-        error: S of ``attitude_error``.
+        error: S of ``attitude_error``, or E of ``far_error``.
         k_w: damping gain, N m s / T^2.
         k_a: attitude gain, N m / T^2.
 
@@ -44,14 +44,14 @@ def pd_dipole(b_body_t: Vec3, omega_body_orbit_radps: Vec3, error: Vec3, k_w: fl
 def integrate_error(
     integral_s: Vec3, error: Vec3, b_body_t: Vec3, k_i: float, tick_s: float, mean_dipole_am2: float
 ) -> Vec3:
-    """I <- I + S h, held where k_i |b| |I| stays below the dipole that the coils can give in the mean."""
+    """The integral I + S h, h a tick, limited where k_i |b| |I| is the dipole that coils give in the mean."""
     grown = add(integral_s, scale(tick_s, error))
     demanded_am2 = k_i * norm(b_body_t) * norm(grown)
     return grown if demanded_am2 <= mean_dipole_am2 else scale(mean_dipole_am2 / demanded_am2, grown)
 
 
 def pd(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """M = -k_w b x Omega - k_a b x S - k_i b x I, I the integral of S."""
+    """The dipole m = -k_w b x Omega - k_a b x S - k_i b x I, I the integral of S; memory: I."""
     integral_s = _integral(memory)
     if not inputs.attitude.valid:
         return Demand(memory=integral_s)

@@ -1,9 +1,9 @@
 """From a torque to a dipole: the weighted projection and the regularised inverse.
 
-A law demands a torque M_ref; coils give M = m x b, normal to the field. The reference is that of the PD law,
-M_ref = -|b|^2 (k_w Omega + k_a S), whose plain projection is the PD dipole.
+A law demands a torque M_ref; coils give M = m x b, normal to the field. Here M_ref is that of the PD law,
+-|b|^2 (k_w Omega + k_a S), whose unweighted projection is given by the PD dipole.
 
-Source: Ovchinnikov, Roldugin 2019, section 3.1. The scan damages both formulas; they were derived anew.
+Source: Ovchinnikov, Roldugin 2019, section 3.1. The scan damages both formulas; they are derived here.
 """
 
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ NT = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class WeightGains:
-    """Weights of the torque error about the body axes; where one is zero, all are 1 / J_ii."""
+    """Weights of the torque error about the body axes; unless all are positive they are 1 / J_ii."""
 
     q1: float = 0.0
     q2: float = 0.0
@@ -52,19 +52,19 @@ def weighted_projection(torque_body_nm: Vec3, b_body_t: Vec3, weights: Vec3) -> 
 
 
 def torque_dipole(torque_body_nm: Vec3, b_body_t: Vec3) -> Vec3:
-    """M = b x M / |b|^2: the shortest dipole for a torque normal to b; the part along b is lost."""
+    """The dipole m = b x M / |b|^2, A m^2: the shortest that gives the part of a torque M normal to b."""
     square = dot(b_body_t, b_body_t)
     return scale(1.0 / square, cross(b_body_t, torque_body_nm)) if square > 0.0 else ZERO
 
 
 def regularised_dipole(torque_body_nm: Vec3, b_body_t: Vec3, floor_t: float) -> Vec3:
-    """M = (B^T B + lambda E)^-1 B^T M_ref with M = B m, B = -[b x], and lambda = floor^2.
+    """The dipole m = (B^T B + lambda E)^-1 B^T M_ref with M = B m, B = -[b x], and lambda = floor^2.
 
     B^T B = |b|^2 E - b b^T has no inverse; with lambda it has, and as B^T M_ref = b x M_ref is normal to b,
 
         m = b x M_ref / (|b|^2 + lambda):
 
-    the projection, shortened, and the more so the weaker the field.
+    that of the projection, shortened, and the more so the weaker the field.
 
     Args:
         torque_body_nm: M_ref, body axes, N m.
@@ -85,7 +85,7 @@ def reference_torque(b_body_t: Vec3, omega_body_orbit_radps: Vec3, error: Vec3, 
 
 
 def weighted(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The PD torque by the weighted projection."""
+    """Near the goal, by S: the PD torque by the weighted projection."""
     if not inputs.attitude.valid:
         return Demand()
     return _weighted(inputs, attitude_error(dcm(inputs.attitude.q_body_from_orbit)), setpoint, config)
@@ -99,7 +99,7 @@ def weighted_far(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: C
 
 
 def regularised(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The PD torque by the regularised inverse."""
+    """Near the goal, by S: the PD torque by the regularised inverse."""
     if not inputs.attitude.valid:
         return Demand()
     return _regularised(inputs, attitude_error(dcm(inputs.attitude.q_body_from_orbit)), setpoint, config)

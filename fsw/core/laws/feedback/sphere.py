@@ -1,17 +1,18 @@
 """Laws for a sphere, which has no gyroscopic torque: dOmega/dt = u but for the turning of the orbit.
 
-An axis a of the body is held to the local vertical r, whichever way the body turns about it, by
-V = 1/2 J |Omega|^2 + 2 k_a |b|^2 (1 - a . r), which the torque lowers but for the part along the field:
+``sphere_vertical`` holds an axis a of the body to the local vertical r, the turn about it free. Full control
 
-    M_ref = |b|^2 (2 k_a a x r - k_w Omega),     m = b x M_ref / |b|^2.
+    M_ref = |b|^2 (2 k_a a x r - k_w Omega),     m = b x M_ref / |b|^2
 
-Without a rate, an observer follows attitude and rate by the sphere's own equations. With d = 2 vec(z^-1 q),
-z its quaternion, w its rate, M the torque of the last tick's dipole:
+lowers V = 1/2 J |Omega|^2 + 2 k_a |b|^2 (1 - a . r); the coils give its part normal to the field.
+
+``sphere_output`` needs no rate: an observer with quaternion z and rate w follows the sphere's own equations.
+With d = 2 vec(z^-1 q) and M the torque of the last tick's dipole:
 
     z' = 1/2 z (0, w + 2 a d),   w' = M / J + w0 w x e3 + a^2 d,   m = -k_w b x w - k_a b x E,   E = 4 qv.
 
-Its error decays as that of a critically damped filter of bandwidth a, and as it knows the torque it does not
-lag as the filter of ``output_feedback`` does; on another body what it leaves out of dOmega/dt is its error.
+Its error decays critically damped, with bandwidth a. As it knows the torque it does not lag as the filter of
+``output_feedback`` does; for a body that is no sphere the gyroscopic and gravity torques are its error.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1: the vertical after Bushenkov, Ovchinnikov, Smirnov 2002; the
 law without a rate after Reyhanoglu, Drakunov 2008 and Reyhanoglu, Ton, Drakunov 2009. The review prints no
@@ -28,8 +29,9 @@ from fsw.core.laws.feedback.projection import torque_dipole
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 
 RADIUS: Vec3 = (1.0, 0.0, 0.0)
+"""Orbital axes."""
 NORMAL: Vec3 = (0.0, 0.0, 1.0)
-"""Axes of the orbital frame."""
+"""Of the orbit, orbital axes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +78,7 @@ def vertical_torque(
 
 
 def sphere_vertical(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The axis to the vertical."""
+    """The axis held to the vertical, the turn about it damped."""
     if not inputs.attitude.valid:
         return Demand()
     gains: VerticalGains = config.gains["sphere_vertical"]

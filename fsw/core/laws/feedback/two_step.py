@@ -8,10 +8,10 @@ angles phi of both turns, c = cos(phi / 2), s = sin(phi / 2), at a1 and a2 in th
     v across N = 2 c s cos((a2 - a1) / 2) at the angle (a1 + a2) / 2,
 
 whence s^2 = ((1 - q0)^2 + z^2) / (2 (1 - q0)) <= 1 and tan((a2 - a1) / 2) = -z / (1 - q0). A turn about N
-alone, however small, takes two half turns. Of q and -q the one with the smaller angle is taken. The PD law
+alone, however small, takes two half turns. Of q and -q the one with the smaller phi is taken. The PD law
 turns to P, about an axis across the field, and from there to the goal; while the turn about N is small it
-goes on alone. In a turn what bends its path is cancelled, M = m x b - J f, f = dOmega/dt without control: for
-a sphere w0 Omega x e3, normal to the field too where the field is along the orbit normal.
+turns to the goal at once. During the two turns J f is taken off the torque, f = dOmega/dt without control,
+so that nothing bends the path: for a sphere f = w0 Omega x e3, normal to a field along the orbit normal.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1, after Inamori, Otsuki, Sugawara, Saisutjarit, Nakasuka 2016,
 for a sphere. The review prints no equation; the split is derived here.
@@ -33,14 +33,14 @@ FREE, FIRST, SECOND = 0.0, 1.0, 2.0
 
 @dataclass(frozen=True, slots=True)
 class TwoStepGains:
-    """The turn about the field at which it begins; angle and rate at which a turn is done."""
+    """Angle about the field from which two turns are made; angle and rate at which one of them is done."""
 
     begin_deg: float = 15.0
     done_deg: float = 3.0
     done_degps: float = 0.01
 
     def __post_init__(self) -> None:
-        """Raises ValueError: it would begin again at once."""
+        """Raises ValueError: angles or rate out of range, or turns that would begin again at once."""
         if not 0.0 < self.done_deg < self.begin_deg < 180.0 or self.done_degps <= 0.0:
             raise ValueError("0 < done_deg < begin_deg < 180, and done_degps must be greater than 0")
 
@@ -58,7 +58,7 @@ def first_turn(q_body_from_orbit: Quaternion, field_direction: Vec3) -> Quaterni
 
 
 def _split(q: Quaternion, n: Vec3) -> Quaternion:
-    """P of this sign of q; the goal itself where q is it."""
+    """The attitude P for this sign of q; the goal where q is the goal."""
     q0, q1, q2, q3 = q
     v = (q1, q2, q3)
     rest, z = 1.0 - q0, dot(v, n)
@@ -82,7 +82,7 @@ def _across(n: Vec3) -> tuple[Vec3, Vec3]:
 
 
 def two_step(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The turns one after the other; memory: the stage, and P."""
+    """The turns one after the other; memory: the stage, and P, body from orbit."""
     reference = inputs.reference
     if not inputs.attitude.valid or reference is None or dot(inputs.b_body_t, inputs.b_body_t) <= 0.0:
         return Demand()

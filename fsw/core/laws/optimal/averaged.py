@@ -88,7 +88,7 @@ def _closed(f: Array, reach: Array, cost: Array) -> Array:
 
 
 def gain_at(problem: Problem, both: Array, b_orbit_t: Array) -> Array:
-    """M for a field, from (Omega, theta, d) to the dipole, orbital axes, shape (3, 9).
+    """The gain M(b) from (Omega, theta, d) to the dipole, orbital axes, shape (3, 9).
 
     Args:
         problem: step and effort.
@@ -103,7 +103,7 @@ def gain_at(problem: Problem, both: Array, b_orbit_t: Array) -> Array:
 
 
 def lqr_averaged(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """M(b) (Omega, theta, d), b the field in orbital axes, d as for ``lqr``."""
+    """The dipole M(b) (Omega, theta, d), b the field in orbital axes, d as for ``lqr``."""
     table = config.schedules.get("lqr_averaged")
     if not inputs.attitude.valid or inputs.reference is None or table is None:
         return Demand()

@@ -2,11 +2,10 @@
 
     min |m x b - M_ref|^2   over   |m_i| <= m_max
 
-The plain projection m = b x M_ref / |b|^2, cut to the limits, is another dipole: where one coil is at its
-limit the other two can still take over. The least squares are found by dichotomous coordinate descent:
-steps of m_max 2^-n along one coil at a time, each only where it takes the error down, n = 1 to 15; no
-multiplication with what is not known beforehand is needed but in the matrix. A little of |m|^2 is added, as
-the part of m along b does nothing.
+The projection m = b x M_ref / |b|^2, cut to the limits, is another dipole: where one coil is at its limit the
+other two can still take over. The least squares are found by dichotomous coordinate descent: steps of
+m_max 2^-n along one coil at a time, n = 1 to 15, each taken only where it lowers the error. A little of |m|^2
+is added to the cost, as the part of m along b does nothing.
 
 Source: Schlanbusch, Kristiansen, Nicklasson 2010, as in Ovchinnikov, Roldugin 2019, section 3.2, where only
 the method is named; the descent: Zakharov, Tozer 1999. M_ref is that of the PD law, as in ``projection``.
@@ -21,7 +20,7 @@ from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Set
 BITS = 15
 """Halvings of the step: to 3e-5 of the limit."""
 UPDATES = 400
-"""At most."""
+"""Steps at most."""
 RIDGE = 1e-4
 """Of |m|^2 |b|^2 in the cost."""
 

@@ -11,7 +11,8 @@ step k is periodic, Sigma(u), and the estimate follows y by
 
 The dipole is that of ``lqr`` for the estimated state. Of all linear laws that see b alone, filter and
 regulator together leave the least mean square of theta and dipole: least H2 norm from (w, v). The estimate
-begins at rest in the nominal attitude, and the angles must be small: at 30 deg y is 15 % short.
+begins at rest in the nominal attitude, and the angles must be small: 30 deg about an axis across B move b by
+13 % along B too, which the linear model does not have.
 
 Source: Wisniewski, Stoustrup 2001, as in Ovchinnikov, Roldugin 2019, section 3.2. The review has no equation:
 they are the periodic separation theorem for the step of ``riccati``.
@@ -41,6 +42,7 @@ from fsw.core.laws.plan.riccati import Array, Problem, Schedule, free_step, skew
 ORBITS = 60
 """After which the covariance has settled."""
 SETTLED = 1e-6
+"""Relative change in an orbit at which it has."""
 FIRST_RAD = 1.0
 """Uncertainty of the attitude with which the covariance begins; its rate's is that by w0."""
 

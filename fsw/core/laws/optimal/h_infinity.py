@@ -3,9 +3,9 @@
 The gain M(u) over the argument of latitude u is that of the game in ``game``: whatever a torque w does, the
 sum of |theta|^2 + rate |Omega / w0|^2 + effort |m|^2 stays under gamma^2 times that of |w|^2. The measure is
 z = (E, 0; 0, E; sigma K) x of the review with sigma^2 the effort. A large gamma gives the regulator of least
-H2 norm, which with the whole state known is ``lqr``, whatever the intensity of the noise. A wheel is a
-number of the same model, so that the law of a satellite with a wheel along the orbit normal is this one.
-Where gamma is less than can be had, it is doubled until there is a law.
+H2 norm, which with the whole state known is ``lqr``, whatever the intensity of the noise. The momentum of a
+wheel is a parameter of the model, so that one law serves a satellite with a wheel and without. A gamma below
+the least attainable is doubled until there is a law.
 
 Source: Lovera 2000; Calloni, Corti, Zanchettin, Lovera 2012; Wisniewski, Stoustrup 2001; Tregouet et al.
 2011: Ovchinnikov, Roldugin 2019, sections 2.2 and 3.2, where the functional is damaged; its form follows from
@@ -76,5 +76,5 @@ def robust_schedule(
 
 
 def h_infinity(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """M = M(u) (Omega, theta, d), d the estimated torque and what rests on the nominal attitude."""
+    """The dipole M(u) (Omega, theta, d), d the estimated torque and what rests on the nominal attitude."""
     return by_schedule(inputs, config.schedules.get("h_infinity"), config)

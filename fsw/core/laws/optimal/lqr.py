@@ -1,4 +1,4 @@
-"""Periodic linear-quadratic regulator: the dipole of least cost without end on the direct dipole's field.
+"""Periodic linear-quadratic regulator: the dipole of least cost over all time, in the direct dipole's field.
 
 The gain M(u) is tabulated over the argument of latitude u of an orbit, from the controller's own inertia and
 orbit, once, when the onboard table is loaded. The law uses the constant torque that the filter estimates: a
@@ -175,7 +175,7 @@ def _product(row: Sequence[float], state: tuple[float, ...]) -> float:
 
 
 def rotation(q_body_from_orbit: Quaternion) -> Vec3:
-    """Theta = 2 qv for a scalar part >= 0, rad: of one turn from orbit to body the same in both axes."""
+    """The turn theta = 2 qv for a scalar part >= 0, rad: the same components in orbital and in body axes."""
     q0, q1, q2, q3 = q_body_from_orbit
     factor = 2.0 if q0 >= 0.0 else -2.0
     return (factor * q1, factor * q2, factor * q3)
@@ -188,7 +188,7 @@ def within(m_body_am2: Vec3, most_am2: float) -> Vec3:
 
 
 def lqr(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """M = M(u) (Omega, theta, d), d the estimated torque and what rests on the nominal attitude."""
+    """The dipole M(u) (Omega, theta, d), d the estimated torque and what rests on the nominal attitude."""
     return by_schedule(inputs, config.schedules.get("lqr"), config)
 
 

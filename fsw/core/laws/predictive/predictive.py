@@ -68,7 +68,7 @@ def missing_impulse(
     horizon_s: float,
     inertia_kgm2: Mat3,
 ) -> Vec3:
-    """R = J (Omega_ref - Omega - dt dOmega/dt), body axes, N m s."""
+    """The impulse r = J (Omega_ref - Omega - dt dOmega/dt), body axes, N m s."""
     predicted = add(omega_body_orbit_radps, scale(horizon_s, free_change_radps2))
     return transform(inertia_kgm2, sub(reference_radps, predicted))
 

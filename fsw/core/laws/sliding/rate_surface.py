@@ -1,4 +1,4 @@
-"""Sliding control on a surface in the rate itself, without the inertia as its weight.
+"""Sliding control on a surface in which the inertia does not weigh the rate.
 
 The surface is s = Omega + K q, rad/s. The classical law demands what holds the motion on it, M_eq, and what
 brings the motion to it; the modified one leaves out what holds:
@@ -6,10 +6,10 @@ brings the motion to it; the modified one leaves out what holds:
     M_ref = M_eq - c J layer sat(s / layer),     M_eq = -J (f + K dq/dt),
 
 with dq/dt = 1/2 (q0 Omega + q x Omega), f = dOmega/dt without control, and sat(x) = x limited to +-1 for each
-axis. Coils give its projection. A part of M_eq is lost along the field, and what is left of it need not help.
+axis. Coils give the projection of M_ref; with its part along the field M_eq loses what makes it hold s.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1, after Sofyali, Jafarov 2012, whose title has a classical and
-a modified algorithm; the review tells the surface alone. Both torques are those of the method of equivalent
+a modified algorithm; the review gives the surface alone. Both torques are those of the method of equivalent
 control (Utkin 1992), derived here; which term the modified one leaves out is this project's reading.
 """
 
@@ -37,7 +37,13 @@ class RateSurfaceGains:
 
 
 def rate_surface(omega_body_orbit_radps: Vec3, attitude: Vec3, slope_radps: float) -> Vec3:
-    """S = Omega + K q, body axes, rad/s; q is the vector part of the quaternion for a scalar part >= 0."""
+    """The surface s = Omega + K q, body axes, rad/s.
+
+    Args:
+        omega_body_orbit_radps: Omega, body axes.
+        attitude: q, vector part of the quaternion for a scalar part >= 0.
+        slope_radps: K.
+    """
     return add(omega_body_orbit_radps, scale(slope_radps, attitude))
 
 

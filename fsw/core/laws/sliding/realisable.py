@@ -1,7 +1,7 @@
 """A sliding surface that the coils can reach: its matrix changes so that no torque along the field is wanted.
 
 On the surface s = J Omega + K e = 0, with e = 2 qv and K symmetric, positive definite, the attitude decays.
-For ds/dt = -c s the torque must be, with f = dOmega/dt without control and e' = q0 Omega + qv x Omega,
+With f = dOmega/dt without control and e' = q0 Omega + qv x Omega, ds/dt = -c s asks for the torque
 
     M = M0 - K' e,     M0 = -c s - J f - K e'.
 
@@ -91,14 +91,14 @@ def rows(matrix: Sym) -> Mat3:
 
 
 def error_and_rate(attitude: Attitude) -> tuple[Vec3, Vec3]:
-    """E = 2 qv for q0 >= 0, and de/dt = q0 Omega + qv x Omega, 1/s."""
+    """The error e = 2 qv for q0 >= 0, and de/dt = q0 Omega + qv x Omega, rad/s, both in body axes."""
     q0, q1, q2, q3 = canonical(attitude.q_body_from_orbit)
     omega = attitude.omega_body_orbit_radps
     return (2.0 * q1, 2.0 * q2, 2.0 * q3), add(scale(q0, omega), cross((q1, q2, q3), omega))
 
 
 def sliding_realisable(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The torque to the surface, projected; memory is K / K0, its six elements."""
+    """The torque to the surface, projected; memory: the six elements of K in units of K0's."""
     square, reference = dot(inputs.b_body_t, inputs.b_body_t), inputs.reference
     if not inputs.attitude.valid or reference is None or square <= 0.0:
         return Demand(memory=memory)
@@ -120,7 +120,7 @@ def sliding_realisable(inputs: LawInput, memory: Memory, setpoint: Setpoint, con
 def fixed_torque(
     inputs: LawInput, reference: Reference, matrix: Sym, stiffness_nms: float, config: ControlConfig
 ) -> Vec3:
-    """M0 = -c s - J f - K e', what the surface wants while its matrix stands, N m.
+    """M0 = -c s - J f - K e', the torque for a constant K, body axes, N m.
 
     Args:
         inputs: with a valid attitude.
@@ -141,7 +141,7 @@ def fixed_torque(
 
 
 def _torque(held_nm: Vec3, before: Sym, now: Sym, error: Vec3, factor_nm: float) -> Vec3:
-    """M0 - K' e."""
+    """The torque M0 - K' e, K' h the change of K in a tick h; ``factor_nm`` is K0 / h."""
     return sub(held_nm, scale(factor_nm, transform(rows(_sum(now, before, -1.0)), error)))
 
 

@@ -6,16 +6,17 @@ s, M_ref = -c s, and the coils give its projection normal to the field. With int
     s = J Omega + K q + K_i (integral of q) + (integral of b b^T M_ref / |b|^2),
 
 the first holds the mean error and so counters a constant torque; the second is the impulse that the coils
-could not give: with it ds/dt is what full control would make it, the surface is one that the coils can reach.
-In simulation it delays convergence, and a constant torque winds it up: its part is zero by default.
+could not give: with it ds/dt is that under full control, so that the coils can reach the surface. In
+simulation it delays convergence, and a constant torque winds it up: its part is zero by default.
 
 Source: Ovchinnikov, Roldugin 2019, eq. 10 and the surface with integrals after it. The scan damages the
-latter: the second integral is given as one of b b^T alone; what it integrates was derived anew, by asking
-that the lost torque drop out of ds/dt.
+latter: the second integral is one of b b^T alone there. What it integrates is derived here, from the lost
+torque dropping out of ds/dt.
 """
 
 from dataclasses import dataclass
 
+from fsw.core.algebra.quaternion import canonical
 from fsw.core.algebra.vector import ZERO, Vec3, add, dot, norm, scale, transform
 from fsw.core.laws.feedback.projection import torque_dipole
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
@@ -40,7 +41,7 @@ class SlidingIntegralGains:
 
 
 def surface(momentum_nms: Vec3, attitude: Vec3, stiffness_nms: float) -> Vec3:
-    """S = J Omega + K q, body axes, N m s.
+    """The surface s = J Omega + K q, body axes, N m s.
 
     Args:
         momentum_nms: J Omega, body axes.
@@ -57,7 +58,7 @@ def lost_torque(torque_body_nm: Vec3, b_body_t: Vec3) -> Vec3:
 
 
 def sliding(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """M_ref = -c s on the plain surface."""
+    """M_ref = -c s on the surface without integrals, projected."""
     if not inputs.attitude.valid or inputs.reference is None:
         return Demand()
     gains: SlidingGains = config.gains["sliding"]
@@ -67,7 +68,7 @@ def sliding(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Contro
 
 
 def sliding_integral(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The same with both integrals; memory is K_i times the first, and the second, N m s each.
+    """The same with both integrals; memory: K_i times the first, and the second, N m s each.
 
     Each is bounded where alone it would demand more than the coils can give in the mean.
     """
@@ -99,8 +100,8 @@ def _surface(inputs: LawInput, slope_radps: float, config: ControlConfig) -> Vec
 
 
 def _attitude(inputs: LawInput) -> Vec3:
-    q0, q1, q2, q3 = inputs.attitude.q_body_from_orbit
-    return (q1, q2, q3) if q0 >= 0.0 else (-q1, -q2, -q3)
+    _, q1, q2, q3 = canonical(inputs.attitude.q_body_from_orbit)
+    return (q1, q2, q3)
 
 
 def _bounded(impulse_nms: Vec3, most_nms: float) -> Vec3:

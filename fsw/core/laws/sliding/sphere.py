@@ -1,12 +1,11 @@
 """Sliding control of a sphere: a relay of the coils on a surface in the rate alone.
 
-Attitude gives the rate to fly, -K q; the surface is the rate's difference to it, s = Omega + K q, in which no
-moment of inertia stands. For a sphere of moment J, V = 1/2 J |s|^2 changes by the coils at s . (m x b) =
-m . (b x s), which is least with every coil against its component of b x s:
+The surface is s = Omega + K q, as in ``rate_surface``. For a sphere of moment J the coils change
+V = 1/2 J |s|^2 at s . (m x b) = m . (b x s), which is least with each coil against its component of b x s:
 
     m_j = -m_0 sat((b x s)_j / (|b| layer)).
 
-On a body of unequal moments the coils' part of dV/dt is s . J^-1 (m x b), of no certain sign.
+For unequal moments, V = 1/2 |s|^2, the coils' part is s . J^-1 (m x b), whose sign is not certain.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1, after Wang, Shtessel 1998: the rate alone in the surface,
 shown to be asymptotically stable for a sphere. The review prints no equation; surface and relay are derived.
@@ -22,7 +21,7 @@ from fsw.core.laws.sliding.rate_surface import rate_surface
 
 @dataclass(frozen=True, slots=True)
 class SphereSlidingGains:
-    """K = slope w0, layer = layer w0; m_0 is ``part`` of the dipole that the coils can give in the mean."""
+    """In the orbit's rate w0: K = slope w0, layer = layer w0; m_0 is ``part`` of the coils' mean dipole."""
 
     slope: float = 0.5
     layer: float = 0.5
@@ -35,12 +34,12 @@ class SphereSlidingGains:
 
 
 def relay_dipole(s_radps: Vec3, b_body_t: Vec3, m0_am2: float, layer_radps: float) -> Vec3:
-    """m_j = -m_0 sat((b x s)_j / (|b| layer)), A m^2; none without a field."""
+    """m_j = -m_0 sat((b x s)_j / (|b| layer)), body axes, A m^2; zero without a field."""
     size = norm(b_body_t) * layer_radps
     if size <= 0.0:
         return (0.0, 0.0, 0.0)
-    x, y, z = (-m0_am2 * max(-1.0, min(1.0, part / size)) for part in cross(b_body_t, s_radps))
-    return (x, y, z)
+    m1, m2, m3 = (-m0_am2 * max(-1.0, min(1.0, part / size)) for part in cross(b_body_t, s_radps))
+    return (m1, m2, m3)
 
 
 def sliding_sphere(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:

@@ -1,13 +1,13 @@
-"""Super-twisting control on a terminal surface: an integral takes the place of the relay.
+"""Super-twisting control on a terminal surface: continuous, an integral in place of the relay.
 
-The surface bends at the goal, with |q|^p sign(q) for each axis and p between 1/2 and 1. The law to it is
-continuous; with full control it overcomes what changes no faster than L rad/s^3 (Levant 1998):
+The surface bends at the goal, with |q|^p sign(q) for each axis and p between 1/2 and 1. With full control the
+law overcomes disturbances that change no faster than L rad/s^3 (Levant 1998):
 
     s = J Omega + K (|q|^p sign(q) + share q),     r = (s - n (n . s)) / J_mean,     n = b / |b|,
     M_ref / J_mean = -1.5 L^(1/2) r / |r|^(1/2) + v,     dv/dt = -1.1 L r / |r| - leak v.
 
-r is the part of the surface that coils can act on, taken as a vector. With the whole of s the part along the
-field winds v up; the leak lets v forget a field that has turned on. M_ref is projected.
+r is the part of s normal to the field, on which coils can act: the part along the field would wind v up. The
+leak lets v forget a field that has turned on. M_ref is projected.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1, the nonlinear surface, after Janardhanan, Nabi, Tiwari 2012.
 The scan damages its last term, which is read as one linear in q. The torque is Levant's in this project's
@@ -50,7 +50,7 @@ def bent(value: float, power: float) -> float:
 def terminal_surface(
     momentum_nms: Vec3, attitude: Vec3, stiffness_nms: float, power: float, share: float
 ) -> Vec3:
-    """S = J Omega + K (|q|^p sign(q) + share q), body axes, N m s.
+    """The surface s = J Omega + K (|q|^p sign(q) + share q), body axes, N m s.
 
     Args:
         momentum_nms: J Omega.
@@ -71,7 +71,7 @@ def twisting(r_radps: Vec3, held_radps2: Vec3, level_radps3: float) -> Vec3:
 
 
 def sliding_twisting(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The torque to the terminal surface, projected; memory is v, limited to what the coils can hold."""
+    """The torque to the terminal surface, projected; memory: v, limited to what the coils can hold."""
     held = (memory[0], memory[1], memory[2]) if len(memory) == 3 else ZERO
     square = dot(inputs.b_body_t, inputs.b_body_t)
     if not inputs.attitude.valid or inputs.reference is None or square <= 0.0:
@@ -91,7 +91,7 @@ def sliding_twisting(inputs: LawInput, memory: Memory, setpoint: Setpoint, confi
 
 
 def _grown(held: Vec3, r: Vec3, step: float, most: float) -> Vec3:
-    """V less a step along r, limited."""
+    """The integral v less a step along r, rad/s^2, limited."""
     size = norm(r)
     grown = sub(held, scale(step / size, r)) if size > 0.0 else held
     length = norm(grown)

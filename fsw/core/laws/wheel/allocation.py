@@ -1,8 +1,8 @@
 """Torque shared between coils and wheels with the least effort.
 
-What is wanted along the field is the wheel's alone to give, so that with one wheel and the whole torque given
-nothing is left to choose its momentum by: a lasting torque about its axis fills it. Coils that unload it turn
-the body, as in ``pitch_wheel``.
+Only a wheel can give the part of a torque along the field. With one wheel and the whole torque given, its
+momentum is therefore not free: a lasting torque about its axis saturates it. Coils that unload it turn the
+body, as in ``pitch_wheel``.
 """
 
 from collections.abc import Sequence
@@ -11,7 +11,12 @@ from typing import NamedTuple
 
 from fsw.core.algebra.vector import Mat3, Vec3, cross, dot, inverse, norm, scale, transform
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
-from fsw.core.laws.wheel.effort import Effort, check_frequency, held_torque, shortened
+from fsw.core.laws.wheel.effort import Effort, check_frequency, compensated_torque, shortened
+
+LEAST_DETERMINANT = 1e-15
+"""Of the matrix scaled to a trace of one, below which it counts as singular."""
+FLOORS = (0.05, 0.1, 0.2, 0.4, 0.8)
+"""Values of the floor, in parts of the torque that the coils can give across the field."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,18 +107,21 @@ def _solved(matrix: Mat3, right: Vec3) -> Vec3 | None:
     return scale(1.0 / size, transform(inverse((a, b, c)), right))
 
 
-LEAST_DETERMINANT = 1e-15
-"""Of the matrix scaled to a trace of one."""
-
-
 def affordable(
     torque_body_nm: Vec3, b_body_t: Vec3, axis_body: Vec3, most_am2: float, most_nm: float
 ) -> Effort | None:
     """The least effort of coils and one wheel, the whole torque if they can give it.
 
-    If they cannot, the floor rises through ``FLOORS`` until they can: so
-    what costs most, the torque along a field nearly normal to the wheel, is given up first. What even the
-    highest floor leaves too large is shortened. None without a field.
+    If they cannot, the floor rises through ``FLOORS`` until they can: what costs most, the torque along a
+    field nearly normal to the wheel, is given up first. What even the highest floor leaves too large is
+    shortened. None without a field.
+
+    Args:
+        torque_body_nm: T, body axes.
+        b_body_t: b, body axes, T.
+        axis_body: w, unit, body axes.
+        most_am2: largest dipole.
+        most_nm: largest torque on the wheel.
     """
     most_across_nm = most_am2 * norm(b_body_t)
     effort = None
@@ -129,10 +137,6 @@ def affordable(
     return None if effort is None else shortened(effort, most_am2, most_nm)
 
 
-FLOORS = (0.05, 0.1, 0.2, 0.4, 0.8)
-"""By what the floor rises, in parts of the torque that the coils can give across the field."""
-
-
 def wheel_allocation(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The torque wanted, by three coils and the wheel with the least effort.
 
@@ -142,7 +146,7 @@ def wheel_allocation(inputs: LawInput, memory: Memory, setpoint: Setpoint, confi
     wheel = config.wheel
     if wheel is None or inputs.wheel_nms is None or not inputs.attitude.valid:
         return Demand()
-    wanted = held_torque(inputs, config, gains.frequency_radps, gains.damping)
+    wanted = compensated_torque(inputs, config, gains.frequency_radps, gains.damping)
     b, axis, most_am2, most_nm = inputs.b_body_t, wheel.axis_body, config.mean_dipole_am2, wheel.max_torque_nm
     effort = affordable(wanted, b, axis, most_am2, most_nm)
     if effort is None:

@@ -18,7 +18,7 @@ class DualSpinGains:
 
     Attributes:
         pitch_rad: angle about the orbit normal, body from orbit.
-        stiffness: gain of that angle against k_a.
+        stiffness: gain of that angle over 2 k_a.
     """
 
     pitch_rad: float = 0.0
@@ -26,7 +26,7 @@ class DualSpinGains:
 
 
 def wheel_axis_dipole(
-    b_body_t: Vec3, omega_body_orbit_radps: Vec3, roll: float, k_w: float, k_a: float
+    b_body_t: Vec3, omega_body_orbit_radps: Vec3, s2: float, k_w: float, k_a: float
 ) -> Vec3:
     """m3 = k1 b2 phi2 - k2 (b1 Omega2 - b2 Omega1), k1 = 2 k_a and k2 = k_w, for a wheel along +e3.
 
@@ -37,7 +37,7 @@ def wheel_axis_dipole(
     Args:
         b_body_t: field in body axes, T.
         omega_body_orbit_radps: rate relative to the orbital frame, body axes.
-        roll: 2 phi2 (second component of S of the PD law).
+        s2: 2 phi2, the second component of S of the PD law.
         k_w: N m s / T^2.
         k_a: N m / T^2.
 
@@ -49,7 +49,7 @@ def wheel_axis_dipole(
     """
     b1, b2, _ = b_body_t
     w1, w2, _ = omega_body_orbit_radps
-    return (0.0, 0.0, k_a * b2 * roll - k_w * (b1 * w2 - b2 * w1))
+    return (0.0, 0.0, k_a * b2 * s2 - k_w * (b1 * w2 - b2 * w1))
 
 
 def pitch_dipole(b_body_t: Vec3, torque_gain: float) -> Vec3:

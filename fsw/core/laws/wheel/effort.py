@@ -1,4 +1,4 @@
-"""What laws of a driven wheel share: the torque wanted, and the effort of coils and wheel."""
+"""The torque that laws of a driven wheel ask for, and the effort of coils and wheel that gives it."""
 
 from typing import NamedTuple
 
@@ -40,11 +40,13 @@ def wanted_torque(attitude: Attitude, inertia_kgm2: Mat3, frequency_radps: float
     return scale(-1.0, transform(inertia_kgm2, add(damped, scale(frequency_radps**2, turn))))
 
 
-def held_torque(inputs: LawInput, config: ControlConfig, frequency_radps: float, damping: float) -> Vec3:
-    """The torque wanted, less what acts at the nominal attitude: the wheel's gyroscopic torque, disturbances.
+def compensated_torque(
+    inputs: LawInput, config: ControlConfig, frequency_radps: float, damping: float
+) -> Vec3:
+    """T + omega x (h w) - d, body axes, N m: the wheel's gyroscopic torque and the disturbance fed forward.
 
-    omega x h w of the momentum that the wheel has, at the orbit's rate, is no error to be waited for; nor is
-    the torque that the filter has estimated.
+    T is that of ``wanted_torque``, omega the absolute rate, h the wheel's momentum along w and d the torque
+    that the filter estimates. Without orbit or momentum the term of the wheel is left out.
     """
     wanted = wanted_torque(inputs.attitude, config.inertia_kgm2, frequency_radps, damping)
     wheel, reference = config.wheel, inputs.reference

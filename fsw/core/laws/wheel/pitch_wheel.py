@@ -14,7 +14,7 @@ from fsw.core.laws.wheel.dual_spin import pitch, pitch_dipole, wheel_axis_dipole
 from fsw.core.laws.wheel.effort import check_frequency
 
 LEAST_COSINE = 0.99
-"""Between the wheel and body axis 3."""
+"""Of the angle between the wheel and body axis 3."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +26,7 @@ class PitchWheelGains:
         frequency_radps: natural frequency of the pitch, rad/s.
         damping: its damping ratio.
         bias_nms: momentum of the wheel, N m s.
-        unload_per_s: with which the momentum comes back to it, 1/s.
+        unload_per_s: rate constant with which the momentum comes back to it, 1/s.
     """
 
     pitch_rad: float = 0.0
@@ -63,9 +63,10 @@ def pitch_torque(angle_rad: float, rate_radps: float, inertia_kgm2: float, gains
 
 
 def momentum_dipole(b_body_t: Vec3, excess_nms: float, per_s: float) -> Vec3:
-    """(m_1, m_2) = T' (b_2, -b_1), T' = -k (h - h_0) / |b|^2: the coils' torque that unloads the wheel.
+    """(m_1, m_2) = T' (b_2, -b_1), T' = -k (h - h_0) / |b|^2: the dipole that unloads the wheel, A m^2.
 
-    It is -k (h - h_0) (b_1^2 + b_2^2) / |b|^2 about axis 3; the wheel, holding the pitch, gives it up.
+    Its torque about axis 3 is -k (h - h_0) (b_1^2 + b_2^2) / |b|^2; as the wheel holds the pitch against it,
+    its momentum changes by it.
 
     Args:
         b_body_t: field in body axes, T.

@@ -1,4 +1,4 @@
-"""Two coils and one wheel give any torque: the matrix of the three, inverted.
+"""Any torque from two coils and one wheel: the inverse of their matrix.
 
 The review has the wheel along its second axis and coils along the first and third; here the wheel is along
 any unit vector w, and the dipole lies in the plane normal to it.
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from fsw.core.algebra.vector import Vec3, cross, dot, scale
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint, Wheel
 from fsw.core.laws.wheel.allocation import affordable
-from fsw.core.laws.wheel.effort import Effort, check_frequency, held_torque, shortened
+from fsw.core.laws.wheel.effort import Effort, check_frequency, compensated_torque, shortened
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +83,7 @@ def two_coils_far(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: 
 
 def _wanted(inputs: LawInput, config: ControlConfig) -> Vec3:
     gains: TwoCoilsGains = config.gains["two_coils"]
-    return held_torque(inputs, config, gains.frequency_radps, gains.damping)
+    return compensated_torque(inputs, config, gains.frequency_radps, gains.damping)
 
 
 def _limits(config: ControlConfig, wheel: Wheel) -> tuple[float, float]:

@@ -3,7 +3,8 @@
 from math import sin
 
 from fsw.core.algebra.quaternion import dcm
-from fsw.core.algebra.vector import ZERO, Vec3, add, norm, scale
+from fsw.core.algebra.vector import ZERO, Vec3, add
+from fsw.core.laws.feedback.pd import integrate_error
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 from fsw.core.laws.wheel.dual_spin import pitch, pitch_dipole
 from fsw.core.laws.wheel.roll_yaw import can_hold, pitch_holding_dipole, roll_yaw
@@ -24,7 +25,7 @@ def integral_dipole(b_body_t: Vec3, integral_s: Vec3, k_i: float) -> Vec3:
 
     Args:
         b_body_t: field in body axes, T.
-        integral_s: I, rad s.
+        integral_s: I, s (of angles in rad).
         k_i: N m / (T^2 s).
 
     Returns:
@@ -47,7 +48,9 @@ def wheel_integral(inputs: LawInput, memory: Memory, setpoint: Setpoint, config:
     motion = roll_yaw(inputs)
     if setpoint.k_i > 0.0:
         error = (motion.yaw, motion.roll, sin(pitch(dcm(inputs.attitude.q_body_from_orbit))))
-        integral_s = _grown(integral_s, error, inputs.b_body_t, setpoint.k_i, config)
+        integral_s = integrate_error(
+            integral_s, error, inputs.b_body_t, 2.0 * setpoint.k_i, config.tick_s, config.mean_dipole_am2
+        )
     return _demand(inputs, integral_s, setpoint)
 
 
@@ -55,14 +58,6 @@ def wheel_integral_far(inputs: LawInput, memory: Memory, setpoint: Setpoint, con
     """The same far from the goal, the integral frozen."""
     integral_s = _integral(memory)
     return _demand(inputs, integral_s, setpoint) if can_hold(inputs, config) else Demand(memory=integral_s)
-
-
-def _grown(integral_s: Vec3, error: Vec3, b_body_t: Vec3, k_i: float, config: ControlConfig) -> Vec3:
-    """I + error h, held where 2 k_i |b| |I| stays below the dipole that the coils can give in the mean."""
-    grown = add(integral_s, scale(config.tick_s, error))
-    demanded_am2 = 2.0 * k_i * norm(b_body_t) * norm(grown)
-    most_am2 = config.mean_dipole_am2
-    return grown if demanded_am2 <= most_am2 else scale(most_am2 / demanded_am2, grown)
 
 
 def _demand(inputs: LawInput, integral_s: Vec3, setpoint: Setpoint) -> Demand:

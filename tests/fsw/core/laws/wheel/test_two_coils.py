@@ -8,7 +8,7 @@ import pytest
 from fsw.core.algebra.quaternion import normalise
 from fsw.core.estimation.attitude import Attitude
 from fsw.core.laws.interface import FieldSample, Wheel
-from fsw.core.laws.wheel.effort import Effort, held_torque, shortened, wanted_torque
+from fsw.core.laws.wheel.effort import Effort, compensated_torque, shortened, wanted_torque
 from fsw.core.laws.wheel.two_coils import TwoCoilsGains, two_coils, two_coils_and_wheel, two_coils_far
 
 B = (2.1e-5, -1.4e-5, 0.9e-5)
@@ -84,8 +84,10 @@ def test_what_acts_at_the_goal_is_answered_at_once(bench, turned):
     spring = wanted_torque(inputs.attitude, settings.inertia_kgm2, 0.02, 0.7)
     added = np.cross(omega, (0.0, 0.0, 0.07)) - disturbance
     assert np.abs(added).min() > 1e-7
-    assert held_torque(inputs, settings, 0.02, 0.7) == pytest.approx(np.array(spring) + added, rel=1e-9)
-    assert held_torque(inputs._replace(reference=None), settings, 0.02, 0.7) == pytest.approx(
+    assert compensated_torque(inputs, settings, 0.02, 0.7) == pytest.approx(
+        np.array(spring) + added, rel=1e-9
+    )
+    assert compensated_torque(inputs._replace(reference=None), settings, 0.02, 0.7) == pytest.approx(
         np.array(spring) - disturbance, rel=1e-9
     )
 
