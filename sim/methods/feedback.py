@@ -1,11 +1,11 @@
-"""Three axes, simple feedback (section 3.1)."""
+"""Three axes, simple feedback (section 3.1 of the review)."""
 
 from sim.methods.method import Kind, Method
 
 METHODS: tuple[Method, ...] = (
     Method(
-        name="PD law by its projection (`pd`)",
-        source="[O19] 3.1 [68, 69], eq. 9",
+        name="PD law, projected (`pd`)",
+        source="[O19] 3.1 eq. 9 [68, 69]",
         kind=Kind.FLOWN,
         where="fsw/core/laws/feedback/pd.py",
         claim=(
@@ -18,7 +18,7 @@ METHODS: tuple[Method, ...] = (
         ),
     ),
     Method(
-        name="The law by a filtered attitude, without the rate (`output_feedback`)",
+        name="filtered attitude in place of the rate (`output_feedback`)",
         source="[O19] 3.1 [68]",
         kind=Kind.FLOWN,
         where="fsw/core/laws/feedback/output_feedback.py",
@@ -26,30 +26,37 @@ METHODS: tuple[Method, ...] = (
         claims=("review.feedback.output.final",),
     ),
     Method(
-        "bound on the control",
-        "[O19] 3.1 [70]",
-        Kind.GROUND,
-        "sim/design/feedback/bifurcation.py",
-        "Gains need care, the control a bound: too large a step leads away; damping bears more.",
-        (
+        name="bound on the control",
+        source="[O19] 3.1 [70]",
+        kind=Kind.GROUND,
+        where="sim/design/feedback/bifurcation.py",
+        claim=(
+            "Too large an attitude gain leads away from the nominal attitude, so that the control needs "
+            "a bound; damping alone does not."
+        ),
+        claims=(
             "review.feedback.pd.bound",
             "review.feedback.limit.factor",
             "review.feedback.limit.under",
             "review.feedback.limit.over",
         ),
-        "A multiplier leaves at +1: a fold.",
+        remark="A multiplier leaves the unit circle at +1: a fold.",
     ),
     Method(
-        "PD dipole among the stars (`pd_inertial`), gains by averaging and Floquet theory",
-        "[O19] 3.1 [71]",
-        Kind.FLOWN,
-        "fsw/core/laws/feedback/inertial.py, sim/design/feedback/inertial.py",
-        "A simple scheme by analytical results and Floquet theory gives gains for inertial pointing.",
-        ("review.feedback.inertial.pointing", "review.feedback.inertial.gravity", "review.feedback.scheme"),
-        "Formula not printed in the review: the critical line of the averaged motion is derived.",
+        name="inertial PD law, gains by averaging and Floquet theory (`pd_inertial`)",
+        source="[O19] 3.1 [71]",
+        kind=Kind.FLOWN,
+        where="fsw/core/laws/feedback/inertial.py, sim/design/feedback/inertial.py",
+        claim="A simple scheme by analytical results and Floquet theory gives gains for inertial pointing.",
+        claims=(
+            "review.feedback.inertial.pointing",
+            "review.feedback.inertial.gravity",
+            "review.feedback.scheme",
+        ),
+        remark="The review prints no formula: the critical line of the averaged motion is derived.",
     ),
     Method(
-        name="Best gains by Floquet theory, orbital frame",
+        name="best gains by Floquet theory, orbital frame",
         source="[O19] 3.1 [72]",
         kind=Kind.GROUND,
         where="sim/design/theory/floquet.py",
@@ -64,56 +71,71 @@ METHODS: tuple[Method, ...] = (
         ),
     ),
     Method(
-        name="Inertia off the table",
+        name="inertia that differs from the table",
         source="[O19] 3.1 [73]",
         kind=Kind.GROUND,
         where="sim/design/theory/robustness.py",
-        claim="The law is sensitive to the inertia above all; a small error may break it.",
+        claim="The law is sensitive above all to errors of the inertia; a small one may make it unstable.",
         claims=("review.feedback.inertia.margin",),
         remark="`torquer design` gives the margin of every body, and maps.",
     ),
     Method(
-        "gains for bounds on the inertia",
-        "[O19] 3.1 [74]",
-        Kind.GROUND,
-        "sim/design/feedback/robust.py",
-        "With bounds on the moments of inertia gains can be chosen.",
-        ("review.feedback.robust.broken", "review.feedback.robust.share"),
+        name="gains for bounds on the inertia",
+        source="[O19] 3.1 [74]",
+        kind=Kind.GROUND,
+        where="sim/design/feedback/robust.py",
+        claim="With bounds on the moments of inertia gains can be chosen.",
+        claims=(
+            "review.feedback.robust.broken",
+            "review.feedback.robust.share",
+        ),
     ),
     Method(
-        "minimax gains with limited coils",
-        "[O19] 3.1 [75]",
-        Kind.GROUND,
-        "sim/design/feedback/minimax.py",
-        "Gains for the least settling time from the worst start, the dipole being limited.",
-        ("review.feedback.minimax",),
-        "A local search over given starts, not a global one.",
+        name="minimax gains with limited coils",
+        source="[O19] 3.1 [75]",
+        kind=Kind.GROUND,
+        where="sim/design/feedback/minimax.py",
+        claim="Gains for the least settling time from the worst start, the dipole being limited.",
+        claims=("review.feedback.minimax",),
+        remark="A local search over given starts, not a global one.",
     ),
     Method(
-        "gains by the regulator, as flown by TANGO",
-        "[O19] 3.1 [76, 77]",
-        Kind.GROUND,
-        "sim/design/feedback/lqr_gains.py",
-        "The PD law with gains by LQR did its work aboard TANGO, with an accuracy of 10 to 20 deg.",
-        ("review.feedback.tango.none", "review.feedback.tango.dipole"),
-        "A residual dipole of 0.02 A m^2 about each axis, unknown to the law, gives as much; fitted.",
+        name="gains by the regulator, as flown by TANGO",
+        source="[O19] 3.1 [76, 77]",
+        kind=Kind.GROUND,
+        where="sim/design/feedback/lqr_gains.py",
+        claim="The PD law with gains by LQR did its work aboard TANGO, with an accuracy of 10 to 20 deg.",
+        claims=(
+            "review.feedback.tango.none",
+            "review.feedback.tango.dipole",
+        ),
+        remark=(
+            "A residual dipole of 0.02 A m^2 along each axis, unknown to the law, gives as much; the "
+            "dipole is fitted."
+        ),
     ),
     Method(
-        "dipole held over several steps (`pd_held`)",
-        "[O19] 3.1 [78]",
-        Kind.FLOWN,
-        "fsw/core/laws/feedback/held.py, sim/design/feedback/held.py",
-        "A dipole that is constant over a control interval stabilises with gains chosen for the interval.",
-        ("review.feedback.held.long", "review.feedback.held.too_long", "review.feedback.hold"),
+        name="dipole held over several steps (`pd_held`)",
+        source="[O19] 3.1 [78]",
+        kind=Kind.FLOWN,
+        where="fsw/core/laws/feedback/held.py, sim/design/feedback/held.py",
+        claim=(
+            "A dipole that is constant over a control interval stabilises with gains chosen for the interval."
+        ),
+        claims=(
+            "review.feedback.held.long",
+            "review.feedback.held.too_long",
+            "review.feedback.hold",
+        ),
     ),
     Method(
-        name="Gains for the pulses of the flight software",
+        name="gains for the pulses of the flight software",
         source="[O19] 3.1 [78, 79]",
         kind=Kind.GROUND,
         where="sim/design/theory/pulsed.py",
         claim=(
-            "The law works held over an interval, and measured before it acts; short intervals, or "
-            "pulses of their own gains."
+            "The law works when its dipole is held over an interval, and when measuring and acting "
+            "alternate; long intervals need gains of their own."
         ),
         claims=("review.feedback.pulses.degree",),
         remark=(
@@ -122,95 +144,100 @@ METHODS: tuple[Method, ...] = (
         ),
     ),
     Method(
-        "measuring and acting apart (`pd_apart`)",
-        "[O19] 3.1 [79]",
-        Kind.FLOWN,
-        "fsw/core/laws/feedback/held.py",
-        "The same holds where intervals of measuring are as long as those of acting.",
-        ("review.feedback.held.apart",),
+        name="measuring and acting apart (`pd_apart`)",
+        source="[O19] 3.1 [79]",
+        kind=Kind.FLOWN,
+        where="fsw/core/laws/feedback/held.py",
+        claim="The same holds where intervals of measuring are as long as those of acting.",
+        claims=("review.feedback.held.apart",),
     ),
     Method(
-        "delayed output feedback",
-        "[O19] 3.1 [80]",
-        Kind.FLOWN,
-        "fsw/core/laws/feedback/delayed.py",
-        "Three axes by attitude and delayed attitude.",
-        ("review.feedback.delayed",),
-        "Equation not found (searched: pages, documentation); the mean rate over the delay is derived.",
+        name="delayed output feedback (`pd_delayed`)",
+        source="[O19] 3.1 [80]",
+        kind=Kind.FLOWN,
+        where="fsw/core/laws/feedback/delayed.py",
+        claim="The attitude and the delayed attitude hold three axes.",
+        claims=("review.feedback.delayed",),
+        remark=(
+            "Equation not found (searched: pages, documentation); the mean rate over the delay is derived."
+        ),
     ),
     Method(
-        name="Projection weighted by axes (`pd_weighted`)",
+        name="projection weighted by axes (`pd_weighted`)",
         source="[O19] 3.1 [81]",
         kind=Kind.FLOWN,
         where="fsw/core/laws/feedback/projection.py",
-        claim=("A weight on the axis of small moment points it far better at some cost of the others."),
+        claim="A weight on the axis of small moment points it far better at some cost of the others.",
         claims=(
             "review.feedback.weighted.gain",
             "review.feedback.weighted.cost",
         ),
     ),
     Method(
-        name="Regularised inverse (`pd_regularised`)",
+        name="regularised inverse (`pd_regularised`)",
         source="[O19] 3.1 [82, 83]",
         kind=Kind.FLOWN,
         where="fsw/core/laws/feedback/projection.py",
         claim=(
-            "A small addition makes the matrix of the cross product regular; the law stays that of "
-            "the projection."
+            "A small addition makes the matrix of the cross product regular; the law stays that of the "
+            "projection."
         ),
         claims=("review.feedback.regularised.final",),
     ),
     Method(
-        "error of the field's direction",
-        "[O19] 3.1 [84]",
-        Kind.FLOWN,
-        "fsw/core/laws/feedback/field_direction.py",
-        "PD on e = t - n, t the direction in body axes that is to lie along the field.",
-        ("review.feedback.direction.attitude",),
-        "The scan loses the torque; derived. Three axes need a wheel or a firm gravity gradient.",
+        name="error of the field's direction (`field_direction`)",
+        source="[O19] 3.1 [84]",
+        kind=Kind.FLOWN,
+        where="fsw/core/laws/feedback/field_direction.py",
+        claim="PD on e = t - n, t the direction in body axes that is to lie along the field.",
+        claims=("review.feedback.direction.attitude",),
+        remark="The scan loses the torque; derived. Three axes need a wheel or a firm gravity gradient.",
     ),
     Method(
-        "sphere, no rate (`sphere_output`)",
-        "[O19] 3.1 [85, 86]",
-        Kind.FLOWN,
-        "fsw/core/laws/feedback/sphere.py",
-        "For a sphere, feedback without data of the rate.",
-        ("review.feedback.sphere.output",),
-        "Equation not found (searched: pages, documentation); an observer of a sphere's motion is derived.",
+        name="sphere without a measured rate (`sphere_output`)",
+        source="[O19] 3.1 [85, 86]",
+        kind=Kind.FLOWN,
+        where="fsw/core/laws/feedback/sphere.py",
+        claim="A sphere is held by feedback without a measured rate.",
+        claims=("review.feedback.sphere.output",),
+        remark=(
+            "Equation not found (searched: pages, documentation); an observer of a sphere's motion is "
+            "derived."
+        ),
     ),
     Method(
-        "sphere to the local vertical (`sphere_vertical`)",
-        "[O19] 3.1 [87]",
-        Kind.FLOWN,
-        "fsw/core/laws/feedback/sphere.py",
-        "For a sphere, an intuitive law to the local vertical.",
-        ("review.feedback.sphere.vertical",),
-        "Equation not found; derived from a Lyapunov function.",
+        name="sphere to the local vertical (`sphere_vertical`)",
+        source="[O19] 3.1 [87]",
+        kind=Kind.FLOWN,
+        where="fsw/core/laws/feedback/sphere.py",
+        claim="An intuitive law turns an axis of a sphere to the local vertical.",
+        claims=("review.feedback.sphere.vertical",),
+        remark="Equation not found; derived from a Lyapunov function.",
     ),
     Method(
-        "sphere to the field",
-        "[O19] 3.1 [88]",
-        Kind.FLOWN,
-        "fsw/core/laws/feedback/field_direction.py",
-        "For a sphere, an intuitive law to the geomagnetic field.",
-        ("review.feedback.direction.needle",),
-        "The axis lags by some degrees, as the field turns.",
+        name="sphere to the field (`field_direction`)",
+        source="[O19] 3.1 [88]",
+        kind=Kind.FLOWN,
+        where="fsw/core/laws/feedback/field_direction.py",
+        claim="An intuitive law turns an axis of a sphere to the geomagnetic field.",
+        claims=("review.feedback.direction.axis",),
+        remark="The axis lags by some degrees, as the field turns.",
     ),
     Method(
-        "two turns about the field",
-        "[O19] 3.1 [89]",
-        Kind.FLOWN,
-        "fsw/core/laws/feedback/two_step.py",
-        "Near the magnetic equator three axes by two simple turns, for a sphere.",
-        (
+        name="two turns across the field (`two_step`)",
+        source="[O19] 3.1 [89]",
+        kind=Kind.FLOWN,
+        where="fsw/core/laws/feedback/two_step.py",
+        claim="Near the magnetic equator two simple turns bring a sphere to any attitude.",
+        claims=(
             "review.feedback.two_step.equator",
-            "review.feedback.two_step.plain",
+            "review.feedback.two_step.pd",
             "review.feedback.two_step.inclined",
         ),
-        "Split derived. At 5 deg inclination the field turns too far between the turns, and it fails.",
+        remark="Split derived. At 5 deg inclination the field turns too far between the turns, and it fails.",
     ),
     Method(
-        name="Shortest dipole for an energy law",
+        name="shortest dipole for an energy law (`rate_damping`)",
         source="[T] eq. 5, Wisniewski 1997",
         kind=Kind.FLOWN,
         where="fsw/core/laws/damping/damping.py",
@@ -221,3 +248,4 @@ METHODS: tuple[Method, ...] = (
         ),
     ),
 )
+"""In the order of the review."""

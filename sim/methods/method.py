@@ -20,10 +20,10 @@ class Method:
     """One row.
 
     Attributes:
-        name: what it is, in a few words.
-        source: section of the review with the number of its author there, as ``[O19] 2.1 [37]``.
+        name: what it is, in a few words, with its laws in parentheses.
+        source: paper, section, equation, and the number in its references, as ``[O19] 2.1 eq. 4 [37]``.
         kind: what has become of it.
-        where: the module, from the top of the project, or several, with commas; empty where it was
+        where: the module, from the top of the project, or several with commas between; empty where it was
             passed over.
         claim: what the text, or its cited author, says of it, in a sentence.
         claims: ids of the rows of ``torquer validate`` that measure it.

@@ -4,21 +4,21 @@ from sim.methods.method import Kind, Method
 
 METHODS: tuple[Method, ...] = (
     Method(
-        name="PD law in the orbital frame",
+        name="PD law in the orbital frame (`pd`)",
         source="[O15] eq. 3",
         kind=Kind.FLOWN,
         where="fsw/core/laws/feedback/pd.py",
-        claim=("The law holds the orbital frame although gravity and gyroscopic torques are left out of it."),
+        claim="The law holds the orbital frame although gravity and gyroscopic torques are left out of it.",
         claims=("linearisation",),
     ),
     Method(
-        name="Best gains of typical satellites",
-        source="[O15] sec. 3, eq. 4",
+        name="best gains of typical satellites",
+        source="[O15] 3 eq. 4",
         kind=Kind.GROUND,
         where="sim/design/theory/search.py",
         claim=(
-            "The gains with the least degree of stability, for a CubeSat, a microsatellite and one of "
-            "a few tons."
+            "The gains with the least degree of stability, for a CubeSat, a microsatellite and one of a "
+            "few tons."
         ),
         claims=(
             "best_gains.1U",
@@ -28,16 +28,16 @@ METHODS: tuple[Method, ...] = (
         ),
     ),
     Method(
-        name="Bodies that the gravity gradient turns over",
-        source="[O15] sec. 3",
+        name="bodies that the gravity gradient turns over",
+        source="[O15] 3",
         kind=Kind.GROUND,
         where="sim/design/theory/bodies.py",
         claim="Stability depends on the moments; some bodies have no stabilising gains.",
         claims=("unstable_bodies",),
     ),
     Method(
-        name="Flight with a Kalman filter and disturbances",
-        source="[O15] sec. 4",
+        name="flight with a Kalman filter and disturbances",
+        source="[O15] 4",
         kind=Kind.FLOWN,
         where="sim/scenario/shipped/kalman-50kg.toml",
         claim="The gains work with a filter in the loop and an inclined dipole.",
@@ -48,7 +48,7 @@ METHODS: tuple[Method, ...] = (
         ),
     ),
     Method(
-        name="Models of the field: direct and inclined dipole, IGRF",
+        name="models of the field: direct and inclined dipole, IGRF",
         source="[O19] introduction [6-8]",
         kind=Kind.FLOWN,
         where="fsw/core/orbit/field.py",
@@ -59,27 +59,33 @@ METHODS: tuple[Method, ...] = (
         ),
     ),
     Method(
-        name="Controllability on the mean",
+        name="controllability on the mean",
         source="[O19] introduction [4, 5, 9]",
         kind=Kind.GROUND,
         where="sim/design/theory/controllability.py",
         claim="The satellite is controllable over an orbit, but for two relations between its moments.",
-        claims=("review.controllability.orbit", "review.controllability.equator"),
-        remark="Over the equator the field stands still, and coils cannot. The relations are not printed.",
+        claims=(
+            "review.controllability.orbit",
+            "review.controllability.equator",
+        ),
+        remark=(
+            "Over the equator the direct dipole's field does not turn, and coils cannot control the satellite. "
+            "The relations are not printed."
+        ),
     ),
     Method(
-        name="Epsilon strategies",
+        name="epsilon strategies",
         source="[O19] introduction [10]",
         kind=Kind.PASSED_OVER,
         where="",
-        claim=("A control strategy for small deviations is proposed with the proof of controllability."),
+        claim="A control strategy for small deviations is proposed with the proof of controllability.",
         remark=(
             "The review gives no equation; none was found by the authors' names, the title and the "
             "method's name."
         ),
     ),
     Method(
-        name="Passive magnets, hysteresis rods and dampers",
+        name="passive magnets, hysteresis rods and dampers",
         source="[O19] introduction [1, 15]",
         kind=Kind.PASSED_OVER,
         where="",
@@ -87,7 +93,7 @@ METHODS: tuple[Method, ...] = (
         remark="The review leaves passive systems out: nothing is commanded.",
     ),
     Method(
-        name="First active systems; motion from the magnetometer's record",
+        name="first active systems; motion from the magnetometer's record",
         source="[O19] introduction [2, 3]",
         kind=Kind.PASSED_OVER,
         where="",
@@ -95,11 +101,11 @@ METHODS: tuple[Method, ...] = (
         remark="History: no law is given. A recorded motion is what `torquer calibrate` works with.",
     ),
     Method(
-        name="Surveys and books",
+        name="surveys and books",
         source="[O19] introduction [11, 13, 14, 16, 17]",
         kind=Kind.PASSED_OVER,
         where="",
         claim="They sum up what others have found.",
-        remark="No methods of their own are told.",
+        remark="They describe no methods of their own.",
     ),
 )

@@ -1,6 +1,6 @@
-"""All methods, in the order of the review; then those of the other papers and of its introduction.
+"""All methods by the sections of the review, then those of the other papers and of its introduction.
 
-And which of the review's references none of them names.
+And the references of the review that none of them names.
 """
 
 import re
@@ -30,7 +30,7 @@ METHODS: tuple[Method, ...] = (
 )
 
 LAST = 113
-"""The review [O19] has so many references."""
+"""Number of the last reference of the review [O19]."""
 
 _LIST = re.compile(r"\[(\d[\d,\s-]*)\]")
 

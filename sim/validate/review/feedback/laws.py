@@ -112,7 +112,7 @@ def direction() -> Study:
             high=1.0,
         ),
         Claim(
-            "review.feedback.direction.needle",
+            "review.feedback.direction.axis",
             "Angle of a body axis from the field in the second orbit, a sphere, magnetometer alone",
             f"{SECTION}, after Smirnov 2001 [88]",
             "deg",
@@ -160,7 +160,7 @@ def two_step() -> Study:
             high=3.0,
         ),
         Claim(
-            "review.feedback.two_step.plain",
+            "review.feedback.two_step.pd",
             "The same of pd, which has no torque about the field",
             source,
             "deg",
