@@ -69,8 +69,8 @@ METHODS: tuple[Method, ...] = (
             "review.controllability.equator",
         ),
         remark=(
-            "Over the equator the direct dipole's field does not turn, and coils cannot control the satellite. "
-            "The relations are not printed."
+            "Over the equator the direct dipole's field does not turn, and coils cannot control the "
+            "satellite. The relations are not printed."
         ),
     ),
     Method(
