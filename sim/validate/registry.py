@@ -14,6 +14,7 @@ from sim.validate.review import (
     damping,
     driven_wheel,
     feedback,
+    linear,
     one_axis,
     optimal,
     predictive,
@@ -44,7 +45,7 @@ def all_studies(satellites: int | None = None) -> list[Study]:
             study
             for section in (
                 *(damping, spin, wheel, one_axis, feedback, sliding, optimal, predictive),
-                *(fixed_wheel, pointing),
+                *(fixed_wheel, pointing, linear),
             )
             for study in section.studies()
         ),

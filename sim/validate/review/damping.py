@@ -12,7 +12,8 @@ from fsw.core.laws.damping.optimal import EnergyGains, ModelGains, MomentumGains
 from sim.campaign.claim import Claim, Study, Threshold
 from sim.plant.dynamics.jacobi import jacobi_integral
 from sim.validate.review.figures import one_figure
-from sim.validate.review.law_flight import LawFlight, LawHistory, fly
+from sim.validate.review.law_flight import LawFlight, fly
+from sim.validate.review.law_history import LawHistory
 
 FULL = ((1.02, 0.03, -0.02), (0.03, 1.85, 0.05), (-0.02, 0.05, 1.95))
 SPHERE = ((1.9, 0.0, 0.0), (0.0, 1.9, 0.0), (0.0, 0.0, 1.9))
@@ -34,7 +35,6 @@ def studies() -> list[Study]:
                 "w0",
                 low=1.8,
                 high=2.0,
-                threshold=Threshold.PAPER,
             ),
             bdot_stop,
         ),

@@ -1,8 +1,6 @@
 """Claims: a wheel beside the coils that can be driven (section 2.4 of the review)."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import replace
 from math import inf, radians
 
 import numpy as np
@@ -10,24 +8,24 @@ import numpy as np
 from fsw.core.laws.wheel.allocation import affordable
 from fsw.core.laws.wheel.dual_spin import DualSpinGains
 from fsw.core.laws.wheel.pitch_wheel import PitchWheelGains
-from fsw.core.laws.wheel.two_coils import two_coils_and_wheel
-from sim.campaign.claim import Claim, Study
+from fsw.core.laws.wheel.two_coils import TwoCoilsGains, two_coils_and_wheel
+from sim.campaign.claim import Study
 from sim.campaign.flight import Order
 from sim.campaign.study import Figure, Group, campaign, summary_value
 from sim.plant.environment.orbit import Array
 from sim.plant.rotation import Vec3
 from sim.plant.wheel_config import WheelConfig
-from sim.validate.review.figures import one_figure
-from sim.validate.review.law_flight import LawFlight, LawHistory, fly
+from sim.validate.review.fifty_kg import INERTIA
+from sim.validate.review.figures import FigureClaim
+from sim.validate.review.law_flight import ConstantTorque, LawFlight, fly
+from sim.validate.review.law_history import LawHistory
 
 REVIEW = "Ovchinnikov, Roldugin 2019, section 2.4"
-INERTIA = ((1.02, 0.0, 0.0), (0.0, 1.85, 0.0), (0.0, 0.0, 1.95))
 WHEEL = WheelConfig((0.0, 0.0, 1.0), 2e-4, 2e-3, 0.12)
 TORQUE_NM = 1e-6
 """About each axis, constant."""
-SPRING_DEG = 0.70
-"""What the spring of 0.01 rad/s leaves of it: T / (J w_n^2) about each axis, 0.56, 0.31 and 0.29 deg."""
 DRAWN = 2000
+"""Torques, fields and axes at random."""
 
 HELD = LawFlight(
     "two_coils",
@@ -39,7 +37,7 @@ HELD = LawFlight(
     most_am2=8.0,
     altitude_km=500.0,
     inclination_deg=51.6,
-    extra=lambda c, v: (TORQUE_NM, -TORQUE_NM, TORQUE_NM),
+    extra=ConstantTorque((TORQUE_NM, -TORQUE_NM, TORQUE_NM)),
     wheel=WHEEL,
 )
 """Held against a torque, the wheel along the orbit normal."""
@@ -47,20 +45,6 @@ TURNED = replace(HELD, extra=None, rotation_rad=(0.0, 0.0, radians(20.0)), orbit
 """20 deg off in pitch."""
 BIAS_NMS = 0.05
 BIASED = replace(WHEEL, momentum_nms=BIAS_NMS)
-
-
-@dataclass(frozen=True, slots=True)
-class _WheelRow:
-    """A claim whose figure a function gives."""
-
-    name: str
-    statement: str
-    source: str
-    unit: str
-    low: float
-    high: float
-    figure: Callable[[], float]
-    wide: str = ""
 
 
 def _last_half(values: Array) -> Array:
@@ -72,7 +56,10 @@ def _dipole_am2(flown: LawHistory) -> float:
 
 
 def given_share() -> float:
-    """The largest part of a torque that two coils and a wheel lack, for any torque, field and axis."""
+    """The largest part of a torque that two coils and a wheel lack, for any torque, field and axis.
+
+    Where the dipole is large, of the torques that cancel in it.
+    """
     random, worst = np.random.default_rng(56), 0.0
     for _ in range(DRAWN):
         torque, field, axis = (_unit(random) for _ in range(3))
@@ -91,8 +78,15 @@ def _unit(random: np.random.Generator) -> Vec3:
 
 
 def held_off_spring_deg() -> float:
-    """The largest difference from what the spring leaves, at 51.6 deg."""
-    return float(np.abs(_last_half(fly(HELD).angle_deg) - SPRING_DEG).max())
+    """The largest difference from the angle at which spring and gravity gradient balance the torque.
+
+    T_i = (J_i w_n^2 + w0^2 g_i) theta_i, g = (C - B, 4 (C - A), 3 (B - A)), w_n the spring's frequency.
+    """
+    flown, moments = fly(HELD), np.diag(np.array(INERTIA))
+    a, b, c = moments
+    gravity = flown.orbit_rate_radps**2 * np.array([c - b, 4.0 * (c - a), 3.0 * (b - a)])
+    turns = TORQUE_NM / (moments * TwoCoilsGains().frequency_radps ** 2 + gravity)
+    return float(np.abs(_last_half(flown.angle_deg) - np.degrees(np.linalg.norm(turns))).max())
 
 
 def dipole_growth() -> float:
@@ -150,8 +144,8 @@ def momentum_left() -> float:
     return float(abs(fly(case).wheel_nms[-1] - BIAS_NMS) / 0.03)
 
 
-ROWS: tuple[_WheelRow, ...] = (
-    _WheelRow(
+ROWS: tuple[FigureClaim, ...] = (
+    FigureClaim(
         "two_coils",
         "Two coils and one wheel: largest part of the torque wanted that they lack, any field and axis",
         "[56]: any torque wanted is given in full",
@@ -161,16 +155,16 @@ ROWS: tuple[_WheelRow, ...] = (
         given_share,
         "rounding alone",
     ),
-    _WheelRow(
+    FigureClaim(
         "two_coils_held",
-        "1e-6 N m held at 51.6 deg inclination: difference from what the spring asked for leaves",
+        "1e-6 N m held at 51.6 deg inclination: difference from the angle of the spring asked for",
         "[56]: any torque wanted is given in full",
         "deg",
         -inf,
         0.005,
         held_off_spring_deg,
     ),
-    _WheelRow(
+    FigureClaim(
         "two_coils_growth",
         "Its dipole at 80 deg inclination over that at the equator, times the cosine of 80 deg",
         "[56]: the matrix has b along the wheel for its pivots; direct dipole",
@@ -179,7 +173,7 @@ ROWS: tuple[_WheelRow, ...] = (
         1.25,
         dipole_growth,
     ),
-    _WheelRow(
+    FigureClaim(
         "two_coils_polar",
         "The same torque in a polar orbit, the field normal to the wheel: dipole over that at 51.6 deg",
         "[56]: the matrix is singular there",
@@ -188,7 +182,7 @@ ROWS: tuple[_WheelRow, ...] = (
         inf,
         polar_growth,
     ),
-    _WheelRow(
+    FigureClaim(
         "allocation_effort",
         "Three coils and the wheel with the least effort: dipole over that of two coils, 51.6 deg",
         "[57]: the torque is shared among coils and wheels",
@@ -197,7 +191,7 @@ ROWS: tuple[_WheelRow, ...] = (
         0.9,
         effort_share,
     ),
-    _WheelRow(
+    FigureClaim(
         "allocation_limits",
         "Largest effort that the sharing asks for, of what coils and wheel can give, any torque",
         "[57]",
@@ -206,7 +200,7 @@ ROWS: tuple[_WheelRow, ...] = (
         1.0 + 1e-9,
         beyond_limits,
     ),
-    _WheelRow(
+    FigureClaim(
         "pitch_speed",
         "Pitch by the wheel's speed: time under 1 deg from 20 deg, of that by the coils of dual spin",
         "[58]: a pitch wheel whose speed can be controlled",
@@ -215,7 +209,7 @@ ROWS: tuple[_WheelRow, ...] = (
         0.2,
         pitch_speed,
     ),
-    _WheelRow(
+    FigureClaim(
         "pitch_momentum",
         "The coils bring its momentum back: part of 0.03 N m s left after an orbit at 80 deg inclination",
         "[58]",
@@ -229,29 +223,11 @@ ROWS: tuple[_WheelRow, ...] = (
 
 def studies() -> list[Study]:
     """All of this section."""
-    return [*map(_study, ROWS), flown()]
-
-
-def _study(row: _WheelRow) -> Study:
-    claim = Claim(
-        f"review.wheel.{row.name}",
-        row.statement,
-        f"{REVIEW}, {row.source}",
-        row.unit,
-        low=row.low,
-        high=row.high,
-        wide=row.wide,
-    )
-    return one_figure(claim, partial(_figure, row.name))
-
-
-def _figure(name: str) -> float:
-    """The figure of a row, by its name."""
-    return next(row for row in ROWS if row.name == name).figure()
+    return [*(row.study("wheel", REVIEW) for row in ROWS), flown()]
 
 
 def flown() -> Study:
-    """The whole chain: filter, frames, boards, friction and lag."""
+    """The whole chain in the loop: filter, frames, boards, friction and lag of the motor."""
     figures = (
         Figure(
             "final",

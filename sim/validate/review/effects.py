@@ -5,7 +5,7 @@ from math import cos, radians, sin
 
 import numpy as np
 
-from sim.campaign.claim import Claim, Study, Threshold
+from sim.campaign.claim import Claim, Study
 from sim.effects.fluid_ring import FluidRing
 from sim.effects.lorentz import lorentz_torque, velocity_in_field
 from sim.effects.solar_flaps import SUNLIGHT_PA, SolarFlaps
@@ -57,7 +57,7 @@ def studies() -> list[Study]:
                 f"{REVIEW} [66]: near the equator the field lies along the normal",
                 "1",
                 high=1e-12,
-                threshold=Threshold.PAPER,
+                wide="zero but for rounding",
             ),
             coils_about_normal,
         ),

@@ -9,6 +9,40 @@ from sim.validate.review.law_flight import LawFlight
 
 
 @dataclass(frozen=True, slots=True)
+class FigureClaim:
+    """A claim whose figure a function gives.
+
+    Attributes:
+        name: last words of the id.
+        statement, unit, low, high, wide: as ``Claim`` has them.
+        source: number in the review's references, and what is said there.
+        figure: picklable.
+    """
+
+    name: str
+    statement: str
+    source: str
+    unit: str
+    low: float
+    high: float
+    figure: Callable[[], float]
+    wide: str = ""
+
+    def study(self, section: str, review: str) -> Study:
+        """Its study; ``section`` begins the id after ``review.``, ``review`` the source."""
+        claim = Claim(
+            f"review.{section}.{self.name}",
+            self.statement,
+            f"{review}, {self.source}",
+            self.unit,
+            low=self.low,
+            high=self.high,
+            wide=self.wide,
+        )
+        return one_figure(claim, self.figure)
+
+
+@dataclass(frozen=True, slots=True)
 class FlownClaim:
     """A claim on one figure of the flight of a law.
 

@@ -37,12 +37,24 @@ from sim.plant.rotation import (
     transform,
 )
 from sim.plant.wheel_config import WheelConfig
+from sim.validate.review.law_history import LawHistory
 
 DEGREE, EPOCH_UNIX_S = 13, 1_742_461_200
 """Of the true field."""
 
 Extra = Callable[[Mat3, Vec3], Vec3]
 """A further torque, body axes [N m], from C(body from eci) and the velocity in eci [m/s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class ConstantTorque:
+    """A constant torque, body axes, N m."""
+
+    torque_body_nm: Vec3
+
+    def __call__(self, c_body_from_eci: Mat3, velocity_eci_mps: Vec3) -> Vec3:
+        """The torque, wherever the body is and however it is turned."""
+        return self.torque_body_nm
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,51 +107,6 @@ class LawFlight:
     schedules: dict[str, Schedule] = field(default_factory=dict)
     igrf: bool = False
     wheel: WheelConfig | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class LawHistory:
-    """Histories, a row a step: absolute and relative rate, attitudes, momentum, dipole."""
-
-    t_s: Array
-    orbit_rate_radps: float
-    omega_body_radps: Array
-    relative_body_radps: Array
-    q_body_from_orbit: Array
-    c_body_from_orbit: Array
-    c_body_from_eci: Array
-    momentum_eci_nms: Array
-    m_body_am2: Array
-    wheel_nms: Array
-
-    @property
-    def orbits(self) -> Array:
-        """Time in orbits."""
-        return self.t_s * self.orbit_rate_radps / (2.0 * np.pi)
-
-    @property
-    def angle_deg(self) -> Array:
-        """From the nominal attitude."""
-        scalar = np.clip(np.abs(self.q_body_from_orbit[:, 0]), 0.0, 1.0)
-        angle: Array = np.degrees(2.0 * np.arccos(scalar))
-        return angle
-
-    def axis_deg(self, axis: int, direction_eci: Vec3) -> Array:
-        """Of a body axis from a direction in eci."""
-        return angle_deg(self.c_body_from_eci[:, axis, :], direction_eci)
-
-    def orbit_axis_deg(self, axis: int, direction: int) -> Array:
-        """Of a body axis from an axis of the orbital frame."""
-        cosines = np.clip(self.c_body_from_orbit[:, axis, direction], -1.0, 1.0)
-        angle: Array = np.degrees(np.arccos(cosines))
-        return angle
-
-
-def angle_deg(vectors: Array, direction: Vec3) -> Array:
-    """Of each row from a direction."""
-    cosines = vectors @ np.array(direction) / np.linalg.norm(direction) / np.linalg.norm(vectors, axis=1)
-    angle: Array = np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0)))
-    return angle
 
 
 def fly(case: LawFlight) -> LawHistory:

@@ -18,14 +18,14 @@ from sim.design.theory.bodies import Body
 from sim.plant.rotation import Mat3
 from sim.validate.review import effects
 from sim.validate.review.feathers import SHUTTLECOCK
+from sim.validate.review.fifty_kg import INERTIA
 from sim.validate.review.figures import FlownClaim, one_figure
-from sim.validate.review.law_flight import LawFlight, LawHistory, angle_deg, fly
+from sim.validate.review.law_flight import LawFlight, fly
+from sim.validate.review.law_history import LawHistory, angle_deg
 
 REVIEW = "Ovchinnikov, Roldugin 2019, section"
 FIRM = ((0.3, 0.0, 0.0), (0.0, 2.0, 0.0), (0.0, 0.0, 2.2))
 """A body with a boom along the vertical, kg m^2."""
-MICROSAT = ((1.02, 0.0, 0.0), (0.0, 1.85, 0.0), (0.0, 0.0, 1.95))
-"""50 kg, without a boom."""
 SUN = (0.2 / sqrt(0.78), -0.7 / sqrt(0.78), 0.5 / sqrt(0.78))
 TURNED = (1.0, 0.5, -1.0)
 SHARES = HandOverGains(0.3, 0.5)
@@ -105,7 +105,7 @@ ROWS: tuple[FlownClaim, ...] = (
         1.0,
         LawFlight(
             "pd_when_slow",
-            MICROSAT,
+            INERTIA,
             k_w=6e6,
             k_a=1615.0,
             gains=SlowGains(),
@@ -126,7 +126,7 @@ ROWS: tuple[FlownClaim, ...] = (
         5.0,
         LawFlight(
             "slow_spin",
-            MICROSAT,
+            INERTIA,
             k_w=6e6,
             spin_radps=0.004,
             gains=SpinGains(3.0),
@@ -145,7 +145,7 @@ ROWS: tuple[FlownClaim, ...] = (
         45.0,
         LawFlight(
             "sun_panels",
-            MICROSAT,
+            INERTIA,
             k_w=6e6,
             k_a=2000.0,
             gains=PanelGains(1.0),
@@ -177,7 +177,7 @@ ROWS: tuple[FlownClaim, ...] = (
         15.0,
         LawFlight(
             "sun_critical",
-            MICROSAT,
+            INERTIA,
             gains=CriticalGains(2.0, 0.001),
             omega_body_radps=(0.01, -0.01, 0.01),
             rotation_rad=TURNED,
@@ -195,7 +195,7 @@ ROWS: tuple[FlownClaim, ...] = (
         inf,
         LawFlight(
             "sun_critical",
-            MICROSAT,
+            INERTIA,
             gains=CriticalGains(2.0, 0.004),
             omega_body_radps=(0.01, -0.01, 0.01),
             rotation_rad=TURNED,
@@ -232,7 +232,7 @@ def studies() -> list[Study]:
     return [
         *(row.study("one_axis", REVIEW, flown_figure) for row in ROWS),
         _tracking("boom", FIRM, -inf, -0.2),
-        _tracking("microsat", MICROSAT, -0.01, -0.003),
+        _tracking("microsat", INERTIA, -0.01, -0.003),
         *effects.studies(),
     ]
 

@@ -1,19 +1,14 @@
 """Claims: three axes, sliding control (section 3.1)."""
 
 from functools import partial
-from typing import Any
-
-import numpy as np
 
 from fsw.core.laws.sliding.realisable import RealisableGains
 from sim.campaign.claim import Claim, Study
+from sim.validate.review.fifty_kg import SPHERE, flight, last_orbit_deg
 from sim.validate.review.figures import judged
 from sim.validate.review.law_flight import LawFlight, fly
 
 SECTION = "Ovchinnikov, Roldugin 2019, section 3.1"
-FIFTY = ((1.02, 0.0, 0.0), (0.0, 1.85, 0.0), (0.0, 0.0, 1.95))
-SPHERE = ((1.6, 0.0, 0.0), (0.0, 1.6, 0.0), (0.0, 0.0, 1.6))
-DIRECTION = (1.0, 2.0, 3.0)
 STEEP = {"reach": 3.0, "slope": 1.0}
 """A surface as steep as the orbit turns: more than the coils can follow with a constant matrix."""
 
@@ -24,7 +19,7 @@ def studies() -> list[Study]:
 
 
 def realisable() -> Study:
-    """The surface that coils reach, beside the same one with a constant matrix."""
+    """The surface that coils can reach, beside the same one with a constant matrix."""
     source = f"{SECTION}, after Ovchinnikov et al. 2016 [95]"
     claims = (
         Claim(
@@ -82,7 +77,7 @@ def rate() -> Study:
 
 
 def twisting() -> Study:
-    """The bent surface with super-twisting, under coils that reach a plane of it at a time."""
+    """Super-twisting on the terminal surface, with coils that give torque in a plane only."""
     claim = Claim(
         "review.sliding.twisting",
         "Pointing error of sliding_twisting in the fifth orbit, from 20 deg, 50 kg, nothing unknown",
@@ -107,21 +102,6 @@ def sphere() -> Study:
     return Study(claim.id, tasks, partial(judged, (claim,)))
 
 
-def flight(law: str, angle_deg: float, **changed: object) -> LawFlight:
-    """Five orbits at rest from a turn about no body axis, 10 s a step."""
-    turn = np.radians(angle_deg) * np.array(DIRECTION) / np.linalg.norm(DIRECTION)
-    x, y, z = turn.tolist()
-    start: dict[str, Any] = {"rotation_rad": (x, y, z), "relative": True, "near": True}
-    rest: dict[str, Any] = {"inertia_kgm2": FIFTY, "most_am2": 5.0, "orbits": 5.0, "step_s": 10.0}
-    return LawFlight(law, **(start | rest | changed))
-
-
-def last_orbit_deg(case: LawFlight) -> float:
-    """The largest angle from the nominal attitude in the last orbit."""
-    flown = fly(case)
-    return float(flown.angle_deg[flown.orbits > case.orbits - 1.0].max())
-
-
 def largest_deg(case: LawFlight) -> float:
-    """The largest of the whole flight."""
+    """The largest angle from the nominal attitude in the whole flight."""
     return float(fly(case).angle_deg.max())

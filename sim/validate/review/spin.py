@@ -16,7 +16,8 @@ from sim.campaign.claim import Claim, Study
 from sim.design.spin import roll_precession
 from sim.plant.environment.orbit import EARTH_RADIUS_M, MU_M3PS2, Array
 from sim.validate.review.figures import FlownClaim, one_figure
-from sim.validate.review.law_flight import LawFlight, LawHistory, angle_deg, fly
+from sim.validate.review.law_flight import LawFlight, fly
+from sim.validate.review.law_history import LawHistory, angle_deg
 
 REVIEW = "Ovchinnikov, Roldugin 2019, section 2.1"
 INERTIA = ((1.2, 0.0, 0.0), (0.0, 1.2, 0.0), (0.0, 0.0, 2.0))

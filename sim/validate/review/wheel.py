@@ -1,7 +1,6 @@
 """Claims: a wheel beside the coils (section 2.2 of the review)."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from math import inf
 
@@ -10,7 +9,7 @@ import numpy as np
 from fsw.core.laws.wheel.horizon_roll import HorizonRollGains
 from fsw.core.laws.wheel.six_gain import SixGainGains
 from fsw.core.laws.wheel.wheel_relay import WheelRelayGains
-from sim.campaign.claim import Claim, Study
+from sim.campaign.claim import Study
 from sim.design.theory.bodies import Body, diagonal
 from sim.design.theory.floquet import monodromy, multipliers
 from sim.design.theory.linear import Gains, closed_loop
@@ -18,10 +17,11 @@ from sim.design.wheel.comparison import slowest
 from sim.design.wheel.convergence import convergence
 from sim.design.wheel.elliptic import Ellipse, WheelLaw, decays
 from sim.plant.environment.orbit import Array
-from sim.plant.rotation import Mat3, Vec3
-from sim.validate.review.figures import one_figure
+from sim.plant.rotation import Vec3
+from sim.validate.review.figures import FigureClaim
 from sim.validate.review.flown import gurwin
-from sim.validate.review.law_flight import LawFlight, LawHistory, fly
+from sim.validate.review.law_flight import ConstantTorque, LawFlight, fly
+from sim.validate.review.law_history import LawHistory
 
 REVIEW = "Ovchinnikov, Roldugin 2019, section 2.2"
 WHEEL_NMS: Vec3 = (0.0, 0.0, 0.05)
@@ -59,19 +59,6 @@ EQUATOR = replace(
     rotation_rad=(0.17, 0.0, 0.0),
 )
 """All of it yaw, which the law does not see."""
-
-
-@dataclass(frozen=True, slots=True)
-class ConstantTorque:
-    """A constant torque, body axes, N m."""
-
-    torque_body_nm: Vec3
-
-    def __call__(self, c_body_from_eci: Mat3, velocity_eci_mps: Vec3) -> Vec3:
-        """The torque, wherever the body is and however it is turned."""
-        return self.torque_body_nm
-
-
 PUSHED = replace(
     WHEELED,
     law="wheel_integral",
@@ -90,22 +77,9 @@ MOST_ECCENTRIC = 0.2
 COMPARED = Body("compared", WHEELED.inertia_kgm2, 800.0, 98.6, WHEEL_NMS)
 
 
-@dataclass(frozen=True, slots=True)
-class _Row:
-    """A claim and the function of its figure."""
-
-    name: str
-    statement: str
-    source: str
-    unit: str
-    low: float
-    high: float
-    figure: Callable[[], float]
-
-
 def studies() -> list[Study]:
     """All of this section."""
-    return [*(_study(row) for row in ROWS), *gurwin.studies()]
+    return [*(row.study("wheel", REVIEW) for row in ROWS), *gurwin.studies()]
 
 
 def last_lean_deg(case: LawFlight) -> float:
@@ -159,8 +133,8 @@ def nutation_gain() -> float:
     return ellipse / circle
 
 
-ROWS: tuple[_Row, ...] = (
-    _Row(
+ROWS: tuple[FigureClaim, ...] = (
+    FigureClaim(
         "six_gain.lean",
         "Six gains: the wheel's axis from the orbit normal after two orbits, from 10 deg",
         "[45]",
@@ -169,7 +143,7 @@ ROWS: tuple[_Row, ...] = (
         1.2,
         partial(last_lean_deg, WHEELED),
     ),
-    _Row(
+    FigureClaim(
         "six_gain.yaw",
         "The same: what roll alone leaves after two orbits, over what roll and yaw leave",
         "[18, 45]: the laws compared",
@@ -178,7 +152,7 @@ ROWS: tuple[_Row, ...] = (
         inf,
         partial(lean_share, ROLL_ALONE, WHEELED),
     ),
-    _Row(
+    FigureClaim(
         "six_gain.springs",
         "The same: slowest decay with springs of half the stiffness, over that without; averaging says 10/9",
         "[45]: the laws compared",
@@ -187,7 +161,7 @@ ROWS: tuple[_Row, ...] = (
         1.13,
         spring_ratio,
     ),
-    _Row(
+    FigureClaim(
         "wheel_relay",
         "Sliding relay on a polar orbit: lean left by an orbit; its surface alone leaves exp(-4 pi t) = 0.32",
         "[51]",
@@ -196,7 +170,7 @@ ROWS: tuple[_Row, ...] = (
         0.34,
         partial(orbit_share, POLAR),
     ),
-    _Row(
+    FigureClaim(
         "horizon_roll",
         "Horizon sensor at 5 deg of inclination: lean after two orbits from 10 deg of yaw, which is not seen",
         "[41]",
@@ -205,7 +179,7 @@ ROWS: tuple[_Row, ...] = (
         0.3,
         partial(last_lean_deg, EQUATOR),
     ),
-    _Row(
+    FigureClaim(
         "wheel_integral",
         "Integral part: mean roll that a constant torque leaves in the sixth orbit, of that without the part",
         "[47]",
@@ -214,7 +188,7 @@ ROWS: tuple[_Row, ...] = (
         0.1,
         partial(mean_roll_share, PUSHED, 3.0),
     ),
-    _Row(
+    FigureClaim(
         "convergence",
         "Closed expressions for the decay of pitch, precession, nutation: error beside Floquet exponents",
         "[40]: closed expressions for the speed",
@@ -223,7 +197,7 @@ ROWS: tuple[_Row, ...] = (
         5e-4,
         worst_decay,
     ),
-    _Row(
+    FigureClaim(
         "strong_wheel",
         "Decay of the precession by rate damping with a wheel, over that with one twice as strong",
         "[40], closing remark: a large momentum changes slowly",
@@ -232,7 +206,7 @@ ROWS: tuple[_Row, ...] = (
         2.1,
         precession_ratio,
     ),
-    _Row(
+    FigureClaim(
         "elliptic.slowest",
         "Eccentricity 0.2: slowest decay of precession and nutation by the law of six gains",
         "[46]: nutation is damped on an elliptic orbit",
@@ -241,7 +215,7 @@ ROWS: tuple[_Row, ...] = (
         -0.01,
         slowest_decay,
     ),
-    _Row(
+    FigureClaim(
         "elliptic.nutation",
         "Decay of the nutation at eccentricity 0.2, over that on the circle of its size",
         "[46]",
@@ -251,13 +225,6 @@ ROWS: tuple[_Row, ...] = (
         nutation_gain,
     ),
 )
-
-
-def _study(row: _Row) -> Study:
-    claim = Claim(
-        f"review.wheel.{row.name}", row.statement, f"{REVIEW}, {row.source}", row.unit, row.low, row.high
-    )
-    return one_figure(claim, row.figure)
 
 
 def _lean_deg(flown: LawHistory) -> Array:

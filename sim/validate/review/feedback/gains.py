@@ -20,28 +20,29 @@ from sim.design.feedback.robust import robust_share, worst_degree
 from sim.design.theory.bodies import BODIES, Body
 from sim.design.theory.linear import Gains
 from sim.validate.microsat import pointing_figures
+from sim.validate.review.fifty_kg import BODY, PD, flight, last_orbit_deg
 from sim.validate.review.figures import judged
-from sim.validate.review.sliding import SECTION, flight, last_orbit_deg
 
-BEST = Gains(6.2694e6, 1614.9)
-"""The PD law's gains of the 50 kg satellite, by Floquet theory."""
-BODY = BODIES[2]
+SECTION = "Ovchinnikov, Roldugin 2019, section 3.1"
+BEST = Gains(**PD)
 BOUNDS = 0.5
 """Relative error of each moment of inertia."""
 WEAK_AM2 = 0.2
+"""Dipole of each coil for which minimax gains are sought."""
 EFFORT = 0.1
+"""Of the regulator from which TANGO's gains are drawn."""
 TANGO_AM2 = 0.02
 """Residual dipole of each axis at which the 50 kg satellite points as TANGO did."""
 TANGO_ORBITS = 7.0
 
 
 def studies() -> list[Study]:
-    """All of gains."""
+    """All of this module."""
     return [scheme(), limit(), robust(), settling(), hold(), tango(), averaged()]
 
 
 def scheme() -> Study:
-    """The scheme for pointing among the stars."""
+    """The scheme for inertial pointing."""
     claim = Claim(
         "review.feedback.scheme",
         "Best degree of stability on the line of averaging over that of all gains, least of six bodies",
@@ -210,7 +211,7 @@ def limit_factor() -> float:
 
 def beside_limit_deg(factor: float) -> float:
     """The pointing error in the last of eight orbits at ``factor`` times the largest k_a."""
-    gains = {"k_w": 6.2694e6, "k_a": 1614.9 * limit_factor() * factor}
+    gains = PD | {"k_a": PD["k_a"] * limit_factor() * factor}
     return last_orbit_deg(flight("pd", 5.0, orbits=8.0, **gains))
 
 

@@ -10,28 +10,27 @@ from fsw.core.laws.feedback.field_direction import FieldDirectionGains
 from fsw.core.laws.feedback.held import ApartGains, HoldGains
 from sim.campaign.claim import Claim, Study
 from sim.design.feedback.inertial import best_on_line
-from sim.design.theory.bodies import BODIES
 from sim.plant.config import OrbitConfig
 from sim.plant.environment.field import DirectDipole
 from sim.plant.environment.orbit import Array, CircularOrbit
 from sim.plant.rotation import Vec3
+from sim.validate.review.fifty_kg import BODY, INERTIA, PD, SPHERE, flight, last_orbit_deg
 from sim.validate.review.figures import judged
-from sim.validate.review.law_flight import LawFlight, LawHistory, angle_deg, fly
-from sim.validate.review.sliding import FIFTY, SECTION, SPHERE, flight, last_orbit_deg
+from sim.validate.review.law_flight import LawFlight, fly
+from sim.validate.review.law_history import LawHistory, angle_deg
 
-PD: dict[str, Any] = {"k_w": 6.2694e6, "k_a": 1614.9}
-"""The PD law's gains of the 50 kg satellite, by Floquet theory."""
-BODY = BODIES[2]
+SECTION = "Ovchinnikov, Roldugin 2019, section 3.1"
 OFF_DEG = 40.0
+"""From its target at the start of inertial pointing."""
 
 
 def studies() -> list[Study]:
-    """All of this section."""
+    """All of this module."""
     return [inertial(), held(), delayed(), direction(), sphere(), two_step()]
 
 
 def inertial() -> Study:
-    """Pointing among the stars."""
+    """Inertial pointing."""
     source = f"{SECTION}, after Ovchinnikov, Roldugin, Penkov 2015 [71]"
     claims = (
         Claim(
@@ -54,7 +53,7 @@ def inertial() -> Study:
 
 
 def held() -> Study:
-    """Dipoles held over many steps, and apart from measuring."""
+    """Dipoles held over many steps, without and with a time of measuring before."""
     source = f"{SECTION}, after Celani 2016 [78], [79]"
     claims = (
         Claim(
@@ -88,7 +87,7 @@ def held() -> Study:
 
 
 def delayed() -> Study:
-    """The delay for the rate."""
+    """The delayed attitude in place of the rate."""
     claim = Claim(
         "review.feedback.delayed",
         "Pointing error of pd_delayed in the fifth orbit without a rate, delays of 60 to 120 s, from 20 deg",
@@ -119,7 +118,7 @@ def direction() -> Study:
             high=20.0,
         ),
     )
-    tasks = (partial(last_orbit_deg, wheel_flight()), needle_deg)
+    tasks = (partial(last_orbit_deg, wheel_flight()), field_axis_deg)
     return Study("review.feedback.direction", tasks, partial(judged, claims))
 
 
@@ -149,7 +148,7 @@ def sphere() -> Study:
 
 
 def two_step() -> Study:
-    """Two turns across a field that does not turn."""
+    """Two turns across a field that does not turn, beside the PD law."""
     source = f"{SECTION}, after Inamori et al. 2016 [89]"
     claims = (
         Claim(
@@ -188,7 +187,7 @@ def inertial_error_deg(gravity: bool) -> float:
     rotation: Vec3 = (-radians(BODY.inclination_deg - OFF_DEG), 0.0, 0.0)
     case = LawFlight(
         "pd_inertial",
-        FIFTY,
+        INERTIA,
         k_w=float(np.asarray(gains.k_w)),
         k_a=float(np.asarray(gains.k_a)),
         near=True,
@@ -211,7 +210,7 @@ def wheel_flight() -> LawFlight:
     return flight("field_direction", 20.0, inertia_kgm2=even, k_w=1e7, k_a=2000.0, **rest)
 
 
-def needle_deg() -> float:
+def field_axis_deg() -> float:
     """The largest angle of a body axis from the field in the second orbit."""
     own = FieldDirectionGains(0.0, 2.0, 1.0)
     rest: dict[str, Any] = {"k_w": 1e7, "k_a": 2e4, "step_s": 5.0, "orbits": 2.0, "known": False}

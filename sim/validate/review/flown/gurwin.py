@@ -7,14 +7,15 @@ from math import inf, radians
 import numpy as np
 
 from fsw.core.laws.optimal.lqr import LqrGains, schedule
-from sim.campaign.claim import Claim, Study
+from sim.campaign.claim import Study
 from sim.design.theory.bodies import Body, diagonal
 from sim.design.wheel.harmonics import fit, orbit
 from sim.plant.config import OrbitConfig
 from sim.plant.environment.field import RotatingIgrf
 from sim.plant.environment.orbit import CircularOrbit
-from sim.validate.review.figures import one_figure
-from sim.validate.review.law_flight import DEGREE, EPOCH_UNIX_S, LawFlight, fly
+from sim.validate.review.fifty_kg import last_orbit_deg
+from sim.validate.review.figures import FigureClaim
+from sim.validate.review.law_flight import DEGREE, EPOCH_UNIX_S, LawFlight
 
 REVIEW = "Ovchinnikov, Roldugin 2019, section 2.2"
 BODY = Body("Gurwin", diagonal((1.9, 1.95, 2.0)), 800.0, 98.6, (0.0, 0.0, 0.05))
@@ -53,52 +54,8 @@ DIPOLE_AM2 = (0.3, -0.5, 0.8)
 """Residual; only its direction counts."""
 
 
-def studies() -> list[Study]:
-    """Recovery, pointing, and the shape of a disturbance."""
-    return [
-        _study(
-            "recovery",
-            "Field tracking (7) by the magnetometer alone: sixth orbit's error after a tumble of 1 deg/s",
-            "eq. 7 [42]: flown on Gurwin",
-            "deg",
-            (-inf, 1.0),
-            partial(last_orbit_deg, FAILED),
-        ),
-        _study(
-            "lqr",
-            "LQR of linear model and direct dipole, flown in the true field: third orbit's error from 20 deg",
-            "[44]: the simplified design serves the fuller model",
-            "deg",
-            (-inf, 0.3),
-            partial(regulated_deg),
-        ),
-        _study(
-            "constant",
-            "Torque of a residual dipole in the true field: share that a constant leaves",
-            "[44]: disturbances as periodic functions",
-            "1",
-            (0.9, 1.0),
-            partial(share_left, 1),
-        ),
-        _study(
-            "harmonics",
-            "The same: share that one and two times the orbital rate leave",
-            "[44]: disturbances at once and twice the orbital rate",
-            "1",
-            (-inf, 0.15),
-            partial(share_left, 5),
-        ),
-    ]
-
-
-def last_orbit_deg(case: LawFlight) -> float:
-    """The largest attitude error of the last orbit."""
-    flown = fly(case)
-    return float(flown.angle_deg[flown.orbits > flown.orbits[-1] - 1.0].max())
-
-
 def regulated_deg() -> float:
-    """That of the regulator, its gains from the direct dipole's field and the linear model."""
+    """The largest error in the last orbit, gains from the linear model in the direct dipole's field."""
     table = schedule(
         BODY.inertia_kgm2,
         BODY.wheel_nms,
@@ -123,8 +80,46 @@ def share_left(count: int) -> float:
     return fit(u_rad, np.cross(DIPOLE_AM2, np.einsum("tij,tj->ti", axes, b_eci_t)), count).left
 
 
-def _study(
-    name: str, statement: str, source: str, unit: str, limits: tuple[float, float], figure: partial[float]
-) -> Study:
-    claim = Claim(f"review.wheel.gurwin.{name}", statement, f"{REVIEW}, {source}", unit, *limits)
-    return one_figure(claim, figure)
+ROWS: tuple[FigureClaim, ...] = (
+    FigureClaim(
+        "recovery",
+        "Field tracking (7) by the magnetometer alone: sixth orbit's error after a tumble of 1 deg/s",
+        "eq. 7 [42]: flown on Gurwin",
+        "deg",
+        -inf,
+        1.0,
+        partial(last_orbit_deg, FAILED),
+    ),
+    FigureClaim(
+        "lqr",
+        "LQR of linear model and direct dipole, flown in the true field: third orbit's error from 20 deg",
+        "[44]: the simplified design serves the fuller model",
+        "deg",
+        -inf,
+        0.3,
+        regulated_deg,
+    ),
+    FigureClaim(
+        "constant",
+        "Torque of a residual dipole in the true field: share that a constant leaves",
+        "[44]: disturbances as periodic functions",
+        "1",
+        0.9,
+        1.0,
+        partial(share_left, 1),
+    ),
+    FigureClaim(
+        "harmonics",
+        "The same: share that one and two times the orbital rate leave",
+        "[44]: disturbances at once and twice the orbital rate",
+        "1",
+        -inf,
+        0.15,
+        partial(share_left, 5),
+    ),
+)
+
+
+def studies() -> list[Study]:
+    """Recovery, pointing, and the shape of a disturbance."""
+    return [row.study("wheel.gurwin", REVIEW) for row in ROWS]

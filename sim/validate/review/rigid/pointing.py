@@ -1,39 +1,29 @@
 """Claims on the laws that hold the whole attitude (sections 3.1, 3.2), flown rigidly."""
 
 from collections.abc import Sequence
-from dataclasses import replace
-from math import inf, pi
+from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fsw.core.laws.optimal.lqr import LqrGains
 from fsw.input.schema import Nested
-from sim.campaign.claim import Claim, ClaimOutcome, Study
-from sim.design.theory.bodies import BODIES, Body
-from sim.design.theory.controllability import conditioning
-from sim.design.theory.floquet import ROUGH_STEPS
-from sim.design.theory.linear import Gains
-from sim.design.theory.pulsed import PulsedLoop, Pulsing
-from sim.design.theory.robustness import margins
-from sim.design.theory.search import continuous
+from sim.campaign.claim import Study
 from sim.design.tuning.flown import RigidFlight
-from sim.validate.review.rigid.trial import NEAR, REVIEW, RigidTrial, Trial, TrialFigure, gains, over
+from sim.validate.review.fifty_kg import BODY, PD
+from sim.validate.review.rigid.trial import NEAR, RigidTrial, Trial, TrialFigure, gains, over
 
 Array = NDArray[np.float64]
 Flights = Sequence[RigidFlight]
 
-BEST = (6.2694e6, 1614.9)
-"""k_w and k_a of the 50 kg satellite by Floquet theory."""
 TORQUE: Nested = {"disturbance": {"torque_nm": [1e-7, 1e-7, 1e-7]}}
 SLENDER: Nested = {"body": {"inertia_kgm2": [0.2, 1.9, 1.95]}, "coils": {"max_dipole_am2": 5.0}}
 ENDS = "decays without end"
-_MEAN_MOMENT, _FIELD_T = (1.02 + 1.85 + 1.95) / 3.0, 7.812e15 / 7178.137e3**3
 
 
 def feedback_trials() -> list[Trial]:
     """Section 3.1, feedback."""
-    k_w, k_a = BEST
+    k_w, k_a = PD["k_w"], PD["k_a"]
     even, heavy = ({"q1": q1, "q2": 1.0, "q3": 1.0} for q1 in (1.0, 10.0))
     return [
         Trial(
@@ -141,81 +131,9 @@ def other_trials() -> list[Trial]:
     ]
 
 
-def linear_studies() -> list[Study]:
-    """Margins of the inertia, and the pulses, by Floquet theory; controllability."""
-    return [
-        Study("review.feedback.inertia", (inertia_margin,), _judge_inertia),
-        Study("review.feedback.pulses", (pulsed_degree,), _judge_pulses),
-        Study("review.controllability", (controlled,), _judge_controlled),
-    ]
-
-
 def studies() -> list[Study]:
     """All of this module."""
-    return [
-        *(trial.study() for trial in (*feedback_trials(), *other_trials())),
-        *linear_studies(),
-    ]
-
-
-def inertia_margin() -> float:
-    """The least relative error of the moments that makes the best gains of a boom satellite unstable."""
-    body = _body("boom")
-    found = margins(body, Gains(3.2433e8, 4.7969e4), continuous(body, ROUGH_STEPS)).moments
-    return inf if found is None else found
-
-
-def pulsed_degree() -> float:
-    """Degree of stability of the 50 kg satellite under pulses, 1/rad."""
-    body = _body("50 kg")
-    return float(PulsedLoop(body, Pulsing(3.0, 100.0, 300.0, True)).degree(Gains(*BEST)))
-
-
-def _judge_inertia(found: Sequence[float]) -> list[ClaimOutcome]:
-    claim = Claim(
-        "review.feedback.inertia.margin",
-        "Least error of the moments at which the best gains of a satellite with a boom become unstable",
-        f"{REVIEW}, section 3.1 [73]",
-        "1",
-        high=0.02,
-    )
-    return [claim.judge(found[0])]
-
-
-def _judge_pulses(found: Sequence[float]) -> list[ClaimOutcome]:
-    claim = Claim(
-        "review.feedback.pulses.degree",
-        "Degree of stability of 50 kg with its best gains, the dipole in pulses of 3 s each 103 s",
-        f"{REVIEW}, section 3.1 [78, 79]",
-        "1/rad",
-        high=-0.2,
-    )
-    return [claim.judge(found[0])]
-
-
-def controlled() -> tuple[float, float]:
-    """Least over greatest eigenvalue of the Gramian of an orbit: of 50 kg, and the same at the equator."""
-    body = _body("50 kg")
-    return conditioning(body), conditioning(replace(body, inclination_deg=0.0))
-
-
-def _judge_controlled(found: Sequence[tuple[float, float]]) -> list[ClaimOutcome]:
-    source = f"{REVIEW}, introduction [4, 5, 9]"
-    statement = "Least over greatest eigenvalue of the Gramian of an orbit, 50 kg, direct dipole"
-    inclined = Claim("review.controllability.orbit", statement, source, "1", low=0.01)
-    equator = Claim(
-        "review.controllability.equator",
-        f"{statement}, orbit over the equator",
-        source,
-        "1",
-        high=1e-12,
-        wide="it is zero but for rounding",
-    )
-    return [inclined.judge(found[0][0]), equator.judge(found[0][1])]
-
-
-def _body(name: str) -> Body:
-    return next(body for body in BODIES if body.name == name)
+    return [trial.study() for trial in (*feedback_trials(), *other_trials())]
 
 
 def _final(name: str, what: str) -> TrialFigure:
@@ -242,7 +160,8 @@ def _axes_deg(flight: RigidFlight) -> Array:
 
 
 def _cost(flight: RigidFlight) -> float:
-    """The integral of |theta|^2 + effort |m|^2, over the steps."""
-    unit_am2 = _MEAN_MOMENT * (2.0 * pi / flight.orbit_s) ** 2 / _FIELD_T
+    """The sum of |theta|^2 + effort |m|^2 over the steps, m in units of J_mean w0^2 / B0."""
+    mean_kgm2 = float(np.trace(np.array(BODY.inertia_kgm2))) / 3.0
+    unit_am2 = mean_kgm2 * (2.0 * pi / flight.orbit_s) ** 2 / BODY.field_t
     dipoles = np.sum((flight.m_body_am2 / unit_am2) ** 2)
     return float(np.sum(np.radians(flight.pointing_deg) ** 2) + LqrGains().effort * dipoles)
