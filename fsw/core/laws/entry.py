@@ -20,7 +20,7 @@ class Aim(StrEnum):
     SUN = "sun"
     """An axis is turned to the Sun."""
     INERTIAL = "inertial"
-    """The whole attitude is held among the stars."""
+    """The whole attitude is held to a target fixed in inertial space."""
     VERTICAL = "vertical"
     """An axis is held to the local vertical, the body free to turn about it."""
     CHECK = "check"

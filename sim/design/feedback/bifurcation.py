@@ -1,12 +1,13 @@
 """The largest attitude gain before the controlled attitude loses its stability, and how it does.
 
-Control that turns the body only about the right way must not turn it far: as k_a grows, at one k_w, a
-characteristic multiplier of the linear motion leaves the unit circle, and the equilibrium bifurcates:
+A projected torque is not the one demanded, and a strong one can turn the body the wrong way: as k_a grows at
+constant k_w, a characteristic multiplier of the linear motion leaves the unit circle and the equilibrium
+bifurcates,
 
-    at +1 (fold): other resting attitudes part from it; at -1 (flip): a motion of two orbits does;
-    as a pair (torus): a slow wobble over the orbit does.
+    at +1 (fold): other equilibria meet it;  at -1 (flip): a motion with a period of two orbits does;
+    as a pair (torus): a motion with a second period beside the orbit's does.
 
-Beyond that gain the nominal attitude repels. The damping part alone has no such limit.
+Beyond that gain the nominal attitude is unstable. The damping part alone has no such limit.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1, after Della Rossa, Bergamasco, Lovera 2012.
 """
@@ -23,6 +24,7 @@ from sim.design.theory.linear import Array, Gains, closed_loop
 MOST_FACTOR = 100.0
 """Factor up to which the gain is raised."""
 SCAN, HALVINGS = 60, 30
+"""Factors tried up to there, and bisections between the last stable and the first unstable one."""
 REAL = 1e-6
 """Imaginary part under which a multiplier is real."""
 
@@ -36,7 +38,7 @@ class Leaving(StrEnum):
 
 
 class Bifurcation(NamedTuple):
-    """Where and how the equilibrium is lost."""
+    """The k_a, N m / T^2, at which stability ends, and how."""
 
     k_a: float
     leaving: Leaving

@@ -19,6 +19,7 @@ from sim.design.theory.floquet import NEUTRAL, degree_of_stability, product, tra
 from sim.design.theory.linear import Array, Gains, dipole_field, feedback_scales, free_motion, skew
 
 MOST_HOLDS, LEAST_HOLDS = 40, 3
+"""Intervals an orbit between which the longest stable one is sought."""
 STEPS_AN_ORBIT = 48
 """Least steps of the integration over an orbit."""
 

@@ -1,6 +1,6 @@
-"""Gains of the PD law among the stars: their ratio by averaging, their size by Floquet theory.
+"""Gains of the inertial PD law: their ratio by averaging, their size by Floquet theory.
 
-Small turns theta from a target fixed in eci, with w = omega / w0, over the argument of latitude u:
+Small turns theta from a target fixed in eci, with w = omega / w0 and ' = d/du, u the argument of latitude:
 
     w' = -J^-1 G(u) (K_w w + K_a theta),     theta' = w,     K_w = k_w B0^2 / w0,  K_a = 2 k_a B0^2 / w0^2,
 
@@ -13,8 +13,8 @@ z'' + g (K_w z' + K_a z) = 0 with g an eigenvalue of J^-1 <G>, and the slowest i
 That leaves k_w alone, which Floquet theory gives: the least degree of stability on this line.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1, after Ovchinnikov, Roldugin, Penkov 2015 (Acta Astronautica
-110): a simple scheme by analytical results and Floquet theory. The review prints no formula; this line is
-derived from what it says.
+110): a simple scheme by analytical results and Floquet theory. The review prints no formula; the line of
+critical damping is derived here from what it says.
 """
 
 import numpy as np
@@ -28,21 +28,19 @@ from sim.design.theory.linear import Array, Gains, System, dipole_field, feedbac
 POINTS = 720
 """Points of the orbit over which the field is averaged."""
 SPAN = (-2.0, 2.0)
-"""Natural logarithms of k_w, times the natural one, between which the best is sought."""
+"""Logarithms of k_w over the natural one between which the best is sought."""
+
+
+def inertial_field(u: Array, body: Body) -> Array:
+    """The direct dipole's field in units of B0, in the axes of the orbit at u = 0, shape (..., 3)."""
+    b1, b2, b3 = np.moveaxis(dipole_field(u, body), -1, 0)
+    cosine, sine = np.cos(u), np.sin(u)
+    return np.stack([cosine * b1 - sine * b2, sine * b1 + cosine * b2, b3], axis=-1)
 
 
 def inertial_projection(u: Array, body: Body) -> Array:
-    """G(u) in axes that do not turn, those of the orbit at u = 0: shape (..., 3, 3)."""
-    cosine, sine, zero = np.cos(u), np.sin(u), np.zeros_like(u)
-    turned = np.stack(
-        [
-            np.stack([cosine, -sine, zero], -1),
-            np.stack([sine, cosine, zero], -1),
-            np.stack([zero, zero, zero + 1.0], -1),
-        ],
-        -2,
-    )
-    cross = skew((turned @ dipole_field(u, body)[..., None])[..., 0])
+    """G(u) of that field, in the same axes: (..., 3, 3)."""
+    cross = skew(inertial_field(u, body))
     return -cross @ cross
 
 
@@ -98,16 +96,17 @@ def best_on_line(body: Body) -> tuple[Gains, float]:
 def best_of_all(body: Body) -> tuple[Gains, float]:
     """The same over k_w and k_a apart, by a simplex that begins on the line."""
     start, _ = best_on_line(body)
-    k_w, k_a = float(np.asarray(start.k_w)), float(np.asarray(start.k_a))
-
-    def gains(logs: Array) -> Gains:
-        return Gains(k_w * float(np.exp(logs[0])), k_a * float(np.exp(logs[1])))
-
     corners = 0.3 * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
     place: Array = np.zeros(2)
 
     def degree(logs: Array) -> float:
-        return inertial_degree(body, gains(logs))
+        return inertial_degree(body, near_gains(start, logs))
 
     found = minimize(degree, place, method="Nelder-Mead", options={"initial_simplex": corners, "maxfev": 150})
-    return gains(np.asarray(found.x, dtype=np.float64)), float(found.fun)
+    return near_gains(start, np.asarray(found.x, dtype=np.float64)), float(found.fun)
+
+
+def near_gains(start: Gains, logs: Array) -> Gains:
+    """k_w and k_a, each times the exponential of its number in ``logs``."""
+    k_w, k_a = float(np.asarray(start.k_w)), float(np.asarray(start.k_a))
+    return Gains(k_w * float(np.exp(logs[0])), k_a * float(np.exp(logs[1])))

@@ -8,8 +8,8 @@ that comes nearest to it over the orbit, by the sum of squares of the elements, 
 b the field on the nominal attitude. The effort decides how strong the gains are.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1, after Chasset, Noteborn, Bodin, Larsson, Jakobsson 2013: the
-PD law aboard TANGO, its gains by the regulator. How they were drawn from it the review does not say; nearest
-over the orbit is this project's.
+PD law aboard TANGO, its gains by the regulator. The review does not say how they were drawn from it; the
+nearest over the orbit is this project's choice.
 """
 
 import numpy as np

@@ -1,9 +1,9 @@
 """Gains for the least settling time from the worst of many starts, with coils of limited dipole.
 
-Pointing among the stars by m = -b x (k_w omega + k_a E), E = 4 qv, each coil limited to its dipole, on a
-circular orbit in the direct dipole's field. From each start the attitude has settled once its error stays
-under an angle; the cost of (k_w, k_a) is the longest of these times, which a simplex lowers. It has no
-derivative, and without the limit it would ask for ever larger dipoles.
+Inertial pointing by m = -b x (k_w omega + k_a E), E = 4 qv, each coil limited to its dipole, on a circular
+orbit in the direct dipole's field. From each start the attitude has settled once its error stays under an
+angle. The cost of (k_w, k_a) is the longest of these times; it has no derivative, and a simplex lowers it.
+Without the limit of the dipole the gains would grow without bound.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1, after Bruni, Celani 2017. Theirs is a search by a global
 method over uncertain starts; here a local one over starts that are given.
@@ -14,11 +14,14 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import minimize
 
+from sim.design.feedback.inertial import inertial_field, near_gains
 from sim.design.theory.bodies import Body
-from sim.design.theory.linear import Array, Gains, dipole_field
+from sim.design.theory.linear import Array, Gains
 
 STEP_S = 40.0
+"""Of the integration."""
 SETTLED_DEG = 5.0
+"""Error below which a flight has settled."""
 ROUNDS = 24
 """Costs that the search computes, if not told otherwise."""
 
@@ -53,7 +56,7 @@ def settling_orbits(body: Body, gains: Gains, most_am2: float, starts: Starts, o
         orbits: length of the flight.
 
     Returns:
-        (k,); of an unsettled start ``orbits`` and its last error in half turns: a slope for the search.
+        (k,); for an unsettled start ``orbits`` plus its last error in half turns, a slope for the search.
     """
     w0, inertia = body.rate_radps, np.asarray(body.inertia_kgm2)
     steps = int(orbits * 2.0 * np.pi / w0 / STEP_S)
@@ -67,31 +70,20 @@ def settling_orbits(body: Body, gains: Gains, most_am2: float, starts: Starts, o
     return np.where(last >= orbits, orbits + _angle_deg(x) / 180.0, last)
 
 
-def inertial_field(u: Array, body: Body) -> Array:
-    """The direct dipole's field in units of B0, in the axes of the orbit at u = 0: (k, 3)."""
-    b1, b2, b3 = np.moveaxis(dipole_field(u, body), -1, 0)
-    cosine, sine = np.cos(u), np.sin(u)
-    return np.stack([cosine * b1 - sine * b2, sine * b1 + cosine * b2, b3], axis=-1)
-
-
 def minimax(
     body: Body, start: Gains, most_am2: float, starts: Starts, orbits: float, rounds: int = ROUNDS
 ) -> tuple[Gains, float]:
     """The gains with the least longest settling time found from ``start``, and that, orbits."""
-    k_w, k_a = float(np.asarray(start.k_w)), float(np.asarray(start.k_a))
-
-    def gains(logs: Array) -> Gains:
-        return Gains(k_w * float(np.exp(logs[0])), k_a * float(np.exp(logs[1])))
 
     def cost(logs: Array) -> float:
-        return float(settling_orbits(body, gains(logs), most_am2, starts, orbits).max())
+        return float(settling_orbits(body, near_gains(start, logs), most_am2, starts, orbits).max())
 
     simplex = 0.5 * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
     place: Array = np.zeros(2)
     found = minimize(
         cost, place, method="Nelder-Mead", options={"initial_simplex": simplex, "maxfev": rounds}
     )
-    return gains(np.asarray(found.x, dtype=np.float64)), float(found.fun)
+    return near_gains(start, np.asarray(found.x, dtype=np.float64)), float(found.fun)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,9 +1,8 @@
 """Gains that hold for every inertia within bounds.
 
-Averaging shows that gains e k_w and e^2 k_a stabilise a satellite that points among the stars for any inertia
-if e is small enough. How small it must be is found here: the largest e with which the loop of
-``feedback.inertial`` is stable for the least and the greatest value of each moment, in all combinations that
-are a body's.
+Averaging shows that gains e k_w and e^2 k_a stabilise inertial pointing for any inertia if e is small enough.
+How small it must be is found here: the largest e with which the loop of ``feedback.inertial`` is stable for
+the least and the greatest value of each moment, in all combinations that a rigid body can have.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1, after Celani 2015 (Acta Astronautica 107).
 """
@@ -23,7 +22,7 @@ SHARES = np.geomspace(2.0, 0.02, 60)
 
 
 def corners(body: Body, error: float) -> list[Body]:
-    """The body with each moment ``error`` of itself too small or too great, if it is a body's."""
+    """The body with each moment smaller or greater by ``error`` of itself, where a body can have them."""
     j = np.diag(np.asarray(body.inertia_kgm2))
     found = []
     for signs in product((-1.0, 1.0), repeat=3):

@@ -1,8 +1,8 @@
 """The laws of a pitch wheel beside each other, as choices of six gains with the same k1 and k3.
 
-The degree of stability of roll and yaw on a circular orbit says which is worth its measurements. With roll
-and yaw alike the precession's two parts decay by 9/8 and 11/8 of one quantity, for the precession and the
-square of the field keep step; a spring, of either sign, takes them out of step, and both decay by 10/8.
+The degree of stability of roll and yaw on a circular orbit says which measurements pay. With roll and yaw
+weighted alike the two parts of the precession decay by 9/8 and 11/8 of one quantity, as precession and square
+of the field keep step; a spring, of either sign, takes them out of step, and both decay by 10/8.
 
 Source: Hablani 1995 (Comparative stability analysis) compares the laws, as Ovchinnikov, Roldugin 2019,
 section 2.2, says; the figures are this project's.

@@ -14,24 +14,18 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fsw.core.laws.predictive.simple_field import harmonics
 from sim.design.theory.linear import Array
 
 FUNCTIONS = 5
+"""All of them."""
 
 
 class Harmonics(NamedTuple):
-    """The coefficients c, (5, 3), and the root mean square of what they leave, of that of the torque."""
+    """The coefficients c, (count, 3), and the root mean square of what they leave over that of the torque."""
 
     coefficients_nm: Array
     left: float
-
-
-def functions(u_rad: Array) -> Array:
-    """1, cos u, sin u, cos 2u, sin 2u: (n, 5)."""
-    shapes: Array = np.stack(
-        [np.ones_like(u_rad), np.cos(u_rad), np.sin(u_rad), np.cos(2.0 * u_rad), np.sin(2.0 * u_rad)], axis=-1
-    )
-    return shapes
 
 
 def fit(u_rad: Array, torque_nm: Array, count: int = FUNCTIONS) -> Harmonics:
@@ -42,7 +36,7 @@ def fit(u_rad: Array, torque_nm: Array, count: int = FUNCTIONS) -> Harmonics:
         torque_nm: torque there, (n, 3), not zero throughout.
         count: 1: a constant; 3: once the orbital rate too; 5: all.
     """
-    shapes = functions(u_rad)[:, :count]
+    shapes = harmonics(u_rad)[:, :count]
     coefficients = np.asarray(np.linalg.lstsq(shapes, torque_nm, rcond=None)[0], dtype=np.float64)
     left = float(np.linalg.norm(torque_nm - shapes @ coefficients) / np.linalg.norm(torque_nm))
     return Harmonics(coefficients, left)

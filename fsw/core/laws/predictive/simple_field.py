@@ -63,12 +63,12 @@ def fitted(angles_rad: Array, b_orbit_t: Array, wanted_rad: Array) -> Array:
     Returns:
         Orbital axes, T, shape (k, 3).
     """
-    coefficients = np.linalg.lstsq(_functions(angles_rad), b_orbit_t, rcond=None)[0]
-    found: Array = _functions(wanted_rad) @ coefficients
+    coefficients = np.linalg.lstsq(harmonics(angles_rad), b_orbit_t, rcond=None)[0]
+    found: Array = harmonics(wanted_rad) @ coefficients
     return found
 
 
-def _functions(u_rad: Array) -> Array:
+def harmonics(u_rad: Array) -> Array:
     """1, cos u, sin u, cos 2u, sin 2u, shape (n, 5)."""
     return np.stack(
         [np.ones_like(u_rad), np.cos(u_rad), np.sin(u_rad), np.cos(2.0 * u_rad), np.sin(2.0 * u_rad)], axis=1

@@ -1,4 +1,4 @@
-"""Gains among the stars: the line of averaging, and how near it comes to the best of all."""
+"""Gains of inertial pointing: the line of averaging, and how near it comes to the best of all."""
 
 import numpy as np
 import pytest

@@ -27,7 +27,7 @@ def test_the_torque_turns_the_target_onto_the_field(b, t):
 
 @given(vectors, vectors)
 def test_turning_across_the_field_is_braked(b, omega):
-    """De/dt = -n x omega for a fixed target: M = -k_w |b|^2 omega_across."""
+    """de/dt = -n x omega for a fixed target: M = -k_w |b|^2 omega_across."""
     b, omega = 4e-5 * np.array(b), 1e-3 * np.array(omega)
     n = b / np.linalg.norm(b)
     torque = direction_torque(tuple(b), NOTHING, tuple(-np.cross(n, omega)), 5.0, 0.0)
@@ -51,8 +51,8 @@ def fly(bench, turned):
     return run
 
 
-def test_an_axis_follows_the_field_as_a_compass_needle_does(bench, fly):
-    """From far off, by the magnetometer alone, with the body turning about it as it likes."""
+def test_an_axis_follows_the_field_as_a_bar_magnet_would(bench, fly):
+    """From far off, by the magnetometer alone, the turn about the field free."""
     orbit, run = fly(OWN, bench.Body(np.diag([1.6, 1.6, 1.6])), orbits=2.0, k_a=2e4)
     b = np.einsum("tij,tj->ti", run.c_body_from_eci, orbit.b_eci_t(run.t_s))
     off = bench.angles_deg(b, (0.0, 2.0, 1.0))

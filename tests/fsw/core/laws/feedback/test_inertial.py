@@ -1,4 +1,4 @@
-"""PD among the stars: the error is that from the target, and the body stays there while the orbit turns."""
+"""Inertial PD: the error is that from the target, and the body stays there while the orbit turns."""
 
 import numpy as np
 import pytest
@@ -64,7 +64,7 @@ def test_half_a_turn_off_the_far_form_turns_and_the_near_form_rests(bench, turne
 
 
 @pytest.mark.parametrize(("gravity", "limit_deg"), [(False, 0.3), (True, 12.0)])
-def test_it_comes_to_a_target_among_the_stars_and_stays(bench, turned, gravity, limit_deg):
+def test_it_comes_to_an_inertial_target_and_stays(bench, turned, gravity, limit_deg):
     """Four orbits from 40 deg off; the gravity gradient is what is left."""
     orbit, c_target = bench.Orbit(), np.array(dcm(TARGET.q_target_from_eci))
     run = bench.fly(

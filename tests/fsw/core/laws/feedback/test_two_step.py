@@ -31,7 +31,7 @@ def test_both_turns_are_across_the_field_and_make_the_whole(q, n):
 
 @given(quaternions, directions)
 def test_of_both_signs_the_smaller_turns_are_taken(q, n):
-    """A quarter turn about the field never needs more than the half turns that a small one does."""
+    """Of q and -q the one with the lesser s^2 = 1 - p0^2."""
     q, n = normalise(q), tuple((np.array(n) / np.linalg.norm(n)).tolist())
     z = float(np.dot(q[1:], n))
     least = min(((1.0 - s) ** 2 + z * z) / (2.0 * (1.0 - s)) for s in (q[0], -q[0]) if s < 1.0)

@@ -55,7 +55,7 @@ def test_the_modified_law_gives_what_is_normal_to_the_field_of_the_reaching_torq
 
 
 def test_the_classical_law_adds_what_holds_the_surface(dipoles, bench):
-    """A law that asked for the free motion with the other sign would pass none of this."""
+    """By the rigid body's equations written out again."""
     inputs, (classical, modified) = dipoles
     w0, omega = inputs.reference.orbit_rate_radps, np.array(inputs.attitude.omega_body_orbit_radps)
     q = np.array(inputs.attitude.q_body_from_orbit)

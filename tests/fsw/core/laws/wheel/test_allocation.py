@@ -7,7 +7,6 @@ from hypothesis import strategies as st
 
 from fsw.core.laws.interface import Wheel
 from fsw.core.laws.wheel.allocation import (
-    FLOORS,
     AllocationGains,
     affordable,
     least_effort,
@@ -94,7 +93,6 @@ def test_what_costs_too_much_is_given_up_along_the_field_first():
     assert np.linalg.norm(np.cross(given - across, along)) < 0.4 * np.linalg.norm(across)
     assert np.dot(given, across) > 0.6 * np.dot(across, across)
     assert abs(np.dot(given, along)) < abs(np.dot(T, along))
-    assert min(FLOORS) > 0.0
 
 
 class TestInFlight:

@@ -134,7 +134,7 @@ def test_over_the_poles_it_fails(bench, turned):
 
 
 def test_far_away_all_coils_help(bench, turned):
-    """From 40 deg the wheel comes to be nearly normal to the field."""
+    """From 60 deg the wheel comes to be nearly normal to the field."""
     far = flown(bench, turned, law=two_coils_far, first_deg=60.0)
     assert far.angle_deg[-100:].max() < 0.5
     assert np.abs(far.m_body[:, 2]).max() > 0.1
