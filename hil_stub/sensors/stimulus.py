@@ -10,6 +10,7 @@ from fsw.wire.messages import MagField, SunCells, SunVector, Sync, intact
 Values = tuple[float, ...]
 """Three components of a vector, or the currents of six cells."""
 COUNTS = {3: "three", 6: "six"}
+"""Numbers of a reading, in words."""
 
 
 class Reading(NamedTuple):

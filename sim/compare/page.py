@@ -22,9 +22,10 @@ _MEANING = (
 
 
 _FOUND = (
-    "The best of {flights} flights for each law of {orbits:g} orbits each, on the rigid body in the direct "
-    "dipole, nothing unknown: by torquer design --laws. Cost: share of the flight until the error stays "
-    "under 5°, and log2(1 + RMS / 5°) of the last orbit; in deg/s for a law that does not point."
+    "The best gains that torquer design --laws has found in {flights} flights a law, {orbits:g} orbits each, "
+    "of the rigid body in the direct dipole's field with nothing unknown. Cost: share of the flight until "
+    "the error stays under 5°, and log2(1 + RMS / 5°) of the last orbit; a law that does not point is judged "
+    "by its rate."
 )
 
 
@@ -81,7 +82,7 @@ def _gains_table(kept: KeptGains, scores: Sequence[Score]) -> Table:
                     gains_text(row["control"]),
                 ]
             )
-    return Table(["law", "driver", "settled [orbits]", "RMS", "cost", "as shipped", "gains"], rows)
+    return Table(["law", "driver", "settled [orbits]", "RMS", "cost", "of the scenario's", "gains"], rows)
 
 
 def _panels(flights: Sequence[Result]) -> list[Panel]:

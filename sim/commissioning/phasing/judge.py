@@ -32,6 +32,7 @@ class Known:
         coil_field_nt_per_am2: F, the coils' field at the magnetometer by true dipole, body axes, (3, 3).
         field_around_nt: the field on the bench, body axes; None: the satellite is in orbit.
         offset_nt: largest offset of an axis of the magnetometer, by which a known field is compared.
+        in_orbit: whether the field is that of an orbit where ``field_around_nt`` is None.
     """
 
     coil_field_nt_per_am2: Array | None = None

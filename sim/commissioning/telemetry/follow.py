@@ -26,6 +26,7 @@ Array = NDArray[np.float64]
 
 T_PER_NT = 1e-9
 LONGEST_GAP_S = 600.0
+"""Between samples, over which the filter may predict."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,9 +18,9 @@ HORIZONS_S = (10, 30, 60, 120)
 COASTS = 30
 """Starts of such predictions, at most."""
 LIT_PART = 0.37
-"""A cell sees the Sun above this part of its full scale: what the Earth's light gives, stays below."""
+"""A cell sees the Sun above this part of its full scale; what the Earth's light gives stays below."""
 BRIGHTEST_PERCENT, BEYOND = 98.0, 2.0
-"""The full scale of a pass is its brightest rows; beyond so many times that is no current."""
+"""Percentile of a current that is its full scale in a pass; ``BEYOND`` times that is no current."""
 
 
 class Azimuths(NamedTuple):

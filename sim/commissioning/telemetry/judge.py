@@ -17,19 +17,23 @@ Array = NDArray[np.float64]
 START_S = 400.0
 """Field of so long a time starts the filter; a shorter pass is started by all it has."""
 SETTLING_S = {"long": 600.0, "short": 60.0}
+"""Time after the first sample from which figures count."""
 LONG_S = 1000.0
-"""Figures count from so long after the first sample on, in passes longer than ``LONG_S`` and others."""
+"""Length from which a pass is long."""
 DISTINCT = 1e-6
 """The greatest moment of inertia stands out by at least this part."""
 ALIKE_DEG = 3.0
 """Motions whose attitudes differ by less are one."""
 LEAST_CELL_ROWS = 3
+"""Rows with two cells lit that count as a look at the Sun."""
 CLEARLY = 0.6
 """One motion is told from another where it leaves at most this part of the other's error."""
 MOST_AZIMUTH_DEG, MOST_SCATTER_DEG = 20.0, 20.0
-LEAST_COAST_S = 60
+"""Of the Sun by the cells: beyond these a motion is wrong although no other contends."""
 MOST_COAST_DEG, MOST_DIRECTION_DEG = 10.0, 10.0
-"""Beyond these a motion that stands alone is wrong nevertheless."""
+"""Of the field after coasting, and of the next sample: as above."""
+LEAST_COAST_S = 60
+"""So long a prediction without samples bears a motion out where the cells do not."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +86,7 @@ class MotionVerdict(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """A pass: the axis of spin, its motions, the best first, and the verdict on that."""
+    """A pass: the axis of spin, the motions that its field allows, the best first, and the verdict on it."""
 
     around: Along
     axis_body: Array

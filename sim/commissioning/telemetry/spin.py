@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 COARSE_S = 60.0
-"""Of the pass from which the rate is found first."""
+"""Part of the pass from which the rate is found first."""
 AROUND_DEGPS, STEP_DEGPS = 1.0, 0.01
 """The grid around that rate on which spins are sought."""
 MOST_SPINS = 3
-WORSE = 2.5
-"""Of a spin that is considered: by this factor the fit may be worse than the best, plus ``LEAST_DEG``."""
-LEAST_DEG = 2.0
+"""Spins that are followed."""
+WORSE, LEAST_DEG = 2.5, 2.0
+"""A spin is considered if its misfit is at most ``WORSE`` times the best one's plus ``LEAST_DEG``."""
 LEAST_NT = 1e-6
 """A sample without a direction counts for nothing."""
 CHUNK = 64

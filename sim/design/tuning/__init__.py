@@ -1,1 +1,1 @@
-"""Gains of any law: searched over flights of a rigid body, kept in files, compared under equal rules."""
+"""Gains of any law: searched by flights of a rigid body under the same rules for all, kept in files."""

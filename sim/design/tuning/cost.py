@@ -21,8 +21,9 @@ Array = NDArray[np.float64]
 BY_RATE = frozenset({Aim.RATE, Aim.SPIN, Aim.SUN})
 """Laws of these aims do not point: the rate tells them apart."""
 SETTLED_DEG, SETTLED_DEGPS = 5.0, 0.05
+"""Errors below which a flight has settled."""
 LOST = 10.0
-"""The cost of a flight that was none, more than that of any."""
+"""The cost of a flight that failed, more than that of any other."""
 
 
 class Cost(NamedTuple):

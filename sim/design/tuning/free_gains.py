@@ -1,8 +1,8 @@
 """The gains of a law that are free: which, and between what limits they are searched.
 
 The common gains are searched over the span of ``torquer design``, in multiples of the body's natural ones,
-and only where the law uses them. Of a law's own gains those are free whose default is positive, but what
-names an axis, a target or an angle: from a tenth to ten times the default.
+and only where the law uses them. A law's own gain is free, from a tenth to ten times its default, if that is
+positive and the gain is not an axis, a target, an angle or a horizon.
 """
 
 from collections.abc import Sequence
@@ -16,8 +16,9 @@ from sim.design.theory.search import SPAN_A, SPAN_W, natural_gains
 from sim.scenario.schema import Scenario
 
 OWN_SPAN = (0.1, 10.0)
+"""Limits of the search of a law's own gain, in multiples of its default."""
 MEANINGS = ("axis", "target", "pitch", "level", "rounds", "horizon")
-"""Own gains whose names begin so say what is wanted, or how far is looked, not how hard."""
+"""Own gains whose names begin so say what is wanted or how far ahead a law plans: they are not searched."""
 
 
 class FreeGain(NamedTuple):

@@ -1,7 +1,7 @@
 """The gains that were found, kept in files: found/NAME.toml here for scenarios that ship.
 
-A file says for which body, start and coils they were found, and under which rules; for another one they are
-none.
+A file says under which rules, and by a checksum for which body, start and coils they were found; for others
+they are not used.
 """
 
 import json

@@ -2,9 +2,9 @@
 
 Body, wheel and torques are the plant's; orbit and field are those of the controller's own models; law,
 scheduler and limits of the coils are those that fly. Left out are sensors and filter, the board and the bus,
-DETUMBLE and the times for which a mode holds: the law's form is that of POINT within ``modes.near_deg`` until
-it is beyond ``modes.far_deg``, else that of ACQUIRE. A tick is a step. A pulse shorter than a step acts over
-the whole of it with the same impulse, and from one to the next is a whole number of steps.
+DETUMBLE and the dwell times of the modes: the law's form is that of POINT from ``modes.near_deg`` until the
+error exceeds ``modes.far_deg``, else that of ACQUIRE. A tick is a step. A pulse shorter than a step acts over
+the whole of it with the same impulse, and the time from one to the next is a whole number of steps.
 """
 
 from collections.abc import Sequence

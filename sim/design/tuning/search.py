@@ -1,9 +1,9 @@
 """The best gains of a law on a body, under rules that are the same for every law.
 
-A budget of flights: the first with the scenario's own gains, then those that find out which gains the law
-uses, then the points of a Halton sequence over the logarithms of the free gains, then the simplex method of
-Nelder and Mead from the best of them. Every flight is of the rigid body in the direct dipole's field from the
-scenario's start. Nothing is random: the sequence begins anew for each law.
+A budget of flights is spent so: one with the scenario's own gains, one for each common gain to see whether
+the law uses it, then the points of a Halton sequence over the logarithms of the free gains, then the simplex
+of Nelder and Mead from the best of these. Every flight is of the rigid body in the direct dipole's field from
+the scenario's start. Nothing is random: the sequence begins anew for each law.
 
 Source: Halton 1960 for the sequence, Nelder and Mead 1965 for the simplex, both by SciPy.
 """
@@ -29,9 +29,9 @@ BUDGET = 24
 ORBITS = 4.0
 """Length of each."""
 SPREAD_PART = 0.6
-"""Of the flights that are left, those of the sequence."""
+"""Of the flights that are left, the part for the sequence."""
 USED = 1e-9
-"""A gain whose doubling changes the cost by less is not used by the law."""
+"""A gain whose change alters the cost by less is not used by the law."""
 DIRECT: Nested = {"knowledge": "perfect", "field": {"model": "direct_dipole"}}
 
 Array = NDArray[np.float64]
@@ -121,7 +121,7 @@ def tune(
 
 
 def _used(trials: _Trials, common: Sequence[FreeGain], before: Cost) -> list[FreeGain]:
-    """Those of the common gains that the law uses: away from the scenario's the cost is another."""
+    """Those of the common gains that the law uses: with another value the cost changes."""
     used = []
     for gain in common:
         middle = float(np.sqrt(gain.low * gain.high))
