@@ -12,7 +12,7 @@ from fsw.core.laws.plan.box import box_minimum
 from fsw.core.laws.plan.riccati import Array
 from fsw.core.laws.plan.tumbling import Tumbling, costs, descend
 from fsw.core.laws.predictive.mpc_box import programme
-from sim.campaign.claim import Claim, ClaimOutcome, Study, Threshold
+from sim.campaign.claim import Claim, ClaimOutcome, Study
 from sim.design.predictive.explicit import pieces
 from sim.design.theory.bodies import BODIES
 from sim.validate.review.flown import prediction, slew
@@ -32,11 +32,10 @@ def limits() -> Study:
     """The programme within the limits beside the plan cut to them."""
     claim = Claim(
         "review.predictive.box",
-        "Cost beyond the least without limits, programme over its plan cut to them, mean: less",
-        f"{REVIEW} [110]",
+        "Cost beyond the least without limits, programme over its plan cut to them, mean",
+        f"{REVIEW} [110]: the limits are part of the problem",
         "1",
-        high=1.0,
-        threshold=Threshold.PAPER,
+        high=0.2,
     )
     return Study(claim.id, (cost_ratio,), lambda found: [claim.judge(found[0])])
 
