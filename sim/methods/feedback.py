@@ -241,7 +241,7 @@ METHODS: tuple[Method, ...] = (
         source="[T] eq. 5, Wisniewski 1997",
         kind=Kind.FLOWN,
         where="fsw/core/laws/damping/damping.py",
-        claim="m = h Omega x b damps libration as the predictive law does.",
+        claim="The dipole m = h Omega x b damps libration as the predictive law does.",
         claims=(
             "posat1.energy_law",
             "posat1.dissipation",

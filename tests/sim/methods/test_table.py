@@ -1,5 +1,6 @@
 """The table of methods: every row says where, by what it is measured, and every law is in it."""
 
+import re
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path
@@ -13,24 +14,21 @@ from sim.validate.outcomes import read_outcomes
 from sim.validate.registry import all_studies
 
 ROOT = Path(__file__).resolve().parents[3]
+PROPER = ("B-dot", "Y-Thomson", "Sun ", "Lorentz ", "PD ", "H2 ", "H-infinity ")
 EVERY_METHOD = pytest.mark.parametrize("method", METHODS, ids=lambda method: method.name)
 
 
-def module_of(law):
-    return LAWS[law].point.__module__.replace(".", "/") + ".py"
+def laws_of(method):
+    """Those that its name has in parentheses and backquotes."""
+    return [
+        law for group in re.findall(r"\((`[^)]*`)\)", method.name) for law in re.findall(r"`(\w+)`", group)
+    ]
 
 
 def unnamed_laws(methods):
-    """Laws that no row names in backquotes, and that are not the only law of a row's module."""
-    words = " ".join(f"{method.name} {method.claim} {method.remark}" for method in methods)
-    modules, laws = {method.where for method in methods}, Counter(map(module_of, LAWS))
-    return [
-        law
-        for law in LAWS
-        if law not in CHECK
-        and f"`{law}`" not in words
-        and not (module_of(law) in modules and laws[module_of(law)] == 1)
-    ]
+    """Laws of the table that no row has in its name."""
+    named = {law for method in methods for law in laws_of(method)}
+    return [law for law in LAWS if law not in CHECK and law not in named]
 
 
 def unknown_claims(methods, studies, measured):
@@ -63,6 +61,26 @@ def test_what_is_built_is_where_the_row_says(method):
 
 
 @EVERY_METHOD
+def test_a_name_begins_with_a_small_letter_but_for_a_proper_one(method):
+    assert method.name[0].islower() or method.name.startswith(PROPER)
+
+
+@EVERY_METHOD
+def test_claim_and_remark_are_sentences(method):
+    for text in (method.claim, method.remark or method.claim):
+        assert not text[0].islower()
+        assert text.endswith(".")
+
+
+@EVERY_METHOD
+def test_its_laws_are_in_the_modules_that_it_names(method):
+    """One of the two forms of each at least: the other may be another law's."""
+    for law in laws_of(method):
+        forms = {form.__module__.replace(".", "/") + ".py" for form in (LAWS[law].acquire, LAWS[law].point)}
+        assert forms & set(method.where.split(", "))
+
+
+@EVERY_METHOD
 def test_a_source_is_one_of_the_three_papers(method):
     assert method.source.startswith(("[O19] ", "[O15] ", "[T] "))
 
@@ -89,13 +107,8 @@ def test_every_law_that_flies_is_in_a_row():
 
 @pytest.mark.parametrize("law", ["pd", "spin_up", "pd_weighted"])
 def test_a_law_that_no_row_names_is_found(law):
-    others = [
-        method
-        for method in METHODS
-        if f"`{law}`" not in f"{method.name} {method.claim} {method.remark}"
-        and method.where != module_of(law)
-    ]
-    assert law in unnamed_laws(others)
+    others = [method for method in METHODS if law not in laws_of(method)]
+    assert unnamed_laws(others) == [law]
 
 
 def test_the_references_that_no_row_names_stand_on_the_page():

@@ -14,13 +14,13 @@ from fsw.core.laws.optimal.lqr import LqrGains, schedule
 from fsw.core.laws.plan.riccati import Schedule
 from fsw.input.schema import Nested
 from sim.campaign.claim import Claim, ClaimOutcome, Study
-from sim.design.theory.bodies import BODIES
 from sim.plant.rotation import ZERO, Mat3, Vec3, cross, transform
+from sim.validate.review.fifty_kg import BODY
 from sim.validate.review.figures import judged
-from sim.validate.review.law_flight import LawFlight, LawHistory, fly
+from sim.validate.review.law_flight import LawFlight, fly
+from sim.validate.review.law_history import LawHistory
 from sim.validate.review.rigid.trial import RigidTrial, Trial, TrialFigure
 
-BODY = BODIES[2]
 REVIEW = "Ovchinnikov, Roldugin 2019, section 3.2"
 SUN: Vec3 = (0.6, 0.48, 0.64)
 LEVER_NM: Vec3 = (1.38e-7, -0.92e-7, 1.15e-7)
@@ -79,7 +79,7 @@ def averaged() -> Study:
 def averaged_deg(error: Vec3, lit: bool) -> float:
     """RMS over the last orbit."""
     table = averaged_schedule(_taken_for(error), ZERO, *_circle(), AveragedGains())
-    return last_orbit_deg(replace(FLIGHT, law="lqr_averaged", extra=light if lit else None), table)
+    return last_orbit_rms_deg(replace(FLIGHT, law="lqr_averaged", extra=light if lit else None), table)
 
 
 def disturbed() -> Study:
@@ -113,13 +113,13 @@ def learned_deg(learning: float = 1.0) -> float:
     gains = DisturbedGains(learning=learning)
     table = disturbed_schedule(BODY.inertia_kgm2, ZERO, *_circle(), gains)
     case = replace(FLIGHT, law="lqr_disturbed", gains=gains, orbits=5.0, extra=light)
-    return last_orbit_deg(case, table)
+    return last_orbit_rms_deg(case, table)
 
 
 def unlearned_deg() -> float:
     """The same by ``lqr``."""
     table = schedule(BODY.inertia_kgm2, ZERO, *_circle(), LqrGains())
-    return last_orbit_deg(replace(FLIGHT, orbits=5.0, extra=light), table)
+    return last_orbit_rms_deg(replace(FLIGHT, orbits=5.0, extra=light), table)
 
 
 def state_dependent() -> Study:
@@ -147,7 +147,7 @@ def light(c_body_from_eci: Mat3, velocity_eci_mps: Vec3) -> Vec3:
     return cross(transform(c_body_from_eci, SUN), LEVER_NM)
 
 
-def last_orbit_deg(case: LawFlight, table: Schedule) -> float:
+def last_orbit_rms_deg(case: LawFlight, table: Schedule) -> float:
     """RMS over the last orbit of a law that flies by a schedule."""
     return rms_deg(fly(replace(case, schedules={case.law: table})))
 
