@@ -119,14 +119,19 @@ METHODS: tuple[Method, ...] = (
         ),
     ),
     Method(
-        "Slew of least time with a penalty on the final error",
-        "[O19] 3.2 [107]",
-        Kind.GROUND,
-        "sim/design/predictive/time_optimal.py",
-        "The course of least time is found on the ground and followed by prediction.",
-        ("review.predictive.slew.time", "review.predictive.slew.copy"),
-        "its dipoles are nearly always at their limits; copied without a look at the attitude, an error of "
-        "the moments spoils the end",
+        name="slew of least time with a penalty on the final error",
+        source="[O19] 3.2 [107]",
+        kind=Kind.GROUND,
+        where="sim/design/predictive/time_optimal.py",
+        claim="The course of least time is found on the ground and followed by prediction.",
+        claims=(
+            "review.predictive.slew.time",
+            "review.predictive.slew.copy",
+        ),
+        remark=(
+            "Its dipoles are nearly always at their limits; flown open loop it misses the end if the "
+            "moments are off."
+        ),
     ),
     Method(
         "Error of two directions averaged over orbits, with a rate error like B-dot",
