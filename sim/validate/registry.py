@@ -14,7 +14,6 @@ from sim.validate.review import (
     damping,
     driven_wheel,
     feedback,
-    linear,
     one_axis,
     optimal,
     predictive,
@@ -45,7 +44,7 @@ def all_studies(satellites: int | None = None) -> list[Study]:
             study
             for section in (
                 *(damping, spin, wheel, one_axis, feedback, sliding, optimal, predictive),
-                *(fixed_wheel, pointing, linear),
+                *(fixed_wheel, pointing),
             )
             for study in section.studies()
         ),

@@ -17,11 +17,11 @@ from sim.design.one_axis.field_tracking import best_tracking
 from sim.design.theory.bodies import Body
 from sim.plant.rotation import Mat3
 from sim.validate.review import effects
-from sim.validate.review.feathers import SHUTTLECOCK
-from sim.validate.review.fifty_kg import INERTIA
 from sim.validate.review.figures import FlownClaim, one_figure
 from sim.validate.review.law_flight import LawFlight, fly
 from sim.validate.review.law_history import LawHistory, angle_deg
+from sim.validate.review.satellites.feathers import SHUTTLECOCK
+from sim.validate.review.satellites.fifty_kg import INERTIA
 
 REVIEW = "Ovchinnikov, Roldugin 2019, section"
 FIRM = ((0.3, 0.0, 0.0), (0.0, 2.0, 0.0), (0.0, 0.0, 2.2))

@@ -1,9 +1,9 @@
-"""Claims: three axes, simple feedback (section 3.1): laws in flight, and gains found on the ground."""
+"""Claims: three axes, simple feedback (section 3.1): laws in flight, gains, and what linear theory says."""
 
 from sim.campaign.claim import Study
-from sim.validate.review.feedback import gains, laws
+from sim.validate.review.feedback import gains, laws, linear
 
 
 def studies() -> list[Study]:
     """All of this section."""
-    return [*laws.studies(), *gains.studies()]
+    return [*laws.studies(), *gains.studies(), *linear.studies()]

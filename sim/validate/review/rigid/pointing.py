@@ -10,8 +10,8 @@ from fsw.core.laws.optimal.lqr import LqrGains
 from fsw.input.schema import Nested
 from sim.campaign.claim import Study
 from sim.design.tuning.flown import RigidFlight
-from sim.validate.review.fifty_kg import BODY, PD
 from sim.validate.review.rigid.trial import NEAR, RigidTrial, Trial, TrialFigure, gains, over
+from sim.validate.review.satellites.fifty_kg import BODY, PD
 
 Array = NDArray[np.float64]
 Flights = Sequence[RigidFlight]

@@ -1,0 +1,1 @@
+"""Satellites that the claims fly."""
