@@ -134,17 +134,20 @@ METHODS: tuple[Method, ...] = (
         ),
     ),
     Method(
-        "Error of two directions averaged over orbits, with a rate error like B-dot",
-        "[O19] 3.2 [102, 103]",
-        Kind.GROUND,
-        "sim/design/feedback/averaged_error.py",
-        "The field turns, so that a body is controlled on the mean; gains by an evolutionary search.",
-        (
+        name="error of two directions averaged over orbits, with a rate error like B-dot",
+        source="[O19] 3.2 [102, 103]",
+        kind=Kind.GROUND,
+        where="sim/design/feedback/averaged_error.py",
+        claim="The field turns, so that a body is controlled on the mean; gains by an evolutionary search.",
+        claims=(
             "review.feedback.averaged.orbits",
             "review.feedback.averaged.equator",
             "review.feedback.averaged.cost",
         ),
-        "on a polar orbit it holds, over the equator no gains do; the error itself is brought down sooner",
+        remark=(
+            "True in the orbit of the 50 kg satellite; over the equator no gains do. Feedback of the error "
+            "itself is faster."
+        ),
     ),
 )
 """In the order of the review."""
