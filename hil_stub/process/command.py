@@ -25,7 +25,7 @@ from hil_stub.bench import (
 from hil_stub.coils.coil_driver import CoilLimits
 from hil_stub.process.runner import PinLog, run
 from hil_stub.process.stimulus_option import stimulus_of, stimulus_words
-from hil_stub.sensors.stimulus import currents, direction, scaled, three
+from hil_stub.sensors.stimulus import StimulusError, currents, direction, scaled, three
 from hil_stub.sensors.sun_cells import CELLS
 
 NT = 1e-9
@@ -220,6 +220,8 @@ def _serve(
         run(bench, bus, PinLog(pins) if pins is not None else None, parent)
     except BusError as error:
         raise click.ClickException(str(error)) from error
+    except StimulusError as error:
+        raise click.UsageError(f"--stimulus -: {error}") from None
     except KeyboardInterrupt:
         pass
     finally:

@@ -35,17 +35,23 @@ class PipedStimulus:
 
     Args:
         scale: from the numbers of the lines to the reading.
+        count: how many values a line has.
         descriptor: where the lines come from.
     """
 
-    def __init__(self, scale: float, descriptor: int = 0) -> None:
+    def __init__(self, scale: float, count: int, descriptor: int = 0) -> None:
         self._scale = scale
+        self._count = count
         self._descriptor = descriptor
         self._partial = b""
         self._readings: dict[int, Reading] = {}
 
     def __call__(self, tick: int) -> Reading:
-        """The reading at ``tick``; NOTHING if it does not come."""
+        """The reading at ``tick``; NOTHING if it does not come.
+
+        Raises:
+            StimulusError: a line is no reading.
+        """
         deadline = time.monotonic() + PIPE_PATIENCE_S
         while tick not in self._readings:
             left_s = deadline - time.monotonic()
@@ -59,11 +65,31 @@ class PipedStimulus:
             return False
         text = os.read(self._descriptor, 65536)
         *lines, self._partial = (self._partial + text).split(b"\n")
+        if len(self._partial) > LONGEST:
+            raise _no_reading(self._partial, self._count)
         for line in lines:
-            number, *words, valid = line.split()
-            values = scaled(tuple(map(float, words)), self._scale)
-            self._readings[int(number)] = Reading(values, valid == b"1")
+            tick, values, valid = _piped(line, self._count)
+            self._readings[tick] = Reading(scaled(values, self._scale), valid)
         return bool(text)
+
+
+def _piped(line: bytes, count: int) -> tuple[int, Values, bool]:
+    """Tick, values and validity of a line."""
+    words = line.split()
+    if len(words) != count + 2 or not words[0].isdigit() or words[-1] not in (b"0", b"1"):
+        raise _no_reading(line, count)
+    tick, *values, valid = words
+    try:
+        return int(tick), finite_numbers(list(map(float, values)), count), valid == b"1"
+    except (ValueError, StimulusError):
+        raise _no_reading(line, count) from None
+
+
+def _no_reading(line: bytes, count: int) -> StimulusError:
+    shown = line[:60].decode("ascii", "backslashreplace")
+    return StimulusError(
+        f"a line on stdin must be a tick, {COUNTS[count]} finite numbers and 1 (valid) or 0, not '{shown}'"
+    )
 
 
 def stimulus_of(
@@ -80,7 +106,7 @@ def stimulus_of(
         if len(words) == count:
             return constant(convert(finite_numbers([_number(word, count) for word in words], count)))
         if words == ("-",):
-            return PipedStimulus(scale)
+            return PipedStimulus(scale, count)
         if len(words) != 1:
             raise StimulusError(
                 f"must be {COUNTS[count]} numbers, a run, a log, a script that ends in .toml, or -"

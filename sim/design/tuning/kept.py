@@ -59,7 +59,7 @@ class KeptGains:
 
 
 def body_checksum(scenario: Scenario) -> int:
-    """Of what the gains depend on: body, orbit, start, coils but for their driver, disturbing torque."""
+    """Of what the gains depend on: body, orbit, start, coils but for their driver, torque and dipole."""
     parts = {
         "body": scenario.body.model_dump(mode="json", include={"inertia_kgm2", "wheel_nms"}),
         "orbit": scenario.orbit.model_dump(mode="json"),
@@ -67,7 +67,9 @@ def body_checksum(scenario: Scenario) -> int:
         "coils": scenario.coils.model_dump(
             mode="json", include={"levels_am2", "pulse_s", "backoff_s", "backoff"}
         ),
-        "torque": scenario.disturbance.model_dump(mode="json", include={"torque_nm"}),
+        "disturbance": scenario.disturbance.model_dump(
+            mode="json", include={"torque_nm", "residual_dipole_am2"}
+        ),
         "spin": scenario.control.spin_radps,
     }
     return crc32(json.dumps(parts, sort_keys=True).encode())

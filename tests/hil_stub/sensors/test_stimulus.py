@@ -127,7 +127,7 @@ class TestPipe:
     def pipe(self, monkeypatch):
         monkeypatch.setattr("hil_stub.process.stimulus_option.PIPE_PATIENCE_S", 0.05)
         reading, writing = os.pipe()
-        yield PipedStimulus(1e-9, reading), writing
+        yield PipedStimulus(1e-9, 3, reading), writing
         os.close(reading)
 
     def test_it_waits_for_its_tick_and_lets_go_of_what_is_past(self, pipe):
@@ -139,6 +139,36 @@ class TestPipe:
         os.write(end, b" 7 1\n")
         assert shown(2) == Reading(from_nt((7.0, 7.0, 7.0)), True)
         assert shown(0) is NOTHING
+        os.close(end)
+
+    @pytest.mark.parametrize(
+        "line",
+        [
+            b"",
+            b"0",
+            b"0 1",
+            b"0 1 2 3",
+            b"0 1 2 3 4 1",
+            b"0 1 2 x 1",
+            b"0 1 2 nan 1",
+            b"-1 1 2 3 1",
+            b"1.5 1 2 3 1",
+            b"0 1 2 3 2",
+            b"\xff\x00",
+        ],
+    )
+    def test_a_line_that_is_no_reading_is_told(self, pipe, line):
+        shown, end = pipe
+        os.write(end, b"3 1 2 3 1\n" + line + b"\n")
+        with pytest.raises(StimulusError, match="a line on stdin must be a tick, three finite numbers and 1"):
+            shown(3)
+        os.close(end)
+
+    def test_a_line_without_an_end_is_told_before_it_fills_the_memory(self, pipe):
+        shown, end = pipe
+        os.write(end, b"1" * 300)
+        with pytest.raises(StimulusError, match=r"not '1{60}'"):
+            shown(0)
         os.close(end)
 
     def test_a_pipe_that_is_closed_shows_nothing(self, pipe):

@@ -54,6 +54,7 @@ def test_another_file_is_refused_by_its_name(tmp_path, text):
         {"initial": {"angle_deg": 41.0}},
         {"coils": {"backoff_s": 50.0}},
         {"disturbance": {"torque_nm": [0.0, 0.0, 0.0]}},
+        {"disturbance": {"residual_dipole_am2": [0.0, 0.0, 0.01]}},
         {"control": {"spin_radps": 0.01}},
     ],
 )
