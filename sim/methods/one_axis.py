@@ -43,6 +43,22 @@ METHODS: tuple[Method, ...] = (
         claims=("review.one_axis.pd_when_slow",),
     ),
     Method(
+        name="torque shared between coils and thrusters",
+        source="[O19] 2.4 [55]",
+        kind=Kind.GROUND,
+        where="sim/design/allocation/thrusters.py",
+        claim="Even with thrusters the torque along the field may not be had; the sharing is optimisation.",
+        claims=(
+            "review.one_axis.thrusters",
+            "review.one_axis.thrusters_normal",
+            "review.one_axis.thrusters_radial",
+        ),
+        remark=(
+            "The review gives no equation; a linear programme for least propellant. Of one pair the place "
+            "decides: on a polar orbit the field has hardly a component along the normal."
+        ),
+    ),
+    Method(
         name="two coils along K (e3 x b) (`slow_spin`)",
         source="[O19] 2.4 [59]",
         kind=Kind.FLOWN,

@@ -6,6 +6,8 @@ from math import cos, radians, sin
 import numpy as np
 
 from sim.campaign.claim import Claim, Study
+from sim.design.allocation.thrusters import Demands, demands, given, pairs, propellant
+from sim.design.theory.bodies import BODIES
 from sim.effects.fluid_ring import FluidRing
 from sim.effects.lorentz import lorentz_torque, velocity_in_field
 from sim.effects.solar_flaps import SUNLIGHT_PA, SolarFlaps
@@ -23,12 +25,13 @@ REVIEW = "Ovchinnikov, Roldugin 2019, section 2.4"
 ALTITUDE_M = 800e3
 PERIOD_S = 6052.0
 INERTIA = ((1.02, 0.03, -0.02), (0.03, 1.85, 0.05), (-0.02, 0.05, 1.95))
+COIL_AM2, THRUSTER_NM, TORQUE_NM, DEMANDS = 2.0, 1e-3, 2e-5, 120
 SUN_OUT_DEG = 23.4
 """The Sun's largest angle from an equatorial orbit."""
 
 
 def studies() -> list[Study]:
-    """Lorentz force, light on flaps, ring of fluid."""
+    """Lorentz force, light on flaps, ring of fluid, thrusters."""
     return [
         one_figure(
             Claim(
@@ -83,6 +86,36 @@ def studies() -> list[Study]:
             ),
             ring_momentum_change,
         ),
+        one_figure(
+            Claim(
+                "review.one_axis.thrusters",
+                "Propellant for 2e-5 N m to all sides, shared with coils of 2 A m^2, over thrusters alone",
+                f"{REVIEW} [55]: the torque is shared under limits",
+                "1",
+                high=0.5,
+            ),
+            propellant_left,
+        ),
+        one_figure(
+            Claim(
+                "review.one_axis.thrusters_normal",
+                "Of these torques what coils and one pair of thrusters about the orbit normal can give",
+                f"{REVIEW} [55]: the torque along the field may not be had",
+                "1",
+                high=0.6,
+            ),
+            partial(given_by_pair, 2),
+        ),
+        one_figure(
+            Claim(
+                "review.one_axis.thrusters_radial",
+                "The same with the pair about the vertical",
+                f"{REVIEW} [55]",
+                "1",
+                low=0.8,
+            ),
+            partial(given_by_pair, 0),
+        ),
     ]
 
 
@@ -131,6 +164,21 @@ def ring_momentum_change() -> float:
         motion = rigid.step(motion, torque, around, step_s)
     last = _momentum(motion, ring, 1200 * step_s)
     return float(np.linalg.norm(last - first) / np.linalg.norm(first))
+
+
+def propellant_left() -> float:
+    """With coils over without."""
+    wanted, thrusters = _demands(), pairs(THRUSTER_NM, (0, 1, 2))
+    return propellant(wanted, thrusters, COIL_AM2) / propellant(wanted, thrusters, 0.0)
+
+
+def given_by_pair(axis: int) -> float:
+    """The share of the torques."""
+    return given(_demands(), pairs(THRUSTER_NM, (axis,)), COIL_AM2)
+
+
+def _demands() -> Demands:
+    return demands(BODIES[2], TORQUE_NM, DEMANDS, 3)
 
 
 def _momentum(motion: Motion, ring: FluidRing, t_s: float) -> Array:

@@ -1,0 +1,1 @@
+"""Torque shared between coils and other actuators."""
