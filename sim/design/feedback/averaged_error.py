@@ -38,7 +38,7 @@ class AveragedError(NamedTuple):
     orbits: float
 
 
-class Found(NamedTuple):
+class AveragedBest(NamedTuple):
     """The law of the best degree of stability, 1/rad."""
 
     law: AveragedError
@@ -70,7 +70,7 @@ def degree(body: Body, law: AveragedError) -> float:
     return log(float(np.abs(np.linalg.eigvals(scaled)).max())) / (2.0 * pi)
 
 
-def search(body: Body, orbits: float) -> Found:
+def search(body: Body, orbits: float) -> AveragedBest:
     """The gains and the share with the best degree for an average over so many orbits."""
     moment = float(np.trace(np.array(body.inertia_kgm2))) / 3.0
     unit = body.rate_radps * moment / body.field_t**2
@@ -84,7 +84,7 @@ def search(body: Body, orbits: float) -> Found:
 
     limits = Bounds(np.array([LOWEST, LOWEST, 0.1]), np.array([HIGHEST, HIGHEST, 0.9]))
     found = differential_evolution(cost, limits, maxiter=GENERATIONS, popsize=8, rng=SEED, polish=False)
-    return Found(law(found.x), float(found.fun))
+    return AveragedBest(law(found.x), float(found.fun))
 
 
 def _steps(body: Body) -> tuple[Problem, Array]:
