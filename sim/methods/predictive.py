@@ -1,4 +1,4 @@
-"""Prediction (section 3.3 of the review), and the paper on PoSAT-1 [T]."""
+"""Prediction and adaptation (sections 3.3 and 3.4 of the review), and the paper on PoSAT-1 [T]."""
 
 from sim.methods.method import Kind, Method
 
@@ -92,6 +92,17 @@ METHODS: tuple[Method, ...] = (
         ),
         claims=("review.predictive.tumbling.reference",),
         remark="It damps no sooner than that law with its coils at their limits.",
+    ),
+    Method(
+        name="gains of the PD law (8) by a dynamic neural network",
+        source="[O19] 3.4 [113]",
+        kind=Kind.PASSED_OVER,
+        where="",
+        claim="The gains so found do well, above all against disturbances that are not known.",
+        remark=(
+            "The review gives no equation of the network or of its training; none was found by the authors' "
+            "names, the title and the method's name. Gains by a search of flights: `torquer design --laws`."
+        ),
     ),
     Method(
         name="predictive law of pulses (`predictive`)",
