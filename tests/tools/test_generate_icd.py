@@ -9,9 +9,10 @@ from pathlib import Path
 import cantools
 import pytest
 
-from fsw.wire.messages import CoilRefusedReason
+from fsw.wire.messages import CoilRefusedReason, WheelStatusResult
 from hil_stub.coils import interlock
 from hil_stub.coils.coil_driver import CoilLimits
+from hil_stub.wheel import wheel_guard
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "icd.md"
@@ -119,8 +120,22 @@ def test_the_order_of_refusals_is_how_the_board_judges():
         found.append(interlock.ask(state, asked, 300, limits)[1])
     found.append(interlock.ask(interlock.elapse(state, 3), asked, 300, limits)[1])
     assert tuple(found) == interlock.REFUSAL_ORDER
-    listed = re.findall(r"^\| \d \| (\d+) \| `(\w+)`", PAGE.read_text(), re.MULTILINE)
-    assert [(int(n), name.upper()) for n, name in listed] == [
-        (r.value, r.name) for r in interlock.REFUSAL_ORDER
-    ]
+    assert refusals()[: len(interlock.REFUSAL_ORDER)] == named(interlock.REFUSAL_ORDER)
     assert set(CoilRefusedReason) > set(interlock.REFUSAL_ORDER)
+
+
+def test_the_order_of_the_wheels_refusals_is_how_its_board_judges():
+    """Those of the coils stand before them; what the table of results has beyond them is no refusal."""
+    order = wheel_guard.REFUSAL_ORDER
+    assert refusals()[len(interlock.REFUSAL_ORDER) :] == named(order)
+    assert {result.name for result in set(WheelStatusResult) - set(order)} == {"NONE", "DRIVEN", "MALFORMED"}
+
+
+def refusals():
+    """(number, name) of each numbered refusal on the page, in its order."""
+    listed = re.findall(r"^\| \d \| (\d+) \| `(\w+)`", PAGE.read_text(), re.MULTILINE)
+    return [(int(number), name.upper()) for number, name in listed]
+
+
+def named(order):
+    return [(reason.value, reason.name) for reason in order]

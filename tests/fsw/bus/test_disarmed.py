@@ -30,6 +30,7 @@ def test_requests_stay_off_the_bus_and_nothing_else_does():
     assert {NAMES[can_id] for can_id in NAMES} - {NAMES[frame.can_id] for frame in wire.sent} == {
         "COIL_FIRE",
         "COIL_DIPOLE",
+        "WHEEL_TORQUE",
     }
 
 

@@ -7,6 +7,7 @@ import sys
 import click
 import pytest
 
+from fsw.core.laws.table import LAWS
 from torquer.cli import completions
 from torquer.cli.completion import script
 from torquer.cli.main import main
@@ -29,7 +30,7 @@ def test_scenarios_by_name_else_files():
     [
         ("coils.back", ["coils.backoff_s=", "coils.backoff="]),
         ("coils.backoff=", ["coils.backoff=shared", "coils.backoff=per_coil"]),
-        ("control.law=m", ["control.law=mpc"]),
+        ("control.law=slid", [f"control.law={law}" for law in LAWS if law.startswith("slid")]),
         ("sensors.sun.alb", ["sensors.sun.albedo="]),
         ("sensors.sun.albedo=t", ["sensors.sun.albedo=true"]),
         ("disturbance.drag.", ["disturbance.drag.density_scale="]),
@@ -54,7 +55,7 @@ def test_a_bus_else_files_where_a_run_may_stand():
 
 def test_laws_after_a_comma_and_rows():
     assert found(completions.of_laws, "my_l") == ["my_l"], "a file"
-    assert found(completions.of_laws, "pd,mp", "compare") == ["pd,mpc"]
+    assert found(completions.of_laws, "pd,pulse", "compare") == ["pd,pulse_mpc"]
     assert "mag-bias" in {row[:8] for row in found(completions.of_fault_rows, "mag-", "faults")}
 
 
@@ -75,7 +76,7 @@ def test_the_script_for_zsh_completes_each_time_it_is_called():
 COMPLETE = """
 compopt() { :; }
 source ./script
-for COMP_LINE in "torquer sil micro" "torquer sil --set coils.backoff=pe" "torquer sil --bus "; do
+for COMP_LINE in "torquer sil reals" "torquer sil --set coils.backoff=pe" "torquer sil --bus "; do
     COMP_POINT=${#COMP_LINE}
     _torquer_completion ./torquer
     echo "${COMPREPLY[*]}"
@@ -90,5 +91,5 @@ def test_bash_completes_what_follows_an_equals_sign(tmp_path):
     (tmp_path / "torquer").chmod(0o755)
     done = subprocess.run(["bash", "-c", COMPLETE], cwd=tmp_path, capture_output=True, text=True, check=True)
     first, second, third = done.stdout.splitlines()
-    assert (first, second) == ("microsat", "per_coil")
+    assert (first, second) == ("realsat", "per_coil")
     assert third.startswith("auto loop slcan: ")
