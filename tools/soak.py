@@ -229,7 +229,7 @@ def draw(parts: Sequence[RunResult], path: Path) -> None:
     """Memory of each process relative to when it was warm."""
     from matplotlib.figure import Figure  # noqa: PLC0415  (not loaded while memory is measured)
 
-    from sim.drawing.canvas import style  # noqa: PLC0415
+    from sim.drawing.canvas import style  # noqa: PLC0415  (likewise)
 
     with style():
         figure = Figure(figsize=(8.2, 2.4), layout="constrained")

@@ -116,7 +116,7 @@ def _truth_channel(context: Any) -> Any:  # noqa: ANN401  of foxglove
 class _SignalTopics:
     """A topic for each message of the bus, made when its first frame comes."""
 
-    def __init__(self, context: Any) -> None:  # noqa: ANN401
+    def __init__(self, context: Any) -> None:  # noqa: ANN401  of foxglove
         self._context = context
         self._messages = {message.can_id: message for message in messages()}
         self._topics: dict[int, Any] = {}

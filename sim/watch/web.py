@@ -130,7 +130,7 @@ def serve(view: LiveView, port: int, announce: Callable[[str], None]) -> None:
     """
     with needing("--web", "starlette, uvicorn and websockets", "watch"):
         import uvicorn
-        import websockets  # noqa: F401
+        import websockets  # noqa: F401  uvicorn imports it itself
     with listening(port) as listener:
         server = uvicorn.Server(
             uvicorn.Config(application(view), log_level="warning", ws=WEBSOCKETS, timeout_graceful_shutdown=1)

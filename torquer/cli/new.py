@@ -40,7 +40,7 @@ def new(
     backoff: str,
     bounds: str,
     out: Path | None,
-    **figures: Any,  # noqa: ANN401
+    **figures: Any,  # noqa: ANN401  (as click gives them)
 ) -> int:
     """Write NAME.toml, a commented scenario for your own satellite, which flies at once.
 

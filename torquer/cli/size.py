@@ -26,7 +26,7 @@ def size(
     scenario: str | None,
     tle: Path | None,
     settings: tuple[str, ...],
-    **figures: Any,  # noqa: ANN401
+    **figures: Any,  # noqa: ANN401  (as click gives them)
 ) -> int:
     """Coil levels that would do, and what pointing to expect of SCENARIO or of the satellite given.
 

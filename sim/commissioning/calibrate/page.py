@@ -7,7 +7,7 @@ from sim.commissioning.calibrate.cells import CellFit
 from sim.commissioning.calibrate.magnetometer import NAMES, MagnetometerFit
 from sim.commissioning.calibrate.recorded import RecordedCalibration
 from sim.commissioning.telemetry.time_axis import pass_time
-from sim.drawing.canvas import AXES_COLOURS, style
+from sim.drawing.canvas import AXES_COLOURS, TimeAxis, style
 from sim.drawing.inline_svg import chart
 from sim.drawing.page_parts import Chart, PageHeader, PageSection, Table, Tile, sections_page
 from sim.drawing.time_chart import Level, Panel, Series, TimeChart, draw, time_data
@@ -58,7 +58,7 @@ def calibration_page(found: RecordedCalibration, text: str) -> str:
     return sections_page(header, sections, time_data(time, t_s, float(around.recorded.utc_unix_s[0])))
 
 
-def _residuals(found: RecordedCalibration, time: object, t_s: Array) -> Chart:
+def _residuals(found: RecordedCalibration, time: TimeAxis, t_s: Array) -> Chart:
     fit = found.magnetometer
     modelled = found.around.strength_nt[np.isfinite(found.around.recorded.mag_nt).all(axis=1)]
     panels = [
@@ -68,7 +68,7 @@ def _residuals(found: RecordedCalibration, time: object, t_s: Array) -> Chart:
               [Series("measured, calibrated", modelled + fit.residual_nt, AXES_COLOURS[1]),
                Series("IGRF-14", modelled, AXES_COLOURS[2], 1.6)]),
     ]  # fmt: skip
-    drawn = draw(time, TimeChart(t_s, panels))  # type: ignore[arg-type]
+    drawn = draw(time, TimeChart(t_s, panels))
     return chart("residuals", drawn.picture, "Residuals of the fit. Grey bands are eclipses.", drawn.data)
 
 

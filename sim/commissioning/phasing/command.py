@@ -1,5 +1,7 @@
 """``torquer phasing``: fire each coil in both polarities, or take a log in which that was done, and judge."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from math import ceil
 from pathlib import Path
@@ -155,15 +157,12 @@ def _say(found: Phasing, table: FlightTable) -> None:
     answer(words.as_json(found, table))
 
 
-class _folder(TemporaryDirectory[str]):  # noqa: N801  (a context, used like a function)
+@contextmanager
+def _folder(kept: Path | None) -> Iterator[Path]:
     """The folder that is kept, or a temporary one."""
-
-    def __init__(self, kept: Path | None) -> None:
-        super().__init__()
-        self._kept = kept
-
-    def __enter__(self) -> Path:  # type: ignore[override]
-        if self._kept is None:
-            return Path(super().__enter__()) / "run"
-        check_folder(self._kept)
-        return self._kept
+    if kept is not None:
+        check_folder(kept)
+        yield kept
+        return
+    with TemporaryDirectory() as folder:
+        yield Path(folder) / "run"

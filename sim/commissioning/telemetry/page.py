@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from sim.commissioning.recorded.calibration import PassCalibration
 from sim.commissioning.telemetry.judge import AllowedMotion, Judged
 from sim.commissioning.telemetry.time_axis import pass_time
-from sim.drawing.canvas import AXES_COLOURS, MORE_COLOURS, style
+from sim.drawing.canvas import AXES_COLOURS, MORE_COLOURS, TimeAxis, style
 from sim.drawing.inline_svg import chart
 from sim.drawing.page_parts import Chart, PageHeader, PageSection, Table, Tile, sections_page
 from sim.drawing.time_chart import Level, Panel, Series, TimeChart, draw, time_data
@@ -61,7 +61,7 @@ def telemetry_page(judged: Judged, known: PassCalibration, found: dict[str, Any]
     return sections_page(header, sections, time_data(time, t_s, float(around.recorded.utc_unix_s[0])))
 
 
-def _motion_chart(judged: Judged, time: Any, t_s: Array) -> Chart:  # noqa: ANN401
+def _motion_chart(judged: Judged, time: TimeAxis, t_s: Array) -> Chart:
     followed = judged.best.followed
     bias = followed.bias_nt / 1e3
     panels = [
@@ -76,7 +76,7 @@ def _motion_chart(judged: Judged, time: Any, t_s: Array) -> Chart:  # noqa: ANN4
     return chart("motion", drawn.picture, "What the filter says. Grey bands are eclipses.", drawn.data)
 
 
-def _held_chart(judged: Judged, time: Any, t_s: Array) -> Chart:  # noqa: ANN401
+def _held_chart(judged: Judged, time: TimeAxis, t_s: Array) -> Chart:
     motion, recorded = judged.best, judged.around.recorded
     rates = motion.followed.rate_degps
     panels = []

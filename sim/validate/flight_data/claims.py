@@ -127,12 +127,15 @@ def conclude_believed(found: Sequence[Any]) -> list[ClaimOutcome]:
     return [claim.judge(float(sum(len(one.wrong) for one in results)), where)]
 
 
-def _of(key: str) -> Callable[[PassFigures], float | None]:
+Figure = Callable[[PassFigures], float | None]
+
+
+def _of(key: str) -> Figure:
     """A figure of the passes that are believed."""
     return lambda one: one.found[key] if one.found["converged"] else None
 
 
-def _if(condition: Callable[[PassFigures], bool], figure: Callable[[PassFigures], float | None]) -> Any:  # noqa: ANN401
+def _if(condition: Callable[[PassFigures], bool], figure: Figure) -> Figure:
     return lambda one: figure(one) if condition(one) else None
 
 

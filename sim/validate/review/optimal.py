@@ -6,6 +6,7 @@ from math import radians
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fsw.core.laws.feedback.projection import torque_dipole
 from fsw.core.laws.optimal.boxed import boxed_dipole
@@ -198,6 +199,6 @@ def _unit_nm() -> float:
     return BODY.rate_radps**2 * float(np.trace(np.array(BODY.inertia_kgm2))) / 3.0
 
 
-def _vec3(v: Any) -> Vec3:  # noqa: ANN401
+def _vec3(v: NDArray[np.float64]) -> Vec3:
     x, y, z = np.asarray(v).tolist()
     return (x, y, z)
