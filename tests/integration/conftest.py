@@ -1,9 +1,11 @@
 """Flights by the command line; CAN interfaces. Where there are none: ``tests/with-vcan pytest -m vcan``."""
 
+import contextlib
 import hashlib
 import json
 import os
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -208,11 +210,20 @@ class Node:
         self.stdout, self.stderr = folder / "stdout", folder / "stderr"
         with self.stdout.open("w") as out, self.stderr.open("w") as err:
             self.process = subprocess.Popen(words, cwd=folder, stdout=out, stderr=err, **options)
+        self._leads_a_group = options.get("start_new_session", False)
 
-    def wait(self, timeout_s=60):
+    def wait(self, timeout_s=150):
         """How it ended."""
         code = self.process.wait(timeout_s)
         return Outcome(code, self.stdout.read_text(), self.stderr.read_text())
+
+    def end(self):
+        """Kill it if it still runs, and what it left behind: on an interface, that would disturb the next test."""
+        if self._leads_a_group:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(self.process.pid, signal.SIGKILL)
+        self.process.kill()
+        self.process.wait()
 
 
 @pytest.fixture(scope="session")
@@ -242,6 +253,4 @@ def start(tmp_path):
 
     yield start_module
     for node in nodes:
-        if node.process.poll() is None:
-            node.process.kill()
-            node.process.wait()
+        node.end()

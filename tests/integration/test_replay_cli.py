@@ -336,7 +336,7 @@ def test_a_log_is_played_onto_a_bus_at_its_own_pace(sil_run, torquer, bus, port)
 
     def listen():
         while not received or received[-1].can_id != PlantEnd.ID:
-            frame = listener.receive(30.0)
+            frame = listener.receive(120.0)
             if frame is None:
                 break
             received.append(frame)
