@@ -16,7 +16,8 @@ from fsw.core.estimation.loaded import freeze, load, thaw
 from fsw.core.estimation.parameters import component_places, estimated_inertia
 from fsw.core.fdir.fdir import Health
 from fsw.core.gate.readings import Readings, Telecommand
-from fsw.core.laws.interface import MAX_SPIN_RADPS
+from fsw.core.laws.entry import LawEntry, is_met
+from fsw.core.laws.interface import MAX_SPIN_RADPS, ControlConfig
 from fsw.core.laws.table import LAWS, OWN_NUMBER
 from fsw.core.orbit.elements import RANGES, Upload
 from fsw.core.orbit.ephemeris import advance, with_orbit
@@ -119,11 +120,15 @@ def _law(state: FlightState, message: TcLaw, situation: Situation) -> Outcome:
     own = situation.config.control.own
     name = own.name if own is not None and message.law == OWN_NUMBER else LAW_NAMES.get(message.law)
     config = situation.config.control
-    if name is None or (name in LAWS and LAWS[name].plans_pulses and config.pulse_model is None):
+    if name is None or (name in LAWS and not _can_fly(LAWS[name], config)):
         return TcAckResult.UNKNOWN
     if name == state.setpoint.law:
         return state
     return state._replace(setpoint=state.setpoint._replace(law=name), memory=())
+
+
+def _can_fly(law: LawEntry, config: ControlConfig) -> bool:
+    return is_met(law.needs, config.pulsed, config.wheel_body_nms, config.wheel is not None)
 
 
 def _spin(state: FlightState, message: TcSpin, situation: Situation) -> Outcome:

@@ -13,6 +13,7 @@ from typing import Literal, Self
 
 from pydantic import model_validator
 
+from fsw.core.laws.entry import LawEntry, Need, is_met
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit.tle import tle_epoch_unix_s
 from fsw.input.own_code import short_name
@@ -45,6 +46,12 @@ from fsw.table.wheel import WheelTable, check_wheel_inertia
 
 LATER_BOUNDS = ("torque_variation_nm", "cell_gain_percent", "cell_light_percent")
 """Keys of ``[uncertainty]`` that tables were written without."""
+
+UNMET = {
+    Need.PULSES: "with coils.driver = 'continuous': it plans pulses; allowed is coils.driver = 'pulsed'",
+    Need.MOMENTUM: "with body.wheel_nms[2] <= 0: it holds the axis of a wheel that turns along body axis 3",
+    Need.DRIVEN_WHEEL: "without [wheel]: it asks for torques of a driven wheel",
+}
 
 
 class FlightTable(Section):
@@ -97,13 +104,10 @@ class FlightTable(Section):
         return self
 
     @model_validator(mode="after")
-    def _law_has_its_coils(self) -> Self:
+    def _law_has_what_it_needs(self) -> Self:
         law = LAWS.get(self.control.law)
-        if law is not None and law.plans_pulses and self.coils.driver == "continuous":
-            raise ValueError(
-                f"control.law = {self.control.law!r} is not allowed with coils.driver = 'continuous': "
-                "it plans pulses; allowed is coils.driver = 'pulsed'"
-            )
+        if law is not None and not self.meets(law):
+            raise ValueError(f"control.law = {self.control.law!r} is not allowed {UNMET[law.needs]}")
         return self
 
     @model_validator(mode="after")
@@ -115,6 +119,10 @@ class FlightTable(Section):
         if self.wheel is not None:
             check_wheel_inertia(self.wheel, self.body.inertia)
         return self
+
+    def meets(self, law: LawEntry) -> bool:
+        """Whether this satellite has what a law needs."""
+        return is_met(law.needs, self.coils.driver == "pulsed", self.body.wheel_nms, self.wheel is not None)
 
     @property
     def epoch_unix_s(self) -> int:

@@ -10,7 +10,7 @@ from fsw.input.schema import Nested, merge
 from fsw.table.own_law import declared
 from fsw.table.table import lay_over
 from sim.campaign.flight import Order
-from sim.design.tuning.applicable import aims_of, coils_of
+from sim.design.tuning.applicable import aims_of, check_suited, coils_of, is_suited
 from sim.design.tuning.kept import KeptGains
 from sim.errors import HarnessError
 from sim.scenario.schema import Scenario, load
@@ -65,7 +65,7 @@ def chosen_laws(scenario: Scenario, text: str | None) -> tuple[str, ...]:
 
     Args:
         scenario: without ``text``, all laws that are meant for its body, its own among them.
-        text: names of laws or aims, or ``all``, with commas between.
+        text: names of laws or aims, or ``all``, with commas between; of an aim those that have their wheel.
 
     Raises:
         HarnessError: a name that is neither a law nor an aim.
@@ -73,7 +73,7 @@ def chosen_laws(scenario: Scenario, text: str | None) -> tuple[str, ...]:
     known = candidates(scenario).aims
     if text is None:
         aimed = aims_of(scenario)
-        return tuple(name for name, aim in known.items() if aim in aimed)
+        return tuple(name for name, aim in known.items() if aim in aimed and is_suited(name, scenario))
     words = [word.strip() for word in text.split(",")]
     aims = [aim.value for aim in Aim]
     for word in words:
@@ -83,7 +83,10 @@ def chosen_laws(scenario: Scenario, text: str | None) -> tuple[str, ...]:
                 f"--laws {text}: there is no law '{word}'{hint}: choose among {', '.join(known)}, "
                 f"all laws of an aim ({', '.join(aims)}), or all"
             )
-    return tuple(name for name, aim in known.items() if {name, aim.value, "all"} & set(words))
+    named = {
+        name for name, aim in known.items() if {aim.value, "all"} & set(words) and is_suited(name, scenario)
+    }
+    return tuple(name for name in known if name in named or name in words)
 
 
 def cases(
@@ -100,13 +103,15 @@ def cases(
     What ``settings`` say stands before those gains.
 
     Raises:
-        TableError: the scenario is not valid, or not with one of the drivers.
+        TableError: the scenario is not valid, or not with one of the drivers, or a law has not what it needs.
     """
-    known = candidates(load(name_or_path, settings))
+    scenario = load(name_or_path, settings)
+    known = candidates(scenario)
+    check_suited(laws, name_or_path, settings)
     all_cases = []
     for driver in drivers:
-        coils = coils_of(load(name_or_path, settings), driver.value)
-        suited = [law for law in laws if driver is Driver.PULSED or not _plans_pulses(law)]
+        coils = coils_of(scenario, driver.value)
+        suited = [law for law in laws if is_suited(law, scenario, driver.value)]
         for law in suited:
             found = None if kept is None else kept.control(driver.value, law)
             values = merge(merge({"control": found or {}}, settings), coils)
@@ -116,7 +121,3 @@ def cases(
             order = Order(name_or_path, overrides, seed, orbits)
             all_cases.append(ComparisonCase(law, known.aims[law], driver, order, bool(found)))
     return tuple(all_cases)
-
-
-def _plans_pulses(law: str) -> bool:
-    return law in LAWS and LAWS[law].plans_pulses

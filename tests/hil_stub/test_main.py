@@ -61,7 +61,7 @@ def start(spec, bus):
 
 
 def hear(bus, count):
-    frames = [bus.receive(20.0) for _ in range(count)]
+    frames = [bus.receive(120.0) for _ in range(count)]
     assert None not in frames, f"the board fell silent after {frames.index(None)} of {count} frames"
     return [CLASSES[frame.can_id].decode(frame.data) for frame in frames]
 

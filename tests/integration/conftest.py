@@ -218,7 +218,7 @@ class Node:
         return Outcome(code, self.stdout.read_text(), self.stderr.read_text())
 
     def end(self):
-        """Kill it if it still runs, and what it left behind: on an interface, that would disturb the next test."""
+        """Kill it if it still runs, and what it left behind: on an interface it would disturb other tests."""
         if self._leads_a_group:
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(self.process.pid, signal.SIGKILL)

@@ -3,6 +3,7 @@
 from enum import StrEnum
 from typing import NamedTuple
 
+from fsw.core.algebra.vector import Vec3
 from fsw.core.laws.interface import Law
 
 
@@ -27,11 +28,24 @@ class Aim(StrEnum):
     """Nothing is held: it shows what coils and sensors do."""
 
 
+class Need(StrEnum):
+    """What a law cannot do without: flown without it, it would never ask for anything."""
+
+    NOTHING = "nothing"
+    """It asks for dipoles, which every driver of coils gives."""
+    PULSES = "pulses"
+    """It plans the pulses of a pulsed driver."""
+    MOMENTUM = "momentum"
+    """It holds the axis of a wheel that turns at constant speed along body axis 3."""
+    DRIVEN_WHEEL = "driven_wheel"
+    """It asks for torques of a wheel."""
+
+
 class LawEntry(NamedTuple):
     """A law: its number in telecommands, its aim, its forms in ACQUIRE and POINT, and its own parameters.
 
-    The parameters are a class, a frozen dataclass of floats with defaults, or None for a law with none. A law
-    that plans pulses has no use for a continuous driver. One that is ``open_loop`` is flown in DETUMBLE too.
+    The parameters are a class, a frozen dataclass of floats with defaults, or None for a law with none. One
+    that is ``open_loop`` is flown in DETUMBLE too.
     """
 
     number: int
@@ -39,5 +53,23 @@ class LawEntry(NamedTuple):
     acquire: Law
     point: Law
     gains: type | None = None
-    plans_pulses: bool = False
+    needs: Need = Need.NOTHING
     open_loop: bool = False
+
+
+def is_met(need: Need, pulsed: bool, wheel_body_nms: Vec3, has_driven_wheel: bool) -> bool:
+    """Whether a satellite has what a law needs.
+
+    Args:
+        need: of the law.
+        pulsed: whether its coils are pulsed.
+        wheel_body_nms: constant momentum of a wheel, body axes.
+        has_driven_wheel: whether it has a wheel that can be driven.
+    """
+    met = {
+        Need.NOTHING: True,
+        Need.PULSES: pulsed,
+        Need.MOMENTUM: wheel_body_nms[2] > 0.0,
+        Need.DRIVEN_WHEEL: has_driven_wheel,
+    }
+    return met[need]

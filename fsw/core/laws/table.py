@@ -8,7 +8,7 @@ use for the torque: coils can oppose only its part normal to the field, which ga
 """
 
 from fsw.core.laws.damping.table import LAWS as DAMPING
-from fsw.core.laws.entry import Aim, LawEntry
+from fsw.core.laws.entry import Aim, LawEntry, Need
 from fsw.core.laws.feedback.table import LAWS as FEEDBACK
 from fsw.core.laws.interface import Setpoint
 from fsw.core.laws.one_axis.table import LAWS as ONE_AXIS
@@ -23,7 +23,7 @@ OWN_NUMBER = 255
 """The number of a law that is not in this table."""
 
 CHECK = {
-    "phasing": LawEntry(70, Aim.CHECK, phasing, phasing, PhasingGains, plans_pulses=True, open_loop=True),
+    "phasing": LawEntry(70, Aim.CHECK, phasing, phasing, PhasingGains, needs=Need.PULSES, open_loop=True),
 }
 
 LAWS: dict[str, LawEntry] = dict(

@@ -1,10 +1,13 @@
 """Which laws are meant for a body, by their aim and what the scenario has; its coils with either driver."""
 
-from fsw.core.laws.entry import Aim
+from collections.abc import Sequence
+
+from fsw.core.laws.entry import Aim, is_met
 from fsw.core.laws.table import LAWS
 from fsw.input.schema import Nested
 from fsw.table.own_law import declared
-from sim.scenario.schema import Scenario, flight_table
+from fsw.table.table import lay_over
+from sim.scenario.schema import Scenario, flight_table, load
 
 
 def aims_of(scenario: Scenario) -> frozenset[Aim]:
@@ -20,13 +23,33 @@ def aims_of(scenario: Scenario) -> frozenset[Aim]:
 
 
 def laws_for(scenario: Scenario) -> tuple[str, ...]:
-    """The laws of the table that are meant for the body, in the order of the table.
+    """The laws of the table that are meant for the body and can fly on it, in the order of the table.
 
     Raises:
         TableError: the scenario's own law cannot be loaded.
     """
     aims = aims_of(scenario)
-    return tuple(name for name, entry in LAWS.items() if entry.aim in aims)
+    return tuple(name for name, entry in LAWS.items() if entry.aim in aims and is_suited(name, scenario))
+
+
+def is_suited(law: str, scenario: Scenario, driver: str = "pulsed") -> bool:
+    """Whether a law has what it needs with that driver of the coils; one of the user's own always has."""
+    if law not in LAWS:
+        return True
+    table = flight_table(scenario)
+    return is_met(LAWS[law].needs, driver == "pulsed", table.body.wheel_nms, table.wheel is not None)
+
+
+def check_suited(laws: Sequence[str], name: str, over: Nested) -> None:
+    """Refuse a law that has not what it needs on a scenario, whatever drives its coils.
+
+    Raises:
+        TableError: there is one; the sentence says what it needs.
+    """
+    scenario = load(name, over)
+    for law in laws:
+        if not is_suited(law, scenario):
+            load(name, lay_over(over, {"control": {"law": law}}))
 
 
 def coils_of(scenario: Scenario, driver: str) -> Nested:

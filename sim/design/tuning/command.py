@@ -7,7 +7,7 @@ from fsw.core.laws.table import LAWS
 from fsw.input.near import did_you_mean
 from fsw.input.schema import Nested, merge
 from sim.console import say
-from sim.design.tuning.applicable import coils_of, laws_for
+from sim.design.tuning.applicable import check_suited, coils_of, is_suited, laws_for
 from sim.design.tuning.kept import KeptGains, body_checksum, gains_text, read_gains, write_gains
 from sim.design.tuning.rigid_flight import STEP_S
 from sim.design.tuning.search import BUDGET, ORBITS, TunedGains, tune
@@ -41,11 +41,12 @@ def design_laws(
         orbits: length of each flight.
 
     Raises:
-        TableError: the scenario is not valid.
+        TableError: the scenario is not valid, or has not what a law needs.
         HarnessError: there is no such law, or the file cannot be read or written.
     """
     scenario, budget = load(name, over), flights or BUDGET
     chosen = _chosen(scenario, laws)
+    check_suited(chosen, name, over)
     path = path or Path(f"{scenario.name}-gains.toml")
     rules = KeptGains(body_checksum(scenario), budget, orbits)
     before = read_gains(path)
@@ -59,7 +60,7 @@ def design_laws(
         (driver, law)
         for driver in DRIVERS
         for law in chosen
-        if not (driver == "continuous" and LAWS[law].plans_pulses) and kept.control(driver, law) is None
+        if is_suited(law, scenario, driver) and kept.control(driver, law) is None
     ]
     with progress(f"gains of {len(chosen)} laws for {scenario.name}", len(wanted) * budget) as watch:
         for number, (driver, law) in enumerate(wanted):

@@ -10,7 +10,7 @@ from fsw.core.fdir.coils.health import CoilHealth
 from fsw.core.fdir.fdir import Health
 from fsw.core.fdir.sensors.health import SensorHealth, Watch
 from fsw.core.gate.readings import NOTHING, TELECOMMANDS
-from fsw.core.laws.interface import OwnLaw
+from fsw.core.laws.interface import OwnLaw, Wheel
 from fsw.core.laws.table import LAWS, OWN_NUMBER
 from fsw.core.modes import ModeState
 from fsw.core.orbit.elements import RANGES, Elements, Upload
@@ -36,6 +36,7 @@ from fsw.wire.messages import (
 )
 
 TICK = 40
+WHEEL = Wheel((0.0, 0.6, 0.8), 1e-4, 1e-3, 0.06, 1e-7, 1e-5, 1.0, 4)
 
 
 @pytest.fixture(scope="module")
@@ -113,9 +114,10 @@ class TestLaw:
         assert all(0 <= number < 256 for number in LAW_NAMES)
 
     @pytest.mark.parametrize("name", LAWS)
-    def test_begins_without_a_memory(self, obey, state, name):
+    def test_begins_without_a_memory(self, obey, state, config, name):
         start = state._replace(setpoint=state.setpoint._replace(law="bdot" if name == "pd" else "pd"))
-        after, results = obey(start, TcLaw(LAWS[name].number))
+        wheels = replace(config.control, wheel_body_nms=(0.0, 0.0, 0.05), wheel=WHEEL)
+        after, results = obey(start, TcLaw(LAWS[name].number), config=replace(config, control=wheels))
         assert results == [TcAckResult.ACCEPTED]
         assert after == start._replace(setpoint=start.setpoint._replace(law=name), memory=())
 
@@ -132,8 +134,12 @@ class TestLaw:
         assert back.setpoint == state.setpoint
 
     def test_that_plans_pulses_is_none_of_a_continuous_driver(self, refused, config):
-        continuous = replace(config, control=replace(config.control, pulse_model=None))
+        continuous = replace(config, control=replace(config.control, pulsed=False))
         refused(TcAckResult.UNKNOWN, TcLaw(LAWS["pulse_mpc"].number), config=continuous)
+
+    @pytest.mark.parametrize("law", ["dual_spin", "wheel_relay", "two_coils", "pitch_wheel"])
+    def test_that_holds_or_drives_a_wheel_is_none_of_a_satellite_without(self, refused, law):
+        refused(TcAckResult.UNKNOWN, TcLaw(LAWS[law].number))
 
     @pytest.mark.parametrize("number", [*sorted(set(range(256)) - set(LAW_NAMES))[::23], 255])
     def test_that_is_not_there(self, refused, number):

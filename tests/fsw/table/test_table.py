@@ -153,6 +153,8 @@ PLANTED = [
     ("control.gains", {"three_term": {"k_x": "1"}}, "a number"),
     ("control.gains", {"three_term": 1.0}, "a section of keys"),
     ("control.leak_s", 0.0, "a number above 0"),
+    ("control.law", "two_coils", "is not allowed without [wheel]: it asks for torques of a driven wheel"),
+    ("control.law", "dual_spin", "is not allowed with body.wheel_nms[2] <= 0: it holds the axis of a wheel"),
     ("coils.driver", "analog", "'pulsed' or 'continuous'"),
     ("coils.driver", "continuous", "a continuous driver needs max_dipole_am2"),
     ("coils.max_dipole_am2", 0.0, "a number above 0"),

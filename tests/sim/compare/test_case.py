@@ -2,8 +2,9 @@
 
 import pytest
 
-from fsw.core.laws.entry import Aim
+from fsw.core.laws.entry import Aim, Need
 from fsw.core.laws.table import LAWS
+from fsw.input.schema import TableError
 from sim.compare.case import Driver, cases, chosen_laws
 from sim.design.tuning.kept import KeptGains
 from sim.errors import HarnessError
@@ -51,7 +52,8 @@ def test_laws_and_aims_by_name_in_the_order_of_the_table():
     sun = tuple(law for law, entry in LAWS.items() if entry.aim is Aim.SUN)
     assert "sun_pointing" in sun
     assert chosen_laws(scenario, "sun,bdot") == ("bdot", *sun)
-    assert chosen_laws(scenario, "all") == tuple(LAWS)
+    wheels = (Need.MOMENTUM, Need.DRIVEN_WHEEL)
+    assert chosen_laws(scenario, "all") == tuple(law for law in LAWS if LAWS[law].needs not in wheels)
 
 
 @pytest.mark.parametrize("text", ["pd,pdd", "", "pd,"])
@@ -82,6 +84,23 @@ def test_a_law_that_plans_pulses_is_not_flown_by_a_continuous_driver(scenario):
         ("pulse_mpc", Driver.PULSED),
         ("mpc", Driver.CONTINUOUS),
     ]
+
+
+@pytest.mark.parametrize(
+    ("scenario", "holding", "driving"),
+    [("microsat", False, False), ("pitch-wheel", True, False), ("microsat-wheel", False, True)],
+)
+def test_laws_of_a_wheel_are_compared_where_there_is_one(scenario, holding, driving):
+    found = set(chosen_laws(load(scenario), "all"))
+    assert ({"dual_spin", "six_gain", "wheel_relay"} <= found) is holding
+    assert ({"two_coils", "wheel_allocation", "pitch_wheel"} <= found) is driving
+    assert bool({"dual_spin", "two_coils"} & found) is (holding or driving)
+
+
+def test_a_law_that_is_named_and_has_not_its_wheel_is_refused():
+    assert chosen_laws(load("microsat"), "two_coils") == ("two_coils",)
+    with pytest.raises(TableError, match=r"control\.law = 'two_coils' is not allowed without \[wheel\]"):
+        cases("microsat", {}, ("pd", "two_coils"), BOTH, 1, None)
 
 
 def test_full_scale_is_the_highest_level_unless_the_scenario_has_one():

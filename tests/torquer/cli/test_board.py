@@ -24,7 +24,7 @@ BOARDS = {
 @pytest.mark.parametrize("board", BOARDS)
 def test_each_board_boots_on_the_bus_speaks_and_ends_with_ctrl_c(bus, start, board):
     node = start("board", board)
-    frames = [bus.receive(20.0) for _ in BOARDS[board]]
+    frames = [bus.receive(120.0) for _ in BOARDS[board]]
     assert tuple(CLASSES[frame.can_id] for frame in frames) == BOARDS[board]
     node.interrupt()
     assert node.wait() == (0, f"on {bus.spec}\n")

@@ -11,11 +11,11 @@ def test_it_flies_the_table_of_the_scenario_with_settings_laid_over_it(bus, star
     scenario = load("posat1", parse_settings(settings))
     words = [word for setting in settings for word in ("--set", setting)]
     node = start("fsw", "posat1", *words)
-    boot = bus.receive(20.0)
+    boot = bus.receive(120.0)
     assert boot.can_id == FswBoot.ID
     assert FswBoot.decode(boot.data).table_crc == flight_table(scenario).crc
     bus.send([Sync(0, scenario.epoch_unix_s).encode()])
-    while (frame := bus.receive(20.0)).can_id != TickDone.ID:
+    while (frame := bus.receive(120.0)).can_id != TickDone.ID:
         pass
     assert TickDone.decode(frame.data).tick == 0
     bus.send([PlantEnd(1).encode()])

@@ -26,6 +26,7 @@ from gate_samples import (
 from fsw.core.gate.readings import (
     INBOX_LIMIT,
     INPUT_MESSAGES,
+    NOISE_LIMIT,
     NOTHING,
     TELECOMMANDS,
     GateState,
@@ -41,6 +42,7 @@ from fsw.wire.messages import (
     RefAttitude,
     SunVector,
     Sync,
+    TcFreeze,
     TickDone,
 )
 
@@ -264,6 +266,45 @@ class TestOverrun:
         readings, state = admit((*noise, FIELD.encode()), GateState())
         assert readings == NOTHING
         assert (state.rejected, state.overrun) == (INBOX_LIMIT, 1)
+
+
+class TestNoise:
+    """Frames of chance, some of which pass the CRC: a sample of them does little harm, a telecommand much."""
+
+    COMMAND = TcFreeze(1, 3)
+
+    @pytest.mark.parametrize(
+        "noise", [broken(FIELD.encode()), Frame(0x7FF, b""), broken(TcFreeze(1, 2).encode())]
+    )
+    def test_up_to_the_limit_a_telecommand_is_believed(self, noise):
+        around = [self.COMMAND.encode(), *[noise] * NOISE_LIMIT]
+        for inbox in (around, around[::-1]):
+            readings, state = admit(tuple(inbox), GateState())
+            assert readings.telecommands == (self.COMMAND,)
+            assert state.rejected == NOISE_LIMIT
+
+    @pytest.mark.parametrize(
+        "noise", [broken(FIELD.encode()), Frame(0x7FF, b""), broken(TcFreeze(1, 2).encode())]
+    )
+    def test_beyond_it_is_dropped_and_counted_wherever_it_stands_and_may_be_sent_again(self, noise):
+        around = [self.COMMAND.encode(), *[noise] * (NOISE_LIMIT + 1)]
+        for inbox in (around, around[::-1]):
+            readings, state = admit(tuple(inbox), GateState())
+            assert (readings.telecommands, readings.repeated) == ((), ())
+            assert state == GateState(rejected=NOISE_LIMIT + 2)
+            again, _ = admit((self.COMMAND.encode(),), state)
+            assert again.telecommands == (self.COMMAND,)
+
+    def test_samples_are_taken_all_the_same(self):
+        """Each is judged by its value, and by the ones before."""
+        noise = [broken(SUN.encode())] * (NOISE_LIMIT + 1)
+        readings, _ = admit((*noise, FIELD.encode()), GateState())
+        assert readings.field == FIELD
+
+    def test_whole_frames_are_no_noise(self):
+        whole = [FIELD._replace(counter=n).encode() for n in range(INBOX_LIMIT - 1)]
+        readings, _ = admit((*whole, self.COMMAND.encode()), GateState())
+        assert readings.telecommands == (self.COMMAND,)
 
 
 def test_on_a_bus_without_cells_and_wheel_the_checksum_is_that_of_a_software_that_knows_none():

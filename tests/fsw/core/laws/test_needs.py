@@ -5,6 +5,7 @@ from math import isfinite
 import numpy as np
 import pytest
 
+from fsw.core.laws.entry import Need
 from fsw.core.laws.interface import FieldSample
 from fsw.core.laws.table import LAWS
 
@@ -118,3 +119,10 @@ def test_what_a_law_does_not_need_may_be_missing(ask, name, missing):
 @pytest.mark.parametrize("name", NEEDS)
 def test_without_a_field_nothing_is_asked_for(ask, bench, name):
     assert ask(name, orbit=bench.Orbit(dipole=0.0)) == pytest.approx(NOTHING, abs=0.0)
+
+
+def test_the_table_of_laws_knows_those_that_hold_a_wheel():
+    """The others of the chapter drive theirs."""
+    assert {name for name, row in LAWS.items() if row.needs is Need.MOMENTUM} == {
+        name for name, needs in NEEDS.items() if "wheel" in needs
+    }
