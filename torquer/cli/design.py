@@ -56,6 +56,9 @@ def design(
     from torquer.api.design import design
 
     over = parse_settings(settings)
+    _check_together(
+        laws, {"--gains": gains, "--write": write, "--out": out}, {"--keep": keep, "--flights": flights}
+    )
     if laws is not None:
         from sim.design.tuning.command import design_laws
 
@@ -74,3 +77,11 @@ def design(
         say(f"written: k_w and k_a of {found.written}")
         answer({"written": found.written})
     return int(not found.ok)
+
+
+def _check_together(laws: str | None, of_one: dict[str, object], of_many: dict[str, object]) -> None:
+    """Refuse options of the other search: they would have no effect."""
+    for option in (option for option, given in of_one.items() if given and laws is not None):
+        raise click.UsageError(f"{option} has no effect with --laws: the gains go to --keep")
+    for option in (option for option, given in of_many.items() if given and laws is None):
+        raise click.UsageError(f"{option} belongs to --laws")

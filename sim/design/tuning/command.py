@@ -30,7 +30,7 @@ def design_laws(
 ) -> KeptGains:
     """Search the gains of laws for a scenario, print them, and keep each in the file once it is found.
 
-    A law that the file has for this body and under these rules is not searched again.
+    A law that the file has is not searched again; a file for another body or by other rules is left alone.
 
     Args:
         name: of the scenario, or its path.
@@ -42,20 +42,19 @@ def design_laws(
 
     Raises:
         TableError: the scenario is not valid, or has not what a law needs.
-        HarnessError: there is no such law, or the file cannot be read or written.
+        HarnessError: there is no such law, or the file cannot be read or written, or holds something else.
     """
     scenario, budget = load(name, over), flights or BUDGET
     chosen = _chosen(scenario, laws)
     check_suited(chosen, name, over)
     path = path or Path(f"{scenario.name}-gains.toml")
     rules = KeptGains(body_checksum(scenario), budget, orbits)
-    before = read_gains(path)
-    same = before is not None and (before.body, before.flights, before.orbits) == (
-        rules.body,
-        rules.flights,
-        rules.orbits,
-    )
-    kept = before if same and before is not None else rules
+    kept = read_gains(path) or rules
+    if (kept.body, kept.flights, kept.orbits) != (rules.body, rules.flights, rules.orbits):
+        raise HarnessError(
+            f"{path}: holds gains of another body, start or coils, or by {kept.flights} flights of "
+            f"{kept.orbits:g} orbits instead of {budget} of {orbits:g}: give --keep another file"
+        )
     wanted = [
         (driver, law)
         for driver in DRIVERS

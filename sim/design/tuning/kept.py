@@ -17,6 +17,7 @@ from fsw.input.schema import Nested
 from fsw.input.toml_text import MOST_BYTES, BoundsError
 from sim.design.tuning.search import TunedGains
 from sim.errors import HarnessError
+from sim.record.run_dir import replace_file
 from sim.scenario.schema import Scenario
 
 FOLDER = Path(__file__).parent / "found"
@@ -59,8 +60,8 @@ class KeptGains:
 
 
 def body_checksum(scenario: Scenario) -> int:
-    """Of what the gains depend on: body, orbit, start, coils but for their driver, torque and dipole."""
-    parts = {
+    """Of what gains depend on: body, orbit, start, coils but for their driver, wheel, torque and dipole."""
+    parts: Nested = {
         "body": scenario.body.model_dump(mode="json", include={"inertia_kgm2", "wheel_nms"}),
         "orbit": scenario.orbit.model_dump(mode="json"),
         "initial": scenario.initial.model_dump(mode="json"),
@@ -72,6 +73,8 @@ def body_checksum(scenario: Scenario) -> int:
         ),
         "spin": scenario.control.spin_radps,
     }
+    if scenario.wheel is not None:
+        parts["wheel"] = scenario.wheel.model_dump(mode="json")
     return crc32(json.dumps(parts, sort_keys=True).encode())
 
 
@@ -110,7 +113,7 @@ def read_gains(path: Path) -> KeptGains | None:
 
 
 def write_gains(path: Path, kept: KeptGains) -> None:
-    """Write the file anew.
+    """Write the file anew, whole or not at all.
 
     Raises:
         HarnessError: it cannot be written.
@@ -118,7 +121,7 @@ def write_gains(path: Path, kept: KeptGains) -> None:
     rules: Nested = {"found": {"body": kept.body, "flights": kept.flights, "orbits": kept.orbits}}
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(_HEAD + tomli_w.dumps(rules | kept.rows), encoding="utf-8")
+        replace_file(path, (_HEAD + tomli_w.dumps(rules | kept.rows)).encode())
     except OSError as error:
         raise HarnessError(f"{path}: cannot be written ({error.strerror or error})") from None
 

@@ -51,3 +51,22 @@ def test_nothing_is_guessed_where_nothing_is_near(words, capsys):
     code, _, err = run(capsys, *words)
     assert code == 2
     assert "did you mean" not in err
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["--laws", "pd", "--out", "here"], "--out has no effect with --laws: the gains go to --keep"),
+        (["--laws", "pd", "--write"], "--write has no effect with --laws"),
+        (["--laws", "pd", "--gains", "1e6", "100"], "--gains has no effect with --laws"),
+        (["--keep", "a.toml"], "--keep belongs to --laws"),
+        (["--flights", "8"], "--flights belongs to --laws"),
+    ],
+    ids=lambda value: value[-2] if isinstance(value, list) else "",
+)
+def test_options_of_the_two_searches_for_gains_are_not_mixed(words, says, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    code, out, err = run(capsys, "design", "microsat", *words)
+    assert (code, out) == (2, "")
+    assert says in err
+    assert list(tmp_path.iterdir()) == []

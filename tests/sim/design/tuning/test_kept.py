@@ -106,9 +106,26 @@ class TestCommand:
         searched.clear()
         command.design_laws("microsat", {}, "pd,lqr", path)
         assert {law for law, _ in searched} == {"lqr"}
+
+    @pytest.mark.parametrize(
+        ("over", "flights"),
+        [({"initial": {"angle_deg": 10.0}}, None), ({}, 5), ({"body": {"inertia_kgm2": [1, 2, 2.5]}}, None)],
+        ids=["start", "flights", "body"],
+    )
+    def test_a_file_of_something_else_is_left_alone(self, searched, tmp_path, over, flights):
+        path = tmp_path / "a.toml"
+        command.design_laws("microsat", {}, "pd", path)
+        before = path.read_bytes()
         searched.clear()
-        command.design_laws("microsat", {"initial": {"angle_deg": 10.0}}, "pd", path)
-        assert {law for law, _ in searched} == {"pd"}, "another start"
+        with pytest.raises(
+            HarnessError, match=r"a\.toml: holds gains of another body, .* give --keep another"
+        ):
+            command.design_laws("microsat", over, "pd", path, flights)
+        assert (path.read_bytes(), searched) == (before, [])
+
+    def test_the_wheel_counts(self):
+        slower = {"wheel": {"max_torque_nm": 0.0005}}
+        assert body_checksum(load("microsat-wheel")) != body_checksum(load("microsat-wheel", slower))
 
     def test_an_unknown_law_is_named(self, tmp_path):
         with pytest.raises(HarnessError, match="--laws pdd: there is no law 'pdd'"):
