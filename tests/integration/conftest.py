@@ -9,6 +9,7 @@ import signal
 import socket
 import subprocess
 import sys
+import time
 from pathlib import Path
 from typing import NamedTuple
 
@@ -254,3 +255,17 @@ def start(tmp_path):
     yield start_module
     for node in nodes:
         node.end()
+
+
+@pytest.fixture
+def wait_for():
+    """Waits until a process has said something on stderr."""
+
+    def wait(node, text):
+        deadline = time.monotonic() + 120.0
+        while text not in node.stderr.read_text():
+            assert node.process.poll() is None, node.stderr.read_text()
+            assert time.monotonic() < deadline, f"it never said '{text}'"
+            time.sleep(0.02)
+
+    return wait

@@ -14,16 +14,8 @@ from fsw.wire.messages import FswBoot, PlantEnd, Sync, TickDone
 OPTIONS = ("--seed", "7", "--orbits", "0.05")
 
 
-def wait_for(node, text):
-    deadline = time.monotonic() + 120.0
-    while text not in node.stderr.read_text():
-        assert node.process.poll() is None, node.stderr.read_text()
-        assert time.monotonic() < deadline, f"it never said '{text}'"
-        time.sleep(0.02)
-
-
 @pytest.mark.parametrize("first", ["plant", "fsw"])
-def test_either_may_start_first(first, port, start, sil_run, tmp_path):
+def test_either_may_start_first(first, port, start, wait_for, sil_run, tmp_path):
     run = tmp_path / "run"
     words = {
         "plant": ("torquer", "plant", "microsat", "--bus", f"loop:{port}", *OPTIONS, "--out", run),
@@ -49,7 +41,7 @@ def test_either_may_start_first(first, port, start, sil_run, tmp_path):
     assert own["complete"] is True
 
 
-def test_on_a_bench_one_flight_software_flies_run_after_run(port, start, tmp_path):
+def test_on_a_bench_one_flight_software_flies_run_after_run(port, start, wait_for, tmp_path):
     """No PLANT_END ends it; it boots for the plant that comes next, so that both runs have the same log."""
     fsw = start("torquer", "fsw", "microsat", "--bus", f"loop:{port}", "--bench")
     wait_for(fsw, f"fsw on loop:{port}")

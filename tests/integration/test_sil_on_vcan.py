@@ -80,11 +80,10 @@ def test_candump_keeps_the_same_frames_as_we_do(on_can, vcan0, bus):
     assert (run / "bus.log").read_text().split("\n")[0].split(" ")[1] == vcan0
 
 
-def test_every_bus_carries_the_same_frames(on_can, sil_run, bus):
-    runs = [on_can[0], sil_run(*FLIGHT, "--bus", "loop"), sil_run(*FLIGHT, "--bus", "virtual")]
-    nodes = [by_node(bus(run).frames) for run in runs]
-    assert nodes[0] == nodes[1] == nodes[2]
-    assert set(nodes[0]) == {"PLANT", "FSW", "COIL", "MAG", "SUN"}
+def test_it_carries_the_frames_of_the_virtual_bus(on_can, sil_run, bus):
+    here, virtual = [by_node(bus(run).frames) for run in (on_can[0], sil_run(*FLIGHT, "--bus", "virtual"))]
+    assert here == virtual
+    assert set(here) == {"PLANT", "FSW", "COIL", "MAG", "SUN"}
 
 
 def test_a_run_on_can_replays_bit_for_bit_and_keeps_the_limits(on_can, torquer):
@@ -117,7 +116,7 @@ def test_canplayer_plays_our_log_back(sil_run, vcan0, bus, tmp_path):
 
 
 @pytest.mark.parametrize("first", ["plant", "fsw"])
-def test_two_terminals_in_either_order(first, vcan0, start, bus, sil_run, tmp_path):
+def test_two_terminals_in_either_order(first, vcan0, start, wait_for, bus, sil_run, tmp_path):
     run, spec = tmp_path / "run", f"socketcan:{vcan0}"
     words = {
         "plant": (*FLIGHT, "--bus", spec, "--out", run),
@@ -125,7 +124,8 @@ def test_two_terminals_in_either_order(first, vcan0, start, bus, sil_run, tmp_pa
     }
     second = {"plant": "fsw", "fsw": "plant"}[first]
     nodes = {first: start("torquer", first, *words[first])}
-    time.sleep(4.0)  # it has started and found nobody
+    wait_for(nodes[first], f"{first} on {spec}")
+    time.sleep(1.0)  # whatever it says now, the other one misses
     nodes[second] = start("torquer", second, *words[second])
     assert nodes["plant"].wait().code == 0
     assert nodes["fsw"].wait().code == 0
