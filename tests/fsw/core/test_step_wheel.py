@@ -63,8 +63,8 @@ def test_the_controller_knows_the_momentum_and_the_filter_stays_honest(acting):
     assert acting.state.attitude.sigma3_rate_radps < 2e-3
 
 
-def test_without_it_nothing_is_asked_and_the_state_has_no_place_for_it(make_world):
-    world = make_world(coils=COILS, control={"law": "wheel_allocation"})
+def test_without_one_nothing_is_asked_of_it_and_the_state_has_no_place_for_it(make_world):
+    world = make_world(coils=COILS)
     assert not any(torques(messages) for messages in world.fly(60))
     assert world.state.wheel is None
 
