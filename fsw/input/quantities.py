@@ -60,7 +60,7 @@ def _fields(kind: type[Any], source: str) -> dict[str, Field[Any]]:
     Raises:
         TableError: it is no frozen dataclass of numbers with defaults, or a default is out of its range.
     """
-    if not isinstance(kind, type) or not is_dataclass(kind) or not kind.__dataclass_params__.frozen:  # type: ignore[attr-defined]
+    if not isinstance(kind, type) or not is_dataclass(kind) or not kind.__dataclass_params__.frozen:  # type: ignore[attr-defined]  # typeshed has no word of it
         raise TableError(f"{source}: {getattr(kind, '__name__', kind)!s:.80} is no frozen dataclass")
     found = {each.name: each for each in fields(kind) if each.init}
     for name, each in found.items():

@@ -106,9 +106,13 @@ def read_gains(path: Path) -> KeptGains | None:
         values = tomllib.loads(read_regular(path, MOST_BYTES).decode("utf-8"))
         rules = values.pop("found")
         return KeptGains(int(rules["body"]), int(rules["flights"]), float(rules["orbits"]), values)
-    except (OSError, BoundsError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+    except OSError as error:
+        raise HarnessError(f"{path}: gains cannot be read: {error.strerror or error}") from None
+    except (BoundsError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise HarnessError(f"{path}: gains cannot be read: {error}") from None
-    except (KeyError, TypeError, ValueError) as error:
+    except KeyError as error:
+        raise HarnessError(f"{path}: no gains of torquer design --laws: {error} is missing") from None
+    except (TypeError, ValueError) as error:
         raise HarnessError(f"{path}: no gains of torquer design --laws: {error}") from None
 
 

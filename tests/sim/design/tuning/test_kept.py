@@ -123,6 +123,18 @@ class TestCommand:
             command.design_laws("microsat", over, "pd", path, flights)
         assert (path.read_bytes(), searched) == (before, [])
 
+    @pytest.mark.parametrize(
+        ("text", "says"), [("law = 3\n", "'found' is missing"), (None, "Is a directory")]
+    )
+    def test_what_is_no_file_of_gains_is_named_and_left_alone(self, searched, tmp_path, text, says):
+        path = tmp_path / "a.toml"
+        path.mkdir() if text is None else path.write_text(text)
+        with pytest.raises(HarnessError, match=says) as told:
+            command.design_laws("microsat", {}, "pd", path)
+        assert "Errno" not in str(told.value)
+        assert path.is_dir() if text is None else path.read_text() == text
+        assert searched == []
+
     def test_the_wheel_counts(self):
         slower = {"wheel": {"max_torque_nm": 0.0005}}
         assert body_checksum(load("microsat-wheel")) != body_checksum(load("microsat-wheel", slower))
