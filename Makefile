@@ -1,7 +1,7 @@
 # make sil    make the environment .venv and fly the default scenario
 # make test   all tests; those on a CAN interface are skipped, and reported, where there is none
 # make lint   style, types, layers, generated code, pages and pictures
-# make validate   compute every claim and reference figure, into docs/validation.md: an hour or two
+# make validate   compute every claim and reference figure, into docs/validation.md: some hours; stopped, it goes on where it was
 # make population   fly populations of random satellites, into docs/population.md: some hours; stopped, it goes on where it was
 # make pulse-limits   how near mpc and pulse_mpc come to the least error, over the coils and the disturbances, into docs/pulse-limits.md: ten minutes
 # make replay-elsewhere   does a log of 20 orbits replay with other processor features, into docs/replay.md
@@ -94,7 +94,7 @@ golden: venv
 	$(bin)/python tests/golden/record.py
 
 validate: venv
-	$(bin)/torquer validate
+	$(bin)/torquer validate --keep build/flights.jsonl
 
 fuzz: venv
 	TORQUER_FUZZ_FRAMES=1000000 TORQUER_FUZZ_MUTATIONS=1000 $(bin)/pytest -q --timeout 7200 tests/fuzz

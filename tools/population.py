@@ -22,14 +22,14 @@ from sim.campaign.study import FlightStudy, part_of
 from sim.errors import HarnessError
 from sim.progress import Watch, progress
 from sim.record.destination import check_file
+from sim.validate.flight_rows import FlightRows, order_hash
 from sim.validate.population import claims as population
 from sim.validate.population.page import page
 from sim.validate.population.pictures import SizeSpread, draw_satellites, draw_sweep, spread_of
-from sim.validate.population.rows import FlightRows, order_hash
 from sim.validate.population.sweep import QUANTITIES, Quantity, sweep_order, sweep_orders
 
 ROOT = Path(__file__).resolve().parent.parent
-PAGE, ROWS = ROOT / "docs" / "population.md", ROOT / "build" / "population.jsonl"
+PAGE, ROWS = ROOT / "docs" / "population.md", ROOT / "build" / "flights.jsonl"
 
 
 def fly_missing(orders: Sequence[Order], rows: FlightRows, workers: int) -> None:

@@ -4,6 +4,7 @@ import os
 import sys
 import time
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
 from sim.campaign.claim import ClaimVerdict, Study
@@ -15,6 +16,7 @@ from sim.progress import note, progress
 from sim.record.destination import check_file
 from sim.validate.flight_data import claims
 from sim.validate.flight_data.passes import CALIBRATED_BY
+from sim.validate.flight_rows import FlightRows, keep_flight, with_known
 from sim.validate.outcomes import as_outcomes, as_text, read_outcomes, with_outcomes
 from sim.validate.page import as_json, line, loose, render, suites, tally
 from sim.validate.reference import reference
@@ -33,6 +35,7 @@ def validate(
     junit: Path | None = None,
     flight_data: Path | None = None,
     record: bool = False,
+    keep: Path | None = None,
 ) -> int:
     """Run the studies, print each outcome, write the page.
 
@@ -49,12 +52,14 @@ def validate(
         junit: file for the verdicts as JUnit XML; None: not written.
         flight_data: run only the claims on the recorded passes in this folder.
         record: put the outcomes into ``validation.json``, where the page would stand, the others of it kept.
+        keep: file of flights; those in it, of this code, are not flown again, and each new one is added.
 
     Returns:
         The exit code: 1 if a claim fails, else 0.
 
     Raises:
-        HarnessError: reference data are malformed or missing, an id is unknown, the page cannot be written.
+        HarnessError: reference data are malformed or missing, an id is unknown, a file cannot be written,
+            or ``keep`` holds something else.
     """
     began = time.monotonic()
     repository = find_repository(Path.cwd())
@@ -63,12 +68,21 @@ def validate(
     whole = folder is None and flight_data is None and not only and not quick and satellites is None
     page = out or (_default_page(repository) if whole else None)
     figures = (out or _default_page(repository)).with_suffix(".json") if whole or record else None
-    for file in filter(None, (page, junit, figures)):
+    for file in filter(None, (page, junit, figures, keep)):
         check_file(file)
+    rows = FlightRows(keep) if keep is not None else None
+    if rows is not None:
+        studies = with_known(studies, rows)
     before = read_outcomes(figures) if record and figures is not None else {}
     bar = sys.stderr.isatty()  # then the outcomes are printed after the progress bar
     with progress("validating", sum(len(study.tasks) for study in studies)) as watch:
-        finished = run(studies, workers or os.cpu_count() or 1, watch, _print_later if bar else _print)
+        finished = run(
+            studies,
+            workers or os.cpu_count() or 1,
+            watch,
+            _print_later if bar else _print,
+            None if rows is None else partial(keep_flight, rows),
+        )
     if bar:
         for study in finished:
             _print(study)

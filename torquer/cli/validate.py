@@ -11,6 +11,7 @@ EXAMPLES = examples(
     "torquer validate --only posat1 --out posat1.md",
     "torquer validate --only population --satellites 20",
     "torquer validate --only review --record",
+    "torquer validate --keep build/flights.jsonl",
 )
 
 
@@ -45,6 +46,12 @@ EXAMPLES = examples(
     is_flag=True,
     help="Put the figures into validation.json by the page, others kept.",
 )
+@click.option(
+    "--keep",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Keep each flight here; a run that was stopped flies those that are missing.",
+)
 @JUNIT
 @JSON
 @sentences
@@ -58,8 +65,9 @@ def validate(
     out: Path | None,
     junit: Path | None,
     record: bool,
+    keep: Path | None,
 ) -> int:
     """Check every published figure and reference: claim, source, our figure, verdict."""
     from sim.validate.command import validate
 
-    return validate(reference, only, out, quick, workers, satellites, junit, flight_data, record)
+    return validate(reference, only, out, quick, workers, satellites, junit, flight_data, record, keep)

@@ -1,9 +1,13 @@
 """``torquer validate``: which files are checked, what it prints and writes, and how it ends."""
 
+from functools import partial
+
 import pytest
 from click.testing import CliRunner
 
-from sim.validate import command
+from sim.campaign.claim import Claim, Study
+from sim.campaign.flight import FlightResult, Order
+from sim.validate import command, flight_rows
 from sim.validate.reference import reference
 from torquer.cli.main import main
 
@@ -75,3 +79,30 @@ class TestCommand:
         monkeypatch.chdir(tmp_path)
         self.call()
         assert (tmp_path / "validation.md").exists()
+
+    def test_flights_that_are_kept_are_not_flown_again(self, tmp_path, monkeypatch):
+        flown = []
+
+        def fly(order):
+            flown.append(order.seed)
+            return FlightResult(order, {"limits_ok": True}, {})
+
+        def studies(satellites):
+            orders = tuple(Order("microsat", seed=seed) for seed in (1, 2))
+            tasks = tuple(partial(flight_rows.fly_order, order) for order in orders)
+            return [Study("a", tasks, lambda flights: [Claim("a", "b", "c", "1").judge(len(flights))], True)]
+
+        monkeypatch.setattr(flight_rows, "fly_order", fly)
+        monkeypatch.setattr(command, "all_studies", studies)
+        for _ in range(2):
+            result = self.call("--only", "a", "--keep", tmp_path / "kept.jsonl")
+            assert result.exit_code == 0
+            assert "1 claims hold" in result.stdout
+        assert flown == [1, 2]
+
+    def test_a_file_of_something_else_is_left_alone(self, tmp_path):
+        (tmp_path / "notes.txt").write_text("mine\n")
+        result = self.call("--quick", "--keep", tmp_path / "notes.txt")
+        assert result.exit_code == 2
+        assert "notes.txt: line 1 is not a flight" in result.stderr
+        assert (tmp_path / "notes.txt").read_text() == "mine\n"

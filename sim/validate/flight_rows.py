@@ -1,12 +1,16 @@
-"""Flights kept in a file, a line each: none is lost when a campaign stops, and none is flown twice."""
+"""Flights kept in a file, a line each: none is lost when a run of many stops, and none is flown twice."""
 
 import hashlib
+import inspect
 import json
-from functools import cache
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import cache, partial
 from pathlib import Path
 
 import sim
-from sim.campaign.flight import FlightResult, Order
+from sim.campaign.claim import Study, Task
+from sim.campaign.flight import FlightResult, Measure, Order, fly_order
 from sim.errors import HarnessError
 from sim.record.run_dir import Json
 
@@ -81,11 +85,44 @@ class FlightRows:
         self._rows[row["order"]] = row
 
 
+def with_known(studies: Sequence[Study], rows: FlightRows) -> list[Study]:
+    """The studies, where the flight of a task is known with that flight in place of the task."""
+    return [
+        replace(study, tasks=tuple(_known(task, rows) or task for task in study.tasks)) for study in studies
+    ]
+
+
+def keep_flight(rows: FlightRows, result: object) -> None:
+    """Add what a task has given, if it is a flight that is not known.
+
+    Raises:
+        HarnessError: the file cannot be written, or another run adds to it.
+    """
+    if isinstance(result, FlightResult) and rows.flight(result.order) is None:
+        rows.keep(result)
+
+
+def _known(task: Task, rows: FlightRows) -> Task | None:
+    if not isinstance(task, partial) or task.func is not fly_order:
+        return None
+    flight = rows.flight(*task.args)
+    return None if flight is None else partial(_given, flight)
+
+
+def _given(flight: FlightResult) -> FlightResult:
+    return flight
+
+
 def order_hash(order: Order) -> str:
-    """What tells one flight from another, whatever it is called."""
-    measured = None if order.measure is None else f"{order.measure.__module__}.{order.measure.__qualname__}"
+    """What tells one flight from another, whatever it is called; of a measure, its name and its module."""
+    measured = None if order.measure is None else _named_and_digested(order.measure)
     told = (order.scenario, order.overrides, order.seed, order.orbits, measured)
     return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()[:16]
+
+
+def _named_and_digested(measure: Measure) -> str:
+    source = inspect.getsource(inspect.getmodule(measure) or measure)
+    return f"{measure.__module__}.{measure.__qualname__} {hashlib.sha256(source.encode()).hexdigest()[:16]}"
 
 
 @cache

@@ -2,14 +2,17 @@
 
 import shutil
 from dataclasses import replace
+from functools import partial
 from math import inf
 from pathlib import Path
 
 import pytest
 
-from sim.campaign.flight import FlightResult, Order
+from sim.campaign.claim import Study
+from sim.campaign.flight import FlightResult, Order, fly_order
 from sim.errors import HarnessError
-from sim.validate.population.rows import CODE, FlightRows, code_hash
+from sim.validate.flight_rows import CODE, FlightRows, code_hash, keep_flight, with_known
+from sim.validate.microsat import pointing_figures
 
 ORDER = Order("microsat", {"disturbance": {"torque_nm": [1e-8, -2e-8, 3e-8]}}, 3, 8.0, name="one")
 
@@ -66,10 +69,42 @@ def test_a_flight_that_was_measured_otherwise_is_another(path):
     assert rows.flight(replace(ORDER, measure=test_a_flight_that_was_measured_otherwise_is_another)) is None
 
 
+def test_one_measured_by_another_version_of_its_measure_is_another(path, monkeypatch):
+    measured = replace(ORDER, measure=pointing_figures)
+    rows = FlightRows(path)
+    rows.keep(flight(measured))
+    assert rows.flight(measured) is not None
+    monkeypatch.setattr("inspect.getsource", lambda module: "changed")
+    assert rows.flight(measured) is None
+
+
+class TestStudies:
+    """Of flights and of other tasks."""
+
+    def study(self):
+        orders = (ORDER, replace(ORDER, seed=4))
+        return Study("mixed", (*(partial(fly_order, order) for order in orders), partial(int, "7")), list)
+
+    def test_a_flight_that_is_known_takes_the_place_of_its_task(self, path):
+        rows = FlightRows(path)
+        rows.keep(flight())
+        (known,) = with_known([self.study()], rows)
+        before, after = self.study().tasks, known.tasks
+        assert after[0]() == rows.flight(ORDER)
+        assert [each.args for each in after[1:]] == [each.args for each in before[1:]]
+
+    def test_each_new_flight_is_kept_and_nothing_else(self, path):
+        rows = FlightRows(path)
+        for result in (flight(), 7.0, flight(), None):
+            keep_flight(rows, result)
+        assert len(path.read_text().splitlines()) == 1
+        assert FlightRows(path).flight(ORDER) is not None
+
+
 @pytest.fixture(scope="module")
 def house(tmp_path_factory):
     """A copy of all that a flight follows from."""
-    copied, here = tmp_path_factory.mktemp("house"), Path(__file__).parents[4]
+    copied, here = tmp_path_factory.mktemp("house"), Path(__file__).parents[3]
     for folder in CODE:
         shutil.copytree(here / folder, copied / folder, ignore=shutil.ignore_patterns("__pycache__"))
     return copied
@@ -106,7 +141,7 @@ def test_a_row_whose_writing_was_cut_off_is_flown_again(path):
 
 def test_flights_of_other_code_count_only_where_they_are_asked_for(path, monkeypatch):
     FlightRows(path).keep(flight())
-    monkeypatch.setattr("sim.validate.population.rows.code_hash", lambda: "changed")
+    monkeypatch.setattr("sim.validate.flight_rows.code_hash", lambda: "changed")
     assert FlightRows(path).flight(ORDER) is None
     earlier = FlightRows(path, of_any_code=True)
     assert earlier.flight(ORDER) is not None
