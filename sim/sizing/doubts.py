@@ -6,8 +6,13 @@ from math import hypot
 
 import numpy as np
 
+from fsw.core.commands import HANDLERS, Situation
 from fsw.core.orbit.tle import tle_elements
+from fsw.core.state import FlightState
+from fsw.core.step import boot
+from fsw.table.config import flight_config
 from fsw.table.uncertainty import ROUNDING, bounds
+from fsw.wire.messages import TcAckResult, TcGain, TcLaw, TcOrbitElement, TcParameter, TcSpin
 from sim.design.from_scenario import body_of
 from sim.scenario.schema import Scenario, flight_table
 from sim.sizing.expectation import expect, field_across
@@ -26,6 +31,8 @@ NOISE_NT, NOISE_DEG = (1.0, 5000.0), (1e-3, 10.0)
 SLIGHT, SLIGHT_NT, SLIGHT_KM = 0.01, 100.0, 1.0
 """Beyond its bound, but of no consequence: part of what the coils can give, bias, way along the track."""
 LEAST_CURRENT_MA, MOST_CURRENT_MA = 1.0, 10_000.0
+SAME_AT_ANY_TIME = (TcLaw, TcGain, TcSpin, TcOrbitElement, TcParameter)
+"""Telecommands that are refused for what they say, not for the state of the satellite."""
 
 
 def doubts(scenario: Scenario) -> list[str]:
@@ -195,6 +202,29 @@ def _beyond_bounds(scenario: Scenario) -> Iterator[str]:
             )
 
 
+def _telecommands(scenario: Scenario) -> Iterator[str]:
+    """The flight software is asked for its answer, as it is at boot."""
+    if not scenario.telecommand:
+        return
+    config = flight_config(flight_table(scenario))
+    state, situation = boot(config), Situation(False, config)
+    for place, telecommand in enumerate(scenario.telecommand):
+        for message in telecommand.messages():
+            if isinstance(message, SAME_AT_ANY_TIME):
+                answer = HANDLERS[type(message)](state, message, situation)
+                if not isinstance(answer, FlightState):
+                    yield (
+                        f"telecommand[{place}], {telecommand.message} at {telecommand.at_s:g} s, will be "
+                        f"answered {answer.name.lower()!r}: {_ANSWERS[answer]}"
+                    )
+
+
+_ANSWERS = {
+    TcAckResult.UNKNOWN: "the satellite has no such law, or not what it needs",
+    TcAckResult.OUT_OF_RANGE: "the value is beyond what the flight software takes",
+    TcAckResult.NOT_ALLOWED: "its filter does not estimate that parameter",
+}
+
 _JUDGES: tuple[Callable[[Scenario], Iterator[str]], ...] = (
     _epoch,
     _orbit,
@@ -205,4 +235,5 @@ _JUDGES: tuple[Callable[[Scenario], Iterator[str]], ...] = (
     _sensors,
     _load,
     _beyond_bounds,
+    _telecommands,
 )

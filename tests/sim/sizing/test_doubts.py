@@ -77,3 +77,40 @@ def test_an_inclination_that_was_left_out():
 )
 def test_what_does_not_matter_is_not_doubted(settings):
     assert found("cubesat3u", *settings) == []
+
+
+def telecommand(**content):
+    return {"telecommand": [{"at_s": 50.0, "message": "TC_CLEAR"}, {"at_s": 600.0, **content}]}
+
+
+@pytest.mark.parametrize(
+    ("content", "answer"),
+    [
+        ({"message": "TC_LAW", "law": "two_coils"}, "'unknown': the satellite has no such law"),
+        ({"message": "TC_LAW", "law": "own"}, "'unknown': the satellite has no such law"),
+        ({"message": "TC_GAIN", "gain": "k_w", "value": -3.0}, "'out_of_range': the value"),
+        (
+            {"message": "TC_PARAMETER", "component": "cell_1", "value": 0.1},
+            "'not_allowed': its filter does not estimate",
+        ),
+        ({"message": "TC_PARAMETER", "component": "mag_bias_x", "value": 0.1}, "'out_of_range': the value"),
+    ],
+    ids=lambda value: value["message"] if isinstance(value, dict) else "",
+)
+def test_a_telecommand_that_will_be_refused(content, answer):
+    (doubt,) = doubts(load("microsat", telecommand(**content)))
+    assert doubt.startswith(f"telecommand[1], {content['message']} at 600 s, will be answered {answer}")
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        {"message": "TC_LAW", "law": "pd"},
+        {"message": "TC_GAIN", "gain": "k_a", "value": 30.0},
+        {"message": "TC_MODE", "mode": "POINT"},
+        {"message": "TC_PARAMETER", "component": "mag_bias_x", "value": 1e-7},
+    ],
+    ids=lambda content: content["message"],
+)
+def test_one_that_may_be_carried_out_is_not_doubted(content):
+    assert doubts(load("microsat", telecommand(**content))) == []
