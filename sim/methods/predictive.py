@@ -94,14 +94,16 @@ METHODS: tuple[Method, ...] = (
         remark="It damps no sooner than that law with its coils at their limits.",
     ),
     Method(
-        name="gains of the PD law (8) by a dynamic neural network",
+        name="gains of the PD law (8) by dynamic neural units (`pd_neural`)",
         source="[O19] 3.4 [113]",
-        kind=Kind.PASSED_OVER,
-        where="",
+        kind=Kind.FLOWN,
+        where="fsw/core/laws/feedback/neural.py",
         claim="The gains so found do well, above all against disturbances that are not known.",
+        claims=("review.feedback.neural",),
         remark=(
             "The review gives no equation of the network or of its training; none was found by the authors' "
-            "names, the title and the method's name. Gains by a search of flights: `torquer design --laws`."
+            "names, the title and the method's name. Units and training are derived: "
+            "`sim/design/feedback/neural.py`, `tools/train_neural_gains.py`."
         ),
     ),
     Method(

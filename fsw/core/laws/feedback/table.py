@@ -12,6 +12,7 @@ from fsw.core.laws.feedback.held import (
     pd_held_far,
 )
 from fsw.core.laws.feedback.inertial import InertialGains, inertial, inertial_far
+from fsw.core.laws.feedback.neural import NeuralGains, neural
 from fsw.core.laws.feedback.output_feedback import FilterGains, output_feedback
 from fsw.core.laws.feedback.pd import pd, pd_far
 from fsw.core.laws.feedback.projection import (
@@ -38,4 +39,5 @@ LAWS: dict[str, LawEntry] = {
     "two_step": LawEntry(58, Aim.THREE_AXIS, two_step, two_step, TwoStepGains),
     "sphere_vertical": LawEntry(59, Aim.VERTICAL, sphere_vertical, sphere_vertical, VerticalGains),
     "sphere_output": LawEntry(130, Aim.THREE_AXIS, sphere_output, sphere_output, ObserverGains),
+    "pd_neural": LawEntry(131, Aim.THREE_AXIS, neural, neural, NeuralGains),
 }

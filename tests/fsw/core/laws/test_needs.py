@@ -47,6 +47,7 @@ NEEDS = {
     "pd_held": {"attitude"},
     "pd_delayed": {"attitude"},
     "two_step": {"attitude", "orbit"},
+    "pd_neural": {"attitude", "orbit"},
     "sphere_vertical": {"attitude"},
     "sphere_output": {"attitude", "orbit"},
     "sliding_realisable": {"attitude", "orbit"},

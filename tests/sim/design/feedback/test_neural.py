@@ -1,0 +1,80 @@
+"""Training of the neural units: its flights are those of the law, and it lowers the cost."""
+
+from math import radians
+
+import numpy as np
+import pytest
+
+from fsw.core.laws.feedback.neural import NeuralGains
+from sim.design.feedback import neural
+from sim.design.feedback.neural import MOST_AM2, PD_GAINS, Trials, cost, orbit_rms_deg, train, trials
+from sim.design.theory.bodies import BODIES
+from sim.validate.review.law_flight import ConstantTorque, LawFlight, fly
+
+BODY = BODIES[2]
+WEIGHTS = (0.3, -0.25, 0.3, 0.9, -0.05, -0.4, 0.05)
+
+
+def test_its_flights_are_those_of_the_law():
+    turn = radians(40.0) * np.array([1.0, -2.0, 3.0]) / np.sqrt(14.0)
+    half = 0.5 * radians(40.0)
+    q = np.concatenate([[np.cos(half)], np.sin(half) * turn / radians(40.0)])
+    torque = (1e-7, -0.5e-7, 0.8e-7)
+    flown = Trials(q[None], np.array([torque]), np.zeros((1, 3)))
+    ours = orbit_rms_deg(BODY, PD_GAINS, np.array([WEIGHTS]), flown, MOST_AM2, orbits=2)[0, 0]
+    history = fly(
+        LawFlight(
+            "pd_neural",
+            BODY.inertia_kgm2,
+            k_w=PD_GAINS.k_w,
+            k_a=PD_GAINS.k_a,
+            gains=NeuralGains(*WEIGHTS),
+            rotation_rad=tuple(turn.tolist()),
+            relative=True,
+            orbits=2.0,
+            step_s=neural.STEP_S,
+            most_am2=MOST_AM2,
+            extra=ConstantTorque(torque),
+        )
+    )
+    theirs = [
+        np.sqrt(np.mean(history.angle_deg[(history.orbits >= n) & (history.orbits < n + 1)] ** 2))
+        for n in (0, 1)
+    ]
+    assert ours == pytest.approx(theirs, rel=0.01)
+
+
+def test_a_residual_dipole_turns_the_satellite():
+    flown = trials(2, 5)
+    without = Trials(flown.q, flown.torque_nm, 0.0 * flown.dipole_am2)
+    member = np.array([WEIGHTS])
+    ours, calm = (
+        orbit_rms_deg(BODY, PD_GAINS, member, each, MOST_AM2, orbits=2) for each in (flown, without)
+    )
+    assert np.abs(ours / calm - 1.0).max() > 0.05
+
+
+def test_trials_are_those_of_their_seed():
+    again, other = trials(3, 8), trials(3, 9)
+    assert np.array_equal(trials(3, 8).q, again.q)
+    assert not np.array_equal(again.torque_nm, other.torque_nm)
+    angles = np.degrees(2.0 * np.arccos(again.q[:, 0]))
+    assert (angles >= neural.LEAST_DEG).all()
+    assert (angles <= neural.MOST_DEG).all()
+
+
+def test_the_cost_is_the_mean_logarithm():
+    assert cost(np.array([[[1.0, np.e], [np.e, np.e**2]]])) == pytest.approx([1.0])
+
+
+def test_training_is_never_worse_than_constant_gains_and_reports(monkeypatch):
+    monkeypatch.setattr(neural, "POPULATION", 2)
+    flown, told = trials(2, 1), []
+    found, lowest = train(
+        BODY, PD_GAINS, flown, MOST_AM2, 3, 2, report=lambda *told_now: told.append(told_now)
+    )
+    constant = np.array([[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, found[6]]])
+    assert lowest <= cost(orbit_rms_deg(BODY, PD_GAINS, constant, flown, MOST_AM2))[0] + 1e-9
+    assert lowest == pytest.approx(cost(orbit_rms_deg(BODY, PD_GAINS, found[None], flown, MOST_AM2))[0])
+    assert [generation for generation, _ in told] == list(range(1, len(told) + 1))
+    assert told[-1][1] == pytest.approx(lowest)
