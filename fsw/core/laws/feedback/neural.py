@@ -37,13 +37,13 @@ class NeuralGains:
         lag_orbits: T.
     """
 
-    w0: float = 0.332
-    w1: float = -0.294
-    w2: float = 0.306
-    a0: float = 0.949
-    a1: float = -0.033
-    a2: float = -0.399
-    lag_orbits: float = 0.023
+    w0: float = 0.069
+    w1: float = -0.01
+    w2: float = -0.014
+    a0: float = -0.079
+    a1: float = 0.209
+    a2: float = -0.351
+    lag_orbits: float = 0.013
 
     def __post_init__(self) -> None:
         """Raises ValueError: a lag of no length."""
