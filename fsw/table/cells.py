@@ -63,12 +63,14 @@ class CellTable(CellShapes):
         return self
 
 
-def cell_set(table: CellTable, excess_sigma: float) -> CellSet:
+def cell_set(table: CellTable, excess_sigma: float, gain_sigma: float, light_sigma: float) -> CellSet:
     """The cells as the filter takes them.
 
     Args:
         table: the section.
         excess_sigma: standard deviation of what a cell shows beyond its model, parts of full sunlight.
+        gain_sigma: of the relative error of a gain.
+        light_sigma: of the albedo.
     """
     normals = tuple(unit(normal) for normal in table.normals)
     return CellSet(
@@ -78,6 +80,8 @@ def cell_set(table: CellTable, excess_sigma: float) -> CellSet:
         dark=0.01 * table.dark_percent,
         sigma=hypot(0.01 * table.noise_percent, QUANTUM / 12.0**0.5),
         excess_sigma=excess_sigma,
+        gain_sigma=gain_sigma,
+        light_sigma=light_sigma,
         albedo=table.albedo,
     )
 

@@ -2,6 +2,7 @@
 
 from math import ceil, hypot, radians, sqrt
 
+from fsw.core.estimation.cells.cell_set import CellSet
 from fsw.core.estimation.estimator import EstimatorConfig
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.start.first import StartLimits
@@ -41,7 +42,7 @@ ORBIT_RADIUS_M = 7.0e6
 def estimator_config(table: FlightTable) -> EstimatorConfig:
     """Prepare the estimator."""
     tuning, known, tick_s = table.estimator, table_bounds(table), 1.0 / table.time.tick_hz
-    cells = None if table.cells is None else cell_set(table.cells, SIDE * known.cell_excess)
+    cells = _cells(table, known)
     limits = plausibility_config(table)
     return EstimatorConfig(
         mekf=mekf_config(
@@ -53,7 +54,7 @@ def estimator_config(table: FlightTable) -> EstimatorConfig:
             sun_sigma_rad=_sun_sigma_rad(table),
             attitude_sigma_rad=START_SIGMA_RAD
             if cells is None
-            else max(START_SIGMA_RAD, 2.0 * cells.excess_sigma),
+            else max(START_SIGMA_RAD, 2.0 * cells.model_sigma),
             rate_sigma_radps=radians(tuning.rate_sigma_degps),
             torque_noise_nm_rts=max(
                 TORQUE_NOISE_RTS * known.torque_nm, LEAST_NOISE_RTS * mean_moment(table.body.inertia)
@@ -84,7 +85,15 @@ def _sun_sigma_rad(table: FlightTable) -> float:
     """The noise of the Sun's direction: by Sun cells what they show beyond their model."""
     if table.cells is None:
         return radians(table.estimator.sun_sigma_deg)
-    return hypot(0.01 * table.cells.noise_percent, SIDE * table_bounds(table).cell_excess)
+    known = table_bounds(table)
+    return hypot(0.01 * table.cells.noise_percent, SIDE * known.cell_gain_part, SIDE * known.cell_light)
+
+
+def _cells(table: FlightTable, known: Uncertainty) -> CellSet | None:
+    if table.cells is None:
+        return None
+    sigmas = (SIDE * bound for bound in (known.cell_excess, known.cell_gain_part, known.cell_light))
+    return cell_set(table.cells, *sigmas)
 
 
 def plausibility_config(table: FlightTable) -> PlausibilityConfig:
@@ -102,5 +111,5 @@ def plausibility_config(table: FlightTable) -> PlausibilityConfig:
         angle_rad=known.mag_turn_rad + known.sun_turn_rad + model + sigmas * noise_rad,
         sun_norm=sigmas * noise_rad,
         late_ticks=ceil(known.latency_s * table.time.tick_hz - 1e-9),
-        cells=None if table.cells is None else cell_set(table.cells, SIDE * known.cell_excess),
+        cells=_cells(table, known),
     )

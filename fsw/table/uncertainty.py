@@ -11,7 +11,7 @@ between zero and its bound.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import hypot, radians, sqrt
+from math import radians, sqrt
 from typing import NamedTuple
 
 from pydantic import Field
@@ -90,9 +90,14 @@ class Uncertainty:
     torque_variation_nm: float
     along_track_m: float
     latency_s: float
+    cell_gain_part: float = 0.0
+    cell_light: float = 0.0
     cell_excess: float = 0.0
+    earth_light: float = 0.0
 
 
+UNEVEN = 0.5
+"""Part of what the Earth's light may be wrong by that is another for each cell: clouds lie unevenly."""
 REFERENCE_KGM2 = 1.6
 """Mean moment of inertia of the 50 kg satellite for which the ordinary dipole and torque hold."""
 
@@ -108,6 +113,7 @@ def bounds(
     """
     volume = (mean_moment(inertia_kgm2) / REFERENCE_KGM2) ** 0.6
     torque_nm = _or(table.torque_nm, 3e-8 * volume)
+    cell_gain, cell_light = (0.0, 0.0) if albedo is None else _of_cells(table, albedo)
     return Uncertainty(
         inertia_part=0.01 * _or(table.inertia_percent, 10.0),
         products_part=0.01 * _or(table.products_percent, 2.0),
@@ -122,13 +128,17 @@ def bounds(
         torque_variation_nm=_or(table.torque_variation_nm, 0.2 * torque_nm),
         along_track_m=1000.0 * _or(table.along_track_km, 5.0),
         latency_s=_or(table.latency_s, tick_s),
-        cell_excess=0.0 if albedo is None else _cell_excess(table, albedo),
+        cell_gain_part=cell_gain,
+        cell_light=cell_light,
+        cell_excess=cell_light * (UNEVEN if albedo else 1.0),
+        earth_light=cell_light if albedo else 0.0,
     )
 
 
-def _cell_excess(table: UncertaintyTable, albedo: float) -> float:
-    gain, light = _or(table.cell_gain_percent, 10.0), _or(table.cell_light_percent, 50.0 * albedo or 30.0)
-    return 0.01 * hypot(gain, light)
+def _of_cells(table: UncertaintyTable, albedo: float) -> tuple[float, float]:
+    """The bounds of gain and Earth's light."""
+    light_percent = _or(table.cell_light_percent, 50.0 * albedo or 30.0)
+    return 0.01 * _or(table.cell_gain_percent, 10.0), 0.01 * light_percent
 
 
 def _or(given: float | None, ordinary: float) -> float:
@@ -166,6 +176,8 @@ SHAPES = {
     "sun_turn_rad": Shape(BALL),
     "delay_s": Shape(0.5 * SIDE, mean=0.5),
     "cell_excess": Shape(SIDE),
+    "cell_gain": Shape(SIDE),
+    "earth_light": Shape(SIDE),
 }
 """A parameter may wander by a tenth of its limit in a day, the disturbance torque by its own bound, and the
 coils by a hundredth in a second, so that what a coil loses in flight is found."""
@@ -200,4 +212,6 @@ def limits(known: Uncertainty, inertia_kgm2: Mat3) -> dict[str, tuple[float, ...
         "sun_turn_rad": (known.sun_turn_rad,) * 3,
         "delay_s": (known.latency_s,) * 2,
         "cell_excess": (known.cell_excess,) * MOST_CELLS,
+        "cell_gain": (known.cell_gain_part,) * MOST_CELLS,
+        "earth_light": (known.earth_light,),
     }

@@ -86,6 +86,13 @@ class Component(IntEnum):
     CELL_4 = 38
     CELL_5 = 39
     CELL_6 = 40
+    CELL_GAIN_1 = 41
+    CELL_GAIN_2 = 42
+    CELL_GAIN_3 = 43
+    CELL_GAIN_4 = 44
+    CELL_GAIN_5 = 45
+    CELL_GAIN_6 = 46
+    EARTH_LIGHT = 47
 
 
 class CoilRefusedReason(IntEnum):

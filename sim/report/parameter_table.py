@@ -20,6 +20,8 @@ UNITS = {
     "sun_turn_rad": ("°", degrees(1.0)),
     "delay_s": ("s", 1.0),
     "cell_excess": ("%", 100.0),
+    "cell_gain": ("%", 100.0),
+    "earth_light": ("%", 100.0),
 }
 """The unit in which the page shows a parameter, and how many of it are one of SI."""
 

@@ -22,7 +22,7 @@ NORMALS = tuple(
         ),
     )
 )
-EXCESS_SIGMA, NOISE_SIGMA = 0.09, 0.012
+EXCESS_SIGMA, GAIN_SIGMA, LIGHT_SIGMA, NOISE_SIGMA = 0.06, 0.05, 0.08, 0.012
 CELLS = CellSet(
     normals_body=NORMALS,
     full_sun=(1.0, 0.8, 1.2, 0.9, 1.1, 1.3),
@@ -30,6 +30,8 @@ CELLS = CellSet(
     dark=0.05,
     sigma=NOISE_SIGMA,
     excess_sigma=EXCESS_SIGMA,
+    gain_sigma=GAIN_SIGMA,
+    light_sigma=LIGHT_SIGMA,
     albedo=0.3,
 )
 Q_BODY_FROM_ECI = normalise((0.6, 0.4, -0.5, -0.3))
@@ -52,6 +54,8 @@ def cell_filter(cells=CELLS, **priors):
         "sun_turn_rad": Prior((0.01, 0.012, 0.008), (0.0,) * 3),
         "delay_s": Prior((0.3, 0.3), (0.0, 0.0), mean=(0.5, 0.4)),
         "cell_excess": Prior((cells.excess_sigma,) * 6, (0.0,) * 6),
+        "cell_gain": Prior((cells.gain_sigma,) * 6, (0.0,) * 6),
+        "earth_light": Prior((cells.light_sigma,), (0.0,)),
     }
     return mekf_config(
         ((1.02, 0.07, -0.05), (0.07, 1.85, 0.11), (-0.05, 0.11, 1.45)),

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import ceil, sqrt
+from typing import Any
 
 import numpy as np
 
@@ -11,9 +12,9 @@ from fsw.core.estimation.cells.cell_set import CellSet
 from fsw.core.estimation.dynamics.torque_maps import TORQUES, TorqueMaps, cross_matrix, system_maps
 from fsw.core.estimation.kalman import Matrix
 from fsw.core.estimation.parameters import (
-    MOST_CELLS,
     NAMES,
     NOTHING,
+    OF_CELLS,
     Layout,
     Parameters,
     Prior,
@@ -214,4 +215,5 @@ def mekf_config(
 def _means(priors: Mapping[str, Prior]) -> Parameters:
     given = [priors[name].mean if name in priors else () for name in NAMES]
     means = Parameters._make(mean or none for mean, none in zip(given, NOTHING, strict=True))
-    return means._replace(cell_excess=(0.0,) * MOST_CELLS) if "cell_excess" in priors else means
+    of_cells: dict[str, Any] = {name: (0.0,) * size for name, size in OF_CELLS.items() if name in priors}
+    return means._replace(**of_cells)

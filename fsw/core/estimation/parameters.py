@@ -29,7 +29,9 @@ class Parameters(NamedTuple):
         sun_turn_rad: small turn of the Sun sensor's axes, rad.
         delay_s: age of the samples of magnetometer and Sun sensor, s.
         cell_excess: what each Sun cell shows beyond its model, in parts of full sunlight; of a satellite with
-            a Sun sensor instead there is nothing.
+            a Sun sensor instead there is nothing, as of the two that follow.
+        cell_gain: relative error of the gain of each.
+        earth_light: part of the sunlight that the Earth reflects beyond what the table reckons with.
     """
 
     mag_bias_t: Vec3 = ZERO
@@ -42,6 +44,8 @@ class Parameters(NamedTuple):
     sun_turn_rad: Vec3 = ZERO
     delay_s: tuple[float, float] = (0.0, 0.0)
     cell_excess: tuple[float, ...] = ()
+    cell_gain: tuple[float, ...] = ()
+    earth_light: tuple[float, ...] = ()
 
     def floats(self) -> tuple[float, ...]:
         """Every component, in the order of its number on the bus; for the checksum of the state too."""
@@ -56,6 +60,8 @@ class Parameters(NamedTuple):
             *self.sun_turn_rad,
             *self.delay_s,
             *self.cell_excess,
+            *self.cell_gain,
+            *self.earth_light,
         )
 
 
@@ -63,7 +69,9 @@ NOTHING = Parameters()
 """A satellite that is as its table says, as far as is known."""
 
 NAMES = Parameters._fields
-SIZES = {**dict(zip(NAMES, map(len, NOTHING), strict=True)), "cell_excess": MOST_CELLS}
+OF_CELLS = {"cell_excess": MOST_CELLS, "cell_gain": MOST_CELLS, "earth_light": 1}
+"""Parameters of a satellite with Sun cells, and how many numbers each has."""
+SIZES = {**dict(zip(NAMES, map(len, NOTHING), strict=True)), **OF_CELLS}
 """How many numbers each has if it is carried."""
 COMPONENTS = tuple((index, offset) for index, name in enumerate(NAMES) for offset in range(SIZES[name]))
 """By its number on the bus, of which parameter each component is, and which of its numbers."""
@@ -99,6 +107,8 @@ class Layout:
     sun_turn: slice | None
     delay: slice | None
     cells: slice | None
+    cell_gain: slice | None
+    earth_light: slice | None
 
 
 def layout(carried: set[str]) -> Layout:

@@ -8,12 +8,15 @@ s and e being the directions to Sun and Earth, zeta the Sun's distance from the 
 light that the Earth reflects. The second term is the Earth's light: (R / r)^2 is the view factor of a plate
 that faces the Earth; one that is turned away sees what the square leaves of it, nearly, in low orbits.
 
-The excess is whatever the cell shows beyond that: its gain is not the nominal one, clouds are not spread
-evenly. It is no white noise: it stays while the geometry does. So it is carried as a state of each cell,
+What is not the nominal one is estimated: the gain of each cell, a constant that multiplies n . s; A, which
+wanders as the satellite passes over land, sea and clouds; and the excess, whatever a cell shows beyond that,
+since clouds are not spread evenly. None is white noise. A is one for all cells: errors that each had for
+itself would be taken to average out. The excess stays while the geometry does: it is a state of each cell,
 first-order Markov over the angle that the satellite turns by against Sun and Earth.
 """
 
 from dataclasses import dataclass
+from math import hypot
 from typing import NamedTuple
 
 from fsw.core.algebra.vector import Vec3, dot, norm, scale
@@ -39,6 +42,8 @@ class CellSet:
         dark: below this part of full sunlight a cell counts as dark.
         sigma: white noise, parts of full sunlight, as the next.
         excess_sigma: standard deviation of the excess.
+        gain_sigma: of the relative error of the gain.
+        light_sigma: of the albedo.
         albedo: part of the sunlight that the Earth reflects; 0: its light is not reckoned with.
     """
 
@@ -48,7 +53,14 @@ class CellSet:
     dark: float
     sigma: float
     excess_sigma: float
+    gain_sigma: float
+    light_sigma: float
     albedo: float
+
+    @property
+    def model_sigma(self) -> float:
+        """Standard deviation of what a cell that sees Sun and Earth shows beyond its model, all together."""
+        return hypot(self.excess_sigma, self.gain_sigma, self.light_sigma)
 
     def shaded(self, cell: int, s_body: Vec3) -> bool:
         """Whether the satellite itself takes this direction of the Sun from a cell."""

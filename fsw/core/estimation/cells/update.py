@@ -1,6 +1,7 @@
-"""The samples of Sun cells in the filter: one cell at a time, each with an excess that is no white noise."""
+"""The samples of Sun cells in the filter: one at a time; none of its errors is white noise but the least."""
 
 from collections.abc import Sequence
+from math import hypot
 from typing import NamedTuple
 
 import numpy as np
@@ -19,7 +20,9 @@ LEAST_COSINE = 0.2
 GATE_NIS = 10.83
 """Chi-square of 1 degree of freedom: of sound samples 1 in 1000 is refused."""
 SIGMAS = 4.0
-"""Beyond so many standard deviations an excess is none that the table allows."""
+"""Beyond so many standard deviations an excess or a gain is none that the table allows."""
+BRIGHT = 2.0
+"""Times the threshold: a cell that the Sun is behind is taken if the Earth alone gives it so much."""
 CORRELATION_RAD = 1.0
 """The excess of a cell has little to do with that before a turn by this angle."""
 ORBIT_RADPS = 1.1e-3
@@ -43,20 +46,30 @@ CellPrediction = tuple[float, Matrix]
 def prediction(
     estimate: Estimate, cell: int, seen: Light, config: MekfConfig, cells: CellSet
 ) -> CellPrediction:
-    """What a cell that sees the Sun should show, and how that depends on the error state.
+    """What a cell should show that is clear of the edge of its view, and how that depends on the error state.
 
     Turn and age are those of the Sun sensor, whose place the cells take: of all cells at once.
     """
-    normal = cells.normals_body[cell]
+    normal, parts, known = cells.normals_body[cell], config.layout, estimate.parameters
     s, sensitivity = sun_prediction(*estimate[:3], seen.s_eci, config)
-    shown, row = dot(normal, s), np.array(normal).dot(sensitivity)
+    shown, row = 0.0, np.zeros(parts.size)
+    direct = dot(normal, s)
+    if direct > 0.0:
+        gain = 1.0 + (known.cell_gain[cell] if known.cell_gain else 0.0)
+        shown, row = gain * direct, gain * np.array(normal).dot(sensitivity)
+        if parts.cell_gain is not None:
+            row[parts.cell_gain.start + cell] = direct
     if seen.earth > 0.0:
         e, e_sensitivity = sun_prediction(*estimate[:3], seen.e_eci, config)
         view = 0.5 * (1.0 + dot(normal, e))
-        shown += seen.earth * view * view
-        row = row + np.array(scale(seen.earth * view, normal)).dot(e_sensitivity)
-    if config.layout.cells is not None:
-        row[config.layout.cells.start + cell] = 1.0
+        of_one = seen.earth / cells.albedo
+        earth = seen.earth + of_one * (known.earth_light[0] if known.earth_light else 0.0)
+        shown += earth * view * view
+        row = row + np.array(scale(earth * view, normal)).dot(e_sensitivity)
+        if parts.earth_light is not None:
+            row[parts.earth_light.start] = of_one * view * view
+    if parts.cells is not None:
+        row[parts.cells.start + cell] = 1.0
     return shown, row.reshape(1, -1)
 
 
@@ -70,18 +83,34 @@ def sunlit(q_body_from_eci: Quaternion, seen: Light, cells: CellSet) -> list[int
     ]
 
 
+def earthlit(q_body_from_eci: Quaternion, seen: Light, cells: CellSet) -> list[int]:
+    """The cells that the Sun is behind, and that the Earth lights by itself."""
+    s = rotate(q_body_from_eci, seen.s_eci)
+    return [
+        cell
+        for cell, normal in enumerate(cells.normals_body)
+        if dot(normal, s) < -LEAST_COSINE and _by_earth(q_body_from_eci, normal, seen) > BRIGHT * cells.dark
+    ]
+
+
 def most_behind(q_body_from_eci: Quaternion, normal: Vec3, seen: Light, cells: CellSet) -> float:
     """The most that a cell can show which the Sun is behind, by the Earth and its excess."""
+    most = SIGMAS * hypot(cells.excess_sigma, cells.light_sigma)
+    return cells.dark + _by_earth(q_body_from_eci, normal, seen) + most
+
+
+def _by_earth(q_body_from_eci: Quaternion, normal: Vec3, seen: Light) -> float:
     view = 0.5 * (1.0 + dot(normal, rotate(q_body_from_eci, seen.e_eci)))
-    return cells.dark + seen.earth * view * view + SIGMAS * cells.excess_sigma
+    return seen.earth * view * view
 
 
 def update_cells(
     estimate: Estimate, currents: Sequence[float | None], seen: Light | None, config: MekfConfig
 ) -> tuple[Estimate, CellsUsed]:
-    """Take the cells that see the Sun, one after the other, each gated by itself.
+    """Take the cells that see the Sun, then those that the Earth lights, each gated by itself.
 
-    A cell that shows nothing is not taken: it may be dead, and one in shadow shows no direction.
+    A cell that shows nothing is not taken: it may be dead, and one in shadow shows no direction. From the
+    Earth's light on a cell that the Sun is behind it is known how much of it there is on the others.
 
     Args:
         estimate: before.
@@ -101,13 +130,17 @@ def update_cells(
         updated = taken(estimate, cell, current, seen, config, cells) if current > cells.dark else None
         (refused if updated is None else accepted).append(cell)
         estimate = updated or estimate
+    for cell in earthlit(estimate.q_body_from_eci, seen, cells):
+        current = currents[cell]
+        if current is not None and current > cells.dark:
+            estimate = taken(estimate, cell, current, seen, config, cells) or estimate
     return estimate, CellsUsed(tuple(accepted), tuple(refused))
 
 
 def taken(
     estimate: Estimate, cell: int, current: float, seen: Light, config: MekfConfig, cells: CellSet
 ) -> Estimate | None:
-    """The estimate after the current of a cell that sees the Sun; None when the gate refuses it."""
+    """The estimate after the current of a cell; None when the gate refuses it."""
     shown, sensitivity = prediction(estimate, cell, seen, config, cells)
     innovation = current - shown - estimate.parameters.cell_excess[cell]
     noise = np.array([[cells.sigma**2]])
@@ -115,22 +148,29 @@ def taken(
 
 
 def faded(estimate: Estimate, config: MekfConfig) -> Estimate:
-    """The estimate after a tick in which the excess of each cell has lost part of what it was.
+    """The estimate after a tick in which excess and Earth's light have lost part of what they were.
 
-    A first-order Markov process: x <- k x, sigma^2 <- k^2 sigma^2 + (1 - k^2) sigma_0^2, k = 1 / (1 + turn).
+    First-order Markov processes: x <- k x, sigma^2 <- k^2 sigma^2 + (1 - k^2) sigma_0^2, k = 1 / (1 + turn);
+    for the excess of a cell the turn of the satellite, for the light that of the Earth below it.
     """
-    cells, place = config.cells, config.layout.cells
-    if cells is None or place is None:
+    parts = config.layout
+    if config.cells is None or parts.cells is None:
         return estimate
-    turn = config.tick_s * (norm(estimate.omega_body_radps) + ORBIT_RADPS) / CORRELATION_RAD
-    keep = 1.0 / (1.0 + turn)
-    covariance = estimate.covariance.copy()
+    passed = config.tick_s * ORBIT_RADPS / CORRELATION_RAD
+    turned = passed + config.tick_s * norm(estimate.omega_body_radps) / CORRELATION_RAD
+    covariance, known = estimate.covariance.copy(), estimate.parameters
+    of_excess, of_light = 1.0 / (1.0 + turned), 1.0 / (1.0 + passed)
+    _lose(covariance, parts.cells, of_excess, config)
+    known = known._replace(cell_excess=tuple([of_excess * value for value in known.cell_excess]))
+    if parts.earth_light is not None:
+        _lose(covariance, parts.earth_light, of_light, config)
+        known = known._replace(earth_light=(of_light * known.earth_light[0],))
+    return estimate._replace(parameters=known, covariance=covariance)
+
+
+def _lose(covariance: Matrix, place: slice, keep: float, config: MekfConfig) -> None:
+    """Take a part of these states, and bring their variances nearer to those of the prior; in place."""
     covariance[place] *= keep
     covariance[:, place] *= keep
-    variances = config.initial_covariance.diagonal()[place]
-    covariance[range(place.start, place.stop), range(place.start, place.stop)] += (
-        1.0 - keep * keep
-    ) * variances
-    excess = tuple([keep * value for value in estimate.parameters.cell_excess])
-    parameters = estimate.parameters._replace(cell_excess=excess)
-    return estimate._replace(parameters=parameters, covariance=covariance)
+    own = range(place.start, place.stop)
+    covariance[own, own] += (1.0 - keep * keep) * config.initial_covariance.diagonal()[place]

@@ -72,10 +72,10 @@ def model_of(config: MekfConfig, cells: CellSet) -> BatchModel:
         *np.maximum(_sigmas(config, parts.torque, 3), LEAST_SIGMAS["torque"]).tolist(),
         *np.maximum(_sigmas(config, parts.inertia, 6), LEAST_SIGMAS["inertia"]).tolist(),
     )
-    shown = (bias_t,) * 3 + (cells.excess_sigma,) * len(cells.normals_body)
+    shown = (bias_t,) * 3 + (cells.model_sigma,) * len(cells.normals_body)
     return BatchModel(
         field_sigma_t=hypot(sqrt(float(config.field_noise[0, 0])), VARYING * bias_t),
-        current_sigma=hypot(cells.sigma, VARYING * cells.excess_sigma),
+        current_sigma=hypot(cells.sigma, VARYING * cells.model_sigma),
         prior=np.array((np.inf,) * 6 + moving + shown),
         differences=np.array((1e-3,) * 3 + (1e-5,) * 3 + tuple([0.1 * sigma for sigma in moving])),
         normals=np.array(cells.normals_body),

@@ -5,7 +5,8 @@ with it. What speaks against a cell:
 
 - it gives a current in the Earth's shadow;
 - it is lit, and the filter refuses what it shows, or it shows nothing;
-- what it shows beyond its model is more than ``SIGMAS`` standard deviations of what the table allows;
+- its gain, or what it shows beyond its model, is more than ``SIGMAS`` standard deviations of what the table
+  allows;
 - the Sun is behind it, and it is brighter than the Earth and that excess can make it;
 - its current does not change by a bit while the predicted one moves by ``STILL``.
 
@@ -21,6 +22,7 @@ from fsw.core.estimation.cells.cell_set import CellSet, Light
 from fsw.core.estimation.cells.update import LEAST_COSINE, CellsUsed, most_behind, prediction, taken
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
+from fsw.core.estimation.parameters import Parameters
 from fsw.core.fdir.evidence import SIGMAS, EvidenceWeights
 from fsw.core.fdir.faults import SensorFault
 from fsw.core.fdir.sensors.watch import Watch, accused, readmitted
@@ -138,11 +140,18 @@ def _verdict(
     """What speaks against a cell that is lit, 0: it is as predicted, None: the filter had no part in it."""
     if shown.still:
         return SensorFault.FROZEN
-    if current <= cells.dark or abs(estimate.parameters.cell_excess[cell]) > SIGMAS * cells.excess_sigma:
+    if current <= cells.dark or _beyond(estimate.parameters, cell, cells):
         return SensorFault.STRENGTH
     if cell in used.refused:
         return SensorFault.REFUSED
     return 0 if cell in used.taken else None
+
+
+def _beyond(known: Parameters, cell: int, cells: CellSet) -> bool:
+    """Whether excess or gain of a cell is none that the table allows."""
+    gain = known.cell_gain[cell] if known.cell_gain else 0.0
+    excess = known.cell_excess[cell]
+    return abs(excess) > SIGMAS * cells.excess_sigma or abs(gain) > SIGMAS * cells.gain_sigma
 
 
 def _weighed(watch: Watch, verdict: int | None, unclear: bool, weights: EvidenceWeights) -> Watch:
