@@ -18,7 +18,7 @@ from fsw.core.algebra.vector import unit
 from fsw.core.estimation.estimator import EstimatorState, Used
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import mekf_config
-from fsw.core.estimation.parameters import MOST_CELLS, NAMES, SIZES, Parameters, Prior
+from fsw.core.estimation.parameters import OF_CELLS, NAMES, SIZES, Parameters, Prior
 
 LAYOUTS = {
     "none": (),
@@ -40,6 +40,8 @@ PRIORS = Parameters(
     sun_turn_rad=Prior((0.004, 0.003, 0.005), (0.0,) * 3),
     delay_s=Prior((0.5, 0.6), (0.0, 0.0)),
     cell_excess=Prior((0.1, 0.12, 0.08, 0.09, 0.11, 0.07), (0.0,) * 6),
+    cell_gain=Prior((0.05, 0.06, 0.04, 0.045, 0.055, 0.035), (0.0,) * 6),
+    earth_light=Prior((0.08,), (0.0,)),
 )
 TRUE = Parameters(
     mag_bias_t=(3e-7, -5e-7, 2e-7),
@@ -52,6 +54,8 @@ TRUE = Parameters(
     sun_turn_rad=(-0.003, 0.002, 0.004),
     delay_s=(0.4, 0.7),
     cell_excess=(0.05, -0.08, 0.03, 0.09, -0.04, 0.06),
+    cell_gain=(0.04, -0.05, 0.03, -0.02, 0.06, -0.03),
+    earth_light=(0.07,),
 )
 """How a satellite differs from its table: about as much as the priors expect."""
 
@@ -118,8 +122,8 @@ class Satellite:
         """An estimate with everything carried nonzero."""
         covariance = self.covariance() if covariance is None else covariance
         parameters = self.parameters if parameters is None else parameters
-        if "cell_excess" in self.carried and not parameters.cell_excess:
-            parameters = parameters._replace(cell_excess=(0.0,) * MOST_CELLS)
+        lacking = [name for name in OF_CELLS if name in self.carried and not getattr(parameters, name)]
+        parameters = parameters._replace(**{name: (0.0,) * OF_CELLS[name] for name in lacking})
         return Estimate(self.q, self.omega, parameters, covariance)
 
     def moved(self, estimate, error):

@@ -42,7 +42,7 @@ class TestLayout:
         alone = layout({name})
         assert alone.carried == ((index, slice(6, 6 + SIZES[name])),)
         without = layout(set(NAMES) - {name})
-        assert without.size == 47 - SIZES[name]
+        assert without.size == 54 - SIZES[name]
         assert index not in [known for known, _ in without.carried]
         ends = [place.stop for _, place in without.carried]
         assert [place.start for _, place in without.carried] == [6, *ends[:-1]]
@@ -60,6 +60,8 @@ class TestLayout:
             "sun_turn_rad": "sun_turn",
             "delay_s": "delay",
             "cell_excess": "cells",
+            "cell_gain": "cell_gain",
+            "earth_light": "earth_light",
         }
         places = layout({name})
         assert {field for field in own.values() if getattr(places, field) is not None} == {own[name]}
