@@ -21,18 +21,20 @@ def table(cells=None, **sections):
 def test_normals_are_made_unit_and_the_rest_goes_to_si():
     shade = {"cell": 2, "axis": [0.0, 2.0, 0.0], "half_deg": 30.0}
     given = table({"full_sun": [1.0, 0.8, 1.1], "noise_percent": 2.0, "dark_percent": 8.0, "shades": [shade]})
-    cells = cell_set(given.cells, 0.07)
+    cells = cell_set(given.cells, 0.07, 0.05, 0.08)
     np.testing.assert_allclose(cells.normals_body, [(1.0, 0.0, 0.0), (0.0, -0.6, 0.8), (0.0, 0.0, 1.0)])
     assert cells.full_sun == (1.0, 0.8, 1.1)
     assert [len(shades) for shades in cells.shades] == [0, 1, 0]
     assert cells.shades[1][0].axis_body == (0.0, 1.0, 0.0)
     assert cells.shades[1][0].cosine == pytest.approx(cos(radians(30.0)))
-    assert (cells.dark, cells.excess_sigma, cells.albedo) == (pytest.approx(0.08), 0.07, 0.3)
+    assert (cells.dark, cells.albedo) == (pytest.approx(0.08), 0.3)
+    assert (cells.excess_sigma, cells.gain_sigma, cells.light_sigma) == (0.07, 0.05, 0.08)
+    assert cells.model_sigma == pytest.approx(sqrt(0.07**2 + 0.05**2 + 0.08**2))
     assert cells.sigma == pytest.approx(hypot(0.02, QUANTUM / sqrt(12.0)))
 
 
 def test_full_sun_is_nominal_unless_it_is_given():
-    assert cell_set(table().cells, 0.1).full_sun == (1.0, 1.0, 1.0)
+    assert cell_set(table().cells, 0.1, 0.05, 0.08).full_sun == (1.0, 1.0, 1.0)
 
 
 @pytest.mark.parametrize(
@@ -54,26 +56,35 @@ def test_what_cannot_be_is_refused_in_a_sentence(wrong, said):
     assert str(error.value).startswith("a table: cells")
 
 
-class TestExcess:
+class TestErrors:
+    """Of gain, Earth's light and excess; where the Earth's light is not reckoned with, all of it is excess."""
+
     @pytest.mark.parametrize(
-        ("albedo", "bounds", "expected"),
+        ("albedo", "bounds", "gain", "light", "excess"),
         [
-            (0.3, {}, hypot(0.10, 0.15)),
-            (0.2, {}, hypot(0.10, 0.10)),
-            (0.0, {}, hypot(0.10, 0.30)),
-            (0.3, {"cell_gain_percent": 4.0, "cell_light_percent": 3.0}, 0.05),
+            (0.3, {}, 0.10, 0.15, 0.075),
+            (0.2, {}, 0.10, 0.10, 0.05),
+            (0.0, {}, 0.10, None, 0.30),
+            (0.3, {"cell_gain_percent": 4.0, "cell_light_percent": 3.0}, 0.04, 0.03, 0.015),
         ],
     )
-    def test_is_what_gain_and_light_may_be_wrong_by(self, albedo, bounds, expected):
+    def test_are_those_of_the_bounds(self, albedo, bounds, gain, light, excess):
         config = estimator_config(table({"albedo": albedo}, uncertainty=bounds)).mekf
-        variances = config.initial_covariance.diagonal()[config.layout.cells]
-        np.testing.assert_allclose(np.sqrt(variances), expected / sqrt(3.0))
-        assert config.cells.excess_sigma == pytest.approx(expected / sqrt(3.0))
+        sigmas, places = np.sqrt(config.initial_covariance.diagonal()), config.layout
+        np.testing.assert_allclose(sigmas[places.cells], excess / sqrt(3.0))
+        np.testing.assert_allclose(sigmas[places.cell_gain], gain / sqrt(3.0))
+        if light is None:
+            assert places.earth_light is None
+        else:
+            np.testing.assert_allclose(sigmas[places.earth_light], light / sqrt(3.0))
+        cells = config.cells
+        assert (cells.excess_sigma, cells.gain_sigma) == pytest.approx((excess / sqrt(3.0), gain / sqrt(3.0)))
 
-    def test_of_a_satellite_without_cells_is_not_carried(self):
+    def test_of_a_satellite_without_cells_are_not_carried(self):
         config = estimator_config(flight_table({}, "a table")).mekf
-        assert (config.cells, config.layout.cells) == (None, None)
-        assert config.initial_parameters.cell_excess == ()
+        places, known = config.layout, config.initial_parameters
+        assert (config.cells, places.cells, places.cell_gain, places.earth_light) == (None,) * 4
+        assert (known.cell_excess, known.cell_gain, known.earth_light) == ((), (), ())
 
 
 def test_the_noise_of_a_sun_sensor_has_no_part_where_there_are_cells():

@@ -8,7 +8,7 @@ import pytest
 
 from fsw.core.algebra.quaternion import normalise
 from fsw.core.estimation import mekf
-from fsw.core.estimation.parameters import NAMES
+from fsw.core.estimation.parameters import NAMES, OF_CELLS
 from fsw.input.schema import merge
 from fsw.table.estimator import GATE_NIS, estimator_config, plausibility_config, table_bounds
 from fsw.table.table import flight_table
@@ -55,7 +55,7 @@ class TestStates:
     def test_their_priors_are_those_of_the_bounds(self):
         table = table_with(uncertainty={"inertia_percent": 8.0, "latency_s": 2.5})
         config, expected = estimator_config(table).mekf, priors(table_bounds(table), table.body.inertia)
-        sigma = np.concatenate([expected[name].sigma for name in NAMES if name != "cell_excess"])
+        sigma = np.concatenate([expected[name].sigma for name in NAMES if name not in OF_CELLS])
         np.testing.assert_allclose(np.sqrt(config.initial_covariance.diagonal()[6:]), sigma, rtol=1e-12)
         assert config.initial_parameters.delay_s == (1.25, 1.25)
 

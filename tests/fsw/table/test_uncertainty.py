@@ -6,7 +6,7 @@ from math import radians, sqrt
 import numpy as np
 import pytest
 
-from fsw.core.estimation.parameters import NAMES, SIZES
+from fsw.core.estimation.parameters import NAMES, OF_CELLS, SIZES
 from fsw.input.schema import TableError, merge
 from fsw.table.table import flight_table
 from fsw.table.uncertainty import Uncertainty, UncertaintyTable, bounds, priors
@@ -89,9 +89,10 @@ class TestBounds:
             along_track_m=pytest.approx(5e3),
             latency_s=0.25,
         )
-        known = [field.name for field in fields(Uncertainty) if field.name != "cell_excess"]
+        of_cells = ("cell_gain_part", "cell_light", "cell_excess", "earth_light")
+        known = [field.name for field in fields(Uncertainty) if field.name not in of_cells]
         assert all(getattr(ordinary, name) > 0.0 for name in known)
-        assert ordinary.cell_excess == 0.0  # there are none
+        assert not any(getattr(ordinary, name) for name in of_cells)  # there are none
 
     @pytest.mark.parametrize(("moments", "volume"), [(1.0, 1.0), (1e-3, 10.0**-1.8), (1e5, 1e3)])
     def test_ordinary_dipole_and_torque_grow_with_the_volume(self, moments, volume):
@@ -133,7 +134,7 @@ class TestPriors:
             "sun_turn_rad": [radians(0.25) * ball] * 3,
             "delay_s": [0.9 * side] * 2,
         }
-        assert list(found) == [name for name in NAMES if name != "cell_excess"]
+        assert list(found) == [name for name in NAMES if name not in OF_CELLS]
         for name, sigma in expected.items():
             assert found[name].sigma == pytest.approx(sigma)
             assert len(found[name].sigma) == len(found[name].walk) == SIZES[name]
@@ -154,7 +155,7 @@ class TestPriors:
     def test_samples_are_between_new_and_as_old_as_the_bound(self):
         late = priors_of(latency_s=1.8)["delay_s"]
         assert late.mean == pytest.approx((0.9, 0.9))
-        rest = set(NAMES) - {"delay_s", "cell_excess"}
+        rest = set(NAMES) - {"delay_s", *OF_CELLS}
         assert not any(any(priors_of()[name].mean) for name in rest)
 
     @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ from fsw.core.algebra.vector import unit
 from fsw.core.estimation.estimator import EstimatorState, Used
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import mekf_config
-from fsw.core.estimation.parameters import OF_CELLS, NAMES, SIZES, Parameters, Prior
+from fsw.core.estimation.parameters import NAMES, OF_CELLS, SIZES, Parameters, Prior
 
 LAYOUTS = {
     "none": (),

@@ -30,6 +30,8 @@ ON_THE_BUS = {
     "sun_turn_rad": "SUN_TURN_",
     "delay_s": "_DELAY",
     "cell_excess": "CELL_",
+    "cell_gain": "CELL_GAIN_",
+    "earth_light": "EARTH_LIGHT",
 }
 BOUNDS = {"residual_dipole_am2": 0.03, "magnetometer_scale_percent": 0.4, "latency_s": 0.8}
 

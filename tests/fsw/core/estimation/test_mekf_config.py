@@ -6,7 +6,7 @@ import numpy as np
 
 from fsw.core.algebra.vector import inverse
 from fsw.core.estimation.mekf_config import mekf_config
-from fsw.core.estimation.parameters import MOST_CELLS, NOTHING, Parameters, Prior
+from fsw.core.estimation.parameters import NOTHING, OF_CELLS, Parameters, Prior
 
 
 def test_the_priors_stand_where_the_layout_says(satellite):
@@ -36,7 +36,9 @@ def test_every_array_has_the_size_of_the_error_state(satellite):
 
 
 def test_the_parameters_begin_at_the_means_of_their_priors(full):
-    assert full.config().initial_parameters == NOTHING._replace(cell_excess=(0.0,) * MOST_CELLS)
+    assert full.config().initial_parameters == NOTHING._replace(
+        **{name: (0.0,) * size for name, size in OF_CELLS.items()}
+    )
     tuning = {
         "magnetometer_sigma_t": 2e-7,
         "sun_sigma_rad": 0.01,

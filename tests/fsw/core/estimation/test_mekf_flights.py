@@ -11,7 +11,7 @@ import pytest
 from fsw.core.algebra.quaternion import multiply, normalise
 from fsw.core.algebra.vector import ZERO
 from fsw.core.estimation.mekf import predict, start, update_field, update_sun
-from fsw.core.estimation.parameters import MOST_CELLS, NAMES, NOTHING, Parameters
+from fsw.core.estimation.parameters import NAMES, NOTHING, OF_CELLS, Parameters
 from sim.plant.dynamics import torques
 from sim.plant.dynamics.rigid_body import Motion, RigidBody
 from sim.plant.environment.surroundings import Surroundings
@@ -24,8 +24,8 @@ RATE = (0.003, -0.005, 0.004)
 BEYOND = 22.5
 """99.9 % of the chi-square of 6 degrees of freedom: attitude and rate."""
 
-NO_EXCESS = NOTHING._replace(cell_excess=(0.0,) * MOST_CELLS)
-"""Of a filter that carries the excess of cells."""
+NO_EXCESS = NOTHING._replace(**{name: (0.0,) * size for name, size in OF_CELLS.items()})
+"""Of a filter that carries what cells may be wrong by."""
 
 
 def driven_am2(second):
@@ -86,11 +86,11 @@ def test_every_state_is_found_within_its_sigma(satellite):
     assert nees(satellite, estimate, truth, satellite.size()) < 2.0 * satellite.size()
 
 
-@pytest.mark.parametrize("name", [name for name in NAMES if name != "cell_excess"])
+@pytest.mark.parametrize("name", [name for name in NAMES if name not in OF_CELLS])
 class TestOneDifferenceFromTheTable:
     """Attitude and rate stay honest by the state that stands for it, and by no other.
 
-    The excess of a cell shows in cells alone, of which this satellite has none.
+    What cells are wrong by shows in cells alone, of which this satellite has none.
     """
 
     def test_with_its_state_the_filter_is_honest_and_finds_it(self, name, carrying):

@@ -26,7 +26,7 @@ class TestLayout:
 
     def test_all_of_them_stand_in_their_order_without_a_gap(self):
         places = layout(set(NAMES))
-        assert places.size == 6 + sum(SIZES.values()) == 47
+        assert places.size == 6 + sum(SIZES.values()) == 54
         assert (places.mag_bias, places.torque, places.dipole) == (slice(6, 9), slice(9, 12), slice(12, 15))
         assert (places.coils, places.inertia) == (slice(15, 24), slice(24, 30))
         assert (places.mag_turn, places.mag_scale, places.sun_turn) == (
@@ -35,6 +35,7 @@ class TestLayout:
             slice(36, 39),
         )
         assert (places.delay, places.cells) == (slice(39, 41), slice(41, 47))
+        assert (places.cell_gain, places.earth_light) == (slice(47, 53), slice(53, 54))
 
     @pytest.mark.parametrize("name", NAMES)
     def test_one_alone_comes_first_and_one_left_out_leaves_no_gap(self, name):
@@ -122,6 +123,6 @@ class TestDipole:
 
 
 def test_the_checksum_of_the_state_has_every_number():
-    numbers = iter(range(1, 42))
+    numbers = iter(range(1, 49))
     parameters = Parameters._make(tuple(next(numbers) for _ in range(SIZES[name])) for name in NAMES)
-    assert parameters.floats() == tuple(range(1, 42))
+    assert parameters.floats() == tuple(range(1, 49))

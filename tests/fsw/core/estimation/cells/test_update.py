@@ -1,10 +1,19 @@
 """Sun cells in the filter: prediction and its derivative, one cell at a time, an excess that fades."""
 
 from dataclasses import replace
+from math import hypot
 
 import numpy as np
 import pytest
-from cell_samples import CELLS, EXCESS_SIGMA, NOISE_SIGMA, Q_BODY_FROM_ECI, REFERENCE, cell_filter
+from cell_samples import (
+    CELLS,
+    EXCESS_SIGMA,
+    LIGHT_SIGMA,
+    NOISE_SIGMA,
+    Q_BODY_FROM_ECI,
+    REFERENCE,
+    cell_filter,
+)
 
 from fsw.core.algebra.quaternion import from_small_rotation, multiply, normalise, rotate
 from fsw.core.algebra.vector import norm
@@ -28,21 +37,27 @@ CONFIG = cell_filter()
 SEEN = light(REFERENCE.r_eci_m, REFERENCE.sun_eci, CELLS.albedo)
 OMEGA = (0.004, -0.006, 0.003)
 EXCESS = (0.03, -0.05, 0.04, -0.02, 0.06, -0.03)
+GAIN = (0.04, 0.06, -0.05, 0.03, -0.02, 0.05)
+LIGHT = 0.07
 
 
 def begun(q=Q_BODY_FROM_ECI):
     """An estimate with parameters of their own."""
     estimate = mekf.start(q, OMEGA, CONFIG)
-    known = estimate.parameters._replace(sun_turn_rad=(0.004, -0.006, 0.005), cell_excess=EXCESS)
+    known = estimate.parameters._replace(
+        sun_turn_rad=(0.004, -0.006, 0.005), cell_excess=EXCESS, cell_gain=GAIN, earth_light=(LIGHT,)
+    )
     return estimate._replace(parameters=known)
 
 
-def shown(q_body_from_eci=Q_BODY_FROM_ECI):
-    """What ideal cells show, without excess, turn and age: written out again."""
+def shown(q_body_from_eci=Q_BODY_FROM_ECI, gain=(0.0,) * 6, light=0.0):
+    """What cells show, without excess, turn and age: written out again."""
     s, e = rotate(q_body_from_eci, SEEN.s_eci), rotate(q_body_from_eci, SEEN.e_eci)
+    earth = SEEN.earth * (1.0 + light / CELLS.albedo)
     return [
-        max(0.0, float(np.dot(normal, s))) + SEEN.earth * (0.5 + 0.5 * float(np.dot(normal, e))) ** 2
-        for normal in CELLS.normals_body
+        (1.0 + more) * max(0.0, float(np.dot(normal, s)))
+        + earth * (0.5 + 0.5 * float(np.dot(normal, e))) ** 2
+        for normal, more in zip(CELLS.normals_body, gain, strict=True)
     ]
 
 
@@ -65,6 +80,8 @@ def moved(estimate, index, step):
         ("sun_turn_rad", parts.sun_turn),
         ("delay_s", parts.delay),
         ("cell_excess", parts.cells),
+        ("cell_gain", parts.cell_gain),
+        ("earth_light", parts.earth_light),
     ):
         if place.start <= index < place.stop:
             values = list(getattr(parameters, name))
@@ -83,7 +100,7 @@ class TestPrediction:
             parameters=begun().parameters._replace(sun_turn_rad=(0.0,) * 3, delay_s=(0.0, 0.0))
         )
         value, _ = prediction(level, cell, SEEN, CONFIG, CELLS)
-        assert value == pytest.approx(shown()[cell], rel=1e-12)
+        assert value == pytest.approx(shown(gain=GAIN, light=LIGHT)[cell], rel=1e-12)
         without, _ = prediction(level, cell, SEEN._replace(earth=0.0), CONFIG, CELLS)
         assert value - without > 0.002
 
@@ -215,4 +232,4 @@ def test_a_cell_with_the_sun_behind_it_shows_the_earth_and_its_excess_at_most():
     for normal in CELLS.normals_body:
         view = 0.5 + 0.5 * np.dot(normal, rotate(Q_BODY_FROM_ECI, SEEN.e_eci))
         most = most_behind(Q_BODY_FROM_ECI, normal, SEEN, CELLS)
-        assert most == pytest.approx(0.05 + SEEN.earth * view**2 + 4.0 * EXCESS_SIGMA)
+        assert most == pytest.approx(0.05 + SEEN.earth * view**2 + 4.0 * hypot(EXCESS_SIGMA, LIGHT_SIGMA))
