@@ -70,7 +70,7 @@ def cell_set(table: CellTable, excess_sigma: float, gain_sigma: float, light_sig
         table: the section.
         excess_sigma: standard deviation of what a cell shows beyond its model, parts of full sunlight.
         gain_sigma: of the relative error of a gain.
-        light_sigma: of the albedo.
+        light_sigma: of the albedo; 0 where the Earth's light is not reckoned with.
     """
     normals = tuple(unit(normal) for normal in table.normals)
     return CellSet(

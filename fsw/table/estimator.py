@@ -92,7 +92,7 @@ def _sun_sigma_rad(table: FlightTable) -> float:
 def _cells(table: FlightTable, known: Uncertainty) -> CellSet | None:
     if table.cells is None:
         return None
-    sigmas = (SIDE * bound for bound in (known.cell_excess, known.cell_gain_part, known.cell_light))
+    sigmas = (SIDE * bound for bound in (known.cell_excess, known.cell_gain_part, known.earth_light))
     return cell_set(table.cells, *sigmas)
 
 

@@ -3,14 +3,15 @@
 from typing import Any
 
 from fsw.core.estimation.mekf import Estimate, healthy
-from fsw.core.estimation.parameters import NAMES, layout
+from fsw.core.estimation.parameters import MOST_CELLS, NAMES, layout
+from fsw.table.cells import CellTable
 from fsw.table.estimator import table_bounds
 from fsw.table.table import FlightTable
 from fsw.table.uncertainty import limits, priors
 from sim.plant.config import PlantConfig
 from sim.plant.dynamics.disturbances import bias_torque, effects, residual_dipole
 from sim.plant.rotation import ZERO, from_vector, matrix
-from sim.plant.sensor_config import SunSensorConfig
+from sim.plant.sensor_config import SunCellsConfig, SunSensorConfig
 from sim.record.truth import Histories
 from sim.scenario.assemble import plant_config
 from sim.scenario.schema import Scenario, flight_table
@@ -58,9 +59,19 @@ def true_parameters(scenario: Scenario, table: FlightTable, truth: Histories) ->
     }
     if isinstance(plant.sun_sensor, SunSensorConfig):  # cells are turned each by itself
         true["sun_turn_rad"] = plant.sun_sensor.misalignment_rad
+    elif table.cells is not None:
+        true |= _of_cells(plant.sun_sensor, table.cells)
     if not effects(plant):  # torques that follow the motion have no one value
         true["torque_body_nm"] = bias_torque(plant.disturbance, truth["t_s"][-1])
     return true
+
+
+def _of_cells(true: SunCellsConfig, assumed: CellTable) -> dict[str, Values]:
+    """What lasts of their errors: a gain for each that the filter has room for, and the mean albedo."""
+    nominal = assumed.full_sun or (1.0,) * len(true.cells)
+    gains = [cell.gain / full - 1.0 for cell, full in zip(true.cells, nominal, strict=True)]
+    light = {"earth_light": (true.albedo - assumed.albedo,)} if assumed.albedo else {}
+    return {"cell_gain": (*gains, *(0.0,) * (MOST_CELLS - len(gains))), **light}
 
 
 def _coil_error(plant: PlantConfig) -> Values:

@@ -26,6 +26,8 @@ WORDS = {
     "mag_scale": ("scale of the magnetometer off by", "%", 100.0),
     "sun_turn_rad": ("Sun sensor turned by", "deg", degrees(1.0)),
     "delay_s": ("age of the samples", "s", 1.0),
+    "cell_gain": ("gain of a Sun cell off by", "%", 100.0),
+    "earth_light": ("Earth's light on the cells off by", "% of the Sun's", 100.0),
 }
 """A parameter in words, the unit in which it is told, and how many of it are one of SI."""
 
@@ -34,9 +36,9 @@ def beyond_bounds(scenario: Scenario) -> list[str]:
     """Its parameters beyond their bounds, a clause each, the worst first; at most ``SHOWN``."""
     table = flight_table(scenario)
     bounds = limits(table_bounds(table), table.body.inertia)
-    ordinary = limits(
-        ordinary_bounds(UncertaintyTable(), table.body.inertia, 1.0 / table.time.tick_hz), table.body.inertia
-    )
+    albedo = table.cells.albedo if table.cells else None
+    usual = ordinary_bounds(UncertaintyTable(), table.body.inertia, 1.0 / table.time.tick_hz, albedo)
+    ordinary = limits(usual, table.body.inertia)
     at_start = {"lit": np.ones(1), "t_s": np.zeros(1)}
     found = []
     for name, values in true_parameters(scenario, table, at_start).items():

@@ -57,7 +57,7 @@ def test_what_cannot_be_is_refused_in_a_sentence(wrong, said):
 
 
 class TestErrors:
-    """Of gain, Earth's light and excess; where the Earth's light is not reckoned with, all of it is excess."""
+    """Of gain, Earth's light and excess; where the Earth's light is not reckoned with all is excess."""
 
     @pytest.mark.parametrize(
         ("albedo", "bounds", "gain", "light", "excess"),

@@ -116,7 +116,7 @@ def _judged(
             estimate.q_body_from_eci, normal, seen, cells
         )
         return CellWatch(_weighed(before.watch, SensorFault.STRENGTH if bright else None, False, weights))
-    predicted, _ = prediction(estimate, cell, seen, config, cells)
+    predicted, _ = prediction(_as_by_table(estimate), cell, seen, config, cells)
     shown = before._replace(still=False)
     if current != before.shown:
         shown = CellWatch(before.watch, current, predicted)
@@ -127,6 +127,11 @@ def _judged(
         fits = taken(estimate, cell, current, seen, config, cells) is not None
         verdict = 0 if fits else SensorFault.REFUSED
     return shown._replace(watch=_weighed(before.watch, verdict, unclear, weights))
+
+
+def _as_by_table(estimate: Estimate) -> Estimate:
+    """The estimate, of cells that are as the table has them: a stuck one draws its own gain after it."""
+    return estimate._replace(parameters=estimate.parameters._replace(cell_gain=(), earth_light=()))
 
 
 def _verdict(

@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from fsw.core.estimation.mekf import Estimate
-from fsw.core.estimation.parameters import NOTHING
+from fsw.core.estimation.parameters import NOTHING, OF_CELLS, SIZES
 from sim.report.figures.parameters import parameter_figures
 from sim.report.parameter_table import UNITS, parameter_table
 from sim.scenario.schema import load
@@ -48,6 +48,7 @@ UNLIKE = {
         },
     },
 }
+FIVE = [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -0.6, 0.8], [0.0, 0.0, -1.0]]
 TRUTH = {"t_s": np.array([0.0, 3600.0]), "lit": np.array([1.0, 0.25])}
 
 
@@ -78,9 +79,9 @@ def figures():
 
 class TestFigures:
     def test_are_of_every_parameter_that_is_carried(self, figures):
-        """Of a satellite without Sun cells there is no excess."""
+        """Of a satellite without Sun cells there is nothing that these are wrong by."""
         assert [*NOTHING._fields] == [*UNITS]
-        assert [*figures] == [name for name in NOTHING._fields if name != "cell_excess"]
+        assert [*figures] == [name for name in NOTHING._fields if name not in OF_CELLS]
 
     def test_values_and_deviations_are_those_of_the_last_estimate(self, figures):
         assert figures["mag_bias_t"]["value"] == [1e-7, -2e-7, 3e-7]
@@ -141,6 +142,23 @@ class TestFigures:
 
     def test_without_a_filter_there_are_none(self):
         assert parameter_figures(load("microsat"), TRUTH, None) is None
+
+
+class TestCells:
+    """Gains, and the mean of the Earth's light; what changes along the orbit has no one truth."""
+
+    @pytest.fixture
+    def figures_of_cells(self):
+        cells = {"normals": FIVE, "gain": [1.1, 0.9, 1.0, 1.05, 0.95], "turn_deg": None, "albedo": 0.36}
+        unlike = {"sensors": {"cells": cells}, "flight": {"cells": {"albedo": 0.3}}}
+        known = {name: (0.0,) * size for name, size in OF_CELLS.items()}
+        estimate = estimate_of(NOTHING._replace(**known), [1.0] * sum(SIZES.values()))
+        return parameter_figures(load("cubesat-cells", unlike), TRUTH, estimate)
+
+    def test_truths_are_beyond_those_of_the_table(self, figures_of_cells):
+        assert figures_of_cells["cell_gain"]["truth"] == pytest.approx([0.1, -0.1, 0.0, 0.05, -0.05, 0.0])
+        assert figures_of_cells["earth_light"]["truth"] == pytest.approx([0.06])
+        assert "truth" not in figures_of_cells["cell_excess"]
 
 
 class TestTable:

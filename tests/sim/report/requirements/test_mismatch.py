@@ -1,0 +1,37 @@
+"""Parameters of the plant that are beyond the bounds of the onboard table, in words."""
+
+import pytest
+
+from sim.report.requirements.mismatch import beyond_bounds
+from sim.scenario.schema import load
+
+
+def cells(uncertainty=None, **unlike):
+    return load("cubesat-cells", {"sensors": {"cells": unlike}, "flight": {"uncertainty": uncertainty or {}}})
+
+
+@pytest.mark.parametrize("name", ["microsat", "realsat", "cubesat-cells"])
+def test_a_satellite_within_its_bounds_has_none(name):
+    assert beyond_bounds(load(name)) == []
+
+
+def test_the_worst_comes_first():
+    sensors = {"magnetometer": {"bias_nt": [0.0, 9000.0, 0.0]}, "sun": {"misalignment_deg": [0.0, 0.0, 12.0]}}
+    found = beyond_bounds(load("realsat", {"sensors": sensors}))
+    assert [sentence.split(",")[0] for sentence in found] == [
+        "Sun sensor turned by 12 deg",
+        "magnetometer bias 9e+03 nT",
+    ]
+
+
+def test_of_sun_cells_gain_and_the_light_of_the_earth():
+    found = beyond_bounds(cells(gain=[1.0, 1.0, 0.4, 1.0, 1.0, 1.0]))
+    assert found == ["gain of a Sun cell off by 60 %, its bound is 10"]
+    bright = load(
+        "cubesat-cells", {"sensors": {"cells": {"albedo": 0.9}}, "flight": {"cells": {"albedo": 0.3}}}
+    )
+    assert beyond_bounds(bright) == ["Earth's light on the cells off by 60 % of the Sun's, its bound is 15"]
+
+
+def test_a_gain_that_the_table_calls_exact_and_is():
+    assert beyond_bounds(cells({"cell_gain_percent": 0.0}, gain=[1.0] * 6)) == []
