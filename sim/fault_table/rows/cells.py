@@ -1,14 +1,21 @@
-"""Rows of the satellite with Sun cells: a cell that is wrong, and their message."""
+"""Rows of the satellite with Sun cells: a cell that is wrong, cells wired otherwise, light, message."""
 
 from math import inf
 
 from sim.fault_table.row import FaultRow, RowFault, Unseen, When
 
 CUBESAT = "cubesat-cells"
-CELLS = "a Sun cell: dead, stuck, of half the current"
+CELLS = "a Sun cell: dead, stuck, of half the current; two crosswise; more light from the Earth"
 MESSAGE = "the message of the Sun cells: late, lost, corrupted, with extreme values"
 ORBIT_S = 5740.0
 """Period of the scenario's orbit."""
+CROSSED = (
+    "flight.cells.normals=[[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], "
+    "[0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]"
+)
+"""The table has the first cell where the third is, and the third where the first is."""
+BRIGHT = ("sensors.cells.albedo=0.45", "sensors.cells.albedo_spread=0.4", "flight.cells.albedo=0.3")
+"""Half as much light again from the Earth as the table reckons with."""
 
 
 def _cell(name: str, kind: str, cell: int, **parameters: float) -> FaultRow:
@@ -24,6 +31,42 @@ def _cell(name: str, kind: str, cell: int, **parameters: float) -> FaultRow:
         f"cell {cell}",
         watch_s=1.5 * ORBIT_S,
         unseen=Unseen.SETTLING,
+        scenario=CUBESAT,
+    )
+
+
+def _table(name: str, settings: tuple[str, ...], *expect: str) -> FaultRow:
+    """No fault: cells and table differ."""
+    return FaultRow(
+        name,
+        CELLS,
+        "none",
+        {},
+        1.0,
+        When.ORBIT,
+        expect,
+        settings=settings,
+        watch_s=ORBIT_S,
+        unseen=Unseen.SETTLING,
+        scenario=CUBESAT,
+    )
+
+
+def _crossed() -> FaultRow:
+    """Two cells are each where the table has the other: both are wrong from boot on, and not always told."""
+    return FaultRow(
+        "cells-crossed",
+        CELLS,
+        "none",
+        {},
+        inf,
+        When.BOOT,
+        (),
+        "cell 1",
+        then=(RowFault("none", {}, inf, "cell 3"),),
+        unseen=Unseen.SETTLING,
+        settings=(CROSSED,),
+        watch_s=2.0 * ORBIT_S,
         scenario=CUBESAT,
     )
 
@@ -50,22 +93,13 @@ def _message(name: str, kind: str, *expect: str, **parameters: float) -> FaultRo
 
 
 CELL_ROWS: tuple[FaultRow, ...] = (
-    FaultRow(
-        "cells-none",
-        CELLS,
-        "none",
-        {},
-        1.0,
-        When.ORBIT,
-        ("goes on", "quiet"),
-        unseen=Unseen.SETTLING,
-        watch_s=ORBIT_S,
-        scenario=CUBESAT,
-    ),
+    _table("cells-none", (), "goes on", "quiet"),
     _cell("cell-dead", "cell_dead", 1),
     _cell("cell-stuck", "cell_stuck", 4),
     _cell("cell-stuck-bright", "cell_stuck", 5, percent=90.0),
     _cell("cell-halved", "cell_scaled", 3, scale=0.5),
+    _crossed(),
+    _table("cells-albedo", BRIGHT, "goes on", "quiet"),
     _message("cells-late", "cells_late", "quiet", ticks=5.0),
     _message("cells-lost", "loss", part=0.5),
     _message("cells-board-dead", "sun_board_dead"),

@@ -93,10 +93,15 @@ def earthlit(q_body_from_eci: Quaternion, seen: Light, cells: CellSet) -> list[i
     ]
 
 
-def most_behind(q_body_from_eci: Quaternion, normal: Vec3, seen: Light, cells: CellSet) -> float:
-    """The most that a cell can show which the Sun is behind, by the Earth and its excess."""
+def most_behind(estimate: Estimate, normal: Vec3, seen: Light, cells: CellSet) -> float:
+    """The most that a cell can show which the Sun is behind, by the Earth and its excess.
+
+    The Earth is as bright as the table has it, or brighter where the cells together have shown that it is.
+    """
+    known = estimate.parameters.earth_light
+    brighter = max(0.0, known[0]) / cells.albedo if known else 0.0
     most = SIGMAS * hypot(cells.excess_sigma, cells.light_sigma)
-    return cells.dark + _by_earth(q_body_from_eci, normal, seen) + most
+    return cells.dark + (1.0 + brighter) * _by_earth(estimate.q_body_from_eci, normal, seen) + most
 
 
 def _by_earth(q_body_from_eci: Quaternion, normal: Vec3, seen: Light) -> float:

@@ -7,7 +7,7 @@ with it. What speaks against a cell:
 - it is lit, and the filter refuses what it shows, or it shows nothing;
 - its gain, or what it shows beyond its model, is more than ``SIGMAS`` standard deviations of what the table
   allows;
-- the Sun is behind it, and it is brighter than the Earth and that excess can make it;
+- the Sun is behind it, and it is brighter than the Earth, as all cells show it, and that excess can make it;
 - its current does not change by a bit while the predicted one moves by ``STILL``.
 
 A cell that is still is not used from the next tick on, whatever the evidence.
@@ -112,9 +112,7 @@ def _judged(
     if cells.shaded(cell, s):
         return CellWatch(before.watch)
     if dot(normal, s) <= LEAST_COSINE:
-        bright = dot(normal, s) < -LEAST_COSINE and current > most_behind(
-            estimate.q_body_from_eci, normal, seen, cells
-        )
+        bright = dot(normal, s) < -LEAST_COSINE and current > most_behind(estimate, normal, seen, cells)
         return CellWatch(_weighed(before.watch, SensorFault.STRENGTH if bright else None, False, weights))
     predicted, _ = prediction(_as_by_table(estimate), cell, seen, config, cells)
     shown = before._replace(still=False)

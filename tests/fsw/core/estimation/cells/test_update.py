@@ -228,8 +228,13 @@ class TestExcess:
         assert faded(estimate, replace(CONFIG, cells=None)) is estimate
 
 
-def test_a_cell_with_the_sun_behind_it_shows_the_earth_and_its_excess_at_most():
+@pytest.mark.parametrize(("light_shown", "brighter"), [(LIGHT, 1.0 + LIGHT / CELLS.albedo), (-LIGHT, 1.0)])
+def test_a_cell_with_the_sun_behind_it_shows_the_earth_and_its_excess_at_most(light_shown, brighter):
+    """The Earth as bright as the cells have shown it, yet not darker than by the table."""
+    estimate = begun()
+    estimate = estimate._replace(parameters=estimate.parameters._replace(earth_light=(light_shown,)))
     for normal in CELLS.normals_body:
         view = 0.5 + 0.5 * np.dot(normal, rotate(Q_BODY_FROM_ECI, SEEN.e_eci))
-        most = most_behind(Q_BODY_FROM_ECI, normal, SEEN, CELLS)
-        assert most == pytest.approx(0.05 + SEEN.earth * view**2 + 4.0 * hypot(EXCESS_SIGMA, LIGHT_SIGMA))
+        most = most_behind(estimate, normal, SEEN, CELLS)
+        earth = brighter * SEEN.earth * view**2
+        assert most == pytest.approx(0.05 + earth + 4.0 * hypot(EXCESS_SIGMA, LIGHT_SIGMA))
