@@ -6,7 +6,8 @@ from pathlib import Path
 from fsw.input.near import did_you_mean
 from sim.campaign.claim import Study
 from sim.errors import HarnessError
-from sim.validate import calibrated, cells, computed, microsat, optimal_pulses, shipped, wirings
+from sim.validate import cells, computed, microsat, optimal_pulses, shipped
+from sim.validate.commissioning import calibrated, wirings
 from sim.validate.consat import minimisers, posat1, prediction
 from sim.validate.population import claims
 from sim.validate.reference import reference

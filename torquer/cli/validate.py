@@ -8,10 +8,9 @@ from torquer.cli.options import JSON, JUNIT, examples, sentences
 
 EXAMPLES = examples(
     "torquer validate --quick",
-    "torquer validate --only posat1 --out posat1.md",
     "torquer validate --only population --satellites 20",
     "torquer validate --only review --record",
-    "torquer validate --keep build/flights.jsonl",
+    "torquer validate --keep build/flights.jsonl --out validation.md",
 )
 
 

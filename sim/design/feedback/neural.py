@@ -76,7 +76,7 @@ def orbit_rms_deg(
     """
     members, flights = len(weights), len(flown.q)
     each = np.repeat(weights, flights, axis=0)
-    loop = _Loop(
+    loop = _Flights(
         body, gains, each, *(np.tile(part, (members, 1)) for part in (flown.torque_nm, flown.dipole_am2))
     )
     q = np.tile(flown.q, (members, 1))
@@ -158,7 +158,7 @@ def in_body(q_body_from_orbit: Array, v: Array) -> Array:
 
 
 @dataclass(frozen=True, slots=True)
-class _Loop:
+class _Flights:
     """The controlled motion of many flights at once: x = (q_body_from_orbit, omega absolute)."""
 
     body: Body

@@ -5,15 +5,10 @@ from math import inf
 from sim.fault_table.row import FaultRow, RowFault, Unseen, When
 
 CUBESAT = "cubesat-cells"
-CELLS = "a Sun cell: dead, stuck, of half the current; two crosswise; more light from the Earth"
+CELLS = "a Sun cell: dead, stuck, of half the current; more light from the Earth"
 MESSAGE = "the message of the Sun cells: late, lost, corrupted, with extreme values"
 ORBIT_S = 5740.0
 """Period of the scenario's orbit."""
-CROSSED = (
-    "flight.cells.normals=[[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], "
-    "[0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]"
-)
-"""The table has the first cell where the third is, and the third where the first is."""
 BRIGHT = ("sensors.cells.albedo=0.45", "sensors.cells.albedo_spread=0.4", "flight.cells.albedo=0.3")
 """Half as much light again from the Earth as the table reckons with."""
 
@@ -52,25 +47,6 @@ def _table(name: str, settings: tuple[str, ...], *expect: str) -> FaultRow:
     )
 
 
-def _crossed() -> FaultRow:
-    """Two cells are each where the table has the other: both are wrong from boot on, and not always told."""
-    return FaultRow(
-        "cells-crossed",
-        CELLS,
-        "none",
-        {},
-        inf,
-        When.BOOT,
-        (),
-        "cell 1",
-        then=(RowFault("none", {}, inf, "cell 3"),),
-        unseen=Unseen.SETTLING,
-        settings=(CROSSED,),
-        watch_s=2.0 * ORBIT_S,
-        scenario=CUBESAT,
-    )
-
-
 def _message(name: str, kind: str, *expect: str, **parameters: float) -> FaultRow:
     """A fault of ten minutes, after a whole orbit; with the last of it control goes on.
 
@@ -98,7 +74,6 @@ CELL_ROWS: tuple[FaultRow, ...] = (
     _cell("cell-stuck", "cell_stuck", 4),
     _cell("cell-stuck-bright", "cell_stuck", 5, percent=90.0),
     _cell("cell-halved", "cell_scaled", 3, scale=0.5),
-    _crossed(),
     _table("cells-albedo", BRIGHT, "goes on", "quiet"),
     _message("cells-late", "cells_late", "quiet", ticks=5.0),
     _message("cells-lost", "loss", part=0.5),

@@ -28,7 +28,7 @@ EVERYTHING = {
 }
 
 
-OF_CELLS = [component for component in Component if component.name.startswith("CELL_")]
+OF_CELLS = [one for one in Component if one.name.startswith("CELL_") or one is Component.EARTH_LIGHT]
 
 
 @pytest.fixture(scope="module")

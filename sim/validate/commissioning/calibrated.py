@@ -23,7 +23,7 @@ from sim.record.pace import Pace
 from sim.record.truth import read_truth
 from sim.scenario.assemble import plant_config
 from sim.scenario.schema import Scenario, flight_table, load
-from sim.validate.wirings import SCENARIO, satellite
+from sim.validate.commissioning.wirings import SCENARIO, satellite
 
 Array = NDArray[np.float64]
 

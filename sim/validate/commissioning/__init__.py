@@ -1,0 +1,1 @@
+"""Claims on commissioning: the wiring that a sequence of pulses finds, and what it calibrates."""
