@@ -13,7 +13,8 @@ body axes:
                    + 3 mu/r^3 e1 x dJ e1 - omega x dJ omega - dJ domega/dt
 
 The parameters are constants, or walk slowly. What cannot be told apart keeps its prior: a common turn of both
-sensors is a floor of the attitude's standard deviation that no measurement lowers.
+sensors is a floor of the attitude's standard deviation that no measurement lowers, for the covariance turns
+with the directions that are not observable (``unobservable``).
 
 Source: Lefferts, Markley, Shuster 1982; the dynamics as in Ovchinnikov, Penkov, Roldugin 2015; constants that
 are not observed kept with their prior as in Schmidt 1966.
@@ -39,6 +40,7 @@ from fsw.core.estimation.kalman import LeanKalmanFilter, Matrix, Trace, carried,
 from fsw.core.estimation.measurement import field_prediction, sun_prediction
 from fsw.core.estimation.mekf_config import MekfConfig, piece_of_tick, pieces_of_tick
 from fsw.core.estimation.parameters import Parameters, corrected_parameters, estimated_dipole, estimated_rotor
+from fsw.core.estimation.unobservable import turned_along
 
 LAG_S = 60.0
 """Time over which innovations are averaged."""
@@ -246,4 +248,8 @@ def _fold(
     if parts.delay is not None and dot(omega_after, omega_after) >= FAST_RADPS**2:
         shift = free_motion(omega_after, after, config.rotor) - free_motion(omega, parameters, config.rotor)
         covariance = with_age_along(shift, covariance, parts.delay)
+    if config.unobservable is not None:
+        (xx, _, _), (_, yy, _), (_, _, zz) = config.rotor.inertia_kgm2
+        trace_kgm2 = xx + yy + zz + sum(parameters.inertia_error_kgm2[:3])
+        covariance = turned_along(covariance, error, trace_kgm2, config.unobservable)
     return q_after, omega_after, after, covariance

@@ -21,6 +21,7 @@ from fsw.core.estimation.parameters import (
     Rotor,
     layout,
 )
+from fsw.core.estimation.unobservable import Unobservable, unobservable
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +37,7 @@ class MekfConfig:
 
     By measurement, field, Sun or both at once: ``..._sensitivity`` is the constant part of H, (3, n), and
     ``..._noise`` the covariance, (3, 3) or (6, 6). ``considered``: the states that no update changes.
-    ``cells``: Sun cells in place of a Sun sensor.
+    ``cells``: Sun cells in place of a Sun sensor. ``unobservable``: what no sample tells, if anything.
     ``pieces``: of so many equal pieces of a tick this is one, ``tick_s`` being its length.
     ``reaction_body_nm``: torque of a driven wheel on the body over this tick, N m.
     """
@@ -61,6 +62,7 @@ class MekfConfig:
     gate_nis: float
     considered: slice | None = None
     cells: CellSet | None = None
+    unobservable: Unobservable | None = None
     pieces: int = 1
     reaction_body_nm: Vec3 = ZERO
 
@@ -132,6 +134,7 @@ def with_wheel(
         constant=constant,
         process_noise=noise,
         reaction_body_nm=reaction_body_nm,
+        unobservable=None,
     )
 
 
@@ -167,8 +170,8 @@ def mekf_config(
         cells: Sun cells, which take the place of a Sun sensor.
     """
     parts = layout(set(priors))
-    j, inverse_j = np.array(inertia_kgm2), inverse(inertia_kgm2)
-    j_inverse = np.array(inverse_j)
+    rotor = Rotor(inertia_kgm2, inverse(inertia_kgm2), wheel_body_nms)
+    j, j_inverse = np.array(inertia_kgm2), np.array(rotor.inertia_inverse)
     rate_noise = torque_noise_nm_rts**2 * (j_inverse @ j_inverse.T)
     noise = np.zeros((parts.size, parts.size))
     noise[0:3, 0:3] = rate_noise * tick_s**3 / 3.0
@@ -190,7 +193,7 @@ def mekf_config(
     field_variances, sun_variances = [magnetometer_sigma_t**2] * 3, [sun_sigma_rad**2] * 3
     moving, driven = np.split(tick_s * system_maps(j, j_inverse), [12], axis=1)
     return MekfConfig(
-        rotor=Rotor(inertia_kgm2, inverse_j, wheel_body_nms),
+        rotor=rotor,
         tick_s=tick_s,
         layout=parts,
         initial_parameters=_means(priors),
@@ -209,6 +212,7 @@ def mekf_config(
         dipole_sigma=dipole_sigma,
         gate_nis=gate_nis,
         cells=cells,
+        unobservable=unobservable(parts, variances, rotor),
     )
 
 

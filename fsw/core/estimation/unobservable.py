@@ -1,0 +1,137 @@
+"""What no sample tells: a turn of the body axes, and a common factor of all that moves the satellite.
+
+Turn everything that is given in body axes, the body with it, and no sample changes. Multiply inertia, coils,
+residual dipole and torque by one factor, and no motion changes. The directions D of the error state are
+
+    turn phi     dtheta = -phi,  domega = phi x omega,  of magnetometer and Sun sensor phi,  dd = phi x d,
+                 dtorque = phi x torque,  dG = [phi x](1 + G),  dJ = [phi x] J - J [phi x]
+    factor 1 + f dJ = f J,  dG = f (1 + G),  dd = f d,  dtorque = f torque
+
+Along them only the table knows anything, as long as it takes none of these for exact and no wheel tells body
+axes and torque by a momentum that is known. They depend on the estimate, so each correction turns them. A
+covariance that did not turn with them would be surer along the new ones, of what nothing has shown; and soon
+the filter would put down to them whatever is not modelled. With W the coordinates along D, W^T D = 1, that of
+the turns being the Sun sensor's, that of the factor the trace of the inertia,
+
+    P <- T P T^T,  T = 1 + (D_after - D_before) W^T,  so that D^T P^-1 D stays what it was.
+
+Source: Huang, Mourikis, Roumeliotis 2010, on filters that come to know what they cannot observe; Barrau,
+Bonnabel 2017, on errors along directions that move with the estimate.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fsw.core.algebra.vector import ZERO, Vec3, skew
+from fsw.core.estimation.kalman import Matrix
+from fsw.core.estimation.parameters import (
+    NOTHING,
+    Layout,
+    Parameters,
+    Rotor,
+    corrected_parameters,
+    estimated_inertia,
+)
+
+TURNS, FACTOR = slice(0, 3), 3
+"""Of the directions."""
+_AXES: list[Matrix] = [np.array(skew(axis)) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))]
+_UNIT = np.eye(3)
+_UPPER = ((0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2))
+"""Rows and columns of a symmetric matrix, in the order of ``Parameters.inertia_error_kgm2``."""
+
+
+class Unobservable(NamedTuple):
+    """The directions that a filter cannot observe: turns and factor, or the factor alone.
+
+    ``moving`` (n k, n): what each of the k directions, (n, k) by rows, gains by each part of the error state.
+    ``coordinates`` (n, k): W, times the trace of the inertia for the factor, the last.
+    """
+
+    moving: Matrix
+    coordinates: Matrix
+
+
+def unobservable(parts: Layout, variances: list[float], rotor: Rotor) -> Unobservable | None:
+    """Which directions a filter cannot observe; None where there is none.
+
+    Args:
+        parts: layout of its error state.
+        variances: of the error state, beforehand.
+        rotor: by the table.
+    """
+
+    def free(place: slice | None) -> bool:
+        return place is not None and min(variances[place]) > 0.0
+
+    if rotor.wheel_body_nms != ZERO or not (free(parts.inertia) and free(parts.coils)):
+        return None
+    coordinates = np.zeros((parts.size, FACTOR + 1))
+    coordinates[parts.inertia, FACTOR] = (1.0, 1.0, 1.0, 0.0, 0.0, 0.0)
+    turns = free(parts.mag_turn) and free(parts.sun_turn)
+    if turns:
+        coordinates[parts.sun_turn, TURNS] = _UNIT
+    given = slice(0 if turns else FACTOR, FACTOR + 1)
+    nominal = unobservable_directions(ZERO, NOTHING, rotor, parts)
+    gained = [
+        unobservable_directions(
+            (error[3], error[4], error[5]), corrected_parameters(NOTHING, error, parts), rotor, parts
+        )
+        for error in np.eye(parts.size).tolist()
+    ]
+    moving = np.array([(directions - nominal)[:, given].ravel() for directions in gained]).T
+    return Unobservable(np.ascontiguousarray(moving), coordinates[:, given])
+
+
+def turned_along(
+    covariance: Matrix, error: Matrix, inertia_trace_kgm2: float, directions: Unobservable
+) -> Matrix:
+    """The covariance of an estimate that is corrected, turned with what no sample tells.
+
+    Args:
+        covariance: after the correction, yet along the directions before it, (n, n).
+        error: the correction, (n).
+        inertia_trace_kgm2: of the inertia tensor before.
+        directions: those of the filter.
+    """
+    moving, along = directions
+    turns: Matrix = moving.dot(error).reshape(along.shape)
+    turns[:, -1] /= inertia_trace_kgm2
+    known = covariance.dot(along)
+    half: Matrix = turns.dot((known + turns.dot(0.5 * along.T.dot(known))).T)
+    both: Matrix = half + half.T
+    return covariance + both
+
+
+def unobservable_directions(
+    omega_body_radps: Vec3, parameters: Parameters, nominal: Rotor, parts: Layout
+) -> Matrix:
+    """What the error state changes by, (n, 4): for a turn of 1 rad about each axis, and a factor of 1 + 1.
+
+    Args:
+        omega_body_radps: inertial rate.
+        parameters: as estimated; inertia and coils are among those carried.
+        nominal: inertia by the table.
+        parts: layout of the error state.
+    """
+    inertia = np.array(estimated_inertia(nominal, parameters))
+    coils = _UNIT + np.reshape(parameters.coil_error, (3, 3))
+    vectors = ((parts.dipole, parameters.dipole_body_am2), (parts.torque, parameters.torque_body_nm))
+    change = np.zeros((parts.size, FACTOR + 1))
+    change[0:3, TURNS] = -_UNIT
+    for place in (parts.mag_turn, parts.sun_turn):
+        if place is not None:
+            change[place, TURNS] = _UNIT
+    for axis, turning in enumerate(_AXES):
+        change[3:6, axis] = turning.dot(omega_body_radps)
+        change[parts.inertia, axis] = (turning.dot(inertia) - inertia.dot(turning))[_UPPER]
+        change[parts.coils, axis] = turning.dot(coils).ravel()
+        for place, vector in vectors:
+            if place is not None:
+                change[place, axis] = turning.dot(vector)
+    change[parts.inertia, FACTOR], change[parts.coils, FACTOR] = inertia[_UPPER], coils.ravel()
+    for place, vector in vectors:
+        if place is not None:
+            change[place, FACTOR] = vector
+    return change
