@@ -13,6 +13,7 @@ from fsw.core.algebra.vector import ZERO, add, cross, norm, scale
 from fsw.core.estimation import mekf
 from fsw.core.estimation.mekf import predict, start, update_both, update_field, update_sun
 from fsw.core.estimation.parameters import NAMES, NOTHING, Parameters
+from fsw.core.estimation.unobservable import unobservable_directions
 from sim.plant.dynamics import torques
 from sim.plant.dynamics.rigid_body import Motion, RigidBody
 from sim.plant.environment.surroundings import Surroundings
@@ -150,6 +151,24 @@ def about_the_motion_after(satellite, before, after, covariance):
     return turned @ covariance @ turned.T
 
 
+def along_what_no_sample_tells_after(satellite, before, after, covariance):
+    """T P T^T, turned with the directions that no sample tells, where there are any."""
+    config = satellite.config()
+    if "inertia_error_kgm2" not in satellite.carried:
+        assert config.unobservable is None
+        return covariance
+    along = [unobservable_directions(*one[1:3], config.rotor, config.layout) for one in (before, after)]
+    coordinates = np.zeros((satellite.size(), 4))
+    coordinates[satellite.place("sun_turn_rad"), 0:3] = np.eye(3)
+    moments = slice(
+        satellite.place("inertia_error_kgm2").start, satellite.place("inertia_error_kgm2").start + 3
+    )
+    coordinates[moments, 3] = 1.0 / along[0][moments, 3].sum()
+    np.testing.assert_allclose(coordinates.T @ along[0], np.eye(4), atol=1e-12)
+    turned = np.eye(satellite.size()) + (along[1] - along[0]) @ coordinates.T
+    return turned @ covariance @ turned.T
+
+
 @pytest.mark.parametrize("kind", ["field", "sun", "both"])
 class TestUpdate:
     """At a satellite as in its table, where the sensitivity is exact."""
@@ -167,6 +186,7 @@ class TestUpdate:
         h = satellite.sensitivity(kind, before, step=1e-3)
         dx, covariance = textbook(before, innovation, h, satellite.sigma[kind])
         covariance = about_the_motion_after(satellite, before, after, covariance)
+        covariance = along_what_no_sample_tells_after(satellite, before, after, covariance)
         scale = np.sqrt(before.covariance.diagonal())
         unit = np.outer(scale, scale)
         np.testing.assert_allclose(after.covariance / unit, covariance / unit, rtol=0.0, atol=1e-6)
