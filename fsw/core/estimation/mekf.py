@@ -12,12 +12,9 @@ body axes:
                    + dd x b + (dG m_driven) x b
                    + 3 mu/r^3 e1 x dJ e1 - omega x dJ omega - dJ domega/dt
 
-The parameters are constants, or walk slowly. What cannot be told apart keeps its prior: a common turn of both
-sensors is a floor of the attitude's standard deviation that no measurement lowers, for the covariance turns
-with the directions that are not observable (``unobservable``).
+The parameters are constants, or walk slowly. What cannot be told apart keeps its prior (``unobservable``).
 
-Source: Lefferts, Markley, Shuster 1982; the dynamics as in Ovchinnikov, Penkov, Roldugin 2015; constants that
-are not observed kept with their prior as in Schmidt 1966.
+Source: Lefferts, Markley, Shuster 1982; dynamics: Ovchinnikov, Penkov, Roldugin 2015; priors: Schmidt 1966.
 """
 
 from math import inf, isfinite, sqrt
@@ -249,7 +246,5 @@ def _fold(
         shift = free_motion(omega_after, after, config.rotor) - free_motion(omega, parameters, config.rotor)
         covariance = with_age_along(shift, covariance, parts.delay)
     if config.unobservable is not None:
-        (xx, _, _), (_, yy, _), (_, _, zz) = config.rotor.inertia_kgm2
-        trace_kgm2 = xx + yy + zz + sum(parameters.inertia_error_kgm2[:3])
-        covariance = turned_along(covariance, error, trace_kgm2, config.unobservable)
+        covariance = turned_along(covariance, error, parameters, config.unobservable)
     return q_after, omega_after, after, covariance

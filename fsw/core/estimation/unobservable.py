@@ -46,11 +46,13 @@ class Unobservable(NamedTuple):
     """The directions that a filter cannot observe: turns and factor, or the factor alone.
 
     ``moving`` (n k, n): what each of the k directions, (n, k) by rows, gains by each part of the error state.
-    ``coordinates`` (n, k): W, times the trace of the inertia for the factor, the last.
+    ``coordinates`` (n, k): W, times the trace of the inertia for the factor, the last; ``trace_kgm2``: that
+    trace, by the table.
     """
 
     moving: Matrix
     coordinates: Matrix
+    trace_kgm2: float
 
 
 def unobservable(parts: Layout, variances: list[float], rotor: Rotor) -> Unobservable | None:
@@ -81,23 +83,25 @@ def unobservable(parts: Layout, variances: list[float], rotor: Rotor) -> Unobser
         for error in np.eye(parts.size).tolist()
     ]
     moving = np.array([(directions - nominal)[:, given].ravel() for directions in gained]).T
-    return Unobservable(np.ascontiguousarray(moving), coordinates[:, given])
+    trace_kgm2 = float(np.trace(rotor.inertia_kgm2))
+    return Unobservable(np.ascontiguousarray(moving), coordinates[:, given].copy(), trace_kgm2)
 
 
 def turned_along(
-    covariance: Matrix, error: Matrix, inertia_trace_kgm2: float, directions: Unobservable
+    covariance: Matrix, error: Matrix, parameters: Parameters, directions: Unobservable
 ) -> Matrix:
     """The covariance of an estimate that is corrected, turned with what no sample tells.
 
     Args:
         covariance: after the correction, yet along the directions before it, (n, n).
         error: the correction, (n).
-        inertia_trace_kgm2: of the inertia tensor before.
+        parameters: as estimated before.
         directions: those of the filter.
     """
-    moving, along = directions
+    moving, along, trace_kgm2 = directions
+    xx, yy, zz, *_ = parameters.inertia_error_kgm2
     turns: Matrix = moving.dot(error).reshape(along.shape)
-    turns[:, -1] /= inertia_trace_kgm2
+    turns[:, -1] /= trace_kgm2 + xx + yy + zz
     known = covariance.dot(along)
     half: Matrix = turns.dot((known + turns.dot(0.5 * along.T.dot(known))).T)
     both: Matrix = half + half.T

@@ -191,12 +191,12 @@ class TestAFilter:
     def test_the_covariance_stays_one(self, full, config):
         before = slow(full)
         error = full.scales() * np.random.default_rng(5).normal(size=full.size())
-        after = turned_along(before.covariance, error, 4.0, config.unobservable)
+        after = turned_along(before.covariance, error, before.parameters, config.unobservable)
         scales = np.sqrt(after.diagonal())
         np.testing.assert_array_equal(after, after.T)
         assert np.linalg.eigvalsh(after / np.outer(scales, scales)).min() > 0.0
 
     def test_no_correction_no_turn(self, full, config):
         covariance = full.covariance()
-        same = turned_along(covariance, np.zeros(full.size()), 4.0, config.unobservable)
+        same = turned_along(covariance, np.zeros(full.size()), NOTHING, config.unobservable)
         np.testing.assert_array_equal(same, covariance)
