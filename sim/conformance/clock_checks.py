@@ -79,7 +79,7 @@ def held_tick(board: BoardUnderTest) -> None:
     _hold(link, longest_s)
     duration_ms = min(limits.pulse_ms, ceil(2.1 * board.tick_ms))  # longer than the ticks that follow
     request, reply = board.expect_accepted(duration_ms=duration_ms)
-    from_s = link.clock() - link.period_s
+    from_s = reply.at_s  # before it was sent: the tester may be held up after it
     if duration_ms + SLACK_MS < 1000.0 * (link.period_s + longest_s):
         _hold(link, longest_s)
         reply = link.step()
