@@ -1,9 +1,7 @@
 """What each sensor should measure, and how that depends on every part of the error state."""
 
-import numpy as np
-
 from fsw.core.algebra.quaternion import Quaternion, rotate
-from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale, skew, sub
+from fsw.core.algebra.vector import ZERO, Vec3, add, cross, dot, scale, skew, sub
 from fsw.core.estimation.kalman import Matrix
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.estimation.parameters import Parameters
@@ -16,19 +14,9 @@ def field_prediction(
     q_body_from_eci: Quaternion, omega: Vec3, parameters: Parameters, b_eci_t: Vec3, config: MekfConfig
 ) -> Prediction:
     """The magnetometer: z = (1 + s) o R(turn) C(t - delay) b + bias, R a small turn; T, body axes."""
-    parts, sensitivity = config.layout, config.field_sensitivity.copy()
-    b = _late(rotate(q_body_from_eci, b_eci_t), omega, parameters.delay_s[0])
-    b = _turned(b, parameters.mag_turn_rad)
-    turning = np.array(skew(b))
-    sensitivity[:, 0:3] = _since(turning, omega, parameters.delay_s[0])
-    if parts.delay is not None:
-        sensitivity[:, parts.delay.start] = cross(omega, b)
-        sensitivity[:, 3:6] = skew(scale(-parameters.delay_s[0], b))
-    if parts.mag_turn is not None:
-        sensitivity[:, parts.mag_turn] = turning
-    if parts.mag_scale is not None:
-        first = parts.mag_scale.start
-        sensitivity[0, first], sensitivity[1, first + 1], sensitivity[2, first + 2] = b
+    delay_s = parameters.delay_s[0]
+    b = _turned(_late(rotate(q_body_from_eci, b_eci_t), omega, delay_s), parameters.mag_turn_rad)
+    sensitivity = _sensitivity(b, omega, delay_s, config.field_sensitivity, config.field_map)
     return add(_scaled(b, parameters.mag_scale), parameters.mag_bias_t), sensitivity
 
 
@@ -46,17 +34,22 @@ def sun_prediction(
     q_body_from_eci: Quaternion, omega: Vec3, parameters: Parameters, s_eci: Vec3, config: MekfConfig
 ) -> Prediction:
     """The Sun sensor: z = R(turn) C(t - delay) s, R a small turn; body axes."""
-    parts, sensitivity = config.layout, config.sun_sensitivity.copy()
-    s = _late(rotate(q_body_from_eci, s_eci), omega, parameters.delay_s[1])
-    s = _turned(s, parameters.sun_turn_rad)
-    turning = np.array(skew(s))
-    sensitivity[:, 0:3] = _since(turning, omega, parameters.delay_s[1])
-    if parts.delay is not None:
-        sensitivity[:, parts.delay.start + 1] = cross(omega, s)
-        sensitivity[:, 3:6] = skew(scale(-parameters.delay_s[1], s))
-    if parts.sun_turn is not None:
-        sensitivity[:, parts.sun_turn] = turning
-    return s, sensitivity
+    delay_s = parameters.delay_s[1]
+    s = _turned(_late(rotate(q_body_from_eci, s_eci), omega, delay_s), parameters.sun_turn_rad)
+    return s, _sensitivity(s, omega, delay_s, config.sun_sensitivity, config.sun_map)
+
+
+def _sensitivity(
+    u: Vec3, omega: Vec3, delay_s: float, constant: Matrix, by_direction: Matrix | None
+) -> Matrix:
+    """H, (3, n), of a sensor that sees the direction u; body axes."""
+    if by_direction is None:
+        sensitivity = constant.copy()
+        sensitivity[:, 0:3] = skew(u)
+        return sensitivity
+    numbers = (*_since(u, omega, delay_s), *u, *cross(omega, u), *scale(-delay_s, u))
+    whole: Matrix = by_direction.dot(numbers).reshape(constant.shape)
+    return whole + constant
 
 
 def _late(v_body: Vec3, omega: Vec3, delay_s: float) -> Vec3:
@@ -64,20 +57,30 @@ def _late(v_body: Vec3, omega: Vec3, delay_s: float) -> Vec3:
     return _turned(v_body, scale(-delay_s, omega))
 
 
-def _since(turning: Matrix, omega: Vec3, delay_s: float) -> Matrix:
-    """The derivative by the attitude now, of one by the attitude ``delay_s`` ago; to first order.
+def _since(u: Vec3, omega: Vec3, delay_s: float) -> tuple[float, ...]:
+    """The derivative by the attitude now, of one by the attitude ``delay_s`` ago; to first order, by rows.
 
-    Along the rate it is that of the age with the other sign, exactly: no sample tells the two apart.
+    [u x] (1 + [w x]) = [u x] + w u^T - (u . w) 1, w being the turn since. Along the rate it is that of the
+    age with the other sign, exactly: no sample tells the two apart.
     """
-    return turning if delay_s == 0.0 else turning + turning.dot(skew(scale(delay_s, omega)))
+    u1, u2, u3 = u
+    w1, w2, w3 = w = scale(delay_s, omega)
+    along = dot(u, w)
+    return (
+        *(w1 * u1 - along, w1 * u2 - u3, w1 * u3 + u2),
+        *(w2 * u1 + u3, w2 * u2 - along, w2 * u3 - u1),
+        *(w3 * u1 - u2, w3 * u2 + u1, w3 * u3 - along),
+    )
 
 
 def _turned(v: Vec3, turn_rad: Vec3) -> Vec3:
     """As seen in axes turned by a small angle, to second order: to first it would grow longer."""
     if turn_rad == ZERO:
         return v
-    first = cross(v, turn_rad)
-    return add(add(v, first), scale(0.5, cross(first, turn_rad)))
+    x, y, z = v
+    x1, y1, z1 = first = cross(v, turn_rad)
+    x2, y2, z2 = cross(first, turn_rad)
+    return (x + x1 + 0.5 * x2, y + y1 + 0.5 * y2, z + z1 + 0.5 * z2)
 
 
 def _scaled(v: Vec3, errors: Vec3) -> Vec3:

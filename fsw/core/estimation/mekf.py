@@ -215,12 +215,11 @@ def take(
         trace = Trace(trace.causes, effect, sums, measured)
     if not 0.0 <= nis <= gate_nis:  # overflow can make it -inf
         return None
-    covariance = 0.5 * (kalman.P + kalman.P.T)
     nis, numbers = estimate.nis + nis, estimate.numbers + len(innovation)
     lag = (
         estimate.lag if len(innovation) == 1 else _lagging(estimate.lag, kalman, first, config.tick_s / LAG_S)
     )
-    return Estimate(*_fold(estimate, kalman.x, covariance, config), trace, nis, numbers, lag)
+    return Estimate(*_fold(estimate, kalman.x, kalman.P, config), trace, nis, numbers, lag)
 
 
 def _lagging(lag: tuple[float, ...], kalman: LeanKalmanFilter, first: int, part: float) -> tuple[float, ...]:
@@ -247,4 +246,4 @@ def _fold(
         covariance = with_age_along(shift, covariance, parts.delay)
     if config.unobservable is not None:
         covariance = turned_along(covariance, error, parameters, config.unobservable)
-    return q_after, omega_after, after, covariance
+    return q_after, omega_after, after, 0.5 * (covariance + covariance.T)

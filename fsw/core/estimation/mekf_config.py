@@ -9,7 +9,7 @@ import numpy as np
 
 from fsw.core.algebra.vector import ZERO, Mat3, Vec3, add, dot, inverse, transform
 from fsw.core.estimation.cells.cell_set import CellSet
-from fsw.core.estimation.dynamics.torque_maps import TORQUES, TorqueMaps, cross_matrix, system_maps
+from fsw.core.estimation.dynamics.torque_maps import cross_matrix, system_maps, torque_map
 from fsw.core.estimation.kalman import Matrix
 from fsw.core.estimation.parameters import (
     NAMES,
@@ -21,6 +21,7 @@ from fsw.core.estimation.parameters import (
     Rotor,
     layout,
 )
+from fsw.core.estimation.sensitivity_map import sensitivity_map
 from fsw.core.estimation.unobservable import Unobservable, unobservable
 
 
@@ -33,11 +34,12 @@ class MekfConfig:
     ``moving`` (36, 12) is what the upper left 6x6 gains by each component of the rate and of
     3 mu/r^3 e1 e1^T, ``driven`` (36, 9) by each of m b^T.
 
-    ``torques`` are those of the torque, for estimated parameters; ``inverse_h`` is J^-1 h.
+    ``torque_map`` takes the place of both where the filter estimates what the torque is not constant in.
 
-    By measurement, field, Sun or both at once: ``..._sensitivity`` is the constant part of H, (3, n), and
-    ``..._noise`` the covariance, (3, 3) or (6, 6). ``considered``: the states that no update changes.
-    ``cells``: Sun cells in place of a Sun sensor. ``unobservable``: what no sample tells, if anything.
+    By measurement, field, Sun or both at once: ``..._sensitivity`` is the constant part of H, (3, n),
+    ``..._map`` what it gains, as in ``sensitivity_map``, and ``..._noise`` the covariance, (3, 3) or (6, 6).
+    ``considered``: the states that no update changes. ``cells``: Sun cells in place of a Sun sensor.
+    ``unobservable``: what no sample tells, if anything.
     ``pieces``: of so many equal pieces of a tick this is one, ``tick_s`` being its length.
     ``reaction_body_nm``: torque of a driven wheel on the body over this tick, N m.
     """
@@ -51,10 +53,11 @@ class MekfConfig:
     constant: Matrix
     moving: Matrix
     driven: Matrix
-    torques: TorqueMaps
-    inverse_h: Matrix
+    torque_map: Matrix | None
     field_sensitivity: Matrix
     sun_sensitivity: Matrix
+    field_map: Matrix | None
+    sun_map: Matrix | None
     field_noise: Matrix
     sun_noise: Matrix
     both_noise: Matrix
@@ -97,7 +100,6 @@ def piece_of_tick(config: MekfConfig, pieces: int) -> MekfConfig:
         constant=identity + part * (config.constant - identity),
         moving=part * config.moving,
         driven=part * config.driven,
-        inverse_h=part * config.inverse_h,
         pieces=pieces,
     )
 
@@ -202,10 +204,11 @@ def mekf_config(
         constant=np.eye(6, parts.size) + tick_s * system,
         moving=moving,
         driven=driven,
-        torques=TORQUES,
-        inverse_h=tick_s * j_inverse,
+        torque_map=torque_map(parts),
         field_sensitivity=field_sensitivity,
         sun_sensitivity=sun_sensitivity,
+        field_map=sensitivity_map(parts, 0, parts.mag_turn, parts.mag_scale),
+        sun_map=sensitivity_map(parts, 1, parts.sun_turn, None),
         field_noise=np.diag(field_variances),
         sun_noise=np.diag(sun_variances),
         both_noise=np.diag(field_variances + sun_variances),

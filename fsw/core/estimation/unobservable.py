@@ -45,11 +45,13 @@ _UPPER = ((0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2))
 class Unobservable(NamedTuple):
     """The directions that a filter cannot observe: turns and factor, or the factor alone.
 
-    ``moving`` (n k, n): what each of the k directions, (n, k) by rows, gains by each part of the error state.
-    ``coordinates`` (n, k): W, times the trace of the inertia for the factor, the last; ``trace_kgm2``: that
-    trace, by the table.
+    ``moved``: the part of the error state, of m numbers, in which the directions depend on the estimate, as
+    they do on this part of it alone. ``moving`` (m k, m): what each of the k directions, (m, k) by rows,
+    gains there by each. ``coordinates`` (k, n): W^T, times the trace of the inertia for the factor, the last;
+    ``trace_kgm2``: that trace, by the table.
     """
 
+    moved: slice
     moving: Matrix
     coordinates: Matrix
     trace_kgm2: float
@@ -67,13 +69,15 @@ def unobservable(parts: Layout, variances: list[float], rotor: Rotor) -> Unobser
     def free(place: slice | None) -> bool:
         return place is not None and min(variances[place]) > 0.0
 
-    if rotor.wheel_body_nms != ZERO or not (free(parts.inertia) and free(parts.coils)):
+    if parts.inertia is None or not (free(parts.inertia) and free(parts.coils)):
         return None
-    coordinates = np.zeros((parts.size, FACTOR + 1))
-    coordinates[parts.inertia, FACTOR] = (1.0, 1.0, 1.0, 0.0, 0.0, 0.0)
+    if rotor.wheel_body_nms != ZERO:
+        return None
+    coordinates = np.zeros((FACTOR + 1, parts.size))
+    coordinates[FACTOR, parts.inertia] = (1.0, 1.0, 1.0, 0.0, 0.0, 0.0)
     turns = free(parts.mag_turn) and free(parts.sun_turn)
     if turns:
-        coordinates[parts.sun_turn, TURNS] = _UNIT
+        coordinates[TURNS, parts.sun_turn] = _UNIT
     given = slice(0 if turns else FACTOR, FACTOR + 1)
     nominal = unobservable_directions(ZERO, NOTHING, rotor, parts)
     gained = [
@@ -82,9 +86,10 @@ def unobservable(parts: Layout, variances: list[float], rotor: Rotor) -> Unobser
         )
         for error in np.eye(parts.size).tolist()
     ]
-    moving = np.array([(directions - nominal)[:, given].ravel() for directions in gained]).T
+    moved = slice(3, parts.inertia.stop)
+    moving = np.array([(directions - nominal)[moved, given].ravel() for directions in gained[moved]]).T
     trace_kgm2 = float(np.trace(rotor.inertia_kgm2))
-    return Unobservable(np.ascontiguousarray(moving), coordinates[:, given].copy(), trace_kgm2)
+    return Unobservable(moved, np.ascontiguousarray(moving), coordinates[given].copy(), trace_kgm2)
 
 
 def turned_along(
@@ -92,20 +97,23 @@ def turned_along(
 ) -> Matrix:
     """The covariance of an estimate that is corrected, turned with what no sample tells.
 
+    It is not symmetric: half the sum of it and its transpose is the covariance.
+
     Args:
         covariance: after the correction, yet along the directions before it, (n, n).
         error: the correction, (n).
         parameters: as estimated before.
         directions: those of the filter.
     """
-    moving, along, trace_kgm2 = directions
+    moved, moving, along, trace_kgm2 = directions
     xx, yy, zz, *_ = parameters.inertia_error_kgm2
-    turns: Matrix = moving.dot(error).reshape(along.shape)
-    turns[:, -1] /= trace_kgm2 + xx + yy + zz
-    known = covariance.dot(along)
-    half: Matrix = turns.dot((known + turns.dot(0.5 * along.T.dot(known))).T)
-    both: Matrix = half + half.T
-    return covariance + both
+    turns: Matrix = moving.dot(error[moved]).reshape(-1, len(along))
+    turns[:, -1] *= 1.0 / (trace_kgm2 + xx + yy + zz)
+    known = along.dot(covariance)
+    known[:, moved] += known.dot(0.5 * along.T).dot(turns.T)
+    turned = covariance.copy()
+    turned[moved] += 2.0 * turns.dot(known)
+    return turned
 
 
 def unobservable_directions(

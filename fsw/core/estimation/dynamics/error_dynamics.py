@@ -7,7 +7,7 @@ import numpy as np
 
 from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale, skew, transform
 from fsw.core.estimation.dynamics.motion import BodyFields, BodyMotion, outer
-from fsw.core.estimation.dynamics.torque_maps import TorqueMaps
+from fsw.core.estimation.dynamics.torque_maps import torque_rows
 from fsw.core.estimation.kalman import Matrix
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.estimation.parameters import Parameters, Rotor, estimated_rotor
@@ -64,18 +64,17 @@ def transition_matrix(
     """
     step = config.constant.copy()
     moving = step[:, 0:6]
-    if config.layout.inertia is None:
+    if config.torque_map is None:
         change = config.moving.dot((*motion.omega, *around.pull()))
         if motion.m_am2 != ZERO:
             change += config.driven.dot(outer(motion.m_am2, around.b_t))
         moving += change.reshape(6, 6)
-        inverse_h = config.inverse_h
     else:
-        inverse_h = config.tick_s * np.array(rotor.inertia_inverse)
         moving[0:3, 0:3] = skew(scale(-config.tick_s, motion.omega))
-        moving[3:6] = inverse_h.dot(_torque_rows(motion, around, rotor, config.torques))
+        inverse_h = config.tick_s * np.array(rotor.inertia_inverse)
+        by_error = torque_rows(motion, around, m_driven, rotor, config.torque_map)
+        step[3:6, : by_error.shape[1]] = inverse_h.dot(by_error)
         moving += _IDENTITY
-    _set_parameter_columns(step, inverse_h, motion, around, m_driven, config)
     if config.pieces > 1:
         return _to_fourth_order(step)
     transition: Matrix = moving.dot(step)  # (1 + A h)^2, so that half of it and 1 is the series
@@ -94,39 +93,6 @@ def _to_fourth_order(step: Matrix) -> Matrix:
         total = change + change[:, 0:6].dot(total) / order
     total[:, 0:6] += _IDENTITY
     return total
-
-
-def _torque_rows(motion: BodyMotion, around: BodyFields, rotor: Rotor, maps: TorqueMaps) -> Matrix:
-    """The torque's derivative by attitude and rate, (3, 6)."""
-    (xx, xy, xz), (_, yy, yz), (_, _, zz) = rotor.inertia_kgm2
-    moving = maps.moving.dot((xx, yy, zz, xy, xz, yz)).reshape(18, 12)
-    entries = moving.dot((*motion.omega, *around.pull())) + maps.driven.dot(outer(motion.m_am2, around.b_t))
-    rows: Matrix = entries.reshape(3, 6)
-    if rotor.wheel_body_nms != ZERO:
-        rows[:, 3:6] += skew(rotor.wheel_body_nms)
-    return rows
-
-
-def _set_parameter_columns(
-    step: Matrix,
-    inverse_h: Matrix,
-    motion: BodyMotion,
-    around: BodyFields,
-    m_driven: Vec3,
-    config: MekfConfig,
-) -> None:
-    """Set what the parameters do to the rate: J^-1 h times the torque's derivative by each."""
-    parts, maps = config.layout, config.torques
-    if parts.dipole is not None:
-        step[3:6, parts.dipole] = inverse_h.dot(maps.dipole.dot(around.b_t).reshape(3, 3))
-    if parts.coils is not None and m_driven != ZERO:
-        drive = outer(m_driven, around.b_t)
-        step[3:6, parts.coils] = inverse_h.dot(maps.coils.dot(drive).reshape(3, 9))
-    if parts.inertia is not None:
-        if parts.torque is not None:
-            step[3:6, parts.torque] = inverse_h
-        moves = (*around.pull(), *outer(motion.omega, motion.omega), *motion.alpha)
-        step[3:6, parts.inertia] = inverse_h.dot(maps.inertia.dot(moves).reshape(3, 6))
 
 
 def free_motion(omega: Vec3, parameters: Parameters, nominal: Rotor) -> Matrix:

@@ -1,26 +1,75 @@
 """What the error dynamics are linear in: maps from what moves to the entries of the system matrix."""
 
-from typing import NamedTuple
-
 import numpy as np
 
+from fsw.core.algebra.vector import ZERO, Vec3
+from fsw.core.estimation.dynamics.motion import BodyFields, BodyMotion, outer
 from fsw.core.estimation.kalman import Matrix
+from fsw.core.estimation.parameters import Layout, Rotor
+
+_OMEGA, _PULL, _ACTING, _FIELD = slice(0, 3), slice(3, 12), slice(12, 21), slice(21, 24)
+_SPIN, _ALPHA, _DRIVEN, _ONE = slice(24, 33), slice(33, 36), slice(36, 45), slice(45, 46)
+"""Places among the numbers that the torque's derivatives are linear in: the rate, g e1 e1^T, g being
+3 mu/r^3, m b^T, b, omega omega^T, domega/dt, m_driven b^T and 1."""
+_NUMBERS = 46
+_MOMENTS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+"""Rows and columns of xx, yy, zz, xy, xz, yz."""
 
 
-class TorqueMaps(NamedTuple):
-    """Derivatives of the torque by the error state, each linear in what moves.
+def torque_map(parts: Layout) -> Matrix | None:
+    """Derivatives of the torque by the error state, (3 m, 46), but for what is in proportion to J as well.
 
-    By attitude and rate, (3, 6): ``moving`` (216, 6) by each component of J, then by each of the rate and of
-    g e1 e1^T, g being 3 mu/r^3; ``driven`` (18, 9) by each of m b^T. By the dipole, (3, 3): ``dipole`` (9, 3)
-    by each of b; by the coils, (3, 9): ``coils`` (27, 9) by each of m_driven b^T; by the inertia, (3, 6):
-    ``inertia`` (18, 21) by each of g e1 e1^T, omega omega^T and domega/dt.
+    By its first m numbers, the others having no effect. None where nothing is carried that the torque is not
+    constant in.
     """
+    if parts.dipole is None and parts.coils is None and parts.inertia is None:
+        return None
+    axes = np.eye(3)
+    acting = (parts.torque, parts.dipole, parts.coils, parts.inertia)
+    rows = np.zeros((3, max(part.stop for part in acting if part is not None), _NUMBERS))
+    rows[:, 0:6, _ACTING] = system_maps(axes, axes)[18:, 12:].reshape(3, 6, 9)
+    if parts.torque is not None:
+        rows[:, parts.torque, _ONE] = axes[:, :, None]
+    if parts.dipole is not None:
+        rows[:, parts.dipole, _FIELD] = -np.array([cross_matrix(axis) for axis in axes]).transpose(1, 2, 0)
+    if parts.coils is not None:
+        by_error = rows[:, parts.coils, _DRIVEN]
+        for i in range(3):
+            for j in range(3):
+                by_error[:, 3 * i + j, 3 * j : 3 * j + 3] = cross_matrix(axes[i])
+    if parts.inertia is not None:
+        by_moment = rows[:, parts.inertia]
+        for index, change in enumerate(_changes_of_inertia()):
+            by_moment[:, index, _ALPHA] = -change
+            effects = np.hstack([np.cross(axis, change).T for axis in axes])  # e_i x (dJ e_k)
+            by_moment[:, index, _PULL], by_moment[:, index, _SPIN] = effects, -effects
+    return rows.reshape(-1, _NUMBERS)
 
-    moving: Matrix
-    driven: Matrix
-    dipole: Matrix
-    coils: Matrix
-    inertia: Matrix
+
+def torque_rows(
+    motion: BodyMotion, around: BodyFields, m_driven: Vec3, rotor: Rotor, by_error: Matrix
+) -> Matrix:
+    """The torque's derivative by the first m numbers of the error state, (3, m).
+
+    The torque is m x b + g e1 x J e1 - omega x (J omega + h) - J domega/dt.
+
+    Args:
+        motion: in the middle of the tick.
+        around: radius direction and field there.
+        m_driven: dipole that the coils are driven to, A m^2.
+        rotor: inertia as estimated, and the momentum of a wheel.
+        by_error: the map of the filter, as ``torque_map`` gives it.
+    """
+    omega, b = motion.omega, around.b_t
+    pull, acting, spin = around.pull(), outer(motion.m_am2, b), outer(omega, omega)
+    numbers = np.array((*omega, *pull, *acting, *b, *spin, *motion.alpha, *outer(m_driven, b), 1.0))
+    (xx, xy, xz), (_, yy, yz), (_, _, zz) = rotor.inertia_kgm2
+    moving = _BY_INERTIA.dot((xx, yy, zz, xy, xz, yz)).reshape(18, 12)
+    rows: Matrix = by_error.dot(numbers).reshape(3, -1)
+    rows[:, 0:6] += moving.dot(numbers[:12]).reshape(3, 6)
+    if rotor.wheel_body_nms != ZERO:
+        rows[:, 3:6] += cross_matrix(np.array(rotor.wheel_body_nms))
+    return rows
 
 
 def system_maps(j: Matrix, j_inverse: Matrix) -> Matrix:
@@ -45,30 +94,15 @@ def cross_matrix(a: Matrix) -> Matrix:
     return np.cross(a, np.eye(3)).T
 
 
-def _torque_maps() -> TorqueMaps:
-    """The torque is m x b + g e1 x J e1 - omega x J omega - J domega/dt, J as xx, yy, zz, xy, xz, yz."""
-    axes = np.eye(3)
-    moving, coils, inertia = np.zeros((18, 12, 6)), np.zeros((3, 9, 9)), np.zeros((3, 6, 21))
-    for index, (row, column) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))):
-        change = np.zeros((3, 3))
+def _changes_of_inertia() -> list[Matrix]:
+    """A unit of each moment, (3, 3)."""
+    changes = [np.zeros((3, 3)) for _ in _MOMENTS]
+    for change, (row, column) in zip(changes, _MOMENTS, strict=True):
         change[row, column] = change[column, row] = 1.0
-        moving[:, :, index] = system_maps(change, axes)[18:, :12]
-        inertia[:, index, 18:] = -change
-        for i in range(3):
-            effect = np.cross(axes[i], change.T)  # a row for each k: e_i x (dJ e_k)
-            inertia[:, index, 3 * i : 3 * i + 3] = effect.T
-            inertia[:, index, 9 + 3 * i : 12 + 3 * i] = -effect.T
-    for i in range(3):
-        for j in range(3):
-            coils[:, 3 * i + j, 3 * j : 3 * j + 3] = cross_matrix(axes[i])
-    dipole = np.array([-cross_matrix(axis) for axis in axes]).reshape(3, 9).T
-    return TorqueMaps(
-        moving.reshape(216, 6),
-        system_maps(axes, axes)[18:, 12:].copy(),
-        dipole.copy(),
-        coils.reshape(27, 9),
-        inertia.reshape(18, 21),
-    )
+    return changes
 
 
-TORQUES = _torque_maps()
+_BY_INERTIA: Matrix = np.stack(
+    [system_maps(change, np.eye(3))[18:, :12] for change in _changes_of_inertia()], axis=2
+).reshape(216, 6)
+"""Derivatives by attitude and rate, (3, 6), by each of the rate and of g e1 e1^T, (12), by each moment."""

@@ -1,14 +1,17 @@
 """The torque on the nominal attitude that does not change, as the filter estimates it."""
 
-from fsw.core.algebra.vector import ZERO, Vec3, add
-from fsw.core.estimation.parameters import UNCHANGED_INERTIA, Parameters, inertia_error
-from fsw.core.laws.plan.riccati import resting_torque
+from fsw.core.algebra.vector import Vec3, add
+from fsw.core.estimation.parameters import UNCHANGED_INERTIA, Parameters
 from fsw.core.orbit.ephemeris import Reference
 
 
 def constant_torque(parameters: Parameters, reference: Reference | None) -> Vec3:
-    """The estimated torque, and that of the inertia that the table does not know, body axes, N m."""
+    """The estimated torque, and that of the inertia that the table does not know, body axes, N m.
+
+    The latter is 3 w0^2 e1 x dJ e1 - w0^2 e3 x dJ e3 on the nominal attitude.
+    """
     if reference is None or parameters.inertia_error_kgm2 == UNCHANGED_INERTIA:
         return parameters.torque_body_nm
-    resting = resting_torque(inertia_error(parameters), ZERO, reference.orbit_rate_radps)
-    return add(parameters.torque_body_nm, resting)
+    square = reference.orbit_rate_radps**2
+    _, _, _, xy, xz, yz = parameters.inertia_error_kgm2
+    return add(parameters.torque_body_nm, (square * yz, -4.0 * square * xz, 3.0 * square * xy))

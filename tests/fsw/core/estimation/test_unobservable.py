@@ -49,7 +49,7 @@ def slow(satellite):
 
 
 def count(config):
-    return config.unobservable.coordinates.shape[1]
+    return config.unobservable.coordinates.shape[0]
 
 
 def all_but(name):
@@ -182,16 +182,16 @@ class TestAFilter:
         error = full.scales() * np.random.default_rng(3).normal(size=full.size())
         after = corrected(before, error, 0.0 * before.covariance, config)
         across = np.eye(full.size())
-        across = across[:, ~config.unobservable.coordinates.any(axis=1)]
+        across = across[:, ~config.unobservable.coordinates.any(axis=0)]
         for_all = (across.T @ np.linalg.inv(one.covariance) @ across for one in (before, after))
-        scales = np.sqrt(before.covariance.diagonal())[~config.unobservable.coordinates.any(axis=1)]
+        scales = np.sqrt(before.covariance.diagonal())[~config.unobservable.coordinates.any(axis=0)]
         first, second = (np.outer(scales, scales) * information for information in for_all)
         np.testing.assert_allclose(second, first, atol=1e-6 * abs(first).max())
 
     def test_the_covariance_stays_one(self, full, config):
         before = slow(full)
         error = full.scales() * np.random.default_rng(5).normal(size=full.size())
-        after = turned_along(before.covariance, error, before.parameters, config.unobservable)
+        after = corrected(before, error, 0.0 * before.covariance, config).covariance
         scales = np.sqrt(after.diagonal())
         np.testing.assert_array_equal(after, after.T)
         assert np.linalg.eigvalsh(after / np.outer(scales, scales)).min() > 0.0

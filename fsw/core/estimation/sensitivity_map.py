@@ -1,0 +1,38 @@
+"""What the sensitivity of a sensor that sees a direction is linear in."""
+
+import numpy as np
+
+from fsw.core.algebra.vector import skew
+from fsw.core.estimation.kalman import Matrix
+from fsw.core.estimation.parameters import Layout
+
+_BY_ATTITUDE, _DIRECTION, _PASSING, _SINCE = slice(0, 9), slice(9, 12), slice(12, 15), slice(15, 18)
+_NUMBERS = 18
+_AXES = np.eye(3)
+_SKEW = np.array([skew((x, y, z)) for x, y, z in _AXES.tolist()]).transpose(1, 2, 0)
+
+
+def sensitivity_map(parts: Layout, sensor: int, turn: slice | None, scale: slice | None) -> Matrix | None:
+    """The entries of H, (3, n), by rows, by what they are linear in, (3 n, 18).
+
+    By its derivative by the attitude (9), and by each component of the direction u as the sensor sees it, of
+    omega x u, and of -delay u; body axes. None where the filter carries nothing of the sensor but its bias.
+
+    Args:
+        parts: layout of the error state.
+        sensor: its place among the ages of the samples.
+        turn: place of the small turn of its axes.
+        scale: place of the errors of its scale.
+    """
+    if parts.delay is None and turn is None and scale is None:
+        return None
+    rows = np.zeros((3, parts.size, _NUMBERS))
+    rows[:, 0:3, _BY_ATTITUDE] = np.eye(9).reshape(3, 3, 9)
+    if parts.delay is not None:
+        rows[:, parts.delay.start + sensor, _PASSING] = _AXES
+        rows[:, 3:6, _SINCE] = _SKEW
+    if turn is not None:
+        rows[:, turn, _DIRECTION] = _SKEW
+    if scale is not None:
+        rows[:, scale, _DIRECTION] = _AXES[:, :, None] * _AXES[:, None]
+    return rows.reshape(-1, _NUMBERS)
