@@ -15,8 +15,10 @@ import numpy as np
 from scipy.optimize import minimize
 
 from sim.design.feedback.inertial import inertial_field, near_gains
+from sim.design.theory import side_by_side
 from sim.design.theory.bodies import Body
 from sim.design.theory.linear import Array, Gains
+from sim.design.theory.side_by_side import angle_deg, in_body, quaternion_rate
 
 STEP_S = 40.0
 """Of the integration."""
@@ -65,9 +67,9 @@ def settling_orbits(body: Body, gains: Gains, most_am2: float, starts: Starts, o
     loop = _Loop(inertia, np.linalg.inv(inertia), gains, most_am2)
     x, last = np.concatenate([starts.q, starts.omega_radps], axis=-1), np.zeros(len(starts.q))
     for step in range(steps):
-        x = loop.step(x, fields[2 * step : 2 * step + 3])
-        last = np.where(_angle_deg(x) > SETTLED_DEG, (step + 1.0) / steps * orbits, last)
-    return np.where(last >= orbits, orbits + _angle_deg(x) / 180.0, last)
+        x = side_by_side.step(loop.rates, x, fields[2 * step : 2 * step + 3], STEP_S)
+        last = np.where(angle_deg(x) > SETTLED_DEG, (step + 1.0) / steps * orbits, last)
+    return np.where(last >= orbits, orbits + angle_deg(x) / 180.0, last)
 
 
 def minimax(
@@ -95,31 +97,12 @@ class _Loop:
     gains: Gains
     most_am2: float
 
-    def step(self, x: Array, fields: Array) -> Array:
-        """Runge-Kutta of fourth order; the field at the start, the middle and the end."""
-        start, middle, end = fields
-        k1 = self.rates(x, start)
-        k2 = self.rates(x + 0.5 * STEP_S * k1, middle)
-        k3 = self.rates(x + 0.5 * STEP_S * k2, middle)
-        k4 = self.rates(x + STEP_S * k3, end)
-        moved = x + STEP_S / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
-        moved[:, :4] /= np.linalg.norm(moved[:, :4], axis=1)[:, None]
-        return moved
-
     def rates(self, x: Array, b_t: Array) -> Array:
         """dx/dt."""
-        q0, qv, omega = x[:, :1], x[:, 1:4], x[:, 4:]
-        twice = 2.0 * np.cross(b_t, qv)  # C(q) b = b - 2 q0 qv x b + 2 qv x (qv x b)
-        b = b_t + q0 * twice - np.cross(qv, twice)
-        error = np.where(q0 >= 0.0, 4.0, -4.0) * qv
+        q, omega = x[:, :4], x[:, 4:]
+        b = in_body(q, b_t)
+        error = np.where(q[:, :1] >= 0.0, 4.0, -4.0) * q[:, 1:]
         wanted = -np.cross(b, self.gains.k_w * omega + self.gains.k_a * error)
         m = np.clip(wanted, -self.most_am2, self.most_am2)
         torque = np.cross(m, b) - np.cross(omega, omega @ self.inertia.T)
-        q0_rate = -0.5 * np.sum(qv * omega, axis=1, keepdims=True)
-        qv_rate = 0.5 * (q0 * omega + np.cross(qv, omega))
-        return np.concatenate([q0_rate, qv_rate, torque @ self.inverse.T], axis=1)
-
-
-def _angle_deg(x: Array) -> Array:
-    angle: Array = np.degrees(2.0 * np.arctan2(np.linalg.norm(x[:, 1:4], axis=1), np.abs(x[:, 0])))
-    return angle
+        return np.concatenate([quaternion_rate(q, omega), torque @ self.inverse.T], axis=1)

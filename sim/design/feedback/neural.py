@@ -12,6 +12,7 @@ Source: Ovchinnikov, Roldugin 2019, section 3.4, after Das, Sinha, Misra 2012; t
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from math import cos, log, pi, radians, sin
 from typing import cast
 
@@ -19,8 +20,10 @@ import numpy as np
 from scipy.optimize import Bounds, differential_evolution
 
 from fsw.core.laws.feedback.neural import RANGE, SMALL
+from sim.design.theory import side_by_side
 from sim.design.theory.bodies import Body
 from sim.design.theory.linear import Array, Gains
+from sim.design.theory.side_by_side import angle_deg, in_body, quaternion_rate
 
 STEP_S = 30.0
 """Of law and integration."""
@@ -82,12 +85,13 @@ def orbit_rms_deg(
     q = np.tile(flown.q, (members, 1))
     x = np.concatenate([q, body.rate_radps * in_body(q, np.array([0.0, 0.0, 1.0]))], axis=1)
     steps = round(2.0 * pi / body.rate_radps / STEP_S)
+    fields_t = _fields_t(body, 0.5 * STEP_S * np.arange(2 * orbits * steps + 1))
     lags, squares = None, np.zeros((len(q), orbits))
     for step in range(orbits * steps):
-        lags, m = loop.dipole(x, step * STEP_S, lags)
-        m = np.clip(m, -most_am2, most_am2)
-        squares[:, step // steps] += _angle_deg(x) ** 2 / steps
-        x = loop.step(x, step * STEP_S, m)
+        lags, m = loop.dipole(x, fields_t[2 * step], lags)
+        rates = partial(loop.rates, m_am2=np.clip(m, -most_am2, most_am2))
+        squares[:, step // steps] += angle_deg(x) ** 2 / steps
+        x = side_by_side.step(rates, x, fields_t[2 * step : 2 * step + 3], STEP_S)
     rms: Array = np.sqrt(squares).reshape(members, flights, orbits)
     return rms
 
@@ -149,12 +153,12 @@ def train(
     return weights_of(np.asarray(found.x, dtype=np.float64)[:, None])[0], float(found.fun)
 
 
-def in_body(q_body_from_orbit: Array, v: Array) -> Array:
-    """C(body from orbit) v, (n, 3)."""
-    q0, qv = q_body_from_orbit[:, :1], q_body_from_orbit[:, 1:4]
-    twice = 2.0 * np.cross(v, qv)
-    turned: Array = v + q0 * twice - np.cross(qv, twice)
-    return turned
+def _fields_t(body: Body, t_s: Array) -> Array:
+    """The direct dipole's, orbital axes, (n, 3)."""
+    u, i = body.rate_radps * t_s, radians(body.inclination_deg)
+    along, across = -2.0 * sin(i) * np.sin(u), sin(i) * np.cos(u)
+    fields: Array = body.field_t * np.stack([along, across, np.full(len(u), cos(i))], axis=1)
+    return fields
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,12 +171,7 @@ class _Flights:
     torque_nm: Array
     dipole_am2: Array
 
-    def field_t(self, t_s: float) -> Array:
-        """The direct dipole's, orbital axes."""
-        u, i = self.body.rate_radps * t_s, radians(self.body.inclination_deg)
-        return self.body.field_t * np.array([-2.0 * sin(i) * sin(u), sin(i) * cos(u), cos(i)])
-
-    def dipole(self, x: Array, t_s: float, lags: Array | None) -> tuple[Array, Array]:
+    def dipole(self, x: Array, b_orbit_t: Array, lags: Array | None) -> tuple[Array, Array]:
         """The units' v1 and v2, (2, 2, n), and the dipole, before it is limited."""
         q, w0 = x[:, :4], self.body.rate_radps
         omega = self.relative(x)
@@ -187,18 +186,7 @@ class _Flights:
         v2 = v2 + part * (v1 - v2)
         k_w, k_a = np.array([[self.gains.k_w], [self.gains.k_a]]) * RANGE ** np.tanh(v2)
         wanted = k_w[:, None] * omega + k_a[:, None] * error
-        return np.stack([v1, v2]), np.cross(wanted, in_body(q, self.field_t(t_s)))
-
-    def step(self, x: Array, t_s: float, m_am2: Array) -> Array:
-        """Runge-Kutta of fourth order."""
-        h = STEP_S
-        k1 = self._rates(x, t_s, m_am2)
-        k2 = self._rates(x + 0.5 * h * k1, t_s + 0.5 * h, m_am2)
-        k3 = self._rates(x + 0.5 * h * k2, t_s + 0.5 * h, m_am2)
-        k4 = self._rates(x + h * k3, t_s + h, m_am2)
-        moved = x + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
-        moved[:, :4] /= np.linalg.norm(moved[:, :4], axis=1)[:, None]
-        return moved
+        return np.stack([v1, v2]), np.cross(wanted, in_body(q, b_orbit_t))
 
     def relative(self, x: Array) -> Array:
         """Rate relative to the orbital frame, body axes."""
@@ -206,19 +194,11 @@ class _Flights:
         relative: Array = x[:, 4:] - normal
         return relative
 
-    def _rates(self, x: Array, t_s: float, m_am2: Array) -> Array:
+    def rates(self, x: Array, b_orbit_t: Array, m_am2: Array) -> Array:
         """dx/dt."""
         q, omega, inertia = x[:, :4], x[:, 4:], np.asarray(self.body.inertia_kgm2)
         e1, relative = in_body(q, np.array([1.0, 0.0, 0.0])), self.relative(x)
-        torque = self.torque_nm + np.cross(m_am2 + self.dipole_am2, in_body(q, self.field_t(t_s)))
+        torque = self.torque_nm + np.cross(m_am2 + self.dipole_am2, in_body(q, b_orbit_t))
         torque += 3.0 * self.body.rate_radps**2 * np.cross(e1, e1 @ inertia)
         torque -= np.cross(omega, omega @ inertia)
-        q0, qv = q[:, :1], q[:, 1:]
-        q0_rate = -0.5 * np.sum(qv * relative, axis=1, keepdims=True)
-        qv_rate = 0.5 * (q0 * relative + np.cross(qv, relative))
-        return np.concatenate([q0_rate, qv_rate, torque @ np.linalg.inv(inertia)], axis=1)
-
-
-def _angle_deg(x: Array) -> Array:
-    angle: Array = np.degrees(2.0 * np.arctan2(np.linalg.norm(x[:, 1:4], axis=1), np.abs(x[:, 0])))
-    return angle
+        return np.concatenate([quaternion_rate(q, relative), torque @ np.linalg.inv(inertia)], axis=1)
