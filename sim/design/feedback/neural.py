@@ -85,7 +85,7 @@ def orbit_rms_deg(
     q = np.tile(flown.q, (members, 1))
     x = np.concatenate([q, body.rate_radps * in_body(q, np.array([0.0, 0.0, 1.0]))], axis=1)
     steps = round(2.0 * pi / body.rate_radps / STEP_S)
-    fields_t = _fields_t(body, 0.5 * STEP_S * np.arange(2 * orbits * steps + 1))
+    fields_t = _fields_t(body, np.linspace(0.0, STEP_S * orbits * steps, 2 * orbits * steps + 1))
     lags, squares = None, np.zeros((len(q), orbits))
     for step in range(orbits * steps):
         lags, m = loop.dipole(x, fields_t[2 * step], lags)
