@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import nan
 from typing import Any, NamedTuple
 
-from fsw.core.algebra.vector import ZERO, Mat3, Vec3
+from fsw.core.algebra.vector import ZERO, Mat3, Vec3, symmetric_inverse
 
 Matrix3x3 = tuple[float, float, float, float, float, float, float, float, float]
 Symmetric = tuple[float, float, float, float, float, float]
@@ -130,12 +130,7 @@ def corrected_parameters(parameters: Parameters, error: list[float], places: Lay
     """The parameters plus their part of an error state."""
     parts = list(parameters)
     for index, place in places.carried:
-        part, lacking = parts[index], error[place]
-        if len(part) == 3:  # most of them, and in half the time
-            (x, y, z), (dx, dy, dz) = part, lacking
-            parts[index] = (x + dx, y + dy, z + dz)
-        else:
-            parts[index] = tuple(map(float.__add__, part, lacking))
+        parts[index] = tuple(map(float.__add__, parts[index], error[place]))
     return Parameters._make(parts)
 
 
@@ -166,12 +161,6 @@ class Rotor(NamedTuple):
     wheel_body_nms: Vec3
 
 
-def inertia_error(parameters: Parameters) -> Mat3:
-    """The inertia tensor less the table's, kg m^2, body axes."""
-    xx, yy, zz, xy, xz, yz = parameters.inertia_error_kgm2
-    return ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
-
-
 def estimated_inertia(nominal: Rotor, parameters: Parameters) -> Mat3:
     """The inertia tensor with its estimated error, body axes, kg m^2."""
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = nominal.inertia_kgm2
@@ -186,14 +175,10 @@ def estimated_rotor(nominal: Rotor, parameters: Parameters) -> Rotor:
     An estimate that has come to that is no longer healthy after a prediction, and the filter starts anew.
     """
     inertia = estimated_inertia(nominal, parameters)
-    (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertia
-    c1, c2, c3 = yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy
-    determinant = xx * c1 + xy * c2 + xz * c3
-    if determinant == 0.0:
-        return Rotor(inertia, NO_NUMBERS, nominal.wheel_body_nms)
-    f = 1.0 / determinant
-    c1, c2, c3, c6 = f * c1, f * c2, f * c3, f * (xy * xz - xx * yz)
-    inverse = ((c1, c2, c3), (c2, f * (xx * zz - xz * xz), c6), (c3, c6, f * (xx * yy - xy * xy)))
+    try:
+        inverse = symmetric_inverse(inertia)
+    except ZeroDivisionError:
+        inverse = NO_NUMBERS
     return Rotor(inertia, inverse, nominal.wheel_body_nms)
 
 

@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from fsw.core.algebra.vector import ZERO, Vec3
+from fsw.core.algebra.vector import ZERO, Vec3, skew
 from fsw.core.estimation.dynamics.motion import BodyFields, BodyMotion, outer
 from fsw.core.estimation.kalman import Matrix
 from fsw.core.estimation.parameters import Layout, Rotor
 
-_OMEGA, _PULL, _ACTING, _FIELD = slice(0, 3), slice(3, 12), slice(12, 21), slice(21, 24)
+_PULL, _ACTING, _FIELD = slice(3, 12), slice(12, 21), slice(21, 24)
 _SPIN, _ALPHA, _DRIVEN, _ONE = slice(24, 33), slice(33, 36), slice(36, 45), slice(45, 46)
-"""Places among the numbers that the torque's derivatives are linear in: the rate, g e1 e1^T, g being
+"""Places among the numbers that the torque's derivatives are linear in: behind the rate g e1 e1^T, g being
 3 mu/r^3, m b^T, b, omega omega^T, domega/dt, m_driven b^T and 1."""
 _NUMBERS = 46
 _MOMENTS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
@@ -66,9 +66,9 @@ def torque_rows(
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = rotor.inertia_kgm2
     moving = _BY_INERTIA.dot((xx, yy, zz, xy, xz, yz)).reshape(18, 12)
     rows: Matrix = by_error.dot(numbers).reshape(3, -1)
-    rows[:, 0:6] += moving.dot(numbers[:12]).reshape(3, 6)
+    rows[:, 0:6] += moving.dot(numbers[: _PULL.stop]).reshape(3, 6)
     if rotor.wheel_body_nms != ZERO:
-        rows[:, 3:6] += cross_matrix(np.array(rotor.wheel_body_nms))
+        rows[:, 3:6] += skew(rotor.wheel_body_nms)
     return rows
 
 

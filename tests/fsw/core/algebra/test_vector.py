@@ -60,8 +60,9 @@ def test_the_unit_vector_of_nothing_is_nothing():
 def test_inverse_of_any_inertia_like_tensor(m):
     """M M^T + I is symmetric, positive and never singular."""
     tensor = np.array(m) @ np.array(m).T / 1e3 + np.eye(3)
-    inverse = vector.inverse(tuple(tuple(row) for row in tensor.tolist()))
-    np.testing.assert_allclose(np.array(inverse) @ tensor, np.eye(3), atol=1e-6)
+    rows = tuple(tuple(row) for row in tensor.tolist())
+    for inverse in (vector.inverse(rows), vector.symmetric_inverse(rows)):
+        np.testing.assert_allclose(np.array(inverse) @ tensor, np.eye(3), atol=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -81,6 +82,8 @@ def test_inverse_of_a_matrix_without_symmetry():
 def test_a_singular_matrix_has_no_inverse():
     with pytest.raises(ZeroDivisionError):
         vector.inverse(((1.0, 2.0, 3.0), (2.0, 4.0, 6.0), (1.0, 0.0, 1.0)))
+    with pytest.raises(ZeroDivisionError):
+        vector.symmetric_inverse(((1.0, 2.0, 3.0), (2.0, 4.0, 6.0), (3.0, 6.0, 1.0)))
 
 
 @given(matrices, vectors)
