@@ -126,3 +126,8 @@ def plain(value: Any) -> Any:  # noqa: ANN401  (any value of JSON)
         case PathLike():
             return fspath(value)
     return value
+
+
+def counted(number: int, noun: str) -> str:
+    """The noun with its number: 1 run, 2 runs."""
+    return f"{number} {noun}{'' if number == 1 else 's'}"

@@ -13,7 +13,7 @@ from sim.compare.page import compare_page
 from sim.compare.picture import picture
 from sim.compare.score import Result, Score, by_axis1, fly_case
 from sim.compare.table import as_csv, as_json, as_text, ranked
-from sim.console import answer, fail, say
+from sim.console import answer, counted, fail, say
 from sim.design.tuning.kept import KeptGains, body_checksum, read_gains, shipped_gains
 from sim.errors import HarnessError
 from sim.flight.record_flight import MOST_IN_MEMORY, ticks_of
@@ -92,7 +92,7 @@ def compare(
             note(_line(finished))
 
     try:
-        with progress(f"comparing {len(chosen)} laws on {scenario.name}", len(studies)) as watch:
+        with progress(f"comparing {counted(len(chosen), 'law')} on {scenario.name}", len(studies)) as watch:
             run(studies, workers or os.cpu_count() or 1, watch, take)
     finally:  # flights that are done are written when the rest is given up
         scores = ranked(result.score for result in results)

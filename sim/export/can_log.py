@@ -5,6 +5,7 @@ from pathlib import Path
 import can
 
 from fsw.bus.can_message import message_of
+from sim.console import counted
 from sim.export.source import LogPass, Source
 from sim.progress import Watch
 
@@ -34,7 +35,7 @@ def _write(writer: can.BLFWriter | can.ASCWriter, source: Source, watch: Watch) 
             writer.on_message_received(message_of(entry.frame, stamp_us / 1e6, _channel(entry.channel)))
             watch(stamp_us - first_us)
     if early:
-        log.notes.append(f"{early} frames are stamped earlier than the first, whose time they are given")
+        log.notes.append(f"{counted(early, 'frame')} stamped earlier than the first, now with its time")
     return log.notes
 
 

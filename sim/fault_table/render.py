@@ -7,6 +7,7 @@ from itertools import groupby
 from math import inf
 from typing import Any
 
+from sim.console import counted
 from sim.drawing.pages import page
 from sim.fault_table.checks import ALWAYS
 from sim.fault_table.row import CaseResult, CheckVerdict, FaultRow, RowFault, RowResult
@@ -68,10 +69,11 @@ def tally(results: Sequence[RowResult]) -> str:
     rows = {verdict: sum(result.verdict is verdict for result in results) for verdict in CheckVerdict}
     broken = sum(not _holds(case, "limits") for case in cases)
     passed, failed = rows[CheckVerdict.PASS], rows[CheckVerdict.FAIL]
-    text = f"{len(results)} rows, {len(cases)} cases: {passed} rows pass, {failed} fail"
+    flown = f"{counted(len(results), 'row')}, {counted(len(cases), 'case')}"
+    text = f"{flown}: {counted(passed, 'row')} passed, {failed} failed"
     if rows[CheckVerdict.OPEN]:
         text += f", {rows[CheckVerdict.OPEN]} not yet"
-    return f"{text}; {broken} violations of the coil limits"
+    return f"{text}; {counted(broken, 'violation')} of the coil limits"
 
 
 def line(result: RowResult) -> str:

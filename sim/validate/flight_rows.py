@@ -20,14 +20,21 @@ CODE = (
     "hil_stub",
     "sim/audit",
     "sim/campaign",
+    "sim/design/from_scenario.py",
+    "sim/design/theory",
+    "sim/faults",
     "sim/flight",
     "sim/plant",
     "sim/record",
+    "sim/replay",
     "sim/report",
     "sim/scenario",
+    "sim/statistics",
 )
-"""What a flight and its figures follow from."""
+"""Folders and files that a flight and its figures follow from."""
 SUFFIXES = (".py", ".toml", ".dbc")
+BEGINNING = b'{"order": "'
+"""Of each line."""
 LEFT_OUT = "events"
 """Of the summary: they are many, and judged by no campaign."""
 
@@ -47,6 +54,9 @@ class FlightRows:
         content = _content(path)
         whole = content[: content.rfind(b"\n") + 1]  # the writing of a last line may have been cut off
         rows = [_row(path, number, line) for number, line in enumerate(whole.splitlines(), start=1)]
+        begun = content[len(whole) :][: len(BEGINNING)]
+        if not BEGINNING.startswith(begun):
+            raise _no_flight(path, len(rows) + 1)
         self._path, self._end, self._size = path, len(whole), len(content)
         self._rows = {row["order"]: row for row in rows if of_any_code or row["code"] == code_hash()}
 
@@ -133,10 +143,11 @@ def code_hash(house: Path = HOUSE) -> str:
         HarnessError: a part of the code is not there, so that its changes would go unnoticed.
     """
     digest = hashlib.sha256()
-    for folder in CODE:
-        files = [path for path in sorted((house / folder).rglob("*")) if path.suffix in SUFFIXES]
+    for part in (house / part for part in CODE):
+        whole = [part] if part.is_file() else sorted(part.rglob("*"))
+        files = [path for path in whole if path.suffix in SUFFIXES]
         if not files:
-            raise HarnessError(f"{house / folder}: holds no code to tell these flights from others by")
+            raise HarnessError(f"{part}: holds no code to tell these flights from others by")
         for path in files:
             digest.update(path.relative_to(house).as_posix().encode() + path.read_bytes())
     return digest.hexdigest()[:16]
@@ -151,11 +162,15 @@ def _content(path: Path) -> bytes:
         raise HarnessError(f"{path}: cannot be read ({error.strerror})") from None
 
 
+def _no_flight(path: Path, number: int) -> HarnessError:
+    return HarnessError(f"{path}: line {number} is not a flight")
+
+
 def _row(path: Path, number: int, line: bytes) -> Json:
     try:
         row = json.loads(line)
     except ValueError:
         row = None
     if not isinstance(row, dict) or not row.keys() >= {"order", "code", "summary", "figures"}:
-        raise HarnessError(f"{path}: line {number} is not a flight")
+        raise _no_flight(path, number)
     return row

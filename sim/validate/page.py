@@ -9,6 +9,7 @@ import scipy
 
 from sim.campaign.claim import ClaimOutcome, ClaimVerdict, Spread
 from sim.campaign.runner import StudyResult
+from sim.console import counted
 from sim.junit import JunitCase
 from sim.validate.flight_data.passes import PassFigures
 from sim.validate.flight_data.table import as_table
@@ -107,7 +108,7 @@ def _test(outcome: ClaimOutcome) -> JunitCase:
 def tally(outcomes: Sequence[ClaimOutcome]) -> str:
     """How many claims hold, fail, are fitted, and could not be judged."""
     count = {verdict: sum(outcome.verdict is verdict for outcome in outcomes) for verdict in ClaimVerdict}
-    text = f"{count[ClaimVerdict.PASS]} claims hold, {count[ClaimVerdict.FAIL]} fail"
+    text = f"{counted(count[ClaimVerdict.PASS], 'claim')} met, {count[ClaimVerdict.FAIL]} failed"
     others = (ClaimVerdict.FITTED, ClaimVerdict.ABSENT)
     return text + "".join(f", {count[verdict]} {verdict.value}" for verdict in others if count[verdict])
 

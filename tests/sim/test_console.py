@@ -10,6 +10,7 @@ import pytest
 from sim.console import (
     Console,
     answer,
+    counted,
     current,
     detail,
     document,
@@ -89,3 +90,8 @@ def test_a_document_is_json_whatever_it_holds():
 def test_what_cannot_be_printed_is_escaped(capsys):
     fail("a\nb\x1b[31m")
     assert capsys.readouterr().err == "torquer: a\\nb\\x1b[31m\n"
+
+
+@pytest.mark.parametrize(("number", "text"), [(0, "0 runs"), (1, "1 run"), (2, "2 runs")])
+def test_one_thing_has_no_plural(number, text):
+    assert counted(number, "run") == text

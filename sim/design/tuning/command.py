@@ -6,7 +6,7 @@ from pathlib import Path
 from fsw.core.laws.table import LAWS
 from fsw.input.near import did_you_mean
 from fsw.input.schema import Nested, merge
-from sim.console import say
+from sim.console import counted, say
 from sim.design.tuning.applicable import check_suited, coils_of, is_suited, laws_for
 from sim.design.tuning.kept import KeptGains, body_checksum, gains_text, read_gains, write_gains
 from sim.design.tuning.rigid_flight import STEP_S
@@ -61,7 +61,9 @@ def design_laws(
         for law in chosen
         if is_suited(law, scenario, driver) and kept.control(driver, law) is None
     ]
-    with progress(f"gains of {len(chosen)} laws for {scenario.name}", len(wanted) * budget) as watch:
+    with progress(
+        f"gains of {counted(len(chosen), 'law')} for {scenario.name}", len(wanted) * budget
+    ) as watch:
         for number, (driver, law) in enumerate(wanted):
             values = merge(over, coils_of(scenario, driver))
             onward = _after(watch, number * budget)

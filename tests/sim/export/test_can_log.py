@@ -53,7 +53,7 @@ def exported_to(tmp_path, write, *lines):
 @pytest.mark.parametrize(("write", "reader"), [(write_blf, can.BLFReader), (write_asc, can.ASCReader)])
 def test_a_frame_stamped_before_the_first_is_noted(tmp_path, write, reader):
     notes = exported_to(tmp_path, write, "(1700000010.000000) c 110#01", "(1700000001.000000) c 111#02")
-    assert "1 frames are stamped earlier than the first" in notes[-1]
+    assert "1 frame stamped earlier than the first" in notes[-1]
     with reader(tmp_path / "out") as opened:
         first, second = opened
     assert first.timestamp == second.timestamp

@@ -65,7 +65,7 @@ def test_a_row_is_flown_in_every_phase_with_every_seed(capsys, tmp_path):
     printed = capsys.readouterr().out
     assert code == 0
     assert "time-jumps" in printed
-    assert "2 rows, 8 cases: 2 rows pass, 0 fail; 0 violations of the coil limits" in printed
+    assert "2 rows, 8 cases: 2 rows passed, 0 failed; 0 violations of the coil limits" in printed
     written = json.loads((tmp_path / "faults.json").read_text())
     cases = [(one["phase"], one["seed"]) for one in written["rows"][0]["cases"]]
     assert cases == [(0, 1), (0, 2), (1, 1), (1, 2)]
@@ -132,7 +132,7 @@ def test_rows_of_an_earlier_campaign_count(planted, monkeypatch, capsys, tmp_pat
     now = [RowResult(planted[0].row, planted[0].cases * 3)]
     monkeypatch.setattr(command, "fly_rows", lambda *_: now)
     assert run("--row", "none", "--keep", tmp_path / "faults.json", "--out", tmp_path / "both") == 1
-    assert "3 rows, 6 cases: 1 rows pass, 1 fail, 1 not yet" in capsys.readouterr().out
+    assert "3 rows, 6 cases: 1 row passed, 1 failed, 1 not yet" in capsys.readouterr().out
     both = earlier_rows.read(tmp_path / "both" / "faults.json")
     assert both == {one.row.name: replace(one, earlier=True) for one in (*now, *planted[1:])}
 
@@ -167,7 +167,7 @@ def test_pages_name_the_failed_case_and_escape(planted):
     assert "said &lt;1&gt;" in page
     assert "://" not in page
     markdown = render.markdown(planted, 4, 1)
-    assert "1 rows pass, 1 fail, 1 not yet" in markdown
+    assert "1 row passed, 1 failed, 1 not yet" in markdown
     assert "1 of 2: check 1, said <1>, phase 3 seed 1" in markdown
     assert all(f"| `{kind}` |" in markdown for kind in KINDS)
 
@@ -189,7 +189,7 @@ def test_the_page_holds_nothing_of_the_wall_clock(planted):
 def test_a_broken_limit_is_counted_over_all_cases():
     row = choose_rows(["none"])[0]
     broken = CaseResult("none", 0, 1, (CheckOutcome("limits", CheckVerdict.FAIL, "pulse of 4 s"),), {})
-    assert "; 1 violations of the coil limits" in render.tally([RowResult(row, (broken,))])
+    assert "; 1 violation of the coil limits" in render.tally([RowResult(row, (broken,))])
 
 
 def test_there_is_no_page_outside_a_checkout(tmp_path, monkeypatch):

@@ -22,7 +22,7 @@ class TestCommand:
         page = folder.path / "deep" / "page.md"
         result = self.call("--reference", folder.path, "--out", page)
         assert result.exit_code == 0
-        assert "17 claims hold, 0 fail, 5 absent" in result.stdout
+        assert "17 claims met, 0 failed, 5 absent" in result.stdout
         assert "| eclipse.csv | 4 | kind, " in page.read_text()
         assert page.read_text().count("| PASS |") == 17
 
@@ -97,7 +97,7 @@ class TestCommand:
         for _ in range(2):
             result = self.call("--only", "a", "--keep", tmp_path / "kept.jsonl")
             assert result.exit_code == 0
-            assert "1 claims hold" in result.stdout
+            assert "1 claim met" in result.stdout
         assert flown == [1, 2]
 
     def test_a_file_of_something_else_is_left_alone(self, tmp_path):

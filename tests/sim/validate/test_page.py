@@ -39,7 +39,7 @@ class TestPage:
 
     def test_what_stands_around_the_table(self, page):
         assert page.startswith("# Validation\n")
-        assert "1 claims hold, 1 fail, 1 fitted, 1 absent." in page
+        assert "1 claim met, 1 failed, 1 fitted, 1 absent." in page
         assert "Wall time 61 s. Python 3." in page
         assert "| claim | source | ours | all starts | tolerance | whose | verdict |" in page
         for threshold in Threshold:
@@ -76,5 +76,5 @@ class TestPage:
 
     def test_the_tally_counts_only_what_shows_something(self):
         fitted = Claim("a.e", "Fitted", "Him", "s", high=3.0, threshold=Threshold.FITTED)
-        assert tally([fitted.judge(2.0)]) == "0 claims hold, 0 fail, 1 fitted"
-        assert tally([fitted.judge(4.0)]) == "0 claims hold, 1 fail", "what was fitted must stay met"
+        assert tally([fitted.judge(2.0)]) == "0 claims met, 0 failed, 1 fitted"
+        assert tally([fitted.judge(4.0)]) == "0 claims met, 1 failed", "what was fitted must stay met"
