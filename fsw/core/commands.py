@@ -14,6 +14,7 @@ from fsw.core.config import FlightConfig
 from fsw.core.estimation.estimator import untraced
 from fsw.core.estimation.loaded import freeze, load, thaw
 from fsw.core.estimation.parameters import component_places, estimated_inertia
+from fsw.core.fdir.evidence import SIGMAS
 from fsw.core.fdir.fdir import Health
 from fsw.core.gate.readings import Readings, Telecommand
 from fsw.core.laws.entry import LawEntry, is_met
@@ -172,12 +173,11 @@ def _load(state: FlightState, message: TcOrbitLoad, situation: Situation) -> Out
     return state._replace(orbit=elements, upload=Upload(), ephemeris=window)
 
 
-MOST_SIGMAS = 10.0
-"""A parameter may be loaded with a value within so many standard deviations of the prior from its mean."""
-
-
 def _parameter(state: FlightState, message: TcParameter, situation: Situation) -> Outcome:
-    """The filter goes on from this value, and starts from it; the satellite must remain a body."""
+    """The filter goes on from this value, and starts from it; the satellite must remain a body.
+
+    A value that is not credible is refused: the filter would start from it again and again, never trusted.
+    """
     if message.component not in list(Component):
         return TcAckResult.UNKNOWN
     config, value = situation.config.estimator, decimal(message.mantissa, message.exponent)
@@ -185,7 +185,7 @@ def _parameter(state: FlightState, message: TcParameter, situation: Situation) -
     if config.perfect or place is None:
         return TcAckResult.NOT_ALLOWED
     mean = config.mekf.initial_parameters.floats()[message.component]
-    if abs(value - mean) > MOST_SIGMAS * sqrt(config.mekf.initial_covariance[place, place]):
+    if abs(value - mean) > SIGMAS * sqrt(config.mekf.initial_covariance[place, place]):
         return TcAckResult.OUT_OF_RANGE
     loaded = load(state.estimator, message.component, value, config.mekf)
     held = [loaded.first, loaded.estimate and loaded.estimate.parameters]

@@ -2,9 +2,10 @@
 
 import pytest
 
-from fsw.core.commands import MOST_SIGMAS
 from fsw.core.estimation.parameters import NOTHING as AS_THE_TABLE
 from fsw.core.estimation.parameters import component_places, with_component
+from fsw.core.fdir.evidence import SIGMAS
+from fsw.core.fdir.sensors.credibility import credible
 from fsw.wire.messages import (
     Component,
     TcAckResult,
@@ -44,7 +45,7 @@ def range_of(config, parameter):
     """The least and the largest value that may be loaded."""
     mekf = config.estimator.mekf
     place, mean = component_places(mekf.layout)[parameter], mekf.initial_parameters.floats()[parameter]
-    most = MOST_SIGMAS * float(mekf.initial_covariance[place, place]) ** 0.5
+    most = SIGMAS * float(mekf.initial_covariance[place, place]) ** 0.5
     return mean - most, mean + most
 
 
@@ -81,13 +82,19 @@ class TestParameter:
         )
 
     @pytest.mark.parametrize("parameter", [Component.MAG_BIAS_X, Component.COIL_YZ, Component.MAG_DELAY])
-    def test_of_ten_standard_deviations_is_the_most(self, obey, refused, estimating, parameter):
+    def test_is_taken_exactly_where_an_estimate_of_it_is_trusted(self, obey, refused, estimating, parameter):
         config, state = estimating
         for limit, outward in zip(range_of(config, parameter), (-1, 1), strict=True):
             edge = int(1e9 * limit)
             inside, beyond = (TcParameter(parameter, -9, edge + step) for step in (-outward, outward))
-            assert obey(state, inside, config=config)[1] == [TcAckResult.ACCEPTED]
+            after, results = obey(state, inside, config=config)
+            assert results == [TcAckResult.ACCEPTED]
+            assert credible(after.estimator.estimate, config.fdir.sensors.credibility)
             refused(TcAckResult.OUT_OF_RANGE, beyond, start=state, config=config)
+            value = 1e-9 * (edge + outward)
+            strange = with_component(after.estimator.estimate.parameters, parameter, value)
+            off = after.estimator.estimate._replace(parameters=strange)
+            assert not credible(off, config.fdir.sensors.credibility)
 
     @pytest.mark.parametrize(
         "sent",
