@@ -70,9 +70,9 @@ class Claim:
         return self.low <= ours <= self.high
 
     def is_loose(self, ours: float) -> bool:
-        """Whether a limit of this project's own is far from the figure, without a reason given."""
+        """Whether a figure meets a limit of this project's own by far, without a reason given."""
         own = self.threshold in (Threshold.OWN, Threshold.PROTOTYPE)
-        return own and not self.wide and self.room(ours) > MOST_ROOM
+        return own and self.meets(ours) and not self.wide and self.room(ours) > MOST_ROOM
 
     def room(self, ours: float) -> float:
         """By what factor a figure could be worse, at the side where it could be most; infinite from zero."""

@@ -6,13 +6,14 @@ from fsw.input.schema import Nested
 from sim.campaign.claim import Study
 from sim.campaign.flight import FlightResult, Order
 from sim.campaign.honesty import honesty_figures
-from sim.campaign.study import Figure, Group, Pick, campaign, figure_of, summary_value
+from sim.campaign.study import Figure, Group, Pick, campaign, summary_value
 
 SCENARIO = "cubesat-cells"
 SOURCE = "Cells as panel currents of SUCHAI-3 show them: up to a third of full sunlight comes from the Earth"
 SEEDS, SATELLITES, WRONG = range(1, 11), range(301, 311), range(401, 404)
 CELLS, GAIN_PART, TURN_DEG = 6, 0.1, 2.0
-SUNLIT_DEG, ECLIPSE_DEG, INSIDE, WRONG_S = 2.0, 4.0, 0.95, 60.0
+SUNLIT_DEG, ECLIPSE_DEG, INSIDE = 2.0, 4.0, 0.95
+CROSSED = ("cell 1", "cell 3")
 
 
 def studies(most: int | None = None) -> list[Study]:
@@ -44,7 +45,11 @@ def honest_figures() -> tuple[Figure, ...]:
 
 
 def crossed_figures() -> tuple[Figure, ...]:
-    """Two cells that are connected crosswise are no satellite of the table: its flights must not pass."""
+    """Two cells that are connected crosswise are no satellite of the table: its flights must not pass.
+
+    That no wrong attitude is valid meanwhile is not claimed: one that fits cells and field is found to be
+    wrong when the satellite has turned further (docs/fdir.md).
+    """
     return (
         Figure(
             "unnoticed",
@@ -54,13 +59,18 @@ def crossed_figures() -> tuple[Figure, ...]:
             high=0.0,
         ),
         Figure(
-            "wrong",
-            "Longest time valid with an error above 10 deg, two cells connected crosswise, all",
-            "s",
-            figure_of("wrong_10deg_s"),
-            high=WRONG_S,
+            "named",
+            "Of two cells connected crosswise those that are isolated in the end, all",
+            "1",
+            crossed_cells,
+            low=2.0,
         ),
     )
+
+
+def crossed_cells(flight: FlightResult) -> float:
+    """How many of the two were isolated."""
+    return float(len(set(CROSSED) & set(flight.summary["isolated"])))
 
 
 def isolated_units(flight: FlightResult) -> float:

@@ -58,3 +58,10 @@ def test_a_spread_tells_how_many_flights_meet_the_claim():
     assert spread_of(claim, [1.0, 4.0, 2.0, nan]) == Spread(
         flights=4, meet=2, least=1.0, median=3.0, most=inf
     )
+
+
+@pytest.mark.parametrize(("ours", "loose"), [(0.5, True), (7.0, False), (90.0, False), (9000.0, False)])
+def test_a_limit_is_loose_where_it_is_met_by_far(ours, loose):
+    """One that is missed by far is no loose one."""
+    assert Claim("a", "b", "c", "d", high=60.0).is_loose(ours) is loose
+    assert not Claim("a", "b", "c", "d", high=60.0, wide="of another satellite").is_loose(ours)

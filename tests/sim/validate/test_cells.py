@@ -54,6 +54,19 @@ def test_crossed_cells_are_those_of_the_table_alone():
     assert scenario.sensors.cells.normals[0] == (1.0, 0.0, 0.0)
     assert flight_table(scenario).cells.normals[0] == (0.0, 1.0, 0.0)
     assert sorted(flight_table(scenario).cells.normals) == sorted(scenario.sensors.cells.normals)
+    differ = zip(flight_table(scenario).cells.normals, scenario.sensors.cells.normals, strict=True)
+    places = [place for place, (assumed, true) in enumerate(differ, start=1) if assumed != true]
+    assert tuple(f"cell {place}" for place in places) == cells.CROSSED
+
+
+@pytest.mark.parametrize(
+    ("isolated", "named"),
+    [([], 0), (["cell 2"], 0), (["cell 3", "sun sensor"], 1), (["cell 3", "cell 1"], 2)],
+)
+def test_both_crossed_cells_are_to_be_named_in_the_end(isolated, named):
+    (claim,) = (figure for figure in cells.crossed_figures() if figure.id == "named")
+    assert claim.pick(flight(isolated=isolated)) == named
+    assert (claim.low <= named) is (named == 2)
 
 
 def test_no_seed_is_of_two_studies():
