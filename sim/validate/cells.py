@@ -1,12 +1,20 @@
 """Claims on the satellite with Sun cells: as it ships, with others than its table has, with wrong ones."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fsw.input.schema import Nested
 from sim.campaign.claim import Study
-from sim.campaign.flight import FlightResult, Order
+from sim.campaign.flight import Figures, FlightResult, Measure, Order
 from sim.campaign.honesty import honesty_figures
-from sim.campaign.study import Figure, Group, Pick, campaign, summary_value
+from sim.campaign.study import Figure, Group, Pick, campaign, figure_of, summary_value
+from sim.design.theory.side_by_side import in_body
+from sim.record.estimates import Estimates
+from sim.record.truth import Histories
+from sim.report.figures.attitude_arrays import angle_rad
+from sim.report.figures.estimate_error import estimate_error
+from sim.report.figures.spans import spans
+from sim.scenario.schema import Scenario, flight_table
 
 SCENARIO = "cubesat-cells"
 SOURCE = "Cells as panel currents of SUCHAI-3 show them: up to a third of full sunlight comes from the Earth"
@@ -14,6 +22,11 @@ SEEDS, SATELLITES, WRONG = range(1, 11), range(301, 311), range(401, 404)
 CELLS, GAIN_PART, TURN_DEG = 6, 0.1, 2.0
 SUNLIT_DEG, ECLIPSE_DEG, INSIDE = 2.0, 4.0, 0.95
 CROSSED = ("cell 1", "cell 3")
+WRONG_DEG, WRONG_S = 10.0, 60.0
+EARTHLIGHT, FIELD_DEG = 1.0 / 3.0, 5.0
+"""A reading further than this from what an attitude leads to speaks against it."""
+
+Array = NDArray[np.float64]
 
 
 def studies(most: int | None = None) -> list[Study]:
@@ -29,7 +42,10 @@ def studies(most: int | None = None) -> list[Study]:
             "satellites",
         ),
         campaign(
-            "cells.wrong", SOURCE, _group([_order(seed, crossed()) for seed in WRONG]), crossed_figures()
+            "cells.wrong",
+            SOURCE,
+            _group([_order(seed, crossed(), contradicted_figures) for seed in WRONG]),
+            crossed_figures(),
         ),
     ]
 
@@ -47,8 +63,8 @@ def honest_figures() -> tuple[Figure, ...]:
 def crossed_figures() -> tuple[Figure, ...]:
     """Two cells that are connected crosswise are no satellite of the table: its flights must not pass.
 
-    That no wrong attitude is valid meanwhile is not claimed: one that fits cells and field is found to be
-    wrong when the satellite has turned further (docs/fdir.md).
+    A wrong attitude that cells and field bear out may be valid: it is found to be wrong when the satellite
+    has turned further (docs/fdir.md).
     """
     return (
         Figure(
@@ -65,7 +81,57 @@ def crossed_figures() -> tuple[Figure, ...]:
             crossed_cells,
             low=2.0,
         ),
+        Figure(
+            "wrong",
+            "Longest time valid with an error above 10 deg that a cell, by more than the light of the Earth, "
+            "or the field, by 5 deg, speaks against; two cells connected crosswise, all",
+            "s",
+            figure_of("contradicted_s"),
+            high=WRONG_S,
+        ),
     )
+
+
+def contradicted_figures(scenario: Scenario, truth: Histories, estimates: Estimates) -> Figures:
+    """``honesty_figures``, and the longest time valid with a large error that sensors speak against."""
+    turn = estimate_error(truth, estimates)
+    against = lights_differ(scenario, truth, turn) | fields_differ(truth, turn)
+    wrong = np.degrees(angle_rad(turn)) > WRONG_DEG
+    valid = estimates.valid[: len(wrong)]
+    longest = max((past - first for first, past in spans(valid & wrong & against)), default=0)
+    return {
+        **honesty_figures(scenario, truth, estimates),
+        "contradicted_s": longest / scenario.time.tick_hz,
+    }
+
+
+def lights_differ(scenario: Scenario, truth: Histories, turn: Array) -> NDArray[np.bool_]:
+    """Whether a cell has other light than its place in the table leads to, by more than the Earth's, (n,).
+
+    Args:
+        scenario: of the flight.
+        truth: of the plant.
+        turn: from the estimated to the true attitude, (n, 4).
+    """
+    true, assumed = scenario.sensors.cells, flight_table(scenario).cells
+    assert true is not None and assumed is not None
+    sun_body = truth["lit"][:, None] * truth["sun_body"]
+    light = np.maximum(sun_body @ np.array(true.normals).T, 0.0)
+    expected = np.maximum(in_body(_back(turn), sun_body) @ np.array(assumed.normals).T, 0.0)
+    differ: NDArray[np.bool_] = (np.abs(light - expected) > EARTHLIGHT).any(axis=1)
+    return differ
+
+
+def fields_differ(truth: Histories, turn: Array) -> NDArray[np.bool_]:
+    """Whether the field has another direction than the estimated attitude leads to, (n,)."""
+    field, expected = truth["b_body_t"], in_body(_back(turn), truth["b_body_t"])
+    sine = np.linalg.norm(np.cross(field, expected), axis=1)
+    differ: NDArray[np.bool_] = np.arctan2(sine, np.sum(field * expected, axis=1)) > np.radians(FIELD_DEG)
+    return differ
+
+
+def _back(turn: Array) -> Array:
+    return turn * (1.0, -1.0, -1.0, -1.0)
 
 
 def crossed_cells(flight: FlightResult) -> float:
@@ -120,8 +186,8 @@ def crossed() -> Nested:
     return {"flight": {"cells": {"normals": normals + rest}}}
 
 
-def _order(seed: int, changed: Nested) -> Order:
-    return Order(SCENARIO, changed, seed=seed, measure=honesty_figures, name=f"{SCENARIO}, seed {seed}")
+def _order(seed: int, changed: Nested, measure: Measure = honesty_figures) -> Order:
+    return Order(SCENARIO, changed, seed=seed, measure=measure, name=f"{SCENARIO}, seed {seed}")
 
 
 def _group(orders: list[Order]) -> tuple[Group, ...]:

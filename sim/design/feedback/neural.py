@@ -13,7 +13,7 @@ Source: Ovchinnikov, Roldugin 2019, section 3.4, after Das, Sinha, Misra 2012; t
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from math import cos, log, pi, radians, sin
+from math import log, pi
 from typing import cast
 
 import numpy as np
@@ -22,7 +22,7 @@ from scipy.optimize import Bounds, differential_evolution
 from fsw.core.laws.feedback.neural import RANGE, SMALL
 from sim.design.theory import side_by_side
 from sim.design.theory.bodies import Body
-from sim.design.theory.linear import Array, Gains
+from sim.design.theory.linear import Array, Gains, dipole_field
 from sim.design.theory.side_by_side import angle_deg, in_body, quaternion_rate
 
 STEP_S = 30.0
@@ -85,7 +85,8 @@ def orbit_rms_deg(
     q = np.tile(flown.q, (members, 1))
     x = np.concatenate([q, body.rate_radps * in_body(q, np.array([0.0, 0.0, 1.0]))], axis=1)
     steps = round(2.0 * pi / body.rate_radps / STEP_S)
-    fields_t = _fields_t(body, np.linspace(0.0, STEP_S * orbits * steps, 2 * orbits * steps + 1))
+    t_s = np.linspace(0.0, STEP_S * orbits * steps, 2 * orbits * steps + 1)
+    fields_t = body.field_t * dipole_field(body.rate_radps * t_s, body)
     lags, squares = None, np.zeros((len(q), orbits))
     for step in range(orbits * steps):
         lags, m = loop.dipole(x, fields_t[2 * step], lags)
@@ -151,14 +152,6 @@ def train(
         callback=lambda intermediate_result: report(next(told), float(intermediate_result.fun)),
     )
     return weights_of(np.asarray(found.x, dtype=np.float64)[:, None])[0], float(found.fun)
-
-
-def _fields_t(body: Body, t_s: Array) -> Array:
-    """The direct dipole's, orbital axes, (n, 3)."""
-    u, i = body.rate_radps * t_s, radians(body.inclination_deg)
-    along, across = -2.0 * sin(i) * np.sin(u), sin(i) * np.cos(u)
-    fields: Array = body.field_t * np.stack([along, across, np.full(len(u), cos(i))], axis=1)
-    return fields
 
 
 @dataclass(frozen=True, slots=True)

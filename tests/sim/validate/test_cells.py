@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from fsw.core.algebra.quaternion import conjugate, multiply, normalise
 from sim.campaign.flight import FlightResult, Order
+from sim.record.estimates import EstimateRecorder
 from sim.scenario.schema import flight_table, load
 from sim.validate import cells
 
@@ -67,6 +69,89 @@ def test_both_crossed_cells_are_to_be_named_in_the_end(isolated, named):
     (claim,) = (figure for figure in cells.crossed_figures() if figure.id == "named")
     assert claim.pick(flight(isolated=isolated)) == named
     assert (claim.low <= named) is (named == 2)
+
+
+TICKS = 200
+TRUE = (0.5, -0.5, 0.1, 0.7)
+SUN, FIELD_T = np.array([0.8, 0.3, 0.52]), np.array([1.1e-5, -2.3e-5, 3.1e-5])
+MIRRORED = SUN[[1, 0, 2]]
+"""Where light on crosswise cells makes the Sun look to be."""
+SOUND, CROSSED = load("cubesat-cells"), load("cubesat-cells", cells.crossed())
+
+
+def turned(angle_deg, axis):
+    """The turn from the estimated to the true attitude."""
+    half = 0.5 * np.radians(angle_deg)
+    return (np.cos(half), *(np.sin(half) * axis / np.linalg.norm(axis)))
+
+
+def truth_of(lit=1.0):
+    rows = {
+        "q_body_from_orbit": normalise(TRUE),
+        "omega_body_orbit_radps": (2e-4, -1e-4, 3e-4),
+        "sun_body": SUN / np.linalg.norm(SUN),
+        "b_body_t": FIELD_T,
+        "lit": lit,
+    }
+    return {"t_s": np.arange(TICKS)} | {name: np.array([row] * TICKS) for name, row in rows.items()}
+
+
+def rows(turn):
+    return np.tile(turn, (TICKS, 1))
+
+
+ONTO_MIRRORED = turned(180.0, SUN + MIRRORED)
+
+
+@pytest.mark.parametrize(
+    ("scenario", "turn", "cells_say", "field_says"),
+    [
+        (SOUND, turned(0.0, SUN), False, False),
+        (SOUND, turned(60.0, SUN), False, True),
+        (SOUND, turned(60.0, FIELD_T), True, False),
+        (SOUND, turned(4.9, np.cross(SUN, FIELD_T)), False, False),
+        (CROSSED, turned(0.0, SUN), True, False),
+        (CROSSED, ONTO_MIRRORED, False, True),
+        (SOUND, ONTO_MIRRORED, True, True),
+    ],
+)
+def test_what_speaks_against_an_attitude(scenario, turn, cells_say, field_says):
+    assert set(cells.lights_differ(scenario, truth_of(), rows(turn))) == {cells_say}
+    assert set(cells.fields_differ(truth_of(), rows(turn))) == {field_says}
+
+
+def test_without_light_no_cell_speaks():
+    assert not cells.lights_differ(CROSSED, truth_of(lit=0.0), rows(turned(90.0, FIELD_T))).any()
+
+
+def contradicted_s(turn, valid=slice(None), scenario=CROSSED):
+    estimates = EstimateRecorder(TICKS).estimates()
+    estimates.q_body_from_orbit[:] = multiply(normalise(TRUE), conjugate(turn))
+    estimates.valid[valid] = True
+    return cells.contradicted_figures(scenario, truth_of(), estimates)["contradicted_s"]
+
+
+def test_counted_is_the_longest_time_valid_wrong_and_spoken_against():
+    against = turned(60.0, FIELD_T)
+    assert contradicted_s(against) == TICKS
+    assert contradicted_s(against, slice(30, 110)) == 80.0
+    assert contradicted_s(against, slice(0, 0)) == 0.0
+    assert contradicted_s(turned(9.0, np.cross(SUN, FIELD_T))) == 0.0, "not wrong by far"
+    assert contradicted_s(ONTO_MIRRORED) == TICKS, "cells bear it out, the field does not"
+
+
+def test_what_no_sensor_speaks_against_is_not_counted():
+    assert contradicted_s(turned(60.0, SUN), scenario=SOUND) == TICKS, "the field does"
+    dark = truth_of(lit=0.0)
+    estimates = EstimateRecorder(TICKS).estimates()
+    estimates.q_body_from_orbit[:] = multiply(normalise(TRUE), conjugate(turned(60.0, FIELD_T)))
+    estimates.valid[:] = True
+    assert cells.contradicted_figures(CROSSED, dark, estimates)["contradicted_s"] == 0.0
+
+
+def test_before_the_first_estimate_nothing_is_wrong():
+    estimates = EstimateRecorder(TICKS).estimates()
+    assert cells.contradicted_figures(CROSSED, truth_of(), estimates)["contradicted_s"] == 0.0
 
 
 def test_no_seed_is_of_two_studies():
