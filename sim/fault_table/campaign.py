@@ -4,11 +4,15 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from sim.campaign.claim import Study
+from sim.campaign.code_digest import FLIGHT_CODE, code_digest
 from sim.campaign.runner import StudyResult, run
 from sim.fault_table.case import fly
 from sim.fault_table.row import CaseResult, FaultRow, RowResult
 
 Watch = Callable[[int], None]
+
+FAULT_CODE = (*FLIGHT_CODE, "sim/fault_rig", "sim/fault_table")
+"""Folders and files that the result of a row follows from."""
 
 
 def fly_rows(
@@ -45,4 +49,11 @@ def _study(row: FaultRow, phases: int, seeds: int) -> Study:
 
 def _result(by_name: dict[str, FaultRow], done: StudyResult) -> RowResult:
     cases: tuple[CaseResult, ...] = done.results
-    return RowResult(by_name[done.study.id], cases)
+    return RowResult(by_name[done.study.id], cases, code_digest(FAULT_CODE))
+
+
+def is_whole(result: RowResult, phases: int, seeds: int) -> bool:
+    """Whether this code has flown the row in so many phases with so many seeds."""
+    wanted = {(phase, seed + 1) for phase in range(phases) for seed in range(seeds)}
+    flown = {(case.phase, case.seed) for case in result.cases}
+    return result.code == code_digest(FAULT_CODE) and flown == wanted

@@ -8,11 +8,12 @@ from pathlib import Path
 from sim.console import answer, say
 from sim.errors import HarnessError
 from sim.fault_table import earlier_rows, render
-from sim.fault_table.campaign import fly_rows
+from sim.fault_table.campaign import fly_rows, is_whole
 from sim.fault_table.row import CheckVerdict, RowResult
 from sim.fault_table.rows.table import ROWS, choose_rows
 from sim.progress import progress
 from sim.record.destination import check_file, check_folder
+from sim.record.run_dir import replace_file
 from sim.validate.registry import find_repository
 
 PAGE, JUNIT, HTML, JSON = "faults.md", "faults.xml", "faults.html", "faults.json"
@@ -46,7 +47,8 @@ def faults(
         out: folder for faults.xml, faults.html and faults.json; None: not written.
         workers: processes; None: one a core.
         slow: include rows that run real processes.
-        keep: faults.json of an earlier campaign, for the rows that are not in this one.
+        keep: faults.json of an earlier campaign: its rows count where they are not flown now. Those of this
+            very code, in as many phases with as many seeds, are not flown again.
         write_docs: write docs/faults.md of the repository.
         junit: file for the verdicts as JUnit XML; None: not written.
 
@@ -66,13 +68,21 @@ def faults(
     if junit is not None:
         check_file(junit)
     bar = sys.stderr.isatty()  # then the rows are printed after it
-    count = len(rows) * phases * seeds
-    with progress("injecting faults", count) as watch:
-        results = fly_rows(
-            rows, phases, seeds, workers or os.cpu_count() or 1, watch, _print_later if bar else _print
-        )
-    by_name = earlier | {result.row.name: result for result in results}
-    results = [by_name[row.name] for row in ROWS if row.name in by_name]
+    to_fly = [
+        row for row in rows if row.name not in earlier or not is_whole(earlier[row.name], phases, seeds)
+    ]
+    by_name = dict(earlier)
+
+    def report(result: RowResult) -> None:
+        by_name[result.row.name] = result
+        if out is not None:
+            _write(out / JSON, render.as_json(_in_order(by_name)))
+        if not bar:
+            _print(result)
+
+    with progress("injecting faults", len(to_fly) * phases * seeds) as watch:
+        fly_rows(to_fly, phases, seeds, workers or os.cpu_count() or 1, watch, report)
+    results = _in_order(by_name)
     for result in results if bar else ():
         _print(result)
     say(render.tally(results))
@@ -89,6 +99,10 @@ def faults(
     return int(any(result.verdict is CheckVerdict.FAIL for result in results))
 
 
+def _in_order(by_name: dict[str, RowResult]) -> list[RowResult]:
+    return [by_name[row.name] for row in ROWS if row.name in by_name]
+
+
 def _docs_page(names: set[str]) -> Path:
     repository = find_repository(Path.cwd())
     if repository is None:
@@ -102,13 +116,9 @@ def _print(result: RowResult) -> None:
     say(render.line(result), failed=result.verdict is CheckVerdict.FAIL)
 
 
-def _print_later(result: RowResult) -> None:
-    """Print nothing yet."""
-
-
 def _write(path: Path, text: str) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8")
+        replace_file(path, text.encode())
     except OSError as error:
         raise HarnessError(f"{path}: cannot be written ({error.strerror})") from None

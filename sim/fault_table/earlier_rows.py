@@ -23,6 +23,7 @@ class EarlierRow(BaseModel):
 
     row: str
     injected: str
+    code: str = ""
     cases: Annotated[tuple[CaseResult, ...], Field(min_length=1)]
 
 
@@ -51,7 +52,7 @@ def read(path: Path) -> dict[str, RowResult]:
     other = [one.row for one in current if one.injected != injected(by_name[one.row])]
     if other:
         raise HarnessError(f"--keep {path}: row {other[0]} was flown with another fault than it has now")
-    return {one.row: RowResult(by_name[one.row], one.cases, earlier=True) for one in current}
+    return {one.row: RowResult(by_name[one.row], one.cases, one.code) for one in current}
 
 
 def _not_a_campaign(path: Path, why: str) -> HarnessError:

@@ -9,6 +9,7 @@ from typing import Any
 
 from sim.console import counted
 from sim.drawing.pages import page
+from sim.fault_table.campaign import is_whole
 from sim.fault_table.checks import ALWAYS
 from sim.fault_table.row import CaseResult, CheckVerdict, FaultRow, RowFault, RowResult
 from sim.faults.kinds import KINDS
@@ -106,6 +107,7 @@ def json_values(results: Sequence[RowResult]) -> Json:
             "expected": [*ALWAYS, *result.row.expect],
             "verdict": result.verdict.value,
             "measured": result.measured,
+            "code": result.code,
             "cases": [asdict(case) for case in result.cases],
         }
         for result in results
@@ -153,9 +155,9 @@ def _html_row(result: RowResult) -> tuple[tuple[str, ...], str, str]:
 def markdown(results: Sequence[RowResult], phases: int, seeds: int) -> str:
     """docs/faults.md."""
     lines = [_HEAD, f"{tally(results)}. Phases {phases}, seeds {seeds} each.", ""]
-    if any(result.earlier for result in results):
-        earlier = "flown by an earlier run, maybe of an earlier version, with phases and seeds of its own"
-        lines += [f"But \\*: {earlier}.", ""]
+    other = {result.row.name for result in results if not is_whole(result, phases, seeds)}
+    if other:
+        lines += ["But \\*: flown by an earlier version, or with other phases and seeds.", ""]
     for group, rows in _groups(results):
         lines += [f"## {group}", "", f"| {' | '.join(_COLUMNS)} |"]
         lines.append("|---|---|---|---|---|---|")
@@ -166,7 +168,7 @@ def markdown(results: Sequence[RowResult], phases: int, seeds: int) -> str:
                 expected(result.row),
                 str(len(result.cases)),
                 _found(result),
-                result.verdict.value + (" \\*" if result.earlier else ""),
+                result.verdict.value + (" \\*" if result.row.name in other else ""),
             )
             lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
         lines.append("")

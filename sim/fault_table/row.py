@@ -152,11 +152,11 @@ class CaseResult:
 
 @dataclass(frozen=True, slots=True)
 class RowResult:
-    """All cases of a row; ``earlier``: they are from an earlier campaign."""
+    """All cases of a row; ``code``: the digest of the code that flew them, empty where it is unknown."""
 
     row: FaultRow
     cases: tuple[CaseResult, ...]
-    earlier: bool = False
+    code: str = ""
 
     @property
     def verdict(self) -> CheckVerdict:

@@ -114,7 +114,8 @@ def lights_differ(scenario: Scenario, truth: Histories, turn: Array) -> NDArray[
         turn: from the estimated to the true attitude, (n, 4).
     """
     true, assumed = scenario.sensors.cells, flight_table(scenario).cells
-    assert true is not None and assumed is not None
+    assert true is not None
+    assert assumed is not None
     sun_body = truth["lit"][:, None] * truth["sun_body"]
     light = np.maximum(sun_body @ np.array(true.normals).T, 0.0)
     expected = np.maximum(in_body(_back(turn), sun_body) @ np.array(assumed.normals).T, 0.0)

@@ -5,34 +5,15 @@ import inspect
 import json
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import cache, partial
+from functools import partial
 from pathlib import Path
 
-import sim
 from sim.campaign.claim import Study, Task
+from sim.campaign.code_digest import code_digest
 from sim.campaign.flight import FlightResult, Measure, Order, fly_order
 from sim.errors import HarnessError
 from sim.record.run_dir import Json
 
-HOUSE = Path(sim.__file__).resolve().parents[1]
-CODE = (
-    "fsw",
-    "hil_stub",
-    "sim/audit",
-    "sim/campaign",
-    "sim/design/from_scenario.py",
-    "sim/design/theory",
-    "sim/faults",
-    "sim/flight",
-    "sim/plant",
-    "sim/record",
-    "sim/replay",
-    "sim/report",
-    "sim/scenario",
-    "sim/statistics",
-)
-"""Folders and files that a flight and its figures follow from."""
-SUFFIXES = (".py", ".toml", ".dbc")
 BEGINNING = b'{"order": "'
 """Of each line."""
 LEFT_OUT = "events"
@@ -58,11 +39,11 @@ class FlightRows:
         if not BEGINNING.startswith(begun):
             raise _no_flight(path, len(rows) + 1)
         self._path, self._end, self._size = path, len(whole), len(content)
-        self._rows = {row["order"]: row for row in rows if of_any_code or row["code"] == code_hash()}
+        self._rows = {row["order"]: row for row in rows if of_any_code or row["code"] == code_digest()}
 
     def is_of_other_code(self, order: Order) -> bool:
         """Whether its flight was flown by other code than this."""
-        return bool(self._rows[order_hash(order)]["code"] != code_hash())
+        return bool(self._rows[order_hash(order)]["code"] != code_digest())
 
     def flight(self, order: Order) -> FlightResult | None:
         """The flight of an order; None if it has none here."""
@@ -78,7 +59,7 @@ class FlightRows:
         row = {
             "order": order_hash(flight.order),
             "name": flight.order.name,
-            "code": code_hash(),
+            "code": code_digest(),
             "summary": {key: value for key, value in flight.summary.items() if key != LEFT_OUT},
             "figures": flight.figures,
         }
@@ -133,24 +114,6 @@ def order_hash(order: Order) -> str:
 def _named_and_digested(measure: Measure) -> str:
     source = inspect.getsource(inspect.getmodule(measure) or measure)
     return f"{measure.__module__}.{measure.__qualname__} {hashlib.sha256(source.encode()).hexdigest()[:16]}"
-
-
-@cache
-def code_hash(house: Path = HOUSE) -> str:
-    """What tells this code from other code, as far as flights and their figures follow from it.
-
-    Raises:
-        HarnessError: a part of the code is not there, so that its changes would go unnoticed.
-    """
-    digest = hashlib.sha256()
-    for part in (house / part for part in CODE):
-        whole = [part] if part.is_file() else sorted(part.rglob("*"))
-        files = [path for path in whole if path.suffix in SUFFIXES]
-        if not files:
-            raise HarnessError(f"{part}: holds no code to tell these flights from others by")
-        for path in files:
-            digest.update(path.relative_to(house).as_posix().encode() + path.read_bytes())
-    return digest.hexdigest()[:16]
 
 
 def _content(path: Path) -> bytes:

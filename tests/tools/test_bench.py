@@ -8,6 +8,8 @@ import pytest
 ROWS = [
     bench.Row("peer", [100.0, 50.0, 400.0], 300.0),
     bench.Row("mine", [10.0, 10.0, 20.0], 120.4),
+    bench.Row("microsat, one process", [2000.0, 2500.0, 4000.0], 130.0),
+    bench.Row("realsat, one process", [1600.0, 2000.0, 2500.0], 130.0),
 ]
 PARTS = {"microsat": {"tick_us": 400.0, "parts": {"fsw/core": 0.5, "sim/plant": 0.25, "other": 0.001}}}
 
@@ -21,6 +23,10 @@ def test_a_ratio_is_the_median_of_those_within_a_round(page):
     assert "| mine | 10 | 0.100 | 120 MB |" in page
     assert "| peer | 100 | 1.000 | 300 MB |" in page
     assert "takes 1.30 of the time" in page
+
+
+def test_what_the_parameters_cost_is_the_median_of_the_differences_within_a_round(page):
+    assert "takes 125 µs longer than one" in page
 
 
 def test_parts_are_in_microseconds_and_what_is_next_to_nothing_is_left_out(page):

@@ -111,7 +111,7 @@ def test_the_page_can_be_drawn_of_what_there_is_without_flying(run, flown, tmp_p
 
 def test_flights_of_other_code_are_said_to_be(run, tmp_path, monkeypatch):
     run()
-    monkeypatch.setattr("sim.validate.flight_rows.code_hash", lambda: "changed")
+    monkeypatch.setattr("sim.validate.flight_rows.code_digest", lambda: "changed")
     run("--render")
     text = (tmp_path / "page.md").read_text()
     assert f"{FLIGHTS} of {FLIGHTS} flights, {FLIGHTS} of them by other versions of the code. Python" in text

@@ -30,7 +30,9 @@ EXAMPLES = examples(
 @click.option("--workers", type=click.IntRange(min=1), help="Processes. Default: one a core.")
 @click.option("--slow", is_flag=True, help="Also rows that run real processes: minutes.")
 @click.option(
-    "--keep", type=click.Path(path_type=Path), help="Take the rows that do not run now from this faults.json."
+    "--keep",
+    type=click.Path(path_type=Path),
+    help="Take the rows that do not run now from this faults.json, and those that this very code has flown.",
 )
 @click.option("--write-docs", is_flag=True, help="Write docs/faults.md of the repository.")
 @JUNIT

@@ -7,8 +7,10 @@ from xml.etree import ElementTree
 
 import pytest
 
+from sim.campaign.code_digest import code_digest
 from sim.errors import HarnessError
 from sim.fault_table import command, earlier_rows, render
+from sim.fault_table.campaign import FAULT_CODE
 from sim.fault_table.row import CaseResult, CheckOutcome, CheckVerdict, FaultRow, RowFault, RowResult, Unseen
 from sim.fault_table.rows.table import ROWS, choose_rows
 from sim.faults.kinds import KINDS
@@ -47,6 +49,11 @@ def planted():
     ]
 
 
+def reporting(results):
+    """Stands for ``fly_rows``: the rows are done, one after the other."""
+    return lambda rows, phases, seeds, workers, watch, report: [report(one) for one in results]
+
+
 def test_a_row_is_flown_in_every_phase_with_every_seed(capsys, tmp_path):
     code = run(
         "--row",
@@ -79,9 +86,9 @@ def test_json_is_json_alone(capsys):
 
 
 def test_a_violated_expectation_is_exit_code_1(planted, monkeypatch, capsys):
-    monkeypatch.setattr(command, "fly_rows", lambda *arguments: planted)
+    monkeypatch.setattr(command, "fly_rows", reporting(planted))
     assert run("--workers", 1) == 1
-    monkeypatch.setattr(command, "fly_rows", lambda *arguments: [planted[0], planted[2]])
+    monkeypatch.setattr(command, "fly_rows", reporting([planted[0], planted[2]]))
     assert run("--workers", 1) == 0
 
 
@@ -130,18 +137,75 @@ def test_a_user_error_is_one_sentence(arguments, said, capsys):
 def test_rows_of_an_earlier_campaign_count(planted, monkeypatch, capsys, tmp_path):
     (tmp_path / "faults.json").write_text(render.as_json(planted))
     now = [RowResult(planted[0].row, planted[0].cases * 3)]
-    monkeypatch.setattr(command, "fly_rows", lambda *_: now)
+    monkeypatch.setattr(command, "fly_rows", reporting(now))
     assert run("--row", "none", "--keep", tmp_path / "faults.json", "--out", tmp_path / "both") == 1
     assert "3 rows, 6 cases: 1 row passed, 1 failed, 1 not yet" in capsys.readouterr().out
     both = earlier_rows.read(tmp_path / "both" / "faults.json")
-    assert both == {one.row.name: replace(one, earlier=True) for one in (*now, *planted[1:])}
+    assert both == {one.row.name: one for one in (*now, *planted[1:])}
 
 
-def test_the_page_marks_the_rows_of_an_earlier_campaign(planted):
-    page = render.markdown([planted[0], replace(planted[1], earlier=True)], 1, 1)
-    assert "flown by an earlier run" in page
-    assert page.count("\\* |") == 1
-    assert "earlier" not in render.markdown(planted, 1, 1)
+def of_this_code(result, phases=1, seeds=1):
+    """The row as flown now, in all phases with all seeds."""
+    (first, *_) = result.cases
+    cases = [replace(first, phase=phase, seed=seed + 1) for phase in range(phases) for seed in range(seeds)]
+    return RowResult(result.row, tuple(cases), code_digest(FAULT_CODE))
+
+
+def test_the_page_marks_the_rows_of_earlier_code_and_with_other_phases_or_seeds(planted):
+    now = [of_this_code(one, 2, 2) for one in planted]
+    assert "earlier" not in render.markdown(now, 2, 2)
+    for other in (replace(now[1], code="5eed"), of_this_code(planted[1], 2, 1), of_this_code(planted[1], 4)):
+        page = render.markdown([now[0], other, now[2]], 2, 2)
+        assert "flown by an earlier version, or with other phases and seeds" in page
+        assert [line for line in page.splitlines() if line.endswith("\\* |")] == [
+            line for line in page.splitlines() if line.startswith("| `loss-50`")
+        ]
+
+
+class TestAStoppedCampaign:
+    ROWS = ("--row", "none", "--row", "loss-50", "--phases", 2, "--seeds", 1)
+
+    @pytest.fixture
+    def flown(self, monkeypatch, planted):
+        """The names of the rows that are flown; nothing is."""
+        names = []
+
+        def fly(rows, phases, seeds, workers, watch, report):
+            by_name = {one.row.name: of_this_code(one, phases, seeds) for one in planted}
+            for row in rows:
+                names.append(row.name)
+                report(by_name[row.name])
+
+        monkeypatch.setattr(command, "fly_rows", fly)
+        return names
+
+    def test_goes_on_where_it_was(self, flown, planted, tmp_path, capsys):
+        file = tmp_path / "faults.json"
+        file.write_text(render.as_json([of_this_code(planted[0], 2)]))
+        assert run(*self.ROWS, "--keep", file, "--out", tmp_path) == 0
+        assert flown == ["loss-50"]
+        assert "2 rows, 4 cases: 2 rows passed" in capsys.readouterr().out
+        assert run(*self.ROWS, "--keep", file, "--out", tmp_path) == 0
+        assert flown == ["loss-50"]
+
+    @pytest.mark.parametrize("other", [{"code": "5eed"}, {"code": ""}, {"cases": slice(1)}])
+    def test_flies_again_what_other_code_or_fewer_phases_gave(self, flown, planted, tmp_path, other):
+        known = of_this_code(planted[0], 2)
+        changed = {"cases": known.cases[other["cases"]]} if "cases" in other else other
+        (tmp_path / "faults.json").write_text(render.as_json([replace(known, **changed)]))
+        assert run(*self.ROWS, "--keep", tmp_path / "faults.json") == 0
+        assert flown == ["none", "loss-50"]
+
+    def test_has_kept_each_row_that_was_done(self, monkeypatch, planted, tmp_path):
+        def fly(rows, phases, seeds, workers, watch, report):
+            report(of_this_code(planted[0]))
+            raise KeyboardInterrupt
+
+        monkeypatch.setattr(command, "fly_rows", fly)
+        with pytest.raises(KeyboardInterrupt):
+            command.faults((), 1, 1, tmp_path, 1, False)
+        assert list(earlier_rows.read(tmp_path / "faults.json")) == ["none"]
+        assert [file.name for file in tmp_path.iterdir()] == ["faults.json"]
 
 
 def test_an_earlier_row_with_another_fault_is_refused(planted, tmp_path):

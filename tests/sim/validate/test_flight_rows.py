@@ -1,19 +1,15 @@
 """Flights kept in a file: found by their orders, whole after every one."""
 
-import shutil
-import subprocess
-import sys
 from dataclasses import replace
 from functools import partial
 from math import inf
-from pathlib import Path
 
 import pytest
 
 from sim.campaign.claim import Study
 from sim.campaign.flight import FlightResult, Order, fly_order
 from sim.errors import HarnessError
-from sim.validate.flight_rows import CODE, FlightRows, code_hash, keep_flight, with_known
+from sim.validate.flight_rows import FlightRows, keep_flight, with_known
 from sim.validate.microsat import pointing_figures
 
 ORDER = Order("microsat", {"disturbance": {"torque_nm": [1e-8, -2e-8, 3e-8]}}, 3, 8.0, name="one")
@@ -103,56 +99,6 @@ class TestStudies:
         assert FlightRows(path).flight(ORDER) is not None
 
 
-@pytest.fixture(scope="module")
-def house(tmp_path_factory):
-    """A copy of all that a flight follows from."""
-    copied, here = tmp_path_factory.mktemp("house"), Path(__file__).parents[3]
-    for part in CODE:
-        if (here / part).is_dir():
-            shutil.copytree(here / part, copied / part, ignore=shutil.ignore_patterns("__pycache__"))
-        else:
-            (copied / part).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(here / part, copied / part)
-    return copied
-
-
-IMPORTED = """
-import sys
-from sim.campaign.flight import Order, fly_order
-fly_order(Order("microsat", {}, 3, 0.01))
-house = {"fsw", "hil_stub", "sim", "torquer"}
-print(*(module.__file__ for name, module in sys.modules.items() if name.split(".")[0] in house))
-"""
-ONLY_SHOWN = ("sim/console.py", "sim/drawing", "sim/errors.py", "sim/progress.py")
-"""What a flight imports and no figure follows from."""
-
-
-class TestCodeHash:
-    def test_is_the_same_for_the_same_code_elsewhere(self, house):
-        assert code_hash.__wrapped__(house) == code_hash()
-
-    @pytest.mark.parametrize("part", CODE)
-    def test_is_another_where_a_line_of_any_part_is(self, house, part):
-        file = house / part if part.endswith(".py") else next((house / part).rglob("*.py"))
-        before, content = code_hash.__wrapped__(house), file.read_bytes()
-        file.write_bytes(content + b"# changed\n")
-        assert code_hash.__wrapped__(house) != before
-        file.write_bytes(content)
-
-    def test_is_of_all_that_a_flight_imports(self):
-        here = Path(__file__).parents[3]
-        ran = subprocess.run([sys.executable, "-c", IMPORTED], capture_output=True, text=True, check=True)
-        imported = [Path(file).relative_to(here) for file in ran.stdout.split()]
-        imported = [file for file in imported if file.name != "__init__.py"]
-        parts = [Path(part) for part in (*CODE, *ONLY_SHOWN)]
-        assert len(imported) > 200
-        assert not [file for file in imported if not any(file.is_relative_to(part) for part in parts)]
-
-    def test_a_part_that_is_not_there_is_told(self, tmp_path):
-        with pytest.raises(HarnessError, match="fsw: holds no code"):
-            code_hash.__wrapped__(tmp_path)
-
-
 def test_a_row_whose_writing_was_cut_off_is_flown_again(path):
     rows = FlightRows(path)
     rows.keep(flight())
@@ -188,7 +134,7 @@ def test_a_first_line_that_was_cut_off_anywhere_is_written_anew(path, cut):
 
 def test_flights_of_other_code_count_only_where_they_are_asked_for(path, monkeypatch):
     FlightRows(path).keep(flight())
-    monkeypatch.setattr("sim.validate.flight_rows.code_hash", lambda: "changed")
+    monkeypatch.setattr("sim.validate.flight_rows.code_digest", lambda: "changed")
     assert FlightRows(path).flight(ORDER) is None
     earlier = FlightRows(path, of_any_code=True)
     assert earlier.flight(ORDER) is not None

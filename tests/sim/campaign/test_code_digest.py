@@ -1,0 +1,63 @@
+"""Code is told from other code by the text of all that a flight follows from."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from sim.campaign.code_digest import FLIGHT_CODE, code_digest
+from sim.errors import HarnessError
+
+
+@pytest.fixture(scope="module")
+def house(tmp_path_factory):
+    """A copy of all that a flight follows from."""
+    copied, here = tmp_path_factory.mktemp("house"), Path(__file__).parents[3]
+    for part in FLIGHT_CODE:
+        if (here / part).is_dir():
+            shutil.copytree(here / part, copied / part, ignore=shutil.ignore_patterns("__pycache__"))
+        else:
+            (copied / part).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(here / part, copied / part)
+    return copied
+
+
+IMPORTED = """
+import sys
+from sim.campaign.flight import Order, fly_order
+fly_order(Order("microsat", {}, 3, 0.01))
+house = {"fsw", "hil_stub", "sim", "torquer"}
+print(*(module.__file__ for name, module in sys.modules.items() if name.split(".")[0] in house))
+"""
+ONLY_SHOWN = ("sim/console.py", "sim/drawing", "sim/errors.py", "sim/progress.py")
+"""What a flight imports and no figure follows from."""
+
+
+def test_it_is_the_same_for_the_same_code_elsewhere(house):
+    assert code_digest.__wrapped__(house=house) == code_digest()
+
+
+@pytest.mark.parametrize("part", FLIGHT_CODE)
+def test_it_is_another_where_a_line_of_any_part_is(house, part):
+    file = house / part if part.endswith(".py") else next((house / part).rglob("*.py"))
+    before, content = code_digest.__wrapped__(house=house), file.read_bytes()
+    file.write_bytes(content + b"# changed\n")
+    assert code_digest.__wrapped__(house=house) != before
+    file.write_bytes(content)
+
+
+def test_it_is_of_all_that_a_flight_imports():
+    here = Path(__file__).parents[3]
+    ran = subprocess.run([sys.executable, "-c", IMPORTED], capture_output=True, text=True, check=True)
+    imported = [Path(file).relative_to(here) for file in ran.stdout.split()]
+    imported = [file for file in imported if file.name != "__init__.py"]
+    parts = [Path(part) for part in (*FLIGHT_CODE, *ONLY_SHOWN)]
+    assert len(imported) > 200
+    assert not [file for file in imported if not any(file.is_relative_to(part) for part in parts)]
+
+
+def test_a_part_that_is_not_there_is_told(tmp_path):
+    with pytest.raises(HarnessError, match="fsw: holds no code"):
+        code_digest.__wrapped__(house=tmp_path)
