@@ -109,8 +109,7 @@ replay-elsewhere: venv
 	$(bin)/python tools/replay_elsewhere.py $(foreach other,$(PYTHONS),--python $(other))
 
 faults: venv
-	$(bin)/torquer faults --phases 10 --seeds 5 --slow --write-docs --out build/faults \
-		$(patsubst %,--keep %,$(wildcard build/faults/faults.json))
+	$(bin)/torquer faults --phases 10 --seeds 5 --slow --write-docs --keep build/faults.json
 
 bench: venv
 	$(bin)/python tools/bench.py

@@ -47,8 +47,9 @@ def faults(
         out: folder for faults.xml, faults.html and faults.json; None: not written.
         workers: processes; None: one a core.
         slow: include rows that run real processes.
-        keep: faults.json of an earlier campaign: its rows count where they are not flown now. Those of this
-            very code, in as many phases with as many seeds, are not flown again.
+        keep: file in which each row is kept once it is done, in the form of faults.json; it need not exist.
+            Rows in it count where they are not flown now; those that this very code has flown, in at least as
+            many phases with as many seeds, are not flown again.
         write_docs: write docs/faults.md of the repository.
         junit: file for the verdicts as JUnit XML; None: not written.
 
@@ -59,7 +60,7 @@ def faults(
         HarnessError: there is no such row, or a file cannot be written.
     """
     rows = choose_rows(names, slow)
-    earlier = {} if keep is None else earlier_rows.read(keep)
+    earlier = {} if keep is None else earlier_rows.read(keep, {row.name for row in rows})
     page = _docs_page({*earlier, *(row.name for row in rows)}) if write_docs else None
     if page is not None:
         check_file(page)
@@ -67,6 +68,8 @@ def faults(
         check_folder(out, (JUNIT, HTML, JSON))
     if junit is not None:
         check_file(junit)
+    if keep is not None:
+        check_file(keep)
     bar = sys.stderr.isatty()  # then the rows are printed after it
     to_fly = [
         row for row in rows if row.name not in earlier or not is_whole(earlier[row.name], phases, seeds)
@@ -75,8 +78,8 @@ def faults(
 
     def report(result: RowResult) -> None:
         by_name[result.row.name] = result
-        if out is not None:
-            _write(out / JSON, render.as_json(_in_order(by_name)))
+        if keep is not None:
+            _write(keep, render.as_json(_in_order(by_name)))
         if not bar:
             _print(result)
 

@@ -1,5 +1,6 @@
 """Results of an earlier campaign, from its faults.json: a long campaign may be run in parts."""
 
+from collections.abc import Collection
 from pathlib import Path
 from typing import Annotated
 
@@ -35,13 +36,19 @@ class CampaignFile(BaseModel):
     rows: tuple[EarlierRow, ...]
 
 
-def read(path: Path) -> dict[str, RowResult]:
+def read(path: Path, flown_now: Collection[str] = ()) -> dict[str, RowResult]:
     """The results in a faults.json by name, without rows that the table no longer has.
 
+    Args:
+        path: the file; where there is none, there are no results.
+        flown_now: names of rows; those whose fault has changed since are left out.
+
     Raises:
-        HarnessError: it is not a faults.json, or the fault of a row has changed since.
+        HarnessError: it is not a faults.json, or the fault of a row that is not flown now has changed since.
     """
     by_name = {row.name: row for row in ROWS}
+    if not path.exists():
+        return {}
     try:
         campaign = CampaignFile.model_validate_json(read_regular(path, MOST_BYTES))
     except OSError as error:
@@ -50,9 +57,12 @@ def read(path: Path) -> dict[str, RowResult]:
         raise _not_a_campaign(path, faults(CampaignFile, error)) from None
     current = [one for one in campaign.rows if one.row in by_name]
     other = [one.row for one in current if one.injected != injected(by_name[one.row])]
-    if other:
-        raise HarnessError(f"--keep {path}: row {other[0]} was flown with another fault than it has now")
-    return {one.row: RowResult(by_name[one.row], one.cases, one.code) for one in current}
+    refused = [name for name in other if name not in flown_now]
+    if refused:
+        raise HarnessError(f"--keep {path}: row {refused[0]} was flown with another fault than it has now")
+    return {
+        one.row: RowResult(by_name[one.row], one.cases, one.code) for one in current if one.row not in other
+    }
 
 
 def _not_a_campaign(path: Path, why: str) -> HarnessError:

@@ -157,7 +157,7 @@ def markdown(results: Sequence[RowResult], phases: int, seeds: int) -> str:
     lines = [_HEAD, f"{tally(results)}. Phases {phases}, seeds {seeds} each.", ""]
     other = {result.row.name for result in results if not is_whole(result, phases, seeds)}
     if other:
-        lines += ["But \\*: flown by an earlier version, or with other phases and seeds.", ""]
+        lines += ["But \\*: flown by an earlier version, or in fewer phases or with fewer seeds.", ""]
     for group, rows in _groups(results):
         lines += [f"## {group}", "", f"| {' | '.join(_COLUMNS)} |"]
         lines.append("|---|---|---|---|---|---|")

@@ -31,8 +31,9 @@ EXAMPLES = examples(
 @click.option("--slow", is_flag=True, help="Also rows that run real processes: minutes.")
 @click.option(
     "--keep",
+    metavar="FILE",
     type=click.Path(path_type=Path),
-    help="Take the rows that do not run now from this faults.json, and those that this very code has flown.",
+    help="Keep each row here, as in faults.json; a run that was stopped flies those that are missing.",
 )
 @click.option("--write-docs", is_flag=True, help="Write docs/faults.md of the repository.")
 @JUNIT
