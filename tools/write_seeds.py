@@ -5,14 +5,14 @@ from pathlib import Path
 
 from sim.methods.page import page
 from sim.methods.table import METHODS
-from sim.validate.outcomes import read_outcomes
+from sim.validate.outcomes import as_figures, read_record
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"
 TARGET = DOCS / "seeds.md"
 
 
 def main() -> int:
-    text = page(METHODS, read_outcomes(DOCS / "validation.json"))
+    text = page(METHODS, as_figures(read_record(DOCS / "validation.json")))
     if "--check" in sys.argv[1:]:
         stale = not TARGET.is_file() or TARGET.read_text(encoding="utf-8") != text
         if stale:

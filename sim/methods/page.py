@@ -7,7 +7,7 @@ from sim.methods.method import Kind, Method
 from sim.methods.table import missing
 
 Figures = Mapping[str, Mapping[str, str]]
-"""By claim its ``figure``, ``limits`` and ``verdict``, as docs/validation.json has them."""
+"""By claim its ``figure``, ``limits`` and ``verdict``."""
 
 _HEAD = """# The methods of the papers
 

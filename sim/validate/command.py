@@ -17,7 +17,7 @@ from sim.record.destination import check_file
 from sim.validate.flight_data import claims
 from sim.validate.flight_data.passes import CALIBRATED_BY
 from sim.validate.flight_rows import FlightRows, keep_flight, with_known
-from sim.validate.outcomes import as_outcomes, as_text, read_outcomes, with_outcomes
+from sim.validate.outcomes import as_record, as_text, of_other_code, read_record, with_record
 from sim.validate.page import as_json, line, loose, render, suites, tally
 from sim.validate.reference import reference
 from sim.validate.registry import all_studies, choose_studies, find_repository
@@ -39,8 +39,8 @@ def validate(
 ) -> int:
     """Run the studies, print each outcome, write the page.
 
-    Without ``out`` only a complete validation writes its page, and the figures beside it as
-    ``validation.json``: into docs/ of the repository, else into the current directory.
+    Without ``out`` only a complete validation, or one that is recorded, writes its page, and the outcomes
+    beside it as ``validation.json``: into docs/ of the repository, else into the current directory.
 
     Args:
         folder: run only the checks of the reference files in this folder.
@@ -51,7 +51,7 @@ def validate(
         satellites: at most so many of each population; None: all.
         junit: file for the verdicts as JUnit XML; None: not written.
         flight_data: run only the claims on the recorded passes in this folder.
-        record: put the outcomes into ``validation.json``, where the page would stand, the others of it kept.
+        record: put the outcomes among those of ``validation.json``, and write the page of all.
         keep: file of flights; those in it, of this code, are not flown again, and each new one is added.
 
     Returns:
@@ -66,14 +66,14 @@ def validate(
     studies = _studies(folder, flight_data, satellites)
     studies = choose_studies(studies, only, quick)
     whole = folder is None and flight_data is None and not only and not quick and satellites is None
-    page = out or (_default_page(repository) if whole else None)
-    figures = (out or _default_page(repository)).with_suffix(".json") if whole or record else None
+    page = out or (_default_page(repository) if whole or record else None)
+    figures = page.with_suffix(".json") if page is not None and (whole or record) else None
     for file in filter(None, (page, junit, figures, keep)):
         check_file(file)
     rows = FlightRows(keep) if keep is not None else None
     if rows is not None:
         studies = with_known(studies, rows)
-    before = read_outcomes(figures) if record and figures is not None else {}
+    before = read_record(figures) if record and figures is not None else {}
     bar = sys.stderr.isatty()  # then the outcomes are printed after the progress bar
     with progress("validating", sum(len(study.tasks) for study in studies)) as watch:
         finished = run(
@@ -91,12 +91,14 @@ def validate(
         names = ", ".join(outcome.claim.source for outcome in outcomes)
         raise HarnessError(f"nothing was checked: {folder} does not hold {names}")
     wall_s = time.monotonic() - began
-    if page is not None:
-        _write(page, render(finished, wall_s))
-        say(f"page: {page}")
+    known = with_record(before, as_record(finished))
     if figures is not None:
-        _write(figures, as_text(with_outcomes(before, as_outcomes(outcomes))))
+        _write(figures, as_text(known))
         say(f"figures: {figures}")
+    if page is not None:
+        shown = [one.outcome for one in known.values()] if record else outcomes
+        _write(page, render(shown, finished, wall_s, of_other_code(known)))
+        say(f"page: {page}")
     if junit is not None:
         write_junit(junit, "torquer validate", suites(finished))
     if far := loose(outcomes):

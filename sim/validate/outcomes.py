@@ -1,45 +1,99 @@
-"""validation.json: the figures of the claims as last measured, for what is written from them."""
+"""validation.json: the outcomes of the claims as last computed, for what is written from them."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import NamedTuple
+
+from pydantic import BaseModel, ConfigDict, RootModel, ValidationError
 
 from fsw.input.regular_file import read_regular
+from fsw.input.schema import faults
 from fsw.input.toml_text import BoundsError
-from sim.campaign.claim import ClaimOutcome, ClaimVerdict
+from sim.campaign.claim import Claim, ClaimOutcome, ClaimVerdict, Spread, Threshold
+from sim.campaign.code_digest import code_digest
+from sim.campaign.runner import StudyResult
 from sim.errors import HarnessError
 from sim.validate.page import figure_text
 
 MOST_BYTES = 4_000_000
-Outcomes = dict[str, dict[str, str]]
-"""By the id of the claim: its figure with its unit, its limits, its verdict."""
+DIGITS = 6
+"""Of each figure that is kept: more would be those of the machine."""
 
 
-def as_outcomes(outcomes: Sequence[ClaimOutcome]) -> Outcomes:
-    """What the file holds; a claim without its data is left out."""
+class Recorded(NamedTuple):
+    """An outcome, and the digest of the code of its flights, empty where there are none."""
+
+    outcome: ClaimOutcome
+    code: str
+
+
+Record = Mapping[str, Recorded]
+"""By the id of the claim."""
+
+
+class _Row(BaseModel):
+    """What the file has of a claim; what JSON has no number for, as a limit that is none, is a text."""
+
+    model_config = ConfigDict(extra="forbid", ser_json_inf_nan="strings")
+
+    statement: str
+    source: str
+    ours: float
+    unit: str
+    low: float
+    high: float
+    threshold: Threshold
+    wide: str
+    verdict: ClaimVerdict
+    where: str
+    spread: Spread | None
+    code: str
+
+
+class _File(RootModel[dict[str, _Row]]):
+    """The whole file."""
+
+
+def as_record(finished: Sequence[StudyResult]) -> Record:
+    """What the file is to hold of them; a claim without its data is left out."""
     return {
-        outcome.claim.id: {
-            "figure": figure_text(outcome),
-            "limits": outcome.claim.limits,
-            "verdict": outcome.verdict.value,
-        }
-        for outcome in outcomes
+        outcome.claim.id: Recorded(outcome, code_digest() if done.study.has_flights else "")
+        for done in finished
+        for outcome in done.outcomes
         if outcome.verdict is not ClaimVerdict.ABSENT
     }
 
 
-def with_outcomes(before: Outcomes, now: Outcomes) -> Outcomes:
+def with_record(before: Record, now: Record) -> Record:
     """Those before, and those of now in their place, sorted."""
     return dict(sorted({**before, **now}.items()))
 
 
-def as_text(outcomes: Outcomes) -> str:
+def of_other_code(record: Record) -> set[str]:
+    """The claims whose flights other code than this has flown."""
+    return {name for name, one in record.items() if one.code not in ("", code_digest())}
+
+
+def as_figures(record: Record) -> dict[str, dict[str, str]]:
+    """By the id of the claim: its figure with its unit, its limits, its verdict."""
+    return {
+        name: {
+            "figure": figure_text(one.outcome),
+            "limits": one.outcome.claim.limits,
+            "verdict": one.outcome.verdict.value,
+        }
+        for name, one in record.items()
+    }
+
+
+def as_text(record: Record) -> str:
     """The file: a claim a line."""
-    rows = [f"  {json.dumps(name)}: {json.dumps(row)}" for name, row in outcomes.items()]
+    rows = [f"  {json.dumps(name)}: {_row(one).model_dump_json()}" for name, one in record.items()]
     return "{\n" + ",\n".join(rows) + "\n}\n"
 
 
-def read_outcomes(path: Path) -> Outcomes:
+def read_record(path: Path) -> Record:
     """The outcomes of a file; none if there is no file.
 
     Raises:
@@ -48,14 +102,46 @@ def read_outcomes(path: Path) -> Outcomes:
     if not path.exists():
         return {}
     try:
-        found = json.loads(read_regular(path, MOST_BYTES).decode("utf-8"))
-    except (OSError, BoundsError, UnicodeDecodeError, json.JSONDecodeError) as error:
-        raise HarnessError(f"{path}: no outcomes of torquer validate: {error}") from None
-    if not isinstance(found, dict) or not all(map(_is_row, found.values())):
-        raise HarnessError(f"{path}: no outcomes of torquer validate: by claim figure, limits and verdict")
-    return found
+        rows = _File.model_validate_json(read_regular(path, MOST_BYTES)).root
+    except (OSError, BoundsError) as error:
+        raise _no_record(path, str(error)) from None
+    except ValidationError as error:
+        raise _no_record(path, faults(_File, error)) from None
+    return {name: _recorded(name, row) for name, row in rows.items()}
 
 
-def _is_row(row: object) -> bool:
-    keys = {"figure", "limits", "verdict"}
-    return isinstance(row, dict) and row.keys() == keys and all(isinstance(v, str) for v in row.values())
+def _row(one: Recorded) -> _Row:
+    outcome, claim = one.outcome, one.outcome.claim
+    assert outcome.ours is not None
+    return _Row(
+        statement=claim.statement,
+        source=claim.source,
+        ours=_rounded(outcome.ours),
+        unit=claim.unit,
+        low=claim.low,
+        high=claim.high,
+        threshold=claim.threshold,
+        wide=claim.wide,
+        verdict=outcome.verdict,
+        where=outcome.where,
+        spread=None if outcome.spread is None else _rounded_spread(outcome.spread),
+        code=one.code,
+    )
+
+
+def _recorded(name: str, row: _Row) -> Recorded:
+    claim = Claim(name, row.statement, row.source, row.unit, row.low, row.high, row.threshold, row.wide)
+    return Recorded(ClaimOutcome(claim, row.verdict, row.ours, row.where, row.spread), row.code)
+
+
+def _rounded_spread(spread: Spread) -> Spread:
+    values = map(_rounded, (spread.least, spread.median, spread.most))
+    return Spread(spread.flights, spread.meet, *values)
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.{DIGITS}g}")
+
+
+def _no_record(path: Path, why: str) -> HarnessError:
+    return HarnessError(f"{path}: no outcomes of torquer validate: {why}")

@@ -1,7 +1,7 @@
 """validation.md: one table, made of outcomes alone."""
 
 import platform
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import asdict
 
 import numpy as np
@@ -30,10 +30,23 @@ Settled means from then on, to the end.
 """
 
 
-def render(finished: Sequence[StudyResult], wall_s: float) -> str:
-    """The page: the table of claims, what was left out of the reference files, wall time and platform."""
-    outcomes = [outcome for study in finished for outcome in study.outcomes]
-    lines = [_HEAD, tally(outcomes) + ".", "", *claims_table(outcomes), ""]
+def render(
+    outcomes: Sequence[ClaimOutcome],
+    finished: Sequence[StudyResult],
+    wall_s: float,
+    earlier: Collection[str] = (),
+) -> str:
+    """The page: the table of claims, what was left out of the reference files, wall time and platform.
+
+    Args:
+        outcomes: of all claims of the page.
+        finished: the studies of this run.
+        wall_s: of this run.
+        earlier: claims whose flights other code has flown; they are marked.
+    """
+    lines = [_HEAD, tally(outcomes) + ".", "", *claims_table(outcomes, earlier), ""]
+    if earlier:
+        lines += ["\\*: flown by an earlier version.", ""]
     lines += [
         f"Own limits more than ten times off, without a reason: {', '.join(loose(outcomes)) or 'none'}.",
         "",
@@ -46,7 +59,7 @@ def render(finished: Sequence[StudyResult], wall_s: float) -> str:
     passes = [result for study in finished for result in study.results if isinstance(result, PassFigures)]
     if passes:
         lines += [*as_table(passes), ""]
-    lines += [f"Wall time {wall_s:.0f} s. {platform_line()}.", ""]
+    lines += [f"Wall time of the last run {wall_s:.0f} s. {platform_line()}.", ""]
     return "\n".join(lines)
 
 
@@ -55,10 +68,11 @@ def loose(outcomes: Sequence[ClaimOutcome]) -> list[str]:
     return [one.claim.id for one in outcomes if one.ours is not None and one.claim.is_loose(one.ours)]
 
 
-def claims_table(outcomes: Sequence[ClaimOutcome]) -> list[str]:
-    """The lines of a table of claims with figures and verdicts."""
+def claims_table(outcomes: Sequence[ClaimOutcome], marked: Collection[str] = ()) -> list[str]:
+    """The lines of a table of claims with figures and verdicts; ``marked``: claims with a star by these."""
     head = "| claim | source | ours | all starts | tolerance | whose | verdict |"
-    return [head, "|---" * 7 + "|", *map(_row, outcomes)]
+    rows = [_row(outcome, " \\*" if outcome.claim.id in marked else "") for outcome in outcomes]
+    return [head, "|---" * 7 + "|", *rows]
 
 
 def line(outcome: ClaimOutcome) -> str:
@@ -121,7 +135,7 @@ def platform_line() -> str:
     )
 
 
-def _row(outcome: ClaimOutcome) -> str:
+def _row(outcome: ClaimOutcome, mark: str) -> str:
     claim = outcome.claim
     ours = "" if outcome.ours is None else figure_text(outcome)
     if outcome.verdict is ClaimVerdict.FAIL and outcome.where:
@@ -135,7 +149,7 @@ def _row(outcome: ClaimOutcome) -> str:
         "" if outcome.spread is None else _spread(outcome.spread),
         limits,
         claim.threshold.value,
-        outcome.verdict.value,
+        outcome.verdict.value + mark,
     )
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
 

@@ -43,7 +43,7 @@ EXAMPLES = examples(
 @click.option(
     "--record",
     is_flag=True,
-    help="Put the figures into validation.json by the page, others kept.",
+    help="Put the outcomes among those of validation.json, and write the page of all.",
 )
 @click.option(
     "--keep",

@@ -10,7 +10,7 @@ import pytest
 from fsw.core.laws.table import CHECK, LAWS
 from sim.methods.method import Kind
 from sim.methods.table import LAST, METHODS, missing
-from sim.validate.outcomes import read_outcomes
+from sim.validate.outcomes import as_figures, read_record
 from sim.validate.registry import all_studies
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -91,12 +91,12 @@ def test_no_two_rows_are_the_same_method():
 
 
 def test_every_claim_is_one_of_torquer_validate(studies):
-    assert unknown_claims(METHODS, studies, read_outcomes(ROOT / "docs" / "validation.json")) == []
+    assert unknown_claims(METHODS, studies, read_record(ROOT / "docs" / "validation.json")) == []
 
 
 @pytest.mark.parametrize("claim", ["nothing.at_all", "jacob", "genetic.most", "genetic"])
 def test_a_claim_that_is_none_is_found(studies, claim):
-    measured = read_outcomes(ROOT / "docs" / "validation.json")
+    measured = as_figures(read_record(ROOT / "docs" / "validation.json"))
     assert "genetic.median" in measured
     assert unknown_claims([replace(METHODS[0], claims=(claim,))], studies, measured) == [claim]
 

@@ -6,6 +6,7 @@ import pytest
 from click.testing import CliRunner
 
 from sim.campaign.claim import Claim, Study
+from sim.campaign.code_digest import code_digest
 from sim.campaign.flight import FlightResult, Order
 from sim.validate import command, flight_rows
 from sim.validate.reference import reference
@@ -79,6 +80,25 @@ class TestCommand:
         monkeypatch.chdir(tmp_path)
         self.call()
         assert (tmp_path / "validation.md").exists()
+
+    def test_what_is_recorded_in_parts_is_one_page(self, tmp_path, monkeypatch, study):
+        parts = [study("a", [1.0]), study("b", [20.0], has_flights=True)]
+        monkeypatch.setattr(command, "all_studies", lambda satellites: parts)
+        monkeypatch.setattr(command, "find_repository", lambda start: tmp_path)
+        page = tmp_path / "docs" / "validation.md"
+        assert self.call("--only", "b", "--record").exit_code == 1
+        assert self.call("--only", "a", "--record").exit_code == 0
+        assert "1 claim met, 1 failed." in page.read_text()
+        assert "earlier version" not in page.read_text()
+        figures = tmp_path / "docs" / "validation.json"
+        figures.write_text(figures.read_text().replace(code_digest(), "5eed"))
+        parts[0] = study("a", [7.0])
+        assert self.call("--only", "a", "--record").exit_code == 0
+        rows = [row for row in page.read_text().splitlines() if row.startswith("| sum of ")]
+        assert [row.split(" | ")[2:] for row in rows] == [
+            ["7", "", "<= 10", "own choice", "PASS |"],
+            ["20 at of (20.0,)", "", "<= 10", "own choice", "FAIL \\* |"],
+        ]
 
     def test_flights_that_are_kept_are_not_flown_again(self, tmp_path, monkeypatch):
         flown = []

@@ -1,40 +1,89 @@
-"""validation.json: what was measured is kept until it is measured again."""
+"""validation.json: what was computed is kept until it is computed again."""
+
+import json
+from math import inf, nan
 
 import pytest
 
-from sim.campaign.claim import Claim, ClaimOutcome, ClaimVerdict
+from sim.campaign.claim import Claim, ClaimOutcome, ClaimVerdict, Spread, Threshold
+from sim.campaign.code_digest import code_digest
+from sim.campaign.runner import StudyResult
 from sim.errors import HarnessError
-from sim.validate.outcomes import as_outcomes, as_text, read_outcomes, with_outcomes
+from sim.validate.outcomes import (
+    Recorded,
+    as_figures,
+    as_record,
+    as_text,
+    of_other_code,
+    read_record,
+    with_record,
+)
 
-CLAIM = Claim("a.b", "Least", "Somebody", "deg", high=2.0)
-ROW = {"figure": "1.5 deg", "limits": "<= 2", "verdict": "PASS"}
-
-
-def test_a_claim_that_was_judged_has_figure_limits_and_verdict():
-    outcomes = [CLAIM.judge(1.5), ClaimOutcome(Claim("a.c", "No data", "Nobody", ""), ClaimVerdict.ABSENT)]
-    assert as_outcomes(outcomes) == {"a.b": ROW}
-    assert as_outcomes([CLAIM.judge(3.0)])["a.b"]["verdict"] == "FAIL"
-
-
-def test_the_new_figure_stands_for_the_old_one_and_the_others_stay():
-    worse = {**ROW, "figure": "1.9 deg"}
-    assert with_outcomes({"b": ROW, "a": ROW}, {"a": worse, "0": ROW}) == {"0": ROW, "a": worse, "b": ROW}
-    assert list(with_outcomes({"b": ROW}, {"a": ROW})) == ["a", "b"]
+CLAIM = Claim("a.b", "Least", "Somebody", "deg", high=2.0, threshold=Threshold.PAPER, wide="for this reason")
+SPREAD = Spread(flights=12, meet=11, least=1.25, median=1.5, most=inf)
+ROW = Recorded(CLAIM.judge(1.5, "flight 7", SPREAD), "5eed")
 
 
-def test_the_file_holds_a_claim_a_line_and_is_read_back(tmp_path):
-    path = tmp_path / "validation.json"
-    path.write_text(as_text({"a": ROW, "b": ROW}))
-    assert read_outcomes(path) == {"a": ROW, "b": ROW}
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / "validation.json"
+
+
+def test_a_claim_that_was_judged_is_recorded_with_the_code_of_its_flights(study):
+    absent = ClaimOutcome(Claim("a.c", "No data", "Nobody", ""), ClaimVerdict.ABSENT)
+    flown = StudyResult(study("a", [], has_flights=True), (CLAIM.judge(1.5), absent), (), 1.0)
+    computed = StudyResult(study("d", []), (Claim("d", "", "", "1").judge(1.0),), (), 1.0)
+    assert as_record([flown, computed]) == {
+        "a.b": Recorded(CLAIM.judge(1.5), code_digest()),
+        "d": Recorded(Claim("d", "", "", "1").judge(1.0), ""),
+    }
+
+
+def test_the_new_outcome_stands_for_the_old_one_and_the_others_stay():
+    worse = ROW._replace(outcome=CLAIM.judge(1.9))
+    assert with_record({"b": ROW, "a": ROW}, {"a": worse, "0": ROW}) == {"0": ROW, "a": worse, "b": ROW}
+    assert list(with_record({"b": ROW}, {"a": ROW})) == ["a", "b"]
+
+
+def test_the_file_holds_a_claim_a_line_and_is_read_back(path, tmp_path):
+    path.write_text(as_text({"a.b": ROW, "a.c": ROW}))
+    found = read_record(path)
+    assert found["a.b"] == ROW
+    assert found["a.c"].outcome.claim.id == "a.c"
     assert len(path.read_text().splitlines()) == 4
     path.write_text(as_text({}))
-    assert read_outcomes(path) == {}
-    assert read_outcomes(tmp_path / "none.json") == {}
+    assert read_record(path) == {}
+    assert read_record(tmp_path / "none.json") == {}
 
 
-@pytest.mark.parametrize("text", ["[]", "{", '{"a": 1}', '{"a": {"figure": "1"}}', "\xff"])
-def test_another_file_is_refused_by_its_name(tmp_path, text):
-    path = tmp_path / "validation.json"
+def test_what_is_no_number_of_json_is_read_back_too(path):
+    path.write_text(as_text({"a.b": Recorded(CLAIM.judge(nan), ""), "a.c": Recorded(CLAIM.judge(inf), "")}))
+    json.loads(path.read_text(), parse_constant=pytest.fail)
+    found = read_record(path)
+    assert str(found["a.b"].outcome.ours) == "nan"
+    assert found["a.b"].outcome.verdict is ClaimVerdict.FAIL
+    assert found["a.c"].outcome.ours == inf
+
+
+def test_figures_are_kept_to_six_digits(path):
+    path.write_text(as_text({"a.b": Recorded(CLAIM.judge(1.23456789e-7), "")}))
+    assert read_record(path)["a.b"].outcome.ours == 1.23457e-7
+
+
+def test_flights_of_other_code_are_told_from_those_of_this_and_from_what_has_none():
+    code = {"a": code_digest(), "b": "", "c": "5eed", "d": "unknown"}
+    assert of_other_code({name: ROW._replace(code=of) for name, of in code.items()}) == {"c", "d"}
+
+
+def test_a_figure_is_told_with_limits_and_verdict():
+    assert as_figures({"a.b": ROW}) == {"a.b": {"figure": "1.5 deg", "limits": "<= 2", "verdict": "PASS"}}
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["[]", "{", '{"a": 1}', '{"a": {"ours": 1.0}}', "\xff", as_text({"a": ROW}).replace("ours", "our")],
+)
+def test_another_file_is_refused_by_its_name(path, text):
     path.write_text(text, encoding="latin-1")
     with pytest.raises(HarnessError, match=r"validation\.json: no outcomes of torquer validate"):
-        read_outcomes(path)
+        read_record(path)

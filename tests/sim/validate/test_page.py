@@ -25,7 +25,7 @@ class TestPage:
 
     @pytest.fixture
     def page(self, finished):
-        return render(finished, 61.4)
+        return render(self.outcomes(), finished, 61.4)
 
     def test_a_row_a_claim(self, page):
         rows = [row for row in page.splitlines() if row.startswith("| ") and "`a." in row]
@@ -40,10 +40,18 @@ class TestPage:
     def test_what_stands_around_the_table(self, page):
         assert page.startswith("# Validation\n")
         assert "1 claim met, 1 failed, 1 fitted, 1 absent." in page
-        assert "Wall time 61 s. Python 3." in page
+        assert "Wall time of the last run 61 s. Python 3." in page
         assert "| claim | source | ours | all starts | tolerance | whose | verdict |" in page
         for threshold in Threshold:
             assert f"*{threshold.value}*:" in page, "each is explained"
+
+    def test_what_other_code_has_flown_is_marked(self, page):
+        assert "\\*" not in page
+        marked = render(self.outcomes(), [], 61.4, {"a.c"})
+        assert [row for row in marked.splitlines() if "\\*" in row] == [
+            "| Too much (`a.c`) | Her | 2e-09 at row 8 |  | <= 1e-09 (rounding) | own choice | FAIL \\* |",
+            "\\*: flown by an earlier version.",
+        ]
 
     def test_the_terminal_names_the_worst_row_and_whose_the_limit_is(self):
         texts = [line(outcome) for outcome in self.outcomes()]
@@ -62,7 +70,7 @@ class TestPage:
         assert not cases["a.e"].failure
         assert not cases["a.b"].skipped
 
-    def test_a_limit_of_one_s_own_far_from_the_figure_is_named_unless_it_says_why(self, study):
+    def test_a_limit_of_one_s_own_far_from_the_figure_is_named_unless_it_says_why(self):
         outcomes = [
             Claim("a.near", "", "", "1", high=1e-2).judge(2e-3),
             Claim("a.far", "", "", "1", high=1e-2).judge(9e-4),
@@ -71,7 +79,7 @@ class TestPage:
             Claim("a.prototype", "", "", "1", high=1e-2, threshold=Threshold.PROTOTYPE).judge(9e-4),
         ]
         assert loose(outcomes) == ["a.far", "a.prototype"]
-        page = render([StudyResult(study("a", []), tuple(outcomes), (), 1.0)], 1.0)
+        page = render(outcomes, [], 1.0)
         assert "off, without a reason: a.far, a.prototype." in page
 
     def test_the_tally_counts_only_what_shows_something(self):
