@@ -68,6 +68,8 @@ def validate(
     whole = folder is None and flight_data is None and not only and not quick and satellites is None
     page = out or (_default_page(repository) if whole or record else None)
     figures = page.with_suffix(".json") if page is not None and (whole or record) else None
+    if figures is not None and figures == page:
+        raise HarnessError(f"--out {out}: the outcomes beside the page would have its name: end it in .md")
     for file in filter(None, (page, junit, figures, keep)):
         check_file(file)
     rows = FlightRows(keep) if keep is not None else None

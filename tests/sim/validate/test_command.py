@@ -100,6 +100,13 @@ class TestCommand:
             ["20 at of (20.0,)", "", "<= 10", "own choice", "FAIL \\* |"],
         ]
 
+    def test_a_page_that_outcomes_would_overwrite_is_refused(self, tmp_path):
+        page = tmp_path / "page.json"
+        result = self.call("--only", "jacobi", "--record", "--out", page)
+        assert result.exit_code == 2
+        assert "page.json: the outcomes beside the page would have its name" in result.stderr
+        assert not page.exists()
+
     def test_flights_that_are_kept_are_not_flown_again(self, tmp_path, monkeypatch):
         flown = []
 
