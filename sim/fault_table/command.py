@@ -62,14 +62,10 @@ def faults(
     rows = choose_rows(names, slow)
     earlier = {} if keep is None else earlier_rows.read(keep, {row.name for row in rows})
     page = _docs_page({*earlier, *(row.name for row in rows)}) if write_docs else None
-    if page is not None:
-        check_file(page)
+    for file in filter(None, (page, junit, keep)):
+        check_file(file)
     if out is not None:
         check_folder(out, (JUNIT, HTML, JSON))
-    if junit is not None:
-        check_file(junit)
-    if keep is not None:
-        check_file(keep)
     bar = sys.stderr.isatty()  # then the rows are printed after it
     to_fly = [
         row for row in rows if row.name not in earlier or not is_whole(earlier[row.name], phases, seeds)
@@ -90,16 +86,20 @@ def faults(
         _print(result)
     say(render.tally(results))
     answer(render.json_values(results))
+    _write_reports(results, out, junit)
+    if page is not None:
+        _write(page, render.markdown(results, phases, seeds))
+        say(f"page: {page}")
+    return int(any(result.verdict is CheckVerdict.FAIL for result in results))
+
+
+def _write_reports(results: Sequence[RowResult], out: Path | None, junit: Path | None) -> None:
     if junit is not None:
         _write(junit, render.junit(results))
     if out is not None:
         _write(out / JUNIT, render.junit(results))
         _write(out / HTML, render.html(results))
         _write(out / JSON, render.as_json(results))
-    if page is not None:
-        _write(page, render.markdown(results, phases, seeds))
-        say(f"page: {page}")
-    return int(any(result.verdict is CheckVerdict.FAIL for result in results))
 
 
 def _in_order(by_name: dict[str, RowResult]) -> list[RowResult]:
