@@ -99,7 +99,8 @@ def validate(
         say(f"figures: {figures}")
     if page is not None:
         shown = [one.outcome for one in known.values()] if record else outcomes
-        _write(page, render(shown, finished, wall_s, of_other_code(known)))
+        details = [] if record else finished  # those of a part would stand for the whole
+        _write(page, render(shown, details, wall_s, of_other_code(known)))
         say(f"page: {page}")
     if junit is not None:
         write_junit(junit, "torquer validate", suites(finished))

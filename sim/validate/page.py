@@ -40,7 +40,7 @@ def render(
 
     Args:
         outcomes: of all claims of the page.
-        finished: the studies of this run.
+        finished: the studies whose reference files and recorded passes are listed.
         wall_s: of this run.
         earlier: claims whose flights other code has flown; they are marked.
     """
