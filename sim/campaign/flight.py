@@ -43,7 +43,15 @@ _JUDGED = frozenset({CoilStatus.ID, CoilBoot.ID, CoilRefused.ID, Sync.ID, PlantE
 }
 """Identifiers of the frames that audit and tally evaluate."""
 
-_COLUMNS = {"t_s": 1, "q_body_from_orbit": 4, "omega_body_orbit_radps": 3, "lit": 1, "m_body_am2": 3}
+_COLUMNS = {
+    "t_s": 1,
+    "q_body_from_orbit": 4,
+    "omega_body_orbit_radps": 3,
+    "b_body_t": 3,
+    "sun_body": 3,
+    "lit": 1,
+    "m_body_am2": 3,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,7 +176,7 @@ class _Frames:
 
 
 class _Truth:
-    """The histories that a summary needs, and with each row the estimate of the flight software."""
+    """The histories that summaries and measures need, and with each row the estimate on board."""
 
     def __init__(self, ticks: int, node: FlightNode) -> None:
         self.histories: Histories = {

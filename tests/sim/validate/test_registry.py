@@ -1,7 +1,11 @@
 """Which studies run, and where the repository is."""
 
+from dataclasses import replace
+
 import pytest
 
+from sim.campaign.flight import fly_order
+from sim.campaign.study import FlightStudy
 from sim.errors import HarnessError
 from sim.validate.registry import all_studies, choose_studies, find_repository
 
@@ -48,6 +52,19 @@ class TestChoice:
     def test_ids_are_unique_and_begin_with_their_study(self):
         studies = all_studies()
         assert len({s.id for s in studies}) == len(studies) > 10
+
+
+FLOWN = {study.id: study for study in all_studies() if isinstance(study, FlightStudy)}
+
+
+@pytest.mark.parametrize("study_id", FLOWN)
+def test_a_flight_gives_every_figure_that_its_claims_take(study_id):
+    """Two minutes of the first order; what it is worth does not matter here."""
+    study = FLOWN[study_id]
+    flight = fly_order(replace(study.orders[0], orbits=0.02))
+    assert study.figures
+    for figure in study.figures:
+        assert isinstance(figure.pick(flight), float), figure.id
 
 
 def test_the_repository_is_found_from_within(tmp_path, pytestconfig):
