@@ -107,8 +107,10 @@ def solution(
     end_node: int,
     orbit_rate_radps: float,
     config: ControlConfig,
-) -> Array:
+) -> Array | None:
     """Gains of the first steps, from (Omega, theta, d) to the dipole, body axes, (APPLIED_STEPS, 3, 9).
+
+    None where there is no solution: the motion from far off, by gains for another, may leave all bounds.
 
     Args:
         table: the periodic regulator, whose cost stands at the end.
@@ -119,6 +121,21 @@ def solution(
         orbit_rate_radps: w0.
         config: the body and the bound of the dipole.
     """
+    with np.errstate(over="ignore", invalid="ignore"):
+        gains, last = _sequence(table, start, torque_nm, b_orbit_t, end_node, orbit_rate_radps, config)
+    return gains[:APPLIED_STEPS] if np.isfinite(last).all() else None
+
+
+def _sequence(
+    table: Schedule,
+    start: Array,
+    torque_nm: Vec3,
+    b_orbit_t: Array,
+    end_node: int,
+    orbit_rate_radps: float,
+    config: ControlConfig,
+) -> tuple[Array, Array]:
+    """The gains of all steps, and the last state of the course that they lead to; not finite: no solution."""
     states = [start] * (len(b_orbit_t) + 1)
     gains = np.empty((len(b_orbit_t), 3, 9))
     for _ in range(SEQUENCE):
@@ -132,10 +149,13 @@ def solution(
             problems.append(replace(table.problem, free=stepped(motion, table.problem.step_s)))
         fields = np.array([dcm(q) for q in attitudes[:-1]]) @ b_orbit_t[:, :, None]
         for k in range(len(problems) - 1, -1, -1):
-            first, costs = backward(problems[k], fields[k].T, ahead)
+            try:
+                first, costs = backward(problems[k], fields[k].T, ahead)
+            except np.linalg.LinAlgError:
+                return gains, np.full(6, np.nan)
             gains[k], ahead = first[0], costs[0]
         states = _course(problems, fields, gains, start, torque_nm, config.mean_dipole_am2)
-    return gains[:APPLIED_STEPS]
+    return gains, states[-1]
 
 
 def _course(
@@ -177,6 +197,8 @@ def sdre(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlCo
             return Demand()
         end = (node(latitude_argument(reference)) + HORIZON_STEPS) % STEPS
         gains = solution(table, state[:6], torque, ahead.b_orbit_t, end, reference.orbit_rate_radps, config)
+        if gains is None:
+            return Demand()
         memory, step = (float(inputs.tick), *gains.ravel().tolist()), 0
     gain = np.array(memory[1 + step * _NUMBERS : 1 + (step + 1) * _NUMBERS]).reshape(3, 9)
     m1, m2, m3 = (gain @ state).tolist()

@@ -92,6 +92,20 @@ def test_a_solution_is_flown_for_its_steps_and_then_made_anew(bench):
     assert sdre(inputs._replace(tick=10 + last), memory, bench.setpoint(), settings).memory[0] == 10 + last
 
 
+TUMBLING = np.array([-0.022, 0.0051, -0.0021])
+
+
+@pytest.mark.parametrize(("times", "is_solved"), [(1.0, True), (5.0, False), (50.0, False), (1e4, False)])
+def test_where_the_course_leaves_all_bounds_nothing_is_asked_for(bench, times, is_solved):
+    """Two minutes, the step of the regulator, are many turns of a body that tumbles fast."""
+    settings = bench.scheduled(bench.Body(np.diag([1.02, 1.85, 1.95]), most_am2=6.4), 1.0, "sdre")
+    inputs = bench.inputs_at(bench.Orbit(), 9, 1.0, np.eye(3), times * TUMBLING, None)
+    found = sdre(inputs._replace(ephemeris=bench.model_of(bench.Orbit())), (), bench.setpoint(), settings)
+    assert any(found.m_body_am2) is is_solved
+    assert bool(found.memory) is is_solved
+    assert np.isfinite(found.m_body_am2).all()
+
+
 def test_the_cost_at_the_end_is_that_of_orbital_axes(bench, turned):
     """One step from 50 deg off: no dipole nearby leaves less effort and cost, turned as the body is then."""
     settings = bench.scheduled(bench.Body(np.array(INERTIA), most_am2=2.0), 1.0, "sdre")
