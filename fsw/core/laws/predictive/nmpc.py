@@ -7,14 +7,15 @@
 
 which is enough for the rate to go to zero, long before the plan is the best one. ``nmpc_reference`` weighs,
 in place of the energy, the dipole g that the damping law would give, and begins its search at the course that
-this law would take.
+this law would take. No step of a plan is longer than half a turn of the body, but none shorter than a tick:
+a body that turns further in a tick cannot be damped by a dipole that is held, and nothing is asked for.
 
 Source: Ahmed, Kerrigan 2014 (the rule), Boehm, Merk, Fichter, Allgoewer 2009 (the reference), as in
 Ovchinnikov, Roldugin 2019, section 3.3. The gravity torque is left out: these are laws for a tumbling body.
 """
 
-from dataclasses import dataclass
-from math import inf
+from dataclasses import dataclass, replace
+from math import inf, pi
 
 import numpy as np
 
@@ -35,7 +36,7 @@ class NmpcGains:
     """Horizon and weights of the plan.
 
     Attributes:
-        horizon_s: how far it looks, s; the dipole is held over a twelfth of it.
+        horizon_s: how far it looks at most, s; the dipole is held over a twelfth of it.
         weight: of the energy along the plan against that at its end.
         effort: of |m|^2, J / (A m^2)^2.
         gamma: of |omega|^2 in the rule, J s^2, against the mean moment of inertia; negative: no rule.
@@ -94,12 +95,18 @@ def _planned(
     moving, reference = motion(inputs, config), inputs.reference
     if moving is None or reference is None or norm(reference.b_eci_t) == 0.0:
         return Demand()
-    step_s = gains.horizon_s / STEPS
+    rate_radps = norm(moving.omega_body_radps)
+    if rate_radps * config.tick_s > pi:
+        return Demand()
+    horizon_s = gains.horizon_s
+    if rate_radps * horizon_s > STEPS * pi:
+        horizon_s = STEPS * max(config.tick_s, pi / rate_radps)
+    step_s = horizon_s / STEPS
     known = len(memory) == 2 + 3 * STEPS
     age_s = (inputs.tick - memory[0]) * config.tick_s if known else inf
     if 0.0 <= age_s < step_s:
         return Demand((memory[2], memory[3], memory[4]), memory=memory)
-    case = case_of(moving, reference, gains, steepness, config)
+    case = replace(case_of(moving, reference, gains, steepness, config), horizon_s=horizon_s)
     going_on = known and 0.0 <= age_s < 2.0 * step_s
     old = np.array(memory[2:]).reshape(STEPS, 3) if going_on else np.zeros((STEPS, 3))
     start = np.concatenate([old[1:], old[-1:]]) if steepness is None else damping_course(case)

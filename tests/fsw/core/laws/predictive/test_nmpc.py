@@ -140,3 +140,36 @@ def test_what_is_planned_for_is_what_is_known(bench, turned):
     assert case.b_rate_eci_tps.tolist() == [1e-8, -2e-8, 3e-8]
     assert case.c_body_from_eci == pytest.approx(c)
     assert case.omega_body_radps == pytest.approx(np.array(RATE))
+
+
+@BOTH
+@pytest.mark.parametrize(
+    ("rate_radps", "horizon_s"),
+    [
+        (0.1, 60.0),
+        (0.62, 60.0),
+        (0.7, 12.0 * np.pi / 0.7),
+        (3.1, 12.0 * np.pi / 3.1),
+        (3.2, None),
+        (50.0, None),
+    ],
+)
+def test_a_step_is_no_longer_than_half_a_turn_and_no_shorter_than_a_tick(
+    bench, monkeypatch, law, name, kind, rate_radps, horizon_s
+):
+    planned = []
+
+    def seen(case, *args):
+        planned.append(case)
+        return tumbling.descend(case, *args)
+
+    monkeypatch.setattr(nmpc, "descend", seen)
+    body, orbit = bench.Body(np.diag([1.02, 1.85, 1.95]), most_am2=MOST_AM2), bench.Orbit()
+    settings = replace(bench.config(body, 1.0, {name: kind()}), mean_dipole_am2=MOST_AM2)
+    omega = rate_radps * np.array([0.6, 0.64, -0.48])
+    inputs = bench.inputs_at(orbit, 9, 1.0, orbit.c_orbit_from_eci(9.0), omega, None)
+    demand = law(inputs, (), bench.setpoint(), settings)
+    assert any(demand.m_body_am2) is (horizon_s is not None)
+    assert [case.horizon_s for case in planned] == pytest.approx(
+        [] if horizon_s is None else [horizon_s], rel=1e-6
+    )
