@@ -47,10 +47,10 @@ def read(path: Path, flown_now: Collection[str] = ()) -> dict[str, RowResult]:
         HarnessError: it is not a faults.json, or the fault of a row that is not flown now has changed since.
     """
     by_name = {row.name: row for row in ROWS}
-    if not path.exists():
-        return {}
     try:
         campaign = CampaignFile.model_validate_json(read_regular(path, MOST_BYTES))
+    except FileNotFoundError:
+        return {}
     except OSError as error:
         raise _not_a_campaign(path, f"cannot be read: {error.strerror}") from None
     except ValidationError as error:

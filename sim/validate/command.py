@@ -12,10 +12,9 @@ from sim.campaign.runner import StudyResult, run
 from sim.console import answer, say, warn
 from sim.errors import HarnessError
 from sim.junit import write_junit
-from sim.progress import note, progress
+from sim.progress import progress
 from sim.record.destination import check_file
 from sim.validate.flight_data import claims
-from sim.validate.flight_data.passes import CALIBRATED_BY
 from sim.validate.flight_rows import FlightRows, keep_flight, with_known
 from sim.validate.outcomes import as_record, as_text, of_other_code, read_record, with_record
 from sim.validate.page import as_json, line, loose, render, suites, tally
@@ -117,7 +116,6 @@ def _studies(folder: Path | None, flight_data: Path | None, satellites: int | No
     if folder is not None and flight_data is not None:
         raise HarnessError("--reference and --flight-data each run nothing else: give one of them")
     if flight_data is not None:
-        note(f"calibrating by {CALIBRATED_BY}")
         return claims.studies(flight_data)
     return reference.studies(folder) if folder is not None else all_studies(satellites)
 

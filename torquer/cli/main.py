@@ -4,6 +4,7 @@ Each kind of input is checked where it enters, and reported there. Any other exc
 is a defect of this program: it stays a traceback (exit code 1), which shows where.
 """
 
+import errno
 import sys
 from importlib import import_module
 from io import TextIOWrapper
@@ -110,15 +111,20 @@ class Commands(click.Group):
             click.echo(f"torquer: {error_text(_sentence(error))}", err=True)
             code = error.exit_code
         except OSError as error:
-            if error.errno not in DISK_FULL:
-                raise
-            click.echo(
-                f"torquer: the disk is full ({error.strerror}); what was written before is kept", err=True
-            )
-            code = 1
+            sentence, code = _of_the_system(error)
+            click.echo(f"torquer: {error_text(sentence)}", err=True)
         except click.Abort:
             code = 130
         sys.exit(code)
+
+
+def _of_the_system(error: OSError) -> tuple[str, int]:
+    """A sentence and an exit code, where it is no defect: a full disk, a name refused."""
+    if error.errno in DISK_FULL:
+        return f"the disk is full ({error.strerror}); what was written before is kept", 1
+    if error.errno in (errno.ENAMETOOLONG, errno.EACCES):
+        return f"{error.filename}: {error.strerror}", 2
+    raise error
 
 
 def _sentence(error: click.ClickException) -> str:

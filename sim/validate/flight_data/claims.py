@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 from sim.campaign.claim import Claim, ClaimOutcome, Study
 from sim.campaign.study import spread_of
+from sim.progress import note
 from sim.validate.flight_data.passes import (
     CALIBRATED_BY,
     TWO_SOLUTIONS,
@@ -77,7 +78,9 @@ def studies(folder: Path) -> list[Study]:
     Raises:
         HarnessError: the folder does not hold it, or a file is malformed.
     """
-    paths, known = files(folder), carried(folder)
+    paths = files(folder)
+    note(f"calibrating by {CALIBRATED_BY}")
+    known = carried(folder)
     doubled = [path for path in paths if path.stem in TWO_SOLUTIONS]
     return [
         Study("flight-data", tuple(partial(judged, path, known) for path in paths), conclude),

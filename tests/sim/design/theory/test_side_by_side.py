@@ -65,5 +65,8 @@ def test_the_angle_is_the_shorter_way():
 
 
 def test_flights_do_not_touch_each_other():
-    alone = [step(rates, start[None], FIELDS_T, 20.0)[0] for start in STARTS]
-    np.testing.assert_array_equal(step(rates, STARTS, FIELDS_T, 20.0), alone)
+    ours = step(rates, STARTS, FIELDS_T, 20.0)
+    for flight in range(len(STARTS)):
+        others = STARTS[[1, 2, 0]].copy()
+        others[flight] = STARTS[flight]
+        np.testing.assert_array_equal(step(rates, others, FIELDS_T, 20.0)[flight], ours[flight])
