@@ -8,6 +8,7 @@ from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.start.first import StartLimits
 from fsw.core.fdir.sensors.plausibility import PlausibilityConfig
 from fsw.table.cells import cell_set
+from fsw.table.ordinary import mean_moment
 from fsw.table.table import FlightTable
 from fsw.table.uncertainty import (
     LARGEST_FIELD_T,
@@ -15,7 +16,6 @@ from fsw.table.uncertainty import (
     SIDE,
     Uncertainty,
     bounds,
-    mean_moment,
     priors,
 )
 
@@ -78,7 +78,7 @@ def estimator_config(table: FlightTable) -> EstimatorConfig:
 def table_bounds(table: FlightTable) -> Uncertainty:
     """The bounds of the whole table."""
     albedo = None if table.cells is None else table.cells.albedo
-    return bounds(table.uncertainty, table.body.inertia, 1.0 / table.time.tick_hz, albedo)
+    return bounds(table.uncertainty, table.ordinary, albedo)
 
 
 def _sun_sigma_rad(table: FlightTable) -> float:

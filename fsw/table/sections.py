@@ -61,6 +61,15 @@ class OrbitTable(Section):
             sgp4_orbit(*self.tle)
         return self
 
+    @property
+    def perigee_km(self) -> float:
+        """Height of the perigee over the equator's radius."""
+        if self.tle is None:
+            assert self.altitude_km is not None
+            return self.altitude_km
+        satellite = sgp4_orbit(*self.tle).satellite
+        return float(satellite.altp * satellite.radiusearthkm)
+
 
 class FieldTable(Section):
     """Onboard field model; ``degree`` is used by igrf14."""

@@ -26,6 +26,7 @@ from fsw.input.schema import (
 )
 from fsw.table.calibration import CalibrationTable
 from fsw.table.cells import CellTable
+from fsw.table.ordinary import ordinary_dipole_am2, ordinary_torque_nm
 from fsw.table.own_law import named
 from fsw.table.sections import (
     CIRCULAR_KEYS,
@@ -41,7 +42,14 @@ from fsw.table.sections import (
     TimeTable,
     parse_utc,
 )
-from fsw.table.uncertainty import LARGEST_FIELD_T, Ceiling, UncertaintyTable, bounds, check_bounds
+from fsw.table.uncertainty import (
+    LARGEST_FIELD_T,
+    Ceiling,
+    Ordinary,
+    UncertaintyTable,
+    bounds,
+    check_bounds,
+)
 from fsw.table.wheel import WheelTable, check_wheel_inertia
 
 LATER_BOUNDS = ("torque_variation_nm", "cell_gain_percent", "cell_light_percent")
@@ -77,21 +85,32 @@ class FlightTable(Section):
     def _bounds_can_hold(self) -> Self:
         """Beyond these no controller could hold the satellite, or a sound coil would be called weak."""
         coils, gain = self.coils, 100.0 * (1.0 - self.fdir.weak_coil_part)
-        torque_nm = coils.largest_am2 * coils.on_part * LARGEST_FIELD_T
         ceilings = {
             "residual_dipole_am2": Ceiling(coils.largest_am2, "the largest dipole of a coil"),
             "torque_nm": Ceiling(
-                torque_nm, "what a coil gives in the mean, pulse and back-off, in a strong field"
+                self._most_torque_nm, "what a coil gives in the mean, pulse and back-off, in a strong field"
             ),
             "coil_gain_percent": Ceiling(gain, "so that no sound coil is below fdir.weak_coil_part"),
         }
-        bound_nm = bounds(self.uncertainty, self.body.inertia, 1.0).torque_nm
+        bound_nm = bounds(self.uncertainty, self.ordinary).torque_nm
         if bound_nm > 0.0:  # else no torque is carried that could vary
             ceilings["torque_variation_nm"] = Ceiling(
                 2.0 * bound_nm, "from one bound of the torque, uncertainty.torque_nm, to the other"
             )
         check_bounds(self.uncertainty, ceilings)
         return self
+
+    @property
+    def ordinary(self) -> Ordinary:
+        """Ordinary bounds of this satellite in its orbit; of the torque, what its coils could hold."""
+        inertia = self.body.inertia
+        torque_nm = min(ordinary_torque_nm(inertia, self.orbit.perigee_km), self._most_torque_nm)
+        return Ordinary(ordinary_dipole_am2(inertia), torque_nm, 1.0 / self.time.tick_hz)
+
+    @property
+    def _most_torque_nm(self) -> float:
+        """What a coil gives in the mean, pulse and back-off, in a strong field."""
+        return self.coils.largest_am2 * self.coils.on_part * LARGEST_FIELD_T
 
     @model_validator(mode="after")
     def _own_field_is_of_pulses(self) -> Self:

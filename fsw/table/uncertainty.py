@@ -19,6 +19,7 @@ from pydantic import Field
 from fsw.core.algebra.vector import Mat3
 from fsw.core.estimation.parameters import MOST_CELLS, Prior
 from fsw.input.schema import Section
+from fsw.table.ordinary import mean_moment
 
 
 class UncertaintyTable(Section):
@@ -98,26 +99,28 @@ class Uncertainty:
 
 UNEVEN = 0.5
 """Part of what the Earth's light may be wrong by that is another for each cell: clouds lie unevenly."""
-REFERENCE_KGM2 = 1.6
-"""Mean moment of inertia of the 50 kg satellite for which the ordinary dipole and torque hold."""
 
 
-def bounds(
-    table: UncertaintyTable, inertia_kgm2: Mat3, tick_s: float, albedo: float | None = None
-) -> Uncertainty:
+class Ordinary(NamedTuple):
+    """Ordinary bounds of what depends on the satellite: dipole, torque by component, age of samples."""
+
+    dipole_am2: float
+    torque_nm: float
+    latency_s: float
+
+
+def bounds(table: UncertaintyTable, ordinary: Ordinary, albedo: float | None = None) -> Uncertainty:
     """The bounds of the table, ordinary ones where it has none.
 
-    Residual dipole and disturbance torque grow with the volume: of bodies of one density and shape as the
-    moment of inertia to the power of 3/5. ``albedo`` is that which Sun cells are reckoned with, None of a
-    satellite without them: half of it is ordinary to be wrong by, and all of the Earth's light where it is 0.
+    ``albedo`` is that which Sun cells are reckoned with, None of a satellite without them: half of it is
+    ordinary to be wrong by, and all of the Earth's light where it is 0.
     """
-    volume = (mean_moment(inertia_kgm2) / REFERENCE_KGM2) ** 0.6
-    torque_nm = _or(table.torque_nm, 3e-8 * volume)
+    torque_nm = _or(table.torque_nm, ordinary.torque_nm)
     cell_gain, cell_light = (0.0, 0.0) if albedo is None else _of_cells(table, albedo)
     return Uncertainty(
         inertia_part=0.01 * _or(table.inertia_percent, 10.0),
         products_part=0.01 * _or(table.products_percent, 2.0),
-        dipole_am2=_or(table.residual_dipole_am2, 0.1 * volume),
+        dipole_am2=_or(table.residual_dipole_am2, ordinary.dipole_am2),
         coil_gain_part=0.01 * _or(table.coil_gain_percent, 5.0),
         coil_turn_rad=radians(_or(table.coil_misalignment_deg, 0.5)),
         mag_bias_t=1e-9 * _or(table.magnetometer_bias_nt, 1000.0),
@@ -127,7 +130,7 @@ def bounds(
         torque_nm=torque_nm,
         torque_variation_nm=_or(table.torque_variation_nm, 0.2 * torque_nm),
         along_track_m=1000.0 * _or(table.along_track_km, 5.0),
-        latency_s=_or(table.latency_s, tick_s),
+        latency_s=_or(table.latency_s, ordinary.latency_s),
         cell_gain_part=cell_gain,
         cell_light=cell_light,
         cell_excess=cell_light * (UNEVEN if albedo else 1.0),
@@ -143,11 +146,6 @@ def _of_cells(table: UncertaintyTable, albedo: float) -> tuple[float, float]:
 
 def _or(given: float | None, ordinary: float) -> float:
     return ordinary if given is None else given
-
-
-def mean_moment(inertia_kgm2: Mat3) -> float:
-    """A third of the trace of the inertia tensor, kg m^2."""
-    return (inertia_kgm2[0][0] + inertia_kgm2[1][1] + inertia_kgm2[2][2]) / 3.0
 
 
 SIDE = 1.0 / sqrt(3.0)

@@ -7,6 +7,7 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from fsw.input.toml_text import parse_toml
+from fsw.table.ordinary import TORQUE_NM, ordinary_dipole_am2, relative_volume
 from sim.console import answer, say, warn
 from sim.errors import HarnessError
 from sim.new_scenario.satellite import NewSatellite, gains_for
@@ -17,8 +18,6 @@ from sim.sizing.doubts import doubts
 from sim.sizing.expectation import expect
 from sim.sizing.levels import levels_against, two_digits
 
-DIPOLE_BOUND_AM2, TORQUE_BOUND_NM = 0.1, 3e-8
-"""Ordinary bounds of a 50 kg satellite, as in ``fsw/table/uncertainty.py``; they grow with the volume."""
 TORQUE_PART, DIPOLE_PART = 0.1, 0.03
 """Parts of the bounds that the satellite is assumed to have: one that was built magnetically clean."""
 STRONGEST_A = 0.4
@@ -102,7 +101,7 @@ def _rendered(satellite: NewSatellite, file: str) -> str:
 def _figures(satellite: NewSatellite) -> dict[str, Any]:
     body, moments, levels = satellite.body, satellite.moments_kgm2, satellite.levels
     gains, strongest = gains_for(body), levels[2]
-    torque_nm, dipole_am2 = TORQUE_BOUND_NM * satellite.volume, DIPOLE_BOUND_AM2 * satellite.volume
+    dipole_am2 = ordinary_dipole_am2(body.inertia_kgm2)
     mass = f"{satellite.mass_kg:g} kg, " if satellite.mass_kg else ""
     orbit = f"{body.altitude_km:.0f} km, {body.inclination_deg:.1f} deg"
     return {
@@ -122,9 +121,8 @@ def _figures(satellite: NewSatellite) -> dict[str, Any]:
         "coil_field": two_digits(COIL_FIELD_NT / strongest),
         "magnetometer_nt": satellite.magnetometer_nt,
         "sun_deg": satellite.sun_deg,
-        "torque": two_digits(TORQUE_PART * torque_nm),
+        "torque": two_digits(TORQUE_PART * TORQUE_NM * relative_volume(body.inertia_kgm2)),
         "dipole": two_digits(DIPOLE_PART * dipole_am2),
-        "torque_bound": two_digits(torque_nm),
         "dipole_bound": two_digits(dipole_am2),
         "k_w": gains.k_w,
         "k_a": gains.k_a,

@@ -8,7 +8,6 @@ import numpy as np
 
 from fsw.core.orbit.tle import tle_elements
 from fsw.table.inertia import check_inertia
-from fsw.table.uncertainty import REFERENCE_KGM2
 from sim.design.theory.bodies import EARTH_RADIUS_KM, MU_M3PS2, Body, Vec3, diagonal
 from sim.design.theory.floquet import ROUGH_STEPS
 from sim.design.theory.linear import Gains
@@ -127,11 +126,6 @@ class NewSatellite:
     def levels(self) -> Levels:
         """The levels given, or those of a body without disturbances."""
         return self.levels_am2 or levels_for(self.body, PULSE_S)
-
-    @property
-    def volume(self) -> float:
-        """Volume over that of the 50 kg satellite, as ``fsw/table/uncertainty.py`` takes it."""
-        return float((sum(self.moments_kgm2) / 3.0 / REFERENCE_KGM2) ** 0.6)
 
 
 def gains_for(body: Body) -> Gains:

@@ -11,12 +11,14 @@ from fsw.core.orbit.tle import tle_elements
 from fsw.core.state import FlightState
 from fsw.core.step import boot
 from fsw.table.config import flight_config
-from fsw.table.uncertainty import ROUNDING, bounds
+from fsw.table.estimator import table_bounds
+from fsw.table.uncertainty import ROUNDING
 from fsw.wire.messages import TcAckResult, TcGain, TcLaw, TcOrbitElement, TcParameter, TcSpin
 from sim.design.from_scenario import body_of
 from sim.scenario.schema import Scenario, flight_table
 from sim.sizing.expectation import expect, field_across
 from sim.sizing.levels import levels_against
+from sim.sizing.torques import surface_torque
 
 DAY_S = 86400.0
 OLD_TLE_DAYS = 366.0
@@ -30,6 +32,8 @@ NOISE_NT, NOISE_DEG = (1.0, 5000.0), (1e-3, 10.0)
 """Plausible noise of a magnetometer and of a Sun sensor; none at all is a deliberate choice."""
 SLIGHT, SLIGHT_NT, SLIGHT_KM = 0.01, 100.0, 1.0
 """Beyond its bound, but of no consequence: part of what the coils can give, bias, way along the track."""
+LEAST_TIMES = 2.5
+"""The bound of the torque over drag and light, half of what lets the filter follow them along the orbit."""
 LEAST_CURRENT_MA, MOST_CURRENT_MA = 1.0, 10_000.0
 SAME_AT_ANY_TIME = (TcLaw, TcGain, TcSpin, TcOrbitElement, TcParameter)
 """Telecommands that are refused for what they say, not for the state of the satellite."""
@@ -163,7 +167,7 @@ def _beyond_bounds(scenario: Scenario) -> Iterator[str]:
     if scenario.knowledge == "perfect":
         return
     table = flight_table(scenario)
-    known = bounds(table.uncertainty, table.body.inertia, 1.0 / scenario.time.tick_hz)
+    known = table_bounds(table)
     disturbance, coils = scenario.disturbance, scenario.coils
     dipole_am2 = SLIGHT * coils.largest_am2 * coils.on_part
     gains = tuple(factor - 1.0 for factor in coils.dipole_scale)
@@ -202,6 +206,19 @@ def _beyond_bounds(scenario: Scenario) -> Iterator[str]:
             )
 
 
+def _drag_and_light(scenario: Scenario) -> Iterator[str]:
+    """They change along the orbit, faster than the filter may follow by that bound."""
+    if scenario.knowledge == "perfect" or not scenario.body.plates:
+        return
+    known, peak_nm = table_bounds(flight_table(scenario)), float(np.abs(surface_torque(scenario)).max())
+    if peak_nm > SLIGHT * known.torque_nm and LEAST_TIMES * peak_nm > known.torque_nm:
+        yield (
+            f"disturbance.drag and .solar_pressure reach {peak_nm:.2g} N m on body.plates, and "
+            f"flight.uncertainty.torque_nm = {known.torque_nm:.2g}: the filter follows what changes along "
+            f"the orbit by a bound of five times that, {5.0 * peak_nm:.2g}"
+        )
+
+
 def _telecommands(scenario: Scenario) -> Iterator[str]:
     """The flight software is asked for its answer, as it is at boot."""
     if not scenario.telecommand:
@@ -235,5 +252,6 @@ _JUDGES: tuple[Callable[[Scenario], Iterator[str]], ...] = (
     _sensors,
     _load,
     _beyond_bounds,
+    _drag_and_light,
     _telecommands,
 )

@@ -5,7 +5,7 @@ import numpy as np
 from sim.design.from_scenario import body_of
 from sim.design.theory.feedforward import NODES
 from sim.design.theory.linear import Array, dipole_field, resting_torque
-from sim.plant.config import OrbitConfig, PlantConfig
+from sim.plant.config import OrbitConfig
 from sim.plant.dynamics import surfaces
 from sim.plant.environment.atmosphere import altitude_m, density_kgpm3, flow_mps
 from sim.plant.environment.orbit import CircularOrbit
@@ -22,18 +22,18 @@ def disturbance_torque(scenario: Scenario) -> Array:
     The sum of the constant torque, residual dipole x field of the direct dipole, drag and sunlight on the
     plates, and what the gravity gradient leaves on a body whose principal axes are not the body axes.
     """
-    body, config = body_of(scenario), plant_config(scenario, 0)
+    body = body_of(scenario)
     u = 2.0 * np.pi / NODES * np.arange(NODES, dtype=np.float64)
     residual_am2 = np.asarray(scenario.disturbance.residual_dipole_am2)
     magnetic = np.cross(residual_am2, dipole_field(u, body) * body.field_t)
     constant = np.asarray(scenario.disturbance.torque_nm) + resting_torque(body)
-    torque: Array = constant + magnetic + _surface_torque(scenario, config)
+    torque: Array = constant + magnetic + surface_torque(scenario)
     return torque
 
 
-def _surface_torque(scenario: Scenario, config: PlantConfig) -> Array:
-    """Drag and pressure of sunlight on the plates, (N, 3)."""
-    body, period_s = body_of(scenario), orbit_period_s(scenario)
+def surface_torque(scenario: Scenario) -> Array:
+    """Drag and pressure of sunlight on the plates at the same nodes, body axes [N m], (N, 3)."""
+    body, config, period_s = body_of(scenario), plant_config(scenario, 0), orbit_period_s(scenario)
     orbit = CircularOrbit(
         OrbitConfig(
             altitude_m=1e3 * body.altitude_km,

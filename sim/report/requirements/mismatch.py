@@ -37,7 +37,7 @@ def beyond_bounds(scenario: Scenario) -> list[str]:
     table = flight_table(scenario)
     bounds = limits(table_bounds(table), table.body.inertia)
     albedo = table.cells.albedo if table.cells else None
-    usual = ordinary_bounds(UncertaintyTable(), table.body.inertia, 1.0 / table.time.tick_hz, albedo)
+    usual = ordinary_bounds(UncertaintyTable(), table.ordinary, albedo)
     ordinary = limits(usual, table.body.inertia)
     at_start = {"lit": np.ones(1), "t_s": np.zeros(1)}
     found = []

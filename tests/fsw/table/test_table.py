@@ -77,9 +77,9 @@ class TestDefault:
         assert list(written) == list(UncertaintyTable.model_fields)
         table = load_flight_table(None)
         as_written = UncertaintyTable(**{key: float(value) for key, value in written.items()})
-        of_default = bounds(table.uncertainty, table.body.inertia, 1.0 / table.time.tick_hz)
+        of_default = bounds(table.uncertainty, table.ordinary)
         for field in fields(of_default):
-            given = getattr(bounds(as_written, table.body.inertia, 1.0 / table.time.tick_hz), field.name)
+            given = getattr(bounds(as_written, table.ordinary), field.name)
             assert getattr(of_default, field.name) == pytest.approx(given, rel=0.05)
 
     def test_a_file_may_hold_what_differs_alone(self, tmp_path):

@@ -9,10 +9,10 @@ import pytest
 from fsw.core.estimation.parameters import NAMES, OF_CELLS, SIZES
 from fsw.input.schema import TableError, merge
 from fsw.table.table import flight_table
-from fsw.table.uncertainty import Uncertainty, UncertaintyTable, bounds, priors
+from fsw.table.uncertainty import Ordinary, Uncertainty, UncertaintyTable, bounds, priors
 
 INERTIA = ((1.2, 0.03, -0.02), (0.03, 1.5, 0.05), (-0.02, 0.05, 2.1))
-"""Mean moment 1.6 kg m^2: the size for which the ordinary values are written."""
+ORDINARY = Ordinary(dipole_am2=0.07, torque_nm=2e-8, latency_s=0.25)
 EXACT = dict.fromkeys(UncertaintyTable.model_fields, 0.0)
 GIVEN = {
     "inertia_percent": 8.0,
@@ -46,8 +46,8 @@ CARRIED_BY = {
 }
 
 
-def bounds_of(inertia_kgm2=INERTIA, tick_s=1.0, **given):
-    return bounds(UncertaintyTable(**given), inertia_kgm2, tick_s)
+def bounds_of(**given):
+    return bounds(UncertaintyTable(**given), ORDINARY)
 
 
 def priors_of(**given):
@@ -73,19 +73,19 @@ class TestBounds:
         )
 
     def test_left_out_are_ordinary_ones_and_none_of_them_zero(self):
-        ordinary = bounds_of(tick_s=0.25)
+        ordinary = bounds_of()
         assert ordinary == Uncertainty(
             inertia_part=pytest.approx(0.1),
             products_part=pytest.approx(0.02),
-            dipole_am2=pytest.approx(0.1),
+            dipole_am2=0.07,
             coil_gain_part=pytest.approx(0.05),
             coil_turn_rad=pytest.approx(radians(0.5)),
             mag_bias_t=pytest.approx(1e-6),
             mag_scale_part=pytest.approx(0.005),
             mag_turn_rad=pytest.approx(radians(1.0)),
             sun_turn_rad=pytest.approx(radians(0.5)),
-            torque_nm=pytest.approx(3e-8),
-            torque_variation_nm=pytest.approx(6e-9),
+            torque_nm=2e-8,
+            torque_variation_nm=pytest.approx(4e-9),
             along_track_m=pytest.approx(5e3),
             latency_s=0.25,
         )
@@ -94,19 +94,9 @@ class TestBounds:
         assert all(getattr(ordinary, name) > 0.0 for name in known)
         assert not any(getattr(ordinary, name) for name in of_cells)  # there are none
 
-    @pytest.mark.parametrize(("moments", "volume"), [(1.0, 1.0), (1e-3, 10.0**-1.8), (1e5, 1e3)])
-    def test_ordinary_dipole_and_torque_grow_with_the_volume(self, moments, volume):
-        """Of bodies of one density J ~ l^5, so that l^3 ~ J^(3/5): a 3U has 1/60 of a 50 kg satellite's."""
-        body = tuple(tuple(moments * entry for entry in row) for row in INERTIA)
-        scaled = bounds_of(body)
-        assert scaled.dipole_am2 == pytest.approx(0.1 * volume)
-        assert scaled.torque_nm == pytest.approx(3e-8 * volume)
-        assert bounds_of(body, residual_dipole_am2=0.3, torque_nm=4e-8).dipole_am2 == 0.3
-        assert (scaled.inertia_part, scaled.mag_bias_t) == (bounds_of().inertia_part, bounds_of().mag_bias_t)
-
     @pytest.mark.parametrize("key", GIVEN)
     def test_each_is_taken_for_itself_and_zero_is_no_ordinary_value(self, key):
-        given = {"torque_variation_nm": 6e-9} if key == "torque_nm" else {}  # else it is a part of that one
+        given = {"torque_variation_nm": 4e-9} if key == "torque_nm" else {}  # else it is a part of that one
         ordinary, exact = bounds_of(**given), bounds_of(**given, **{key: 0.0})
         changed = [
             field.name

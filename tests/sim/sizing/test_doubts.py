@@ -79,6 +79,14 @@ def test_what_does_not_matter_is_not_doubted(settings):
     assert found("cubesat3u", *settings) == []
 
 
+@pytest.mark.parametrize(("bound_nm", "doubted"), [(6e-9, True), (2.4e-8, True), (5e-8, False)])
+def test_drag_and_light_need_a_bound_by_which_the_filter_follows_them(bound_nm, doubted):
+    """They reach 1.04e-8 N m on the 6U in its nominal attitude."""
+    told = found("cubesat6u", f"flight.uncertainty.torque_nm={bound_nm}")
+    assert bool(told) is doubted, told
+    assert all("reach 1e-08 N m on body.plates" in doubt and "5.2e-08" in doubt for doubt in told)
+
+
 def telecommand(**content):
     return {"telecommand": [{"at_s": 50.0, "message": "TC_CLEAR"}, {"at_s": 600.0, **content}]}
 

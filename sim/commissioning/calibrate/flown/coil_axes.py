@@ -19,8 +19,9 @@ from fsw.core.estimation.parameters import Prior
 from fsw.core.estimation.start.triad import triad
 from fsw.core.orbit.earth import MU_M3PS2
 from fsw.table.estimator import DRIVE_SIGMA, LEAST_NOISE_RTS, START_SIGMA_RAD, TORQUE_NOISE_RTS, table_bounds
+from fsw.table.ordinary import mean_moment
 from fsw.table.table import FlightTable
-from fsw.table.uncertainty import mean_moment, priors
+from fsw.table.uncertainty import priors
 from sim.commissioning.calibrate.flown.expected import Expected
 from sim.commissioning.calibrate.flown.samples import Samples, whole
 

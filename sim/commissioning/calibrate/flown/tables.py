@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fsw.table.estimator import table_bounds
 from fsw.table.table import FlightTable
-from fsw.table.uncertainty import bounds
 from sim.commissioning.calibrate.flown.run_fit import RunCalibration
 from sim.commissioning.calibrate.flown.verdicts import (
     SIGMAS,
@@ -37,7 +37,7 @@ def tables(found: RunCalibration, table: FlightTable) -> Json:
     Raises:
         HarnessError: the magnetometer is not known so well that a satellite may fly by it.
     """
-    known = bounds(table.uncertainty, table.body.inertia, 1.0 / table.time.tick_hz)
+    known = table_bounds(table)
     bias_nt = _up(max(LEAST_BIAS_NT, SIGMAS * float(offset_sigma_nt(found).max())), 0)
     percent = _up(max(LEAST_SCALE_PERCENT, 100.0 * SIGMAS * float(part_sigma(found).max())), 2)
     turn_deg = hypot(SIGMAS * degrees(float(turn_sigma_rad(found).max())), degrees(known.sun_turn_rad))
