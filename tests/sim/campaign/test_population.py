@@ -5,6 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fsw.input.schema import merge
+from sim.campaign.flight import Order, fly_order
 from sim.campaign.honesty import honesty_figures
 from sim.campaign.population import POPULATIONS, population_order, satellite
 from sim.plant.hardware.sensors import MagnetometerPhysics
@@ -190,6 +192,16 @@ def test_what_is_declared_is_the_bounds_and_not_the_truth():
 def test_a_table_that_declares_nothing_takes_ordinary_bounds():
     flown = load("microsat", satellite("50kg", 4, declared=False))
     assert set(flight_table(flown).uncertainty.model_dump().values()) == {None}
+
+
+@pytest.mark.parametrize(("torque_nm", "honest"), [(None, True), (6e-9, False)])
+def test_a_6u_that_declares_nothing_is_honest_where_drag_outweighs_light(torque_nm, honest):
+    """At 550 km; 6e-9 N m, an ordinary torque for its size by light alone, is too little there."""
+    bound = {"flight": {"uncertainty": {"torque_nm": torque_nm}}}
+    overrides = merge(satellite("6u", 503, declared=False), bound)
+    figures = fly_order(Order("cubesat6u", overrides, 503, 2.0, honesty_figures)).figures
+    inside = min(figures[f"inside_{axis}"] for axis in (1, 2, 3))
+    assert (inside > 0.95) is honest, figures
 
 
 def test_an_order_flies_the_satellite_with_what_is_laid_over_it():
