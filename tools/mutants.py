@@ -1,7 +1,7 @@
 """Mutants of a module: its source with one change in one line."""
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -32,6 +32,13 @@ COMBINED = {
     ast.Pow: ("**", "*"),
 }
 CALLED = {"min": "max", "max": "min", "any": "all", "all": "any"}
+NEGATED = {
+    "scale": (0, "-({})"),
+    "cross": (0, "[-part for part in {}]"),
+    "dot": (0, "[-part for part in {}]"),
+    "transform": (1, "[-part for part in {}]"),
+}
+"""Of a product with a vector: which factor is negated, and how."""
 Span = tuple[int, int]
 """Start and end of a piece of source."""
 
@@ -51,10 +58,10 @@ class Mutant:
         return f"{self.before} -> {self.after}"
 
 
-def mutants(source: str) -> Iterator[Mutant]:
-    """Every mutant of a module, in the order of the source, each one once."""
+def mutants(source: str, *, signs: bool = False) -> Iterator[Mutant]:
+    """Every mutant of a module, in the order of the source, each one once; ``signs``: of a sign alone."""
     sources = {source}
-    for (begin, end), text in sorted(_changes(source)):
+    for (begin, end), text in sorted((_sign_changes if signs else _changes)(source)):
         mutated = source[:begin] + text + source[end:]
         if mutated in sources:
             continue
@@ -69,8 +76,8 @@ def _line(source: str, place: int) -> str:
     return source[begin : end if end >= 0 else None].strip()
 
 
-def _changes(source: str) -> Iterator[tuple[Span, str]]:  # noqa: PLR0912, PLR0915  (a case for each kind of node)
-    """(place, replacement) of each change."""
+def _spans(source: str) -> Callable[[ast.AST], Span]:
+    """Where a node stands in the source."""
     lines = source.splitlines(keepends=True)
     starts = [0]
     for line in lines:
@@ -83,6 +90,43 @@ def _changes(source: str) -> Iterator[tuple[Span, str]]:  # noqa: PLR0912, PLR09
     def span(node: ast.AST) -> Span:
         return at(node.lineno, node.col_offset), at(node.end_lineno, node.end_col_offset)
 
+    return span
+
+
+def _sign_changes(source: str) -> Iterator[tuple[Span, str]]:
+    """(place, replacement) of each change of a sign: of a sum, a minus, a product of matrices or vectors."""
+    span = _spans(source)
+    for node in _executable_nodes(ast.parse(source)):
+        match node:
+            case ast.BinOp(op=ast.Add() | ast.Sub() as op):
+                operands_gap = (span(node.left)[1], span(node.right)[0])
+                yield _swap_operator(source, operands_gap, COMBINED[type(op)][1])
+            case ast.AugAssign(op=ast.Add() | ast.Sub() as op):
+                operands_gap = (span(node.target)[1], span(node.value)[0])
+                yield _swap_operator(source, operands_gap, COMBINED[type(op)][1] + "=")
+            case ast.UnaryOp(op=ast.USub()):
+                begin = span(node)[0]
+                yield (begin, begin + 1), ""
+            case ast.BinOp(op=ast.MatMult()):
+                begin = span(node)[0]
+                yield (begin, begin), "-"
+            case ast.Call(args=[_, _]) if _named(node.func) in NEGATED:
+                place, negated = NEGATED[_named(node.func)]
+                begin, end = span(node.args[place])
+                yield (begin, end), negated.format(source[begin:end])
+
+
+def _named(called: ast.expr) -> str:
+    """The name of what is called, without what it is of."""
+    match called:
+        case ast.Name(id=name) | ast.Attribute(attr=name):
+            return name
+    return ""
+
+
+def _changes(source: str) -> Iterator[tuple[Span, str]]:  # noqa: PLR0912  (a case for each kind of node)
+    """(place, replacement) of each change."""
+    span = _spans(source)
     for node in _executable_nodes(ast.parse(source)):
         match node:
             case ast.Compare(ops=[op]) if type(op) in COMPARED:

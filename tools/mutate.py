@@ -22,10 +22,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 sys.path.insert(0, str(Path(__file__).parent))
-from mutants import Mutant, mutants
+from mutants import Mutant
 from mutation_page import (
     RESULTS,
-    ROOT,
     Target,
     digest,
     note_coverage,
@@ -45,7 +44,7 @@ def judge_mutant(module: str, target: Target, source: str) -> tuple[str, str]:
     """Judge one mutant, in a worker process that imports one module only."""
     global _judge  # noqa: PLW0603  one a process
     if _judge is None:
-        _judge = Judge(module, [target.quick, target.slow])
+        _judge = Judge(module, target.stages_of(module))
     return _judge.judge(source)
 
 
@@ -80,7 +79,7 @@ class Measurement(NamedTuple):
 
     def measure(self, module: str, target: Target) -> None:
         """Judge all mutants of a module, and store the result."""
-        measured, made = digest(module), mutants_of(module)
+        measured, made = digest(module, target), target.mutants_of(module)
         began = time.monotonic()
         outcome = self.judge_all(module, target, made)
         wall_s = round(time.monotonic() - began)
@@ -90,7 +89,7 @@ class Measurement(NamedTuple):
         """Judge again the unlisted survivors of an unchanged module: tests may have been added."""
         result = stored(RESULTS)[module]
         unexplained = [change for one, change in unlisted(stored(RESULTS)) if one == module]
-        made = [mutant for mutant in mutants_of(module) if mutant.change in unexplained]
+        made = [mutant for mutant in target.mutants_of(module) if mutant.change in unexplained]
         if not made or module in outdated(stored(RESULTS)):
             return
         outcome = self.judge_all(module, target, made)
@@ -98,10 +97,6 @@ class Measurement(NamedTuple):
         timeouts = result["timeouts"] + outcome["timeouts"]
         killed = result["mutants"] - timeouts - len(survived)
         store_result(module, result | {"survived": survived, "timeouts": timeouts, "killed": killed})
-
-
-def mutants_of(module: str) -> list[Mutant]:
-    return list(mutants((ROOT / module).read_text(encoding="utf-8")))
 
 
 def store_result(module: str, result: dict[str, Any]) -> None:
@@ -134,11 +129,11 @@ def main() -> int:
     measurement = Measurement(options.workers, options.verbose)
     if options.list:
         for target, module in chosen:
-            print(f"{target.name:<16} {module:<36} {len(mutants_of(module))} mutants")
+            print(f"{target.name:<16} {module:<36} {len(target.mutants_of(module))} mutants")
         return 0
     if options.quick:
         for target, module in chosen:
-            measurement.judge_all(module, target._replace(slow=[]), mutants_of(module))
+            measurement.judge_all(module, target._replace(slow=[]), target.mutants_of(module))
         return 0
     if options.coverage:
         note_coverage(json.loads(options.coverage.read_text(encoding="utf-8")))

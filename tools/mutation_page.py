@@ -6,7 +6,7 @@ import tomllib
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from mutants import mutants
+from mutants import Mutant, mutants
 
 ROOT = Path(__file__).resolve().parents[1]
 HERE = ROOT / "tests" / "mutation"
@@ -17,9 +17,10 @@ TEXT = """# Mutation testing
 
 Each mutant is a module with one small change, and the tests of the module are run: one must fail. The changes
 replace operators, comparisons, constants, conditions and loops, and omit statements, assignments to state,
-keyword arguments and return values. `make mutation` measures and writes this page; the tests of each module
-are in `tests/mutation/targets.toml`, the reasons for survivors in `tests/mutation/survivors.toml`. Tests that
-run too long count as failed. A module that has changed since its measurement is marked as such, and
+keyword arguments and return values; in the laws a sign alone is changed, of a sum, a minus, a product with a
+vector or of matrices. `make mutation` measures and writes this page; the tests of each module are in
+`tests/mutation/targets.toml`, the reasons for survivors in `tests/mutation/survivors.toml`. Tests that run
+too long count as failed. A module that has changed since its measurement is marked as such, and
 `make mutation` measures it again.
 
 | part | module | mutants | noticed | too long | survived, listed | survived, not listed |
@@ -42,17 +43,40 @@ below 100 %.
 
 
 class Target(NamedTuple):
-    """A group of modules, and the tests for it."""
+    """A group of modules, and the tests for it; ``signs``: signs alone are changed."""
 
     name: str
     modules: list[str]
     quick: list[str]
     slow: list[str]
+    signs: bool = False
+
+    def mutants_of(self, module: str) -> list[Mutant]:
+        """Of a module as it is now."""
+        return list(mutants((ROOT / module).read_text(encoding="utf-8"), signs=self.signs))
+
+    def stages_of(self, module: str) -> list[list[str]]:
+        """The tests for a module: `{mirror}` is the file that mirrors it, `{folder}` the folder of that."""
+        folder = Path("tests", module).parent
+        mirror = folder / f"test_{Path(module).name}"
+        places = {"mirror": mirror if (ROOT / mirror).exists() else folder, "folder": folder}
+        return [[test.format(**places) for test in stage] for stage in (self.quick, self.slow)]
 
 
 def targets() -> list[Target]:
     tables = tomllib.loads((HERE / "targets.toml").read_text(encoding="utf-8"))
-    return [Target(name, table["modules"], table["quick"], table["slow"]) for name, table in tables.items()]
+    return [
+        Target(name, _modules(table["modules"]), table["quick"], table["slow"], table.get("signs", False))
+        for name, table in tables.items()
+    ]
+
+
+def _modules(patterns: list[str]) -> list[str]:
+    """Paths in the repository, of modules that define something."""
+    found = [path for pattern in patterns for path in sorted(ROOT.glob(pattern))]
+    return [
+        path.relative_to(ROOT).as_posix() for path in found if path.name not in ("__init__.py", "table.py")
+    ]
 
 
 def survivors() -> dict[tuple[str, str], str]:
@@ -69,17 +93,21 @@ def store(path: Path, results: dict[str, Any]) -> None:
     path.write_text(json.dumps(results, indent=2, sort_keys=True) + "\n", encoding="utf-8")
 
 
-def digest(module: str) -> str:
+def digest(module: str, target: Target) -> str:
     """The digest of the module and of the mutants that it has now."""
     source = (ROOT / module).read_text(encoding="utf-8")
-    made = "".join(f"{mutant.line} {mutant.change}\n" for mutant in mutants(source))
+    made = "".join(f"{mutant.line} {mutant.change}\n" for mutant in target.mutants_of(module))
     return hashlib.sha256((source + made).encode()).hexdigest()
 
 
 def outdated(results: dict[str, Any]) -> list[str]:
     """Modules that have not been measured as they are now."""
-    modules = [module for target in targets() for module in target.modules]
-    return [module for module in modules if results.get(module, {}).get("sha256") != digest(module)]
+    return [
+        module
+        for target in targets()
+        for module in target.modules
+        if results.get(module, {}).get("sha256") != digest(module, target)
+    ]
 
 
 def unlisted(results: dict[str, Any]) -> list[tuple[str, str]]:

@@ -4,22 +4,20 @@ import ast
 import subprocess
 import sys
 import tomllib
+from itertools import chain
 from pathlib import Path
 
 import pytest
 from mutants import mutants
+from mutation_page import targets
 
 ROOT = Path(__file__).parents[2]
 
-MODULES = [
-    module
-    for table in tomllib.loads((ROOT / "tests/mutation/targets.toml").read_text()).values()
-    for module in table["modules"]
-]
+MODULES = {module: target for target in targets() for module in target.modules}
 
 
-def changes(source):
-    return [mutant.change for mutant in mutants(source)]
+def changes(source, *, signs=False):
+    return [mutant.change for mutant in mutants(source, signs=signs)]
 
 
 @pytest.mark.parametrize(
@@ -90,11 +88,42 @@ def test_operators_between_brackets_and_comments_are_found():
     assert changes("x = (a +  # and - too\n     b)\n") == ["x = (a +  # and - too -> x = (a -  # and - too"]
 
 
+@pytest.mark.parametrize(
+    ("line", "after"),
+    [
+        ("a + b * c", {"a - b * c"}),
+        ("a - -b", {"a + -b", "a - b"}),
+        ("(a + b) @ c", {"(a - b) @ c", "-(a + b) @ c"}),
+        ("scale(a - b, c)", {"scale(a + b, c)", "scale(-(a - b), c)"}),
+        ("cross(a, b)", {"cross([-part for part in a], b)"}),
+        ("np.dot(a, b)", {"np.dot([-part for part in a], b)"}),
+        ("transform(a, b)", {"transform(a, [-part for part in b])"}),
+        ("a < b and min(c, 2)", set()),
+    ],
+)
+def test_of_a_sign_alone(line, after):
+    assert set(changes(f"x = {line}\n", signs=True)) == {f"x = {line} -> x = {one}" for one in after}
+
+
+def test_of_a_sign_in_a_sum_that_grows():
+    assert changes("a -= b\n", signs=True) == ["a -= b -> a += b"]
+
+
+def test_the_laws_are_all_there_each_with_the_tests_that_mirror_it():
+    (laws,) = [target for target in targets() if target.name == "laws"]
+    assert "fsw/core/laws/spin/spin.py" in laws.modules
+    assert laws.stages_of("fsw/core/laws/spin/spin.py") == [
+        ["tests/fsw/core/laws/spin/test_spin.py"],
+        ["tests/fsw/core/laws/spin"],
+    ]
+    assert laws.stages_of("fsw/core/laws/spin/relay_stages.py")[0] == ["tests/fsw/core/laws/spin"]
+
+
 @pytest.mark.parametrize("module", [module for module in MODULES if module != "fsw/wire/messages.py"])
 def test_every_mutant_of_the_modules_is_a_module_that_differs_in_one_line(module):
     source = (ROOT / module).read_text()
-    made = list(mutants(source))
-    assert made
+    made = MODULES[module].mutants_of(module)
+    assert made or MODULES[module].signs
     for mutant in made:
         ast.parse(mutant.source)
         assert mutant.source.count("\n") <= source.count("\n")
@@ -105,7 +134,10 @@ def test_every_mutant_of_the_modules_is_a_module_that_differs_in_one_line(module
 
 def test_every_module_and_test_that_is_named_is_there():
     for table in tomllib.loads((ROOT / "tests/mutation/targets.toml").read_text()).values():
-        for name in (*table["modules"], *table["quick"], *table["slow"]):
+        for pattern in table["modules"]:
+            assert list(ROOT.glob(pattern)), pattern
+    for module, target in MODULES.items():
+        for name in chain(*target.stages_of(module)):
             assert name.startswith("-") or (ROOT / name).exists(), name
 
 
@@ -113,7 +145,8 @@ def test_every_survivor_that_is_listed_is_a_mutant_that_there_is_and_has_a_reaso
     listed = tomllib.loads((ROOT / "tests/mutation/survivors.toml").read_text()).get("survivor", [])
     for one in listed:
         assert one["module"] in MODULES
-        assert one["change"] in changes((ROOT / one["module"]).read_text()), one["change"]
+        made = MODULES[one["module"]].mutants_of(one["module"])
+        assert one["change"] in [mutant.change for mutant in made], one["change"]
         assert len(one["reason"]) > 20
 
 
