@@ -83,6 +83,7 @@ def test_it_comes_to_an_inertial_target_and_stays(bench, turned, gravity, limit_
     assert from_dcm(tuple(map(tuple, run.c_body_from_orbit[-1].tolist())))[0] < 0.99
 
 
-def test_a_target_that_is_no_rotation_is_refused():
+@pytest.mark.parametrize("target", [(0.9, 0.9, 0.0), (0.9, 0.0, -0.9), (0.0, -0.9, 0.9)])
+def test_a_target_that_is_no_rotation_is_refused(target):
     with pytest.raises(ValueError, match="unit quaternion"):
-        InertialGains(0.9, 0.9, 0.0)
+        InertialGains(*target)

@@ -4,10 +4,18 @@ from math import nan
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from fsw.core.algebra.quaternion import multiply, normalise
 from fsw.core.estimation.attitude import UNKNOWN
-from fsw.core.laws.feedback.output_feedback import FilterGains, follow, lagged_rate, output_feedback
+from fsw.core.laws.feedback.output_feedback import (
+    FilterGains,
+    follow,
+    lagged_rate,
+    nearer_sign,
+    output_feedback,
+)
 from fsw.core.laws.feedback.pd import pd, pd_far
 
 K_W, K_A = 6.2694e6, 1614.9
@@ -91,6 +99,21 @@ def test_the_sign_of_a_quaternion_means_nothing(inputs, settings, bench):
     one, other = (output_feedback(with_attitude(inputs, q), z, point, settings) for q in (Q, negative(Q)))
     assert one.m_body_am2 == pytest.approx(other.m_body_am2, rel=1e-12)
     assert negative(one.memory) == pytest.approx(other.memory, rel=1e-12)
+
+
+@given(*[st.tuples(*[st.floats(-1.0, 1.0)] * 4)] * 2)
+def test_of_both_signs_the_nearer_one_is_taken(z, q):
+    found = np.array(nearer_sign(z, q))
+    assert {tuple(found), tuple(-found)} == {z, tuple(-np.array(z))}
+    assert np.linalg.norm(found - q) <= np.linalg.norm(found + q) + 1e-12
+
+
+def test_the_filter_takes_the_step_of_its_backward_difference(inputs, settings, bench):
+    """z+ = z + a T (q - z+): stable however long the tick."""
+    z, point = normalise((0.8, 0.3, -0.1, 0.4)), bench.setpoint(k_w=K_W, k_a=K_A)
+    after = np.array(output_feedback(with_attitude(inputs, Q), z, point, settings).memory)
+    step = BANDWIDTH_RADPS * STEP_S
+    assert after == pytest.approx(np.array(z) + step * (np.array(Q) - after), abs=1e-12)
 
 
 def test_without_a_rate_the_attitude_converges(flight):

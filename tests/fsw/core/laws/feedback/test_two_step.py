@@ -81,6 +81,9 @@ def asked(bench, turned):
             inputs._replace(attitude=attitude), memory, bench.setpoint(k_w=K_W, k_a=K_A), settings
         )
 
+    c = turned((0, 0, 1), 0.0) @ orbit.c_orbit_from_eci(700.0)
+    field = np.array(bench.inputs_at(orbit, 700, 1.0, c, np.zeros(3), None).b_body_t)
+    ask.field_body = field / np.linalg.norm(field)
     return ask
 
 
@@ -93,6 +96,18 @@ def test_the_stages_follow_each_other_at_rest_only(asked):
     second = asked(tuple(p), first.memory)
     assert second.memory == (SECOND, *p)
     assert asked((1.0, 0.0, 0.0, 0.0), second.memory).memory[0] == FREE
+
+
+def test_a_turn_is_done_though_the_body_is_turned_about_the_field(asked):
+    """What is off about the field is the other turn's."""
+    field = asked.field_body
+    about = (np.cos(0.3), *(np.sin(0.3) * field))
+    across = np.cross(field, (1.0, 0.0, 0.0))
+    stage, *p = asked(normalise((0.9, 0.1, 0.0, 0.4))).memory
+    assert stage == FIRST
+    assert asked(multiply(tuple(p), about), (stage, *p)).memory == (SECOND, *p)
+    off = (np.cos(0.3), *(np.sin(0.3) * across / np.linalg.norm(across)))
+    assert asked(multiply(tuple(p), off), (stage, *p)).memory == (FIRST, *p)
 
 
 def test_a_small_turn_about_the_field_is_left(asked):

@@ -5,8 +5,8 @@ import pytest
 from scipy.linalg import solve_discrete_are
 
 from fsw.core.estimation.attitude import UNKNOWN
-from fsw.core.laws.optimal.averaged import gain_at, lqr_averaged
-from fsw.core.laws.optimal.lqr import LqrGains, orbit_problem
+from fsw.core.laws.optimal.averaged import AveragedGains, averaged_schedule, gain_at, lqr_averaged
+from fsw.core.laws.optimal.lqr import STEPS, LqrGains, orbit_problem
 from fsw.core.laws.plan.riccati import periodic, skews
 
 INERTIA = np.array([[1.02, 0.02, 0.01], [0.02, 1.85, -0.03], [0.01, -0.03, 1.95]])
@@ -122,3 +122,25 @@ def test_of_a_turned_body_under_a_torque_the_dipole_is_that_of_the_equation(benc
     moved = both[:, :6] @ problem.free @ np.concatenate([x, known]) + both[:, 6:] @ known
     curved = push.T @ both[:, :6] @ push + problem.effort * np.eye(3)
     assert asked.m_body_am2 == pytest.approx(c @ -np.linalg.solve(curved, push.T @ moved), rel=1e-6)
+
+
+def test_where_nothing_holds_the_body_the_cost_is_that_of_half_an_orbit(bench):
+    """Over the equator the field does not turn, and a sphere is free about it: value iteration by gains."""
+    orbit, gains = bench.Orbit(inclination_deg=0.0), AveragedGains(effort=3.0)
+    sphere = ((1.6, 0.0, 0.0), (0.0, 1.6, 0.0), (0.0, 0.0, 1.6))
+    given = (sphere, (0.0, 0.0, 0.0), orbit.rate_radps, 0.0, 7.812e15 / orbit.radius_m**3)
+    problem, field = orbit_problem(*given, gains)
+    pushes = -problem.free[:, 6:] @ skews(field)
+    f, mean = problem.free[:, :6], np.mean(pushes @ pushes.swapaxes(1, 2), axis=0)
+    values, vectors = np.linalg.eigh(mean)
+    kept = values > 1e-9 * values.max()
+    reach = vectors[:, kept] * np.sqrt(values[kept])
+    cost = np.zeros((6, 6))
+    for _ in range(STEPS // 2):
+        gain = np.linalg.solve(
+            reach.T @ cost @ reach + problem.effort * np.eye(kept.sum()), reach.T @ cost @ f
+        )
+        cost = f.T @ cost @ (f - reach @ gain) + np.diag(problem.cost)
+    found = averaged_schedule(*given, gains).costs[0, :, :6]
+    assert found == pytest.approx(cost, rel=1e-6, abs=1e-9 * np.abs(cost).max())
+    assert np.linalg.eigvalsh(found)[0] >= -1e-9 * np.abs(found).max()

@@ -54,6 +54,25 @@ def test_where_no_limit_is_met_the_torque_is_that_of_the_projection():
         assert np.linalg.norm(given - projected) < 3e-4 * MOST * np.linalg.norm(b)
 
 
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_along_the_field_no_dipole_is_wasted(axis):
+    """A field along a coil: what that coil does is nothing to the torque."""
+    b, torque = np.zeros(3), np.array([1e-6, -2e-6, 3e-6])
+    b[axis] = 3e-5
+    assert boxed_dipole(tuple(torque), tuple(b), MOST)[axis] == 0.0
+    assert np.abs(boxed_dipole(tuple(torque), tuple(b), MOST)).max() > 0.01
+
+
+@pytest.mark.parametrize("most", [0, 1, 4])
+def test_the_search_ends_after_so_many_changes_of_a_coil(monkeypatch, most):
+    """At most two more, within a round of all three."""
+    monkeypatch.setattr("fsw.core.laws.optimal.boxed.UPDATES", most)
+    for b, torque in cases():
+        bits = np.abs(boxed_dipole(tuple(torque), tuple(b), MOST)) / MOST * 2**15
+        changes = sum(int(bit).bit_count() for bit in bits)
+        assert changes <= most + 2 if most else changes == 0
+
+
 def test_without_a_field_there_is_no_dipole():
     assert boxed_dipole((1e-6, 0.0, 0.0), (0.0, 0.0, 0.0), MOST) == (0.0, 0.0, 0.0)
 

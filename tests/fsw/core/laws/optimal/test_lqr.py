@@ -14,6 +14,7 @@ from fsw.core.laws.optimal.lqr import (
     latitude_argument,
     lqr,
     node,
+    rotation,
     schedule,
     within,
     without_memory,
@@ -173,3 +174,9 @@ def test_far_from_the_goal_the_pd_law_flies_and_leaves_no_memory(bench, settings
     demand = without_memory(inputs, foreign, point, settings)
     assert demand.m_body_am2 == pd_far(inputs, (), point, settings).m_body_am2
     assert demand.memory == ()
+
+
+def test_both_signs_of_a_quaternion_are_one_turn():
+    q = (0.8, 0.1, -0.35, 0.477)
+    assert rotation(q) == pytest.approx((0.2, -0.7, 0.954))
+    assert rotation(tuple(-part for part in q)) == rotation(q)

@@ -106,29 +106,64 @@ def test_where_the_course_leaves_all_bounds_nothing_is_asked_for(bench, times, i
     assert np.isfinite(found.m_body_am2).all()
 
 
-def test_the_cost_at_the_end_is_that_of_orbital_axes(bench, turned):
-    """One step from 50 deg off: no dipole nearby leaves less effort and cost, turned as the body is then."""
+@pytest.mark.parametrize("last", [np.inf, np.nan])
+def test_a_course_that_only_ends_beyond_all_bounds_is_no_solution(bench, monkeypatch, last):
+    settings = bench.scheduled(bench.Body(np.array(INERTIA), most_am2=2.0), 1.0, "sdre")
+    given = (settings.schedules["sdre"], np.full(6, 1e-4), (0.0, 0.0, 0.0), np.full((3, 3), 2e-5), 7, W0)
+    assert solution(*given, settings) is not None
+    ending = [*[np.full(6, 1e-4)] * 3, np.full(6, last)]
+    monkeypatch.setattr("fsw.core.laws.optimal.sdre.SEQUENCE", 1)
+    monkeypatch.setattr("fsw.core.laws.optimal.sdre._course", lambda *_: ending)
+    assert solution(*given, settings) is None
+
+
+@pytest.mark.parametrize("steps", [1, 2])
+def test_the_cost_at_the_end_is_that_of_orbital_axes(bench, turned, steps):
+    """From 50 deg off: no other last dipole leaves less effort and cost, turned as the body is then."""
     settings = bench.scheduled(bench.Body(np.array(INERTIA), most_am2=2.0), 1.0, "sdre")
     table, torque = settings.schedules["sdre"], np.array([2e-7, -1e-7, 3e-7])
     vector = np.sin(np.radians(25.0)) * np.array([1.0, -2.0, 3.0]) / np.sqrt(14.0)
-    start = np.concatenate([[2e-4, -1e-4, 3e-4], 2.0 * vector])
-    b = np.array([2e-5, -1e-5, 1.5e-5])
-    gain = solution(table, start, tuple(torque), b[None], 7, W0, settings)[0]
-    q = (float(np.cos(np.radians(25.0))), *vector.tolist())
-    free = stepped(factors(q, tuple(start[:3]), W0, INERTIA, (0.0, 0.0, 0.0)), table.problem.step_s)
-    b_body = np.array(dcm(q)) @ b
+    state = np.concatenate([[-1.2e-3, 1e-3, -8e-4], 2.0 * vector])
+    b = np.array([[2e-5, -1e-5, 1.5e-5], [-1e-5, 2e-5, 1e-5]])[:steps]
+    gains = solution(table, state, tuple(torque), b, 7, W0, settings)
 
-    def left(m, end):
-        x = free @ np.concatenate([start, torque + np.cross(m, b_body)])
-        both = np.kron(np.eye(2), end.T)
-        known = end.T @ torque
-        last = table.costs[7]
-        x = both @ x
+    def attitude(state):
+        return (float(np.sqrt(1.0 - state[3:] @ state[3:] / 4.0)), *(0.5 * state[3:]).tolist())
+
+    def step(state, b_orbit, m):
+        free = stepped(
+            factors(attitude(state), tuple(state[:3]), W0, INERTIA, (0.0, 0.0, 0.0)), table.problem.step_s
+        )
+        return free @ np.concatenate([state, torque + np.cross(m, np.array(dcm(attitude(state))) @ b_orbit)])
+
+    for b_orbit, gain in zip(b[:-1], gains[:-1], strict=True):
+        state = step(state, b_orbit, gain @ np.concatenate([state, torque]))
+    m = gains[-1] @ np.concatenate([state, torque])
+    end = np.array(dcm(attitude(step(state, b[-1], m))))
+
+    def left(m):
+        x = np.kron(np.eye(2), end.T) @ step(state, b[-1], m)
+        last, known = table.costs[7], end.T @ torque
         return table.problem.effort * m @ m + x @ last[:, :6] @ x + 2.0 * x @ last[:, 6:] @ known
 
-    m = gain @ np.concatenate([start, torque])
-    x = free @ np.concatenate([start, torque + np.cross(m, b_body)])
-    end = np.array(dcm((float(np.sqrt(1.0 - x[3:] @ x[3:] / 4.0)), *(0.5 * x[3:]).tolist())))
     by = 1e-2 * np.linalg.norm(m)
-    around = [left(m + step, end) for step in by * np.vstack([np.eye(3), -np.eye(3)])]
-    assert min(around) > left(m, end)
+    assert min(left(m + one) for one in by * np.vstack([np.eye(3), -np.eye(3)])) > left(m)
+
+
+def test_the_fields_looked_at_are_those_in_the_middle_of_the_steps_ahead(bench, monkeypatch):
+    seen = []
+
+    def spy(table, start, torque_nm, b_orbit_t, *rest):
+        seen.append(b_orbit_t)
+        return solution(table, start, torque_nm, b_orbit_t, *rest)
+
+    monkeypatch.setattr("fsw.core.laws.optimal.sdre.solution", spy)
+    orbit = bench.Orbit()
+    settings = bench.scheduled(bench.Body(np.diag([1.02, 1.85, 1.95]), most_am2=2.0), 1.0, "sdre")
+    inputs = bench.inputs_at(orbit, 700, 1.0, np.eye(3), np.array([1e-3, 2e-3, 1e-3]), None)
+    sdre(inputs._replace(ephemeris=bench.model_of(orbit)), (), bench.setpoint(), settings)
+    (b_orbit_t,) = seen
+    step_s = settings.schedules["sdre"].problem.step_s
+    t_s = 700.0 + step_s * (np.arange(len(b_orbit_t)) + 0.5)
+    expected = np.einsum("kij,kj->ki", orbit.c_orbit_from_eci(t_s), orbit.b_eci_t(t_s))
+    assert b_orbit_t == pytest.approx(expected, abs=1e-3 * np.abs(expected).max())

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from fsw.core.laws.plan.box import box_minimum
+from fsw.core.laws.plan.box import _lower, box_minimum
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -27,6 +27,13 @@ def test_cutting_the_free_minimum_is_not_the_minimum():
     h, g = np.array([[1.0, 0.9], [0.9, 1.0]]), np.array([-2.0, -1.0])
     assert np.clip(np.linalg.solve(h, -g), -1.0, 1.0).tolist() == [1.0, -1.0]
     assert box_minimum(h, g, 1.0) == pytest.approx([1.0, 0.1])
+
+
+def test_a_step_that_goes_too_far_is_halved_until_the_cost_falls():
+    """m^2 / 2 - m from zero along 5: 5, 2.5 and their halves until 1.25 costs less."""
+    h, slope, still = np.eye(1), np.array([-1.0]), np.zeros(1)
+    assert _lower(h, slope, still, np.array([5.0]), 9.0) == pytest.approx([1.25])
+    assert _lower(h, slope, still, np.array([-5.0]), 9.0) is None
 
 
 def test_at_rest_it_stays():

@@ -68,6 +68,15 @@ def test_is_what_the_best_dipole_leaves():
         assert ours == pytest.approx(least(x) - least(np.zeros(6)), rel=1e-6)
 
 
+def test_each_step_has_its_own_field_and_drift():
+    """Solved at once, or one step after the other from the last."""
+    field, last, drifts = fields(4, 5), end(4), 1e-5 * np.random.default_rng(4).normal(size=(5, 6))
+    whole = cost_to_go(PROBLEM, field, drifts, last)
+    for k in range(4, -1, -1):
+        (last,) = cost_to_go(PROBLEM, field[k : k + 1], drifts[k : k + 1], last)
+        assert np.array_equal(whole[k], last)
+
+
 def test_each_sum_is_in_the_order_of_its_terms():
     """To the last bit, unlike a product by BLAS."""
     random = np.random.default_rng(5)

@@ -64,6 +64,21 @@ def payoff(case, paid, saddle):
     return played
 
 
+@pytest.mark.parametrize(("times", "held"), [(1.05, True), (0.95, False)])
+def test_a_torque_that_costs_too_little_about_any_axis_wins(case, times, held):
+    """Less than the largest eigenvalue of G^T P G, though more than the others."""
+    problem, field = case
+    g = problem.free[:, 6:]
+    last = np.hstack([np.diag([1.0, 4.0, 9.0, 1e-9, 1e-9, 1e-9]), np.zeros((6, 3))])
+    values = np.linalg.eigvalsh(g.T @ last[:, :6] @ g)
+    assert values[1] < 0.9 * values[2]
+    if held:
+        game_backward(problem, field[:1], last, times * values[2])
+    else:
+        with pytest.raises(NotHeldError, match="gamma is too small"):
+            game_backward(problem, field[:1], last, times * values[2])
+
+
 START = np.array([3e-4, -2e-4, 1e-4, 0.1, -0.2, 0.15])
 
 
