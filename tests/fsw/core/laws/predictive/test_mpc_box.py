@@ -132,3 +132,20 @@ def test_of_a_turned_body_the_dipole_is_in_its_axes(asked, bench, turned, table)
     x = np.concatenate([c.T @ relative, theta, c.T @ np.array(table.problem.resting_nm)])
     found = asked(settings=bench.scheduled(body, 1.0, "mpc_box")).m_body_am2
     assert found == pytest.approx(c @ gain @ x, rel=1e-2, abs=1e-2 * np.abs(gain @ x).max())
+
+
+def test_the_programme_ends_in_the_cost_of_its_last_node(bench, monkeypatch):
+    """A quarter of an orbit ahead."""
+    ends = []
+
+    def spy(table, b_orbit_t, c, state, end_node):
+        ends.append((len(b_orbit_t), end_node))
+        return programme(table, b_orbit_t, c, state, end_node)
+
+    monkeypatch.setattr("fsw.core.laws.predictive.mpc_box.programme", spy)
+    orbit, body = bench.Orbit(), bench.Body(INERTIA, most_am2=2.0)
+    settings = bench.scheduled(body, 1.0, "mpc_box", {"horizon_orbits": 0.25})
+    inputs = bench.inputs_at(orbit, 700, 1.0, np.eye(3), np.array([1e-3, 2e-3, 1e-3]), None)
+    mpc_box(inputs._replace(ephemeris=bench.model_of(orbit)), (), bench.setpoint(), settings)
+    at = orbit.rate_radps * 700.0 / (2.0 * np.pi) * STEPS
+    assert ends == [(STEPS // 4, (int(at) + STEPS // 4) % STEPS)]

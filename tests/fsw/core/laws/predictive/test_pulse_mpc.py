@@ -11,9 +11,11 @@ from fsw.core.algebra.quaternion import rotate
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.laws import by_mode
 from fsw.core.laws.interface import FieldSample, LawInput
+from fsw.core.laws.optimal.lqr import STEPS, latitude_argument, node
+from fsw.core.laws.plan.orbit_ahead import orbit_ahead
 from fsw.core.laws.plan.pulse_model import NEVER, NO_PULSE, kicks
 from fsw.core.laws.plan.riccati import free_step
-from fsw.core.laws.predictive.pulse_mpc import REPORTED_TICKS, RETRY, PulseMpcGains, pulse_mpc
+from fsw.core.laws.predictive.pulse_mpc import REPORTED_TICKS, RETRY, PulseMpcGains, _costs, pulse_mpc
 from fsw.core.orbit.ephemeris import advance, reference_at
 from fsw.table.config import flight_config
 from fsw.table.table import flight_table
@@ -154,6 +156,73 @@ def test_in_point_a_pulse_is_asked_for_as_it_is_without_taking_off_the_residual_
 def test_gains_out_of_range_are_told(gains, told):
     with pytest.raises(ValueError, match=told):
         PulseMpcGains(**gains)
+
+
+class TestAhead:
+    """What the search is told of the opportunities to come, of an orbit that is no circle."""
+
+    TICK, DIPOLE = 2100, (0.02, -0.03, 0.05)
+
+    @pytest.fixture
+    def told(self, monkeypatch):
+        """The opportunities, and what stands at the end of the field looked at."""
+        seen = {}
+
+        def search(state, ahead, *rest):
+            seen["ahead"] = ahead
+            return NO_PULSE
+
+        def costs(problem, ahead, dipole_am2, last):
+            seen.setdefault("end", (len(ahead.b_orbit_t), last))
+            return _costs(problem, ahead, dipole_am2, last)
+
+        monkeypatch.setattr("fsw.core.laws.predictive.pulse_mpc.first_pulse", search)
+        monkeypatch.setattr("fsw.core.laws.predictive.pulse_mpc._costs", costs)
+        ask(inputs_at(self.TICK, TURNED, dipole_am2=self.DIPOLE))
+        return seen
+
+    @property
+    def middle_unix_s(self):
+        """Of the pulse that would be fired now."""
+        return CONFIG.ephemeris.epoch_unix_s + self.TICK + 0.5 * CONFIG.control.horizon_s
+
+    def orbit_at(self, steps):
+        step_s = CONFIG.control.pulse_model.problem.step_s
+        times = self.middle_unix_s + step_s * np.asarray(steps)
+        return orbit_ahead(CONFIG.ephemeris, times.tolist())
+
+    def test_a_pulse_acts_in_the_field_of_its_middle(self, told):
+        pulses, ahead = CONFIG.control.pulse_model, told["ahead"]
+        expected = kicks(pulses, self.orbit_at(np.arange(len(ahead))).b_orbit_t)
+        for k in range(1, len(ahead)):
+            assert ahead[k].kicks == pytest.approx(expected[k], abs=4e-3 * np.abs(expected).max())
+
+    def test_between_two_the_residual_dipole_and_the_changing_rate_move_it(self, told):
+        """G (m_r x b) - (w0' h, w0' h^2 / 2) e3."""
+        ahead, problem = told["ahead"], CONFIG.control.pulse_model.problem
+        middles, h = np.arange(len(ahead)) + 0.5, problem.step_s
+        before, after = (self.orbit_at(middles + by).rate_radps for by in (-0.5, 0.5))
+        rate_changes = (after - before) / h
+        torques_nm = np.cross(self.DIPOLE, self.orbit_at(middles).b_orbit_t)
+        expected = torques_nm @ problem.free[:, 6:].T
+        expected[:, 2] -= h * rate_changes
+        expected[:, 5] -= 0.5 * h * h * rate_changes
+        found = np.array([opportunity.drift for opportunity in ahead])
+        assert np.abs(h * rate_changes).max() > 1e-8
+        assert found[1:-1, 2] == pytest.approx(expected[1:-1, 2], rel=1e-3, abs=1e-9)
+        assert found[1:-1] == pytest.approx(expected[1:-1], rel=1e-2, abs=1e-8)
+
+    def test_at_the_end_stands_what_the_regulator_of_a_whole_orbit_has_there(self, told):
+        count, last = told["end"]
+        table, pulses = CONFIG.control.schedules["pulse_mpc"], CONFIG.control.pulse_model
+        later_s = pulses.searched * pulses.problem.step_s + count * table.problem.step_s
+        tick = self.TICK + round(later_s)
+        end = node(
+            latitude_argument(reference_at(advance(None, tick, CONFIG.ephemeris), tick, CONFIG.ephemeris))
+        )
+        near = [table.costs[(end + by) % STEPS] for by in (-1, 0, 1)]
+        assert any(np.array_equal(last[:, :9], cost) for cost in near)
+        assert not np.any(last[:, 9])
 
 
 @dataclass

@@ -10,7 +10,7 @@ from fsw.core.laws.plan.cost_to_go import cost_to_go
 from fsw.core.laws.plan.orbit_ahead import sight
 from fsw.core.laws.plan.pulse_model import NO_PULSE, Pulse, PulseModel, choices, kicks
 from fsw.core.laws.plan.riccati import regulator_problem
-from fsw.core.laws.predictive.pulse_plan import BARRED, SEQUENCES, Opportunity, first_pulse
+from fsw.core.laws.predictive.pulse_plan import BARRED, SEQUENCES, Opportunity, _least, first_pulse
 
 INERTIA = ((1.02, 0.03, -0.05), (0.03, 1.85, 0.02), (-0.05, 0.02, 1.95))
 INVERSE = tuple(map(tuple, np.linalg.inv(INERTIA).tolist()))
@@ -169,3 +169,14 @@ def cost_of_best(state, ahead):
         x = kicked @ f.T + g @ d + opportunity.drift
     p, slope = ahead[-1].cost[:, :6], ahead[-1].cost[:, 6:9] @ d + ahead[-1].cost[:, 9]
     return float((total + np.einsum("ni,ij,nj->n", x, p, x) + 2.0 * x @ slope).min())
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_so_many_sequences_go_on_and_of_equal_ones_the_first(seed):
+    """Among costs of which many are equal, and some barred."""
+    random = np.random.default_rng(seed)
+    costs = random.integers(0, 60, 400).astype(float)
+    costs[random.integers(0, 400, 40)] = np.inf
+    places = sorted(range(400), key=lambda place: (costs[place], place))[:SEQUENCES]
+    assert sorted(_least(costs).tolist()) == sorted(places)
+    assert np.sum(costs == costs[places[-1]]) > np.sum(costs[places] == costs[places[-1]])

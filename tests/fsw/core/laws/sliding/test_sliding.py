@@ -71,6 +71,32 @@ def surfaces(run, rate_radps):
     return np.linalg.norm(momentum / (rate_radps * MOMENT) + SlidingGains().slope * 0.25 * twice, axis=1)
 
 
+def test_both_integrals_grow_by_what_they_are_of(inputs, asked):
+    """The attitude, and the torque along the field that the coils cannot give."""
+    gains = SlidingIntegralGains()
+    held, w0 = np.array([2e-6, -1e-6, 3e-6, -2e-6, 1e-6, 4e-6]), inputs.reference.orbit_rate_radps
+    memory = np.array(asked("sliding_integral", inputs, tuple(held)).memory)
+    q0, *vector = inputs.attitude.q_body_from_orbit
+    vector = np.copysign(1.0, q0) * np.array(vector)
+    mean = held[:3] + gains.integral * w0**2 * MOMENT * vector
+    momentum = INERTIA @ inputs.attitude.omega_body_orbit_radps
+    s = momentum + gains.slope * w0 * MOMENT * vector + mean + held[3:]
+    b = np.array(inputs.b_body_t)
+    lost = b * (b @ (-gains.reach * w0 * s)) / (b @ b)
+    assert memory[:3] == pytest.approx(mean, rel=1e-9)
+    assert memory[3:] - held[3:] == pytest.approx(gains.lost * lost, rel=1e-6)
+    assert np.linalg.norm(lost) > 1e-9
+
+
+@pytest.mark.parametrize("first", [0, 3])
+def test_an_integral_beyond_what_the_coils_give_keeps_its_direction(inputs, asked, first):
+    held = np.zeros(6)
+    held[first : first + 3] = (0.3, -0.4, 1.2)
+    kept = np.array(asked("sliding_integral", inputs, tuple(held)).memory)[first : first + 3]
+    assert np.linalg.norm(kept) < 0.1
+    assert kept / np.linalg.norm(kept) == pytest.approx(held[first : first + 3] / 1.3, abs=0.02)
+
+
 def test_the_surface_is_that_of_the_source():
     assert surface((1e-3, -2e-3, 0.0), (0.1, 0.2, -0.3), 0.01) == pytest.approx((2e-3, 0.0, -3e-3), abs=1e-18)
 
