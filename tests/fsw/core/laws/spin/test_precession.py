@@ -143,6 +143,19 @@ class TestStages:
         assert stage(2.0, -0.1, gains) is SpinStage.SPIN
         assert stage(2.0, 0.002, gains) is SpinStage.DIRECTION
 
+    @pytest.mark.parametrize("number", [1, 2, 3])
+    def test_the_spin_has_both_coils_across_its_axis_fully_on(self, bench, turned, number):
+        """Each with the sign by which its own torque is about the axis."""
+        axis, lacking = number - 1, 0.04
+        c = turned((4, 3, 1), 40.0) @ bench.Orbit().c_orbit_from_eci(300.0)
+        inputs = bench.inputs_at(bench.Orbit(), 300, 1.0, c, 0.06 * np.eye(3)[axis], FieldSample())
+        settings = bench.config(bench.Body(most_am2=2.0), 1.0, {"relay_stages": StageGains(number, *TARGET)})
+        m = np.array(relay_stages(inputs, (), bench.setpoint(spin_radps=0.06 + lacking), settings).m_body_am2)
+        assert sorted(np.abs(m)) == [0.0, 2.0, 2.0]
+        assert m[axis] == 0.0
+        for coil in {0, 1, 2} - {axis}:
+            assert np.cross(m[coil] * np.eye(3)[coil], inputs.b_body_t)[axis] > 0.0
+
     def test_a_tumble_ends_in_the_spin_along_the_target(self, spinning):
         gains = StageGains(3.0, *TARGET)
         run = spinning(relay_stages, gains, 3.5, 0.1, 3.0, omega=(0.02, -0.03))
