@@ -171,6 +171,12 @@ def cost_of_best(state, ahead):
     return float((total + np.einsum("ni,ij,nj->n", x, p, x) + 2.0 * x @ slope).min())
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_so_many_sequences_go_on_of_costs_that_all_differ(seed):
+    costs = np.random.default_rng(seed).permutation(400).astype(float)
+    assert sorted(costs[_least(costs)].tolist()) == list(range(SEQUENCES))
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_so_many_sequences_go_on_and_of_equal_ones_the_first(seed):
     """Among costs of which many are equal, and some barred."""

@@ -73,9 +73,9 @@ def surfaces(run, rate_radps):
 
 def test_both_integrals_grow_by_what_they_are_of(inputs, asked):
     """The attitude, and the torque along the field that the coils cannot give."""
-    gains = SlidingIntegralGains()
+    gains = SlidingIntegralGains(lost=0.3)
     held, w0 = np.array([2e-6, -1e-6, 3e-6, -2e-6, 1e-6, 4e-6]), inputs.reference.orbit_rate_radps
-    memory = np.array(asked("sliding_integral", inputs, tuple(held)).memory)
+    memory = np.array(asked("sliding_integral", inputs, tuple(held), gains).memory)
     q0, *vector = inputs.attitude.q_body_from_orbit
     vector = np.copysign(1.0, q0) * np.array(vector)
     mean = held[:3] + gains.integral * w0**2 * MOMENT * vector
