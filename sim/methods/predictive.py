@@ -48,8 +48,11 @@ METHODS: tuple[Method, ...] = (
         where="fsw/core/laws/predictive/pulse_mpc.py",
         claim="The choice among pulses looks beyond the next one; the search is this project's.",
         claims=(
-            "pulse_mpc.median",
-            "pulse_mpc.none_worse",
+            "pulse_mpc.rms_zero",
+            "pulse_mpc.rms_3e-8",
+            "pulse_mpc.rms_1e-7",
+            "pulse_mpc-population.median",
+            "pulse_mpc-population.none_worse",
         ),
     ),
     Method(
