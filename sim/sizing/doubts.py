@@ -166,12 +166,10 @@ def _beyond_bounds(scenario: Scenario) -> Iterator[str]:
     """What the satellite is differs from what the onboard table says by more than its bound admits."""
     if scenario.knowledge == "perfect":
         return
-    table = flight_table(scenario)
-    known = table_bounds(table)
+    known = table_bounds(flight_table(scenario))
     disturbance, coils = scenario.disturbance, scenario.coils
-    dipole_am2 = SLIGHT * coils.largest_am2 * coils.on_part
+    dipole_am2, torque_nm = _slight(scenario)
     gains = tuple(factor - 1.0 for factor in coils.dipole_scale)
-    torque_nm = dipole_am2 * field_across(body_of(scenario))
     for key, off, bound, slight, of_table in (
         ("disturbance.torque_nm", disturbance.torque_nm, known.torque_nm, torque_nm, "torque_nm"),
         (
@@ -206,12 +204,18 @@ def _beyond_bounds(scenario: Scenario) -> Iterator[str]:
             )
 
 
+def _slight(scenario: Scenario) -> tuple[float, float]:
+    """Dipole (A m^2) and torque (N m) that are of no consequence beside what the coils give in the mean."""
+    dipole_am2 = SLIGHT * scenario.coils.largest_am2 * scenario.coils.on_part
+    return dipole_am2, dipole_am2 * field_across(body_of(scenario))
+
+
 def _drag_and_light(scenario: Scenario) -> Iterator[str]:
     """They change along the orbit, faster than the filter may follow by that bound."""
     if scenario.knowledge == "perfect" or not scenario.body.plates:
         return
     known, peak_nm = table_bounds(flight_table(scenario)), float(np.abs(surface_torque(scenario)).max())
-    if peak_nm > SLIGHT * known.torque_nm and LEAST_TIMES * peak_nm > known.torque_nm:
+    if LEAST_TIMES * peak_nm > max(known.torque_nm, _slight(scenario)[1]):
         yield (
             f"disturbance.drag and .solar_pressure reach {peak_nm:.2g} N m on body.plates, and "
             f"flight.uncertainty.torque_nm = {known.torque_nm:.2g}: the filter follows what changes along "

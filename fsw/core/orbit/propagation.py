@@ -58,7 +58,8 @@ def sgp4_orbit(line1: str, line2: str) -> TleOrbit:
 
     Raises:
         ValueError: a line is malformed or its checksum wrong, the lines are of two satellites, SGP4 refuses
-            the elements, or they are of a deep-space orbit, whose propagator remembers earlier calls.
+            the elements, or they are of a deep-space orbit, whose propagator remembers earlier calls, or
+            lead through the Earth.
     """
     satellite = read_tle(line1, line2)
     _check_propagator(satellite, satellite.satnum_str)
@@ -88,8 +89,6 @@ def element_orbit(elements: Elements) -> ElementOrbit:
         radians(elements.raan_deg),
     )
     _check_propagator(satellite, "the ground")
-    if satellite.altp <= 0.0:
-        raise ValueError(f"the perigee is {-satellite.altp:.3f} Earth radii below the ground")
     return ElementOrbit(elements, satellite)
 
 
@@ -99,6 +98,8 @@ def _check_propagator(satellite: Any, name: str) -> None:  # noqa: ANN401  (of a
         raise ValueError(f"SGP4 refuses the elements of {name}: {SGP4_ERRORS[error]}")
     if satellite.method != "n":
         raise ValueError(f"{name} takes 225 minutes or more an orbit: the field is for low orbits")
+    if satellite.altp <= 0.0:
+        raise ValueError(f"the perigee is {-satellite.altp:.3f} Earth radii below the ground")
 
 
 def circular_orbit(

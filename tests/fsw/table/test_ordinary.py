@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from fsw.input.schema import TableError
 from fsw.table.ordinary import ordinary_dipole_am2, ordinary_torque_nm
 from fsw.table.table import flight_table
 from fsw.table.uncertainty import LARGEST_FIELD_T
@@ -53,6 +54,17 @@ def test_of_an_orbit_the_perigee_counts():
     assert table_at(tle=TRANSFER).orbit.perigee_km == pytest.approx(576.4, abs=4.0)
     assert table_at(450.0).orbit.perigee_km == 450.0
     assert table_at(tle=TRANSFER).ordinary.torque_nm > 10.0 * table_at(tle=TLE).ordinary.torque_nm
+
+
+THROUGH_THE_EARTH = [
+    "1 22826U 93061D   15086.11593543  .00000251  00000-0  11414-3 0  9992",
+    "2 22826  98.6946  36.4208 2000000 173.8349 186.2944 14.30166407121352",
+]
+
+
+def test_an_orbit_through_the_earth_is_refused_in_a_sentence():
+    with pytest.raises(TableError, match=r"orbit: the perigee is 0\.101 Earth radii below the ground"):
+        table_at(tle=THROUGH_THE_EARTH)
 
 
 def test_no_torque_is_ordinary_that_the_coils_could_not_hold():

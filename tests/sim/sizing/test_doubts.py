@@ -87,6 +87,14 @@ def test_drag_and_light_need_a_bound_by_which_the_filter_follows_them(bound_nm, 
     assert all("reach 1e-08 N m on body.plates" in doubt and "5.2e-08" in doubt for doubt in told)
 
 
+def test_drag_that_is_of_no_consequence_needs_no_bound():
+    """A hundredth of the density, and no light, on a satellite that declares no torque at all."""
+    thin = ("disturbance.drag.density_scale=0.01", "disturbance.solar_pressure.flux_wpm2=1")
+    exact = ("flight.uncertainty.torque_nm=0", "disturbance.torque_nm=[0,0,0]")
+    assert found("cubesat6u", *thin, *exact) == []
+    assert found("cubesat6u", *exact) != []
+
+
 def telecommand(**content):
     return {"telecommand": [{"at_s": 50.0, "message": "TC_CLEAR"}, {"at_s": 600.0, **content}]}
 
