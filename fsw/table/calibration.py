@@ -11,7 +11,7 @@ from typing import Self
 from pydantic import Field, model_validator
 
 from fsw.core.actuation.own_field import OwnField
-from fsw.core.algebra.vector import Mat3, Vec3, dot, norm, product, scale, transpose
+from fsw.core.algebra.vector import Mat3, Vec3, dot, inverse, norm, product, scale, transpose
 from fsw.core.gate.calibration import NO_CALIBRATION, Calibration, MagnetometerCalibration, Outputs
 from fsw.core.laws.plan.pulse_model import AXES
 from fsw.input.schema import Section, Square, Triple
@@ -25,15 +25,26 @@ NEAR_AXIS = sqrt(0.5)
 """Least cosine between a coil and the body axis that it serves."""
 ORTHONORMAL = 1e-3
 UNCHANGED = Outputs((0, 1, 2), (1, 1, 1))
+ORDINARY_RANGE_NT, BUS_RANGE_NT = 65000.0, 65534.0
+"""Largest readings: of a magnetometer whose range is not said, and that its message carries."""
 EDGE_TICKS = 0.05
 """How near to a whole number of ticks a delay is taken for one."""
 
 
 class MagnetometerTable(Section):
-    """b_body = matrix (reading - offset_nt): offset, and scale, non-orthogonality and turn as one matrix."""
+    """b_body = matrix (reading - offset_nt): offset, and scale, non-orthogonality and turn as one matrix.
+
+    Beyond a reading of ``range_nt`` an axis saturates; None: as ordinary magnetometers do.
+    """
 
     offset_nt: Triple = NO_OFFSET
     matrix: Square = AXES
+    range_nt: float | None = Field(default=None, gt=0.0, le=BUS_RANGE_NT)
+
+    @property
+    def most_nt(self) -> float:
+        """The largest reading of an axis."""
+        return self.range_nt or ORDINARY_RANGE_NT
 
     @model_validator(mode="after")
     def _can_be(self) -> Self:
@@ -122,12 +133,20 @@ def outputs_of(matrix: Mat3) -> Outputs:
     )
 
 
+def largest_field_nt(table: MagnetometerTable) -> float:
+    """The strength of a field that saturates no axis, whatever its direction; negative if none does not."""
+    sensed = inverse(table.matrix)
+    return min(
+        (table.most_nt - abs(offset)) / norm(row) for offset, row in zip(table.offset_nt, sensed, strict=True)
+    )
+
+
 def calibration(table: CalibrationTable) -> Calibration:
     """What turns the samples and requests."""
     magnetometer, coils, sun = table.magnetometer, table.coils, table.sun
     found = NO_CALIBRATION
     if magnetometer is not None and magnetometer != MagnetometerTable():
-        of_field = MagnetometerCalibration(magnetometer.offset_nt, magnetometer.matrix)
+        of_field = MagnetometerCalibration(magnetometer.offset_nt, magnetometer.matrix, magnetometer.most_nt)
         found = replace(found, magnetometer=of_field)
     if sun is not None and sun != SunTable():
         found = replace(found, sun=sun.matrix)

@@ -7,6 +7,7 @@ from fsw.core.estimation.estimator import EstimatorConfig
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.start.first import StartLimits
 from fsw.core.fdir.sensors.plausibility import PlausibilityConfig
+from fsw.table.calibration import MagnetometerTable, largest_field_nt
 from fsw.table.cells import cell_set
 from fsw.table.ordinary import mean_moment
 from fsw.table.table import FlightTable
@@ -105,9 +106,12 @@ def plausibility_config(table: FlightTable) -> PlausibilityConfig:
     known, tuning, sigmas = table_bounds(table), table.estimator, sqrt(GATE_NIS)
     noise_t, noise_rad = tuning.magnetometer_sigma_nt * NT, _sun_sigma_rad(table)
     model = known.mag_scale_part + 3.0 * known.along_track_m / ORBIT_RADIUS_M
+    field_t = sqrt(3.0) * (known.mag_bias_t + sigmas * noise_t)
+    measurable_t = largest_field_nt(table.calibration.magnetometer or MagnetometerTable()) * NT
     return PlausibilityConfig(
-        field_t=sqrt(3.0) * (known.mag_bias_t + sigmas * noise_t),
+        field_t=field_t,
         field_part=model,
+        in_range_t=(measurable_t - field_t) / (1.0 + model),
         angle_rad=known.mag_turn_rad + known.sun_turn_rad + model + sigmas * noise_rad,
         sun_norm=sigmas * noise_rad,
         late_ticks=ceil(known.latency_s * table.time.tick_hz - 1e-9),

@@ -10,11 +10,14 @@ from fsw.core.commands import HANDLERS, Situation
 from fsw.core.orbit.tle import tle_elements
 from fsw.core.state import FlightState
 from fsw.core.step import boot
+from fsw.table.calibration import MagnetometerTable
 from fsw.table.config import flight_config
 from fsw.table.estimator import table_bounds
 from fsw.table.uncertainty import ROUNDING
 from fsw.wire.messages import TcAckResult, TcGain, TcLaw, TcOrbitElement, TcParameter, TcSpin
 from sim.design.from_scenario import body_of
+from sim.scenario.assemble import plant_config
+from sim.scenario.residual_errors import coil_errors, magnetometer_errors, reading_of
 from sim.scenario.schema import Scenario, flight_table
 from sim.sizing.expectation import expect, field_across
 from sim.sizing.levels import levels_against
@@ -149,11 +152,20 @@ def _sensors(scenario: Scenario) -> Iterator[str]:
                 f"is it in {unit}?"
             )
     strongest_nt = 1e9 * 2.0 * body_of(scenario).field_t
-    if magnetometer.saturation_nt < strongest_nt:
+    sensed, offset_t = reading_of(plant_config(scenario, seed=0).magnetometer)
+    largest_nt = float(np.max(strongest_nt * np.linalg.norm(sensed, axis=1) + 1e9 * np.abs(offset_t)))
+    if magnetometer.saturation_nt < largest_nt:
         yield (
-            f"sensors.magnetometer.saturation_nt = {magnetometer.saturation_nt:g} is less than the field "
-            f"over the poles of this orbit, {strongest_nt:.0f} nT"
+            f"sensors.magnetometer.saturation_nt = {magnetometer.saturation_nt:g} is less than the "
+            f"{largest_nt:.0f} nT of offset and field over the poles of this orbit, {strongest_nt:.0f} nT"
         )
+        known = flight_table(scenario).calibration.magnetometer or MagnetometerTable()
+        if known.most_nt != magnetometer.saturation_nt:
+            yield (
+                f"flight.calibration.magnetometer.range_nt = {known.most_nt:g} is not the sensor's, "
+                f"sensors.magnetometer.saturation_nt = {magnetometer.saturation_nt:g}: what is beyond it is "
+                "taken for a fault"
+            )
 
 
 def _start(scenario: Scenario) -> Iterator[str]:
@@ -166,10 +178,12 @@ def _beyond_bounds(scenario: Scenario) -> Iterator[str]:
     """What the satellite is differs from what the onboard table says by more than its bound admits."""
     if scenario.knowledge == "perfect":
         return
-    known = table_bounds(flight_table(scenario))
-    disturbance, coils = scenario.disturbance, scenario.coils
+    table, plant = flight_table(scenario), plant_config(scenario, seed=0)
+    known, disturbance = table_bounds(table), scenario.disturbance
     dipole_am2, torque_nm = _slight(scenario)
-    gains = tuple(factor - 1.0 for factor in coils.dipole_scale)
+    bias_t = magnetometer_errors(plant.magnetometer, table.calibration).bias_t
+    dipoles = coil_errors(plant.coils, table.calibration) + np.eye(3)
+    gains = (np.linalg.norm(dipoles, axis=0) - 1.0).tolist()
     for key, off, bound, slight, of_table in (
         ("disturbance.torque_nm", disturbance.torque_nm, known.torque_nm, torque_nm, "torque_nm"),
         (
@@ -181,7 +195,7 @@ def _beyond_bounds(scenario: Scenario) -> Iterator[str]:
         ),
         (
             "sensors.magnetometer.bias_nt",
-            scenario.sensors.magnetometer.bias_nt,
+            [1e9 * bias for bias in bias_t],
             1e9 * known.mag_bias_t,
             SLIGHT_NT,
             "magnetometer_bias_nt",

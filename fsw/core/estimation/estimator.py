@@ -12,9 +12,9 @@ from fsw.core.estimation.cells.update import NO_CELLS, CellsUsed, faded, update_
 from fsw.core.estimation.dynamics.error_dynamics import FAST_RADPS, KNOWN_RADPS, SLOW_RADPS, Driven
 from fsw.core.estimation.measurement import field_sampled
 from fsw.core.estimation.mekf import Estimate
-from fsw.core.estimation.mekf_config import MekfConfig, with_frozen_parameters
+from fsw.core.estimation.mekf_config import MekfConfig, with_frozen_parameters, with_open_direction
 from fsw.core.estimation.parameters import Parameters
-from fsw.core.estimation.samples import sensed_sun, usable_cells, usable_field, usable_sun
+from fsw.core.estimation.samples import saturated_field, sensed_sun, usable_cells, usable_field, usable_sun
 from fsw.core.estimation.start.batch import EMPTY, SampleBatch, waited
 from fsw.core.estimation.start.first import StartLimits, first_estimate, from_batch
 from fsw.core.gate.readings import Readings
@@ -165,6 +165,9 @@ def update(
         return begun, Used(True, True, blanked)
 
     tuning = with_frozen_parameters(config.mekf) if state.frozen else config.mekf
+    limited = saturated_field(readings)
+    if limited is not None:
+        field, blanked, tuning = limited[0], False, with_open_direction(tuning, limited[1])
     estimate, took_field, took_sun = _updated(state.estimate, field, sun, reference, tuning)
     rejected = (field is not None and not took_field) + (sun is not None and not took_sun)
     by_cell = NO_CELLS

@@ -24,6 +24,9 @@ from fsw.core.estimation.parameters import (
 from fsw.core.estimation.sensitivity_map import sensitivity_map
 from fsw.core.estimation.unobservable import Unobservable, unobservable
 
+OPEN_T = 1e-3
+"""Noise of an axis that shows nothing: many times the Earth's field."""
+
 
 @dataclass(frozen=True, slots=True)
 class MekfConfig:
@@ -107,6 +110,17 @@ def piece_of_tick(config: MekfConfig, pieces: int) -> MekfConfig:
 def with_frozen_parameters(config: MekfConfig) -> MekfConfig:
     """The filter that estimates attitude and rate alone, and reckons with the error of its parameters."""
     return replace(config, considered=slice(6, config.layout.size))
+
+
+def with_open_direction(config: MekfConfig, direction_body: Vec3) -> MekfConfig:
+    """The filter of a tick in which the magnetometer shows nothing of the field along this direction."""
+    open_noise = np.zeros((6, 6))
+    open_noise[0:3, 0:3] = OPEN_T**2 * np.outer(direction_body, direction_body)
+    return replace(
+        config,
+        field_noise=config.field_noise + open_noise[0:3, 0:3],
+        both_noise=config.both_noise + open_noise,
+    )
 
 
 def with_wheel(

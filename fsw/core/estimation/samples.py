@@ -1,6 +1,6 @@
 """Which samples of the boards the filter may use."""
 
-from fsw.core.algebra.vector import Vec3
+from fsw.core.algebra.vector import Vec3, scale
 from fsw.core.estimation.cells.cell_set import CellSet
 from fsw.core.estimation.cells.coarse_sun import coarse_sun
 from fsw.core.gate.readings import Readings
@@ -14,6 +14,14 @@ def usable_field(readings: Readings) -> Vec3 | None:
     if field is None or not field.valid or not coils_idle(readings):
         return None
     return (field.b_x * TESLA_PER_NT, field.b_y * TESLA_PER_NT, field.b_z * TESLA_PER_NT)
+
+
+def saturated_field(readings: Readings) -> tuple[Vec3, Vec3] | None:
+    """A field sample with one axis at the end of its range, T, and the direction of which it says nothing."""
+    field, saturated = readings.field, readings.saturated
+    if field is None or len(saturated) != 1 or not coils_idle(readings):
+        return None
+    return scale(TESLA_PER_NT, (field.b_x, field.b_y, field.b_z)), saturated[0]
 
 
 def coils_idle(readings: Readings) -> bool:

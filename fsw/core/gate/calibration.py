@@ -9,16 +9,17 @@ its true axis are in ``coil_axes`` of the actuation.
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from fsw.core.algebra.vector import Mat3, Vec3, sub, transform
+from fsw.core.algebra.vector import Mat3, Vec3, sub, transform, transpose
 from fsw.core.gate.readings import Readings
 from fsw.wire.messages import CoilDipole, CoilFire, MagField, SunVector
 
 
 class MagnetometerCalibration(NamedTuple):
-    """b_body = ``matrix`` (z - ``offset_nt``), nT."""
+    """b_body = ``matrix`` (z - ``offset_nt``), nT; z saturates beyond ``range_nt``."""
 
     offset_nt: Vec3
     matrix: Mat3
+    range_nt: float
 
 
 class Outputs(NamedTuple):
@@ -50,7 +51,10 @@ def calibrated(readings: Readings, calibration: Calibration) -> Readings:
         return readings
     field, sun, outputs = readings.field, readings.sun, calibration.outputs
     if field is not None and calibration.magnetometer is not None:
-        readings = readings._replace(field=_body_field(field, calibration.magnetometer))
+        readings = readings._replace(
+            field=_body_field(field, calibration.magnetometer),
+            saturated=() if field.valid else _saturated(field, calibration.magnetometer),
+        )
     if sun is not None and calibration.sun is not None:
         readings = readings._replace(sun=_body_sun(sun, calibration.sun))
     return readings if outputs is None else _by_axis(readings, outputs)
@@ -59,6 +63,12 @@ def calibrated(readings: Readings, calibration: Calibration) -> Readings:
 def _body_field(sample: MagField, calibration: MagnetometerCalibration) -> MagField:
     x, y, z = transform(calibration.matrix, sub((sample.b_x, sample.b_y, sample.b_z), calibration.offset_nt))
     return sample._replace(b_x=x, b_y=y, b_z=z)
+
+
+def _saturated(sample: MagField, calibration: MagnetometerCalibration) -> tuple[Vec3, ...]:
+    """By axis at the end of its range, what a unit of its reading is, body axes."""
+    columns = zip((sample.b_x, sample.b_y, sample.b_z), transpose(calibration.matrix), strict=True)
+    return tuple([column for reading, column in columns if abs(reading) >= calibration.range_nt])
 
 
 def _body_sun(sample: SunVector, body_from_sensor: Mat3) -> SunVector:

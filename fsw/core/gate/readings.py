@@ -7,6 +7,7 @@ in range. Everything else is counted and dropped, and so is a telecommand in the
 from typing import NamedTuple
 from zlib import crc32
 
+from fsw.core.algebra.vector import Vec3
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
     SENDERS,
@@ -104,7 +105,9 @@ class Readings(NamedTuple):
     before. ``under_own_id`` is the lowest identifier of fsw itself under which a whole frame came, 0 if there
     is none. ``end`` is a PLANT_END after which the flight has gone on. ``quiet``: no coil has driven for as
     long as a field sample may be old. ``unusable_cells``: those of ``cells`` that are not to be trusted.
-    ``settled``: what the coils add to the field sample is known, and has been taken off.
+    ``settled``: what the coils add to the field sample is known, and has been taken off. ``saturated``: for
+    each axis of the magnetometer that is at the end of its range, the direction of ``field``, body axes, that
+    follows from its reading.
     """
 
     field: MagField | None
@@ -124,6 +127,7 @@ class Readings(NamedTuple):
     quiet: bool = True
     unusable_cells: tuple[int, ...] = ()
     settled: bool = False
+    saturated: tuple[Vec3, ...] = ()
 
 
 NOTHING = Readings(None, None, None, None, None, None)

@@ -10,10 +10,11 @@ from fsw.table.table import FlightTable
 from fsw.table.uncertainty import limits, priors
 from sim.plant.config import PlantConfig
 from sim.plant.dynamics.disturbances import bias_torque, effects, residual_dipole
-from sim.plant.rotation import ZERO, from_vector, matrix
+from sim.plant.rotation import ZERO
 from sim.plant.sensor_config import SunCellsConfig, SunSensorConfig
 from sim.record.truth import Histories
 from sim.scenario.assemble import plant_config
+from sim.scenario.residual_errors import coil_errors, magnetometer_errors, sun_turn_rad
 from sim.scenario.schema import Scenario, flight_table
 
 Json = dict[str, Any]
@@ -46,19 +47,23 @@ def parameter_figures(scenario: Scenario, truth: Histories, estimate: Estimate |
 
 
 def true_parameters(scenario: Scenario, table: FlightTable, truth: Histories) -> dict[str, Values]:
-    """What the parameters really are; torque and dipole, which may vary, at the end, without remanence."""
-    plant = plant_config(scenario, seed=0)
+    """What the parameters really are, of sensors and coils beside their calibration.
+
+    Torque and dipole, which may vary, at the end, without remanence.
+    """
+    plant, calibration = plant_config(scenario, seed=0), table.calibration
+    magnetometer = magnetometer_errors(plant.magnetometer, calibration)
     true = {
-        "mag_bias_t": plant.magnetometer.bias_t,
+        "mag_bias_t": magnetometer.bias_t,
         "dipole_body_am2": residual_dipole(plant.disturbance, truth["lit"][-1], ZERO),
-        "coil_error": _coil_error(plant),
+        "coil_error": tuple(coil_errors(plant.coils, calibration).ravel().tolist()),
         "inertia_error_kgm2": _inertia_error(plant, table),
-        "mag_turn_rad": plant.magnetometer.misalignment_rad,
-        "mag_scale": tuple(scale - 1.0 for scale in plant.magnetometer.scale),
+        "mag_turn_rad": magnetometer.turn_rad,
+        "mag_scale": magnetometer.scale,
         "delay_s": (plant.magnetometer.latency_s, plant.sun_sensor.latency_s),
     }
     if isinstance(plant.sun_sensor, SunSensorConfig):  # cells are turned each by itself
-        true["sun_turn_rad"] = plant.sun_sensor.misalignment_rad
+        true["sun_turn_rad"] = sun_turn_rad(plant.sun_sensor, calibration)
     elif table.cells is not None:
         true |= _of_cells(plant.sun_sensor, table.cells)
     if not effects(plant):  # torques that follow the motion have no one value
@@ -72,17 +77,6 @@ def _of_cells(true: SunCellsConfig, assumed: CellTable) -> dict[str, Values]:
     gains = [cell.gain / full - 1.0 for cell, full in zip(true.cells, nominal, strict=True)]
     light = {"earth_light": (true.albedo - assumed.albedo,)} if assumed.albedo else {}
     return {"cell_gain": (*gains, *(0.0,) * (MOST_CELLS - len(gains))), **light}
-
-
-def _coil_error(plant: PlantConfig) -> Values:
-    """G by rows: what the dipole of each coil, a column, differs by from one A m^2 along its axis."""
-    coils = plant.coils
-    axes = [matrix(from_vector(turn))[coil] for coil, turn in enumerate(coils.misalignment_rad)]
-    return tuple(
-        coils.dipole_scale[column] * axes[column][row] - (row == column)
-        for row in range(3)
-        for column in range(3)
-    )
 
 
 def _inertia_error(plant: PlantConfig, table: FlightTable) -> Values:

@@ -15,12 +15,11 @@ from sim.commissioning.calibrate.flown.run_fit import RunCalibration, calibrated
 from sim.commissioning.calibrate.flown.samples import read_samples
 from sim.commissioning.calibrate.flown.tables import tables
 from sim.flight.virtual import fly_virtual
-from sim.plant.hardware.sensors import MagnetometerPhysics
-from sim.plant.sensor_config import MagnetometerConfig
 from sim.record import run_dir
 from sim.record.pace import Pace
 from sim.record.truth import read_truth
 from sim.scenario.assemble import plant_config
+from sim.scenario.residual_errors import reading_of
 from sim.scenario.schema import Scenario, flight_table, load
 from sim.validate.commissioning.wirings import SCENARIO, satellite
 
@@ -59,22 +58,12 @@ class TrueCalibration(NamedTuple):
 
 
 def true_calibration(scenario: Scenario) -> TrueCalibration:
-    """What a perfect calibration finds, by asking the plant's own sensor for unit fields."""
-    section, config = scenario.sensors.magnetometer, plant_config(scenario, 1).magnetometer
-    bare = MagnetometerConfig(
-        bias_t=config.bias_t,
-        scale=config.scale,
-        misalignment_rad=config.misalignment_rad,
-        non_orthogonality_rad=config.non_orthogonality_rad,
-        saturation_t=1.0,
-    )
-    sensor = MagnetometerPhysics(bare, 1)
-    still = np.array(sensor.measure((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))[0])
-    unit = [np.array(sensor.measure(tuple(row), (0.0, 0.0, 0.0))[0]) - still for row in np.eye(3) * 1e-4]
-    matrix: Array = np.asarray(np.linalg.inv(np.array(unit).T / 1e-4), float)
+    """What a perfect calibration finds."""
+    section = scenario.sensors.magnetometer
+    sensed, offset_t = reading_of(plant_config(scenario, 1).magnetometer)
     return TrueCalibration(
-        matrix,
-        1e9 * still,
+        np.asarray(np.linalg.inv(sensed), float),
+        1e9 * offset_t,
         np.array(section.coil_field_nt_per_am2),
         section.latency_s,
     )

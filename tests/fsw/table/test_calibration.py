@@ -6,6 +6,7 @@ import pytest
 from fsw.core.gate.calibration import NO_CALIBRATION
 from fsw.core.laws.plan.pulse_model import AXES
 from fsw.input.schema import TableError
+from fsw.table.calibration import MagnetometerTable, largest_field_nt
 from fsw.table.config import flight_config
 from fsw.table.table import flight_table
 
@@ -41,6 +42,31 @@ def test_what_is_given_counts_in_the_crc():
     plain = flight_table({}, "table.toml").crc
     given = flight_table({"calibration": {"magnetometer": {"offset_nt": [1.0, 0.0, 0.0]}}}, "table.toml").crc
     assert given != plain
+
+
+def test_the_range_of_the_magnetometer_counts_by_itself():
+    plain, said = (
+        flight_table({"calibration": {"magnetometer": {"offset_nt": [1.0, 0.0, 0.0]} | more}}, "table.toml")
+        for more in ({}, {"range_nt": 65000.0})
+    )
+    assert plain.crc != said.crc, "a key that is left out is in no table of before"
+    assert config(magnetometer={"range_nt": 40000.0}).calibration.magnetometer.range_nt == 40000.0
+    assert config(magnetometer={"offset_nt": [1.0, 0.0, 0.0]}).calibration.magnetometer.range_nt == 65000.0
+    with pytest.raises(TableError, match=r"calibration.magnetometer.range_nt = 70000.0 is not allowed"):
+        config(magnetometer={"range_nt": 70000.0})
+
+
+def test_a_field_below_the_largest_saturates_no_axis_whatever_its_direction():
+    offset, matrix = (
+        np.array([31000.0, -24000.0, 900.0]),
+        np.array([[0.96, 0.05, 0.0], [-0.04, 1.04, 0.02], [0.1, 0.0, 1.01]]),
+    )
+    table = MagnetometerTable(offset_nt=offset.tolist(), matrix=matrix.tolist(), range_nt=60000.0)
+    strength = largest_field_nt(table)
+    directions = np.random.default_rng(5).normal(size=(20000, 3))
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    readings = offset + strength * directions @ np.linalg.inv(matrix).T
+    assert 59900.0 < np.abs(readings).max() <= 60000.0
 
 
 def test_coils_are_split_into_outputs_and_axes():

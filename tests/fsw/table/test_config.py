@@ -74,6 +74,7 @@ class TestTicks:
         assert config.plausibility == PlausibilityConfig(
             field_t=pytest.approx(sqrt(3.0) * (700e-9 + edge * 150e-9)),
             field_part=pytest.approx(0.004 + 3.0 * 7.0e3 / 7.0e6),
+            in_range_t=pytest.approx((65000e-9 - sqrt(3.0) * (700e-9 + edge * 150e-9)) / 1.007),
             angle_rad=pytest.approx(radians(0.9 + 0.3 + edge * 0.2) + 0.007),
             sun_norm=pytest.approx(edge * radians(0.2)),
             late_ticks=3,

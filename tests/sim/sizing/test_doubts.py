@@ -50,6 +50,19 @@ def test_a_mistake_is_named_with_key_and_figure(setting, words):
     assert any(all(word in doubt for word in words) for doubt in told), told
 
 
+def test_a_magnetometer_beyond_its_range_by_its_offset():
+    offset, known = (
+        "sensors.magnetometer.bias_nt=[0,30000,0]",
+        "flight.calibration.magnetometer.offset_nt=[0,30000,0]",
+    )
+    (doubt,) = found("microsat", offset, known)
+    assert "saturation_nt = 65000 is less than the 72" in doubt
+    _, other = found("microsat", offset, known, "sensors.magnetometer.saturation_nt=64000")
+    assert "range_nt = 65000 is not the sensor's, sensors.magnetometer.saturation_nt = 64000" in other
+    near = "sensors.magnetometer.bias_nt=[0,3000,0]", "flight.calibration.magnetometer.offset_nt=[0,3000,0]"
+    assert found("microsat", *near) == []
+
+
 def test_a_tle_of_another_year():
     (doubt,) = found("microsat", "time.epoch_utc=2025-04-01T00:00:00Z")
     assert "orbit.tle is of 2015-03-27 and the flight begins on 2025-04-01, 10.0 years later" in doubt

@@ -26,12 +26,14 @@ DARK: Vec3 = (0.0, 0.0, 0.0)
 class PlausibilityConfig(NamedTuple):
     """Largest deviations if all is well: of the field, T and in parts of it, and of directions, rad.
 
-    ``sun_norm``: of the Sun vector's length; ``late_ticks``: for so long a sample may be repeated; ``cells``:
-    those that give the Sun in place of a sensor.
+    ``in_range_t``: in a field up to that strength no axis of the magnetometer saturates; ``sun_norm``: of the
+    Sun vector's length; ``late_ticks``: for so long a sample may be repeated; ``cells``: those that give the
+    Sun in place of a sensor.
     """
 
     field_t: float
     field_part: float
+    in_range_t: float
     angle_rad: float
     sun_norm: float
     late_ticks: int
@@ -73,7 +75,12 @@ CHECKS: tuple[tuple[Sensor, SensorFault, Callable[[Seen], bool]], ...] = (
     (
         Sensor.MAGNETOMETER,
         SensorFault.SATURATED,
-        lambda s: s.readings.field is not None and not s.readings.field.valid and coils_idle(s.readings),
+        lambda s: (
+            s.readings.field is not None
+            and not s.readings.field.valid
+            and coils_idle(s.readings)
+            and not (s.readings.saturated and s.modelled_t > s.limits.in_range_t)
+        ),
     ),
     (Sensor.MAGNETOMETER, SensorFault.FROZEN, lambda s: s.field_still and not s.sun_still),
     (

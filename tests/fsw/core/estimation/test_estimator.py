@@ -23,7 +23,7 @@ from estimator_samples import (
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fsw.core.algebra.quaternion import multiply, normalise, rotate
+from fsw.core.algebra.quaternion import from_small_rotation, multiply, normalise, rotate
 from fsw.core.algebra.vector import ZERO, add, cross, norm, scale, unit
 from fsw.core.estimation import mekf
 from fsw.core.estimation.dynamics.error_dynamics import NOT_DRIVEN, Driven
@@ -34,6 +34,8 @@ from fsw.core.estimation.estimator import (
     Used,
     update,
 )
+from fsw.core.estimation.kalman import LeanKalmanFilter
+from fsw.core.estimation.measurement import field_prediction
 from fsw.core.estimation.orbital_attitude import orbital_attitude
 from fsw.core.estimation.parameters import NAMES
 from fsw.core.estimation.parameters import NOTHING as NO_DIFFERENCE
@@ -146,6 +148,47 @@ class TestRunning:
         without, _ = step(settled, seen_from(field=None, coil=pulse))
         assert with_sample.estimate.q_body_from_eci == without.estimate.q_body_from_eci
         np.testing.assert_array_equal(with_sample.estimate.covariance, without.estimate.covariance)
+
+    def test_an_axis_at_the_end_of_its_range_counts_for_nothing_and_the_others_as_ever(self, settled):
+        """Against a filter that is given the two other numbers, in turn, each by itself."""
+        open_body = unit((0.3, -0.8, 0.5))
+        across = unit(cross(open_body, (1.0, 0.0, 0.0)))
+        seen_t = rotate(Q_BODY_FROM_ECI, REFERENCE.b_eci_t)
+        clipped = field_message(add(seen_t, add(scale(-2e-5, open_body), scale(6e-7, across))))._replace(
+            valid=0
+        )
+        state, used = step(settled, seen_from(field=clipped, sun=None, saturated=(open_body,)))
+        assert used == Used(True, False, False)
+        expected, _ = step(settled, NOTHING)
+        estimate = expected.estimate
+        predicted, sensitivity = field_prediction(*estimate[:3], REFERENCE.b_eci_t, MEKF)
+        rows = np.array([across, cross(open_body, across)])
+        kalman = LeanKalmanFilter(estimate.covariance)
+        innovation = rows @ np.subtract([1e-9 * b for b in clipped[1:4]], predicted)
+        kalman.S = (rows @ sensitivity) @ kalman.P @ (rows @ sensitivity).T + rows @ MEKF.field_noise @ rows.T
+        gain = kalman.P @ (rows @ sensitivity).T @ np.linalg.inv(kalman.S)
+        turned = multiply(estimate.q_body_from_eci, from_small_rotation((gain @ innovation)[0:3].tolist()))
+        left = kalman.P - gain @ (rows @ sensitivity) @ kalman.P
+        assert angle_rad(state.estimate.q_body_from_eci, turned) < 0.02 * angle_rad(
+            estimate.q_body_from_eci, turned
+        )
+        np.testing.assert_allclose(
+            state.estimate.covariance[0:6, 0:6].diagonal(), left[0:6, 0:6].diagonal(), rtol=2e-3
+        )
+
+    @pytest.mark.parametrize(
+        "changes",
+        [
+            {"saturated": ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))},
+            {"saturated": ()},
+            {"saturated": ((1.0, 0.0, 0.0),), "coil": IDLE._replace(level=1)},
+        ],
+        ids=["of two axes", "of none: not valid for another reason", "while a coil drives"],
+    )
+    def test_a_sample_that_is_not_valid_is_used_by_two_axes_or_not_at_all(self, settled, changes):
+        broken = seen_from().field._replace(valid=0)
+        _, used = step(settled, seen_from(field=broken, **changes))
+        assert used == Used(False, True, True)
 
     def test_in_eclipse_the_magnetometer_alone_carries_on(self, settled):
         eclipse = replace(REFERENCE, lit=False)

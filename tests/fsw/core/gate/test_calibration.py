@@ -26,6 +26,7 @@ from fsw.wire.messages import (
 FIELD = MagField(1, 12000.0, -34000.0, 8000.0, 5)
 SUN = SunVector(1, 0.6, -0.48, 0.64, 7)
 OFFSET = (60000.0, -1500.0, 300.0)
+RANGE_NT = 34000.0
 MATRIX = ((0.01, -0.97, 0.02), (1.03, 0.03, -0.04), (-0.02, 0.05, -1.05))
 """Neither symmetric nor a rotation: it mirrors."""
 OUTPUTS = Outputs((2, 0, 1), (-1, 1, -1))
@@ -39,7 +40,7 @@ def test_without_a_calibration_the_readings_are_the_very_same():
 
 def test_the_field_is_freed_of_its_offset_then_multiplied():
     found = calibrated(
-        NOTHING._replace(field=FIELD), Calibration(MagnetometerCalibration(OFFSET, MATRIX))
+        NOTHING._replace(field=FIELD), Calibration(MagnetometerCalibration(OFFSET, MATRIX, RANGE_NT))
     ).field
     expected = np.array(MATRIX) @ (np.array(FIELD[1:4]) - OFFSET)
     assert found[1:4] == pytest.approx(expected, rel=1e-14)
@@ -48,7 +49,22 @@ def test_the_field_is_freed_of_its_offset_then_multiplied():
 
 def test_a_sample_that_is_not_valid_does_not_become_valid():
     broken = NOTHING._replace(field=FIELD._replace(valid=0))
-    assert calibrated(broken, Calibration(MagnetometerCalibration(OFFSET, MATRIX))).field.valid == 0
+    assert calibrated(broken, Calibration(MagnetometerCalibration(OFFSET, MATRIX, RANGE_NT))).field.valid == 0
+
+
+def test_an_axis_at_the_end_of_its_range_says_nothing_along_its_column():
+    known = Calibration(MagnetometerCalibration(OFFSET, MATRIX, RANGE_NT))
+    at_the_end = NOTHING._replace(field=FIELD._replace(valid=0))
+    assert calibrated(at_the_end, known).saturated == ((-0.97, 0.03, 0.05),)
+    below = at_the_end._replace(field=at_the_end.field._replace(b_y=-33998.0))
+    assert calibrated(below, known).saturated == ()
+    assert calibrated(NOTHING._replace(field=FIELD), known).saturated == (), "the sample is valid"
+    other = calibrated(
+        at_the_end._replace(field=at_the_end.field._replace(b_y=-33000.0, b_z=-34000.0)), known
+    )
+    assert other.saturated == ((0.02, -0.04, -1.05),)
+    both = calibrated(at_the_end._replace(field=at_the_end.field._replace(b_x=34000.0)), known)
+    assert both.saturated == ((0.01, 1.03, -0.02), (-0.97, 0.03, 0.05))
 
 
 def test_the_sun_is_turned_and_the_field_is_not():

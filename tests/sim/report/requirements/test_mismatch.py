@@ -35,3 +35,19 @@ def test_of_sun_cells_gain_and_the_light_of_the_earth():
 
 def test_a_gain_that_the_table_calls_exact_and_is():
     assert beyond_bounds(cells({"cell_gain_percent": 0.0}, gain=[1.0] * 6)) == []
+
+
+@pytest.mark.parametrize(
+    ("known_nt", "words"),
+    [
+        ([20000.0, -30000.0, 0.0], []),
+        ([20000.0, -25000.0, 0.0], ["magnetometer bias 5e+03 nT, its bound is 500"]),
+        ([0.0, 0.0, 0.0], ["magnetometer bias 3e+04 nT, its bound is 500"]),
+    ],
+)
+def test_of_a_calibrated_sensor_what_the_calibration_leaves(known_nt, words):
+    sensors = {"magnetometer": {"bias_nt": [20000.0, -30000.0, 0.0]}}
+    calibration = {"magnetometer": {"offset_nt": known_nt}}
+    assert (
+        beyond_bounds(load("microsat", {"sensors": sensors, "flight": {"calibration": calibration}})) == words
+    )

@@ -6,11 +6,14 @@ from math import nan
 import numpy as np
 import pytest
 
+from fsw.input.schema import merge
 from sim.campaign.claim import ClaimVerdict
+from sim.campaign.flight import Order, fly_order
+from sim.campaign.honesty import honesty_figures
 from sim.plant.hardware.sensors import MagnetometerPhysics
 from sim.scenario.assemble import plant_config
 from sim.scenario.schema import load
-from sim.validate.commissioning.calibrated import Flown, conclude, true_calibration
+from sim.validate.commissioning.calibrated import POINTED, Flown, conclude, true_calibration
 from sim.validate.commissioning.wirings import SCENARIO, satellite
 
 GOOD = [Flown(number, (0.5, -2.9, 1.1, -0.3), 0.61, 0.58) for number in range(1, 31)]
@@ -51,3 +54,29 @@ def test_the_true_calibration_undoes_what_the_sensor_does():
     coils_nt = true.field_nt_per_am2 @ dipole_am2
     assert true.matrix @ (channels_nt - true.offset_nt) - coils_nt == pytest.approx(1e9 * field_t, abs=1.0)
     assert true.delay_s == scenario.sensors.magnetometer.latency_s
+
+
+@pytest.mark.parametrize(("range_nt", "known"), [(65000.0, True), (65534.0, False)])
+def test_a_magnetometer_at_the_end_of_its_range_serves_by_its_other_axes(range_nt, known):
+    """Offset and field of satellite 8 exceed its range for a fifth of the orbit, part of it in shadow."""
+    scenario = load(SCENARIO, satellite(8))
+    true = true_calibration(scenario)
+    magnetometer = {
+        "offset_nt": true.offset_nt.tolist(),
+        "matrix": true.matrix.tolist(),
+        "range_nt": range_nt,
+    }
+    coils = {"field_nt_per_am2": true.field_nt_per_am2.tolist(), "field_delay_s": true.delay_s}
+    uncertainty = {
+        "latency_s": 1.0,
+        "magnetometer_bias_nt": 100.0,
+        "magnetometer_scale_percent": 0.15,
+        "magnetometer_misalignment_deg": 0.07,
+    }
+    flight = {"calibration": {"magnetometer": magnetometer, "coils": coils}, "uncertainty": uncertainty}
+    overrides = merge(merge(satellite(8), POINTED), {"flight": flight})
+    flown = fly_order(Order(SCENARIO, overrides, 8, 2.0, honesty_figures))
+    assert (flown.summary["isolated"] == []) is known
+    if known:
+        assert min(flown.figures[f"inside_{axis}"] for axis in (1, 2, 3)) > 0.95
+        assert flown.summary["pointing_deg"]["rms_last_orbit"] < 1.0

@@ -12,7 +12,9 @@ from fsw.core.gate.readings import NOTHING
 from fsw.core.orbit.ephemeris import reference_at
 from fsw.wire.messages import CoilStatus, MagField, SunVector
 
-LIMITS = PlausibilityConfig(field_t=2e-6, field_part=0.01, angle_rad=0.05, sun_norm=0.03, late_ticks=0)
+LIMITS = PlausibilityConfig(
+    field_t=2e-6, field_part=0.01, in_range_t=1e-3, angle_rad=0.05, sun_norm=0.03, late_ticks=0
+)
 IDLE = CoilStatus(0, 0, 0, 0, 0, 0)
 NT = 1e-9
 
@@ -78,6 +80,17 @@ def test_a_field_marked_as_not_valid_counts_while_no_coil_drives(reference, read
     assert causes(examine(Memory(), saturated, reference, LIMITS)) == (SensorFault.SATURATED, 0)
     driven = saturated._replace(coil=IDLE._replace(level=2))
     assert causes(examine(Memory(), driven, reference, LIMITS)) == (0, 0)
+
+
+@pytest.mark.requirement("REQ-SENSOR-01")
+def test_an_axis_at_the_end_of_its_range_is_no_fault_in_a_field_that_may_be_beyond_it(reference, readings):
+    strength = norm(reference.b_eci_t)
+    narrow, wide = (LIMITS._replace(in_range_t=part * strength) for part in (0.99, 1.01))
+    invalid = readings(field=MagField(0, 1.0, 2.0, 3.0, counter=0))
+    at_the_end = invalid._replace(saturated=((0.0, 1.0, 0.0),))
+    assert causes(examine(Memory(), at_the_end, reference, narrow)) == (0, 0)
+    assert causes(examine(Memory(), at_the_end, reference, wide)) == (SensorFault.SATURATED, 0)
+    assert causes(examine(Memory(), invalid, reference, narrow)) == (SensorFault.SATURATED, 0), "a self-test"
 
 
 @pytest.mark.requirement("REQ-SENSOR-05")
