@@ -11,8 +11,9 @@ from sim.campaign.runner import StudyResult, run
 from sim.compare.case import Driver, cases, chosen_laws
 from sim.compare.page import compare_page
 from sim.compare.picture import picture
-from sim.compare.score import Result, Score, by_axis1, fly_case
-from sim.compare.table import as_csv, as_json, as_text, ranked
+from sim.compare.score import Result, Score, fly_case
+from sim.compare.table import as_csv, as_json, as_text, error_text, ranked
+from sim.compare.yardstick import yardstick
 from sim.console import answer, counted, fail, say
 from sim.design.tuning.kept import KeptGains, body_checksum, read_gains, shipped_gains
 from sim.errors import HarnessError
@@ -20,7 +21,7 @@ from sim.flight.record_flight import MOST_IN_MEMORY, ticks_of
 from sim.progress import note, progress
 from sim.record.destination import check_folder
 from sim.record.run_dir import write_json
-from sim.report.figures.controlled import SETTLED_DEG
+from sim.report.figures.controlled import Controlled
 from sim.report.summary_text import last_orbit
 from sim.scenario.schema import Scenario, load, orbit_period_s, parse_settings
 
@@ -64,6 +65,7 @@ def compare(
     """
     values = parse_settings(settings)
     scenario = load(name, values)
+    by = yardstick(scenario)
     chosen = chosen_laws(scenario, laws)
     drivers = tuple(Driver) if driver == "both" else (Driver(driver),)
     kept = _kept(gains, scenario)
@@ -71,7 +73,9 @@ def compare(
     ticks = ticks_of(scenario, orbits, MOST_IN_MEMORY)
     folder = _new_folder(out or _default_folder(scenario))
     studies = [
-        Study(f"{case.law}-{case.driver}", (partial(fly_case, case),), lambda results: [], has_flights=True)
+        Study(
+            f"{case.law}-{case.driver}", (partial(fly_case, case, by),), lambda results: [], has_flights=True
+        )
         for case in chosen_cases
     ]
     description = {
@@ -80,7 +84,7 @@ def compare(
         "settings": list(settings),
         "ticks": ticks,
         "sim_seconds": ticks / scenario.time.tick_hz,
-        "pointing": "axis1" if by_axis1(scenario) else "attitude",
+        "judged": by._asdict(),
         "gains": gains if kept is not None else SCENARIO,
     }
     results: list[Result] = []
@@ -89,17 +93,17 @@ def compare(
     def take(finished: StudyResult) -> None:
         results.append(finished.results[0])
         if not bar:
-            note(_line(finished))
+            note(_line(finished, by))
 
     try:
         with progress(f"comparing {counted(len(chosen), 'law')} on {scenario.name}", len(studies)) as watch:
             run(studies, workers or os.cpu_count() or 1, watch, take)
     finally:  # flights that are done are written when the rest is given up
-        scores = ranked(result.score for result in results)
+        scores = ranked((result.score for result in results), by)
         description["complete"] = len(results) == len(studies)
-        _write(folder, scenario, scores, description, results, _window(scenario, ticks), kept)
-    say(_heading(scenario, seed, ticks))
-    say(as_text(scores))
+        _write(folder, scenario, scores, description, results, by, kept)
+    say(_heading(scenario, seed, ticks, by))
+    say(as_text(scores, by))
     say(f"files: {folder / JSON}, {CSV}, {PICTURE}, {PAGE}")
     names = (JSON, CSV, PICTURE, PAGE)
     answer({**as_json(scores, description), "files": [folder / name for name in names]})
@@ -126,12 +130,11 @@ def _kept(gains: str, scenario: Scenario) -> KeptGains | None:
     return kept
 
 
-def _heading(scenario: Scenario, seed: int, ticks: int) -> str:
-    what = "axis 1 from the vertical" if by_axis1(scenario) else "the whole attitude"
+def _heading(scenario: Scenario, seed: int, ticks: int, by: Controlled) -> str:
     flown_s = ticks / scenario.time.tick_hz
     return (
-        f"{scenario.name}, seed {seed}, {flown_s:.0f} s: {what}; settled: under {SETTLED_DEG:g} deg from "
-        f"then on; RMS, max and rate over {_window(scenario, ticks)}"
+        f"{scenario.name}, seed {seed}, {flown_s:.0f} s: {by.words}; settled: under "
+        f"{by.threshold:g} {by.unit} from then on; RMS, max and rate over {_window(scenario, ticks)}"
     )
 
 
@@ -146,19 +149,19 @@ def _write(
     scores: list[Score],
     description: dict[str, object],
     results: list[Result],
-    window: str,
+    by: Controlled,
     kept: KeptGains | None,
 ) -> None:
     seed = f"seed {description['seed']}"
-    judged = "by axis 1" if description["pointing"] == "axis1" else "by the whole attitude"
-    facts = [seed, f"{description['sim_seconds']:.0f} s", f"judged {judged}"]
+    facts = [seed, f"{description['sim_seconds']:.0f} s", f"judged by the {by.words}"]
     if not description["complete"]:
         facts.append("given up before all had flown")
     try:
         write_json(folder / JSON, as_json(scores, description))
         (folder / CSV).write_text(as_csv(scores), encoding="utf-8")
-        picture(folder / PICTURE, f"{scenario.name}, {seed}", results)
-        page = compare_page(scenario, facts, scores, results, window, kept)
+        picture(folder / PICTURE, f"{scenario.name}, {seed}", results, by)
+        window = _window(scenario, int(str(description["ticks"])))
+        page = compare_page(scenario, facts, scores, results, window, by, kept)
         (folder / PAGE).write_text(page, encoding="utf-8")
     except OSError as error:
         raise HarnessError(f"{folder}: cannot be written ({error.strerror or error})") from None
@@ -176,7 +179,7 @@ def _default_folder(scenario: Scenario) -> Path:
     return Path("compare") / f"{scenario.name}-{datetime.now(UTC):%Y%m%dT%H%M%SZ}"
 
 
-def _line(finished: StudyResult) -> str:
+def _line(finished: StudyResult, by: Controlled) -> str:
     score = finished.results[0].score
-    figure = score.failure or f"{score.pointing_rms_deg:.2f} deg RMS"
+    figure = score.failure or f"{error_text(score.error_rms, by.unit)} {by.unit} RMS"
     return f"{score.law}, {score.driver}: {figure} ({finished.wall_s:.0f} s)"

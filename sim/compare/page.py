@@ -3,21 +3,21 @@
 from collections.abc import Sequence
 
 from sim.compare.case import Driver
-from sim.compare.picture import colour_of, laws_of
+from sim.compare.picture import axis_label, colour_of, laws_of, with_unit
 from sim.compare.score import WINDOW_ORBITS, Result, Score
-from sim.compare.table import as_table
+from sim.compare.table import as_table, error_text
 from sim.design.tuning.kept import KeptGains, gains_text
 from sim.drawing.canvas import style
 from sim.drawing.inline_svg import chart
 from sim.drawing.page_parts import PageHeader, PageSection, Table, Tile, sections_page
 from sim.drawing.time_chart import Level, Panel, Series, TimeChart, draw, time_data
-from sim.report.figures.controlled import SETTLED_DEG
+from sim.report.figures.controlled import Controlled
 from sim.scenario.schema import Scenario
 
 PANEL_IN = 2.8
 _MEANING = (
-    "Settled: under 5° from then on. RMS, max and rate over {window}; ∫ m² is the energy lost in the "
-    "coils but for a factor. Best first, each aim of laws for itself."
+    "Judged by the {what}. Settled: under {threshold} from then on. RMS, max and rate over {window}; ∫ m² is "
+    "the energy lost in the coils but for a factor. Best first, each aim of laws for itself."
 )
 
 
@@ -35,6 +35,7 @@ def compare_page(
     scores: Sequence[Score],
     results: Sequence[Result],
     window: str,
+    by: Controlled,
     kept: KeptGains | None = None,
 ) -> str:
     """The page of a comparison whose figures are over ``window``; without a flight it has no chart.
@@ -42,25 +43,22 @@ def compare_page(
     With gains ``kept`` for the body it tells those of each law, and what they cost on the rigid body.
     """
     flights = [result for result in results if result.history is not None]
-    sections = [
-        PageSection(
-            "scores", "The laws", _MEANING.format(window=window), (as_table(scores),), text=_failures(scores)
-        )
-    ]
+    meaning = _MEANING.format(what=by.words, threshold=with_unit(by.threshold, by), window=window)
+    sections = [PageSection("scores", "The laws", meaning, (as_table(scores, by),), text=_failures(scores))]
     time = None
     if flights and flights[0].history is not None:
         first = flights[0].history
         time = time_data(first.time, first.t_s, scenario.epoch_unix_s)
         with style():
-            drawn = draw(first.time, TimeChart(first.t_s, _panels(flights)))
+            drawn = draw(first.time, TimeChart(first.t_s, _panels(flights, by)))
             words = f"RMS of {WINDOW_ORBITS:g} orbits about each time. Grey bands are eclipses."
-            charts = (chart("pointing", drawn.picture, words, drawn.data),)
-        sections.append(PageSection("pointing", "Pointing error over time", charts=charts))
+            charts = (chart("error", drawn.picture, words, drawn.data),)
+        sections.append(PageSection("error", "The error over time", charts=charts))
     if kept is not None:
         words = _FOUND.format(flights=kept.flights, orbits=kept.orbits)
         sections.append(PageSection("gains", "The gains", words, (_gains_table(kept, scores),)))
     header = PageHeader(
-        "Comparison of control laws", scenario.name, facts, _badges(scores), _tiles(scores, window)
+        "Comparison of control laws", scenario.name, facts, _badges(scores), _tiles(scores, window, by)
     )
     return sections_page(header, sections, time)
 
@@ -85,19 +83,19 @@ def _gains_table(kept: KeptGains, scores: Sequence[Score]) -> Table:
     return Table(["law", "driver", "settled [orbits]", "RMS", "cost", "of the scenario's", "gains"], rows)
 
 
-def _panels(flights: Sequence[Result]) -> list[Panel]:
+def _panels(flights: Sequence[Result], by: Controlled) -> list[Panel]:
     laws = laws_of(flights)
     panels = []
     for driver in Driver:
         series = [
-            Series(score.law, history.error_deg, colour_of(laws.index(score.law)))
+            Series(score.law, history.error, colour_of(laws.index(score.law)))
             for score, history in flights
             if score.driver is driver and history is not None
         ]
         if series:
-            settled = (Level(SETTLED_DEG, f"{SETTLED_DEG:g}°"),)
+            settled = (Level(by.threshold, with_unit(by.threshold, by)),)
             title = f"{driver.value.capitalize()} coil driver"
-            panels.append(Panel(title, "pointing error [deg]", PANEL_IN, series, 3.5, settled))
+            panels.append(Panel(title, axis_label(by), PANEL_IN, series, 3.5, settled))
     return panels
 
 
@@ -110,14 +108,15 @@ def _badges(scores: Sequence[Score]) -> list[tuple[str, str]]:
     return badges
 
 
-def _tiles(scores: Sequence[Score], window: str) -> list[Tile]:
+def _tiles(scores: Sequence[Score], window: str, by: Controlled) -> list[Tile]:
     """The best of each driver."""
     tiles = []
     for driver in Driver:
-        flown = [score for score in scores if score.driver is driver and score.pointing_rms_deg is not None]
+        flown = [score for score in scores if score.driver is driver and score.error_rms is not None]
         if flown:
-            best = min(flown, key=lambda score: score.pointing_rms_deg or 0.0)
-            note = f"{best.pointing_rms_deg:.2f}° RMS, {window.removeprefix('the ')}"
+            best = min(flown, key=lambda score: score.error_rms or 0.0)
+            rms = error_text(best.error_rms or 0.0, by.unit) + ("°" if by.unit == "deg" else f" {by.unit}")
+            note = f"{rms} RMS, {window.removeprefix('the ')}"
             tiles.append(Tile(f"Best, {driver.value}", best.law, note))
     return tiles
 

@@ -16,10 +16,10 @@ from sim.errors import HarnessError
 from sim.record.truth import Histories
 from sim.report.charts.drawn_flight import whole_flight
 from sim.report.figures.coil_effort import dipole_squared_a2m4s, driven_s
-from sim.report.figures.controlled import SETTLED_DEG
+from sim.report.figures.controlled import Controlled, error_vectors, held_from
 from sim.report.figures.histories import FlightHistories
 from sim.report.figures.spans import spans
-from sim.scenario.schema import Scenario, flight_table, orbit_period_s
+from sim.scenario.schema import Scenario, orbit_period_s
 
 Array = NDArray[np.float64]
 
@@ -36,9 +36,9 @@ class Score:
         law: its name.
         aim: of the law.
         driver: of the coils.
-        settle_orbits_5deg: from when on the pointing error is under 5 deg; None: never.
-        pointing_rms_deg: pointing error over the last orbit.
-        pointing_max_deg: its largest.
+        settle_orbits: from when on the error of what they are judged by stays small; None: never.
+        error_rms: of that error over the last orbit, deg or deg/s.
+        error_max: its largest.
         rate_rms_degps: rate relative to the orbital frame, less the spin reference, over the last orbit.
         dipole_squared_a2m4s: integral of |m|^2 over the flight; times resistance over (dipole an ampere)^2
             it is the energy lost in the coils.
@@ -53,9 +53,9 @@ class Score:
     law: str
     aim: Aim
     driver: Driver
-    settle_orbits_5deg: float | None = None
-    pointing_rms_deg: float | None = None
-    pointing_max_deg: float | None = None
+    settle_orbits: float | None = None
+    error_rms: float | None = None
+    error_max: float | None = None
     rate_rms_degps: float | None = None
     dipole_squared_a2m4s: float | None = None
     pulses: int | None = None
@@ -67,11 +67,11 @@ class Score:
 
 
 class History(NamedTuple):
-    """The running root mean square of the pointing error of a flight, on its time axis."""
+    """The running root mean square of the error of what a flight is judged by, on its time axis."""
 
     time: TimeAxis
     t_s: Array
-    error_deg: Array
+    error: Array
 
 
 class Result(NamedTuple):
@@ -81,45 +81,44 @@ class Result(NamedTuple):
     history: History | None
 
 
-def fly_case(case: ComparisonCase) -> Result:
+def fly_case(case: ComparisonCase, by: Controlled) -> Result:
     """Fly and judge. A law that cannot fly on this scenario has a line that says so."""
     try:
         record = record_order(case.order)
     except (TableError, HarnessError) as error:
         return Result(Score(case.law, case.aim, case.driver, failure=str(error), tuned=case.tuned), None)
-    return Result(judge(case, record), history(record))
+    return Result(judge(case, record, by), history(record, by))
 
 
-def judge(case: ComparisonCase, record: RecordedFlight) -> Score:
+def judge(case: ComparisonCase, record: RecordedFlight, by: Controlled) -> Score:
     """The line of a flight, from the plant's truth and the audit."""
     scenario, truth, audit = record.scenario, record.truth, record.audit
     tick_hz, orbit_s = scenario.time.tick_hz, orbit_period_s(scenario)
-    error_deg = pointing_error_deg(record)
+    error = error_of(record, by)
     last_orbit = slice(-round(orbit_s * tick_hz), None)
-    outside = np.flatnonzero(error_deg >= SETTLED_DEG)
-    settled = int(outside[-1]) + 1 if len(outside) else 0
+    settled = held_from(error, by.threshold)
     continuous = case.driver is Driver.CONTINUOUS
     return Score(
         law=case.law,
         aim=case.aim,
         driver=case.driver,
-        settle_orbits_5deg=settled / tick_hz / orbit_s if settled < len(error_deg) else None,
-        pointing_rms_deg=_rms(error_deg[last_orbit]),
-        pointing_max_deg=float(error_deg[last_orbit].max()),
+        settle_orbits=settled / tick_hz / orbit_s if settled < len(error) else None,
+        error_rms=_rms(error[last_orbit]),
+        error_max=float(error[last_orbit].max()),
         rate_rms_degps=_rms(_rate_error_degps(scenario, truth)[last_orbit]),
         dipole_squared_a2m4s=dipole_squared_a2m4s(scenario, truth["m_body_am2"]),
         pulses=None if continuous else len(audit.pulses),
-        duty=driven_s(scenario, truth["m_body_am2"]) / (len(error_deg) / tick_hz)
+        duty=driven_s(scenario, truth["m_body_am2"]) / (len(error) / tick_hz)
         if continuous
         else float(audit.duty_total),
-        mode_final=Mode(int(record.estimates.mode[len(error_deg) - 1])).name,
+        mode_final=Mode(int(record.estimates.mode[len(error) - 1])).name,
         limits_ok=audit.ok,
         tuned=case.tuned,
     )
 
 
-def history(record: RecordedFlight) -> History:
-    """The running root mean square of the pointing error, sixty points an orbit, fewer in a long flight.
+def history(record: RecordedFlight, by: Controlled) -> History:
+    """The running root mean square of the error, sixty points an orbit, fewer in a long flight.
 
     The window of a quarter of an orbit takes out the dips where the error passes zero.
     """
@@ -130,21 +129,17 @@ def history(record: RecordedFlight) -> History:
     at = np.linspace(0, ticks - 1, points).round().astype(int)
     half = round(0.5 * WINDOW_ORBITS * orbit_s * tick_hz)
     first, past = np.maximum(at - half, 0), np.minimum(at + half + 1, ticks)
-    total = np.concatenate(([0.0], np.cumsum(pointing_error_deg(record) ** 2)))
+    total = np.concatenate(([0.0], np.cumsum(error_of(record, by) ** 2)))
     eclipses = tuple((begin / tick_hz, end / tick_hz) for begin, end in spans(flight.dark))
     time = whole_flight(length_s, orbit_s, eclipses)
     return History(time, record.truth["t_s"][at], np.sqrt((total[past] - total[first]) / (past - first)))
 
 
-def by_axis1(scenario: Scenario) -> bool:
-    """Whether pointing is judged by body axis 1 against the vertical alone, as the scenario's modes do."""
-    return flight_table(scenario).modes.axis_only
-
-
-def pointing_error_deg(record: RecordedFlight) -> Array:
-    """The angle from nominal at each tick."""
-    flight = FlightHistories(record.truth, record.estimates)
-    return flight.axis1_deg if by_axis1(record.scenario) else flight.pointing_deg
+def error_of(record: RecordedFlight, by: Controlled) -> Array:
+    """The error of what a flight is judged by, at each tick."""
+    vectors = error_vectors(by.what, record.truth, record.scenario.control.spin_radps)
+    result: Array = np.linalg.norm(vectors, axis=1)
+    return result
 
 
 def _rate_error_degps(scenario: Scenario, truth: Histories) -> Array:

@@ -3,6 +3,7 @@
 import csv
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, fields
+from functools import partial
 from importlib.metadata import version
 from io import StringIO
 from math import inf
@@ -10,20 +11,22 @@ from typing import Any
 
 from fsw.core.laws.entry import Aim
 from sim.compare.score import Score
+from sim.compare.yardstick import BY_RATE
 from sim.drawing.page_parts import Table
+from sim.report.figures.controlled import Controlled
 
-SCHEMA_VERSION = 1
-BY_RATE = frozenset({Aim.RATE, Aim.SPIN, Aim.SUN})
-"""Laws of these aims do not point: the rate tells them apart."""
+SCHEMA_VERSION = 2
+ITS_UNIT = "its"
+"""In place of a unit: that of what the laws are judged by."""
 
 _ABSENT = "-"
 _COLUMNS: tuple[tuple[str, str, str, Callable[[Any], str]], ...] = (
     ("law", "law", "", str),
     ("driver", "driver", "", str),
     ("tuned", "gains", "", lambda tuned: "best" if tuned else "scenario"),
-    ("settle_orbits_5deg", "settle", "orbits", "{:.2f}".format),
-    ("pointing_rms_deg", "RMS", "deg", "{:.2f}".format),
-    ("pointing_max_deg", "max", "deg", "{:.2f}".format),
+    ("settle_orbits", "settle", "orbits", "{:.2f}".format),
+    ("error_rms", "RMS", ITS_UNIT, str),
+    ("error_max", "max", ITS_UNIT, str),
     ("rate_rms_degps", "rate RMS", "deg/s", "{:.4f}".format),
     ("dipole_squared_a2m4s", "int m^2", "A^2 m^4 s", "{:.4g}".format),
     ("pulses", "pulses", "", str),
@@ -35,21 +38,26 @@ _COLUMNS: tuple[tuple[str, str, str, Callable[[Any], str]], ...] = (
 _LEFT = frozenset({"law", "driver", "tuned", "mode_final", "limits_ok"})
 
 
-def ranked(scores: Iterable[Score]) -> list[Score]:
-    """Best first: by pointing over the last orbit, or by rate; aim after aim, what did not fly last."""
+def ranked(scores: Iterable[Score], by: Controlled) -> list[Score]:
+    """Best first, over the last orbit: by what is judged, or by the rate if the law is not meant to point.
+
+    Aim after aim, what did not fly last.
+    """
     aims = list(Aim)
 
     def place(score: Score) -> tuple[int, float, str, str]:
-        figure = score.rate_rms_degps if score.aim in BY_RATE else score.pointing_rms_deg
+        stray = score.aim in BY_RATE and by.unit == "deg"
+        figure = score.rate_rms_degps if stray else score.error_rms
         return aims.index(score.aim), inf if figure is None else figure, score.law, score.driver
 
     return sorted(scores, key=place)
 
 
-def as_text(scores: Sequence[Score]) -> str:
+def as_text(scores: Sequence[Score], by: Controlled) -> str:
     """The table as text; below it why a law did not fly."""
-    rows = [[heading for _, heading, _, _ in _COLUMNS], [unit for _, _, unit, _ in _COLUMNS]]
-    rows += [[_cell(getattr(score, name), write) for name, _, _, write in _COLUMNS] for score in scores]
+    columns = _columns(by)
+    rows = [[heading for _, heading, _, _ in columns], [unit for _, _, unit, _ in columns]]
+    rows += [[_cell(getattr(score, name), write) for name, _, _, write in columns] for score in scores]
     widths = [max(len(row[column]) for row in rows) for column in range(len(_COLUMNS))]
     lines = []
     for row in rows:
@@ -62,11 +70,27 @@ def as_text(scores: Sequence[Score]) -> str:
     return "\n".join(lines)
 
 
-def as_table(scores: Sequence[Score]) -> Table:
+def as_table(scores: Sequence[Score], by: Controlled) -> Table:
     """The table of a page."""
-    head = [f"{heading} [{unit}]" if unit else heading for _, heading, unit, _ in _COLUMNS]
-    rows = [[_cell(getattr(score, name), write) for name, _, _, write in _COLUMNS] for score in scores]
+    columns = _columns(by)
+    head = [f"{heading} [{unit}]" if unit else heading for _, heading, unit, _ in columns]
+    rows = [[_cell(getattr(score, name), write) for name, _, _, write in columns] for score in scores]
     return Table(head, rows)
+
+
+def error_text(error: float, unit: str) -> str:
+    """An error of what is judged: angles to a hundredth of a degree, rates to a ten thousandth of a deg/s."""
+    return f"{error:.2f}" if unit == "deg" else f"{error:.4f}"
+
+
+def _columns(by: Controlled) -> list[tuple[str, str, str, Callable[[Any], str]]]:
+    """With the unit of what is judged in its columns."""
+    return [
+        (name, heading, by.unit, partial(error_text, unit=by.unit))
+        if unit == ITS_UNIT
+        else (name, heading, unit, write)
+        for name, heading, unit, write in _COLUMNS
+    ]
 
 
 def as_csv(scores: Sequence[Score]) -> str:

@@ -8,24 +8,28 @@ from sim.compare.case import Driver
 from sim.compare.page import compare_page
 from sim.compare.score import History, Result, Score
 from sim.drawing.canvas import TimeAxis
+from sim.report.figures.controlled import Controlled
 from sim.scenario.schema import load
 
 TIME = TimeAxis("orbits of 100.0 min", 6000.0, 0.0, 12000.0, ((1000.0, 3000.0),))
 T_S = np.linspace(0.0, 12000.0, 120)
 
+ATTITUDE = Controlled("attitude", "whole attitude", "deg", 5.0)
 WINDOW = "the whole flight of 0.6 orbits"
 
 
 def result(law, error_deg, driver=Driver.PULSED, **score):
     error = error_deg + 40.0 * np.exp(-T_S / 900.0)
     return Result(
-        Score(law, LAWS[law].aim, driver, pointing_rms_deg=error_deg, limits_ok=True, **score),
+        Score(law, LAWS[law].aim, driver, error_rms=error_deg, limits_ok=True, **score),
         History(TIME, T_S, error),
     )
 
 
 def written(path, results):
-    page = compare_page(load("microsat"), ("seed 1",), [each.score for each in results], results, WINDOW)
+    page = compare_page(
+        load("microsat"), ("seed 1",), [each.score for each in results], results, WINDOW, ATTITUDE
+    )
     path.write_text(page, encoding="utf-8")
     return page
 
@@ -56,9 +60,7 @@ def test_without_a_flight_there_is_no_chart(tmp_path, results):
 
 def test_broken_limits_are_a_bad_verdict(tmp_path):
     (one,) = [result("pd", 2.0)]
-    broken = Result(
-        Score("pd", one.score.aim, Driver.PULSED, pointing_rms_deg=1.0, limits_ok=False), one.history
-    )
+    broken = Result(Score("pd", one.score.aim, Driver.PULSED, error_rms=1.0, limits_ok=False), one.history)
     assert '<li class="bad">✗ limits broken by 1</li>' in written(tmp_path / "compare.html", [broken])
 
 
@@ -67,7 +69,7 @@ def test_each_law_is_a_series_that_can_be_put_out(look, tmp_path, results, width
     written(tmp_path / "compare.html", results)
     page = look(tmp_path / "compare.html", width=width, dark=dark)
     assert page.locator(".legend button").count() == 4
-    assert page.locator("#chart-pointing canvas").count() == 2
+    assert page.locator("#chart-error canvas").count() == 2
     page.locator(".legend button").first.click()
     assert page.evaluate("charts.plots[0].plot.series.map((one) => one.show)") == [True, False, True]
     assert page.evaluate("document.documentElement.scrollWidth") <= width

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from fsw.core.laws.table import LAWS
@@ -10,13 +11,16 @@ from sim.compare.case import Driver
 from sim.compare.picture import picture, spread
 from sim.compare.score import History, Result, Score
 from sim.drawing.canvas import TimeAxis
+from sim.report.figures.controlled import Controlled
 
 TIME = TimeAxis("orbits", 6000.0, 0.0, 12000.0, ((1000.0, 3000.0),))
 T_S = np.linspace(0.0, 12000.0, 120)
+ATTITUDE = Controlled("attitude", "whole attitude", "deg", 5.0)
+SPIN = Controlled("spin", "spin rate about axis 1", "deg/s", 0.1)
 
 
 def result(law, error_deg, driver=Driver.PULSED):
-    score = Score(law, LAWS[law].aim, driver, pointing_rms_deg=error_deg)
+    score = Score(law, LAWS[law].aim, driver, error_rms=error_deg)
     return Result(score, History(TIME, T_S, error_deg + 40.0 * np.exp(-T_S / 900.0)))
 
 
@@ -32,8 +36,8 @@ def drawn(tmp_path, monkeypatch):
 
     monkeypatch.setattr(Figure, "savefig", keep)
 
-    def draw(results):
-        picture(tmp_path / "x.png", "microsat", results)
+    def draw(results, by=ATTITUDE):
+        picture(tmp_path / "x.png", "microsat", results, by)
         return saved[-1].axes if saved else [], tmp_path / "x.png"
 
     return draw
@@ -51,6 +55,21 @@ def test_a_panel_a_driver_with_a_named_line_a_law(drawn):
     assert sorted(names(pulsed)) == ["lqr", "pd", "sliding"]
     assert names(continuous) == ["pd"]
     assert path.read_bytes().startswith(b"\x89PNG")
+
+
+def test_names_stand_within_the_picture_however_long(drawn):
+    law = max(LAWS, key=len)
+    (panel,), _ = drawn([result(law, 123.0)])
+    (name,) = [text for text in panel.texts if text.get_text().startswith(law)]
+    figure = panel.figure
+    assert name.get_window_extent(FigureCanvasAgg(figure).get_renderer()).x1 <= figure.bbox.x1
+
+
+def test_spins_are_told_apart_by_their_rate(drawn):
+    (panel,), _ = drawn([result("spin_up", 0.02)], SPIN)
+    assert panel.get_ylabel() == "error of the spin rate about axis 1 [deg/s]"
+    assert any(text.get_text().startswith("spin_up  0.0201 deg/s") for text in panel.texts)
+    assert [line.get_ydata()[0] for line in panel.lines if line.get_label() not in LAWS] == [0.1]
 
 
 def test_a_law_has_one_colour_and_no_two_look_alike(drawn):
@@ -90,7 +109,7 @@ def test_names_stay_in_the_panel_and_apart(heights):
 
 def test_the_figure_at_the_end_of_a_line_is_where_it_ends(drawn):
     error = 0.5 + 40.0 * np.exp(-T_S / 6000.0)
-    score = Score("pd", LAWS["pd"].aim, Driver.PULSED, pointing_rms_deg=17.0)
+    score = Score("pd", LAWS["pd"].aim, Driver.PULSED, error_rms=17.0)
     (panel,), _ = drawn([Result(score, History(TIME, T_S, error))])
     texts = [text.get_text() for text in panel.texts]
     assert f"pd  {error[-1]:.3g}°" in texts
