@@ -11,7 +11,7 @@ from typing import Any
 
 from fsw.core.laws.entry import Aim
 from sim.compare.score import Score
-from sim.compare.yardstick import BY_RATE
+from sim.design.tuning.cost import BY_RATE
 from sim.drawing.page_parts import Table
 from sim.report.figures.controlled import Controlled
 

@@ -1,12 +1,10 @@
 """What the laws of a comparison are judged by: the quantity that they are meant to control on this body."""
 
-from fsw.core.laws.entry import Aim
 from sim.design.tuning.applicable import aims_of
+from sim.design.tuning.cost import BY_RATE
 from sim.report.figures.controlled import SETTLED_DEG, Controlled, controlled
 from sim.scenario.schema import Scenario, flight_table
 
-BY_RATE = frozenset({Aim.RATE, Aim.SPIN, Aim.SUN})
-"""Laws of these aims do not point: a rate tells them apart."""
 WORDS = {"spin": "spin rate about axis 1", "rate": "rate"}
 
 

@@ -4,7 +4,9 @@
 
 T the length of the flight, T_s when the error is under 5 deg from then on (T if it never is), RMS that of
 the last orbit. The error is the angle from the nominal attitude, with ``modes.axis_only`` that of body axis 1
-from the vertical; of laws that do not point it is the rate less the one wanted, 0.05 deg/s in place of 5 deg.
+from the vertical; of laws that do not point it is the rate less the one wanted, 0.05 deg/s in place of 5 deg,
+or, where the scenario requires a spin rate, that about body axis 1 alone, which a spin that is fixed in space
+holds while the orbital frame turns; the requirement says when it has settled.
 """
 
 from math import log2
@@ -44,9 +46,7 @@ def cost_of(flight: RigidFlight, scenario: Scenario, aim: Aim) -> Cost:
     if pointing:
         error, settled = flight.axis1_deg if axis_only else flight.pointing_deg, SETTLED_DEG
     else:
-        wanted = np.array([scenario.control.spin_radps, 0.0, 0.0])
-        error = np.degrees(np.linalg.norm(flight.relative_body_radps - wanted, axis=1))
-        settled = SETTLED_DEGPS
+        error, settled = _rate_error_degps(flight, scenario)
     outside = np.flatnonzero(~(error < settled))
     first = int(outside[-1]) + 1 if len(outside) else 0
     rms = float(np.sqrt(np.mean(error[flight.orbit(-1)] ** 2)))
@@ -55,3 +55,13 @@ def cost_of(flight: RigidFlight, scenario: Scenario, aim: Aim) -> Cost:
     if not np.isfinite(rms):
         return Cost(LOST, None, rms)
     return Cost(first / len(error) + log2(1.0 + rms / settled), settle_orbits, rms)
+
+
+def _rate_error_degps(flight: RigidFlight, scenario: Scenario) -> tuple[Array, float]:
+    """The error of the rate that is wanted, and under which it has settled."""
+    off = np.degrees(flight.relative_body_radps - np.array([scenario.control.spin_radps, 0.0, 0.0]))
+    for required in scenario.requirement:
+        if required.what == "spin":
+            return np.abs(off[:, 0]), required.settled_degps
+    whole: Array = np.linalg.norm(off, axis=1)
+    return whole, SETTLED_DEGPS

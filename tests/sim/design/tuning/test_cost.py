@@ -1,5 +1,6 @@
 """The cost of a flight: how late it settles and what is left, by the error that the body and the law have."""
 
+from dataclasses import replace
 from math import log2, nan
 
 import numpy as np
@@ -61,3 +62,13 @@ def test_a_law_that_does_not_point_is_judged_by_the_rate():
 
 def test_a_flight_that_is_no_number_is_lost():
     assert cost_of(flight(nan), load("microsat"), Aim.THREE_AXIS).total == LOST
+
+
+def test_where_a_spin_rate_is_required_the_turn_of_the_orbital_frame_costs_nothing():
+    """A spin that is fixed in space turns against the orbital frame all the time."""
+    scenario = load("spinner")
+    spun = flight(90.0)
+    rates = np.tile([scenario.control.spin_radps + np.radians(0.03), 0.0, -1.04e-3], (ROWS, 1))
+    found = cost_of(replace(spun, relative_body_radps=rates), scenario, Aim.SPIN)
+    assert (found.settle_orbits, found.rms) == (0.0, pytest.approx(0.03))
+    assert found.total == pytest.approx(log2(1.0 + 0.03 / 0.1))
