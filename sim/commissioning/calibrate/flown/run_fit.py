@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from fsw.table.calibration import MagnetometerTable
 from fsw.table.table import FlightTable
 from sim.commissioning.calibrate.flown.coil_axes import CoilAxes, coil_axes
 from sim.commissioning.calibrate.flown.coil_field import CoilResponse, coil_response
@@ -46,6 +47,8 @@ class RunCalibration:
         tick: of the samples that were fitted.
         residual_nt: of strength and of the component along the Sun (NaN without it), by sample.
         left_out: part of the samples that were outliers.
+        strongest_nt: the field of the log, and
+        measurable_nt: the field that saturates no axis, whatever its direction.
     """
 
     wiring: Wiring
@@ -58,6 +61,8 @@ class RunCalibration:
     tick: NDArray[np.int64]
     residual_nt: Array
     left_out: float
+    strongest_nt: float
+    measurable_nt: float
 
 
 def calibrated(samples: Samples, table: FlightTable) -> RunCalibration:
@@ -91,8 +96,25 @@ def calibrated(samples: Samples, table: FlightTable) -> RunCalibration:
     ticks = moved.tick[taken]
     left_out = 1.0 - float(kept.mean())
     return RunCalibration(
-        wiring, field, response, by_output, sigma, coils, widened, ticks[kept], field.residual_nt, left_out
+        wiring,
+        field,
+        response,
+        by_output,
+        sigma,
+        coils,
+        widened,
+        ticks[kept],
+        field.residual_nt,
+        left_out,
+        float(np.linalg.norm(along.b_eci_nt, axis=1).max()),
+        _measurable_nt(field, table),
     )
+
+
+def _measurable_nt(field: FieldFit, table: FlightTable) -> float:
+    range_nt = (table.calibration.magnetometer or MagnetometerTable()).most_nt
+    by_axis = (range_nt - np.abs(field.offset_nt)) / np.linalg.norm(np.linalg.inv(field.matrix), axis=1)
+    return float(by_axis.min())
 
 
 def _observed(samples: Samples, along: Expected, table: FlightTable, rows: Flags, gain: float) -> FreeSamples:

@@ -57,6 +57,8 @@ def tables(found: RunCalibration, table: FlightTable) -> Json:
             "matrix": _rounded(found.field.matrix, 7),
         }
     }
+    if table.calibration.magnetometer is not None and table.calibration.magnetometer.range_nt is not None:
+        calibration["magnetometer"]["range_nt"] = table.calibration.magnetometer.range_nt
     coils = _coils(found, 1.0 / table.time.tick_hz)
     late, sigma = found.response.delay_ticks, found.response.delay_sigma
     if late is not None and sigma is not None:

@@ -110,6 +110,12 @@ def sentences(found: RunCalibration, tick_s: float) -> list[str]:
         sigmas = SIGMAS * np.sqrt(found.coils.covariance.diagonal()).reshape(3, 3)
         text.append("dipole of coil 1, 2, 3 by nominal A m^2, body axes:")
         text += _matrix(found.coils.matrix, sigmas, "{:+9.3f} ±{:.3f}")
+    if found.measurable_nt < found.strongest_nt:
+        text.append(
+            f"in a field above {max(0.0, found.measurable_nt) / 1000.0:.1f} uT an axis may be at the end of "
+            f"its range, and that of this log is up to {found.strongest_nt / 1000.0:.1f} uT: the filter then "
+            "takes the other two axes"
+        )
     rms = np.sqrt(np.nanmean(found.residual_nt**2, axis=0))
     text.append(
         f"residual {rms[0]:.0f} nT rms of the strength, {rms[1]:.0f} nT of the component along the Sun, "

@@ -152,3 +152,19 @@ def test_outliers_are_left_out(found):
     assert 0.0 < again.left_out < 0.05
     sigma = np.sqrt(found.field.covariance.diagonal())
     assert (np.abs(again.field.offset_nt - found.field.offset_nt) < 3.0 * sigma[9:]).all()
+
+
+def test_an_offset_that_leaves_too_little_of_the_range_is_told(found):
+    """31 uT of 65 leave 34, less the scale; the field of the log is of 45 uT and more over the poles."""
+    measurable_nt = found.measurable_nt
+    assert measurable_nt == pytest.approx((65000.0 - 31000.0) * 1.0, rel=0.06)
+    weak, strong = (replace(found, strongest_nt=part * measurable_nt) for part in (0.99, 1.01))
+    assert not any("end of its range" in line for line in sentences(weak, 1.0))
+    (line,) = [line for line in sentences(strong, 1.0) if "end of its range" in line]
+    assert line.startswith(f"in a field above {measurable_nt / 1000.0:.1f} uT")
+
+
+def test_the_range_that_the_table_gives_stays(found):
+    given = flight_table({"calibration": {"magnetometer": {"range_nt": 64000.0}}}, "table.toml")
+    assert tables(found, given)["calibration"]["magnetometer"]["range_nt"] == 64000.0
+    assert "range_nt" not in tables(found, TABLE)["calibration"]["magnetometer"]
