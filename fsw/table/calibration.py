@@ -133,12 +133,10 @@ def outputs_of(matrix: Mat3) -> Outputs:
     )
 
 
-def largest_field_nt(table: MagnetometerTable) -> float:
+def largest_field_nt(offset_nt: Vec3, matrix: Mat3, range_nt: float) -> float:
     """The strength of a field that saturates no axis, whatever its direction; negative if none does not."""
-    sensed = inverse(table.matrix)
-    return min(
-        (table.most_nt - abs(offset)) / norm(row) for offset, row in zip(table.offset_nt, sensed, strict=True)
-    )
+    sensed = inverse(matrix)
+    return min((range_nt - abs(offset)) / norm(row) for offset, row in zip(offset_nt, sensed, strict=True))
 
 
 def calibration(table: CalibrationTable) -> Calibration:

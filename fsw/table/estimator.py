@@ -107,7 +107,8 @@ def plausibility_config(table: FlightTable) -> PlausibilityConfig:
     noise_t, noise_rad = tuning.magnetometer_sigma_nt * NT, _sun_sigma_rad(table)
     model = known.mag_scale_part + 3.0 * known.along_track_m / ORBIT_RADIUS_M
     field_t = sqrt(3.0) * (known.mag_bias_t + sigmas * noise_t)
-    measurable_t = largest_field_nt(table.calibration.magnetometer or MagnetometerTable()) * NT
+    sensor = table.calibration.magnetometer or MagnetometerTable()
+    measurable_t = largest_field_nt(sensor.offset_nt, sensor.matrix, sensor.most_nt) * NT
     return PlausibilityConfig(
         field_t=field_t,
         field_part=model,

@@ -156,8 +156,8 @@ def _sensors(scenario: Scenario) -> Iterator[str]:
     largest_nt = float(np.max(strongest_nt * np.linalg.norm(sensed, axis=1) + 1e9 * np.abs(offset_t)))
     if magnetometer.saturation_nt < largest_nt:
         yield (
-            f"sensors.magnetometer.saturation_nt = {magnetometer.saturation_nt:g} is less than the "
-            f"{largest_nt:.0f} nT of offset and field over the poles of this orbit, {strongest_nt:.0f} nT"
+            f"sensors.magnetometer.saturation_nt = {magnetometer.saturation_nt:g} is less than "
+            f"{largest_nt:.0f} nT, the field over the poles of this orbit and the sensor's offset"
         )
         known = flight_table(scenario).calibration.magnetometer or MagnetometerTable()
         if known.most_nt != magnetometer.saturation_nt:

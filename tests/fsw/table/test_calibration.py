@@ -6,7 +6,7 @@ import pytest
 from fsw.core.gate.calibration import NO_CALIBRATION
 from fsw.core.laws.plan.pulse_model import AXES
 from fsw.input.schema import TableError
-from fsw.table.calibration import MagnetometerTable, largest_field_nt
+from fsw.table.calibration import largest_field_nt
 from fsw.table.config import flight_config
 from fsw.table.table import flight_table
 
@@ -61,8 +61,7 @@ def test_a_field_below_the_largest_saturates_no_axis_whatever_its_direction():
         np.array([31000.0, -24000.0, 900.0]),
         np.array([[0.96, 0.05, 0.0], [-0.04, 1.04, 0.02], [0.1, 0.0, 1.01]]),
     )
-    table = MagnetometerTable(offset_nt=offset.tolist(), matrix=matrix.tolist(), range_nt=60000.0)
-    strength = largest_field_nt(table)
+    strength = largest_field_nt(tuple(offset), tuple(map(tuple, matrix)), 60000.0)
     directions = np.random.default_rng(5).normal(size=(20000, 3))
     directions /= np.linalg.norm(directions, axis=1)[:, None]
     readings = offset + strength * directions @ np.linalg.inv(matrix).T

@@ -56,7 +56,7 @@ def test_a_magnetometer_beyond_its_range_by_its_offset():
         "flight.calibration.magnetometer.offset_nt=[0,30000,0]",
     )
     (doubt,) = found("microsat", offset, known)
-    assert "saturation_nt = 65000 is less than the 72" in doubt
+    assert "saturation_nt = 65000 is less than 72" in doubt
     _, other = found("microsat", offset, known, "sensors.magnetometer.saturation_nt=64000")
     assert "range_nt = 65000 is not the sensor's, sensors.magnetometer.saturation_nt = 64000" in other
     near = "sensors.magnetometer.bias_nt=[0,3000,0]", "flight.calibration.magnetometer.offset_nt=[0,3000,0]"

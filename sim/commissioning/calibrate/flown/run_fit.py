@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fsw.table.calibration import MagnetometerTable
+from fsw.table.calibration import MagnetometerTable, largest_field_nt
 from fsw.table.table import FlightTable
 from sim.commissioning.calibrate.flown.coil_axes import CoilAxes, coil_axes
 from sim.commissioning.calibrate.flown.coil_field import CoilResponse, coil_response
@@ -113,8 +113,8 @@ def calibrated(samples: Samples, table: FlightTable) -> RunCalibration:
 
 def _measurable_nt(field: FieldFit, table: FlightTable) -> float:
     range_nt = (table.calibration.magnetometer or MagnetometerTable()).most_nt
-    by_axis = (range_nt - np.abs(field.offset_nt)) / np.linalg.norm(np.linalg.inv(field.matrix), axis=1)
-    return float(by_axis.min())
+    first, second, third = (tuple(row) for row in field.matrix.tolist())
+    return largest_field_nt(tuple(field.offset_nt.tolist()), (first, second, third), range_nt)
 
 
 def _observed(samples: Samples, along: Expected, table: FlightTable, rows: Flags, gain: float) -> FreeSamples:
