@@ -98,7 +98,8 @@ REQUIREMENTS: tuple[Requirement, ...] = (
     _sensor(
         1,
         SensorFault.SATURATED,
-        "A magnetometer that marks its samples as not valid while no coil drives is isolated.",
+        "A magnetometer that marks its samples as not valid while no coil drives is isolated, unless an axis "
+        "is at the end of its range in a field that may be beyond it.",
         ISOLATES,
     ),
     _sensor(
