@@ -6,8 +6,10 @@ as those of the law ``pd`` do.
 
 from dataclasses import dataclass
 
-from fsw.core.algebra.vector import Vec3, cross, dot, scale
+from fsw.core.algebra.vector import ZERO, Vec3, cross, dot, norm, scale
 from fsw.own_law import ControlConfig, ControlLaw, Demand, LawInput, Memory, Setpoint, quantity
+
+LEAST_FIELD_T = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,8 +28,10 @@ def projected_dipole(b_body_t: Vec3, wanted_nm: Vec3) -> Vec3:
         wanted_nm: T, body axes, N m.
 
     Returns:
-        Dipole in body axes, A m^2.
+        Dipole in body axes, A m^2; none without a field, in which no dipole turns anything.
     """
+    if norm(b_body_t) < LEAST_FIELD_T:
+        return ZERO
     return scale(1.0 / dot(b_body_t, b_body_t), cross(b_body_t, wanted_nm))
 
 

@@ -25,6 +25,11 @@ def test_the_torque_is_the_part_of_the_wanted_one_that_is_normal_to_the_field():
     assert torque == pytest.approx([w - along * x for w, x in zip(wanted, b, strict=True)], rel=1e-12)
 
 
+@pytest.mark.parametrize("b", [(0.0, 0.0, 0.0), (1e-160, 0.0, 0.0)])
+def test_without_a_field_it_asks_for_nothing(b):
+    assert law.projected_dipole(b, (4e-6, 5e-6, -6e-6)) == (0.0, 0.0, 0.0)
+
+
 CONTROL = flight_config(flight_table(load("microsat", {"control": {"law": LAW}}))).control
 
 
