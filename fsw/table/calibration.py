@@ -25,8 +25,9 @@ NEAR_AXIS = sqrt(0.5)
 """Least cosine between a coil and the body axis that it serves."""
 ORTHONORMAL = 1e-3
 UNCHANGED = Outputs((0, 1, 2), (1, 1, 1))
-ORDINARY_RANGE_NT, BUS_RANGE_NT = 65000.0, 65534.0
-"""Largest readings: of a magnetometer whose range is not said, and that its message carries."""
+LEAST_RANGE_NT, ORDINARY_RANGE_NT, BUS_RANGE_NT = 20000.0, 65000.0, 65534.0
+"""Largest readings: of a sensor for the weakest field of an orbit, of one whose range is not said, and that
+its message carries."""
 EDGE_TICKS = 0.05
 """How near to a whole number of ticks a delay is taken for one."""
 
@@ -39,7 +40,7 @@ class MagnetometerTable(Section):
 
     offset_nt: Triple = NO_OFFSET
     matrix: Square = AXES
-    range_nt: float | None = Field(default=None, gt=0.0, le=BUS_RANGE_NT)
+    range_nt: float | None = Field(default=None, ge=LEAST_RANGE_NT, le=BUS_RANGE_NT)
 
     @property
     def most_nt(self) -> float:

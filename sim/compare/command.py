@@ -5,6 +5,7 @@ import sys
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from sim.campaign.claim import Study
 from sim.campaign.runner import StudyResult, run
@@ -147,7 +148,7 @@ def _write(
     folder: Path,
     scenario: Scenario,
     scores: list[Score],
-    description: dict[str, object],
+    description: dict[str, Any],
     results: list[Result],
     by: Controlled,
     kept: KeptGains | None,
@@ -160,7 +161,7 @@ def _write(
         write_json(folder / JSON, as_json(scores, description))
         (folder / CSV).write_text(as_csv(scores), encoding="utf-8")
         picture(folder / PICTURE, f"{scenario.name}, {seed}", results, by)
-        window = _window(scenario, int(str(description["ticks"])))
+        window = _window(scenario, description["ticks"])
         page = compare_page(scenario, facts, scores, results, window, by, kept)
         (folder / PAGE).write_text(page, encoding="utf-8")
     except OSError as error:

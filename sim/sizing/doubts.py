@@ -159,13 +159,14 @@ def _sensors(scenario: Scenario) -> Iterator[str]:
             f"sensors.magnetometer.saturation_nt = {magnetometer.saturation_nt:g} is less than "
             f"{largest_nt:.0f} nT, the field over the poles of this orbit and the sensor's offset"
         )
-        known = flight_table(scenario).calibration.magnetometer or MagnetometerTable()
-        if known.most_nt != magnetometer.saturation_nt:
-            yield (
-                f"flight.calibration.magnetometer.range_nt = {known.most_nt:g} is not the sensor's, "
-                f"sensors.magnetometer.saturation_nt = {magnetometer.saturation_nt:g}: what is beyond it is "
-                "taken for a fault"
-            )
+    known = flight_table(scenario).calibration.magnetometer or MagnetometerTable()
+    counts = known.range_nt is not None or magnetometer.saturation_nt < largest_nt
+    if counts and known.most_nt != magnetometer.saturation_nt:
+        yield (
+            f"flight.calibration.magnetometer.range_nt = {known.most_nt:g} is not the sensor's, "
+            f"sensors.magnetometer.saturation_nt = {magnetometer.saturation_nt:g}: an axis at its end is "
+            "taken for a fault, or a fault for that"
+        )
 
 
 def _start(scenario: Scenario) -> Iterator[str]:

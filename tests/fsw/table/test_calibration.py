@@ -54,6 +54,8 @@ def test_the_range_of_the_magnetometer_counts_by_itself():
     assert config(magnetometer={"offset_nt": [1.0, 0.0, 0.0]}).calibration.magnetometer.range_nt == 65000.0
     with pytest.raises(TableError, match=r"calibration.magnetometer.range_nt = 70000.0 is not allowed"):
         config(magnetometer={"range_nt": 70000.0})
+    with pytest.raises(TableError, match=r"range_nt = 65.0 is not allowed"):
+        config(magnetometer={"range_nt": 65.0})
 
 
 def test_a_field_below_the_largest_saturates_no_axis_whatever_its_direction():

@@ -59,6 +59,8 @@ def test_a_magnetometer_beyond_its_range_by_its_offset():
     assert "saturation_nt = 65000 is less than 72" in doubt
     _, other = found("microsat", offset, known, "sensors.magnetometer.saturation_nt=64000")
     assert "range_nt = 65000 is not the sensor's, sensors.magnetometer.saturation_nt = 64000" in other
+    (mistaken,) = found("microsat", "flight.calibration.magnetometer.range_nt=50000")
+    assert "range_nt = 50000 is not the sensor's" in mistaken
     near = "sensors.magnetometer.bias_nt=[0,3000,0]", "flight.calibration.magnetometer.offset_nt=[0,3000,0]"
     assert found("microsat", *near) == []
 
