@@ -13,6 +13,7 @@ from fsw.core.events import Event, Happening
 from fsw.core.fdir.coils import currents, retest, torques
 from fsw.core.fdir.coils import health as coil_health
 from fsw.core.fdir.coils.health import CoilHealth, CoilHealthConfig
+from fsw.core.fdir.coils.torques import BelievedParts
 from fsw.core.fdir.faults import OPEN_PART, Sensor
 from fsw.core.fdir.sensors import health as sensor_health
 from fsw.core.fdir.sensors import pair, plausibility
@@ -129,30 +130,52 @@ def judge(
     elif not sensor_health.suspected(judged):
         proven, doubt = pair.proven(judged.pair, weights), judged.pair.doubt > 1.0
         found, estimator = retest.retest(found, estimator, proven and not isolated, config.coils)
-        sure = _believed_below(estimator.estimate, judged.pair, proven or isolated, config)
+        sure = _believed(estimator.estimate, judged.pair, proven or isolated, config)
         found, estimator = torques.judge_effect(
-            found, evidence.view, reference.b_eci_t, estimator, evidence.tick, sure, doubt, config.coils
+            found, evidence.view, reference, estimator, evidence.tick, sure, doubt, config.coils
         )
     if changed or judged.pair.ended:
         found = found._replace(older=coil_health.NONE_OLDER)  # a faulty sensor may have shown it
     if judged.pair.ended:
         estimator, attitude = restart(estimator), UNKNOWN
-    torque_untold = coil_health.unattributed_torque(found) or _pulses_untold(found, judged.pair, config)
+    torque_untold = (
+        coil_health.unattributed_torque(found)
+        or _turned_unseen(found, evidence.used, config)
+        or _pulses_untold(found, judged.pair, config)
+    )
     if torque_untold or not pair.valid(judged.pair):
         attitude = attitude._replace(valid=False)
     return Health(judged, found), estimator, attitude
 
 
-def _believed_below(estimate: Estimate | None, both: Pair, proven: bool, config: FdirConfig) -> float:
-    """Which parts of their effect are believed of pulses: none, those of a weak coil, or of an open one.
+UNKNOWN_PART = 0.5
+"""A sound coil's gain seems no less on a satellite that is not the one of the table: one twice as heavy."""
+
+
+def _believed(estimate: Estimate | None, both: Pair, proven: bool, config: FdirConfig) -> BelievedParts:
+    """Which parts of their effect are believed of coils: none, those of a weak coil, or of a much weaker one.
 
     What the filter assumes beyond the table may come from that coil, or make a sound one seem somewhat weak;
-    and so may what misled a filter that lagged.
+    and so may what misled a filter that lagged. Single pulses are then those of an open coil or no coil's.
     """
     if not proven or estimate is None:
-        return -inf
+        return BelievedParts(-inf, -inf)
+    weak_part = config.coils.weak.weak_part
     known = not both.owed and credible_but_coils(estimate, config.sensors.credibility)
-    return config.coils.weak.weak_part if known else OPEN_PART
+    return (
+        BelievedParts(weak_part, weak_part)
+        if known
+        else BelievedParts(OPEN_PART, min(UNKNOWN_PART, weak_part))
+    )
+
+
+def _turned_unseen(found: CoilHealth, used: Used, config: FdirConfig) -> bool:
+    """Whether a stuck coil, which blinds the magnetometer, turns a satellite of uncertain inertia.
+
+    What the coil does to it about the Sun's direction nothing measures, and an inertia that is somewhat
+    wrong is soon wrong by degrees.
+    """
+    return found.stuck and not used.field and config.coils.mekf.layout.inertia is not None
 
 
 def _pulses_untold(found: CoilHealth, both: Pair, config: FdirConfig) -> bool:

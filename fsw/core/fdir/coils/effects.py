@@ -20,7 +20,7 @@ Source: Friedland 1969, Treatment of bias in recursive filtering (IEEE Trans. Au
 the bias. Willsky and Jones 1976 estimate the size of jumps by the same sums.
 """
 
-from math import hypot
+from math import hypot, sqrt
 
 import numpy as np
 
@@ -41,19 +41,26 @@ UNEXPLAINED = 1.25
 
 
 def trace_pulse(
-    estimate: Estimate, pulse: Pulse, b_eci_t: Vec3, pulses: PulseConfig, tuning: MekfConfig
+    estimate: Estimate,
+    pulse: Pulse,
+    b_eci_t: Vec3,
+    gravity_ps2: float,
+    pulses: PulseConfig,
+    tuning: MekfConfig,
 ) -> Estimate:
     """Trace one more pulse, which ends now, and the oldest of its coil no longer.
 
     The trace begins anew where the innovations since the pulse before were certainly no coil's: what misled
     the filter has then misled it about those pulses too. The effect of this one is as uncertain as
-    ``MODEL_ERROR``, and as the part of it that the disturbance torque would do by the next pulse: if that is
-    not what the filter takes it for, the pulse seems to have done it.
+    ``MODEL_ERROR``, and as the part of it that the disturbance torque, and gravity on an inertia beyond the
+    table's bounds, would do by the next pulse: if those are not what the filter takes them for, the pulse
+    seems to have done it.
 
     Args:
         estimate: before.
         pulse: asked for and done.
         b_eci_t: the field in it.
+        gravity_ps2: 3 mu/r^3.
         pulses: configuration of pulses.
         tuning: of the filter.
     """
@@ -64,13 +71,29 @@ def trace_pulse(
     impulse_nms = impulse(pulse, rotate(estimate.q_body_from_eci, b_eci_t), pulses)
     kick_radps = transform(tuning.rotor.inertia_inverse, impulse_nms)
     effect = np.array((*scale(0.5 * pulses.pulse_s, kick_radps), *kick_radps))
-    drift_nms = pulses.backoff_ticks * pulses.tick_s * norm(estimate.parameters.torque_body_nm)
+    torque_nm = norm(estimate.parameters.torque_body_nm)
+    torque_nm += gravity_ps2 * sqrt(0.5) * _inertia_beyond_kgm2(estimate, tuning)
+    drift_nms = pulses.backoff_ticks * pulses.tick_s * torque_nm
     cause = Cause(
         coil,
         assumed=1.0 + estimate.parameters.coil_error[4 * coil],
         uncertain=hypot(MODEL_ERROR, drift_nms / (max(drift_nms, norm(impulse_nms)) or 1.0)),
     )
     return estimate._replace(trace=extended(trace, (cause,), effect[:, np.newaxis]))
+
+
+def _inertia_beyond_kgm2(estimate: Estimate, tuning: MekfConfig) -> float:
+    """How far the estimated inertia is beyond its bounds: the norm of the tensor D of what exceeds them.
+
+    Gravity on it, 3 mu/r^3 e1 x D e1, is at most 3 mu/r^3 |D| / sqrt 2.
+    """
+    place = tuning.layout.inertia
+    if place is None:
+        return 0.0
+    within = np.sqrt(3.0 * tuning.initial_covariance.diagonal()[place]).tolist()
+    errors = estimate.parameters.inertia_error_kgm2
+    xx, yy, zz, xy, xz, yz = [max(0.0, abs(e) - most) for e, most in zip(errors, within, strict=True)]
+    return hypot(xx, yy, zz, xy, xy, xz, xz, yz, yz)
 
 
 def _of_coils_alone(trace: Trace | None) -> Trace | None:

@@ -1,7 +1,8 @@
 """Each coil by its torque: what pulses and currents did, as the filter sees it, against what they should."""
 
+from typing import NamedTuple
+
 from fsw.core.actuation.actuator import CoilView
-from fsw.core.algebra.vector import Vec3
 from fsw.core.estimation.estimator import EstimatorState
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.fdir.coils import effects, explanations, stray
@@ -17,15 +18,28 @@ from fsw.core.fdir.coils.health import (
     with_item,
 )
 from fsw.core.fdir.faults import CoilFault, coil_fault
+from fsw.core.orbit.earth import MU_M3PS2
+from fsw.core.orbit.ephemeris import Reference
+
+
+class BelievedParts(NamedTuple):
+    """How small a part of its effect has to be to be believed a coil's own fault.
+
+    ``by_pulses``: the part that its latest pulses show, each by itself; ``by_gain``: the one that the filter
+    has estimated from all of them, together with whatever else they may show.
+    """
+
+    by_pulses: float
+    by_gain: float
 
 
 def judge_effect(
     health: CoilHealth,
     view: CoilView,
-    b_eci_t: Vec3,
+    reference: Reference,
     state: EstimatorState,
     tick: int,
-    believed_below: float,
+    believed: BelievedParts,
     unexplained: bool,
     config: CoilHealthConfig,
 ) -> tuple[CoilHealth, EstimatorState]:
@@ -34,17 +48,17 @@ def judge_effect(
     Args:
         health: of the tick before.
         view: after what was received in this tick.
-        b_eci_t: field as modelled.
+        reference: of the orbit, in this tick.
         state: of the estimator, after the samples of this tick.
         tick: this one.
-        believed_below: so small a part of its effect is believed to be a coil's own fault.
+        believed: so small a part of its effect is believed to be a coil's own fault.
         unexplained: there is doubt about both sensors.
         config: limits.
 
     Returns:
         The health, and the estimator, corrected where a coil certainly did something else than assumed.
     """
-    estimate, age = state.estimate, tick - view.fired_tick
+    estimate, age, b_eci_t = state.estimate, tick - view.fired_tick, reference.b_eci_t
     ended = age == config.pulses.pulse_ticks and view.driven_level != 0
     flows = flows_somewhere(health)
     hurry = age % EARLY_TICKS == 0 and (unexplained or state.rejected_in_a_row > 0 or flows)
@@ -56,11 +70,10 @@ def judge_effect(
         begins = health.strange_ticks == 1
         estimate = stray.trace(estimate, health.conducts, kicks_radps, config.mekf.tick_s, begins)
     if due:
-        health, estimate = _isolate(
-            health, estimate, view.fired.coil if ended else None, believed_below, config
-        )
+        health, estimate = _isolate(health, estimate, view.fired.coil if ended else None, believed, config)
     if ended and (view.driven_coil, view.driven_level) == view.fired:
-        estimate = effects.trace_pulse(estimate, view.fired, b_eci_t, config.pulses, config.mekf)
+        gravity_ps2 = 3.0 * MU_M3PS2 / reference.radius_m**3
+        estimate = effects.trace_pulse(estimate, view.fired, b_eci_t, gravity_ps2, config.pulses, config.mekf)
     return health, state._replace(estimate=estimate)
 
 
@@ -69,7 +82,11 @@ EARLY_TICKS = 5
 
 
 def _isolate(
-    health: CoilHealth, estimate: Estimate, ended: int | None, believed_below: float, config: CoilHealthConfig
+    health: CoilHealth,
+    estimate: Estimate,
+    ended: int | None,
+    believed: BelievedParts,
+    config: CoilHealthConfig,
 ) -> tuple[CoilHealth, Estimate]:
     """With the coil isolated that did something else than assumed, if any, and the estimate corrected.
 
@@ -79,14 +96,18 @@ def _isolate(
     estimate, solution = effects.solve(estimate, config.mekf)
     if solution is None:
         return (health if estimate.trace else health._replace(older=NONE_OLDER)), estimate
-    weak = explanations.weak_by_pulses(solution, earlier, config.weak)
-    weak = weak or explanations.weak_by_gain(estimate, gain_nats, config.weak)
+    weak = (
+        (explanations.weak_by_pulses(solution, earlier, config.weak), believed.by_pulses),
+        (explanations.weak_by_gain(estimate, gain_nats, config.weak), believed.by_gain),
+    )
     if ended is not None:
         oldest = explanations.of_oldest(solution, ended, config.weak)
         older = earlier[ended].with_pulses(oldest).bounded(config.weak)
         health = health._replace(older=with_item(earlier, ended, older))
-    if weak is not None and weak[1] < believed_below and _others_are_sound(health, weak[0], gain_nats):
-        health = with_fault(health, weak[0], coil_fault(weak[1], config.weak.weak_part), config)
+    for found, most in weak:
+        if found is not None and found[1] < most and _others_are_sound(health, found[0], gain_nats):
+            health = with_fault(health, found[0], coil_fault(found[1], config.weak.weak_part), config)
+            break
     return (
         _attribute(health, estimate, solution, config) if unattributed_torque(health) else (health, estimate)
     )

@@ -18,6 +18,7 @@ from fsw.core.orbit.ephemeris import reference_at
 
 FROZEN, SILENT = SensorFault.FROZEN, SensorFault.SILENT
 OPEN, WEAK = CoilFault.OPEN, CoilFault.WEAK
+WEAK_PART = "the most that is weak"
 PROVEN = Pair(Standing.TRUSTED, proof=12.0)
 
 
@@ -165,6 +166,23 @@ class TestJudgement:
         assert attitude == state.attitude._replace(valid=False)
 
     @pytest.mark.parametrize(
+        ("inertia_percent", "field", "valid"), [(0.0, False, True), (10.0, False, False), (10.0, True, True)]
+    )
+    def test_what_a_stuck_coil_turns_unseen_is_not_valid_unless_its_inertia_is_exact(
+        self, make_world, inertia_percent, field, valid
+    ):
+        world = make_world(flight={"uncertainty": {"inertia_percent": inertia_percent}})
+        world.fly_until_valid()
+        state, config = world.state, world.config
+        reference = reference_at(state.ephemeris, state.tick, config.ephemeris)
+        findings = fdir.examine(NOTHING, state.health, reference, config.fdir)
+        stuck = CoilHealth(faults=(0, CoilFault.STUCK, 0), strange_ticks=90, stray_ma=40, stuck=True)
+        evidence = Evidence(state.tick, findings, state.coil, reference, fdir.Used(field, True, False))
+        before = Health(sensors(pair=PROVEN).sensors, stuck)
+        _, _, attitude = fdir.judge(before, state.estimator, state.attitude, evidence, config.fdir)
+        assert attitude.valid is valid
+
+    @pytest.mark.parametrize(
         "judgement",
         [
             SensorHealth(field=Watch(FROZEN), pair=PROVEN),
@@ -185,9 +203,9 @@ class TestJudgement:
     @pytest.mark.parametrize(
         ("pair", "believed"),
         [
-            (PROVEN, "what a weak coil does"),
-            (PROVEN._replace(owed=5.0), "next to nothing"),
-            (PROVEN._replace(proof=0.0), "nothing at all"),
+            (PROVEN, (WEAK_PART, WEAK_PART)),
+            (PROVEN._replace(owed=5.0), (OPEN_PART, 0.5)),
+            (PROVEN._replace(proof=0.0), (-inf, -inf)),
         ],
         ids=["proven", "lagged", "not proven"],
     )
@@ -196,15 +214,14 @@ class TestJudgement:
     ):
         asked = []
 
-        def judge_effect(health, view, b_eci_t, state, tick, believed_below, *others):
-            asked.append(believed_below)
+        def judge_effect(health, view, reference, state, tick, parts, *others):
+            asked.append(parts)
             return health, state
 
         monkeypatch.setattr(fdir.torques, "judge_effect", judge_effect)
         judged(sensors(pair=pair))
         weak_part = make_world().config.fdir.coils.weak.weak_part
-        parts = {"what a weak coil does": weak_part, "next to nothing": OPEN_PART, "nothing at all": -inf}
-        assert asked == [parts[believed]]
+        assert asked == [tuple(weak_part if part is WEAK_PART else part for part in believed)]
 
     def test_while_the_time_is_in_doubt_no_sensor_is_judged(self, make_world, monkeypatch):
         world = make_world()

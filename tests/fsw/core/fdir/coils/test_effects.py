@@ -1,11 +1,13 @@
 """What the coils did, by the innovations of the filter: against one that knew, truth, and in doubt."""
 
-from math import hypot, inf, isfinite, nan
+from math import copysign, hypot, inf, isfinite, nan, sqrt
 
 import numpy as np
 import pytest
 from pulse_samples import (
     CONFIG,
+    GRAVITY_PS2,
+    PRIORS,
     PULSE_S,
     START,
     covariance,
@@ -16,11 +18,13 @@ from pulse_samples import (
     kick_radps,
     left,
     traced,
+    tuned,
 )
 
 from fsw.core.algebra.quaternion import conjugate, rotate
 from fsw.core.algebra.vector import ZERO, scale
 from fsw.core.estimation import mekf
+from fsw.core.estimation.parameters import Prior
 from fsw.core.fdir.coils.explanations import PULSES
 from fsw.core.laws.plan.pulse_model import Pulse
 
@@ -51,6 +55,44 @@ def test_a_pulse_proves_little_beside_a_torque_that_does_as_much_by_the_next(lev
     assert cause[:2] == (1, 1.0)
     weakest = traced(pushed, Pulse(1, 1), across).trace.causes[0]
     assert weakest.uncertain == pytest.approx(hypot(0.05, 1.0 if torque_nm else 0.0))
+
+
+WITH_INERTIA = tuned(PRIORS | {"inertia_error_kgm2": Prior((0.06, 0.1, 0.08, 0.02, 0.02, 0.02), (0.0,) * 6)})
+"""Bounds of sqrt 3 times as much."""
+
+
+def with_inertia(*error_kgm2):
+    estimate = mekf.start(START.q_body_from_eci, START.omega_body_radps, WITH_INERTIA)
+    return estimate._replace(parameters=estimate.parameters._replace(inertia_error_kgm2=error_kgm2))
+
+
+@pytest.mark.parametrize("beyond", [(0.0, 0.0, 0.0), (0.2, -0.3, 0.1), (-0.25, 0.25, 0.0)])
+def test_a_pulse_proves_little_beside_what_gravity_may_do_to_an_inertia_beyond_its_bounds(beyond):
+    """Not more than what it does to such a body at the worst of many attitudes, and hardly less."""
+    bounds = [sqrt(3.0) * sigma for sigma in (0.06, 0.1, 0.08)]
+    error = [copysign(most + abs(more), more) for most, more in zip(bounds, beyond, strict=True)]
+    across = rotate(conjugate(START.q_body_from_eci), (0.0, 0.0, 3e-5))
+    cause = traced(with_inertia(*error, 0.0, 0.0, 0.0), Pulse(1, 3), across, WITH_INERTIA).trace.causes[0]
+    uncertain = sqrt(cause.uncertain**2 - 0.05**2)
+    directions = np.random.default_rng(7).normal(size=(4000, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    torques_nm = GRAVITY_PS2 * np.cross(directions, directions * beyond)
+    worst = 100.0 * np.linalg.norm(torques_nm, axis=1).max() / (3.0 * 8.0 * 3e-5)
+    assert worst <= uncertain + 1e-12
+    assert uncertain <= 1.25 * worst + 1e-12
+    assert any(beyond) == (uncertain > 0.05)
+
+
+def test_products_of_inertia_beyond_their_bounds_count_too():
+    across = rotate(conjugate(START.q_body_from_eci), (0.0, 0.0, 3e-5))
+    causes = [
+        traced(
+            with_inertia(0.0, 0.0, 0.0, 0.0, product, 0.0), Pulse(1, 3), across, WITH_INERTIA
+        ).trace.causes[0]
+        for product in (0.02, 0.3)
+    ]
+    assert causes[0].uncertain == pytest.approx(0.05)
+    assert causes[1].uncertain > 0.1
 
 
 def test_a_pulse_along_the_field_is_traced_though_it_does_nothing():
