@@ -20,19 +20,28 @@ from fsw.core.gate.readings import NOTHING
 from fsw.core.orbit.ephemeris import Reference
 from fsw.wire.messages import CoilStatus, MagField, SunVector
 
+INERTIA = ((1.02, 0.07, -0.05), (0.07, 1.85, 0.11), (-0.05, 0.11, 1.45))
 
-def tuned(**priors):
+
+def tuned(
+    *,
+    attitude_sigma_deg=5.0,
+    rate_sigma_degps=2.0,
+    torque_noise_nm_rts=1e-7,
+    gate_nis=16.27,
+    **priors,
+):
     """A filter that estimates these parameters besides attitude and rate."""
     return mekf_config(
-        ((1.02, 0.07, -0.05), (0.07, 1.85, 0.11), (-0.05, 0.11, 1.45)),
+        INERTIA,
         1.0,
         priors,
         magnetometer_sigma_t=2e-7,
         sun_sigma_rad=radians(0.5),
-        attitude_sigma_rad=radians(5.0),
-        rate_sigma_radps=radians(2.0),
-        torque_noise_nm_rts=1e-7,
-        gate_nis=16.27,
+        attitude_sigma_rad=radians(attitude_sigma_deg),
+        rate_sigma_radps=radians(rate_sigma_degps),
+        torque_noise_nm_rts=torque_noise_nm_rts,
+        gate_nis=gate_nis,
     )
 
 

@@ -3,12 +3,12 @@
 from math import inf, radians
 
 import numpy as np
+from estimator_samples import tuned
 
 from fsw.core.actuation.pulses import PulseConfig, impulse
 from fsw.core.algebra.quaternion import IDENTITY, conjugate, multiply, normalise, rotate
 from fsw.core.algebra.vector import ZERO, add, scale, sub, transform, unit
 from fsw.core.estimation import mekf
-from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.parameters import Prior
 from fsw.core.fdir.coils.effects import solve, trace_pulse
 from fsw.core.fdir.coils.explanations import of_pulses
@@ -17,26 +17,16 @@ from fsw.core.laws.plan.pulse_model import AXES, Pulse
 from fsw.core.orbit.earth import MU_M3PS2
 from fsw.core.orbit.ephemeris import Reference
 
-INERTIA = ((1.02, 0.07, -0.05), (0.07, 1.85, 0.11), (-0.05, 0.11, 1.45))
-PRIORS = {"mag_bias_t": Prior((3e-7,) * 3, (1e-11,) * 3), "torque_body_nm": Prior((1e-7,) * 3, (3e-11,) * 3)}
-
-
-def tuned(priors):
-    """The filter that estimates these parameters."""
-    return mekf_config(
-        INERTIA,
-        1.0,
-        priors,
-        magnetometer_sigma_t=2e-7,
-        sun_sigma_rad=radians(0.5),
-        attitude_sigma_rad=radians(0.1),
-        rate_sigma_radps=radians(0.001),
-        torque_noise_nm_rts=1e-8,
-        gate_nis=inf,
-    )
-
-
-CONFIG = tuned(PRIORS)
+QUIET = {
+    "attitude_sigma_deg": 0.1,
+    "rate_sigma_degps": 0.001,
+    "torque_noise_nm_rts": 1e-8,
+    "gate_nis": inf,
+    "mag_bias_t": Prior((3e-7,) * 3, (1e-11,) * 3),
+    "torque_body_nm": Prior((1e-7,) * 3, (3e-11,) * 3),
+}
+"""A filter that is sure of its attitude, so that a pulse shows, and refuses nothing."""
+CONFIG = tuned(**QUIET)
 B_ECI_T, S_ECI, E1_ECI = (1.7e-5, -2.3e-5, 3.1e-5), unit((-0.8, 0.35, 0.4)), unit((0.3, 0.7, -0.5))
 REFERENCE = Reference(scale(7.1e6, E1_ECI), 7.1e6, B_ECI_T, S_ECI, True, IDENTITY, 1.055e-3)
 GRAVITY_PS2 = 3.0 * MU_M3PS2 / REFERENCE.radius_m**3

@@ -96,7 +96,7 @@ def _isolate(
     estimate, solution = effects.solve(estimate, config.mekf)
     if solution is None:
         return (health if estimate.trace else health._replace(older=NONE_OLDER)), estimate
-    weak = (
+    suspected = (
         (explanations.weak_by_pulses(solution, earlier, config.weak), believed.by_pulses),
         (explanations.weak_by_gain(estimate, gain_nats, config.weak), believed.by_gain),
     )
@@ -104,7 +104,7 @@ def _isolate(
         oldest = explanations.of_oldest(solution, ended, config.weak)
         older = earlier[ended].with_pulses(oldest).bounded(config.weak)
         health = health._replace(older=with_item(earlier, ended, older))
-    for found, most in weak:
+    for found, most in suspected:
         if found is not None and found[1] < most and _others_are_sound(health, found[0], gain_nats):
             health = with_fault(health, found[0], coil_fault(found[1], config.weak.weak_part), config)
             break

@@ -4,11 +4,12 @@ from math import copysign, hypot, inf, isfinite, nan, sqrt
 
 import numpy as np
 import pytest
+from estimator_samples import tuned
 from pulse_samples import (
     CONFIG,
     GRAVITY_PS2,
-    PRIORS,
     PULSE_S,
+    QUIET,
     START,
     covariance,
     deviation,
@@ -18,7 +19,6 @@ from pulse_samples import (
     kick_radps,
     left,
     traced,
-    tuned,
 )
 
 from fsw.core.algebra.quaternion import conjugate, rotate
@@ -57,7 +57,7 @@ def test_a_pulse_proves_little_beside_a_torque_that_does_as_much_by_the_next(lev
     assert weakest.uncertain == pytest.approx(hypot(0.05, 1.0 if torque_nm else 0.0))
 
 
-WITH_INERTIA = tuned(PRIORS | {"inertia_error_kgm2": Prior((0.06, 0.1, 0.08, 0.02, 0.02, 0.02), (0.0,) * 6)})
+WITH_INERTIA = tuned(**QUIET, inertia_error_kgm2=Prior((0.06, 0.1, 0.08, 0.02, 0.02, 0.02), (0.0,) * 6))
 """Bounds of sqrt 3 times as much."""
 
 
