@@ -31,6 +31,7 @@ from sim.record.pace import Pace
 from sim.scenario.assemble import plant_config
 from sim.scenario.own_effects import own_effects
 from sim.scenario.schema import Scenario
+from sim.scenario.telecommands import uplink
 
 BOARDS = {"coil": "COIL", "magnetometer": "MAG", "sun": "SUN", "cells": "SUN"}
 """The nodes; a satellite has a Sun sensor or Sun cells."""
@@ -104,6 +105,9 @@ def hil(settings: HilSettings) -> int:
     if absent := sorted(settings.real - set(boards_of(settings.scenario))):
         has = "Sun cells, and no Sun sensor" if absent == ["sun"] else "a Sun sensor, and no Sun cells"
         raise HarnessError(f"--real {absent[0]}: {settings.scenario.name} has {has}")
+    if settings.scenario.fault:
+        kind = settings.scenario.fault[0].kind
+        raise HarnessError(f"fault[0], {kind}: a bench injects no faults: fly the scenario by sil")
     if settings.stimulus != "plant" and settings.scenario.knowledge == "perfect":
         raise HarnessError("a scenario with knowledge = 'perfect' needs the plant: --stimulus plant")
     with (
@@ -185,7 +189,8 @@ def _run(
             memory.sample(tick)
             watch(tick)
 
-        loop = RealtimeLoop(bus, source, log, scenario.epoch_unix_s, tick_hz, on_tick)
+        commands = uplink(scenario.telecommand, tick_hz)
+        loop = RealtimeLoop(bus, source, log, scenario.epoch_unix_s, tick_hz, on_tick, commands)
         measured = loop.run(ticks, booted)
     numbers, lines = judge(measured, settings.budgets, boards_of(scenario), tick_hz, memory.growth_percent())
     numbers |= {"scenario": scenario.name, "bus": spec, "tick_hz": tick_hz, "armed": settings.armed}

@@ -24,6 +24,7 @@ from sim.bench.tick_source import TickSource
 from sim.bench.time_histogram import TimeHistogram
 from sim.flight.flight_loop import FrameLog
 from sim.flight.second_senders import ALONE, SecondSenderFrames, SenderWatch
+from sim.scenario.telecommands import Uplink
 
 SAMPLES = {CoilStatus.ID: "coil", MagField.ID: "magnetometer", SunVector.ID: "sun", SunCells.ID: "cells"}
 """The message that each board sends exactly once a tick."""
@@ -71,6 +72,7 @@ class RealtimeLoop:
         epoch_unix_s: time of tick 0.
         tick_hz: ticks a second.
         watch: called in each tick.
+        uplink: the telecommands of a tick.
     """
 
     def __init__(
@@ -81,6 +83,7 @@ class RealtimeLoop:
         epoch_unix_s: int,
         tick_hz: int,
         watch: Callable[[int], None] = lambda tick: None,
+        uplink: Uplink = lambda tick: [],
     ) -> None:
         self._bus = bus
         self._source = source
@@ -88,6 +91,7 @@ class RealtimeLoop:
         self._epoch_us = epoch_unix_s * 1_000_000
         self._tick_hz = tick_hz
         self._watch = watch
+        self._uplink = uplink
         self._received: list[Frame] = []
         self._sent: list[Frame] = []
         self._senders = SenderWatch(lockstep=False, own=ALONE)
@@ -111,7 +115,7 @@ class RealtimeLoop:
         self._listen(-1, start_s, start_s)
         for tick in range(ticks):
             due_s = start_s + tick * period_s
-            sent = self._source.frames()
+            sent = self._uplink(tick) + self._source.frames()
             self._bus.send(sent)
             sent_s = time.monotonic()
             self.measured.jitter.add(sent_s - due_s)

@@ -11,12 +11,13 @@ import time
 import pytest
 
 from fsw.bus.open_bus import open_bus
-from fsw.wire.messages import MagField, SunVector
+from fsw.wire.messages import MagField, SunVector, TcAck, TcLaw
 from torquer.cli.main import main
 
 SHORT = ("--set", "coils.pulse_s=0.5", "--set", "coils.backoff_s=1.0", "--tick-hz", "10")
 LOOSE = ("--jitter-ms", "1000", "--latency-ms", "1000", "--slips", "15")
 """What is tested is the bench, not how busy this machine is."""
+COMMANDED = 'telecommand=[{at_s=1.5, message="TC_LAW", law="bdot"}]'
 
 SCRIPT = """
 [[step]]
@@ -77,7 +78,7 @@ def benches(tmp_path_factory):
     bus = free_loop()
     hub = open_bus(bus)  # so that the board that is not there finds nobody, and the one that is, a bus
     running = {
-        "armed": bench("--arm", "--seconds", "6", "--out", str(runs["armed"]), *LOOSE),
+        "armed": bench("--arm", "--seconds", "6", "--out", str(runs["armed"]), "--set", COMMANDED, *LOOSE),
         "real": bench(
             *("--seconds", "4", "--bus", bus, "--real", "coil,sun", "--stimulus", str(script)),
             *("--out", str(runs["real"]), *LOOSE),
@@ -108,6 +109,19 @@ def test_an_armed_bench_flies_in_real_time_and_its_log_is_as_good_as_any(benches
     assert audited.returncode == 0, audited.stdout + audited.stderr
     reflown = torquer("replay", str(run))
     assert reflown.stdout.startswith("bit-exact: 60 ticks"), reflown.stdout + reflown.stderr
+
+
+def test_the_telecommands_of_the_scenario_are_sent_at_their_time_and_answered(benches):
+    lines = (benches["armed"][3] / "bus.log").read_text().splitlines()
+    frames = [line.split()[2].partition("#") for line in lines]
+    names = [can_id for can_id, _, _ in frames]
+    sent = names.index(f"{TcLaw.ID:03X}")
+    assert names[:sent].count("180") == 15, "SYNC of ticks 0 to 14"
+    (acknowledged,) = [
+        TcAck.decode(bytes.fromhex(data)) for can_id, _, data in frames if can_id == f"{TcAck.ID:03X}"
+    ]
+    assert (acknowledged.command, acknowledged.result) == (TcLaw.ID, 0)
+    assert acknowledged.tick in (15, 16)
 
 
 def test_a_real_board_is_not_started_and_one_that_is_silent_breaks_its_budget(benches):
@@ -148,6 +162,7 @@ def test_the_bench_goes_on_without_its_flight_software_and_says_so(benches):
     [
         (("--real", "coil,gyro"), "gyro"),
         (("--stimulus", "x.log", "--set", "knowledge=perfect"), "perfect"),
+        (("--set", 'fault=[{kind="mag_bias", at_s=3.0}]'), "mag_bias"),
         (("--bus", "nowhere"), "nowhere"),
         (("--seconds", "0"), "--seconds"),
         (("nonesuch",), "nonesuch"),

@@ -97,4 +97,4 @@ def test_the_wiring_is_told_or_named_among_those_that_look_alike(verdicts, wrong
     assert (code, found["as_table"]) == (1, False), errors
     assert PAIRS[wrong] in pairs
     assert len(pairs) <= 3
-    assert min(found["pulses"]) > 0
+    assert found["pulses"] == [2, 2, 2], "each coil in both polarities, and no other law meanwhile"
