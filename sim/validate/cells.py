@@ -83,8 +83,8 @@ def crossed_figures() -> tuple[Figure, ...]:
         ),
         Figure(
             "wrong",
-            "Longest time valid with an error above 10 deg that a cell, by more than the light of the Earth, "
-            "or the field, by 5 deg, speaks against; two cells connected crosswise, all",
+            "Longest time valid with an error above 10 deg that two cells, by more than the light of the "
+            "Earth, or the field, by 5 deg, speak against; two cells connected crosswise, all",
             "s",
             figure_of("contradicted_s"),
             high=WRONG_S,
@@ -106,7 +106,9 @@ def contradicted_figures(scenario: Scenario, truth: Histories, estimates: Estima
 
 
 def lights_differ(scenario: Scenario, truth: Histories, turn: Array) -> NDArray[np.bool_]:
-    """Whether a cell has other light than its place in the table leads to, by more than the Earth's, (n,).
+    """Whether two cells have other light than their places lead to, by more than the Earth's, (n,).
+
+    One alone does not speak against the attitude: it may be dead.
 
     Args:
         scenario: of the flight.
@@ -119,7 +121,7 @@ def lights_differ(scenario: Scenario, truth: Histories, turn: Array) -> NDArray[
     sun_body = truth["lit"][:, None] * truth["sun_body"]
     light = np.maximum(sun_body @ np.array(true.normals).T, 0.0)
     expected = np.maximum(in_body(_back(turn), sun_body) @ np.array(assumed.normals).T, 0.0)
-    differ: NDArray[np.bool_] = (np.abs(light - expected) > EARTHLIGHT).any(axis=1)
+    differ: NDArray[np.bool_] = (np.abs(light - expected) > EARTHLIGHT).sum(axis=1) > 1
     return differ
 
 

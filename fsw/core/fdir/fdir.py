@@ -17,7 +17,7 @@ from fsw.core.fdir.coils.torques import BelievedParts
 from fsw.core.fdir.faults import OPEN_PART, Sensor
 from fsw.core.fdir.sensors import health as sensor_health
 from fsw.core.fdir.sensors import pair, plausibility
-from fsw.core.fdir.sensors.cells import cell_changes, unusable
+from fsw.core.fdir.sensors.cells import cell_changes, doubtful, unusable
 from fsw.core.fdir.sensors.credibility import credible_but_coils
 from fsw.core.fdir.sensors.health import SensorConfig, SensorHealth
 from fsw.core.fdir.sensors.pair import Pair, Standing
@@ -143,7 +143,7 @@ def judge(
         or _turned_unseen(found, evidence.used, config)
         or _pulses_untold(found, judged.pair, config)
     )
-    if torque_untold or not pair.valid(judged.pair):
+    if torque_untold or doubtful(judged.cells, weights) or not pair.valid(judged.pair):
         attitude = attitude._replace(valid=False)
     return Health(judged, found), estimator, attitude
 

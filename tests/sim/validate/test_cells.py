@@ -1,10 +1,12 @@
 """The claims on Sun cells: what is drawn, and that a flight which breaks a limit does not pass."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from fsw.core.algebra.quaternion import conjugate, multiply, normalise
-from sim.campaign.flight import FlightResult, Order
+from sim.campaign.flight import FlightResult, Order, fly_order
 from sim.record.estimates import EstimateRecorder
 from sim.scenario.schema import flight_table, load
 from sim.validate import cells
@@ -120,6 +122,14 @@ def test_what_speaks_against_an_attitude(scenario, turn, cells_say, field_says):
     assert set(cells.fields_differ(truth_of(), rows(turn))) == {field_says}
 
 
+def test_one_cell_alone_may_be_dead_and_does_not_speak():
+    normals = [list(normal) for normal in flight_table(SOUND).cells.normals]
+    lit = int(np.argmax(np.array(normals) @ SUN))
+    normals[lit] = [-part for part in normals[lit]]
+    one = load("cubesat-cells", {"flight": {"cells": {"normals": normals}}})
+    assert not cells.lights_differ(one, truth_of(), rows(turned(0.0, SUN))).any()
+
+
 def test_without_light_no_cell_speaks():
     assert not cells.lights_differ(CROSSED, truth_of(lit=0.0), rows(turned(90.0, FIELD_T))).any()
 
@@ -157,3 +167,12 @@ def test_before_the_first_estimate_nothing_is_wrong():
 def test_no_seed_is_of_two_studies():
     seeds = [*cells.SEEDS, *cells.SATELLITES, *cells.WRONG]
     assert len(set(seeds)) == len(seeds) == 23
+
+
+def test_with_crossed_cells_the_first_attitude_is_not_valid_for_long_once_two_cells_speak_against_it():
+    """Seeds whose first estimate is more than 10 deg wrong, and valid at first, since all bears it out."""
+    for seed in (407, 418):
+        order = replace(cells._order(seed, cells.crossed(), cells.contradicted_figures), orbits=0.35)
+        figures = fly_order(order).figures
+        assert figures["wrong_10deg_s"] > 600.0
+        assert figures["contradicted_s"] <= 60.0

@@ -11,6 +11,9 @@ with it. What speaks against a cell:
 - its current does not change by a bit while the predicted one moves by ``STILL``.
 
 A cell that is still is not used from the next tick on, whatever the evidence.
+
+Two cells do not fail within one estimate, but a wrong estimate is contradicted by one cell after the other
+as the satellite turns. What speaks against a second cell that is lit speaks against the estimate.
 """
 
 from collections.abc import Sequence
@@ -35,13 +38,15 @@ NO_CURRENT = -1.0
 class CellWatch(NamedTuple):
     """One cell: the evidence, what it has shown so far without a change, and what was predicted then.
 
-    ``still``: the prediction has moved since, and the current has not.
+    ``still``: the prediction has moved since, and the current has not. ``by_this``: it is isolated by what
+    the estimate in use predicts of it in the light.
     """
 
     watch: Watch = Watch()
     shown: float = NO_CURRENT
     predicted: float = 0.0
     still: bool = False
+    by_this: bool = False
 
 
 CellsHealth = tuple[CellWatch, ...]
@@ -51,7 +56,8 @@ class CellEvidence(NamedTuple):
     """What one tick shows of all cells.
 
     ``currents`` are of isolated cells too; ``seen`` is None in the shadow, and ``shadow`` says that this is
-    certain. ``sure``: the estimate is proven, and the field bears it out.
+    certain. ``sure``: the estimate is proven, and the field bears it out; ``begun``: it is none yet, or that
+    of this tick.
     """
 
     currents: Sequence[float | None]
@@ -60,6 +66,7 @@ class CellEvidence(NamedTuple):
     seen: Light | None
     shadow: bool
     sure: bool
+    begun: bool
 
 
 def judge(
@@ -70,12 +77,27 @@ def judge(
     if cells is None or not evidence.currents:
         return health
     watches = health or (CellWatch(),) * len(cells.normals_body)
+    if evidence.begun:
+        watches = tuple([watch._replace(by_this=False) for watch in watches])
     return tuple(
         [
-            watch if current is None else _judged(watch, cell, current, evidence, weights, config, cells)
+            watch
+            if current is None
+            else _named(watch, _judged(watch, cell, current, evidence, weights, config, cells), evidence)
             for cell, (watch, current) in enumerate(zip(watches, evidence.currents, strict=True))
         ]
     )
+
+
+def contradicted(health: CellsHealth) -> bool:
+    """Whether the estimate in use has had more than one cell isolated."""
+    return sum([one.by_this for one in health]) > 1
+
+
+def doubtful(health: CellsHealth, weights: EvidenceWeights) -> bool:
+    """Whether it has had one isolated, and half of what isolates another speaks against that."""
+    accused_too = any(one.watch.nats > 0.5 * weights.threshold and not one.watch.fault for one in health)
+    return accused_too and any(one.by_this for one in health)
 
 
 def unusable(health: CellsHealth) -> tuple[int, ...]:
@@ -91,6 +113,12 @@ def cell_changes(before: CellsHealth, after: CellsHealth) -> list[tuple[int, int
         for cell, (one, other) in enumerate(zip(was, after, strict=True))
         if one.watch.fault != other.watch.fault
     ]
+
+
+def _named(before: CellWatch, after: CellWatch, evidence: CellEvidence) -> CellWatch:
+    """A cell after a tick, with whether the estimate in use is what it is isolated by."""
+    lit = evidence.seen is not None
+    return after._replace(by_this=bool(after.watch.fault) and (before.by_this if before.watch.fault else lit))
 
 
 def _judged(

@@ -43,7 +43,10 @@ class SensorHealth(NamedTuple):
     def integers(self) -> tuple[int, ...]:
         """For the checksum of the state, as is ``floats``."""
         faults = (self.field.fault, self.sun.fault)
-        both, by_cell = self.pair, [number for one in self.cells for number in (one.watch.fault, one.still)]
+        both, by_cell = (
+            self.pair,
+            [number for one in self.cells for number in (one.watch.fault, one.still, one.by_this)],
+        )
         return (*faults, both.standing, both.ended, both.blind_ticks, *self.memory.integers(), *by_cell)
 
     def floats(self) -> tuple[float, ...]:
@@ -107,7 +110,9 @@ def judge(
     both = pair.judge(health.pair, seen, weights, config.credibility)
     trusted = pair.valid(health.pair)  # one that lags may have been led away
     sure = trusted and pair.proven(health.pair, weights)
-    by_cell = _cells(health, findings, used, estimate, reference, sure, config)
+    by_cell = _cells(health, seen, reference, sure, config)
+    if cells.contradicted(by_cell):
+        both = Pair(ended=True)
     if both.accord >= weights.threshold:
         return SensorHealth(Watch(), Watch(), both._replace(accord=0.0), findings.memory, by_cell)
     alone = trusted and findings.sun is None  # dynamics do not jump
@@ -129,20 +134,20 @@ def judge(
 
 
 def _cells(
-    health: SensorHealth,
-    findings: Findings,
-    used: Used,
-    estimate: Estimate | None,
-    reference: Reference,
-    sure: bool,
-    config: SensorConfig,
+    health: SensorHealth, seen: Observed, reference: Reference, sure: bool, config: SensorConfig
 ) -> CellsHealth:
     """Each Sun cell after the samples of this tick."""
     if config.mekf.cells is None:
         return ()
-    seen = light(reference.r_eci_m, reference.sun_eci, config.mekf.cells.albedo)
-    sure = sure and used.field
-    evidence = CellEvidence(findings.currents, used.cells, estimate, seen, findings.shadow, sure)
+    evidence = CellEvidence(
+        seen.findings.currents,
+        seen.used.cells,
+        seen.estimate,
+        light(reference.r_eci_m, reference.sun_eci, config.mekf.cells.albedo),
+        seen.findings.shadow,
+        sure and seen.used.field,
+        seen.estimate is None or seen.begun,
+    )
     return cells.judge(health.cells, evidence, config.weights, config.mekf)
 
 

@@ -10,7 +10,15 @@ from fsw.core.estimation.cells.cell_set import light
 from fsw.core.estimation.cells.update import sunlit, update_cells
 from fsw.core.fdir.evidence import weights
 from fsw.core.fdir.faults import SensorFault
-from fsw.core.fdir.sensors.cells import CellEvidence, CellWatch, cell_changes, judge, unusable
+from fsw.core.fdir.sensors.cells import (
+    CellEvidence,
+    CellWatch,
+    cell_changes,
+    contradicted,
+    doubtful,
+    judge,
+    unusable,
+)
 from fsw.core.fdir.sensors.watch import Watch
 
 CONFIG = cell_filter()
@@ -34,7 +42,18 @@ def attitude(tick):
     return normalise(multiply(Q_BODY_FROM_ECI, (1.0, 0.0008 * tick, -0.0006 * tick, 0.0005 * tick)))
 
 
-def watched(change, ticks=ENOUGH, health=(), *, sure=True, seen=SEEN, shadow=False, turning=True, first=0):
+def watched(
+    change,
+    ticks=ENOUGH,
+    health=(),
+    *,
+    sure=True,
+    seen=SEEN,
+    shadow=False,
+    turning=True,
+    first=0,
+    begun=False,
+):
     """The cells after so many ticks of an estimate that is right; ``change`` makes the currents wrong."""
     random = np.random.default_rng(3)
     for tick in range(first, first + ticks):
@@ -44,7 +63,7 @@ def watched(change, ticks=ENOUGH, health=(), *, sure=True, seen=SEEN, shadow=Fal
         currents = change(list(currents))
         usable = [None if cell in unusable(health) else one for cell, one in enumerate(currents)]
         estimate, used = update_cells(estimate, usable, seen, CONFIG)
-        evidence = CellEvidence(currents, used, estimate, seen, shadow, sure)
+        evidence = CellEvidence(currents, used, estimate, seen, shadow, sure, begun)
         health = judge(health, evidence, WEIGHTS, CONFIG)
     return health
 
@@ -53,6 +72,13 @@ def set_to(cell, value):
     def change(currents):
         currents[cell] = value
         return currents
+
+    return change
+
+
+def dead(*cells):
+    def change(currents):
+        return [0.0 if cell in cells else one for cell, one in enumerate(currents)]
 
     return change
 
@@ -123,7 +149,7 @@ def test_an_excess_that_no_bound_allows_is_found():
     for number in range(ENOUGH):
         currents = [one + 0.001 * (number % 7) for one in ideal()]
         _, used = update_cells(estimate, currents, SEEN, CONFIG)
-        evidence = CellEvidence(currents, used, estimate, SEEN, False, True)
+        evidence = CellEvidence(currents, used, estimate, SEEN, False, True, False)
         health = judge(health, evidence, WEIGHTS, CONFIG)
     assert health[cell].watch.fault == SensorFault.STRENGTH
     assert faults(health).count(0) == 5
@@ -141,7 +167,9 @@ def test_where_most_are_refused_it_is_not_clear_that_a_cell_is_wrong():
     for _ in range(ENOUGH):
         _, used = update_cells(estimate, currents, SEEN, CONFIG)
         assert len(used.refused) == len(LIT)
-        health = judge(health, CellEvidence(currents, used, estimate, SEEN, False, True), WEIGHTS, CONFIG)
+        health = judge(
+            health, CellEvidence(currents, used, estimate, SEEN, False, True, False), WEIGHTS, CONFIG
+        )
     assert faults(health) == [0] * 6
 
 
@@ -149,6 +177,48 @@ def test_no_single_sample_isolates():
     health = watched(set_to(LIT[0], 0.0), 20)
     assert faults(health) == [0] * 6
     assert health[LIT[0]].watch.nats > 5.0
+
+
+class TestASecondCell:
+    """Two do not fail within one estimate: it is the estimate that is wrong."""
+
+    def test_one_cell_says_nothing_of_the_estimate(self):
+        health = watched(dead(LIT[0]))
+        assert faults(health).count(0) == 5
+        assert not contradicted(health)
+        assert not doubtful(health, WEIGHTS)
+
+    def test_another_makes_it_doubtful_by_half_of_what_isolates_that_one(self):
+        first = watched(dead(LIT[0]))
+        little = watched(dead(LIT[0], LIT[1]), 10, first)
+        half = watched(dead(LIT[0], LIT[1]), 20, first)
+        assert (doubtful(little, WEIGHTS), doubtful(half, WEIGHTS)) == (False, True)
+        assert not contradicted(half)
+
+    def test_isolated_too_it_contradicts_the_estimate(self):
+        health = watched(dead(LIT[0], LIT[1]), ENOUGH, watched(dead(LIT[0])))
+        assert faults(health).count(0) == 4
+        assert contradicted(health)
+
+    def test_of_one_that_an_estimate_before_has_named_the_next_knows_nothing(self):
+        begun = watched(dead(LIT[0]), 1, watched(dead(LIT[0])), begun=True)
+        assert begun[LIT[0]].watch.fault
+        health = watched(dead(LIT[0], LIT[1]), ENOUGH, begun)
+        assert faults(health).count(0) == 4
+        assert not contradicted(health)
+
+    def test_what_is_seen_in_the_shadow_is_no_estimate_s(self):
+        first = watched(set_to(2, 0.3), seen=None, shadow=True)
+        assert first[2].watch.fault
+        health = watched(dead(LIT[1]), ENOUGH, first)
+        assert health[LIT[1]].watch.fault
+        assert not contradicted(health)
+
+    def test_one_that_is_readmitted_counts_no_longer(self):
+        again = watched(sound, 300, watched(dead(LIT[0])))
+        health = watched(dead(LIT[1]), ENOUGH, again)
+        assert faults(health).count(0) == 5
+        assert not contradicted(health)
 
 
 def test_one_that_is_right_again_is_readmitted_after_a_while():
@@ -171,4 +241,4 @@ def test_changes_are_told_by_cell():
 
 
 def test_without_cells_there_is_no_health_of_them():
-    assert judge((), CellEvidence((), None, None, None, False, False), WEIGHTS, CONFIG) == ()
+    assert judge((), CellEvidence((), None, None, None, False, False, True), WEIGHTS, CONFIG) == ()
