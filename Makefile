@@ -9,6 +9,7 @@
 # make bench      how fast flights are beside Basilisk in the same minutes, into docs/performance.md: ten minutes
 # make scaling    what a campaign costs beside its flights, and what 10^6 runs take, into docs/scaling.md: ten minutes
 # make soak       72 simulated hours, and an hour on the bench in real time, into docs/soak.md
+# make gains      search the gains of every law for the bodies that compare ships gains for: some hours; stopped, it goes on where it was
 # make golden     record the golden logs again: after a change that means to alter the answers of fsw
 # make docs      build the documentation into build/docs, each warning an error: half a minute
 # make docs-gallery   the same, with notebooks and gallery executed: some minutes
@@ -32,7 +33,7 @@ bin := .venv/bin
 installed := .venv/.installed
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv sil test lint docs docs-gallery notebooks test-vcan test-chromium golden validate fuzz attack differential replay-elsewhere faults bench scaling population pulse-limits soak verdicts planted validate-planted mutation coverage
+.PHONY: help venv sil test lint docs docs-gallery notebooks test-vcan test-chromium gains golden validate fuzz attack differential replay-elsewhere faults bench scaling population pulse-limits soak verdicts planted validate-planted mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -89,6 +90,11 @@ test-vcan: venv
 
 test-chromium: venv
 	TORQUER_REQUIRE_CHROMIUM=1 $(bin)/pytest -q -rs -p no:cacheprovider -m chromium tests/sim
+
+bodies := microsat cubesat3u posat1 pitch-wheel microsat-wheel spinner
+gains: $(bodies:%=gains-%)
+gains-%: venv
+	$(bin)/torquer design $* --laws all --keep sim/design/tuning/found/$*.toml
 
 golden: venv
 	$(bin)/python tests/golden/record.py

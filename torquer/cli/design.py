@@ -49,7 +49,8 @@ def design(
 ) -> int:
     """Gains of the PD law for SCENARIO by Floquet theory: exponents, margins, maps, best gains.
 
-    With --laws those of any law, by flights of the rigid body under rules that are the same for all.
+    With --laws those of any law, by flights of the rigid body under rules that are the same for all, borne
+    out by whole flights.
     """
     from sim.console import answer, current, say
     from sim.scenario.schema import load, parse_settings
@@ -60,9 +61,10 @@ def design(
         laws, {"--gains": gains, "--write": write, "--out": out}, {"--keep": keep, "--flights": flights}
     )
     if laws is not None:
+        from sim.compare.whole_flight import fly_whole
         from sim.design.tuning.command import design_laws
 
-        kept = design_laws(scenario, over, laws, keep, flights)
+        kept = design_laws(scenario, over, laws, keep, fly_whole, flights)
         answer({"gains": kept.rows})
         return 0
     if out is None and not current().as_json:

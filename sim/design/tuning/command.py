@@ -1,6 +1,7 @@
 """``torquer design --laws``: the best gains of each law on a body, kept as they are found."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from fsw.core.laws.table import LAWS
@@ -10,7 +11,7 @@ from sim.console import counted, say
 from sim.design.tuning.applicable import check_suited, coils_of, is_suited, laws_for
 from sim.design.tuning.kept import KeptGains, body_checksum, gains_text, read_gains, write_gains
 from sim.design.tuning.rigid_flight import STEP_S
-from sim.design.tuning.search import BUDGET, ORBITS, TunedGains, tune
+from sim.design.tuning.search import BUDGET, ORBITS, SEED, TunedGains, WholeFlight, tune
 from sim.errors import HarnessError
 from sim.progress import Watch, progress
 from sim.scenario.schema import Scenario, load
@@ -25,6 +26,7 @@ def design_laws(
     over: Nested,
     laws: str,
     path: Path | None,
+    whole: WholeFlight,
     flights: int | None = None,
     orbits: float = ORBITS,
 ) -> KeptGains:
@@ -37,6 +39,7 @@ def design_laws(
         over: laid over it.
         laws: names with commas between, or ``all`` that suit the body.
         path: the file; None: ``<scenario>-gains.toml``.
+        whole: flies a scenario as it is.
         flights: for each law; None: ``BUDGET``.
         orbits: length of each flight.
 
@@ -50,10 +53,11 @@ def design_laws(
     path = path or Path(f"{scenario.name}-gains.toml")
     rules = KeptGains(body_checksum(scenario), budget, orbits)
     kept = read_gains(path) or rules
-    if (kept.body, kept.flights, kept.orbits) != (rules.body, rules.flights, rules.orbits):
+    if replace(kept, rows={}) != rules:
         raise HarnessError(
             f"{path}: holds gains of another body, start or coils, or by {kept.flights} flights of "
-            f"{kept.orbits:g} orbits instead of {budget} of {orbits:g}: give --keep another file"
+            f"{kept.orbits:g} orbits and seed {kept.seed} instead of {budget} of {orbits:g} and {SEED}: "
+            "give --keep another file"
         )
     wanted = [
         (driver, law)
@@ -67,7 +71,7 @@ def design_laws(
         for number, (driver, law) in enumerate(wanted):
             values = merge(over, coils_of(scenario, driver))
             onward = _after(watch, number * budget)
-            found = tune(name, values, law, budget, orbits, step_s(scenario), onward)
+            found = tune(name, values, law, whole, budget, orbits, step_s(scenario), onward)
             kept = kept.with_row(found)
             write_gains(path, kept)
             say(line(found))

@@ -1,4 +1,4 @@
-"""The histories of a flight of a rigid body, and what is read off them."""
+"""The histories of a flight, and what is read off them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,28 +13,20 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class RigidFlight:
-    """Histories, a row a step, each before its dipole acts.
+class Motions:
+    """How a body moved relative to the orbital frame, a row a step.
 
     Attributes:
         orbit_s: period of the orbit.
         t_s: time.
-        q_body_from_eci: attitude.
         q_body_from_orbit: attitude.
-        omega_body_radps: inertial rate, body axes.
         relative_body_radps: rate relative to the orbital frame, body axes.
-        momentum_body_nms: of body and wheel, body axes.
-        m_body_am2: dipole of the coils over the step.
     """
 
     orbit_s: float
     t_s: Array
-    q_body_from_eci: Array
     q_body_from_orbit: Array
-    omega_body_radps: Array
     relative_body_radps: Array
-    momentum_body_nms: Array
-    m_body_am2: Array
 
     @cached_property
     def pointing_deg(self) -> Array:
@@ -55,6 +47,23 @@ class RigidFlight:
         rows = round(self.orbit_s / (self.t_s[1] - self.t_s[0]))
         first = number * rows if number >= 0 else len(self.t_s) + number * rows
         return slice(max(0, first), first + rows)
+
+
+@dataclass(frozen=True)
+class RigidFlight(Motions):
+    """A flight of a rigid body; a row is what was before its dipole acts.
+
+    Attributes:
+        q_body_from_eci: attitude.
+        omega_body_radps: inertial rate, body axes.
+        momentum_body_nms: of body and wheel, body axes.
+        m_body_am2: dipole of the coils over the step.
+    """
+
+    q_body_from_eci: Array
+    omega_body_radps: Array
+    momentum_body_nms: Array
+    m_body_am2: Array
 
     def axis_to_deg(self, axis: int, direction_eci: Sequence[float]) -> Array:
         """Angle of a body axis, from 0, to a direction."""

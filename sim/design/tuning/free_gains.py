@@ -63,3 +63,14 @@ def as_control(free: Sequence[FreeGain], values: Sequence[float]) -> Nested:
             place = place.setdefault(section, {})
         place[name] = float(f"{value:.6g}")
     return control
+
+
+def flat(control: Nested) -> dict[str, float]:
+    """The gains of ``[control]`` by their whole keys."""
+    gains: dict[str, float] = {}
+    for key, value in control.items():
+        if isinstance(value, dict):
+            gains |= {f"{key}.{name}": one for name, one in flat(value).items()}
+        else:
+            gains[key] = value
+    return gains

@@ -6,7 +6,7 @@ they are not used.
 
 import json
 import tomllib
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from zlib import crc32
 
@@ -15,7 +15,8 @@ import tomli_w
 from fsw.input.regular_file import read_regular
 from fsw.input.schema import Nested
 from fsw.input.toml_text import MOST_BYTES, BoundsError
-from sim.design.tuning.search import TunedGains
+from sim.design.tuning.free_gains import flat
+from sim.design.tuning.search import SEED, TunedGains
 from sim.errors import HarnessError
 from sim.record.run_dir import replace_file
 from sim.scenario.schema import Scenario
@@ -32,12 +33,14 @@ class KeptGains:
         body: checksum of what they were found for.
         flights: the budget of each law.
         orbits: length of each flight.
+        seed: of the whole flights that bear them out.
         rows: by driver and law: ``control``, ``cost``, ``settle_orbits`` (absent: never) and ``rms``.
     """
 
     body: int
     flights: int
     orbits: float
+    seed: int = SEED
     rows: dict[str, dict[str, Nested]] = field(default_factory=dict)
 
     def control(self, driver: str, law: str) -> Nested | None:
@@ -56,7 +59,7 @@ class KeptGains:
         if found.cost.settle_orbits is not None:
             row["settle_orbits"] = round(found.cost.settle_orbits, 4)
         of_driver = dict(sorted({**self.rows.get(found.driver, {}), found.law: row}.items()))
-        return KeptGains(self.body, self.flights, self.orbits, {**self.rows, found.driver: of_driver})
+        return replace(self, rows={**self.rows, found.driver: of_driver})
 
 
 def body_checksum(scenario: Scenario) -> int:
@@ -90,8 +93,7 @@ def shipped_gains(scenario: Scenario) -> KeptGains | None:
 
 def gains_text(control: Nested) -> str:
     """The gains of ``[control]`` in a line."""
-    flat = ", ".join(f"{key} {value:.4g}" for key, value in _flat(control))
-    return flat or "the scenario's"
+    return ", ".join(f"{key} {value:.4g}" for key, value in flat(control).items()) or "the scenario's"
 
 
 def read_gains(path: Path) -> KeptGains | None:
@@ -105,7 +107,9 @@ def read_gains(path: Path) -> KeptGains | None:
     try:
         values = tomllib.loads(read_regular(path, MOST_BYTES).decode("utf-8"))
         rules = values.pop("found")
-        return KeptGains(int(rules["body"]), int(rules["flights"]), float(rules["orbits"]), values)
+        return KeptGains(
+            int(rules["body"]), int(rules["flights"]), float(rules["orbits"]), int(rules["seed"]), values
+        )
     except OSError as error:
         raise HarnessError(f"{path}: gains cannot be read: {error.strerror or error}") from None
     except (BoundsError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
@@ -122,16 +126,11 @@ def write_gains(path: Path, kept: KeptGains) -> None:
     Raises:
         HarnessError: it cannot be written.
     """
-    rules: Nested = {"found": {"body": kept.body, "flights": kept.flights, "orbits": kept.orbits}}
+    rules: Nested = {
+        "found": {"body": kept.body, "flights": kept.flights, "orbits": kept.orbits, "seed": kept.seed}
+    }
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         replace_file(path, (_HEAD + tomli_w.dumps(rules | kept.rows)).encode())
     except OSError as error:
         raise HarnessError(f"{path}: cannot be written ({error.strerror or error})") from None
-
-
-def _flat(control: Nested, above: str = "") -> list[tuple[str, float]]:
-    rows: list[tuple[str, float]] = []
-    for key, value in control.items():
-        rows += _flat(value, f"{above}{key}.") if isinstance(value, dict) else [(f"{above}{key}", value)]
-    return rows

@@ -202,6 +202,5 @@ def _recorded(
         np.array(column, dtype=np.float64) for column in zip(*rows, strict=True)
     )
     momentum = omega @ np.array(control.inertia_kgm2).T + np.array(control.wheel_body_nms)
-    return RigidFlight(
-        orbit_s, step_s * np.arange(len(rows), dtype=np.float64), q_eci, q_orbit, omega, relative, momentum, m
-    )
+    t_s = step_s * np.arange(len(rows), dtype=np.float64)
+    return RigidFlight(orbit_s, t_s, q_orbit, relative, q_eci, omega, momentum, m)

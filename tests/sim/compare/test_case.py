@@ -37,7 +37,7 @@ def test_with_a_boom_or_a_wheel_laws_of_the_whole_attitude_too():
 
 
 def test_gains_that_are_kept_stand_under_the_settings():
-    kept = KeptGains(0, 24, 4.0, {"pulsed": {"pd": {"control": {"k_w": 1e6, "k_a": 100.0}}}})
+    kept = KeptGains(0, 24, 4.0, rows={"pulsed": {"pd": {"control": {"k_w": 1e6, "k_a": 100.0}}}})
     settings = {"control": {"k_a": 200.0}}
     pd, lqr = cases("microsat", settings, ("pd", "lqr"), (Driver.PULSED,), 1, None, kept)
     assert (pd.tuned, lqr.tuned) == (True, False)

@@ -26,6 +26,10 @@ FOUND = TunedGains(
 )
 
 
+def no_flight(scenario, seed, orbits):
+    raise AssertionError("what searches is replaced")
+
+
 @pytest.fixture
 def gains():
     return KeptGains(7, 24, 4.0).with_row(FOUND)
@@ -75,6 +79,14 @@ def test_those_that_ship_are_for_the_scenario_as_it_is():
         assert shipped_gains(load(path.stem, {"initial": {"angle_deg": 12.0}})) is None
 
 
+def test_those_that_ship_are_no_worse_in_a_whole_flight_than_the_scenarios_own():
+    for path in kept.FOLDER.glob("*.toml"):
+        for rows in read_gains(path).rows.values():
+            for law, row in rows.items():
+                better = row["cost"] < row["cost_before"]
+                assert better or (not row["control"] and row["cost"] == row["cost_before"]), (path.stem, law)
+
+
 def test_the_gains_in_a_line():
     assert gains_text(FOUND.control) == "k_w 1e+06, gains.lqr.effort 0.2"
     assert gains_text({}) == "the scenario's"
@@ -95,16 +107,16 @@ class TestCommand:
 
     def test_each_law_by_each_driver_that_it_has_a_use_for(self, searched, tmp_path, capsys):
         path = tmp_path / "a.toml"
-        found = command.design_laws("microsat", {}, "pd,pulse_mpc", path)
+        found = command.design_laws("microsat", {}, "pd,pulse_mpc", path, no_flight)
         assert searched == [("pd", "pulsed"), ("pulse_mpc", "pulsed"), ("pd", "continuous")]
         assert read_gains(path) == found
         assert "pd, pulsed: settled after 1.00 orbits, then 0.3 RMS" in capsys.readouterr().out
 
     def test_what_the_file_has_is_not_searched_again(self, searched, tmp_path):
         path = tmp_path / "a.toml"
-        command.design_laws("microsat", {}, "pd", path)
+        command.design_laws("microsat", {}, "pd", path, no_flight)
         searched.clear()
-        command.design_laws("microsat", {}, "pd,lqr", path)
+        command.design_laws("microsat", {}, "pd,lqr", path, no_flight)
         assert {law for law, _ in searched} == {"lqr"}
 
     @pytest.mark.parametrize(
@@ -114,13 +126,13 @@ class TestCommand:
     )
     def test_a_file_of_something_else_is_left_alone(self, searched, tmp_path, over, flights):
         path = tmp_path / "a.toml"
-        command.design_laws("microsat", {}, "pd", path)
+        command.design_laws("microsat", {}, "pd", path, no_flight)
         before = path.read_bytes()
         searched.clear()
         with pytest.raises(
             HarnessError, match=r"a\.toml: holds gains of another body, .* give --keep another"
         ):
-            command.design_laws("microsat", over, "pd", path, flights)
+            command.design_laws("microsat", over, "pd", path, no_flight, flights)
         assert (path.read_bytes(), searched) == (before, [])
 
     @pytest.mark.parametrize(
@@ -130,7 +142,7 @@ class TestCommand:
         path = tmp_path / "a.toml"
         path.mkdir() if text is None else path.write_text(text)
         with pytest.raises(HarnessError, match=says) as told:
-            command.design_laws("microsat", {}, "pd", path)
+            command.design_laws("microsat", {}, "pd", path, no_flight)
         assert "Errno" not in str(told.value)
         assert path.is_dir() if text is None else path.read_text() == text
         assert searched == []
@@ -141,7 +153,7 @@ class TestCommand:
 
     def test_an_unknown_law_is_named(self, tmp_path):
         with pytest.raises(HarnessError, match="--laws pdd: there is no law 'pdd'"):
-            command.design_laws("microsat", {}, "pdd", tmp_path / "a.toml")
+            command.design_laws("microsat", {}, "pdd", tmp_path / "a.toml", no_flight)
 
     def test_a_body_that_spins_has_shorter_steps(self):
         assert command.step_s(load("microsat")) == 10.0

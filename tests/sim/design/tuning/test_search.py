@@ -1,5 +1,7 @@
 """The search: within its budget, never worse than the scenario's gains, the same each time; what is free."""
 
+from math import log
+
 import pytest
 
 from fsw.core.laws.entry import Aim
@@ -8,11 +10,17 @@ from sim.design.from_scenario import body_of
 from sim.design.theory.search import natural_gains
 from sim.design.tuning import search
 from sim.design.tuning.cost import Cost
-from sim.design.tuning.free_gains import FreeGain, as_control, common_gains, own_gains
+from sim.design.tuning.free_gains import FreeGain, as_control, common_gains, flat, own_gains
 from sim.design.tuning.search import tune
+from sim.errors import HarnessError
 from sim.scenario.schema import load
 
 PULSED = {"coils": {"driver": "pulsed"}}
+
+
+def as_rigid(scenario, seed, orbits):
+    """A whole flight that costs what that of the rigid body does."""
+    return scenario.control
 
 
 @pytest.fixture
@@ -34,33 +42,77 @@ def bowl(monkeypatch):
 
 
 def test_it_keeps_to_its_budget_and_finds_the_least(bowl):
-    found = tune("microsat", PULSED, "pd", budget=60)
+    found = tune("microsat", PULSED, "pd", as_rigid, budget=60)
     assert len(bowl) == found.flights <= 60
     assert found.cost.total < 0.2 < found.before.total
     assert found.control["k_w"] == pytest.approx(1e7, rel=0.2)
 
 
 def test_twice_the_same(bowl):
-    assert tune("microsat", PULSED, "pd", budget=20) == tune("microsat", PULSED, "pd", budget=20)
+    assert tune("microsat", PULSED, "pd", as_rigid, budget=20) == tune(
+        "microsat", PULSED, "pd", as_rigid, budget=20
+    )
 
 
 def test_a_gain_that_the_law_does_not_use_is_not_searched(monkeypatch, bowl):
     monkeypatch.setattr(search, "cost_of", lambda control, *_: Cost(abs(control.k_w / 1e7 - 1.0), 1.0, 0.1))
-    tune("microsat", PULSED, "pd", budget=20)
+    tune("microsat", PULSED, "pd", as_rigid, budget=20)
     searched = [k_a for _, k_a in bowl[3:]]
     assert set(searched) == {load("microsat").control.k_a}
 
 
 def test_the_scenarios_gains_stay_where_nothing_better_is_found(monkeypatch, bowl):
     monkeypatch.setattr(search, "cost_of", lambda *_: Cost(1.0, None, 5.0))
-    found = tune("microsat", PULSED, "pd", budget=8)
+    found = tune("microsat", PULSED, "pd", as_rigid, budget=8)
     assert (found.control, found.cost) == ({}, found.before)
 
 
 def test_a_value_that_no_table_allows_is_a_lost_flight(monkeypatch, bowl):
     monkeypatch.setattr(search, "own_gains", lambda law: (FreeGain("gains.lqr.effort", 1e-9, 1e-8),))
-    found = tune("microsat", PULSED, "lqr", budget=12)
+    found = tune("microsat", PULSED, "lqr", as_rigid, budget=12)
     assert "gains" not in found.control
+
+
+class TestWholeFlights:
+    """Whether they bear out what the search has found."""
+
+    @staticmethod
+    def refusing(*refused):
+        """A whole flight in which k_w near these values fails, and the flights that were flown."""
+        flown = []
+
+        def whole(scenario, seed, orbits):
+            assert (seed, orbits) == (search.SEED, search.ORBITS)
+            flown.append(scenario.control.k_w)
+            if any(abs(log(scenario.control.k_w / k_w)) < 0.25 for k_w in refused):
+                raise HarnessError("lost")
+            return scenario.control
+
+        return whole, flown
+
+    def test_gains_that_fail_there_give_way_to_the_next_best_that_are_not_near_them(self, bowl):
+        whole, flown = self.refusing(1e7)
+        found = tune("microsat", PULSED, "pd", whole, budget=60)
+        assert flown[0] == load("microsat").control.k_w
+        assert flown[1] == pytest.approx(1e7, rel=0.2)
+        assert abs(log(found.control["k_w"] / 1e7)) >= 0.25
+        assert found.cost.total < found.before.total
+
+    def test_where_none_is_better_than_the_scenarios_own_those_stay(self, bowl):
+        own = load("microsat").control.k_w
+
+        def whole(scenario, seed, orbits):
+            if scenario.control.k_w != own:
+                raise HarnessError("lost")
+            return scenario.control
+
+        found = tune("microsat", PULSED, "pd", whole, budget=60)
+        assert (found.control, found.cost) == ({}, found.before)
+
+    def test_few_are_flown(self, bowl):
+        whole, flown = self.refusing(*(1e6 * 1.2**power for power in range(40)))
+        tune("microsat", PULSED, "pd", whole, budget=60)
+        assert len(flown) <= 1 + search.CANDIDATES
 
 
 class TestFreeGains:
@@ -86,4 +138,6 @@ class TestFreeGains:
 
     def test_they_become_the_keys_of_control(self):
         free = (FreeGain("k_w", 1.0, 2.0), FreeGain("gains.lqr.effort", 0.1, 0.2))
-        assert as_control(free, (1.23456789, 0.15)) == {"k_w": 1.23457, "gains": {"lqr": {"effort": 0.15}}}
+        control = as_control(free, (1.23456789, 0.15))
+        assert control == {"k_w": 1.23457, "gains": {"lqr": {"effort": 0.15}}}
+        assert flat(control) == {"k_w": 1.23457, "gains.lqr.effort": 0.15}
