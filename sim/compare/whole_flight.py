@@ -1,11 +1,11 @@
 """A flight of a scenario as it is, as the search of gains judges it."""
 
 from sim.campaign.flight import record_scenario
-from sim.design.tuning.flown import Motions
+from sim.design.tuning.flown import FlownMotion
 from sim.scenario.schema import Scenario, orbit_period_s
 
 
-def fly_whole(scenario: Scenario, seed: int, orbits: float) -> Motions:
+def fly_whole(scenario: Scenario, seed: int, orbits: float) -> FlownMotion:
     """Fly it with filter, boards and bus.
 
     Raises:
@@ -13,6 +13,6 @@ def fly_whole(scenario: Scenario, seed: int, orbits: float) -> Motions:
         HarnessError: the flight cannot be flown.
     """
     truth = record_scenario(scenario, seed, orbits).truth
-    return Motions(
+    return FlownMotion(
         orbit_period_s(scenario), truth["t_s"], truth["q_body_from_orbit"], truth["omega_body_orbit_radps"]
     )

@@ -22,7 +22,7 @@ def page():
 def test_a_ratio_is_the_median_of_those_within_a_round(page):
     assert "| mine | 10 | 0.100 | 120 MB |" in page
     assert "| peer | 100 | 1.000 | 300 MB |" in page
-    assert "takes 1.30 of the time" in page
+    assert "takes, from start to report, 1.30 of the time" in page
 
 
 def test_what_the_parameters_cost_is_the_median_of_the_differences_within_a_round(page):

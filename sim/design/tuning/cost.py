@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fsw.core.laws.entry import Aim
-from sim.design.tuning.flown import Motions
+from sim.design.tuning.flown import FlownMotion
 from sim.scenario.schema import Scenario, flight_table
 
 Array = NDArray[np.float64]
@@ -39,7 +39,7 @@ class Cost(NamedTuple):
     rms: float
 
 
-def cost_of(flight: Motions, scenario: Scenario, aim: Aim) -> Cost:
+def cost_of(flight: FlownMotion, scenario: Scenario, aim: Aim) -> Cost:
     """The cost of a flight of a scenario by a law with an aim."""
     axis_only = flight_table(scenario).modes.axis_only
     pointing = axis_only or aim not in BY_RATE
@@ -57,7 +57,7 @@ def cost_of(flight: Motions, scenario: Scenario, aim: Aim) -> Cost:
     return Cost(first / len(error) + log2(1.0 + rms / settled), settle_orbits, rms)
 
 
-def _rate_error_degps(flight: Motions, scenario: Scenario) -> tuple[Array, float]:
+def _rate_error_degps(flight: FlownMotion, scenario: Scenario) -> tuple[Array, float]:
     """The error of the rate that is wanted, and under which it has settled."""
     off = np.degrees(flight.relative_body_radps - np.array([scenario.control.spin_radps, 0.0, 0.0]))
     for required in scenario.requirement:

@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Motions:
+class FlownMotion:
     """How a body moved relative to the orbital frame, a row a step.
 
     Attributes:
@@ -50,7 +50,7 @@ class Motions:
 
 
 @dataclass(frozen=True)
-class RigidFlight(Motions):
+class RigidFlight(FlownMotion):
     """A flight of a rigid body; a row is what was before its dipole acts.
 
     Attributes:

@@ -25,7 +25,7 @@ from fsw.core.laws.table import LAWS
 from fsw.input.schema import Nested, TableError, merge
 from fsw.table.table import lay_over
 from sim.design.tuning.cost import LOST, Cost, cost_of
-from sim.design.tuning.flown import Motions
+from sim.design.tuning.flown import FlownMotion
 from sim.design.tuning.free_gains import FreeGain, as_control, common_gains, flat, own_gains
 from sim.design.tuning.rigid_flight import fly
 from sim.errors import HarnessError
@@ -49,7 +49,7 @@ DIRECT: Nested = {"knowledge": "perfect", "field": {"model": "direct_dipole"}}
 
 Array = NDArray[np.float64]
 Watch = Callable[[int], None]
-WholeFlight = Callable[[Scenario, int, float], Motions]
+WholeFlight = Callable[[Scenario, int, float], FlownMotion]
 """Flies a scenario as it is, with filter, boards and bus, with a seed, for so many orbits."""
 
 
@@ -98,7 +98,7 @@ class _Trials:
         """Of a whole flight with these gains."""
         return self._cost(control, {}, lambda scenario: self.whole(scenario, SEED, self.orbits))
 
-    def _cost(self, control: Nested, world: Nested, flight: Callable[[Scenario], Motions]) -> Cost:
+    def _cost(self, control: Nested, world: Nested, flight: Callable[[Scenario], FlownMotion]) -> Cost:
         """A flight that no table allows, or that fails, is lost."""
         values = lay_over(merge(self.over, world), {"control": merge({"law": self.law}, control)})
         try:

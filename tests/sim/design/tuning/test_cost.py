@@ -8,7 +8,7 @@ import pytest
 
 from fsw.core.laws.entry import Aim
 from sim.design.tuning.cost import LOST, cost_of
-from sim.design.tuning.flown import Motions
+from sim.design.tuning.flown import FlownMotion
 from sim.scenario.schema import load
 
 ROWS, STEP_S = 400, 10.0
@@ -20,7 +20,7 @@ def flight(angle_deg, axis=(0.0, 0.0, 1.0), rate_radps=0.0):
     half = 0.5 * np.radians(np.broadcast_to(angle_deg, (ROWS,)))
     q = np.column_stack([np.cos(half), *(np.sin(half) * part for part in axis)])
     rates = np.tile([0.0, 1.0, 0.0], (ROWS, 1)) * rate_radps
-    return Motions(100 * STEP_S, STEP_S * np.arange(ROWS), q, rates)
+    return FlownMotion(100 * STEP_S, STEP_S * np.arange(ROWS), q, rates)
 
 
 def test_settled_half_way_with_one_degree_left():
