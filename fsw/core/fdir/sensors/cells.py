@@ -81,9 +81,7 @@ def judge(
         watches = tuple([watch._replace(by_this=False) for watch in watches])
     return tuple(
         [
-            watch
-            if current is None
-            else _named(watch, _judged(watch, cell, current, evidence, weights, config, cells), evidence)
+            _watched(watch, cell, current, evidence, weights, config, cells)
             for cell, (watch, current) in enumerate(zip(watches, evidence.currents, strict=True))
         ]
     )
@@ -115,10 +113,21 @@ def cell_changes(before: CellsHealth, after: CellsHealth) -> list[tuple[int, int
     ]
 
 
-def _named(before: CellWatch, after: CellWatch, evidence: CellEvidence) -> CellWatch:
+def _watched(
+    before: CellWatch,
+    cell: int,
+    current: float | None,
+    evidence: CellEvidence,
+    weights: EvidenceWeights,
+    config: MekfConfig,
+    cells: CellSet,
+) -> CellWatch:
     """A cell after a tick, with whether the estimate in use is what it is isolated by."""
-    lit = evidence.seen is not None
-    return after._replace(by_this=bool(after.watch.fault) and (before.by_this if before.watch.fault else lit))
+    if current is None:
+        return before
+    after = _judged(before, cell, current, evidence, weights, config, cells)
+    by_this = before.by_this if before.watch.fault else evidence.seen is not None
+    return after._replace(by_this=by_this and bool(after.watch.fault))
 
 
 def _judged(
