@@ -18,11 +18,13 @@ from sim.scenario.schema import Scenario, flight_table
 
 SCENARIO = "cubesat-cells"
 SOURCE = "Cells as panel currents of SUCHAI-3 show them: up to a third of full sunlight comes from the Earth"
-SEEDS, SATELLITES, WRONG = range(1, 11), range(301, 311), range(401, 404)
+SEEDS, SATELLITES, WRONG = range(1, 11), range(301, 311), range(401, 441)
+WRONG_ORBITS = 4.0
 CELLS, GAIN_PART, TURN_DEG = 6, 0.1, 2.0
 SUNLIT_DEG, ECLIPSE_DEG, INSIDE = 2.0, 4.0, 0.95
 CROSSED = ("cell 1", "cell 3")
-WRONG_DEG, WRONG_S = 10.0, 60.0
+WRONG_DEG, SOON_S, LONGEST_S = 10.0, 60.0, 120.0
+SOON_PART, SOON_PART_ONE = 0.8, 0.6
 EARTHLIGHT, FIELD_DEG = 1.0 / 3.0, 5.0
 """A reading further than this from what an attitude leads to speaks against it."""
 
@@ -44,8 +46,9 @@ def studies(most: int | None = None) -> list[Study]:
         campaign(
             "cells.wrong",
             SOURCE,
-            _group([_order(seed, crossed(), contradicted_figures) for seed in WRONG]),
+            _group([_order(seed, crossed(), contradicted_figures, WRONG_ORBITS) for seed in WRONG]),
             crossed_figures(),
+            "satellites",
         ),
     ]
 
@@ -82,33 +85,64 @@ def crossed_figures() -> tuple[Figure, ...]:
             low=2.0,
         ),
         Figure(
+            "soon",
+            "Part of the satellites, two cells connected crosswise, that are never valid for over 60 s "
+            "with an error above 10 deg that the field, by 5 deg, or two cells, by more than the Earth's "
+            "light, speak against",
+            "1",
+            within(SOON_S, "contradicted_s"),
+            "mean",
+            low=SOON_PART,
+        ),
+        Figure(
+            "soon_one",
+            "The same where one cell, which may as well be dead, is enough to speak against it",
+            "1",
+            within(SOON_S, "contradicted_by_one_s"),
+            "mean",
+            low=SOON_PART_ONE,
+        ),
+        Figure(
             "wrong",
-            "Longest time valid with an error above 10 deg that two cells, by more than the light of the "
-            "Earth, or the field, by 5 deg, speak against; two cells connected crosswise, all",
+            "Longest time valid with an error above 10 deg that the field or two cells speak against, two "
+            "cells connected crosswise, all",
             "s",
             figure_of("contradicted_s"),
-            high=WRONG_S,
+            high=LONGEST_S,
         ),
     )
 
 
+def within(limit_s: float, name: str) -> Pick:
+    """1 where a time that the flight's measure gave is at most the limit, else 0; 0 where it gave none."""
+    time_s = figure_of(name)
+    return lambda flight: float(time_s(flight) <= limit_s)
+
+
 def contradicted_figures(scenario: Scenario, truth: Histories, estimates: Estimates) -> Figures:
-    """``honesty_figures``, and the longest time valid with a large error that sensors speak against."""
+    """``honesty_figures``, and the longest times valid with a large error that sensors speak against.
+
+    ``contradicted_s``: the field or two cells, since one alone may be dead; ``contradicted_by_one_s``: the
+    field or one cell.
+    """
     turn = estimate_error(truth, estimates)
-    against = lights_differ(scenario, truth, turn) | fields_differ(truth, turn)
-    wrong = np.degrees(angle_rad(turn)) > WRONG_DEG
-    valid = estimates.valid[: len(wrong)]
-    longest = max((past - first for first, past in spans(valid & wrong & against)), default=0)
+    wrong = (np.degrees(angle_rad(turn)) > WRONG_DEG) & estimates.valid[: len(turn)]
+    field, cells = fields_differ(truth, turn), cells_that_differ(scenario, truth, turn)
+
+    def longest_s(against: NDArray[np.bool_]) -> float:
+        return (
+            max((past - first for first, past in spans(wrong & against)), default=0) / scenario.time.tick_hz
+        )
+
     return {
         **honesty_figures(scenario, truth, estimates),
-        "contradicted_s": longest / scenario.time.tick_hz,
+        "contradicted_s": longest_s(field | (cells > 1)),
+        "contradicted_by_one_s": longest_s(field | (cells > 0)),
     }
 
 
-def lights_differ(scenario: Scenario, truth: Histories, turn: Array) -> NDArray[np.bool_]:
-    """Whether two cells have other light than their places lead to, by more than the Earth's, (n,).
-
-    One alone does not speak against the attitude: it may be dead.
+def cells_that_differ(scenario: Scenario, truth: Histories, turn: Array) -> NDArray[np.int64]:
+    """How many cells have other light than their places lead to, by more than the Earth's, (n,).
 
     Args:
         scenario: of the flight.
@@ -121,8 +155,8 @@ def lights_differ(scenario: Scenario, truth: Histories, turn: Array) -> NDArray[
     sun_body = truth["lit"][:, None] * truth["sun_body"]
     light = np.maximum(sun_body @ np.array(true.normals).T, 0.0)
     expected = np.maximum(in_body(_back(turn), sun_body) @ np.array(assumed.normals).T, 0.0)
-    differ: NDArray[np.bool_] = (np.abs(light - expected) > EARTHLIGHT).sum(axis=1) > 1
-    return differ
+    count: NDArray[np.int64] = (np.abs(light - expected) > EARTHLIGHT).sum(axis=1)
+    return count
 
 
 def fields_differ(truth: Histories, turn: Array) -> NDArray[np.bool_]:
@@ -189,8 +223,10 @@ def crossed() -> Nested:
     return {"flight": {"cells": {"normals": normals + rest}}}
 
 
-def _order(seed: int, changed: Nested, measure: Measure = honesty_figures) -> Order:
-    return Order(SCENARIO, changed, seed=seed, measure=measure, name=f"{SCENARIO}, seed {seed}")
+def _order(
+    seed: int, changed: Nested, measure: Measure = honesty_figures, orbits: float | None = None
+) -> Order:
+    return Order(SCENARIO, changed, seed, orbits, measure, f"{SCENARIO}, seed {seed}")
 
 
 def _group(orders: list[Order]) -> tuple[Group, ...]:
