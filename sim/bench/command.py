@@ -17,7 +17,8 @@ from sim.bench.memory import MemoryMonitor, scheduling
 from sim.bench.processes import BenchProcess, BenchProcesses, hub_of
 from sim.bench.realtime_loop import RealtimeLoop, is_boot
 from sim.bench.tick_source import PlantTicks, SyncOnly, TickSource, line_to
-from sim.console import answer, fail, say
+from sim.bench.unsent_telecommands import unsent_telecommands
+from sim.console import answer, fail, say, warn
 from sim.errors import HarnessError
 from sim.flight.bus_in_use import FLIGHT_NODES, refuse_bus_in_use
 from sim.flight.second_senders import describe_senders
@@ -169,6 +170,8 @@ def _run(
     table: Path,
 ) -> Json:
     scenario, ticks = settings.scenario, _ticks(settings)
+    for unsent in unsent_telecommands(scenario, ticks):
+        warn(unsent)
     tick_hz = scenario.time.tick_hz
     arming = () if settings.armed else ("--disarmed",)
     arguments = ("--table", str(table), "--bench", "--bus", spec, "--parent", str(os.getpid()), *arming)

@@ -15,7 +15,9 @@ from fsw.table.config import flight_config
 from fsw.table.estimator import table_bounds
 from fsw.table.uncertainty import ROUNDING
 from fsw.wire.messages import TcAckResult, TcGain, TcLaw, TcOrbitElement, TcParameter, TcSpin
+from sim.bench.unsent_telecommands import unsent_telecommands
 from sim.design.from_scenario import body_of
+from sim.flight.record_flight import ticks_of
 from sim.scenario.assemble import plant_config
 from sim.scenario.residual_errors import coil_errors, magnetometer_errors, reading_of
 from sim.scenario.schema import Scenario, flight_table
@@ -253,6 +255,7 @@ def _telecommands(scenario: Scenario) -> Iterator[str]:
                         f"telecommand[{place}], {telecommand.message} at {telecommand.at_s:g} s, will be "
                         f"answered {answer.name.lower()!r}: {_ANSWERS[answer]}"
                     )
+    yield from unsent_telecommands(scenario, ticks_of(scenario, None))
 
 
 _ANSWERS = {

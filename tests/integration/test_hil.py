@@ -11,13 +11,14 @@ import time
 import pytest
 
 from fsw.bus.open_bus import open_bus
-from fsw.wire.messages import MagField, SunVector, TcAck, TcLaw
+from fsw.wire.messages import MagField, SunVector, TcAck, TcLaw, TcMode
 from torquer.cli.main import main
 
 SHORT = ("--set", "coils.pulse_s=0.5", "--set", "coils.backoff_s=1.0", "--tick-hz", "10")
 LOOSE = ("--jitter-ms", "1000", "--latency-ms", "1000", "--slips", "15")
 """What is tested is the bench, not how busy this machine is."""
 COMMANDED = 'telecommand=[{at_s=1.5, message="TC_LAW", law="bdot"}]'
+COMMANDED_TOO_LATE = 'telecommand=[{at_s=4.0, message="TC_MODE", mode="SAFE"}]'
 
 SCRIPT = """
 [[step]]
@@ -81,7 +82,7 @@ def benches(tmp_path_factory):
         "armed": bench("--arm", "--seconds", "6", "--out", str(runs["armed"]), "--set", COMMANDED, *LOOSE),
         "real": bench(
             *("--seconds", "4", "--bus", bus, "--real", "coil,sun", "--stimulus", str(script)),
-            *("--out", str(runs["real"]), *LOOSE),
+            *("--set", COMMANDED_TOO_LATE, "--out", str(runs["real"]), *LOOSE),
         ),
         "killed": bench("--seconds", "6", "--out", str(runs["killed"]), *LOOSE),
     }
@@ -122,6 +123,14 @@ def test_the_telecommands_of_the_scenario_are_sent_at_their_time_and_answered(be
     ]
     assert (acknowledged.command, acknowledged.result) == (TcLaw.ID, 0)
     assert acknowledged.tick in (15, 16)
+
+
+def test_a_telecommand_after_the_last_tick_is_not_sent_and_the_bench_says_so(benches):
+    numbers, errors, _, run = benches["real"]
+    sentence = "telecommand[0], TC_MODE at 4 s, will not be sent: the last tick is at 3.9 s"
+    assert numbers["warnings"] == [sentence]
+    assert errors.startswith(f"torquer: warning: {sentence}\n")
+    assert f" {TcMode.ID:03X}#" not in (run / "bus.log").read_text()
 
 
 def test_a_real_board_is_not_started_and_one_that_is_silent_breaks_its_budget(benches):
