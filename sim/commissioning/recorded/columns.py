@@ -55,7 +55,8 @@ def places(head: Sequence[str]) -> Places:
             raise ValueError(f"there are two columns {name!r}")
         at[name] = place
     if TIME not in at:
-        raise ValueError(f"there is no column {TIME!r}{did_you_mean(TIME, at)}")
+        named = ", ".join(head)
+        raise ValueError(f"there is no column {TIME!r}{did_you_mean(TIME, at)}; line 1 names {named!r:.60}")
     field, field_factor = _vector(FIELD, at)
     if field is None:
         raise ValueError(_missing(FIELD, at))

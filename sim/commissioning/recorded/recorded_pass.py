@@ -69,8 +69,9 @@ def read_pass(path: Path) -> RecordedPass:
         raise HarnessError(f"{path}: {said}") from None
     except csv.Error as error:
         raise HarnessError(f"{path}: not CSV: {error}") from None
-    numbers = np.array([_numbers(path, line, row, head) for line, row in enumerate(rows, 2) if row])
-    return _checked(path, numbers, where)
+    lines = [line for line, row in enumerate(rows, 2) if row]
+    numbers = np.array([_numbers(path, line, rows[line - 2], head) for line in lines])
+    return _checked(path, lines, numbers, where)
 
 
 def _numbers(path: Path, line: int, row: list[str], head: list[str]) -> list[float]:
@@ -92,16 +93,16 @@ def _number(path: Path, line: int, name: str, field: str) -> float:
     return value
 
 
-def _checked(path: Path, numbers: Array, where: Places) -> RecordedPass:
+def _checked(path: Path, lines: list[int], numbers: Array, where: Places) -> RecordedPass:
     """The pass, whose times must be known and in order."""
     if len(numbers) < LEAST_ROWS:
         raise HarnessError(f"{path}: {len(numbers)} rows are too few, at least {LEAST_ROWS} are needed")
     times = numbers[:, where.time].tolist()
-    for row, (before, after) in enumerate(pairwise(times), 2):
+    for line, (before, after) in zip(lines[1:], pairwise(times), strict=True):
         if not before <= after:
             unknown = isnan(before) or isnan(after)
             said = "an empty field" if unknown else f"{after:.15g} after {before:.15g}"
-            raise HarnessError(f"{path}: row {row}, column {TIME!r}: {said}; times must not go back")
+            raise HarnessError(f"{path}: line {line}, column {TIME!r}: {said}; times must not go back")
     if times[-1] - times[0] > LONGEST_S:
         raise HarnessError(
             f"{path}: the rows span {(times[-1] - times[0]) / 86400.0:.0f} days, at most "

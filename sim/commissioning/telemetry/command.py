@@ -34,6 +34,8 @@ def telemetry(path: Path, tle: Path, calibration: Path | None, page: Path | None
     found = figures(judged)
     for line in in_words(judged, found):
         say(line)
+    if calibration is None and not judged.verdict.converged:
+        say("samples are taken as they are: torquer calibrate finds what --calibration takes off them")
     if page is not None:
         try:
             page.write_text(telemetry_page(judged, known, found), encoding="utf-8")

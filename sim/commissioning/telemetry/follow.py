@@ -189,8 +189,9 @@ def _check_gaps(around: Along, rows: NDArray[np.int64]) -> None:
     if len(gaps_s) and gaps_s.max() > LONGEST_GAP_S:
         place = int(rows[np.argmax(gaps_s)])
         raise HarnessError(
-            f"{around.recorded.name}: after row {place + 2} there is no field sample for "
-            f"{gaps_s.max():.0f} s; at most {LONGEST_GAP_S:.0f} s are predicted, so split the file there"
+            f"{around.recorded.name}: after utc_unix_s = {around.recorded.utc_unix_s[place]:.15g} there is "
+            f"no field sample for {gaps_s.max():.0f} s; at most {LONGEST_GAP_S:.0f} s are predicted, so "
+            "split the file there"
         )
 
 

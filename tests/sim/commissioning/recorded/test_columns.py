@@ -40,7 +40,9 @@ def test_gyros_cells_and_temperature_may_be_absent():
 @pytest.mark.parametrize(
     ("head", "said"),
     [
-        (["mag_x_nt", "mag_y_nt", "mag_z_nt"], "there is no column 'utc_unix_s'"),
+        (["mag_x_nt", "mag_y_nt"], "there is no column 'utc_unix_s'; line 1 names 'mag_x_nt, mag_y_nt'"),
+        (["utc_unix_s;mag_x_nt"], "there is no column 'utc_unix_s'"),
+        (["utc_unix_s;mag_x_nt"], "line 1 names 'utc_unix_s;mag_x_nt'"),
         (["utc_unix", "mag_x_nt", "mag_y_nt", "mag_z_nt"], "(did you mean 'utc_unix'?)"),
         (["utc_unix_s", "mag_x_nt", "mag_y_nt"], "there is no column 'mag_z_nt'"),
         (["utc_unix_s", "mag_x_nt", "mag_y_nt", "mag_z_ut"], "there is no column 'mag_z_nt'"),

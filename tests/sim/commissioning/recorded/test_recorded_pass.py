@@ -43,8 +43,8 @@ def test_units_are_converted_and_empty_fields_are_no_numbers(tmp_path):
         ((ROWS[0], "1700000002,inf,2,3,0,0,0,0,0", *ROWS[3:]), "'inf' is no finite number"),
         ((ROWS[0], "1700000002,1,2,3", *ROWS[3:]), "line 3 has 4 fields, the first line 9"),
         (
-            (ROWS[0], ROWS[3], ROWS[1]),
-            "column 'utc_unix_s': 1700000001 after 1700000004; times must not go back",
+            (ROWS[0], "", ROWS[3], ROWS[1]),
+            "line 5, column 'utc_unix_s': 1700000001 after 1700000004; times must not go back",
         ),
         ((ROWS[0], ",1,2,3,0,0,0,0,0", ROWS[1]), "column 'utc_unix_s': an empty field"),
         (ROWS[:2], "2 rows are too few"),

@@ -75,3 +75,9 @@ def test_old_elements_are_warned_of(short, tmp_path):
     old.write_text("\n".join(TLE.read_text().splitlines()[:3]))
     result = run(short, "--tle", old, "--calibration", CALIBRATION)
     assert "the nearest element set is 136 days away: its field may be off" in result.stderr
+
+
+def test_a_pass_that_is_not_calibrated_and_not_followed_is_told_how_to(short):
+    advice = "torquer calibrate finds what --calibration takes off them"
+    assert advice in run(short, "--tle", TLE).stdout
+    assert advice not in run(short, "--tle", TLE, "--calibration", CALIBRATION).stdout
