@@ -64,7 +64,8 @@ def phasing(
     """Which way coils and magnetometer are wired: from pulses of each coil in both polarities.
 
     Of a SCENARIO the sequence is commanded in simulation, or on a bench with --bus; a RUN, LOG or CSV is
-    judged as it is. Exit code 1: the wiring is not the table's, or cannot be told.
+    judged as it is. Exit code 1: the wiring is not the table's, or cannot be told; of a CSV, which tells no
+    axis, that no reading responds to a command.
     """
     import numpy as np
 

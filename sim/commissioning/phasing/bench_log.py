@@ -8,7 +8,7 @@ readings are after it, less what they were before.
 import csv
 from dataclasses import dataclass
 from itertools import pairwise
-from math import isfinite
+from math import isfinite, isnan
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +24,7 @@ COMMANDED = ("cmd_x_am2", "cmd_y_am2", "cmd_z_am2")
 LONGEST_S = 8.0
 """Of the readings before and after a step that are compared."""
 SETTLED_S = 1.0
-"""After a step the readings have settled, unless the delay shows otherwise."""
+"""After a step the readings have settled, unless they show it later."""
 SIGMAS = 5.0
 WEAK_SIGMAS = 20.0
 """Below so many standard deviations a single sample does not show the phase of a step."""
@@ -71,6 +71,7 @@ class BenchResponse:
         noise_nt: standard deviation of a reading with no command, about its mean in each off phase.
         tied: axes that only repeat another one, as words.
         drift_nt: between the first and the last phase without a command.
+        cycle_s: time from one reading to the next, median.
     """
 
     name: str
@@ -78,6 +79,11 @@ class BenchResponse:
     noise_nt: Array
     tied: tuple[str, ...]
     drift_nt: Array
+    cycle_s: float
+
+    def latest_s(self) -> float:
+        """The largest age at which a step is shown whole; 0 where none is clear."""
+        return max((step.changed_s for step in self.steps if not isnan(step.changed_s)), default=0.0)
 
 
 def is_bench_log(path: Path) -> bool:
@@ -131,27 +137,44 @@ def _split(rows: list[tuple[float, ...]]) -> tuple[Array, Array]:
 
 
 def bench_responses(recording: Recording) -> list[BenchResponse]:
-    """The response of each magnetometer."""
-    return [_response(name, *recording.fields[name], recording.commands) for name in sorted(recording.fields)]
+    """The response of each magnetometer, by readings that show it whole.
+
+    When it is whole, the second half of each phase tells; a response later than that would be one to the
+    command before.
+    """
+    begun_s = [begin for begin, *_ in _phases(*recording.commands)]
+    half_s = 0.5 * float(np.median(np.diff(begun_s))) if len(begun_s) > 1 else SETTLED_S
+    found = []
+    for name, (time_s, field_nt) in sorted(recording.fields.items()):
+        late_s = _response(name, time_s, field_nt, recording.commands, half_s).latest_s()
+        settled_s = max(SETTLED_S, min(late_s, half_s))
+        found.append(_response(name, time_s, field_nt, recording.commands, settled_s))
+    return found
 
 
-def _response(name: str, time_s: Array, field_nt: Array, commands: tuple[Array, Array]) -> BenchResponse:
+def _response(
+    name: str, time_s: Array, field_nt: Array, commands: tuple[Array, Array], settled_s: float
+) -> BenchResponse:
+    """The response, of readings that are older than ``settled_s`` when a command has changed."""
     phases = _phases(*commands)
     inside = [(begin, end, command, _between(time_s, begin, end)) for begin, end, command in phases]
-    settled = [(command, rows[time_s[rows] > begin + SETTLED_S]) for begin, _, command, rows in inside]
+    settled = [(command, rows[time_s[rows] > begin + settled_s]) for begin, _, command, rows in inside]
     idle = [rows for command, rows in settled if not any(command) and len(rows) > 3]
     spread = [field_nt[rows] - field_nt[rows].mean(axis=0) for rows in idle]
     noise = np.sqrt(np.mean(np.vstack(spread) ** 2, axis=0)) if spread else np.full(3, np.nan)
     by_command: dict[tuple[float, float, float], list[tuple[Array, Array, float, float]]] = {}
     for before, after in pairwise(inside):
         rise = not any(before[2])
-        if rise == (not any(after[2])) or len(before[3]) < 3 or len(after[3]) < 3:
+        settled = all(np.sum(time_s[rows] > begin + settled_s) > 2 for begin, *_, rows in (before, after))
+        if rise == (not any(after[2])) or not settled:
             continue
-        command = after[2] if rise else before[2]
-        by_command.setdefault(command, []).append(_edge(time_s, field_nt, before, after, rise))
+        step, *rest = _edge(time_s, field_nt, before, after, settled_s)
+        command, step = (after[2], step) if rise else (before[2], -step)
+        by_command.setdefault(command, []).append((step, *rest))
     steps = [_step(command, edges) for command, edges in sorted(by_command.items())]
     drift = field_nt[idle[-1]].mean(axis=0) - field_nt[idle[0]].mean(axis=0) if idle else np.full(3, np.nan)
-    return BenchResponse(name, tuple(steps), noise, _tied(field_nt, noise), drift)
+    cycle_s = float(np.median(np.diff(time_s))) if len(time_s) > 1 else 0.0
+    return BenchResponse(name, tuple(steps), noise, _tied(field_nt, noise), drift, cycle_s)
 
 
 Phase = tuple[float, float, tuple[float, float, float], NDArray[np.int64]]
@@ -173,12 +196,12 @@ def _between(time_s: Array, begin_s: float, end_s: float) -> NDArray[np.int64]:
 
 
 def _edge(
-    time_s: Array, field_nt: Array, before: Phase, after: Phase, rise: bool
+    time_s: Array, field_nt: Array, before: Phase, after: Phase, settled_s: float
 ) -> tuple[Array, Array, float, float]:
     """Step of an edge, its variance, and the ages of the last sample without it and of the first with it."""
     edge_s = after[0]
-    old = before[3][time_s[before[3]] > edge_s - LONGEST_S]
-    new = after[3][(time_s[after[3]] > edge_s + SETTLED_S) & (time_s[after[3]] < edge_s + LONGEST_S)]
+    old = before[3][time_s[before[3]] > max(edge_s - LONGEST_S, before[0] + settled_s)]
+    new = after[3][(time_s[after[3]] > edge_s + settled_s) & (time_s[after[3]] < edge_s + LONGEST_S)]
     step = field_nt[new].mean(axis=0) - field_nt[old].mean(axis=0)
     quantum = np.full(3, np.unique(np.abs(np.diff(np.unique(field_nt)))).min() ** 2 / 12.0)
     variance = sum(np.maximum(field_nt[rows].var(axis=0), quantum) / len(rows) for rows in (old, new))
@@ -187,7 +210,7 @@ def _edge(
     ages_s = time_s[after[3]] - edge_s
     changed = int(np.argmax(parts > CHANGED)) if (parts > CHANGED).any() else len(parts) - 1
     unchanged_s = float(ages_s[changed - 1]) if changed and parts[changed - 1] < 1.0 - CHANGED else 0.0
-    return (step if rise else -step), np.asarray(variance, float), unchanged_s, float(ages_s[changed])
+    return step, np.asarray(variance, float), unchanged_s, float(ages_s[changed])
 
 
 def _step(command: tuple[float, float, float], edges: list[tuple[Array, Array, float, float]]) -> Step:

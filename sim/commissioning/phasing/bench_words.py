@@ -1,11 +1,12 @@
 """The response of a bench log in words and as JSON, and what it cannot tell."""
 
 from math import isnan
+from statistics import median
 from typing import Any
 
 import numpy as np
 
-from sim.commissioning.phasing.bench_log import SIGMAS, BenchResponse, Step
+from sim.commissioning.phasing.bench_log import SIGMAS, WEAK_SIGMAS, BenchResponse, Step
 
 Json = dict[str, Any]
 
@@ -42,9 +43,7 @@ def _step_line(step: Step) -> str:
 def findings(one: BenchResponse) -> list[str]:
     """What else the readings show."""
     found = [f"{tied} in every sample: not an axis of its own" for tied in one.tied]
-    ages_s = [step.changed_s for step in one.steps if not isnan(step.changed_s)]
-    if ages_s:
-        found.append(f"in phase with the command, within {max(ages_s):.2f} s; the log tells it no closer")
+    found += _phase(one)
     for axis, letter in enumerate("xyz"):
         levels = [step for step in one.steps if np.flatnonzero(step.command_am2).tolist() == [axis]]
         off = _off_proportion(levels, axis)
@@ -56,6 +55,21 @@ def findings(one: BenchResponse) -> list[str]:
         for other in _reverses(levels):
             found.append(f"the response of {other} to a command along {letter} reverses with its level")
     return found
+
+
+def _phase(one: BenchResponse) -> list[str]:
+    """When the response comes, of the commands to which it is clear."""
+    clear = [step for step in one.steps if not isnan(step.changed_s)]
+    if not clear:
+        return [f"responds to no command by {WEAK_SIGMAS:.0f} standard deviations: no phase is told"]
+    unchanged_s = median(step.unchanged_s for step in clear)
+    changed_s = median(step.changed_s for step in clear)
+    if unchanged_s <= one.cycle_s:
+        return [f"in phase with the command, within {one.latest_s():.2f} s; the log tells it no closer"]
+    return [
+        f"late: {unchanged_s:.2f} to {changed_s:.2f} s after the command, with a reading every "
+        f"{one.cycle_s:.2f} s"
+    ]
 
 
 def _off_proportion(levels: list[Step], axis: int) -> float:
@@ -86,6 +100,7 @@ def as_json(responses: list[BenchResponse]) -> Json:
             one.name: {
                 "noise_nt": one.noise_nt.tolist(),
                 "drift_nt": one.drift_nt.tolist(),
+                "cycle_s": one.cycle_s,
                 "tied": list(one.tied),
                 "findings": findings(one),
                 "steps": [

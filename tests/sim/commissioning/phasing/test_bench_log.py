@@ -5,6 +5,7 @@ import pytest
 
 from sim.commissioning.phasing.bench_log import bench_responses, read_recording
 from sim.commissioning.phasing.bench_words import NOT_TOLD, findings, lines
+from sim.commissioning.phasing.command import of_csv
 from sim.errors import HarnessError
 
 
@@ -27,6 +28,44 @@ def test_phase_is_between_the_last_sample_without_it_and_the_first_with_it(respo
     strong = responses["mag1"].steps[-1]
     assert strong.changed_s == pytest.approx(0.19, abs=1e-6)
     assert strong.unchanged_s == 0.0
+
+
+def late(bench_csv, path, by_s):
+    """The same log, whose commands are logged so long before they act."""
+
+    def moved(line):
+        t_s, channel, *rest = line.split(",")
+        return ",".join([f"{float(t_s) - by_s:.4f}" if channel == "cmd" else t_s, channel, *rest])
+
+    head, *rows = bench_csv.read_text().splitlines()
+    path.write_text("\n".join([head, *map(moved, rows)]) + "\n")
+    return {one.name: one for one in bench_responses(read_recording(path))}
+
+
+def test_a_response_that_is_late_is_told_and_its_size_is_as_without_the_delay(bench_csv, responses, tmp_path):
+    found = late(bench_csv, tmp_path / "late.csv", 1.6)
+    assert "late: 1.59 to 1.79 s after the command, with a reading every 0.20 s" in findings(found["mag1"])
+    assert not any("in phase" in text for text in findings(found["mag1"]))
+    assert max(found["mag1"].noise_nt) < 400.0, "of readings that are settled"
+    for step, other in zip(found["mag1"].steps, responses["mag1"].steps, strict=True):
+        assert (np.abs(step.response_nt - other.response_nt) < 4.0 * (step.sigma_nt + other.sigma_nt)).all()
+    assert "in phase with the command, within 0.19 s; the log tells it no closer" in findings(
+        responses["mag1"]
+    )
+
+
+def without_a_command(text):
+    head, *rows = text.splitlines()
+    idle = [row.rsplit(",", 3)[0] + ",0,0,0" if ",cmd," in row else row for row in rows]
+    return "\n".join([head, *idle]) + "\n"
+
+
+@pytest.mark.parametrize(("change", "code"), [(str, 0), (without_a_command, 1)])
+def test_a_log_in_which_nothing_responds_has_failed(bench_csv, tmp_path, capsys, change, code):
+    path = tmp_path / "bench.csv"
+    path.write_text(change(bench_csv.read_text()))
+    assert of_csv(path) == code
+    assert capsys.readouterr().out.count("responds to no command") == 2 * code
 
 
 def test_an_axis_that_repeats_another_is_told(responses):
