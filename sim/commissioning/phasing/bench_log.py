@@ -8,8 +8,9 @@ readings are after it, less what they were before.
 import csv
 from dataclasses import dataclass
 from itertools import pairwise
-from math import isfinite, isnan
+from math import isfinite, isnan, nan
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -158,19 +159,21 @@ def _response(
     """The response, of readings that are older than ``settled_s`` when a command has changed."""
     phases = _phases(*commands)
     inside = [(begin, end, command, _between(time_s, begin, end)) for begin, end, command in phases]
-    settled = [(command, rows[time_s[rows] > begin + settled_s]) for begin, _, command, rows in inside]
-    idle = [rows for command, rows in settled if not any(command) and len(rows) > 3]
+    settled = [rows[time_s[rows] > begin + settled_s] for begin, _, _, rows in inside]
+    idle = [rows for phase, rows in zip(inside, settled, strict=True) if not any(phase[2]) and len(rows) > 3]
     spread = [field_nt[rows] - field_nt[rows].mean(axis=0) for rows in idle]
     noise = np.sqrt(np.mean(np.vstack(spread) ** 2, axis=0)) if spread else np.full(3, np.nan)
-    by_command: dict[tuple[float, float, float], list[tuple[Array, Array, float, float]]] = {}
-    for before, after in pairwise(inside):
-        rise = not any(before[2])
-        settled = all(np.sum(time_s[rows] > begin + settled_s) > 2 for begin, *_, rows in (before, after))
-        if rise == (not any(after[2])) or not settled:
+    by_command: dict[tuple[float, float, float], list[Edge]] = {}
+    for (before, old), (after, new) in pairwise(zip(inside, settled, strict=True)):
+        edge_s, rise = after[0], not any(before[2])
+        near_old, near_new = old[time_s[old] > edge_s - LONGEST_S], new[time_s[new] < edge_s + LONGEST_S]
+        if rise == (not any(after[2])) or min(len(near_old), len(near_new)) < 3:
             continue
-        step, *rest = _edge(time_s, field_nt, before, after, settled_s)
-        command, step = (after[2], step) if rise else (before[2], -step)
-        by_command.setdefault(command, []).append((step, *rest))
+        edge = _edge(time_s, field_nt, after, near_old, near_new)
+        if rise:
+            by_command.setdefault(after[2], []).append(edge)
+        else:
+            by_command.setdefault(before[2], []).append(edge._replace(step_nt=-edge.step_nt))
     steps = [_step(command, edges) for command, edges in sorted(by_command.items())]
     drift = field_nt[idle[-1]].mean(axis=0) - field_nt[idle[0]].mean(axis=0) if idle else np.full(3, np.nan)
     cycle_s = float(np.median(np.diff(time_s))) if len(time_s) > 1 else 0.0
@@ -195,39 +198,51 @@ def _between(time_s: Array, begin_s: float, end_s: float) -> NDArray[np.int64]:
     return np.flatnonzero((time_s > begin_s) & (time_s < end_s))
 
 
-def _edge(
-    time_s: Array, field_nt: Array, before: Phase, after: Phase, settled_s: float
-) -> tuple[Array, Array, float, float]:
+class Edge(NamedTuple):
     """Step of an edge, its variance, and the ages of the last sample without it and of the first with it."""
-    edge_s = after[0]
-    old = before[3][time_s[before[3]] > max(edge_s - LONGEST_S, before[0] + settled_s)]
-    new = after[3][(time_s[after[3]] > edge_s + settled_s) & (time_s[after[3]] < edge_s + LONGEST_S)]
+
+    step_nt: Array
+    variance: Array
+    unchanged_s: float
+    changed_s: float
+
+
+def _edge(
+    time_s: Array, field_nt: Array, after: Phase, old: NDArray[np.int64], new: NDArray[np.int64]
+) -> Edge:
+    """The edge at which a phase begins; ``old``, ``new``: settled readings before and after it."""
+    edge_s, _, _, since = after
     step = field_nt[new].mean(axis=0) - field_nt[old].mean(axis=0)
-    quantum = np.full(3, np.unique(np.abs(np.diff(np.unique(field_nt)))).min() ** 2 / 12.0)
-    variance = sum(np.maximum(field_nt[rows].var(axis=0), quantum) / len(rows) for rows in (old, new))
+    rounding = _quantum(field_nt) ** 2 / 12.0
+    variance = sum(np.maximum(field_nt[rows].var(axis=0), rounding) / len(rows) for rows in (old, new))
     weight = step / max(float(step @ step), 1e-30)
-    parts = (field_nt[after[3]] - field_nt[old].mean(axis=0)) @ weight
-    ages_s = time_s[after[3]] - edge_s
+    parts = (field_nt[since] - field_nt[old].mean(axis=0)) @ weight
+    ages_s = time_s[since] - edge_s
     changed = int(np.argmax(parts > CHANGED)) if (parts > CHANGED).any() else len(parts) - 1
     unchanged_s = float(ages_s[changed - 1]) if changed and parts[changed - 1] < 1.0 - CHANGED else 0.0
-    return step, np.asarray(variance, float), unchanged_s, float(ages_s[changed])
+    return Edge(step, np.asarray(variance, float), unchanged_s, float(ages_s[changed]))
 
 
-def _step(command: tuple[float, float, float], edges: list[tuple[Array, Array, float, float]]) -> Step:
-    steps = np.array([edge[0] for edge in edges])
-    sigma = np.sqrt(sum(edge[1] for edge in edges)) / len(edges)
+def _step(command: tuple[float, float, float], edges: list[Edge]) -> Step:
+    steps = np.array([edge.step_nt for edge in edges])
+    sigma = np.sqrt(sum(edge.variance for edge in edges)) / len(edges)
     if len(edges) > 1:  # of the scatter between edges, drift included, what the mean of them keeps
         sigma = np.maximum(sigma, steps.std(axis=0, ddof=1) / np.sqrt(len(edges)))
-    clear = [
-        edge for edge in edges if float(np.linalg.norm(edge[0])) > WEAK_SIGMAS * float(np.linalg.norm(sigma))
-    ]
-    ages = [float(np.mean([edge[at] for edge in clear])) if clear else float("nan") for at in (2, 3)]
-    return Step(command, steps.mean(axis=0), np.asarray(sigma, float), len(edges), ages[0], ages[1])
+    least_nt = WEAK_SIGMAS * float(np.linalg.norm(sigma))
+    clear = [edge for edge in edges if float(np.linalg.norm(edge.step_nt)) > least_nt]
+    unchanged_s = float(np.mean([edge.unchanged_s for edge in clear])) if clear else nan
+    changed_s = float(np.mean([edge.changed_s for edge in clear])) if clear else nan
+    return Step(command, steps.mean(axis=0), np.asarray(sigma, float), len(edges), unchanged_s, changed_s)
+
+
+def _quantum(field_nt: Array) -> float:
+    """The step of a reading: the smallest difference between two; 0 where all are equal."""
+    return float(np.diff(np.unique(field_nt)).min(initial=np.inf)) if np.ptp(field_nt) > 0.0 else 0.0
 
 
 def _tied(field_nt: Array, noise: Array) -> tuple[str, ...]:
     """Axes that repeat another one, or its opposite, within a step of the reading in nearly every sample."""
-    quantum = float(np.unique(np.abs(np.diff(np.unique(field_nt)))).min())
+    quantum = _quantum(field_nt)
     found = []
     for one, other in ((0, 1), (0, 2), (1, 2)):
         for sign, word in ((1.0, ""), (-1.0, "-")):

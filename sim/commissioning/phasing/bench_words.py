@@ -21,12 +21,19 @@ def lines(responses: list[BenchResponse]) -> list[str]:
     """The response by magnetometer and command, then what is not told."""
     text = []
     for one in responses:
-        noise = " ".join(f"{part / 1000.0:.1f}" for part in one.noise_nt)
-        drift = " ".join(f"{part / 1000.0:+.1f}" for part in one.drift_nt)
-        text.append(f"{one.name}: noise {noise} uT, drift over the log {drift} uT (x y z)")
+        text.append(f"{one.name}: {_idle(one)}")
         text += [_step_line(step) for step in one.steps]
         text += [f"  {sentence}" for sentence in findings(one)]
     return [*text, NOT_TOLD]
+
+
+def _idle(one: BenchResponse) -> str:
+    """Noise and drift without a command."""
+    if np.isnan(one.noise_nt).any():
+        return "no readings without a command: neither noise nor drift is told"
+    noise = " ".join(f"{part / 1000.0:.1f}" for part in one.noise_nt)
+    drift = " ".join(f"{part / 1000.0:+.1f}" for part in one.drift_nt)
+    return f"noise {noise} uT, drift over the log {drift} uT (x y z)"
 
 
 def _step_line(step: Step) -> str:
@@ -81,7 +88,8 @@ def _off_proportion(levels: list[Step], axis: int) -> float:
     slope = m @ response / (m @ m)
     off = np.linalg.norm(response - np.outer(m, slope), axis=1)
     sigma = np.array([np.linalg.norm(step.sigma_nt) for step in levels])
-    return float(np.max(np.where(off > SIGMAS * sigma, off, 0.0)) / np.linalg.norm(response, axis=1).max())
+    largest = float(np.linalg.norm(response, axis=1).max())
+    return float(np.max(np.where(off > SIGMAS * sigma, off, 0.0))) / largest if largest > 0.0 else 0.0
 
 
 def _reverses(levels: list[Step]) -> list[str]:

@@ -60,7 +60,22 @@ def without_a_command(text):
     return "\n".join([head, *idle]) + "\n"
 
 
-@pytest.mark.parametrize(("change", "code"), [(str, 0), (without_a_command, 1)])
+def with_a_dead_magnetometer(text):
+    head, *rows = text.splitlines()
+    dead = [
+        row if ",cmd," in row else ",".join([*row.split(",")[:2], "1000", "1000", "1000,,,"]) for row in rows
+    ]
+    return "\n".join([head, *dead]) + "\n"
+
+
+def of_two_rows(text):
+    head, reading, *rows = text.splitlines()
+    return "\n".join([head, reading, reading.replace("mag1", "mag2"), rows[1]]) + "\n"
+
+
+@pytest.mark.parametrize(
+    ("change", "code"), [(str, 0), (without_a_command, 1), (with_a_dead_magnetometer, 1), (of_two_rows, 1)]
+)
 def test_a_log_in_which_nothing_responds_has_failed(bench_csv, tmp_path, capsys, change, code):
     path = tmp_path / "bench.csv"
     path.write_text(change(bench_csv.read_text()))
