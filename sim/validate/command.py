@@ -16,7 +16,7 @@ from sim.progress import progress
 from sim.record.destination import check_file
 from sim.validate.flight_data import claims
 from sim.validate.flight_rows import FlightRows, keep_flight, with_known
-from sim.validate.outcomes import as_record, as_text, of_other_code, read_record, with_record
+from sim.validate.outcomes import as_text, of_other_code, read_record, with_record
 from sim.validate.page import as_json, line, loose, render, suites, tally
 from sim.validate.reference import reference
 from sim.validate.registry import all_studies, choose_studies, find_repository
@@ -62,8 +62,8 @@ def validate(
     """
     began = time.monotonic()
     repository = find_repository(Path.cwd())
-    studies = _studies(folder, flight_data, satellites)
-    studies = choose_studies(studies, only, quick)
+    there_are = _studies(folder, flight_data, satellites)
+    studies = choose_studies(there_are, only, quick)
     whole = folder is None and flight_data is None and not only and not quick and satellites is None
     page = out or (_default_page(repository) if whole or record else None)
     figures = page.with_suffix(".json") if page is not None and (whole or record) else None
@@ -92,7 +92,7 @@ def validate(
         names = ", ".join(outcome.claim.source for outcome in outcomes)
         raise HarnessError(f"nothing was checked: {folder} does not hold {names}")
     wall_s = time.monotonic() - began
-    known = with_record(before, as_record(finished))
+    known = with_record(before, finished, {study.id for study in there_are})
     if figures is not None:
         _write(figures, as_text(known))
         say(f"figures: {figures}")

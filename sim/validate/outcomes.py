@@ -1,7 +1,7 @@
 """validation.json: the outcomes of the claims as last computed, for what is written from them."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -65,9 +65,22 @@ def as_record(finished: Sequence[StudyResult]) -> Record:
     }
 
 
-def with_record(before: Record, now: Record) -> Record:
-    """Those before, and those of now in their place, sorted."""
-    return dict(sorted({**before, **now}.items()))
+def with_record(before: Record, finished: Sequence[StudyResult], studies: Collection[str]) -> Record:
+    """The outcomes of now and, of other studies, those before, sorted: what a study no longer claims goes.
+
+    Args:
+        before: what the file held.
+        finished: what was run.
+        studies: ids of all studies; a claim is of the one with the longest id that it begins with.
+    """
+    run_now = {done.study.id for done in finished}
+    kept = {name: one for name, one in before.items() if _study_of(name, studies) not in run_now}
+    return dict(sorted({**kept, **as_record(finished)}.items()))
+
+
+def _study_of(claim: str, studies: Collection[str]) -> str:
+    """The study of a claim; empty where none has it."""
+    return max((one for one in studies if f"{claim}.".startswith(f"{one}.")), key=len, default="")
 
 
 def of_other_code(record: Record) -> set[str]:

@@ -39,10 +39,27 @@ def test_a_claim_that_was_judged_is_recorded_with_the_code_of_its_flights(study)
     }
 
 
-def test_the_new_outcome_stands_for_the_old_one_and_the_others_stay():
-    worse = ROW._replace(outcome=CLAIM.judge(1.9))
-    assert with_record({"b": ROW, "a": ROW}, {"a": worse, "0": ROW}) == {"0": ROW, "a": worse, "b": ROW}
-    assert list(with_record({"b": ROW}, {"a": ROW})) == ["a", "b"]
+def test_the_new_outcome_stands_for_the_old_one_and_those_of_other_studies_stay(study):
+    now = StudyResult(
+        study("a", []), (Claim("a.b", "", "", "1").judge(1.9), Claim("a.0", "", "", "1").judge(1.0)), (), 1.0
+    )
+    found = with_record({"b.x": ROW, "a.b": ROW}, [now], {"a", "b"})
+    assert list(found) == ["a.0", "a.b", "b.x"]
+    assert found["b.x"] == ROW
+    assert found["a.b"].outcome.ours == 1.9
+
+
+def test_a_claim_that_its_study_no_longer_makes_does_not_stay(study):
+    now = StudyResult(study("a", []), (Claim("a.b", "", "", "1").judge(1.0),), (), 1.0)
+    before = {name: ROW for name in ("a.b", "a.gone", "a.part.c", "ab.c", "of_no_study.d")}
+    assert list(with_record(before, [now], {"a", "a.part", "ab"})) == [
+        "a.b",
+        "a.part.c",
+        "ab.c",
+        "of_no_study.d",
+    ]
+    part = StudyResult(study("a.part", []), (), (), 1.0)
+    assert "a.part.c" not in with_record(before, [part], {"a", "a.part", "ab"})
 
 
 def test_the_file_holds_a_claim_a_line_and_is_read_back(path, tmp_path):
