@@ -68,13 +68,20 @@ def as_record(finished: Sequence[StudyResult]) -> Record:
 def with_record(before: Record, finished: Sequence[StudyResult], studies: Collection[str]) -> Record:
     """The outcomes of now and, of other studies, those before, sorted: what a study no longer claims goes.
 
+    A claim whose data are not there now keeps its outcome.
+
     Args:
         before: what the file held.
         finished: what was run.
         studies: ids of all studies; a claim is of the one with the longest id that it begins with.
     """
     run_now = {done.study.id for done in finished}
-    kept = {name: one for name, one in before.items() if _study_of(name, studies) not in run_now}
+    claimed = {outcome.claim.id for done in finished for outcome in done.outcomes}
+    kept = {
+        name: one
+        for name, one in before.items()
+        if name in claimed or _study_of(name, studies) not in run_now
+    }
     return dict(sorted({**kept, **as_record(finished)}.items()))
 
 

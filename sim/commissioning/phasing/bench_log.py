@@ -43,6 +43,18 @@ class Recording:
     commands: tuple[Array, Array]
 
 
+class Edge(NamedTuple):
+    """A change of the command: the step of the reading, nT, sensor axes, and its variance, nT^2.
+
+    ``unchanged_s``, ``changed_s``: ages of the last sample without the step and of the first with it.
+    """
+
+    step_nt: Array
+    variance: Array
+    unchanged_s: float
+    changed_s: float
+
+
 @dataclass(frozen=True, slots=True)
 class Step:
     """The response of a magnetometer to one command, all its rises and falls taken together.
@@ -176,7 +188,8 @@ def _response(
             by_command.setdefault(before[2], []).append(edge._replace(step_nt=-edge.step_nt))
     steps = [_step(command, edges) for command, edges in sorted(by_command.items())]
     drift = field_nt[idle[-1]].mean(axis=0) - field_nt[idle[0]].mean(axis=0) if idle else np.full(3, np.nan)
-    cycle_s = float(np.median(np.diff(time_s))) if len(time_s) > 1 else 0.0
+    moments_s = np.unique(time_s)
+    cycle_s = float(np.median(np.diff(moments_s))) if len(moments_s) > 1 else 0.0
     return BenchResponse(name, tuple(steps), noise, _tied(field_nt, noise), drift, cycle_s)
 
 
@@ -196,15 +209,6 @@ def _phases(time_s: Array, commands: Array) -> list[tuple[float, float, tuple[fl
 
 def _between(time_s: Array, begin_s: float, end_s: float) -> NDArray[np.int64]:
     return np.flatnonzero((time_s > begin_s) & (time_s < end_s))
-
-
-class Edge(NamedTuple):
-    """Step of an edge, its variance, and the ages of the last sample without it and of the first with it."""
-
-    step_nt: Array
-    variance: Array
-    unchanged_s: float
-    changed_s: float
 
 
 def _edge(

@@ -66,6 +66,10 @@ def findings(one: BenchResponse) -> list[str]:
 
 def _phase(one: BenchResponse) -> list[str]:
     """When the response comes, of the commands to which it is clear."""
+    if not one.steps:
+        return [
+            "no command that begins or ends at zero has settled readings on both sides: nothing to compare"
+        ]
     clear = [step for step in one.steps if not isnan(step.changed_s)]
     if not clear:
         return [f"responds to no command by {WEAK_SIGMAS:.0f} standard deviations: no phase is told"]

@@ -62,6 +62,12 @@ def test_a_claim_that_its_study_no_longer_makes_does_not_stay(study):
     assert "a.part.c" not in with_record(before, [part], {"a", "a.part", "ab"})
 
 
+def test_a_claim_whose_data_are_not_there_keeps_its_outcome(study):
+    absent = ClaimOutcome(Claim("a.b", "", "", "1"), ClaimVerdict.ABSENT)
+    now = StudyResult(study("a", []), (absent,), (), 1.0)
+    assert with_record({"a.b": ROW, "a.gone": ROW}, [now], {"a"}) == {"a.b": ROW}
+
+
 def test_the_file_holds_a_claim_a_line_and_is_read_back(path, tmp_path):
     path.write_text(as_text({"a.b": ROW, "a.c": ROW}))
     found = read_record(path)

@@ -42,6 +42,14 @@ def late(bench_csv, path, by_s):
     return {one.name: one for one in bench_responses(read_recording(path))}
 
 
+def test_rows_that_are_doubled_do_not_make_a_response_late(bench_csv, responses, tmp_path):
+    head, *rows = bench_csv.read_text().splitlines()
+    path = tmp_path / "doubled.csv"
+    path.write_text("\n".join([head, *(row for row in rows for _ in range(2))]) + "\n")
+    for doubled in bench_responses(read_recording(path)):
+        assert findings(doubled) == findings(responses[doubled.name])
+
+
 def test_a_response_that_is_late_is_told_and_its_size_is_as_without_the_delay(bench_csv, responses, tmp_path):
     found = late(bench_csv, tmp_path / "late.csv", 1.6)
     assert "late: 1.59 to 1.79 s after the command, with a reading every 0.20 s" in findings(found["mag1"])
@@ -68,19 +76,26 @@ def with_a_dead_magnetometer(text):
     return "\n".join([head, *dead]) + "\n"
 
 
+def without_a_zero(text):
+    head, *rows = text.splitlines()
+    return "\n".join([head, *(row.replace("0.000000,0.000000", "0.001,0") for row in rows)]) + "\n"
+
+
 def of_two_rows(text):
     head, reading, *rows = text.splitlines()
     return "\n".join([head, reading, reading.replace("mag1", "mag2"), rows[1]]) + "\n"
 
 
 @pytest.mark.parametrize(
-    ("change", "code"), [(str, 0), (without_a_command, 1), (with_a_dead_magnetometer, 1), (of_two_rows, 1)]
+    ("change", "code"),
+    [(str, 0), (without_a_command, 1), (with_a_dead_magnetometer, 1), (of_two_rows, 1), (without_a_zero, 1)],
 )
 def test_a_log_in_which_nothing_responds_has_failed(bench_csv, tmp_path, capsys, change, code):
     path = tmp_path / "bench.csv"
     path.write_text(change(bench_csv.read_text()))
     assert of_csv(path) == code
-    assert capsys.readouterr().out.count("responds to no command") == 2 * code
+    out = capsys.readouterr().out
+    assert out.count("responds to no command") + out.count("nothing to compare") == 2 * code
 
 
 def test_an_axis_that_repeats_another_is_told(responses):
