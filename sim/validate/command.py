@@ -14,6 +14,7 @@ from sim.errors import HarnessError
 from sim.junit import write_junit
 from sim.progress import progress
 from sim.record.destination import check_file
+from sim.record.run_dir import replace_file
 from sim.validate.flight_data import claims
 from sim.validate.flight_rows import FlightRows, keep_flight, with_known
 from sim.validate.outcomes import as_text, of_other_code, read_record, with_record
@@ -136,6 +137,6 @@ def _print_later(finished: StudyResult) -> None:
 def _write(page: Path, text: str) -> None:
     try:
         page.parent.mkdir(parents=True, exist_ok=True)
-        page.write_text(text, encoding="utf-8")
+        replace_file(page, text.encode())  # outcomes of hours are not lost by a kill
     except OSError as error:
         raise HarnessError(f"{page}: cannot be written ({error.strerror})") from None

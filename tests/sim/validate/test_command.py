@@ -1,6 +1,7 @@
 """``torquer validate``: which files are checked, what it prints and writes, and how it ends."""
 
 from functools import partial
+from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
@@ -99,6 +100,21 @@ class TestCommand:
             ["7", "", "<= 10", "own choice", "PASS |"],
             ["20 at of (20.0,)", "", "<= 10", "own choice", "FAIL \\* |"],
         ]
+
+    def test_a_kill_while_outcomes_are_written_leaves_those_before(self, tmp_path, monkeypatch, study):
+        parts = [study("a", [1.0])]
+        monkeypatch.setattr(command, "all_studies", lambda satellites: parts)
+        monkeypatch.setattr(command, "find_repository", lambda start: tmp_path)
+        figures = tmp_path / "docs" / "validation.json"
+        assert self.call("--only", "a", "--record").exit_code == 0
+        before, parts[0] = figures.read_bytes(), study("a", [7.0])
+
+        def killed(source, target):
+            raise KeyboardInterrupt
+
+        monkeypatch.setattr(Path, "replace", killed)
+        assert self.call("--only", "a", "--record").exit_code != 0
+        assert figures.read_bytes() == before
 
     def test_a_page_that_outcomes_would_overwrite_is_refused(self, tmp_path):
         page = tmp_path / "page.json"
