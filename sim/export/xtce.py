@@ -41,7 +41,7 @@ def xtce_text() -> str:
     return _completed(system.dumps(top_comment=False))
 
 
-def _add_message(pymdb: Any, system: "System", message: Message, frame: Any, identifier: Any) -> None:  # noqa: ANN401
+def _add_message(pymdb: Any, system: "System", message: Message, frame: Any, identifier: Any) -> None:  # noqa: ANN401  of pymdb
     subsystem = pymdb.Subsystem(system, message.name, short_description=f"from {message.sender}")
     entries, end = [], 0
     for signal in message.signals:

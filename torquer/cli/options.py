@@ -120,7 +120,7 @@ def _begin(name: str) -> float:
     return time.monotonic()
 
 
-def _verdict(command: Callable[..., int | None], *args: Any, **kwargs: Any) -> tuple[int, bool]:  # noqa: ANN401
+def _verdict(command: Callable[..., int | None], *args: Any, **kwargs: Any) -> tuple[int, bool]:  # noqa: ANN401  those of any command
     """The exit code, and whether the command itself gave it."""
     from fsw.bus.interface import BusError
     from fsw.input.schema import TableError

@@ -234,7 +234,7 @@ class TestInFlight:
             answer_of(law, 16)
 
     def test_memory_is_given_back(self):
-        law = lambda inputs, memory, setpoint, config: Demand(memory=(sum(memory) + 1.0,))  # noqa: E731
+        law = lambda inputs, memory, setpoint, config: Demand(memory=(sum(memory) + 1.0,))  # noqa: E731  as a user may write one
         assert answer_of(law, 16, (2.0,)).memory == (3.0,)
 
 

@@ -145,7 +145,7 @@ def test_ctrl_c_ends_the_nodes_and_leaves_a_run_that_can_be_reported(bus, tmp_pa
         "complete": f"the flight was interrupted: the run is not complete, its files are in {path}"
     }
     with pytest.raises(torquer.InputError, match="torquer report"):
-        run.summary  # noqa: B018
+        run.summary  # noqa: B018  to be asked for is to fail
     assert set(torquer.report(path).failures) == {"complete"}
     assert run.concluded
 

@@ -105,7 +105,7 @@ def test_the_failures_of_the_summary_are_those_of_the_run(copy):
 def test_a_damaged_summary_is_wrong_input(content, copy):
     (copy.path / "summary.json").write_text(content)
     with pytest.raises(torquer.InputError, match=r"summary\.json"):
-        torquer.load(copy.path).ok  # noqa: B018
+        torquer.load(copy.path).ok  # noqa: B018  to be asked for is to fail
 
 
 @pytest.mark.parametrize("path", ["nowhere", 3, None, ""])
