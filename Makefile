@@ -1,5 +1,6 @@
 # make sil    make the environment .venv and fly the default scenario
-# make test   all tests; those on a CAN interface are skipped, and reported, where there is none
+# make test   the tests, but for the long ones: some four minutes
+# make test-long   those of over a second: many orbits, processes, waits in real time; on a CAN interface where there is one: a quarter of an hour
 # make lint   style, types, layers, generated code, pages and pictures
 # make validate   compute every claim and reference figure, into docs/validation.md: some hours; stopped, it goes on where it was
 # make population   fly populations of random satellites, into docs/population.md: some hours; stopped, it goes on where it was
@@ -33,7 +34,7 @@ bin := .venv/bin
 installed := .venv/.installed
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv sil test lint docs docs-gallery notebooks test-vcan test-chromium gains golden validate fuzz attack differential replay-elsewhere faults bench scaling population pulse-limits soak verdicts planted validate-planted mutation coverage
+.PHONY: help venv sil test test-long lint docs docs-gallery notebooks test-vcan test-chromium gains golden validate fuzz attack differential replay-elsewhere faults bench scaling population pulse-limits soak verdicts planted validate-planted mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -51,7 +52,10 @@ sil: venv
 	$(bin)/torquer sil
 
 test: venv
-	$(bin)/pytest $(PYTEST_FLAGS)
+	$(bin)/pytest $(PYTEST_FLAGS) -m "not long"
+
+test-long: venv
+	$(bin)/pytest $(PYTEST_FLAGS) -m long
 
 lint: venv
 	$(bin)/ruff check
@@ -86,7 +90,7 @@ notebooks: venv
 	$(bin)/python tools/run_notebooks.py $(NOTEBOOKS)
 
 test-vcan: venv
-	TORQUER_REQUIRE_VCAN=1 tests/with-vcan $(bin)/pytest -q -rs -p no:cacheprovider -m vcan
+	TORQUER_REQUIRE_VCAN=1 tests/with-vcan $(bin)/pytest -q -rs -p no:cacheprovider -m vcan tests/integration
 
 test-chromium: venv
 	TORQUER_REQUIRE_CHROMIUM=1 $(bin)/pytest -q -rs -p no:cacheprovider -m chromium tests/sim

@@ -5,6 +5,7 @@ run and on the next machine. With ``HYPOTHESIS_PROFILE=dev`` they look for new o
 """
 
 import os
+from pathlib import Path
 from shutil import which
 
 import pytest
@@ -14,12 +15,17 @@ settings.register_profile("ci", derandomize=True, deadline=None, print_blob=True
 settings.register_profile("dev", deadline=None, print_blob=True)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "ci"))
 
+EXAMPLES = Path(__file__).parents[1] / "examples"
+"""Their tests, which a user copies with them, fly for many seconds and carry no mark of ours."""
+
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
     for item in items:
         if "chromium" in getattr(item, "fixturenames", ()):
             item.add_marker("chromium")
+        if item.path.is_relative_to(EXAMPLES):
+            item.add_marker("long")
 
 
 @pytest.fixture(scope="module")

@@ -135,6 +135,7 @@ def test_every_stage_of_a_step_fits_a_screen(name):
     assert len(counted) + bool(arguments.vararg) + bool(arguments.kwarg) <= MOST_ARGUMENTS
 
 
+@pytest.mark.long
 def test_no_class_name_stands_for_two_things():
     classes = [
         (node.name, f"{relative(path)}:{node.lineno}")

@@ -74,6 +74,7 @@ def watched(modules, first="sys"):
     return json.loads(done.stdout)
 
 
+@pytest.mark.long
 def test_importing_every_module_does_nothing_else():
     ours = list(names("fsw", "hil_stub", "sim"))
     doings, loaded = watched(ours, first=LIBRARIES)
@@ -97,6 +98,7 @@ def test_what_an_import_does_would_be_seen(tmp_path, monkeypatch):
     assert any("LEFT_BEHIND" in doing for doing in doings)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("module", "strangers"),
     [

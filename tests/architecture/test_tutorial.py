@@ -49,6 +49,7 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("page", "least"), [("quickstart.md", 3), ("tutorial.md", 11)])
 def test_its_commands_run(page, least, folder):
     text = shortened(page)

@@ -141,6 +141,7 @@ class ProcessTarget:
         self._until_ms = None
 
 
+@pytest.mark.long
 @pytest.mark.timeout(3600)
 @pytest.mark.parametrize("shared", [True, False], ids=["shared", "per coil"])
 def test_no_attack_on_the_process_breaks_a_limit(tools, shared):

@@ -73,6 +73,7 @@ def fly(name, overrides, orbits):
     return seen
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("name", "overrides", "part"), FLIGHTS.values(), ids=FLIGHTS)
 def test_nothing_is_refused_both_clocks_agree_and_what_is_asked_is_driven(
     name, overrides, part, record_testsuite_property

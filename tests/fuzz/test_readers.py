@@ -103,6 +103,7 @@ READ_BY = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", READ_BY)
 @pytest.mark.usefixtures("no_charts")
 def test_a_file_of_a_run(run, flown, mutated, name):
@@ -121,6 +122,7 @@ def test_a_file_of_a_run(run, flown, mutated, name):
     mutate()
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("no_charts")
 def test_run_json_with_any_key_gone_or_of_another_type(run, flown):
     """Each key that is read, at any depth, without one and with a value of each other type."""
@@ -158,6 +160,7 @@ def change(told, path, value):
         del told[path[-1]]
 
 
+@pytest.mark.long
 def test_histories_that_no_plant_has(run, flown):
     """Well-formed files with any numbers in them, which are drawn."""
     numbers = st.sampled_from(
@@ -179,6 +182,7 @@ def test_histories_that_no_plant_has(run, flown):
     write()
 
 
+@pytest.mark.long
 @fuzzed
 @given(st.data())
 def test_a_scenario(mutated, scenario_file, data):
@@ -237,6 +241,7 @@ def test_settings_of_any_magnitude(scenario_file, chosen):
 TLE = SHIPPED["orbit"]["tle"] or load("posat1").model_dump()["orbit"]["tle"]
 
 
+@pytest.mark.long
 @fuzzed
 @given(st.data())
 def test_orbit_elements(mutated, scenario_file, data):
@@ -270,6 +275,7 @@ covariance = [[1.0, 0.01], [0.01, 0.1]]
 """
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["campaign.toml", "results.sqlite"])
 def test_a_campaign_of_which_a_run_flies_again(mutated, scenario_file, tmp_path, name):
     folder, out = tmp_path / "campaign", tmp_path / "out"

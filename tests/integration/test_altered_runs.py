@@ -38,6 +38,7 @@ def test_as_flown_all_is_well(run, torquer):
         assert "index" not in done.out
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["bus.log", "bus.log.index"])
 def test_cut_at_any_byte(run, torquer, name):
     whole = (run / name).read_bytes()
@@ -53,6 +54,7 @@ def test_cut_at_any_byte(run, torquer, name):
     cut()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["bus.log", "bus.log.index"])
 def test_any_bit_altered(run, torquer, name):
     whole = (run / name).read_bytes()
@@ -128,6 +130,7 @@ def with_files_of_at_most(size):
     return {"preexec_fn": lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("bus", ["virtual", "loop"])
 def test_a_full_disk_ends_the_flight_with_what_was_flown_kept(bus, start, tmp_path, torquer, sil_run):
     folder, limit = tmp_path / "run", with_files_of_at_most(180_000)
@@ -154,6 +157,7 @@ def test_a_full_disk_ends_the_flight_with_what_was_flown_kept(bus, start, tmp_pa
     assert torquer("report", folder).code == 0
 
 
+@pytest.mark.long
 def test_a_disk_too_small_for_the_histories_is_known_before_the_flight(start, tmp_path):
     words = ("torquer", "sil", "microsat", *LONGER, "--bus", "virtual", "--out", tmp_path / "run")
     ended = start(*words, **with_files_of_at_most(100_000)).wait()
@@ -163,6 +167,7 @@ def test_a_disk_too_small_for_the_histories_is_known_before_the_flight(start, tm
     )
 
 
+@pytest.mark.long
 def test_a_disk_that_is_full_after_the_flight_loses_the_report_alone(start, tmp_path, torquer):
     """The report of a short flight is longer than its log and histories."""
     words = ("torquer", "sil", "microsat", "--orbits", "0.02", "--bus", "virtual")

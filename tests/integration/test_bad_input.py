@@ -141,6 +141,7 @@ SAMPLES = (
 )  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("sample", SAMPLES, ids=lambda sample: sample.__name__)
 @pytest.mark.usefixtures("run")
 def test_it_is_refused_soon_and_in_little_memory(sample, tmp_path):

@@ -143,6 +143,7 @@ def test_report_rebuilds_nothing_from_what_is_not_the_runs(run, sil_run, torquer
     assert snapshot(run) == before
 
 
+@pytest.mark.long
 def test_report_names_an_edited_summary_once_and_rebuilds_it(run, torquer):
     before = snapshot(run)
     (run / "summary.json").write_text(json.dumps({"limits_ok": True}))
@@ -155,6 +156,7 @@ def test_report_names_an_edited_summary_once_and_rebuilds_it(run, torquer):
 # --- older, or killed
 
 
+@pytest.mark.long
 def test_a_run_of_before_there_were_digests_is_judged_as_it_was(run, torquer):
     run_json = json.loads((run / "run.json").read_text())
     del run_json["digests"]
@@ -204,6 +206,7 @@ for step in range(1000):
 """
 
 
+@pytest.mark.long
 def test_a_kill_before_any_step_leaves_a_run_that_contradicts_nothing(tmp_path, torquer):
     """Every file that is opened or replaced is a moment to be killed before."""
     words = [sys.executable, "-c", KILLED_AT_EACH_STEP, tmp_path, "sil", *TINY]
@@ -265,6 +268,7 @@ LOOSE_BENCH = (
 """What is tested is not how busy this machine is."""
 
 
+@pytest.mark.long
 def test_the_bench_binds_its_log_and_its_numbers(torquer, tmp_path):
     run = tmp_path / "run"
     assert torquer(*LOOSE_BENCH, "--bus", "loop", "--out", run).err == ""
@@ -301,6 +305,7 @@ def keys(tmp_path):
     return [tmp_path / name for name in contents]
 
 
+@pytest.mark.long
 def test_a_signed_run_is_verified_by_every_command(torquer, keys, tmp_path):
     key, public, other = keys
     run = tmp_path / "signed"
@@ -347,6 +352,7 @@ def test_a_signature_that_does_not_cover_a_file_is_not_enough(run, torquer, keys
     assert "MISMATCH truth.h5 is not signed: run.json has no digest of it" in done.out
 
 
+@pytest.mark.long
 def test_report_says_that_a_signature_no_longer_holds_and_signs_anew(run, torquer, keys):
     key, public, _ = keys
     assert torquer("report", run, "--sign", key).code == 0

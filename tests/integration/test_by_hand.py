@@ -11,6 +11,8 @@ from fsw.bus.link import LoopLink
 from fsw.bus.loop import frame_of
 from fsw.wire.messages import FswBoot, PlantEnd, Sync, TickDone
 
+pytestmark = pytest.mark.long
+
 OPTIONS = ("--seed", "7", "--orbits", "0.05")
 
 

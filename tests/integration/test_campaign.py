@@ -15,6 +15,8 @@ from sim.campaign.one_run import Keep, RunTask
 from sim.campaign.results.store import RESULTS
 from torquer.cli.main import main
 
+pytestmark = pytest.mark.long
+
 RUNS = 12
 FILE = f"""
 scenario = "realsat"

@@ -64,6 +64,7 @@ def violations(done):
     return [(float(match[1]), int(match[2]), match[3]) for match in found]
 
 
+@pytest.mark.long
 def test_a_flight_is_accepted(flight, torquer):
     run, _ = flight
     for which in (run, run / "bus.log"):
@@ -72,6 +73,7 @@ def test_a_flight_is_accepted(flight, torquer):
         assert done.out.endswith("OK: limits kept\n")
 
 
+@pytest.mark.long
 def test_a_bare_log_is_judged_by_the_back_off_named(flight, torquer, tmp_path):
     run, _ = flight
     bare = shutil.copy(run / "bus.log", tmp_path)

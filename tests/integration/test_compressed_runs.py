@@ -111,6 +111,7 @@ def test_a_run_is_not_begun_where_there_is_one(run, torquer):
     assert "already holds a run" in outcome.sentence
 
 
+@pytest.mark.long
 def test_a_flight_of_two_processes_is_followed_and_its_progress_known(tmp_path, torquer, monkeypatch):
     """The replay in another process reads the log as it grows."""
     monkeypatch.setattr(following, "LEAST_TICKS", 100)
@@ -124,6 +125,7 @@ def test_a_flight_of_two_processes_is_followed_and_its_progress_known(tmp_path, 
     assert torquer("check", path).code == 0
 
 
+@pytest.mark.long
 def test_one_that_is_killed_leaves_whole_ticks(tmp_path, torquer):
     path = tmp_path / "run"
     words = ("sil", "microsat", "--bus", "virtual", "--orbits", "5", "--compress", "--out", str(path))

@@ -15,6 +15,8 @@ from contextlib import contextmanager
 
 import pytest
 
+pytestmark = pytest.mark.long
+
 LIMITS = (
     "--set",
     "coils.pulse_s=1.2",

@@ -35,6 +35,7 @@ def flight(sil_run):
     return sil_run("microsat", "--orbits", "0.08", "--bus", "virtual", *settings)
 
 
+@pytest.mark.long
 def test_what_is_asked_in_a_tick_is_told_at_the_next_and_has_flowed(flight, copy_of):
     log = copy_of(flight)
     requested, reported, ticks, last = [], [], 0, None

@@ -7,6 +7,8 @@ from click.testing import CliRunner
 
 from torquer.cli.main import main
 
+pytestmark = pytest.mark.long
+
 
 def torquer(*words):
     return CliRunner().invoke(main, [*map(str, words)])

@@ -20,6 +20,8 @@ from sim.report.conclude import conclude, conclude_flight
 from sim.report.follow import follow
 from sim.scenario.schema import load
 
+pytestmark = pytest.mark.long
+
 TICKS = 300
 LONG = 9000
 """More than two blocks of histories, so that one is handed over during the flight."""

@@ -14,6 +14,8 @@ from fsw.bus.open_bus import open_bus
 from fsw.wire.messages import MagField, SunVector, TcAck, TcLaw, TcMode
 from torquer.cli.main import main
 
+pytestmark = pytest.mark.long
+
 SHORT = ("--set", "coils.pulse_s=0.5", "--set", "coils.backoff_s=1.0", "--tick-hz", "10")
 LOOSE = ("--jitter-ms", "1000", "--latency-ms", "1000", "--slips", "15")
 """What is tested is the bench, not how busy this machine is."""

@@ -11,6 +11,8 @@ import pytest
 from fsw.input import own_code
 from sim.campaign.results.store import RESULTS
 
+pytestmark = pytest.mark.long
+
 EXAMPLE = Path(__file__).parents[2] / "examples" / "projected_pd"
 SHORT = (
     *("--orbits", "0.04", "--set", "flight.modes.settle_s=20.0"),

@@ -17,6 +17,8 @@ from sim.record import run_dir
 from sim.record.pace import Pace
 from sim.scenario.schema import load, parse_settings
 
+pytestmark = pytest.mark.long
+
 QUICK = (
     "time.tick_hz=10",
     "coils.pulse_s=0.5",

@@ -138,6 +138,7 @@ def test_last_ticks_that_are_missing_before_the_end_mark_are_found(copy, torquer
     assert torquer("replay", copy.folder, "--plant").code == 1
 
 
+@pytest.mark.long
 def test_an_end_in_the_middle_is_not_the_end(copy, torquer):
     """Though it fits: through the plant the flight goes on, and the flight software would have told of it."""
     last = copy.where(PlantEnd)[0]
@@ -224,6 +225,7 @@ def test_a_line_that_is_none_is_named(copy, torquer):
 # --- cut short
 
 
+@pytest.mark.long
 def test_cut_anywhere_it_says_where_it_ends(tiny, torquer):
     whole = tiny.log.read_bytes()
     ends = [place + 1 for place, byte in enumerate(whole) if byte == ord("\n")]
@@ -329,6 +331,7 @@ def test_the_plant_needs_the_seed(copy, torquer):
 # --- onto a bus
 
 
+@pytest.mark.long
 def test_a_log_is_played_onto_a_bus_at_its_own_pace(sil_run, torquer, bus, port):
     run = sil_run("microsat", "--set", "time.tick_hz=10", "--orbits", "0.0002", "--bus", "virtual")
     listener = LoopLink(port)

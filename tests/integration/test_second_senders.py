@@ -23,6 +23,8 @@ from fsw.wire.messages import (
 )
 from sim.report import conclude
 
+pytestmark = pytest.mark.long
+
 EPOCH = 1_427_424_417
 AT = 40
 FLIGHT = ("microsat", "--seed", "7", "--orbits", "0.1")

@@ -21,6 +21,8 @@ from fsw.wire.messages import (
     TickDone,
 )
 
+pytestmark = pytest.mark.long
+
 FILES = {"run.json", "scenario.toml", "bus.log", "bus.log.index", "truth.h5", "summary.json", "report.html"}
 RUN_KEYS = {
     "schema_version", "torquer_version", "scenario", "scenario_sha256", "flight_table_crc", "seed", "bus",

@@ -4,6 +4,8 @@ import json
 import subprocess
 import sys
 
+import pytest
+
 CONNECTS = 10_000
 
 RUSH = """
@@ -25,6 +27,7 @@ time.sleep(600)
 """Waits for the flight to begin, connects so often, keeps what it got. Says whether the flight was over."""
 
 
+@pytest.mark.long
 def test_a_rush_of_strangers_does_not_hold_up_a_flight(torquer, port, tmp_path):
     run = tmp_path / "run"
     words = [sys.executable, "-c", RUSH, str(run), str(port), str(CONNECTS)]

@@ -12,7 +12,10 @@ import pytest
 
 from fsw.wire.messages import Sync, TickDone
 
-pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="finds processes in /proc")
+pytestmark = [
+    pytest.mark.long,
+    pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="finds processes in /proc"),
+]
 
 PATIENCE_S = 120.0
 """In a guest that has just booted, three processes import for half a minute."""

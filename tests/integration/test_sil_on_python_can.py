@@ -16,6 +16,7 @@ def multicast(monkeypatch, port):
     monkeypatch.setenv("CAN_CONFIG", json.dumps({"hop_limit": 0, "port": port}))
 
 
+@pytest.mark.long
 def test_it_is_the_flight_of_any_other_bus(torquer, multicast, sil_run, bus, tmp_path):
     run = tmp_path / "run"
     assert torquer(*FLIGHT, "--bus", "can", "--out", run).code == 0

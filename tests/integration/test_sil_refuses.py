@@ -138,6 +138,7 @@ def test_a_directory_that_cannot_be_made_is_named(bus, refused):
     assert bus.startswith("s") or "/dev/null/run" in refused(*SIL, "--bus", bus, "--out", where)
 
 
+@pytest.mark.long
 def test_a_port_that_others_use_is_named(refused):
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]

@@ -17,7 +17,10 @@ from sim.record import run_dir
 from sim.record.pace import Pace
 from sim.scenario.schema import load
 
-pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks at processes in /proc")
+pytestmark = [
+    pytest.mark.long,
+    pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks at processes in /proc"),
+]
 
 PATIENCE = Patience(boot_s=30.0, answer_s=1.5, silence_s=1.5)
 LOCKSTEP, REAL_TIME = Pace(), Pace(50.0)

@@ -4,6 +4,8 @@ from importlib import resources
 
 import pytest
 
+pytestmark = pytest.mark.long
+
 FAULTS = """
 [[fault]]
 kind = "loss"

@@ -68,6 +68,7 @@ def test_a_lasting_demand_on_one_coil_fires_a_back_off_after_boot_and_after_each
     assert bench.judge.starts == [(tick, coil) for tick in expected]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("tick_hz", RATES)
 def test_demands_on_all_coils_are_met_as_often_as_the_limits_let_them(bench_with, only, tick_hz):
     """Demanded is always the coil that fired longest ago. In 330 s: shared three pulses, per coil nine."""

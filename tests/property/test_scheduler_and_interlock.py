@@ -2,6 +2,7 @@
 
 from collections import Counter
 
+import pytest
 from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import (
@@ -125,6 +126,7 @@ def machine(bench_with, only):
     return SchedulerAndCoilDriver
 
 
+@pytest.mark.long
 def test_whatever_happens_the_limits_hold_and_what_is_demanded_on_and_on_is_fired(bench_with, only):
     SEEN.clear()
     run_state_machine_as_test(

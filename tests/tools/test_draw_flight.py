@@ -3,10 +3,12 @@
 from xml.etree import ElementTree
 
 import draw_flight
+import pytest
 
 import torquer
 
 
+@pytest.mark.long
 def test_it_draws_errors_and_pulses_of_a_run(tmp_path):
     run = torquer.fly("microsat", orbits=0.05, seed=2, out=tmp_path / "run")
     draw_flight.draw(run, tmp_path / "flight.svg")

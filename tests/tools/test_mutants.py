@@ -119,6 +119,7 @@ def test_the_laws_are_all_there_each_with_the_tests_that_mirror_it():
     assert laws.stages_of("fsw/core/laws/spin/relay_stages.py")[0] == ["tests/fsw/core/laws/spin"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("module", [module for module in MODULES if module != "fsw/wire/messages.py"])
 def test_every_mutant_of_the_modules_is_a_module_that_differs_in_one_line(module):
     source = (ROOT / module).read_text()

@@ -85,6 +85,7 @@ def repository(measured, tmp_path):
     return copied
 
 
+@pytest.mark.long
 def test_what_no_test_notices_is_told_and_is_a_failure(measured):
     repository, done = measured
     assert (repository.result["mutants"], repository.result["killed"]) == (5, 4)
@@ -102,6 +103,7 @@ def list_survivor(repository):
     )
 
 
+@pytest.mark.long
 def test_a_survivor_with_a_reason_is_none(repository):
     list_survivor(repository)
     assert repository.mutate("--page").returncode == 0
@@ -109,6 +111,7 @@ def test_a_survivor_with_a_reason_is_none(repository):
     assert "equal is the limit too" in (repository.root / "docs/mutation.md").read_text()
 
 
+@pytest.mark.long
 def test_tests_that_have_been_added_are_tried_on_what_survived(repository):
     tests = (repository.root / "tests/test_limit.py").read_text()
     repository.write("tests/test_limit.py", tests + "    assert type(clipped(3.0)) is float\n")
@@ -130,6 +133,7 @@ def test_a_module_that_has_never_been_measured_is_a_failure(repository):
     assert repository.row == "| limits | `fsw/limit.py` | not measured | | | | |"
 
 
+@pytest.mark.long
 def test_tests_that_fail_by_themselves_measure_nothing(repository):
     repository.write("fsw/limit.py", MODULE.replace("LIMIT = 3", "LIMIT = 4"))
     done = repository.mutate("--stale")

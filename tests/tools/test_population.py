@@ -9,6 +9,8 @@ from sim.campaign import runner
 from sim.campaign.flight import FlightResult
 from sim.errors import HarnessError
 
+pytestmark = pytest.mark.long
+
 FIGURES = {
     "inside_1": 0.999,
     "inside_2": 0.912,

@@ -19,6 +19,7 @@ def test_it_is_valid_and_has_no_output(name):
     assert sum("parameters" in cell.metadata.get("tags", ()) for cell in notebook.cells) == 1
 
 
+@pytest.mark.long
 def test_the_first_flight_runs(tmp_path):
     notebook = run_notebooks.read("first_flight", ORBITS=0.1)
     run_notebooks.execute(notebook, tmp_path)

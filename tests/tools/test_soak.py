@@ -77,6 +77,7 @@ def test_a_refusal_a_cut_log_and_another_answer_are_found(flight, change):
     assert found[-1].startswith("replay of ")
 
 
+@pytest.mark.long
 def test_the_page_tells_both_and_a_broken_budget_is_exit_code_1(
     flight, change, tmp_path, capsys, monkeypatch
 ):

@@ -105,12 +105,14 @@ class TestFailures:
 
 @needs_guest
 class TestGuest:
+    @pytest.mark.long
     @pytest.mark.parametrize("setting", ["auto", "on"])
     def test_it_boots_and_ends_with_the_status_of_its_command(self, setting):
         ended = with_vcan("bash", "-c", "ip -br link show vcan0; exit 7", VCAN_SHIM=setting)
         assert (ended.returncode, ended.stderr) == (7, "")
         assert ended.stdout.startswith("vcan0")
 
+    @pytest.mark.long
     def test_without_the_shim_it_boots_where_the_processor_has_no_amx(self):
         ended = with_vcan("true", VCAN_SHIM="off")
         assert ended.returncode == (125 if HAS_AMX else 0)

@@ -40,6 +40,7 @@ def test_every_name_is_there():
         torquer.nothing  # noqa: B018  to be asked for is to fail
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "words",
     [

@@ -116,6 +116,7 @@ class TestRequirementsOfTheScenario:
         flight.expect("requirements == not judged", "requirements.ake != met")
 
 
+@pytest.mark.long
 def test_a_flight_as_a_fixture(fly):
     flight = fly("microsat", orbits=0.03, seed=7, control={"k_w": 5e6})
     flight.expect("limits_ok == true", "seed == 7", "ticks == 181", "replay.bit_exact == true")

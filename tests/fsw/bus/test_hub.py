@@ -16,6 +16,7 @@ PATIENCE_S = 10.0
 
 
 class TestLaggards:
+    @pytest.mark.long
     def test_one_that_never_reads_is_disconnected_and_the_bus_goes_on(
         self, monkeypatch, open_link, numbered, take, take_until_closed
     ):

@@ -165,6 +165,7 @@ def is_closed(connection):
 
 
 class TestMemory:
+    @pytest.mark.long
     @pytest.mark.parametrize("idle", [20, MOST_CLIENTS - 2])
     def test_clients_that_never_read_share_what_is_kept_for_all(self, serve, idle):
         process, port = serve()
@@ -257,6 +258,7 @@ class TestRoom:
 
 
 class TestDescriptors:
+    @pytest.mark.long
     def test_with_none_left_the_bus_goes_on_and_a_client_is_refused(self, serve):
         process, port = serve(descriptors=24)
         sender, reader = come(port), come(port)
@@ -316,6 +318,7 @@ class TestDescriptors:
 class TestRush:
     """10 000 connects do not hold up two that talk to each other."""
 
+    @pytest.mark.long
     @pytest.mark.parametrize(
         ("kept", "says"),
         [(0, b""), (DESCRIPTORS, b"half a"), (DESCRIPTORS, b"GET / HTTP/1.1\r\n" * 4)],

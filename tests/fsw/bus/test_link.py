@@ -68,6 +68,7 @@ class TestDelivery:
         for link in (reader, *senders):
             link.close()
 
+    @pytest.mark.long
     def test_a_reader_that_wakes_late_gets_all(self, open_link, numbered, take):
         sender, late, prompt = open_link(), open_link(), open_link()
         flood = numbered(10_000)
@@ -341,6 +342,7 @@ class TestOpening:
         hub.close()
 
 
+@pytest.mark.long
 def test_a_hub_that_stands_still_is_not_waited_for_for_ever(monkeypatch, numbered):
     """It has greeted, and then takes nothing."""
     monkeypatch.setattr(link_module, "SEND_PATIENCE_S", 0.2)

@@ -179,6 +179,7 @@ class TestEchoes:
         assert bus.receive(PATIENCE_S) == lost
 
 
+@pytest.mark.long
 def test_slcan_speaks_to_a_serial_adapter():
     pytest.importorskip("serial", reason="pyserial, which serial adapters need, is not installed")
     adapter, port = os.openpty()

@@ -166,6 +166,7 @@ def frozen_flight(make_world):
 
 
 class TestFrozenParameters:
+    @pytest.mark.long
     def test_keep_their_values_while_attitude_and_rate_are_estimated(self, frozen_flight):
         _, states, _ = frozen_flight
         first, last = states[0].estimator.estimate, states[-1].estimator.estimate
@@ -174,6 +175,7 @@ class TestFrozenParameters:
         assert last.q_body_from_eci != first.q_body_from_eci
         assert states[-1].estimator.restarts == 0
 
+    @pytest.mark.long
     def test_deviations_stay_but_for_the_walk(self, frozen_flight):
         world, states, _ = frozen_flight
         first, last = deviation(states[0], world.config), deviation(states[-1], world.config)

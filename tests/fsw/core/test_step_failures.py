@@ -56,6 +56,7 @@ class TestSilence:
         assert 100 < len(modes) < 700
         assert world.state.modes.trips == 1
 
+    @pytest.mark.long
     def test_the_third_time_it_stays_safe(self, make_world, without):
         world = make_world()
         world.fly(40)

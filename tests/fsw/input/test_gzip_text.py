@@ -80,6 +80,7 @@ def test_damage_is_an_error_that_says_so(tmp_path, content):
         file.read()
 
 
+@pytest.mark.long
 def test_of_a_text_that_would_fill_the_memory_only_what_is_asked_for_is_unpacked(tmp_path):
     path = tmp_path / "a.log.gz"
     path.write_bytes(gzip.compress(b"0" * 300_000_000, 9))

@@ -168,6 +168,7 @@ def prove(kind: type[Guard], shared: bool) -> Proof:
 BOTH = pytest.mark.parametrize("shared", [True, False], ids=["shared", "per coil"])
 
 
+@pytest.mark.long
 @BOTH
 def test_no_reachable_state_breaks_a_limit_over_true_time(shared):
     proof = prove(Guard, shared)

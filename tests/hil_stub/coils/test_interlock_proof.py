@@ -181,6 +181,7 @@ BOTH = (True, False)
 NOT_OF_THE_INTERLOCK = {Reason.MALFORMED, Reason.SECOND_DIPOLE, Reason.WRONG_BOARD}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("shared", BOTH, ids=["shared", "per_coil"])
 def test_no_reachable_state_breaks_a_limit_or_refuses_what_it_may_not(shared):
     proof = prove(shared)

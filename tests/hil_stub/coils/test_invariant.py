@@ -222,6 +222,7 @@ class CoilDriverMachine(RuleBasedStateMachine):
         self.reboot()
 
 
+@pytest.mark.long
 def test_whatever_happens_the_limits_hold_and_what_may_be_fired_is():
     SEEN.clear()
     run_state_machine_as_test(

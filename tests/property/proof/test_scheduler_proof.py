@@ -195,6 +195,7 @@ CLAIMS = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("claim", "shared"), cases(CLAIMS))
 def test_no_reachable_state_breaks_a_limit(search, small, claim, shared, record_testsuite_property):
     setup = claim(small[shared])
@@ -205,6 +206,7 @@ def test_no_reachable_state_breaks_a_limit(search, small, claim, shared, record_
     assert (proof.restarts_in_pulse > 0) is setup.restart_in_pulse
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("shared", BOTH, ids=["shared", "per coil"])
 def test_whatever_has_happened_a_demanded_coil_fires_once_messages_arrive_again(search, small, shared):
     """A back-off after the end of the last pulse, and at most two ticks until the board tells of the coil."""
@@ -321,6 +323,7 @@ UNSAFE = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("claim", "bug", "shared"), cases(UNSAFE))
 def test_a_planted_danger_is_seen_in_what_is_driven(search, small, claim, bug, shared):
     setup = claim(small[shared], bug)
@@ -328,6 +331,7 @@ def test_a_planted_danger_is_seen_in_what_is_driven(search, small, claim, bug, s
         search(setup)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("shared", BOTH, ids=["shared", "per coil"])
 @pytest.mark.parametrize("own_timers", [True, False], ids=["with own timers", "without"])
 def test_a_lockout_that_neither_side_checks_is_seen(search, small, own_timers, shared):
@@ -368,6 +372,7 @@ INEXACT = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("bug", "shared"), cases(INEXACT))
 def test_a_planted_bug_is_seen(search, small, bug, shared):
     setup = without_faults(small[shared], bug)

@@ -20,6 +20,7 @@ def spans(report):
 # --- what must pass
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("tick_hz", [1, 2, 3, 7, 10, 64])
 @pytest.mark.parametrize("sync", [True, False])
 def test_pulses_just_inside_the_limits_pass_at_any_tick_rate(judge, bus_log, fired, tick_hz, sync):

@@ -84,6 +84,7 @@ def test_a_single_frame_off_simulated_time_is_named(bus_log, name, first):
     assert f"timestamp of {name} is 0.020 s late" in str(report.violations[0])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("tick_hz", [3, 6, 7, 64])
 @pytest.mark.parametrize("up", [0, 1])
 @pytest.mark.parametrize("sync", [True, False])

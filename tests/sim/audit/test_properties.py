@@ -2,6 +2,7 @@
 
 from math import ceil
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -38,6 +39,7 @@ def trains(draw, bus_log, fired, sync=TICKS):
     return bus_log(hz, off + 5 * hz, pulses, sync=draw(sync)), shared
 
 
+@pytest.mark.long
 def test_legal_trains_pass(bus_log, fired):
     @given(trains(bus_log, fired, sync=st.booleans()))
     def check(train):
@@ -65,6 +67,7 @@ def test_a_pulse_that_is_too_long_is_found(bus_log, fired):
     check()
 
 
+@pytest.mark.long
 def test_a_pulse_that_is_too_soon_is_found(bus_log, fired):
     @given(planted(bus_log, fired), st.data())
     def check(case, data):
@@ -79,6 +82,7 @@ def test_a_pulse_that_is_too_soon_is_found(bus_log, fired):
     check()
 
 
+@pytest.mark.long
 def test_a_pulse_too_soon_after_a_boot_is_found(bus_log, fired):
     @given(planted(bus_log, fired), st.data())
     def check(case, data):
@@ -101,6 +105,7 @@ def test_a_bad_level_is_found(bus_log, fired):
     check()
 
 
+@pytest.mark.long
 def test_a_second_coil_is_found(bus_log, fired):
     @given(planted(bus_log, fired), st.integers(1, 2), st.integers(0, 1))
     def check(case, offset, position):
@@ -154,6 +159,7 @@ def test_any_shifted_timestamp_is_found(bus_log, fired):
     check()
 
 
+@pytest.mark.long
 def test_missing_statuses_never_make_a_legal_train_illegal(bus_log, fired):
     @settings(max_examples=200)
     @given(trains(bus_log, fired), st.data())

@@ -48,6 +48,7 @@ def test_it_is_another_where_a_line_of_any_part_is(house, part):
     file.write_bytes(content)
 
 
+@pytest.mark.long
 def test_it_is_of_all_that_a_flight_imports():
     here = Path(__file__).parents[3]
     ran = subprocess.run([sys.executable, "-c", IMPORTED], capture_output=True, text=True, check=True)

@@ -33,6 +33,7 @@ def flown():
     return fly_order(Order("microsat", OVERRIDES, seed=5, orbits=ORBITS, measure=final_row))
 
 
+@pytest.mark.long
 def test_the_summary_is_that_of_the_run_directory(flown, fly_run):
     path = fly_run()
     expected = {key: value for key, value in conclude(path).items() if key not in UNTIMED}

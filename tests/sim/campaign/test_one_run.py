@@ -18,6 +18,8 @@ from sim.report.conclude import conclude
 from sim.scenario.schema import scenario_of
 from sim.statistics.indices import POINTS
 
+pytestmark = pytest.mark.long
+
 
 def untimed(row):
     return replace(row, wall_s=0.0, worker="")

@@ -194,6 +194,7 @@ def test_a_table_that_declares_nothing_takes_ordinary_bounds():
     assert set(flight_table(flown).uncertainty.model_dump().values()) == {None}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("torque_nm", "honest"), [(None, True), (6e-9, False)])
 def test_a_6u_that_declares_nothing_is_honest_where_drag_outweighs_light(torque_nm, honest):
     """At 550 km; 6e-9 N m, an ordinary torque for its size by light alone, is too little there."""

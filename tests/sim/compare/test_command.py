@@ -45,6 +45,7 @@ def test_two_laws_with_perfect_knowledge(torquer, tmp_path):
     assert (tmp_path / "a" / "compare.png").stat().st_size > 10000
 
 
+@pytest.mark.long
 def test_the_same_again_is_the_same_to_the_byte(torquer, tmp_path):
     one_law = ("microsat", "--laws", "pd", "--driver", "continuous", "--orbits", "0.04", "--workers", "1")
     for folder, seed in (("a", 4), ("b", 4), ("c", 5)):

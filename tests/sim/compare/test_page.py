@@ -64,6 +64,7 @@ def test_broken_limits_are_a_bad_verdict(tmp_path):
     assert '<li class="bad">✗ limits broken by 1</li>' in written(tmp_path / "compare.html", [broken])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("width", "dark"), [(390, True), (1400, False)])
 def test_each_law_is_a_series_that_can_be_put_out(look, tmp_path, results, width, dark):
     written(tmp_path / "compare.html", results)

@@ -72,6 +72,7 @@ def test_spins_are_told_apart_by_their_rate(drawn):
     assert [line.get_ydata()[0] for line in panel.lines if line.get_label() not in LAWS] == [0.1]
 
 
+@pytest.mark.long
 def test_a_law_has_one_colour_and_no_two_look_alike(drawn):
     laws = list(LAWS)
     results = [result(law, 1.0 + n, driver) for driver in Driver for n, law in enumerate(laws)]

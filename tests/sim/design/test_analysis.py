@@ -13,12 +13,14 @@ from sim.design.theory.linear import closed_loop
 from sim.scenario.schema import load, parse_settings
 
 
+@pytest.mark.long
 def test_the_progress_never_goes_back(searched):
     progress = searched[2]
     assert progress == sorted(progress)
     assert len(set(progress)) > 50
 
 
+@pytest.mark.long
 def test_multipliers_are_those_of_the_best_gains(searched):
     _, analysis, _ = searched
     loop = closed_loop(analysis.body, analysis.search.best.gains)

@@ -55,6 +55,7 @@ def reference_case(name):
     return next(row for row in csv.DictReader(lines) if row["name"] == name)
 
 
+@pytest.mark.long
 def test_given_gains_as_json_are_those_of_the_reference(design):
     row = reference_case("1U_gg_unstable_weak")
     code, out, err = design(
@@ -73,6 +74,7 @@ def test_given_gains_as_json_are_those_of_the_reference(design):
     assert not list(Path().iterdir())
 
 
+@pytest.mark.long
 def test_the_best_gains_are_printed_and_drawn(design, as_searched):
     code, out, _ = design("microsat", "--out", "here")
     assert code == 0

@@ -5,6 +5,8 @@ import pytest
 from sim.design.analysis import picture_maps
 from sim.design.page import design_page
 
+pytestmark = pytest.mark.long
+
 
 @pytest.fixture(scope="module")
 def page(searched):

@@ -106,6 +106,7 @@ def packet_of(frame):
     return frame.can_id.to_bytes(2, "big") + frame.data
 
 
+@pytest.mark.long
 def test_it_is_valid_by_the_schema_of_xtce(text):
     schema = xmlschema.XMLSchema(str(SCHEMA), allow="local")
     schema.validate(text)

@@ -26,6 +26,7 @@ def strike(bounds):
     return fly
 
 
+@pytest.mark.long
 def test_a_pulse_ends_by_itself_when_its_sender_is_killed(strike):
     record = strike(stop=False)
     first, *later = currents.pulses(record.coil_drives, 1)

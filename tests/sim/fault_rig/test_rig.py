@@ -127,6 +127,7 @@ def lenient(state, asked, tick, limits):
     ), None
 
 
+@pytest.mark.long
 def test_the_same_case_is_the_same_flight():
     row = choose_rows(["loss-50"])[0]
     one, other = fly(row, 1, 2), fly(row, 1, 2)
@@ -138,6 +139,7 @@ def test_the_same_case_is_the_same_flight():
     assert timeless[0] == timeless[1]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "name",
     [

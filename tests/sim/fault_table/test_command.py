@@ -54,6 +54,7 @@ def reporting(results):
     return lambda rows, phases, seeds, workers, watch, report: [report(one) for one in results]
 
 
+@pytest.mark.long
 def test_a_row_is_flown_in_every_phase_with_every_seed(capsys, tmp_path):
     code = run(
         "--row",
@@ -237,6 +238,7 @@ def test_pages_name_the_failed_case_and_escape(planted):
     assert all(f"| `{kind}` |" in markdown for kind in KINDS)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("width", [390, 1400])
 def test_the_page_is_shown_in_a_browser_without_standing_out_sideways(look, tmp_path, planted, width):
     (tmp_path / "faults.html").write_text(render.html(planted), encoding="utf-8")

@@ -34,10 +34,12 @@ def cited():
     return {name for module in modules for name in citations(module.read_text(encoding="utf-8"))}
 
 
+@pytest.mark.long
 def test_every_requirement_is_cited_by_a_test(cited):
     assert set(IDS) - cited == set()
 
 
+@pytest.mark.long
 def test_no_test_cites_what_is_no_requirement(cited):
     assert cited - set(IDS) == set()
 

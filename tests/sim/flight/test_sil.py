@@ -2,9 +2,12 @@
 
 import sys
 
+import pytest
+
 from sim.flight.sil import start_node
 
 
+@pytest.mark.long
 def test_a_package_in_the_current_directory_is_not_that_of_a_node(tmp_path, monkeypatch):
     for name in ("fsw", "sim"):
         (tmp_path / f"{name}.py").write_text("raise RuntimeError")

@@ -40,6 +40,7 @@ def test_a_new_scenario_is_valid_and_not_doubted(satellite):
     assert expect(scenario).pointing_deg < 5.0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["3U", "50 kg", "6U"])
 def test_it_flies_at_once(name, tmp_path):
     scenario = written(SATELLITES[name])
@@ -96,6 +97,7 @@ def test_every_key_has_a_comment(satellite):
     assert {"tick_hz", "levels_am2", "noise_nt", "law", "torque_nm"} <= named
 
 
+@pytest.mark.long
 def test_the_file_loads_and_the_way_on_is_said(tmp_path, capsys):
     file = tmp_path / "my-3u.toml"
     with speaking(Console("new")) as console:

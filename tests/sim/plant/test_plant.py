@@ -92,6 +92,7 @@ def test_perfect_sensors_show_the_truth_on_the_bus(make_plant):
         assert field.valid == sun.valid == 1
 
 
+@pytest.mark.long
 def test_the_light_of_the_earth_turns_the_sun_on_the_bus_and_not_in_the_truth(make_plant):
     """Towards nadir, most where the Sun is high; none at the poles' twilight, and no Sun in eclipse."""
     plain, lit_up = SunSensorConfig(), SunSensorConfig(albedo=True)
@@ -117,6 +118,7 @@ def test_the_light_of_the_earth_turns_the_sun_on_the_bus_and_not_in_the_truth(ma
     assert max(turn for height, turn in turns.items() if height <= 0.0) < 1e-4
 
 
+@pytest.mark.long
 def test_in_eclipse_the_sun_is_not_valid(make_plant):
     valid = {}
     for said, truth in fly(make_plant(), 6000):

@@ -82,6 +82,7 @@ def test_each_source_speaks_for_itself(make_plant, make_config):
     assert by_source["gravity_gradient"] == pytest.approx(gradient * np.cross(e1, inertia @ e1))
 
 
+@pytest.mark.long
 def test_the_jacobi_integral_is_conserved(make_plant, make_config):
     """1/2 W J W + 3/2 w0^2 e1 J e1 - 1/2 w0^2 e3 J e3, uncontrolled on a circle, over three orbits."""
     inertia = np.array(make_config().body.inertia_kgm2)

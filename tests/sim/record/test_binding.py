@@ -36,11 +36,13 @@ def told(run, **changes):
 
 
 class TestWhatIsBound:
+    @pytest.mark.long
     def test_a_finished_run_has_the_digest_of_each_file(self, whole):
         kept = binding.digests(run_dir.read_run(whole))
         assert kept == {name: hashlib.sha256((whole / name).read_bytes()).hexdigest() for name in FILES}
         assert compare(whole) == ({}, "")
 
+    @pytest.mark.long
     def test_a_run_that_has_just_begun_has_that_of_its_scenario_alone(self, whole, tmp_path):
         scenario = run_dir.read_scenario(whole)
         run_dir.begin(tmp_path / "new", scenario, 1, 10, "virtual", run_dir.Pace())
@@ -152,6 +154,7 @@ class TestOlderRuns:
             "run.json is of an older version: no digests of bus.log, truth.h5, summary.json",
         )
 
+    @pytest.mark.long
     def test_stay_so_when_their_summary_is_rebuilt(self, run):
         told(run, **{DIGESTS: None})
         before = (run / RUN).read_bytes()
@@ -160,12 +163,14 @@ class TestOlderRuns:
 
 
 class TestRebuilding:
+    @pytest.mark.long
     def test_a_sound_run_is_bound_as_before(self, run):
         before = (run / RUN).read_bytes()
         conclude(run)
         assert (run / RUN).read_bytes() == before
         assert compare(run).holds
 
+    @pytest.mark.long
     def test_a_summary_that_comes_out_otherwise_is_bound_anew(self, run):
         flown = run_dir.read_run(run)["flown"]
         told(run, flown=flown | {"wall_s": 1.25})
@@ -173,6 +178,7 @@ class TestRebuilding:
         assert json.loads((run / SUMMARY).read_text())["wall_seconds"] == 1.25
         assert compare(run) == ({}, "")
 
+    @pytest.mark.long
     @pytest.mark.parametrize("name", [SCENARIO, BUS_LOG, TRUTH])
     def test_no_digest_of_a_source_is_ever_replaced(self, run, fly_run, name):
         shutil.copy(fly_run(seed=8, ticks=300, **{"control": {"k_w": 1.0}}) / name, run / name)
@@ -188,6 +194,7 @@ class TestRebuilding:
         (run / SUMMARY).write_text("{}")
         assert set(require_sources(run, None).mismatches) == {SUMMARY}
 
+    @pytest.mark.long
     def test_a_run_that_was_killed_gets_no_digest_of_what_it_has(self, run):
         told(run, flown=None, digests={}, complete=False)
         conclude(run)

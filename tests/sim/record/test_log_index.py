@@ -129,6 +129,7 @@ def test_an_index_cut_at_any_byte_vouches_no_more(log):
         assert (standing is LogStanding.BROKEN) == (b"\n" not in whole[:size])
 
 
+@pytest.mark.long
 def test_an_index_with_any_bit_altered_vouches_no_more(tmp_path):
     log = tmp_path / "bus.log"
     write(log, BLOCK_WRITES + 3)

@@ -313,6 +313,7 @@ class TestTruncated:
         assert result.cut is (not log.read_bytes().endswith(b"\n"))
         assert result.ticks == result.last_tick + 1 < TICKS or part > 0.99
 
+    @pytest.mark.long
     def test_every_cut_inside_three_ticks(self, tmp_path, recorded_run, config):
         lines = self.text(recorded_run).splitlines(keepends=True)
         text = b"".join(lines[:25])

@@ -6,6 +6,8 @@ import pytest
 
 from sim.scenario.schema import load
 
+pytestmark = pytest.mark.long
+
 CHARTS = ("pointing", "modes", "rates", "estimate", "raster", "duty", "field_and_dipole", "torques")
 
 COLOURS = """canvas => {

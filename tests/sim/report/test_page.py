@@ -110,6 +110,7 @@ def test_bus_and_versions_come_from_the_run_beside_the_report(tmp_path, made_run
     assert not [words for words in page.text if "incomplete" in words]
 
 
+@pytest.mark.long
 def test_the_same_flight_gives_the_same_bytes_whatever_the_user_set_matplotlib_to(tmp_path, made_run):
     (tmp_path / "one").mkdir()
     (tmp_path / "two").mkdir()
@@ -123,6 +124,7 @@ def test_the_same_flight_gives_the_same_bytes_whatever_the_user_set_matplotlib_t
 # --- flights that went wrong, or hardly went
 
 
+@pytest.mark.long
 def test_broken_limits_are_named_and_marked(tmp_path, made_run):
     broken = Violation(ViolationKind.GAP, Fraction("210.5"), 210, 1, 999, "starts 99.9 s after <coil 0>")
     page = made_run(violations=(broken,), notes=("the log has 2 boots",)).write(tmp_path)
@@ -133,6 +135,7 @@ def test_broken_limits_are_named_and_marked(tmp_path, made_run):
     assert "limit broken" in page.texts["chart-raster"]
 
 
+@pytest.mark.long
 def test_thousands_of_broken_limits_do_not_drown_the_page(tmp_path, made_run):
     many = tuple(Violation(ViolationKind.PULSE, Fraction(i), i, 0, i, "too long") for i in range(5000))
     page = made_run(violations=many).write(tmp_path)
@@ -175,6 +178,7 @@ def test_a_log_without_its_end_is_incomplete_though_nothing_else_is_known(tmp_pa
     assert "✗ incomplete: 20 ticks" in page.text
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("ticks", [1, 2, 3, 10])
 @pytest.mark.filterwarnings("error")
 def test_a_very_short_flight_has_a_report(tmp_path, ticks, made_run):
@@ -207,6 +211,7 @@ def unknown(estimates):
     )
 
 
+@pytest.mark.long
 @pytest.mark.filterwarnings("error")
 def test_perfect_knowledge_has_no_estimate_to_show(tmp_path, made_run, charts):
     run = made_run(scenario=load("microsat", {"knowledge": "perfect"}))
@@ -223,6 +228,7 @@ def test_a_filter_that_never_started_is_not_called_perfect_knowledge(tmp_path, m
     assert "The filter gave no estimate in this flight." in page.text
 
 
+@pytest.mark.long
 @pytest.mark.filterwarnings("error")
 def test_an_estimate_that_comes_late_is_drawn_from_there(tmp_path, made_run):
     run = made_run()
@@ -235,6 +241,7 @@ def test_an_estimate_that_comes_late_is_drawn_from_there(tmp_path, made_run):
     assert "true error" in page.texts["chart-estimate"]
 
 
+@pytest.mark.long
 def test_whatever_a_scenario_is_called_stays_text(tmp_path, made_run):
     name, summary = "</title><script>alert(1)</script>", "<img src=x onerror=\"x\"> & 'so on'"
     scenario = load("microsat").model_copy(update={"name": name, "summary": summary})
@@ -259,6 +266,7 @@ def test_events_are_told_in_words(tmp_path, made_run):
 # --- size and time
 
 
+@pytest.mark.long
 def test_a_hundred_orbits_stay_small(tmp_path, made_run, charts):
     pulses = tuple(
         DrivenPulse(i % 3, (-3, -2, -1, 1, 2, 3)[i * 7 % 6], Fraction(103 * i + 100), Fraction(103 * i + 103))
@@ -277,6 +285,7 @@ def test_a_hundred_orbits_stay_small(tmp_path, made_run, charts):
     assert bands.count("M") == 100
 
 
+@pytest.mark.long
 def test_who_draws_nothing_does_not_wait_for_matplotlib():
     code = (
         "import sys, sim.report.page\n"

@@ -59,6 +59,7 @@ class TestRealFlight:
             "report.html",
         }
 
+    @pytest.mark.long
     def test_a_run_that_was_cut_is_concluded_but_not_complete(self, recorded_run, tmp_path):
         shutil.copytree(recorded_run, tmp_path / "run")
         log = tmp_path / "run" / run_dir.BUS_LOG
@@ -68,6 +69,7 @@ class TestRealFlight:
         assert made["replay"]["ticks"] < 300
         assert run_dir.read_run(tmp_path / "run")["complete"] is False
 
+    @pytest.mark.long
     def test_a_run_that_never_ended_its_flight_is_not_complete(self, recorded_run, tmp_path):
         shutil.copytree(recorded_run, tmp_path / "run")
         run = run_dir.read_run(tmp_path / "run")

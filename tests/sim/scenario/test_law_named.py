@@ -141,6 +141,7 @@ def test_a_report_by_another_source_is_refused(theirs):
     assert not (theirs / "law.py.trace").exists()
 
 
+@pytest.mark.long
 def test_a_report_by_the_named_source(theirs):
     summary = conclude(theirs / "run", law=f"{theirs / 'law.py'}:damp")
     assert summary["replay"]["bit_exact"]
@@ -172,6 +173,7 @@ def test_a_law_of_the_onboard_table_alone_is_asked_for_too(flown):
     assert with_law_named(scenario, law) == (scenario, "")
 
 
+@pytest.mark.long
 def test_a_law_that_fails_ends_the_flight_and_run_json_says_why(tmp_path):
     with pytest.raises(LawError, match=r"the law fails of law\.py, tick 230: it returns nothing"):
         fly(tmp_path, "fails")

@@ -99,12 +99,14 @@ FAULTS = {
 RARE = ("its own reboot in a pulse",)
 
 
+@pytest.mark.long
 @SOME
 @given(flights())
 def test_one_without_a_fault_passes(flight):
     assert audit_scheduler(Good, flight).ok
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("scheduler", "kinds", "within"),
     [(*fault, SHORT if name in RARE else FLOWN) for name, fault in FAULTS.items()],
@@ -182,6 +184,7 @@ def test_nothing_at_all_for_a_coil_that_there_is_not():
 # --- the scheduler that ships
 
 
+@pytest.mark.long
 @SOME
 @given(flights())
 def test_the_shipped_scheduler_keeps_the_limits_over_a_board_without_an_interlock(flight):
@@ -208,12 +211,14 @@ def test_a_reboot_in_a_pulse_costs_a_back_off_from_its_end():
     assert second.start_s - first.end_s >= 100
 
 
+@pytest.mark.long
 @SOME
 @given(flights(), st.sampled_from(["pd", "bdot", "rate_damping", "predictive"]))
 def test_laws_that_ship_keep_the_limits(flight, name):
     assert audit_law(LAWS[name].point, flight).ok
 
 
+@pytest.mark.long
 @SOME
 @given(flights(), dipoles(), fields())
 def test_so_does_any_law_of_numbers(flight, wish, b):
@@ -306,6 +311,7 @@ def test_a_violation_names_its_line_of_the_log():
         assert (frame.can_id, CoilStatus.decode(frame.data).level) == (CoilStatus.ID, 4)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "scheduler",
     [Good, planted(hears_lockout=False), planted(hears_board_boot=False, **WITHOUT_WORD), planted(coils=2)],
@@ -379,6 +385,7 @@ def test_all_names_are_there_and_documented():
             assert getattr(sim.testing, name).__doc__, name
 
 
+@pytest.mark.long
 def test_no_other_part_needs_hypothesis():
     code = (
         "import sys; sys.modules['hypothesis'] = None\n"

@@ -15,11 +15,13 @@ SEEDS = (1, 2, 3)
 UNSHRUNK = (Phase.generate,)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("scheduler", PLANTED, ids=lambda one: one.__name__)
 def test_a_planted_fault_is_found(scheduler):
     assert any(run(scheduler.__name__, seed, UNSHRUNK).violation for seed in SEEDS)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("scheduler", CORRECT, ids=lambda one: one.__name__)
 def test_a_correct_scheduler_passes(scheduler):
     assert run(scheduler.__name__, SEED, UNSHRUNK, examples=15).violation is None

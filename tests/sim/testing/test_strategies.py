@@ -51,6 +51,7 @@ def demands(some):
     return [[stretch.m_body_am2 for stretch in flight.stretches] for flight in some]
 
 
+@pytest.mark.long
 def test_some_of_a_hundred_hold_a_thousand_pulses_between_reboots(some):
     calm = [one for one in some if all(stretch.reboot is Reboot.NOBODY for stretch in one.stretches)]
     longest = sorted(calm, key=lambda one: one.laps * sum(stretch.ticks for stretch in one.stretches))[-15:]
@@ -60,6 +61,7 @@ def test_some_of_a_hundred_hold_a_thousand_pulses_between_reboots(some):
     )  # Hypothesis draws constants of the modules that are loaded too: 4 to 8 by what else has run
 
 
+@pytest.mark.long
 def test_none_is_too_long_to_be_flown_in_a_second(some):
     """But where a lap alone is."""
     ticks = [(one.laps, one.laps * sum(stretch.ticks for stretch in one.stretches)) for one in some]

@@ -114,6 +114,7 @@ def test_a_port_that_is_taken_is_named():
             pass
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("width", [390, 1400])
 def test_a_browser_draws_attitude_series_and_events_as_they_come(look, view, port, width):
     page = look(f"http://127.0.0.1:{port}/", width)
@@ -130,6 +131,7 @@ def test_a_browser_draws_attitude_series_and_events_as_they_come(look, view, por
     assert page.locator(".badges .note").count() == 0, "nothing to be warned of"
 
 
+@pytest.mark.long
 def test_labels_of_arrows_that_point_the_same_way_stand_below_each_other(look, view, port):
     page = look(f"http://127.0.0.1:{port}/")
     heights = page.evaluate(
@@ -140,12 +142,14 @@ def test_labels_of_arrows_that_point_the_same_way_stand_below_each_other(look, v
     assert min(heights[1] - heights[0], heights[2] - heights[1]) >= 12
 
 
+@pytest.mark.long
 def test_many_events_leave_the_messages_in_sight(look, view, port):
     page = look(f"http://127.0.0.1:{port}/")
     page.evaluate("document.getElementById('happenings').innerHTML = '<tr><td>x</td></tr>'.repeat(200)")
     assert page.evaluate("document.documentElement.scrollHeight") < 4000
 
 
+@pytest.mark.long
 def test_a_page_whose_server_is_gone_says_so(look, view):
     with listening(0) as listener:
         port = listener.getsockname()[1]

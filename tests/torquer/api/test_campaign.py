@@ -8,6 +8,8 @@ import pytest
 import torquer
 from sim.campaign.frame_digest import digest_of
 
+pytestmark = pytest.mark.long
+
 FILE = """
 scenario = "microsat"
 runs = 4

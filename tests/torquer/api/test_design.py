@@ -8,6 +8,8 @@ import pytest
 import torquer
 from sim.design import command as command_of_design
 
+pytestmark = pytest.mark.long
+
 GAINS = (2e4, 10.0)
 
 

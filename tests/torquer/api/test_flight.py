@@ -72,12 +72,14 @@ def test_the_scenario_of_a_run_can_be_flown_again(flown, tmp_path):
     assert again.log.read_bytes() == flown.log.read_bytes()
 
 
+@pytest.mark.long
 def test_two_processes_say_nothing_and_give_the_same_log(flown, tmp_path, capfd):
     run = torquer.fly("microsat", orbits=0.05, seed=7, bus="loop", out=tmp_path / "run")
     assert capfd.readouterr() == ("", "")
     assert bus_of(run) == bus_of(flown)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("progress", "said"), [(True, "bus: loop (auto)\n"), (False, "")])
 def test_which_bus_it_took_is_said_if_progress_is_wanted(progress, said, tmp_path, monkeypatch, capfd):
     monkeypatch.setattr(sil, "resolve", lambda spec: "loop:28011")
@@ -85,6 +87,7 @@ def test_which_bus_it_took_is_said_if_progress_is_wanted(progress, said, tmp_pat
     assert capfd.readouterr() == ("", said)
 
 
+@pytest.mark.long
 def test_flights_at_once_in_threads_are_those_that_fly_alone(flown, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     before = dict(matplotlib.rcParams)
@@ -112,6 +115,7 @@ thread.join()
 """
 
 
+@pytest.mark.long
 def test_a_script_needs_no_guard_and_may_fly_in_a_thread(tmp_path):
     (tmp_path / "script.py").write_text(UNGUARDED)
     done = subprocess.run(
@@ -120,6 +124,7 @@ def test_a_script_needs_no_guard_and_may_fly_in_a_thread(tmp_path):
     assert (done.returncode, done.stdout, done.stderr) == (0, "once\n2\n", "")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("bus", ["virtual", "loop"])
 def test_ctrl_c_ends_the_nodes_and_leaves_a_run_that_can_be_reported(bus, tmp_path, monkeypatch):
     nodes, path = [], tmp_path / "run"

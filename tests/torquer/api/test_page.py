@@ -13,6 +13,7 @@ EXAMPLES = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
 NAMES = set(re.findall(r"torquer\.(\w+)\(", PAGE))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("example", EXAMPLES, ids=range(len(EXAMPLES)))
 def test_it_runs_and_says_what_the_page_says(example, tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)

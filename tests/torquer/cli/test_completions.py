@@ -84,6 +84,7 @@ done
 """
 
 
+@pytest.mark.long
 @pytest.mark.skipif(shutil.which("bash") is None, reason="no bash")
 def test_bash_completes_what_follows_an_equals_sign(tmp_path):
     (tmp_path / "script").write_text(script("bash"))

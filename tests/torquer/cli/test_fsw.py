@@ -6,6 +6,7 @@ from fsw.wire.messages import FswBoot, PlantEnd, Sync, TickDone
 from sim.scenario.schema import flight_table, load, parse_settings
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("settings", [(), ("time.tick_hz=2", "coils.backoff=per_coil")])
 def test_it_flies_the_table_of_the_scenario_with_settings_laid_over_it(bus, start, settings):
     scenario = load("posat1", parse_settings(settings))

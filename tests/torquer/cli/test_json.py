@@ -98,6 +98,7 @@ def test_the_page_states_every_key(name):
         assert f"`{key}`" in row or f"{name}.json" in row
 
 
+@pytest.mark.long
 def test_a_flight(capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     values = document(
@@ -117,6 +118,7 @@ def test_a_flight(capsys, tmp_path, monkeypatch):
     assert [case[0].get("message") for case in requirements] == [one["text"] for one in judged]
 
 
+@pytest.mark.long
 def test_a_run_judged_again(capsys, flown):
     has_shape(document(capsys, "report", flown), "report")
     has_shape(document(capsys, "check", flown), "check")
@@ -125,6 +127,7 @@ def test_a_run_judged_again(capsys, flown):
     assert (values["ok"], values["lines"][0][:17]) == (True, "plant reproduced:")
 
 
+@pytest.mark.long
 def test_a_log_that_fails(capsys, broken, tmp_path):
     values = document(capsys, "check", broken, "--junit", tmp_path / "check.xml", code=0)
     assert values["ok"]
@@ -139,6 +142,7 @@ def test_a_log_that_fails(capsys, broken, tmp_path):
     assert failures == {"complete": "the log is incomplete"}
 
 
+@pytest.mark.long
 def test_what_needs_no_flight(capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     has_shape(document(capsys, "scenarios"), "scenarios")

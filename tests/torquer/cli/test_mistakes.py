@@ -12,6 +12,7 @@ def run(capsys, *words):
     return ended.value.code, *capsys.readouterr()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("words", "meant"),
     [

@@ -78,6 +78,7 @@ def random_case(rng):
 METRICS = {"rate_metric": rate_left, "energy_metric": energy_left}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("metric", METRICS)
 def test_of_all_nineteen_candidates_the_one_that_leaves_least_is_taken(metric):
     left_over = METRICS[metric]

@@ -224,6 +224,7 @@ class TestGate:
             for covariance in (satellite.covariance(), config.initial_covariance * 1e12):
                 assert update(kind, satellite.estimate(covariance), measured, satellite, config) is None
 
+    @pytest.mark.long
     @given(
         st.tuples(*[st.floats(-1e300, 1e300) | st.sampled_from(BAD)] * 6),
         st.sampled_from(["field", "sun", "both"]),

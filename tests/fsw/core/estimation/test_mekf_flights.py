@@ -119,6 +119,7 @@ def flight(full):
 class TestTurnsOfTheSensors:
     """Field and Sun tell how the two sensors stand to each other, and never how both stand to the body."""
 
+    @pytest.mark.long
     def test_the_attitude_has_a_floor_that_no_measurement_lowers(self, flight, full):
         """By axis s_m s_s / sqrt(s_m^2 + s_s^2), but for what the motion tells of the attitude."""
         estimate, _ = flight

@@ -69,6 +69,7 @@ def test_innovations_of_a_sound_filter_weigh_for_it_and_larger_ones_against():
     assert misfit(0.0, 0) == 0.0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("inflation", "raises"), [(1.0, False), (1.5, False), (4.0, True)])
 def test_noise_raises_no_alarm_in_a_month_and_innovations_that_are_too_large_do(inflation, raises):
     random, known = np.random.default_rng(7), weights(DAYS, 1.0)
@@ -80,6 +81,7 @@ def test_noise_raises_no_alarm_in_a_month_and_innovations_that_are_too_large_do(
     assert (nats == known.threshold) is raises
 
 
+@pytest.mark.long
 def test_what_the_gate_refuses_of_a_sound_sensor_isolates_it_less_often_than_the_budget():
     random, known = np.random.default_rng(8), weights(DAYS, 1.0)
     highest = nats = 0.0

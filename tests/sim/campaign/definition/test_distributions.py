@@ -66,6 +66,7 @@ def test_a_direction_is_anywhere_on_the_sphere(length, expected):
         assert is_of(values[:, axis] / lengths, stats.uniform(-1.0, 2.0))
 
 
+@pytest.mark.long
 def test_correlated_values_have_mean_and_covariance():
     covariance = np.array([[4.0, 1.2, 0.0], [1.2, 1.0, 0.3], [0.0, 0.3, 0.25]])
     values = drawn(

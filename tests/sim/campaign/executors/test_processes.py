@@ -7,9 +7,13 @@ import time
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import pytest
+
 from sim.campaign.executors.processes import Processes
 from sim.campaign.one_run import Keep, RunTask
 from sim.campaign.results.row import RunRow, Status
+
+pytestmark = pytest.mark.long
 
 
 def untimed(row):

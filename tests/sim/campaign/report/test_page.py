@@ -8,6 +8,8 @@ from sim.campaign.report.analysis import analyse
 from sim.campaign.report.page import write_page
 from sim.campaign.results.store import open_results
 
+pytestmark = pytest.mark.long
+
 
 class Tags(HTMLParser):
     """Counts the elements of a page."""

@@ -34,6 +34,7 @@ def flown(campaign, analysis, tmp_path):
     return FlownCampaign(tmp_path, campaign, quiet, (), ())
 
 
+@pytest.mark.long
 def test_a_missed_requirement_is_said_everywhere(campaign_of_40, analysis, tmp_path):
     done = flown(replace(campaign_of_40, index=IndexLimits()), analysis, tmp_path)
     assert done.complaints == [MISSED]

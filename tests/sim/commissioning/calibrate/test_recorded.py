@@ -27,6 +27,7 @@ def calibrated(tmp_path_factory):
     return calibrate_pass(around, DECLARED, NOISE)
 
 
+@pytest.mark.long
 def test_the_magnetometer_is_found(calibrated):
     fit = calibrated.magnetometer
     assert fit.told.all()
@@ -35,6 +36,7 @@ def test_the_magnetometer_is_found(calibrated):
     assert fit.rms_nt == pytest.approx(150.0, rel=0.15)
 
 
+@pytest.mark.long
 def test_so_are_the_cells_by_the_motion_of_the_filter(calibrated):
     assert calibrated.judged.verdict.converged
     for cell in calibrated.cells:

@@ -40,6 +40,7 @@ def test_no_coil_gives_more_than_its_dipole():
     assert np.linalg.norm(rates[:, 4:], axis=1).max() <= 0.2 * np.sqrt(3.0) * np.linalg.norm(b_t)
 
 
+@pytest.mark.long
 def test_the_search_shortens_the_longest_settling():
     """The claim of the source, beside gains chosen for the end of the motion."""
     start, _ = best_on_line(FIFTY)

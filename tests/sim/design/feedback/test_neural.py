@@ -45,6 +45,7 @@ def test_its_flights_are_those_of_the_law():
     assert ours == pytest.approx(theirs, rel=0.01)
 
 
+@pytest.mark.long
 def test_a_residual_dipole_turns_the_satellite():
     flown = replace(trials(2, 5), dipole_am2=np.array([[3e-3, -2e-3, 4e-3], [-2e-3, 3e-3, 1e-3]]))
     without = Trials(flown.q, flown.torque_nm, 0.0 * flown.dipole_am2)
@@ -68,6 +69,7 @@ def test_the_cost_is_the_mean_logarithm():
     assert cost(np.array([[[1.0, np.e], [np.e, np.e**2]]])) == pytest.approx([1.0])
 
 
+@pytest.mark.long
 def test_training_is_never_worse_than_constant_gains_and_reports(monkeypatch):
     monkeypatch.setattr(neural, "POPULATION", 2)
     flown, told = trials(2, 1), []

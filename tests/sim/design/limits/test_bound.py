@@ -20,6 +20,7 @@ def config_of(scenario):
     return flight_config(flight_table(scenario))
 
 
+@pytest.mark.long
 def test_on_the_direct_dipoles_field_it_comes_near_the_periodic_one_from_below():
     """Another method, collocation of the periodic motion; here beginning and end are free, which helps."""
     circle = {"tle": None, "altitude_km": 800.0, "inclination_deg": 98.6}
@@ -40,6 +41,7 @@ def test_it_is_in_proportion_to_the_torque(two_orbits):
     assert three == pytest.approx(3.0 * one, rel=0.01)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("law", ["mpc", "pulse_mpc"])
 @pytest.mark.parametrize("torque", [(0.0, 0.0, 0.0), TORQUE])
 def test_no_law_is_below_it(law, torque, two_orbits):

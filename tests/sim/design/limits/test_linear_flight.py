@@ -95,6 +95,7 @@ class TestFlight:
         for coil in range(3):
             assert min(np.diff([fired.tick for fired in flight.fired if fired.coil == coil])) >= 103
 
+    @pytest.mark.long
     def test_what_the_law_is_not_told_it_pays_for(self, two_orbits):
         given = scenario(disturbance={"residual_dipole_am2": [0.01, 0.01, 0.01]})
         told, untold = (fly(given, START, two_orbits, told).rms_deg() for told in (True, False))
@@ -111,6 +112,7 @@ class TestFlight:
         flight = LinearFlight(np.array([9.0, 9.0, 3.0, 4.0]), (), 4)
         assert flight.rms_deg() == pytest.approx(np.sqrt(12.5))
 
+    @pytest.mark.long
     def test_once_settled_more_back_off_never_helps(self, two_orbits):
         quiet, near = {"torque_nm": [0.0, 0.0, 0.0]}, (0.003, 0.004, -0.002)
         errors_deg = [

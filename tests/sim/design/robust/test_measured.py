@@ -56,6 +56,7 @@ def test_lqg_is_the_kalman_filter(case, lqg):
     assert lqg.told[-1] == pytest.approx(gain, rel=1e-3, abs=1e-4 * np.abs(gain).max())
 
 
+@pytest.mark.long
 def test_the_norm_is_that_of_the_motion(case, lqg):
     """White torques and errors over 30 orbits leave less than it, and more than a twentieth of it."""
     rng, x, xi = np.random.default_rng(3), np.zeros(6), np.zeros(6)

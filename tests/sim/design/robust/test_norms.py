@@ -75,6 +75,7 @@ def test_the_game_keeps_its_bound_and_betters_the_regulator(case, loops):
     assert robust.h_infinity < 0.95 * plain.h_infinity
 
 
+@pytest.mark.long
 def test_of_all_laws_the_regulator_has_the_least_h2_norm(case, loops):
     """It beats the robust one, and itself changed a little."""
     least = norms(*case, loops["lqr"], UNIT_NM).h2

@@ -32,6 +32,7 @@ def test_the_table_is_the_pd_law():
     assert gain @ np.concatenate([omega, theta]) == pytest.approx(expected)
 
 
+@pytest.mark.long
 def test_the_gains_found_bear_the_worst_torque_better(case):
     found = best_pd(*case, UNIT_NM, START)
     before = norms(*case, pd_tabulated(case[1], *START), UNIT_NM).h_infinity

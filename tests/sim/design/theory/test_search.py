@@ -39,6 +39,7 @@ def microsat():
     return search(MICROSAT, continuous(MICROSAT), continuous(MICROSAT, ROUGH_STEPS))
 
 
+@pytest.mark.long
 def test_it_finds_the_known_optimum(microsat):
     best = microsat.best
     assert best.degree < -0.5185
@@ -47,6 +48,7 @@ def test_it_finds_the_known_optimum(microsat):
     assert microsat.stabilised
 
 
+@pytest.mark.long
 def test_the_best_gains_are_better_than_all_beside_them(microsat):
     best = microsat.best
     around = np.exp(np.linspace(-0.2, 0.2, 11))
@@ -60,6 +62,7 @@ def test_the_steady_gains_are_surer_than_the_best(microsat):
     assert best.degree < steady.degree < 0.0
 
 
+@pytest.mark.long
 def test_it_says_when_no_gains_stabilise():
     body = UNSTABLE_BODIES[1]
     found = search(body, continuous(body), continuous(body, ROUGH_STEPS))

@@ -217,6 +217,7 @@ class TestResidualDipole:
     def test_it_is_the_sum_of_what_is_constant_what_the_shadow_adds_and_remanence(self, lit, expected):
         assert residual_dipole(self.VARIES, lit, (0.001, 0.002, 0.003)) == pytest.approx(expected)
 
+    @pytest.mark.long
     def test_the_truth_shows_its_torque_in_light_and_in_shadow(self, fly):
         plant, rows = fly(5600, disturbance=self.VARIES)
         seen = set()

@@ -58,6 +58,7 @@ def test_its_equation_by_other_algebra():
         assert h == pytest.approx(energy, rel=1e-12)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("wheel", [(0.0, 0.0, 0.0), WHEEL])
 @pytest.mark.parametrize(
     "start",

@@ -93,6 +93,7 @@ def load(reference):
 CASES = ["a_torquefree", "b1_gravgrad", "b2_boom", "c_dipole", "d_offdiag"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", CASES)
 def test_three_orbits_in_steps_of_half_a_second(load, rotation_angle, name):
     case = load(name)

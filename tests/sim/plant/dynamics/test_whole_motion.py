@@ -83,6 +83,7 @@ class Model:
         return [*(0.5 * turn), *np.linalg.solve(J, torque)]
 
 
+@pytest.mark.long
 def test_ten_minutes_of_everything_at_once(make_plant, make_config, rotation_angle):
     parts = {
         "orbit": ORBIT,

@@ -24,6 +24,7 @@ CHARTS = {
 """The figures, and words that each of them must hold."""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("chart", CHARTS)
 def test_every_chart_is_there_with_its_labels(page, chart):
     assert chart in page.values("id")

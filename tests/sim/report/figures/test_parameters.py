@@ -185,6 +185,7 @@ class TestTable:
 class TestRun:
     """In the files of a real run, both from the replay."""
 
+    @pytest.mark.long
     def test_the_summary_has_them(self, concluded, strict):
         found = strict((concluded / "summary.json").read_text(encoding="utf-8"))["parameters"]
         assert [*found] == ["mag_bias_t", "torque_body_nm"]
@@ -200,5 +201,6 @@ class TestRun:
         assert section.index("mag_bias_x") < section.index("torque_z") < section.index("</section>")
         assert "dipole_x" not in section[: section.index("</section>")]
 
+    @pytest.mark.long
     def test_a_page_without_a_filter_has_no_such_section(self, made_run, tmp_path):
         assert 'id="parameters"' not in made_run().write(tmp_path).source

@@ -84,6 +84,7 @@ def outcome(flight):
     return one
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", [name for name, flight in FLIGHTS.items() if flight.quick or ALL])
 def test_a_flight_that_fails_is_told_why(name):
     flight = FLIGHTS[name]

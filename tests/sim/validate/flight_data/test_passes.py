@@ -12,6 +12,7 @@ from sim.validate.flight_data.passes import believed, files, judged
 KNOWN = read_calibration(DATA / "calibration.toml")
 
 
+@pytest.mark.long
 def test_a_wrong_motion_is_counted_where_it_is_believed(monkeypatch):
     path = DATA / "s3_20240426T041442Z.csv"
     judge, known = passes.judge, {}

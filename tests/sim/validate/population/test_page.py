@@ -90,6 +90,7 @@ def test_the_page_has_sweeps_tolerances_and_satellites(populations, sweep):
     assert lines[-1].startswith("3 of 4 flights. Python ")
 
 
+@pytest.mark.long
 def test_pictures_have_their_labels(populations, sweep, tmp_path):
     draw_satellites(populations, tmp_path / "one.svg")
     draw_sweep(sweep, tmp_path / "two.svg")
@@ -102,6 +103,7 @@ def test_pictures_have_their_labels(populations, sweep, tmp_path):
         assert all(word in text for word in words), name
 
 
+@pytest.mark.long
 def test_nothing_flown_is_drawn_empty(tmp_path):
     nothing = {quantity: [] for quantity in QUANTITIES}
     draw_satellites({"50kg": [], "3u": [], "6u": []}, tmp_path / "one.svg")

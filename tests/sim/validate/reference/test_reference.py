@@ -31,6 +31,7 @@ def failures(folder, name):
     }
 
 
+@pytest.mark.long
 def test_every_reference_file_passes(whole_folder):
     studies = reference.studies(whole_folder.path)
     outcomes = [outcome for study in studies for outcome in study.conclude([task() for task in study.tasks])]

@@ -9,6 +9,7 @@ from sim.design.wheel.elliptic import WheelLaw
 from sim.validate.review import wheel
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("study", wheel.studies(), ids=lambda study: study.id)
 def test_each_claim_is_met(study):
     outcomes = study.conclude([task() for task in study.tasks])

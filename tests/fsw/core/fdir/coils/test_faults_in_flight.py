@@ -121,6 +121,7 @@ def test_a_single_wrong_current_names_nobody(make_world):
     assert world.state.health.coils.nats == (0.0, 0.0, 0.0)
 
 
+@pytest.mark.long
 @pytest.mark.requirement("REQ-COIL-05")
 def test_a_coil_that_is_named_is_not_fired_before_its_time_or_until_the_ground_clears_it(make_world):
     world = make_world()
@@ -234,6 +235,7 @@ class TestStuck:
 class TestByTheRate:
     """The current is right, the torque is not: turns shorted, or a plug turned round behind the shunt."""
 
+    @pytest.mark.long
     @pytest.mark.requirement("REQ-COIL-01", "REQ-COIL-03")
     @pytest.mark.parametrize(("scale", "named"), [(-1.0, 103), (0.0, 101), (0.3, 102)])
     def test_the_coil_is_named_and_the_estimate_set_right(self, make_world, scale, named):
@@ -247,6 +249,7 @@ class TestByTheRate:
         assert events(said, Event.SENSOR_ISOLATED) == events(said, Event.FILTER_RESTARTED) == []
         assert error_deg(world) < 1.0
 
+    @pytest.mark.long
     @pytest.mark.parametrize("seed", [2, 5])
     def test_what_a_pulse_showed_is_kept_when_the_next_takes_its_place(self, make_world, seed):
         """Three pulses of a coil are traced: the fourth replaces the first, which showed something."""
@@ -263,6 +266,7 @@ class TestByTheRate:
         assert 1.0 < first < 0.5 * weak.threshold
         assert max(others) < 0.1 * first
 
+    @pytest.mark.long
     @pytest.mark.requirement("REQ-COIL-05")
     def test_sound_coils_are_not(self, make_world):
         world = make_world(seed=5)

@@ -35,6 +35,7 @@ def fly(world, ticks, coil, loses_requests, every=1):
     return said, pulses
 
 
+@pytest.mark.long
 @pytest.mark.requirement("REQ-COIL-05")
 def test_pulses_whose_requests_were_lost_name_nobody(make_world):
     """Nor did any report tell that nothing was driven: the filter takes them for done."""
@@ -45,6 +46,7 @@ def test_pulses_whose_requests_were_lost_name_nobody(make_world):
     assert pulses >= 3
 
 
+@pytest.mark.long
 @pytest.mark.requirement("REQ-COIL-01")
 def test_a_coil_that_does_nothing_is_named_though_every_other_pulse_is_in_doubt(make_world):
     world = make_world()

@@ -45,6 +45,7 @@ def fly(world, ticks, change=lambda inbox: inbox):
 
 @pytest.mark.requirement("REQ-COIL-06")
 class TestInFlight:
+    @pytest.mark.long
     def test_a_coil_whose_fault_has_passed_is_used_again(self, world):
         isolate(world, 0, CoilFault.OPEN, 0, until=(0, int(AGAIN_S), 0))
         events, fired = fly(world, 3000)
@@ -55,6 +56,7 @@ class TestInFlight:
         assert world.state.health.coils.faults == (0, 0, 0)
         assert world.state.health.coils.nats[1] == 0.0
 
+    @pytest.mark.long
     def test_one_that_is_still_faulty_costs_one_pulse_each_time(self, world):
         isolate(world, 0, CoilFault.OPEN, 0, until=(0, int(AGAIN_S), 0))
         events, fired = fly(world, 3000, without_current(1))

@@ -124,6 +124,7 @@ def test_light_in_the_shadow_counts_where_the_shadow_is_certain(shadow, fault):
     assert faults(health) == [0, 0, fault, 0, 0, 0]
 
 
+@pytest.mark.long
 def test_a_stuck_cell_is_put_aside_as_soon_as_its_prediction_has_moved():
     """Though what it shows is near enough for the filter to take it."""
     cell = LIT[0]

@@ -117,6 +117,7 @@ def test_a_fault_is_named_borne_and_forgotten(make_world, name):
     assert watcher.world.state.modes.trips == 0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["field of wrong sign", "field stepped", "field frozen"])
 def test_in_eclipse_the_attitude_is_kept(make_world, name):
     """Nothing is left to see by; the estimate goes on by itself, and after two minutes is no longer valid."""
@@ -160,6 +161,7 @@ def test_a_lamp_in_the_earth_s_shadow_is_no_sun(make_world):
     assert watcher.errors_deg[-1] < 2.0
 
 
+@pytest.mark.long
 @pytest.mark.requirement("REQ-SENSOR-07")
 def test_a_fault_from_the_first_tick_on_does_not_start_the_filter(make_world):
     """Nor does it begin at once when it has gone: a pair that was wrong may be right by chance."""
@@ -205,6 +207,7 @@ def test_a_field_that_was_never_of_the_right_strength_is_named(make_world):
     assert watcher.of(Event.FILTER_STARTED) == []
 
 
+@pytest.mark.long
 @pytest.mark.requirement("REQ-SENSOR-08")
 @pytest.mark.parametrize(
     ("ticks", "settings"),

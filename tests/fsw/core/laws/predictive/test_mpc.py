@@ -70,6 +70,7 @@ def test_on_that_field_both_laws_ask_for_nearly_the_same(bench, settings, inputs
     assert by_mpc == pytest.approx(by_lqr, abs=0.1 * np.linalg.norm(by_lqr))
 
 
+@pytest.mark.long
 def test_on_a_tilted_field_with_a_constant_torque_the_plan_points_better(bench, settings, turned):
     """What the regulator's own field does not have: the tilt, which turns with the Earth."""
     model = model_of(FieldKind.IGRF14, bench.Orbit())
@@ -141,6 +142,7 @@ def test_the_plan_less_the_residual_dipole_costs_least_where_effort_is_the_whole
     assert gains[0] @ state - RESIDUAL_AM2 == pytest.approx(best, abs=1e-6 * np.linalg.norm(best))
 
 
+@pytest.mark.long
 def test_a_residual_dipole_that_is_known_costs_nothing_and_one_that_is_not_drives_it_away(
     bench, settings, turned
 ):

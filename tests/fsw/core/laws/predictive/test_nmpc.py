@@ -55,6 +55,7 @@ def test_it_takes_energy_away(flight, law, name, kind):
     assert np.abs(flown.m_body).max() <= MOST_AM2
 
 
+@pytest.mark.long
 def test_the_rule_saves_most_of_the_search_and_loses_little(flight):
     """The source: a stop at a sufficient fall of the cost."""
     by_rule, few = flight(nmpc_damping, "nmpc_damping", NmpcGains())

@@ -267,11 +267,13 @@ class Flight:
 
 
 class TestPointing:
+    @pytest.mark.long
     def test_with_nothing_unknown_a_torque_costs_hardly_more_than_it_must(self):
         """No periodic dipole leaves less than 0.43 deg of 3e-8 N m about each axis of the 50 kg satellite."""
         flight = Flight(torque_nm=(3e-8, 3e-8, 3e-8), config=BALANCED)
         assert 0.4 < flight.rms_deg(2.5, 1.0) < 0.55
 
+    @pytest.mark.long
     def test_a_residual_dipole_that_is_known_costs_little_and_one_that_is_not_much(self):
         dipole = (0.006, -0.005, 0.008)
         known = Flight(dipole_am2=dipole).rms_deg(2.0, 1.0)

@@ -120,6 +120,7 @@ def replace_delay(samples):
     return replace(samples, field_nt=z + 200.0 * np.random.default_rng(8).normal(size=z.shape))
 
 
+@pytest.mark.long
 def test_a_short_log_of_a_body_that_turns_about_one_axis_leaves_an_offset_and_gives_no_table():
     short = calibrated(log(ticks=420, rate=(0.0, 0.001, 0.003)), TABLE)
     assert any("the offset along" in one for one in untold(short))
@@ -127,6 +128,7 @@ def test_a_short_log_of_a_body_that_turns_about_one_axis_leaves_an_offset_and_gi
         tables(short, TABLE)
 
 
+@pytest.mark.long
 def test_one_that_hardly_turns_does_not_even_tell_the_wiring():
     with pytest.raises(HarnessError, match="wirings explain it alike"):
         calibrated(log(ticks=420, rate=(0.0, 0.0, 2e-4)), TABLE)
