@@ -17,8 +17,7 @@ from sim.bench.memory import MemoryMonitor, scheduling
 from sim.bench.processes import BenchProcess, BenchProcesses, hub_of
 from sim.bench.realtime_loop import RealtimeLoop, is_boot
 from sim.bench.tick_source import PlantTicks, SyncOnly, TickSource, line_to
-from sim.bench.unsent_telecommands import unsent_telecommands
-from sim.console import answer, fail, say, warn
+from sim.console import answer, fail, say
 from sim.errors import HarnessError
 from sim.flight.bus_in_use import FLIGHT_NODES, refuse_bus_in_use
 from sim.flight.second_senders import describe_senders
@@ -153,11 +152,13 @@ def _begin(settings: HilSettings, folder: Path, spec: str) -> None:
     """Begin a run directory, if one is to be written."""
     if settings.out is not None:
         channel = spec.partition(":")[0]
-        run_dir.begin(folder, settings.scenario, settings.seed, _ticks(settings), channel, Pace(1.0))
+        ticks = ticks_in(settings.scenario, settings.seconds)
+        run_dir.begin(folder, settings.scenario, settings.seed, ticks, channel, Pace(1.0))
 
 
-def _ticks(settings: HilSettings) -> int:
-    return max(1, round(settings.seconds * settings.scenario.time.tick_hz))
+def ticks_in(scenario: Scenario, seconds: float) -> int:
+    """How many ticks a bench runs in so many seconds; at least one."""
+    return max(1, round(seconds * scenario.time.tick_hz))
 
 
 def _run(
@@ -169,9 +170,8 @@ def _run(
     folder: Path,
     table: Path,
 ) -> Json:
-    scenario, ticks = settings.scenario, _ticks(settings)
-    for unsent in unsent_telecommands(scenario, ticks):
-        warn(unsent)
+    scenario = settings.scenario
+    ticks = ticks_in(scenario, settings.seconds)
     tick_hz = scenario.time.tick_hz
     arming = () if settings.armed else ("--disarmed",)
     arguments = ("--table", str(table), "--bench", "--bus", spec, "--parent", str(os.getpid()), *arming)

@@ -15,7 +15,6 @@ from fsw.table.config import flight_config
 from fsw.table.estimator import table_bounds
 from fsw.table.uncertainty import ROUNDING
 from fsw.wire.messages import TcAckResult, TcGain, TcLaw, TcOrbitElement, TcParameter, TcSpin
-from sim.bench.unsent_telecommands import unsent_telecommands
 from sim.design.from_scenario import body_of
 from sim.flight.record_flight import ticks_of
 from sim.scenario.assemble import plant_config
@@ -24,6 +23,7 @@ from sim.scenario.schema import Scenario, flight_table
 from sim.sizing.expectation import expect, field_across
 from sim.sizing.levels import levels_against
 from sim.sizing.torques import surface_torque
+from sim.sizing.unsent_telecommands import unsent_telecommands
 
 DAY_S = 86400.0
 OLD_TLE_DAYS = 366.0
@@ -44,9 +44,13 @@ SAME_AT_ANY_TIME = (TcLaw, TcGain, TcSpin, TcOrbitElement, TcParameter)
 """Telecommands that are refused for what they say, not for the state of the satellite."""
 
 
-def doubts(scenario: Scenario) -> list[str]:
-    """The doubts, in the order of the sections of a scenario; none for one that is plausible."""
-    return [doubt for judge in _JUDGES for doubt in judge(scenario)]
+def doubts(scenario: Scenario, ticks: int | None = None) -> list[str]:
+    """The doubts, in the order of the sections of a scenario; none for one that is plausible.
+
+    A run of it takes so many ticks; None: as the scenario says.
+    """
+    told = [doubt for judge in _JUDGES for doubt in judge(scenario)]
+    return told + unsent_telecommands(scenario, ticks_of(scenario, None) if ticks is None else ticks)
 
 
 def _epoch(scenario: Scenario) -> Iterator[str]:
@@ -255,7 +259,6 @@ def _telecommands(scenario: Scenario) -> Iterator[str]:
                         f"telecommand[{place}], {telecommand.message} at {telecommand.at_s:g} s, will be "
                         f"answered {answer.name.lower()!r}: {_ANSWERS[answer]}"
                     )
-    yield from unsent_telecommands(scenario, ticks_of(scenario, None))
 
 
 _ANSWERS = {

@@ -100,8 +100,9 @@ def hil(
 
         chosen = load(scenario, parse_settings((*settings, *rate)))  # of its limits, none is a mistake
         return conform(chosen, conformance, bus, arm, deadman_s)
-    chosen = load_scenario(scenario, (*settings, *rate))
     from sim.bench import command
+
+    chosen = load_scenario(scenario, (*settings, *rate), lambda chosen: command.ticks_in(chosen, seconds))
     from sim.bench.budgets import Budgets
 
     half_ms = 500.0 / chosen.time.tick_hz

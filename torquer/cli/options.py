@@ -161,8 +161,10 @@ def law_and_settings(command: Callable[..., Any]) -> Callable[..., Any]:
     return run
 
 
-def load_scenario(name_or_path: str, settings: tuple[str, ...]) -> "Scenario":
-    """The scenario with settings laid over it; what is most likely wrong in it is said.
+def load_scenario(
+    name_or_path: str, settings: tuple[str, ...], ticks_of_run: "Callable[[Scenario], int] | None" = None
+) -> "Scenario":
+    """The scenario with settings laid over it; what is most likely wrong in it, or in a run so long, is said.
 
     Raises:
         TableError: not found, or not valid.
@@ -171,15 +173,15 @@ def load_scenario(name_or_path: str, settings: tuple[str, ...]) -> "Scenario":
 
     scenario = load(name_or_path, parse_settings(settings))
     detail(f"scenario {scenario.name} of {name_or_path}{', ' + ', '.join(settings) if settings else ''}")
-    warn_of(scenario)
+    warn_of(scenario, None if ticks_of_run is None else ticks_of_run(scenario))
     return scenario
 
 
-def warn_of(scenario: "Scenario") -> None:
-    """Say what is most likely wrong in a scenario."""
+def warn_of(scenario: "Scenario", ticks: int | None = None) -> None:
+    """Say what is most likely wrong in a scenario of which a run takes so many ticks."""
     from sim.sizing.doubts import doubts
 
-    for doubt in doubts(scenario):
+    for doubt in doubts(scenario, ticks):
         warn(doubt)
 
 

@@ -80,12 +80,17 @@ def sil(
 ) -> int:
     """Fly SCENARIO (realsat): plant and flight software as two processes on a bus (virtual: in one)."""
     from sim.console import answer, detail, fail, say
+    from sim.flight.record_flight import ticks_of
     from sim.junit import prepare_junit, write_junit
     from torquer.api.flight import fly
 
     prepare_junit(junit)
     again = _campaign_run(source, run, scenario, orbits, seed, expected, settings)
-    chosen = again.scenario if again else load_scenario(scenario or "realsat", settings)
+    chosen = (
+        again.scenario
+        if again
+        else load_scenario(scenario or "realsat", settings, lambda chosen: ticks_of(chosen, orbits))
+    )
     flown = fly(
         chosen,
         orbits=orbits,

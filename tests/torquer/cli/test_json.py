@@ -9,7 +9,9 @@ import pytest
 
 from torquer.cli.main import main
 
-PAGE = (Path(__file__).resolve().parents[3] / "docs" / "cli.md").read_text(encoding="utf-8")
+ROOT = Path(__file__).resolve().parents[3]
+MICROSAT = ROOT / "sim/scenario/shipped/microsat.toml"
+PAGE = (ROOT / "docs" / "cli.md").read_text(encoding="utf-8")
 HEAD = ["command", "torquer_version", "schema_version", "exit_code", "warnings"]
 SHAPES = {
     "sil": {"run": str, "report": str, "summary": dict},
@@ -161,6 +163,19 @@ def test_warnings_stand_in_the_document_and_on_stderr(capsys):
     assert warning.startswith("coils.backoff_s = 99.5 is not a whole number of ticks")
     assert err == f"torquer: warning: {warning}\n"
     assert code == 0
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("orbits", "told"), [(0.005, True), (0.006, False)])
+def test_a_flight_too_short_for_a_telecommand_says_so(capsys, tmp_path, orbits, told):
+    """The scenario's own flight is shorter than either."""
+    late = tmp_path / "late.toml"
+    late.write_text(MICROSAT.read_text() + '[[telecommand]]\nat_s = 32\nmessage = "TC_CLEAR"\n')
+    fly = ("sil", late, "--bus", "virtual", "--out", tmp_path / "run", "--json")
+    _, out, err = run(capsys, *fly, "--set", "time.orbits=0.001", "--orbits", orbits)
+    sentence = "telecommand[0], TC_CLEAR at 32 s, will not be sent: the last tick is at"
+    assert [warning.startswith(sentence) for warning in json.loads(out)["warnings"]] == [True] * told
+    assert (sentence in err) is told
 
 
 @pytest.mark.parametrize("words", [["check", "nowhere"], ["sil", "nowhere"], ["size", "--mass-kg", "1"]])

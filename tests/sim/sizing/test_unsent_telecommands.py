@@ -2,11 +2,11 @@
 
 import pytest
 
-from sim.bench.unsent_telecommands import unsent_telecommands
 from sim.flight.record_flight import ticks_of
 from sim.scenario.schema import load
 from sim.scenario.telecommands import uplink
 from sim.sizing.doubts import doubts
+from sim.sizing.unsent_telecommands import unsent_telecommands
 
 TIMES_S = (0.0, 59.3, 60.0, 60.01, 1e9)
 
@@ -39,3 +39,12 @@ def test_a_scenario_that_is_shorter_than_its_telecommands_is_doubted():
     assert doubts(scenario_with(ticks - 1.0)) == []
     (doubt,) = doubts(scenario_with(float(ticks)))
     assert "will not be sent" in doubt
+
+
+def test_what_counts_is_how_long_the_run_is():
+    asked = scenario_with(600.0)
+    assert doubts(asked, 601) == []
+    (doubt,) = doubts(asked, 600)
+    assert "at 600 s, will not be sent: the last tick is at 599 s" in doubt
+    late = scenario_with(float(ticks_of(asked, None)))
+    assert doubts(late, 2 * ticks_of(asked, None)) == []
