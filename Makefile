@@ -52,7 +52,7 @@ sil: venv
 	$(bin)/torquer sil
 
 test: venv
-	$(bin)/pytest $(PYTEST_FLAGS) -m "not long"
+	$(bin)/pytest $(PYTEST_FLAGS)
 
 test-long: venv
 	$(bin)/pytest $(PYTEST_FLAGS) -m long

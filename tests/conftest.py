@@ -19,6 +19,13 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 """Their tests, which a user copies with them, fly for many seconds and carry no mark of ours."""
 
 
+def pytest_configure(config):
+    """Who does not say which tests to run gets those that are not long; who names a file gets all of it."""
+    chosen = any(config.getoption(name, None) for name in ("markexpr", "keyword", "lf", "ff"))
+    if config.args_source is pytest.Config.ArgsSource.TESTPATHS and not chosen:
+        config.option.markexpr = "not long"
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
     for item in items:
