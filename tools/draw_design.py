@@ -25,7 +25,9 @@ ROOT = Path(__file__).resolve().parents[1]
 CONTRACTS = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
 
 WIDTH, MARGIN, GAP = 960, 14, 12
-FLOOR, ROOM, HEAD = 84, 62, 24
+FLOOR, ROOM, HEAD = 95, 73, 24
+MOST_LINES = 5
+"""That fit into a room, below its name."""
 WIDEST_ROOM = 300.0
 INK, FAINT, LINE, PAPER = "#1c2733", "#51606f", "#8496a8", "#ffffff"
 TINT_OF_IMPORTS = "#1f5fa8"
@@ -67,15 +69,15 @@ def main(arguments: list[str]) -> int:
 
 def house() -> str:
     """torquer over sim, sim over the boards and the flight software."""
-    ground = floors("sim")
-    top = MARGIN + box_height(1) + GAP
+    commands, ground = floors("torquer"), floors("sim")
+    top = MARGIN + box_height(len(commands)) + GAP
     bottom = top + box_height(len(ground)) + GAP
     board_width = 0.42 * (WIDTH - 2 * MARGIN - GAP)
     flight_x = MARGIN + board_width + GAP
     flight = floors("fsw")
     return drawing(
         [
-            ("torquer", [["torquer.cli"]], MARGIN, MARGIN, WIDTH - 2 * MARGIN),
+            ("torquer", commands, MARGIN, MARGIN, WIDTH - 2 * MARGIN),
             ("sim", ground, MARGIN, top, WIDTH - 2 * MARGIN),
             ("hil_stub", floors("hil_stub"), MARGIN, bottom, board_width),
             ("fsw", flight, flight_x, bottom, WIDTH - MARGIN - flight_x),
@@ -147,7 +149,7 @@ def draw_room(
     text(svg, x + 7, y + 14, room.rpartition(".")[2], size=13, weight="bold")
     letters = int((width - 12) / LETTER)
     named = textwrap.wrap("imports " + ", ".join(by_package(outside)), letters) if outside else []
-    lines = textwrap.wrap(purpose(room), letters, max_lines=4 - len(named), placeholder=" ...")
+    lines = textwrap.wrap(purpose(room), letters, max_lines=MOST_LINES - len(named), placeholder=" ...")
     for number, line in enumerate([*lines, *named]):
         fill = FAINT if number < len(lines) else TINT_OF_IMPORTS
         text(svg, x + 7, y + 26 + 10.5 * number, line, size=10, fill=fill)
