@@ -86,7 +86,9 @@ def coefficients(shc: Path) -> str:
     return "\n".join([*rows, "9" * 48, "9" * 48, ""])
 
 
-def simulation(cof: Path, in_python: bool) -> tuple[SimulationBaseClass.SimBaseClass, object, list[object]]:
+def simulation(
+    cof: Path, in_python: bool
+) -> tuple[SimulationBaseClass.SimBaseClass, attTrackingError.attTrackingError, list[object]]:
     """The simulation, the module of the attitude error, and what has to live as long as they."""
     sim = SimulationBaseClass.SimBaseClass()
     process = sim.CreateNewProcess("process")

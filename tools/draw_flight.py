@@ -20,7 +20,7 @@ EVERY = 30
 COLOURS = ("#1f6fb2", "#c2571a", "#2f8f4e")
 
 
-def draw(run, target):
+def draw(run: torquer.Run, target: Path) -> None:
     some = {"time": slice(None, None, EVERY)}
     truth, estimate, pulses = run.truth[some], run.estimate[some], run.pulses
     figure, (angle, coils) = plt.subplots(
@@ -46,7 +46,7 @@ def draw(run, target):
     figure.savefig(target, metadata={"Date": None})
 
 
-def main(arguments):
+def main(arguments: list[str]) -> None:
     mpl.rcParams.update({"svg.hashsalt": "torquer", "font.size": 9, "path.simplify_threshold": 0.5})
     if arguments:
         draw(torquer.load(arguments[0]), TARGET)

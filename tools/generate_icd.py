@@ -8,6 +8,7 @@ board.
 import re
 import sys
 import tomllib
+from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
 
@@ -52,7 +53,7 @@ def database() -> Database:
     return cantools.database.load_file(DBC)
 
 
-def table(head: tuple[str, ...], rows: list[tuple]) -> str:
+def table(head: tuple[str, ...], rows: Sequence[tuple[object, ...]]) -> str:
     lines = [head, ("---",) * len(head), *rows]
     return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines)
 
@@ -60,7 +61,7 @@ def table(head: tuple[str, ...], rows: list[tuple]) -> str:
 def texts(section: str, names: list[str]) -> dict[str, str]:
     """The texts of a section of rules.toml, which must be of exactly these names."""
     with (ROOT / "hil_stub" / "rules.toml").open("rb") as file:
-        given = tomllib.load(file)[section]
+        given: dict[str, str] = tomllib.load(file)[section]
     unmatched = set(given) ^ set(names)
     if unmatched:
         raise IcdError(
@@ -125,7 +126,7 @@ def crc_example() -> str:
     )
 
 
-def reason_rows(section: str, reasons: list[CoilRefusedReason]) -> list[tuple]:
+def reason_rows(section: str, reasons: list[CoilRefusedReason]) -> list[tuple[int, str, str]]:
     given = texts(section, [reason.name.lower() for reason in reasons])
     return [(reason.value, f"`{reason.name.lower()}`", given[reason.name.lower()]) for reason in reasons]
 
@@ -203,7 +204,7 @@ def status_of(board: coil_driver.CoilDriver, tick: int) -> CoilStatus:
 COLUMNS = ("level", "coil", "remaining_ms", "lockout_ms", "seq")
 
 
-def status_table(first: str, rows: list[tuple[str | int, CoilStatus]]) -> str:
+def status_table(first: str, rows: Sequence[tuple[str | int, CoilStatus]]) -> str:
     cells = [(label, *(getattr(status, name) for name in COLUMNS)) for label, status in rows]
     return table((first, *(f"`{name}`" for name in COLUMNS)), cells)
 
@@ -224,13 +225,17 @@ def skip_table() -> str:
 
 def checks() -> str:
     rows = [
-        (f"`{check.run.__name__}`", " ".join(check.run.__doc__.split()), "yes" if check.power else "no")
+        (
+            f"`{check.run.__name__}`",
+            " ".join((check.run.__doc__ or "").split()),
+            "yes" if check.power else "no",
+        )
         for check in CHECKS
     ]
     return table(("check", "demands", "drives coils"), rows)
 
 
-PIECES = {
+PIECES: dict[str, Callable[..., str]] = {
     "checks": checks,
     "frame": frame,
     "value": lambda name: str(VALUES[name]),
@@ -249,7 +254,7 @@ PIECES = {
 
 
 def page() -> str:
-    def piece(match: re.Match) -> str:
+    def piece(match: re.Match[str]) -> str:
         name, argument = match.groups()
         if name not in PIECES:
             raise IcdError(f"{TEMPLATE.name}: there is no {{{{{name}}}}}")

@@ -4,6 +4,7 @@ import ast
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 COMPARED = {
     ast.Lt: "<=",
@@ -87,7 +88,7 @@ def _spans(source: str) -> Callable[[ast.AST], Span]:
     def at(line: int, column: int) -> int:
         return len(text[: starts[line - 1] + column].decode())
 
-    def span(node: ast.AST) -> Span:
+    def span(node: Any) -> Span:  # of the nodes that have a place, which ast gives no class of their own
         return at(node.lineno, node.col_offset), at(node.end_lineno, node.end_col_offset)
 
     return span
@@ -168,7 +169,7 @@ def _changes(source: str) -> Iterator[tuple[Span, str]]:  # noqa: PLR0912  (a ca
                 yield span(node.iter), "()"
             case ast.Return(value=None):
                 yield span(node), "pass"
-            case ast.Return(value=value) if not isinstance(value, ast.Constant):
+            case ast.Return(value=ast.expr() as value) if not isinstance(value, ast.Constant):
                 yield span(value), "None"
             case ast.Assign(targets=[target]) if _is_persistent(target):
                 yield span(node), "pass"

@@ -153,7 +153,8 @@ def note_coverage(measured: dict[str, Any]) -> None:
 
 
 def _survived(results: dict[str, Any], module: str) -> list[str]:
-    return results.get(module, {}).get("survived", [])
+    survived: list[str] = results.get(module, {}).get("survived", [])
+    return survived
 
 
 def _row(

@@ -18,6 +18,10 @@ from collections.abc import Iterator
 from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 COPIED = (
@@ -58,12 +62,12 @@ class PytestOrder:
     def __init__(self, seconds: dict[str, float], noticed: Counter[str], outcomes: Path) -> None:
         self._seconds, self._noticed, self._outcomes = seconds, noticed, outcomes
 
-    def pytest_collection_modifyitems(self, items: list) -> None:
+    def pytest_collection_modifyitems(self, items: "list[pytest.Item]") -> None:
         items.sort(
             key=lambda item: (self._seconds.get(item.nodeid, 0.0) + 1e-3) / (1 + self._noticed[item.nodeid])
         )
 
-    def pytest_runtest_logreport(self, report) -> None:
+    def pytest_runtest_logreport(self, report: "pytest.TestReport") -> None:
         if report.when == "call" or report.failed:
             with self._outcomes.open("a", encoding="utf-8") as file:
                 file.write(f"{report.nodeid} {not report.failed} {report.duration:.4f}\n")

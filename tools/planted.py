@@ -19,7 +19,7 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 sys.path.insert(0, str(Path(__file__).parent))
 from planted_schedulers import CORRECT, PLANTED, UNSOUND
 
-from sim.testing import audit_scheduler, dipoles, flights, unsound_dipoles
+from sim.testing import Flight, Violation, audit_scheduler, dipoles, flights, unsound_dipoles
 
 EXAMPLES = 100
 LONGEST_S = 60.0
@@ -36,7 +36,7 @@ class Run(NamedTuple):
 
 def run(name: str, number: int, phases: tuple[Phase, ...] = tuple(Phase), examples: int = EXAMPLES) -> Run:
     """Run the test as a user would, from the seed ``number``."""
-    make, violations = SCHEDULERS[name], []
+    make, violations = SCHEDULERS[name], list[Violation]()
     demands = dipoles() | unsound_dipoles() if name in UNSOUND else None
 
     @settings(
@@ -51,7 +51,7 @@ def run(name: str, number: int, phases: tuple[Phase, ...] = tuple(Phase), exampl
     )
     @seed(number)
     @given(flights(demands=demands))
-    def keeps_the_limits(flight):
+    def keeps_the_limits(flight: Flight) -> None:
         report = audit_scheduler(make, flight)
         violations[:] = report.violations
         assert report.ok
@@ -66,11 +66,11 @@ def run(name: str, number: int, phases: tuple[Phase, ...] = tuple(Phase), exampl
 
 def row(name: str, runs: list[Run]) -> tuple[str, bool]:
     """A row of the table, and whether it is as required."""
-    found = [one for one in runs if one.violation is not None]
+    found = [one.violation for one in runs if one.violation is not None]
     longest_s = max(one.seconds for one in runs)
     passed = len(found) == (0 if SCHEDULERS[name] in CORRECT else len(runs)) and longest_s < LONGEST_S
-    shortest = min((one.violation for one in found), key=len, default="")
-    what = SCHEDULERS[name].__doc__.splitlines()[0]
+    shortest = min(found, key=len, default="")
+    what = (SCHEDULERS[name].__doc__ or name).splitlines()[0]
     text = f"{what:62} {len(found)} of {len(runs)}  {longest_s:5.1f} s  {shortest}"
     return text + ("" if passed else "  <-- WRONG"), passed
 

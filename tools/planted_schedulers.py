@@ -3,25 +3,28 @@
 ``tools/planted.py`` measures on them what ``sim.testing`` finds. They use its public interface alone.
 """
 
+from collections.abc import Sequence
 from math import ceil
 
 import numpy as np
 
-from sim.testing import Fire, ShippedScheduler
+from sim.testing import Fire, Heard, Limits, ShippedScheduler
+
+Vec3 = tuple[float, float, float]
 
 
 class Timers:
     """timers of its own; of the board it uses only the boots"""
 
-    def __init__(self, limits):
+    def __init__(self, limits: Limits) -> None:
         self.limits = limits
         self.pulse = limits.pulse_ms * limits.tick_hz // 1000
         self.backoff = ceil(limits.backoff_ms * limits.tick_hz / 1000)
-        self.ready = self.busy_until = None
-        self.fired = 0
+        self.ready: list[int] = []
+        self.busy_until = self.fired = 0
 
-    def step(self, heard):
-        if self.ready is None or heard.booted:
+    def step(self, heard: Heard) -> Sequence[Fire]:
+        if not self.ready or heard.booted:
             self.ready, self.busy_until = [heard.tick + self.boot_ticks()] * 3, heard.tick
         demand = heard.m_body_am2
         coil = self.coil(demand)
@@ -36,42 +39,42 @@ class Timers:
                 self.ready[one] = again
         return [Fire(one, level, self.duration_ms(coil)) for one in self.fires(coil, demand)]
 
-    def boot_ticks(self):
+    def boot_ticks(self) -> int:
         """A pulse may be under way when it boots."""
         return self.pulse + self.backoff
 
-    def coil(self, demand):
+    def coil(self, demand: Vec3) -> int:
         return max(range(3), key=lambda axis: abs(demand[axis]))
 
-    def free(self, coil, heard):
+    def free(self, coil: int, heard: Heard) -> bool:
         return heard.tick >= max(self.ready[coil], self.busy_until)
 
-    def level(self, m_am2):
+    def level(self, m_am2: float) -> int:
         return 3 if m_am2 > 0.0 else -3
 
-    def pulse_ticks(self, coil):
+    def pulse_ticks(self, coil: int) -> int:
         return self.pulse
 
-    def duration_ms(self, coil):
+    def duration_ms(self, coil: int) -> int:
         return self.pulse_ticks(coil) * 1000 // self.limits.tick_hz
 
-    def backoff_ticks(self, level):
+    def backoff_ticks(self, level: int) -> int:
         return self.backoff
 
-    def locks(self, fired, coil):
+    def locks(self, fired: int, coil: int) -> bool:
         return self.limits.shared or coil == fired
 
-    def fires(self, coil, demand):
+    def fires(self, coil: int, demand: Vec3) -> list[int]:
         return [coil]
 
 
 class ByTheBoard(Timers):
     """timers, and the lockout that the board reports"""
 
-    def boot_ticks(self):
+    def boot_ticks(self) -> int:
         return self.backoff
 
-    def free(self, coil, heard):
+    def free(self, coil: int, heard: Heard) -> bool:
         status = heard.status
         reported_free = status is not None and status.coil == coil and status.lockout_ms == 0
         return reported_free and super().free(coil, heard)
@@ -80,13 +83,14 @@ class ByTheBoard(Timers):
 class ByMilliseconds:
     """levels and durations by the demand, all times in parts of a tick"""
 
-    def __init__(self, limits):
-        self.limits, self.ready, self.end = limits, None, None
+    def __init__(self, limits: Limits) -> None:
+        self.limits, self.end = limits, 0
+        self.ready: list[int] = []
 
-    def step(self, heard):
+    def step(self, heard: Heard) -> Sequence[Fire]:
         hz, limits = self.limits.tick_hz, self.limits
         now = heard.tick * 1000
-        if self.ready is None or heard.booted:
+        if not self.ready or heard.booted:
             self.end = now
             self.ready = [now + (limits.pulse_ms + limits.backoff_ms) * hz] * 3
         size, coil = max((abs(m), axis) for axis, m in enumerate(heard.m_body_am2))
@@ -108,7 +112,7 @@ CORRECT = (Timers, ByTheBoard, ByMilliseconds, ShippedScheduler)
 class _EveryNth(Timers):
     n: int
 
-    def pulse_ticks(self, coil):
+    def pulse_ticks(self, coil: int) -> int:
         return self.pulse + (self.fired % self.n == 0)
 
 
@@ -133,35 +137,35 @@ class EveryFiveHundredth(_EveryNth):
 class TwoOnEqual(Timers):
     """two coils on demands of equal size"""
 
-    def fires(self, coil, demand):
+    def fires(self, coil: int, demand: Vec3) -> list[int]:
         return [one for one in range(3) if abs(demand[one]) == abs(demand[coil])]
 
 
 class TwoOnEqualValues(Timers):
     """two coils on demands of equal value"""
 
-    def fires(self, coil, demand):
+    def fires(self, coil: int, demand: Vec3) -> list[int]:
         return [one for one in range(3) if demand[one] == demand[coil]]
 
 
 class BelowCoilZero(Timers):
     """coil -1 where two demands are equal in size"""
 
-    def fires(self, coil, demand):
+    def fires(self, coil: int, demand: Vec3) -> list[int]:
         return [coil if sum(abs(m) == abs(demand[coil]) for m in demand) == 1 else -1]
 
 
 class AboveCoilTwo(Timers):
     """coil 3 where all demands are equal in size"""
 
-    def fires(self, coil, demand):
+    def fires(self, coil: int, demand: Vec3) -> list[int]:
         return [coil if len({abs(m) for m in demand}) > 1 else 3]
 
 
 class LevelFour(Timers):
     """level 4 for a demand beyond full scale"""
 
-    def level(self, m_am2):
+    def level(self, m_am2: float) -> int:
         level = min(4, ceil(abs(m_am2) / 8.0 * 3))
         return level if m_am2 > 0.0 else -level
 
@@ -169,30 +173,30 @@ class LevelFour(Timers):
 class LevelZero(Timers):
     """level 0 on a small demand"""
 
-    def level(self, m_am2):
+    def level(self, m_am2: float) -> int:
         return max(-3, min(3, round(m_am2 / 8.0 * 3)))
 
 
 class ShortAfterNegative(Timers):
     """back-off a tick short after a negative pulse"""
 
-    def backoff_ticks(self, level):
+    def backoff_ticks(self, level: int) -> int:
         return self.backoff - (level < 0)
 
 
 class FromTheStart(Timers):
     """back-off counted from the start of the pulse"""
 
-    def backoff_ticks(self, level):
+    def backoff_ticks(self, level: int) -> int:
         return self.backoff - self.pulse
 
 
 class ShortAfterLost(Timers):
     """no back-off after a pulse that no status shows"""
 
-    last_request_tick = None
+    last_request_tick: int | None = None
 
-    def step(self, heard):
+    def step(self, heard: Heard) -> Sequence[Fire]:
         status = heard.status
         if self.last_request_tick == heard.tick - 1 and not (status is not None and status.level):
             self.ready, self.busy_until = [heard.tick] * 3, heard.tick
@@ -205,9 +209,10 @@ class ShortAfterLost(Timers):
 class ShortAfterTwoLost(Timers):
     """half a back-off once two requests in a row were lost"""
 
-    last_request_tick, lost = None, 0
+    last_request_tick: int | None = None
+    lost = 0
 
-    def step(self, heard):
+    def step(self, heard: Heard) -> Sequence[Fire]:
         if self.last_request_tick == heard.tick - 1 and heard.status is not None:
             self.lost = 0 if heard.status.level else self.lost + 1
         requests = super().step(heard)
@@ -215,42 +220,42 @@ class ShortAfterTwoLost(Timers):
             self.last_request_tick = heard.tick
         return requests
 
-    def backoff_ticks(self, level):
+    def backoff_ticks(self, level: int) -> int:
         return self.backoff // 2 if self.lost >= 2 else self.backoff
 
 
 class ForgetsAtReboot(Timers):
     """fires at once after a boot of its own"""
 
-    def boot_ticks(self):
+    def boot_ticks(self) -> int:
         return 0
 
 
 class ForgetsThePulse(Timers):
     """forgets at a boot that a pulse may be under way"""
 
-    def boot_ticks(self):
+    def boot_ticks(self) -> int:
         return self.backoff
 
 
 class DeafToBoots(Timers):
     """ignores that the board has booted"""
 
-    def step(self, heard):
+    def step(self, heard: Heard) -> Sequence[Fire]:
         return super().step(heard._replace(booted=False))
 
 
 class PerCoil(Timers):
     """back-off per coil where it is shared"""
 
-    def locks(self, fired, coil):
+    def locks(self, fired: int, coil: int) -> bool:
         return coil == fired
 
 
 class PulseRoundedUp(Timers):
     """a pulse that is no whole number of ticks rounded up"""
 
-    def __init__(self, limits):
+    def __init__(self, limits: Limits) -> None:
         super().__init__(limits)
         self.pulse = ceil(limits.pulse_ms * limits.tick_hz / 1000)
 
@@ -258,7 +263,7 @@ class PulseRoundedUp(Timers):
 class BackoffRoundedDown(Timers):
     """a back-off that is no whole number of ticks rounded down"""
 
-    def __init__(self, limits):
+    def __init__(self, limits: Limits) -> None:
         super().__init__(limits)
         self.backoff = limits.backoff_ms * limits.tick_hz // 1000
 
@@ -266,7 +271,7 @@ class BackoffRoundedDown(Timers):
 class WholeMilliseconds(Timers):
     """counts in ticks of whole milliseconds"""
 
-    def __init__(self, limits):
+    def __init__(self, limits: Limits) -> None:
         super().__init__(limits)
         self.backoff = ceil(limits.backoff_ms / ceil(1000 / limits.tick_hz))
 
@@ -274,33 +279,33 @@ class WholeMilliseconds(Timers):
 class SixteenBits(Timers):
     """counts ticks in 16 bits, which overflow"""
 
-    def step(self, heard):
+    def step(self, heard: Heard) -> Sequence[Fire]:
         return super().step(heard._replace(tick=heard.tick & 0xFFFF))
 
-    def free(self, coil, heard):
+    def free(self, coil: int, heard: Heard) -> bool:
         return heard.tick >= max(self.ready[coil], self.busy_until) & 0xFFFF
 
 
 class ShortFloats(Timers):
     """keeps times in floats of 32 bits"""
 
-    def free(self, coil, heard):
-        return np.float32(heard.tick) >= np.float32(max(self.ready[coil], self.busy_until))
+    def free(self, coil: int, heard: Heard) -> bool:
+        return bool(np.float32(heard.tick) >= np.float32(max(self.ready[coil], self.busy_until)))
 
 
 class CountsInAByte(Timers):
     """counts pulses in a byte, without a back-off where the count is zero"""
 
-    def backoff_ticks(self, level):
+    def backoff_ticks(self, level: int) -> int:
         return self.backoff if self.fired & 0xFF else 0
 
 
 class SendsAgain(Timers):
     """sends a request again where the status after it is lost"""
 
-    last = ()
+    last: Sequence[Fire] = ()
 
-    def step(self, heard):
+    def step(self, heard: Heard) -> Sequence[Fire]:
         if heard.status is None and self.last:
             again, self.last = self.last, ()
             return again
@@ -311,7 +316,7 @@ class SendsAgain(Timers):
 class SeesOneCoil(Timers):
     """ignores that another coil is on where the back-off is per coil"""
 
-    def free(self, coil, heard):
+    def free(self, coil: int, heard: Heard) -> bool:
         return heard.tick >= self.ready[coil]
 
 
@@ -320,7 +325,7 @@ class Credit(Timers):
 
     fired_at = 0
 
-    def step(self, heard):
+    def step(self, heard: Heard) -> Sequence[Fire]:
         requests = super().step(heard)
         if requests:
             if self.fired > 1 and heard.tick - self.fired_at > 3 * (self.pulse + self.backoff):
@@ -332,15 +337,15 @@ class Credit(Timers):
 class DurationRoundedUp(Timers):
     """a duration rounded up to whole milliseconds, and so past the tick it ends with"""
 
-    def duration_ms(self, coil):
+    def duration_ms(self, coil: int) -> int:
         return ceil(self.pulse * 1000 / self.limits.tick_hz)
 
 
 class TickZero(Timers):
     """ignores a boot in tick 0"""
 
-    def step(self, heard):
-        if self.ready is None and heard.tick == 0:
+    def step(self, heard: Heard) -> Sequence[Fire]:
+        if not self.ready and heard.tick == 0:
             self.ready, self.busy_until = [0] * 3, 0
             heard = heard._replace(booted=False)
         return super().step(heard)
@@ -351,7 +356,7 @@ class HearsBootsLate(Timers):
 
     booted = False
 
-    def step(self, heard):
+    def step(self, heard: Heard) -> Sequence[Fire]:
         before, self.booted = self.booted, heard.booted
         return super().step(heard._replace(booted=before))
 
@@ -359,7 +364,7 @@ class HearsBootsLate(Timers):
 class NoNumber(Timers):
     """level 0 for a demand that is not a number"""
 
-    def level(self, m_am2):
+    def level(self, m_am2: float) -> int:
         return (m_am2 > 0.0) * 3 - (m_am2 < 0.0) * 3
 
 

@@ -10,22 +10,23 @@ from pathlib import Path
 import nbformat
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError
+from nbformat import NotebookNode
 
 ROOT = Path(__file__).resolve().parents[1]
 NOTEBOOKS = ROOT / "docs" / "notebooks"
 LONGEST_CELL_S = 600
 
 
-def read(name, **parameters):
+def read(name: str, **parameters: object) -> NotebookNode:
     """A notebook; parameters replace those of its cell with the tag ``parameters``."""
-    notebook = nbformat.read(NOTEBOOKS / f"{name}.ipynb", as_version=4)
+    notebook: NotebookNode = nbformat.read(NOTEBOOKS / f"{name}.ipynb", as_version=4)
     for cell in notebook.cells:
         if parameters and "parameters" in cell.metadata.get("tags", ()):
             cell.source = "\n".join(f"{key} = {value!r}" for key, value in parameters.items())
     return notebook
 
 
-def execute(notebook, folder):
+def execute(notebook: NotebookNode, folder: Path) -> None:
     """Execute it in a folder; it then has its output."""
     resources = {"metadata": {"path": str(folder)}}
     quiet = ["--log-level=ERROR"]  # its warnings are about TCP on 127.0.0.1
@@ -35,7 +36,7 @@ def execute(notebook, folder):
     client.execute()
 
 
-def main(names):
+def main(names: list[str]) -> None:
     folder = ROOT / "build" / "notebooks"
     folder.mkdir(parents=True, exist_ok=True)
     for name in names or sorted(path.stem for path in NOTEBOOKS.glob("*.ipynb")):

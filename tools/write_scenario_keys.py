@@ -12,7 +12,7 @@ from sim.scenario.keys.page import page
 DOCS = Path(__file__).resolve().parent.parent / "docs"
 
 
-def documents():
+def documents() -> dict[Path, str]:
     return {
         DOCS / "scenario-keys.md": page(),
         DOCS / "scenario.schema.json": as_text(),
