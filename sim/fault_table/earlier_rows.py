@@ -14,7 +14,7 @@ from sim.fault_table.row import CaseResult, RowResult
 from sim.fault_table.rows.table import ROWS
 
 MOST_BYTES = 64_000_000
-"""A whole campaign of ten phases and five seeds takes 3 MB."""
+"""A whole campaign of ten phases and five seeds takes 6 MB."""
 
 
 class EarlierRow(BaseModel):
