@@ -17,7 +17,8 @@ from typing import NamedTuple
 from hypothesis import HealthCheck, Phase, given, seed, settings
 
 sys.path.insert(0, str(Path(__file__).parent))
-from planted_schedulers import CORRECT, PLANTED, UNSOUND
+from correct_schedulers import CORRECT
+from planted_schedulers import PLANTED, UNSOUND
 
 from sim.testing import Flight, Violation, audit_scheduler, dipoles, flights, unsound_dipoles
 
@@ -78,14 +79,17 @@ def row(name: str, runs: list[Run]) -> tuple[str, bool]:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument(
-        "names", nargs="*", metavar="NAME", help="classes of planted_schedulers.py; default: all"
+        "names",
+        nargs="*",
+        metavar="NAME",
+        help="classes of *_schedulers.py; default: all",
     )
     parser.add_argument("--runs", type=int, default=4, help="seeds of each (4)")
     parser.add_argument("--workers", type=int, default=1, help="runs at a time (1)")
     options = parser.parse_args()
     unknown = sorted(set(options.names) - SCHEDULERS.keys())
     if unknown:
-        parser.error(f"no scheduler {', '.join(unknown)} in planted_schedulers.py")
+        parser.error(f"no scheduler {', '.join(unknown)} in planted_schedulers.py or correct_schedulers.py")
     names = options.names or list(SCHEDULERS)
     seeds = range(1, options.runs + 1)
     runs_to_do = [(name, number) for name in names for number in seeds]

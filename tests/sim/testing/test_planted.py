@@ -6,9 +6,10 @@ as a user would, from four.
 """
 
 import pytest
+from correct_schedulers import CORRECT
 from hypothesis import Phase
 from planted import Run, row, run
-from planted_schedulers import CORRECT, PLANTED
+from planted_schedulers import PLANTED
 
 SEED = 1
 SEEDS = (1, 2, 3)
