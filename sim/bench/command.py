@@ -108,6 +108,8 @@ def hil(settings: HilSettings) -> int:
     if settings.scenario.fault:
         kind = settings.scenario.fault[0].kind
         raise HarnessError(f"fault[0], {kind}: a bench injects no faults: fly the scenario by sil")
+    if settings.scenario.wheel is not None:
+        raise HarnessError("[wheel]: a bench has no board of a wheel: fly the scenario by sil")
     if settings.stimulus != "plant" and settings.scenario.knowledge == "perfect":
         raise HarnessError("a scenario with knowledge = 'perfect' needs the plant: --stimulus plant")
     with (

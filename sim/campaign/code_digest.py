@@ -1,6 +1,9 @@
 """What tells the code of one flight from the code of another, by the text of its files."""
 
+import ast
 import hashlib
+import io
+import tokenize
 from functools import cache
 from pathlib import Path
 
@@ -25,12 +28,18 @@ FLIGHT_CODE = (
     "sim/statistics",
 )
 """Folders and files that a flight and its figures follow from."""
-SUFFIXES = (".py", ".toml", ".dbc")
+NOT_FLOWN = ("sim/campaign/code_digest.py", "sim/scenario/keys")
+"""Within those, what none imports: the page of all keys, and this module."""
+DATA = (".toml", ".dbc")
 
 
 @cache
 def code_digest(parts: tuple[str, ...] = FLIGHT_CODE, house: Path = HOUSE) -> str:
-    """The same for the same text of some folders and files; by default all that flights follow from.
+    """The same for the same programs and data, whatever their comments and docstrings.
+
+    Args:
+        parts: folders and files; by default all that flights follow from.
+        house: where they are.
 
     Raises:
         HarnessError: one of them is not there, so that its changes would go unnoticed.
@@ -38,9 +47,33 @@ def code_digest(parts: tuple[str, ...] = FLIGHT_CODE, house: Path = HOUSE) -> st
     digest = hashlib.sha256()
     for part in (house / part for part in parts):
         whole = [part] if part.is_file() else sorted(part.rglob("*"))
-        files = [path for path in whole if path.suffix in SUFFIXES]
+        files = [path for path in whole if path.suffix in (".py", *DATA)]
         if not files:
             raise HarnessError(f"{part}: holds no code to tell from other code")
         for path in files:
-            digest.update(path.relative_to(house).as_posix().encode() + path.read_bytes())
+            name = path.relative_to(house)
+            if not any(name.is_relative_to(left_out) for left_out in NOT_FLOWN):
+                content = (
+                    path.read_bytes() if path.suffix in DATA else program(path.read_text(encoding="utf-8"))
+                )
+                digest.update(name.as_posix().encode() + content)
     return digest.hexdigest()[:16]
+
+
+def program(source: str) -> bytes:
+    """The lines of a module without comments and without statements that are a text alone."""
+    lines: list[str | None] = list(source.splitlines())
+    for node in ast.walk(ast.parse(source)):
+        if (
+            isinstance(node, ast.Expr)
+            and isinstance(node.value, ast.Constant)
+            and isinstance(node.value.value, str)
+        ):
+            end = node.end_lineno or node.lineno
+            lines[node.lineno - 1 : end] = [None] * (end + 1 - node.lineno)
+    for token in tokenize.generate_tokens(io.StringIO(source).readline):
+        row, column = token.start
+        line = lines[row - 1] if token.type == tokenize.COMMENT else None
+        if line is not None:
+            lines[row - 1] = line[:column].rstrip() or None
+    return "\n".join(line for line in lines if line is not None).encode()

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from fsw.core.laws.table import LAWS
 from torquer.cli.main import COMMANDS
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -66,6 +67,11 @@ def test_the_page_of_laws_has_its_figures_at_its_end_alone():
     assert len(FIGURES) > 10
     before = LAWS_PAGE.partition("Each figure below")[0]
     assert not re.findall(r"\d deg RMS|\d %", before)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_the_page_of_laws_has_every_law_with_its_number(law):
+    assert LAWS_PAGE.count(f"\n| `{law}` | {LAWS[law].number} |") == 1
 
 
 @pytest.mark.parametrize("figures", FIGURES, ids=lambda text: text.partition("`")[2].partition("`")[0])

@@ -46,19 +46,18 @@ def json_schema() -> dict[str, Any]:
 
     ``flight`` has the keys of the onboard table, none of which is required there.
     """
-    schema, onboard = Scenario.model_json_schema(), FlightTable.model_json_schema()
+    schema = Scenario.model_json_schema()
+    onboard = FlightTable.model_json_schema(ref_template="#/$defs/Flight{model}")
+    for section in onboard["properties"].values():
+        section.pop("default", None)  # an object of nulls, which a file cannot hold
     sections: dict[str, Any] = schema["$defs"]
     for name, section in onboard["$defs"].items():
         sections[f"Flight{name}"] = {key: value for key, value in section.items() if key != "required"}
-    onboard_keys = {
-        name: {"$ref": value["$ref"].replace("/$defs/", "/$defs/Flight")} if "$ref" in value else value
-        for name, value in onboard["properties"].items()
-    }
     schema["properties"]["flight"] = {
         "type": "object",
         "description": "Values of the onboard table that differ from those above.",
         "additionalProperties": False,
-        "properties": onboard_keys,
+        "properties": onboard["properties"],
     }
     _for_people([schema, *sections.values()])
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}

@@ -1,14 +1,15 @@
 """The page of all keys of a scenario, written from the schema."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
+from fsw.table.table import default_values
 from sim.scenario.keys.editor_schema import json_schema, unit_of
 
 HEAD = """# Scenario keys
 
 Written from the schema by `tools/write_scenario_keys.py`. Every key of a scenario file, by section, with
-its unit, what is allowed, and its default; a key without a default must be given. A name ends with its
+its unit, what is allowed, and its default; one with no default is optional. A name ends with its
 unit, components are in body axes. `torquer sil --set SECTION.KEY=VALUE` lays a value over any of them.
 
 `torquer scenarios --schema > scenario.schema.json` writes the schema as JSON Schema. Editors with Taplo
@@ -18,8 +19,7 @@ FLIGHT = """## [flight]
 
 Values of the onboard table that differ from those above, for instance the inertia that the controller
 assumes. Values that both share (orbit, body, coils, control, time) are taken from the scenario, all
-others from `fsw/flight.toml`. `[flight.uncertainty]` says how far the table may be off:
-[uncertainty.md](uncertainty.md).
+others from `fsw/flight.toml`.
 """
 _BOUNDS = {
     "minimum": "at least",
@@ -34,8 +34,26 @@ _TYPES = {
     "boolean": "true or false",
     "object": "section",
 }
-_ONBOARD_ALONE = ("field", "uncertainty", "estimator", "modes", "fdir", "telemetry")
+_ONBOARD_ALONE = (
+    "field",
+    "uncertainty",
+    "calibration",
+    "cells",
+    "estimator",
+    "modes",
+    "fdir",
+    "telemetry",
+)
 """Sections of the onboard table that a scenario has not, or with other keys."""
+NO_DEFAULTS: Mapping[str, Any] = {}
+_SAID = {
+    "flight.uncertainty": "Bounds of what the table may be wrong by. One that is left out takes the ordinary value "
+    "for a satellite of this size: [uncertainty.md](uncertainty.md).",
+    "flight.calibration.magnetometer": "b_body = matrix (reading - offset_nt): offset, and scale, non-orthogonality and "
+    "turn as one matrix. Beyond a reading of `range_nt`, 65000 unless given, an axis saturates.",
+    "flight.calibration": "Of this very satellite: [calibration.md](calibration.md).",
+}
+"""Of sections whose own text is for a reader of the code."""
 
 
 def page() -> str:
@@ -47,23 +65,29 @@ def page() -> str:
         if name != "flight":
             parts += _section(name, value, sections)
     parts.append(FLIGHT)
-    onboard = schema["properties"]["flight"]["properties"]
+    onboard, defaults = schema["properties"]["flight"]["properties"], default_values()
     for name in _ONBOARD_ALONE:
-        parts += _section(f"flight.{name}", onboard[name], sections)
+        parts += _section(f"flight.{name}", onboard[name], sections, defaults.get(name, {}))
     return "\n".join(parts)
 
 
-def _section(name: str, value: dict[str, Any], sections: dict[str, Any]) -> list[str]:
-    """Heading, text and table of a section, and of those in it; nothing for a plain key."""
+def _section(
+    name: str, value: dict[str, Any], sections: dict[str, Any], defaults: Mapping[str, Any] = NO_DEFAULTS
+) -> list[str]:
+    """Heading, text and table of a section, and of those in it; nothing for a plain key.
+
+    ``defaults``: of its keys where the schema has none.
+    """
     parts: list[str] = []
     for target, repeated in _targets(value):
         section = sections[target]
         message = section["properties"].get("message", {}).get("const")
         heading = f"[[{name}]]" if repeated else f"[{name}]"
-        parts += [f"## {heading}{f' {message}' if message else ''}\n", f"{_text(section)}\n"]
+        said = _SAID.get(name) or _text(section)
+        parts += [f"## {heading}{f' {message}' if message else ''}\n", f"{said}\n"]
         plain = _plain(section)
         if plain:
-            parts.append(_table(plain, section.get("required", ())))
+            parts.append(_table(plain, section.get("required", ()), defaults))
         for key, inner in section["properties"].items():
             parts += _section(f"{name}.{key}", inner, sections)
     return parts
@@ -89,17 +113,15 @@ def _text(section: dict[str, Any]) -> str:
     return str(section.get("description", "")).replace("``", "`")
 
 
-def _table(keys: dict[str, Any], required: Sequence[str]) -> str:
+def _table(keys: dict[str, Any], required: Sequence[str], defaults: Mapping[str, Any] = NO_DEFAULTS) -> str:
     rows = ["| key | unit | allowed | default |", "|---|---|---|---|"]
     for key, value in keys.items():
-        rows.append(f"| `{key}` | {unit_of(key)} | {_allowed(value)} | {_default(key, value, required)} |")
+        default = "must be given" if key in required else _default(value.get("default", defaults.get(key)))
+        rows.append(f"| `{key}` | {unit_of(key)} | {_allowed(value)} | {default} |")
     return "\n".join([*rows, ""])
 
 
-def _default(key: str, value: dict[str, Any], required: Sequence[str]) -> str:
-    if key in required:
-        return "must be given"
-    default = value.get("default")
+def _default(default: object) -> str:
     if default in (None, [], {}):
         return ""
     text = str(default).lower() if isinstance(default, bool) else str(default)

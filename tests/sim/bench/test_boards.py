@@ -1,4 +1,4 @@
-"""Which boards a bench has: a Sun sensor or Sun cells, as the satellite has."""
+"""Which boards a bench has: a Sun sensor or Sun cells, as the satellite has; none of a wheel."""
 
 from dataclasses import replace
 
@@ -35,4 +35,10 @@ def test_the_boards_are_those_of_the_satellite(scenario, sees):
 def test_one_that_the_satellite_has_not_cannot_be_real(scenario, real, has):
     settings = replace(SETTINGS, scenario=load(scenario), real=real_boards(f"coil,{real}"))
     with pytest.raises(HarnessError, match=f"--real {real}: {scenario} has .?.?{has}"):
+        hil(settings)
+
+
+def test_a_satellite_whose_wheel_no_board_would_drive_is_refused():
+    settings = replace(SETTINGS, scenario=load("microsat-wheel"))
+    with pytest.raises(HarnessError, match=r"^\[wheel\]: a bench has no board of a wheel"):
         hil(settings)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from sim.campaign.code_digest import FLIGHT_CODE, code_digest
+from sim.campaign.code_digest import FLIGHT_CODE, NOT_FLOWN, code_digest, program
 from sim.errors import HarnessError
 
 
@@ -42,10 +42,38 @@ def test_it_is_the_same_for_the_same_code_elsewhere(house):
 @pytest.mark.parametrize("part", FLIGHT_CODE)
 def test_it_is_another_where_a_line_of_any_part_is(house, part):
     file = house / part if part.endswith(".py") else next((house / part).rglob("*.py"))
-    before, content = code_digest.__wrapped__(house=house), file.read_bytes()
-    file.write_bytes(content + b"# changed\n")
-    assert code_digest.__wrapped__(house=house) != before
+    before, content = code_digest.__wrapped__((part,), house), file.read_bytes()
+    file.write_bytes(content + b"CHANGED = 1\n")
+    assert code_digest.__wrapped__((part,), house) != before
     file.write_bytes(content)
+
+
+def test_words_for_readers_are_no_code():
+    one = (
+        '"""A module."""\n\nX = 1  # now\n\n\ndef f():\n    """Nothing."""\n    # why\n    return "# text"\n'
+    )
+    other = one.replace("A module.", "Another.\n\nIn two lines.\n").replace("Nothing.", "A text.")
+    assert program(one) == program(other.replace("  # now", "").replace("    # why\n", ""))
+
+
+@pytest.mark.parametrize(
+    ("code", "changed"),
+    [
+        ("x = 1\n", "x = 2\n"),
+        ('x = "# a"\n', 'x = "# b"\n'),
+        ('x = """a\n# b\n"""\n', 'x = """a\n# c\n"""\n'),
+        ("if a:\n    b()\nc()\n", "if a:\n    b()\n    c()\n"),
+        ('f("a")\n', 'f("b")\n'),
+    ],
+)
+def test_all_that_is_executed_is_code(code, changed):
+    assert program(code) != program(changed)
+
+
+def test_a_file_that_no_flight_imports_may_change(house):
+    before = code_digest.__wrapped__(("sim/scenario",), house)
+    (house / "sim/scenario/keys/page.py").write_text("CHANGED = 1\n")
+    assert code_digest.__wrapped__(("sim/scenario",), house) == before
 
 
 @pytest.mark.long
@@ -57,6 +85,7 @@ def test_it_is_of_all_that_a_flight_imports():
     parts = [Path(part) for part in (*FLIGHT_CODE, *ONLY_SHOWN)]
     assert len(imported) > 200
     assert not [file for file in imported if not any(file.is_relative_to(part) for part in parts)]
+    assert not [file for file in imported if any(file.is_relative_to(part) for part in NOT_FLOWN)]
 
 
 def test_a_part_that_is_not_there_is_told(tmp_path):

@@ -7,7 +7,7 @@ import pytest
 
 from sim.campaign.flight import FlightResult
 from sim.campaign.population import Tolerances, population_order
-from sim.validate.population.page import TOLERANCES, page, satellites_table
+from sim.validate.population.page import TOLERANCES, never_pointed, page, satellites_table
 from sim.validate.population.pictures import draw_satellites, draw_sweep, spread_of
 from sim.validate.population.sweep import QUANTITIES
 
@@ -62,6 +62,18 @@ def test_a_satellite_is_a_row():
     assert rows[2] == "| 7 | 0.0213 | 7.3 | 1.15 | 91.2 | 4.2 | 0.31 | 1.52 | 1.80 | none |"
     assert rows[3].endswith("| never | coil 1 |")
     assert len({row.count("|") for row in rows}) == 1
+
+
+def test_satellites_that_never_point_are_counted_beside_what_a_coil_gives_in_the_mean():
+    flights = [flight(), flight(2, pointed_orbits=inf), flight(3, pointed_orbits=inf, dipole_am2=0.0072)]
+    _, sentence = never_pointed("3u", flights)
+    assert sentence.startswith(
+        "2 of 3 never come within 10 deg for good; their dipoles are 0.0072 to 0.0213 A m^2. "
+    )
+    assert sentence.endswith(
+        "A coil gives 0.0014 A m^2 in the mean, at its highest level."
+    )  # 0.048 x 3 s / 103 s
+    assert never_pointed("3u", flights[:1]) == []
 
 
 def test_every_tolerance_is_on_the_page():
