@@ -8,6 +8,8 @@ from typing import Any, NamedTuple
 
 from mutants import Mutant, mutants
 
+from sim.record.run_dir import replace_file
+
 ROOT = Path(__file__).resolve().parents[1]
 HERE = ROOT / "tests" / "mutation"
 PAGE = ROOT / "docs" / "mutation.md"
@@ -90,7 +92,7 @@ def stored(path: Path) -> dict[str, Any]:
 
 
 def store(path: Path, results: dict[str, Any]) -> None:
-    path.write_text(json.dumps(results, indent=2, sort_keys=True) + "\n", encoding="utf-8")
+    replace_file(path, (json.dumps(results, indent=2, sort_keys=True) + "\n").encode())
 
 
 def digest(module: str, target: Target) -> str:

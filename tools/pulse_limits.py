@@ -31,6 +31,7 @@ from sim.design.limits.sweep import (
 from sim.errors import HarnessError
 from sim.record.destination import check_file
 from sim.record.estimates import Estimates
+from sim.record.run_dir import replace_file
 from sim.record.truth import Histories
 from sim.scenario.schema import Scenario, load
 from sim.validate.microsat import pointing_deg
@@ -75,7 +76,7 @@ def fly_missing(rows: Rows, path: Path) -> None:
     for number, name in enumerate(missing, start=1):
         of_bus = name in checked
         rows[name] = both(*checked[name], orbits) if of_bus else [orders[name].error_deg(orbits)]
-        path.write_text(json.dumps(rows, indent=0), encoding="utf-8")
+        replace_file(path, json.dumps(rows, indent=0).encode())
         print(f"flying: {number} of {len(missing)}", file=sys.stderr, flush=True)
 
 
@@ -90,7 +91,7 @@ def faults(rows: Rows) -> Iterator[str]:
         yield f"less error than the bound: {what}"
     for one in agreements(rows):
         apart = min(abs(one.whole_deg - error) for error in one.linear_deg)
-        if apart > AGREED_PART * one.whole_deg + AGREED_DEG:
+        if not apart <= AGREED_PART * one.whole_deg + AGREED_DEG:
             yield f"linear and whole flight differ by {apart:.3f} deg: {one.name}"
 
 
@@ -125,7 +126,8 @@ def main(words: Sequence[str] | None = None) -> int:
     try:
         check_file(arguments.out)
         check_file(arguments.rows)
-        rows = read(arguments.rows) if arguments.keep or arguments.render else {}
+        kept = arguments.render or (arguments.keep and arguments.rows.exists())
+        rows = read(arguments.rows) if kept else {}
         if not arguments.render:
             fly_missing(rows, arguments.rows)
     except (HarnessError, TableError) as error:

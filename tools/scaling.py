@@ -34,6 +34,7 @@ from sim.campaign.report.analysis import analyse
 from sim.campaign.report.page import write_page
 from sim.campaign.results.row import RunRow
 from sim.campaign.results.store import RESULTS, open_results
+from sim.errors import HarnessError
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "scaling.md"
@@ -90,21 +91,23 @@ def cluster(workers: int) -> Iterator[tuple[Cluster, int]]:
     with TemporaryDirectory() as folder, ExitStack() as processes:
         file = Path(folder, "scheduler.json")
 
-        def start(module: str, *options: str) -> int:
+        def start(module: str, *options: str) -> "subprocess.Popen[bytes]":
             command = [sys.executable, "-m", f"distributed.cli.{module}", *options]
             command += ["--scheduler-file", str(file), "--no-dashboard"]
             process = subprocess.Popen(command, cwd=folder, env=environment(), stderr=subprocess.DEVNULL)
             processes.callback(process.wait)
             processes.callback(process.terminate)
-            return process.pid
+            return process
 
         scheduler = start("dask_scheduler", "--host", "127.0.0.1", "--port", "0")
         while not file.exists():
+            if scheduler.poll() is not None:
+                raise HarnessError(f"the Dask scheduler ended with exit code {scheduler.returncode}")
             time.sleep(0.1)
         for _ in range(workers):
             start("dask_worker", "--nthreads", "1", "--no-nanny")
         time.sleep(STARTS_S)
-        yield Cluster(str(file)), scheduler
+        yield Cluster(str(file)), scheduler.pid
 
 
 def environment() -> dict[str, str]:

@@ -78,9 +78,9 @@ def fly(folder: Path, name: str, hours: float) -> None:
     """Simulated hours on the virtual bus, in this process."""
     scenario = load(name)
     tick_hz = scenario.time.tick_hz
+    if not 0.0 < 3600.0 * hours * tick_hz <= MOST_TICKS:
+        raise HarnessError(f"--hours {hours:g}: a run has 1 to {MOST_TICKS} ticks")
     ticks = max(1, round(3600.0 * hours * tick_hz))
-    if ticks > MOST_TICKS:
-        raise HarnessError(f"--hours {hours:g}: a run has at most {MOST_TICKS} ticks")
     run_dir.begin(folder, scenario, 1, ticks, "virtual", Pace())
     bus = TimedBus(FlightNode(flight_config(flight_table(scenario))))
     memory = MemoryMonitor({"flight": os.getpid()}, ticks, tick_hz, WARM_PART * ticks / tick_hz, WATCH_TICKS)
@@ -154,6 +154,9 @@ def bench_part(folder: Path) -> RunResult:
     )
     lines = [BudgetLine(line["name"], line["measured"], line["allowed"]) for line in numbers["budgets"]]
     lines.append(BudgetLine("nodes that ended before their time", len(numbers["ended"]), 0))
+    lines.append(BudgetLine("second senders on the bus", len(numbers["second_senders"]), 0))
+    unread = not any(line.name.startswith("memory of ") for line in lines)
+    lines.append(BudgetLine("memory that could not be read", int(unread), 0))
     return RunResult(
         f"{seconds:.0f} s of wall time", description, lines + _of_the_log(folder), numbers["memory"]
     )

@@ -17,7 +17,7 @@ from sim.bench.memory import MemoryMonitor, scheduling
 from sim.bench.processes import BenchProcess, BenchProcesses, hub_of
 from sim.bench.realtime_loop import RealtimeLoop, is_boot
 from sim.bench.tick_source import PlantTicks, SyncOnly, TickSource, line_to
-from sim.console import answer, fail, say
+from sim.console import answer, fail, plain, say
 from sim.errors import HarnessError
 from sim.flight.bus_in_use import FLIGHT_NODES, refuse_bus_in_use
 from sim.flight.second_senders import describe_senders
@@ -131,7 +131,7 @@ def hil(settings: HilSettings) -> int:
         lost = [process for process in processes.by_name.values() if not process.alive]
         numbers["ended"] = {process.name: process.last_error() for process in lost}
     if settings.out is not None:
-        run_dir.write_json(settings.out / NUMBERS, numbers)
+        run_dir.write_json(settings.out / NUMBERS, plain(numbers))
         _write_page(settings.out / PAGE, numbers, settings.scenario.epoch_unix_s)
         bind(settings.out, run_dir.BUS_LOG, NUMBERS)
     answer(numbers)

@@ -119,5 +119,8 @@ def cases(
             if law == suited[0]:
                 load(name_or_path, overrides)
             order = Order(name_or_path, overrides, seed, orbits)
-            all_cases.append(ComparisonCase(law, known.aims[law], driver, order, bool(found)))
+            tuned = (
+                bool(found) and merge(values, {"control": found or {}}) == values
+            )  # no setting lies over them
+            all_cases.append(ComparisonCase(law, known.aims[law], driver, order, tuned))
     return tuple(all_cases)

@@ -4,6 +4,7 @@ import os
 import sys
 from datetime import UTC, datetime
 from functools import partial
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from sim.compare.picture import picture
 from sim.compare.score import Result, Score, fly_case
 from sim.compare.table import as_csv, as_json, as_text, error_text, ranked
 from sim.compare.yardstick import yardstick
-from sim.console import answer, counted, fail, say
+from sim.console import answer, counted, fail, plain, say
 from sim.design.tuning.kept import KeptGains, body_checksum, read_gains, shipped_gains
 from sim.errors import HarnessError
 from sim.flight.record_flight import MOST_IN_MEMORY, ticks_of
@@ -57,8 +58,8 @@ def compare(
             ``scenario``: the scenario's own; else the path of a file of that command.
 
     Returns:
-        The exit code: 1 if a flight broke the limits, or a law of one's own could not be flown; how well
-        a law does is no failure.
+        The exit code: 1 if a flight broke the limits, or a law that was named, one's own, or every law could
+        not be flown; how well a law does is no failure.
 
     Raises:
         TableError: there is no such scenario, or it is not valid.
@@ -111,10 +112,13 @@ def compare(
     broken = [f"{score.law} ({score.driver})" for score in scores if score.limits_ok is False]
     if broken:
         fail(f"the limits are broken by {', '.join(broken)}")
-    own = scenario.control.law_name if scenario.control.own else None
-    failed = [score.failure for score in scores if score.law == own and score.failure]
-    if failed:
-        fail(str(failed[0]))
+    asked = {scenario.control.law_name} if scenario.control.own else set()
+    asked |= {word.strip() for word in (laws or "").split(",")}
+    failed = [score for score in scores if score.failure and score.law in asked]
+    if not failed and all(score.failure for score in scores):
+        failed = scores
+    for score in failed:
+        fail(f"{score.law} ({score.driver}) was not flown: {score.failure}")
     return int(bool(broken or failed))
 
 
@@ -158,7 +162,7 @@ def _write(
     if not description["complete"]:
         facts.append("given up before all had flown")
     try:
-        write_json(folder / JSON, as_json(scores, description))
+        write_json(folder / JSON, plain(as_json(scores, description)))
         (folder / CSV).write_text(as_csv(scores), encoding="utf-8")
         picture(folder / PICTURE, f"{scenario.name}, {seed}", results, by)
         window = _window(scenario, description["ticks"])
@@ -177,7 +181,20 @@ def _new_folder(folder: Path) -> Path:
 
 
 def _default_folder(scenario: Scenario) -> Path:
-    return Path("compare") / f"{scenario.name}-{datetime.now(UTC):%Y%m%dT%H%M%SZ}"
+    """A folder of this call alone."""
+    parent, stem = Path("compare"), f"{scenario.name}-{datetime.now(UTC):%Y%m%dT%H%M%SZ}"
+    check_folder(parent)
+    names = (stem if number == 1 else f"{stem}-{number}" for number in count(1))
+    return next(parent / name for name in names if _is_made(parent / name))
+
+
+def _is_made(folder: Path) -> bool:
+    """Make a folder; False: there was one."""
+    try:
+        folder.mkdir()
+    except FileExistsError:
+        return False
+    return True
 
 
 def _line(finished: StudyResult, by: Controlled) -> str:

@@ -59,7 +59,8 @@ def design(
         write: the scenario file into which gains that stabilise are written; None: none.
 
     Raises:
-        HarnessError: gains out of range, or a file that cannot be written.
+        HarnessError: gains out of range, gains to be written that do not stabilise, or a file that cannot be
+            written.
     """
     target = None if write is None else check_writable(write)
     if folder is not None:
@@ -69,6 +70,10 @@ def design(
         _check(given, body)
     with progress(f"gains for {scenario.name}", ANALYSIS_STEPS) as watch:
         analysis = analyse(body, pulsing_of(scenario), given, watch)
+    if target is not None and given is not None and not analysis.stabilised:
+        raise HarnessError(
+            f"--gains {given.k_w:g} {given.k_a:g}: they do not stabilise {scenario.name}; {target} is kept"
+        )
     pictures = () if folder is None else _draw(folder, analysis, scenario)
     found = GainDesign(scenario, analysis, pictures)
     if target is None or not found.ok:

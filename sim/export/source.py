@@ -91,7 +91,7 @@ class LogPass:
         stamps = [line[1:].partition(b")")[0] for line in last_lines(self._log)[-1:]]
         try:
             return max(0, *(round(1e6 * float(stamp)) - first_us for stamp in stamps), 0)
-        except ValueError:  # the last line is none of a log: that is found when it is read
+        except (ValueError, OverflowError):  # the last line is none of a log: that is found when it is read
             return 0
 
 

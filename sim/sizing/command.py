@@ -6,6 +6,7 @@ import numpy as np
 
 from sim.console import answer, say
 from sim.design.from_scenario import body_of
+from sim.errors import HarnessError
 from sim.scenario.schema import Scenario
 from sim.sizing.expectation import Expectation, expect
 from sim.sizing.levels import MOST_LOAD, Levels, levels_against
@@ -19,7 +20,13 @@ MOST_SPREAD = 20.0
 
 
 def size(scenario: Scenario) -> int:
-    """Print what is expected and what levels would do; 1 if the coils cannot balance the disturbance."""
+    """Print what is expected and what levels would do; 1 if the coils cannot balance the disturbance.
+
+    Raises:
+        HarnessError: its coils are driven continuously.
+    """
+    if scenario.coils.driver == "continuous":
+        raise HarnessError("size needs pulsed coils: the scenario has coils.driver = 'continuous'")
     expectation = expect(scenario)
     levels = levels_against(scenario, expectation)
     say(as_text(scenario, expectation, levels), failed=expectation.load > 1.0)

@@ -11,8 +11,9 @@ Four parts that do not depend on each other add up by their squares:
   a ball: s^2 / n + 3 a^2 / 5.
 
 The load is the part of the coils' time that balancing takes: the mean over an orbit of |m_1| + |m_2| + |m_3|
-of the balancing dipole, over what one coil at a time gives, m_3 T_p / (T_p + T_b). Damping, turns and what
-the filter does not know need the rest.
+of the balancing dipole, over what one coil at a time gives, m_3 T_p / (T_p + T_b). Where each coil has a
+back-off of its own, or is driven continuously, that of the coil with most to do counts, not the sum. Damping,
+turns and what the filter does not know need the rest.
 
 Equal principal moments are taken apart by ``SPREAD``: about such an axis nothing holds the body, and the
 linear motion has no periodic answer to a torque, which the coils give it all the same.
@@ -80,7 +81,9 @@ def _expect(scenario: Scenario) -> Expectation:
     cycle_s = coils.pulse_s + coils.backoff_s
     least_kgm2 = float(np.linalg.eigvalsh(np.asarray(body.inertia_kgm2))[0])
     quantum_rad = coils.levels_am2[0] * field_t * coils.pulse_s * cycle_s / least_kgm2
-    balancing_am2 = float(np.abs(response.dipole_am2).sum(axis=1).mean())
+    by_coil_am2 = np.abs(response.dipole_am2).mean(axis=0)
+    one_at_a_time = coils.driver == "pulsed" and coils.shared
+    balancing_am2 = float(by_coil_am2.sum() if one_at_a_time else by_coil_am2.max())
     disturbance_nm = float(np.sqrt(np.mean(np.sum(torque_nm**2, axis=1))))
     return Expectation(
         field_t=field_t,
@@ -89,7 +92,7 @@ def _expect(scenario: Scenario) -> Expectation:
         quantum_deg=_or_inf(degrees(quantum_rad)),
         ripple_deg=_or_inf(degrees(disturbance_nm * cycle_s**2 / least_kgm2)),
         knowledge_deg=_knowledge_deg(scenario),
-        load=_or_inf(balancing_am2 * cycle_s / (coils.levels_am2[2] * coils.pulse_s)),
+        load=_or_inf(balancing_am2 / (coils.largest_am2 * coils.on_part)),
     )
 
 

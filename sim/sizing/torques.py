@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from fsw.core.orbit.tle import tle_elements
 from sim.design.from_scenario import body_of
 from sim.design.theory.feedforward import NODES
 from sim.design.theory.linear import Array, dipole_field, resting_torque
@@ -34,11 +35,13 @@ def disturbance_torque(scenario: Scenario) -> Array:
 def surface_torque(scenario: Scenario) -> Array:
     """Drag and pressure of sunlight on the plates at the same nodes, body axes [N m], (N, 3)."""
     body, config, period_s = body_of(scenario), plant_config(scenario, 0), orbit_period_s(scenario)
+    tle = scenario.orbit.tle
+    raan_deg = scenario.orbit.raan_deg if tle is None else tle_elements(*tle).raan_deg
     orbit = CircularOrbit(
         OrbitConfig(
             altitude_m=1e3 * body.altitude_km,
             inclination_rad=float(np.radians(body.inclination_deg)),
-            raan_rad=float(np.radians(scenario.orbit.raan_deg)),
+            raan_rad=float(np.radians(raan_deg)),
         )
     )
     t_s = period_s / NODES * np.arange(NODES, dtype=np.float64)

@@ -69,11 +69,12 @@ def serve_page(watched: Watched, port: int) -> None:
     """Serve it as a page until Ctrl-C.
 
     Raises:
-        HarnessError: a package is missing, or the port is taken.
+        HarnessError: a package is missing, the port is taken, or a log ends in the middle of a line.
     """
     from sim.watch.web import LiveView, serve  # noqa: PLC0415  an extra
 
     serve(LiveView(watched.source, watched.seen), port, note)
+    _check_whole(watched.source)
 
 
 def serve_foxglove(watched: Watched, port: int) -> None:

@@ -216,7 +216,10 @@ class FlightView:
 
     def arrows(self) -> dict[str, Vec3]:
         """Directions by name, as of ``directions.arrows``."""
-        field = None if self.field is None else (self.field.b_x, self.field.b_y, self.field.b_z)
+        measured = self.field is not None and self.field.valid
+        field = (
+            (self.field.b_x, self.field.b_y, self.field.b_z) if self.field is not None and measured else None
+        )
         seen = self.sun is not None and self.sun.valid
         sun = (self.sun.s_x, self.sun.s_y, self.sun.s_z) if self.sun is not None and seen else None
         return arrows(self.attitude, field, sun)

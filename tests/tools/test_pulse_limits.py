@@ -56,3 +56,17 @@ def test_what_is_kept_is_not_flown_again(tmp_path, monkeypatch):
     monkeypatch.setattr(pulse_limits, "both", None)
     words = written(tmp_path, ROWS)[:-1]
     assert main([*words, "--keep"]) == 0
+
+
+def test_without_a_file_yet_keeping_begins(tmp_path, monkeypatch):
+    monkeypatch.setattr(pulse_limits, "both", lambda *of: [0.5, 0.52, 0.49])
+    monkeypatch.setattr(pulse_limits, "all_orders", lambda: ())
+    path = tmp_path / "rows.json"
+    pulse_limits.fly_missing({}, path)
+    assert json.loads(path.read_text()) == {name: [0.5, 0.52, 0.49] for name, _, _ in WHOLE}
+    assert [kept.name for kept in tmp_path.iterdir()] == ["rows.json"]
+
+
+def test_a_whole_flight_without_a_figure_fails():
+    name = WHOLE[0][0]
+    assert any(name in found for found in faults(ROWS | {name: [float("nan"), 0.52, 0.49]}))

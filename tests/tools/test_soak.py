@@ -44,7 +44,12 @@ def bench_of(flight, **changes):
     numbers, lines = judge(run, Budgets(10.0, 50.0, 0, 50.0, 2.0), ("coil",), 1, grown)
     memory = {"every_s": 1.0, "warm": 2, "kib": {"fsw": [900, 990, 1000, 1000]}, "load_average": [0.5, 1.5]}
     numbers |= {"scenario": "microsat", "bus": "loop:1", "tick_hz": 1, "scheduling": "ordinary, nice 0"}
-    numbers |= {"memory": memory, "ended": {}, "budgets": [line._asdict() for line in lines]}
+    numbers |= {
+        "memory": memory,
+        "ended": {},
+        "second_senders": [],
+        "budgets": [line._asdict() for line in lines],
+    }
     (flight / "hil.json").write_text(json.dumps(numbers | changes))
 
 
@@ -96,12 +101,22 @@ def test_the_page_tells_both_and_a_broken_budget_is_exit_code_1(
     assert "| memory of fsw, growth [%] | 2.5 | 2 | BROKEN |" in (tmp_path / "soak.md").read_text()
     bench_of(flight, ended={"fsw": "killed"})
     assert broken(soak.bench_part(flight)) == ["nodes that ended before their time"]
+    bench_of(flight, second_senders=["2 of TICK_DONE"])
+    assert broken(soak.bench_part(flight)) == ["second senders on the bus"]
+    bench_of(flight, budgets=[])
+    assert broken(soak.bench_part(flight)) == ["memory that could not be read"]
 
 
 def test_what_is_not_there_is_one_sentence(tmp_path, capsys):
     assert soak.main(["--flight", str(tmp_path / "none"), "--hil", str(tmp_path)]) == 2
     (sentence,) = capsys.readouterr().err.splitlines()
     assert "none" in sentence
+
+
+@pytest.mark.parametrize("hours", ["nan", "0", "-1", "1e12"])
+def test_hours_that_no_run_can_have_are_one_sentence(hours, tmp_path, capsys):
+    assert soak.main(["--hours", hours, "--out", str(tmp_path / "soak.md")]) == 2
+    assert "--hours" in capsys.readouterr().err
 
 
 def test_the_bench_is_armed_at_10_hz_and_held_to_the_budget(monkeypatch, tmp_path):

@@ -119,11 +119,13 @@ class Commands(click.Group):
 
 
 def _of_the_system(error: OSError) -> tuple[str, int]:
-    """A sentence and an exit code, where it is no defect: a full disk, a name refused."""
+    """A sentence and an exit code, where it is no defect: a full disk, a file that cannot be used."""
     if error.errno in DISK_FULL:
         return f"the disk is full ({error.strerror}); what was written before is kept", 1
-    if error.errno in (errno.ENAMETOOLONG, errno.EACCES):
+    if error.filename is not None:
         return f"{error.filename}: {error.strerror}", 2
+    if error.errno == errno.ENOENT:  # of os.getcwd alone
+        return "the folder that this runs in is no longer there: cd to another", 2
     raise error
 
 

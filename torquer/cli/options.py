@@ -4,6 +4,7 @@ import sys
 import time
 from collections.abc import Callable, Mapping
 from functools import wraps
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec
 
@@ -100,6 +101,7 @@ def sentences(command: Callable[Parameters, int | None]) -> Callable[..., None]:
     def run(*args: Any, **kwargs: Any) -> None:  # noqa: ANN401  (those of the command, and of this wrapper)
         name = click.get_current_context().command.name or ""
         quiet, verbose, as_json = (bool(kwargs.pop(mode, False)) for mode in _MODES)
+        _check_finite(kwargs)
         with speaking(Console(name, quiet, verbose, as_json)) as console:
             began = _begin(name)
             code, judged = _verdict(command, *args, **kwargs)
@@ -109,6 +111,19 @@ def sentences(command: Callable[Parameters, int | None]) -> Callable[..., None]:
         sys.exit(code)
 
     return run
+
+
+def _check_finite(options: Mapping[str, Any]) -> None:
+    """Refuse nan and inf, with which comparisons go one way only.
+
+    Raises:
+        UsageError: naming option and value.
+    """
+    for parameter in click.get_current_context().command.params:
+        value = options.get(parameter.name or "")
+        for number in value if isinstance(value, tuple) else (value,):
+            if isinstance(number, float) and not isfinite(number):
+                raise click.UsageError(f"{parameter.opts[0]} {number}: is not a finite number")
 
 
 def _begin(name: str) -> float:

@@ -53,9 +53,15 @@ def tle_lines(file: Path) -> tuple[str, str]:
         HarnessError: it cannot be read, or holds no two lines that are elements.
     """
     from fsw.core.orbit.tle import read_tle
+    from fsw.input.regular_file import read_regular
+    from fsw.input.toml_text import MOST_BYTES
 
     try:
-        lines = [line.rstrip() for line in file.read_text(encoding="ascii").splitlines() if line.strip()]
+        lines = [
+            line.rstrip()
+            for line in read_regular(file, MOST_BYTES).decode("ascii").splitlines()
+            if line.strip()
+        ]
     except (OSError, UnicodeDecodeError) as error:
         raise HarnessError(f"{file}: cannot be read ({getattr(error, 'strerror', None) or error})") from None
     if len(lines) not in (2, 3):

@@ -16,11 +16,9 @@ the gains and extended by Floquet theory; the equations here are derived for a b
 
 import numpy as np
 
+from sim.design.theory.bodies import DIPOLE_TM3
 from sim.design.theory.floquet import degree_of_stability, monodromy
 from sim.design.theory.linear import Array, System
-
-DIPOLE_TM3 = 7.812e15
-"""Of the field model."""
 
 
 def motion(c: float) -> System:

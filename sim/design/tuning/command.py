@@ -104,7 +104,7 @@ def line(found: TunedGains) -> str:
 def _chosen(scenario: Scenario, laws: str) -> Sequence[str]:
     if laws == "all":
         return laws_for(scenario)
-    words = [word.strip() for word in laws.split(",")]
+    words = list(dict.fromkeys(word.strip() for word in laws.split(",")))
     for word in words:
         if word not in LAWS:
             raise HarnessError(

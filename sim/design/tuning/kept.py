@@ -15,11 +15,12 @@ import tomli_w
 from fsw.input.regular_file import read_regular
 from fsw.input.schema import Nested
 from fsw.input.toml_text import MOST_BYTES, BoundsError
+from sim.design.tuning.applicable import coils_of
 from sim.design.tuning.free_gains import flat
 from sim.design.tuning.search import SEED, TunedGains
 from sim.errors import HarnessError
 from sim.record.run_dir import replace_file
-from sim.scenario.schema import Scenario
+from sim.scenario.schema import Scenario, flight_table
 
 FOLDER = Path(__file__).parent / "found"
 _HEAD = "# Written by `torquer design --laws`: the best gains of each law, found under equal rules.\n\n"
@@ -63,18 +64,23 @@ class KeptGains:
 
 
 def body_checksum(scenario: Scenario) -> int:
-    """Of what gains depend on: body, orbit, start, coils but for their driver, wheel, torque and dipole."""
+    """Of what gains depend on: body, orbit, start, coils but for their driver, wheel, disturbance and tick."""
     parts: Nested = {
         "body": scenario.body.model_dump(mode="json", include={"inertia_kgm2", "wheel_nms"}),
         "orbit": scenario.orbit.model_dump(mode="json"),
         "initial": scenario.initial.model_dump(mode="json"),
         "coils": scenario.coils.model_dump(
-            mode="json", include={"levels_am2", "pulse_s", "backoff_s", "backoff"}
+            mode="json",
+            include={"levels_am2", "pulse_s", "backoff_s", "backoff", "on_fraction"},
         ),
         "disturbance": scenario.disturbance.model_dump(
             mode="json", include={"torque_nm", "residual_dipole_am2"}
         ),
+        "continuous": coils_of(scenario, "continuous"),
         "spin": scenario.control.spin_radps,
+        "leak_s": scenario.control.leak_s,
+        "tick_hz": scenario.time.tick_hz,
+        "axis_only": flight_table(scenario).modes.axis_only,
     }
     if scenario.wheel is not None:
         parts["wheel"] = scenario.wheel.model_dump(mode="json")

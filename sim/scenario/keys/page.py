@@ -47,10 +47,11 @@ _ONBOARD_ALONE = (
 """Sections of the onboard table that a scenario has not, or with other keys."""
 NO_DEFAULTS: Mapping[str, Any] = {}
 _SAID = {
-    "flight.uncertainty": "Bounds of what the table may be wrong by. One that is left out takes the ordinary value "
-    "for a satellite of this size: [uncertainty.md](uncertainty.md).",
-    "flight.calibration.magnetometer": "b_body = matrix (reading - offset_nt): offset, and scale, non-orthogonality and "
-    "turn as one matrix. Beyond a reading of `range_nt`, 65000 unless given, an axis saturates.",
+    "flight.uncertainty": "Bounds of what the table may be wrong by. One that is left out takes the ordinary "
+    "value for a satellite of this size: [uncertainty.md](uncertainty.md).",
+    "flight.calibration.magnetometer": "b_body = matrix (reading - offset_nt): offset, and scale, "
+    "non-orthogonality and turn as one matrix. Beyond a reading of `range_nt`, 65000 unless "
+    "given, an axis saturates.",
     "flight.calibration": "Of this very satellite: [calibration.md](calibration.md).",
 }
 """Of sections whose own text is for a reader of the code."""

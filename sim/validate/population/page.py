@@ -16,9 +16,9 @@ HEAD = """# Populations of real satellites
 Written by `make population`; do not edit. No satellite is what its onboard table says. Here random ones fly,
 drawn by `sim/campaign/population.py` within the tolerances below: the plant gets what is true, the onboard
 table keeps the nominal values. Satellite 7 of a population is the same wherever it flies, and its sensors and
-coils are healthy: none may be isolated. The law is `mpc`; a flight takes eight orbits, fourteen from 5 deg/s, and
-begins up to 60 deg and 0.05 deg/s by axis off, where it does not tumble. The 6U has drag and light besides. No
-Sun sensor sees the light of the Earth (`sensors.sun.albedo` would turn it on).
+coils are healthy: none may be isolated. The law is `mpc`; a flight takes eight orbits, fourteen from 5 deg/s,
+and begins up to 60 deg and 0.05 deg/s by axis off, where it does not tumble. The 6U has drag and light
+besides. No Sun sensor sees the light of the Earth (`sensors.sun.albedo` would turn it on).
 
 An honest filter has each axis of its error inside 3 sigma for 99.7 % of the time.
 """
@@ -96,7 +96,7 @@ def satellites_table(flights: Flights) -> list[str]:
 
 
 def never_pointed(name: str, flights: Flights) -> list[str]:
-    """How many never come to point, and of which dipoles, beside what a coil gives in the mean; or nothing."""
+    """How many never come to point, of which dipoles, beside what a coil gives in the mean; or nothing."""
     dipoles = [one.figures["dipole_am2"] for one in flights if one.figures["pointed_orbits"] == inf]
     if not dipoles:
         return []
@@ -105,8 +105,8 @@ def never_pointed(name: str, flights: Flights) -> list[str]:
     return [
         "",
         f"{len(dipoles)} of {len(flights)} never come within {POINTED_DEG:g} deg for good; their dipoles are "
-        f"{min(dipoles):.4f} to {max(dipoles):.4f} A m^2. A coil gives {mean_am2:.4f} A m^2 in the mean, at its "
-        "highest level.",
+        f"{min(dipoles):.4f} to {max(dipoles):.4f} A m^2. A coil gives {mean_am2:.4f} A m^2 in the mean, at "
+        "its highest level.",
     ]
 
 

@@ -7,6 +7,8 @@ import pytest
 from click.testing import CliRunner
 
 from sim.compare import command, score
+from sim.errors import HarnessError
+from sim.scenario.schema import load
 from torquer.cli.main import main
 
 SHORT = ("--laws", "predictive,rate_damping", "--orbits", "0.05", "--workers", "1")
@@ -91,6 +93,33 @@ def test_a_comparison_is_not_overwritten(torquer, tmp_path):
     assert result.exit_code == 2
     assert "already holds a comparison" in result.stderr
     assert (tmp_path / "old" / "compare.json").read_text() == "{}"
+
+
+@pytest.mark.parametrize(
+    ("lost", "words"),
+    [({"predictive"}, SHORT), ({"predictive", "rate_damping"}, ("--laws", "rate", *SHORT[2:]))],
+    ids=["one that was named", "all"],
+)
+def test_laws_that_could_not_be_flown_are_told_by_the_exit_code(torquer, monkeypatch, lost, words):
+    fly, lost = score.record_order, lost if "predictive,rate_damping" in words else None
+
+    def record_order(order):
+        if lost is None or order.overrides["control"]["law"] in lost:
+            raise HarnessError("no room")
+        return fly(order)
+
+    monkeypatch.setattr(score, "record_order", record_order)
+    result = torquer("posat1", *words, "--driver", "pulsed")
+    assert result.exit_code == 1
+    assert "predictive (pulsed) was not flown: no room" in result.stderr
+
+
+def test_two_comparisons_in_one_second_have_a_folder_each(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    scenario = load("posat1")
+    folders = {command._default_folder(scenario) for _ in range(3)}
+    assert len(folders) == 3
+    assert all(folder.is_dir() for folder in folders)
 
 
 def test_finished_flights_are_written_when_the_rest_is_given_up(torquer, tmp_path, monkeypatch):

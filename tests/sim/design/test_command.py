@@ -42,7 +42,8 @@ def as_searched(monkeypatch, searched):
         def analyse(body, pulsing, given, watch):
             if given is None:
                 return replace(analysis, **changes)
-            return replace(analysis, search=None, chosen=replace(analysis.chosen, gains=given))
+            chosen = changes.get("chosen", analysis.chosen)
+            return replace(analysis, search=None, chosen=replace(chosen, gains=given))
 
         monkeypatch.setattr(command, "analyse", analyse)
 
@@ -108,6 +109,15 @@ def test_given_gains_are_written_as_they_are(design, as_searched, scenario_file)
     assert (control.k_w, control.k_a) == (5.5e6, 1200.0)
 
 
+def test_given_gains_that_do_not_stabilise_are_not_written(design, as_searched, searched, scenario_file):
+    as_searched(chosen=replace(searched[1].chosen, degree=0.1))
+    before = scenario_file.read_text()
+    code, out, err = design(scenario_file, "--gains", "0", "0", "--write")
+    assert (code, out) == (2, "")
+    assert f"--gains 0 0: they do not stabilise mine; {scenario_file} is kept" in err
+    assert scenario_file.read_text() == before
+
+
 def test_where_no_gains_stabilise_that_is_the_verdict_and_nothing_is_written(
     design, as_searched, searched, scenario_file
 ):
@@ -125,7 +135,7 @@ def test_where_no_gains_stabilise_that_is_the_verdict_and_nothing_is_written(
     [
         (("nowhere",), "there is no scenario 'nowhere'"),
         (("microsat", "--write"), "--write microsat: gains are not written into a scenario that ships"),
-        (("microsat", "--gains", "nan", "1"), "--gains: K_W = nan is not allowed: for this body 0 to "),
+        (("microsat", "--gains", "nan", "1"), "--gains nan: is not a finite number"),
         (("microsat", "--gains", "1e6", "-1"), "--gains: K_A = -1 is not allowed: for this body 0 to "),
         (("microsat", "--gains", "1e30", "1"), "--gains: K_W = 1e+30 is not allowed"),
         (("microsat", "--gains", "1e6"), "--gains"),

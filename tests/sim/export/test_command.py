@@ -110,6 +110,12 @@ def test_what_is_no_run_is_one_sentence(tmp_path, monkeypatch, name, says):
     assert says in one_sentence(call(name, "--out", tmp_path / "run.csv"))
 
 
+def test_a_line_stamped_without_end_is_one_sentence(tmp_path):
+    log = tmp_path / "inf.log"
+    log.write_text("(0.000000) can0 080#0000000000000000\n(inf) can0 123#00\n")
+    assert "inf.log" in one_sentence(call(log, "--out", tmp_path / "out.asc"))
+
+
 @pytest.mark.parametrize("suffix", ["mcap", "blf", "csv"])
 def test_a_log_that_is_none_is_one_sentence(flight, tmp_path, suffix):
     folder = shutil.copytree(flight.folder, tmp_path / "run")

@@ -3,6 +3,7 @@
 import pytest
 
 from sim.console import Console, speaking
+from sim.errors import HarnessError
 from sim.scenario.schema import load, parse_settings
 from sim.sizing.command import size
 
@@ -53,3 +54,8 @@ def test_a_sound_satellite(capsys):
 def test_what_is_doubtful_is_said(settings, code, words, capsys):
     assert sized("cubesat3u", *settings)[0] == code
     assert words in capsys.readouterr().out
+
+
+def test_a_continuous_driver_is_refused():
+    with pytest.raises(HarnessError, match="size needs pulsed coils"):
+        sized("microsat", "coils.driver=continuous", "coils.max_dipole_am2=0.5")

@@ -7,6 +7,7 @@ import pytest
 from sim.design.from_scenario import body_of
 from sim.scenario.schema import load, parse_settings
 from sim.sizing.expectation import expect, field_across
+from sim.sizing.torques import surface_torque
 
 RESIDUAL = ("flight.uncertainty.residual_dipole_am2=0.1",)
 FLOWN_DEG = {
@@ -57,6 +58,45 @@ def test_a_residual_dipole_takes_time_of_the_coils_and_no_pointing():
     found = expect(scenario("microsat", "disturbance.residual_dipole_am2=[0.05,0.0,0.0]"))
     assert found.floor_deg == pytest.approx(plain.floor_deg, abs=0.02)
     assert found.load > 5.0 * plain.load
+
+
+@pytest.mark.parametrize("dipole_am2", ["[0.05,0.0,0.0]", "[0.0,0.0,0.05]", "[0.05,0.05,0.05]"])
+def test_of_coils_with_a_back_off_of_their_own_the_busiest_counts(dipole_am2):
+    settings = (f"disturbance.residual_dipole_am2={dipole_am2}", "disturbance.torque_nm=[0.0,0.0,0.0]")
+    shared = expect(scenario("microsat", *settings)).load
+    own = expect(scenario("microsat", *settings, "coils.backoff=per_coil")).load
+    assert shared / 3.0 <= own < 0.9 * shared
+
+
+def test_a_continuous_driver_is_loaded_by_its_own_largest_dipole():
+    pulsed = expect(scenario("microsat", "coils.backoff=per_coil"))
+    settings = ("coils.driver=continuous", "coils.max_dipole_am2=0.5")
+    continuous = expect(scenario("microsat", *settings))
+    assert continuous.load == pytest.approx(pulsed.load * (8.0 * 3.0 / 103.0) / (0.5 * 0.8), rel=1e-6)
+
+
+def test_the_sun_meets_an_orbit_by_elements_where_it_meets_the_same_one_by_altitude():
+    tle = (
+        '["1 22826U 93061D   15086.11593543  .00000251  00000-0  11414-3 0  9992",'
+        '"2 22826  98.6946  36.4208 0000000 173.8349 186.2944 14.30166407121350"]'
+    )
+    light = "disturbance.drag.density_scale=0"
+    by_elements = scenario("cubesat6u", light, f"orbit.tle={tle}")
+    altitude_km = body_of(by_elements).altitude_km
+    by_angles, elsewhere = (
+        scenario(
+            "cubesat6u",
+            light,
+            f"orbit.altitude_km={altitude_km}",
+            "orbit.inclination_deg=98.6946",
+            f"orbit.raan_deg={raan_deg}",
+        )
+        for raan_deg in (36.4208, 126.4208)
+    )
+    torque = surface_torque(by_elements)
+    off, off_elsewhere = (abs(surface_torque(other) - torque).mean() for other in (by_angles, elsewhere))
+    assert off < 0.02 * abs(torque).mean()
+    assert off_elsewhere > 0.2 * abs(torque).mean()
 
 
 def test_drag_and_sunlight_count():

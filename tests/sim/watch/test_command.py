@@ -7,7 +7,7 @@ from fsw.bus.interface import BusError
 from fsw.input.schema import TableError
 from sim.errors import HarnessError
 from sim.record.pace import LOCKSTEP
-from sim.watch import command
+from sim.watch import command, web
 from sim.watch.source import BusSource, LogSource
 from torquer.cli.main import main
 
@@ -45,6 +45,14 @@ def test_the_orbit_is_that_of_the_run_or_of_a_scenario(log, recorded_run):
         assert watched.seen.around_at(0) is not None
     with pytest.raises(TableError, match="nosat"):
         command.watch(str(log), LOCKSTEP, "nosat")
+
+
+def test_a_page_of_a_log_that_was_cut_short_fails_too(log, monkeypatch):
+    log.write_text(log.read_text()[:-3])
+    watched = command.watch(str(log), LOCKSTEP, None)
+    monkeypatch.setattr(web, "serve", lambda view, port, say: view.read())
+    with pytest.raises(HarnessError, match="the log was cut short"):
+        command.serve_page(watched, 8025)
 
 
 def test_a_log_that_was_cut_short_is_shown_and_fails(log):

@@ -120,8 +120,10 @@ class TestSensors:
         for status, known in ((on, False), (off, False), (off, True)):
             take(seen, status)
             assert (seen.field_off_deg() is not None) is known
+        assert "field" in seen.arrows()
         take(seen, self.measured(2.0)._replace(valid=0))
         assert seen.field_off_deg() is None
+        assert "field" not in seen.arrows()
 
     def test_the_sun_likewise_and_not_in_the_shadow(self, seen):
         take(seen, Sync(0, UNIX_S), turned(0.0), SunVector(1, 0.6, 0.0, 0.8))

@@ -1,5 +1,7 @@
 """What a user mistypes is answered with what may have been meant: one sentence on stderr, exit code 2."""
 
+import os
+
 import pytest
 
 from torquer.cli.main import main
@@ -71,3 +73,39 @@ def test_options_of_the_two_searches_for_gains_are_not_mixed(words, says, capsys
     assert (code, out) == (2, "")
     assert says in err
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["hil", "--seconds", "nan"], "--seconds nan"),
+        (["hil", "--warm-s", "nan"], "--warm-s nan"),
+        (["hil", "--jitter-ms", "inf"], "--jitter-ms inf"),
+        (["phasing", "microsat", "--field-nt", "1", "nan", "3"], "--field-nt nan"),
+        (["phasing", "microsat", "--coil-field-nt-per-am2=-inf"], "--coil-field-nt-per-am2 -inf"),
+        (["telemetry", "pass.csv", "--tle", "tle.txt", "--start", "nan"], "--start nan"),
+        (["design", "microsat", "--gains", "nan", "1"], "--gains nan"),
+        (["size", "--altitude-km", "nan"], "--altitude-km nan"),
+    ],
+)
+def test_a_number_that_is_not_finite_is_refused(words, says, capsys):
+    assert run(capsys, *words) == (2, "", f"torquer: {says}: is not a finite number\n")
+
+
+def test_a_folder_that_is_gone_is_one_sentence(tmp_path, monkeypatch, capsys):
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    monkeypatch.chdir(gone)
+    gone.rmdir()
+    assert run(capsys, "doctor") == (
+        2,
+        "",
+        "torquer: the folder that this runs in is no longer there: cd to another\n",
+    )
+
+
+def test_elements_from_a_pipe_are_refused_at_once(tmp_path, capsys):
+    os.mkfifo(tmp_path / "tle.txt")
+    code, out, err = run(capsys, "size", "--tle", str(tmp_path / "tle.txt"))
+    assert (code, out) == (2, "")
+    assert f"{tmp_path / 'tle.txt'}: cannot be read" in err

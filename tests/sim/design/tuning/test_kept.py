@@ -60,9 +60,14 @@ def test_another_file_is_refused_by_its_name(tmp_path, text):
         {"disturbance": {"torque_nm": [0.0, 0.0, 0.0]}},
         {"disturbance": {"residual_dipole_am2": [0.0, 0.0, 0.01]}},
         {"control": {"spin_radps": 0.01}},
+        {"control": {"leak_s": 100.0}},
+        {"coils": {"max_dipole_am2": 0.05}},
+        {"coils": {"on_fraction": 0.5}},
+        {"time": {"tick_hz": 2}},
+        {"flight": {"modes": {"axis_only": True}}},
     ],
 )
-def test_gains_are_for_one_body_start_coils_and_torque(over):
+def test_gains_are_for_one_body_start_coils_torque_and_rules(over):
     assert body_checksum(load("microsat", over)) != body_checksum(load("microsat"))
 
 
