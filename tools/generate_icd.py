@@ -1,8 +1,8 @@
-"""Write docs/icd.md from tools/icd.md.in, the DBC and the boards; with --check, exit 1 when it is stale.
+"""Write docs/icd.md and docs/telemetry.md from the DBC and the code; with --check, exit 1 when one is stale.
 
-The template holds the prose. ``{{name}}`` and ``{{name argument}}`` in it stand for what is computed: frames
-from the DBC, rules and their order from the interlock, numbers from the code, worked tables from a run of the
-board.
+A template of each, beside this, holds the prose. ``{{name}}`` and ``{{name argument}}`` in it stand for what
+is computed: frames from the DBC, rules and their order from the interlock, numbers from the code, worked
+tables from a run of the board.
 """
 
 import re
@@ -18,6 +18,9 @@ from cantools.database.can import Database, Message, Signal
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))  # the tree in which this stands, not the one that is installed
 
+from fsw.core.events import SEVERITY, Event
+from fsw.core.fdir.faults import CoilFault, Sensor, SensorFault
+from fsw.core.monitors import Monitor
 from fsw.wire.frame import crc8
 from fsw.wire.messages import CoilFire, CoilRefusedReason, CoilStatus
 from hil_stub import bench, node
@@ -26,8 +29,7 @@ from hil_stub.wheel import wheel_driver, wheel_guard
 from sim.conformance.check_runner import CHECKS
 
 DBC = ROOT / "fsw" / "wire" / "torquer.dbc"
-TEMPLATE = ROOT / "tools" / "icd.md.in"
-TARGET = ROOT / "docs" / "icd.md"
+PAGES = ("icd.md", "telemetry.md")
 LIMITS = interlock.CoilLimits(tick_hz=1)
 
 VALUES = {
@@ -235,6 +237,24 @@ def checks() -> str:
     return table(("check", "demands", "drives coils"), rows)
 
 
+def fsw_events() -> str:
+    """The meaning of an argument is the remark beside the event's number."""
+    source = (ROOT / "fsw" / "core" / "events.py").read_text(encoding="utf-8")
+    meaning = dict(re.findall(r"^    ([A-Z_]+) = \d+  # (.+)$", source, re.MULTILINE))
+    rows = [
+        (event.value, f"`{event.name.lower()}`", SEVERITY[event].name, meaning[event.name]) for event in Event
+    ]
+    return table(("`event`", "name", "severity", "`argument`"), rows)
+
+
+def fsw_numbers() -> str:
+    kinds = {"sensor": Sensor, "its fault": SensorFault, "fault of a coil": CoilFault, "monitor": Monitor}
+    rows = [(of, ", ".join(f"{one.value} {one.name}" for one in kind)) for of, kind in kinds.items()]
+    return table(
+        ("of", "numbers"), [*rows, ("reason of a refusal, mode", "as in `COIL_REFUSED`, `NAV_QUALITY`")]
+    )
+
+
 PIECES: dict[str, Callable[..., str]] = {
     "checks": checks,
     "frame": frame,
@@ -247,30 +267,38 @@ PIECES: dict[str, Callable[..., str]] = {
     "identifiers": identifiers,
     "pulse_table": pulse_table,
     "skip_table": skip_table,
+    "fsw_events": fsw_events,
+    "fsw_numbers": fsw_numbers,
     "wheel_events": wheel_events,
     "wheel_results": wheel_results,
     "wheel_states": wheel_states,
 }
 
 
-def page() -> str:
+def page(name: str) -> str:
+    """The page of that name, made of its template."""
+    template = ROOT / "tools" / f"{name}.in"
+
     def piece(match: re.Match[str]) -> str:
         name, argument = match.groups()
         if name not in PIECES:
-            raise IcdError(f"{TEMPLATE.name}: there is no {{{{{name}}}}}")
+            raise IcdError(f"{template.name}: there is no {{{{{name}}}}}")
         return PIECES[name](argument) if argument else PIECES[name]()
 
-    return re.sub(r"\{\{(\w+)(?: (\w+))?\}\}", piece, TEMPLATE.read_text(encoding="utf-8"))
+    return re.sub(r"\{\{(\w+)(?: (\w+))?\}\}", piece, template.read_text(encoding="utf-8"))
 
 
 def main() -> int:
-    text = page()
-    if "--check" in sys.argv:
-        stale = not TARGET.exists() or TARGET.read_text(encoding="utf-8") != text
-        print(f"{TARGET.name} is {'stale: run tools/generate_icd.py' if stale else 'as its sources say'}")
-        return int(stale)
-    TARGET.write_text(text, encoding="utf-8")
-    return 0
+    code = 0
+    for name in PAGES:
+        target, text = ROOT / "docs" / name, page(name)
+        if "--check" not in sys.argv:
+            target.write_text(text, encoding="utf-8")
+            continue
+        stale = not target.exists() or target.read_text(encoding="utf-8") != text
+        print(f"{name} is {'stale: run tools/generate_icd.py' if stale else 'as its sources say'}")
+        code |= stale
+    return int(code)
 
 
 if __name__ == "__main__":

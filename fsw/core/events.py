@@ -15,10 +15,10 @@ class Event(IntEnum):
     MONITOR_TRIPPED = 4  # number of the monitor
     REQUEST_REFUSED = 5  # reason
     TIME_MISMATCH = 6  # SYNC's time less the expected, s
-    SENSOR_ISOLATED = 7  # 100 times the number of the sensor, and of its fault
+    SENSOR_ISOLATED = 7  # 100 times the number of the sensor, plus that of its fault
     SENSOR_READMITTED = 8  # as in its isolation
     SENSORS_DISAGREE = 9  # 0: without an estimate neither of them can be isolated
-    COIL_FAULT = 10  # 100 times the number of the coil (1 to 3), and of its fault
+    COIL_FAULT = 10  # 100 times the number of the coil (1 to 3), plus that of its fault
     SECOND_SENDER = 11  # the identifier of fsw under which another sends
     STRANGE_SYNC = 12  # its tick; of several, that of the last
     PLANT_RESTARTED = 13  # the last tick of the old count

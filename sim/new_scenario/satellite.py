@@ -48,7 +48,8 @@ class NewSatellite:
         per_coil: each coil has a back-off of its own.
         magnetometer_nt: noise, standard deviation.
         sun_deg: noise of the Sun sensor.
-        exact: the onboard table is right but for bias and torque; else its bounds are ordinary ones.
+        exact: the onboard table is right but for bias, residual dipole and torque; else its bounds are
+            ordinary ones.
         epoch: time of tick 0 of a circular orbit.
     """
 

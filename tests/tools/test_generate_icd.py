@@ -1,4 +1,4 @@
-"""docs/icd.md is what the DBC, the rules and the boards say, and a page that is not is noticed."""
+"""docs/icd.md and docs/telemetry.md are what DBC, rules and code say, and a page that is not is noticed."""
 
 import re
 import shutil
@@ -32,7 +32,8 @@ def generate(root, *arguments):
 @pytest.fixture
 def copy(tmp_path):
     """A copy of all that the page is made of, and of the page."""
-    for name in ("tools/icd.md.in", "tools/generate_icd.py", "docs/icd.md"):
+    pages = ("tools/icd.md.in", "docs/icd.md", "tools/telemetry.md.in", "docs/telemetry.md")
+    for name in (*pages, "tools/generate_icd.py"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         shutil.copy(ROOT / name, tmp_path / name)
     for package in ("fsw", "hil_stub", "sim"):
@@ -62,6 +63,8 @@ CHANGES = {
         "NO_CURRENT: Severity.FATAL",
     ),
     "the dead-man": ("hil_stub/bench.py", "DEADMAN_MS = 5000", "DEADMAN_MS = 4000"),
+    "what an argument is": ("fsw/core/events.py", "# the new mode", "# the old mode"),
+    "a monitor": ("fsw/core/monitors.py", "ORBIT_KNOWN = 8", "ORBIT_KNOWN = 18"),
     "the CRC": ("fsw/wire/frame.py", "_crc8_table(0x1D)", "_crc8_table(0x1F)"),
     "the order of refusals": (
         "hil_stub/coils/interlock.py",

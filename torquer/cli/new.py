@@ -29,7 +29,8 @@ EXAMPLES = examples(
     default="exact",
     show_default=True,
     type=click.Choice(["exact", "ordinary"]),
-    help="How far what flies may differ from the onboard table, but for bias and torque.",
+    help="exact: the onboard table is right but for magnetometer bias, residual dipole and torque; "
+    "ordinary: no part of it is.",
 )
 @click.option("--out", type=click.Path(path_type=Path), help="The file. Default: NAME.toml.")
 @JSON
