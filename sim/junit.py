@@ -7,7 +7,10 @@ from xml.etree import ElementTree
 
 from sim.errors import HarnessError
 from sim.record.destination import check_file
+from sim.record.run_dir import replace_file
 
+_HEAD_BYTES = 4096
+"""Of a JUnit file, in which its first element begins."""
 _ALLOWED_CONTROLS = "\t\n\r"
 
 
@@ -48,27 +51,54 @@ def junit_xml(name: str, suites: Mapping[str, Sequence[JunitCase]]) -> str:
 
 
 def prepare_junit(path: Path | None) -> None:
-    """Check that a file can be written, before anything is computed; None: none is asked for.
+    """Check that a file can be written, and remove one of before; None: none is asked for.
+
+    Done before anything is computed, so that a command that ends early leaves no verdicts of another one.
 
     Raises:
-        HarnessError: it cannot be written.
-    """
-    if path is not None:
-        check_file(path)
-
-
-def write_junit(path: Path | None, name: str, suites: Mapping[str, Sequence[JunitCase]]) -> None:
-    """Write the document, if a file is asked for.
-
-    Raises:
-        HarnessError: the file cannot be written.
+        HarnessError: it cannot be written, or the file that is there is no JUnit file.
     """
     if path is None:
         return
+    check_file(path)
+    _check_replaceable(path)
     try:
-        path.write_text(junit_xml(name, suites), encoding="utf-8")
+        path.unlink(missing_ok=True)
     except OSError as error:
-        raise HarnessError(f"{path}: cannot be written ({error.strerror})") from None
+        raise _not_written(path, error) from None
+
+
+def write_junit(path: Path | None, name: str, suites: Mapping[str, Sequence[JunitCase]]) -> None:
+    """Write the document at once, if a file is asked for.
+
+    Raises:
+        HarnessError: it cannot be written, or the file that is there is no JUnit file.
+    """
+    if path is None:
+        return
+    _check_replaceable(path)
+    try:
+        replace_file(path, junit_xml(name, suites).encode())
+    except OSError as error:
+        raise _not_written(path, error) from None
+
+
+def _check_replaceable(path: Path) -> None:
+    """Check that what is there, if anything, is a JUnit file or empty: it might be what the command reads."""
+    try:
+        with path.open("rb") as file:
+            head = file.read(_HEAD_BYTES).removeprefix(b"\xef\xbb\xbf").lstrip()
+    except FileNotFoundError:
+        return
+    except OSError as error:
+        raise _not_written(path, error) from None
+    is_junit = head.startswith((b"<?xml", b"<testsuite")) and b"<testsuite" in head
+    if head and not is_junit:
+        raise HarnessError(f"--junit {path}: is no JUnit file, and is not replaced")
+
+
+def _not_written(path: Path, error: OSError) -> HarnessError:
+    return HarnessError(f"{path}: cannot be written ({error.strerror})")
 
 
 def _add(suite: ElementTree.Element, case: JunitCase) -> None:

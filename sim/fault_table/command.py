@@ -11,6 +11,7 @@ from sim.fault_table import earlier_rows, render
 from sim.fault_table.campaign import fly_rows, is_whole
 from sim.fault_table.row import CheckVerdict, RowResult
 from sim.fault_table.rows.table import ROWS, choose_rows
+from sim.junit import prepare_junit, write_junit
 from sim.progress import progress
 from sim.record.destination import check_file, check_folder
 from sim.record.run_dir import replace_file
@@ -62,8 +63,9 @@ def faults(
     rows = choose_rows(names, slow)
     earlier = {} if keep is None else earlier_rows.read(keep, {row.name for row in rows})
     page = _docs_page({*earlier, *(row.name for row in rows)}) if write_docs else None
-    for file in filter(None, (page, junit, keep)):
+    for file in filter(None, (page, keep)):
         check_file(file)
+    prepare_junit(junit)
     if out is not None:
         check_folder(out, (JUNIT, HTML, JSON))
     bar = sys.stderr.isatty()  # then the rows are printed after it
@@ -94,10 +96,9 @@ def faults(
 
 
 def _write_reports(results: Sequence[RowResult], out: Path | None, junit: Path | None) -> None:
-    if junit is not None:
-        _write(junit, render.junit(results))
+    for file in (junit, None if out is None else out / JUNIT):
+        write_junit(file, "torquer faults", render.suites(results))
     if out is not None:
-        _write(out / JUNIT, render.junit(results))
         _write(out / HTML, render.html(results))
         _write(out / JSON, render.as_json(results))
 

@@ -13,7 +13,7 @@ from sim.fault_table.campaign import is_whole
 from sim.fault_table.checks import ALWAYS
 from sim.fault_table.row import CaseResult, CheckVerdict, FaultRow, RowFault, RowResult
 from sim.faults.kinds import KINDS
-from sim.junit import JunitCase, junit_xml
+from sim.junit import JunitCase
 
 Json = dict[str, Any]
 
@@ -117,10 +117,9 @@ def json_values(results: Sequence[RowResult]) -> Json:
     return {"tally": tally(results), "rows": rows}
 
 
-def junit(results: Sequence[RowResult]) -> str:
-    """JUnit XML: a suite a row, a test a case; what is not yet to be expected counts as skipped."""
-    suites = {result.row.name: [_test(case) for case in result.cases] for result in results}
-    return junit_xml("torquer faults", suites)
+def suites(results: Sequence[RowResult]) -> dict[str, list[JunitCase]]:
+    """For JUnit XML a suite a row, a test a case; what is not yet to be expected counts as skipped."""
+    return {result.row.name: [_test(case) for case in result.cases] for result in results}
 
 
 def _test(case: CaseResult) -> JunitCase:

@@ -89,13 +89,21 @@ def calibrate(
     if source.suffix.lower() == ".csv":
         from sim.commissioning.calibrate.command import calibrate_recorded
 
+        if scenario is not None or settings:
+            option = "--scenario" if scenario is not None else "--set"
+            raise HarnessError(f"{option}: recorded telemetry in {source} is calibrated without a scenario")
         if tle is None or out is None:
             raise HarnessError(
                 f"{source}: recorded telemetry needs {'--tle' if tle is None else '--out'} FILE"
             )
         return calibrate_recorded(source, tle, out, page, ratios, int(parameters))
-    if tle is not None or ratios is not None:
-        raise HarnessError(f"--{'tle' if tle is not None else 'inertia-ratios'}: {source} is no PASS.csv")
+    of_telemetry = {
+        "--tle": tle is not None,
+        "--inertia-ratios": ratios is not None,
+        "--parameters": parameters != "9",
+    }
+    if given := [option for option, is_given in of_telemetry.items() if is_given]:
+        raise HarnessError(f"{', '.join(given)}: {source} is no PASS.csv")
     from sim.commissioning.calibrate.flown import command
     from sim.scenario.schema import parse_settings
 

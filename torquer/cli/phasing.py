@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import click
+from click.core import ParameterSource
 
 from fsw.bus.open_bus import KINDS
 from sim.errors import HarnessError
@@ -15,6 +16,11 @@ EXAMPLES = examples(
     "torquer phasing runs/microsat-20250320T120000Z          # a log with pulses",
     "torquer phasing mag_and_command.csv                     # a recorded bench log",
 )
+
+OF_A_BENCH = ("real", "arm")
+OF_A_FLIGHT = ("bus", *OF_A_BENCH, "rounds", "seed", "out")
+OF_A_LOG = ("scenario", "settings", "at_rest", "field_nt", "offset_nt", "coil_field")
+"""Options by what they say something of."""
 
 
 @click.command(epilog=EXAMPLES)
@@ -83,15 +89,33 @@ def phasing(
         in_orbit=not at_rest and bus is None,
     )
     if is_bench_log(path):
+        _refuse((*OF_A_FLIGHT, *OF_A_LOG), f"{source} is a recorded bench log, which is judged by itself")
         return command.of_csv(path)
     if path.suffix != ".toml" and path.exists():
-        if bus is not None:
-            raise HarnessError("--bus: a log is judged as it is; name a SCENARIO for a bench")
+        _refuse(OF_A_FLIGHT, "a log is judged as it is; name a SCENARIO to fly or for a bench")
         return command.of_log(path, scenario, parse_settings(settings), known)
     if scenario is not None:
         raise HarnessError(f"--scenario: {source} is no log, but a scenario itself")
+    if bus is None:
+        _refuse(OF_A_BENCH, "without --bus the SCENARIO is flown in simulation")
     chosen = load_scenario(source, settings)
     if bus is None:
         return command.of_flight(chosen, rounds, seed, known, out)
     bench = command.BenchSetUp(bus, real_boards(real), arm)
     return command.on_bench(chosen, rounds, seed, known, bench, out)
+
+
+def _refuse(names: tuple[str, ...], why: str) -> None:
+    """Refuse options that would do nothing.
+
+    Raises:
+        HarnessError: the command line gives one of them.
+    """
+    context = click.get_current_context()
+    given = [
+        one.opts[0]
+        for one in context.command.params
+        if one.name in names and context.get_parameter_source(one.name) is not ParameterSource.DEFAULT
+    ]
+    if given:
+        raise HarnessError(f"{', '.join(given)}: {why}")

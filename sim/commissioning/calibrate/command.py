@@ -6,19 +6,16 @@ from pathlib import Path
 import numpy as np
 
 from sim.commissioning.calibrate.calibration_file import as_toml
-from sim.commissioning.calibrate.magnetometer import NAMES, TURN_NAMES, MagnetometerFit
+from sim.commissioning.calibrate.magnetometer import NAMES, TURN_NAMES
 from sim.commissioning.calibrate.page import calibration_page
 from sim.commissioning.calibrate.recorded import LEAST_ROWS, RecordedCalibration, calibrate_pass
-from sim.commissioning.recorded.along import along
-from sim.commissioning.recorded.element_sets import nearest_elements
+from sim.commissioning.recorded.along import placed
 from sim.commissioning.recorded.recorded_pass import read_pass
+from sim.commissioning.recorded.result_files import check_results, write_result
 from sim.commissioning.telemetry.follow import Noise
-from sim.console import answer, say, warn
+from sim.console import answer, say
 from sim.errors import HarnessError
-from sim.record.destination import check_file
 
-OLD_DAYS = 7.0
-"""Elements further away put the satellite tens of kilometres off: 10 nT and more each."""
 PARAMETERS = (9, 12)
 
 
@@ -39,26 +36,20 @@ def calibrate_recorded(
         The exit code: 1 where the data do not tell the magnetometer, else 0.
 
     Raises:
-        HarnessError: a file cannot be read or written, or is malformed.
+        HarnessError: a file cannot be read or written, is malformed, or would replace another of them.
     """
-    for file in filter(None, (out, page)):
-        check_file(file)
+    check_results({"--out": out, "--page": page}, {"the telemetry": path, "the element sets": tle})
     recorded = read_pass(path)
-    if len(recorded.utc_unix_s) < LEAST_ROWS:
-        raise HarnessError(f"{path}: {len(recorded.utc_unix_s)} rows cannot tell 9 numbers, {LEAST_ROWS} may")
-    around = along(recorded, nearest_elements(tle, recorded.middle_unix_s))
-    age_days = around.elements.age_days(recorded.middle_unix_s)
-    if abs(age_days) > OLD_DAYS:
-        warn(f"{tle}: the nearest element set is {abs(age_days):.0f} days away: its field may be off")
+    rows = int(np.isfinite(recorded.mag_nt).all(axis=1).sum())
+    if rows < LEAST_ROWS:
+        raise HarnessError(f"{path}: {rows} rows with a field sample cannot tell 9 numbers, {LEAST_ROWS} may")
+    around = placed(recorded, tle)
     declared = np.ones(3) if ratios is None else np.array(ratios) / max(ratios)
     found = calibrate_pass(around, declared, Noise())
     text = as_toml(found, declared)
-    try:
-        out.write_text(text, encoding="utf-8")
-        if page is not None:
-            page.write_text(calibration_page(found, text), encoding="utf-8")
-    except OSError as error:
-        raise HarnessError(f"{error.filename}: cannot be written ({error.strerror})") from None
+    write_result(out, text)
+    if page is not None:
+        write_result(page, calibration_page(found, text))
     _say(found, parameters)
     say(f"written: {out}" + (f", {page}" if page is not None else ""))
     answer({**_as_json(found, parameters), "out": out, "page": page})
@@ -68,7 +59,7 @@ def calibrate_recorded(
 def _say(found: RecordedCalibration, parameters: int) -> None:
     fit, drift = found.magnetometer, found.drift
     say(f"{len(fit.residual_nt)} samples; |B| after the fit {fit.rms_nt:.0f} nT RMS")
-    for name, value, sigma, told in zip(NAMES, _values(fit), fit.sigma, fit.told, strict=True):
+    for name, value, sigma, told in zip(NAMES, fit.values, fit.sigma, fit.told, strict=True):
         digits, unit = (0, " nT") if name.startswith("b_") else (4, "")
         said = "" if told else "   cannot be told from these samples"
         say(f"  {name:5} {value:10.{digits}f} +- {sigma:.{digits}f}{unit}{said}")
@@ -97,14 +88,6 @@ def _say(found: RecordedCalibration, parameters: int) -> None:
         say("body and cells cannot be told: the pass is too short, or does not tell the offset")
 
 
-def _values(fit: MagnetometerFit) -> list[float]:
-    m = fit.matrix
-    return [
-        *fit.offset_nt.tolist(),
-        *(float(m[i, j]) for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))),
-    ]
-
-
 def _triple(values: Sequence[float], sigma: Sequence[float]) -> str:
     return ", ".join(f"{value:.0f} +- {one:.0f}" for value, one in zip(values, sigma, strict=True))
 
@@ -113,7 +96,7 @@ def _as_json(found: RecordedCalibration, parameters: int) -> dict[str, object]:
     fit = found.magnetometer
     numbers: dict[str, dict[str, float | bool | None]] = {
         name: {"value": value, "sigma": float(sigma), "told": bool(told)}
-        for name, value, sigma, told in zip(NAMES, _values(fit), fit.sigma, fit.told, strict=True)
+        for name, value, sigma, told in zip(NAMES, fit.values, fit.sigma, fit.told, strict=True)
     }
     if parameters == PARAMETERS[1]:
         numbers |= {name: {"value": 0.0, "sigma": None, "told": False} for name in TURN_NAMES}

@@ -38,7 +38,7 @@ class MagnetometerFit(NamedTuple):
         matrix: M, symmetric and positive, (3, 3).
         sigma: of the offset, nT, then of xx, yy, zz, xy, xz, yz of M, (9).
         told: whether the data tell each, (9).
-        residual_nt: |M (m - b)| - |B|, (n).
+        residual_nt: |M (m - b)| - |B|, of the rows that lack no number, (n).
         weakest_axis: direction along which the offset is told least, (3); ``weakest_nt``: its deviation.
         correlation_rows: how many neighbouring residuals count as one.
     """
@@ -53,6 +53,11 @@ class MagnetometerFit(NamedTuple):
     correlation_rows: float
 
     @property
+    def values(self) -> list[float]:
+        """Offset, nT, and numbers of the matrix, in the order of ``NAMES``."""
+        return [*self.offset_nt.tolist(), *(float(self.matrix[place]) for place in _PLACES)]
+
+    @property
     def rms_nt(self) -> float:
         """RMS of the residuals."""
         return float(np.sqrt(np.mean(self.residual_nt**2)))
@@ -62,10 +67,11 @@ def fit_magnetometer(mag_nt: Array, strength_nt: Array) -> MagnetometerFit:
     """Fit offset and symmetric matrix to samples in the order of time.
 
     Args:
-        mag_nt: samples, sensor axes, (n, 3).
+        mag_nt: samples, sensor axes, (n, 3); a row that lacks a number counts for nothing.
         strength_nt: of the field at each, (n).
     """
-    samples, strength = UT_PER_NT * mag_nt, UT_PER_NT * strength_nt
+    finite = np.isfinite(mag_nt).all(axis=1)
+    samples, strength = UT_PER_NT * mag_nt[finite], UT_PER_NT * strength_nt[finite]
     first = _undistorted(samples, strength)
     scale_ut = 1.0
     for _ in range(3):

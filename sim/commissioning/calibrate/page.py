@@ -14,7 +14,6 @@ from sim.drawing.time_chart import Level, Panel, Series, TimeChart, draw, time_d
 
 Array = NDArray[np.float64]
 
-_PLACES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 _TOLD = (
     "A number is told where one standard deviation of it moves the field by at most 1500 nT. Neighbouring "
     "residuals are not independent: so many rows as their correlation is long count as one."
@@ -73,9 +72,8 @@ def _residuals(found: RecordedCalibration, time: TimeAxis, t_s: Array) -> Chart:
 
 
 def _numbers(fit: MagnetometerFit) -> Table:
-    values = [*fit.offset_nt, *(fit.matrix[i, j] for i, j in _PLACES)]
     rows = []
-    for name, value, sigma, told in zip(NAMES, values, fit.sigma, fit.told, strict=True):
+    for name, value, sigma, told in zip(NAMES, fit.values, fit.sigma, fit.told, strict=True):
         digits = 0 if name.startswith("b_") else 4
         rows.append(
             (name, f"{value:.{digits}f}", f"{sigma:.{digits}f}", "told" if told else "cannot be told")

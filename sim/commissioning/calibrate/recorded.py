@@ -18,6 +18,7 @@ from sim.commissioning.telemetry.spin import spin_axis
 Array = NDArray[np.float64]
 
 LEAST_ROWS = 15
+"""With a field sample, that may tell the nine numbers of the magnetometer."""
 LEAST_FOLLOWED_S = 60.0
 """A shorter pass tells no motion."""
 
@@ -47,8 +48,7 @@ def calibrate_pass(around: Along, ratios: Array, noise: Noise) -> RecordedCalibr
     Raises:
         HarnessError: a gap between samples is too long.
     """
-    finite = np.isfinite(around.recorded.mag_nt).all(axis=1)
-    magnetometer = fit_magnetometer(around.recorded.mag_nt[finite], around.strength_nt[finite])
+    magnetometer = fit_magnetometer(around.recorded.mag_nt, around.strength_nt)
     drift = bias_drift(around, magnetometer)
     first = PassCalibration(magnetometer.offset_nt, magnetometer.matrix, (), np.eye(3))
     rows = sampled(around)

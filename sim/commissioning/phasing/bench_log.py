@@ -6,7 +6,9 @@ readings are after it, less what they were before.
 """
 
 import csv
+from collections.abc import Iterator
 from dataclasses import dataclass
+from io import StringIO
 from itertools import pairwise
 from math import isfinite, isnan, nan
 from pathlib import Path
@@ -15,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from fsw.input.regular_file import read_regular
 from sim.errors import HarnessError
 
 Array = NDArray[np.float64]
@@ -22,6 +25,9 @@ Array = NDArray[np.float64]
 TIME, CHANNEL, COMMAND = "log_time_s", "channel", "cmd"
 FIELD = ("mag_x_nt", "mag_y_nt", "mag_z_nt")
 COMMANDED = ("cmd_x_am2", "cmd_y_am2", "cmd_z_am2")
+MOST_BYTES = 100_000_000
+LARGEST = 1e12
+"""A number of a log, in nT, A m^2 or s, is below."""
 LONGEST_S = 8.0
 """Of the readings before and after a step that are compared."""
 SETTLED_S = 1.0
@@ -112,25 +118,36 @@ def read_recording(path: Path) -> Recording:
     """
     fields: dict[str, list[tuple[float, ...]]] = {}
     commands: list[tuple[float, ...]] = []
-    try:
-        with path.open(newline="", encoding="utf-8") as file:
-            reader = csv.DictReader(file)
-            missing = sorted({TIME, CHANNEL, *FIELD, *COMMANDED} - set(reader.fieldnames or ()))
-            if missing:
-                raise HarnessError(f"{path}: column {missing[0]} is missing: it is no bench log")
-            for row in reader:
-                is_command = row[CHANNEL] == COMMAND
-                numbers = _numbers(path, reader.line_num, row, COMMANDED if is_command else FIELD)
-                (commands if is_command else fields.setdefault(row[CHANNEL], [])).append(numbers)
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        why = getattr(error, "strerror", None) or error
-        raise HarnessError(f"{path}: cannot be read: {why}") from None
+    for line, row in _rows(path):
+        channel = row[CHANNEL]
+        if not channel:
+            raise HarnessError(f"{path}: line {line}: {CHANNEL} is missing")
+        is_command = channel == COMMAND
+        numbers = _numbers(path, line, row, COMMANDED if is_command else FIELD)
+        (commands if is_command else fields.setdefault(channel, [])).append(numbers)
     if not commands or not fields:
         raise HarnessError(f"{path}: it holds no commands (channel {COMMAND}), or no readings")
     return Recording({name: _split(rows) for name, rows in fields.items()}, _split(commands))
 
 
-def _numbers(path: Path, line: int, row: dict[str, str], columns: tuple[str, ...]) -> tuple[float, ...]:
+def _rows(path: Path) -> Iterator[tuple[int, dict[str, str | None]]]:
+    """Each row with the number of its line; None where a line ends before a column."""
+    try:
+        text = read_regular(path, MOST_BYTES).decode("utf-8-sig")
+        reader = csv.DictReader(StringIO(text, newline=""))
+        missing = sorted({TIME, CHANNEL, *FIELD, *COMMANDED} - set(reader.fieldnames or ()))
+        if missing:
+            raise HarnessError(f"{path}: column {missing[0]} is missing: it is no bench log")
+        for row in reader:
+            yield reader.line_num, row
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        why = getattr(error, "strerror", None) or error
+        raise HarnessError(f"{path}: cannot be read: {why}") from None
+
+
+def _numbers(
+    path: Path, line: int, row: dict[str, str | None], columns: tuple[str, ...]
+) -> tuple[float, ...]:
     found = []
     for column in (TIME, *columns):
         try:
@@ -138,7 +155,9 @@ def _numbers(path: Path, line: int, row: dict[str, str], columns: tuple[str, ...
         except (TypeError, ValueError):
             number = float("nan")
         if not isfinite(number):
-            raise HarnessError(f"{path}: line {line}: {column} is {row[column]!r}, which is no number")
+            raise HarnessError(f"{path}: line {line}: {column} is {row[column]!r:.60}, which is no number")
+        if abs(number) >= LARGEST:
+            raise HarnessError(f"{path}: line {line}: {column} is {number:g}, beyond {LARGEST:g}")
         found.append(number)
     return tuple(found)
 

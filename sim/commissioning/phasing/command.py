@@ -134,7 +134,11 @@ def sequence_ticks(scenario: Scenario, rounds: int, at_rest: bool = False) -> in
 def _judge(log: Path, table: FlightTable, known: Known) -> int:
     """Say the verdict: exit code 1 where the wiring is not told, or not the table's."""
     detail(f"phasing from {log}")
-    found = phasing(read_samples(log, table.time.tick_hz), table, _with_table(known, table))
+    samples = read_samples(log, table.time.tick_hz)
+    try:
+        found = phasing(samples, table, _with_table(known, table))
+    except HarnessError as error:
+        raise HarnessError(f"{log}: {error}") from None
     _say(found, table)
     return int(found.told is None or found.told != words.of_table(table))
 

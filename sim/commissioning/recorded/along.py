@@ -2,13 +2,15 @@
 
 from dataclasses import dataclass
 from math import inf
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fsw.core.orbit.ephemeris import EphemerisModel, Reference, advance, ephemeris_model, reference_at
-from sim.commissioning.recorded.element_sets import ElementSet
+from sim.commissioning.recorded.element_sets import ElementSet, nearest_elements
 from sim.commissioning.recorded.recorded_pass import RecordedPass
+from sim.console import warn
 from sim.errors import HarnessError
 
 Array = NDArray[np.float64]
@@ -16,6 +18,8 @@ Integers = NDArray[np.int64]
 
 NT_PER_T = 1e9
 FASTEST_HZ = 100
+OLD_DAYS = 7.0
+"""Elements further away put the satellite tens of kilometres off: 10 nT and more each."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +57,19 @@ class Along:
         """Strength of the field, (n)."""
         strength: Array = np.sqrt(np.sum(self.b_eci_nt**2, axis=1))
         return strength
+
+
+def placed(recorded: RecordedPass, tle: Path) -> Along:
+    """The pass along the nearest elements of a file; of elements that are far away the user is warned.
+
+    Raises:
+        HarnessError: as ``nearest_elements`` and ``along``.
+    """
+    around = along(recorded, nearest_elements(tle, recorded.middle_unix_s))
+    age_days = around.elements.age_days(recorded.middle_unix_s)
+    if abs(age_days) > OLD_DAYS:
+        warn(f"{tle}: the nearest element set is {abs(age_days):.0f} days away: its field may be off")
+    return around
 
 
 def along(recorded: RecordedPass, elements: ElementSet) -> Along:

@@ -1,18 +1,19 @@
 """What calibration knows of a satellite's sensors and body, and the file that carries it."""
 
-from math import sqrt
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, Strict
+from pydantic import Field, Strict, field_validator
 from scipy.spatial.transform import Rotation
 
 from fsw.input.schema import Positive, Section, Square, Triple, read_toml, validated
 
 Array = NDArray[np.float64]
 
+LEAST_GAIN, MOST_GAIN = 1e-3, 1e3
+"""Of a matrix, in any direction."""
 _IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
@@ -22,6 +23,17 @@ class PassMagnetometerTable(Section):
     offset_nt: Triple = (0.0, 0.0, 0.0)
     matrix: Square = _IDENTITY
 
+    @field_validator("matrix")
+    @classmethod
+    def _is_regular(cls, matrix: Square) -> Square:
+        gains = np.linalg.svd(np.array(matrix), compute_uv=False)
+        if not LEAST_GAIN <= gains[-1] <= gains[0] <= MOST_GAIN:
+            raise ValueError(
+                f"it takes a field in one direction times {gains[-1]:.3g}, in another times {gains[0]:.3g}; "
+                f"allowed is {LEAST_GAIN:g} to {MOST_GAIN:g}: a singular matrix loses a direction"
+            )
+        return matrix
+
 
 class PassCellTable(Section):
     """``[[recorded.cell]]``: its current is full_scale times the cosine between face and Sun."""
@@ -29,6 +41,13 @@ class PassCellTable(Section):
     name: str
     face_body: Triple
     full_scale: Positive
+
+    @field_validator("face_body")
+    @classmethod
+    def _has_a_direction(cls, face_body: Triple) -> Triple:
+        if not any(face_body):
+            raise ValueError("(0, 0, 0) is no direction")
+        return face_body
 
 
 class PassBodyTable(Section):
@@ -123,5 +142,4 @@ UNCALIBRATED = calibration(PassCalibrationTable())
 
 def _cell(table: PassCellTable) -> KnownCell:
     face = np.array(table.face_body)
-    length = sqrt(float(face @ face))
-    return KnownCell(table.name, face / length if length > 0.0 else face, table.full_scale)
+    return KnownCell(table.name, face / np.linalg.norm(face), table.full_scale)

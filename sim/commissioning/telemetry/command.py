@@ -4,18 +4,15 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from sim.commissioning.recorded.along import along
+from sim.commissioning.recorded.along import placed
 from sim.commissioning.recorded.calibration import UNCALIBRATED, PassCalibration, read_calibration
-from sim.commissioning.recorded.element_sets import nearest_elements
 from sim.commissioning.recorded.recorded_pass import read_pass
+from sim.commissioning.recorded.result_files import check_results, write_result
 from sim.commissioning.telemetry.follow import Noise
 from sim.commissioning.telemetry.judge import Judged, figures, judge
 from sim.commissioning.telemetry.page import telemetry_page
-from sim.console import answer, say, warn
+from sim.console import answer, say
 from sim.errors import HarnessError
-from sim.record.destination import check_file
-
-OLD_DAYS = 7.0
 
 
 def telemetry(path: Path, tle: Path, calibration: Path | None, page: Path | None, start_s: float) -> int:
@@ -25,10 +22,13 @@ def telemetry(path: Path, tle: Path, calibration: Path | None, page: Path | None
         The exit code: 1 where the motion cannot be believed, else 0.
 
     Raises:
-        HarnessError, TableError: a file cannot be read or written, or is malformed.
+        HarnessError, TableError: a file cannot be read or written, is malformed, or would replace another
+            of them; ``start_s`` is not positive.
     """
-    if page is not None:
-        check_file(page)
+    if not start_s > 0.0:
+        raise HarnessError(f"--start {start_s:g}: the filter starts from a positive number of seconds")
+    read = {"the telemetry": path, "the element sets": tle, "the calibration": calibration}
+    check_results({"--page": page}, read)
     known = UNCALIBRATED if calibration is None else read_calibration(calibration)
     judged = judged_pass(path, tle, known, start_s)
     found = figures(judged)
@@ -37,10 +37,7 @@ def telemetry(path: Path, tle: Path, calibration: Path | None, page: Path | None
     if calibration is None and not judged.verdict.converged:
         say("samples are taken as they are: torquer calibrate finds what --calibration takes off them")
     if page is not None:
-        try:
-            page.write_text(telemetry_page(judged, known, found), encoding="utf-8")
-        except OSError as error:
-            raise HarnessError(f"{page}: cannot be written ({error.strerror})") from None
+        write_result(page, telemetry_page(judged, known, found))
         say(f"page: {page}")
     answer({"pass": judged.around.recorded.name, **found, "page": page})
     return int(not judged.verdict.converged)
@@ -52,12 +49,7 @@ def judged_pass(path: Path, tle: Path, known: PassCalibration, start_s: float) -
     Raises:
         HarnessError: a file cannot be read, or is malformed.
     """
-    recorded = read_pass(path)
-    around = along(recorded, nearest_elements(tle, recorded.middle_unix_s))
-    age_days = around.elements.age_days(recorded.middle_unix_s)
-    if abs(age_days) > OLD_DAYS:
-        warn(f"{tle}: the nearest element set is {abs(age_days):.0f} days away: its field may be off")
-    return judge(around, known, Noise(), start_s)
+    return judge(placed(read_pass(path), tle), known, Noise(), start_s)
 
 
 def in_words(judged: Judged, found: dict[str, Any]) -> Sequence[str]:

@@ -115,10 +115,10 @@ def judge(around: Along, known: PassCalibration, noise: Noise, start_s: float = 
     settling_s = SETTLING_S["long" if t_s[-1] - t_s[0] > LONG_S else "short"]
     settled = int(np.searchsorted(t_s, t_s[0] + min(settling_s, 0.5 * (t_s[-1] - t_s[0]))))
     followed = different([follow(around, known, start, config) for start in starts])
-    errors = [rms(one.direction_deg[settled:]) for one in followed]
+    errors = [_as_error(rms(one.direction_deg[settled:])) for one in followed]
     motions = []
     for one, error in zip(followed, errors, strict=True):
-        contends = CLEARLY * error < min(errors)
+        contends = CLEARLY * error <= min(errors)
         coasts = coasts_deg(around, known, one, settled) if contends else {}
         motions.append(AllowedMotion(one, settled, sun_azimuths(around, known, one, axis), coasts))
     ordered, verdict = told_apart(motions)
@@ -157,7 +157,7 @@ def told_apart(motions: list[AllowedMotion]) -> tuple[list[AllowedMotion], Motio
     those of the second half still are held back; then what the motions predict without samples.
     """
     ordered = sorted(motions, key=_by_field)
-    contenders = [one for one in ordered if CLEARLY * _by_field(one) < _by_field(ordered[0])]
+    contenders = [one for one in ordered if CLEARLY * _by_field(one) <= _by_field(ordered[0])]
     for by, score in (("cells", _by_cells), ("coasting", _by_coasting)):
         if len(contenders) == 1:
             return ordered, _alone(ordered[0], "field")
@@ -178,7 +178,7 @@ def _alone(motion: AllowedMotion, by: str) -> MotionVerdict:
     azimuths, coast = motion.held_back(by), motion.longest_coast()
     seen = len(azimuths.rows) >= LEAST_CELL_ROWS
     long = coast is not None and coast[0] >= LEAST_COAST_S
-    if motion.direction_deg_rms > MOST_DIRECTION_DEG:
+    if not motion.direction_deg_rms <= MOST_DIRECTION_DEG:
         fault = f"the field is off by {motion.direction_deg_rms:.0f} deg: the filter is lost"
     elif seen and not _agrees(azimuths):
         off, scatter = azimuths.median_deg, azimuths.scatter_deg
@@ -205,7 +205,12 @@ def _by_coasting(motion: AllowedMotion) -> float:
 
 
 def _by_field(motion: AllowedMotion) -> float:
-    return motion.direction_deg_rms
+    return _as_error(motion.direction_deg_rms)
+
+
+def _as_error(value: float) -> float:
+    """The value; infinite where it is no number, since that is worse than any."""
+    return float("inf") if np.isnan(value) else value
 
 
 def _mean_nis(motion: AllowedMotion) -> float:

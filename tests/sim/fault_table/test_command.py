@@ -14,6 +14,7 @@ from sim.fault_table.campaign import FAULT_CODE
 from sim.fault_table.row import CaseResult, CheckOutcome, CheckVerdict, FaultRow, RowFault, RowResult, Unseen
 from sim.fault_table.rows.table import ROWS, choose_rows
 from sim.faults.kinds import KINDS
+from sim.junit import junit_xml
 from torquer.cli.main import main
 
 
@@ -217,7 +218,7 @@ def test_an_earlier_row_with_another_fault_is_refused(planted, tmp_path):
 
 
 def test_junit_counts_failures_and_what_is_open(planted):
-    root = ElementTree.fromstring(render.junit(planted))
+    root = ElementTree.fromstring(junit_xml("torquer faults", render.suites(planted)))
     counts = {
         suite.get("name"): (suite.get("tests"), suite.get("failures"), suite.get("skipped")) for suite in root
     }

@@ -11,26 +11,25 @@ from sim.commissioning.calibrate.flown.run_fit import RunCalibration, calibrated
 from sim.commissioning.calibrate.flown.samples import read_samples
 from sim.commissioning.calibrate.flown.tables import tables
 from sim.commissioning.calibrate.flown.verdicts import sentences, turn_rad, turn_sigma_rad, untold
+from sim.commissioning.recorded.result_files import check_results, write_result
 from sim.console import answer, say, warn
 from sim.errors import HarnessError
 from sim.record import run_dir
-from sim.record.destination import check_file
 from sim.scenario.schema import flight_table, load
 
 
 def calibrate(
     run_or_log: Path, scenario: str | None, settings: Nested, out: Path | None, page: Path | None
 ) -> int:
-    """Calibrate by a log: exit code 1 if it does not tell everything.
+    """Calibrate by a log: exit code 1 if it does not tell everything, or not well enough for the tables.
 
     Raises:
-        HarnessError: no such log, no scenario for it, or it tells nothing of the magnetometer.
+        HarnessError: no such log, no scenario for it, it tells nothing of the magnetometer, or a file to
+            write is one of the run, or cannot be written.
         TableError: the scenario is not valid.
     """
-    for path in (out, page):
-        if path is not None:
-            check_file(path)
     log, folder = run_dir.locate(run_or_log)
+    check_results({"--out": out, "--page": page}, _read(log, scenario))
     beside = folder / run_dir.SCENARIO
     if scenario is None and not beside.is_file():
         raise HarnessError(f"{log}: no {run_dir.SCENARIO} beside it: name its scenario by --scenario")
@@ -41,33 +40,47 @@ def calibrate(
         )
     tick_s = 1.0 / table.time.tick_hz
     samples = read_samples(log, table.time.tick_hz)
-    found = calibrated(samples, table)
+    try:
+        found = calibrated(samples, table)
+    except HarnessError as error:
+        raise HarnessError(f"{log}: {error}") from None
     missing = untold(found)
     for line in sentences(found, tick_s):
         say(line)
     for line in missing:
         say(f"not told: {line}", failed=True)
-    text = _written(found, table, out)
+    text, fault = _tables(found, table)
+    if text and out is not None:
+        write_result(out, text)
+        say(f"written: {out}")
+    elif out is not None:
+        say(f"{out}: {fault}", failed=True)
     if page is not None:
         from sim.commissioning.calibrate.flown.page import calibration_page  # noqa: PLC0415  (loads matplotlib)
 
         html = calibration_page(found, run_or_log.name, tick_s, float(samples.unix_s[0]), text)
-        page.write_text(html, encoding="utf-8")
-    answer(_as_json(found, tick_s, missing, out, page))
-    return int(bool(missing))
+        write_result(page, html)
+    answer(_as_json(found, tick_s, missing, out if text else None, page))
+    return int(bool(missing) or (out is not None and not text))
 
 
-def _written(found: RunCalibration, table: FlightTable, out: Path | None) -> str:
-    """Both tables as TOML, which is written where a file is named."""
+def _read(log: Path, scenario: str | None) -> dict[str, Path | None]:
+    """The files that must not be replaced: log and scenario, and whatever else the run holds."""
+    of_run = {name: log.parent / name for name in run_dir.FILES}
+    named = Path(scenario) if scenario is not None and scenario.endswith(".toml") else None
+    return {
+        "the log": log,
+        "the scenario": named,
+        **{f"the run's {name}": path for name, path in of_run.items() if path.is_file()},
+    }
+
+
+def _tables(found: RunCalibration, table: FlightTable) -> tuple[str, str]:
+    """Both tables as TOML, or why there are none."""
     try:
-        text = tomli_w.dumps(tables(found, table))
-    except HarnessError:
-        if out is not None:
-            raise
-        return ""
-    if out is not None:
-        out.write_text(text, encoding="utf-8")
-    return text
+        return tomli_w.dumps(tables(found, table)), ""
+    except HarnessError as error:
+        return "", str(error)
 
 
 def _as_json(

@@ -1,12 +1,14 @@
 """What the models expect along the orbit of an onboard table, at many times at once."""
 
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from math import radians
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fsw.table.table import FlightTable
+from sim.errors import HarnessError
 from sim.plant.config import FieldConfig, OrbitConfig
 from sim.plant.environment.field import make_field
 from sim.plant.environment.orbit import make_orbit
@@ -31,13 +33,17 @@ def expected(table: FlightTable, unix_s: Array) -> Expected:
     Computed every 10 s and interpolated by a cubic; the error is below 1 nT.
 
     Raises:
-        ValueError: the orbit has no position at one of the times.
+        HarnessError: orbit or field do not reach one of the times, which are those of a log.
     """
     epoch = table.epoch_unix_s
     t_s = unix_s - epoch
     nodes_s = np.arange(t_s[0] - 2.0 * NODE_S, t_s[-1] + 3.0 * NODE_S, NODE_S)
-    r_m, _ = make_orbit(_orbit(table), epoch).at(nodes_s)
-    b_nt = 1e9 * make_field(FieldConfig(table.field.model, 13), epoch).at(nodes_s, r_m)
+    try:
+        r_m, _ = make_orbit(_orbit(table), epoch).at(nodes_s)
+        b_nt = 1e9 * make_field(FieldConfig(table.field.model, 13), epoch).at(nodes_s, r_m)
+    except ValueError as error:
+        begin, end = (f"{datetime.fromtimestamp(t, UTC):%Y-%m-%d %H:%M:%S}" for t in unix_s[[0, -1]].tolist())
+        raise HarnessError(f"the log is of {begin} to {end} UTC: {error}") from None
     to_sun = sun_eci_m(epoch, nodes_s) - r_m
     rows = np.hstack([r_m, b_nt, to_sun / np.linalg.norm(to_sun, axis=1)[:, None]])
     at = _cubic(nodes_s, rows, t_s)

@@ -1,6 +1,7 @@
 """The samples of a bus log, tick by tick, as arrays."""
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,10 @@ from sim.record.candump import LogTruncatedError, read_log
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
+
+SURE_GAP_S, LONGEST_GAP_S = 3600.0, 86400.0
+"""Time without a SYNC that is believed whatever the time stamps say, since a recording of a flight without a
+pace has stamps that are much closer; and that is believed at most, where they bear it out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,18 +83,20 @@ def read_samples(log: Path, tick_hz: int) -> Samples:
 
     Raises:
         LogError: the file is no candump log.
-        HarnessError: it holds no ticks.
+        HarnessError: it holds no ticks, or one that lies too far from the others.
     """
     rows: dict[int, list[float]] = {}
-    first_unix_s, pending = 0.0, _nothing()
+    stamps_s: dict[int, float] = {}
+    epoch_unix_s, pending = 0, _nothing()
     try:
         for entry in read_log(log):
             frame = entry.frame
             if frame.can_id == Sync.ID and intact(frame):
                 sync = Sync.decode(frame.data)
                 if not rows:
-                    first_unix_s = float(sync.unix_time_s) - sync.tick / tick_hz % 1.0
+                    epoch_unix_s = sync.unix_time_s - sync.tick // tick_hz
                 rows.setdefault(sync.tick, pending)
+                stamps_s.setdefault(sync.tick, entry.timestamp_us / 1e6)
                 pending = _nothing()
             else:
                 _take(frame, pending)
@@ -97,7 +104,19 @@ def read_samples(log: Path, tick_hz: int) -> Samples:
         pass  # what was read is whole
     if not rows:
         raise HarnessError(f"{log}: no SYNC in it: not the log of a flight")
-    return _filled(rows, first_unix_s, tick_hz)
+    _check_gaps(log, stamps_s, tick_hz)
+    return _filled(rows, epoch_unix_s, tick_hz)
+
+
+def _check_gaps(log: Path, stamps_s: dict[int, float], tick_hz: int) -> None:
+    """Check that no tick lies so far from the one before that it must be wrong."""
+    for before, tick in pairwise(sorted(stamps_s)):
+        missing_s, passed_s = (tick - before) / tick_hz, abs(stamps_s[tick] - stamps_s[before])
+        if missing_s > min(passed_s, LONGEST_GAP_S) + SURE_GAP_S:
+            raise HarnessError(
+                f"{log}: a SYNC names tick {tick}, {missing_s:.0f} s after tick {before}, from which it is "
+                f"{passed_s:.0f} s by the time stamps: it cannot be right"
+            )
 
 
 def _nothing() -> list[float]:
@@ -118,13 +137,14 @@ def _take(frame: Frame, row: list[float]) -> None:
         row[6:9] = (status.coil, status.level, 1.0)
 
 
-def _filled(rows: dict[int, list[float]], first_unix_s: float, tick_hz: int) -> Samples:
-    """With empty rows for the ticks that are missing."""
+def _filled(rows: dict[int, list[float]], epoch_unix_s: int, tick_hz: int) -> Samples:
+    """With empty rows for the ticks that are missing; the epoch is the time of tick 0."""
     ticks = np.arange(min(rows), max(rows) + 1)
-    table = np.array([rows.get(tick, _nothing()) for tick in ticks.tolist()])
+    table = np.tile(_nothing(), (len(ticks), 1))
+    table[np.array(list(rows)) - ticks[0]] = list(rows.values())
     return Samples(
         tick=ticks,
-        unix_s=first_unix_s + (ticks - ticks[0]) / tick_hz,
+        unix_s=epoch_unix_s + ticks / tick_hz,
         field_nt=table[:, 0:3],
         sun=table[:, 3:6],
         coil=table[:, 6].astype(np.int64),

@@ -5,7 +5,7 @@ import pytest
 from recorded_samples import AXES, MATRIX, OFFSET_NT, made_up
 from scipy.spatial.transform import Rotation
 
-from sim.commissioning.calibrate.magnetometer import fit_magnetometer
+from sim.commissioning.calibrate.magnetometer import NAMES, fit_magnetometer
 
 
 def samples(count=600, noise_nt=200.0, seed=1, matrix=MATRIX, reach=1.0):
@@ -42,6 +42,24 @@ def test_wild_samples_do_not_pull_it():
     fit = fit_magnetometer(mag, strength)
     assert np.abs(fit.offset_nt - OFFSET_NT).max() < 150.0
     assert np.abs(fit.matrix - MATRIX).max() < 0.006
+
+
+def test_a_row_that_lacks_a_number_counts_for_nothing():
+    mag, strength = samples()
+    gaps = mag.copy()
+    gaps[[5, 6, 300], [0, 2, 1]] = np.nan
+    kept = np.isfinite(gaps).all(axis=1)
+    fit, without = fit_magnetometer(gaps, strength), fit_magnetometer(mag[kept], strength[kept])
+    assert fit.values == without.values
+    np.testing.assert_array_equal(fit.residual_nt, without.residual_nt)
+    assert len(fit.residual_nt) == len(mag) - 3
+
+
+def test_its_values_stand_in_the_order_of_their_names():
+    fit = fit_magnetometer(*samples())
+    values = dict(zip(NAMES, fit.values, strict=True))
+    assert [values[f"b_{axis}"] for axis in "xyz"] == fit.offset_nt.tolist()
+    assert (values["m_xx"], values["m_xy"], values["m_yz"]) == tuple(fit.matrix[[0, 0, 1], [0, 1, 2]])
 
 
 def test_a_matrix_that_turns_comes_out_without_its_turn():

@@ -122,4 +122,49 @@ class TestOfTheCommand:
         path.write_text("\n".join(made_up(9).text.splitlines()) + "\n")
         result = self.run(path, "--tle", TLE, "--out", tmp_path / "c.toml")
         assert result.exit_code == 2
-        assert "9 rows cannot tell 9 numbers" in result.stderr
+        assert "9 rows with a field sample cannot tell 9 numbers, 15 may" in result.stderr
+
+    def test_rows_without_a_field_sample_do_not_count(self, tmp_path):
+        head, *rows = made_up(20).text.splitlines()
+        time_and_rest = [(row.split(",")[0], row.split(",", 4)[4]) for row in rows[14:]]
+        path = tmp_path / "gaps.csv"
+        path.write_text(
+            "\n".join([head, *rows[:14], *(f"{t},,,,{rest}" for t, rest in time_and_rest)]) + "\n"
+        )
+        result = self.run(path, "--tle", TLE, "--out", tmp_path / "c.toml")
+        assert result.exit_code == 2
+        assert "14 rows with a field sample cannot tell 9 numbers" in result.stderr
+
+    @pytest.mark.parametrize(
+        ("files", "said"),
+        [
+            (("--out", "p.csv"), "--out p.csv and the telemetry p.csv are the same file"),
+            (("--out", "t.txt"), "--out t.txt and the element sets t.txt are the same file"),
+            (
+                ("--out", "c.toml", "--page", "p.csv"),
+                "--page p.csv and the telemetry p.csv are the same file",
+            ),
+            (("--out", "x", "--page", "./x"), "--page x and --out x are the same file"),
+        ],
+        ids=["telemetry", "elements", "page", "both"],
+    )
+    def test_no_file_takes_the_place_of_another(self, tmp_path, monkeypatch, files, said):
+        monkeypatch.chdir(tmp_path)
+        before = {"p.csv": (DATA / "s3_20240314T153551Z.csv").read_text(), "t.txt": TLE.read_text()}
+        for name, text in before.items():
+            (tmp_path / name).write_text(text)
+        result = self.run("p.csv", "--tle", "t.txt", *files)
+        assert (result.exit_code, result.stdout) == (2, "")
+        assert said in result.stderr
+        assert {path.name: path.read_text() for path in tmp_path.iterdir()} == before
+
+    @pytest.mark.parametrize(
+        ("option", "words"),
+        [("--set", ("--set", "time.tick_hz=10")), ("--scenario", ("--scenario", "microsat"))],
+    )
+    def test_a_scenario_has_no_effect_and_is_refused(self, tmp_path, option, words):
+        out = tmp_path / "c.toml"
+        result = self.run(DATA / "s3_20240314T153551Z.csv", "--tle", TLE, "--out", out, *words)
+        assert result.exit_code == 2
+        assert f"{option}: recorded telemetry in " in result.stderr
+        assert not out.exists()

@@ -1,5 +1,7 @@
 """The response in a recorded bench log, level by level, and what it cannot tell."""
 
+import os
+
 import numpy as np
 import pytest
 
@@ -118,6 +120,14 @@ def test_no_axis_is_claimed(responses):
         (lambda text: text.replace(",mag1,20000", ",mag1,twenty", 1), "line 2: mag_x_nt is 'twenty'"),
         (lambda text: text.replace(",cmd,", ",other,"), "is"),
         (lambda text: text.splitlines()[0] + "\n", "no commands"),
+        (
+            lambda text: text.replace(",mag1,20000", ",mag1,1e300", 1),
+            r"line 2: mag_x_nt is 1e\+300, beyond 1e\+12",
+        ),
+        (lambda text: text.replace("\n100.0000,", "\n-1e15,", 1), r"line 2: log_time_s is -1e\+15, beyond"),
+        (lambda text: text + "180.1", r"line 1202: channel is missing"),
+        (lambda text: text + "180.1,", r"line 1202: channel is missing"),
+        (lambda text: text + "180.1,mag1,20000", r"line 1202: mag_y_nt is None, which is no number"),
     ],
 )
 def test_a_broken_file_is_told_in_a_sentence(bench_csv, tmp_path, change, says):
@@ -125,6 +135,19 @@ def test_a_broken_file_is_told_in_a_sentence(bench_csv, tmp_path, change, says):
     path.write_text(change(bench_csv.read_text()))
     with pytest.raises(HarnessError, match=says):
         read_recording(path)
+
+
+def test_a_file_from_a_spreadsheet_is_read_alike(bench_csv, responses, tmp_path):
+    path = tmp_path / "excel.csv"
+    path.write_bytes(b"\xef\xbb\xbf" + bench_csv.read_bytes().replace(b"\n", b"\r\n"))
+    for found in bench_responses(read_recording(path)):
+        assert lines([found]) == lines([responses[found.name]])
+
+
+def test_a_pipe_is_refused_before_it_is_opened(tmp_path):
+    os.mkfifo(tmp_path / "pipe.csv")
+    with pytest.raises(HarnessError, match=r"pipe\.csv: cannot be read: it is no regular file"):
+        read_recording(tmp_path / "pipe.csv")
 
 
 def test_a_file_that_is_not_there_is_told_in_a_sentence(tmp_path):

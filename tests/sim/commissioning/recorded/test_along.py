@@ -1,10 +1,12 @@
 """The orbit beside a pass: the plant's own field and Sun at every row."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from recorded_samples import DATA, TLE, made_up
 
-from sim.commissioning.recorded.along import along, sampled
+from sim.commissioning.recorded.along import along, placed, sampled
 from sim.commissioning.recorded.element_sets import nearest_elements
 from sim.commissioning.recorded.recorded_pass import read_pass
 from sim.errors import HarnessError
@@ -61,3 +63,17 @@ def test_a_time_without_a_field_model_is_refused(tmp_path):
     recorded = read_pass(path)
     with pytest.raises(HarnessError, match="late: "):
         along(recorded, nearest_elements(TLE, recorded.middle_unix_s))
+
+
+@pytest.mark.parametrize(("days", "said"), [(6.9, ""), (-7.4, "set is 7 days away: its field may be off")])
+def test_elements_that_are_far_away_are_warned_of(tmp_path, capsys, days, said):
+    recorded = made_up(20).along(tmp_path).recorded
+    alone = tmp_path / "one.txt"
+    alone.write_text("\n".join(TLE.read_text().splitlines()[1:3]) + "\n")
+    near = nearest_elements(alone, recorded.middle_unix_s)
+    moved_s = days * 86400.0 - (recorded.middle_unix_s - near.epoch_unix_s)
+    around = placed(replace(recorded, utc_unix_s=recorded.utc_unix_s + round(moved_s)), alone)
+    assert around.elements == near
+    warned = capsys.readouterr().err
+    assert said in warned
+    assert bool(said) == bool(warned)

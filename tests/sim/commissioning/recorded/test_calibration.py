@@ -38,6 +38,22 @@ def test_the_turn_leads_from_body_axes_to_principal_axes():
         ('[[recorded.cell]]\nname = "a"\nface_body = [1.0, 0.0, 0.0]\nfull_scale = -1.0', "full_scale"),
         ("[recorded.body]\ninertia_ratios = [1.0, 0.0, 1.0]", "inertia_ratios"),
         ("offset_nt = 3", "offset_nt"),
+        (
+            "[calibration.magnetometer]\nmatrix = [[0, 0, 0], [0, 0, 0], [0, 0, 0]]",
+            "calibration.magnetometer.matrix: it takes a field in one direction times 0, in another times 0;",
+        ),
+        (
+            "[calibration.magnetometer]\nmatrix = [[1.0, 2.0, 3.0], [2.0, 4.0, 6.0], [0.0, 0.0, 1.0]]",
+            "allowed is 0.001 to 1000: a singular matrix loses a direction",
+        ),
+        (
+            "[calibration.magnetometer]\nmatrix = [[1e9, 0, 0], [0, 1e9, 0], [0, 0, 1e9]]",
+            "times 1e+09, in another times 1e+09",
+        ),
+        (
+            '[[recorded.cell]]\nname = "a"\nface_body = [0, 0, 0]\nfull_scale = 1.0',
+            "recorded.cell.0.face_body: (0, 0, 0) is no direction",
+        ),
     ],
 )
 def test_a_wrong_key_is_named(tmp_path, text, said):

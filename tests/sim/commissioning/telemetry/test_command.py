@@ -1,11 +1,14 @@
 """``torquer telemetry``: words, document, page and exit codes; bad input is one sentence."""
 
 import json
+from math import nan
 
 import pytest
 from click.testing import CliRunner
 from recorded_samples import DATA, TLE
 
+from sim.commissioning.telemetry.command import telemetry
+from sim.errors import HarnessError
 from torquer.cli.main import main
 
 PASS = DATA / "s3_20240426T041442Z.csv"
@@ -68,6 +71,29 @@ def test_bad_input_is_one_sentence(arguments, said):
     assert said in result.stderr
     assert len(result.stderr.splitlines()) == 1
     assert result.stdout == ""
+
+
+@pytest.mark.parametrize("read", ["telemetry", "element sets", "calibration"])
+def test_the_page_takes_the_place_of_nothing_that_is_read(short, tmp_path, read):
+    copies = {
+        "telemetry": (tmp_path / "q.csv", short),
+        "element sets": (tmp_path / "t.txt", TLE),
+        "calibration": (tmp_path / "c.toml", CALIBRATION),
+    }
+    for copy, original in copies.values():
+        copy.write_bytes(original.read_bytes())
+    recorded, elements, calibration = (copy for copy, _ in copies.values())
+    page = copies[read][0]
+    result = run(recorded, "--tle", elements, "--calibration", calibration, "--page", page)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert f"--page {page} and the {read} {page} are the same file: name another by --page" in result.stderr
+    assert all(copy.read_bytes() == original.read_bytes() for copy, original in copies.values())
+
+
+@pytest.mark.parametrize("start_s", [nan, 0.0, -20.0])
+def test_a_start_of_no_time_is_refused(start_s):
+    with pytest.raises(HarnessError, match="the filter starts from a positive number of seconds"):
+        telemetry(PASS, TLE, None, None, start_s)
 
 
 def test_old_elements_are_warned_of(short, tmp_path):

@@ -1,6 +1,7 @@
 """Which motion is believed: cells or coasting tell it, and one that nothing bears out has not converged."""
 
 from dataclasses import replace
+from math import nan
 
 import numpy as np
 import pytest
@@ -71,6 +72,23 @@ class TestOfAPassInTheSun:
         assert abs(found["sun_azimuth_deg"]["median"]) < 15.0
         assert found["sun_azimuth_deg"]["rms"] < 5.0
         assert found["converged"]
+
+    @staticmethod
+    def off_by(motion, error_deg):
+        ticks = tuple(one._replace(direction_deg=error_deg) for one in motion.followed.ticks)
+        return replace(motion, followed=replace(motion.followed, ticks=ticks))
+
+    def test_a_motion_that_leaves_no_error_at_all_is_told_by_the_field(self, sunlit):
+        exact, other = self.off_by(sunlit.best, 0.0), sunlit.motions[1]
+        ordered, verdict = told_apart([other, exact])
+        assert ordered == [exact, other]
+        assert verdict == (True, "field", "")
+        assert told_apart([exact, self.off_by(other, 0.0)])[1].by == "cells"
+
+    def test_a_motion_whose_error_is_no_number_is_lost_and_comes_last(self, sunlit):
+        lost = self.off_by(sunlit.best, nan)
+        assert told_apart([lost])[1].reason == "the field is off by nan deg: the filter is lost"
+        assert told_apart([lost, sunlit.motions[1]])[0] == [sunlit.motions[1], lost]
 
 
 class TestOfAPassInShadow:

@@ -1,0 +1,78 @@
+"""The samples of a log, tick by tick: their time, and ticks that are missing or wrong."""
+
+import numpy as np
+import pytest
+
+from fsw.wire.candump_line import format_line, format_time
+from fsw.wire.messages import MagField, Sync
+from sim.commissioning.calibrate.flown.samples import read_samples
+from sim.errors import HarnessError
+
+EPOCH_UNIX_S = 1_742_428_800
+
+
+def sync(tick, tick_hz, stamp_s=None):
+    """A SYNC as the plant sends it, at the time of the tick unless another is given."""
+    stamp_s = EPOCH_UNIX_S + tick / tick_hz if stamp_s is None else stamp_s
+    frame = Sync(tick, EPOCH_UNIX_S + tick // tick_hz).encode()
+    return format_line(format_time(round(stamp_s * 1e6)), "can0", frame)
+
+
+@pytest.fixture
+def log(tmp_path):
+    """Writes a log of these lines."""
+
+    def write(*lines):
+        path = tmp_path / "bus.log"
+        path.write_text("".join(lines))
+        return path
+
+    return write
+
+
+@pytest.mark.parametrize("first", [0, 15, 20])
+def test_a_tick_has_the_time_that_the_plant_gives_it_wherever_the_log_begins(log, first):
+    samples = read_samples(log(*(sync(tick, 10) for tick in range(first, 40))), 10)
+    assert samples.tick.tolist() == list(range(first, 40))
+    assert samples.unix_s == pytest.approx(EPOCH_UNIX_S + np.arange(first, 40) / 10, abs=1e-6)
+
+
+def test_so_has_one_that_is_earlier_than_the_first_in_the_log(log):
+    samples = read_samples(log(*(sync(tick, 10) for tick in (15, 16, 3, 4))), 10)
+    assert samples.tick.tolist() == list(range(3, 17))
+    assert samples.unix_s[[0, -1]] == pytest.approx(EPOCH_UNIX_S + np.array([0.3, 1.6]), abs=1e-6)
+
+
+def test_ticks_that_are_missing_have_no_samples(log):
+    def field(tick):
+        return format_line(
+            format_time(EPOCH_UNIX_S * 10**6), "can0", MagField(1, 20.0, 40.0, -60.0, tick).encode()
+        )
+
+    samples = read_samples(log(field(0), sync(0, 1), field(4), sync(4, 1)), 1)
+    assert np.isnan(samples.field_nt[1:4]).all()
+    assert samples.field_nt[[0, 4]].tolist() == [[20.0, 40.0, -60.0]] * 2
+    assert samples.level.tolist() == [0] * 5
+    assert not samples.reported.any()
+
+
+@pytest.mark.parametrize("wild", [5_000, 4_294_967_295])
+def test_a_tick_that_the_time_stamps_do_not_bear_out_is_named(log, wild):
+    path = log(sync(0, 1), sync(1, 1), sync(wild, 1, EPOCH_UNIX_S + 2), sync(3, 1))
+    with pytest.raises(HarnessError) as error:
+        read_samples(path, 1)
+    assert str(error.value) == (
+        f"{path}: a SYNC names tick {wild}, {wild - 3} s after tick 3, "
+        "from which it is 1 s by the time stamps: it cannot be right"
+    )
+
+
+def test_nor_may_the_time_stamps_be_as_wrong_as_the_tick(log):
+    with pytest.raises(HarnessError, match="a SYNC names tick 4000000000"):
+        read_samples(log(sync(0, 1), sync(4_000_000_000, 1)), 1)
+
+
+def test_a_recording_that_paused_is_filled(log):
+    """Some hours, as the stamps say; and less than one where the flight had no pace, and they say nothing."""
+    assert len(read_samples(log(sync(0, 1), sync(20_000, 1)), 1)) == 20_001
+    assert len(read_samples(log(sync(0, 1), sync(3_000, 1, EPOCH_UNIX_S + 0.5)), 1)) == 3_001
