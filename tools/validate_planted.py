@@ -181,7 +181,7 @@ def misplaced(folder: Path, plants: list[Plant]) -> list[str]:
 
 
 def found(verdict: Verdict) -> bool:
-    """Whether a plant was noticed as it must be: by a claim, not by an error."""
+    """Whether a plant was noticed as it must be: by a claim that fails, be it for want of its figure."""
     return verdict.code == FAILED and bool(verdict.failed)
 
 

@@ -1,4 +1,7 @@
-"""Flights kept in a file, a line each: none is lost when a run of many stops, and none is flown twice."""
+"""Flights kept in a file, a line each: none is lost when a run of many stops, and none is flown twice.
+
+What other tasks give that fly has lines of its own there.
+"""
 
 import hashlib
 import inspect
@@ -7,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from sim.campaign.claim import Study, Task
 from sim.campaign.code_digest import code_digest
@@ -16,12 +20,14 @@ from sim.record.run_dir import Json
 
 BEGINNING = b'{"order": "'
 """Of each line."""
+KEYS = ({"order", "code", "summary", "figures"}, {"order", "code", "result"})
+"""Of a flight, of another result."""
 LEFT_OUT = "events"
 """Of the summary: they are many, and judged by no campaign."""
 
 
 class FlightRows:
-    """The flights in a file of JSON lines; of each order the last.
+    """The flights in a file of JSON lines, and results of other tasks; of each order or key the last.
 
     Args:
         path: the file; it need not exist.
@@ -63,6 +69,27 @@ class FlightRows:
             "summary": {key: value for key, value in flight.summary.items() if key != LEFT_OUT},
             "figures": flight.figures,
         }
+        self._add(row)
+
+    def result(self, key: str) -> list[Any] | None:
+        """The values that a task of this code has given; None if there are none here."""
+        values: list[Any] | None = self._rows.get(key, {}).get("result")
+        return values
+
+    def keep_result(self, key: str, name: str, values: list[Any]) -> None:
+        """Add the values that a task has given, in the file at once.
+
+        Args:
+            key: what tells them from others; 16 hexadecimal digits.
+            name: for a reader of the file.
+            values: of JSON.
+
+        Raises:
+            HarnessError: the file cannot be written, or another run adds to it.
+        """
+        self._add({"order": key, "name": name, "code": code_digest(), "result": values})
+
+    def _add(self, row: Json) -> None:
         try:
             self._path.parent.mkdir(parents=True, exist_ok=True)
             with self._path.open("ab") as file:
@@ -134,6 +161,6 @@ def _row(path: Path, number: int, line: bytes) -> Json:
         row = json.loads(line)
     except ValueError:
         row = None
-    if not isinstance(row, dict) or not row.keys() >= {"order", "code", "summary", "figures"}:
+    if not isinstance(row, dict) or not any(row.keys() >= keys for keys in KEYS):
         raise _no_flight(path, number)
     return row

@@ -1,8 +1,9 @@
 """Claims on the law that plans pulses: on the matched satellite, and beside ``mpc`` on random ones."""
 
 from collections.abc import Sequence
-from statistics import median
 from typing import Any
+
+import numpy as np
 
 from sim.campaign.claim import Claim, ClaimOutcome, Study, Threshold
 from sim.campaign.flight import FlightResult, Order
@@ -81,12 +82,12 @@ def compared(
     """Median over median, and the worst satellite."""
     pointing = figure_of("pointing_deg")
     ratios = [pointing(one) / pointing(other) for one, other in zip(ours, theirs, strict=True)]
-    medians = median(map(pointing, ours)) / median(map(pointing, theirs))
-    worst = max(range(len(ratios)), key=ratios.__getitem__)
+    above, below = (float(np.median([pointing(one) for one in flights])) for flights in (ours, theirs))
+    worst = int(np.argmax(ratios))
     better = Claim(f"{name}.median", f"{BESIDE}: of the medians", SOURCE, "1", high=1.0)
     none_worse = Claim(f"{name}.none_worse", f"{BESIDE}: all", SOURCE, "1", high=MOST_WORSE)
     where = f"worst: {describe_order(ours[worst].order)}: {ratios[worst]:.3g}"
-    return better.judge(medians), none_worse.judge(ratios[worst], where, spread_of(none_worse, ratios))
+    return better.judge(above / below), none_worse.judge(ratios[worst], where, spread_of(none_worse, ratios))
 
 
 def _orders(law: str, seeds: Sequence[int]) -> tuple[Order, ...]:

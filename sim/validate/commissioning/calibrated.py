@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from functools import partial
+from math import nan
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
@@ -10,10 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fsw.input.schema import Nested, merge
+from fsw.table.table import FlightTable
 from sim.campaign.claim import Claim, ClaimOutcome, Study
 from sim.commissioning.calibrate.flown.run_fit import RunCalibration, calibrated
-from sim.commissioning.calibrate.flown.samples import read_samples
+from sim.commissioning.calibrate.flown.samples import Samples, read_samples
 from sim.commissioning.calibrate.flown.tables import tables
+from sim.errors import HarnessError
 from sim.flight.virtual import fly_virtual
 from sim.record import run_dir
 from sim.record.pace import Pace
@@ -39,13 +42,21 @@ BESIDE = (
 MOST_WORSE = 1.10
 
 
+VALUES = 22
+"""Of a satellite: matrix, offset, coils' field, delay."""
+
+
 class Flown(NamedTuple):
-    """One satellite: errors in standard deviations, pointing error by what was found and by the truth."""
+    """One satellite: errors in standard deviations, pointing error by what was found and by the truth.
+
+    Where its log does not tell a calibration, ``reason`` says why, and nothing else is a number.
+    """
 
     number: int
     off: tuple[float, ...]
     found_deg: float
     perfect_deg: float
+    reason: str = ""
 
 
 class TrueCalibration(NamedTuple):
@@ -70,11 +81,15 @@ def true_calibration(scenario: Scenario) -> TrueCalibration:
 
 
 def errors(found: RunCalibration, true: TrueCalibration, tick_s: float) -> tuple[float, ...]:
-    """Found less true, in standard deviations."""
+    """Found less true, in standard deviations.
+
+    Raises:
+        HarnessError: the delay was not found.
+    """
     sigma = np.sqrt(found.field.covariance.diagonal())
     late, late_sigma = found.response.delay_ticks, found.response.delay_sigma
-    assert late is not None
-    assert late_sigma is not None
+    if late is None or late_sigma is None:
+        raise HarnessError("the log does not tell the delay of the magnetometer")
     parts = [
         (found.field.matrix - true.matrix).ravel() / sigma[:9],
         (found.field.offset_nt - true.offset_nt) / sigma[9:],
@@ -90,15 +105,28 @@ def flown(number: int) -> Flown:
     tumbling = load(SCENARIO, merge(settings, {"control": {"law": "phasing"}}))
     with TemporaryDirectory() as scratch:
         log = _fly(Path(scratch) / "tumbling", tumbling, number, ORBIT_TICKS) / run_dir.BUS_LOG
-        table = flight_table(tumbling)
-        found = calibrated(read_samples(log, tumbling.time.tick_hz), table)
-        given = tables(found, table)
-        true = true_calibration(tumbling)
-        pointing = [
+        samples, true = read_samples(log, tumbling.time.tick_hz), true_calibration(tumbling)
+        try:
+            off, given = told(samples, flight_table(tumbling), true, 1.0 / tumbling.time.tick_hz)
+        except HarnessError as error:
+            return Flown(number, (nan,) * VALUES, nan, nan, str(error))
+        found_deg, perfect_deg = (
             _pointing_deg(Path(scratch) / name, merge(merge(settings, POINTED), {"flight": values}), number)
             for name, values in (("found", given), ("perfect", merge(given, _as_table(true))))
-        ]
-    return Flown(number, errors(found, true, 1.0 / tumbling.time.tick_hz), *pointing)
+        )
+    return Flown(number, off, found_deg, perfect_deg)
+
+
+def told(
+    samples: Samples, table: FlightTable, true: TrueCalibration, tick_s: float
+) -> tuple[tuple[float, ...], Nested]:
+    """What a log tells: the errors of the values found, in standard deviations, and the tables.
+
+    Raises:
+        HarnessError: it does not tell a calibration by which a satellite may fly.
+    """
+    found = calibrated(samples, table)
+    return errors(found, true, tick_s), tables(found, table)
 
 
 def _as_table(true: TrueCalibration) -> Nested:
@@ -129,12 +157,15 @@ def studies(most: int | None = None) -> list[Study]:
 
 
 def conclude(flights: Sequence[Any]) -> list[ClaimOutcome]:
-    """The values are right within their uncertainty, and good enough to fly by."""
+    """The values are right within their uncertainty, and good enough to fly by; all satellites tell them."""
+    inside = Claim("calibration.inside", INSIDE, SOURCE, "1", low=0.95)
+    beside = Claim("calibration.pointing", BESIDE, SOURCE, "1", high=MOST_WORSE)
+    if untold := [f"satellite {one.number}: {one.reason}" for one in flights if one.reason]:
+        return [claim.judge(nan, "; ".join(untold)) for claim in (inside, beside)]
     off = np.abs(np.array([one.off for one in flights]))
     worst = flights[int(np.argmax(off.max(axis=1)))]
-    inside = Claim("calibration.inside", INSIDE, SOURCE, "1", low=0.95)
     largest = f"worst: satellite {worst.number}: {off.max():.1f} sigma"
+    part = nan if np.isnan(off).any() else float(np.mean(off < 3.0))
     ratios = np.array([one.found_deg / one.perfect_deg for one in flights])
-    beside = Claim("calibration.pointing", BESIDE, SOURCE, "1", high=MOST_WORSE)
     where = f"worst: satellite {flights[int(np.argmax(ratios))].number}; median {np.median(ratios):.3f}"
-    return [inside.judge(float(np.mean(off < 3.0)), largest), beside.judge(float(np.max(ratios)), where)]
+    return [inside.judge(part, largest), beside.judge(float(np.max(ratios)), where)]

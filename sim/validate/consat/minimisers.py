@@ -42,7 +42,7 @@ def genetic() -> Study:
 
     def conclude(found: Sequence[Any]) -> list[ClaimOutcome]:
         left = [part for parts in found for part in parts]
-        values = (float(np.median(left)), max(left))
+        values = (float(np.median(left)), float(np.max(left)))
         return [
             claim.judge(value, spread=spread_of(claim, left))
             for claim, value in zip(claims, values, strict=True)

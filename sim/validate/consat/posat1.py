@@ -7,7 +7,6 @@ Unfitted are the comparisons of one law with another, the spin's deviation and t
 
 from collections.abc import Sequence
 from math import inf
-from statistics import median
 from typing import Any
 
 import numpy as np
@@ -261,7 +260,7 @@ def _ratio(
 ) -> ClaimOutcome:
     """Of the medians; the spread is that of the ratios from the same start."""
     pairs = [(pick(our), pick(their)) for our, their in zip(ours, theirs, strict=True)]
-    above, below = (median(values) for values in zip(*pairs, strict=True))
+    above, below = (float(np.median(values)) for values in zip(*pairs, strict=True))
     spread = spread_of(claim, [our / their for our, their in pairs])
     return claim.judge(above / below, f"medians {above:.3g} and {below:.3g}", spread)
 

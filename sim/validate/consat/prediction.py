@@ -123,7 +123,7 @@ def prediction() -> Study:
     def conclude(found: Sequence[Any]) -> list[ClaimOutcome]:
         columns = [list(column) for column in zip(*found[0], strict=True)]
         return [
-            claim.judge(max(column), spread=spread_of(claim, column))
+            claim.judge(float(np.max(column)), spread=spread_of(claim, column))
             for claim, column in zip(claims, columns, strict=True)
         ]
 

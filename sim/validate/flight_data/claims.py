@@ -6,9 +6,12 @@ that misses it fails the claim, whatever the cause.
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from math import nan
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
+
+import numpy as np
 
 from sim.campaign.claim import Claim, ClaimOutcome, Study
 from sim.campaign.study import spread_of
@@ -17,6 +20,7 @@ from sim.validate.flight_data.passes import (
     CALIBRATED_BY,
     TWO_SOLUTIONS,
     Believed,
+    NotToldError,
     PassFigures,
     believed,
     carried,
@@ -63,6 +67,13 @@ APART: Mapping[str, str] = MappingProxyType({"azimuth-scatter": "s3_20230824T144
 TOLD = Claim(
     "flight-data.told", "Part of the passes of 150 rows and more whose motion is told", SOURCE, "1", low=0.75
 )
+BELIEVED = Claim(
+    "two-solutions",
+    "Wrong motions, which the field alone allows, that were reported as converged",
+    SOURCE,
+    "1",
+    high=0.0,
+)
 
 
 class Limit(NamedTuple):
@@ -73,14 +84,22 @@ class Limit(NamedTuple):
 
 
 def studies(folder: Path) -> list[Study]:
-    """The passes of a folder with the calibration by one of them.
+    """The passes of a folder with the calibration by one of them; where that one tells none, no claim is met.
 
     Raises:
         HarnessError: the folder does not hold it, or a file is malformed.
     """
     paths = files(folder)
     note(f"calibrating by {CALIBRATED_BY}")
-    known = carried(folder)
+    try:
+        known = carried(folder)
+    except NotToldError as error:
+        missed = [claim.judge(nan, str(error)) for claim in (*(limit.claim for limit in LIMITS), TOLD)]
+        without = [BELIEVED.judge(nan, str(error))]
+        return [
+            Study("flight-data", (), lambda nothing: missed),
+            Study("two-solutions", (), lambda nothing: without),
+        ]
     doubled = [path for path in paths if path.stem in TWO_SOLUTIONS]
     return [
         Study("flight-data", tuple(partial(judged, path, known) for path in paths), conclude),
@@ -105,7 +124,7 @@ def _outcome(limit: Limit, found: Sequence[PassFigures]) -> ClaimOutcome | None:
     values = {one: value for one, value in figures.items() if value is not None}
     if not values:
         return None
-    worst, causes = max(values, key=lambda one: values[one]), CAUSES.get(name, {})
+    worst, causes = list(values)[int(np.argmax(list(values.values())))], CAUSES.get(name, {})
     missed = {one: value for one, value in values.items() if not limit.claim.meets(value)}
     said = [
         f"missed by {one} {value:.3g}: {causes.get(one, 'cause unknown')}" for one, value in missed.items()
@@ -116,18 +135,11 @@ def _outcome(limit: Limit, found: Sequence[PassFigures]) -> ClaimOutcome | None:
 
 def conclude_believed(found: Sequence[Any]) -> list[ClaimOutcome]:
     """No wrong motion is believed."""
-    claim = Claim(
-        "two-solutions",
-        "Wrong motions, which the field alone allows, that were reported as converged",
-        SOURCE,
-        "1",
-        high=0.0,
-    )
     results: list[Believed] = list(found)
     where = "; ".join(
         f"{one.name}: {one.judged} offered, {', '.join(one.wrong) or 'none'}" for one in results
     )
-    return [claim.judge(float(sum(len(one.wrong) for one in results)), where)]
+    return [BELIEVED.judge(float(sum(len(one.wrong) for one in results)), where)]
 
 
 Figure = Callable[[PassFigures], float | None]

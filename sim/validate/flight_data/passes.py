@@ -28,6 +28,10 @@ TWO_SOLUTIONS: Mapping[str, float] = MappingProxyType({CALIBRATED_BY: -24.39, "s
 RIGHT_DEGPS = 0.12
 
 
+class NotToldError(HarnessError):
+    """The pass to calibrate by does not tell what all others are judged with."""
+
+
 class PassFigures(NamedTuple):
     """A pass: the residual of a fit to itself, nT RMS, and the figures of the telemetry command."""
 
@@ -69,11 +73,12 @@ def carried(folder: Path) -> PassCalibration:
     """The calibration by the one pass that all others are judged with.
 
     Raises:
-        HarnessError: the pass does not tell it.
+        NotToldError: the pass does not tell it.
+        HarnessError: a file is malformed.
     """
     found = calibrate_pass(placed(folder / f"{CALIBRATED_BY}.csv"), INERTIA, Noise())
     if found.body is None:
-        raise HarnessError(f"{folder}: {CALIBRATED_BY}.csv does not tell sensors and body")
+        raise NotToldError(f"{folder}: {CALIBRATED_BY}.csv does not tell sensors and body")
     return found.calibration
 
 

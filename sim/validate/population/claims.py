@@ -127,7 +127,7 @@ def quiet_and_honest(since: str = "") -> tuple[Figure, ...]:
     return (
         ISOLATED,
         Figure("inside", pooled + when, "1", inside(np.mean, since), "mean", low=0.99),
-        Figure("inside_worst", each + when, "1", inside(min, since), low=0.95),
+        Figure("inside_worst", each + when, "1", inside(np.min, since), low=0.95),
         Figure("nees", nees + when, "1", figure_of(f"{since}nees"), "mean", low=2.0, high=8.0),
         WRONG,
     )

@@ -26,7 +26,7 @@ ACROSS = (
 """Figure, label and scale of each column of the picture of the satellites."""
 
 Flights = Sequence[FlightResult]
-worst_inside, mean_inside = inside(min), inside(np.mean)
+worst_inside, mean_inside = inside(np.min), inside(np.mean)
 
 
 class SizeSpread(NamedTuple):
@@ -44,10 +44,10 @@ def spread_of(size: float, flights: Flights) -> SizeSpread:
 
     def both(figure: str) -> tuple[float, float]:
         values = [flight.figures[figure] for flight in flights]
-        return median(values), max(values)
+        return median(values), float(np.max(values))
 
-    means, worst = map(mean_inside, flights), map(worst_inside, flights)
-    shares = (100.0 * sum(means) / len(flights), 100.0 * min(worst))
+    means, worst = ([pick(flight) for flight in flights] for pick in (mean_inside, worst_inside))
+    shares = (100.0 * float(np.mean(means)), 100.0 * float(np.min(worst)))
     return SizeSpread(size, len(flights), both("pointing_deg"), both("estimate_deg"), shares)
 
 

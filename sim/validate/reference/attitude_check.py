@@ -162,7 +162,7 @@ def surroundings(case: AttitudeCase, t_s: Array) -> list[Surroundings]:
 def step_s(omega: Array) -> float:
     """The integration step for a history of rates."""
     fastest = float(np.linalg.norm(omega, axis=1).max())
-    return min(LONGEST_STEP_S, max(SHORTEST_STEP_S, TURN_A_STEP_RAD / max(fastest, 1e-9)))
+    return float(np.clip(TURN_A_STEP_RAD / np.maximum(fastest, 1e-9), SHORTEST_STEP_S, LONGEST_STEP_S))
 
 
 def _torque(case: AttitudeCase, q: Quaternion, omega_body_radps: Vec3, around: Surroundings) -> Vec3:

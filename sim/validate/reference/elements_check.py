@@ -53,7 +53,7 @@ def check(path: Path) -> Iterator[ClaimOutcome]:
     )
     for part, (name, statement, unit, tolerance) in enumerate(rows):
         claim = Claim(f"reference.tle.{name}", statement, path.name, unit, high=tolerance, wide=WIDE)
-        worst = max(range(len(found)), key=lambda place: distances[place][part])
+        worst = int(np.argmax([distance[part] for distance in distances]))
         yield claim.judge(distances[worst][part], names[worst])
 
 

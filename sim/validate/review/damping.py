@@ -174,7 +174,7 @@ def jacobi_rise(law: str, gains: object = None) -> float:
     integral = jacobi_integral(
         np.array(FULL), flown.q_body_from_orbit, flown.relative_body_radps, flown.orbit_rate_radps
     )
-    return max(0.0, float(np.diff(integral).max()))
+    return float(np.maximum(0.0, np.diff(integral).max()))
 
 
 def time_share(law: str, gains: object, share: float, against: str = "bdot") -> float:

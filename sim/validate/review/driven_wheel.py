@@ -60,15 +60,15 @@ def given_share() -> float:
 
     Where the dipole is large, of the torques that cancel in it.
     """
-    random, worst = np.random.default_rng(56), 0.0
+    random, shares = np.random.default_rng(56), []
     for _ in range(DRAWN):
         torque, field, axis = (_unit(random) for _ in range(3))
         effort = two_coils_and_wheel(torque, field, axis)
         assert effort is not None
         given = np.cross(effort.m_body_am2, field) - effort.wheel_torque_nm * np.array(axis)
-        size = max(1.0, float(np.linalg.norm(effort.m_body_am2)))
-        worst = max(worst, float(np.linalg.norm(given - torque)) / size)
-    return worst
+        size = np.maximum(1.0, np.linalg.norm(effort.m_body_am2))
+        shares.append(np.linalg.norm(given - torque) / size)
+    return float(np.max(shares))
 
 
 def _unit(random: np.random.Generator) -> Vec3:
@@ -107,16 +107,16 @@ def effort_share() -> float:
 
 def beyond_limits() -> float:
     """The largest effort of the allocation, in parts of what coils and wheel can give, for any torque."""
-    random, worst = np.random.default_rng(57), 0.0
+    random, efforts = np.random.default_rng(57), []
     for _ in range(DRAWN):
         torque, field, axis = (_unit(random) for _ in range(3))
         size = float(10.0 ** random.uniform(-7.0, -2.0))
         asked = (size * torque[0], size * torque[1], size * torque[2])
         effort = affordable(asked, (3e-5 * field[0], 3e-5 * field[1], 3e-5 * field[2]), axis, 8.0, 2e-3)
         assert effort is not None
-        m, wheel = float(np.linalg.norm(effort.m_body_am2)) / 8.0, abs(effort.wheel_torque_nm) / 2e-3
-        worst = max(worst, m, wheel)
-    return worst
+        m = float(np.linalg.norm(effort.m_body_am2)) / 8.0
+        efforts.append((m, abs(effort.wheel_torque_nm) / 2e-3))
+    return float(np.max(efforts))
 
 
 def pitch_speed() -> float:

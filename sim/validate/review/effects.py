@@ -126,27 +126,27 @@ def charge_along_field(inclination_deg: float) -> float:
         velocity, field_t = velocity_in_field(_vec3(r), _vec3(v)), _vec3(b)
         along = b / np.linalg.norm(b)
         best = np.cross(np.cross(velocity, field_t), along)
-        best = best / max(float(np.linalg.norm(best)), 1e-300)
+        best = best / np.maximum(np.linalg.norm(best), 1e-300)
         torque = np.array(lorentz_torque(_vec3(best), velocity, field_t)) @ along
         shares.append(abs(float(torque)) / float(np.linalg.norm(velocity) * np.linalg.norm(b)))
-    return min(shares)
+    return float(np.min(shares))
 
 
 def coils_about_normal() -> float:
     """The largest over an orbit and over unit dipoles along the axes, of |b|."""
     _, _, fields = _orbit(0.0)
-    return max(
-        abs(torques.magnetic(_vec3(m), _vec3(b))[2]) / float(np.linalg.norm(b))
-        for b in fields
-        for m in np.eye(3)
-    )
+    shares = [
+        torques.magnetic(_vec3(m), _vec3(b))[2] / float(np.linalg.norm(b)) for b in fields for m in np.eye(3)
+    ]
+    return float(np.max(np.abs(shares)))
 
 
 def flaps_about_normal() -> float:
     """The largest over an orbit of a satellite whose axis 3 is the normal, in units of P A L."""
     flaps, out = SolarFlaps(area_m2=0.1, arm_m=1.0), radians(SUN_OUT_DEG)
     suns = [(cos(u) * cos(out), -sin(u) * cos(out), sin(out)) for u in np.linspace(0.0, 2.0 * np.pi, 181)]
-    return max(abs(flaps.torque_body_nm(Moment(sun_body=sun))[2]) for sun in suns) / (SUNLIGHT_PA * 0.1)
+    torques_nm = [flaps.torque_body_nm(Moment(sun_body=sun))[2] for sun in suns]
+    return float(np.max(np.abs(torques_nm))) / (SUNLIGHT_PA * 0.1)
 
 
 def ring_momentum_change() -> float:

@@ -6,7 +6,7 @@ out, so that a claim on a law is not a claim on them.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from math import radians
+from math import isnan, radians
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,7 @@ import numpy as np
 from fsw.core.algebra.quaternion import from_dcm, rotate
 from fsw.core.algebra.vector import inverse
 from fsw.core.estimation.attitude import Attitude
-from fsw.core.laws.interface import ControlConfig, FieldSample, LawInput, Memory, Setpoint, Wheel
+from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, LawInput, Memory, Setpoint, Wheel
 from fsw.core.laws.plan.riccati import Schedule
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit.ephemeris import Reference
@@ -44,6 +44,10 @@ DEGREE, EPOCH_UNIX_S = 13, 1_742_461_200
 
 Extra = Callable[[Mat3, Vec3], Vec3]
 """A further torque, body axes [N m], from C(body from eci) and the velocity in eci [m/s]."""
+
+
+class NoNumberError(Exception):
+    """A law has asked for a dipole or a wheel torque that is no number."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +114,11 @@ class LawFlight:
 
 
 def fly(case: LawFlight) -> LawHistory:
-    """Fly it; the dipole holds over a step."""
+    """Fly it; the dipole holds over a step.
+
+    Raises:
+        NoNumberError: the law asks for what no coil or wheel can give, so that no figure is that of the law.
+    """
     row, settings, setpoint = LAWS[case.law], _settings(case), _setpoint(case)
     own = case.inertia_kgm2 if case.wheel is None else case.wheel.rest_of(case.inertia_kgm2)
     rigid, orbit = RigidBody(own, case.wheel_body_nms), _orbit(case)
@@ -125,6 +133,7 @@ def fly(case: LawFlight) -> LawHistory:
         h = None if wheel is None else wheel.relative_nms(motion.omega_body_radps)
         inputs = inputs._replace(wheel_nms=h)
         demand = (row.point if near else row.acquire)(inputs, memory, setpoint, settings)
+        _check_numbers(case, tick, demand)
         before, memory = inputs.sample, demand.memory
         m = _clipped(demand.m_body_am2, case.most_am2)
         rows.append((tick * case.step_s, *motion, relative, from_orbit, m, h or 0.0))
@@ -255,6 +264,14 @@ def _flown(case: LawFlight, rate: float, rows: list[Any]) -> LawHistory:
     momentum = omega @ np.array(case.inertia_kgm2).T + np.array(case.wheel_body_nms) + np.outer(h, axis)
     h_eci = np.einsum("tji,tj->ti", c_eci, momentum)
     return LawHistory(t_s, rate, omega, relative, from_orbit, c_orbit, c_eci, h_eci, m, h)
+
+
+def _check_numbers(case: LawFlight, tick: int, demand: Demand) -> None:
+    if any(map(isnan, (*demand.m_body_am2, demand.wheel_torque_nm or 0.0))):
+        raise NoNumberError(
+            f"{tick * case.step_s:g} s after the start {case.law} asks for what is no number: a dipole of "
+            f"{demand.m_body_am2} A m^2, a wheel torque of {demand.wheel_torque_nm} N m"
+        )
 
 
 def _clipped(m: Vec3, most: float) -> Vec3:

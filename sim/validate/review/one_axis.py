@@ -56,7 +56,7 @@ SUNNED = LawFlight(
 FIGURES: dict[str, Callable[[LawHistory], float]] = {
     "angle_deg": lambda flown: flown.angle_deg[-1],
     "least_angle_deg": lambda flown: flown.angle_deg[flown.orbits > flown.orbits[-1] - 1.0].min(),
-    "vertical_deg": lambda flown: min(flown.orbit_axis_deg(0, 0)[-1], 180.0 - flown.orbit_axis_deg(0, 0)[-1]),
+    "vertical_deg": lambda flown: 90.0 - abs(flown.orbit_axis_deg(0, 0)[-1] - 90.0),
     "normal_deg": lambda flown: flown.orbit_axis_deg(2, 2)[-1],
     "sun_1_deg": lambda flown: flown.axis_deg(0, SUN)[-1],
     "sun_2_deg": lambda flown: flown.axis_deg(1, SUN)[-1],

@@ -107,7 +107,8 @@ def mean_roll_share(case: LawFlight, k_i: float) -> float:
 
 def worst_decay() -> float:
     """Largest relative difference between closed expressions and Floquet exponents, over three wheels."""
-    return max(_decay_error(replace(STUDIED, wheel_nms=(0.0, 0.0, h))) for h in (0.003, 0.01, 0.03))
+    wheels_nms = (0.003, 0.01, 0.03)
+    return float(np.max([_decay_error(replace(STUDIED, wheel_nms=(0.0, 0.0, h))) for h in wheels_nms]))
 
 
 def precession_ratio() -> float:
@@ -124,7 +125,7 @@ def spring_ratio() -> float:
 
 def slowest_decay() -> float:
     """The largest exponent of precession and nutation on the ellipse of ``MOST_ECCENTRIC``."""
-    return max(decays(STUDIED, Ellipse(MOST_ECCENTRIC), LAW))
+    return float(np.max(decays(STUDIED, Ellipse(MOST_ECCENTRIC), LAW)))
 
 
 def nutation_gain() -> float:

@@ -1,5 +1,6 @@
 """``torquer validate``: which files are checked, what it prints and writes, and how it ends."""
 
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -9,8 +10,14 @@ from click.testing import CliRunner
 from sim.campaign.claim import Claim, Study
 from sim.campaign.code_digest import code_digest
 from sim.campaign.flight import FlightResult, Order
+from sim.design.predictive.time_optimal import NoSlewError
+from sim.errors import HarnessError
 from sim.validate import command, flight_rows
+from sim.validate.commissioning.calibrated import Flown, conclude
+from sim.validate.outcomes import read_record
 from sim.validate.reference import reference
+from sim.validate.reference.reference_table import DATA
+from sim.validate.running import kept_results
 from torquer.cli.main import main
 
 
@@ -116,12 +123,96 @@ class TestCommand:
         assert self.call("--only", "a", "--record").exit_code != 0
         assert figures.read_bytes() == before
 
+    @pytest.mark.parametrize(
+        ("words", "why"),
+        [
+            (("--satellites", "2"), "--record keeps outcomes of whole populations: leave out --satellites"),
+            (("--reference", DATA), "--record keeps outcomes by the reference files that ship"),
+        ],
+    )
+    def test_outcomes_of_less_or_of_other_files_are_not_recorded(self, tmp_path, words, why):
+        figures = tmp_path / "page.json"
+        figures.write_text("{}")
+        result = self.call("--record", *words, "--only", "reference.eclipse", "--out", tmp_path / "page.md")
+        assert result.exit_code == 2
+        assert result.stderr.startswith(f"torquer: {why}")
+        assert result.stderr.count("\n") == 1
+        assert figures.read_text() == "{}"
+
+    def test_those_of_recorded_passes_are_of_other_claims_and_are_put_beside_them(
+        self, tmp_path, monkeypatch, study
+    ):
+        monkeypatch.setattr(command, "all_studies", lambda satellites: [study("a", [1.0])])
+        monkeypatch.setattr(command.claims, "studies", lambda folder: [study("flight-data", [2.0])])
+        page = tmp_path / "page.md"
+        assert self.call("--record", "--out", page).exit_code == 0
+        assert self.call("--record", "--flight-data", tmp_path, "--out", page).exit_code == 0
+        assert list(read_record(tmp_path / "page.json")) == ["a", "flight-data"]
+
+    def test_each_study_that_is_done_is_recorded_at_once(self, tmp_path, monkeypatch, study):
+        def stopped():
+            raise KeyboardInterrupt
+
+        parts = [study("a", [1.0]), study("b", [2.0]), replace(study("c", [3.0]), tasks=(stopped,))]
+        monkeypatch.setattr(command, "all_studies", lambda satellites: parts)
+        page = tmp_path / "page.md"
+        assert self.call("--record", "--out", page).exit_code == 130
+        known = read_record(tmp_path / "page.json")
+        assert {name: one.outcome.ours for name, one in known.items()} == {"a": 1.0, "b": 2.0}
+        assert page.read_text().count("| PASS |") == 2
+
     def test_a_page_that_outcomes_would_overwrite_is_refused(self, tmp_path):
         page = tmp_path / "page.json"
         result = self.call("--only", "jacobi", "--record", "--out", page)
         assert result.exit_code == 2
         assert "page.json: the outcomes beside the page would have its name" in result.stderr
         assert not page.exists()
+
+    @pytest.mark.parametrize(
+        "error",
+        [HarnessError("the log tells too little"), AssertionError("too little"), NoSlewError("too little")],
+    )
+    def test_a_computation_that_breaks_off_fails_its_claim_alone(self, tmp_path, monkeypatch, study, error):
+        def broken():
+            raise error
+
+        parts = [replace(study("a", [1.0]), tasks=(broken,)), study("b", [2.0])]
+        monkeypatch.setattr(command, "all_studies", lambda satellites: parts)
+        page = tmp_path / "page.md"
+        result = self.call("--out", page)
+        assert result.exit_code == 1
+        failed, passed, *_ = result.stdout.splitlines()
+        assert failed.startswith("FAIL   a: ")
+        assert "too little" in failed
+        assert passed.startswith("PASS   b: ")
+        assert "1 claim met, 1 failed" in result.stdout
+        assert "too little" in page.read_text()
+
+    def test_a_file_that_ships_and_cannot_be_read_fails_its_claim(self, folder, monkeypatch):
+        folder.copy("eclipse.csv", rows=4)
+        folder.put("eclipse.csv", 2, "sun_x_km", lambda _: "far")
+        monkeypatch.setattr(command, "all_studies", lambda satellites: reference.studies(folder.path))
+        result = self.call("--only", "reference.eclipse")
+        assert result.exit_code == 1
+        assert "FAIL   reference.eclipse: " in result.stdout
+        assert "column sun_x_km: 'far' is no finite number" in result.stdout
+
+    def test_what_calibrations_gave_is_kept_too(self, tmp_path, monkeypatch):
+        flown = []
+
+        def fly(number):
+            flown.append(number)
+            return Flown(number, (0.5,), 0.6, 0.6)
+
+        def studies(satellites):
+            return [Study("calibration", tuple(partial(fly, number) for number in (1, 2)), conclude, True)]
+
+        monkeypatch.setattr(kept_results, "KINDS", (kept_results.Kind("calibration", fly, Flown),))
+        monkeypatch.setattr(command, "all_studies", studies)
+        for _ in range(2):
+            result = self.call("--only", "calibration", "--keep", tmp_path / "kept.jsonl")
+            assert result.exit_code == 0
+        assert flown == [1, 2]
 
     def test_flights_that_are_kept_are_not_flown_again(self, tmp_path, monkeypatch):
         flown = []

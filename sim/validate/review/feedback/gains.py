@@ -200,7 +200,7 @@ def settling() -> Study:
 
 def least_share() -> float:
     """Of all bodies, the best degree on the line over the best of all."""
-    return min(best_on_line(body)[1] / best_of_all(body)[1] for body in BODIES)
+    return float(np.min([best_on_line(body)[1] / best_of_all(body)[1] for body in BODIES]))
 
 
 def limit_factor() -> float:

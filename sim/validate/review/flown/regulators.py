@@ -71,7 +71,7 @@ def averaged() -> Study:
     flights = tuple(partial(averaged_deg, error, lit) for lit in (False, True) for error in ERRORS)
 
     def conclude(found: Sequence[Any]) -> list[ClaimOutcome]:
-        return judged(claims, (max(found[:2]), max(found[2:])))
+        return judged(claims, (float(np.max(found[:2])), float(np.max(found[2:]))))
 
     return Study("review.optimal.averaged", flights, conclude)
 

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from math import nan
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,10 +11,20 @@ from fsw.input.schema import merge
 from sim.campaign.claim import ClaimVerdict
 from sim.campaign.flight import Order, fly_order
 from sim.campaign.honesty import honesty_figures
+from sim.errors import HarnessError
 from sim.plant.hardware.sensors import MagnetometerPhysics
 from sim.scenario.assemble import plant_config
 from sim.scenario.schema import load
-from sim.validate.commissioning.calibrated import POINTED, Flown, conclude, true_calibration
+from sim.validate.commissioning import calibrated
+from sim.validate.commissioning.calibrated import (
+    POINTED,
+    VALUES,
+    Flown,
+    TrueCalibration,
+    conclude,
+    errors,
+    true_calibration,
+)
 from sim.validate.commissioning.wirings import SCENARIO, satellite
 
 GOOD = [Flown(number, (0.5, -2.9, 1.1, -0.3), 0.61, 0.58) for number in range(1, 31)]
@@ -39,6 +50,50 @@ def test_more_than_one_value_of_twenty_beyond_3_sigma_fails():
     off = [one._replace(off=(0.5, -3.1, 1.1, -0.3)) for one in GOOD]
     assert verdicts([*off[:7], *GOOD[7:]])[0] is ClaimVerdict.FAIL
     assert verdicts([*off[:5], *GOOD[5:]])[0] is ClaimVerdict.PASS
+
+
+def test_a_value_whose_error_is_no_number_fails():
+    assert verdicts([*GOOD[:-1], GOOD[-1]._replace(off=(0.5, nan, 1.1, -0.3))])[0] is ClaimVerdict.FAIL
+
+
+class TestUntold:
+    """A satellite whose log does not tell its calibration fails the claims, and the reason is told."""
+
+    WHY = "the log cannot tell the magnetometer: 2 wirings explain it alike"
+
+    def found(self, delay_ticks, delay_sigma):
+        response = SimpleNamespace(delay_ticks=delay_ticks, delay_sigma=delay_sigma)
+        field = SimpleNamespace(covariance=np.eye(12), matrix=np.eye(3), offset_nt=np.zeros(3))
+        coils = {"field_nt_per_am2": np.zeros((3, 3)), "field_sigma": np.ones((3, 3))}
+        return SimpleNamespace(field=field, response=response, **coils)
+
+    TRUE = TrueCalibration(np.eye(3), np.zeros(3), np.zeros((3, 3)), 1.0)
+
+    def test_every_value_has_an_error(self):
+        off = errors(self.found(3.0, 0.5), self.TRUE, 1.0)
+        assert len(off) == VALUES
+        assert off[-1] == pytest.approx(4.0)
+
+    @pytest.mark.parametrize(("delay_ticks", "delay_sigma"), [(None, 0.5), (3.0, None)])
+    def test_a_delay_that_is_not_found_is_told(self, delay_ticks, delay_sigma):
+        with pytest.raises(HarnessError, match="does not tell the delay"):
+            errors(self.found(delay_ticks, delay_sigma), self.TRUE, 1.0)
+
+    def test_a_log_that_tells_too_little_is_a_result(self, monkeypatch):
+        def untold(samples, table):
+            raise HarnessError(self.WHY)
+
+        monkeypatch.setattr(calibrated, "_fly", lambda folder, *flight: folder)
+        monkeypatch.setattr(calibrated, "read_samples", lambda log, tick_hz: None)
+        monkeypatch.setattr(calibrated, "calibrated", untold)
+        found = calibrated.flown(8)
+        assert (found.number, found.reason) == (8, self.WHY)
+        assert np.isnan([*found.off, found.found_deg, found.perfect_deg]).all()
+
+    def test_it_fails_both_claims(self):
+        lost = Flown(30, (nan,) * VALUES, nan, nan, self.WHY)
+        assert verdicts([*GOOD[:-1], lost]) == (ClaimVerdict.FAIL, ClaimVerdict.FAIL)
+        assert {one.where for one in conclude([*GOOD[:-1], lost])} == {f"satellite 30: {self.WHY}"}
 
 
 def test_the_true_calibration_undoes_what_the_sensor_does():

@@ -1,11 +1,14 @@
 """The claims on flight data: a pass beyond a limit fails it, and is named with the cause if it is known."""
 
+from math import isnan, nan
+
 import pytest
 
 from sim.campaign.claim import ClaimVerdict
+from sim.errors import HarnessError
 from sim.validate.flight_data import claims
 from sim.validate.flight_data.claims import conclude, conclude_believed
-from sim.validate.flight_data.passes import CALIBRATED_BY, Believed, PassFigures
+from sim.validate.flight_data.passes import CALIBRATED_BY, Believed, NotToldError, PassFigures
 from sim.validate.flight_data.table import as_table
 
 
@@ -62,6 +65,41 @@ def test_a_pass_beyond_a_limit_fails_that_claim_and_is_named(claim, changes):
     found = outcomes(*PASSES[:2], figures("s3_20240701T000000Z", **changes))
     assert found[claim].verdict is ClaimVerdict.FAIL
     assert "s3_20240701T000000Z" in found[claim].where
+
+
+@pytest.mark.parametrize("place", [0, 1, 2])
+def test_a_figure_that_is_no_number_fails_its_claim_wherever_it_stands(place):
+    passes = [figures(f"s3_2024070{day}T000000Z") for day in (1, 2, 3)]
+    passes[place] = figures(f"s3_2024070{place + 1}T000000Z", field_direction_deg_rms=nan)
+    outcome = outcomes(*passes)["direction-short"]
+    assert outcome.verdict is ClaimVerdict.FAIL
+    assert outcome.where.startswith(f"worst s3_2024070{place + 1}T000000Z")
+
+
+class TestCalibration:
+    """The pass by which all others are judged."""
+
+    def studies(self, tmp_path, monkeypatch, error):
+        def untold(folder):
+            raise error
+
+        (tmp_path / f"{CALIBRATED_BY}.csv").write_text("")
+        monkeypatch.setattr(claims, "carried", untold)
+        return claims.studies(tmp_path)
+
+    def test_where_it_tells_no_body_every_claim_fails(self, tmp_path, monkeypatch):
+        studies = self.studies(tmp_path, monkeypatch, NotToldError("it does not tell sensors and body"))
+        found = [one for study in studies for one in study.conclude([task() for task in study.tasks])]
+        expected = [*(limit.claim for limit in claims.LIMITS), claims.TOLD, claims.BELIEVED]
+        assert [one.claim for one in found] == expected
+        assert {(one.verdict, one.where) for one in found} == {
+            (ClaimVerdict.FAIL, "it does not tell sensors and body")
+        }
+        assert all(isnan(one.ours) for one in found)
+
+    def test_where_it_cannot_be_read_nothing_is_judged(self, tmp_path, monkeypatch):
+        with pytest.raises(HarnessError, match="line 3"):
+            self.studies(tmp_path, monkeypatch, HarnessError("line 3"))
 
 
 def test_a_known_cause_is_told_and_is_no_excuse(monkeypatch):

@@ -346,6 +346,30 @@ def test_a_folder_without_any_of_them_is_refused(folder):
         reference.studies(folder.path / "nowhere")
 
 
+class TestYears:
+    """The onboard model has fewer years than the plant's: it is compared in its own."""
+
+    ONBOARD = ("onboard", "onboard_reference")
+
+    def verdicts(self, folder):
+        outcomes = {one.claim.id.rpartition(".")[2]: one.verdict for one in check(folder, "igrf14.csv")}
+        return {outcomes[name] for name in self.ONBOARD}
+
+    def test_without_a_row_in_them_nothing_is_claimed_of_it(self, folder):
+        folder.copy("igrf14.csv", rows=3)
+        for row in range(3):
+            folder.put("igrf14.csv", row, "utc_iso", lambda _: "2010-06-01T00:00:00Z")
+        assert self.verdicts(folder) == {ClaimVerdict.ABSENT}
+        assert set(failures(folder, "igrf14.csv")) == {"plant", "decimal_years"}
+
+    def test_a_row_beyond_them_counts_for_nothing_and_the_others_keep_their_lines(self, folder):
+        folder.copy("igrf14.csv", rows=4)
+        folder.put("igrf14.csv", 0, "utc_iso", lambda _: "2010-06-01T00:00:00Z")
+        assert self.verdicts(folder) == {ClaimVerdict.PASS}
+        line = folder.add("igrf14.csv", 2, "b_ecef_y_nT", 2e-3)
+        assert f"igrf14.csv line {line} " in failures(folder, "igrf14.csv")["onboard_reference"].where
+
+
 def test_columns_that_no_check_reads_are_reported(folder):
     folder.copy("triad_mekf.csv", rows=3)
     unused = reference.check_file(folder.path / "triad_mekf.csv", "triad_mekf.csv").unused

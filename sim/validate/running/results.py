@@ -1,0 +1,72 @@
+"""The page and the file of outcomes: of a run, or of all, with each study that is done."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from sim.campaign.runner import StudyResult
+from sim.console import say
+from sim.errors import HarnessError
+from sim.record.run_dir import replace_file
+from sim.validate.outcomes import Record, as_text, of_other_code, with_record
+from sim.validate.page import render
+
+
+@dataclass(slots=True)
+class Results:
+    """What is written of a run.
+
+    Attributes:
+        page: None: not written.
+        figures: the file of outcomes; None: not written.
+        studies: ids of all studies.
+        before: what ``figures`` held of all studies, where the outcomes are put among those; None: it is to
+            hold those of this run alone.
+        done: the studies of this run that are done.
+    """
+
+    page: Path | None
+    figures: Path | None
+    studies: frozenset[str]
+    before: Record | None = None
+    done: list[StudyResult] = field(default_factory=list)
+
+    def take(self, study: StudyResult, wall_s: float) -> None:
+        """A study is done; where there are outcomes before, both files now have its own too.
+
+        Raises:
+            HarnessError: a file cannot be written.
+        """
+        self.done.append(study)
+        if self.before is not None:
+            known = with_record(self.before, self.done, self.studies)
+            outcomes = [one.outcome for one in known.values()]
+            # no details: those of a part would stand for the whole
+            self._write(known, render(outcomes, [], wall_s, of_other_code(known)))
+
+    def finish(self, finished: Sequence[StudyResult], wall_s: float) -> None:
+        """All studies are done; say which files there are.
+
+        Raises:
+            HarnessError: a file cannot be written.
+        """
+        if self.before is None:
+            known = with_record({}, finished, self.studies)
+            outcomes = [outcome for study in finished for outcome in study.outcomes]
+            self._write(known, render(outcomes, finished, wall_s, of_other_code(known)))
+        for name, file in (("figures", self.figures), ("page", self.page)):
+            if file is not None:
+                say(f"{name}: {file}")
+
+    def _write(self, known: Record, text: str) -> None:
+        for file, content in ((self.figures, as_text(known)), (self.page, text)):
+            if file is not None:
+                _replace(file, content)
+
+
+def _replace(file: Path, text: str) -> None:
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        replace_file(file, text.encode())  # outcomes of hours are not lost by a kill
+    except OSError as error:
+        raise HarnessError(f"{file}: cannot be written ({error.strerror})") from None
