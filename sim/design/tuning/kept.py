@@ -8,9 +8,12 @@ import json
 import tomllib
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import NotRequired
 from zlib import crc32
 
 import tomli_w
+from pydantic import TypeAdapter, ValidationError
+from typing_extensions import TypedDict
 
 from fsw.input.regular_file import read_regular
 from fsw.input.schema import Nested
@@ -22,6 +25,19 @@ from sim.errors import HarnessError
 from sim.record.run_dir import replace_file
 from sim.scenario.schema import Scenario, flight_table
 
+
+class GainRow(TypedDict):
+    """What is kept of a law: ``control`` is laid over the section of that name."""
+
+    control: Nested
+    cost: float
+    cost_before: float
+    rms: float
+    settle_orbits: NotRequired[float]
+
+
+Rows = dict[str, dict[str, GainRow]]
+"""By driver and law."""
 FOLDER = Path(__file__).parent / "found"
 _HEAD = "# Written by `torquer design --laws`: the best gains of each law, found under equal rules.\n\n"
 
@@ -35,14 +51,14 @@ class KeptGains:
         flights: the budget of each law.
         orbits: length of each flight.
         seed: of the whole flights that bear them out.
-        rows: by driver and law: ``control``, ``cost``, ``settle_orbits`` (absent: never) and ``rms``.
+        rows: by driver and law; one without ``settle_orbits`` has never settled.
     """
 
     body: int
     flights: int
     orbits: float
     seed: int = SEED
-    rows: dict[str, dict[str, Nested]] = field(default_factory=dict)
+    rows: Rows = field(default_factory=dict)
 
     def control(self, driver: str, law: str) -> Nested | None:
         """The keys of ``[control]``; None: none were found."""
@@ -51,7 +67,7 @@ class KeptGains:
 
     def with_row(self, found: TunedGains) -> "KeptGains":
         """These gains with those of one law more, or in its place."""
-        row: Nested = {
+        row: GainRow = {
             "cost": round(found.cost.total, 6),
             "cost_before": round(found.before.total, 6),
             "rms": float(f"{found.cost.rms:.4g}"),
@@ -64,7 +80,7 @@ class KeptGains:
 
 
 def body_checksum(scenario: Scenario) -> int:
-    """Of what gains depend on: body, orbit, start, coils but for their driver, wheel, disturbance and tick."""
+    """Of what gains depend on: body, orbit, start, coils but for their driver, wheel, disturbances, tick."""
     parts: Nested = {
         "body": scenario.body.model_dump(mode="json", include={"inertia_kgm2", "wheel_nms"}),
         "orbit": scenario.orbit.model_dump(mode="json"),
@@ -112,9 +128,9 @@ def read_gains(path: Path) -> KeptGains | None:
         return None
     try:
         values = tomllib.loads(read_regular(path, MOST_BYTES).decode("utf-8"))
-        rules = values.pop("found")
+        rules, rows = values.pop("found"), TypeAdapter(Rows).validate_python(values)
         return KeptGains(
-            int(rules["body"]), int(rules["flights"]), float(rules["orbits"]), int(rules["seed"]), values
+            int(rules["body"]), int(rules["flights"]), float(rules["orbits"]), int(rules["seed"]), rows
         )
     except OSError as error:
         raise HarnessError(f"{path}: gains cannot be read: {error.strerror or error}") from None
@@ -122,6 +138,10 @@ def read_gains(path: Path) -> KeptGains | None:
         raise HarnessError(f"{path}: gains cannot be read: {error}") from None
     except KeyError as error:
         raise HarnessError(f"{path}: no gains of torquer design --laws: {error} is missing") from None
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(map(str, first["loc"]))
+        raise HarnessError(f"{path}: no gains of torquer design --laws: {where}: {first['msg']}") from None
     except (TypeError, ValueError) as error:
         raise HarnessError(f"{path}: no gains of torquer design --laws: {error}") from None
 

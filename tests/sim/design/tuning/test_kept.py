@@ -43,7 +43,21 @@ def test_a_file_is_read_back(gains, tmp_path):
     assert read_gains(tmp_path / "none.toml") is None
 
 
-@pytest.mark.parametrize("text", ["a = ", "a = 1", "[found]\nbody = 1\n", "\xff"])
+RULES = "[found]\nbody = 1\nflights = 24\norbits = 4.0\nseed = 2\n"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a = ",
+        "a = 1",
+        "[found]\nbody = 1\n",
+        "\xff",
+        f"pulsed = 3\n{RULES}",
+        f"{RULES}[pulsed.pd]\ncost = 1.0\ncost_before = 1.0\nrms = 1.0\n",
+        f"{RULES}[pulsed.pd]\ncost_before = 1.0\nrms = 1.0\n[pulsed.pd.control]\nk_w = 1.0\n",
+    ],
+)
 def test_another_file_is_refused_by_its_name(tmp_path, text):
     path = tmp_path / "a.toml"
     path.write_text(text, encoding="latin-1")
