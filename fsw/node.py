@@ -16,10 +16,10 @@ MOST_INBOX_FRAMES = 1024
 """Frames stored between two answers: bounds memory under a flood, far above what the gate reads."""
 
 NO_PLANT_S = 2.0
-"""After this long without an answered SYNC, a PLANT_BOOT comes from a plant that waits for FSW_BOOT."""
+"""After this long without an answered SYNC, a PLANT_BOOT is from a plant that waits for FSW_BOOT."""
 
 TICKS_MODULO = 1 << 24
-"""As PLANT_END counts."""
+"""PLANT_END counts ticks modulo this."""
 
 
 class End(Enum):
@@ -27,7 +27,7 @@ class End(Enum):
 
     NO = auto()
     DOUBTED = auto()
-    """PLANT_END names a tick near ahead: the run is over if silence follows."""
+    """PLANT_END names a tick slightly ahead: the run is over if silence follows."""
     YES = auto()
 
 
@@ -52,7 +52,7 @@ class FlightNode:
         return self.end is End.YES
 
     def receive(self, frame: Frame) -> tuple[Frame, ...]:
-        """Take one frame; the answer, TICK_DONE last, when it is a SYNC that is believed, else nothing."""
+        """Take one frame; return the answer, TICK_DONE last, if it is an accepted SYNC, otherwise nothing."""
         if frame.can_id == Sync.ID and intact(frame):
             return self._answer(Sync.decode(frame.data))
         if frame.can_id == PlantEnd.ID and intact(frame):
@@ -62,7 +62,7 @@ class FlightNode:
         return ()
 
     def is_boot_request(self, frame: Frame, idle_s: float = 0.0) -> bool:
-        """Whether the plant asks for FSW_BOOT: it started after this node did, or once more.
+        """Whether the plant asks for FSW_BOOT: it started after this node did, or started again.
 
         Args:
             frame: the received frame.
@@ -89,7 +89,7 @@ class FlightNode:
         return outbox
 
     def _judge_end(self, ticks: int) -> End:
-        """Whether a PLANT_END ends the run; none is believed before the first tick."""
+        """Whether a PLANT_END ends the run; none is accepted before the first tick."""
         ahead = (ticks - self.state.tick - 1) % TICKS_MODULO
         if self.state.tick < 0 or ahead > LEAP_TICKS:
             return self.end

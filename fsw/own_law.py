@@ -1,8 +1,8 @@
-"""What a control law of one's own is written with; docs/own-law.md shows one.
+"""What a user needs to write a control law of their own; docs/own-law.md shows one.
 
 A law is a function of the form ``Law``: called once a tick in ACQUIRE and POINT, pure, with whatever it must
 remember in ``Demand.memory``. Without gains of its own the function is all that a file needs; with gains, or
-another form in ACQUIRE, it is named by a ``ControlLaw``. Its gains are in ``config.gains[setpoint.law]``.
+with another form in ACQUIRE, a ``ControlLaw`` names it. Its gains are in ``config.gains[setpoint.law]``.
 """
 
 from dataclasses import dataclass
@@ -49,7 +49,7 @@ class ControlLaw:
         acquire: its form in ACQUIRE; None: the same.
         gains: its own parameters, a frozen dataclass of numbers with defaults, or None. ``quantity`` gives a
             number its unit and its range.
-        aim: what it is for; laws of one aim are compared.
+        aim: what it is for; laws with the same aim are compared.
     """
 
     point: Law

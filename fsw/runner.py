@@ -9,9 +9,9 @@ from fsw.node import End, FlightNode
 IDLE_S = 1.0
 """How often the parent process is checked, however busy the bus is."""
 REPEAT_BOOT_AFTER_S = 0.5
-"""A request for FSW_BOOT sooner than this is answered by the one just sent."""
+"""A request for FSW_BOOT sooner than this has been answered by the one just sent."""
 SILENCE_S = 5.0
-"""An end in doubt is believed after this long without a frame."""
+"""An uncertain end counts as certain after this long without a frame."""
 
 
 def run(node: FlightNode, bus: Bus, parent: int | None = None, bench: bool = False) -> None:
@@ -19,7 +19,7 @@ def run(node: FlightNode, bus: Bus, parent: int | None = None, bench: bool = Fal
 
     Args:
         node: the flight node.
-        bus: where it lives.
+        bus: the bus it is on.
         parent: process that started this one; when it is gone the run is over.
         bench: no PLANT_END ends it.
     """

@@ -59,7 +59,7 @@ class CoilBoard:
         self._level_a = (0.0, *level_a)
 
     def begin_tick(self, tick: int, clock_ms: int | None) -> list[Frame]:
-        """Enter ``tick``; the current is that at this instant, for ticks alone the end of the tick before."""
+        """Enter ``tick``; the current is the present one, or without a clock that of the last tick's end."""
         drive = self._driver.drive()
         flows = drive.fraction == 1.0 or clock_ms is not None
         current_a = self._level_a[abs(drive.level)] if flows else 0.0
@@ -160,18 +160,18 @@ class CellsBoard(SensorBoard):
 class Bench:
     """Enters the ticks of the bus: k + 1 when ``TICK_DONE(k)`` has come, or ``SYNC(k + 1)`` at the latest.
 
-    The board vouches for its timers only while it counts every tick. When it has lost count (two strange
-    ``SYNC`` in a row, of one tick or of one and the next), or when the plant has started anew, it is replaced
-    by a new one, which boots: for the coil driver a full lockout. One strange ``SYNC`` alone changes nothing.
-    ``PLANT_END`` is ignored: a bench is switched off by hand.
+    The board vouches for its timers only while it counts every tick. When it has lost count (two unexpected
+    ``SYNC`` in a row, of the same tick or of one and the next), or when the plant has restarted, it is
+    replaced by a new one, which boots: for the coil driver a full lockout. A single unexpected ``SYNC``
+    changes nothing. ``PLANT_END`` is ignored: a bench is switched off by hand.
 
-    The dead-man: when no ``SYNC`` has gone on in the count of ticks for ``deadman_ms``, the board is off
-    until one does. One that only repeats the tick of the last is no sign of life.
+    The dead-man: when no ``SYNC`` has advanced the count of ticks for ``deadman_ms``, the board is off until
+    one does. One that only repeats the last tick is no sign of life.
 
     Args:
         make_board: makes a board that has just been switched on.
         deadman_ms: longest silence, above 0; None: there is no dead-man.
-        has_clock: whether the board has a clock of its own beside the ticks.
+        has_clock: whether the board has a clock of its own besides the ticks.
     """
 
     def __init__(

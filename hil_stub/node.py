@@ -25,7 +25,7 @@ HeartbeatMessage = type[CoilHeartbeat] | type[MagHeartbeat] | type[SunHeartbeat]
 class Node:
     """Tick, boot message and heartbeat of one board.
 
-    Ticks only rise: one that does not is ignored. Ticks that were skipped are counted as slips.
+    Ticks only advance: one that does not is ignored. Ticks that were skipped are counted as slips.
 
     Args:
         boot: message sent once after boot.
@@ -54,7 +54,7 @@ class Node:
         """The tick that the board is in; None before the first."""
 
     def advance(self, tick: int) -> int | None:
-        """Go on to ``tick``: ticks since the last one (0 at the first), None when it does not rise."""
+        """Go on to ``tick``: ticks since the last one (0 at the first), None when it does not advance."""
         if self.tick is None:
             self.tick = tick
             return 0

@@ -24,7 +24,7 @@ def message_of(frame: Frame, timestamp_s: float = 0.0, channel: str | None = Non
 
 
 def frame_of(message: can.Message) -> Frame:
-    """The message as a frame; a remote one bears as many zeros as it asks for."""
+    """The message as a frame; a remote one holds as many zeros as it asks for."""
     can_id = message.arbitration_id
     if message.is_extended_id:
         can_id |= EXTENDED_FLAG

@@ -1,4 +1,4 @@
-"""A bench that is not armed: no request to drive a coil or a wheel ever gets on the bus."""
+"""A bench that is not armed: no request to drive a coil or a wheel reaches the bus."""
 
 from collections.abc import Sequence
 

@@ -1,9 +1,9 @@
 """The hub of the loop bus: hands every record that a client sends to all other clients.
 
 The hub listens on 127.0.0.1 and speaks 16-byte records (``fsw.bus.can_frame``) after one greeting. It never
-drops a record: what a slow client has not taken yet waits in memory. When that is more than ``BACKLOG_LIMIT``
-for all clients together, the slowest is disconnected, which it notices, instead of losing frames, which it
-would not. At most ``MOST_CLIENTS`` are accepted.
+drops a record: what a slow client has not taken yet waits in memory. When the backlog of all clients exceeds
+``BACKLOG_LIMIT``, the slowest is disconnected: it notices that, but would not notice lost frames. At most
+``MOST_CLIENTS`` are accepted.
 """
 
 import selectors
@@ -46,7 +46,7 @@ def report_on_stderr(sentence: str) -> None:
 class Hub:
     """A hub that serves when ``poll`` is called, or by itself in a daemon thread after ``start``.
 
-    Opening a bus waits for the hub's greeting: whoever serves by ``poll`` opens none in that same thread.
+    Opening a bus waits for the hub's greeting: a thread that serves by ``poll`` must not open one.
 
     Args:
         port: TCP port on 127.0.0.1; 0 takes a free one.
@@ -89,7 +89,7 @@ class Hub:
         return bool(ready)
 
     def attach(self) -> socket.socket:
-        """A socket that is on the bus at once, ungreeted. Call it before ``start``, or where ``poll`` is."""
+        """A socket that is on the bus at once, ungreeted. Call before ``start``, or in that of ``poll``."""
         inner, outer = socket.socketpair()
         self._admit(inner, "this process's own end")
         return outer
@@ -177,7 +177,7 @@ class Hub:
         whole = len(pending) - len(pending) % can_frame.SIZE
         records, sender.partial = pending[:whole], pending[whole:]
         if records and max(records[can_frame.LENGTH_OFFSET :: can_frame.SIZE]) > can_frame.MAX_DATA:
-            self._drop(sender)  # not a client of ours: these are no records
+            self._drop(sender)  # not a client of ours: these are not records
             return
         for client in tuple(self._clients):
             if client is not sender and records:

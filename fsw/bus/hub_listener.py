@@ -9,7 +9,7 @@ GREETING = b"torquer-loop/1\r\n"
 """First bytes from the hub: the client is on the bus, and what follows is for it."""
 
 FULL = b"torquer-full/1\r\n"
-"""First and last bytes from a hub that accepts no more clients; as many as in the greeting."""
+"""First and last bytes from a hub that accepts no more clients; as many as the greeting has."""
 
 HOST = "127.0.0.1"
 _SEND_BUFFER = 2**18

@@ -6,7 +6,7 @@ from typing import Protocol
 from fsw.wire.frame import Frame
 
 DEFAULT_LOOP_PORT = 28011
-"""Below the ephemeral ports, so that no outgoing connection ever sits on it."""
+"""Below the ephemeral ports, so that no outgoing connection ever occupies it."""
 
 
 class BusError(Exception):
@@ -20,7 +20,7 @@ class BusClosed(BusError):  # noqa: N818  (a state, not a fault: it ends every r
 class Bus(Protocol):
     """One end of a bus. It does not receive what it sends.
 
-    Frames that are not ours (extended, remote, error) are received too and bear their SocketCAN flag in
+    Frames that are not ours (extended, remote, error) are received too and carry their SocketCAN flag in
     ``can_id``.
     """
 
@@ -32,7 +32,7 @@ class Bus(Protocol):
 
         Raises:
             BusClosed: the bus is gone.
-            BusError: the interface does not take them.
+            BusError: the interface does not accept them.
         """
 
     def receive(self, timeout_s: float | None) -> Frame | None:

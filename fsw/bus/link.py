@@ -16,7 +16,7 @@ from fsw.wire.frame import Frame
 _RETRY_S = 0.01
 _PARTING_S = 1.0
 SEND_PATIENCE_S = 20.0
-"""A hub that accepts no data for so long stands still."""
+"""A hub that accepts no data for this long has stalled."""
 _CHUNK = 2**16
 
 
@@ -44,7 +44,7 @@ class LoopLink:
         self._hub: Hub | None = None
         try:
             self._socket = self._join(port, monotonic() + timeout_s, may_host)
-        except OSError as error:  # no descriptor or no port left, say
+        except OSError as error:  # for example no descriptor or port left
             raise BusError(f"the bus {self.spec} cannot be opened: {error.strerror}") from error
         self._socket.settimeout(SEND_PATIENCE_S)  # for sending: receiving waits in select
         atexit.register(self.close)
@@ -127,7 +127,7 @@ class LoopLink:
             sleep(_RETRY_S)
 
     def _host(self, port: int) -> socket.socket | None:
-        """The host's own end, on the bus before any other; None if another opener was quicker."""
+        """The host's own end, on the bus before any other; None if another process was quicker."""
         try:
             hub = Hub(port)
         except OSError:

@@ -1,4 +1,4 @@
-"""The loop bus for python-can: ``can.Bus(interface="loop", channel=PORT)``, and with it all its tools."""
+"""The loop bus for python-can: ``can.Bus(interface="loop", channel=PORT)``, for all of python-can's tools."""
 
 from collections.abc import Sequence
 from time import time
@@ -41,7 +41,7 @@ class LoopBus(can.BusABC):
         """Send one classic CAN message; ``timeout`` is not needed.
 
         Raises:
-            can.CanOperationError: the bus is gone, or the message is no classic CAN.
+            can.CanOperationError: the bus is gone, or the message is not classic CAN.
         """
         if msg.is_fd:
             raise can.CanOperationError("the loop bus carries classic CAN only")

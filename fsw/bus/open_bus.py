@@ -5,8 +5,8 @@
 | ``socketcan:NAME`` | a CAN interface of this Linux machine, such as vcan0 | NAME |
 | ``loop``, ``loop:PORT`` | frames over TCP on 127.0.0.1; whoever opens first hosts it | ``loop`` |
 | ``slcan:PORT`` | a serial CAN adapter (needs pyserial) | the port's last component |
-| ``can:INTERFACE:CHANNEL``, ``can`` | any other of python-can, by its configuration | that of the channel |
-| ``auto`` | ``socketcan:vcan0`` where it is up, else ``loop`` | |
+| ``can:INTERFACE:CHANNEL``, ``can`` | any other of python-can, as configured | that of the channel |
+| ``auto`` | ``socketcan:vcan0`` where it is up, otherwise ``loop`` | |
 """
 
 from fsw.bus.interface import DEFAULT_LOOP_PORT, Bus, BusError

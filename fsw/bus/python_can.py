@@ -15,14 +15,14 @@ from fsw.bus.interface import Bus, BusClosed, BusError
 from fsw.wire.frame import Frame
 
 SEND_PATIENCE_S = 5.0
-"""An adapter that accepts no data for so long stands still."""
+"""An adapter that accepts no data for this long has stalled."""
 IN_PROCESS = "virtual"
-"""The interface of python-can that joins nodes of one process alone."""
+"""The interface of python-can that joins only nodes of the same process."""
 
 ECHOING = frozenset({"udp_multicast"})
-"""Interfaces that give a node its own frames too, and cannot be told not to."""
+"""Interfaces that return a node's own frames to it, and have no option against that."""
 MOST_ECHOES = 1024
-"""Frames sent whose echo is awaited, at most; those of a burst that were lost are forgotten."""
+"""Sent frames whose echo is awaited, at most; the oldest beyond that are forgotten as lost."""
 
 LONGEST_NAME = 64
 _FAULTS = (can.CanError, OSError, ValueError)
@@ -35,7 +35,7 @@ class PythonCan:
     Args:
         bus: of python-can.
         name: as written into logs.
-        spec: that it was opened by.
+        spec: the one it was opened by.
         echoes: the bus gives back what is sent on it, in order, unless it is lost.
     """
 
@@ -89,10 +89,10 @@ class PythonCan:
 
 
 def resolve_python_can(argument: str) -> str:
-    """``INTERFACE:CHANNEL`` in full: what is not given is what python-can's configuration says.
+    """``INTERFACE:CHANNEL`` in full: what is not given is taken from python-can's configuration.
 
     Raises:
-        BusError: no interface is given or configured, it is unknown, or joins nodes of one process alone.
+        BusError: no interface is given or configured, it is unknown, or joins only nodes of one process.
     """
     interface, _, channel = argument.partition(":")
     given = {key: value for key, value in (("interface", interface), ("channel", channel)) if value}
@@ -125,7 +125,7 @@ def open_python_can(spec: str) -> Bus:
 
 
 def _configuration(spec: str, given: dict[str, str]) -> Mapping[str, Any]:
-    """What is given, with what python-can's files and environment say besides.
+    """What is given, completed from python-can's files and environment.
 
     Raises:
         BusError: there is no such interface, or what they say cannot be read.
@@ -141,5 +141,5 @@ def _configuration(spec: str, given: dict[str, str]) -> Mapping[str, Any]:
 
 
 def _name(interface: str, channel: str) -> str:
-    """A name for logs, in which it is one word."""
+    """A name for logs: one word."""
     return re.sub(r"[^A-Za-z0-9_.:-]", "_", PurePath(channel).name)[:LONGEST_NAME] or interface

@@ -16,7 +16,7 @@ RECEIVE_BUFFER = 32 * 2**20
 """The kernel's default holds some 278 frames and then drops silently; this holds some 80 000."""
 
 SEND_PATIENCE_S = 0.5
-"""How long a full transmit queue is waited for: at 125 kbit/s it is time for 500 frames."""
+"""How long to wait while the transmit queue is full: at 125 kbit/s, time for 500 frames."""
 
 _RETRY_S = 0.0005
 _CAN_RAW_ERR_FILTER = 2  # missing from the module socket before Python 3.13, like the next
@@ -42,7 +42,7 @@ class SocketCan:
         self._socket = _open(name)
 
     def send(self, frames: Sequence[Frame]) -> None:
-        """Send all frames, in order, waiting for a full transmit queue but not for ever."""
+        """Send all frames, in order; wait while the transmit queue is full, but not for ever."""
         deadline: float | None = None
         for frame in frames:
             packed = can_frame.pack(frame)

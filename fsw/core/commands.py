@@ -1,7 +1,7 @@
 """Telecommands: what the ground may change in flight.
 
-Each is carried out whole or refused whole, in the order in which they came, and answered by one TC_ACK. One
-that bears the counter of the one before it is not carried out again, but answered too.
+Each is carried out whole or refused whole, in the order of arrival, and answered by one TC_ACK. One with the
+counter of the one before it is not carried out again, but is still answered.
 """
 
 from collections.abc import Callable
@@ -117,7 +117,7 @@ def _clear(state: FlightState, message: TcClear, situation: Situation) -> Outcom
 
 
 def _law(state: FlightState, message: TcLaw, situation: Situation) -> Outcome:
-    """A law begins without a memory; the current one goes on with its own."""
+    """A new law begins without memory; the current one, commanded again, keeps its own."""
     own = situation.config.control.own
     name = own.name if own is not None and message.law == OWN_NUMBER else LAW_NAMES.get(message.law)
     config = situation.config.control
@@ -159,7 +159,7 @@ def _element(state: FlightState, message: TcOrbitElement, situation: Situation) 
 
 
 def _load(state: FlightState, message: TcOrbitLoad, situation: Situation) -> Outcome:
-    """Together the elements must be a low orbit that has a position around this tick."""
+    """Together the elements must describe a low orbit with a position around this tick."""
     if not state.upload.complete:
         return TcAckResult.INCOMPLETE
     elements = state.upload.values
@@ -174,9 +174,9 @@ def _load(state: FlightState, message: TcOrbitLoad, situation: Situation) -> Out
 
 
 def _parameter(state: FlightState, message: TcParameter, situation: Situation) -> Outcome:
-    """The filter goes on from this value, and starts from it; the satellite must remain a body.
+    """The filter continues from this value, and restarts from it; the inertia must stay positive definite.
 
-    A value that is not credible is refused: the filter would start from it again and again, never trusted.
+    An implausible value is refused: the filter would restart from it again and again and never be trusted.
     """
     if message.component not in list(Component):
         return TcAckResult.UNKNOWN

@@ -20,7 +20,7 @@ class Event(IntEnum):
     SENSORS_DISAGREE = 9  # 0: without an estimate neither of them can be isolated
     COIL_FAULT = 10  # 100 times the number of the coil (1 to 3), plus that of its fault
     SECOND_SENDER = 11  # the identifier of fsw under which another sends
-    STRANGE_SYNC = 12  # its tick; of several, that of the last
+    STRANGE_SYNC = 12  # its tick; if there were several, that of the last
     PLANT_RESTARTED = 13  # the last tick of the old count
     FALSE_END = 14  # the ticks in PLANT_END
     COIL_READMITTED = 15  # as in its isolation

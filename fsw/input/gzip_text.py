@@ -30,11 +30,11 @@ def stored(path: Path) -> Path:
 def open_text(path: Path) -> BinaryIO:
     """Open a file for reading; what is read of a compressed one is its text.
 
-    A file that is still being written, or whose end is lost, is read as far as it goes, and on when it has
-    grown. Damage raises ``OSError`` with a ``strerror`` that says so when it is reached.
+    A file that is still being written, or whose end is lost, is read as far as it goes, and further once
+    it has grown. Where the text is damaged, reading raises ``OSError`` with a ``strerror`` that says so.
 
     Raises:
-        OSError: it cannot be opened, or is no regular file.
+        OSError: it cannot be opened, or is not a regular file.
     """
     check_regular(path)
     if not is_compressed(path):
@@ -43,9 +43,9 @@ def open_text(path: Path) -> BinaryIO:
 
 
 def last_member(tail: bytes) -> bytes:
-    """The text of the last member, as far as it goes, in the last bytes of a file; none if it begins before.
+    """The text of the last member, as far as it goes, in the last bytes of a file; empty if it begins before.
 
-    The members must bear no name and no time, as those that are written in memory.
+    The members must carry no name and no time, like those that are compressed in memory.
     """
     begin = tail.rfind(_BEGIN)
     try:

@@ -8,9 +8,9 @@ MOST = 3
 
 
 def near(word: str, known: Iterable[str]) -> list[str]:
-    """The known words like ``word``, the likest first; none where none is like it.
+    """The known words similar to ``word``, the most similar first; empty if there is none.
 
-    Upper case and the choice between ``-`` and ``_`` do not count. What begins with the word is like it.
+    Case and the choice between ``-`` and ``_`` do not matter. What begins with the word is similar to it.
     """
     plain = {_plain(one): one for one in known}
     found = get_close_matches(_plain(word), plain, MOST, LEAST_LIKENESS)

@@ -1,7 +1,7 @@
-"""Code of one's own that a table names: ``FILE.py:NAME``, or the name of an entry point.
+"""The user's own code that a table names: ``FILE.py:NAME``, or the name of an entry point.
 
-Finding it reads its source and gives its SHA-256; only loading it executes it, and only where its source is
-the one that was named.
+Finding it reads its source and gives its SHA-256; only loading it executes it, and only if its source has
+the digest that was named.
 """
 
 import hashlib
@@ -19,7 +19,7 @@ from fsw.input.schema import TableError
 
 MOST_BYTES = 1_000_000
 LONGEST_ERROR = 300
-"""Characters of an error of somebody else's code in a sentence."""
+"""Most characters of an error of the user's code in a sentence."""
 
 _IN_FILE = re.compile(r"(?P<file>.+\.py):(?P<name>[A-Za-z_]\w{0,99})", re.S)
 
@@ -53,7 +53,7 @@ def find(reference: str, folder: Path, group: str) -> Found | None:
 
     Args:
         reference: as a table has it.
-        folder: against which a relative path counts.
+        folder: base of a relative path.
         group: of entry points.
 
     Returns:
@@ -75,11 +75,11 @@ def load(reference: str, sha256: str | None, group: str) -> object:
 
     Args:
         reference: as ``find`` gives it.
-        sha256: which its source must have; None: any.
+        sha256: the one that its source must have; None: any.
         group: of entry points.
 
     Raises:
-        TableError: it is not there, its source is another one, it fails, or it has no such name.
+        TableError: it is not there, its source has another digest, it fails, or it has no such name.
     """
     found = find(reference, Path(), group)
     if found is None:
@@ -100,7 +100,7 @@ def load(reference: str, sha256: str | None, group: str) -> object:
 
 
 def error_clause(error: BaseException, file: str = "") -> str:
-    """An error of somebody else's code: its kind, its text, and the line of their file where it began."""
+    """An error of the user's code: its kind, its text, and the line of the user's file where it arose."""
     text = f"{type(error).__name__}: {_text(error)}".rstrip(": ")
     if isinstance(error, SyntaxError):
         return f"line {error.lineno}: {error.msg}"
@@ -111,7 +111,7 @@ def error_clause(error: BaseException, file: str = "") -> str:
 def _text(error: BaseException) -> str:
     try:
         return str(error)[:LONGEST_ERROR]
-    except Exception:  # their __str__ fails too
+    except Exception:  # its own __str__ fails
         return "without a text"
 
 
@@ -149,7 +149,7 @@ def _package_sha256(entry: EntryPoint) -> str:
 
 
 def _sha256(files: list[Path], folder: Path) -> str:
-    """Of a file its own; of several that of their names and digests."""
+    """The digest of one file; of several, that of their names and digests."""
     digests = [hashlib.sha256(_read(file)).hexdigest() for file in files]
     if len(files) == 1:
         return digests[0]

@@ -1,4 +1,4 @@
-"""Parameters of code of one's own: a frozen dataclass of numbers, with units and ranges, set by a table."""
+"""Parameters of the user's own code: a frozen dataclass of numbers, with units and ranges, set by a table."""
 
 from collections.abc import Mapping
 from dataclasses import MISSING, Field, field, fields, is_dataclass
@@ -38,7 +38,7 @@ def with_values(kind: type[Any], given: Mapping[str, object], key: str, source: 
         source: of the dataclass, for messages.
 
     Raises:
-        TableError: it is no such dataclass, or a key or value is not allowed.
+        TableError: it is not such a dataclass, or a key or value is not allowed.
     """
     known = _fields(kind, source)
     for name, value in given.items():
@@ -58,9 +58,9 @@ def _fields(kind: type[Any], source: str) -> dict[str, Field[Any]]:
     """The fields by name.
 
     Raises:
-        TableError: it is no frozen dataclass of numbers with defaults, or a default is out of its range.
+        TableError: it is not a frozen dataclass of numbers with defaults, or a default is out of its range.
     """
-    if not isinstance(kind, type) or not is_dataclass(kind) or not kind.__dataclass_params__.frozen:  # type: ignore[attr-defined]  # typeshed has no word of it
+    if not isinstance(kind, type) or not is_dataclass(kind) or not kind.__dataclass_params__.frozen:  # type: ignore[attr-defined]  # missing from typeshed
         raise TableError(f"{source}: {getattr(kind, '__name__', kind)!s:.80} is no frozen dataclass")
     found = {each.name: each for each in fields(kind) if each.init}
     for name, each in found.items():

@@ -25,7 +25,7 @@ class TableError(Exception):
 
 MOST_FAULTS = 12
 LONGEST_VALUE = 80
-"""Faults, and characters of a value, in one sentence: more could not be read."""
+"""Most faults, and most characters of a value, in one sentence: more would be unreadable."""
 
 
 class Section(BaseModel):
@@ -105,7 +105,7 @@ def section_in(annotation: object) -> type[BaseModel] | None:
 
 
 def words_of(annotation: object) -> tuple[str, ...]:
-    """The words that a key of this type may be; none for one that is no choice of words."""
+    """The words that a key of this type may be; none for one that is not a choice of words."""
     if annotation is bool:
         return ("true", "false")
     if get_origin(annotation) is Literal:

@@ -1,6 +1,6 @@
 """TOML within bounds: in size, in depth and in the magnitude of its numbers.
 
-Python's own reader has no bounds: nesting ends its stack, a long key takes hours, an integer may have any
+Python's own reader has no bounds: nesting exhausts its stack, a long key takes hours, an integer may have any
 number of digits. What no scenario, table or script needs is refused before anything is computed with it.
 """
 
@@ -14,7 +14,7 @@ from fsw.input.regular_file import read_regular
 
 MOST_BYTES = 1_000_000
 MOST_LEVELS = 32
-"""Of tables and lists inside each other."""
+"""Of nested tables and lists."""
 LEAST, MOST = 1e-18, 1e15
 """Bounds of the magnitude of every number but 0, in the units of the file."""
 
@@ -31,7 +31,7 @@ def load_toml(path: Path) -> dict[str, Any]:
 
     Raises:
         OSError: it cannot be read, or is larger than ``MOST_BYTES``.
-        ValueError: as for ``parse_toml``, or it is no UTF-8.
+        ValueError: as for ``parse_toml``, or it is not UTF-8.
     """
     return parse_toml(read_regular(path, MOST_BYTES).decode("utf-8"))
 
@@ -41,7 +41,7 @@ def parse_toml(text: str) -> dict[str, Any]:
 
     Raises:
         TOMLDecodeError: the text is not TOML.
-        BoundsError: it is nested deeper than ``MOST_LEVELS``, or a number is beyond ``LEAST`` and ``MOST``.
+        BoundsError: it is nested deeper than ``MOST_LEVELS``, or a number is outside ``LEAST`` to ``MOST``.
     """
     if _LONG_KEY.search(text):
         raise BoundsError(f"a key has more than {MOST_LEVELS} parts")

@@ -1,6 +1,6 @@
 """The calibration of a table: the section of its file, and what the core uses of it.
 
-A key that is left out, or that says what holds without it, changes nothing and costs nothing.
+A key that is left out, or that repeats what holds without it, changes nothing and costs nothing.
 """
 
 from dataclasses import replace
@@ -20,20 +20,20 @@ from fsw.table.sections import CoilTable
 NO_FIELD: Mat3 = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 NO_OFFSET: Vec3 = (0.0, 0.0, 0.0)
 LEAST_GAIN, LARGEST_GAIN = 0.2, 5.0
-"""Of what is calibrated, in parts of the nominal."""
+"""Of what is calibrated, as a fraction of the nominal."""
 NEAR_AXIS = sqrt(0.5)
 """Least cosine between a coil and the body axis that it serves."""
 ORTHONORMAL = 1e-3
 UNCHANGED = Outputs((0, 1, 2), (1, 1, 1))
 LEAST_RANGE_NT, ORDINARY_RANGE_NT, BUS_RANGE_NT = 20000.0, 65000.0, 65534.0
-"""Largest readings: of a sensor for the weakest field of an orbit, of one whose range is not said, and that
-its message carries."""
+"""Largest readings: the least that a table may state (the weakest field of an orbit), the one assumed where
+it states none, and the one that the message carries."""
 EDGE_TICKS = 0.05
-"""How near to a whole number of ticks a delay is taken for one."""
+"""A delay this close to a whole number of ticks counts as that number."""
 
 
 class MagnetometerTable(Section):
-    """b_body = matrix (reading - offset_nt): offset, and scale, non-orthogonality and turn as one matrix.
+    """b_body = matrix (reading - offset_nt): offset; scale, non-orthogonality and misalignment as one matrix.
 
     Beyond a reading of ``range_nt`` an axis saturates; None: as ordinary magnetometers do.
     """
@@ -87,7 +87,7 @@ class CoilsTable(Section):
 
 
 class SunTable(Section):
-    """s_body = matrix s: the turn of the Sun sensor, which may mirror."""
+    """s_body = matrix s: the orientation of the Sun sensor, which may include a reflection."""
 
     matrix: Square = AXES
 
@@ -105,7 +105,7 @@ class SunTable(Section):
 
 
 class CalibrationTable(Section):
-    """What was measured of the sensors and coils of this very satellite."""
+    """What was measured of the sensors and coils of this particular satellite."""
 
     magnetometer: MagnetometerTable | None = None
     coils: CoilsTable | None = None
@@ -135,13 +135,13 @@ def outputs_of(matrix: Mat3) -> Outputs:
 
 
 def largest_field_nt(offset_nt: Vec3, matrix: Mat3, range_nt: float) -> float:
-    """The strength of a field that saturates no axis, whatever its direction; negative if none does not."""
+    """The strongest field that saturates no axis, whatever its direction; negative if there is none."""
     sensed = inverse(matrix)
     return min((range_nt - abs(offset)) / norm(row) for offset, row in zip(offset_nt, sensed, strict=True))
 
 
 def calibration(table: CalibrationTable) -> Calibration:
-    """What turns the samples and requests."""
+    """What the core applies to samples and requests."""
     magnetometer, coils, sun = table.magnetometer, table.coils, table.sun
     found = NO_CALIBRATION
     if magnetometer is not None and magnetometer != MagnetometerTable():

@@ -11,11 +11,11 @@ from fsw.core.estimation.parameters import MOST_CELLS
 from fsw.input.schema import Positive, Section, Triple
 
 QUANTUM = 1.0 / 128.0
-"""Step of a current on the bus, parts of full sunlight."""
+"""Step of a current on the bus, as a fraction of full sunlight."""
 
 
 class ShadeTable(Section):
-    """A cone about ``axis``, body axes, in which the satellite takes the Sun from a cell; 1 is the first."""
+    """A cone about ``axis``, body axes, in which the satellite shades a cell; cell 1 is the first."""
 
     cell: int = Field(ge=1, le=MOST_CELLS)
     axis: Triple
@@ -29,7 +29,7 @@ class ShadeTable(Section):
 
 
 class CellShapes(Section):
-    """Where up to six cells look, body axes, and from where the satellite itself shades them."""
+    """Where up to six cells look, body axes, and the directions in which the satellite itself shades them."""
 
     normals: Annotated[tuple[Triple, ...], Strict(False), Field(min_length=1, max_length=MOST_CELLS)]
     shades: Annotated[tuple[ShadeTable, ...], Strict(False)] = ()
@@ -46,9 +46,9 @@ class CellShapes(Section):
 class CellTable(CellShapes):
     """Sun cells as the flight software knows them.
 
-    ``full_sun`` is what each shows facing the Sun, of its nominal current; ``noise_percent`` is of full
-    sunlight, and so is ``dark_percent``, below which a cell counts as dark. ``albedo`` is the part of the
-    sunlight that the Earth reflects; with 0 its light is not reckoned with.
+    ``full_sun`` is what each shows facing the Sun, as a fraction of its nominal current; ``noise_percent`` is
+    of full sunlight, and so is ``dark_percent``, below which a cell counts as dark. ``albedo`` is the
+    fraction of sunlight that the Earth reflects; with 0 the Earth's light is not modelled.
     """
 
     full_sun: Annotated[tuple[Positive, ...], Strict(False)] | None = None
@@ -64,13 +64,13 @@ class CellTable(CellShapes):
 
 
 def cell_set(table: CellTable, excess_sigma: float, gain_sigma: float, light_sigma: float) -> CellSet:
-    """The cells as the filter takes them.
+    """The cells as the filter uses them.
 
     Args:
         table: the section.
-        excess_sigma: standard deviation of what a cell shows beyond its model, parts of full sunlight.
+        excess_sigma: standard deviation of what a cell shows beyond its model, fraction of full sunlight.
         gain_sigma: of the relative error of a gain.
-        light_sigma: of the albedo; 0 where the Earth's light is not reckoned with.
+        light_sigma: of the albedo; 0 where the Earth's light is not modelled.
     """
     normals = tuple(unit(normal) for normal in table.normals)
     return CellSet(

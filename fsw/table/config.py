@@ -37,7 +37,7 @@ from fsw.table.wheel import driven_wheel
 CHATTER_S = 10.0
 """Longest time between signs of a second sender of reports."""
 STUCK_S = 1.0
-"""Beyond a pulse, of a level or current that nobody asked for."""
+"""Time beyond a pulse after which a level or current that nobody asked for counts as stuck."""
 
 
 def flight_config(table: FlightTable) -> FlightConfig:
@@ -126,7 +126,7 @@ def _control(table: FlightTable, orbit: Orbit) -> ControlConfig:
 
 
 def _gains(given: Mapping[str, Mapping[str, float]]) -> dict[str, Any]:
-    """The own gains of each law of the table: defaults but for those given.
+    """Each law's own gains: defaults except for those given.
 
     Raises:
         ValueError: a law does not take them; the sentence names its section.
@@ -221,7 +221,7 @@ def _modes(modes: ModesTable, tick_hz: int) -> ModeConfig:
 
 
 def _ticks(seconds: float, tick_hz: int) -> int:
-    """Ticks that last at least so long; 1.1 s at 10 Hz are 11, though 1.1 * 10 is a little more in floats."""
+    """Ticks lasting at least this long; 1.1 s at 10 Hz are 11, though 1.1 * 10 is slightly more in floats."""
     return ceil(seconds * tick_hz - 1e-9)
 
 

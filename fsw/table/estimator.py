@@ -22,11 +22,11 @@ from fsw.table.uncertainty import (
 
 NT = 1e-9
 GATE_NIS = 16.27
-"""Chi-square of 3 degrees of freedom: of sound samples 1 in 1000 is refused."""
+"""Chi-square with 3 degrees of freedom: 1 in 1000 sound samples is refused."""
 START_SIGMA_RAD = radians(5.0)
 """Of the attitude that TRIAD gives at worst."""
 CELLS_START = 1.5
-"""The same by cells, in parts of their excess: one of the three may see the Earth and not the Sun."""
+"""The same from cells, as a multiple of their excess: one of the three may see the Earth and not the Sun."""
 MIN_SEPARATION_RAD = radians(15.0)
 """Of field and Sun at the start: TRIAD's error about the axis between them is then below 4 times theirs."""
 MAX_REFUSALS = 60
@@ -34,9 +34,9 @@ MAX_REFUSALS = 60
 DRIVE_SIGMA = 0.002
 """Relative error of a driven dipole from pulse to pulse."""
 TORQUE_NOISE_RTS = 0.05
-"""White torque noise in parts of the torque's bound, times sqrt(s)."""
+"""White torque noise as a fraction of the torque's bound, times sqrt(s)."""
 LEAST_NOISE_RTS = 1e-10
-"""The least of it in parts of the mean moment of inertia, rad/s^2 sqrt(s): the equations are rounded."""
+"""Its least value over the mean moment of inertia, rad/s^2 sqrt(s): it covers rounding."""
 ORBIT_RADIUS_M = 7.0e6
 
 
@@ -83,7 +83,7 @@ def table_bounds(table: FlightTable) -> Uncertainty:
 
 
 def _sun_sigma_rad(table: FlightTable) -> float:
-    """The noise of the Sun's direction: by Sun cells what they show beyond their model."""
+    """The noise of the Sun's direction; with Sun cells, from their noise and the bounds of gain and light."""
     if table.cells is None:
         return radians(table.estimator.sun_sigma_deg)
     known = table_bounds(table)
@@ -100,8 +100,8 @@ def _cells(table: FlightTable, known: Uncertainty) -> CellSet | None:
 def plausibility_config(table: FlightTable) -> PlausibilityConfig:
     """The largest deviations if all is well, from the bounds and the noise at the edge of the gate.
 
-    Along the orbit the field changes in strength, and turns, by up to 3 times the part of the radius that is
-    flown.
+    Along the orbit the field changes in strength and direction, relatively, by up to 3 times the distance
+    flown over the orbit's radius.
     """
     known, tuning, sigmas = table_bounds(table), table.estimator, sqrt(GATE_NIS)
     noise_t, noise_rad = tuning.magnetometer_sigma_nt * NT, _sun_sigma_rad(table)

@@ -6,7 +6,7 @@ REFERENCE_KGM2 = 1.6
 """Mean moment of inertia of the 50 kg satellite for which the next two hold."""
 DIPOLE_AM2, TORQUE_NM = 0.1, 3e-8
 DRAG_KM, DENSITY_POWER = 780.0, 8.8
-"""Height of the perigee below which drag outweighs light, and how the density grows below it."""
+"""Height h of the perigee below which drag outweighs light; the density goes as h^-DENSITY_POWER."""
 
 
 def mean_moment(inertia_kgm2: Mat3) -> float:
@@ -15,7 +15,7 @@ def mean_moment(inertia_kgm2: Mat3) -> float:
 
 
 def relative_volume(inertia_kgm2: Mat3) -> float:
-    """Volume over that of the reference; of bodies of one density and shape J ~ l^5, l^3 ~ J^(3/5)."""
+    """Volume over that of the reference; for bodies of equal density and shape J ~ l^5, l^3 ~ J^(3/5)."""
     volume: float = (mean_moment(inertia_kgm2) / REFERENCE_KGM2) ** 0.6
     return volume
 
@@ -28,15 +28,15 @@ def ordinary_dipole_am2(inertia_kgm2: Mat3) -> float:
 def ordinary_torque_nm(inertia_kgm2: Mat3, perigee_km: float) -> float:
     """Disturbance torque by component, N m: T V max(1, (780 km / h)^8.8).
 
-    Light and drag press on faces (l^2) whose centres are off the mass centre (l), so that both grow with the
-    volume. T is that of light. Drag changes along the orbit, so that five times its peak counts; at high
-    solar activity, with twice the mean density, that is as much as T at 780 km. The density grows as the
-    power 8.8 of the height, within a factor of 1.5 from 400 to 800 km (exponential atmosphere, Vallado 2013,
+    Solar pressure and drag act on faces (l^2) whose centres are off the mass centre (l), so that both torques
+    grow with the volume. T is that of solar pressure. Drag changes along the orbit, so that five times its
+    peak counts; at high solar activity, with twice the mean density, that is as much as T at 780 km. The
+    density goes as h^-8.8, within a factor of 1.5 from 400 to 800 km (exponential atmosphere, Vallado 2013,
     table 8-4).
 
     Args:
         inertia_kgm2: body axes.
-        perigee_km: height over the equator's radius.
+        perigee_km: height above the equatorial radius.
     """
     drag: float = (DRAG_KM / perigee_km) ** DENSITY_POWER
     return TORQUE_NM * relative_volume(inertia_kgm2) * max(1.0, drag)

@@ -22,7 +22,7 @@ from fsw.own_law import GROUP, ControlLaw
 from fsw.table.sections import ControlTable
 
 LONGEST_S = 5.0
-"""Processor time after which a call is given up."""
+"""Processor time after which a call is aborted."""
 MOST_MEMORY = 1000
 """Numbers that a law may carry from one tick to the next."""
 ASKED_TWICE = 16
@@ -30,7 +30,7 @@ ASKED_TWICE = 16
 
 
 class LawError(TableError):
-    """A law of one's own has failed in flight; the message is a sentence that names law, tick and what."""
+    """A law of one's own has failed in flight; the message is a sentence that names law, tick and fault."""
 
     exit_code = 1
 
@@ -77,7 +77,7 @@ def declared(control: ControlTable) -> ControlLaw:
     """What the source of the table's own law declares; it is executed.
 
     Raises:
-        TableError: it is withheld, cannot be loaded, or is no law.
+        TableError: it is withheld, cannot be loaded, or is not a law.
     """
     if control.law_withheld:
         raise TableError(withheld(control))
@@ -101,7 +101,7 @@ def with_own_law(config: ControlConfig, control: ControlTable) -> ControlConfig:
     """The configuration with the table's own law and its gains.
 
     Raises:
-        TableError: it cannot be loaded, is no law, or a gain is not allowed.
+        TableError: it cannot be loaded, is not a law, or a gain is not allowed.
     """
     law, name = declared(control), control.law_name
     gains, given = dict(config.gains), control.gains.get(name, {})
@@ -117,7 +117,7 @@ def with_own_law(config: ControlConfig, control: ControlTable) -> ControlConfig:
 
 @dataclass(frozen=True, slots=True)
 class GuardedLaw:
-    """A law of one's own, of whose answers only a whole ``Demand`` of finite numbers gets further.
+    """A law of one's own: of its answers only a complete ``Demand`` of finite numbers is passed on.
 
     Attributes:
         law: the function.
@@ -164,7 +164,7 @@ def _whole(answer: object) -> Demand:
     """The answer of a law, its numbers as floats.
 
     Raises:
-        ValueError: it is no demand of finite numbers.
+        ValueError: it is not a demand of finite numbers.
     """
     if not isinstance(answer, Demand):
         raise ValueError(f"it returns {_kind(answer)}, not a Demand")

@@ -35,10 +35,10 @@ SCHEDULERS: dict[str, Callable[..., Schedule]] = {
     "lqr_disturbed": disturbed_schedule,
     "lqg_field": field_only_schedule,
 }
-"""How the schedule of each law that needs one is made, of body, circle and weights."""
+"""How the schedule of each law that needs one is made from body, circle and weights."""
 
 LEAST_STEP_S = 60.0
-"""From one opportunity to the next, where the coils could be fired sooner: pulses that close gain little."""
+"""Least time between opportunities, though coils could fire sooner: pulses closer together gain little."""
 LEAST_SEARCHED, SEARCHED_S = 6, 600.0
 """Opportunities that are searched, and for how long at least."""
 
@@ -88,7 +88,7 @@ def schedules(table: FlightTable, orbit: Orbit, gains: dict[str, Any]) -> dict[s
 
 
 def _weights(make: Callable[..., Schedule], gains: Any) -> Any:  # noqa: ANN401  (each law has its own class)
-    """What the schedule depends on: of the plain regulator the two weights alone, whichever law it is for."""
+    """What the schedule depends on: for the plain regulator the two weights alone, whatever its law."""
     return LqrGains(gains.rate, gains.effort) if make is schedule else gains
 
 
@@ -97,7 +97,7 @@ def planned_pulses(
 ) -> PulseModel | None:
     """What pulsed coils can do at each opportunity; None with a continuous driver.
 
-    With a back-off by coil the three take turns.
+    With a back-off per coil the three take turns.
     """
     round_orbit = circle(orbit, table.epoch_unix_s)
     if round_orbit is None or table.coils.driver != "pulsed":

@@ -63,7 +63,7 @@ class OrbitTable(Section):
 
     @property
     def perigee_km(self) -> float:
-        """Height of the perigee over the equator's radius."""
+        """Height of the perigee above the equatorial radius."""
         if self.tle is None:
             assert self.altitude_km is not None
             return self.altitude_km
@@ -110,7 +110,7 @@ class BodyTable(Section):
 class CoilTable(Section):
     """The coil driver: levels per polarity and limits, or the full scale of a continuous one.
 
-    ``on_fraction`` is the part of a tick over which a continuous driver drives, ``dipole_per_ampere_am2``
+    ``on_fraction`` is the fraction of a tick for which a continuous driver drives, ``dipole_per_ampere_am2``
     the dipole of a healthy coil, in A m^2 per A.
     """
 
@@ -145,7 +145,7 @@ class CoilTable(Section):
 
     @property
     def on_part(self) -> float:
-        """The largest part of the time in which a coil may be driven."""
+        """The largest fraction of the time for which a coil may be driven."""
         if self.driver == "continuous":
             return self.on_fraction
         return self.pulse_s / (self.pulse_s + self.backoff_s)
@@ -163,7 +163,7 @@ class ControlTable(Section):
     Units: ``k_w`` N m s/T^2, ``k_a`` N m/T^2, ``k_i`` N m/(T^2 s). ``gains`` holds, by law, that law's own
     parameters. ``minimiser`` is how a continuous driver finds the dipole of a predictive law. A law that is
     not in the table of laws is ``FILE.py:NAME`` or the name of an entry point; ``law_sha256`` is the digest
-    of its source, by which it is known again; ``law_withheld`` keeps that source from being executed.
+    of its source, by which it is recognised; ``law_withheld`` keeps that source from being executed.
     """
 
     law_sha256: str | None = Field(default=None, pattern="^[0-9a-f]{64}$")
@@ -184,7 +184,7 @@ class ControlTable(Section):
 
     @property
     def law_name(self) -> str:
-        """The law as the setpoint and ``gains`` call it: of FILE.py:NAME the NAME."""
+        """The law as the setpoint and ``gains`` call it: for FILE.py:NAME, the NAME."""
         return short_name(self.law)
 
     @field_validator("law")
@@ -269,7 +269,7 @@ class FdirTable(Section):
 class TelemetryTable(Section):
     """Periods of the reports and of the ephemeris nodes, s; at least one tick.
 
-    ``parameter_s`` is the time from one estimated number to the next, of which each is reported in its turn.
+    ``parameter_s`` is the time from one estimated number to the next; they are reported in turn.
     """
 
     attitude_s: NotNegative

@@ -53,7 +53,7 @@ from fsw.table.uncertainty import (
 from fsw.table.wheel import WheelTable, check_wheel_inertia
 
 LATER_BOUNDS = ("torque_variation_nm", "cell_gain_percent", "cell_light_percent")
-"""Keys of ``[uncertainty]`` that tables were written without."""
+"""Keys of ``[uncertainty]`` that earlier tables do not have."""
 
 UNMET = {
     Need.PULSES: "with coils.driver = 'continuous': it plans pulses; allowed is coils.driver = 'pulsed'",
@@ -93,7 +93,7 @@ class FlightTable(Section):
             "coil_gain_percent": Ceiling(gain, "so that no sound coil is below fdir.weak_coil_part"),
         }
         bound_nm = bounds(self.uncertainty, self.ordinary).torque_nm
-        if bound_nm > 0.0:  # else no torque is carried that could vary
+        if bound_nm > 0.0:  # otherwise no torque is carried that could vary
             ceilings["torque_variation_nm"] = Ceiling(
                 2.0 * bound_nm, "from one bound of the torque, uncertainty.torque_nm, to the other"
             )
@@ -102,14 +102,14 @@ class FlightTable(Section):
 
     @property
     def ordinary(self) -> Ordinary:
-        """Ordinary bounds of this satellite in its orbit; of the torque, what its coils could hold."""
+        """Ordinary bounds of this satellite in its orbit; torque at most what its coils can counteract."""
         inertia = self.body.inertia
         torque_nm = min(ordinary_torque_nm(inertia, self.orbit.perigee_km), self._most_torque_nm)
         return Ordinary(ordinary_dipole_am2(inertia), torque_nm, 1.0 / self.time.tick_hz)
 
     @property
     def _most_torque_nm(self) -> float:
-        """What a coil gives in the mean, pulse and back-off, in a strong field."""
+        """Mean torque of a coil over pulse and back-off in a strong field."""
         return self.coils.largest_am2 * self.coils.on_part * LARGEST_FIELD_T
 
     @model_validator(mode="after")
@@ -150,9 +150,9 @@ class FlightTable(Section):
 
     @property
     def crc(self) -> int:
-        """CRC-32 of the table in canonical JSON; of one's own law the digest counts, and no path.
+        """CRC-32 of the table in canonical JSON; of a law of one's own the digest counts, not the path.
 
-        A key that is left out does not count if there were tables before it.
+        A key that earlier tables do not have does not count where it is left out.
         """
         values = self.model_dump(mode="json")
         for key in LATER_BOUNDS:
@@ -177,7 +177,7 @@ DEFAULT_EPOCH_UTC = "2025-03-20T09:00:00Z"
 
 
 def epoch_unix_s(time: TimeTable, orbit: OrbitTable) -> int:
-    """Time of tick 0: ``epoch_utc``, else the TLE's epoch rounded up to a whole second, else the default."""
+    """Time of tick 0: ``epoch_utc``, or the TLE's epoch rounded up to a whole second, or the default."""
     if time.epoch_utc is not None:
         return parse_utc(time.epoch_utc)
     if orbit.tle is not None:
@@ -202,7 +202,7 @@ def flight_table(values: Nested, source: str) -> FlightTable:
 def lay_over(base: Nested, over: Nested) -> Nested:
     """``over`` laid over ``base`` section by section.
 
-    An orbit of the other kind replaces the one below, and so does a law, with what is of a law of one's own.
+    An orbit of the other kind replaces the one below; so does a law, with all that belongs to one's own law.
     """
     below, above = base.get("orbit"), over.get("orbit")
     if isinstance(below, dict) and isinstance(above, dict):

@@ -4,9 +4,9 @@ A bound is what an engineer can vouch for: the largest deviation that is to be e
 leaves out takes an ordinary value for a satellite of that size, never zero. Zero means that the table is
 exact there, and the filter does not carry the parameter.
 
-A deviation is taken as uniform within its bound, so that its standard deviation by component is bound /
-sqrt 3; a turn of any axis within an angle, as uniform in that ball: angle / sqrt 5. The age of a sample lies
-between zero and its bound.
+A deviation is taken as uniform within its bound, so that its standard deviation by component is bound / sqrt
+3; a misalignment within an angle about any axis, as uniform in that ball: angle / sqrt 5. The age of a sample
+lies between zero and its bound.
 """
 
 from collections.abc import Mapping
@@ -23,9 +23,9 @@ from fsw.table.ordinary import mean_moment
 
 
 class UncertaintyTable(Section):
-    """Bounds of what the table may be wrong by; None: an ordinary value for a satellite of this size.
+    """Bounds of the errors of the table; None: an ordinary value for a satellite of this size.
 
-    Each goes as far as the models hold (docs/uncertainty.md); ``check_bounds`` has what other sections admit.
+    Each may go as far as the models hold (docs/uncertainty.md); other sections limit some (``check_bounds``).
     """
 
     inertia_percent: float | None = Field(default=None, ge=0.0, le=30.0)
@@ -98,7 +98,7 @@ class Uncertainty:
 
 
 UNEVEN = 0.5
-"""Part of what the Earth's light may be wrong by that is another for each cell: clouds lie unevenly."""
+"""Fraction of the error of the Earth's light that differs from cell to cell: clouds are uneven."""
 
 
 class Ordinary(NamedTuple):
@@ -112,8 +112,8 @@ class Ordinary(NamedTuple):
 def bounds(table: UncertaintyTable, ordinary: Ordinary, albedo: float | None = None) -> Uncertainty:
     """The bounds of the table, ordinary ones where it has none.
 
-    ``albedo`` is that which Sun cells are reckoned with, None of a satellite without them: half of it is
-    ordinary to be wrong by, and all of the Earth's light where it is 0.
+    ``albedo`` is that of the model of the Sun cells, None for a satellite without them: its ordinary error is
+    half of it, or where it is 0 all of the Earth's light.
     """
     torque_nm = _or(table.torque_nm, ordinary.torque_nm)
     cell_gain, cell_light = (0.0, 0.0) if albedo is None else _of_cells(table, albedo)
@@ -156,7 +156,7 @@ DAY_S = 86400.0
 
 
 class Shape(NamedTuple):
-    """Standard deviation, walk per root of a second, and mean of a parameter, in parts of its limit."""
+    """Standard deviation, walk per root of a second, and mean of a parameter, as fractions of its limit."""
 
     sigma: float
     walk: float = 0.0
@@ -178,7 +178,7 @@ SHAPES = {
     "earth_light": Shape(SIDE),
 }
 """A parameter may wander by a tenth of its limit in a day, the disturbance torque by its own bound, and the
-coils by a hundredth in a second, so that what a coil loses in flight is found."""
+coils by a hundredth in a second, so that a coil's loss of gain in flight is found."""
 
 
 def priors(known: Uncertainty, inertia_kgm2: Mat3) -> dict[str, Prior]:

@@ -12,13 +12,13 @@ from fsw.input.schema import NotNegative, Section, Triple
 STALE_S = 10.0
 """Age of a report from which the wheel's momentum counts as unknown."""
 MOST_RADPS = 2000.0
-"""A wheel of the given inertia and momentum turns no faster: the wire holds no more."""
+"""A wheel of the given inertia and momentum turns no faster: its message holds no more."""
 
 
 class WheelTable(Section):
     """A reaction wheel: axis in body axes, inertia about it, motor torque, momentum relative to the body.
 
-    The body's inertia counts the wheel's too. Friction: ``viscous_nms`` times the speed, and ``coulomb_nm``,
+    The body's inertia includes the wheel's. Friction: ``viscous_nms`` times the speed, and ``coulomb_nm``,
     which is nearly constant.
     """
 
@@ -49,7 +49,7 @@ class WheelTable(Section):
 
 
 def check_wheel_inertia(table: WheelTable, inertia_kgm2: Mat3) -> None:
-    """Check that what is left of the body without the wheel's own inertia is a body.
+    """Check that the body less the wheel's own inertia is still a body.
 
     Raises:
         ValueError: the wheel's inertia is not below that of the body about its axis.
@@ -64,7 +64,7 @@ def check_wheel_inertia(table: WheelTable, inertia_kgm2: Mat3) -> None:
 
 
 def driven_wheel(table: WheelTable | None, tick_hz: int) -> Wheel | None:
-    """The wheel as laws and actuation take it."""
+    """The wheel as laws and actuation use it."""
     if table is None:
         return None
     return Wheel(

@@ -3,7 +3,7 @@
     (1427513417.000000) vcan0 110#133E0014F79838B7
 
 An 11-bit identifier has three hex digits, an extended one eight; an error frame has eight, SocketCAN's error
-flag among them; a remote frame bears ``R`` in place of data. Newer candumps append the direction (``R`` or
+flag among them; a remote frame has ``R`` in place of data. Newer candumps append the direction (``R`` or
 ``T``), pad the channel, write nanoseconds or mark a raw DLC (``_9``): that is read, and dropped.
 """
 
@@ -13,7 +13,7 @@ from typing import TypeVar
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame
 
 LONGEST = 256
-"""Bytes: no line is longer; what is longer need not be read to its end to be refused."""
+"""Bytes: no line is longer, so that a longer one is refused without being read to its end."""
 MOST_REMEMBERED = 4096
 """Words that a reader remembers."""
 
@@ -34,7 +34,7 @@ LoggedFrame = tuple[int, str, Frame]
 
 
 class LineReader:
-    """Reads lines one by one; words that come again and again are converted once."""
+    """Reads lines one by one; recurring words are converted once."""
 
     def __init__(self) -> None:
         self._identifiers: dict[bytes, int] = {}
@@ -43,7 +43,7 @@ class LineReader:
         self._timestamp_us = 0
 
     def read(self, text: bytes) -> LoggedFrame | None:
-        """The frame of a line that ends with its newline; None where it is no such line."""
+        """The frame of a line that ends with its newline; None if it is not such a line."""
         found = _LINE.fullmatch(text)
         if found is None:
             return None
@@ -89,7 +89,7 @@ def format_line(timestamp: str, channel: str, frame: Frame) -> str:
 
 
 def is_beginning(text: bytes) -> bool:
-    """Whether ``text`` is a line that has been cut: some ending makes a line of it."""
+    """Whether ``text`` is a line that has been cut short: some ending completes it."""
     return any(_LINE.fullmatch(text + ending) for ending in _ENDINGS)
 
 
@@ -99,7 +99,7 @@ def is_fd(text: bytes) -> bool:
 
 
 def _remember(words: dict[bytes, _Value], word: bytes, value: _Value) -> _Value:
-    """What a word means, stored for its next time; a log in which every line has another is forgotten."""
+    """What a word means, stored for its next occurrence; a full store is cleared first."""
     if len(words) >= MOST_REMEMBERED:
         words.clear()
     words[word] = value

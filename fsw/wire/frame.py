@@ -5,7 +5,7 @@ from typing import NamedTuple
 EXTENDED_FLAG = 0x8000_0000
 REMOTE_FLAG = 0x4000_0000
 ERROR_FLAG = 0x2000_0000
-"""Flags above the identifier, as in SocketCAN's ``can_id``. A frame that bears one is never ours."""
+"""Flags above the identifier, as in SocketCAN's ``can_id``. A frame that carries one is never ours."""
 
 
 class Frame(NamedTuple):
@@ -34,7 +34,7 @@ def crc8(data: bytes, register: int = 0xFF) -> int:
 
     Args:
         data: the bytes to protect.
-        register: value of the register before ``data``, for a prefix that is already worked in.
+        register: value of the register before ``data``, for a prefix that has been processed already.
     """
     table = _TABLE
     for byte in data:
@@ -43,7 +43,7 @@ def crc8(data: bytes, register: int = 0xFF) -> int:
 
 
 def id_register(can_id: int) -> int:
-    """The CRC register after the identifier, two bytes big-endian, has been worked in."""
+    """The CRC register after the identifier, two bytes big-endian, has been processed."""
     return crc8(can_id.to_bytes(2, "big")) ^ 0xFF
 
 

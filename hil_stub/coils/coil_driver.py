@@ -99,8 +99,8 @@ class CoilDriver:
         refused since the last tick, at most 64; one ``COIL_EVENT`` for each new fault; every 60 s after boot
         ``COIL_HEARTBEAT``.
 
-        A tick that does not rise is ignored: nothing happens and nothing is sent. Over skipped ticks a pulse
-        ends by its own time and the lockout runs on.
+        A tick that does not advance is ignored: nothing happens and nothing is sent. Over skipped ticks a
+        pulse ends by its own time and the lockout runs on.
 
         Args:
             tick: number of the tick that begins.

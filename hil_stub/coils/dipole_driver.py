@@ -52,7 +52,7 @@ class DipoleDriver:
 
     Args:
         tick_hz: ticks a second.
-        on_fraction: part of a tick for which the coils are driven, above 0 and up to 1.
+        on_fraction: fraction of a tick for which the coils are driven, above 0 and up to 1.
         table_crc: CRC-32 of the table that these values come from, reported in ``COIL_BOOT``.
 
     Raises:
@@ -76,7 +76,7 @@ class DipoleDriver:
 
         At the first tick ``COIL_BOOT``; always one ``COIL_STATUS``, of coils that are off, and one
         ``COIL_DIPOLE_STATUS``; one ``COIL_REFUSED`` for each request refused since the last tick, at most 64;
-        every 60 s after boot ``COIL_HEARTBEAT``. A tick that does not rise is ignored.
+        every 60 s after boot ``COIL_HEARTBEAT``. A tick that does not advance is ignored.
 
         Args:
             tick: number of the tick that begins.

@@ -1,15 +1,15 @@
 """Two interlocks: one by the ticks of the bus, one by the board's own clock where it has one.
 
-Ticks come over the bus, and the bus may lie: a SYNC that comes too often would shorten a back-off, one that
-stays away would stretch a pulse. So a pulse is over when the first of the two says so, a back-off when the
-last does, and a request is accepted only if both accept it.
+Ticks come over the bus, which cannot be trusted: a SYNC that comes too often would shorten a back-off, one
+that stays away would lengthen a pulse. So a pulse is over when the first of the two says so, a back-off when
+the last does, and a request is accepted only if both accept it.
 
 The two need not agree, and neither waits for the other: time passes while no tick comes, and ticks may come
-in no time. ``pass_time`` comes before every other call, else its clock would stand still until the next
-tick, and the time that had passed by then would be taken from the back-off.
+in no time. ``pass_time`` comes before every other call; otherwise the clock would stand still until the next
+tick, and the time passed by then would be deducted from the back-off.
 
 A board enters a tick as soon as fsw has answered the one before, to report it before its SYNC comes. Timers
-by ticks are of the reported instant; a pulse whose last tick that is stays on until the SYNC, or until
+by ticks refer to the reported instant; a pulse that ends at that instant stays on until the SYNC, or until
 the clock ends it.
 """
 
@@ -33,7 +33,7 @@ CLOCK_HZ = 1000
 
 
 class Guard:
-    """What may be driven, and for how long still. Boots off with a full lockout.
+    """What may be driven, and for how much longer. Boots off with a full lockout.
 
     Args:
         limits: what is enforced.
@@ -101,7 +101,7 @@ class Guard:
 
     @property
     def remaining_units(self) -> int:
-        """Rest of the pulse, in units of a tick."""
+        """Rest of the pulse, in units of the interlock, a thousandth of a tick."""
         by_ticks, by_clock = self._by_ticks, self._by_clock
         if by_clock is None:
             return by_ticks.remaining
@@ -129,7 +129,7 @@ class Guard:
 
     @property
     def fraction(self) -> float:
-        """Part of the tick that begins for which the pulse still lasts."""
+        """Fraction of the tick that begins for which the pulse still lasts."""
         return min(self.remaining_units, UNITS_PER_TICK) / UNITS_PER_TICK
 
     def remaining_ms(self) -> int:

@@ -80,7 +80,7 @@ class Interlock:
 
     Args:
         coil: coil that is on, or was on last.
-        level: its level in the tick that has just ended or in the one that begins; else 0.
+        level: its level in the tick that has just ended or in the one that begins; otherwise 0.
         remaining: rest of its pulse; a coil is on exactly while this is not 0.
         lockout: for each coil, time until it may be fired again.
         seq: sequence number of the last accepted request; None after boot.
@@ -140,7 +140,7 @@ _REFUSED_IF: tuple[tuple[CoilRefusedReason, _Rule], ...] = (
     (CoilRefusedReason.COIL_ON, lambda state, request, tick, limits: state.remaining > 0),
     (CoilRefusedReason.LOCKOUT, lambda state, request, tick, limits: state.lockout[request.coil] > 0),
 )
-"""The rules in the order in which they are judged; the first that applies is the reason."""
+"""The rules in the order in which they are applied; the first that applies is the reason."""
 
 REFUSAL_ORDER = tuple(reason for reason, _ in _REFUSED_IF)
 """The reasons in that order, for the specification of the board."""

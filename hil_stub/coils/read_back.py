@@ -6,7 +6,7 @@ from math import copysign
 from hil_stub.coils.events import CoilEventCode
 
 _NONE = 0.1
-"""A current below this part of the nominal one is none."""
+"""A current below this fraction of the nominal one counts as none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -15,8 +15,8 @@ class ReadBack:
 
     Args:
         nominal_a: at levels 1, 2, 3 [A].
-        settle_ms: time that a current takes to follow a change [ms]; sooner it is not judged.
-        tolerance: part of the nominal current by which it may differ from it.
+        settle_ms: time that a current takes to follow a change [ms]; until then it is not judged.
+        tolerance: largest deviation, as a fraction of the nominal current.
 
     Raises:
         ValueError: the currents do not rise from above zero, or another value is out of range.

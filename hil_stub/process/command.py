@@ -154,7 +154,7 @@ def dipole(spec: str, tick_hz: int) -> None:
 def magnetometer(spec: str, tick_hz: int, stimulus: str | None, rest: tuple[str, ...]) -> None:
     """The magnetometer, with a field as its stimulus.
 
-    --stimulus X Y Z is a constant; RUN or LOG its samples there, tick by tick; FILE.toml a script.
+    --stimulus X Y Z is a constant; RUN or LOG replays its samples, tick by tick; FILE.toml is a script.
     """
     sample_at = stimulus_of(
         stimulus_words(stimulus, rest, "20000 0 -30000"),
@@ -175,7 +175,7 @@ def magnetometer(spec: str, tick_hz: int, stimulus: str | None, rest: tuple[str,
 def sun(spec: str, tick_hz: int, stimulus: str | None, rest: tuple[str, ...]) -> None:
     """The Sun sensor, with a direction as its stimulus.
 
-    --stimulus X Y Z is a constant; RUN or LOG its samples there, tick by tick; FILE.toml a script.
+    --stimulus X Y Z is a constant; RUN or LOG replays its samples, tick by tick; FILE.toml is a script.
     """
     sample_at = stimulus_of(
         stimulus_words(stimulus, rest, "1 0 0"), "sun", SunVector, tick_hz, 1.0, direction
@@ -191,8 +191,8 @@ def sun(spec: str, tick_hz: int, stimulus: str | None, rest: tuple[str, ...]) ->
 def cells(spec: str, tick_hz: int, stimulus: str | None, rest: tuple[str, ...]) -> None:
     """The Sun cells, with their currents as the stimulus; in place of the Sun sensor.
 
-    --stimulus C1 C2 C3 C4 C5 C6 is a constant, 0 where there is no cell; RUN or LOG its samples there, tick
-    by tick; FILE.toml a script.
+    --stimulus C1 C2 C3 C4 C5 C6 is a constant, 0 where there is no cell; RUN or LOG replays its samples, tick
+    by tick; FILE.toml is a script.
     """
     words = stimulus_words(stimulus, rest, "0.8 0 0.6 0 0 0")
     sample_at = stimulus_of(words, "cells", SunCells, tick_hz, 1.0, currents, CELLS)

@@ -9,7 +9,7 @@ from hil_stub.bench import Bench
 from hil_stub.coils.coil_driver import Pin
 
 POLL_S = 0.5
-"""How often a silent bus lets Ctrl-C in, where waiting cannot be interrupted."""
+"""How often Ctrl-C is noticed on a silent bus, where waiting cannot be interrupted."""
 
 
 def now_ms() -> int:
@@ -21,7 +21,7 @@ class PinLog:
     """Each change of the coil outputs as a line: what a logic analyser would show of a real board.
 
     ``1234 on 2 -3 until 4234``: since 1234 ms of this machine's monotonic clock coil 2 is on at level -3, and
-    the timer that was armed with it ends that at 4234 ms. ``2345 off``: it has ended before for another
+    the timer that was armed with it ends that at 4234 ms. ``2345 off``: it has ended earlier, for another
     reason.
 
     Args:
@@ -48,8 +48,8 @@ def run(bench: Bench, bus: Bus, pins: PinLog | None = None, parent: int | None =
 
     Args:
         bench: the board.
-        bus: where it lives.
-        pins: takes each change of the outputs.
+        bus: the bus it is on.
+        pins: receives each change of the outputs.
         parent: process that started this one; when it is gone the board ends.
     """
     bus.send(bench.switch_on(now_ms=now_ms()))

@@ -50,7 +50,7 @@ class PipedStimulus:
         """The reading at ``tick``; NOTHING if it does not come.
 
         Raises:
-            StimulusError: a line is no reading.
+            StimulusError: a line is not a reading.
         """
         deadline = time.monotonic() + PIPE_PATIENCE_S
         while tick not in self._readings:
@@ -101,7 +101,7 @@ def stimulus_of(
     convert: Callable[[Values], Values],
     count: int = 3,
 ) -> Stimulus:
-    """The stimulus of the option's words: so many numbers, a log or a run, a script, or ``-`` for stdin."""
+    """The stimulus of the option's words: ``count`` numbers, a log or a run, a script, or ``-`` for stdin."""
     try:
         if len(words) == count:
             return constant(convert(finite_numbers([_number(word, count) for word in words], count)))
@@ -145,7 +145,7 @@ def _toml(path: Path) -> dict[str, object]:
 
 
 def _lines(log: Path) -> Iterator[bytes]:
-    """The lines of a log; what is longer than any frame's comes in pieces, which are none."""
+    """The lines of a log; one longer than any frame's comes in pieces, none of which is a frame."""
     with open_text(log) as file:
         while line := file.readline(LONGEST):
             yield line

@@ -23,7 +23,7 @@ class Magnetometer:
     def begin_tick(self, tick: int, b_body_t: tuple[float, float, float], valid: bool) -> list[Frame]:
         """Enter ``tick``: ``MAG_BOOT`` at the first, ``MAG_FIELD``, ``MAG_HEARTBEAT`` every 60 s.
 
-        An axis that is out of range or not a number makes the sample invalid. A tick that does not rise is
+        An axis that is out of range or not a number makes the sample invalid. A tick that does not advance is
         ignored.
 
         Args:

@@ -41,12 +41,12 @@ def recorded(lines: Iterable[bytes], message: SensorMessage, scale: float) -> St
     """The samples of the sensor in a candump log, at the same ticks; nothing where it was silent or broken.
 
     Args:
-        lines: of the log; what is no frame of ours is passed over.
+        lines: of the log; what is not one of our frames is skipped.
         message: of the sensor.
         scale: from the signals of that message to the reading.
 
     Raises:
-        StimulusError: the log holds not one sample of this sensor before a ``SYNC``.
+        StimulusError: the log holds no sample of this sensor before a ``SYNC``.
     """
     readings: dict[int, Reading] = {}
     reader, latest = LineReader(), NOTHING
@@ -130,7 +130,7 @@ def direction(vector: Values) -> Values:
 
 
 def finite_numbers(values: object, count: int) -> Values:
-    """So many finite numbers.
+    """``count`` finite numbers.
 
     Raises:
         StimulusError: it is something else.
@@ -148,7 +148,7 @@ def three(values: Values) -> tuple[float, float, float]:
 
 
 def _time(step: object) -> float | None:
-    """When a step begins; None if it does not say, or not properly."""
+    """When a step begins; None if ``t_s`` is missing or wrong."""
     t_s = step.get("t_s") if isinstance(step, dict) else None
     if not isinstance(t_s, int | float) or isinstance(t_s, bool) or not isfinite(t_s) or t_s < 0.0:
         return None

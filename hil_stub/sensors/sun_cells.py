@@ -13,7 +13,7 @@ _MOST = 255.0 / 128.0
 
 
 class SunCellBoard:
-    """Up to six Sun cells on the bus, in the place of the Sun sensor.
+    """Up to six Sun cells on the bus, in place of the Sun sensor.
 
     Args:
         tick_hz: ticks a second.
@@ -26,12 +26,12 @@ class SunCellBoard:
     def begin_tick(self, tick: int, currents: Sequence[float], valid: bool) -> list[Frame]:
         """Enter ``tick``: ``SUN_BOOT`` at the first, ``SUN_CELLS``, ``SUN_HEARTBEAT`` every 60 s.
 
-        A current beyond the range is sent as its end. One that is not a number makes the sample invalid: all
-        currents are then zero. A tick that does not rise is ignored.
+        A current out of range is sent as the nearest limit of the range. One that is not a number makes the
+        sample invalid: all currents are then zero. A tick that does not advance is ignored.
 
         Args:
             tick: number of the tick that begins.
-            currents: by cell, in parts of the nominal current in full sunlight; at most six.
+            currents: by cell, as fractions of the nominal current in full sunlight; at most six.
             valid: False when the board has failed its self-test.
 
         Raises:

@@ -25,7 +25,7 @@ class SunSensor:
         """Enter ``tick``: ``SUN_BOOT`` at the first, ``SUN_VECTOR``, ``SUN_HEARTBEAT`` every 60 s.
 
         An invalid sample has no direction: its components are zero. A component out
-        of range or not a number makes the sample invalid. A tick that does not rise is ignored.
+        of range or not a number makes the sample invalid. A tick that does not advance is ignored.
 
         Args:
             tick: number of the tick that begins.

@@ -46,7 +46,7 @@ class WheelDriver:
     A request ends by itself: a tick without one is a tick in which the wheel coasts. In each tick:
     ``begin_tick``, then ``receive`` for each frame of the bus, then ``drive``. A request that comes after
     ``drive``, or before the first tick, answers no tick and is refused as one of a wrong tick. With a clock
-    of its own the board ends a torque after a tick by that clock too, though no next tick comes.
+    of its own the board ends a torque after a tick by that clock too, even if no next tick comes.
 
     Args:
         limits: what it enforces.
@@ -71,7 +71,7 @@ class WheelDriver:
         """Enter ``tick``: the frames to send in it.
 
         At the first tick ``WHEEL_BOOT``; always one ``WHEEL_STATUS``; one ``WHEEL_EVENT`` for each new fault;
-        every 60 s after boot ``WHEEL_HEARTBEAT``. A tick that does not rise is ignored.
+        every 60 s after boot ``WHEEL_HEARTBEAT``. A tick that does not advance is ignored.
 
         Args:
             tick: number of the tick that begins.

@@ -77,7 +77,7 @@ _REFUSED_IF: tuple[tuple[WheelStatusResult, Callable[[Asked, WheelLimits], bool]
     (WheelStatusResult.NO_SPEED, lambda asked, limits: asked.speed_radps is None),
     (WheelStatusResult.TOO_FAST, _speeds_up),
 )
-"""The rules in the order in which they are judged; the first that applies is the result."""
+"""The rules in the order in which they are applied; the first that applies is the result."""
 
 REFUSAL_ORDER = tuple(result for result, _ in _REFUSED_IF)
 """The results in that order, for the specification of the board."""
@@ -92,5 +92,5 @@ def judge(asked: Asked, limits: WheelLimits) -> WheelStatusResult:
 
 
 def measured(speed_radps: float) -> float | None:
-    """The speed, or None where it is no number that the status can hold."""
+    """The speed, or None if it is not a number that the status can hold."""
     return speed_radps if isfinite(speed_radps) and abs(speed_radps) < LARGEST_RADPS else None

@@ -25,7 +25,7 @@ _JUDGED = frozenset((CoilStatus.ID, CoilBoot.ID, Sync.ID))
 
 
 def audit(entries: Iterable[LogEntry], limits: AuditLimits, expect_end: bool = False) -> AuditReport:
-    """Judge a log in one pass, without holding it.
+    """Judge a log in one pass, without holding it in memory.
 
     Args:
         entries: the log, as ``read_log`` yields it.
@@ -141,7 +141,7 @@ class _Auditor:
             self._add(ViolationKind.SYNC, (tick or 0) * MICRO, tick, line, f"SYNC of {len(frame.data)} bytes")
             return
         tick, unix_time_s = Sync.decode(frame.data)
-        if tick == self._tick:  # sent again: no time has passed by it
+        if tick == self._tick:  # sent again: no time has passed
             self._check_unix_time(line, tick, unix_time_s)
             return
         step = 1 if self._tick is None else tick - self._tick
@@ -189,7 +189,7 @@ class _Auditor:
                 sentence = f"SYNC says unix_time_s {unix_time_s}, its tick says {expected}"
                 self._add(ViolationKind.SYNC, tick * MICRO, tick, line, sentence)
 
-    # --- logs without
+    # --- logs without ticks
 
     def _take_untimed(self, board: BoardStatus) -> None:
         if self._together:
@@ -208,7 +208,7 @@ class _Auditor:
     # --- both
 
     def _stamped(self, boards: list[BoardStatus]) -> int:
-        """The instant of a tick's statuses by timestamp: the last with a coil driven, else the first."""
+        """The instant of a tick's statuses by timestamp: the last with a coil driven, or the first."""
         times = [board.timestamp_us for board in boards if board.status is not None and board.status.level]
         return self._clock.of_timestamp(max(times, default=boards[0].timestamp_us))
 

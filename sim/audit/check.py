@@ -28,7 +28,7 @@ _SHOWN = 50
 def check(path: Path, backoff: str | None, key: PublicKey | None = None) -> AuditReport:
     """Audit a log by the limits of the scenario beside it, and compare the files beside it with its run.json.
 
-    A scenario that is not the run's does not give its limits: then the default ones apply.
+    A scenario that is not the run's does not define the limits: the default ones apply instead.
 
     Args:
         path: a run directory, or a log.
@@ -36,7 +36,7 @@ def check(path: Path, backoff: str | None, key: PublicKey | None = None) -> Audi
         key: the run must be signed by its private half.
 
     Raises:
-        HarnessError: there is no such log, it is no candump log or an altered one, or a file beside it
+        HarnessError: there is no such log, it is not a candump log or an altered one, or a file beside it
             cannot be used.
     """
     folder = os.path.isdir(path)  # unlike Path's, never an error, whatever the name

@@ -34,7 +34,7 @@ def as_json(report: AuditReport) -> Json:
 
 
 def suites(report: AuditReport) -> dict[str, list[JunitCase]]:
-    """A test for each rule that can be broken, and for what makes a log one that can be judged."""
+    """A test for each rule that can be broken, and for each condition that a log must meet to be judged."""
     rules = [_rule(kind, report) for kind in ViolationKind]
     log = {
         "something to judge": "" if report.statuses else "the log has no COIL_STATUS",

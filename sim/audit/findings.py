@@ -32,7 +32,7 @@ class AuditLimits:
         pulse_us: longest pulse [us].
         backoff_us: least time from the end of a pulse to the start of the next [us].
         max_level: largest magnitude of a level.
-        shared: the back-off is from a pulse of any coil; else from one of the same coil.
+        shared: the back-off is from a pulse of any coil; otherwise from one of the same coil.
         tick_hz: rate that the scenario states; the log's own SYNC overrules it.
     """
 
@@ -43,7 +43,7 @@ class AuditLimits:
     tick_hz: int | None = None
 
     def most_duty(self, time_s: float) -> float:
-        """The largest part of a time that pulses under one back-off can take; a short one fits more."""
+        """The largest fraction of a time that pulses under one back-off can take; a short time fits more."""
         pulse_s, cycle_s = self.pulse_us / 1e6, (self.pulse_us + self.backoff_us) / 1e6
         if time_s <= 0.0 or cycle_s <= 0.0:
             return 1.0
@@ -127,7 +127,7 @@ class AuditReport:
 
     @property
     def exit_code(self) -> int:
-        """0 if the limits were kept over a complete, unaltered log that belongs to its run, else 1."""
+        """0 if the limits were kept over a complete, unaltered log that belongs to its run, otherwise 1."""
         return 0 if self.ok and self.complete and self.genuine and not self.mismatches else 1
 
     @property
@@ -152,7 +152,7 @@ class AuditReport:
 
     @property
     def min_gap_any_s(self) -> float | None:
-        """Least time from a pulse to the next, of whatever coil; None with fewer than two pulses."""
+        """Least time from a pulse to the next, of any coil; None with fewer than two pulses."""
         return _min_gap(self.pulses)
 
     @property

@@ -12,7 +12,7 @@ from sim.errors import HarnessError
 
 
 def limits_in(tables: Mapping[str, object], source: str) -> AuditLimits:
-    """The limits in the tables ``coils`` and ``time`` of a scenario; the usual ones for keys without a value.
+    """The limits in the tables ``coils`` and ``time`` of a scenario; default ones for keys without a value.
 
     Args:
         tables: the scenario as it stands in its TOML file, unchecked.

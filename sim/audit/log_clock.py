@@ -23,7 +23,7 @@ class LogClock:
     """How to turn ticks and timestamps of a log into instants.
 
     Attributes:
-        units: ticks a second where the rate is known, else 1; an instant counts 1 / (10^6 units) s.
+        units: ticks a second where the rate is known, otherwise 1; an instant counts 1 / (10^6 units) s.
         period: of COIL_STATUS, in instants.
         epoch_s: unix time of tick 0; None if the log has no SYNC, or too few to show the tick rate.
         origin_us: timestamp that counts as t = 0.
@@ -39,7 +39,7 @@ class LogClock:
     contradictory: bool
 
     def of_timestamp(self, timestamp_us: int) -> int:
-        """The instant of a timestamp; one that is a tick's, rounded to microseconds, is that tick's."""
+        """The instant of a timestamp; that of a tick, rounded to microseconds, gives exactly that tick."""
         return _instant(timestamp_us, self.units) - self.origin_us * self.units
 
     def seconds(self, instant: int) -> Fraction:

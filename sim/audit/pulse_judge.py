@@ -46,7 +46,7 @@ class PulseJudge:
     def observe(self, now: int, tick: int | None, line: int, statuses: list[CoilStatus]) -> None:
         """All statuses of one tick: what was driven in the interval that ends ``now``.
 
-        A tick without any is not judged: a coil driven before and after it was driven in it too.
+        A tick without any is not judged: a coil driven before and after it counts as driven in it.
         """
         driven = [status for status in statuses if status.level]
         if not statuses or not (driven or self._drives):
@@ -97,7 +97,7 @@ class PulseJudge:
         drive.latest = max(drive.latest, drive.announced)
 
     def _announced(self, start: int, end: int, status: CoilStatus) -> int:
-        """The end by ``remaining_ms``; in whole milliseconds, so elapsed time is too."""
+        """The end by ``remaining_ms``; that is in whole milliseconds, so elapsed time is too."""
         return start + ((end - start) // self._millisecond + status.remaining_ms) * self._millisecond
 
     def _stop(self, drive: _Drive, until: int) -> None:

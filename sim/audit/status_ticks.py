@@ -25,9 +25,9 @@ class StatusTicks:
     """Assigns statuses to ticks.
 
     There is one status a tick, and it comes before the tick's SYNC. In real time it may come after it, and a
-    recorder may lose frames. So of several statuses at once the last belong to the last ticks, one each, as
-    far as those have none yet; and a single one after an empty tick is that tick's if its counter says that
-    it is the board's next.
+    recorder may lose frames. So the last of several statuses at once belong to the last ticks, one each, as
+    far as those have none yet; and a single one after an empty tick belongs to that tick if its counter shows
+    that it is the board's next.
     """
 
     def __init__(self) -> None:

@@ -11,7 +11,7 @@ MOST_ROOM = 10.0
 
 
 class Threshold(StrEnum):
-    """Whose the limits of a claim are."""
+    """Where the limits of a claim come from."""
 
     PAPER = "paper"
     """As the source prints them, or as its statistics give them."""
@@ -20,9 +20,9 @@ class Threshold(StrEnum):
     PROTOTYPE = "own prototype"
     """What an earlier computation of this project's own has found."""
     OWN = "own choice"
-    """Chosen here, near what is measured, so that a change shows."""
+    """Chosen here, close to the measured figure, so that a change shows."""
     FITTED = "fitted"
-    """The paper's figure, to which a number of the scenario was fitted: its being met shows nothing."""
+    """The paper's figure, to which a number of the scenario was fitted: that it is met shows nothing."""
 
 
 class ClaimVerdict(StrEnum):
@@ -47,8 +47,8 @@ class Claim:
         unit: of figure and limits.
         low: least that passes.
         high: most that passes.
-        threshold: whose the limits are.
-        wide: why limits of one's own are far from the figure; empty where they are near.
+        threshold: where the limits come from.
+        wide: why limits chosen here are far from the figure; empty where they are close.
     """
 
     id: str
@@ -75,7 +75,7 @@ class Claim:
         return own and self.meets(ours) and not self.wide and self.room(ours) > MOST_ROOM
 
     def room(self, ours: float) -> float:
-        """By what factor a figure could be worse, at the side where it could be most; infinite from zero."""
+        """By what factor a figure could be worse, on the side with the most room; infinite from zero."""
         limits = [limit for limit in (self.low, self.high) if abs(limit) != inf and limit != ours]
         return max((_factor(limit, ours) for limit in limits), default=1.0)
 
@@ -97,7 +97,7 @@ def _factor(limit: float, ours: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Spread:
-    """What all flights give of which a claim takes one figure: how many meet its limits, and the range."""
+    """What all flights behind the one figure of a claim give: how many meet its limits, and the range."""
 
     flights: int
     meet: int

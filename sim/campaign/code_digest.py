@@ -1,4 +1,4 @@
-"""What tells the code of one flight from the code of another, by the text of its files."""
+"""A digest that distinguishes the code of one flight from that of another, by the text of its files."""
 
 import ast
 import hashlib
@@ -27,7 +27,7 @@ FLIGHT_CODE = (
     "sim/scenario",
     "sim/statistics",
 )
-"""Folders and files that a flight and its figures follow from."""
+"""Folders and files that a flight and its figures depend on."""
 NOT_FLOWN = (
     "sim/campaign/code_digest.py",
     "sim/campaign/command.py",
@@ -39,16 +39,16 @@ NOT_FLOWN = (
     "sim/fault_table/render.py",
     "sim/scenario/keys",
 )
-"""Within those, what none imports: what orders flights, keeps what they gave, and shows it."""
+"""Within those, what no flight imports: what orders flights, stores their results and shows them."""
 DATA = (".toml", ".dbc")
 
 
 @cache
 def code_digest(parts: tuple[str, ...] = FLIGHT_CODE, house: Path = HOUSE) -> str:
-    """The same for the same programs and data, whatever their comments and docstrings.
+    """A digest that is the same for the same programs and data, whatever their comments and docstrings.
 
     Args:
-        parts: folders and files; by default all that flights follow from.
+        parts: folders and files; by default all that flights depend on.
         house: where they are.
 
     Raises:
@@ -71,7 +71,7 @@ def code_digest(parts: tuple[str, ...] = FLIGHT_CODE, house: Path = HOUSE) -> st
 
 
 def program(source: str) -> bytes:
-    """The lines of a module without comments and without statements that are a text alone."""
+    """The lines of a module without comments and without statements that are only a string."""
     lines: list[str | None] = list(source.splitlines())
     for node in ast.walk(ast.parse(source)):
         if (

@@ -1,4 +1,4 @@
-"""``torquer campaign``: fly what is not there yet, then show all that is."""
+"""``torquer campaign``: fly the runs that have no result yet, then show all results."""
 
 import os
 import sys
@@ -98,7 +98,7 @@ def campaign(
         keep: of which runs log and histories are kept.
         retry: whether failed runs are flown again.
         parquet: whether the results are exported.
-        out: folder; None: that of ``source``, else ``campaigns/<name>-<UTC time>``.
+        out: folder; None: that of ``source``, or ``campaigns/<name>-<UTC time>``.
 
     Raises:
         TableError: the campaign file or the scenario is not valid.
@@ -161,7 +161,7 @@ def _fly(executor: Executor, task: RunTask, missing: list[int], results: Results
 
 @contextmanager
 def _watch(name: str, total: int) -> Iterator[Callable[[RunRow], None]]:
-    """A bar on a terminal; elsewhere a line now and then, with the time left."""
+    """A bar on a terminal; elsewhere a line every ``LINE_EVERY_S``, with the time left."""
     began = said = time.monotonic()
     done = failed = 0
     with progress(f"flying {name}", total) as bar:

@@ -1,7 +1,7 @@
 """SHA-256 of the frames of a flight: of all, and of the commands to the coils alone.
 
 Two flights with the same digest of all frames are equal to the last bit: each TICK_DONE has the CRC of the
-flight state. Each frame is sealed by a CRC of its own that includes its identifier, so that data suffice.
+flight state. Each frame is sealed by a CRC of its own that includes its identifier, so that the data suffice.
 """
 
 import hashlib

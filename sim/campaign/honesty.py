@@ -24,12 +24,12 @@ WRONG_DEG = (5.0, 10.0)
 def honesty_figures(scenario: Scenario, truth: Histories, estimates: Estimates) -> Figures:
     """What differs from the onboard table, how honest the filter is, and how well the satellite points.
 
-    ``inside_1``, ``_2``, ``_3``: part of the ticks after convergence, attitude valid, with the error about
-    that body axis inside 3 sigma; ``estimate_deg``: RMS of the error in them; ``nees``: mean over all ticks
-    after convergence. The same with ``point_`` before the name: from the first tick in POINT on, whatever
-    modes follow. ``wrong_5deg_s`` and ``wrong_10deg_s``: longest time of the whole flight valid with a larger
-    error. ``pointing_deg``: RMS over the last orbits; ``pointed_orbits``: from when on it stays small,
-    infinite if never; ``in_point``: 1 if the flight ends in POINT.
+    ``inside_1``, ``_2``, ``_3``: fraction of the ticks after convergence, attitude valid, with the error
+    about that body axis inside 3 sigma; ``estimate_deg``: RMS of the error in them; ``nees``: mean over all
+    ticks after convergence. The same with ``point_`` before the name: from the first tick in POINT on,
+    whatever modes follow. ``wrong_5deg_s`` and ``wrong_10deg_s``: longest time of the whole flight valid with
+    a larger error. ``pointing_deg``: RMS over the last orbits; ``pointed_orbits``: from when on it stays
+    small, infinite if never; ``in_point``: 1 if the flight ends in POINT.
     """
     tick_hz, ticks = scenario.time.tick_hz, len(truth["t_s"])
     orbit_ticks = orbit_period_s(scenario) * tick_hz
@@ -55,7 +55,7 @@ def honesty_figures(scenario: Scenario, truth: Histories, estimates: Estimates) 
 
 
 def _differences(scenario: Scenario) -> Figures:
-    """Dipole, largest error of a moment of inertia, and the turns of both sensors together."""
+    """Dipole, largest error of a moment of inertia, and the misalignments of both sensors together."""
     nominal, true = np.array(flight_table(scenario).body.inertia), np.array(scenario.body.inertia)
     sensors = scenario.sensors
     turns_deg = (sensors.magnetometer.misalignment_deg, sensors.sun.misalignment_deg)
@@ -73,7 +73,7 @@ def _honesty(
     consistency: Array,
     first: int | None,
 ) -> Figures:
-    """From that tick on; a flight that never comes there is not honest."""
+    """The figures from tick ``first`` on; a flight that never gets there is not honest."""
     if first is None or not valid[first:].any():
         return {"inside_1": 0.0, "inside_2": 0.0, "inside_3": 0.0, "estimate_deg": inf, "nees": inf}
     counted, known = valid[first:], np.isfinite(consistency[first:])

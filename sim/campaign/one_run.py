@@ -77,7 +77,7 @@ class RunTask:
             fails_again = suppress(Exception) if row.status is Status.FAILED else nullcontext()
             with fails_again:
                 keep_run(run_folder(self.folder, run), self.campaign, drawn)
-        gc.unfreeze()  # the flight has frozen what was loaded, garbage of earlier flights with it
+        gc.unfreeze()  # the flight has frozen what was loaded, including garbage of earlier flights
         gc.collect()
         worker = f"{socket.gethostname()}:{os.getpid()}"
         return replace(row, wall_s=time.monotonic() - began, worker=worker)
@@ -97,8 +97,8 @@ def keep_run(path: Path, campaign: Campaign, drawn: DrawnRun) -> None:
     """Fly a run once more, with log and histories in a run directory; an earlier attempt is replaced.
 
     Raises:
-        TableError: as of the flight in memory.
-        HarnessError: as of the flight in memory, or the directory cannot be written.
+        TableError: as for the flight in memory.
+        HarnessError: as for the flight in memory, or the directory cannot be written.
     """
     scenario = campaign.scenario(drawn)
     check_folder(path)

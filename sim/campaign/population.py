@@ -1,7 +1,7 @@
 """Populations of real satellites: what flies differs from its onboard table within bounds, at random.
 
-A satellite is drawn by its kind and seed alone, so it is the same in a campaign as by itself. The plant gets
-what is true; the onboard table keeps the nominal values of the scenario.
+A satellite depends on its kind and seed alone, so it is the same in a campaign as by itself. The plant gets
+the true values; the onboard table keeps the nominal values of the scenario.
 """
 
 from collections.abc import Mapping
@@ -21,15 +21,15 @@ Array = NDArray[np.float64]
 Interval = tuple[float, float]
 
 START_DEG, START_DEGPS = 60.0, 0.05
-"""Most that the start is off: the angle, and the rate about each body axis."""
+"""Largest initial errors: of the angle, and of the rate about each body axis."""
 
 
 @dataclass(frozen=True, slots=True)
 class Tolerances:
-    """By how much a satellite may differ from its table. Uniform within it, but for the dipole.
+    """By how much a satellite may differ from its table; uniform within that, except for the dipole.
 
-    The last three have no bound of their own on board; they stay within what the turn of the magnetometer and
-    the dipole leave of theirs.
+    The last three have no bound of their own on board; they stay within what the magnetometer's misalignment
+    and the dipole leave of theirs.
 
     Attributes:
         residual_dipole_am2: least and most, any direction; its logarithm is uniform.
@@ -39,16 +39,16 @@ class Tolerances:
         inertia_percent: of each moment.
         products_percent: of inertia, of the mean principal moment.
         coil_gain_percent: of each coil.
-        coil_misalignment_deg: of each coil's axis, the whole turn.
+        coil_misalignment_deg: of each coil's axis, the total angle.
         magnetometer_bias_nt: per axis.
         magnetometer_scale_percent: per axis.
-        magnetometer_misalignment_deg: the whole turn.
-        sun_misalignment_deg: the whole turn.
+        magnetometer_misalignment_deg: the total angle.
+        sun_misalignment_deg: the total angle.
         along_track_km: by which the satellite is ahead of its elements, or behind them.
         latency_s: of both sensors; every satellite has it in full.
-        non_orthogonality_deg: by pair of axes of the magnetometer.
-        eclipse_dipole_percent: of the dipole that in the Earth's shadow points in another direction.
-        remanence_percent: that pulses at the highest level may leave behind, of the largest dipole.
+        non_orthogonality_deg: per pair of axes of the magnetometer.
+        eclipse_dipole_percent: of the dipole, what points in another direction in the Earth's shadow.
+        remanence_percent: of the largest dipole, what pulses at the highest level may leave behind.
     """
 
     residual_dipole_am2: Interval
@@ -103,9 +103,9 @@ def satellite(
     Args:
         kind: of ``POPULATIONS``.
         seed: 0 or more; a satellite for each.
-        twice: the truth differs by twice as much; what is declared does not.
+        twice: the truth differs by twice as much; the declared bounds stay.
         rate_degps: least and most of the start rate, about any axis; None: up to ``START_DEGPS`` per axis.
-        declared: the onboard table declares the bounds; else it holds what it takes for ordinary.
+        declared: the onboard table declares the bounds; otherwise it assumes ordinary ones.
     """
     chosen, factor = POPULATIONS[kind], 2.0 if twice else 1.0
     random, more = (_stream(kind, seed, number) for number in ((), (1,)))
@@ -192,10 +192,10 @@ def _hardware(random: np.random.Generator, tolerances: Tolerances, factor: float
 def _unmodelled(
     random: np.random.Generator, drawn: Nested, level_am2: float, tolerances: Tolerances, factor: float
 ) -> Nested:
-    """What the filter has no parameter for: a skew magnetometer, a dipole that changes.
+    """What the filter has no parameter for: a non-orthogonal magnetometer, a dipole that changes.
 
-    No axis of the magnetometer is off by more than the bound on its turn, turn and skew together, nor is the
-    dipole ever larger than its bound: in shadow it has the part p of its size in a random direction, and the
+    No axis of the magnetometer is off by more than the bound on its misalignment, with its skew included, and
+    the dipole never exceeds its bound: in shadow a fraction of its size points in a random direction, and the
     cores of all three coils together keep no more than is left.
 
     Args:
@@ -226,7 +226,7 @@ def _unmodelled(
 def _start(random: np.random.Generator, rate_degps: Interval | None) -> Nested:
     axis, angle_deg = _direction(random), random.uniform(0.0, START_DEG)
     slow_degps = START_DEGPS * random.uniform(-1.0, 1.0, 3)
-    direction, part = _direction(random), random.uniform()  # drawn either way: the same satellite tumbles
+    direction, part = _direction(random), random.uniform()  # drawn in either case: the same satellite tumbles
     if rate_degps is None:
         rate = slow_degps
     else:
@@ -235,7 +235,7 @@ def _start(random: np.random.Generator, rate_degps: Interval | None) -> Nested:
 
 
 def _inertia(random: np.random.Generator, nominal: Array, tolerances: Tolerances, factor: float) -> Array:
-    """A tensor near the nominal one, drawn last because it is drawn anew until a rigid body can have it."""
+    """A tensor near the nominal one, drawn last because it is redrawn until a rigid body can have it."""
     diagonal = np.diagonal(nominal)
     while True:
         moments = diagonal * (1.0 + 0.01 * factor * tolerances.inertia_percent * random.uniform(-1.0, 1.0, 3))

@@ -27,8 +27,8 @@ class Figure:
         counts: which of them count; None: all.
         low: least that passes.
         high: most that passes.
-        threshold: whose the limits are.
-        wide: why limits of one's own are far from the figure; empty where they are near.
+        threshold: where the limits come from.
+        wide: why limits chosen here are far from the figure; empty where they are close.
     """
 
     id: str
@@ -58,7 +58,7 @@ class FlightStudy(Study):
 
     Attributes:
         source: of its claims.
-        counted: what its claims say how many of there are; empty: nothing.
+        counted: what its claims state the number of; empty: nothing.
         groups: its orders.
         figures: by which they are judged.
     """
@@ -75,7 +75,7 @@ class FlightStudy(Study):
 
 
 def part_of(study: FlightStudy, flies: Callable[[Order], bool]) -> FlightStudy:
-    """The study with these of its orders."""
+    """The study with only the orders that ``flies`` selects."""
     groups = [Group(group.name, tuple(filter(flies, group.orders))) for group in study.groups]
     return campaign(study.id, study.source, groups, study.figures, study.counted)
 

@@ -1,4 +1,4 @@
-"""The rig with a coil board on a bench: its clock runs by true time, from which ticks may deviate."""
+"""The rig with a coil board on a bench: its clock keeps true time, from which ticks may deviate."""
 
 from fractions import Fraction
 

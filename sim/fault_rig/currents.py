@@ -12,7 +12,7 @@ from math import isclose
 from sim.plant.hardware.actuators import CoilDrive
 
 PER_TICK = 1_000_000
-"""Resolution of a part of a tick."""
+"""Resolution of a fraction of a tick."""
 
 
 @dataclass(frozen=True, slots=True)

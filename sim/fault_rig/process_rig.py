@@ -1,6 +1,6 @@
 """The flight software as a process of its own that is killed or stopped by signals, in the middle of pulses.
 
-While it runs the plant waits for its answers; while it does not the plant goes on ticking. Signals come at
+While it runs, the plant waits for its answers; while it does not, the plant keeps ticking. Signals come at
 random moments of the wall clock within a tick.
 """
 

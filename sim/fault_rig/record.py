@@ -54,7 +54,7 @@ class FaultFlightRecord:
         end: first tick without any; None if one is permanent.
         entries: SYNC, COIL_STATUS and COIL_BOOT as plant and board sent them.
         coil_drives: the currents that the plant drove in each tick.
-        pulses_by_time: pulses of a board with a clock of its own, over true time; else none.
+        pulses_by_time: pulses of a board with a clock of its own, over true time; otherwise none.
         request_ticks: ticks in which fsw sent COIL_FIRE.
         request_coils: the coils of these requests.
         boots: ticks in which fsw booted.
@@ -135,7 +135,7 @@ class FaultFlightRecord:
                 self.events.append(ReportedEvent(tick, event.event, event.argument))
 
     def note_state(self, tick: int, state: FlightState | None, truth: TruthRow) -> None:
-        """Note the estimate of fsw in a tick against the truth."""
+        """Note the mode of fsw in a tick, and the error of its estimate against the truth."""
         started = state is not None and state.tick >= 0
         self.lit.append(truth.lit > 0.0)
         self.modes.append(state.modes.mode if state is not None and started else None)

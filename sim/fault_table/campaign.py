@@ -12,7 +12,7 @@ from sim.fault_table.row import CaseResult, FaultRow, RowResult
 Watch = Callable[[int], None]
 
 FAULT_CODE = (*FLIGHT_CODE, "sim/fault_rig", "sim/fault_table")
-"""Folders and files that the result of a row follows from."""
+"""Folders and files that the result of a row depends on."""
 
 
 def fly_rows(
@@ -53,7 +53,7 @@ def _result(by_name: dict[str, FaultRow], done: StudyResult) -> RowResult:
 
 
 def is_whole(result: RowResult, phases: int, seeds: int) -> bool:
-    """Whether this code has flown the row in so many phases with so many seeds, or in more."""
+    """Whether this code has flown the row in ``phases`` phases with ``seeds`` seeds each, or in more."""
     wanted = {(phase, seed + 1) for phase in range(phases) for seed in range(seeds)}
     flown = {(case.phase, case.seed) for case in result.cases}
     return result.code == code_digest(FAULT_CODE) and flown >= wanted

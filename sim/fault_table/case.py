@@ -51,7 +51,7 @@ def prepare(
 
 
 def satellite_of(phase: int, seed: int) -> int | None:
-    """The satellite of the population that a case flies, another in each; None: the scenario's own.
+    """The satellite of the population that a case flies, a new one in each; None: the scenario's own.
 
     Every second case has one, in each phase and with each seed.
     """
@@ -77,7 +77,7 @@ def fly(row: FaultRow, phase: int, seed: int) -> CaseResult:
     scenario, config = prepare(settings_of(row, phase), satellite, row.scenario)
     bounds = checks.bounds_of(scenario)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # the algebra's, of a state whose bits have flipped
+        warnings.simplefilter("ignore")  # from the algebra, on a state with a flipped bit
         if KINDS[row.kind].by_signal:
             record = _fly_strikes(row, phase, seed, scenario)
         else:

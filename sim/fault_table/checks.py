@@ -29,7 +29,7 @@ from sim.scenario.schema import Scenario, orbit_period_s
 GOOD_DEG = 2.0
 GOOD_FOR_S = 600.0
 WRONG_DEG, ALONE_DEG, WRONG_S = 5.0, 15.0, 120.0
-"""A valid attitude may be so wrong for so long while a fault that has begun is being found."""
+"""A valid attitude may be this wrong for this long while a new fault is being found."""
 CYCLES = 4.0
 FIRST_S = 600.0
 """Length of the first minutes, in which both sensors may agree on what is wrong [s]."""
@@ -39,7 +39,7 @@ FORGERY_EVENTS = (Event.STRANGE_SYNC, Event.PLANT_RESTARTED, Event.FALSE_END)
 MOST_UNANSWERED = 3
 """Ticks in a row: a SYNC out of sequence, and one that confirms it."""
 MOST_FRAMES = 64
-"""In one answer; a step sends a dozen frames at most."""
+"""Of one answer; a step sends a dozen frames at most."""
 
 
 def bounds_of(scenario: Scenario) -> Bounds:
@@ -122,7 +122,7 @@ def control_continues(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) 
     """At the end control continues (a pulse in the last cycles), or fsw is in SAFE.
 
     Without a fault up to three cycles pass without one, if the coil that could help lies along the field.
-    Of a permanent fault this can only be expected if fsw can isolate the unit.
+    With a permanent fault this can only be expected if fsw can isolate the unit.
     """
     cycle = (bounds.backoff_s + 10.0) * record.tick_hz
     fired = any(tick > record.ticks - CYCLES * cycle for tick in record.request_ticks)
@@ -133,7 +133,7 @@ def control_continues(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) 
 
 
 def stops_requests(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
-    """No pulse is requested from the isolation of the unit to the end of the fault, and one afterwards."""
+    """No pulse is requested from the isolation of the unit to the end of the fault, and one is afterwards."""
     end = record.end if record.end is not None else record.ticks
     isolation_tick = min(
         (tick for tick, unit in isolations(record) if unit == row.unit), default=record.onset or 0
@@ -148,7 +148,7 @@ def stops_requests(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> 
 
 
 def invents_no_second_sender(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
-    """A second sender is reported only where another node sends in the place of fsw."""
+    """A second sender is reported only where another node sends in place of fsw."""
     if row.kind in ("second_sender", "random_frames", "done_forged"):
         return True, ""
     ticks = [tick for tick, unit in isolations(record) if unit == SECOND_SENDER]
@@ -210,9 +210,9 @@ def reports_forgery(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) ->
 def never_wrong_for_long(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
     """No attitude in the answers is valid and more than 5 deg wrong for over 120 s on end.
 
-    Where nothing aboard can tell, because both sensors agree on what is wrong, the row says so. Where there
-    is only one, as in the shadow, or an estimate settles, it is 15 deg, three times the largest sigma of a
-    valid attitude.
+    Where nothing on board can show it, because both sensors agree on what is wrong, the row says so. Where
+    there is only one sensor, as in the shadow, or an estimate is settling, the limit is 15 deg, three times
+    the largest sigma of a valid attitude.
     """
     longest = wrong = 0
     worst_deg = 0.0
@@ -248,7 +248,7 @@ def isolates_nothing(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -
 def valid_estimate_is_close(
     row: FaultRow, record: FaultFlightRecord, bounds: Bounds
 ) -> tuple[bool | None, str]:
-    """At the end an estimate that fsw marks as valid is near the truth, though the sensor is still faulty."""
+    """At the end an estimate that fsw marks as valid is close to the truth despite the faulty sensor."""
     last = record.error_deg[-round(LAST_S * record.tick_hz) :]
     worst_deg = max((error for error in last if error is not None), default=0.0)
     if worst_deg <= FAR_DEG:

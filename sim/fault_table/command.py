@@ -46,16 +46,16 @@ def faults(
         phases: of each row.
         seeds: of each phase.
         out: folder for faults.xml, faults.html and faults.json; None: not written.
-        workers: processes; None: one a core.
+        workers: processes; None: one per core.
         slow: include rows that run real processes.
         keep: file in which each row is kept once it is done, in the form of faults.json; it need not exist.
-            Rows in it count where they are not flown now; those that this very code has flown, in at least as
-            many phases with as many seeds, are not flown again.
+            Rows in it count where they are not flown now; those that the present code has flown, in at least
+            as many phases with as many seeds, are not flown again.
         write_docs: write docs/faults.md of the repository.
         junit: file for the verdicts as JUnit XML; None: not written.
 
     Returns:
-        The exit code: 1 if an expectation is violated, else 0.
+        The exit code: 1 if an expectation is violated, otherwise 0.
 
     Raises:
         HarnessError: there is no such row, or a file cannot be written.

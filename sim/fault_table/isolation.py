@@ -1,4 +1,4 @@
-"""Which unit the flight software isolates, by its events; units have the names that rows use."""
+"""Which unit the flight software isolates, according to its events; units have the names that rows use."""
 
 from collections.abc import Callable
 from math import inf
@@ -61,7 +61,7 @@ def monitor_trips(record: FaultFlightRecord) -> list[tuple[int, str]]:
 _WITHOUT_A_COIL = {
     CoilEventCode.DEAD_MAN: "plant",
     CoilEventCode.CURRENT_WHILE_OFF: "coil driver",
-    CoilEventCode.CURRENT_WRONG: "coil driver",  # of the driven coil, or of another beside it
+    CoilEventCode.CURRENT_WRONG: "coil driver",  # of the driven coil, or of another besides it
     CoilEventCode.SELF_TEST_FAILED: "coil driver",
 }
 
@@ -87,14 +87,14 @@ def isolation_s(fault: RowFault, record: FaultFlightRecord) -> float | None:
 
 
 def doubt_s(fault: RowFault, record: FaultFlightRecord) -> float | None:
-    """Time from the onset of a sensor's fault until the sensors are said to disagree [s]; None: never."""
+    """Time from the onset of a sensor's fault until the sensors are reported to disagree [s]; None: never."""
     onset = onset_tick(fault, record)
     doubted = _doubted(onset, record)
     return None if doubted == inf or fault.unit.startswith("coil ") else (doubted - onset) / record.tick_hz
 
 
 def _given_up_s(fault: RowFault, record: FaultFlightRecord) -> float | None:
-    """Length of a fault in the shadow at whose end the attitude is not valid [s]; None: it is another one."""
+    """Duration of a fault in the shadow, if the attitude is not valid at its end [s]; otherwise None."""
     first, hz = onset_tick(fault, record), record.tick_hz
     if fault.lasts_s == inf:
         return None
@@ -104,7 +104,7 @@ def _given_up_s(fault: RowFault, record: FaultFlightRecord) -> float | None:
 
 
 def _doubted(onset: int, record: FaultFlightRecord) -> float:
-    """The first tick from the onset on in which the sensors are said to disagree; infinite: none."""
+    """The first tick from the onset on in which the sensors are reported to disagree; infinite: none."""
     ticks = (event.tick for event in record.events if event.number == Number.SENSORS_DISAGREE)
     return min((tick for tick in ticks if tick >= onset), default=inf)
 
@@ -117,10 +117,10 @@ def isolates_faulty_unit(row: FaultRow, record: FaultFlightRecord, bounds: Bound
 def isolates_or_doubts_faulty_unit(
     row: FaultRow, record: FaultFlightRecord, bounds: Bounds
 ) -> tuple[bool | None, str]:
-    """Likewise, but where it cannot be told which sensor is faulty it is enough to say that one is.
+    """Likewise, but where the faulty sensor is not observable it is enough to report that they disagree.
 
-    A fault that begins and ends in the shadow is the one of a sensor without another: it is enough that the
-    attitude is not valid when it ends.
+    During a fault that begins and ends in the shadow there is only one sensor: it is enough that the attitude
+    is not valid when it ends.
     """
 
     def found_s(fault: RowFault) -> float | None:
@@ -159,14 +159,14 @@ def _shows(fault: RowFault, record: FaultFlightRecord) -> bool:
 
 
 def isolates_no_healthy_unit(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
-    """No unit is isolated but a faulty one after the onset of its fault; that one may be."""
+    """No unit is isolated, except that a faulty one may be after the onset of its fault."""
     onsets = {fault.unit: onset_tick(fault, record) for fault in row.faults}
     healthy = [(tick, unit) for tick, unit in isolations(record) if tick < onsets.get(unit, inf)]
     return not healthy, f"{healthy[0][1]} isolated in tick {healthy[0][0]}" if healthy else ""
 
 
 def uses_unit_again(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
-    """A coil is brought back, fired once its fault has passed, and not isolated again."""
+    """A coil is readmitted, fired once its fault has passed, and not isolated again."""
     coil = int(row.unit.removeprefix("coil "))
     back = [
         event.tick
@@ -184,7 +184,7 @@ def uses_unit_again(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) ->
 def _not_isolated(row: FaultRow, fault: RowFault, record: FaultFlightRecord) -> tuple[bool | None, str]:
     """A coil shows its fault only while it is on: a few pulses are needed as evidence.
 
-    Those after a faulty sensor has made the sensors disagree are none: there is no estimate to judge them by.
+    Those after a faulty sensor has made the sensors disagree do not count: there is no estimate to judge by.
     """
     if not can_isolate(fault.unit):
         return None, f"fsw cannot isolate {fault.unit} yet"
@@ -200,7 +200,7 @@ def _not_isolated(row: FaultRow, fault: RowFault, record: FaultFlightRecord) -> 
 
 
 def board_identifies_unit(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
-    """The coil driver board identifies the coil by its read-back; itself for a current without a command.
+    """The coil driver board identifies the coil by its read-back, or itself for a current without a command.
 
     That current may cancel the one of a pulse in which it begins, so that the coil of the pulse has none.
     """

@@ -19,7 +19,7 @@ Json = dict[str, Any]
 
 _COLUMNS = ("row", "injected", "expected", "cases", "measured", "verdict")
 _REPEATABLE = ("pulses", "refused", "rejected", "worst error deg", "recovered s", "named s")
-"""Figures that are the same on every run; times on the wall are not."""
+"""Figures that are the same on every run; wall-clock times are not."""
 _HEAD = """# Faults
 
 Written by `torquer faults --write-docs`; do not edit. That command injects the fault of each row, by a seeded
@@ -93,7 +93,7 @@ def listed_json(row: FaultRow) -> Json:
 
 
 def as_json(results: Sequence[RowResult]) -> str:
-    """Everything, for programs: a line for each row, as indented it would take nearly twice the room."""
+    """Everything, for programs: a line for each row, since indentation would nearly double the size."""
     values = json_values(results)
     rows = ",\n".join(json.dumps(row, separators=(",", ":")) for row in values["rows"])
     return f'{{"tally": {json.dumps(values["tally"])},\n"rows": [\n{rows}\n]}}\n'
@@ -118,7 +118,7 @@ def json_values(results: Sequence[RowResult]) -> Json:
 
 
 def suites(results: Sequence[RowResult]) -> dict[str, list[JunitCase]]:
-    """For JUnit XML a suite a row, a test a case; what is not yet to be expected counts as skipped."""
+    """For JUnit XML, a suite for each row and a test for each case; an open verdict counts as skipped."""
     return {result.row.name: [_test(case) for case in result.cases] for result in results}
 
 
@@ -147,7 +147,7 @@ def html(results: Sequence[RowResult]) -> str:
 
 
 def _html_row(result: RowResult) -> tuple[tuple[str, ...], str, str]:
-    """The cells of a row but its verdict, then that verdict with its class of style before it."""
+    """The cells of a row without its verdict, then the style class of the verdict, and the verdict."""
     row, colour = result.row, {CheckVerdict.PASS: "good", CheckVerdict.FAIL: "bad", CheckVerdict.OPEN: "note"}
     cells = (row.name, injected(row), expected(row), str(len(result.cases)), _found(result))
     return cells, colour[result.verdict], result.verdict.value
@@ -186,12 +186,12 @@ def _kind_row(name: str) -> str:
 
 
 def injected(row: FaultRow) -> str:
-    """What is injected, for a person."""
+    """What is injected, in words."""
     return "; ".join([*map(_fault, row.faults), *row.settings])
 
 
 def expected(row: FaultRow) -> str:
-    """What is expected beside what every row must keep."""
+    """What is expected in addition to what every row must meet."""
     units = " and ".join(fault.unit for fault in row.faults if fault.unit)
     within = "" if row.within_s == inf else f", within {row.within_s:g} s"
     names = [f"{name} ({units}{within})" if "named" in name else name for name in row.expect]

@@ -18,7 +18,7 @@ class CheckVerdict(StrEnum):
     PASS = "PASS"
     FAIL = "FAIL"
     OPEN = "not yet"
-    """The flight software has no function yet that could meet the expectation."""
+    """No verdict: no function of the flight software could meet it, or there was too little evidence."""
 
 
 class When(StrEnum):
@@ -33,19 +33,19 @@ class When(StrEnum):
     ECLIPSE = "eclipse"
     """The last minutes of sunlight before an eclipse, and the first of it."""
     ORBIT = "orbit"
-    """After a whole orbit; each phase begins at another place of the orbit."""
+    """After a whole orbit; each phase begins at another point of the orbit."""
 
 
 class Unseen(StrEnum):
-    """When nothing aboard can tell that an attitude is wrong."""
+    """When nothing on board can show that an attitude is wrong."""
 
     NEVER = ""
     IN_SHADOW = "in the shadow nothing shows it"
     """The sensor that is wrong is the only one there is."""
     AT_FIRST = "for its first minutes both sensors agree"
-    """The field of a moment ago is that of a magnetometer with a bias, until the satellite has turned."""
+    """A late field sample looks like a magnetometer bias until the satellite has turned."""
     SETTLING = "in the orbit after its start an estimate from Sun cells settles"
-    """Gains, places of the cells and the light of the Earth are learned while the cells take turns."""
+    """Errors of the cells and the light of the Earth are estimated while the cells see the Sun in turn."""
     ALONE = "with one sensor left little shows it"
     """Pulses of a coil, or a slow drift, turn the satellite about the only direction that is measured."""
     ALWAYS = "both sensors agree"
@@ -55,7 +55,7 @@ class Unseen(StrEnum):
 class RowFault:
     """One of the faults of a row: it begins ``after_s`` after the first one.
 
-    ``shows``: False where nothing left aboard may show it, so that its unit need not be named.
+    ``shows``: False where nothing left on board may reveal it, so that its unit need not be named.
     """
 
     kind: str
@@ -83,7 +83,7 @@ class FaultRow:
         then: further faults, each with a faulty unit of its own.
         unseen: when a wrong attitude may be called valid.
         settings: of the scenario.
-        scenario: that is flown; every second case of the usual one flies a satellite of the population.
+        scenario: the one flown; every second case of the default one flies a satellite of the population.
         slow: it runs real processes, which takes seconds.
         watch_s: least duration of the flight after the fault; with ``recovers`` until that is decided.
     """
@@ -117,7 +117,7 @@ class FaultRow:
 
 @dataclass(frozen=True, slots=True)
 class CheckOutcome:
-    """The outcome of one check of one case; ``said`` is the finding, under its key of faults.json."""
+    """The outcome of one check of one case; ``said``, a key of faults.json, is the finding."""
 
     check: str
     verdict: CheckVerdict

@@ -25,7 +25,7 @@ def duplicate(frames: list[Frame], rng: Random, parameters: Parameters) -> list[
 
 
 def reorder(frames: list[Frame], rng: Random, parameters: Parameters) -> list[Frame]:
-    """The frames of a tick come in any order."""
+    """The frames of a tick come in random order."""
     return rng.sample(frames, len(frames))
 
 
@@ -49,7 +49,7 @@ def readdress(frames: list[Frame], rng: Random, parameters: Parameters) -> list[
 
 
 def set_flag(flag: int, frames: list[Frame], rng: Random, parameters: Parameters) -> list[Frame]:
-    """Each frame gets a flag, by which it is no data frame of the contract, with probability ``part``."""
+    """Each frame gets a flag, so that it is no data frame of the contract, with probability ``part``."""
     return [
         Frame(frame.can_id | flag, b"" if flag == REMOTE_FLAG else frame.data)
         if rng.random() < parameters["part"]
@@ -106,7 +106,7 @@ class Bursts(Fault):
 
 
 class FrameDelay(Fault):
-    """Each frame of either direction comes 0 to ``ticks`` ticks late, at random if ``jitter`` is not 0."""
+    """Each frame of either direction is ``ticks`` ticks late; with ``jitter`` 0 to ``ticks``, at random."""
 
     def __init__(self, rng: Random, parameters: Parameters) -> None:
         super().__init__(rng, parameters)
@@ -131,7 +131,7 @@ class FrameDelay(Fault):
 
 
 class SampleDelay(FrameDelay):
-    """The frames ``can_id`` come ``ticks`` ticks late: at first none, then the old ones, counters in order.
+    """The frames of ``can_id`` are ``ticks`` ticks late: at first none, then the old ones, counters in order.
 
     With ``jitter`` each is 0 to ``ticks`` ticks late, at random.
     """
@@ -208,7 +208,7 @@ class RandomFrames(Fault):
 
 
 class Flood(Fault):
-    """A babbling node sends ``frames`` frames a tick with identifiers of its own and of others."""
+    """A babbling node sends ``frames`` frames a tick under one identifier, which nobody else has."""
 
     def strangers(self, tick: int) -> list[Frame]:
         """The same frame over and over."""

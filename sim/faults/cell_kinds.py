@@ -6,7 +6,7 @@ from sim.faults.fault import Fault, Parameters
 
 
 class WrongCurrent(Fault):
-    """One cell has another current."""
+    """One cell has a wrong current."""
 
     def __init__(self, rng: Random, parameters: Parameters) -> None:
         super().__init__(rng, parameters)
@@ -20,20 +20,20 @@ class WrongCurrent(Fault):
         return (*currents[: self._cell], wrong, *currents[self._cell + 1 :])
 
     def wrong(self, current: float) -> float:
-        """What it has in place of this current."""
+        """What the faulty cell has in place of this current."""
         raise NotImplementedError
 
 
 class CellDead(WrongCurrent):
-    """It has none."""
+    """A cell has no current."""
 
     def wrong(self, current: float) -> float:
-        """None."""
+        """No current."""
         return 0.0
 
 
 class CellScaled(WrongCurrent):
-    """It has ``scale`` times what it should."""
+    """A cell has ``scale`` times its true current."""
 
     def wrong(self, current: float) -> float:
         """The wrong current."""
@@ -41,7 +41,7 @@ class CellScaled(WrongCurrent):
 
 
 class CellStuck(WrongCurrent):
-    """It stays at what it has at the onset, or at ``percent`` of full sunlight if that is above 0."""
+    """A cell keeps its current of the onset, or ``percent`` of full sunlight if that is above 0."""
 
     def __init__(self, rng: Random, parameters: Parameters) -> None:
         super().__init__(rng, parameters)

@@ -47,7 +47,7 @@ class Fault(Interference):
         """A tick with the fault active is about to begin."""
 
     def from_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
-        """The frames that fsw receives of those the boards sent in this tick; SYNC is not among them."""
+        """Of the frames that boards sent in this tick, those that fsw receives; SYNC is not among them."""
         return frames
 
     def strangers(self, tick: int) -> list[Frame]:
@@ -59,7 +59,7 @@ class Fault(Interference):
         return [frame]
 
     def to_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
-        """The frames that the boards receive of fsw's answer to this tick."""
+        """Of the frames of fsw's answer to this tick, those that the boards receive."""
         return frames
 
     repeats_sync = False

@@ -11,7 +11,7 @@ LAST_TICK = 2**32 - 1
 class ForgedSync(Fault):
     """``count`` forged SYNCs precede the true one, in each tick with probability ``part``.
 
-    The first is ``ticks`` from the true one, or any where ``ticks`` is 0; each further one ``step`` later.
+    The first is ``ticks`` from the true one, or random if ``ticks`` is 0; each further one is ``step`` later.
     """
 
     def strangers(self, tick: int) -> list[Frame]:
@@ -25,7 +25,7 @@ class ForgedSync(Fault):
 
 
 class ForgedEnd(Fault):
-    """A PLANT_END in each tick, of any count except those that may be true."""
+    """A PLANT_END in each tick, with any count except those that may be true."""
 
     def strangers(self, tick: int) -> list[Frame]:
         """The forged PLANT_END."""

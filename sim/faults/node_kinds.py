@@ -92,7 +92,7 @@ class TickHold(Fault):
 
 
 class TickRepetition(TickHold):
-    """The same, and SYNC is repeated while a tick is held."""
+    """As ``TickHold``, and SYNC is repeated while a tick is held."""
 
     repeats_sync = True
 

@@ -156,7 +156,7 @@ class SunBlindness(Fault):
 
 
 class ExtremeCodes(Fault):
-    """Frames of one sensor (``sun`` 0 or 1) have extreme values, the mark of validity and a right CRC."""
+    """Frames of one sensor (``sun`` 0 or 1) have extreme values, are marked valid and have a correct CRC."""
 
     def from_boards(self, tick: int, frames: list[Frame]) -> list[Frame]:
         """Whole frames with impossible values."""
@@ -187,7 +187,7 @@ class CoilOpen(Fault):
 
 
 class CoilRescaling(Fault):
-    """A coil gives ``scale`` of its dipole for the same current: -1 is reversed, below 1 weak."""
+    """A coil gives ``scale`` times its dipole for the same current: -1 is reversed, below 1 weak."""
 
     def begin(self, plant: Plant) -> None:
         """The coil changes."""

@@ -1,7 +1,7 @@
 """The loop of a flight: the plant exchanges its ticks with the flight software over a bus and records them.
 
 In lockstep the plant waits for the TICK_DONE that names its tick. In real time it keeps to absolute
-deadlines; an answer that is not there by then is a counted slip, never a wait.
+deadlines; an answer that is not there by then counts as a slip and is not waited for.
 """
 
 import gc

@@ -1,4 +1,4 @@
-"""Which unit the flight software has isolated, by its events."""
+"""Which unit the flight software has isolated, according to its events."""
 
 from collections.abc import Mapping
 
@@ -13,14 +13,14 @@ UNITS: Mapping[int, Mapping[int, str]] = {
     },
     Event.COIL_FAULT: {1: "coil 0", 2: "coil 1", 3: "coil 2"},
 }
-"""Units by event, and by the hundreds of its argument. Coils have the number that they have on the bus."""
+"""Units by event, and by the hundreds of its argument. Coils are numbered as on the bus."""
 
 
 ISOLATED_BY: Mapping[int, int] = {
     Event.SENSOR_READMITTED: Event.SENSOR_ISOLATED,
     Event.COIL_READMITTED: Event.COIL_FAULT,
 }
-"""The event that a readmission takes back; its argument is the same."""
+"""The event that a readmission reverses; its argument is the same."""
 
 
 def isolated_unit(event: int, argument: int) -> str | None:

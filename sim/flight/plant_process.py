@@ -28,7 +28,7 @@ from sim.signals import EndedBySignal, raise_on_signals
 @click.option("--patience", type=(float, float), required=True, help="For the boot, for an answer [s].")
 @click.option("--parent", type=int, required=True, help="Process whose end ends this one.")
 def main(path: Path, bus: str, patience: tuple[float, float], parent: int) -> None:
-    """Fly the run that was begun there; if the flight software fails, run.json says why."""
+    """Fly the run that was begun in RUN; if the flight software fails, run.json says why."""
     _exit_with(parent)
     boot_s, answer_s = patience
     try:

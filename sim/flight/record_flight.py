@@ -26,14 +26,14 @@ MOST_IN_MEMORY = 2**24 - 1
 
 
 def ticks_of(scenario: Scenario, orbits: float | None, most: int = MOST_TICKS) -> int:
-    """How many ticks a flight of so many orbits takes; None: as the scenario says. At least one.
+    """How many ticks a flight of ``orbits`` takes; None: as many as the scenario says. At least one.
 
     Raises:
         HarnessError: more than ``most``.
     """
     ticks_per_orbit = orbit_period_s(scenario) * scenario.time.tick_hz
     chosen = scenario.time.orbits if orbits is None else orbits
-    if not chosen * ticks_per_orbit <= most:  # not a number, either
+    if not chosen * ticks_per_orbit <= most:  # NaN does not pass either
         option = f"time.orbits={chosen:g}" if orbits is None else f"--orbits {chosen:g}"
         most_orbits = most / ticks_per_orbit
         raise HarnessError(f"{option}: a run has at most {most} ticks, here {most_orbits:.0f} orbits")
@@ -53,7 +53,7 @@ def check_can_fly(scenario: Scenario, seed: int) -> None:
 
 
 def check_plant(scenario: Scenario, seed: int) -> None:
-    """The same of the plant alone."""
+    """The same for the plant alone."""
     make_plant(plant_config(scenario, seed), scenario.fault, own_effects(scenario.effect))
 
 
@@ -72,10 +72,10 @@ def record_flight(
         path: the run directory.
         scenario: of the run.
         bus: to fly on; it is closed.
-        watch: called with the tick now and then.
+        watch: called with the tick every ``WATCH_TICKS`` ticks.
         patience: how long to wait for the flight software; None: without limit until it boots.
         waiting: called every second until the flight software boots, with the time waited [s].
-        alone: nobody else can be on the bus, so that nobody has to be looked for.
+        alone: no other node can be on the bus, so that second senders need not be looked for.
 
     Raises:
         FlightError: the flight software gives no answer.

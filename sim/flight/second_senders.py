@@ -1,7 +1,7 @@
 """Detects second senders on the bus of a flight: frames under identifiers that have one sender by contract.
 
 No node receives its own frames. A frame that the plant receives under its own identifier, or under that of a
-board in its process, is from a second sender. Under an identifier of the flight software it is, where the
+board in its process, is from a second sender. A frame under an identifier of the flight software is, if the
 flight software cannot have sent it: a second TICK_DONE of one tick, a FSW_BOOT in flight, and in lockstep a
 frame outside an answer or a second one in it.
 
@@ -49,7 +49,7 @@ _ONCE = frozenset(
         FswHeartbeat.ID,
     }
 )
-"""Messages that an answer of the flight software contains once at most."""
+"""Messages that an answer of the flight software contains at most once."""
 
 
 class SecondSenderFrames(NamedTuple):
@@ -107,7 +107,7 @@ class SenderWatch:
             else []
         )
         if Sync.ID not in self._found and not any(can_id == Sync.ID for can_id, _ in strange):
-            # else the flight software may have answered a SYNC that was not the plant's
+            # otherwise the flight software may have answered a SYNC that was not the plant's
             early = sum([frame.can_id in _FROM_FSW for frame in before if intact(frame)])
             strange += (
                 self._in_lockstep(tick, from_fsw, early) if self._lockstep else self._in_time(tick, from_fsw)
@@ -126,7 +126,7 @@ class SenderWatch:
             if frame.can_id == TickDone.ID and self._surplus(tick, frame):
                 if TickDone.decode(frame.data).tick != self._again:
                     strange.append((TickDone.ID, _tick_of_surplus(tick, frame)))
-                answer.clear()  # answered before: it cannot be said which of the two answers is the false one
+                answer.clear()  # answered before: which of the two answers is false cannot be determined
             else:
                 answer.append((place, frame))
         sent: set[int] = set()

@@ -30,7 +30,7 @@ POLL_S = 0.1
 GRACE_S = 5.0
 PATIENCE = Patience(boot_s=60.0, answer_s=ANSWER_TIMEOUT_S, silence_s=ANSWER_TIMEOUT_S)
 MARGIN_S = 5.0
-"""Beyond the plant's own deadlines: only after it is the plant itself taken to be stalled."""
+"""Time beyond the plant's own deadlines after which the plant itself counts as stalled."""
 
 
 @contextmanager

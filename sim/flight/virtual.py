@@ -43,7 +43,7 @@ class VirtualBus:
 
 
 def fly_virtual(path: Path, scenario: Scenario, watch: ProgressCallback) -> None:
-    """Fly with plant and flight software in this process, whose garbage is collected again afterwards.
+    """Fly with plant and flight software in this process; then unfreeze its garbage collection.
 
     Raises:
         LawError: the scenario's own law fails; ``run.json`` says so.

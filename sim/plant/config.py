@@ -64,8 +64,8 @@ class PlateConfig:
         normal_body: unit normal, outward, body axes.
         centre_body_m: centre of pressure from the mass centre, body axes.
         drag_coefficient: C_D.
-        specular: part of the light that is reflected as by a mirror.
-        diffuse: part of the light that is scattered; the rest is absorbed.
+        specular: fraction of the light that is reflected specularly.
+        diffuse: fraction of the light that is reflected diffusely; the rest is absorbed.
 
     Raises:
         ValueError: the normal is not of unit length, or another quantity is out of range.
@@ -141,13 +141,13 @@ class DisturbanceConfig:
     """Disturbances other than the gravity gradient.
 
     Attributes:
-        torque_body_nm: constant torque, body axes; the mean of one that varies daily.
-        residual_dipole_body_am2: constant magnetic dipole, body axes; that in sunlight of one that varies.
+        torque_body_nm: constant torque, body axes; if it varies daily, its mean.
+        residual_dipole_body_am2: constant magnetic dipole, body axes; if it varies, that in sunlight.
         density_scale: air density over that of the model, None for no drag on the plates.
-        solar_flux_wpm2: of sunlight at 1 au, None for no pressure of it on the plates.
+        solar_flux_wpm2: of sunlight at 1 au, None for no solar pressure on the plates.
         eddy_nms_per_t2: k_e of the eddy currents' torque k_e (omega x b) x b, 0 for none.
         torque_noise_nm_rts: root of the spectral density of a white torque per axis [N m s^(1/2)].
-        torque_daily_part: amplitude of the daily variation of ``torque_body_nm``, as a part of it.
+        torque_daily_part: amplitude of the daily variation of ``torque_body_nm``, as a fraction of it.
         residual_dipole_eclipse_body_am2: what the Earth's shadow adds to the residual dipole, body axes.
 
     Raises:
@@ -177,7 +177,7 @@ class ContinuousConfig:
 
     Attributes:
         max_dipole_am2: nominal full scale of each coil.
-        on_fraction: part of a tick in which it drives.
+        on_fraction: fraction of a tick for which it drives.
     """
 
     max_dipole_am2: float
@@ -194,8 +194,8 @@ class CoilConfig:
         time_constant_s: of the current's rise and decay, 0 for none.
         dipole_scale: true over nominal dipole of each coil: 1 is right, -1 is wired the wrong way round.
         continuous: the continuous driver; None: one that gives pulses of the levels.
-        misalignment_rad: by coil, the rotation vector that turns its axis out of the body axis, body axes.
-        remanence_part: of the dipole of a coil's last pulse, which it keeps until its next.
+        misalignment_rad: by coil, the rotation vector from the body axis to its axis, body axes.
+        remanence_part: fraction of the dipole of its last pulse that a coil keeps until its next.
         wiring: by output of the driver, the number of the body axis of its coil, negative for its opposite.
 
     Raises:

@@ -1,4 +1,4 @@
-"""Effects of one's own on the satellite: a torque on the body, an error of a sensor.
+"""The user's own effects on the satellite: a torque on the body, an error of a sensor.
 
 An effect is a frozen dataclass whose fields are its parameters (``fsw.input.quantities.quantity`` gives them
 units and ranges), with any of the methods of ``ACTIONS``. It sees the instant of a tick; its torque lasts
@@ -66,7 +66,7 @@ class OwnEffects(Interference):
         """A tick begins.
 
         Raises:
-            PlantError: an effect fails, or its torque is no finite vector.
+            PlantError: an effect fails, or its torque is not a finite vector.
         """
         self._moment = moment
         self.torques_body_nm = tuple(
@@ -80,7 +80,7 @@ class OwnEffects(Interference):
         return b_body_t, valid
 
     def sun(self, sun_body: Vec3, valid: bool) -> tuple[Vec3, bool]:
-        """The Sun sensor's reading after all effects on it; where it sees no Sun there is none."""
+        """The Sun sensor's reading after all effects on it; they do not act where it sees no Sun."""
         for name, act in self._by_action["sun_body"] if valid else ():
             sun_body = self._vector(name, act, sun_body, self._moment)
         return sun_body, valid

@@ -87,7 +87,7 @@ class Plant:
         self._tick = 0
         self._mean_dipole_am2 = self._noise_body_nm = ZERO
         self.motion = self._initial_motion()
-        """Attitude and rate against the inertial frame at the instant of the tick."""
+        """Attitude and rate relative to the inertial frame at the instant of the tick."""
         omega = self.motion.omega_body_radps
         self._wheel = None if wheel is None else WheelUnit(wheel, config.tick_hz, omega)
         self._reactions_nm: tuple[Vec3, ...] = () if wheel is None else (ZERO,)  # on the body, in a substep
@@ -108,8 +108,8 @@ class Plant:
     def begin_tick(self) -> list[Frame]:
         """The frames of this tick, in the order in which they are sent.
 
-        Magnetometer, Sun sensor or cells, coil driver, the plant itself, and ``SYNC`` last; at tick 0 each
-        node begins with its boot message.
+        Magnetometer, Sun sensor or cells, coil driver, wheel, the plant itself, and ``SYNC`` last; at tick 0
+        each node begins with its boot message.
         """
         tick, coils = self._tick, self._coils
         faulty = self.interference

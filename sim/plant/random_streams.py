@@ -9,10 +9,10 @@ _BLOCK = 3072
 
 
 def normals(seed: int, name: str) -> Iterator[float]:
-    """Standard normal numbers without end: the stream ``name`` of the seed.
+    """An endless sequence of standard normal numbers: the stream ``name`` of the seed.
 
-    A stream depends on seed and name only, not on the other streams or on how far they were
-    drawn. PCG64 under numpy's SeedSequence, with the CRC-32 of the name as its spawn key.
+    A stream depends on seed and name only, not on the other streams or how far they were drawn. PCG64 under
+    numpy's SeedSequence, with the CRC-32 of the name as its spawn key.
     """
     sequence = np.random.SeedSequence(seed, spawn_key=(crc32(name.encode()),))
     generator = np.random.Generator(np.random.PCG64(sequence))

@@ -63,7 +63,7 @@ def normalise(q: Quaternion) -> Quaternion:
 
 
 def canonical(q: Quaternion) -> Quaternion:
-    """The one of q and -q, which are the same attitude, whose scalar part is not negative."""
+    """Of q and -q, which are the same attitude, the one whose scalar part is not negative."""
     return q if q[0] >= 0.0 else (-q[0], -q[1], -q[2], -q[3])
 
 

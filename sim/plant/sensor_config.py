@@ -6,7 +6,7 @@ from math import pi
 from sim.plant.rotation import ONES, ZERO, Mat3, Vec3
 
 Wiring = tuple[int, int, int]
-"""By channel or output, the number of the axis it belongs to, negative for the other sense."""
+"""By channel or output, the number of the axis it belongs to, negative for the opposite sense."""
 AS_NAMED: Wiring = (1, 2, 3)
 NO_COUPLING: Mat3 = (ZERO, ZERO, ZERO)
 
@@ -20,7 +20,7 @@ class MagnetometerConfig:
         bias_t: constant offset, sensor axes.
         scale: factor per sensor axis.
         misalignment_rad: rotation vector that turns the body axes into the sensor's.
-        non_orthogonality_rad: what the angles xy, xz and yz between the sensor axes lack of a right angle.
+        non_orthogonality_rad: right angle minus the angles xy, xz and yz between the sensor axes.
         quantum_t: step of the reading, 0 for none.
         saturation_t: largest magnitude of an axis; beyond it the sample is not valid.
         coil_coupling_t_per_am2: column j is the field at the sensor, body axes, per dipole along body axis j.
@@ -50,8 +50,8 @@ class SunSensorConfig:
         quantum: step of a component of the unit vector, 0 for none.
         latency_s: age of the values in a sample.
         fov_half_rad: half the opening angle of each cone of view.
-        boresights_body: unit axes of the cones, body axes; none: it sees all around.
-        albedo: whether the light of the Earth turns the measured direction.
+        boresights_body: unit axes of the cones, body axes; none: it sees in all directions.
+        albedo: whether the light of the Earth deflects the measured direction.
     """
 
     noise_rad: float = 0.0
@@ -70,8 +70,8 @@ class CellConfig:
     Attributes:
         normal_body: nominal unit normal, body axes.
         gain: true current over the nominal one.
-        turn_rad: rotation vector that turns the normal out of its nominal place, body axes.
-        shades: cones in which the satellite takes the Sun from it: unit axis, cosine of half the angle.
+        turn_rad: rotation vector from the nominal to the true normal, body axes.
+        shades: cones in which the satellite shades it: unit axis, cosine of the half-angle.
     """
 
     normal_body: Vec3
@@ -82,14 +82,14 @@ class CellConfig:
 
 @dataclass(frozen=True, slots=True)
 class SunCellsConfig:
-    """Up to six Sun cells; currents are in parts of the nominal one in full sunlight.
+    """Up to six Sun cells; currents are relative to the nominal one in full sunlight.
 
     Attributes:
         cells: each of them.
         noise: standard deviation per sample.
         threshold: below it a current is 0.
-        albedo: mean part of the sunlight that the Earth reflects, 0 for none.
-        albedo_spread: standard deviation of its variation over the clouds, as a part of it.
+        albedo: mean fraction of sunlight that the Earth reflects, 0 for none.
+        albedo_spread: standard deviation of its variation over the clouds, as a fraction of it.
         latency_s: age of the values in a sample.
 
     Raises:

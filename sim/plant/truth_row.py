@@ -21,7 +21,7 @@ class TruthRow(NamedTuple):
     """Mean true dipole of the coils over the tick that ends at t_k."""
     r_eci_m: Vec3
     torque_body_nm: tuple[Vec3, ...]
-    """At t_k, by ``Plant.torque_sources``; the coils' is m x b of this row, noise and wheel's are those
-    before t_k."""
+    """At t_k, by ``Plant.torque_sources``; the coils' is m x b of this row, those of noise and wheel
+    acted until t_k."""
     wheel_nms: float | None = None
     """Momentum of a driven wheel relative to the body, along its axis; None: there is none."""

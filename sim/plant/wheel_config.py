@@ -12,10 +12,10 @@ class WheelConfig:
 
     Attributes:
         axis_body: unit vector along its axis, body axes.
-        inertia_kgm2: of the wheel about its axis; the body's inertia counts it too.
+        inertia_kgm2: of the wheel about its axis; the body's inertia includes it.
         max_torque_nm: of the motor.
         max_momentum_nms: relative to the body, beyond which the motor cannot speed it up.
-        viscous_nms: c of the friction c W, W its speed against the body.
+        viscous_nms: c of the friction c W, W its speed relative to the body.
         coulomb_nm: of the friction that is nearly constant, against the direction of W.
         time_constant_s: with which the motor torque follows the request, 0 for at once.
         torque_scale: true over requested motor torque.
@@ -48,7 +48,7 @@ class WheelConfig:
             raise ValueError("momentum_nms must not be above max_momentum_nms")
 
     def rest_of(self, inertia_kgm2: Mat3) -> Mat3:
-        """J - J_w w w^T: what turns with the body about every axis, of the whole satellite's inertia J."""
+        """J - J_w w w^T: what of the whole satellite's inertia J turns with the body about every axis."""
         (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertia_kgm2
         (x, y, z), own = self.axis_body, self.inertia_kgm2
         xx, yy, zz = xx - own * x * x, yy - own * y * y, zz - own * z * z

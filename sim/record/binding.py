@@ -1,6 +1,6 @@
 """The binding of a run's files: their SHA-256 digests in run.json, each written when the file is finished.
 
-A digest detects a file that was exchanged, edited or lost. It protects against accidents, not against a
+A digest detects a file that was replaced, edited or lost. It protects against accidents, not against a
 forger who rewrites run.json too: for that there is its signature (``sim.record.signature``).
 """
 
@@ -24,7 +24,7 @@ FILES = (SCENARIO, BUS_LOG, TRUTH, SUMMARY)
 """Files of a finished run whose digests are in run.json."""
 CHUNK = 1 << 20
 BAR_FROM = 400_000_000
-"""Size of a file from which on a progress bar is shown [bytes]: hashing it takes a second or two."""
+"""Size of a file from which a progress bar is shown [bytes]: hashing it takes a second or two."""
 
 
 class BindingError(HarnessError):
@@ -66,7 +66,7 @@ class Binding(NamedTuple):
 
 
 def require_sources(folder: Path, key: PublicKey | None) -> Binding:
-    """Compare, and refuse a run of which a source of the summary differs from its digest.
+    """Compare, and refuse a run in which a source of the summary differs from its digest.
 
     Raises:
         BindingError: one differs, or is not signed.
@@ -85,7 +85,7 @@ def compare(folder: Path, log: Path | None = None, key: PublicKey | None = None)
 
     Args:
         folder: of the run; without a run.json nothing is bound.
-        log: a log that is to be the run's; None: its own.
+        log: a log to be compared as the run's; None: its own.
         key: run.json must be signed by its private half, and have a digest of every file.
 
     Raises:
@@ -150,7 +150,7 @@ def sign_run(folder: Path, key: PrivateKey) -> None:
 
 
 def sha256_of(path: Path, watch: Watch = lambda size: None) -> str:
-    """The digest of a file in hex, of a compressed one that of its text.
+    """The digest of a file in hex; for a compressed one, that of its text.
 
     ``watch`` is called with how much of the file has been read, in bytes.
 

@@ -16,11 +16,11 @@ from sim.errors import FlightError
 from sim.record.log_index import LogIndex
 
 BLOCK_WRITES = 64
-"""So many writes, as a rule ticks, go to the disk together."""
+"""Number of writes, as a rule ticks, that go to the disk together."""
 BLOCK_S = 0.5
-"""What is older does so with the next write: in real time at 1 Hz, every tick by itself."""
+"""Time after the last block from which a write goes to the disk at once: at 1 Hz, every tick by itself."""
 LEVEL = 1
-"""Of compression: a fourth of the text remains, and the next levels take three times as long for little."""
+"""Of compression: a quarter of the text remains; the next levels take three times as long for little gain."""
 
 
 class _Write(NamedTuple):
@@ -75,7 +75,7 @@ class BusLog:
             self._put_one_by_one(waiting)
 
     def _put_one_by_one(self, waiting: list[_Write]) -> None:
-        """What there is room for of a block for which there is none."""
+        """Write as much as there is room for of a block that does not fit."""
         for stamp, text, lines in waiting:
             try:
                 self._put(text, lines)

@@ -43,7 +43,7 @@ def allocate(path: Path, size: int) -> None:
     """Allocate the space of a file of histories on the disk.
 
     Raises:
-        HarnessError: the disk has not enough.
+        HarnessError: the disk does not have enough.
     """
     try:
         with path.open("ab") as file:

@@ -28,7 +28,7 @@ class Estimates:
     last: Estimate | None = None
 
     def part(self, rows: slice) -> "Estimates":
-        """Those of some ticks; ``last`` stays."""
+        """The estimates of some ticks; ``last`` stays."""
         return Estimates(
             self.q_body_from_orbit[rows],
             self.omega_body_orbit_radps[rows],
@@ -41,7 +41,7 @@ class Estimates:
 
 
 class EstimateRecorder:
-    """Records flight states tick by tick: so many ticks, of which ``first`` is the first."""
+    """Records flight states tick by tick, ``ticks`` of them from ``first`` on."""
 
     def __init__(self, ticks: int, first: int = 0) -> None:
         self.first = first

@@ -1,6 +1,6 @@
 """The order of telecommands from the bus in the log: each is in the tick in whose inbox it was.
 
-The plant may receive a telecommand after it has sent SYNC though the flight software received it before.
+The plant may receive a telecommand after it has sent SYNC, and the flight software the same one before.
 TC_ACK decides: it names the command and the tick.
 """
 

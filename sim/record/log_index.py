@@ -165,7 +165,7 @@ def _compare(name: str, file: BinaryIO, blocks: Iterator[Block]) -> IndexCheck:
 
 
 def _digest(file: BinaryIO, size: int, before: bytes) -> tuple[bytes, int]:
-    """SHA-256 over the digest before and the next so many bytes, and how many of these are missing."""
+    """SHA-256 over the previous digest and the next ``size`` bytes, and how many of these are missing."""
     digest = hashlib.sha256(before)
     while size and (piece := file.read(min(size, _PIECE_BYTES))):
         digest.update(piece)

@@ -7,7 +7,7 @@ from sim.errors import HarnessError
 
 @dataclass(frozen=True, slots=True)
 class Pace:
-    """``factor`` None: lockstep, as fast as possible; else the multiple of real time."""
+    """``factor`` None: lockstep, as fast as possible; otherwise the multiple of real time."""
 
     factor: float | None = None
 

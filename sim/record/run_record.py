@@ -88,8 +88,8 @@ def read_record(path: Path) -> RunRecord:
 
     Raises:
         OSError: it cannot be read.
-        HarnessError: not JSON, of another version, or a key is missing, not what it should be, or in
-            contradiction to another.
+        HarnessError: not JSON, of another version, or a key is missing, not what it should be, or contradicts
+            another.
     """
     try:
         content = from_json(read_regular(path, MOST_BYTES), allow_inf_nan=False)

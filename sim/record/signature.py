@@ -1,6 +1,6 @@
-"""Signatures of run.json: Ed25519, by the package cryptography, which the extra ``torquer[sign]`` brings.
+"""Signatures of run.json: Ed25519, by the package cryptography, which the extra ``torquer[sign]`` installs.
 
-A signature is over the bytes of run.json and lies beside it as 64 bytes: openssl makes and verifies it too.
+A signature is over the bytes of run.json and lies beside it as 64 bytes: openssl can make and verify it too.
 """
 
 from pathlib import Path

@@ -26,7 +26,7 @@ from sim.record.destination import allocate
 
 BLOCK_ROWS = 1024
 BLOCK_S = 0.5
-"""A block that is older is written with the next row, however short."""
+"""A block older than this is written with the next row, however short it is."""
 ROOM_FOR_STRUCTURE = 8192
 
 Histories = dict[str, NDArray[np.float64]]
@@ -59,7 +59,7 @@ class TruthFile:
         wheel: the satellite has a wheel that is driven.
 
     Raises:
-        HarnessError: the disk cannot hold the histories of so many ticks.
+        HarnessError: the disk cannot hold the histories of ``ticks`` ticks.
     """
 
     def __init__(
@@ -134,7 +134,7 @@ _DAMAGE = (OSError, KeyError, RuntimeError, TypeError, ValueError)
 
 
 class RowsMissingError(HarnessError):
-    """Rows that were asked for have not been written, or cannot be read while they are."""
+    """Requested rows have not been written, or cannot be read while they are being written."""
 
 
 class GrowingTruth:
@@ -152,10 +152,10 @@ class GrowingTruth:
     def rows(self, first: int, past: int) -> Histories:
         """Some rows of every dataset, by name.
 
-        The file is opened anew each time, so that nothing read before is taken for what is there now.
+        The file is reopened each time, so that nothing read before is taken for its present content.
 
         Raises:
-            RowsMissingError: not all of them have been written, or the file is locked by who writes it.
+            RowsMissingError: not all of them have been written, or the file is locked by its writer.
         """
         try:
             with TruthReader(self._path, being_written=True) as reader:
@@ -168,7 +168,7 @@ class GrowingTruth:
 
 
 class TruthReader:
-    """Reads the histories in blocks, of a file that is whole or cut.
+    """Reads the histories of a complete or truncated file in blocks.
 
     Raises:
         HarnessError: missing or not a truth file; so does ``rows``.
@@ -261,7 +261,7 @@ def _sources(file: h5py.File) -> list[str]:
 
 
 def _check_layout(file: h5py.File, widths: dict[str, int], size: int) -> None:
-    """Doubles in the shapes that ``TruthFile`` makes, in one piece and in this file: so many bytes at most.
+    """Check for doubles in the shapes of ``TruthFile``, contiguous and in this file, that fit its size.
 
     Raises:
         ValueError: any other layout.
@@ -279,7 +279,7 @@ def _check_layout(file: h5py.File, widths: dict[str, int], size: int) -> None:
 
 
 def _complete_rows(history: NDArray[np.float64]) -> int:
-    """Rows before the first with a NaN; where a flush was cut short, datasets differ in it."""
+    """Rows before the first with a NaN; after an interrupted flush, datasets differ in it."""
     broken = np.flatnonzero(~np.isfinite(history.reshape(len(history), -1)).all(axis=1))
     return int(broken[0]) if len(broken) else len(history)
 

@@ -61,7 +61,7 @@ class ReplayReport:
     Attributes:
         ok: what was replayed is as exact as this platform allows, and log and files are those of the run.
         lines: the result in words, a line each.
-        result: of a replay through the flight software; None of the others.
+        result: of a replay through the flight software; None for the others.
     """
 
     ok: bool
@@ -90,7 +90,7 @@ def locate(
     log, folder = run_dir.locate(run_or_log)
     binding = compare(folder, log, key)
     with binding.beside_errors():
-        next(iter(read_log(log)))  # a file that is no log is reported first
+        next(iter(read_log(log)))  # a file that is not a log is reported first
         record = run_dir.read_run(folder) if (folder / run_dir.RUN).is_file() else None
         beside = folder / run_dir.SCENARIO
         if scenario is None and not beside.is_file():
@@ -168,14 +168,14 @@ def through_plant(log: Path, run: LoggedRun) -> ReplayReport:
 
 
 def _binding(log: Path, run: LoggedRun) -> tuple[bool, list[str]]:
-    """Whether index and run.json hold for the log, and what they say of it."""
+    """Whether index and run.json agree with the log, and what they say about it."""
     voucher = check_against_index(log)
     lines = [f"{'note' if voucher.holds else 'index'}: {voucher.sentence}"] if voucher.sentence else []
     return voucher.holds and run.binding.holds, lines + run.binding.lines
 
 
 def _beginning(logged: list[Frame], sent: list[Frame]) -> int:
-    """Where the frames of the plant begin in a tick: SYNC is their last, others may stand before them."""
+    """Where the frames of the plant begin in a tick: SYNC is the last of them, others may precede them."""
     own = [index for index, frame in enumerate(logged) if frame == sent[-1]]
     any_sync = [index for index, frame in enumerate(logged) if frame.can_id == Sync.ID]
     sync = next(iter(own + any_sync), len(sent))
@@ -214,7 +214,7 @@ def play(log: Path, run: LoggedRun, spec: str) -> ReplayReport:
 
 
 def _by_time(log: Path) -> Iterator[tuple[list[Frame], bool]]:
-    """The frames after FSW_BOOT, those of one time together, and whether they are the last of the log."""
+    """The frames after FSW_BOOT, grouped by time stamp, and whether they are the last of the log."""
     groups = groupby(_after_boot(log), key=lambda entry: entry.timestamp_us)
     frames = ([entry.frame for entry in group] for _, group in groups)
     before = next(frames, None)

@@ -6,7 +6,7 @@ from sim.replay.command import ReplayReport
 
 
 def as_json(report: ReplayReport) -> dict[str, Any]:
-    """Whether it is as exact as it must be, and of a replay through the flight software how exact."""
+    """Whether it is as exact as it must be and, for a replay through the flight software, how exact."""
     values: dict[str, Any] = {"ok": report.ok, "lines": report.lines}
     result = report.result
     if result is None:

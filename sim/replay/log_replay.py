@@ -103,7 +103,7 @@ def replay(
         more: given where the log is still being written.
 
     Raises:
-        LogError: the file is no candump log, or was altered so that it no longer is one.
+        LogError: the file is not a candump log, or is no longer one after an alteration.
     """
     software = ReplayedSoftware(config, on_tick)
     differences: dict[bool, Difference] = {}

@@ -16,7 +16,7 @@ MAX_ORDERS = 1000
 """Orders of frames that are tried for one answer."""
 
 MAX_REORDERED = 1024
-"""Frames that are stored for another order; where there are more, only the logged order counts."""
+"""Most frames that are stored for another order; beyond that, only the logged order counts."""
 
 
 class ReplayedSoftware:
@@ -51,7 +51,7 @@ class ReplayedSoftware:
         return self._node.state.tick
 
     def reboot(self) -> None:
-        """Start anew, as after a FSW_BOOT that the plant asked for again."""
+        """Restart, as after a FSW_BOOT that the plant asked for again."""
         self._node.start()
 
     def receive(self, frame: Frame) -> None:
@@ -60,7 +60,7 @@ class ReplayedSoftware:
             self._before, self._ticks_before = self._node.copy(), self.ticks
             self._inputs, self._answer = [], []
         self._inputs.append(frame)
-        if len(self._inputs) > MAX_REORDERED:  # fsw was late for long
+        if len(self._inputs) > MAX_REORDERED:  # fsw was late for a long time
             self._before, self._inputs = None, []
         self._step(frame)
 
@@ -81,7 +81,7 @@ class ReplayedSoftware:
             self._on_tick(self._node.state)
 
     def _reordered(self, before: FlightNode) -> bool:
-        """Go on in another order, if one explains the answer so far; else everything stays as it was."""
+        """Go on in another order, if one explains the answer so far; otherwise everything stays as it was."""
         logged_order = self._node, self.expected, self.ticks
         for order in islice(orders(self._inputs), MAX_ORDERS):
             self._node, self.expected, self.ticks = before.copy(), deque(), self._ticks_before
@@ -99,7 +99,7 @@ class ReplayedSoftware:
 def orders(inputs: list[Frame]) -> Iterator[list[Frame]]:
     """Orders in which frames may have arrived: the plant sent those up to a SYNC, and received the others.
 
-    First those in which the others, or the first of them, arrived together, just before that SYNC or sooner;
+    First those in which the others, or the first of them, arrived together, just before that SYNC or earlier;
     then all in which both parts keep their own order. Which SYNC is the plant's is not known.
     """
     ends = [index + 1 for index, frame in enumerate(inputs) if frame.can_id == Sync.ID]

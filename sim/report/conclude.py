@@ -31,9 +31,9 @@ Watch = Callable[[int], None]
 
 
 def conclude(path: Path, watch: Watch = lambda tick: None, law: str | None = None) -> Json:
-    """Write summary.json and report.html of a run, complete or not; bind and mark complete a whole one.
+    """Write summary.json and report.html of a run, complete or not; bind a whole one and mark it complete.
 
-    The log is replayed through the flight software: that gives its estimates at full precision, and shows
+    The log is replayed through the flight software: that gives its estimates at full precision, and checks
     each time that the replay is exact.
 
     Args:
@@ -42,8 +42,8 @@ def conclude(path: Path, watch: Watch = lambda tick: None, law: str | None = Non
         law: the law of one's own that the run flew, named again; None: none is executed.
 
     Raises:
-        HarnessError: the directory is no run or cannot be written, or one of its files is damaged; or it flew
-            a law of one's own which is not named, or whose source has changed.
+        HarnessError: the directory is not a run or cannot be written, or one of its files is damaged; or it
+            flew a law of one's own which is not named, or whose source has changed.
         LawError: that law fails.
     """
     scenario, _ = with_law_named(run_dir.read_scenario(path), law)
@@ -55,10 +55,10 @@ def conclude(path: Path, watch: Watch = lambda tick: None, law: str | None = Non
 
 
 def conclude_flight(path: Path, more: More, watch: Watch = lambda tick: None, law: str | None = None) -> Json:
-    """The same of a run that is being flown: the replay follows the flight.
+    """The same for a run that is being flown: the replay follows the flight.
 
-    Where a stranger has led the flight software's count of ticks away from the plant's, the histories cannot
-    be followed by it: then the run is concluded once it is over.
+    If a stranger has made the flight software's count of ticks differ from the plant's, the replay cannot
+    follow the histories by it: then the run is concluded once it is over.
 
     Args:
         path: the run directory.
@@ -122,7 +122,7 @@ def _replay(
 
 
 def _write_results(path: Path, scenario: Scenario, replayed: _Replayed) -> Json:
-    """Audit, summary and page; the run is then complete, if nothing speaks against it."""
+    """Audit, summary and page; the run is then marked complete, if it is."""
     run, log = run_dir.read_run(path), run_dir.bus_log(path)
     tally = BusTally(scenario.epoch_unix_s * 1_000_000)
     limits = limits_beside(log)

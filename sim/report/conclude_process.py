@@ -1,7 +1,7 @@
 """``python -m sim.report.conclude_process RUN``: the process that replays a run while it is being flown.
 
-On its standard input comes ``OVER`` once the flight is over, or the end of the file if whoever flies has
-ended. Then it writes on its standard output how many ticks it has replayed, a line now and then.
+Its standard input receives ``OVER`` once the flight is over, or ends if the process that flies has ended.
+From then on it writes to its standard output how many ticks it has replayed, a line every ``TOLD_S``.
 """
 
 import os
@@ -49,7 +49,7 @@ class _Flight:
         return True
 
     def tell(self, tick: int) -> None:
-        """Write the tick, if someone waits."""
+        """Write the tick, if it is waited for."""
         now_s = time.monotonic()
         if self._over.is_set() and now_s - self._told_s > TOLD_S:
             self._told_s = now_s

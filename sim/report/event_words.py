@@ -140,7 +140,7 @@ _WORDS = {"FSW": _FSW, "COIL": _COIL}
 
 
 def in_words(event: Json) -> EventInWords:
-    """An event of summary.json; one of an unknown number by its number."""
+    """An event of summary.json; an unknown one is named by its number."""
     number, argument = event["event"], event["argument"]
     if event["node"] == "FSW" and number == Event.MODE_CHANGED and argument in _MODES:
         what, meaning = f"mode {Mode(argument).name}", _MODES[Mode(argument)]

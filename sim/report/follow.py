@@ -1,4 +1,4 @@
-"""Replays a run in another process while it is being flown: on two processors that takes little longer."""
+"""Replays a run in another process while it is being flown: on two processors that adds little time."""
 
 import json
 import os
@@ -14,12 +14,12 @@ from sim.record.run_dir import Json
 
 Watch = Callable[[int], None]
 Conclude = Callable[[Watch], Json]
-"""Concludes the run, once it has been flown; called with what is to be told how many ticks are replayed."""
+"""Concludes the run, once it has been flown; called with what receives the number of replayed ticks."""
 
 OVER = b"over\n"
 """Tells that process that the flight is over."""
 LEAST_TICKS = 10_000
-"""A shorter flight is replayed after it: a process takes a second to start."""
+"""A shorter flight is replayed once it is over: a process takes a second to start."""
 
 
 @contextmanager

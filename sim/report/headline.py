@@ -39,7 +39,7 @@ def headline(summary: Json) -> Badge:
 
 
 def requirement_table(summary: Json) -> Table:
-    """A row a requirement, with the causes of one that is missed."""
+    """A row per requirement, with the causes of one that is missed."""
     rows = [
         (
             one["verdict"],

@@ -15,7 +15,7 @@ class TruthBlocks(Protocol):
     """Histories that can be read block by block.
 
     Attributes:
-        complete: rows that there are.
+        complete: number of rows that can be read.
     """
 
     complete: int

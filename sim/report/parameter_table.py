@@ -23,11 +23,11 @@ UNITS = {
     "cell_gain": ("%", 100.0),
     "earth_light": ("%", 100.0),
 }
-"""The unit in which the page shows a parameter, and how many of it are one of SI."""
+"""The unit in which the page shows a parameter, and how many of these are one of SI."""
 
 
 def parameter_table(summary: Json) -> Table:
-    """Estimates, bounds and truth in the units of people, a row a component, named as on the bus."""
+    """Estimates, bounds and truth in readable units, a row per component, named as on the bus."""
     figures = summary.get("parameters", {})
     rows = []
     for component, (index, offset) in zip(Component, COMPONENTS, strict=True):

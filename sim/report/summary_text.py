@@ -1,4 +1,4 @@
-"""The summary of a flight as a few lines of text; that of an older version says what it holds."""
+"""The summary of a flight as a few lines of text; that of an older version gives what it holds."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -20,7 +20,7 @@ def summary_text(summary: Json) -> str:
 
 
 def last_orbit(summary: Json) -> str:
-    """What the figures of the last orbit are over."""
+    """The time over which the figures of the last orbit are taken."""
     flown = summary.get("orbits", 1.0)
     return "the last orbit" if flown >= 0.999 else f"the whole flight of {flown:.2g} orbits"
 
@@ -69,7 +69,7 @@ def _limits(summary: Json) -> str:
 
 
 def _pointing(summary: Json) -> Iterator[tuple[str, str]]:
-    """What is controlled, with its settling; body axis 1 beside the whole attitude."""
+    """What is controlled, with its settling; body axis 1 in addition to the whole attitude."""
     found = summary["controlled"]
     unit = found["unit"]
     if found["what"] != "axis":

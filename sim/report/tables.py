@@ -22,7 +22,7 @@ Pairs = list[tuple[str, str]]
 
 VIOLATIONS_SHOWN = 50
 EVENTS_OPEN = 12
-"""More events than these are folded away."""
+"""More events than this are folded away."""
 
 _ATTITUDE = (
     (", RMS over {window}", "rms_last_orbit"),
@@ -130,7 +130,7 @@ def scenario_toml(scenario: Scenario) -> str:
 
 
 def violations(audit: AuditReport) -> Table:
-    """The first of the limits that were broken."""
+    """The first violations of the limits."""
     rows = [
         (seconds_text(one.time_s), "" if one.coil is None else str(one.coil), one.kind, one.sentence)
         for one in audit.violations[:VIOLATIONS_SHOWN]
@@ -199,7 +199,7 @@ def has(summary: Json, keys: Sequence[str]) -> bool:
 
 
 def value(summary: Json, keys: Sequence[str], pattern: str) -> str:
-    """A part of the summary, written."""
+    """A part of the summary, formatted."""
     return pattern.format(find(summary, keys))
 
 

@@ -14,14 +14,14 @@ def with_law_named(scenario: Scenario, law: str | None, of_run: bool = True) -> 
 
     Args:
         scenario: as the run has it.
-        law: the law named on the command line, against the current directory; None: none.
+        law: the law named on the command line, relative to the current directory; None: none.
         of_run: the source must be that of the run.
 
     Returns:
-        The scenario, and a sentence if the source is another one than that of the run; empty if not.
+        The scenario, and a sentence if the source is not that of the run; otherwise empty.
 
     Raises:
-        HarnessError: the run flew a law of one's own which is not named, or another than the named.
+        HarnessError: the run flew a law of its own that is not named, or not the one that is.
         TableError: the source cannot be read.
     """
     control = flight_table(scenario).control
@@ -49,7 +49,7 @@ def with_law_named(scenario: Scenario, law: str | None, of_run: bool = True) -> 
 
 
 def with_law_withheld(scenario: Scenario) -> Scenario:
-    """The scenario of a run, of which no flight software can be made as long as its own law is not named."""
+    """The scenario of a run, of which no flight software can be made until its own law is named."""
     return scenario if scenario.own_law is None else _with(scenario, law_withheld=True)
 
 

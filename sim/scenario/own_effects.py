@@ -47,7 +47,7 @@ def own_effects(sections: Sequence[EffectSection] | None) -> OwnEffects:
     """The effects of a scenario; their sources are executed.
 
     Raises:
-        TableError: one cannot be loaded, is no effect, or a parameter is not allowed.
+        TableError: one cannot be loaded, is not an effect, or a parameter is not allowed.
     """
     if not sections:
         return NO_EFFECTS
@@ -64,7 +64,7 @@ def own_effects(sections: Sequence[EffectSection] | None) -> OwnEffects:
 
 
 def _snake(name: str) -> str:
-    """A name as the histories take it: ``GasLeak`` is ``gas_leak``."""
+    """A name as the histories have it: ``GasLeak`` becomes ``gas_leak``."""
     words = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()
     return re.sub(r"[^a-z0-9_]", "_", words)[:LONGEST_NAME]
 

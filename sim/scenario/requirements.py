@@ -30,7 +30,7 @@ UNITS = (DEG, DEGPS, ORBITS, PERCENT, JOULE)
 
 
 class IndexRow(NamedTuple):
-    """An index: its name for people, what it can be of, its unit, and whether it has a choice of time.
+    """An index: its name in words, what it can be of, its unit, and whether its time can be chosen.
 
     The choice is by ``window``, ``sunlit`` and ``probability``; duty and energy count over the last orbits,
     and settling over the whole flight.
@@ -58,13 +58,13 @@ OF = {"attitude": "whole attitude", "axis": "axis 1", "spin": "spin rate"}
 
 
 class RequirementSection(Section):
-    """The most that an index may be, by the orbit ``by_orbit``: a shorter flight is not judged.
+    """The upper limit of an index, to be met by the orbit ``by_orbit``; a shorter flight is not judged.
 
-    ``what``: the whole attitude, body axis 1 against the vertical, or the spin about it; without it what the
-    scenario's modes point. ``window``: the last orbits of the flight, ``last_orbits`` of them, or all from
-    settling on, when the error of ``what`` stays under ``settled_deg`` (``settled_degps`` for a spin rate);
-    then it must be settled by that orbit. ``sunlit``: of them, the ticks in sunlight. The limit is on the
-    root mean square over the window, or with ``probability`` holds for that part of the time: 1 is always.
+    ``what``: the whole attitude, body axis 1 relative to the vertical, or the spin about it; by default what
+    the scenario's modes point. ``window``: the last ``last_orbits`` orbits of the flight, or all from
+    settling on, when the error of ``what`` stays below ``settled_deg`` (``settled_degps`` for a spin rate);
+    then it must have settled by that orbit. ``sunlit``: only the ticks in sunlight. The limit is on the root
+    mean square over the window or, with ``probability``, holds for that fraction of the time: 1 is always.
     ``average_s`` is the time over which MPE takes the mean and RPE the deviation from it.
     """
 
@@ -129,7 +129,7 @@ _FORM = "write INDEX<VALUE or INDEX.WHAT<VALUE, for instance 'ape<2' or 'ape.axi
 
 
 def expectation(text: str, orbits: float) -> RequirementSection:
-    """A requirement from a text such as ``ape<2``, on a flight of so many orbits.
+    """A requirement from a text such as ``ape<2``, on a flight of ``orbits`` orbits.
 
     It is judged at the end of the flight, over its last orbit, or over the whole of a shorter flight.
 

@@ -1,8 +1,8 @@
-"""What the onboard calibration leaves of the errors of the sensors and coils: what the filter has to find.
+"""The errors of sensors and coils that the onboard calibration leaves, and the filter has to find.
 
 A calibrated sample is M (A b + c - o), the reading being A b + c, so that M A - 1 and M (c - o) are left.
-Errors are small, of first order: E = M A - 1 is a scale on its diagonal and a turn, -[turn x], in its
-antisymmetric part; what is symmetric beside the diagonal no parameter describes.
+Errors are small, of first order: E = M A - 1 holds scale errors on its diagonal and a misalignment, -[turn
+x], in its antisymmetric part; no parameter describes its symmetric part off the diagonal.
 """
 
 from typing import NamedTuple
@@ -24,7 +24,7 @@ UNIT_FIELDS_T = ((UNIT_T, 0.0, 0.0), (0.0, UNIT_T, 0.0), (0.0, 0.0, UNIT_T))
 
 
 class MagnetometerErrors(NamedTuple):
-    """Of calibrated samples, body axes: offset [T], turn [rad] and scale less one."""
+    """Of calibrated samples, body axes: offset [T], misalignment [rad] and scale minus one."""
 
     bias_t: Vec3
     turn_rad: Vec3
@@ -32,7 +32,7 @@ class MagnetometerErrors(NamedTuple):
 
 
 def reading_of(plant: MagnetometerConfig) -> tuple[Array, Array]:
-    """Of the reading A b + c [T] of a field b, body axes, without noise, quantum or end of range: A and c."""
+    """A and c of the reading A b + c [T] of a field b, body axes, without noise, quantum or saturation."""
     bare = MagnetometerConfig(
         bias_t=plant.bias_t,
         scale=plant.scale,
@@ -48,7 +48,7 @@ def reading_of(plant: MagnetometerConfig) -> tuple[Array, Array]:
 
 
 def magnetometer_errors(plant: MagnetometerConfig, table: CalibrationTable) -> MagnetometerErrors:
-    """The plant's own, or what a calibration leaves of them."""
+    """The plant's own errors, or what a calibration leaves of them."""
     known = table.magnetometer
     if known is None:
         first, second, third = plant.scale
@@ -63,7 +63,7 @@ def magnetometer_errors(plant: MagnetometerConfig, table: CalibrationTable) -> M
 
 
 def sun_turn_rad(plant: SunSensorConfig, table: CalibrationTable) -> Vec3:
-    """The turn of the Sun sensor that is left."""
+    """The misalignment of the Sun sensor that is left."""
     if table.sun is None:
         return plant.misalignment_rad
     turned = np.array(matrix(from_vector(plant.misalignment_rad)))
@@ -71,7 +71,7 @@ def sun_turn_rad(plant: SunSensorConfig, table: CalibrationTable) -> Vec3:
 
 
 def coil_errors(plant: CoilConfig, table: CalibrationTable) -> Array:
-    """G: what the dipole of a demand of 1 A m^2 along each body axis, a column, differs by from it."""
+    """G: column j is the error of the dipole for a demand of 1 A m^2 along body axis j."""
     axes = [matrix(from_vector(turn))[coil] for coil, turn in enumerate(plant.misalignment_rad)]
     by_coil = np.array(axes).T * np.array(plant.dipole_scale)
     by_output = by_coil[:, [abs(coil) - 1 for coil in plant.wiring]] * np.sign(plant.wiring)
@@ -84,7 +84,7 @@ def coil_errors(plant: CoilConfig, table: CalibrationTable) -> Array:
 
 
 def _turn_rad(error: Array) -> Vec3:
-    """The turn t of -[t x], the antisymmetric part."""
+    """The rotation t of -[t x], the antisymmetric part."""
     return _triple(
         0.5 * np.array([error[1, 2] - error[2, 1], error[2, 0] - error[0, 2], error[0, 1] - error[1, 0]])
     )

@@ -59,14 +59,14 @@ class ScenarioTime(TimeTable):
 
 
 class TruthField(Section):
-    """Field model of the plant; ``degree`` counts for igrf14. The onboard model is the same to degree 10."""
+    """Field model of the plant; ``degree`` applies to igrf14. The onboard model is the same to degree 10."""
 
     model: Literal["igrf14", "tilted_dipole", "direct_dipole"] = "igrf14"
     degree: int = Field(default=13, ge=1, le=13)
 
 
 class InitialState(Section):
-    """Attitude, body from orbit, as a turn about an axis; rate relative to the orbital frame, body axes."""
+    """Attitude, body from orbit, by rotation about an axis; rate relative to the orbital frame, body axes."""
 
     axis: Triple = (1.0, 1.0, 1.0)
     angle_deg: float = Field(default=0.0, ge=-180.0, le=180.0)
@@ -176,7 +176,7 @@ def scenario_of(values: Nested, source: str, overrides: Nested | None = None) ->
 
 
 def expecting(scenario: Scenario, texts: Sequence[str], orbits: float) -> Scenario:
-    """The scenario with further requirements, texts such as ``ape<2``, on a flight of so many orbits.
+    """The scenario with further requirements, texts such as ``ape<2``, on a flight of ``orbits`` orbits.
 
     Raises:
         TableError: one of them cannot be read, or the scenario lacks what it needs.
@@ -191,7 +191,7 @@ def flight_table(scenario: Scenario, source: str = "scenario") -> FlightTable:
     """The onboard table that this scenario flies with.
 
     Raises:
-        TableError: ``[flight]`` holds a key or value the onboard table does not take.
+        TableError: ``[flight]`` holds a key or value that the onboard table does not accept.
     """
     shared = scenario.model_dump(
         include={
@@ -239,7 +239,7 @@ def parse_settings(settings: tuple[str, ...]) -> Nested:
     """``KEY=VALUE`` settings as nested values; VALUE is TOML, or a bare word taken as a string.
 
     Raises:
-        TableError: a setting without '=' or with an empty key, or beyond what is read of TOML.
+        TableError: a setting without '=' or with an empty key, or beyond the bounds of ``toml_text``.
     """
     values: Nested = {}
     for setting in settings:

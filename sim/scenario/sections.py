@@ -24,7 +24,7 @@ Wiring = Annotated[tuple[int, int, int], Strict(False), AfterValidator(_signed_a
 
 
 class ScenarioOrbit(OrbitTable):
-    """The onboard orbit, and how far along its track the satellite is ahead of it."""
+    """The onboard orbit, and how far ahead of it along its track the satellite is."""
 
     along_track_km: float = Field(default=0.0, ge=-20000.0, le=20000.0)
 
@@ -32,7 +32,7 @@ class ScenarioOrbit(OrbitTable):
 class PlateSection(Section):
     """A flat part of the surface: area, outward normal, centre of pressure from the mass centre, body axes.
 
-    ``specular`` and ``diffuse`` are the parts of the light reflected as by a mirror and scattered.
+    ``specular`` and ``diffuse`` are the fractions of light reflected specularly and diffusely.
     """
 
     area_m2: Positive
@@ -60,9 +60,9 @@ class ScenarioBody(BodyTable):
 class ScenarioCoils(CoilTable):
     """Limits and levels, and the physics of coil and driver.
 
-    ``misalignment_deg`` holds, by coil, the rotation vector that turns its axis, body axes; ``wiring``, by
-    output of the driver, the axis of its coil, negative for its opposite. By ``resistance_ohm``, that of each
-    coil, the energy lost in them is judged.
+    ``misalignment_deg`` holds, by coil, the rotation vector from its nominal to its true axis, body axes;
+    ``wiring``, by output of the driver, the axis of its coil, negative for its opposite. ``resistance_ohm``,
+    of each coil, gives the energy dissipated in the coils.
     """
 
     pulse_s: float = Field(default=3.0, gt=0.0, le=3.0)
@@ -102,7 +102,7 @@ def onboard_wheel(section: ScenarioWheel) -> Nested:
 class MagnetometerSection(Section):
     """Physics of the magnetometer, body axes.
 
-    ``non_orthogonality_deg`` is what the angles xy, xz and yz between its axes lack of a right angle,
+    ``non_orthogonality_deg`` is a right angle minus the angles xy, xz and yz between its axes,
     ``wiring``, by channel, the sensor axis that it shows, negative for its opposite.
     """
 
@@ -125,7 +125,7 @@ class MagnetometerSection(Section):
 class SunSensorSection(Section):
     """Physics of the Sun sensor, body axes: in view within ``fov_half_deg`` of a boresight.
 
-    With ``albedo`` the light of the Earth turns what it measures.
+    With ``albedo`` the light of the Earth deflects the measured direction.
     """
 
     noise_deg: NotNegative = 0.5
@@ -146,11 +146,11 @@ class SunSensorSection(Section):
 
 
 class CellsSection(CellShapes):
-    """Physics of Sun cells, which take the place of the Sun sensor; by cell what is given for ``normals``.
+    """Physics of Sun cells, which replace the Sun sensor; lists are by cell, in the order of ``normals``.
 
-    ``gain`` is the current over the nominal one, ``turn_deg`` the rotation vector that turns the normal, body
-    axes. Currents are in percent of the nominal one in full sunlight. ``albedo`` is the mean part of the
-    sunlight that the Earth reflects, ``albedo_spread`` how far it varies over the clouds, as a part of it.
+    ``gain`` is the current over the nominal one, ``turn_deg`` the rotation vector from the nominal to the
+    true normal, body axes. Currents are in percent of the nominal one in full sunlight. ``albedo`` is the
+    mean fraction of sunlight that the Earth reflects, ``albedo_spread`` its relative standard deviation.
     """
 
     gain: Annotated[tuple[Positive, ...], Strict(False)] | None = None
@@ -179,7 +179,7 @@ class SensorsSection(Section):
 
 
 class DragSection(Section):
-    """Drag of the air on the plates: density over that of the static exponential atmosphere."""
+    """Drag on the plates: density relative to that of the static exponential atmosphere."""
 
     density_scale: NotNegative = 1.0
 
@@ -191,12 +191,12 @@ class SolarPressureSection(Section):
 
 
 class DisturbanceSection(Section):
-    """Constant torque, residual dipole, eddy currents (k of k (omega x b) x b), white torque; drag and light.
+    """Constant torque, residual dipole, eddy currents (k of k (omega x b) x b), white torque; drag, sunlight.
 
     ``torque_noise_nm_rts`` is the root of the spectral density of the white torque per axis,
-    ``torque_daily_part`` the amplitude of the constant torque's daily variation as a part of it,
-    ``residual_dipole_eclipse_am2`` what is added to the residual dipole in shadow, ``remanence_part`` what a
-    coil keeps of the dipole of its last pulse until its next.
+    ``torque_daily_part`` the amplitude of the constant torque's daily variation as a fraction of it,
+    ``residual_dipole_eclipse_am2`` what is added to the residual dipole in shadow, ``remanence_part`` the
+    fraction of its last pulse's dipole that a coil keeps until its next.
     """
 
     torque_nm: Triple = (0.0, 0.0, 0.0)

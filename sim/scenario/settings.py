@@ -16,7 +16,7 @@ def nested(settings: Mapping[str, object] | None) -> Nested:
     Arrays and numbers of numpy become lists and numbers, as TOML has them.
 
     Raises:
-        TableError: no mapping, a key that is none, or values that are nested too deeply.
+        TableError: not a mapping, a key that cannot be one, or values that are nested too deeply.
     """
     if settings is None:
         return {}
@@ -26,7 +26,7 @@ def nested(settings: Mapping[str, object] | None) -> Nested:
 
 
 def plain(value: object, levels: int = MOST_LEVELS) -> object:
-    """A value as TOML has it, of at most so many levels.
+    """A value as TOML has it, of at most ``levels`` levels.
 
     Raises:
         TableError: it has more.

@@ -81,7 +81,7 @@ class SendClear(TelecommandSection):
 
 
 class SendLaw(TelecommandSection):
-    """TC_LAW: the law by its name, or ``own`` for that of the scenario which is not in the table."""
+    """TC_LAW: the law by its name, or ``own`` for the scenario's own law, which is not in the table."""
 
     message: Literal["TC_LAW"]
     law: Literal[(*LAWS, "own")]  # type: ignore[valid-type]  # those of the table
@@ -128,7 +128,7 @@ class SendElement(TelecommandSection):
 
 
 class SendOrbit(TelecommandSection):
-    """TC_ORBIT_LOAD; where ``tle`` is given, with all its elements before it."""
+    """TC_ORBIT_LOAD; where ``tle`` is given, preceded by all its elements."""
 
     message: Literal["TC_ORBIT_LOAD"]
     tle: Annotated[tuple[str, str] | None, Strict(False)] = None
@@ -214,7 +214,7 @@ def elements_of(line1: str, line2: str) -> dict[Element, Decimal]:
     """The numbers of a two-line element set, digit by digit.
 
     Raises:
-        ValueError: the lines are no element set.
+        ValueError: the lines are not an element set.
     """
     numbers = (Decimal(repr(number)) for number in tle_elements(line1, line2))
     return dict(zip(Element, numbers, strict=True))

@@ -4,9 +4,9 @@ With e the pointing error and k the knowledge error, both as rotation vectors, a
 APE = |e|, MPE = |mean of e over the window|, RPE = |e - that mean|, AKE = |k|.
 A requirement on one of them holds with probability P
 
-- temporal: for a part P of the time in the worst run;
-- ensemble: at all times in a part P of the runs;
-- mixed: for a part P of all times of all runs.
+- temporal: for a fraction P of the time in the worst run;
+- ensemble: at all times in a fraction P of the runs;
+- mixed: for a fraction P of all times of all runs.
 """
 
 from collections.abc import Mapping
@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 
 INDICES = ("ape", "mpe", "rpe", "ake")
 POINTS = 256
-"""Numbers that stand for the distribution of an index over the time of a run, the last its largest value."""
+"""Numbers that represent the distribution of an index over a run, the last being its largest value."""
 
 
 class Interpretation(StrEnum):
@@ -36,12 +36,12 @@ class Interpretation(StrEnum):
 
 
 def index_histories(error: Array, knowledge_error: Array, window: int) -> dict[str, Array]:
-    """Each index over the time of a run; MPE has one value a whole window.
+    """Each index over the time of a run; MPE has one value per whole window.
 
     Args:
         error: rotation vectors of the pointing error, (n, 3).
         knowledge_error: those of the estimate, (n, 3).
-        window: its length in rows; of fewer rows there is one window.
+        window: its length in rows; fewer rows are one window.
     """
     mpe, rpe = mean_and_relative(error, window)
     return {"ape": magnitudes(error), "mpe": mpe, "rpe": rpe, "ake": magnitudes(knowledge_error)}
@@ -54,7 +54,7 @@ def magnitudes(error: Array) -> Array:
 
 
 def mean_and_relative(error: Array, window: int) -> tuple[Array, Array]:
-    """MPE, one value a whole window, and RPE, one value a row of them; of fewer rows there is one window."""
+    """MPE, one value per whole window, and RPE, one value per row of them; fewer rows are one window."""
     window = min(window, len(error))
     count = len(error) // window
     parts = error[: count * window].reshape(count, window, -1)
@@ -75,8 +75,8 @@ class IndexPercentile:
     Attributes:
         value: the estimate.
         bound: one-sided upper bound of it with the confidence; None where there are too few runs for one.
-        held: of the temporal interpretation, the part of the ensemble that is at most ``value`` with the
-            confidence; else the probability.
+        held: for the temporal interpretation, the fraction of the ensemble that is at most ``value`` with the
+            confidence; otherwise the probability.
     """
 
     value: float
@@ -84,7 +84,7 @@ class IndexPercentile:
     held: float
 
     def within(self, limit: float) -> bool | None:
-        """Whether the percentile is at most the limit; None if more runs would have to tell."""
+        """Whether the percentile is at most the limit; None if it takes more runs to decide."""
         if self.value > limit:
             return False
         return True if self.bound is not None and self.bound <= limit else None
@@ -95,7 +95,7 @@ def percentile(
 ) -> IndexPercentile:
     """A percentile of an index over runs, from their profiles, (runs, ``POINTS``).
 
-    Temporal takes the worst of the runs, which bounds a part of the ensemble. Ensemble takes the largest
+    Temporal takes the worst of the runs, which bounds a fraction of the ensemble. Ensemble takes the largest
     value of each run, its bound from order statistics. Mixed pools all runs with equal weight; its bound is
     that of Woodruff (1952), runs being the clusters.
     """
@@ -112,7 +112,7 @@ def percentile(
 
 
 def _woodruff(profiles: Array, value: float, probability: float, confidence: float) -> float | None:
-    """The pooled quantile at P + z s / sqrt(n), s the deviation between runs of the part up to ``value``."""
+    """The pooled quantile at P + z s / sqrt(n), s the deviation between runs of the fraction <= ``value``."""
     runs = len(profiles)
     if runs < 2:
         return None

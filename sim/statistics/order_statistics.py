@@ -26,7 +26,7 @@ class Percentile:
 
 
 def percentile(values: Array, probability: float, confidence: float) -> Percentile:
-    """A percentile with two-sided bounds, half of what is left of the confidence on each side."""
+    """A percentile with two-sided bounds, half of the remaining probability on each side."""
     side = 0.5 * (1.0 + confidence)
     estimate = float(np.quantile(values, probability))
     low, high = lower_bound(values, probability, side), upper_bound(values, probability, side)
@@ -47,7 +47,7 @@ def lower_bound(values: Array, probability: float, confidence: float) -> float |
 
 
 def least_part_bounded(count: int, confidence: float) -> float:
-    """The part of the distribution that the largest of ``count`` values bounds with the confidence."""
+    """The fraction of the distribution that the largest of ``count`` values bounds with the confidence."""
     return float((1.0 - confidence) ** (1.0 / count))
 
 

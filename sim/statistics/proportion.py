@@ -21,7 +21,7 @@ class Proportion:
 
 
 def clopper_pearson(count: int, total: int, confidence: float) -> Proportion:
-    """The exact bounds (Clopper and Pearson 1934), half of what is left of the confidence on each side.
+    """The exact bounds (Clopper and Pearson 1934), half of the remaining probability on each side.
 
     P(B(n, low) >= count) = P(B(n, high) <= count) = (1 - confidence) / 2, by the beta distribution.
     """

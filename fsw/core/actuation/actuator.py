@@ -14,7 +14,7 @@ from fsw.wire.messages import CoilDipole, CoilFire
 
 LOCKOUT_UNKNOWN = (-1, -1, -1)
 MOST_IDLE_TICKS = 10_000
-"""So many are counted: longer than any sample is late."""
+"""The count of idle ticks stops here: longer than any sample is late."""
 
 
 class CoilView(NamedTuple):
@@ -22,9 +22,9 @@ class CoilView(NamedTuple):
 
     ``lockout_ms`` by coil, -1 where the board has not reported it yet; ``driven_coil`` and ``driven_level``
     over the tick that just ended, ``driven_am2`` the mean dipole over it, body axes; ``fired_tick`` is -1
-    before the first request; ``paid_body_nms`` is the impulse of the last request; ``idle_ticks``: reports in
-    a row of no level and no current. ``past_am2``: the dipoles commanded over the last ticks, the newest
-    first, where the own field of the coils is known.
+    before the first request; ``paid_body_nms`` is the impulse of the last request; ``idle_ticks``: reports
+    in a row of no level and no current. ``past_am2``: the nominal dipoles driven over the last ticks, the
+    newest first, where the coils' own field is known.
     """
 
     lockout_ms: tuple[int, int, int] = LOCKOUT_UNKNOWN
@@ -68,8 +68,8 @@ class ActuatorConfig(NamedTuple):
 def update_view(view: CoilView, readings: Readings, tick: int, config: ActuatorConfig) -> CoilView:
     """The view after the reports of the coil driver in this tick.
 
-    A board that has just booted has not reported its lockouts. Without a status the own request, if one is
-    under way, counts as driven.
+    A board that has just booted has not reported its lockouts. Without a status, the last request counts as
+    driven while it is under way.
     """
     lockout = list(view.lockout_ms if readings.coil_boot is None else LOCKOUT_UNKNOWN)
     status = readings.coil
@@ -99,7 +99,7 @@ def update_view(view: CoilView, readings: Readings, tick: int, config: ActuatorC
 
 
 def requested_level(view: CoilView, tick: int, config: PulseConfig) -> int:
-    """The level that the own request drives over the tick that just ended, 0 if it does not."""
+    """The level that the last request drives over the tick that just ended; 0 if it is not under way."""
     under_way = view.fired_tick < tick <= view.fired_tick + config.pulse_ticks
     return view.fired.level if under_way else 0
 
@@ -112,9 +112,9 @@ def wait_ticks(
     config: PulseConfig,
     faults: tuple[int, int, int],
 ) -> tuple[int, int, int]:
-    """By coil, ticks until own timer and board let it fire, as far as is known; ``NEVER`` with a fault.
+    """By coil, ticks until its own timer and the board let it fire, as far as known; ``NEVER`` with a fault.
 
-    A board that has not reported a coil since its boot holds it for a back-off.
+    A board that has not reported a coil since its boot is taken to hold it for a full back-off.
     """
     own = pulses.wait_ticks(state, tick, faults)
     if 0 not in own:
@@ -192,7 +192,7 @@ def _pulse(
     config: PulseConfig,
     faults: tuple[int, int, int],
 ) -> tuple[PulseState, CoilView, CoilFire | None]:
-    """At most one pulse: only when the own timer and the board's last report of that coil agree."""
+    """At most one pulse, and only when the coil's own timer and the board's last report of it agree."""
     owing = demand.impulse_body_nms is None and demand.pulse is None
     if owing:
         state = pulses.owe(state, cross(demand.m_body_am2, b_body_t), b_body_t, config)
@@ -215,7 +215,7 @@ def _chosen(
     config: PulseConfig,
     faults: tuple[int, int, int],
 ) -> Pulse | None:
-    """The pulse that the law asks for if its coil's own timer has run out, else the one that leaves least."""
+    """The pulse a law asks for, if that coil's own timer has run out; if it asks for none, the best one."""
     if demand.pulse is not None:
         may_fire = demand.pulse.level != 0 and pulses.wait_ticks(state, tick, faults)[demand.pulse.coil] == 0
         return demand.pulse if may_fire else None

@@ -1,7 +1,7 @@
-"""The continuous driver: a dipole each tick; for a law of impulses the best one, held for a pulse.
+"""The continuous driver: a dipole each tick; for an impulse law the best one, held for a pulse length.
 
 The board drives each request over the first part of one tick and nothing without a request; the magnetometer
-samples while it is off. An impulse law has the timing of the pulses; only the choice of the dipole is wider.
+samples while it is off. An impulse law keeps the timing of the pulses; only its choice of dipole is wider.
 """
 
 from dataclasses import dataclass
@@ -20,9 +20,9 @@ MOST = 1.0 - 2.0**-16
 
 @dataclass(frozen=True, slots=True)
 class DipoleConfig:
-    """Mean dipole over a tick at full scale, A m^2, the inertia, and the way to the best one.
+    """Mean dipole over a tick at full scale, A m^2, the inertia, and how the best dipole is found.
 
-    ``body_from_coils`` has the coils' dipoles per nominal one as columns, body axes; None: they are as said.
+    The columns of ``body_from_coils``: the coils' dipoles per unit nominal one, body axes; None: nominal.
     """
 
     full_scale_am2: float
@@ -80,7 +80,7 @@ def _begin(
 
 
 def saturate(m_body_am2: Vec3, config: DipoleConfig) -> CoilDipole:
-    """The request: the dipole as fractions of full scale, shortened to fit but not turned.
+    """The request: the dipole as fractions of full scale, scaled down to fit, its direction kept.
 
     A dipole that is not finite becomes zero: on the wire it would be full scale.
     """

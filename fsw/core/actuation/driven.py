@@ -1,8 +1,8 @@
-"""What the coils drove in each tick, for the filter, and how far that is in doubt.
+"""What the coils drove in each tick, for the filter, and how uncertain that is.
 
-A report that is lost or late, and a tick that is skipped, leave open what a coil did. The filter takes the
-likelier for granted and the rest for noise of its torque. So it soon sees what the coil did, and no pulse
-that nobody reported is evidence about a coil.
+A lost or late report and a skipped tick leave open what a coil did. The filter assumes the likelier case and
+treats the difference as noise of the torque. So it soon sees what the coil did, and an unreported pulse is
+never evidence about a coil.
 """
 
 from math import sqrt
@@ -16,17 +16,17 @@ from fsw.core.estimation.dynamics.error_dynamics import NOT_DRIVEN, Driven
 def driven(
     view: CoilView, m_body_am2: Vec3, reported: bool, ticks: range, config: ActuatorConfig
 ) -> list[Driven]:
-    """What the coils drove over each of these ticks, and what it is in doubt by.
+    """What the coils drove over each of these ticks, and how uncertain that is.
 
-    In a tick that was skipped the own request, if one is under way, counts as driven. A dipole is in doubt by
-    what was requested less what was reported, since either may have been lost, or be of another tick. The n
-    ticks of a pulse are in doubt together: each counts sqrt(n) fold, so that taken for independent they are
-    never in doubt by less, (sum of a_i)^2 <= n sum of a_i^2.
+    In a skipped tick, a request that is under way counts as driven. The uncertainty of a dipole is what was
+    requested less what was reported, since either may have been lost or belong to another tick. The errors
+    in the n ticks of a pulse are correlated: each is scaled by sqrt(n), so that taking them as independent
+    never understates their sum, (sum of a_i)^2 <= n sum of a_i^2.
 
     Args:
         view: after ``update_view``.
         m_body_am2: the dipole over the last tick, body axes.
-        reported: the driver has reported in the last tick.
+        reported: whether the driver reported in the last tick.
         ticks: those since the tick before, the last of which ends now.
         config: the coils.
     """

@@ -1,7 +1,7 @@
-"""The coils' own field on the magnetometer: taken off a sample where it is known, else the sample is blanked.
+"""The coils' own field at the magnetometer: subtracted from a sample if known; otherwise it is blanked.
 
-A sample shows the coils as they were ``newest`` to ``oldest`` ticks before. Where over those ticks one
-dipole m was driven, or none, and each was reported, b = z - F m. Else a coil may have been switched within
+A sample shows the coils as they were ``newest`` to ``oldest`` ticks before. If one dipole m, or none, was
+driven throughout those ticks, and each was reported, b = z - F m. Otherwise a coil may have switched within
 the age of the sample.
 """
 
@@ -14,12 +14,12 @@ from fsw.core.gate.readings import Readings
 from fsw.core.laws.plan.pulse_model import AXES
 
 SOUND = (0.7, 1.3)
-"""Parts of its nominal current between which a driven coil has about its nominal field."""
+"""Fractions of its nominal current between which a driven coil has about its nominal field."""
 
 
 @dataclass(frozen=True, slots=True)
 class OwnField:
-    """The field F m of the coils at the magnetometer, nT, body axes, and at which ages it shows, ticks.
+    """The field F m of the coils at the magnetometer, nT, body axes, and the ages at which it shows, ticks.
 
     ``field_nt_per_am2``: column j is the field of a nominal dipole of 1 A m^2 of the coil along axis j;
     ``levels_am2`` and ``current_ma`` are those of levels 1, 2, 3.
@@ -40,8 +40,8 @@ def taken_off(
     Args:
         view: after ``update_view``.
         readings: of this tick, in body axes.
-        blank_ticks: so long after a pulse a sample may be of its time, where the field is not known.
-        config: None: the field is not known.
+        blank_ticks: for this long after a pulse a sample may date from it, where that field is not known.
+        config: None: the coils' field is not known.
     """
     if config is None:
         return view, readings if view.idle_ticks > blank_ticks else readings._replace(quiet=False)
@@ -53,7 +53,7 @@ def taken_off(
 
 
 def _remembered(view: CoilView, readings: Readings, config: OwnField) -> CoilView:
-    """The view with what was driven in the tick that just ended; all is forgotten where it is not certain."""
+    """The view with what was driven in the tick that just ended; all is forgotten if that is uncertain."""
     if not _certain(readings, config):
         return view._replace(past_am2=())
     m_am2 = scale(dipole_am2(view.driven_level, config.levels_am2), AXES[view.driven_coil])

@@ -5,11 +5,11 @@ of the pulse, for that coil or for all of them (``shared``). After boot a full b
 timing is in integer ticks, rounded so that the pulse is never longer and the gap never shorter.
 
 The demand of a continuous law is accumulated as the torque impulse still owed: a leaky sigma-delta
-modulator, bounded by what one pulse can pay. What is due is the impulse that will be owed in the middle of
-the time for which a pulse stands, until the next: paid only afterwards, a lasting demand would be half that
-time late and the leak would keep a part of it. The pulse that is fired is the one that leaves the least of
-the impulse that is due, or that a predictive law demands; firing none is one of the choices and wins ties.
-Least is by a metric: the rate that is left, or its energy.
+modulator, bounded by what one pulse can pay. What is due is the impulse that will be owed midway between
+this pulse and the next: paid only in arrears, a lasting demand would be half that interval late and the leak
+would keep a fraction of it. The pulse that is fired is the one that leaves the least of the impulse that is
+due, or that a predictive law demands; firing none is one of the choices and wins ties. Least is by a metric:
+the rate that is left, or its energy.
 
 Source: Tavares et al. (ConSat, PoSAT-1) for the limits and the choice; the modulator is this project's.
 """
@@ -26,7 +26,7 @@ from fsw.core.laws.plan.pulse_model import AXES, NEVER, Pulse
 class PulseConfig:
     """Limits and levels, in ticks and SI; J^-2 and J^-1 as the metrics of an impulse that is left.
 
-    ``coil_axes`` are the coils' dipoles per nominal one, body axes.
+    ``coil_axes``: the coils' dipoles per unit nominal dipole, body axes.
     """
 
     pulse_ticks: int
@@ -43,10 +43,10 @@ class PulseConfig:
 
 
 class PulseState(NamedTuple):
-    """Own timers and the impulse still owed.
+    """The scheduler's own timers and the impulse still owed.
 
     ``ready_tick[coil]`` is the first tick in answer to which that coil may fire again; ``busy_until`` the
-    first in answer to which no own pulse is under way; ``held_am2`` is what a continuous driver holds
+    first in answer to which no requested pulse is under way; ``held_am2`` is what a continuous driver holds
     meanwhile, body axes.
     """
 
@@ -83,9 +83,9 @@ def boot(tick: int, config: PulseConfig) -> PulseState:
 
 
 def delay(state: PulseState, tick: int, skipped: int) -> PulseState:
-    """The state after a skip of the count to ``tick``: timers that ran go on by as much, whoever skipped it.
+    """The state after the count has skipped to ``tick``: running timers are extended by the skipped ticks.
 
-    Lost ticks cannot be distinguished from ticks that never were, and a back-off must not end early.
+    Lost ticks cannot be distinguished from ticks that never occurred, and a back-off must not end early.
     """
     before = tick - skipped - 1
     a, b, c = (ready + skipped if ready > before else ready for ready in state.ready_tick)
@@ -108,7 +108,7 @@ def owe(state: PulseState, torque_body_nm: Vec3, b_body_t: Vec3, config: PulseCo
 def due(state: PulseState, torque_body_nm: Vec3, b_body_t: Vec3, config: PulseConfig) -> Vec3:
     """What a pulse fired now is to pay: r + T (T_p + T_b) / 2, T_b the back-off; body axes, N m s.
 
-    The demand of now is taken to last so long. The bound is that of ``owe``.
+    The present demand is taken to last that long. The bound is that of ``owe``.
     """
     half_s = 0.5 * config.tick_s * (config.pulse_ticks + config.backoff_ticks)
     expected = add(state.owed_impulse_body_nms, scale(half_s, torque_body_nm))
@@ -124,7 +124,7 @@ def _within_a_pulse(impulse_body_nms: Vec3, b_body_t: Vec3, config: PulseConfig)
 def wait_ticks(
     state: PulseState, tick: int, faults: tuple[int, int, int] = (0, 0, 0)
 ) -> tuple[int, int, int]:
-    """By coil, ticks until its own timer lets it fire, 0 in answer to this tick; ``NEVER`` with a fault."""
+    """By coil, ticks until its own timer lets it fire (0: in answer to this tick); ``NEVER`` with a fault."""
     a, b, c = (
         NEVER if fault else max(ready - tick, state.busy_until - tick, 0)
         for ready, fault in zip(state.ready_tick, faults, strict=True)
@@ -146,7 +146,7 @@ def choose(
     Minimises (r - T_p m x b)^T W (r - T_p m x b) over coil and level, T_p the pulse length.
 
     Args:
-        state: own timers.
+        state: the scheduler's own timers.
         impulse_body_nms: r, the impulse demanded.
         metric: W, symmetric and positive.
         tick: tick that is answered.

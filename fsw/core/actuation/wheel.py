@@ -1,12 +1,11 @@
-"""A reaction wheel seen from the controller: which reports of its speed count, and what it is asked for.
+"""A reaction wheel seen from the controller: which reports of its speed count, and what is requested of it.
 
 A report counts if it is valid, within the wheel's range, and no further from the last one than motor and
-friction can have brought the wheel since. One that is not is counted, and the last one stands until it is too
-old; then the wheel is not driven, and the next report within the range counts again.
+friction can have driven the wheel since. Any other is refused and counted, and the last one stands until it
+is too old; then the wheel is not driven, and the next report within range counts again.
 
-The filter gets the momentum that was measured, and the torque on the body from what it has changed by: so
-lag, friction and a refused request need no model there. Where a report is missing it takes the change with
-the next.
+The filter gets the measured momentum, and the torque on the body from its change: so lag, friction and a
+refused request need no model there. Where a report is missing, the change comes with the next.
 """
 
 from dataclasses import replace
@@ -21,23 +20,22 @@ from fsw.core.laws.interface import Demand, Wheel
 from fsw.wire.messages import WheelTorque
 
 MARGIN = 1.25
-"""A report may be beyond range and reach by this factor."""
+"""A report may exceed range and reach by this factor."""
 CHANGE_SIGMA = 0.005
-"""Standard deviation of a measured change of the momentum, in parts of it: the wheel's inertia is known so
-well."""
+"""Standard deviation of a measured momentum change, as a fraction of it: that of the wheel's inertia."""
 BODY_RADPS = 0.2
-"""The speed against the body also changes with the body's rate, between two reports by no more than this."""
+"""The speed relative to the body also changes with the body's rate: by at most this between two reports."""
 SMOOTH_RADPS = 1.0
-"""Below this speed the Coulomb friction is less than its value."""
+"""Below about this speed the Coulomb friction is smoothed towards zero."""
 UNIT_NM = 2.0**-24
-"""Of the torque on the wire; so much less than the limit is asked for at most."""
+"""One unit of the torque on the wire; at most the limit less this is requested."""
 MOST_REFUSED = 1_000_000
 
 
 class WheelView(NamedTuple):
-    """The last report that was believed, at ``tick``, -1: none counts; the refused reports.
+    """The last report that was accepted, at ``tick`` (-1: none counts), and the number refused.
 
-    ``change_nms``: of the momentum in this tick's report since the one before, zero without a report;
+    ``change_nms``: change of momentum from the last report to this tick's, zero without a report;
     ``asked_nm``: the motor torque of the last request.
     """
 
@@ -74,7 +72,7 @@ def seen(view: WheelView | None, readings: Readings, tick: int, wheel: Wheel | N
 
 
 def _possible(speed_radps: float, view: WheelView, tick: int, wheel: Wheel) -> bool:
-    """Whether the wheel can turn so fast: within its range, and within reach since the last report."""
+    """Whether the wheel can have this speed: within its range, and within reach since the last report."""
     most_radps = wheel.max_momentum_nms / wheel.inertia_kgm2
     if not abs(speed_radps) <= MARGIN * most_radps:
         return False
@@ -95,13 +93,13 @@ def momentum_nms(view: WheelView | None, wheel: Wheel | None) -> float | None:
 def estimating(
     estimator: EstimatorConfig, view: WheelView | None, tick: int, ticks: int, wheel: Wheel | None
 ) -> EstimatorConfig:
-    """The estimator that reckons with the wheel over the ticks that end now.
+    """The estimator configuration that accounts for the wheel over the ticks that end now.
 
     Args:
         estimator: as the table has it.
         view: of this tick.
         tick: this one.
-        ticks: since the tick before.
+        ticks: how many since the last step.
         wheel: None: there is none.
     """
     if view is None or wheel is None:

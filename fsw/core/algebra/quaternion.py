@@ -1,6 +1,6 @@
 """Quaternion algebra: Hamilton product, scalar first, unit norm.
 
-A quaternion ``q_body_from_ref`` turns components: v_body = C(q) v_ref with
+A quaternion ``q_body_from_ref`` converts components: v_body = C(q) v_ref with
 C = (q0^2 - |qv|^2) I + 2 qv qv^T - 2 q0 [qv x], and dq/dt = 1/2 q (x) (0, omega), omega in body axes.
 Chains multiply from the reference outward: q_c_from_a = q_b_from_a (x) q_c_from_b.
 """
@@ -39,7 +39,7 @@ def normalise(q: Quaternion) -> Quaternion:
 
 
 def canonical(q: Quaternion) -> Quaternion:
-    """The one of q and -q, which are the same attitude, whose scalar part is not negative."""
+    """Of q and -q, which are the same attitude, the one whose scalar part is not negative."""
     return q if q[0] >= 0.0 else (-q[0], -q[1], -q[2], -q[3])
 
 

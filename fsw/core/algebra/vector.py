@@ -91,7 +91,7 @@ def positive_definite(m: Mat3) -> bool:
 
 
 def inverse(m: Mat3) -> Mat3:
-    """The inverse of a regular matrix, by cofactors.
+    """The inverse of a nonsingular matrix, by cofactors.
 
     Raises:
         ZeroDivisionError: the matrix is singular.
@@ -102,7 +102,7 @@ def inverse(m: Mat3) -> Mat3:
 
 
 def symmetric_inverse(m: Mat3) -> Mat3:
-    """The inverse of a regular symmetric matrix, in less than half the time of ``inverse``.
+    """The inverse of a nonsingular symmetric matrix, in less than half the time of ``inverse``.
 
     Raises:
         ZeroDivisionError: the matrix is singular.

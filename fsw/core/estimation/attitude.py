@@ -6,7 +6,7 @@ from fsw.core.algebra.vector import ZERO, Vec3
 
 
 class Attitude(NamedTuple):
-    """Body relative to the orbital frame, with three standard deviations."""
+    """Attitude and rate of the body relative to the orbital frame, with 3 sigma of each."""
 
     q_body_from_orbit: tuple[float, float, float, float]
     omega_body_orbit_radps: Vec3

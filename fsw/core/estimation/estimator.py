@@ -26,15 +26,15 @@ MAX_ELAPSED_TICKS = 60
 
 
 CELLS_ANEW = 2.0
-"""By this attitude and rate are less certain where the parameters start anew, with cells."""
+"""Factor on the standard deviations of attitude and rate when the parameters start anew, with cells."""
 
 
 class Turning(IntEnum):
-    """Whether the satellite turns fast; the parameters start anew at KNOWN and when it ends.
+    """Whether the satellite turns fast; the parameters start anew at KNOWN and when the turn ends.
 
-    FAST: or it may, as after a start. KNOWN: so is its rate; before, a sample seems not to depend on its age,
-    and what is learnt of the parameters is wrong. The turn ends below ``SLOW_RADPS``: what it leaves in the
-    parameters is beyond their standard deviations.
+    FAST: it does or it may, as after a start. KNOWN: its rate is known too; before, a sample seems not to
+    depend on its age, and what is learnt of the parameters is wrong. The turn ends below ``SLOW_RADPS``: the
+    errors it leaves in the parameters exceed their standard deviations.
     """
 
     NO = 0
@@ -46,7 +46,7 @@ class Turning(IntEnum):
 class EstimatorConfig:
     """Filter tuning and the tests around it; ``perfect`` takes the reference messages instead.
 
-    ``blank_ticks``: for so long after a pulse a field sample may still be of its time.
+    ``blank_ticks``: for this long after a pulse a field sample may still date from it.
     """
 
     mekf: MekfConfig
@@ -60,7 +60,7 @@ class EstimatorConfig:
 class EstimatorState(NamedTuple):
     """The estimate, or None before start-up, and the measurements the gate refused in a row.
 
-    ``first``: from where the parameters start, None: the prior's mean; ``frozen``: they are not estimated.
+    ``first``: what the parameters start from, None: the prior's mean; ``frozen``: they are not estimated.
     ``batch``: samples for a start from fewer than three lit cells.
     """
 
@@ -90,7 +90,7 @@ class EstimatorState(NamedTuple):
 
 
 class Used(NamedTuple):
-    """Which measurements were taken in this tick; of Sun cells ``sun`` is whether any was."""
+    """Which measurements were taken in this tick; with Sun cells ``sun`` is whether any was."""
 
     field: bool
     sun: bool
@@ -107,7 +107,7 @@ def predict(
     driven: Sequence[Driven],
     config: EstimatorConfig,
 ) -> EstimatorState:
-    """Carry the estimate, if there is one, to this tick; without it where it is too old or no longer sound.
+    """Carry the estimate, if there is one, to this tick; drop it if it is too old or no longer sound.
 
     Args:
         state: of the tick before.
@@ -140,7 +140,7 @@ def _predicted(
 def update(
     state: EstimatorState, readings: Readings, reference: Reference, config: EstimatorConfig
 ) -> tuple[EstimatorState, Used]:
-    """Take the samples of this tick, or start by them; also which of them were taken.
+    """Take the samples of this tick, or start from them; also which of them were taken.
 
     Args:
         state: predicted to this tick.
@@ -160,7 +160,7 @@ def update(
         if started is None:
             return state._replace(batch=batch), Used(False, False, blanked)
         slow = norm(started.omega_body_radps) > 0.0 and norm(started.omega_body_radps) < SLOW_RADPS
-        turning = Turning.NO if slow else Turning.FAST  # of one tick no rate is known
+        turning = Turning.NO if slow else Turning.FAST  # one tick shows no rate
         begun = state._replace(estimate=_from_first(started, state), turning=turning, batch=EMPTY)
         return begun, Used(True, True, blanked)
 
@@ -190,10 +190,10 @@ def update(
 
 
 def _settled(state: EstimatorState, estimate: Estimate, seen: bool, config: MekfConfig) -> EstimatorState:
-    """With the parameters at their priors where ``Turning`` has it so; attitude and rate go on.
+    """The state with the parameters back at their priors where ``Turning`` requires it; the rest goes on.
 
-    A rate that is hardly known, as after a start, is neither fast nor slow. As every start, this takes field
-    and Sun, ``seen`` in this tick: with one of them the covariance of a start would not shrink.
+    A rate that is hardly known, as after a start, is neither fast nor slow. Like a start, this takes both
+    field and Sun, ``seen`` in this tick: with one alone the covariance of a start would not shrink.
     """
     square = dot(estimate.omega_body_radps, estimate.omega_body_radps)
     known = max(estimate.covariance.diagonal()[3:6].tolist()) < KNOWN_RADPS**2
@@ -205,7 +205,7 @@ def _settled(state: EstimatorState, estimate: Estimate, seen: bool, config: Mekf
     if after is turning or not seen:
         return state if turning is state.turning else state._replace(turning=turning)
     anew = mekf.start(estimate.q_body_from_eci, estimate.omega_body_radps, config)
-    if config.cells is not None:  # from an attitude as uncertain as cells have it the filter would go astray
+    if config.cells is not None:  # with the attitude as uncertain as at a start, the filter would diverge
         covariance = anew.covariance.copy()
         covariance[0:6, 0:6] = CELLS_ANEW**2 * estimate.covariance[0:6, 0:6]
         anew = anew._replace(covariance=covariance)
@@ -213,7 +213,7 @@ def _settled(state: EstimatorState, estimate: Estimate, seen: bool, config: Mekf
 
 
 def _from_first(started: Estimate, state: EstimatorState) -> Estimate:
-    """With the parameters that the ground has set, if it has."""
+    """The estimate with the parameters that the ground has set, if it has."""
     return started if state.first is None else started._replace(parameters=state.first)
 
 
@@ -233,13 +233,13 @@ def _updated(
 
 
 def untraced(state: EstimatorState) -> EstimatorState:
-    """Without the trace of deviations."""
+    """The state without the trace of deviations."""
     estimate = state.estimate
     return state if estimate is None else state._replace(estimate=estimate._replace(trace=None))
 
 
 def restart(state: EstimatorState) -> EstimatorState:
-    """Without an estimate: the next pair of good samples starts the filter."""
+    """The state without an estimate: the next pair of good samples starts the filter."""
     return state._replace(
         estimate=None, rejected_in_a_row=0, turning=Turning.NO, restarts=state.restarts + 1, batch=EMPTY
     )

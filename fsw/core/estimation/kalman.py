@@ -1,6 +1,6 @@
-"""filterpy's Kalman filter without the copies that it keeps for inspection, and for few states that move.
+"""filterpy's Kalman filter without the copies that it keeps for inspection, for mostly constant states.
 
-Beside it goes a trace of what unmodelled deviations would do to errors and innovations (Friedland 1969).
+With it, a trace of what unmodelled deviations would do to errors and innovations (Friedland 1969).
 """
 
 import struct
@@ -25,9 +25,9 @@ class LeanKalmanFilter(KalmanFilter):  # type: ignore[misc]  # filterpy has no t
                  x <- K y,  P <- (1 - K H) P (1 - K H)^T + K R K^T
 
     Most states are constants: only the first rows of F differ from those of the identity, and only they are
-    given. The product of three in the update is taken from the left and from the right in turn, so that no
-    product of two (n, n) matrices is needed. Without fading memory, control input, and copies of prior,
-    posterior and measurement; the constructor allocates nothing, where filterpy's takes longer than a
+    given. The triple product in the update is expanded from the left, then from the right, so that no
+    product of two (n, n) matrices is needed. There is no fading memory, no control input, and no copy of
+    prior, posterior and measurement; the constructor allocates nothing, while filterpy's takes longer than a
     prediction. No method changes an array in place, so arrays may be shared. The likelihoods are filterpy's.
 
     Attributes:
@@ -62,8 +62,8 @@ class LeanKalmanFilter(KalmanFilter):  # type: ignore[misc]  # filterpy has no t
     def update(self, z: Matrix, R: Matrix, H: Matrix, considered: slice | None = None) -> None:
         """Take a measurement z, (m), with noise R, (m, m), and sensitivity H, (m, n).
 
-        States that are ``considered`` keep their values: their rows of K are zero, and P remains that of the
-        errors (Schmidt 1966).
+        States that are ``considered`` keep their values: their rows of K are zero, and P remains the
+        covariance of the errors (Schmidt 1966).
         """
         self.y = z
         pht = self.P.dot(H.T)
@@ -81,15 +81,15 @@ _UNITS = {size: np.eye(size) for size in (1, 3, 6)}
 
 
 def inverse(m: Matrix) -> Matrix:
-    """By LAPACK alone, in a fifth of numpy's time; of a singular matrix no numbers, where numpy raises."""
+    """The inverse by LAPACK alone, in a fifth of numpy's time; NaN if it is singular, where numpy raises."""
     _, _, inverted, failure = dgesv(m, _UNITS[len(m)])
     return np.full_like(m, np.nan) if failure else inverted
 
 
 class Cause(NamedTuple):
-    """Of a deviation: its number, and which part of a unit the filter took into account.
+    """A deviation: its number, and the fraction of a unit that the filter took into account.
 
-    ``uncertain``: relative standard deviation of a unit that no measurement takes away.
+    ``uncertain``: relative standard deviation of a unit that no measurement reduces.
     """
 
     number: int
@@ -100,9 +100,9 @@ class Cause(NamedTuple):
 class Trace(NamedTuple):
     """What unmodelled deviations would do to the errors and innovations of the filter.
 
-    ``causes``: those of k deviations. ``effect`` (n, k + 1): what a unit of each leaves in the error state;
-    the last column only makes room for the innovation. ``sums`` (k + 1, k + 1): t^T S^-1 t over all updates,
-    t being the effects as measured, and the innovation last; ``measured``: of how many numbers.
+    ``causes``: the k deviations. ``effect`` (n, k + 1): what a unit of each leaves in the error state; the
+    last column only makes room for the innovation. ``sums`` (k + 1, k + 1): t^T S^-1 t over all updates, t
+    being the effects on the measurement, the innovation last; ``measured``: how many numbers were measured.
     """
 
     causes: tuple[Cause, ...]
@@ -112,7 +112,7 @@ class Trace(NamedTuple):
 
     @property
     def numbers(self) -> tuple[int, ...]:
-        """Those of the causes."""
+        """The numbers of the causes."""
         return tuple([cause.number for cause in self.causes])
 
     def packed(self) -> bytes:
@@ -129,7 +129,7 @@ def carried(trace: Trace, transition: Matrix) -> Trace:
 
 
 def unexplained(sums: Matrix) -> float:
-    """The part of the squares of the innovations that no deviation explains, each being 0 +- 1 beforehand.
+    """The summed NIS that no deviation explains, the prior of each deviation being 0 +- 1.
 
     What an update adds is its NIS in a filter that solves for the deviations too. NaN of damaged sums.
     """

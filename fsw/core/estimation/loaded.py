@@ -6,13 +6,13 @@ from fsw.core.estimation.parameters import component_places, with_component
 
 
 def load(state: EstimatorState, component: int, value: float, config: MekfConfig) -> EstimatorState:
-    """With another value of a component of the parameters, now and whenever the filter starts.
+    """The state with a new value of one component of the parameters, now and whenever the filter starts.
 
-    Its error is then that of the prior, and has nothing to do with the others.
+    Its error is then that of the prior, uncorrelated with the others.
 
     Args:
         state: before.
-        component: its number, one that is carried.
+        component: its number; it must be carried.
         value: SI units.
         config: the filter.
     """
@@ -29,11 +29,11 @@ def load(state: EstimatorState, component: int, value: float, config: MekfConfig
 
 
 def freeze(state: EstimatorState) -> EstimatorState:
-    """With the parameters as they are, now and whenever the filter starts, until ``thaw``."""
+    """The state with the parameters held as they are, now and whenever the filter starts, until ``thaw``."""
     first = state.first if state.estimate is None else state.estimate.parameters
     return untraced(state)._replace(first=first, frozen=True)
 
 
 def thaw(state: EstimatorState) -> EstimatorState:
-    """With the parameters estimated again."""
+    """The state with the parameters estimated again."""
     return state._replace(frozen=False)

@@ -13,7 +13,7 @@ Prediction = tuple[Vec3, Matrix]
 def field_prediction(
     q_body_from_eci: Quaternion, omega: Vec3, parameters: Parameters, b_eci_t: Vec3, config: MekfConfig
 ) -> Prediction:
-    """The magnetometer: z = (1 + s) o R(turn) C(t - delay) b + bias, R a small turn; T, body axes."""
+    """The magnetometer: z = (1 + s) o R(turn) C(t - delay) b + bias, R the misalignment; T, body axes."""
     delay_s = parameters.delay_s[0]
     b = _turned(_late(rotate(q_body_from_eci, b_eci_t), omega, delay_s), parameters.mag_turn_rad)
     sensitivity = _sensitivity(b, omega, delay_s, config.field_sensitivity, config.field_map)
@@ -21,10 +21,10 @@ def field_prediction(
 
 
 def field_sampled(parameters: Parameters, b_eci_t: Vec3, b_rate_eci_tps: Vec3) -> Vec3:
-    """The field, eci, T, where the satellite was when the sample was taken, by the age as estimated.
+    """The field, eci, T, where the satellite was when the sample was taken, by the estimated age.
 
-    That the field tells the age by this is left out of the sensitivity: an error of the place along the track
-    looks the same.
+    That this makes the age observable is left out of the sensitivity: an along-track position error looks the
+    same.
     """
     age_s = parameters.delay_s[0]
     return sub(b_eci_t, scale(age_s, b_rate_eci_tps)) if age_s else b_eci_t
@@ -33,7 +33,7 @@ def field_sampled(parameters: Parameters, b_eci_t: Vec3, b_rate_eci_tps: Vec3) -
 def sun_prediction(
     q_body_from_eci: Quaternion, omega: Vec3, parameters: Parameters, s_eci: Vec3, config: MekfConfig
 ) -> Prediction:
-    """The Sun sensor: z = R(turn) C(t - delay) s, R a small turn; body axes."""
+    """The Sun sensor: z = R(turn) C(t - delay) s, R the misalignment; body axes."""
     delay_s = parameters.delay_s[1]
     s = _turned(_late(rotate(q_body_from_eci, s_eci), omega, delay_s), parameters.sun_turn_rad)
     return s, _sensitivity(s, omega, delay_s, config.sun_sensitivity, config.sun_map)
@@ -58,10 +58,10 @@ def _late(v_body: Vec3, omega: Vec3, delay_s: float) -> Vec3:
 
 
 def _since(u: Vec3, omega: Vec3, delay_s: float) -> tuple[float, ...]:
-    """The derivative by the attitude now, of one by the attitude ``delay_s`` ago; to first order, by rows.
+    """The derivative by the attitude now, from that by the attitude ``delay_s`` ago; to first order, by rows.
 
-    [u x] (1 + [w x]) = [u x] + w u^T - (u . w) 1, w being the turn since. Along the rate it is that of the
-    age with the other sign, exactly: no sample tells the two apart.
+    [u x] (1 + [w x]) = [u x] + w u^T - (u . w) 1, w being the rotation since. Along the rate it is exactly
+    minus the derivative by the age: no sample can tell the two apart.
     """
     u1, u2, u3 = u
     w1, w2, w3 = w = scale(delay_s, omega)
@@ -74,7 +74,7 @@ def _since(u: Vec3, omega: Vec3, delay_s: float) -> tuple[float, ...]:
 
 
 def _turned(v: Vec3, turn_rad: Vec3) -> Vec3:
-    """As seen in axes turned by a small angle, to second order: to first it would grow longer."""
+    """The vector in axes rotated by a small angle, to second order: to first order it would grow longer."""
     if turn_rad == ZERO:
         return v
     x, y, z = v

@@ -1,4 +1,4 @@
-"""Multiplicative extended Kalman filter for attitude, rate, and what the table knows within bounds only.
+"""Multiplicative extended Kalman filter for attitude, rate, and what the table knows only within bounds.
 
 The attitude lives outside the filter as a unit quaternion. The filter carries the error state
 (dtheta, domega, then those of the ``Parameters`` that are uncertain); after each update the
@@ -12,7 +12,7 @@ body axes:
                    + dd x b + (dG m_driven) x b
                    + 3 mu/r^3 e1 x dJ e1 - omega x dJ omega - dJ domega/dt
 
-The parameters are constants, or walk slowly. What cannot be told apart keeps its prior (``unobservable``).
+The parameters are constants or slow random walks. What no sample can show keeps its prior (``unobservable``).
 
 Source: Lefferts, Markley, Shuster 1982; dynamics: Ovchinnikov, Penkov, Roldugin 2015; priors: Schmidt 1966.
 """
@@ -43,16 +43,16 @@ LAG_S = 60.0
 """Time over which innovations are averaged."""
 NO_LAG = (0.0,) * 6
 MAX_VARIANCE = 1e6
-"""Beyond it (1000 rad) an estimate is worthless, and the algebra comes near to overflow."""
+"""Beyond it (1000 rad) an estimate is worthless, and the algebra nears overflow."""
 
 
 class Estimate(NamedTuple):
     """Attitude, inertial rate, parameters, and the covariance of the error state.
 
     The covariance is (n, n), n being 6 and the parameters that are carried, laid out as in ``Layout``; units
-    rad, rad/s and those of ``Parameters``. ``nis``: the normalised innovations squared of this tick, of so
-    many ``numbers``; what the traced deviations explain is not in it. ``lag``: the mean of the innovations
-    over ``LAG_S``, of field and Sun, each number in its standard deviations.
+    rad, rad/s and those of ``Parameters``. ``nis``: the normalised innovation squared of this tick, less what
+    the traced deviations explain; ``numbers``: how many were measured. ``lag``: the mean innovations of field
+    and Sun over ``LAG_S``, each component in its standard deviations.
     """
 
     q_body_from_eci: Quaternion
@@ -80,11 +80,11 @@ def start(q_body_from_eci: Quaternion, omega_body_radps: Vec3, config: MekfConfi
 
 
 def corrected(estimate: Estimate, error: Matrix, uncertainty: Matrix, config: MekfConfig) -> Estimate:
-    """The estimate corrected by something else than a measurement.
+    """The estimate corrected by something other than a measurement.
 
     Args:
         estimate: before.
-        error: what it lacks, (n), laid out as the error state.
+        error: what is to be added, (n), laid out as the error state.
         uncertainty: covariance that this adds, (n, n).
         config: the filter.
     """
@@ -94,7 +94,7 @@ def corrected(estimate: Estimate, error: Matrix, uncertainty: Matrix, config: Me
 def healthy(estimate: Estimate) -> bool:
     """Whether every number is finite and every variance positive and below ``MAX_VARIANCE``.
 
-    Of a parameter alone may a component be exact, with no variance. To be checked after a prediction, which
+    Only a component of a parameter may be exact, with zero variance. To be checked after a prediction, which
     moves a bad number onto the diagonal of the covariance.
     """
     variances: list[float] = estimate.covariance.diagonal().tolist()
@@ -122,7 +122,7 @@ def predict(
         gravity_per_s2: 3 mu / r^3, 1/s^2.
         m_body_am2: dipole driven over the tick, body axes, A m^2.
         config: the filter.
-        doubted_am2: what that dipole is in doubt by, as in ``Driven``.
+        doubted_am2: standard deviation of that dipole's error, as in ``Driven``.
     """
     count = pieces_of_tick(estimate.omega_body_radps, config.tick_s)
     step = config if count == 1 else piece_of_tick(config, count)
@@ -135,7 +135,7 @@ def predict(
 def _predicted(
     estimate: Estimate, e1_eci: Vec3, b_eci_t: Vec3, gravity_per_s2: float, driven: Driven, config: MekfConfig
 ) -> Estimate:
-    """Over a tick or a piece of it."""
+    """The estimate after a tick or a piece of one."""
     h, parts = config.tick_s, config.layout
     q, omega, parameters, covariance, trace = estimate[:5]
     m, rotor = driven.m_body_am2, config.rotor
@@ -178,9 +178,9 @@ def update_sun(estimate: Estimate, s_body: Vec3, s_eci: Vec3, config: MekfConfig
 def update_both(
     estimate: Estimate, b_body_t: Vec3, b_eci_t: Vec3, s_body: Vec3, s_eci: Vec3, config: MekfConfig
 ) -> Estimate | None:
-    """Take field and Sun in one update. None when it is in doubt that both pass the gate each by itself.
+    """Take field and Sun in one update. None when it is uncertain that each would pass the gate by itself.
 
-    The NIS of a part is never above that of the whole, so the gate of one, applied to both, is the stricter.
+    The NIS of a part never exceeds that of the whole, so the gate for one, applied to both, is stricter.
     """
     b_predicted, b_sensitivity = field_prediction(*estimate[:3], b_eci_t, config)
     s_predicted, s_sensitivity = sun_prediction(*estimate[:3], s_eci, config)
@@ -198,18 +198,18 @@ def take(
     gate_nis: float,
     first: int = 0,
 ) -> Estimate | None:
-    """The update of filterpy, judged by its own NIS and folded in; None beyond the gate.
+    """The estimate after filterpy's update, gated by its NIS; None beyond the gate.
 
-    ``first`` is its place in the ``lag``, in which a single number does not count.
+    ``first``: place of the innovation in the ``lag``; that of a single number is left out of it.
     """
     kalman = LeanKalmanFilter(estimate.covariance)
     kalman.update(np.array(innovation), noise, sensitivity, config.considered)
     nis, trace = float(kalman.y.dot(kalman.SI).dot(kalman.y)), estimate.trace
     if trace is not None:
-        traced = sensitivity.dot(trace.effect)  # the operator @ takes twice as long for so small arrays
+        traced = sensitivity.dot(trace.effect)  # the operator @ takes twice as long on arrays this small
         traced[:, -1] = kalman.y
         sums = trace.sums + traced.T.dot(kalman.SI.dot(traced))
-        if nis > 2.0 * len(traced):  # else there is nothing to explain
+        if nis > 2.0 * len(traced):  # otherwise nothing to explain
             nis = unexplained(sums) - unexplained(trace.sums)
         effect, measured = trace.effect - kalman.K.dot(traced), trace.measured + len(traced)
         trace = Trace(trace.causes, effect, sums, measured)
@@ -223,7 +223,7 @@ def take(
 
 
 def _lagging(lag: tuple[float, ...], kalman: LeanKalmanFilter, first: int, part: float) -> tuple[float, ...]:
-    """The means with this part of new innovations, the first of which has that place."""
+    """The means with this fraction of the new innovations added, from place ``first`` on."""
     means = list(lag)
     variances: list[float] = kalman.S.diagonal().tolist()
     for place, (number, variance) in enumerate(zip(kalman.y.tolist(), variances, strict=True), start=first):
@@ -234,7 +234,7 @@ def _lagging(lag: tuple[float, ...], kalman: LeanKalmanFilter, first: int, part:
 def _fold(
     estimate: Estimate, error: Matrix, covariance: Matrix, config: MekfConfig
 ) -> tuple[Quaternion, Vec3, Parameters, Matrix]:
-    """Attitude, rate and parameters with the error state folded in, and the covariance of what they lack."""
+    """Attitude, rate and parameters with the error state folded in, and the covariance of their errors."""
     (q, omega, parameters), parts = estimate[:3], config.layout
     values: list[float] = error.tolist()
     t1, t2, t3, w1, w2, w3, *_ = values

@@ -1,4 +1,4 @@
-"""The filter's tuning, and what follows from it once and for all."""
+"""The filter's tuning, and what is derived from it once."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -37,13 +37,13 @@ class MekfConfig:
     ``moving`` (36, 12) is what the upper left 6x6 gains by each component of the rate and of
     3 mu/r^3 e1 e1^T, ``driven`` (36, 9) by each of m b^T.
 
-    ``torque_map`` takes the place of both where the filter estimates what the torque is not constant in.
+    ``torque_map`` replaces both if the derivative by some estimated parameter varies.
 
     By measurement, field, Sun or both at once: ``..._sensitivity`` is the constant part of H, (3, n),
     ``..._map`` what it gains, as in ``sensitivity_map``, and ``..._noise`` the covariance, (3, 3) or (6, 6).
     ``considered``: the states that no update changes. ``cells``: Sun cells in place of a Sun sensor.
-    ``unobservable``: what no sample tells, if anything.
-    ``pieces``: of so many equal pieces of a tick this is one, ``tick_s`` being its length.
+    ``unobservable``: what no sample shows, if anything.
+    ``pieces``: how many equal pieces a tick is predicted in, ``tick_s`` being the length of one.
     ``reaction_body_nm``: torque of a driven wheel on the body over this tick, N m.
     """
 
@@ -74,14 +74,14 @@ class MekfConfig:
 
 
 WHOLE_RAD = 0.3
-"""Up to this turn a tick is predicted at once."""
+"""Up to this rotation a tick is predicted in one step."""
 PIECE_RAD, MOST_PIECES = 0.1, 32
-"""In a faster one by pieces of at most this turn; half a revolution, beyond which samples show another
-rate."""
+"""Beyond it, in pieces of at most this rotation; the most make half a revolution, beyond which the sampled
+rate is aliased."""
 
 
 def pieces_of_tick(omega_radps: Vec3, tick_s: float) -> int:
-    """How many pieces of a tick are predicted one after the other at a rate; one where that is no number."""
+    """The number of pieces in which a tick is predicted at this rate; one if the rate is not a number."""
     square = dot(omega_radps, omega_radps)
     if not square * tick_s * tick_s > WHOLE_RAD**2:
         return 1
@@ -89,7 +89,7 @@ def pieces_of_tick(omega_radps: Vec3, tick_s: float) -> int:
 
 
 def piece_of_tick(config: MekfConfig, pieces: int) -> MekfConfig:
-    """The filter that predicts one of so many equal pieces of a tick; all together add the tick's noise."""
+    """The filter that predicts one of so many equal pieces of a tick; together they add the tick's noise."""
     part, size = 1.0 / pieces, config.layout.size
     noise = part * config.process_noise
     noise[0:3, 0:3] *= part * part
@@ -108,7 +108,7 @@ def piece_of_tick(config: MekfConfig, pieces: int) -> MekfConfig:
 
 
 def with_frozen_parameters(config: MekfConfig) -> MekfConfig:
-    """The filter that estimates attitude and rate alone, and reckons with the error of its parameters."""
+    """The filter that estimates attitude and rate alone, and allows for the error of its parameters."""
     return replace(config, considered=slice(6, config.layout.size))
 
 
@@ -128,12 +128,12 @@ def with_wheel(
 ) -> MekfConfig:
     """The filter of a satellite with a driven wheel, in a tick in which its momentum was measured.
 
-    J omega and the torques are those of the whole satellite, its wheel counted: with the momentum h relative
-    to the body J domega/dt = T - omega x (J omega + h) - dh/dt holds exactly.
+    J omega and the torques are those of the whole satellite, wheel included: with the momentum h relative to
+    the body, J domega/dt = T - omega x (J omega + h) - dh/dt holds exactly.
 
     Args:
-        config: without it.
-        momentum_body_nms: h, its mean over the tick, what is constant left out; body axes.
+        config: without the wheel.
+        momentum_body_nms: h, its mean over the tick, without any constant momentum; body axes.
         reaction_body_nm: -dh/dt, the mean over the tick, body axes.
         doubted_body_nms: standard deviation of the change of h over the tick, along the wheel's axis.
     """
@@ -182,7 +182,7 @@ def mekf_config(
         rate_sigma_radps: rad/s.
         torque_noise_nm_rts: white torque noise, N m sqrt(s).
         dipole_sigma: relative error of a driven dipole.
-        gate_nis: largest normalised innovation squared that is taken.
+        gate_nis: largest normalised innovation squared that is accepted.
         cells: Sun cells, which take the place of a Sun sensor.
     """
     parts = layout(set(priors))

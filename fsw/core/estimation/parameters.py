@@ -1,4 +1,4 @@
-"""What the filter estimates besides attitude and rate: constants that the table knows within bounds only."""
+"""What the filter estimates besides attitude and rate: constants that the table knows only within bounds."""
 
 from dataclasses import dataclass
 from math import nan
@@ -24,14 +24,14 @@ class Parameters(NamedTuple):
         dipole_body_am2: residual dipole, A m^2, body axes.
         coil_error: G by rows, the coils' dipole being (1 + G) times the one driven, body axes.
         inertia_error_kgm2: xx, yy, zz, xy, xz, yz of the inertia tensor less the table's, body axes.
-        mag_turn_rad: small turn of the magnetometer's axes from the body's, rad.
+        mag_turn_rad: misalignment of the magnetometer, a small rotation of its axes from the body's, rad.
         mag_scale: relative error of its scale, by axis.
-        sun_turn_rad: small turn of the Sun sensor's axes, rad.
+        sun_turn_rad: misalignment of the Sun sensor, rad.
         delay_s: age of the samples of magnetometer and Sun sensor, s.
-        cell_excess: what each Sun cell shows beyond its model, in parts of full sunlight; of a satellite with
-            a Sun sensor instead there is nothing, as of the two that follow.
+        cell_excess: what each Sun cell shows beyond its model, as a fraction of full sunlight; empty, as are
+            the next two, for a satellite with a Sun sensor instead.
         cell_gain: relative error of the gain of each.
-        earth_light: part of the sunlight that the Earth reflects beyond what the table reckons with.
+        earth_light: error of the albedo: fraction of the sunlight that the Earth reflects beyond the table's.
     """
 
     mag_bias_t: Vec3 = ZERO
@@ -74,13 +74,13 @@ OF_CELLS = {"cell_excess": MOST_CELLS, "cell_gain": MOST_CELLS, "earth_light": 1
 SIZES = {**dict(zip(NAMES, map(len, NOTHING), strict=True)), **OF_CELLS}
 """How many numbers each has if it is carried."""
 COMPONENTS = tuple((index, offset) for index, name in enumerate(NAMES) for offset in range(SIZES[name]))
-"""By its number on the bus, of which parameter each component is, and which of its numbers."""
+"""Of each component, by its number on the bus: the index of its parameter, and its place within that."""
 
 
 class Prior(NamedTuple):
-    """What is known of a parameter beforehand, by component: standard deviation, random walk, and mean.
+    """What is known of a parameter a priori, by component: standard deviation, random walk, and mean.
 
-    The walk is per square root of a second; without a mean it is zero.
+    The walk is per square root of a second; an empty mean is zero.
     """
 
     sigma: tuple[float, ...]
@@ -92,7 +92,7 @@ class Prior(NamedTuple):
 class Layout:
     """Where each carried parameter stands in the error state; None where it is not carried.
 
-    ``carried`` has, for each one carried, its place among the ``Parameters`` and in the error state.
+    ``carried``: of each one carried, its place among the ``Parameters`` and in the error state.
     """
 
     size: int
@@ -112,7 +112,7 @@ class Layout:
 
 
 def layout(carried: set[str]) -> Layout:
-    """The error state with these parameters behind attitude and rate, in the order of ``Parameters``.
+    """The error state with these parameters after attitude and rate, in the order of ``Parameters``.
 
     Args:
         carried: names of fields of ``Parameters``.
@@ -170,9 +170,9 @@ def estimated_inertia(nominal: Rotor, parameters: Parameters) -> Mat3:
 
 
 def estimated_rotor(nominal: Rotor, parameters: Parameters) -> Rotor:
-    """The rotor with the estimated error of its inertia; no numbers in the inverse of a singular one.
+    """The rotor with the estimated error of its inertia; the inverse of a singular one is NaN.
 
-    An estimate that has come to that is no longer healthy after a prediction, and the filter starts anew.
+    Such an estimate is no longer healthy after a prediction, and the filter restarts.
     """
     inertia = estimated_inertia(nominal, parameters)
     try:
@@ -183,7 +183,7 @@ def estimated_rotor(nominal: Rotor, parameters: Parameters) -> Rotor:
 
 
 def estimated_dipole(m_driven_am2: Vec3, parameters: Parameters) -> Vec3:
-    """M = (1 + G) m_driven + d, body axes, A m^2."""
+    """The dipole m = (1 + G) m_driven + d, body axes, A m^2."""
     x, y, z = m_driven_am2
     g11, g12, g13, g21, g22, g23, g31, g32, g33 = parameters.coil_error
     d1, d2, d3 = parameters.dipole_body_am2

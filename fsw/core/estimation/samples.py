@@ -17,7 +17,7 @@ def usable_field(readings: Readings) -> Vec3 | None:
 
 
 def saturated_field(readings: Readings) -> tuple[Vec3, Vec3] | None:
-    """A field sample with one axis at the end of its range, T, and the direction of which it says nothing."""
+    """A field sample with one axis at the end of its range, T, and the direction that it leaves open."""
     field, saturated = readings.field, readings.saturated
     if field is None or len(saturated) != 1 or not coils_idle(readings):
         return None
@@ -25,7 +25,7 @@ def saturated_field(readings: Readings) -> tuple[Vec3, Vec3] | None:
 
 
 def coils_idle(readings: Readings) -> bool:
-    """Whether no coil adds its own field to what the magnetometer senses, but what has been taken off."""
+    """Whether no coil adds a field to what the magnetometer senses, beyond what has been subtracted."""
     coil = readings.coil
     if readings.settled:
         return readings.quiet
@@ -39,7 +39,7 @@ def usable_sun(readings: Readings) -> Vec3 | None:
 
 
 def usable_cells(readings: Readings, cells: CellSet | None) -> tuple[float | None, ...]:
-    """What each Sun cell shows, in parts of full sunlight; None for one that is not to be used."""
+    """What each Sun cell shows, as a fraction of full sunlight; None for one that is not to be used."""
     sample = readings.cells
     if cells is None or sample is None or not sample.valid:
         return ()

@@ -1,4 +1,4 @@
-"""What the sensitivity of a sensor that sees a direction is linear in."""
+"""The sensitivity of a sensor that sees a direction, as a linear map."""
 
 import numpy as np
 
@@ -13,16 +13,16 @@ _SKEW = np.array([skew((x, y, z)) for x, y, z in _AXES.tolist()]).transpose(1, 2
 
 
 def sensitivity_map(parts: Layout, sensor: int, turn: slice | None, scale: slice | None) -> Matrix | None:
-    """The entries of H, (3, n), by rows, by what they are linear in, (3 n, 18).
+    """The map to the entries of H, (3, n), by rows, from 18 numbers, (3 n, 18).
 
-    By its derivative by the attitude (9), and by each component of the direction u as the sensor sees it, of
-    omega x u, and of -delay u; body axes. None where the filter carries nothing of the sensor but its bias.
+    They are the derivative by the attitude (9) and the components of the direction u as the sensor sees it,
+    of omega x u, and of -delay u; body axes. None if the filter carries nothing of the sensor but its bias.
 
     Args:
         parts: layout of the error state.
         sensor: its place among the ages of the samples.
-        turn: place of the small turn of its axes.
-        scale: place of the errors of its scale.
+        turn: place of its misalignment.
+        scale: place of its scale errors.
     """
     if parts.delay is None and turn is None and scale is None:
         return None

@@ -1,21 +1,21 @@
-"""What no sample tells: a turn of the body axes, and a common factor of all that moves the satellite.
+"""What no sample shows: a turn of the body axes, and a common factor in all that moves the satellite.
 
-Turn everything that is given in body axes, the body with it, and no sample changes. Multiply inertia, coils,
+Turn everything given in body axes, and the body with it, and no sample changes. Multiply inertia, coils,
 residual dipole and torque by one factor, and no motion changes. The directions D of the error state are
 
     turn phi     dtheta = -phi,  domega = phi x omega,  of magnetometer and Sun sensor phi,  dd = phi x d,
                  dtorque = phi x torque,  dG = [phi x](1 + G),  dJ = [phi x] J - J [phi x]
     factor 1 + f dJ = f J,  dG = f (1 + G),  dd = f d,  dtorque = f torque
 
-Along them only the table knows anything, as long as it takes none of these for exact and no wheel tells body
-axes and torque by a momentum that is known. They depend on the estimate, so each correction turns them. A
-covariance that did not turn with them would be surer along the new ones, of what nothing has shown; and soon
-the filter would put down to them whatever is not modelled. With W the coordinates along D, W^T D = 1, that of
-the turns being the Sun sensor's, that of the factor the trace of the inertia,
+Along them there is no information but the table's, as long as it takes none of these as exact and no wheel of
+known momentum makes body axes and torque observable. They depend on the estimate, so each correction turns
+them. A covariance that did not turn with them would be too small along the new ones, with nothing measured,
+and soon the filter would explain by them whatever is not modelled. With W the coordinates along D, W^T D = 1,
+those of the turns being the Sun sensor's misalignment, that of the factor the trace of the inertia,
 
     P <- T P T^T,  T = 1 + (D_after - D_before) W^T,  so that D^T P^-1 D stays what it was.
 
-Source: Huang, Mourikis, Roumeliotis 2010, on filters that come to know what they cannot observe; Barrau,
+Source: Huang, Mourikis, Roumeliotis 2010, on filters that gain information where they cannot observe; Barrau,
 Bonnabel 2017, on errors along directions that move with the estimate.
 """
 
@@ -35,7 +35,7 @@ from fsw.core.estimation.parameters import (
 )
 
 TURNS, FACTOR = slice(0, 3), 3
-"""Of the directions."""
+"""Columns of the directions."""
 _AXES: list[Matrix] = [np.array(skew(axis)) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))]
 _UNIT = np.eye(3)
 _UPPER = ((0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2))
@@ -45,9 +45,9 @@ _UPPER = ((0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2))
 class Unobservable(NamedTuple):
     """The directions that a filter cannot observe: turns and factor, or the factor alone.
 
-    ``moved``: the part of the error state, of m numbers, in which the directions depend on the estimate, as
-    they do on this part of it alone. ``moving`` (m k, m): what each of the k directions, (m, k) by rows,
-    gains there by each. ``coordinates`` (k, n): W^T, times the trace of the inertia for the factor, the last;
+    ``moved``: the m components of the error state in which the directions depend on the estimate; they depend
+    on these components alone. ``moving`` (m k, m): what each of the k directions, (m, k) by rows, gains there
+    per unit of each. ``coordinates`` (k, n): W^T, its last row, the factor's, times the trace of the inertia;
     ``trace_kgm2``: that trace, by the table.
     """
 
@@ -62,7 +62,7 @@ def unobservable(parts: Layout, variances: list[float], rotor: Rotor) -> Unobser
 
     Args:
         parts: layout of its error state.
-        variances: of the error state, beforehand.
+        variances: of the error state, a priori.
         rotor: by the table.
     """
 
@@ -95,12 +95,12 @@ def unobservable(parts: Layout, variances: list[float], rotor: Rotor) -> Unobser
 def turned_along(
     covariance: Matrix, error: Matrix, parameters: Parameters, directions: Unobservable
 ) -> Matrix:
-    """The covariance of an estimate that is corrected, turned with what no sample tells.
+    """The covariance of a corrected estimate, turned with the directions that no sample shows.
 
-    It is not symmetric: half the sum of it and its transpose is the covariance.
+    The result is not symmetric: half the sum of it and its transpose is the covariance.
 
     Args:
-        covariance: after the correction, yet along the directions before it, (n, n).
+        covariance: after the correction, but along the directions before it, (n, n).
         error: the correction, (n).
         parameters: as estimated before.
         directions: those of the filter.

@@ -1,18 +1,18 @@
-"""The one rule by which a unit is isolated, readmitted or doubted: a sequential test of evidence, in nats.
+"""The one rule by which a unit is isolated, readmitted or suspected: a sequential test of evidence, in nats.
 
-A sample that is as likely under a fault as without has no weight; else it weighs its log-likelihood ratio l,
-and the test of Wald and Page sums it up, E <- max(0, E + l), until E reaches A. A sound unit gets there once
-in e^A independent samples on average, or less often. The mean time between false alarms is what the table
-states, T, and the time over which errors of the samples are correlated is tau, so that
+A sample that is as likely under a fault as without has no weight; otherwise it weighs its log-likelihood
+ratio l, and the test of Wald and Page sums it up, E <- max(0, E + l), until E reaches A. A sound unit gets
+there once in e^A independent samples on average, or less often. The mean time between false alarms is what
+the table states, T, and the time over which errors of the samples are correlated is tau, so that
 
     A = ln(T / tau).
 
-Samples closer than tau are not independent: a sample weighs no more than its part of one nat in tau against a
-unit, whatever its likelihood. So no single sample isolates, nor do many in a short time.
+Samples closer than tau are not independent: a sample weighs no more than its share of one nat per tau against
+a unit, whatever its likelihood. So no single sample isolates, nor do many in a short time.
 
-The way back is the same test of the opposite question. A faulty sensor looks right in ``CHANCE`` of the time,
-because its error happens to lie where it does not show, and a sound one in all but ``MISS`` of it: a sample
-that fits weighs ln(1 / CHANCE) in tau, one that does not, ln(MISS / (1 - CHANCE)) at once.
+Readmission is the same test of the opposite question. A faulty sensor looks right ``CHANCE`` of the time,
+because its error happens to lie where it does not show, and a sound one all but ``MISS`` of it: samples that
+fit weigh ln(1 / CHANCE) per tau, one that does not, ln(MISS / (1 - CHANCE)) at once.
 
 Source: Wald 1945; Page 1954, Continuous inspection schemes (Biometrika 41); Lorden 1971 for the e^A.
 """
@@ -25,23 +25,23 @@ from fsw.core.estimation.mekf import LAG_S
 CORRELATION_S = 2.0
 """Errors of samples closer than this are not independent: twice the sampling time of the slowest sensor."""
 MISS = 1e-3
-"""Samples of a sound sensor that the filter's gate refuses."""
+"""Fraction of the samples of a sound sensor that the filter's gate refuses."""
 CHANCE = 0.8
-"""Part of the time in which a faulty sensor looks right, at most."""
+"""Largest fraction of the time in which a faulty sensor looks right."""
 BLIND_S = 120.0
-"""A prediction that nothing has confirmed for longer is not valid: pulses that nobody sees may fail."""
+"""A prediction that nothing has confirmed for longer is not valid: pulses may have failed unseen."""
 SIGMAS = 4.0
-"""Beyond so many standard deviations a number is none that the table allows, and no noise."""
+"""Beyond this many standard deviations a number is neither noise nor within what the table allows."""
 DAY_S = 86400.0
 
 
 class EvidenceWeights(NamedTuple):
-    """What counts how much, nats: the threshold, and by tick what a sample weighs.
+    """The threshold, and what a sample weighs in a tick, nats.
 
     ``against``: a bad sample against a unit, and a good one in its favour; ``fits`` and ``misfits``: a sample
     of an isolated unit; ``agrees``: a pair of samples of which only their angle can be compared.
-    ``blind_ticks``: for so long a prediction without samples stays valid; ``averaged``: samples in the mean
-    of innovations.
+    ``blind_ticks``: how long a prediction without samples stays valid; ``averaged``: samples in the mean of
+    innovations.
     """
 
     threshold: float
@@ -84,17 +84,17 @@ def weigh(nats: float, by: float, threshold: float) -> float:
 
 INFLATION = 4.0
 """Factor by which a covariance is wrong if it is: of the innovations under a fault that is too slow for the
-filter's gate, of an estimate that is to be used, of a prediction that is to tell if a sample is right."""
+filter's gate, of an estimate that is to be used, of a prediction by which a sample is to be judged."""
 
 
 def misfit(nis: float, numbers: int) -> float:
-    """What innovations weigh against all who take part in them, at most one nat.
+    """What innovations weigh against every unit that contributes to them, at most one nat.
 
     The log-likelihood ratio of a covariance of ``INFLATION`` times the filter's and the filter's own.
 
     Args:
         nis: normalised innovation squared.
-        numbers: of how many numbers; none weigh nothing.
+        numbers: how many numbers it is of; none weigh nothing.
     """
     weight = 0.5 * (1.0 - 1.0 / INFLATION) * nis - 0.5 * numbers * log(INFLATION)
     return max(-1.0, min(1.0, weight))
@@ -104,7 +104,7 @@ def mean_misfit(means: tuple[float, ...], weights: EvidenceWeights) -> float:
     """What the mean innovations of the sensor that is further off weigh against the estimate, nats.
 
     The log-likelihood ratio of a lasting deviation, and of a covariance ``INFLATION`` times the filter's:
-    half of chi square, which of white innovations with that mean over n samples is n / ``INFLATION`` m^2.
+    half of chi square, which is n / ``INFLATION`` m^2 for white innovations with mean m over n samples.
 
     Args:
         means: of field and Sun, three numbers each, in standard deviations.

@@ -37,11 +37,11 @@ class CoilFault(IntEnum):
 
 
 OPEN_PART, REVERSED_PART = 0.2, -0.5
-"""Parts of the nominal current or effect below which nothing flows, and below which it flows backwards."""
+"""Fractions of the nominal current or effect below which nothing flows, and below which it is reversed."""
 
 
 def coil_fault(part: float, weak_part: float) -> int:
-    """The fault of a coil that does this part of what it should, if that is below ``weak_part``; else 0."""
+    """The fault of a coil with this fraction of its nominal effect; 0 unless it is below ``weak_part``."""
     if not part < weak_part:
         return 0
     if part < REVERSED_PART:

@@ -69,7 +69,7 @@ class Evidence(NamedTuple):
 def judge_current(
     health: Health, view: CoilView, readings: Readings, tick: int, config: FdirConfig
 ) -> Health:
-    """The health after comparing what the coil driver reports with what was asked of it."""
+    """The health after comparing what the coil driver reports with what was requested of it."""
     unasked = unexpected(view, tick, config.coils.pulses)
     found = currents.judge_current(health.coils, view, readings, unasked, tick, config.coils)
     return health if found is health.coils else Health(health.sensors, found)
@@ -88,8 +88,8 @@ def examine(readings: Readings, health: Health, reference: Reference, config: Fd
 def trusted(readings: Readings, health: Health, findings: Findings) -> Readings:
     """The readings from which the filter may be updated.
 
-    Without those of an isolated sensor, and those that something speaks against; without the Sun too while
-    the pair is disputed: no estimate begins then.
+    Without the samples of an isolated sensor, and those that something speaks against; without the Sun too
+    while the pair is disputed, so that no estimate begins.
     """
     field, sun, *_ = found = health.sensors
     if field.fault or findings.field_cause:
@@ -113,7 +113,7 @@ def judge(
 
     Returns:
         The health, the estimator corrected or restarted where a fault was found, and the attitude, which is
-        not valid while a fault may be what it shows.
+        not valid while a fault may have falsified it.
     """
     reference, findings = evidence.reference, evidence.findings
     before, found, weights = health.sensors, health.coils, config.sensors.weights
@@ -149,14 +149,14 @@ def judge(
 
 
 UNKNOWN_PART = 0.5
-"""A sound coil's gain seems no less on a satellite that is not the one of the table: one twice as heavy."""
+"""A sound coil's gain seems no lower on a satellite that differs from its table: one twice as heavy."""
 
 
 def _believed(estimate: Estimate | None, both: Pair, proven: bool, config: FdirConfig) -> BelievedParts:
-    """Which parts of their effect are believed of coils: none, those of a weak coil, or of a much weaker one.
+    """Which fractions of effect count as a coil's fault: none, those of a weak coil, or of a much weaker one.
 
-    What the filter assumes beyond the table may come from that coil, or make a sound one seem somewhat weak;
-    and so may what misled a filter that lagged. Single pulses are then those of an open coil or no coil's.
+    Parameters beyond the table's bounds may come from that coil, or make a sound one seem somewhat weak; so
+    may whatever misled a filter that lagged. Single pulses then show an open coil or no coil's fault.
     """
     if not proven or estimate is None:
         return BelievedParts(-inf, -inf)
@@ -172,14 +172,14 @@ def _believed(estimate: Estimate | None, both: Pair, proven: bool, config: FdirC
 def _turned_unseen(found: CoilHealth, used: Used, config: FdirConfig) -> bool:
     """Whether a stuck coil, which blinds the magnetometer, turns a satellite of uncertain inertia.
 
-    What the coil does to it about the Sun's direction nothing measures, and an inertia that is somewhat
-    wrong is soon wrong by degrees.
+    Nothing measures what the coil does to it about the Sun's direction, and with a somewhat wrong inertia the
+    attitude is soon wrong by degrees.
     """
     return found.stuck and not used.field and config.coils.mekf.layout.inertia is not None
 
 
 def _pulses_untold(found: CoilHealth, both: Pair, config: FdirConfig) -> bool:
-    """Whether a coil may be weak, by over half of what isolates it, or the sensor that shows it is wrong."""
+    """Whether over half of what isolates a coil speaks against one, or the sensor that shows it is wrong."""
     weak, each = config.coils.weak, zip(found.older, found.faults, strict=True)
     suspected = any(older.nats(weak) > 0.5 * weak.threshold and not fault for older, fault in each)
     return suspected and not pair.proven(both, config.sensors.weights)

@@ -1,7 +1,7 @@
 """The calibration of sensors and coil driver: from what the boards count to body axes, and back.
 
 Magnetometer: b_body = M (z - o), z the reading, o its offset; M may mirror, as wrongly wired axes do. Sun
-sensor: s_body = R z. Coil driver: of its three outputs each drives the coil along one body axis, in one of
+sensor: s_body = R z. Coil driver: each of its three outputs drives the coil along one body axis, in one of
 two senses. Beyond this module coil j is the coil along body axis j, with the sense of that axis. Its gain and
 its true axis are in ``coil_axes`` of the actuation.
 """
@@ -46,7 +46,7 @@ NO_CALIBRATION = Calibration()
 
 
 def calibrated(readings: Readings, calibration: Calibration) -> Readings:
-    """The readings in body axes, those of the coil driver by axis of the coils."""
+    """The readings in body axes, those of the coil driver by coil axis."""
     if calibration is NO_CALIBRATION:
         return readings
     field, sun, outputs = readings.field, readings.sun, calibration.outputs
@@ -66,7 +66,7 @@ def _body_field(sample: MagField, calibration: MagnetometerCalibration) -> MagFi
 
 
 def _saturated(sample: MagField, calibration: MagnetometerCalibration) -> tuple[Vec3, ...]:
-    """By axis at the end of its range, what a unit of its reading is, body axes."""
+    """Of each axis at the end of its range, what a unit of its reading is in body axes."""
     columns = zip((sample.b_x, sample.b_y, sample.b_z), transpose(calibration.matrix), strict=True)
     return tuple([column for reading, column in columns if abs(reading) >= calibration.range_nt])
 
@@ -93,7 +93,7 @@ def _by_axis(readings: Readings, outputs: Outputs) -> Readings:
 
 
 def for_outputs(request: CoilFire | CoilDipole, calibration: Calibration) -> CoilFire | CoilDipole:
-    """A request by axis of the coils as one to the outputs of the coil driver."""
+    """A request by coil axis, converted to one for the outputs of the coil driver."""
     outputs = calibration.outputs
     if outputs is None:
         return request

@@ -40,7 +40,7 @@ INBOX_LIMIT = 64
 NOISE_LIMIT = 8
 """Broken frames in one tick beyond which no telecommand is believed.
 
-Of noise one frame in 256 passes the CRC by chance. A faulty line breaks no more than the few that nodes send.
+One frame of noise in 256 passes the CRC by chance. A faulty line breaks no more than the few that nodes send.
 """
 
 InputMessage = (
@@ -102,10 +102,10 @@ class Readings(NamedTuple):
     """The last accepted message of each kind in this tick; None where there was none.
 
     Telecommands are all taken, in order of reception; ``repeated`` are those with the counter of the one
-    before. ``under_own_id`` is the lowest identifier of fsw itself under which a whole frame came, 0 if there
-    is none. ``end`` is a PLANT_END after which the flight has gone on. ``quiet``: no coil has driven for as
-    long as a field sample may be old. ``unusable_cells``: those of ``cells`` that are not to be trusted.
-    ``settled``: what the coils add to the field sample is known, and has been taken off. ``saturated``: for
+    before. ``under_own_id`` is the lowest identifier of fsw itself under which an intact frame came, 0 if
+    none did. ``end`` is a PLANT_END after which the flight has gone on. ``quiet``: no coil has been driven
+    for as long as a field sample may be old. ``unusable_cells``: those of ``cells`` not to be trusted.
+    ``settled``: what the coils add to the field sample is known, and has been subtracted. ``saturated``: for
     each axis of the magnetometer that is at the end of its range, the direction of ``field``, body axes, that
     follows from its reading.
     """
@@ -134,10 +134,10 @@ NOTHING = Readings(None, None, None, None, None, None)
 
 
 class GateState(NamedTuple):
-    """Last counter of each listened message (-1: none yet), and counts and CRCs since boot.
+    """Last counter of each message listened to (-1: none yet), and counts and CRCs since boot.
 
     ``input_crc`` is the CRC-32 of the data of all accepted messages: no accepted frame can be altered in a
-    log without another state CRC, not even a sample that was not used. ``command_crc`` is the same of
+    log without a change of the state CRC, not even an unused sample. ``command_crc`` is the same for
     telecommands and PLANT_END, which may come between the boards' messages in any order.
     """
 
@@ -163,7 +163,7 @@ def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateSt
     Returns:
         The readings, and the gate's state with ``rejected`` (broken, unknown, repeated, out of range, or a
         telecommand in noise), ``missed`` (jumps of a counter), ``overrun`` (frames beyond the limit, unread),
-        ``input_crc`` and ``command_crc`` brought forward.
+        ``input_crc`` and ``command_crc`` updated.
     """
     slots: list[object] = [None] * len(INPUT_MESSAGES)
     telecommands: list[Telecommand] = []
@@ -188,7 +188,7 @@ def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateSt
         message = message_class.decode(frame.data)
         slot = _SLOT[frame.can_id]
         step = (message.counter - counters[slot]) & 0xF
-        if message_class is CoilBoot:  # a board that starts counts anew
+        if message_class is CoilBoot:  # a board that boots counts anew
             for coil_slot in _COIL_SLOTS:
                 counters[coil_slot] = -1
         has_counter = counters[slot] >= 0

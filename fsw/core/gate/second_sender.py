@@ -2,7 +2,7 @@
 
 fsw does not receive its own frames. An intact frame under one of its own identifiers, and the refusal of a
 request that it never made, are signs of a second sender. One alone may be a frame of an earlier boot that was
-still on its way, or noise with the right CRC: several of them in short sequence detect one.
+still on its way, or noise with the right CRC: several in quick succession reveal one.
 """
 
 from typing import NamedTuple
@@ -17,10 +17,10 @@ REQUESTS = frozenset({CoilFire.ID, CoilDipole.ID})
 
 
 class SecondSenderConfig(NamedTuple):
-    """A sign counts with the one before while they are no further apart than this.
+    """How far apart a sign and the one before may be to count together.
 
-    ``request_ticks`` for requests, of which there may be one a back-off; ``other_ticks`` for what else fsw
-    sends, some of it in each tick. Without a sign for ``request_ticks`` it is gone.
+    ``request_ticks`` for requests, of which there may be one per back-off; ``other_ticks`` for whatever else
+    fsw sends, some of it in each tick. Without a sign for ``request_ticks`` the second sender is gone.
     """
 
     request_ticks: int
@@ -56,8 +56,8 @@ def watch(
     Args:
         before: the watch before it.
         readings: of this tick.
-        seq: number of the request that the coil driver accepted last; one of fsw has this or the next.
-        pulsed: the coil driver is pulsed: its refusals have numbers of requests.
+        seq: number of the request that the coil driver accepted last; fsw's own has this or the next.
+        pulsed: whether the coil driver is pulsed: its refusals then carry request numbers.
         tick: this one.
         config: the limits.
     """
@@ -72,5 +72,5 @@ def watch(
 
 
 def _of_another(refused: CoilRefused, seq: int) -> bool:
-    """Whether the refused request is not of fsw; a malformed one may bear any number."""
+    """Whether the refused request is not fsw's; a malformed one may carry any number."""
     return refused.reason != CoilRefusedReason.MALFORMED and (refused.seq - seq) & 0xFF > 1

@@ -1,24 +1,24 @@
 """Which SYNC is believed: time comes over the bus, and the bus may lie.
 
-A SYNC of a tick near ahead is believed at once. One of the tick that was answered last is a duplicate, or
+A SYNC of a tick not far ahead is believed at once. One of the tick that was answered last is a duplicate, or
 comes from a plant that did not receive the answer and repeats it. Any other is strange. One strange SYNC
-moves nothing; a second one that names the same tick or the next one means that the plant has started anew:
+changes nothing; a second one that names the same tick or the next one means that the plant has restarted:
 in lockstep it repeats its SYNC until it is answered, in real time it goes on.
 
-Others may stand between the two. What is in doubt is forgotten when a settled count goes on by a tick, so
-that strange SYNCs between true ones never add up. A count that has been skipped or begun anew settles in
-``LEAP_TICKS``; until then one that has been left for it may be believed again. Of two plants that both go on
-tick by tick nothing here can decide which is the false one.
+Others may come between the two. What is in doubt is forgotten when a settled count advances by a tick, so
+that strange SYNCs between true ones never add up. A count that has skipped or restarted settles in
+``LEAP_TICKS``; until then the one that was abandoned for it may be believed again. Of two plants that both
+advance tick by tick, nothing here can decide which is the false one.
 """
 
 from enum import Enum, auto
 from typing import NamedTuple
 
 LEAP_TICKS = 60
-"""A SYNC no further ahead is believed at once: those between were lost. A new count settles in as many."""
+"""A SYNC no further ahead is believed at once: those between were lost. A new count settles in as long."""
 
 MOST_DOUBTED = 64
-"""Ticks remembered as in doubt, the latest."""
+"""How many ticks are remembered as in doubt, the latest."""
 
 
 class Belief(Enum):
@@ -28,9 +28,9 @@ class Belief(Enum):
     UNANSWERED = auto()
     """Of the tick that was answered, repeatedly: the answer was not received."""
     NEXT = auto()
-    """The next tick; where SYNCs were lost, one near ahead."""
+    """The next tick; where SYNCs were lost, one not far ahead."""
     RESTARTED = auto()
-    """A tick of a plant that has started anew."""
+    """A tick of a plant that has restarted."""
 
 
 class SyncWatch(NamedTuple):
@@ -81,7 +81,7 @@ def near(current: int, tick: int) -> bool:
 
 
 def _gone_on(watch: SyncWatch, current: int, tick: int) -> SyncWatch:
-    """The watch after a tick near ahead: a skip may come from a forged SYNC."""
+    """The watch after a tick not far ahead: a skip may come from a forged SYNC."""
     if tick > current + 1:
         return watch._replace(settled_tick=tick + LEAP_TICKS)
     return watch._replace(doubted=()) if watch.doubted and current >= watch.settled_tick else watch

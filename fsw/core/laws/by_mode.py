@@ -10,7 +10,7 @@ from fsw.wire.messages import Mode
 
 
 def detumble(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """By the estimated rate where it is valid: predictive with pulses, else proportional. Otherwise B-dot."""
+    """By the estimated rate if it is valid: predictive with pulses, proportional without. Otherwise B-dot."""
     if not inputs.attitude.valid:
         return bdot(inputs, memory, setpoint, config)
     law = predictive if config.pulsed else rate_damping
@@ -20,9 +20,9 @@ def detumble(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Contr
 def demand(
     mode: Mode, inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig
 ) -> Demand | None:
-    """The demand of the law of this mode; None in SAFE. From a dipole the residual one is taken off.
+    """The demand of the law of this mode; None in SAFE. The residual dipole is subtracted.
 
-    In DETUMBLE it is that of ``detumble``, but a law that is ``open_loop``.
+    In DETUMBLE it is that of ``detumble``, unchanged, unless the law is ``open_loop``.
     """
     match mode:
         case Mode.SAFE:

@@ -25,15 +25,15 @@ class FieldSample:
 class LawInput(NamedTuple):
     """What a law receives in one tick.
 
-    ``b_body_t`` is the modelled field where the attitude is valid, else the last measured one; ``sample``
-    and ``before`` are the last usable field sample of this tick and of the tick before; ``sun_body`` is the
-    measured Sun direction, None where there is none; ``reference`` is orbit, field and Sun as modelled, None
-    where no orbit is known; ``torque_body_nm`` is the estimated torque on
-    the nominal attitude, that of an inertia off the table's included, and ``dipole_body_am2`` the estimated
-    residual dipole, which is taken off a demanded dipole by ``by_mode``, not by the law; ``tick`` is this
-    tick; ``ephemeris`` gives orbit and field at later times; ``wait_ticks`` are the ticks until each coil may
-    be fired as far as is known, 0 for in answer to this one, ``NEVER`` for one with a fault; ``wheel_nms`` is
-    the momentum of a driven wheel relative to the body, along its axis, None where there is none or it is not
+    ``b_body_t`` is the modelled field where the attitude is valid, otherwise the last measured one;
+    ``sample`` and ``before`` are the last usable field sample of this tick and of the tick before;
+    ``sun_body`` is the measured Sun direction, None where there is none; ``reference`` is orbit, field and
+    Sun as modelled, None where no orbit is known; ``torque_body_nm`` is the estimated torque on the nominal
+    attitude, including that of an inertia other than the table's, and ``dipole_body_am2`` the estimated
+    residual dipole, which ``by_mode`` subtracts from a demanded dipole, not the law; ``tick`` is this tick;
+    ``ephemeris`` gives orbit and field at later times; ``wait_ticks`` are the ticks until each coil may be
+    fired as far as is known, 0: in answer to this tick, ``NEVER``: it has a fault; ``wheel_nms`` is the
+    momentum of a driven wheel relative to the body, along its axis, None where there is none or it is not
     known.
     """
 
@@ -60,7 +60,7 @@ class Wheel:
         inertia_kgm2: of the wheel about its axis.
         max_torque_nm: of its motor.
         max_momentum_nms: relative to the body.
-        viscous_nms: c of the friction c W, W its speed against the body.
+        viscous_nms: c of the friction c W, W its speed relative to the body.
         coulomb_nm: friction that is nearly constant.
         tick_s: length of a tick.
         stale_ticks: age of its last report from which its momentum counts as unknown.
@@ -119,10 +119,10 @@ class ControlConfig:
         pulsed: whether the coils give pulses, or any dipole each tick.
         tick_s: length of a tick.
         horizon_s: length of a pulse: how far a predictive law looks.
-        mean_dipole_am2: dipole per axis that the coils can give in the mean.
+        mean_dipole_am2: mean dipole per axis that the coils can give.
         schedules: by law, the gains over an orbit of the periodic laws.
         pulse_model: what pulsed coils can do, for a law that plans pulses; None with a continuous driver.
-        own: a law beside those of the table.
+        own: a law in addition to those of the table.
         wheel: a wheel that can be driven; None: there is none.
     """
 
@@ -145,8 +145,8 @@ class Demand(NamedTuple):
     """The demand of a law: a mean dipole, an angular impulse to be given at the next opportunity, or a pulse.
 
     An impulse law leaves the dipole to the actuator, which chooses the one with the least energy left. A law
-    of pulses says in each tick which one is to be fired in answer to it; ``NO_PULSE``: none. Beside any of
-    them ``wheel_torque_nm`` is the torque on the wheel about its axis, the opposite of that on the body;
+    of pulses says in each tick which one is to be fired in answer to it; ``NO_PULSE``: none. With any of
+    them, ``wheel_torque_nm`` is the torque on the wheel about its axis, the opposite of that on the body;
     None: the wheel coasts.
     """
 

@@ -8,7 +8,7 @@ from fsw.core.laws.interface import ControlConfig, LawInput
 
 
 class InertialMotion(NamedTuple):
-    """Rotation against the stars: rate and momentum in body axes, wheel included, and attitude."""
+    """Rotation relative to the stars: rate and momentum in body axes, wheel included, and attitude."""
 
     omega_body_radps: Vec3
     momentum_body_nms: Vec3

@@ -15,7 +15,7 @@ COILS = 3
 
 @dataclass(frozen=True, slots=True)
 class PhasingGains:
-    """Which level is fired, and how often each coil is in both polarities; 0 rounds: without end."""
+    """Which level is fired, and how often each coil is fired in both polarities; 0 rounds: without end."""
 
     level: float = 3.0
     rounds: float = 0.0
@@ -24,7 +24,7 @@ class PhasingGains:
         """Check them.
 
         Raises:
-            ValueError: no such level, or a part of a round.
+            ValueError: no such level, or a fraction of a round.
         """
         if self.level not in (1.0, 2.0, 3.0):
             raise ValueError(f"level must be 1, 2 or 3, not {self.level:g}")
@@ -46,5 +46,5 @@ def phasing(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Contro
 
 
 def nth_pulse(number: int, level: int) -> Pulse:
-    """The pulse of that number from 0."""
+    """The pulse of this number, counted from 0."""
     return Pulse(number % COILS, level if number // COILS % 2 == 0 else -level)

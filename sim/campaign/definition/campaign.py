@@ -25,11 +25,11 @@ FILE, SCENARIO = "campaign.toml", "scenario.toml"
 
 
 class StatisticsSection(Section):
-    """What is taken of each run, and how it is judged over all.
+    """What counts of each run, and how all runs are judged together.
 
     ``last_orbits`` of each run count; ``window_s`` is the time over which MPE takes the mean and RPE the
-    deviation from it; ``probability`` is the part of time and ensemble for which a percentile holds,
-    ``confidence`` that of its bound.
+    deviation from it; ``probability`` is the fraction of time and ensemble for which a percentile holds,
+    ``confidence`` is that of its bound.
     """
 
     last_orbits: float = Field(default=1.0, gt=0.0)
@@ -39,7 +39,7 @@ class StatisticsSection(Section):
 
 
 class IndexLimits(Section):
-    """The most that a percentile of each pointing index may be over the campaign, deg."""
+    """Upper limits of the percentile of each pointing index over the campaign, deg."""
 
     ape: float | None = Field(default=None, gt=0.0)
     mpe: float | None = Field(default=None, gt=0.0)
@@ -70,7 +70,7 @@ class Campaign:
         disperse: what is drawn for each run.
         shapes: for each of ``disperse``, of the values of its keys.
         requirements: what a run must meet.
-        statistics: what is taken of each run.
+        statistics: what counts of each run.
         index: limits on the pointing indices.
     """
 
@@ -87,7 +87,7 @@ class Campaign:
 
     @property
     def digest(self) -> str:
-        """SHA-256 of all that a row depends on: not of how many there are and what they must show."""
+        """SHA-256 of all that a row depends on: not the number of rows, nor the limits on the indices."""
         content = {**self.as_values(), "scenario": self.base}
         del content["runs"], content["index"]
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
@@ -142,7 +142,7 @@ def laid_over(
     """The overrides with a dispersion's values, and these values by key.
 
     Raises:
-        ValueError: a key picks an element that the scenario has not.
+        ValueError: a key picks an element that the scenario does not have.
     """
     values = {}
     for key, part in zip(entry.targets, drawn, strict=True):

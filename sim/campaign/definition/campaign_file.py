@@ -39,7 +39,7 @@ def load_campaign(source: str, over: Nested, settings: Nested) -> Campaign:
 
     Args:
         source: a campaign file, a campaign's folder, or a scenario's name or file.
-        over: runs, orbits, seed; they count instead of what the file says.
+        over: runs, orbits, seed; they override the file.
         settings: laid over the scenario of all runs.
 
     Raises:

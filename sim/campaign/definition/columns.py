@@ -23,7 +23,7 @@ def _parameters() -> Iterator[str]:
 
 
 INDEX_FIGURES = tuple(f"{name}_deg_{figure}" for name in INDICES for figure in ("rms", "max"))
-"""Of the counted part of a run, beside what its summary has."""
+"""Of the counted part of a run, in addition to its summary."""
 
 NUMBERS: tuple[str, ...] = (
     *("sim_seconds", "ticks", "slips", "orbits"),
@@ -60,7 +60,7 @@ def cells(summary: Mapping[str, Any]) -> dict[str, Cell]:
 
 
 def input_cells(inputs: Mapping[str, Any]) -> dict[str, Cell]:
-    """The values that were drawn by column, ``input_`` before the key."""
+    """The drawn values by column, ``input_`` before the key."""
     return {f"input_{name}": value for name, value in _flat(inputs)}
 
 

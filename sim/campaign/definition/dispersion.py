@@ -13,7 +13,7 @@ from fsw.input.schema import Section
 Array = NDArray[np.float64]
 Shape = tuple[int, ...]
 Values = list[Any]
-"""A value for each key: numbers as arrays, of a choice as in the file."""
+"""A value for each key: numbers as arrays, those of a choice as in the file."""
 
 
 def _numbers(value: Any) -> Any:  # noqa: ANN401  (as in the file)
@@ -54,7 +54,7 @@ class Dispersion(Section):
         return drawn.tolist()
 
     def shape_of(self, nominal: Any) -> Shape:  # noqa: ANN401  (any value of a scenario)
-        """The shape of the value, of the parameters where the scenario has no value.
+        """The shape of the value, or of the parameters where the scenario has no value.
 
         Raises:
             ValueError: the parameters do not fit it.
@@ -79,7 +79,7 @@ class Dispersion(Section):
         raise NotImplementedError
 
     def probes(self, shapes: Sequence[Shape]) -> list[Values]:
-        """Values that the scenario must accept before anything is flown: limits, else the mean."""
+        """Values that the scenario must accept before anything is flown: the limits, or the mean."""
         raise NotImplementedError
 
 

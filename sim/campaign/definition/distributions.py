@@ -1,6 +1,6 @@
 """Distributions of a campaign file: ``[[disperse]]`` gives keys of the scenario, and how they are drawn.
 
-Parameters are a number for all components of the key's value, or one for each of them.
+A parameter is one number for all components of the key's value, or one for each of them.
 """
 
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from typing_extensions import override
 from sim.campaign.definition.dispersion import Array, Dispersion, Numbers, OneKey, Shape, Values
 
 LEAST_PART = 1e-6
-"""Part of a normal distribution that must lie between its limits."""
+"""Fraction of a normal distribution that must lie between its limits."""
 
 
 class Normal(OneKey):
@@ -105,7 +105,7 @@ class LogUniform(Uniform):
 
 
 class Choice(OneKey):
-    """One of ``values``, each as likely as its weight; values are any that the key takes."""
+    """One of ``values``, each as likely as its weight; values are any that the key accepts."""
 
     distribution: Literal["choice"]
     apply: Literal["replace"] = "replace"
@@ -139,7 +139,7 @@ class Choice(OneKey):
 
 
 class Direction(OneKey):
-    """A vector of any direction on the sphere; its length is uniform, or its logarithm is."""
+    """A vector whose direction is uniform on the sphere; its length is uniform, or its logarithm is."""
 
     distribution: Literal["direction"]
     length: Literal["uniform", "log_uniform"] = "uniform"

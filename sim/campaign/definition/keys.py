@@ -27,7 +27,7 @@ def value_at(values: Any, key: str) -> Any:  # noqa: ANN401  (any value of a sce
 
 
 def with_value(overrides: Nested, nominal: Nested, key: str, value: object) -> Nested:
-    """Overrides that set a key too; of a list that it picks from, the other elements keep their values.
+    """Overrides that set a key too; the other elements of a list that it picks from keep their values.
 
     Raises:
         ValueError: there is no such element.

@@ -9,7 +9,7 @@ from fsw.input.schema import Nested, TableError
 from sim.campaign.definition.columns import NUMBERS
 
 SHORT = {"pointing_deg": "pointing_deg_rms_last_orbit"}
-"""Figures that may be named shorter."""
+"""Short names of figures."""
 _SIDES = {"at_least", "at_most"}
 
 
@@ -40,10 +40,10 @@ class FigureRequirement:
 
 
 def requirements_in(values: Nested, source: str) -> tuple[FigureRequirement, ...]:
-    """The requirements in ``[requirement]``: a number is the most, else a table of at_least and at_most.
+    """The requirements in ``[requirement]``: a number as the upper limit, or a table of at_least and at_most.
 
     Raises:
-        TableError: there is no such figure, or a limit is no number.
+        TableError: there is no such figure, or a limit is not a number.
     """
     return tuple(_requirement(name, limit, source) for name, limit in _flat(values))
 

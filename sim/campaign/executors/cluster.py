@@ -1,4 +1,4 @@
-"""Runs on an existing Dask cluster: nothing of its distribution is made here.
+"""Runs on an existing Dask cluster, which does all the distribution.
 
 A task is a chunk of runs, and only some chunks are handed out at a time, so that the graph stays small
 however many runs there are. A future is released as soon as its rows are stored.
@@ -42,7 +42,7 @@ class Cluster:
         """
         with needing("--scheduler", "distributed", "cluster"):
             from distributed import Client  # noqa: PLC0415  an extra
-        logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # what is lost is a sentence here
+        logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # a loss is a sentence here
         where = (
             {"scheduler_file": self.scheduler}
             if Path(self.scheduler).is_file()

@@ -18,14 +18,14 @@ from sim.campaign.results.row import RunRow
 from sim.campaign.runner import children_ignore_interrupt, end_children
 
 MOST_LOSSES = 3
-"""A run whose worker was ended so many times is given up."""
+"""A run whose worker was ended this many times is given up."""
 HANDED_OUT = 2
 """Runs for each worker: one in flight and one to follow."""
 
 
 @dataclass(frozen=True, slots=True)
 class Processes:
-    """So many worker processes. When one is killed, the runs that were handed out are flown again."""
+    """``workers`` processes. When one is killed, the runs that were handed out are flown again."""
 
     workers: int
 
@@ -45,9 +45,9 @@ class Processes:
     def _until_lost(
         self, task: RunTask, waiting: deque[int], losses: Counter[int], flying: dict[Future[RunRow], int]
     ) -> Iterator[RunRow]:
-        """Rows until no run is left, or until a worker is: then ``flying`` holds the runs without a row.
+        """Rows until no run is left or a worker is lost; then ``flying`` holds the runs without a row.
 
-        Runs that were flying at a loss go one at a time, which shows the one that is the cause.
+        Runs that were in flight at a loss are flown one at a time, which shows the one that causes it.
         """
         others = multiprocessing.active_children()
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # one run, one core

@@ -49,7 +49,7 @@ class FigureStatistics:
 
 @dataclass(frozen=True, slots=True)
 class Sensitivity:
-    """The rank correlation of an input with the first figure; None where it cannot be told."""
+    """The rank correlation of an input with the first figure; None where it cannot be determined."""
 
     column: str
     correlation: RankCorrelation | None
@@ -62,9 +62,9 @@ class CampaignAnalysis:
     Attributes:
         done: how many runs were flown.
         failures: the sentence of each run that failed, by run.
-        success: runs that meet all requirements, of those that are there; one that failed does not.
+        success: runs that meet all requirements, of those that have a result; a failed one does not.
         by_requirement: the same for each requirement.
-        figures: the one that runs are ranked by first.
+        figures: the first is the one that runs are ranked by.
         indices: percentiles of each pointing index; empty without runs.
         profiles: of each index, (runs, points).
         inputs: numeric inputs by column, of the runs that were flown.
@@ -85,7 +85,7 @@ class CampaignAnalysis:
 
 
 def analyse(campaign: Campaign, results: Results) -> CampaignAnalysis:
-    """The statistics of all runs that are there, at least one."""
+    """The statistics of all runs that have a result, at least one."""
     settings = campaign.statistics
     done = np.array(results.runs(Status.DONE))
     failures = {int(str(run)): str(why) for run, why in results.each(("run", "failure"), Status.FAILED)}

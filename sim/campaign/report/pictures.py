@@ -22,7 +22,7 @@ PANEL_IN = 2.3
 BAND, BAR = "#b9d4e8", "#9dbfd8"
 COLUMNS = 3
 LOGARITHMIC = 30.0
-"""An input that varies by more than this factor is drawn so."""
+"""An input that varies by more than this factor has a logarithmic axis."""
 MOST_INPUTS, MOST_BINS, MOST_STEPS = 6, 40, 400
 MOST_TICKS, TITLE_WIDTH = 4, 34
 """Of a panel of the scatter: numbers on its abscissa, characters in a line of its title."""
@@ -44,7 +44,7 @@ def distributions(analysis: CampaignAnalysis) -> Figure:
 
 
 def cumulative(analysis: CampaignAnalysis, confidence: float) -> Figure:
-    """The part of runs up to a value, with its bounds, and the requirement."""
+    """The fraction of runs up to a value, with its bounds, and the requirement."""
     figure, panels = _grid(len(analysis.figures), 2)
     for panel, shown in zip(panels, analysis.figures, strict=False):
         values, count = np.sort(shown.values), len(shown.values)
@@ -64,7 +64,7 @@ def cumulative(analysis: CampaignAnalysis, confidence: float) -> Figure:
 
 
 def indices(analysis: CampaignAnalysis, probability: float, limits: IndexLimits) -> Figure:
-    """The part of all times of all runs, and of runs at all times, up to a value of each index; limits."""
+    """The fraction of times of all runs, and of runs at all times, up to a value of each index; limits."""
     figure, panels = _grid(2, 2)
     for panel, title in zip(
         panels, ("mixed: part of all times", "ensemble: part of runs, at all times"), strict=False
@@ -163,7 +163,7 @@ def converging(analysis: CampaignAnalysis, settings: StatisticsSection) -> Figur
 
 
 def _grid(count: int, columns: int) -> tuple[Figure, list[Axes]]:
-    """A figure of so many panels side by side."""
+    """A figure of ``count`` panels in ``columns`` columns."""
     rows = max(1, ceil(count / columns))
     figure = Figure(figsize=(WIDTH_IN, PANEL_IN * rows), layout="constrained")
     panels = list(figure.subplots(rows, columns, squeeze=False).ravel())
@@ -173,7 +173,7 @@ def _grid(count: int, columns: int) -> tuple[Figure, list[Axes]]:
 
 
 def _words(column: str) -> list[str]:
-    """The name of a column in lines that a narrow panel has room for, broken behind underscores."""
+    """The name of a column in lines that a narrow panel has room for, broken after underscores."""
     lines = wrap(column.replace("_", "_ "), TITLE_WIDTH, break_long_words=False)
     return [line.replace(" ", "") for line in lines]
 

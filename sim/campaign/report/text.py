@@ -17,7 +17,7 @@ INDEX_NAMES = {
     "ake": "AKE, absolute knowledge error",
 }
 STRONGEST = 3
-"""Dependences on the terminal."""
+"""Most dependences listed on the terminal."""
 _ABSENT = "–"
 
 
@@ -51,7 +51,7 @@ def lines(campaign: Campaign, analysis: CampaignAnalysis) -> list[str]:
 
 
 def requirement_table(campaign: Campaign, analysis: CampaignAnalysis) -> Table:
-    """How many runs meet each requirement, and whether that is the probability of the campaign."""
+    """How many runs meet each requirement, and whether that reaches the probability of the campaign."""
     wanted = f"of {100.0 * campaign.statistics.probability:g} %"
     rows = [
         (str(entry), *_cells_of(found), WORDS[meets(found, campaign)])

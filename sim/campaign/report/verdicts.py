@@ -1,4 +1,4 @@
-"""Each requirement of a campaign, and each limit on an index: met, missed, or more runs must tell."""
+"""Each requirement of a campaign, and each limit on an index: met, missed, or undecided without more runs."""
 
 from typing import NamedTuple
 
@@ -15,7 +15,7 @@ class CampaignVerdict(NamedTuple):
     Attributes:
         group: requirement or index.
         name: the limit, as text.
-        met: None if more runs would have to tell.
+        met: None if it takes more runs to decide.
         found: what the runs show.
     """
 
@@ -29,9 +29,9 @@ class CampaignVerdict(NamedTuple):
 
 
 def meets(found: Proportion, campaign: Campaign) -> bool | None:
-    """Whether the part of the runs that meet a requirement is the probability of the campaign or more.
+    """Whether the fraction of runs that meet a requirement reaches the probability of the campaign.
 
-    None if more runs would have to tell: it is, but its lower bound is not.
+    None if it takes more runs to decide: the fraction does, but its lower bound does not.
     """
     if found.value < campaign.statistics.probability:
         return False

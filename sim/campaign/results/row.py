@@ -21,7 +21,7 @@ class RunRow:
     Attributes:
         run: its number.
         status: whether it was flown.
-        failure: why it was not, in a sentence; else empty.
+        failure: why it was not, in a sentence; otherwise empty.
         seed: of the plant's random streams.
         success: whether it meets all requirements and kept the limits of the coils.
         missed: the requirements that it does not meet, as text.

@@ -1,4 +1,4 @@
-"""results.sqlite: one row a run, committed when the run is done.
+"""results.sqlite: one row per run, committed when the run is done.
 
 Table ``runs`` depends on campaign and version alone, however it was flown: the columns are known before the
 first run, and what differs from one flight to the next (wall time, worker, attempts) is in ``attempts``.
@@ -52,7 +52,7 @@ class Results:
         self.path = path
 
     def add(self, row: RunRow) -> None:
-        """Store a run, in one transaction; a run that is there is replaced."""
+        """Store a run, in one transaction; an earlier row of it is replaced."""
         values: dict[str, Cell] = {
             "run": row.run, "status": row.status.value, "failure": row.failure, "seed": row.seed,
             "success": int(row.success), "missed": row.missed, **row.cells,
@@ -74,7 +74,7 @@ class Results:
             )
 
     def runs(self, status: Status | None = None) -> list[int]:
-        """The numbers of the runs that are there, with this status if one is given."""
+        """The numbers of the runs that have a row, with this status if one is given."""
         return [run for (run,) in self.each(("run",), status) if isinstance(run, int)]
 
     def kinds(self) -> dict[str, str]:
@@ -95,7 +95,7 @@ class Results:
         return dict(zip(names, rows.T, strict=True))
 
     def row(self, run: int) -> dict[str, Cell] | None:
-        """All of a run by column; None if it is not there."""
+        """The row of a run by column; None if it has none."""
         cursor = self._connection.execute("SELECT * FROM runs WHERE run = ?", (run,))
         found = cursor.fetchone()
         return found and dict(zip((name for name, *_ in cursor.description), found, strict=True))
@@ -123,7 +123,7 @@ class Results:
 
 @contextmanager
 def open_results(folder: Path, campaign: Campaign) -> Iterator[Results]:
-    """The results in a folder, made if there are none; nobody else may write them meanwhile.
+    """The results in a folder, created if there are none; no other process may write them meanwhile.
 
     Raises:
         HarnessError: they are of another campaign or version, being written, or no results at all.

@@ -1,4 +1,4 @@
-"""Rows of the satellite with Sun cells: a cell that is wrong, cells wired otherwise, light, message."""
+"""Rows of the satellite with Sun cells: a faulty cell, more light from the Earth, a faulty message."""
 
 from math import inf
 
@@ -10,7 +10,7 @@ MESSAGE = "the message of the Sun cells: late, lost, corrupted, with extreme val
 ORBIT_S = 5740.0
 """Period of the scenario's orbit."""
 BRIGHT = ("sensors.cells.albedo=0.45", "sensors.cells.albedo_spread=0.4", "flight.cells.albedo=0.3")
-"""Half as much light again from the Earth as the table reckons with."""
+"""1.5 times as much light from the Earth as the table assumes."""
 
 
 def _cell(name: str, kind: str, cell: int, **parameters: float) -> FaultRow:
@@ -48,7 +48,7 @@ def _table(name: str, settings: tuple[str, ...], *expect: str) -> FaultRow:
 
 
 def _message(name: str, kind: str, *expect: str, **parameters: float) -> FaultRow:
-    """A fault of ten minutes, after a whole orbit; with the last of it control goes on.
+    """A fault of ten minutes, after a whole orbit; control continues after it.
 
     The cells of a message that is wrong may be named one by one.
     """

@@ -1,4 +1,4 @@
-"""Rows with faults that are hard to tell from an uncertainty, and with two faults in turn."""
+"""Rows with faults that are hard to distinguish from an uncertainty, and with two faults in turn."""
 
 from dataclasses import replace
 from math import inf
@@ -44,10 +44,10 @@ def _table(name: str, setting: str) -> FaultRow:
 
 
 def _in_turn(name: str, first: RowFault, second: RowFault, watch_s: float) -> FaultRow:
-    """Both units must be named, each within an orbit of its fault, or the sensors be said to disagree.
+    """Both units must be named, each within an orbit of its fault, or the sensors be reported to disagree.
 
-    Where the first fault begins in the shadow, or where it does not show at once, the other sensor may as
-    well be wrong when both are seen again. The Sun alone does not show what turns the satellite about it.
+    Where the first fault begins in the shadow, or where it does not show at once, the other sensor may just
+    as well be the wrong one when both have samples again. The Sun alone does not show rotation about it.
     """
     return FaultRow(
         name,
@@ -66,9 +66,9 @@ def _in_turn(name: str, first: RowFault, second: RowFault, watch_s: float) -> Fa
 
 
 def _stuck(name: str, axis: float, ampere: float) -> FaultRow:
-    """The flight is safe at once, and the board says that a current flows.
+    """SAFE is entered at once, and the board reports that a current flows.
 
-    While it flows the magnetometer is of no use: in the shadow nothing shows in which coil.
+    While it flows the magnetometer is useless: in the shadow nothing shows which coil it is in.
     """
     return FaultRow(
         name,

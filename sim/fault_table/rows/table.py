@@ -52,7 +52,7 @@ def _sun(name: str, kind: str, **parameters: float) -> tuple[FaultRow, FaultRow]
 
 
 def _sensor(unit: str, name: str, kind: str, parameters: dict[str, float]) -> tuple[FaultRow, FaultRow]:
-    """One that shows late, as a scale, the filter may follow until either sensor may be wrong."""
+    """The filter may follow a fault that shows late, such as a scale, until either sensor may be wrong."""
     row = partial(FaultRow, group=SENSOR, kind=kind, parameters=parameters, when=When.SUNLIT, unit=unit)
     named = ("goes on", "bounded", "named or doubted")
     return (

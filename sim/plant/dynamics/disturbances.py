@@ -17,7 +17,7 @@ Effect = Callable[[Mat3, Vec3, Surroundings], Vec3]
 def bias_torque(disturbance: DisturbanceConfig, t_s: float) -> Vec3:
     """T (1 + p cos(2 pi t / day)), body axes [N m]: constant torque T and its daily variation.
 
-    It stands for what no model here gives, such as outgassing, and what follows the hour, such as the air.
+    It stands for what is not modelled, such as outgassing, and what varies daily, such as the air.
 
     Args:
         disturbance: T and p.
@@ -31,9 +31,9 @@ def bias_torque(disturbance: DisturbanceConfig, t_s: float) -> Vec3:
 
 
 def residual_dipole(disturbance: DisturbanceConfig, lit: float, remanence_body_am2: Vec3) -> Vec3:
-    """M = m_0 + (1 - lit) m_e + m_r, body axes [A m^2]: constant, by the Earth's shadow, and by remanence.
+    """M = m_0 + (1 - lit) m_e + m_r, body axes [A m^2]: constant, from the Earth's shadow, by remanence.
 
-    m_e is that of the loops in which a current begins or ends when the solar cells are in the dark: a
+    m_e is that of the loops in which a current starts or stops when the solar cells are in the dark: a
     residual dipole shifts suddenly as the currents on board vary (Soken and Sakai 2014, Investigation of
     Estimation Methods for Time-varying Residual Magnetic Moment).
 

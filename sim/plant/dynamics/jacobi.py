@@ -15,7 +15,7 @@ def jacobi_integral(
     """H = 1/2 W.JW + 3/2 w0^2 e1.Je1 - 1/2 w0^2 e3.Je3 - w0 h.e3 [J], shape (n,).
 
     e1 and e3 are the radius and the orbit's normal in body axes. Constant under gravity gradient alone on a
-    circular orbit; a further torque T changes it by T.W a second (Beletsky 1966; Hughes 1986, chapter 9).
+    circular orbit; a further torque T changes it at the rate T.W (Beletsky 1966; Hughes 1986, chapter 9).
 
     Args:
         inertia_kgm2: inertia tensor J, (3, 3).

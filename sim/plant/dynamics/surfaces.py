@@ -31,9 +31,9 @@ def drag(plates: Sequence[PlateConfig], flow_body_mps: Vec3, density_kgpm3: floa
 
 
 def solar_pressure(plates: Sequence[PlateConfig], sun_body: Vec3, pressure_pa: float) -> Vec3:
-    """T = sum of r x F, F = -P A cos (2 (d/3 + s cos) n + (1 - s) e), cos = n . e > 0, else none.
+    """T = sum of r x F, F = -P A cos (2 (d/3 + s cos) n + (1 - s) e), cos = n . e > 0, otherwise none.
 
-    s and d are the parts reflected as by a mirror and scattered by Lambert's law; the rest is absorbed
+    s and d are the fractions reflected specularly and diffusely (Lambert); the rest is absorbed
     (Markley and Crassidis 2014, 3.3.6).
 
     Args:

@@ -19,13 +19,13 @@ def magnetic(m_body_am2: Vec3, b_body_t: Vec3) -> Vec3:
 
 
 def eddy(k_nms_per_t2: float, omega_body_radps: Vec3, b_body_t: Vec3) -> Vec3:
-    """T = k (omega x b) x b [N m] of the currents that the field induces in a turning conductor.
+    """T = k (omega x b) x b [N m] of the currents that the field induces in a rotating conductor.
 
-    It brakes omega across the field, and not along it (Wertz 1978, section 17.2). The slow rotation of the
+    It damps omega across the field, and not along it (Wertz 1978, section 17.2). The slow rotation of the
     field along the orbit is neglected.
 
     Args:
-        k_nms_per_t2: k, of the conductor's shape and conductivity; 2/3 pi r^4 sigma d for a thin sphere.
+        k_nms_per_t2: k, from the conductor's shape and conductivity; 2/3 pi r^4 sigma d for a thin sphere.
         omega_body_radps: inertial rate.
         b_body_t: field.
     """
@@ -44,7 +44,7 @@ def total(
 
     Args:
         inertia_kgm2: inertia tensor.
-        q_body_from_eci: attitude; its norm may be off by what an integration step leaves.
+        q_body_from_eci: attitude; its norm may differ from 1 by the error of an integration step.
         around: radius, gradient and field, frame ``eci``.
         m_body_am2: dipole of coils and residual together.
         bias_body_nm: constant torque.

@@ -6,7 +6,7 @@ With w the wheel's axis, J_w its inertia, J that of the whole satellite and omeg
     dh/dt = T - c W - T_c W / sqrt(W^2 + W_0^2)
     (J - J_w w w^T) domega/dt = T_ext - omega x ((J - J_w w w^T) omega + h w) - w dh/dt
 
-so that what the wheel gains the body loses, and their common momentum is conserved without other torques.
+so that what the wheel gains the body loses, and their total momentum is conserved without other torques.
 
 Source: Hughes 1986, Spacecraft Attitude Dynamics, chapter 6 (gyrostats). The Coulomb friction is smoothed
 about W = 0.
@@ -19,7 +19,7 @@ from sim.plant.rotation import Vec3
 from sim.plant.wheel_config import WheelConfig
 
 SMOOTH_RADPS = 1.0
-"""W_0: at slower speeds the Coulomb friction is less."""
+"""W_0: at lower speeds the Coulomb friction is smaller."""
 
 
 class WheelStep(NamedTuple):
@@ -49,10 +49,10 @@ class SpinningWheel:
         return self._momentum_nms - self._config.inertia_kgm2 * self._along(omega_body_radps)
 
     def advance(self, requested_nm: float, omega_body_radps: Vec3, step_s: float) -> WheelStep:
-        """One integration step, in which its momentum changes evenly.
+        """One integration step, over which its momentum changes linearly.
 
-        The motor torque follows the request exponentially; friction is that of the speed in the middle, and
-        stops the wheel at most. No motor torque carries the relative momentum over its limit.
+        The motor torque follows the request exponentially; friction is that at the speed in the middle, and
+        can at most stop the wheel. No motor torque carries the relative momentum over its limit.
 
         Args:
             requested_nm: motor torque that the board asks for.
@@ -65,7 +65,7 @@ class SpinningWheel:
         free = before + step_s * motor_nm
         friction_nm = self.friction_nm(before / config.inertia_kgm2)
         middle = _slowed(0.5 * (before + free), 0.5 * step_s * friction_nm)
-        if middle:  # else friction stops it in less than the step
+        if middle:  # otherwise friction stops it within the step
             friction_nm = self.friction_nm(middle / config.inertia_kgm2)
         most = max(config.max_momentum_nms, abs(before))
         after = min(max(_slowed(free, step_s * friction_nm), -most), most)
@@ -78,12 +78,12 @@ class SpinningWheel:
         return WheelStep((first, half, last), (reaction * x, reaction * y, reaction * z))
 
     def friction_nm(self, speed_radps: float) -> float:
-        """The torque that slows the wheel down at a speed against the body; of the sign of the speed."""
+        """The torque that slows the wheel at a speed relative to the body; it has the sign of the speed."""
         smooth = speed_radps / sqrt(speed_radps * speed_radps + SMOOTH_RADPS * SMOOTH_RADPS)
         return self._config.viscous_nms * speed_radps + self._config.coulomb_nm * smooth
 
     def _mean_motor_nm(self, requested_nm: float, step_s: float) -> float:
-        """The mean of the motor torque over a step; afterwards it is what it has come to."""
+        """The mean motor torque over a step; the motor torque itself is advanced to its end."""
         config = self._config
         limit = config.max_torque_nm
         wanted = min(max(config.torque_scale * requested_nm, -limit), limit)
@@ -101,6 +101,6 @@ class SpinningWheel:
 
 
 def _slowed(momentum_nms: float, lost_nms: float) -> float:
-    """The momentum after what friction takes away, which does not turn it round."""
+    """The momentum after a loss to friction, which does not reverse it."""
     turned = lost_nms * momentum_nms > 0.0 and abs(lost_nms) > abs(momentum_nms)
     return 0.0 if turned else momentum_nms - lost_nms

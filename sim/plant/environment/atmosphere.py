@@ -29,7 +29,7 @@ _LAYERS = np.array(
 
 
 def altitude_m(r_m: Array) -> Array:
-    """Height over the ellipsoid, h = r - a (1 - f sin^2 phi), to first order in f: within 100 m, (n,).
+    """Height above the ellipsoid, h = r - a (1 - f sin^2 phi), to first order in f: within 100 m, (n,).
 
     Args:
         r_m: geocentric positions, axis 3 along the pole, (n, 3).
@@ -43,10 +43,10 @@ def altitude_m(r_m: Array) -> Array:
 def density_kgpm3(height_m: Array) -> Array:
     """Static exponential atmosphere: rho = rho_0 exp(-(h - h_0) / H) in layers (Vallado 2013, table 8-4).
 
-    Mean solar activity. The lowest layer goes on below 150 km, the highest above 1000 km.
+    Mean solar activity. The lowest layer is extended below 150 km, the highest above 1000 km.
 
     Args:
-        height_m: over the ellipsoid, (n,).
+        height_m: above the ellipsoid, (n,).
     """
     height_km = 1e-3 * height_m
     base_km, density, scale_km = _LAYERS[np.searchsorted(_LAYERS[1:, 0], height_km, side="right")].T

@@ -16,10 +16,10 @@ _PLACES = np.repeat((np.arange(RINGS) + 0.5) / RINGS, SECTORS)
 
 
 def earth_view(r_eci_m: Vec3, sun_eci: Vec3, normals_eci: Array) -> Array:
-    """Light of a diffuse Earth that reflects all, in parts of the Sun's, on plates with these normals, (n,).
+    """Light of a diffuse Earth that reflects all, relative to the Sun's, on plates with these normals, (n,).
 
     The sum over patches of the solid angle, in the direction d, of max(0, p . s) max(0, n . d) / pi, p being
-    the vertical there: each part of the Earth is as bright as the Sun stands high above it.
+    the vertical there: each part of the Earth is as bright as the sine of the Sun's elevation there.
 
     Args:
         r_eci_m: position of the satellite.
@@ -46,7 +46,7 @@ def earth_view(r_eci_m: Vec3, sun_eci: Vec3, normals_eci: Array) -> Array:
 
 
 def _horizontal(up: list[float]) -> tuple[Array, Array]:
-    """Two unit vectors across ``up`` and each other."""
+    """Two unit vectors perpendicular to ``up`` and to each other."""
     x, y, z = up
     if abs(x) < 0.7:
         size = sqrt(y * y + z * z)

@@ -20,7 +20,7 @@ class Field(Protocol):
 
 
 class RotatingIgrf:
-    """IGRF-14 to some degree, turned with the Earth by GMST82.
+    """IGRF-14 up to ``degree``, turned with the Earth by GMST82.
 
     Args:
         degree: highest degree; 1 is the tilted dipole.

@@ -1,4 +1,4 @@
-"""The International Geomagnetic Reference Field, Cartesian and free of poles, for many points at once."""
+"""The International Geomagnetic Reference Field, Cartesian, regular at the poles, for many points."""
 
 from datetime import UTC, datetime
 from importlib.resources import files

@@ -97,7 +97,7 @@ class LeadingOrbit:
 
 
 def make_orbit(config: OrbitConfig, epoch_unix_s: int) -> Orbit:
-    """The configured orbit, and on it the satellite ``along_track_m`` ahead, at its mean speed."""
+    """The configured orbit, with the satellite ``along_track_m`` ahead on it, at its mean speed."""
     orbit: CircularOrbit | Sgp4Orbit
     orbit = CircularOrbit(config) if config.tle is None else Sgp4Orbit(config.tle, epoch_unix_s)
     if not config.along_track_m:
@@ -106,7 +106,7 @@ def make_orbit(config: OrbitConfig, epoch_unix_s: int) -> Orbit:
 
 
 def _satellite(tle: tuple[str, str]) -> Satrec:
-    """The table has checked the lines of a scenario; sgp4 itself takes lines that are cut or exchanged."""
+    """The table has checked the lines of a scenario; sgp4 itself accepts lines that are cut or swapped."""
     for number, line in enumerate(tle, start=1):
         if len(line) != 69 or not line.startswith(f"{number} "):
             raise ValueError(f"line {number} of the TLE is malformed")

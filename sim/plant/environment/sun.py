@@ -32,7 +32,7 @@ def sun_eci_m(epoch_unix_s: int, t_s: Array) -> Array:
 
 
 def illumination(r_m: Array, sun_m: Array) -> Array:
-    """Fraction 0..1 of the Sun's disc that a spherical Earth leaves free, (n,).
+    """Fraction 0..1 of the Sun's disc that a spherical Earth does not cover, (n,).
 
     The discs of Sun (a) and Earth (b), seen at the distance c, as planar circles: the overlap is
     a^2 acos(x/a) + b^2 acos((c - x)/b) - c y with x = (c^2 + a^2 - b^2) / 2c, y = sqrt(a^2 - x^2)

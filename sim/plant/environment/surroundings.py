@@ -1,4 +1,4 @@
-"""The environment along the orbit, independent of attitude: computed ahead, read as plain floats.
+"""The environment along the orbit, independent of attitude: computed in advance, read as plain floats.
 
 Orbit, field and Sun are computed at nodes, many at once, and interpolated to every instant that the
 integration or the sensors need. All instants lie on one grid of integers, so no time is ever accumulated.
@@ -77,8 +77,8 @@ class Environment:
     """Surroundings at every half step of the integration, samples at every tick.
 
     Nodes every 10 s, Lagrange interpolation over six of them: below 1e-4 nT and 1e-5 m from the models
-    themselves. The orbital frame turns about its normal alone: the turn of the orbit's plane (4e-7 rad/s at
-    most for 800 km) is not in its rate.
+    themselves. The orbital frame turns about its normal alone: the rotation of the orbital plane (4e-7 rad/s
+    at most for 800 km) is left out of its rate.
 
     Args:
         config: the plant.

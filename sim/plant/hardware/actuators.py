@@ -66,7 +66,7 @@ class PulsedActuator:
 
 
 class ContinuousActuator:
-    """All three coils at once, for a part of the tick in which they are commanded."""
+    """All three coils at once, for a fraction of the tick in which they are commanded."""
 
     def __init__(self, tick_hz: int, coils: CoilConfig, continuous: ContinuousConfig) -> None:
         self._driver = DipoleDriver(tick_hz, continuous.on_fraction)

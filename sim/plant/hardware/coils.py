@@ -62,7 +62,7 @@ class Coils:
 
         Args:
             driven_a: current that each coil is driven to, 0 for none.
-            on_s: how long, 0 to ``step_s``; then to 0.
+            on_s: how long, 0 to ``step_s``; they are off for the rest.
             step_s: length of the step.
         """
         if self._remanence.part:

@@ -6,12 +6,12 @@ from sim.plant.rotation import ZERO, Vec3
 class Remanence:
     """Coil j keeps m_j = part m_pulse,j, m_pulse,j the dipole of its last pulse, until its next one.
 
-    A model of a core that each pulse takes far beyond its coercive field, without a loop of hysteresis: while
-    it is driven its dipole is that of the current, whatever it kept before, and then a part remains.
-    Dipoles are stated as the currents that would cause them, so that a coil's gain and axis apply to both.
+    A model of a core that each pulse drives far beyond its coercive field, without a hysteresis loop: while
+    it is driven its dipole is that of the current, whatever it kept before, and then a part remains. Dipoles
+    are stated as the currents that would cause them, so that a coil's gain and axis apply to both.
 
     Args:
-        part: kept of the dipole of a pulse.
+        part: fraction of the dipole of a pulse that is kept.
     """
 
     def __init__(self, part: float) -> None:

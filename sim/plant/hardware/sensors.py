@@ -42,8 +42,8 @@ class MagnetometerPhysics:
     """b = scale (N R (b_body + K m)) + bias + noise, then quantised and limited to the range.
 
     R turns body into sensor axes, N takes them to the directions in which the three sensors point, which need
-    not be orthogonal; K m is the coils' own field. All are those of ``latency_s`` ago. At last the
-    wiring leads the three values to the channels.
+    not be orthogonal; K m is the coils' own field. The field is that of ``latency_s`` ago. Finally the wiring
+    assigns the three values to the channels.
 
     Args:
         config: the errors.
@@ -87,8 +87,8 @@ class MagnetometerPhysics:
 class SunSensorPhysics:
     """s = R (s_body + a_body) of unit length, turned about each axis by a small random angle, then quantised.
 
-    a is the light of the Earth, if it is in view: the signals of the sensor's cells go with the cosine of the
-    incidence, and the vector that they make up is the sum of all light. Light and directions are those of
+    a is the light of the Earth, if it is in view: the signals of the sensor's cells vary with the cosine of
+    the incidence, and the vector that they form is the sum of all light. Light and directions are those of
     ``latency_s`` ago. In view is what lies within ``fov_half_rad`` of a boresight.
 
     Args:
@@ -110,7 +110,7 @@ class SunSensorPhysics:
         Args:
             sun_body: true unit vector.
             lit: visible fraction of the Sun's disc.
-            earthlight_body: a, in parts of the Sun's light.
+            earthlight_body: a, relative to the Sun's light.
         """
         noise, sigma = self._noise, self._config.noise_rad
         ax, ay, az = sigma * next(noise), sigma * next(noise), sigma * next(noise)
@@ -141,7 +141,7 @@ class SunSensorPhysics:
 
 
 def wired(by_axis: Vec3, wiring: Wiring) -> Vec3:
-    """By channel, the values by axis."""
+    """The values by axis, rearranged by channel."""
     if wiring == AS_NAMED:
         return by_axis
     x, y, z = (by_axis[abs(axis) - 1] * (1.0 if axis > 0 else -1.0) for axis in wiring)
@@ -152,11 +152,11 @@ def _skewed(non_orthogonality_rad: Vec3, axes: Mat3) -> Mat3:
     """N times the sensor's orthogonal axes: the unit vectors along which its three sensors measure.
 
     x stays, y lies in the plane of x and y; the cosines between them are sin xy, sin xz and sin yz, so that N
-    is lower triangular. Three such angles are what a scalar calibration finds beside offsets and scales
+    is lower triangular. Three such angles are what a scalar calibration finds besides offsets and scales
     (Merayo et al. 2000, Scalar calibration of vector magnetometers).
 
     Args:
-        non_orthogonality_rad: what the angles xy, xz and yz lack of a right angle.
+        non_orthogonality_rad: right angle minus the angles xy, xz and yz.
         axes: rows of the orthogonal axes, body axes.
     """
     xy, xz, yz = map(sin, non_orthogonality_rad)

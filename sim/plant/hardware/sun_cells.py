@@ -11,15 +11,15 @@ from sim.plant.rotation import Mat3, Vec3, from_vector, matrix, transform
 from sim.plant.sensor_config import CellConfig, SunCellsConfig
 
 CLOUDS_S = 300.0
-"""Time in which a low orbit leads over other clouds."""
+"""Time in which a satellite in low orbit comes over other clouds."""
 
 
 class SunCellPhysics:
     """c = g (lit max(0, n . s) + A light(n)) + noise, and 0 below the threshold.
 
-    n is the true normal, s the Sun, A the part of the light that the Earth reflects. It varies over the
-    clouds as a first-order Markov process of time constant ``CLOUDS_S``; ``earth_view`` has what the Earth
-    gives. A cell in the shade of the satellite itself gets that alone. All is of ``latency_s`` ago.
+    n is the true normal, s the Sun, A the fraction of the light that the Earth reflects, which varies over
+    the clouds as a first-order Markov process of time constant ``CLOUDS_S``; light(n) is ``earth_view``. A
+    cell shaded by the satellite itself gets only the Earth's light. The light is that of ``latency_s`` ago.
 
     Args:
         config: the cells.
@@ -36,7 +36,7 @@ class SunCellPhysics:
         self._cloud = next(self._clouds)
 
     def measure(self, body_from_eci: Mat3, r_eci_m: Vec3, sun_eci: Vec3, lit: float) -> tuple[float, ...]:
-        """The current of each cell, in parts of the nominal one in full sunlight.
+        """The current of each cell, relative to the nominal one in full sunlight.
 
         Args:
             body_from_eci: rows of the true attitude's matrix.
@@ -58,7 +58,7 @@ class SunCellPhysics:
         return tuple([self._current(cell, part) for cell, part in zip(config.cells, light, strict=True)])
 
     def _reflected(self) -> float:
-        """The part of the light that the Earth in view reflects now."""
+        """The fraction of the light that the Earth in view reflects now."""
         keep, config = self._keep, self._config
         self._cloud = keep * self._cloud + sqrt(1.0 - keep * keep) * next(self._clouds)
         return config.albedo * min(max(0.0, 1.0 + config.albedo_spread * self._cloud), 2.0)

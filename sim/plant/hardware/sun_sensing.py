@@ -52,7 +52,7 @@ class FineSunSensing:
         self.restart()
 
     def begin_tick(self, tick: int, view: SunView, faulty: SunFaults) -> list[Frame]:
-        """``SUN_VECTOR``, turned by the Earth's light if that disturbs the sensor."""
+        """``SUN_VECTOR``, deflected by the Earth's light if that disturbs the sensor."""
         around = ZERO
         if self._albedo:
             around = transform(view.body_from_eci, earthlight(view.r_eci_m, view.sun_eci))
@@ -83,7 +83,7 @@ class CellSensing:
 
 
 def make_sun_sensing(config: PlantConfig) -> SunSensing:
-    """What is configured."""
+    """The configured sensor or cells."""
     given, seed, tick_hz = config.sun_sensor, config.seed, config.tick_hz
     if isinstance(given, SunCellsConfig):
         return CellSensing(given, seed, tick_hz)

@@ -26,7 +26,7 @@ class WheelUnit:
         self._torque_nm = 0.0
 
     def restart(self) -> None:
-        """Power-cycle the board; the wheel turns on."""
+        """Power-cycle the board; the wheel keeps turning."""
         config = self._config
         limits = WheelLimits(
             self._tick_hz, config.max_torque_nm, config.max_momentum_nms / config.inertia_kgm2

@@ -40,7 +40,7 @@ _REACH = 0.42
 
 
 def raster(flight: DrawnFlight) -> DrawnChart:
-    """Every pulse of the flight: a lane a coil, a bar up or down by polarity, as high as its level."""
+    """Every pulse of the flight: a lane per coil, a bar up or down by polarity, as high as its level."""
     time = flight.time
     figure, (panel,) = stacked(time, (2.1,), legends=bool(flight.audit.violations))
     _lanes(panel, flight)

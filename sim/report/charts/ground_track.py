@@ -20,7 +20,7 @@ LAND, COAST = "#e8e6df", "#8a97a5"
 
 
 def track(flight: DrawnFlight) -> DrawnChart:
-    """The track on a map whose degrees are all of one length."""
+    """The track on an equirectangular map."""
     motion = flight.lines.motion
     longitude, latitude = below_deg(flight)
     height_in = 0.91 / 0.775 * WIDTH_IN / 2.0

@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 TORQUE = "torque_body_nm/"
 """Begins the name of a torque, in the histories and here."""
 MEAN_S = 600.0
-"""Coils act in pulses: their torque is drawn as the magnitude of its mean over so long."""
+"""Coils act in pulses: their torque is drawn as the magnitude of its mean over this time."""
 FINE_BINS = 2500
 """Bins along a flight; a picture shows fewer, but the page can be zoomed."""
 ROUNDING = 1e-9
@@ -41,7 +41,7 @@ class Spans:
 
 
 class _RunningMean:
-    """The mean of vectors over the last so many rows, over fewer at the beginning."""
+    """The mean of vectors over the last ``rows`` rows, over fewer at the beginning."""
 
     def __init__(self, rows: int) -> None:
         self._rows = rows
@@ -66,7 +66,7 @@ class _Torques:
         self._largest: dict[str, float] = {}
 
     def of(self, truth: Histories) -> dict[str, Array]:
-        """By name, N m; NaN where it is none."""
+        """By name, N m; NaN where there is none."""
         sizes = {}
         for name, torque in truth.items():
             if name.startswith(TORQUE):
@@ -79,7 +79,7 @@ class _Torques:
 
 
 class Lines:
-    """Of a flight of so many ticks, from its blocks in order; memory does not grow with its length."""
+    """Of a flight of ``ticks`` ticks, from its blocks in order; memory does not grow with its length."""
 
     def __init__(self, ticks: int, tick_hz: int) -> None:
         self.ticks = ticks
@@ -135,7 +135,7 @@ class Lines:
 
 
 def _quantities(flight: FlightHistories) -> dict[str, Array]:
-    """By name, (n,) or (n, 3): degrees and degrees a second of angles, else SI."""
+    """By name, (n,) or (n, 3): angles in degrees and degrees per second, the others in SI."""
     omega_degps = np.degrees(flight.truth["omega_body_orbit_radps"])
     b_body_t = flight.truth["b_body_t"]
     return {

@@ -13,7 +13,7 @@ COLUMNS = {"q_body_from_orbit": 4, "b_body_t": 3, "sun_body": 3, "r_eci_m": 3, "
 
 
 class MotionSamples:
-    """Of a flight of so many ticks, from its blocks in order; memory does not grow with its length."""
+    """Of a flight of ``ticks`` ticks, from its blocks in order; memory does not grow with its length."""
 
     def __init__(self, ticks: int) -> None:
         self.places = np.unique(np.linspace(0, ticks - 1, min(ticks, MOST_SAMPLES)).round().astype(int))

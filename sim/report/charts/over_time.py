@@ -15,7 +15,7 @@ MODE_COLOURS = {
     Mode.POINT: "#009e73",
 }
 MOST_SPANS = 2000
-"""Spans in which the controller stays in a mode."""
+"""Most spans of a mode that are drawn."""
 
 
 def modes(flight: DrawnFlight) -> DrawnChart:
@@ -77,7 +77,7 @@ def rates(flight: DrawnFlight) -> DrawnChart:
 
 
 def estimate(flight: DrawnFlight) -> DrawnChart:
-    """True errors of the estimated attitude and rate beside the 3 sigma that the filter expects."""
+    """True errors of the estimated attitude and rate, and the 3 sigma that the filter expects."""
     histories = (
         ("Attitude estimate", "error [deg]", 1.9, "attitude_error_deg", "attitude_sigma3_deg", 1.0),
         ("Rate estimate", "error [mdeg/s]", 1.6, "rate_error_degps", "rate_sigma3_degps", 1e3),

@@ -20,13 +20,13 @@ Array = NDArray[np.float64]
 Json = dict[str, Any]
 
 LEAST_SIDE = 0.3
-"""Of the body as it is drawn, beside its longest."""
+"""Shortest side of the body as it is drawn, relative to its longest."""
 
 
 def page_data(
     scenario: Scenario, summary: Json, lines: Lines, audit: AuditReport, sections: Sequence[ChartSection]
 ) -> Json | None:
-    """The data of a flight; None of one without a tick."""
+    """The data of a flight; None for one without a tick."""
     if lines.ticks == 0:
         return None
     flight = DrawnFlight.of(scenario, lines, audit)
@@ -57,7 +57,7 @@ def _motion(scenario: Scenario, flight: DrawnFlight) -> Json:
 
 
 def sides(inertia_kgm2: Array) -> Array:
-    """The sides of a cuboid of even density with these moments of inertia, the longest 1, (3,).
+    """The sides of a cuboid of uniform density with these moments of inertia, the longest 1, (3,).
 
     J_1 = m (a_2^2 + a_3^2) / 12 and so on, thus a_1^2 ~ J_2 + J_3 - J_1; none is drawn very short.
     """

@@ -1,4 +1,4 @@
-"""The pulses of a flight as data of the page: a lane a coil."""
+"""The pulses of a flight as data of the page: a lane per coil."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -10,7 +10,7 @@ from sim.report.charts.drawn_flight import DrawnFlight
 Json = dict[str, Any]
 
 MOST_PULSES = 6000
-"""Of a coil; of more, only the strongest in each of so many parts of the flight is shown."""
+"""Of a coil; of more, only the strongest in each of this many parts of the flight is shown."""
 
 
 def pulse_lanes(flight: DrawnFlight) -> Json:

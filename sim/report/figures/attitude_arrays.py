@@ -17,7 +17,7 @@ def relative(q_from: Array, q_to: Array) -> Array:
 
 
 def angle_rad(turn: Array) -> Array:
-    """The angle of each turn, 0 to pi, (n,)."""
+    """The angle of each rotation, 0 to pi, (n,)."""
     result: Array = 2.0 * np.arctan2(np.linalg.norm(turn[:, 1:], axis=1), np.abs(turn[:, 0]))
     return result
 
@@ -49,12 +49,12 @@ def rotation_vectors(turn: Array) -> Array:
 
 
 def errors(q: Array) -> Array:
-    """The turn from nominal to each attitude, (n, 3), rad, body axes."""
+    """The rotation vector from nominal to each attitude, (n, 3), rad, body axes."""
     return rotation_vectors(relative(np.tile((1.0, 0.0, 0.0, 0.0), (len(q), 1)), q))
 
 
 def axis1_errors(q: Array) -> Array:
-    """The turn from body axis 1 to the vertical, (n, 3), rad, body axes; 0 about axis 1."""
+    """The rotation vector from body axis 1 to the vertical, (n, 3), rad, body axes; 0 about axis 1."""
     q0, q1, q2, q3 = q.T
     across = np.stack((np.zeros_like(q0), -2.0 * (q1 * q3 + q0 * q2), 2.0 * (q1 * q2 - q0 * q3)), axis=1)
     size = np.linalg.norm(across, axis=1)

@@ -1,4 +1,4 @@
-"""What the coils of a continuous driver were driven, from the plant's mean dipole of each tick."""
+"""How much the coils of a continuous driver were driven, from the plant's mean dipole of each tick."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,15 +8,15 @@ from sim.scenario.schema import Scenario
 Array = NDArray[np.float64]
 
 RESIDUAL = 1e-5
-"""Part of full scale under which a coil is not driven: less than the least dipole on the wire."""
+"""Fraction of full scale below which a coil counts as not driven: less than the least dipole on the wire."""
 
 
 def dipole_squared_a2m4s(scenario: Scenario, dipole_am2: Array) -> float:
-    """Integral of |m|^2 from the mean dipole of each tick, (n, 3); of a pulsed driver too.
+    """Integral of |m|^2 from the mean dipole of each tick, (n, 3); for a pulsed driver too.
 
     A continuous driver drives 1 / f times the mean over the fraction f of a tick. The rise of the current is
-    passed over: it is short beside a tick. Times resistance over (dipole an ampere)^2 it is the energy lost
-    in the coils.
+    neglected: it is short against a tick. Times resistance over (dipole per ampere)^2 it is the energy
+    dissipated in the coils.
     """
     coils = scenario.coils
     fraction = coils.on_fraction if coils.driver == "continuous" else 1.0
@@ -24,7 +24,7 @@ def dipole_squared_a2m4s(scenario: Scenario, dipole_am2: Array) -> float:
 
 
 def driven_s(scenario: Scenario, dipole_am2: Array) -> float:
-    """Time for which a continuous driver drove any coil, a part of each tick; not what dies away."""
+    """Time for which a continuous driver drove any coil, a fraction of each tick; decay does not count."""
     coils = scenario.coils
     full_scale_am2 = coils.on_fraction * (coils.max_dipole_am2 or 0.0)
     driven = np.abs(dipole_am2).max(axis=1, initial=0.0) > RESIDUAL * full_scale_am2

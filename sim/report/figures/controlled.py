@@ -22,7 +22,7 @@ SETTLED_DEG = 5.0
 
 
 class Controlled(NamedTuple):
-    """What is controlled: its name in requirements, in words, and the error under which it has settled."""
+    """What is controlled: its name in requirements, in words, and the error below which it has settled."""
 
     what: str
     words: str
@@ -63,7 +63,7 @@ def error_vectors(what: str, truth: Histories, spin_radps: float) -> Array:
 
 
 def held_from(error: Array, threshold: float) -> int:
-    """The first row after the last error that is not under the threshold; their number if there is none."""
+    """The first row from which all errors are below the threshold; the number of rows if there is none."""
     large = np.flatnonzero(~(error < threshold))
     return int(large[-1]) + 1 if len(large) else 0
 
@@ -79,7 +79,7 @@ class ControlledError:
     taken: int = 0
 
     def take(self, truth: Histories, recent: slice) -> Array:
-        """The next block, and what of it is in the last orbit; returns the errors' magnitudes."""
+        """The next block, of which ``recent`` is in the last orbit; returns the errors' magnitudes."""
         error: Array = np.linalg.norm(error_vectors(self.of.what, truth, self.spin_radps), axis=1)
         self.last_orbit.take(error[recent])
         row = held_from(error, self.of.threshold)

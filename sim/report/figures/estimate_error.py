@@ -1,4 +1,4 @@
-"""The error of the estimate by tick, against the plant's truth and against what the filter says of it."""
+"""The error of the estimate by tick, against the plant's truth and against what the filter states."""
 
 import numpy as np
 from numpy.typing import NDArray

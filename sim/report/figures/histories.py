@@ -13,7 +13,7 @@ from sim.report.figures.estimate_error import estimate_error
 Array = NDArray[np.float64]
 
 DARK = 0.5
-"""A smaller visible fraction of the Sun is an eclipse."""
+"""A smaller visible fraction of the Sun counts as eclipse."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class FlightHistories:
 
     @property
     def pointing_deg(self) -> Array:
-        """The angle of the turn from nominal to the true attitude."""
+        """The angle between the nominal and the true attitude."""
         return np.degrees(angle_rad(self.truth["q_body_from_orbit"]))
 
     @property
@@ -59,7 +59,7 @@ class FlightHistories:
         return np.degrees(error)
 
     def sigma3_deg(self, first: int) -> Array:
-        """3 sqrt(tr P) of three error states, ``first`` and on: thrice the error the filter expects."""
+        """3 sqrt(tr P) of three error states, from ``first`` on: three times the error the filter expects."""
         variances = [self.estimates.covariance[: self.ticks, i, i] for i in range(first, first + 3)]
         result: Array = np.degrees(3.0 * np.sqrt(np.sum(variances, axis=0)))
         return result

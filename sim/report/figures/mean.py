@@ -18,7 +18,7 @@ class Mean:
     most: float = -np.inf
 
     def take(self, values: Array) -> None:
-        """Take more of them."""
+        """Take further values."""
         if len(values):
             self.count += len(values)
             self.total += float(values.sum())
@@ -27,10 +27,10 @@ class Mean:
 
     @property
     def mean(self) -> float:
-        """Of at least one."""
+        """Of at least one value."""
         return self.total / self.count
 
     @property
     def rms(self) -> float:
-        """Root of the mean of squares, of at least one."""
+        """Root mean square of at least one value."""
         return float(np.sqrt(self.squares / self.count))

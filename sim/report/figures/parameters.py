@@ -1,4 +1,4 @@
-"""What the filter estimates besides attitude and rate, beside the bounds of its table and the truth."""
+"""What the filter estimates besides attitude and rate, with the bounds of its table and the truth."""
 
 from typing import Any
 
@@ -47,9 +47,9 @@ def parameter_figures(scenario: Scenario, truth: Histories, estimate: Estimate |
 
 
 def true_parameters(scenario: Scenario, table: FlightTable, truth: Histories) -> dict[str, Values]:
-    """What the parameters really are, of sensors and coils beside their calibration.
+    """The true parameters; those of sensors and coils are relative to their calibration.
 
-    Torque and dipole, which may vary, at the end, without remanence.
+    Torque and dipole, which may vary, are those at the end, without remanence.
     """
     plant, calibration = plant_config(scenario, seed=0), table.calibration
     magnetometer = magnetometer_errors(plant.magnetometer, calibration)
@@ -62,17 +62,17 @@ def true_parameters(scenario: Scenario, table: FlightTable, truth: Histories) ->
         "mag_scale": magnetometer.scale,
         "delay_s": (plant.magnetometer.latency_s, plant.sun_sensor.latency_s),
     }
-    if isinstance(plant.sun_sensor, SunSensorConfig):  # cells are turned each by itself
+    if isinstance(plant.sun_sensor, SunSensorConfig):  # cells are misaligned each by itself
         true["sun_turn_rad"] = sun_turn_rad(plant.sun_sensor, calibration)
     elif table.cells is not None:
         true |= _of_cells(plant.sun_sensor, table.cells)
-    if not effects(plant):  # torques that follow the motion have no one value
+    if not effects(plant):  # torques that depend on the motion have no single value
         true["torque_body_nm"] = bias_torque(plant.disturbance, truth["t_s"][-1])
     return true
 
 
 def _of_cells(true: SunCellsConfig, assumed: CellTable) -> dict[str, Values]:
-    """What lasts of their errors: a gain for each that the filter has room for, and the mean albedo."""
+    """Their lasting errors: a gain for each that the filter has room for, and the mean albedo."""
     nominal = assumed.full_sun or (1.0,) * len(true.cells)
     gains = [cell.gain / full - 1.0 for cell, full in zip(true.cells, nominal, strict=True)]
     light = {"earth_light": (true.albedo - assumed.albedo,)} if assumed.albedo else {}

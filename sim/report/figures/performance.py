@@ -31,7 +31,7 @@ Flags = NDArray[np.bool_]
 Json = dict[str, Any]
 
 BLOCK_TICKS = 4096
-"""Sums are taken over blocks of so many ticks, however a flight is handed over: so they are the same bits."""
+"""Sums are taken over blocks of this many ticks, however a flight is handed over: so they are bit-exact."""
 SPIN_SETTLED_RADPS = 1e-3
 
 
@@ -60,7 +60,7 @@ class _Angle:
 
 @dataclass(slots=True)
 class _Honesty:
-    """Of the estimate from a tick on: its errors, and whether its covariance tells them."""
+    """Of the estimate from a tick on: its errors, and whether its covariance accounts for them."""
 
     sunlit: Mean = field(default_factory=Mean)
     eclipse: Mean = field(default_factory=Mean)
@@ -71,7 +71,7 @@ class _Honesty:
     def take(self, truth: Histories, estimates: Estimates, error_deg: Array, since: int) -> None:
         """A block, from its row ``since`` on."""
         ticks, estimated = len(error_deg), np.isfinite(error_deg)
-        estimated[:since] = False  # also where a filter that starts anew has no estimate for a while
+        estimated[:since] = False  # also where a filter that restarts has no estimate for a while
         lit = truth["lit"] > 0.5
         self.sunlit.take(error_deg[lit & estimated])
         self.eclipse.take(error_deg[~lit & estimated])
@@ -138,7 +138,7 @@ class _Convergence:
 
 @dataclass(slots=True)
 class _Spin:
-    """The spin about body axis 1 against its reference, and the tick from which it stays near it."""
+    """The spin about body axis 1 against its reference, and the tick from which it stays close to that."""
 
     reference_radps: float
     last_orbit: Mean = field(default_factory=Mean)
@@ -155,7 +155,7 @@ class _Spin:
 
 
 class Performance:
-    """What a flight of so many ticks achieves, from its blocks in order.
+    """What a flight of ``ticks`` ticks achieves, from its blocks in order.
 
     Args:
         scenario: that was flown.
@@ -230,7 +230,7 @@ class Performance:
 
 
 def perform(scenario: Scenario, truth: Histories, estimates: Estimates) -> Performance:
-    """Of a flight whose histories are whole."""
+    """The performance of a flight, from its whole histories."""
     performance = Performance(scenario, len(truth["t_s"]))
     for truth_block, estimates_block in blocks(truth, estimates):
         performance.take(truth_block, estimates_block)

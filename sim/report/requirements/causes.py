@@ -24,16 +24,16 @@ from sim.report.requirements.words import number, orbits, part
 from sim.scenario.schema import flight_table
 
 TREND = 3
-"""Half orbits in which a trend is seen."""
+"""Half orbits from which a trend is determined."""
 COARSE = 4.0
-"""Times the limit that a pulse may turn the body: the law fires where it takes from a libration, so that the
-error is about a fifth of it."""
+"""Times the limit that a pulse may turn the body: the law fires where that reduces a libration, so that the
+error is about a fifth of the turn."""
 LATE = 0.4
-"""Part of a flight after which it is late for what must come first: attitude, low rate."""
+"""Fraction of a flight after which it is late for what must come first: attitude, low rate."""
 
 
 Find = Callable[[Missed, FlightEvidence], str]
-"""The sentence of a cause; empty where it is none."""
+"""The sentence of a cause; empty if it is not the cause."""
 
 
 class Diagnosis(NamedTuple):
@@ -216,7 +216,7 @@ def _never_in_point(missed: Missed, evidence: FlightEvidence) -> str:
 
 
 def _has_settled(missed: Missed) -> bool:
-    """It has, if later than it should."""
+    """It has settled, but later than it should."""
     return missed.name == "settling" and missed.settled is not None
 
 
@@ -273,4 +273,4 @@ CAUSES: Sequence[Diagnosis] = (
         "swings", SETTLING, swings, POINT_IS_LOST | {"fell_back", "left_again", "short", "never_in_point"}
     ),
 )
-"""In the order in which one leads to the next."""
+"""In the order in which one may lead to the next."""

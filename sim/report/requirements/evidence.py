@@ -20,9 +20,9 @@ from sim.statistics.indices import magnitudes
 Array = NDArray[np.float64]
 
 HALF_ORBITS = 6
-"""Of the end of the flight, in which the trend of the error is seen."""
+"""At the end of the flight, from which the trend of the error is determined."""
 NOT_DISTURBANCES = ("gravity_gradient", "coils", "residual_dipole")
-"""Torques that are the body's own, the coils' or known as a dipole."""
+"""Torques that are the body's own, the coils' or counted as a dipole."""
 
 
 class Missed(NamedTuple):
@@ -31,8 +31,8 @@ class Missed(NamedTuple):
     Attributes:
         name: of its index.
         what: what it is of.
-        limit: the most it may be, or the error under which it has settled; None where it is no angle.
-        settled: since when it has, in orbits; None: never.
+        limit: the most it may be, or the error below which it has settled; None where it is not an angle.
+        settled: since when it has settled, in orbits; None: never.
     """
 
     name: str
@@ -48,22 +48,22 @@ class FlightEvidence:
     Attributes:
         scenario: what was flown.
         orbits: length of the flight.
-        trend: RMS of the error of what is controlled by half orbit, the last ones of the flight.
+        trend: by half orbit, RMS of the error of what is controlled, at the end of the flight.
         estimate_deg: RMS of the knowledge error while the attitude is called valid; None if it never is.
-        valid_part: part of the last orbit in which the attitude is called valid.
-        within_3sigma: part of that in which each axis of the error is inside the filter's 3 sigma.
-        first_valid: since when the attitude was called valid first; None: never.
-        lit_from: since when the Sun was seen first; None: never.
-        in_mode: part of the flight in each mode.
-        first_in_point: None: never.
+        valid_part: fraction of the last orbit in which the attitude is called valid.
+        within_3sigma: fraction of that in which each axis of the error is inside the filter's 3 sigma.
+        first_valid: when the attitude was first called valid; None: never.
+        lit_from: when the Sun was first seen; None: never.
+        in_mode: fraction of the flight in each mode.
+        first_in_point: when POINT was first entered; None: never.
         rate_degps: at the start, relative to the orbital frame and the spin reference.
         rate_last_degps: RMS of the same.
-        slow_from: since when the rate stays under that of ACQUIRE; None: it does not.
+        slow_from: since when the rate stays below that of ACQUIRE; None: it does not.
         isolated: the units that are out of use at the end, and since when.
-        torque_nm: disturbance torque on the mean, body axes.
+        torque_nm: mean disturbance torque, body axes.
         levels: pulses at each level, least first.
-        saturated_part: part of the time in which a continuous driver gives all it can.
-        course: RMS of the error of what is controlled by half orbit, from the start.
+        saturated_part: fraction of the time in which a continuous driver gives all it can.
+        course: by half orbit, RMS of the error of what is controlled, from the start.
         pulses: start in orbits and size of the level of each pulse of the flight.
         fell_back: since when and for how long the controller was in SAFE or DETUMBLE after a better mode.
     """
@@ -175,7 +175,7 @@ class EvidenceGatherer:
             self._course_end = first + end
 
     def _take_mode(self, first: int, mode: NDArray[np.integer]) -> None:
-        """Each mode and the tick since when it is."""
+        """Note each mode and the tick in which it begins."""
         before = self._mode[-1][1] if self._mode else -1
         changes = np.flatnonzero(np.diff(mode, prepend=before))
         self._mode += [(first + int(place), int(mode[place])) for place in changes]
@@ -227,7 +227,7 @@ def _disturbance(scenario: Scenario, truth: Histories) -> Array:
 
 
 def _saturated(scenario: Scenario, truth: Histories) -> NDArray[np.bool_]:
-    """Ticks in which a continuous driver gives all it can; none of a pulsed one."""
+    """Ticks in which a continuous driver gives all it can; none for a pulsed one."""
     coils = scenario.coils
     if coils.driver != "continuous":
         return np.zeros(len(truth["t_s"]), dtype=bool)

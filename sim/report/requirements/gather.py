@@ -45,7 +45,7 @@ class Gathered:
 
     @property
     def threshold(self) -> float:
-        """Under which what is controlled has settled."""
+        """Below which what is controlled has settled."""
         return self.section.settled_degps if self.what == "spin" else self.section.settled_deg
 
     @property
@@ -85,7 +85,7 @@ class Gathered:
             self._take(truth, estimates, error, slice(since, rows))
 
     def value(self) -> float | None:
-        """The statistic of the index over the window; None where nothing was in it."""
+        """The statistic of the index over the window; None where the window is empty."""
         if len(self._waiting) and not self.statistic.mean.count:
             self._take_means(self._waiting)
         return self.statistic.value
@@ -125,6 +125,6 @@ class Gathered:
 
 
 def _pointed(scenario: Scenario) -> str:
-    """What a requirement is of where it does not say so."""
+    """What a requirement refers to where it does not say so."""
     what = controlled(scenario).what
     return "attitude" if what == "rate" else what

@@ -18,7 +18,7 @@ Json = dict[str, Any]
 
 
 class Outcome(StrEnum):
-    """Of a requirement."""
+    """The outcome of a requirement."""
 
     MET = "met"
     FAILED = "failed"
@@ -26,7 +26,7 @@ class Outcome(StrEnum):
 
 
 class Judgement:
-    """Of a flight of so many ticks.
+    """The judgement of a flight.
 
     Args:
         scenario: that was flown.
@@ -127,7 +127,7 @@ def _measured(one: Gathered, scenario: Scenario, audit: AuditReport) -> tuple[fl
 
 
 def _of_coils(one: Gathered, scenario: Scenario, audit: AuditReport) -> float:
-    """Duty of all coils together, %, or energy lost in them, J, over the window."""
+    """Duty of all coils together, %, or energy dissipated in them, J, over the window."""
     coils, hz = scenario.coils, scenario.time.tick_hz
     begin_s, length_s = one.window_from / hz, (one.ticks - one.window_from) / hz
     if coils.driver == "continuous":

@@ -1,4 +1,4 @@
-"""Where the satellite of a scenario is not what its onboard table says, beyond the bounds of that table."""
+"""Where the satellite of a scenario differs from its onboard table by more than the bounds of that table."""
 
 from math import degrees
 
@@ -12,7 +12,7 @@ from sim.scenario.schema import Scenario, flight_table
 
 SHOWN = 3
 BEYOND = 1.2
-"""Times its bound from which a deviation is told, if it is more than is ordinary for such a satellite."""
+"""A deviation above this many times its bound is stated, if it is more than ordinary for such a satellite."""
 WITHOUT_SENSORS = ("coil_error", "inertia_error_kgm2")
 """What matters to a controller with perfect knowledge."""
 
@@ -29,7 +29,7 @@ WORDS = {
     "cell_gain": ("gain of a Sun cell off by", "%", 100.0),
     "earth_light": ("Earth's light on the cells off by", "% of the Sun's", 100.0),
 }
-"""A parameter in words, the unit in which it is told, and how many of it are one of SI."""
+"""A parameter in words, the unit in which it is stated, and how many of these are one of SI."""
 
 
 def beyond_bounds(scenario: Scenario) -> list[str]:

@@ -1,4 +1,4 @@
-"""Why a flight settled late: causes from its course, beside those of ``causes.py``."""
+"""Why a flight settled late: causes from its course, in addition to those of ``causes.py``."""
 
 from math import log
 
@@ -9,7 +9,7 @@ from sim.report.requirements.words import number, orbits, part
 
 MOST_TOLD = 3
 FALLS = 0.9
-"""The most that an error which falls is of itself an orbit before."""
+"""An error falls if it is at most this fraction of itself an orbit earlier."""
 
 
 def fell_back(missed: Missed, evidence: FlightEvidence) -> str:
@@ -37,7 +37,7 @@ def left_again(missed: Missed, evidence: FlightEvidence) -> str:
 
 
 def slow(missed: Missed, evidence: FlightEvidence) -> str:
-    """It settled, by an error that fell all the time."""
+    """It settled, with an error that fell all the way."""
     if missed.settled is None or missed.limit is None:
         return ""
     way = evidence.course[: int(2.0 * missed.settled) + 1]
@@ -53,7 +53,7 @@ def slow(missed: Missed, evidence: FlightEvidence) -> str:
 
 
 def swings(missed: Missed, evidence: FlightEvidence) -> str:
-    """It does not settle, and the error falls no longer."""
+    """It does not settle, and the error no longer falls."""
     trend = evidence.trend
     if missed.settled is not None or missed.limit is None or len(trend) < 3 or min(trend) <= 0.0:
         return ""

@@ -1,4 +1,4 @@
-"""What the coils of a scenario can give on the mean, and what its disturbances and levels make of it."""
+"""What the coils of a scenario can give on average, what its disturbances take, and what its levels cause."""
 
 from dataclasses import dataclass
 from math import degrees, radians, sin, sqrt
@@ -20,7 +20,7 @@ def mean_field_t(body: Body) -> float:
 
 @dataclass(frozen=True, slots=True)
 class MeanDipole:
-    """Dipoles on the mean over an orbit, A m^2.
+    """Mean dipoles over an orbit, A m^2.
 
     Attributes:
         given: the most that the coils can give along any one axis.
@@ -34,12 +34,12 @@ class MeanDipole:
 
     @property
     def needed(self) -> float:
-        """For both."""
+        """What both need."""
         return self.torque + self.residual
 
 
 def mean_dipole(scenario: Scenario, torque_nm: Vec3) -> MeanDipole:
-    """What coils can give, on_part m_3, beside |T| / |B| and the largest residual dipole of an axis."""
+    """What coils can give, on_part m_3, against |T| / |B| and the largest residual dipole of an axis."""
     residual = max(abs(m) for m in scenario.disturbance.residual_dipole_am2)
     torque = float(np.linalg.norm(torque_nm)) / mean_field_t(body_of(scenario))
     return MeanDipole(scenario.coils.on_part * scenario.coils.largest_am2, torque, residual)
@@ -48,7 +48,7 @@ def mean_dipole(scenario: Scenario, torque_nm: Vec3) -> MeanDipole:
 def least_error_deg(scenario: Scenario, torque_nm: Vec3) -> float | None:
     """The least RMS error of the whole attitude under a constant torque, whatever the law.
 
-    None of a body that the gravity gradient leaves free, for which there is no periodic motion.
+    None for a body that the gravity gradient leaves free, for which there is no periodic motion.
     """
     try:
         return degrees(least_error(body_of(scenario), torque_nm).rms_rad)
@@ -68,9 +68,9 @@ def pulse_turn_deg(scenario: Scenario, what: str) -> float:
 
 
 def gradient_level_am2(scenario: Scenario) -> float:
-    """Highest level that gives on the mean the largest gravity gradient, 3/2 w0^2 (C - A) / |B| / on_part.
+    """Highest level whose mean torque is the largest gravity gradient, 3/2 w0^2 (C - A) / |B| / on_part.
 
-    Weaker coils do not turn a body back that the gravity gradient holds upside down.
+    Weaker coils cannot turn back a body that the gravity gradient holds upside down.
     """
     body = body_of(scenario)
     moments = np.linalg.eigvalsh(np.array(scenario.body.inertia))

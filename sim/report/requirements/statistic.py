@@ -16,10 +16,10 @@ EDGES = np.geomspace(LEAST, MOST, 1 + round(np.log(MOST / LEAST) / np.log(STEP))
 
 @dataclass(slots=True)
 class Statistic:
-    """Root mean square, or what a part of the values does not exceed, in constant memory.
+    """Root mean square, or what a fraction of the values does not exceed, in constant memory.
 
     Attributes:
-        probability: that part; None: the root mean square.
+        probability: that fraction; None: the root mean square.
     """
 
     probability: float | None
@@ -27,14 +27,14 @@ class Statistic:
     counts: NDArray[np.int64] = field(default_factory=lambda: np.zeros(len(EDGES) + 1, np.int64))
 
     def take(self, values: Array) -> None:
-        """Take more of them."""
+        """Take further values."""
         self.mean.take(values)
         if self.probability is not None:
             self.counts += np.bincount(np.searchsorted(EDGES, values), minlength=len(EDGES) + 1)
 
     @property
     def value(self) -> float | None:
-        """None of no values."""
+        """None if there are no values."""
         if not self.mean.count:
             return None
         if self.probability is None:
@@ -45,7 +45,7 @@ class Statistic:
 
     @property
     def words(self) -> str:
-        """What it is."""
+        """What it is, in words."""
         if self.probability is None:
             return "RMS"
         return (

@@ -14,5 +14,5 @@ def orbits(value: float) -> str:
 
 
 def part(value: float) -> str:
-    """A part in percent."""
+    """A fraction in percent."""
     return f"{100.0 * value:.0f} %"

@@ -32,7 +32,7 @@ UNITS = (
     ("_s", "s"),
     ("_j", "J"),
 )
-"""Units by the end of a key, the longer ends before those that they end with."""
+"""Units by the suffix of a key, longer ones before those that they end with."""
 OF_GAINS = {"k_w": "N m s/T^2", "k_a": "N m/T^2", "k_i": "N m/(T^2 s)", "orbits": "orbits"}
 
 
@@ -42,7 +42,7 @@ def unit_of(key: str) -> str:
 
 
 def json_schema() -> dict[str, Any]:
-    """JSON Schema (2020-12) of a scenario file; what is said of several keys at once it cannot check.
+    """JSON Schema (2020-12) of a scenario file; it cannot check conditions on several keys.
 
     ``flight`` has the keys of the onboard table, none of which is required there.
     """

@@ -44,7 +44,7 @@ _ONBOARD_ALONE = (
     "fdir",
     "telemetry",
 )
-"""Sections of the onboard table that a scenario has not, or with other keys."""
+"""Sections of the onboard table that a scenario does not have, or has with other keys."""
 NO_DEFAULTS: Mapping[str, Any] = {}
 _SAID = {
     "flight.uncertainty": "Bounds of what the table may be wrong by. One that is left out takes the ordinary "
@@ -54,7 +54,7 @@ _SAID = {
     "given, an axis saturates.",
     "flight.calibration": "Of this very satellite: [calibration.md](calibration.md).",
 }
-"""Of sections whose own text is for a reader of the code."""
+"""Text of sections whose docstring is for a reader of the code."""
 
 
 def page() -> str:

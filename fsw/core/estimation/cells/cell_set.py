@@ -1,18 +1,18 @@
 """Coarse Sun cells: what each should show, by Sun, Earth and attitude.
 
-A cell with the normal n shows, in parts of what it shows facing the Sun,
+A cell with the normal n shows, as a fraction of what it shows facing the Sun,
 
     c = n . s + A cos(zeta) (R / r)^2 ((1 + n . e) / 2)^2 + excess,
 
-s and e being the directions to Sun and Earth, zeta the Sun's distance from the zenith, and A the part of the
-light that the Earth reflects. The second term is the Earth's light: (R / r)^2 is the view factor of a plate
-that faces the Earth; one that is turned away sees what the square leaves of it, nearly, in low orbits.
+s and e being the directions to Sun and Earth, zeta the Sun's zenith angle, and A the albedo: the fraction of
+the light that the Earth reflects. The second term is the Earth's light: (R / r)^2 is the view factor of a
+plate that faces the Earth; tilting the plate reduces it by nearly the square, in low orbits.
 
-What is not the nominal one is estimated: the gain of each cell, a constant that multiplies n . s; A, which
-wanders as the satellite passes over land, sea and clouds; and the excess, whatever a cell shows beyond that,
-since clouds are not spread evenly. None is white noise. A is one for all cells: errors that each had for
-itself would be taken to average out. The excess stays while the geometry does: it is a state of each cell,
-first-order Markov over the angle that the satellite turns by against Sun and Earth.
+Departures from nominal are estimated: the gain of each cell, a constant that multiplies n . s; A, which
+varies as the satellite passes over land, sea and clouds; and the excess, whatever a cell shows beyond that,
+since clouds are not spread evenly. None is white noise. A is common to all cells: separate errors would be
+taken to average out. The excess persists while the geometry does: it is a state of each cell, first-order
+Markov in the angle by which the satellite rotates relative to Sun and Earth.
 """
 
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ from fsw.core.orbit.sun import lit
 
 
 class Shade(NamedTuple):
-    """Where the satellite takes the Sun from a cell: a cone, its axis and the cosine of half its angle."""
+    """Where the satellite shades a cell from the Sun: a cone, its axis and the cosine of its half-angle."""
 
     axis_body: Vec3
     cosine: float
@@ -38,13 +38,13 @@ class CellSet:
     Attributes:
         normals_body: unit vectors, body axes, at most six.
         full_sun: what each sends while it faces the Sun.
-        shades: by cell, from where it is shaded.
-        dark: below this part of full sunlight a cell counts as dark.
-        sigma: white noise, parts of full sunlight, as the next.
+        shades: by cell, the directions in which it is shaded.
+        dark: below this fraction of full sunlight a cell counts as dark.
+        sigma: white noise, as a fraction of full sunlight, as is the next.
         excess_sigma: standard deviation of the excess.
         gain_sigma: of the relative error of the gain.
         light_sigma: of the albedo.
-        albedo: part of the sunlight that the Earth reflects; 0: its light is not reckoned with.
+        albedo: fraction of the sunlight that the Earth reflects; 0: its light is not modelled.
     """
 
     normals_body: tuple[Vec3, ...]
@@ -59,16 +59,16 @@ class CellSet:
 
     @property
     def model_sigma(self) -> float:
-        """Standard deviation of what a cell that sees Sun and Earth shows beyond its model, all together."""
+        """Standard deviation of all that a cell that sees Sun and Earth shows beyond its nominal model."""
         return hypot(self.excess_sigma, self.gain_sigma, self.light_sigma)
 
     def shaded(self, cell: int, s_body: Vec3) -> bool:
-        """Whether the satellite itself takes this direction of the Sun from a cell."""
+        """Whether the satellite itself shades a cell from a Sun in this direction."""
         return any([dot(shade.axis_body, s_body) > shade.cosine for shade in self.shades[cell]])
 
 
 class Light(NamedTuple):
-    """What lights the cells: directions to Sun and Earth, eci; the Earth's light in parts of the Sun's."""
+    """What lights the cells: directions to Sun and Earth, eci; the Earth's light relative to the Sun's."""
 
     s_eci: Vec3
     e_eci: Vec3
@@ -76,7 +76,7 @@ class Light(NamedTuple):
 
 
 PENUMBRA_M = 40e3
-"""So far from the edge of the shadow the Sun is whole: half of the penumbra, errors of place and Earth."""
+"""Beyond this from the shadow's edge the Sun is whole: half the penumbra, errors of position and Earth."""
 
 
 def light(r_eci_m: Vec3, s_eci: Vec3, albedo: float) -> Light | None:

@@ -1,4 +1,4 @@
-"""The direction of the Sun from three lit cells, coarse: the Earth's light is in it."""
+"""The direction of the Sun from three lit cells: coarse, since it includes the Earth's light."""
 
 from collections.abc import Sequence
 
@@ -6,11 +6,11 @@ from fsw.core.algebra.vector import Mat3, Vec3, cross, dot, inverse, norm, trans
 from fsw.core.estimation.cells.cell_set import CellSet
 
 BRIGHT = 0.12
-"""Part of full sunlight above which a cell is taken to see the Sun; the Earth alone seldom gives as much."""
+"""Fraction of full sunlight above which a cell is taken to see the Sun; the Earth alone seldom gives this."""
 LENGTHS = (0.7, 1.4)
-"""Of the vector: a shorter one is the Earth's light alone, in a longer one there is too much of it."""
+"""Limits for the vector: a shorter one is the Earth's light alone, a longer one contains too much of it."""
 LEAST_VOLUME = 0.3
-"""Of three normals: below it errors of the currents turn the direction too much."""
+"""Of the solid that three normals span: below it, errors of the currents change the direction too much."""
 
 
 def coarse_sun(currents: Sequence[float | None], cells: CellSet) -> Vec3 | None:
@@ -20,7 +20,7 @@ def coarse_sun(currents: Sequence[float | None], cells: CellSet) -> Vec3 | None:
     is outside ``LENGTHS``.
 
     Args:
-        currents: by cell, parts of full sunlight; None: not to be used.
+        currents: by cell, fractions of full sunlight; None: not to be used.
         cells: as the table has them.
     """
     bright = [(current, cell) for cell, current in enumerate(currents) if current and current > BRIGHT]
@@ -38,7 +38,7 @@ def coarse_sun(currents: Sequence[float | None], cells: CellSet) -> Vec3 | None:
 
 
 def _spans(rows: list[Vec3], normal: Vec3) -> bool:
-    """Whether a normal points out of the space of those before."""
+    """Whether a normal points well out of the span of those before."""
     if not rows:
         return True
     if len(rows) == 1:

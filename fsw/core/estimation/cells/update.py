@@ -1,4 +1,4 @@
-"""The samples of Sun cells in the filter: one at a time; none of its errors is white noise but the least."""
+"""Sun-cell samples in the filter, one at a time; of a cell's errors only the smallest is white noise."""
 
 from collections.abc import Sequence
 from math import hypot
@@ -16,15 +16,15 @@ from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
 
 LEAST_COSINE = 0.2
-"""Of the angle between a cell and the Sun: below it an error of the attitude may leave the cell dark."""
+"""Of the angle from a cell's normal to the Sun: below it an attitude error may leave the cell dark."""
 GATE_NIS = 10.83
-"""Chi-square of 1 degree of freedom: of sound samples 1 in 1000 is refused."""
+"""Chi-square with 1 degree of freedom: 1 in 1000 sound samples is refused."""
 SIGMAS = 4.0
-"""Beyond so many standard deviations an excess or a gain is none that the table allows."""
+"""Beyond this many standard deviations an excess or a gain is outside what the table allows."""
 BRIGHT = 2.0
-"""Times the threshold: a cell that the Sun is behind is taken if the Earth alone gives it so much."""
+"""Times the threshold: a cell that faces away from the Sun is taken if the Earth alone gives it this much."""
 CORRELATION_RAD = 1.0
-"""The excess of a cell has little to do with that before a turn by this angle."""
+"""After a rotation by this angle the excess of a cell is little correlated with that before."""
 ORBIT_RADPS = 1.1e-3
 """The Earth moves at this rate in the view of a satellite that does not turn."""
 
@@ -46,9 +46,9 @@ CellPrediction = tuple[float, Matrix]
 def prediction(
     estimate: Estimate, cell: int, seen: Light, config: MekfConfig, cells: CellSet
 ) -> CellPrediction:
-    """What a cell should show that is clear of the edge of its view, and how that depends on the error state.
+    """What a cell, clear of the edge of its view, should show, and how that depends on the error state.
 
-    Turn and age are those of the Sun sensor, whose place the cells take: of all cells at once.
+    Misalignment and age are those of the Sun sensor that the cells replace: common to all cells.
     """
     normal, parts, known = cells.normals_body[cell], config.layout, estimate.parameters
     s, sensitivity = sun_prediction(*estimate[:3], seen.s_eci, config)
@@ -74,7 +74,7 @@ def prediction(
 
 
 def sunlit(q_body_from_eci: Quaternion, seen: Light, cells: CellSet) -> list[int]:
-    """The cells that see the Sun for certain."""
+    """The cells that certainly see the Sun."""
     s = rotate(q_body_from_eci, seen.s_eci)
     return [
         cell
@@ -84,7 +84,7 @@ def sunlit(q_body_from_eci: Quaternion, seen: Light, cells: CellSet) -> list[int
 
 
 def earthlit(q_body_from_eci: Quaternion, seen: Light, cells: CellSet) -> list[int]:
-    """The cells that the Sun is behind, and that the Earth lights by itself."""
+    """The cells that face away from the Sun and that the Earth alone lights."""
     s = rotate(q_body_from_eci, seen.s_eci)
     return [
         cell
@@ -94,7 +94,7 @@ def earthlit(q_body_from_eci: Quaternion, seen: Light, cells: CellSet) -> list[i
 
 
 def most_behind(estimate: Estimate, normal: Vec3, seen: Light, cells: CellSet) -> float:
-    """The most that a cell can show which the Sun is behind, by the Earth and its excess.
+    """The most that a cell facing away from the Sun can show, by the Earth's light and its excess.
 
     The Earth is as bright as the table has it, or brighter where the cells together have shown that it is.
     """
@@ -114,12 +114,12 @@ def update_cells(
 ) -> tuple[Estimate, CellsUsed]:
     """Take the cells that see the Sun, then those that the Earth lights, each gated by itself.
 
-    A cell that shows nothing is not taken: it may be dead, and one in shadow shows no direction. From the
-    Earth's light on a cell that the Sun is behind it is known how much of it there is on the others.
+    A cell that shows nothing is not taken: it may be dead, and one in shadow shows no direction. The Earth's
+    light on a cell that faces away from the Sun shows how much of it falls on the others.
 
     Args:
         estimate: before.
-        currents: by cell, parts of full sunlight; None: not to be used.
+        currents: by cell, fractions of full sunlight; None: not to be used.
         seen: the light; None: none is taken.
         config: the filter.
     """
@@ -153,10 +153,10 @@ def taken(
 
 
 def faded(estimate: Estimate, config: MekfConfig) -> Estimate:
-    """The estimate after a tick in which excess and Earth's light have lost part of what they were.
+    """The estimate after a tick in which excess and Earth's light have decayed.
 
     First-order Markov processes: x <- k x, sigma^2 <- k^2 sigma^2 + (1 - k^2) sigma_0^2, k = 1 / (1 + turn);
-    for the excess of a cell the turn of the satellite, for the light that of the Earth below it.
+    turn is the Earth's motion in view, for the excess of a cell plus the rotation of the satellite.
     """
     parts = config.layout
     if config.cells is None or parts.cells is None:
@@ -174,7 +174,7 @@ def faded(estimate: Estimate, config: MekfConfig) -> Estimate:
 
 
 def _lose(covariance: Matrix, place: slice, keep: float, config: MekfConfig) -> None:
-    """Take a part of these states, and bring their variances nearer to those of the prior; in place."""
+    """Scale these states by ``keep`` and bring their variances nearer to those of the prior; in place."""
     covariance[place] *= keep
     covariance[:, place] *= keep
     own = range(place.start, place.stop)

@@ -1,1 +1,1 @@
-"""How the satellite turns, and how errors of attitude, rate and parameters go on with it."""
+"""How the satellite rotates, and how errors of attitude, rate and parameters evolve with it."""

@@ -16,9 +16,9 @@ _IDENTITY = np.eye(6)
 
 
 class Driven(NamedTuple):
-    """The dipole that the coils drove over a tick, and the standard deviation of what it is in doubt by.
+    """The dipole that the coils drove over a tick, and the standard deviation of its error.
 
-    Both in body axes, A m^2; a coil that is in doubt is so along its axis.
+    Both in body axes, A m^2; the error of a coil is along its axis.
     """
 
     m_body_am2: Vec3
@@ -26,7 +26,7 @@ class Driven(NamedTuple):
 
 
 def process_noise(driven: Driven, b_body_t: Vec3, config: MekfConfig) -> Matrix:
-    """The noise of a tick; while a coil is driven also that of its dipole, known to ``dipole_sigma`` only."""
+    """The noise of a tick; while a coil is driven also that of its dipole, known only to ``dipole_sigma``."""
     if driven == NOT_DRIVEN:
         return config.process_noise
     noise = config.process_noise.copy()
@@ -41,7 +41,7 @@ NOT_DRIVEN = Driven(ZERO)
 
 
 FAST_RADPS, SLOW_RADPS = radians(0.5), radians(0.3)
-"""Above the first a turn is fast: products of the errors of rate, inertia and age count. Below the second it
+"""Above the first a turn is fast: products of the errors of rate, inertia and age matter. Below the second it
 has ended."""
 KNOWN_RADPS = 0.05 * FAST_RADPS
 """The rate of a fast turn is known when its standard deviation is below this."""
@@ -52,8 +52,8 @@ def transition_matrix(
 ) -> Matrix:
     """The rows of attitude and rate of I + A h + (A h)^2 / 2, A being the system matrix, (6, n).
 
-    With A of the middle of the tick good to second order; all other rows are those of the identity. Of a
-    piece of a tick two more terms are taken, since a fast turn carries errors around for long.
+    Accurate to second order with A from the middle of the tick; all other rows are those of the identity. For
+    a piece of a tick two more terms are taken, since a fast turn carries errors around for long.
 
     Args:
         motion: in the middle of the tick.
@@ -77,7 +77,7 @@ def transition_matrix(
         moving += _IDENTITY
     if config.pieces > 1:
         return _to_fourth_order(step)
-    transition: Matrix = moving.dot(step)  # (1 + A h)^2, so that half of it and 1 is the series
+    transition: Matrix = moving.dot(step)  # (1 + A h)^2: the mean of it and 1 is the series
     moving[:] = _IDENTITY
     transition += step
     transition *= 0.5
@@ -85,7 +85,7 @@ def transition_matrix(
 
 
 def _to_fourth_order(step: Matrix) -> Matrix:
-    """The rows of exp(A h) by its series, of those of I + A h."""
+    """The rows of exp(A h), by its series, from those of I + A h."""
     change = step.copy()
     change[:, 0:6] -= _IDENTITY
     total = change
@@ -96,7 +96,7 @@ def _to_fourth_order(step: Matrix) -> Matrix:
 
 
 def free_motion(omega: Vec3, parameters: Parameters, nominal: Rotor) -> Matrix:
-    """How attitude and rate of a body without torque go on: omega, and its derivative; (6)."""
+    """How attitude and rate of a torque-free body evolve: omega, and its derivative; (6)."""
     rotor = estimated_rotor(nominal, parameters)
     gyroscopic = cross(add(transform(rotor.inertia_kgm2, omega), rotor.wheel_body_nms), omega)
     return np.array((*omega, *transform(rotor.inertia_inverse, gyroscopic)))

@@ -1,4 +1,4 @@
-"""How a rigid satellite turns over a tick: acceleration, rotation, rate."""
+"""How a rigid satellite moves over a tick: acceleration, rotation, rate."""
 
 from typing import NamedTuple
 
@@ -7,7 +7,7 @@ from fsw.core.algebra.vector import Vec3, add, cross, dot, scale, sub, transform
 from fsw.core.estimation.parameters import Rotor
 
 MIDPOINT_RAD = 0.03
-"""Up to this turn in a tick the motion in its middle carries the satellite: to 2e-6 rad, 3e-8 rad a tick."""
+"""Up to this rotation in a tick the motion at its middle suffices: to 2e-6 rad, 3e-8 rad a tick."""
 
 
 class BodyFields(NamedTuple):
@@ -71,8 +71,8 @@ def middle(q: Quaternion, omega: Vec3, acting: Acting, h: float) -> tuple[BodyFi
 def advanced(q: Quaternion, omega: Vec3, motion: BodyMotion, acting: Acting, h: float) -> tuple[Vec3, Vec3]:
     """The rotation over a tick of length h, rad, and the rate after it, by ``motion`` in its middle.
 
-    In a fast turn to the fourth order of h: the rate by Runge and Kutta's method, the rotation by Simpson's
-    rule, with what the turn of the axis adds (Magnus 1954).
+    In a fast turn to fourth order in h: the rate by the Runge-Kutta method, the rotation by Simpson's rule
+    plus the term that the rotation of the axis adds (Magnus 1954).
     """
     rotation = scale(h, motion.omega)
     if dot(rotation, rotation) < MIDPOINT_RAD**2:

@@ -1,4 +1,4 @@
-"""What the error dynamics are linear in: maps from what moves to the entries of the system matrix."""
+"""Linear maps from the quantities that vary over a flight to the entries of the system matrix."""
 
 import numpy as np
 
@@ -9,18 +9,18 @@ from fsw.core.estimation.parameters import Layout, Rotor
 
 _PULL, _ACTING, _FIELD = slice(3, 12), slice(12, 21), slice(21, 24)
 _SPIN, _ALPHA, _DRIVEN, _ONE = slice(24, 33), slice(33, 36), slice(36, 45), slice(45, 46)
-"""Places among the numbers that the torque's derivatives are linear in: behind the rate g e1 e1^T, g being
-3 mu/r^3, m b^T, b, omega omega^T, domega/dt, m_driven b^T and 1."""
+"""Places among the numbers that the torque's derivatives are linear in: after the rate, g e1 e1^T (g being
+3 mu/r^3), m b^T, b, omega omega^T, domega/dt, m_driven b^T and 1."""
 _NUMBERS = 46
 _MOMENTS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 """Rows and columns of xx, yy, zz, xy, xz, yz."""
 
 
 def torque_map(parts: Layout) -> Matrix | None:
-    """Derivatives of the torque by the error state, (3 m, 46), but for what is in proportion to J as well.
+    """Derivatives of the torque by the error state, (3 m, 46), less those that are also linear in J.
 
-    By its first m numbers, the others having no effect. None where nothing is carried that the torque is not
-    constant in.
+    By the first m components of the error state; the others have no effect. None where the derivative by
+    every estimated parameter is constant.
     """
     if parts.dipole is None and parts.coils is None and parts.inertia is None:
         return None
@@ -95,7 +95,7 @@ def cross_matrix(a: Matrix) -> Matrix:
 
 
 def _changes_of_inertia() -> list[Matrix]:
-    """A unit of each moment, (3, 3)."""
+    """The inertia matrix of a unit of each moment, (3, 3)."""
     changes = [np.zeros((3, 3)) for _ in _MOMENTS]
     for change, (row, column) in zip(changes, _MOMENTS, strict=True):
         change[row, column] = change[column, row] = 1.0
@@ -105,4 +105,4 @@ def _changes_of_inertia() -> list[Matrix]:
 _BY_INERTIA: Matrix = np.stack(
     [system_maps(change, np.eye(3))[18:, :12] for change in _changes_of_inertia()], axis=2
 ).reshape(216, 6)
-"""Derivatives by attitude and rate, (3, 6), by each of the rate and of g e1 e1^T, (12), by each moment."""
+"""Derivatives by attitude and rate, (3, 6), per component of rate and g e1 e1^T, (12), and per moment."""

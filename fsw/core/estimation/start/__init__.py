@@ -1,1 +1,1 @@
-"""How an estimate begins: by field and Sun in one tick, or by a batch of field and cells."""
+"""How an estimate begins: from field and Sun in one tick, or from a batch of field and cells."""

@@ -1,9 +1,9 @@
 """The start from Sun cells: the samples that field and cells give over minutes.
 
-Three lit cells and the field give an attitude, some 10 deg off, and no rate: from there a filter would go
-astray, so the samples of ``SHORT_S`` are fitted together. One or two lit cells leave the turn about the field
-open, which the motion over ``LEAST_S`` does not. A sample is kept every ``SPACING_S``, with the dipole driven
-since the one before; ``search`` looks for the motion behind them, a piece in each tick.
+Three lit cells and the field give an attitude, some 10 deg off, and no rate: a filter started there would
+diverge, so the samples of ``SHORT_S`` are fitted together. One or two lit cells leave the rotation about the
+field open; the motion over ``LEAST_S`` determines it. A sample is kept every ``SPACING_S``, with the dipole
+driven since the one before; ``search`` looks for the motion behind them, in pieces over the ticks.
 """
 
 from typing import NamedTuple
@@ -14,10 +14,10 @@ from fsw.core.estimation.start.search import MotionSearch
 
 SPACING_S = 20.0
 SHORT_S, LEAST_S, MOST_S = 100.0, 400.0, 1200.0
-"""The motion is looked for from the first on where three cells are lit all the time, else from the second on,
-at most over the third."""
+"""The motion is searched for after the first if three cells are lit all the time, otherwise after the second,
+and over the third at most."""
 AGAIN_S = 100.0
-"""Time until it is looked for again."""
+"""Time until it is searched for again."""
 GAP_S = 60.0
 """After a longer time without a sample the batch begins anew."""
 
@@ -57,7 +57,7 @@ class SampleBatch(NamedTuple):
 
     @property
     def lit(self) -> int:
-        """How many samples are of sunlight; a cell that is dark in it tells where the Sun is not."""
+        """How many samples are in sunlight; a cell that is dark there shows where the Sun is not."""
         return sum(1 for sample in self.samples if sample.lit)
 
 
@@ -65,7 +65,7 @@ EMPTY = SampleBatch()
 
 
 def waited(batch: SampleBatch, m_body_am2: Vec3, tick_s: float) -> SampleBatch:
-    """The batch a tick later, over which this dipole was driven; anew after too long a gap."""
+    """The batch a tick later, over which this dipole was driven; empty after too long a gap."""
     if not batch.samples:
         return batch
     since_s = batch.since_s + tick_s
@@ -83,13 +83,13 @@ def kept(batch: SampleBatch, sample: BatchSample) -> SampleBatch:
         mean = scale(1.0 / batch.since_s, batch.driven_am2s)
         sample = sample._replace(since_s=batch.since_s, m_body_am2=mean)
     samples = (*batch.samples, sample)
-    if batch.search is None:  # which counts the samples from the first on
+    if batch.search is None:  # a search counts the samples from the first
         samples = samples[-round(MOST_S / SPACING_S) :]
     return SampleBatch(samples, searched_s=batch.searched_s, search=batch.search)
 
 
 def rest(batch: SampleBatch, b_eci_t: Vec3, s_eci: Vec3, r_eci_m: Vec3) -> BatchSample | None:
-    """What was driven from the last sample to this tick, as a sample of which nothing is measured."""
+    """What was driven from the last sample to this tick, as a sample without measurements."""
     if not batch.since_s:
         return None
     mean = scale(1.0 / batch.since_s, batch.driven_am2s)
@@ -97,7 +97,7 @@ def rest(batch: SampleBatch, b_eci_t: Vec3, s_eci: Vec3, r_eci_m: Vec3) -> Batch
 
 
 def due(batch: SampleBatch) -> bool:
-    """Whether the motion is to be looked for, with the sample just kept."""
+    """Whether a search for the motion is to begin, with the sample just kept."""
     if (
         batch.search is not None
         or batch.since_s

@@ -6,7 +6,7 @@ covariances of samples and priors,
 
     N = H^T R^-1 H + P^-1,  g = H^T R^-1 (h(x) - z) + P^-1 x,
 
-and the least squares are at N dx = -g. H is by differences, as the motion is known by its equation only.
+and the least-squares step is N dx = -g. H is by differences, as the motion is known only by its equation.
 """
 
 from typing import Any, NamedTuple
@@ -23,7 +23,7 @@ from fsw.core.estimation.start.motions import turned_by
 
 MOST_TURN_RAD, MOST_RATE_RADPS = 0.5, 0.005
 INFLATION = 2.0
-"""Of the standard deviations that are found: the equations are not linear, nor is the noise white."""
+"""Factor on the standard deviations found: the equations are not linear, nor is the noise white."""
 
 
 class Equations(NamedTuple):
@@ -36,12 +36,12 @@ class Equations(NamedTuple):
 
 
 def at_priors(motions: Motions, model: BatchModel, going: int) -> Equations:
-    """Of the priors alone; N and g of none, where no motion is varied.
+    """The equations of the priors alone; N and g are empty where no motion is varied.
 
     Args:
         motions: n of them.
         model: what the table says.
-        going: how many go through the samples, n or with those that are varied 19 n.
+        going: how many go through the samples: n, or 19 n with the varied ones.
     """
     count = len(motions.q)
     size = model.prior.size if going > count else 0
@@ -57,12 +57,12 @@ def at_priors(motions: Motions, model: BatchModel, going: int) -> Equations:
 def add_sample(
     equations: Equations, motions: Motions, seen: Matrix, sample: BatchSample, model: BatchModel
 ) -> Equations:
-    """With one sample more.
+    """The equations with one more sample.
 
     Args:
         equations: before.
         motions: n of them.
-        seen: what they should show, and behind it what those varied should, (n or 19 n, 3 + c).
+        seen: what they should show, followed by what the varied ones should, (n or 19 n, 3 + c).
         sample: what was measured.
         model: what the table says.
     """
@@ -85,7 +85,7 @@ def add_sample(
 
 
 def improving_step(equations: Equations, damping: Matrix) -> Matrix:
-    """The change of the numbers by Levenberg and Marquardt, (n, k), of limited attitude and rate."""
+    """The Levenberg-Marquardt step of the numbers, (n, k), limited in attitude and rate."""
     normal = equations.normal
     diagonal = np.einsum("nii->ni", normal)
     damped = normal + (damping[:, None] * diagonal)[:, :, None] * np.eye(normal.shape[1])
@@ -93,7 +93,7 @@ def improving_step(equations: Equations, damping: Matrix) -> Matrix:
 
 
 def _limited(steps: Matrix) -> Matrix:
-    """Steps of at most ``MOST_TURN_RAD`` and ``MOST_RATE_RADPS``: the equations hold near by only."""
+    """Steps of at most ``MOST_TURN_RAD`` and ``MOST_RATE_RADPS``: the equations hold only nearby."""
     turn, rate = (np.sqrt((steps[:, rows] ** 2).sum(axis=1)) for rows in (slice(0, 3), slice(3, 6)))
     most = np.maximum(np.maximum(turn / MOST_TURN_RAD, rate / MOST_RATE_RADPS), 1.0)
     limited: Matrix = steps / most[:, None]
@@ -111,14 +111,14 @@ def _solved(normal: Matrix, right: Matrix) -> Matrix:
 def estimate_of(
     found: Motions, equations: Equations, q: Matrix, omega: Matrix, model: BatchModel
 ) -> tuple[Estimate | None, float]:
-    """The estimate where a motion has arrived, None if it is no sound one; and half of chi square there.
+    """The estimate at the point a motion has reached, None if it is unsound; and half of chi square there.
 
-    Samples that were not there when the motion was found change it by one step more.
+    Samples that came after the motion was found change it by one more step.
 
     Args:
         found: the motion.
         equations: of it.
-        q: its attitude, and behind it those with one of its numbers varied, (19, 4).
+        q: its attitude, followed by those with one of its numbers varied, (19, 4).
         omega: rates, (19, 3).
         model: what the table says.
     """
@@ -138,7 +138,7 @@ def estimate_of(
 
 
 def _with_parameters(begun: Estimate, numbers: Matrix, left: Matrix, model: BatchModel) -> Estimate:
-    """With what was found of the parameters, and the covariance that is left of all."""
+    """The estimate with the parameters that were found, and the covariance that is left of all."""
     config = model.config
     covariance, parameters = config.initial_covariance.copy(), begun.parameters
     parts, places = config.layout, list(range(6))
@@ -161,7 +161,7 @@ def _with_parameters(begun: Estimate, numbers: Matrix, left: Matrix, model: Batc
 
 
 def _difference(q: Matrix, others: Matrix) -> Matrix:
-    """The vector part of q^-1 (x) q_other by rows, of near attitudes."""
+    """The vector part of q^-1 (x) q_other by rows, of nearby attitudes."""
     scalar, vector = others[:, :1], others[:, 1:]
     product: Matrix = q[0] * vector - scalar * q[1:] - np.cross(q[1:], vector)
     return product

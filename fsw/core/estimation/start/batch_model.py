@@ -20,17 +20,17 @@ from fsw.core.estimation.start.triad import triad
 from fsw.core.orbit.earth import MU_M3PS2
 
 TURNS, RATES_DEGPS = 12, (0.0, 0.15, -0.15, 0.3, -0.3, 0.6, -0.6, 1.0, -1.0, 1.5, -1.5, 2.0, -2.0)
-"""Starts: turns about the field, by each of these rates about it."""
+"""Starts: this many rotations about the field, each with each of these rates about it."""
 LEAST_SINE = 0.1
 """Of the angle between field and Sun."""
 MOVING = 18
 """Numbers that move the satellite: attitude, rate, dipole, torque, inertia."""
 TURN_T = 5e-7
-"""What turn and scale of the magnetometer do to the field, beside its bias."""
+"""What misalignment and scale error of the magnetometer do to the field, besides its bias."""
 VARYING = 0.3
-"""Part of bias and excess that does not stay the same over a batch."""
+"""Fraction of bias and excess that varies over a batch."""
 LEAST_SIGMAS = {"dipole": 1e-8, "torque": 1e-13, "inertia": 1e-9}
-"""Of what is not in doubt, A m^2, N m and kg m^2."""
+"""For what the table takes as certain, A m^2, N m and kg m^2."""
 
 
 class Motions(NamedTuple):
@@ -40,7 +40,7 @@ class Motions(NamedTuple):
     numbers: Matrix
 
     def changed(self, step: Matrix) -> "Motions":
-        """With a step of 18 + 3 + c numbers by each, the attitude's being a turn."""
+        """The motions after a step of 18 + 3 + c numbers each, that of the attitude being a rotation."""
         return Motions(turned_by(self.q, step[:, 0:3]), self.numbers + step[:, 3:])
 
     def chosen(self, rows: list[int]) -> "Motions":
@@ -51,8 +51,8 @@ class Motions(NamedTuple):
 class BatchModel(NamedTuple):
     """What the table says of a batch: standard deviations of a field component, T, and of a current.
 
-    ``prior`` (18 + 3 + c): standard deviations, infinite of attitude and rate; ``differences`` (18): for
-    derivatives; ``normals`` (c, 3): of the cells, body axes.
+    ``prior`` (18 + 3 + c): standard deviations, infinite for attitude and rate; ``differences`` (18): steps
+    for derivatives; ``normals`` (c, 3): of the cells, body axes.
     """
 
     field_sigma_t: float
@@ -64,7 +64,7 @@ class BatchModel(NamedTuple):
 
 
 def model_of(config: MekfConfig, cells: CellSet) -> BatchModel:
-    """By the bounds of the table."""
+    """The model by the bounds of the table."""
     parts = config.layout
     bias_t = hypot(_sigmas(config, parts.mag_bias, 3)[0], TURN_T)
     moving = (
@@ -84,7 +84,7 @@ def model_of(config: MekfConfig, cells: CellSet) -> BatchModel:
 
 
 def _sigmas(config: MekfConfig, place: slice | None, size: int) -> Matrix:
-    """Standard deviations of a parameter beforehand, by component; zero if it is not carried."""
+    """Prior standard deviations of a parameter, by component; zero if it is not carried."""
     return np.zeros(size) if place is None else np.sqrt(config.initial_covariance.diagonal()[place])
 
 
@@ -105,7 +105,7 @@ def leg(before: BatchSample, after: BatchSample) -> Leg:
 
 
 def starts(samples: tuple[BatchSample, ...], model: BatchModel) -> Motions:
-    """Attitudes about the first field, and rates that take it to the second, with any about the field."""
+    """Attitudes about the first field, and rates that carry it to the second, plus each about the field."""
     first, second = samples[0], samples[1]
     field = unit(first.field_t)
     attitudes, rates = [], []
@@ -120,7 +120,7 @@ def starts(samples: tuple[BatchSample, ...], model: BatchModel) -> Motions:
 
 
 def _attitudes(first: BatchSample) -> list[Quaternion]:
-    """By TRIAD with the Sun of three lit cells; without them at turns about the field."""
+    """By TRIAD with the Sun from three lit cells; without them at ``TURNS`` rotations about the field."""
     if first.coarse is not None:
         return [triad(first.field_t, first.coarse, first.b_eci_t, first.s_eci)]
     field = unit(first.field_t)
@@ -136,14 +136,14 @@ def _attitudes(first: BatchSample) -> list[Quaternion]:
 
 
 def _rotation(before: Vec3, after: Vec3) -> Vec3:
-    """The rotation vector of the axes by which a direction that stands still goes from one to the other."""
+    """The rotation vector of the axes in which a fixed direction goes from ``before`` to ``after``."""
     axis, cosine = cross(after, before), dot(before, after)
     sine = norm(axis)
     return scale(float(np.arctan2(sine, cosine)) / sine, axis) if sine > 0.0 else axis
 
 
 def varied(motions: Motions, model: BatchModel) -> Motions:
-    """The motions, and behind them 18 times as many, each with one of the differences."""
+    """The motions, followed by 18 times as many, each with one number changed by its difference."""
     steps = np.zeros((1 + MOVING, *(len(motions.q), 3 + motions.numbers.shape[1])))
     steps[range(1, 1 + MOVING), :, range(MOVING)] = model.differences[:, None]
     times = (1 + MOVING, 1)

@@ -11,8 +11,8 @@ UNKNOWN = -1.0
 class BatchSample(NamedTuple):
     """What was measured and modelled in one tick, and what was driven since the sample before.
 
-    ``field_t`` in body axes; ``currents`` in parts of full sunlight; ``earth`` is the Earth's light, as in
-    ``Light``, of which nothing and no Sun is there unless ``lit``; ``coarse`` is the Sun by three lit cells.
+    ``field_t`` in body axes; ``currents`` as fractions of full sunlight; ``lit``: 0 in the shadow, where the
+    Sun is not seen; ``earth``: the Earth's light, as in ``Light``; ``coarse``: the Sun from three lit cells.
     """
 
     since_s: float

@@ -17,7 +17,7 @@ from fsw.core.orbit.ephemeris import Reference
 
 
 class StartLimits(NamedTuple):
-    """How far field and Sun may be from the modelled ones, and how near to each other: T, rad, rad."""
+    """Largest errors of field strength and field-Sun angle, and least separation of the two: T, rad, rad."""
 
     max_field_error_t: float
     max_angle_error_rad: float
@@ -27,7 +27,7 @@ class StartLimits(NamedTuple):
 def first_estimate(
     field: Vec3 | None, sun: Vec3 | None, reference: Reference, limits: StartLimits, config: MekfConfig
 ) -> Estimate | None:
-    """By TRIAD, where both are there and fit together.
+    """The estimate by TRIAD, if field and Sun are both there and consistent.
 
     Args:
         field: sample, T, body axes.
@@ -52,12 +52,12 @@ def from_batch(
     limits: StartLimits,
     config: MekfConfig,
 ) -> tuple[SampleBatch, Estimate | None]:
-    """The batch with the samples of this tick and a tick's work of its search; the estimate if that ends it.
+    """The batch after this tick's samples and a tick's work on its search; the estimate if that ends it.
 
     Args:
         batch: of the ticks before.
         field: sample, T, body axes.
-        currents: of the cells, parts of full sunlight; None: not to be used.
+        currents: of the cells, fractions of full sunlight; None: not to be used.
         reference: field and Sun as modelled.
         limits: what is accepted of the field's strength.
         config: the filter.
@@ -84,7 +84,7 @@ def _sample(
     limits: StartLimits,
     cells: CellSet,
 ) -> BatchSample | None:
-    """Of this tick, if field and cells are there and the field is as strong as the model has it."""
+    """The sample of this tick, if field and cells are there and the field strength agrees with the model."""
     b = reference.b_eci_t
     if field is None or not currents or abs(norm(field) - norm(b)) > limits.max_field_error_t:
         return None
@@ -98,7 +98,7 @@ def _sample(
 def _searched(
     batch: SampleBatch, measured: bool, reference: Reference, model: BatchModel
 ) -> tuple[SampleBatch, Estimate | None]:
-    """After the pieces of a tick; an estimate begins in a tick with a sample."""
+    """The batch after a tick's pieces of the search; an estimate begins only in a tick with a sample."""
     search = batch.search
     since = rest(batch, reference.b_eci_t, reference.sun_eci, reference.r_eci_m)
     for _ in range(PIECES):

@@ -1,4 +1,4 @@
-"""Many motions of the satellite at once, over some minutes: arrays with one row a motion."""
+"""Many motions of the satellite at once, over some minutes: arrays with one row per motion."""
 
 from typing import NamedTuple
 
@@ -47,7 +47,7 @@ def all_in_body(q: Matrix, directions: Matrix) -> Matrix:
 
 
 def turned_by(q: Matrix, rotation: Matrix) -> Matrix:
-    """Attitudes after small further turns, body axes, (n, 4)."""
+    """Attitudes after small further rotations, body axes, (n, 4)."""
     x = q.T
     turned = x + 0.5 * np.vstack(_product(x[0], x[1:], rotation.T))
     unit: Matrix = turned / np.sqrt((turned * turned).sum(axis=0))
@@ -55,7 +55,7 @@ def turned_by(q: Matrix, rotation: Matrix) -> Matrix:
 
 
 def flown(q: Matrix, omega: Matrix, leg: Leg, disturbed: Disturbed, rotor: Rotor) -> tuple[Matrix, Matrix]:
-    """Attitudes and rates after a leg, by Runge and Kutta's method of the fourth order.
+    """Attitudes and rates after a leg, by the fourth-order Runge-Kutta method.
 
     Args:
         q: attitudes, body from eci, (n, 4).

@@ -1,13 +1,13 @@
 """The search for the motion behind a batch of samples, a piece in each tick.
 
-Unknown are attitude and rate at the first sample, and with their priors residual dipole, torque, inertia, the
-bias of the field and the excess of each cell, taken as constant over the batch. Starts are all turns about
-the first field, with rates that the field's own motion leaves open; the best of them are improved by the
-method of Levenberg and Marquardt. The motion is found if no other one, that ends by ``APART`` or more away,
+The unknowns are attitude and rate at the first sample and, with their priors, residual dipole, torque,
+inertia, the bias of the field and the excess of each cell, taken as constant over the batch. The starts are
+rotations about the first field, with the rates that the field's own motion leaves open; the best of them are
+improved by the Levenberg-Marquardt method. The motion is found if no other that ends ``APART`` or more away
 comes within ``LEAD`` nats of it. It is then carried on through the samples that have come meanwhile.
 
-All motions go through the samples side by side. A piece is one leg of them, from one sample to the next, or
-what there is to do at the end. So a tick takes the same time however many samples there are.
+All motions go through the samples side by side. A piece is one leg of all, from one sample to the next, or
+the work at the end. So the work of a tick does not grow with the number of samples.
 
 Source: Marquardt 1963; batch estimators as in Crassidis and Junkins 2012, section 1.6.
 """
@@ -40,13 +40,13 @@ from fsw.core.estimation.start.batch_sample import BatchSample
 from fsw.core.estimation.start.motions import flown
 
 PIECES = 4
-"""In a tick."""
+"""Of work in a tick."""
 IMPROVED, STEPS = 14, 12
 LEAD = 8.0
 APART = 0.9848
 """Cosine of half the angle, 20 deg."""
 MOST_MISFIT = 3.0
-"""Chi square of a found motion over its numbers, at most."""
+"""Largest chi square of a found motion per number measured."""
 
 
 class Stage(IntEnum):
@@ -58,7 +58,7 @@ class Stage(IntEnum):
 
 
 class Best(NamedTuple):
-    """The motions as far as they are improved, their equations, attitudes at the end, (n, 4), and damping."""
+    """The motions as improved so far, their equations, attitudes at the end, (n, 4), and damping."""
 
     motions: Motions
     equations: Equations
@@ -69,10 +69,10 @@ class Best(NamedTuple):
 class MotionSearch(NamedTuple):
     """A search under way.
 
-    ``searched``: so many samples of the batch are fitted, from the first on; ``at``: the number of the one
-    which the motions have reached; ``steps``: how often they were improved. ``motions`` are those that go
-    through the samples, from their beginning; ``q`` and ``omega`` where they are, and behind them, but in
-    the survey, where each is with one of its numbers varied; ``equations`` are of the samples so far.
+    ``searched``: how many samples of the batch are fitted, from the first on; ``at``: the index of the one
+    that the motions have reached; ``steps``: how often they were improved. ``motions``: those that go through
+    the samples, as they began; ``q`` and ``omega``: where they are now, followed, except in the survey, by
+    where each is with one of its numbers varied; ``equations``: of the samples so far.
     """
 
     searched: int
@@ -102,7 +102,7 @@ Ended = Estimate | None
 
 
 def begun(samples: tuple[BatchSample, ...], model: BatchModel) -> MotionSearch:
-    """Over these samples."""
+    """A search over these samples."""
     return _passing(Stage.SURVEY, len(samples), 0, starts(samples, model), samples[0], model)
 
 
@@ -119,7 +119,7 @@ def worked(
     Args:
         search: before.
         samples: of the batch, oldest first; there may be more than when it began.
-        rest: what was driven since the last of them; None: nothing, this tick has it.
+        rest: what was driven since the last of them; None: the last is of this tick.
         model: what the table says.
     """
     last = len(samples) - 1 if search.stage is Stage.CARRY else search.searched - 1
@@ -145,7 +145,7 @@ def _passing(
     model: BatchModel,
     best: Best | None = None,
 ) -> MotionSearch:
-    """Motions at the first sample, which counts."""
+    """A search with the motions at the first sample, which is counted."""
     going = motions if stage is Stage.SURVEY else varied(motions, model)
     equations = at_priors(motions, model, len(going.q))
     equations = add_sample(equations, motions, expected(going.q, first, model), first, model)
@@ -153,7 +153,7 @@ def _passing(
 
 
 def _leg_on(search: MotionSearch, samples: tuple[BatchSample, ...], model: BatchModel) -> MotionSearch:
-    """The motions at the next sample, which counts."""
+    """The search with the motions at the next sample, which is counted."""
     before, after = samples[search.at], samples[search.at + 1]
     q, omega = _flown(search, before, after, model)
     seen = expected(q, after, model)
@@ -182,7 +182,7 @@ def _order(costs: Matrix) -> list[int]:
 
 
 def _improved(search: MotionSearch, first: BatchSample, model: BatchModel) -> MotionSearch | None:
-    """Those that are better than before are kept, and all changed by a step, as long as there are steps."""
+    """Keep the motions that are better than before, and step all of them while there are steps left."""
     best = _better(search)
     if search.steps >= STEPS:
         return _found(search.searched, best, first, model)
@@ -191,7 +191,7 @@ def _improved(search: MotionSearch, first: BatchSample, model: BatchModel) -> Mo
 
 
 def _better(search: MotionSearch) -> Best:
-    """The best so far, after those that have just gone through the samples."""
+    """The best so far, with those that have just gone through the samples."""
     size, before = len(search.motions.q), search.best
     now = Best(search.motions, search.equations, search.q[:size], np.full(size, 1e-2))
     if before is None:
@@ -206,7 +206,7 @@ def _better(search: MotionSearch) -> Best:
 
 
 def _where(better: NDArray[np.bool_], one: tuple[Matrix, ...], other: tuple[Matrix, ...]) -> list[Matrix]:
-    """By motion the rows of one or the other."""
+    """The rows of one or the other, by motion."""
     return [
         np.where(better.reshape(-1, *(1,) * (mine.ndim - 1)), mine, theirs)
         for mine, theirs in zip(one, other, strict=True)

@@ -1,6 +1,6 @@
-"""Each coil by its current: that of a pulse at its end against that of the level, and one without a request.
+"""Each coil by its current: at the end of a pulse, against that of the level; and any without a request.
 
-The supply, which all coils share, shows a current and not the coil in which it flows.
+The coils share one supply, which shows a current but not the coil in which it flows.
 """
 
 from fsw.core.actuation.actuator import CoilView
@@ -20,15 +20,15 @@ def judge_current(
     tick: int,
     config: CoilHealthConfig,
 ) -> CoilHealth:
-    """Compare what the coil driver reports with what was asked of it.
+    """Compare what the coil driver reports with what was requested of it.
 
-    A reading of the current cannot be doubted, but may be of another moment: two isolate a coil.
+    A current reading is beyond doubt, but may be of another moment: it takes two to isolate a coil.
 
     Args:
         health: of the tick before.
         view: after what was received in this tick.
         readings: what was received.
-        unasked: the driver reports a level that was not requested.
+        unasked: whether the driver reports a level that was not requested.
         tick: this one.
         config: limits.
     """
@@ -52,7 +52,7 @@ def judge_current(
 
 
 def _strange(health: CoilHealth, status: CoilStatus, unasked: bool, config: CoilHealthConfig) -> CoilHealth:
-    """Something flows without a request: stuck if for longer than a pulse that began before a boot."""
+    """Something flows without a request; a level that lasts for ``stuck_ticks`` isolates its coil."""
     ticks = health.strange_ticks + 1
     lasts = ticks >= config.stuck_ticks
     stray_ma = 0 if status.level else status.current_ma

@@ -1,4 +1,4 @@
-"""What the coils did to the rate, from what the filter did not expect to measure afterwards.
+"""What the coils did to the rate, from the filter's innovations afterwards.
 
 The filter assumes the torque impulse of a pulse. If pulse j had (1 + e_j) times that effect (e = -1:
 none, e = -2: the other way), the error state is off by the sum of e_j u_j; at the end of the pulse u_j is the
@@ -11,10 +11,10 @@ The mean of the innovation is then the sum of e_j t_j, not zero. Least squares f
 
     A_ij = sum of t_i^T S^-1 t_j,    a_j = sum of t_j^T S^-1 y,    (A + 1) e = a,
 
-are exact: no guess has to be tried, and no pulse is charged with what an earlier one has left. The 1 means
+are exact: no hypothesis has to be tried, and no pulse is blamed for what an earlier one has left. The 1 means
 that before any measurement e_j is 0 with a standard deviation of 1. The estimate lacks the sum of e_j u_j.
 What is left, the sum of y^T S^-1 y less a^T e, is about the number of scalars measured if nothing but the
-coils was wrong; where it is more a sensor may be faulty, and no coil is judged.
+coils was wrong; where it is more, a sensor may be faulty, and no coil is judged.
 
 Source: Friedland 1969, Treatment of bias in recursive filtering (IEEE Trans. Automatic Control 14), e being
 the bias. Willsky and Jones 1976 estimate the size of jumps by the same sums.
@@ -37,7 +37,7 @@ from fsw.core.fdir.evidence import SIGMAS
 from fsw.core.laws.plan.pulse_model import Pulse
 
 UNEXPLAINED = 1.25
-"""Squares of the innovations that may be left for each scalar measured; beyond, no coil is judged."""
+"""Largest unexplained NIS per scalar measured; beyond it no coil is judged."""
 
 
 def trace_pulse(
@@ -48,17 +48,17 @@ def trace_pulse(
     pulses: PulseConfig,
     tuning: MekfConfig,
 ) -> Estimate:
-    """Trace one more pulse, which ends now, and the oldest of its coil no longer.
+    """Trace one more pulse, which ends now, in place of the oldest of its coil if there are ``PULSES``.
 
-    The trace begins anew where the innovations since the pulse before were certainly no coil's: what misled
-    the filter has then misled it about those pulses too. The effect of this one is as uncertain as
-    ``MODEL_ERROR``, and as the part of it that the disturbance torque, and gravity on an inertia beyond the
-    table's bounds, would do by the next pulse: if those are not what the filter takes them for, the pulse
-    seems to have done it.
+    The trace begins anew if the innovations since the last pulse were certainly not due to a coil: whatever
+    misled the filter has then misled it about those pulses too. The effect of this one is uncertain by
+    ``MODEL_ERROR``, and by the fraction of it that the disturbance torque, and gravity on an inertia beyond
+    the table's bounds, would do by the next pulse: if those are not what the filter takes them to be, the
+    pulse seems to have done it.
 
     Args:
         estimate: before.
-        pulse: asked for and done.
+        pulse: requested and driven.
         b_eci_t: the field in it.
         gravity_ps2: 3 mu/r^3.
         pulses: configuration of pulses.
@@ -83,7 +83,7 @@ def trace_pulse(
 
 
 def _inertia_beyond_kgm2(estimate: Estimate, tuning: MekfConfig) -> float:
-    """How far the estimated inertia is beyond its bounds: the norm of the tensor D of what exceeds them.
+    """How far the estimated inertia is beyond its bounds: the norm of D, the tensor of what exceeds them.
 
     Gravity on it, 3 mu/r^3 e1 x D e1, is at most 3 mu/r^3 |D| / sqrt 2.
     """
@@ -97,7 +97,7 @@ def _inertia_beyond_kgm2(estimate: Estimate, tuning: MekfConfig) -> float:
 
 
 def _of_coils_alone(trace: Trace | None) -> Trace | None:
-    """A trace, unless more of what was measured is unexplained than chance leaves."""
+    """The trace, unless it leaves more of what was measured unexplained than chance would."""
     if trace is None or not trace.measured:
         return trace
     most = max(UNEXPLAINED * trace.measured, most_by_chance(trace.measured))
@@ -110,7 +110,7 @@ def empty_trace(estimate: Estimate) -> Trace:
 
 
 def extended(trace: Trace, causes: tuple[Cause, ...], effects: Matrix) -> Trace:
-    """With more causes, by columns of effects on attitude and rate; what is unexplained counts from here."""
+    """With more causes, by columns of effects on attitude and rate; the unexplained is counted from here."""
     new, size = len(causes), len(causes) + len(trace.sums)
     effect, sums = np.zeros((len(trace.effect), size)), np.zeros((size, size))
     effect[:6, :new] = effects
@@ -120,14 +120,14 @@ def extended(trace: Trace, causes: tuple[Cause, ...], effects: Matrix) -> Trace:
 
 
 def without(trace: Trace, index: int) -> Trace:
-    """Without one of the causes, its deviation being integrated out."""
+    """The trace without one of its causes, whose deviation is marginalised out."""
     row = trace.sums[index]
     sums = trace.sums - np.outer(row, row) / (row[index] + 1.0)
     return only(trace, [place for place in range(len(trace.causes)) if place != index], sums)
 
 
 def only(trace: Trace, kept: list[int], sums: Matrix) -> Trace:
-    """With some of the causes only, of these sums."""
+    """The trace with only some of its causes, and with these sums."""
     places = [*kept, -1]
     causes = tuple(trace.causes[place] for place in kept)
     return Trace(causes, trace.effect[:, places], sums[places][:, places], trace.measured)
@@ -142,9 +142,9 @@ def solve(estimate: Estimate, tuning: MekfConfig) -> tuple[Estimate, Solution | 
 
     Returns:
         The estimate, corrected where a deviation is certain, and the solution, if the causes explain what was
-        measured. Pulses that no fault of a coil explains are traced no longer: what they show is no coil's,
-        and it would remain when the one that contradicts the others is gone. The trace begins anew if noise
-        may leave as much of so many pulses, else there is none: what was known before is in doubt too.
+        measured. Pulses that no coil fault explains are no longer traced: what they show is not a coil's, and
+        it would remain when the one that contradicts the others is gone. The trace begins anew if noise may
+        leave as much after that many pulses; otherwise there is none: what was known before is suspect too.
     """
     trace = estimate.trace
     if trace is None:
@@ -153,14 +153,14 @@ def solve(estimate: Estimate, tuning: MekfConfig) -> tuple[Estimate, Solution | 
         return estimate._replace(trace=None), None
     try:
         return _solve(estimate, trace, tuning)
-    except np.linalg.LinAlgError:  # as of sums that are damaged
+    except np.linalg.LinAlgError:  # from damaged sums
         return estimate._replace(trace=None), None
 
 
 def _solve(estimate: Estimate, trace: Trace, tuning: MekfConfig) -> tuple[Estimate, Solution | None]:
     covariance: Matrix = np.asarray(np.linalg.inv(trace.sums[:-1, :-1] + np.eye(len(trace.causes))), float)
     covariance = 0.5 * (covariance + covariance.T)
-    np.linalg.cholesky(covariance)  # raises if it is not positive, lest an inverse of a part of it does later
+    np.linalg.cholesky(covariance)  # raises if it is not positive, before an inverse of a part of it does
     deviation = covariance @ trace.sums[:-1, -1]
     if unexplained(trace.sums) > UNEXPLAINED * trace.measured:
         return estimate, None

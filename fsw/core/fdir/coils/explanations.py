@@ -1,6 +1,6 @@
-"""What explains the deviations of pulses: which coil is weak, or all of them alike, or that it is no coil.
+"""What explains the deviations of pulses: a weak coil, all coils alike, or no coil.
 
-Every explanation is weighed by its likelihood, and accepted only if what it leaves is noise and if each other
+Every explanation is weighed by its likelihood, and accepted only if what it leaves is noise and every other
 one is less likely by the threshold of the evidence.
 """
 
@@ -24,9 +24,9 @@ from fsw.core.fdir.coils.weak_test import (
 from fsw.core.fdir.evidence import SIGMAS
 
 PULSES = 3
-"""Of each coil its latest pulses are solved for, so many."""
+"""How many of each coil's latest pulses are solved for."""
 NONE, ALL = -1, -2
-"""In place of a coil: no coil is faulty, or every one does as little as the others."""
+"""In place of a coil: no coil is faulty, or all are equally weak."""
 STRAY = 3
 """STRAY + j is the number, as a cause, of a stray current in coil j; j itself that of a pulse."""
 
@@ -34,9 +34,9 @@ STRAY = 3
 class Solution(NamedTuple):
     """What each cause did.
 
-    ``part``: of its nominal effect, ``deviation``: its part less what the filter assumed, (k), and their
-    covariance, (k, k); ``uncertain``: what of the parts is uncertain beyond it, standard deviations, (k).
-    ``explanations``: what may be wrong with its pulses, once ``explained``; the likeliest first.
+    ``part``: its fraction of the nominal effect, ``deviation``: that less what the filter assumed, (k), and
+    their covariance, (k, k); ``uncertain``: standard deviations of the parts beyond it, (k).
+    ``explanations``: what may be wrong with the pulses, once ``explained``; the likeliest first.
     """
 
     causes: tuple[int, ...]
@@ -47,7 +47,7 @@ class Solution(NamedTuple):
     explanations: "tuple[Explanation, ...]" = ()
 
     def noise(self, indices: list[int]) -> Matrix:
-        """Covariance of what was measured of some causes and of what is uncertain in any case."""
+        """Covariance of some causes: that of the solution, plus what is uncertain in any case."""
         covariance: Matrix = self.covariance[np.ix_(indices, indices)]
         return covariance + np.diag(self.uncertain[indices] ** 2)
 
@@ -58,11 +58,11 @@ def indices_of(cause: int, causes: tuple[int, ...]) -> list[int]:
 
 
 class Explanation(NamedTuple):
-    """What may be wrong: a coil whose latest pulses all had the same part of their effect.
+    """What may be wrong: a coil whose latest pulses all had the same fraction of their effect.
 
-    ``coil`` is ``NONE`` where nothing is, and ``ALL`` where every pulse of any coil had that part, as with
-    another inertia; ``pulses`` is their number, and ``distance`` the square of what is left,
-    by the covariance: minus twice the log-likelihood.
+    ``coil`` is ``NONE`` where nothing is wrong, and ``ALL`` where every pulse of any coil had that fraction,
+    as with a different inertia; ``pulses`` is their number, and ``distance`` the squared Mahalanobis norm of
+    what is left: minus twice the log-likelihood.
     """
 
     coil: int
@@ -77,7 +77,7 @@ class Explanation(NamedTuple):
 
 
 def most_by_chance(numbers: int) -> float:
-    """The square of what noise may leave of so many numbers, as hardly ever as one is beyond ``SIGMAS``.
+    """The chi square of this many numbers that noise exceeds as rarely as it exceeds ``SIGMAS`` in one.
 
     The quantile of chi square, k (1 - 2 / 9 k + z sqrt(2 / 9 k))^3 (Wilson, Hilferty 1931).
     """
@@ -86,16 +86,16 @@ def most_by_chance(numbers: int) -> float:
 
 
 def explained(solution: Solution) -> Solution:
-    """With its explanations."""
+    """The solution with its explanations."""
     return solution._replace(explanations=tuple(of_pulses(solution)))
 
 
 def of_pulses(solution: Solution) -> list[Explanation]:
     """What may be wrong with the pulses, the likeliest first.
 
-    A coil that is faulty is so from some pulse on, and each of its later pulses has the same part of its
-    effect; those of the others are sound. It may have failed within the pulse before: that one may then have
-    any part.
+    A faulty coil is so from some pulse on, and each of its later pulses has the same fraction of its effect;
+    those of the others are sound. It may have failed during the pulse before: that one may then have any
+    fraction.
     """
     pulses = [index for index, cause in enumerate(solution.causes) if cause < STRAY]
     if not pulses:
@@ -113,7 +113,7 @@ def of_pulses(solution: Solution) -> list[Explanation]:
 
 
 class _Among(NamedTuple):
-    """Some pulses, of which only these are to be explained, and their weights."""
+    """The pulses that are to be explained, and their weights."""
 
     solution: Solution
     pulses: list[int]
@@ -125,7 +125,7 @@ class _Among(NamedTuple):
         return cls(solution, pulses, np.asarray(np.linalg.inv(solution.noise(pulses)), float))
 
     def explained(self, coil: int, alike: list[int]) -> Explanation:
-        """If those ``alike`` had one part of their effect and the others what was assumed."""
+        """If those ``alike`` had one fraction of their effect and the others what was assumed."""
         part, deviation = self.solution.part, self.solution.deviation
         off = np.array([part[index] if index in alike else deviation[index] for index in self.pulses])
         weighted = self.weights @ off
@@ -149,7 +149,7 @@ def shown(solution: Solution, indices: list[int], test: WeakTest) -> PartSum:
 
 
 def of_oldest(solution: Solution, coil: int, test: WeakTest) -> PartSum:
-    """What the oldest pulse of a coil shows, if another takes its place; else nothing."""
+    """What the oldest pulse of a coil shows, if another takes its place; otherwise nothing."""
     own = indices_of(coil, solution.causes)
     return shown(solution, own[-1:] if len(own) == PULSES else [], test)
 
@@ -157,12 +157,12 @@ def of_oldest(solution: Solution, coil: int, test: WeakTest) -> PartSum:
 def weak_by_pulses(
     solution: Solution, earlier: tuple[Older, Older, Older], test: WeakTest
 ) -> tuple[int, float] | None:
-    """The coil, and its part, that is certainly weak, not sound; None while it may be another.
+    """The coil that is certainly weak, not sound, and its fraction; None while it may be another.
 
     Args:
         solution: of the latest pulses, explained.
         earlier: by coil, what those before show.
-        test: whose threshold the evidence has to exceed, and that of every other coil by as much.
+        test: the evidence has to exceed its threshold, and that of every other coil by as much.
     """
     found = solution.explanations
     alike = min([one.distance for one in found if one.coil == ALL], default=inf)
@@ -179,10 +179,10 @@ def weak_by_pulses(
 
 
 def weak_by_gain(estimate: Estimate, each: list[float], test: WeakTest) -> tuple[int, float] | None:
-    """The coil, and its part, whose gain as the filter estimates it is certainly that of a weak one.
+    """The coil whose gain, as the filter estimates it, is certainly that of a weak one, and its fraction.
 
     A coil that is weak from the start, or grows weak slowly, hides in the estimated errors of the coils.
-    ``each``: by coil what its gain weighs against it.
+    ``each``: by coil, what its gain weighs against it, nats.
     """
     for coil, nats in enumerate(each):
         part = 1.0 + estimate.parameters.coil_error[4 * coil]

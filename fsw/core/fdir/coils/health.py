@@ -1,4 +1,4 @@
-"""What is found of the coils so far, and what follows from it for the dipole of a tick."""
+"""What has been found of the coils so far, and what follows from it for the dipole of a tick."""
 
 from dataclasses import dataclass
 from typing import NamedTuple, TypeVar
@@ -36,7 +36,7 @@ class CoilHealth(NamedTuple):
 
     ``strange_ticks``: ticks in a row with a level or a current without a request, ``stray_ma``: a current
     without a level; ``stuck``: there is such a level, or such a current for too long; ``conducts``: by coil,
-    which part of such a current the filter takes into account. ``until_retest``: ticks until an isolated coil
+    which fraction of it the filter takes into account. ``until_retest``: ticks until an isolated coil
     is tried again.
     """
 
@@ -55,7 +55,7 @@ class CoilHealth(NamedTuple):
         return (*self.faults, *older, self.strange_ticks, self.stray_ma, self.stuck, *self.until_retest)
 
     def floats(self) -> tuple[float, ...]:
-        """The evidence, and the parts of a stray current."""
+        """The evidence, and the fractions of a stray current."""
         first, second, third = [(*one.parts[1:], one.kept) for one in self.older]
         return (*self.nats, *first, *second, *third, *self.conducts)
 
@@ -76,7 +76,7 @@ def driven_am2(health: CoilHealth, view: CoilView, config: CoilHealthConfig) -> 
 
 
 def unattributed_torque(health: CoilHealth) -> bool:
-    """Whether a stray current turns the satellite, and it is not isolated yet in which coil it flows."""
+    """Whether a stray current turns the satellite, and the coil in which it flows is not isolated yet."""
     return health.stuck and flows_somewhere(health)
 
 

@@ -1,7 +1,7 @@
 """A coil that was isolated is tried again: the fault may have passed, or the estimate may have been wrong.
 
-Half of the evidence that isolates it stays: one bad pulse isolates it again, and good ones take it back. What
-the filter has learnt of its gain is forgotten. Ticks in which a sensor is in doubt do not count.
+Half of the evidence that isolates it stays: one bad pulse isolates it again, and good ones cancel it. What
+the filter has learnt of its gain is forgotten. Ticks in which a sensor is suspected do not count.
 """
 
 from fsw.core.estimation.estimator import EstimatorState, untraced
@@ -13,14 +13,14 @@ from fsw.core.fdir.coils.weak_test import Older
 from fsw.core.fdir.faults import CoilFault
 
 TRIED = (CoilFault.OPEN, CoilFault.WEAK, CoilFault.REVERSED)
-"""Not one that conducts by itself: it does so without being tried."""
+"""Not a stuck one: it conducts without being tried."""
 GAINS = tuple(COMPONENTS.index((NAMES.index("coil_error"), 4 * coil)) for coil in range(3))
 
 
 def retest(
     health: CoilHealth, estimator: EstimatorState, sure: bool, config: CoilHealthConfig
 ) -> tuple[CoilHealth, EstimatorState]:
-    """Bring back a coil whose time has come.
+    """Readmit a coil whose time has come.
 
     Args:
         health: of the tick before.

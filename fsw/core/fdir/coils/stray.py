@@ -1,9 +1,9 @@
 """A current without a request: in which coil it flows, by what it does to the rate.
 
-The supply, which all coils share, shows the current and not the coil. So for each of the three the effect u_j
-of the current, if it flowed there, is traced beside those of the pulses (``effects``): it grows tick by
-tick, and the part p_j is 1 for the coil in which it flows and 0 for the others. What is known of the parts
-the filter takes into account at once, long before the coil is certain; traced is what it lacks.
+The coils share one supply, which shows the current but not the coil. So for each of the three the effect u_j
+that the current would have there is traced beside those of the pulses (``effects``): it grows tick by tick,
+and the fraction p_j is 1 for the coil in which it flows and 0 for the others. The filter takes what is known
+of the fractions into account at once, long before the coil is certain; the trace is of the rest.
 """
 
 import numpy as np
@@ -38,7 +38,7 @@ def trace(estimate: Estimate, conducts: Vec3, kicks_radps: Mat3, tick_s: float, 
 
     Args:
         estimate: before.
-        conducts: by coil, which part of the current the filter took into account.
+        conducts: by coil, the fraction of the current that the filter took into account.
         kicks_radps: by coil, the change of rate that the current would make in this tick, body axes.
         tick_s: length of a tick.
         begins: whether the current began in this tick; an earlier one is then forgotten.
@@ -63,9 +63,9 @@ def _places(traced: Trace) -> slice:
 
 
 def follow(estimate: Estimate, solution: Solution, tuning: MekfConfig) -> tuple[Estimate, Vec3] | None:
-    """The estimate with what the current has certainly done, in whichever coils, and the parts that it had.
+    """The estimate with what the current has certainly done, in whichever coils, and its fraction in each.
 
-    None while nothing is certain. The parts stay unknown as before: the trace is of what they lack.
+    None while nothing is certain. The fractions stay as uncertain as before: the trace is of the rest.
 
     Args:
         estimate: before.
@@ -82,7 +82,7 @@ def follow(estimate: Estimate, solution: Solution, tuning: MekfConfig) -> tuple[
 
 
 def settle(estimate: Estimate, coil: int, tuning: MekfConfig) -> Estimate:
-    """Correct the estimate by a stray current that certainly flows in this coil, and trace it no longer.
+    """Correct the estimate for a stray current that certainly flows in this coil, and stop tracing it.
 
     Args:
         estimate: before, with the trace of a stray current.
@@ -90,7 +90,7 @@ def settle(estimate: Estimate, coil: int, tuning: MekfConfig) -> Estimate:
         tuning: of the filter.
 
     Raises:
-        ValueError: it has no such trace.
+        ValueError: the estimate has no such trace.
     """
     traced = estimate.trace
     if traced is None or STRAY not in traced.numbers:
@@ -102,7 +102,7 @@ def settle(estimate: Estimate, coil: int, tuning: MekfConfig) -> Estimate:
 
 
 def _shifted(estimate: Estimate, parts: Matrix, uncertainty: Matrix, tuning: MekfConfig) -> Estimate:
-    """The estimate, and the trace of what it lacks then, with these parts of the current more."""
+    """The estimate with these further fractions of the current, and the trace of what then remains."""
     traced = estimate.trace or effects.empty_trace(estimate)
     flows = _places(traced)
     estimate = mekf.corrected(estimate, traced.effect[:, flows] @ parts, uncertainty, tuning)
@@ -125,9 +125,9 @@ def _without_stray(traced: Trace) -> Trace:
 def conducting(solution: Solution) -> int | None:
     """The coil in which a current flows without a request; None while it may be another, or none.
 
-    Of the four explanations (p = 0, or 1 for one of the coils) the likeliest, if each other is less likely by
-    ``SIGMAS``, and it fits. No false alarm is at stake: it is certain that a current flows. The distance of
-    each is the square of what it lacks of the solution, by the covariance, less the prior's share in it.
+    The likeliest of the four explanations (p = 0, or 1 for one of the coils), if it fits and every other is
+    less likely by ``SIGMAS``. No false alarm is at stake: a current certainly flows. The distance of each is
+    the squared Mahalanobis distance from the solution, less the prior's share in it.
     """
     lacking, weights = _lacking(solution)
     if not len(lacking):
@@ -147,6 +147,6 @@ def conducting(solution: Solution) -> int | None:
 
 
 def _lacking(solution: Solution) -> tuple[Matrix, Matrix]:
-    """By coil what the filter lacks of the current's parts, and its weights; empty without a current."""
+    """By coil, the fraction of the current that the filter lacks, and the weights; empty without one."""
     stray = [index for index, cause in enumerate(solution.causes) if cause >= STRAY]
     return solution.deviation[stray], np.asarray(np.linalg.inv(solution.noise(stray)), float)

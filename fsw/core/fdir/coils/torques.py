@@ -23,10 +23,10 @@ from fsw.core.orbit.ephemeris import Reference
 
 
 class BelievedParts(NamedTuple):
-    """How small a part of its effect has to be to be believed a coil's own fault.
+    """How small the fraction of its effect has to be to count as a coil's own fault.
 
-    ``by_pulses``: the part that its latest pulses show, each by itself; ``by_gain``: the one that the filter
-    has estimated from all of them, together with whatever else they may show.
+    ``by_pulses``: for the fraction that its latest pulses show, each by itself; ``by_gain``: for the one that
+    the filter has estimated from all of them, together with whatever else they may show.
     """
 
     by_pulses: float
@@ -51,12 +51,12 @@ def judge_effect(
         reference: of the orbit, in this tick.
         state: of the estimator, after the samples of this tick.
         tick: this one.
-        believed: so small a part of its effect is believed to be a coil's own fault.
-        unexplained: there is doubt about both sensors.
+        believed: the fractions of its effect below which the fault counts as a coil's own.
+        unexplained: whether both sensors are in doubt.
         config: limits.
 
     Returns:
-        The health, and the estimator, corrected where a coil certainly did something else than assumed.
+        The health, and the estimator, corrected where a coil certainly did other than assumed.
     """
     estimate, age, b_eci_t = state.estimate, tick - view.fired_tick, reference.b_eci_t
     ended = age == config.pulses.pulse_ticks and view.driven_level != 0
@@ -78,7 +78,7 @@ def judge_effect(
 
 
 EARLY_TICKS = 5
-"""So often while in doubt; else when the next pulse is due: a correction ends what a pulse can still show."""
+"""Interval while in doubt; otherwise when the next pulse is due: a correction ends what a pulse can show."""
 
 
 def _isolate(
@@ -88,7 +88,7 @@ def _isolate(
     believed: BelievedParts,
     config: CoilHealthConfig,
 ) -> tuple[CoilHealth, Estimate]:
-    """With the coil isolated that did something else than assumed, if any, and the estimate corrected.
+    """With the coil isolated that did something other than assumed, if any, and the estimate corrected.
 
     A pulse of the coil ``ended`` takes the place of its oldest one, whose evidence is kept.
     """
@@ -128,6 +128,6 @@ def _attribute(
 
 
 def _others_are_sound(health: CoilHealth, coil: int, gain_nats: list[float]) -> bool:
-    """Whether another is left, and none seems weak too: a wrong inertia makes all of them seem so."""
+    """Whether another coil is left, and none seems weak too: a wrong inertia makes all of them seem so."""
     left = [other for other, fault in enumerate(health.faults) if other != coil and not fault]
     return bool(left) and all(gain_nats[other] <= 0.0 for other in left)

@@ -1,7 +1,7 @@
-"""The question that decides about a coil, and what its pulses say to it: is it weak, or sound?
+"""The test that decides whether a coil is weak or sound, and what its pulses weigh in it.
 
-A coil that does a part of its effect does that part at every pulse. So its pulses count by the part on which
-they agree, not each by the one that suits it: pulses that contradict each other prove little.
+A weak coil has the same fraction of its effect at every pulse. So its pulses count by the fraction on which
+they agree, not each by its own: pulses that contradict each other prove little.
 """
 
 from math import sqrt
@@ -11,15 +11,15 @@ from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.fdir.evidence import SIGMAS
 
 MODEL_ERROR = 0.05
-"""Relative uncertainty of a coil's effect that no measurement takes away."""
+"""Relative uncertainty of a coil's effect that no measurement reduces."""
 MOST = 0.6
-"""Part of the threshold that a pulse weighs at most: one isolates no coil, two that agree do."""
+"""Fraction of the threshold that a pulse weighs at most: one isolates no coil, two that agree do."""
 REVERSED = -1.0
-"""Least part of its effect that a coil can do."""
+"""Least fraction of its effect that a coil can have."""
 
 
 class WeakTest(NamedTuple):
-    """The question that decides about a coil: is it weak, or sound?
+    """The test that decides whether a coil is weak or sound.
 
     ``weak_part`` of the nominal current or effect is the most that is weak, ``sound_part`` the least that the
     bound of the coils' gains allows; evidence of ``threshold``, nats, isolates a coil.
@@ -33,14 +33,14 @@ class WeakTest(NamedTuple):
         """What a measured part weighs against the coil: the likeliest weak against the likeliest sound one.
 
         (sound - part)^2 / 2 sigma^2 below what is sound, less (part - weak)^2 / 2 sigma^2 above what is weak,
-        or the like below what the most that is reversed does.
+        or the like below ``REVERSED``.
         """
         lacks, exceeds = max(0.0, self.sound_part - part), max(0.0, part - self.weak_part, REVERSED - part)
         return (lacks**2 - exceeds**2) / (2.0 * variance)
 
 
 def weak_test(weak_part: float, threshold: float, mekf: MekfConfig) -> WeakTest:
-    """The test by the filter's prior of the gains: a sound coil lacks less than is credible of it.
+    """The test by the filter's prior of the gains: a sound coil lacks no more than ``SIGMAS`` of it.
 
     Args:
         weak_part: the most that is weak.
@@ -64,7 +64,7 @@ class PartSum(NamedTuple):
     def nats(self, test: WeakTest) -> float:
         """What they weigh against the coil by their mean part.
 
-        Less half of what their chi square about it exceeds their number.
+        Less half of the excess of their chi square about it over their number.
         """
         if not self.weight > 0.0:
             return 0.0
@@ -74,7 +74,7 @@ class PartSum(NamedTuple):
         return max(0.0, nats - 0.5 * scatter) if nats > 0.0 else nats
 
     def plus(self, more: "PartSum") -> "PartSum":
-        """With more pulses."""
+        """The sum with more pulses."""
         return PartSum(
             self.pulses + more.pulses,
             self.weight + more.weight,
@@ -83,7 +83,7 @@ class PartSum(NamedTuple):
         )
 
     def scaled(self, part: float) -> "PartSum":
-        """As if there had been only so many."""
+        """As if there had been only this fraction of them."""
         return PartSum(
             round(part * self.pulses), part * self.weight, part * self.weighted, part * self.squares
         )
@@ -100,7 +100,7 @@ def pulse(part: float, variance: float, test: WeakTest) -> PartSum:
 
 
 class Older(NamedTuple):
-    """What is left of pulses that are traced no longer: what they show, and ``kept`` from a fault before."""
+    """What is left of pulses no longer traced: what they show, and ``kept`` from an earlier fault."""
 
     parts: PartSum = NO_PULSES
     kept: float = 0.0
@@ -110,7 +110,7 @@ class Older(NamedTuple):
         return self.kept + self.parts.nats(test)
 
     def with_pulses(self, more: PartSum) -> "Older":
-        """With more pulses."""
+        """What is left with more pulses."""
         return Older(self.parts.plus(more), self.kept)
 
     def bounded(self, test: WeakTest) -> "Older":

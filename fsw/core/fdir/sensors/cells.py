@@ -1,19 +1,19 @@
 """Which Sun cell is faulty: dead, stuck, or with a current that nothing allowed by the table explains.
 
-Each cell is compared with what the estimate predicts, while that is proven by the field and has been taken
-with it. What speaks against a cell:
+Each cell is compared with what the estimate predicts, while the estimate is proven and the field has been
+taken with it. What speaks against a cell:
 
 - it gives a current in the Earth's shadow;
 - it is lit, and the filter refuses what it shows, or it shows nothing;
-- its gain, or what it shows beyond its model, is more than ``SIGMAS`` standard deviations of what the table
+- its gain, or what it shows beyond its model, exceeds ``SIGMAS`` of the standard deviations that the table
   allows;
-- the Sun is behind it, and it is brighter than the Earth, as all cells show it, and that excess can make it;
-- its current does not change by a bit while the predicted one moves by ``STILL``.
+- it faces away from the Sun, and is brighter than that excess and the Earth, as all cells show it, allow;
+- its current does not change by one bit while the predicted one moves by ``STILL``.
 
 A cell that is still is not used from the next tick on, whatever the evidence.
 
-Two cells do not fail within one estimate, but a wrong estimate is contradicted by one cell after the other
-as the satellite turns. What speaks against a second cell that is lit speaks against the estimate.
+Two cells are not taken to fail under one estimate, but a wrong estimate is contradicted by one cell after
+another as the satellite turns. What speaks against a second cell that is lit speaks against the estimate.
 """
 
 from collections.abc import Sequence
@@ -31,15 +31,15 @@ from fsw.core.fdir.faults import SensorFault
 from fsw.core.fdir.sensors.watch import Watch, accused, readmitted
 
 STILL = 0.06
-"""By so much of full sunlight a current is predicted to move, which has not: eight steps of it on the bus."""
+"""Fraction of full sunlight by which a still current should have moved: eight steps of it on the bus."""
 NO_CURRENT = -1.0
 
 
 class CellWatch(NamedTuple):
-    """One cell: the evidence, what it has shown so far without a change, and what was predicted then.
+    """One cell: the evidence, what it has shown since its last change, and what was predicted then.
 
-    ``still``: the prediction has moved since, and the current has not. ``by_this``: it is isolated by what
-    the estimate in use predicts of it in the light.
+    ``still``: the prediction has moved since, and the current has not. ``by_this``: it is isolated because of
+    what the estimate in use predicts for it in the light.
     """
 
     watch: Watch = Watch()
@@ -56,8 +56,8 @@ class CellEvidence(NamedTuple):
     """What one tick shows of all cells.
 
     ``currents`` are of isolated cells too; ``seen`` is None in the shadow, and ``shadow`` says that this is
-    certain. ``sure``: the estimate is proven, and the field bears it out; ``begun``: it is none yet, or that
-    of this tick.
+    certain. ``sure``: the estimate is proven, and the field confirms it; ``begun``: there is none yet, or it
+    began in this tick.
     """
 
     currents: Sequence[float | None]
@@ -93,7 +93,7 @@ def contradicted(health: CellsHealth) -> bool:
 
 
 def doubtful(health: CellsHealth, weights: EvidenceWeights) -> bool:
-    """Whether it has had one isolated, and half of what isolates another speaks against that."""
+    """Whether it has had one isolated, and over half of what isolates a cell speaks against another."""
     accused_too = any(one.watch.nats > 0.5 * weights.threshold and not one.watch.fault for one in health)
     return accused_too and any(one.by_this for one in health)
 
@@ -122,7 +122,7 @@ def _watched(
     config: MekfConfig,
     cells: CellSet,
 ) -> CellWatch:
-    """A cell after a tick, with whether the estimate in use is what it is isolated by."""
+    """A cell after a tick, and whether it is isolated because of the estimate in use."""
     if current is None:
         return before
     after = _judged(before, cell, current, evidence, weights, config, cells)
@@ -165,7 +165,7 @@ def _judged(
 
 
 def _as_by_table(estimate: Estimate) -> Estimate:
-    """The estimate, of cells that are as the table has them: a stuck one draws its own gain after it."""
+    """The estimate with gains and albedo as in the table: a stuck cell draws its own gain after it."""
     return estimate._replace(parameters=estimate.parameters._replace(cell_gain=(), earth_light=()))
 
 
@@ -177,7 +177,7 @@ def _verdict(
     estimate: Estimate,
     cells: CellSet,
 ) -> int | None:
-    """What speaks against a cell that is lit, 0: it is as predicted, None: the filter had no part in it."""
+    """What speaks against a lit cell; 0: it is as predicted, None: the filter neither took nor refused it."""
     if shown.still:
         return SensorFault.FROZEN
     if current <= cells.dark or _beyond(estimate.parameters, cell, cells):
@@ -188,14 +188,14 @@ def _verdict(
 
 
 def _beyond(known: Parameters, cell: int, cells: CellSet) -> bool:
-    """Whether excess or gain of a cell is none that the table allows."""
+    """Whether excess or gain of a cell is beyond what the table allows."""
     gain = known.cell_gain[cell] if known.cell_gain else 0.0
     excess = known.cell_excess[cell]
     return abs(excess) > SIGMAS * cells.excess_sigma or abs(gain) > SIGMAS * cells.gain_sigma
 
 
 def _weighed(watch: Watch, verdict: int | None, unclear: bool, weights: EvidenceWeights) -> Watch:
-    """In use a cell is accused, isolated it may be readmitted; without a comparison nothing changes."""
+    """A cell in use may be accused, an isolated one readmitted; without a comparison nothing changes."""
     if verdict is None:
         return watch
     if watch.fault:

@@ -1,7 +1,7 @@
 """Whether an estimate can be right: each parameter within what the bounds of the table allow.
 
 A parameter is credible within ``SIGMAS`` standard deviations of its prior. The filter may explain a fault by
-one that is beyond: a Sun sensor with swapped axes as one that is turned, a twisting magnetometer as a bias.
+one beyond that: swapped axes of a Sun sensor by a misalignment, a twisting magnetometer by a bias.
 """
 
 from math import sqrt
@@ -52,12 +52,12 @@ def credible(estimate: Estimate, config: CredibilityConfig) -> bool:
 
 
 def credible_but_coils(estimate: Estimate, config: CredibilityConfig) -> bool:
-    """Whether it can be but for what its coils do: a weak one has a gain that is not credible."""
+    """Whether it can be, apart from its coils: a weak one has a gain that is not credible."""
     return _within(estimate, config.but_coils)
 
 
 def sensors_credible(estimate: Estimate, config: CredibilityConfig) -> bool:
-    """Whether its sensors can."""
+    """Whether its sensors can be those of the table."""
     return _within(estimate, config.of_sensors)
 
 

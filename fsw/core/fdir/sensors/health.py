@@ -1,12 +1,12 @@
-"""Which sensor is faulty, and when it is believed again.
+"""Which sensor is faulty, and when it is trusted again.
 
 The evidence of a tick against one sensor is what a check finds, or that a proven filter refuses it while it
-takes the other. What it refuses of both, or of the Sun sensor while there is no field, does not show which
-is wrong: the sensors, or the estimate; nor do checks that speak against both at once, as after a loss on the
-bus or with a wrong clock.
+takes the other. A refusal of both, or of the Sun sensor while there is no field, does not show which is
+wrong, the sensors or the estimate; nor do checks that speak against both at once, as after a loss on the bus
+or with a wrong clock.
 
-An isolated sensor is readmitted if it is what the estimate predicts, if that is certain enough to tell; or if
-both sensors have agreed for long, in which case the filter ends, since it did not agree.
+An isolated sensor is readmitted if it shows what the estimate predicts, where that is certain enough; or if
+both sensors have agreed for long, in which case the estimate is given up, since it did not agree.
 """
 
 from typing import NamedTuple
@@ -65,7 +65,7 @@ class SensorConfig(NamedTuple):
 
 
 def faults(health: SensorHealth) -> tuple[int, ...]:
-    """Those of each sensor and cell."""
+    """The fault of each sensor and cell."""
     return (health.field.fault, health.sun.fault, *[one.watch.fault for one in health.cells])
 
 
@@ -108,7 +108,7 @@ def judge(
         sound=estimate is None or credible(estimate, config.credibility),
     )
     both = pair.judge(health.pair, seen, weights, config.credibility)
-    trusted = pair.valid(health.pair)  # one that lags may have been led away
+    trusted = pair.valid(health.pair)  # an estimate that lags may have been misled
     sure = trusted and pair.proven(health.pair, weights)
     by_cell = _cells(health, seen, reference, sure, config)
     if cells.contradicted(by_cell):

@@ -1,16 +1,16 @@
-"""Both sensors together: whether the estimate is proven right about them, and whether they contradict.
+"""Both sensors together: whether the estimate is proven right about them, and whether they disagree.
 
-Of two directions nothing but their angle can be compared without an attitude, and a filter can explain a
-slow fault for long: it shares it out between both sensors and its parameters. So evidence against the pair is
+Without an attitude only the angle between two directions can be compared, and a filter can explain a slow
+fault for long: it spreads it over both sensors and its parameters. So evidence against the pair is
 
 - innovations that are larger than the filter expects, and not so large that its gate refuses them;
 - a sensor that it can only take with parameters that the table does not allow;
-- while it is not proven: what it refuses, if it is not credible or was proven once; an angle that is not the
-  modelled one.
+- while the estimate is not proven: what it refuses, if it is not credible or was proven once; an angle that
+  is not the modelled one.
 
-Where that is enough the pair is disputed: both sensors are kept, the filter ends, and none begins before both
-have agreed for long. No attitude is valid before its estimate is proven, nor while nothing has been taken for
-long.
+When that is enough, the pair is disputed: both sensors are kept, the filter ends, and none begins before both
+have agreed for long. No attitude is valid before its estimate is proven, nor after long without a sample
+taken.
 """
 
 from enum import IntEnum
@@ -23,10 +23,10 @@ from fsw.core.fdir.sensors.credibility import CredibilityConfig, sensors_credibl
 from fsw.core.fdir.sensors.plausibility import Findings
 
 SUSPICIOUS = 0.25
-"""Part of the threshold beyond which doubt about the pair keeps what is refused from counting against one."""
+"""Fraction of the threshold: with more doubt about the pair, a refusal counts against no single sensor."""
 
 ALONE = 0.4
-"""Part of the threshold at which a lag counts that one sensor shows alone: the other cannot contradict it."""
+"""Fraction of the threshold at which a lag counts that one sensor alone shows: the other cannot deny it."""
 
 
 class Standing(IntEnum):
@@ -48,9 +48,9 @@ class Pair(NamedTuple):
 
     ``proof``: that the estimate is right about both; ``doubt``: that one is wrong; ``accord``: that both are
     right, while they are disputed, or one is isolated and no estimate can tell; ``strange``: that the
-    estimate has settled on a satellite that is none of the table, and not this one either. ``ended``: the
-    filter is to end in this tick; ``blind_ticks``: for so long it has taken no sample; ``owed``: what an
-    estimate that lagged, or was blind, has still to show.
+    estimate has settled on a satellite that the table does not allow and that is not this one either.
+    ``ended``: the filter is to end in this tick; ``blind_ticks``: ticks since it took a sample; ``owed``:
+    what an estimate that lagged, or was blind, still has to prove.
     """
 
     standing: Standing = Standing.NEW
@@ -66,7 +66,7 @@ class Pair(NamedTuple):
 class Observed(NamedTuple):
     """What one tick shows of both: the samples, what the filter took, and what it refused of those in use.
 
-    ``isolated``: one of them is, ``untold``: and no estimate is certain enough to tell whether it still is
+    ``isolated``: one of them is, ``untold``: and no estimate is certain enough to show whether it is still
     faulty; ``shown``: what estimates have shown in its favour so far, nats. ``sound``: the estimate, if there
     is one, is credible.
     """
@@ -95,14 +95,14 @@ class Observed(NamedTuple):
 def proven(pair: Pair, weights: EvidenceWeights) -> bool:
     """Whether the estimate has shown for long enough, and lately, that it is right about both sensors.
 
-    Not while there is doubt: a slow fault of one has then led it away, and it may refuse the other.
+    Not while there is doubt: a slow fault of one may have misled it, so that it refuses the other.
     """
     shown = pair.proof >= 0.5 * weights.threshold and pair.doubt < SUSPICIOUS * weights.threshold
     return pair.standing is Standing.TRUSTED and shown
 
 
 def valid(pair: Pair) -> bool:
-    """Whether an attitude may be valid that rests on them."""
+    """Whether an attitude that rests on them may be valid."""
     return pair.standing is Standing.TRUSTED and not pair.owed
 
 
@@ -127,7 +127,7 @@ def judge(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: Cre
     blind_ticks = 0 if seen.used.field or seen.used.sun else pair.blind_ticks + 1
     owed = _owed(pair.owed, blind_ticks, seen, weights)
     lost = owed > 0.0 and seen.used.field and seen.used.sun and not seen.sound
-    slow = weights.agrees / PAIR_NUMBERS  # a faulty coil, which looks the same at first, is found before
+    slow = weights.agrees / PAIR_NUMBERS  # a faulty coil, which looks the same at first, is found sooner
     strange = weigh(pair.strange, slow if lost else -slow, threshold)
     if strange >= threshold:
         return Pair(ended=True)
@@ -135,9 +135,9 @@ def judge(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: Cre
 
 
 def _misfit(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: CredibilityConfig) -> float:
-    """What this tick weighs against the pair, in parts of the most that a tick may.
+    """What this tick weighs against the pair, as a fraction of the most that a tick may.
 
-    While one sensor is isolated only the innovations of the other do: angle and parameters are of both.
+    While one sensor is isolated, only the innovations of the other count: angle and parameters are of both.
     """
     estimate, wrong = seen.estimate, False
     if not seen.isolated:
@@ -151,14 +151,14 @@ def _misfit(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: C
 
 
 def _innovations(estimate: Estimate) -> float:
-    """What those of this tick weigh against the pair; none are none."""
+    """What the innovations of this tick weigh against the pair; -1 without any."""
     return misfit(estimate.nis, estimate.numbers) if estimate.numbers else -1.0
 
 
 def _proof(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: CredibilityConfig) -> float:
-    """An estimate gains by each pair that it takes; one that is trusted loses while it takes one alone.
+    """An estimate gains by each pair that it takes, on trial slowly; a trusted one loses by one sample alone.
 
-    On trial slowly. One that is trusted is about its sensors: what turns the satellite may be a coil's fault.
+    Of a trusted one only the sensors need be credible: what turns the satellite may be a coil's fault.
     """
     if seen.estimate is None or seen.begun:
         return 0.0
@@ -179,8 +179,8 @@ def _proof(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: Cr
 def _owed(owed: float, blind_ticks: int, seen: Observed, weights: EvidenceWeights) -> float:
     """What both sensors have to prove anew.
 
-    After a time without any, in which pulses may have failed; and where innovations have a mean that is no
-    chance, and so contradict the covariance; with one sensor alone, as in the shadow, sooner.
+    After a time without a sample, in which pulses may have failed; and if the innovations have a mean that is
+    not chance, which contradicts the covariance: sooner with one sensor alone, as in the shadow.
     """
     if seen.estimate is None:
         return 0.0

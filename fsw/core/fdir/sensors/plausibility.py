@@ -17,18 +17,18 @@ from fsw.core.orbit.ephemeris import Reference
 from fsw.core.orbit.sun import lit
 
 SHADOW_M = RADIUS_M - 100e3
-"""Radius of what is shadow for certain: the Earth is flattened by 21 km, half the penumbra of a low orbit is
+"""Radius of what is certainly shadow: the Earth is flattened by 21 km, half the penumbra of a low orbit is
 15 km wide, and the position may be off by tens of km."""
 DARK: Vec3 = (0.0, 0.0, 0.0)
 """The sample of a Sun sensor without a Sun."""
 
 
 class PlausibilityConfig(NamedTuple):
-    """Largest deviations if all is well: of the field, T and in parts of it, and of directions, rad.
+    """Largest deviations if all is well: of the field, T and as a fraction of it, and of directions, rad.
 
     ``in_range_t``: in a field up to that strength no axis of the magnetometer saturates; ``sun_norm``: of the
-    Sun vector's length; ``late_ticks``: for so long a sample may be repeated; ``cells``: those that give the
-    Sun in place of a sensor.
+    Sun vector's length; ``late_ticks``: how long a sample may be repeated; ``cells``: those that give the Sun
+    in place of a sensor.
     """
 
     field_t: float
@@ -168,12 +168,12 @@ def _remember(memory: Memory, readings: Readings) -> Memory:
 
 
 def _in_shadow(reference: Reference) -> bool:
-    """Whether the satellite is in shadow with certainty, beyond all errors of the model."""
+    """Whether the satellite is certainly in shadow, beyond all errors of the model."""
     return not (reference.lit or lit(reference.r_eci_m, reference.sun_eci, SHADOW_M))
 
 
 def _apart(seen: Seen, reference: Reference) -> bool:
-    """Whether field and Sun are at another angle than modelled; the field's errors turn a weak one most."""
+    """Whether field and Sun are not at the modelled angle; errors of the field turn a weak one most."""
     field, sun, limits = seen.field, seen.sun, seen.limits
     if field is None or sun is None or not norm(field) * norm(sun) > 0.0:
         return False

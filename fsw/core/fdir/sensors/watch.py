@@ -6,7 +6,7 @@ from fsw.core.fdir.evidence import EvidenceWeights, weigh
 from fsw.core.fdir.faults import SensorFault
 
 LOST = 0.5
-"""Part of its weight that a missing sample has: the bus may lose some, in bursts."""
+"""Fraction of its weight that a missing sample has: the bus may lose some, in bursts."""
 
 
 class Watch(NamedTuple):
@@ -17,7 +17,7 @@ class Watch(NamedTuple):
 
 
 def accused(watch: Watch, cause: int, unclear: bool, weights: EvidenceWeights) -> Watch:
-    """A sensor in use after a tick in which this speaks against it, or nothing; or it is unclear what."""
+    """A sensor in use after a tick: ``cause`` speaks against it, 0: nothing does; or it is unclear what."""
     by = -weights.against
     if unclear:
         by = 0.0
@@ -30,7 +30,7 @@ def accused(watch: Watch, cause: int, unclear: bool, weights: EvidenceWeights) -
 
 
 def readmitted(watch: Watch, fits: bool | None, weights: EvidenceWeights) -> Watch:
-    """An isolated sensor after a tick in which its sample fits, or not, or nothing shows it."""
+    """An isolated sensor after a tick in which its sample fits or does not; None: nothing shows which."""
     if fits is None:
         return watch
     nats = weigh(watch.nats, weights.fits if fits else weights.misfits, weights.threshold)

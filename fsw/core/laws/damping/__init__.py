@@ -1,1 +1,1 @@
-"""Laws that take the rate away."""
+"""Laws that damp the rate."""

@@ -23,7 +23,7 @@ class SwitchedGains:
 
 
 def rate_damping_dipole(b_body_t: Vec3, omega_body_radps: Vec3, k_w: float) -> Vec3:
-    """M = -k_w b x omega: the torque m x b takes away the part of the rate normal to the field.
+    """The dipole m = -k_w b x omega: the torque m x b damps the component of the rate normal to the field.
 
     Args:
         b_body_t: field in body axes, T.
@@ -40,7 +40,7 @@ def rate_damping_dipole(b_body_t: Vec3, omega_body_radps: Vec3, k_w: float) -> V
 
 
 def bdot_dipole(b_body_t: Vec3, b_previous_body_t: Vec3, interval_s: float, k_w: float) -> Vec3:
-    """M = -k_w db/dt by finite difference; db/dt = b x omega, so the gain is that of rate damping.
+    """The dipole m = -k_w db/dt by finite difference; db/dt = b x omega: the gain is that of rate damping.
 
     Args:
         b_body_t: field now, body axes, T.
@@ -57,7 +57,7 @@ def bdot_dipole(b_body_t: Vec3, b_previous_body_t: Vec3, interval_s: float, k_w:
 
 
 def switched_gain(b_dot_tps: Vec3, b_body_t: Vec3, k_w: float, below_radps: float, factor: float) -> float:
-    """K = k_w while |db/dt| > w_s |b|, and factor k_w below: the dipole does not fade with the rate.
+    """The gain k_w while |db/dt| > w_s |b|, and factor k_w below: the dipole does not fade with the rate.
 
     Args:
         b_dot_tps: change of the field seen from the body, T/s.

@@ -1,4 +1,4 @@
-"""B-dot whose gain grows as the rate falls, so that the torque stays."""
+"""B-dot whose gain grows as the rate falls, so that the torque is held."""
 
 from dataclasses import dataclass
 
@@ -30,19 +30,19 @@ class HeldGains:
 
 
 def held_gain(b_dot_tps: Vec3, b_body_t: Vec3, torque_nm: float, most: float) -> float:
-    """K = M / (|db/dt| |b|), at most ``most``: with m = -k db/dt, normal to b, the torque is M.
+    """The gain k = M / (|db/dt| |b|), at most ``most``: with m = -k db/dt, normal to b, the torque is M.
 
     Args:
         b_dot_tps: change of the field seen from the body, T/s.
         b_body_t: field in body axes, T.
         torque_nm: M, N m.
-        most: largest gain, N m s / T^2, which rules once the rate is small.
+        most: largest gain, N m s / T^2, which applies once the rate is small.
 
     Returns:
         The gain of this tick, N m s / T^2.
 
-    Source: Ovchinnikov, Roldugin 2019, section 1, in words: a gain that varies so as to make good the falling
-    rate and keep the torque. The equation is what these words say.
+    Source: Ovchinnikov, Roldugin 2019, section 1, in words: a gain that varies to compensate for the falling
+    rate and keep the torque. The equation follows from these words.
     """
     product = norm(b_dot_tps) * norm(b_body_t)
     return torque_nm / product if product * most > torque_nm else most

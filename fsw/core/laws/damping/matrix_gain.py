@@ -8,7 +8,7 @@ from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Set
 
 @dataclass(frozen=True, slots=True)
 class MatrixGains:
-    """H of the law, symmetric, shares of k_w.
+    """H of the law, symmetric, in units of k_w.
 
     Raises:
         ValueError: H is not positive definite, so that some rate would not be damped.
@@ -36,7 +36,7 @@ class MatrixGains:
 
 
 def matrix_damping_dipole(b_body_t: Vec3, omega_body_radps: Vec3, h: Mat3, k_w: float) -> Vec3:
-    """M = -k_w H (b x Omega), H symmetric and positive definite.
+    """The dipole m = -k_w H (b x Omega), H symmetric and positive definite.
 
     The power is Omega . (m x b) = -k_w (b x Omega)^T H (b x Omega), never positive. H stands outside the
     product: b x (H Omega) has a power that may be positive.

@@ -4,8 +4,8 @@ The bound is on each coil, |m_j| <= m0, and the torque is m x b. Then
 
     d|h|^2/dt / 2 = h . (m x b) = m . (b x h),      dT/dt = omega . (m x b) = m . (b x omega),
 
-each least for the relay m_j = -m0 sign of the product's component j. Within a band about rest the relay gives
-way to a straight line, which holds what is reached and does not chatter.
+each least for the relay m_j = -m0 sign of the product's component j. Within a band about rest the relay
+becomes linear, which holds what is reached without chatter.
 
 Source: Lyubimov, Podkletnova 2016, as in Ovchinnikov, Roldugin 2019, section 1 [28]. The review prints no
 equation and the paper's abstract gives the aims: the momentum brought to small given values and held there,
@@ -96,7 +96,7 @@ def model_torque(omega_body_radps: Vec3, momentum_body_nms: Vec3, acceleration_b
 
 
 def least_momentum(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The body's momentum J (omega - spin) taken down at the bound of the coils."""
+    """The body's momentum J (omega - spin), reduced at the bound of the coils."""
     gains: MomentumGains = config.gains["least_momentum"]
     rate = _rate_left(inputs, setpoint, config)
     if rate is None:
@@ -106,7 +106,7 @@ def least_momentum(inputs: LawInput, memory: Memory, setpoint: Setpoint, config:
 
 
 def least_energy(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The energy of the rotation, that of omega - spin, taken down at the bound of the coils."""
+    """The rotational energy, that of omega - spin, reduced at the bound of the coils."""
     gains: EnergyGains = config.gains["least_energy"]
     rate = _rate_left(inputs, setpoint, config)
     if rate is None:

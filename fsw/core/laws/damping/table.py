@@ -1,4 +1,4 @@
-"""The laws that take the rate away, by name."""
+"""The laws that damp the rate, by name."""
 
 from fsw.core.laws.damping.damping import SwitchedGains, bdot, bdot_switched, rate_damping
 from fsw.core.laws.damping.held_torque import HeldGains, bdot_held

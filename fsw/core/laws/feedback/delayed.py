@@ -1,11 +1,11 @@
-"""PD law without a rate: the attitude and the attitude some time ago give it.
+"""PD law without a measured rate: the attitude now and some time ago give it.
 
 With q now and q_T of a time T earlier, as W(q)^T q = 0 for W of ``output_feedback``,
 
     Omega_T = 2 W(q)^T (q - q_T) / T,     m = -k_w b x Omega_T - k_a b x E,     E = 4 qv.
 
 Omega_T is the mean rate over the last T and lags by T / 2. The attitude is kept every ``delay_s``, so that T
-lies between once and twice that (less after the first attitude): two attitudes in memory, not one a tick.
+lies between once and twice that (less after the first attitude): two attitudes in memory, not one per tick.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1, after Xu, Luo, Yang 2017 (delayed output feedback). The
 review prints no equation; this one is derived.

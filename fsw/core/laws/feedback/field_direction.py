@@ -7,11 +7,11 @@ shortest turn of t onto n is about t x n = e x n, and dn/dt = n x omega in a fie
 
 de/dt by the difference of two samples: a spring and a damper. With a ``target`` the body axis t follows the
 field as a bar magnet would, for any body. Without one t is the direction of the field expected in the nominal
-attitude, and on the mean the whole attitude follows, under the conditions of ``field_tracking``; as e has
+attitude, and on average the whole attitude follows, under the conditions of ``field_tracking``; as e has
 directions alone, an error in the size of the modelled or the measured field does not matter.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1, after Gulmammadov, Kahraman, Yavuzyilmaz, Tufekci, Subasi
-2010, and with a target Smirnov 2001. The scan loses the torque and keeps e; the torque is derived here.
+2010, and with a target Smirnov 2001. The scan has lost the torque but not e; the torque is derived here.
 """
 
 from dataclasses import dataclass

@@ -1,11 +1,11 @@
 """The PD dipole held over many ticks: computed once a cycle, after a time of measuring with the coils off.
 
-    m = 0 for ``measure_s``, then for ``act_s``, with the values at the first tick of these,
+    m = 0 for ``measure_s``, then for ``act_s``, with the values at its first tick,
     m = -(1 / share) b x (k_w Omega + k_a S),     share = act_s / (measure_s + act_s).
 
 ``pd_held`` has no time of measuring. ``pd_apart`` measures as long as it acts, by default, so that the field
-of the coils has died away when b is taken. On the mean a held dipole is half of ``act_s`` old. For each
-length of the cycle there are gains small enough (``sim/design/feedback/held.py``).
+of the coils has died away when b is taken. On average a held dipole is half of ``act_s`` old. For each
+length of the cycle there are gains that are small enough (``sim/design/feedback/held.py``).
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1, after Celani 2016a (the dipole constant over a control
 interval of several steps) and Celani 2016b (measuring and acting apart). The share, which keeps the mean

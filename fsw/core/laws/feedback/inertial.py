@@ -3,7 +3,7 @@
     m = -k_w b x omega - k_a b x S,     S = (a23 - a32, a31 - a13, a12 - a21) of C(body from target),
 
 omega the absolute rate, body axes, and the target an attitude fixed in ``eci``; far from it 4 qv stands for
-S, as for ``pd``. In an orbit the field turns twice in the inertial frame, so that on the mean the coils reach
+S, as for ``pd``. In an orbit the field turns twice in the inertial frame, so that on average the coils reach
 each axis. The gravity gradient is a disturbance, largest where the radius is 45 deg from two principal axes.
 
 Gains are those of ``sim/design/feedback/inertial.py``: averaging gives the ratio of k_a to k_w^2, Floquet

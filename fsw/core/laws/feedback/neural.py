@@ -1,14 +1,14 @@
 """PD law whose gains are chosen in flight by two dynamic neural units, trained beforehand.
 
-Each unit sees the sizes of error and rate through the weights c, follows them as two lags in a row, and gives
-through its sigmoid a factor between 1 / R and R for one gain:
+Each unit weights the sizes of error and rate by c, follows the sum with two lags in series, and gives through
+its sigmoid a factor between 1 / R and R for one gain:
 
     s = c0 + c1 ln(1 + |E| / E0) + c2 ln(1 + |Omega| / Omega0),
     v1 <- v1 + p (s - v1),    v2 <- v2 + p (v1 - v2),    p = h / (T + h),    f = R^tanh(v2),
     m = -f_w k_w b x Omega - f_a k_a b x E,     E = 4 qv,
 
-h a tick, T the lag, a part of an orbit, E0 = 0.02 and Omega0 = E0 w0. What a unit sees has no unit, so that
-the weights serve any body whose k_w and k_a are near the best.
+h a tick, T the lag, a fraction of an orbit, E0 = 0.02 and Omega0 = E0 w0. The inputs are dimensionless, so
+that the weights serve any body whose k_w and k_a are near the best.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.4, after Das, Sinha, Misra 2012 (dynamic neural units choose the
 gains). The review prints no equation; units and training (``sim/design/feedback/neural.py``) are derived.
@@ -63,7 +63,7 @@ def seen(error: float, rate_radps: float, orbit_rate_radps: float) -> tuple[floa
 
 
 def neural(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The law; memory: v1 and v2 of both units, which begin where they would stay."""
+    """The law; memory: v1 and v2 of both units, which begin at their steady state."""
     if not inputs.attitude.valid or inputs.reference is None:
         return Demand()
     gains: NeuralGains = config.gains["pd_neural"]

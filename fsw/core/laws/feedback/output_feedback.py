@@ -1,4 +1,4 @@
-"""PD law without a rate: a filter that follows the attitude gives it.
+"""PD law without a measured rate: a filter that follows the attitude gives it.
 
 The filter is z' = a (q - z). Where the motion is slow against a its lag q - z is q' / a, and as
 q' = 1/2 W(q) Omega with W^T W = E,

@@ -44,7 +44,7 @@ def pd_dipole(b_body_t: Vec3, omega_body_orbit_radps: Vec3, error: Vec3, k_w: fl
 def integrate_error(
     integral_s: Vec3, error: Vec3, b_body_t: Vec3, k_i: float, tick_s: float, mean_dipole_am2: float
 ) -> Vec3:
-    """The integral I + S h, h a tick, limited where k_i |b| |I| is the dipole that coils give in the mean."""
+    """The integral I + S h, h a tick, limited where k_i |b| |I| is the mean dipole that the coils give."""
     grown = add(integral_s, scale(tick_s, error))
     demanded_am2 = k_i * norm(b_body_t) * norm(grown)
     return grown if demanded_am2 <= mean_dipole_am2 else scale(mean_dipole_am2 / demanded_am2, grown)

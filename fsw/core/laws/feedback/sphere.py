@@ -1,6 +1,6 @@
-"""Laws for a sphere, which has no gyroscopic torque: dOmega/dt = u but for the turning of the orbit.
+"""Laws for a sphere, which has no gyroscopic torque: dOmega/dt = u but for the rotation of the orbital frame.
 
-``sphere_vertical`` holds an axis a of the body to the local vertical r, the turn about it free. Full control
+``sphere_vertical`` holds an axis a of the body to the local vertical r, the angle about it free. Full control
 
     M_ref = |b|^2 (2 k_a a x r - k_w Omega),     m = b x M_ref / |b|^2
 
@@ -11,8 +11,8 @@ With d = 2 vec(z^-1 q) and M the torque of the last tick's dipole:
 
     z' = 1/2 z (0, w + 2 a d),   w' = M / J + w0 w x e3 + a^2 d,   m = -k_w b x w - k_a b x E,   E = 4 qv.
 
-Its error decays critically damped, with bandwidth a. As it knows the torque it does not lag as the filter of
-``output_feedback`` does; for a body that is no sphere the gyroscopic and gravity torques are its error.
+Its error is critically damped, with bandwidth a. As it knows the torque it does not lag as the filter of
+``output_feedback`` does; for a body that is not a sphere the gyroscopic and gravity torques are its error.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1: the vertical after Bushenkov, Ovchinnikov, Smirnov 2002; the
 law without a rate after Reyhanoglu, Drakunov 2008 and Reyhanoglu, Ton, Drakunov 2009. The review prints no
@@ -78,7 +78,7 @@ def vertical_torque(
 
 
 def sphere_vertical(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The axis held to the vertical, the turn about it damped."""
+    """The axis held to the vertical, the rate about it damped."""
     if not inputs.attitude.valid:
         return Demand()
     gains: VerticalGains = config.gains["sphere_vertical"]

@@ -10,8 +10,9 @@ angles phi of both turns, c = cos(phi / 2), s = sin(phi / 2), at a1 and a2 in th
 whence s^2 = ((1 - q0)^2 + z^2) / (2 (1 - q0)) <= 1 and tan((a2 - a1) / 2) = -z / (1 - q0). A turn about N
 alone, however small, takes two half turns. Of q and -q the one with the smaller phi is taken. The PD law
 turns to P, about an axis across the field, and from there to the goal; while the turn about N is small it
-turns to the goal at once. During the two turns J f is taken off the torque, f = dOmega/dt without control,
-so that nothing bends the path: for a sphere f = w0 Omega x e3, normal to a field along the orbit normal.
+turns to the goal at once. During the two turns J f is subtracted from the torque, f = dOmega/dt without
+control, so that nothing bends the path: for a sphere f = w0 Omega x e3, normal to a field along the orbit
+normal.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1, after Inamori, Otsuki, Sugawara, Saisutjarit, Nakasuka 2016,
 for a sphere. The review prints no equation; the split is derived here.
@@ -46,7 +47,7 @@ class TwoStepGains:
 
 
 def first_turn(q_body_from_orbit: Quaternion, field_direction: Vec3) -> Quaternion:
-    """P, the attitude between the two turns, of q and -q by the smaller angle.
+    """P, the attitude between the two turns; of q and -q, the one with the smaller angle is taken.
 
     Args:
         q_body_from_orbit: q, not the goal.
@@ -99,7 +100,7 @@ def two_step(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Contr
 
 
 def _next(inputs: LawInput, memory: Memory, gains: TwoStepGains) -> tuple[float, Quaternion]:
-    """The stage of this tick, and P; a turn is done where its part across the field is."""
+    """The stage of this tick, and P; a turn is done when its component across the field is."""
     q, n = inputs.attitude.q_body_from_orbit, unit(inputs.b_body_t)
     stage, goal = (memory[0], (memory[1], memory[2], memory[3], memory[4])) if memory else (FREE, IDENTITY)
     slow = norm(inputs.attitude.omega_body_orbit_radps) < radians(gains.done_degps)

@@ -9,8 +9,8 @@ from fsw.core.laws.one_axis.field_tracking import track
 def direction_error(b_body_t: Vec3, expected_t: Vec3) -> Vec3:
     """|B| (b/|b| - B/|B|), T: b - B without the error in size.
 
-    As the demand -k1 of it pulls b onto B, it turns the body about b x B and about no axis along the field,
-    where the air must turn it.
+    As the demand, -k1 times this, pulls b onto B, it turns the body about b x B and about no axis along the
+    field, about which the air must turn it.
 
     Args:
         b_body_t: field in body axes.
@@ -18,13 +18,13 @@ def direction_error(b_body_t: Vec3, expected_t: Vec3) -> Vec3:
 
     Source: Psiaki 2004, as in Ovchinnikov, Roldugin 2019, section 2.4 [64]: a modification of eq. 7 that
     makes the fields in body and orbit axes coincide, one axis, while the air holds another. The scan has lost
-    its equation; taken here as eq. 7 of directions.
+    its equation; it is taken here as eq. 7 for directions.
     """
     return scale(norm(expected_t), sub(unit(b_body_t), unit(expected_t)))
 
 
 def direction_tracking(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """M = -2 k_a e - k_w de/dt, e the direction error; magnetometer and orbit alone. Memory as there."""
+    """The dipole m = -2 k_a e - k_w de/dt, e the direction error, from magnetometer and orbit alone."""
     sample, reference = inputs.sample, inputs.reference
     if reference is None or sample.tick < 0:
         return Demand()

@@ -14,7 +14,7 @@ TRACKED = 4
 
 @dataclass(frozen=True, slots=True)
 class HandOverGains:
-    """Gains of field tracking against those of the PD law it hands over to.
+    """Gains of field tracking relative to those of the PD law it hands over to.
 
     Attributes:
         share_w: of k_w.
@@ -26,7 +26,7 @@ class HandOverGains:
 
 
 def field_tracking_dipole(error_t: Vec3, error_rate_tps: Vec3, k_w: float, k_a: float) -> Vec3:
-    """M = -k1 (b - B) - k2 (db/dt - dB/dt), k1 = 2 k_a and k2 = k_w.
+    """The dipole m = -k1 (b - B) - k2 (db/dt - dB/dt), k1 = 2 k_a and k2 = k_w.
 
     A small turn theta from nominal gives b - B = B x theta, so the law is then the PD law
     m = -k_w b x Omega - k_a b x S, S = 2 theta, less k_w dB/dt x theta. That term is as large as the one of
@@ -57,7 +57,7 @@ def field_tracking(inputs: LawInput, memory: Memory, setpoint: Setpoint, config:
 
 
 def track(error_t: Vec3, tick: int, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The dipole of an error of the field sampled at a tick, and of its change since the sample before."""
+    """The dipole for an error of the field sampled at a tick, and for its change since the sample before."""
     if memory and tick == memory[0]:
         return Demand(memory=memory)
     tracked = (float(tick), *error_t)

@@ -24,7 +24,7 @@ class SlowGains:
 
 
 def error_when_slow(error: Vec3, omega_body_orbit_radps: Vec3, slow_radps: float) -> Vec3:
-    """The attitude error while |Omega| <= slow, zero else.
+    """The attitude error while |Omega| <= slow, otherwise zero.
 
     With the PD torque M_ref = -(k_a S + k_w Omega) and the gravity gradient, the motion is stable where the
     rate is small; a body that tumbles passes through all attitudes, and the attitude term adds as much energy

@@ -1,4 +1,4 @@
-"""A slow spin about the orbit normal from the magnetometer alone: B-dot, and two coils that push on."""
+"""A slow spin about the orbit normal from the magnetometer alone: B-dot, and two coils that drive it."""
 
 from fsw.core.algebra.vector import Vec3, add, cross, scale
 from fsw.core.laws.damping.damping import bdot_dipole, difference_s
@@ -7,7 +7,7 @@ from fsw.core.laws.spin.spin import AXES, SpinGains
 
 
 def push_dipole(b_body_t: Vec3, axis: int, k_am2pt: float) -> Vec3:
-    """M = K (e x b), for the third axis K = diag(k, k, 0): the torque about e is -k |b across e|^2.
+    """The dipole m = K (e x b), K = diag(k, k, 0) for axis 3: the torque about e is -k |b across e|^2.
 
     With B-dot beside it, m = -k_w b x omega + k e x b = -k_w b x (omega + (k/k_w) e): B-dot about the spin
     w_ref = -k/k_w instead of about rest. The part of B-dot that follows the field along the orbit turns e to
@@ -22,8 +22,8 @@ def push_dipole(b_body_t: Vec3, axis: int, k_am2pt: float) -> Vec3:
         Dipole in body axes, A m^2.
 
     Source: Jan, Tsai 2005, as in Ovchinnikov, Roldugin 2019, section 2.4 [59]: two coils, one axis without a
-    fast spin. The review prints this term alone, which by itself spins up without end; B-dot beside it is of
-    this project, after the paper's title, the first acquisition.
+    fast spin. The review prints this term alone, which by itself spins up without end; B-dot beside it is
+    this project's, after the paper's title, the first acquisition.
     """
     return scale(k_am2pt, cross(AXES[axis], b_body_t))
 

@@ -29,17 +29,17 @@ class PanelGains(SpinGains):
 
 
 def panel_currents(sun_body: Vec3) -> tuple[float, ...]:
-    """Of panels on +1, -1, +2, -2, +3, -3, in units of full sunlight: the cosine of incidence, or none."""
+    """Of panels on +1, -1, +2, -2, +3, -3, in units of full sunlight: the cosine of incidence, or zero."""
     return tuple(max(0.0, sign * part) for part in sun_body for sign in (1.0, -1.0))
 
 
 def panel_torque(currents: tuple[float, ...], axis: int, k_difference: float, k_most: float) -> Vec3:
     """M_ref = k1 delta e_v + k2 e x s_max.
 
-    delta is the difference of currents of the panels +-u, of full sunlight, and s_max the normal of the panel
+    delta is the difference of the currents of panels +-u, in full sunlight, and s_max the normal of the panel
     with the most; e, u, v are in cyclic order. For e = 1 that is k1 delta e3 + k2 e1 x s_max. The first term
-    takes the Sun's part along u away, the second turns e to the panel that sees most. Along v nothing is
-    left to turn by once the panel on e sees most: there the Sun may stand 45 deg off.
+    removes the Sun's component along u, the second turns e to the panel that sees most. Nothing removes the
+    component along v once the panel on e sees most: there the Sun may stand 45 deg off.
 
     Args:
         currents: of ``panel_currents``.

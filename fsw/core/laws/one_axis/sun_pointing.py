@@ -1,4 +1,4 @@
-"""Sun pointing: the rate across the Sun line is damped; momentum and axis of most inertia turn to it."""
+"""Sun pointing: the rate across the Sun line is damped; momentum and axis of largest inertia turn to it."""
 
 from fsw.core.algebra.vector import Vec3, cross, dot, norm, scale, sub, unit
 from fsw.core.laws.damping.damping import MAX_DIFFERENCE_S
@@ -7,7 +7,7 @@ from fsw.core.laws.motion import motion
 
 
 def sun_dipole(sun_change_radps: Vec3, cos_alpha: float, k: float) -> Vec3:
-    """M = k cos(alpha) (omega x s) = -k cos(alpha) ds/dt, s the Sun in body axes, alpha from it to the field.
+    """The dipole m = k cos(alpha) (omega x s) = -k cos(alpha) ds/dt, s the Sun, alpha its angle to the field.
 
     The torque is k cos(alpha) (s (omega . b) - omega (s . b)): across the Sun it is a drag on omega, never
     a push, for s . b has the sign of cos(alpha); about the Sun it has no mean.
@@ -28,8 +28,8 @@ def sun_dipole(sun_change_radps: Vec3, cos_alpha: float, k: float) -> Vec3:
 def sun_pointing(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The Sun law with k = k_w |b|, alpha by the models; without a Sun vector, nothing.
 
-    ds/dt by the estimated rate where there is one, else by the change of the Sun vector itself. Memory: the
-    tick and the Sun vector then.
+    ds/dt by the estimated rate where there is one, otherwise by the change of the Sun vector itself. Memory:
+    the tick and the Sun vector then.
     """
     sun, reference = inputs.sun_body, inputs.reference
     if sun is None or reference is None:

@@ -1,1 +1,1 @@
-"""Laws with the least cost of a linear model."""
+"""Laws that minimise the cost of a linear model."""

@@ -1,6 +1,6 @@
 """Asymptotic periodic regulator: one cost matrix for the whole orbit, and the field as it is measured.
 
-As effort grows dear, the periodic solution of the Riccati equation tends to a constant one, that of the
+As effort becomes costly, the periodic solution of the Riccati equation tends to a constant one, that of the
 averaged reach of the coils,
 
     P = Q + F^T P (E + R P)^-1 F,     R = mean over an orbit of N N^T / effort,   N(b) = -G [b x].
@@ -11,7 +11,7 @@ satellite is,
     m = -(N^T P N + effort E)^-1 N^T (P (F x + G d) + S d),   S = Fc^T (S + P G),   Fc = (E + R P)^-1 F.
 
 x = (Omega, theta) and the torque d in orbital axes, as in ``riccati``. The source has the integral of the
-error as states; here the torque that the filter estimates stands for it.
+error as states; here the torque that the filter estimates takes its place.
 
 Source: Psiaki 2001, as in Ovchinnikov, Roldugin 2019, section 3.2, where the functional is damaged; the
 discrete form is derived here from the step of ``riccati``.
@@ -78,7 +78,7 @@ def averaged_schedule(
 
 
 def _closed(f: Array, reach: Array, cost: Array) -> Array:
-    """Fc = (E + R P)^-1 F; not finite as far as P is not."""
+    """Fc = (E + R P)^-1 F; 2 E, which is unstable, if P is not finite or the inverse does not exist."""
     if not np.isfinite(cost).all():
         return 2.0 * np.eye(6)
     bent = np.eye(6) + reach @ cost

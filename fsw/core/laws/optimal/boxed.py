@@ -2,8 +2,8 @@
 
     min |m x b - M_ref|^2   over   |m_i| <= m_max
 
-The projection m = b x M_ref / |b|^2, cut to the limits, is another dipole: where one coil is at its limit the
-other two can still take over. The least squares are found by dichotomous coordinate descent: steps of
+The projection m = b x M_ref / |b|^2, cut to the limits, is a different dipole: where one coil is at its limit
+the other two can still take over. The minimum is found by dichotomous coordinate descent: steps of
 m_max 2^-n along one coil at a time, n = 1 to 15, each taken only where it lowers the error. A little of |m|^2
 is added to the cost, as the part of m along b does nothing.
 
@@ -20,9 +20,9 @@ from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Set
 BITS = 15
 """Halvings of the step: to 3e-5 of the limit."""
 UPDATES = 400
-"""Steps at most."""
+"""Largest number of steps."""
 RIDGE = 1e-4
-"""Of |m|^2 |b|^2 in the cost."""
+"""Weight of |m|^2 |b|^2 in the cost."""
 
 
 def boxed_dipole(torque_body_nm: Vec3, b_body_t: Vec3, most_am2: float) -> Vec3:

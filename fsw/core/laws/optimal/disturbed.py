@@ -1,4 +1,4 @@
-"""Periodic regulator with the disturbance as periodic functions of the argument of latitude.
+"""Periodic regulator with the disturbance modelled by periodic functions of the argument of latitude.
 
     d(u) = c0 + c1 cos u + c2 sin u + c3 cos 2u + c4 sin 2u,   c in orbital axes, 15 numbers
 
@@ -8,10 +8,10 @@ problem, and Phi_k the matrix of d = Phi c in step k,
     S_k = Fc_k^T (S_k+1 + P_k+1 G Phi_k),   the same after an orbit,
     m_k = M_k x - (N^T P_k+1 N + effort E)^-1 N^T (P_k+1 G Phi_k + S_k+1) c,   N = -G [b x].
 
-The numbers c are learned in flight: what the rate does beyond the expected, as a torque tau, is taken to c
-slowly, c0' = a tau, c1' = 2 a cos u tau and so on, a = learning / period. That is the steepest descent of the
-mean square of tau, the functions being orthogonal over an orbit. The torque that the filter estimates is in
-the expected rate, and c0 has only what is beyond it.
+The numbers c are learned in flight: the change of rate beyond the expected, as a torque tau, is slowly added
+to c, c0' = a tau, c1' = 2 a cos u tau and so on, a = learning / period. That is the steepest descent of the
+mean square of tau, the functions being orthogonal over an orbit. The expected change includes the torque that
+the filter estimates, and c0 has only what is beyond it.
 
 Source: Lovera, de Marchi, Bittanti 2002, as in Ovchinnikov, Roldugin 2019, section 3.2. The review has no
 equation; S is derived from the step of ``riccati``, and the learning in place of the source's observer.
@@ -61,7 +61,7 @@ class DisturbedGains(LqrGains):
     """Weights as for ``lqr``, and how fast the disturbance is learned.
 
     Attributes:
-        learning: share of an unknown torque that is taken in an orbit, as a rate, 1/orbit.
+        learning: share of an unknown torque that is learned in an orbit, as a rate, 1/orbit.
     """
 
     learning: float = 1.0
@@ -110,7 +110,7 @@ def disturbed_schedule(
     field_t: float,
     gains: DisturbedGains,
 ) -> Schedule:
-    """The regulator of ``lqr`` with 15 columns behind: gains (n, 3, 24) and costs (n, 6, 24)."""
+    """The regulator of ``lqr`` with 15 columns appended: gains (n, 3, 24) and costs (n, 6, 24)."""
     orbit = (inertia_kgm2, wheel_body_nms, orbit_rate_radps, inclination_rad, field_t)
     _, b_orbit_t = orbit_problem(*orbit, gains)
     plain = schedule(*orbit, gains)

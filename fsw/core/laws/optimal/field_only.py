@@ -1,6 +1,6 @@
 """Periodic H2 control from the magnetometer alone: a periodic Kalman filter and the periodic regulator.
 
-The measured field b tells of a small attitude, with B the field of the model in orbital axes,
+The measured field b shows a small rotation theta, with B the field of the model in orbital axes, by
 
     y = b - B = [B x] theta + v,    x = (Omega, theta),    x+ = F x + G (d_rest + w) - G [b x] m,
 
@@ -40,20 +40,20 @@ from fsw.core.laws.optimal.lqr import (
 from fsw.core.laws.plan.riccati import Array, Problem, Schedule, free_step, skews
 
 ORBITS = 60
-"""After which the covariance has settled."""
+"""Most of them until the covariance has settled."""
 SETTLED = 1e-6
-"""Relative change in an orbit at which it has."""
+"""Relative change in an orbit at which it counts as settled."""
 FIRST_RAD = 1.0
-"""Uncertainty of the attitude with which the covariance begins; its rate's is that by w0."""
+"""Uncertainty of the attitude with which the covariance begins; that of the rate is w0 times this, rad/s."""
 
 
 @dataclass(frozen=True, slots=True)
 class FieldOnlyGains(LqrGains):
-    """Weights as for ``lqr``, and what the filter thinks of field and torque.
+    """Weights as for ``lqr``, and what the filter assumes of field and torque.
 
     Attributes:
-        noise: root mean square of the field's error in the mean of a step (1/48 orbit), against B0.
-        torque: root mean square of the unknown torque of a step, against w0^2 J_mean.
+        noise: root mean square error of the field averaged over a step (1/48 orbit), relative to B0.
+        torque: root mean square of the unknown torque of a step, relative to w0^2 J_mean.
     """
 
     effort: float = 1.0
@@ -93,7 +93,7 @@ def field_only_schedule(
 
 
 def covariances(problem: Problem, b_orbit_t: Array, torque_nm: float, noise_t: float, first: Array) -> Array:
-    """Sigma after the field of each step, (n, 6, 6), forwards orbit by orbit until it repeats.
+    """Sigma after the field of each step, (n, 6, 6), propagated orbit by orbit until it repeats.
 
     Args:
         problem: the problem.
@@ -120,7 +120,7 @@ def covariances(problem: Problem, b_orbit_t: Array, torque_nm: float, noise_t: f
 
 
 def lqg_field(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The regulator on the state that the field tells; it is remembered with the dipole given: 10 numbers.
+    """The regulator on the state estimated from the field; memory: tick, state and dipole given, 10 numbers.
 
     After a gap of more than a step of the table the estimate begins anew.
     """
@@ -150,7 +150,7 @@ def lqg_field(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Cont
 def _moved(
     x: Array, m_orbit_am2: Array, b_orbit: Vec3, seconds: float, table: Schedule, config: ControlConfig
 ) -> Array:
-    """The state after so long under the dipole given and the torque on the nominal attitude."""
+    """The state after ``seconds`` under the dipole given and the torque on the nominal attitude."""
     w0 = 2.0 * pi / STEPS / table.problem.step_s
     free = free_step(config.inertia_kgm2, config.wheel_body_nms, w0, seconds)
     torque = np.cross(m_orbit_am2, np.array(b_orbit)) + np.array(table.problem.resting_nm)
@@ -159,7 +159,7 @@ def _moved(
 
 
 def _corrected(x: Array, b_body_t: Vec3, b_orbit: Vec3, seconds: float, observer: Array) -> Array:
-    """The state corrected by a field sample that stands for so long."""
+    """The state corrected by a field sample that stands for ``seconds``."""
     h = np.zeros((3, 6))
     h[:, 3:] = skews(np.array(b_orbit))
     innovation = np.array(sub(b_body_t, b_orbit)) - h @ x

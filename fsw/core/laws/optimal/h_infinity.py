@@ -1,4 +1,4 @@
-"""H-infinity and H2: the periodic regulator against the torque that it bears worst.
+"""H-infinity and H2: the periodic regulator against the worst-case torque.
 
 The gain M(u) over the argument of latitude u is that of the game in ``game``: whatever a torque w does, the
 sum of |theta|^2 + rate |Omega / w0|^2 + effort |m|^2 stays under gamma^2 times that of |w|^2. The measure is
@@ -23,7 +23,7 @@ from fsw.core.laws.plan.game import game_periodic
 from fsw.core.laws.plan.riccati import NotHeldError, Schedule
 
 DOUBLINGS = 12
-"""Of gamma, until the regulator itself is taken."""
+"""Of gamma at most; then the regulator itself is taken."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ class HInfinityGains(LqrGains):
     """Weights as for ``lqr``, and the bound of the game.
 
     Attributes:
-        gamma: most error for a torque of w0^2 J_mean, root mean squares over all time, rad.
+        gamma: largest error for a torque of w0^2 J_mean, root mean squares over all time, rad.
     """
 
     gamma: float = 3.0
@@ -48,7 +48,7 @@ class HInfinityGains(LqrGains):
 
 
 def price(gamma_rad: float, inertia_kgm2: Mat3, orbit_rate_radps: float) -> float:
-    """Of |w|^2 in the game, gamma^2 / (w0^2 J_mean)^2, per (N m)^2."""
+    """The weight of |w|^2 in the game, gamma^2 / (w0^2 J_mean)^2, per (N m)^2."""
     mean_kgm2 = (inertia_kgm2[0][0] + inertia_kgm2[1][1] + inertia_kgm2[2][2]) / 3.0
     factor = gamma_rad / (orbit_rate_radps**2 * mean_kgm2)
     return factor * factor

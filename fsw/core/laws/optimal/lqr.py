@@ -2,10 +2,10 @@
 
 The gain M(u) is tabulated over the argument of latitude u of an orbit, from the controller's own inertia and
 orbit, once, when the onboard table is loaded. The law uses the constant torque that the filter estimates: a
-dipole cannot cancel it, but there is a periodic motion with the least error, and the law leads to it. M is
-the whole dipole: effort is charged for it with the residual one, so that the coils' is M less that, whatever
-the field to come. Charged for the coils' alone, a residual dipole would be left to act where that is cheap:
-it points worse.
+dipole cannot cancel it, but there is a periodic motion with the least error, and the law leads to it. M gives
+the total dipole: effort is charged for it, residual dipole included, so that the coils' is that less the
+residual, whatever the field to come. With the effort of the coils' alone, a residual dipole would be left to
+act where that is cheap, and pointing is worse.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.2; the equations stand in ``riccati``.
 """
@@ -34,7 +34,7 @@ from fsw.core.laws.plan.riccati import (
 from fsw.core.orbit.ephemeris import Reference
 
 STEPS = 48
-"""Steps an orbit: about two minutes each, little more than the pulses are apart."""
+"""Steps per orbit: about two minutes each, little more than the pulses are apart."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,11 +68,11 @@ class CostWeights(Protocol):
 
     @property
     def rate(self) -> float:
-        """Weight of the rate, of w0, against that of a radian."""
+        """Weight of a rate of w0, against that of a radian."""
 
     @property
     def effort(self) -> float:
-        """Weight of the dipole, of the one that turns the mean moment by w0^2, against that of a radian."""
+        """Weight of the dipole that accelerates the mean moment by w0^2, against that of a radian."""
 
 
 def middles() -> Array:
@@ -91,7 +91,7 @@ def orbit_problem(
 ) -> tuple[Problem, Array]:
     """The problem of a step, and the direct dipole's field in the middle of each, orbital axes, T, (n, 3).
 
-    Arguments: as of ``schedule``.
+    Arguments: as for ``schedule``.
     """
     u = middles()
     across, along = sin(inclination_rad), np.full(STEPS, cos(inclination_rad))
@@ -182,7 +182,7 @@ def rotation(q_body_from_orbit: Quaternion) -> Vec3:
 
 
 def within(m_body_am2: Vec3, most_am2: float) -> Vec3:
-    """The dipole, shortened until no component exceeds ``most_am2``."""
+    """The dipole, scaled down so that no component exceeds ``most_am2``."""
     largest = max(abs(component) for component in m_body_am2)
     return scale(most_am2 / largest, m_body_am2) if largest > most_am2 else m_body_am2
 

@@ -1,17 +1,17 @@
 """State-dependent Riccati equation: the regulator of the motion as it is at this attitude and rate.
 
-With q = (q0, qv) body from orbit, theta = 2 qv, Omega in body axes, an axis e of the orbital frame stands in
-the body at e_b = e + D_e qv, D_e = 2 (q0 E - [qv x]) [e x]. So the motion is, without approximation,
+With q = (q0, qv) body from orbit, theta = 2 qv, Omega in body axes, an axis e of the orbital frame has the
+body components e_b = e + D_e qv, D_e = 2 (q0 E - [qv x]) [e x]. So the motion is, without approximation,
 
     J dOmega/dt = J A_w Omega + J A_q qv + m x b + d,    dtheta/dt = (q0 E + [qv x]) Omega,
     J A_w = [(J omega + h) x] - w0 [e3b x] J - w0 J [e3b x],    omega = Omega + w0 e3b,
     J A_q = 3 w0^2 ([e1 x] J - [J e1b x]) D_1 - w0^2 ([e3 x] J - [J e3b x]) D_3 + w0 [h x] D_3,
 
-d with the torque on the nominal attitude. The Riccati equation is solved along the field of half an orbit
-ahead for the present A and attitude; the motion that its gains give yields A and the field in body axes of
-each step, for which it is solved again, and so on. At the end it is worth what ``lqr`` expects. The first
-steps are applied by feedback. About the nominal attitude it is ``mpc``. The factors A are not the only ones;
-these take of each product the present rate.
+d including the torque on the nominal attitude. The Riccati equation is solved along the field of half an
+orbit ahead for the present A and attitude; the motion that its gains give yields A and the field in body axes
+of each step, for which it is solved again, and so on. The terminal cost is that of ``lqr``. The first steps
+are applied by feedback. About the nominal attitude it is ``mpc``. The factors A are not unique; these take
+the present rate in each product.
 
 Source: Rodriguez-Vazquez, Martin-Prats, Bernelli-Zazzera 2012 (ASRE), as in Ovchinnikov, Roldugin 2019,
 section 3.2. The review has no equation: the factors are derived here from the rigid body's.
@@ -38,7 +38,7 @@ from fsw.core.laws.plan.orbit_ahead import orbit_ahead
 from fsw.core.laws.plan.riccati import E1, E3, TAYLOR, Array, Problem, Schedule, backward
 
 SEQUENCE = 3
-"""Solutions, each for the course of the one before."""
+"""Number of solutions, each along the motion of the one before."""
 HORIZON_STEPS = STEPS // 2
 """Half an orbit."""
 APPLIED_STEPS = 2
@@ -110,10 +110,10 @@ def solution(
 ) -> Array | None:
     """Gains of the first steps, from (Omega, theta, d) to the dipole, body axes, (APPLIED_STEPS, 3, 9).
 
-    None where there is no solution: the motion from far off, by gains for another, may leave all bounds.
+    None where there is no solution: the motion from far off, under gains for another, may diverge.
 
     Args:
-        table: the periodic regulator, whose cost stands at the end.
+        table: the periodic regulator, whose cost is the terminal cost.
         start: present (Omega, theta), body axes.
         torque_nm: d, body axes.
         b_orbit_t: field in the middle of each step, orbital axes, T, shape (steps, 3).
@@ -135,7 +135,7 @@ def _sequence(
     orbit_rate_radps: float,
     config: ControlConfig,
 ) -> tuple[Array, Array]:
-    """The gains of all steps, and the last state of the course that they lead to; not finite: no solution."""
+    """The gains of all steps, and the last state of the motion under them; not finite: no solution."""
     states = [start] * (len(b_orbit_t) + 1)
     gains = np.empty((len(b_orbit_t), 3, 9))
     for _ in range(SEQUENCE):
@@ -173,7 +173,7 @@ def _course(
 
 
 def _attitude(state: Array) -> Quaternion:
-    """The quaternion of theta = 2 qv; of a theta beyond half a turn that of half a turn."""
+    """The quaternion of theta = 2 qv; for a theta beyond half a turn, that of half a turn."""
     vector = 0.5 * state[3:]
     size = float(np.sqrt(vector @ vector))
     q1, q2, q3 = (vector / max(1.0, size)).tolist()

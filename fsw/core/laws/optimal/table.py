@@ -1,4 +1,4 @@
-"""The laws with the least cost of a linear model, by name."""
+"""The laws that minimise the cost of a linear model, by name."""
 
 from fsw.core.laws.entry import Aim, LawEntry
 from fsw.core.laws.optimal.averaged import AveragedGains, lqr_averaged

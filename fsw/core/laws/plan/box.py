@@ -15,9 +15,9 @@ from fsw.core.laws.plan.riccati import Array
 
 STEPS, HALVINGS = 60, 30
 SETTLED = 1e-10
-"""Of the largest slope at zero."""
+"""Largest slope at the end, relative to that at zero."""
 FALL = 1e-4
-"""Part of the fall that the slope promises which a step must bring."""
+"""Fraction of the decrease that the slope promises which a step must achieve."""
 
 
 def box_minimum(h: Array, g: Array, most: float) -> Array:
@@ -45,7 +45,7 @@ def box_minimum(h: Array, g: Array, most: float) -> Array:
 
 
 def _lower(h: Array, slope: Array, m: Array, change: Array, most: float) -> Array | None:
-    """The first of the halved steps that brings the cost down; None where none does any more."""
+    """The first of the halved steps that lowers the cost; None if none does."""
     part = 1.0
     for _ in range(HALVINGS):
         moved = np.clip(m + part * change, -most, most)

@@ -1,4 +1,4 @@
-"""The torque on the nominal attitude that does not change, as the filter estimates it."""
+"""The constant torque on the nominal attitude, as the filter estimates it."""
 
 from fsw.core.algebra.vector import Vec3, add
 from fsw.core.estimation.parameters import UNCHANGED_INERTIA, Parameters
@@ -6,7 +6,7 @@ from fsw.core.orbit.ephemeris import Reference
 
 
 def constant_torque(parameters: Parameters, reference: Reference | None) -> Vec3:
-    """The estimated torque, and that of the inertia that the table does not know, body axes, N m.
+    """The estimated torque, plus that of the estimated error of the inertia, body axes, N m.
 
     The latter is 3 w0^2 e1 x dJ e1 - w0^2 e3 x dJ e3 on the nominal attitude.
     """

@@ -1,10 +1,10 @@
 """The cost still to come of the linear-quadratic problem, with the same bits on every machine.
 
-The recursion is that of ``riccati.backward``. That one multiplies by BLAS, whose sums are ordered as suits
-the processor; here each sum is taken in the order of its terms, and what was computed by BLAS when the table
-was loaded enters rounded to single precision, so that a plan made from it can be replayed elsewhere.
+The recursion is that of ``riccati.backward``. That one multiplies by BLAS, which orders its sums to suit the
+processor; here each sum is taken in the order of its terms, and what was computed by BLAS when the table was
+loaded enters rounded to single precision, so that a plan made from it can be replayed elsewhere.
 
-Source: as of ``riccati``.
+Source: as for ``riccati``.
 """
 
 from dataclasses import replace
@@ -22,7 +22,7 @@ def times(a: Array, b: Array) -> Array:
 
 
 def rounded(values: Array) -> Array:
-    """The values in single precision: what differs in the last bits becomes equal."""
+    """The values in single precision: what differs only in the last bits becomes equal."""
     return values.astype(np.float32).astype(np.float64)
 
 

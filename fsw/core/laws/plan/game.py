@@ -1,11 +1,11 @@
 """The regulator against the worst disturbance: a game of the dipole with a torque, solved backwards in time.
 
-As in ``riccati``, x+ = F x + G (d + w) - G [b x] m, with a torque w that is free in each step and pays
+As in ``riccati``, x+ = F x + G (d + w) - G [b x] m, with a torque w that is free in each step at the price
 
-    gamma^2 |w / (w0^2 J_mean)|^2
+    gamma^2 |w / (w0^2 J_mean)|^2,
 
-for it, so that the sum of the cost over the steps is at most gamma^2 times that of w: gamma, in rad, bounds
-the root mean square of the error against that of a torque of w0^2 J_mean, whatever its course. With the
+so that the sum of the cost over the steps is at most gamma^2 times that of w: gamma, in rad, bounds the root
+mean square of the error relative to that of a torque in units of w0^2 J_mean, whatever its course. With the
 stacked input v = (m, w), N = G (-[b x], E) and R = diag(effort E, -gamma^2 E / (w0^2 J_mean)^2) the step is
 
     v = -(N^T P N + R)^-1 N^T (P (F x + G d) + S d),

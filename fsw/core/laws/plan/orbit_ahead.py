@@ -1,7 +1,7 @@
-"""The coming part of the orbit: the field to be met, and how fast the orbital frame turns.
+"""The orbit ahead: the field along it, and how fast the orbital frame turns.
 
-The field model is what a look ahead costs. Where many times are wanted it is evaluated at few, and a
-polynomial through these gives the others; its error is nearly the least where the few are Chebyshev nodes,
+Evaluating the field model is what a look ahead costs. Where many times are wanted it is evaluated at few, and
+a polynomial through these gives the others; its error is nearly the least where the few are Chebyshev nodes,
 
     t_k = T (1 - cos((k + 1/2) pi / n)) / 2.
 
@@ -21,11 +21,11 @@ from fsw.core.orbit.field import field_eci_t
 from fsw.core.orbit.propagation import state_eci
 
 NODES, NODES_PER_ORBIT = 4, 12
-"""From 300 km on IGRF-14 is then met within 0.3 uT over a third of an orbit, 2 uT over a whole one."""
+"""From 300 km up IGRF-14 is then matched within 0.3 uT over a third of an orbit, 2 uT over a whole one."""
 
 
 def check_horizon(orbits: float, least: float, most: float) -> None:
-    """Check that a plan reaches as far as it must and is soon made.
+    """Check that a plan reaches as far as it must and can be made quickly.
 
     Raises:
         ValueError: it does not.
@@ -42,7 +42,7 @@ class OrbitAhead(NamedTuple):
 
 
 class Sight(NamedTuple):
-    """When the orbit is evaluated, and the weights (wanted, nodes) of what is found for the times wanted."""
+    """When the orbit is evaluated, and the weights (wanted, nodes) that give the times wanted from that."""
 
     nodes_s: tuple[float, ...]
     weights: Array
@@ -77,7 +77,7 @@ def sight(wanted_s: Sequence[float], orbit_s: float) -> Sight:
 
 
 def seen(model: EphemerisModel, from_unix_s: float, by: Sight) -> OrbitAhead | None:
-    """The orbit at the times wanted, from this one on; None where it has no position."""
+    """The orbit at the times wanted, counted from ``from_unix_s``; None where it has no position."""
     at_nodes = orbit_ahead(model, [from_unix_s + node_s for node_s in by.nodes_s])
     if at_nodes is None:
         return None

@@ -9,7 +9,7 @@ from fsw.core.laws.plan.orbit_ahead import Sight
 from fsw.core.laws.plan.riccati import Array, Problem
 
 NEVER = -1
-"""Ticks until a coil may be fired that has a fault."""
+"""Ticks until a coil with a fault may be fired."""
 AXES: Mat3 = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
@@ -29,7 +29,7 @@ class PulseModel(NamedTuple):
     ``pulses`` are none, then coil by coil each level with either sign; ``turns``, shape (19, 3, 3), are
     J^-1 [T_p m x] of each, which turns the field into a change of rate. There are ``step_ticks`` from one
     opportunity to the next, for which ``problem`` has the motion, and ``rest`` steps from a pulse to the next
-    of the same coil. So many opportunities are ``searched``; ``sight`` is how the orbit is seen from the
+    of the same coil. ``searched``: how many opportunities are; ``sight``: how the orbit is seen from the
     middle of the first pulse on: at the pulse of each, midway from each to the next, and in the steps after
     them.
     """
@@ -46,7 +46,7 @@ class PulseModel(NamedTuple):
 def choices(
     levels_am2: Vec3, pulse_s: float, inertia_inverse: Mat3, coil_axes: Mat3 = AXES
 ) -> tuple[tuple[Pulse, ...], Array]:
-    """``pulses`` and ``turns`` of coils with these levels, and dipoles per nominal one, of a body."""
+    """``pulses`` and ``turns`` of a body whose coils have these levels, and dipoles per unit nominal one."""
     fired = [
         (Pulse(coil, sign * level), scale(sign * levels_am2[level - 1] * pulse_s, coil_axes[coil]))
         for coil in range(3)

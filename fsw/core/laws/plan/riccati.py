@@ -7,7 +7,7 @@ rotation vector and d a constant torque, all in orbital axes, x = (Omega, theta)
                        + 3 w0^2 ([e1 x] J - [J e1 x]) (e1 x theta) + m x b + d } - w0 e3 x Omega
     dtheta/dt = Omega
 
-h is the momentum of a wheel. The dipole m holds over a step, in which b is taken at its middle:
+h is the momentum of a wheel. The dipole m is held over a step, and b is taken at the middle of it:
 x+ = F x + G (d - [b x] m). The cost is the sum over the steps of
 
     rate |Omega / w0|^2 + |theta|^2 + effort |m B0 / (w0^2 J_mean)|^2
@@ -16,7 +16,7 @@ B0 the field above the equator. The torque d is given and not controlled: the op
 x^T P x + 2 x^T S d + ..., the optimal dipole m = M (x, d). P and S are stored as one matrix (P S), 6 x 9.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.2 (after Wisniewski 1996); damaged in the scan, derived anew.
-The sums by halves and the doubling: Chu, Fan, Lin, Wang 2004 (periodic Riccati equations).
+The joining of steps in pairs and the doubling: Chu, Fan, Lin, Wang 2004 (periodic Riccati equations).
 """
 
 from dataclasses import dataclass, field
@@ -64,7 +64,7 @@ class Problem:
 class Schedule:
     """A periodic solution: M and (P S) of each step of an orbit, shapes (n, 3, 9) and (n, 6, 9).
 
-    ``observer`` is the covariance of what a law estimates by itself, (n, 6, 6), empty for other laws.
+    ``observer``, (n, 6, 6): Sigma / (v^2 step) of a law that estimates by itself (``field_only``), else empty.
     """
 
     problem: Problem
@@ -90,8 +90,8 @@ def regulator_problem(
         orbit_rate_radps: w0.
         field_t: B0.
         step_s: length of a step.
-        rate: weight of the rate, of w0, against that of a radian.
-        effort: weight of the dipole, of the one that turns the mean moment by w0^2, against that of a radian.
+        rate: weight of a rate of w0, against that of a radian.
+        effort: weight of the dipole that accelerates the mean moment by w0^2, against that of a radian.
     """
     dipole_am2 = orbit_rate_radps**2 * float(np.trace(np.array(inertia_kgm2))) / 3.0 / field_t
     return Problem(
@@ -104,7 +104,7 @@ def regulator_problem(
 
 
 def free_step(inertia_kgm2: Mat3, wheel_body_nms: Vec3, orbit_rate_radps: float, step_s: float) -> Array:
-    """(F G), 6 x 9: the state after a step of the state and of a constant torque before."""
+    """(F G), 6 x 9: the state after a step, from the state before and a constant torque."""
     j, w0 = np.array(inertia_kgm2), orbit_rate_radps
     e1, e3 = np.array(skew(E1)), np.array(skew(E3))
     gyroscopic = w0 * (skews(j[:, 2]) - e3 @ j) + np.array(skew(wheel_body_nms))
@@ -156,7 +156,7 @@ def backward(problem: Problem, b_orbit_t: Array, last: Array) -> tuple[Array, Ar
 def periodic(problem: Problem, b_orbit_t: Array) -> tuple[Array, Array]:
     """Solve for an orbit whose field repeats.
 
-    The steps are summed to one step an orbit, x+ = A x - G p+, p = H x + A^T p+ (p half the slope of the
+    The steps are joined into one step per orbit, x+ = A x - G p+, p = H x + A^T p+ (p half the slope of the
     cost), and that step is doubled.
 
     Args:
@@ -190,7 +190,7 @@ def periodic(problem: Problem, b_orbit_t: Array) -> tuple[Array, Array]:
 
 
 def orbit_cost(problem: Problem, reach: Array) -> Array:
-    """P at the beginning of an orbit of many, (6, 6).
+    """P at the beginning of the first of many orbits, (6, 6).
 
     Args:
         problem: the problem.

@@ -9,7 +9,7 @@ with the dipole held over each of n steps of T / n and within the limits. The co
     1/2 omega^T J omega at the end + sum of (1/n) (weight f + effort |m|^2),
 
 f the energy 1/2 omega^T J omega at the end of each step, or |g|^2 of the damping law (``reference_dipole``).
-The slope is by differences, all of them and all lengths of a step down the slope computed at once.
+The slope is by differences; all of these, and all lengths of a step down the slope, are computed at once.
 
 Source: Ahmed, Kerrigan 2014; Boehm, Merk, Fichter, Allgoewer 2009, as in Ovchinnikov, Roldugin 2019,
 section 3.3.
@@ -23,11 +23,11 @@ import numpy as np
 from fsw.core.laws.plan.riccati import Array
 
 LARGEST_TURN_RAD = 0.4
-"""Of a step of integration."""
+"""Largest rotation in a step of integration."""
 DIFFERENCE = 1e-4
-"""Of the largest dipole, by which the slope is found."""
+"""Fraction of the largest dipole by which the slope is found."""
 LENGTHS = 2.0 ** -np.arange(0.0, 12.0)
-"""Of a step down the slope: the first takes the steepest component from limit to limit."""
+"""Lengths of a step down the slope: the first takes the steepest component from limit to limit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,13 +82,13 @@ def costs(case: Tumbling, dipoles_am2: Array) -> Array:
 
 
 def damping_course(case: Tumbling) -> Array:
-    """The dipoles that the damping law gives along its own course, (n, 3)."""
+    """The dipoles that the damping law gives along its own motion, (n, 3)."""
     course: Array = _run(case, None)[1][0]
     return course
 
 
 def _run(case: Tumbling, dipoles_am2: Array | None) -> tuple[Array, Array]:
-    """Costs and dipoles of plans; without dipoles of the one that the damping law makes."""
+    """Costs and dipoles of plans; without dipoles, of the plan that the damping law makes."""
     plans = 1 if dipoles_am2 is None else len(dipoles_am2)
     inverse, step_s = np.linalg.inv(case.inertia_kgm2), case.horizon_s / case.steps
     omega = np.tile(case.omega_body_radps, (plans, 1))
@@ -130,13 +130,13 @@ def _run(case: Tumbling, dipoles_am2: Array | None) -> tuple[Array, Array]:
 
 
 def descend(case: Tumbling, start_am2: Array, enough: float, iterations: int) -> tuple[Array, float, int]:
-    """A plan better than the first one: dipoles (n, 3), their cost, and how many steps were made.
+    """A plan better than the first one: dipoles (n, 3), their cost, and how many steps were taken.
 
     Args:
         case: what is planned for.
         start_am2: the first plan, (n, 3).
         enough: a cost at which the search may stop; -inf: as far as it goes.
-        iterations: most steps.
+        iterations: largest number of steps.
     """
     plan, cost = start_am2, float(costs(case, start_am2[None])[0])
     count, by = 3 * case.steps, DIFFERENCE * case.most_am2

@@ -1,1 +1,1 @@
-"""Laws that look at what each choice will lead to."""
+"""Laws that predict what each choice will lead to."""

@@ -1,9 +1,9 @@
 """The genetic search of PoSAT-1: the dipole with the least energy left, over the plane normal to the field.
 
-A population of points of that plane; each generation keeps the best (elitism), takes the null dipole into it
-anew (cloning: otherwise it may end at a dipole along the field, without torque), and fills up
-with mixtures of two parents, each won in a tournament of two, moved a little at random. The random numbers
-are a linear congruential sequence from a seed: same seed, same result, on every machine.
+A population of points of that plane; each generation keeps the best (elitism), takes in the null dipole again
+(cloning: otherwise it may end at a dipole along the field, without torque), and is filled up with mixtures of
+two parents, each the winner of a tournament of two, moved a little at random. The random numbers are a linear
+congruential sequence from a seed: same seed, same result, on every machine.
 
 Source: Tavares et al. (ConSat, PoSAT-1), after Goldberg 1989.
 """
@@ -15,9 +15,9 @@ from fsw.core.algebra.vector import ZERO, Mat3, Vec3, add, cross, dot, scale, su
 POPULATION = 24
 GENERATIONS = 40
 _SPREAD = 0.5
-"""First spread of a move against the size of the search."""
+"""First spread of a move, relative to the size of the search."""
 _NARROWING = 0.8705505632961241
-"""Of the spread from one generation to the next: half after five. A number, since pow differs by machine."""
+"""Factor on the spread per generation: half after five. A number, since pow differs from machine to machine."""
 
 Point = tuple[float, float]
 

@@ -1,13 +1,13 @@
 """Linear predictive control over the period of the field: a plan for the orbit ahead, renewed often.
 
 Orbit and field model give the field along the coming orbit: not the direct dipole's, which repeats each
-orbit, but the one that the satellite will meet. The plan costs least along it, and at its end what the
-periodic regulator (``lqr``) expects from there on. Its first steps are applied, by feedback; then it is made
-anew. On the direct dipole's field it is the periodic regulator.
+orbit, but the one that the satellite will meet. The plan minimises the cost along it; its terminal cost is
+what the periodic regulator (``lqr``) expects from there on. Its first steps are applied, by feedback; then it
+is made anew. On the direct dipole's field it is the periodic regulator.
 
-The plan has no bound of the dipole: the demand is shortened to what the coils can give in the mean. As for
-``lqr`` it is the whole dipole, from which the residual one is taken off, after that bound: near it the body
-points worse if the residual dipole is opposed in part only.
+The plan has no bound on the dipole: the demand is scaled down to what the coils can give on average. As for
+``lqr`` it is the total dipole, from which the residual one is subtracted after that bound: near it the body
+points worse if the residual dipole is opposed only in part.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.3 (after Silani, Lovera 2005); equations: ``riccati``.
 """
@@ -32,7 +32,7 @@ APPLIED_STEPS = 5
 """Steps of a plan that are applied."""
 FieldAhead = Callable[[LawInput, int, float, ControlConfig], Array | None]
 _NUMBERS = 3 * 9
-"""Of a gain."""
+"""Numbers of a gain."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,10 +93,10 @@ def by_plan(
     """The step of the plan in memory, or the first of a new one along the field that ``field_ahead`` gives.
 
     Args:
-        law: whose schedule and horizon count.
-        field_ahead: of the inputs, a number of steps, their length and the configuration, the field in the
-            middle of each, orbital axes, T, shape (steps, 3); None where there is none.
-        inputs: as of the law, as the next two.
+        law: the one whose schedule and horizon are used.
+        field_ahead: from the inputs, a number of steps, their length and the configuration, gives the field
+            in the middle of each, orbital axes, T, shape (steps, 3); None where there is none.
+        inputs: as for the law, like the next two.
         memory: tick of the plan's start, and its gains.
         config: the configuration.
         applied: steps of a plan that are applied, at most as many as it has.

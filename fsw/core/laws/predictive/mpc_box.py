@@ -1,13 +1,13 @@
 """Predictive control within the coils' limits: a quadratic programme over the dipoles of the coming steps.
 
-The steps x+ = F x + G d + N m of ``riccati``, N = -G [B x] C^T with m in body axes, C as it is now, are put
-one into the other, so that states and cost depend on the dipoles alone:
+The steps x+ = F x + G d + N m of ``riccati``, N = -G [B x] C^T with m in body axes, C as it is now, are
+substituted one into the next, so that states and cost depend on the dipoles alone:
 
     min sum_k |theta_k|^2 + rate |Omega_k / w0|^2 + effort |m_k|^2 + x_n^T (P x_n + 2 S d),   |m_i| <= m_max,
 
-P and S what the periodic regulator expects from there on. The first dipole is given for a step; then the
-programme is solved anew. While no limit is met it is ``mpc``; where one is, ``mpc`` shortens its dipole and
-loses what this one gives with the other coils and later.
+P and S the terminal cost, that of the periodic regulator. The first dipole is given for a step; then the
+programme is solved anew. While no limit is reached it is ``mpc``; where one is, ``mpc`` scales its dipole down
+and loses what this law gives with the other coils and later.
 
 Source: Krogstad, Gravdahl, Tondel 2005; Wood, Chen, Fertin 2006, as in Ovchinnikov, Roldugin 2019,
 section 3.3.

@@ -7,8 +7,8 @@
 
 which is enough for the rate to go to zero, long before the plan is the best one. ``nmpc_reference`` weighs,
 in place of the energy, the dipole g that the damping law would give, and begins its search at the course that
-this law would take. No step of a plan is longer than half a turn of the body, but none shorter than a tick:
-a body that turns further in a tick cannot be damped by a dipole that is held, and nothing is asked for.
+this law would take. No step of a plan is longer than half a turn of the body, nor shorter than a tick: a body
+that turns further in a tick cannot be damped by a dipole that is held, and nothing is demanded.
 
 Source: Ahmed, Kerrigan 2014 (the rule), Boehm, Merk, Fichter, Allgoewer 2009 (the reference), as in
 Ovchinnikov, Roldugin 2019, section 3.3. The gravity torque is left out: these are laws for a tumbling body.
@@ -37,10 +37,10 @@ class NmpcGains:
 
     Attributes:
         horizon_s: how far it looks at most, s; the dipole is held over a twelfth of it.
-        weight: of the energy along the plan against that at its end.
+        weight: of the energy along the plan, relative to that at its end.
         effort: of |m|^2, J / (A m^2)^2.
-        gamma: of |omega|^2 in the rule, J s^2, against the mean moment of inertia; negative: no rule.
-        iterations: most steps of a search.
+        gamma: of |omega|^2 in the rule, J s^2, relative to the mean moment of inertia; negative: no rule.
+        iterations: largest number of steps of a search.
     """
 
     horizon_s: float = 60.0
@@ -83,7 +83,7 @@ def nmpc_damping(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: C
 
 
 def nmpc_reference(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The plan near the damping law's course; memory as of ``nmpc_damping``."""
+    """The plan near the damping law's course; memory as for ``nmpc_damping``."""
     gains: NmpcReferenceGains = config.gains["nmpc_reference"]
     return _planned(inputs, memory, gains, gains.steepness, config)
 
@@ -91,7 +91,7 @@ def nmpc_reference(inputs: LawInput, memory: Memory, setpoint: Setpoint, config:
 def _planned(
     inputs: LawInput, memory: Memory, gains: NmpcGains, steepness: float | None, config: ControlConfig
 ) -> Demand:
-    """The dipole of the plan in memory while its first step lasts, else of a new one."""
+    """The dipole of the plan in memory while its first step lasts, otherwise that of a new one."""
     moving, reference = motion(inputs, config), inputs.reference
     if moving is None or reference is None or norm(reference.b_eci_t) == 0.0:
         return Demand()

@@ -49,7 +49,7 @@ def free_rate_change(
 
 
 def free_change(inputs: LawInput, reference: Reference, config: ControlConfig) -> Vec3:
-    """The same of what a law sees, with a valid attitude and the orbit ``reference``."""
+    """The same for what a law sees, with a valid attitude and the orbit ``reference``."""
     return free_rate_change(
         inputs.attitude.omega_body_orbit_radps,
         dcm(inputs.attitude.q_body_from_orbit),

@@ -2,10 +2,10 @@
 
 Unlike ``mpc``, whose mean dipole the actuator then turns into pulses, this law plans with the pulses that
 the coils can give: their levels, one coil at a time, and their back-off. Torque and residual dipole are those
-that the filter estimates. After the opportunities searched, what remains is worth what a dipole with no limit
+that the filter estimates. After the opportunities searched, the terminal cost is what a dipole with no limit
 would leave along the field to come. A sequence is flown for one pulse, and then made anew.
 
-Source: as of ``pulse_plan``.
+Source: as for ``pulse_plan``.
 """
 
 from dataclasses import dataclass
@@ -33,14 +33,14 @@ from fsw.core.orbit.ephemeris import EphemerisModel, Reference
 REPORTED_TICKS = 3
 """The board reports the lockout of one coil a tick: a coil that is ready is soon known to be."""
 RETRY = 8
-"""Part of the time between opportunities after which it is asked again whether a pulse helps."""
+"""After 1 / RETRY of the time between opportunities it is checked again whether a pulse helps."""
 
 
 @dataclass(frozen=True, slots=True)
 class PulseMpcGains:
-    """Weights as for ``lqr``, and how far the field is looked at beyond the pulses searched, in orbits.
+    """Weights as for ``lqr``, and how far the field is considered beyond the pulses searched, in orbits.
 
-    The effort is that of a dipole without limits, which stands for the pulses after those searched.
+    The effort is that of a dipole without limits, which stands in for the pulses after those searched.
     """
 
     rate: float = 0.0
@@ -58,7 +58,7 @@ class PulseMpcGains:
 
 
 def pulse_mpc(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The pulse to fire in answer to this tick; memory is the tick from which on one may be asked for."""
+    """The pulse to fire in answer to this tick; memory is the tick from which one may be demanded."""
     pulses, schedule = config.pulse_model, config.schedules.get("pulse_mpc")
     known = inputs.attitude.valid and inputs.reference is not None and inputs.ephemeris is not None
     if not known or pulses is None or schedule is None:

@@ -1,15 +1,15 @@
 """The pulses to come: a search among what pulsed coils can do, one choice at each opportunity.
 
-At an opportunity a coil may give one of three levels of either sign, or none does: 19 choices. A pulse turns
-the rate at once, and the body then moves freely until the next opportunity, as in ``riccati``:
+At an opportunity one coil fires at one of three levels with either sign, or none does: 19 choices. A pulse
+changes the rate at once, and the body then moves freely until the next opportunity, as in ``riccati``:
 
     x+ = F (x + (J^-1 (T_p m x b), 0)) + G (d + m_r x b) - (w0' h, w0' h^2 / 2) e3
 
-d the constant torque, m_r the residual dipole, w0' how the rate of an orbit that is no circle changes, h the
-time between opportunities. Sought is the sequence with the least sum of |theta|^2 and,
-after its end, of what a dipole without limits would leave, x^T P x + 2 x^T (S d + s); by a beam: only those
-sequences go on from an opportunity whose cost so far and to go is least. No sum and no choice depends on how
-a processor orders its work.
+d the constant torque, m_r the residual dipole, w0' the change of the rate of a non-circular orbit, h the time
+between opportunities. The sequence sought has the least sum of rate |Omega / w0|^2 + |theta|^2 plus, after
+its end, what a dipole without limits would leave, x^T P x + 2 x^T (S d + s); by beam search: only the
+sequences with the least cost so far and to go continue from an opportunity. No sum and no choice depends on
+how a processor orders its work.
 
 Source: the choice among 18 pulses and none: Tavares et al. (ConSat, PoSAT-1); the horizon: Ovchinnikov,
 Roldugin 2019, section 3.3; beam search: Lowerre 1976. Their combination is this project's.
@@ -26,9 +26,9 @@ from fsw.core.laws.plan.pulse_model import NO_PULSE, Pulse, PulseModel
 from fsw.core.laws.plan.riccati import Array
 
 SEQUENCES = 32
-"""So many go on from one opportunity to the next."""
+"""How many continue from one opportunity to the next."""
 BARRED = 1_000_000
-"""Opportunities that pass before a coil may be fired that never may."""
+"""Opportunities that pass before a coil that must not be fired may be."""
 
 Numbers = NDArray[np.int64]
 

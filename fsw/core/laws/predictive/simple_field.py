@@ -1,10 +1,10 @@
-"""Predictive control along a field that costs less to know: fitted by five functions, or held constant.
+"""Predictive control along a field that is cheaper to obtain: fitted by five functions, or held constant.
 
 ``mpc_fitted``: the model's field at few points of the coming orbit is fitted by least squares,
 
-    B(u) = b0 + b1 cos u + b2 sin u + b3 cos 2u + b4 sin 2u,   u the angle run through from now on,
+    B(u) = b0 + b1 cos u + b2 sin u + b3 cos 2u + b4 sin 2u,   u the orbit angle from now on,
 
-of orbital axes, and the plan is made along the fit. ``mpc_held``: the measured field, in orbital axes, is
+in orbital axes, and the plan is made along the fit. ``mpc_held``: the measured field, in orbital axes, is
 held over a short horizon with the disturbance, and no model of the field ahead is needed; the plan is renewed
 at each step. Both end in the cost of the periodic regulator; equations and feedback are those of ``mpc``.
 
@@ -26,7 +26,7 @@ from fsw.core.laws.plan.riccati import Array
 from fsw.core.laws.predictive.mpc import MpcGains, by_plan
 
 POINTS = 12
-"""At which the model's field is evaluated for a fit, over one orbit."""
+"""Points at which the model's field is evaluated for a fit, over one orbit."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""The laws that look at what each choice will lead to, by name."""
+"""The laws that predict what each choice will lead to, by name."""
 
 from fsw.core.laws.entry import Aim, LawEntry, Need
 from fsw.core.laws.optimal.lqr import without_memory

@@ -1,12 +1,12 @@
 """Sliding control on a surface in which the inertia does not weigh the rate.
 
-The surface is s = Omega + K q, rad/s. The classical law demands what holds the motion on it, M_eq, and what
-brings the motion to it; the modified one leaves out what holds:
+The surface is s = Omega + K q, rad/s. The classical law demands M_eq, which holds the motion on it, and a
+torque that brings the motion to it; the modified one leaves out M_eq:
 
     M_ref = M_eq - c J layer sat(s / layer),     M_eq = -J (f + K dq/dt),
 
 with dq/dt = 1/2 (q0 Omega + q x Omega), f = dOmega/dt without control, and sat(x) = x limited to +-1 for each
-axis. Coils give the projection of M_ref; with its part along the field M_eq loses what makes it hold s.
+axis. Coils give the projection of M_ref; without its component along the field M_eq no longer holds s.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1, after Sofyali, Jafarov 2012, whose title has a classical and
 a modified algorithm; the review gives the surface alone. Both torques are those of the method of equivalent
@@ -24,7 +24,7 @@ from fsw.core.laws.predictive.predictive import free_change
 
 @dataclass(frozen=True, slots=True)
 class RateSurfaceGains:
-    """In the orbit's rate w0: c = reach w0, K = slope w0, layer = layer w0."""
+    """In units of the orbital rate w0: c = reach w0, K = slope w0, layer = layer w0."""
 
     reach: float = 3.0
     slope: float = 0.5

@@ -1,4 +1,4 @@
-"""A sliding surface that the coils can reach: its matrix changes so that no torque along the field is wanted.
+"""A sliding surface that the coils can reach: its matrix changes so that no torque along the field is needed.
 
 On the surface s = J Omega + K e = 0, with e = 2 qv and K symmetric, positive definite, the attitude decays.
 With f = dOmega/dt without control and e' = q0 Omega + qv x Omega, ds/dt = -c s asks for the torque
@@ -6,12 +6,12 @@ With f = dOmega/dt without control and e' = q0 Omega + qv x Omega, ds/dt = -c s 
     M = M0 - K' e,     M0 = -c s - J f - K e'.
 
 Coils give it where b . M = 0, which is one equation for the six elements of K'. Of all symmetric K' the one
-with the least sum of squares is taken, n = b / |b|, beside a slow return to K0 = slope w0 J_mean E:
+with the least sum of squares is taken, n = b / |b|, plus a slow return to K0 = slope w0 J_mean E:
 
     K' = -r (K - K0) + (n . M0 + r n . (K - K0) e) (n e^T + e n^T) / (|e|^2 + (n . e)^2).
 
 K is carried from tick to tick; a step that would leave least K0 < K < most K0 is halved until it does not,
-and what of M is then left along b is lost. The denominator vanishes only where the error does.
+and what is then left of M along b is lost. The denominator vanishes only where the error does.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1, after Ovchinnikov, Roldugin, Penkov, Tkachev, Mashtakov 2016:
 a surface that a magnetic system can realise in full, by a matrix that depends on time and is built step by
@@ -34,12 +34,12 @@ Sym = tuple[float, float, float, float, float, float]
 
 UNIT: Sym = (1.0, 1.0, 1.0, 0.0, 0.0, 0.0)
 STEP_PARTS = (1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125, 0.0)
-"""Parts of a step of K that are tried, largest first; the return alone never leaves the bounds."""
+"""Fractions of a step of K that are tried, largest first; the return alone never leaves the bounds."""
 
 
 @dataclass(frozen=True, slots=True)
 class RealisableGains:
-    """In the orbit's rate w0: c = reach w0, K0 = slope w0 J_mean, r = back w0; bounds of K in K0."""
+    """In units of the orbital rate w0: c = reach w0, K0 = slope w0 J_mean, r = back w0; bounds of K in K0."""
 
     reach: float = 1.0
     slope: float = 0.3
@@ -59,7 +59,7 @@ def matrix_change(wanted: float, field_direction: Vec3, error: Vec3) -> Sym:
     """The least symmetric K' with n . K' e = ``wanted``; zero where the error is.
 
     Args:
-        wanted: what K' e has to take along the field; K' comes in its unit.
+        wanted: what K' e has to be along the field; K' has the same unit.
         field_direction: n, unit vector, body axes.
         error: e.
     """
@@ -79,7 +79,7 @@ def matrix_change(wanted: float, field_direction: Vec3, error: Vec3) -> Sym:
 
 
 def stepped(matrix: Sym, change: Sym, least: float, most: float) -> Sym:
-    """K after the largest part of a step that leaves K - least E and most E - K positive definite."""
+    """K after the largest fraction of a step that leaves K - least E and most E - K positive definite."""
     tried = (_sum(matrix, change, part) for part in STEP_PARTS)
     return next((k for k in tried if _within(k, least, most)), matrix)
 

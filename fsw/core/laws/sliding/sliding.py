@@ -1,4 +1,4 @@
-"""Sliding control: a surface in rate and attitude on which the attitude error decays, a torque to it.
+"""Sliding control: a surface in rate and attitude on which the attitude error decays, and a torque to it.
 
 On the surface s = J Omega + K q = 0 (10) the attitude decays by itself; the torque demanded is parallel to
 s, M_ref = -c s, and the coils give its projection normal to the field. With integrals,
@@ -7,7 +7,7 @@ s, M_ref = -c s, and the coils give its projection normal to the field. With int
 
 the first holds the mean error and so counters a constant torque; the second is the impulse that the coils
 could not give: with it ds/dt is that under full control, so that the coils can reach the surface. In
-simulation it delays convergence, and a constant torque winds it up: its part is zero by default.
+simulation it delays convergence, and a constant torque winds it up: its fraction is zero by default.
 
 Source: Ovchinnikov, Roldugin 2019, eq. 10 and the surface with integrals after it. The scan damages the
 latter: the second integral is one of b b^T alone there. What it integrates is derived here, from the lost
@@ -24,7 +24,7 @@ from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Set
 
 @dataclass(frozen=True, slots=True)
 class SlidingGains:
-    """In the orbit's rate w0 and the mean moment J: c = reach w0, K = slope w0 J."""
+    """In units of the orbital rate w0 and the mean moment J: c = reach w0, K = slope w0 J."""
 
     reach: float = 3.0
     slope: float = 0.5
@@ -32,7 +32,7 @@ class SlidingGains:
 
 @dataclass(frozen=True, slots=True)
 class SlidingIntegralGains:
-    """As for ``SlidingGains``; K_i = integral w0^2 J, and the part of the lost impulse that is integrated."""
+    """As for ``SlidingGains``; K_i = integral w0^2 J, and the fraction of the lost impulse integrated."""
 
     reach: float = 3.0
     slope: float = 0.5
@@ -70,7 +70,7 @@ def sliding(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Contro
 def sliding_integral(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The same with both integrals; memory: K_i times the first, and the second, N m s each.
 
-    Each is bounded where alone it would demand more than the coils can give in the mean.
+    Each is bounded where it alone would demand more than the coils can give on average.
     """
     held = _held(memory)
     if not inputs.attitude.valid or inputs.reference is None:

@@ -21,7 +21,7 @@ from fsw.core.laws.sliding.rate_surface import rate_surface
 
 @dataclass(frozen=True, slots=True)
 class SphereSlidingGains:
-    """In the orbit's rate w0: K = slope w0, layer = layer w0; m_0 is ``part`` of the coils' mean dipole."""
+    """In units of the orbital rate w0: K = slope w0, layer = layer w0; m_0 = ``part`` times the mean dipole."""
 
     slope: float = 0.5
     layer: float = 0.5
@@ -43,7 +43,7 @@ def relay_dipole(s_radps: Vec3, b_body_t: Vec3, m0_am2: float, layer_radps: floa
 
 
 def sliding_sphere(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The relay on the surface of the rate."""
+    """The relay on the surface in the rate."""
     if not inputs.attitude.valid or inputs.reference is None:
         return Demand()
     gains: SphereSlidingGains = config.gains["sliding_sphere"]
